@@ -16,7 +16,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Names of files of a sequence that are missing or cannot be read, and why. Where there are any, the exit code is that of a failure.
+// Names of files of a sequence that are missing or cannot be read, and why. Where there are any, the exit code is that
+// of a failure.
 constexpr const char* kDamaged = "damaged";
 
 ordered_json scene_info(const std::string& path) {
@@ -33,11 +34,11 @@ ordered_json scene_info(const std::string& path) {
           {"images", s.images},
           {"image_bytes", s.image_bytes},
           {"camera", s.has_camera},
-          {"settings", settings_to_json(s.settings)}};
+          {"settings", schema::settings_to_json(s.settings)}};
 }
 
 ordered_json film_info(const std::string& path) {
-  const auto frame = load_film(path);
+  const auto frame = film_io::load_film(path);
   uint64_t samples = 0, minimum = UINT64_MAX, maximum = 0;
   for (size_t i = 0; i < frame->count[0].size(); ++i) {
     const uint64_t n = uint64_t(frame->count[0][i]) + frame->count[1][i];
@@ -60,12 +61,13 @@ ordered_json film_info(const std::string& path) {
           {"alpha", frame->channels == 4},
           {"memory_bytes", frame->memory_bytes()},
           {"scene_key", scene_key},
-          {"settings", settings_to_json(frame->settings)}};
+          {"settings", schema::settings_to_json(frame->settings)}};
 }
 
 ordered_json sequence_info(const std::string& folder) {
   const FolderFaults faults = find_faults(folder);
-  if (!faults.files.empty() && faults.whole_frames == 0) return {{"kind", "sequence"}, {"frames", 0}, {kDamaged, faults.files}};
+  if (!faults.files.empty() && faults.whole_frames == 0)
+    return {{"kind", "sequence"}, {"frames", 0}, {kDamaged, faults.files}};
   const StoredSequence stored(folder, faults.frames);
   const int32_t first = stored.frames().front(), last = stored.frames().back();
   ordered_json frame = film_info(stored.path(first));
@@ -83,9 +85,10 @@ ordered_json sequence_info(const std::string& folder) {
 ordered_json describe(const std::string& path) {
   if (std::filesystem::is_directory(path)) return sequence_info(path);
   if (std::filesystem::path(path).extension() == ".gradus") return scene_info(path);
-  if (std::filesystem::path(path).extension() != ".exr") throw invalid_argument(path + " is neither FILE.gradus nor FILE.exr");
-  if (is_film_file(path)) return film_info(path);
-  return {{"kind", "image"}, {"channels", image_channels(path)}};
+  if (std::filesystem::path(path).extension() != ".exr")
+    throw invalid_argument(path + " is neither FILE.gradus nor FILE.exr");
+  if (film_io::is_film_file(path)) return film_info(path);
+  return {{"kind", "image"}, {"channels", film_io::image_channels(path)}};
 }
 
 void print(const ordered_json& info, const std::string& indent) {
@@ -107,8 +110,11 @@ void add_info(CLI::App* app, int* exit_code) {
     bool json = false;
   };
   auto args = std::make_shared<Arguments>();
-  CLI::App* command = app->add_subcommand("info", "Say what a scene file, a stored frame, a folder of frames or an image holds");
-  command->add_option("file", args->path, "FILE.gradus, FILE.exr, or a folder of a frame store")->required()->check(CLI::ExistingPath);
+  CLI::App* command =
+      app->add_subcommand("info", "Say what a scene file, a stored frame, a folder of frames or an image holds");
+  command->add_option("file", args->path, "FILE.gradus, FILE.exr, or a folder of a frame store")
+      ->required()
+      ->check(CLI::ExistingPath);
   command->add_flag("--json", args->json, "Print one JSON object");
   command->callback([args, exit_code] {
     const ordered_json info = describe(args->path);

@@ -24,11 +24,12 @@ struct RenderArguments {
   OptionFlags options;
 };
 
-// FILE.exr itself, or in a store: STORE/<scene>/ViewLayer/f<frame>.exr; frames of animations have other names (contract 7.2).
+// FILE.exr itself, or in a store: STORE/<scene>/ViewLayer/f<frame>.exr; frames of animations have other names
+// (contract 7.2).
 fs::path frame_path(const RenderArguments& args, int32_t frame) {
   const fs::path output = args.output;
   if (output.extension() == ".exr") return output;
-  return output / fs::path(args.scene).stem() / "ViewLayer" / frame_name(frame, "exr");
+  return output / fs::path(args.scene).stem() / "ViewLayer" / film_io::frame_name(frame, "exr");
 }
 
 void append_line(const std::string& path, const std::string& line) {
@@ -36,11 +37,11 @@ void append_line(const std::string& path, const std::string& line) {
   if (!(file << line << std::endl)) throw client::Error(GRADUS_ERROR_INVALID_OPERATION, "cannot write " + path);
 }
 
-client::Film render_film(const client::Device& device, const client::Scene& scene, const GradusSettings& settings, const fs::path& target,
-                           const RenderArguments& args) {
+client::Film render_film(const client::Device& device, const client::Scene& scene, const GradusSettings& settings,
+                         const fs::path& target, const RenderArguments& args) {
   const bool resumed = args.resume && fs::exists(target);
-  client::Render render =
-      resumed ? client::Render(scene, settings, client::Film::load(device, target.string())) : client::Render(scene, settings);
+  client::Render render = resumed ? client::Render(scene, settings, client::Film::load(device, target.string()))
+                                  : client::Render(scene, settings);
   {
     ProgressLine line;
     while (!render.wait(0.1)) {
@@ -54,15 +55,16 @@ client::Film render_film(const client::Device& device, const client::Scene& scen
 
 void write_image(const client::Film& frame, const GradusSettings& settings, const std::string& path) {
   const auto [width, height] = frame.size();
-  std::vector<ImageLayer> layers;
+  std::vector<film_io::ImageLayer> layers;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
     if (pass != GRADUS_PASS_COMBINED && (settings.passes >> pass & 1) == 0) continue;
-    layers.push_back({pass == 0 ? "" : client::pass_name(pass), int(client::pass_channels(pass)), frame.read_pass(pass)});
+    layers.push_back(
+        {pass == 0 ? "" : client::pass_name(pass), int(client::pass_channels(pass)), frame.read_pass(pass)});
   }
   if (settings.use_decomposition != 0) {
     add_component_layers(settings, settings.component_passes, size_t(width) * height, reader_of(frame), &layers);
   }
-  save_image(path, int(width), int(height), layers);
+  film_io::save_image(path, int(width), int(height), layers);
 }
 
 int run(const RenderArguments& args) {
@@ -91,7 +93,8 @@ void add_render(CLI::App* app, int* exit_code) {
   CLI::App* command = app->add_subcommand("render", "Render a saved scene into a frame store");
   command->add_option("scene", args->scene, "Scene file, FILE.gradus")->required()->check(CLI::ExistingFile);
   command->add_option("-o,--output", args->output, "Folder of the frame store, or FILE.exr for one frame")->required();
-  command->add_option("--image", args->image, "Also write the reconstruction and the passes as an image, FILE.exr")->check(exr_only);
+  command->add_option("--image", args->image, "Also write the reconstruction and the passes as an image, FILE.exr")
+      ->check(exr_only);
   command->add_option("--stats", args->stats, "Append one JSON object about the render to this file");
   command->add_flag("--resume", args->resume, "Go on from the samples of the frame that is already in the store");
   add_denoiser_path(command, &args->denoiser_path);

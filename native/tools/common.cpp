@@ -16,7 +16,8 @@ std::string describe(const GradusOptionInfo& info) {
   std::ostringstream text;
   text << info.doc;
   if (info.type == GRADUS_OPTION_ENUM) {
-    const std::string name = choice_name(*find_option(info.name), static_cast<uint32_t>(info.default_value));
+    const std::string name =
+        schema::choice_name(*schema::find_option(info.name), static_cast<uint32_t>(info.default_value));
     text << " (" << info.choices << "; default " << name << ")";
   } else {
     text << " (default " << info.default_value << ")";
@@ -33,7 +34,8 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
 
 void parse_region(const std::string& text, GradusSettings* settings) {
   const std::vector<std::string> parts = split(text);
-  if (parts.size() != 4) throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, "region = " + text + ": expected x0,y0,x1,y1");
+  if (parts.size() != 4)
+    throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, "region = " + text + ": expected x0,y0,x1,y1");
   for (size_t i = 0; i < 4; ++i) {
     if (parts[i].empty() || parts[i].find_first_not_of("0123456789") != std::string::npos || parts[i].size() > 9) {
       throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, "region = " + text + ": expected four numbers of pixels");
@@ -84,7 +86,8 @@ void OptionFlags::add_to(CLI::App* command) {
       ->group("Render options")
       ->check(bad_passes);
   command
-      ->add_option("--component-passes", component_passes_, "Passes of the components of --use-decomposition, separated by commas, or all")
+      ->add_option("--component-passes", component_passes_,
+                   "Passes of the components of --use-decomposition, separated by commas, or all")
       ->group("Render options")
       ->check(bad_component_passes);
 }
@@ -99,7 +102,8 @@ void OptionFlags::apply(GradusSettings* settings) const {
 }
 
 PassNames pass_names() {
-  return {GRADUS_PASS_COUNT, [](uint32_t pass) { return canonical(client::pass_name(pass)); }, "there is no pass ", "; there are "};
+  return {GRADUS_PASS_COUNT, [](uint32_t pass) { return canonical(client::pass_name(pass)); }, "there is no pass ",
+          "; there are "};
 }
 
 uint64_t parse_passes(const std::string& text) { return 1 | parse_names(pass_names(), text); }
@@ -113,7 +117,7 @@ std::string bad_value(const std::string& option, const std::string& value) {
   return refusal([&] {
     GradusSettings settings = client::default_settings();
     client::check(gradus_settings_parse(&settings, option.c_str(), value.c_str()));
-    check_alpha(settings.reconstruction_alpha);
+    schema::check_alpha(settings.reconstruction_alpha);
   });
 }
 
@@ -122,7 +126,8 @@ std::string bad_passes(const std::string& text) {
 }
 
 void check_apart(const std::string& option, const std::string& written, const std::string& kept) {
-  if (is_same_file(written, kept)) throw CLI::ValidationError(option, written + " is " + kept + ", which it would replace");
+  if (is_same_file(written, kept))
+    throw CLI::ValidationError(option, written + " is " + kept + ", which it would replace");
 }
 
 void check_denoiser_path(const std::string& path, uint32_t denoiser) {
@@ -137,16 +142,19 @@ uint32_t parse_choice(const std::string& option, const std::string& value) {
 }
 
 void print_warnings(const client::Device& device) {
-  for (std::string text = device.warning(); !text.empty(); text = device.warning()) std::fprintf(stderr, "warning: %s\n", text.c_str());
+  for (std::string text = device.warning(); !text.empty(); text = device.warning())
+    std::fprintf(stderr, "warning: %s\n", text.c_str());
 }
 
 void print_warnings(const client::Device& device, const client::Scene& scene) {
   print_warnings(device);
-  for (std::string text = scene.warning(); !text.empty(); text = scene.warning()) std::fprintf(stderr, "warning: %s\n", text.c_str());
+  for (std::string text = scene.warning(); !text.empty(); text = scene.warning())
+    std::fprintf(stderr, "warning: %s\n", text.c_str());
 }
 
 void add_denoiser_path(CLI::App* command, std::string* path) {
-  command->add_option("--denoiser-path", *path, "libOpenImageDenoise.so.2 or the folder that holds it, where the system does not find it");
+  command->add_option("--denoiser-path", *path,
+                      "libOpenImageDenoise.so.2 or the folder that holds it, where the system does not find it");
 }
 
 }  // namespace gradus::tool

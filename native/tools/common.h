@@ -56,7 +56,8 @@ inline constexpr uint64_t kAllPasses = (uint64_t{1} << GRADUS_PASS_COUNT) - 1;
 PassNames pass_names();
 // As parse_names(); Combined is always among them.
 uint64_t parse_passes(const std::string& text);
-// For CLI::Option::check: what is wrong with a file name that does not end in .exr, the only format that the tool reads and writes.
+// For CLI::Option::check: what is wrong with a file name that does not end in .exr, the only format that the tool reads
+// and writes.
 std::string exr_only(const std::string& path);
 // The same of values for the library's options, and of names of passes.
 std::string bad_value(const std::string& option, const std::string& value);
@@ -64,7 +65,8 @@ std::string bad_passes(const std::string& text);
 // Value of `reconstruction` or `denoiser`; throws as the library does.
 uint32_t parse_choice(const std::string& option, const std::string& value);
 
-// Both throw CLI::ValidationError, which is wrong usage. The first where `written` is the file `kept`, by whatever name or link.
+// Both throw CLI::ValidationError, which is wrong usage. The first where `written` is the file `kept`, by whatever name
+// or link.
 void check_apart(const std::string& option, const std::string& written, const std::string& kept);
 void check_denoiser_path(const std::string& path, uint32_t denoiser);
 

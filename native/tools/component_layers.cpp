@@ -9,19 +9,20 @@ namespace gradus::tool {
 namespace {
 
 PassNames component_pass_names() {
-  return {GRADUS_COMPONENT_PASS_COUNT, [](uint32_t pass) { return canonical(component_pass_info(pass).name); }, "components have no pass ",
-          "; they have "};
+  return {GRADUS_COMPONENT_PASS_COUNT, [](uint32_t pass) { return canonical(schema::component_pass_info(pass).name); },
+          "components have no pass ", "; they have "};
 }
 
-bool is_available(const FilmHeader& frame, uint32_t pass) {
+bool is_available(const film::FilmHeader& frame, uint32_t pass) {
   if (frame.settings.use_decomposition == 0) return false;
-  const ComponentContent& held = frame.of_components;
-  return (held.non_specular || !is_of_non_specular_vertices(pass)) && (held.details || !is_of_non_specular_details(pass)) && (held.motion || !is_motion(pass));
+  const film::ComponentContent& held = frame.of_components;
+  return (held.non_specular || !schema::is_of_non_specular_vertices(pass)) &&
+         (held.details || !schema::is_of_non_specular_details(pass)) && (held.motion || !schema::is_motion(pass));
 }
 
 std::string layer_name(const std::string& component, uint32_t pass) {
   const std::string name = "Path " + component;
-  return pass == GRADUS_COMPONENT_COLOR ? name : name + " " + component_pass_info(pass).name;
+  return pass == GRADUS_COMPONENT_COLOR ? name : name + " " + schema::component_pass_info(pass).name;
 }
 
 }  // namespace
@@ -32,17 +33,19 @@ std::string bad_component_passes(const std::string& text) {
   return refusal([&] { parse_component_passes(text); });
 }
 
-uint32_t available_component_passes(const FilmHeader& frame, uint32_t requested) {
-  const AvailablePasses held = find_available(component_pass_names(), requested, [&](uint32_t pass) { return is_available(frame, pass); });
+uint32_t available_component_passes(const film::FilmHeader& frame, uint32_t requested) {
+  const AvailablePasses held =
+      find_available(component_pass_names(), requested, [&](uint32_t pass) { return is_available(frame, pass); });
   if (held.mask == 0 && requested != 0) {
-    throw client::Error(GRADUS_ERROR_INVALID_OPERATION, "the frame was rendered without components: --use-decomposition 1 samples them");
+    throw client::Error(GRADUS_ERROR_INVALID_OPERATION,
+                        "the frame was rendered without components: --use-decomposition 1 samples them");
   }
   if (requested == kAllComponentPasses || held.missing.empty()) return requested & uint32_t(held.mask);
   throw client::Error(GRADUS_ERROR_INVALID_OPERATION,
                       "the frame's components were rendered without " + held.missing + "; there are " + held.names);
 }
 
-bool need_two_frames(uint32_t passes) { return any_wanted(passes, is_motion); }
+bool need_two_frames(uint32_t passes) { return schema::any_wanted(passes, schema::is_motion); }
 
 ReadComponent reader_of(const client::Film& frame) {
   return [id = frame.id()](const char* component, uint32_t pass, std::vector<float>* pixels) {
@@ -51,13 +54,14 @@ ReadComponent reader_of(const client::Film& frame) {
 }
 
 void add_component_layers(const GradusSettings& settings, uint32_t passes, size_t pixels, const ReadComponent& read,
-                          std::vector<ImageLayer>* layers) {
+                          std::vector<film_io::ImageLayer>* layers) {
   if (passes == 0) return;
-  const ComponentSet set = ComponentSet::parse(get_text(settings, *find_option("components")));
+  const lpe::ComponentSet set =
+      lpe::ComponentSet::parse(schema::get_text(settings, *schema::find_option("components")));
   for (int c = 0; c < set.count(); ++c) {
     for (uint32_t pass = 0; pass < GRADUS_COMPONENT_PASS_COUNT; ++pass) {
-      if (!has_bit(passes, pass)) continue;
-      const uint32_t channels = component_pass_info(pass).channels;
+      if (!schema::has_bit(passes, pass)) continue;
+      const uint32_t channels = schema::component_pass_info(pass).channels;
       layers->push_back({layer_name(set[c].name, pass), int(channels), std::vector<float>(pixels * channels)});
       read(set[c].name.c_str(), pass, &layers->back().pixels);
     }

@@ -1,4 +1,5 @@
-// Passes of components as layers of an image, which have the names of Blender's passes: Path Reflection, Path Reflection Motion.
+// Passes of components as layers of an image, which have the names of Blender's passes: Path Reflection, Path
+// Reflection Motion.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +18,9 @@ inline constexpr uint32_t kAllComponentPasses = (uint32_t{1} << GRADUS_COMPONENT
 uint32_t parse_component_passes(const std::string& text);
 std::string bad_component_passes(const std::string& text);
 
-// Those of `requested` that the frame was sampled for: all of them, unless it is everything. Throws Error with what is missing.
-uint32_t available_component_passes(const FilmHeader& frame, uint32_t requested);
+// Those of `requested` that the frame was sampled for: all of them, unless it is everything. Throws Error with what is
+// missing.
+uint32_t available_component_passes(const film::FilmHeader& frame, uint32_t requested);
 // Whether some are made of two frames: of an animation, by optical flow.
 bool need_two_frames(uint32_t passes);
 
@@ -26,6 +28,6 @@ using ReadComponent = std::function<void(const char* component, uint32_t pass, s
 ReadComponent reader_of(const client::Film& frame);
 // Of every component of the settings' set; pixels: of the image.
 void add_component_layers(const GradusSettings& settings, uint32_t passes, size_t pixels, const ReadComponent& read,
-                          std::vector<ImageLayer>* layers);
+                          std::vector<film_io::ImageLayer>* layers);
 
 }  // namespace gradus::tool

@@ -8,7 +8,9 @@
 int main(int argc, char** argv) {
   using namespace gradus::tool;
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error with a name
-  CLI::App app("Gradus, a gradient-domain path tracer: renders saved scenes, reconstructs stored frames, compares images.", "gradus");
+  CLI::App app(
+      "Gradus, a gradient-domain path tracer: renders saved scenes, reconstructs stored frames, compares images.",
+      "gradus");
   app.set_version_flag("--version", gradus_version_text());
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);

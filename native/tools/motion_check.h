@@ -24,16 +24,19 @@ class Distances {
 // What simpler formulas say of where a chain goes, next to an answer of another kind.
 class SimplerMotion {
  public:
-  SimplerMotion(const ChainTracer& here, const ChainTracer& next) : here_(here), next_(next), surface_(here.snapshot(), next.snapshot()) {}
+  SimplerMotion(const motion::ChainTracer& here, const motion::ChainTracer& next)
+      : here_(here), next_(next), surface_(here.snapshot(), next.snapshot()) {}
 
-  void add(const SpecularChain& chain, const Vec2& place);
+  void add(const motion::SpecularChain& chain, const Vec2& place);
   nlohmann::ordered_json json() {
-    return {{"motion_of_first_surface", first_.json()}, {"flat_resting_mirror", static_mirror_.json()}, {"flat_moving_mirror", along_.json()}};
+    return {{"motion_of_first_surface", first_.json()},
+            {"flat_resting_mirror", static_mirror_.json()},
+            {"flat_moving_mirror", along_.json()}};
   }
 
  private:
-  const ChainTracer &here_, &next_;
-  SnapshotMotion surface_;
+  const motion::ChainTracer &here_, &next_;
+  motion::SnapshotMotion surface_;
   Distances first_, static_mirror_, along_;
 };
 
@@ -41,25 +44,26 @@ class SimplerMotion {
 class StepsBetween {
  public:
   // farthest: pixels that anything moves, or nearly.
-  StepsBetween(const Snapshot& snapshot, const GradusSettings& settings, double farthest);
+  StepsBetween(const scene::Snapshot& snapshot, const GradusSettings& settings, double farthest);
 
   // Of about `pixels` pixels spread evenly over those of the view in which something changes.
-  nlohmann::ordered_json check(const ChainView& view, const ChainMotion& found, size_t pixels) const;
+  nlohmann::ordered_json check(const motion::ChainView& view, const motion::ChainMotion& found, size_t pixels) const;
 
  private:
   struct Film {
-    Film(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings);
+    Film(std::shared_ptr<const scene::Snapshot> snapshot, const GradusSettings& settings);
     Film(const Film&) = delete;
 
-    std::shared_ptr<const Snapshot> snapshot;
-    Camera camera;
-    ChainTracer tracer;
+    std::shared_ptr<const scene::Snapshot> snapshot;
+    camera::Camera camera;
+    motion::ChainTracer tracer;
   };
   double farthest_;
   std::vector<std::unique_ptr<Film>> frames_;
 };
 
 // The quantile of 99 % of all ways that are known: those found, and those of surfaces.
-double farthest_displacement(const ChainTracer& next, const std::vector<ChainView>& views, const std::vector<ChainMotion>& found);
+double farthest_displacement(const motion::ChainTracer& next, const std::vector<motion::ChainView>& views,
+                             const std::vector<motion::ChainMotion>& found);
 
 }  // namespace gradus::tool

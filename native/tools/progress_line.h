@@ -14,8 +14,8 @@ class ProgressLine {
   void show(const GradusProgress& p, uint32_t samples) {
     if (!terminal_) return;
     const char* phase = p.phase == GRADUS_PHASE_RECONSTRUCTING ? "reconstructing" : "sampling";
-    std::fprintf(stderr, "\r%3.0f %%  %u of %u samples  %.1f s  %.0f MB  %s \x1b[K", 100.0 * double(p.fraction), p.samples_done, samples,
-                 double(p.seconds), double(p.peak_memory_bytes) / 1e6, phase);
+    std::fprintf(stderr, "\r%3.0f %%  %u of %u samples  %.1f s  %.0f MB  %s \x1b[K", 100.0 * double(p.fraction),
+                 p.samples_done, samples, double(p.seconds), double(p.peak_memory_bytes) / 1e6, phase);
     std::fflush(stderr);
     shown_ = true;
   }

@@ -11,7 +11,8 @@
 namespace gradus::tool {
 
 struct ReconstructArguments {
-  std::string input, output, reconstruction = "auto", denoiser = "none", denoiser_path, passes, component_passes, frames;
+  std::string input, output, reconstruction = "auto", denoiser = "none", denoiser_path, passes, component_passes,
+                             frames;
   std::vector<std::string> merged;
   float alpha = 0.0f;
   double exposure = -1.0;                               // below 0: as it was sampled for
@@ -19,7 +20,7 @@ struct ReconstructArguments {
 };
 
 // Those of `requested` that are there: all of them, unless it is everything. Throws with the names of what is missing.
-uint64_t available_passes(const Film& film, uint64_t requested);
+uint64_t available_passes(const film::Film& film, uint64_t requested);
 
 // input: a folder with frames of an animation; output: one for their pictures. Returns the exit code.
 int reconstruct_sequence(const ReconstructArguments& args);

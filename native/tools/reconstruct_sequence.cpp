@@ -9,11 +9,11 @@
 #include <regex>
 #include <set>
 
+#include "animation/sequence_folder.h"
 #include "component_layers.h"
 #include "film_io/image_exr.h"
 #include "film_io/store.h"
 #include "reconstruct/space_time/window_grid.h"
-#include "animation/sequence_folder.h"
 #include "schema/pass_table.h"
 #include "stored_sequence.h"
 
@@ -45,8 +45,8 @@ std::string picture_path(const std::string& folder, int32_t frame) {
   return (fs::path(folder) / name.data()).string();
 }
 
-WindowShape windows_of(const ReconstructArguments& args) {
-  WindowShape windows;
+reconstruct::WindowShape windows_of(const ReconstructArguments& args) {
+  reconstruct::WindowShape windows;
   if (args.window_size) windows = {int(*args.window_size), int(*args.window_size / 2)};
   if (args.window_overlap) windows.overlap = int(*args.window_overlap);
   return windows;
@@ -56,10 +56,12 @@ void check_usage(const ReconstructArguments& args) {
   if (args.reconstruction == "none")
     throw CLI::ValidationError("--reconstruction", "none is for single frames; --passes noisy_image writes it");
   check_apart("--output", args.output, args.input);
-  const WindowShape windows = windows_of(args);
-  if (windows.overlap > windows.frames / 2) throw CLI::ValidationError("--window-overlap", "windows share at most half of their frames");
+  const reconstruct::WindowShape windows = windows_of(args);
+  if (windows.overlap > windows.frames / 2)
+    throw CLI::ValidationError("--window-overlap", "windows share at most half of their frames");
   if (fs::exists(args.output) && !fs::is_directory(args.output)) {
-    throw CLI::ValidationError("--output", args.output + " is no folder, which the pictures of " + args.input + " need");
+    throw CLI::ValidationError("--output",
+                               args.output + " is no folder, which the pictures of " + args.input + " need");
   }
 }
 
@@ -74,13 +76,13 @@ GradusSettings settings_of(const ReconstructArguments& args, const GradusSetting
   return settings;
 }
 
-client::Sequence open(const client::Device& device, const ReconstructArguments& args, const StoredSequence& stored, const Range& range,
-                      bool with_flow) {
+client::Sequence open(const client::Device& device, const ReconstructArguments& args, const StoredSequence& stored,
+                      const Range& range, bool with_flow) {
   auto settings = client::make<GradusSequenceSettings>();
   settings.first = range.first;
   settings.last = range.last;
   settings.step = uint32_t(stored.step());
-  const WindowShape windows = windows_of(args);
+  const reconstruct::WindowShape windows = windows_of(args);
   settings.window_size = uint32_t(windows.frames);
   settings.window_overlap = uint32_t(windows.overlap);
   settings.folder = stored.folder().c_str();
@@ -90,22 +92,25 @@ client::Sequence open(const client::Device& device, const ReconstructArguments& 
 
 uint64_t passes_of(const ReconstructArguments& args, const std::string& path) {
   if (args.passes.empty()) return 1;
-  const std::shared_ptr<const Film> first = load_film(path);
-  const Film& frame = *first;
+  const std::shared_ptr<const film::Film> first = film_io::load_film(path);
+  const film::Film& frame = *first;
   const uint64_t requested = parse_passes(args.passes), held = available_passes(frame, requested);
-  const bool has_error = has_bit(frame.settings.passes, GRADUS_PASS_ERROR);  // windows estimate it where frames were sampled for it
+  const bool has_error = schema::has_bit(frame.settings.passes,
+                                         GRADUS_PASS_ERROR);  // windows estimate it where frames were sampled for it
   return requested == kAllPasses && !has_error ? held & ~(uint64_t{1} << GRADUS_PASS_ERROR) : held;
 }
 
 // Of their files. Those of another size are of another animation.
-std::map<int32_t, GradusSettings> settings_of_files(const StoredSequence& stored, const std::vector<std::vector<int32_t>>& chains) {
+std::map<int32_t, GradusSettings> settings_of_files(const StoredSequence& stored,
+                                                    const std::vector<std::vector<int32_t>>& chains) {
   const int32_t first = chains.front().front();
   std::map<int32_t, GradusSettings> all;
   for (const std::vector<int32_t>& chain : chains) {
     for (const int32_t frame : chain) {
-      const GradusSettings& settings = all[frame] = load_header(stored.path(frame)).settings;
+      const GradusSettings& settings = all[frame] = film_io::load_header(stored.path(frame)).settings;
       if (settings.width == all[first].width && settings.height == all[first].height) continue;
-      throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, stored.path(frame) + " has another size than " + stored.path(first));
+      throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT,
+                          stored.path(frame) + " has another size than " + stored.path(first));
     }
   }
   return all;
@@ -116,9 +121,10 @@ struct PassesToWrite {
   uint32_t of_components;
 };
 
-void write_picture(const client::Render& render, const PassesToWrite& wanted, const GradusSettings& settings, const std::string& path) {
+void write_picture(const client::Render& render, const PassesToWrite& wanted, const GradusSettings& settings,
+                   const std::string& path) {
   const auto [width, height] = render.film().size();
-  std::vector<ImageLayer> layers;
+  std::vector<film_io::ImageLayer> layers;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
     if ((wanted.passes >> pass & 1) == 0) continue;
     const std::string name = pass == GRADUS_PASS_COMBINED ? "" : client::pass_name(pass);
@@ -128,7 +134,7 @@ void write_picture(const client::Render& render, const PassesToWrite& wanted, co
     client::check(gradus_render_read_component(render.id(), component, pass, pixels->data(), pixels->size()));
   };
   add_component_layers(settings, wanted.of_components, size_t(width) * height, read, &layers);
-  save_image(path, int(width), int(height), layers);
+  film_io::save_image(path, int(width), int(height), layers);
 }
 
 // What all frames of a folder have in common.
@@ -142,16 +148,17 @@ struct Job {
 
 // Pictures of frames that follow one another.
 void write_chain(const Job& job, const std::vector<int32_t>& frames, std::set<std::string>* warnings) {
-  const client::Sequence sequence =
-      open(job.device, job.args, job.stored, {frames.front(), frames.back()}, need_two_frames(job.wanted.of_components));
-  const SequenceFolder folder(job.args.input);
+  const client::Sequence sequence = open(job.device, job.args, job.stored, {frames.front(), frames.back()},
+                                         need_two_frames(job.wanted.of_components));
+  const animation::SequenceFolder folder(job.args.input);
   for (const int32_t frame : frames) {
     // Exposure and the like may change from frame to frame, of frames that share their files, too.
     GradusSettings settings = settings_of(job.args, folder.settings(frame).value_or(job.of_files.at(frame)));
     settings.component_passes = job.wanted.of_components;
     const client::Render render = sequence.deliver(frame, settings);
     render.wait();
-    for (const auto& text : nlohmann::json::parse(render.stats()).at("warnings")) warnings->insert(text.get<std::string>());
+    for (const auto& text : nlohmann::json::parse(render.stats()).at("warnings"))
+      warnings->insert(text.get<std::string>());
     const std::string path = picture_path(job.args.output, frame);
     write_picture(render, job.wanted, settings, path);
     std::printf("%s\n", path.c_str());
@@ -166,21 +173,26 @@ int reconstruct_sequence(const ReconstructArguments& args) {
   const StoredSequence stored(args.input);
   const Range requested = range_of(args.frames, stored);
   const std::vector<std::vector<int32_t>> chains = stored.chains(requested.first, requested.last);
-  const std::string missing = stored.missing(requested.first, requested.last), unlinked = stored.unlinked(requested.first, requested.last);
-  if (chains.empty()) throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, args.input + " holds none of the frames " + args.frames);
+  const std::string missing = stored.missing(requested.first, requested.last),
+                    unlinked = stored.unlinked(requested.first, requested.last);
+  if (chains.empty())
+    throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, args.input + " holds none of the frames " + args.frames);
   if (!missing.empty()) {
     throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT,
                         args.input + " lacks frames " + missing + ": sample them, or leave them out by --frames");
   }
   const std::map<int32_t, GradusSettings> of_files = settings_of_files(stored, chains);
   const std::string first = stored.path(chains.front().front());
-  const uint32_t of_components = available_component_passes(load_header(first), parse_component_passes(args.component_passes));
+  const uint32_t of_components =
+      available_component_passes(film_io::load_header(first), parse_component_passes(args.component_passes));
   const PassesToWrite wanted{passes_of(args, first), of_components};
   const client::Device device(0, nullptr, args.denoiser_path.c_str());
   fs::create_directories(args.output);
   std::set<std::string> warnings;
-  if (!unlinked.empty()) warnings.insert("frames " + unlinked + " replay others than those before them, to which nothing links them");
-  for (const std::vector<int32_t>& chain : chains) write_chain({args, stored, device, of_files, wanted}, chain, &warnings);
+  if (!unlinked.empty())
+    warnings.insert("frames " + unlinked + " replay others than those before them, to which nothing links them");
+  for (const std::vector<int32_t>& chain : chains)
+    write_chain({args, stored, device, of_files, wanted}, chain, &warnings);
   for (const std::string& text : warnings) std::fprintf(stderr, "warning: %s\n", text.c_str());
   print_warnings(device);
   return 0;

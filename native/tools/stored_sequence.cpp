@@ -6,12 +6,12 @@
 #include <regex>
 #include <set>
 
+#include "animation/sequence_folder.h"
 #include "base/error.h"
 #include "base/text_list.h"
 #include "common.h"
 #include "film_io/frame_file_name.h"
 #include "film_io/store.h"
-#include "animation/sequence_folder.h"
 
 namespace gradus::tool {
 namespace {
@@ -19,7 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // Of the files of one kind, with the number; "": of frames on their own.
-std::regex name_of(const std::string& kind) { return std::regex("f([+-][0-9]{7,8})" + (kind.empty() ? "" : "\\." + kind) + "\\.exr"); }
+std::regex name_of(const std::string& kind) {
+  return std::regex("f([+-][0-9]{7,8})" + (kind.empty() ? "" : "\\." + kind) + "\\.exr");
+}
 
 std::set<int32_t> numbers_in(const std::string& folder, const std::string& kind) {
   const std::regex name = name_of(kind);
@@ -45,7 +47,7 @@ std::string advice(const std::string& folder) {
 }
 
 // Gaps between frames and those that they replay, or repeat; 0: none does.
-int32_t step_of_replays(const std::map<int32_t, FrameTraits>& forms) {
+int32_t step_of_replays(const std::map<int32_t, animation::FrameTraits>& forms) {
   int32_t step = 0;
   std::map<int32_t, int32_t> last_with;  // frames by their stream: it may be that of an earlier one
   for (const auto& [frame, form] : forms) {
@@ -111,18 +113,22 @@ StoredSequence::StoredSequence(const std::string& folder, const std::set<int32_t
   std::erase_if(frames_, [&](int32_t frame) { return left_out.count(frame) > 0; });
   if (frames_.empty()) {
     const bool has_none = fresh.empty() && numbers_in(folder, "").empty();
-    throw invalid_argument(folder + (has_none ? " holds no stored frames" + advice(folder)
-                                              : " holds stored frames, but none of a sequence: reconstruct them one by one"));
+    throw invalid_argument(folder +
+                           (has_none ? " holds no stored frames" + advice(folder)
+                                     : " holds stored frames, but none of a sequence: reconstruct them one by one"));
   }
   for (const int32_t frame : frames_) {
-    const FilmHeader header = load_header((fs::path(folder_) / frame_name(frame, "offset.exr")).string());
-    traits_[frame] = traits_of(header, header);
+    const film::FilmHeader header =
+        film_io::load_header((fs::path(folder_) / film_io::frame_name(frame, "offset.exr")).string());
+    traits_[frame] = animation::traits_of(header, header);
   }
   const int32_t of_replays = step_of_replays(traits_), step = of_replays > 0 ? of_replays : step_of_gaps(frames_);
   if (step > 0) step_ = step;
 }
 
-std::string StoredSequence::path(int32_t frame) const { return (fs::path(folder_) / frame_name(frame, "base.exr")).string(); }
+std::string StoredSequence::path(int32_t frame) const {
+  return (fs::path(folder_) / film_io::frame_name(frame, "base.exr")).string();
+}
 
 std::vector<std::vector<int32_t>> StoredSequence::chains(int32_t first, int32_t last) const {
   const auto beyond = [&](int64_t frame) { return ((frame - first) % step_ + step_) % step_; };
@@ -144,10 +150,10 @@ std::string StoredSequence::missing(int32_t first, int32_t last) const {
 bool StoredSequence::is_unlinked(int32_t frame) const {
   const auto here = traits_.find(frame), before = traits_.find(frame - step_);
   if (here == traits_.end() || before == traits_.end()) return false;
-  const FrameTraits& form = here->second;
+  const animation::FrameTraits& form = here->second;
   if (form.stream == frame && form.replayed_stream == frame) return false;  // a cut, or the first of a job
   const bool follows = form.stream == before->second.stream || form.replayed_stream == before->second.stream;
-  return !follows || follows_another_frame(before->second, form);
+  return !follows || animation::follows_another_frame(before->second, form);
 }
 
 std::string StoredSequence::unlinked(int32_t first, int32_t last) const {
@@ -158,17 +164,17 @@ FolderFaults find_faults(const std::string& folder) {
   const std::set<int32_t> fresh = numbers_in(folder, "base"), replayed = numbers_in(folder, "offset");
   std::set<int32_t> frames = fresh;
   frames.insert(replayed.begin(), replayed.end());
-  const SequenceFolder files(folder);
+  const animation::SequenceFolder files(folder);
   FolderFaults faults;
   for (const int32_t frame : frames) {
     for (const char* kind : {"base.exr", "offset.exr"}) {
-      const std::string name = frame_name(frame, kind), path = (fs::path(folder) / name).string();
-      const std::string error = fs::exists(path) ? refusal([&] { load_film(path); }) : "it is missing";
+      const std::string name = film_io::frame_name(frame, kind), path = (fs::path(folder) / name).string();
+      const std::string error = fs::exists(path) ? refusal([&] { film_io::load_film(path); }) : "it is missing";
       if (error.empty()) continue;
       faults.files[name] = cause_of(error, path);
       faults.frames.insert(frame);
     }
-    const std::string error = refusal([&] { files.settings(frame); }), name = frame_name(frame, "json");
+    const std::string error = refusal([&] { files.settings(frame); }), name = film_io::frame_name(frame, "json");
     if (!error.empty()) faults.files[name] = cause_of(error, files.path() + "/" + name);
   }
   faults.whole_frames = frames.size() - faults.frames.size();

@@ -22,7 +22,8 @@ class StoredSequence {
   const std::vector<int32_t>& frames() const { return frames_; }
   // From a frame to the one that replays it.
   int32_t step() const { return step_; }
-  // Those of [first, last] that the steps meet, in as many lists as jobs have shared the folder: two of a step of 2, say.
+  // Those of [first, last] that the steps meet, in as many lists as jobs have shared the folder: two of a step of 2,
+  // say.
   std::vector<std::vector<int32_t>> chains(int32_t first, int32_t last) const;
   // "4, 7 to 9": the expected ones that are not there.
   std::string missing(int32_t first, int32_t last) const;
@@ -34,7 +35,7 @@ class StoredSequence {
 
   std::string folder_;
   std::vector<int32_t> frames_;
-  std::map<int32_t, FrameTraits> traits_;
+  std::map<int32_t, animation::FrameTraits> traits_;
   int32_t step_ = 1;
 };
 

@@ -57,8 +57,8 @@ TEST_P(G5_Allocations, EachMayBeRefused) {
 INSTANTIATE_TEST_SUITE_P(Integrators, G5_Allocations,
                          ::testing::Values(GRADUS_INTEGRATOR_AUTO, GRADUS_INTEGRATOR_PATH, GRADUS_INTEGRATOR_GRADIENT));
 
-// A device without memory was refused for a processor without AVX2, or for another Embree in the process. Embree does without a few
-// allocations (and keeps a few pieces of what failed).
+// A device without memory was refused for a processor without AVX2, or for another Embree in the process. Embree does
+// without a few allocations (and keeps a few pieces of what failed).
 TEST(G5_Device, WithoutMemorySaysSo) {
   ASSERT_OK(gradus_device_release(test::make_device()));
   int refusals = 0, told = 0;

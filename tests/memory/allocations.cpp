@@ -31,8 +31,9 @@ void* allocate(size_t size, size_t alignment) noexcept {
     return nullptr;
   }
   ++pieces;
-  void* memory = alignment <= alignof(std::max_align_t) ? std::malloc(size)
-                                                        : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  void* memory = alignment <= alignof(std::max_align_t)
+                     ? std::malloc(size)
+                     : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
   count(memory);
   return memory;
 }

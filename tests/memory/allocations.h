@@ -5,7 +5,8 @@
 
 namespace gradus::memory {
 
-// The k-th request from now on, from any thread, is refused; 0 ends that. Returns how many were made since the last call.
+// The k-th request from now on, from any thread, is refused; 0 ends that. Returns how many were made since the last
+// call.
 uint64_t refuse(uint64_t k);
 bool was_refused();
 // While it lives no request is counted or refused, whichever thread makes it.

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 
-#include "scene/device.h"
+#include "animation/sequence.h"
 #include "memory/allocations.h"
 #include "render/fake_integrator.h"
 #include "render/memory_estimate.h"
-#include "animation/sequence.h"
+#include "scene/device.h"
 
 namespace gradus::memory {
 namespace {
@@ -30,7 +30,7 @@ GradusSettings settings_of(const Job& job, int32_t frame) {
   settings.frame = frame;
   settings.integrator = job.integrator;
   settings.reconstruction = job.reconstruction;
-  settings.passes |= uint64_t{1} << GRADUS_PASS_NORMAL | feature_passes();
+  settings.passes |= uint64_t{1} << GRADUS_PASS_NORMAL | schema::feature_passes();
   return settings;
 }
 
@@ -40,7 +40,7 @@ uint64_t bytes_in(const std::string& folder) {
   return bytes;
 }
 
-void finish(std::unique_ptr<RenderTask> task) {
+void finish(std::unique_ptr<render::RenderTask> task) {
   task->run();
   std::string text;
   ASSERT_EQ(task->outcome(&text), GRADUS_OK) << text;
@@ -50,11 +50,12 @@ void finish(std::unique_ptr<RenderTask> task) {
 TEST_P(AnimationEstimate, IsNearThePeak) {
   const std::string folder = fs::temp_directory_path() / "gradus-animation-estimate";
   fs::remove_all(folder);
-  const Plan plan = make_plan(settings_of(GetParam(), 0), *test::empty_snapshot());
+  const render::Plan plan = render::make_plan(settings_of(GetParam(), 0), *test::empty_snapshot());
   const int64_t before = live_bytes();
   forget_peak();
   {
-    const auto sequence = std::make_shared<Sequence>(nullptr, SequenceSettings{0, kFrames - 1, 1, {}, folder}, test::fake_factory());
+    const auto sequence = std::make_shared<animation::Sequence>(
+        nullptr, animation::SequenceSettings{0, kFrames - 1, 1, {}, folder}, test::fake_factory());
     int32_t sampled = 0;
     for (int32_t frame = 0; frame < kFrames; ++frame) {
       for (; sampled <= sequence->needs(frame).last; ++sampled) {
@@ -66,20 +67,22 @@ TEST_P(AnimationEstimate, IsNearThePeak) {
   }
   const double taken = double(peak_bytes() - before), pixels = kWidth * kHeight, written = double(bytes_in(folder));
   fs::remove_all(folder);
-  const auto memory = double(estimated_memory(plan, WindowShape{})), files = double(estimated_files(plan, kFrames));
-  std::printf("  %.0f bytes of memory per pixel, estimated %.0f; files %.0f, estimated %.0f\n", taken / pixels, memory / pixels,
-              written / pixels, files / pixels);
+  const auto memory = double(render::estimated_memory(plan, reconstruct::WindowShape{})),
+             files = double(render::estimated_files(plan, kFrames));
+  std::printf("  %.0f bytes of memory per pixel, estimated %.0f; files %.0f, estimated %.0f\n", taken / pixels,
+              memory / pixels, written / pixels, files / pixels);
   EXPECT_GE(memory, taken / 2.0);
   EXPECT_LE(memory, taken * 2.0);
   EXPECT_GE(files, written);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, AnimationEstimate,
-                         ::testing::Values(Job{"L2", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2},
-                                           Job{"L1", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1},
-                                           Job{"Regularized", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_REGULARIZED},
-                                           Job{"RegularizedPath", GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_REGULARIZED}),
-                         [](const ::testing::TestParamInfo<Job>& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    All, AnimationEstimate,
+    ::testing::Values(Job{"L2", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2},
+                      Job{"L1", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1},
+                      Job{"Regularized", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_REGULARIZED},
+                      Job{"RegularizedPath", GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_REGULARIZED}),
+    [](const ::testing::TestParamInfo<Job>& info) { return std::string(info.param.name); });
 
 }  // namespace
 }  // namespace gradus::memory

@@ -11,12 +11,12 @@
 
 namespace gradus::memory {
 
-// The scheduler beneath Embree starts its workers, at most one per core, when there first is work for one to take: it may be after the
-// warm-up.
+// The scheduler beneath Embree starts its workers, at most one per core, when there first is work for one to take: it
+// may be after the warm-up.
 inline int late_workers() { return int(std::thread::hardware_concurrency()); }
 
-// Runs body(i) `count` times after a tenth of it as a warm-up. Nothing is kept; descriptors stay, and threads but for late workers. RSS may
-// grow by 4 MB, and by the pools of the allocators.
+// Runs body(i) `count` times after a tenth of it as a warm-up. Nothing is kept; descriptors stay, and threads but for
+// late workers. RSS may grow by 4 MB, and by the pools of the allocators.
 template <class Body>
 void expect_no_growth(int count, uint64_t pools, const Body& body) {
   for (int i = 0; i < count / 10; ++i) body(i);

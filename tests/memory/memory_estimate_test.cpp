@@ -28,23 +28,25 @@ GradusSettings settings_of(const Case& c) {
   settings.integrator = c.gaps ? uint32_t{GRADUS_INTEGRATOR_AUTO} : c.integrator;  // a pilot
   settings.reconstruction = c.reconstruction;
   settings.noise_threshold = c.adaptive ? 1e-6f : 0.0f;
-  settings.passes |= uint64_t{1} << GRADUS_PASS_NORMAL | feature_passes();
+  settings.passes |= uint64_t{1} << GRADUS_PASS_NORMAL | schema::feature_passes();
   if (c.components != nullptr) {
     settings.use_decomposition = 1;
     settings.component_passes = 1u << GRADUS_COMPONENT_COLOR | 1u << GRADUS_COMPONENT_NORMAL;
-    set_text(&settings, *find_option("components"), c.components);
+    schema::set_text(&settings, *schema::find_option("components"), c.components);
   }
   return settings;
 }
 
-// It is to tell a render that fits from one that does not: a factor of 2 either way. The stand-in for a denoiser takes nothing.
+// It is to tell a render that fits from one that does not: a factor of 2 either way. The stand-in for a denoiser takes
+// nothing.
 TEST_P(MemoryEstimate, IsNearTheRendersPeak) {
   const GradusSettings settings = settings_of(GetParam());
-  const auto factory = test::fake_factory([](test::FakeIntegrator* fake) { fake->pairs_until = GetParam().gaps ? 350 : INT32_MAX; });
-  const uint64_t estimate = estimated_memory(make_plan(settings, *test::empty_snapshot()));
+  const auto factory =
+      test::fake_factory([](test::FakeIntegrator* fake) { fake->pairs_until = GetParam().gaps ? 350 : INT32_MAX; });
+  const uint64_t estimate = render::estimated_memory(render::make_plan(settings, *test::empty_snapshot()));
   const int64_t before = live_bytes();
   forget_peak();
-  const auto render = std::make_unique<Render>(nullptr, test::empty_snapshot(), settings, nullptr, factory);
+  const auto render = std::make_unique<render::Render>(nullptr, test::empty_snapshot(), settings, nullptr, factory);
   render->wait(-1.0);
   const double taken = double(peak_bytes() - before), pixels = kWidth * kHeight;
   std::printf("  %.0f bytes per pixel, estimated %.0f\n", taken / pixels, double(estimate) / pixels);
@@ -54,34 +56,38 @@ TEST_P(MemoryEstimate, IsNearTheRendersPeak) {
 
 constexpr uint32_t kPath = GRADUS_INTEGRATOR_PATH, kGradient = GRADUS_INTEGRATOR_GRADIENT;
 
-INSTANTIATE_TEST_SUITE_P(
-    All, MemoryEstimate,
-    ::testing::Values(Case{"Path", kPath, GRADUS_RECONSTRUCTION_NONE}, Case{"Noisy", kGradient, GRADUS_RECONSTRUCTION_NONE},
-                      Case{"PathRegularized", kPath, GRADUS_RECONSTRUCTION_REGULARIZED},
-                      Case{"Regularized", kGradient, GRADUS_RECONSTRUCTION_REGULARIZED, true},
-                      Case{"L2", kGradient, GRADUS_RECONSTRUCTION_L2}, Case{"L2WithGaps", kGradient, GRADUS_RECONSTRUCTION_L2, false, true},
-                      Case{"L1", kGradient, GRADUS_RECONSTRUCTION_L1, true},
-                      Case{"Components", kPath, GRADUS_RECONSTRUCTION_REGULARIZED, false, false, "Once=EDL;Twice=EDDL"}),
-    [](const ::testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(All, MemoryEstimate,
+                         ::testing::Values(Case{"Path", kPath, GRADUS_RECONSTRUCTION_NONE},
+                                           Case{"Noisy", kGradient, GRADUS_RECONSTRUCTION_NONE},
+                                           Case{"PathRegularized", kPath, GRADUS_RECONSTRUCTION_REGULARIZED},
+                                           Case{"Regularized", kGradient, GRADUS_RECONSTRUCTION_REGULARIZED, true},
+                                           Case{"L2", kGradient, GRADUS_RECONSTRUCTION_L2},
+                                           Case{"L2WithGaps", kGradient, GRADUS_RECONSTRUCTION_L2, false, true},
+                                           Case{"L1", kGradient, GRADUS_RECONSTRUCTION_L1, true},
+                                           Case{"Components", kPath, GRADUS_RECONSTRUCTION_REGULARIZED, false, false,
+                                                "Once=EDL;Twice=EDDL"}),
+                         [](const ::testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
 
 TEST(MemoryWarning, ComesWhereTheMachineHasLess) {
   constexpr uint64_t gib = uint64_t{1} << 30;
-  EXPECT_EQ(memory_warning(5 * gib, 5 * gib), "");
-  EXPECT_EQ(memory_warning(5 * gib, 0), "") << "nobody knows";
-  EXPECT_EQ(memory_warning(6 * gib, 5 * gib),
-            "the render takes about 6 GiB of memory, and the machine has 5 GiB: render fewer pixels, passes or components");
+  EXPECT_EQ(render::memory_warning(5 * gib, 5 * gib), "");
+  EXPECT_EQ(render::memory_warning(5 * gib, 0), "") << "nobody knows";
+  EXPECT_EQ(
+      render::memory_warning(6 * gib, 5 * gib),
+      "the render takes about 6 GiB of memory, and the machine has 5 GiB: render fewer pixels, passes or components");
   GradusSettings settings = test::small_settings(65536, 65536, 4);
-  const uint64_t estimate = estimated_memory(make_plan(settings, *test::empty_snapshot()));
-  EXPECT_NE(memory_warning(estimate, 64 * gib), "");
-  EXPECT_GT(estimated_memory(make_plan(settings, *test::empty_snapshot(), {"a denoiser", ""})), estimate);
+  const uint64_t estimate = render::estimated_memory(render::make_plan(settings, *test::empty_snapshot()));
+  EXPECT_NE(render::memory_warning(estimate, 64 * gib), "");
+  EXPECT_GT(render::estimated_memory(render::make_plan(settings, *test::empty_snapshot(), {"a denoiser", ""})),
+            estimate);
 }
 
 // A job of nine hours ended at night, when the disk was full.
 TEST(DiskWarning, NamesTheFolderThatIsTooSmall) {
   const std::string folder = std::filesystem::temp_directory_path();
-  EXPECT_EQ(disk_warning(0, folder), "");
-  EXPECT_EQ(disk_warning(uint64_t{1} << 60, folder + "/that/is/not/there"), "") << "nobody knows";
-  EXPECT_NE(disk_warning(uint64_t{1} << 60, folder).find(folder), std::string::npos);
+  EXPECT_EQ(render::disk_warning(0, folder), "");
+  EXPECT_EQ(render::disk_warning(uint64_t{1} << 60, folder + "/that/is/not/there"), "") << "nobody knows";
+  EXPECT_NE(render::disk_warning(uint64_t{1} << 60, folder).find(folder), std::string::npos);
 }
 
 }  // namespace

@@ -11,14 +11,14 @@ namespace {
 // Gradient X and Gradient Y were each cropped from three images of the whole frame: 1.2 GB at 8K.
 TEST(PassRead, TakesRowsAndNoImages) {
   constexpr Region kRegion{0, 0, 1000, 400};
-  const Film frame(1000, 400, kRegion, 3, 1, true);
+  const film::Film frame(1000, 400, kRegion, 3, 1, true);
   std::vector<float> pixels(size_t{3} * kRegion.area());
   for (const uint32_t pass : {GRADUS_PASS_GRADIENT_X, GRADUS_PASS_GRADIENT_Y, GRADUS_PASS_VARIANCE}) {
     tbb::task_arena(2).execute([&] {
-      read_film_pass(frame, pass, kRegion, pixels.data());  // threads have started
+      output::read_film_pass(frame, pass, kRegion, pixels.data());  // threads have started
       forget_peak();
       const int64_t before = live_bytes();
-      read_film_pass(frame, pass, kRegion, pixels.data());
+      output::read_film_pass(frame, pass, kRegion, pixels.data());
       EXPECT_LT(peak_bytes() - before, int64_t(pixels.size() * sizeof(float)) / 8) << pass;
     });
   }

@@ -15,8 +15,8 @@ GradusError finish(GradusRender render, std::vector<float>* image) {
   if (const GradusError code = gradus_render_wait(render, -1.0); code != GRADUS_OK) return code;
   GradusFilm film = 0;
   if (const GradusError code = gradus_render_film(render, &film); code != GRADUS_OK) return code;
-  const GradusError code =
-      gradus_film_reconstruct(film, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, image->data(), image->size(), nullptr);
+  const GradusError code = gradus_film_reconstruct(film, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE,
+                                                   image->data(), image->size(), nullptr);
   gradus_film_release(film);
   return code != GRADUS_OK ? code : gradus_render_read_pass(render, GRADUS_PASS_COMBINED, image->data(), image->size());
 }
@@ -34,8 +34,8 @@ GradusError render_once(GradusDevice device, uint32_t integrator, std::vector<fl
   if (code == GRADUS_OK) code = gradus_render_start(scene, &settings, &render);
   if (code == GRADUS_OK) code = finish(render, image);
   // Where nothing was made there is nothing to release.
-  const bool released =
-      (render == 0 || gradus_render_release(render) == GRADUS_OK) && (scene == 0 || gradus_scene_release(scene) == GRADUS_OK);
+  const bool released = (render == 0 || gradus_render_release(render) == GRADUS_OK) &&
+                        (scene == 0 || gradus_scene_release(scene) == GRADUS_OK);
   EXPECT_TRUE(released);
   return code;
 }

@@ -1,4 +1,5 @@
-// What a host does for a frame, through the C API, as one call: scene, commit, render, passes; everything is released whatever fails.
+// What a host does for a frame, through the C API, as one call: scene, commit, render, passes; everything is released
+// whatever fails.
 #pragma once
 
 #include <vector>

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "animation/spooled_frames.h"
 #include "base/clock.h"
 #include "memory/allocations.h"
 #include "reconstruct/feature_frame.h"
@@ -11,7 +12,6 @@
 #include "reconstruct/space_time/window.h"
 #include "reconstruct/space_time/window_solver.h"
 #include "support/statistics.h"
-#include "animation/spooled_frames.h"
 
 namespace gradus::memory {
 namespace {
@@ -19,37 +19,48 @@ namespace {
 constexpr auto kNever = [] { return false; };
 
 // One of its frames and the next.
-class PairOf final : public HalvedWindowSource {
+class PairOf final : public reconstruct::HalvedWindowSource {
  public:
-  PairOf(const HalvedWindowSource& source, int first) : source_(source), first_(first) {}
-  WindowSize size() const override { return {source_.size().width, source_.size().height, source_.size().channels, 2}; }
-  void read_row(RowKind kind, int t, int y, float* out) const override { source_.read_row(kind, first_ + t, y, out); }
-  void read_half_differences(RowKind kind, int t, int y, float* out) const override {
+  PairOf(const reconstruct::HalvedWindowSource& source, int first) : source_(source), first_(first) {}
+  reconstruct::WindowSize size() const override {
+    return {source_.size().width, source_.size().height, source_.size().channels, 2};
+  }
+  void read_row(reconstruct::RowKind kind, int t, int y, float* out) const override {
+    source_.read_row(kind, first_ + t, y, out);
+  }
+  void read_half_differences(reconstruct::RowKind kind, int t, int y, float* out) const override {
     source_.read_half_differences(kind, first_ + t, y, out);
   }
-  void read_correspondence(int t, int y, int32_t* out) const override { source_.read_correspondence(first_ + t, y, out); }
+  void read_correspondence(int t, int y, int32_t* out) const override {
+    source_.read_correspondence(first_ + t, y, out);
+  }
 
  private:
-  const HalvedWindowSource& source_;
+  const reconstruct::HalvedWindowSource& source_;
   int first_;
 };
 
-// A flat picture with the noise of few samples: few bright pixels, and differences with heavy tails. Held in memory, as a system holds the
-// file of a window, so that what is timed is the solver.
-class NoisySource final : public HalvedWindowSource {
+// A flat picture with the noise of few samples: few bright pixels, and differences with heavy tails. Held in memory, as
+// a system holds the file of a window, so that what is timed is the solver.
+class NoisySource final : public reconstruct::HalvedWindowSource {
  public:
-  NoisySource(const WindowSize& size, test::Motion motion) : size_(size), row_(size_t(size.width) * size_t(size.channels)) {
+  NoisySource(const reconstruct::WindowSize& size, test::Motion motion)
+      : size_(size), row_(size_t(size.width) * size_t(size.channels)) {
     test::Window window(size.width, size.height, 0, size.frames);
     test::link(&window, motion);
     correspondence_ = std::move(window.correspondence);
-    for (const RowKind kind : kRowKinds) {
+    for (const reconstruct::RowKind kind : reconstruct::kRowKinds) {
       values_.emplace_back(row_ * size_t(size.height) * size_t(size.frames));
       fill(kind, uint32_t(kind) + 1);
     }
   }
-  WindowSize size() const override { return size_; }
-  void read_row(RowKind kind, int t, int y, float* out) const override { std::copy_n(&values_[size_t(kind)][at(t, y)], row_, out); }
-  void read_half_differences(RowKind kind, int t, int y, float* out) const override { read_row(kind, (t + 1) % size_.frames, y, out); }
+  reconstruct::WindowSize size() const override { return size_; }
+  void read_row(reconstruct::RowKind kind, int t, int y, float* out) const override {
+    std::copy_n(&values_[size_t(kind)][at(t, y)], row_, out);
+  }
+  void read_half_differences(reconstruct::RowKind kind, int t, int y, float* out) const override {
+    read_row(kind, (t + 1) % size_.frames, y, out);
+  }
   void read_correspondence(int t, int y, int32_t* out) const override {
     std::copy_n(correspondence_[size_t(t)].begin() + ptrdiff_t(y) * size_.width, size_.width, out);
   }
@@ -57,10 +68,11 @@ class NoisySource final : public HalvedWindowSource {
  private:
   size_t at(int t, int y) const { return row_ * size_t(t * size_.height + y); }
 
-  void fill(RowKind kind, uint32_t state) {
+  void fill(reconstruct::RowKind kind, uint32_t state) {
     for (float& value : values_[size_t(kind)]) {
       const float u = uniform(&state), v = uniform(&state);
-      value = kind == RowKind::kPrimal ? 0.2f + 8.0f * std::pow(u, 8.0f) : 0.1f * (u - 0.5f) * (v < 0.02f ? 40.0f : 1.0f);
+      value = kind == reconstruct::RowKind::kPrimal ? 0.2f + 8.0f * std::pow(u, 8.0f)
+                                                    : 0.1f * (u - 0.5f) * (v < 0.02f ? 40.0f : 1.0f);
     }
   }
   static float uniform(uint32_t* state) {
@@ -69,19 +81,20 @@ class NoisySource final : public HalvedWindowSource {
     return float((word >> 22) ^ word) * 0x1p-32f;
   }
 
-  WindowSize size_;
+  reconstruct::WindowSize size_;
   size_t row_;
   std::vector<std::vector<float>> values_;
   std::vector<std::vector<int32_t>> correspondence_;
 };
 
-constexpr WindowSize small_window() { return {320, 180, 3, 10}; }
-constexpr WindowSize full_window() { return {1280, 720, 3, 10}; }
+constexpr reconstruct::WindowSize small_window() { return {320, 180, 3, 10}; }
+constexpr reconstruct::WindowSize full_window() { return {1280, 720, 3, 10}; }
 
 // Most bytes per pixel and frame: of the full window, and of the small one, whose rims are wider for its size.
 double max_bytes() { return test::full_run() ? 95.0 : 102.0; }
 
-// Steps of all systems. Where links lead anywhere, weights by noise are those of four decades in disorder, in time, too.
+// Steps of all systems. Where links lead anywhere, weights by noise are those of four decades in disorder, in time,
+// too.
 int max_steps(test::Motion motion, uint32_t reconstruction) {
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) return 7;
   const bool smooth = motion == test::Motion::kStatic || motion == test::Motion::kPan;
@@ -93,19 +106,21 @@ double max_seconds(test::Motion motion) {
 }
 
 TEST(J1_Window, HoldsFourFieldsAndTheirGrids) {
-  const WindowSize size = test::full_run() ? full_window() : small_window();
+  const reconstruct::WindowSize size = test::full_run() ? full_window() : small_window();
   const double pixels = double(size.width) * size.height * size.frames;
-  for (const test::Motion motion : {test::Motion::kStatic, test::Motion::kPan, test::Motion::kTurn, test::Motion::kRandom}) {
+  for (const test::Motion motion :
+       {test::Motion::kStatic, test::Motion::kPan, test::Motion::kTurn, test::Motion::kRandom}) {
     const NoisySource source(size, motion);
     for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
       const int64_t before = live_bytes();
       forget_peak();
       const uint64_t start = process_cpu_nanoseconds();
-      SolveReport report;
-      const WindowSolver solver(source, reconstruction, 0.0f, kNever, &report);
-      const double seconds = 1e-9 * double(process_cpu_nanoseconds() - start), bytes = double(peak_bytes() - before) / pixels;
-      std::printf("  motion %d, reconstruction %u: %.1f bytes, %.2f CPU-s, %d steps, residual %.1e\n", int(motion), reconstruction, bytes,
-                  seconds, report.inner_steps, double(report.residual));
+      reconstruct::SolveReport report;
+      const reconstruct::WindowSolver solver(source, reconstruction, 0.0f, kNever, &report);
+      const double seconds = 1e-9 * double(process_cpu_nanoseconds() - start),
+                   bytes = double(peak_bytes() - before) / pixels;
+      std::printf("  motion %d, reconstruction %u: %.1f bytes, %.2f CPU-s, %d steps, residual %.1e\n", int(motion),
+                  reconstruction, bytes, seconds, report.inner_steps, double(report.residual));
       EXPECT_LE(bytes, max_bytes());
       EXPECT_LE(report.inner_steps, max_steps(motion, reconstruction));
       EXPECT_LE(seconds, max_seconds(motion));
@@ -116,17 +131,17 @@ TEST(J1_Window, HoldsFourFieldsAndTheirGrids) {
 
 // A frame's samples among it: it is opened when its turn comes.
 TEST(J1_Window, RegressionOverTimeHoldsOneFrameAndAFewFields) {
-  const WindowSize size = test::full_run() ? full_window() : small_window();
+  const reconstruct::WindowSize size = test::full_run() ? full_window() : small_window();
   test::FeatureFilm description = test::room(size.width, size.height);
   description.gradients = true;
-  const auto open = [&](int) { return std::make_shared<Film>(test::make_feature_film(description)); };
+  const auto open = [&](int) { return std::make_shared<film::Film>(test::make_feature_film(description)); };
   const NoisySource source(size, test::Motion::kPan);
   const int64_t before = live_bytes();
   forget_peak();
   const uint64_t start = process_cpu_nanoseconds();
   uint64_t opening = 0;
-  SolveReport report;
-  RegularizedWindows windows(
+  reconstruct::SolveReport report;
+  reconstruct::RegularizedWindows windows(
       [&](int frame, const CancelCheck&) {
         const uint64_t begin = process_cpu_nanoseconds();
         auto opened = open(frame);
@@ -134,18 +149,20 @@ TEST(J1_Window, RegressionOverTimeHoldsOneFrameAndAFewFields) {
         return opened;
       },
       [&](int frame, const CancelCheck&) {
-        ComponentSources sources;
+        reconstruct::ComponentSources sources;
         sources.push_back(std::make_unique<PairOf>(source, frame));
         return sources;
       });
-  windows.reconstruct({0, size.frames - 1}, kNever, &report, [](int, const Reconstructed&) {});
+  windows.reconstruct({0, size.frames - 1}, kNever, &report, [](int, const reconstruct::Reconstructed&) {});
   const double pixels = double(size.width) * size.height * size.frames, bytes = double(peak_bytes() - before) / pixels;
-  std::printf("  %.1f bytes, %.2f µs per pixel and frame\n", bytes, 1e-3 * double(process_cpu_nanoseconds() - start - opening) / pixels);
+  std::printf("  %.1f bytes, %.2f µs per pixel and frame\n", bytes,
+              1e-3 * double(process_cpu_nanoseconds() - start - opening) / pixels);
   EXPECT_LE(bytes, 160.0);
 }
 
-std::shared_ptr<Film> flat_film(const WindowSize& size, int32_t number) {
-  auto frame = std::make_shared<Film>(uint32_t(size.width), uint32_t(size.height), Region{0, 0, size.width, size.height}, 3, 1, true);
+std::shared_ptr<film::Film> flat_film(const reconstruct::WindowSize& size, int32_t number) {
+  auto frame = std::make_shared<film::Film>(uint32_t(size.width), uint32_t(size.height),
+                                            Region{0, 0, size.width, size.height}, 3, 1, true);
   for (auto& counts : frame->count) std::fill(counts.begin(), counts.end(), 1u);
   frame->frame_number = number;
   return frame;
@@ -153,13 +170,13 @@ std::shared_ptr<Film> flat_film(const WindowSize& size, int32_t number) {
 
 // Two frames at a time while they are read, then none.
 TEST(J1_Window, InputsAreNotHeld) {
-  const WindowSize size = test::full_run() ? full_window() : small_window();
+  const reconstruct::WindowSize size = test::full_run() ? full_window() : small_window();
   const double pixels = double(size.width) * size.height * size.frames;
   const auto open = [&](int place, const CancelCheck&) { return flat_film(size, place); };
   const int64_t before = live_bytes();
   forget_peak();
   const uint64_t start = process_cpu_nanoseconds();
-  SpooledFrames frames(open, open, {});
+  animation::SpooledFrames frames(open, open, {});
   const auto window = frames.window(0, size.frames - 1);
   const double seconds = 1e-9 * double(process_cpu_nanoseconds() - start);
   const double held = double(live_bytes() - before) / pixels, maximum = double(peak_bytes() - before) / pixels;
@@ -173,16 +190,18 @@ TEST(J1_Window, SequencesOfAnyLengthNeedTheMemoryOfOneWindow) {
   const auto peak_of = [](int frames) {
     const int64_t before = live_bytes();
     forget_peak();
-    SolveReport report;
+    reconstruct::SolveReport report;
     int delivered = 0;
     {
-      SequencePictures pictures({0, frames - 1}, {},
-                                {[](const FrameRange& range, const CancelCheck&) {
-                                   return std::make_unique<NoisySource>(WindowSize{96, 64, 3, range.count()}, test::Motion::kStatic);
-                                 },
-                                 {},
-                                 {}},
-                                {GRADUS_RECONSTRUCTION_L2, 0.0f, false});
+      reconstruct::SequencePictures pictures({0, frames - 1}, {},
+                                             {[](const reconstruct::FrameRange& range, const CancelCheck&) {
+                                                return std::make_unique<NoisySource>(
+                                                    reconstruct::WindowSize{96, 64, 3, range.count()},
+                                                    test::Motion::kStatic);
+                                              },
+                                              {},
+                                              {}},
+                                             {GRADUS_RECONSTRUCTION_L2, 0.0f, false});
       for (; delivered < frames; ++delivered) pictures.take(delivered, kNever, &report);
     }
     EXPECT_EQ(live_bytes(), before);

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "image/color.h"
 #include "film_io/image_exr.h"
+#include "image/color.h"
 #include "regression/pictures.h"
 #include "support/image_files.h"
 
@@ -23,7 +23,7 @@ fs::path remembered(const std::string& bits) { return kFolder / "stored" / (bits
 
 void save(const fs::path& path, const std::vector<float>& rgba) {
   fs::create_directories(path.parent_path());
-  save_image(path, int(kWidth), int(kHeight), {{"", 4, rgba}});
+  film_io::save_image(path, int(kWidth), int(kHeight), {{"", 4, rgba}});
 }
 
 std::vector<float> without_alpha(const std::vector<float>& rgba) {
@@ -64,7 +64,7 @@ void save_beside_each_other(const fs::path& path, const std::vector<std::vector<
   const auto color = [&](float u, float v) {
     const uint32_t column = uint32_t(u * float(width));
     const float* rgb = images[column / kWidth].data() + 3 * (size_t(v * float(kHeight)) * kWidth + column % kWidth);
-    const auto encoded = [](float linear) { return linear_to_srgb(std::max(0.0f, linear)); };
+    const auto encoded = [](float linear) { return image::linear_to_srgb(std::max(0.0f, linear)); };
     return Vec4(encoded(rgb[0]), encoded(rgb[1]), encoded(rgb[2]), 1.0f);
   };
   const testing::FileBytes png = testing::make_png(width, kHeight, color);
@@ -77,10 +77,11 @@ void remember(const std::string& bits, const std::vector<float>& rgba) {
   if (!fs::exists(remembered(bits))) save(remembered(bits), rgba);
 }
 
-std::string keep(const std::string& name, const std::string& bits, const std::vector<float>& means, const std::vector<float>& rgba) {
+std::string keep(const std::string& name, const std::string& bits, const std::vector<float>& means,
+                 const std::vector<float>& rgba) {
   const bool by_pixels = fs::exists(remembered(bits));
   const std::vector<float> picture = without_alpha(rgba), compared = by_pixels ? picture : squares(block_means(rgba));
-  const std::vector<float> reference = by_pixels ? load_rgb(remembered(bits), "").rgb : squares(means);
+  const std::vector<float> reference = by_pixels ? film_io::load_rgb(remembered(bits), "").rgb : squares(means);
   fs::path path = kFolder / name;
   save(path.replace_extension(".exr"), rgba);
   save_beside_each_other(path.replace_extension(".png"), {reference, picture, difference(compared, reference)});

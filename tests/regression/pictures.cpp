@@ -59,15 +59,17 @@ std::vector<Picture> pictures() {
   list.push_back({"box orthographic", from_the_side, nothing});
   list.push_back({"box with a transparent film", [](PathScene* scene) { test::build(Scenario::World, scene); },
                   [](GradusSettings* s) { s->film_transparent = 1; }});
-  list.push_back({"box with a Gaussian filter", whole_box, [](GradusSettings* s) { s->pixel_filter = GRADUS_FILTER_GAUSSIAN; }});
-  list.push_back({"box with clamped light", whole_box, [](GradusSettings* s) { s->clamp_direct = s->clamp_indirect = 1.0f; }});
+  list.push_back(
+      {"box with a Gaussian filter", whole_box, [](GradusSettings* s) { s->pixel_filter = GRADUS_FILTER_GAUSSIAN; }});
+  list.push_back(
+      {"box with clamped light", whole_box, [](GradusSettings* s) { s->clamp_direct = s->clamp_indirect = 1.0f; }});
   list.push_back({"box without bounces", whole_box, [](GradusSettings* s) { s->max_bounces = 0; }});
   list.push_back({"box exposed twice", whole_box, [](GradusSettings* s) { s->film_exposure = 2.0f; }});
   return list;
 }
 
 std::vector<float> render(const Picture& picture, uint32_t samples, uint32_t seed) {
-  GradusSettings settings = default_settings();
+  GradusSettings settings = schema::default_settings();
   settings.width = kWidth;
   settings.height = kHeight;
   settings.samples = samples;
@@ -79,8 +81,8 @@ std::vector<float> render(const Picture& picture, uint32_t samples, uint32_t see
   picture.change(&settings);
   PathScene scene;
   picture.build(&scene);
-  const IntegratorContext context = scene.context(settings);
-  Render render(test::test_device(), context.snapshot, settings);
+  const integrator::IntegratorContext context = scene.context(settings);
+  render::Render render(test::test_device(), context.snapshot, settings);
   render.wait(-1.0);
   std::vector<float> rgba(size_t(kWidth) * kHeight * 4);
   render.read_pass(GRADUS_PASS_COMBINED, rgba.data(), rgba.size());

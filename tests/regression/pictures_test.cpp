@@ -1,6 +1,6 @@
-// M1, M2: pictures are as they were stored in pictures.json: on any machine their block means, within the noise; on the kind of machine
-// and compiler that stored them their bits, so that no change of them goes by unseen. What differs is kept in the build folder, to be
-// looked at. Where pictures are meant to change, they are stored anew:
+// M1, M2: pictures are as they were stored in pictures.json: on any machine their block means, within the noise; on the
+// kind of machine and compiler that stored them their bits, so that no change of them goes by unseen. What differs is
+// kept in the build folder, to be looked at. Where pictures are meant to change, they are stored anew:
 //   GRADUS_STORE_PICTURES=1 build/tests/gradus_regression_tests
 #include <algorithm>
 #include <cmath>
@@ -39,15 +39,16 @@ std::string processor(const std::string& key) {
   return "unknown " + key;
 }
 
-// What bits depend on: the compiler, and the code that libraries choose by the processor (the C library's functions, Embree's kernels,
-// whose approximate reciprocals are not the same in all processors).
+// What bits depend on: the compiler, and the code that libraries choose by the processor (the C library's functions,
+// Embree's kernels, whose approximate reciprocals are not the same in all processors).
 std::string machine() {
   std::string name = processor("model name");
   std::istringstream flags(processor("flags"));
   for (std::string flag; flags >> flag;) {
     if (flag == "avx2" || flag == "fma" || flag == "avx512f" || flag == "avx512vl") name += " " + flag;
   }
-  name += std::string(", glibc ") + gnu_get_libc_version() + ", Embree " + RTC_VERSION_STRING + ", compiler " + __VERSION__;
+  name +=
+      std::string(", glibc ") + gnu_get_libc_version() + ", Embree " + RTC_VERSION_STRING + ", compiler " + __VERSION__;
 #if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__)
   return name;
 #else
@@ -107,7 +108,8 @@ std::string flaw(const std::vector<float>& rgba) {
       for (size_t c = 0; c < 4; ++c) {
         const float value = rgba[4 * (size_t(y) * kWidth + size_t(x)) + c];
         if (!std::isfinite(value)) return "not finite" + where;
-        if (value > 100.0f * std::max(brightest_neighbour(rgba, x, y, c), kDark)) return "100 times its neighbours" + where;
+        if (value > 100.0f * std::max(brightest_neighbour(rgba, x, y, c), kDark))
+          return "100 times its neighbours" + where;
       }
     }
   }
@@ -209,11 +211,13 @@ TEST(M1_Artefacts, TellWhatDiffersAndWhere) {
   remember("a test", rgba);
   rgba[0] = 2.0f;
   const std::string text = keep("a test", "a test", means, rgba);
-  EXPECT_NE(text.find("relMSE of pixels 0.0003"), std::string::npos) << text;  // 1.5² / (0.001 + 0.5²) in one of 27648 values
+  EXPECT_NE(text.find("relMSE of pixels 0.0003"), std::string::npos)
+      << text;  // 1.5² / (0.001 + 0.5²) in one of 27648 values
   EXPECT_NE(text.find((folder / "a test.png").string()), std::string::npos) << text;
   EXPECT_GT(std::filesystem::file_size(folder / "a test.png"), 100u);
-  EXPECT_EQ(load_rgb(folder / "a test.exr", "").rgb[0], 2.0f);
-  for (const std::filesystem::path& file : {folder / "a test.png", folder / "a test.exr", stored}) std::filesystem::remove(file);
+  EXPECT_EQ(film_io::load_rgb(folder / "a test.exr", "").rgb[0], 2.0f);
+  for (const std::filesystem::path& file : {folder / "a test.png", folder / "a test.exr", stored})
+    std::filesystem::remove(file);
 }
 
 TEST(M2_Pixels, SpikesAndWhatIsNotFiniteAreSeen) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/clock.h"
+#include "gradient/gradient_integrator.h"
 #include "output/combine.h"
 #include "render/render.h"
 #include "schema/options.h"
@@ -25,20 +26,23 @@ struct Measured {
   double seconds = 0.0;
 };
 
-Measured measure(const IntegratorContext& base, bool gradient, uint32_t count) {
+Measured measure(const integrator::IntegratorContext& base, bool gradient, uint32_t count) {
   Measured result;
   test::Moments moments;
   for (int seed = 0; seed < seeds(); ++seed) {
-    IntegratorContext context = base;
+    integrator::IntegratorContext context = base;
     context.settings.seed = uint32_t(seed);
-    Film film = test::make_test_film(context.settings, gradient);
+    film::Film film = test::make_test_film(context.settings, gradient);
     film.settings = context.settings;
     const uint64_t began = thread_cpu_nanoseconds();
-    test::sample_film(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, count, &film);
+    test::sample_film(
+        gradient ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context), 0, count,
+        &film);
     result.seconds += 1e-9 * double(thread_cpu_nanoseconds() - began);
-    SolveReport report;
-    moments.add(combine(
-        film, gradient ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_NONE, 0.0f, film.region, [] { return false; }, &report));
+    reconstruct::SolveReport report;
+    moments.add(output::combine(
+        film, gradient ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_NONE, 0.0f, film.region, [] { return false; },
+        &report));
   }
   for (size_t i = 0; i < moments.size(); i += 4) {
     const double gray = (moments.mean(i) + moments.mean(i + 1) + moments.mean(i + 2)) / 3.0;
@@ -50,18 +54,20 @@ Measured measure(const IntegratorContext& base, bool gradient, uint32_t count) {
 constexpr Scenario kScenarios[] = {Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::World,
                                    Scenario::RoughMetal,  Scenario::Glass,       Scenario::Transparent};
 
-// The error of path tracing falls as 1/n, so what it had after the time of the gradients follows from its own samples and time.
+// The error of path tracing falls as 1/n, so what it had after the time of the gradients follows from its own samples
+// and time.
 TEST(B5_Benefit, MostScenesAreBetterInTheSameTimeAndNoneMuchWorse) {
   int better = 0;
   for (const Scenario scenario : kScenarios) {
     test::PathScene scene;
     test::build(scenario, &scene);
-    // The light is out of the picture: at its edge, 160 times as bright as the wall behind, L2 spreads the noise of coverage.
+    // The light is out of the picture: at its edge, 160 times as bright as the wall behind, L2 spreads the noise of
+    // coverage.
     scene.camera(Vec3(0.0f, -0.3f, 3.2f), Vec3(0.0f, -0.4f, 0.0f), 0.6f);
     GradusSettings settings = test::test_settings(kWidth, kHeight);
     settings.independent_sampler = 0;
     settings.max_bounces = 6;
-    const IntegratorContext context = scene.context(settings);
+    const integrator::IntegratorContext context = scene.context(settings);
     const Measured path = measure(context, false, samples()), gradient = measure(context, true, samples());
     const double ratio = gradient.error / path.error * gradient.seconds / path.seconds;
     std::printf("  %-12s relMSE %.2f of path tracing at the same samples, %.2f of its time: %.2f at the same time\n",
@@ -89,7 +95,7 @@ struct Rendered {
 };
 
 Rendered render(test::PathScene* scene, uint32_t integrator, uint32_t first_seed) {
-  GradusSettings settings = default_settings();
+  GradusSettings settings = schema::default_settings();
   settings.width = kWidth;
   settings.height = kHeight;
   settings.samples = samples();
@@ -102,7 +108,7 @@ Rendered render(test::PathScene* scene, uint32_t integrator, uint32_t first_seed
   for (int k = 0; k < seeds(); ++k) {
     settings.seed = first_seed + uint32_t(k);
     const uint64_t began = process_cpu_nanoseconds();
-    Render render(nullptr, snapshot, settings);
+    render::Render render(nullptr, snapshot, settings);
     EXPECT_TRUE(render.wait(-1.0));
     result.seconds += 1e-9 * double(process_cpu_nanoseconds() - began);
     std::vector<float>& image = result.images.emplace_back(size_t(kWidth) * kHeight * 4);
@@ -113,11 +119,12 @@ Rendered render(test::PathScene* scene, uint32_t integrator, uint32_t first_seed
   return result;
 }
 
-// Of one image. By the spread over seeds for path tracing, which has no bias, and whose mean is what the others are held against: its own
-// error is taken off.
+// Of one image. By the spread over seeds for path tracing, which has no bias, and whose mean is what the others are
+// held against: its own error is taken off.
 double error_of_path(const Rendered& path) {
   double error = 0.0;
-  for (size_t i = 0; i < path.moments.size(); ++i) error += seeds() * path.moments.variance_of_mean(i) * weight(path.moments, i);
+  for (size_t i = 0; i < path.moments.size(); ++i)
+    error += seeds() * path.moments.variance_of_mean(i) * weight(path.moments, i);
   return error;
 }
 
@@ -136,10 +143,12 @@ TEST(B5_Benefit, DefaultIsBetterInTheSameTime) {
   for (const Scenario scenario : kScenarios) {
     test::PathScene scene;
     test::build(scenario, &scene);
-    const Rendered path = render(&scene, GRADUS_INTEGRATOR_PATH, 1000), chosen = render(&scene, GRADUS_INTEGRATOR_AUTO, 2000);
+    const Rendered path = render(&scene, GRADUS_INTEGRATOR_PATH, 1000),
+                   chosen = render(&scene, GRADUS_INTEGRATOR_AUTO, 2000);
     const double error = error_against(path, chosen) / error_of_path(path), time = chosen.seconds / path.seconds;
-    std::printf("  %-12s %s: relMSE %.2f of path tracing at the same samples, %.2f of its time: %.2f at the same time\n",
-                test::name_of(scenario), chosen.integrator.c_str(), error, time, error * time);
+    std::printf(
+        "  %-12s %s: relMSE %.2f of path tracing at the same samples, %.2f of its time: %.2f at the same time\n",
+        test::name_of(scenario), chosen.integrator.c_str(), error, time, error * time);
     better += error * time < 1.0 ? 1 : 0;
     EXPECT_LT(error * time, 1.5) << test::name_of(scenario);
   }

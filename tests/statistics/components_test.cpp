@@ -1,9 +1,10 @@
-// Components against an independent path tracer that spells out the word of every path, and their gradients against differences of their
-// images.
+// Components against an independent path tracer that spells out the word of every path, and their gradients against
+// differences of their images.
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "gradient/gradient_integrator.h"
 #include "support/bsdf_only.h"
 #include "support/difference_statistics.h"
 #include "support/path_scene.h"
@@ -29,11 +30,11 @@ void build_mixed(PathScene* scene) {
 }
 
 // Mean of the picture's channels, by components.
-std::vector<float> means(const Film& film) {
+std::vector<float> means(const film::Film& film) {
   std::vector<float> result;
   for (int c = 0; c < int(film.components.size()); ++c) {
     double sum = 0.0;
-    for (const float value : read_images(film, c).primal) sum += value;
+    for (const float value : film::read_images(film, c).primal) sum += value;
     result.push_back(float(sum / double(film.region.area() * 3)));
   }
   return result;
@@ -45,14 +46,14 @@ TEST(Components, HaveTheMeansThatAnIndependentTracerFinds) {
   GradusSettings settings = test::test_settings(kSide, kSide);
   settings.max_bounces = 5;
   for (const char* text : {"", "Caustic=ED+(R|T)(.)*L;Direct=EDL;ThroughGlass=ET+D.*L"}) {
-    IntegratorContext context = scene.context(settings);
-    context.components = ComponentSet::parse(text);
-    const ComponentSet& set = context.components;
+    integrator::IntegratorContext context = scene.context(settings);
+    context.components = lpe::ComponentSet::parse(text);
+    const lpe::ComponentSet& set = context.components;
     test::Moments ours, truth;
     for (uint32_t seed = 0; seed < 48; ++seed) {
       context.settings.seed = seed;
-      Film film = test::make_test_film(settings, true, set.count());
-      test::sample_film(*make_gradient_integrator(context), 0, 16, &film);
+      film::Film film = test::make_test_film(settings, true, set.count());
+      test::sample_film(*gradient::make_gradient_integrator(context), 0, 16, &film);
       ours.add(means(film));
       testing::Random random(seed + 1);
       std::vector<double> sums(size_t(set.count()), 0.0);
@@ -71,11 +72,13 @@ TEST(Components, HaveTheMeansThatAnIndependentTracerFinds) {
       const size_t i = size_t(c);
       EXPECT_GT(truth.mean(i), 1e-4) << set[c].name;  // there is something to compare
       if (truth.variance_of_mean(i) > 1e-12) {
-        EXPECT_GT(test::welch_p(ours, truth, i), 1e-3) << set[c].name << ": " << ours.mean(i) << " and " << truth.mean(i);
+        EXPECT_GT(test::welch_p(ours, truth, i), 1e-3)
+            << set[c].name << ": " << ours.mean(i) << " and " << truth.mean(i);
       } else {
         EXPECT_NEAR(ours.mean(i), truth.mean(i), 1e-4) << set[c].name;
       }
-      std::printf("  %s %.5f, truth %.5f ± %.5f\n", set[c].name.c_str(), ours.mean(i), truth.mean(i), std::sqrt(truth.variance_of_mean(i)));
+      std::printf("  %s %.5f, truth %.5f ± %.5f\n", set[c].name.c_str(), ours.mean(i), truth.mean(i),
+                  std::sqrt(truth.variance_of_mean(i)));
     }
   }
 }
@@ -89,23 +92,23 @@ struct PartitionCase {
 TEST(Components, HaveGradientsThatAreDifferencesOfTheirImages) {
   const char* const by_bounces = "Once=E.L;Twice=E..L";
   const PartitionCase cases[] = {{Scenario::DiffuseArea, by_bounces, {"Once", "Twice", "Residual"}},
-                          {Scenario::GlossyFloor, "", {"Diffuse", "Reflection"}},
-                          {Scenario::Mirror, "", {"Diffuse", "Reflection"}},
-                          {Scenario::Glass, "", {"Diffuse", "Transmission", "Residual"}},
-                          {Scenario::RoughGlass, by_bounces, {"Once", "Twice", "Residual"}},
-                          {Scenario::Transparent, by_bounces, {"Once", "Twice", "Residual"}}};
+                                 {Scenario::GlossyFloor, "", {"Diffuse", "Reflection"}},
+                                 {Scenario::Mirror, "", {"Diffuse", "Reflection"}},
+                                 {Scenario::Glass, "", {"Diffuse", "Transmission", "Residual"}},
+                                 {Scenario::RoughGlass, by_bounces, {"Once", "Twice", "Residual"}},
+                                 {Scenario::Transparent, by_bounces, {"Once", "Twice", "Residual"}}};
   for (const PartitionCase& c : cases) {
     PathScene scene;
     test::build(c.scenario, &scene);
-    IntegratorContext context = scene.context(test::test_settings(kSide, kSide));
-    context.components = ComponentSet::parse(c.components);
+    integrator::IntegratorContext context = scene.context(test::test_settings(kSide, kSide));
+    context.components = lpe::ComponentSet::parse(c.components);
     std::vector<test::BothDirections> differences(c.checked.size());
     for (uint32_t seed = 0; seed < 24; ++seed) {
       context.settings.seed = 100 + seed;
-      Film film = test::make_test_film(context.settings, true, context.components.count());
-      test::sample_film(*make_gradient_integrator(context), 0, 24, &film);
+      film::Film film = test::make_test_film(context.settings, true, context.components.count());
+      test::sample_film(*gradient::make_gradient_integrator(context), 0, 24, &film);
       for (size_t i = 0; i < c.checked.size(); ++i) {
-        differences[i].add(read_images(film, context.components.find(c.checked[i])));
+        differences[i].add(film::read_images(film, context.components.find(c.checked[i])));
       }
     }
     for (size_t i = 0; i < c.checked.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "film/pass_planes.h"
+#include "gradient/gradient_integrator.h"
 #include "reconstruct/reconstruct_film.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
@@ -20,13 +21,15 @@ using test::Scenario;
 
 constexpr uint32_t kSize = 48, kPixels = kSize * kSize;
 
-Film render(const IntegratorContext& scene, bool gradients, uint32_t seed, uint32_t samples) {
-  IntegratorContext context = scene;
+film::Film render(const integrator::IntegratorContext& scene, bool gradients, uint32_t seed, uint32_t samples) {
+  integrator::IntegratorContext context = scene;
   context.settings.seed = seed;
-  Film film = test::make_test_film(context.settings, gradients);
+  film::Film film = test::make_test_film(context.settings, gradients);
   film.settings = context.settings;
-  film.passes = make_pass_planes(feature_passes(), kPixels);
-  test::sample_film(gradients ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, samples, &film);
+  film.passes = film::make_pass_planes(schema::feature_passes(), kPixels);
+  test::sample_film(
+      gradients ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context), 0, samples,
+      &film);
   return film;
 }
 
@@ -43,10 +46,11 @@ struct Reference {
   }
 };
 
-Reference make_reference(const IntegratorContext& scene) {
+Reference make_reference(const integrator::IntegratorContext& scene) {
   std::vector<std::vector<float>> images(32);
-  tbb::parallel_for(size_t{0}, images.size(),
-                    [&](size_t k) { images[k] = read_images(render(scene, false, uint32_t(1000 + k), 64), 0).primal; });
+  tbb::parallel_for(size_t{0}, images.size(), [&](size_t k) {
+    images[k] = film::read_images(render(scene, false, uint32_t(1000 + k), 64), 0).primal;
+  });
   Reference reference;
   for (const auto& image : images) reference.images.add(image);
   return reference;
@@ -67,14 +71,15 @@ struct Parts {
   Sums all, better_half, worst_tenth;
 };
 
-Parts compare(const std::vector<Reconstructed>& results, const Reference& reference) {
+Parts compare(const std::vector<reconstruct::Reconstructed>& results, const Reference& reference) {
   Parts parts;
   std::vector<size_t> order(kPixels);
   std::iota(order.begin(), order.end(), size_t{0});
-  for (const Reconstructed& result : results) {
+  for (const reconstruct::Reconstructed& result : results) {
     std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return result.error[a] < result.error[b]; });
     for (size_t rank = 0; rank < kPixels; ++rank) {
-      const double estimated = result.error[order[rank]], actual = reference.squared_distance(order[rank], result.image);
+      const double estimated = result.error[order[rank]],
+                   actual = reference.squared_distance(order[rank], result.image);
       parts.all.add(estimated, actual);
       if (rank < kPixels / 2) parts.better_half.add(estimated, actual);
       if (rank >= kPixels * 9 / 10) parts.worst_tenth.add(estimated, actual);
@@ -89,14 +94,15 @@ struct Kind {
   double maximum = 1.3, min_of_better_half = 0.5;
 };
 
-// REGULARIZED's allows for what its weights hide of the noise of rare bright samples (reconstruct/regression_error.cpp), of which these
-// rooms have few.
-constexpr Kind kKinds[] = {{GRADUS_RECONSTRUCTION_NONE}, {GRADUS_RECONSTRUCTION_L2}, {GRADUS_RECONSTRUCTION_REGULARIZED, false, 2.2, 0.4}};
+// REGULARIZED's allows for what its weights hide of the noise of rare bright samples
+// (reconstruct/regression_error.cpp), of which these rooms have few.
+constexpr Kind kKinds[] = {
+    {GRADUS_RECONSTRUCTION_NONE}, {GRADUS_RECONSTRUCTION_L2}, {GRADUS_RECONSTRUCTION_REGULARIZED, false, 2.2, 0.4}};
 
 class A8_Error : public testing::TestWithParam<Scenario> {};
 
-// An estimate that is the same everywhere is right for the picture, but for no part of it. In the better half windows reach over the edges
-// of what has no noise at all.
+// An estimate that is the same everywhere is right for the picture, but for no part of it. In the better half windows
+// reach over the edges of what has no noise at all.
 TEST_P(A8_Error, IsThatOfThePictureAndTellsItsPixelsApart) {
   test::PathScene scene;
   test::build(GetParam(), &scene);
@@ -104,20 +110,21 @@ TEST_P(A8_Error, IsThatOfThePictureAndTellsItsPixelsApart) {
   settings.independent_sampler = 0;
   settings.max_bounces = 4;
   test::sample_at_pixel_centres(&settings);
-  const IntegratorContext context = scene.context(settings);
+  const integrator::IntegratorContext context = scene.context(settings);
   const Reference reference = make_reference(context);
   const size_t seeds = test::full_run() ? 64 : 16;
   for (const auto [reconstruction, gradients, maximum, min_of_better_half] : kKinds) {
-    std::vector<Reconstructed> results(seeds);
+    std::vector<reconstruct::Reconstructed> results(seeds);
     tbb::parallel_for(size_t{0}, seeds, [&](size_t k) {
-      SolveReport report;
-      const Film film = render(context, gradients, uint32_t(k), 16);
-      results[k] = reconstruct_film(
+      reconstruct::SolveReport report;
+      const film::Film film = render(context, gradients, uint32_t(k), 16);
+      results[k] = reconstruct::reconstruct_film(
           film, reconstruction, 0.0f, {.error = true}, [] { return false; }, &report);
     });
     const auto [all, better_half, worst_tenth] = compare(results, reference);
-    const std::string name = choice_name(*find_option("reconstruction"), reconstruction);
-    std::printf("  %s %.3f, better half %.3f, worst tenth %.3f\n", name.c_str(), all.ratio(), better_half.ratio(), worst_tenth.ratio());
+    const std::string name = schema::choice_name(*schema::find_option("reconstruction"), reconstruction);
+    std::printf("  %s %.3f, better half %.3f, worst tenth %.3f\n", name.c_str(), all.ratio(), better_half.ratio(),
+                worst_tenth.ratio());
     EXPECT_GT(all.ratio(), 0.7) << name;
     EXPECT_LT(all.ratio(), maximum) << name;
     EXPECT_GT(better_half.ratio(), min_of_better_half) << name;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gradient/gradient_integrator.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
@@ -13,7 +14,9 @@ enum class Lighting { Point, FourPoints, Emission };
 
 using Case = std::tuple<Lighting, GradusCameraType, bool, bool>;  // … gradient integrator, independent sampler
 
-GradusLight point_at_centre(float intensity) { return test::make_light(GRADUS_LIGHT_POINT, Mat4(1.0f), Rgb(intensity)); }
+GradusLight point_at_centre(float intensity) {
+  return test::make_light(GRADUS_LIGHT_POINT, Mat4(1.0f), Rgb(intensity));
+}
 
 void build_sphere(Lighting lighting, GradusCameraType camera, test::PathScene* scene) {
   test::Surface surface;
@@ -35,11 +38,12 @@ TEST_P(A1_Furnace, RadianceIsOne) {
   build_sphere(lighting, camera, &scene);
   GradusSettings settings = test::test_settings(10, 10);
   settings.independent_sampler = independent ? 1 : 0;
-  const IntegratorContext context = scene.context(settings);
-  Film film = test::make_test_film(settings, gradient);
-  test::sample_film(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, test::full_run() ? 256 : 64,
-                     &film);
-  const GradientImages images = read_images(film, 0);
+  const integrator::IntegratorContext context = scene.context(settings);
+  film::Film film = test::make_test_film(settings, gradient);
+  test::sample_film(
+      gradient ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context), 0,
+      test::full_run() ? 256 : 64, &film);
+  const film::GradientImages images = film::read_images(film, 0);
   double sum = 0.0;
   for (float value : images.primal) sum += value;
   EXPECT_NEAR(sum / double(images.primal.size()), 1.0, 0.025);
@@ -52,8 +56,8 @@ TEST_P(A1_Furnace, RadianceIsOne) {
 
 INSTANTIATE_TEST_SUITE_P(All, A1_Furnace,
                          testing::Combine(testing::Values(Lighting::Point, Lighting::FourPoints, Lighting::Emission),
-                                          testing::Values(GRADUS_CAMERA_PERSPECTIVE, GRADUS_CAMERA_ORTHOGRAPHIC), testing::Bool(),
-                                          testing::Bool()));
+                                          testing::Values(GRADUS_CAMERA_PERSPECTIVE, GRADUS_CAMERA_ORTHOGRAPHIC),
+                                          testing::Bool(), testing::Bool()));
 
 }  // namespace
 }  // namespace gradus

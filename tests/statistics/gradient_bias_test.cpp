@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gradient/gradient_integrator.h"
 #include "support/path_scene.h"
 
 namespace gradus {
@@ -15,13 +16,13 @@ using test::Surface;
 void check_difference(PathScene* scene, GradusSettings settings, uint32_t samples) {
   constexpr int renders = 300;
   test::sample_at_pixel_centres(&settings);
-  IntegratorContext context = scene->context(settings);
+  integrator::IntegratorContext context = scene->context(settings);
   double sum = 0.0, squares = 0.0;
   for (uint32_t seed = 0; seed < renders; ++seed) {
     context.settings.seed = seed;
-    Film film = test::make_test_film(context.settings, true);
-    test::sample_film(*make_gradient_integrator(context), 0, samples, &film);
-    const GradientImages images = read_images(film, 0);
+    film::Film film = test::make_test_film(context.settings, true);
+    test::sample_film(*gradient::make_gradient_integrator(context), 0, samples, &film);
+    const film::GradientImages images = film::read_images(film, 0);
     const double off = images.dx[0] - (double(images.primal[3]) - double(images.primal[0]));
     sum += off;
     squares += off * off;
@@ -32,8 +33,8 @@ void check_difference(PathScene* scene, GradusSettings settings, uint32_t sample
   EXPECT_LT(std::fabs(mean), 4.0 * error);
 }
 
-// Where the classes of base and offset differ, light samples behind the vertex they share next were paired by themselves, and BSDF samples
-// that met the same emitter by the density of both techniques.
+// Where the classes of base and offset differ, light samples behind the vertex they share next were paired by
+// themselves, and BSDF samples that met the same emitter by the density of both techniques.
 TEST(B7_EdgeOfAMirror, EmittersBehindTheNextVertexAreWeighedAlikeByBothTechniques) {
   PathScene scene;
   Surface left = test::matte(Rgb(0.8f)), right = left, metal, light;

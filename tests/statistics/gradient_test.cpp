@@ -1,12 +1,14 @@
-// The integrators against each other and against differences of images: B3 and B7 for the sampled planes, bit equality of the primal.
+// The integrators against each other and against differences of images: B3 and B7 for the sampled planes, bit equality
+// of the primal.
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "film/pixel_block.h"
+#include "gradient/gradient_integrator.h"
 #include "gradus/gradus_nodes.h"
 #include "render/plan.h"
-#include "film/pixel_block.h"
 #include "shading/program_builder.h"
 #include "support/difference_statistics.h"
 #include "support/path_scene.h"
@@ -27,7 +29,7 @@ constexpr uint32_t kHeight = 20;
 class Scenarios : public testing::TestWithParam<Scenario> {
  protected:
   void SetUp() override { test::build(GetParam(), &scene_); }
-  IntegratorContext context(uint32_t seed, bool independent = true) {
+  integrator::IntegratorContext context(uint32_t seed, bool independent = true) {
     GradusSettings settings = test::test_settings(kWidth, kHeight);
     settings.seed = seed;
     settings.independent_sampler = independent ? 1 : 0;
@@ -45,10 +47,10 @@ class Scenarios : public testing::TestWithParam<Scenario> {
   void check_differences(uint32_t first_seed, Sample&& sample) {
     BothDirections differences;
     for (uint32_t seed = first_seed; seed < first_seed + 24; ++seed) {
-      const IntegratorContext c = context(seed);
-      Film film = test::make_test_film(c.settings, true);
-      sample(*make_gradient_integrator(c), &film);
-      differences.add(read_images(film, 0));
+      const integrator::IntegratorContext c = context(seed);
+      film::Film film = test::make_test_film(c.settings, true);
+      sample(*gradient::make_gradient_integrator(c), &film);
+      differences.add(film::read_images(film, 0));
     }
     differences.check();
   }
@@ -56,12 +58,12 @@ class Scenarios : public testing::TestWithParam<Scenario> {
 };
 
 TEST_P(Scenarios, PrimalOfBothIntegratorsIsBitEqual) {
-  const IntegratorContext c = context(1, false);
-  Film plain = test::make_test_film(c.settings, false);
-  Film gradient = test::make_test_film(c.settings, true);
-  test::sample_film(*make_path_integrator(c), 0, 16, &plain);
-  test::sample_film(*make_gradient_integrator(c), 0, 16, &gradient);
-  for (int half = 0; half < kHalves; ++half) {
+  const integrator::IntegratorContext c = context(1, false);
+  film::Film plain = test::make_test_film(c.settings, false);
+  film::Film gradient = test::make_test_film(c.settings, true);
+  test::sample_film(*integrator::make_path_integrator(c), 0, 16, &plain);
+  test::sample_film(*gradient::make_gradient_integrator(c), 0, 16, &gradient);
+  for (int half = 0; half < film::kHalves; ++half) {
     EXPECT_EQ(plain.components[0].primal[half], gradient.components[0].primal[half]);
   }
   double sum = 0.0;
@@ -72,33 +74,35 @@ TEST_P(Scenarios, PrimalOfBothIntegratorsIsBitEqual) {
 
 TEST_P(Scenarios, B7_GradientsAreDifferencesOfTheImage) {
   BothDirections differences;
-  Counters counters;
+  film::Counters counters;
   for (uint32_t seed = 0; seed < 32; ++seed) {
-    const IntegratorContext c = context(100 + seed);
-    Film film = test::make_test_film(c.settings, true);
-    test::sample_film(*make_gradient_integrator(c), 0, 24, &film);
-    differences.add(read_images(film, 0));
+    const integrator::IntegratorContext c = context(100 + seed);
+    film::Film film = test::make_test_film(c.settings, true);
+    test::sample_film(*gradient::make_gradient_integrator(c), 0, 24, &film);
+    differences.add(film::read_images(film, 0));
     counters.add(film.counters);
   }
   differences.check();
   std::printf(
-      "  shifts %lu: reconnected %lu, half-vector %lu, replayed %lu; failed: missed %lu occluded %lu class %lu tir %lu side %lu density "
+      "  shifts %lu: reconnected %lu, half-vector %lu, replayed %lu; failed: missed %lu occluded %lu class %lu tir %lu "
+      "side %lu density "
       "%lu "
       "jacobian %lu\n",
-      counters.shifts_attempted, counters.shifts_reconnected, counters.shifts_half_vector, counters.shifts_replayed, counters.fail_missed,
-      counters.fail_occluded, counters.fail_class, counters.fail_total_reflection, counters.fail_side, counters.fail_density,
-      counters.fail_jacobian);
+      counters.shifts_attempted, counters.shifts_reconnected, counters.shifts_half_vector, counters.shifts_replayed,
+      counters.fail_missed, counters.fail_occluded, counters.fail_class, counters.fail_total_reflection,
+      counters.fail_side, counters.fail_density, counters.fail_jacobian);
 }
 
-// What the planner says of a scene is what its offsets do: where no lobe is sharp, none tries to copy an event of class R or T.
+// What the planner says of a scene is what its offsets do: where no lobe is sharp, none tries to copy an event of class
+// R or T.
 TEST_P(Scenarios, NoHalfVectorIsCopiedWhereThePlannerSkipsIt) {
-  IntegratorContext c = context(1);
+  integrator::IntegratorContext c = context(1);
   c.settings.samples = 16;
-  const Plan plan = make_plan(c.settings, *c.snapshot);
-  const bool skipped =
-      std::any_of(plan.skipped.begin(), plan.skipped.end(), [](const auto& entry) { return entry.first == "half-vector shifts"; });
-  Film film = test::make_test_film(c.settings, true);
-  test::sample_film(*make_gradient_integrator(c), 0, 16, &film);
+  const render::Plan plan = render::make_plan(c.settings, *c.snapshot);
+  const bool skipped = std::any_of(plan.skipped.begin(), plan.skipped.end(),
+                                   [](const auto& entry) { return entry.first == "half-vector shifts"; });
+  film::Film film = test::make_test_film(c.settings, true);
+  test::sample_film(*gradient::make_gradient_integrator(c), 0, 16, &film);
   EXPECT_GT(film.counters.shifts_attempted, 0u);
   if (skipped) {
     EXPECT_EQ(film.counters.shifts_half_vector, 0u);
@@ -121,41 +125,44 @@ TEST_P(Scenarios, NoHalfVectorIsCopiedWhereThePlannerSkipsIt) {
 
 // Contract 1.5: neighbours with different counts, some with none, over two batches.
 TEST_P(Scenarios, B7_UnequalCounts) {
-  check_differences(500, [](const Integrator& integrator, Film* film) {
+  check_differences(500, [](const integrator::Integrator& integrator, film::Film* film) {
     const std::atomic<bool> stop{false};
     std::vector<uint32_t> counts(static_cast<size_t>(film->region.area()));
     for (const uint32_t batch : {0u, 1u}) {
       for (size_t i = 0; i < counts.size(); ++i) counts[i] = batch == 0 ? 8 + 8 * (i % 3) : (i / 3 % 2 == 0 ? 0 : 32);
-      integrator.sample(WorkUnit{film->region, 64 * batch, 0, &counts}, film, &film->counters, stop);
+      integrator.sample(integrator::WorkUnit{film->region, 64 * batch, 0, &counts}, film, &film->counters, stop);
     }
   });
 }
 
 // Adaptive sampling: cells that differ in their counts and in the numbers of their samples, even and odd.
 TEST_P(Scenarios, B7_CellsWithSampleNumbersOfTheirOwn) {
-  check_differences(900, [](const Integrator& integrator, Film* film) {
+  check_differences(900, [](const integrator::Integrator& integrator, film::Film* film) {
     const std::atomic<bool> stop{false};
     std::vector<uint32_t> first(static_cast<size_t>(film->region.area())), count(first);
     for (const uint32_t batch : {0u, 1u}) {
       for (size_t i = 0; i < first.size(); ++i) {
-        const bool right = int(i) % film->region.width() >= kPixelBlockSide, low = int(i) / film->region.width() < kPixelBlockSide;
+        const bool right = int(i) % film->region.width() >= film::kPixelBlockSide,
+                   low = int(i) / film->region.width() < film::kPixelBlockSide;
         first[i] += count[i];
         count[i] = batch == 0 ? (right ? 9 : 4) : (low ? 24 : 7);
       }
-      integrator.sample(WorkUnit{film->region, 0, 0, &count, &first}, film, &film->counters, stop);
+      integrator.sample(integrator::WorkUnit{film->region, 0, 0, &count, &first}, film, &film->counters, stop);
     }
   });
 }
 
-// A cancel between tiles leaves pairs whose ends took different numbers of samples; their gradients kept the norm of whole batches and
-// came out too small.
+// A cancel between tiles leaves pairs whose ends took different numbers of samples; their gradients kept the norm of
+// whole batches and came out too small.
 TEST_P(Scenarios, B7_BatchCutShortByACancelKeepsTheScale) {
-  check_differences(700, [](const Integrator& integrator, Film* film) {
+  check_differences(700, [](const integrator::Integrator& integrator, film::Film* film) {
     const std::atomic<bool> stop{false};
     test::sample_film(integrator, 0, 16, film);
     for (int32_t y = 0; y < static_cast<int32_t>(kHeight); ++y) {
-      for (int32_t x = y % 2; x < static_cast<int32_t>(kWidth); x += 2) {  // every other pixel, so that every pair is cut
-        integrator.sample(WorkUnit{Region{x, y, x + 1, y + 1}, 16, 16, nullptr}, film, &film->counters, stop);
+      for (int32_t x = y % 2; x < static_cast<int32_t>(kWidth);
+           x += 2) {  // every other pixel, so that every pair is cut
+        integrator.sample(integrator::WorkUnit{Region{x, y, x + 1, y + 1}, 16, 16, nullptr}, film, &film->counters,
+                          stop);
       }
     }
   });
@@ -163,30 +170,31 @@ TEST_P(Scenarios, B7_BatchCutShortByACancelKeepsTheScale) {
 
 // L3: split into batches and tiles, in any order: the same bits.
 TEST_P(Scenarios, L3_BatchesAndTilesDoNotMatter) {
-  const IntegratorContext c = context(3, false);
-  const auto integrator = make_gradient_integrator(c);
-  Film whole = test::make_test_film(c.settings, true);
-  Film parts = test::make_test_film(c.settings, true);
+  const integrator::IntegratorContext c = context(3, false);
+  const auto integrator = gradient::make_gradient_integrator(c);
+  film::Film whole = test::make_test_film(c.settings, true);
+  film::Film parts = test::make_test_film(c.settings, true);
   test::sample_film(*integrator, 0, 8, &whole);
   const std::atomic<bool> stop{false};
   for (uint32_t first : {0u, 2u}) {
     const uint32_t count = first == 0 ? 2 : 6;
     for (int32_t y = static_cast<int32_t>(kHeight); y > 0; y -= 5) {
       for (int32_t x = 0; x < static_cast<int32_t>(kWidth); x += 4) {
-        WorkUnit unit{Region{x, y - 5, x + 4, y}, first, count, nullptr};
+        integrator::WorkUnit unit{Region{x, y - 5, x + 4, y}, first, count, nullptr};
         integrator->sample(unit, &parts, &parts.counters, stop);
       }
     }
   }
-  for (int half = 0; half < kHalves; ++half) {
+  for (int half = 0; half < film::kHalves; ++half) {
     EXPECT_EQ(whole.components[0].primal[half], parts.components[0].primal[half]);
     EXPECT_EQ(whole.components[0].gradient[half], parts.components[0].gradient[half]);
     EXPECT_EQ(whole.pair_count[half], parts.pair_count[half]);
   }
 }
 
-// A few pixels, far apart, whose light comes over rough metal from an emitter that they cannot see; found with light sampling or without.
-GradientImages light_over_metal(uint32_t seed, bool sampled_as_light) {
+// A few pixels, far apart, whose light comes over rough metal from an emitter that they cannot see; found with light
+// sampling or without.
+film::GradientImages light_over_metal(uint32_t seed, bool sampled_as_light) {
   PathScene scene;
   test::Surface floor;
   floor.diffuse = Rgb(0.8f);
@@ -204,20 +212,20 @@ GradientImages light_over_metal(uint32_t seed, bool sampled_as_light) {
   settings.seed = seed;
   settings.max_bounces = 1;
   test::sample_at_pixel_centres(&settings);
-  const IntegratorContext c = scene.context(settings);
-  Film film = test::make_test_film(c.settings, true);
-  test::sample_film(*make_gradient_integrator(c), 0, 8192, &film);
-  return read_images(film, 0);
+  const integrator::IntegratorContext c = scene.context(settings);
+  film::Film film = test::make_test_film(c.settings, true);
+  test::sample_film(*gradient::make_gradient_integrator(c), 0, 8192, &film);
+  return film::read_images(film, 0);
 }
 
-// An offset that has joined its base scatters at the shared vertex with a density of its own; a light that BSDF sampling found next was
-// weighed with the base's. Without light sampling there is nothing to weigh: the gradients must agree, and they have far less noise than
-// differences of images.
+// An offset that has joined its base scatters at the shared vertex with a density of its own; a light that BSDF
+// sampling found next was weighed with the base's. Without light sampling there is nothing to weigh: the gradients must
+// agree, and they have far less noise than differences of images.
 TEST(B7_SharedVertex, LightFoundBehindItIsWeighedByEachPathsOwnDensity) {
   DifferenceStatistics difference;
   for (uint32_t seed = 0; seed < 32; ++seed) {
-    GradientImages images = light_over_metal(seed, true);
-    const GradientImages plain = light_over_metal(1000 + seed, false);
+    film::GradientImages images = light_over_metal(seed, true);
+    const film::GradientImages plain = light_over_metal(1000 + seed, false);
     for (size_t i = 0; i < images.dx.size(); ++i) images.dx[i] -= plain.dx[i];
     std::fill(images.primal.begin(), images.primal.end(), 0.0f);
     difference.add(images, true);
@@ -225,7 +233,8 @@ TEST(B7_SharedVertex, LightFoundBehindItIsWeighedByEachPathsOwnDensity) {
   difference.check("dx", 8);
 }
 
-// The same point of the lens for both ends of a difference: out of focus, one of them seen through its middle would be sharp.
+// The same point of the lens for both ends of a difference: out of focus, one of them seen through its middle would be
+// sharp.
 TEST(B7_Lens, DifferencesAreThoseOfTheBlurredImage) {
   PathScene scene;
   Surface light;
@@ -238,10 +247,10 @@ TEST(B7_Lens, DifferencesAreThoseOfTheBlurredImage) {
   for (uint32_t seed = 0; seed < 32; ++seed) {
     GradusSettings settings = test::test_settings(kWidth, kHeight);
     settings.seed = seed;
-    const IntegratorContext c = scene.context(settings);
-    Film film = test::make_test_film(settings, true);
-    test::sample_film(*make_gradient_integrator(c), 0, 16, &film);
-    difference.add(read_images(film, 0), true);
+    const integrator::IntegratorContext c = scene.context(settings);
+    film::Film film = test::make_test_film(settings, true);
+    test::sample_film(*gradient::make_gradient_integrator(c), 0, 16, &film);
+    difference.add(film::read_images(film, 0), true);
   }
   difference.check("dx");
 }
@@ -256,8 +265,9 @@ struct KindCase {
 
 class Kinds : public testing::TestWithParam<KindCase> {
  protected:
-  // A floor whose halves scatter with the same class but mostly diffuse and mostly glossy, under a light and its reflection in a wall.
-  GradientImages image(uint32_t seed, bool sampled_as_light, uint32_t samples) {
+  // A floor whose halves scatter with the same class but mostly diffuse and mostly glossy, under a light and its
+  // reflection in a wall.
+  film::GradientImages image(uint32_t seed, bool sampled_as_light, uint32_t samples) {
     PathScene scene;
     test::Surface left, right, wall, light;
     left.diffuse = right.glossy = Rgb(0.7f, 0.6f, 0.5f);
@@ -277,10 +287,10 @@ class Kinds : public testing::TestWithParam<KindCase> {
     settings.independent_sampler = 1;
     settings.max_bounces = 3;
     settings.diffuse_bounces = GetParam().diffuse_bounces;
-    const IntegratorContext c = scene.context(settings);
-    Film film = test::make_test_film(c.settings, true);
-    test::sample_film(*make_gradient_integrator(c), 0, samples, &film);
-    return read_images(film, 0);
+    const integrator::IntegratorContext c = scene.context(settings);
+    film::Film film = test::make_test_film(c.settings, true);
+    test::sample_film(*gradient::make_gradient_integrator(c), 0, samples, &film);
+    return film::read_images(film, 0);
   }
 };
 
@@ -295,7 +305,7 @@ TEST_P(Kinds, B7_TheSampledLobeIsPartOfThePath) {
 TEST_P(Kinds, B7_BothTechniquesSeeTheSameEmission) {
   DifferenceStatistics difference;
   for (uint32_t seed = 0; seed < 32; ++seed) {
-    GradientImages images = image(5000 + seed, true, 512);
+    film::GradientImages images = image(5000 + seed, true, 512);
     images.dx = image(8000 + seed, false, 512).primal;
     for (size_t i = 0; i < images.dx.size(); ++i) images.dx[i] -= images.primal[i];
     std::fill(images.primal.begin(), images.primal.end(), 0.0f);
@@ -304,14 +314,16 @@ TEST_P(Kinds, B7_BothTechniquesSeeTheSameEmission) {
   difference.check("image", 40);
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, Kinds,
-                         testing::Values(KindCase{"LimitOfDiffuseBounces", GRADUS_VISIBLE_ALL, -1, 0},
-                                         KindCase{"LightHiddenFromDiffuse", GRADUS_VISIBLE_ALL & ~GRADUS_VISIBLE_DIFFUSE},
-                                         KindCase{"EmissionForGlossyRays", GRADUS_VISIBLE_ALL, GRADUS_LIGHT_PATH_GLOSSY},
-                                         KindCase{"EmissionByDepth", GRADUS_VISIBLE_ALL, GRADUS_LIGHT_PATH_DIFFUSE_DEPTH}),
-                         [](const testing::TestParamInfo<KindCase>& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Integrators, Kinds,
+    testing::Values(KindCase{"LimitOfDiffuseBounces", GRADUS_VISIBLE_ALL, -1, 0},
+                    KindCase{"LightHiddenFromDiffuse", GRADUS_VISIBLE_ALL & ~GRADUS_VISIBLE_DIFFUSE},
+                    KindCase{"EmissionForGlossyRays", GRADUS_VISIBLE_ALL, GRADUS_LIGHT_PATH_GLOSSY},
+                    KindCase{"EmissionByDepth", GRADUS_VISIBLE_ALL, GRADUS_LIGHT_PATH_DIFFUSE_DEPTH}),
+    [](const testing::TestParamInfo<KindCase>& info) { return std::string(info.param.name); });
 
-// Two pixels, left and right, that look straight at a plane of two halves, lit by a light. right: no material, no surface.
+// Two pixels, left and right, that look straight at a plane of two halves, lit by a light. right: no material, no
+// surface.
 struct Halves {
   const char* name;
   Surface left;
@@ -322,7 +334,7 @@ struct Halves {
 
 class Edges : public testing::TestWithParam<Halves> {
  protected:
-  GradientImages image(uint32_t seed) const {
+  film::GradientImages image(uint32_t seed) const {
     PathScene scene;
     Surface light;
     light.emission = Rgb(6.0f);
@@ -341,10 +353,10 @@ class Edges : public testing::TestWithParam<Halves> {
     settings.seed = seed;
     settings.max_bounces = 4;
     settings.film_transparent = hole ? 1 : 0;
-    const IntegratorContext c = scene.context(settings);
-    Film film = test::make_test_film(c.settings, true);
-    test::sample_film(*make_gradient_integrator(c), 0, 64, &film);
-    return read_images(film, 0);
+    const integrator::IntegratorContext c = scene.context(settings);
+    film::Film film = test::make_test_film(c.settings, true);
+    test::sample_film(*gradient::make_gradient_integrator(c), 0, 64, &film);
+    return film::read_images(film, 0);
   }
 
  private:
@@ -354,12 +366,13 @@ class Edges : public testing::TestWithParam<Halves> {
   }
 };
 
-// Where nothing could be shared behind the edge, a path's contribution came back from the reconstruction as the spike that it was.
+// Where nothing could be shared behind the edge, a path's contribution came back from the reconstruction as the spike
+// that it was.
 TEST_P(Edges, B7_ADifferenceAcrossAnEdgeHasLessNoiseThanThatOfTheImage) {
   constexpr int renders = 400;
   double sum[3] = {}, squares[3] = {};
   for (uint32_t seed = 0; seed < renders; ++seed) {
-    const GradientImages images = image(seed);
+    const film::GradientImages images = image(seed);
     const double sampled = images.dx[0], of_image = double(images.primal[images.channels]) - double(images.primal[0]);
     if (images.channels == 4) {
       EXPECT_EQ(images.dx[3], images.primal[7] - images.primal[3]);  // alpha has no noise here
@@ -390,7 +403,8 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Edges,
                                          Halves{"OfAPolish", half_mirror(), true, test::matte(Rgb(0.8f))},
                                          Halves{"OfARoughness", test::glossy(0.0f), true, test::glossy(0.2f)},
                                          Halves{"OfGlass", test::glass(0.0f), true, test::matte(Rgb(0.8f))},
-                                         Halves{"OfAHeldOutObject", test::matte(Rgb(0.8f)), true, test::matte(Rgb(0.8f)), Halves::Object},
+                                         Halves{"OfAHeldOutObject", test::matte(Rgb(0.8f)), true,
+                                                test::matte(Rgb(0.8f)), Halves::Object},
                                          Halves{"OfAHoldoutShader", {}, true, test::matte(Rgb(0.8f)), Halves::Shader}),
                          [](const testing::TestParamInfo<Halves>& info) { return std::string(info.param.name); });
 
@@ -403,9 +417,15 @@ struct Above {
 };
 
 uint64_t wall(PathScene* scene) { return scene->material(test::matte(Rgb(0.8f))); }
-void add_mirror_ball(PathScene* scene) { scene->ball(Vec3(0.3f, 0.5f, 0), 0.2f, scene->material(test::glossy(0.0f)), 12, true); }
-void add_polished_ball(PathScene* scene) { scene->ball(Vec3(0.3f, 0.5f, 0), 0.2f, scene->material(test::glossy(0.25f)), 12, true); }
-void add_glass_ball(PathScene* scene) { scene->ball(Vec3(0.3f, 0.5f, 0), 0.2f, scene->material(test::glass(0.0f)), 12, true); }
+void add_mirror_ball(PathScene* scene) {
+  scene->ball(Vec3(0.3f, 0.5f, 0), 0.2f, scene->material(test::glossy(0.0f)), 12, true);
+}
+void add_polished_ball(PathScene* scene) {
+  scene->ball(Vec3(0.3f, 0.5f, 0), 0.2f, scene->material(test::glossy(0.25f)), 12, true);
+}
+void add_glass_ball(PathScene* scene) {
+  scene->ball(Vec3(0.3f, 0.5f, 0), 0.2f, scene->material(test::glass(0.0f)), 12, true);
+}
 void add_mirror(PathScene* scene) {
   scene->quad(Vec3(0.4f, 0.2f, -0.2f), Vec3(0, 0, 0.4f), Vec3(0, 0.4f, 0), scene->material(test::glossy(0.0f)));
 }
@@ -424,7 +444,7 @@ void add_corner(PathScene* scene) { scene->quad(Vec3(0.02f, 0, -1), Vec3(0, 0, 2
 
 class Reflections : public testing::TestWithParam<Above> {
  protected:
-  GradientImages image(uint32_t seed) const {
+  film::GradientImages image(uint32_t seed) const {
     PathScene scene;
     Surface light;
     light.emission = Rgb(30.0f);
@@ -435,10 +455,10 @@ class Reflections : public testing::TestWithParam<Above> {
     GradusSettings settings = test::test_settings(2, 1);
     settings.seed = seed;
     settings.max_bounces = 4;
-    const IntegratorContext c = scene.context(settings);
-    Film film = test::make_test_film(c.settings, true);
-    test::sample_film(*make_gradient_integrator(c), 0, 256, &film);
-    return read_images(film, 0);
+    const integrator::IntegratorContext c = scene.context(settings);
+    film::Film film = test::make_test_film(c.settings, true);
+    test::sample_film(*gradient::make_gradient_integrator(c), 0, 256, &film);
+    return film::read_images(film, 0);
   }
 };
 
@@ -447,7 +467,7 @@ TEST_P(Reflections, B7_WhatTheyCastOnTheFloorIsSharedByNeighbours) {
   constexpr int renders = 400;
   double sum[3] = {}, squares[3] = {};
   for (uint32_t seed = 0; seed < renders; ++seed) {
-    const GradientImages images = image(seed);
+    const film::GradientImages images = image(seed);
     const double sampled = images.dx[0], of_image = double(images.primal[images.channels]) - double(images.primal[0]);
     const double values[3] = {sampled, of_image, sampled - of_image};
     for (int i = 0; i < 3; ++i) {
@@ -462,17 +482,18 @@ TEST_P(Reflections, B7_WhatTheyCastOnTheFloorIsSharedByNeighbours) {
   EXPECT_LT(std::fabs(sum[2] / renders), 4.0 * std::sqrt(variance(2) / renders));
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, Reflections,
-                         testing::Values(Above{"MirrorBall", add_mirror_ball, test::matte(Rgb(0.8f)), 0.45f},
-                                         Above{"PolishedBall", add_polished_ball, test::matte(Rgb(0.8f)), 0.1f},
-                                         Above{"GlassBall", add_glass_ball, test::matte(Rgb(0.8f)), 0.21f},
-                                         Above{"Mirror", add_mirror, test::matte(Rgb(0.8f)), 0.25f},
-                                         Above{"MirrorOnTheFloor", add_mirror_on_the_floor, test::matte(Rgb(0.8f)), 0.3f},
-                                         Above{"PolishedWall", add_polished_wall, test::matte(Rgb(0.8f)), 0.014f},
-                                         Above{"Pane", add_pane, test::matte(Rgb(0.8f)), 0.12f},
-                                         Above{"Corner", add_corner, test::matte(Rgb(0.8f)), 0.6f},
-                                         Above{"RoughJustAboveTheThreshold", add_mirror_ball, test::glossy(0.33f), 0.3f}),
-                         [](const testing::TestParamInfo<Above>& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Integrators, Reflections,
+    testing::Values(Above{"MirrorBall", add_mirror_ball, test::matte(Rgb(0.8f)), 0.45f},
+                    Above{"PolishedBall", add_polished_ball, test::matte(Rgb(0.8f)), 0.1f},
+                    Above{"GlassBall", add_glass_ball, test::matte(Rgb(0.8f)), 0.21f},
+                    Above{"Mirror", add_mirror, test::matte(Rgb(0.8f)), 0.25f},
+                    Above{"MirrorOnTheFloor", add_mirror_on_the_floor, test::matte(Rgb(0.8f)), 0.3f},
+                    Above{"PolishedWall", add_polished_wall, test::matte(Rgb(0.8f)), 0.014f},
+                    Above{"Pane", add_pane, test::matte(Rgb(0.8f)), 0.12f},
+                    Above{"Corner", add_corner, test::matte(Rgb(0.8f)), 0.6f},
+                    Above{"RoughJustAboveTheThreshold", add_mirror_ball, test::glossy(0.33f), 0.3f}),
+    [](const testing::TestParamInfo<Above>& info) { return std::string(info.param.name); });
 
 std::vector<Scenario> all_scenarios() {
   std::vector<Scenario> all;

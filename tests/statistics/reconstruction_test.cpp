@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "film/pass_planes.h"
+#include "gradient/gradient_integrator.h"
 #include "reconstruct/reconstruct_film.h"
 #include "schema/pass_table.h"
 #include "support/path_scene.h"
@@ -24,17 +25,19 @@ std::vector<Scenario> all_scenarios() {
   return all;
 }
 
-Film render(IntegratorContext context, bool gradient, uint32_t seed, int samples) {
+film::Film render(integrator::IntegratorContext context, bool gradient, uint32_t seed, int samples) {
   context.settings.seed = seed;
-  Film film = test::make_test_film(context.settings, gradient);
-  film.passes = make_pass_planes(feature_passes(), size_t(film.region.area()));
-  test::sample_film(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, uint32_t(samples), &film);
+  film::Film film = test::make_test_film(context.settings, gradient);
+  film.passes = film::make_pass_planes(schema::feature_passes(), size_t(film.region.area()));
+  test::sample_film(
+      gradient ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context), 0,
+      uint32_t(samples), &film);
   return film;
 }
 
-std::vector<float> reconstructed(const Film& film, GradusReconstruction reconstruction) {
-  SolveReport report;
-  return reconstruct_film(
+std::vector<float> reconstructed(const film::Film& film, GradusReconstruction reconstruction) {
+  reconstruct::SolveReport report;
+  return reconstruct::reconstruct_film(
              film, reconstruction, 0.0f, {}, [] { return false; }, &report)
       .image;
 }
@@ -74,11 +77,11 @@ Comparison compare(Scenario scenario) {
   GradusSettings settings = test::test_settings(kWidth, kHeight);
   settings.max_bounces = 4;
   test::sample_at_pixel_centres(&settings);
-  const IntegratorContext context = scene.context(settings);
+  const integrator::IntegratorContext context = scene.context(settings);
   const int seeds = 64, samples = test::full_run() ? 5 : 1;
   std::vector<std::vector<float>> path(static_cast<size_t>(seeds)), l2(path.size());
   tbb::parallel_for(0, seeds, [&](int k) {
-    path[k] = gray(read_images(render(context, false, uint32_t(k), samples), 0).primal);
+    path[k] = gray(film::read_images(render(context, false, uint32_t(k), samples), 0).primal);
     l2[k] = gray(reconstructed(render(context, true, uint32_t(1000 + k), samples), GRADUS_RECONSTRUCTION_L2));
   });
   Comparison result;
@@ -145,7 +148,8 @@ double pooled_z(double factor) {
 
 TEST(B3_L2, MeansAgreeAndOnePercentOfDarkeningIsCaught) {
   for (size_t s = 0; s < comparisons().size(); ++s) {
-    EXPECT_GT(test::welch_p(comparisons()[s].path_mean, comparisons()[s].l2_mean, 0), 6e-5) << test::name_of(Scenario(s));
+    EXPECT_GT(test::welch_p(comparisons()[s].path_mean, comparisons()[s].l2_mean, 0), 6e-5)
+        << test::name_of(Scenario(s));
   }
   EXPECT_LT(std::fabs(pooled_z(1.0)), 4.0);
   EXPECT_LT(pooled_z(0.99), -4.0);
@@ -155,7 +159,8 @@ TEST(B3_L2, DifferencesHaveNoSign) {
   test::SignRatio ratio;
   for (const Comparison& c : comparisons()) {
     std::vector<double> difference(c.path_pixels.size());
-    for (size_t i = 0; i < difference.size(); ++i) difference[i] = (c.l2_pixels.mean(i) - c.path_pixels.mean(i)) / c.path_mean.mean(0);
+    for (size_t i = 0; i < difference.size(); ++i)
+      difference[i] = (c.l2_pixels.mean(i) - c.path_pixels.mean(i)) / c.path_mean.mean(0);
     ratio.add(difference, kWidth, kHeight);
   }
   EXPECT_GE(ratio.blocks, 1400u);
@@ -171,10 +176,11 @@ struct Biased {
 };
 
 // REGULARIZED is dark where rare samples carry the light: windows take them for outliers.
-constexpr Biased kBiased[] = {{GRADUS_RECONSTRUCTION_L1, "L1"}, {GRADUS_RECONSTRUCTION_REGULARIZED, "REGULARIZED", 0.04, 0.1}};
+constexpr Biased kBiased[] = {{GRADUS_RECONSTRUCTION_L1, "L1"},
+                              {GRADUS_RECONSTRUCTION_REGULARIZED, "REGULARIZED", 0.04, 0.1}};
 
-// Block means of the primal, which is unbiased, and how much those of the reconstructions of the same renders differ: most of the noise
-// is shared.
+// Block means of the primal, which is unbiased, and how much those of the reconstructions of the same renders differ:
+// most of the noise is shared.
 struct Differences {
   std::vector<float> truth, from_truth[std::size(kBiased)];
 };
@@ -201,11 +207,11 @@ TEST_P(B3_Consistent, BiasStaysWithinItsBound) {
   test::build(GetParam(), &scene);
   GradusSettings settings = test::test_settings(width, height);
   settings.max_bounces = 4;
-  const IntegratorContext context = scene.context(settings);
+  const integrator::IntegratorContext context = scene.context(settings);
   std::vector<Differences> all(test::full_run() ? 64 : 8);
   tbb::parallel_for(size_t(0), all.size(), [&](size_t k) {
-    const Film film = render(context, true, uint32_t(k), samples);
-    all[k].truth = block_means(gray(read_images(film, 0).primal), width, height, side);
+    const film::Film film = render(context, true, uint32_t(k), samples);
+    all[k].truth = block_means(gray(film::read_images(film, 0).primal), width, height, side);
     for (size_t r = 0; r < std::size(kBiased); ++r) {
       std::vector<float>& difference = all[k].from_truth[r];
       difference = block_means(gray(reconstructed(film, kBiased[r].reconstruction)), width, height, side);
@@ -221,16 +227,17 @@ TEST_P(B3_Consistent, BiasStaysWithinItsBound) {
 }
 
 // Share of the light that REGULARIZED loses or adds.
-double bias_of_regularized(const IntegratorContext& context, int samples, size_t seeds) {
+double bias_of_regularized(const integrator::IntegratorContext& context, int samples, size_t seeds) {
   std::vector<double> sampled(seeds), solved(seeds);
   tbb::parallel_for(size_t(0), seeds, [&](size_t k) {
-    const Film film = render(context, false, uint32_t(k), samples);
-    const std::vector<float> before = gray(read_images(film, 0).primal),
+    const film::Film film = render(context, false, uint32_t(k), samples);
+    const std::vector<float> before = gray(film::read_images(film, 0).primal),
                              after = gray(reconstructed(film, GRADUS_RECONSTRUCTION_REGULARIZED));
     sampled[k] = std::accumulate(before.begin(), before.end(), 0.0);
     solved[k] = std::accumulate(after.begin(), after.end(), 0.0);
   });
-  return std::accumulate(solved.begin(), solved.end(), 0.0) / std::accumulate(sampled.begin(), sampled.end(), 0.0) - 1.0;
+  return std::accumulate(solved.begin(), solved.end(), 0.0) / std::accumulate(sampled.begin(), sampled.end(), 0.0) -
+         1.0;
 }
 
 TEST(B3_Regularized, BiasFallsWithSamples) {
@@ -239,9 +246,10 @@ TEST(B3_Regularized, BiasFallsWithSamples) {
     test::build(scenario, &scene);
     GradusSettings settings = test::test_settings(64, 48);
     settings.max_bounces = 4;
-    const IntegratorContext context = scene.context(settings);
+    const integrator::IntegratorContext context = scene.context(settings);
     const double few = bias_of_regularized(context, 16, 8), many = bias_of_regularized(context, 256, 2);
-    std::printf("  %s: %+.3f %% of the light, with 16 times the samples %+.3f %%\n", test::name_of(scenario), 100.0 * few, 100.0 * many);
+    std::printf("  %s: %+.3f %% of the light, with 16 times the samples %+.3f %%\n", test::name_of(scenario),
+                100.0 * few, 100.0 * many);
     EXPECT_LE(std::fabs(many), 0.65 * std::fabs(few)) << test::name_of(scenario);
   }
 }

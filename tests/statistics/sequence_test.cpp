@@ -1,4 +1,5 @@
-// B3, C4 to C6: pictures of sequences against plain path tracing of the same frames, or against what a still of each would be.
+// B3, C4 to C6: pictures of sequences against plain path tracing of the same frames, or against what a still of each
+// would be.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -8,9 +9,9 @@
 #include <numeric>
 #include <string>
 
-#include "scene/device.h"
-#include "render/render.h"
 #include "animation/sequence.h"
+#include "render/render.h"
+#include "scene/device.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
@@ -24,9 +25,10 @@ using test::Scenario;
 constexpr uint32_t kSide = 32;
 constexpr int kSeeds = 24;
 
-using Snapshots = std::vector<std::shared_ptr<const Snapshot>>;
+using Snapshots = std::vector<std::shared_ptr<const scene::Snapshot>>;
 
-GradusSettings settings_of(int32_t frame, uint32_t seed, uint32_t samples, uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
+GradusSettings settings_of(int32_t frame, uint32_t seed, uint32_t samples,
+                           uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
   GradusSettings settings = test::test_settings(kSide, kSide);
   settings.frame = frame;
   settings.seed = seed;
@@ -34,7 +36,8 @@ GradusSettings settings_of(int32_t frame, uint32_t seed, uint32_t samples, uint3
   settings.max_bounces = 4;
   settings.filter_width = 0.01f;  // pixels of a cell share their jitter: along an edge their errors would be one
   settings.reconstruction = reconstruction;
-  settings.integrator = reconstruction == GRADUS_RECONSTRUCTION_AUTO ? GRADUS_INTEGRATOR_AUTO : GRADUS_INTEGRATOR_GRADIENT;
+  settings.integrator =
+      reconstruction == GRADUS_RECONSTRUCTION_AUTO ? GRADUS_INTEGRATOR_AUTO : GRADUS_INTEGRATOR_GRADIENT;
   return settings;
 }
 
@@ -63,7 +66,7 @@ std::vector<float> gray(const std::vector<float>& rgba) {
   return result;
 }
 
-std::vector<float> run(RenderTask* task) {
+std::vector<float> run(render::RenderTask* task) {
   task->run();
   std::string text;
   if (task->outcome(&text) != GRADUS_OK) throw std::runtime_error(text);
@@ -74,8 +77,10 @@ std::vector<float> run(RenderTask* task) {
 
 // Pictures of all frames.
 std::vector<std::vector<float>> sequence_pictures(const Snapshots& frames, uint32_t seed, uint32_t samples,
-                                                  uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2, float noise_threshold = 0.0f) {
-  const auto sequence = std::make_shared<Sequence>(test::test_device(), SequenceSettings{0, int32_t(frames.size()) - 1, 1, {}, ""});
+                                                  uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2,
+                                                  float noise_threshold = 0.0f) {
+  const auto sequence = std::make_shared<animation::Sequence>(
+      test::test_device(), animation::SequenceSettings{0, int32_t(frames.size()) - 1, 1, {}, ""});
   for (size_t t = 0; t < frames.size(); ++t) {
     GradusSettings settings = settings_of(int32_t(t), seed, samples, reconstruction);
     settings.noise_threshold = noise_threshold;
@@ -86,28 +91,30 @@ std::vector<std::vector<float>> sequence_pictures(const Snapshots& frames, uint3
   return pictures;
 }
 
-std::vector<float> plain_picture(const std::shared_ptr<const Snapshot>& frame, int t, uint32_t seed, uint32_t samples) {
+std::vector<float> plain_picture(const std::shared_ptr<const scene::Snapshot>& frame, int t, uint32_t seed,
+                                 uint32_t samples) {
   GradusSettings settings = settings_of(t, seed, samples);
-  const IntegratorContext context{frame, Camera(frame->camera, kSide, kSide), settings};
-  Film sampled = test::make_test_film(settings, false);
-  test::sample_film(*make_path_integrator(context), 0, samples, &sampled);
-  const std::vector<float> rgb = read_images(sampled, 0).primal;
+  const integrator::IntegratorContext context{frame, camera::Camera(frame->camera, kSide, kSide), settings};
+  film::Film sampled = test::make_test_film(settings, false);
+  test::sample_film(*integrator::make_path_integrator(context), 0, samples, &sampled);
+  const std::vector<float> rgb = film::read_images(sampled, 0).primal;
   std::vector<float> result(rgb.size() / 3);
   for (size_t i = 0; i < result.size(); ++i) result[i] = (rgb[3 * i] + rgb[3 * i + 1] + rgb[3 * i + 2]) / 3.0f;
   return result;
 }
 
 // By the same reconstruction, without the frames beside it.
-std::vector<float> single_frame_picture(const std::shared_ptr<const Snapshot>& frame, const GradusSettings& settings) {
-  Render render(test::test_device(), frame, settings);
+std::vector<float> single_frame_picture(const std::shared_ptr<const scene::Snapshot>& frame,
+                                        const GradusSettings& settings) {
+  render::Render render(test::test_device(), frame, settings);
   render.wait(-1.0);
   std::vector<float> rgba(size_t(kSide) * kSide * 4);
   render.read_pass(GRADUS_PASS_COMBINED, rgba.data(), rgba.size());
   return gray(rgba);
 }
 
-// By frames: moments of pictures over seeds, of a sequence's and of frames by themselves: of plain path tracing, which L2 has the mean of,
-// or of the same reconstruction.
+// By frames: moments of pictures over seeds, of a sequence's and of frames by themselves: of plain path tracing, which
+// L2 has the mean of, or of the same reconstruction.
 struct Compared {
   std::vector<Moments> sequence, plain;
 };
@@ -123,14 +130,16 @@ Compared compare(const Snapshots& frames, const std::function<std::vector<float>
   const bool by_paths = requested.reconstruction == GRADUS_RECONSTRUCTION_L2;
   std::vector<std::vector<std::vector<float>>> of_sequence(size_t(requested.seeds)), of_plain(size_t(requested.seeds));
   tbb::parallel_for(0, requested.seeds, [&](int k) {
-    for (const auto& picture : sequence_pictures(frames, uint32_t(k), requested.samples, requested.reconstruction, requested.noise_threshold)) {
+    for (const auto& picture : sequence_pictures(frames, uint32_t(k), requested.samples, requested.reconstruction,
+                                                 requested.noise_threshold)) {
       of_sequence[size_t(k)].push_back(read(picture));
     }
     for (size_t t = 0; t < frames.size(); ++t) {
       const auto seed = uint32_t(1000 + k);
       of_plain[size_t(k)].push_back(
           read(by_paths ? plain_picture(frames[t], int(t), seed, 4 * requested.samples)
-                        : single_frame_picture(frames[t], settings_of(int32_t(t), seed, requested.samples, requested.reconstruction))));
+                        : single_frame_picture(
+                              frames[t], settings_of(int32_t(t), seed, requested.samples, requested.reconstruction))));
     }
   });
   Compared result;
@@ -149,7 +158,8 @@ std::vector<float> blocks(const std::vector<float>& image) {
   constexpr uint32_t kBlock = 8;
   std::vector<float> means((kSide / kBlock) * (kSide / kBlock));
   for (uint32_t y = 0; y < kSide; ++y) {
-    for (uint32_t x = 0; x < kSide; ++x) means[y / kBlock * (kSide / kBlock) + x / kBlock] += image[y * kSide + x] / (kBlock * kBlock);
+    for (uint32_t x = 0; x < kSide; ++x)
+      means[y / kBlock * (kSide / kBlock) + x / kBlock] += image[y * kSide + x] / (kBlock * kBlock);
   }
   return means;
 }
@@ -171,7 +181,8 @@ TEST(B3_SequenceL2, HasTheMeanOfPlainPathsInEveryFrame) {
   }
 }
 
-// What differs from frame to frame where the shutter is open: a camera that pans and flies, and a ball that swells, seen through a lens.
+// What differs from frame to frame where the shutter is open: a camera that pans and flies, and a ball that swells,
+// seen through a lens.
 Snapshots blurred(Scenario scenario, int count) {
   return frames_of(count, [scenario](int t, PathScene* scene) {
     build(scenario, scene);
@@ -201,17 +212,19 @@ TEST(B3_SequenceL2, HasTheMeanOfPlainPathsThroughALensWithBlurAndDeformation) {
   }
 }
 
-// Replays have the counts of what they replay: pixels of a frame have as many samples as their noise asks for. What that moves the mean by
-// (contract 2.2) is less than what can be seen here: a percent or two of a block, half a percent of the picture.
+// Replays have the counts of what they replay: pixels of a frame have as many samples as their noise asks for. What
+// that moves the mean by (contract 2.2) is less than what can be seen here: a percent or two of a block, half a percent
+// of the picture.
 TEST(B3_SequenceL2, HasTheMeanOfPlainPathsWithANoiseThreshold) {
   const Sampling requested{.samples = 40, .noise_threshold = 0.035f, .seeds = 12};
   const Snapshots frames = blurred(Scenario::DiffuseArea, 3);
   GradusSettings settings = settings_of(0, 0, requested.samples);
   settings.noise_threshold = requested.noise_threshold;
-  const auto sequence = std::make_shared<Sequence>(test::test_device(), SequenceSettings{0, 2, 1, {}, ""});
+  const auto sequence =
+      std::make_shared<animation::Sequence>(test::test_device(), animation::SequenceSettings{0, 2, 1, {}, ""});
   const auto task = sequence->sample(frames[0], settings);
   run(task.get());
-  const std::vector<uint32_t> counts = samples_of_pixels(*task->film());
+  const std::vector<uint32_t> counts = film::samples_of_pixels(*task->film());
   const auto [minimum, maximum] = std::minmax_element(counts.begin(), counts.end());
   EXPECT_LT(*minimum, *maximum) << "the test says something";
   expect_means_of_plain_paths(compare(frames, blocks_and_whole, requested), "noise threshold", 1);
@@ -219,15 +232,16 @@ TEST(B3_SequenceL2, HasTheMeanOfPlainPathsWithANoiseThreshold) {
 
 class Ghosts : public testing::TestWithParam<uint32_t> {
  protected:
-  // Frames have the mean that they have by themselves, and their noise is small enough to tell what is left of brighter ones. L1 takes the
-  // median of a change, and rare paths have much of it: it leaves a thousandth in the first frame.
+  // Frames have the mean that they have by themselves, and their noise is small enough to tell what is left of brighter
+  // ones. L1 takes the median of a change, and rare paths have much of it: it leaves a thousandth in the first frame.
   void check(const Snapshots& frames, const std::function<std::vector<float>(const std::vector<float>&)>& read) const {
     const Compared c = compare(frames, read, {.reconstruction = GetParam()});
     double brightest = 0.0;
     for (const Moments& plain : c.plain) brightest = std::max(brightest, plain.mean(0));
     const double left = GetParam() == GRADUS_RECONSTRUCTION_L1 ? 0.0015 * brightest : 0.0;
     for (size_t t = 0; t < frames.size(); ++t) {
-      const double noise = std::sqrt(c.sequence[t].variance_of_mean(0) + c.plain[t].variance_of_mean(0)), expected = c.plain[t].mean(0);
+      const double noise = std::sqrt(c.sequence[t].variance_of_mean(0) + c.plain[t].variance_of_mean(0)),
+                   expected = c.plain[t].mean(0);
       EXPECT_NEAR(c.sequence[t].mean(0), expected, 0.02 * expected + 3.0 * noise + left) << "frame " << t;
       EXPECT_LT(noise, 0.03 * brightest) << "frame " << t << ": the test says something";
     }
@@ -250,8 +264,8 @@ std::string name_of_reconstruction(uint32_t reconstruction) {
 constexpr auto kNameOfParam = [](const auto& info) { return name_of_reconstruction(info.param); };
 
 INSTANTIATE_TEST_SUITE_P(All, Ghosts,
-                         testing::Values(GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_REGULARIZED,
-                                         GRADUS_RECONSTRUCTION_AUTO),
+                         testing::Values(GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1,
+                                         GRADUS_RECONSTRUCTION_REGULARIZED, GRADUS_RECONSTRUCTION_AUTO),
                          kNameOfParam);
 
 // A light that goes off: its light is gone in that very frame (impulse lag 0).
@@ -314,13 +328,15 @@ TEST(C4_Sequence, FlickersLessThanFramesByThemselves) {
     }
     return sum;
   };
-  for (const uint32_t reconstruction :
-       {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_REGULARIZED, GRADUS_RECONSTRUCTION_AUTO}) {
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1,
+                                        GRADUS_RECONSTRUCTION_REGULARIZED, GRADUS_RECONSTRUCTION_AUTO}) {
     std::vector<std::vector<float>> stills;
-    for (size_t t = 0; t < frames.size(); ++t) stills.push_back(single_frame_picture(frames[t], settings_of(int32_t(t), 5, 8, reconstruction)));
+    for (size_t t = 0; t < frames.size(); ++t)
+      stills.push_back(single_frame_picture(frames[t], settings_of(int32_t(t), 5, 8, reconstruction)));
     const double ratio = flicker(sequence_pictures(frames, 5, 8, reconstruction)) / flicker(stills);
     EXPECT_LT(ratio, 0.5) << name_of_reconstruction(reconstruction);
-    std::printf("  %s: flicker %.3f of that of frames by themselves\n", name_of_reconstruction(reconstruction).c_str(), ratio);
+    std::printf("  %s: flicker %.3f of that of frames by themselves\n", name_of_reconstruction(reconstruction).c_str(),
+                ratio);
   }
 }
 
@@ -344,7 +360,8 @@ TEST(C4_Sequence, TheMeanOverTimeHasNoBias) {
     };
     of_sequence[size_t(k)] = mean_over_time(sequence_pictures(frames, uint32_t(k), 4));
     std::vector<std::vector<float>> pictures;
-    for (size_t t = 0; t < frames.size(); ++t) pictures.push_back(plain_picture(frames[t], int(t), uint32_t(1000 + k), 8));
+    for (size_t t = 0; t < frames.size(); ++t)
+      pictures.push_back(plain_picture(frames[t], int(t), uint32_t(1000 + k), 8));
     of_plain[size_t(k)] = mean_over_time(pictures);
   });
   for (int k = 0; k < 12; ++k) {
@@ -352,7 +369,8 @@ TEST(C4_Sequence, TheMeanOverTimeHasNoBias) {
     plain.add(of_plain[size_t(k)]);
   }
   for (size_t i = 0; i < 16; ++i) {
-    EXPECT_GT(test::welch_p(sequence, plain, i), test::sidak(16)) << i << ": " << sequence.mean(i) << " " << plain.mean(i);
+    EXPECT_GT(test::welch_p(sequence, plain, i), test::sidak(16))
+        << i << ": " << sequence.mean(i) << " " << plain.mean(i);
   }
 }
 

@@ -1,4 +1,5 @@
-// The integrators against a second, independent path tracer: A5 (z-tests of pixels), A6 (global bias), A7 (the error falls with samples).
+// The integrators against a second, independent path tracer: A5 (z-tests of pixels), A6 (global bias), A7 (the error
+// falls with samples).
 #include <cmath>
 #include <map>
 
@@ -7,6 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "film/pixel_block.h"
+#include "gradient/gradient_integrator.h"
 #include "shading/program_builder.h"
 #include "support/bsdf_only.h"
 #include "support/path_scene.h"
@@ -17,7 +19,8 @@ namespace {
 
 using test::PathScene;
 
-// At least 1,400 blocks of 5×5 pixels, or the sign ratio of noise alone, 1.25/√blocks, comes too near its bound; 2e6 samples in full.
+// At least 1,400 blocks of 5×5 pixels, or the sign ratio of noise alone, 1.25/√blocks, comes too near its bound; 2e6
+// samples in full.
 constexpr uint32_t kWidth = 224, kHeight = 160;
 constexpr int kPixels = int(kWidth * kHeight);
 int samples() { return test::full_run() ? 56 : 6; }
@@ -27,7 +30,8 @@ uint32_t block_side() { return test::full_run() ? 1 : 4; }
 
 // Light sources are large, so that BSDF sampling alone finds them.
 enum class Truth { Box, GlassBalls, RoughMetal, Textures, Environment, Sky, ManyLights, Motion, Count };
-const char* const kNames[] = {"Box", "GlassBalls", "RoughMetal", "Textures", "Environment", "Sky", "ManyLights", "Motion"};
+const char* const kNames[] = {"Box",         "GlassBalls", "RoughMetal", "Textures",
+                              "Environment", "Sky",        "ManyLights", "Motion"};
 
 uint64_t checker(PathScene* scene, uint32_t closure, const Vec3& a, const Vec3& b, float scale) {
   test::ProgramBuilder p;
@@ -42,7 +46,8 @@ uint64_t checker(PathScene* scene, uint32_t closure, const Vec3& a, const Vec3& 
 uint64_t sky(PathScene* scene) {
   test::ProgramBuilder p;
   const int where = p.add(GRADUS_OP_TEX_COORD, {}, GRADUS_TEX_COORD_GENERATED);
-  const int color = p.add(GRADUS_OP_SKY, {test::In::from(where)}, GRADUS_SKY_SINGLE_SCATTERING, {0.9f, 0.5f, 1.2f, 0.1f, 0, 1, 1, 1});
+  const int color =
+      p.add(GRADUS_OP_SKY, {test::In::from(where)}, GRADUS_SKY_SINGLE_SCATTERING, {0.9f, 0.5f, 1.2f, 0.1f, 0, 1, 1, 1});
   return scene->material(p.desc(p.add(GRADUS_OP_EMISSION, {test::In::from(color), 0.3f})));
 }
 
@@ -113,8 +118,8 @@ std::vector<float> run_means(const std::vector<float>& image, uint32_t side) {
   return means;
 }
 
-// Neighbours of a row share their sub-pixel jitter (contract 1.6), so that variances of sums are those of whole runs; rows do not, because
-// they take other sample numbers.
+// Neighbours of a row share their sub-pixel jitter (contract 1.6), so that variances of sums are those of whole runs;
+// rows do not, because they take other sample numbers.
 struct Statistics {
   test::Moments pixels, block_runs, jitter_block_runs;
 };
@@ -128,12 +133,12 @@ Statistics sample_images(int count, const SampleRow& sample_row) {
     tbb::parallel_for(0, int(kHeight), [&](int y) { sample_row(i, y, image.data() + size_t(y) * kWidth * 3); });
     moments.pixels.add(image);
     moments.block_runs.add(run_means(image, block_side()));
-    moments.jitter_block_runs.add(run_means(image, kPixelBlockSide));
+    moments.jitter_block_runs.add(run_means(image, film::kPixelBlockSide));
   }
   return moments;
 }
 
-Statistics estimate(const IntegratorContext& context, Estimator estimator) {
+Statistics estimate(const integrator::IntegratorContext& context, Estimator estimator) {
   if (estimator == Estimator::BsdfOnly) {
     return sample_images(reference_samples(), [&](int i, int y, float* row) {
       testing::Random random(uint64_t(i) * kHeight + uint64_t(y) + 1);
@@ -143,11 +148,13 @@ Statistics estimate(const IntegratorContext& context, Estimator estimator) {
       }
     });
   }
-  const auto integrator = estimator == Estimator::Gradient ? make_gradient_integrator(context) : make_path_integrator(context);
+  const auto integrator = estimator == Estimator::Gradient ? gradient::make_gradient_integrator(context)
+                                                           : integrator::make_path_integrator(context);
   return sample_images(samples(), [&](int i, int y, float* row) {
     // Rows above and below are in the frame, so that all pairs of pixels are present.
-    Film film(kWidth, kHeight, Region{0, y - 1, int32_t(kWidth), y + 2}, 3, 1, estimator == Estimator::Gradient);
-    WorkUnit unit{Region{0, y, int32_t(kWidth), y + 1}, uint32_t(2 * (i * kPixelBlockSide + y % kPixelBlockSide)), 1, nullptr};
+    film::Film film(kWidth, kHeight, Region{0, y - 1, int32_t(kWidth), y + 2}, 3, 1, estimator == Estimator::Gradient);
+    integrator::WorkUnit unit{Region{0, y, int32_t(kWidth), y + 1},
+                              uint32_t(2 * (i * film::kPixelBlockSide + y % film::kPixelBlockSide)), 1, nullptr};
     integrator->sample(unit, &film, &film.counters, std::atomic<bool>{false});
     for (int x = 0; x < int(kWidth); ++x) {
       for (int c = 0; c < 3; ++c) row[3 * x + c] = film.components[0].primal[0][film.index(x, y)][c];
@@ -213,7 +220,8 @@ Bias measure_bias(const Statistics& all, const Statistics& all_true, double fact
     difference[i / 3] += factor * image.mean(i) - truth.mean(i);
   }
   for (size_t i = 0; i < all.jitter_block_runs.size(); ++i) {
-    variance += factor * factor * all.jitter_block_runs.variance_of_mean(i) + all_true.jitter_block_runs.variance_of_mean(i);
+    variance +=
+        factor * factor * all.jitter_block_runs.variance_of_mean(i) + all_true.jitter_block_runs.variance_of_mean(i);
   }
   // Channels of a pixel come from the same paths: as if they were fully correlated.
   bias.deviation = std::sqrt(3.0 * variance) / double(all.jitter_block_runs.size());
@@ -235,13 +243,14 @@ TEST_P(Truths, A6_NoGlobalBias) {
   const Bias bias = measure_bias(moments(truth, estimator), moments(truth, Estimator::BsdfOnly), 1.0);
   EXPECT_NEAR(bias.mean, bias.truth, 4.0 * bias.deviation);
   EXPECT_LE(bias.sign_ratio, 0.1);
-  std::printf("  mean %.5f, truth %.5f, 1 sigma %.2f %%, sign ratio %.3f\n", bias.mean, bias.truth, 100.0 * bias.deviation / bias.truth,
-              bias.sign_ratio);
+  std::printf("  mean %.5f, truth %.5f, 1 sigma %.2f %%, sign ratio %.3f\n", bias.mean, bias.truth,
+              100.0 * bias.deviation / bias.truth, bias.sign_ratio);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Truths,
-                         ::testing::Combine(::testing::Values(Truth::Box, Truth::GlassBalls, Truth::RoughMetal, Truth::Textures,
-                                                              Truth::Environment, Truth::Sky, Truth::ManyLights, Truth::Motion),
+                         ::testing::Combine(::testing::Values(Truth::Box, Truth::GlassBalls, Truth::RoughMetal,
+                                                              Truth::Textures, Truth::Environment, Truth::Sky,
+                                                              Truth::ManyLights, Truth::Motion),
                                             ::testing::Values(Estimator::Path, Estimator::Gradient)),
                          [](const ::testing::TestParamInfo<Case>& info) {
                            return std::string(kNames[int(std::get<0>(info.param))]) +
@@ -265,23 +274,26 @@ TEST(A6_Bias, OnePercentOfDarkeningIsCaught) {
     EXPECT_LT(std::fabs(pooled_z(estimator, 1.0)), 4.0);
     EXPECT_LT(pooled_z(estimator, 0.99), -4.0);
     for (int i = 0; i < int(Truth::Count) && test::full_run(); ++i) {
-      EXPECT_FALSE(measure_bias(moments(Truth(i), estimator), moments(Truth(i), Estimator::BsdfOnly), 0.99).passes()) << kNames[i];
+      EXPECT_FALSE(measure_bias(moments(Truth(i), estimator), moments(Truth(i), Estimator::BsdfOnly), 0.99).passes())
+          << kNames[i];
     }
   }
 }
 
 // Squared error of n samples, by the spread of independent images about a reference of many more.
-double mean_squared_error(const IntegratorContext& base, int n, int images, const std::vector<double>& reference) {
+double mean_squared_error(const integrator::IntegratorContext& base, int n, int images,
+                          const std::vector<double>& reference) {
   double error = 0.0;
   for (int k = 0; k < images; ++k) {
-    IntegratorContext context = base;
+    integrator::IntegratorContext context = base;
     context.settings.seed = uint32_t(1000 * n + k);
-    Film film = test::make_test_film(context.settings, false);
-    test::sample_film(*make_path_integrator(context), 0, uint32_t(n), &film);
-    const std::vector<float> image = read_images(film, 0).primal;
+    film::Film film = test::make_test_film(context.settings, false);
+    test::sample_film(*integrator::make_path_integrator(context), 0, uint32_t(n), &film);
+    const std::vector<float> image = film::read_images(film, 0).primal;
     for (size_t pixel = 0; pixel < image.size() / 3; ++pixel) {
       const double gray = (reference[3 * pixel] + reference[3 * pixel + 1] + reference[3 * pixel + 2]) / 3.0;
-      for (size_t c = 0; c < 3; ++c) error += std::pow(image[3 * pixel + c] - reference[3 * pixel + c], 2) / (1e-3 + gray * gray);
+      for (size_t c = 0; c < 3; ++c)
+        error += std::pow(image[3 * pixel + c] - reference[3 * pixel + c], 2) / (1e-3 + gray * gray);
     }
   }
   return error / images;
@@ -294,13 +306,14 @@ TEST(A7_Convergence, FourTimesTheSamplesQuarterTheError) {
     build(truth, &scene);
     GradusSettings settings = test::test_settings(24, 16);
     settings.max_bounces = 4;
-    const IntegratorContext context = scene.context(settings);
-    Film film = test::make_test_film(settings, false);
-    test::sample_film(*make_path_integrator(context), 0, 2048, &film);
-    const std::vector<float> image = read_images(film, 0).primal;
+    const integrator::IntegratorContext context = scene.context(settings);
+    film::Film film = test::make_test_film(settings, false);
+    test::sample_film(*integrator::make_path_integrator(context), 0, 2048, &film);
+    const std::vector<float> image = film::read_images(film, 0).primal;
     const std::vector<double> reference(image.begin(), image.end());
     const int images = test::full_run() ? 16 : 4;
-    const double ratio = mean_squared_error(context, 64, images, reference) / mean_squared_error(context, 16, 4 * images, reference);
+    const double ratio =
+        mean_squared_error(context, 64, images, reference) / mean_squared_error(context, 16, 4 * images, reference);
     EXPECT_GT(ratio, 0.20) << kNames[int(truth)];
     EXPECT_LT(ratio, 0.32) << kNames[int(truth)];
   }

@@ -5,6 +5,7 @@
 
 #include "film/features.h"
 #include "film/pass_planes.h"
+#include "gradient/gradient_integrator.h"
 #include "reconstruct/solver.h"
 #include "render/block_noise.h"
 #include "render/render.h"
@@ -37,22 +38,22 @@ double block_sum(uint32_t width, uint32_t x0, uint32_t y0, const Value& value) {
   return sum;
 }
 
-// At the pixels' centres: along the edges of a bright light a whole cell shares its jitter, and a few of them would decide. Both integrators
-// have this primal, bit for bit.
+// At the pixels' centres: along the edges of a bright light a whole cell shares its jitter, and a few of them would
+// decide. Both integrators have this primal, bit for bit.
 TEST_P(A8_Variance, HalfBuffersAgreeWithTheSpreadOverSeeds) {
   test::PathScene scene;
   test::build(GetParam(), &scene);
   constexpr uint32_t size = 32;  // four blocks
   GradusSettings settings = sobol_settings(size);
   test::sample_at_pixel_centres(&settings);
-  IntegratorContext context = scene.context(settings);
+  integrator::IntegratorContext context = scene.context(settings);
   const int seeds = test::full_run() ? 64 : 32;
   test::Moments images, variances;
   for (int seed = 0; seed < seeds; ++seed) {
     context.settings.seed = static_cast<uint32_t>(seed);
-    Film film = test::make_test_film(context.settings, false);
-    test::sample_film(*make_path_integrator(context), 0, 16, &film);
-    images.add(read_images(film, 0).primal);
+    film::Film film = test::make_test_film(context.settings, false);
+    test::sample_film(*integrator::make_path_integrator(context), 0, 16, &film);
+    images.add(film::read_images(film, 0).primal);
     variances.add(read_variance(film));
   }
   for (const uint32_t y : {0u, 16u}) {
@@ -68,8 +69,8 @@ TEST_P(A8_Variance, HalfBuffersAgreeWithTheSpreadOverSeeds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, A8_Variance,
-                         testing::Values(Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::World, Scenario::RoughMetal,
-                                         Scenario::Glass, Scenario::LightsSeen),
+                         testing::Values(Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::World,
+                                         Scenario::RoughMetal, Scenario::Glass, Scenario::LightsSeen),
                          [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
 
 // Features behind a lens, which alone gives them noise here.
@@ -78,16 +79,16 @@ TEST(A8_Features, HalvesAgreeWithTheSpreadOverSeeds) {
   test::build(Scenario::Mirror, &scene);
   scene.camera_desc.aperture_radius = 0.15f;
   constexpr uint32_t size = 32;  // four blocks
-  IntegratorContext context = scene.context(sobol_settings(size));
+  integrator::IntegratorContext context = scene.context(sobol_settings(size));
   const int seeds = test::full_run() ? 64 : 32;
   test::Moments images[3], variances[3];
   for (int seed = 0; seed < seeds; ++seed) {
     context.settings.seed = static_cast<uint32_t>(seed);
-    Film film = test::make_test_film(context.settings, false);
-    film.passes = make_pass_planes(feature_passes(), film.count[0].size());
-    test::sample_film(*make_path_integrator(context), 0, 16, &film);
-    const Features features = read_features(film);
-    const FeatureImage* all[3] = {&features.normal, &features.albedo, &features.depth};
+    film::Film film = test::make_test_film(context.settings, false);
+    film.passes = film::make_pass_planes(schema::feature_passes(), film.count[0].size());
+    test::sample_film(*integrator::make_path_integrator(context), 0, 16, &film);
+    const film::Features features = film::read_features(film);
+    const film::FeatureImage* all[3] = {&features.normal, &features.albedo, &features.depth};
     for (int k = 0; k < 3; ++k) {
       images[k].add(all[k]->values);
       variances[k].add(all[k]->variance);
@@ -106,8 +107,9 @@ TEST(A8_Features, HalvesAgreeWithTheSpreadOverSeeds) {
   std::printf("\n");
 }
 
-// Samples that are given where the noise is: the estimate is still that of the spread, and the mean that of equal counts. Both could be
-// off, as counts depend on the samples that they weigh: what was bright by chance is followed by more samples and counts for less.
+// Samples that are given where the noise is: the estimate is still that of the spread, and the mean that of equal
+// counts. Both could be off, as counts depend on the samples that they weigh: what was bright by chance is followed by
+// more samples and counts for less.
 TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
   constexpr uint32_t size = 40, samples = 32;  // 9 cells; a light in the picture, its shadow and walls differ in noise
   test::PathScene scene;
@@ -115,7 +117,7 @@ TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
   GradusSettings settings = sobol_settings(size);
   settings.samples = samples;
   settings.threads = 2;
-  const std::shared_ptr<const Snapshot> snapshot = scene.context(settings).snapshot;
+  const std::shared_ptr<const scene::Snapshot> snapshot = scene.context(settings).snapshot;
   const int seeds = test::full_run() ? 64 : 16;
   test::Moments shared, equal;
   double estimated = 0.0;
@@ -126,14 +128,14 @@ TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
       settings.noise_threshold = threshold;
       // The primal of both integrators is the same.
       settings.integrator = threshold > 0.0f ? GRADUS_INTEGRATOR_GRADIENT : GRADUS_INTEGRATOR_PATH;
-      Render render(nullptr, snapshot, settings);
+      render::Render render(nullptr, snapshot, settings);
       ASSERT_TRUE(render.wait(-1.0));
-      const std::shared_ptr<const Film> film = render.film();
-      (threshold > 0.0f ? shared : equal).add(read_images(*film, 0).primal);
+      const std::shared_ptr<const film::Film> film = render.film();
+      (threshold > 0.0f ? shared : equal).add(film::read_images(*film, 0).primal);
       if (!(threshold > 0.0f)) continue;
       for (const float v : read_variance(*film)) estimated += v / seeds;
       for (size_t i = 0; i < film->count[0].size(); ++i) {
-        const uint32_t n = samples_at(*film, i);
+        const uint32_t n = film::samples_at(*film, i);
         minimum = std::min(minimum, n);
         maximum = std::max(maximum, n);
       }
@@ -147,7 +149,8 @@ TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
     difference += shared.mean(i) - equal.mean(i);
     sum += equal.mean(i);
   }
-  std::printf("  counts %u to %u, estimate/spread %.3f, mean %+.3f %%\n", minimum, maximum, estimated / empirical, 100.0 * difference / sum);
+  std::printf("  counts %u to %u, estimate/spread %.3f, mean %+.3f %%\n", minimum, maximum, estimated / empirical,
+              100.0 * difference / sum);
   EXPECT_GT(estimated / empirical, 0.85);
   EXPECT_LT(estimated / empirical, 1.2);  // 1.14 over 64 seeds, 1.17 over 16
   EXPECT_LT(std::fabs(difference), 0.005 * sum);
@@ -155,18 +158,21 @@ TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
 
 class A8_Delivered : public testing::TestWithParam<Scenario> {};
 
-constexpr uint32_t kReconstructions[] = {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1};
+constexpr uint32_t kReconstructions[] = {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2,
+                                         GRADUS_RECONSTRUCTION_L1};
 
-std::vector<float> reconstructed(const Film& film, uint32_t reconstruction) {
-  SolveReport report;
-  return reconstruction == GRADUS_RECONSTRUCTION_NONE ? read_images(film, 0).primal
-                                                      : reconstruct(
-                                                            film, 0, reconstruction, 0.0f, [] { return false; }, &report);
+std::vector<float> reconstructed(const film::Film& film, uint32_t reconstruction) {
+  reconstruct::SolveReport report;
+  return reconstruction == GRADUS_RECONSTRUCTION_NONE
+             ? film::read_images(film, 0).primal
+             : reconstruct::reconstruct(
+                   film, 0, reconstruction, 0.0f, [] { return false; }, &report);
 }
 
 // Σ squared error over the values of an image, as what stops cells estimates it.
-double estimated_error(const Film& film, uint32_t reconstruction, const std::vector<float>& image) {
-  const double relative = estimate_noise(film, {film.region}, reconstruction, 0.0f, [] { return false; }).front().relative_error;
+double estimated_error(const film::Film& film, uint32_t reconstruction, const std::vector<float>& image) {
+  const double relative =
+      render::estimate_noise(film, {film.region}, reconstruction, 0.0f, [] { return false; }).front().relative_error;
   double signal = 0.0;
   for (size_t i = 0; i < image.size(); i += 3) {
     const double gray = (double(image[i]) + image[i + 1] + image[i + 2]) / 3.0;
@@ -175,22 +181,22 @@ double estimated_error(const Film& film, uint32_t reconstruction, const std::vec
   return relative * relative * signal;
 }
 
-// Cells were judged by L2's error whatever was delivered: L1 took more samples than its threshold asks for. By its own weights, which
-// follow the noise, it would have stopped far too early.
+// Cells were judged by L2's error whatever was delivered: L1 took more samples than its threshold asks for. By its own
+// weights, which follow the noise, it would have stopped far too early.
 TEST_P(A8_Delivered, ErrorThatStopsCellsIsThatOfTheReconstructionDelivered) {
   test::PathScene scene;
   test::build(GetParam(), &scene);
   GradusSettings settings = sobol_settings(48);
   test::sample_at_pixel_centres(&settings);
-  IntegratorContext context = scene.context(settings);
+  integrator::IntegratorContext context = scene.context(settings);
   const int seeds = test::full_run() ? 64 : 16;
   test::Moments images[3];
   double estimated[3] = {};
   for (int seed = 0; seed < seeds; ++seed) {
     context.settings.seed = uint32_t(seed);
-    Film film = test::make_test_film(context.settings, true);
+    film::Film film = test::make_test_film(context.settings, true);
     film.settings = context.settings;
-    test::sample_film(*make_gradient_integrator(context), 0, 16, &film);
+    test::sample_film(*gradient::make_gradient_integrator(context), 0, 16, &film);
     for (int k = 0; k < 3; ++k) {
       const std::vector<float> image = reconstructed(film, kReconstructions[k]);
       images[k].add(image);
@@ -200,30 +206,32 @@ TEST_P(A8_Delivered, ErrorThatStopsCellsIsThatOfTheReconstructionDelivered) {
   for (int k = 0; k < 3; ++k) {
     double spread = 0.0;
     for (size_t i = 0; i < images[k].size(); ++i) spread += images[k].variance_of_mean(i) * seeds;
-    const std::string name = choice_name(*find_option("reconstruction"), kReconstructions[k]);
+    const std::string name = schema::choice_name(*schema::find_option("reconstruction"), kReconstructions[k]);
     std::printf("  %s %.3f\n", name.c_str(), estimated[k] / spread);
     EXPECT_GT(estimated[k] / spread, 0.6) << name;
     EXPECT_LT(estimated[k] / spread, 1.5) << name;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, A8_Delivered, testing::Values(Scenario::DiffuseArea, Scenario::RoughMetal, Scenario::World),
+INSTANTIATE_TEST_SUITE_P(All, A8_Delivered,
+                         testing::Values(Scenario::DiffuseArea, Scenario::RoughMetal, Scenario::World),
                          [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
 
-// Residuals of the lighting against the mean over seeds: without the jitter that neighbours share, which shows at edges.
+// Residuals of the lighting against the mean over seeds: without the jitter that neighbours share, which shows at
+// edges.
 std::vector<std::vector<double>> residuals(uint32_t size, int seeds) {
   test::PathScene scene;
   test::build(Scenario::World, &scene);
   GradusSettings settings = sobol_settings(size);
   test::sample_at_pixel_centres(&settings);
-  IntegratorContext context = scene.context(settings);
+  integrator::IntegratorContext context = scene.context(settings);
   std::vector<std::vector<double>> images;
   std::vector<double> mean(size * size, 0.0);
   for (int seed = 0; seed < seeds; ++seed) {
     context.settings.seed = static_cast<uint32_t>(seed);
-    Film film = test::make_test_film(context.settings, false);
-    test::sample_film(*make_path_integrator(context), 0, 2, &film);
-    const std::vector<float> image = read_images(film, 0).primal;
+    film::Film film = test::make_test_film(context.settings, false);
+    test::sample_film(*integrator::make_path_integrator(context), 0, 2, &film);
+    const std::vector<float> image = film::read_images(film, 0).primal;
     std::vector<double>& residual = images.emplace_back(mean.size());
     for (size_t i = 0; i < mean.size(); ++i) {
       residual[i] = image[3 * i + 1];

@@ -71,7 +71,8 @@ TEST(Slivers, ThinnerThanFloatsTell) {
   test::Soup soup = wall();
   for (int i = 0; i < 1000; ++i) {
     const float y = -1.0f + 0.002f * float(i);
-    soup.triangle(Vec3(-1, y, -0.5f), Vec3(1, y, -0.5f), Vec3(0.3f, std::nextafter(y, 2.0f), std::nextafter(-0.5f, 0.0f)));
+    soup.triangle(Vec3(-1, y, -0.5f), Vec3(1, y, -0.5f),
+                  Vec3(0.3f, std::nextafter(y, 2.0f), std::nextafter(-0.5f, 0.0f)));
   }
   expect_like_reference(walled("triangles of 2 by 1e-7", soup));
 }
@@ -88,14 +89,16 @@ class Grazing : public ::testing::TestWithParam<float> {};
 
 TEST_P(Grazing, AFloorMakesNoLight) {
   const float angle = GetParam();
-  const Surface materials[] = {test::matte(Rgb(1.0f)), test::glossy(0.3f), test::glossy(0.0f), test::glass(0.0f), test::glass(0.3f)};
+  const Surface materials[] = {test::matte(Rgb(1.0f)), test::glossy(0.3f), test::glossy(0.0f), test::glass(0.0f),
+                               test::glass(0.3f)};
   const char* const names[] = {"matte", "glossy", "mirror", "glass", "rough glass"};
   for (int i = 0; i < 5; ++i) {
     PathScene scene;
     scene.world(Rgb(1.0f));
     scene.quad(Vec3(-1e3f, 0, 1e3f), Vec3(2e3f, 0, 0), Vec3(0, 0, -2e3f), scene.material(materials[i]));
     scene.camera(Vec3(0, std::sin(angle), std::cos(angle)), Vec3(0.0f), 0.1f * angle);
-    const Outcome outcome = render(std::string(names[i]) + " floor seen at " + text_of(angle) + " rad", &scene, Bounds::alone());
+    const Outcome outcome =
+        render(std::string(names[i]) + " floor seen at " + text_of(angle) + " rad", &scene, Bounds::alone());
     EXPECT_LE(mean(outcome.noisy), 1.01);
     EXPECT_LE(mean(outcome.l2), 1.01);
   }

@@ -13,12 +13,14 @@ namespace {
 using test::FakeIntegrator;
 
 // The fake scene (a smooth picture with exact differences), into which further samples are put.
-class Injecting : public Integrator {
+class Injecting : public integrator::Integrator {
  public:
   using Value = std::function<Radiance(int32_t x, int32_t y, uint32_t sample)>;
-  Injecting(const IntegratorContext& context, Value value) : fake_(context, true), value_(std::move(value)) {}
+  Injecting(const integrator::IntegratorContext& context, Value value)
+      : fake_(context, true), value_(std::move(value)) {}
 
-  void sample(const WorkUnit& unit, Film* film, Counters* counters, const std::atomic<bool>& stop) const override {
+  void sample(const integrator::WorkUnit& unit, film::Film* film, film::Counters* counters,
+              const std::atomic<bool>& stop) const override {
     fake_.sample(unit, film, counters, stop);
     for (int32_t y = unit.tile.y0; y < unit.tile.y1; ++y) {
       for (int32_t x = unit.tile.x0; x < unit.tile.x1; ++x) {
@@ -29,14 +31,14 @@ class Injecting : public Integrator {
 
  private:
   // As the gradient integrator would: a firefly of a pixel whose shifts fail stands in all of its differences.
-  void inject(int32_t x, int32_t y, uint32_t s, Film* film, Counters* counters) const {
+  void inject(int32_t x, int32_t y, uint32_t s, film::Film* film, film::Counters* counters) const {
     const Radiance value = value_(x, y, s);
     if (value == Radiance(0.0f)) return;
     const size_t i = film->index(x, y);
-    add_radiance(value, &film->components[0].primal[s % 2][i], counters);
-    for (int k = 0; k < kOffsets; ++k) {
-      if (film->region.contains(x + kOffsetX[k], y + kOffsetY[k])) {
-        add_gradient(-0.5f * value, &film->components[0].gradient[s % 2][k][i], counters);
+    film::add_radiance(value, &film->components[0].primal[s % 2][i], counters);
+    for (int k = 0; k < film::kOffsets; ++k) {
+      if (film->region.contains(x + film::kOffsetX[k], y + film::kOffsetY[k])) {
+        film::add_gradient(-0.5f * value, &film->components[0].gradient[s % 2][k][i], counters);
       }
     }
   }
@@ -46,31 +48,34 @@ class Injecting : public Integrator {
 
 struct Images {
   std::vector<float> noisy, l2, l1;
-  Counters counters;
+  film::Counters counters;
 };
 
 Images rendered(uint32_t size, uint32_t samples, const Injecting::Value& value) {
   GradusSettings settings = test::small_settings(size, size, samples);
   settings.integrator = GRADUS_INTEGRATOR_GRADIENT;  // automatic, a pilot would take samples that are thrown away
-  Render render(nullptr, test::empty_snapshot(), settings, nullptr,
-                [&](const IntegratorContext& context, uint32_t) { return std::make_unique<Injecting>(context, value); });
+  render::Render render(nullptr, test::empty_snapshot(), settings, nullptr,
+                        [&](const integrator::IntegratorContext& context, uint32_t) {
+                          return std::make_unique<Injecting>(context, value);
+                        });
   EXPECT_TRUE(render.wait(-1.0));
   const auto film = render.film();
-  SolveReport report;
+  reconstruct::SolveReport report;
   const auto image = [&](uint32_t how) {
-    return combine(
+    return output::combine(
         *film, how, 0.0f, film->region, [] { return false; }, &report);
   };
-  Images images{image(GRADUS_RECONSTRUCTION_NONE), image(GRADUS_RECONSTRUCTION_L2), image(GRADUS_RECONSTRUCTION_L1), film->counters};
+  Images images{image(GRADUS_RECONSTRUCTION_NONE), image(GRADUS_RECONSTRUCTION_L2), image(GRADUS_RECONSTRUCTION_L1),
+                film->counters};
   for (const auto* i : {&images.noisy, &images.l2, &images.l1}) expect_finite(*i, "image");
   return images;
 }
 
 const Injecting::Value kNothing = [](int32_t, int32_t, uint32_t) { return Radiance(0.0f); };
 
-// A million fireflies of up to 1e6 times the picture, on its left half. L2 keeps their sum; its response falls by 0.67 per pixel
-// (docs/method.md), so behind 64 pixels (1e-11) the right half does not feel them. L1 takes its scale from the median of the picture, which
-// fireflies have moved: it may do less there than without them, but no harm.
+// A million fireflies of up to 1e6 times the picture, on its left half. L2 keeps their sum; its response falls by 0.67
+// per pixel (docs/method.md), so behind 64 pixels (1e-11) the right half does not feel them. L1 takes its scale from
+// the median of the picture, which fireflies have moved: it may do less there than without them, but no harm.
 TEST(Fireflies, AMillionOfThemStayWhereTheyAre) {
   const uint32_t size = full_run() ? 1024 : 256, samples = full_run() ? 4 : 8;
   const uint64_t wanted = full_run() ? 1000000 : 100000;

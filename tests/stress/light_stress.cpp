@@ -49,8 +49,8 @@ std::vector<LightCase> without_extent() {
 }
 
 std::string name_of(const LightCase& c) {
-  return std::string(c.name) + ": type " + std::to_string(c.light.type) + ", size " + text_of(c.light.size[0]) + ", cone " +
-         text_of(c.light.cone) + ", spread " + text_of(c.light.spread);
+  return std::string(c.name) + ": type " + std::to_string(c.light.type) + ", size " + text_of(c.light.size[0]) +
+         ", cone " + text_of(c.light.cone) + ", spread " + text_of(c.light.spread);
 }
 
 TEST(AnalyticLights, WithoutExtent) {
@@ -62,9 +62,9 @@ TEST(AnalyticLights, WithoutExtent) {
   }
 }
 
-// 1e38 W are 8e36 W/sr: at a tenth of a metre 8e38 W/m², beyond float. What overflows is dropped, what would let a sum overflow, too; the
-// rest of the picture is there. The lights of areas are seen by one pixel in 40, whose samples are dropped with four gradients and some
-// passes.
+// 1e38 W are 8e36 W/sr: at a tenth of a metre 8e38 W/m², beyond float. What overflows is dropped, what would let a sum
+// overflow, too; the rest of the picture is there. The lights of areas are seen by one pixel in 40, whose samples are
+// dropped with four gradients and some passes.
 TEST(AnalyticLights, Of1e38Watts) {
   const GradusSettings settings = small_picture();
   const uint64_t all = uint64_t(settings.width) * settings.height * settings.samples;

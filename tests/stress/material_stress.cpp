@@ -8,7 +8,8 @@
 namespace gradus::stress {
 namespace {
 
-// What single scattering loses between facets is dark: up to 60 % at roughness 1 (docs/method.md). Nothing may be brighter than the light.
+// What single scattering loses between facets is dark: up to 60 % at roughness 1 (docs/method.md). Nothing may be
+// brighter than the light.
 void expect_furnace(const Outcome& outcome, double darkest) {
   EXPECT_LE(mean(outcome.noisy), 1.01);
   EXPECT_GE(mean(outcome.noisy), darkest);
@@ -67,7 +68,8 @@ INSTANTIATE_TEST_SUITE_P(FromMirrorToMatte, Roughness, ::testing::ValuesIn(rough
 // Straight on below |ior - 1| = 1e-3, refraction from there; both sides of it, and what nobody should ask for.
 std::vector<float> indices() {
   if (!full_run()) return {1.0f, 1.0000001f, 0.99899f, 1.00101f, 1.5f};
-  return {1.0f, 1.0000001f, 0.9999999f, 1.0001f, 0.99901f, 0.99899f, 1.00099f, 1.00101f, 1.01f, 1.5f, 0.5f, 3.0f, 100.0f, 1e-3f, 1e6f};
+  return {1.0f,  1.0000001f, 0.9999999f, 1.0001f, 0.99901f, 0.99899f, 1.00099f, 1.00101f,
+          1.01f, 1.5f,       0.5f,       3.0f,    100.0f,   1e-3f,    1e6f};
 }
 
 class Ior : public ::testing::TestWithParam<float> {};
@@ -91,7 +93,8 @@ INSTANTIATE_TEST_SUITE_P(NearOneAndFar, Ior, ::testing::ValuesIn(indices()));
 void add_nested(PathScene* scene, int depth, float roughness) {
   for (int i = 0; i < depth; ++i) {
     const float ior = i % 3 == 0 ? 1.33f : i % 3 == 1 ? 1.5f / 1.33f : 1.0f / 1.5f;
-    scene->ball(Vec3(0.0f), std::pow(0.9f, float(i)) * (i % 2 == 0 ? 1.0f : 0.99f), scene->material(glass(roughness, ior)), 24, true);
+    scene->ball(Vec3(0.0f), std::pow(0.9f, float(i)) * (i % 2 == 0 ? 1.0f : 0.99f),
+                scene->material(glass(roughness, ior)), 24, true);
   }
 }
 
@@ -103,7 +106,8 @@ TEST(NestedDielectrics, AreInvisibleInAFurnace) {
     scene.camera(Vec3(0, 0, 4), Vec3(0.0f), 0.8f);
     GradusSettings settings = small_picture();
     settings.max_bounces = settings.glossy_bounces = settings.transmission_bounces = 256;
-    const Outcome outcome = render("glass balls in each other: " + std::to_string(depth), &scene, Bounds::alone(), settings);
+    const Outcome outcome =
+        render("glass balls in each other: " + std::to_string(depth), &scene, Bounds::alone(), settings);
     EXPECT_NEAR(mean(outcome.noisy), 1.0, 0.02);
   }
 }

@@ -52,21 +52,26 @@ TEST_P(D5_Scale, TheBoxLooksTheSame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Decades, D5_Scale,
-                         full_run() ? ::testing::ValuesIn(std::vector<int>{-4, -3, -2, -1, 1, 2, 3, 4}) : ::testing::Values(-4, -2, 2, 4));
+                         full_run() ? ::testing::ValuesIn(std::vector<int>{-4, -3, -2, -1, 1, 2, 3, 4})
+                                    : ::testing::Values(-4, -2, 2, 4));
 
 class D6_Distance : public ::testing::TestWithParam<float> {};
 
 TEST_P(D6_Distance, TheBoxLooksTheSame) {
   const float far = GetParam();
   // Matrices come in float: at 1e5 the camera and the light stand on a grid of 8 mm, which moves edges and caustics.
-  expect_like_reference(boxed("box at " + text_of(far) + " along all axes", test::translation(Vec3(far, -far, far))), 0.3);
+  expect_like_reference(boxed("box at " + text_of(far) + " along all axes", test::translation(Vec3(far, -far, far))),
+                        0.3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Far, D6_Distance,
-                         full_run() ? ::testing::ValuesIn(std::vector<float>{1e2f, 1e3f, 1e4f, 1e5f}) : ::testing::Values(1e5f));
+                         full_run() ? ::testing::ValuesIn(std::vector<float>{1e2f, 1e3f, 1e4f, 1e5f})
+                                    : ::testing::Values(1e5f));
 
 // Places are a metre apart there: half of the box is gone, and the camera may stand in a wall. It must only be finite.
-TEST(D6_Distance, TenThousandKilometresAwayAllIsFinite) { boxed("box at 1e7", test::translation(Vec3(1e7f, 1e7f, -1e7f))); }
+TEST(D6_Distance, TenThousandKilometresAwayAllIsFinite) {
+  boxed("box at 1e7", test::translation(Vec3(1e7f, 1e7f, -1e7f)));
+}
 
 // Vertices, not matrices, lie far away: on a grid of 8 mm at 1e5, a thousandth of this box.
 TEST(D6_Distance, VerticesFarAway) {

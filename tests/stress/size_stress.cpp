@@ -22,8 +22,8 @@ TEST_P(Sizes, AreRendered) {
   settings.width = width;
   settings.height = height;
   settings.samples = samples;
-  // With one sample no variance is known. Neighbouring pixels are half a box apart in small pictures: most of their shifts may fail, at
-  // several lights each.
+  // With one sample no variance is known. Neighbouring pixels are half a box apart in small pictures: most of their
+  // shifts may fail, at several lights each.
   Bounds bounds = samples > 1 ? Bounds() : Bounds().without_double();
   if (width * height < 1000) bounds.failed = {1.0, 1.0, 1.0, 0.2, 0.2, 0.3, 0.5};
   const Outcome outcome = render(std::to_string(width) + " x " + std::to_string(height), &scene, bounds, settings);
@@ -32,8 +32,8 @@ TEST_P(Sizes, AreRendered) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Odd, Sizes,
-                         ::testing::Values(Size{1, 1, 64}, Size{2, 1, 16}, Size{1, 7, 16}, Size{7, 1, 16}, Size{17, 33, 4},
-                                           Size{16384, 16, 1}, Size{1, 4096, 1}, Size{16, 16384, 1}));
+                         ::testing::Values(Size{1, 1, 64}, Size{2, 1, 16}, Size{1, 7, 16}, Size{7, 1, 16},
+                                           Size{17, 33, 4}, Size{16384, 16, 1}, Size{1, 4096, 1}, Size{16, 16384, 1}));
 
 }  // namespace
 }  // namespace gradus::stress

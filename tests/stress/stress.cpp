@@ -19,14 +19,15 @@ struct CauseInfo {
   const char* name;
   uint64_t Counters::*count;
 };
-constexpr CauseInfo kCauseInfo[kCauses] = {{"missed", &Counters::fail_missed},    {"occluded", &Counters::fail_occluded},
-                                           {"class", &Counters::fail_class},      {"total refl.", &Counters::fail_total_reflection},
-                                           {"side", &Counters::fail_side},        {"density", &Counters::fail_density},
-                                           {"jacobian", &Counters::fail_jacobian}};
+constexpr CauseInfo kCauseInfo[kCauses] = {
+    {"missed", &film::Counters::fail_missed},    {"occluded", &film::Counters::fail_occluded},
+    {"class", &film::Counters::fail_class},      {"total refl.", &film::Counters::fail_total_reflection},
+    {"side", &film::Counters::fail_side},        {"density", &film::Counters::fail_density},
+    {"jacobian", &film::Counters::fail_jacobian}};
 
 struct Row {
   std::string name, note;
-  Counters counters;
+  film::Counters counters;
 };
 
 // Prints the rows when all tests have run.
@@ -36,8 +37,9 @@ class Table : public ::testing::Environment {
 
   void TearDown() override {
     if (rows.empty()) return;
-    std::printf("\nFailed shifts of 1000, by cause; samples that were dropped; difference to double over its bound\n%-40s %9s", "case",
-                "shifts");
+    std::printf(
+        "\nFailed shifts of 1000, by cause; samples that were dropped; difference to double over its bound\n%-40s %9s",
+        "case", "shifts");
     for (const CauseInfo& cause : kCauseInfo) std::printf(" %11s", cause.name);
     std::printf(" %8s %8s %8s  %s\n", "radiance", "gradient", "feature", "double");
     for (const Row& row : rows) print(row);
@@ -45,38 +47,41 @@ class Table : public ::testing::Environment {
 
  private:
   static void print(const Row& row) {
-    const Counters& c = row.counters;
+    const film::Counters& c = row.counters;
     std::printf("%-40s %9llu", row.name.c_str(), static_cast<unsigned long long>(c.shifts_attempted));
     for (const CauseInfo& cause : kCauseInfo) {
-      std::printf(" %11.2f", c.shifts_attempted > 0 ? 1000.0 * double(c.*cause.count) / double(c.shifts_attempted) : 0.0);
+      std::printf(" %11.2f",
+                  c.shifts_attempted > 0 ? 1000.0 * double(c.*cause.count) / double(c.shifts_attempted) : 0.0);
     }
     std::printf(" %8llu %8llu %8llu  %s\n", static_cast<unsigned long long>(c.nonfinite_radiance),
-                static_cast<unsigned long long>(c.nonfinite_gradient), static_cast<unsigned long long>(c.nonfinite_feature),
-                row.note.c_str());
+                static_cast<unsigned long long>(c.nonfinite_gradient),
+                static_cast<unsigned long long>(c.nonfinite_feature), row.note.c_str());
   }
 };
 
 Table& table() {
-  static Table* const instance = static_cast<Table*>(::testing::AddGlobalTestEnvironment(new Table));  // GoogleTest deletes it
+  static Table* const instance =
+      static_cast<Table*>(::testing::AddGlobalTestEnvironment(new Table));  // GoogleTest deletes it
   return *instance;
 }
 // Environments must be there before the tests start.
 [[maybe_unused]] const Table& kTable = table();
 
-void check(const Counters& c, const Bounds& bounds) {
+void check(const film::Counters& c, const Bounds& bounds) {
   for (int i = 0; i < kCauses; ++i) {
-    EXPECT_LE(double(c.*kCauseInfo[i].count), bounds.failed[size_t(i)] * double(c.shifts_attempted)) << kCauseInfo[i].name;
+    EXPECT_LE(double(c.*kCauseInfo[i].count), bounds.failed[size_t(i)] * double(c.shifts_attempted))
+        << kCauseInfo[i].name;
   }
   EXPECT_LE(c.nonfinite_radiance + c.nonfinite_gradient + c.nonfinite_feature, bounds.dropped);
 }
 
-std::vector<float> read(const Render& render, uint32_t pass, const GradusSettings& settings) {
-  std::vector<float> pixels(size_t(settings.width) * settings.height * pass_info(pass).channels);
+std::vector<float> read(const render::Render& render, uint32_t pass, const GradusSettings& settings) {
+  std::vector<float> pixels(size_t(settings.width) * settings.height * schema::pass_info(pass).channels);
   render.read_pass(pass, pixels.data(), pixels.size());
   return pixels;
 }
 
-double compare_with_double(const IntegratorContext& context) {
+double compare_with_double(const integrator::IntegratorContext& context) {
   const double worst = test::render_in_double(context, context.settings.samples).worst();
   EXPECT_TRUE(std::isfinite(worst));
   return worst;
@@ -126,7 +131,7 @@ void expect_finite(const std::vector<float>& values, const std::string& what) {
 }
 
 GradusSettings small_picture() {
-  GradusSettings s = default_settings();
+  GradusSettings s = schema::default_settings();
   s.width = full_run() ? 40 : 24;
   s.height = full_run() ? 30 : 18;
   s.samples = full_run() ? 32 : 16;
@@ -140,20 +145,20 @@ GradusSettings small_picture() {
 
 Outcome render(const std::string& name, PathScene* scene, const Bounds& bounds, GradusSettings settings) {
   SCOPED_TRACE(name);
-  const IntegratorContext context = scene->context(settings);
-  Render render(test::test_device(), context.snapshot, settings);
+  const integrator::IntegratorContext context = scene->context(settings);
+  render::Render render(test::test_device(), context.snapshot, settings);
   EXPECT_TRUE(render.wait(-1.0));
   std::string text;
   EXPECT_EQ(render.outcome(&text), GRADUS_OK) << text;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
-    expect_finite(read(render, pass, settings), pass_info(pass).name);
+    expect_finite(read(render, pass, settings), schema::pass_info(pass).name);
   }
   Outcome outcome;
   outcome.noisy = read(render, GRADUS_PASS_NOISY_IMAGE, settings);
   outcome.l2 = read(render, GRADUS_PASS_COMBINED, settings);
   const auto film = render.film();
-  SolveReport report;
-  const std::vector<float> l1 = combine(
+  reconstruct::SolveReport report;
+  const std::vector<float> l1 = output::combine(
       *film, GRADUS_RECONSTRUCTION_L1, 0.0f, film->region, [] { return false; }, &report);
   expect_finite(l1, "L1");
   outcome.counters = film->counters;
@@ -166,7 +171,7 @@ Outcome render(const std::string& name, PathScene* scene, const Bounds& bounds, 
   return outcome;
 }
 
-void enter_row(const std::string& name, const Counters& counters, const std::string& note) {
+void enter_row(const std::string& name, const film::Counters& counters, const std::string& note) {
   table().rows.push_back({name, note, counters});
 }
 

@@ -1,8 +1,9 @@
-// The stress suite: renders of scenes that are hard on floats, each with bounds on what is dropped and which shifts fail.
+// The stress suite: renders of scenes that are hard on floats, each with bounds on what is dropped and which shifts
+// fail.
 //
-// Every case renders with gradients and all passes, is reconstructed by L2 and L1, and is followed in double. What comes out must
-// be finite; a table of the counts of all cases is printed in the end. A tenth of the cases and samples runs with every change, the whole
-// with GRADUS_TEST_FULL=1 (make stress).
+// Every case renders with gradients and all passes, is reconstructed by L2 and L1, and is followed in double. What
+// comes out must be finite; a table of the counts of all cases is printed in the end. A tenth of the cases and samples
+// runs with every change, the whole with GRADUS_TEST_FULL=1 (make stress).
 #pragma once
 
 #include <array>
@@ -24,12 +25,14 @@ using test::Surface;
 // Causes of failed shifts, in order of Bounds::failed.
 enum Cause { kMissed, kOccluded, kClass, kTotalReflection, kSide, kDensity, kJacobian, kCauses };
 
-// Most that a case may have. Failures are counted per base path and offset; one offset may fail at several light samples.
+// Most that a case may have. Failures are counted per base path and offset; one offset may fail at several light
+// samples.
 //
-// How often shifts fail is a matter of geometry, not of scale or place: they miss at silhouettes, are occluded at the edges of shadows, and
-// lack a class where materials meet. In the corners of rooms an offset often lies in the plane of the shared vertex: the Jacobian is then
-// 0, or, by rounding, the density, or the connection is occluded. Total reflection and the wrong side happen at glass. The bounds are
-// about twice what the cases have; numbers that go wrong exceed them by far.
+// How often shifts fail is a matter of geometry, not of scale or place: they miss at silhouettes, are occluded at the
+// edges of shadows, and lack a class where materials meet. In the corners of rooms an offset often lies in the plane of
+// the shared vertex: the Jacobian is then 0, or, by rounding, the density, or the connection is occluded. Total
+// reflection and the wrong side happen at glass. The bounds are about twice what the cases have; numbers that go wrong
+// exceed them by far.
 struct Bounds {
   std::array<double, kCauses> failed = {0.06, 0.15, 0.45, 0.05, 0.03, 0.1, 0.1};
   // Radiance, gradients and features that were not finite.
@@ -45,7 +48,7 @@ struct Bounds {
 
 struct Outcome {
   std::vector<float> noisy, l2;  // RGBA
-  Counters counters;
+  film::Counters counters;
 };
 
 // Mean of the colours of an RGBA image.
@@ -60,9 +63,10 @@ std::string text_of(double value);
 // Defaults of all settings, of a small picture with limits on bounces that leave chains of glass whole.
 GradusSettings small_picture();
 // Renders the scene, checks the bounds, enters a row into the table.
-Outcome render(const std::string& name, PathScene* scene, const Bounds& bounds, GradusSettings settings = small_picture());
+Outcome render(const std::string& name, PathScene* scene, const Bounds& bounds,
+               GradusSettings settings = small_picture());
 // A row that was measured elsewhere.
-void enter_row(const std::string& name, const Counters& counters, const std::string& note = "");
+void enter_row(const std::string& name, const film::Counters& counters, const std::string& note = "");
 
 // A box with a ceiling light, a light, a matte, a metal and a glass ball. Lengths scale with scene->place.
 void build_box(PathScene* scene);

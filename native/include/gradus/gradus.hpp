@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Gradus: the C API as C++ objects that release themselves and throw. Header only; adds nothing to gradus.h, which documents what the
- * calls do.
+ * Gradus: the C API as C++ objects that release themselves and throw. Header only; adds nothing to gradus.h, which
+ * documents what the calls do.
  */
 #ifndef GRADUS_HPP
 #define GRADUS_HPP
@@ -94,9 +94,13 @@ class Scene : public Handle<GradusScene, gradus_scene_release> {
   }
   void set_mesh(uint64_t key, const GradusMesh& mesh) { check(gradus_scene_set_mesh(id_, key, &mesh)); }
   void set_image(uint64_t key, const GradusImage& image) { check(gradus_scene_set_image(id_, key, &image)); }
-  void set_material(uint64_t key, const GradusMaterial& material) { check(gradus_scene_set_material(id_, key, &material)); }
+  void set_material(uint64_t key, const GradusMaterial& material) {
+    check(gradus_scene_set_material(id_, key, &material));
+  }
   void set_instances(const GradusInstances& instances) { check(gradus_scene_set_instances(id_, &instances)); }
-  void set_lights(const std::vector<GradusLight>& lights) { check(gradus_scene_set_lights(id_, lights.data(), lights.size())); }
+  void set_lights(const std::vector<GradusLight>& lights) {
+    check(gradus_scene_set_lights(id_, lights.data(), lights.size()));
+  }
   void set_camera(const GradusCamera& camera) { check(gradus_scene_set_camera(id_, &camera)); }
   void set_world(const GradusWorld& world) { check(gradus_scene_set_world(id_, &world)); }
   void remove(GradusObjectKind kind, uint64_t key) { check(gradus_scene_remove(id_, kind, key)); }
@@ -108,7 +112,9 @@ class Scene : public Handle<GradusScene, gradus_scene_release> {
     return text ? text : "";
   }
   void record(bool enabled) { check(gradus_scene_record(id_, enabled ? 1 : 0)); }
-  void save(const GradusSettings& settings, const std::string& path) const { check(gradus_scene_save(id_, &settings, path.c_str())); }
+  void save(const GradusSettings& settings, const std::string& path) const {
+    check(gradus_scene_save(id_, &settings, path.c_str()));
+  }
 
  private:
   explicit Scene(GradusScene id) : Handle(id) {}
@@ -165,7 +171,9 @@ class Film : public Handle<GradusFilm, gradus_film_release> {
 
 class Render : public Handle<GradusRender, gradus_render_release> {
  public:
-  Render(const Scene& scene, const GradusSettings& settings) { check(gradus_render_start(scene.id(), &settings, &id_)); }
+  Render(const Scene& scene, const GradusSettings& settings) {
+    check(gradus_render_start(scene.id(), &settings, &id_));
+  }
   Render(const Scene& scene, const GradusSettings& settings, const Film& resumed) {
     check(gradus_render_resume(scene.id(), &settings, resumed.id(), &id_));
   }
@@ -212,7 +220,7 @@ class Sequence : public Handle<GradusSequence, gradus_sequence_release> {
   }
   Render deliver(int32_t frame, const GradusSettings& settings) const {
     GradusRender render = 0;
-    check(gradus_sequence_deliver(id_, film, &settings, &render));
+    check(gradus_sequence_deliver(id_, frame, &settings, &render));
     return Render(render);
   }
 };

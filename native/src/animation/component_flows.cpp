@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "film/region_pixels.h"
 #include "lpe/components.h"
 #include "output/component_read.h"
-#include "film/region_pixels.h"
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::animation {
 namespace {
 
 // What surfaces, or what is seen through them, do towards one side.
@@ -17,7 +17,7 @@ struct KnownMotion {
 };
 
 KnownMotion known_motion(const DevelopedFrame& developed, size_t component, Side side) {
-  const ComponentPlanes& planes = developed.film->components[component];
+  const film::ComponentPlanes& planes = developed.film->components[component];
   const auto pixels = size_t(developed.delivered().area());
   KnownMotion known{std::vector<Vec2>(pixels), std::vector<float>(pixels)};
   for_pixels(*developed.film, developed.delivered(), [&](size_t i, size_t out) {
@@ -31,9 +31,11 @@ KnownMotion known_motion(const DevelopedFrame& developed, size_t component, Side
 // Without the film's exposure, which may change from frame to frame.
 std::vector<Rgb> light_of(const DevelopedFrame& developed, const FlowKind& kind) {
   const Region& region = developed.delivered();
-  const uint32_t pass = kind.domain == FlowDomain::Logarithmic ? GRADUS_COMPONENT_IRRADIANCE : GRADUS_COMPONENT_COLOR;
+  const uint32_t pass =
+      kind.domain == motion::FlowDomain::Logarithmic ? GRADUS_COMPONENT_IRRADIANCE : GRADUS_COMPONENT_COLOR;
   std::vector<float> values(3 * size_t(region.area()));
-  read_component_pass(*developed.film, int(kind.component), pass, region, developed.components[kind.component], values.data());
+  output::read_component_pass(*developed.film, int(kind.component), pass, region, developed.components[kind.component],
+                              values.data());
   const float exposure = developed.film->settings.film_exposure, factor = exposure > 0.0f ? 1.0f / exposure : 1.0f;
   std::vector<Rgb> light(values.size() / 3);
   for_pixels(*developed.film, region, [&](size_t, size_t out) {
@@ -46,14 +48,17 @@ std::vector<Rgb> light_of(const DevelopedFrame& developed, const FlowKind& kind)
 class FlowInput {
  public:
   FlowInput(const DevelopedFrame& developed, const FlowKind& kind, Side side)
-      : light_(light_of(developed, kind)), known_(known_motion(developed, kind.component, side)), object_(light_.size()), depth_(light_.size()) {
-    const std::vector<ShownPoint>& shown = developed.film->components[kind.component].shown;
+      : light_(light_of(developed, kind)),
+        known_(known_motion(developed, kind.component, side)),
+        object_(light_.size()),
+        depth_(light_.size()) {
+    const std::vector<film::ShownPoint>& shown = developed.film->components[kind.component].shown;
     for_pixels(*developed.film, developed.delivered(), [&](size_t i, size_t out) {
       object_[out] = int32_t(shown[i].object);
       depth_[out] = shown[i].depth;
     });
   }
-  ComponentFrame view() const { return {light_, known_.vectors, known_.tracked, object_, depth_}; }
+  motion::ComponentFrame view() const { return {light_, known_.vectors, known_.tracked, object_, depth_}; }
 
  private:
   std::vector<Rgb> light_;
@@ -63,7 +68,8 @@ class FlowInput {
 };
 
 // The end of the list: it has none.
-size_t place_of(const std::vector<FlowKind>& kinds, const DevelopedFrame& developed, const std::string& component, FlowDomain domain) {
+size_t place_of(const std::vector<FlowKind>& kinds, const DevelopedFrame& developed, const std::string& component,
+                motion::FlowDomain domain) {
   const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const FlowKind& kind) {
     return kind.domain == domain && developed.film->components[kind.component].name == component;
   });
@@ -72,19 +78,21 @@ size_t place_of(const std::vector<FlowKind>& kinds, const DevelopedFrame& develo
 
 }  // namespace
 
-std::vector<FlowKind> wanted_flows(const Film& frame) {
+std::vector<FlowKind> wanted_flows(const film::Film& frame) {
   std::vector<FlowKind> kinds;
   const uint32_t passes = frame.settings.component_passes;
-  const bool of_irradiance = any_wanted(passes, is_irradiance_motion);
-  const bool of_residual = has_bit(passes, GRADUS_COMPONENT_MOTION) || has_bit(passes, GRADUS_COMPONENT_TRACKED);
+  const bool of_irradiance = schema::any_wanted(passes, schema::is_irradiance_motion);
+  const bool of_residual =
+      schema::has_bit(passes, GRADUS_COMPONENT_MOTION) || schema::has_bit(passes, GRADUS_COMPONENT_TRACKED);
   for (size_t c = 0; c < frame.components.size(); ++c) {
-    if (of_residual && frame.components[c].name == kResidual) kinds.push_back({c, FlowDomain::Linear});
-    if (of_irradiance) kinds.push_back({c, FlowDomain::Logarithmic});
+    if (of_residual && frame.components[c].name == lpe::kResidual) kinds.push_back({c, motion::FlowDomain::Linear});
+    if (of_irradiance) kinds.push_back({c, motion::FlowDomain::Logarithmic});
   }
   return kinds;
 }
 
-std::array<FrameFlows, 2> flows_between(const FlowLibrary& library, const DevelopedFrame& first, const DevelopedFrame& second) {
+std::array<FrameFlows, 2> flows_between(const motion::FlowLibrary& library, const DevelopedFrame& first,
+                                        const DevelopedFrame& second) {
   const std::vector<FlowKind> kinds = wanted_flows(*first.film), others = wanted_flows(*second.film);
   std::array<FrameFlows, 2> flows{FrameFlows(kinds.size()), FrameFlows(others.size())};
   const Region& region = first.delivered();
@@ -93,20 +101,21 @@ std::array<FrameFlows, 2> flows_between(const FlowLibrary& library, const Develo
     const size_t other = place_of(others, second, name, kinds[k].domain);
     if (other == others.size()) continue;
     const FlowInput a(first, kinds[k], Side::Next), b(second, others[other], Side::Previous);
-    std::array<PixelMotion, 2> motion = irradiance_motion(&library, region.width(), region.height(), a.view(), b.view(), kinds[k].domain);
+    std::array<motion::PixelMotion, 2> motion =
+        motion::irradiance_motion(&library, region.width(), region.height(), a.view(), b.view(), kinds[k].domain);
     flows[0][k] = std::move(motion[0]);
     flows[1][other] = std::move(motion[1]);
   }
   return flows;
 }
 
-void complete_flows(const DevelopedFrame& frame, Side side, Tracking cause, FrameFlows* flows) {
+void complete_flows(const DevelopedFrame& frame, Side side, motion::Tracking cause, FrameFlows* flows) {
   const std::vector<FlowKind> kinds = wanted_flows(*frame.film);
   flows->resize(kinds.size());
   for (size_t k = 0; k < kinds.size(); ++k) {
     if (!(*flows)[k].vectors.empty()) continue;
     KnownMotion known = known_motion(frame, kinds[k].component, side);
-    for (float& tracked : known.tracked) tracked = tracked == kTracked ? float(cause) : tracked;
+    for (float& tracked : known.tracked) tracked = tracked == motion::kTracked ? float(cause) : tracked;
     (*flows)[k] = {std::move(known.vectors), std::move(known.tracked)};
   }
 }
@@ -115,15 +124,15 @@ std::vector<FlowPass> join_flows(const DevelopedFrame& frame, const FrameFlows& 
   std::vector<FlowPass> passes;
   const std::vector<FlowKind> kinds = wanted_flows(*frame.film);
   for (size_t k = 0; k < kinds.size(); ++k) {
-    const PixelMotion &before = previous[k], &after = next[k];
+    const motion::PixelMotion &before = previous[k], &after = next[k];
     FlowPass pass{kinds[k], std::vector<Vec4>(before.vectors.size()), before.tracked};
     for_pixels(*frame.film, frame.delivered(), [&](size_t, size_t out) {
       pass.vectors[out] = Vec4(before.vectors[out], -after.vectors[out]);
-      if (pass.tracked[out] == kTracked) pass.tracked[out] = after.tracked[out];
+      if (pass.tracked[out] == motion::kTracked) pass.tracked[out] = after.tracked[out];
     });
     passes.push_back(std::move(pass));
   }
   return passes;
 }
 
-}  // namespace gradus
+}  // namespace gradus::animation

@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
+#include "animation/frame_record.h"
 #include "film/film.h"
 #include "output/light_passes.h"
-#include "animation/frame_record.h"
 
-namespace gradus {
+namespace gradus::animation {
 
 // What its picture is made by; never AUTO but for the denoiser of a frame that was sampled elsewhere.
 struct Delivery {
@@ -23,13 +23,13 @@ struct DevelopedFrame {
   int32_t number = 0;
   Delivery by;
   FrameRecord record;
-  std::shared_ptr<Film> film;                // all of its samples
+  std::shared_ptr<film::Film> film;            // all of its samples
   std::vector<float> combined, error;          // of the region: RGBA, and pass Error where it is asked for
   std::vector<std::vector<float>> components;  // RGB of each, where some pass or flow is made of it
-  LightPasses light;
+  output::LightPasses light;
   std::vector<float> difference, link;  // to the next frame; three values per pixel of the region
 
   const Region& delivered() const { return record.plan.delivered; }
 };
 
-}  // namespace gradus
+}  // namespace gradus::animation

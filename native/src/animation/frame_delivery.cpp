@@ -3,34 +3,42 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/threads.h"
-#include "base/scoped_timer.h"
 #include "base/error.h"
+#include "base/scoped_timer.h"
+#include "base/threads.h"
 #include "output/component_read.h"
 #include "output/pass_read.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::animation {
 namespace {
 
 constexpr const char* kNotDelivered = "the frame was not delivered: ";
 
-bool has_flow(const DevelopedFrame& developed) { return needs_flow(developed.film->settings) && !developed.film->components[0].shown.empty(); }
+bool has_flow(const DevelopedFrame& developed) {
+  return schema::needs_flow(developed.film->settings) && !developed.film->components[0].shown.empty();
+}
 
-bool can_flow(const DevelopedFrame& from, const DevelopedFrame& to) { return has_flow(from) && has_flow(to) && from.delivered() == to.delivered(); }
+bool can_flow(const DevelopedFrame& from, const DevelopedFrame& to) {
+  return has_flow(from) && has_flow(to) && from.delivered() == to.delivered();
+}
 
-// A frame as another one is changed. Numbers may have keys: those that the other is asked for as it was sampled for are its own.
+// A frame as another one is changed. Numbers may have keys: those that the other is asked for as it was sampled for are
+// its own.
 GradusSettings as_changed(GradusSettings frame, const GradusSettings& other, const GradusSettings& changed) {
   frame.reconstruction = changed.reconstruction;
   frame.denoiser = changed.denoiser;
-  if (changed.reconstruction_alpha != other.reconstruction_alpha) frame.reconstruction_alpha = changed.reconstruction_alpha;
+  if (changed.reconstruction_alpha != other.reconstruction_alpha)
+    frame.reconstruction_alpha = changed.reconstruction_alpha;
   if (changed.film_exposure != other.film_exposure) frame.film_exposure = changed.film_exposure;
   return frame;
 }
 
 // Where a flow was not to be had although it should lead there.
-Tracking or_no_neighbour(Tracking leads) { return leads == Tracking::Tracked ? Tracking::NoNeighbour : leads; }
+motion::Tracking or_no_neighbour(motion::Tracking leads) {
+  return leads == motion::Tracking::Tracked ? motion::Tracking::NoNeighbour : leads;
+}
 
 }  // namespace
 
@@ -59,7 +67,7 @@ std::shared_ptr<const DevelopedFrame> FrameDelivery::make() {
   std::shared_ptr<const DevelopedFrame> previous;
   if (!is_developed) {
     sequence_->back_.clear();
-    if (leads_to(sequence_->place_of(number_)) == Tracking::Tracked)
+    if (leads_to(sequence_->place_of(number_)) == motion::Tracking::Tracked)
       previous = develop_neighbour(number_ - 1);  // first: pictures are taken in order
     own = developer.load();
   }
@@ -85,21 +93,22 @@ std::shared_ptr<DevelopedFrame> FrameDelivery::develop_neighbour(int32_t number)
   return developed;
 }
 
-Tracking FrameDelivery::leads_to(int place) {
-  if (!sequence_->settings_.with_flow) return Tracking::NoNeighbour;
+motion::Tracking FrameDelivery::leads_to(int place) {
+  if (!sequence_->settings_.with_flow) return motion::Tracking::NoNeighbour;
   const GradusSettings settings = sequence_->traits_at(sequence_->place_of(number_)).settings;
-  if (!needs_flow(settings)) return Tracking::NoNeighbour;
+  if (!schema::needs_flow(settings)) return motion::Tracking::NoNeighbour;
   const bool is_other = changed_ && changed_->reconstruction != GRADUS_RECONSTRUCTION_AUTO;
-  const Tracking found = sequence_->flows_to(place, is_other ? changed_->reconstruction : settings.reconstruction);
+  const motion::Tracking found =
+      sequence_->flows_to(place, is_other ? changed_->reconstruction : settings.reconstruction);
   const bool has_library = sequence_->flow_library(&warnings_) != nullptr;
-  return found == Tracking::Tracked && !has_library ? Tracking::NoFlowLibrary : found;
+  return found == motion::Tracking::Tracked && !has_library ? motion::Tracking::NoFlowLibrary : found;
 }
 
 void FrameDelivery::find_flow(const DevelopedFrame* previous, double* seconds_ahead, double* cpu_ahead) {
   const int place = sequence_->place_of(number_);
-  const Tracking leads_here = leads_to(place), leads_on = leads_to(place + 1);
+  const motion::Tracking leads_here = leads_to(place), leads_on = leads_to(place + 1);
   std::shared_ptr<DevelopedFrame> next;
-  if (leads_on == Tracking::Tracked) {
+  if (leads_on == motion::Tracking::Tracked) {
     const ScopedTimer timer(seconds_ahead, cpu_ahead);
     next = develop_neighbour(number_ + 1);
   }
@@ -107,17 +116,20 @@ void FrameDelivery::find_flow(const DevelopedFrame* previous, double* seconds_ah
     next->record.stats.total_seconds += *seconds_ahead;
     next->record.stats.process_cpu += *cpu_ahead;
   }
-  RenderStats& stats = developed_->record.stats;
+  render::RenderStats& stats = developed_->record.stats;
   const ScopedTimer timer(&stats.seconds.correspondence, &stats.cpu_seconds.correspondence);
-  const uint32_t threads = threads_of(changed_ ? *changed_ : sampled_settings(number_), sequence_->device_.get());
+  const uint32_t threads =
+      render::threads_of(changed_ ? *changed_ : sampled_settings(number_), sequence_->device_.get());
   tbb::task_arena(arena_size(threads)).execute([&] { join(previous, leads_here, std::move(next), leads_on); });
   stats.warnings.insert(stats.warnings.end(), warnings_.begin(), warnings_.end());
 }
 
-void FrameDelivery::join(const DevelopedFrame* previous, Tracking leads_here, std::shared_ptr<DevelopedFrame> next, Tracking leads_on) {
-  const FlowLibrary* library = sequence_->flow_library(&warnings_);
+void FrameDelivery::join(const DevelopedFrame* previous, motion::Tracking leads_here,
+                         std::shared_ptr<DevelopedFrame> next, motion::Tracking leads_on) {
+  const motion::FlowLibrary* library = sequence_->flow_library(&warnings_);
   FrameFlows back = std::exchange(sequence_->back_, {});
-  if (back.empty() && previous && can_flow(*previous, *developed_)) back = flows_between(*library, *previous, *developed_)[1];
+  if (back.empty() && previous && can_flow(*previous, *developed_))
+    back = flows_between(*library, *previous, *developed_)[1];
   complete_flows(*developed_, Side::Previous, or_no_neighbour(leads_here), &back);
   check_cancelled();
   FrameFlows forth;
@@ -157,27 +169,30 @@ void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
     std::fill_n(pixels, size_t(region.area()), 0.0f);
     return;
   }
-  const uint32_t threads = threads_of(frame.film->settings, sequence_->device_.get());
-  tbb::task_arena(arena_size(threads)).execute([&] { read_film_pass(*frame.film, pass, region, pixels); });
+  const uint32_t threads = render::threads_of(frame.film->settings, sequence_->device_.get());
+  tbb::task_arena(arena_size(threads)).execute([&] { output::read_film_pass(*frame.film, pass, region, pixels); });
 }
 
 void FrameDelivery::read_component(const std::string& name, uint32_t pass, float* pixels) const {
   const std::shared_ptr<const DevelopedFrame> own = developed("its passes come");
   const DevelopedFrame& frame = *own;
-  check_component(frame.film->settings, name);
+  output::check_component(frame.film->settings, name);
   const Region& region = frame.delivered();
-  const int place = find_component(*frame.film, name);
+  const int place = film::find_component(*frame.film, name);
   const bool has_picture = place >= 0 && size_t(place) < frame.components.size();
-  if (place < 0 || (is_of_picture(pass) && !has_picture)) return read_absent_component(pass, region, pixels);
-  if (is_by_flow(name, pass) && read_flow(size_t(place), pass, pixels)) return;
-  read_component_pass(*frame.film, place, pass, region, has_picture ? frame.components[size_t(place)] : std::vector<float>(), pixels);
+  if (place < 0 || (schema::is_of_picture(pass) && !has_picture))
+    return output::read_absent_component(pass, region, pixels);
+  if (output::is_by_flow(name, pass) && read_flow(size_t(place), pass, pixels)) return;
+  output::read_component_pass(*frame.film, place, pass, region,
+                              has_picture ? frame.components[size_t(place)] : std::vector<float>(), pixels);
 }
 
 bool FrameDelivery::read_flow(size_t component, uint32_t pass, float* pixels) const {
-  const FlowKind kind{component, is_irradiance_motion(pass) ? FlowDomain::Logarithmic : FlowDomain::Linear};
+  const FlowKind kind{
+      component, schema::is_irradiance_motion(pass) ? motion::FlowDomain::Logarithmic : motion::FlowDomain::Linear};
   const auto flow = std::find_if(flows_.begin(), flows_.end(), [&](const FlowPass& f) { return f.kind == kind; });
   if (flow == flows_.end()) return false;
-  if (component_pass_info(pass).channels == 1) {
+  if (schema::component_pass_info(pass).channels == 1) {
     std::copy(flow->tracked.begin(), flow->tracked.end(), pixels);
   } else {
     for (const Vec4& vector : flow->vectors) pixels = std::copy_n(&vector[0], 4, pixels);
@@ -187,13 +202,14 @@ bool FrameDelivery::read_flow(size_t component, uint32_t pass, float* pixels) co
 
 std::string FrameDelivery::stats() const {
   const std::shared_ptr<const DevelopedFrame> own = developed("its stats come");
-  return stats_json(own->record.stats, own->record.plan, *own->film);
+  return render::stats_json(own->record.stats, own->record.plan, *own->film);
 }
 
-std::shared_ptr<const Film> FrameDelivery::film() const { return developed("its frame comes")->film; }
+std::shared_ptr<const film::Film> FrameDelivery::film() const { return developed("its frame comes")->film; }
 
 uint64_t FrameDelivery::memory_bytes() const {
-  return developed_ ? developed_->film->memory_bytes() + 4 * uint64_t(developed_->delivered().area()) * sizeof(float) : 0;
+  return developed_ ? developed_->film->memory_bytes() + 4 * uint64_t(developed_->delivered().area()) * sizeof(float)
+                    : 0;
 }
 
-}  // namespace gradus
+}  // namespace gradus::animation

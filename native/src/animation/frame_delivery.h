@@ -8,9 +8,9 @@
 #include "animation/frame_developer.h"
 #include "animation/sequence.h"
 
-namespace gradus {
+namespace gradus::animation {
 
-class FrameDelivery final : public RenderTask {
+class FrameDelivery final : public render::RenderTask {
  public:
   FrameDelivery(std::shared_ptr<Sequence> sequence, int32_t frame, const GradusSettings* settings);
 
@@ -18,7 +18,7 @@ class FrameDelivery final : public RenderTask {
   void read_pass(uint32_t pass, float* pixels) const override;
   void read_component(const std::string& name, uint32_t pass, float* pixels) const override;
   std::string stats() const override;
-  std::shared_ptr<const Film> film() const override;
+  std::shared_ptr<const film::Film> film() const override;
 
  private:
   void render() override;
@@ -30,10 +30,11 @@ class FrameDelivery final : public RenderTask {
   GradusSettings sampled_settings(int32_t number) const;
   std::shared_ptr<DevelopedFrame> develop_neighbour(int32_t number) const;
   // Whether flow leads from the frame before `place` to that; if not, why.
-  Tracking leads_to(int place);
+  motion::Tracking leads_to(int place);
   // Of components. What is made ahead is billed to the frame that it is for.
   void find_flow(const DevelopedFrame* previous, double* seconds_ahead, double* cpu_ahead);
-  void join(const DevelopedFrame* previous, Tracking leads_here, std::shared_ptr<DevelopedFrame> next, Tracking leads_on);
+  void join(const DevelopedFrame* previous, motion::Tracking leads_here, std::shared_ptr<DevelopedFrame> next,
+            motion::Tracking leads_on);
   // False: there is none.
   bool read_flow(size_t component, uint32_t pass, float* pixels) const;
   // Returns the frame, which does not change after the end: readers do not keep the lock, which progress() takes.
@@ -48,4 +49,4 @@ class FrameDelivery final : public RenderTask {
   std::vector<std::string> warnings_;  // of looking for flow
 };
 
-}  // namespace gradus
+}  // namespace gradus::animation

@@ -5,17 +5,18 @@
 
 #include <tbb/task_arena.h>
 
-#include "base/cancel_check.h"
 #include "animation/developed_frame.h"
 #include "animation/sequence.h"
+#include "base/cancel_check.h"
 
-namespace gradus {
+namespace gradus::animation {
 
 class FrameDeveloper {
  public:
-  // asked: what it is made of otherwise than it was sampled for, and the number of threads that make it; nothing: what the folder knows.
-  // All that is given lives as long as it.
-  FrameDeveloper(Sequence* sequence, int32_t number, const std::optional<GradusSettings>& requested, const CancelCheck& is_cancelled);
+  // asked: what it is made of otherwise than it was sampled for, and the number of threads that make it; nothing: what
+  // the folder knows. All that is given lives as long as it.
+  FrameDeveloper(Sequence* sequence, int32_t number, const std::optional<GradusSettings>& requested,
+                 const CancelCheck& is_cancelled);
 
   // In this order. Both throw the Error CANCELLED.
   std::shared_ptr<DevelopedFrame> load();
@@ -27,13 +28,13 @@ class FrameDeveloper {
  private:
   std::shared_ptr<DevelopedFrame> read();
   void check_cancelled() const;
-  Delivery delivery(const FrameRecord& record, bool is_planned, const Film& film) const;
+  Delivery delivery(const FrameRecord& record, bool is_planned, const film::Film& film) const;
   void reconstruct(DevelopedFrame* developed);
   void denoise(DevelopedFrame* developed);
   // Light passes follow what the picture has become.
   void split_light(DevelopedFrame* developed);
   // Passes Gradient T and Gradient T Link, of the frame's own half.
-  void read_differences_over_time(const Film& fresh, DevelopedFrame* developed);
+  void read_differences_over_time(const film::Film& fresh, DevelopedFrame* developed);
 
   Sequence& sequence_;
   const int32_t number_;
@@ -43,4 +44,4 @@ class FrameDeveloper {
   tbb::task_arena arena_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::animation

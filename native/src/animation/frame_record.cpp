@@ -5,19 +5,20 @@
 #include "film/features.h"
 #include "schema/options.h"
 
-namespace gradus {
+namespace gradus::animation {
 namespace {
 
 uint64_t key_without_frame(GradusSettings settings) {
   settings.frame = 0;
-  return sampling_key(settings);
+  return schema::sampling_key(settings);
 }
 
 }  // namespace
 
-FrameTraits traits_of(const FilmHeader& fresh, const FilmHeader& replayed) {
-  return {fresh.region,       fresh.channels,         fresh.gradients, has_features(fresh),  fresh.settings,
-          fresh.frame_number, replayed.replayed_frame, fresh.scene_key, replayed.replayed_key, replayed.replayed_seed};
+FrameTraits traits_of(const film::FilmHeader& fresh, const film::FilmHeader& replayed) {
+  return {fresh.region,          fresh.channels,        fresh.gradients,         film::has_features(fresh),
+          fresh.settings,        fresh.frame_number,    replayed.replayed_frame, fresh.scene_key,
+          replayed.replayed_key, replayed.replayed_seed};
 }
 
 bool follows_another_frame(const FrameTraits& before, const FrameTraits& frame) {
@@ -29,12 +30,12 @@ bool follows_another_frame(const FrameTraits& before, const FrameTraits& frame) 
 
 bool share_windows(const FrameTraits& before, const FrameTraits& frame, uint32_t reconstruction) {
   const bool features = before.features == frame.features || reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED;
-  return before.region == frame.region && before.channels == frame.channels && before.gradients == frame.gradients && features &&
-         !follows_another_frame(before, frame);
+  return before.region == frame.region && before.channels == frame.channels && before.gradients == frame.gradients &&
+         features && !follows_another_frame(before, frame);
 }
 
-std::unique_ptr<PreviousFrame> make_previous_frame(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
-                                         const FilmHeader* fresh) {
+std::unique_ptr<PreviousFrame> make_previous_frame(std::shared_ptr<const scene::Snapshot> snapshot,
+                                                   const GradusSettings& settings, const film::FilmHeader* fresh) {
   auto before = std::make_unique<PreviousFrame>();
   before->snapshot = std::move(snapshot);
   before->settings = settings;
@@ -43,12 +44,16 @@ std::unique_ptr<PreviousFrame> make_previous_frame(std::shared_ptr<const Snapsho
   return before;
 }
 
-bool has_counts(const GradusSettings& settings) { return settings.noise_threshold > 0.0f || settings.time_limit > 0.0f; }
+bool has_counts(const GradusSettings& settings) {
+  return settings.noise_threshold > 0.0f || settings.time_limit > 0.0f;
+}
 
 bool are_equivalent(const GradusSettings& a, const GradusSettings& b) {
   return key_without_frame(a) == key_without_frame(b) && a.passes == b.passes && show_same_region(a, b);
 }
 
-bool show_same_region(const GradusSettings& a, const GradusSettings& b) { return std::equal(a.region, a.region + 4, b.region); }
+bool show_same_region(const GradusSettings& a, const GradusSettings& b) {
+  return std::equal(a.region, a.region + 4, b.region);
+}
 
-}  // namespace gradus
+}  // namespace gradus::animation

@@ -11,7 +11,7 @@
 #include "render/stats.h"
 #include "scene/snapshot.h"
 
-namespace gradus {
+namespace gradus::animation {
 
 // What frames must have in common to share a window, and whom a frame follows.
 struct FrameTraits {
@@ -24,28 +24,30 @@ struct FrameTraits {
   uint32_t replayed_seed = 0;
 };
 // base, offset: its own half, and the one that replays the frame before.
-FrameTraits traits_of(const FilmHeader& fresh, const FilmHeader& replayed);
-// Whether `frame` follows another scene than `before` shows, or other samples of it: one of the two was stored before the scene or the seed
-// was changed.
+FrameTraits traits_of(const film::FilmHeader& fresh, const film::FilmHeader& replayed);
+// Whether `frame` follows another scene than `before` shows, or other samples of it: one of the two was stored before
+// the scene or the seed was changed.
 bool follows_another_frame(const FrameTraits& before, const FrameTraits& frame);
 // Whether one window can hold both: they have all that it reads of its frames, and are of one animation.
 bool share_windows(const FrameTraits& before, const FrameTraits& frame, uint32_t reconstruction);
 
 // The frame before the next one that is sampled.
 struct PreviousFrame {
-  std::shared_ptr<const Snapshot> snapshot;
+  std::shared_ptr<const scene::Snapshot> snapshot;
   GradusSettings settings{};
-  int32_t stream_frame = 0;       // whose random numbers it has taken: its own, or those of the first of several that are alike
+  int32_t stream_frame =
+      0;  // whose random numbers it has taken: its own, or those of the first of several that are alike
   std::vector<uint32_t> counts;   // samples of each pixel; empty: as many as the settings say, or not known
   std::optional<Region> sampled;  // region of its own half; nothing: it was not sampled
 };
 // base: its own half; nullptr where it was not sampled.
-std::unique_ptr<PreviousFrame> make_previous_frame(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings, const FilmHeader* fresh);
+std::unique_ptr<PreviousFrame> make_previous_frame(std::shared_ptr<const scene::Snapshot> snapshot,
+                                                   const GradusSettings& settings, const film::FilmHeader* fresh);
 
 // How a frame was sampled, for the stats of its delivery.
 struct FrameRecord {
-  Plan plan;
-  RenderStats stats;
+  render::Plan plan;
+  render::RenderStats stats;
 };
 
 // Whether pixels may differ in their samples, which a replay then repeats.
@@ -54,4 +56,4 @@ bool has_counts(const GradusSettings& settings);
 bool are_equivalent(const GradusSettings& a, const GradusSettings& b);
 bool show_same_region(const GradusSettings& a, const GradusSettings& b);
 
-}  // namespace gradus
+}  // namespace gradus::animation

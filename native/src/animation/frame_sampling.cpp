@@ -3,28 +3,29 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/threads.h"
-#include "base/scoped_timer.h"
-#include "base/error.h"
 #include "animation/fresh_replayed_shares.h"
 #include "animation/replay_plan.h"
 #include "animation/stored_samples.h"
+#include "base/error.h"
+#include "base/scoped_timer.h"
+#include "base/threads.h"
 #include "schema/options.h"
 
-namespace gradus {
+namespace gradus::animation {
 
-FrameSampling::FrameSampling(std::shared_ptr<Sequence> sequence, LoopInput input)
+FrameSampling::FrameSampling(std::shared_ptr<Sequence> sequence, render::LoopInput input)
     : sequence_(std::move(sequence)), input_(std::move(input)), stored_fresh_(stored_fresh()), fresh_(fresh_input()) {
   record_.plan = fresh_.plan();
   if (stored_fresh_ && record_.plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
     require_features(*stored_fresh_, sequence_->folder_.path(input_.settings.frame, FrameSamples::kFresh));
   }
   sequence_->warn_of_needs(record_.plan, &record_.stats.warnings);
-  record_.plan.chosen.emplace_back("differences over time", "frames of an animation: half of the samples repeat those of the frame before");
+  record_.plan.chosen.emplace_back("differences over time",
+                                   "frames of an animation: half of the samples repeat those of the frame before");
 }
 
-LoopInput FrameSampling::fresh_input() const {
-  LoopInput input = input_;
+render::LoopInput FrameSampling::fresh_input() const {
+  render::LoopInput input = input_;
   input.settings.samples = samples_of(FrameSamples::kFresh, input.settings.samples);
   input.settings.time_limit *= kFreshShareOfTime;
   input.settings.noise_threshold *= kFreshShareOfThreshold;
@@ -34,13 +35,13 @@ LoopInput FrameSampling::fresh_input() const {
 
 void FrameSampling::cancel() {
   const std::lock_guard lock(mutex_);
-  RenderTask::cancel();
+  render::RenderTask::cancel();
   fresh_.cancel();
   if (replayed_) replayed_->cancel();
 }
 
 GradusProgress FrameSampling::progress() const {
-  GradusProgress p = RenderTask::progress();
+  GradusProgress p = render::RenderTask::progress();
   const std::lock_guard lock(mutex_);
   if (is_ended()) return p;
   const GradusProgress fresh = fresh_.progress();
@@ -57,13 +58,13 @@ GradusProgress FrameSampling::progress() const {
 }
 
 std::string FrameSampling::stats() const {
-  const std::shared_ptr<const Film> half = fresh_film("its stats come");
-  return stats_json(record_.stats, record_.plan, *half);  // the record does not change after the end
+  const std::shared_ptr<const film::Film> half = fresh_film("its stats come");
+  return render::stats_json(record_.stats, record_.plan, *half);  // the record does not change after the end
 }
 
-std::shared_ptr<const Film> FrameSampling::film() const { return fresh_film("its frame comes"); }
+std::shared_ptr<const film::Film> FrameSampling::film() const { return fresh_film("its frame comes"); }
 
-std::shared_ptr<const Film> FrameSampling::fresh_film(const char* what) const {
+std::shared_ptr<const film::Film> FrameSampling::fresh_film(const char* what) const {
   const std::lock_guard one_reader(reading_);
   bool is_stored = false;
   {
@@ -72,7 +73,8 @@ std::shared_ptr<const Film> FrameSampling::fresh_film(const char* what) const {
     is_stored = !film_ && text_.empty();
   }
   // progress() and cancel() take the lock, so no file is read under it.
-  std::shared_ptr<const Film> half = is_stored ? read(FrameSamples::kFresh, StoredContent::kAll, [] { return false; }) : nullptr;
+  std::shared_ptr<const film::Film> half =
+      is_stored ? read(FrameSamples::kFresh, film_io::StoredContent::kAll, [] { return false; }) : nullptr;
   const std::lock_guard lock(mutex_);
   if (half) film_ = std::move(half);
   require_film(film_, what, "the render failed: ");
@@ -90,42 +92,46 @@ void FrameSampling::render() {
   sample_fresh_and_replayed();
 }
 
-std::optional<FilmHeader> FrameSampling::stored_fresh() const {
-  std::optional<FilmHeader> fresh = stored(FrameSamples::kFresh);
+std::optional<film::FilmHeader> FrameSampling::stored_fresh() const {
+  std::optional<film::FilmHeader> fresh = stored(FrameSamples::kFresh);
   const bool is_of_earlier = fresh && fresh->frame_number != input_.settings.frame;
-  if (is_of_earlier && !stored(FrameSamples::kReplayed)) return std::nullopt;  // of an earlier frame come both halves, or none
+  if (is_of_earlier && !stored(FrameSamples::kReplayed))
+    return std::nullopt;  // of an earlier frame come both halves, or none
   return fresh;
 }
 
-bool FrameSampling::has_enough(const FilmHeader& half, FrameSamples kind) const {
+bool FrameSampling::has_enough(const film::FilmHeader& half, FrameSamples kind) const {
   // Counted offsets have what they have by their base.
   const bool follows_fresh = kind == FrameSamples::kReplayed && has_counts(half.settings);
   return follows_fresh || has_as_many(half, kind, input_.settings);
 }
 
-std::optional<FilmHeader> FrameSampling::stored(FrameSamples kind) const {
+std::optional<film::FilmHeader> FrameSampling::stored(FrameSamples kind) const {
   const SequenceFolder& folder = sequence_->folder_;
   const int32_t number = input_.settings.frame;
   if (!folder.holds(number)) return std::nullopt;
-  std::optional<FilmHeader> frame = read_with_advice([&] { return folder.header(number, kind); });
-  // The file of an earlier frame that was as this one, and is no longer, or has too few samples: taken anew, or from that frame again.
+  std::optional<film::FilmHeader> frame = read_with_advice([&] { return folder.header(number, kind); });
+  // The file of an earlier frame that was as this one, and is no longer, or has too few samples: taken anew, or from
+  // that frame again.
   if (frame->frame_number != number && (!has_enough(*frame, kind) || differs_from_before())) return std::nullopt;
   GradusSettings settings = input_.settings;
   settings.frame = frame->frame_number;  // that of the first of several frames that are alike
-  if (settings.integrator == GRADUS_INTEGRATOR_AUTO) settings.integrator = frame->settings.integrator;  // what it came to
+  if (settings.integrator == GRADUS_INTEGRATOR_AUTO)
+    settings.integrator = frame->settings.integrator;  // what it came to
   require_same(*frame, kind, folder.path(number, kind), settings, input_.snapshot->content_key);
   return frame;
 }
 
-std::shared_ptr<Film> FrameSampling::read(FrameSamples kind, StoredContent content, const CancelCheck& cancel) const {
-  std::shared_ptr<Film> frame;
+std::shared_ptr<film::Film> FrameSampling::read(FrameSamples kind, film_io::StoredContent content,
+                                                const CancelCheck& cancel) const {
+  std::shared_ptr<film::Film> frame;
   tbb::task_arena(arena_size(input_.threads)).execute([&] {
     frame = read_with_advice([&] { return sequence_->folder_.load(input_.settings.frame, kind, content, cancel); });
   });
   return frame;
 }
 
-std::shared_ptr<Film> FrameSampling::load(FrameSamples kind, StoredContent content) {
+std::shared_ptr<film::Film> FrameSampling::load(FrameSamples kind, film_io::StoredContent content) {
   const ScopedTimer timer(&record_.stats.seconds.store, &record_.stats.cpu_seconds.store);
   return read(kind, content, [this] { return is_stopped(); });
 }
@@ -133,8 +139,9 @@ std::shared_ptr<Film> FrameSampling::load(FrameSamples kind, StoredContent conte
 bool FrameSampling::repeats_before() const {
   const PreviousFrame* before = sequence_->before_.get();
   const GradusSettings& now = input_.settings;
-  return before && before->sampled && before->snapshot->content_key == input_.snapshot->content_key && are_equivalent(before->settings, now) &&
-         before->settings.samples >= now.samples && before->settings.noise_threshold <= now.noise_threshold;
+  return before && before->sampled && before->snapshot->content_key == input_.snapshot->content_key &&
+         are_equivalent(before->settings, now) && before->settings.samples >= now.samples &&
+         before->settings.noise_threshold <= now.noise_threshold;
 }
 
 bool FrameSampling::differs_from_before() const {
@@ -142,7 +149,7 @@ bool FrameSampling::differs_from_before() const {
   return before && before->sampled && !repeats_before();
 }
 
-void FrameSampling::run(RenderLoop* loop) {
+void FrameSampling::run(render::RenderLoop* loop) {
   check_cancelled();
   loop->run();
   std::string text;
@@ -153,10 +160,12 @@ void FrameSampling::run(RenderLoop* loop) {
   record_.stats.stopped = stopped.empty() ? loop->what_it_took().stopped : stopped;
 }
 
-void FrameSampling::save(const Film& frame, FrameSamples kind) {
+void FrameSampling::save(const film::Film& frame, FrameSamples kind) {
   const ScopedTimer timer(&record_.stats.seconds.store, &record_.stats.cpu_seconds.store);
   const CancelCheck cancel = [this] { return is_stopped(); };
-  tbb::task_arena(arena_size(input_.threads)).execute([&] { sequence_->folder_.save(frame, input_.settings.frame, kind, cancel); });
+  tbb::task_arena(arena_size(input_.threads)).execute([&] {
+    sequence_->folder_.save(frame, input_.settings.frame, kind, cancel);
+  });
 }
 
 void FrameSampling::repeat_before() {
@@ -167,8 +176,8 @@ void FrameSampling::repeat_before() {
 }
 
 void FrameSampling::resume_samples() {
-  const std::shared_ptr<const Film> stored_film = load(FrameSamples::kFresh);
-  resumed_mean_ = mean_samples(*stored_film);
+  const std::shared_ptr<const film::Film> stored_film = load(FrameSamples::kFresh);
+  resumed_mean_ = film::mean_samples(*stored_film);
   fresh_.resume(stored_film);
 }
 
@@ -177,10 +186,12 @@ void FrameSampling::sample_fresh_and_replayed() {
              samples_fresh = !stored_fresh_ || continues;
   if (continues) resume_samples();
   if (samples_fresh) run(&fresh_);
-  const std::shared_ptr<const Film> sampled = samples_fresh ? fresh_.film() : nullptr;
-  const FilmHeader fresh = sampled ? header_of(*sampled) : *stored_fresh_;
+  const std::shared_ptr<const film::Film> sampled = samples_fresh ? fresh_.film() : nullptr;
+  const film::FilmHeader fresh = sampled ? film::header_of(*sampled) : *stored_fresh_;
   std::vector<uint32_t> counts;
-  if (has_counts(input_.settings)) counts = samples_of_pixels(sampled ? *sampled : *load(FrameSamples::kFresh, StoredContent::kSamples));
+  if (has_counts(input_.settings))
+    counts =
+        film::samples_of_pixels(sampled ? *sampled : *load(FrameSamples::kFresh, film_io::StoredContent::kSamples));
   sample_replayed(fresh, counts, samples_fresh);
   if (sampled) save(*sampled, FrameSamples::kFresh);
   if (!sampled && !replayed_) record_.stats.stopped = "stored";
@@ -189,11 +200,12 @@ void FrameSampling::sample_fresh_and_replayed() {
   film_ = sampled;
 }
 
-void FrameSampling::sample_replayed(const FilmHeader& fresh, const std::vector<uint32_t>& fresh_counts, bool samples_fresh) {
-  LoopInput input = input_;
+void FrameSampling::sample_replayed(const film::FilmHeader& fresh, const std::vector<uint32_t>& fresh_counts,
+                                    bool samples_fresh) {
+  render::LoopInput input = input_;
   input.whole_samples = input.settings.samples;
   input.settings.samples = samples_of(FrameSamples::kReplayed, input.settings.samples);
-  std::optional<FilmHeader> found = stored(FrameSamples::kReplayed);
+  std::optional<film::FilmHeader> found = stored(FrameSamples::kReplayed);
   if (found && found->frame_number != fresh.frame_number) found.reset();
   if (found && fresh.frame_number != input_.settings.frame) return;  // both are those of the earlier frame
   if (found && !replays_before(*found)) found.reset();
@@ -202,12 +214,15 @@ void FrameSampling::sample_replayed(const FilmHeader& fresh, const std::vector<u
   if (found && !samples_fresh && input.settings.time_limit > 0.0f) return;  // as many as the time of its base allowed
   input.replay = follow(fresh, fresh_counts);
   const std::vector<uint32_t>& counts = input.replay->counts;
-  if (found && counted && samples_of_pixels(*load(FrameSamples::kReplayed, StoredContent::kSamples)) == counts) return;
+  if (found && counted &&
+      film::samples_of_pixels(*load(FrameSamples::kReplayed, film_io::StoredContent::kSamples)) == counts)
+    return;
   const bool may_resume = found && !counted && !has_counts(found->settings);
-  const std::shared_ptr<const Film> stored_replayed = may_resume ? load(FrameSamples::kReplayed) : nullptr;
-  if (stored_replayed && replays_same(stored_replayed->replayed, input.replay->replay_map)) input.resumed = stored_replayed;
+  const std::shared_ptr<const film::Film> stored_replayed = may_resume ? load(FrameSamples::kReplayed) : nullptr;
+  if (stored_replayed && film::replays_same(stored_replayed->replayed, input.replay->replay_map))
+    input.resumed = stored_replayed;
   if (counted) input.settings.samples = *std::max_element(counts.begin(), counts.end());
-  auto replayed = std::make_unique<RenderLoop>(std::move(input));
+  auto replayed = std::make_unique<render::RenderLoop>(std::move(input));
   {
     const std::lock_guard lock(mutex_);
     replayed_ = std::move(replayed);
@@ -216,9 +231,11 @@ void FrameSampling::sample_replayed(const FilmHeader& fresh, const std::vector<u
   save(*replayed_->film(), FrameSamples::kReplayed);
 }
 
-bool FrameSampling::follows_before() const { return follows(sequence_->before_.get(), *input_.snapshot, input_.settings); }
+bool FrameSampling::follows_before() const {
+  return follows(sequence_->before_.get(), *input_.snapshot, input_.settings);
+}
 
-bool FrameSampling::replays_before(const FilmHeader& replayed) const {
+bool FrameSampling::replays_before(const film::FilmHeader& replayed) const {
   const PreviousFrame* before = sequence_->before_.get();
   if (!before) return true;
   if (!follows_before()) return replayed.replayed_frame == input_.settings.frame;
@@ -226,25 +243,28 @@ bool FrameSampling::replays_before(const FilmHeader& replayed) const {
   return replayed.replayed_frame == before->stream_frame && replayed.replayed_seed == before->settings.seed && shows_it;
 }
 
-std::shared_ptr<const Replay> FrameSampling::follow(const FilmHeader& fresh, const std::vector<uint32_t>& counts) {
-  auto replay = std::make_shared<Replay>();
+std::shared_ptr<const render::Replay> FrameSampling::follow(const film::FilmHeader& fresh,
+                                                            const std::vector<uint32_t>& counts) {
+  auto replay = std::make_shared<render::Replay>();
   const GradusSettings& now = input_.settings;
-  replay->replay_map = {now.frame, PixelCorrespondence{std::vector<int32_t>(size_t(fresh.region.area()), kNoCorrespondence)}, fresh.scene_key, now.seed};
+  replay->replay_map = {
+      now.frame, film::PixelCorrespondence{std::vector<int32_t>(size_t(fresh.region.area()), film::kNoCorrespondence)},
+      fresh.scene_key, now.seed};
   const PreviousFrame* before = sequence_->before_.get();
   if (follows_before()) {
     const ScopedTimer timer(&record_.stats.seconds.correspondence, &record_.stats.cpu_seconds.correspondence);
     tbb::task_arena(arena_size(input_.threads)).execute([&] {
-      replay->replay_map =
-          make_replay_map(*before, *input_.snapshot, input_.settings, record_.plan.components, fresh.region, [this] { return is_stopped(); });
+      replay->replay_map = make_replay_map(*before, *input_.snapshot, input_.settings, record_.plan.components,
+                                           fresh.region, [this] { return is_stopped(); });
       check_cancelled();
     });
   }
-  replay->components = replays_of_components(replay->replay_map);
+  replay->components = render::replays_of_components(replay->replay_map);
   if (const uint64_t apart = replay->components.pixels; apart > 0) {
     const double share = 100.0 * double(apart) / double(fresh.region.area());
-    record_.plan.chosen.emplace_back(
-        "replays of components by themselves",
-        "in " + std::to_string(std::lround(share)) + " % of the pixels what mirrors and glass show goes another way than they do");
+    record_.plan.chosen.emplace_back("replays of components by themselves",
+                                     "in " + std::to_string(std::lround(share)) +
+                                         " % of the pixels what mirrors and glass show goes another way than they do");
   }
   if (!has_counts(input_.settings)) return replay;
   const double mean = mean_of(counts);
@@ -252,23 +272,25 @@ std::shared_ptr<const Replay> FrameSampling::follow(const FilmHeader& fresh, con
   replay->counts = replayed_counts(replay->replay_map, is_counted ? before : nullptr, mean);
   const double seconds = fresh_.what_it_took().seconds.sample;
   if (input_.settings.time_limit > 0.0f && seconds > 0.0) {
-    limit_mean((1.0 - kFreshShareOfTime) * input_.settings.time_limit / seconds * (mean - resumed_mean_), &replay->counts);
+    limit_mean((1.0 - kFreshShareOfTime) * input_.settings.time_limit / seconds * (mean - resumed_mean_),
+               &replay->counts);
   }
   return replay;
 }
 
-void FrameSampling::finish(const FilmHeader& fresh, std::vector<uint32_t> counts) {
+void FrameSampling::finish(const film::FilmHeader& fresh, std::vector<uint32_t> counts) {
   auto before = make_previous_frame(input_.snapshot, input_.settings, &fresh);
   before->counts = std::move(counts);
   sequence_->before_ = std::move(before);
   record_.stats.total_seconds = seconds();
   record_.stats.process_cpu = process_cpu_seconds();
   sequence_->records_[input_.settings.frame] = record_;
-  sequence_->traits_[input_.settings.frame] = traits_of(fresh, sequence_->folder_.header(input_.settings.frame, FrameSamples::kReplayed));
+  sequence_->traits_[input_.settings.frame] =
+      traits_of(fresh, sequence_->folder_.header(input_.settings.frame, FrameSamples::kReplayed));
   GradusSettings delivered = input_.settings;
   delivered.reconstruction = record_.plan.reconstruction;
   delivered.denoiser = record_.plan.denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
   sequence_->folder_.save_settings(delivered, delivered.frame);
 }
 
-}  // namespace gradus
+}  // namespace gradus::animation

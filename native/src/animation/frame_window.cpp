@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gradus {
+namespace gradus::animation {
 
 namespace {
 
-const std::vector<float>& plane_of(const GradientImages& images, RowKind kind) {
-  if (kind == RowKind::kDx || kind == RowKind::kDxDt) return images.dx;
-  if (kind == RowKind::kDy || kind == RowKind::kDyDt) return images.dy;
+const std::vector<float>& plane_of(const film::GradientImages& images, reconstruct::RowKind kind) {
+  if (kind == reconstruct::RowKind::kDx || kind == reconstruct::RowKind::kDxDt) return images.dx;
+  if (kind == reconstruct::RowKind::kDy || kind == reconstruct::RowKind::kDyDt) return images.dy;
   return images.primal;
 }
 
@@ -30,16 +30,16 @@ FrameWindow::FrameWindow(std::vector<std::shared_ptr<const TemporalFrame>> frame
   }
 }
 
-WindowSize FrameWindow::size() const {
-  const GradientImages& first = frames_.front()->fresh.values;
+reconstruct::WindowSize FrameWindow::size() const {
+  const film::GradientImages& first = frames_.front()->fresh.values;
   return {first.width, first.height, first.channels, int(frames_.size())};
 }
 
-void FrameWindow::read(RowKind kind, int t, int y, Part part, float* out) const {
+void FrameWindow::read(reconstruct::RowKind kind, int t, int y, Part part, float* out) const {
   const TemporalFrame& frame = *frames_[size_t(t)];
   const size_t width = size_t(size().width), channels = size_t(size().channels), first = size_t(y) * width;
   const float* fresh = plane_of(frame.fresh.*part, kind).data();
-  if (!is_temporal(kind)) {
+  if (!reconstruct::is_temporal(kind)) {
     const float* replay = plane_of(frame.replay.*part, kind).data();
     for (size_t i = first; i < first + width; ++i) {
       const float share = frame.replay_share[i];
@@ -55,14 +55,17 @@ void FrameWindow::read(RowKind kind, int t, int y, Part part, float* out) const 
   for (size_t i = first; i < first + width; ++i) {
     const int32_t link = correspondence_[size_t(t)].pixel[i];
     for (size_t c = 0; c < channels; ++c) {
-      *out++ = link == kNoCorrespondence ? kAbsentPair : next[size_t(link) * channels + c] - fresh[i * channels + c];
+      *out++ = link == film::kNoCorrespondence ? film::kAbsentPair
+                                               : next[size_t(link) * channels + c] - fresh[i * channels + c];
     }
   }
 }
 
-void FrameWindow::read_row(RowKind kind, int t, int y, float* out) const { read(kind, t, y, &HalvedImages::values, out); }
+void FrameWindow::read_row(reconstruct::RowKind kind, int t, int y, float* out) const {
+  read(kind, t, y, &HalvedImages::values, out);
+}
 
-void FrameWindow::read_half_differences(RowKind kind, int t, int y, float* out) const {
+void FrameWindow::read_half_differences(reconstruct::RowKind kind, int t, int y, float* out) const {
   read(kind, t, y, &HalvedImages::half_differences, out);
 }
 
@@ -73,9 +76,9 @@ void FrameWindow::read_correspondence(int t, int y, int32_t* out) const {
 
 void FrameWindow::read_off_centre(int t, int y, Vec2* out) const {
   const std::vector<Vec2>& off_centre = correspondence_[size_t(t)].off_centre;
-  if (off_centre.empty()) return HalvedWindowSource::read_off_centre(t, y, out);
+  if (off_centre.empty()) return reconstruct::HalvedWindowSource::read_off_centre(t, y, out);
   const auto first = off_centre.begin() + ptrdiff_t(y) * size().width;
   std::copy(first, first + size().width, out);
 }
 
-}  // namespace gradus
+}  // namespace gradus::animation

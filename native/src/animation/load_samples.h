@@ -7,9 +7,9 @@
 #include "base/cancel_check.h"
 #include "film/film.h"
 
-namespace gradus {
+namespace gradus::animation {
 
 // A part of a frame, by its place: its own half, or the one that replays the frame before. Throws the Error CANCELLED.
-using LoadSamples = std::function<std::shared_ptr<Film>(int place, const CancelCheck& cancel)>;
+using LoadSamples = std::function<std::shared_ptr<film::Film>(int place, const CancelCheck& cancel)>;
 
-}  // namespace gradus
+}  // namespace gradus::animation

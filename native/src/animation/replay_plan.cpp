@@ -5,28 +5,30 @@
 #include <numeric>
 
 #include "integrator/pixel_loop.h"
-#include "render/component_replay.h"
 #include "motion/component_correspondence.h"
 #include "motion/component_tracking.h"
 #include "motion/pixel_matching.h"
+#include "render/component_replay.h"
 
-namespace gradus {
+namespace gradus::animation {
 
-bool follows(const PreviousFrame* before, const Snapshot& now, const GradusSettings& settings) {
+bool follows(const PreviousFrame* before, const scene::Snapshot& now, const GradusSettings& settings) {
   return before && before->settings.width == settings.width && before->settings.height == settings.height &&
-         show_same_region(before->settings, settings) && !is_shot_change(before->snapshot->camera, now.camera);
+         show_same_region(before->settings, settings) && !motion::is_shot_change(before->snapshot->camera, now.camera);
 }
 
 namespace {
 
-using Sources = std::vector<PixelCorrespondence>;
+using Sources = std::vector<film::PixelCorrespondence>;
 
 // What is left for Residual is mostly seen in mirrors of mirrors: it goes with what goes its own way there.
-PixelCorrespondence sources_of_residual(const PixelCorrespondence& surface, const Sources& others) {
-  PixelCorrespondence replay_map = surface;
-  for (const PixelCorrespondence& own : others) {
+film::PixelCorrespondence sources_of_residual(const film::PixelCorrespondence& surface, const Sources& others) {
+  film::PixelCorrespondence replay_map = surface;
+  for (const film::PixelCorrespondence& own : others) {
     for (size_t i = 0; i < own.pixel.size(); ++i) {
-      if (own.pixel[i] == kNoCorrespondence || own.pixel[i] == surface.pixel[i] || replay_map.pixel[i] != surface.pixel[i]) continue;
+      if (own.pixel[i] == film::kNoCorrespondence || own.pixel[i] == surface.pixel[i] ||
+          replay_map.pixel[i] != surface.pixel[i])
+        continue;
       replay_map.pixel[i] = own.pixel[i];
       replay_map.off_centre[i] = own.off_centre[i];
     }
@@ -34,16 +36,19 @@ PixelCorrespondence sources_of_residual(const PixelCorrespondence& surface, cons
   return replay_map;
 }
 
-Sources sources_of_components(const CentreView& from, const CentreView& to, const GradusSettings& settings, const ComponentSet& components,
-                              const PixelCorrespondence& correspondence, const PixelCorrespondence& surface, const CancelCheck& cancel) {
+Sources sources_of_components(const motion::CentreView& from, const motion::CentreView& to,
+                              const GradusSettings& settings, const lpe::ComponentSet& components,
+                              const film::PixelCorrespondence& correspondence, const film::PixelCorrespondence& surface,
+                              const CancelCheck& cancel) {
   if (components.count() == 1 || settings.component_replays == 0) return {};
   Sources replay_map(static_cast<size_t>(components.count()));
-  const ChainTracer tracer{*to.snapshot, to.camera, settings};
-  const std::vector<ChainMotion> ways = track_components(from, tracer, components, components.all() & ~components.residual(), cancel);
+  const motion::ChainTracer tracer{*to.snapshot, to.camera, settings};
+  const std::vector<motion::ChainMotion> ways =
+      motion::track_components(from, tracer, components, components.all() & ~components.residual(), cancel);
   bool any = false;
   for (size_t c = 0; c < ways.size(); ++c) {
-    if (!is_seen_through_smooth(ways[c])) continue;
-    replay_map[c] = inverse_correspondence(match_component(correspondence, from.region, ways[c]));
+    if (!motion::is_seen_through_smooth(ways[c])) continue;
+    replay_map[c] = motion::inverse_correspondence(motion::match_component(correspondence, from.region, ways[c]));
     any = true;
   }
   if (!any) return {};
@@ -53,17 +58,21 @@ Sources sources_of_components(const CentreView& from, const CentreView& to, cons
 
 }  // namespace
 
-ReplayMap make_replay_map(const PreviousFrame& before, const Snapshot& now, const GradusSettings& settings, const ComponentSet& components,
-                           const Region& region, const CancelCheck& cancel) {
-  const auto view = [&](const Snapshot& snapshot) { return view_centres(snapshot, settings.width, settings.height, region, cancel); };
-  const CentreView from = view(*before.snapshot), to = view(now);
+film::ReplayMap make_replay_map(const PreviousFrame& before, const scene::Snapshot& now, const GradusSettings& settings,
+                                const lpe::ComponentSet& components, const Region& region, const CancelCheck& cancel) {
+  const auto view = [&](const scene::Snapshot& snapshot) {
+    return motion::view_centres(snapshot, settings.width, settings.height, region, cancel);
+  };
+  const motion::CentreView from = view(*before.snapshot), to = view(now);
   if (cancel()) return {};
-  const Snapshot& scene = *before.snapshot;
-  const bool shares = shares_jitter(Camera(scene.camera, settings.width, settings.height), scene);
-  const PixelCorrespondence correspondence = match_pixels(from, to);
-  ReplayMap replay_map{before.stream_frame, inverse_correspondence(correspondence), scene.content_key, before.settings.seed, shares};
-  replay_map.of_component = sources_of_components(from, to, settings, components, correspondence, replay_map.correspondence, cancel);
-  limit_component_replays(&replay_map);
+  const scene::Snapshot& scene = *before.snapshot;
+  const bool shares = integrator::shares_jitter(camera::Camera(scene.camera, settings.width, settings.height), scene);
+  const film::PixelCorrespondence correspondence = motion::match_pixels(from, to);
+  film::ReplayMap replay_map{before.stream_frame, motion::inverse_correspondence(correspondence), scene.content_key,
+                             before.settings.seed, shares};
+  replay_map.of_component =
+      sources_of_components(from, to, settings, components, correspondence, replay_map.correspondence, cancel);
+  render::limit_component_replays(&replay_map);
   return replay_map;
 }
 
@@ -71,12 +80,12 @@ double mean_of(const std::vector<uint32_t>& counts) {
   return double(std::accumulate(counts.begin(), counts.end(), uint64_t{0})) / double(counts.size());
 }
 
-std::vector<uint32_t> replayed_counts(const ReplayMap& replay_map, const PreviousFrame* before, double mean) {
+std::vector<uint32_t> replayed_counts(const film::ReplayMap& replay_map, const PreviousFrame* before, double mean) {
   std::vector<uint32_t> counts(replay_map.correspondence.pixel.size(), uint32_t(std::max(1L, std::lround(mean))));
   if (!before || before->counts.empty()) return counts;
   for (size_t i = 0; i < counts.size(); ++i) {
     const int32_t source = replay_map.correspondence.pixel[i];
-    if (source != kNoCorrespondence) counts[i] = before->counts[size_t(source)];
+    if (source != film::kNoCorrespondence) counts[i] = before->counts[size_t(source)];
   }
   return counts;
 }
@@ -87,4 +96,4 @@ void limit_mean(double maximum, std::vector<uint32_t>* counts) {
   for (uint32_t& count : *counts) count = std::max(1u, uint32_t(std::lround(count * maximum / mean)));
 }
 
-}  // namespace gradus
+}  // namespace gradus::animation

@@ -2,24 +2,25 @@
 
 #include <algorithm>
 
+#include "animation/frame_delivery.h"
+#include "animation/frame_sampling.h"
+#include "animation/fresh_replayed_shares.h"
+#include "animation/spooled_frames.h"
+#include "animation/stored_samples.h"
+#include "animation/streamed_frames.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "render/memory_estimate.h"
 #include "render/resume.h"
-#include "animation/frame_delivery.h"
-#include "animation/frame_sampling.h"
-#include "animation/fresh_replayed_shares.h"
-#include "animation/stored_samples.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
-#include "animation/spooled_frames.h"
-#include "animation/streamed_frames.h"
 
-namespace gradus {
+namespace gradus::animation {
 
 namespace {
 
-// No pilot: what it found in a frame would not hold for the next. Without gradients the features and differences over time are left.
+// No pilot: what it found in a frame would not hold for the next. Without gradients the features and differences over
+// time are left.
 uint32_t integrator_of(const GradusSettings& settings) {
   const uint32_t r = settings.reconstruction;
   const bool by_features = r == GRADUS_RECONSTRUCTION_AUTO || r == GRADUS_RECONSTRUCTION_REGULARIZED;
@@ -27,8 +28,9 @@ uint32_t integrator_of(const GradusSettings& settings) {
 }
 
 // Whether a stored frame is what the sequence would sample of the snapshot.
-bool is_frame_of(const FilmHeader& stored, const Snapshot& snapshot, GradusSettings settings) {
-  if (settings.integrator == GRADUS_INTEGRATOR_AUTO) settings.integrator = stored.settings.integrator;  // what it came to
+bool is_frame_of(const film::FilmHeader& stored, const scene::Snapshot& snapshot, GradusSettings settings) {
+  if (settings.integrator == GRADUS_INTEGRATOR_AUTO)
+    settings.integrator = stored.settings.integrator;  // what it came to
   return stored.scene_key == snapshot.content_key && are_equivalent(stored.settings, settings) &&
          has_as_many(stored, FrameSamples::kFresh, settings);
 }
@@ -46,10 +48,15 @@ bool sequence_applies(const GradusSettings& settings, std::string* why_not) {
   return why_not->empty();
 }
 
-Sequence::Sequence(std::shared_ptr<Device> device, const SequenceSettings& settings, IntegratorFactory factory)
-    : device_(std::move(device)), settings_(settings), factory_(std::move(factory)), folder_(settings.folder), last_(settings.last) {
+Sequence::Sequence(std::shared_ptr<scene::Device> device, const SequenceSettings& settings,
+                   render::IntegratorFactory factory)
+    : device_(std::move(device)),
+      settings_(settings),
+      factory_(std::move(factory)),
+      folder_(settings.folder),
+      last_(settings.last) {
   if (settings.step < 1) throw invalid_argument("a sequence has a step of at least 1");
-  WindowGrid(job_places(), settings.windows);  // which looks at them
+  reconstruct::WindowGrid(job_places(), settings.windows);  // which looks at them
 }
 
 int Sequence::place_of(int32_t frame) const {
@@ -63,27 +70,28 @@ int32_t Sequence::frame_at(int place) const {
   return int32_t(settings_.first + (int64_t(place) - place_of(settings_.first)) * int64_t(settings_.step));
 }
 
-FrameRange Sequence::job_places() const {
+reconstruct::FrameRange Sequence::job_places() const {
   if (settings_.last < settings_.first) throw invalid_argument("a sequence ends before it begins");
-  FrameRange range{place_of(settings_.first), 0};
+  reconstruct::FrameRange range{place_of(settings_.first), 0};
   range.last = range.first + int((int64_t(settings_.last) - settings_.first) / settings_.step);
   return range;
 }
 
-void Sequence::warn_of_needs(const Plan& plan, std::vector<std::string>* warnings) {
+void Sequence::warn_of_needs(const render::Plan& plan, std::vector<std::string>* warnings) {
   if (needs_are_checked_) return;
   needs_are_checked_ = true;
-  const WindowShape& windows = settings_.windows;
+  const reconstruct::WindowShape& windows = settings_.windows;
   const int all = job_places().count(), at_a_time = std::min(all, 2 * windows.frames - windows.overlap);
-  const std::string memory = memory_warning(estimated_memory(plan, windows), machine_memory_bytes());
-  const std::string disk = disk_warning(estimated_files(plan, folder_.is_temporary() ? at_a_time : all), folder_.path());
+  const std::string memory = render::memory_warning(render::estimated_memory(plan, windows), machine_memory_bytes());
+  const std::string disk =
+      render::disk_warning(render::estimated_files(plan, folder_.is_temporary() ? at_a_time : all), folder_.path());
   for (const std::string& warning : {memory, disk}) {
     if (!warning.empty()) warnings->push_back(warning);
   }
 }
 
-FrameRange Sequence::places_with_neighbours() const {
-  FrameRange range = job_places();
+reconstruct::FrameRange Sequence::places_with_neighbours() const {
+  reconstruct::FrameRange range = job_places();
   if (folder_.is_temporary()) return range;
   const int maximum = settings_.windows.frames;  // more have no share
   for (int i = 0; i < maximum && folder_.holds(frame_at(range.first - 1)); ++i) --range.first;
@@ -95,23 +103,26 @@ const FrameTraits& Sequence::traits_at(int place) {
   const int32_t frame = frame_at(place);
   const auto known = traits_.find(frame);
   if (known != traits_.end()) return known->second;
-  return traits_[frame] = read_with_advice(
-             [&] { return traits_of(folder_.header(frame, FrameSamples::kFresh), folder_.header(frame, FrameSamples::kReplayed)); });
+  return traits_[frame] = read_with_advice([&] {
+           return traits_of(folder_.header(frame, FrameSamples::kFresh),
+                            folder_.header(frame, FrameSamples::kReplayed));
+         });
 }
 
 bool Sequence::shares_window_with_previous(int place, uint32_t reconstruction) {
   if (passed_by_.count(frame_at(place)) > 0 || passed_by_.count(frame_at(place - 1)) > 0) return false;
   const FrameTraits &here = traits_at(place), &before = traits_at(place - 1);
-  const FrameRange own = job_places();
+  const reconstruct::FrameRange own = job_places();
   const bool one_job = own.contains(place) && own.contains(place - 1);  // its settings may change from frame to frame
   return (one_job || are_equivalent(before.settings, here.settings)) && share_windows(before, here, reconstruction);
 }
 
-FrameRange Sequence::needs(int32_t frame) const {
-  const FrameRange own = job_places();
-  const WindowGrid grid(own, settings_.windows);
-  FrameRange places = grid.around(place_of(frame));
-  if (settings_.with_flow) places.last = std::max(places.last, grid.around(std::min(place_of(frame) + 1, own.last)).last);
+reconstruct::FrameRange Sequence::needs(int32_t frame) const {
+  const reconstruct::FrameRange own = job_places();
+  const reconstruct::WindowGrid grid(own, settings_.windows);
+  reconstruct::FrameRange places = grid.around(place_of(frame));
+  if (settings_.with_flow)
+    places.last = std::max(places.last, grid.around(std::min(place_of(frame) + 1, own.last)).last);
   return {std::max(frame_at(places.first), settings_.first), std::min(frame_at(places.last), last_)};
 }
 
@@ -120,36 +131,38 @@ void Sequence::end_at(int32_t frame) {
   for (auto& [components, pictures] : pictures_) pictures->end_at(place_of(last_));
 }
 
-std::unique_ptr<RenderTask> Sequence::sample(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings) {
+std::unique_ptr<render::RenderTask> Sequence::sample(std::shared_ptr<const scene::Snapshot> snapshot,
+                                                     const GradusSettings& settings) {
   std::string why_not;
   if (!sequence_applies(settings, &why_not)) throw invalid_argument("no differences over time: " + why_not);
   place_of(settings.frame);  // looks at it
-  LoopInput input;
+  render::LoopInput input;
   input.device = device_;
   input.snapshot = std::move(snapshot);
   input.settings = settings;
   input.settings.integrator = integrator_of(settings);
-  input.threads = threads_of(settings, device_.get());
+  input.threads = render::threads_of(settings, device_.get());
   input.factory = factory_;
   input.samples_only = true;
   return std::make_unique<FrameSampling>(shared_from_this(), std::move(input));
 }
 
-void Sequence::pass_by(std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings) {
+void Sequence::pass_by(std::shared_ptr<const scene::Snapshot> snapshot, const GradusSettings& settings) {
   GradusSettings resolved = settings;
   resolved.integrator = integrator_of(settings);
   if (settings.frame >= settings_.first && settings.frame <= settings_.last) passed_by_.insert(settings.frame);
-  std::optional<FilmHeader> fresh;  // that of another part of the job
+  std::optional<film::FilmHeader> fresh;  // that of another part of the job
   if (folder_.holds(settings.frame)) fresh = folder_.header(settings.frame, FrameSamples::kFresh);
   if (fresh && !is_frame_of(*fresh, *snapshot, resolved)) fresh.reset();
   auto before = make_previous_frame(std::move(snapshot), resolved, fresh ? &*fresh : nullptr);
   if (fresh && has_counts(settings)) {
-    before->counts = samples_of_pixels(*folder_.load(settings.frame, FrameSamples::kFresh, StoredContent::kSamples));
+    before->counts =
+        film::samples_of_pixels(*folder_.load(settings.frame, FrameSamples::kFresh, film_io::StoredContent::kSamples));
   }
   before_ = std::move(before);
 }
 
-std::unique_ptr<RenderTask> Sequence::deliver(int32_t frame, const GradusSettings* settings) {
+std::unique_ptr<render::RenderTask> Sequence::deliver(int32_t frame, const GradusSettings* settings) {
   return std::make_unique<FrameDelivery>(shared_from_this(), frame, settings);
 }
 
@@ -157,50 +170,60 @@ LoadSamples Sequence::load_samples(FrameSamples kind, const std::vector<std::str
   return [this, kind, components](int place, const CancelCheck& cancel) {
     return read_with_advice([&] {
       if (components.size() == 1) return folder_.load_component(frame_at(place), kind, components[0], cancel);
-      const std::shared_ptr<Film> frame = folder_.load(frame_at(place), kind, StoredContent::kAll, cancel);
-      select_components(components, frame.get());
+      const std::shared_ptr<film::Film> frame =
+          folder_.load(frame_at(place), kind, film_io::StoredContent::kAll, cancel);
+      film::select_components(components, frame.get());
       return frame;
     });
   };
 }
 
-void Sequence::merge(int32_t number, Film* fresh, const Film& replayed) const {
-  const ComponentContent of_base = component_content(*fresh), of_offset = component_content(replayed);
-  if (of_base.non_specular != of_offset.non_specular || of_base.details != of_offset.details || fresh->count[0].size() != replayed.count[0].size() ||
-      fresh->channels != replayed.channels || fresh->gradients != replayed.gradients || fresh->passes.size() != replayed.passes.size() ||
-      !same_components(*fresh, replayed) || sampling_key(fresh->settings) != sampling_key(replayed.settings)) {
-    throw invalid_argument("stored frame " + folder_.path(number, FrameSamples::kFresh) + " and its offset do not belong together");
+void Sequence::merge(int32_t number, film::Film* fresh, const film::Film& replayed) const {
+  const film::ComponentContent of_base = film::component_content(*fresh), of_offset = film::component_content(replayed);
+  if (of_base.non_specular != of_offset.non_specular || of_base.details != of_offset.details ||
+      fresh->count[0].size() != replayed.count[0].size() || fresh->channels != replayed.channels ||
+      fresh->gradients != replayed.gradients || fresh->passes.size() != replayed.passes.size() ||
+      !film::same_components(*fresh, replayed) ||
+      schema::sampling_key(fresh->settings) != schema::sampling_key(replayed.settings)) {
+    throw invalid_argument("stored frame " + folder_.path(number, FrameSamples::kFresh) +
+                           " and its offset do not belong together");
   }
-  add_sums(fresh, replayed);
+  render::add_sums(fresh, replayed);
   fresh->frame_number = number;
   fresh->settings.frame = number;
   fresh->settings.samples += replayed.settings.samples;
   fresh->shared = {};
 }
 
-SequenceSource Sequence::source(const SequenceMethod& method, const std::vector<std::string>& components) const {
-  const LoadSamples fresh = load_samples(FrameSamples::kFresh, components), replayed = load_samples(FrameSamples::kReplayed, components);
-  const auto merged = [this](int place, std::shared_ptr<Film> frame, const Film& replay) {
+reconstruct::SequenceSource Sequence::source(const reconstruct::SequenceMethod& method,
+                                             const std::vector<std::string>& components) const {
+  const LoadSamples fresh = load_samples(FrameSamples::kFresh, components),
+                    replayed = load_samples(FrameSamples::kReplayed, components);
+  const auto merged = [this](int place, std::shared_ptr<film::Film> frame, const film::Film& replay) {
     merge(frame_at(place), frame.get(), replay);
     return frame;
   };
   const auto spooled = std::make_shared<SpooledFrames>(fresh, replayed, TemporalContent{.halves = method.with_error});
   const auto streamed = std::make_shared<StreamedFrames>(fresh, replayed, merged);
-  return {[spooled](const FrameRange& window, const CancelCheck& cancel) { return spooled->window(window.first, window.last, cancel); },
+  return {[spooled](const reconstruct::FrameRange& window, const CancelCheck& cancel) {
+            return spooled->window(window.first, window.last, cancel);
+          },
           [streamed](int place, const CancelCheck& cancel) { return streamed->frame(place, cancel); },
           [streamed](int place, const CancelCheck& cancel) { return streamed->differences(place, cancel); }};
 }
 
-SequencePictures* Sequence::pictures(const std::vector<std::string>& components, const SequenceMethod& method, int32_t frame) {
+reconstruct::SequencePictures* Sequence::pictures(const std::vector<std::string>& components,
+                                                  const reconstruct::SequenceMethod& method, int32_t frame) {
   const int place = place_of(frame);
-  std::unique_ptr<SequencePictures>& pictures = pictures_[components];
+  std::unique_ptr<reconstruct::SequencePictures>& pictures = pictures_[components];
   if (!pictures || !(pictures->method() == method) || !pictures->has(place)) {
-    FrameRange places = places_with_neighbours();
-    const int begin = WindowGrid(places, settings_.windows).around(place).first;
+    reconstruct::FrameRange places = places_with_neighbours();
+    const int begin = reconstruct::WindowGrid(places, settings_.windows).around(place).first;
     int first = place;
     while (first > begin && shares_window_with_previous(first, method.reconstruction)) --first;
     if (first > begin) places.first = first;
-    pictures = std::make_unique<SequencePictures>(places, settings_.windows, source(method, components), method);
+    pictures =
+        std::make_unique<reconstruct::SequencePictures>(places, settings_.windows, source(method, components), method);
     if (last_ < settings_.last) pictures->end_at(place_of(last_));
   }
   int last = place;
@@ -211,24 +234,32 @@ SequencePictures* Sequence::pictures(const std::vector<std::string>& components,
 }
 
 void Sequence::retain_pictures(const std::vector<std::vector<std::string>>& groups) {
-  std::erase_if(pictures_, [&](const auto& entry) { return std::find(groups.begin(), groups.end(), entry.first) == groups.end(); });
+  std::erase_if(pictures_, [&](const auto& entry) {
+    return std::find(groups.begin(), groups.end(), entry.first) == groups.end();
+  });
 }
 
-Tracking Sequence::flows_to(int place, uint32_t reconstruction) {
-  if (!settings_.with_flow || settings_.step != 1) return Tracking::NoNeighbour;  // the surfaces' motion is that from frame to frame
+motion::Tracking Sequence::flows_to(int place, uint32_t reconstruction) {
+  if (!settings_.with_flow || settings_.step != 1)
+    return motion::Tracking::NoNeighbour;  // the surfaces' motion is that from frame to frame
   const int32_t frame = frame_at(place);
   const bool comes = last_ == settings_.last || frame <= last_;
-  if (!comes || !folder_.holds(frame) || !folder_.holds(frame - 1) || !shares_window_with_previous(place, reconstruction)) return Tracking::NoNeighbour;
-  const WindowGrid grid(places_with_neighbours(), settings_.windows);
-  if (!folder_.holds(frame_at(grid.around(place - 1).first))) return Tracking::NoNeighbour;  // forgotten: it was delivered before
+  if (!comes || !folder_.holds(frame) || !folder_.holds(frame - 1) ||
+      !shares_window_with_previous(place, reconstruction))
+    return motion::Tracking::NoNeighbour;
+  const reconstruct::WindowGrid grid(places_with_neighbours(), settings_.windows);
+  if (!folder_.holds(frame_at(grid.around(place - 1).first)))
+    return motion::Tracking::NoNeighbour;  // forgotten: it was delivered before
   const FrameTraits &before = traits_at(place - 1), &here = traits_at(place);
-  return here.stream == before.stream || here.replayed_stream == before.stream ? Tracking::Tracked : Tracking::ShotChange;
+  return here.stream == before.stream || here.replayed_stream == before.stream ? motion::Tracking::Tracked
+                                                                               : motion::Tracking::ShotChange;
 }
 
-const FlowLibrary* Sequence::flow_library(std::vector<std::string>* warnings) {
+const motion::FlowLibrary* Sequence::flow_library(std::vector<std::string>* warnings) {
   if (!flow_library_) {
     Warnings found;
-    flow_library_ = flow_library_or_warning(settings_.flow_folder.empty() ? flow_library_folder() : settings_.flow_folder, &found);
+    flow_library_ = motion::flow_library_or_warning(
+        settings_.flow_folder.empty() ? motion::flow_library_folder() : settings_.flow_folder, &found);
     for (std::string text; found.take(&text);) warnings->push_back(text);
   }
   return flow_library_->get();
@@ -243,4 +274,4 @@ void Sequence::forget_before(int32_t frame) {
   passed_by_.erase(passed_by_.begin(), passed_by_.lower_bound(frame));
 }
 
-}  // namespace gradus
+}  // namespace gradus::animation

@@ -11,7 +11,7 @@
 #include "film_io/temporary_file.h"
 #include "schema/options.h"
 
-namespace gradus {
+namespace gradus::animation {
 
 namespace fs = std::filesystem;
 
@@ -22,14 +22,19 @@ constexpr const char* kSettings = "json";
 }  // namespace
 
 SequenceFolder::SequenceFolder(const std::string& path)
-    : temporary_(path.empty() ? std::make_unique<TemporaryFolder>() : nullptr), path_(temporary_ ? temporary_->path() : path) {
+    : temporary_(path.empty() ? std::make_unique<TemporaryFolder>() : nullptr),
+      path_(temporary_ ? temporary_->path() : path) {
   if (temporary_) return;
   std::error_code error;
   fs::create_directories(path_, error);
-  if (error) throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot make the frame store's folder " + path_ + ": " + error.message());
+  if (error)
+    throw Error(GRADUS_ERROR_INVALID_OPERATION,
+                "cannot make the frame store's folder " + path_ + ": " + error.message());
 }
 
-std::string SequenceFolder::path(int32_t frame, const char* ending) const { return path_ + "/" + frame_name(frame, ending); }
+std::string SequenceFolder::path(int32_t frame, const char* ending) const {
+  return path_ + "/" + film_io::frame_name(frame, ending);
+}
 
 std::string SequenceFolder::path(int32_t frame, FrameSamples kind) const {
   return path(frame, kind == FrameSamples::kFresh ? "base.exr" : "offset.exr");
@@ -37,24 +42,30 @@ std::string SequenceFolder::path(int32_t frame, FrameSamples kind) const {
 
 bool SequenceFolder::holds(int32_t frame) const {
   std::error_code error;
-  return fs::exists(path(frame, FrameSamples::kFresh), error) && fs::exists(path(frame, FrameSamples::kReplayed), error);
+  return fs::exists(path(frame, FrameSamples::kFresh), error) &&
+         fs::exists(path(frame, FrameSamples::kReplayed), error);
 }
 
-FilmHeader SequenceFolder::header(int32_t frame, FrameSamples kind) const { return load_header(path(frame, kind)); }
+film::FilmHeader SequenceFolder::header(int32_t frame, FrameSamples kind) const {
+  return film_io::load_header(path(frame, kind));
+}
 
-std::shared_ptr<Film> SequenceFolder::load(int32_t frame, FrameSamples kind, StoredContent content, const CancelCheck& cancel) const {
+std::shared_ptr<film::Film> SequenceFolder::load(int32_t frame, FrameSamples kind, film_io::StoredContent content,
+                                                 const CancelCheck& cancel) const {
   ++loads_;
-  return load_film(path(frame, kind), content, cancel);
+  return film_io::load_film(path(frame, kind), content, cancel);
 }
 
-std::shared_ptr<Film> SequenceFolder::load_component(int32_t frame, FrameSamples kind, const std::string& component,
-                                                      const CancelCheck& cancel) const {
+std::shared_ptr<film::Film> SequenceFolder::load_component(int32_t frame, FrameSamples kind,
+                                                           const std::string& component,
+                                                           const CancelCheck& cancel) const {
   ++loads_;
-  return gradus::load_component(path(frame, kind), component, StoredContent::kAll, cancel);
+  return gradus::film_io::load_component(path(frame, kind), component, film_io::StoredContent::kAll, cancel);
 }
 
-void SequenceFolder::save(const Film& content, int32_t frame, FrameSamples kind, const CancelCheck& cancel) const {
-  save_film(content, path(frame, kind), {durable(), cancel});
+void SequenceFolder::save(const film::Film& content, int32_t frame, FrameSamples kind,
+                          const CancelCheck& cancel) const {
+  film_io::save_film(content, path(frame, kind), {durable(), cancel});
 }
 
 std::optional<GradusSettings> SequenceFolder::settings(int32_t frame) const {
@@ -62,15 +73,15 @@ std::optional<GradusSettings> SequenceFolder::settings(int32_t frame) const {
   std::ifstream file(name);
   if (!file) return std::nullopt;
   try {
-    return settings_from_json(nlohmann::json::parse(file));
+    return schema::settings_from_json(nlohmann::json::parse(file));
   } catch (const std::exception& e) {
     throw invalid_argument("cannot read " + name + ": " + e.what());
   }
 }
 
 void SequenceFolder::save_settings(const GradusSettings& settings, int32_t frame) const {
-  const std::string text = settings_to_json(settings).dump(1);
-  FileWriter file(path(frame, kSettings), durable());
+  const std::string text = schema::settings_to_json(settings).dump(1);
+  film_io::FileWriter file(path(frame, kSettings), durable());
   file.write(text.data(), text.size());
   file.commit();
 }
@@ -78,15 +89,16 @@ void SequenceFolder::save_settings(const GradusSettings& settings, int32_t frame
 void SequenceFolder::repeat(int32_t from, int32_t to) const {
   for (const FrameSamples kind : {FrameSamples::kReplayed, FrameSamples::kFresh}) {
     const std::string source = path(from, kind), target = path(to, kind);
-    if (!hard_link_file(source, target)) copy_file(source, target, durable());
+    if (!film_io::hard_link_file(source, target)) film_io::copy_file(source, target, durable());
   }
 }
 
 void SequenceFolder::forget(int32_t frame) const {
   std::error_code ignored;
   if (!temporary_) return;
-  for (const FrameSamples kind : {FrameSamples::kFresh, FrameSamples::kReplayed}) fs::remove(path(frame, kind), ignored);
+  for (const FrameSamples kind : {FrameSamples::kFresh, FrameSamples::kReplayed})
+    fs::remove(path(frame, kind), ignored);
   fs::remove(path(frame, kSettings), ignored);
 }
 
-}  // namespace gradus
+}  // namespace gradus::animation

@@ -3,25 +3,27 @@
 #include <utility>
 #include <vector>
 
-#include "base/throw_if_cancelled.h"
 #include "animation/frame_window.h"
+#include "base/throw_if_cancelled.h"
 
-namespace gradus {
+namespace gradus::animation {
 namespace {
 
 // A solver passes over its rows again and again, each time over those of all frames: it is the rows that ask.
-class SpooledWindow final : public HalvedWindowSource {
+class SpooledWindow final : public reconstruct::HalvedWindowSource {
  public:
   SpooledWindow(std::vector<std::shared_ptr<const SpooledFrame>> frames, CancelCheck cancel)
       : frames_(std::move(frames)), cancel_(std::move(cancel)) {}
 
-  WindowSize size() const override {
-    WindowSize size = frames_.front()->size();
+  reconstruct::WindowSize size() const override {
+    reconstruct::WindowSize size = frames_.front()->size();
     size.frames = int(frames_.size());
     return size;
   }
-  void read_row(RowKind kind, int t, int y, float* out) const override { frame(t).read_row(kind, y, out); }
-  void read_half_differences(RowKind kind, int t, int y, float* out) const override { frame(t).read_half_differences(kind, y, out); }
+  void read_row(reconstruct::RowKind kind, int t, int y, float* out) const override { frame(t).read_row(kind, y, out); }
+  void read_half_differences(reconstruct::RowKind kind, int t, int y, float* out) const override {
+    frame(t).read_half_differences(kind, y, out);
+  }
   void read_correspondence(int t, int y, int32_t* out) const override { frame(t).read_correspondence(y, out); }
 
  private:
@@ -47,7 +49,8 @@ void for_planes(Images* images, const Function& function) {
 // The base of a frame, until the window comes that has the next one, too.
 class SpooledFrames::SpooledFresh {
  public:
-  SpooledFresh(int place, const TemporalFrame& frame, const CancelCheck& cancel) : place_(place), shape_(shape_of(frame)) {
+  SpooledFresh(int place, const TemporalFrame& frame, const CancelCheck& cancel)
+      : place_(place), shape_(shape_of(frame)) {
     uint64_t at = 0;
     for_planes(&frame.fresh, [&](const std::vector<float>* plane) {
       throw_if_cancelled(cancel);
@@ -76,8 +79,8 @@ class SpooledFrames::SpooledFresh {
     TemporalFrame shape;
     shape.stream = frame.stream;
     shape.scene_key = frame.scene_key;
-    const GradientImages& images = frame.fresh.values;
-    for (GradientImages* to : {&shape.fresh.values, &shape.fresh.half_differences}) {
+    const film::GradientImages& images = frame.fresh.values;
+    for (film::GradientImages* to : {&shape.fresh.values, &shape.fresh.half_differences}) {
       to->width = images.width;
       to->height = images.height;
       to->channels = images.channels;
@@ -96,7 +99,7 @@ SpooledFrames::SpooledFrames(LoadSamples fresh, LoadSamples replay, TemporalCont
 SpooledFrames::~SpooledFrames() = default;
 
 std::shared_ptr<const TemporalFrame> SpooledFrames::load(int place, const CancelCheck& cancel) const {
-  const std::shared_ptr<const Film> fresh = fresh_(place, cancel), replay = replay_(place, cancel);
+  const std::shared_ptr<const film::Film> fresh = fresh_(place, cancel), replay = replay_(place, cancel);
   return std::make_shared<TemporalFrame>(make_temporal_frame(*fresh, *replay, content_));
 }
 
@@ -105,7 +108,7 @@ std::shared_ptr<const TemporalFrame> SpooledFrames::fresh_of(int place, const Ca
   return std::make_shared<TemporalFrame>(make_fresh(*fresh_(place, cancel), content_));
 }
 
-std::unique_ptr<HalvedWindowSource> SpooledFrames::window(int first, int last, const CancelCheck& cancel) {
+std::unique_ptr<reconstruct::HalvedWindowSource> SpooledFrames::window(int first, int last, const CancelCheck& cancel) {
   frames_.erase(frames_.begin(), frames_.lower_bound(first));
   std::shared_ptr<const TemporalFrame> before;  // of the frame before
   for (int place = first; place <= last; ++place) {
@@ -125,4 +128,4 @@ std::unique_ptr<HalvedWindowSource> SpooledFrames::window(int first, int last, c
   return std::make_unique<SpooledWindow>(std::move(frames), cancel);
 }
 
-}  // namespace gradus
+}  // namespace gradus::animation

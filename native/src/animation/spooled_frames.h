@@ -4,23 +4,23 @@
 #include <map>
 #include <memory>
 
-#include "base/cancel_check.h"
-#include "reconstruct/space_time/window_source.h"
 #include "animation/load_samples.h"
 #include "animation/spooled_frame.h"
+#include "base/cancel_check.h"
+#include "reconstruct/space_time/window_source.h"
 
-namespace gradus {
+namespace gradus::animation {
 
 class SpooledFrames {
  public:
   SpooledFrames(LoadSamples fresh, LoadSamples replay, TemporalContent content);
   ~SpooledFrames();
 
-  // The frames from `first` to `last`. Windows come in order: frames before this one's are forgotten. Reads what is new, one frame after
-  // the other, by the threads of the caller's arena. Of frames without gradients there are rows of pixels and of their differences over
-  // time alone: to read others throws invalid_operation. `cancel` is asked all the while, and for every row that is read of the window:
-  // throws the Error CANCELLED, after which no window can be had.
-  std::unique_ptr<HalvedWindowSource> window(
+  // The frames from `first` to `last`. Windows come in order: frames before this one's are forgotten. Reads what is
+  // new, one frame after the other, by the threads of the caller's arena. Of frames without gradients there are rows of
+  // pixels and of their differences over time alone: to read others throws invalid_operation. `cancel` is asked all the
+  // while, and for every row that is read of the window: throws the Error CANCELLED, after which no window can be had.
+  std::unique_ptr<reconstruct::HalvedWindowSource> window(
       int first, int last, const CancelCheck& cancel = [] { return false; });
 
  private:
@@ -36,4 +36,4 @@ class SpooledFrames {
   std::unique_ptr<const SpooledFresh> end_;  // of the window before: its last frame
 };
 
-}  // namespace gradus
+}  // namespace gradus::animation

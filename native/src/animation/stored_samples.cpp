@@ -2,21 +2,21 @@
 
 #include <cstdio>
 
+#include "animation/frame_record.h"
 #include "base/text_list.h"
 #include "film/features.h"
-#include "animation/frame_record.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
 #include "schema/sampling_differences.h"
 
-namespace gradus {
+namespace gradus::animation {
 namespace {
 
 // "depth, normal": those of `passes` that `others` lack.
 std::string names_of_missing(uint64_t passes, uint64_t others) {
   std::string names;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
-    if (has_bit(passes & ~others, pass)) add_item(&names, pass_info(pass).name);
+    if (schema::has_bit(passes & ~others, pass)) add_item(&names, schema::pass_info(pass).name);
   }
   return names;
 }
@@ -28,23 +28,27 @@ std::string region_text(const uint32_t* r) {
   return text;
 }
 
-bool lacks_surfaces(const ComponentContent& held, const GradusSettings& settings) {
+bool lacks_surfaces(const film::ComponentContent& held, const GradusSettings& settings) {
   if (settings.use_decomposition == 0) return false;
-  return (!held.non_specular && any_wanted(settings.component_passes, is_of_non_specular_vertices)) ||
-         (!held.details && any_wanted(settings.component_passes, is_of_non_specular_details));
+  return (!held.non_specular && schema::any_wanted(settings.component_passes, schema::is_of_non_specular_vertices)) ||
+         (!held.details && schema::any_wanted(settings.component_passes, schema::is_of_non_specular_details));
 }
 
 // What makes a stored frame another one than is asked for; "" if it fits.
-std::string difference(const FilmHeader& stored, FrameSamples kind, const GradusSettings& settings, uint64_t scene_key) {
+std::string difference(const film::FilmHeader& stored, FrameSamples kind, const GradusSettings& settings,
+                       uint64_t scene_key) {
   const GradusSettings& other = stored.settings;
-  if (sampling_key(other) != sampling_key(settings)) return "was sampled with other settings: " + sampling_differences(other, settings);
-  const std::string lacking = names_of_missing(settings.passes, other.passes), beyond = names_of_missing(other.passes, settings.passes);
+  if (schema::sampling_key(other) != schema::sampling_key(settings))
+    return "was sampled with other settings: " + schema::sampling_differences(other, settings);
+  const std::string lacking = names_of_missing(settings.passes, other.passes),
+                    beyond = names_of_missing(other.passes, settings.passes);
   if (!lacking.empty()) return "was sampled with other passes: without " + lacking;
   if (lacks_surfaces(stored.of_components, settings)) return "was sampled without the surfaces of components";
-  if (kind == FrameSamples::kFresh && needs_flow(settings) && !stored.of_components.shown)
+  if (kind == FrameSamples::kFresh && schema::needs_flow(settings) && !stored.of_components.shown)
     return "was sampled without the motion of components";
   if (!beyond.empty()) return "was sampled with other passes: with " + beyond;
-  if (!show_same_region(other, settings)) return "shows " + region_text(other.region) + ", not " + region_text(settings.region);
+  if (!show_same_region(other, settings))
+    return "shows " + region_text(other.region) + ", not " + region_text(settings.region);
   if (stored.scene_key != scene_key) return "shows another scene";
   const bool adaptive = other.noise_threshold > 0.0f;
   return adaptive && !(settings.noise_threshold > 0.0f) ? "was sampled with a noise threshold, which is 0 now" : "";
@@ -52,14 +56,16 @@ std::string difference(const FilmHeader& stored, FrameSamples kind, const Gradus
 
 }  // namespace
 
-void require_same(const FilmHeader& stored, FrameSamples kind, const std::string& path, const GradusSettings& settings, uint64_t scene_key) {
+void require_same(const film::FilmHeader& stored, FrameSamples kind, const std::string& path,
+                  const GradusSettings& settings, uint64_t scene_key) {
   const std::string why = difference(stored, kind, settings, scene_key);
   if (!why.empty()) throw invalid_argument("stored frame " + path + " " + why + kAdvice);
 }
 
-void require_features(const FilmHeader& stored, const std::string& path) {
-  if (has_features(stored)) return;
-  throw invalid_argument("stored frame " + path + " lacks the features that reconstruction regularized reads" + kAdvice);
+void require_features(const film::FilmHeader& stored, const std::string& path) {
+  if (film::has_features(stored)) return;
+  throw invalid_argument("stored frame " + path + " lacks the features that reconstruction regularized reads" +
+                         kAdvice);
 }
 
-}  // namespace gradus
+}  // namespace gradus::animation

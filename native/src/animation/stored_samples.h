@@ -3,18 +3,20 @@
 
 #include <string>
 
+#include "animation/sequence_folder.h"
 #include "base/error.h"
 #include "film/film_header.h"
-#include "animation/sequence_folder.h"
 
-namespace gradus {
+namespace gradus::animation {
 
 inline constexpr const char* kAdvice = ": remove it, or choose another frame store";
 
-// Throws invalid_argument that says what differs, where a half was sampled otherwise than these settings ask for, but for its samples.
-void require_same(const FilmHeader& stored, FrameSamples kind, const std::string& path, const GradusSettings& settings, uint64_t scene_key);
+// Throws invalid_argument that says what differs, where a half was sampled otherwise than these settings ask for, but
+// for its samples.
+void require_same(const film::FilmHeader& stored, FrameSamples kind, const std::string& path,
+                  const GradusSettings& settings, uint64_t scene_key);
 // Throws invalid_argument where it lacks what REGULARIZED reads.
-void require_features(const FilmHeader& stored, const std::string& path);
+void require_features(const film::FilmHeader& stored, const std::string& path);
 
 template <class Read>
 auto read_with_advice(const Read& read) {
@@ -26,4 +28,4 @@ auto read_with_advice(const Read& read) {
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::animation

@@ -6,24 +6,25 @@
 #include <memory>
 #include <vector>
 
-#include "reconstruct/space_time/window_source.h"
 #include "animation/load_samples.h"
 #include "animation/temporal_frame.h"
+#include "reconstruct/space_time/window_source.h"
 
-namespace gradus {
+namespace gradus::animation {
 
 class StreamedFrames {
  public:
   // All samples of a frame, made of its two parts.
-  using Merge = std::function<std::shared_ptr<const Film>(int place, std::shared_ptr<Film> fresh, const Film& replay)>;
+  using Merge = std::function<std::shared_ptr<const film::Film>(int place, std::shared_ptr<film::Film> fresh,
+                                                                const film::Film& replay)>;
   // Parts of frames with the same components.
   StreamedFrames(LoadSamples fresh, LoadSamples replay, Merge merge);
 
-  // In order: a frame, then its differences. Other orders read more often. By the threads of the caller's arena. Throws the Error
-  // CANCELLED.
-  std::shared_ptr<const Film> frame(int place, const CancelCheck& cancel);
+  // In order: a frame, then its differences. Other orders read more often. By the threads of the caller's arena. Throws
+  // the Error CANCELLED.
+  std::shared_ptr<const film::Film> frame(int place, const CancelCheck& cancel);
   // Of each component a window of the frame and the next one, with pixels and their differences over time alone.
-  std::vector<std::unique_ptr<HalvedWindowSource>> differences(int place, const CancelCheck& cancel);
+  std::vector<std::unique_ptr<reconstruct::HalvedWindowSource>> differences(int place, const CancelCheck& cancel);
 
  private:
   using Images = std::vector<std::shared_ptr<const TemporalFrame>>;  // by component
@@ -32,8 +33,8 @@ class StreamedFrames {
 
   const LoadSamples fresh_, replay_;
   const Merge merge_;
-  std::map<int, Images> images_;                        // of two at most
-  std::map<int, std::shared_ptr<const Film>> merged_;  // of the last one that was read, until it is asked for
+  std::map<int, Images> images_;                             // of two at most
+  std::map<int, std::shared_ptr<const film::Film>> merged_;  // of the last one that was read, until it is asked for
 };
 
-}  // namespace gradus
+}  // namespace gradus::animation

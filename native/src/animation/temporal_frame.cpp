@@ -8,47 +8,51 @@
 #include "film/read_pixels.h"
 #include "motion/pixel_matching.h"
 
-namespace gradus {
+namespace gradus::animation {
 
 namespace {
 
 // *sum is empty before the first.
-void add(GradientImages term, GradientImages* sum) {
+void add(film::GradientImages term, film::GradientImages* sum) {
   if (sum->primal.empty()) return static_cast<void>(*sum = std::move(term));
-  for (auto plane : {&GradientImages::primal, &GradientImages::dx, &GradientImages::dy}) {
+  for (auto plane : {&film::GradientImages::primal, &film::GradientImages::dx, &film::GradientImages::dy}) {
     for (size_t i = 0; i < (sum->*plane).size(); ++i) (sum->*plane)[i] += (term.*plane)[i];
   }
 }
 
-HalvedImages read_halved(const Film& frame, TemporalContent content, int component = kAllComponents) {
+HalvedImages read_halved(const film::Film& frame, TemporalContent content, int component = kAllComponents) {
   HalvedImages images;
   const bool is_one = component != kAllComponents;
   const int first = is_one ? component : 0, end = is_one ? component + 1 : int(frame.components.size());
   for (int c = first; c < end; ++c) {
-    add(content.gradients ? read_images(frame, c) : read_pixels(frame, c), &images.values);
+    add(content.gradients ? film::read_images(frame, c) : film::read_pixels(frame, c), &images.values);
     if (!content.halves) continue;
-    add(content.gradients ? read_half_differences(frame, c) : read_half_differences_of_pixels(frame, c), &images.half_differences);
+    add(content.gradients ? film::read_half_differences(frame, c) : film::read_half_differences_of_pixels(frame, c),
+        &images.half_differences);
   }
   return images;
 }
 
 // Of one component: where that was.
-ReplayMap sources_of(const ReplayMap& replayed, int component) {
-  ReplayMap replay_map = replayed;
-  if (component != kAllComponents && replayed.has_component_map(component)) replay_map.correspondence = replayed.of_component[size_t(component)];
+film::ReplayMap sources_of(const film::ReplayMap& replayed, int component) {
+  film::ReplayMap replay_map = replayed;
+  if (component != kAllComponents && replayed.has_component_map(component))
+    replay_map.correspondence = replayed.of_component[size_t(component)];
   if (component != kAllComponents) replay_map.of_component.clear();
   return replay_map;
 }
 
 }  // namespace
 
-void check_same_layout(const GradientImages& images, const GradientImages& other, int32_t frame) {
+void check_same_layout(const film::GradientImages& images, const film::GradientImages& other, int32_t frame) {
   const bool fits = images.width == other.width && images.height == other.height && images.channels == other.channels &&
                     images.dx.empty() == other.dx.empty();
-  if (!fits) throw invalid_argument("stored frame " + std::to_string(frame) + " has another size or other planes than those beside it");
+  if (!fits)
+    throw invalid_argument("stored frame " + std::to_string(frame) +
+                           " has another size or other planes than those beside it");
 }
 
-TemporalFrame make_replay(const Film& replay, int32_t stream, TemporalContent content) {
+TemporalFrame make_replay(const film::Film& replay, int32_t stream, TemporalContent content) {
   TemporalFrame frame;
   frame.replay = read_halved(replay, content);
   frame.stream = stream;
@@ -57,7 +61,7 @@ TemporalFrame make_replay(const Film& replay, int32_t stream, TemporalContent co
   return frame;
 }
 
-TemporalFrame make_fresh(const Film& fresh, TemporalContent content) {
+TemporalFrame make_fresh(const film::Film& fresh, TemporalContent content) {
   TemporalFrame frame;
   frame.fresh = read_halved(fresh, content);
   frame.stream = fresh.frame_number;
@@ -65,7 +69,8 @@ TemporalFrame make_fresh(const Film& fresh, TemporalContent content) {
   return frame;
 }
 
-TemporalFrame make_temporal_frame(const Film& fresh, const Film& replay, TemporalContent content, int component) {
+TemporalFrame make_temporal_frame(const film::Film& fresh, const film::Film& replay, TemporalContent content,
+                                  int component) {
   TemporalFrame frame;
   frame.replay = read_halved(replay, content, component);
   frame.fresh = read_halved(fresh, content, component);
@@ -75,19 +80,20 @@ TemporalFrame make_temporal_frame(const Film& fresh, const Film& replay, Tempora
   check_same_layout(frame.replay.values, frame.fresh.values, fresh.frame_number);
   frame.replay_share.resize(fresh.count[0].size());
   for (size_t i = 0; i < frame.replay_share.size(); ++i) {
-    const auto own = float(samples_at(fresh, i)), other = float(samples_at(replay, i));
+    const auto own = float(film::samples_at(fresh, i)), other = float(film::samples_at(replay, i));
     frame.replay_share[i] = own + other > 0.0f ? other / (own + other) : 0.0f;
   }
   return frame;
 }
 
-PixelCorrespondence correspondence_between(const TemporalFrame& frame, const TemporalFrame& next) {
-  const GradientImages& images = next.replay.values;
-  std::vector<int32_t> pixel(size_t(images.width) * size_t(images.height), kNoCorrespondence);
+film::PixelCorrespondence correspondence_between(const TemporalFrame& frame, const TemporalFrame& next) {
+  const film::GradientImages& images = next.replay.values;
+  std::vector<int32_t> pixel(size_t(images.width) * size_t(images.height), film::kNoCorrespondence);
   if (is_repeated(frame, next)) std::iota(pixel.begin(), pixel.end(), 0);
-  const ReplayMap& replayed = next.replayed;
+  const film::ReplayMap& replayed = next.replayed;
   const bool follows = replayed.stream_frame == frame.stream && replayed.correspondence.pixel.size() == pixel.size();
-  return follows && !is_repeated(frame, next) ? inverse_correspondence(replayed.correspondence) : PixelCorrespondence{std::move(pixel)};
+  return follows && !is_repeated(frame, next) ? motion::inverse_correspondence(replayed.correspondence)
+                                              : film::PixelCorrespondence{std::move(pixel)};
 }
 
-}  // namespace gradus
+}  // namespace gradus::animation

@@ -1,4 +1,5 @@
-// What a space-time reconstruction needs of a frame: its samples, and those that replay the frame before (contract 4.2).
+// What a space-time reconstruction needs of a frame: its samples, and those that replay the frame before
+// (contract 4.2).
 #pragma once
 
 #include <vector>
@@ -6,7 +7,7 @@
 #include "film/film.h"
 #include "film/pixel_correspondence.h"
 
-namespace gradus {
+namespace gradus::animation {
 
 // What is made of a frame, besides its pixels.
 struct TemporalContent {
@@ -16,7 +17,7 @@ struct TemporalContent {
 
 // Images of a frame, and half the differences of its halves, which give deviations of all that is linear in the images.
 struct HalvedImages {
-  GradientImages values, half_differences;
+  film::GradientImages values, half_differences;
 };
 
 struct TemporalFrame {
@@ -25,24 +26,29 @@ struct TemporalFrame {
   std::vector<float> replay_share;  // of the samples of each pixel
   int32_t stream = 0;               // whose random numbers the base has taken
   uint64_t scene_key = 0;           // of the scene that both show
-  ReplayMap replayed;           // and whose the replay has
+  film::ReplayMap replayed;         // and whose the replay has
 };
 
-// Of all their components together, or of one, with what it has replayed. Throws invalid_argument where the two do not belong together.
+// Of all their components together, or of one, with what it has replayed. Throws invalid_argument where the two do not
+// belong together.
 inline constexpr int kAllComponents = -1;
-TemporalFrame make_temporal_frame(const Film& fresh, const Film& replay, TemporalContent content = {}, int component = kAllComponents);
-// Of one of the two: all that differences over time from the frame to the next, or to the frame from the one before, read of it.
-TemporalFrame make_fresh(const Film& fresh, TemporalContent content);
-TemporalFrame make_replay(const Film& replay, int32_t stream, TemporalContent content);
+TemporalFrame make_temporal_frame(const film::Film& fresh, const film::Film& replay, TemporalContent content = {},
+                                  int component = kAllComponents);
+// Of one of the two: all that differences over time from the frame to the next, or to the frame from the one before,
+// read of it.
+TemporalFrame make_fresh(const film::Film& fresh, TemporalContent content);
+TemporalFrame make_replay(const film::Film& replay, int32_t stream, TemporalContent content);
 
-// Throws invalid_argument where the images differ in size or kinds: whatever a folder may hold under the names of frames.
-void check_same_layout(const GradientImages& images, const GradientImages& other, int32_t frame);
+// Throws invalid_argument where the images differ in size or kinds: whatever a folder may hold under the names of
+// frames.
+void check_same_layout(const film::GradientImages& images, const film::GradientImages& other, int32_t frame);
 
-// The next frame has the samples of this one, for nothing has changed. Of one that was stored of an older scene it has none.
+// The next frame has the samples of this one, for nothing has changed. Of one that was stored of an older scene it has
+// none.
 inline bool is_repeated(const TemporalFrame& frame, const TemporalFrame& next) {
   return next.stream == frame.stream && next.scene_key == frame.scene_key;
 }
 // By pixels of the frame: that of the next one, as y·width + x: those that the replay of the next has followed.
-PixelCorrespondence correspondence_between(const TemporalFrame& frame, const TemporalFrame& next);
+film::PixelCorrespondence correspondence_between(const TemporalFrame& frame, const TemporalFrame& next);
 
-}  // namespace gradus
+}  // namespace gradus::animation

@@ -1,5 +1,6 @@
-// Scene calls as bytes. One visit() per struct serves writing and reading: values first, then texts and arrays, whose lengths follow from
-// the values. Little-endian; arrays start at multiples of 16 bytes, so that a reader can point into the file.
+// Scene calls as bytes. One visit() per struct serves writing and reading: values first, then texts and arrays, whose
+// lengths follow from the values. Little-endian; arrays start at multiples of 16 bytes, so that a reader can point into
+// the file.
 #pragma once
 
 #include <cstring>
@@ -68,8 +69,8 @@ class ArchiveWriter {
   std::vector<char> bytes_;
 };
 
-// Trusts nothing: every length is checked against what is left before it is used. Pointers it hands out live as long as the reader and
-// the bytes.
+// Trusts nothing: every length is checked against what is left before it is used. Pointers it hands out live as long as
+// the reader and the bytes.
 class ArchiveReader {
  public:
   // `begin` must be aligned to kArchiveAlignment.

@@ -11,9 +11,11 @@ namespace gradus::api {
 
 enum class Presence { Required, Optional };
 
-// Elements are `width` values of T each. Throws invalid_argument with the array's name if it is missing, misaligned or absurdly long.
+// Elements are `width` values of T each. Throws invalid_argument with the array's name if it is missing, misaligned or
+// absurdly long.
 template <class T>
-void check_array(const T* data, size_t count, const char* name, size_t width = 1, Presence presence = Presence::Required) {
+void check_array(const T* data, size_t count, const char* name, size_t width = 1,
+                 Presence presence = Presence::Required) {
   if (count > kMaxCount || count * width > kMaxCount * size_t{16}) {
     throw invalid_argument(std::string(name) + ": " + std::to_string(count) + " elements are too many");
   }

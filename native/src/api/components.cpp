@@ -10,7 +10,7 @@ namespace {
 
 constexpr size_t kExamples = 3;
 
-int checked(const ComponentSet& set, uint32_t index) {
+int checked(const lpe::ComponentSet& set, uint32_t index) {
   if (index >= uint32_t(set.count())) throw invalid_argument("there is no component " + std::to_string(index));
   return int(index);
 }
@@ -18,15 +18,17 @@ int checked(const ComponentSet& set, uint32_t index) {
 }  // namespace
 
 GradusError gradus_components_check(const char* components, uint32_t* count) {
-  return api::guard([&] { api::require(count, "count") = uint32_t(ComponentSet::parse(&api::require(components, "components")).count()); });
+  return api::guard([&] {
+    api::require(count, "count") = uint32_t(lpe::ComponentSet::parse(&api::require(components, "components")).count());
+  });
 }
 
 GradusError gradus_components_item(const char* components, uint32_t index, const char** name, const char** expression,
                                    const char** examples) {
   return api::guard([&] {
-    thread_local Component item;
+    thread_local lpe::Component item;
     thread_local std::string paths;
-    const ComponentSet set = ComponentSet::parse(&api::require(components, "components"));
+    const lpe::ComponentSet set = lpe::ComponentSet::parse(&api::require(components, "components"));
     const int i = checked(set, index);
     item = set[i];
     paths.clear();
@@ -39,7 +41,7 @@ GradusError gradus_components_item(const char* components, uint32_t index, const
 
 GradusError gradus_components_classify(const char* components, const char* path, uint32_t* index) {
   return api::guard([&] {
-    const ComponentSet set = ComponentSet::parse(&api::require(components, "components"));
+    const lpe::ComponentSet set = lpe::ComponentSet::parse(&api::require(components, "components"));
     api::require(index, "index") = uint32_t(set.classify(&api::require(path, "path")));
   });
 }

@@ -13,24 +13,24 @@ GradusError gradus_device_create(const GradusDeviceSettings* settings, GradusDev
   return api::guard([&] {
     api::require(device, "device") = 0;
     const GradusDeviceSettings copy = settings ? api::read_struct(settings, "settings") : GradusDeviceSettings{};
-    *device = api::add_handle(std::make_shared<Device>(copy));
+    *device = api::add_handle(std::make_shared<scene::Device>(copy));
   });
 }
 
 GradusError gradus_device_release(GradusDevice device) {
-  return api::guard([&] { api::remove_handle<Device>(device); });
+  return api::guard([&] { api::remove_handle<scene::Device>(device); });
 }
 
 GradusError gradus_device_warning(GradusDevice device, const char** text) {
   return api::guard([&] {
     api::require(text, "text") = nullptr;
-    api::take_warning(&api::find_handle<Device>(device)->warnings(), text);
+    api::take_warning(&api::find_handle<scene::Device>(device)->warnings(), text);
   });
 }
 
 GradusError gradus_device_set_color_space(GradusDevice device, const GradusColorSpace* space) {
   return api::guard([&] {
-    const auto object = api::find_handle<Device>(device);
+    const auto object = api::find_handle<scene::Device>(device);
     const GradusColorSpace copy = api::read_struct(space, "space");
     if (!copy.name) throw invalid_argument("space.name is NULL");
     api::check_array(copy.curve, copy.curve_count, "space.curve");

@@ -5,7 +5,8 @@
 
 namespace gradus::api {
 
-// Keeps the error unless the thread already has one. Never throws, never allocates; text is made valid UTF-8 and cut if too long.
+// Keeps the error unless the thread already has one. Never throws, never allocates; text is made valid UTF-8 and cut if
+// too long.
 void set_error(GradusError code, const char* text) noexcept;
 // Clears the slot and returns what was in it. *text stays valid until the thread's next call of take_error().
 GradusError take_error(const char** text) noexcept;

@@ -27,7 +27,8 @@ GradusError guard(Function&& function) noexcept {
 template <class T>
 T& require(T* pointer, const char* name) {
   if (!pointer) throw invalid_argument(std::string(name) + " is NULL");
-  if (reinterpret_cast<uintptr_t>(pointer) % alignof(T) != 0) throw invalid_argument(std::string(name) + " is misaligned");
+  if (reinterpret_cast<uintptr_t>(pointer) % alignof(T) != 0)
+    throw invalid_argument(std::string(name) + " is misaligned");
   return *pointer;
 }
 

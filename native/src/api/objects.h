@@ -6,12 +6,12 @@
 #include <optional>
 #include <string>
 
+#include "animation/sequence.h"
 #include "api/registry.h"
-#include "scene/device.h"
 #include "film/film.h"
 #include "output/light_passes.h"
 #include "render/render.h"
-#include "animation/sequence.h"
+#include "scene/device.h"
 #include "scene/scene.h"
 
 namespace gradus::api {
@@ -25,34 +25,34 @@ inline void take_warning(Warnings* warnings, const char** text) {
 }
 
 struct SceneObject {
-  explicit SceneObject(const std::shared_ptr<Device>& device);
+  explicit SceneObject(const std::shared_ptr<scene::Device>& device);
   ~SceneObject();
   // Throws invalid_operation before the first commit.
-  std::shared_ptr<const Snapshot> snapshot();
+  std::shared_ptr<const scene::Snapshot> snapshot();
   std::mutex mutex;  // calls of one scene wait for each other
-  Scene scene;
+  scene::Scene scene;
   Warnings warnings;                        // of commits
   std::shared_ptr<SceneRecorder> recorder;  // nullptr: not recording
 };
 
 struct RenderObject {
-  RenderObject(std::shared_ptr<Device> shared_device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
-               std::shared_ptr<const Film> resumed)
+  RenderObject(std::shared_ptr<scene::Device> shared_device, std::shared_ptr<const scene::Snapshot> snapshot,
+               const GradusSettings& settings, std::shared_ptr<const film::Film> resumed)
       : device(std::move(shared_device)), render(device, std::move(snapshot), settings, std::move(resumed)) {}
-  RenderObject(std::shared_ptr<Device> shared_device, std::unique_ptr<RenderTask> task)
+  RenderObject(std::shared_ptr<scene::Device> shared_device, std::unique_ptr<render::RenderTask> task)
       : device(std::move(shared_device)), render(std::move(task)) {}
-  std::shared_ptr<Device> device;
-  Render render;
+  std::shared_ptr<scene::Device> device;
+  render::Render render;
   std::mutex mutex;
   std::string stats;  // kept for the caller until release
 };
 
 struct SequenceObject {
-  SequenceObject(std::shared_ptr<Device> shared_device, const SequenceSettings& settings)
-      : device(std::move(shared_device)), sequence(std::make_shared<Sequence>(device, settings)) {}
+  SequenceObject(std::shared_ptr<scene::Device> shared_device, const animation::SequenceSettings& settings)
+      : device(std::move(shared_device)), sequence(std::make_shared<animation::Sequence>(device, settings)) {}
   std::mutex mutex;  // calls of one sequence wait for each other
-  std::shared_ptr<Device> device;
-  std::shared_ptr<Sequence> sequence;
+  std::shared_ptr<scene::Device> device;
+  std::shared_ptr<animation::Sequence> sequence;
   std::weak_ptr<RenderObject> running;  // what was started last
 };
 
@@ -61,24 +61,25 @@ struct DevelopedPicture {
   std::vector<float> rgba;
   std::vector<std::vector<float>> components;  // RGB of each
   bool is_noisy = false;
-  std::optional<LightPasses> light;
+  std::optional<output::LightPasses> light;
 };
 
 // Frames of renders are shared and immutable; merging replaces the frame by a new one.
 struct FilmObject {
-  explicit FilmObject(std::shared_ptr<Device> shared_device) : device(std::move(shared_device)) {}
+  explicit FilmObject(std::shared_ptr<scene::Device> shared_device) : device(std::move(shared_device)) {}
   std::mutex mutex;
-  std::shared_ptr<Device> device;
-  std::shared_ptr<const Film> film;
-  std::shared_ptr<DevelopedPicture> developed;  // of the frame; its light is read with the mutex. nullptr: nothing, or it has no parts
-  std::shared_ptr<const Film> get() {
+  std::shared_ptr<scene::Device> device;
+  std::shared_ptr<const film::Film> film;
+  std::shared_ptr<DevelopedPicture>
+      developed;  // of the frame; its light is read with the mutex. nullptr: nothing, or it has no parts
+  std::shared_ptr<const film::Film> get() {
     const std::lock_guard lock(mutex);
     return film;
   }
 };
 
 template <>
-struct HandleOf<Device> {
+struct HandleOf<scene::Device> {
   static constexpr HandleType type = HandleType::Device;
 };
 template <>

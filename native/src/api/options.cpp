@@ -12,7 +12,7 @@ using namespace gradus;
 namespace gradus::api {
 namespace {
 
-GradusOptionInfo describe(const Option& option) {
+GradusOptionInfo describe(const schema::Option& option) {
   GradusOptionInfo info{};
   info.type = option.type;
   info.name = option.name;
@@ -23,7 +23,7 @@ GradusOptionInfo describe(const Option& option) {
   // The caller may keep the text for as long as the library is loaded.
   static const std::map<std::string_view, std::string> names = [] {
     std::map<std::string_view, std::string> made;
-    for (const Option& item : options()) made[item.name] = choice_names(item);
+    for (const schema::Option& item : schema::options()) made[item.name] = schema::choice_names(item);
     return made;
   }();
   info.choices = names.at(option.name).c_str();
@@ -33,26 +33,26 @@ GradusOptionInfo describe(const Option& option) {
 }  // namespace
 }  // namespace gradus::api
 
-uint32_t gradus_option_count(void) { return static_cast<uint32_t>(options().size()); }
+uint32_t gradus_option_count(void) { return static_cast<uint32_t>(schema::options().size()); }
 
 GradusError gradus_option(uint32_t index, GradusOptionInfo* info) {
   return api::guard([&] {
-    if (index >= options().size()) throw invalid_argument("there is no option " + std::to_string(index));
-    api::write_struct(info, api::describe(options()[index]), "info");
+    if (index >= schema::options().size()) throw invalid_argument("there is no option " + std::to_string(index));
+    api::write_struct(info, api::describe(schema::options()[index]), "info");
   });
 }
 
 GradusError gradus_settings_default(GradusSettings* settings) {
-  return api::guard([&] { api::write_struct(settings, default_settings(), "settings"); });
+  return api::guard([&] { api::write_struct(settings, schema::default_settings(), "settings"); });
 }
 
 GradusError gradus_settings_parse(GradusSettings* settings, const char* name, const char* value) {
   return api::guard([&] {
-    const Option* option = find_option(&api::require(name, "name"));
+    const schema::Option* option = schema::find_option(&api::require(name, "name"));
     if (!option) throw invalid_argument("there is no option " + std::string(name));
-    GradusSettings copy = api::read_struct(settings, "settings", default_settings());
-    parse_option(*option, &api::require(value, "value"), &copy);
-    if (option->offset + size_of(*option) > api::struct_size_of<GradusSettings>(settings, "settings")) {
+    GradusSettings copy = api::read_struct(settings, "settings", schema::default_settings());
+    schema::parse_option(*option, &api::require(value, "value"), &copy);
+    if (option->offset + schema::size_of(*option) > api::struct_size_of<GradusSettings>(settings, "settings")) {
       throw invalid_argument("option " + std::string(option->name) + " is newer than the caller's GradusSettings");
     }
     api::write_struct(settings, copy, "settings");
@@ -61,7 +61,7 @@ GradusError gradus_settings_parse(GradusSettings* settings, const char* name, co
 
 GradusError gradus_pass_info(uint32_t pass, const char** name, uint32_t* channels) {
   return api::guard([&] {
-    const PassInfo& info = pass_info(pass);
+    const schema::PassInfo& info = schema::pass_info(pass);
     if (name) *name = info.name;
     if (channels) *channels = info.channels;
   });
@@ -69,7 +69,7 @@ GradusError gradus_pass_info(uint32_t pass, const char** name, uint32_t* channel
 
 GradusError gradus_component_pass_info(uint32_t pass, const char** name, uint32_t* channels) {
   return api::guard([&] {
-    const ComponentPassInfo& info = component_pass_info(pass);
+    const schema::ComponentPassInfo& info = schema::component_pass_info(pass);
     if (name) *name = info.name;
     if (channels) *channels = info.channels;
   });

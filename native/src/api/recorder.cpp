@@ -19,7 +19,7 @@ std::vector<char> read_bytes(const char* path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-void write_record(FileWriter* file, RecordKind kind, uint64_t key, const std::vector<char>& bytes) {
+void write_record(film_io::FileWriter* file, RecordKind kind, uint64_t key, const std::vector<char>& bytes) {
   const RecordHeader header{static_cast<uint32_t>(kind), 0, key, bytes.size(), checksum(bytes.data(), bytes.size())};
   static const char padding[kArchiveAlignment] = {};
   file->write(&header, sizeof(header));
@@ -37,7 +37,9 @@ void SceneRecorder::keep(RecordKind kind, uint64_t key, T value) {
 }
 
 void SceneRecorder::set_mesh(uint64_t key, const GradusMesh& mesh) { keep(RecordKind::Mesh, key, mesh); }
-void SceneRecorder::set_material(uint64_t key, const GradusMaterial& material) { keep(RecordKind::Material, key, material); }
+void SceneRecorder::set_material(uint64_t key, const GradusMaterial& material) {
+  keep(RecordKind::Material, key, material);
+}
 void SceneRecorder::set_instances(const GradusInstances& instances) { keep(RecordKind::Instances, 0, instances); }
 void SceneRecorder::set_lights(const std::vector<GradusLight>& lights) {
   keep(RecordKind::Lights, 0, LightList{lights.data(), lights.size()});
@@ -69,10 +71,10 @@ void SceneRecorder::remove(GradusObjectKind kind, uint64_t key) {
 }
 
 void SceneRecorder::save(const std::string& path, const GradusSettings& settings) const {
-  FileWriter file(path);
+  film_io::FileWriter file(path);
   const FileHeader header;
   file.write(&header, sizeof(header));
-  const std::string text = settings_to_json(settings).dump();
+  const std::string text = schema::settings_to_json(settings).dump();
   write_record(&file, RecordKind::Settings, 0, {text.begin(), text.end()});
   for (const auto& [name, bytes] : records_) write_record(&file, name.first, name.second, bytes);
   write_record(&file, RecordKind::End, 0, {});

@@ -9,9 +9,11 @@
 
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::scene {
 class Scene;
-}
+}  // namespace gradus::scene
+
+namespace gradus {}
 
 namespace gradus::api {
 
@@ -48,9 +50,9 @@ class SceneRecorder {
   std::map<std::pair<RecordKind, uint64_t>, std::vector<char>> records_;
 };
 
-// Sets everything that the file holds; returns its settings. Throws invalid_argument with path and reason for a file that is missing,
-// damaged or of another version.
-GradusSettings load_scene(const std::string& path, Scene* scene);
+// Sets everything that the file holds; returns its settings. Throws invalid_argument with path and reason for a file
+// that is missing, damaged or of another version.
+GradusSettings load_scene(const std::string& path, scene::Scene* scene);
 
 // What a scene file holds, without building it.
 struct SceneSummary {

@@ -10,8 +10,8 @@ namespace gradus::api {
 
 enum class HandleType : uint8_t { Device = 1, Scene = 2, Render = 3, Film = 4, Sequence = 5 };
 
-// A handle is type (8 bit) | generation of the slot (24 bit) | slot + 1 (32 bit). A slot's generation rises with each removal, so that a
-// freed handle stays invalid when the slot is used again.
+// A handle is type (8 bit) | generation of the slot (24 bit) | slot + 1 (32 bit). A slot's generation rises with each
+// removal, so that a freed handle stays invalid when the slot is used again.
 class Registry {
  public:
   uint64_t add(HandleType type, std::shared_ptr<void> object);

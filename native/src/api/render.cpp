@@ -12,8 +12,9 @@ using namespace gradus;
 namespace gradus::api {
 namespace {
 
-std::shared_ptr<RenderObject> start(GradusScene scene, const GradusSettings* settings, std::shared_ptr<const Film> resumed) {
-  const GradusSettings copy = read_struct(settings, "settings", default_settings());
+std::shared_ptr<RenderObject> start(GradusScene scene, const GradusSettings* settings,
+                                    std::shared_ptr<const film::Film> resumed) {
+  const GradusSettings copy = read_struct(settings, "settings", schema::default_settings());
   const auto object = find_handle<SceneObject>(scene);
   return std::make_shared<RenderObject>(object->scene.device(), object->snapshot(), copy, std::move(resumed));
 }
@@ -28,7 +29,8 @@ GradusError gradus_render_start(GradusScene scene, const GradusSettings* setting
   });
 }
 
-GradusError gradus_render_resume(GradusScene scene, const GradusSettings* settings, GradusFilm film, GradusRender* render) {
+GradusError gradus_render_resume(GradusScene scene, const GradusSettings* settings, GradusFilm film,
+                                 GradusRender* render) {
   return api::guard([&] {
     api::require(render, "render") = 0;
     *render = api::add_handle(api::start(scene, settings, api::find_handle<api::FilmObject>(film)->get()));
@@ -36,7 +38,8 @@ GradusError gradus_render_resume(GradusScene scene, const GradusSettings* settin
 }
 
 GradusError gradus_render_poll(GradusRender render, GradusProgress* progress) {
-  return api::guard([&] { api::write_struct(progress, api::find_handle<api::RenderObject>(render)->render.progress(), "progress"); });
+  return api::guard(
+      [&] { api::write_struct(progress, api::find_handle<api::RenderObject>(render)->render.progress(), "progress"); });
 }
 
 GradusError gradus_render_cancel(GradusRender render) {
@@ -58,7 +61,8 @@ GradusError gradus_render_wait(GradusRender render, double seconds) {
 GradusError gradus_render_release(GradusRender render) {
   return api::guard([&] {
     const auto object = api::remove_handle<api::RenderObject>(render);
-    // Another thread may wait in gradus_render_wait and hold the object: it gets CANCELLED, and nothing is sampled from here on.
+    // Another thread may wait in gradus_render_wait and hold the object: it gets CANCELLED, and nothing is sampled from
+    // here on.
     object->render.cancel();
     object->render.wait(-1.0);
   });
@@ -72,7 +76,8 @@ GradusError gradus_render_read_pass(GradusRender render, uint32_t pass, float* p
   });
 }
 
-GradusError gradus_render_read_component(GradusRender render, const char* component, uint32_t pass, float* pixels, size_t count) {
+GradusError gradus_render_read_component(GradusRender render, const char* component, uint32_t pass, float* pixels,
+                                         size_t count) {
   return api::guard([&] {
     const auto object = api::find_handle<api::RenderObject>(render);
     const std::string name = &api::require(component, "component");

@@ -34,12 +34,12 @@ void check_key(uint64_t key) {
 
 }  // namespace
 
-SceneObject::SceneObject(const std::shared_ptr<Device>& device) : scene(device) {}
+SceneObject::SceneObject(const std::shared_ptr<scene::Device>& device) : scene(device) {}
 SceneObject::~SceneObject() = default;
 
-std::shared_ptr<const Snapshot> SceneObject::snapshot() {
+std::shared_ptr<const scene::Snapshot> SceneObject::snapshot() {
   const std::lock_guard lock(mutex);
-  std::shared_ptr<const Snapshot> current = scene.snapshot();
+  std::shared_ptr<const scene::Snapshot> current = scene.snapshot();
   if (!current) throw invalid_operation("the scene was not committed");
   return current;
 }
@@ -51,7 +51,7 @@ using api::with_scene;
 GradusError gradus_scene_create(GradusDevice device, GradusScene* scene) {
   return api::guard([&] {
     api::require(scene, "scene") = 0;
-    *scene = api::add_handle(std::make_shared<api::SceneObject>(api::find_handle<Device>(device)));
+    *scene = api::add_handle(std::make_shared<api::SceneObject>(api::find_handle<scene::Device>(device)));
   });
 }
 
@@ -152,14 +152,15 @@ GradusError gradus_scene_save(GradusScene scene, const GradusSettings* settings,
   return with_scene(scene, [&](api::SceneObject& s) {
     const std::string target = &api::require(path, "path");
     if (!s.recorder) throw invalid_operation("the scene was not recorded: call gradus_scene_record before it is set");
-    s.recorder->save(target, settings ? api::read_struct(settings, "settings", default_settings()) : default_settings());
+    s.recorder->save(target, settings ? api::read_struct(settings, "settings", schema::default_settings())
+                                      : schema::default_settings());
   });
 }
 
 GradusError gradus_scene_load(GradusDevice device, const char* path, GradusScene* scene, GradusSettings* settings) {
   return api::guard([&] {
     api::require(scene, "scene") = 0;
-    auto object = std::make_shared<api::SceneObject>(api::find_handle<Device>(device));
+    auto object = std::make_shared<api::SceneObject>(api::find_handle<scene::Device>(device));
     const GradusSettings loaded = api::load_scene(&api::require(path, "path"), &object->scene);
     api::commit(object.get(), nullptr, nullptr);
     if (settings) api::write_struct(settings, loaded, "settings");

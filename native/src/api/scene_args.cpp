@@ -8,7 +8,8 @@ namespace {
 
 void check_enum(uint32_t value, uint32_t count, const char* name) {
   if (value >= count)
-    throw invalid_argument(std::string(name) + " is " + std::to_string(value) + ", expected less than " + std::to_string(count));
+    throw invalid_argument(std::string(name) + " is " + std::to_string(value) + ", expected less than " +
+                           std::to_string(count));
 }
 
 void check_texts(const char* const* texts, size_t count, const char* name) {
@@ -20,7 +21,8 @@ void check_texts(const char* const* texts, size_t count, const char* name) {
 
 // [first, first + count) lies in an array of `size`, whatever overflows.
 void check_range(uint64_t first, uint64_t count, uint64_t size, const std::string& name) {
-  if (first > size || count > size - first) throw invalid_argument(name + " reaches beyond its array of " + std::to_string(size));
+  if (first > size || count > size - first)
+    throw invalid_argument(name + " reaches beyond its array of " + std::to_string(size));
 }
 
 void check_tile(const GradusImageTile& tile) {
@@ -32,17 +34,20 @@ void check_tile(const GradusImageTile& tile) {
   if (tile.width > kMaxSide || tile.height > kMaxSide) throw invalid_argument("tile: more than 65536 pixels on a side");
   const size_t pixel_size = tile.source == GRADUS_IMAGE_FLOAT ? 4 * sizeof(float) : 4;
   if (tile.data_size != size_t(tile.width) * tile.height * pixel_size) {
-    throw invalid_argument("tile.data_size is " + std::to_string(tile.data_size) + " for " + std::to_string(tile.width) + " x " +
-                           std::to_string(tile.height) + " pixels of " + std::to_string(pixel_size) + " bytes");
+    throw invalid_argument("tile.data_size is " + std::to_string(tile.data_size) + " for " +
+                           std::to_string(tile.width) + " x " + std::to_string(tile.height) + " pixels of " +
+                           std::to_string(pixel_size) + " bytes");
   }
-  if (tile.source == GRADUS_IMAGE_FLOAT) check_array(static_cast<const float*>(tile.data), tile.data_size / sizeof(float), "tile.data");
+  if (tile.source == GRADUS_IMAGE_FLOAT)
+    check_array(static_cast<const float*>(tile.data), tile.data_size / sizeof(float), "tile.data");
 }
 
 }  // namespace
 
 MeshArgs::MeshArgs(const GradusMesh* from) : mesh(read_struct(from, "mesh")) {
   mesh.name = text_or_empty(mesh.name);
-  if (mesh.key_count == 0 || mesh.key_count > 1024) throw invalid_argument("mesh.key_count is " + std::to_string(mesh.key_count));
+  if (mesh.key_count == 0 || mesh.key_count > 1024)
+    throw invalid_argument("mesh.key_count is " + std::to_string(mesh.key_count));
   if (mesh.key_count > 1) check_array(mesh.key_times, mesh.key_count, "mesh.key_times");
   check_array(mesh.positions, mesh.vertex_count, "mesh.positions", size_t{3} * mesh.key_count);
   check_array(mesh.corner_vertices, mesh.corner_count, "mesh.corner_vertices");
@@ -51,14 +56,15 @@ MeshArgs::MeshArgs(const GradusMesh* from) : mesh(read_struct(from, "mesh")) {
   check_array(mesh.face_materials, mesh.face_count, "mesh.face_materials", 1, Presence::Optional);
   check_enum(mesh.normal_domain, 3, "mesh.normal_domain");
   const bool optional = mesh.normal_domain != GRADUS_DOMAIN_CORNER;  // FACE: flat; POINT: made here
-  check_array(mesh.normals, domain_size(mesh, mesh.normal_domain), "mesh.normals", 3, optional ? Presence::Optional : Presence::Required);
+  check_array(mesh.normals, geometry::domain_size(mesh, mesh.normal_domain), "mesh.normals", 3,
+              optional ? Presence::Optional : Presence::Required);
   check_array(mesh.generated_points, mesh.vertex_count, "mesh.generated_points", 3, Presence::Optional);
   attributes = read_struct_array(mesh.attributes, mesh.attribute_count, "mesh.attributes");
   for (GradusAttribute& attribute : attributes) {
     attribute.name = text_or_empty(attribute.name);
     check_enum(attribute.domain, 3, "attribute.domain");
     if (attribute.channels < 1 || attribute.channels > 4) throw invalid_argument("attribute.channels is not 1 to 4");
-    check_array(attribute.data, domain_size(mesh, attribute.domain), "attribute.data", attribute.channels);
+    check_array(attribute.data, geometry::domain_size(mesh, attribute.domain), "attribute.data", attribute.channels);
   }
   mesh.attributes = attributes.data();
 }
@@ -90,7 +96,8 @@ GradusMaterial read_material(const GradusMaterial* from) {
     check_range(node.first_float, node.float_count, m.float_count, name + ": first_float, float_count");
     for (uint32_t k = 0; k < node.input_count; ++k) {
       const int32_t source = m.inputs[node.first_input + k].node;
-      if (source < -1 || source >= int64_t(i)) throw invalid_argument(name + ": input " + std::to_string(k) + " is not an earlier node");
+      if (source < -1 || source >= int64_t(i))
+        throw invalid_argument(name + ": input " + std::to_string(k) + " is not an earlier node");
     }
   }
   return m;
@@ -120,7 +127,8 @@ GradusInstances read_instances(const GradusInstances* from) {
   if (in.material_first) check_array(in.material_count, in.count, "instances.material_count");
   for (size_t i = 0; i < in.count; ++i) {
     if (in.material_first)
-      check_range(in.material_first[i], in.material_count[i], in.materials_size, "instances.material_first, material_count");
+      check_range(in.material_first[i], in.material_count[i], in.materials_size,
+                  "instances.material_first, material_count");
     if (in.name_index) check_range(in.name_index[i], 1, in.name_count, "instances.name_index");
   }
   return in;

@@ -44,7 +44,7 @@ T read_record(ArchiveReader* reader) {
   return value;
 }
 
-void set_record(RecordKind kind, uint64_t key, const char* data, size_t size, Scene* scene) {
+void set_record(RecordKind kind, uint64_t key, const char* data, size_t size, scene::Scene* scene) {
   ArchiveReader reader(data, size);
   switch (kind) {
     case RecordKind::Image: {
@@ -81,7 +81,9 @@ void set_record(RecordKind kind, uint64_t key, const char* data, size_t size, Sc
   }
 }
 
-bool has_key(RecordKind kind) { return kind == RecordKind::Image || kind == RecordKind::Material || kind == RecordKind::Mesh; }
+bool has_key(RecordKind kind) {
+  return kind == RecordKind::Image || kind == RecordKind::Material || kind == RecordKind::Mesh;
+}
 
 // Calls record(kind, key, data, size) for all but settings, which are returned.
 template <class Function>
@@ -90,23 +92,26 @@ GradusSettings read_records(const FileBytes& file, Function&& record_function) {
   const FileHeader expected;
   if (file.size() < sizeof(header)) throw invalid_argument("it is no scene of Gradus");
   std::memcpy(&header, file.data(), sizeof(header));
-  if (std::memcmp(header.magic, expected.magic, sizeof(header.magic)) != 0) throw invalid_argument("it is no scene of Gradus");
+  if (std::memcmp(header.magic, expected.magic, sizeof(header.magic)) != 0)
+    throw invalid_argument("it is no scene of Gradus");
   if (header.format != kSceneFormat || header.byte_order != expected.byte_order) {
-    throw invalid_argument("it has format " + std::to_string(header.format) + ", this library reads " + std::to_string(kSceneFormat));
+    throw invalid_argument("it has format " + std::to_string(header.format) + ", this library reads " +
+                           std::to_string(kSceneFormat));
   }
-  GradusSettings settings = default_settings();
+  GradusSettings settings = schema::default_settings();
   for (uint64_t position = sizeof(header);;) {
     RecordHeader record;
     if (file.size() - position < sizeof(record)) throw invalid_argument("it ends too early");
     std::memcpy(&record, file.data() + position, sizeof(record));
     position += sizeof(record);
-    if (record.size > file.size() - position || padded(record.size) > file.size() - position) throw invalid_argument("it ends too early");
+    if (record.size > file.size() - position || padded(record.size) > file.size() - position)
+      throw invalid_argument("it ends too early");
     const char* data = file.data() + position;
     if (checksum(data, record.size) != record.checksum) throw invalid_argument("it is damaged");
     const auto kind = static_cast<RecordKind>(record.kind);
     if (kind == RecordKind::End) return settings;
     if (kind == RecordKind::Settings) {
-      settings = settings_from_json(nlohmann::json::parse(data, data + record.size));
+      settings = schema::settings_from_json(nlohmann::json::parse(data, data + record.size));
     } else {
       if (has_key(kind) && record.key == 0) throw invalid_argument("it holds an object without a key");
       record_function(kind, record.key, data, record.size);
@@ -157,10 +162,11 @@ auto loading(const std::string& path, Function&& function) {
 
 }  // namespace
 
-GradusSettings load_scene(const std::string& path, Scene* scene) {
+GradusSettings load_scene(const std::string& path, scene::Scene* scene) {
   return loading(path, [&](const FileBytes& file) {
-    return read_records(file,
-                        [&](RecordKind kind, uint64_t key, const char* data, size_t size) { set_record(kind, key, data, size, scene); });
+    return read_records(file, [&](RecordKind kind, uint64_t key, const char* data, size_t size) {
+      set_record(kind, key, data, size, scene);
+    });
   });
 }
 
@@ -168,8 +174,8 @@ SceneSummary summarize_scene(const std::string& path) {
   return loading(path, [](const FileBytes& file) {
     SceneSummary summary;
     summary.file_bytes = file.size();
-    summary.settings =
-        read_records(file, [&](RecordKind kind, uint64_t, const char* data, size_t size) { summarize(kind, data, size, &summary); });
+    summary.settings = read_records(
+        file, [&](RecordKind kind, uint64_t, const char* data, size_t size) { summarize(kind, data, size, &summary); });
     return summary;
   });
 }

@@ -12,8 +12,9 @@ using namespace gradus;
 namespace gradus::api {
 namespace {
 
-SequenceSettings settings_of(const GradusSequenceSettings& given) {
-  SequenceSettings settings{given.first, given.last, given.step, {}, given.folder != nullptr ? given.folder : ""};
+animation::SequenceSettings settings_of(const GradusSequenceSettings& given) {
+  animation::SequenceSettings settings{
+      given.first, given.last, given.step, {}, given.folder != nullptr ? given.folder : ""};
   settings.with_flow = given.with_flow != 0;
   if (given.window_size > 0) settings.windows = {int(given.window_size), int(given.window_overlap)};
   return settings;
@@ -25,7 +26,7 @@ void require_idle(const SequenceObject& object) {
   if (running && !running->render.wait(0.0)) throw invalid_operation("a frame of the sequence is still being rendered");
 }
 
-GradusRender run(SequenceObject* object, std::unique_ptr<RenderTask> task) {
+GradusRender run(SequenceObject* object, std::unique_ptr<render::RenderTask> task) {
   auto render = std::make_shared<RenderObject>(object->device, std::move(task));
   object->running = render;
   return add_handle(std::move(render));
@@ -37,16 +38,19 @@ GradusRender run(SequenceObject* object, std::unique_ptr<RenderTask> task) {
 GradusError gradus_sequence_applies(const GradusSettings* settings, uint32_t* applies, const char** why_not) {
   return api::guard([&] {
     thread_local std::string text;
-    api::require(applies, "applies") = sequence_applies(api::read_struct(settings, "settings", default_settings()), &text) ? 1 : 0;
+    api::require(applies, "applies") =
+        animation::sequence_applies(api::read_struct(settings, "settings", schema::default_settings()), &text) ? 1 : 0;
     api::require(why_not, "why_not") = text.c_str();
   });
 }
 
-GradusError gradus_sequence_create(GradusDevice device, const GradusSequenceSettings* settings, GradusSequence* sequence) {
+GradusError gradus_sequence_create(GradusDevice device, const GradusSequenceSettings* settings,
+                                   GradusSequence* sequence) {
   return api::guard([&] {
     api::require(sequence, "sequence") = 0;
     const GradusSequenceSettings copy = api::read_struct(settings, "settings");
-    *sequence = api::add_handle(std::make_shared<api::SequenceObject>(api::find_handle<Device>(device), api::settings_of(copy)));
+    *sequence = api::add_handle(
+        std::make_shared<api::SequenceObject>(api::find_handle<scene::Device>(device), api::settings_of(copy)));
   });
 }
 
@@ -54,26 +58,28 @@ GradusError gradus_sequence_needs(GradusSequence sequence, int32_t frame, int32_
   return api::guard([&] {
     const auto object = api::find_handle<api::SequenceObject>(sequence);
     const std::lock_guard lock(object->mutex);
-    const FrameRange needed = object->sequence->needs(frame);
+    const reconstruct::FrameRange needed = object->sequence->needs(frame);
     api::require(first, "first") = needed.first;
     api::require(last, "last") = needed.last;
   });
 }
 
-GradusError gradus_sequence_sample(GradusSequence sequence, GradusScene scene, const GradusSettings* settings, GradusRender* render) {
+GradusError gradus_sequence_sample(GradusSequence sequence, GradusScene scene, const GradusSettings* settings,
+                                   GradusRender* render) {
   return api::guard([&] {
     api::require(render, "render") = 0;
-    const GradusSettings copy = api::read_struct(settings, "settings", default_settings());
+    const GradusSettings copy = api::read_struct(settings, "settings", schema::default_settings());
     const auto object = api::find_handle<api::SequenceObject>(sequence);
     const std::lock_guard lock(object->mutex);
     api::require_idle(*object);
-    *render = api::run(object.get(), object->sequence->sample(api::find_handle<api::SceneObject>(scene)->snapshot(), copy));
+    *render =
+        api::run(object.get(), object->sequence->sample(api::find_handle<api::SceneObject>(scene)->snapshot(), copy));
   });
 }
 
 GradusError gradus_sequence_pass_by(GradusSequence sequence, GradusScene scene, const GradusSettings* settings) {
   return api::guard([&] {
-    const GradusSettings copy = api::read_struct(settings, "settings", default_settings());
+    const GradusSettings copy = api::read_struct(settings, "settings", schema::default_settings());
     const auto object = api::find_handle<api::SequenceObject>(sequence);
     const std::lock_guard lock(object->mutex);
     api::require_idle(*object);
@@ -90,13 +96,14 @@ GradusError gradus_sequence_end_at(GradusSequence sequence, int32_t last) {
   });
 }
 
-GradusError gradus_sequence_deliver(GradusSequence sequence, int32_t frame, const GradusSettings* settings, GradusRender* render) {
+GradusError gradus_sequence_deliver(GradusSequence sequence, int32_t frame, const GradusSettings* settings,
+                                    GradusRender* render) {
   return api::guard([&] {
     api::require(render, "render") = 0;
     GradusSettings copy{};
     if (settings != nullptr) {
-      copy = api::read_struct(settings, "settings", default_settings());
-      check_settings(copy);
+      copy = api::read_struct(settings, "settings", schema::default_settings());
+      schema::check_settings(copy);
     }
     const auto object = api::find_handle<api::SequenceObject>(sequence);
     const std::lock_guard lock(object->mutex);

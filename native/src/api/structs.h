@@ -25,7 +25,8 @@ uint32_t struct_size_of(const void* from, const char* name) {
   }
   // A multiple of the alignment never cuts a pointer or number in two.
   if (size < 2 * sizeof(uint32_t) || size % alignof(T) != 0) {
-    throw invalid_argument(std::string(name) + ".struct_size is " + std::to_string(size) + ", expected " + std::to_string(sizeof(T)));
+    throw invalid_argument(std::string(name) + ".struct_size is " + std::to_string(size) + ", expected " +
+                           std::to_string(sizeof(T)));
   }
   return size;
 }
@@ -49,7 +50,8 @@ std::vector<T> read_struct_array(const T* from, size_t count, const char* name) 
   const auto* bytes = reinterpret_cast<const unsigned char*>(from);
   for (size_t i = 0; i < count; ++i) {
     const auto* element = reinterpret_cast<const T*>(bytes + i * size);
-    if (struct_size_of<T>(element, name) != size) throw invalid_argument(std::string(name) + ": elements differ in struct_size");
+    if (struct_size_of<T>(element, name) != size)
+      throw invalid_argument(std::string(name) + ": elements differ in struct_size");
     result.push_back(read_struct(element, name));
   }
   return result;

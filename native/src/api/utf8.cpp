@@ -11,7 +11,8 @@ size_t sequence_length(const unsigned char* p) {
   if (p[0] < 0x80) return 1;
   if (p[0] >= 0xc2 && p[0] <= 0xdf) return continues(p[1]) ? 2 : 0;
   if (p[0] >= 0xe0 && p[0] <= 0xef) {
-    const unsigned char low = p[0] == 0xe0 ? 0xa0 : 0x80, high = p[0] == 0xed ? 0x9f : 0xbf;  // no overlong forms, no surrogates
+    const unsigned char low = p[0] == 0xe0 ? 0xa0 : 0x80,
+                        high = p[0] == 0xed ? 0x9f : 0xbf;  // no overlong forms, no surrogates
     return p[1] >= low && p[1] <= high && continues(p[2]) ? 3 : 0;
   }
   if (p[0] >= 0xf0 && p[0] <= 0xf4) {

@@ -5,7 +5,8 @@
 
 namespace gradus::api {
 
-// Copies the zero-terminated text (NULL = "") into target[capacity], zero-terminated; invalid bytes become '?', no character is cut.
+// Copies the zero-terminated text (NULL = "") into target[capacity], zero-terminated; invalid bytes become '?', no
+// character is cut.
 void copy_utf8(const char* text, char* target, size_t capacity) noexcept;
 
 }  // namespace gradus::api

@@ -13,7 +13,9 @@
 
 using namespace gradus;
 
-uint32_t gradus_version(void) { return GRADUS_VERSION_MAJOR * 10000 + GRADUS_VERSION_MINOR * 100 + GRADUS_VERSION_PATCH; }
+uint32_t gradus_version(void) {
+  return GRADUS_VERSION_MAJOR * 10000 + GRADUS_VERSION_MINOR * 100 + GRADUS_VERSION_PATCH;
+}
 
 const char* gradus_version_text(void) {
   return GRADUS_TEXT(GRADUS_VERSION_MAJOR) "." GRADUS_TEXT(GRADUS_VERSION_MINOR) "." GRADUS_TEXT(
@@ -28,7 +30,8 @@ uint64_t gradus_abi_hash(void) {
 
 GradusError gradus_error(const char** text) { return api::take_error(text); }
 
-GradusError gradus_struct_layout(const char* name, size_t* size, size_t* offsets, size_t capacity, size_t* field_count) {
+GradusError gradus_struct_layout(const char* name, size_t* size, size_t* offsets, size_t capacity,
+                                 size_t* field_count) {
   return api::guard([&] {
     const api::StructLayout* layout = api::find_struct(std::string_view(&api::require(name, "name")));
     if (!layout) throw invalid_argument("no struct Gradus" + std::string(name));

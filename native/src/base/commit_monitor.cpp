@@ -8,7 +8,7 @@
 namespace gradus {
 
 void CommitMonitor::check() const {
-  if (!go_on()) throw cancelled();
+  if (!is_running()) throw cancelled();
 }
 
 void CommitMonitor::report(float fraction) const {
@@ -22,7 +22,7 @@ void CommitMonitor::report(float fraction) const {
 BuildProgress CommitMonitor::step(float first, float last) const {
   return [this, first, last](float fraction) {
     report(first + (last - first) * std::clamp(fraction, 0.0f, 1.0f));
-    return go_on();
+    return is_running();
   };
 }
 

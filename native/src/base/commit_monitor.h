@@ -13,7 +13,7 @@ using BuildProgress = std::function<bool(float)>;
 class CommitMonitor {
  public:
   CommitMonitor(const volatile int32_t* cancel, float* progress) : cancel_(cancel), progress_(progress) {}
-  bool go_on() const { return !cancel_ || *cancel_ == 0; }
+  bool is_running() const { return !cancel_ || *cancel_ == 0; }
   void check() const;  // throws Error CANCELLED
   // fraction of the step that runs from `first` to `last`.
   BuildProgress step(float first, float last) const;

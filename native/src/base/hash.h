@@ -1,4 +1,5 @@
-// Hashes of content by XXH3 (xxHash): they tell unchanged data from changed, and key a scene (contract 7.2). Not for random numbers.
+// Hashes of content by XXH3 (xxHash): they tell unchanged data from changed, and key a scene (contract 7.2). Not for
+// random numbers.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,8 @@
 
 namespace gradus {
 
-// Finaliser of MurmurHash3 (Appleby), which spreads every input bit over all output bits. Numbers of specular chains are made of it.
+// Finaliser of MurmurHash3 (Appleby), which spreads every input bit over all output bits. Numbers of specular chains
+// are made of it.
 inline uint64_t mix_bits(uint64_t h) {
   h ^= h >> 33;
   h *= 0xff51afd7ed558ccdULL;
@@ -23,7 +25,8 @@ class ContentHash {
   void bytes(const void* data, size_t size);
   template <class T>
   void value(const T& v) {
-    static_assert(std::is_trivially_copyable_v<T> && std::has_unique_object_representations_v<T>, "padding would be hashed");
+    static_assert(std::is_trivially_copyable_v<T> && std::has_unique_object_representations_v<T>,
+                  "padding would be hashed");
     bytes(&v, sizeof(T));
   }
   void value(float v) { value(bits(v)); }

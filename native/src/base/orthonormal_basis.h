@@ -1,4 +1,5 @@
-// Two unit vectors at right angles to a unit vector (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017).
+// Two unit vectors at right angles to a unit vector (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT
+// 2017).
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Loops over rows, spread over the threads of the current arena. Every row is one thread's alone, so results do not depend on threads;
-// sums are kept per row and added in order.
+// Loops over rows, spread over the threads of the current arena. Every row is one thread's alone, so results do not
+// depend on threads; sums are kept per row and added in order.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -74,12 +74,15 @@ Sums sum_rows(int height, int channels, Function&& function) {
   return sum_each_row(height, channels, function).total();
 }
 
-// Three rows of an image that is made row by row and never stored: row y takes the place of row y - 3. With zeros around; y from -3 on.
+// Three rows of an image that is made row by row and never stored: row y takes the place of row y - 3. With zeros
+// around; y from -3 on.
 class RollingRows {
  public:
   RollingRows(int width, int channels)
       : channels_(channels), stride_(size_t(width) + 2 * kPad), values_(3 * size_t(channels) * stride_, 0.0f) {}
-  float* row(int y, int channel) { return values_.data() + kPad + stride_ * (size_t((y + 3) % 3) * channels_ + size_t(channel)); }
+  float* row(int y, int channel) {
+    return values_.data() + kPad + stride_ * (size_t((y + 3) % 3) * channels_ + size_t(channel));
+  }
 
  private:
   static constexpr size_t kPad = 8;

@@ -38,12 +38,14 @@ void SpoolFile::repeat(const char* action, int nothing, size_t size, const Step&
 
 void SpoolFile::write(uint64_t place, const void* data, size_t size) {
   const auto* from = static_cast<const char*>(data);
-  repeat("write", ENOSPC, size, [&](size_t done) { return pwrite(descriptor_, from + done, size - done, off_t(place + done)); });
+  repeat("write", ENOSPC, size,
+         [&](size_t done) { return pwrite(descriptor_, from + done, size - done, off_t(place + done)); });
 }
 
 void SpoolFile::read(uint64_t place, void* data, size_t size) const {
   auto* to = static_cast<char*>(data);
-  repeat("read", EIO, size, [&](size_t done) { return pread(descriptor_, to + done, size - done, off_t(place + done)); });
+  repeat("read", EIO, size,
+         [&](size_t done) { return pread(descriptor_, to + done, size - done, off_t(place + done)); });
 }
 
 }  // namespace gradus

@@ -1,5 +1,5 @@
-// A temporary file without a name: it goes when whoever uses it goes, however that ends. What is in it is in memory as far as the system
-// has room, and counts as free there.
+// A temporary file without a name: it goes when whoever uses it goes, however that ends. What is in it is in memory as
+// far as the system has room, and counts as free there.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,8 @@ namespace gradus {
 
 class SpoolFile {
  public:
-  // In the folder for temporary files (TMPDIR). All throw Error(INVALID_OPERATION) with the folder and the system's reason.
+  // In the folder for temporary files (TMPDIR). All throw Error(INVALID_OPERATION) with the folder and the system's
+  // reason.
   SpoolFile();
   ~SpoolFile();
   SpoolFile(const SpoolFile&) = delete;

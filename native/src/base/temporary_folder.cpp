@@ -18,7 +18,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPrefix = "gradus-frames-";
 
-int open_folder(const fs::path& folder) { return open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC); }
+int open_folder(const fs::path& folder) {
+  return open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+}
 
 void remove_unlocked(const fs::path& folder) {
   const int lock = open_folder(folder);
@@ -47,7 +49,8 @@ TemporaryFolder::TemporaryFolder() {
   const fs::path place = temporary_path();
   remove_stale_folders(place);
   const auto fail = [&](int reason) {
-    throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot make a temporary folder in " + place.string() + ": " + std::strerror(reason));
+    throw Error(GRADUS_ERROR_INVALID_OPERATION,
+                "cannot make a temporary folder in " + place.string() + ": " + std::strerror(reason));
   };
   while (lock_ < 0) {
     path_ = (place / (std::string(kPrefix) + "XXXXXX")).string();

@@ -1,5 +1,5 @@
-// A folder for temporary files that goes with its owner. Where the owner is killed it goes when the next one is made: it is locked while
-// its owner lives.
+// A folder for temporary files that goes with its owner. Where the owner is killed it goes when the next one is made:
+// it is locked while its owner lives.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Angles without calls of the mathematical library, which keeps double's precision and the edges of its range: polynomials good to float's
-// precision, inlined, so that other work goes on beside them.
+// Angles without calls of the mathematical library, which keeps double's precision and the edges of its range:
+// polynomials good to float's precision, inlined, so that other work goes on beside them.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,8 @@ inline SineCosine sine_cosine(float x) {
   const float r = std::fma(quarters, 4.37113883e-8f, std::fma(-quarters, 1.57079637f, x));
   const float z = r * r;
   const float s = r + r * z * (-1.6666654611e-1f + z * (8.3321608736e-3f - z * 1.9515295891e-4f));
-  const float c = 1.0f - 0.5f * z + z * z * (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f));
+  const float c =
+      1.0f - 0.5f * z + z * z * (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f));
   // By bits: which quarter it is cannot be foretold.
   const auto n = static_cast<uint32_t>(static_cast<int32_t>(quarters));
   const uint32_t keep = (n & 1u) - 1u, sines = std::bit_cast<uint32_t>(s), cosines = std::bit_cast<uint32_t>(c);

@@ -5,12 +5,13 @@
 #include "bsdf/fresnel.h"
 #include "bsdf/lobe.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 namespace {
 
 float mean_alpha(const Lobe& lobe) { return std::min(1.0f, std::sqrt(lobe.alpha_x * lobe.alpha_y)); }
 
-// Fresnel term averaged over the cosine hemisphere, for light that bounces between facets. Dielectric: fit of Kulla and Conty
+// Fresnel term averaged over the cosine hemisphere, for light that bounces between facets. Dielectric: fit of Kulla and
+// Conty
 // ("Revisiting Physically Based Shading at Imageworks", 2017).
 float mean_dielectric(float eta) {
   if (eta < 1.0f) {
@@ -27,7 +28,8 @@ Rgb mean_fresnel(const Lobe& lobe) {
       return Rgb(mean_dielectric(lobe.ior));
     case FresnelType::Schlick: {
       const float f0 = fresnel_f0(lobe.ior);
-      const float s = f0 < 1e-6f ? 1.0f / 21.0f : std::clamp((mean_dielectric(lobe.ior) - f0) / (1.0f - f0), 0.0f, 1.0f);
+      const float s =
+          f0 < 1e-6f ? 1.0f / 21.0f : std::clamp((mean_dielectric(lobe.ior) - f0) / (1.0f - f0), 0.0f, 1.0f);
       return glm::mix(lobe.f0, lobe.f90, s);
     }
     // 2∫(1−c)^5 c dc = 1/21 and 2∫c(1−c)^6 c dc = 1/126.
@@ -49,7 +51,8 @@ Rgb single_reflection(const Lobe& lobe, float alpha, float cosine) {
       const float f0 = fresnel_f0(lobe.ior);
       float position = m.schlick;
       if (f0 >= 1e-6f) {
-        position = std::clamp((glass_albedo(alpha, cosine, lobe.ior).reflected - f0 * m.one) / (1.0f - f0), 0.0f, m.one);
+        position =
+            std::clamp((glass_albedo(alpha, cosine, lobe.ior).reflected - f0 * m.one) / (1.0f - f0), 0.0f, m.one);
       }
       return lobe.f0 * (m.one - position) + lobe.f90 * position;
     }
@@ -74,7 +77,8 @@ Rgb single_transmission(const Lobe& lobe, float alpha, float cosine) {
   if (lobe.fresnel == FresnelType::Schlick && glass.transmitted > 0.0f) {
     const Rgb reflected = single_reflection(lobe, alpha, cosine);
     const Rgb share = (Rgb(glass.reflected + glass.transmitted) - reflected) / glass.transmitted;
-    return glm::clamp(share, 0.0f, 1.0f / std::max(glass.transmitted, 1e-3f)) * glass.transmitted * lobe.transmission_tint;
+    return glm::clamp(share, 0.0f, 1.0f / std::max(glass.transmitted, 1e-3f)) * glass.transmitted *
+           lobe.transmission_tint;
   }
   return Rgb(glass.transmitted) * lobe.transmission_tint;
 }
@@ -96,8 +100,8 @@ Rgb multiscatter_energy(const Lobe& lobe, float cosine) {
     const bool alone = lobe.type == LobeType::GgxRefraction;
     return Rgb(1.0f / std::clamp(alone ? glass.crossing : glass.reflected + glass.transmitted, 0.3f, 1.0f));
   }
-  // Turquin 2019 ("Practical multiple scattering compensation for microfacet models"): scale the single scattering; the colour of the
-  // part that bounced more than once after Kulla and Conty 2017.
+  // Turquin 2019 ("Practical multiple scattering compensation for microfacet models"): scale the single scattering; the
+  // colour of the part that bounced more than once after Kulla and Conty 2017.
   const float single = std::clamp(ggx_moments(alpha, cosine).one, 0.05f, 1.0f);
   const float missing = (1.0f - single) / single;
   const float mean = ggx_mean_albedo(alpha);
@@ -120,21 +124,23 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {
     case LobeType::GgxRefraction:
       return {Rgb(0.0f), scale * single_transmission(lobe, mean_alpha(lobe), cosine)};
     case LobeType::GgxGlass:
-      return {scale * single_reflection(lobe, mean_alpha(lobe), cosine), scale * single_transmission(lobe, mean_alpha(lobe), cosine)};
+      return {scale * single_reflection(lobe, mean_alpha(lobe), cosine),
+              scale * single_transmission(lobe, mean_alpha(lobe), cosine)};
     default:
       return dirac_albedo(lobe, cosine);
   }
 }
 
-// Layers take what Cycles takes: the albedo as if no energy were lost between facets, and below an IOR of 1 that of its inverse, as
-// its tables end there.
+// Layers take what Cycles takes: the albedo as if no energy were lost between facets, and below an IOR of 1 that of its
+// inverse, as its tables end there.
 Rgb lobe_albedo(Lobe* lobe, const Vec3& wo) {
   Lobe prepared = *lobe;
   prepare_lobe(&prepared, glm::dot(lobe->normal, wo) < 0.0f ? -lobe->normal : lobe->normal, wo);
   const float cosine = glm::dot(prepared.normal, wo);
   float kept = 1.0f;
   if (prepared.type == LobeType::GgxReflection) {
-    prepared.ior = prepared.fresnel == FresnelType::Schlick ? std::max(prepared.ior, 1.0f / prepared.ior) : prepared.ior;
+    prepared.ior =
+        prepared.fresnel == FresnelType::Schlick ? std::max(prepared.ior, 1.0f / prepared.ior) : prepared.ior;
     kept = prepared.multiscatter ? 1.0f : ggx_moments(mean_alpha(prepared), cosine).one;
     const float seen = std::min(std::abs(cosine), 1.0f);
     prepared.known = lobe->known = {seen, prepared.ior, single_reflection(prepared, mean_alpha(prepared), seen)};
@@ -143,4 +149,4 @@ Rgb lobe_albedo(Lobe* lobe, const Vec3& wo) {
   return (albedo.reflected + albedo.transmitted) / std::max(kept, 0.05f);
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

@@ -9,7 +9,7 @@
 #include "bsdf/ggx.h"
 #include "bsdf/refract.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 namespace {
 
 // Axes: square root of the cosine and of alpha, as both functions bend most near 0; for glass 1−|…|: see ior_position().
@@ -199,4 +199,4 @@ GlassAlbedo glass_albedo(float alpha, float cosine, float eta) {
   return {g[0], g[1], g[2]};
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

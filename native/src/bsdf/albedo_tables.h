@@ -2,7 +2,7 @@
 // that are asked for (10 ms each).
 #pragma once
 
-namespace gradus {
+namespace gradus::bsdf {
 
 // Integrals over the cosine-weighted reflection lobe with white masking-shadowing: of 1, of (1−c)^5 and of c(1−c)^6, c the cosine at
 // the half-vector. Any Schlick or F82 lobe's albedo is linear in them.
@@ -24,4 +24,4 @@ struct GlassAlbedo {
 };
 GlassAlbedo glass_albedo(float alpha, float cosine, float eta);
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <memory>
 
-#include "bsdf/shading_frame.h"
 #include "bsdf/ggx.h"
 #include "bsdf/lobe.h"
+#include "bsdf/shading_frame.h"
 #include "bsdf/shading_normal.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 namespace {
 
 // A sampled side gets at least this share of its lobe: albedos come from tables.
@@ -121,7 +121,8 @@ void Closures::keep_originals() {
 
 namespace {
 
-// A surface's own normal comes as it is, and stays so to the bit: where a lobe has it, nothing asks for a bump's shadowing.
+// A surface's own normal comes as it is, and stays so to the bit: where a lobe has it, nothing asks for a bump's
+// shadowing.
 Vec3 unit_normal(const Vec3& normal, const Vec3& geometric_normal) {
   const float length2 = glm::dot(normal, normal);
   if (std::abs(length2 - 1.0f) < 1e-6f) {
@@ -236,7 +237,8 @@ void Closures::finish_lambert() {
   class_probability_[k] = scatters ? 1.0f : 0.0f;
 }
 
-void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold, const Vec3& smooth_normal) {
+void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold,
+                      const Vec3& smooth_normal) {
   geometric_normal_ = geometric_normal;
   smooth_normal_ = smooth_normal;
   entry_count_.fill(0);
@@ -266,4 +268,4 @@ Vec3 Closures::average_normal() const {
   return length2 > 0.0f ? sum / std::sqrt(length2) : geometric_normal_;
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

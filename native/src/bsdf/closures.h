@@ -1,7 +1,8 @@
 // The scattering function of one surface point: a small set of weighted lobes, grouped into classes.
 //
-// Scattering first samples a class, with probability class_probability(c), then a direction within it; a light sample is split over the
-// classes (contract 1.4). All directions point away from the surface; `wo` towards the previous vertex, `wi` towards the next.
+// Scattering first samples a class, with probability class_probability(c), then a direction within it; a light sample
+// is split over the classes (contract 1.4). All directions point away from the surface; `wo` towards the previous
+// vertex, `wi` towards the next.
 #pragma once
 
 #include <array>
@@ -9,7 +10,7 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 
 // Letters of a path word (contract 3.1): D rough, R specular reflection, T specular transmission.
 enum class ScatterClass : uint8_t { Diffuse = 0, Reflection = 1, Transmission = 2 };
@@ -43,16 +44,17 @@ struct KnownAlbedo {
 // One lobe. Frame: normal, and tangent where anisotropic.
 //
 // Which fields count:
-//   Diffuse                alpha_x = Oren-Nayar roughness, 0 = Lambert; multiscatter: energy conserving, f0 = the surface's colour (which
+//   Diffuse                alpha_x = Oren-Nayar roughness, 0 = Lambert; multiscatter: energy conserving, f0 = the
+//   surface's colour (which
 //                          weight holds, too); fresnel Schlick: Disney's diffuse, alpha_x = roughness
-//   Sheen                  alpha_x = sheen roughness, not squared; fresnel Schlick: the grazing term of Blender before 4.0
-//   Ggx…, Dirac…           alpha_x, alpha_y, ior, fresnel; finish() makes a Ggx lobe Dirac where alpha is too small for float
-//   fresnel Dielectric     of ior
-//   fresnel Schlick        mix(f0, f90, s): s follows the dielectric curve of ior, scaled to 0…1, as in Blender 4; ior 1: fifth power
-//   fresnel PrincipledMetal  f0, and f90 = tint at 82 degrees (1 = plain Schlick)
-// multiscatter: the colour of repeated bounces between facets comes from the Fresnel term; without one from f0, a colour that weight
-// holds, too (Cycles' MULTI_GGX).
-// Glass reflects with weight·F and transmits with weight·transmission_tint·(1 − F).
+//   Sheen                  alpha_x = sheen roughness, not squared; fresnel Schlick: the grazing term of Blender
+//   before 4.0 Ggx…, Dirac…           alpha_x, alpha_y, ior, fresnel; finish() makes a Ggx lobe Dirac where alpha is
+//   too small for float fresnel Dielectric     of ior fresnel Schlick        mix(f0, f90, s): s follows the dielectric
+//   curve of ior, scaled to 0…1, as in Blender 4; ior 1: fifth power fresnel PrincipledMetal  f0, and f90 = tint at 82
+//   degrees (1 = plain Schlick)
+// multiscatter: the colour of repeated bounces between facets comes from the Fresnel term; without one from f0, a
+// colour that weight holds, too (Cycles' MULTI_GGX). Glass reflects with weight·F and transmits with
+// weight·transmission_tint·(1 − F).
 struct Lobe {
   LobeType type = LobeType::Diffuse;
   FresnelType fresnel = FresnelType::None;
@@ -66,11 +68,12 @@ struct Lobe {
   float ior = 1.0f;    // of the inside against the outside; after finish(): of the far side against that of wo
   Rgb f0 = Rgb(1.0f);  // Schlick
   Rgb f90 = Rgb(1.0f);
-  Rgb transmission_tint = Rgb(1.0f);                   // glass lobes
-  float sample_weight = 0.0f;                          // filled by Closures::finish()
-  Rgb energy = Rgb(1.0f);                              // multiple scattering, filled by finish()
-  KnownAlbedo known;                                   // what lobe_albedo() found: finish() mostly asks for the same
-  ScatterClass scatter_class = ScatterClass::Diffuse;  // reflection side; for GgxGlass the transmission side is T, unless rough (D)
+  Rgb transmission_tint = Rgb(1.0f);  // glass lobes
+  float sample_weight = 0.0f;         // filled by Closures::finish()
+  Rgb energy = Rgb(1.0f);             // multiple scattering, filled by finish()
+  KnownAlbedo known;                  // what lobe_albedo() found: finish() mostly asks for the same
+  ScatterClass scatter_class =
+      ScatterClass::Diffuse;  // reflection side; for GgxGlass the transmission side is T, unless rough (D)
 };
 
 // f·|cos(wi)| and its density in solid angle.
@@ -79,8 +82,8 @@ struct BsdfEval {
   float pdf = 0.0f;  // p(wi | class)
 };
 
-// The whole class, and of it the lobes that make the same kind of bounce (diffuse or not): what limits on bounces, visibility to kinds of
-// rays, and the Light Path node look at.
+// The whole class, and of it the lobes that make the same kind of bounce (diffuse or not): what limits on bounces,
+// visibility to kinds of rays, and the Light Path node look at.
 struct KindEval {
   BsdfEval all, kind;
 };
@@ -96,8 +99,8 @@ struct BsdfSample {
   BsdfEval kind;             // value and density of the class's lobes of this kind; for Dirac value and pdf again
 };
 
-// Directional albedo of one lobe by itself, weight included, before finish(): for layering, so without what single scattering loses. wo
-// is inside where normal·wo < 0. All that the lobe looks like must be set; its `known` is filled.
+// Directional albedo of one lobe by itself, weight included, before finish(): for layering, so without what single
+// scattering loses. wo is inside where normal·wo < 0. All that the lobe looks like must be set; its `known` is filled.
 Rgb lobe_albedo(Lobe* lobe, const Vec3& wo);
 
 inline constexpr int kMaxLobes = 12;
@@ -107,12 +110,12 @@ class Closures {
   // Building: add lobes, then finish() once. Where there are kMaxLobes already, the two most alike become one.
   void clear() { count_ = prepared_ = 0; }
   Lobe* add();
-  // wo and geometric_normal in world space, geometric_normal on the side of wo. Sorts lobes into classes by roughness_threshold
-  // (alpha), drops black ones, fills sampling weights. Can be called again for another wo (a shifted path), and must be: all that
-  // follows takes the wo of the last finish().
-  // smooth_normal: interpolated, on the side of wo, without bumps; diffuse lobes with another normal darken softly where it turns away.
-  // 0: none.
-  void finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold, const Vec3& smooth_normal = Vec3(0.0f));
+  // wo and geometric_normal in world space, geometric_normal on the side of wo. Sorts lobes into classes by
+  // roughness_threshold (alpha), drops black ones, fills sampling weights. Can be called again for another wo (a
+  // shifted path), and must be: all that follows takes the wo of the last finish(). smooth_normal: interpolated, on the
+  // side of wo, without bumps; diffuse lobes with another normal darken softly where it turns away. 0: none.
+  void finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold,
+              const Vec3& smooth_normal = Vec3(0.0f));
 
   int count() const { return count_; }
   const Lobe& lobe(int i) const { return lobes_[i]; }
@@ -142,7 +145,8 @@ class Closures {
   std::array<Rgb, 3> evaluate_by_pass(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted) const;
   // u: direction; u_lobe: choice of the lobe. False: absorbed.
   bool sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& u, BsdfSample* out) const;
-  // One given lobe alone: what a shift needs to replay a Dirac event with the same lobe. False if the lobe cannot do it.
+  // One given lobe alone: what a shift needs to replay a Dirac event with the same lobe. False if the lobe cannot do
+  // it.
   bool evaluate_dirac(int lobe, const Vec3& wo, bool transmitted, BsdfSample* out) const;
 
   // Albedo of the lobes of a pass, for colour passes and denoising.
@@ -174,7 +178,8 @@ class Closures {
   void normalise();
   bool is_one_lambert() const;
   void finish_lambert();
-  // Value and density (times the entry's probability) of one smooth entry; zero where its normal sees wi on the other side.
+  // Value and density (times the entry's probability) of one smooth entry; zero where its normal sees wi on the other
+  // side.
   BsdfEval evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3& wi, bool transmitted) const;
   template <class Add>
   void for_smooth(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted, Add&& add) const;
@@ -197,9 +202,9 @@ class Closures {
 // Returns whether a lobe scatters within a class: glass scatters within transmission and reflection.
 bool scatters_within(const Lobe& lobe, ScatterClass c);
 
-// Number of a Dirac lobe among those of its class, and the lobe with that number (-1: there is none): a Dirac event is replayed by the
-// lobe of equal rank, which is a one-to-one relation between two vertices.
+// Number of a Dirac lobe among those of its class, and the lobe with that number (-1: there is none): a Dirac event is
+// replayed by the lobe of equal rank, which is a one-to-one relation between two vertices.
 int dirac_rank(const Closures& closures, ScatterClass c, int lobe);
 int dirac_lobe(const Closures& closures, ScatterClass c, int rank);
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

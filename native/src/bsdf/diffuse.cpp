@@ -1,8 +1,10 @@
-// Lambert; Oren-Nayar in Fujii's improved form, and its energy-conserving extension EON; Disney's diffuse with retro-reflection.
+// Lambert; Oren-Nayar in Fujii's improved form, and its energy-conserving extension EON; Disney's diffuse with
+// retro-reflection.
 //
-// Fujii, "A tiny improvement of Oren-Nayar reflectance model" (2012); Portsmouth, Kutz, Hill, "EON: A practical energy-preserving rough
-// diffuse BRDF" (2024), whose equation numbers are given below. Cycles uses the first up to 4.1 and the second from 4.2 on. Disney's
-// (Burley 2015, "Extending the Disney BRDF to a BSDF with integrated subsurface scattering", eq. 4) is the base of Principled before 4.0.
+// Fujii, "A tiny improvement of Oren-Nayar reflectance model" (2012); Portsmouth, Kutz, Hill, "EON: A practical
+// energy-preserving rough diffuse BRDF" (2024), whose equation numbers are given below. Cycles uses the first up to 4.1
+// and the second from 4.2 on. Disney's (Burley 2015, "Extending the Disney BRDF to a BSDF with integrated subsurface
+// scattering", eq. 4) is the base of Principled before 4.0.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +12,7 @@
 #include "bsdf/lobe.h"
 #include "bsdf/warp.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 namespace {
 
 // Coefficients A and B = A·roughness of Fujii's model, times π.
@@ -27,13 +29,16 @@ float fujii_albedo(float cosine, float roughness) {
 }
 
 // Mean albedo over the cosine hemisphere (eq. 14).
-float fujii_mean_albedo(float roughness) { return fujii_a(roughness) * (1.0f + roughness * (2.0f / 3.0f - 28.0f / (15.0f * kPi))); }
+float fujii_mean_albedo(float roughness) {
+  return fujii_a(roughness) * (1.0f + roughness * (2.0f / 3.0f - 28.0f / (15.0f * kPi)));
+}
 
-// What bounces between the grooves (eq. 20), over the surface's colour. One factor of colour more than published, as in Cycles: its
-// result is multiplied by the colour once again.
+// What bounces between the grooves (eq. 20), over the surface's colour. One factor of colour more than published, as in
+// Cycles: its result is multiplied by the colour once again.
 Rgb multiple_scattering(const Lobe& lobe, float cos_o, float cos_i) {
   const float mean = fujii_mean_albedo(lobe.alpha_x);
-  const float shape = (1.0f - fujii_albedo(cos_o, lobe.alpha_x)) * (1.0f - fujii_albedo(cos_i, lobe.alpha_x)) / (1.0f - mean);
+  const float shape =
+      (1.0f - fujii_albedo(cos_o, lobe.alpha_x)) * (1.0f - fujii_albedo(cos_i, lobe.alpha_x)) / (1.0f - mean);
   const Rgb color = glm::clamp(lobe.f0, 0.0f, 1.0f);
   return color * color * (mean * std::max(0.0f, shape)) / (Rgb(1.0f) - color * (1.0f - mean));
 }
@@ -76,4 +81,4 @@ bool sample_diffuse(const Lobe&, const Vec3&, float, const Vec2& u, uint8_t, Vec
   return true;
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

@@ -5,7 +5,7 @@
 #include "bsdf/lobe.h"
 #include "bsdf/refract.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 
 bool dirac_direction(const Lobe& lobe, const Vec3& wo, bool transmitted, Vec3* wi, Rgb* coefficient) {
   if (!(wo.z > 0.0f)) {
@@ -52,4 +52,4 @@ int dirac_lobe(const Closures& closures, ScatterClass c, int rank) {
   return -1;
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

@@ -6,10 +6,10 @@
 
 #include "bsdf/closures.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 
-// Unpolarised dielectric reflectance. cosine >= 0 on the side of arrival; eta: IOR of the far side over the near one. 1 beyond the
-// critical angle. (Born and Wolf §1.5; this form: Walter et al. 2007, eq. 22.)
+// Unpolarised dielectric reflectance. cosine >= 0 on the side of arrival; eta: IOR of the far side over the near one. 1
+// beyond the critical angle. (Born and Wolf §1.5; this form: Walter et al. 2007, eq. 22.)
 inline float fresnel_dielectric(float cosine, float eta) {
   const float g2 = eta * eta - 1.0f + cosine * cosine;
   if (!(g2 > 0.0f)) {
@@ -41,8 +41,8 @@ inline float schlick_position(float cosine, float eta) {
   return std::clamp((fresnel_dielectric(cosine, eta) - f0) / (1.0f - f0), 0.0f, 1.0f);
 }
 
-// Factor b of the term −b·c·(1−c)^6 that pulls Schlick's curve down to f0…1 times `tint` at 82° (Kutz, Hasan, Edmondson 2021,
-// "Novel aspects of the Adobe Standard Material", eq. 6).
+// Factor b of the term −b·c·(1−c)^6 that pulls Schlick's curve down to f0…1 times `tint` at 82° (Kutz, Hasan, Edmondson
+// 2021, "Novel aspects of the Adobe Standard Material", eq. 6).
 inline Rgb f82_factor(const Rgb& f0, const Rgb& tint) {
   const float c = 6.0f / 7.0f;
   const float c5 = pow5(c);
@@ -91,8 +91,9 @@ inline FresnelSplit lobe_fresnel_split(const Lobe& lobe, float cosine) {
     return {lobe_fresnel(lobe, cosine), Rgb(0.0f)};
   }
   // A glass lobe without a Fresnel type is dielectric.
-  const Rgb reflected = lobe.fresnel == FresnelType::None ? Rgb(fresnel_dielectric(cosine, lobe.ior)) : lobe_fresnel(lobe, cosine);
+  const Rgb reflected =
+      lobe.fresnel == FresnelType::None ? Rgb(fresnel_dielectric(cosine, lobe.ior)) : lobe_fresnel(lobe, cosine);
   return {reflected, crosses ? (Rgb(1.0f) - reflected) * lobe.transmission_tint : Rgb(0.0f)};
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

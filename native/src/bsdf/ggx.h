@@ -1,7 +1,7 @@
 // The GGX distribution of microfacet normals, in the lobe's frame.
 //
-// Walter et al. 2007 ("Microfacet Models for Refraction through Rough Surfaces"), Heitz 2014 (masking), Heitz 2018 (visible normals),
-// Dupuy and Benyoub 2023 ("Sampling Visible GGX Normals with Spherical Caps").
+// Walter et al. 2007 ("Microfacet Models for Refraction through Rough Surfaces"), Heitz 2014 (masking), Heitz 2018
+// (visible normals), Dupuy and Benyoub 2023 ("Sampling Visible GGX Normals with Spherical Caps").
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,14 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 
 struct Ggx {
   float alpha_x;
   float alpha_y;
 
-  // Density of microfacet normals per projected area. From the tangent components, as 1 - cos² would cancel for small alpha.
+  // Density of microfacet normals per projected area. From the tangent components, as 1 - cos² would cancel for small
+  // alpha.
   float density(const Vec3& h) const {
     const float x = h.x / alpha_x;
     const float y = h.y / alpha_y;
@@ -44,9 +45,10 @@ struct Ggx {
   }
 };
 
-// Below this alpha a lobe is Dirac: half-vectors have errors of about 1e-7 in float, and densities are to keep three digits.
+// Below this alpha a lobe is Dirac: half-vectors have errors of about 1e-7 in float, and densities are to keep three
+// digits.
 inline constexpr float kSmallestAlpha = 3e-4f;
 // So near to 1 an interface is no interface: the half-vector of refraction loses its direction.
 inline constexpr float kSmallestIorStep = 1e-3f;
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

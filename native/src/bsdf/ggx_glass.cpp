@@ -1,11 +1,11 @@
-// One rough dielectric interface. Where both sides belong to one class, the side is chosen by the Fresnel term of the sampled normal;
-// where reflection and transmission are different classes, each is sampled by itself.
+// One rough dielectric interface. Where both sides belong to one class, the side is chosen by the Fresnel term of the
+// sampled normal; where reflection and transmission are different classes, each is sampled by itself.
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
 #include "bsdf/lobe.h"
 #include "bsdf/refract.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 namespace {
 
 float reflection_probability(const Lobe& lobe, float cosine) {
@@ -29,7 +29,8 @@ BsdfEval evaluate_ggx_glass(const Lobe& lobe, const Vec3& wo, const Vec3& wi, ui
   if (!(sides & (reflected ? kReflects : kTransmits))) {
     return {};
   }
-  BsdfEval eval = reflected ? evaluate_ggx_reflection(lobe, wo, wi, sides) : evaluate_ggx_refraction(lobe, wo, wi, sides);
+  BsdfEval eval =
+      reflected ? evaluate_ggx_reflection(lobe, wo, wi, sides) : evaluate_ggx_refraction(lobe, wo, wi, sides);
   if (sides == kBothSides && eval.pdf > 0.0f) {
     const float p = reflection_probability(lobe, half_cosine(lobe, wo, wi));
     eval.pdf *= reflected ? p : 1.0f - p;
@@ -56,4 +57,4 @@ bool sample_ggx_glass(const Lobe& lobe, const Vec3& wo, float u_side, const Vec2
   return refract_direction(wo, h, lobe.ior, wi) && wi->z < 0.0f;
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

@@ -3,7 +3,7 @@
 #include "bsdf/ggx.h"
 #include "bsdf/lobe.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 
 BsdfEval evaluate_ggx_reflection(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t) {
   if (!(wo.z > 0.0f && wi.z > 0.0f)) {
@@ -26,4 +26,4 @@ bool sample_ggx_reflection(const Lobe& lobe, const Vec3& wo, float, const Vec2& 
   return wi->z > 0.0f;
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

@@ -1,11 +1,12 @@
-// Refraction by GGX microfacets (Walter et al. 2007, eq. 21), visible normals sampled. Radiance is not scaled by the square of the IOR
-// ratio, as in Cycles: a closed glass object gives the same picture, and energy stays bounded at each interface.
+// Refraction by GGX microfacets (Walter et al. 2007, eq. 21), visible normals sampled. Radiance is not scaled by the
+// square of the IOR ratio, as in Cycles: a closed glass object gives the same picture, and energy stays bounded at each
+// interface.
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
 #include "bsdf/lobe.h"
 #include "bsdf/refract.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 
 BsdfEval evaluate_ggx_refraction(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t) {
   if (!(wo.z > 0.0f && wi.z < 0.0f)) {
@@ -39,4 +40,4 @@ bool sample_ggx_refraction(const Lobe& lobe, const Vec3& wo, float, const Vec2& 
   return refract_direction(wo, h, lobe.ior, wi) && wi->z < 0.0f;
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

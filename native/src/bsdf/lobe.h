@@ -3,7 +3,7 @@
 
 #include "bsdf/closures.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 
 // Sides of the surface that an entry of a class scatters to.
 enum : uint8_t { kReflects = 1, kTransmits = 2, kBothSides = 3 };
@@ -48,17 +48,18 @@ bool dirac_direction(const Lobe& lobe, const Vec3& wo, bool transmitted, Vec3* w
 inline bool is_dirac(LobeType type) { return type >= LobeType::DiracReflection; }
 inline bool is_microfacet(LobeType type) { return type >= LobeType::GgxReflection; }
 
-// Turns the normal to the side of wo, limits what users can type, makes it Dirac where float demands it, fills `energy`.
+// Turns the normal to the side of wo, limits what users can type, makes it Dirac where float demands it, fills
+// `energy`.
 void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo);
 
-// What merging two lobes changes, after Ward ("Hierarchical Grouping to Optimize an Objective Function", 1963): 0 for equal shapes, little
-// where one of them is weak; infinite for other kinds of lobes.
+// What merging two lobes changes, after Ward ("Hierarchical Grouping to Optimize an Objective Function", 1963): 0 for
+// equal shapes, little where one of them is weak; infinite for other kinds of lobes.
 float merge_cost(const Lobe& a, const Lobe& b);
 // One lobe for two that are not finished: the mean shape, and the albedo of both as seen along the normal.
 Lobe merged(const Lobe& a, const Lobe& b);
 
-// Directional albedo of both sides of a lobe, weight and energy compensation included, seen under the cosine of wo and the lobe's
-// normal; lobe as after finish().
+// Directional albedo of both sides of a lobe, weight and energy compensation included, seen under the cosine of wo and
+// the lobe's normal; lobe as after finish().
 struct LobeAlbedo {
   Rgb reflected = Rgb(0.0f);
   Rgb transmitted = Rgb(0.0f);
@@ -67,4 +68,4 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, float cosine);
 // Factor by which multiple scattering raises a microfacet lobe seen under `cosine`.
 Rgb multiscatter_energy(const Lobe& lobe, float cosine);
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

@@ -1,7 +1,7 @@
 // Making two lobes one, where a surface has more than there is room for.
 #include "bsdf/lobe.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 namespace {
 
 float squared_length(const Vec3& v) { return glm::dot(v, v); }
@@ -13,9 +13,10 @@ float squared_distance(const Lobe& a, const Lobe& b) {
   // Another Fresnel curve is further away than any parameters are: such lobes are merged last.
   constexpr float kOtherCurve = 1e6f;
   const bool anisotropic = a.alpha_x != a.alpha_y || b.alpha_x != b.alpha_y;
-  return (a.fresnel == b.fresnel ? 0.0f : kOtherCurve) + (a.multiscatter == b.multiscatter ? 0.0f : 1.0f) + square(a.alpha_x - b.alpha_x) +
-         square(a.alpha_y - b.alpha_y) + square(a.ior - b.ior) + squared_length(a.normal - b.normal) +
-         (anisotropic ? squared_length(a.tangent - b.tangent) : 0.0f) + squared_length(a.f0 - b.f0) + squared_length(a.f90 - b.f90) +
+  return (a.fresnel == b.fresnel ? 0.0f : kOtherCurve) + (a.multiscatter == b.multiscatter ? 0.0f : 1.0f) +
+         square(a.alpha_x - b.alpha_x) + square(a.alpha_y - b.alpha_y) + square(a.ior - b.ior) +
+         squared_length(a.normal - b.normal) + (anisotropic ? squared_length(a.tangent - b.tangent) : 0.0f) +
+         squared_length(a.f0 - b.f0) + squared_length(a.f90 - b.f90) +
          squared_length(a.transmission_tint - b.transmission_tint);
 }
 
@@ -54,4 +55,4 @@ Lobe merged(const Lobe& a, const Lobe& b) {
   return lobe;
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

@@ -6,9 +6,10 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 
-// Direction beyond an interface with unit normal h, wo·h > 0. eta: IOR of the far side over the near one. False: total reflection.
+// Direction beyond an interface with unit normal h, wo·h > 0. eta: IOR of the far side over the near one. False: total
+// reflection.
 inline bool refract_direction(const Vec3& wo, const Vec3& h, float eta, Vec3* wi) {
   const float cosine = glm::dot(wo, h);
   const float inverse = 1.0f / eta;
@@ -20,4 +21,4 @@ inline bool refract_direction(const Vec3& wo, const Vec3& h, float eta, Vec3* wi
   return true;
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

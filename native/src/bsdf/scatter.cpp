@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "bsdf/closures.h"
-#include "bsdf/shading_frame.h"
 #include "bsdf/lobe.h"
+#include "bsdf/shading_frame.h"
 #include "bsdf/shading_normal.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 namespace {
 
 struct LobeFunctions {
@@ -37,7 +37,8 @@ size_t pass_of(const Lobe& lobe, bool transmitted) {
 
 bool is_diffuse(const Lobe& lobe) { return lobe.pass == LightPass::Diffuse; }
 
-// Compiled once: the density of a sharp lobe shows in how its arithmetic is contracted, and sample() and evaluate() must agree.
+// Compiled once: the density of a sharp lobe shows in how its arithmetic is contracted, and sample() and evaluate()
+// must agree.
 [[gnu::noinline]] BsdfEval evaluate_in_frame(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides) {
   const Frame3 frame = make_frame(lobe.normal, lobe.tangent);
   return functions_of(lobe).evaluate(lobe, frame.to_local(wo), frame.to_local(wi), sides);
@@ -49,11 +50,13 @@ float stay_below_one(float u) { return std::min(u, 0.99999994f); }
 
 inline bool Closures::crosses(const Vec3& wi) const { return glm::dot(geometric_normal_, wi) < 0.0f; }
 
-// Inlined, as are the sums below, so that values stay in registers: what is stored in parts and loaded as a whole stalls.
+// Inlined, as are the sums below, so that values stay in registers: what is stored in parts and loaded as a whole
+// stalls.
 [[gnu::always_inline]] inline BsdfEval Closures::evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3& wi,
                                                                 bool transmitted) const {
   const Lobe& source = lobes_[entry.lobe];
-  // Shading and geometric side must agree: no light through walls, and a test that a shifted path meets in the same form.
+  // Shading and geometric side must agree: no light through walls, and a test that a shifted path meets in the same
+  // form.
   const float cos_i = glm::dot(wi, source.normal);
   if ((cos_i < 0.0f) != transmitted) {
     return {};
@@ -68,7 +71,8 @@ inline bool Closures::crosses(const Vec3& wi) const { return glm::dot(geometric_
 
 // Calls add(lobe, BsdfEval) for the smooth entries of a class.
 template <class Add>
-[[gnu::always_inline]] inline void Closures::for_smooth(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted, Add&& add) const {
+[[gnu::always_inline]] inline void Closures::for_smooth(ScatterClass c, const Vec3& wo, const Vec3& wi,
+                                                        bool transmitted, Add&& add) const {
   const size_t k = static_cast<size_t>(c);
   for (int i = 0; i < entry_count_[k]; i++) {
     const Entry& entry = entries_[k][static_cast<size_t>(i)];
@@ -87,7 +91,9 @@ BsdfEval Closures::evaluate_side(ScatterClass c, const Vec3& wo, const Vec3& wi,
   return sum;
 }
 
-BsdfEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const { return evaluate_side(c, wo, wi, crosses(wi)); }
+BsdfEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const {
+  return evaluate_side(c, wo, wi, crosses(wi));
+}
 
 KindEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi, bool diffuse) const {
   KindEval sum;
@@ -104,7 +110,8 @@ KindEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi, bool
 
 std::array<Rgb, 3> Closures::evaluate_by_pass(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted) const {
   std::array<Rgb, 3> sum{Rgb(0.0f), Rgb(0.0f), Rgb(0.0f)};
-  for_smooth(c, wo, wi, transmitted, [&](const Lobe& lobe, const BsdfEval& part) { sum[pass_of(lobe, transmitted)] += part.value; });
+  for_smooth(c, wo, wi, transmitted,
+             [&](const Lobe& lobe, const BsdfEval& part) { sum[pass_of(lobe, transmitted)] += part.value; });
   return sum;
 }
 
@@ -151,7 +158,8 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
   const Lobe& source = lobes_[entry.lobe];
   const Frame3 frame = make_frame(source.normal, source.tangent);
   Vec3 local;
-  if (!functions_of(source).sample(source, frame.to_local(wo), stay_below_one(rest / entry.probability), u, entry.sides, &local)) {
+  if (!functions_of(source).sample(source, frame.to_local(wo), stay_below_one(rest / entry.probability), u, entry.sides,
+                                   &local)) {
     return false;
   }
   out->wi = renormalise(frame.to_world(local));
@@ -188,4 +196,4 @@ Rgb Closures::albedo(const Vec3& wo) const {
   return albedo(LightPass::Diffuse, wo) + albedo(LightPass::Glossy, wo) + albedo(LightPass::Transmission, wo);
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

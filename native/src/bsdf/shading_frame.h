@@ -5,7 +5,7 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 
 struct Frame3 {
   Vec3 x;
@@ -16,7 +16,8 @@ struct Frame3 {
   Vec3 to_world(const Vec3& v) const { return v.x * x + v.y * y + v.z * z; }
 };
 
-// Some unit vector across a unit normal, without a pole (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017).
+// Some unit vector across a unit normal, without a pole (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT
+// 2017).
 inline Vec3 perpendicular(const Vec3& n) {
   const float sign = std::copysign(1.0f, n.z);
   const float a = -1.0f / (sign + n.z);
@@ -36,6 +37,8 @@ inline Vec3 orthonormal_tangent(const Vec3& normal, const Vec3& tangent) {
 // For what is a unit vector but for rounding: one step of Newton's from length 1.
 inline Vec3 renormalise(const Vec3& v) { return v * (1.5f - 0.5f * glm::dot(v, v)); }
 
-inline Frame3 make_frame(const Vec3& normal, const Vec3& tangent) { return {tangent, glm::cross(normal, tangent), normal}; }
+inline Frame3 make_frame(const Vec3& normal, const Vec3& tangent) {
+  return {tangent, glm::cross(normal, tangent), normal};
+}
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

@@ -1,6 +1,6 @@
 // Sheen. From Blender 4.0 on a layer of fibres: a linearly transformed cosine (Zeltner, Burley, Chiang 2022, "Practical
-// Multiple-Scattering Sheen Using Linearly Transformed Cosines"), with parameters of our own fit. Before: Disney's grazing term (Burley
-// 2012), which a lobe with fresnel Schlick asks for.
+// Multiple-Scattering Sheen Using Linearly Transformed Cosines"), with parameters of our own fit. Before: Disney's
+// grazing term (Burley 2012), which a lobe with fresnel Schlick asks for.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "bsdf/sheen_table.h"
 #include "bsdf/warp.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 namespace {
 
 // ---- Disney's term: (1 − ω_i·h)^5 cos θ_i.
@@ -127,4 +127,4 @@ bool sample_sheen(const Lobe& lobe, const Vec3& wo, float, const Vec2& u, uint8_
   return wi->z > 0.0f;
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

@@ -2,7 +2,7 @@
 #include "bsdf/lobe.h"
 #include "bsdf/warp.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 
 BsdfEval evaluate_translucent(const Lobe& lobe, const Vec3&, const Vec3& wi, uint8_t) {
   if (!(wi.z < 0.0f)) {
@@ -18,4 +18,4 @@ bool sample_translucent(const Lobe&, const Vec3&, float, const Vec2& u, uint8_t,
   return true;
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

@@ -7,7 +7,7 @@
 #include "base/trigonometry.h"
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::bsdf {
 
 // Density cos/π. Polar disk map, lifted (Malley).
 inline Vec3 sample_cosine_hemisphere(const Vec2& u) {
@@ -16,4 +16,4 @@ inline Vec3 sample_cosine_hemisphere(const Vec2& u) {
   return Vec3(radius * phi.cosine, radius * phi.sine, std::sqrt(std::max(0.0f, 1.0f - u.x)));
 }
 
-}  // namespace gradus
+}  // namespace gradus::bsdf

@@ -8,7 +8,7 @@
 #include "camera/panorama.h"
 #include "camera/spherical_stereo.h"
 
-namespace gradus {
+namespace gradus::camera {
 
 namespace {
 
@@ -22,8 +22,8 @@ Vec2 concentric_disk(const Vec2& u) {
   return r * Vec2(std::cos(phi), std::sin(phi));
 }
 
-// Uniform in a regular polygon with circumradius 1: first the sector, then a point of its triangle. The middle of a side lies at
-// `rotation`.
+// Uniform in a regular polygon with circumradius 1: first the sector, then a point of its triangle. The middle of a
+// side lies at `rotation`.
 Vec2 regular_polygon(uint32_t corners, float rotation, const Vec2& u) {
   const float scaled = u.x * float(corners);
   const auto sector = std::min(uint32_t(scaled), corners - 1);
@@ -51,7 +51,8 @@ Camera::Pose Camera::make_pose(const float* matrix, const float* window) {
   return pose;
 }
 
-Camera::Camera(const GradusCamera& desc, uint32_t width, uint32_t height) : desc_(desc), width_(width), height_(height) {
+Camera::Camera(const GradusCamera& desc, uint32_t width, uint32_t height)
+    : desc_(desc), width_(width), height_(height) {
   poses_[int(Moment::Now)] = make_pose(desc.matrix, desc.window);
   poses_[int(Moment::Previous)] = make_pose(desc.matrix_previous, desc.window_previous);
   poses_[int(Moment::Next)] = make_pose(desc.matrix_next, desc.window_next);
@@ -59,7 +60,7 @@ Camera::Camera(const GradusCamera& desc, uint32_t width, uint32_t height) : desc
 }
 
 void Camera::add_keys() {
-  check_shutter_key_count("camera", desc_.shutter_key_count);
+  geometry::check_shutter_key_count("camera", desc_.shutter_key_count);
   std::vector<glm::dmat4> keys;
   for (uint32_t i = 0; i < desc_.shutter_key_count; ++i) {
     const float* window = desc_.shutter_windows != nullptr ? desc_.shutter_windows + size_t{4} * i : desc_.window;
@@ -68,7 +69,7 @@ void Camera::add_keys() {
     keys.back()[3] = glm::dvec4(glm::dvec3(pose.position), 1.0);
     windows_.push_back(pose.window);
   }
-  keys_ = MatrixKeys(keys);
+  keys_ = geometry::MatrixKeys(keys);
 }
 
 const Camera::Pose& Camera::pose_at(float time, Pose* room) const {
@@ -77,7 +78,7 @@ const Camera::Pose& Camera::pose_at(float time, Pose* room) const {
   room->axes = Mat3(m);
   room->inverse = glm::inverse(room->axes);
   room->position = Vec3(m[3]);
-  const KeyPlace place = key_place(time, windows_.size());
+  const geometry::KeyPlace place = geometry::key_place(time, windows_.size());
   const std::array<float, 4>&a = windows_[place.before], &b = windows_[place.before + 1];
   for (size_t i = 0; i < 4; ++i) room->window[i] = a[i] * (1.0f - place.share) + b[i] * place.share;
   return *room;
@@ -159,7 +160,8 @@ Ray Camera::panorama_ray(const Pose& pose, const Vec2& point, const CameraSample
   return ray;
 }
 
-// The eyes stay level in the world, or with the panorama. Cycles' space of mirror balls is mirrored, so that left is right.
+// The eyes stay level in the world, or with the panorama. Cycles' space of mirror balls is mirrored, so that left is
+// right.
 Vec3 Camera::stereo_axis(const Pose& pose) const {
   if (!is_panorama()) return glm::normalize(glm::transpose(pose.axes) * Vec3(0, 0, 1));
   return Vec3(0.0f, desc_.panorama == GRADUS_PANORAMA_MIRROR_BALL ? -1.0f : 1.0f, 0.0f);
@@ -187,7 +189,8 @@ Vec2 Camera::film_displacement(const Vec2& from, const Vec2& to) const {
 
 bool Camera::to_film(const Pose& pose, Vec3 local, bool at_infinity, Vec2* film) const {
   const bool orthographic = desc_.type == GRADUS_CAMERA_ORTHOGRAPHIC;
-  if (has_eye() && !orthographic && !direction_from_centre(desc_, stereo_axis(pose), local, at_infinity, &local)) return false;
+  if (has_eye() && !orthographic && !direction_from_centre(desc_, stereo_axis(pose), local, at_infinity, &local))
+    return false;
   Vec2 p;
   if (is_panorama()) {
     if (!panorama_plane(pose, local, &p)) return false;
@@ -224,4 +227,4 @@ Vec3 Camera::position(float time) const {
   return pose_at(time, &room).position;
 }
 
-}  // namespace gradus
+}  // namespace gradus::camera

@@ -1,13 +1,14 @@
-// Camera: film position to ray, while the shutter is open; and world position to film, at the frame or one before or after (for vectors).
+// Camera: film position to ray, while the shutter is open; and world position to film, at the frame or one before or
+// after (for vectors).
 #pragma once
 
 #include <array>
 
 #include "base/types.h"
-#include "gradus/gradus.h"
 #include "geometry/matrix_keys.h"
+#include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::camera {
 
 // What a camera ray is a function of.
 struct CameraSample {
@@ -31,7 +32,8 @@ class Camera {
   bool project(const Vec3& world, Moment when, Vec2* film) const;
   // Where a direction at infinity appears.
   bool project_direction(const Vec3& direction, Moment when, Vec2* film) const;
-  // From where a point appears to where another does, in pixels: the shortest way, where the film comes back to its beginning.
+  // From where a point appears to where another does, in pixels: the shortest way, where the film comes back to its
+  // beginning.
   Vec2 film_displacement(const Vec2& from, const Vec2& to) const;
   // Planar distance along the view axis; panorama: distance.
   float depth(const Vec3& world, float time) const;
@@ -70,10 +72,10 @@ class Camera {
 
   GradusCamera desc_{};
   std::array<Pose, 3> poses_;
-  MatrixKeys keys_;                            // while the shutter is open; empty: at rest
+  geometry::MatrixKeys keys_;                  // while the shutter is open; empty: at rest
   std::vector<std::array<float, 4>> windows_;  // with its own keys; empty: as in the frame
   uint32_t width_ = 0;
   uint32_t height_ = 0;
 };
 
-}  // namespace gradus
+}  // namespace gradus::camera

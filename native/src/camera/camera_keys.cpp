@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "geometry/matrix_keys.h"
 
-namespace gradus {
+namespace gradus::camera {
 
 namespace {
 
@@ -19,7 +19,7 @@ const float* pointer(const std::vector<float>& values) { return values.empty() ?
 
 CameraKeys copy_camera_keys(const GradusCamera& camera) {
   const uint32_t count = camera.shutter_key_count;
-  check_shutter_key_count("camera", count);
+  geometry::check_shutter_key_count("camera", count);
   if (count > 0 && camera.shutter_matrices == nullptr) throw invalid_argument("camera: shutter_matrices missing");
   if (camera.shutter_curve_count > kMaxCurve) throw invalid_argument("camera: the shutter's curve is too long");
   return {copy(camera.shutter_curve, camera.shutter_curve_count), copy(camera.shutter_matrices, size_t{16} * count),
@@ -32,4 +32,4 @@ void refer_to(const CameraKeys& keys, GradusCamera* camera) {
   camera->shutter_windows = pointer(keys.windows);
 }
 
-}  // namespace gradus
+}  // namespace gradus::camera

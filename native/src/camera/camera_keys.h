@@ -5,7 +5,7 @@
 
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::camera {
 
 struct CameraKeys {
   std::vector<float> curve;
@@ -18,4 +18,4 @@ CameraKeys copy_camera_keys(const GradusCamera& camera);
 // Lets the camera's pointers lead to `keys`.
 void refer_to(const CameraKeys& keys, GradusCamera* camera);
 
-}  // namespace gradus
+}  // namespace gradus::camera

@@ -5,7 +5,7 @@
 
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::camera {
 
 namespace {
 
@@ -21,7 +21,8 @@ double filter_value(uint32_t type, double v) {
   return 1.0;
 }
 
-// Full support in pixels. Cycles' width means a third of a Gauss curve's support and a half of Blackman-Harris's; its box takes none.
+// Full support in pixels. Cycles' width means a third of a Gauss curve's support and a half of Blackman-Harris's; its
+// box takes none.
 double support(uint32_t type, float width) {
   switch (type) {
     case GRADUS_FILTER_GAUSSIAN:
@@ -61,4 +62,4 @@ float FilmFilter::sample_axis(float u) const {
   return inverse_[i] + f * (inverse_[i + 1] - inverse_[i]);
 }
 
-}  // namespace gradus
+}  // namespace gradus::camera

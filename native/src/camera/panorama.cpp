@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gradus {
+namespace gradus::camera {
 
 namespace {
 
@@ -154,4 +154,4 @@ void panorama_lens_axes(const GradusCamera& camera, const Vec3& d, Vec3* u, Vec3
   *v = ball ? glm::cross(*u, d) : glm::cross(d, *u);
 }
 
-}  // namespace gradus
+}  // namespace gradus::camera

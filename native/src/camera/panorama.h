@@ -1,13 +1,14 @@
 // Panoramic projections: between directions and points of the film, in the coordinates that each projection has there.
 //
-// The camera's window is measured in these coordinates (gradus.h, GradusCamera), so that sensor, limits and shift are all part of it.
-// Directions are in camera space, which looks along -z, y up. The formulae are those of Cycles (kernel/camera/projection.h).
+// The camera's window is measured in these coordinates (gradus.h, GradusCamera), so that sensor, limits and shift are
+// all part of it. Directions are in camera space, which looks along -z, y up. The formulae are those of Cycles
+// (kernel/camera/projection.h).
 #pragma once
 
 #include "base/types.h"
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::camera {
 
 // False where the film sees nothing: outside of the image circle. The direction has unit length.
 bool panorama_direction(const GradusCamera& camera, const Vec2& point, Vec3* direction);
@@ -21,4 +22,4 @@ bool panorama_wraps(const GradusCamera& camera);
 // The axes of the lens for a direction: u and v span the plane across it.
 void panorama_lens_axes(const GradusCamera& camera, const Vec3& direction, Vec3* u, Vec3* v);
 
-}  // namespace gradus
+}  // namespace gradus::camera

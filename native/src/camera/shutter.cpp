@@ -5,7 +5,7 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::camera {
 
 Shutter::Shutter(const GradusCamera& desc) {
   if (!is_finite(desc.shutter_open) || !is_finite(desc.shutter_close)) return;
@@ -41,4 +41,4 @@ float Shutter::sample(float u) const {
   return std::min((float(i) + std::min(x, 1.0f)) / float(cumulative_.size()), 1.0f);
 }
 
-}  // namespace gradus
+}  // namespace gradus::camera

@@ -5,13 +5,14 @@
 
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::camera {
 
 // Times of rays run from 0, the opening, to 1, the closing.
 class Shutter {
  public:
   Shutter() = default;
-  // Of GradusCamera's fields. Closed for good (a frame is a moment) where they are not finite or the curve is 0 everywhere.
+  // Of GradusCamera's fields. Closed for good (a frame is a moment) where they are not finite or the curve is 0
+  // everywhere.
   explicit Shutter(const GradusCamera& desc);
 
   bool opens() const { return close_ > open_; }
@@ -24,8 +25,9 @@ class Shutter {
 
  private:
   float open_ = 0.0f, close_ = 0.0f;
-  std::vector<float> cumulative_;  // of the curve, at the end of each of its intervals, the last 1; empty: open all the time
+  std::vector<float>
+      cumulative_;  // of the curve, at the end of each of its intervals, the last 1; empty: open all the time
   std::vector<float> curve_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::camera

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gradus {
+namespace gradus::camera {
 
 namespace {
 
@@ -37,7 +37,8 @@ void move_to_eye(const GradusCamera& c, const Vec3& up, Vec3* origin, Vec3* dire
   if (c.convergence_distance > 0.0f) *direction = glm::normalize(*direction * c.convergence_distance - offset);
 }
 
-bool direction_from_centre(const GradusCamera& c, const Vec3& up, const Vec3& point, bool at_infinity, Vec3* direction) {
+bool direction_from_centre(const GradusCamera& c, const Vec3& up, const Vec3& point, bool at_infinity,
+                           Vec3* direction) {
   const float distance = glm::length(point), height = glm::dot(point, up);
   if (!(distance > 0.0f)) return false;
   float sine = height / distance;
@@ -56,4 +57,4 @@ bool direction_from_centre(const GradusCamera& c, const Vec3& up, const Vec3& po
   return true;
 }
 
-}  // namespace gradus
+}  // namespace gradus::camera

@@ -9,7 +9,7 @@
 #include "base/types.h"
 #include "compare/ssim.h"
 
-namespace gradus {
+namespace gradus::compare {
 namespace {
 
 constexpr double kEpsilon = 1e-3;
@@ -71,8 +71,9 @@ double signed_ratio(const RgbImage& x, const RgbImage& r) {
 
 Metrics compare_images(const RgbImage& image, const RgbImage& reference) {
   if (image.width != reference.width || image.height != reference.height) {
-    throw invalid_argument("the images differ in size: " + std::to_string(image.width) + " x " + std::to_string(image.height) + " and " +
-                           std::to_string(reference.width) + " x " + std::to_string(reference.height));
+    throw invalid_argument("the images differ in size: " + std::to_string(image.width) + " x " +
+                           std::to_string(image.height) + " and " + std::to_string(reference.width) + " x " +
+                           std::to_string(reference.height));
   }
   if (image.pixels.empty()) throw invalid_argument("the images are empty");
   Metrics m;
@@ -105,4 +106,4 @@ Metrics compare_images(const RgbImage& image, const RgbImage& reference) {
   return m;
 }
 
-}  // namespace gradus
+}  // namespace gradus::compare

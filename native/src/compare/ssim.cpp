@@ -7,7 +7,7 @@
 #include "base/types.h"
 #include "image/color.h"
 
-namespace gradus {
+namespace gradus::compare {
 namespace {
 
 constexpr int kRadius = 5;
@@ -21,7 +21,7 @@ Plane tone_mapped(const RgbImage& image) {
   for (size_t i = 0; i < image.pixels.size(); i += 3) {
     Rgb c(image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]);
     if (!is_finite(c)) c = Rgb(0.0f);
-    plane.push_back(linear_to_srgb(std::clamp(luminance(c), 0.0f, 1.0f)));
+    plane.push_back(image::linear_to_srgb(std::clamp(luminance(c), 0.0f, 1.0f)));
   }
   return plane;
 }
@@ -52,7 +52,9 @@ Plane blur_axis(const Plane& plane, int width, int height, bool vertical) {
   return result;
 }
 
-Plane blur(const Plane& plane, int width, int height) { return blur_axis(blur_axis(plane, width, height, false), width, height, true); }
+Plane blur(const Plane& plane, int width, int height) {
+  return blur_axis(blur_axis(plane, width, height, false), width, height, true);
+}
 
 Plane product(const Plane& a, const Plane& b) {
   Plane result(a.size());
@@ -75,4 +77,4 @@ double structural_similarity(const RgbImage& image, const RgbImage& reference) {
   return sum / double(x.size());
 }
 
-}  // namespace gradus
+}  // namespace gradus::compare

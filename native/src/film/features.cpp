@@ -11,7 +11,7 @@
 #include "film/pass_planes.h"
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::film {
 
 namespace {
 
@@ -52,7 +52,7 @@ void read_variance(const Film& film, const PassPlane& plane, size_t pixel, float
 
 }  // namespace
 
-bool holds_features(uint64_t planes) { return (planes & feature_passes()) == feature_passes(); }
+bool holds_features(uint64_t planes) { return (planes & schema::feature_passes()) == schema::feature_passes(); }
 
 bool has_features(const FilmHeader& header) { return holds_features(header.planes); }
 bool has_features(const Film& film) { return holds_features(film_passes(film)); }
@@ -60,7 +60,7 @@ bool has_features(const Film& film) { return holds_features(film_passes(film)); 
 FeatureImage read_feature(const Film& film, uint32_t pass, HalfRange halves) {
   const PassPlane* plane = find_plane(film, pass);
   if (plane == nullptr || !plane->in_halves) {
-    throw invalid_operation("the frame does not keep " + std::string(pass_info(pass).name) + " in halves");
+    throw invalid_operation("the frame does not keep " + std::string(schema::pass_info(pass).name) + " in halves");
   }
   FeatureImage image;
   image.channels = plane->channels;
@@ -75,7 +75,8 @@ FeatureImage read_feature(const Film& film, uint32_t pass, HalfRange halves) {
 
 Features read_features(const Film& film, HalfRange halves) {
   return {film.region.width(), film.region.height(), read_feature(film, GRADUS_PASS_DENOISING_NORMAL, halves),
-          read_feature(film, GRADUS_PASS_DENOISING_ALBEDO, halves), read_feature(film, GRADUS_PASS_DENOISING_DEPTH, halves)};
+          read_feature(film, GRADUS_PASS_DENOISING_ALBEDO, halves),
+          read_feature(film, GRADUS_PASS_DENOISING_DEPTH, halves)};
 }
 
-}  // namespace gradus
+}  // namespace gradus::film

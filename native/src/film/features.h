@@ -4,13 +4,14 @@
 #include "film/film.h"
 #include "film/film_header.h"
 
-namespace gradus {
+namespace gradus::film {
 
 // Planes of the region, row-major, channels interleaved.
 struct FeatureImage {
   uint32_t channels = 0;
   std::vector<float> values;  // means over the samples of the halves that are read; 0 where there are none
-  // Of the mean over both halves: ((A − B)/2)² per channel (contract 1.2), NaN where a half has no samples. Empty where one half is read.
+  // Of the mean over both halves: ((A − B)/2)² per channel (contract 1.2), NaN where a half has no samples. Empty where
+  // one half is read.
   std::vector<float> variance;
 };
 
@@ -28,4 +29,4 @@ Features read_features(const Film& film, HalfRange halves = {});
 // One of the passes that are kept in halves; else as above.
 FeatureImage read_feature(const Film& film, uint32_t pass, HalfRange halves = {});
 
-}  // namespace gradus
+}  // namespace gradus::film

@@ -4,7 +4,7 @@
 
 #include "base/text_list.h"
 
-namespace gradus {
+namespace gradus::film {
 
 void Counters::add(const Counters& other) {
   static_assert(sizeof(Counters) % sizeof(uint64_t) == 0);
@@ -15,7 +15,8 @@ void Counters::add(const Counters& other) {
   }
 }
 
-Film::Film(uint32_t full_width_, uint32_t full_height_, const Region& region_, int channels_, int components_, bool gradients_)
+Film::Film(uint32_t full_width_, uint32_t full_height_, const Region& region_, int channels_, int components_,
+           bool gradients_)
     : full_width(full_width_), full_height(full_height_), region(region_), channels(channels_), gradients(gradients_) {
   const auto pixels = static_cast<size_t>(region.area());
   components.resize(static_cast<size_t>(components_));
@@ -37,7 +38,9 @@ Film::Film(uint32_t full_width_, uint32_t full_height_, const Region& region_, i
 
 namespace {
 
-uint64_t bytes_of(const PixelCorrespondence& correspondence) { return correspondence.pixel.size() * sizeof(int32_t) + correspondence.off_centre.size() * sizeof(Vec2); }
+uint64_t bytes_of(const PixelCorrespondence& correspondence) {
+  return correspondence.pixel.size() * sizeof(int32_t) + correspondence.off_centre.size() * sizeof(Vec2);
+}
 
 }  // namespace
 
@@ -45,11 +48,12 @@ uint64_t Film::memory_bytes() const {
   uint64_t bytes = sizeof(*this) + fallback.size() * sizeof(float) + bytes_of(replayed.correspondence);
   for (const PixelCorrespondence& own : replayed.of_component) bytes += bytes_of(own);
   for (const ComponentPlanes& component : components) {
-    bytes +=
-        component.motion.size() * sizeof(Vec4) + component.tracked.size() * sizeof(float) + component.shown.size() * sizeof(ShownPoint);
+    bytes += component.motion.size() * sizeof(Vec4) + component.tracked.size() * sizeof(float) +
+             component.shown.size() * sizeof(ShownPoint);
     bytes += component.details.size() * sizeof(NonSpecularDetails);
     for (int half = 0; half < kHalves; ++half) {
-      bytes += component.primal[half].size() * sizeof(Radiance) + component.non_specular[half].size() * sizeof(NonSpecularVertices);
+      bytes += component.primal[half].size() * sizeof(Radiance) +
+               component.non_specular[half].size() * sizeof(NonSpecularVertices);
       for (const auto& plane : component.gradient[half]) {
         bytes += plane.size() * sizeof(Radiance);
       }
@@ -74,13 +78,16 @@ std::string component_names(const Film& film) {
 }
 
 bool same_components(const Film& a, const Film& b) {
-  const auto same = [](const ComponentPlanes& p, const ComponentPlanes& q) { return p.name == q.name && p.expression == q.expression; };
+  const auto same = [](const ComponentPlanes& p, const ComponentPlanes& q) {
+    return p.name == q.name && p.expression == q.expression;
+  };
   return std::equal(a.components.begin(), a.components.end(), b.components.begin(), b.components.end(), same);
 }
 
 int find_component(const Film& film, std::string_view name) {
   const auto& list = film.components;
-  const auto found = std::find_if(list.begin(), list.end(), [&](const ComponentPlanes& planes) { return planes.name == name; });
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&](const ComponentPlanes& planes) { return planes.name == name; });
   return found != list.end() ? int(found - list.begin()) : -1;
 }
 
@@ -117,7 +124,8 @@ void select_components(const std::vector<std::string>& names, Film* film) {
     const int place = find_component(*film, name);
     const bool has_component_map = place >= 0 && film->replayed.has_component_map(place);
     kept.push_back(place >= 0 ? ComponentPlanes{} : black_component(name, film->components[0]));
-    sources.push_back(has_component_map ? std::move(film->replayed.of_component[size_t(place)]) : PixelCorrespondence{});
+    sources.push_back(has_component_map ? std::move(film->replayed.of_component[size_t(place)])
+                                        : PixelCorrespondence{});
   }
   for (size_t k = 0; k < names.size(); ++k) {
     const int place = find_component(*film, names[k]);
@@ -145,4 +153,4 @@ Region delivered_region(const Film& film) {
   return {int32_t(r[0]), int32_t(r[1]), int32_t(r[2]), int32_t(r[3])};
 }
 
-}  // namespace gradus
+}  // namespace gradus::film

@@ -1,10 +1,12 @@
-// The sampled frame: sums per pixel, in halves, so that variances are known. The one gate into it is film/finite_check.h.
+// The sampled frame: sums per pixel, in halves, so that variances are known. The one gate into it is
+// film/finite_check.h.
 //
-// A pixel p keeps the gradient samples of its own four offsets (towards +x, +y, -x, -y), so that nothing is written across pixels and
-// the result does not depend on tiles or threads; dx and dy are merged when read:
+// A pixel p keeps the gradient samples of its own four offsets (towards +x, +y, -x, -y), so that nothing is written
+// across pixels and the result does not depend on tiles or threads; dx and dy are merged when read:
 //   dx(p) = sum(p, +x) / pair_count(p, +x) - sum(p + x, -x) / pair_count(p + x, -x)
-// Each end of a pair is normalised by the samples that it has taken itself, so that a batch that was cut short in between (a cancel) gives
-// no gradient that is too small (contract 1.5: the weights are those of the batch's counts, and batches are combined by these).
+// Each end of a pair is normalised by the samples that it has taken itself, so that a batch that was cut short in
+// between (a cancel) gives no gradient that is too small (contract 1.5: the weights are those of the batch's counts,
+// and batches are combined by these).
 #pragma once
 
 #include <algorithm>
@@ -17,11 +19,11 @@
 
 #include "base/region.h"
 #include "base/types.h"
-#include "film/sample_ranges.h"
 #include "film/replay_map.h"
+#include "film/sample_ranges.h"
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::film {
 
 enum Offset : int { kRight = 0, kUp = 1, kLeft = 2, kDown = 3, kOffsets = 4 };
 inline constexpr int kOffsetX[kOffsets] = {1, 0, -1, 0};
@@ -39,8 +41,8 @@ struct NonSpecularVertices {
 
 inline constexpr uint32_t kNoSample = std::numeric_limits<uint32_t>::max();
 
-// More of these vertices, and of what shines, be it rough or not: sums over the segments at whose ends, or on which, there was one or the
-// other; what cannot be averaged is that of the first sample that met a surface.
+// More of these vertices, and of what shines, be it rough or not: sums over the segments at whose ends, or on which,
+// there was one or the other; what cannot be averaged is that of the first sample that met a surface.
 struct NonSpecularDetails {
   Vec3 uv = Vec3(0.0f);      // u, v, 1; 0 without a UV map
   Rgb emission = Rgb(0.0f);  // radiance that shines from there
@@ -52,7 +54,8 @@ struct NonSpecularDetails {
 
 // What a component shows at the centre of a pixel, through smooth surfaces.
 struct ShownPoint {
-  float object = 0.0f;  // a number of the way and of the object at its end, not above 2^24: others have others; 0: it shows nothing
+  float object = 0.0f;  // a number of the way and of the object at its end, not above 2^24: others have others; 0: it
+                        // shows nothing
   float depth = 0.0f;   // length of the way; 0: it does not end
 };
 
@@ -61,10 +64,10 @@ struct ComponentPlanes {
   std::string name, expression;  // lpe/components.h
   std::array<std::vector<Radiance>, kHalves> primal;
   std::array<std::array<std::vector<Radiance>, kOffsets>, kHalves> gradient;  // empty where the integrator makes none
-  std::array<std::vector<NonSpecularVertices>, kHalves> non_specular;                      // empty unless asked for
-  std::vector<NonSpecularDetails> details;                                          // likewise
-  // Of what the component shows at the centres of pixels: previous − now, now − next, in pixels; 1, or why that is not known
-  // (motion/component_motion.h). Empty unless asked for.
+  std::array<std::vector<NonSpecularVertices>, kHalves> non_specular;         // empty unless asked for
+  std::vector<NonSpecularDetails> details;                                    // likewise
+  // Of what the component shows at the centres of pixels: previous − now, now − next, in pixels; 1, or why that is not
+  // known (motion/component_motion.h). Empty unless asked for.
   std::vector<Vec4> motion;
   std::vector<float> tracked;
   std::vector<ShownPoint> shown;  // for optical flow (motion/irradiance_motion.h); empty unless that is asked for
@@ -91,17 +94,18 @@ struct Counters {
   uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0, rays_shift = 0, rays_shift_shadow = 0;
   uint64_t shifts_attempted = 0, shifts_reconnected = 0, shifts_half_vector = 0, shifts_replayed = 0;
   // failures by cause
-  uint64_t fail_missed = 0, fail_occluded = 0, fail_class = 0, fail_total_reflection = 0, fail_side = 0, fail_density = 0,
-           fail_jacobian = 0, fail_border = 0;
+  uint64_t fail_missed = 0, fail_occluded = 0, fail_class = 0, fail_total_reflection = 0, fail_side = 0,
+           fail_density = 0, fail_jacobian = 0, fail_border = 0;
   uint64_t nonfinite_radiance = 0, nonfinite_gradient = 0, nonfinite_feature = 0;
   void add(const Counters& other);
 };
 
-// How far an adaptive render has come (render/adaptive_sampling.h), so that it can go on as if it had not ended. By cells of the lattice,
-// row by row; empty where no such render can go on from the frame.
+// How far an adaptive render has come (render/adaptive_sampling.h), so that it can go on as if it had not ended. By
+// cells of the lattice, row by row; empty where no such render can go on from the frame.
 struct AdaptiveState {
-  uint32_t mean = 0;             // samples of a pixel, on average over those that went on
-  uint32_t uncounted = 0;        // the first of each pixel, taken by a render that was not adaptive: what they have cost is not known
+  uint32_t mean = 0;  // samples of a pixel, on average over those that went on
+  uint32_t uncounted =
+      0;  // the first of each pixel, taken by a render that was not adaptive: what they have cost is not known
   std::vector<uint64_t> rays;    // that the samples of a cell have cost
   std::vector<uint8_t> stopped;  // 1: takes no more
   bool is_done() const { return !stopped.empty() && std::find(stopped.begin(), stopped.end(), 0) == stopped.end(); }
@@ -109,10 +113,13 @@ struct AdaptiveState {
 
 class Film {
  public:
-  // full: size of the full frame; region: what is sampled (guard ring included); channels: 3, or 4 with a transparent film.
+  // full: size of the full frame; region: what is sampled (guard ring included); channels: 3, or 4 with a transparent
+  // film.
   Film(uint32_t full_width, uint32_t full_height, const Region& region, int channels, int components, bool gradients);
 
-  size_t index(int32_t x, int32_t y) const { return size_t(y - region.y0) * size_t(region.width()) + size_t(x - region.x0); }
+  size_t index(int32_t x, int32_t y) const {
+    return size_t(y - region.y0) * size_t(region.width()) + size_t(x - region.x0);
+  }
   uint64_t memory_bytes() const;
 
   uint32_t full_width, full_height;
@@ -121,8 +128,8 @@ class Film {
   bool gradients;
   std::vector<ComponentPlanes> components;
   std::array<std::vector<uint32_t>, kHalves> count;  // samples of each pixel and half
-  // What the gradient sums of a pixel's own samples are divided by: the sum over these of (m_p + m_q)/(2 m_p), m the counts of the batch;
-  // after whole batches the sum over batches of (m_p + m_q)/2, the same at both ends of a pair.
+  // What the gradient sums of a pixel's own samples are divided by: the sum over these of (m_p + m_q)/(2 m_p), m the
+  // counts of the batch; after whole batches the sum over batches of (m_p + m_q)/2, the same at both ends of a pair.
   std::array<std::array<std::vector<float>, kOffsets>, kHalves> pair_count;
   std::vector<PassPlane> passes;
   std::vector<float> fallback;  // samples that met a replaced node; empty unless asked for
@@ -173,19 +180,20 @@ void read_difference_row(const Film& film, int component, Offset offset, HalfRan
 struct GradientImages {
   int width = 0, height = 0, channels = 3;
   std::vector<float> primal;  // mean
-  std::vector<float> dx, dy;  // forward differences, y up; last column, row are 0; NaN where a pair has no samples (kAbsentPair)
-  // Estimated standard deviations of the means, one value per pixel: the root mean square over RGB of half the difference between the two
-  // halves (contract 1.2). NaN where a half has no samples. Empty unless asked for.
+  std::vector<float> dx,
+      dy;  // forward differences, y up; last column, row are 0; NaN where a pair has no samples (kAbsentPair)
+  // Estimated standard deviations of the means, one value per pixel: the root mean square over RGB of half the
+  // difference between the two halves (contract 1.2). NaN where a half has no samples. Empty unless asked for.
   std::vector<float> primal_deviation, dx_deviation, dy_deviation;
 };
 
 // Merges halves and pairs.
 GradientImages read_images(const Film& film, int component);
-// Half the differences of the halves, (A − B)/2, in the place of primal, dx and dy: their squares estimate variances (contract 1.2), and
-// what is linear in those is so in these. Of a pixel with samples in one half alone, its mean: the square is no less than the variance on
-// average. A difference that a half lacks is absent.
+// Half the differences of the halves, (A − B)/2, in the place of primal, dx and dy: their squares estimate variances
+// (contract 1.2), and what is linear in those is so in these. Of a pixel with samples in one half alone, its mean: the
+// square is no less than the variance on average. A difference that a half lacks is absent.
 GradientImages read_half_differences(const Film& film, int component);
 // Fills the deviations.
 void read_deviations(const Film& film, int component, GradientImages* images);
 
-}  // namespace gradus
+}  // namespace gradus::film

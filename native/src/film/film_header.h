@@ -4,7 +4,7 @@
 #include "film/film.h"
 #include "film/pass_planes.h"
 
-namespace gradus {
+namespace gradus::film {
 
 struct FilmHeader {
   Region region;
@@ -25,9 +25,20 @@ struct FilmHeader {
 
 inline FilmHeader header_of(const Film& film) {
   const ReplayMap& replayed = film.replayed;
-  return {film.region,       film.channels, film.gradients, film_passes(film), component_content(film),
-          film.settings,     film.samples,  film.scene_key, film.frame_number, replayed.stream_frame,
-          replayed.scene_key, replayed.seed,  film.shared,    {}};
+  return {film.region,
+          film.channels,
+          film.gradients,
+          film_passes(film),
+          component_content(film),
+          film.settings,
+          film.samples,
+          film.scene_key,
+          film.frame_number,
+          replayed.stream_frame,
+          replayed.scene_key,
+          replayed.seed,
+          film.shared,
+          {}};
 }
 
-}  // namespace gradus
+}  // namespace gradus::film

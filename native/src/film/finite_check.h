@@ -1,4 +1,5 @@
-// The one gate into a frame: what is not finite, or would make a sum so, stays out and is counted by cause (architecture rule 2).
+// The one gate into a frame: what is not finite, or would make a sum so, stays out and is counted by cause
+// (architecture rule 2).
 #pragma once
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 
 #include "film/film.h"
 
-namespace gradus {
+namespace gradus::film {
 
 // Largest sum: what is read is the mean of two halves or the difference of two ends, which then have room in float.
 inline constexpr float kLargestSum = 1e37f;
@@ -37,8 +38,8 @@ inline void add_gradient(const Radiance& value, Radiance* sum, Counters* counter
 
 // A vertex of one sample.
 inline void add_non_specular(const NonSpecularVertices& vertex, NonSpecularVertices* sum, Counters* counters) {
-  const NonSpecularVertices next{sum->reflectance + vertex.reflectance, sum->normal + vertex.normal, sum->inverse_depth + vertex.inverse_depth,
-                           sum->samples + vertex.samples};
+  const NonSpecularVertices next{sum->reflectance + vertex.reflectance, sum->normal + vertex.normal,
+                                 sum->inverse_depth + vertex.inverse_depth, sum->samples + vertex.samples};
   if (fits(Radiance(next.reflectance, next.inverse_depth)) && fits(Radiance(next.normal, next.samples))) {
     *sum = next;
   } else {
@@ -60,7 +61,8 @@ inline void add_details(const NonSpecularDetails& more, NonSpecularDetails* sum,
 }
 
 // Values of a pass: added to its sums, or kept as they are where only the first sample counts.
-inline void add_feature(const float* values, float weight, size_t pixel, int half, PassPlane* plane, Counters* counters) {
+inline void add_feature(const float* values, float weight, size_t pixel, int half, PassPlane* plane,
+                        Counters* counters) {
   float* sum = plane->of_half(half).data() + pixel * plane->channels;
   float next[4];
   for (uint32_t i = 0; i < plane->channels; ++i) {
@@ -76,4 +78,4 @@ inline void add_feature(const float* values, float weight, size_t pixel, int hal
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::film

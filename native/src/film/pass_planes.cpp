@@ -4,18 +4,19 @@
 
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::film {
 
 std::vector<PassPlane> make_pass_planes(uint64_t passes, size_t pixels) {
   std::vector<PassPlane> planes;
-  for (const PassInfo& info : stored_passes(passes)) {
+  for (const schema::PassInfo& info : schema::stored_passes(passes)) {
     PassPlane& plane = planes.emplace_back();
     plane.pass = info.pass;
     plane.channels = info.channels;
-    plane.first_sample_only = info.kind == PassKind::First;
-    plane.skips_transparent = info.kind == PassKind::Weighted;
-    plane.in_halves = is_in_halves(info.kind);
-    for (int half = 0; half < (plane.in_halves ? kHalves : 1); ++half) plane.values[half].assign(pixels * info.channels, 0.0f);
+    plane.first_sample_only = info.kind == schema::PassKind::First;
+    plane.skips_transparent = info.kind == schema::PassKind::Weighted;
+    plane.in_halves = schema::is_in_halves(info.kind);
+    for (int half = 0; half < (plane.in_halves ? kHalves : 1); ++half)
+      plane.values[half].assign(pixels * info.channels, 0.0f);
     if (plane.skips_transparent) plane.weight.assign(pixels, 0.0f);
   }
   return planes;
@@ -44,7 +45,8 @@ uint64_t film_passes(const Film& film) {
 }
 
 const PassPlane* find_plane(const Film& film, uint32_t pass) {
-  const auto plane = std::find_if(film.passes.begin(), film.passes.end(), [&](const PassPlane& p) { return p.pass == pass; });
+  const auto plane =
+      std::find_if(film.passes.begin(), film.passes.end(), [&](const PassPlane& p) { return p.pass == pass; });
   return plane != film.passes.end() ? &*plane : nullptr;
 }
 
@@ -52,10 +54,11 @@ uint64_t film_bytes_per_pixel(int components, bool gradients, uint64_t passes, c
   const uint64_t offsets = gradients ? uint64_t{kOffsets} : 0, radiances = uint64_t(components) * (1 + offsets);
   const uint64_t features = content.non_specular ? uint64_t(components) * sizeof(NonSpecularVertices) : 0;
   const uint64_t half = radiances * sizeof(Radiance) + features + sizeof(uint32_t) + offsets * sizeof(float);
-  const uint64_t others =
-      (content.details ? sizeof(NonSpecularDetails) : 0) + (content.motion ? sizeof(Vec4) + sizeof(float) : 0) + (content.shown ? sizeof(ShownPoint) : 0);
-  return kHalves * half + uint64_t(components) * others + pass_bytes_per_pixel(passes) +
-         (has_bit(passes, GRADUS_PASS_FALLBACK) ? sizeof(float) : 0);
+  const uint64_t others = (content.details ? sizeof(NonSpecularDetails) : 0) +
+                          (content.motion ? sizeof(Vec4) + sizeof(float) : 0) +
+                          (content.shown ? sizeof(ShownPoint) : 0);
+  return kHalves * half + uint64_t(components) * others + schema::pass_bytes_per_pixel(passes) +
+         (schema::has_bit(passes, GRADUS_PASS_FALLBACK) ? sizeof(float) : 0);
 }
 
-}  // namespace gradus
+}  // namespace gradus::film

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace gradus {
+namespace gradus::film {
 
 Region intersection(const Region& a, const Region& b) {
   return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
@@ -23,4 +23,4 @@ PixelBlockGrid::PixelBlockGrid(const Region& region, int side)
       columns(pixel_block_of(region.x1 - 1, side) - pixel_block_of(region.x0, side) + 1),
       rows(pixel_block_of(region.y1 - 1, side) - pixel_block_of(region.y0, side) + 1) {}
 
-}  // namespace gradus
+}  // namespace gradus::film

@@ -1,4 +1,5 @@
-// Cells of a lattice that is fixed to the full frame: work tiles, and the cells on which jitter is shared and noise is judged.
+// Cells of a lattice that is fixed to the full frame: work tiles, and the cells on which jitter is shared and noise is
+// judged.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 #include "film/film.h"
 #include "film/pixel_block.h"
 
-namespace gradus {
+namespace gradus::film {
 
 // Squares of `side` pixels, aligned to multiples of it, cut to the region; row by row.
 std::vector<Region> make_pixel_blocks(const Region& region, int side = kPixelBlockSide);
@@ -43,4 +44,4 @@ void fill(const Region& part, const Region& region, T value, std::vector<T>* map
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::film

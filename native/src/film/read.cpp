@@ -8,7 +8,7 @@
 #include "film/film.h"
 #include "film/read_pixels.h"
 
-namespace gradus {
+namespace gradus::film {
 
 namespace {
 
@@ -32,11 +32,11 @@ void read_primal(const Film& film, const ComponentPlanes& planes, HalfRange halv
   }
 }
 
-// Differences between `count` pixels from `first` on and those `step` further, of which they are `offset`: own samples of the pair with +,
-// the neighbour's of the way back with −. A pair with samples at one end alone is absent.
+// Differences between `count` pixels from `first` on and those `step` further, of which they are `offset`: own samples
+// of the pair with +, the neighbour's of the way back with −. A pair with samples at one end alone is absent.
 template <int kChannels>
-void read_differences(const Film& film, const ComponentPlanes& planes, Offset offset, HalfRange halves, size_t first, size_t step,
-                      int count, float* to) {
+void read_differences(const Film& film, const ComponentPlanes& planes, Offset offset, HalfRange halves, size_t first,
+                      size_t step, int count, float* to) {
   for (size_t i = first; i < first + size_t(count); ++i, to += kChannels) {
     Radiance own(0.0f), other(0.0f);
     float own_count = 0.0f, other_count = 0.0f;
@@ -46,7 +46,8 @@ void read_differences(const Film& film, const ComponentPlanes& planes, Offset of
       other += planes.gradient[h][offset + 2][i + step];
       other_count += film.pair_count[h][offset + 2][i + step];
     }
-    store<kChannels>(own_count > 0.0f && other_count > 0.0f ? own / own_count - other / other_count : Radiance(kAbsentPair), to);
+    store<kChannels>(
+        own_count > 0.0f && other_count > 0.0f ? own / own_count - other / other_count : Radiance(kAbsentPair), to);
   }
 }
 
@@ -74,7 +75,9 @@ void read_primal_row(const Film& film, int component, HalfRange halves, int y, f
 void read_difference_row(const Film& film, int component, Offset offset, HalfRange halves, int y, float* row) {
   const ComponentPlanes& planes = film.components.at(static_cast<size_t>(component));
   const auto width = static_cast<size_t>(film.region.width());
-  const size_t channels = size_t(film.channels), last = offset == kRight ? width - 1 : y + 1 < film.region.height() ? width : 0;
+  const size_t channels = size_t(film.channels), last = offset == kRight               ? width - 1
+                                                        : y + 1 < film.region.height() ? width
+                                                                                       : 0;
   const auto read = film.channels == 3 ? read_differences<3> : read_differences<4>;
   read(film, planes, offset, halves, size_t(y) * width, offset == kRight ? 1 : width, int(last), row);
   std::fill(row + last * channels, row + width * channels, 0.0f);
@@ -84,7 +87,8 @@ namespace {
 
 // Images by rows: read_primal(y, row) and read_difference(offset, y, row).
 template <class ReadPrimal, class ReadDifference>
-GradientImages read_all(const Film& film, bool differences, const ReadPrimal& read_primal, const ReadDifference& read_difference) {
+GradientImages read_all(const Film& film, bool differences, const ReadPrimal& read_primal,
+                        const ReadDifference& read_difference) {
   GradientImages images;
   images.width = film.region.width();
   images.height = film.region.height();
@@ -139,8 +143,12 @@ GradientImages read_half_differences(const Film& film, int component, bool diffe
 
 GradientImages read_images(const Film& film, int component) { return read_images(film, component, true); }
 GradientImages read_pixels(const Film& film, int component) { return read_images(film, component, false); }
-GradientImages read_half_differences(const Film& film, int component) { return read_half_differences(film, component, true); }
-GradientImages read_half_differences_of_pixels(const Film& film, int component) { return read_half_differences(film, component, false); }
+GradientImages read_half_differences(const Film& film, int component) {
+  return read_half_differences(film, component, true);
+}
+GradientImages read_half_differences_of_pixels(const Film& film, int component) {
+  return read_half_differences(film, component, false);
+}
 
 namespace {
 
@@ -207,8 +215,8 @@ void read_variance_row(const Film& film, int y, float* row) {
     if (film.count[0][i] == 0 || film.count[1][i] == 0) continue;
     Radiance difference(0.0f);
     for (const ComponentPlanes& planes : film.components) {
-      difference +=
-          planes.primal[0][i] / static_cast<float>(film.count[0][i]) - planes.primal[1][i] / static_cast<float>(film.count[1][i]);
+      difference += planes.primal[0][i] / static_cast<float>(film.count[0][i]) -
+                    planes.primal[1][i] / static_cast<float>(film.count[1][i]);
     }
     for (int c = 0; c < film.channels; ++c) {
       const float half = 0.5f * difference[c];
@@ -217,4 +225,4 @@ void read_variance_row(const Film& film, int y, float* row) {
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::film

@@ -1,10 +1,10 @@
 // Pixels of a frame's region, row by row over the threads.
 #pragma once
 
-#include "film/film.h"
 #include "base/rows.h"
+#include "film/film.h"
 
-namespace gradus {
+namespace gradus::film {
 
 // function(i, out): the pixel's place in the frame's planes, and in those of the region.
 template <class Function>
@@ -15,4 +15,4 @@ void for_pixels(const Film& film, const Region& region, const Function& function
   });
 }
 
-}  // namespace gradus
+}  // namespace gradus::film

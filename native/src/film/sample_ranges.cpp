@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 
-namespace gradus {
+namespace gradus::film {
 
 SampleRanges::SampleRanges(std::vector<SampleRange> ranges) : ranges_(std::move(ranges)) {
   for (size_t i = 0; i < ranges_.size(); ++i) {
@@ -52,4 +52,4 @@ uint64_t SampleRanges::total() const {
   return sum;
 }
 
-}  // namespace gradus
+}  // namespace gradus::film

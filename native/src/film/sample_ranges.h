@@ -1,11 +1,12 @@
-// Which sample numbers a frame holds: ranges in order, with gaps between them. Frames that were rendered apart are added by these.
+// Which sample numbers a frame holds: ranges in order, with gaps between them. Frames that were rendered apart are
+// added by these.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-namespace gradus {
+namespace gradus::film {
 
 // Sample numbers [begin, end).
 struct SampleRange {
@@ -32,4 +33,4 @@ class SampleRanges {
   std::vector<SampleRange> ranges_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::film

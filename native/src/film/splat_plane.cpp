@@ -4,9 +4,10 @@
 
 #include "film/finite_check.h"
 
-namespace gradus {
+namespace gradus::film {
 
-SplatPlane::SplatPlane(const Region& region) : region_(region), sums_(static_cast<size_t>(region.area()), Radiance(0.0f)) {}
+SplatPlane::SplatPlane(const Region& region)
+    : region_(region), sums_(static_cast<size_t>(region.area()), Radiance(0.0f)) {}
 
 void SplatPlane::merge(uint32_t unit, uint64_t paths, std::vector<Splat> splats, Counters* counters) {
   const std::lock_guard lock(mutex_);
@@ -38,4 +39,4 @@ std::vector<Radiance> SplatPlane::mean() const {
   return image;
 }
 
-}  // namespace gradus
+}  // namespace gradus::film

@@ -1,8 +1,10 @@
-// Sums of samples that do not belong to the pixel that asked for them (contract 1.3): a light path or a chain adds to whatever pixels it
-// meets. The plane is normalised globally, by the number of paths, where the planes of a frame are normalised by their pixels' counts.
+// Sums of samples that do not belong to the pixel that asked for them (contract 1.3): a light path or a chain adds to
+// whatever pixels it meets. The plane is normalised globally, by the number of paths, where the planes of a frame are
+// normalised by their pixels' counts.
 //
-// Workers hand in a unit's splats as a whole. They are added in the order of the units' numbers, whoever comes first, so that the sums have
-// the same bits for any number of threads; units that are early wait in memory, as many as there are workers.
+// Workers hand in a unit's splats as a whole. They are added in the order of the units' numbers, whoever comes first,
+// so that the sums have the same bits for any number of threads; units that are early wait in memory, as many as there
+// are workers.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +14,7 @@
 
 #include "film/film.h"
 
-namespace gradus {
+namespace gradus::film {
 
 struct Splat {
   int32_t x = 0, y = 0;  // pixel of the full frame; outside of the region it is left out
@@ -45,4 +47,4 @@ class SplatPlane {
   std::vector<Radiance> sums_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::film

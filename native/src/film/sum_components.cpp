@@ -2,7 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
-namespace gradus {
+namespace gradus::film {
 namespace {
 
 void add(const std::vector<Radiance>& from, std::vector<Radiance>* to) {
@@ -26,4 +26,4 @@ Film sum_components(const Film& film) {
   return sum;
 }
 
-}  // namespace gradus
+}  // namespace gradus::film

@@ -3,9 +3,9 @@
 
 #include "film/film.h"
 
-namespace gradus {
+namespace gradus::film {
 
 // Samples and differences of a frame without decomposition: its one component is the sum of all. Without passes.
 Film sum_components(const Film& film);
 
-}  // namespace gradus
+}  // namespace gradus::film

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <new>
 
-namespace gradus {
+namespace gradus::film_io {
 namespace {
 
 // The fastest, and within 1 % of the size of the others: what is not noise is plain.
@@ -22,11 +22,14 @@ T* made(T* object) {
   return object;
 }
 
-// Even bytes [begin, end) and odd ones (high bytes of numbers are alike, low ones are not), each as its difference from the one before.
+// Even bytes [begin, end) and odd ones (high bytes of numbers are alike, low ones are not), each as its difference from
+// the one before.
 void differentiate(const Bytes& block, size_t begin, size_t end, unsigned char* even, unsigned char* odd) {
   const size_t half = block.size() / 2;
   const unsigned char* const from = block.data();
-  const auto difference = [](unsigned char now, unsigned char before) { return static_cast<unsigned char>(now - before + kMiddle); };
+  const auto difference = [](unsigned char now, unsigned char before) {
+    return static_cast<unsigned char>(now - before + kMiddle);
+  };
   if (begin == 0) {
     *even++ = from[0];
     *odd++ = difference(from[1], from[2 * half - 2]);
@@ -84,7 +87,8 @@ double bits_of(const unsigned char* bytes, size_t size) {
   return bits;
 }
 
-// Most noisy sums lose a quarter of their size at most, and take most of the time: they stay as they are. Looks at a piece of every four.
+// Most noisy sums lose a quarter of their size at most, and take most of the time: they stay as they are. Looks at a
+// piece of every four.
 bool is_worth_packing(const Bytes& block) {
   constexpr size_t kPiece = 4096, kEvery = 4;
   constexpr double kShare = 0.72;
@@ -110,7 +114,8 @@ Bytes BlockCodec::pack(const Bytes& block) {
   bytes_.resize(block.size());
   differentiate(block, 0, block.size() / 2, bytes_.data(), bytes_.data() + block.size() / 2);
   Bytes packed(block.size());
-  const size_t size = libdeflate_zlib_compress(compressor_.get(), bytes_.data(), bytes_.size(), packed.data(), packed.size());
+  const size_t size =
+      libdeflate_zlib_compress(compressor_.get(), bytes_.data(), bytes_.size(), packed.data(), packed.size());
   if (size == 0 || size == block.size()) return block;
   packed.resize(size);
   return packed;
@@ -131,4 +136,4 @@ bool BlockCodec::unpack(const unsigned char* packed, size_t size, Bytes* block) 
   return true;
 }
 
-}  // namespace gradus
+}  // namespace gradus::film_io

@@ -1,7 +1,7 @@
 // Blocks of OpenEXR's ZIP compression: sixteen rows, of each row one channel after the other, packed in zlib's format.
 //
-// OpenEXR does the same by zlib alone, and packs all. That takes two to three times as long where planes are smooth, and many times as long
-// where they are noisy sums, which are hardly worth packing.
+// OpenEXR does the same by zlib alone, and packs all. That takes two to three times as long where planes are smooth,
+// and many times as long where they are noisy sums, which are hardly worth packing.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 struct libdeflate_compressor;
 struct libdeflate_decompressor;
 
-namespace gradus {
+namespace gradus::film_io {
 
 inline constexpr int kBlockRows = 16;
 
@@ -32,4 +32,4 @@ class BlockCodec {
   Bytes bytes_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::film_io

@@ -4,7 +4,7 @@
 #include <ImfPartType.h>
 #include <ImfVersion.h>
 
-namespace gradus {
+namespace gradus::film_io {
 namespace {
 
 constexpr size_t kShortName = 31;
@@ -23,7 +23,8 @@ size_t blocks_of(const Imf::Header& header) {
 
 }  // namespace
 
-BlockFile::BlockFile(std::vector<Imf::Header> headers, WriterStream* stream) : stream_(stream), top_(headers.front().dataWindow().min.y) {
+BlockFile::BlockFile(std::vector<Imf::Header> headers, WriterStream* stream)
+    : stream_(stream), top_(headers.front().dataWindow().min.y) {
   int flags = Imf::MULTI_PART_FILE_FLAG;
   for (Imf::Header& header : headers) {
     header.setType(Imf::SCANLINEIMAGE);
@@ -61,4 +62,4 @@ void BlockFile::finish() {
   stream_->seekp(end);
 }
 
-}  // namespace gradus
+}  // namespace gradus::film_io

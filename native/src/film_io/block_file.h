@@ -1,4 +1,5 @@
-// A file of OpenEXR with parts of scan lines, written block by block as they come packed: its own writer packs them one after the other.
+// A file of OpenEXR with parts of scan lines, written block by block as they come packed: its own writer packs them one
+// after the other.
 #pragma once
 
 #include <ImfHeader.h>
@@ -8,10 +9,10 @@
 #include "film_io/block_codec.h"
 #include "film_io/exr_stream.h"
 
-namespace gradus {
+namespace gradus::film_io {
 
-// All parts of ZIP compression and of one size, rows downwards. (OpenEXR, "OpenEXR File Layout": magic number, version, headers, where the
-// blocks of each part lie, blocks.)
+// All parts of ZIP compression and of one size, rows downwards. (OpenEXR, "OpenEXR File Layout": magic number, version,
+// headers, where the blocks of each part lie, blocks.)
 class BlockFile {
  public:
   // Headers name their parts.
@@ -34,4 +35,4 @@ class BlockFile {
   std::vector<std::vector<uint64_t>> places_;  // by parts and blocks
 };
 
-}  // namespace gradus
+}  // namespace gradus::film_io

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace gradus {
+namespace gradus::film_io {
 namespace {
 
 constexpr size_t kValue = sizeof(uint32_t);
@@ -50,4 +50,4 @@ void BlockRows::scatter(const Bytes& bytes, int block) const {
   });
 }
 
-}  // namespace gradus
+}  // namespace gradus::film_io

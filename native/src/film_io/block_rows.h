@@ -1,4 +1,5 @@
-// Rows of a frame as they lie in a file: blocks of sixteen from the top down, of each row one channel after the other by its name.
+// Rows of a frame as they lie in a file: blocks of sixteen from the top down, of each row one channel after the other
+// by its name.
 #pragma once
 
 #include <vector>
@@ -6,7 +7,7 @@
 #include "film_io/block_codec.h"
 #include "film_io/store_planes.h"
 
-namespace gradus {
+namespace gradus::film_io {
 
 class BlockRows {
  public:
@@ -30,4 +31,4 @@ class BlockRows {
   const size_t row_bytes_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::film_io

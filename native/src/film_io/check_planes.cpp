@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 
-namespace gradus {
+namespace gradus::film_io {
 namespace {
 
 constexpr size_t kPixels = 4096;  // that a task is worth
@@ -14,13 +14,16 @@ constexpr float kObjects = 16777216.0f;
 
 bool is_sound(float value) { return is_finite(value); }
 bool is_sound(const Vec4& value) { return is_finite(Vec3(value)) && is_finite(value.w); }
-bool is_sound(const ShownPoint& shown) { return shown.object >= 0.0f && shown.object <= kObjects && is_finite(shown.depth); }
-bool is_sound(const NonSpecularVertices& non_specular) {
-  return is_finite(non_specular.reflectance) && is_finite(non_specular.normal) && is_finite(non_specular.inverse_depth) && is_finite(non_specular.samples);
+bool is_sound(const film::ShownPoint& shown) {
+  return shown.object >= 0.0f && shown.object <= kObjects && is_finite(shown.depth);
 }
-bool is_sound(const NonSpecularDetails& details) {
-  return is_finite(details.uv) && is_finite(details.emission) && is_finite(details.segments) && is_finite(details.object) &&
-         is_finite(details.face);
+bool is_sound(const film::NonSpecularVertices& non_specular) {
+  return is_finite(non_specular.reflectance) && is_finite(non_specular.normal) &&
+         is_finite(non_specular.inverse_depth) && is_finite(non_specular.samples);
+}
+bool is_sound(const film::NonSpecularDetails& details) {
+  return is_finite(details.uv) && is_finite(details.emission) && is_finite(details.segments) &&
+         is_finite(details.object) && is_finite(details.face);
 }
 
 template <class Value>
@@ -36,8 +39,8 @@ void check(const std::vector<Value>& plane, const char* what) {
 
 }  // namespace
 
-void check_planes(const Film& film) {
-  for (const ComponentPlanes& planes : film.components) {
+void check_planes(const film::Film& film) {
+  for (const film::ComponentPlanes& planes : film.components) {
     for (const auto& half : planes.non_specular) check(half, "first rough vertices");
     check(planes.details, "details of vertices");
     check(planes.motion, "motion");
@@ -46,4 +49,4 @@ void check_planes(const Film& film) {
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::film_io

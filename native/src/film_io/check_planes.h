@@ -3,9 +3,9 @@
 
 #include "film/film.h"
 
-namespace gradus {
+namespace gradus::film_io {
 
 // Of what passes of components are made of, by the threads of the caller's arena. Throws invalid_argument.
-void check_planes(const Film& film);
+void check_planes(const film::Film& film);
 
-}  // namespace gradus
+}  // namespace gradus::film_io

@@ -1,6 +1,6 @@
 #include "film_io/exr_problem.h"
 
-namespace gradus {
+namespace gradus::film_io {
 
 std::string exr_problem(const std::exception& exception) {
   const std::string text = exception.what(), after_name = "\". ";
@@ -13,4 +13,4 @@ std::string exr_problem(const std::exception& exception) {
   return name == std::string::npos ? text : text.substr(name + after_name.size());
 }
 
-}  // namespace gradus
+}  // namespace gradus::film_io

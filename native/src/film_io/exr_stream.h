@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "film_io/file_writer.h"
 
-namespace gradus {
+namespace gradus::film_io {
 
 // Errors that OpenEXR swallows (its destructors write, too) are kept for afterwards.
 class WriterStream final : public Imf::OStream {
@@ -57,4 +57,4 @@ void write_exr(const std::string& path, Function&& write, Durable durable = Dura
   writer.commit();
 }
 
-}  // namespace gradus
+}  // namespace gradus::film_io

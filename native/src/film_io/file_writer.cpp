@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "film_io/temporary_file.h"
 
-namespace gradus {
+namespace gradus::film_io {
 namespace {
 
 // So that the new name itself survives a power cut. Not every file system can do it; the data is safe already.
@@ -48,7 +48,8 @@ FileWriter::~FileWriter() {
 }
 
 void FileWriter::fail(const char* action) const {
-  throw Error(GRADUS_ERROR_INVALID_OPERATION, std::string("cannot ") + action + " " + path_ + ": " + std::strerror(errno));
+  throw Error(GRADUS_ERROR_INVALID_OPERATION,
+              std::string("cannot ") + action + " " + path_ + ": " + std::strerror(errno));
 }
 
 void FileWriter::write(const void* data, size_t size) {
@@ -89,7 +90,9 @@ void FileWriter::commit() {
 void copy_file(const std::string& path, const std::string& name, Durable durable) {
   constexpr size_t kPiece = 1 << 20;
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> from(std::fopen(path.c_str(), "rb"), std::fclose);
-  const auto refuse = [&] { throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot read " + path + ": " + std::strerror(errno)); };
+  const auto refuse = [&] {
+    throw Error(GRADUS_ERROR_INVALID_OPERATION, "cannot read " + path + ": " + std::strerror(errno));
+  };
   if (!from) refuse();
   FileWriter to(name, durable);
   std::vector<char> piece(kPiece);
@@ -101,4 +104,4 @@ void copy_file(const std::string& path, const std::string& name, Durable durable
   to.commit();
 }
 
-}  // namespace gradus
+}  // namespace gradus::film_io

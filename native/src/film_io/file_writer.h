@@ -1,15 +1,15 @@
-// A file that appears as a whole or not at all: written under PATH.<pid>.<host>.part, synced, then renamed (contract 7.2). Whoever is
-// killed leaves at most a .part file behind.
+// A file that appears as a whole or not at all: written under PATH.<pid>.<host>.part, synced, then renamed
+// (contract 7.2). Whoever is killed leaves at most a .part file behind.
 #pragma once
 
 #include <cstdint>
 #include <cstdio>
 #include <string>
 
-namespace gradus {
+namespace gradus::film_io {
 
-// Whether a file outlasts a crash of the machine. One that is removed before long need not: to sync it would keep the disk busy for
-// nothing.
+// Whether a file outlasts a crash of the machine. One that is removed before long need not: to sync it would keep the
+// disk busy for nothing.
 enum class Durable { kYes, kNo };
 
 class FileWriter {
@@ -39,4 +39,4 @@ class FileWriter {
 // As it is, under another name, in the place of what has that. Throws as FileWriter.
 void copy_file(const std::string& path, const std::string& name, Durable durable = Durable::kYes);
 
-}  // namespace gradus
+}  // namespace gradus::film_io

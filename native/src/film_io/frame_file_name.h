@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-namespace gradus {
+namespace gradus::film_io {
 
 // "f+0000017.base.exr". ending: what follows the number.
 inline std::string frame_name(int32_t frame, const char* ending) {
@@ -15,4 +15,4 @@ inline std::string frame_name(int32_t frame, const char* ending) {
   return name.data();
 }
 
-}  // namespace gradus
+}  // namespace gradus::film_io

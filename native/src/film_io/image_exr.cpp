@@ -10,7 +10,7 @@
 #include "film_io/exr_problem.h"
 #include "film_io/exr_stream.h"
 
-namespace gradus {
+namespace gradus::film_io {
 namespace {
 
 constexpr int kMaxSide = 1 << 16;
@@ -53,7 +53,8 @@ LoadedImage read_rgb(const std::string& path, const std::string& layer) {
   LoadedImage image;
   image.width = window.max.x - window.min.x + 1;
   image.height = window.max.y - window.min.y + 1;
-  if (image.width < 1 || image.height < 1 || image.width > kMaxSide || image.height > kMaxSide) throw invalid_argument("its size is wrong");
+  if (image.width < 1 || image.height < 1 || image.width > kMaxSide || image.height > kMaxSide)
+    throw invalid_argument("its size is wrong");
   const std::string prefix = find_prefix(file.header().channels(), layer);
   std::vector<float> pixels(size_t(image.width) * size_t(image.height) * 3);
   Imf::FrameBuffer buffer;
@@ -95,7 +96,8 @@ void save_image(const std::string& path, int width, int height, const std::vecto
       const std::string name = channel_name(layers[i], c);
       const size_t pixel = size_t(layers[i].channels) * sizeof(float);
       header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-      buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(rows[i].data() + c), pixel, pixel * size_t(width)));
+      buffer.insert(name,
+                    Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(rows[i].data() + c), pixel, pixel * size_t(width)));
     }
   }
   write_exr(path, [&](WriterStream* stream) {
@@ -120,7 +122,9 @@ std::vector<std::string> image_channels(const std::string& path) {
 }
 
 bool is_film_file(const std::string& path) {
-  return reading(path, [&] { return Imf::InputFile(path.c_str()).header().findTypedAttribute<Imf::StringAttribute>("gradus") != nullptr; });
+  return reading(path, [&] {
+    return Imf::InputFile(path.c_str()).header().findTypedAttribute<Imf::StringAttribute>("gradus") != nullptr;
+  });
 }
 
-}  // namespace gradus
+}  // namespace gradus::film_io

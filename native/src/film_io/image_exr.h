@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace gradus {
+namespace gradus::film_io {
 
 // Interleaved channels, bottom row first.
 struct ImageLayer {
@@ -20,12 +20,12 @@ struct LoadedImage {
   int width = 0, height = 0;
   std::vector<float> rgb;  // bottom row first
 };
-// Reads R, G, B of the layer whose channel names end with `layer` (".R" and so on); "": the plain RGB, else a layer Combined. Throws
-// invalid_argument with path and cause, naming the layers there are.
+// Reads R, G, B of the layer whose channel names end with `layer` (".R" and so on); "": the plain RGB, else a layer
+// Combined. Throws invalid_argument with path and cause, naming the layers there are.
 LoadedImage load_rgb(const std::string& path, const std::string& layer);
 // Names of all channels.
 std::vector<std::string> image_channels(const std::string& path);
 // The file is a frame store of Gradus, not an image.
 bool is_film_file(const std::string& path);
 
-}  // namespace gradus
+}  // namespace gradus::film_io

@@ -17,7 +17,7 @@
 #include "film_io/store_header.h"
 #include "film_io/store_planes.h"
 
-namespace gradus {
+namespace gradus::film_io {
 namespace {
 
 // A part's block, of all parts in a row.
@@ -28,7 +28,7 @@ struct PlacedBlock {
 // The rows of all parts, as their blocks follow each other in the file.
 class PartRows {
  public:
-  PartRows(const std::vector<StoredPart>& parts, const Film& film) {
+  PartRows(const std::vector<StoredPart>& parts, const film::Film& film) {
     for (const StoredPart& part : parts) rows_.emplace_back(part.planes, film.region.width(), film.region.height());
   }
   int blocks() const { return int(rows_.size()) * rows_.front().blocks(); }
@@ -58,7 +58,9 @@ void write_blocks(const PartRows& rows, const CancelCheck& cancel, BlockFile* fi
     rows.of(place.part).gather(place.block, &bytes);
     return PackedBlock{place, codecs.local().pack(bytes)};
   };
-  const auto write = [&](const PackedBlock& packed) { file->write(packed.place.part, packed.place.block, packed.bytes); };
+  const auto write = [&](const PackedBlock& packed) {
+    file->write(packed.place.part, packed.place.block, packed.bytes);
+  };
   const auto tokens = 2 * size_t(tbb::this_task_arena::max_concurrency());
   tbb::parallel_pipeline(tokens, tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, number) &
                                      tbb::make_filter<int, PackedBlock>(tbb::filter_mode::parallel, pack) &
@@ -66,7 +68,8 @@ void write_blocks(const PartRows& rows, const CancelCheck& cancel, BlockFile* fi
 }
 
 // numbers: of the parts in the file.
-void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, const std::vector<int>& numbers, const CancelCheck& cancel) {
+void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, const std::vector<int>& numbers,
+                 const CancelCheck& cancel) {
   struct Reader {
     BlockCodec codec;
     Bytes packed, bytes;
@@ -83,23 +86,27 @@ void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, const std:
     reader.bytes.resize(own.bytes(block));
     reader.packed.resize(own.max_bytes());  // OpenEXR reads as much, if the file says so
     int size = int(reader.packed.size());
-    inputs[size_t(part)].rawPixelDataToBuffer(top + kBlockRows * block, reinterpret_cast<char*>(reader.packed.data()), size);
-    if (!reader.codec.unpack(reader.packed.data(), size_t(size), &reader.bytes)) throw invalid_argument("a block of its rows is broken");
+    inputs[size_t(part)].rawPixelDataToBuffer(top + kBlockRows * block, reinterpret_cast<char*>(reader.packed.data()),
+                                              size);
+    if (!reader.codec.unpack(reader.packed.data(), size_t(size), &reader.bytes))
+      throw invalid_argument("a block of its rows is broken");
     own.scatter(reader.bytes, block);
   });
 }
 
-void check_sources(const Film& film) {
-  const auto check = [&](const PixelCorrespondence& correspondence) {
+void check_sources(const film::Film& film) {
+  const auto check = [&](const film::PixelCorrespondence& correspondence) {
     for (const int32_t pixel : correspondence.pixel) {
-      if (pixel < kNoCorrespondence || pixel >= film.region.area()) throw invalid_argument("it replays pixels that do not exist");
+      if (pixel < film::kNoCorrespondence || pixel >= film.region.area())
+        throw invalid_argument("it replays pixels that do not exist");
     }
     for (const Vec2& off : correspondence.off_centre) {
-      if (!(std::abs(off.x) <= 0.5f && std::abs(off.y) <= 0.5f)) throw invalid_argument("it replays ways that end in no pixel");
+      if (!(std::abs(off.x) <= 0.5f && std::abs(off.y) <= 0.5f))
+        throw invalid_argument("it replays ways that end in no pixel");
     }
   };
   check(film.replayed.correspondence);
-  for (const PixelCorrespondence& own : film.replayed.of_component) check(own);
+  for (const film::PixelCorrespondence& own : film.replayed.of_component) check(own);
 }
 
 Imf::MultiPartInputFile open_file(const std::string& path) {
@@ -116,9 +123,10 @@ int number_of(const Imf::MultiPartInputFile& file, const std::string& part) {
 }
 
 // only: the component to be read; nullptr: all.
-Film read_film(const std::string& path, StoredContent content, const std::string* only, const CancelCheck& cancel) {
+film::Film read_film(const std::string& path, StoredContent content, const std::string* only,
+                     const CancelCheck& cancel) {
   Imf::MultiPartInputFile file = open_file(path);
-  Film film = make_frame(file.header(0), content, only);
+  film::Film film = make_frame(file.header(0), content, only);
   const std::vector<StoredPart> parts = stored_parts(&film);
   const bool is_whole = content == StoredContent::kAll && only == nullptr;
   if (is_whole && size_t(file.parts()) != parts.size()) throw invalid_argument("it has parts of something else");
@@ -150,9 +158,9 @@ auto load(const std::string& path, const Read& read) {
 
 }  // namespace
 
-void save_film(const Film& film, const std::string& path, const FilmWriteOptions& how) {
+void save_film(const film::Film& film, const std::string& path, const FilmWriteOptions& how) {
   // The planes are only read here; the list is shared with reading, which writes them.
-  const std::vector<StoredPart> parts = stored_parts(const_cast<Film*>(&film));
+  const std::vector<StoredPart> parts = stored_parts(const_cast<film::Film*>(&film));
   const auto write = [&](WriterStream* stream) {
     BlockFile file(make_headers(film, parts), stream);
     write_blocks(PartRows(parts, film), how.cancel, &file);
@@ -161,18 +169,19 @@ void save_film(const Film& film, const std::string& path, const FilmWriteOptions
   write_exr(path, write, how.durable);
 }
 
-std::shared_ptr<Film> load_film(const std::string& path, StoredContent content, const CancelCheck& cancel) {
-  return load(path, [&] { return std::make_shared<Film>(read_film(path, content, nullptr, cancel)); });
+std::shared_ptr<film::Film> load_film(const std::string& path, StoredContent content, const CancelCheck& cancel) {
+  return load(path, [&] { return std::make_shared<film::Film>(read_film(path, content, nullptr, cancel)); });
 }
 
-std::shared_ptr<Film> load_component(const std::string& path, const std::string& name, StoredContent content, const CancelCheck& cancel) {
-  auto film = load(path, [&] { return std::make_shared<Film>(read_film(path, content, &name, cancel)); });
-  select_component(name, film.get());
+std::shared_ptr<film::Film> load_component(const std::string& path, const std::string& name, StoredContent content,
+                                           const CancelCheck& cancel) {
+  auto film = load(path, [&] { return std::make_shared<film::Film>(read_film(path, content, &name, cancel)); });
+  film::select_component(name, film.get());
   return film;
 }
 
-FilmHeader load_header(const std::string& path) {
+film::FilmHeader load_header(const std::string& path) {
   return load(path, [&] { return read_header(open_file(path).header(0)); });
 }
 
-}  // namespace gradus
+}  // namespace gradus::film_io

@@ -10,12 +10,12 @@
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "film/pixel_blocks.h"
 #include "film/pass_planes.h"
+#include "film/pixel_blocks.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::film_io {
 namespace {
 
 using nlohmann::json;
@@ -34,64 +34,65 @@ std::string hex(uint64_t value) {
   return text;
 }
 
-json counters_to_json(const Counters& counters) {
-  std::vector<uint64_t> values(sizeof(Counters) / sizeof(uint64_t));
-  std::memcpy(values.data(), &counters, sizeof(Counters));
+json counters_to_json(const film::Counters& counters) {
+  std::vector<uint64_t> values(sizeof(film::Counters) / sizeof(uint64_t));
+  std::memcpy(values.data(), &counters, sizeof(film::Counters));
   return values;
 }
 
 uint64_t key_from_json(const json& j) { return std::stoull(j.get<std::string>(), nullptr, 16); }
 
-Counters counters_from_json(const json& j) {
+film::Counters counters_from_json(const json& j) {
   const auto values = j.get<std::vector<uint64_t>>();
-  Counters counters;
-  std::memcpy(static_cast<void*>(&counters), values.data(), std::min(values.size() * sizeof(uint64_t), sizeof(Counters)));
+  film::Counters counters;
+  std::memcpy(static_cast<void*>(&counters), values.data(),
+              std::min(values.size() * sizeof(uint64_t), sizeof(film::Counters)));
   return counters;
 }
 
-json ranges_to_json(const SampleRanges& ranges) {
+json ranges_to_json(const film::SampleRanges& ranges) {
   json list = json::array();
-  for (const SampleRange& r : ranges.list()) list.push_back({r.begin, r.end});
+  for (const film::SampleRange& r : ranges.list()) list.push_back({r.begin, r.end});
   return list;
 }
 
-SampleRanges ranges_from_json(const json& j) {
-  std::vector<SampleRange> list;
+film::SampleRanges ranges_from_json(const json& j) {
+  std::vector<film::SampleRange> list;
   for (const json& r : j) list.push_back({r.at(0).get<uint32_t>(), r.at(1).get<uint32_t>()});
-  return SampleRanges(std::move(list));
+  return film::SampleRanges(std::move(list));
 }
 
-json adaptive_state_to_json(const AdaptiveState& shared) {
+json adaptive_state_to_json(const film::AdaptiveState& shared) {
   return {{"mean", shared.mean}, {"uncounted", shared.uncounted}, {"rays", shared.rays}, {"stopped", shared.stopped}};
 }
 
-AdaptiveState adaptive_state_from_json(const json& j, const Region& region) {
-  AdaptiveState shared{j.at("mean"), j.value("uncounted", 0u), j.at("rays").get<std::vector<uint64_t>>(),
-                       j.at("stopped").get<std::vector<uint8_t>>()};
-  const size_t blocks = make_pixel_blocks(region).size();
+film::AdaptiveState adaptive_state_from_json(const json& j, const Region& region) {
+  film::AdaptiveState shared{j.at("mean"), j.value("uncounted", 0u), j.at("rays").get<std::vector<uint64_t>>(),
+                             j.at("stopped").get<std::vector<uint8_t>>()};
+  const size_t blocks = film::make_pixel_blocks(region).size();
   if (shared.rays.size() != blocks || shared.stopped.size() != blocks) throw damaged("its cells are wrong");
   return shared;
 }
 
-json components_to_json(const Film& film) {
+json components_to_json(const film::Film& film) {
   json list = json::array();
-  for (const ComponentPlanes& planes : film.components) list.push_back({planes.name, planes.expression});
+  for (const film::ComponentPlanes& planes : film.components) list.push_back({planes.name, planes.expression});
   return list;
 }
 
-void name_components(const json& list, Film* film) {
+void name_components(const json& list, film::Film* film) {
   for (size_t i = 0; i < film->components.size(); ++i) {
     film->components[i].name = list.at(i).at(0);
     film->components[i].expression = list.at(i).at(1);
   }
 }
 
-ComponentContent component_content_from_json(const json& j) {
+film::ComponentContent component_content_from_json(const json& j) {
   return {j.at("rough"), j.value("details", false), j.at("motion"), j.at("shown")};  // once there were no details
 }
 
-json describe_samples(const Film& film) {
-  const ComponentContent kept = component_content(film);
+json describe_samples(const film::Film& film) {
+  const film::ComponentContent kept = film::component_content(film);
   return {{"format", kFormat},
           {"version", gradus_version_text()},
           {"frame", film.frame_number},
@@ -102,15 +103,15 @@ json describe_samples(const Film& film) {
           {"motion", kept.motion},
           {"shown", kept.shown},
           {"gradients", film.gradients},
-          {"sampling_key", hex(sampling_key(film.settings))},
+          {"sampling_key", hex(schema::sampling_key(film.settings))},
           {"scene_key", hex(film.scene_key)},
-          {"settings", settings_to_json(film.settings)},
-          {"planes", film_passes(film)},
+          {"settings", schema::settings_to_json(film.settings)},
+          {"planes", film::film_passes(film)},
           {"samples", ranges_to_json(film.samples)},
           {"counters", counters_to_json(film.counters)}};
 }
 
-json describe(const Film& film) {
+json describe(const film::Film& film) {
   json j = describe_samples(film);
   if (!film.shared.rays.empty()) j["shared"] = adaptive_state_to_json(film.shared);
   if (film.replayed.correspondence.empty()) return j;
@@ -126,7 +127,7 @@ json describe(const Film& film) {
 
 Imf::PixelType type_of(const StoredPlane& plane) { return plane.integer ? Imf::UINT : Imf::FLOAT; }
 
-Imf::Header make_header(const Film& film, const StoredPart& part) {
+Imf::Header make_header(const film::Film& film, const StoredPart& part) {
   const int width = int(film.full_width), height = int(film.full_height);
   const Region& r = film.region;
   // OpenEXR's rows run downwards.
@@ -156,12 +157,13 @@ void check_size(const Imath::Box2i& display, const Imath::Box2i& data) {
   }
 }
 
-void check_regions(const Film& film) {
+void check_regions(const film::Film& film) {
   const uint32_t* r = film.settings.region;
   const bool whole = r[0] == 0 && r[1] == 0 && r[2] == 0 && r[3] == 0;
   const Region delivered{int32_t(r[0]), int32_t(r[1]), int32_t(r[2]), int32_t(r[3])};
-  if (!whole && (r[2] > film.full_width || r[3] > film.full_height || delivered.x0 < film.region.x0 || delivered.y0 < film.region.y0 ||
-                 delivered.x1 > film.region.x1 || delivered.y1 > film.region.y1 || delivered.width() <= 0 || delivered.height() <= 0)) {
+  if (!whole && (r[2] > film.full_width || r[3] > film.full_height || delivered.x0 < film.region.x0 ||
+                 delivered.y0 < film.region.y0 || delivered.x1 > film.region.x1 || delivered.y1 > film.region.y1 ||
+                 delivered.width() <= 0 || delivered.height() <= 0)) {
     throw damaged("its region lies outside of it");
   }
   if (film.settings.width != film.full_width || film.settings.height != film.full_height)
@@ -175,19 +177,21 @@ Region region_of(const Imf::Header& header) {
   return {data.min.x, height - 1 - data.max.y, data.max.x + 1, height - data.min.y};
 }
 
-FilmHeader read_header(const Imf::Header& header, const json& description) {
-  FilmHeader film;
+film::FilmHeader read_header(const Imf::Header& header, const json& description) {
+  film::FilmHeader film;
   film.region = region_of(header);
   film.channels = description.at("channels");
   if (film.channels != 3 && film.channels != 4) throw damaged("its planes are wrong");
   film.gradients = description.at("gradients");
   film.planes = description.at("planes");
   film.of_components = component_content_from_json(description);
-  film.settings = settings_from_json(description.at("settings"), &film.warnings);
+  film.settings = schema::settings_from_json(description.at("settings"), &film.warnings);
   film.samples = ranges_from_json(description.at("samples"));
   film.replayed_frame = description.value("replayed_frame", 0);
-  if (description.contains("replayed_scene_key")) film.replayed_key = key_from_json(description.at("replayed_scene_key"));
-  film.replayed_seed = description.value("replayed_seed", film.settings.seed);  // once replays took that of their own frame
+  if (description.contains("replayed_scene_key"))
+    film.replayed_key = key_from_json(description.at("replayed_scene_key"));
+  film.replayed_seed =
+      description.value("replayed_seed", film.settings.seed);  // once replays took that of their own frame
   if (description.contains("shared")) film.shared = adaptive_state_from_json(description.at("shared"), film.region);
   film.scene_key = key_from_json(description.at("scene_key"));
   film.frame_number = description.at("frame");
@@ -201,15 +205,15 @@ size_t place_of(const json& names, const std::string& name) {
 }
 
 // The frame's one component takes a place among so many, of which the others have no planes.
-void place_component(size_t place, size_t count, Film* film) {
-  std::vector<ComponentPlanes> components(count);
+void place_component(size_t place, size_t count, film::Film* film) {
+  std::vector<film::ComponentPlanes> components(count);
   components[place] = std::move(film->components.front());
   film->components = std::move(components);
 }
 
 }  // namespace
 
-std::vector<Imf::Header> make_headers(const Film& film, const std::vector<StoredPart>& parts) {
+std::vector<Imf::Header> make_headers(const film::Film& film, const std::vector<StoredPart>& parts) {
   std::vector<Imf::Header> headers;
   headers.reserve(parts.size());
   for (const StoredPart& part : parts) headers.push_back(make_header(film, part));
@@ -217,26 +221,27 @@ std::vector<Imf::Header> make_headers(const Film& film, const std::vector<Stored
   return headers;
 }
 
-FilmHeader read_header(const Imf::Header& header) { return read_header(header, description_of(header)); }
+film::FilmHeader read_header(const Imf::Header& header) { return read_header(header, description_of(header)); }
 
-Film make_frame(const Imf::Header& header, StoredContent content, const std::string* only) {
+film::Film make_frame(const Imf::Header& header, StoredContent content, const std::string* only) {
   const json description = description_of(header);
-  const FilmHeader known = read_header(header, description);
+  const film::FilmHeader known = read_header(header, description);
   const json& names = description.at("components");
   if (!names.is_array() || names.empty() || names.size() > kMaxStoredComponents) throw damaged("its planes are wrong");
   const int components = int(names.size());
   const bool is_whole = content == StoredContent::kAll, gradients = is_whole && known.gradients;
-  const ComponentContent kept = is_whole ? known.of_components : ComponentContent{};
+  const film::ComponentContent kept = is_whole ? known.of_components : film::ComponentContent{};
   const uint64_t passes = is_whole ? known.planes : 0, pixels = uint64_t(known.region.area());
-  const bool has_fallback = is_whole && has_bit(known.settings.passes, GRADUS_PASS_FALLBACK);
+  const bool has_fallback = is_whole && schema::has_bit(known.settings.passes, GRADUS_PASS_FALLBACK);
   const uint64_t planes = passes | (has_fallback ? uint64_t{1} << GRADUS_PASS_FALLBACK : 0);
   const int held = only ? 1 : components;
-  const uint64_t bytes = film_bytes_per_pixel(held, gradients, planes, kept) * pixels, available = machine_memory_bytes();
+  const uint64_t bytes = film::film_bytes_per_pixel(held, gradients, planes, kept) * pixels,
+                 available = machine_memory_bytes();
   if (available > 0 && bytes > available) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "it is larger than the memory");
 
   const Imath::V2i last = header.displayWindow().max;
-  Film film(uint32_t(last.x + 1), uint32_t(last.y + 1), known.region, known.channels, held, gradients);
-  allocate_component_content(kept, &film);
+  film::Film film(uint32_t(last.x + 1), uint32_t(last.y + 1), known.region, known.channels, held, gradients);
+  film::allocate_component_content(kept, &film);
   if (only) place_component(place_of(names, *only), names.size(), &film);
   name_components(names, &film);
   film.settings = known.settings;
@@ -245,10 +250,11 @@ Film make_frame(const Imf::Header& header, StoredContent content, const std::str
   film.counters = counters_from_json(description.at("counters"));
   film.samples = known.samples;
   film.shared = known.shared;
-  film.passes = make_pass_planes(passes, pixels);
+  film.passes = film::make_pass_planes(passes, pixels);
   if (has_fallback) film.fallback.assign(pixels, 0.0f);
   if (description.contains("replayed_frame")) {
-    const PixelCorrespondence correspondence{std::vector<int32_t>(pixels), std::vector<Vec2>(description.value("off_centre", false) ? pixels : 0)};
+    const film::PixelCorrespondence correspondence{
+        std::vector<int32_t>(pixels), std::vector<Vec2>(description.value("off_centre", false) ? pixels : 0)};
     film.replayed = {known.replayed_frame, correspondence, known.replayed_key, known.replayed_seed};
     for (const int own : description.value("own_sources", std::vector<int>())) {
       if (own < 0 || own >= components) throw damaged("its planes are wrong");
@@ -263,7 +269,8 @@ Film make_frame(const Imf::Header& header, StoredContent content, const std::str
 
 void check_part(const Imf::Header& header, const Imf::Header& first, const StoredPart& part) {
   if (!header.hasName() || header.name() != part.name) throw damaged("part " + part.name + " is missing");
-  if (!header.hasType() || header.type() != Imf::SCANLINEIMAGE) throw damaged("part " + part.name + " is no image of scan lines");
+  if (!header.hasType() || header.type() != Imf::SCANLINEIMAGE)
+    throw damaged("part " + part.name + " is no image of scan lines");
   if (header.dataWindow() != first.dataWindow()) throw damaged("its parts differ in size");
   for (const StoredPlane& plane : part.planes) {
     const Imf::Channel* channel = header.channels().findChannel(plane.name);
@@ -277,4 +284,4 @@ void check_part(const Imf::Header& header, const Imf::Header& first, const Store
   if (header.compression() != Imf::ZIP_COMPRESSION) throw damaged("it was packed by another program");
 }
 
-}  // namespace gradus
+}  // namespace gradus::film_io

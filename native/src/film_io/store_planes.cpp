@@ -2,11 +2,11 @@
 
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::film_io {
 namespace {
 
-constexpr const char* kHalfNames[kHalves] = {"A", "B"};
-constexpr const char* kOffsetNames[kOffsets] = {"right", "up", "left", "down"};
+constexpr const char* kHalfNames[film::kHalves] = {"A", "B"};
+constexpr const char* kOffsetNames[film::kOffsets] = {"right", "up", "left", "down"};
 constexpr const char* kColorNames[4] = {"R", "G", "B", "A"};
 constexpr const char* kVectorNames[4] = {"X", "Y", "Z", "W"};
 
@@ -23,38 +23,46 @@ class PlaneList {
       add(layer + "." + (width == 1 ? "V" : kVectorNames[c]), false, plane->data() + c, width * sizeof(float));
     }
   }
-  void non_specular(const std::string& layer, std::vector<NonSpecularVertices>* plane) {
+  void non_specular(const std::string& layer, std::vector<film::NonSpecularVertices>* plane) {
     if (plane->empty()) return;
-    for (int c = 0; c < 3; ++c) add(layer + ".reflectance." + kColorNames[c], false, &(*plane)[0].reflectance[c], sizeof(NonSpecularVertices));
-    for (int c = 0; c < 3; ++c) add(layer + ".normal." + kVectorNames[c], false, &(*plane)[0].normal[c], sizeof(NonSpecularVertices));
-    add(layer + ".inverse_depth.V", false, &(*plane)[0].inverse_depth, sizeof(NonSpecularVertices));
-    add(layer + ".samples.V", false, &(*plane)[0].samples, sizeof(NonSpecularVertices));
+    for (int c = 0; c < 3; ++c)
+      add(layer + ".reflectance." + kColorNames[c], false, &(*plane)[0].reflectance[c],
+          sizeof(film::NonSpecularVertices));
+    for (int c = 0; c < 3; ++c)
+      add(layer + ".normal." + kVectorNames[c], false, &(*plane)[0].normal[c], sizeof(film::NonSpecularVertices));
+    add(layer + ".inverse_depth.V", false, &(*plane)[0].inverse_depth, sizeof(film::NonSpecularVertices));
+    add(layer + ".samples.V", false, &(*plane)[0].samples, sizeof(film::NonSpecularVertices));
   }
-  void details(const std::string& layer, std::vector<NonSpecularDetails>* plane) {
+  void details(const std::string& layer, std::vector<film::NonSpecularDetails>* plane) {
     if (plane->empty()) return;
-    NonSpecularDetails& first = plane->front();
-    for (int c = 0; c < 3; ++c) add(layer + ".uv." + kVectorNames[c], false, &first.uv[c], sizeof(NonSpecularDetails));
-    for (int c = 0; c < 3; ++c) add(layer + ".emission." + kColorNames[c], false, &first.emission[c], sizeof(NonSpecularDetails));
-    add(layer + ".segments.V", false, &first.segments, sizeof(NonSpecularDetails));
-    add(layer + ".object.V", false, &first.object, sizeof(NonSpecularDetails));
-    add(layer + ".face.V", false, &first.face, sizeof(NonSpecularDetails));
-    add(layer + ".sample.V", true, &first.sample, sizeof(NonSpecularDetails));
+    film::NonSpecularDetails& first = plane->front();
+    for (int c = 0; c < 3; ++c)
+      add(layer + ".uv." + kVectorNames[c], false, &first.uv[c], sizeof(film::NonSpecularDetails));
+    for (int c = 0; c < 3; ++c)
+      add(layer + ".emission." + kColorNames[c], false, &first.emission[c], sizeof(film::NonSpecularDetails));
+    add(layer + ".segments.V", false, &first.segments, sizeof(film::NonSpecularDetails));
+    add(layer + ".object.V", false, &first.object, sizeof(film::NonSpecularDetails));
+    add(layer + ".face.V", false, &first.face, sizeof(film::NonSpecularDetails));
+    add(layer + ".sample.V", true, &first.sample, sizeof(film::NonSpecularDetails));
   }
   void vectors(const std::string& layer, std::vector<Vec4>* plane) {
     if (plane->empty()) return;
     for (int c = 0; c < 4; ++c) add(layer + "." + kVectorNames[c], false, &(*plane)[0][c], sizeof(Vec4));
   }
-  void shown(const std::string& layer, std::vector<ShownPoint>* plane) {
+  void shown(const std::string& layer, std::vector<film::ShownPoint>* plane) {
     if (plane->empty()) return;
-    add(layer + ".object.V", false, &(*plane)[0].object, sizeof(ShownPoint));
-    add(layer + ".depth.V", false, &(*plane)[0].depth, sizeof(ShownPoint));
+    add(layer + ".object.V", false, &(*plane)[0].object, sizeof(film::ShownPoint));
+    add(layer + ".depth.V", false, &(*plane)[0].depth, sizeof(film::ShownPoint));
   }
-  void correspondence(const std::string& layer, PixelCorrespondence* correspondence) {
+  void correspondence(const std::string& layer, film::PixelCorrespondence* correspondence) {
     if (!correspondence->pixel.empty()) add(layer + ".V", true, correspondence->pixel.data(), sizeof(int32_t));
     if (correspondence->off_centre.empty()) return;
-    for (int c = 0; c < 2; ++c) add(layer + ".off_centre." + kVectorNames[c], false, &correspondence->off_centre[0][c], sizeof(Vec2));
+    for (int c = 0; c < 2; ++c)
+      add(layer + ".off_centre." + kVectorNames[c], false, &correspondence->off_centre[0][c], sizeof(Vec2));
   }
-  void counts(const std::string& layer, std::vector<uint32_t>* plane) { add(layer + ".V", true, plane->data(), sizeof(uint32_t)); }
+  void counts(const std::string& layer, std::vector<uint32_t>* plane) {
+    add(layer + ".V", true, plane->data(), sizeof(uint32_t));
+  }
 
   std::vector<StoredPlane> take() { return std::move(planes_); }
 
@@ -68,76 +76,84 @@ class PlaneList {
 
 std::string layer_of(size_t component) { return "component" + std::to_string(component); }
 
-std::string layer_of(size_t component, int half) { return (component == 0 ? "" : layer_of(component) + ".") + kHalfNames[half]; }
+std::string layer_of(size_t component, int half) {
+  return (component == 0 ? "" : layer_of(component) + ".") + kHalfNames[half];
+}
 
-std::string part_of(const std::string& name, size_t component) { return component == 0 ? name : name + "." + layer_of(component); }
+std::string part_of(const std::string& name, size_t component) {
+  return component == 0 ? name : name + "." + layer_of(component);
+}
 
-std::string layer_of(const PassPlane& plane) {
-  std::string name = pass_info(plane.pass).name;
+std::string layer_of(const film::PassPlane& plane) {
+  std::string name = schema::pass_info(plane.pass).name;
   for (char& c : name) c = c == ' ' ? '_' : c;
   return name;
 }
 
-std::vector<StoredPlane> samples(Film* film, size_t component) {
+std::vector<StoredPlane> samples(film::Film* film, size_t component) {
   PlaneList list;
-  for (int half = 0; half < kHalves; ++half) {
+  for (int half = 0; half < film::kHalves; ++half) {
     list.radiance(layer_of(component, half), film->channels, &film->components[component].primal[half]);
   }
-  ReplayMap& replayed = film->replayed;
-  if (replayed.has_component_map(int(component))) list.correspondence(layer_of(component) + ".source", &replayed.of_component[component]);
+  film::ReplayMap& replayed = film->replayed;
+  if (replayed.has_component_map(int(component)))
+    list.correspondence(layer_of(component) + ".source", &replayed.of_component[component]);
   return list.take();
 }
 
-std::vector<StoredPlane> counts(Film* film) {
+std::vector<StoredPlane> counts(film::Film* film) {
   PlaneList list;
-  for (int half = 0; half < kHalves; ++half) list.counts(std::string(kHalfNames[half]) + ".count", &film->count[half]);
+  for (int half = 0; half < film::kHalves; ++half)
+    list.counts(std::string(kHalfNames[half]) + ".count", &film->count[half]);
   list.correspondence("source", &film->replayed.correspondence);
   return list.take();
 }
 
 std::string layer_of(int half, int offset) { return std::string(kHalfNames[half]) + "." + kOffsetNames[offset]; }
 
-std::vector<StoredPlane> gradients(Film* film, size_t component) {
+std::vector<StoredPlane> gradients(film::Film* film, size_t component) {
   PlaneList list;
-  for (int half = 0; half < kHalves; ++half) {
-    for (int o = 0; o < kOffsets; ++o) {
-      list.radiance(layer_of(component, half) + "." + kOffsetNames[o], film->channels, &film->components[component].gradient[half][o]);
+  for (int half = 0; half < film::kHalves; ++half) {
+    for (int o = 0; o < film::kOffsets; ++o) {
+      list.radiance(layer_of(component, half) + "." + kOffsetNames[o], film->channels,
+                    &film->components[component].gradient[half][o]);
     }
   }
   return list.take();
 }
 
-std::vector<StoredPlane> pairs(Film* film) {
+std::vector<StoredPlane> pairs(film::Film* film) {
   PlaneList list;
-  for (int half = 0; half < kHalves; ++half) {
-    for (int o = 0; o < kOffsets; ++o) list.vectors(layer_of(half, o) + ".pairs", 1, &film->pair_count[half][o]);
+  for (int half = 0; half < film::kHalves; ++half) {
+    for (int o = 0; o < film::kOffsets; ++o) list.vectors(layer_of(half, o) + ".pairs", 1, &film->pair_count[half][o]);
   }
   return list.take();
 }
 
-std::vector<StoredPlane> feature(PassPlane* plane) {
+std::vector<StoredPlane> feature(film::PassPlane* plane) {
   PlaneList list;
-  for (int half = 0; half < kHalves; ++half) {
+  for (int half = 0; half < film::kHalves; ++half) {
     list.vectors(std::string(kHalfNames[half]) + "." + layer_of(*plane), plane->channels, &plane->values[half]);
   }
   return list.take();
 }
 
-std::vector<StoredPlane> non_specular(Film* film, size_t component) {
+std::vector<StoredPlane> non_specular(film::Film* film, size_t component) {
   PlaneList list;
-  for (int half = 0; half < kHalves; ++half) list.non_specular(layer_of(component, half), &film->components[component].non_specular[half]);
+  for (int half = 0; half < film::kHalves; ++half)
+    list.non_specular(layer_of(component, half), &film->components[component].non_specular[half]);
   return list.take();
 }
 
-std::vector<StoredPlane> details(Film* film, size_t component) {
+std::vector<StoredPlane> details(film::Film* film, size_t component) {
   PlaneList list;
   list.details(layer_of(component), &film->components[component].details);
   return list.take();
 }
 
-std::vector<StoredPlane> motion(Film* film, size_t component) {
+std::vector<StoredPlane> motion(film::Film* film, size_t component) {
   PlaneList list;
-  ComponentPlanes& planes = film->components[component];
+  film::ComponentPlanes& planes = film->components[component];
   const std::string layer = layer_of(component);
   list.vectors(layer + ".motion", &planes.motion);
   list.vectors(layer + ".tracked", 1, &planes.tracked);
@@ -145,9 +161,9 @@ std::vector<StoredPlane> motion(Film* film, size_t component) {
   return list.take();
 }
 
-std::vector<StoredPlane> passes(Film* film) {
+std::vector<StoredPlane> passes(film::Film* film) {
   PlaneList list;
-  for (PassPlane& plane : film->passes) {
+  for (film::PassPlane& plane : film->passes) {
     if (plane.in_halves) continue;
     list.vectors(layer_of(plane), plane.channels, &plane.values[0]);
     list.vectors(layer_of(plane) + ".weight", 1, &plane.weight);
@@ -158,7 +174,7 @@ std::vector<StoredPlane> passes(Film* film) {
 
 }  // namespace
 
-std::vector<StoredPart> stored_parts(Film* film) {
+std::vector<StoredPart> stored_parts(film::Film* film) {
   std::vector<StoredPart> parts;
   const size_t components = film->components.size();
   for (size_t c = 0; c < components; ++c) parts.push_back({part_of("samples", c), samples(film, c)});
@@ -168,7 +184,7 @@ std::vector<StoredPart> stored_parts(Film* film) {
   for (size_t c = 0; c < components; ++c) parts.push_back({part_of("rough", c), non_specular(film, c)});
   for (size_t c = 0; c < components; ++c) parts.push_back({part_of("details", c), details(film, c)});
   for (size_t c = 0; c < components; ++c) parts.push_back({part_of("motion", c), motion(film, c)});
-  for (PassPlane& plane : film->passes) {
+  for (film::PassPlane& plane : film->passes) {
     if (plane.in_halves) parts.push_back({layer_of(plane), feature(&plane)});
   }
   parts.push_back({"passes", passes(film)});
@@ -176,4 +192,4 @@ std::vector<StoredPart> stored_parts(Film* film) {
   return parts;
 }
 
-}  // namespace gradus
+}  // namespace gradus::film_io

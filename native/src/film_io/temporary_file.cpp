@@ -15,7 +15,7 @@
 #include <mutex>
 #include <string>
 
-namespace gradus {
+namespace gradus::film_io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -57,8 +57,8 @@ void remove_stale_files(const fs::path& folder) {
   }
 }
 
-// Once in a process: to look through a long animation's folder at each frame takes longer and longer. Of the last folders, by a hash:
-// temporary ones come and go.
+// Once in a process: to look through a long animation's folder at each frame takes longer and longer. Of the last
+// folders, by a hash: temporary ones come and go.
 bool is_first_use(const std::string& folder) {
   static std::mutex mutex;
   static std::array<size_t, 64> used{};
@@ -90,7 +90,8 @@ TemporaryFile make_temporary_file(const std::string& path) {
     temporary.descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     return temporary.descriptor >= 0;
   });
-  if (temporary.descriptor >= 0) flock(temporary.descriptor, LOCK_EX | LOCK_NB);  // where it cannot be, the process's number is enough
+  if (temporary.descriptor >= 0)
+    flock(temporary.descriptor, LOCK_EX | LOCK_NB);  // where it cannot be, the process's number is enough
   return temporary;
 }
 
@@ -106,4 +107,4 @@ bool hard_link_file(const std::string& path, const std::string& name) {
   return named;
 }
 
-}  // namespace gradus
+}  // namespace gradus::film_io

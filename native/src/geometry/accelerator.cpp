@@ -2,11 +2,12 @@
 
 #include <unordered_map>
 
-namespace gradus {
+namespace gradus::geometry {
 
 namespace {
 
-// Meshes whose copies hold no more triangles than this in sum are copied into the top level: cheaper to trace than instances.
+// Meshes whose copies hold no more triangles than this in sum are copied into the top level: cheaper to trace than
+// instances.
 constexpr uint64_t kMaxCopiedTriangles = 1u << 14;
 // Fewer triangles at rest are built again beside those that move, in less time than rays would need to ask for both.
 constexpr uint64_t kMinKeptTriangles = 1u << 18;
@@ -21,11 +22,13 @@ bool is_in_top_level(const InstanceData& instance, const UserCounts& users) {
 
 // By what the frame itself tells of those around it: a picture must not depend on what was rendered before.
 bool is_static(const InstanceData& instance) {
-  return !instance.moves() && (instance.visibility & GRADUS_MAY_MOVE) == 0 && instance.to_world_previous == instance.to_world &&
-         instance.to_world_next == instance.to_world && instance.was_there && instance.will_be_there && instance.mesh->key_times.size() < 2;
+  return !instance.moves() && (instance.visibility & GRADUS_MAY_MOVE) == 0 &&
+         instance.to_world_previous == instance.to_world && instance.to_world_next == instance.to_world &&
+         instance.was_there && instance.will_be_there && instance.mesh->key_times.size() < 2;
 }
 
-// Embree asks for triangles and for blurred instances one after the other: there a box around all that moves costs rays nothing.
+// Embree asks for triangles and for blurred instances one after the other: there a box around all that moves costs rays
+// nothing.
 bool pays_to_split(const std::vector<InstanceData>& instances, const std::vector<bool>& flat) {
   uint64_t kept = 0;
   bool all_static = true, blurred = false;
@@ -51,7 +54,8 @@ Split split_instances(const AcceleratorInput& input) {
   const GroupInput none{&instances, &input.to_internal, {}};
   Split split{none, none};
   for (size_t i = 0; i < instances.size(); ++i)
-    (splits && !is_static(instances[i]) ? split.moving : split.static_part).members.push_back({uint32_t(i), (*input.masks)[i], flat[i]});
+    (splits && !is_static(instances[i]) ? split.moving : split.static_part)
+        .members.push_back({uint32_t(i), (*input.masks)[i], flat[i]});
   if (split.static_part.members.empty()) std::swap(split.static_part, split.moving);
   return split;
 }
@@ -88,12 +92,15 @@ class Builder {
   MeshScenes mesh_scenes_;
 };
 
-bool same(const Accelerator::Part& a, const Accelerator::Part& b) { return a.group == b.group && a.instances == b.instances; }
+bool same(const Accelerator::Part& a, const Accelerator::Part& b) {
+  return a.group == b.group && a.instances == b.instances;
+}
 
 }  // namespace
 
 std::shared_ptr<const Accelerator> build_accelerator(const EmbreeDevice& device, const AcceleratorInput& input,
-                                                     const BuildProgress& progress, const std::shared_ptr<const Accelerator>& before) {
+                                                     const BuildProgress& progress,
+                                                     const std::shared_ptr<const Accelerator>& before) {
   constexpr float kStaticShare = 0.5f;  // of the progress
   const Split split = split_instances(input);
   Builder builder(device, before.get());
@@ -101,9 +108,10 @@ std::shared_ptr<const Accelerator> build_accelerator(const EmbreeDevice& device,
   const bool splits = !split.moving.members.empty();
   const float share = splits ? kStaticShare : 1.0f;
   built->static_part = builder.part(split.static_part, [&](float done) { return progress(share * done); });
-  if (splits) built->moving = builder.part(split.moving, [&](float done) { return progress(share + (1.0f - share) * done); });
+  if (splits)
+    built->moving = builder.part(split.moving, [&](float done) { return progress(share + (1.0f - share) * done); });
   if (before && same(before->static_part, built->static_part) && same(before->moving, built->moving)) return before;
   return built;
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

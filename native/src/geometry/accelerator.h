@@ -1,15 +1,15 @@
-// What rays of a snapshot meet: a group of instances that rest from frame to frame, built once and shared by all snapshots in which it is
-// the same, and beside it a group of those that move.
+// What rays of a snapshot meet: a group of instances that rest from frame to frame, built once and shared by all
+// snapshots in which it is the same, and beside it a group of those that move.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "base/types.h"
-#include "geometry/geometry_group.h"
 #include "geometry/geometry.h"
+#include "geometry/geometry_group.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 // Bits of Embree's ray masks beside GradusVisibility's.
 inline constexpr uint32_t kMaskVisibility = GRADUS_VISIBLE_ALL;
@@ -34,10 +34,11 @@ struct AcceleratorInput {
 // before: of the last snapshot, or nullptr; what is the same is taken from it, and it is given back if nothing changed.
 // Throws Error CANCELLED or OUT_OF_MEMORY. The instances' flat_triangles are left to the caller.
 std::shared_ptr<const Accelerator> build_accelerator(const EmbreeDevice& device, const AcceleratorInput& input,
-                                                     const BuildProgress& progress, const std::shared_ptr<const Accelerator>& before);
+                                                     const BuildProgress& progress,
+                                                     const std::shared_ptr<const Accelerator>& before);
 
 // Queries with a mask of the bits above. Rays that are not finite miss.
 bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask, Hit* hit);
 bool trace_any(const Accelerator& accelerator, const Ray& ray, uint32_t mask);
 
-}  // namespace gradus
+}  // namespace gradus::geometry

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 namespace {
 
@@ -16,7 +16,8 @@ namespace {
 void check_embree(RTCDevice device) {
   const auto version = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION);
   if (version != RTC_VERSION)
-    throw unsupported("the Embree in this process has version " + std::to_string(version) + " in place of " + std::to_string(RTC_VERSION));
+    throw unsupported("the Embree in this process has version " + std::to_string(version) + " in place of " +
+                      std::to_string(RTC_VERSION));
   if (!rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED) ||
       !rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_USER_GEOMETRY_SUPPORTED))
     throw unsupported("the Embree in this process lacks ray masks or user geometry");
@@ -31,10 +32,10 @@ Error failure_of(RTCDevice device, const std::string& otherwise) {
 RTCScene make_test_triangle(RTCDevice device) {
   const RTCScene scene = rtcNewScene(device);
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices =
-      static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3));
-  auto* indices =
-      static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), 1));
+  auto* vertices = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3));
+  auto* indices = static_cast<unsigned*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), 1));
   if (vertices && indices) {
     constexpr float kCorners[9] = {-1, -1, 2, 3, -1, 2, -1, 3, 2};
     std::copy(kCorners, kCorners + 9, vertices);
@@ -77,4 +78,4 @@ EmbreeDevice make_embree_device(uint32_t threads) {
   return device;
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

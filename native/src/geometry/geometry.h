@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "base/types.h"
-#include "gradus/gradus.h"
 #include "geometry/matrix_keys.h"
 #include "geometry/placement.h"
 #include "geometry/surface.h"
+#include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 struct MeshData;      // geometry/mesh.h
 struct Accelerator;   // geometry/accelerator.h: Embree scenes
@@ -22,8 +22,8 @@ struct FlatTriangle;  // geometry/flat_triangle.h
 // Identifier of an instance that belongs to no object.
 inline constexpr uint64_t kNobody = UINT64_MAX;
 
-// A mesh placed as in the rendered frame. Its geometric normals point to the side from which the corners run counter-clockwise in the mesh,
-// mirrored or not.
+// A mesh placed as in the rendered frame. Its geometric normals point to the side from which the corners run
+// counter-clockwise in the mesh, mirrored or not.
 struct InstanceData : Placement {
   std::shared_ptr<const MeshData> mesh;
   const FlatTriangle* flat_triangles = nullptr;  // where the mesh lies in the top level; owned by the accelerator
@@ -49,8 +49,8 @@ struct InstanceData : Placement {
   const Placement& placement(float time, Placement* room) const;
 };
 
-// Placed meshes with their acceleration structure: answers ray queries, and turns hits into surface points. Positions are in internal space:
-// world = internal + origin.
+// Placed meshes with their acceleration structure: answers ray queries, and turns hits into surface points. Positions
+// are in internal space: world = internal + origin.
 class Geometry {
  public:
   // Nearest surface among those visible to `visibility` (GradusVisibility bits). False: the ray left the scene.
@@ -73,7 +73,8 @@ class Geometry {
 
   // Corners of a triangle of an instance, in internal space, at a time of the shutter.
   std::array<Vec3, 3> corners(uint32_t instance, uint32_t triangle, float time) const;
-  // Largest change of the smooth normal along an edge of the triangle, per length: one over a sphere's radius; 0 where faces are flat.
+  // Largest change of the smooth normal along an edge of the triangle, per length: one over a sphere's radius; 0 where
+  // faces are flat.
   float curvature(const Hit& hit) const;
   // Material (index in `materials`) of a triangle of an instance.
   uint32_t material_of(uint32_t instance, uint32_t triangle) const;
@@ -84,4 +85,4 @@ class Geometry {
   float radius = 1.0f;  // of the bounding sphere
 };
 
-}  // namespace gradus
+}  // namespace gradus::geometry

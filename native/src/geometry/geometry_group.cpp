@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 namespace {
 
@@ -23,9 +23,9 @@ bool on_progress(void* data, double fraction) {
   return (*m->progress)(m->first + (m->last - m->first) * float(fraction));
 }
 
-// Without memory for what grows with the scene, nodes and leaves, Embree gives back what it has and says so. Where the few bytes of a
-// build's entry in its thread pool are refused, it keeps the pool's lock (3.13.5, ThreadPool::add), and the next build waits for ever: that
-// only tests refuse (tests/memory/embree_guard.cpp).
+// Without memory for what grows with the scene, nodes and leaves, Embree gives back what it has and says so. Where the
+// few bytes of a build's entry in its thread pool are refused, it keeps the pool's lock (3.13.5, ThreadPool::add), and
+// the next build waits for ever: that only tests refuse (tests/memory/embree_guard.cpp).
 void commit_scene(RTCDevice device, RTCScene scene, const BuildProgress& progress, float first, float last) {
   Monitor monitor{&progress, first, last};
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
@@ -35,46 +35,53 @@ void commit_scene(RTCDevice device, RTCScene scene, const BuildProgress& progres
   rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
   const RTCError error = rtcGetDeviceError(device);
   if (error == RTC_ERROR_CANCELLED || !progress(last)) throw cancelled();
-  if (error == RTC_ERROR_OUT_OF_MEMORY) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "out of memory while building the acceleration structure");
-  if (error != RTC_ERROR_NONE) throw Error(GRADUS_ERROR_UNKNOWN, "Embree failed with code " + std::to_string(int(error)));
+  if (error == RTC_ERROR_OUT_OF_MEMORY)
+    throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "out of memory while building the acceleration structure");
+  if (error != RTC_ERROR_NONE)
+    throw Error(GRADUS_ERROR_UNKNOWN, "Embree failed with code " + std::to_string(int(error)));
 }
 
 // positions: key after key.
-void attach_triangles(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, const MeshData& mesh, const Vec3* positions,
-                      unsigned keys) {
+void attach_triangles(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, const MeshData& mesh,
+                      const Vec3* positions, unsigned keys) {
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetGeometryTimeStepCount(geometry, keys);
   for (unsigned k = 0; k < keys; ++k)
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3, positions, k * mesh.vertex_count * sizeof(Vec3),
-                               sizeof(Vec3), mesh.vertex_count);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangle_vertices.data(), 0, 3 * sizeof(uint32_t),
-                             mesh.triangle_count);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3, positions,
+                               k * mesh.vertex_count * sizeof(Vec3), sizeof(Vec3), mesh.vertex_count);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangle_vertices.data(), 0,
+                             3 * sizeof(uint32_t), mesh.triangle_count);
   rtcSetGeometryMask(geometry, mask);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
   rtcReleaseGeometry(geometry);
 }
 
-void attach_instance(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, RTCScene instanced, const InstanceData& instance) {
+void attach_instance(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, RTCScene instanced,
+                     const InstanceData& instance) {
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
   rtcSetGeometryInstancedScene(geometry, instanced);
-  const std::span<const Mat4> keys = instance.keys ? std::span(instance.keys->keys()) : std::span(&instance.to_world, 1);
+  const std::span<const Mat4> keys =
+      instance.keys ? std::span(instance.keys->keys()) : std::span(&instance.to_world, 1);
   rtcSetGeometryTimeStepCount(geometry, unsigned(keys.size()));
-  for (unsigned i = 0; i < keys.size(); ++i) rtcSetGeometryTransform(geometry, i, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &keys[i][0][0]);
+  for (unsigned i = 0; i < keys.size(); ++i)
+    rtcSetGeometryTransform(geometry, i, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &keys[i][0][0]);
   rtcSetGeometryMask(geometry, mask);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
   rtcReleaseGeometry(geometry);
 }
 
-std::shared_ptr<const MeshScene> build_mesh_scene(const EmbreeDevice& device, const std::shared_ptr<const MeshData>& mesh,
+std::shared_ptr<const MeshScene> build_mesh_scene(const EmbreeDevice& device,
+                                                  const std::shared_ptr<const MeshData>& mesh,
                                                   const BuildProgress& progress, float at) {
   auto built = std::make_shared<MeshScene>();
   built->device = device;
   built->mesh = mesh;
   built->scene = rtcNewScene(device.get());
   const bool deforms = mesh->shutter_keys > 0;
-  attach_triangles(device.get(), built->scene, 0, 0xffffffffu, *mesh, deforms ? mesh->shutter_positions.data() : mesh->frame_positions(),
+  attach_triangles(device.get(), built->scene, 0, 0xffffffffu, *mesh,
+                   deforms ? mesh->shutter_positions.data() : mesh->frame_positions(),
                    deforms ? mesh->shutter_keys : 1);
   commit_scene(device.get(), built->scene, progress, at, at);
   return built;
@@ -84,9 +91,11 @@ std::shared_ptr<const MeshScene> build_mesh_scene(const EmbreeDevice& device, co
 std::unique_ptr<std::vector<Vec3>> transform_positions(const MeshData& mesh, const glm::dmat4& m) {
   auto out = std::make_unique<std::vector<Vec3>>(size_t(mesh.vertex_count) + 1);
   const Vec3* in = mesh.frame_positions();
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.vertex_count, 1 << 14), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t i = range.begin(); i < range.end(); ++i) (*out)[i] = Vec3(m * glm::dvec4(glm::dvec3(in[i]), 1.0));
-  });
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.vertex_count, 1 << 14),
+                    [&](const tbb::blocked_range<size_t>& range) {
+                      for (size_t i = range.begin(); i < range.end(); ++i)
+                        (*out)[i] = Vec3(m * glm::dvec4(glm::dvec3(in[i]), 1.0));
+                    });
   return out;
 }
 
@@ -183,4 +192,4 @@ std::shared_ptr<const GeometryGroup> build_group(const EmbreeDevice& device, con
   return GroupBuild(device, key, progress, known).run(input);
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

@@ -1,5 +1,5 @@
-// Some of a snapshot's instances in a scene of Embree's. A mesh with one user lies in its top level in world space (no price for
-// instancing); a mesh with several is built once and referenced.
+// Some of a snapshot's instances in a scene of Embree's. A mesh with one user lies in its top level in world space (no
+// price for instancing); a mesh with several is built once and referenced.
 #pragma once
 
 #include <functional>
@@ -11,13 +11,13 @@
 #include "base/types.h"
 #include "geometry/embree_device.h"
 #include "geometry/flat_triangle.h"
+#include "geometry/geometry.h"
 #include "geometry/mesh.h"
 #include "geometry/ray_box.h"
-#include "geometry/geometry.h"
 
 struct RTCSceneTy;
 
-namespace gradus {
+namespace gradus::geometry {
 
 // The acceleration structure of one mesh in its own space.
 struct MeshScene {
@@ -47,7 +47,8 @@ struct GroupInput {
   uint64_t key() const;
 };
 
-// Immutable. Embree's geometry ids are places in the list of members: which instances these are may change from snapshot to snapshot.
+// Immutable. Embree's geometry ids are places in the list of members: which instances these are may change from
+// snapshot to snapshot.
 struct GeometryGroup {
   EmbreeDevice device;
   uint64_t key = 0;  // of its input
@@ -60,8 +61,9 @@ struct GeometryGroup {
   ~GeometryGroup();
 };
 
-// key: the input's. known: mesh scenes that exist; those that are built are added. Throws Error CANCELLED or OUT_OF_MEMORY.
+// key: the input's. known: mesh scenes that exist; those that are built are added. Throws Error CANCELLED or
+// OUT_OF_MEMORY.
 std::shared_ptr<const GeometryGroup> build_group(const EmbreeDevice& device, const GroupInput& input, uint64_t key,
                                                  const BuildProgress& progress, MeshScenes* known);
 
-}  // namespace gradus
+}  // namespace gradus::geometry

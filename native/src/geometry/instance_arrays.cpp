@@ -6,7 +6,7 @@
 #include "base/hash.h"
 #include "geometry/matrix_keys.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 namespace {
 
@@ -95,4 +95,4 @@ void InstanceArrays::hash(ContentHash* hash) const {
   hash->array(shutter_matrices);
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

@@ -8,8 +8,10 @@
 #include "gradus/gradus.h"
 
 namespace gradus {
-
 class ContentHash;
+}  // namespace gradus
+
+namespace gradus::geometry {
 
 struct InstanceArrays {
   size_t count = 0;
@@ -39,4 +41,4 @@ struct InstanceArrays {
 // Throws Error INVALID_ARGUMENT.
 InstanceArrays copy_instances(const GradusInstances& desc);
 
-}  // namespace gradus
+}  // namespace gradus::geometry

@@ -7,15 +7,15 @@
 
 #include "base/error.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 namespace {
 
 // A chord of this turn leaves the circle by 3e-4 of its radius.
 constexpr double kLargestTurn = 0.05;
 
-// m = rotation · stretch, the rotation being nearest to m (Higham 1986: Newton's iteration for the polar decomposition). A mirrored matrix
-// has its sign in the stretch.
+// m = rotation · stretch, the rotation being nearest to m (Higham 1986: Newton's iteration for the polar
+// decomposition). A mirrored matrix has its sign in the stretch.
 struct Polar {
   glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
   glm::dmat3 stretch{1.0};
@@ -73,7 +73,8 @@ MatrixKeys::MatrixKeys(const std::vector<glm::dmat4>& keys) {
   const size_t parts = parts_between(keys);
   for (size_t i = 0; i + 1 < keys.size(); ++i) {
     keys_.emplace_back(keys[i]);
-    for (size_t k = 1; k < parts; ++k) keys_.emplace_back(interpolate_motion(keys[i], keys[i + 1], double(k) / double(parts)));
+    for (size_t k = 1; k < parts; ++k)
+      keys_.emplace_back(interpolate_motion(keys[i], keys[i + 1], double(k) / double(parts)));
   }
   keys_.emplace_back(keys.back());
 }
@@ -89,4 +90,4 @@ Mat4 MatrixKeys::at(float time) const {
   return keys_[place.before] * (1.0f - place.share) + keys_[place.before + 1] * place.share;
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

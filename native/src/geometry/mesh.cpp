@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "geometry/matrix_keys.h"
 #include "base/minimal_rotation.h"
+#include "geometry/matrix_keys.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 namespace {
 
@@ -34,7 +34,9 @@ Vec3 turned_with_vertex(const MeshData& mesh, uint32_t vertex, float time, const
 
 }  // namespace
 
-std::array<Vec3, 3> triangle_positions(const MeshData& mesh, uint32_t triangle) { return positions_of_key(mesh, triangle, mesh.frame_key); }
+std::array<Vec3, 3> triangle_positions(const MeshData& mesh, uint32_t triangle) {
+  return positions_of_key(mesh, triangle, mesh.frame_key);
+}
 
 MeshMoment mesh_moment(const MeshData& mesh, float time) {
   const auto& times = mesh.key_times;
@@ -107,4 +109,4 @@ Vec3 generated_at(const MeshData& mesh, uint32_t triangle, const Vec2& barycentr
   return (interpolate(p, barycentric) - mesh.generated_location) / (2.0f * mesh.generated_size) + 0.5f;
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

@@ -1,4 +1,5 @@
-// A triangle mesh in the layout that Blender hands over: values per vertex, per corner and per face, triangles by corners.
+// A triangle mesh in the layout that Blender hands over: values per vertex, per corner and per face, triangles by
+// corners.
 #pragma once
 
 #include <array>
@@ -9,7 +10,7 @@
 #include "base/types.h"
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 struct MeshAttribute {
   std::string name;
@@ -21,17 +22,18 @@ struct MeshAttribute {
 
 inline constexpr uint32_t kDroppedVertex = UINT32_MAX;
 
-// Immutable once made. Positions may hold NaN; triangles that use such vertices are dropped, so that no hit ever lies on one.
+// Immutable once made. Positions may hold NaN; triangles that use such vertices are dropped, so that no hit ever lies
+// on one.
 struct MeshData {
   std::string name;
   uint32_t vertex_count = 0;
   uint32_t triangle_count = 0;
-  std::vector<float> key_times;             // one per key, ascending
-  uint32_t frame_key = 0;                    // the key at time 0 (or nearest to it): what is rendered
-  std::vector<Vec3> positions;              // key after key, and one element of padding (Embree reads 16 bytes)
-  uint32_t shutter_keys = 0;                // evenly over the time that the shutter is open; 0: stands still then
-  std::vector<Vec3> shutter_positions;      // key after key, padded likewise
-  std::vector<Vec3> shutter_normals;        // smooth normals of the vertices: of the rest key, then of each of these keys
+  std::vector<float> key_times;         // one per key, ascending
+  uint32_t frame_key = 0;               // the key at time 0 (or nearest to it): what is rendered
+  std::vector<Vec3> positions;          // key after key, and one element of padding (Embree reads 16 bytes)
+  uint32_t shutter_keys = 0;            // evenly over the time that the shutter is open; 0: stands still then
+  std::vector<Vec3> shutter_positions;  // key after key, padded likewise
+  std::vector<Vec3> shutter_normals;    // smooth normals of the vertices: of the rest key, then of each of these keys
   std::vector<uint32_t> triangle_vertices;  // 3 per triangle; kDroppedVertex three times: dropped
   std::vector<uint32_t> triangle_corners;   // 3 per triangle
   std::vector<uint32_t> triangle_faces;     // empty: one face per triangle
@@ -51,7 +53,9 @@ struct MeshData {
   const Vec3* frame_positions() const { return positions.data() + size_t(frame_key) * vertex_count; }
   bool is_dropped(uint32_t triangle) const { return triangle_vertices[size_t(triangle) * 3] == kDroppedVertex; }
   uint32_t face(uint32_t triangle) const { return triangle_faces.empty() ? triangle : triangle_faces[triangle]; }
-  uint32_t material_slot(uint32_t triangle) const { return face_materials.empty() ? 0 : face_materials[face(triangle)]; }
+  uint32_t material_slot(uint32_t triangle) const {
+    return face_materials.empty() ? 0 : face_materials[face(triangle)];
+  }
 };
 
 // Elements of a domain of the mesh as given.
@@ -61,7 +65,8 @@ inline size_t domain_size(const GradusMesh& m, uint32_t domain) {
   return m.triangle_faces ? m.face_count : m.triangle_count;
 }
 
-// Copies and checks. Throws Error INVALID_ARGUMENT that names the mesh for counts and indices that contradict each other.
+// Copies and checks. Throws Error INVALID_ARGUMENT that names the mesh for counts and indices that contradict each
+// other.
 std::shared_ptr<const MeshData> make_mesh(const GradusMesh& desc);
 
 // barycentric: weights of the 2nd and 3rd corner, as in Hit.
@@ -89,9 +94,10 @@ bool triangle_normals_in_shutter(const MeshData& mesh, uint32_t triangle, float 
 // nullptr: there is none of that name (or, for the default UV map, none at all).
 const MeshAttribute* find_attribute(const MeshData& mesh, const std::string& name);
 const MeshAttribute* default_uv_map(const MeshData& mesh);
-// Values of an attribute at the corners of a triangle (face domain: three times the same). Channels that it lacks are 0, the fourth 1.
+// Values of an attribute at the corners of a triangle (face domain: three times the same). Channels that it lacks are
+// 0, the fourth 1.
 std::array<Vec4, 3> corner_values(const MeshData& mesh, const MeshAttribute& attribute, uint32_t triangle);
 // Generated texture coordinates, 0..1 over the texture space.
 Vec3 generated_at(const MeshData& mesh, uint32_t triangle, const Vec2& barycentric);
 
-}  // namespace gradus
+}  // namespace gradus::geometry

@@ -1,10 +1,10 @@
 #include "geometry/mesh_at.h"
 
 #include "base/hash.h"
-#include "geometry/smooth_normals.h"
 #include "base/minimal_rotation.h"
+#include "geometry/smooth_normals.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 namespace {
 
@@ -19,7 +19,8 @@ std::vector<Vec3> positions_at(const MeshData& mesh, float frames) {
 
 void turn_normals(const MeshData& from, MeshData* mesh) {
   if (mesh->normals.empty() || mesh->normal_domain == GRADUS_DOMAIN_FACE) return;
-  const std::vector<Vec3> rest = smooth_normals(from, from.frame_positions()), now = smooth_normals(*mesh, mesh->positions.data());
+  const std::vector<Vec3> rest = smooth_normals(from, from.frame_positions()),
+                          now = smooth_normals(*mesh, mesh->positions.data());
   const bool by_vertex = mesh->normal_domain == GRADUS_DOMAIN_POINT;
   std::vector<bool> done(mesh->normals.size());
   for (size_t i = 0; i < mesh->triangle_vertices.size(); ++i) {
@@ -52,7 +53,8 @@ std::shared_ptr<const MeshData> mesh_at(const MeshData& mesh, float frames) {
   moved->shutter_keys = 0;
   moved->shutter_positions.clear();
   moved->shutter_normals.clear();
-  if (moved->generated_points.empty()) moved->generated_points.assign(mesh.frame_positions(), mesh.frame_positions() + mesh.vertex_count);
+  if (moved->generated_points.empty())
+    moved->generated_points.assign(mesh.frame_positions(), mesh.frame_positions() + mesh.vertex_count);
   turn_normals(mesh, moved.get());
   find_bounds(moved.get());
   ContentHash hash;
@@ -62,4 +64,4 @@ std::shared_ptr<const MeshData> mesh_at(const MeshData& mesh, float frames) {
   return moved;
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

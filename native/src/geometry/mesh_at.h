@@ -5,10 +5,10 @@
 
 #include "geometry/mesh.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
-// The same triangles where they are `frames` after the frame rendered, resting there. Normals turn as the smooth normals of their vertices
-// do; what is painted on stays.
+// The same triangles where they are `frames` after the frame rendered, resting there. Normals turn as the smooth
+// normals of their vertices do; what is painted on stays.
 std::shared_ptr<const MeshData> mesh_at(const MeshData& mesh, float frames);
 
-}  // namespace gradus
+}  // namespace gradus::geometry

@@ -9,7 +9,7 @@
 #include "geometry/mesh.h"
 #include "geometry/smooth_normals.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 namespace {
 
@@ -32,13 +32,15 @@ class Check {
 };
 
 // A comparison instead of is_finite: rejects NaN, infinity and what no ray can reach.
-bool usable(const Vec3& p) { return std::fabs(p.x) < kMaxCoordinate && std::fabs(p.y) < kMaxCoordinate && std::fabs(p.z) < kMaxCoordinate; }
+bool usable(const Vec3& p) {
+  return std::fabs(p.x) < kMaxCoordinate && std::fabs(p.y) < kMaxCoordinate && std::fabs(p.z) < kMaxCoordinate;
+}
 
 void check_counts(const GradusMesh& m, const Check& check) {
   check.that(m.key_count >= 1 && m.key_count <= kMaxKeys, "number of time keys out of range");
-  check.that(
-      m.vertex_count < kMaxElements && m.corner_count < kMaxElements && m.triangle_count < kMaxElements && m.face_count < kMaxElements,
-      "too many elements");
+  check.that(m.vertex_count < kMaxElements && m.corner_count < kMaxElements && m.triangle_count < kMaxElements &&
+                 m.face_count < kMaxElements,
+             "too many elements");
   check.that(m.vertex_count * m.key_count < kMaxElements * 4, "too many time keys");
   check.that(m.vertex_count == 0 || m.positions, "positions missing");
   check_shutter_key_count("mesh '" + check.mesh() + "'", m.shutter_key_count);
@@ -100,7 +102,8 @@ void copy_triangles(const GradusMesh& m, const Check& check, MeshData* out) {
   if (!m.triangle_faces) return;
   out->triangle_faces.resize(m.triangle_count);
   for (size_t i = 0; i < m.triangle_count; ++i) {
-    check.that(m.triangle_faces[i] >= 0 && size_t(m.triangle_faces[i]) < m.face_count, "a triangle's face is out of range");
+    check.that(m.triangle_faces[i] >= 0 && size_t(m.triangle_faces[i]) < m.face_count,
+               "a triangle's face is out of range");
     out->triangle_faces[i] = uint32_t(m.triangle_faces[i]);
   }
 }
@@ -164,7 +167,8 @@ void copy_attributes(const GradusMesh& m, const Check& check, MeshData* out) {
   const std::string default_uv = m.default_uv ? m.default_uv : "";
   for (uint32_t i = 0; i < m.attribute_count; ++i) {
     const GradusAttribute& a = m.attributes[i];
-    check.that(a.domain <= GRADUS_DOMAIN_CORNER && a.channels >= 1 && a.channels <= 4, "an attribute has a wrong domain or channels");
+    check.that(a.domain <= GRADUS_DOMAIN_CORNER && a.channels >= 1 && a.channels <= 4,
+               "an attribute has a wrong domain or channels");
     const size_t count = domain_size(m, a.domain) * a.channels;
     check.that(count == 0 || a.data, "an attribute has no data");
     MeshAttribute copy{a.name ? a.name : "", GradusDomain(a.domain), a.channels, a.is_uv != 0, {}};
@@ -238,4 +242,4 @@ std::shared_ptr<const MeshData> make_mesh(const GradusMesh& desc) {
   return mesh;
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

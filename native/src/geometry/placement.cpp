@@ -1,6 +1,6 @@
 #include "geometry/placement.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 Placement make_placement(const glm::dmat4& m) {
   const glm::dmat3 inverse = glm::inverse(glm::dmat3(m));
@@ -12,4 +12,4 @@ Placement make_placement(const glm::dmat4& m) {
   return p;
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

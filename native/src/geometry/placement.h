@@ -3,7 +3,7 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 // Matrices lead to and from the snapshot's internal space (Snapshot::origin).
 struct Placement {
@@ -15,4 +15,4 @@ struct Placement {
 // m: affine, with an inverse.
 Placement make_placement(const glm::dmat4& m);
 
-}  // namespace gradus
+}  // namespace gradus::geometry

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gradus {
+namespace gradus::geometry {
 
 namespace {
 
@@ -13,8 +13,8 @@ float largest(const Vec3& v) { return std::max(std::fabs(v.x), std::max(std::fab
 constexpr float kSmallestSquare = 1e-30f, kLargestSquare = 1e30f;
 bool is_safe_square(float square) { return square > kSmallestSquare && square < kLargestSquare; }
 
-// The next ray's plane equation is computed from the corners relative to its origin: rounding grows with the size of the triangle,
-// and once more where two short edges are nearly parallel, because the normal comes from them.
+// The next ray's plane equation is computed from the corners relative to its origin: rounding grows with the size of
+// the triangle, and once more where two short edges are nearly parallel, because the normal comes from them.
 float plane_error(const Vec3 e[3], float squared_area) {
   const float a = glm::dot(e[0], e[0]), b = glm::dot(e[1], e[1]), c = glm::dot(e[2], e[2]);
   const float low = std::min(a, std::min(b, c)), high = std::max(a, std::max(b, c));
@@ -46,4 +46,4 @@ Plane plane_of(const std::array<Vec3, 3>& p) {
   return {normal, plane_error(e, square)};
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

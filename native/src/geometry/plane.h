@@ -6,7 +6,7 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 // gamma(n) = n·u / (1 - n·u), the bound of n rounded operations (Higham; pbrt-v4 section 6.8.1).
 constexpr float gamma_bound(int n) {
@@ -23,4 +23,4 @@ struct Plane {
 };
 Plane plane_of(const std::array<Vec3, 3>& corners);
 
-}  // namespace gradus
+}  // namespace gradus::geometry

@@ -6,7 +6,7 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 struct RayBox {
   Vec3 lower{kInfinity}, upper{-kInfinity};
@@ -24,7 +24,8 @@ struct RayBox {
 
   bool may_meet(const Vec3& origin, const Vec3& direction, float t_min, float t_max) const {
     for (int i = 0; i < 3; ++i) {
-      const float inverse = 1.0f / (std::fabs(direction[i]) < kTiny ? std::copysign(kTiny, direction[i]) : direction[i]);
+      const float inverse =
+          1.0f / (std::fabs(direction[i]) < kTiny ? std::copysign(kTiny, direction[i]) : direction[i]);
       const float a = (lower[i] - origin[i]) * inverse, b = (upper[i] - origin[i]) * inverse;
       t_min = std::max(t_min, std::min(a, b) * (1.0f - kRounding));
       t_max = std::min(t_max, std::max(a, b) * (1.0f + kRounding));
@@ -36,4 +37,4 @@ struct RayBox {
   static constexpr float kTiny = 1e-18f, kRounding = 1e-6f;
 };
 
-}  // namespace gradus
+}  // namespace gradus::geometry

@@ -2,7 +2,7 @@
 
 #include <immintrin.h>
 
-namespace gradus {
+namespace gradus::geometry {
 
 namespace {
 
@@ -20,7 +20,9 @@ Lanes step_away(const Lanes& v, const Lanes& up) {
   return up == 0.0f ? v : (Lanes)away;
 }
 
-Points4 gather(const SurfacePoint& p) { return {same(p.position), same(p.geometric_normal), same(p.error), p.hit.time}; }
+Points4 gather(const SurfacePoint& p) {
+  return {same(p.position), same(p.geometric_normal), same(p.error), p.hit.time};
+}
 
 }  // namespace
 
@@ -33,8 +35,8 @@ Lanes3 offset_origins(const Points4& points, const Lanes3& direction) {
 
 Points4 gather(const SurfacePoint& a, const SurfacePoint& b, const SurfacePoint& c, const SurfacePoint& d, float time) {
   return {lanes(a.position, b.position, c.position, d.position),
-          lanes(a.geometric_normal, b.geometric_normal, c.geometric_normal, d.geometric_normal), Lanes{a.error, b.error, c.error, d.error},
-          time};
+          lanes(a.geometric_normal, b.geometric_normal, c.geometric_normal, d.geometric_normal),
+          Lanes{a.error, b.error, c.error, d.error}, time};
 }
 
 Rays4 spawn_rays_to(const Points4& from, const Lanes3& direction, const SurfacePoint& to) {
@@ -48,4 +50,4 @@ Rays4 rays_between(const Lanes3& start, const Lanes3& end, const Lanes3& directi
   return {start, line * (1.0f / length), ahead ? length * (1.0f - 1e-6f) : same(-1.0f), time};
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

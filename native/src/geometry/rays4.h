@@ -3,7 +3,7 @@
 
 #include "geometry/surface.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 using Lanes = float __attribute__((vector_size(16)));
 
@@ -50,4 +50,4 @@ Lanes3 offset_origins(const Points4& points, const Lanes3& direction);
 // ray_between() of each, for ends that lie off their surfaces. direction: unit, from start towards end.
 Rays4 rays_between(const Lanes3& start, const Lanes3& end, const Lanes3& direction, float time);
 
-}  // namespace gradus
+}  // namespace gradus::geometry

@@ -3,12 +3,13 @@
 #include "geometry/mesh.h"
 #include "geometry/plane.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 namespace {
 
-// Height of the bulge over a facet at barycentrics w, for corners p and their unit normals n, all seen from the outside of the bulge. Half
-// of a parabola through the corners, or the envelope of their tangent planes where that is higher; 0 where the surface is hollow.
+// Height of the bulge over a facet at barycentrics w, for corners p and their unit normals n, all seen from the outside
+// of the bulge. Half of a parabola through the corners, or the envelope of their tangent planes where that is higher; 0
+// where the surface is hollow.
 float bulge(const std::array<Vec3, 3>& p, const std::array<Vec3, 3>& n, const Vec3& w) {
   const Vec3 point = p[0] * w.x + p[1] * w.y + p[2] * w.z;
   const auto bend = [&](int i, int j) { return glm::dot(n[j] - n[i], p[j] - p[i]); };
@@ -39,11 +40,11 @@ Vec3 shadow_origin(const Geometry& geometry, const SurfacePoint& point, const Ve
   const float side = std::copysign(1.0f, glm::dot(smooth, outside));
   for (Vec3& n : normals) n = side * safe_unit(n, Vec3(0.0f));
   const Vec2 b = point.hit.barycentric;
-  const float height = share * bulge(triangle_positions_in_shutter(*instance.mesh, point.hit.triangle, point.hit.time), normals,
-                                     Vec3(1.0f - b.x - b.y, b.x, b.y));
+  const float height = share * bulge(triangle_positions_in_shutter(*instance.mesh, point.hit.triangle, point.hit.time),
+                                     normals, Vec3(1.0f - b.x - b.y, b.x, b.y));
   SurfacePoint lifted = point;
   if (height < kInfinity) lifted.position += Mat3(placement.to_world) * (height * interpolate(normals, b));
   return offset_origin(lifted, outside);
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace gradus {
+namespace gradus::geometry {
 
 std::vector<Vec3> smooth_normals(const MeshData& mesh, const Vec3* p) {
   std::vector<Vec3> normals(mesh.vertex_count, Vec3(0.0f));
@@ -24,4 +24,4 @@ std::vector<Vec3> smooth_normals(const MeshData& mesh, const Vec3* p) {
   return normals;
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

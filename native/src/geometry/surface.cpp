@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "geometry/flat_triangle.h"
-#include "geometry/mesh.h"
 #include "geometry/geometry.h"
+#include "geometry/mesh.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 namespace {
 
@@ -24,7 +24,8 @@ void set_shading_normal(const InstanceData& instance, const Placement& placement
   const bool smooth = triangle_normals_in_shutter(*instance.mesh, hit.triangle, hit.time, &n);
   const Vec3& geometric = point->geometric_normal;
   point->shading_normal =
-      smooth ? keep_above(safe_unit(placement.normal_to_world * interpolate(n, hit.barycentric), geometric), geometric) : geometric;
+      smooth ? keep_above(safe_unit(placement.normal_to_world * interpolate(n, hit.barycentric), geometric), geometric)
+             : geometric;
   point->shadow_terminator_offset = smooth ? instance.shadow_terminator_offset : 0.0f;
 }
 
@@ -48,11 +49,12 @@ void place_instanced(const InstanceData& instance, const Placement& placement, c
   const std::array<Vec3, 3> p = triangle_positions_in_shutter(*instance.mesh, hit.triangle, hit.time);
   const Plane plane = plane_of(p);
   const Vec3 local = interpolate(p, hit.barycentric);
-  const Vec3 local_size = interpolate(std::array<Vec3, 3>{glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])}, hit.barycentric);
+  const Vec3 local_size =
+      interpolate(std::array<Vec3, 3>{glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])}, hit.barycentric);
   point->position = Vec3(placement.to_world * Vec4(local, 1.0f));
   point->geometric_normal = safe_unit(placement.normal_to_world * plane.normal, Vec3(0, 0, 1));
-  // There: corners, sum, matrix. And back: Embree takes the next ray into the mesh's space, with rounding of its own there. What moves is
-  // interpolated between its keys, here and there.
+  // There: corners, sum, matrix. And back: Embree takes the next ray into the mesh's space, with rounding of its own
+  // there. What moves is interpolated between its keys, here and there.
   const int roundings = instance.moves() ? 16 : 8;
   const Mat4 linear(placement.to_world[0], placement.to_world[1], placement.to_world[2], Vec4(0.0f));
   const Vec3 back = magnitudes(placement.to_local, glm::abs(point->position));
@@ -90,7 +92,8 @@ const Placement& InstanceData::placement(float time, Placement* room) const {
 uint32_t Geometry::material_of(uint32_t index, uint32_t triangle) const {
   const InstanceData& instance = instances[index];
   const bool flat = instance.flat_triangles != nullptr;
-  return material_of_slot(instance, flat ? instance.flat_triangles[triangle].slot : instance.mesh->material_slot(triangle));
+  return material_of_slot(instance,
+                          flat ? instance.flat_triangles[triangle].slot : instance.mesh->material_slot(triangle));
 }
 
 void Geometry::place(const Hit& hit, SurfacePoint* point) const {
@@ -102,7 +105,8 @@ void Geometry::place(const Hit& hit, SurfacePoint* point) const {
 }
 
 void Geometry::prefetch(const Hit& hit) const {
-  if (hit.valid() && instances[hit.instance].flat_triangles) __builtin_prefetch(&instances[hit.instance].flat_triangles[hit.triangle]);
+  if (hit.valid() && instances[hit.instance].flat_triangles)
+    __builtin_prefetch(&instances[hit.instance].flat_triangles[hit.triangle]);
 }
 
 SurfacePoint Geometry::surface_point(const Hit& hit) const {
@@ -143,13 +147,15 @@ Vec3 Geometry::position_at(const Hit& hit, Moment when) const {
                          : when == Moment::Next ? instance.to_world_next
                                                 : instance.to_world_previous;
   // At rest the very same position, so that its motion is exactly zero.
-  if (instance.mesh->key_times.size() == 1 && to_world == instance.to_world && !instance.moves()) return surface_point(hit).position;
+  if (instance.mesh->key_times.size() == 1 && to_world == instance.to_world && !instance.moves())
+    return surface_point(hit).position;
   const float frames = when == Moment::Now ? 0.0f : when == Moment::Next ? 1.0f : -1.0f;
   const Vec3 local = interpolate(triangle_positions_at(*instance.mesh, hit.triangle, frames), hit.barycentric);
   return Vec3(to_world * Vec4(local, 1.0f));
 }
 
-// pbrt-v4 section 6.8.6: along the geometric normal by the bound, then one float further so that rounding the sum cannot undo it.
+// pbrt-v4 section 6.8.6: along the geometric normal by the bound, then one float further so that rounding the sum
+// cannot undo it.
 Vec3 offset_origin(const SurfacePoint& point, const Vec3& direction) {
   const Vec3 n = point.geometric_normal;
   const Vec3 offset = n * std::copysign(point.error, glm::dot(n, direction));
@@ -173,4 +179,4 @@ Ray ray_between(const Vec3& start, const Vec3& end, const Vec3& direction, float
   return Ray{start, 0.0f, line / length, length * (1.0f - 1e-6f), time};
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

@@ -11,7 +11,7 @@
 
 #include "base/fpu.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 namespace {
 
@@ -68,7 +68,8 @@ void add_corners(const MeshData& mesh, const MeshAttribute& uv, uint32_t triangl
 }
 
 std::vector<Corner> corners_of(const MeshData& mesh, const MeshAttribute& uv) {
-  std::vector<Corner> corners(size_t(mesh.triangle_count) * 3, Corner{kDroppedVertex, Vec3(0.0f), Vec2(0.0f), 0.0f, Vec4(0.0f)});
+  std::vector<Corner> corners(size_t(mesh.triangle_count) * 3,
+                              Corner{kDroppedVertex, Vec3(0.0f), Vec2(0.0f), 0.0f, Vec4(0.0f)});
   tbb::parallel_for(uint32_t(0), mesh.triangle_count, [&](uint32_t triangle) {
     const FlushDenormals flush;
     if (!mesh.is_dropped(triangle)) add_corners(mesh, uv, triangle, &corners[size_t(triangle) * 3]);
@@ -76,7 +77,8 @@ std::vector<Corner> corners_of(const MeshData& mesh, const MeshAttribute& uv) {
   return corners;
 }
 
-// Indices of the corners, those that share a tangent one after another. By index among equals, so that sums have the same bits anywhere.
+// Indices of the corners, those that share a tangent one after another. By index among equals, so that sums have the
+// same bits anywhere.
 std::vector<uint32_t> grouped(const std::vector<Corner>& corners, uint32_t vertex_count) {
   std::vector<uint32_t> first(size_t(vertex_count) + 1, 0);
   for (const Corner& c : corners)
@@ -86,8 +88,9 @@ std::vector<uint32_t> grouped(const std::vector<Corner>& corners, uint32_t verte
   for (uint32_t i = 0; i < corners.size(); ++i)
     if (corners[i].vertex != kDroppedVertex) order[next[corners[i].vertex]++] = i;
   tbb::parallel_for(uint32_t(0), vertex_count, [&](uint32_t v) {
-    std::sort(order.begin() + first[v], order.begin() + first[v + 1],
-              [&](uint32_t a, uint32_t b) { return std::tuple(corners[a].key(), a) < std::tuple(corners[b].key(), b); });
+    std::sort(order.begin() + first[v], order.begin() + first[v + 1], [&](uint32_t a, uint32_t b) {
+      return std::tuple(corners[a].key(), a) < std::tuple(corners[b].key(), b);
+    });
   });
   return order;
 }
@@ -99,7 +102,8 @@ std::array<Vec4, 3> TangentField::corners(uint32_t triangle) const {
   return {tangents[i[0]], tangents[i[1]], tangents[i[2]]};
 }
 
-std::shared_ptr<const TangentField> make_tangents(const std::shared_ptr<const MeshData>& mesh, const MeshAttribute& uv) {
+std::shared_ptr<const TangentField> make_tangents(const std::shared_ptr<const MeshData>& mesh,
+                                                  const MeshAttribute& uv) {
   const std::vector<Corner> corners = corners_of(*mesh, uv);
   auto field = std::make_shared<TangentField>();
   field->mesh = mesh;
@@ -119,4 +123,4 @@ std::shared_ptr<const TangentField> make_tangents(const std::shared_ptr<const Me
   return field;
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

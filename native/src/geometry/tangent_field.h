@@ -7,11 +7,11 @@
 
 #include "geometry/mesh.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
-// At each vertex the mean of the triangles' directions of increasing u, weighed by their angles there; apart for corners that differ in
-// normal or UV coordinates or see the map from its other side. Source: M. Mikkelsen, Simulation of Wrinkled Surfaces Revisited (2008),
-// 3.3, whose convention (MikkTSpace) Blender, Cycles and bakers share.
+// At each vertex the mean of the triangles' directions of increasing u, weighed by their angles there; apart for
+// corners that differ in normal or UV coordinates or see the map from its other side. Source: M. Mikkelsen, Simulation
+// of Wrinkled Surfaces Revisited (2008), 3.3, whose convention (MikkTSpace) Blender, Cycles and bakers share.
 struct TangentField {
   const MeshAttribute* uv = nullptr;      // of the mesh it was made for
   std::shared_ptr<const MeshData> mesh;   // keeps it alive
@@ -23,4 +23,4 @@ struct TangentField {
 
 std::shared_ptr<const TangentField> make_tangents(const std::shared_ptr<const MeshData>& mesh, const MeshAttribute& uv);
 
-}  // namespace gradus
+}  // namespace gradus::geometry

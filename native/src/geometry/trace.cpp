@@ -1,21 +1,22 @@
-// Ray queries of a snapshot. Embree's internal assertions abort on rays that are not finite, and NaN makes traversal slow: such rays
-// are misses and never reach it.
+// Ray queries of a snapshot. Embree's internal assertions abort on rays that are not finite, and NaN makes traversal
+// slow: such rays are misses and never reach it.
 #include <algorithm>
 #include <cstring>
 
 #include <embree3/rtcore.h>
 
 #include "geometry/accelerator.h"
-#include "geometry/rays4.h"
 #include "geometry/geometry.h"
+#include "geometry/rays4.h"
 
-namespace gradus {
+namespace gradus::geometry {
 
 namespace {
 
 // A segment that can meet anything: comparisons are false for NaN.
 bool traceable(const Ray& ray) {
-  const float sum = ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z;
+  const float sum =
+      ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z;
   return is_finite(ray.origin) && sum > 0.0f && is_finite(sum) && ray.t_min < kInfinity && ray.t_min <= ray.t_max;
 }
 
@@ -57,14 +58,15 @@ void set_lane(const Ray& ray, uint32_t mask, int i, Packet* r) {
   r->flags[i] = 0;
 }
 
-// A triangle in the top level carries the member's place as its geometry id; within an instanced mesh scene that id is 0.
+// A triangle in the top level carries the member's place as its geometry id; within an instanced mesh scene that id is
+// 0.
 uint32_t instance_of(const Accelerator::Part& part, unsigned instance_id, unsigned geometry_id) {
   return part.instances[instance_id != RTC_INVALID_GEOMETRY_ID ? instance_id : geometry_id];
 }
 
 bool may_meet_moving(const Accelerator& accelerator, const RTCRay& r) {
-  return accelerator.moving.group &&
-         accelerator.moving.group->box.may_meet({r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tnear, r.tfar);
+  return accelerator.moving.group && accelerator.moving.group->box.may_meet(
+                                         {r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tnear, r.tfar);
 }
 
 bool blocked_by(const Accelerator& accelerator, const Ray& ray, uint32_t mask) {
@@ -84,7 +86,8 @@ bool mask_lanes_that_meet_moving(const Accelerator& accelerator, const RTCRay4& 
   const RayBox& box = accelerator.moving.group->box;
   bool any = false;
   for (int i = 0; i < 4; ++i) {
-    if (valid[i] && !box.may_meet({r.org_x[i], r.org_y[i], r.org_z[i]}, {r.dir_x[i], r.dir_y[i], r.dir_z[i]}, r.tnear[i], r.tfar[i]))
+    if (valid[i] && !box.may_meet({r.org_x[i], r.org_y[i], r.org_z[i]}, {r.dir_x[i], r.dir_y[i], r.dir_z[i]},
+                                  r.tnear[i], r.tfar[i]))
       valid[i] = 0;
     any |= valid[i] != 0;
   }
@@ -121,7 +124,9 @@ bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask
   return hit->valid();
 }
 
-bool trace_any(const Accelerator& accelerator, const Ray& ray, uint32_t mask) { return blocked_by(accelerator, ray, mask); }
+bool trace_any(const Accelerator& accelerator, const Ray& ray, uint32_t mask) {
+  return blocked_by(accelerator, ray, mask);
+}
 
 bool Geometry::intersect(const Ray& ray, uint32_t visibility, Hit* hit) const {
   return trace_nearest(*accelerator, ray, visibility & kMaskVisibility, hit);
@@ -129,7 +134,9 @@ bool Geometry::intersect(const Ray& ray, uint32_t visibility, Hit* hit) const {
 
 bool Geometry::occluded(const Ray& ray) const { return blocked_by(*accelerator, ray, GRADUS_VISIBLE_SHADOW); }
 
-bool Geometry::meets(const Ray& ray, uint32_t visibility) const { return blocked_by(*accelerator, ray, visibility & kMaskVisibility); }
+bool Geometry::meets(const Ray& ray, uint32_t visibility) const {
+  return blocked_by(*accelerator, ray, visibility & kMaskVisibility);
+}
 
 void Geometry::intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) const {
   alignas(16) int valid[4];
@@ -138,7 +145,8 @@ void Geometry::intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) c
     hits[i] = Hit();
     const bool trace = traceable(rays[i]);
     valid[i] = trace ? -1 : 0;
-    set_lane(trace ? rays[i] : Ray{Vec3(0.0f), 0.0f, Vec3(0, 0, 1), -1.0f}, visibility & kMaskVisibility, i, &query.ray);
+    set_lane(trace ? rays[i] : Ray{Vec3(0.0f), 0.0f, Vec3(0, 0, 1), -1.0f}, visibility & kMaskVisibility, i,
+             &query.ray);
   }
   const auto take = [&](const Accelerator::Part& part) {
     std::fill_n(query.hit.geomID, 4, RTC_INVALID_GEOMETRY_ID);
@@ -185,8 +193,9 @@ void Geometry::occluded4(const Rays4& rays, const bool wanted[4], bool blocked[4
   alignas(16) int lanes[4];
   std::memcpy(lanes, &valid, sizeof(lanes));
   rtcOccluded4(lanes, accelerator->static_part.group->scene, &context, &query);
-  if (mask_lanes_that_meet_moving(*accelerator, query, lanes)) rtcOccluded4(lanes, accelerator->moving.group->scene, &context, &query);
+  if (mask_lanes_that_meet_moving(*accelerator, query, lanes))
+    rtcOccluded4(lanes, accelerator->moving.group->scene, &context, &query);
   for (int i = 0; i < 4; ++i) blocked[i] = valid[i] != 0 && query.tfar[i] < 0.0f;
 }
 
-}  // namespace gradus
+}  // namespace gradus::geometry

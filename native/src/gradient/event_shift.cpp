@@ -1,6 +1,6 @@
 #include "gradient/event_shift.h"
 
-namespace gradus {
+namespace gradus::gradient {
 
 namespace {
 
@@ -10,12 +10,13 @@ ShiftedEvent failed(ShiftFailure failure) {
   return event;
 }
 
-bool is_transmission(const Vertex& vertex, const Vec3& wi) { return glm::dot(vertex.facing_normal(), wi) < 0.0f; }
+bool is_transmission(const path::Vertex& vertex, const Vec3& wi) { return glm::dot(vertex.facing_normal(), wi) < 0.0f; }
 
-ShiftedEvent weigh(const ScatterEvent& event, const Vec3& wi, const Rgb& value, float pdf, float jacobian) {
+ShiftedEvent weigh(const path::ScatterEvent& event, const Vec3& wi, const Rgb& value, float pdf, float jacobian) {
   ShiftedEvent shifted;
   if (!(pdf > 0.0f) || is_black(value)) {
-    return failed(ShiftFailure::Density);  // the offset's sampler cannot make this event: nor can the shift back start from it
+    return failed(
+        ShiftFailure::Density);  // the offset's sampler cannot make this event: nor can the shift back start from it
   }
   shifted.wi = wi;
   shifted.pdf = pdf;
@@ -27,10 +28,10 @@ ShiftedEvent weigh(const ScatterEvent& event, const Vec3& wi, const Rgb& value, 
   return shifted;
 }
 
-ShiftedEvent copy_dirac(const ScatterEvent& event, const Vertex& y) {
-  const Closures& closures = y.shade.closures;
-  const int lobe = dirac_lobe(closures, event.scatter_class, event.dirac_rank);
-  BsdfSample sample;
+ShiftedEvent copy_dirac(const path::ScatterEvent& event, const path::Vertex& y) {
+  const bsdf::Closures& closures = y.shade.closures;
+  const int lobe = bsdf::dirac_lobe(closures, event.scatter_class, event.dirac_rank);
+  bsdf::BsdfSample sample;
   if (lobe < 0) {
     return failed(ShiftFailure::Class);
   }
@@ -41,7 +42,7 @@ ShiftedEvent copy_dirac(const ScatterEvent& event, const Vertex& y) {
 }
 
 // The side and the kind of the bounce (diffuse or not) are part of the path.
-ShiftFailure compare(const BsdfSample& x, const BsdfSample& y) {
+ShiftFailure compare(const bsdf::BsdfSample& x, const bsdf::BsdfSample& y) {
   if (x.dirac != y.dirac || x.diffuse != y.diffuse) {
     return ShiftFailure::Class;
   }
@@ -50,13 +51,13 @@ ShiftFailure compare(const BsdfSample& x, const BsdfSample& y) {
 
 }  // namespace
 
-ShiftedEvent event_towards(const ScatterEvent& event, const Vertex& y, const Vec3& wi, float jacobian) {
-  const Closures& closures = y.shade.closures;
+ShiftedEvent event_towards(const path::ScatterEvent& event, const path::Vertex& y, const Vec3& wi, float jacobian) {
+  const bsdf::Closures& closures = y.shade.closures;
   const float probability = closures.class_probability(event.scatter_class);
   if (!(probability > 0.0f) || !closures.has_smooth(event.scatter_class)) {
     return failed(ShiftFailure::Class);
   }
-  const KindEval eval = closures.evaluate(event.scatter_class, y.wo, wi, event.sample.diffuse);
+  const bsdf::KindEval eval = closures.evaluate(event.scatter_class, y.wo, wi, event.sample.diffuse);
   // A kind is diffuse or not, reflected or transmitted; the latter follows from the direction.
   const bool same_side = is_transmission(y, wi) == event.sample.transmitted;
   const float share = same_side && eval.all.pdf > 0.0f ? eval.kind.pdf / eval.all.pdf : 0.0f;
@@ -73,7 +74,7 @@ ShiftedEvent event_towards(const ScatterEvent& event, const Vertex& y, const Vec
   return shifted;
 }
 
-ShiftedEvent copy_event(const Vertex& x, const ScatterEvent& event, const Vertex& y) {
+ShiftedEvent copy_event(const path::Vertex& x, const path::ScatterEvent& event, const path::Vertex& y) {
   if (!(y.shade.closures.class_probability(event.scatter_class) > 0.0f)) {
     return failed(ShiftFailure::Class);
   }
@@ -83,9 +84,10 @@ ShiftedEvent copy_event(const Vertex& x, const ScatterEvent& event, const Vertex
   if (!y.shade.closures.has_smooth(event.scatter_class)) {
     return failed(ShiftFailure::Class);
   }
-  const bool transmitted = event.scatter_class == ScatterClass::Transmission;
-  const ShiftedDirection direction = copy_half_vector(class_frame(x.shade.closures, event.scatter_class, x.wo), event.sample.wi,
-                                                      class_frame(y.shade.closures, event.scatter_class, y.wo), transmitted);
+  const bool transmitted = event.scatter_class == bsdf::ScatterClass::Transmission;
+  const ShiftedDirection direction =
+      copy_half_vector(class_frame(x.shade.closures, event.scatter_class, x.wo), event.sample.wi,
+                       class_frame(y.shade.closures, event.scatter_class, y.wo), transmitted);
   if (direction.failure != ShiftFailure::None) {
     return failed(direction.failure);
   }
@@ -95,10 +97,11 @@ ShiftedEvent copy_event(const Vertex& x, const ScatterEvent& event, const Vertex
   return event_towards(event, y, direction.wi, direction.jacobian);
 }
 
-ShiftedEvent replay_event(const Vertex& x, const ScatterEvent& event, const VertexSample& u, const Vertex& y) {
-  const ScatterClass c = event.scatter_class;
+ShiftedEvent replay_event(const path::Vertex& x, const path::ScatterEvent& event, const path::VertexSample& u,
+                          const path::Vertex& y) {
+  const bsdf::ScatterClass c = event.scatter_class;
   const float probability = y.shade.closures.class_probability(c);
-  BsdfSample sample;
+  bsdf::BsdfSample sample;
   if (!(probability > 0.0f)) {
     return failed(ShiftFailure::Class);
   }
@@ -109,11 +112,11 @@ ShiftedEvent replay_event(const Vertex& x, const ScatterEvent& event, const Vert
   if (failure != ShiftFailure::None) {
     return failed(failure);
   }
-  const BsdfEval of_kind = event.by_kind ? sample.kind : BsdfEval{sample.value, sample.pdf};
+  const bsdf::BsdfEval of_kind = event.by_kind ? sample.kind : bsdf::BsdfEval{sample.value, sample.pdf};
   ShiftedEvent shifted = weigh(event, sample.wi, of_kind.value, probability * of_kind.pdf, 1.0f);
   shifted.pdf = probability * sample.pdf;
   shifted.ratio = probability / x.shade.closures.class_probability(c);
   return shifted;
 }
 
-}  // namespace gradus
+}  // namespace gradus::gradient

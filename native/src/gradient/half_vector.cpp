@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gradus {
+namespace gradus::gradient {
 
 namespace {
 
@@ -22,7 +22,8 @@ ShiftedDirection copy_reflection(const HalfVectorFrame& base, const Vec3& wi, co
   }
   const Vec3 h = sum / length;
   const Vec3 shifted = rotate_between(base.normal, offset.normal, h);
-  // h halves the angle between unit vectors. Its dot product with wi has the error of h, which at grazing angles is large.
+  // h halves the angle between unit vectors. Its dot product with wi has the error of h, which at grazing angles is
+  // large.
   const float cos_base = 0.5f * length;
   const float cos_shifted = glm::dot(shifted, offset.wo);
   if (!(cos_shifted > 0.0f)) {
@@ -48,8 +49,8 @@ ShiftedDirection copy_refraction(const HalfVectorFrame& base, const Vec3& wi, co
   if (std::fabs(base.eta - 1.0f) < kMinBend || std::fabs(offset.eta - 1.0f) < kMinBend) {
     return failed(ShiftFailure::Jacobian);
   }
-  // H points to the side of the denser medium, while the frames' normals lie on the side of wo on both vertices: a pair that passes from
-  // thin to dense on one path and from dense to thin on the other cannot share a half-vector.
+  // H points to the side of the denser medium, while the frames' normals lie on the side of wo on both vertices: a pair
+  // that passes from thin to dense on one path and from dense to thin on the other cannot share a half-vector.
   if ((base.eta > 1.0f) != (offset.eta > 1.0f)) {
     return failed(ShiftFailure::Side);
   }
@@ -72,7 +73,8 @@ ShiftedDirection copy_refraction(const HalfVectorFrame& base, const Vec3& wi, co
   }
   const float length_shifted = glm::length(offset.wo + offset.eta * result.wi);
   const float inverse_base = base.eta * base.eta * std::fabs(glm::dot(wi, h)) / (length * length);
-  const float inverse_shifted = offset.eta * offset.eta * std::fabs(glm::dot(result.wi, shifted)) / (length_shifted * length_shifted);
+  const float inverse_shifted =
+      offset.eta * offset.eta * std::fabs(glm::dot(result.wi, shifted)) / (length_shifted * length_shifted);
   result.jacobian = inverse_base / inverse_shifted;
   return result;
 }
@@ -92,7 +94,8 @@ Vec3 rotate_between(const Vec3& from, const Vec3& to, const Vec3& v) {
   return c * v + glm::cross(axis, v) + axis * (glm::dot(axis, v) / (1.0f + c));
 }
 
-ShiftedDirection copy_half_vector(const HalfVectorFrame& base, const Vec3& wi, const HalfVectorFrame& offset, bool transmitted) {
+ShiftedDirection copy_half_vector(const HalfVectorFrame& base, const Vec3& wi, const HalfVectorFrame& offset,
+                                  bool transmitted) {
   ShiftedDirection result = transmitted ? copy_refraction(base, wi, offset) : copy_reflection(base, wi, offset);
   if (result.failure == ShiftFailure::None && !(result.jacobian > 0.0f && is_finite(result.jacobian))) {
     return failed(ShiftFailure::Jacobian);
@@ -100,25 +103,25 @@ ShiftedDirection copy_half_vector(const HalfVectorFrame& base, const Vec3& wi, c
   return result;
 }
 
-float class_width(const Closures& closures, ScatterClass c) {
+float class_width(const bsdf::Closures& closures, bsdf::ScatterClass c) {
   float width = kInfinity;
   for (int i = 0; i < closures.count(); ++i) {
-    const Lobe& lobe = closures.lobe(i);
-    if (!is_dirac(lobe.type) && scatters_within(lobe, c)) {
+    const bsdf::Lobe& lobe = closures.lobe(i);
+    if (!bsdf::is_dirac(lobe.type) && bsdf::scatters_within(lobe, c)) {
       width = std::min({width, lobe.alpha_x, lobe.alpha_y});
     }
   }
   return width;
 }
 
-HalfVectorFrame class_frame(const Closures& closures, ScatterClass c, const Vec3& wo) {
+HalfVectorFrame class_frame(const bsdf::Closures& closures, bsdf::ScatterClass c, const Vec3& wo) {
   for (int i = 0; i < closures.count(); ++i) {
-    const Lobe& lobe = closures.lobe(i);
-    if (!is_dirac(lobe.type) && scatters_within(lobe, c)) {
+    const bsdf::Lobe& lobe = closures.lobe(i);
+    if (!bsdf::is_dirac(lobe.type) && bsdf::scatters_within(lobe, c)) {
       return {wo, lobe.normal, lobe.ior};
     }
   }
   return {wo, Vec3(0, 0, 1), 1.0f};
 }
 
-}  // namespace gradus
+}  // namespace gradus::gradient

@@ -1,31 +1,32 @@
 // Light samples of the base, for its offsets. The weights are explained in offset_emission.cpp.
-#include "gradient/offset_paths.h"
 #include "geometry/shadow_terminator.h"
+#include "gradient/offset_paths.h"
 #include "light/emitter_rays4.h"
 
-namespace gradus {
+namespace gradus::gradient {
 
 namespace {
 
 // A point of the world shines from the same direction, with the same radiance, wherever one looks from.
-LightEvaluation view_from(const PathContext& context, const LightSample& sample, const Vertex& vertex) {
-  if (sample.point.kind != LightKind::World) {
-    return evaluate_light(context.scene, sample.point, receiver_of(vertex));
+light::LightEvaluation view_from(const path::PathContext& context, const path::LightSample& sample,
+                                 const path::Vertex& vertex) {
+  if (sample.point.kind != light::LightKind::World) {
+    return light::evaluate_light(context.scene, sample.point, path::receiver_of(vertex));
   }
-  LightEvaluation view = sample.view;
-  view.pdf = light_point_pdf(context.scene, sample.point, receiver_of(vertex));
+  light::LightEvaluation view = sample.view;
+  view.pdf = light::light_point_pdf(context.scene, sample.point, path::receiver_of(vertex));
   return view;
 }
 
 }  // namespace
 
-// The copied emitter point as seen from the offsets that stand at vertices of their own; shadow rays together, and none where nothing would
-// be scattered.
-void OffsetPaths::light_all(const LightSample& sample, ScatterClass scatter_class) {
-  bool wanted[kOffsets];
-  bool blocked[kOffsets] = {};
+// The copied emitter point as seen from the offsets that stand at vertices of their own; shadow rays together, and none
+// where nothing would be scattered.
+void OffsetPaths::light_all(const path::LightSample& sample, bsdf::ScatterClass scatter_class) {
+  bool wanted[film::kOffsets];
+  bool blocked[film::kOffsets] = {};
   bool any = false;
-  for (int k = 0; k < kOffsets; ++k) {
+  for (int k = 0; k < film::kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     OffsetLightSample& light = o.light;
     wanted[k] = false;
@@ -37,7 +38,8 @@ void OffsetPaths::light_all(const LightSample& sample, ScatterClass scatter_clas
       light.known = true;
       light.view = view_from(context_, sample, *o.here);
     }
-    light.lit = light_class(context_, *o.here, scatter_class, LightSample{sample.point, light.view}, base_state_.ray.state);
+    light.lit = path::light_class(context_, *o.here, scatter_class, path::LightSample{sample.point, light.view},
+                                  base_state_.ray.state);
     wanted[k] = !light.traced && !is_black(light.lit.value);
     if (wanted[k]) {
       light.traced = true;
@@ -47,41 +49,44 @@ void OffsetPaths::light_all(const LightSample& sample, ScatterClass scatter_clas
   }
   const bool packet = !context_.scene.features.has_transparent_shadows && sample.view.casts_shadow;
   if (any && packet) {
-    const LightEvaluation& a = offsets_[0].light.view;
-    const LightEvaluation& b = offsets_[1].light.view;
-    const LightEvaluation& c = offsets_[2].light.view;
-    const LightEvaluation& d = offsets_[3].light.view;
-    const Lanes3 direction = lanes(a.direction, b.direction, c.direction, d.direction);
-    const Lanes distance{a.distance, b.distance, c.distance, d.distance};
-    const Points4 points = offset_points();
-    Lanes3 start = offset_origins(points, direction);
-    for (int k = 0; k < kOffsets; ++k) {
+    const light::LightEvaluation& a = offsets_[0].light.view;
+    const light::LightEvaluation& b = offsets_[1].light.view;
+    const light::LightEvaluation& c = offsets_[2].light.view;
+    const light::LightEvaluation& d = offsets_[3].light.view;
+    const geometry::Lanes3 direction = geometry::lanes(a.direction, b.direction, c.direction, d.direction);
+    const reconstruct::Lanes distance{a.distance, b.distance, c.distance, d.distance};
+    const geometry::Points4 points = offset_points();
+    geometry::Lanes3 start = geometry::offset_origins(points, direction);
+    for (int k = 0; k < film::kOffsets; ++k) {
       const OffsetPath& o = offsets_[k];
-      if (wanted[k] && !leaves_facet(o.here->point, o.light.view.direction))
-        set_lane(k, shadow_origin(context_.scene, o.here->point, o.light.view.direction), &start);
+      if (wanted[k] && !geometry::leaves_facet(o.here->point, o.light.view.direction))
+        geometry::set_lane(k, geometry::shadow_origin(context_.scene, o.here->point, o.light.view.direction), &start);
     }
-    context_.scene.occluded4(rays_to_light(start, points, direction, distance, sample.point), wanted, blocked);
+    context_.scene.occluded4(light::rays_to_light(start, points, direction, distance, sample.point), wanted, blocked);
   }
-  for (int k = 0; k < kOffsets; ++k) {
+  for (int k = 0; k < film::kOffsets; ++k) {
     if (wanted[k]) {
       OffsetPath& o = offsets_[k];
-      o.light.transmittance =
-          packet ? Rgb(blocked[k] ? 0.0f : 1.0f)
-                 : light_transmittance(context_, o.here->point, sample.point, o.light.view, o.state.ray.state.transparent_depth);
+      o.light.transmittance = packet ? Rgb(blocked[k] ? 0.0f : 1.0f)
+                                     : path::light_transmittance(context_, o.here->point, sample.point, o.light.view,
+                                                                 o.state.ray.state.transparent_depth);
     }
   }
 }
 
-void OffsetPaths::light_decoupled_vertex(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
+void OffsetPaths::light_decoupled_vertex(int k, const path::Vertex& vertex, const path::LightSample& sample,
+                                         bsdf::ScatterClass scatter_class, const path::Contribution& c) {
   OffsetPath& o = offsets_[k];
-  const LightEvaluation& view = o.light.view;
-  const LitClass& lit = o.light.lit;
+  const light::LightEvaluation& view = o.light.view;
+  const path::LitClass& lit = o.light.lit;
   const bool all = joint(view, o) && reconnects(scatter_class) && sample.point.found_by_rays &&
                    both_leave_facets(vertex, sample.view.direction, o, view.direction);
   const float pdf = all ? view.pdf + lit.pdf_bsdf : view.pdf;
   const float base_pdf = all ? c.pdf_light + c.pdf_bsdf : c.pdf_light;
   if (is_black(lit.value) || is_black(o.light.transmittance) || !(pdf > 0.0f)) {
-    ++(is_black(lit.value) ? counters_.fail_class : is_black(o.light.transmittance) ? counters_.fail_occluded : counters_.fail_density);
+    ++(is_black(lit.value)               ? counters_.fail_class
+       : is_black(o.light.transmittance) ? counters_.fail_occluded
+                                         : counters_.fail_density);
     add_unpaired(k, c);
     return;
   }
@@ -90,17 +95,21 @@ void OffsetPaths::light_decoupled_vertex(int k, const Vertex& vertex, const Ligh
 }
 
 // Whether light that reaches the base's vertex does so for a path that came there through so many transparent surfaces.
-bool OffsetPaths::is_lit(const Vertex& vertex, const LightSample& sample, uint32_t transparent_depth) const {
-  if (!context_.scene.features.has_transparent_shadows || transparent_depth <= base_state_.ray.state.transparent_depth) {
+bool OffsetPaths::is_lit(const path::Vertex& vertex, const path::LightSample& sample,
+                         uint32_t transparent_depth) const {
+  if (!context_.scene.features.has_transparent_shadows ||
+      transparent_depth <= base_state_.ray.state.transparent_depth) {
     return true;
   }
-  return !is_black(light_transmittance(context_, vertex.point, sample.point, sample.view, transparent_depth));
+  return !is_black(path::light_transmittance(context_, vertex.point, sample.point, sample.view, transparent_depth));
 }
 
 // At the shared vertex, seen from the offset's last one: emitter, shadow and p_n are those of the base.
-void OffsetPaths::light_reconnected(int k, const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
+void OffsetPaths::light_reconnected(int k, const path::Vertex& vertex, const path::LightSample& sample,
+                                    bsdf::ScatterClass scatter_class, const path::Contribution& c) {
   OffsetPath& o = offsets_[k];
-  if (!o.connection.open || !(glm::dot(vertex.facing_normal(), o.reconnected->wo) > 0.0f) || !is_lit(vertex, sample, o.connection.transparent_depth)) {
+  if (!o.connection.open || !(glm::dot(vertex.facing_normal(), o.reconnected->wo) > 0.0f) ||
+      !is_lit(vertex, sample, o.connection.transparent_depth)) {
     add_unpaired(k, c);
     return;
   }
@@ -110,27 +119,31 @@ void OffsetPaths::light_reconnected(int k, const Vertex& vertex, const LightSamp
     pair(k, c, o.connection.throughput * c.tail, connection_ratio);
     return;
   }
-  const LitClass lit = o.connection.looks_same ? LitClass{} : light_class(context_, *o.reconnected, scatter_class, sample, base_state_.ray.state);
-  // A texture that looks at the ray may make the vertex rough for the offset alone: then the way back would be a replay.
+  const path::LitClass lit = o.connection.looks_same ? path::LitClass{}
+                                                     : path::light_class(context_, *o.reconnected, scatter_class,
+                                                                         sample, base_state_.ray.state);
+  // A texture that looks at the ray may make the vertex rough for the offset alone: then the way back would be a
+  // replay.
   if (is_black(lit.value) || !(connection_ratio > 0.0f) || replays(o.here->point.position, *o.reconnected)) {
     ++counters_.fail_class;
     add_unpaired(k, c);
     return;
   }
-  const bool all =
-      joint(sample.view, o) && reconnects(scatter_class) && sample.point.found_by_rays && leaves_facet(vertex.point, sample.view.direction);
+  const bool all = joint(sample.view, o) && reconnects(scatter_class) && sample.point.found_by_rays &&
+                   geometry::leaves_facet(vertex.point, sample.view.direction);
   const float ratio = all ? (c.pdf_light + lit.pdf_bsdf) / (c.pdf_light + c.pdf_bsdf) : 1.0f;
   pair(k, c, o.connection.throughput * lit.value * c.light / (c.pdf_light + lit.pdf_bsdf), connection_ratio * ratio);
 }
 
-void OffsetPaths::light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
+void OffsetPaths::light(const path::Vertex& vertex, const path::LightSample& sample, bsdf::ScatterClass scatter_class,
+                        const path::Contribution& c) {
   collect(c, Rgb(1.0f));
   if (open_ == 0) {
     return;
   }
   reconnect_all(vertex);
   light_all(sample, scatter_class);
-  for (int k = 0; k < kOffsets; ++k) {
+  for (int k = 0; k < film::kOffsets; ++k) {
     const OffsetPath& o = offsets_[k];
     if (o.stage == OffsetStage::Pending) {
       light_reconnected(k, vertex, sample, scatter_class, c);
@@ -147,4 +160,4 @@ void OffsetPaths::light(const Vertex& vertex, const LightSample& sample, Scatter
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::gradient

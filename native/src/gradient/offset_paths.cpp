@@ -4,9 +4,9 @@
 
 #include "gradient/class_match.h"
 
-namespace gradus {
+namespace gradus::gradient {
 
-void count_failure(Counters* counters, ShiftFailure cause) {
+void count_failure(film::Counters* counters, ShiftFailure cause) {
   switch (cause) {
     case ShiftFailure::Missed:
       ++counters->fail_missed;
@@ -34,7 +34,7 @@ void count_failure(Counters* counters, ShiftFailure cause) {
   }
 }
 
-OffsetPaths::OffsetPaths(const PathContext& context, Counters* counters, CameraVertices* vertices)
+OffsetPaths::OffsetPaths(const path::PathContext& context, film::Counters* counters, path::CameraVertices* vertices)
     : context_(context),
       counters_(*counters),
       vertices_(*vertices),
@@ -48,14 +48,15 @@ OffsetPaths::OffsetPaths(const PathContext& context, Counters* counters, CameraV
   }
 }
 
-void OffsetPaths::start(const std::array<PairCount, kOffsets>& pairs, const PixelSample& sample, uint32_t wanted) {
+void OffsetPaths::start(const std::array<PairCount, film::kOffsets>& pairs, const integrator::PixelSample& sample,
+                        uint32_t wanted) {
   decoupled_tracer_.want(wanted);
   pairs_ = pairs;
   sample_ = &sample;
   for (int c = 0; c < context_.components.count(); ++c) gradient_[size_t(c)].fill(Radiance(0.0f));
 }
 
-void OffsetPaths::collect(const Contribution& c, const Rgb& weight) {
+void OffsetPaths::collect(const path::Contribution& c, const Rgb& weight) {
   if (deferred_vertex_ != nullptr) {
     resume();
   }
@@ -65,10 +66,10 @@ void OffsetPaths::collect(const Contribution& c, const Rgb& weight) {
   }
   const Rgb tail = suffix_.weight * weight * c.tail;
   if (clamps_) {
-    for (int k = 0; k < kOffsets; ++k) {
+    for (int k = 0; k < film::kOffsets; ++k) {
       const OffsetPath& o = offsets_[k];
       if (is_final(o.stage)) {
-        const Rgb value = clamp_contribution(context_, o.state.throughput * tail, c.indirect);
+        const Rgb value = path::clamp_contribution(context_, o.state.throughput * tail, c.indirect);
         add(k, c.component, pairs_[k].paired(Radiance(c.clamped, 0.0f), Radiance(value, 0.0f), o.ratio));
       }
     }
@@ -88,7 +89,7 @@ void OffsetPaths::flush_final() {
   if (suffix_.empty) {
     return;
   }
-  for (int k = 0; k < kOffsets; ++k) {
+  for (int k = 0; k < film::kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (is_final(o.stage)) {
       const Rgb value = o.state.throughput * suffix_.tail;
@@ -123,7 +124,8 @@ void OffsetPaths::join(OffsetPath* o) {
 }
 
 bool OffsetPaths::passes(const OffsetPath& o, int crossed) const {
-  return crossed == 0 || uint32_t(o.state.ray.state.transparent_depth) + uint32_t(crossed) <= context_.settings.transparent_max_bounces;
+  return crossed == 0 ||
+         uint32_t(o.state.ray.state.transparent_depth) + uint32_t(crossed) <= context_.settings.transparent_max_bounces;
 }
 
 void OffsetPaths::fail(OffsetPath* offset, ShiftFailure cause) {
@@ -131,34 +133,35 @@ void OffsetPaths::fail(OffsetPath* offset, ShiftFailure cause) {
   count_failure(&counters_, cause);
 }
 
-Points4 OffsetPaths::offset_points() const {
-  return gather(offsets_[0].here->point, offsets_[1].here->point, offsets_[2].here->point, offsets_[3].here->point, camera_sample_.time);
+geometry::Points4 OffsetPaths::offset_points() const {
+  return geometry::gather(offsets_[0].here->point, offsets_[1].here->point, offsets_[2].here->point,
+                          offsets_[3].here->point, camera_sample_.time);
 }
 
 bool OffsetPaths::any(OffsetStage stage) const {
   return std::any_of(offsets_.begin(), offsets_.end(), [stage](const OffsetPath& o) { return o.stage == stage; });
 }
 
-void OffsetPaths::pair(int k, const Contribution& c, const Rgb& offset_value, float ratio) {
+void OffsetPaths::pair(int k, const path::Contribution& c, const Rgb& offset_value, float ratio) {
   if (!(ratio > 0.0f) || !is_finite(ratio)) {
     ++counters_.fail_jacobian;
     add_unpaired(k, c);
     return;
   }
-  const Radiance offset(clamp_contribution(context_, offset_value, c.indirect), 0.0f);
+  const Radiance offset(path::clamp_contribution(context_, offset_value, c.indirect), 0.0f);
   add(k, c.component, pairs_[k].paired(Radiance(c.clamped, 0.0f), offset, ratio));
 }
 
-void OffsetPaths::begin(const Sampler& sampler, const CameraSample& sample) {
+void OffsetPaths::begin(const path::Sampler& sampler, const camera::CameraSample& sample) {
   sampler_ = &sampler;
   camera_sample_ = sample;
   open_ = 0;
   deferred_vertex_ = nullptr;
   suffix_ = Suffix{};
-  for (int k = 0; k < kOffsets; ++k) {
+  for (int k = 0; k < film::kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     o.stage = pairs_[k].present() ? OffsetStage::Traced : OffsetStage::Absent;
-    o.state = PathState{};
+    o.state = path::PathState{};
     o.ratio = o.kind_ratio = 1.0f;
     o.from_camera = true;
     open_ += o.stage == OffsetStage::Traced ? 1 : 0;
@@ -166,10 +169,12 @@ void OffsetPaths::begin(const Sampler& sampler, const CameraSample& sample) {
   }
 }
 
-void OffsetPaths::note_arrival(const RaySource& source, const PathState& state, const Segment& segment, const Vertex& vertex) {
+void OffsetPaths::note_arrival(const path::RaySource& source, const path::PathState& state,
+                               const path::Segment& segment, const path::Vertex& vertex) {
   base_segment_ = &segment;
   base_state_ = state;
-  base_in_holdout_ = source.vertex == nullptr && segment.end == SegmentEnd::Surface && is_holdout(context_, vertex);
+  base_in_holdout_ =
+      source.vertex == nullptr && segment.end == path::SegmentEnd::Surface && path::is_holdout(context_, vertex);
   if (source.vertex != nullptr) {
     base_event_ = *source.event;
     base_from_ = source.vertex;
@@ -182,7 +187,8 @@ void OffsetPaths::note_arrival(const RaySource& source, const PathState& state, 
   }
 }
 
-void OffsetPaths::arrive(const RaySource& source, const PathState& state, const Segment& segment, const Vertex& vertex) {
+void OffsetPaths::arrive(const path::RaySource& source, const path::PathState& state, const path::Segment& segment,
+                         const path::Vertex& vertex) {
   if (deferred_vertex_ != nullptr) {
     latest_ = {source, &state, &segment, &vertex};
   }
@@ -204,9 +210,9 @@ void OffsetPaths::arrive(const RaySource& source, const PathState& state, const 
   }
 }
 
-// An offset that has passed more transparent surfaces than its base may meet the limit on the shared segments; so may the base on the way
-// back.
-void OffsetPaths::passed(const Segment& segment) {
+// An offset that has passed more transparent surfaces than its base may meet the limit on the shared segments; so may
+// the base on the way back.
+void OffsetPaths::passed(const path::Segment& segment) {
   scale(segment.weight);
   if (open_ == 0) {
     return;
@@ -226,7 +232,7 @@ void OffsetPaths::passed(const Segment& segment) {
 }
 
 // Roulette is the base's decision; both contributions are divided by its probability and r leaves it out.
-void OffsetPaths::survived(float probability, const Vertex& vertex) {
+void OffsetPaths::survived(float probability, const path::Vertex& vertex) {
   const float factor = 1.0f / probability;
   scale(Rgb(factor));
   if (open_ == 0) {
@@ -240,11 +246,11 @@ void OffsetPaths::survived(float probability, const Vertex& vertex) {
     if (o.stage == OffsetStage::Pending) {
       o.connection.throughput *= factor;  // a connection that emission already asked for
     } else if (o.stage == OffsetStage::Traced) {
-      shade_vertex(context_, o.state.ray.state, o.here);
+      path::shade_vertex(context_, o.state.ray.state, o.here);
       o.mixed = !same_classes(vertex.shade.closures, o.here->shade.closures);
     }
   }
   replay_short_edges(vertex);
 }
 
-}  // namespace gradus
+}  // namespace gradus::gradient

@@ -1,31 +1,34 @@
 // Segments that offsets trace themselves, before they share the base's.
 #include <utility>
 
-#include "gradient/offset_paths.h"
 #include "gradient/class_match.h"
+#include "gradient/offset_paths.h"
 
-namespace gradus {
+namespace gradus::gradient {
 
-// Traces an offset's ray. first: its nearest hit if it is known. What the two segments show is compared in any case, see seen().
-void OffsetPaths::trace(OffsetPath* o, const Hit* first) {
+// Traces an offset's ray. first: its nearest hit if it is known. What the two segments show is compared in any case,
+// see seen().
+void OffsetPaths::trace(OffsetPath* o, const geometry::Hit* first) {
   o->advance();
   o->fresh = true;
-  if (shows_only_lights(context_, base_state_)) {
-    counters_.rays_shift += trace_to_lights(context_, o->state.ray, &o->traced_segment) ? 1 : 0;
+  if (path::shows_only_lights(context_, base_state_)) {
+    counters_.rays_shift += path::trace_to_lights(context_, o->state.ray, &o->traced_segment) ? 1 : 0;
     return;
   }
   ++counters_.rays_shift;
-  trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->traced_segment, Shading::Later);
+  path::trace_segment(context_, *sampler_, base_state_.depth, first, &o->state.ray, o->here, &o->traced_segment,
+                      path::Shading::Later);
 }
 
 // In the base's cell of the lattice an offset's camera ray is that of its pixel's base path.
-CameraVertex* OffsetPaths::known_vertex(int k) const {
-  const int32_t x = sample_->x + kOffsetX[k], y = sample_->y + kOffsetY[k];
-  const bool same_block = pixel_block_of(x) == pixel_block_of(sample_->x) && pixel_block_of(y) == pixel_block_of(sample_->y);
+path::CameraVertex* OffsetPaths::known_vertex(int k) const {
+  const int32_t x = sample_->x + film::kOffsetX[k], y = sample_->y + film::kOffsetY[k];
+  const bool same_block = film::pixel_block_of(x) == film::pixel_block_of(sample_->x) &&
+                          film::pixel_block_of(y) == film::pixel_block_of(sample_->y);
   return sample_->first != nullptr && same_block ? vertices_.at(x, y) : nullptr;
 }
 
-void OffsetPaths::share(OffsetPath* o, CameraVertex* v) {
+void OffsetPaths::share(OffsetPath* o, path::CameraVertex* v) {
   o->here = &v->vertex;
   o->segment = &v->segment;
   o->camera = v;
@@ -33,28 +36,29 @@ void OffsetPaths::share(OffsetPath* o, CameraVertex* v) {
   o->fresh = true;
 }
 
-// Same position in the pixel, same point of the lens, same moment: the camera's part of r is 1. With a lens the four rays are traced
-// together; without one most are known, and a packet of the one that leaves the cell would take as long as three rays.
-void OffsetPaths::trace_camera(const PathState& state) {
-  Ray rays[kOffsets];
-  Hit hits[kOffsets];
-  bool unknown[kOffsets];
+// Same position in the pixel, same point of the lens, same moment: the camera's part of r is 1. With a lens the four
+// rays are traced together; without one most are known, and a packet of the one that leaves the cell would take as long
+// as three rays.
+void OffsetPaths::trace_camera(const path::PathState& state) {
+  Ray rays[film::kOffsets];
+  geometry::Hit hits[film::kOffsets];
+  bool unknown[film::kOffsets];
   bool any = false;
-  for (int k = 0; k < kOffsets; ++k) {
+  for (int k = 0; k < film::kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     rays[k] = kNoRay;
     unknown[k] = false;
     if (o.stage != OffsetStage::Traced) {
       continue;
     }
-    CameraVertex* known = known_vertex(k);
+    path::CameraVertex* known = known_vertex(k);
     if (known != nullptr && known->shared) {
       share(&o, known);
       continue;
     }
-    o.state.ray = PathRay{};
+    o.state.ray = path::PathRay{};
     o.state.ray.visibility = state.ray.visibility;
-    o.state.ray.ray = context_.camera.ray(camera_sample_.moved(Vec2(kOffsetX[k], kOffsetY[k])));
+    o.state.ray.ray = context_.camera.ray(camera_sample_.moved(Vec2(film::kOffsetX[k], film::kOffsetY[k])));
     if (sample_->first != nullptr) {
       trace(&o, known != nullptr ? &known->hit : nullptr);
     } else {
@@ -65,7 +69,7 @@ void OffsetPaths::trace_camera(const PathState& state) {
   if (any) {
     context_.scene.intersect4(rays, state.ray.visibility, hits);
   }
-  for (int k = 0; k < kOffsets; ++k) {
+  for (int k = 0; k < film::kOffsets; ++k) {
     if (unknown[k]) {
       trace(&offsets_[k], &hits[k]);
     }
@@ -80,11 +84,11 @@ void OffsetPaths::include_kind(OffsetPath* o) {
 }
 
 // The offset scatters; its ray looks like the base's to the scene.
-void OffsetPaths::leave(OffsetPath* o, const ShiftedEvent& event, const PathState& state) {
+void OffsetPaths::leave(OffsetPath* o, const ShiftedEvent& event, const path::PathState& state) {
   const uint16_t transparent_depth = o->state.ray.state.transparent_depth;
   o->state.ray = state.ray;
   o->state.ray.state.transparent_depth = transparent_depth;
-  o->state.ray.ray = spawn_ray(o->here->point, event.wi);
+  o->state.ray.ray = path::spawn_ray(o->here->point, event.wi);
   o->state.depth = state.depth;
   o->state.lpe_state = state.lpe_state;
   o->state.throughput *= event.factor;
@@ -94,9 +98,9 @@ void OffsetPaths::leave(OffsetPath* o, const ShiftedEvent& event, const PathStat
   o->from_camera = false;
 }
 
-// A class R or T event of the base at its last vertex, replayed at the offsets' last vertices. Behind glass the rays go apart: one by one
-// they are faster than together.
-void OffsetPaths::copy_events(const RaySource& source, const PathState& state) {
+// A class R or T event of the base at its last vertex, replayed at the offsets' last vertices. Behind glass the rays go
+// apart: one by one they are faster than together.
+void OffsetPaths::copy_events(const path::RaySource& source, const path::PathState& state) {
   for (OffsetPath& o : offsets_) {
     if (o.stage != OffsetStage::Traced) {
       continue;
@@ -124,8 +128,8 @@ bool OffsetPaths::trace_surface(OffsetPath* o, const ShiftedEvent& event) {
   leave(o, event, base_state_);
   o->event.sample.dirac = false;
   o->advance();
-  trace_segment(context_, *sampler_, base_state_.depth, nullptr, &o->state.ray, o->here, &o->traced_segment);
-  if (o->segment->end != SegmentEnd::Surface) {
+  path::trace_segment(context_, *sampler_, base_state_.depth, nullptr, &o->state.ray, o->here, &o->traced_segment);
+  if (o->segment->end != path::SegmentEnd::Surface) {
     fail(o, ShiftFailure::Missed);
     return false;
   }
@@ -133,8 +137,9 @@ bool OffsetPaths::trace_surface(OffsetPath* o, const ShiftedEvent& event) {
   return true;
 }
 
-// Class D before class R or T, away from the base's vertex: in the base's direction. The way back must not share this vertex.
-void OffsetPaths::copy_direction(OffsetPath* o, const ScatterEvent& next) {
+// Class D before class R or T, away from the base's vertex: in the base's direction. The way back must not share this
+// vertex.
+void OffsetPaths::copy_direction(OffsetPath* o, const path::ScatterEvent& next) {
   if (!trace_surface(o, event_towards(base_event_, *o->here, base_event_.sample.wi, 1.0f))) {
     return;
   }
@@ -148,14 +153,14 @@ void OffsetPaths::copy_direction(OffsetPath* o, const ScatterEvent& next) {
   include_kind(o);
 }
 
-// Class D before z over a short edge. Not at a surface that is sharp alone: there the direction is copied, which nothing forbids at the
-// other end.
-bool OffsetPaths::replays(const Vec3& y, const Vertex& z) const {
-  const bool non_specular = z.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f;
+// Class D before z over a short edge. Not at a surface that is sharp alone: there the direction is copied, which
+// nothing forbids at the other end.
+bool OffsetPaths::replays(const Vec3& y, const path::Vertex& z) const {
+  const bool non_specular = z.shade.closures.class_probability(bsdf::ScatterClass::Diffuse) > 0.0f;
   return non_specular && is_short_edge(base_position_, y, z.point.position);
 }
 
-void OffsetPaths::replay_short_edges(const Vertex& vertex) {
+void OffsetPaths::replay_short_edges(const path::Vertex& vertex) {
   for (OffsetPath& o : offsets_) {
     if (o.stage == OffsetStage::Pending && replays(o.here->point.position, vertex)) {
       replay(&o, vertex);
@@ -164,7 +169,7 @@ void OffsetPaths::replay_short_edges(const Vertex& vertex) {
 }
 
 // By the base's random numbers. The way back must be a replay, too.
-void OffsetPaths::replay(OffsetPath* o, const Vertex& vertex) {
+void OffsetPaths::replay(OffsetPath* o, const path::Vertex& vertex) {
   if (!trace_surface(o, replay_event(*base_from_, base_event_, sampler_->vertex(base_state_.depth - 1), *o->here))) {
     return;
   }
@@ -177,4 +182,4 @@ void OffsetPaths::replay(OffsetPath* o, const Vertex& vertex) {
   include_kind(o);
 }
 
-}  // namespace gradus
+}  // namespace gradus::gradient

@@ -3,11 +3,12 @@
 
 #include "gradient/offset_paths.h"
 
-namespace gradus {
+namespace gradus::gradient {
 
 // Everything but visibility.
-ShiftFailure OffsetPaths::try_reconnection(OffsetPath* o, const Vertex& vertex, ShiftedEvent* event) const {
-  const Reconnection connection = reconnect(base_position_, o->here->point.position, vertex.point.position, vertex.point.geometric_normal);
+ShiftFailure OffsetPaths::try_reconnection(OffsetPath* o, const path::Vertex& vertex, ShiftedEvent* event) const {
+  const Reconnection connection =
+      reconnect(base_position_, o->here->point.position, vertex.point.position, vertex.point.geometric_normal);
   if (connection.failure != ShiftFailure::None) {
     return connection.failure;
   }
@@ -15,8 +16,8 @@ ShiftFailure OffsetPaths::try_reconnection(OffsetPath* o, const Vertex& vertex, 
   return event->failure;
 }
 
-// The offset arrives at the shared vertex. The base's decisions on its segment were made for both paths: the offset's own surfaces on the
-// way weigh with their expectation.
+// The offset arrives at the shared vertex. The base's decisions on its segment were made for both paths: the offset's
+// own surfaces on the way weigh with their expectation.
 void OffsetPaths::open_connection(OffsetPath* o, const ShiftedEvent& event, const Rgb& through) {
   o->connection.open = true;
   o->connection.throughput = o->state.throughput * event.factor * through / base_segment_->probability;
@@ -27,34 +28,37 @@ void OffsetPaths::open_connection(OffsetPath* o, const ShiftedEvent& event, cons
 }
 
 // The ray by which the offset arrives there.
-RayState OffsetPaths::reconnected_ray(const OffsetPath& o, const Vertex& vertex) const {
-  RayState ray = base_state_.ray.state;
+shading::RayState OffsetPaths::reconnected_ray(const OffsetPath& o, const path::Vertex& vertex) const {
+  shading::RayState ray = base_state_.ray.state;
   ray.transparent_depth = o.connection.transparent_depth;
   ray.length = glm::length(vertex.point.position - o.here->point.position);
   return ray;
 }
 
 // What the shared vertex emits towards the offset: its closures may not be wanted.
-Rgb OffsetPaths::reconnected_emission(const OffsetPath& o, const Vertex& vertex) const {
+Rgb OffsetPaths::reconnected_emission(const OffsetPath& o, const path::Vertex& vertex) const {
   const bool same = vertex.shade.ignores_wo && glm::dot(vertex.facing_normal(), o.reconnected->wo) > 0.0f;
-  return same ? vertex.shade.emission : shade_emission(context_.scene, vertex.point, o.reconnected->wo, reconnected_ray(o, vertex));
+  return same ? vertex.shade.emission
+              : shading::shade_emission(context_.scene, vertex.point, o.reconnected->wo, reconnected_ray(o, vertex));
 }
 
 // The shared vertex, whose closures are known, from the offset's side. Most walls look alike from everywhere.
-void OffsetPaths::shade_reconnected(OffsetPath* o, const Vertex& vertex) const {
+void OffsetPaths::shade_reconnected(OffsetPath* o, const path::Vertex& vertex) const {
   if (std::exchange(o->connection.shaded, true)) {
     return;
   }
   o->connection.looks_same = vertex.shade.ignores_wo && glm::dot(vertex.facing_normal(), o->reconnected->wo) > 0.0f;
   if (!o->connection.looks_same) {
     o->reconnected->point = vertex.point;
-    shade_from_tape(context_.scene, vertex.point, *vertex.shade.tape, vertex.wo, o->reconnected->wo, reconnected_ray(*o, vertex),
-                context_.settings.roughness_threshold, &o->reconnected->shade);
+    shading::shade_from_tape(context_.scene, vertex.point, *vertex.shade.tape, vertex.wo, o->reconnected->wo,
+                             reconnected_ray(*o, vertex), context_.settings.roughness_threshold,
+                             &o->reconnected->shade);
   }
 }
 
 // The base's event at the shared vertex.
-ShiftedEvent OffsetPaths::reconnected_event(OffsetPath* o, const Vertex& vertex, const ScatterEvent& event) const {
+ShiftedEvent OffsetPaths::reconnected_event(OffsetPath* o, const path::Vertex& vertex,
+                                            const path::ScatterEvent& event) const {
   shade_reconnected(o, vertex);
   if (!o->connection.looks_same) {
     return event_towards(event, *o->reconnected, event.sample.wi, 1.0f);
@@ -68,11 +72,11 @@ ShiftedEvent OffsetPaths::reconnected_event(OffsetPath* o, const Vertex& vertex,
 }
 
 // Connects all pending offsets that have not tried yet.
-void OffsetPaths::reconnect_all(const Vertex& vertex) {
-  ShiftedEvent events[kOffsets];
-  bool wanted[kOffsets];
+void OffsetPaths::reconnect_all(const path::Vertex& vertex) {
+  ShiftedEvent events[film::kOffsets];
+  bool wanted[film::kOffsets];
   bool any = false;
-  for (int k = 0; k < kOffsets; ++k) {
+  for (int k = 0; k < film::kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     wanted[k] = o.stage == OffsetStage::Pending && !o.connection.known;
     if (wanted[k]) {
@@ -87,19 +91,19 @@ void OffsetPaths::reconnect_all(const Vertex& vertex) {
     }
   }
   const bool packet = !context_.has_transparency && context_.uniform_visibility;
-  bool blocked[kOffsets] = {};
+  bool blocked[film::kOffsets] = {};
   if (any && packet) {
-    const Lanes3 direction = lanes(events[0].wi, events[1].wi, events[2].wi, events[3].wi);
-    context_.scene.occluded4(spawn_rays_to(offset_points(), direction, vertex.point), wanted, blocked);
+    const geometry::Lanes3 direction = geometry::lanes(events[0].wi, events[1].wi, events[2].wi, events[3].wi);
+    context_.scene.occluded4(geometry::spawn_rays_to(offset_points(), direction, vertex.point), wanted, blocked);
   }
-  for (int k = 0; k < kOffsets; ++k) {
+  for (int k = 0; k < film::kOffsets; ++k) {
     if (!wanted[k]) {
       continue;
     }
     OffsetPath& o = offsets_[k];
-    const Rgb through =
-        packet ? Rgb(blocked[k] ? 0.0f : 1.0f)
-               : segment_transmittance(context_, spawn_ray_to(o.here->point, vertex.point), base_state_.ray, &o.connection.transparent_depth);
+    const Rgb through = packet ? Rgb(blocked[k] ? 0.0f : 1.0f)
+                               : path::segment_transmittance(context_, path::spawn_ray_to(o.here->point, vertex.point),
+                                                             base_state_.ray, &o.connection.transparent_depth);
     if (is_black(through)) {
       ++counters_.fail_occluded;
     } else {
@@ -109,7 +113,7 @@ void OffsetPaths::reconnect_all(const Vertex& vertex) {
 }
 
 // Whether the offset has a connection to the shared vertex, from the side that the base sees.
-bool OffsetPaths::arrives(OffsetPath* o, const Vertex& vertex) {
+bool OffsetPaths::arrives(OffsetPath* o, const path::Vertex& vertex) {
   if (!o->connection.open) {
     finalize(o, OffsetStage::Failed);  // its cause was counted
   } else if (!(glm::dot(vertex.facing_normal(), o->reconnected->wo) > 0.0f)) {
@@ -118,20 +122,21 @@ bool OffsetPaths::arrives(OffsetPath* o, const Vertex& vertex) {
   return o->stage == OffsetStage::Pending;
 }
 
-bool OffsetPaths::shares(const Vec3& y, const Vertex& z, ScatterClass next) const {
+bool OffsetPaths::shares(const Vec3& y, const path::Vertex& z, bsdf::ScatterClass next) const {
   return shares_sharp_vertex(base_position_, y, z.point.position, context_.scene.curvature(z.point.hit),
-                             next == ScatterClass::Transmission);
+                             next == bsdf::ScatterClass::Transmission);
 }
 
 // The event at z, seen from the base's vertex or from y, has a lobe that looks alike from both.
-bool OffsetPaths::shares_direction(const Vec3& y, const Vertex& z, const ScatterEvent& event) const {
+bool OffsetPaths::shares_direction(const Vec3& y, const path::Vertex& z, const path::ScatterEvent& event) const {
   const float width = event.sample.dirac ? 0.0f : class_width(z.shade.closures, event.scatter_class);
   return looks_similar(base_position_, y, z.point.position, width);
 }
 
-// Class D before class R or T: the offset shares its base's vertex, and where the lobe is wide the direction, too; or it goes on by a ray
-// of its own. Where a texture looks at the ray, the two paths may judge the lobe differently: then so they would on the way back.
-void OffsetPaths::reach_sharp(const Vertex& vertex, const ScatterEvent& event) {
+// Class D before class R or T: the offset shares its base's vertex, and where the lobe is wide the direction, too; or
+// it goes on by a ray of its own. Where a texture looks at the ray, the two paths may judge the lobe differently: then
+// so they would on the way back.
+void OffsetPaths::reach_sharp(const path::Vertex& vertex, const path::ScatterEvent& event) {
   for (OffsetPath& o : offsets_) {
     if (o.stage == OffsetStage::Pending && !shares(o.here->point.position, vertex, event.scatter_class) &&
         !shares_direction(o.here->point.position, vertex, event)) {
@@ -157,7 +162,7 @@ void OffsetPaths::reach_sharp(const Vertex& vertex, const ScatterEvent& event) {
 }
 
 // The base's vertex as seen from the offset becomes a vertex of its own, at which the event will be copied.
-void OffsetPaths::share_vertex(OffsetPath* o, const Vertex& vertex) {
+void OffsetPaths::share_vertex(OffsetPath* o, const path::Vertex& vertex) {
   ++counters_.shifts_reconnected;
   shade_reconnected(o, vertex);
   o->advance_to_reconnected();
@@ -170,7 +175,7 @@ void OffsetPaths::share_vertex(OffsetPath* o, const Vertex& vertex) {
   include_kind(o);
 }
 
-void OffsetPaths::scatter(const Vertex& vertex, const VertexSample& u, const ScatterEvent& event) {
+void OffsetPaths::scatter(const path::Vertex& vertex, const path::VertexSample& u, const path::ScatterEvent& event) {
   scale(event.factor);
   if (open_ == 0) {
     return;
@@ -201,7 +206,7 @@ void OffsetPaths::scatter(const Vertex& vertex, const VertexSample& u, const Sca
 }
 
 // The rest is shared.
-void OffsetPaths::reconnect_at(OffsetPath* o, const Vertex& vertex, const ScatterEvent& event) {
+void OffsetPaths::reconnect_at(OffsetPath* o, const path::Vertex& vertex, const path::ScatterEvent& event) {
   const ShiftedEvent shared = reconnected_event(o, vertex, event);
   if (shared.failure != ShiftFailure::None) {
     fail(o, shared.failure);
@@ -224,4 +229,4 @@ void OffsetPaths::reconnect_at(OffsetPath* o, const Vertex& vertex, const Scatte
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::gradient

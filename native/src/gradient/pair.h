@@ -1,16 +1,16 @@
 // Weights of gradient samples (thesis 5.4.1, equation 5.24; contract 1.5).
 //
-// A gradient I_q − I_p is sampled from both ends: by base paths x of p, shifted to y = T(x), and by base paths of q, shifted back. With the
-// balance heuristic over m_p samples of density p(x) and m_q of density p(y)·|T'| in the measure of x, and with C = f(x)/p(x),
-// C' = f(y)/p(y), r = |T'|·p(y)/p(x), a sample of p's end is
+// A gradient I_q − I_p is sampled from both ends: by base paths x of p, shifted to y = T(x), and by base paths of q,
+// shifted back. With the balance heuristic over m_p samples of density p(x) and m_q of density p(y)·|T'| in the measure
+// of x, and with C = f(x)/p(x), C' = f(y)/p(y), r = |T'|·p(y)/p(x), a sample of p's end is
 //   (r·C' − C) / (m_p + m_q·r)
-// and −C/m_p where no shift exists: then the other end never sees x. Sums are multiplied by (m_p + m_q)/2; a sample that was taken counts
-// (m_p + m_q)/(2 m_p) in what they are divided by when read.
+// and −C/m_p where no shift exists: then the other end never sees x. Sums are multiplied by (m_p + m_q)/2; a sample
+// that was taken counts (m_p + m_q)/(2 m_p) in what they are divided by when read.
 #pragma once
 
 #include "film/film.h"
 
-namespace gradus {
+namespace gradus::gradient {
 
 struct PairCount {
   float own = 0.0f;    // samples of this batch and half at the base's pixel
@@ -27,4 +27,4 @@ struct PairCount {
   Radiance unpaired(const Radiance& base) const { return base * (-0.5f * (1.0f + other / own)); }
 };
 
-}  // namespace gradus
+}  // namespace gradus::gradient

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gradus {
+namespace gradus::gradient {
 
 float light_point_jacobian(float cosine_base, float distance_base, float cosine_offset, float distance_offset) {
   const float ratio = distance_base / distance_offset;
@@ -24,7 +24,9 @@ bool shares_sharp_vertex(const Vec3& x, const Vec3& y, const Vec3& z, float curv
   return curvature * edge > kCurved ? !is_short_edge(x, y, z) : !transmission && is_parallax_below(x, y, z, kSmall);
 }
 
-bool looks_similar(const Vec3& x, const Vec3& y, const Vec3& z, float width) { return is_parallax_below(x, y, z, width); }
+bool looks_similar(const Vec3& x, const Vec3& y, const Vec3& z, float width) {
+  return is_parallax_below(x, y, z, width);
+}
 
 Reconnection reconnect(const Vec3& base, const Vec3& offset, const Vec3& target, const Vec3& target_normal) {
   Reconnection result;
@@ -42,4 +44,4 @@ Reconnection reconnect(const Vec3& base, const Vec3& offset, const Vec3& target,
   return result;
 }
 
-}  // namespace gradus
+}  // namespace gradus::gradient

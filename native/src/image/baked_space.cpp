@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 
-namespace gradus {
+namespace gradus::image {
 
 BakedSpace::BakedSpace(const GradusColorSpace& space) {
   if (space.curve_count == 1 || (space.curve_count > 1 && space.curve == nullptr)) {
@@ -33,7 +33,8 @@ float BakedSpace::curve(float x) const {
 Rgb BakedSpace::apply(const Rgb& encoded) const {
   const Rgb c(curve(encoded.x), curve(encoded.y), curve(encoded.z));
   const float* m = matrix_;
-  return Rgb(m[0] * c.x + m[1] * c.y + m[2] * c.z, m[3] * c.x + m[4] * c.y + m[5] * c.z, m[6] * c.x + m[7] * c.y + m[8] * c.z);
+  return Rgb(m[0] * c.x + m[1] * c.y + m[2] * c.z, m[3] * c.x + m[4] * c.y + m[5] * c.z,
+             m[6] * c.x + m[7] * c.y + m[8] * c.z);
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

@@ -7,7 +7,7 @@
 #include "base/types.h"
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::image {
 
 class BakedSpace {
  public:
@@ -23,4 +23,4 @@ class BakedSpace {
   float matrix_[9];
 };
 
-}  // namespace gradus
+}  // namespace gradus::image

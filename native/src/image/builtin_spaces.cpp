@@ -4,13 +4,14 @@
 #include <array>
 #include <string_view>
 
-namespace gradus {
+namespace gradus::image {
 namespace {
 
 constexpr std::array<std::string_view, 10> kUnchanged = {
     "",       "Non-Color",      "Non-Colour Data", "Generic Data",    "Raw", "Utility - Raw",
     "Linear", "Linear Rec.709", "scene_linear",    "lin_rec709_scene"};
-constexpr std::array<std::string_view, 5> kSrgb = {"sRGB", "sRGB - Texture", "Utility - sRGB - Texture", "srgb_tx", "srgb_rec709_scene"};
+constexpr std::array<std::string_view, 5> kSrgb = {"sRGB", "sRGB - Texture", "Utility - sRGB - Texture", "srgb_tx",
+                                                   "srgb_rec709_scene"};
 
 }  // namespace
 
@@ -24,4 +25,4 @@ std::optional<ColorTransform> builtin_transform(const std::string& space) {
   return std::nullopt;
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

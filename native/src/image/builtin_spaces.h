@@ -6,9 +6,9 @@
 
 #include "image/color.h"
 
-namespace gradus {
+namespace gradus::image {
 
 // By the names that Blender has used for them. nullopt: not one of these.
 std::optional<ColorTransform> builtin_transform(const std::string& space);
 
-}  // namespace gradus
+}  // namespace gradus::image

@@ -18,7 +18,7 @@
 
 namespace OCIO = OCIO_NAMESPACE;
 
-namespace gradus {
+namespace gradus::image {
 namespace {
 
 // A resolved space: what kind it is, and how to apply it if it is neither data nor sRGB.
@@ -159,10 +159,13 @@ void ColorManager::set_override(const GradusColorSpace& space) {
   state_->spaces[space.name] = baked;
 }
 
-ColorTransform ColorManager::transform(const std::string& space, bool is_byte) const { return state_->find(space, is_byte).kind; }
+ColorTransform ColorManager::transform(const std::string& space, bool is_byte) const {
+  return state_->find(space, is_byte).kind;
+}
 
-void ColorManager::to_scene_linear(const std::string& space, bool is_byte, float* pixels, size_t pixel_count, int channels) const {
+void ColorManager::to_scene_linear(const std::string& space, bool is_byte, float* pixels, size_t pixel_count,
+                                   int channels) const {
   state_->find(space, is_byte).apply(pixels, pixel_count, channels);
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

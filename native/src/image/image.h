@@ -8,7 +8,7 @@
 #include "base/types.h"
 #include "image/readers/decoded.h"
 
-namespace gradus {
+namespace gradus::image {
 
 struct ImageTile {
   uint32_t number = 0;  // UDIM; 0 = not tiled
@@ -38,4 +38,4 @@ class Image {
 // Stored value to scene-linear; outside 0…1 by the formula.
 Vec4 decode_texel(const ImageTile& tile, const Vec4& stored);
 
-}  // namespace gradus
+}  // namespace gradus::image

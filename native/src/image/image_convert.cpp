@@ -8,7 +8,7 @@
 
 #include "image/color.h"
 
-namespace gradus {
+namespace gradus::image {
 namespace {
 
 float half_to_float(uint16_t bits) {
@@ -97,11 +97,13 @@ void associate_alpha(ImageTile* tile) {
   uint8_t* pixels = tile->pixels.get();
   switch (tile->format) {
     case PixelFormat::Byte:
-      associate(pixels, count, tile->channels, [](uint8_t c, uint8_t a) { return static_cast<uint8_t>((c * a + 127) / 255); });
+      associate(pixels, count, tile->channels,
+                [](uint8_t c, uint8_t a) { return static_cast<uint8_t>((c * a + 127) / 255); });
       break;
     case PixelFormat::Short:
-      associate(reinterpret_cast<uint16_t*>(pixels), count, tile->channels,
-                [](uint16_t c, uint16_t a) { return static_cast<uint16_t>((static_cast<uint32_t>(c) * a + 32767u) / 65535u); });
+      associate(reinterpret_cast<uint16_t*>(pixels), count, tile->channels, [](uint16_t c, uint16_t a) {
+        return static_cast<uint16_t>((static_cast<uint32_t>(c) * a + 32767u) / 65535u);
+      });
       break;
     case PixelFormat::Half:
       associate(reinterpret_cast<uint16_t*>(pixels), count, tile->channels,
@@ -126,7 +128,8 @@ void clean(T* values, size_t count, uint32_t channels, Finite finite) {
 void clean_tile(ImageTile* tile) {
   const size_t count = static_cast<size_t>(tile->width) * tile->height;
   if (tile->format == PixelFormat::Half) {
-    clean(reinterpret_cast<uint16_t*>(tile->pixels.get()), count, tile->channels, [](uint16_t h) { return (h & 0x7c00) != 0x7c00; });
+    clean(reinterpret_cast<uint16_t*>(tile->pixels.get()), count, tile->channels,
+          [](uint16_t h) { return (h & 0x7c00) != 0x7c00; });
   } else if (tile->format == PixelFormat::Float) {
     clean(reinterpret_cast<float*>(tile->pixels.get()), count, tile->channels, [](float x) { return is_finite(x); });
   }
@@ -153,7 +156,8 @@ Vec4 ImageTile::texel(uint32_t x, uint32_t y) const {
     case PixelFormat::Byte:
       return expand(pixels.get() + first, channels, [](uint8_t v) { return static_cast<float>(v) * (1.0f / 255.0f); });
     case PixelFormat::Short:
-      return expand(as<uint16_t>(pixels.get()) + first, channels, [](uint16_t v) { return static_cast<float>(v) * (1.0f / 65535.0f); });
+      return expand(as<uint16_t>(pixels.get()) + first, channels,
+                    [](uint16_t v) { return static_cast<float>(v) * (1.0f / 65535.0f); });
     case PixelFormat::Half:
       return expand(as<uint16_t>(pixels.get()) + first, channels, half_to_float);
     case PixelFormat::Float:
@@ -192,7 +196,8 @@ Rgb mean_color(const ImageTile& tile) {
   double sum[3] = {0.0, 0.0, 0.0};
   uint64_t n = 0;
   for (uint64_t i = 0; i < count; i += step, n++) {
-    const Vec4 v = decode_texel(tile, tile.texel(static_cast<uint32_t>(i % tile.width), static_cast<uint32_t>(i / tile.width)));
+    const Vec4 v =
+        decode_texel(tile, tile.texel(static_cast<uint32_t>(i % tile.width), static_cast<uint32_t>(i / tile.width)));
     sum[0] += static_cast<double>(v.x);
     sum[1] += static_cast<double>(v.y);
     sum[2] += static_cast<double>(v.z);
@@ -215,4 +220,4 @@ bool has_transparency(const ImageTile& tile) {
   return false;
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace gradus {
+namespace gradus::image {
 namespace {
 
 constexpr off_t kLargestFile = off_t{1} << 34;
@@ -62,4 +62,4 @@ bool read_file(const std::string& path, std::vector<uint8_t>* bytes, std::string
   return true;
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

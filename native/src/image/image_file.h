@@ -6,9 +6,9 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::image {
 
 // False, with a text, for what is not a readable regular file.
 bool read_file(const std::string& path, std::vector<uint8_t>* bytes, std::string* problem);
 
-}  // namespace gradus
+}  // namespace gradus::image

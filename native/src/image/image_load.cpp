@@ -8,7 +8,7 @@
 #include "image/image_file.h"
 #include "image/image_store.h"
 
-namespace gradus {
+namespace gradus::image {
 namespace {
 
 // What an artist sees in place of an image that is not there, in Cycles as here.
@@ -79,4 +79,4 @@ std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorMa
 
 const std::vector<std::string>& warnings_of(const Image& image) { return image.warnings; }
 
-}  // namespace gradus
+}  // namespace gradus::image

@@ -7,7 +7,7 @@
 #include "image/image.h"
 #include "image/image_store.h"
 
-namespace gradus {
+namespace gradus::image {
 namespace {
 
 const Vec4 kMissing(1.0f, 0.0f, 1.0f, 1.0f);
@@ -159,7 +159,8 @@ const ImageTile* find_tile(const Image& image, Vec2* uv) {
     return nullptr;
   }
   const uint32_t number = 1001u + static_cast<uint32_t>(column) + 10u * static_cast<uint32_t>(row);
-  const auto found = std::find_if(image.tiles.begin(), image.tiles.end(), [&](const ImageTile& t) { return t.number == number; });
+  const auto found =
+      std::find_if(image.tiles.begin(), image.tiles.end(), [&](const ImageTile& t) { return t.number == number; });
   *uv -= Vec2(column, row);
   return found == image.tiles.end() ? nullptr : &*found;
 }
@@ -171,7 +172,8 @@ Vec4 decode_texel(const ImageTile& tile, const Vec4& stored) {
   return tile.srgb ? Vec4(table(stored.x), table(stored.y), table(stored.z), stored.w) : stored;
 }
 
-Vec4 ImageStore::lookup(uint32_t index, const Vec2& uv, Interpolation interpolation, Extension extension, bool unassociate) const {
+Vec4 ImageStore::lookup(uint32_t index, const Vec2& uv, Interpolation interpolation, Extension extension,
+                        bool unassociate) const {
   if (index >= size()) {
     return kMissing;
   }
@@ -194,4 +196,4 @@ Vec4 ImageStore::lookup(uint32_t index, const Vec2& uv, Interpolation interpolat
   return decode_texel(*tile, value);
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

@@ -1,9 +1,9 @@
 // Deep copies of what the caller describes.
 #include "base/error.h"
-#include "image/readers/decoded.h"
 #include "image/image_store.h"
+#include "image/readers/decoded.h"
 
-namespace gradus {
+namespace gradus::image {
 namespace {
 
 std::string text_of(const char* text) { return text ? text : ""; }
@@ -62,4 +62,4 @@ ImageSource copy_image_source(const GradusImage& desc) {
   return source;
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

@@ -2,7 +2,7 @@
 
 #include "image/image.h"
 
-namespace gradus {
+namespace gradus::image {
 
 uint32_t ImageStore::add(uint64_t key, std::shared_ptr<const Image> image) {
   const auto [entry, is_new] = index_.try_emplace(key, size());
@@ -49,4 +49,4 @@ size_t ImageStore::memory_bytes() const {
   return sum;
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

@@ -16,7 +16,7 @@
 #include "base/types.h"
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::image {
 
 class ColorManager;
 class Image;  // image/image.h: pixels of one image, immutable
@@ -43,7 +43,8 @@ struct ImageSource {
 // Throws Error(INVALID_ARGUMENT), with the image's name, where sizes and data contradict each other.
 ImageSource copy_image_source(const GradusImage& desc);
 
-// Decodes all tiles. What cannot be read becomes magenta and is told by warnings_of(); throws nothing but std::bad_alloc.
+// Decodes all tiles. What cannot be read becomes magenta and is told by warnings_of(); throws nothing but
+// std::bad_alloc.
 std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorManager& color);
 // One text per tile that could not be read (fully), naming the path.
 const std::vector<std::string>& warnings_of(const Image& image);
@@ -59,10 +60,11 @@ class ImageStore {
   uint32_t size() const { return static_cast<uint32_t>(images_.size()); }
   const std::shared_ptr<const Image>& image(uint32_t index) const { return images_[index]; }
 
-  // Scene-linear RGBA as Cycles' image node gives it: alpha is associated (but for CHANNEL_PACKED and NONE); `unassociate` divides
-  // by it, which Cycles does where the node's Alpha output is used. Outside a clipped image, and in absent UDIM tiles: 0 or magenta
-  // as in Cycles. kNone: magenta. Any uv, non-finite ones give the texel at 0.
-  Vec4 lookup(uint32_t index, const Vec2& uv, Interpolation interpolation, Extension extension, bool unassociate = false) const;
+  // Scene-linear RGBA as Cycles' image node gives it: alpha is associated (but for CHANNEL_PACKED and NONE);
+  // `unassociate` divides by it, which Cycles does where the node's Alpha output is used. Outside a clipped image, and
+  // in absent UDIM tiles: 0 or magenta as in Cycles. kNone: magenta. Any uv, non-finite ones give the texel at 0.
+  Vec4 lookup(uint32_t index, const Vec2& uv, Interpolation interpolation, Extension extension,
+              bool unassociate = false) const;
   // Mean colour of all texels, scene-linear.
   Rgb mean(uint32_t index) const;
   // Some texel has alpha below 1.
@@ -79,4 +81,4 @@ class ImageStore {
   std::unordered_map<uint64_t, uint32_t> index_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::image

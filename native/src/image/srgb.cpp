@@ -2,7 +2,7 @@
 
 #include "image/color.h"
 
-namespace gradus {
+namespace gradus::image {
 
 float srgb_to_linear(float encoded) {
   if (encoded <= 0.04045f) {
@@ -18,4 +18,4 @@ float linear_to_srgb(float linear) {
   return 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
-namespace gradus {
+namespace gradus::integrator {
 
 namespace {
 
 // Whose random numbers a pixel takes.
 struct Source {
-  StreamKind kind = StreamKind::Pixel;
+  path::StreamKind kind = path::StreamKind::Pixel;
   int32_t x = 0, y = 0;
   int32_t frame = 0;
   uint32_t seed = 0;
@@ -16,34 +16,44 @@ struct Source {
 };
 
 // A pixel's of the frame itself, or of the one that it replays.
-Source numbers_of(const PathContext& context, const WorkUnit& unit, int32_t x, int32_t y) {
-  const ReplayMap* replayed = unit.replay_map;
-  if (replayed != nullptr) return {StreamKind::Pixel, x, y, replayed->stream_frame, replayed->seed, replayed->shares_jitter};
-  return {StreamKind::Pixel, x, y, context.settings.frame, context.settings.seed, shares_jitter(context.camera, context.scene)};
+Source numbers_of(const path::PathContext& context, const WorkUnit& unit, int32_t x, int32_t y) {
+  const film::ReplayMap* replayed = unit.replay_map;
+  if (replayed != nullptr)
+    return {path::StreamKind::Pixel, x, y, replayed->stream_frame, replayed->seed, replayed->shares_jitter};
+  return {path::StreamKind::Pixel,
+          x,
+          y,
+          context.settings.frame,
+          context.settings.seed,
+          shares_jitter(context.camera, context.scene)};
 }
 
-Source source_of(const PathContext& context, const WorkUnit& unit, const Film& film, int32_t x, int32_t y) {
+Source source_of(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, int32_t x, int32_t y) {
   if (unit.replay_map == nullptr) return numbers_of(context, unit, x, y);
   const int32_t pixel = unit.replay_map->correspondence.pixel[film.index(x, y)];
-  if (pixel == kNoCorrespondence) return {StreamKind::Disocclusion, x, y, context.settings.frame, context.settings.seed};
+  if (pixel == film::kNoCorrespondence)
+    return {path::StreamKind::Disocclusion, x, y, context.settings.frame, context.settings.seed};
   const int32_t width = film.region.width();
   return numbers_of(context, unit, film.region.x0 + pixel % width, film.region.y0 + pixel / width);
 }
 
-Sampler make_sampler(const PathContext& context, const Source& source, StreamKind kind, uint32_t stream, uint32_t number) {
-  return Sampler({source.seed, kind, stream, source.frame, number}, context.settings.independent_sampler != 0);
+path::Sampler make_sampler(const path::PathContext& context, const Source& source, path::StreamKind kind,
+                           uint32_t stream, uint32_t number) {
+  return path::Sampler({source.seed, kind, stream, source.frame, number}, context.settings.independent_sampler != 0);
 }
 
 // Jitter of the cell that holds a pixel.
-Vec2 jitter_of_block(const PathContext& context, const Source& source, uint32_t number) {
-  const uint32_t column = static_cast<uint32_t>(pixel_block_of(source.x)), row = static_cast<uint32_t>(pixel_block_of(source.y));
-  const Sampler sampler = make_sampler(context, source, StreamKind::PixelBlock, (row << 16) ^ (column & 0xffffu), number);
+Vec2 jitter_of_block(const path::PathContext& context, const Source& source, uint32_t number) {
+  const uint32_t column = static_cast<uint32_t>(film::pixel_block_of(source.x)),
+                 row = static_cast<uint32_t>(film::pixel_block_of(source.y));
+  const path::Sampler sampler =
+      make_sampler(context, source, path::StreamKind::PixelBlock, (row << 16) ^ (column & 0xffffu), number);
   return context.filter.sample(sampler.get2(dimension::kFilm));
 }
 
 }  // namespace
 
-uint32_t max_samples(const WorkUnit& unit, const Film& film, const Region& block) {
+uint32_t max_samples(const WorkUnit& unit, const film::Film& film, const Region& block) {
   if (unit.count_map == nullptr) {
     return unit.count;
   }
@@ -56,21 +66,24 @@ uint32_t max_samples(const WorkUnit& unit, const Film& film, const Region& block
   return maximum;
 }
 
-bool shares_rays(const PathContext& context, const WorkUnit& unit, const Film& film, const Region& block) {
-  if (!shares_jitter(context.camera, context.scene) || (unit.replay_map != nullptr && !unit.replay_map->shares_jitter)) return false;
+bool shares_rays(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, const Region& block) {
+  if (!shares_jitter(context.camera, context.scene) || (unit.replay_map != nullptr && !unit.replay_map->shares_jitter))
+    return false;
   for (int32_t y = block.y0; y < block.y1 && unit.replay_map != nullptr; ++y) {
     for (int32_t x = block.x0; x < block.x1; ++x) {
-      if (unit.replay_map->correspondence.pixel[film.index(x, y)] != static_cast<int32_t>(film.index(x, y))) return false;
+      if (unit.replay_map->correspondence.pixel[film.index(x, y)] != static_cast<int32_t>(film.index(x, y)))
+        return false;
     }
   }
   return true;
 }
 
-Vec2 block_jitter(const PathContext& context, const WorkUnit& unit, const Region& block, uint32_t number) {
+Vec2 block_jitter(const path::PathContext& context, const WorkUnit& unit, const Region& block, uint32_t number) {
   return jitter_of_block(context, numbers_of(context, unit, block.x0, block.y0), number);
 }
 
-PixelSample make_pixel_sample(const PathContext& context, const WorkUnit& unit, const Film& film, int32_t x, int32_t y, uint32_t number) {
+PixelSample make_pixel_sample(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, int32_t x,
+                              int32_t y, uint32_t number) {
   const Source source = source_of(context, unit, film, x, y);
   PixelSample sample;
   sample.x = x;
@@ -83,13 +96,15 @@ PixelSample make_pixel_sample(const PathContext& context, const WorkUnit& unit, 
   return sample;
 }
 
-Vec2 pixel_jitter(const PathContext& context, const WorkUnit& unit, const Film& film, const PixelSample& sample) {
+Vec2 pixel_jitter(const path::PathContext& context, const WorkUnit& unit, const film::Film& film,
+                  const PixelSample& sample) {
   const Source source = source_of(context, unit, film, sample.x, sample.y);
   if (source.shares_jitter) return jitter_of_block(context, source, sample.number);
   return context.filter.sample(sample.sampler.get2(dimension::kFilm));
 }
 
-void add_primal(const PathResult& result, const PixelSample& sample, const WorkUnit& unit, Film* film, Counters* counters) {
+void add_primal(const path::PathResult& result, const PixelSample& sample, const WorkUnit& unit, film::Film* film,
+                film::Counters* counters) {
   const uint32_t wanted = unit_components(unit, sample.pixel);
   for (size_t c = 0; c < film->components.size(); ++c) {
     Radiance value = result.radiance[c];
@@ -97,7 +112,7 @@ void add_primal(const PathResult& result, const PixelSample& sample, const WorkU
       value.w = 0.0f;
     }
     if (value != Radiance(0.0f) && (wanted >> c & 1) != 0) {
-      add_radiance(value, &film->components[c].primal[sample.half][sample.pixel], counters);
+      film::add_radiance(value, &film->components[c].primal[sample.half][sample.pixel], counters);
     }
   }
   if (unit.adds_components) return;
@@ -107,4 +122,4 @@ void add_primal(const PathResult& result, const PixelSample& sample, const WorkU
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::integrator

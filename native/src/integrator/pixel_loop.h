@@ -1,26 +1,29 @@
 // From units of work to samples of pixels; the same for all camera-path integrators.
 #pragma once
 
-#include "film/pixel_blocks.h"
 #include "film/finite_check.h"
-#include "path/camera_vertices.h"
+#include "film/pixel_blocks.h"
 #include "integrator/integrator.h"
+#include "path/camera_vertices.h"
 #include "path/trace.h"
 
-namespace gradus {
+namespace gradus::integrator {
 
 struct PixelSample {
   int32_t x = 0, y = 0;
   size_t pixel = 0;     // in the frame's planes
   uint32_t number = 0;  // sample number
   int half = 0;         // even numbers A, odd ones B (contract 1.2)
-  Sampler sampler;
+  path::Sampler sampler;
   Vec2 film = Vec2(0.0f);
-  CameraVertex* first = nullptr;  // what the camera ray meets; nullptr where lens or time set the rays of neighbours apart
+  path::CameraVertex* first =
+      nullptr;  // what the camera ray meets; nullptr where lens or time set the rays of neighbours apart
 };
 
 // Samples that a unit takes of a pixel.
-inline uint32_t unit_count(const WorkUnit& unit, size_t pixel) { return unit.count_map != nullptr ? (*unit.count_map)[pixel] : unit.count; }
+inline uint32_t unit_count(const WorkUnit& unit, size_t pixel) {
+  return unit.count_map != nullptr ? (*unit.count_map)[pixel] : unit.count;
+}
 
 // Bits of the components of which they are.
 inline uint32_t unit_components(const WorkUnit& unit, size_t pixel) {
@@ -40,24 +43,29 @@ inline uint32_t half_count(const WorkUnit& unit, size_t pixel, int half) {
 }
 
 // Most samples that the unit takes of a pixel of the cell.
-uint32_t max_samples(const WorkUnit& unit, const Film& film, const Region& block);
+uint32_t max_samples(const WorkUnit& unit, const film::Film& film, const Region& block);
 // Neither lens nor time set the rays of neighbours apart: the pixels of a cell share their jitter.
-inline bool shares_jitter(const Camera& camera, const Snapshot& scene) { return !camera.has_lens() && !scene.features.has_motion; }
-// All pixels of a cell take their own random numbers, or those of the same pixels of another frame: what shares its jitter shares its rays.
-bool shares_rays(const PathContext& context, const WorkUnit& unit, const Film& film, const Region& block);
+inline bool shares_jitter(const camera::Camera& camera, const scene::Snapshot& scene) {
+  return !camera.has_lens() && !scene.features.has_motion;
+}
+// All pixels of a cell take their own random numbers, or those of the same pixels of another frame: what shares its
+// jitter shares its rays.
+bool shares_rays(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, const Region& block);
 // Offset of such a cell's pixels from their centres, by the filter.
-Vec2 block_jitter(const PathContext& context, const WorkUnit& unit, const Region& block, uint32_t number);
+Vec2 block_jitter(const path::PathContext& context, const WorkUnit& unit, const Region& block, uint32_t number);
 // That of a pixel by itself: where it replays one whose cell shared its jitter, that of the cell.
-Vec2 pixel_jitter(const PathContext& context, const WorkUnit& unit, const Film& film, const PixelSample& sample);
+Vec2 pixel_jitter(const path::PathContext& context, const WorkUnit& unit, const film::Film& film,
+                  const PixelSample& sample);
 // All but its place on the film.
-PixelSample make_pixel_sample(const PathContext& context, const WorkUnit& unit, const Film& film, int32_t x, int32_t y, uint32_t number);
+PixelSample make_pixel_sample(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, int32_t x,
+                              int32_t y, uint32_t number);
 
-// Calls body(PixelSample) for each sample of the unit, until `stop`: cell by cell, in order of sample numbers, over the cell's pixels. Sums
-// of pixels thus do not depend on tiles, threads, or how samples were split over units.
+// Calls body(PixelSample) for each sample of the unit, until `stop`: cell by cell, in order of sample numbers, over the
+// cell's pixels. Sums of pixels thus do not depend on tiles, threads, or how samples were split over units.
 template <class Body>
-void for_each_sample(const PathContext& context, const WorkUnit& unit, const Film& film, CameraVertices* vertices,
-                     const std::atomic<bool>& stop, Body&& body) {
-  for (const Region& block : make_pixel_blocks(unit.tile)) {
+void for_each_sample(const path::PathContext& context, const WorkUnit& unit, const film::Film& film,
+                     path::CameraVertices* vertices, const std::atomic<bool>& stop, Body&& body) {
+  for (const Region& block : film::make_pixel_blocks(unit.tile)) {
     const bool together = shares_rays(context, unit, film, block);
     const uint32_t maximum = max_samples(unit, film, block), first = unit_first(unit, film.index(block.x0, block.y0));
     for (uint32_t i = 0; i < maximum; ++i) {
@@ -77,7 +85,7 @@ void for_each_sample(const PathContext& context, const WorkUnit& unit, const Fil
           if (together) {
             sample.first = vertices->at(x, y);
           }
-          sample.film = pixel_centre(x, y) + (together ? jitter : pixel_jitter(context, unit, film, sample));
+          sample.film = path::pixel_centre(x, y) + (together ? jitter : pixel_jitter(context, unit, film, sample));
           body(sample);
         }
       }
@@ -86,6 +94,7 @@ void for_each_sample(const PathContext& context, const WorkUnit& unit, const Fil
 }
 
 // The primal sample of a pixel goes through the gate.
-void add_primal(const PathResult& result, const PixelSample& sample, const WorkUnit& unit, Film* film, Counters* counters);
+void add_primal(const path::PathResult& result, const PixelSample& sample, const WorkUnit& unit, film::Film* film,
+                film::Counters* counters);
 
-}  // namespace gradus
+}  // namespace gradus::integrator

@@ -7,7 +7,7 @@
 
 #include "base/orthonormal_basis.h"
 
-namespace gradus {
+namespace gradus::light {
 
 namespace {
 
@@ -46,8 +46,8 @@ void set_area(const GradusLight& d, AnalyticLight* light) {
   light->half_height = 0.5f * std::fabs(d.size[1]);
   light->area = (round ? kPi : 4.0f) * light->half_width * light->half_height;
   if (d.spread >= kPi) return;
-  // Falls with the tangent, as behind a grid of slats; scaled so that the flux stays: the integral over the hemisphere of
-  // cos(x) (1 - tan(x)/tan(a)) is (tan(a) - a) / tan(a) of that of cos(x).
+  // Falls with the tangent, as behind a grid of slats; scaled so that the flux stays: the integral over the hemisphere
+  // of cos(x) (1 - tan(x)/tan(a)) is (tan(a) - a) / tan(a) of that of cos(x).
   const float a = 0.5f * std::max(d.spread, kPi / 180.0f);
   light->tan_spread = std::tan(a);
   light->spread_scale = 1.0f / (light->tan_spread - a);
@@ -87,13 +87,15 @@ bool make_analytic_light(const GradusLight& d, const Vec3& origin, AnalyticLight
   if (d.type == GRADUS_LIGHT_POINT || d.type == GRADUS_LIGHT_SPOT) set_round(d, light);
   if (d.type == GRADUS_LIGHT_RECTANGLE || d.type == GRADUS_LIGHT_ELLIPSE) set_area(d, light);
   const bool sized = light->shape != AnalyticLight::Shape::Rectangle && light->shape != AnalyticLight::Shape::Ellipse;
-  return !is_black(light->intensity) && is_finite(light->intensity) && (sized || (light->area > 0.0f && is_finite(light->area)));
+  return !is_black(light->intensity) && is_finite(light->intensity) &&
+         (sized || (light->area > 0.0f && is_finite(light->area)));
 }
 
 LightBounds light_bounds(const AnalyticLight& light) {
   LightBounds b;
   const bool flat = light.shape == AnalyticLight::Shape::Rectangle || light.shape == AnalyticLight::Shape::Ellipse;
-  const Vec3 extent = flat ? glm::abs(light.axis_x) * light.half_width + glm::abs(light.axis_y) * light.half_height : Vec3(light.radius);
+  const Vec3 extent = flat ? glm::abs(light.axis_x) * light.half_width + glm::abs(light.axis_y) * light.half_height
+                           : Vec3(light.radius);
   b.lower = light.position - extent;
   b.upper = light.position + extent;
   b.axis = light.emission_direction;
@@ -111,4 +113,4 @@ LightBounds light_bounds(const AnalyticLight& light) {
   return b;
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

@@ -6,7 +6,7 @@
 #include "light/light_sampling.h"
 #include "light/light_tree.h"
 
-namespace gradus {
+namespace gradus::light {
 
 // In the snapshot's internal space, with what sampling needs worked out.
 struct AnalyticLight {
@@ -25,7 +25,7 @@ struct AnalyticLight {
   Vec3 axis_x{1, 0, 0};
   Vec3 axis_y{0, 1, 0};
   Vec3 emission_direction{0, 0, -1};  // where it shines to
-  Rgb intensity{0.0f};   // point: W/sr; direction: W/m2; all with extent: radiance
+  Rgb intensity{0.0f};                // point: W/sr; direction: W/m2; all with extent: radiance
   float radius = 0.0f;
   float half_width = 0.0f, half_height = 0.0f;
   float area = 0.0f;        // of rectangle, ellipse, disk
@@ -46,13 +46,16 @@ bool make_analytic_light(const GradusLight& desc, const Vec3& origin, AnalyticLi
 // Of lights that are not at infinity.
 LightBounds light_bounds(const AnalyticLight& light);
 
-// A point of the light as sampled from `from`, written to a fresh one; false: it does not shine there. solid_angle: see evaluate_analytic_light().
-bool sample_analytic_light(const AnalyticLight& light, const Vec3& from, const Vec2& u, LightPoint* point, float* solid_angle);
-// Direction, distance, cosine, radiance (material left out), and the density of sample_analytic_light() in solid angle (1 if Dirac).
-// solid_angle: what sample_analytic_light() found from there, so that it need not be found again; 0: the light is sampled in another way.
-// view: a fresh one.
-void evaluate_analytic_light(const AnalyticLight& light, const LightPoint& point, const Vec3& from, const float* solid_angle, LightEvaluation* view);
+// A point of the light as sampled from `from`, written to a fresh one; false: it does not shine there. solid_angle: see
+// evaluate_analytic_light().
+bool sample_analytic_light(const AnalyticLight& light, const Vec3& from, const Vec2& u, LightPoint* point,
+                           float* solid_angle);
+// Direction, distance, cosine, radiance (material left out), and the density of sample_analytic_light() in solid angle
+// (1 if Dirac). solid_angle: what sample_analytic_light() found from there, so that it need not be found again; 0: the
+// light is sampled in another way. view: a fresh one.
+void evaluate_analytic_light(const AnalyticLight& light, const LightPoint& point, const Vec3& from,
+                             const float* solid_angle, LightEvaluation* view);
 // Where a ray crosses a light with extent; false: nowhere between t_min and t_max.
 bool intersect_light(const AnalyticLight& light, const Ray& ray, LightPoint* point, float* distance);
 
-}  // namespace gradus
+}  // namespace gradus::light

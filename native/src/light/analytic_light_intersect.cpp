@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "light/light_table.h"
 #include "base/orthonormal_basis.h"
 #include "light/analytic_light.h"
 #include "light/light_scene.h"
+#include "light/light_table.h"
 #include "light/lit_scene.h"
 
-namespace gradus {
+namespace gradus::light {
 
 namespace {
 
@@ -61,8 +61,9 @@ bool hit_flat(const AnalyticLight& light, const Ray& ray, LightPoint* point, flo
   *distance = glm::dot(light.position - ray.origin, light.emission_direction) / cosine;
   const Vec3 offset = ray.origin + ray.direction * *distance - light.position;
   const float x = glm::dot(offset, light.axis_x), y = glm::dot(offset, light.axis_y);
-  const bool inside = light.shape == AnalyticLight::Shape::Ellipse ? within_ellipse(light, x, y)
-                                                         : int(std::fabs(x) <= light.half_width) & int(std::fabs(y) <= light.half_height);
+  const bool inside = light.shape == AnalyticLight::Shape::Ellipse
+                          ? within_ellipse(light, x, y)
+                          : int(std::fabs(x) <= light.half_width) & int(std::fabs(y) <= light.half_height);
   if (!(int(cosine < 0.0f) & int(*distance > ray.t_min) & int(*distance < ray.t_max) & int(inside))) return false;
   point->normal = light.emission_direction;
   point->position = light.position + offset;
@@ -70,7 +71,8 @@ bool hit_flat(const AnalyticLight& light, const Ray& ray, LightPoint* point, flo
 }
 
 bool hit_cone(const AnalyticLight& light, const Ray& ray, LightPoint* point, float* distance) {
-  if (ray.t_max != kInfinity || !Cone{-light.emission_direction, light.one_minus_cos_sun}.contains(ray.direction)) return false;
+  if (ray.t_max != kInfinity || !Cone{-light.emission_direction, light.one_minus_cos_sun}.contains(ray.direction))
+    return false;
   point->direction = ray.direction;
   *distance = kInfinity;
   return true;
@@ -103,4 +105,4 @@ void intersect_lights(const LitScene& scene, const Ray& ray, std::vector<LightHi
   if (analytic_lights) analytic_lights->intersect(scene.light_table->analytic_lights, ray, hits);
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

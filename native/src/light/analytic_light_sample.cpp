@@ -1,4 +1,5 @@
-// Sampling of lights, and the density with which a given point would be sampled: both from the same receiver-dependent quantities.
+// Sampling of lights, and the density with which a given point would be sampled: both from the same receiver-dependent
+// quantities.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +8,7 @@
 #include "light/analytic_light.h"
 #include "light/spherical_rectangle.h"
 
-namespace gradus {
+namespace gradus::light {
 
 namespace {
 
@@ -23,8 +24,8 @@ float sphere_one_minus_cos(const AnalyticLight& light, const Vec3& to_centre) {
   return sine2 / (1.0f + std::sqrt(1.0f - sine2));
 }
 
-// Normal of the visible side at a point sampled uniformly in solid angle (pbrt-v4 section 6.2.4): by the angle at the centre, because
-// the difference of points would cancel for a small or distant sphere.
+// Normal of the visible side at a point sampled uniformly in solid angle (pbrt-v4 section 6.2.4): by the angle at the
+// centre, because the difference of points would cancel for a small or distant sphere.
 Vec3 sample_visible_normal(const Vec3& axis, float one_minus_cos, const Vec2& u) {
   const float max_sine2 = one_minus_cos * (2.0f - one_minus_cos);
   const float h = u.x * one_minus_cos;
@@ -72,14 +73,18 @@ Vec3 sample_rectangle(const AnalyticLight& light, const Vec3& from, const Vec2& 
   const SphericalRectangle seen = seen_from(light, from);
   *solid_angle = seen.sampled_solid_angle();
   if (seen.usable()) return seen.sample(u);
-  return light.position + light.axis_x * (light.half_width * (2.0f * u.x - 1.0f)) + light.axis_y * (light.half_height * (2.0f * u.y - 1.0f));
+  return light.position + light.axis_x * (light.half_width * (2.0f * u.x - 1.0f)) +
+         light.axis_y * (light.half_height * (2.0f * u.y - 1.0f));
 }
 
-bool in_front(const AnalyticLight& light, const Vec3& from) { return glm::dot(from - light.position, light.emission_direction) > 0.0f; }
+bool in_front(const AnalyticLight& light, const Vec3& from) {
+  return glm::dot(from - light.position, light.emission_direction) > 0.0f;
+}
 
 }  // namespace
 
-bool sample_analytic_light(const AnalyticLight& light, const Vec3& from, const Vec2& u, LightPoint* point, float* solid_angle) {
+bool sample_analytic_light(const AnalyticLight& light, const Vec3& from, const Vec2& u, LightPoint* point,
+                           float* solid_angle) {
   *solid_angle = 0.0f;
   point->kind = LightKind::AnalyticLight;
   point->dirac = light.dirac();
@@ -104,7 +109,8 @@ bool sample_analytic_light(const AnalyticLight& light, const Vec3& from, const V
     case AnalyticLight::Shape::Ellipse: {
       if (!in_front(light, from)) return false;
       const Vec2 d = uniform_disk(u);
-      point->position = light.position + light.axis_x * (light.half_width * d.x) + light.axis_y * (light.half_height * d.y);
+      point->position =
+          light.position + light.axis_x * (light.half_width * d.x) + light.axis_y * (light.half_height * d.y);
       point->normal = light.emission_direction;
       return true;
     }
@@ -151,7 +157,8 @@ void view_sphere(const AnalyticLight& light, const Vec3& normal, const Vec3& fro
   view->radiance = light.intensity * spot_falloff(light, -view->direction);
 }
 
-void view_flat(const AnalyticLight& light, const Vec3& normal, const Vec3& from, const float* solid_angle, LightEvaluation* view) {
+void view_flat(const AnalyticLight& light, const Vec3& normal, const Vec3& from, const float* solid_angle,
+               LightEvaluation* view) {
   const float cosine = -glm::dot(normal, view->direction);
   if (!(cosine > 0.0f) || (light.shape != AnalyticLight::Shape::FacingDisk && !in_front(light, from))) return;
   view->cosine = cosine;
@@ -165,13 +172,15 @@ void view_flat(const AnalyticLight& light, const Vec3& normal, const Vec3& from,
 
 }  // namespace
 
-void evaluate_analytic_light(const AnalyticLight& light, const LightPoint& point, const Vec3& from, const float* solid_angle, LightEvaluation* view) {
+void evaluate_analytic_light(const AnalyticLight& light, const LightPoint& point, const Vec3& from,
+                             const float* solid_angle, LightEvaluation* view) {
   view->casts_shadow = light.casts_shadow;
   view->visibility = light.visibility;
   view->max_bounces = light.max_bounces;
   if (light.at_infinity()) return view_at_infinity(light, point, view);
   Vec3 position = point.position, normal = point.normal;
-  if (light.shape == AnalyticLight::Shape::FacingDisk) position = facing_disk_position(light, from, point.barycentric, &normal);
+  if (light.shape == AnalyticLight::Shape::FacingDisk)
+    position = facing_disk_position(light, from, point.barycentric, &normal);
   const Vec3 to_light = position - from;
   const float distance = glm::length(to_light);
   if (!(distance > 0.0f)) return;
@@ -187,4 +196,4 @@ void evaluate_analytic_light(const AnalyticLight& light, const LightPoint& point
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace gradus {
+namespace gradus::light {
 
 namespace {
 
@@ -50,14 +50,16 @@ Distribution2D::Distribution2D(uint32_t width, uint32_t height, const std::vecto
     const float* v = values.data() + size_t(y) * width;
     sums[y] = cumulate(
         width, [v](uint32_t x) { return double(v[x]); }, conditional_.data() + size_t(y) * (width + 1));
-    for (uint32_t k = 0; k <= kGuides; ++k) guide_[size_t(y) * (kGuides + 1) + k] = find(row(y), width_, float(k) / float(kGuides));
+    for (uint32_t k = 0; k <= kGuides; ++k)
+      guide_[size_t(y) * (kGuides + 1) + k] = find(row(y), width_, float(k) / float(kGuides));
   }
   cumulate(
       height, [&sums](uint32_t y) { return sums[y]; }, marginal_.data());
 }
 
 uint32_t Distribution2D::find_in_row(uint32_t y, float u) const {
-  const uint32_t* guide = guide_.data() + size_t(y) * (kGuides + 1) + std::min(uint32_t(u * float(kGuides)), kGuides - 1);
+  const uint32_t* guide =
+      guide_.data() + size_t(y) * (kGuides + 1) + std::min(uint32_t(u * float(kGuides)), kGuides - 1);
   return guide[0] + find(row(y) + guide[0], guide[1] - guide[0] + 1, u);
 }
 
@@ -72,4 +74,4 @@ float Distribution2D::density(const Vec2& p) const {
   return (row(y)[x + 1] - row(y)[x]) * float(width_) * (marginal_[y + 1] - marginal_[y]) * float(height_);
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

@@ -6,7 +6,7 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::light {
 
 class Distribution2D {
  public:
@@ -24,8 +24,8 @@ class Distribution2D {
   const float* row(uint32_t y) const { return conditional_.data() + size_t(y) * (width_ + 1); }
   uint32_t find_in_row(uint32_t y, float u) const;
 
-  // Steps of u per row for which the cell is known in advance: a search over all of a row waits for memory again and again (Chen and Asau
-  // 1974, "On generating random variates from an empirical distribution").
+  // Steps of u per row for which the cell is known in advance: a search over all of a row waits for memory again and
+  // again (Chen and Asau 1974, "On generating random variates from an empirical distribution").
   static constexpr uint32_t kGuides = 128;
 
   uint32_t width_ = 0, height_ = 0;
@@ -34,4 +34,4 @@ class Distribution2D {
   std::vector<float> marginal_;     // of the rows: height + 1 values
 };
 
-}  // namespace gradus
+}  // namespace gradus::light

@@ -1,14 +1,17 @@
 #include "light/emitter_rays4.h"
 
-namespace gradus {
+namespace gradus::light {
 
-Rays4 rays_to_light(const Lanes3& start, const Points4& from, const Lanes3& direction, const Lanes& distance, const LightPoint& to) {
-  if (to.at_infinity()) return {start, direction, same(kInfinity), from.time};
+geometry::Rays4 rays_to_light(const geometry::Lanes3& start, const geometry::Points4& from,
+                              const geometry::Lanes3& direction, const reconstruct::Lanes& distance,
+                              const LightPoint& to) {
+  if (to.at_infinity()) return {start, direction, geometry::same(kInfinity), from.time};
   if (to.kind == LightKind::Triangle) {
-    const Points4 end{same(to.position), same(to.normal), same(to.error), from.time};
-    return rays_between(start, offset_origins(end, -direction), direction, from.time);
+    const geometry::Points4 end{geometry::same(to.position), geometry::same(to.normal), geometry::same(to.error),
+                                from.time};
+    return geometry::rays_between(start, geometry::offset_origins(end, -direction), direction, from.time);
   }
-  return rays_between(start, from.position + direction * distance, direction, from.time);
+  return geometry::rays_between(start, from.position + direction * distance, direction, from.time);
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

@@ -8,14 +8,14 @@
 
 #include "light/light_sampling.h"
 
-namespace gradus {
+namespace gradus::light {
 
 namespace {
 
 constexpr uint32_t kMinWidth = 16, kMaxWidth = 4096;
-// At most this part of the samples goes to suns: what lies in their shadow has the rest for the sky, but gets most of its noise from
-// surfaces in the sun. Measured for a block on a floor, sun at 35°: variance in the shade 1.34 at a half, 0.88 at 3/4, 0.73 at 7/8, 0.70 at
-// 15/16.
+// At most this part of the samples goes to suns: what lies in their shadow has the rest for the sky, but gets most of
+// its noise from surfaces in the sun. Measured for a block on a floor, sun at 35°: variance in the shade 1.34 at a
+// half, 0.88 at 3/4, 0.73 at 7/8, 0.70 at 15/16.
 constexpr double kMaxSunShare = 0.875;
 // Parts are whole eighths: a net's points fall on both sides in just these numbers.
 constexpr double kParts = 8.0;
@@ -40,7 +40,8 @@ float measure_at(const Environment::Radiance& radiance, const Vec2& p) {
 }
 
 // Mean channel of the radiance in each cell. Returns false when stopped.
-bool measure(const Environment::Radiance& radiance, uint32_t width, uint32_t points, const CancelCheck& cancel, std::vector<float>* out) {
+bool measure(const Environment::Radiance& radiance, uint32_t width, uint32_t points, const CancelCheck& cancel,
+             std::vector<float>* out) {
   const uint32_t height = width / 2;
   const float step = 1.0f / float(points);
   out->assign(size_t(width) * height, 0.0f);
@@ -76,8 +77,8 @@ float mean_over_sphere(const std::vector<float>& values, uint32_t width) {
   return float(sum / weight);
 }
 
-// Weight of a cell: the largest of it and its neighbours, because within a cell the density is constant while the radiance is
-// interpolated; and a little everywhere, so that what the map's points missed can still be found.
+// Weight of a cell: the largest of it and its neighbours, because within a cell the density is constant while the
+// radiance is interpolated; and a little everywhere, so that what the map's points missed can still be found.
 std::vector<float> weights(const std::vector<float>& values, uint32_t width, float mean) {
   const uint32_t height = width / 2;
   std::vector<float> out(values.size());
@@ -117,8 +118,8 @@ float measure_sun(const Environment::Radiance& radiance, const Cone& sun) {
   for (int k = 0; k < kSide * kSide; ++k) {
     const int column = k % kSide, row = k / kSide;
     const Vec3 direction = sun.sample((Vec2(float(column), float(row)) + 0.5f) / float(kSide));
-    const float difference =
-        mean_component(glm::max(radiance(direction), Rgb(0.0f)) - glm::max(radiance(beside_suns({sun}, direction)), Rgb(0.0f)));
+    const float difference = mean_component(glm::max(radiance(direction), Rgb(0.0f)) -
+                                            glm::max(radiance(beside_suns({sun}, direction)), Rgb(0.0f)));
     if (is_finite(difference)) sum += std::clamp(difference, 0.0f, 1e15f);
   }
   return sum / float(kSide * kSide) * sun.solid_angle();
@@ -137,7 +138,8 @@ Environment Environment::uniform(float mean) {
   return world;
 }
 
-void Environment::build(const Radiance& radiance, const std::vector<Cone>& suns, const Resolution& resolution, const CancelCheck& cancel) {
+void Environment::build(const Radiance& radiance, const std::vector<Cone>& suns, const Resolution& resolution,
+                        const CancelCheck& cancel) {
   *this = Environment();
   std::vector<Cone> cones;
   for (const Cone& cone : suns) {
@@ -151,7 +153,8 @@ void Environment::build(const Radiance& radiance, const std::vector<Cone>& suns,
   if (!measure(without_suns, width, std::max(resolution.points, 1u), cancel, &values)) return;
   mean_ = mean_over_sphere(values, width);
   std::erase_if(suns_, [&](const Sun& sun) { return sun.irradiance < kFaintSun * kPi * mean_; });
-  if (mean_ > 0.0f && !is_constant(values)) map_ = std::make_shared<Distribution2D>(width, width / 2, weights(values, width, mean_));
+  if (mean_ > 0.0f && !is_constant(values))
+    map_ = std::make_shared<Distribution2D>(width, width / 2, weights(values, width, mean_));
 }
 
 float Environment::sun_weight(const Sun& sun, const Receiver& receiver) const {
@@ -213,4 +216,4 @@ float Environment::map_density(const Vec3& direction, const Vec2& place) const {
   return map_->density(place) / (2.0f * kPi * kPi * sine);
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

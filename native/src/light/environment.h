@@ -1,4 +1,5 @@
-// Directions of light from the world: an importance map over the sphere, or uniform; and suns, which are too small and bright for a map.
+// Directions of light from the world: an importance map over the sphere, or uniform; and suns, which are too small and
+// bright for a map.
 //
 // One density for all of it: a direction within a sun may have been chosen for either reason.
 #pragma once
@@ -8,11 +9,11 @@
 #include <vector>
 
 #include "base/cancel_check.h"
-#include "base/types.h"
 #include "base/cone.h"
+#include "base/types.h"
 #include "light/distribution.h"
 
-namespace gradus {
+namespace gradus::light {
 
 struct Receiver;
 
@@ -28,9 +29,11 @@ class Environment {
 
   // A world that shines alike from everywhere; mean: of the channels of its radiance.
   static Environment uniform(float mean);
-  // suns: cones that hold little but a sun each; those that shine no more than what lies beside them are left to the map. cancel is polled.
-  // Without a map where the radiance turns out to be constant. black(): there is nothing to sample.
-  void build(const Radiance& radiance, const std::vector<Cone>& suns, const Resolution& resolution, const CancelCheck& cancel);
+  // suns: cones that hold little but a sun each; those that shine no more than what lies beside them are left to the
+  // map. cancel is polled. Without a map where the radiance turns out to be constant. black(): there is nothing to
+  // sample.
+  void build(const Radiance& radiance, const std::vector<Cone>& suns, const Resolution& resolution,
+             const CancelCheck& cancel);
   bool black() const { return mean_ <= 0.0f && suns_.empty(); }
   // Mean over the sphere of the mean channel, without the suns.
   float mean() const { return mean_; }
@@ -40,8 +43,8 @@ class Environment {
 
   // Estimate of the irradiance, to weigh the world against other emitters.
   float irradiance(const Receiver& receiver) const;
-  // place: of the direction on the map, worth keeping: density() is cheap with it. Without a map it means nothing. u.x also chooses between
-  // suns and map: what either gets of well-spread points is well-spread, too.
+  // place: of the direction on the map, worth keeping: density() is cheap with it. Without a map it means nothing. u.x
+  // also chooses between suns and map: what either gets of well-spread points is well-spread, too.
   Vec3 sample(const Receiver& receiver, const Vec2& u, Vec2* place) const;
   Vec2 place_of(const Vec3& direction) const;
   // Solid angle density.
@@ -64,4 +67,4 @@ class Environment {
   std::vector<Sun> suns_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::light

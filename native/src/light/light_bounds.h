@@ -3,11 +3,11 @@
 
 #include "light/light_tree.h"
 
-namespace gradus {
+namespace gradus::light {
 
 LightBounds unite(const LightBounds& a, const LightBounds& b);
-// Surface area orientation heuristic (Conty Estévez and Kulla 2018, section 4.3): area · solid angle of emission · power.
-// stretch: extent of the parent over the extent along the split axis, against thin boxes.
+// Surface area orientation heuristic (Conty Estévez and Kulla 2018, section 4.3): area · solid angle of emission ·
+// power. stretch: extent of the parent over the extent along the split axis, against thin boxes.
 float orientation_cost(const LightBounds& b, float stretch);
 
-}  // namespace gradus
+}  // namespace gradus::light

@@ -10,13 +10,13 @@
 #include "shading/material.h"
 #include "shading/shade.h"
 
-namespace gradus {
+namespace gradus::light {
 
 namespace {
 
 // Light sampling does not know which lobe asks: the Light Path node sees no kind of ray (as in Cycles).
-RayState light_ray(float length) {
-  RayState state;
+shading::RayState light_ray(float length) {
+  shading::RayState state;
   state.flags = 0;
   state.length = length;
   return state;
@@ -28,7 +28,7 @@ Vec2 sample_triangle_area(const Vec2& u) {
 }
 
 // The surface is that of the emissive triangle with this index.
-void set_triangle_point(uint32_t index, const SurfacePoint& surface, LightPoint* point) {
+void set_triangle_point(uint32_t index, const geometry::SurfacePoint& surface, LightPoint* point) {
   point->kind = LightKind::Triangle;
   point->index = index;
   point->instance = surface.hit.instance;
@@ -40,8 +40,8 @@ void set_triangle_point(uint32_t index, const SurfacePoint& surface, LightPoint*
   point->error = surface.error;
 }
 
-// What is found on the way to an emitter point, which is written in place: the probability with which its emitter was chosen (of all, or
-// of its group), and the solid angle in which it was sampled uniformly, 0 if it was not.
+// What is found on the way to an emitter point, which is written in place: the probability with which its emitter was
+// chosen (of all, or of its group), and the solid angle in which it was sampled uniformly, 0 if it was not.
 struct Finding {
   double probability = 1.0;
   float solid_angle = 0.0f;
@@ -52,23 +52,26 @@ void sample_triangle(const LitScene& scene, uint32_t index, const Receiver& rece
   const EmissiveTriangle& t = scene.light_table->triangles[index];
   const std::array<Vec3, 3> corners = scene.corners(t.instance, t.triangle, receiver.time);
   const SphericalTriangle seen(corners, receiver.position);
-  Hit hit;
+  geometry::Hit hit;
   hit.instance = t.instance;
   hit.triangle = t.triangle;
   hit.time = receiver.time;
-  hit.barycentric = seen.usable() ? barycentric_towards(corners, receiver.position, seen.sample(u)) : sample_triangle_area(u);
+  hit.barycentric =
+      seen.usable() ? barycentric_towards(corners, receiver.position, seen.sample(u)) : sample_triangle_area(u);
   set_triangle_point(index, scene.surface_point(hit), point);
   finding->solid_angle = seen.sampled_solid_angle();
 }
 
-void sample_analytic_light_at(const LitScene& scene, uint32_t light, const Receiver& receiver, const Vec2& u, LightPoint* point,
-                    Finding* finding) {
+void sample_analytic_light_at(const LitScene& scene, uint32_t light, const Receiver& receiver, const Vec2& u,
+                              LightPoint* point, Finding* finding) {
   point->index = light;
-  if (!sample_analytic_light(scene.light_table->analytic_lights[light], receiver.position, u, point, &finding->solid_angle)) point->kind = LightKind::None;
+  if (!sample_analytic_light(scene.light_table->analytic_lights[light], receiver.position, u, point,
+                             &finding->solid_angle))
+    point->kind = LightKind::None;
 }
 
-void sample_light_of_tree(const LitScene& scene, uint32_t light, const Receiver& receiver, const Vec2& u, LightPoint* point,
-                          Finding* finding) {
+void sample_light_of_tree(const LitScene& scene, uint32_t light, const Receiver& receiver, const Vec2& u,
+                          LightPoint* point, Finding* finding) {
   const std::vector<uint32_t>& analytic_lights = scene.light_table->tree_lights;
   if (light < analytic_lights.size())
     sample_analytic_light_at(scene, analytic_lights[light], receiver, u, point, finding);
@@ -76,7 +79,8 @@ void sample_light_of_tree(const LitScene& scene, uint32_t light, const Receiver&
     sample_triangle(scene, light - uint32_t(analytic_lights.size()), receiver, u, point, finding);
 }
 
-void sample_suns(const LitScene& scene, const Receiver& receiver, double choice, const Vec2& u, LightPoint* point, Finding* finding) {
+void sample_suns(const LitScene& scene, const Receiver& receiver, double choice, const Vec2& u, LightPoint* point,
+                 Finding* finding) {
   const uint32_t sun = scene.light_table->sample_sun(receiver, choice, &finding->probability);
   sample_analytic_light_at(scene, sun, receiver, u, point, finding);
 }
@@ -86,7 +90,8 @@ void sample_world(const LitScene& scene, const Receiver& receiver, const Vec2& u
   point->direction = scene.light_table->world.sample(receiver, u, &point->barycentric);
 }
 
-void sample_any(const LitScene& scene, const Receiver& receiver, double choice, const Vec2& u, LightPoint* point, Finding* finding) {
+void sample_any(const LitScene& scene, const Receiver& receiver, double choice, const Vec2& u, LightPoint* point,
+                Finding* finding) {
   const LightTable& table = *scene.light_table;
   if (table.is_single_light()) return sample_light_of_tree(scene, 0, receiver, u, point, finding);
   LightChoice room;
@@ -94,7 +99,8 @@ void sample_any(const LitScene& scene, const Receiver& receiver, double choice, 
   const GroupChoice& group = known.group;
   const double rest = choice - group.tree;
   if (group.tree > 0.0 && (rest < 0.0 || group.suns + group.world <= 0.0)) {
-    const uint32_t light = table.tree.sample(receiver, known.cut, std::min(choice / group.tree, 1.0 - 1e-12), &finding->probability);
+    const uint32_t light =
+        table.tree.sample(receiver, known.cut, std::min(choice / group.tree, 1.0 - 1e-12), &finding->probability);
     sample_light_of_tree(scene, light, receiver, u, point, finding);
     finding->probability *= group.tree;
   } else if (group.suns > 0.0 && (rest < group.suns || group.world <= 0.0)) {
@@ -115,14 +121,15 @@ double choice_probability(const LightTable& table, const LightPoint& point, cons
   const GroupChoice& group = known.group;
   if (point.kind == LightKind::World) return group.world;
   const auto lights_in_tree = uint32_t(table.tree_lights.size());
-  if (point.kind == LightKind::Triangle) return group.tree * table.tree.probability(lights_in_tree + point.index, receiver, cut);
+  if (point.kind == LightKind::Triangle)
+    return group.tree * table.tree.probability(lights_in_tree + point.index, receiver, cut);
   const uint32_t slot = table.slot[point.index];
   if (table.analytic_lights[point.index].at_infinity()) return group.suns * table.sun_probability(slot, receiver);
   return group.tree * table.tree.probability(slot, receiver, cut);
 }
 
-SurfacePoint surface_of(const LitScene& scene, const LightPoint& point) {
-  Hit hit;
+geometry::SurfacePoint surface_of(const LitScene& scene, const LightPoint& point) {
+  geometry::Hit hit;
   hit.instance = point.instance;
   hit.triangle = point.triangle;
   hit.barycentric = point.barycentric;
@@ -132,7 +139,7 @@ SurfacePoint surface_of(const LitScene& scene, const LightPoint& point) {
 
 // Emission that is the same everywhere; nullptr: the program has to run.
 const Rgb* constant_emission(const LitScene& scene, const LightPoint& point) {
-  const MaterialData& material = *scene.materials[scene.material_of(point.instance, point.triangle)];
+  const shading::MaterialData& material = *scene.materials[scene.material_of(point.instance, point.triangle)];
   return material.emission_is_constant ? &material.constant_emission : nullptr;
 }
 
@@ -142,11 +149,13 @@ Vec2 spherical(const Vec3& d) {
   return {u, 1.0f - std::acos(std::clamp(d.z, -1.0f, 1.0f)) * kInvPi};
 }
 
-// Coordinates as Cycles has them: 0..1 over an area light, over the directions around a point, over the square that a spot's cone touches.
-Vec2 light_uv(const AnalyticLight& light, const LightPoint& point, const LightShadingPoint& at) {
+// Coordinates as Cycles has them: 0..1 over an area light, over the directions around a point, over the square that a
+// spot's cone touches.
+Vec2 light_uv(const AnalyticLight& light, const LightPoint& point, const shading::LightShadingPoint& at) {
   if (light.half_width > 0.0f && light.half_height > 0.0f) {
     const Vec3 d = point.position - light.position;
-    return 0.5f + 0.5f * Vec2(glm::dot(d, light.axis_x) / light.half_width, glm::dot(d, light.axis_y) / light.half_height);
+    return 0.5f +
+           0.5f * Vec2(glm::dot(d, light.axis_x) / light.half_width, glm::dot(d, light.axis_y) / light.half_height);
   }
   if (light.at_infinity()) return Vec2(0.0f);
   if (!light.is_spot) return spherical(at.normal * at.axes);
@@ -155,19 +164,21 @@ Vec2 light_uv(const AnalyticLight& light, const LightPoint& point, const LightSh
   return d.z < 0.0f && tangent > 0.0f ? 0.5f + 0.5f * Vec2(d) / (-d.z * tangent) : Vec2(0.5f);
 }
 
-Rgb light_emission(const LitScene& scene, const AnalyticLight& light, const LightPoint& point, const LightEvaluation& view) {
+Rgb light_emission(const LitScene& scene, const AnalyticLight& light, const LightPoint& point,
+                   const LightEvaluation& view) {
   if (light.material == UINT32_MAX || is_black(view.radiance)) return Rgb(1.0f);
-  LightShadingPoint at;
+  shading::LightShadingPoint at;
   at.position = point.position;
   at.normal = point.normal == Vec3(0.0f) ? -view.direction : point.normal;
   at.wo = -view.direction;
   at.axes = Mat3(light.axis_x, light.axis_y, -light.emission_direction);
   at.uv = light_uv(light, point, at);
-  return shade_light(scene, light.material, at, light_ray(view.distance));
+  return shading::shade_light(scene, light.material, at, light_ray(view.distance));
 }
 
 float triangle_solid_angle(const LitScene& scene, const LightPoint& point, const Receiver& receiver) {
-  return SphericalTriangle(scene.corners(point.instance, point.triangle, point.time), receiver.position).sampled_solid_angle();
+  return SphericalTriangle(scene.corners(point.instance, point.triangle, point.time), receiver.position)
+      .sampled_solid_angle();
 }
 
 // That of the table is the area at rest.
@@ -198,12 +209,14 @@ void view_world(const LitScene& scene, const LightPoint& point, const Receiver& 
   view->pdf = scene.light_table->world.density(point.direction, point.barycentric, receiver);
 }
 
-// All but the radiance of triangles and world, and the light's program; the density without the choice. solid_angle: in which the point was
-// sampled from there, if that is known.
+// All but the radiance of triangles and world, and the light's program; the density without the choice. solid_angle: in
+// which the point was sampled from there, if that is known.
 void view_geometry(const LitScene& scene, const LightPoint& point, const Receiver& receiver, const float* solid_angle,
                    LightEvaluation* view) {
   std::construct_at(view);
-  if (point.kind == LightKind::AnalyticLight) evaluate_analytic_light(scene.light_table->analytic_lights[point.index], point, receiver.position, solid_angle, view);
+  if (point.kind == LightKind::AnalyticLight)
+    evaluate_analytic_light(scene.light_table->analytic_lights[point.index], point, receiver.position, solid_angle,
+                            view);
   if (point.kind == LightKind::Triangle) view_triangle(scene, point, receiver, solid_angle, view);
   if (point.kind == LightKind::World) view_world(scene, point, receiver, view);
 }
@@ -234,14 +247,15 @@ void shade_view(const LitScene& scene, const LightPoint& point, LightEvaluation*
 
 }  // namespace
 
-Rgb evaluated_radiance(const LitScene& scene, const LightPoint& point, const LightEvaluation& view, const RayState& ray) {
-  if (point.kind == LightKind::World) return shade_world(scene, point.direction, ray);
+Rgb evaluated_radiance(const LitScene& scene, const LightPoint& point, const LightEvaluation& view,
+                       const shading::RayState& ray) {
+  if (point.kind == LightKind::World) return shading::shade_world(scene, point.direction, ray);
   if (const Rgb* constant = constant_emission(scene, point)) return *constant;
-  return shade_emission(scene, surface_of(scene, point), -view.direction, ray);
+  return shading::shade_emission(scene, surface_of(scene, point), -view.direction, ray);
 }
 
 void sample_light_point(const LitScene& scene, const Receiver& receiver, float choice, const Vec2& u, LightPoint* point,
-                    LightEvaluation* view) {
+                        LightEvaluation* view) {
   std::construct_at(point);  // assignment would make it on the stack, and copy it
   Finding finding;
   sample_any(scene, receiver, choice, u, point, &finding);
@@ -269,7 +283,7 @@ float light_point_pdf(const LitScene& scene, const LightPoint& point, const Rece
   return view.pdf;
 }
 
-LightPoint light_point_of_surface(const LitScene& scene, const SurfacePoint& surface) {
+LightPoint light_point_of_surface(const LitScene& scene, const geometry::SurfacePoint& surface) {
   const uint32_t index = scene.light_table->find_triangle(surface.hit.instance, surface.hit.triangle);
   LightPoint point;
   if (index != UINT32_MAX) set_triangle_point(index, surface, &point);
@@ -285,17 +299,18 @@ LightPoint light_point_of_world(const LitScene& scene, const Vec3& direction) {
   return point;
 }
 
-Ray ray_to_light(const Vec3& start, const SurfacePoint& from, const LightPoint& to, const LightEvaluation& view) {
+Ray ray_to_light(const Vec3& start, const geometry::SurfacePoint& from, const LightPoint& to,
+                 const LightEvaluation& view) {
   if (to.at_infinity()) return Ray{start, 0.0f, view.direction, kInfinity, from.hit.time};
   Vec3 target = from.position + view.direction * view.distance;
   if (to.kind == LightKind::Triangle) {
-    SurfacePoint end;
+    geometry::SurfacePoint end;
     end.position = to.position;
     end.geometric_normal = to.normal;
     end.error = to.error;
-    target = offset_origin(end, -view.direction);
+    target = geometry::offset_origin(end, -view.direction);
   }
-  return ray_between(start, target, view.direction, from.hit.time);
+  return geometry::ray_between(start, target, view.direction, from.hit.time);
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

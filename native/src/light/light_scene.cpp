@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 
-namespace gradus {
+namespace gradus::light {
 
 namespace {
 
@@ -17,7 +17,8 @@ bool before(const LightHit& a, const LightHit& b) {
   return a.distance != b.distance ? a.distance < b.distance : a.point.index < b.point.index;
 }
 
-void try_light(const std::vector<AnalyticLight>& analytic_lights, uint32_t index, const Ray& ray, std::vector<LightHit>* hits) {
+void try_light(const std::vector<AnalyticLight>& analytic_lights, uint32_t index, const Ray& ray,
+               std::vector<LightHit>* hits) {
   LightHit hit{};
   if (!intersect_light(analytic_lights[index], ray, &hit.point, &hit.distance)) return;
   hit.point.index = index;
@@ -54,7 +55,8 @@ void meet_light(const RTCIntersectFunctionNArguments* args) {
 
 }  // namespace
 
-LightScene::LightScene(const EmbreeDevice& device, const std::vector<AnalyticLight>& analytic_lights) : device_(device) {
+LightScene::LightScene(const geometry::EmbreeDevice& device, const std::vector<AnalyticLight>& analytic_lights)
+    : device_(device) {
   for (uint32_t i = 0; i < analytic_lights.size(); ++i)
     if (analytic_lights[i].found_by_rays()) (analytic_lights[i].at_infinity() ? listed_ : placed_).push_back(i);
   if (placed_.size() <= kMaxListed) {
@@ -83,14 +85,16 @@ LightScene::~LightScene() {
   if (scene_) rtcReleaseScene(scene_);
 }
 
-void LightScene::intersect(const std::vector<AnalyticLight>& analytic_lights, const Ray& ray, std::vector<LightHit>* hits) const {
+void LightScene::intersect(const std::vector<AnalyticLight>& analytic_lights, const Ray& ray,
+                           std::vector<LightHit>* hits) const {
   if (!is_finite(ray.origin) || !is_finite(ray.direction) || !(ray.t_min < ray.t_max)) return;
   for (const uint32_t i : listed_) try_light(analytic_lights, i, ray, hits);
   if (scene_) trace_placed(analytic_lights, ray, hits);
   if (hits->size() > 1) std::sort(hits->begin(), hits->end(), before);
 }
 
-void LightScene::trace_placed(const std::vector<AnalyticLight>& analytic_lights, const Ray& ray, std::vector<LightHit>* hits) const {
+void LightScene::trace_placed(const std::vector<AnalyticLight>& analytic_lights, const Ray& ray,
+                              std::vector<LightHit>* hits) const {
   Query query{{}, &analytic_lights, &placed_, &ray, hits};
   rtcInitIntersectContext(&query.context);
   RTCRayHit r{};
@@ -103,4 +107,4 @@ void LightScene::trace_placed(const std::vector<AnalyticLight>& analytic_lights,
   rtcIntersect1(scene_, &query.context, &r);
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

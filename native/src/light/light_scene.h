@@ -9,11 +9,11 @@
 
 struct RTCSceneTy;
 
-namespace gradus {
+namespace gradus::light {
 
 class LightScene {
  public:
-  LightScene(const EmbreeDevice& device, const std::vector<AnalyticLight>& analytic_lights);
+  LightScene(const geometry::EmbreeDevice& device, const std::vector<AnalyticLight>& analytic_lights);
   ~LightScene();
   LightScene(const LightScene&) = delete;
   LightScene& operator=(const LightScene&) = delete;
@@ -21,11 +21,12 @@ class LightScene {
   void intersect(const std::vector<AnalyticLight>& analytic_lights, const Ray& ray, std::vector<LightHit>* hits) const;
 
  private:
-  void trace_placed(const std::vector<AnalyticLight>& analytic_lights, const Ray& ray, std::vector<LightHit>* hits) const;
-  EmbreeDevice device_;
+  void trace_placed(const std::vector<AnalyticLight>& analytic_lights, const Ray& ray,
+                    std::vector<LightHit>* hits) const;
+  geometry::EmbreeDevice device_;
   std::vector<uint32_t> listed_;  // suns, and all lights while they are few
   std::vector<uint32_t> placed_;  // primitives of the scene
   RTCSceneTy* scene_ = nullptr;
 };
 
-}  // namespace gradus
+}  // namespace gradus::light

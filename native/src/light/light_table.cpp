@@ -5,7 +5,7 @@
 
 #include "base/cone.h"
 
-namespace gradus {
+namespace gradus::light {
 
 namespace {
 
@@ -13,7 +13,8 @@ namespace {
 constexpr double kDefensive = 0.2;
 
 float sun_importance(float irradiance, const AnalyticLight& sun, const Receiver& receiver) {
-  return irradiance * Cone{-sun.emission_direction, sun.one_minus_cos_sun}.highest_cosine(receiver.normal, receiver.transmits);
+  return irradiance *
+         Cone{-sun.emission_direction, sun.one_minus_cos_sun}.highest_cosine(receiver.normal, receiver.transmits);
 }
 
 double defended(double weight, double sum, int groups) {
@@ -67,9 +68,11 @@ uint32_t LightTable::sample_sun(const Receiver& receiver, double u, double* prob
 }
 
 uint32_t LightTable::find_triangle(uint32_t instance, uint32_t triangle) const {
-  const auto first = triangles.begin() + first_triangle[instance], last = triangles.begin() + first_triangle[instance + 1];
-  const auto found = std::lower_bound(first, last, triangle, [](const EmissiveTriangle& t, uint32_t id) { return t.triangle < id; });
+  const auto first = triangles.begin() + first_triangle[instance],
+             last = triangles.begin() + first_triangle[instance + 1];
+  const auto found =
+      std::lower_bound(first, last, triangle, [](const EmissiveTriangle& t, uint32_t id) { return t.triangle < id; });
   return found != last && found->triangle == triangle ? uint32_t(found - triangles.begin()) : UINT32_MAX;
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

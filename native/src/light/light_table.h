@@ -4,15 +4,18 @@
 #include <memory>
 #include <vector>
 
-#include "light/environment.h"
 #include "light/analytic_light.h"
+#include "light/environment.h"
 #include "light/light_tree.h"
 
 namespace gradus {
+class CommitMonitor;
+}  // namespace gradus
+
+namespace gradus::light {
 
 class LightScene;  // light/light_scene.h
-class CommitMonitor;
-struct WorldMap;  // light/world_map.h
+struct WorldMap;   // light/world_map.h
 
 struct EmissiveTriangle {
   uint32_t instance = 0;
@@ -37,19 +40,19 @@ struct LightTable {
   std::vector<AnalyticLight> analytic_lights;
   std::vector<EmissiveTriangle> triangles;  // instance after instance, ascending
   std::vector<uint32_t> first_triangle;     // of each instance, in `triangles`; one more at the end
-  std::vector<uint32_t> beyond_limit;       // instances with more triangles than there was room for: found by rays alone
-  LightTree tree;                           // lights: those of tree_lights, then the triangles
-  std::vector<uint32_t> tree_lights;         // lights that are not at infinity
-  std::vector<uint32_t> suns;               // lights that are
-  std::vector<uint32_t> slot;               // of each light, in tree_lights or suns
-  std::vector<float> sun_irradiance;        // of each sun
+  std::vector<uint32_t> beyond_limit;  // instances with more triangles than there was room for: found by rays alone
+  LightTree tree;                      // lights: those of tree_lights, then the triangles
+  std::vector<uint32_t> tree_lights;   // lights that are not at infinity
+  std::vector<uint32_t> suns;          // lights that are
+  std::vector<uint32_t> slot;          // of each light, in tree_lights or suns
+  std::vector<float> sun_irradiance;   // of each sun
   Environment world;
   std::shared_ptr<const LightScene> lights_with_extent;
 
   // There is nothing to choose.
   bool is_single_light() const { return tree.size() == 1 && suns.empty() && world.black(); }
-  // The choice for a receiver, from its memo if that has it; room: where else to work it out. A vertex is asked by its own light sample,
-  // for the weight of what its ray finds, and by the offsets of its pixel's neighbours.
+  // The choice for a receiver, from its memo if that has it; room: where else to work it out. A vertex is asked by its
+  // own light sample, for the weight of what its ray finds, and by the offsets of its pixel's neighbours.
   const LightChoice& choose(const Receiver& receiver, LightChoice* room) const;
   // Of one sun among the suns.
   double sun_probability(size_t sun, const Receiver& receiver) const;
@@ -64,9 +67,9 @@ struct LightTable {
   double irradiance_of_suns(const Receiver& receiver) const;
 };
 
-// The scene is complete but for its emitters. lights_with_extent is left to the caller. world: what the commit before left, which this
-// one brings up to date. Throws Error CANCELLED.
-std::shared_ptr<LightTable> build_light_table(const LitScene& scene, std::vector<AnalyticLight> analytic_lights, WorldMap* world,
-                                             const CommitMonitor& monitor);
+// The scene is complete but for its emitters. lights_with_extent is left to the caller. world: what the commit before
+// left, which this one brings up to date. Throws Error CANCELLED.
+std::shared_ptr<LightTable> build_light_table(const LitScene& scene, std::vector<AnalyticLight> analytic_lights,
+                                              WorldMap* world, const CommitMonitor& monitor);
 
-}  // namespace gradus
+}  // namespace gradus::light

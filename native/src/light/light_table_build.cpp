@@ -4,16 +4,16 @@
 
 #include <tbb/parallel_for.h>
 
-#include "light/light_table.h"
-#include "light/light_bounds.h"
-#include "geometry/mesh.h"
 #include "base/commit_monitor.h"
+#include "geometry/mesh.h"
+#include "light/light_bounds.h"
+#include "light/light_table.h"
 #include "light/lit_scene.h"
 #include "light/world_map.h"
 #include "shading/material.h"
 #include "shading/shade.h"
 
-namespace gradus {
+namespace gradus::light {
 
 namespace {
 
@@ -22,9 +22,11 @@ constexpr size_t kMaxTriangles = 4u << 20;
 // Triangles whose textured emission is measured point by point; beyond, the material's estimate serves for all.
 constexpr size_t kMaxMeasured = 1u << 19;
 
-bool is_light(const MaterialData* material) { return material && material->emits && material->sample_as_light; }
+bool is_light(const shading::MaterialData* material) {
+  return material && material->emits && material->sample_as_light;
+}
 
-bool any_light(const LitScene& scene, const InstanceData& instance) {
+bool any_light(const LitScene& scene, const geometry::InstanceData& instance) {
   if (instance.materials.empty()) return is_light(scene.materials[0].get());
   return std::any_of(instance.materials.begin(), instance.materials.end(),
                      [&](uint32_t m) { return is_light(scene.materials[m].get()); });
@@ -34,7 +36,7 @@ void find_triangles(const LitScene& scene, const CommitMonitor& monitor, LightTa
   std::vector<EmissiveTriangle>& triangles = table->triangles;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     table->first_triangle.push_back(uint32_t(triangles.size()));
-    const InstanceData& instance = scene.instances[i];
+    const geometry::InstanceData& instance = scene.instances[i];
     if (!any_light(scene, instance)) continue;
     if (triangles.size() + instance.mesh->triangle_count > kMaxTriangles) {
       table->beyond_limit.push_back(i);
@@ -54,17 +56,18 @@ void find_triangles(const LitScene& scene, const CommitMonitor& monitor, LightTa
 // Mean radiance of a triangle over four points and both sides.
 float measure_radiance(const LitScene& scene, const EmissiveTriangle& triangle) {
   constexpr float kPoints[4][2] = {{1 / 3.0f, 1 / 3.0f}, {0.15f, 0.15f}, {0.7f, 0.15f}, {0.15f, 0.7f}};
-  RayState state;
+  shading::RayState state;
   state.flags = 0;
   float sum = 0.0f;
   for (const auto& b : kPoints) {
-    Hit hit;
+    geometry::Hit hit;
     hit.instance = triangle.instance;
     hit.triangle = triangle.triangle;
     hit.barycentric = Vec2(b[0], b[1]);
-    const SurfacePoint point = scene.surface_point(hit);
+    const geometry::SurfacePoint point = scene.surface_point(hit);
     for (const float side : {1.0f, -1.0f}) {
-      const float value = mean_component(glm::abs(shade_emission(scene, point, point.geometric_normal * side, state)));
+      const float value =
+          mean_component(glm::abs(shading::shade_emission(scene, point, point.geometric_normal * side, state)));
       if (is_finite(value)) sum += std::min(value, 1e30f);
     }
   }
@@ -72,7 +75,7 @@ float measure_radiance(const LitScene& scene, const EmissiveTriangle& triangle) 
 }
 
 float radiance_estimate(const LitScene& scene, const EmissiveTriangle& triangle, bool measure) {
-  const MaterialData& material = *scene.materials[scene.material_of(triangle.instance, triangle.triangle)];
+  const shading::MaterialData& material = *scene.materials[scene.material_of(triangle.instance, triangle.triangle)];
   if (material.emission_is_constant) return mean_component(glm::abs(material.constant_emission));
   if (!measure) return std::max(material.emission_estimate, 1e-6f);
   // The points may all lie on dark texels: keep a part of the estimate for the whole material.
@@ -91,7 +94,8 @@ LightBounds bounds_of_corners(const std::array<Vec3, 3>& p) {
   return b;
 }
 
-// All places where it is while the shutter is open, as far as a few moments tell: only the choice among lights depends on them.
+// All places where it is while the shutter is open, as far as a few moments tell: only the choice among lights depends
+// on them.
 LightBounds triangle_bounds(const LitScene& scene, const EmissiveTriangle& triangle, bool measure) {
   constexpr int kMoments = 5;
   const bool moves = scene.instances[triangle.instance].moves();
@@ -108,10 +112,12 @@ std::vector<LightBounds> all_bounds(const LitScene& scene, const LightTable& tab
   const size_t analytic_lights = bounds.size();
   bounds.resize(analytic_lights + table.triangles.size());
   const bool measure = table.triangles.size() <= kMaxMeasured;
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, table.triangles.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
-    if (!monitor.is_running()) return;
-    for (size_t i = range.begin(); i < range.end(); ++i) bounds[analytic_lights + i] = triangle_bounds(scene, table.triangles[i], measure);
-  });
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, table.triangles.size(), 1024),
+                    [&](const tbb::blocked_range<size_t>& range) {
+                      if (!monitor.is_running()) return;
+                      for (size_t i = range.begin(); i < range.end(); ++i)
+                        bounds[analytic_lights + i] = triangle_bounds(scene, table.triangles[i], measure);
+                    });
   monitor.check();
   return bounds;
 }
@@ -131,8 +137,8 @@ void sort_lights(LightTable* table) {
 
 }  // namespace
 
-std::shared_ptr<LightTable> build_light_table(const LitScene& scene, std::vector<AnalyticLight> analytic_lights, WorldMap* world,
-                                             const CommitMonitor& monitor) {
+std::shared_ptr<LightTable> build_light_table(const LitScene& scene, std::vector<AnalyticLight> analytic_lights,
+                                              WorldMap* world, const CommitMonitor& monitor) {
   auto table = std::make_shared<LightTable>();
   table->analytic_lights = std::move(analytic_lights);
   sort_lights(table.get());
@@ -143,4 +149,4 @@ std::shared_ptr<LightTable> build_light_table(const LitScene& scene, std::vector
   return table;
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gradus {
+namespace gradus::light {
 
 namespace {
 
@@ -13,8 +13,12 @@ constexpr double kDefensive = 0.2;
 float sine(float cosine) { return std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)); }
 
 // cos and sin of max(0, a - b).
-float cos_difference(float sin_a, float cos_a, float sin_b, float cos_b) { return cos_a > cos_b ? 1.0f : cos_a * cos_b + sin_a * sin_b; }
-float sin_difference(float sin_a, float cos_a, float sin_b, float cos_b) { return cos_a > cos_b ? 0.0f : sin_a * cos_b - cos_a * sin_b; }
+float cos_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
+  return cos_a > cos_b ? 1.0f : cos_a * cos_b + sin_a * sin_b;
+}
+float sin_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
+  return cos_a > cos_b ? 0.0f : sin_a * cos_b - cos_a * sin_b;
+}
 
 // Largest cosine at the receiver towards the bounding sphere, whose half angle is given.
 float receiver_cosine(const Receiver& receiver, const Vec3& to_light, float sin_b, float cos_b) {
@@ -49,7 +53,8 @@ float LightTree::importance(const Node& node, const Receiver& receiver) {
   return node.power * std::max(cos_light, 0.0f) * at_receiver / distance2;
 }
 
-// Where neither child seems to reach the receiver, by power: the sample will be black, but the probabilities still sum to one.
+// Where neither child seems to reach the receiver, by power: the sample will be black, but the probabilities still sum
+// to one.
 double LightTree::first_probability(const Node& node, const Receiver& receiver) const {
   const Node& a = nodes_[node.child];
   const Node& b = nodes_[node.child + 1];
@@ -61,7 +66,8 @@ double LightTree::first_probability(const Node& node, const Receiver& receiver) 
   return x + y > 0.0 && std::isfinite(x + y) ? x / (x + y) : 0.5;
 }
 
-// Their splitting heuristic (section 5.4), which looks at how much 1/d² varies within the node, comes down to such a ratio.
+// Their splitting heuristic (section 5.4), which looks at how much 1/d² varies within the node, comes down to such a
+// ratio.
 bool LightTree::is_near(const Node& node, const Receiver& receiver) {
   constexpr float kNear = 2.0f;  // radii
   const Vec3 to_light = node.centre - receiver.position;
@@ -78,7 +84,8 @@ void LightTree::refine(const Receiver& receiver, Cut* cut) const {
       const Node& node = nodes_[cut_node.node];
       if (!is_near(node, receiver)) continue;
       if (cut->count_ == Cut::kMax) return;
-      cut->cut_nodes_[size_t(cut->count_++)] = {node.child + 1, cut_node.depth + 1, cut_node.trail | (uint64_t(1) << cut_node.depth), 0.0f};
+      cut->cut_nodes_[size_t(cut->count_++)] = {node.child + 1, cut_node.depth + 1,
+                                                cut_node.trail | (uint64_t(1) << cut_node.depth), 0.0f};
       cut_node = {node.child, cut_node.depth + 1, cut_node.trail, 0.0f};
       found = true;
     }
@@ -124,7 +131,8 @@ void LightTree::cut(const Receiver& receiver, Cut* cut) const {
 uint32_t LightTree::sample(const Receiver& receiver, const Cut& cut, double u, double* probability) const {
   double x = u * cut.total();
   int i = 0;
-  for (; i + 1 < cut.count_ && x >= double(cut.cut_nodes_[size_t(i)].weight); ++i) x -= double(cut.cut_nodes_[size_t(i)].weight);
+  for (; i + 1 < cut.count_ && x >= double(cut.cut_nodes_[size_t(i)].weight); ++i)
+    x -= double(cut.cut_nodes_[size_t(i)].weight);
   const double weight = double(cut.cut_nodes_[size_t(i)].weight);
   u = std::min(x / weight, 1.0 - 1e-12);
   *probability = weight / cut.total();
@@ -142,7 +150,9 @@ uint32_t LightTree::sample(const Receiver& receiver, const Cut& cut, double u, d
 
 double LightTree::probability(uint32_t light, const Receiver& receiver, const Cut& cut) const {
   const uint64_t trail = trails_[light];
-  const auto holds = [&](const Cut::CutNode& cut_node) { return ((trail ^ cut_node.trail) & ((uint64_t(1) << cut_node.depth) - 1)) == 0; };
+  const auto holds = [&](const Cut::CutNode& cut_node) {
+    return ((trail ^ cut_node.trail) & ((uint64_t(1) << cut_node.depth) - 1)) == 0;
+  };
   const auto end = cut.cut_nodes_.begin() + cut.count_;
   const auto cut_node = std::find_if(cut.cut_nodes_.begin(), end, holds);
   if (cut_node == end) return 0.0;
@@ -156,4 +166,4 @@ double LightTree::probability(uint32_t light, const Receiver& receiver, const Cu
   return product;
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

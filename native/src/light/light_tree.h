@@ -1,9 +1,11 @@
-// Choice of one emitter among many: a binary tree whose nodes bound where, how strongly and in which directions their emitters shine.
+// Choice of one emitter among many: a binary tree whose nodes bound where, how strongly and in which directions their
+// emitters shine.
 //
-// Conty Estévez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting" (HPG 2018). Where they split, and take a light
-// from each part, one part is chosen here: near nodes, whose bounds say little, are refined until what is left is a cut through the tree,
-// of which one node is taken in proportion to its bound, and so on to a leaf. That has the variance of splitting at the price of one shadow
-// ray, and one probability for each emitter, which can be asked for any receiver, because its path from the root is stored.
+// Conty Estévez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting" (HPG 2018). Where they
+// split, and take a light from each part, one part is chosen here: near nodes, whose bounds say little, are refined
+// until what is left is a cut through the tree, of which one node is taken in proportion to its bound, and so on to a
+// leaf. That has the variance of splitting at the price of one shadow ray, and one probability for each emitter, which
+// can be asked for any receiver, because its path from the root is stored.
 #pragma once
 
 #include <array>
@@ -13,7 +15,7 @@
 #include "base/types.h"
 #include "light/light_sampling.h"
 
-namespace gradus {
+namespace gradus::light {
 
 // Bounds of one emitter or of a group.
 struct LightBounds {
@@ -36,12 +38,14 @@ class LightTree {
   // Nodes that hold all lights that can reach a receiver, each light once.
   class Cut {
    public:
-    // Estimate of the irradiance of all lights together, to weigh the tree against other emitters; 0: none can reach the receiver.
+    // Estimate of the irradiance of all lights together, to weigh the tree against other emitters; 0: none can reach
+    // the receiver.
     double irradiance() const { return sum_; }
 
    private:
     friend class LightTree;
-    // Relative variance of the choice among 10,000 lights over a plane: 0.72 with 32, 0.21 with 48 (before kDefensive), 7.7 without a cut.
+    // Relative variance of the choice among 10,000 lights over a plane: 0.72 with 32, 0.21 with 48 (before
+    // kDefensive), 7.7 without a cut.
     static constexpr int kMax = 48;
     struct CutNode {
       uint32_t node;
@@ -67,8 +71,12 @@ class LightTree {
   uint32_t sample(const Receiver& receiver, const Cut& cut, double u, double* probability) const;
   // Probability that sample() gives `light`: the same bits. Over all lights it sums to one.
   double probability(uint32_t light, const Receiver& receiver, const Cut& cut) const;
-  uint32_t sample(const Receiver& receiver, double u, double* probability) const { return sample(receiver, cut(receiver), u, probability); }
-  double probability(uint32_t light, const Receiver& receiver) const { return probability(light, receiver, cut(receiver)); }
+  uint32_t sample(const Receiver& receiver, double u, double* probability) const {
+    return sample(receiver, cut(receiver), u, probability);
+  }
+  double probability(uint32_t light, const Receiver& receiver) const {
+    return probability(light, receiver, cut(receiver));
+  }
 
  private:
   // Bounds as importance() needs them, 48 bytes; the two children of a node are neighbours.
@@ -96,4 +104,4 @@ class LightTree {
   std::vector<uint64_t> trails_;  // of each light: bit i = second child at depth i
 };
 
-}  // namespace gradus
+}  // namespace gradus::light

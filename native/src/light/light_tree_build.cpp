@@ -7,7 +7,7 @@
 
 #include "light/light_bounds.h"
 
-namespace gradus {
+namespace gradus::light {
 
 // Top-down, by the cheapest of kBuckets - 1 planes in each of three directions.
 struct LightTree::Builder {
@@ -136,4 +136,4 @@ void LightTree::build(const std::vector<LightBounds>& lights, const CancelCheck&
   builder.build(0, 0, uint32_t(lights.size()), 0, 0);
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

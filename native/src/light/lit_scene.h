@@ -5,14 +5,14 @@
 
 #include "shading/shaded_scene.h"
 
-namespace gradus {
+namespace gradus::light {
 
 struct LightTable;  // light/light_table.h: analytic lights, emissive triangles, environment distribution, their choice
 
 // A shaded scene with its emitters. Functions that sample or evaluate light take this part of a snapshot.
-class LitScene : public ShadedScene {
+class LitScene : public shading::ShadedScene {
  public:
   std::shared_ptr<const LightTable> light_table;
 };
 
-}  // namespace gradus
+}  // namespace gradus::light

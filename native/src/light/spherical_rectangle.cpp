@@ -6,13 +6,14 @@
 
 #include "base/trigonometry.h"
 
-namespace gradus {
+namespace gradus::light {
 
 namespace {
 
 float sine_of(float cosine) { return std::sqrt(std::max(0.0f, (1.0f - cosine) * (1.0f + cosine))); }
 
-// A complex number whose argument is the solid angle of the rectangle from the foot of the perpendicular, of length z, to (x, y).
+// A complex number whose argument is the solid angle of the rectangle from the foot of the perpendicular, of length z,
+// to (x, y).
 std::complex<double> corner(double x, double y, double z) { return {z * std::sqrt(x * x + y * y + z * z), x * y}; }
 
 // a·b by components: finite numbers need no more.
@@ -20,10 +21,12 @@ std::complex<double> times(const std::complex<double>& a, const std::complex<dou
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
-// The four corners' angles, atan(xy / (z·sqrt(x²+y²+z²))), add up with alternating signs to one in (0, 2π): a single arctangent of the
-// product. About 0 rounding decides the sign, so that what is nearly all of the hemisphere counts as nothing, too.
+// The four corners' angles, atan(xy / (z·sqrt(x²+y²+z²))), add up with alternating signs to one in (0, 2π): a single
+// arctangent of the product. About 0 rounding decides the sign, so that what is nearly all of the hemisphere counts as
+// nothing, too.
 float solid_angle_of(float x0, float x1, float y0, float y1, float z) {
-  const std::complex<double> plus = times(corner(x1, y1, z), corner(x0, y0, z)), minus = times(corner(x0, y1, z), corner(x1, y0, z));
+  const std::complex<double> plus = times(corner(x1, y1, z), corner(x0, y0, z)),
+                             minus = times(corner(x0, y1, z), corner(x1, y0, z));
   const std::complex<double> all = times(plus, std::conj(minus));
   const double angle = angle_of(all.real(), all.imag());
   constexpr double whole_turn = 6.28318530717958647692;
@@ -32,8 +35,8 @@ float solid_angle_of(float x0, float x1, float y0, float y1, float z) {
 
 }  // namespace
 
-SphericalRectangle::SphericalRectangle(const Vec3& centre, const Vec3& axis_x, const Vec3& axis_y, float half_width, float half_height,
-                                       const Vec3& from)
+SphericalRectangle::SphericalRectangle(const Vec3& centre, const Vec3& axis_x, const Vec3& axis_y, float half_width,
+                                       float half_height, const Vec3& from)
     : from_(from), x_(axis_x), y_(axis_y), z_(glm::cross(axis_x, axis_y)) {
   const Vec3 d = centre - from;
   // The plane lies at negative z of the local frame.
@@ -54,8 +57,8 @@ Vec3 SphericalRectangle::sample(const Vec2& u) const {
   // z components of the unit normals of the four planes through the point and an edge; the others follow from them.
   const float n0 = -y0_ / std::sqrt(z0_ * z0_ + y0_ * y0_), n2 = y1_ / std::sqrt(z0_ * z0_ + y1_ * y1_);
   const float n3 = -x0_ / std::sqrt(z0_ * z0_ + x0_ * x0_);
-  // The paper's angle is a share of the solid angle less two angles at corners, whose cosines are known: addition theorems need no
-  // inverse functions.
+  // The paper's angle is a share of the solid angle less two angles at corners, whose cosines are known: addition
+  // theorems need no inverse functions.
   const float cos_a = -n2 * n3, cos_b = -n3 * n0;
   const float sin_a = sine_of(cos_a), sin_b = sine_of(cos_b);
   const float cos_ab = cos_a * cos_b - sin_a * sin_b, sin_ab = sin_a * cos_b + cos_a * sin_b;
@@ -72,4 +75,4 @@ Vec3 SphericalRectangle::sample(const Vec2& u) const {
   return from_ + x_ * xu + y_ * yv + z_ * z0_;
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

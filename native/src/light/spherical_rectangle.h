@@ -4,12 +4,13 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::light {
 
 class SphericalRectangle {
  public:
   // axis_x, axis_y: unit, at right angles.
-  SphericalRectangle(const Vec3& centre, const Vec3& axis_x, const Vec3& axis_y, float half_width, float half_height, const Vec3& from);
+  SphericalRectangle(const Vec3& centre, const Vec3& axis_x, const Vec3& axis_y, float half_width, float half_height,
+                     const Vec3& from);
   // The sampling of small solid angles cancels in float, and there sampling by area is as good.
   static constexpr float kSmallestSolidAngle = 1e-3f;
   bool usable() const { return solid_angle_ > kSmallestSolidAngle; }
@@ -25,4 +26,4 @@ class SphericalRectangle {
   float solid_angle_ = 0.0f;
 };
 
-}  // namespace gradus
+}  // namespace gradus::light

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gradus {
+namespace gradus::light {
 
 namespace {
 
@@ -19,13 +19,16 @@ Vec3 side_towards(const Vec3& v, const Vec3& axis) { return glm::normalize(v - a
 
 // Van Oosterom and Strackee 1983, "The Solid Angle of a Plane Triangle".
 SphericalTriangle::SphericalTriangle(const std::array<Vec3, 3>& corners, const Vec3& from)
-    : a_(glm::normalize(corners[0] - from)), b_(glm::normalize(corners[1] - from)), c_(glm::normalize(corners[2] - from)) {
+    : a_(glm::normalize(corners[0] - from)),
+      b_(glm::normalize(corners[1] - from)),
+      c_(glm::normalize(corners[2] - from)) {
   volume_ = std::fabs(glm::dot(a_, glm::cross(b_, c_)));
   solid_angle_ = 2.0f * std::atan2(volume_, 1.0f + glm::dot(a_, b_) + glm::dot(b_, c_) + glm::dot(c_, a_));
 }
 
-// Arvo's names: a part of the triangle with area A' shares the corner a, its angle α and the side c towards b, and ends in a corner c' on
-// the side from a to c; the point lies between b and c'. Cosines near 1 are replaced by their distance from it.
+// Arvo's names: a part of the triangle with area A' shares the corner a, its angle α and the side c towards b, and ends
+// in a corner c' on the side from a to c; the point lies between b and c'. Cosines near 1 are replaced by their
+// distance from it.
 Vec3 SphericalTriangle::sample(const Vec2& u) const {
   const Vec3 ab = glm::cross(a_, b_), ac = glm::cross(a_, c_);
   const float lengths = std::sqrt(glm::dot(ab, ab) * glm::dot(ac, ac));
@@ -54,4 +57,4 @@ Vec2 barycentric_towards(const std::array<Vec3, 3>& corners, const Vec3& from, c
   return b.x + b.y > 1.0f ? b / (b.x + b.y) : b;
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

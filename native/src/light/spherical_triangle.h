@@ -1,12 +1,13 @@
 // A triangle as seen from a point: uniform sampling of its solid angle.
-// Arvo, "Stratified Sampling of Spherical Triangles" (SIGGRAPH 1995), in a form that keeps its digits for small triangles.
+// Arvo, "Stratified Sampling of Spherical Triangles" (SIGGRAPH 1995), in a form that keeps its digits for small
+// triangles.
 #pragma once
 
 #include <array>
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::light {
 
 class SphericalTriangle {
  public:
@@ -25,7 +26,8 @@ class SphericalTriangle {
   float solid_angle_;
 };
 
-// Weights of the 2nd and 3rd corner where a line from a point meets the triangle, moved to the triangle where rounding left it.
+// Weights of the 2nd and 3rd corner where a line from a point meets the triangle, moved to the triangle where rounding
+// left it.
 Vec2 barycentric_towards(const std::array<Vec3, 3>& corners, const Vec3& from, const Vec3& direction);
 
-}  // namespace gradus
+}  // namespace gradus::light

@@ -3,24 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include "image/image_store.h"
 #include "base/commit_monitor.h"
+#include "image/image_store.h"
 #include "light/lit_scene.h"
 #include "shading/material.h"
 #include "shading/shade.h"
 
-namespace gradus {
+namespace gradus::light {
 
 namespace {
 
-constexpr uint32_t kManual = 2;          // GradusWorld::importance
-constexpr uint32_t kWidest = 1024;       // Cycles follows larger images, too; the density then only gains below half a degree
+constexpr uint32_t kManual = 2;  // GradusWorld::importance
+constexpr uint32_t kWidest =
+    1024;  // Cycles follows larger images, too; the density then only gains below half a degree
 constexpr uint32_t kWidthOfNodes = 256;  // worlds of nodes alone are smooth, or have edges that no map can follow
 
-std::vector<uint32_t> image_indices(const Program& program, const ImageStore& images) {
+std::vector<uint32_t> image_indices(const shading::Program& program, const image::ImageStore& images) {
   std::vector<uint32_t> found;
-  for (const Instruction& i : program.code)
-    if ((i.op == GRADUS_OP_IMAGE || i.op == GRADUS_OP_ENVIRONMENT) && i.resource < images.size()) found.push_back(i.resource);
+  for (const shading::Instruction& i : program.code)
+    if ((i.op == GRADUS_OP_IMAGE || i.op == GRADUS_OP_ENVIRONMENT) && i.resource < images.size())
+      found.push_back(i.resource);
   return found;
 }
 
@@ -32,7 +34,8 @@ WorldMap describe(const LitScene& scene) {
   map.material = material;
   map.importance = scene.world.importance;
   map.map_size = map.importance == kManual ? scene.world.map_size : 0;
-  for (const uint32_t i : image_indices(material->emission, *scene.images)) map.images.push_back(scene.images->image(i));
+  for (const uint32_t i : image_indices(material->emission, *scene.images))
+    map.images.push_back(scene.images->image(i));
   return map;
 }
 
@@ -48,11 +51,12 @@ void look_for_sun(float half_angle, uint32_t map_size, Environment::Resolution* 
   resolution->points = std::clamp(uint32_t(std::ceil(cell / (1.2f * half_angle))), resolution->points, kMaxPoints);
 }
 
-// One point in each cell sees every texel of an image that is no wider than the map: look-ups are interpolated. Otherwise 2×2, so that a
-// small sun is not missed between cell centres.
+// One point in each cell sees every texel of an image that is no wider than the map: look-ups are interpolated.
+// Otherwise 2×2, so that a small sun is not missed between cell centres.
 Environment::Resolution resolution(const LitScene& scene, const WorldMap& map) {
   uint32_t widest = 0;
-  for (const uint32_t i : image_indices(map.material->emission, *scene.images)) widest = std::max(widest, scene.images->width(i));
+  for (const uint32_t i : image_indices(map.material->emission, *scene.images))
+    widest = std::max(widest, scene.images->width(i));
   Environment::Resolution result;
   result.width = map.map_size > 0 ? map.map_size : widest > 0 ? std::min(widest, kWidest) : kWidthOfNodes;
   result.points = widest > 0 && widest <= result.width ? 1 : 2;
@@ -61,9 +65,9 @@ Environment::Resolution resolution(const LitScene& scene, const WorldMap& map) {
 }
 
 // A little larger than the discs, so that none of the sun's rim is left to the map.
-std::vector<Cone> sun_cones(const MaterialData& material) {
+std::vector<Cone> sun_cones(const shading::MaterialData& material) {
   std::vector<Cone> cones;
-  for (const SunDisc& sun : material.suns) {
+  for (const shading::SunDisc& sun : material.suns) {
     const float h = std::sin(0.5f * (1.001f * sun.half_angle + 1e-5f));
     cones.push_back({sun.direction, 2.0f * h * h});
   }
@@ -72,11 +76,12 @@ std::vector<Cone> sun_cones(const MaterialData& material) {
 
 Environment measure_world(const LitScene& scene, const WorldMap& map, const CommitMonitor& monitor) {
   if (!map.material) return {};
-  if (map.material->emission_is_constant) return Environment::uniform(mean_component(glm::max(map.material->constant_emission, Rgb(0.0f))));
-  RayState state;
+  if (map.material->emission_is_constant)
+    return Environment::uniform(mean_component(glm::max(map.material->constant_emission, Rgb(0.0f))));
+  shading::RayState state;
   state.flags = 0;
   Environment world;
-  const auto radiance = [&](const Vec3& direction) { return shade_world(scene, direction, state); };
+  const auto radiance = [&](const Vec3& direction) { return shading::shade_world(scene, direction, state); };
   world.build(radiance, sun_cones(*map.material), resolution(scene, map), [&] { return !monitor.is_running(); });
   monitor.check();
   return world;
@@ -93,4 +98,4 @@ Environment build_world(const LitScene& scene, WorldMap* map, const CommitMonito
   return map->environment;
 }
 
-}  // namespace gradus
+}  // namespace gradus::light

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "lpe/light_path_expression.h"
 
-namespace gradus {
+namespace gradus::lpe {
 
 namespace {
 
@@ -42,12 +42,16 @@ std::string lower(std::string_view text) {
 
 // Names become those of passes: letters of ASCII, digits, '_'.
 void check_name(std::string_view name, const std::vector<Component>& before) {
-  const auto fits = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
+  const auto fits = [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
   const bool starts = !name.empty() && fits(name[0]) && name[0] != '_' && !(name[0] >= '0' && name[0] <= '9');
   if (!starts || name.size() > kLongestName || !std::all_of(name.begin(), name.end(), fits)) {
-    throw invalid_argument("component \"" + std::string(name) + "\": a name is a letter and then up to 23 letters, digits or '_'");
+    throw invalid_argument("component \"" + std::string(name) +
+                           "\": a name is a letter and then up to 23 letters, digits or '_'");
   }
-  if (lower(name) == lower(kResidual)) throw invalid_argument("component Residual is what no expression matches: it needs none");
+  if (lower(name) == lower(kResidual))
+    throw invalid_argument("component Residual is what no expression matches: it needs none");
   for (const Component& other : before) {
     if (lower(other.name) == lower(name)) throw invalid_argument("two components are called " + std::string(name));
   }
@@ -59,15 +63,18 @@ std::vector<Component> read_list(std::string_view text) {
     if (entry.empty()) continue;
     const size_t equals = entry.find('=');
     if (equals == std::string_view::npos) {
-      throw invalid_argument("component \"" + std::string(entry) + "\": expected Name=EXPRESSION, as in Reflection=ER(D.*)?L");
+      throw invalid_argument("component \"" + std::string(entry) +
+                             "\": expected Name=EXPRESSION, as in Reflection=ER(D.*)?L");
     }
     const std::string_view name = trimmed(entry.substr(0, equals)), expression = trimmed(entry.substr(equals + 1));
     check_name(name, components);
     if (expression.empty()) throw invalid_argument("component " + std::string(name) + " has no expression");
     components.push_back({std::string(name), std::string(expression)});
   }
-  if (components.empty()) throw invalid_argument("the set of components is empty: expected Name=EXPRESSION;Name=EXPRESSION");
-  if (int(components.size()) >= kMaxComponents) throw invalid_argument("more than " + std::to_string(kMaxComponents - 1) + " components");
+  if (components.empty())
+    throw invalid_argument("the set of components is empty: expected Name=EXPRESSION;Name=EXPRESSION");
+  if (int(components.size()) >= kMaxComponents)
+    throw invalid_argument("more than " + std::to_string(kMaxComponents - 1) + " components");
   return components;
 }
 
@@ -87,8 +94,8 @@ uint32_t matches(const std::vector<LightPathExpression>& expressions, const Sets
 
 // Says what to add where L was left out, as in the paper.
 [[noreturn]] void refuse_unmatched(const Component& c) {
-  std::string text =
-      "component " + c.name + ": " + c.expression + " matches no path, which is E, then D, R or T for each scattering, then L";
+  std::string text = "component " + c.name + ": " + c.expression +
+                     " matches no path, which is E, then D, R or T for each scattering, then L";
   if (c.expression.find('L') == std::string::npos) text += ": write (" + c.expression + ")L";
   throw invalid_argument(text);
 }
@@ -117,17 +124,19 @@ ComponentSet ComponentSet::parse(std::string_view text) {
     const uint32_t bits = matches(expressions, sets[s]);
     if ((bits & (bits - 1)) != 0) {
       const int first = __builtin_ctz(bits), second = __builtin_ctz(bits & (bits - 1));
-      throw invalid_argument("components " + set[first].name + " and " + set[second].name + " overlap: both match " + words[s] + "L");
+      throw invalid_argument("components " + set[first].name + " and " + set[second].name + " overlap: both match " +
+                             words[s] + "L");
     }
     matched |= bits;
     State state;
     state.component = uint8_t(bits != 0 ? size_t(__builtin_ctz(bits)) : residual);
-    for (int k = 0; k < kScatterClasses; ++k) {
+    for (int k = 0; k < bsdf::kScatterClasses; ++k) {
       Sets next = step(expressions, sets[s], static_cast<LpeEvent>(k));
       const auto [found, is_new] = known.emplace(next, LpeState(sets.size()));
       state.next[size_t(k)] = found->second;
       if (!is_new) continue;
-      if (sets.size() >= kMaxStates) throw invalid_argument("the path expressions are too complex: an automaton of more than 4096 states");
+      if (sets.size() >= kMaxStates)
+        throw invalid_argument("the path expressions are too complex: an automaton of more than 4096 states");
       sets.push_back(std::move(next));
       words.push_back(words[s] + kEventNames[k]);
     }
@@ -175,7 +184,9 @@ ComponentSet ComponentSet::merged(uint32_t small) const {
   return set.with(kept, uint8_t(__builtin_popcount(kept) - 1));
 }
 
-ComponentSet ComponentSet::without_empty(uint32_t kept) const { return with(kept != 0 ? kept : 1u << (count() - 1), 0); }
+ComponentSet ComponentSet::without_empty(uint32_t kept) const {
+  return with(kept != 0 ? kept : 1u << (count() - 1), 0);
+}
 
 uint32_t ComponentSet::reached(uint32_t events) const {
   std::vector<LpeState> words{0};
@@ -183,9 +194,9 @@ uint32_t ComponentSet::reached(uint32_t events) const {
   known[0] = true;
   uint32_t bits = 0;
   for (size_t i = 0; i < words.size(); ++i) {
-    for (int k = 0; k < kScatterClasses; ++k) {
+    for (int k = 0; k < bsdf::kScatterClasses; ++k) {
       if ((events >> k & 1) == 0) continue;
-      const LpeState to = next(words[i], static_cast<ScatterClass>(k));
+      const LpeState to = next(words[i], static_cast<bsdf::ScatterClass>(k));
       bits |= 1u << component(to);
       if (!known[to]) words.push_back(to);
       known[to] = true;
@@ -195,7 +206,8 @@ uint32_t ComponentSet::reached(uint32_t events) const {
 }
 
 int ComponentSet::find(std::string_view name) const {
-  const auto found = std::find_if(components_.begin(), components_.end(), [&](const Component& c) { return c.name == name; });
+  const auto found =
+      std::find_if(components_.begin(), components_.end(), [&](const Component& c) { return c.name == name; });
   return found != components_.end() ? int(found - components_.begin()) : -1;
 }
 
@@ -207,8 +219,9 @@ int ComponentSet::classify(std::string_view path) const {
   LpeState at = 0;
   for (const char c : events.substr(1, events.size() - 2)) {
     const auto* const event = std::find(std::begin(kEventNames), std::end(kEventNames), c);
-    if (event == std::end(kEventNames)) throw invalid_argument("\"" + std::string(events) + "\": '" + c + "' is none of D R T");
-    at = next(at, static_cast<ScatterClass>(event - std::begin(kEventNames)));
+    if (event == std::end(kEventNames))
+      throw invalid_argument("\"" + std::string(events) + "\": '" + c + "' is none of D R T");
+    at = next(at, static_cast<bsdf::ScatterClass>(event - std::begin(kEventNames)));
   }
   return component(at);
 }
@@ -222,8 +235,8 @@ std::vector<std::string> ComponentSet::examples(int component, size_t maximum) c
     std::vector<std::pair<LpeState, std::string>> longer;
     for (const auto& [at, path] : words) {
       if (this->component(at) == component && found.size() < maximum) found.push_back(path + "L");
-      for (int k = 0; k < kScatterClasses; ++k) {
-        const LpeState to = next(at, static_cast<ScatterClass>(k));
+      for (int k = 0; k < bsdf::kScatterClasses; ++k) {
+        const LpeState to = next(at, static_cast<bsdf::ScatterClass>(k));
         if ((ahead(to) >> component & 1) != 0 && longer.size() < 4096) longer.emplace_back(to, path + kEventNames[k]);
       }
     }
@@ -232,4 +245,4 @@ std::vector<std::string> ComponentSet::examples(int component, size_t maximum) c
   return found;
 }
 
-}  // namespace gradus
+}  // namespace gradus::lpe

@@ -1,9 +1,9 @@
-// Components of the picture, by path expressions (contract 3.1, 3.2; Zimmer et al. 2015, Path-space Motion Estimation and Decomposition,
-// section 3): which part of the picture a path belongs to, told letter by letter while it grows.
+// Components of the picture, by path expressions (contract 3.1, 3.2; Zimmer et al. 2015, Path-space Motion Estimation
+// and Decomposition, section 3): which part of the picture a path belongs to, told letter by letter while it grows.
 //
-// A path's word is E, a letter for each scattering (D rough, R sharp reflection, T sharp transmission), and L where it ends at light. A set
-// of expressions is one deterministic automaton over the letters after E; each of its states knows the component of a path that finds
-// light there.
+// A path's word is E, a letter for each scattering (D rough, R sharp reflection, T sharp transmission), and L where it
+// ends at light. A set of expressions is one deterministic automaton over the letters after E; each of its states knows
+// the component of a path that finds light there.
 #pragma once
 
 #include <array>
@@ -14,11 +14,12 @@
 
 #include "bsdf/closures.h"
 
-namespace gradus {
+namespace gradus::lpe {
 
 // Residual included.
 inline constexpr int kMaxComponents = 16;
-inline constexpr std::string_view kDefaultComponents = "Emission=EL;Diffuse=ED.*L;Reflection=ER(D.*)?L;Transmission=ETT(D.*)?L";
+inline constexpr std::string_view kDefaultComponents =
+    "Emission=EL;Diffuse=ED.*L;Reflection=ER(D.*)?L;Transmission=ETT(D.*)?L";
 inline constexpr std::string_view kResidual = "Residual";
 
 // Bits of components.
@@ -36,9 +37,9 @@ class ComponentSet {
  public:
   // The picture as one component.
   ComponentSet();
-  // "Name=EXPR;Name=EXPR", or "" for the default set; Residual, all that no expression matches, comes last. Expressions: letters, `.` for
-  // one of D R T, `*` `+` `?` `|` and parentheses. Throws invalid_argument, saying to a user what is wrong: an expression that is none,
-  // that matches no path, or that matches a path of another.
+  // "Name=EXPR;Name=EXPR", or "" for the default set; Residual, all that no expression matches, comes last.
+  // Expressions: letters, `.` for one of D R T, `*` `+` `?` `|` and parentheses. Throws invalid_argument, saying to a
+  // user what is wrong: an expression that is none, that matches no path, or that matches a path of another.
   static ComponentSet parse(std::string_view text);
   // Without those whose bit is set: their paths belong to Residual, which is there then.
   ComponentSet merged(uint32_t small) const;
@@ -53,7 +54,7 @@ class ComponentSet {
   uint32_t all() const { return (uint32_t{1} << count()) - 1; }
   uint32_t residual() const { return components_.back().name == kResidual ? uint32_t{1} << (count() - 1) : 0; }
 
-  LpeState next(LpeState word, ScatterClass event) const { return states_[word].next[size_t(event)]; }
+  LpeState next(LpeState word, bsdf::ScatterClass event) const { return states_[word].next[size_t(event)]; }
   // Of a path that finds light here.
   int component(LpeState word) const { return states_[word].component; }
   // Bits of the components to which a path may still come from here, by this word or a longer one.
@@ -68,7 +69,7 @@ class ComponentSet {
 
  private:
   struct State {
-    std::array<LpeState, kScatterClasses> next{};
+    std::array<LpeState, bsdf::kScatterClasses> next{};
     uint8_t component = 0;
     uint32_t ahead = 1;
   };
@@ -80,4 +81,4 @@ class ComponentSet {
   std::vector<State> states_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::lpe

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 
-namespace gradus {
+namespace gradus::lpe {
 
 namespace {
 
@@ -35,7 +35,8 @@ uint8_t events_of(char c) {
 
 }  // namespace
 
-// expression = sequence { "|" sequence };  sequence = { factor };  factor = ( letter | "." | "(" expression ")" ) { "*" | "+" | "?" }
+// expression = sequence { "|" sequence };  sequence = { factor };  factor = ( letter | "." | "(" expression ")" ) { "*"
+// | "+" | "?" }
 class ExpressionParser {
  public:
   ExpressionParser(std::string_view text, LightPathExpression* to) : text_(text), to_(*to) {}
@@ -66,7 +67,8 @@ class ExpressionParser {
     return at_ < text_.size() ? text_[at_] : '\0';
   }
   [[noreturn]] void fail(const std::string& what) const {
-    throw invalid_argument("path expression \"" + std::string(text_) + "\", character " + std::to_string(at_ + 1) + ": " + what);
+    throw invalid_argument("path expression \"" + std::string(text_) + "\", character " + std::to_string(at_ + 1) +
+                           ": " + what);
   }
 
   Fragment expression() {
@@ -166,6 +168,8 @@ LightPathExpression::States LightPathExpression::step(const States& from, LpeEve
   return closure(std::move(to));
 }
 
-bool LightPathExpression::accepts(const States& states) const { return std::binary_search(states.begin(), states.end(), end_); }
+bool LightPathExpression::accepts(const States& states) const {
+  return std::binary_search(states.begin(), states.end(), end_);
+}
 
-}  // namespace gradus
+}  // namespace gradus::lpe

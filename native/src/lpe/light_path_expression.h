@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gradus {
+namespace gradus::lpe {
 
 // Letters of path words.
 enum class LpeEvent : uint8_t { D, R, T, E, L };
@@ -35,4 +35,4 @@ class LightPathExpression {
   uint32_t end_ = 0;
 };
 
-}  // namespace gradus
+}  // namespace gradus::lpe

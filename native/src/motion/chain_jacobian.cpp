@@ -1,6 +1,6 @@
 #include "motion/chain_jacobian.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 namespace {
 
@@ -8,14 +8,15 @@ namespace {
 constexpr float kLargestBend = 0.5f;
 
 // Central where both neighbours go the same way.
-bool column(const ChainView& view, const Aim& aim, const SpecularChain& centre, const Vec3& here, glm::ivec2 at, glm::ivec2 by,
-            Vec3* column) {
+bool column(const ChainView& view, const Aim& aim, const SpecularChain& centre, const Vec3& here, glm::ivec2 at,
+            glm::ivec2 by, Vec3* column) {
   std::array<Vec3, 2> difference;
   size_t count = 0;
   for (const int side : {-1, 1}) {
     const SpecularChain* neighbour = view.at(at.x + side * by.x, at.y + side * by.y);
     Vec3 there;
-    if (neighbour == nullptr || neighbour->signature != centre.signature || !aim.miss(neighbour->ray.ray, &there)) continue;
+    if (neighbour == nullptr || neighbour->signature != centre.signature || !aim.miss(neighbour->ray.ray, &there))
+      continue;
     difference[count++] = float(side) * (there - here);
   }
   if (count == 0) return false;
@@ -33,9 +34,10 @@ FilmJacobian chain_jacobian(const ChainView& view, const Target& target, int32_t
   const Aim aim(target, chain.ray.ray.origin);
   Vec3 here;
   jacobian.axis = aim.axis();
-  jacobian.known = aim.miss(chain.ray.ray, &here) && column(view, aim, chain, here, {x, y}, {1, 0}, &jacobian.columns[0]) &&
+  jacobian.known = aim.miss(chain.ray.ray, &here) &&
+                   column(view, aim, chain, here, {x, y}, {1, 0}, &jacobian.columns[0]) &&
                    column(view, aim, chain, here, {x, y}, {0, 1}, &jacobian.columns[1]);
   return jacobian;
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -4,7 +4,7 @@
 
 #include "path/context.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 namespace {
 
@@ -25,20 +25,22 @@ void join(std::vector<Row>* rows, ChainView* view) {
 
 }  // namespace
 
-std::vector<ChainView> view_chains(const CentreView& centres, const GradusSettings& settings, const ComponentSet& components,
-                                   uint32_t wanted, const CancelCheck& is_cancelled, const Change* change) {
+std::vector<ChainView> view_chains(const CentreView& centres, const GradusSettings& settings,
+                                   const lpe::ComponentSet& components, uint32_t wanted,
+                                   const CancelCheck& is_cancelled, const Change* change) {
   const Region& region = centres.region;
   const auto width = size_t(region.width()), height = size_t(region.height());
   std::vector<int> numbers;
   for (int c = 0; c < components.count(); ++c)
     if ((wanted >> c & 1) != 0) numbers.push_back(c);
-  std::vector<ChainView> views(numbers.size(), {&centres, &settings, std::vector<int32_t>(centres.hits.size(), -1), {}});
+  std::vector<ChainView> views(numbers.size(),
+                               {&centres, &settings, std::vector<int32_t>(centres.hits.size(), -1), {}});
   std::vector<std::vector<Row>> rows(numbers.size(), std::vector<Row>(height));
   const ChainTracer tracer(*centres.snapshot, centres.camera, settings);
   tbb::parallel_for(size_t{0}, height, [&](size_t y) {
-    std::array<SpecularChain, kMaxComponents> chains;
+    std::array<SpecularChain, lpe::kMaxComponents> chains;
     for (size_t x = 0; x < width && !is_cancelled(); ++x) {
-      const Vec2 film = pixel_centre(region.x0 + int32_t(x), region.y0 + int32_t(y));
+      const Vec2 film = path::pixel_centre(region.x0 + int32_t(x), region.y0 + int32_t(y));
       const uint32_t found = tracer.find(film, centres.hits[y * width + x], components, wanted, change, &chains);
       for (size_t k = 0; k < numbers.size(); ++k) {
         if ((found >> numbers[k] & 1) == 0) continue;
@@ -57,12 +59,12 @@ ChainView view_surfaces(const CentreView& centres, const GradusSettings& setting
   const float time = centres.snapshot->shutter.time_of_frame();
   ChainView view{&centres, &settings, std::vector<int32_t>(pixels), std::vector<SpecularChain>(pixels)};
   tbb::parallel_for(size_t{0}, pixels, [&](size_t i) {
-    const Vec2 film = pixel_centre(region.x0 + int32_t(i % width), region.y0 + int32_t(i / width));
+    const Vec2 film = path::pixel_centre(region.x0 + int32_t(i % width), region.y0 + int32_t(i / width));
     SpecularChain& chain = view.chains[i];
     chain.ray = {centres.camera.ray({film, Vec2(0.0f), time}), GRADUS_VISIBLE_CAMERA, {}};
     view.places[i] = is_none(chain.ray.ray) ? -1 : int32_t(i);
     if (view.places[i] < 0) return;
-    const Hit& hit = centres.hits[i];
+    const geometry::Hit& hit = centres.hits[i];
     const bool is_surface = hit.valid();
     chain.end = is_surface ? ChainEnd::Surface : ChainEnd::Sky;
     chain.last = hit;
@@ -73,4 +75,4 @@ ChainView view_surfaces(const CentreView& centres, const GradusSettings& setting
   return view;
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

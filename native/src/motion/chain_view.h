@@ -1,13 +1,14 @@
-// The chains of a component at all pixel centres of a frame: at the same time a map from the film to what is seen through smooth surfaces.
+// The chains of a component at all pixel centres of a frame: at the same time a map from the film to what is seen
+// through smooth surfaces.
 #pragma once
 
 #include <vector>
 
 #include "base/cancel_check.h"
-#include "motion/specular_chain.h"
 #include "motion/pixel_matching.h"
+#include "motion/specular_chain.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 struct ChainView {
   const CentreView* centres = nullptr;
@@ -24,12 +25,12 @@ struct ChainView {
   }
   ChainTracer tracer() const { return {*centres->snapshot, centres->camera, *settings}; }
 };
-// Of the components whose bits are set in `wanted`, in order. All that is given lives as long as the views. Cancelled: chains are missing.
-// change: see ChainTracer::find().
+// Of the components whose bits are set in `wanted`, in order. All that is given lives as long as the views. Cancelled:
+// chains are missing. change: see ChainTracer::find().
 std::vector<ChainView> view_chains(
-    const CentreView& centres, const GradusSettings& settings, const ComponentSet& components, uint32_t wanted,
+    const CentreView& centres, const GradusSettings& settings, const lpe::ComponentSet& components, uint32_t wanted,
     const CancelCheck& is_cancelled = [] { return false; }, const Change* change = nullptr);
 // The surfaces that the camera sees, whatever they are, and the sky.
 ChainView view_surfaces(const CentreView& centres, const GradusSettings& settings, const Change* change);
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "motion/snapshot_motion.h"
 #include "geometry/mesh.h"
+#include "motion/snapshot_motion.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 namespace {
 
@@ -14,13 +14,13 @@ bool same_view(const GradusCamera& a, const GradusCamera& b) {
 }
 
 struct Placed {
-  const Snapshot& snapshot;
-  const InstanceData& instance;
+  const scene::Snapshot& snapshot;
+  const geometry::InstanceData& instance;
 
   uint32_t kind() const { return instance.visibility | GRADUS_MAY_MOVE; }
   size_t slots() const { return instance.materials.size(); }
   // nullptr: the default one, which every snapshot has of its own.
-  const MaterialData* material(size_t slot) const {
+  const shading::MaterialData* material(size_t slot) const {
     const uint32_t material = instance.materials[slot];
     return material > 0 ? snapshot.materials[material].get() : nullptr;
   }
@@ -33,21 +33,23 @@ bool same_materials(const Placed& a, const Placed& b) {
 }
 
 bool is_static(const Placed& a, const Placed& b) {
-  return a.instance.mesh == b.instance.mesh && a.instance.to_world == b.instance.to_world && !a.instance.moves() && a.kind() == b.kind() &&
-         same_materials(a, b);
+  return a.instance.mesh == b.instance.mesh && a.instance.to_world == b.instance.to_world && !a.instance.moves() &&
+         a.kind() == b.kind() && same_materials(a, b);
 }
 
 }  // namespace
 
 // A camera or an object that moves within the frame is elsewhere at each of its moments.
-Change::Change(const Snapshot& now) : now_(now), all_(now.camera.shutter_key_count > 0), instances_(now.instances.size()) {}
+Change::Change(const scene::Snapshot& now)
+    : now_(now), all_(now.camera.shutter_key_count > 0), instances_(now.instances.size()) {}
 
-void Change::add(const Snapshot& other) {
+void Change::add(const scene::Snapshot& other) {
   all_ |= !same_view(now_.camera, other.camera) || now_.origin != other.origin || now_.images != other.images;
   const std::vector<uint32_t> there = matching_instances(now_, other);
   std::vector<bool> is_new(other.instances.size(), true);
   for (size_t i = 0; i < instances_.size(); ++i) {
-    const InstanceData &a = now_.instances[i], *b = there[i] != kNoInstance ? &other.instances[there[i]] : nullptr;
+    const geometry::InstanceData &a = now_.instances[i],
+                                 *b = there[i] != kNoInstance ? &other.instances[there[i]] : nullptr;
     if (b != nullptr) is_new[there[i]] = false;
     if (b != nullptr && gradus::is_static({now_, a}, {other, *b})) continue;
     instances_[i] = any_ = true;
@@ -62,8 +64,8 @@ void Change::add(const Snapshot& other) {
   box_.widen();
 }
 
-void Change::add_box(const InstanceData& instance) {
-  const MeshData& mesh = *instance.mesh;
+void Change::add_box(const geometry::InstanceData& instance) {
+  const geometry::MeshData& mesh = *instance.mesh;
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 local((corner & 1 ? mesh.upper : mesh.lower).x, (corner & 2 ? mesh.upper : mesh.lower).y,
                      (corner & 4 ? mesh.upper : mesh.lower).z);
@@ -72,4 +74,4 @@ void Change::add_box(const InstanceData& instance) {
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

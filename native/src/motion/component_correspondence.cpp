@@ -2,22 +2,24 @@
 
 #include "motion/pixel_matching.h"
 
-namespace gradus {
+namespace gradus::motion {
 
-PixelCorrespondence match_component(const PixelCorrespondence& surface, const Region& region, const ChainMotion& motion) {
+film::PixelCorrespondence match_component(const film::PixelCorrespondence& surface, const Region& region,
+                                          const ChainMotion& motion) {
   const size_t pixels = surface.pixel.size();
-  PixelCorrespondence correspondence{std::vector<int32_t>(pixels, kNoCorrespondence), std::vector<Vec2>(pixels, Vec2(0.0f))};
-  std::vector<int32_t> owner(pixels, kNoCorrespondence);
+  film::PixelCorrespondence correspondence{std::vector<int32_t>(pixels, film::kNoCorrespondence),
+                                           std::vector<Vec2>(pixels, Vec2(0.0f))};
+  std::vector<int32_t> owner(pixels, film::kNoCorrespondence);
   std::vector<float> distances(pixels, kInfinity);
   for (size_t i = 0; i < pixels; ++i) {
     if (motion.tracking[i] != Tracking::Tracked) continue;
     const Vec2 film = motion.film[i];
     const int32_t there = pixel_at(region, film);
-    if (there == kNoCorrespondence) continue;
+    if (there == film::kNoCorrespondence) continue;
     const auto next = size_t(there);
     const float distance = glm::length(film - centre_of(region, next));
     if (!(distance < distances[next])) continue;
-    if (owner[next] != kNoCorrespondence) correspondence.pixel[size_t(owner[next])] = kNoCorrespondence;
+    if (owner[next] != film::kNoCorrespondence) correspondence.pixel[size_t(owner[next])] = film::kNoCorrespondence;
     distances[next] = distance;
     owner[next] = int32_t(i);
     correspondence.pixel[i] = there;
@@ -25,7 +27,9 @@ PixelCorrespondence match_component(const PixelCorrespondence& surface, const Re
   }
   for (size_t i = 0; i < pixels; ++i) {
     const int32_t there = surface.pixel[i];
-    if (correspondence.pixel[i] != kNoCorrespondence || there == kNoCorrespondence || owner[size_t(there)] != kNoCorrespondence) continue;
+    if (correspondence.pixel[i] != film::kNoCorrespondence || there == film::kNoCorrespondence ||
+        owner[size_t(there)] != film::kNoCorrespondence)
+      continue;
     owner[size_t(there)] = int32_t(i);
     correspondence.pixel[i] = there;
     correspondence.off_centre[i] = surface.off_centre.empty() ? Vec2(0.0f) : surface.off_centre[i];
@@ -33,4 +37,4 @@ PixelCorrespondence match_component(const PixelCorrespondence& surface, const Re
   return correspondence;
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -9,24 +9,24 @@
 #include "path/context.h"
 #include "scene/moved_snapshot.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 namespace {
 
 // Another moment of the scene.
 struct OtherFrame {
-  OtherFrame(const Snapshot& scene, Moment when, const GradusSettings& settings, const CancelCheck& is_cancelled)
-      : snapshot(moved_snapshot(scene, when, is_cancelled)),
-        camera(Camera(snapshot->camera, settings.width, settings.height).without_lens()),
+  OtherFrame(const scene::Snapshot& scene, Moment when, const GradusSettings& settings, const CancelCheck& is_cancelled)
+      : snapshot(scene::moved_snapshot(scene, when, is_cancelled)),
+        camera(camera::Camera(snapshot->camera, settings.width, settings.height).without_lens()),
         tracer(*snapshot, camera, settings) {}
   OtherFrame(const OtherFrame&) = delete;
 
-  std::shared_ptr<const Snapshot> snapshot;
-  Camera camera;
+  std::shared_ptr<const scene::Snapshot> snapshot;
+  camera::Camera camera;
   ChainTracer tracer;
 };
 
-static_assert(float(Tracking::NoPath) == kNothingToTrack, "what planes of motion begin with");
+static_assert(float(Tracking::NoPath) == film::kNothingToTrack, "what planes of motion begin with");
 
 // Rows of the film that are done together: chains of all pixels would take more memory than a frame.
 constexpr int32_t kBand = 64;
@@ -38,19 +38,20 @@ Region with_neighbours(const Region& band, const GradusSettings& settings) {
 }
 
 // By views. has_surfaces: the last one is view_surfaces(), whose motion is that of all that others show directly.
-std::vector<ChainMotion> track_views(const std::vector<ChainView>& views, bool has_surfaces, const ChainTracer& to, const Region& band,
-                                     const CancelCheck& is_cancelled) {
+std::vector<ChainMotion> track_views(const std::vector<ChainView>& views, bool has_surfaces, const ChainTracer& to,
+                                     const Region& band, const CancelCheck& is_cancelled) {
   std::vector<ChainMotion> motion(views.size());
   if (has_surfaces) motion.back() = track_chains(views.back(), to, band, is_cancelled);
   const KnownMotion surfaces{views.back(), motion.back()};
   const size_t others = views.size() - (has_surfaces ? 1 : 0);
-  for (size_t k = 0; k < others; ++k) motion[k] = track_chains(views[k], to, band, is_cancelled, has_surfaces ? &surfaces : nullptr);
+  for (size_t k = 0; k < others; ++k)
+    motion[k] = track_chains(views[k], to, band, is_cancelled, has_surfaces ? &surfaces : nullptr);
   return motion;
 }
 
 // pixel: the first of the band.
-void join(const Camera& camera, const Region& band, const ChainMotion& previous, const ChainMotion& next, size_t pixel,
-          ComponentMotion* joined) {
+void join(const camera::Camera& camera, const Region& band, const ChainMotion& previous, const ChainMotion& next,
+          size_t pixel, ComponentMotion* joined) {
   const auto width = size_t(band.width());
   joined->counts.add(previous.counts);
   joined->counts.add(next.counts);
@@ -58,22 +59,25 @@ void join(const Camera& camera, const Region& band, const ChainMotion& previous,
     const Tracking tracking = previous.tracking[i] != Tracking::Tracked ? previous.tracking[i] : next.tracking[i];
     joined->tracked[pixel] = float(tracking);
     if (tracking != Tracking::Tracked) continue;
-    const Vec2 now = pixel_centre(band.x0 + int32_t(i % width), band.y0 + int32_t(i / width));
-    joined->vectors[pixel] = Vec4(camera.film_displacement(now, previous.film[i]), camera.film_displacement(next.film[i], now));
+    const Vec2 now = path::pixel_centre(band.x0 + int32_t(i % width), band.y0 + int32_t(i / width));
+    joined->vectors[pixel] =
+        Vec4(camera.film_displacement(now, previous.film[i]), camera.film_displacement(next.film[i], now));
   }
 }
 
 constexpr uint64_t kNumbers = uint64_t{1} << 24;  // that a float tells apart
 
 // The same in every frame: of the way, and of the object at its end.
-float number_of(const Snapshot& snapshot, const SpecularChain& chain) {
+float number_of(const scene::Snapshot& snapshot, const SpecularChain& chain) {
   const uint64_t end = chain.last.valid() ? snapshot.instances[chain.last.instance].id + 1 : 0;
-  const uint64_t hash = mix_bits(mix_bits(chain.signature.surfaces + 5 * chain.signature.events + chain.signature.length) + 3 * end + uint64_t(chain.end));
+  const uint64_t hash =
+      mix_bits(mix_bits(chain.signature.surfaces + 5 * chain.signature.events + chain.signature.length) + 3 * end +
+               uint64_t(chain.end));
   return float(1 + hash % (kNumbers - 1));
 }
 
 // shown: from the first pixel of the band on.
-void write_shown_points(const ChainView& view, const Region& band, ShownPoint* shown) {
+void write_shown_points(const ChainView& view, const Region& band, film::ShownPoint* shown) {
   for (int32_t y = band.y0; y < band.y1; ++y) {
     for (int32_t x = band.x0; x < band.x1; ++x, ++shown) {
       const SpecularChain* chain = view.at(x, y);
@@ -84,22 +88,26 @@ void write_shown_points(const ChainView& view, const Region& band, ShownPoint* s
 
 }  // namespace
 
-std::vector<ComponentMotion> component_motion(const Snapshot& snapshot, const GradusSettings& settings, const ComponentSet& components,
-                                              uint32_t wanted, const Region& region, const CancelCheck& is_cancelled) {
+std::vector<ComponentMotion> component_motion(const scene::Snapshot& snapshot, const GradusSettings& settings,
+                                              const lpe::ComponentSet& components, uint32_t wanted,
+                                              const Region& region, const CancelCheck& is_cancelled) {
   const auto pixels = size_t(region.area()), width = size_t(region.width());
   const uint32_t residual = components.residual();
   wanted &= components.all();
   std::vector<ComponentMotion> motion(
       size_t(std::popcount(wanted)),
-      {std::vector<Vec4>(pixels, Vec4(0.0f)), std::vector<float>(pixels), std::vector<ShownPoint>(pixels), {}});
+      {std::vector<Vec4>(pixels, Vec4(0.0f)), std::vector<float>(pixels), std::vector<film::ShownPoint>(pixels), {}});
   if (wanted == 0) return motion;
-  const OtherFrame previous(snapshot, Moment::Previous, settings, is_cancelled), next(snapshot, Moment::Next, settings, is_cancelled);
+  const OtherFrame previous(snapshot, Moment::Previous, settings, is_cancelled),
+      next(snapshot, Moment::Next, settings, is_cancelled);
   Change change(snapshot);
   for (const OtherFrame* other : {&previous, &next}) change.add(*other->snapshot);
   for (int32_t y = region.y0; y < region.y1; y += kBand) {
     const Region band{region.x0, y, region.x1, std::min(y + kBand, region.y1)};
-    const CentreView centres = view_centres(snapshot, settings.width, settings.height, with_neighbours(band, settings), is_cancelled);
-    std::vector<ChainView> views = view_chains(centres, settings, components, wanted & ~residual, is_cancelled, &change);
+    const CentreView centres =
+        view_centres(snapshot, settings.width, settings.height, with_neighbours(band, settings), is_cancelled);
+    std::vector<ChainView> views =
+        view_chains(centres, settings, components, wanted & ~residual, is_cancelled, &change);
     const bool has_surfaces = (wanted & residual) != 0;
     if (has_surfaces) views.push_back(view_surfaces(centres, settings, &change));
     const auto before = track_views(views, has_surfaces, previous.tracer, band, is_cancelled),
@@ -114,4 +122,4 @@ std::vector<ComponentMotion> component_motion(const Snapshot& snapshot, const Gr
   return motion;
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace gradus {
+namespace gradus::motion {
 
 namespace {
 
@@ -13,7 +13,9 @@ constexpr int32_t kBand = 64;
 // Rows [y0, y1) of a view.
 CentreView rows_of(const CentreView& view, int32_t y0, int32_t y1) {
   const auto place = [&](int32_t y) { return ptrdiff_t(y - view.region.y0) * view.region.width(); };
-  const auto cut = [&](const auto& list) { return std::decay_t<decltype(list)>(list.begin() + place(y0), list.begin() + place(y1)); };
+  const auto cut = [&](const auto& list) {
+    return std::decay_t<decltype(list)>(list.begin() + place(y0), list.begin() + place(y1));
+  };
   return {view.snapshot, view.camera, {view.region.x0, y0, view.region.x1, y1}, cut(view.hits), cut(view.directions)};
 }
 
@@ -31,8 +33,9 @@ void append(const ChainMotion& rows, ChainMotion* motion) {
 
 }  // namespace
 
-std::vector<ChainMotion> track_components(const CentreView& from, const ChainTracer& to, const ComponentSet& components, uint32_t wanted,
-                                           const CancelCheck& is_cancelled) {
+std::vector<ChainMotion> track_components(const CentreView& from, const ChainTracer& to,
+                                          const lpe::ComponentSet& components, uint32_t wanted,
+                                          const CancelCheck& is_cancelled) {
   Change change(*from.snapshot);
   change.add(to.snapshot());
   const Region& film = from.region;
@@ -54,4 +57,4 @@ bool is_seen_through_smooth(const ChainMotion& motion) {
   return std::any_of(motion.tracking.begin(), motion.tracking.end(), [](Tracking t) { return t != Tracking::NoPath; });
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -1,4 +1,5 @@
-// Values between the pixels of a plane. Positions count pixels from the middle of the first one; beyond the outermost these go on.
+// Values between the pixels of a plane. Positions count pixels from the middle of the first one; beyond the outermost
+// these go on.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 #include "base/cubic_weights.h"
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 template <class T>
 struct FilmPlane {
@@ -53,4 +54,4 @@ T cubic_at(const FilmPlane<T>& plane, const Vec2& position) {
   return result;
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -6,17 +6,18 @@
 
 #include "base/minimal_rotation.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 namespace {
 
 constexpr int kMaxSteps = 24;
 constexpr int kMaxHalvings = 6;
-constexpr float kLongestStep = 64.0f;                                    // pixels
-constexpr float kDifference = 0.125f;                                    // pixels: below the width of what a pixel sees, far above rounding
-constexpr float kMinDeterminant = 1e-4f;                               // of unit columns: below, the picture folds
+constexpr float kLongestStep = 64.0f;     // pixels
+constexpr float kDifference = 0.125f;     // pixels: below the width of what a pixel sees, far above rounding
+constexpr float kMinDeterminant = 1e-4f;  // of unit columns: below, the picture folds
 constexpr float kFirstAdvance = 0.25f, kSmallestAdvance = 1.0f / 64.0f;  // of a frame
-// Of the Jacobian, relative to itself, over a step in time. As long as it changes by less than 1 no fold lies in between.
+// Of the Jacobian, relative to itself, over a step in time. As long as it changes by less than 1 no fold lies in
+// between.
 constexpr float kLargestChange = 0.5f;
 constexpr float kRounding = 2e-6f;   // of the distance to the target
 constexpr float kRoughness = 2e-5f;  // likewise: of normals that are differences themselves, those of bumps
@@ -121,7 +122,8 @@ SearchEnd FilmSearch::take(const Aim& aim, const Vec2& newton, State* state) {
     SpecularChain chain;
     Vec2 by, left;
     if (!miss(state->time, aim, film, &chain, &by)) {
-      if (i == 0 && state->fresh && glm::length(film - std::exchange(state->beyond, film)) < kSame) return SearchEnd::Ended;
+      if (i == 0 && state->fresh && glm::length(film - std::exchange(state->beyond, film)) < kSame)
+        return SearchEnd::Ended;
       continue;
     }
     end = SearchEnd::Stuck;
@@ -139,8 +141,8 @@ SearchEnd FilmSearch::take(const Aim& aim, const Vec2& newton, State* state) {
   return end;
 }
 
-// The last correction, which tells whether the Jacobian is to be believed: at the edge of a facet a guess of it may be far too large, and
-// make everything seem near. What is there already, as what rests is, stays.
+// The last correction, which tells whether the Jacobian is to be believed: at the edge of a facet a guess of it may be
+// far too large, and make everything seem near. What is there already, as what rests is, stays.
 bool FilmSearch::converge(const Aim& aim, const Vec2& step, State* state) {
   const float before = glm::length(state->miss);
   if (before < kRounding * aim.distance()) return true;
@@ -181,8 +183,9 @@ SearchEnd FilmSearch::solve(float time, FilmPlace* place) {
       }
       if (!state.fresh && glm::length(state.film - place->film) > kFar && !refresh()) return SearchEnd::Broken;
       const Mat3 frame = aim.axes();
-      *place = {
-          state.film, state.chain, {true, aim.axis(), {frame * Vec3(state.jacobian[0], 0.0f), frame * Vec3(state.jacobian[1], 0.0f)}}};
+      *place = {state.film,
+                state.chain,
+                {true, aim.axis(), {frame * Vec3(state.jacobian[0], 0.0f), frame * Vec3(state.jacobian[1], 0.0f)}}};
       return SearchEnd::Found;
     }
     ++counts_.space;
@@ -205,7 +208,9 @@ SearchEnd FilmSearch::step(float time, const FilmPlace& from, const Vec2& guess,
   return is_same_image(from.jacobian, place->jacobian, aim, near) ? SearchEnd::Found : SearchEnd::Turned;
 }
 
-SearchEnd FilmSearch::leap(const FilmPlace& from, const Vec2& guess, FilmPlace* place) { return step(1.0f, from, guess, place); }
+SearchEnd FilmSearch::leap(const FilmPlace& from, const Vec2& guess, FilmPlace* place) {
+  return step(1.0f, from, guess, place);
+}
 
 SearchEnd FilmSearch::march(const FilmPlace& from, FilmPlace* place) {
   FilmPlace at = from;
@@ -225,4 +230,4 @@ SearchEnd FilmSearch::march(const FilmPlace& from, FilmPlace* place) {
   return end;
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

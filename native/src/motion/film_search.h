@@ -1,14 +1,15 @@
-// The place on the film from which a way through smooth surfaces leads to a target: Newton's method on the film inside steps in time.
-// Every way is traced from the camera, so that reflections and refractions hold exactly, and there are two unknowns for any number of
-// surfaces (Jakob and Marschner 2012, Manifold Exploration; Zimmer et al. 2015, section 4.1).
+// The place on the film from which a way through smooth surfaces leads to a target: Newton's method on the film inside
+// steps in time. Every way is traced from the camera, so that reflections and refractions hold exactly, and there are
+// two unknowns for any number of surfaces (Jakob and Marschner 2012, Manifold Exploration; Zimmer et al. 2015,
+// section 4.1).
 #pragma once
 
 #include <array>
 
-#include "motion/target_miss.h"
 #include "motion/specular_chain.h"
+#include "motion/target_miss.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 // How a miss changes along the film.
 struct FilmJacobian {
@@ -37,7 +38,8 @@ enum class SearchEnd : uint8_t {
   Broken,  // the way does not exist where it was looked for
   Ended,   // nor does it where, by all that is known, the target would be seen: beyond an edge
   Stuck,
-  Turned,  // a place was found, but between it and the start the picture may fold: it may be another image of the same thing
+  Turned,  // a place was found, but between it and the start the picture may fold: it may be another image of the same
+           // thing
 };
 
 class FilmSearch {
@@ -54,8 +56,8 @@ class FilmSearch {
 
   // One step in time, from `from` to a guess of the place in the frame after.
   SearchEnd leap(const FilmPlace& from, const Vec2& guess, FilmPlace* place);
-  // From `from` to the frame after in steps that are halved where the picture changes much. What lies between the frames is taken to be
-  // between the rays that the same points of the first smooth surface send on.
+  // From `from` to the frame after in steps that are halved where the picture changes much. What lies between the
+  // frames is taken to be between the rays that the same points of the first smooth surface send on.
   SearchEnd march(const FilmPlace& from, FilmPlace* place);
   // At a place that is known to show the target before: its Jacobian.
   bool complete(FilmPlace* place);
@@ -77,4 +79,4 @@ class FilmSearch {
   SearchCounts& counts_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -1,14 +1,14 @@
 #include "motion/flat_mirror.h"
 
-namespace gradus {
+namespace gradus::motion {
 
-bool flat_mirror_motion(const ChainTracer& from, const ChainTracer& to, const SnapshotMotion& motion, const SpecularChain& chain,
-                        FlatMirror mirror, Vec2* film) {
-  if (chain.signature.length != 1 || chain.signature.event(0) != ScatterClass::Reflection) return false;
+bool flat_mirror_motion(const ChainTracer& from, const ChainTracer& to, const SnapshotMotion& motion,
+                        const SpecularChain& chain, FlatMirror mirror, Vec2* film) {
+  if (chain.signature.length != 1 || chain.signature.event(0) != bsdf::ScatterClass::Reflection) return false;
   const bool moves = mirror == FlatMirror::MovesAlong;
-  Hit there = chain.first;
+  geometry::Hit there = chain.first;
   if (moves && !motion.hit(chain.first, &there)) return false;
-  const SurfacePoint point = (moves ? to : from).snapshot().surface_point(there);
+  const geometry::SurfacePoint point = (moves ? to : from).snapshot().surface_point(there);
   const Vec3 n = point.shading_normal;
   if (chain.end == ChainEnd::Sky) {
     const Vec3& direction = chain.ray.ray.direction;
@@ -19,4 +19,4 @@ bool flat_mirror_motion(const ChainTracer& from, const ChainTracer& to, const Sn
   return to.camera().project(target - 2.0f * glm::dot(target - point.position, n) * n, Moment::Now, film);
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

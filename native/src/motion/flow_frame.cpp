@@ -3,7 +3,7 @@
 #include "motion/for_each_pixel.h"
 #include "motion/silhouettes.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 FlowFrame::FlowFrame(const GreyImage& image, const ComponentFrame& frame)
     : image_(image),
@@ -11,7 +11,8 @@ FlowFrame::FlowFrame(const GreyImage& image, const ComponentFrame& frame)
       tracked_(frame.tracked),
       object_(frame.object.begin(), frame.object.end()),
       edges_(silhouettes(image.width, image.height, frame.object, frame.depth)) {
-  each_pixel(width(), height(), [&](int, int, size_t p) { surface_[p] = bounded(frame.surface[p], width(), height()); });
+  each_pixel(width(), height(),
+             [&](int, int, size_t p) { surface_[p] = bounded(frame.surface[p], width(), height()); });
   object_.resize(count(), 0);
 }
 
@@ -24,4 +25,4 @@ bool FlowFrame::holds(const Vec2& p) const {
   return p.x >= -0.5f && p.y >= -0.5f && p.x <= float(width()) - 0.5f && p.y <= float(height()) - 0.5f;
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

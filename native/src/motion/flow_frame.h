@@ -4,7 +4,7 @@
 #include "motion/film_plane.h"
 #include "motion/irradiance_motion.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 class FlowFrame {
  public:
@@ -42,4 +42,4 @@ class FlowFrame {
   std::vector<uint8_t> edges_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -5,11 +5,11 @@
 
 #include "motion/for_each_pixel.h"
 
-namespace gradus {
+namespace gradus::motion {
 namespace {
 
-constexpr float kFloor = 0.01f;           // of the mean, added before the logarithm: below it is black
-constexpr float kOutliers = 0.002f;       // share of pixels beyond each end of the scale
+constexpr float kFloor = 0.01f;         // of the mean, added before the logarithm: below it is black
+constexpr float kOutliers = 0.002f;     // share of pixels beyond each end of the scale
 constexpr float kMinLogarithms = 0.5f;  // that the scale spans
 constexpr float kMinShare = 0.25f;      // of the mean that the scale spans in the linear domain
 constexpr float kBrightest = 1e30f;
@@ -37,7 +37,9 @@ struct Scale {
 
 // All but the outliers.
 Scale scale_of(Values values) {
-  const auto place = [&](float share) { return values.begin() + ptrdiff_t(std::lround(share * float(values.size() - 1))); };
+  const auto place = [&](float share) {
+    return values.begin() + ptrdiff_t(std::lround(share * float(values.size() - 1)));
+  };
   const auto lower = place(kOutliers), upper = place(1.0f - kOutliers);
   std::nth_element(values.begin(), lower, values.end());
   const float low = *lower;
@@ -47,7 +49,8 @@ Scale scale_of(Values values) {
 
 }  // namespace
 
-std::array<GreyImage, 2> flow_levels(int width, int height, std::span<const Rgb> first, std::span<const Rgb> second, FlowDomain domain) {
+std::array<GreyImage, 2> flow_levels(int width, int height, std::span<const Rgb> first, std::span<const Rgb> second,
+                                     FlowDomain domain) {
   const size_t count = first.size();
   Values values(2 * count);
   each_pixel(width, height, [&](int, int, size_t p) {
@@ -58,15 +61,17 @@ std::array<GreyImage, 2> flow_levels(int width, int height, std::span<const Rgb>
   std::array<GreyImage, 2> result{GreyImage{width, height, Values(count)}, GreyImage{width, height, Values(count)}};
   if (mean == 0.0f) return result;
   if (domain == FlowDomain::Logarithmic) {
-    each_pixel(width, 2 * height, [&](int, int, size_t p) { values[p] = std::log(std::max(values[p], 0.0f) / mean + kFloor); });
+    each_pixel(width, 2 * height,
+               [&](int, int, size_t p) { values[p] = std::log(std::max(values[p], 0.0f) / mean + kFloor); });
   }
   const auto [low, high] = scale_of(values);
   const float minimum = domain == FlowDomain::Logarithmic ? kMinLogarithms : kMinShare * mean;
   const float scale = 255.0f / std::max(high - low, minimum);
   each_pixel(width, height, [&, low = low](int, int, size_t p) {
-    for (size_t k = 0; k < 2; ++k) result[k].levels[p] = std::clamp((values[k * count + p] - low) * scale, 0.0f, 255.0f);
+    for (size_t k = 0; k < 2; ++k)
+      result[k].levels[p] = std::clamp((values[k * count + p] - low) * scale, 0.0f, 255.0f);
   });
   return result;
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -4,15 +4,16 @@
 #include "motion/for_each_pixel.h"
 #include "motion/refine_flow.h"
 
-namespace gradus {
+namespace gradus::motion {
 namespace {
 
-constexpr float kSurfaceReturn = 0.5f;  // pixels that a surface's way there and back may be off, the way back being the nearest pixel's
-constexpr float kMinNoiseLevel = 0.5f;     // levels: of their rounding
+constexpr float kSurfaceReturn =
+    0.5f;  // pixels that a surface's way there and back may be off, the way back being the nearest pixel's
+constexpr float kMinNoiseLevel = 0.5f;               // levels: of their rounding
 constexpr float kDeviation = 1.4826f / 1.41421356f;  // of a level, from the median of the differences of two
 constexpr int kPatch = 7;                            // pixels around one, over which two vectors are compared
-constexpr float kMinNoise = 1.0f;               // levels of noise: reconstructions leave blotches, which DIS fits well
-constexpr float kGain = 1.5f;                        // variances that a vector must explain, as a mean over the patch: less fits by chance
+constexpr float kMinNoise = 1.0f;  // levels of noise: reconstructions leave blotches, which DIS fits well
+constexpr float kGain = 1.5f;  // variances that a vector must explain, as a mean over the patch: less fits by chance
 
 class FlowVectors {
  public:
@@ -23,11 +24,13 @@ class FlowVectors {
   std::vector<Vec2> vectors(const FlowLibrary& library) const {
     const GreyImage there = compensated();
     const std::vector<Vec2> found = optical_flow(library, from_.image(), there);
-    const std::vector<float> still = squared_mismatch(there, std::vector<Vec2>(found.size())), moved = squared_mismatch(there, found);
+    const std::vector<float> still = squared_mismatch(there, std::vector<Vec2>(found.size())),
+                             moved = squared_mismatch(there, found);
     const std::vector<float> noise = deviations(moved);
     std::vector<Vec2> residual = believed(found, still, moved, noise);
     refine_flow({from_.levels(), to_.levels(), noise, from_.surface(), seen_, from_.object()}, &residual);
-    each_pixel([&](size_t p) { residual[p] = bounded(from_.surface()[p] + residual[p], from_.width(), from_.height()); });
+    each_pixel(
+        [&](size_t p) { residual[p] = bounded(from_.surface()[p] + residual[p], from_.width(), from_.height()); });
     return residual;
   }
 
@@ -94,7 +97,8 @@ class FlowVectors {
       const Vec2 place = from_.place(p) + found[p];
       const size_t q = from_.nearest(place);
       const float minimum = std::max(noise[p], kMinNoise);
-      if (gain[p] < kGain * minimum * minimum || !seen_[p] || !seen_[q] || from_.object()[p] != from_.object()[q]) return;
+      if (gain[p] < kGain * minimum * minimum || !seen_[p] || !seen_[q] || from_.object()[p] != from_.object()[q])
+        return;
       // What it shows there has gone on with the surface of that place.
       residual[p] = found[p] + linear_at(from_.plane(from_.surface()), place) - from_.surface()[p];
     });
@@ -128,4 +132,4 @@ std::vector<Vec2> flow_vectors(const FlowLibrary& library, const FlowFrame& from
   return FlowVectors(from, to).vectors(library);
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

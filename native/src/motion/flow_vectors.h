@@ -3,9 +3,9 @@
 
 #include "motion/flow_frame.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 // By pixels of `from`. Finite, no longer than the film. Throws as optical_flow().
 std::vector<Vec2> flow_vectors(const FlowLibrary& library, const FlowFrame& from, const FlowFrame& to);
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -3,10 +3,10 @@
 
 #include "base/rows.h"
 
-namespace gradus {
+namespace gradus::motion {
 
-// A row is no part of what calls it: a compiler that makes two variants of it rounds differently in each, and which one a row gets would
-// depend on the threads.
+// A row is no part of what calls it: a compiler that makes two variants of it rounds differently in each, and which one
+// a row gets would depend on the threads.
 template <class Body>
 [[gnu::noinline]] void pixels_of_row(int width, int y, const Body& body) {
   size_t p = size_t(y) * size_t(width);
@@ -19,4 +19,4 @@ void each_pixel(int width, int height, const Body& body) {
   for_rows(height, [&](int y) { pixels_of_row(width, y, body); });
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

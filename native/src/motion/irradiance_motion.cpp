@@ -2,10 +2,10 @@
 
 #include <tbb/parallel_invoke.h>
 
-#include "motion/for_each_pixel.h"
 #include "motion/flow_vectors.h"
+#include "motion/for_each_pixel.h"
 
-namespace gradus {
+namespace gradus::motion {
 namespace {
 
 constexpr float kReturn = 0.1f;  // pixels that a way there and back may be off (Zimmer et al. 2015, 4.2)
@@ -33,7 +33,8 @@ class Check {
   const FilmPlane<Vec2> back_;
 };
 
-PixelMotion checked(const FlowFrame& from, const FlowFrame& to, const std::vector<Vec2>& there, const std::vector<Vec2>& back) {
+PixelMotion checked(const FlowFrame& from, const FlowFrame& to, const std::vector<Vec2>& there,
+                    const std::vector<Vec2>& back) {
   const Check check(from, to, there, back);
   PixelMotion result{from.surface(), std::vector<float>(from.count())};
   each_pixel(from.width(), from.height(), [&](int, int, size_t p) {
@@ -43,12 +44,15 @@ PixelMotion checked(const FlowFrame& from, const FlowFrame& to, const std::vecto
   return result;
 }
 
-PixelMotion without_library(const FlowFrame& frame) { return {frame.surface(), std::vector<float>(frame.count(), kNoFlowLibrary)}; }
+PixelMotion without_library(const FlowFrame& frame) {
+  return {frame.surface(), std::vector<float>(frame.count(), kNoFlowLibrary)};
+}
 
 }  // namespace
 
-std::array<PixelMotion, 2> irradiance_motion(const FlowLibrary* library, int width, int height, const ComponentFrame& first,
-                                             const ComponentFrame& second, FlowDomain domain) {
+std::array<PixelMotion, 2> irradiance_motion(const FlowLibrary* library, int width, int height,
+                                             const ComponentFrame& first, const ComponentFrame& second,
+                                             FlowDomain domain) {
   const std::array<GreyImage, 2> images = flow_levels(width, height, first.radiance, second.radiance, domain);
   const FlowFrame a(images[0], first), b(images[1], second);
   if (!library) return {without_library(a), without_library(b)};
@@ -57,4 +61,4 @@ std::array<PixelMotion, 2> irradiance_motion(const FlowLibrary* library, int wid
   return {checked(a, b, there, back), checked(b, a, back, there)};
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "motion/film_plane.h"
 
-namespace gradus {
+namespace gradus::motion {
 namespace {
 
 constexpr const char* kFileName = "libgradus_flow.so";
@@ -38,7 +38,8 @@ FlowLibrary bind(void* library) {
   take(library, "gradus_flow_interface", &interface_number);
   const uint32_t number = interface_number();
   if (number != GRADUS_FLOW_INTERFACE) {
-    throw Unusable("it has interface " + std::to_string(number) + " in place of " + std::to_string(GRADUS_FLOW_INTERFACE));
+    throw Unusable("it has interface " + std::to_string(number) + " in place of " +
+                   std::to_string(GRADUS_FLOW_INTERFACE));
   }
   FlowLibrary result;
   take(library, "gradus_flow_version", &result.version);
@@ -59,7 +60,8 @@ std::string flow_library_folder() {
   Dl_info here;
   if (dladdr(reinterpret_cast<const void*>(&flow_library_folder), &here) == 0 || !here.dli_fname) return ".";
   std::error_code none;
-  const std::filesystem::path file = std::filesystem::canonical(here.dli_fname, none);  // a program's name may be relative
+  const std::filesystem::path file =
+      std::filesystem::canonical(here.dli_fname, none);  // a program's name may be relative
   return none ? "." : file.parent_path().string();
 }
 
@@ -93,4 +95,4 @@ std::vector<Vec2> optical_flow(const FlowLibrary& library, const GreyImage& from
   return flow;
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -1,4 +1,5 @@
-// Optical flow between two grey images, by libgradus_flow.so where it is there: found when it is asked for, never linked.
+// Optical flow between two grey images, by libgradus_flow.so where it is there: found when it is asked for, never
+// linked.
 #pragma once
 
 #include <memory>
@@ -9,7 +10,7 @@
 #include "base/warnings.h"
 #include "motion/opencv/flow.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 // Row by row, levels 0 to 255.
 struct GreyImage {
@@ -29,8 +30,9 @@ std::shared_ptr<const FlowLibrary> find_flow_library(const std::string& folder, 
 // The same; where there is none, `warnings` say what is not there without it.
 std::shared_ptr<const FlowLibrary> flow_library_or_warning(const std::string& folder, Warnings* warnings);
 
-// By pixels of `from`: how far away `to`, an image of the same size, shows the same; x along a row, y from row to row. Finite, no vector
-// longer than the image. Levels that are not finite count as 0. Throws Error UNKNOWN with the library's text.
+// By pixels of `from`: how far away `to`, an image of the same size, shows the same; x along a row, y from row to row.
+// Finite, no vector longer than the image. Levels that are not finite count as 0. Throws Error UNKNOWN with the
+// library's text.
 std::vector<Vec2> optical_flow(const FlowLibrary& library, const GreyImage& from, const GreyImage& to);
 
-}  // namespace gradus
+}  // namespace gradus::motion

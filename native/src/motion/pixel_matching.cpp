@@ -8,7 +8,7 @@
 #include "motion/snapshot_motion.h"
 #include "path/context.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 namespace {
 
@@ -30,7 +30,7 @@ class Tracker {
 
   Target target(size_t pixel) const {
     Target t;
-    const Hit& hit = from_.hits[pixel];
+    const geometry::Hit& hit = from_.hits[pixel];
     if (!hit.valid()) {
       t.film = centre_of(from_.region, pixel);
       t.found = shows_one_direction() || to_.camera.project_direction(from_.directions[pixel], Moment::Now, &t.film);
@@ -68,7 +68,7 @@ void for_each_pixel(size_t count, const Body& body) {
 
 Vec2 centre_of(const Region& region, size_t pixel) {
   const auto width = size_t(region.width());
-  return pixel_centre(region.x0 + int32_t(pixel % width), region.y0 + int32_t(pixel / width));
+  return path::pixel_centre(region.x0 + int32_t(pixel % width), region.y0 + int32_t(pixel / width));
 }
 
 Vec2 off_centre(const Region& region, size_t pixel, const Vec2& film) {
@@ -78,15 +78,16 @@ Vec2 off_centre(const Region& region, size_t pixel, const Vec2& film) {
 int32_t pixel_at(const Region& region, const Vec2& film) {
   const float x = std::floor(film.x), y = std::floor(film.y);
   const bool inside = x >= float(region.x0) && x < float(region.x1) && y >= float(region.y0) && y < float(region.y1);
-  if (!inside) return kNoCorrespondence;
+  if (!inside) return film::kNoCorrespondence;
   return (int32_t(y) - region.y0) * region.width() + (int32_t(x) - region.x0);
 }
 
-CentreView view_centres(const Snapshot& snapshot, uint32_t width, uint32_t height, const Region& region, const CancelCheck& is_cancelled) {
+CentreView view_centres(const scene::Snapshot& snapshot, uint32_t width, uint32_t height, const Region& region,
+                        const CancelCheck& is_cancelled) {
   const auto pixels = size_t(region.area());
   const float time = snapshot.shutter.time_of_frame();
-  const Camera camera = Camera(snapshot.camera, width, height).frozen_at(time).without_lens();
-  CentreView view{&snapshot, camera, region, std::vector<Hit>(pixels), std::vector<Vec3>(pixels)};
+  const camera::Camera camera = camera::Camera(snapshot.camera, width, height).frozen_at(time).without_lens();
+  CentreView view{&snapshot, camera, region, std::vector<geometry::Hit>(pixels), std::vector<Vec3>(pixels)};
   for_each_pixel(view.hits.size(), [&](size_t i) {
     if (is_cancelled()) return;
     const Ray ray = view.camera.ray({centre_of(region, i), Vec2(0.0f), time});
@@ -96,36 +97,38 @@ CentreView view_centres(const Snapshot& snapshot, uint32_t width, uint32_t heigh
   return view;
 }
 
-PixelCorrespondence match_pixels(const CentreView& from, const CentreView& to) {
+film::PixelCorrespondence match_pixels(const CentreView& from, const CentreView& to) {
   const Tracker forward(from, to), back(to, from);
-  PixelCorrespondence found{std::vector<int32_t>(from.hits.size(), kNoCorrespondence), std::vector<Vec2>(from.hits.size(), Vec2(0.0f))};
+  film::PixelCorrespondence found{std::vector<int32_t>(from.hits.size(), film::kNoCorrespondence),
+                                  std::vector<Vec2>(from.hits.size(), Vec2(0.0f))};
   std::vector<int32_t>& correspondence = found.pixel;
   std::vector<float> distances(from.hits.size(), kInfinity);
   for_each_pixel(correspondence.size(), [&](size_t i) {
     const Target t = forward.target(i);
-    const int32_t next = t.found ? pixel_at(to.region, t.film) : kNoCorrespondence;
-    if (next == kNoCorrespondence || !returns(back, from, i, next)) return;
+    const int32_t next = t.found ? pixel_at(to.region, t.film) : film::kNoCorrespondence;
+    if (next == film::kNoCorrespondence || !returns(back, from, i, next)) return;
     correspondence[i] = next;
     found.off_centre[i] = off_centre(to.region, size_t(next), t.film);
     distances[i] = t.distance;
   });
   // In the pixels' order, so that ties go the same way on any number of threads.
-  std::vector<int32_t> owner(to.hits.size(), kNoCorrespondence);
+  std::vector<int32_t> owner(to.hits.size(), film::kNoCorrespondence);
   for (size_t i = 0; i < correspondence.size(); ++i) {
-    if (correspondence[i] == kNoCorrespondence) continue;
+    if (correspondence[i] == film::kNoCorrespondence) continue;
     int32_t& other = owner[size_t(correspondence[i])];
-    const bool nearest = other == kNoCorrespondence || distances[i] < distances[size_t(other)];
-    if (nearest && other != kNoCorrespondence) correspondence[size_t(other)] = kNoCorrespondence;
+    const bool nearest = other == film::kNoCorrespondence || distances[i] < distances[size_t(other)];
+    if (nearest && other != film::kNoCorrespondence) correspondence[size_t(other)] = film::kNoCorrespondence;
     if (nearest) other = int32_t(i);
-    if (!nearest) correspondence[i] = kNoCorrespondence;
+    if (!nearest) correspondence[i] = film::kNoCorrespondence;
   }
   return found;
 }
 
-PixelCorrespondence inverse_correspondence(const PixelCorrespondence& correspondence) {
-  PixelCorrespondence inverse{std::vector<int32_t>(correspondence.pixel.size(), kNoCorrespondence), std::vector<Vec2>(correspondence.off_centre.size(), Vec2(0.0f))};
+film::PixelCorrespondence inverse_correspondence(const film::PixelCorrespondence& correspondence) {
+  film::PixelCorrespondence inverse{std::vector<int32_t>(correspondence.pixel.size(), film::kNoCorrespondence),
+                                    std::vector<Vec2>(correspondence.off_centre.size(), Vec2(0.0f))};
   for (size_t i = 0; i < correspondence.pixel.size(); ++i) {
-    if (correspondence.pixel[i] == kNoCorrespondence) continue;
+    if (correspondence.pixel[i] == film::kNoCorrespondence) continue;
     const auto end = size_t(correspondence.pixel[i]);
     inverse.pixel[end] = int32_t(i);
     if (!correspondence.off_centre.empty()) inverse.off_centre[end] = correspondence.off_centre[i];
@@ -137,8 +140,9 @@ bool is_shot_change(const GradusCamera& from, const GradusCamera& to) {
   if (from.type != to.type) return true;
   const auto axis = [](const GradusCamera& c) { return glm::normalize(-Vec3(c.matrix[8], c.matrix[9], c.matrix[10])); };
   const float zoom = (to.window[1] - to.window[0]) / (from.window[1] - from.window[0]);
-  const bool near = glm::dot(axis(from), axis(to)) >= kShotChangeCosine && zoom < kShotChangeZoom && zoom > 1.0f / kShotChangeZoom;
+  const bool near =
+      glm::dot(axis(from), axis(to)) >= kShotChangeCosine && zoom < kShotChangeZoom && zoom > 1.0f / kShotChangeZoom;
   return !near;
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

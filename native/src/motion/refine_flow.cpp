@@ -4,15 +4,15 @@
 
 #include "motion/for_each_pixel.h"
 
-namespace gradus {
+namespace gradus::motion {
 namespace {
 
 constexpr int kWarps = 5, kSweeps = 10;
-constexpr int kWindow = 3;               // pixels around one, Gaussian of half that
-constexpr float kSmoothness = 5.0f;      // per pixel of difference between neighbours, against squares of data by its noise
-constexpr float kAlike = 0.1f;           // pixels: differences below it count by their squares
-constexpr float kOutlier = 3.0f;         // standard deviations: data beyond it counts by its magnitude
-constexpr float kPriorWeight = 1e-4f;     // weight of no rest, for where nothing else says anything
+constexpr int kWindow = 3;           // pixels around one, Gaussian of half that
+constexpr float kSmoothness = 5.0f;  // per pixel of difference between neighbours, against squares of data by its noise
+constexpr float kAlike = 0.1f;       // pixels: differences below it count by their squares
+constexpr float kOutlier = 3.0f;     // standard deviations: data beyond it counts by its magnitude
+constexpr float kPriorWeight = 1e-4f;    // weight of no rest, for where nothing else says anything
 constexpr float kOverRelaxation = 1.7f;  // of Gauss and Seidel's steps
 constexpr float kLongestStep = 1.0f;     // pixels, for which a gradient is good
 
@@ -87,7 +87,8 @@ class Refinement {
 
   // The other image where the vectors lead to. Where it cannot show the same: this one, with which nothing is wrong.
   float warped(int x, int y, size_t p) const {
-    return pair_.seen[p] ? cubic_at(pair_.to, Vec2(float(x), float(y)) + pair_.bootstrap[p] + residual_[p]) : pair_.from.values[p];
+    return pair_.seen[p] ? cubic_at(pair_.to, Vec2(float(x), float(y)) + pair_.bootstrap[p] + residual_[p])
+                         : pair_.from.values[p];
   }
 
   // What one pixel asks of the step: change + gradient · step = 0, the gradient that of the mean of both images.
@@ -105,12 +106,14 @@ class Refinement {
   void sum_windows() {
     each_pixel([this](int x, int y, size_t p) {
       Normal sum;
-      for (int i = std::max(x - kWindow, 0); i <= std::min(x + kWindow, width_ - 1); ++i) sum.add(weight(i - x), pixels_[index(i, y)]);
+      for (int i = std::max(x - kWindow, 0); i <= std::min(x + kWindow, width_ - 1); ++i)
+        sum.add(weight(i - x), pixels_[index(i, y)]);
       rows_[p] = sum;
     });
     each_pixel([this](int x, int y, size_t p) {
       Normal sum;
-      for (int j = std::max(y - kWindow, 0); j <= std::min(y + kWindow, height_ - 1); ++j) sum.add(weight(j - y), rows_[index(x, j)]);
+      for (int j = std::max(y - kWindow, 0); j <= std::min(y + kWindow, height_ - 1); ++j)
+        sum.add(weight(j - y), rows_[index(x, j)]);
       sum.pull(kPriorWeight, -residual_[p]);
       data_[p] = sum;
     });
@@ -135,8 +138,8 @@ class Refinement {
     return normal.inverse();
   }
 
-  // Every other pixel of a row, by its neighbours' steps: those of one colour of a chessboard do not depend on each other. Apart from what
-  // calls it, as of motion/for_each_pixel.h.
+  // Every other pixel of a row, by its neighbours' steps: those of one colour of a chessboard do not depend on each
+  // other. Apart from what calls it, as of motion/for_each_pixel.h.
   [[gnu::noinline]] void relax(int y, int colour) {
     for (int x = (y + colour) & 1; x < width_; x += 2) {
       const size_t p = index(x, y), row = size_t(width_);
@@ -156,8 +159,9 @@ class Refinement {
   std::vector<Vec2>& residual_;
   std::vector<Vec2> step_;  // from one warp to the next
   std::vector<float> warped_;
-  std::vector<Normal> pixels_, rows_, data_;  // of each alone (then solved with its neighbours), summed along rows, over windows
-  std::vector<float> right_, below_;          // likeness of a pixel and its neighbours
+  std::vector<Normal> pixels_, rows_,
+      data_;  // of each alone (then solved with its neighbours), summed along rows, over windows
+  std::vector<float> right_, below_;  // likeness of a pixel and its neighbours
   const std::array<float, 2 * kWindow + 1> weights_ = window_weights();
 };
 
@@ -165,4 +169,4 @@ class Refinement {
 
 void refine_flow(const FlowPair& pair, std::vector<Vec2>* residual) { Refinement(pair, residual).run(); }
 
-}  // namespace gradus
+}  // namespace gradus::motion

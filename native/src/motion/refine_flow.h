@@ -1,6 +1,6 @@
-// Makes vectors between two images exact, from a start that is near: the windows of Lucas and Kanade within the smoothness of Horn and
-// Schunck (Bruhn, Weickert and Schnörr 2005), both robust. Derivation and measurements: docs/method.md, "Motion of shadows and of the
-// rest".
+// Makes vectors between two images exact, from a start that is near: the windows of Lucas and Kanade within the
+// smoothness of Horn and Schunck (Bruhn, Weickert and Schnörr 2005), both robust. Derivation and measurements:
+// docs/method.md, "Motion of shadows and of the rest".
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 #include "motion/film_plane.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 struct FlowPair {
   FilmPlane<float> from, to;
@@ -18,7 +18,8 @@ struct FlowPair {
   std::span<const int32_t> object;  // between two of them nothing is smooth
 };
 
-// `rest`: by pixels of `from`, so that bootstrap + rest leads to the same level in `to`. In: where to start. It stays finite.
+// `rest`: by pixels of `from`, so that bootstrap + rest leads to the same level in `to`. In: where to start. It stays
+// finite.
 void refine_flow(const FlowPair& pair, std::vector<Vec2>* residual);
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -6,10 +6,11 @@
 #include "base/types.h"
 #include "motion/for_each_pixel.h"
 
-namespace gradus {
+namespace gradus::motion {
 namespace {
 
-// Of 1/depth, which is linear over a plane in perspective: a bend larger than this share of it is a step between surfaces.
+// Of 1/depth, which is linear over a plane in perspective: a bend larger than this share of it is a step between
+// surfaces.
 constexpr float kStep = 0.05f;
 
 float nearness(float depth) { return is_finite(depth) && depth > 0.0f ? 1.0f / depth : 0.0f; }
@@ -42,9 +43,10 @@ std::vector<uint8_t> silhouettes(int width, int height, std::span<const int32_t>
     const bool across = x > 0 && x + 1 < width && steps(near_at(x - 1, y), here, near_at(x + 1, y));
     return across || (y > 0 && y + 1 < height && steps(near_at(x, y - 1), here, near_at(x, y + 1)));
   };
-  each_pixel(width, height,
-             [&](int x, int y, size_t p) { result[p] = (!object.empty() && shows_other(x, y)) || (!depth.empty() && shows_step(x, y)); });
+  each_pixel(width, height, [&](int x, int y, size_t p) {
+    result[p] = (!object.empty() && shows_other(x, y)) || (!depth.empty() && shows_step(x, y));
+  });
   return result;
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -5,26 +5,26 @@
 
 #include "scene/snapshot.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 inline constexpr uint32_t kNoInstance = UINT32_MAX;
 // For each instance of `from` the one of `to` that has its identity.
-std::vector<uint32_t> matching_instances(const Snapshot& from, const Snapshot& to);
+std::vector<uint32_t> matching_instances(const scene::Snapshot& from, const scene::Snapshot& to);
 
 class SnapshotMotion {
  public:
   // Both live as long as it.
-  SnapshotMotion(const Snapshot& from, const Snapshot& to);
+  SnapshotMotion(const scene::Snapshot& from, const scene::Snapshot& to);
 
-  // Where a surface point of `from` is at the moment of the frame of `to`, in the internal space of `to`. False: it is not there, or its
-  // mesh has another topology.
-  bool position(const Hit& hit, Vec3* position) const;
+  // Where a surface point of `from` is at the moment of the frame of `to`, in the internal space of `to`. False: it is
+  // not there, or its mesh has another topology.
+  bool position(const geometry::Hit& hit, Vec3* position) const;
   // The point itself, as a hit of `to`.
-  bool hit(const Hit& hit, Hit* there) const;
+  bool hit(const geometry::Hit& hit, geometry::Hit* there) const;
 
  private:
-  const Snapshot& to_;
+  const scene::Snapshot& to_;
   std::vector<uint32_t> instance_;  // in `to`, for each of `from`; kNoInstance: none, or of another topology
 };
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -4,12 +4,12 @@
 #include <utility>
 
 #include "base/hash.h"
-#include "bsdf/shading_frame.h"
 #include "bsdf/lobe.h"
+#include "bsdf/shading_frame.h"
 #include "path/scatter.h"
 #include "shading/material.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 namespace {
 
@@ -20,19 +20,19 @@ constexpr int kMaxSurfaces = 24;
 struct SmoothScattering {
   Vec3 wi = Vec3(0.0f);
   float strength = 0.0f;
-  LightPass pass = LightPass::Glossy;
+  bsdf::LightPass pass = bsdf::LightPass::Glossy;
 };
 
-SmoothScattering smooth_scattering(const Closures& closures, ScatterClass event, const Vec3& wo) {
-  const bool transmitted = event == ScatterClass::Transmission;
+SmoothScattering smooth_scattering(const bsdf::Closures& closures, bsdf::ScatterClass event, const Vec3& wo) {
+  const bool transmitted = event == bsdf::ScatterClass::Transmission;
   SmoothScattering best;
   for (int i = 0; i < closures.count(); ++i) {
-    const Lobe& lobe = closures.lobe(i);
-    if (lobe.scatter_class == ScatterClass::Diffuse) continue;
-    const Frame3 frame = make_frame(lobe.normal, lobe.tangent);
+    const bsdf::Lobe& lobe = closures.lobe(i);
+    if (lobe.scatter_class == bsdf::ScatterClass::Diffuse) continue;
+    const bsdf::Frame3 frame = bsdf::make_frame(lobe.normal, lobe.tangent);
     Vec3 local;
     Rgb coefficient;
-    if (!dirac_direction(lobe, frame.to_local(wo), transmitted, &local, &coefficient)) continue;
+    if (!bsdf::dirac_direction(lobe, frame.to_local(wo), transmitted, &local, &coefficient)) continue;
     const float strength = mean_component(coefficient);
     if (strength > best.strength) best = {glm::normalize(frame.to_world(local)), strength, lobe.pass};
   }
@@ -41,30 +41,32 @@ SmoothScattering smooth_scattering(const Closures& closures, ScatterClass event,
 
 }  // namespace
 
-void SpecularSignature::add(ScatterClass event, uint64_t instance_id) {
+void SpecularSignature::add(bsdf::ScatterClass event, uint64_t instance_id) {
   events = uint16_t(events | unsigned(event) << (2 * length));
   surfaces = mix_bits(3 * surfaces + instance_id + 1);
   ++length;
 }
 
-ChainTracer::ChainTracer(const Snapshot& snapshot, const Camera& camera, const GradusSettings& settings)
+ChainTracer::ChainTracer(const scene::Snapshot& snapshot, const camera::Camera& camera, const GradusSettings& settings)
     : snapshot_(snapshot), camera_(camera), settings_(settings), time_(snapshot.shutter.time_of_frame()) {}
 
-PathRay ChainTracer::camera_ray(const Vec2& film) const { return {camera_.ray({film, Vec2(0.0f), time_}), GRADUS_VISIBLE_CAMERA, {}}; }
+path::PathRay ChainTracer::camera_ray(const Vec2& film) const {
+  return {camera_.ray({film, Vec2(0.0f), time_}), GRADUS_VISIBLE_CAMERA, {}};
+}
 
 struct ChainTracer::Arrival {
-  Hit hit;
-  Vertex vertex;              // missing where only transparency was asked for, and there is none
+  geometry::Hit hit;
+  path::Vertex vertex;               // missing where only transparency was asked for, and there is none
   bool surely_non_specular = false;  // and dark: closures are missing
 };
 
 // To the next surface that stops the ray. False: it leaves the scene.
-bool ChainTracer::advance(Shades shades, const Hit* known, PathRay* ray, Arrival* arrival) const {
-  Vertex* vertex = &arrival->vertex;
+bool ChainTracer::advance(Shades shades, const geometry::Hit* known, path::PathRay* ray, Arrival* arrival) const {
+  path::Vertex* vertex = &arrival->vertex;
   vertex->wo = -ray->ray.direction;
   Ray part = ray->ray;
   for (;;) {
-    Hit hit;
+    geometry::Hit hit;
     if (known != nullptr) {
       hit = *std::exchange(known, nullptr);
     } else {
@@ -73,69 +75,76 @@ bool ChainTracer::advance(Shades shades, const Hit* known, PathRay* ray, Arrival
     arrival->hit = hit;
     if (!hit.valid()) return false;
     ray->state.length = glm::length(part.origin + part.direction * hit.t - ray->ray.origin);
-    const MaterialData& material = *snapshot_.materials[snapshot_.material_of(hit.instance, hit.triangle)];
+    const shading::MaterialData& material = *snapshot_.materials[snapshot_.material_of(hit.instance, hit.triangle)];
     if (shades == Shades::Transparency && !material.may_be_transparent) return true;
     snapshot_.place(hit, &vertex->point);
-    const bool is_non_specular = material.has_bsdf && !material.emits && material.min_alpha >= settings_.roughness_threshold;
+    const bool is_non_specular =
+        material.has_bsdf && !material.emits && material.min_alpha >= settings_.roughness_threshold;
     arrival->surely_non_specular = is_non_specular && !material.may_be_transparent;
     if (arrival->surely_non_specular) return true;
-    shade_surface(snapshot_, vertex->point, vertex->wo, ray->state, settings_.roughness_threshold, &vertex->shade);
+    shading::shade_surface(snapshot_, vertex->point, vertex->wo, ray->state, settings_.roughness_threshold,
+                           &vertex->shade);
     const bool passes = mean_component(vertex->shade.transparency) > 0.5f;
     if (!passes || ray->state.transparent_depth >= settings_.transparent_max_bounces) return true;
     ++ray->state.transparent_depth;
-    pass_surface(vertex->point, &part);
+    geometry::pass_surface(vertex->point, &part);
   }
 }
 
 // How much goes that way; 0: nothing, and the ray stays what it was.
-float ChainTracer::scatter(const Vertex& vertex, ScatterClass event, PathRay* ray) const {
-  const bool transmitted = event == ScatterClass::Transmission;
+float ChainTracer::scatter(const path::Vertex& vertex, bsdf::ScatterClass event, path::PathRay* ray) const {
+  const bool transmitted = event == bsdf::ScatterClass::Transmission;
   const SmoothScattering scattering = smooth_scattering(vertex.shade.closures, event, vertex.wo);
   const bool crosses = glm::dot(vertex.facing_normal(), scattering.wi) < 0.0f;
   if (!(scattering.strength > 0.0f) || crosses != transmitted) return 0.0f;
-  ray->ray = spawn_ray(vertex.point, scattering.wi);
-  ray->visibility = bounce_visibility(scattering.pass, transmitted);
-  ray->state = next_ray_state(ray->state, false, transmitted, true);
+  ray->ray = path::spawn_ray(vertex.point, scattering.wi);
+  ray->visibility = path::bounce_visibility(scattering.pass, transmitted);
+  ray->state = path::next_ray_state(ray->state, false, transmitted, true);
   return scattering.strength;
 }
 
 struct ChainTracer::Search {
-  const ComponentSet& components;
+  const lpe::ComponentSet& components;
   int component;
   const Change* change;
   int surfaces = 0;
 
-  bool reaches(LpeState lpe_state) const { return (components.ahead(lpe_state) >> component & 1) != 0; }
-  bool is_lit(LpeState lpe_state) const { return components.component(lpe_state) == component; }
-  bool is_static(const PathRay& ray, const Hit& hit) const { return change != nullptr && change->is_static(ray.ray, hit, ray.state.length); }
+  bool reaches(lpe::LpeState lpe_state) const { return (components.ahead(lpe_state) >> component & 1) != 0; }
+  bool is_lit(lpe::LpeState lpe_state) const { return components.component(lpe_state) == component; }
+  bool is_static(const path::PathRay& ray, const geometry::Hit& hit) const {
+    return change != nullptr && change->is_static(ray.ray, hit, ray.state.length);
+  }
   // A rough surface or one that shines, where that belongs to the component.
-  bool ends_at(const Arrival& arrival, LpeState lpe_state) const {
-    if (arrival.surely_non_specular) return reaches(components.next(lpe_state, ScatterClass::Diffuse));
-    const Vertex& vertex = arrival.vertex;
-    const bool non_specular = vertex.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f;
-    return (non_specular && reaches(components.next(lpe_state, ScatterClass::Diffuse))) || (!is_black(vertex.shade.emission) && is_lit(lpe_state));
+  bool ends_at(const Arrival& arrival, lpe::LpeState lpe_state) const {
+    if (arrival.surely_non_specular) return reaches(components.next(lpe_state, bsdf::ScatterClass::Diffuse));
+    const path::Vertex& vertex = arrival.vertex;
+    const bool non_specular = vertex.shade.closures.class_probability(bsdf::ScatterClass::Diffuse) > 0.0f;
+    return (non_specular && reaches(components.next(lpe_state, bsdf::ScatterClass::Diffuse))) ||
+           (!is_black(vertex.shade.emission) && is_lit(lpe_state));
   }
 };
 
 // The stronger one first.
-std::array<ChainTracer::Branch, 2> ChainTracer::branches(const Search& search, const Vertex& vertex, const PathRay& ray,
-                                                         LpeState lpe_state) const {
-  std::array<Branch, 2> found{{{ScatterClass::Reflection, 0.0f, ray}, {ScatterClass::Transmission, 0.0f, ray}}};
+std::array<ChainTracer::Branch, 2> ChainTracer::branches(const Search& search, const path::Vertex& vertex,
+                                                         const path::PathRay& ray, lpe::LpeState lpe_state) const {
+  std::array<Branch, 2> found{
+      {{bsdf::ScatterClass::Reflection, 0.0f, ray}, {bsdf::ScatterClass::Transmission, 0.0f, ray}}};
   for (Branch& branch : found) {
-    if (search.reaches(search.components.next(lpe_state, branch.event))) branch.strength = scatter(vertex, branch.event, &branch.ray);
+    if (search.reaches(search.components.next(lpe_state, branch.event)))
+      branch.strength = scatter(vertex, branch.event, &branch.ray);
   }
   if (found[1].strength > found[0].strength) std::swap(found[0], found[1]);
   return found;
 }
 
 // In the sky.
-bool ChainTracer::is_seen(const Search& search, LpeState lpe_state, SpecularChain* chain) const {
+bool ChainTracer::is_seen(const Search& search, lpe::LpeState lpe_state, SpecularChain* chain) const {
   chain->end = ChainEnd::Sky;
   chain->length = 0.0f;
   return snapshot_.features.world_emits && search.is_lit(lpe_state);
 }
 
-bool ChainTracer::extend(Search* search, PathRay ray, LpeState lpe_state, SpecularChain* chain) const {
+bool ChainTracer::extend(Search* search, path::PathRay ray, lpe::LpeState lpe_state, SpecularChain* chain) const {
   if (++search->surfaces > kMaxSurfaces) return false;
   thread_local std::array<Arrival, kMaxChainLength + 1> arrivals;  // large: one for each depth
   Arrival& arrival = arrivals[chain->signature.length];
@@ -147,8 +156,9 @@ bool ChainTracer::extend(Search* search, PathRay ray, LpeState lpe_state, Specul
 }
 
 // ray: as it arrived.
-bool ChainTracer::continue_chain(Search* search, const Arrival& arrival, const PathRay& ray, LpeState lpe_state, SpecularChain* chain) const {
-  const Vertex& vertex = arrival.vertex;
+bool ChainTracer::continue_chain(Search* search, const Arrival& arrival, const path::PathRay& ray,
+                                 lpe::LpeState lpe_state, SpecularChain* chain) const {
+  const path::Vertex& vertex = arrival.vertex;
   if (search->ends_at(arrival, lpe_state)) {
     chain->end = ChainEnd::Surface;
     chain->last = arrival.hit;
@@ -168,11 +178,12 @@ bool ChainTracer::continue_chain(Search* search, const Arrival& arrival, const P
   return false;
 }
 
-uint32_t ChainTracer::find(const Vec2& film, const Hit& known, const ComponentSet& components, uint32_t wanted, const Change* change,
-                           std::array<SpecularChain, kMaxComponents>* chains) const {
-  const PathRay start = camera_ray(film);
+uint32_t ChainTracer::find(const Vec2& film, const geometry::Hit& known, const lpe::ComponentSet& components,
+                           uint32_t wanted, const Change* change,
+                           std::array<SpecularChain, lpe::kMaxComponents>* chains) const {
+  const path::PathRay start = camera_ray(film);
   if (is_none(start.ray)) return 0;
-  PathRay ray = start;
+  path::PathRay ray = start;
   thread_local Arrival arrival;
   const bool is_surface = advance(Shades::All, &known, &ray, &arrival);
   uint32_t found = 0;
@@ -184,20 +195,22 @@ uint32_t ChainTracer::find(const Vec2& film, const Hit& known, const ComponentSe
     chain.ray = start;
     chain.is_static = change != nullptr && !change->of_all() && search.is_static(ray, arrival.hit);
     if (is_surface) chain.length = ray.state.length;
-    const bool is_found = is_surface ? continue_chain(&search, arrival, ray, LpeState{0}, &chain) : is_seen(search, LpeState{0}, &chain);
+    const bool is_found = is_surface ? continue_chain(&search, arrival, ray, lpe::LpeState{0}, &chain)
+                                     : is_seen(search, lpe::LpeState{0}, &chain);
     found |= is_found ? 1u << c : 0u;
   }
   return found;
 }
 
 bool ChainTracer::follow(const Vec2& film, const SpecularSignature& signature, SpecularChain* chain) const {
-  PathRay ray = camera_ray(film);
+  path::PathRay ray = camera_ray(film);
   if (is_none(ray.ray)) return false;
   *chain = SpecularChain{};
   thread_local Arrival arrival;
-  const Vertex& vertex = arrival.vertex;
+  const path::Vertex& vertex = arrival.vertex;
   for (int i = 0; i < signature.length; ++i) {
-    if (!advance(Shades::All, nullptr, &ray, &arrival) || arrival.surely_non_specular || !(scatter(vertex, signature.event(i), &ray) > 0.0f))
+    if (!advance(Shades::All, nullptr, &ray, &arrival) || arrival.surely_non_specular ||
+        !(scatter(vertex, signature.event(i), &ray) > 0.0f))
       return false;
     if (i == 0) chain->first = vertex.point.hit;
     chain->signature.add(signature.event(i), snapshot_.instances[vertex.point.hit.instance].id);
@@ -213,13 +226,13 @@ bool ChainTracer::meets(const SpecularChain& chain, float distance) const {
   return snapshot_.meets(ray, chain.ray.visibility);
 }
 
-bool ChainTracer::finish(const SpecularChain& chain, Hit* hit) const {
-  PathRay ray = chain.ray;
+bool ChainTracer::finish(const SpecularChain& chain, geometry::Hit* hit) const {
+  path::PathRay ray = chain.ray;
   thread_local Arrival arrival;
   const bool found = advance(Shades::Transparency, nullptr, &ray, &arrival);
-  *hit = found ? arrival.hit : Hit();
+  *hit = found ? arrival.hit : geometry::Hit();
   hit->t = found ? ray.state.length : kInfinity;
   return found;
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -12,7 +12,7 @@
 #include "motion/snapshot_motion.h"
 #include "path/context.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 namespace {
 
@@ -21,7 +21,9 @@ constexpr int32_t kTile = 16;
 // Of the distance: what is no nearer than this before a target may be its own surface.
 constexpr float kOwnSurface = 1e-3f;
 
-size_t pixel_of(const Region& part, int32_t x, int32_t y) { return size_t(y - part.y0) * size_t(part.width()) + size_t(x - part.x0); }
+size_t pixel_of(const Region& part, int32_t x, int32_t y) {
+  return size_t(y - part.y0) * size_t(part.width()) + size_t(x - part.x0);
+}
 
 struct Track {
   Tracking tracking = Tracking::NoPath;
@@ -38,13 +40,19 @@ class Tracker {
  public:
   // known: of the part.
   Tracker(const ChainView& from, const ChainTracer& to, const Region& part, const KnownMotion* known)
-      : from_(from), here_(from.tracer()), to_(to), motion_(here_.snapshot(), to.snapshot()), part_(part), known_(known) {}
+      : from_(from),
+        here_(from.tracer()),
+        to_(to),
+        motion_(here_.snapshot(), to.snapshot()),
+        part_(part),
+        known_(known) {}
 
   // In the first frame; nullptr: there is none.
   const SpecularChain* chain(int32_t x, int32_t y) const { return from_.at(x, y); }
 
-  Track track(int32_t x, int32_t y, const SpecularChain& chain, const Neighbours& before, TrackingCounts* counts) const {
-    Track result{Tracking::Tracked, pixel_centre(x, y), &chain};
+  Track track(int32_t x, int32_t y, const SpecularChain& chain, const Neighbours& before,
+              TrackingCounts* counts) const {
+    Track result{Tracking::Tracked, path::pixel_centre(x, y), &chain};
     if (chain.is_static) return result;
     if (is_known(chain, x, y)) {
       const size_t pixel = pixel_of(part_, x, y);
@@ -61,10 +69,10 @@ class Tracker {
       search(target, x, y, before, &result, counts);
     }
     result.film = on_film(result.film);
-    const Vec2 displacement = glm::abs(to_.camera().film_displacement(pixel_centre(x, y), result.film));
+    const Vec2 displacement = glm::abs(to_.camera().film_displacement(path::pixel_centre(x, y), result.film));
     const bool inside = displacement.x <= float(to_.settings().width) && displacement.y <= float(to_.settings().height);
     if (result.tracking == Tracking::Tracked && !inside) result.tracking = Tracking::Outside;
-    if (result.tracking != Tracking::Tracked) result.film = pixel_centre(x, y);
+    if (result.tracking != Tracking::Tracked) result.film = path::pixel_centre(x, y);
     return result;
   }
 
@@ -92,8 +100,9 @@ class Tracker {
   void straight(const Target& target, Track* track) const {
     // What is at infinity looks the same all over an orthographic film: it rests.
     const bool is_static = target.in_sky && here_.snapshot().camera.type == GRADUS_CAMERA_ORTHOGRAPHIC;
-    const bool seen = is_static || (target.in_sky ? to_.camera().project_direction(target.place, Moment::Now, &track->film)
-                                              : to_.camera().project(target.place, Moment::Now, &track->film));
+    const bool seen =
+        is_static || (target.in_sky ? to_.camera().project_direction(target.place, Moment::Now, &track->film)
+                                    : to_.camera().project(target.place, Moment::Now, &track->film));
     SpecularChain chain;
     const bool found = seen && to_.follow(track->film, SpecularSignature{}, &chain);
     track->tracking = !found ? Tracking::Outside : is_occluded(target, chain) ? Tracking::Occluded : Tracking::Tracked;
@@ -101,19 +110,22 @@ class Tracker {
 
   bool is_occluded(const Target& target, const SpecularChain& chain) const {
     const float distance =
-        target.in_sky ? kInfinity : glm::dot(target.place - chain.ray.ray.origin, chain.ray.ray.direction) * (1.0f - kOwnSurface);
-    Hit hit;
+        target.in_sky ? kInfinity
+                      : glm::dot(target.place - chain.ray.ray.origin, chain.ray.ray.direction) * (1.0f - kOwnSurface);
+    geometry::Hit hit;
     return to_.meets(chain, distance) && to_.finish(chain, &hit) && hit.t < distance;
   }
 
   // In one step of time from guesses in turn, then in smaller ones.
-  void search(const Target& target, int32_t x, int32_t y, const Neighbours& before, Track* track, TrackingCounts* counts) const {
+  void search(const Target& target, int32_t x, int32_t y, const Neighbours& before, Track* track,
+              TrackingCounts* counts) const {
     const SpecularChain& chain = *track->chain;
-    const Vec2 centre = pixel_centre(x, y);
+    const Vec2 centre = path::pixel_centre(x, y);
     const Target own = own_target(chain);
     Vec2 first = centre;
     const bool is_there = first_vertex(chain, &first);
-    const FilmSearch::Problem problem{here_, to_, chain.signature, own, target, to_.camera().film_displacement(centre, first)};
+    const FilmSearch::Problem problem{here_, to_,    chain.signature,
+                                      own,   target, to_.camera().film_displacement(centre, first)};
     SearchCounts searched;
     FilmSearch newton(problem, &searched);
     FilmPlace start{centre, chain, chain_jacobian(from_, own, x, y)}, found;
@@ -138,13 +150,15 @@ class Tracker {
     ++counts->searched;
   }
 
-  // Where the motion of the neighbours that go the same way leads a pixel: as it changes along the film, or as that of one of them.
+  // Where the motion of the neighbours that go the same way leads a pixel: as it changes along the film, or as that of
+  // one of them.
   std::optional<Vec2> guess_by(const Neighbours& before, const SpecularSignature& displacement) const {
     const auto leads = [&](const Track* track) {
       return track != nullptr && track->tracking == Tracking::Tracked && track->chain->signature == displacement;
     };
     const bool beside = leads(before.left), under = leads(before.below);
-    if (beside && under && leads(before.corner)) return before.left->film + to_.camera().film_displacement(before.corner->film, before.below->film);
+    if (beside && under && leads(before.corner))
+      return before.left->film + to_.camera().film_displacement(before.corner->film, before.below->film);
     if (beside) return before.left->film + Vec2(1, 0);
     if (under) return before.below->film + Vec2(0, 1);
     return std::nullopt;
@@ -198,7 +212,12 @@ namespace {
 class Tile {
  public:
   Tile(const Tracker& tracker, const Region& part, int32_t x0, ChainMotion* motion, TrackingCounts* counts)
-      : tracker_(tracker), part_(part), x0_(x0), x1_(std::min(x0 + kTile, part.x1)), motion_(*motion), counts_(*counts) {}
+      : tracker_(tracker),
+        part_(part),
+        x0_(x0),
+        x1_(std::min(x0 + kTile, part.x1)),
+        motion_(*motion),
+        counts_(*counts) {}
 
   void track_row(int32_t y) {
     std::swap(row_, below_);
@@ -229,13 +248,13 @@ class Tile {
 
 }  // namespace
 
-ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Region& part, const CancelCheck& is_cancelled,
-                         const KnownMotion* known) {
+ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Region& part,
+                         const CancelCheck& is_cancelled, const KnownMotion* known) {
   const auto pixels = size_t(part.area());
   ChainMotion motion{{}, std::vector<Tracking>(pixels, Tracking::NotConverged), {}};
   motion.film.reserve(pixels);
   for (int32_t y = part.y0; y < part.y1; ++y)
-    for (int32_t x = part.x0; x < part.x1; ++x) motion.film.push_back(pixel_centre(x, y));
+    for (int32_t x = part.x0; x < part.x1; ++x) motion.film.push_back(path::pixel_centre(x, y));
   if (to.snapshot().is_other_shot || is_shot_change(from.centres->snapshot->camera, to.snapshot().camera)) {
     std::fill(motion.tracking.begin(), motion.tracking.end(), Tracking::ShotChange);
     motion.counts.pixels[size_t(-int(Tracking::ShotChange))] = pixels;
@@ -244,16 +263,17 @@ ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Reg
   const Tracker tracker(from, to, part, known);
   tbb::enumerable_thread_specific<TrackingCounts> counts;
   const auto tiles = [](int32_t length) { return (length + kTile - 1) / kTile; };
-  tbb::parallel_for(tbb::blocked_range2d<int32_t>(0, tiles(part.height()), 1, 0, tiles(part.width()), 1), [&](const auto& range) {
-    for (int32_t ty = range.rows().begin(); ty < range.rows().end(); ++ty)
-      for (int32_t tx = range.cols().begin(); tx < range.cols().end(); ++tx) {
-        Tile tile(tracker, part, part.x0 + tx * kTile, &motion, &counts.local());
-        const int32_t y0 = part.y0 + ty * kTile, y1 = std::min(y0 + kTile, part.y1);
-        for (int32_t y = y0; y < y1 && !is_cancelled(); ++y) tile.track_row(y);
-      }
-  });
+  tbb::parallel_for(tbb::blocked_range2d<int32_t>(0, tiles(part.height()), 1, 0, tiles(part.width()), 1),
+                    [&](const auto& range) {
+                      for (int32_t ty = range.rows().begin(); ty < range.rows().end(); ++ty)
+                        for (int32_t tx = range.cols().begin(); tx < range.cols().end(); ++tx) {
+                          Tile tile(tracker, part, part.x0 + tx * kTile, &motion, &counts.local());
+                          const int32_t y0 = part.y0 + ty * kTile, y1 = std::min(y0 + kTile, part.y1);
+                          for (int32_t y = y0; y < y1 && !is_cancelled(); ++y) tile.track_row(y);
+                        }
+                    });
   for (const TrackingCounts& c : counts) motion.counts.add(c);
   return motion;
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

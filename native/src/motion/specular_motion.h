@@ -1,5 +1,5 @@
-// Specular motion: where on the film of another frame is what a component shows in a pixel (Zimmer et al. 2015, section 4.1). See
-// docs/method.md, "Specular motion".
+// Specular motion: where on the film of another frame is what a component shows in a pixel (Zimmer et al. 2015,
+// section 4.1). See docs/method.md, "Specular motion".
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 #include "motion/film_search.h"
 #include "motion/tracking.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 struct TrackingCounts {
   std::array<uint64_t, kTrackingCauses + 1> pixels{};  // by -cause; 0: tracked
@@ -25,15 +25,16 @@ struct ChainMotion {
   std::vector<Tracking> tracking;
   TrackingCounts counts;
 };
-// Of a view, from the same part of it to the same frame: what others show directly, as it does, need not be looked for again.
+// Of a view, from the same part of it to the same frame: what others show directly, as it does, need not be looked for
+// again.
 struct KnownMotion {
   const ChainView& view;
   const ChainMotion& motion;
 };
-// Of a part of the view `from` in the frame that `to` sees, which may be at another time or by another camera. Cancelled: pixels are
-// NotConverged. known: nullptr: none.
+// Of a part of the view `from` in the frame that `to` sees, which may be at another time or by another camera.
+// Cancelled: pixels are NotConverged. known: nullptr: none.
 ChainMotion track_chains(
-    const ChainView& from, const ChainTracer& to, const Region& part, const CancelCheck& is_cancelled = [] { return false; },
-    const KnownMotion* known = nullptr);
+    const ChainView& from, const ChainTracer& to, const Region& part,
+    const CancelCheck& is_cancelled = [] { return false; }, const KnownMotion* known = nullptr);
 
-}  // namespace gradus
+}  // namespace gradus::motion

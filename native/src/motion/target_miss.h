@@ -1,11 +1,11 @@
-// By how much a ray misses what it is to show. In a plane through the target, across the line of sight: the target's own surface need not
-// be hit, and near the target the miss is as linear in the ray as can be.
+// By how much a ray misses what it is to show. In a plane through the target, across the line of sight: the target's
+// own surface need not be hit, and near the target the miss is as linear in the ray as can be.
 #pragma once
 
 #include "base/types.h"
 #include "bsdf/shading_frame.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 // A point, or a direction of the sky.
 struct Target {
@@ -21,7 +21,7 @@ class Aim {
     const float length = glm::length(line);
     const Vec3 axis = length > 0.0f ? line / length : Vec3(0, 0, 1);
     distance_ = target.in_sky ? 1.0f : length;
-    frame_ = make_frame(axis, perpendicular(axis));
+    frame_ = bsdf::make_frame(axis, bsdf::perpendicular(axis));
   }
 
   // Across the axis, in metres; for the sky in tangents of angles. False: the ray goes away from the target.
@@ -48,8 +48,8 @@ class Aim {
 
  private:
   Target target_;
-  Frame3 frame_;
+  bsdf::Frame3 frame_;
   float distance_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -1,10 +1,10 @@
-// Whether a pixel's motion was found: 1, or why not. Values of the pass Path <Component> Tracked (contract 6.6). What is not 1 is no motion
-// to go by.
+// Whether a pixel's motion was found: 1, or why not. Values of the pass Path <Component> Tracked (contract 6.6). What
+// is not 1 is no motion to go by.
 #pragma once
 
 #include <cstdint>
 
-namespace gradus {
+namespace gradus::motion {
 
 enum class Tracking : int8_t {
   Tracked = 1,
@@ -15,7 +15,7 @@ enum class Tracking : int8_t {
   Broken = -5,        // no way leads there any more: an edge, total reflection, another object
   Outside = -6,       // followed: further away than the film is wide or high; by flow: not on the film
   Elsewhere = -7,     // it is seen at several places, and what was found is not what this image of it becomes
-  ShotChange = -8,           // the two frames are not one shot
+  ShotChange = -8,    // the two frames are not one shot
   // Of flow alone (motion/irradiance_motion.h):
   ComesBackElsewhere = -9,  // the flow there leads back to another place: hidden, or nothing to hold on to
   Silhouette = -10,         // the pixel, or where it goes, shows an edge of an object
@@ -31,4 +31,4 @@ inline constexpr auto kSilhouette = float(Tracking::Silhouette);
 inline constexpr auto kNoFlowLibrary = float(Tracking::NoFlowLibrary);
 inline constexpr auto kNoNeighbour = float(Tracking::NoNeighbour);
 
-}  // namespace gradus
+}  // namespace gradus::motion

@@ -4,7 +4,7 @@
 
 #include "motion/snapshot_motion.h"
 
-namespace gradus {
+namespace gradus::motion {
 
 namespace {
 
@@ -14,7 +14,8 @@ constexpr double kRadians = 1e-4;  // what is seen is met so well
 
 }  // namespace
 
-double angle_to(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target, const glm::dvec2& film) {
+double angle_to(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target,
+                const glm::dvec2& film) {
   SpecularChain chain;
   if (!tracer.follow(Vec2(film), signature, &chain)) return kBreaks;
   const glm::dvec3 line(target.in_sky ? target.place : target.place - chain.ray.ray.origin);
@@ -22,8 +23,8 @@ double angle_to(const ChainTracer& tracer, const SpecularSignature& signature, c
   return std::atan2(glm::length(glm::cross(line, direction)), glm::dot(line, direction));
 }
 
-glm::dvec2 brute_force(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target, const glm::dvec2& around, double reach,
-                       double finest) {
+glm::dvec2 brute_force(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target,
+                       const glm::dvec2& around, double reach, double finest) {
   glm::dvec2 best(around);
   double minimum = kBreaks;
   // True: a better one was found.
@@ -42,10 +43,12 @@ glm::dvec2 brute_force(const ChainTracer& tracer, const SpecularSignature& signa
   return best;
 }
 
-bool shows(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target, const glm::dvec2& film, double radians) {
+bool shows(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target, const glm::dvec2& film,
+           double radians) {
   SpecularChain chain;
-  Hit hit;
-  if (angle_to(tracer, signature, target, film) > radians || !tracer.follow(Vec2(film), signature, &chain)) return false;
+  geometry::Hit hit;
+  if (angle_to(tracer, signature, target, film) > radians || !tracer.follow(Vec2(film), signature, &chain))
+    return false;
   const bool met = tracer.finish(chain, &hit);
   return target.in_sky ? !met : met && hit.t > 0.999f * glm::length(target.place - chain.ray.ray.origin);
 }
@@ -55,7 +58,8 @@ bool true_target(const ChainTracer& from, const ChainTracer& to, const SpecularC
   return target->in_sky || SnapshotMotion(from.snapshot(), to.snapshot()).position(chain.last, &target->place);
 }
 
-bool true_place(const std::vector<const ChainTracer*>& frames, const SpecularChain& chain, const Vec2& centre, glm::dvec2* place) {
+bool true_place(const std::vector<const ChainTracer*>& frames, const SpecularChain& chain, const Vec2& centre,
+                glm::dvec2* place) {
   constexpr double kFarthest = 0.5;  // pixels
   *place = glm::dvec2(centre);
   for (size_t k = 1; k < frames.size(); ++k) {
@@ -67,7 +71,8 @@ bool true_place(const std::vector<const ChainTracer*>& frames, const SpecularCha
   return true;
 }
 
-bool seen_near(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target, const Vec2& around, double reach) {
+bool seen_near(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target, const Vec2& around,
+               double reach) {
   constexpr double kStep = 0.5;
   glm::dvec2 best(around);
   double minimum = kBreaks;
@@ -77,7 +82,8 @@ bool seen_near(const ChainTracer& tracer, const SpecularSignature& signature, co
       const double angle = angle_to(tracer, signature, target, film);
       if (angle < minimum) minimum = angle, best = film;
     }
-  return minimum < kBreaks && shows(tracer, signature, target, brute_force(tracer, signature, target, best, kStep, kFinest), kRadians);
+  return minimum < kBreaks &&
+         shows(tracer, signature, target, brute_force(tracer, signature, target, best, kStep, kFinest), kRadians);
 }
 
-}  // namespace gradus
+}  // namespace gradus::motion

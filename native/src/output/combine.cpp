@@ -4,21 +4,24 @@
 #include <cmath>
 #include <limits>
 
-#include "reconstruct/reconstruct_film.h"
-#include "output/pass_read.h"
 #include "film/region_pixels.h"
+#include "output/pass_read.h"
+#include "reconstruct/reconstruct_film.h"
 
-namespace gradus {
+namespace gradus::output {
 namespace {
 
 constexpr double kMaxFloat = std::numeric_limits<float>::max();
 constexpr int kPixels = 4096;  // that a task is worth
 
 // value(i, c) of a reconstructed image, as it is delivered.
-auto value_of(const Film& film, uint32_t reconstruction, const std::vector<float>& image) {
-  const float exposure = film.settings.film_exposure, minimum = keeps_negative(reconstruction) ? -INFINITY : 0.0f;
+auto value_of(const film::Film& film, uint32_t reconstruction, const std::vector<float>& image) {
+  const float exposure = film.settings.film_exposure,
+              minimum = reconstruct::keeps_negative(reconstruction) ? -INFINITY : 0.0f;
   const auto channels = size_t(film.channels);
-  return [&image, exposure, minimum, channels](size_t i, size_t c) { return exposure * std::max(image[i * channels + c], minimum); };
+  return [&image, exposure, minimum, channels](size_t i, size_t c) {
+    return exposure * std::max(image[i * channels + c], minimum);
+  };
 }
 
 // A change of the picture over a value of the components, by the light that they have there.
@@ -26,7 +29,8 @@ void spread(float change, size_t value, std::vector<std::vector<float>>* compone
   float light = 0.0f;
   for (const std::vector<float>& component : *components) light += std::fabs(component[value]);
   if (light > 0.0f) {
-    for (std::vector<float>& component : *components) component[value] += change * (std::fabs(component[value]) / light);
+    for (std::vector<float>& component : *components)
+      component[value] += change * (std::fabs(component[value]) / light);
   } else {
     components->back()[value] += change;
   }
@@ -34,19 +38,21 @@ void spread(float change, size_t value, std::vector<std::vector<float>>* compone
 
 }  // namespace
 
-std::vector<float> crop_error(const Film& film, const std::vector<float>& error, const Region& region) {
+std::vector<float> crop_error(const film::Film& film, const std::vector<float>& error, const Region& region) {
   const double scale = double(film.settings.film_exposure) * film.settings.film_exposure;
   std::vector<float> result(size_t(region.area()));
   for_pixels(film, region, [&](size_t i, size_t out) { result[out] = float(std::min(kMaxFloat, scale * error[i])); });
   return result;
 }
 
-std::vector<float> combine(const Film& film, uint32_t reconstruction, float alpha, const Region& region, const CancelCheck& cancel,
-                           SolveReport* report, std::vector<float>* error, std::vector<std::vector<float>>* components) {
+std::vector<float> combine(const film::Film& film, uint32_t reconstruction, float alpha, const Region& region,
+                           const CancelCheck& cancel, reconstruct::SolveReport* report, std::vector<float>* error,
+                           std::vector<std::vector<float>>* components) {
   const bool solves = reconstruction != GRADUS_RECONSTRUCTION_NONE;
-  Reconstructed solved;
+  reconstruct::Reconstructed solved;
   if (solves || error != nullptr || components != nullptr) {
-    solved = reconstruct_film(film, reconstruction, alpha, {error != nullptr, components != nullptr}, cancel, report);
+    solved = reconstruct::reconstruct_film(film, reconstruction, alpha, {error != nullptr, components != nullptr},
+                                           cancel, report);
   }
   if (components != nullptr) *components = crop_components(film, reconstruction, std::move(solved.components), region);
   if (error != nullptr) *error = crop_error(film, solved.error, region);
@@ -58,9 +64,9 @@ std::vector<float> combine(const Film& film, uint32_t reconstruction, float alph
   return crop_picture(film, reconstruction, solved.image, region);
 }
 
-std::vector<std::vector<float>> crop_components(const Film& film, uint32_t reconstruction, std::vector<std::vector<float>> images,
-                                                const Region& region) {
-  clamp_components(reconstruction, film.channels, &images);
+std::vector<std::vector<float>> crop_components(const film::Film& film, uint32_t reconstruction,
+                                                std::vector<std::vector<float>> images, const Region& region) {
+  reconstruct::clamp_components(reconstruction, film.channels, &images);
   for (std::vector<float>& image : images) {
     std::vector<float> rgb(size_t(region.area()) * 3);
     const auto of_pixel = value_of(film, reconstruction, image);
@@ -72,7 +78,8 @@ std::vector<std::vector<float>> crop_components(const Film& film, uint32_t recon
   return images;
 }
 
-void follow_picture(const std::vector<float>& before, const std::vector<float>& after, std::vector<std::vector<float>>* components) {
+void follow_picture(const std::vector<float>& before, const std::vector<float>& after,
+                    std::vector<std::vector<float>>* components) {
   if (components->empty()) return;
   for_pieces(
       int(before.size() / 4),
@@ -84,7 +91,8 @@ void follow_picture(const std::vector<float>& before, const std::vector<float>& 
       kPixels);
 }
 
-std::vector<float> crop_picture(const Film& film, uint32_t reconstruction, const std::vector<float>& image, const Region& region) {
+std::vector<float> crop_picture(const film::Film& film, uint32_t reconstruction, const std::vector<float>& image,
+                                const Region& region) {
   std::vector<float> rgba(size_t(region.area()) * 4);
   const auto channels = size_t(film.channels);
   const auto of_pixel = value_of(film, reconstruction, image);
@@ -95,4 +103,4 @@ std::vector<float> crop_picture(const Film& film, uint32_t reconstruction, const
   return rgba;
 }
 
-}  // namespace gradus
+}  // namespace gradus::output

@@ -3,27 +3,28 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "motion/tracking.h"
-#include "lpe/components.h"
 #include "film/region_pixels.h"
+#include "lpe/components.h"
+#include "motion/tracking.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::output {
 namespace {
 
 // Below this a surface tells nothing of the light that falls on it.
 constexpr float kMinReflectance = 1e-3f;
 
 // Mean over the samples that have met a rough vertex; 0 where none has.
-NonSpecularVertices mean_at(const ComponentPlanes& planes, size_t i) {
-  const NonSpecularVertices &a = planes.non_specular[0][i], &b = planes.non_specular[1][i];
+film::NonSpecularVertices mean_at(const film::ComponentPlanes& planes, size_t i) {
+  const film::NonSpecularVertices &a = planes.non_specular[0][i], &b = planes.non_specular[1][i];
   const float samples = a.samples + b.samples, factor = samples > 0.0f ? 1.0f / samples : 0.0f;
-  return {factor * (a.reflectance + b.reflectance), factor * (a.normal + b.normal), factor * (a.inverse_depth + b.inverse_depth), samples};
+  return {factor * (a.reflectance + b.reflectance), factor * (a.normal + b.normal),
+          factor * (a.inverse_depth + b.inverse_depth), samples};
 }
 
-Vec3 value_of(uint32_t pass, const NonSpecularVertices& mean, const Vec3& color) {
-  if (pass == GRADUS_COMPONENT_DEPTH) return Vec3(1.0f / std::max(mean.inverse_depth, 1.0f / kFarDepth));
+Vec3 value_of(uint32_t pass, const film::NonSpecularVertices& mean, const Vec3& color) {
+  if (pass == GRADUS_COMPONENT_DEPTH) return Vec3(1.0f / std::max(mean.inverse_depth, 1.0f / schema::kFarDepth));
   if (pass == GRADUS_COMPONENT_REFLECTANCE) return mean.reflectance;
   if (pass == GRADUS_COMPONENT_NORMAL) return mean.normal;
   Vec3 irradiance = color;
@@ -31,7 +32,7 @@ Vec3 value_of(uint32_t pass, const NonSpecularVertices& mean, const Vec3& color)
   return irradiance;
 }
 
-Vec3 value_of(uint32_t pass, const NonSpecularDetails& details, float exposure) {
+Vec3 value_of(uint32_t pass, const film::NonSpecularDetails& details, float exposure) {
   if (pass == GRADUS_COMPONENT_OBJECT_INDEX) return Vec3(details.object);
   if (pass == GRADUS_COMPONENT_FACE_INDEX) return Vec3(details.face);
   const float factor = details.segments > 0.0f ? 1.0f / details.segments : 0.0f;
@@ -39,20 +40,23 @@ Vec3 value_of(uint32_t pass, const NonSpecularDetails& details, float exposure) 
 }
 
 // Where the component shows nothing.
-float nothing_of(const ComponentPassInfo& info) {
-  if (info.pass == GRADUS_COMPONENT_DEPTH) return kFarDepth;
-  if (info.pass == GRADUS_COMPONENT_FACE_INDEX) return kNoFace;
-  return is_motion(info.pass) && info.channels == 1 ? kNothingToTrack : 0.0f;
+float nothing_of(const schema::ComponentPassInfo& info) {
+  if (info.pass == GRADUS_COMPONENT_DEPTH) return schema::kFarDepth;
+  if (info.pass == GRADUS_COMPONENT_FACE_INDEX) return schema::kNoFace;
+  return schema::is_motion(info.pass) && info.channels == 1 ? film::kNothingToTrack : 0.0f;
 }
 
-Error not_asked_for(const ComponentPassInfo& info) {
+Error not_asked_for(const schema::ComponentPassInfo& info) {
   return invalid_operation("pass " + std::string(info.name) + " of components was not asked for");
 }
 
 // Flow takes two frames.
-float tracked_in_one_frame(float tracked, bool by_flow) { return by_flow && tracked == kTracked ? kNoNeighbour : tracked; }
+float tracked_in_one_frame(float tracked, bool by_flow) {
+  return by_flow && tracked == motion::kTracked ? motion::kNoNeighbour : tracked;
+}
 
-void read_motion(const Film& film, const ComponentPlanes& planes, const ComponentPassInfo& info, const Region& region, float* pixels) {
+void read_motion(const film::Film& film, const film::ComponentPlanes& planes, const schema::ComponentPassInfo& info,
+                 const Region& region, float* pixels) {
   const bool by_flow = is_by_flow(planes.name, info.pass);
   if (planes.motion.empty()) throw not_asked_for(info);
   for_pixels(film, region, [&](size_t i, size_t out) {
@@ -61,7 +65,8 @@ void read_motion(const Film& film, const ComponentPlanes& planes, const Componen
   });
 }
 
-void read_details(const Film& film, const ComponentPlanes& planes, const ComponentPassInfo& info, const Region& region, float* pixels) {
+void read_details(const film::Film& film, const film::ComponentPlanes& planes, const schema::ComponentPassInfo& info,
+                  const Region& region, float* pixels) {
   if (planes.details.empty()) throw not_asked_for(info);
   for_pixels(film, region, [&](size_t i, size_t out) {
     const Vec3 value = value_of(info.pass, planes.details[i], film.settings.film_exposure);
@@ -72,33 +77,36 @@ void read_details(const Film& film, const ComponentPlanes& planes, const Compone
 }  // namespace
 
 bool is_by_flow(const std::string& component, uint32_t pass) {
-  return is_irradiance_motion(pass) || (is_motion(pass) && component == kResidual);
+  return schema::is_irradiance_motion(pass) || (schema::is_motion(pass) && component == lpe::kResidual);
 }
 
 void read_absent_component(uint32_t pass, const Region& region, float* pixels) {
-  const ComponentPassInfo& info = component_pass_info(pass);
+  const schema::ComponentPassInfo& info = schema::component_pass_info(pass);
   std::fill_n(pixels, size_t(region.area()) * info.channels, nothing_of(info));
 }
 
 void check_component(const GradusSettings& settings, const std::string& name) {
-  if (settings.use_decomposition == 0) throw invalid_argument("the picture was not taken apart into components: set use_decomposition");
-  const ComponentSet set = ComponentSet::parse(get_text(settings, *find_option("components")));
+  if (settings.use_decomposition == 0)
+    throw invalid_argument("the picture was not taken apart into components: set use_decomposition");
+  const lpe::ComponentSet set =
+      lpe::ComponentSet::parse(schema::get_text(settings, *schema::find_option("components")));
   if (set.find(name) < 0) throw invalid_argument("there is no component " + name);
 }
 
-void read_component_pass(const Film& film, int component, uint32_t pass, const Region& region, const std::vector<float>& color,
-                         float* pixels) {
-  const ComponentPassInfo& info = component_pass_info(pass);
+void read_component_pass(const film::Film& film, int component, uint32_t pass, const Region& region,
+                         const std::vector<float>& color, float* pixels) {
+  const schema::ComponentPassInfo& info = schema::component_pass_info(pass);
   if (pass == GRADUS_COMPONENT_COLOR) return static_cast<void>(std::copy(color.begin(), color.end(), pixels));
-  const ComponentPlanes& planes = film.components[size_t(component)];
-  if (is_motion(pass)) return read_motion(film, planes, info, region, pixels);
-  if (is_of_non_specular_details(pass)) return read_details(film, planes, info, region, pixels);
+  const film::ComponentPlanes& planes = film.components[size_t(component)];
+  if (schema::is_motion(pass)) return read_motion(film, planes, info, region, pixels);
+  if (schema::is_of_non_specular_details(pass)) return read_details(film, planes, info, region, pixels);
   if (planes.non_specular[0].empty()) throw not_asked_for(info);
   for_pixels(film, region, [&](size_t i, size_t out) {
-    const Vec3 light = is_of_picture(pass) ? Vec3(color[3 * out], color[3 * out + 1], color[3 * out + 2]) : Vec3(0.0f);
+    const Vec3 light =
+        schema::is_of_picture(pass) ? Vec3(color[3 * out], color[3 * out + 1], color[3 * out + 2]) : Vec3(0.0f);
     const Vec3 value = value_of(pass, mean_at(planes, i), light);
     std::copy_n(&value.x, info.channels, pixels + out * info.channels);
   });
 }
 
-}  // namespace gradus
+}  // namespace gradus::output

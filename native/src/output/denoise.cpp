@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 
-namespace gradus {
+namespace gradus::output {
 namespace {
 
 using Image = std::vector<float>;  // 3 floats per pixel
@@ -27,7 +27,11 @@ Image packed(const float* pixels, size_t stride, size_t count) {
 class Network {
  public:
   Network(const OidnApi& api, int width, int height, uint32_t threads, const CancelCheck& cancel)
-      : api_(api), width_(size_t(width)), height_(size_t(height)), cancel_(cancel), device_(api.new_device(kOidnCpu), api.release_device) {
+      : api_(api),
+        width_(size_t(width)),
+        height_(size_t(height)),
+        cancel_(cancel),
+        device_(api.new_device(kOidnCpu), api.release_device) {
     if (!device_) throw failure("no device");
     api_.set_device_int(device_.get(), "numThreads", int(threads));
     api_.set_device_bool(device_.get(), "setAffinity", false);  // its threads are TBB's, and go on to other work
@@ -47,7 +51,8 @@ class Network {
   using Parameter = std::pair<const char*, Image*>;
 
   void run(const std::vector<Parameter>& images) {
-    const std::unique_ptr<OidnApi::Filter, void (*)(OidnApi::Filter*)> filter(api_.new_filter(device_.get(), "RT"), api_.release_filter);
+    const std::unique_ptr<OidnApi::Filter, void (*)(OidnApi::Filter*)> filter(api_.new_filter(device_.get(), "RT"),
+                                                                              api_.release_filter);
     if (!filter) throw failure("no filter");
     for (const auto& [name, image] : images) {
       api_.set_shared_filter_image(filter.get(), name, image->data(), kOidnFloat3, width_, height_, 0, 0, 0);
@@ -75,7 +80,9 @@ class Network {
     api_.get_device_error(device_.get(), &text);
     return Error(GRADUS_ERROR_UNKNOWN, message_of(text ? text : otherwise));
   }
-  static std::string message_of(const char* text) { return std::string("Open Image Denoise: ") + (text ? text : "unknown error"); }
+  static std::string message_of(const char* text) {
+    return std::string("Open Image Denoise: ") + (text ? text : "unknown error");
+  }
 
   const OidnApi& api_;
   const size_t width_, height_;
@@ -85,7 +92,8 @@ class Network {
 
 }  // namespace
 
-std::vector<float> denoise(const OidnLibrary& library, const NoisyPicture& picture, uint32_t threads, const CancelCheck& cancel) {
+std::vector<float> denoise(const OidnLibrary& library, const NoisyPicture& picture, uint32_t threads,
+                           const CancelCheck& cancel) {
   const size_t count = size_t(picture.width) * size_t(picture.height);
   Image color = packed(picture.color, picture.stride, count);
   Image albedo = picture.albedo ? packed(picture.albedo, 3, count) : Image();
@@ -98,4 +106,4 @@ std::vector<float> denoise(const OidnLibrary& library, const NoisyPicture& pictu
   return color;
 }
 
-}  // namespace gradus
+}  // namespace gradus::output

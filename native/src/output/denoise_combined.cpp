@@ -3,22 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/device.h"
-#include "base/threads.h"
 #include "base/error.h"
+#include "base/threads.h"
 #include "base/types.h"
-#include "output/denoise.h"
 #include "film/features.h"
+#include "output/denoise.h"
+#include "output/pass_read.h"
 #include "reconstruct/feature_filter.h"
 #include "reconstruct/solver_planes.h"
-#include "output/pass_read.h"
+#include "scene/device.h"
 
-namespace gradus {
+namespace gradus::output {
 namespace {
 
-// In the mean of a regression on features and of what the network makes of the noisy image: they err in different places, and their mean
-// errs less than either. A geometric one, since the larger of two is more often wrong, of light above a tenth of the median
-// (docs/method.md).
+// In the mean of a regression on features and of what the network makes of the noisy image: they err in different
+// places, and their mean errs less than either. A geometric one, since the larger of two is more often wrong, of light
+// above a tenth of the median (docs/method.md).
 constexpr float kShareOfNetwork = 0.7f, kDark = 0.1f;
 // Of REGULARIZED's: 0.68 at 8 samples, 0.76 at 32.
 constexpr float kErrorOfMean = 0.7f;
@@ -35,8 +35,10 @@ std::vector<float> crop(const std::vector<float>& rgb, const Region& whole, cons
 }
 
 // Without its noise, of the region.
-std::vector<float> read_guide(const Film& film, uint32_t pass, const Region& region) {
-  return crop(filter_feature(read_feature(film, pass), film.region.width(), film.region.height()).values, film.region, region);
+std::vector<float> read_guide(const film::Film& film, uint32_t pass, const Region& region) {
+  return crop(
+      reconstruct::filter_feature(film::read_feature(film, pass), film.region.width(), film.region.height()).values,
+      film.region, region);
 }
 
 // `combined`, RGBA, becomes its mean with `image`, RGB.
@@ -47,7 +49,7 @@ void blend(const std::vector<float>& image, std::vector<float>* combined) {
     const float sum = (*combined)[i] + (*combined)[i + 1] + (*combined)[i + 2];
     if (sum > 0.0f && is_finite(sum)) light.push_back(sum / 3.0f);
   }
-  const float dark = kDark * median_or_one(&light), minimum = 1e-3f * dark;
+  const float dark = kDark * reconstruct::median_or_one(&light), minimum = 1e-3f * dark;
   for (size_t i = 0; i < image.size(); ++i) {
     float& value = (*combined)[i / 3 * 4 + i % 3];
     if (!is_finite(value)) continue;
@@ -63,24 +65,28 @@ void replace(const std::vector<float>& image, std::vector<float>* combined) {
 
 }  // namespace
 
-std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const Device* device, std::string* why_not) {
+std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const scene::Device* device,
+                                                   std::string* why_not) {
   if (denoiser > GRADUS_DENOISER_OIDN) throw invalid_argument("there is no denoiser " + std::to_string(denoiser));
   *why_not = "denoiser is none";
   if (denoiser == GRADUS_DENOISER_NONE) return nullptr;
   auto library = find_oidn({device ? device->denoiser_path() : ""}, why_not);
-  if (!library && denoiser == GRADUS_DENOISER_OIDN) throw unsupported("denoiser oidn: " + *why_not + ": use denoiser auto or none");
+  if (!library && denoiser == GRADUS_DENOISER_OIDN)
+    throw unsupported("denoiser oidn: " + *why_not + ": use denoiser auto or none");
   return library;
 }
 
 namespace {
 
-std::vector<float> denoise_or_throw(const OidnLibrary& library, const Film& film, uint32_t reconstruction, const Region& region,
-                                    uint32_t threads, const CancelCheck& cancel, const std::vector<float>& combined) {
+std::vector<float> denoise_or_throw(const OidnLibrary& library, const film::Film& film, uint32_t reconstruction,
+                                    const Region& region, uint32_t threads, const CancelCheck& cancel,
+                                    const std::vector<float>& combined) {
   // Samples are there around a region, too; a reconstruction is not.
-  const bool blends = reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED, sampled = blends || reconstruction == GRADUS_RECONSTRUCTION_NONE;
+  const bool blends = reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED,
+             sampled = blends || reconstruction == GRADUS_RECONSTRUCTION_NONE;
   const Region& seen = sampled ? film.region : region;
   std::vector<float> albedo, normal;
-  if (has_features(film)) {
+  if (film::has_features(film)) {
     tbb::task_arena(arena_size(threads)).execute([&] {
       albedo = read_guide(film, GRADUS_PASS_DENOISING_ALBEDO, seen);
       normal = read_guide(film, GRADUS_PASS_DENOISING_NORMAL, seen);
@@ -102,10 +108,13 @@ std::vector<float> denoise_or_throw(const OidnLibrary& library, const Film& film
 
 }  // namespace
 
-float denoised_error(uint32_t reconstruction) { return reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED ? kErrorOfMean : 1.0f; }
+float denoised_error(uint32_t reconstruction) {
+  return reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED ? kErrorOfMean : 1.0f;
+}
 
-std::vector<float> denoise_combined(const OidnLibrary& library, const Film& film, uint32_t reconstruction, const Region& region,
-                                    uint32_t threads, const CancelCheck& cancel, const std::vector<float>& combined, std::string* failure) {
+std::vector<float> denoise_combined(const OidnLibrary& library, const film::Film& film, uint32_t reconstruction,
+                                    const Region& region, uint32_t threads, const CancelCheck& cancel,
+                                    const std::vector<float>& combined, std::string* failure) {
   const char* const what = "the picture was not denoised: ";
   try {
     return denoise_or_throw(library, film, reconstruction, region, threads, cancel, combined);
@@ -118,4 +127,4 @@ std::vector<float> denoise_combined(const OidnLibrary& library, const Film& film
   return {};
 }
 
-}  // namespace gradus
+}  // namespace gradus::output

@@ -6,38 +6,39 @@
 
 #include "base/throw_if_cancelled.h"
 #include "film/pass_planes.h"
+#include "output/light_pass_samples.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/feature_filter.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/picture_terms.h"
 #include "reconstruct/solver_planes.h"
-#include "output/light_pass_samples.h"
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::output {
 namespace {
 
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
 // What a colour must be for light to be found again in the quotient by it.
 constexpr float kMinColor = 1e-6f;
 
-LightPassPlanes light_planes(const Film& film) {
+LightPassPlanes light_planes(const film::Film& film) {
   LightPassPlanes planes;
-  for (const PassPlane& plane : film.passes) {
-    if (has_bit(light_passes(), plane.pass)) planes.push_back(&plane);
+  for (const film::PassPlane& plane : film.passes) {
+    if (schema::has_bit(schema::light_passes(), plane.pass)) planes.push_back(&plane);
   }
   return planes;
 }
 
 // nullptr: the pass is not divided by one.
-const PassPlane* color_plane(const Film& film, const PassPlane& plane) {
-  const PassInfo& info = pass_info(plane.pass);
-  return info.kind == PassKind::Light ? find_plane(film, info.color) : nullptr;
+const film::PassPlane* color_plane(const film::Film& film, const film::PassPlane& plane) {
+  const schema::PassInfo& info = schema::pass_info(plane.pass);
+  return info.kind == schema::PassKind::Light ? film::find_plane(film, info.color) : nullptr;
 }
 
 // Three channels of `channels`, of the part of `whole` that lies in `region`.
-Field to_field(const std::vector<float>& values, size_t channels, const Region& whole, const Region& region) {
-  Field field(region.width(), region.height(), 3);
+reconstruct::Field to_field(const std::vector<float>& values, size_t channels, const Region& whole,
+                            const Region& region) {
+  reconstruct::Field field(region.width(), region.height(), 3);
   const int x0 = region.x0 - whole.x0, y0 = region.y0 - whole.y0;
   for_values(&field, [&](float& value, int x, int y, int c) {
     value = values[channels * (size_t(y + y0) * size_t(whole.width()) + size_t(x + x0)) + size_t(c)];
@@ -46,17 +47,19 @@ Field to_field(const std::vector<float>& values, size_t channels, const Region& 
 }
 
 // The part of what is known of the frame that lies in the region.
-Field crop(const Field& field, const Film& film, const Region& region, float factor = 1.0f) {
-  Field term(region.width(), region.height(), field.channels());
+reconstruct::Field crop(const reconstruct::Field& field, const film::Film& film, const Region& region,
+                        float factor = 1.0f) {
+  reconstruct::Field term(region.width(), region.height(), field.channels());
   const int x0 = region.x0 - film.region.x0, y0 = region.y0 - film.region.y0;
-  for_values(&term,
-             [&](float& value, int x, int y, int c) { value = std::clamp(factor * field.row(y + y0, c)[x + x0], -kMaxFloat, kMaxFloat); });
+  for_values(&term, [&](float& value, int x, int y, int c) {
+    value = std::clamp(factor * field.row(y + y0, c)[x + x0], -kMaxFloat, kMaxFloat);
+  });
   return term;
 }
 
 // At its silhouette a surface has little of a pixel, and light that lacks there would be a great quotient.
-Field room_of(const Field& color) {
-  Field room = box_mean(color, 1);
+reconstruct::Field room_of(const reconstruct::Field& color) {
+  reconstruct::Field room = reconstruct::box_mean(color, 1);
   for_values(&room, [&](float& value, int x, int y, int c) {
     const float own = color.row(y, c)[x];
     value = own >= kMinColor ? std::min(own / value, 1.0f) : 0.0f;
@@ -64,7 +67,7 @@ Field room_of(const Field& color) {
   return room;
 }
 
-void divide(const Field& color, Field* light) {
+void divide(const reconstruct::Field& color, reconstruct::Field* light) {
   for_values(light, [&](float& value, int x, int y, int c) {
     const float divisor = color.row(y, c)[x];
     value = divisor >= kMinColor ? std::clamp(value / divisor, -kMaxFloat, kMaxFloat) : 0.0f;
@@ -75,35 +78,42 @@ void divide(const Field& color, Field* light) {
 class Guides {
  public:
   // picture: what the frame has become in the region.
-  Guides(const Film& film, const Region& region, const Field& picture)
-      : has_features_(has_features(film)),
-        shared_(has_features_ ? filter_features(read_features(film)) : features_of(picture, film, region)) {}
+  Guides(const film::Film& film, const Region& region, const reconstruct::Field& picture)
+      : has_features_(film::has_features(film)),
+        shared_(has_features_ ? reconstruct::filter_features(film::read_features(film))
+                              : features_of(picture, film, region)) {}
 
-  const Features& shared() const { return shared_; }
-  // Diffuse light has the texture of its own colour. That of reflections and of what is behind glass is their surfaces' as the mirror or
-  // the glass shows them: the albedo of the features has it, where there are any.
-  Features of(const Film& film, const PassPlane& plane) const {
-    Features own = shared_;
-    const PassPlane* const color = color_plane(film, plane);
-    if (color != nullptr && (!has_features_ || color->pass == GRADUS_PASS_DIFFUSE_COLOR)) own.albedo = read_color(film, *color);
+  const film::Features& shared() const { return shared_; }
+  // Diffuse light has the texture of its own colour. That of reflections and of what is behind glass is their surfaces'
+  // as the mirror or the glass shows them: the albedo of the features has it, where there are any.
+  film::Features of(const film::Film& film, const film::PassPlane& plane) const {
+    film::Features own = shared_;
+    const film::PassPlane* const color = color_plane(film, plane);
+    if (color != nullptr && (!has_features_ || color->pass == GRADUS_PASS_DIFFUSE_COLOR))
+      own.albedo = read_color(film, *color);
     return own;
   }
 
  private:
-  // A frame without features is guided by what it has become, of which the parts have the edges; beyond the region by what is nearest.
-  static Features features_of(const Field& picture, const Film& film, const Region& region) {
+  // A frame without features is guided by what it has become, of which the parts have the edges; beyond the region by
+  // what is nearest.
+  static film::Features features_of(const reconstruct::Field& picture, const film::Film& film, const Region& region) {
     const int w = film.region.width(), h = film.region.height();
     const size_t pixels = size_t(w) * size_t(h);
-    const float scale = robust_scale(picture);
-    Features features{
-        w, h, {3, std::vector<float>(3 * pixels), {}}, {3, std::vector<float>(3 * pixels), {}}, {1, std::vector<float>(pixels), {}}};
+    const float scale = reconstruct::robust_scale(picture);
+    film::Features features{w,
+                            h,
+                            {3, std::vector<float>(3 * pixels), {}},
+                            {3, std::vector<float>(3 * pixels), {}},
+                            {1, std::vector<float>(pixels), {}}};
     for_rows(h, [&](int y) {
       const int from_y = std::clamp(y + film.region.y0 - region.y0, 0, region.height() - 1);
       for (int x = 0; x < w; ++x) {
         const int from_x = std::clamp(x + film.region.x0 - region.x0, 0, region.width() - 1);
         for (int c = 0; c < 3; ++c) {
           const float value = picture.row(from_y, c)[from_x];
-          features.normal.values[3 * (size_t(y) * size_t(w) + size_t(x)) + size_t(c)] = value / (std::fabs(value) + scale);
+          features.normal.values[3 * (size_t(y) * size_t(w) + size_t(x)) + size_t(c)] =
+              value / (std::fabs(value) + scale);
         }
       }
     });
@@ -111,12 +121,13 @@ class Guides {
   }
 
   bool has_features_;
-  Features shared_;
+  film::Features shared_;
 };
 
-PictureTerm make_term(const Film& film, const Region& region, const Features& guides, HalvedImage sampled, const CancelCheck& cancel) {
+reconstruct::PictureTerm make_term(const film::Film& film, const Region& region, const film::Features& guides,
+                                   reconstruct::HalvedImage sampled, const CancelCheck& cancel) {
   throw_if_cancelled(cancel);
-  PictureTerm term = regress_term(guides, std::move(sampled), cancel);
+  reconstruct::PictureTerm term = reconstruct::regress_term(guides, std::move(sampled), cancel);
   term.image = crop(term.image, film, region, film.settings.film_exposure);
   term.error = crop(term.error, film, region);  // by which parts compare, whatever the exposure
   return term;
@@ -124,27 +135,29 @@ PictureTerm make_term(const Film& film, const Region& region, const Features& gu
 
 }  // namespace
 
-bool has_light_passes(const Film& film) { return (film_passes(film) & light_passes()) != 0; }
+bool has_light_passes(const film::Film& film) { return (film::film_passes(film) & schema::light_passes()) != 0; }
 
-LightPasses::LightPasses(const Film& film, const Region& region, const std::vector<float>& rgba, const CancelCheck& cancel) {
+LightPasses::LightPasses(const film::Film& film, const Region& region, const std::vector<float>& rgba,
+                         const CancelCheck& cancel) {
   const LightPassPlanes planes = light_planes(film);
-  const Field whole = to_field(rgba, 4, region, region);
+  const reconstruct::Field whole = to_field(rgba, 4, region, region);
   const Guides guides(film, region, whole);
-  std::vector<PictureTerm> terms;
-  std::vector<Field> colors;
-  for (const PassPlane* plane : planes) {
+  std::vector<reconstruct::PictureTerm> terms;
+  std::vector<reconstruct::Field> colors;
+  for (const film::PassPlane* plane : planes) {
     terms.push_back(make_term(film, region, guides.of(film, *plane), read_light_pass(film, *plane), cancel));
-    const PassPlane* const color = color_plane(film, *plane);
-    colors.push_back(color != nullptr ? to_field(read_color(film, *color).values, 3, film.region, region) : Field());
+    const film::PassPlane* const color = color_plane(film, *plane);
+    colors.push_back(color != nullptr ? to_field(read_color(film, *color).values, 3, film.region, region)
+                                      : reconstruct::Field());
     if (color != nullptr) terms.back().room = room_of(colors.back());
   }
-  const bool are_all = (film_passes(film) & light_passes()) == light_passes();
+  const bool are_all = (film::film_passes(film) & schema::light_passes()) == schema::light_passes();
   if (!are_all) terms.push_back(make_term(film, region, guides.shared(), read_remainder(film, planes), cancel));
   throw_if_cancelled(cancel);
-  add_up(whole, &terms);
+  reconstruct::add_up(whole, &terms);
   for (size_t k = 0; k < planes.size(); ++k) {
     if (colors[k].width() > 0) divide(colors[k], &terms[k].image);
-    passes_[planes[k]->pass] = interleave(terms[k].image);
+    passes_[planes[k]->pass] = reconstruct::interleave(terms[k].image);
   }
 }
 
@@ -161,4 +174,4 @@ size_t LightPasses::memory_bytes() const {
   return values * sizeof(float);
 }
 
-}  // namespace gradus
+}  // namespace gradus::output

@@ -7,17 +7,17 @@
 #include "base/cancel_check.h"
 #include "film/film.h"
 
-namespace gradus {
+namespace gradus::output {
 
 // Some of the frame's passes are parts of its light.
-bool has_light_passes(const Film& film);
+bool has_light_passes(const film::Film& film);
 
 class LightPasses {
  public:
   LightPasses() = default;
-  // rgba: what the frame has become in `region`, of which its light passes are parts. What of its light is in none of them is taken for one
-  // part more. Throws the Error CANCELLED.
-  LightPasses(const Film& film, const Region& region, const std::vector<float>& rgba, const CancelCheck& cancel);
+  // rgba: what the frame has become in `region`, of which its light passes are parts. What of its light is in none of
+  // them is taken for one part more. Throws the Error CANCELLED.
+  LightPasses(const film::Film& film, const Region& region, const std::vector<float>& rgba, const CancelCheck& cancel);
 
   // Three values for each pixel of the region, divided by their colours (contract 6.5). False: it is not one of them.
   bool read(uint32_t pass, float* pixels) const;
@@ -27,4 +27,4 @@ class LightPasses {
   std::map<uint32_t, std::vector<float>> passes_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::output

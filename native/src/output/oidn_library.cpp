@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-namespace gradus {
+namespace gradus::output {
 namespace {
 
 constexpr int kMajor = 2;
@@ -18,7 +18,8 @@ OidnApi bind(void* library) {
   OidnApi api{};
   const auto take = [library](const char* name, auto** function) {
     void* const address = dlsym(library, name);
-    if (!address) throw Unusable("it has no " + std::string(name) + ", so it is not of version " + std::to_string(kMajor));
+    if (!address)
+      throw Unusable("it has no " + std::string(name) + ", so it is not of version " + std::to_string(kMajor));
     *function = reinterpret_cast<std::remove_pointer_t<decltype(function)>>(address);
   };
   take("oidnNewDevice", &api.new_device);
@@ -50,7 +51,8 @@ std::string check_version(const OidnApi& api) {
   const std::array numbers = {api.get_device_int(device, "versionMajor"), api.get_device_int(device, "versionMinor"),
                               api.get_device_int(device, "versionPatch")};
   api.release_device(device);
-  std::string version = std::to_string(numbers[0]) + "." + std::to_string(numbers[1]) + "." + std::to_string(numbers[2]);
+  std::string version =
+      std::to_string(numbers[0]) + "." + std::to_string(numbers[1]) + "." + std::to_string(numbers[2]);
   if (numbers[0] != kMajor) throw Unusable("it has version " + version + " in place of " + std::to_string(kMajor));
   return version;
 }
@@ -90,7 +92,8 @@ std::shared_ptr<const OidnLibrary> find_oidn(const OidnPlaces& places, std::stri
     std::string error;
     try {
       void* const library = load(place.name, place.flags, &error);
-      if (!library && place.is_reported) throw Unusable(is_there(place.name) ? error : "there is no such file; it should be " + what);
+      if (!library && place.is_reported)
+        throw Unusable(is_there(place.name) ? error : "there is no such file; it should be " + what);
       if (!library) continue;
       const OidnApi api = bind(library);
       return std::make_shared<OidnLibrary>(OidnLibrary{api, check_version(api)});
@@ -98,8 +101,9 @@ std::shared_ptr<const OidnLibrary> find_oidn(const OidnPlaces& places, std::stri
       reasons += (reasons.empty() ? "" : "; ") + place.name + ": " + e.what();
     }
   }
-  *why_not = "no Open Image Denoise in this process or on its library path (" + (reasons.empty() ? places.soname : reasons) + ")";
+  *why_not = "no Open Image Denoise in this process or on its library path (" +
+             (reasons.empty() ? places.soname : reasons) + ")";
   return nullptr;
 }
 
-}  // namespace gradus
+}  // namespace gradus::output

@@ -5,9 +5,10 @@
 #include <memory>
 #include <string>
 
-namespace gradus {
+namespace gradus::output {
 
-// Those functions of its C API, version 2 (its documentation, "Open Image Denoise API"), that are used here. Integers stand for its enums.
+// Those functions of its C API, version 2 (its documentation, "Open Image Denoise API"), that are used here. Integers
+// stand for its enums.
 struct OidnApi {
   struct Device;
   struct Filter;
@@ -21,8 +22,9 @@ struct OidnApi {
   int (*get_device_error)(Device*, const char** text);  // and forgets it; of a device that could not be made: nullptr
   void (*release_device)(Device*);
   Filter* (*new_filter)(Device*, const char* type);
-  void (*set_shared_filter_image)(Filter*, const char* name, void* data, int format, size_t width, size_t height, size_t offset,
-                                  size_t pixel_stride, size_t row_stride);  // in bytes; stride 0: no gaps
+  void (*set_shared_filter_image)(Filter*, const char* name, void* data, int format, size_t width, size_t height,
+                                  size_t offset, size_t pixel_stride,
+                                  size_t row_stride);  // in bytes; stride 0: no gaps
   void (*set_filter_bool)(Filter*, const char* name, bool value);
   void (*set_filter_int)(Filter*, const char* name, int value);
   void (*set_filter_progress)(Filter*, Progress, void* user);
@@ -39,14 +41,15 @@ struct OidnLibrary {
   std::string name() const { return "Open Image Denoise " + version; }
 };
 
-// Where to look, in this order: what the process has loaded already under the name `soname`; `path`, which is a file or a folder that holds
-// `soname`, or empty; where the system finds `soname`.
+// Where to look, in this order: what the process has loaded already under the name `soname`; `path`, which is a file or
+// a folder that holds `soname`, or empty; where the system finds `soname`.
 struct OidnPlaces {
   std::string path;
   std::string soname = "libOpenImageDenoise.so.2";
 };
 
-// nullptr where there is none that works, and why. What was loaded stays for the life of the process, as its threads may.
+// nullptr where there is none that works, and why. What was loaded stays for the life of the process, as its threads
+// may.
 std::shared_ptr<const OidnLibrary> find_oidn(const OidnPlaces& places, std::string* why_not);
 
-}  // namespace gradus
+}  // namespace gradus::output

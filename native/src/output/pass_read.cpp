@@ -16,7 +16,7 @@
 #include "film/read_pixels.h"
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::output {
 namespace {
 
 // Depth of a pixel that sees nothing, as in Blender.
@@ -37,22 +37,24 @@ class BorrowedFpuState {
   const unsigned own_;
 };
 
-// Calls function(first, last) for runs of the region's rows, on the threads of the caller's arena. They have the caller's floating-point
-// state meanwhile, which of a host's thread flushes no denormals, so that the bits do not depend on threads.
+// Calls function(first, last) for runs of the region's rows, on the threads of the caller's arena. They have the
+// caller's floating-point state meanwhile, which of a host's thread flushes no denormals, so that the bits do not
+// depend on threads.
 template <class Function>
 void for_runs(const Region& region, const Function& function) {
   const int32_t rows = std::max(kPixelsOfTask / std::max(region.width(), 1), 1);
   if (region.height() <= rows) return static_cast<void>(function(region.y0, region.y1));
   const unsigned state = _mm_getcsr();
-  tbb::parallel_for(tbb::blocked_range<int32_t>(region.y0, region.y1, rows), [&](const tbb::blocked_range<int32_t>& run) {
-    const BorrowedFpuState borrowed(state);
-    function(run.begin(), run.end());
-  });
+  tbb::parallel_for(tbb::blocked_range<int32_t>(region.y0, region.y1, rows),
+                    [&](const tbb::blocked_range<int32_t>& run) {
+                      const BorrowedFpuState borrowed(state);
+                      function(run.begin(), run.end());
+                    });
 }
 
 // Calls function(i, out) for each pixel: its places in the frame's planes and in those of the region.
 template <class Function>
-void for_pixels(const Film& film, const Region& region, const Function& function) {
+void for_pixels(const film::Film& film, const Region& region, const Function& function) {
   for_runs(region, [&](int32_t first, int32_t last) {
     size_t out = size_t(first - region.y0) * size_t(region.width());
     for (int32_t y = first; y < last; ++y) {
@@ -61,10 +63,10 @@ void for_pixels(const Film& film, const Region& region, const Function& function
   });
 }
 
-// Reads whole rows of the frame one by one, read(y, values), y counted from its first row, and calls function(pixel, out) for those of
-// their pixels that lie in the region.
+// Reads whole rows of the frame one by one, read(y, values), y counted from its first row, and calls function(pixel,
+// out) for those of their pixels that lie in the region.
 template <class Read, class Function>
-void for_rows_of_frame(const Film& film, const Region& region, const Read& read, const Function& function) {
+void for_rows_of_frame(const film::Film& film, const Region& region, const Read& read, const Function& function) {
   const auto channels = size_t(film.channels), width = size_t(region.width());
   for_runs(region, [&](int32_t first, int32_t last) {
     std::vector<float> row(size_t(film.region.width()) * channels);
@@ -77,32 +79,33 @@ void for_rows_of_frame(const Film& film, const Region& region, const Read& read,
   });
 }
 
-float inverse_count(const Film& film, size_t i) {
-  const uint32_t n = samples_at(film, i);
+float inverse_count(const film::Film& film, size_t i) {
+  const uint32_t n = film::samples_at(film, i);
   return n > 0 ? 1.0f / static_cast<float>(n) : 0.0f;
 }
 
-void read_noisy(const Film& film, const Region& region, float* pixels) {
+void read_noisy(const film::Film& film, const Region& region, float* pixels) {
   const float exposure = film.settings.film_exposure;
   for_pixels(film, region, [&](size_t i, size_t out) {
     Radiance sum(0.0f);
-    for (const ComponentPlanes& component : film.components) sum += component.primal[0][i] + component.primal[1][i];
+    for (const film::ComponentPlanes& component : film.components)
+      sum += component.primal[0][i] + component.primal[1][i];
     const Radiance mean = sum * inverse_count(film, i);
     float* p = pixels + 4 * out;
     for (int c = 0; c < 3; ++c) p[c] = exposure * mean[c];
-    p[3] = film.channels == 4 ? std::clamp(mean.w, 0.0f, 1.0f) : (samples_at(film, i) > 0 ? 1.0f : 0.0f);
+    p[3] = film.channels == 4 ? std::clamp(mean.w, 0.0f, 1.0f) : (film::samples_at(film, i) > 0 ? 1.0f : 0.0f);
   });
 }
 
 // Forward difference of the noisy image's expectation, of all components together.
-void read_gradient(const Film& film, const Region& region, bool vertical, float* pixels) {
+void read_gradient(const film::Film& film, const Region& region, bool vertical, float* pixels) {
   std::fill_n(pixels, size_t(region.area()) * 3, 0.0f);
   if (!film.gradients) return;
   const float exposure = film.settings.film_exposure;
   for (int component = 0; component < int(film.components.size()); ++component) {
     const auto read = [&](int y, float* row) {
       const FlushDenormals flush;  // as solvers read them
-      read_difference_row(film, component, vertical ? kUp : kRight, {}, y, row);
+      film::read_difference_row(film, component, vertical ? film::kUp : film::kRight, {}, y, row);
     };
     for_rows_of_frame(film, region, read, [&](const float* pixel, size_t out) {
       for (int c = 0; c < 3; ++c) {
@@ -112,15 +115,15 @@ void read_gradient(const Film& film, const Region& region, bool vertical, float*
   }
 }
 
-void read_variance_pass(const Film& film, const Region& region, float* pixels) {
+void read_variance_pass(const film::Film& film, const Region& region, float* pixels) {
   const float scale = film.settings.film_exposure * film.settings.film_exposure;
-  const auto read = [&](int y, float* row) { read_variance_row(film, y, row); };
+  const auto read = [&](int y, float* row) { film::read_variance_row(film, y, row); };
   for_rows_of_frame(film, region, read, [&](const float* pixel, size_t out) {
     for (int c = 0; c < 3; ++c) pixels[3 * out + c] = scale * pixel[c];
   });
 }
 
-void read_derived(const Film& film, uint32_t pass, const Region& region, float* pixels) {
+void read_derived(const film::Film& film, uint32_t pass, const Region& region, float* pixels) {
   switch (pass) {
     case GRADUS_PASS_GRADIENT_X:
       return read_gradient(film, region, false, pixels);
@@ -129,14 +132,17 @@ void read_derived(const Film& film, uint32_t pass, const Region& region, float* 
     case GRADUS_PASS_VARIANCE:
       return read_variance_pass(film, region, pixels);
     case GRADUS_PASS_SAMPLE_COUNT:
-      return for_pixels(film, region, [&](size_t i, size_t out) { pixels[out] = static_cast<float>(samples_at(film, i)); });
+      return for_pixels(film, region,
+                        [&](size_t i, size_t out) { pixels[out] = static_cast<float>(film::samples_at(film, i)); });
     default:
-      return for_pixels(film, region, [&](size_t i, size_t out) { pixels[out] = film.fallback[i] * inverse_count(film, i); });
+      return for_pixels(film, region,
+                        [&](size_t i, size_t out) { pixels[out] = film.fallback[i] * inverse_count(film, i); });
   }
 }
 
 // Sum of radiance over sum of colours; their product is the radiance again, as Cycles' compositing expects.
-void read_light(const Film& film, const PassPlane& light, const PassPlane& color, const Region& region, float* pixels) {
+void read_light(const film::Film& film, const film::PassPlane& light, const film::PassPlane& color,
+                const Region& region, float* pixels) {
   for_pixels(film, region, [&](size_t i, size_t out) {
     for (int c = 0; c < 3; ++c) {
       const float divisor = color.values[0][3 * i + c];
@@ -147,13 +153,14 @@ void read_light(const Film& film, const PassPlane& light, const PassPlane& color
   });
 }
 
-void read_stored(const Film& film, const PassInfo& info, const PassPlane& plane, const Region& region, float* pixels) {
-  const float scale = info.kind == PassKind::Radiance ? film.settings.film_exposure : 1.0f;
+void read_stored(const film::Film& film, const schema::PassInfo& info, const film::PassPlane& plane,
+                 const Region& region, float* pixels) {
+  const float scale = info.kind == schema::PassKind::Radiance ? film.settings.film_exposure : 1.0f;
   for_pixels(film, region, [&](size_t i, size_t out) {
     float factor = 1.0f;
-    if (info.kind == PassKind::Weighted) {
+    if (info.kind == schema::PassKind::Weighted) {
       factor = plane.weight[i] > 0.0f ? 1.0f / plane.weight[i] : 0.0f;
-    } else if (info.kind != PassKind::First) {
+    } else if (info.kind != schema::PassKind::First) {
       factor = scale * inverse_count(film, i);
     }
     for (uint32_t c = 0; c < info.channels; ++c) {
@@ -161,31 +168,35 @@ void read_stored(const Film& film, const PassInfo& info, const PassPlane& plane,
       pixels[info.channels * out + c] =
           factor * (plane.in_halves ? plane.values[0][value] + plane.values[1][value] : plane.values[0][value]);
     }
-    if (info.pass == GRADUS_PASS_DEPTH && pixels[out] == 0.0f) pixels[out] = kFarDepth;
+    if (info.pass == GRADUS_PASS_DEPTH && pixels[out] == 0.0f) pixels[out] = schema::kFarDepth;
   });
 }
 
 }  // namespace
 
-bool has_pass(const Film& film, uint32_t pass) {
-  const PassInfo& info = pass_info(pass);
+bool has_pass(const film::Film& film, uint32_t pass) {
+  const schema::PassInfo& info = schema::pass_info(pass);
   if (pass == GRADUS_PASS_FALLBACK) return !film.fallback.empty();
-  if (info.kind == PassKind::Image || info.kind == PassKind::Derived || info.kind == PassKind::Sequence) return true;
-  return find_plane(film, pass) != nullptr;
+  if (info.kind == schema::PassKind::Image || info.kind == schema::PassKind::Derived ||
+      info.kind == schema::PassKind::Sequence)
+    return true;
+  return film::find_plane(film, pass) != nullptr;
 }
 
-void read_film_pass(const Film& film, uint32_t pass, const Region& region, float* pixels) {
-  const PassInfo& info = pass_info(pass);
-  if (!has_pass(film, pass)) throw invalid_operation("pass " + std::string(info.name) + " was not asked for when the render began");
-  if (info.kind == PassKind::Image) return read_noisy(film, region, pixels);
-  if (info.kind == PassKind::Derived) return read_derived(film, pass, region, pixels);
-  if (info.kind == PassKind::Sequence) {
+void read_film_pass(const film::Film& film, uint32_t pass, const Region& region, float* pixels) {
+  const schema::PassInfo& info = schema::pass_info(pass);
+  if (!has_pass(film, pass))
+    throw invalid_operation("pass " + std::string(info.name) + " was not asked for when the render began");
+  if (info.kind == schema::PassKind::Image) return read_noisy(film, region, pixels);
+  if (info.kind == schema::PassKind::Derived) return read_derived(film, pass, region, pixels);
+  if (info.kind == schema::PassKind::Sequence) {
     std::fill_n(pixels, size_t(region.area()) * info.channels, 0.0f);
     return;
   }
-  const PassPlane* plane = find_plane(film, pass);
-  if (info.kind == PassKind::Light) return read_light(film, *plane, *find_plane(film, info.color), region, pixels);
+  const film::PassPlane* plane = film::find_plane(film, pass);
+  if (info.kind == schema::PassKind::Light)
+    return read_light(film, *plane, *film::find_plane(film, info.color), region, pixels);
   read_stored(film, info, *plane, region, pixels);
 }
 
-}  // namespace gradus
+}  // namespace gradus::output

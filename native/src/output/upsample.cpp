@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gradus {
+namespace gradus::output {
 namespace {
 
 // Along one axis: where the centre of pixel i of `full` lies among the centres of `small`.
@@ -26,18 +26,22 @@ Between between(double position, int32_t begin, int32_t end) {
 }  // namespace
 
 Region covering(const Region& region, ImageSize full, ImageSize small) {
-  const auto first = [](int32_t i, uint32_t of, uint32_t to) { return std::max(0, int32_t(std::floor(position(i, of, to)))); };
+  const auto first = [](int32_t i, uint32_t of, uint32_t to) {
+    return std::max(0, int32_t(std::floor(position(i, of, to))));
+  };
   const auto end = [](int32_t i, uint32_t of, uint32_t to) {
     return std::min(int32_t(to), int32_t(std::floor(position(i - 1, of, to))) + 2);
   };
-  return {first(region.x0, full.width, small.width), first(region.y0, full.height, small.height), end(region.x1, full.width, small.width),
-          end(region.y1, full.height, small.height)};
+  return {first(region.x0, full.width, small.width), first(region.y0, full.height, small.height),
+          end(region.x1, full.width, small.width), end(region.y1, full.height, small.height)};
 }
 
-std::vector<float> enlarge(const std::vector<float>& image, size_t channels, const Region& region, ImageSize full, ImageSize small) {
+std::vector<float> enlarge(const std::vector<float>& image, size_t channels, const Region& region, ImageSize full,
+                           ImageSize small) {
   const Region from = covering(region, full, small);
   std::vector<Between> columns;
-  for (int32_t x = region.x0; x < region.x1; ++x) columns.push_back(between(position(x, full.width, small.width), from.x0, from.x1));
+  for (int32_t x = region.x0; x < region.x1; ++x)
+    columns.push_back(between(position(x, full.width, small.width), from.x0, from.x1));
   std::vector<float> result(channels * size_t(region.area()));
   tbb::parallel_for(region.y0, region.y1, [&](int32_t y) {
     const Between rows = between(position(y, full.height, small.height), from.y0, from.y1);
@@ -56,4 +60,4 @@ std::vector<float> enlarge(const std::vector<float>& image, size_t channels, con
   return result;
 }
 
-}  // namespace gradus
+}  // namespace gradus::output

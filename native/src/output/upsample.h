@@ -5,7 +5,7 @@
 
 #include "film/film.h"
 
-namespace gradus {
+namespace gradus::output {
 
 struct ImageSize {
   uint32_t width = 0, height = 0;
@@ -15,6 +15,7 @@ struct ImageSize {
 Region covering(const Region& region, ImageSize full, ImageSize small);
 
 // Bilinear. image: the pixels covering(region, full, small), their channels side by side. Runs in the caller's arena.
-std::vector<float> enlarge(const std::vector<float>& image, size_t channels, const Region& region, ImageSize full, ImageSize small);
+std::vector<float> enlarge(const std::vector<float>& image, size_t channels, const Region& region, ImageSize full,
+                           ImageSize small);
 
-}  // namespace gradus
+}  // namespace gradus::output

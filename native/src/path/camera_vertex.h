@@ -4,10 +4,10 @@
 #include "path/segment.h"
 #include "path/vertex.h"
 
-namespace gradus {
+namespace gradus::path {
 
 struct CameraVertex {
-  Hit hit;              // the nearest
+  geometry::Hit hit;    // the nearest
   bool shared = false;  // no random decision lay on the way: what follows is the same for every path
   PathRay ray;          // as it arrived
   Segment segment;
@@ -16,4 +16,4 @@ struct CameraVertex {
   Vertex vertex;                   // closures may still be missing
 };
 
-}  // namespace gradus
+}  // namespace gradus::path

@@ -2,7 +2,7 @@
 
 #include "shading/material.h"
 
-namespace gradus {
+namespace gradus::path {
 
 void CameraVertices::begin(const Vec2& filter_offset) {
   filter_offset_ = filter_offset;
@@ -12,7 +12,7 @@ void CameraVertices::begin(const Vec2& filter_offset) {
 // Always the same rays together, wherever a tile or a border cuts the cell, so that hits have the same bits.
 void CameraVertices::trace(int32_t x, int32_t y, Packet* packet) const {
   Ray rays[kTogether];
-  Hit hits[kTogether];
+  geometry::Hit hits[kTogether];
   for (int i = 0; i < kTogether; ++i) {
     rays[i] = context_.camera.ray({pixel_centre(x + i, y) + filter_offset_});
   }
@@ -29,12 +29,13 @@ void CameraVertices::trace(int32_t x, int32_t y, Packet* packet) const {
 }
 
 // Whether a ray may go on behind its nearest hit, which each path decides for itself.
-bool CameraVertices::passes(const Hit& hit) const {
-  return hit.valid() && context_.scene.materials[context_.scene.material_of(hit.instance, hit.triangle)]->may_be_transparent;
+bool CameraVertices::passes(const geometry::Hit& hit) const {
+  return hit.valid() &&
+         context_.scene.materials[context_.scene.material_of(hit.instance, hit.triangle)]->may_be_transparent;
 }
 
 CameraVertex* CameraVertices::at(int32_t x, int32_t y) {
-  const int32_t column = x - pixel_block_of(x) * kPixelBlockSide;
+  const int32_t column = x - film::pixel_block_of(x) * film::kPixelBlockSide;
   const size_t i = static_cast<size_t>(column % kTogether);
   Packet& packet = packets_[static_cast<size_t>(y & (kRows - 1))][static_cast<size_t>(column / kTogether)];
   if (packet.block_sample != block_sample_ || packet.y != y) {
@@ -46,10 +47,11 @@ CameraVertex* CameraVertices::at(int32_t x, int32_t y) {
     v.looked = false;
     v.shared = !passes(v.hit);
     if (v.shared) {
-      trace_segment(context_, Sampler(), 0, &v.hit, &v.ray, &v.vertex, &v.segment, Shading::Later);  // nothing random is met
+      trace_segment(context_, Sampler(), 0, &v.hit, &v.ray, &v.vertex, &v.segment,
+                    Shading::Later);  // nothing random is met
     }
   }
   return &v;
 }
 
-}  // namespace gradus
+}  // namespace gradus::path

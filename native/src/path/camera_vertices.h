@@ -1,16 +1,18 @@
-// First vertices of the paths of one cell of the lattice, traced once for a base path and for the offsets of its neighbours.
+// First vertices of the paths of one cell of the lattice, traced once for a base path and for the offsets of its
+// neighbours.
 //
-// All pixels of a cell share the sub-pixel jitter of a sample number (contract 1.6). The camera ray of a pixel's base path is then that of
-// its neighbours' offsets, too, where neither lens nor time set them apart; and rays of neighbours are traced together.
+// All pixels of a cell share the sub-pixel jitter of a sample number (contract 1.6). The camera ray of a pixel's base
+// path is then that of its neighbours' offsets, too, where neither lens nor time set them apart; and rays of neighbours
+// are traced together.
 #pragma once
 
 #include <array>
 
+#include "film/pixel_block.h"
 #include "path/camera_vertex.h"
 #include "path/context.h"
-#include "film/pixel_block.h"
 
-namespace gradus {
+namespace gradus::path {
 
 class CameraVertices {
  public:
@@ -18,8 +20,8 @@ class CameraVertices {
 
   // A sample number of a cell. filter_offset: from the centres of its pixels.
   void begin(const Vec2& filter_offset);
-  // What the camera ray of a pixel of the cell meets. Rows are asked for in ascending order, from one below to one above that of the base:
-  // no more are kept.
+  // What the camera ray of a pixel of the cell meets. Rows are asked for in ascending order, from one below to one
+  // above that of the base: no more are kept.
   CameraVertex* at(int32_t x, int32_t y);
 
  private:
@@ -33,12 +35,12 @@ class CameraVertices {
     std::array<CameraVertex, kTogether> vertices;
   };
   void trace(int32_t x, int32_t y, Packet* packet) const;
-  bool passes(const Hit& hit) const;
+  bool passes(const geometry::Hit& hit) const;
 
   const PathContext& context_;
   uint64_t block_sample_ = 0;
   Vec2 filter_offset_ = Vec2(0.0f);
-  std::array<std::array<Packet, kPixelBlockSide / kTogether>, kRows> packets_;
+  std::array<std::array<Packet, film::kPixelBlockSide / kTogether>, kRows> packets_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::path

@@ -6,7 +6,7 @@
 #include "light/light_table.h"
 #include "shading/material.h"
 
-namespace gradus {
+namespace gradus::path {
 
 namespace {
 
@@ -14,19 +14,23 @@ namespace {
 float sum_limit(float clamp) { return clamp > 0.0f ? 3.0f * clamp : kInfinity; }
 
 // Hidden from some kinds of bounces and not from others.
-bool distinguishes_kinds(uint32_t visibility) { return (visibility & kAllBounces) != 0 && (visibility & kAllBounces) != kAllBounces; }
-
-bool kinds_matter_in(const Snapshot& scene) {
-  const auto any = [](const auto& list, auto&& test) { return std::any_of(list.begin(), list.end(), test); };
-  return distinguishes_kinds(scene.world.visibility) || any(scene.materials, [](const auto& m) { return m->depends_on_kind; }) ||
-         any(scene.instances, [](const InstanceData& i) { return distinguishes_kinds(i.visibility); }) ||
-         (scene.light_table &&
-          any(scene.light_table->analytic_lights, [](const AnalyticLight& light) { return light.found_by_rays() && distinguishes_kinds(light.visibility); }));
+bool distinguishes_kinds(uint32_t visibility) {
+  return (visibility & kAllBounces) != 0 && (visibility & kAllBounces) != kAllBounces;
 }
 
-bool is_uniform(const Snapshot& scene) {
+bool kinds_matter_in(const scene::Snapshot& scene) {
+  const auto any = [](const auto& list, auto&& test) { return std::any_of(list.begin(), list.end(), test); };
+  return distinguishes_kinds(scene.world.visibility) ||
+         any(scene.materials, [](const auto& m) { return m->depends_on_kind; }) ||
+         any(scene.instances, [](const geometry::InstanceData& i) { return distinguishes_kinds(i.visibility); }) ||
+         (scene.light_table && any(scene.light_table->analytic_lights, [](const light::AnalyticLight& light) {
+            return light.found_by_rays() && distinguishes_kinds(light.visibility);
+          }));
+}
+
+bool is_uniform(const scene::Snapshot& scene) {
   constexpr uint32_t bounces = kAllBounces | GRADUS_VISIBLE_SHADOW;
-  for (const InstanceData& instance : scene.instances) {
+  for (const geometry::InstanceData& instance : scene.instances) {
     const uint32_t bits = instance.visibility & bounces;
     if (bits != 0 && bits != bounces) {
       return false;
@@ -35,13 +39,15 @@ bool is_uniform(const Snapshot& scene) {
   return true;
 }
 
-bool lets_through(const Snapshot& scene) {
-  return std::any_of(scene.materials.begin(), scene.materials.end(), [](const auto& material) { return material->may_be_transparent; });
+bool lets_through(const scene::Snapshot& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const auto& material) { return material->may_be_transparent; });
 }
 
 }  // namespace
 
-PathContext::PathContext(const Snapshot& snapshot, const Camera& camera_, const GradusSettings& settings_, ComponentSet components_)
+PathContext::PathContext(const scene::Snapshot& snapshot, const camera::Camera& camera_,
+                         const GradusSettings& settings_, lpe::ComponentSet components_)
     : scene(snapshot),
       camera(camera_),
       settings(settings_),
@@ -53,11 +59,11 @@ PathContext::PathContext(const Snapshot& snapshot, const Camera& camera_, const 
       uniform_visibility(is_uniform(snapshot)),
       kinds_matter(kinds_matter_in(snapshot)) {}
 
-CameraSample camera_sample(const PathContext& context, const Sampler& sampler, const Vec2& film) {
-  CameraSample sample{film};
+camera::CameraSample camera_sample(const PathContext& context, const Sampler& sampler, const Vec2& film) {
+  camera::CameraSample sample{film};
   if (context.camera.has_lens()) sample.lens = sampler.get2(dimension::kLens);
   if (context.scene.features.has_motion) sample.time = context.scene.shutter.sample(sampler.get1(dimension::kTime));
   return sample;
 }
 
-}  // namespace gradus
+}  // namespace gradus::path

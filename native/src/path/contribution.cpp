@@ -1,12 +1,13 @@
 #include "path/contribution.h"
 
-namespace gradus {
+namespace gradus::path {
 
 namespace {
 
-// Light that a ray found after `depth` scatterings is indirect where one of them was not the last vertex's own (Cycles' bounce − 1).
-Contribution found(const PathContext& context, const RaySource& source, const PathState& state, const Rgb& throughput, const Rgb& radiance,
-                   float pdf_light) {
+// Light that a ray found after `depth` scatterings is indirect where one of them was not the last vertex's own (Cycles'
+// bounce − 1).
+Contribution found(const PathContext& context, const RaySource& source, const PathState& state, const Rgb& throughput,
+                   const Rgb& radiance, float pdf_light) {
   Contribution c;
   c.pdf_light = pdf_light;
   c.pdf_bsdf = source.sampled_light() ? source.event->pdf : 0.0f;
@@ -22,15 +23,17 @@ Contribution found(const PathContext& context, const RaySource& source, const Pa
 
 void apply_segment(const Segment& segment, PathState* state) { state->throughput *= segment.weight; }
 
-Contribution light_hit_contribution(const PathContext& context, const RaySource& source, const PathState& state, const LightCrossing& light_crossing) {
-  const Receiver eye{state.ray.ray.origin, Vec3(0.0f), true};
-  const Receiver receiver = source.vertex != nullptr ? receiver_of(*source.vertex) : eye;
-  const LightEvaluation view = evaluate_light(context.scene, light_crossing.point, receiver);
+Contribution light_hit_contribution(const PathContext& context, const RaySource& source, const PathState& state,
+                                    const LightCrossing& light_crossing) {
+  const light::Receiver eye{state.ray.ray.origin, Vec3(0.0f), true};
+  const light::Receiver receiver = source.vertex != nullptr ? receiver_of(*source.vertex) : eye;
+  const light::LightEvaluation view = light::evaluate_light(context.scene, light_crossing.point, receiver);
   const Rgb radiance = light_hit_radiance(context, view, state.ray, state.depth);
   if (is_black(radiance)) {
     return {};
   }
-  return found(context, source, state, state.throughput * light_crossing.weight, radiance, source.sampled_light() ? view.pdf : 0.0f);
+  return found(context, source, state, state.throughput * light_crossing.weight, radiance,
+               source.sampled_light() ? view.pdf : 0.0f);
 }
 
 Contribution world_contribution(const PathContext& context, const RaySource& source, const PathState& state) {
@@ -38,30 +41,34 @@ Contribution world_contribution(const PathContext& context, const RaySource& sou
   if (is_black(radiance)) {
     return {};
   }
-  const LightPoint point = source.sampled_light() ? light_point_of_world(context.scene, state.ray.ray.direction) : LightPoint{};
+  const light::LightPoint point = source.sampled_light()
+                                      ? light::light_point_of_world(context.scene, state.ray.ray.direction)
+                                      : light::LightPoint{};
   return found(context, source, state, state.throughput, radiance, light_pdf(context, source, point));
 }
 
-Contribution emission_contribution(const PathContext& context, const RaySource& source, const PathState& state, const Vertex& vertex) {
+Contribution emission_contribution(const PathContext& context, const RaySource& source, const PathState& state,
+                                   const Vertex& vertex) {
   if (is_black(vertex.shade.emission)) {
     return {};
   }
-  const LightPoint point = source.sampled_light() ? light_point_of_surface(context.scene, vertex.point) : LightPoint{};
+  const light::LightPoint point =
+      source.sampled_light() ? light::light_point_of_surface(context.scene, vertex.point) : light::LightPoint{};
   return found(context, source, state, state.throughput, vertex.shade.emission, light_pdf(context, source, point));
 }
 
-bool light_classes(const PathContext& context, const Vertex& vertex, const LightSample& light, const RayState& ray,
-                   LitClass lit[kScatterClasses]) {
+bool light_classes(const PathContext& context, const Vertex& vertex, const LightSample& light,
+                   const shading::RayState& ray, LitClass lit[bsdf::kScatterClasses]) {
   bool any = false;
-  for (int k = 0; k < kScatterClasses; ++k) {
-    lit[k] = light_class(context, vertex, static_cast<ScatterClass>(k), light, ray);
+  for (int k = 0; k < bsdf::kScatterClasses; ++k) {
+    lit[k] = light_class(context, vertex, static_cast<bsdf::ScatterClass>(k), light, ray);
     any |= !is_black(lit[k].value);
   }
   return any;
 }
 
-Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light, ScatterClass scatter_class,
-                                const LitClass& lit, const Rgb& transmittance) {
+Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light,
+                                bsdf::ScatterClass scatter_class, const LitClass& lit, const Rgb& transmittance) {
   Contribution c;
   if (is_black(lit.value)) {
     return c;
@@ -80,6 +87,8 @@ bool is_holdout(const PathContext& context, const Vertex& vertex) {
   return (context.scene.instances[vertex.point.hit.instance].visibility & GRADUS_HOLDOUT) != 0;
 }
 
-float holdout_alpha(const Rgb& throughput, const Rgb& holdout) { return is_black(holdout) ? 0.0f : mean_component(throughput * holdout); }
+float holdout_alpha(const Rgb& throughput, const Rgb& holdout) {
+  return is_black(holdout) ? 0.0f : mean_component(throughput * holdout);
+}
 
-}  // namespace gradus
+}  // namespace gradus::path

@@ -3,10 +3,10 @@
 
 #include "path/light.h"
 
-namespace gradus {
+namespace gradus::path {
 
-// throughput·tail, clamped. The tail holds all that lies behind the throughput (scattering in next-event estimation, radiance, weight);
-// a path that shares it only has another throughput.
+// throughput·tail, clamped. The tail holds all that lies behind the throughput (scattering in next-event estimation,
+// radiance, weight); a path that shares it only has another throughput.
 struct Contribution {
   Rgb clamped = Rgb(0.0f);
   Rgb tail = Rgb(0.0f);
@@ -21,19 +21,21 @@ struct Contribution {
 void apply_segment(const Segment& segment, PathState* state);
 
 // Emitters that the path's ray found: state before apply_segment() for lights, after it for the others.
-Contribution light_hit_contribution(const PathContext& context, const RaySource& source, const PathState& state, const LightCrossing& light_crossing);
+Contribution light_hit_contribution(const PathContext& context, const RaySource& source, const PathState& state,
+                                    const LightCrossing& light_crossing);
 Contribution world_contribution(const PathContext& context, const RaySource& source, const PathState& state);
-Contribution emission_contribution(const PathContext& context, const RaySource& source, const PathState& state, const Vertex& vertex);
+Contribution emission_contribution(const PathContext& context, const RaySource& source, const PathState& state,
+                                   const Vertex& vertex);
 
 // Next-event estimation. False: no class scatters the light.
-bool light_classes(const PathContext& context, const Vertex& vertex, const LightSample& light, const RayState& ray,
-                   LitClass lit[kScatterClasses]);
-Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light, ScatterClass scatter_class,
-                                const LitClass& lit, const Rgb& transmittance);
+bool light_classes(const PathContext& context, const Vertex& vertex, const LightSample& light,
+                   const shading::RayState& ray, LitClass lit[bsdf::kScatterClasses]);
+Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light,
+                                bsdf::ScatterClass scatter_class, const LitClass& lit, const Rgb& transmittance);
 
 // The surface is cut out of the film.
 bool is_holdout(const PathContext& context, const Vertex& vertex);
 // Part of the film that a surface with holdout leaves transparent.
 float holdout_alpha(const Rgb& throughput, const Rgb& holdout);
 
-}  // namespace gradus
+}  // namespace gradus::path

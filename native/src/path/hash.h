@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace gradus {
+namespace gradus::path {
 
 // Bijective mix of 32 bits ("lowbias32" of Wellons' search for low-bias multiply-xorshift hashes).
 inline uint32_t mix(uint32_t x) {
@@ -16,6 +16,8 @@ inline uint32_t mix(uint32_t x) {
 }
 
 // Order matters: combine(a, b) differs from combine(b, a).
-inline uint32_t combine(uint32_t seed, uint32_t value) { return mix(seed ^ (mix(value + 0x9e3779b9u) + (seed << 6) + (seed >> 2))); }
+inline uint32_t combine(uint32_t seed, uint32_t value) {
+  return mix(seed ^ (mix(value + 0x9e3779b9u) + (seed << 6) + (seed >> 2)));
+}
 
-}  // namespace gradus
+}  // namespace gradus::path

@@ -2,59 +2,65 @@
 
 #include "geometry/shadow_terminator.h"
 
-namespace gradus {
+namespace gradus::path {
 
 namespace {
 
 // Which light passes an emitter with these visibility bits may be scattered by, for a direction on this side.
-bool sees(uint32_t visibility, LightPass pass, bool transmitted) { return (visibility & bounce_visibility(pass, transmitted)) != 0; }
+bool sees(uint32_t visibility, bsdf::LightPass pass, bool transmitted) {
+  return (visibility & bounce_visibility(pass, transmitted)) != 0;
+}
 
 }  // namespace
 
-bool sample_light(const PathContext& context, const VertexSample& u, const Vertex& vertex, int depth, LightSample* light) {
+bool sample_light(const PathContext& context, const VertexSample& u, const Vertex& vertex, int depth,
+                  LightSample* light) {
   if (!context.scene.features.has_lights || !vertex.shade.closures.has_smooth()) {
     return false;
   }
-  const Receiver receiver = receiver_of(vertex);
-  sample_light_point(context.scene, receiver, u.light_choice.x, u.light, &light->point, &light->view);
-  if (light->point.kind == LightKind::None) {
+  const light::Receiver receiver = receiver_of(vertex);
+  light::sample_light_point(context.scene, receiver, u.light_choice.x, u.light, &light->point, &light->view);
+  if (light->point.kind == light::LightKind::None) {
     return false;
   }
-  return light->view.pdf > 0.0f && !is_black(light->view.radiance) && static_cast<uint32_t>(depth) <= light->view.max_bounces;
+  return light->view.pdf > 0.0f && !is_black(light->view.radiance) &&
+         static_cast<uint32_t>(depth) <= light->view.max_bounces;
 }
 
-std::array<Rgb, 3> light_by_pass(const PathContext& context, const Vertex& vertex, ScatterClass c, const LightSample& light,
-                                 const RayState& ray) {
-  const LightEvaluation& view = light.view;
+std::array<Rgb, 3> light_by_pass(const PathContext& context, const Vertex& vertex, bsdf::ScatterClass c,
+                                 const LightSample& light, const shading::RayState& ray) {
+  const light::LightEvaluation& view = light.view;
   const bool transmitted = glm::dot(vertex.light_normal(), view.direction) < 0.0f;
   std::array<Rgb, 3> parts = vertex.shade.closures.evaluate_by_pass(c, vertex.wo, view.direction, transmitted);
   for (int i = 0; i < 3; ++i) {
-    const auto pass = static_cast<LightPass>(i);
+    const auto pass = static_cast<bsdf::LightPass>(i);
     if (is_black(parts[i])) continue;
     if (!sees(view.visibility, pass, transmitted)) {
       parts[i] = Rgb(0.0f);
     } else if (!view.by_kind) {
       parts[i] *= view.radiance;
     } else {
-      RayState next = next_ray_state(ray, pass == LightPass::Diffuse, transmitted, false);
+      shading::RayState next = next_ray_state(ray, pass == bsdf::LightPass::Diffuse, transmitted, false);
       next.length = view.distance;
-      parts[i] *= evaluated_radiance(context.scene, light.point, view, next);
+      parts[i] *= light::evaluated_radiance(context.scene, light.point, view, next);
     }
   }
   return parts;
 }
 
-LitClass light_class(const PathContext& context, const Vertex& vertex, ScatterClass c, const LightSample& light, const RayState& ray) {
+LitClass light_class(const PathContext& context, const Vertex& vertex, bsdf::ScatterClass c, const LightSample& light,
+                     const shading::RayState& ray) {
   LitClass lit;
-  const Closures& closures = vertex.shade.closures;
+  const bsdf::Closures& closures = vertex.shade.closures;
   const float probability = closures.class_probability(c);
   if (!(probability > 0.0f) || !closures.has_smooth(c)) {
     return lit;
   }
-  const LightEvaluation& view = light.view;
+  const light::LightEvaluation& view = light.view;
   const bool transmitted = glm::dot(vertex.light_normal(), view.direction) < 0.0f;
-  const BsdfEval eval = closures.evaluate_side(c, vertex.wo, view.direction, transmitted);
-  const bool found_by_rays = light.point.found_by_rays && transmitted == (glm::dot(vertex.facing_normal(), view.direction) < 0.0f);
+  const bsdf::BsdfEval eval = closures.evaluate_side(c, vertex.wo, view.direction, transmitted);
+  const bool found_by_rays =
+      light.point.found_by_rays && transmitted == (glm::dot(vertex.facing_normal(), view.direction) < 0.0f);
   lit.value = eval.value * view.radiance;
   lit.pdf_bsdf = found_by_rays ? probability * eval.pdf : 0.0f;
   if (view.by_kind || (view.visibility & kAllBounces) != kAllBounces) {
@@ -64,12 +70,12 @@ LitClass light_class(const PathContext& context, const Vertex& vertex, ScatterCl
   return lit;
 }
 
-Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, const LightPoint& point, const LightEvaluation& view,
-                        uint32_t crossed) {
+Rgb light_transmittance(const PathContext& context, const geometry::SurfacePoint& from, const light::LightPoint& point,
+                        const light::LightEvaluation& view, uint32_t crossed) {
   if (!view.casts_shadow) {
     return Rgb(1.0f);
   }
-  const Ray ray = ray_to_light(shadow_origin(context.scene, from, view.direction), from, point, view);
+  const Ray ray = light::ray_to_light(geometry::shadow_origin(context.scene, from, view.direction), from, point, view);
   if (!context.scene.features.has_transparent_shadows) {
     return Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f);
   }
@@ -77,14 +83,14 @@ Rgb light_transmittance(const PathContext& context, const SurfacePoint& from, co
   return context.scene.transmittance(ray, crossed < allowed ? allowed - crossed : 0);
 }
 
-float light_pdf(const PathContext& context, const RaySource& source, const LightPoint& point) {
-  if (!source.sampled_light() || point.kind == LightKind::None) {
+float light_pdf(const PathContext& context, const RaySource& source, const light::LightPoint& point) {
+  if (!source.sampled_light() || point.kind == light::LightKind::None) {
     return 0.0f;
   }
-  return light_point_pdf(context.scene, point, receiver_of(*source.vertex));
+  return light::light_point_pdf(context.scene, point, receiver_of(*source.vertex));
 }
 
-Rgb light_hit_radiance(const PathContext&, const LightEvaluation& view, const PathRay& ray, int depth) {
+Rgb light_hit_radiance(const PathContext&, const light::LightEvaluation& view, const PathRay& ray, int depth) {
   const bool visible = (view.visibility & ray.visibility) != 0;
   const bool within = depth == 0 || static_cast<uint32_t>(depth - 1) <= view.max_bounces;
   return visible && within ? view.radiance : Rgb(0.0f);
@@ -95,7 +101,7 @@ Rgb world_radiance(const PathContext& context, const PathRay& ray, int depth) {
   if (hidden || (context.scene.world.visibility & ray.visibility) == 0) {
     return Rgb(0.0f);
   }
-  return shade_world(context.scene, ray.ray.direction, ray.state);
+  return shading::shade_world(context.scene, ray.ray.direction, ray.state);
 }
 
-}  // namespace gradus
+}  // namespace gradus::path

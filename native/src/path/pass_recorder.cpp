@@ -8,11 +8,11 @@
 #include "schema/pass_table.h"
 #include "shading/material.h"
 
-namespace gradus {
+namespace gradus::path {
 
 namespace {
 
-PassShare whole(LightPass pass) {
+PassShare whole(bsdf::LightPass pass) {
   PassShare share{Rgb(0.0f), Rgb(0.0f), Rgb(0.0f)};
   share[static_cast<int>(pass)] = Rgb(1.0f);
   return share;
@@ -30,15 +30,17 @@ PassShare share_of(const std::array<Rgb, 3>& parts) {
   return share;
 }
 
-constexpr uint32_t first_pass(int light_pass) { return GRADUS_PASS_DIFFUSE_DIRECT + 3u * static_cast<uint32_t>(light_pass); }
+constexpr uint32_t first_pass(int light_pass) {
+  return GRADUS_PASS_DIFFUSE_DIRECT + 3u * static_cast<uint32_t>(light_pass);
+}
 
 // As Blender's pass has it: u, v, 1; 0 without a UV map.
-Vec3 uv_of(const MeshData& mesh, const Hit& hit) {
-  const MeshAttribute* map = default_uv_map(mesh);
+Vec3 uv_of(const geometry::MeshData& mesh, const geometry::Hit& hit) {
+  const geometry::MeshAttribute* map = geometry::default_uv_map(mesh);
   if (map == nullptr) {
     return Vec3(0.0f);
   }
-  const Vec4 uv = interpolate(corner_values(mesh, *map, hit.triangle), hit.barycentric);
+  const Vec4 uv = interpolate(geometry::corner_values(mesh, *map, hit.triangle), hit.barycentric);
   return Vec3(uv.x, uv.y, 1.0f);
 }
 
@@ -55,12 +57,13 @@ Vec3 shown_normal(const Vertex& vertex) {
 
 }  // namespace
 
-PassRecorder::PassRecorder(const PathContext& context, Film* film, Counters* counters) : context_(context), counters_(counters) {
-  for (PassPlane& plane : film->passes) {
+PassRecorder::PassRecorder(const PathContext& context, film::Film* film, film::Counters* counters)
+    : context_(context), counters_(counters) {
+  for (film::PassPlane& plane : film->passes) {
     planes_[plane.pass] = &plane;
     active_ = true;
     lights_ |= plane.pass >= GRADUS_PASS_EMISSION && plane.pass <= GRADUS_PASS_TRANSMISSION_COLOR;
-    const bool is_feature = pass_info(plane.pass).kind == PassKind::Feature;
+    const bool is_feature = schema::pass_info(plane.pass).kind == schema::PassKind::Feature;
     features_ |= is_feature;
     others_ |= !is_feature;
   }
@@ -86,9 +89,9 @@ void PassRecorder::begin_sample(size_t pixel, int half, uint32_t number, bool ad
 }
 
 void PassRecorder::add(uint32_t pass, const Vec4& value) {
-  PassPlane* target = plane(pass);
+  film::PassPlane* target = plane(pass);
   if (target != nullptr && (first_sample_ || !target->first_sample_only)) {
-    add_feature(&value.x, 1.0f, pixel_, half_, target, counters_);
+    film::add_feature(&value.x, 1.0f, pixel_, half_, target, counters_);
   }
 }
 
@@ -105,34 +108,39 @@ void PassRecorder::add_light(int scatterings, const Rgb& value, const PassShare&
   }
 }
 
-void PassRecorder::light(const PathState& state, const Vertex& vertex, ScatterClass c, const LightSample& light, const Rgb& value) {
+void PassRecorder::light(const PathState& state, const Vertex& vertex, bsdf::ScatterClass c, const LightSample& light,
+                         const Rgb& value) {
   if (!lights_) {
     return;
   }
   const bool first = state.depth == 0;
-  add_light(state.depth + 1, value, first ? share_of(light_by_pass(context_, vertex, c, light, state.ray.state)) : share_,
+  add_light(state.depth + 1, value,
+            first ? share_of(light_by_pass(context_, vertex, c, light, state.ray.state)) : share_,
             GRADUS_PASS_EMISSION);
 }
 
 void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent& event) {
-  seeks_non_specular_ = seeks_non_specular_ && event.scatter_class != ScatterClass::Diffuse;
+  seeks_non_specular_ = seeks_non_specular_ && event.scatter_class != bsdf::ScatterClass::Diffuse;
   detail_components_ = vertex_components_ = 0;
   if (depth > 0 || !lights_) {
     return;
   }
-  const Closures& closures = vertex.shade.closures;
+  const bsdf::Closures& closures = vertex.shade.closures;
   if (event.sample.dirac) {
     share_ = whole(closures.lobe(event.sample.lobe).pass);
     return;
   }
-  std::array<Rgb, 3> parts = closures.evaluate_by_pass(event.scatter_class, vertex.wo, event.sample.wi, event.sample.transmitted);
+  std::array<Rgb, 3> parts =
+      closures.evaluate_by_pass(event.scatter_class, vertex.wo, event.sample.wi, event.sample.transmitted);
   for (int pass = 0; pass < 3 && event.by_kind; ++pass) {
-    if ((static_cast<LightPass>(pass) == LightPass::Diffuse) != event.sample.diffuse) parts[pass] = Rgb(0.0f);
+    if ((static_cast<bsdf::LightPass>(pass) == bsdf::LightPass::Diffuse) != event.sample.diffuse)
+      parts[pass] = Rgb(0.0f);
   }
   share_ = share_of(parts);
 }
 
-void PassRecorder::surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment) {
+void PassRecorder::surface(const Sampler& sampler, const PathState& state, const Vertex& vertex,
+                           const Segment& segment) {
   path_length_ += segment.length;
   if (state.depth == 0 && others_ && !adds_components_) {
     camera_surface(sampler, state.throughput, vertex);
@@ -165,7 +173,7 @@ void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, con
   if (1.0f - mean_component(vertex.shade.transparency) < context_.settings.alpha_threshold) {
     return;  // too thin for data passes
   }
-  const InstanceData& instance = context_.scene.instances[vertex.point.hit.instance];
+  const geometry::InstanceData& instance = context_.scene.instances[vertex.point.hit.instance];
   add(GRADUS_PASS_DEPTH, context_.camera.depth(vertex.point.position, vertex.point.hit.time));
   add(GRADUS_PASS_POSITION, vertex.point.position + context_.scene.origin);
   add(GRADUS_PASS_OBJECT_INDEX, static_cast<float>(instance.pass_index));
@@ -182,7 +190,7 @@ void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, con
 void PassRecorder::colors(const Rgb& weight, const Vertex& vertex) {
   for (int pass = 0; pass < 3 && lights_; ++pass) {
     if (plane(first_pass(pass) + 2) != nullptr) {
-      add(first_pass(pass) + 2, weight * vertex.shade.closures.albedo(static_cast<LightPass>(pass), vertex.wo));
+      add(first_pass(pass) + 2, weight * vertex.shade.closures.albedo(static_cast<bsdf::LightPass>(pass), vertex.wo));
     }
   }
 }
@@ -210,8 +218,8 @@ void PassRecorder::mist(const Rgb& weight, const Vec3& position, float time) {
   }
   const GradusWorld& world = context_.scene.world;
   const bool orthographic = context_.scene.camera.type == GRADUS_CAMERA_ORTHOGRAPHIC;
-  const float distance =
-      orthographic ? std::fabs(context_.camera.depth(position, time)) : glm::length(position - context_.camera.position(time));
+  const float distance = orthographic ? std::fabs(context_.camera.depth(position, time))
+                                      : glm::length(position - context_.camera.position(time));
   const float range = std::max(world.mist_depth, 1e-6f);
   float value = std::clamp((distance - world.mist_start) / range, 0.0f, 1.0f);
   if (world.mist_falloff == GRADUS_MIST_QUADRATIC) {
@@ -226,7 +234,8 @@ template <class Project>
 void PassRecorder::add_motion(const Project& project) {
   Vec2 now, previous, next;
   if (project(Moment::Now, &now) && project(Moment::Previous, &previous) && project(Moment::Next, &next)) {
-    add(GRADUS_PASS_VECTOR, Vec4(context_.camera.film_displacement(now, previous), context_.camera.film_displacement(next, now)));
+    add(GRADUS_PASS_VECTOR,
+        Vec4(context_.camera.film_displacement(now, previous), context_.camera.film_displacement(next, now)));
   }
 }
 
@@ -240,12 +249,12 @@ void PassRecorder::background_motion(const Vec3& direction) {
   add_motion([&](Moment moment, Vec2* film) { return context_.camera.project_direction(direction, moment, film); });
 }
 
-// Denoising features come from the first vertex that is not mostly a mirror or clear glass, as in Cycles, where what shines counts as an
-// albedo, too: lights and the sky, which have no closures, would else look like black.
+// Denoising features come from the first vertex that is not mostly a mirror or clear glass, as in Cycles, where what
+// shines counts as an albedo, too: lights and the sky, which have no closures, would else look like black.
 void PassRecorder::features(const PathState& state, const Vertex& vertex) {
-  const Closures& closures = vertex.shade.closures;
+  const bsdf::Closures& closures = vertex.shade.closures;
   add_albedo(state.throughput * vertex.shade.emission);
-  const bool mirror = !closures.empty() && closures.class_probability(ScatterClass::Diffuse) < 0.25f;
+  const bool mirror = !closures.empty() && closures.class_probability(bsdf::ScatterClass::Diffuse) < 0.25f;
   if (mirror && !state.emission_only) {
     return;
   }
@@ -257,12 +266,13 @@ void PassRecorder::features(const PathState& state, const Vertex& vertex) {
   add(GRADUS_PASS_DENOISING_DEPTH, path_length_);
 }
 
-// The first rough vertex of all paths that scatter here in class D; some of them may have been seen in a mirror on the way.
+// The first rough vertex of all paths that scatter here in class D; some of them may have been seen in a mirror on the
+// way.
 uint32_t PassRecorder::components_of_non_specular(const PathState& state, const Vertex& vertex) const {
-  if (!(vertex.shade.closures.class_probability(ScatterClass::Diffuse) > 0.0f)) {
+  if (!(vertex.shade.closures.class_probability(bsdf::ScatterClass::Diffuse) > 0.0f)) {
     return 0;
   }
-  return context_.components.ahead(context_.components.next(state.lpe_state, ScatterClass::Diffuse));
+  return context_.components.ahead(context_.components.next(state.lpe_state, bsdf::ScatterClass::Diffuse));
 }
 
 void PassRecorder::non_specular_vertex(const PathState& state, const Vertex& vertex) {
@@ -270,7 +280,8 @@ void PassRecorder::non_specular_vertex(const PathState& state, const Vertex& ver
   if (ahead == 0) {
     return;
   }
-  record(ahead, NonSpecularVertices{vertex.shade.closures.albedo(vertex.wo), shown_normal(vertex), inverse_of(path_length_), 1.0f});
+  record(ahead, film::NonSpecularVertices{vertex.shade.closures.albedo(vertex.wo), shown_normal(vertex),
+                                          inverse_of(path_length_), 1.0f});
 }
 
 // Of a surface that is rough, or that shines.
@@ -280,34 +291,35 @@ void PassRecorder::details(const PathState& state, const Vertex& vertex) {
   if (components == 0) {
     return;
   }
-  const Hit& hit = vertex.point.hit;
-  const InstanceData& instance = context_.scene.instances[hit.instance];
-  const auto object = static_cast<float>(instance.pass_index), face = static_cast<float>(instance.mesh->face(hit.triangle));
+  const geometry::Hit& hit = vertex.point.hit;
+  const geometry::InstanceData& instance = context_.scene.instances[hit.instance];
+  const auto object = static_cast<float>(instance.pass_index),
+             face = static_cast<float>(instance.mesh->face(hit.triangle));
   record(components, {uv_of(*instance.mesh, hit), vertex.shade.emission, 0.0f, object, face, number_});
 }
 
 // What a segment shows counts once, be it several lights and the surface behind them.
-void PassRecorder::record(uint32_t components, const NonSpecularDetails& here) {
+void PassRecorder::record(uint32_t components, const film::NonSpecularDetails& here) {
   for (size_t c = 0; c < components_->size(); ++c) {
     if ((components >> c & 1) == 0) continue;
-    NonSpecularDetails once = here;
+    film::NonSpecularDetails once = here;
     once.segments = (detail_components_ >> c & 1) == 0 ? 1.0f : 0.0f;
-    add_details(once, &(*components_)[c].details[pixel_], counters_);
+    film::add_details(once, &(*components_)[c].details[pixel_], counters_);
   }
   detail_components_ |= components;
 }
 
 // Likewise: it is as far as the first of these, and reflects no more than all light.
-void PassRecorder::record(uint32_t components, const NonSpecularVertices& here) {
+void PassRecorder::record(uint32_t components, const film::NonSpecularVertices& here) {
   for (size_t c = 0; c < components_->size(); ++c) {
     if ((components >> c & 1) == 0) continue;
     const bool is_first = (vertex_components_ >> c & 1) == 0;
     const Rgb before = is_first ? Rgb(0.0f) : recorded_reflectance_[c];
     recorded_reflectance_[c] = glm::clamp(before + here.reflectance, Rgb(0.0f), Rgb(1.0f));
-    NonSpecularVertices once = here;
+    film::NonSpecularVertices once = here;
     once.reflectance = recorded_reflectance_[c] - before;
     if (!is_first) once.inverse_depth = once.samples = 0.0f;
-    add_non_specular(once, &(*components_)[c].non_specular[half_][pixel_], counters_);
+    film::add_non_specular(once, &(*components_)[c].non_specular[half_][pixel_], counters_);
   }
   vertex_components_ |= components;
 }
@@ -316,7 +328,8 @@ void PassRecorder::record_emission(int component, const Rgb& light, float furthe
   if (!seeks_non_specular_ || !records_non_specular_ || is_black(light)) {
     return;
   }
-  record(uint32_t{1} << component, NonSpecularVertices{light, Vec3(0.0f), inverse_of(path_length_ + further), 1.0f});
+  record(uint32_t{1} << component,
+         film::NonSpecularVertices{light, Vec3(0.0f), inverse_of(path_length_ + further), 1.0f});
 }
 
 // A sample's albedo stays in [0, 1], as denoisers expect it.
@@ -326,4 +339,4 @@ void PassRecorder::add_albedo(const Rgb& value) {
   albedo_ = sum;
 }
 
-}  // namespace gradus
+}  // namespace gradus::path

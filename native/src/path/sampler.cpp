@@ -2,7 +2,7 @@
 
 #include "path/hash.h"
 
-namespace gradus {
+namespace gradus::path {
 
 namespace {
 
@@ -14,8 +14,8 @@ uint32_t reverse_bits(uint32_t x) {
   return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
 }
 
-// Owen scrambling by a hash in which bit i depends only on bits below it: Laine and Karras 2011, in the form of Burley 2020 ("Practical
-// Hash-based Owen Scrambling"), with Vegdahl's constants. Works on bit-reversed values.
+// Owen scrambling by a hash in which bit i depends only on bits below it: Laine and Karras 2011, in the form of Burley
+// 2020 ("Practical Hash-based Owen Scrambling"), with Vegdahl's constants. Works on bit-reversed values.
 uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -25,7 +25,8 @@ uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
   return x;
 }
 
-// Second Sobol dimension, bit-reversed: Pascal's matrix mod 2, which is a Kronecker power and so factors into log₂ 32 steps.
+// Second Sobol dimension, bit-reversed: Pascal's matrix mod 2, which is a Kronecker power and so factors into log₂ 32
+// steps.
 uint32_t pascal(uint32_t x) {
   x ^= (x >> 1) & 0x55555555u;
   x ^= (x >> 2) & 0x33333333u;
@@ -87,7 +88,8 @@ VertexSample Sampler::vertex(int depth) const {
     }
   }
   const auto at = [&](uint32_t block) { return Vec2(x[block], y[block]); };
-  return {at(dimension::kBsdf), at(dimension::kLobe), at(dimension::kLight), at(dimension::kLightChoice), at(dimension::kRoulette)};
+  return {at(dimension::kBsdf), at(dimension::kLobe), at(dimension::kLight), at(dimension::kLightChoice),
+          at(dimension::kRoulette)};
 }
 
-}  // namespace gradus
+}  // namespace gradus::path

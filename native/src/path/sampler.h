@@ -1,23 +1,26 @@
-// Random values as a pure function of their key (contract 1.1): Owen-scrambled Sobol points, scrambled and shuffled by hashes.
+// Random values as a pure function of their key (contract 1.1): Owen-scrambled Sobol points, scrambled and shuffled by
+// hashes.
 #pragma once
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::path {
 
 enum class StreamKind : uint32_t { Pixel = 0, Pilot = 1, LightPath = 2, Chain = 3, Disocclusion = 4, PixelBlock = 5 };
 
-// Film pixel and scene time are separate from the key on purpose: a temporal offset sample has another film pixel and time but the
-// stream of its base (contract 1.1).
+// Film pixel and scene time are separate from the key on purpose: a temporal offset sample has another film pixel and
+// time but the stream of its base (contract 1.1).
 struct SampleKey {
   uint32_t seed = 0;
   StreamKind kind = StreamKind::Pixel;
   uint32_t stream = 0;  // pixel streams: y·width + x of the full frame
   int32_t stream_frame = 0;
-  uint32_t index = 0;  // sample number; halves A and B are the even and odd numbers, scrambled independently (contract 1.2)
+  uint32_t index =
+      0;  // sample number; halves A and B are the even and odd numbers, scrambled independently (contract 1.2)
 };
 
-// Dimensions come in blocks, so that an integrator can count events instead of numbers and a shift can replay one event.
+// Dimensions come in blocks, so that an integrator can count events instead of numbers and a shift can replay one
+// event.
 namespace dimension {
 inline constexpr uint32_t kFilm = 0;  // 2-D
 inline constexpr uint32_t kLens = 1;  // 2-D
@@ -57,4 +60,4 @@ class Sampler {
   bool independent_ = false;
 };
 
-}  // namespace gradus
+}  // namespace gradus::path

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gradus {
+namespace gradus::path {
 
-bool choose_class(const Closures& closures, float u, ScatterClass* chosen) {
+bool choose_class(const bsdf::Closures& closures, float u, bsdf::ScatterClass* chosen) {
   float sum = 0.0f;
   bool found = false;
-  for (int c = 0; c < kScatterClasses; ++c) {
-    const float p = closures.class_probability(static_cast<ScatterClass>(c));
+  for (int c = 0; c < bsdf::kScatterClasses; ++c) {
+    const float p = closures.class_probability(static_cast<bsdf::ScatterClass>(c));
     if (p > 0.0f) {
-      *chosen = static_cast<ScatterClass>(c);
+      *chosen = static_cast<bsdf::ScatterClass>(c);
       found = true;
       sum += p;
       if (u < sum) {
@@ -26,24 +26,25 @@ namespace {
 
 // A limit of n bounces lets a path see what its n + 1st bounce hits emit, as next-event estimation at that vertex does.
 bool reaches_limit(const GradusSettings& settings, const PathState& state) {
-  const RayState& r = state.ray.state;
+  const shading::RayState& r = state.ray.state;
   return static_cast<uint32_t>(state.depth) > settings.max_bounces || r.diffuse_depth > settings.diffuse_bounces ||
          r.glossy_depth > settings.glossy_bounces || r.transmission_depth > settings.transmission_bounces;
 }
 
 }  // namespace
 
-uint32_t bounce_visibility(LightPass pass, bool transmitted) {
+uint32_t bounce_visibility(bsdf::LightPass pass, bool transmitted) {
   if (transmitted) {
     return GRADUS_VISIBLE_TRANSMISSION;
   }
-  return pass == LightPass::Diffuse ? GRADUS_VISIBLE_DIFFUSE : GRADUS_VISIBLE_GLOSSY;
+  return pass == bsdf::LightPass::Diffuse ? GRADUS_VISIBLE_DIFFUSE : GRADUS_VISIBLE_GLOSSY;
 }
 
 namespace {
 
-void advance(bool diffuse, bool transmitted, bool dirac, RayState* state) {
-  state->flags = (transmitted ? kRayTransmission : kRayReflection) | (diffuse ? kRayDiffuse : kRayGlossy) | (dirac ? kRaySingular : 0u);
+void advance(bool diffuse, bool transmitted, bool dirac, shading::RayState* state) {
+  state->flags = (transmitted ? shading::kRayTransmission : shading::kRayReflection) |
+                 (diffuse ? shading::kRayDiffuse : shading::kRayGlossy) | (dirac ? shading::kRaySingular : 0u);
   state->length = 0.0f;
   ++state->depth;
   ++(transmitted ? state->transmission_depth : diffuse ? state->diffuse_depth : state->glossy_depth);
@@ -51,20 +52,20 @@ void advance(bool diffuse, bool transmitted, bool dirac, RayState* state) {
 
 }  // namespace
 
-RayState next_ray_state(const RayState& before, bool diffuse, bool transmitted, bool dirac) {
-  RayState state = before;
+shading::RayState next_ray_state(const shading::RayState& before, bool diffuse, bool transmitted, bool dirac) {
+  shading::RayState state = before;
   advance(diffuse, transmitted, dirac, &state);
   return state;
 }
 
-void follow(const PathContext&, const SurfacePoint& from, const Vec3& direction, LightPass pass, bool transmitted, bool dirac,
-            PathRay* ray) {
-  ray->ray.origin = offset_origin(from, direction);
+void follow(const PathContext&, const geometry::SurfacePoint& from, const Vec3& direction, bsdf::LightPass pass,
+            bool transmitted, bool dirac, PathRay* ray) {
+  ray->ray.origin = geometry::offset_origin(from, direction);
   ray->ray.t_min = 0.0f;
   ray->ray.direction = direction;
   ray->ray.t_max = kInfinity;
   ray->visibility = bounce_visibility(pass, transmitted);
-  advance(pass == LightPass::Diffuse, transmitted, dirac, &ray->state);
+  advance(pass == bsdf::LightPass::Diffuse, transmitted, dirac, &ray->state);
 }
 
 float survive(const VertexSample& u, PathState* state) {
@@ -79,12 +80,13 @@ float survive(const VertexSample& u, PathState* state) {
   return probability;
 }
 
-bool scatter(const PathContext& context, const VertexSample& u, const Vertex& vertex, PathState* state, ScatterEvent* event) {
-  const Closures& closures = vertex.shade.closures;
+bool scatter(const PathContext& context, const VertexSample& u, const Vertex& vertex, PathState* state,
+             ScatterEvent* event) {
+  const bsdf::Closures& closures = vertex.shade.closures;
   if (closures.empty() || !choose_class(closures, u.lobe.x, &event->scatter_class)) {
     return false;
   }
-  BsdfSample& sample = event->sample;
+  bsdf::BsdfSample& sample = event->sample;
   if (!closures.sample(event->scatter_class, vertex.wo, u.lobe.y, u.bsdf, &sample)) {
     return false;
   }
@@ -94,14 +96,15 @@ bool scatter(const PathContext& context, const VertexSample& u, const Vertex& ve
   if (!(event->pdf > 0.0f) || is_black(value)) {
     return false;
   }
-  event->dirac_rank = sample.dirac ? dirac_rank(closures, event->scatter_class, sample.lobe) : 0;
+  event->dirac_rank = sample.dirac ? bsdf::dirac_rank(closures, event->scatter_class, sample.lobe) : 0;
   event->factor = value / (event->by_kind ? event->pdf * event->kind_share() : event->pdf);
   state->throughput *= event->factor;
   ++state->depth;
   state->lpe_state = context.components.next(state->lpe_state, event->scatter_class);
-  follow(context, vertex.point, sample.wi, closures.lobe(sample.lobe).pass, sample.transmitted, sample.dirac, &state->ray);
+  follow(context, vertex.point, sample.wi, closures.lobe(sample.lobe).pass, sample.transmitted, sample.dirac,
+         &state->ray);
   state->emission_only = reaches_limit(context.settings, *state);
   return true;
 }
 
-}  // namespace gradus
+}  // namespace gradus::path

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace gradus {
+namespace gradus::path {
 
 namespace {
 
@@ -10,9 +10,9 @@ namespace {
 constexpr uint32_t kDecisions = 1u << 20;
 constexpr uint32_t kDecisionsPerSegment = 1024;
 
-// Probability that the path goes straight on: by the transparency against what the surface itself has to show. An added emission or
-// scattering keeps a chance however transparent the surface.
-float pass_probability(const ShadeResult& shade) {
+// Probability that the path goes straight on: by the transparency against what the surface itself has to show. An added
+// emission or scattering keeps a chance however transparent the surface.
+float pass_probability(const shading::ShadeResult& shade) {
   const float through = mean_component(shade.transparency);
   if (!(through > 0.0f)) {
     return 0.0f;
@@ -34,35 +34,39 @@ void clear(Segment* segment) {
   segment->light_crossings.clear();
 }
 
-// Lights on a part of the segment. The ray is that of the whole segment: a light that faces its receiver faces the segment's start, not the
-// surface that the ray has just passed, as light sampling has it.
+// Lights on a part of the segment. The ray is that of the whole segment: a light that faces its receiver faces the
+// segment's start, not the surface that the ray has just passed, as light sampling has it.
 void see_lights(const PathContext& context, const Ray& whole, float begin, float end, Segment* segment) {
   if (!context.scene.features.has_lights_with_extent) {
     return;
   }
   const Ray part{whole.origin, std::max(whole.t_min, begin), whole.direction, end};
-  intersect_lights(context.scene, part, &segment->met);
-  for (const LightHit& hit : segment->met) {
-    segment->light_crossings.push_back({hit.point, hit.distance, segment->weight, segment->probability, segment->crossed});
+  light::intersect_lights(context.scene, part, &segment->met);
+  for (const light::LightHit& hit : segment->met) {
+    segment->light_crossings.push_back(
+        {hit.point, hit.distance, segment->weight, segment->probability, segment->crossed});
   }
 }
 
 // Decides at a surface; true: the path stops there.
 bool stops(const Sampler& sampler, int number, const Vertex& vertex, Segment* segment) {
   const float pass = pass_probability(vertex.shade);
-  const uint32_t block = kDecisions + static_cast<uint32_t>(number) * kDecisionsPerSegment + static_cast<uint32_t>(segment->crossed);
+  const uint32_t block =
+      kDecisions + static_cast<uint32_t>(number) * kDecisionsPerSegment + static_cast<uint32_t>(segment->crossed);
   const bool continues = pass >= 1.0f || (pass > 0.0f && sampler.get1(block) < pass);
   const float probability = continues ? pass : 1.0f - pass;
-  segment->weight = continues ? segment->weight * vertex.shade.transparency / probability : segment->weight / probability;
+  segment->weight =
+      continues ? segment->weight * vertex.shade.transparency / probability : segment->weight / probability;
   segment->probability *= probability;
   return !continues;
 }
 
 }  // namespace
 
-void shade_vertex(const PathContext& context, const RayState& ray, Vertex* vertex) {
+void shade_vertex(const PathContext& context, const shading::RayState& ray, Vertex* vertex) {
   if (!vertex->shade.complete) {
-    shade_surface(context.scene, vertex->point, vertex->wo, ray, context.settings.roughness_threshold, &vertex->shade);
+    shading::shade_surface(context.scene, vertex->point, vertex->wo, ray, context.settings.roughness_threshold,
+                           &vertex->shade);
   }
 }
 
@@ -74,9 +78,11 @@ bool trace_to_lights(const PathContext& context, const PathRay& ray, Segment* se
   }
   see_lights(context, ray.ray, ray.ray.t_min, ray.ray.t_max, segment);
   if (!segment->light_crossings.empty()) {
-    Hit hit;
+    geometry::Hit hit;
     segment->end = context.scene.intersect(ray.ray, ray.visibility, &hit) ? SegmentEnd::Exhausted : SegmentEnd::Escaped;
-    std::erase_if(segment->light_crossings, [&](const LightCrossing& light_crossing) { return hit.valid() && !(light_crossing.distance < hit.t); });
+    std::erase_if(segment->light_crossings, [&](const LightCrossing& light_crossing) {
+      return hit.valid() && !(light_crossing.distance < hit.t);
+    });
     return true;
   }
   if (!context.scene.features.world_emits) {
@@ -88,8 +94,8 @@ bool trace_to_lights(const PathContext& context, const PathRay& ray, Segment* se
   return true;
 }
 
-void trace_segment(const PathContext& context, const Sampler& sampler, int number, const Hit* first, PathRay* ray, Vertex* vertex,
-                   Segment* segment, Shading shading) {
+void trace_segment(const PathContext& context, const Sampler& sampler, int number, const geometry::Hit* first,
+                   PathRay* ray, Vertex* vertex, Segment* segment, Shading shading) {
   clear(segment);
   Ray part = ray->ray;
   float passed = 0.0f;
@@ -99,7 +105,7 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
     return;
   }
   for (;;) {
-    Hit hit;
+    geometry::Hit hit;
     if (first != nullptr) {
       hit = *first;
       first = nullptr;
@@ -112,7 +118,7 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
     }
     ray->state.length = segment->length = passed + hit.t;
     context.scene.place(hit, &vertex->point);
-    const auto shade = shading == Shading::Now ? shade_surface : shade_without_closures;
+    const auto shade = shading == Shading::Now ? shading::shade_surface : shading::shade_without_closures;
     shade(context.scene, vertex->point, vertex->wo, ray->state, context.settings.roughness_threshold, &vertex->shade);
     if (stops(sampler, number, *vertex, segment)) {
       segment->end = SegmentEnd::Surface;
@@ -124,29 +130,31 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
     }
     ++ray->state.transparent_depth;
     ++segment->crossed;
-    passed += pass_surface(vertex->point, &part);
+    passed += geometry::pass_surface(vertex->point, &part);
   }
 }
 
-Ray spawn_ray(const SurfacePoint& from, const Vec3& direction, float distance) {
-  return Ray{offset_origin(from, direction), 0.0f, direction, distance, from.hit.time};
+Ray spawn_ray(const geometry::SurfacePoint& from, const Vec3& direction, float distance) {
+  return Ray{geometry::offset_origin(from, direction), 0.0f, direction, distance, from.hit.time};
 }
 
-Ray spawn_ray_to(const SurfacePoint& from, const SurfacePoint& to) {
+Ray spawn_ray_to(const geometry::SurfacePoint& from, const geometry::SurfacePoint& to) {
   const Vec3 direction = glm::normalize(to.position - from.position);
-  return ray_between(offset_origin(from, direction), offset_origin(to, -direction), direction, from.hit.time);
+  return geometry::ray_between(geometry::offset_origin(from, direction), geometry::offset_origin(to, -direction),
+                               direction, from.hit.time);
 }
 
-Rgb segment_transmittance(const PathContext& context, const Ray& ray, const PathRay& kind, uint16_t* transparent_depth) {
+Rgb segment_transmittance(const PathContext& context, const Ray& ray, const PathRay& kind,
+                          uint16_t* transparent_depth) {
   if (!context.has_transparency && context.uniform_visibility) {
     return Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f);
   }
   Rgb transmittance(1.0f);
   Ray part = ray;
   float passed = 0.0f;
-  RayState state = kind.state;
+  shading::RayState state = kind.state;
   for (;;) {
-    Hit hit;
+    geometry::Hit hit;
     if (!context.scene.intersect(part, kind.visibility, &hit)) {
       return transmittance;
     }
@@ -154,17 +162,17 @@ Rgb segment_transmittance(const PathContext& context, const Ray& ray, const Path
       return Rgb(0.0f);
     }
     state.transparent_depth = (*transparent_depth)++;
-    const SurfacePoint point = context.scene.surface_point(hit);
+    const geometry::SurfacePoint point = context.scene.surface_point(hit);
     state.length = passed + hit.t;
-    transmittance *= shade_transparency(context.scene, point, -part.direction, state);
+    transmittance *= shading::shade_transparency(context.scene, point, -part.direction, state);
     if (is_black(transmittance)) {
       return Rgb(0.0f);
     }
-    passed += pass_surface(point, &part);
+    passed += geometry::pass_surface(point, &part);
     if (!(part.t_max > 0.0f)) {
       return transmittance;
     }
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::path

@@ -1,7 +1,7 @@
 // The path tracer: one base path, with an observer that may follow it by shifted paths.
 //
-// All arithmetic lies in functions that are compiled once (light, scatter, segment, contributions), so that the primal image has the same
-// bits whatever observer looks on.
+// All arithmetic lies in functions that are compiled once (light, scatter, segment, contributions), so that the primal
+// image has the same bits whatever observer looks on.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,10 @@
 #include "path/contribution.h"
 #include "path/pass_recorder.h"
 
-namespace gradus {
+namespace gradus::path {
 
-// Reused from sample to sample: closures are large. Of the vertices two are the ends of a segment, and one the observer may keep.
+// Reused from sample to sample: closures are large. Of the vertices two are the ends of a segment, and one the observer
+// may keep.
 struct PathScratch {
   Vertex vertices[3];
   Segment segment;
@@ -22,13 +23,14 @@ struct PathScratch {
 };
 
 struct PathResult {
-  std::array<Radiance, kMaxComponents> radiance;  // of each component of the context's set; w: alpha, if the film is transparent
+  std::array<Radiance, lpe::kMaxComponents>
+      radiance;  // of each component of the context's set; w: alpha, if the film is transparent
   bool fallback = false;
 };
 
 // Looks on and does nothing: plain path tracing.
 struct NoObserver {
-  void begin(const Sampler&, const CameraSample&) {}
+  void begin(const Sampler&, const camera::CameraSample&) {}
   void arrive(const RaySource&, const PathState&, const Segment&, const Vertex&) {}
   void light_crossing(const RaySource&, const Contribution&, const LightCrossing&) {}
   void passed(const Segment&) {}
@@ -37,7 +39,7 @@ struct NoObserver {
   void seen() {}  // all that the segment shows has been told
   void transparent(float) {}
   void survived(float, const Vertex&) {}
-  void light(const Vertex&, const LightSample&, ScatterClass, const Contribution&) {}
+  void light(const Vertex&, const LightSample&, bsdf::ScatterClass, const Contribution&) {}
   void scatter(const Vertex&, const VertexSample&, const ScatterEvent&) {}
   void absorbed(const Vertex&, const VertexSample&) {}
   const Vertex* retained() const { return nullptr; }  // that must not be overwritten yet
@@ -47,7 +49,8 @@ template <class Observer>
 class PathTracer {
  public:
   // recorder: nullptr where no pass looks on.
-  PathTracer(const PathContext& context, PathScratch* scratch, PassRecorder* recorder, Counters* counters, Observer* observer)
+  PathTracer(const PathContext& context, PathScratch* scratch, PassRecorder* recorder, film::Counters* counters,
+             Observer* observer)
       : context_(context),
         s_(*scratch),
         recorder_(recorder != nullptr && recorder->active() ? recorder : nullptr),
@@ -57,13 +60,13 @@ class PathTracer {
   // Bits of the components that count: a path that leads to none of them ends. Until it is said again.
   void want(uint32_t components) { wanted_ = components; }
 
-  // film: position on the full frame's film, filter offset included. first: what the ray through it meets, if that is known. The result
-  // stays until the next path.
+  // film: position on the full frame's film, filter offset included. first: what the ray through it meets, if that is
+  // known. The result stays until the next path.
   const PathResult& trace(const Sampler& sampler, const Vec2& film, CameraVertex* first = nullptr) {
     state_ = PathState{};
     start_result();
     alpha() = 1.0f;
-    const CameraSample sample = camera_sample(context_, sampler, film);
+    const camera::CameraSample sample = camera_sample(context_, sampler, film);
     observer_.begin(sampler, sample);
     ++counters_.rays_primary;
     Vertex* vertex = &s_.vertices[0];
@@ -84,8 +87,8 @@ class PathTracer {
     return result_;
   }
 
-  // What a path adds that stands at a vertex whose emission was seen. state: its segment's weight included. leaves: the vertex was lit,
-  // too.
+  // What a path adds that stands at a vertex whose emission was seen. state: its segment's weight included. leaves: the
+  // vertex was lit, too.
   const PathResult& continue_path(const Sampler& sampler, const PathState& state, Vertex* vertex, bool leaves) {
     start_result();
     state_ = state;
@@ -127,10 +130,11 @@ class PathTracer {
 
   // Of light that is found from here, one scattering further.
   bool is_light_wanted(const PathState& here) const {
-    if (wanted_ == kEveryComponent) return true;
-    const ComponentSet& set = context_.components;
-    for (int k = 0; k < kScatterClasses; ++k) {
-      if ((wanted_ >> set.component(set.next(here.lpe_state, static_cast<ScatterClass>(k))) & 1) != 0) return true;
+    if (wanted_ == lpe::kEveryComponent) return true;
+    const lpe::ComponentSet& set = context_.components;
+    for (int k = 0; k < bsdf::kScatterClasses; ++k) {
+      if ((wanted_ >> set.component(set.next(here.lpe_state, static_cast<bsdf::ScatterClass>(k))) & 1) != 0)
+        return true;
     }
     return false;
   }
@@ -139,8 +143,9 @@ class PathTracer {
   bool records() const { return recorder_ != nullptr && recorder_->needs_closures(state_.depth); }
 
   // The next segment. first: its nearest hit if it is known.
-  void extend(const Sampler& sampler, const Hit* first, Vertex* vertex) {
-    trace_segment(context_, sampler, state_.depth, first, &state_.ray, vertex, &s_.segment, records() ? Shading::Now : Shading::Later);
+  void extend(const Sampler& sampler, const geometry::Hit* first, Vertex* vertex) {
+    trace_segment(context_, sampler, state_.depth, first, &state_.ray, vertex, &s_.segment,
+                  records() ? Shading::Now : Shading::Later);
   }
 
   // What a segment shows, and scattering at its end. False: the path has ended.
@@ -226,7 +231,7 @@ class PathTracer {
   }
 
   // That of the film: no more than one component has it, so that they add up.
-  float& alpha() { return result_.radiance[size_t(context_.components.component(LpeState{0}))].w; }
+  float& alpha() { return result_.radiance[size_t(context_.components.component(lpe::LpeState{0}))].w; }
 
   // Its light goes to passes, too.
   bool records(const Contribution& c) const { return recorder_ != nullptr && (wanted_ >> c.component & 1) != 0; }
@@ -236,7 +241,9 @@ class PathTracer {
   void add_analytic_lights(const RaySource& source) {
     for (const LightCrossing& light_crossing : segment_->light_crossings) {
       const Contribution c = light_hit_contribution(context_, source, state_, light_crossing);
-      if (recorder_ != nullptr) recorder_->record_light(state_.throughput * light_crossing.weight, c.component, c.light, light_crossing.distance);
+      if (recorder_ != nullptr)
+        recorder_->record_light(state_.throughput * light_crossing.weight, c.component, c.light,
+                                light_crossing.distance);
       if (!is_black(c.clamped)) {
         add(c);
         if (records(c)) recorder_->emission(state_.depth, c.clamped);
@@ -247,7 +254,8 @@ class PathTracer {
 
   void add_world(const RaySource& source) {
     if (recorder_ != nullptr) recorder_->escaped(state_);
-    if (state_.depth == 0 && context_.settings.film_transparent != 0) add_transparent(mean_component(state_.throughput));
+    if (state_.depth == 0 && context_.settings.film_transparent != 0)
+      add_transparent(mean_component(state_.throughput));
     const Contribution c = world_contribution(context_, source, state_);
     if (recorder_ != nullptr) recorder_->record_light(state_.throughput, c.component, c.light, kInfinity);
     if (!is_black(c.clamped)) {
@@ -286,17 +294,20 @@ class PathTracer {
 
   // here: the state with which the path arrived.
   void add_light(const PathState& here, const VertexSample& u, const Vertex& vertex) {
-    LitClass lit[kScatterClasses];
-    if (!sample_light(context_, u, vertex, here.depth, &s_.light) || !light_classes(context_, vertex, s_.light, here.ray.state, lit)) {
+    LitClass lit[bsdf::kScatterClasses];
+    if (!sample_light(context_, u, vertex, here.depth, &s_.light) ||
+        !light_classes(context_, vertex, s_.light, here.ray.state, lit)) {
       return;
     }
     ++counters_.rays_shadow;
-    const Rgb through = light_transmittance(context_, vertex.point, s_.light.point, s_.light.view, here.ray.state.transparent_depth);
-    for (int k = 0; k < kScatterClasses && !is_black(through); ++k) {
-      const Contribution c = light_contribution(context_, here, s_.light, static_cast<ScatterClass>(k), lit[k], through);
+    const Rgb through =
+        light_transmittance(context_, vertex.point, s_.light.point, s_.light.view, here.ray.state.transparent_depth);
+    for (int k = 0; k < bsdf::kScatterClasses && !is_black(through); ++k) {
+      const Contribution c =
+          light_contribution(context_, here, s_.light, static_cast<bsdf::ScatterClass>(k), lit[k], through);
       if (!is_black(c.clamped)) {
         add(c);
-        const auto scatter_class = static_cast<ScatterClass>(k);
+        const auto scatter_class = static_cast<bsdf::ScatterClass>(k);
         if (records(c)) recorder_->light(here, vertex, scatter_class, s_.light, c.clamped);
         observer_.light(vertex, s_.light, scatter_class, c);
       }
@@ -306,13 +317,13 @@ class PathTracer {
   const PathContext& context_;
   PathScratch& s_;
   PassRecorder* recorder_;
-  Counters& counters_;
+  film::Counters& counters_;
   Observer& observer_;
-  uint32_t wanted_ = kEveryComponent;
+  uint32_t wanted_ = lpe::kEveryComponent;
   PathState state_;
-  Hit next_hit_;                      // of the ray that leaves the vertex
+  geometry::Hit next_hit_;            // of the ray that leaves the vertex
   const Segment* segment_ = nullptr;  // the path's last
   PathResult result_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::path

@@ -4,7 +4,7 @@
 
 #include "base/rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Means of the values within `radius` of each, of those that there are. Fields have zeros around.
@@ -13,7 +13,8 @@ void mean_along(const float* from, int length, int radius, float* to) {
   for (int d = 1; d <= radius; ++d) {
     for (int x = 0; x < length; ++x) to[x] += from[x - d] + from[x + d];
   }
-  for (int x = 0; x < length; ++x) to[x] /= static_cast<float>(std::min(length, x + radius + 1) - std::max(0, x - radius));
+  for (int x = 0; x < length; ++x)
+    to[x] /= static_cast<float>(std::min(length, x + radius + 1) - std::max(0, x - radius));
 }
 
 }  // namespace
@@ -38,4 +39,4 @@ Field box_mean(const Field& image, int radius) {
   return result;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

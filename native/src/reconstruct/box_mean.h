@@ -3,10 +3,10 @@
 
 #include "reconstruct/field.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
-// Mean over (2·radius + 1)² pixels, each channel by itself. Every sum is taken anew: sums that slide would keep the rounding of what was
-// bright in the shade beside it. radius: no more than the 8 pixels of zeros around a field.
+// Mean over (2·radius + 1)² pixels, each channel by itself. Every sum is taken anew: sums that slide would keep the
+// rounding of what was bright in the shade beside it. radius: no more than the 8 pixels of zeros around a field.
 Field box_mean(const Field& image, int radius);
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -8,7 +8,7 @@
 #include "reconstruct/channel_sums.h"
 #include "reconstruct/conjugate_gradient.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // Sums of products of vectors.
 struct CgStart {
@@ -25,9 +25,11 @@ struct CgProducts {
 //   Sums direct(const Sums& factor)   p = z + factor p; p·Ap
 //   Sums advance(const Sums& step)    x += step p, r −= step A p; r·r
 //   int width()                       of an image.
-// divergence: errors fall, but not from step to step. Beyond this factor single precision has been lost, and what follows is worse.
+// divergence: errors fall, but not from step to step. Beyond this factor single precision has been lost, and what
+// follows is worse.
 template <class Steps>
-CgReport run_conjugate_gradient(Steps steps, const CgGoal& goal, float divergence, int max_steps, const CancelCheck& cancel) {
+CgReport run_conjugate_gradient(Steps steps, const CgGoal& goal, float divergence, int max_steps,
+                                const CancelCheck& cancel) {
   const auto [bb, rr] = steps.start();
   CgReport report;
   report.residual = worst(rr, bb);
@@ -48,4 +50,4 @@ CgReport run_conjugate_gradient(Steps steps, const CgGoal& goal, float divergenc
   return report;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

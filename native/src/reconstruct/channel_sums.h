@@ -1,4 +1,5 @@
-// What conjugate gradients make of sums per channel: all channels are solved side by side, each with its own step sizes.
+// What conjugate gradients make of sums per channel: all channels are solved side by side, each with its own step
+// sizes.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 
 #include "base/rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // a / b; 0 for a channel that is solved, which stands still.
 inline Sums quotient(const Sums& a, const Sums& b) {
@@ -22,4 +23,4 @@ inline float worst(const Sums& rr, const Sums& bb) {
   return static_cast<float>(std::sqrt(result));
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -2,7 +2,7 @@
 
 #include "reconstruct/cg_loop.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Rows at a time: direct() makes two rows around each piece once more.
@@ -105,9 +105,10 @@ struct Steps {
 
 }  // namespace
 
-CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, const CgGoal& goal, int max_steps,
-                            const CancelCheck& cancel) {
-  return run_conjugate_gradient(Steps{preconditioner, preconditioner->matrix(), b, x, *fields}, goal, kDivergence, max_steps, cancel);
+CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, const CgGoal& goal,
+                            int max_steps, const CancelCheck& cancel) {
+  return run_conjugate_gradient(Steps{preconditioner, preconditioner->matrix(), b, x, *fields}, goal, kDivergence,
+                                max_steps, cancel);
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

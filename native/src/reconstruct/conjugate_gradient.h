@@ -4,7 +4,7 @@
 #include "reconstruct/multigrid.h"
 #include "reconstruct/solver.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 struct CgReport {
   int steps = 0;
@@ -13,8 +13,9 @@ struct CgReport {
   bool reached = false;
 };
 
-// When x is good enough: one of the two. The residual counts what is bright, whatever happens elsewhere. The row error counts errors by the
-// weights: √((x − x*)ᵀA(x − x*)/n) for the n pixels of the worst row of an image, so if weights are 1/variance, in deviations of the noise.
+// When x is good enough: one of the two. The residual counts what is bright, whatever happens elsewhere. The row error
+// counts errors by the weights: √((x − x*)ᵀA(x − x*)/n) for the n pixels of the worst row of an image, so if weights
+// are 1/variance, in deviations of the noise.
 struct CgGoal {
   float residual = 0.0f;
   float row_error = 0.0f;
@@ -27,7 +28,7 @@ struct CgFields {
 };
 
 // Improves x until the goal is reached or `max_steps` are done. Floats with sums in double.
-CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, const CgGoal& goal, int max_steps,
-                            const CancelCheck& cancel);
+CgReport conjugate_gradient(Multigrid* preconditioner, const Field& b, Field* x, CgFields* fields, const CgGoal& goal,
+                            int max_steps, const CancelCheck& cancel);
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -7,7 +7,7 @@
 #include <new>
 #include <numbers>
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // FFTW's planner is not thread-safe; executing plans is.
@@ -117,4 +117,4 @@ void Dct::filter(const float* gain_a, const float* gain_b, double sum_a, Scratch
   fftwf_execute_dft(backward_, fftw(scratch->frequency), fftw(scratch->time));
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -1,4 +1,5 @@
-// Discrete cosine transforms of pairs of real rows: two rows are the real and imaginary part of one complex Fourier transform.
+// Discrete cosine transforms of pairs of real rows: two rows are the real and imaginary part of one complex Fourier
+// transform.
 #pragma once
 
 #include <complex>
@@ -8,7 +9,7 @@
 
 struct fftwf_plan_s;
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 struct FftwFree {
   void operator()(void* p) const;
@@ -16,8 +17,9 @@ struct FftwFree {
 // Memory as FFTW wants it for its vector code.
 using FftBuffer = std::unique_ptr<std::complex<float>[], FftwFree>;
 
-// X[k] = 2 Σ x[n] cos(π (2n+1) k / 2N) and its inverse without the factor 1/N, both in place (DCT-II and -III; Makhoul 1980, "A fast
-// cosine transform in one and two dimensions": the even samples, then the odd ones backwards, by one Fourier transform of the same length).
+// X[k] = 2 Σ x[n] cos(π (2n+1) k / 2N) and its inverse without the factor 1/N, both in place (DCT-II and -III; Makhoul
+// 1980, "A fast cosine transform in one and two dimensions": the even samples, then the odd ones backwards, by one
+// Fourier transform of the same length).
 class Dct {
  public:
   // Scratch of one thread.
@@ -38,8 +40,8 @@ class Dct {
 
   // Where x[i] of a pair lies in scratch->time.
   int place(int i) const { return i % 2 == 0 ? i / 2 : length_ - 1 - i / 2; }
-  // Forth, times gain_a[k] and gain_b[k], and back, of what lies in scratch->time. sum_a: Σx of a where it is known better than by sums of
-  // floats, or kUnknownSum.
+  // Forth, times gain_a[k] and gain_b[k], and back, of what lies in scratch->time. sum_a: Σx of a where it is known
+  // better than by sums of floats, or kUnknownSum.
   static constexpr double kUnknownSum = std::numeric_limits<double>::quiet_NaN();
   void filter(const float* gain_a, const float* gain_b, double sum_a, Scratch* scratch) const;
 
@@ -50,4 +52,4 @@ class Dct {
   fftwf_plan_s* backward_ = nullptr;
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -5,12 +5,12 @@
 
 #include "base/rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 constexpr double kMinErrorShare = 0.25;
-// Windows' Gaussian curves, in pixels: those of 0.7 to 6 under which true errors are likeliest over twelve scenes (docs/method.md). Where
-// two estimates are subtracted it takes more pixels to know the difference.
+// Windows' Gaussian curves, in pixels: those of 0.7 to 6 under which true errors are likeliest over twelve scenes
+// (docs/method.md). Where two estimates are subtracted it takes more pixels to know the difference.
 constexpr double kSigma = 1.5, kSigmaOfDifference = 2.0;
 // Sums of a few of these are finite.
 constexpr double kLargest = 1e37;
@@ -38,7 +38,8 @@ class Window {
   // Means of what the window covers of the image.
   void blur(Plane* plane, int width, int height) const {
     Plane between(plane->size());
-    for_rows(height, [&](int y) { blur_row(plane->data() + size_t(y) * width, width, between.data() + size_t(y) * width); });
+    for_rows(height,
+             [&](int y) { blur_row(plane->data() + size_t(y) * width, width, between.data() + size_t(y) * width); });
     for_rows(height, [&](int y) { blur_column(between.data(), width, height, y, plane->data() + size_t(y) * width); });
   }
 
@@ -58,7 +59,8 @@ class Window {
   void blur_column(const float* from, int width, int height, int y, float* to) const {
     std::fill_n(to, width, 0.0f);
     float weights = 0.0f;
-    for (int j = std::max(y - radius_, 0); j <= std::min(y + radius_, height - 1); ++j) weights += weights_[size_t(std::abs(j - y))];
+    for (int j = std::max(y - radius_, 0); j <= std::min(y + radius_, height - 1); ++j)
+      weights += weights_[size_t(std::abs(j - y))];
     for (int j = std::max(y - radius_, 0); j <= std::min(y + radius_, height - 1); ++j) {
       const float weight = weights_[size_t(std::abs(j - y))] / weights, *row = from + size_t(j) * width;
       for (int x = 0; x < width; ++x) to[x] += weight * row[x];
@@ -71,9 +73,9 @@ class Window {
 
 }  // namespace
 
-ErrorTerms error_terms(const Film& film, int component, uint32_t reconstruction, float alpha, const std::vector<float>& image,
-                       const CancelCheck& cancel) {
-  GradientImages differences = read_half_differences(film, component);
+ErrorTerms error_terms(const film::Film& film, int component, uint32_t reconstruction, float alpha,
+                       const std::vector<float>& image, const CancelCheck& cancel) {
+  film::GradientImages differences = film::read_half_differences(film, component);
   if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return {std::move(differences.primal), {}};
   SolveReport report;
   ErrorTerms terms{reconstruct(differences, GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report), {}};
@@ -101,4 +103,4 @@ double mean_square(const float* pixel) {
   return (double(pixel[0]) * pixel[0] + double(pixel[1]) * pixel[1] + double(pixel[2]) * pixel[2]) / 3.0;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

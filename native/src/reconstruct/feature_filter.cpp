@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/rows.h"
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field.h"
-#include "base/rows.h"
 #include "reconstruct/solver_planes.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Patches are of 3×3 pixels, and variances are means over as many.
@@ -39,10 +39,12 @@ struct Part {
   int height() const { return y1 - y0; }
 };
 
-Field load(const std::vector<float>& values, int image_width, const Part& part, int channels, float minimum, float maximum) {
+Field load(const std::vector<float>& values, int image_width, const Part& part, int channels, float minimum,
+           float maximum) {
   Field field(part.width(), part.height(), channels);
   for (int y = 0; y < part.height(); ++y) {
-    const float* from = values.data() + (size_t(part.y0 + y) * size_t(image_width) + size_t(part.x0)) * size_t(channels);
+    const float* from =
+        values.data() + (size_t(part.y0 + y) * size_t(image_width) + size_t(part.x0)) * size_t(channels);
     for (int c = 0; c < channels; ++c) {
       float* to = field.row(y, c);
       for (int x = 0; x < part.width(); ++x) {
@@ -66,8 +68,8 @@ float typical(const std::vector<float>& values) {
 // The first column that has a neighbour there.
 int first_column(Neighbour offset) { return std::max(0, -offset.x); }
 
-// By how much the squared difference of p and p + offset exceeds what noise explains, in variances, mean over the channels: of those pairs
-// that there are, the first one at the lower left.
+// By how much the squared difference of p and p + offset exceeds what noise explains, in variances, mean over the
+// channels: of those pairs that there are, the first one at the lower left.
 Field distances(const Field& values, const Field& variance, Neighbour offset, float negligible) {
   const int channels = values.channels(), begin = first_column(offset);
   const float share = 1.0f / static_cast<float>(channels);
@@ -100,7 +102,8 @@ void gather(const Field& values, const Field& distance, Neighbour offset, Field*
       const int other = y + sign * offset.y;
       if (other < 0 || other >= h) continue;
       const int step = sign * offset.x, begin = std::max(0, -step), end = std::min(w, w - step);
-      const float* d = sign > 0 ? distance.row(y) - first_column(offset) : distance.row(other) + step - first_column(offset);
+      const float* d =
+          sign > 0 ? distance.row(y) - first_column(offset) : distance.row(other) + step - first_column(offset);
       for (int x = begin; x < end; ++x) {
         const float weight = weight_of(d[x]);
         weights->row(y)[x] += weight;
@@ -111,7 +114,8 @@ void gather(const Field& values, const Field& distance, Neighbour offset, Field*
 }
 
 // What a tile needs of the pixels around it, and writes of its own.
-void filter_tile(const FeatureImage& image, int width, int height, const Part& tile, float negligible, std::vector<float>* result) {
+void filter_tile(const film::FeatureImage& image, int width, int height, const Part& tile, float negligible,
+                 std::vector<float>* result) {
   const Part all{std::max(0, tile.x0 - kReach), std::max(0, tile.y0 - kReach), std::min(width, tile.x1 + kReach),
                  std::min(height, tile.y1 + kReach)};
   const int channels = int(image.channels);
@@ -134,14 +138,15 @@ void filter_tile(const FeatureImage& image, int width, int height, const Part& t
 
 }  // namespace
 
-FeatureImage filter_feature(FeatureImage image, int width, int height) {
+film::FeatureImage filter_feature(film::FeatureImage image, int width, int height) {
   const float unit = kNegligible * typical(image.values), negligible = std::max(kMin, unit * unit);
   std::vector<float> result(image.values.size());
   for_rows((height + kTileHeight - 1) / kTileHeight,
            [&](int j) {
              const int y = j * kTileHeight;
              for (int x = 0; x < width; x += kTileWidth) {
-               filter_tile(image, width, height, {x, y, std::min(width, x + kTileWidth), std::min(height, y + kTileHeight)}, negligible,
+               filter_tile(image, width, height,
+                           {x, y, std::min(width, x + kTileWidth), std::min(height, y + kTileHeight)}, negligible,
                            &result);
              }
            },
@@ -150,11 +155,11 @@ FeatureImage filter_feature(FeatureImage image, int width, int height) {
   return image;
 }
 
-Features filter_features(Features features) {
-  for (FeatureImage* image : {&features.normal, &features.albedo, &features.depth}) {
+film::Features filter_features(film::Features features) {
+  for (film::FeatureImage* image : {&features.normal, &features.albedo, &features.depth}) {
     *image = filter_feature(std::move(*image), features.width, features.height);
   }
   return features;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -6,29 +6,32 @@
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
-#include "reconstruct/restore_sampled_light.h"
 #include "reconstruct/local_light.h"
 #include "reconstruct/regression_error.h"
+#include "reconstruct/restore_sampled_light.h"
 #include "reconstruct/solver_planes.h"
 #include "reconstruct/twicing.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Figures of this file: docs/method.md, "Regression on features".
-const RegressionSettings kFine{.octaves = {{.side = 2, .small = true}}, .lattices = 2, .coordinates = true, .ridge = 3e-4f, .floor = 1e-6f};
-const RegressionSettings kCoarse{.octaves = {{.side = 4}, {.side = 8}}, .coordinates = true, .ridge = 3e-4f, .floor = 1e-6f};
+const RegressionSettings kFine{
+    .octaves = {{.side = 2, .small = true}}, .lattices = 2, .coordinates = true, .ridge = 3e-4f, .floor = 1e-6f};
+const RegressionSettings kCoarse{
+    .octaves = {{.side = 4}, {.side = 8}}, .coordinates = true, .ridge = 3e-4f, .floor = 1e-6f};
 const RegressionSettings kOfResidual{.octaves = {{.side = 8}}, .coordinates = false, .ridge = 1e-3f, .floor = 1e-6f};
 // Pixels' noise is taken from a window, but where a pixel's own is far larger, as of a firefly.
 constexpr int kNoiseRadius = 7;
 constexpr float kOwnShare = 0.3f;
 // Noise that is not told from none: a share of the light around, and one of the image's median luminance.
 constexpr float kShareOfLight = 0.02f, kShareOfMedian = 0.01f;
-// A pixel's own value counts by the noise around it and for this share, since the mean of windows is better than its parts; for less where
-// it stands out, and where noise is above a tenth of the light: there both halves may have met the same firefly, if the pixel is not darker
-// than what is around it. kMinVariance: of what shows none.
+// A pixel's own value counts by the noise around it and for this share, since the mean of windows is better than its
+// parts; for less where it stands out, and where noise is above a tenth of the light: there both halves may have met
+// the same firefly, if the pixel is not darker than what is around it. kMinVariance: of what shows none.
 constexpr float kOwnTrust = 0.3f, kVisible = 0.1f, kMinVariance = 1e-10f;
-// Noise goes with the root of the light, as of photons, down to this share of the noise around: below it pixels may be dark by chance.
+// Noise goes with the root of the light, as of photons, down to this share of the noise around: below it pixels may be
+// dark by chance.
 constexpr float kDarkByChance = 0.5f;
 // Light around a pixel, by which residuals are measured.
 constexpr int kLightRadius = 3;
@@ -57,10 +60,13 @@ Field weigh_in_windows(const Surroundings& of) {
   });
 }
 
-// What is to be expected of each pixel by its light, and no more than is around it. Noise is averaged over the root of the light, not light
-// and noise by themselves: a light, which has light and no noise, says nothing of the wall beside it.
+// What is to be expected of each pixel by its light, and no more than is around it. Noise is averaged over the root of
+// the light, not light and noise by themselves: a light, which has light and no noise, says nothing of the wall beside
+// it.
 Field expected_noise(const Surroundings& of) {
-  const auto root = [&](int x, int y) { return std::sqrt(std::max(of.own_light.row(y)[x], kDarkByChance * of.noise.row(y)[x])); };
+  const auto root = [&](int x, int y) {
+    return std::sqrt(std::max(of.own_light.row(y)[x], kDarkByChance * of.noise.row(y)[x]));
+  };
   const Field relative = box_mean(make_field(of.noise.width(), of.noise.height(),
                                              [&](int x, int y) {
                                                const float noise = of.own_noise.row(y)[x];
@@ -91,14 +97,15 @@ Field weigh_pixel(const Surroundings& of, bool is_light) {
 // Median of the depths that are there; 1 without any.
 float median_depth(const std::vector<float>& depths) {
   std::vector<float> there;
-  std::copy_if(depths.begin(), depths.end(), std::back_inserter(there), [](float d) { return is_finite(d) && d > 0.0f; });
+  std::copy_if(depths.begin(), depths.end(), std::back_inserter(there),
+               [](float d) { return is_finite(d) && d > 0.0f; });
   return median_or_one(&there);
 }
 
 float bounded(float value) { return is_finite(value) ? std::clamp(value, -1.0f, 1.0f) : 0.0f; }
 
 // Normal, albedo, and d/(d + median) of the depth, which does not depend on the scene's unit.
-Field basis_of(const Features& features) {
+Field basis_of(const film::Features& features) {
   const float median = median_depth(features.depth.values);
   Field basis(features.width, features.height, 7);
   for_values(&basis, [&](float& value, int x, int y, int c) {
@@ -111,7 +118,7 @@ Field basis_of(const Features& features) {
   return basis;
 }
 
-Field albedo_of(const Features& features) {
+Field albedo_of(const film::Features& features) {
   Field albedo(features.width, features.height, 3);
   for_values(&albedo, [&](float& value, int x, int y, int c) {
     value = bounded(features.albedo.values[3 * (size_t(y) * size_t(features.width) + size_t(x)) + size_t(c)]);
@@ -136,22 +143,24 @@ void scale_by(const Field& factors, Field* to) {
   for_values(to, [&](float& value, int x, int y, int) { value *= factors.row(y)[x]; });
 }
 
-// Share of each residual that lies within the bound of its square (reconstruct/twicing.h), relative to the light around it.
+// Share of each residual that lies within the bound of its square (reconstruct/twicing.h), relative to the light around
+// it.
 Field limit_outliers(const Field& residual, const Field& weights) {
   const int w = residual.width(), h = residual.height();
   Field share = make_field(w, h, [&](int x, int y) { return weights.row(y)[x] * mean_of_squares(residual, x, y); });
   for_rows((h + kBlockSide - 1) / kBlockSide,
            [&](int j) {
              for (int i = 0; i < (w + kBlockSide - 1) / kBlockSide; ++i) {
-               limit_block(i * kBlockSide, std::min(w, (i + 1) * kBlockSide), j * kBlockSide, std::min(h, (j + 1) * kBlockSide), &share);
+               limit_block(i * kBlockSide, std::min(w, (i + 1) * kBlockSide), j * kBlockSide,
+                           std::min(h, (j + 1) * kBlockSide), &share);
              }
            },
            1);
   return share;
 }
 
-// Share of small windows in their mean with large ones. The large ones' bias is what both differ by, less what noise makes them differ by;
-// with the small ones' noise almost all of that, the mean of least squared error is Wiener's.
+// Share of small windows in their mean with large ones. The large ones' bias is what both differ by, less what noise
+// makes them differ by; with the small ones' noise almost all of that, the mean of least squared error is Wiener's.
 Field share_of_fine(const RegressionResult& fine, const RegressionResult& coarse) {
   const int w = fine.mean.width(), h = fine.mean.height();
   const Field by_light = weigh_by_light(fine.mean, kShareLightRadius);
@@ -170,7 +179,9 @@ Field share_of_fine(const RegressionResult& fine, const RegressionResult& coarse
 
 // a and b become share · a + (1 − share) · b in a.
 void blend(const Field& share, const Field& b, Field* a) {
-  for_values(a, [&](float& value, int x, int y, int c) { value = b.row(y, c)[x] + share.row(y)[x] * (value - b.row(y, c)[x]); });
+  for_values(a, [&](float& value, int x, int y, int c) {
+    value = b.row(y, c)[x] + share.row(y)[x] * (value - b.row(y, c)[x]);
+  });
 }
 
 // The same of squared biases: large windows have that of the small ones and more.
@@ -191,7 +202,8 @@ Field weigh_residual(const Field& by_light, const Field& by_noise) {
 
 }  // namespace
 
-FeatureRegression::FeatureRegression(const Features& features, const HalvedImage& image, const CancelCheck& cancel) {
+FeatureRegression::FeatureRegression(const film::Features& features, const HalvedImage& image,
+                                     const CancelCheck& cancel) {
   std::shared_ptr<const Predictors> predictors;
   {
     const Surroundings surroundings = look_around(image);
@@ -217,15 +229,16 @@ FeatureRegression::FeatureRegression(const Features& features, const HalvedImage
   image_ = std::move(first.mean);
 }
 
-void FeatureRegression::add_residual(const Features& features, const HalvedImage& image, const Field& by_noise, RegressionResult* first,
-                                     const CancelCheck& cancel) {
+void FeatureRegression::add_residual(const film::Features& features, const HalvedImage& image, const Field& by_noise,
+                                     RegressionResult* first, const CancelCheck& cancel) {
   const Field by_light = weigh_by_light(first->mean, kLightRadius);
   Field residual = difference(image.mean, first->mean), of_noise = difference(image.half_difference, first->noise);
   residual_share_ = limit_outliers(residual, by_light);
   scale_by(residual_share_, &residual);
   scale_by(residual_share_, &of_noise);
-  of_residual_ = LocalRegression(std::make_shared<const Predictors>(Predictors{albedo_of(features), weigh_residual(by_light, by_noise)}),
-                                 {}, kOfResidual);
+  of_residual_ = LocalRegression(
+      std::make_shared<const Predictors>(Predictors{albedo_of(features), weigh_residual(by_light, by_noise)}), {},
+      kOfResidual);
   const RegressionResult second = of_residual_.estimate(residual, of_noise, cancel);
   add(second.mean, &first->mean);
   add(second.noise, &first->noise);
@@ -241,4 +254,4 @@ Field FeatureRegression::apply(const Field& values, const CancelCheck& cancel) c
   return result;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -1,12 +1,12 @@
-// Images of the iterative solver: rows of one channel after another ([y][channel][x]), so that weights are read once for all channels and
-// inner loops run over contiguous floats. A rim of zeros, some pixels left and right and the rows -1 and height, is there for stencils to
-// read.
+// Images of the iterative solver: rows of one channel after another ([y][channel][x]), so that weights are read once
+// for all channels and inner loops run over contiguous floats. A rim of zeros, some pixels left and right and the rows
+// -1 and height, is there for stencils to read.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 class Field {
  public:
@@ -25,11 +25,13 @@ class Field {
   const float* row(int y, int channel = 0) const { return values_.data() + first(y, channel); }
 
  private:
-  size_t first(int y, int channel) const { return kPad + stride_ * ((size_t(y) + 1) * size_t(channels_) + size_t(channel)); }
+  size_t first(int y, int channel) const {
+    return kPad + stride_ * ((size_t(y) + 1) * size_t(channels_) + size_t(channel));
+  }
   static constexpr size_t kPad = 8;
   int width_ = 0, height_ = 0, channels_ = 0;
   size_t stride_ = 0;
   std::vector<float> values_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "reconstruct/field.h"
 #include "base/rows.h"
+#include "reconstruct/field.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // function(value, x, y, channel), which may change the value.
 template <class Function>
@@ -65,7 +65,9 @@ inline Field channels_of(const Field& field, int first, int count) {
 inline Field join_channels(const Field& first, const Field& other) {
   const int before = first.channels();
   Field joined(first.width(), first.height(), before + other.channels());
-  for_values(&joined, [&](float& value, int x, int y, int c) { value = c < before ? first.row(y, c)[x] : other.row(y, c - before)[x]; });
+  for_values(&joined, [&](float& value, int x, int y, int c) {
+    value = c < before ? first.row(y, c)[x] : other.row(y, c - before)[x];
+  });
   return joined;
 }
 
@@ -77,4 +79,4 @@ Field make_field(int width, int height, const Function& function) {
   return field;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -4,10 +4,11 @@
 #include "reconstruct/minimise_by_noise.h"
 #include "reconstruct/reweigh.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
-// Errors of the regression are alike in pixels that lie close together, so it counts for less than as many independent pixels.
+// Errors of the regression are alike in pixels that lie close together, so it counts for less than as many independent
+// pixels.
 constexpr float kSharedError = 8.0f;
 // Of its differences nothing is, within windows.
 constexpr float kSharedDifference = 1.0f;
@@ -20,9 +21,12 @@ struct Step {
 };
 constexpr Step kRightwards{1, 0}, kUpwards{0, 1};
 
-bool has_next(const Field& field, Step step, int x, int y) { return x + step.x < field.width() && y + step.y < field.height(); }
+bool has_next(const Field& field, Step step, int x, int y) {
+  return x + step.x < field.width() && y + step.y < field.height();
+}
 
-// The regression's difference joins a sampled one, of which `weights` are: that becomes the weight of both. Returns its share.
+// The regression's difference joins a sampled one, of which `weights` are: that becomes the weight of both. Returns its
+// share.
 Field join_weights(const Field& error, Step step, Field* weights) {
   return make_field(error.width(), error.height(), [&](int x, int y) {
     if (!has_next(error, step, x, y)) return 0.0f;
@@ -34,7 +38,8 @@ Field join_weights(const Field& error, Step step, Field* weights) {
   });
 }
 
-// Mean of two estimates of a difference: the regression's takes the place of a sampled one that is absent. Alpha has no scale.
+// Mean of two estimates of a difference: the regression's takes the place of a sampled one that is absent. Alpha has no
+// scale.
 void blend_differences(const Field& image, const Field& share, Step step, float scale, Field* sampled) {
   for_values(sampled, [&](float& value, int x, int y, int c) {
     if (c < 3) value /= scale;
@@ -46,8 +51,9 @@ void blend_differences(const Field& image, const Field& share, Step step, float 
 
 }  // namespace
 
-FusedDifferences::FusedDifferences(const GradientImages& images, float scale, float unknown, const Field& regressed, const Field& error,
-                                   const CancelCheck& cancel, SolveReport* report)
+FusedDifferences::FusedDifferences(const film::GradientImages& images, float scale, float unknown,
+                                   const Field& regressed, const Field& error, const CancelCheck& cancel,
+                                   SolveReport* report)
     : scale_(scale), system_(images.width, images.height, images.channels), solution_(regressed) {
   for_values(&system_.data_weights(),
              [&](float& value, int x, int y, int) { value = 1.0f / (kSharedError * error.row(y)[x] + kMinError); });
@@ -66,13 +72,14 @@ FusedDifferences::FusedDifferences(const GradientImages& images, float scale, fl
   solve();
 }
 
-Field FusedDifferences::apply(const GradientImages& images, const Field& regressed, const CancelCheck& cancel, SolveReport* report) {
+Field FusedDifferences::apply(const film::GradientImages& images, const Field& regressed, const CancelCheck& cancel,
+                              SolveReport* report) {
   Field solution = regressed;
   solve_by_noise(blend(images, regressed), cancel, &system_, &solution, report);
   return solution;
 }
 
-SolverPlanes FusedDifferences::blend(const GradientImages& images, const Field& regressed) const {
+SolverPlanes FusedDifferences::blend(const film::GradientImages& images, const Field& regressed) const {
   SolverPlanes planes = load_planes(planes_of(images, 0), images.width, images.height, images.channels);
   blend_differences(regressed, share_x_, kRightwards, scale_, &planes.dx);
   blend_differences(regressed, share_y_, kUpwards, scale_, &planes.dy);
@@ -80,4 +87,4 @@ SolverPlanes FusedDifferences::blend(const GradientImages& images, const Field& 
   return planes;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -5,7 +5,7 @@
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Most that a pixel is taken for, in median luminances: its square and the sums of such have room in float.
@@ -37,4 +37,4 @@ void normalise(float scale, HalvedImage* image) {
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -4,7 +4,7 @@
 #include "film/film.h"
 #include "reconstruct/field_values.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // Three channels, in the scale of 1 for its median luminance once it is normalised.
 struct HalvedImage {
@@ -14,15 +14,15 @@ struct HalvedImage {
 };
 
 // Of a pixel's light.
-using HalfSums = std::array<Rgb, kHalves>;
+using HalfSums = std::array<Rgb, film::kHalves>;
 
-// Where a half has no samples nothing is known of the noise: its half difference is not finite. What differs from the pixels around stands
-// for it: too much where there is detail, and hardly too little elsewhere.
+// Where a half has no samples nothing is known of the noise: its half difference is not finite. What differs from the
+// pixels around stands for it: too much where there is detail, and hardly too little elsewhere.
 void guess_noise(HalvedImage* image);
 
 // From sums_at(pixel), by the samples that the frame has taken there; a mean that is not finite is 0.
 template <class SumsAt>
-HalvedImage read_halves(const Film& film, const SumsAt& sums_at) {
+HalvedImage read_halves(const film::Film& film, const SumsAt& sums_at) {
   const int w = film.region.width(), h = film.region.height();
   HalvedImage image{Field(w, h, 3), Field(w, h, 3)};
   for_rows(h, [&](int y) {
@@ -44,4 +44,4 @@ HalvedImage read_halves(const Film& film, const SumsAt& sums_at) {
 // Brings what was read into that scale, within bounds.
 void normalise(float scale, HalvedImage* image);
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -5,7 +5,7 @@
 
 #include "base/rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 float quotient(float a, float b) { return a * inverse_or_zero(b); }
@@ -49,7 +49,8 @@ Interpolation::Interpolation(int width, int height) : corner_{{{Field((width + 1
 void Interpolation::update(const Stencil& fine) {
   const int w = fine.width(), h = fine.height();
   if (from_left_.width() == 0) {
-    for (Field* edges : {&from_left_, &from_right_, &from_below_, &from_above_}) *edges = Field((w + 1) / 2, (h + 1) / 2, 1);
+    for (Field* edges : {&from_left_, &from_right_, &from_below_, &from_above_})
+      *edges = Field((w + 1) / 2, (h + 1) / 2, 1);
   }
   for_rows((h + 1) / 2, [&](int y) {
     const Row even(fine, 2 * y);
@@ -73,11 +74,16 @@ void Interpolation::update(const Stencil& fine) {
     const float *below = from_below_.row(y), *above = from_above_.row(y);
     for (int i = 0; i < w / 2; ++i) {
       const int x = 2 * i + 1;
-      const float west = odd.right[x - 1], east = odd.right[x], south = odd.down[x], north = odd.up[x], all = odd.diagonal[x];
-      corner_[0][0].row(y)[i] = quotient(Row::at(odd.down_left, x) + west * below[i] + south * from_left_.row(y)[i], all);
-      corner_[0][1].row(y)[i] = quotient(Row::at(odd.down_right, x) + east * below[i + 1] + south * from_right_.row(y)[i], all);
-      corner_[1][0].row(y)[i] = quotient(Row::at(odd.up_left, x) + west * above[i] + north * from_left_.row(y + 1)[i], all);
-      corner_[1][1].row(y)[i] = quotient(Row::at(odd.up_right, x) + east * above[i + 1] + north * from_right_.row(y + 1)[i], all);
+      const float west = odd.right[x - 1], east = odd.right[x], south = odd.down[x], north = odd.up[x],
+                  all = odd.diagonal[x];
+      corner_[0][0].row(y)[i] =
+          quotient(Row::at(odd.down_left, x) + west * below[i] + south * from_left_.row(y)[i], all);
+      corner_[0][1].row(y)[i] =
+          quotient(Row::at(odd.down_right, x) + east * below[i + 1] + south * from_right_.row(y)[i], all);
+      corner_[1][0].row(y)[i] =
+          quotient(Row::at(odd.up_left, x) + west * above[i] + north * from_left_.row(y + 1)[i], all);
+      corner_[1][1].row(y)[i] =
+          quotient(Row::at(odd.up_right, x) + east * above[i + 1] + north * from_right_.row(y + 1)[i], all);
     }
   });
 }
@@ -163,8 +169,10 @@ void Interpolation::interpolate_row(int y, const float* lower, const float* uppe
 
 void Interpolation::restrict_rows(int y, const float* below, const float* here, const float* above, float* out) const {
   const ptrdiff_t w = from_left_.width();
-  const float *left = from_left_.row(y), *right = from_right_.row(y), *up = from_below_.row(y), *down = from_above_.row(y - 1);
-  const float *c00 = corner_[0][0].row(y), *c01 = corner_[0][1].row(y), *c10 = corner_[1][0].row(y - 1), *c11 = corner_[1][1].row(y - 1);
+  const float *left = from_left_.row(y), *right = from_right_.row(y), *up = from_below_.row(y),
+              *down = from_above_.row(y - 1);
+  const float *c00 = corner_[0][0].row(y), *c01 = corner_[0][1].row(y), *c10 = corner_[1][0].row(y - 1),
+              *c11 = corner_[1][1].row(y - 1);
 #pragma GCC ivdep
   for (ptrdiff_t x = 0; x < w; ++x) {
     out[x] = here[2 * x] + left[x] * here[2 * x + 1] + right[x - 1] * here[2 * x - 1]            //
@@ -181,12 +189,15 @@ void Interpolation::add_to_red_row(int y, const float* lower, const float* upper
   }
   const float *c00 = corner_[0][0].row(y / 2), *c01 = corner_[0][1].row(y / 2), *c10 = corner_[1][0].row(y / 2),
               *c11 = corner_[1][1].row(y / 2);
-  for (ptrdiff_t x = 0; x < w; ++x) red[x] += c00[x] * lower[x] + c01[x] * lower[x + 1] + c10[x] * upper[x] + c11[x] * upper[x + 1];
+  for (ptrdiff_t x = 0; x < w; ++x)
+    red[x] += c00[x] * lower[x] + c01[x] * lower[x + 1] + c10[x] * upper[x] + c11[x] * upper[x + 1];
 }
 
-void Interpolation::restrict_red_rows(int y, const float* below, const float* here, const float* above, float* out) const {
+void Interpolation::restrict_red_rows(int y, const float* below, const float* here, const float* above,
+                                      float* out) const {
   const ptrdiff_t w = corner_[0][0].width();
-  const float *c00 = corner_[0][0].row(y), *c01 = corner_[0][1].row(y), *c10 = corner_[1][0].row(y - 1), *c11 = corner_[1][1].row(y - 1);
+  const float *c00 = corner_[0][0].row(y), *c01 = corner_[0][1].row(y), *c10 = corner_[1][0].row(y - 1),
+              *c11 = corner_[1][1].row(y - 1);
   for (ptrdiff_t x = 0; x < w; ++x) {
     out[x] = here[x] + c00[x] * above[x] + c01[x - 1] * above[x - 1] + c10[x] * below[x] + c11[x - 1] * below[x - 1];
   }
@@ -196,4 +207,4 @@ void Interpolation::keep_red() {
   for (Field* edges : {&from_left_, &from_right_, &from_below_, &from_above_}) *edges = Field();
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -1,22 +1,23 @@
-// Black-box multigrid's way from a grid to the one of every second pixel and back (Dendy 1982, "Black box multigrid"): interpolation by
-// the matrix itself, so that a value spreads along strong couplings and not across weak ones.
+// Black-box multigrid's way from a grid to the one of every second pixel and back (Dendy 1982, "Black box multigrid"):
+// interpolation by the matrix itself, so that a value spreads along strong couplings and not across weak ones.
 #pragma once
 
 #include <array>
 
 #include "reconstruct/stencil.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
-// Coarse pixel (X, Y) is fine pixel (2X, 2Y). Weights of the fine pixels to its right, above it and diagonally between, by coarse pixel.
+// Coarse pixel (X, Y) is fine pixel (2X, 2Y). Weights of the fine pixels to its right, above it and diagonally between,
+// by coarse pixel.
 class Interpolation {
  public:
   Interpolation() = default;
   // For a fine grid of this size.
   Interpolation(int width, int height);
 
-  // Weights from the fine matrix: a pixel takes the value that solves its own equation, where along an edge of the coarse grid the
-  // couplings across the edge are counted as if the value did not change across it.
+  // Weights from the fine matrix: a pixel takes the value that solves its own equation, where along an edge of the
+  // coarse grid the couplings across the edge are counted as if the value did not change across it.
   void update(const Stencil& fine);
   // coarse = Pᵀ A P
   void coarsen(const Stencil& fine, Stencil* coarse) const;
@@ -34,8 +35,8 @@ class Interpolation {
   void keep_red();
 
  private:
-  // Weights of coarse row y, from pixel x on, for the 3×3 fine pixels around each: columns of P. Row y - 1 of them is beyond the border
-  // for y = 0 and 0 there, as all beyond it is.
+  // Weights of coarse row y, from pixel x on, for the 3×3 fine pixels around each: columns of P. Row y - 1 of them is
+  // beyond the border for y = 0 and 0 there, as all beyond it is.
   struct Columns {
     const float* at[3][3];
   };
@@ -48,4 +49,4 @@ class Interpolation {
   std::array<std::array<Field, 2>, 2> corner_;  // of (2X + 1, 2Y + 1): [above][right]
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

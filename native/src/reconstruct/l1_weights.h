@@ -7,7 +7,7 @@
 #include "reconstruct/solver_planes.h"
 #include "reconstruct/stencil.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // 1/√(e² + floor²) from the sum over channels of a row's squared residual; 0 if that is not finite.
 struct RowNorm {
@@ -24,9 +24,10 @@ inline RowNorm row_norm(int channels, float scale, float floor) {
   return {1.0f / (static_cast<float>(channels) * scale * scale), floor * floor};
 }
 
-// Weights 1/√(e² + floor²) of every row of the system at x, e being the row's residual over the scale: the Huber floor keeps the systems
-// solvable, and less of it makes the result worse (measured). Rows that are not finite get weight 0.
+// Weights 1/√(e² + floor²) of every row of the system at x, e being the row's residual over the scale: the Huber floor
+// keeps the systems solvable, and less of it makes the result worse (measured). Rows that are not finite get weight 0.
 // The data rows' weights go to `data`, those of the differences to `matrix`'s right and up.
-void reweight(const SolverPlanes& planes, const Field& x, float alpha, float scale, float floor, Field* data, Stencil* matrix);
+void reweight(const SolverPlanes& planes, const Field& x, float alpha, float scale, float floor, Field* data,
+              Stencil* matrix);
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -1,4 +1,5 @@
-// L2: minimises α²‖x−I‖² + ‖Dx−g‖² (thesis eq. 5.13 with k = 2). Linear in its input, hence unbiased if the gradients are.
+// L2: minimises α²‖x−I‖² + ‖Dx−g‖² (thesis eq. 5.13 with k = 2). Linear in its input, hence unbiased if the gradients
+// are.
 #include "reconstruct/l2.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 #include "base/types.h"
 #include "reconstruct/poisson_dct.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // A value that is missing counts as none: one non-finite number would spread over the whole image.
@@ -23,12 +24,17 @@ constexpr float kRoom = 0x1p-24f;
 class L2 {
  public:
   L2(int width, int height, int channels, float alpha)
-      : dct_(width, height), channels_(size_t(channels)), row_size_(size_t(width) * channels_), data_weight_(alpha * alpha) {}
+      : dct_(width, height),
+        channels_(size_t(channels)),
+        row_size_(size_t(width) * channels_),
+        data_weight_(alpha * alpha) {}
 
   // As solve_l2().
   bool solve(const L2Rows& rows, const L2Take& take, float* work) const {
     std::vector<RightSideRow> done(static_cast<size_t>(dct_.height()));
-    const auto fill = [&](int y, float* row) { rows(y, [&](const L2Row& in) { done[size_t(y)] = fill_row(in, y, row); }); };
+    const auto fill = [&](int y, float* row) {
+      rows(y, [&](const L2Row& in) { done[size_t(y)] = fill_row(in, y, row); });
+    };
     const auto sum = [&](int channel) {
       double total = 0.0;
       for (const RightSideRow& row : done) total += row.sums[size_t(channel)];
@@ -85,7 +91,8 @@ class L2 {
 
 class L2Operator final : public LinearOperator {
  public:
-  L2Operator(int width, int height, float alpha) : l2_(width, height, 1, alpha), width_(size_t(width)), height_(size_t(height)) {}
+  L2Operator(int width, int height, float alpha)
+      : l2_(width, height, 1, alpha), width_(size_t(width)), height_(size_t(height)) {}
 
   void apply(const PoissonPlanes& planes, float* out) const override {
     const auto take = [&](int y, const float* row) {
@@ -122,12 +129,15 @@ L2Rows rows_of(const PoissonPlanes& planes, int width, int channels) {
   }
   return [planes, stride, width, channels](int y, const L2Use& use) {
     const auto row = [&](const float* plane, int at) { return compact_row(plane, stride, width, channels, at); };
-    const auto primal = row(planes.primal, y), dx = row(planes.dx, y), dy = row(planes.dy, y), below = row(planes.dy, std::max(y - 1, 0));
+    const auto primal = row(planes.primal, y), dx = row(planes.dx, y), dy = row(planes.dy, y),
+               below = row(planes.dy, std::max(y - 1, 0));
     use({primal.data(), dx.data(), dy.data(), below.data()});
   };
 }
 
-std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha) { return std::make_unique<L2Operator>(width, height, alpha); }
+std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha) {
+  return std::make_unique<L2Operator>(width, height, alpha);
+}
 
 bool solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows, const L2Take& take, float* work) {
   if (channels < 1 || channels > kMaxChannels) throw unsupported("an image has 1 to 4 channels");
@@ -147,4 +157,4 @@ std::optional<std::vector<float>> solve_l2(int width, int height, int channels, 
   return image;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -7,7 +7,7 @@
 
 #include "reconstruct/solver.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // One row of the planes, channels interleaved, and of dy the row below, which the first row has not.
 struct L2Row {
@@ -23,10 +23,10 @@ using L2Take = std::function<void(int y, const float* row)>;
 // Rows of the first channels of planes that are there.
 L2Rows rows_of(const PoissonPlanes& planes, int width, int channels);
 
-// All channels at once; each has the bits that make_l2() gives. work: width·height·channels floats; `take` may write its row y. False:
-// values are missing, which asks for weights; they counted as none.
+// All channels at once; each has the bits that make_l2() gives. work: width·height·channels floats; `take` may write
+// its row y. False: values are missing, which asks for weights; they counted as none.
 bool solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows, const L2Take& take, float* work);
 // The same as an image with interleaved channels; nothing where values are missing.
 std::optional<std::vector<float>> solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows);
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -5,7 +5,7 @@
 #include "base/rows.h"
 #include "reconstruct/weighted_least_squares.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 constexpr CgGoal kGoal{.residual = 1e-6f};
@@ -19,7 +19,8 @@ void weigh(const std::vector<float>& values, int channels, int width, int y, flo
 
 }  // namespace
 
-std::vector<float> solve_l2_with_gaps(const GradientImages& images, float alpha, const CancelCheck& cancel, SolveReport* report) {
+std::vector<float> solve_l2_with_gaps(const film::GradientImages& images, float alpha, const CancelCheck& cancel,
+                                      SolveReport* report) {
   const int w = images.width, h = images.height, channels = images.channels;
   WeightedLeastSquares system(w, h, channels);
   for_rows(h, [&](int y) {
@@ -35,4 +36,4 @@ std::vector<float> solve_l2_with_gaps(const GradientImages& images, float alpha,
   return interleave(x);
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

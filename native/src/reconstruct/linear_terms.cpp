@@ -5,7 +5,7 @@
 
 #include "base/rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 double light_of(const Field& field) {
@@ -31,4 +31,4 @@ size_t brightest(const std::vector<Field>& terms) {
   return size_t(std::max_element(light.begin(), light.end()) - light.begin());
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -6,14 +6,15 @@
 
 #include "reconstruct/field_values.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 void subtract(const Field& term, Field* from);
 // The part with most light; of several with as much the first.
 size_t brightest(const std::vector<Field>& terms);
 
-// Each part becomes what apply(part's number, part) makes of it, which is not asked about black ones. The brightest is what the others
-// leave of `whole`, what the operator makes of the sum: so parts add up whatever the rounding, and the dearest costs nothing.
+// Each part becomes what apply(part's number, part) makes of it, which is not asked about black ones. The brightest is
+// what the others leave of `whole`, what the operator makes of the sum: so parts add up whatever the rounding, and the
+// dearest costs nothing.
 template <class Apply>
 void apply_to_terms(const Field& whole, const Apply& apply, std::vector<Field>* terms) {
   const size_t remainder = brightest(*terms);
@@ -26,4 +27,4 @@ void apply_to_terms(const Field& whole, const Apply& apply, std::vector<Field>* 
   (*terms)[remainder] = std::move(left);
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -10,11 +10,11 @@
 #include "base/fpu.h"
 #include "reconstruct/regression_tile.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
-// Squares of a tile, with what windows reach beyond it whole vectors. Its sums are in the second cache; the taller, the less is done twice.
-// Parts of a picture are black in much of it, where small tiles are passed over.
+// Squares of a tile, with what windows reach beyond it whole vectors. Its sums are in the second cache; the taller, the
+// less is done twice. Parts of a picture are black in much of it, where small tiles are passed over.
 struct TileSize {
   int width, height;
 };
@@ -26,14 +26,16 @@ template <int P, int C, bool Coordinates, bool Estimates>
 void run_tiles(const RegressionTask& task, const OctaveTask<Estimates>& octave, const CancelCheck& cancel) {
   constexpr TileSize kTile = Estimates ? kOfEstimate : kOfApply;
   const int side = octave.octave.side;
-  const int w = ceil_divided(task.weights->width() + octave.shift, side), h = ceil_divided(task.weights->height() + octave.shift, side);
+  const int w = ceil_divided(task.weights->width() + octave.shift, side),
+            h = ceil_divided(task.weights->height() + octave.shift, side);
   tbb::parallel_for(tbb::blocked_range2d<int>(0, ceil_divided(h, kTile.height), 1, 0, ceil_divided(w, kTile.width), 1),
                     [&](const tbb::blocked_range2d<int>& range) {
                       const FlushDenormals flush;
                       for (int j = range.rows().begin(); j < range.rows().end(); ++j) {
                         for (int i = range.cols().begin(); i < range.cols().end() && !cancel(); ++i) {
-                          Tile<P, C, Coordinates, Estimates>(task, octave, i * kTile.width, std::min(w, (i + 1) * kTile.width),
-                                                             j * kTile.height, std::min(h, (j + 1) * kTile.height))
+                          Tile<P, C, Coordinates, Estimates>(task, octave, i * kTile.width,
+                                                             std::min(w, (i + 1) * kTile.width), j * kTile.height,
+                                                             std::min(h, (j + 1) * kTile.height))
                               .run();
                         }
                       }
@@ -48,12 +50,14 @@ void run_octaves(const RegressionTask& task, const Confidence& confidence, const
     Field coarse;
     for (size_t k = octaves.size(); k-- > 0;) {
       const int side = octaves[k].side;
-      const Field above =
-          std::exchange(coarse, k > 0 ? Field(ceil_divided(task.weights->width() + shift, side),
-                                              ceil_divided(task.weights->height() + shift, side), WindowEstimates<P, C, Coordinates>::kCount)
-                                      : Field());
-      run_tiles<P, C, Coordinates, Estimates>(
-          task, {octaves[k], shift, confidence(octaves.size() * size_t(shift) + k), or_null(above), k > 0 ? &coarse : nullptr}, cancel);
+      const Field above = std::exchange(coarse, k > 0 ? Field(ceil_divided(task.weights->width() + shift, side),
+                                                              ceil_divided(task.weights->height() + shift, side),
+                                                              WindowEstimates<P, C, Coordinates>::kCount)
+                                                      : Field());
+      run_tiles<P, C, Coordinates, Estimates>(task,
+                                              {octaves[k], shift, confidence(octaves.size() * size_t(shift) + k),
+                                               or_null(above), k > 0 ? &coarse : nullptr},
+                                              cancel);
     }
   }
 }
@@ -74,8 +78,8 @@ LocalRegression::LocalRegression(std::shared_ptr<const Predictors> predictors, F
   const int w = predictors_->weights.width(), h = predictors_->weights.height();
   for (int shift = 0; shift < settings_.lattices; ++shift) {
     for (const Octave& octave : settings_.octaves) {
-      confidence_.emplace_back(ceil_divided(w + shift, octave.side) + kReach, ceil_divided(h + shift, octave.side) + kReach,
-                               octave.small ? 2 : 1);
+      confidence_.emplace_back(ceil_divided(w + shift, octave.side) + kReach,
+                               ceil_divided(h + shift, octave.side) + kReach, octave.small ? 2 : 1);
     }
   }
 }
@@ -102,8 +106,9 @@ Field LocalRegression::apply(const Field& values, const CancelCheck& cancel) con
   const RegressionTask task{
       &predictors_->features, &predictors_->weights, or_null(own_), {&values}, {&result}, &totals, nullptr, &settings_};
   const auto confidence = [&](size_t i) { return &confidence_[i]; };
-  values.channels() == 1 ? run_features<1, false>(task, confidence, cancel) : run_features<3, false>(task, confidence, cancel);
+  values.channels() == 1 ? run_features<1, false>(task, confidence, cancel)
+                         : run_features<3, false>(task, confidence, cancel);
   return result;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -2,20 +2,21 @@
 
 #include <algorithm>
 
+#include "base/rows.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/noise_weights.h"
-#include "base/rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
-// No row of the image is off by more than a hundredth of its noise, root mean square: 5 to 12 steps. The residual says nothing: beside a
-// bright light it is small at once, and where weights span six decades it is that of the rows with little noise.
+// No row of the image is off by more than a hundredth of its noise, root mean square: 5 to 12 steps. The residual says
+// nothing: beside a bright light it is small at once, and where weights span six decades it is that of the rows with
+// little noise.
 constexpr CgGoal kGoal{.row_error = 1e-2f};
 constexpr int kMaxSteps = 60;
 
-void weigh_rows(const std::vector<float>& deviations, const std::vector<float>& values, const GradientImages& images, float scale,
-                float unknown, Field* weights) {
+void weigh_rows(const std::vector<float>& deviations, const std::vector<float>& values,
+                const film::GradientImages& images, float scale, float unknown, Field* weights) {
   const int w = images.width, stride = images.channels, shared = std::min(images.channels, 3);
   const NoiseWeights by_noise(deviations, w, images.height);
   for_rows(images.height, [&](int y) {
@@ -30,11 +31,11 @@ void weigh_rows(const std::vector<float>& deviations, const std::vector<float>& 
 
 }  // namespace
 
-void weigh_pixels_by_noise(const GradientImages& images, float scale, float unknown, Field* data) {
+void weigh_pixels_by_noise(const film::GradientImages& images, float scale, float unknown, Field* data) {
   weigh_rows(images.primal_deviation, images.primal, images, scale, unknown, data);
 }
 
-void weigh_differences_by_noise(const GradientImages& images, float scale, float unknown, Stencil* matrix) {
+void weigh_differences_by_noise(const film::GradientImages& images, float scale, float unknown, Stencil* matrix) {
   weigh_rows(images.dx_deviation, images.dx, images, scale, kUnknownAlpha * unknown, &matrix->right);
   weigh_rows(images.dy_deviation, images.dy, images, scale, kUnknownAlpha * unknown, &matrix->up);
 }
@@ -45,13 +46,14 @@ void limit_differences(const Field& data, Stencil* matrix) {
   }
 }
 
-void solve_by_noise(const SolverPlanes& planes, const CancelCheck& cancel, WeightedLeastSquares* system, Field* x, SolveReport* report) {
+void solve_by_noise(const SolverPlanes& planes, const CancelCheck& cancel, WeightedLeastSquares* system, Field* x,
+                    SolveReport* report) {
   const CgReport solve = system->solve(planes, kGoal, kMaxSteps, cancel, x);
   ++report->outer_steps;
   add_solve(solve, report);
 }
 
-Minimum minimise_by_noise(const GradientImages& images, const CancelCheck& cancel, SolveReport* report) {
+Minimum minimise_by_noise(const film::GradientImages& images, const CancelCheck& cancel, SolveReport* report) {
   const int channels = std::min(images.channels, 3);
   const PoissonPlanes interleaved = planes_of(images, 0);
   const SolverPlanes planes = load_planes(interleaved, images.width, images.height, channels);
@@ -66,4 +68,4 @@ Minimum minimise_by_noise(const GradientImages& images, const CancelCheck& cance
   return result;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

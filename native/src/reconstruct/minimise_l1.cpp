@@ -4,12 +4,12 @@
 
 #include "reconstruct/l1_weights.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
-// Outer steps lower the floor from the first to the last value. Six by 0.45 give the error against the truth that three by 0.2 give, to
-// 0.5 % (measured on twelve scenes at 4, 16 and 64 samples), two by 0.04 too, but outliers of 10⁴ then leave a trace; below about 1e-3 of
-// the image's scale it rises.
+// Outer steps lower the floor from the first to the last value. Six by 0.45 give the error against the truth that three
+// by 0.2 give, to 0.5 % (measured on twelve scenes at 4, 16 and 64 samples), two by 0.04 too, but outliers of 10⁴ then
+// leave a trace; below about 1e-3 of the image's scale it rises.
 constexpr float kFirstFloor = 0.05f;
 constexpr float kLastFloor = 2e-3f;
 constexpr float kFloorFactor = 0.2f;
@@ -23,7 +23,7 @@ constexpr int kMaxFinalSteps = 60;
 
 }  // namespace
 
-Minimum minimise_l1(const GradientImages& images, float alpha, const CancelCheck& cancel, SolveReport* report) {
+Minimum minimise_l1(const film::GradientImages& images, float alpha, const CancelCheck& cancel, SolveReport* report) {
   const int channels = std::min(images.channels, 3);
   const PoissonPlanes interleaved = planes_of(images, 0);
   const SolverPlanes planes = load_planes(interleaved, images.width, images.height, channels);
@@ -47,4 +47,4 @@ Minimum minimise_l1(const GradientImages& images, float alpha, const CancelCheck
   return result;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

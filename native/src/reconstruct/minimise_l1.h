@@ -1,11 +1,12 @@
-// Minimises Σ α‖x−I‖ + ‖Dx−g‖ with the norm of a pixel's RGB (thesis eq. 5.13 with k = 1) by iteratively reweighted least squares.
+// Minimises Σ α‖x−I‖ + ‖Dx−g‖ with the norm of a pixel's RGB (thesis eq. 5.13 with k = 1) by iteratively reweighted
+// least squares.
 #pragma once
 
 #include "reconstruct/weighted_least_squares.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // Estimates the weights from the first three channels of `images`, which share them, and freezes them.
-Minimum minimise_l1(const GradientImages& images, float alpha, const CancelCheck& cancel, SolveReport* report);
+Minimum minimise_l1(const film::GradientImages& images, float alpha, const CancelCheck& cancel, SolveReport* report);
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

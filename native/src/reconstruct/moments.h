@@ -1,7 +1,8 @@
-// Sums of products over squares of pixels, from which windows' normal equations are made, and how those of two squares side by side
-// become those of both. Planes in rows, eight squares to a vector.
+// Sums of products over squares of pixels, from which windows' normal equations are made, and how those of two squares
+// side by side become those of both. Planes in rows, eight squares to a vector.
 //
-// Coordinates count from the square's own centre: from anywhere else, floats would not hold the constant of a window with steep slopes.
+// Coordinates count from the square's own centre: from anywhere else, floats would not hold the constant of a window
+// with steep slopes.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +11,13 @@
 
 #include "reconstruct/window_solve.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // Planes of a row of squares.
 class Rows {
  public:
-  Rows(int count, int width) : width_((size_t(width) + kLanes - 1) / kLanes * kLanes), values_(width_ * size_t(count)) {}
+  Rows(int count, int width)
+      : width_((size_t(width) + kLanes - 1) / kLanes * kLanes), values_(width_ * size_t(count)) {}
   float* operator[](int i) { return values_.data() + width_ * size_t(i); }
   const float* operator[](int i) const { return values_.data() + width_ * size_t(i); }
   int width() const { return int(width_); }
@@ -40,7 +42,8 @@ struct Moments {
   // Products of features, those with the right sides, and w (v² − d²) over the channels.
   static constexpr int kRight = packed(P, 0), kSquares = kRight + P * C, kCount = kSquares + 1;
 
-  // The square made of `a` and of `b`, each with its centre `half` from the other's border along coordinate K: to[x] of a[x], b[x + shift].
+  // The square made of `a` and of `b`, each with its centre `half` from the other's border along coordinate K: to[x] of
+  // a[x], b[x + shift].
   template <int K>
   static void join(const Rows& a, const Rows& b, int shift, float half, Rows* to) {
     const int n = a.width() - shift;
@@ -92,4 +95,4 @@ struct WindowEstimates {
   }
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

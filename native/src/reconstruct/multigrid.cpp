@@ -4,10 +4,11 @@
 
 #include "reconstruct/red_black.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
-// The coarsest grid is small enough that these sweeps of Jacobi solve it well enough; a polynomial of A, so the cycle stays symmetric.
+// The coarsest grid is small enough that these sweeps of Jacobi solve it well enough; a polynomial of A, so the cycle
+// stays symmetric.
 constexpr int kCoarsestSide = 2;
 constexpr int kCoarsestSweeps = 8;
 // Rows at a time: the passes below make some rows around each piece once more.
@@ -56,7 +57,8 @@ void sweep_twice(const Stencil& a, const Field& b, Field* to) {
 }
 
 // Two sweeps from x + P coarse, which overwrite x.
-void sweep_interpolated_twice(const Stencil& a, const Interpolation& p, const Field& b, const Field& coarse, Field* x, Field* to) {
+void sweep_interpolated_twice(const Stencil& a, const Interpolation& p, const Field& b, const Field& coarse, Field* x,
+                              Field* to) {
   const auto interpolate = [&](int y, float* more, RollingRows* rows) {
     for (int c = 0; c < b.channels(); ++c) {
       p.interpolate_row(y, coarse.row(y / 2, c), coarse.row(y / 2 + 1, c), more);
@@ -96,7 +98,8 @@ void restrict_residual(const Stencil& a, const Interpolation& p, const Field& b,
           make(2 * y);
           make(2 * y + 1);
           for (int c = 0; c < b.channels(); ++c) {
-            p.restrict_rows(y, residual.row(2 * y - 1, c), residual.row(2 * y, c), residual.row(2 * y + 1, c), coarse->row(y, c));
+            p.restrict_rows(y, residual.row(2 * y - 1, c), residual.row(2 * y, c), residual.row(2 * y + 1, c),
+                            coarse->row(y, c));
           }
         }
       },
@@ -118,7 +121,8 @@ RowSums solve_coarsest(const Stencil& a, const Field& b, Field* z) {
     }
     x = *z;
   }
-  return sum_each_row(a.height(), b.channels(), [&](int y, int c) { return dot_row(z->row(y, c), b.row(y, c), a.width()); });
+  return sum_each_row(a.height(), b.channels(),
+                      [&](int y, int c) { return dot_row(z->row(y, c), b.row(y, c), a.width()); });
 }
 
 }  // namespace
@@ -169,4 +173,4 @@ RowSums Multigrid::cycle(const Field& b, Field* z) {
   return sweep_interpolated(here.matrix, here.interpolation, b, solve_coarse(1), z);
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -1,14 +1,14 @@
-// One symmetric V-cycle as preconditioner: z ≈ A⁻¹ b. Red-black Gauss-Seidel on the finest grid (red_black.h), damped Jacobi twice before
-// and twice after on the coarse ones, black-box interpolation.
+// One symmetric V-cycle as preconditioner: z ≈ A⁻¹ b. Red-black Gauss-Seidel on the finest grid (red_black.h), damped
+// Jacobi twice before and twice after on the coarse ones, black-box interpolation.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "reconstruct/interpolation.h"
 #include "base/rows.h"
+#include "reconstruct/interpolation.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // Values on coarse grids while a cycle runs. Multigrids of one size may share it, one cycle at a time.
 class MultigridWork {
@@ -25,15 +25,16 @@ class MultigridWork {
 
 class Multigrid {
  public:
-  Multigrid(int width, int height, int channels) : Multigrid(width, height, std::make_shared<MultigridWork>(width, height, channels)) {}
+  Multigrid(int width, int height, int channels)
+      : Multigrid(width, height, std::make_shared<MultigridWork>(width, height, channels)) {}
   Multigrid(int width, int height, std::shared_ptr<MultigridWork> work);
   // The finest matrix, to be filled; then update().
   Stencil& matrix() { return levels_.front().matrix; }
   const Stencil& matrix() const { return levels_.front().matrix; }
   // Makes the coarse matrices from the finest.
   void update();
-  // Overwrites z and returns b·z of each row; b must have the grid's size and the multigrid's channels. Not for two threads at once, nor
-  // for two multigrids that share their work space.
+  // Overwrites z and returns b·z of each row; b must have the grid's size and the multigrid's channels. Not for two
+  // threads at once, nor for two multigrids that share their work space.
   RowSums cycle(const Field& b, Field* z);
 
  private:
@@ -47,4 +48,4 @@ class Multigrid {
   std::shared_ptr<MultigridWork> work_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -4,25 +4,28 @@
 
 #include "base/rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 bool is_lit(const float* pixel, int channels) {
   return pixel[0] != 0.0f || pixel[1] != 0.0f || pixel[2] != 0.0f || (channels == 4 && pixel[3] == 0.0f);
 }
 
-// Pixels whose rows show no deviation: those of the pixel and of the four differences that it has a part in. The last column and row
-// have no differences.
-std::vector<uint8_t> find_quiet(const GradientImages& images) {
+// Pixels whose rows show no deviation: those of the pixel and of the four differences that it has a part in. The last
+// column and row have no differences.
+std::vector<uint8_t> find_quiet(const film::GradientImages& images) {
   const int w = images.width, h = images.height;
-  const auto is_zero = [w](const std::vector<float>& deviation, int x, int y) { return deviation[size_t(y) * w + x] == 0.0f; };
+  const auto is_zero = [w](const std::vector<float>& deviation, int x, int y) {
+    return deviation[size_t(y) * w + x] == 0.0f;
+  };
   std::vector<uint8_t> quiet(size_t(w) * h);
   for_rows(h, [&](int y) {
     for (int x = 0; x < w; ++x) {
       const size_t i = size_t(y) * w + x;
-      quiet[i] = is_lit(&images.primal[i * images.channels], images.channels) && is_zero(images.primal_deviation, x, y) &&
-                 (x + 1 == w || is_zero(images.dx_deviation, x, y)) && (x == 0 || is_zero(images.dx_deviation, x - 1, y)) &&
-                 (y + 1 == h || is_zero(images.dy_deviation, x, y)) && (y == 0 || is_zero(images.dy_deviation, x, y - 1));
+      quiet[i] =
+          is_lit(&images.primal[i * images.channels], images.channels) && is_zero(images.primal_deviation, x, y) &&
+          (x + 1 == w || is_zero(images.dx_deviation, x, y)) && (x == 0 || is_zero(images.dx_deviation, x - 1, y)) &&
+          (y + 1 == h || is_zero(images.dy_deviation, x, y)) && (y == 0 || is_zero(images.dy_deviation, x, y - 1));
     }
   });
   return quiet;
@@ -40,12 +43,14 @@ std::vector<float> crop_plane(const std::vector<float>& plane, int width, int ch
 }
 
 // A part of all images but halves.
-GradientImages crop(const GradientImages& images, const Region& part) {
-  GradientImages result;
+film::GradientImages crop(const film::GradientImages& images, const Region& part) {
+  film::GradientImages result;
   result.width = part.width();
   result.height = part.height();
   result.channels = images.channels;
-  const auto values = [&](const std::vector<float>& plane) { return crop_plane(plane, images.width, images.channels, part); };
+  const auto values = [&](const std::vector<float>& plane) {
+    return crop_plane(plane, images.width, images.channels, part);
+  };
   const auto deviations = [&](const std::vector<float>& plane) { return crop_plane(plane, images.width, 1, part); };
   result.primal = values(images.primal);
   result.dx = values(images.dx);
@@ -58,7 +63,7 @@ GradientImages crop(const GradientImages& images, const Region& part) {
 
 }  // namespace
 
-std::vector<uint8_t> find_noise_free(const GradientImages& images) {
+std::vector<uint8_t> find_noise_free(const film::GradientImages& images) {
   const int w = images.width, h = images.height;
   const std::vector<uint8_t> quiet = find_quiet(images);
   std::vector<uint8_t> noise_free(quiet.size());
@@ -86,8 +91,8 @@ Region noisy_region(const std::vector<uint8_t>& noise_free, int width, int heigh
   return {std::max(box.x0, 0), std::max(box.y0, 0), std::min(box.x1, width), std::min(box.y1, height)};
 }
 
-std::vector<float> reconstruct_noisy_region(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
-                                         SolveReport* report) {
+std::vector<float> reconstruct_noisy_region(const film::GradientImages& images, uint32_t reconstruction, float alpha,
+                                            const CancelCheck& cancel, SolveReport* report) {
   const std::vector<uint8_t> noise_free = find_noise_free(images);
   const Region part = noisy_region(noise_free, images.width, images.height);
   const bool whole = part.width() == images.width && part.height() == images.height;
@@ -106,4 +111,4 @@ std::vector<float> reconstruct_noisy_region(const GradientImages& images, uint32
   return result;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

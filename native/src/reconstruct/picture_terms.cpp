@@ -8,7 +8,7 @@
 #include "reconstruct/field_values.h"
 #include "reconstruct/solver_planes.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
@@ -16,7 +16,8 @@ constexpr float kMaxFloat = std::numeric_limits<float>::max();
 // What was sampled there errs by no more, and where nothing of a part was met there is nothing to be wrong.
 void limit_by_noise(const Field& half_difference, Field* error) {
   const int w = error->width(), h = error->height();
-  const Field noise = box_mean(make_field(w, h, [&](int x, int y) { return mean_of_squares(half_difference, x, y); }), 1);
+  const Field noise =
+      box_mean(make_field(w, h, [&](int x, int y) { return mean_of_squares(half_difference, x, y); }), 1);
   for_values(error, [&](float& value, int x, int y, int) { value = std::min(value, noise.row(y)[x]); });
 }
 
@@ -59,7 +60,7 @@ void distribute(double whole, std::vector<Share>& shares) {
 
 }  // namespace
 
-PictureTerm regress_term(const Features& guides, HalvedImage sampled, const CancelCheck& cancel) {
+PictureTerm regress_term(const film::Features& guides, HalvedImage sampled, const CancelCheck& cancel) {
   PictureTerm term;
   term.may_be_negative = any_value(sampled.mean, [](float value) { return value < 0.0f; });
   if (is_black(sampled.half_difference)) {
@@ -75,7 +76,8 @@ PictureTerm regress_term(const Features& guides, HalvedImage sampled, const Canc
   limit_by_noise(sampled.half_difference, &term.error);
   scale_light(scale, &term.image);
   scale_error(scale, &term.error);
-  if (!term.may_be_negative) for_values(&term.image, [](float& value, int, int, int) { value = std::max(value, 0.0f); });
+  if (!term.may_be_negative)
+    for_values(&term.image, [](float& value, int, int, int) { value = std::max(value, 0.0f); });
   return term;
 }
 
@@ -98,10 +100,11 @@ void add_up(const Field& whole, std::vector<PictureTerm>* terms) {
           }
         }
         distribute(whole.row(y, c)[x], shares);
-        for (size_t i = 0; i < values.size(); ++i) *values[i] = std::clamp(float(shares[i].value), -kMaxFloat, kMaxFloat);
+        for (size_t i = 0; i < values.size(); ++i)
+          *values[i] = std::clamp(float(shares[i].value), -kMaxFloat, kMaxFloat);
       }
     }
   });
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

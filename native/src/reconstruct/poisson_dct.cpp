@@ -10,7 +10,7 @@
 
 #include "base/fpu.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Columns transformed together: one cache line of floats, so that the image is read and written by whole lines.
@@ -29,7 +29,8 @@ std::vector<float> eigenvalues(int length) {
 
 using Range = tbb::blocked_range<int>;
 
-// Calls body(y, row y, row y + 1, whether that one exists, scratch) for every second row: one complex transform serves two rows.
+// Calls body(y, row y, row y + 1, whether that one exists, scratch) for every second row: one complex transform serves
+// two rows.
 template <class Body>
 void for_row_pairs(int w, int h, int channels, float* work, const Body& body) {
   const size_t row = size_t(w) * size_t(channels);
@@ -51,7 +52,8 @@ void for_row_pairs(int w, int h, int channels, float* work, const Body& body) {
 PoissonDct::PoissonDct(int width, int height)
     : row_(width), column_(height), eigenvalue_x_(eigenvalues(width)), eigenvalue_y_(eigenvalues(height)) {}
 
-void PoissonDct::solve(float data_weight, int channels, const FillRow& fill, const Sum& sum, const TakeRow& take, float* work) const {
+void PoissonDct::solve(float data_weight, int channels, const FillRow& fill, const Sum& sum, const TakeRow& take,
+                       float* work) const {
   rows_forward(channels, fill, work);
   std::vector<double> sums;
   for (int c = 0; c < channels && sum; ++c) sums.push_back(sum(c));
@@ -119,4 +121,4 @@ void PoissonDct::rows_inverse(int channels, const TakeRow& take, float* work) co
   });
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

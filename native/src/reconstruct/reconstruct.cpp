@@ -10,24 +10,25 @@
 #include "reconstruct/solver.h"
 #include "reconstruct/twiced_solver.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
-// Rows of a frame, which its images would take longer to write down than to make. A thread goes from one row to the next, so the row below
-// is often there already.
+// Rows of a frame, which its images would take longer to write down than to make. A thread goes from one row to the
+// next, so the row below is often there already.
 class FilmRows {
  public:
-  FilmRows(const Film& film, int component) : film_(film), component_(component) {}
+  FilmRows(const film::Film& film, int component) : film_(film), component_(component) {}
 
   void operator()(int y, const L2Use& use) {
     Rows& rows = rows_.local();
     const size_t size = size_t(film_.region.width()) * size_t(film_.channels);
     for (auto* row : {&rows.primal, &rows.dx, &rows.dy, &rows.dy_below}) row->resize(size);
     std::swap(rows.dy, rows.dy_below);
-    if (y > 0 && rows.y != y - 1) read_difference_row(film_, component_, kUp, {}, y - 1, rows.dy_below.data());
-    read_primal_row(film_, component_, {}, y, rows.primal.data());
-    read_difference_row(film_, component_, kRight, {}, y, rows.dx.data());
-    read_difference_row(film_, component_, kUp, {}, y, rows.dy.data());
+    if (y > 0 && rows.y != y - 1)
+      film::read_difference_row(film_, component_, film::kUp, {}, y - 1, rows.dy_below.data());
+    film::read_primal_row(film_, component_, {}, y, rows.primal.data());
+    film::read_difference_row(film_, component_, film::kRight, {}, y, rows.dx.data());
+    film::read_difference_row(film_, component_, film::kUp, {}, y, rows.dy.data());
     rows.y = y;
     use({rows.primal.data(), rows.dx.data(), rows.dy.data(), rows.dy_below.data()});
   }
@@ -37,13 +38,13 @@ class FilmRows {
     int y = -2;  // of dy
     std::vector<float> primal, dx, dy, dy_below;
   };
-  const Film& film_;
+  const film::Film& film_;
   int component_;
   tbb::enumerable_thread_specific<Rows> rows_;
 };
 
-std::unique_ptr<TwicedSolver> make_solver(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
-                                          SolveReport* report) {
+std::unique_ptr<TwicedSolver> make_solver(const film::GradientImages& images, uint32_t reconstruction, float alpha,
+                                          const CancelCheck& cancel, SolveReport* report) {
   switch (reconstruction) {
     case GRADUS_RECONSTRUCTION_L1:
       return std::make_unique<TwicedSolver>(images, minimise_l1(images, alpha, cancel, report), alpha);
@@ -54,13 +55,13 @@ std::unique_ptr<TwicedSolver> make_solver(const GradientImages& images, uint32_t
 
 }  // namespace
 
-std::unique_ptr<LinearOperator> make_twiced(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
-                                            SolveReport* report) {
+std::unique_ptr<LinearOperator> make_twiced(const film::GradientImages& images, uint32_t reconstruction, float alpha,
+                                            const CancelCheck& cancel, SolveReport* report) {
   return make_solver(images, reconstruction, chosen_alpha(reconstruction, alpha), cancel, report);
 }
 
-std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
-                               SolveReport* report) {
+std::vector<float> reconstruct(const film::GradientImages& images, uint32_t reconstruction, float alpha,
+                               const CancelCheck& cancel, SolveReport* report) {
   alpha = chosen_alpha(reconstruction, alpha);
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) {
     const L2Rows rows = rows_of(planes_of(images, 0), images.width, images.channels);
@@ -79,18 +80,18 @@ std::vector<float> reconstruct(const GradientImages& images, uint32_t reconstruc
   return result;
 }
 
-std::vector<float> reconstruct(const Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
-                               SolveReport* report) {
+std::vector<float> reconstruct(const film::Film& film, int component, uint32_t reconstruction, float alpha,
+                               const CancelCheck& cancel, SolveReport* report) {
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) {
     const int w = film.region.width(), h = film.region.height();
     FilmRows rows(film, component);
     alpha = chosen_alpha(reconstruction, alpha);
     if (auto image = solve_l2(w, h, film.channels, alpha, std::ref(rows))) return *std::move(image);
-    return solve_l2_with_gaps(read_images(film, component), alpha, cancel, report);
+    return solve_l2_with_gaps(film::read_images(film, component), alpha, cancel, report);
   }
-  GradientImages images = read_images(film, component);
-  read_deviations(film, component, &images);
+  film::GradientImages images = film::read_images(film, component);
+  film::read_deviations(film, component, &images);
   return reconstruct_noisy_region(images, reconstruction, alpha, cancel, report);
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -3,18 +3,19 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/rows.h"
 #include "film/features.h"
 #include "reconstruct/error_estimate.h"
 #include "reconstruct/regularized.h"
-#include "base/rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
-void check_readable(const Film& film, uint32_t reconstruction) {
+void check_readable(const film::Film& film, uint32_t reconstruction) {
   if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return;
   if (reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
-    if (!has_features(film)) throw invalid_operation("the frame holds no denoising features to reconstruct with: render it with them");
+    if (!film::has_features(film))
+      throw invalid_operation("the frame holds no denoising features to reconstruct with: render it with them");
     return;
   }
   if (!film.gradients) throw invalid_operation("the frame holds no gradients to reconstruct from");
@@ -25,8 +26,8 @@ bool is_zero(const std::vector<Radiance>& plane) {
 }
 
 // Neither its paths nor their offsets have found anything.
-bool is_black(const ComponentPlanes& planes) {
-  for (int half = 0; half < kHalves; ++half) {
+bool is_black(const film::ComponentPlanes& planes) {
+  for (int half = 0; half < film::kHalves; ++half) {
     const auto& gradient = planes.gradient[half];
     if (!is_zero(planes.primal[half]) || !std::all_of(gradient.begin(), gradient.end(), is_zero)) return false;
   }
@@ -61,15 +62,16 @@ void add_image(std::vector<float> term, std::vector<float>* sum) {
   for (size_t i = 0; i < term.size(); ++i) (*sum)[i] += term[i];
 }
 
-std::vector<float> reconstruct_component(const Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
-                                         SolveReport* report) {
-  if (is_black(film.components[size_t(component)])) return std::vector<float>(size_t(film.region.area()) * size_t(film.channels));
-  if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return read_images(film, component).primal;
+std::vector<float> reconstruct_component(const film::Film& film, int component, uint32_t reconstruction, float alpha,
+                                         const CancelCheck& cancel, SolveReport* report) {
+  if (is_black(film.components[size_t(component)]))
+    return std::vector<float>(size_t(film.region.area()) * size_t(film.channels));
+  if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return film::read_images(film, component).primal;
   return reconstruct(film, component, reconstruction, alpha, cancel, report);
 }
 
-Reconstructed reconstruct_film(const Film& film, uint32_t reconstruction, float alpha, ReconstructionOutputs wanted,
-                                const CancelCheck& cancel, SolveReport* report) {
+Reconstructed reconstruct_film(const film::Film& film, uint32_t reconstruction, float alpha,
+                               ReconstructionOutputs wanted, const CancelCheck& cancel, SolveReport* report) {
   check_readable(film, reconstruction);
   if (reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
     Reconstructed result = regularize(film, wanted.components, cancel, report);
@@ -88,8 +90,9 @@ Reconstructed reconstruct_film(const Film& film, uint32_t reconstruction, float 
     if (wanted.components) sum.components.push_back(part);
     add_image(std::move(part), &sum.image);
   }
-  if (!terms.noise.empty()) sum.error = error_of_pixels(terms, film.region.width(), film.region.height(), film.channels);
+  if (!terms.noise.empty())
+    sum.error = error_of_pixels(terms, film.region.width(), film.region.height(), film.channels);
   return sum;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

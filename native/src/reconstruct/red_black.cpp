@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <memory>
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Rows at a time: passes make two or three rows around each piece once more.
@@ -11,7 +11,8 @@ constexpr int kGrain = 64;
 
 enum class Color { kRed, kBlack };
 
-// Some rows of x as a pass moves up the grid. Each is taken apart into pixels of even and of odd x, in which a colour lies side by side.
+// Some rows of x as a pass moves up the grid. Each is taken apart into pixels of even and of odd x, in which a colour
+// lies side by side.
 class CheckeredRows {
  public:
   CheckeredRows(const Stencil& a, const Field& b)
@@ -33,7 +34,8 @@ class CheckeredRows {
   void load(int y);
   // Solves the equations of a row's pixels of one colour for the other's values around them.
   void relax(int y, Color color);
-  // Puts what is left of a row's red equations in the place of its red values. After black ones are solved, nothing else is left.
+  // Puts what is left of a row's red equations in the place of its red values. After black ones are solved, nothing
+  // else is left.
   void leave_residual(int y);
 
   float* values(int y, Color color, int channel) { return values_of(y, side(y, color), channel); }
@@ -48,14 +50,17 @@ class CheckeredRows {
   struct Neighbours {
     const float *weight[4], *value[4];
     float sum(ptrdiff_t i) const {
-      return weight[0][i] * value[0][i] + weight[1][i] * value[1][i] + weight[2][i] * value[2][i] + weight[3][i] * value[3][i];
+      return weight[0][i] * value[0][i] + weight[1][i] * value[1][i] + weight[2][i] * value[2][i] +
+             weight[3][i] * value[3][i];
     }
   };
   Neighbours neighbours(int y, int side, int channel);
 
   // 0: even x, 1: odd x
   static int side(int y, Color color) { return (y & 1) ^ int(color); }
-  float* half(int y, size_t plane) { return halves_.get() + kPad + stride_ * (size_t((y + kRows) % kRows) * planes_ + plane); }
+  float* half(int y, size_t plane) {
+    return halves_.get() + kPad + stride_ * (size_t((y + kRows) % kRows) * planes_ + plane);
+  }
   float* inverse(int y, int side) { return half(y, size_t(side)); }
   float* right(int y, int side) { return half(y, 2 + size_t(side)); }
   float* up(int y, int side) { return half(y, 4 + size_t(side)); }
@@ -176,4 +181,4 @@ RowSums sweep_interpolated(const Stencil& a, const Interpolation& p, const Field
   return sums;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

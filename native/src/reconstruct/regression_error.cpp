@@ -6,12 +6,12 @@
 #include "reconstruct/field_values.h"
 #include "reconstruct/local_light.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Figures of this file: docs/method.md, "Regression on features".
-// Light that a pixel is taken for is that of 3×3: its own would make errors of dark pixels beside bright ones the smaller the larger they
-// are.
+// Light that a pixel is taken for is that of 3×3: its own would make errors of dark pixels beside bright ones the
+// smaller the larger they are.
 constexpr int kLightRadius = 1;
 // Squares of noise are averaged, since one says little.
 constexpr int kNoiseRadius = 3;
@@ -27,7 +27,9 @@ Field lost_share(const Smoothed& smoothed) {
     value = c == 0 ? mean_of(smoothed.mean, x, y) - mean_of(smoothed.image, x, y) : c == 1 ? noise * noise : light;
   });
   terms = box_mean(terms, kLostRadius);
-  const auto covered = [](int at, int length) { return std::min(length, at + kLostRadius + 1) - std::max(0, at - kLostRadius); };
+  const auto covered = [](int at, int length) {
+    return std::min(length, at + kLostRadius + 1) - std::max(0, at - kLostRadius);
+  };
   return make_field(w, h, [&](int x, int y) {
     const float lost = terms.row(y, 0)[x], light = terms.row(y, 2)[x] + kDark;
     return std::max(lost * lost - terms.row(y, 1)[x] / float(covered(x, w) * covered(y, h)), 0.0f) / (light * light);
@@ -39,13 +41,14 @@ Field lost_share(const Smoothed& smoothed) {
 Field regression_error(const Smoothed& smoothed, const Field& bias) {
   const Field light = squared_light(smoothed.image, kLightRadius), lost = lost_share(smoothed);
   // As shares of the light: noise of a light is not that of the wall beside it.
-  Field error = box_mean(
-      make_field(light.width(), light.height(), [&](int x, int y) { return mean_of_squares(smoothed.noise, x, y) / light.row(y)[x]; }),
-      kNoiseRadius);
+  Field error =
+      box_mean(make_field(light.width(), light.height(),
+                          [&](int x, int y) { return mean_of_squares(smoothed.noise, x, y) / light.row(y)[x]; }),
+               kNoiseRadius);
   for_values(&error, [&](float& value, int x, int y, int) {
     value = light.row(y)[x] * (kHidden * value + kLost * lost.row(y)[x]) + std::max(bias.row(y)[x], 0.0f);
   });
   return error;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

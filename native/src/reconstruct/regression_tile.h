@@ -1,5 +1,5 @@
-// The windows of one octave in a tile of squares, row by row: sums of pixels over squares, windows made of these, their solves, and what
-// they say back to the squares and to their pixels.
+// The windows of one octave in a tile of squares, row by row: sums of pixels over squares, windows made of these, their
+// solves, and what they say back to the squares and to their pixels.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,12 @@
 #include "reconstruct/local_regression.h"
 #include "reconstruct/moments.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // Squares that windows reach beyond the first of theirs.
 inline constexpr int kReach = 3;
-// Pixels in a unit of the coordinates: some windows, so that their slopes feel the ridge as little as those of the other features do.
+// Pixels in a unit of the coordinates: some windows, so that their slopes feel the ridge as little as those of the
+// other features do.
 inline constexpr float kCoordinateUnit = 20.0f;
 // Pixels of a square that are summed at a time.
 inline constexpr int kGroup = 4;
@@ -35,9 +36,10 @@ struct OctaveTask {
   using Confidence = std::conditional_t<Estimates, Field, const Field>;
   Octave octave;
   int shift;
-  Confidence* confidence;  // a channel for each size of windows, large ones first; row and column of the first square + kReach
-  const Field* coarse;     // opinions of the next octave
-  Field* window_estimates;         // of this; null for the finest, which writes results
+  Confidence*
+      confidence;  // a channel for each size of windows, large ones first; row and column of the first square + kReach
+  const Field* coarse;      // opinions of the next octave
+  Field* window_estimates;  // of this; null for the finest, which writes results
 };
 
 inline int ceil_divided(int pixels, int side) { return (pixels + side - 1) / side; }
@@ -83,10 +85,12 @@ class Tile {
  private:
   using M = Moments<P, C, Coordinates>;
   using O = WindowEstimates<P, C, Coordinates>;
-  enum Size : int { kLarge, kSmall };                      // of windows
-  static constexpr int kSides = P * C, kChannels = C / 2;  // of the image, if the sides are its mean and half the difference
-  static constexpr int B = Coordinates ? P - 2 : P;        // but for the coordinates
-  static constexpr int kWeight = B - 1, kValues = kWeight + 1, kPixel = kValues + C;  // of a pixel: features, weight, values
+  enum Size : int { kLarge, kSmall };  // of windows
+  static constexpr int kSides = P * C,
+                       kChannels = C / 2;            // of the image, if the sides are its mean and half the difference
+  static constexpr int B = Coordinates ? P - 2 : P;  // but for the coordinates
+  static constexpr int kWeight = B - 1, kValues = kWeight + 1,
+                       kPixel = kValues + C;  // of a pixel: features, weight, values
 
   template <size_t N>
   static Rows& at(std::array<Rows, N>& ring, int j) {
@@ -211,7 +215,8 @@ class Tile {
     Lanes weight[kGroup], squared[kGroup] = {};
     for (int k = 0; k < kGroup; ++k) {
       weight[k] = load(pixels_[k * kPixel + kWeight] + x);
-      for (int c = 0; c < C; ++c) squared[k] += (!Estimates || c < kChannels ? 1.0f : -1.0f) * values[c][k] * values[c][k];
+      for (int c = 0; c < C; ++c)
+        squared[k] += (!Estimates || c < kChannels ? 1.0f : -1.0f) * values[c][k] * values[c][k];
     }
     put(M::kSquares, weight, squared);
   }
@@ -321,7 +326,8 @@ class Tile {
     }
     if constexpr (Coordinates) {
       for (int c = 0; c < C; ++c) {
-        const float *of_x = octave_.coarse->row(m / 2, C * M::kX + c), *of_y = octave_.coarse->row(m / 2, C * M::kY + c);
+        const float *of_x = octave_.coarse->row(m / 2, C * M::kX + c),
+                    *of_y = octave_.coarse->row(m / 2, C * M::kY + c);
         float* to = estimate_[c];
         for (int x = kReach; x < width_ - kReach; ++x) {
           const int i = first_ + x;
@@ -332,7 +338,8 @@ class Tile {
   }
 
   void write_estimates(int m) {
-    for (int i = 0; i < O::kCount; ++i) std::copy_n(estimate_[i] + kReach, x1_ - x0_, octave_.window_estimates->row(m, i) + x0_);
+    for (int i = 0; i < O::kCount; ++i)
+      std::copy_n(estimate_[i] + kReach, x1_ - x0_, octave_.window_estimates->row(m, i) + x0_);
   }
 
   bool first_lattice() const { return octave_.shift == 0; }
@@ -362,7 +369,8 @@ class Tile {
         for (int i = 0; i < P; ++i) sum += load(estimate_[C * i + c] + x) * feature(i, g, k, x);
         store(sum, boxes_[c] + x);
       }
-      for (int i = 0; i < planes - C; ++i) store(load(boxes_[C + i] + x) + load(estimate_[O::kConfidence + i] + x), boxes_[C + i] + x);
+      for (int i = 0; i < planes - C; ++i)
+        store(load(boxes_[C + i] + x) + load(estimate_[O::kConfidence + i] + x), boxes_[C + i] + x);
     }
     if (last_lattice()) add_sampled(y, k, dx);
     for (int i = 0; i < planes; ++i) put(boxes_[i], dx, rows[size_t(i)]);
@@ -371,8 +379,10 @@ class Tile {
   void add_sampled(int y, int k, int dx) {
     pick(task_.own != nullptr ? task_.own->row(y) : nullptr, dx, moments_[0]);
     for (int x = 0; x < width_; x += kLanes) {
-      const Lanes own = load(moments_[0] + x), total = load(boxes_[C] + x) + own, zero{}, factor = total > zero ? 1.0f / total : zero;
-      for (int c = 0; c < C; ++c) store(factor * (load(boxes_[c] + x) + own * load(pixels_[k * kPixel + kValues + c] + x)), boxes_[c] + x);
+      const Lanes own = load(moments_[0] + x), total = load(boxes_[C] + x) + own, zero{},
+                  factor = total > zero ? 1.0f / total : zero;
+      for (int c = 0; c < C; ++c)
+        store(factor * (load(boxes_[c] + x) + own * load(pixels_[k * kPixel + kValues + c] + x)), boxes_[c] + x);
       if constexpr (Estimates) store(factor * load(boxes_[C + 1] + x), boxes_[C + 1] + x);
     }
   }
@@ -396,4 +406,4 @@ class Tile {
   std::array<Rows, 2> columns_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

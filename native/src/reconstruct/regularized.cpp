@@ -13,10 +13,10 @@
 #include "reconstruct/linear_terms.h"
 #include "reconstruct/solver_planes.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
-HalfSums sums_of(const ComponentPlanes& component, size_t pixel) {
+HalfSums sums_of(const film::ComponentPlanes& component, size_t pixel) {
   return {Rgb(component.primal[0][pixel]), Rgb(component.primal[1][pixel])};
 }
 
@@ -32,13 +32,13 @@ float typical_noise(const HalvedImage& image) {
 }
 
 // All channels as they were sampled, in units of the scale; what is not finite is 0.
-Field read_sampled(const Film& film, int component, float scale) {
+Field read_sampled(const film::Film& film, int component, float scale) {
   const auto channels = size_t(film.channels);
   Field sampled(film.region.width(), film.region.height(), film.channels);
   for_pieces(sampled.height(), [&](int begin, int end) {
     std::vector<float> row(size_t(sampled.width()) * channels);
     for (int y = begin; y < end; ++y) {
-      read_primal_row(film, component, {}, y, row.data());
+      film::read_primal_row(film, component, {}, y, row.data());
       for (size_t c = 0; c < channels; ++c) {
         const float unit = c < 3 ? scale : 1.0f;
         float* to = sampled.row(y, int(c));
@@ -56,18 +56,20 @@ Field read_sampled(const Film& film, int component, float scale) {
 class Operator {
  public:
   // frame: of one component.
-  Operator(const Film& film, const Features& features, const CancelCheck& cancel, SolveReport* report) : cancel_(cancel), report_(report) {
+  Operator(const film::Film& film, const film::Features& features, const CancelCheck& cancel, SolveReport* report)
+      : cancel_(cancel), report_(report) {
     HalvedImage image = read_halves(film, [&](size_t i) { return sums_of(film.components[0], i); });
     scale_ = robust_scale(image.mean);
     normalise(scale_, &image);
     regression_.emplace(features, image, cancel);
     solution_ = regression_->image();
     if (film.channels == 4) {
-      solution_ = join_channels(solution_, regression_->apply(channels_of(read_sampled(film, 0, scale_), 3, 1), cancel));
+      solution_ =
+          join_channels(solution_, regression_->apply(channels_of(read_sampled(film, 0, scale_), 3, 1), cancel));
     }
     if (!film.gradients) return;
-    GradientImages images = read_images(film, 0);
-    read_deviations(film, 0, &images);
+    film::GradientImages images = film::read_images(film, 0);
+    film::read_deviations(film, 0, &images);
     fusion_.emplace(images, scale_, typical_noise(image), solution_, regression_->error(), cancel, report);
     solution_ = fusion_->take_solution();
   }
@@ -77,13 +79,13 @@ class Operator {
   const Field& error() const { return regression_->error(); }
 
   // Of a component, as it was sampled.
-  Field apply(const Film& film, int component, const Field& sampled) {
+  Field apply(const film::Film& film, int component, const Field& sampled) {
     Field regressed = regression_->apply(channels_of(sampled, 0, 3), cancel_);
     if (film.channels == 4) {
       const Field alpha = channels_of(sampled, 3, 1);
       regressed = join_channels(regressed, is_black(alpha) ? alpha : regression_->apply(alpha, cancel_));
     }
-    return fusion_ ? fusion_->apply(read_images(film, component), regressed, cancel_, report_) : regressed;
+    return fusion_ ? fusion_->apply(film::read_images(film, component), regressed, cancel_, report_) : regressed;
   }
 
  private:
@@ -103,14 +105,15 @@ std::vector<float> to_image(Field field, float scale) {
 
 }  // namespace
 
-Reconstructed regularize(const Film& film, bool by_components, const CancelCheck& cancel, SolveReport* report) {
-  return regularize(film, filter_features(read_features(film)), by_components, cancel, report);
+Reconstructed regularize(const film::Film& film, bool by_components, const CancelCheck& cancel, SolveReport* report) {
+  return regularize(film, filter_features(film::read_features(film)), by_components, cancel, report);
 }
 
-Reconstructed regularize(const Film& film, const Features& features, bool by_components, const CancelCheck& cancel, SolveReport* report) {
+Reconstructed regularize(const film::Film& film, const film::Features& features, bool by_components,
+                         const CancelCheck& cancel, SolveReport* report) {
   const size_t components = film.components.size();
-  std::optional<Film> sum;
-  if (components > 1) sum = sum_components(film);
+  std::optional<film::Film> sum;
+  if (components > 1) sum = film::sum_components(film);
   Operator op(sum ? *sum : film, features, cancel, report);
   sum.reset();
   const float scale = op.scale();
@@ -126,4 +129,4 @@ Reconstructed regularize(const Film& film, const Features& features, bool by_com
   return result;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -5,13 +5,14 @@
 #include "reconstruct/reconstructed.h"
 #include "reconstruct/solver.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // With its error, always. Throws invalid_operation for a frame without features.
-// by_components: what becomes of each of them, too. All go through one operator, that of their sum, so that they are what the picture is
-// made of, however it was found (contract 3.4).
-Reconstructed regularize(const Film& film, bool by_components, const CancelCheck& cancel, SolveReport* report);
+// by_components: what becomes of each of them, too. All go through one operator, that of their sum, so that they are
+// what the picture is made of, however it was found (contract 3.4).
+Reconstructed regularize(const film::Film& film, bool by_components, const CancelCheck& cancel, SolveReport* report);
 // The same by its features, filtered.
-Reconstructed regularize(const Film& film, const Features& features, bool by_components, const CancelCheck& cancel, SolveReport* report);
+Reconstructed regularize(const film::Film& film, const film::Features& features, bool by_components,
+                         const CancelCheck& cancel, SolveReport* report);
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

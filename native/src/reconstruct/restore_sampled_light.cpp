@@ -5,7 +5,7 @@
 
 #include "reconstruct/field_values.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 constexpr float kMinShare = 0.25f;
@@ -15,7 +15,8 @@ float median_around(const Field& image, int x, int y, int channel) {
   std::array<float, 9> values;
   size_t count = 0;
   for (int j = std::max(y - 1, 0); j <= std::min(y + 1, image.height() - 1); ++j) {
-    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, image.width() - 1); ++i) values[count++] = image.row(j, channel)[i];
+    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, image.width() - 1); ++i)
+      values[count++] = image.row(j, channel)[i];
   }
   std::nth_element(values.begin(), values.begin() + count / 2, values.begin() + count);
   return values[count / 2];
@@ -40,7 +41,8 @@ Field restore_sampled_light(const Field& sampled, const Field& regressed) {
 }
 
 void blend_sampled(const Field& share, const Field& sampled, Field* regressed) {
-  for_values(regressed, [&](float& value, int x, int y, int c) { value += share.row(y)[x] * (sampled.row(y, c)[x] - value); });
+  for_values(regressed,
+             [&](float& value, int x, int y, int c) { value += share.row(y)[x] * (sampled.row(y, c)[x] - value); });
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -6,12 +6,12 @@
 #include "reconstruct/field_values.h"
 #include "reconstruct/local_light.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 constexpr int kColors = 3;
-// Of the regression, what a pixel has left at least, and what it is held by otherwise. With half as the least single scenes have up to 13 %
-// more error (docs/method.md).
+// Of the regression, what a pixel has left at least, and what it is held by otherwise. With half as the least single
+// scenes have up to 13 % more error (docs/method.md).
 constexpr float kLeft = 0.25f, kClampShare = 0.5f;
 constexpr float kFirmer = 10.0f;
 constexpr float kMinMove = 1e-20f;
@@ -52,7 +52,8 @@ bool clamp_dark_pixels(const Field& regressed, const Field& solution, WeightedLe
   return any;
 }
 
-void downweight_differences(const Field& regressed, const Field& solution, const Field& error, float times, WeightedLeastSquares* system) {
+void downweight_differences(const Field& regressed, const Field& solution, const Field& error, float times,
+                            WeightedLeastSquares* system) {
   const int w = error.width(), h = error.height();
   const Field share = make_field(w, h, [&](int x, int y) {
     return std::min(1.0f, (times * error.row(y)[x] + kMinMove) / (squared_move(regressed, solution, x, y) + kMinMove));
@@ -66,4 +67,4 @@ void downweight_differences(const Field& regressed, const Field& solution, const
   });
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "base/types.h"
 #include "base/rows.h"
+#include "base/types.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Enough pixels for a median within a fraction of a percent.
@@ -66,4 +66,4 @@ std::vector<float> interleave(const Field& field, int channels) {
   return image;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

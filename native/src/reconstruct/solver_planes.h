@@ -5,7 +5,7 @@
 #include "reconstruct/field.h"
 #include "reconstruct/solver.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 struct SolverPlanes {
   SolverPlanes(int width, int height, int channels)
@@ -17,7 +17,8 @@ struct SolverPlanes {
 SolverPlanes load_planes(const PoissonPlanes& planes, int width, int height, int channels);
 // The middle one; 1 of none. Reorders them.
 float median_or_one(std::vector<float>* values);
-// Scale of the image: the median of the luminances that are not 0; 1 for a black image. Residuals and noise are measured in it.
+// Scale of the image: the median of the luminances that are not 0; 1 for a black image. Residuals and noise are
+// measured in it.
 float robust_scale(const Field& image);
 // Whether a row's value is there in all of some channels, interleaved.
 inline bool is_complete(const float* value, int channels) {
@@ -31,4 +32,4 @@ void store_channel(const Field& from, int channel, size_t stride, float* out);
 std::vector<float> interleave(const Field& field, int channels);
 inline std::vector<float> interleave(const Field& field) { return interleave(field, field.channels()); }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -2,7 +2,7 @@
 
 #include "base/rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Damped Jacobi: of 0.6 to 0.9 this takes fewest steps, for weights of rendered images (measured).
@@ -25,7 +25,8 @@ void apply_row(const Stencil& a, int y, const float* below, const float* here, c
   const float *diagonal = a.diagonal.row(y), *right = a.right.row(y), *up = a.up.row(y), *down = a.up.row(y - 1);
   if (!a.corners) {
     for (int i = 0; i < w; ++i) {
-      out[i] = diagonal[i] * here[i] - right[i] * here[i + 1] - right[i - 1] * here[i - 1] - up[i] * above[i] - down[i] * below[i];
+      out[i] = diagonal[i] * here[i] - right[i] * here[i + 1] - right[i - 1] * here[i - 1] - up[i] * above[i] -
+               down[i] * below[i];
     }
     return;
   }
@@ -34,9 +35,10 @@ void apply_row(const Stencil& a, int y, const float* below, const float* here, c
   // More rows than compilers compare with each other: none of them is `out`.
 #pragma GCC ivdep
   for (int i = 0; i < w; ++i) {
-    out[i] = diagonal[i] * here[i] - right[i] * here[i + 1] - right[i - 1] * here[i - 1] - up[i] * above[i] - down[i] * below[i] -
-             up_right[i] * above[i + 1] - up_left[i] * above[i - 1] - down_left[i - 1] * below[i - 1] - down_right[i + 1] * below[i + 1];
+    out[i] = diagonal[i] * here[i] - right[i] * here[i + 1] - right[i - 1] * here[i - 1] - up[i] * above[i] -
+             down[i] * below[i] - up_right[i] * above[i + 1] - up_left[i] * above[i - 1] -
+             down_left[i - 1] * below[i - 1] - down_right[i + 1] * below[i + 1];
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

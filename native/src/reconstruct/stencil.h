@@ -6,7 +6,7 @@
 
 #include "reconstruct/field.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 struct Stencil {
   Stencil() = default;
@@ -34,4 +34,4 @@ inline void apply_row(const Stencil& a, const Field& x, int y, int channel, floa
   apply_row(a, y, x.row(y - 1, channel), x.row(y, channel), x.row(y + 1, channel), out);
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

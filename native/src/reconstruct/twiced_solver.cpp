@@ -1,6 +1,6 @@
 #include "reconstruct/twiced_solver.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 void TwicedSolver::apply(const PoissonPlanes& planes, float* out) const {
   const Field& x = minimum_.solution;
@@ -13,4 +13,4 @@ void TwicedSolver::read_solution(const PoissonPlanes& planes, int channel, float
   twicing_.apply(planes, out);
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

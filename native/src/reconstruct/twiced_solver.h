@@ -4,12 +4,12 @@
 #include "reconstruct/twicing.h"
 #include "reconstruct/weighted_least_squares.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 class TwicedSolver final : public LinearOperator {
  public:
   // All weights come from the first three channels of `images`, which share them, and are frozen.
-  TwicedSolver(const GradientImages& images, Minimum minimum, float alpha)
+  TwicedSolver(const film::GradientImages& images, Minimum minimum, float alpha)
       : minimum_(std::move(minimum)), twicing_(images, minimum_.solution, alpha), alpha_(alpha) {}
 
   void apply(const PoissonPlanes& planes, float* out) const override;
@@ -23,4 +23,4 @@ class TwicedSolver final : public LinearOperator {
   float alpha_;  // of the start and of the twicing
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

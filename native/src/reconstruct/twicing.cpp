@@ -4,13 +4,14 @@
 #include <cmath>
 #include <functional>
 
-#include "base/types.h"
 #include "base/rows.h"
+#include "base/types.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
-// Least side of the squares that share a bound: some times S's reach, which is 1/α = 5 pixels, and enough pixels for ln n = 7 outliers.
+// Least side of the squares that share a bound: some times S's reach, which is 1/α = 5 pixels, and enough pixels for ln
+// n = 7 outliers.
 constexpr int kMinSide = 32;
 
 int square_count(int length) { return std::max(1, length / kMinSide); }
@@ -18,7 +19,7 @@ int square_count(int length) { return std::max(1, length / kMinSide); }
 int block_begin(int length, int block) { return static_cast<int>(int64_t(length) * block / square_count(length)); }
 
 // ‖I − x₀‖² of a pixel.
-float squared_residual(const GradientImages& images, const Field& estimate, int x, int y) {
+float squared_residual(const film::GradientImages& images, const Field& estimate, int x, int y) {
   const float* primal = images.primal.data() + (size_t(y) * images.width + x) * images.channels;
   float sum = 0.0f;
   for (int c = 0; c < estimate.channels(); ++c) {
@@ -35,7 +36,8 @@ float outlier_bound_squared(std::vector<float>* squares) {
   if (!(share > 0.0f)) return kInfinity;
   const auto maximum = static_cast<size_t>(std::ceil(share));
   std::partial_sort(squares->begin(), squares->begin() + ptrdiff_t(maximum), squares->end(), std::greater<>());
-  // With the k largest beyond the bound, its square is the sum of the others over ln n − k. The least such k, summed from the smallest up.
+  // With the k largest beyond the bound, its square is the sum of the others over ln n − k. The least such k, summed
+  // from the smallest up.
   double rest = 0.0, bound = 0.0;
   for (size_t i = maximum; i < squares->size(); ++i) rest += (*squares)[i];
   for (size_t k = maximum; k-- > 0;) {
@@ -46,7 +48,7 @@ float outlier_bound_squared(std::vector<float>* squares) {
   return static_cast<float>(bound);
 }
 
-Twicing::Twicing(const GradientImages& images, const Field& estimate, float alpha)
+Twicing::Twicing(const film::GradientImages& images, const Field& estimate, float alpha)
     : weights_(images.width, images.height, 1), dct_(images.width, images.height), data_weight_(alpha * alpha) {
   const int w = images.width, h = images.height;
   for_rows(h, [&](int y) {
@@ -70,7 +72,8 @@ void limit_blocks(Field* field) {
 void limit_block(int x0, int x1, int y0, int y1, Field* field) {
   std::vector<float> squares;
   for (int y = y0; y < y1; ++y) {
-    std::copy_if(field->row(y) + x0, field->row(y) + x1, std::back_inserter(squares), [](float e) { return is_finite(e); });
+    std::copy_if(field->row(y) + x0, field->row(y) + x1, std::back_inserter(squares),
+                 [](float e) { return is_finite(e); });
   }
   const float bound = outlier_bound_squared(&squares);
   for (int y = y0; y < y1; ++y) {
@@ -85,7 +88,8 @@ void Twicing::apply(const PoissonPlanes& planes, float* values) const {
   const int w = weights_.width();
   const size_t stride = planes.stride, step = size_t(w) * stride;
   const auto fill = [&](int y, float* row) {
-    const float *weight = weights_.row(y), *primal = planes.primal + size_t(y) * step, *value = values + size_t(y) * step;
+    const float *weight = weights_.row(y), *primal = planes.primal + size_t(y) * step,
+                *value = values + size_t(y) * step;
     for (int x = 0; x < w; ++x, primal += stride, value += stride) {
       row[x] = is_finite(*primal) ? data_weight_ * weight[x] * (*primal - *value) : 0.0f;
     }
@@ -98,4 +102,4 @@ void Twicing::apply(const PoissonPlanes& planes, float* values) const {
   dct_.solve(data_weight_, 1, fill, {}, take, work.get());
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

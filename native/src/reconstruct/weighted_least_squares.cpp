@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "base/rows.h"
 #include "base/types.h"
 #include "reconstruct/l2.h"
-#include "base/rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // The frozen operator is linear as far as it is solved: parts that add up must add up to much better than the noise.
@@ -46,14 +46,16 @@ void WeightedLeastSquares::update() {
   for (int y = 0; y < h; ++y) matrix.right.row(y)[w - 1] = 0.0f;
   std::fill_n(matrix.up.row(h - 1), w, 0.0f);
   for_rows(h, [&](int y) {
-    const float *data = data_weights_.row(y), *right = matrix.right.row(y), *up = matrix.up.row(y), *down = matrix.up.row(y - 1);
+    const float *data = data_weights_.row(y), *right = matrix.right.row(y), *up = matrix.up.row(y),
+                *down = matrix.up.row(y - 1);
     float* diagonal = matrix.diagonal.row(y);
     for (int x = 0; x < w; ++x) diagonal[x] = data[x] + right[x] + right[x - 1] + up[x] + down[x];
   });
   multigrid_.update();
 }
 
-CgReport WeightedLeastSquares::solve(const SolverPlanes& planes, const CgGoal& goal, int max_steps, const CancelCheck& cancel, Field* x) {
+CgReport WeightedLeastSquares::solve(const SolverPlanes& planes, const CgGoal& goal, int max_steps,
+                                     const CancelCheck& cancel, Field* x) {
   right_side(data_weights_, multigrid_.matrix(), planes, &b_);
   return conjugate_gradient(&multigrid_, b_, x, &fields_, goal, max_steps, cancel);
 }
@@ -86,4 +88,4 @@ Field start_from_l2(const PoissonPlanes& planes, int width, int height, int chan
   return x;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

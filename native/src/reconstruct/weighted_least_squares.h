@@ -5,7 +5,7 @@
 #include "reconstruct/multigrid.h"
 #include "reconstruct/solver_planes.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 class WeightedLeastSquares {
  public:
@@ -15,8 +15,8 @@ class WeightedLeastSquares {
         b_(width, height, channels),
         fields_(width, height, channels) {}
 
-  // To be filled, then update(). Those of the differences are the matrix's `right` and `up`; in the last column and row, which carry
-  // none, they may be anything. A row of weight 0 is absent; its values may be anything.
+  // To be filled, then update(). Those of the differences are the matrix's `right` and `up`; in the last column and
+  // row, which carry none, they may be anything. A row of weight 0 is absent; its values may be anything.
   Field& data_weights() { return data_weights_; }
   Stencil& matrix() { return multigrid_.matrix(); }
   void update();
@@ -46,4 +46,4 @@ struct Minimum {
 // The exact L2 solution of interleaved planes: where the iterations start.
 Field start_from_l2(const PoissonPlanes& planes, int width, int height, int channels, float alpha);
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

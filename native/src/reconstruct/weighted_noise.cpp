@@ -3,7 +3,7 @@
 #include "reconstruct/minimise_by_noise.h"
 #include "reconstruct/twicing.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // The estimate needs no more digits than this.
@@ -12,14 +12,15 @@ constexpr int kMaxSteps = 10;
 
 }  // namespace
 
-NoiseLeft noise_left(const GradientImages& images, const GradientImages& half_differences, float alpha, const CancelCheck& cancel) {
+NoiseLeft noise_left(const film::GradientImages& images, const film::GradientImages& half_differences, float alpha,
+                     const CancelCheck& cancel) {
   alpha = chosen_alpha(GRADUS_RECONSTRUCTION_L1, alpha);
   SolveReport report;
   Minimum minimum = minimise_by_noise(images, cancel, &report);
   const int channels = minimum.solution.channels();
   Field noise(images.width, images.height, channels);
-  minimum.system.solve(load_planes(planes_of(half_differences, 0), images.width, images.height, channels), kGoal, kMaxSteps, cancel,
-                       &noise);
+  minimum.system.solve(load_planes(planes_of(half_differences, 0), images.width, images.height, channels), kGoal,
+                       kMaxSteps, cancel, &noise);
   const Twicing twicing(images, minimum.solution, alpha);
   const size_t stride = size_t(images.channels);
   NoiseLeft left{std::vector<float>(images.primal.size()), std::vector<float>(images.primal.size())};
@@ -32,4 +33,4 @@ NoiseLeft noise_left(const GradientImages& images, const GradientImages& half_di
   return left;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -1,7 +1,7 @@
 // Normal equations of eight windows side by side.
 #pragma once
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 using Lanes = float __attribute__((vector_size(32)));
 
@@ -10,9 +10,10 @@ inline constexpr int kLanes = 8;
 // Row-major lower triangle of a symmetric matrix: (i, j), j <= i.
 constexpr int packed(int i, int j) { return i * (i + 1) / 2 + j; }
 
-// Solves M a = R for C right sides by M = L D Lᵀ (no square roots), in place: `matrix` becomes L and D, `right` the solutions,
-// right[C·i + c] the i-th coefficient of side c. M is positive semidefinite but for rounding; a pivot that rounding has left nothing of
-// counts as infinite, which leaves its coefficient out. Unrolled, it takes two thirds of the time.
+// Solves M a = R for C right sides by M = L D Lᵀ (no square roots), in place: `matrix` becomes L and D, `right` the
+// solutions, right[C·i + c] the i-th coefficient of side c. M is positive semidefinite but for rounding; a pivot that
+// rounding has left nothing of counts as infinite, which leaves its coefficient out. Unrolled, it takes two thirds of
+// the time.
 template <int P, int C>
 inline void solve_windows(Lanes* matrix, Lanes* right) {
   const Lanes zero{}, minimum = zero + 1e-30f;
@@ -57,4 +58,4 @@ inline void solve_windows(Lanes* matrix, Lanes* right) {
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

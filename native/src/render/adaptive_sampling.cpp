@@ -5,9 +5,9 @@
 
 #include "render/sample_allocation.h"
 
-namespace gradus {
+namespace gradus::render {
 
-AdaptiveSampling::AdaptiveSampling(const Film& film, float threshold, uint32_t first_check)
+AdaptiveSampling::AdaptiveSampling(const film::Film& film, float threshold, uint32_t first_check)
     : region_(film.region),
       first_sample_(film.settings.first_sample),
       threshold_(threshold),
@@ -17,7 +17,7 @@ AdaptiveSampling::AdaptiveSampling(const Film& film, float threshold, uint32_t f
       spread_(grid_.blocks.size(), 1.0),
       stopped_(grid_.blocks.size(), 0) {
   for (const Region& block : grid_.blocks) {
-    taken_.push_back(samples_at(film, film.index(block.x0, block.y0)));
+    taken_.push_back(film::samples_at(film, film.index(block.x0, block.y0)));
   }
   const bool continues = !film.shared.rays.empty();
   uncounted_ = continues ? film.shared.uncounted : taken_.front();
@@ -39,7 +39,8 @@ bool AdaptiveSampling::all_done() const {
 }
 
 size_t AdaptiveSampling::index(int32_t x, int32_t y) const {
-  return grid_.index(pixel_block_of(x) - pixel_block_of(region_.x0), pixel_block_of(y) - pixel_block_of(region_.y0));
+  return grid_.index(film::pixel_block_of(x) - film::pixel_block_of(region_.x0),
+                     film::pixel_block_of(y) - film::pixel_block_of(region_.y0));
 }
 
 // With the cells around: a cell where no light was found yet lies beside others where it was.
@@ -61,9 +62,11 @@ double AdaptiveSampling::rays_per_sample(size_t block) const {
 void AdaptiveSampling::start_batch(uint32_t mean) {
   std::vector<BlockShare> shares;
   for (size_t i = 0; i < grid_.blocks.size(); ++i) {
-    shares.push_back({grid_.blocks[i].area(), taken_[i], smooth_spread(i) / std::sqrt(rays_per_sample(i)), stopped_[i] == 0});
+    shares.push_back(
+        {grid_.blocks[i].area(), taken_[i], smooth_spread(i) / std::sqrt(rays_per_sample(i)), stopped_[i] == 0});
   }
-  const std::vector<uint32_t> counts = judged_ ? allocate_samples(shares, mean) : std::vector<uint32_t>(grid_.blocks.size(), mean);
+  const std::vector<uint32_t> counts =
+      judged_ ? allocate_samples(shares, mean) : std::vector<uint32_t>(grid_.blocks.size(), mean);
   batch_.first.resize(size_t(region_.area()));
   batch_.count.resize(size_t(region_.area()));
   for (size_t i = 0; i < grid_.blocks.size(); ++i) {
@@ -75,4 +78,4 @@ void AdaptiveSampling::start_batch(uint32_t mean) {
 
 uint32_t AdaptiveSampling::max_taken() const { return *std::max_element(taken_.begin(), taken_.end()); }
 
-}  // namespace gradus
+}  // namespace gradus::render

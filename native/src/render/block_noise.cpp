@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/rows.h"
 #include "reconstruct/error_estimate.h"
-#include "reconstruct/weighted_noise.h"
 #include "reconstruct/reconstruct_film.h"
 #include "reconstruct/regularized.h"
-#include "base/rows.h"
+#include "reconstruct/weighted_noise.h"
 
-namespace gradus {
+namespace gradus::render {
 namespace {
 
 // Keeps the relative error of black areas finite; radiance² at display exposure (the measures' constant).
@@ -18,41 +18,45 @@ constexpr double kEpsilon = 1e-3;
 // Of all components together.
 struct FilmNoise {
   std::vector<float> image;  // what is delivered
-  ErrorTerms terms;
+  reconstruct::ErrorTerms terms;
   std::vector<float> by_its_weights;  // noise; empty where these do not follow it
   std::vector<float> error;           // of a reconstruction that estimates it itself, in place of the terms
 };
 
-void add_terms(const Film& film, int component, uint32_t reconstruction, float alpha, const std::vector<float>& image,
-               const CancelCheck& cancel, FilmNoise* sum) {
-  ErrorTerms terms = error_terms(film, component, reconstruction, alpha, image, cancel);
-  add_image(std::move(terms.noise), &sum->terms.noise);
-  add_image(std::move(terms.apart), &sum->terms.apart);
+void add_terms(const film::Film& film, int component, uint32_t reconstruction, float alpha,
+               const std::vector<float>& image, const CancelCheck& cancel, FilmNoise* sum) {
+  reconstruct::ErrorTerms terms = reconstruct::error_terms(film, component, reconstruction, alpha, image, cancel);
+  reconstruct::add_image(std::move(terms.noise), &sum->terms.noise);
+  reconstruct::add_image(std::move(terms.apart), &sum->terms.apart);
 }
 
 // Estimates the noise of L1 by weights of the measured noise, which are close to L1's weights and need no iteration.
-void add_l1(const Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel, FilmNoise* sum) {
-  GradientImages images = read_images(film, component);
-  read_deviations(film, component, &images);
-  NoiseLeft left = noise_left(images, read_half_differences(film, component), alpha, cancel);
+void add_l1(const film::Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
+            FilmNoise* sum) {
+  film::GradientImages images = film::read_images(film, component);
+  film::read_deviations(film, component, &images);
+  reconstruct::NoiseLeft left =
+      reconstruct::noise_left(images, film::read_half_differences(film, component), alpha, cancel);
   images = {};
   add_terms(film, component, reconstruction, alpha, left.image, cancel, sum);
-  add_image(std::move(left.image), &sum->image);
-  add_image(std::move(left.noise), &sum->by_its_weights);
+  reconstruct::add_image(std::move(left.image), &sum->image);
+  reconstruct::add_image(std::move(left.noise), &sum->by_its_weights);
 }
 
-void add_other(const Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel, FilmNoise* sum) {
-  SolveReport report;
-  std::vector<float> image = reconstruct_component(film, component, reconstruction, alpha, cancel, &report);
+void add_other(const film::Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
+               FilmNoise* sum) {
+  reconstruct::SolveReport report;
+  std::vector<float> image =
+      reconstruct::reconstruct_component(film, component, reconstruction, alpha, cancel, &report);
   add_terms(film, component, reconstruction, alpha, image, cancel, sum);
-  add_image(std::move(image), &sum->image);
+  reconstruct::add_image(std::move(image), &sum->image);
 }
 
-FilmNoise noise_of(const Film& film, uint32_t reconstruction, float alpha, const CancelCheck& cancel) {
+FilmNoise noise_of(const film::Film& film, uint32_t reconstruction, float alpha, const CancelCheck& cancel) {
   FilmNoise sum;
   if (reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
-    SolveReport report;
-    Reconstructed picture = regularize(film, false, cancel, &report);
+    reconstruct::SolveReport report;
+    reconstruct::Reconstructed picture = reconstruct::regularize(film, false, cancel, &report);
     sum.image = std::move(picture.image);
     sum.error = std::move(picture.error);
     return sum;
@@ -75,13 +79,13 @@ struct PixelNoise {
 
 PixelNoise noise_of_pixel(const FilmNoise& images, size_t i, size_t v) {
   PixelNoise pixel;
-  pixel.noise = images.error.empty() ? mean_square(&images.terms.noise[v]) : double(images.error[i]);
-  if (!images.terms.apart.empty()) pixel.apart = mean_square(&images.terms.apart[v]);
-  pixel.own = images.by_its_weights.empty() ? pixel.noise : mean_square(&images.by_its_weights[v]);
+  pixel.noise = images.error.empty() ? reconstruct::mean_square(&images.terms.noise[v]) : double(images.error[i]);
+  if (!images.terms.apart.empty()) pixel.apart = reconstruct::mean_square(&images.terms.apart[v]);
+  pixel.own = images.by_its_weights.empty() ? pixel.noise : reconstruct::mean_square(&images.by_its_weights[v]);
   return pixel;
 }
 
-BlockNoise noise_of_block(const Film& film, const FilmNoise& images, const Region& block) {
+BlockNoise noise_of_block(const film::Film& film, const FilmNoise& images, const Region& block) {
   const double exposure = double(film.settings.film_exposure) * film.settings.film_exposure;
   double noise = 0.0, apart = 0.0, signal = 0.0, relative = 0.0;
   for (int32_t y = block.y0; y < block.y1; ++y) {
@@ -95,17 +99,17 @@ BlockNoise noise_of_block(const Film& film, const FilmNoise& images, const Regio
       relative += exposure * pixel.own / s;
     }
   }
-  return {std::sqrt(squared_error(noise, apart) / signal), std::sqrt(relative / double(block.area()))};
+  return {std::sqrt(reconstruct::squared_error(noise, apart) / signal), std::sqrt(relative / double(block.area()))};
 }
 
 }  // namespace
 
-std::vector<BlockNoise> estimate_noise(const Film& film, const std::vector<Region>& blocks, uint32_t reconstruction, float alpha,
-                                      const CancelCheck& cancel) {
+std::vector<BlockNoise> estimate_noise(const film::Film& film, const std::vector<Region>& blocks,
+                                       uint32_t reconstruction, float alpha, const CancelCheck& cancel) {
   const FilmNoise images = noise_of(film, reconstruction, alpha, cancel);
   std::vector<BlockNoise> result(blocks.size());
   for_rows(int(blocks.size()), [&](int i) { result[size_t(i)] = noise_of_block(film, images, blocks[size_t(i)]); });
   return result;
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -4,37 +4,39 @@
 
 #include "lpe/components.h"
 
-namespace gradus {
+namespace gradus::render {
 
 namespace {
 
-bool parts(const PixelCorrespondence& own, const PixelCorrespondence& surface, size_t pixel) {
-  return own.pixel[pixel] != kNoCorrespondence && own.pixel[pixel] != surface.pixel[pixel];
+bool parts(const film::PixelCorrespondence& own, const film::PixelCorrespondence& surface, size_t pixel) {
+  return own.pixel[pixel] != film::kNoCorrespondence && own.pixel[pixel] != surface.pixel[pixel];
 }
 
 // The first component that goes where this one goes; itself, if none before does.
-size_t first_with_same_replay(const ReplayMap& replay_map, size_t component, size_t pixel) {
+size_t first_with_same_replay(const film::ReplayMap& replay_map, size_t component, size_t pixel) {
   const int32_t source = replay_map.of_component[component].pixel[pixel];
   for (size_t c = 0; c < component; ++c) {
-    const PixelCorrespondence& other = replay_map.of_component[c];
+    const film::PixelCorrespondence& other = replay_map.of_component[c];
     if (!other.empty() && other.pixel[pixel] == source) return c;
   }
   return component;
 }
 
 // That are sampled once more for this component.
-size_t parting_pixels(const ReplayMap& replay_map, size_t component) {
-  const PixelCorrespondence& own = replay_map.of_component[component];
+size_t parting_pixels(const film::ReplayMap& replay_map, size_t component) {
+  const film::PixelCorrespondence& own = replay_map.of_component[component];
   size_t pixels = 0;
   for (size_t i = 0; i < own.pixel.size(); ++i) {
-    pixels += parts(own, replay_map.correspondence, i) && first_with_same_replay(replay_map, component, i) == component ? 1 : 0;
+    pixels += parts(own, replay_map.correspondence, i) && first_with_same_replay(replay_map, component, i) == component
+                  ? 1
+                  : 0;
   }
   return pixels;
 }
 
 }  // namespace
 
-void limit_component_replays(ReplayMap* replay_map) {
+void limit_component_replays(film::ReplayMap* replay_map) {
   size_t pixels = 0;
   for (size_t c = 0; c < replay_map->of_component.size(); ++c) {
     const size_t parting = parting_pixels(*replay_map, c);
@@ -45,20 +47,22 @@ void limit_component_replays(ReplayMap* replay_map) {
     }
   }
   const auto& all = replay_map->of_component;
-  if (std::all_of(all.begin(), all.end(), [](const auto& own) { return own.empty(); })) replay_map->of_component.clear();
+  if (std::all_of(all.begin(), all.end(), [](const auto& own) { return own.empty(); }))
+    replay_map->of_component.clear();
 }
 
-ComponentReplays replays_of_components(const ReplayMap& replay_map) {
+ComponentReplays replays_of_components(const film::ReplayMap& replay_map) {
   ComponentReplays replays;
   const size_t pixels = replay_map.correspondence.pixel.size();
   std::vector<size_t> places(replay_map.of_component.size());  // in replays.own
   for (size_t c = 0; c < places.size(); ++c) {
     if (!replay_map.has_component_map(int(c))) continue;
-    const PixelCorrespondence& own = replay_map.of_component[c];
-    const ReplayMap along{replay_map.stream_frame, own, replay_map.scene_key, replay_map.seed, replay_map.shares_jitter};
+    const film::PixelCorrespondence& own = replay_map.of_component[c];
+    const film::ReplayMap along{replay_map.stream_frame, own, replay_map.scene_key, replay_map.seed,
+                                replay_map.shares_jitter};
     places[c] = replays.own.size();
     replays.own.push_back({along, std::vector<uint8_t>(pixels, 0), std::vector<uint32_t>(pixels, 0)});
-    if (replays.shared.empty()) replays.shared.assign(pixels, kEveryComponent);
+    if (replays.shared.empty()) replays.shared.assign(pixels, lpe::kEveryComponent);
     for (size_t i = 0; i < pixels; ++i) {
       if (!parts(own, replay_map.correspondence, i)) continue;
       const size_t first = first_with_same_replay(replay_map, c, i);
@@ -75,4 +79,4 @@ ComponentReplays replays_of_components(const ReplayMap& replay_map) {
   return replays;
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

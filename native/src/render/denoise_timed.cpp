@@ -2,13 +2,15 @@
 
 #include "base/scoped_timer.h"
 
-namespace gradus {
+namespace gradus::render {
 
-std::vector<float> denoise_timed(const OidnLibrary& library, const Film& film, const Region& region, uint32_t threads,
-                                    const CancelCheck& cancel, const std::vector<float>& combined, RenderStats* stats) {
+std::vector<float> denoise_timed(const output::OidnLibrary& library, const film::Film& film, const Region& region,
+                                 uint32_t threads, const CancelCheck& cancel, const std::vector<float>& combined,
+                                 RenderStats* stats) {
   const ScopedTimer timer(&stats->seconds.denoise, &stats->cpu_seconds.denoise);
   std::string failure;
-  std::vector<float> rgba = denoise_combined(library, film, film.settings.reconstruction, region, threads, cancel, combined, &failure);
+  std::vector<float> rgba = output::denoise_combined(library, film, film.settings.reconstruction, region, threads,
+                                                     cancel, combined, &failure);
   if (rgba.empty()) {
     stats->warnings.push_back(failure);
   } else {
@@ -17,4 +19,4 @@ std::vector<float> denoise_timed(const OidnLibrary& library, const Film& film, c
   return rgba;
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

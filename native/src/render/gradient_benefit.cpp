@@ -5,31 +5,34 @@
 #include <numbers>
 #include <numeric>
 
-namespace gradus {
+namespace gradus::render {
 
 namespace {
 
-// What is left because noise is not the same everywhere, which the model supposes: the error that is measured on twelve scenes is 0 to 0.3
-// above the model's, 0.1 in the median (docs/method.md).
+// What is left because noise is not the same everywhere, which the model supposes: the error that is measured on twelve
+// scenes is 0 to 0.3 above the model's, 0.1 in the median (docs/method.md).
 constexpr double kUneven = 0.1;
 
-// Outliers, which roots of deviations hardly count, are shifted no better than the rest, and often worse: mean squares of many more samples
-// have 1 to 5 times the share that L2 leaves by roots, 1.8 in the median of twelve scenes (docs/method.md).
+// Outliers, which roots of deviations hardly count, are shifted no better than the rest, and often worse: mean squares
+// of many more samples have 1 to 5 times the share that L2 leaves by roots, 1.8 in the median of twelve scenes
+// (docs/method.md).
 constexpr double kOutliers = 1.35;
 
-// CPU time of the offsets over that of base paths: for themselves, and for each of their rays per ray of the base, shading included. Least
-// squares over twelve scenes, within 10 % on eleven.
+// CPU time of the offsets over that of base paths: for themselves, and for each of their rays per ray of the base,
+// shading included. Least squares over twelve scenes, within 10 % on eleven.
 constexpr double kOffsetPaths = 0.36, kShiftRay = 0.50, kShiftShadowRay = 0.55;
 
 // Of squared brightness, as in the stopping rule: below it noise is not seen.
 constexpr double kDark = 1e-3;
 
-// A part of the picture has to promise this against all or nothing: of many uncertain sums the least is one that is too low.
+// A part of the picture has to promise this against all or nothing: of many uncertain sums the least is one that is too
+// low.
 constexpr double kWorthParting = 0.75;
 
 double squared(double x) { return x * x; }
 
-// What L2 leaves of the noise, by roots of deviations, at the best of the weights: with all correlation between pixels and differences.
+// What L2 leaves of the noise, by roots of deviations, at the best of the weights: with all correlation between pixels
+// and differences.
 double l2_share(const PilotSums& sums) {
   return squared(squared(*std::min_element(sums.l2_roots.begin(), sums.l2_roots.end()) / sums.pixel_root));
 }
@@ -38,7 +41,8 @@ double l2_share(const PilotSums& sums) {
 Benefit known_benefit(const PilotSums& sums) {
   Benefit benefit;
   if (sums.plain_rays > 0.0) {
-    benefit.cost += kOffsetPaths + (kShiftRay * sums.shift_rays + kShiftShadowRay * sums.shift_shadow_rays) / sums.plain_rays;
+    benefit.cost +=
+        kOffsetPaths + (kShiftRay * sums.shift_rays + kShiftShadowRay * sums.shift_shadow_rays) / sums.plain_rays;
   }
   if (!(sums.pixels > 0.0)) return benefit;
   benefit.rays = sums.plain_rays / sums.pixels;
@@ -115,4 +119,4 @@ std::vector<bool> choose_blocks(const std::vector<Benefit>& blocks, const std::v
   return chosen;
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -3,7 +3,7 @@
 #include <complex>
 #include <numbers>
 
-namespace gradus {
+namespace gradus::render {
 namespace {
 
 // The integrands are smooth but for α near 0, where little of a spectrum is.
@@ -11,7 +11,9 @@ constexpr int kSteps = 128;
 
 }  // namespace
 
-double mean_product(const Radiance& a, const Radiance& b) { return (double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z) / 3.0; }
+double mean_product(const Radiance& a, const Radiance& b) {
+  return (double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z) / 3.0;
+}
 
 L2Noise::L2Noise(double alpha) {
   for (int j = 0; j < kSteps; ++j) {
@@ -30,13 +32,13 @@ L2Noise::L2Noise(double alpha) {
   for (double* mean : {&pixel_, &mixed_, &same_, &right_angle_, &opposite_}) *mean /= double(kSteps) * kSteps;
 }
 
-double L2Noise::of(const Radiance& pixel, const std::array<Radiance, kOffsets>& d) const {
-  const Radiance across = d[kRight] + d[kLeft], along = d[kUp] + d[kDown];
+double L2Noise::of(const Radiance& pixel, const std::array<Radiance, film::kOffsets>& d) const {
+  const Radiance across = d[film::kRight] + d[film::kLeft], along = d[film::kUp] + d[film::kDown];
   double sum = pixel_ * mean_product(pixel, pixel) + 2.0 * mixed_ * mean_product(pixel, across + along);
   for (const Radiance& difference : d) sum += same_ * mean_product(difference, difference);
   sum += 2.0 * right_angle_ * mean_product(across, along);
-  sum += 2.0 * opposite_ * (mean_product(d[kRight], d[kLeft]) + mean_product(d[kUp], d[kDown]));
+  sum += 2.0 * opposite_ * (mean_product(d[film::kRight], d[film::kLeft]) + mean_product(d[film::kUp], d[film::kDown]));
   return sum;
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

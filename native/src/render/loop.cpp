@@ -2,41 +2,41 @@
 
 #include <cmath>
 
-#include "base/threads.h"
-#include "base/scoped_timer.h"
 #include "base/clock.h"
-#include "scene/device.h"
 #include "base/error.h"
+#include "base/scoped_timer.h"
+#include "base/threads.h"
 #include "film/pass_planes.h"
 #include "motion/component_motion.h"
-#include "render/batches.h"
 #include "output/combine.h"
 #include "output/component_read.h"
+#include "output/pass_read.h"
+#include "render/batches.h"
 #include "render/denoise_timed.h"
 #include "render/memory_estimate.h"
-#include "output/pass_read.h"
 #include "render/resume.h"
 #include "render/show_combined.h"
 #include "render/small_components.h"
 #include "render/tiles.h"
+#include "scene/device.h"
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::render {
 namespace {
 
 // How often a long batch says that there is something new to see.
 constexpr int64_t kImageIntervalMs = 300;
 
 // Of what is delivered after a cancel.
-void read_error_of_noisy(const Film& film, const Region& region, float* pixels) {
-  SolveReport report;
+void read_error_of_noisy(const film::Film& film, const Region& region, float* pixels) {
+  reconstruct::SolveReport report;
   std::vector<float> error;
-  combine(
+  output::combine(
       film, GRADUS_RECONSTRUCTION_NONE, 0.0f, region, [] { return false; }, &report, &error);
   std::copy(error.begin(), error.end(), pixels);
 }
 
-void name_planes(const ComponentSet& set, Film* film) {
+void name_planes(const lpe::ComponentSet& set, film::Film* film) {
   for (int c = 0; c < set.count(); ++c) {
     film->components[size_t(c)].name = set[c].name;
     film->components[size_t(c)].expression = set[c].expression;
@@ -48,7 +48,8 @@ Plan planned(const LoopInput& input, const HostDenoiser& denoiser) {
   Plan plan = make_plan(input.planned_settings(), *input.snapshot, denoiser);
   if (!plan.merges_components || !input.samples_only) return plan;
   plan.merges_components = false;
-  plan.skipped.emplace_back("merging of small components", "what is small in one frame of an animation may not be in the next");
+  plan.skipped.emplace_back("merging of small components",
+                            "what is small in one frame of an animation may not be in the next");
   return plan;
 }
 
@@ -57,7 +58,8 @@ void refuse_warnings(const LoopInput& input) {
   const std::vector<std::string>& warnings = input.snapshot->warnings;
   if (!input.settings.strict || warnings.empty()) return;
   const size_t others = warnings.size() - 1;
-  throw unsupported("strict: " + warnings[0] + (others > 0 ? " (and " + std::to_string(others) + " other warnings)" : ""));
+  throw unsupported("strict: " + warnings[0] +
+                    (others > 0 ? " (and " + std::to_string(others) + " other warnings)" : ""));
 }
 
 // From here on every pixel has samples of both halves: there is something to reconstruct.
@@ -65,11 +67,12 @@ constexpr uint32_t kBothHalves = 2;
 
 }  // namespace
 
-std::unique_ptr<Integrator> LoopInput::make_integrator(const GradusSettings& its_settings, uint32_t integrator,
-                                                       ComponentSet components) const {
-  IntegratorContext context;
+std::unique_ptr<integrator::Integrator> LoopInput::make_integrator(const GradusSettings& its_settings,
+                                                                   uint32_t integrator,
+                                                                   lpe::ComponentSet components) const {
+  integrator::IntegratorContext context;
   context.snapshot = snapshot;
-  context.camera = Camera(snapshot->camera, its_settings.width, its_settings.height);
+  context.camera = camera::Camera(snapshot->camera, its_settings.width, its_settings.height);
   context.settings = its_settings;
   context.components = std::move(components);
   return factory(context, integrator);
@@ -77,7 +80,7 @@ std::unique_ptr<Integrator> LoopInput::make_integrator(const GradusSettings& its
 
 RenderLoop::RenderLoop(LoopInput input)
     : input_(std::move(input)),
-      denoiser_(choose_denoiser(input_.settings.denoiser, input_.device.get(), &why_no_denoiser_)),
+      denoiser_(output::choose_denoiser(input_.settings.denoiser, input_.device.get(), &why_no_denoiser_)),
       plan_(planned(input_, {denoiser_ ? denoiser_->name() : "", why_no_denoiser_})),
       arena_(arena_size(input_.threads)),
       picture_(plan_.delivered),
@@ -88,7 +91,7 @@ RenderLoop::RenderLoop(LoopInput input)
   if (input_.resumed) resume(input_.resumed);
 }
 
-void RenderLoop::resume(std::shared_ptr<const Film> film) {
+void RenderLoop::resume(std::shared_ptr<const film::Film> film) {
   check_resumable(*film, input_.settings, plan_, input_.snapshot->content_key);
   input_.resumed = std::move(film);
 }
@@ -100,13 +103,14 @@ void RenderLoop::render() {
   check_cancelled();
   if (plan_.component_motion && !input_.replay) find_motion();
   if (input_.samples_only) return;
-  const bool denoises = denoises_after(plan_, mean_samples(*film_), &stats_.chosen, &stats_.skipped);
+  const bool denoises = denoises_after(plan_, film::mean_samples(*film_), &stats_.chosen, &stats_.skipped);
   if (!denoises) film_->settings.denoiser = GRADUS_DENOISER_NONE;
   set_phase(GRADUS_PHASE_RECONSTRUCTING);
   reconstruct_film();
   if (denoises && !is_stopped()) denoise_film();
   check_cancelled();
-  if (has_light_passes(*film_) && (denoises || film_->settings.reconstruction != GRADUS_RECONSTRUCTION_NONE)) split_light();
+  if (output::has_light_passes(*film_) && (denoises || film_->settings.reconstruction != GRADUS_RECONSTRUCTION_NONE))
+    split_light();
   check_cancelled();
 }
 
@@ -121,21 +125,24 @@ GradientMap RenderLoop::choose_gradients() {
   quarter.run = [this] { live_view_.show_quarter(); };
   const uint64_t cpu = process_cpu_nanoseconds();
   const auto integrator = input_.make_integrator(settings, plan_.integrator);
-  arena_.execute([&] { map = run_pilot(*integrator, settings, plan_.reconstruction, plan_.sampled, plan_.channels, stop_, quarter); });
+  arena_.execute([&] {
+    map = run_pilot(*integrator, settings, plan_.reconstruction, plan_.sampled, plan_.channels, stop_, quarter);
+  });
   stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu) - live_view_.cpu_seconds();
   // A pilot that was cut short has found nothing out.
   check_cancelled();
   return map;
 }
 
-ComponentSet RenderLoop::choose_components() {
+lpe::ComponentSet RenderLoop::choose_components() {
   if (!plan_.merges_components) return plan_.components;
   if (input_.resumed) return resumed_components(*input_.resumed, plan_);
   const uint64_t cpu = process_cpu_nanoseconds();
   const GradusSettings settings = pilot_settings(input_.settings);
   const auto integrator = input_.make_integrator(settings, GRADUS_INTEGRATOR_PATH, plan_.components);
   SmallComponents small;
-  arena_.execute([&] { small = find_small_components(*integrator, settings, plan_.components, plan_.channels, stop_); });
+  arena_.execute(
+      [&] { small = find_small_components(*integrator, settings, plan_.components, plan_.channels, stop_); });
   stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu);
   check_cancelled();
   explain(small, plan_.components, &stats_.skipped);
@@ -148,20 +155,22 @@ void RenderLoop::prepare() {
   components_ = choose_components();
   const uint32_t integrator = gradients_.none() ? uint32_t{GRADUS_INTEGRATOR_PATH} : plan_.integrator;
   if (plan_.pilot) explain(gradients_, &stats_.chosen, &stats_.skipped);
-  std::shared_ptr<Film> film;
+  std::shared_ptr<film::Film> film;
   if (input_.resumed) {
     check_gradients(*input_.resumed, !gradients_.none());
-    film = std::make_shared<Film>(*input_.resumed);
+    film = std::make_shared<film::Film>(*input_.resumed);
   } else {
-    film =
-        std::make_shared<Film>(settings.width, settings.height, plan_.sampled, plan_.channels, components_.count(), !gradients_.none());
+    film = std::make_shared<film::Film>(settings.width, settings.height, plan_.sampled, plan_.channels,
+                                        components_.count(), !gradients_.none());
     name_planes(components_, film.get());
     const bool motion = plan_.component_motion && !input_.replay;
-    allocate_component_content({plan_.non_specular_vertices, plan_.non_specular_details, motion, motion && input_.samples_only}, film.get());
-    film->passes = make_pass_planes(plan_.passes, size_t(plan_.sampled.area()));
-    if (has_bit(plan_.passes, GRADUS_PASS_FALLBACK)) film->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
+    film::allocate_component_content(
+        {plan_.non_specular_vertices, plan_.non_specular_details, motion, motion && input_.samples_only}, film.get());
+    film->passes = film::make_pass_planes(plan_.passes, size_t(plan_.sampled.area()));
+    if (schema::has_bit(plan_.passes, GRADUS_PASS_FALLBACK)) film->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
   }
-  if (film->settings.noise_threshold != settings.noise_threshold) film->shared.stopped.assign(film->shared.stopped.size(), 0);
+  if (film->settings.noise_threshold != settings.noise_threshold)
+    film->shared.stopped.assign(film->shared.stopped.size(), 0);
   film->settings = settings;
   film->settings.struct_size = sizeof(GradusSettings);
   // AUTO is resolved here, once: whoever reads the frame later must not decide again.
@@ -185,12 +194,13 @@ void RenderLoop::prepare() {
 bool RenderLoop::next_batch(uint32_t begin, uint32_t* end) const {
   if (is_stopped() || begin >= input_.settings.samples) return false;
   *end = std::min(batch_end(begin, input_.settings.samples), begin + affordable_samples(begin));
-  if (input_.replay && !input_.replay->counts.empty()) *end = input_.settings.samples;  // their number is not the same everywhere
+  if (input_.replay && !input_.replay->counts.empty())
+    *end = input_.settings.samples;  // their number is not the same everywhere
   return *end > begin;
 }
 
-// How many more samples per pixel the time limit allows, by the pace so far and rounded to the nearest: a render ends within half a sample
-// of the limit. The first one is always taken.
+// How many more samples per pixel the time limit allows, by the pace so far and rounded to the nearest: a render ends
+// within half a sample of the limit. The first one is always taken.
 uint32_t RenderLoop::affordable_samples(uint32_t begin) const {
   const double limit = input_.settings.time_limit;
   if (!(limit > 0.0) || input_.replay) return kMaxBatch;
@@ -205,8 +215,9 @@ void RenderLoop::judge() {
   const CancelCheck cancel = [this] { return is_stopped(); };
   const uint32_t reconstruction = film_->settings.reconstruction;
   std::vector<BlockNoise> noise;
-  arena_.execute(
-      [&] { noise = estimate_noise(*film_, adaptive_->blocks(), reconstruction, input_.settings.reconstruction_alpha, cancel); });
+  arena_.execute([&] {
+    noise = estimate_noise(*film_, adaptive_->blocks(), reconstruction, input_.settings.reconstruction_alpha, cancel);
+  });
   if (!cancel()) adaptive_->judge(noise);
   stats_.cpu_seconds.reconstruct += 1e-9 * double(process_cpu_nanoseconds() - cpu);
 }
@@ -219,10 +230,12 @@ void RenderLoop::sample() {
   const bool adaptively = input_.settings.noise_threshold > 0.0f && !input_.replay;
   uint32_t begin = input_.resumed ? resumed_samples(*input_.resumed, adaptively) : 0;
   const uint32_t first = input_.settings.first_sample;
-  if (adaptively) adaptive_ = std::make_unique<AdaptiveSampling>(*film_, input_.settings.noise_threshold, plan_.first_check);
+  if (adaptively)
+    adaptive_ = std::make_unique<AdaptiveSampling>(*film_, input_.settings.noise_threshold, plan_.first_check);
   first_begin_ = begin;
-  sampler_ = std::make_unique<TileSampler>(*integrator_, make_pixel_blocks(plan_.sampled, tile_side(plan_.sampled, input_.threads)), gradients_,
-                                           adaptive_.get(), input_.replay.get(), stop_, film_.get());
+  sampler_ = std::make_unique<TileSampler>(
+      *integrator_, film::make_pixel_blocks(plan_.sampled, tile_side(plan_.sampled, input_.threads)), gradients_,
+      adaptive_.get(), input_.replay.get(), stop_, film_.get());
   tracker_.set_samples(begin);
   work_done_ = uint64_t(begin) * uint64_t(plan_.sampled.area());
   for (uint32_t end = 0; next_batch(begin, &end); begin = end) {
@@ -265,7 +278,8 @@ void RenderLoop::run_batch(uint32_t begin, uint32_t end) {
 bool RenderLoop::show_is_due(uint32_t begin) const {
   const uint32_t reconstruction = film_->settings.reconstruction;
   if (begin < kBothHalves) return live_view_.quarter_is_due(reconstruction);
-  return live_view_.refresh_is_due(reconstruction, sampling_.seconds(), tracker_.fraction() / ProgressTracker::kSamplingShare);
+  return live_view_.refresh_is_due(reconstruction, sampling_.seconds(),
+                                   tracker_.fraction() / ProgressTracker::kSamplingShare);
 }
 
 void RenderLoop::show(uint32_t begin) {
@@ -300,9 +314,11 @@ void RenderLoop::reconstruct_film() {
 void RenderLoop::find_motion() {
   const ScopedTimer timer(&stats_.seconds.correspondence, &stats_.cpu_seconds.correspondence);
   const CancelCheck cancel = [this] { return is_stopped(); };
-  std::vector<ComponentMotion> motion;
-  arena_.execute(
-      [&] { motion = component_motion(*input_.snapshot, input_.settings, components_, kEveryComponent, plan_.sampled, cancel); });
+  std::vector<motion::ComponentMotion> motion;
+  arena_.execute([&] {
+    motion = motion::component_motion(*input_.snapshot, input_.settings, components_, lpe::kEveryComponent,
+                                      plan_.sampled, cancel);
+  });
   check_cancelled();
   // progress() adds up the sizes of these vectors meanwhile.
   const std::lock_guard lock(mutex_);
@@ -315,16 +331,19 @@ void RenderLoop::find_motion() {
 
 void RenderLoop::denoise_film() {
   const CancelCheck cancel = [this] { return is_stopped(); };
-  std::vector<float> rgba = denoise_timed(*denoiser_, *film_, plan_.delivered, input_.threads, cancel, picture_.combined(), &stats_);
+  std::vector<float> rgba =
+      denoise_timed(*denoiser_, *film_, plan_.delivered, input_.threads, cancel, picture_.combined(), &stats_);
   if (rgba.empty()) return;
-  arena_.execute([&] { picture_.show_denoised(std::move(rgba), denoised_error(film_->settings.reconstruction)); });
+  arena_.execute(
+      [&] { picture_.show_denoised(std::move(rgba), output::denoised_error(film_->settings.reconstruction)); });
 }
 
 void RenderLoop::split_light() {
   const ScopedTimer timer(&stats_.seconds.reconstruct, &stats_.cpu_seconds.reconstruct);
   const CancelCheck cancel = [this] { return is_stopped(); };
-  std::shared_ptr<const LightPasses> light;
-  arena_.execute([&] { light = std::make_shared<LightPasses>(*film_, plan_.delivered, picture_.combined(), cancel); });
+  std::shared_ptr<const output::LightPasses> light;
+  arena_.execute(
+      [&] { light = std::make_shared<output::LightPasses>(*film_, plan_.delivered, picture_.combined(), cancel); });
   const std::lock_guard lock(mutex_);
   light_ = std::move(light);
 }
@@ -350,46 +369,52 @@ void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
   if (pass == GRADUS_PASS_COMBINED) live_view_.watch();
   {
     const std::lock_guard lock(mutex_);
-    if (is_sampling() && pass_info(pass).kind != PassKind::Image) {
-      throw invalid_operation("pass " + std::string(pass_info(pass).name) + " comes when sampling has ended");
+    if (is_sampling() && schema::pass_info(pass).kind != schema::PassKind::Image) {
+      throw invalid_operation("pass " + std::string(schema::pass_info(pass).name) + " comes when sampling has ended");
     }
   }
   if (picture_.read(pass, pixels)) return;
-  std::shared_ptr<const Film> film;
-  std::shared_ptr<const LightPasses> light;
+  std::shared_ptr<const film::Film> film;
+  std::shared_ptr<const output::LightPasses> light;
   {
     const std::lock_guard lock(mutex_);
     light = light_;
     if (!is_sampling()) film = film_;
   }
   if (light && light->read(pass, pixels)) return;
-  if (film && pass == GRADUS_PASS_ERROR && has_bit(plan_.passes, pass)) return read_error_of_noisy(*film, plan_.delivered, pixels);
+  if (film && pass == GRADUS_PASS_ERROR && schema::has_bit(plan_.passes, pass))
+    return read_error_of_noisy(*film, plan_.delivered, pixels);
   if (film) {
     // Not the render's own arena, whose threads may still be reconstructing.
-    tbb::task_arena(arena_size(input_.threads)).execute([&] { read_film_pass(*film, pass, plan_.delivered, pixels); });
+    tbb::task_arena(arena_size(input_.threads)).execute([&] {
+      output::read_film_pass(*film, pass, plan_.delivered, pixels);
+    });
     return;
   }
-  std::fill_n(pixels, size_t(plan_.delivered.area()) * pass_info(pass).channels, 0.0f);
+  std::fill_n(pixels, size_t(plan_.delivered.area()) * schema::pass_info(pass).channels, 0.0f);
 }
 
 void RenderLoop::read_component(const std::string& name, uint32_t pass, float* pixels) const {
   const GradusSettings& settings = input_.settings;
-  check_component(settings, name);
-  std::shared_ptr<const Film> film;
+  output::check_component(settings, name);
+  std::shared_ptr<const film::Film> film;
   {
     const std::lock_guard lock(mutex_);
     if (is_sampling()) throw invalid_operation("component " + name + " comes when sampling has ended");
     film = film_;
   }
   const int component = components_.find(name);
-  if (!film || component < 0) return read_absent_component(pass, plan_.delivered, pixels);
-  if (!has_bit(settings.component_passes, pass))
-    throw invalid_operation("pass " + std::string(component_pass_info(pass).name) + " of components was not asked for");
+  if (!film || component < 0) return output::read_absent_component(pass, plan_.delivered, pixels);
+  if (!schema::has_bit(settings.component_passes, pass))
+    throw invalid_operation("pass " + std::string(schema::component_pass_info(pass).name) +
+                            " of components was not asked for");
   std::vector<float> color = picture_.component(component);
-  if (color.empty() && is_of_picture(pass)) {  // it was cancelled
-    color = crop_components(*film, GRADUS_RECONSTRUCTION_NONE, {read_images(*film, component).primal}, plan_.delivered).front();
+  if (color.empty() && schema::is_of_picture(pass)) {  // it was cancelled
+    color = output::crop_components(*film, GRADUS_RECONSTRUCTION_NONE, {film::read_images(*film, component).primal},
+                                    plan_.delivered)
+                .front();
   }
-  read_component_pass(*film, component, pass, plan_.delivered, color, pixels);
+  output::read_component_pass(*film, component, pass, plan_.delivered, color, pixels);
 }
 
 std::string RenderLoop::stats() const {
@@ -401,10 +426,10 @@ std::string RenderLoop::stats() const {
   return stats_json(stats_, plan_, *film_);
 }
 
-std::shared_ptr<const Film> RenderLoop::film() const {
+std::shared_ptr<const film::Film> RenderLoop::film() const {
   const std::lock_guard lock(mutex_);
   require_film(film_, "its frame comes", "the render failed before it began: ");
   return film_;
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -3,31 +3,31 @@
 
 #include <memory>
 
-#include "scene/device.h"
 #include "film/film.h"
 #include "film/replay_map.h"
 #include "render/component_replay.h"
 #include "render/render.h"
+#include "scene/device.h"
 
-namespace gradus {
+namespace gradus::render {
 
 // What a frame of a sequence repeats of the frame before (contract 4.2).
 struct Replay {
-  ReplayMap replay_map;
+  film::ReplayMap replay_map;
   std::vector<uint32_t> counts;  // samples of each pixel; empty: those of the settings
   ComponentReplays components;   // of the sources
 };
 
 // Threads that a render with these settings has. device: may be nullptr if settings.threads is set.
-inline uint32_t threads_of(const GradusSettings& settings, const Device* device) {
+inline uint32_t threads_of(const GradusSettings& settings, const scene::Device* device) {
   return settings.threads > 0 ? settings.threads : device != nullptr ? device->threads() : 1;
 }
 
 struct LoopInput {
-  std::shared_ptr<Device> device;
-  std::shared_ptr<const Snapshot> snapshot;
+  std::shared_ptr<scene::Device> device;
+  std::shared_ptr<const scene::Snapshot> snapshot;
   GradusSettings settings{};
-  std::shared_ptr<const Film> resumed;
+  std::shared_ptr<const film::Film> resumed;
   IntegratorFactory factory;
   uint32_t threads = 1;
   // A part of a frame of a sequence: it is sampled everywhere, and reconstructed later, with others.
@@ -42,7 +42,8 @@ struct LoopInput {
     return planned;
   }
   // An integrator of the snapshot's camera, for settings that may differ from the render's.
-  std::unique_ptr<Integrator> make_integrator(const GradusSettings& its_settings, uint32_t integrator, ComponentSet components = {}) const;
+  std::unique_ptr<integrator::Integrator> make_integrator(const GradusSettings& its_settings, uint32_t integrator,
+                                                          lpe::ComponentSet components = {}) const;
 };
 
-}  // namespace gradus
+}  // namespace gradus::render

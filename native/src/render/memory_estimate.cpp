@@ -3,22 +3,24 @@
 #include <filesystem>
 #include <system_error>
 
-#include "film/pixel_correspondence.h"
 #include "film/pass_planes.h"
+#include "film/pixel_correspondence.h"
 
-namespace gradus {
+namespace gradus::render {
 namespace {
 
 // Bytes of a pixel, as measured (tests/memory/memory_estimate_test.cpp).
 constexpr uint64_t kPicture = 8 * sizeof(float);  // what is shown and what is delivered, RGBA each
-constexpr uint64_t kReconstruction = 260;         // images, features or weights, and the work space of a solver or a regression
-constexpr uint64_t kDenoiser = 900;               // the network of Open Image Denoise, with its input and output
+constexpr uint64_t kReconstruction =
+    260;                             // images, features or weights, and the work space of a solver or a regression
+constexpr uint64_t kDenoiser = 900;  // the network of Open Image Denoise, with its input and output
 constexpr uint64_t kReconstructedComponent = 48;  // pictures of a component, while those of others are made
 constexpr uint64_t kWindowFrame = 100;            // a frame of a window, while the window is solved
 
 uint64_t frame_bytes(const Plan& plan) {
-  return film_bytes_per_pixel(plan.components.count(), plan.gradients, plan.passes,
-                               {plan.non_specular_vertices, plan.non_specular_details, plan.component_motion, plan.component_motion});
+  return film::film_bytes_per_pixel(
+      plan.components.count(), plan.gradients, plan.passes,
+      {plan.non_specular_vertices, plan.non_specular_details, plan.component_motion, plan.component_motion});
 }
 
 uint64_t reconstruction_bytes(const Plan& plan) {
@@ -34,9 +36,11 @@ std::string gibibytes(uint64_t bytes) { return std::to_string((bytes + (uint64_t
 
 }  // namespace
 
-uint64_t estimated_memory(const Plan& plan) { return uint64_t(plan.sampled.area()) * (frame_bytes(plan) + reconstruction_bytes(plan)); }
+uint64_t estimated_memory(const Plan& plan) {
+  return uint64_t(plan.sampled.area()) * (frame_bytes(plan) + reconstruction_bytes(plan));
+}
 
-uint64_t estimated_memory(const Plan& plan, const WindowShape& windows) {
+uint64_t estimated_memory(const Plan& plan, const reconstruct::WindowShape& windows) {
   const uint64_t of_window = uint64_t(windows.frames) * uint64_t(plan.components.count()) * kWindowFrame;
   return uint64_t(plan.sampled.area()) * (2 * frame_bytes(plan) + reconstruction_bytes(plan) + of_window);
 }
@@ -60,4 +64,4 @@ std::string disk_warning(uint64_t estimate, const std::string& folder) {
          gibibytes(space.available);
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -9,10 +9,10 @@
 #include <cstdint>
 #include <vector>
 
-namespace gradus {
+namespace gradus::render {
 
-// Calls body(i) for each i that is not done, on all threads of the caller's arena, until one of them says to pause. The body sets done[i],
-// or leaves it to be called again, and says whether to pause. True: all are done.
+// Calls body(i) for each i that is not done, on all threads of the caller's arena, until one of them says to pause. The
+// body sets done[i], or leaves it to be called again, and says whether to pause. True: all are done.
 template <class Body>
 bool run_until_pause(std::vector<uint8_t>* done, Body&& body) {
   std::atomic<bool> pause{false};
@@ -28,4 +28,4 @@ bool run_until_pause(std::vector<uint8_t>* done, Body&& body) {
   return std::all_of(done->begin(), done->end(), [](uint8_t is_done) { return is_done != 0; });
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -6,7 +6,7 @@
 #include "output/combine.h"
 #include "output/pass_read.h"
 
-namespace gradus {
+namespace gradus::render {
 
 void Picture::expect_tiles() {
   std::vector<float> black(4 * size_t(region_.area()), 0.0f);
@@ -14,11 +14,11 @@ void Picture::expect_tiles() {
   noisy_ = std::move(black);
 }
 
-void Picture::show_tile(const Film& film, const Region& tile) {
-  const Region part = intersection(tile, region_);
+void Picture::show_tile(const film::Film& film, const Region& tile) {
+  const Region part = film::intersection(tile, region_);
   if (part.width() <= 0 || part.height() <= 0) return;
   std::vector<float> rgba(4 * size_t(part.area()));
-  read_film_pass(film, GRADUS_PASS_NOISY_IMAGE, part, rgba.data());
+  output::read_film_pass(film, GRADUS_PASS_NOISY_IMAGE, part, rgba.data());
   const size_t row = 4 * size_t(part.width());
   const std::lock_guard lock(mutex_);
   for (int32_t y = part.y0; y < part.y1; ++y) {
@@ -36,7 +36,7 @@ void Picture::show(std::vector<float> rgba, std::vector<float> error, std::vecto
 
 void Picture::show_denoised(std::vector<float> rgba, float error) {
   std::vector<std::vector<float>> components = components_;  // who reads them waits for no more than the exchange
-  follow_picture(combined_, rgba, &components);
+  output::follow_picture(combined_, rgba, &components);
   const std::lock_guard lock(mutex_);
   components_ = std::move(components);
   combined_ = std::move(rgba);
@@ -76,4 +76,4 @@ size_t Picture::memory_bytes() const {
   return values * sizeof(float);
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -1,4 +1,5 @@
-// What can be seen of a render at any time, from any thread: the noisy image, tile by tile, and what stands in the place of Combined.
+// What can be seen of a render at any time, from any thread: the noisy image, tile by tile, and what stands in the
+// place of Combined.
 //
 // Readers take the picture from here: they wait for no sampler, whose batch may take long, and see no half of one.
 #pragma once
@@ -9,7 +10,7 @@
 
 #include "film/film.h"
 
-namespace gradus {
+namespace gradus::render {
 
 class Picture {
  public:
@@ -18,7 +19,7 @@ class Picture {
   // Room for tiles: black, until they come.
   void expect_tiles();
   // What the tile has now becomes what is seen of it in the noisy image.
-  void show_tile(const Film& film, const Region& tile);
+  void show_tile(const film::Film& film, const Region& tile);
   // RGBA of the region, and pass Error of it where that is asked for: Combined from now on.
   // components: RGB of each, or none.
   void show(std::vector<float> rgba, std::vector<float> error, std::vector<std::vector<float>> components = {});
@@ -44,4 +45,4 @@ class Picture {
   std::vector<std::vector<float>> components_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::render

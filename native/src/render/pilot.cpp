@@ -8,37 +8,39 @@
 
 #include "base/fpu.h"
 #include "film/pixel_blocks.h"
-#include "render/l2_noise.h"
-#include "reconstruct/solver.h"
-#include "render/pausable_loop.h"
 #include "path/hash.h"
+#include "reconstruct/solver.h"
+#include "render/l2_noise.h"
+#include "render/pausable_loop.h"
 
-namespace gradus {
+namespace gradus::render {
 namespace {
 
-// A square of kSquare pixels is judged by some pixels in it and those in the squares around: 1/16 of a sample per pixel. They stand apart,
-// for neighbours see the same.
+// A square of kSquare pixels is judged by some pixels in it and those in the squares around: 1/16 of a sample per
+// pixel. They stand apart, for neighbours see the same.
 constexpr int kBlockSide = 32;
 constexpr int kColumns = 8, kRows = 4;
 constexpr uint32_t kSamples = 2;
 // No user's seed, which are below 2³¹: else the samples of frame 0 would be those that are kept.
 constexpr uint32_t kSeed = 0xf0696c6fu;
 
-Region grown(const Region& r, int by, const Region& limit) { return intersection({r.x0 - by, r.y0 - by, r.x1 + by, r.y1 + by}, limit); }
+Region grown(const Region& r, int by, const Region& limit) {
+  return film::intersection({r.x0 - by, r.y0 - by, r.x1 + by, r.y1 + by}, limit);
+}
 
-// One pixel somewhere in each stratum of the square, so that no pattern of the picture meets all of them alike. Squares at the border may
-// be narrower than they have strata.
-std::vector<size_t> pixels_of(const Region& block, const Film& film, uint32_t seed) {
+// One pixel somewhere in each stratum of the square, so that no pattern of the picture meets all of them alike. Squares
+// at the border may be narrower than they have strata.
+std::vector<size_t> pixels_of(const Region& block, const film::Film& film, uint32_t seed) {
   std::vector<size_t> pixels;
   const int columns = std::min(kColumns, block.width()), rows = std::min(kRows, block.height());
   const auto place = [](int32_t begin, int32_t size, int i, int n, uint32_t random) {
     const int32_t first = begin + size * i / n, end = begin + size * (i + 1) / n;
     return first + int32_t(random % uint32_t(end - first));
   };
-  uint32_t h = combine(combine(seed, uint32_t(block.x0)), uint32_t(block.y0));
+  uint32_t h = path::combine(path::combine(seed, uint32_t(block.x0)), uint32_t(block.y0));
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) {
-      h = combine(h, uint32_t(j * kColumns + i));
+      h = path::combine(h, uint32_t(j * kColumns + i));
       const int32_t x = place(block.x0, block.width(), i, columns, h & 0xffffu);
       const int32_t y = place(block.y0, block.height(), j, rows, h >> 16);
       pixels.push_back(film.index(x, y));
@@ -52,19 +54,21 @@ double gray(const Radiance& c) { return (double(c.x) + c.y + c.z) / 3.0; }
 
 using L2Noises = std::array<L2Noise, kPilotAlphas>;
 
-// At its own weight where L2 will run; else at weights among which the best one lies, on all scenes that were looked at.
+// At its own weight where L2 will run; else at weights among which the best one lies, on all scenes that were looked
+// at.
 L2Noises l2_noises(const GradusSettings& settings, uint32_t reconstruction) {
   if (reconstruction != GRADUS_RECONSTRUCTION_L2) return {L2Noise(0.2), L2Noise(0.4), L2Noise(0.8)};
-  const L2Noise own(chosen_alpha(reconstruction, settings.reconstruction_alpha));
+  const L2Noise own(reconstruct::chosen_alpha(reconstruction, settings.reconstruction_alpha));
   return {own, own, own};
 }
 
-// The pixel has one sample of each half. A difference of neighbours has such samples from both of its ends, which are alike: √2.
-void add_pixel(const Film& film, size_t pixel, const L2Noises& l2, PilotSums* sums) {
-  const ComponentPlanes& planes = film.components[0];
+// The pixel has one sample of each half. A difference of neighbours has such samples from both of its ends, which are
+// alike: √2.
+void add_pixel(const film::Film& film, size_t pixel, const L2Noises& l2, PilotSums* sums) {
+  const film::ComponentPlanes& planes = film.components[0];
   const Radiance spread = planes.primal[0][pixel] - planes.primal[1][pixel];
-  std::array<Radiance, kOffsets> spreads;
-  for (int k = 0; k < kOffsets; ++k) {
+  std::array<Radiance, film::kOffsets> spreads;
+  for (int k = 0; k < film::kOffsets; ++k) {
     const float pair = film.pair_count[0][k][pixel];
     spreads[k] = pair > 0.0f ? (planes.gradient[0][k][pixel] - planes.gradient[1][k][pixel]) / pair : Radiance(0.0f);
     if (!(pair > 0.0f)) continue;
@@ -75,17 +79,18 @@ void add_pixel(const Film& film, size_t pixel, const L2Noises& l2, PilotSums* su
   sums->brightness += 0.5 * gray(planes.primal[0][pixel] + planes.primal[1][pixel]);
   sums->pixel_deviation += deviation(spread);
   sums->pixel_root += std::sqrt(deviation(spread));
-  for (size_t i = 0; i < kPilotAlphas; ++i) sums->l2_roots[i] += std::sqrt(std::sqrt(std::max(l2[i].of(spread, spreads), 0.0)));
+  for (size_t i = 0; i < kPilotAlphas; ++i)
+    sums->l2_roots[i] += std::sqrt(std::sqrt(std::max(l2[i].of(spread, spreads), 0.0)));
 }
 
 // Whole squares but for the frame's border: all that touch the region.
 Region grown_to_blocks(const Region& r, const Region& full) {
-  const auto down = [](int32_t x) { return pixel_block_of(x, kBlockSide) * kBlockSide; };
-  return intersection({down(r.x0), down(r.y0), down(r.x1 - 1) + kBlockSide, down(r.y1 - 1) + kBlockSide}, full);
+  const auto down = [](int32_t x) { return film::pixel_block_of(x, kBlockSide) * kBlockSide; };
+  return film::intersection({down(r.x0), down(r.y0), down(r.x1 - 1) + kBlockSide, down(r.y1 - 1) + kBlockSide}, full);
 }
 
 // Every square with those around it, twice: one of 32 samples knows too little of what seldom fails.
-std::vector<PilotSums> spread_out(const PixelBlockGrid& blocks, std::vector<PilotSums> sums) {
+std::vector<PilotSums> spread_out(const film::PixelBlockGrid& blocks, std::vector<PilotSums> sums) {
   for (int step = 0; step < 2; ++step) {
     std::vector<PilotSums> next(sums.size());
     for (size_t i = 0; i < sums.size(); ++i) {
@@ -96,11 +101,14 @@ std::vector<PilotSums> spread_out(const PixelBlockGrid& blocks, std::vector<Pilo
   return sums;
 }
 
-Benefit benefit_of(const PilotSums& sums, bool is_l2) { return is_l2 ? estimate_benefit_for_l2(sums) : estimate_benefit(sums); }
+Benefit benefit_of(const PilotSums& sums, bool is_l2) {
+  return is_l2 ? estimate_benefit_for_l2(sums) : estimate_benefit(sums);
+}
 
-// Which squares are to have differences. L2 has one error for the picture, and outliers in one part of it outweigh all else; where rows go
-// by their noise every part is for itself.
-std::vector<bool> choose(const PixelBlockGrid& blocks, const std::vector<PilotSums>& sums, uint32_t reconstruction) {
+// Which squares are to have differences. L2 has one error for the picture, and outliers in one part of it outweigh all
+// else; where rows go by their noise every part is for itself.
+std::vector<bool> choose(const film::PixelBlockGrid& blocks, const std::vector<PilotSums>& sums,
+                         uint32_t reconstruction) {
   const bool is_l2 = reconstruction == GRADUS_RECONSTRUCTION_L2;
   std::vector<Benefit> benefits;
   for (const PilotSums& around : spread_out(blocks, sums)) benefits.push_back(benefit_of(around, is_l2));
@@ -118,7 +126,8 @@ std::vector<bool> choose(const PixelBlockGrid& blocks, const std::vector<PilotSu
 }  // namespace
 
 GradusSettings pilot_settings(GradusSettings settings) {
-  // The same for all seeds and frames: renders that are merged have the same gradients, and a scene that stands still the same map.
+  // The same for all seeds and frames: renders that are merged have the same gradients, and a scene that stands still
+  // the same map.
   settings.seed = kSeed;
   settings.frame = 0;
   settings.passes = 0;
@@ -126,25 +135,27 @@ GradusSettings pilot_settings(GradusSettings settings) {
   return settings;
 }
 
-GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settings, uint32_t reconstruction, const Region& region,
-                      int channels, const std::atomic<bool>& stop, const Interruption& interruption) {
+GradientMap run_pilot(const integrator::Integrator& integrator, const GradusSettings& settings, uint32_t reconstruction,
+                      const Region& region, int channels, const std::atomic<bool>& stop,
+                      const Interruption& interruption) {
   const Region full{0, 0, int32_t(settings.width), int32_t(settings.height)};
   const bool is_l2 = reconstruction == GRADUS_RECONSTRUCTION_L2;
   const auto is_stopped = [&stop] { return stop.load(std::memory_order_relaxed); };
   // Squares at the region's border are judged by those beyond, too; L2's by all.
-  const PixelBlockGrid blocks(is_l2 ? full : grown_to_blocks(grown(region, 2 * kBlockSide, full), full), kBlockSide);
+  const film::PixelBlockGrid blocks(is_l2 ? full : grown_to_blocks(grown(region, 2 * kBlockSide, full), full),
+                                    kBlockSide);
   const L2Noises l2 = l2_noises(settings, reconstruction);
   std::vector<PilotSums> sums(blocks.blocks.size());
   std::vector<uint8_t> done(sums.size(), 0);
   const auto look_at = [&](size_t i) {
     if (is_stopped()) return true;
     const FlushDenormals flush;
-    Counters counters;
-    Film film(settings.width, settings.height, grown(blocks.blocks[i], 1, full), channels, 1, true);
+    film::Counters counters;
+    film::Film film(settings.width, settings.height, grown(blocks.blocks[i], 1, full), channels, 1, true);
     const std::vector<size_t> pixels = pixels_of(blocks.blocks[i], film, settings.seed);
     std::vector<uint8_t> map(size_t(film.region.area()), 0);
     for (const size_t pixel : pixels) map[pixel] = 1;
-    WorkUnit unit;
+    integrator::WorkUnit unit;
     unit.tile = blocks.blocks[i];
     unit.count = kSamples;
     unit.pixel_map = &map;
@@ -168,7 +179,7 @@ GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settin
   int64_t kept = 0;
   for (size_t i = 0; i < sums.size(); ++i) {
     map.samples += kSamples * uint64_t(sums[i].pixels);
-    const Region part = intersection(blocks.blocks[i], region);
+    const Region part = film::intersection(blocks.blocks[i], region);
     if (part.width() <= 0 || part.height() <= 0) continue;
     total.add(sums[i], 1.0);
     if (!chosen[i]) continue;
@@ -182,10 +193,10 @@ GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settin
 
 void explain(const GradientMap& map, Reasons* chosen, Reasons* skipped) {
   char text[200];
-  std::snprintf(
-      text, sizeof(text),
-      "a pilot of %llu samples, thrown away, expects them to leave %.2f of the noise for %.1f times the CPU time (all of the picture)",
-      static_cast<unsigned long long>(map.samples), map.benefit.error, map.benefit.cost);
+  std::snprintf(text, sizeof(text),
+                "a pilot of %llu samples, thrown away, expects them to leave %.2f of the noise for %.1f times the CPU "
+                "time (all of the picture)",
+                static_cast<unsigned long long>(map.samples), map.benefit.error, map.benefit.cost);
   if (map.none()) {
     skipped->emplace_back("gradients", "they pay nowhere: " + std::string(text));
     return;
@@ -193,4 +204,4 @@ void explain(const GradientMap& map, Reasons* chosen, Reasons* skipped) {
   chosen->emplace_back("gradients in " + std::to_string(std::lround(100.0 * map.share)) + " % of the picture", text);
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -1,8 +1,9 @@
 // A few samples that are thrown away, and what they tell: where gradients pay.
 //
-// The result must not depend on samples that are kept, or L2 would be biased; nor on how many will be taken, on threads, or on the region,
-// or sampled planes would (contract 2.1). So every square of the full frame's lattice has its own few pixels, two samples each, of a seed
-// of their own; a square is judged by what it and its neighbours show, and for L2 against all others.
+// The result must not depend on samples that are kept, or L2 would be biased; nor on how many will be taken, on
+// threads, or on the region, or sampled planes would (contract 2.1). So every square of the full frame's lattice has
+// its own few pixels, two samples each, of a seed of their own; a square is judged by what it and its neighbours show,
+// and for L2 against all others.
 #pragma once
 
 #include <atomic>
@@ -14,7 +15,7 @@
 #include "render/gradient_benefit.h"
 #include "render/plan.h"
 
-namespace gradus {
+namespace gradus::render {
 
 struct GradientMap {
   std::vector<uint8_t> pixels;  // of the region: 1 where gradients are sampled
@@ -36,10 +37,11 @@ struct Interruption {
 
 // Runs in the caller's arena. `integrator`: samples gradients, made for pilot_settings().
 // reconstruction: the one that will run, never AUTO.
-GradientMap run_pilot(const Integrator& integrator, const GradusSettings& settings, uint32_t reconstruction, const Region& region,
-                      int channels, const std::atomic<bool>& stop, const Interruption& interruption = {});
+GradientMap run_pilot(const integrator::Integrator& integrator, const GradusSettings& settings, uint32_t reconstruction,
+                      const Region& region, int channels, const std::atomic<bool>& stop,
+                      const Interruption& interruption = {});
 
 // Says what was decided, and why.
 void explain(const GradientMap& map, Reasons* chosen, Reasons* skipped);
 
-}  // namespace gradus
+}  // namespace gradus::render

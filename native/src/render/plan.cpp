@@ -10,13 +10,15 @@
 #include "schema/options.h"
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::render {
 namespace {
 
 // Below this the variance estimated from two halves says too little (contract 5.3).
 constexpr uint32_t kFirstCheck = 16;
 
-std::string choice_of(const char* option, uint32_t value) { return choice_name(*find_option(option), value); }
+std::string choice_of(const char* option, uint32_t value) {
+  return schema::choice_name(*schema::find_option(option), value);
+}
 
 bool needs_gradients(uint32_t reconstruction) {
   return reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_L1;
@@ -26,20 +28,25 @@ bool needs_gradients(uint32_t reconstruction) {
 constexpr uint32_t kDenoiserPays = 8;
 static_assert(kDenoiserPays <= kFirstCheck);  // tiles that stop by their noise have enough
 
-std::string too_few_to_denoise() { return "with fewer than " + std::to_string(kDenoiserPays) + " samples its time buys more as samples"; }
+std::string too_few_to_denoise() {
+  return "with fewer than " + std::to_string(kDenoiserPays) + " samples its time buys more as samples";
+}
 
 void choose_automatically(const GradusSettings& settings, Plan* plan) {
-  const bool wants_differences = has_bit(settings.passes, GRADUS_PASS_GRADIENT_X) || has_bit(settings.passes, GRADUS_PASS_GRADIENT_Y);
+  const bool wants_differences = schema::has_bit(settings.passes, GRADUS_PASS_GRADIENT_X) ||
+                                 schema::has_bit(settings.passes, GRADUS_PASS_GRADIENT_Y);
   if (!needs_gradients(settings.reconstruction) && !wants_differences) {  // on all of 13 scenes (docs/method.md)
     plan->integrator = GRADUS_INTEGRATOR_PATH;
     const bool none = settings.reconstruction == GRADUS_RECONSTRUCTION_NONE;
-    plan->chosen.emplace_back("integrator path", none ? "automatic: nothing is reconstructed from differences"
-                                                      : "automatic: features make more of more paths than of differences");
+    plan->chosen.emplace_back("integrator path",
+                              none ? "automatic: nothing is reconstructed from differences"
+                                   : "automatic: features make more of more paths than of differences");
     return;
   }
   plan->integrator = GRADUS_INTEGRATOR_GRADIENT;
   plan->pilot = !wants_differences;
-  plan->chosen.emplace_back("integrator gradient", plan->pilot ? "automatic: wherever it pays" : "automatic: its passes are asked for");
+  plan->chosen.emplace_back("integrator gradient",
+                            plan->pilot ? "automatic: wherever it pays" : "automatic: its passes are asked for");
 }
 
 void choose_integrator(const GradusSettings& settings, Plan* plan) {
@@ -59,7 +66,8 @@ void choose_integrator(const GradusSettings& settings, Plan* plan) {
 void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
   const uint32_t requested = settings.reconstruction;
   if (needs_gradients(requested) && !plan->gradients) {
-    throw invalid_argument("reconstruction " + choice_of("reconstruction", requested) + " needs gradients, but the integrator is path: use " +
+    throw invalid_argument("reconstruction " + choice_of("reconstruction", requested) +
+                           " needs gradients, but the integrator is path: use " +
                            "integrator gradient or reconstruction none");
   }
   plan->reconstruction = requested;
@@ -68,8 +76,9 @@ void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
     plan->reconstruction = plain ? GRADUS_RECONSTRUCTION_NONE : GRADUS_RECONSTRUCTION_REGULARIZED;
   }
   plan->solves = plan->reconstruction != GRADUS_RECONSTRUCTION_NONE;
-  const char* why = requested != GRADUS_RECONSTRUCTION_AUTO ? "set by the user"
-                                                        : "automatic: features of the surfaces and all samples, by their measured noise";
+  const char* why = requested != GRADUS_RECONSTRUCTION_AUTO
+                        ? "set by the user"
+                        : "automatic: features of the surfaces and all samples, by their measured noise";
   if (plan->solves) {
     plan->chosen.emplace_back("reconstruction " + choice_of("reconstruction", plan->reconstruction), why);
   } else {
@@ -106,7 +115,8 @@ void choose_region(const GradusSettings& settings, Plan* plan) {
   if (plan->solves || plan->denoises) {
     plan->sampled.x0 = std::max(full.x0, plan->delivered.x0 - kGuardRing);
     plan->sampled.y0 = std::max(full.y0, plan->delivered.y0 - kGuardRing);
-    if (plan->reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {  // its windows and squares begin where those of the full frame do
+    if (plan->reconstruction ==
+        GRADUS_RECONSTRUCTION_REGULARIZED) {  // its windows and squares begin where those of the full frame do
       plan->sampled.x0 -= plan->sampled.x0 % kMaxRegressionBlock;
       plan->sampled.y0 -= plan->sampled.y0 % kMaxRegressionBlock;
     }
@@ -119,51 +129,56 @@ void choose_region(const GradusSettings& settings, Plan* plan) {
   }
 }
 
-void list_scene(const GradusSettings& settings, const Snapshot& snapshot, Plan* plan) {
+void list_scene(const GradusSettings& settings, const scene::Snapshot& snapshot, Plan* plan) {
   if (!(snapshot.camera.aperture_radius > 0.0f)) plan->skipped.emplace_back("lens samples", "the camera is a pinhole");
-  if (!snapshot.features.has_transparent_shadows) plan->skipped.emplace_back("transparent shadows", "no material is transparent");
-  if (snapshot.features.min_alpha >= std::max(settings.roughness_threshold, kSmallestAlpha))
+  if (!snapshot.features.has_transparent_shadows)
+    plan->skipped.emplace_back("transparent shadows", "no material is transparent");
+  if (snapshot.features.min_alpha >= std::max(settings.roughness_threshold, bsdf::kSmallestAlpha))
     plan->skipped.emplace_back("half-vector shifts", "no material is sharper than the roughness threshold");
   if (!snapshot.features.has_lights) plan->skipped.emplace_back("light sampling", "the scene has no emitters");
   if (snapshot.features.only_lights_emit)
     plan->skipped.emplace_back("surfaces at the ends of paths", "no material emits light or lets it through");
-  if (plan->channels == 3) plan->skipped.emplace_back("alpha channel", "the film is opaque, and no surface is held out");
+  if (plan->channels == 3)
+    plan->skipped.emplace_back("alpha channel", "the film is opaque, and no surface is held out");
 }
 
 // Bits of the classes by which some surface may scatter.
-uint32_t events_of(const GradusSettings& settings, const SceneFeatures& features) {
-  const float sharp = std::max(settings.roughness_threshold, kSmallestAlpha);
-  const auto bit = [](ScatterClass c) { return 1u << uint32_t(c); };
-  return bit(ScatterClass::Diffuse) | (features.min_alpha < sharp ? bit(ScatterClass::Reflection) : 0) |
-         (features.min_refracting_alpha < sharp ? bit(ScatterClass::Transmission) : 0);
+uint32_t events_of(const GradusSettings& settings, const scene::SceneFeatures& features) {
+  const float sharp = std::max(settings.roughness_threshold, bsdf::kSmallestAlpha);
+  const auto bit = [](bsdf::ScatterClass c) { return 1u << uint32_t(c); };
+  return bit(bsdf::ScatterClass::Diffuse) | (features.min_alpha < sharp ? bit(bsdf::ScatterClass::Reflection) : 0) |
+         (features.min_refracting_alpha < sharp ? bit(bsdf::ScatterClass::Transmission) : 0);
 }
 
-bool shows_light(const SceneFeatures& features) {
+bool shows_light(const scene::SceneFeatures& features) {
   return features.world_emits || features.has_lights_with_extent || !features.only_lights_emit;
 }
 
-void choose_components(const GradusSettings& settings, const SceneFeatures& features, Plan* plan) {
+void choose_components(const GradusSettings& settings, const scene::SceneFeatures& features, Plan* plan) {
   if (settings.use_decomposition == 0) return;
-  const std::string text = get_text(settings, *find_option("components"));
-  const ComponentSet all = ComponentSet::parse(text);
-  const uint32_t seen = shows_light(features) ? 1u << all.component(LpeState{0}) : 0;
-  plan->non_specular_vertices = any_wanted(settings.component_passes, is_of_non_specular_vertices);
-  plan->non_specular_details = any_wanted(settings.component_passes, is_of_non_specular_details);
-  plan->component_motion = any_wanted(settings.component_passes, is_motion);
+  const std::string text = schema::get_text(settings, *schema::find_option("components"));
+  const lpe::ComponentSet all = lpe::ComponentSet::parse(text);
+  const uint32_t seen = shows_light(features) ? 1u << all.component(lpe::LpeState{0}) : 0;
+  plan->non_specular_vertices = schema::any_wanted(settings.component_passes, schema::is_of_non_specular_vertices);
+  plan->non_specular_details = schema::any_wanted(settings.component_passes, schema::is_of_non_specular_details);
+  plan->component_motion = schema::any_wanted(settings.component_passes, schema::is_motion);
   const uint32_t kept = all.reached(events_of(settings, features)) | seen;
   plan->components = all.without_empty(kept);
   // Data of what has no light may be wanted all the same.
-  plan->merges_components = text.empty() && !plan->non_specular_vertices && !plan->non_specular_details && !plan->component_motion;
+  plan->merges_components =
+      text.empty() && !plan->non_specular_vertices && !plan->non_specular_details && !plan->component_motion;
   std::string names, absent;
-  for (int i = 0; i < all.count(); ++i) add_item(plan->components.find(all[i].name) >= 0 ? &names : &absent, all[i].name);
+  for (int i = 0; i < all.count(); ++i)
+    add_item(plan->components.find(all[i].name) >= 0 ? &names : &absent, all[i].name);
   plan->chosen.emplace_back("components " + names, text.empty() ? "automatic: the default set" : "set by the user");
-  if (!absent.empty()) plan->skipped.emplace_back("components " + absent, "by the scene's surfaces and lights no path is of their kind");
+  if (!absent.empty())
+    plan->skipped.emplace_back("components " + absent, "by the scene's surfaces and lights no path is of their kind");
 }
 
 void choose_passes(const GradusSettings& settings, Plan* plan) {
   plan->passes = settings.passes;
   if (!features_wanted(*plan)) return;
-  plan->passes |= feature_passes();
+  plan->passes |= schema::feature_passes();
   plan->chosen.emplace_back("denoising features",
                             plan->denoises ? "the denoiser is guided by them" : "the reconstruction is guided by them");
 }
@@ -171,14 +186,14 @@ void choose_passes(const GradusSettings& settings, Plan* plan) {
 void list_passes(Plan* plan) {
   std::string names;
   for (uint32_t pass = GRADUS_PASS_NOISY_IMAGE; pass < GRADUS_PASS_COUNT; ++pass) {
-    if (!has_bit(plan->passes, pass)) add_item(&names, pass_info(pass).name);
+    if (!schema::has_bit(plan->passes, pass)) add_item(&names, schema::pass_info(pass).name);
   }
   if (!names.empty()) plan->skipped.emplace_back("passes " + names, "not asked for");
 }
 
-// What `min_samples` 0 means. Along a straight edge all pixels of a cell, which share their jitter, are wrong by the same share of
-// coverage, and both halves agree on it two times out of three. n samples leave an error of about 0.2/n of the cell (docs/method.md), so no
-// fewer are believed than leave the threshold.
+// What `min_samples` 0 means. Along a straight edge all pixels of a cell, which share their jitter, are wrong by the
+// same share of coverage, and both halves agree on it two times out of three. n samples leave an error of about 0.2/n
+// of the cell (docs/method.md), so no fewer are believed than leave the threshold.
 uint32_t first_check(const GradusSettings& settings) {
   const double minimum = 0.16 / std::max(1e-6, double(settings.noise_threshold));
   return std::max(kFirstCheck, settings.min_samples > 0 ? settings.min_samples : uint32_t(std::lround(minimum)));
@@ -186,8 +201,8 @@ uint32_t first_check(const GradusSettings& settings) {
 
 }  // namespace
 
-Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const HostDenoiser& denoiser) {
-  check_settings(settings);
+Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot, const HostDenoiser& denoiser) {
+  schema::check_settings(settings);
   Plan plan;
   choose_denoiser(settings, denoiser, &plan);
   choose_integrator(settings, &plan);
@@ -212,7 +227,9 @@ Plan make_plan(const GradusSettings& settings, const Snapshot& snapshot, const H
   return plan;
 }
 
-bool features_wanted(const Plan& plan) { return plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED || plan.denoises; }
+bool features_wanted(const Plan& plan) {
+  return plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED || plan.denoises;
+}
 
 uint32_t without_gradients(const Plan& plan) {
   return needs_gradients(plan.reconstruction) ? uint32_t{GRADUS_RECONSTRUCTION_NONE} : plan.reconstruction;
@@ -233,7 +250,8 @@ bool denoises_after(const Plan& plan, double samples, Reasons* chosen, Reasons* 
 }
 
 bool delivers_unbiased(const Plan& plan, uint32_t reconstruction, bool denoises) {
-  return plan.unbiased && !denoises && (reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE);
+  return plan.unbiased && !denoises &&
+         (reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE);
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

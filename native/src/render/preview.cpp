@@ -4,15 +4,16 @@
 #include "render/quarter_preview.h"
 #include "render/show_combined.h"
 
-namespace gradus {
+namespace gradus::render {
 
-Preview::Preview(const LoopInput& input, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena, Picture* picture,
-                   ProgressTracker* tracker)
+Preview::Preview(const LoopInput& input, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena,
+                 Picture* picture, ProgressTracker* tracker)
     : input_(input), plan_(plan), stop_(stop), arena_(arena), picture_(picture), tracker_(tracker) {}
 
 // The denoiser's network takes tens of times as long as a regression on the features that are there for it anyway.
 uint32_t Preview::shown(uint32_t reconstruction) const {
-  return reconstruction == GRADUS_RECONSTRUCTION_NONE && plan_.denoises ? uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED} : reconstruction;
+  return reconstruction == GRADUS_RECONSTRUCTION_NONE && plan_.denoises ? uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}
+                                                                        : reconstruction;
 }
 
 bool Preview::quarter_is_due(uint32_t reconstruction) const {
@@ -35,15 +36,15 @@ void Preview::show_quarter() {
   tracker_->new_image();
 }
 
-void Preview::refresh(const Film& film, double sampled) {
+void Preview::refresh(const film::Film& film, double sampled) {
   const double before = seconds_;
   {
     const ScopedTimer timer(&seconds_, &cpu_seconds_);
-    SolveReport report;
+    reconstruct::SolveReport report;
     if (!show_combined(film, shown(film.settings.reconstruction), plan_, stop_, arena_, picture_, &report)) return;
   }
   tracker_->new_image();
   rule_.done(sampled, seconds_ - before);
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -1,24 +1,24 @@
-// What a watcher sees while a render takes its samples: first a picture at a quarter of the size, then reconstructions of the frame, so
-// seldom that they cost little. Nothing of it touches the frame; without a watcher nothing is done.
+// What a watcher sees while a render takes its samples: first a picture at a quarter of the size, then reconstructions
+// of the frame, so seldom that they cost little. Nothing of it touches the frame; without a watcher nothing is done.
 #pragma once
 
 #include <atomic>
 
 #include <tbb/task_arena.h>
 
-#include "render/plan.h"
 #include "render/loop_input.h"
 #include "render/picture.h"
-#include "render/refresh_rule.h"
+#include "render/plan.h"
 #include "render/progress_tracker.h"
+#include "render/refresh_rule.h"
 
-namespace gradus {
+namespace gradus::render {
 
 class Preview {
  public:
   // What it is given lives as long as it.
-  Preview(const LoopInput& input, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena, Picture* picture,
-           ProgressTracker* tracker);
+  Preview(const LoopInput& input, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena,
+          Picture* picture, ProgressTracker* tracker);
 
   // Somebody looks at Combined. From any thread.
   void watch() { watched_.store(true, std::memory_order_relaxed); }
@@ -30,7 +30,7 @@ class Preview {
   // Called while no samples are taken.
   void show_quarter();
   // frame: with samples of both halves in all pixels.
-  void refresh(const Film& film, double sampled);
+  void refresh(const film::Film& film, double sampled);
 
   double seconds() const { return seconds_; }
   double cpu_seconds() const { return cpu_seconds_; }
@@ -53,4 +53,4 @@ class Preview {
   double seconds_ = 0.0, cpu_seconds_ = 0.0;
 };
 
-}  // namespace gradus
+}  // namespace gradus::render

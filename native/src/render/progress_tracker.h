@@ -5,7 +5,7 @@
 #include <atomic>
 #include <cstdint>
 
-namespace gradus {
+namespace gradus::render {
 
 class ProgressTracker {
  public:
@@ -31,4 +31,4 @@ class ProgressTracker {
   std::atomic<uint32_t> version_{0};
 };
 
-}  // namespace gradus
+}  // namespace gradus::render

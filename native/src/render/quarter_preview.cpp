@@ -4,29 +4,29 @@
 
 #include "base/clock.h"
 #include "base/fpu.h"
-#include "film/pixel_blocks.h"
 #include "film/pass_planes.h"
+#include "film/pixel_blocks.h"
 #include "output/combine.h"
 #include "output/upsample.h"
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::render {
 namespace {
 
 constexpr uint32_t kShrink = 4;
 constexpr uint32_t kSamples = 2;  // one of each half
 
-ImageSize size_of(const GradusSettings& settings) { return {settings.width, settings.height}; }
+output::ImageSize size_of(const GradusSettings& settings) { return {settings.width, settings.height}; }
 
-void sample(const Integrator& integrator, const std::atomic<bool>& stop, Film* film) {
-  const std::vector<Region> tiles = make_pixel_blocks(film->region);
+void sample(const integrator::Integrator& integrator, const std::atomic<bool>& stop, film::Film* film) {
+  const std::vector<Region> tiles = film::make_pixel_blocks(film->region);
   tbb::parallel_for(size_t{0}, tiles.size(), [&](size_t i) {
     if (stop.load(std::memory_order_relaxed)) return;
     const FlushDenormals flush;
-    WorkUnit unit;
+    integrator::WorkUnit unit;
     unit.tile = tiles[i];
     unit.count = kSamples;
-    Counters counters;
+    film::Counters counters;
     integrator.sample(unit, film, &counters, stop);
   });
 }
@@ -41,24 +41,27 @@ GradusSettings quarter_settings(GradusSettings settings) {
   return settings;
 }
 
-QuarterPreview render_quarter_preview(const Integrator& integrator, const GradusSettings& settings, const Plan& plan,
-                              const std::atomic<bool>& stop) {
+QuarterPreview render_quarter_preview(const integrator::Integrator& integrator, const GradusSettings& settings,
+                                      const Plan& plan, const std::atomic<bool>& stop) {
   const GradusSettings small = quarter_settings(settings);
-  const ImageSize full_size = size_of(settings), size = size_of(small);
-  Film film(small.width, small.height, covering(plan.delivered, full_size, size), plan.channels, 1, false);
-  film.passes = make_pass_planes(feature_passes(), size_t(film.region.area()));
+  const output::ImageSize full_size = size_of(settings), size = size_of(small);
+  film::Film film(small.width, small.height, output::covering(plan.delivered, full_size, size), plan.channels, 1,
+                  false);
+  film.passes = film::make_pass_planes(schema::feature_passes(), size_t(film.region.area()));
   film.settings = small;
   sample(integrator, stop, &film);
   const WallClock clock;
   const CancelCheck cancel = [&stop] { return stop.load(std::memory_order_relaxed); };
-  SolveReport report;
+  reconstruct::SolveReport report;
   std::vector<float> error;
-  std::vector<float>* const wanted = has_bit(plan.passes, GRADUS_PASS_ERROR) ? &error : nullptr;
-  const std::vector<float> rgba = combine(film, GRADUS_RECONSTRUCTION_REGULARIZED, 0.0f, film.region, cancel, &report, wanted);
+  std::vector<float>* const wanted = schema::has_bit(plan.passes, GRADUS_PASS_ERROR) ? &error : nullptr;
+  const std::vector<float> rgba =
+      output::combine(film, GRADUS_RECONSTRUCTION_REGULARIZED, 0.0f, film.region, cancel, &report, wanted);
   const double seconds = clock.seconds();
   if (cancel()) return {};
-  if (wanted) error = enlarge(error, 1, plan.delivered, full_size, size);
-  return {enlarge(rgba, 4, plan.delivered, full_size, size), std::move(error), seconds / double(film.region.area())};
+  if (wanted) error = output::enlarge(error, 1, plan.delivered, full_size, size);
+  return {output::enlarge(rgba, 4, plan.delivered, full_size, size), std::move(error),
+          seconds / double(film.region.area())};
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -1,5 +1,5 @@
-// A picture before there are samples to make one of: at a quarter of the width and height, by the features of the surfaces, enlarged.
-// Its samples are its own and thrown away, an eighth of one per pixel.
+// A picture before there are samples to make one of: at a quarter of the width and height, by the features of the
+// surfaces, enlarged. Its samples are its own and thrown away, an eighth of one per pixel.
 #pragma once
 
 #include <atomic>
@@ -8,7 +8,7 @@
 #include "integrator/integrator.h"
 #include "render/plan.h"
 
-namespace gradus {
+namespace gradus::render {
 
 // The settings that its integrator is made for, which takes plain paths.
 GradusSettings quarter_settings(GradusSettings settings);
@@ -20,7 +20,7 @@ struct QuarterPreview {
 };
 
 // Of the region that is delivered. Runs in the caller's arena. settings and plan: the render's.
-QuarterPreview render_quarter_preview(const Integrator& integrator, const GradusSettings& settings, const Plan& plan,
-                              const std::atomic<bool>& stop);
+QuarterPreview render_quarter_preview(const integrator::Integrator& integrator, const GradusSettings& settings,
+                                      const Plan& plan, const std::atomic<bool>& stop);
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -1,16 +1,17 @@
 #include "render/render.h"
+#include "gradient/gradient_integrator.h"
 
 #include <pthread.h>
 
 #include <csignal>
 #include <thread>
 
-#include "scene/device.h"
 #include "base/error.h"
 #include "render/loop.h"
+#include "scene/device.h"
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::render {
 namespace {
 
 // Signals are the host's: they must reach its threads, not ours, nor the workers that ours start.
@@ -31,14 +32,17 @@ class BlockSignals {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_integrator(const IntegratorContext& context, uint32_t integrator) {
-  return integrator == GRADUS_INTEGRATOR_GRADIENT ? make_gradient_integrator(context) : make_path_integrator(context);
+std::unique_ptr<integrator::Integrator> make_integrator(const integrator::IntegratorContext& context,
+                                                        uint32_t integrator) {
+  return integrator == GRADUS_INTEGRATOR_GRADIENT ? gradient::make_gradient_integrator(context)
+                                                  : integrator::make_path_integrator(context);
 }
 
 namespace {
 
-LoopInput make_input(std::shared_ptr<Device> device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
-                     std::shared_ptr<const Film> resumed, const IntegratorFactory& factory) {
+LoopInput make_input(std::shared_ptr<scene::Device> device, std::shared_ptr<const scene::Snapshot> snapshot,
+                     const GradusSettings& settings, std::shared_ptr<const film::Film> resumed,
+                     const IntegratorFactory& factory) {
   LoopInput input;
   input.threads = threads_of(settings, device.get());
   input.device = std::move(device);
@@ -65,9 +69,11 @@ Render::Render(std::unique_ptr<RenderTask> task) : state_(std::make_unique<State
   });
 }
 
-Render::Render(std::shared_ptr<Device> device, std::shared_ptr<const Snapshot> snapshot, const GradusSettings& settings,
-               std::shared_ptr<const Film> resumed, const IntegratorFactory& factory)
-    : Render(std::make_unique<RenderLoop>(make_input(std::move(device), std::move(snapshot), settings, std::move(resumed), factory))) {}
+Render::Render(std::shared_ptr<scene::Device> device, std::shared_ptr<const scene::Snapshot> snapshot,
+               const GradusSettings& settings, std::shared_ptr<const film::Film> resumed,
+               const IntegratorFactory& factory)
+    : Render(std::make_unique<RenderLoop>(
+          make_input(std::move(device), std::move(snapshot), settings, std::move(resumed), factory))) {}
 
 Render::~Render() {
   state_->task->cancel();
@@ -81,25 +87,25 @@ GradusError Render::outcome(std::string* text) const { return state_->task->outc
 
 void Render::read_pass(uint32_t pass, float* pixels, size_t count) const {
   const Region& region = state_->task->delivered();
-  const PassInfo& info = pass_info(pass);
+  const schema::PassInfo& info = schema::pass_info(pass);
   const size_t expected = size_t(region.area()) * info.channels;
   if (count != expected) {
-    throw invalid_argument("pass " + std::string(info.name) + " has " + std::to_string(expected) + " floats, " + std::to_string(count) +
-                           " were given");
+    throw invalid_argument("pass " + std::string(info.name) + " has " + std::to_string(expected) + " floats, " +
+                           std::to_string(count) + " were given");
   }
   state_->task->read_pass(pass, pixels);
 }
 
 void Render::read_component(const std::string& name, uint32_t pass, float* pixels, size_t count) const {
-  const size_t expected = size_t(state_->task->delivered().area()) * component_pass_info(pass).channels;
+  const size_t expected = size_t(state_->task->delivered().area()) * schema::component_pass_info(pass).channels;
   if (count != expected) {
-    throw invalid_argument("pass " + std::string(component_pass_info(pass).name) + " has " + std::to_string(expected) + " floats, " +
-                           std::to_string(count) + " were given");
+    throw invalid_argument("pass " + std::string(schema::component_pass_info(pass).name) + " has " +
+                           std::to_string(expected) + " floats, " + std::to_string(count) + " were given");
   }
   state_->task->read_component(name, pass, pixels);
 }
 
 std::string Render::stats_json() const { return state_->task->stats(); }
-std::shared_ptr<const Film> Render::film() const { return state_->task->film(); }
+std::shared_ptr<const film::Film> Render::film() const { return state_->task->film(); }
 
-}  // namespace gradus
+}  // namespace gradus::render

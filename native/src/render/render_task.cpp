@@ -5,7 +5,7 @@
 
 #include "base/fpu.h"
 
-namespace gradus {
+namespace gradus::render {
 
 void RenderTask::run() noexcept {
   try {
@@ -28,7 +28,9 @@ void RenderTask::end(GradusError code, const std::string& text) noexcept {
     const std::lock_guard lock(mutex_);
     total_seconds_ = seconds();
     code_ = code;
-    phase_ = code == GRADUS_OK ? GRADUS_PHASE_DONE : code == GRADUS_ERROR_CANCELLED ? GRADUS_PHASE_CANCELLED : GRADUS_PHASE_FAILED;
+    phase_ = code == GRADUS_OK                ? GRADUS_PHASE_DONE
+             : code == GRADUS_ERROR_CANCELLED ? GRADUS_PHASE_CANCELLED
+                                              : GRADUS_PHASE_FAILED;
     ending(code);
     if (code == GRADUS_OK) tracker_.raise_to(1.0f);
     tracker_.new_image();
@@ -78,9 +80,10 @@ void RenderTask::require_end(const char* what) const {
   if (!is_ended()) throw invalid_operation(std::string("the render is still running: ") + what + " at the end");
 }
 
-void RenderTask::require_film(const std::shared_ptr<const Film>& film, const char* what, const char* failure) const {
+void RenderTask::require_film(const std::shared_ptr<const film::Film>& film, const char* what,
+                              const char* failure) const {
   require_end(what);
   if (!film) throw invalid_operation(failure + text_);
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -14,7 +14,7 @@
 #include "gradus/gradus.h"
 #include "render/progress_tracker.h"
 
-namespace gradus {
+namespace gradus::render {
 
 class RenderTask {
  public:
@@ -39,7 +39,7 @@ class RenderTask {
   // Of a component.
   virtual void read_component(const std::string& name, uint32_t pass, float* pixels) const = 0;
   virtual std::string stats() const = 0;
-  virtual std::shared_ptr<const Film> film() const = 0;
+  virtual std::shared_ptr<const film::Film> film() const = 0;
 
  protected:
   virtual void render() = 0;
@@ -57,7 +57,7 @@ class RenderTask {
   // Throws invalid_operation while running. With the lock.
   void require_end(const char* what) const;
   // The same, and where the task has ended without a frame: `failure`, and why. With the lock.
-  void require_film(const std::shared_ptr<const Film>& film, const char* what, const char* failure) const;
+  void require_film(const std::shared_ptr<const film::Film>& film, const char* what, const char* failure) const;
   double seconds() const { return clock_.seconds(); }
   double process_cpu_seconds() const { return 1e-9 * double(process_cpu_nanoseconds() - process_cpu_start_); }
 
@@ -77,4 +77,4 @@ class RenderTask {
   double total_seconds_ = 0.0;
 };
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -5,20 +5,20 @@
 
 #include "base/error.h"
 #include "base/text_list.h"
-#include "film/pixel_blocks.h"
 #include "film/finite_check.h"
 #include "film/pass_planes.h"
+#include "film/pixel_blocks.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
 #include "schema/sampling_differences.h"
 
-namespace gradus {
+namespace gradus::render {
 namespace {
 
 // The key is taken with the integrator that was used, not with AUTO.
 uint64_t key_of(GradusSettings settings, uint32_t integrator) {
   settings.integrator = integrator;
-  return sampling_key(settings);
+  return schema::sampling_key(settings);
 }
 
 template <class T>
@@ -26,14 +26,14 @@ void add(std::vector<T>* to, const std::vector<T>& from) {
   for (size_t i = 0; i < to->size(); ++i) (*to)[i] += from[i];
 }
 
-void add_planes(PassPlane* to, const PassPlane& from) {
+void add_planes(film::PassPlane* to, const film::PassPlane& from) {
   if (to->first_sample_only) return;  // the frame that has sample 0 came first
-  for (int half = 0; half < kHalves; ++half) add(&to->values[half], from.values[half]);
+  for (int half = 0; half < film::kHalves; ++half) add(&to->values[half], from.values[half]);
   add(&to->weight, from.weight);
 }
 
-bool same_planes(const Film& a, const Film& b) {
-  const ComponentContent of_a = component_content(a), of_b = component_content(b);
+bool same_planes(const film::Film& a, const film::Film& b) {
+  const film::ComponentContent of_a = film::component_content(a), of_b = film::component_content(b);
   if (of_a.non_specular != of_b.non_specular || of_a.details != of_b.details) return false;
   if (a.passes.size() != b.passes.size() || a.fallback.size() != b.fallback.size()) return false;
   for (size_t i = 0; i < a.passes.size(); ++i) {
@@ -49,93 +49,103 @@ bool may_contain(const Plan& plan, uint32_t integrator) {
 
 }  // namespace
 
-void check_gradients(const Film& film, bool wanted) {
-  if (film.gradients != wanted) throw invalid_argument(wanted ? "the frame holds no gradients" : "the frame holds gradients");
+void check_gradients(const film::Film& film, bool wanted) {
+  if (film.gradients != wanted)
+    throw invalid_argument(wanted ? "the frame holds no gradients" : "the frame holds gradients");
 }
 
-uint32_t resumed_samples(const Film& film, bool adaptively) {
+uint32_t resumed_samples(const film::Film& film, bool adaptively) {
   const bool by_blocks = adaptively && !film.shared.rays.empty();
-  for (const Region& part : by_blocks ? make_pixel_blocks(film.region) : std::vector<Region>{film.region}) {
-    const uint32_t first = samples_at(film, film.index(part.x0, part.y0));
+  for (const Region& part : by_blocks ? film::make_pixel_blocks(film.region) : std::vector<Region>{film.region}) {
+    const uint32_t first = film::samples_at(film, film.index(part.x0, part.y0));
     for (int32_t y = part.y0; y < part.y1; ++y) {
       for (int32_t x = part.x0; x < part.x1; ++x) {
-        if (samples_at(film, film.index(x, y)) == first) continue;
+        if (film::samples_at(film, film.index(x, y)) == first) continue;
         throw invalid_argument("the frame's pixels differ in their sample counts: a render cannot go on from it");
       }
     }
   }
   if (by_blocks) return film.shared.mean;
-  return film.region.area() > 0 ? samples_at(film, 0) : 0;
+  return film.region.area() > 0 ? film::samples_at(film, 0) : 0;
 }
 
-ComponentSet resumed_components(const Film& film, const Plan& plan) {
+lpe::ComponentSet resumed_components(const film::Film& film, const Plan& plan) {
   if (!plan.merges_components) return plan.components;
   uint32_t absent = 0;
-  for (int c = 0; c < plan.components.count(); ++c) absent |= find_component(film, plan.components[c].name) < 0 ? 1u << c : 0u;
+  for (int c = 0; c < plan.components.count(); ++c)
+    absent |= film::find_component(film, plan.components[c].name) < 0 ? 1u << c : 0u;
   return plan.components.merged(absent);
 }
 
-void check_resumable(const Film& film, const GradusSettings& settings, const Plan& plan, uint64_t scene_key) {
+void check_resumable(const film::Film& film, const GradusSettings& settings, const Plan& plan, uint64_t scene_key) {
   if (film.scene_key != scene_key) throw invalid_argument("the frame shows another scene");
-  if (key_of(film.settings, plan.integrator) != key_of(settings, plan.integrator) || !may_contain(plan, film.settings.integrator)) {
+  if (key_of(film.settings, plan.integrator) != key_of(settings, plan.integrator) ||
+      !may_contain(plan, film.settings.integrator)) {
     GradusSettings wanted = settings;
     wanted.integrator = film.settings.integrator;
-    const std::string which = sampling_differences(film.settings, wanted);
-    throw invalid_argument("the frame was sampled with other settings: " + (which.empty() ? "another integrator" : which));
+    const std::string which = schema::sampling_differences(film.settings, wanted);
+    throw invalid_argument("the frame was sampled with other settings: " +
+                           (which.empty() ? "another integrator" : which));
   }
   if (film.region != plan.sampled || film.settings.first_sample != settings.first_sample) {
     throw invalid_argument("the frame has another region or first sample");
   }
-  const ComponentSet set = resumed_components(film, plan);
+  const lpe::ComponentSet set = resumed_components(film, plan);
   std::string wanted;
   for (int c = 0; c < set.count(); ++c) add_item(&wanted, set[c].name);
-  if (component_names(film) != wanted)
-    throw invalid_argument("the frame holds the components " + component_names(film) + ", and the render has " + wanted);
+  if (film::component_names(film) != wanted)
+    throw invalid_argument("the frame holds the components " + film::component_names(film) + ", and the render has " +
+                           wanted);
   const std::string gap = film.samples.first_gap(settings.first_sample);
   if (!gap.empty()) throw invalid_argument("the frame lacks " + gap + ": render and merge these first");
   if (film.settings.passes != settings.passes) throw invalid_argument("the frame was sampled with other passes");
-  const ComponentContent held = component_content(film);
+  const film::ComponentContent held = film::component_content(film);
   if ((plan.non_specular_vertices && !held.non_specular) || (plan.non_specular_details && !held.details))
     throw invalid_argument("the frame was sampled without the passes of components");
-  const uint64_t kept = film_passes(film);
-  for (const PassInfo& info : stored_passes(plan.passes)) {
-    if (!has_bit(kept, info.pass)) throw invalid_argument("the frame lacks " + std::string(info.name) + ", which the reconstruction reads");
+  const uint64_t kept = film::film_passes(film);
+  for (const schema::PassInfo& info : schema::stored_passes(plan.passes)) {
+    if (!schema::has_bit(kept, info.pass))
+      throw invalid_argument("the frame lacks " + std::string(info.name) + ", which the reconstruction reads");
   }
   if (resumed_samples(film, settings.noise_threshold > 0.0f) > settings.samples)
     throw invalid_argument("the frame has more samples than are asked for");
 }
 
-void add_sums(Film* film, const Film& other) {
+void add_sums(film::Film* film, const film::Film& other) {
   for (size_t c = 0; c < film->components.size(); ++c) {
-    std::vector<NonSpecularDetails>& details = film->components[c].details;
-    for (size_t i = 0; i < details.size(); ++i) add_details(other.components[c].details[i], &details[i], &film->counters);
+    std::vector<film::NonSpecularDetails>& details = film->components[c].details;
+    for (size_t i = 0; i < details.size(); ++i)
+      film::add_details(other.components[c].details[i], &details[i], &film->counters);
   }
-  for (int half = 0; half < kHalves; ++half) {
+  for (int half = 0; half < film::kHalves; ++half) {
     for (size_t c = 0; c < film->components.size(); ++c) {
       add(&film->components[c].primal[half], other.components[c].primal[half]);
       for (size_t i = 0; i < film->components[c].non_specular[half].size(); ++i) {
-        add_non_specular(other.components[c].non_specular[half][i], &film->components[c].non_specular[half][i], &film->counters);
+        film::add_non_specular(other.components[c].non_specular[half][i], &film->components[c].non_specular[half][i],
+                               &film->counters);
       }
-      for (int o = 0; o < kOffsets; ++o) add(&film->components[c].gradient[half][o], other.components[c].gradient[half][o]);
+      for (int o = 0; o < film::kOffsets; ++o)
+        add(&film->components[c].gradient[half][o], other.components[c].gradient[half][o]);
     }
     add(&film->count[half], other.count[half]);
-    for (int o = 0; o < kOffsets; ++o) add(&film->pair_count[half][o], other.pair_count[half][o]);
+    for (int o = 0; o < film::kOffsets; ++o) add(&film->pair_count[half][o], other.pair_count[half][o]);
   }
   for (size_t i = 0; i < film->passes.size(); ++i) add_planes(&film->passes[i], other.passes[i]);
   add(&film->fallback, other.fallback);
   film->counters.add(other.counters);
 }
 
-void merge_films(Film* film, const Film& other) {
+void merge_films(film::Film* film, const film::Film& other) {
   if (film->scene_key != other.scene_key) throw invalid_argument("the frames show different scenes");
-  if (sampling_key(film->settings) != sampling_key(other.settings))
+  if (schema::sampling_key(film->settings) != schema::sampling_key(other.settings))
     throw invalid_argument("the frames were sampled with different settings");
   if (film->region != other.region || film->channels != other.channels || film->gradients != other.gradients ||
       !same_planes(*film, other)) {
     throw invalid_argument("the frames differ in size or planes");
   }
-  if (!same_components(*film, other))
-    throw invalid_argument("the frames hold different components: " + component_names(*film) + ", and " + component_names(other));
+  if (!film::same_components(*film, other))
+    throw invalid_argument("the frames hold different components: " + film::component_names(*film) + ", and " +
+                           film::component_names(other));
   if (film->samples.overlap(other.samples)) {
     const uint32_t end = std::max(film->samples.list().back().end, other.samples.list().back().end);
     throw invalid_argument("the frames share samples: render one of them with first_sample " + std::to_string(end));
@@ -146,9 +156,9 @@ void merge_films(Film* film, const Film& other) {
   }
   add_sums(film, other);
   film->shared = {};  // each has taken other samples of a cell
-  for (const SampleRange& range : other.samples.list()) film->samples.add(range);
+  for (const film::SampleRange& range : other.samples.list()) film->samples.add(range);
   if (other_is_first) film->settings.first_sample = other.settings.first_sample;
   film->settings.samples = uint32_t(std::min<uint64_t>(film->samples.total(), UINT32_MAX));
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gradus {
+namespace gradus::render {
 namespace {
 
 // Spreads that are finite and positive.
@@ -14,13 +14,15 @@ std::vector<double> usable_spreads(const std::vector<BlockShare>& blocks) {
   }
   if (!(largest > 0.0)) return std::vector<double>(blocks.size(), 1.0);
   std::vector<double> spreads;
-  for (const BlockShare& block : blocks) spreads.push_back(std::isfinite(block.spread) ? std::max(block.spread, 1e-6 * largest) : largest);
+  for (const BlockShare& block : blocks)
+    spreads.push_back(std::isfinite(block.spread) ? std::max(block.spread, 1e-6 * largest) : largest);
   return spreads;
 }
 
 class Shares {
  public:
-  Shares(const std::vector<BlockShare>& blocks, uint32_t mean) : blocks_(blocks), spreads_(usable_spreads(blocks)), quantum_(mean >= 4 ? 2 : 1) {
+  Shares(const std::vector<BlockShare>& blocks, uint32_t mean)
+      : blocks_(blocks), spreads_(usable_spreads(blocks)), quantum_(mean >= 4 ? 2 : 1) {
     double pixels = 0.0, taken = 0.0;
     for (const BlockShare& block : blocks) {
       if (!block.continues) continue;
@@ -53,7 +55,8 @@ class Shares {
 
   double total(double factor) const {
     double sum = 0.0;
-    for (size_t i = 0; i < blocks_.size(); ++i) sum += blocks_[i].continues ? double(blocks_[i].pixels) * wanted(i, factor) : 0.0;
+    for (size_t i = 0; i < blocks_.size(); ++i)
+      sum += blocks_[i].continues ? double(blocks_[i].pixels) * wanted(i, factor) : 0.0;
     return sum;
   }
 
@@ -79,4 +82,4 @@ std::vector<uint32_t> allocate_samples(const std::vector<BlockShare>& blocks, ui
   return blocks.empty() ? std::vector<uint32_t>() : Shares(blocks, mean).rounded();
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -6,15 +6,15 @@
 #include <tbb/task_arena.h>
 
 #include "film/film.h"
-#include "render/plan.h"
 #include "reconstruct/solver.h"
 #include "render/picture.h"
+#include "render/plan.h"
 
-namespace gradus {
+namespace gradus::render {
 
-// Reconstructs the frame in the arena, with its error where the plan has that pass, and shows it. False: stopped, and nothing is shown, for
-// half of it is none.
-bool show_combined(const Film& film, uint32_t reconstruction, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena,
-                   Picture* picture, SolveReport* report);
+// Reconstructs the frame in the arena, with its error where the plan has that pass, and shows it. False: stopped, and
+// nothing is shown, for half of it is none.
+bool show_combined(const film::Film& film, uint32_t reconstruction, const Plan& plan, const std::atomic<bool>& stop,
+                   tbb::task_arena* arena, Picture* picture, reconstruct::SolveReport* report);
 
-}  // namespace gradus
+}  // namespace gradus::render

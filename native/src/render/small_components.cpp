@@ -12,7 +12,7 @@
 #include "film/pixel_blocks.h"
 #include "path/hash.h"
 
-namespace gradus {
+namespace gradus::render {
 namespace {
 
 // A pixel is looked at in every cell of so many pixels a side, or in smaller ones of a small film.
@@ -24,7 +24,7 @@ constexpr int32_t kBlocksPerGroupSide = 4;
 // A component is small if it has no more of that light in any square, and on average.
 constexpr double kSmallInGroup = 1e-2, kSmallInAll = 1e-3;
 
-using Light = std::array<double, kMaxComponents>;
+using Light = std::array<double, lpe::kMaxComponents>;
 
 int32_t block_side(const Region& film) {
   return std::clamp(int32_t(std::sqrt(double(film.area()) / double(kMinPixels))), int32_t{1}, kMaxBlockSide);
@@ -32,13 +32,14 @@ int32_t block_side(const Region& film) {
 
 // Somewhere in the cell, so that no pattern of the picture meets all of them alike.
 Region pixel_of(const Region& block, uint32_t seed) {
-  const uint32_t h = combine(combine(seed, uint32_t(block.x0)), uint32_t(block.y0));
-  const int32_t x = block.x0 + int32_t((h & 0xffffu) % uint32_t(block.width())), y = block.y0 + int32_t((h >> 16) % uint32_t(block.height()));
+  const uint32_t h = path::combine(path::combine(seed, uint32_t(block.x0)), uint32_t(block.y0));
+  const int32_t x = block.x0 + int32_t((h & 0xffffu) % uint32_t(block.width())),
+                y = block.y0 + int32_t((h >> 16) % uint32_t(block.height()));
   return {x, y, x + 1, y + 1};
 }
 
 // Of one pixel: mean of the channels, summed over samples.
-Light light_of(const Film& frame) {
+Light light_of(const film::Film& frame) {
   Light light{};
   for (size_t c = 0; c < frame.components.size(); ++c) {
     const Radiance sum = frame.components[c].primal[0][0] + frame.components[c].primal[1][0];
@@ -76,21 +77,21 @@ bool is_small(const std::vector<Light>& groups, size_t component, double light) 
 }
 
 // Of a pixel, in each square of the film.
-std::vector<Light> measure_groups(const Integrator& integrator, const GradusSettings& settings, const Region& film, int components,
-                                   int channels, const std::atomic<bool>& stop) {
+std::vector<Light> measure_groups(const integrator::Integrator& integrator, const GradusSettings& settings,
+                                  const Region& film, int components, int channels, const std::atomic<bool>& stop) {
   const int32_t side = block_side(film);
-  const std::vector<Region> groups = make_pixel_blocks(film, kBlocksPerGroupSide * side);
+  const std::vector<Region> groups = film::make_pixel_blocks(film, kBlocksPerGroupSide * side);
   std::vector<Light> light(groups.size());
   tbb::parallel_for(size_t{0}, light.size(), [&](size_t i) {
     const FlushDenormals flush;
-    Counters counters;
-    const std::vector<Region> blocks = make_pixel_blocks(groups[i], side);
+    film::Counters counters;
+    const std::vector<Region> blocks = film::make_pixel_blocks(groups[i], side);
     for (const Region& block : blocks) {
       if (stop.load(std::memory_order_relaxed)) return;
-      WorkUnit unit;
+      integrator::WorkUnit unit;
       unit.tile = pixel_of(block, settings.seed);
       unit.count = kSamples;
-      Film frame(settings.width, settings.height, unit.tile, channels, components, false);
+      film::Film frame(settings.width, settings.height, unit.tile, channels, components, false);
       integrator.sample(unit, &frame, &counters, stop);
       add(light_of(frame), &light[i]);
     }
@@ -101,13 +102,13 @@ std::vector<Light> measure_groups(const Integrator& integrator, const GradusSett
 
 }  // namespace
 
-SmallComponents find_small_components(const Integrator& integrator, const GradusSettings& settings, const ComponentSet& set, int channels,
-                                      const std::atomic<bool>& stop) {
+SmallComponents find_small_components(const integrator::Integrator& integrator, const GradusSettings& settings,
+                                      const lpe::ComponentSet& set, int channels, const std::atomic<bool>& stop) {
   const Region film{0, 0, int32_t(settings.width), int32_t(settings.height)};
   const std::vector<Light> groups = measure_groups(integrator, settings, film, set.count(), channels, stop);
   SmallComponents small;
   if (stop.load(std::memory_order_relaxed)) return small;  // that was cut short and has found nothing out
-  small.samples = kSamples * uint64_t(make_pixel_blocks(film, block_side(film)).size());
+  small.samples = kSamples * uint64_t(film::make_pixel_blocks(film, block_side(film)).size());
   const double light = typical(groups);
   for (int c = 0; c < set.count(); ++c) {
     if (is_small(groups, size_t(c), light)) small.bits |= 1u << c;
@@ -116,15 +117,16 @@ SmallComponents find_small_components(const Integrator& integrator, const Gradus
   return small;
 }
 
-void explain(const SmallComponents& small, const ComponentSet& set, Reasons* skipped) {
+void explain(const SmallComponents& small, const lpe::ComponentSet& set, Reasons* skipped) {
   std::string names;
   for (int c = 0; c < set.count(); ++c) {
     if ((small.bits >> c & 1) != 0) add_item(&names, set[c].name);
   }
   if (names.empty()) return;
-  skipped->emplace_back("components " + names, "automatic: " + std::to_string(small.samples) +
-                                                   " samples, thrown away, found next to no light of their kind anywhere; what there is of "
-                                                   "it belongs to Residual");
+  skipped->emplace_back("components " + names,
+                        "automatic: " + std::to_string(small.samples) +
+                            " samples, thrown away, found next to no light of their kind anywhere; what there is of "
+                            "it belongs to Residual");
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

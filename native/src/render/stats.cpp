@@ -6,7 +6,7 @@
 #include "base/clock.h"
 #include "schema/options.h"
 
-namespace gradus {
+namespace gradus::render {
 namespace {
 
 using nlohmann::json;
@@ -19,7 +19,7 @@ json reasons(const Reasons& planned, const Reasons& later) {
   return result;
 }
 
-json rays(const Counters& c) {
+json rays(const film::Counters& c) {
   return {{"primary", c.rays_primary},
           {"bounce", c.rays_bounce},
           {"shadow", c.rays_shadow},
@@ -27,7 +27,7 @@ json rays(const Counters& c) {
           {"shift_shadow", c.rays_shift_shadow}};
 }
 
-json shifts(const Counters& c) {
+json shifts(const film::Counters& c) {
   return {{"attempted", c.shifts_attempted},
           {"reconnected", c.shifts_reconnected},
           {"half_vector", c.shifts_half_vector},
@@ -44,8 +44,9 @@ json shifts(const Counters& c) {
 }
 
 json phases(const PhaseTimes& t) {
-  return {{"sample", t.sample}, {"preview", t.preview}, {"reconstruct", t.reconstruct}, {"denoise", t.denoise}, {"filter", 0.0},
-          {"links", t.correspondence},   {"store", t.store}};
+  return {{"sample", t.sample},   {"preview", t.preview}, {"reconstruct", t.reconstruct},
+          {"denoise", t.denoise}, {"filter", 0.0},        {"links", t.correspondence},
+          {"store", t.store}};
 }
 
 }  // namespace
@@ -60,7 +61,7 @@ void RenderStats::add(const RenderStats& part) {
   }
 }
 
-std::string stats_json(const RenderStats& stats, const Plan& plan, const Film& film) {
+std::string stats_json(const RenderStats& stats, const Plan& plan, const film::Film& film) {
   const GradusSettings& settings = film.settings;
   const Region& d = plan.delivered;
   json j;
@@ -70,13 +71,13 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Film& f
   j["resolution"] = {settings.width, settings.height};
   j["region"] = {d.x0, d.y0, d.x1, d.y1};
   j["seed"] = settings.seed;
-  j["integrator"] = choice_name(*find_option("integrator"), settings.integrator);
-  j["reconstruction"] = choice_name(*find_option("reconstruction"), settings.reconstruction);
+  j["integrator"] = schema::choice_name(*schema::find_option("integrator"), settings.integrator);
+  j["reconstruction"] = schema::choice_name(*schema::find_option("reconstruction"), settings.reconstruction);
   j["denoiser"] = stats.denoiser.empty() ? json(nullptr) : json(stats.denoiser);
   j["unbiased"] = delivers_unbiased(plan, settings.reconstruction, settings.denoiser != GRADUS_DENOISER_NONE);
-  for (const ComponentPlanes& planes : film.components) j["components"].push_back(planes.name);
-  j["samples"] = mean_samples(film);
-  j["spp_base"] = mean_samples(film) - stats.replayed_samples;
+  for (const film::ComponentPlanes& planes : film.components) j["components"].push_back(planes.name);
+  j["samples"] = film::mean_samples(film);
+  j["spp_base"] = film::mean_samples(film) - stats.replayed_samples;
   j["spp_offset"] = stats.replayed_samples;
   j["stopped"] = stats.stopped;
   j["plan"] = {{"chosen", reasons(plan.chosen, stats.chosen)}, {"skipped", reasons(plan.skipped, stats.skipped)}};
@@ -105,4 +106,4 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const Film& f
   return j.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -7,10 +7,12 @@
 #include "film/pixel_blocks.h"
 #include "render/pausable_loop.h"
 
-namespace gradus {
+namespace gradus::render {
 namespace {
 
-uint64_t rays_of(const Counters& c) { return c.rays_primary + c.rays_bounce + c.rays_shadow + c.rays_shift + c.rays_shift_shadow; }
+uint64_t rays_of(const film::Counters& c) {
+  return c.rays_primary + c.rays_bounce + c.rays_shadow + c.rays_shift + c.rays_shift_shadow;
+}
 
 bool has_pixels(const std::vector<uint8_t>& pixels, const Region& tile, const Region& region) {
   for (int32_t y = tile.y0; y < tile.y1; ++y) {
@@ -22,8 +24,9 @@ bool has_pixels(const std::vector<uint8_t>& pixels, const Region& tile, const Re
 
 }  // namespace
 
-TileSampler::TileSampler(const Integrator& integrator, std::vector<Region> tiles, const GradientMap& gradients, AdaptiveSampling* adaptive,
-                         const Replay* replay, const std::atomic<bool>& stop, Film* film)
+TileSampler::TileSampler(const integrator::Integrator& integrator, std::vector<Region> tiles,
+                         const GradientMap& gradients, AdaptiveSampling* adaptive, const Replay* replay,
+                         const std::atomic<bool>& stop, film::Film* film)
     : integrator_(integrator),
       tiles_(std::move(tiles)),
       gradients_(gradients),
@@ -46,7 +49,7 @@ bool TileSampler::run(const AfterTile& after_tile) {
 bool TileSampler::sample_tile(size_t tile, const AfterTile& after_tile) {
   if (stop_.load(std::memory_order_relaxed)) return true;
   const FlushDenormals flush;
-  WorkUnit unit;
+  integrator::WorkUnit unit;
   unit.tile = tiles_[tile];
   unit.first_sample = first_sample_ + begin_;
   unit.count = end_ - begin_;
@@ -54,7 +57,9 @@ bool TileSampler::sample_tile(size_t tile, const AfterTile& after_tile) {
   if (replay_ != nullptr) unit.replay_map = &replay_->replay_map;
   if (replay_ != nullptr && !replay_->counts.empty()) unit.count_map = &replay_->counts;
   const uint64_t cpu = thread_cpu_nanoseconds();
-  const Counters counters = adaptive_ ? sample_blocks(unit) : replay_ != nullptr ? sample_replay(unit) : sample(unit);
+  const film::Counters counters = adaptive_            ? sample_blocks(unit)
+                                  : replay_ != nullptr ? sample_replay(unit)
+                                                       : sample(unit);
   done_[tile] = 1;
   const bool pause = after_tile(unit.tile, uint64_t(unit.tile.area()) * unit.count);
   cpu_ += thread_cpu_nanoseconds() - cpu;
@@ -63,17 +68,17 @@ bool TileSampler::sample_tile(size_t tile, const AfterTile& after_tile) {
   return pause;
 }
 
-Counters TileSampler::sample(const WorkUnit& unit) {
-  Counters counters;
+film::Counters TileSampler::sample(const integrator::WorkUnit& unit) {
+  film::Counters counters;
   integrator_.sample(unit, film_, &counters, stop_);
   return counters;
 }
 
 // What goes with the surface, and then the components that go their own ways.
-Counters TileSampler::sample_replay(WorkUnit unit) {
+film::Counters TileSampler::sample_replay(integrator::WorkUnit unit) {
   const ComponentReplays& components = replay_->components;
   if (!components.shared.empty()) unit.component_map = &components.shared;
-  Counters sum = sample(unit);
+  film::Counters sum = sample(unit);
   unit.adds_components = true;
   for (const ComponentReplay& replay : components.own) {
     if (!has_pixels(replay.pixels, unit.tile, film_->region)) continue;
@@ -86,17 +91,17 @@ Counters TileSampler::sample_replay(WorkUnit unit) {
 }
 
 // Cell by cell, so that the cost of each is known.
-Counters TileSampler::sample_blocks(WorkUnit unit) {
+film::Counters TileSampler::sample_blocks(integrator::WorkUnit unit) {
   unit.first_map = &adaptive_->batch().first;
   unit.count_map = &adaptive_->batch().count;
-  Counters sum;
-  for (const Region& block : make_pixel_blocks(unit.tile)) {
+  film::Counters sum;
+  for (const Region& block : film::make_pixel_blocks(unit.tile)) {
     unit.tile = block;
-    const Counters counters = sample(unit);
+    const film::Counters counters = sample(unit);
     adaptive_->add_rays(block, rays_of(counters));
     sum.add(counters);
   }
   return sum;
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

@@ -1,5 +1,5 @@
-// Takes the samples of a batch, tile by tile on all threads. A batch may be long: it can pause between tiles, and the frame is at rest
-// then.
+// Takes the samples of a batch, tile by tile on all threads. A batch may be long: it can pause between tiles, and the
+// frame is at rest then.
 #pragma once
 
 #include <atomic>
@@ -12,14 +12,14 @@
 #include "render/loop_input.h"
 #include "render/pilot.h"
 
-namespace gradus {
+namespace gradus::render {
 
 class TileSampler {
  public:
-  // What it is given lives as long as it. adaptive: nullptr where all pixels take the same samples. replay: nullptr where they are the
-  // frame's own.
-  TileSampler(const Integrator& integrator, std::vector<Region> tiles, const GradientMap& gradients, AdaptiveSampling* adaptive,
-              const Replay* replay, const std::atomic<bool>& stop, Film* film);
+  // What it is given lives as long as it. adaptive: nullptr where all pixels take the same samples. replay: nullptr
+  // where they are the frame's own.
+  TileSampler(const integrator::Integrator& integrator, std::vector<Region> tiles, const GradientMap& gradients,
+              AdaptiveSampling* adaptive, const Replay* replay, const std::atomic<bool>& stop, film::Film* film);
 
   // Samples [begin, end) of each pixel; in adaptive renders that many on average, as the sharing of these says.
   void start_batch(uint32_t begin, uint32_t end);
@@ -32,17 +32,17 @@ class TileSampler {
 
  private:
   bool sample_tile(size_t tile, const AfterTile& after_tile);
-  Counters sample_blocks(WorkUnit unit);
-  Counters sample_replay(WorkUnit unit);
-  Counters sample(const WorkUnit& unit);
+  film::Counters sample_blocks(integrator::WorkUnit unit);
+  film::Counters sample_replay(integrator::WorkUnit unit);
+  film::Counters sample(const integrator::WorkUnit& unit);
 
-  const Integrator& integrator_;
+  const integrator::Integrator& integrator_;
   const std::vector<Region> tiles_;
   const GradientMap& gradients_;
   AdaptiveSampling* const adaptive_;
   const Replay* const replay_;
   const std::atomic<bool>& stop_;
-  Film* const film_;
+  film::Film* const film_;
   const uint32_t first_sample_;
 
   uint32_t begin_ = 0, end_ = 0;
@@ -51,4 +51,4 @@ class TileSampler {
   std::mutex counters_mutex_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::render

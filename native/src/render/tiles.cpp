@@ -2,12 +2,12 @@
 
 #include "film/pixel_block.h"
 
-namespace gradus {
+namespace gradus::render {
 
 int tile_side(const Region& region, unsigned threads) {
   constexpr int64_t kTilesPerThread = 16;
-  const int64_t large = region.area() / (4 * int64_t{kPixelBlockSide} * kPixelBlockSide);
-  return large >= kTilesPerThread * int64_t(threads) ? 2 * kPixelBlockSide : kPixelBlockSide;
+  const int64_t large = region.area() / (4 * int64_t{film::kPixelBlockSide} * film::kPixelBlockSide);
+  return large >= kTilesPerThread * int64_t(threads) ? 2 * film::kPixelBlockSide : film::kPixelBlockSide;
 }
 
-}  // namespace gradus
+}  // namespace gradus::render

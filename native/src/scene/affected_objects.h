@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace gradus {
+namespace gradus::scene {
 
 struct AffectedObjects {
   size_t count = 0;
@@ -14,11 +14,13 @@ struct AffectedObjects {
     if (count++ == 0) first = name;
   }
   // what: of one object; of_several: of more.
-  void warn(const std::string& what, const std::string& of_several, const std::string& why, std::vector<std::string>* warnings) const {
+  void warn(const std::string& what, const std::string& of_several, const std::string& why,
+            std::vector<std::string>* warnings) const {
     if (count == 0) return;
     warnings->push_back(count == 1 ? "object '" + first + "' " + what + ": " + why
-                                   : std::to_string(count) + " objects " + of_several + ", the first is '" + first + "': " + why);
+                                   : std::to_string(count) + " objects " + of_several + ", the first is '" + first +
+                                         "': " + why);
   }
 };
 
-}  // namespace gradus
+}  // namespace gradus::scene

@@ -2,18 +2,18 @@
 #include <algorithm>
 #include <atomic>
 
-#include "scene/device.h"
 #include "base/error.h"
 #include "base/fpu.h"
-#include "scene/affected_objects.h"
-#include "light/light_table.h"
 #include "light/light_scene.h"
+#include "light/light_table.h"
+#include "scene/affected_objects.h"
+#include "scene/device.h"
 #include "scene/scene_state.h"
 #include "scene/snapshot_geometry.h"
 #include "scene/snapshot_tangents.h"
 #include "shading/material.h"
 
-namespace gradus {
+namespace gradus::scene {
 
 namespace {
 
@@ -22,7 +22,8 @@ uint32_t index_of(const MaterialIndex& indices, uint64_t key, uint32_t otherwise
   return found == indices.end() ? otherwise : found->second;
 }
 
-void assign_materials(const InstanceArrays& arrays, const std::vector<size_t>& chosen, const MaterialIndex& indices, Snapshot* snapshot) {
+void assign_materials(const geometry::InstanceArrays& arrays, const std::vector<size_t>& chosen,
+                      const MaterialIndex& indices, Snapshot* snapshot) {
   if (arrays.material_first.empty()) return;
   for (size_t k = 0; k < chosen.size(); ++k) {
     const uint64_t* keys = arrays.materials.data() + arrays.material_first[chosen[k]];
@@ -36,7 +37,8 @@ void move_matrix(float* matrix, const Vec3& origin) {
   for (int i = 0; i < 3; ++i) matrix[12 + i] = float(double(matrix[12 + i]) - double(origin[i]));
 }
 
-// A camera that is elsewhere in the frame around, and no longer or not yet the same one, is said to be nowhere. Told; and then it rests.
+// A camera that is elsewhere in the frame around, and no longer or not yet the same one, is said to be nowhere. Told;
+// and then it rests.
 bool remove_shot_change(const GradusCamera& now, float* matrix, float* window) {
   if (std::all_of(matrix, matrix + 16, [](float value) { return is_finite(value); })) return false;
   std::copy_n(now.matrix, 16, matrix);
@@ -51,17 +53,18 @@ void place_camera(const Scene::State& state, Snapshot* snapshot) {
   snapshot->shot_change_after = remove_shot_change(camera, camera.matrix_next, camera.window_next);
   for (float* matrix : {snapshot->camera.matrix, snapshot->camera.matrix_previous, snapshot->camera.matrix_next})
     move_matrix(matrix, snapshot->origin);
-  auto keys = std::make_shared<CameraKeys>(state.camera_keys);
+  auto keys = std::make_shared<camera::CameraKeys>(state.camera_keys);
   for (size_t i = 0; i < keys->matrices.size(); i += 16) move_matrix(keys->matrices.data() + i, snapshot->origin);
-  refer_to(*keys, &snapshot->camera);
+  camera::refer_to(*keys, &snapshot->camera);
   snapshot->camera_keys = std::move(keys);
-  snapshot->shutter = Shutter(snapshot->camera);
+  snapshot->shutter = camera::Shutter(snapshot->camera);
 }
 
 // Whether the moment within the shutter makes a difference.
 void find_motion(Snapshot* snapshot) {
-  const bool moves = snapshot->camera.shutter_key_count > 0 ||
-                     std::any_of(snapshot->instances.begin(), snapshot->instances.end(), [](const InstanceData& i) { return i.moves(); });
+  const bool moves =
+      snapshot->camera.shutter_key_count > 0 || std::any_of(snapshot->instances.begin(), snapshot->instances.end(),
+                                                            [](const geometry::InstanceData& i) { return i.moves(); });
   snapshot->features.has_motion = moves && snapshot->shutter.opens();
 }
 
@@ -71,20 +74,21 @@ void place_world(const Scene::State& state, const MaterialIndex& indices, Snapsh
 }
 
 // A program that emits the same everywhere is folded into the light's strength.
-void set_light_material(const Snapshot& snapshot, uint32_t material, AnalyticLight* analytic_light) {
+void set_light_material(const Snapshot& snapshot, uint32_t material, light::AnalyticLight* analytic_light) {
   analytic_light->material = material;
   if (material == UINT32_MAX || !snapshot.materials[material]->emission_is_constant) return;
   analytic_light->intensity *= snapshot.materials[material]->constant_emission;
   analytic_light->material = UINT32_MAX;
 }
 
-std::vector<AnalyticLight> place_lights(const Scene::State& state, const MaterialIndex& indices, Snapshot* snapshot) {
-  std::vector<AnalyticLight> analytic_lights;
+std::vector<light::AnalyticLight> place_lights(const Scene::State& state, const MaterialIndex& indices,
+                                               Snapshot* snapshot) {
+  std::vector<light::AnalyticLight> analytic_lights;
   std::vector<std::string> broken;
   for (const LightSource& light : state.lights) {
-    AnalyticLight analytic_light;
-    if (!make_analytic_light(light.desc, snapshot->origin, &analytic_light)) {
-      if (!is_finite_light(light.desc)) broken.push_back(light.name);
+    light::AnalyticLight analytic_light;
+    if (!light::make_analytic_light(light.desc, snapshot->origin, &analytic_light)) {
+      if (!light::is_finite_light(light.desc)) broken.push_back(light.name);
       continue;
     }
     set_light_material(*snapshot, index_of(indices, light.desc.material, UINT32_MAX), &analytic_light);
@@ -96,18 +100,22 @@ std::vector<AnalyticLight> place_lights(const Scene::State& state, const Materia
   return analytic_lights;
 }
 
-void warn_beyond_limit(const InstanceArrays& arrays, const std::vector<size_t>& chosen, Snapshot* snapshot) {
+void warn_beyond_limit(const geometry::InstanceArrays& arrays, const std::vector<size_t>& chosen, Snapshot* snapshot) {
   AffectedObjects objects;
   for (const uint32_t i : snapshot->light_table->beyond_limit) objects.add(arrays.name(chosen[i]));
-  objects.warn("is not sampled as a light", "are not sampled as lights", "too many triangles emit light", &snapshot->warnings);
+  objects.warn("is not sampled as a light", "are not sampled as lights", "too many triangles emit light",
+               &snapshot->warnings);
 }
 
-void build_lights(const EmbreeDevice& device, std::vector<AnalyticLight> analytic_lights, const std::vector<size_t>& chosen,
-                  const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot) {
-  const auto light_scene = std::make_shared<const LightScene>(device, analytic_lights);
+void build_lights(const geometry::EmbreeDevice& device, std::vector<light::AnalyticLight> analytic_lights,
+                  const std::vector<size_t>& chosen, const CommitMonitor& monitor, Scene::State* state,
+                  Snapshot* snapshot) {
+  const auto light_scene = std::make_shared<const light::LightScene>(device, analytic_lights);
   SceneFeatures& features = snapshot->features;
-  features.has_lights_with_extent = std::any_of(analytic_lights.begin(), analytic_lights.end(), [](const AnalyticLight& analytic_light) { return analytic_light.found_by_rays(); });
-  auto table = build_light_table(*snapshot, std::move(analytic_lights), &state->world_map, monitor);
+  features.has_lights_with_extent =
+      std::any_of(analytic_lights.begin(), analytic_lights.end(),
+                  [](const light::AnalyticLight& analytic_light) { return analytic_light.found_by_rays(); });
+  auto table = light::build_light_table(*snapshot, std::move(analytic_lights), &state->world_map, monitor);
   table->lights_with_extent = features.has_lights_with_extent ? light_scene : nullptr;
   features.has_lights = !table->analytic_lights.empty() || !table->triangles.empty() || !table->world.black();
   snapshot->light_table = std::move(table);
@@ -118,31 +126,36 @@ void find_sharpest(Snapshot* snapshot) {
   const auto look_at = [&](uint32_t m) {
     SceneFeatures& features = snapshot->features;
     features.min_alpha = std::min(features.min_alpha, snapshot->materials[m]->min_alpha);
-    features.min_refracting_alpha = std::min(features.min_refracting_alpha, snapshot->materials[m]->min_refracting_alpha);
+    features.min_refracting_alpha =
+        std::min(features.min_refracting_alpha, snapshot->materials[m]->min_refracting_alpha);
   };
-  for (const InstanceData& instance : snapshot->instances) std::for_each(instance.materials.begin(), instance.materials.end(), look_at);
+  for (const geometry::InstanceData& instance : snapshot->instances)
+    std::for_each(instance.materials.begin(), instance.materials.end(), look_at);
 }
 
 // Holes in the film, by their object or by a shader.
 void find_holdouts(Snapshot* snapshot) {
   const auto holds_out = [&](uint32_t m) { return snapshot->materials[m]->has_holdout; };
-  snapshot->features.has_holdouts = std::any_of(snapshot->instances.begin(), snapshot->instances.end(), [&](const InstanceData& i) {
-    return (i.visibility & GRADUS_HOLDOUT) != 0 || std::any_of(i.materials.begin(), i.materials.end(), holds_out);
-  });
+  snapshot->features.has_holdouts =
+      std::any_of(snapshot->instances.begin(), snapshot->instances.end(), [&](const geometry::InstanceData& i) {
+        return (i.visibility & GRADUS_HOLDOUT) != 0 || std::any_of(i.materials.begin(), i.materials.end(), holds_out);
+      });
 }
 
 void find_emission(Snapshot* snapshot) {
   const auto dark = [&](uint32_t m) {
-    const MaterialData& material = *snapshot->materials[m];
+    const shading::MaterialData& material = *snapshot->materials[m];
     return !material.emits && !material.may_be_transparent && !material.uses_fallback;
   };
-  snapshot->features.only_lights_emit = std::all_of(snapshot->instances.begin(), snapshot->instances.end(), [&](const InstanceData& i) {
-    return i.materials.empty() ? dark(0) : std::all_of(i.materials.begin(), i.materials.end(), dark);
-  });
+  snapshot->features.only_lights_emit =
+      std::all_of(snapshot->instances.begin(), snapshot->instances.end(), [&](const geometry::InstanceData& i) {
+        return i.materials.empty() ? dark(0) : std::all_of(i.materials.begin(), i.materials.end(), dark);
+      });
   const uint32_t world = snapshot->world_material;
-  const MaterialData* material = world < snapshot->materials.size() ? snapshot->materials[world].get() : nullptr;
-  snapshot->features.world_emits =
-      material != nullptr && material->emits && !(material->emission_is_constant && is_black(material->constant_emission));
+  const shading::MaterialData* material =
+      world < snapshot->materials.size() ? snapshot->materials[world].get() : nullptr;
+  snapshot->features.world_emits = material != nullptr && material->emits &&
+                                   !(material->emission_is_constant && is_black(material->constant_emission));
 }
 
 }  // namespace
@@ -163,22 +176,26 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     assign_materials(state_->instances, chosen, materials, snapshot.get());
     add_tangents(state_->current.get(), snapshot.get());
     monitor.check();
-    const auto exact = [&](size_t k) { return internal_matrix(state_->instances.matrices[chosen[k]], snapshot->origin); };
+    const auto exact = [&](size_t k) {
+      return internal_matrix(state_->instances.matrices[chosen[k]], snapshot->origin);
+    };
     build_geometry(device_->embree(), exact, monitor.step(0.25f, 0.8f), state_->accelerator, snapshot.get());
     state_->accelerator = snapshot->accelerator;
     place_camera(*state_, snapshot.get());
     find_motion(snapshot.get());
     place_world(*state_, materials, snapshot.get());
-    build_lights(device_->embree(), place_lights(*state_, materials, snapshot.get()), chosen, monitor, state_.get(), snapshot.get());
+    build_lights(device_->embree(), place_lights(*state_, materials, snapshot.get()), chosen, monitor, state_.get(),
+                 snapshot.get());
     find_sharpest(snapshot.get());
     find_holdouts(snapshot.get());
     find_emission(snapshot.get());
   };
-  // Isolated: while it waits for its own tasks, this thread must not take tiles of a render that runs in the same arena.
+  // Isolated: while it waits for its own tasks, this thread must not take tiles of a render that runs in the same
+  // arena.
   device_->arena().execute([&] { tbb::this_task_arena::isolate(build); });
   snapshot->content_key = content_key(*state_);
   monitor.report(1.0f);
   state_->current = std::move(snapshot);
 }
 
-}  // namespace gradus
+}  // namespace gradus::scene

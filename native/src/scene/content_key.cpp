@@ -1,9 +1,9 @@
-// Key of all that a frame shows (contract 7.2: the scene key of a frame). Of contents alone: the keys under which a caller holds meshes,
-// materials and images differ from one session to the next.
+// Key of all that a frame shows (contract 7.2: the scene key of a frame). Of contents alone: the keys under which a
+// caller holds meshes, materials and images differ from one session to the next.
 #include "image/image.h"
 #include "scene/scene_state.h"
 
-namespace gradus {
+namespace gradus::scene {
 
 namespace {
 
@@ -36,20 +36,23 @@ void hash_light(const LightSource& light, const Contents& contents, ContentHash*
   const GradusLight& d = light.desc;
   for (const uint32_t v : {d.type, d.flags, d.visibility, d.max_bounces, uint32_t(d.pass_index)}) hash->value(v);
   hash_matrix(d.matrix, hash);
-  for (const float v : {d.strength[0], d.strength[1], d.strength[2], d.radius, d.angle, d.size[0], d.size[1], d.spread, d.cone, d.blend,
-                        d.sun_radiance_per_irradiance})
+  for (const float v : {d.strength[0], d.strength[1], d.strength[2], d.radius, d.angle, d.size[0], d.size[1], d.spread,
+                        d.cone, d.blend, d.sun_radiance_per_irradiance})
     hash->value(v);
   hash->value(contents.material(d.material));
 }
 
-void hash_camera(const GradusCamera& c, const CameraKeys& keys, ContentHash* hash) {
+void hash_camera(const GradusCamera& c, const camera::CameraKeys& keys, ContentHash* hash) {
   hash->value(c.type);
   for (const float* m : {c.matrix, c.matrix_previous, c.matrix_next}) hash_matrix(m, hash);
   for (const float* w : {c.window, c.window_previous, c.window_next}) hash->bytes(w, 4 * sizeof(float));
-  for (const float v : {c.clip_start, c.clip_end, c.aperture_radius, c.focus_distance, c.blade_rotation, c.aperture_ratio}) hash->value(v);
+  for (const float v :
+       {c.clip_start, c.clip_end, c.aperture_radius, c.focus_distance, c.blade_rotation, c.aperture_ratio})
+    hash->value(v);
   hash->value(c.blades);
   hash->value(c.panorama);
-  for (const float v : {c.fisheye_fov, c.eye_offset, c.convergence_distance, c.pole_merge_from, c.pole_merge_to}) hash->value(v);
+  for (const float v : {c.fisheye_fov, c.eye_offset, c.convergence_distance, c.pole_merge_from, c.pole_merge_to})
+    hash->value(v);
   hash->bytes(c.fisheye_polynomial, sizeof(c.fisheye_polynomial));
   for (const float v : {c.shutter_open, c.shutter_close}) hash->value(v);
   hash->array(keys.curve);
@@ -77,4 +80,4 @@ uint64_t content_key(const Scene::State& state) {
   return hash.result();
 }
 
-}  // namespace gradus
+}  // namespace gradus::scene

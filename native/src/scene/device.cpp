@@ -10,7 +10,7 @@
 #include "base/threads.h"
 #include "image/color.h"
 
-namespace gradus {
+namespace gradus::scene {
 
 namespace {
 
@@ -30,9 +30,9 @@ uint32_t thread_count(uint32_t wanted) {
 Device::Device(const GradusDeviceSettings& settings)
     : threads_(thread_count(settings.threads)), denoiser_path_(settings.denoiser_path ? settings.denoiser_path : "") {
   check_tbb();
-  color_ = std::make_unique<ColorManager>(settings.color_config ? settings.color_config : "",
-                                          [this](const std::string& text) { warnings_.add(text); });
-  embree_ = make_embree_device(threads_);
+  color_ = std::make_unique<image::ColorManager>(settings.color_config ? settings.color_config : "",
+                                                 [this](const std::string& text) { warnings_.add(text); });
+  embree_ = geometry::make_embree_device(threads_);
   // TBB gives all tasks of an arena the floating-point state of the thread that initialised it.
   const FlushDenormals flush;
   arena_.initialize(int(threads_), 1);
@@ -40,4 +40,4 @@ Device::Device(const GradusDeviceSettings& settings)
 
 Device::~Device() = default;
 
-}  // namespace gradus
+}  // namespace gradus::scene

@@ -7,12 +7,14 @@
 #include <tbb/task_arena.h>
 
 #include "base/warnings.h"
-#include "gradus/gradus.h"
 #include "geometry/embree_device.h"
+#include "gradus/gradus.h"
 
-namespace gradus {
-
+namespace gradus::image {
 class ColorManager;  // image/color.h
+}  // namespace gradus::image
+
+namespace gradus::scene {
 
 class Device {
  public:
@@ -22,22 +24,23 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  const EmbreeDevice& embree() const { return embree_; }
-  // Tasks that run in it flush denormals; threads of our own that compute outside of it take FlushDenormals (base/fpu.h).
+  const geometry::EmbreeDevice& embree() const { return embree_; }
+  // Tasks that run in it flush denormals; threads of our own that compute outside of it take FlushDenormals
+  // (base/fpu.h).
   tbb::task_arena& arena() { return arena_; }
   uint32_t threads() const { return threads_; }
-  ColorManager& color() { return *color_; }
+  image::ColorManager& color() { return *color_; }
   const std::string& denoiser_path() const { return denoiser_path_; }
   // Of the device itself: colour management. Those of scenes are with the scenes.
   Warnings& warnings() { return warnings_; }
 
  private:
   Warnings warnings_;
-  EmbreeDevice embree_;
+  geometry::EmbreeDevice embree_;
   uint32_t threads_ = 0;
   tbb::task_arena arena_;
-  std::unique_ptr<ColorManager> color_;
+  std::unique_ptr<image::ColorManager> color_;
   const std::string denoiser_path_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::scene

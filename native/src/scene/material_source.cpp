@@ -6,7 +6,7 @@
 #include "base/hash.h"
 #include "gradus/gradus_nodes.h"
 
-namespace gradus {
+namespace gradus::scene {
 
 namespace {
 
@@ -23,7 +23,8 @@ class Check {
 
 void check_arrays(const GradusMaterial& d, const Check& check) {
   constexpr size_t kMaxElements = size_t(1) << 26;
-  check.that(d.node_count < kMaxElements && d.input_count < kMaxElements && d.float_count < kMaxElements && d.name_count < kMaxElements,
+  check.that(d.node_count < kMaxElements && d.input_count < kMaxElements && d.float_count < kMaxElements &&
+                 d.name_count < kMaxElements,
              "too many elements");
   check.that(d.node_count == 0 || d.nodes, "nodes missing");
   check.that(d.input_count == 0 || d.inputs, "inputs missing");
@@ -76,7 +77,8 @@ uint64_t MaterialSource::hash_with(const std::function<uint64_t(uint64_t key)>& 
   hash.array(floats_);
   for (const std::string& name : names_) hash.value(name);
   const GradusMaterial& d = desc_;
-  for (const uint32_t v : {uint32_t(d.surface), uint32_t(d.pass_index), d.sample_as_light, d.transparent_shadow, d.uses_fallback})
+  for (const uint32_t v :
+       {uint32_t(d.surface), uint32_t(d.pass_index), d.sample_as_light, d.transparent_shadow, d.uses_fallback})
     hash.value(v);
   return hash.result();
 }
@@ -93,4 +95,4 @@ GradusMaterial MaterialSource::view() const {
   return d;
 }
 
-}  // namespace gradus
+}  // namespace gradus::scene

@@ -7,7 +7,7 @@
 
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::scene {
 
 class MaterialSource {
  public:
@@ -35,4 +35,4 @@ class MaterialSource {
   uint64_t content_hash_ = 0;
 };
 
-}  // namespace gradus
+}  // namespace gradus::scene

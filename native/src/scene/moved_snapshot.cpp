@@ -10,11 +10,11 @@
 #include "scene/snapshot_geometry.h"
 #include "scene/snapshot_tangents.h"
 
-namespace gradus {
+namespace gradus::scene {
 
 namespace {
 
-using Meshes = std::map<const MeshData*, std::shared_ptr<const MeshData>>;
+using Meshes = std::map<const geometry::MeshData*, std::shared_ptr<const geometry::MeshData>>;
 
 // A part of the way to the frame after, or to that before.
 struct Step {
@@ -24,28 +24,32 @@ struct Step {
   bool is_next() const { return when == Moment::Next; }
   float frames() const { return is_next() ? share : -share; }
   Mat4 matrix(const Mat4& now, const Mat4& then) const {
-    return share == 1.0f || now == then ? then : Mat4(interpolate_motion(glm::dmat4(now), glm::dmat4(then), double(share)));
+    return share == 1.0f || now == then
+               ? then
+               : Mat4(geometry::interpolate_motion(glm::dmat4(now), glm::dmat4(then), double(share)));
   }
 };
 
-std::shared_ptr<const MeshData> moved_mesh(const std::shared_ptr<const MeshData>& mesh, float frames, Meshes* known) {
+std::shared_ptr<const geometry::MeshData> moved_mesh(const std::shared_ptr<const geometry::MeshData>& mesh,
+                                                     float frames, Meshes* known) {
   if (mesh->key_times.size() < 2 && mesh->shutter_keys == 0) return mesh;
   auto& moved = (*known)[mesh.get()];
-  if (!moved) moved = mesh_at(*mesh, frames);
+  if (!moved) moved = geometry::mesh_at(*mesh, frames);
   return moved;
 }
 
 // True: it is not what it was.
-bool move_instance(const Step& step, Meshes* meshes, InstanceData* instance) {
+bool move_instance(const Step& step, Meshes* meshes, geometry::InstanceData* instance) {
   if (!(step.is_next() ? instance->will_be_there : instance->was_there)) {
-    instance->id = kNobody;
+    instance->id = geometry::kNobody;
     instance->visibility = GRADUS_MAY_MOVE;
     return true;
   }
-  const Mat4 matrix = step.matrix(instance->to_world, step.is_next() ? instance->to_world_next : instance->to_world_previous);
+  const Mat4 matrix =
+      step.matrix(instance->to_world, step.is_next() ? instance->to_world_next : instance->to_world_previous);
   const auto mesh = moved_mesh(instance->mesh, step.frames(), meshes);
   if (mesh == instance->mesh && matrix == instance->to_world && !instance->moves()) return false;
-  static_cast<Placement&>(*instance) = make_placement(glm::dmat4(matrix));
+  static_cast<geometry::Placement&>(*instance) = geometry::make_placement(glm::dmat4(matrix));
   instance->mirrored = glm::determinant(glm::dmat3(matrix)) < 0.0;
   instance->keys = nullptr;
   instance->deforms = false;
@@ -58,7 +62,7 @@ bool move_instance(const Step& step, Meshes* meshes, InstanceData* instance) {
 bool move_instances(const Step& step, Snapshot* snapshot) {
   Meshes meshes;
   bool moved = false;
-  for (InstanceData& instance : snapshot->instances) moved |= move_instance(step, &meshes, &instance);
+  for (geometry::InstanceData& instance : snapshot->instances) moved |= move_instance(step, &meshes, &instance);
   return moved;
 }
 
@@ -68,14 +72,16 @@ void move_camera(const Step& step, GradusCamera* camera) {
   std::copy_n(glm::value_ptr(matrix), 16, camera->matrix);
   const float* window = step.is_next() ? camera->window_next : camera->window_previous;
   for (int i = 0; i < 4; ++i)
-    camera->window[i] = step.share == 1.0f ? window[i] : camera->window[i] + step.share * (window[i] - camera->window[i]);
+    camera->window[i] =
+        step.share == 1.0f ? window[i] : camera->window[i] + step.share * (window[i] - camera->window[i]);
   camera->shutter_key_count = 0;
   camera->shutter_matrices = camera->shutter_windows = nullptr;
 }
 
 }  // namespace
 
-std::shared_ptr<const Snapshot> moved_snapshot(const Snapshot& snapshot, Moment when, const CancelCheck& is_cancelled, float share) {
+std::shared_ptr<const Snapshot> moved_snapshot(const Snapshot& snapshot, Moment when, const CancelCheck& is_cancelled,
+                                               float share) {
   const Step step{when, share};
   auto moved = std::make_shared<Snapshot>(snapshot);
   moved->features.has_motion = false;
@@ -84,10 +90,10 @@ std::shared_ptr<const Snapshot> moved_snapshot(const Snapshot& snapshot, Moment 
   if (!move_instances(step, moved.get())) return moved;
   add_tangents(&snapshot, moved.get());
   const auto exact = [&](size_t i) { return glm::dmat4(moved->instances[i].to_world); };
-  const EmbreeDevice& device = snapshot.accelerator->static_part.group->device;
+  const geometry::EmbreeDevice& device = snapshot.accelerator->static_part.group->device;
   build_geometry(
       device, exact, [&](float) { return !is_cancelled(); }, snapshot.accelerator, moved.get());
   return moved;
 }
 
-}  // namespace gradus
+}  // namespace gradus::scene

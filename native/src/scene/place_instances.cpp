@@ -1,11 +1,12 @@
-// From the instances as set to those of a snapshot: broken ones are left out, and the scene is moved to its centre where it is far away.
+// From the instances as set to those of a snapshot: broken ones are left out, and the scene is moved to its centre
+// where it is far away.
 #include <cmath>
 
 #include "base/hash.h"
 #include "scene/affected_objects.h"
 #include "scene/scene_state.h"
 
-namespace gradus {
+namespace gradus::scene {
 
 namespace {
 
@@ -34,10 +35,10 @@ struct Bounds {
   double radius() const { return glm::length(upper - lower) * 0.5; }
 };
 
-void add_box(const MeshData& mesh, const glm::dmat4& m, Bounds* bounds) {
+void add_box(const geometry::MeshData& mesh, const glm::dmat4& m, Bounds* bounds) {
   for (int i = 0; i < 8; ++i) {
-    const glm::dvec4 corner((i & 1 ? mesh.upper : mesh.lower).x, (i & 2 ? mesh.upper : mesh.lower).y, (i & 4 ? mesh.upper : mesh.lower).z,
-                            1);
+    const glm::dvec4 corner((i & 1 ? mesh.upper : mesh.lower).x, (i & 2 ? mesh.upper : mesh.lower).y,
+                            (i & 4 ? mesh.upper : mesh.lower).z, 1);
     bounds->add(glm::dvec3(m * corner));
   }
 }
@@ -54,7 +55,7 @@ Vec3 choose_origin(const Bounds& bounds) {
 }
 
 std::vector<size_t> choose_usable(const Scene::State& state, Snapshot* snapshot) {
-  const InstanceArrays& a = state.instances;
+  const geometry::InstanceArrays& a = state.instances;
   std::vector<size_t> usable;
   usable.reserve(a.count);
   AffectedObjects broken, unknown, torn, lost;
@@ -64,7 +65,7 @@ std::vector<size_t> choose_usable(const Scene::State& state, Snapshot* snapshot)
       unknown.add(a.name(i));
       continue;
     }
-    const MeshData& mesh = *found->second;
+    const geometry::MeshData& mesh = *found->second;
     const bool visible = mesh.dropped_triangles < mesh.triangle_count;
     if (mesh.dropped_triangles > 0) (visible ? torn : lost).add(a.name(i));
     if (!is_usable(a.matrices[i])) {
@@ -83,9 +84,9 @@ std::vector<size_t> choose_usable(const Scene::State& state, Snapshot* snapshot)
 
 Mat4 moved(const Mat4& m, const Vec3& origin) { return Mat4(internal_matrix(m, origin)); }
 
-void set_matrices(const InstanceArrays& a, size_t i, const Vec3& origin, InstanceData* out) {
+void set_matrices(const geometry::InstanceArrays& a, size_t i, const Vec3& origin, geometry::InstanceData* out) {
   const glm::dmat4 m = internal_matrix(a.matrices[i], origin);
-  static_cast<Placement&>(*out) = make_placement(m);
+  static_cast<geometry::Placement&>(*out) = geometry::make_placement(m);
   out->mirrored = glm::determinant(glm::dmat3(m)) < 0.0;
   const bool previous = !a.matrices_previous.empty() && is_usable(a.matrices_previous[i]);
   const bool next = !a.matrices_next.empty() && is_usable(a.matrices_next[i]);
@@ -96,7 +97,7 @@ void set_matrices(const InstanceArrays& a, size_t i, const Vec3& origin, Instanc
 }
 
 // While the shutter is open. One that degenerates on the way stands still.
-void set_keys(const InstanceArrays& a, size_t i, const Vec3& origin, InstanceData* out) {
+void set_keys(const geometry::InstanceArrays& a, size_t i, const Vec3& origin, geometry::InstanceData* out) {
   out->deforms = out->mesh->shutter_keys > 0;
   if (a.shutter_first.empty() || a.shutter_count[i] == 0) return;
   std::vector<glm::dmat4> keys;
@@ -105,10 +106,10 @@ void set_keys(const InstanceArrays& a, size_t i, const Vec3& origin, InstanceDat
     if (!is_usable(m)) return;
     keys.push_back(internal_matrix(m, origin));
   }
-  out->keys = std::make_shared<const MatrixKeys>(keys);
+  out->keys = std::make_shared<const geometry::MatrixKeys>(keys);
 }
 
-void set_values(const InstanceArrays& a, size_t i, InstanceData* out) {
+void set_values(const geometry::InstanceArrays& a, size_t i, geometry::InstanceData* out) {
   out->id = a.ids.empty() ? i : a.ids[i];
   if (!a.visibility.empty()) out->visibility = a.visibility[i];
   if (!a.random_ids.empty()) out->random_id = a.random_ids[i];
@@ -130,15 +131,16 @@ glm::dmat4 internal_matrix(const Mat4& matrix, const Vec3& origin) {
 }
 
 std::vector<size_t> place_instances(const Scene::State& state, Snapshot* snapshot) {
-  const InstanceArrays& a = state.instances;
+  const geometry::InstanceArrays& a = state.instances;
   std::vector<size_t> usable = choose_usable(state, snapshot);
   Bounds bounds;
-  for (const size_t i : usable) add_box(*state.meshes.at(a.meshes[i]), internal_matrix(a.matrices[i], Vec3(0.0f)), &bounds);
+  for (const size_t i : usable)
+    add_box(*state.meshes.at(a.meshes[i]), internal_matrix(a.matrices[i], Vec3(0.0f)), &bounds);
   snapshot->origin = choose_origin(bounds);
   snapshot->radius = bounds.empty() ? 1.0f : float(std::max(bounds.radius(), 1e-6));
   snapshot->instances.resize(usable.size());
   for (size_t k = 0; k < usable.size(); ++k) {
-    InstanceData& out = snapshot->instances[k];
+    geometry::InstanceData& out = snapshot->instances[k];
     out.mesh = state.meshes.at(a.meshes[usable[k]]);
     set_matrices(a, usable[k], snapshot->origin, &out);
     set_keys(a, usable[k], snapshot->origin, &out);
@@ -147,4 +149,4 @@ std::vector<size_t> place_instances(const Scene::State& state, Snapshot* snapsho
   return usable;
 }
 
-}  // namespace gradus
+}  // namespace gradus::scene

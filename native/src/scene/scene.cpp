@@ -4,7 +4,7 @@
 #include "scene/scene_state.h"
 #include "shading/graph_check.h"
 
-namespace gradus {
+namespace gradus::scene {
 
 namespace {
 
@@ -19,15 +19,15 @@ Scene::Scene(std::shared_ptr<Device> device) : state_(std::make_unique<State>())
 Scene::~Scene() = default;
 
 void Scene::set_mesh(uint64_t key, const GradusMesh& mesh) {
-  std::shared_ptr<const MeshData> made = make_mesh(mesh);
+  std::shared_ptr<const geometry::MeshData> made = geometry::make_mesh(mesh);
   const Lock lock(state_->mutex);
-  std::shared_ptr<const MeshData>& slot = state_->meshes[key];
+  std::shared_ptr<const geometry::MeshData>& slot = state_->meshes[key];
   // Equal content keeps the object, and with it what was built from it.
   if (!slot || slot->content_hash != made->content_hash) slot = std::move(made);
 }
 
 void Scene::set_image(uint64_t key, const GradusImage& image) {
-  ImageSource source = copy_image_source(image);
+  image::ImageSource source = image::copy_image_source(image);
   const Lock lock(state_->mutex);
   state_->images[key] = {std::move(source), nullptr};
 }
@@ -36,14 +36,14 @@ void Scene::set_material(uint64_t key, const GradusMaterial& material) {
   if (key == 0) throw invalid_argument("material: key 0 is the default grey");
   auto source = std::make_shared<const MaterialSource>(material);
   // Finds mistakes now, while the caller knows what it does. What is only too much is commit's to replace.
-  check_program(source->view());
+  shading::check_program(source->view());
   const Lock lock(state_->mutex);
   std::shared_ptr<const MaterialSource>& slot = state_->materials[key];
   if (!slot || slot->content_hash() != source->content_hash()) slot = std::move(source);
 }
 
 void Scene::set_instances(const GradusInstances& instances) {
-  InstanceArrays copy = copy_instances(instances);
+  geometry::InstanceArrays copy = geometry::copy_instances(instances);
   const Lock lock(state_->mutex);
   state_->instances = std::move(copy);
 }
@@ -62,12 +62,13 @@ void Scene::set_lights(const GradusLight* lights, size_t count) {
 }
 
 void Scene::set_camera(const GradusCamera& camera) {
-  if (camera.type > GRADUS_CAMERA_PANORAMA || camera.panorama > GRADUS_PANORAMA_CYLINDER) throw invalid_argument("camera: unknown type");
-  CameraKeys keys = copy_camera_keys(camera);
+  if (camera.type > GRADUS_CAMERA_PANORAMA || camera.panorama > GRADUS_PANORAMA_CYLINDER)
+    throw invalid_argument("camera: unknown type");
+  camera::CameraKeys keys = camera::copy_camera_keys(camera);
   const Lock lock(state_->mutex);
   state_->camera = camera;
   state_->camera_keys = std::move(keys);
-  refer_to(state_->camera_keys, &state_->camera);
+  camera::refer_to(state_->camera_keys, &state_->camera);
   state_->has_camera = true;
 }
 
@@ -93,4 +94,4 @@ std::shared_ptr<const Snapshot> Scene::snapshot() const {
   return state_->current;
 }
 
-}  // namespace gradus
+}  // namespace gradus::scene

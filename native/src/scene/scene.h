@@ -10,7 +10,7 @@
 #include "gradus/gradus.h"
 #include "scene/snapshot.h"
 
-namespace gradus {
+namespace gradus::scene {
 
 class Device;  // scene/device.h: Embree device, thread arena, colour, warnings
 
@@ -18,8 +18,9 @@ class Scene {
  public:
   explicit Scene(std::shared_ptr<Device> device);
   ~Scene();
-  // Copies the arrays. Throws Error INVALID_ARGUMENT with a text that names the mesh where the arrays contradict each other;
-  // broken values (NaN, zero areas) are kept out later, with one warning: broken data costs the broken object, not the frame.
+  // Copies the arrays. Throws Error INVALID_ARGUMENT with a text that names the mesh where the arrays contradict each
+  // other; broken values (NaN, zero areas) are kept out later, with one warning: broken data costs the broken object,
+  // not the frame.
   void set_mesh(uint64_t key, const GradusMesh& mesh);
   void set_image(uint64_t key, const GradusImage& image);
   void set_material(uint64_t key, const GradusMaterial& material);
@@ -28,7 +29,8 @@ class Scene {
   void set_camera(const GradusCamera& camera);
   void set_world(const GradusWorld& world);
   void remove(GradusObjectKind kind, uint64_t key);
-  // Throws Error CANCELLED when *cancel becomes non-zero (the snapshot before stays); progress runs from 0 to 1 and never falls.
+  // Throws Error CANCELLED when *cancel becomes non-zero (the snapshot before stays); progress runs from 0 to 1 and
+  // never falls.
   void commit(const volatile int32_t* cancel, float* progress);
   std::shared_ptr<const Snapshot> snapshot() const;  // of the last commit; nullptr before
   const std::shared_ptr<Device>& device() const { return device_; }
@@ -40,4 +42,4 @@ class Scene {
   std::shared_ptr<Device> device_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::scene

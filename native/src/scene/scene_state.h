@@ -9,16 +9,20 @@
 
 #include "base/commit_monitor.h"
 #include "base/hash.h"
-#include "geometry/accelerator.h"
 #include "camera/camera_keys.h"
-#include "image/image_store.h"
+#include "geometry/accelerator.h"
 #include "geometry/instance_arrays.h"
-#include "scene/material_source.h"
 #include "geometry/mesh.h"
-#include "scene/scene.h"
+#include "image/image_store.h"
 #include "light/world_map.h"
+#include "scene/material_source.h"
+#include "scene/scene.h"
 
-namespace gradus {
+namespace gradus::shading {
+struct MaterialData;
+}  // namespace gradus::shading
+
+namespace gradus::scene {
 
 // A light as set; the pointers of `desc` are null.
 struct LightSource {
@@ -27,18 +31,16 @@ struct LightSource {
 };
 
 struct LoadedImage {
-  ImageSource source;
-  std::shared_ptr<const Image> image;  // null: to be loaded by the next commit
+  image::ImageSource source;
+  std::shared_ptr<const image::Image> image;  // null: to be loaded by the next commit
 };
 
 // Image key -> pixels.
-using StoredImages = std::map<uint64_t, std::shared_ptr<const Image>>;
-
-struct MaterialData;
+using StoredImages = std::map<uint64_t, std::shared_ptr<const image::Image>>;
 
 struct CompiledMaterial {
   std::shared_ptr<const MaterialSource> source;
-  std::shared_ptr<const MaterialData> data;
+  std::shared_ptr<const shading::MaterialData> data;
   std::string warning;  // why `data` is the fallback; empty: it is not
 };
 
@@ -47,24 +49,24 @@ using MaterialIndex = std::unordered_map<uint64_t, uint32_t>;
 
 struct Scene::State {
   mutable std::mutex mutex;
-  std::unordered_map<uint64_t, std::shared_ptr<const MeshData>> meshes;
+  std::unordered_map<uint64_t, std::shared_ptr<const geometry::MeshData>> meshes;
   std::map<uint64_t, LoadedImage> images;
   std::map<uint64_t, std::shared_ptr<const MaterialSource>> materials;
-  InstanceArrays instances;
+  geometry::InstanceArrays instances;
   std::vector<LightSource> lights;
   GradusCamera camera{};  // its arrays are camera_keys'
-  CameraKeys camera_keys;
+  camera::CameraKeys camera_keys;
   bool has_camera = false;
   GradusWorld world{};
   bool has_world = false;
 
   // Results of the last commit that the next may take over.
   std::shared_ptr<const Snapshot> current;
-  std::shared_ptr<const ImageStore> image_store;
+  std::shared_ptr<const image::ImageStore> image_store;
   StoredImages stored_images;  // in image_store
   std::map<uint64_t, CompiledMaterial> compiled;
-  std::shared_ptr<const Accelerator> accelerator;
-  WorldMap world_map;
+  std::shared_ptr<const geometry::Accelerator> accelerator;
+  light::WorldMap world_map;
 };
 
 // Exact matrix of an instance in internal space.
@@ -80,4 +82,4 @@ MaterialIndex compile_materials(const CommitMonitor& monitor, Scene::State* stat
 // Hash of all that was set.
 uint64_t content_key(const Scene::State& state);
 
-}  // namespace gradus
+}  // namespace gradus::scene

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "base/types.h"
-#include "gradus/gradus.h"
 #include "camera/camera.h"
 #include "camera/camera_keys.h"
-#include "light/lit_scene.h"
 #include "camera/shutter.h"
+#include "gradus/gradus.h"
+#include "light/lit_scene.h"
 
-namespace gradus {
+namespace gradus::scene {
 
 // What a scene contains, so that what it does not need can be left out.
 struct SceneFeatures {
@@ -21,26 +21,28 @@ struct SceneFeatures {
   float min_alpha = 1.0f;                  // roughness: surely no lobe is sharper
   float min_refracting_alpha = kInfinity;  // likewise, of those that refract; infinite: there are none
   bool has_lights = false;
-  bool only_lights_emit = false;  // no surface has anything to show to a ray that ends a path: it sees lights and the world alone
+  bool only_lights_emit =
+      false;  // no surface has anything to show to a ray that ends a path: it sees lights and the world alone
   bool world_emits = true;
   bool has_motion = false;    // something moves while the shutter is open
   bool has_holdouts = false;  // holes in the film, which have alpha 0 in an opaque one, too
 };
 
-// All positions that go in and come out are in internal space: world = internal + origin. The camera and the lights are moved alike, so
-// that an integrator never notices; what shows world coordinates (Position pass, Geometry node) adds the origin.
-class Snapshot : public LitScene {
+// All positions that go in and come out are in internal space: world = internal + origin. The camera and the lights are
+// moved alike, so that an integrator never notices; what shows world coordinates (Position pass, Geometry node) adds
+// the origin.
+class Snapshot : public light::LitScene {
  public:
   // Transmittance of the segment through transparent surfaces, at most max_transparent of them; 0 if blocked.
   Rgb transmittance(const Ray& ray, uint32_t max_transparent) const;
 
-  std::shared_ptr<const CameraKeys> camera_keys;
+  std::shared_ptr<const camera::CameraKeys> camera_keys;
   bool shot_change_before = false, shot_change_after = false;  // the frame around is seen by another camera
-  bool is_other_shot = false;                  // of moved_snapshot() over such a cut
-  Shutter shutter;
+  bool is_other_shot = false;                                  // of moved_snapshot() over such a cut
+  camera::Shutter shutter;
   SceneFeatures features;
   uint64_t content_key = 0;
   std::vector<std::string> warnings;  // made by commit
 };
 
-}  // namespace gradus
+}  // namespace gradus::scene

@@ -6,11 +6,12 @@
 #include "geometry/accelerator.h"
 #include "scene/snapshot.h"
 
-namespace gradus {
+namespace gradus::scene {
 
-// Fills accelerator, the instances' flat triangles and has_transparent_shadows. before: of another snapshot, or nullptr.
-// Throws Error CANCELLED or OUT_OF_MEMORY.
-void build_geometry(const EmbreeDevice& device, const ExactMatrices& to_internal, const BuildProgress& progress,
-                    const std::shared_ptr<const Accelerator>& before, Snapshot* snapshot);
+// Fills accelerator, the instances' flat triangles and has_transparent_shadows. before: of another snapshot, or
+// nullptr. Throws Error CANCELLED or OUT_OF_MEMORY.
+void build_geometry(const geometry::EmbreeDevice& device, const geometry::ExactMatrices& to_internal,
+                    const BuildProgress& progress, const std::shared_ptr<const geometry::Accelerator>& before,
+                    Snapshot* snapshot);
 
-}  // namespace gradus
+}  // namespace gradus::scene

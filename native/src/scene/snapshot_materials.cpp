@@ -3,12 +3,12 @@
 
 #include <tbb/parallel_for.h>
 
-#include "scene/device.h"
 #include "base/error.h"
+#include "scene/device.h"
 #include "scene/scene_state.h"
 #include "shading/material.h"
 
-namespace gradus {
+namespace gradus::scene {
 
 namespace {
 
@@ -18,19 +18,19 @@ void load_new_images(Device& device, Scene::State* state, const CommitMonitor& m
   for (auto& [key, image] : state->images)
     if (!image.image) pending.push_back(&image);
   tbb::parallel_for(size_t(0), pending.size(), [&](size_t i) {
-    if (monitor.is_running()) pending[i]->image = load_image(pending[i]->source, device.color());
+    if (monitor.is_running()) pending[i]->image = image::load_image(pending[i]->source, device.color());
   });
   monitor.check();
 }
 
 // A material that does not compile costs itself, not the frame.
-CompiledMaterial compile(const std::shared_ptr<const MaterialSource>& source, const ImageStore& images) {
+CompiledMaterial compile(const std::shared_ptr<const MaterialSource>& source, const image::ImageStore& images) {
   const GradusMaterial desc = source->view();
   try {
-    return {source, compile_material(desc, images), ""};
+    return {source, shading::compile_material(desc, images), ""};
   } catch (const Error& error) {
     if (error.code() != GRADUS_ERROR_INVALID_ARGUMENT) throw;
-    return {source, fallback_material(desc), std::string(error.what()) + "; it is rendered grey"};
+    return {source, shading::fallback_material(desc), std::string(error.what()) + "; it is rendered grey"};
   }
 }
 
@@ -47,11 +47,12 @@ void load_images(Device& device, const CommitMonitor& monitor, Scene::State* sta
   StoredImages images = loaded_images(*state);
   // Not by what was loaded just now: a commit that was cancelled may have loaded it.
   if (!state->image_store || images != state->stored_images) {
-    auto store = std::make_shared<ImageStore>();
+    auto store = std::make_shared<image::ImageStore>();
     for (const auto& [key, image] : images) store->add(key, image);
     state->image_store = std::move(store);
     state->stored_images = std::move(images);
-    // A program may have been folded with what an image holds. Others are kept: the table of a sky takes a third of a second.
+    // A program may have been folded with what an image holds. Others are kept: the table of a sky takes a third of a
+    // second.
     std::erase_if(state->compiled, [](const auto& entry) { return entry.second.source->looks_at_images(); });
   }
   snapshot->images = state->image_store;
@@ -61,7 +62,7 @@ void load_images(Device& device, const CommitMonitor& monitor, Scene::State* sta
 
 MaterialIndex compile_materials(const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot) {
   MaterialIndex index;
-  snapshot->materials.push_back(default_material());
+  snapshot->materials.push_back(shading::default_material());
   std::map<uint64_t, CompiledMaterial> kept;
   for (const auto& [key, source] : state->materials) {
     monitor.check();
@@ -79,4 +80,4 @@ MaterialIndex compile_materials(const CommitMonitor& monitor, Scene::State* stat
   return index;
 }
 
-}  // namespace gradus
+}  // namespace gradus::scene

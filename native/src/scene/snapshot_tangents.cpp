@@ -1,24 +1,25 @@
 #include <algorithm>
 #include <map>
 
+#include "geometry/mesh.h"
+#include "geometry/tangent_field.h"
 #include "scene/snapshot.h"
 #include "scene/snapshot_tangents.h"
-#include "geometry/tangent_field.h"
-#include "geometry/mesh.h"
 #include "shading/material.h"
 
-namespace gradus {
+namespace gradus::scene {
 
 namespace {
 
-using Fields = std::map<const MeshAttribute*, std::shared_ptr<const TangentField>>;
+using Fields = std::map<const geometry::MeshAttribute*, std::shared_ptr<const geometry::TangentField>>;
 
 // The UV maps of a mesh for which a material asks.
 template <class Visit>
-void for_each_wanted(const Snapshot& snapshot, const InstanceData& instance, const Visit& visit) {
+void for_each_wanted(const Snapshot& snapshot, const geometry::InstanceData& instance, const Visit& visit) {
   const auto of_material = [&](uint32_t material) {
     for (const std::string& name : snapshot.materials[material]->tangent_maps) {
-      const MeshAttribute* uv = name.empty() ? default_uv_map(*instance.mesh) : find_attribute(*instance.mesh, name);
+      const geometry::MeshAttribute* uv =
+          name.empty() ? geometry::default_uv_map(*instance.mesh) : geometry::find_attribute(*instance.mesh, name);
       if (uv) visit(*uv);
     }
   };
@@ -31,17 +32,17 @@ void for_each_wanted(const Snapshot& snapshot, const InstanceData& instance, con
 void add_tangents(const Snapshot* before, Snapshot* snapshot) {
   Fields fields;
   if (before) {
-    for (const InstanceData& instance : before->instances)
+    for (const geometry::InstanceData& instance : before->instances)
       for (const auto& field : instance.tangents) fields[field->uv] = field;
   }
-  for (InstanceData& instance : snapshot->instances) {
-    for_each_wanted(*snapshot, instance, [&](const MeshAttribute& uv) {
+  for (geometry::InstanceData& instance : snapshot->instances) {
+    for_each_wanted(*snapshot, instance, [&](const geometry::MeshAttribute& uv) {
       auto& field = fields[&uv];
-      if (!field) field = make_tangents(instance.mesh, uv);
+      if (!field) field = geometry::make_tangents(instance.mesh, uv);
       if (std::find(instance.tangents.begin(), instance.tangents.end(), field) == instance.tangents.end())
         instance.tangents.push_back(field);
     });
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::scene

@@ -4,7 +4,7 @@
 #include "schema/options.h"
 
 // clang-format off
-namespace gradus {
+namespace gradus::schema {
 namespace {
 
 constexpr Choice kIntegratorChoices[] = {
@@ -142,5 +142,5 @@ constexpr Option kOptions[] = {
 
 std::span<const Option> options() { return kOptions; }
 
-}  // namespace gradus
+}  // namespace gradus::schema
 // clang-format on

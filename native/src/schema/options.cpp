@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 
-namespace gradus {
+namespace gradus::schema {
 namespace {
 
 // Lower case and '-' as '_', by ASCII alone: no locale may change a name.
@@ -38,7 +38,8 @@ bool has_choice(const Option& option, double value) {
 }
 
 void check_range(const Option& option, double value) {
-  if (option.type == GRADUS_OPTION_ENUM && !has_choice(option, value)) throw refused(option, number(value), "one of " + choice_names(option));
+  if (option.type == GRADUS_OPTION_ENUM && !has_choice(option, value))
+    throw refused(option, number(value), "one of " + choice_names(option));
   if (value >= option.minimum && value <= option.maximum) return;  // NaN fails
   std::string allowed = "at least " + number(option.minimum);
   if (option.maximum < 2e9) allowed = number(option.minimum) + " to " + number(option.maximum);
@@ -54,7 +55,8 @@ double parse_bool(const Option& option, const std::string& text) {
 double parse_number(const Option& option, const std::string& text) {
   double value = 0;
   const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);  // no locale: the point is the decimal sign everywhere
+  const auto [stop, error] =
+      std::from_chars(text.data(), end, value);  // no locale: the point is the decimal sign everywhere
   if (error != std::errc() || stop != end) throw refused(option, text, "a number");
   if (option.type == GRADUS_OPTION_INT && value != std::floor(value)) throw refused(option, text, "a whole number");
   check_range(option, value);
@@ -106,12 +108,15 @@ void set_option(GradusSettings* settings, const Option& option, double value) {
     const float single = static_cast<float>(value);
     std::memcpy(to, &single, sizeof(single));
   } else {
-    const uint32_t bits = is_signed(option) ? static_cast<uint32_t>(static_cast<int32_t>(value)) : static_cast<uint32_t>(value);
+    const uint32_t bits =
+        is_signed(option) ? static_cast<uint32_t>(static_cast<int32_t>(value)) : static_cast<uint32_t>(value);
     std::memcpy(to, &bits, sizeof(bits));
   }
 }
 
-size_t size_of(const Option& option) { return option.type == GRADUS_OPTION_TEXT ? size_t(option.maximum) + 1 : sizeof(uint32_t); }
+size_t size_of(const Option& option) {
+  return option.type == GRADUS_OPTION_TEXT ? size_t(option.maximum) + 1 : sizeof(uint32_t);
+}
 
 // Ended by 0, or by the field's end: the caller's bytes may be anything.
 std::string get_text(const GradusSettings& settings, const Option& option) {
@@ -154,7 +159,8 @@ void parse_option(const Option& option, std::string_view text, GradusSettings* s
 // Squared and added to eigenvalues in float.
 void check_alpha(float alpha) {
   if (alpha != 0.0f && !(alpha >= 1e-3f && alpha <= 1e3f)) {
-    throw invalid_argument("reconstruction_alpha is " + std::to_string(alpha) + ", expected 0 (automatic) or 0.001 to 1000");
+    throw invalid_argument("reconstruction_alpha is " + std::to_string(alpha) +
+                           ", expected 0 (automatic) or 0.001 to 1000");
   }
 }
 
@@ -165,9 +171,11 @@ void check_settings(const GradusSettings& settings) {
       continue;
     }
     const double value = get_option(settings, option);
-    if (value == 0 && std::strcmp(option.name, "samples") == 0) throw invalid_argument("0 samples: there is nothing to render");
+    if (value == 0 && std::strcmp(option.name, "samples") == 0)
+      throw invalid_argument("0 samples: there is nothing to render");
     // The float of a minimum may lie just below it.
-    if (option.type == GRADUS_OPTION_FLOAT && std::abs(value - option.minimum) <= 1e-6 * std::abs(option.minimum)) continue;
+    if (option.type == GRADUS_OPTION_FLOAT && std::abs(value - option.minimum) <= 1e-6 * std::abs(option.minimum))
+      continue;
     check_range(option, value);
   }
   check_alpha(settings.reconstruction_alpha);
@@ -230,7 +238,8 @@ bool was_removed(const Option& option, const std::string& text) {
   });
 }
 
-void read_text(const Option& option, const std::string& text, GradusSettings* settings, std::vector<std::string>* warnings) {
+void read_text(const Option& option, const std::string& text, GradusSettings* settings,
+               std::vector<std::string>* warnings) {
   if (!was_removed(option, text)) return parse_option(option, text, settings);
   set_option(settings, option, option.default_value);
   if (!warnings) return;
@@ -259,7 +268,8 @@ GradusSettings settings_from_json(const nlohmann::json& json, std::vector<std::s
     for (size_t i = 0; i < 4; ++i) settings.region[i] = region->at(i).get<uint32_t>();
   }
   if (const auto passes = json.find("passes"); passes != json.end()) settings.passes = passes->get<uint64_t>();
-  if (const auto passes = json.find("component_passes"); passes != json.end()) settings.component_passes = passes->get<uint32_t>();
+  if (const auto passes = json.find("component_passes"); passes != json.end())
+    settings.component_passes = passes->get<uint32_t>();
   return settings;
 }
 
@@ -271,4 +281,4 @@ uint64_t sampling_key(const GradusSettings& settings) {
   return hash.result();
 }
 
-}  // namespace gradus
+}  // namespace gradus::schema

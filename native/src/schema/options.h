@@ -1,5 +1,5 @@
-// The options of a render: name, place, default, range, choices and meaning of every scalar of GradusSettings. The table
-// is generated: schema/option_table.cpp.
+// The options of a render: name, place, default, range, choices and meaning of every scalar of GradusSettings. The
+// table is generated: schema/option_table.cpp.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::schema {
 
 // A value of an enum by its name in lower case.
 struct Choice {
@@ -59,11 +59,12 @@ std::string choice_name(const Option& option, uint32_t value);
 // Returns the names of an enum's values, separated by spaces.
 std::string choice_names(const Option& option);
 
-// All options by name, enums by their names; and back (unknown names are skipped, absent ones keep their default). Choices that earlier
-// versions had become the default; `warnings`, unless it is nullptr, receives a text for each.
+// All options by name, enums by their names; and back (unknown names are skipped, absent ones keep their default).
+// Choices that earlier versions had become the default; `warnings`, unless it is nullptr, receives a text for each.
 nlohmann::json settings_to_json(const GradusSettings& settings);
 GradusSettings settings_from_json(const nlohmann::json& json, std::vector<std::string>* warnings = nullptr);
-// Hash of what determines a sample's value: size, seed, frame, integrator, bounces and the like, not how many samples are taken.
+// Hash of what determines a sample's value: size, seed, frame, integrator, bounces and the like, not how many samples
+// are taken.
 uint64_t sampling_key(const GradusSettings& settings);
 
-}  // namespace gradus
+}  // namespace gradus::schema

@@ -4,7 +4,7 @@
 #include "schema/pass_table.h"
 
 // clang-format off
-namespace gradus {
+namespace gradus::schema {
 namespace {
 
 constexpr PassInfo kPasses[] = {
@@ -64,5 +64,5 @@ constexpr ComponentPassInfo kComponentPasses[] = {
 std::span<const PassInfo> all_passes() { return kPasses; }
 std::span<const ComponentPassInfo> all_component_passes() { return kComponentPasses; }
 
-}  // namespace gradus
+}  // namespace gradus::schema
 // clang-format on

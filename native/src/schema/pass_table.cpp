@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 
-namespace gradus {
+namespace gradus::schema {
 namespace {
 
 constexpr uint32_t kNone = GRADUS_PASS_COUNT;
@@ -70,4 +70,4 @@ uint64_t feature_passes() {
 
 uint64_t light_passes() { return passes_that(is_of_light); }
 
-}  // namespace gradus
+}  // namespace gradus::schema

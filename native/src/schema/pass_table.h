@@ -1,5 +1,6 @@
-// The passes: names, channels, and which stored plane a pass is read from. The table is generated: schema/pass_rows.cpp.
-// The integrator fills the planes that film/pass_planes.h creates; frames are read through output/pass_read.h.
+// The passes: names, channels, and which stored plane a pass is read from. The table is generated:
+// schema/pass_rows.cpp. The integrator fills the planes that film/pass_planes.h creates; frames are read through
+// output/pass_read.h.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,7 @@
 
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::schema {
 
 // How a pass comes out of a frame.
 enum class PassKind : uint8_t {
@@ -64,21 +65,23 @@ inline bool has_bit(uint64_t passes, uint32_t pass) { return (passes >> pass & 1
 constexpr bool is_irradiance_motion(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_IRRADIANCE_MOTION || component_pass == GRADUS_COMPONENT_IRRADIANCE_TRACKED;
 }
-// Passes of a component that are made of its picture, of the first rough vertices of its paths, of more that is kept of these, of its
-// motion.
+// Passes of a component that are made of its picture, of the first rough vertices of its paths, of more that is kept of
+// these, of its motion.
 constexpr bool is_of_picture(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_COLOR || component_pass == GRADUS_COMPONENT_IRRADIANCE;
 }
 constexpr bool is_of_non_specular_vertices(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_REFLECTANCE || component_pass == GRADUS_COMPONENT_IRRADIANCE ||
-         component_pass == GRADUS_COMPONENT_NORMAL || component_pass == GRADUS_COMPONENT_DEPTH || is_irradiance_motion(component_pass);
+         component_pass == GRADUS_COMPONENT_NORMAL || component_pass == GRADUS_COMPONENT_DEPTH ||
+         is_irradiance_motion(component_pass);
 }
 constexpr bool is_of_non_specular_details(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_UV || component_pass == GRADUS_COMPONENT_OBJECT_INDEX ||
          component_pass == GRADUS_COMPONENT_FACE_INDEX || component_pass == GRADUS_COMPONENT_EMIT;
 }
 constexpr bool is_motion(uint32_t component_pass) {
-  return component_pass == GRADUS_COMPONENT_MOTION || component_pass == GRADUS_COMPONENT_TRACKED || is_irradiance_motion(component_pass);
+  return component_pass == GRADUS_COMPONENT_MOTION || component_pass == GRADUS_COMPONENT_TRACKED ||
+         is_irradiance_motion(component_pass);
 }
 // Whether some pass of that kind is wanted.
 bool any_wanted(uint32_t component_passes, bool (*is_of_kind)(uint32_t component_pass));
@@ -101,4 +104,4 @@ uint64_t feature_passes();
 // Parts of the picture's light.
 uint64_t light_passes();
 
-}  // namespace gradus
+}  // namespace gradus::schema

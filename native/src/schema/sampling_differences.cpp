@@ -3,7 +3,7 @@
 #include "base/text_list.h"
 #include "schema/options.h"
 
-namespace gradus {
+namespace gradus::schema {
 namespace {
 
 bool is_same(const Option& option, const GradusSettings& a, const GradusSettings& b) {
@@ -17,9 +17,10 @@ std::string sampling_differences(const GradusSettings& stored, const GradusSetti
   std::string text;
   for (const Option& option : options()) {
     if (!option.sampling || is_same(option, stored, wanted)) continue;
-    add_item(&text, std::string(option.name) + " is " + value_text(stored, option) + ", not " + value_text(wanted, option));
+    add_item(&text,
+             std::string(option.name) + " is " + value_text(stored, option) + ", not " + value_text(wanted, option));
   }
   return text;
 }
 
-}  // namespace gradus
+}  // namespace gradus::schema

@@ -1,11 +1,11 @@
-// Register allocation by linear scan. Jumps go forward only, and what runs between a jump and its target is not used after it, so that
-// the order of the code is an order of lifetimes.
+// Register allocation by linear scan. Jumps go forward only, and what runs between a jump and its target is not used
+// after it, so that the order of the code is an order of lifetimes.
 #include <algorithm>
 
 #include "base/error.h"
 #include "shading/program_emitter.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 class Allocator {
@@ -90,4 +90,4 @@ void allocate_registers(Program* program, const std::vector<VirtualOutputs>& out
   Allocator(program, outputs, name).run();
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -2,18 +2,18 @@
 #include "geometry/mesh.h"
 #include "shading/context_ops.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 // name nullptr: the UV map that the mesh renders with. *channels (may be null): 0 where there is no such attribute.
 Vec4 attribute_value(const ShadeContext& c, const std::string* name, bool uv, uint32_t* channels) {
   if (channels) *channels = 0;
   if (!c.instance) return Vec4(0.0f);
-  const MeshData& mesh = *c.instance->mesh;
-  const MeshAttribute* found = name ? find_attribute(mesh, *name) : nullptr;
-  if (!found && !name && uv) found = default_uv_map(mesh);
+  const geometry::MeshData& mesh = *c.instance->mesh;
+  const geometry::MeshAttribute* found = name ? geometry::find_attribute(mesh, *name) : nullptr;
+  if (!found && !name && uv) found = geometry::default_uv_map(mesh);
   if (!found) return Vec4(0.0f);
   if (channels) *channels = found->channels;
-  return interpolate(corner_values(mesh, *found, c.hit.triangle), c.hit.barycentric);
+  return interpolate(geometry::corner_values(mesh, *found, c.hit.triangle), c.hit.barycentric);
 }
 
 void attribute(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
@@ -32,7 +32,7 @@ void object_info(const ShadeContext& c, Vec4* out) {
     return;
   }
   const Vec3 origin = c.scene ? c.scene->origin : Vec3(0.0f);
-  Placement room;
+  geometry::Placement room;
   out[0] = value(Vec3(placement_of(c, &room).to_world[3]) + origin);
   out[1] = Vec4(Vec3(c.instance->color), 1.0f);
   out[2] = splat(static_cast<float>(c.instance->pass_index));
@@ -40,4 +40,4 @@ void object_info(const ShadeContext& c, Vec4* out) {
   out[4] = splat(c.instance->color.w);
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -6,7 +6,7 @@
 #include "shading/sky/sky_color.h"
 #include "shading/sky/spectrum.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 // Temperatures beyond those that Cycles knows have the colour of its last one; what Rec. 709 cannot show is cut off.
 Rgb blackbody(float kelvin) {
@@ -21,4 +21,4 @@ Rgb blackbody(float kelvin) {
   return glm::max(xyz_to_rgb(Vec3(xyz / xyz.y)), Rgb(0.0f));
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -3,11 +3,11 @@
 #include "shading/interpreter.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
-// About one pixel of a 1080p picture, as an angle. A step that depends on the point alone: a path that is shifted onto a point must
-// find the normal that any other path finds there.
+// About one pixel of a 1080p picture, as an angle. A step that depends on the point alone: a path that is shifted onto
+// a point must find the normal that any other path finds there.
 constexpr float kPixelAngle = 7e-4f;
 // Steps shorter than this share of the coordinates drown in rounding.
 constexpr float kSmallestStep = 2e-5f;
@@ -18,7 +18,8 @@ float step_length(const ShadeContext& c, float filter_width) {
   if (c.scene->has_camera) {
     const float* m = c.scene->camera.matrix;
     distance = glm::distance(c.position, Vec3(m[12], m[13], m[14]));
-    if (c.scene->camera.type == GRADUS_CAMERA_ORTHOGRAPHIC) distance = c.scene->camera.window[1] - c.scene->camera.window[0];
+    if (c.scene->camera.type == GRADUS_CAMERA_ORTHOGRAPHIC)
+      distance = c.scene->camera.window[1] - c.scene->camera.window[0];
   }
   return std::max(std::max(distance * kPixelAngle * filter_width, kSmallestStep * max_component(p)), 1e-7f);
 }
@@ -49,4 +50,4 @@ Vec3 bump(const Program& program, uint32_t block, const OpArgs& args, const Shad
   return mixed == Vec3(0.0f) ? normal : mixed;
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

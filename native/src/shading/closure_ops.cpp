@@ -4,14 +4,15 @@
 #include "shading/rotation.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 Rgb non_negative(const Vec3& c) { return glm::max(c, Vec3(0.0f)); }
 
 void add_diffuse(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   const Rgb color = non_negative(args.v(0));
-  Lobe* lobe = add_lobe(result, LobeType::Diffuse, LightPass::Diffuse, args.weight * color, outward_normal(c, args.v(2)));
+  bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::Diffuse, bsdf::LightPass::Diffuse, args.weight * color,
+                              outward_normal(c, args.v(2)));
   if (!lobe) return;
   lobe->alpha_x = saturate(args.f(1));
   lobe->multiscatter = args.mode == 1;
@@ -20,7 +21,8 @@ void add_diffuse(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
 
 void add_glossy(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   const Vec3 normal = facing_normal(c, args.v(4));
-  Lobe* lobe = add_lobe(result, LobeType::GgxReflection, LightPass::Glossy, args.weight * non_negative(args.v(0)), normal);
+  bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy,
+                              args.weight * non_negative(args.v(0)), normal);
   if (!lobe) return;
   set_glossy_roughness(lobe, args.f(1), args.f(2));
   if (args.f(2) != 0.0f) lobe->tangent = turned_tangent(c, args.v(5), normal, args.f(3));
@@ -30,19 +32,19 @@ void add_glossy(const ClosureArgs& args, const ShadeContext& c, ShadeResult* res
 
 void add_metallic(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   const Vec3 normal = facing_normal(c, args.v(5));
-  Lobe* lobe = add_lobe(result, LobeType::GgxReflection, LightPass::Glossy, args.weight, normal);
+  bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, args.weight, normal);
   if (!lobe) return;
   set_principled_roughness(lobe, args.f(2), args.f(3));
   if (args.f(3) > 0.0f) lobe->tangent = turned_tangent(c, args.v(6), normal, args.f(4));
   lobe->multiscatter = args.mode & GRADUS_DISTRIBUTION_MULTIPLE;
-  lobe->fresnel = FresnelType::PrincipledMetal;
+  lobe->fresnel = bsdf::FresnelType::PrincipledMetal;
   lobe->f0 = glm::clamp(args.v(0), 0.0f, 1.0f);
   lobe->f90 = glm::clamp(args.v(1), 0.0f, 1.0f);
 }
 
 void add_refraction(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
-  Lobe* lobe = add_lobe(result, LobeType::GgxRefraction, LightPass::Transmission, args.weight * non_negative(args.v(0)),
-                        outward_normal(c, args.v(3)));
+  bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxRefraction, bsdf::LightPass::Transmission,
+                              args.weight * non_negative(args.v(0)), outward_normal(c, args.v(3)));
   if (!lobe) return;
   const float roughness = saturate(args.f(1));
   lobe->alpha_x = lobe->alpha_y = roughness * roughness;
@@ -55,30 +57,33 @@ void add_legacy_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResul
   const Rgb weight = args.weight * non_negative(args.v(0));
   const float ior = std::max(args.f(2), 1e-5f), roughness = saturate(args.f(1));
   const float reflected = dielectric_reflectance(glm::dot(c.wo, normal), c.backfacing ? 1.0f / ior : ior);
-  if (Lobe* lobe = add_lobe(result, LobeType::GgxReflection, LightPass::Glossy, weight * reflected, normal)) {
+  if (bsdf::Lobe* lobe =
+          add_lobe(result, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight * reflected, normal)) {
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
   }
-  if (Lobe* lobe = add_lobe(result, LobeType::GgxRefraction, LightPass::Transmission, weight * (1.0f - reflected),
-                            c.backfacing ? -normal : normal)) {
+  if (bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxRefraction, bsdf::LightPass::Transmission,
+                                  weight * (1.0f - reflected), c.backfacing ? -normal : normal)) {
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
     lobe->ior = ior;
   }
 }
 
 void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
-  if ((args.mode & 2) && !(args.mode & GRADUS_DISTRIBUTION_MULTIPLE) && args.f(1) > 0.0f) return add_legacy_glass(args, c, result);
-  Lobe* lobe =
-      add_lobe(result, LobeType::GgxGlass, LightPass::Transmission, args.weight * non_negative(args.v(0)), outward_normal(c, args.v(3)));
+  if ((args.mode & 2) && !(args.mode & GRADUS_DISTRIBUTION_MULTIPLE) && args.f(1) > 0.0f)
+    return add_legacy_glass(args, c, result);
+  bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxGlass, bsdf::LightPass::Transmission,
+                              args.weight * non_negative(args.v(0)), outward_normal(c, args.v(3)));
   if (!lobe) return;
   const float roughness = saturate(args.f(1));
   lobe->alpha_x = lobe->alpha_y = roughness * roughness;
   lobe->ior = std::max(args.f(2), 1e-5f);
-  lobe->fresnel = FresnelType::Dielectric;
+  lobe->fresnel = bsdf::FresnelType::Dielectric;
   lobe->multiscatter = args.mode & GRADUS_DISTRIBUTION_MULTIPLE;
 }
 
 void add_sheen(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
-  Lobe* lobe = add_lobe(result, LobeType::Sheen, LightPass::Diffuse, args.weight * non_negative(args.v(0)), facing_normal(c, args.v(2)));
+  bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::Sheen, bsdf::LightPass::Diffuse,
+                              args.weight * non_negative(args.v(0)), facing_normal(c, args.v(2)));
   if (lobe) lobe->alpha_x = saturate(args.f(1));
 }
 
@@ -86,7 +91,7 @@ void add_sheen(const ClosureArgs& args, const ShadeContext& c, ShadeResult* resu
 
 Vec3 facing_normal(const ShadeContext& c, const Vec3& normal) {
   const Vec3 n = safe_normalize(normal);
-  return n == Vec3(0.0f) ? c.normal : keep_above(n, c.geometric_normal);
+  return n == Vec3(0.0f) ? c.normal : geometry::keep_above(n, c.geometric_normal);
 }
 
 Vec3 outward_normal(const ShadeContext& c, const Vec3& normal) {
@@ -100,14 +105,14 @@ Vec3 turned_tangent(const ShadeContext& c, const Vec3& tangent, const Vec3& norm
   return turns != 0.0f ? rotate_around(t, normal, turns * 2.0f * kPi) : t;
 }
 
-void set_principled_roughness(Lobe* lobe, float roughness, float anisotropic) {
+void set_principled_roughness(bsdf::Lobe* lobe, float roughness, float anisotropic) {
   const float alpha = saturate(roughness) * saturate(roughness);
   const float aspect = std::sqrt(1.0f - 0.9f * saturate(anisotropic));
   lobe->alpha_x = alpha / aspect;
   lobe->alpha_y = alpha * aspect;
 }
 
-void set_glossy_roughness(Lobe* lobe, float roughness, float anisotropy) {
+void set_glossy_roughness(bsdf::Lobe* lobe, float roughness, float anisotropy) {
   const float alpha = saturate(roughness) * saturate(roughness), a = std::clamp(anisotropy, -0.99f, 0.99f);
   lobe->alpha_x = a < 0.0f ? alpha / (1.0f + a) : alpha * (1.0f - a);
   lobe->alpha_y = a < 0.0f ? alpha * (1.0f + a) : alpha / (1.0f - a);
@@ -117,9 +122,10 @@ void add_finite(const Rgb& value, Rgb* sum) {
   if (is_finite(value)) *sum += value;
 }
 
-Lobe* add_lobe(ShadeResult* result, LobeType type, LightPass pass, const Rgb& weight, const Vec3& normal) {
+bsdf::Lobe* add_lobe(ShadeResult* result, bsdf::LobeType type, bsdf::LightPass pass, const Rgb& weight,
+                     const Vec3& normal) {
   if (!(max_component(weight) > kWeightCutoff)) return nullptr;
-  Lobe* lobe = result->closures.add();
+  bsdf::Lobe* lobe = result->closures.add();
   lobe->type = type;
   lobe->pass = pass;
   lobe->weight = weight;
@@ -138,7 +144,8 @@ void add_closure(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
     case GRADUS_OP_DIFFUSE:
       return add_diffuse(args, c, result);
     case GRADUS_OP_TRANSLUCENT:
-      add_lobe(result, LobeType::Translucent, LightPass::Diffuse, args.weight * non_negative(args.v(0)), outward_normal(c, args.v(1)));
+      add_lobe(result, bsdf::LobeType::Translucent, bsdf::LightPass::Diffuse, args.weight * non_negative(args.v(0)),
+               outward_normal(c, args.v(1)));
       return;
     case GRADUS_OP_GLOSSY:
       return add_glossy(args, c, result);
@@ -168,4 +175,4 @@ void add_closure(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

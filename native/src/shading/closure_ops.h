@@ -4,7 +4,7 @@
 #include "shading/context.h"
 #include "shading/ops.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 // Bits that compile adds to the mode of PRINCIPLED: only its emission is wanted.
 inline constexpr uint32_t kEmissionOnly = 1u << 16;
@@ -28,16 +28,18 @@ Vec3 facing_normal(const ShadeContext& context, const Vec3& normal);
 // The same, pointing outwards, as lobes with two sides want it.
 Vec3 outward_normal(const ShadeContext& context, const Vec3& normal);
 // Widths of a reflection lobe from roughness and Principled's anisotropy (0…1).
-void set_principled_roughness(Lobe* lobe, float roughness, float anisotropic);
+void set_principled_roughness(bsdf::Lobe* lobe, float roughness, float anisotropic);
 // The same for the Glossy BSDF, whose anisotropy runs from -1 to 1.
-void set_glossy_roughness(Lobe* lobe, float roughness, float anisotropy);
+void set_glossy_roughness(bsdf::Lobe* lobe, float roughness, float anisotropy);
 // Tangent (zero: the default one), turned by `turns` around the normal.
 Vec3 turned_tangent(const ShadeContext& context, const Vec3& tangent, const Vec3& normal, float turns);
 // A new lobe with the given weight; nullptr: too weak.
-Lobe* add_lobe(ShadeResult* result, LobeType type, LightPass pass, const Rgb& weight, const Vec3& normal);
-// Broken inputs must not cost the light of others, which shares its samples (architecture rule 2): what is not finite is black.
+bsdf::Lobe* add_lobe(ShadeResult* result, bsdf::LobeType type, bsdf::LightPass pass, const Rgb& weight,
+                     const Vec3& normal);
+// Broken inputs must not cost the light of others, which shares its samples (architecture rule 2): what is not finite
+// is black.
 void add_finite(const Rgb& value, Rgb* sum);
 // What is left for the layers below one of the given albedo.
 Rgb layered(const Rgb& weight, const Rgb& albedo);
 
-}  // namespace gradus
+}  // namespace gradus::shading

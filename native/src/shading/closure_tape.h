@@ -1,5 +1,6 @@
-// The closures of one run of a node program, with what went into them. Where the program's values look at the point alone, this is enough
-// to see the point from another direction, without running textures again: so shifted paths see a vertex of their base.
+// The closures of one run of a node program, with what went into them. Where the program's values look at the point
+// alone, this is enough to see the point from another direction, without running textures again: so shifted paths see a
+// vertex of their base.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 #include "shading/closure_ops.h"
 #include "shading/program.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 class ClosureTape {
  public:
@@ -47,4 +48,4 @@ class ClosureTape {
   bool complete_ = false;
 };
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -2,7 +2,7 @@
 
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 float smallest(const Vec3& c) { return std::min(c.x, std::min(c.y, c.z)); }
@@ -65,4 +65,4 @@ Vec3 hsl_to_rgb(const Vec3& hsl) {
   return (glm::clamp(base, 0.0f, 1.0f) - 0.5f) * chroma + Vec3(hsl.z);
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

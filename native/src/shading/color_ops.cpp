@@ -3,7 +3,7 @@
 #include "shading/ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 void separate(const OpArgs& args, Vec4* out) {
   Vec3 c = args.v(0);
@@ -48,4 +48,4 @@ Vec4 bright_contrast(const OpArgs& args) {
   return value(glm::max(args.v(0) * slope + offset, Vec3(0.0f)));
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

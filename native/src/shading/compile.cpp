@@ -1,20 +1,22 @@
 // From a GradusMaterial to programs, and what can be said of them in advance.
 #include "bsdf/lobe.h"
 #include "image/image_store.h"
-#include "shading/program_emitter.h"
 #include "shading/interpreter.h"
 #include "shading/material.h"
+#include "shading/program_emitter.h"
 #include "shading/scalar.h"
 #include "shading/sky/suns.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 bool is_lobe_op(uint32_t op) {
   return is_closure_op(op) && op != GRADUS_OP_TRANSPARENT && op != GRADUS_OP_HOLDOUT && op != GRADUS_OP_EMISSION;
 }
 
-Vec4 operand_or(const Program& p, Operand o, const Vec4& unknown) { return o < 0 ? p.constants[static_cast<uint32_t>(~o)] : unknown; }
+Vec4 operand_or(const Program& p, Operand o, const Vec4& unknown) {
+  return o < 0 ? p.constants[static_cast<uint32_t>(~o)] : unknown;
+}
 
 // Input of the roughness of a closure; -1: always rough.
 int roughness_input(uint32_t op) {
@@ -69,11 +71,12 @@ class Analysis {
   // Of a reflection lobe along its narrower axis; what is not known is as sharp as it can be.
   float narrowest_alpha(const Instruction& i, int rough) const {
     const float roughness = input(i, rough, 0.0f).x;
-    Lobe lobe;
+    bsdf::Lobe lobe;
     if (i.op == GRADUS_OP_GLOSSY)
       set_glossy_roughness(&lobe, roughness, input(i, 2, 1.0f).x);
     else
-      set_principled_roughness(&lobe, roughness, anisotropy_input(i.op) >= 0 ? input(i, anisotropy_input(i.op), 1.0f).x : 0.0f);
+      set_principled_roughness(&lobe, roughness,
+                               anisotropy_input(i.op) >= 0 ? input(i, anisotropy_input(i.op), 1.0f).x : 0.0f);
     return std::min(lobe.alpha_x, lobe.alpha_y);
   }
 
@@ -114,10 +117,11 @@ bool is_constant(const Program& p, uint32_t op) {
 // Closures aside.
 bool values_look_at_ray(const Program& p) {
   for (const Instruction& i : p.code) {
-    const bool geometry = i.op == GRADUS_OP_GEOMETRY && (i.mode == GRADUS_GEOMETRY_INCOMING || i.mode == GRADUS_GEOMETRY_BACKFACING);
+    const bool geometry =
+        i.op == GRADUS_OP_GEOMETRY && (i.mode == GRADUS_GEOMETRY_INCOMING || i.mode == GRADUS_GEOMETRY_BACKFACING);
     const bool reflection = i.op == GRADUS_OP_TEX_COORD && i.mode == GRADUS_TEX_COORD_REFLECTION;
-    if (geometry || reflection || i.op == GRADUS_OP_LIGHT_PATH || i.op == GRADUS_OP_LAYER_WEIGHT || i.op == GRADUS_OP_FRESNEL ||
-        i.op == GRADUS_OP_LIGHT_FALLOFF)
+    if (geometry || reflection || i.op == GRADUS_OP_LIGHT_PATH || i.op == GRADUS_OP_LAYER_WEIGHT ||
+        i.op == GRADUS_OP_FRESNEL || i.op == GRADUS_OP_LIGHT_FALLOFF)
       return true;
   }
   return false;
@@ -138,7 +142,8 @@ bool looks_at_kind(const Program& p) {
 }
 
 bool asks_for_tangents(const Instruction& i) {
-  return (i.op == GRADUS_OP_NORMAL_MAP && i.mode == GRADUS_NORMAL_TANGENT) || (i.op == GRADUS_OP_TANGENT && i.mode == GRADUS_TANGENT_UV);
+  return (i.op == GRADUS_OP_NORMAL_MAP && i.mode == GRADUS_NORMAL_TANGENT) ||
+         (i.op == GRADUS_OP_TANGENT && i.mode == GRADUS_TANGENT_UV);
 }
 
 std::vector<std::string> tangent_maps(const Program& p) {
@@ -152,7 +157,7 @@ std::vector<std::string> tangent_maps(const Program& p) {
 }
 
 // Mean luminance over a few places, textures at their mean colour.
-float estimate(const Program& p, const ImageStore& images) {
+float estimate(const Program& p, const image::ImageStore& images) {
   constexpr int kPlaces = 8;
   float sum = 0.0f;
   for (int k = 0; k < kPlaces; k++) {
@@ -172,7 +177,7 @@ float estimate(const Program& p, const ImageStore& images) {
   return sum > 0.0f ? sum / kPlaces : 1.0f;
 }
 
-void describe_emission(MaterialData* m, const ImageStore& images) {
+void describe_emission(MaterialData* m, const image::ImageStore& images) {
   m->emits = !m->emission.empty();
   if (!m->emits) return;
   m->depends_on_ray = emission_looks_at_ray(m->emission);
@@ -204,13 +209,13 @@ void describe_surface(MaterialData* m) {
   if (p.code.size() != 1 || !is_constant(p, GRADUS_OP_DIFFUSE) || !has_own_normal(p, p.code[0])) return;
   ShadeResult r;
   run_program(p, ShadeContext(), &r);
-  m->is_lambert = r.closures.count() == 1 && is_lambert(r.closures.lobe(0));
+  m->is_lambert = r.closures.count() == 1 && bsdf::is_lambert(r.closures.lobe(0));
   if (m->is_lambert) m->lambert = r.closures.lobe(0);
 }
 
 }  // namespace
 
-std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc, const ImageStore& images) {
+std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc, const image::ImageStore& images) {
   auto m = std::make_shared<MaterialData>();
   m->name = desc.name ? desc.name : "";
   const Graph graph = build_graph(desc, images);
@@ -256,7 +261,7 @@ std::shared_ptr<const MaterialData> default_material() {
   desc.surface = 0;
   desc.transparent_shadow = 1;
   desc.name = "default";
-  return compile_material(desc, ImageStore());
+  return compile_material(desc, image::ImageStore());
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

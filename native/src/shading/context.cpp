@@ -5,9 +5,10 @@
 #include "geometry/mesh.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 
-ShadeContext surface_context(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray) {
+ShadeContext surface_context(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
+                             const RayState& ray) {
   ShadeContext c;
   c.scene = &scene;
   c.images = scene.images.get();
@@ -46,11 +47,17 @@ ShadeContext light_context(const ShadedScene& scene, const LightShadingPoint& po
   return c;
 }
 
-const Placement& placement_of(const ShadeContext& c, Placement* room) { return c.instance->placement(c.hit.time, room); }
+const geometry::Placement& placement_of(const ShadeContext& c, geometry::Placement* room) {
+  return c.instance->placement(c.hit.time, room);
+}
 
-Vec3 world_position(const ShadeContext& c) { return c.is_background || !c.scene ? c.position : c.position + c.scene->origin; }
+Vec3 world_position(const ShadeContext& c) {
+  return c.is_background || !c.scene ? c.position : c.position + c.scene->origin;
+}
 
-std::array<Vec3, 3> world_corners(const ShadeContext& c) { return c.scene->corners(c.hit.instance, c.hit.triangle, c.hit.time); }
+std::array<Vec3, 3> world_corners(const ShadeContext& c) {
+  return c.scene->corners(c.hit.instance, c.hit.triangle, c.hit.time);
+}
 
 ShadeContext moved_context(const ShadeContext& context, const std::array<Vec3, 3>& p, const Vec3& step) {
   ShadeContext c = context;
@@ -66,13 +73,13 @@ ShadeContext moved_context(const ShadeContext& context, const std::array<Vec3, 3
 Vec3 normal_to_local(const ShadeContext& c, const Vec3& normal) {
   if (c.light_axes) return glm::transpose(*c.light_axes) * normal;
   // The inverse of the inverse transpose.
-  Placement room;
+  geometry::Placement room;
   return c.instance ? safe_normalize(glm::transpose(Mat3(placement_of(c, &room).to_world)) * normal) : normal;
 }
 
 Vec3 normal_to_world(const ShadeContext& c, const Vec3& normal) {
-  Placement room;
+  geometry::Placement room;
   return c.instance ? safe_normalize(placement_of(c, &room).normal_to_world * normal) : normal;
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

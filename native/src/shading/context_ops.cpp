@@ -1,6 +1,6 @@
 #include "shading/context_ops.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 bool evaluate_ray_op(uint32_t op, const ResourceArgs& args, const ShadeContext& context, Vec4* out) {
@@ -61,4 +61,4 @@ bool evaluate_context_op(uint32_t op, const ResourceArgs& args, const ShadeConte
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -4,7 +4,7 @@
 #include "shading/context.h"
 #include "shading/ops.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 struct ResourceArgs : OpArgs {
   uint32_t resource = 0;              // index of the image
@@ -39,4 +39,4 @@ float light_falloff(const OpArgs& args, const ShadeContext& context);
 void image(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 Vec4 environment(const ResourceArgs& args, const ShadeContext& context);
 
-}  // namespace gradus
+}  // namespace gradus::shading

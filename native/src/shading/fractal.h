@@ -1,4 +1,5 @@
-// Sums and products of noise over octaves (Musgrave, in "Texturing and Modeling", ch. 16), in the form of Blender's Noise node.
+// Sums and products of noise over octaves (Musgrave, in "Texturing and Modeling", ch. 16), in the form of Blender's
+// Noise node.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include "gradus/gradus_nodes.h"
 #include "shading/perlin.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 struct Octaves {
   float detail = 0.0f;  // number of octaves beyond the first, its fraction fades in one more
@@ -55,7 +56,8 @@ float hetero_terrain(P p, const Octaves& o) {
     power *= o.roughness;
     p *= o.lacunarity;
   }
-  return o.octave_fraction() != 0.0f ? result + o.octave_fraction() * (signed_noise(p) + o.offset) * power * result : result;
+  return o.octave_fraction() != 0.0f ? result + o.octave_fraction() * (signed_noise(p) + o.offset) * power * result
+                                     : result;
 }
 
 template <class P>
@@ -69,7 +71,8 @@ float hybrid_multifractal(P p, const Octaves& o) {
     weight *= o.gain * signal;
     p *= o.lacunarity;
   }
-  if (o.octave_fraction() != 0.0f && weight > 0.001f) result += o.octave_fraction() * std::min(weight, 1.0f) * (signed_noise(p) + o.offset) * power;
+  if (o.octave_fraction() != 0.0f && weight > 0.001f)
+    result += o.octave_fraction() * std::min(weight, 1.0f) * (signed_noise(p) + o.offset) * power;
   return result;
 }
 
@@ -105,4 +108,4 @@ float fractal_noise(uint32_t type, const P& p, const Octaves& o) {
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -3,11 +3,11 @@
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 Vec3 generated(const ShadeContext& c) {
   if (!c.instance) return world_position(c);
-  return generated_at(*c.instance->mesh, c.hit.triangle, c.hit.barycentric);
+  return geometry::generated_at(*c.instance->mesh, c.hit.triangle, c.hit.barycentric);
 }
 
 // Around the z axis of the texture space.
@@ -38,4 +38,4 @@ Vec3 geometry(uint32_t mode, const ShadeContext& c) {
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

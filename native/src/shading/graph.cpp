@@ -7,7 +7,7 @@
 #include "shading/ops.h"
 #include "shading/sky/sky.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 // A table of a sky takes 1.5 MB and a third of a second.
@@ -21,7 +21,7 @@ GraphValue constant(const Vec4& v) {
 
 class Builder {
  public:
-  Builder(const GradusMaterial& desc, const ImageStore& images) : desc_(desc), images_(images) {}
+  Builder(const GradusMaterial& desc, const image::ImageStore& images) : desc_(desc), images_(images) {}
 
   Graph build() {
     graph_.floats.assign(desc_.floats, desc_.floats + desc_.float_count);
@@ -59,13 +59,14 @@ class Builder {
       n->closures[n->op == GRADUS_OP_ADD_SHADER ? k : k - 1] = in.node;
       return;
     }
-    n->inputs[k] =
-        in.node < 0 ? constant(Vec4(in.value[0], in.value[1], in.value[2], in.value[3])) : graph_.nodes[in.node].outputs[in.output];
+    n->inputs[k] = in.node < 0 ? constant(Vec4(in.value[0], in.value[1], in.value[2], in.value[3]))
+                               : graph_.nodes[in.node].outputs[in.output];
   }
 
   // The settings' place is taken by the table that is made of them.
   void prepare(GraphNode* n) {
-    if (++skies_ > kMaxSkies) throw invalid_argument("material '" + std::string(desc_.name ? desc_.name : "") + "': too many Sky Textures");
+    if (++skies_ > kMaxSkies)
+      throw invalid_argument("material '" + std::string(desc_.name ? desc_.name : "") + "': too many Sky Textures");
     const std::vector<float> table = prepare_sky(n->mode, graph_.floats.data() + n->first_float);
     n->first_float = static_cast<uint32_t>(graph_.floats.size());
     n->float_count = static_cast<uint32_t>(table.size());
@@ -89,7 +90,7 @@ class Builder {
 
   // Alpha of a picture without any is 1, which makes many a material opaque. CLIP adds transparent surroundings.
   void simplify_image(GraphNode* n) const {
-    const bool clips = (n->mode >> 4 & 3) == static_cast<uint32_t>(Extension::Clip);
+    const bool clips = (n->mode >> 4 & 3) == static_cast<uint32_t>(image::Extension::Clip);
     if (!clips && n->resource < images_.size() && !images_.has_alpha(n->resource)) n->outputs[1] = constant(Vec4(1.0f));
   }
 
@@ -110,16 +111,16 @@ class Builder {
   }
 
   const GradusMaterial& desc_;
-  const ImageStore& images_;
+  const image::ImageStore& images_;
   Graph graph_;
   int skies_ = 0;
 };
 
 }  // namespace
 
-Graph build_graph(const GradusMaterial& desc, const ImageStore& images) {
+Graph build_graph(const GradusMaterial& desc, const image::ImageStore& images) {
   check_program(desc);
   return Builder(desc, images).build();
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -8,9 +8,11 @@
 #include "gradus/gradus.h"
 #include "gradus/gradus_nodes.h"
 
-namespace gradus {
-
+namespace gradus::image {
 class ImageStore;
+}  // namespace gradus::image
+
+namespace gradus::shading {
 
 // A constant, or an output of a node.
 struct GraphValue {
@@ -45,6 +47,6 @@ inline bool is_closure_op(uint32_t op) { return op <= GRADUS_OP_METALLIC; }
 inline bool is_shader_combination(uint32_t op) { return op == GRADUS_OP_MIX_SHADER || op == GRADUS_OP_ADD_SHADER; }
 
 // Throws Error INVALID_ARGUMENT that names the material.
-Graph build_graph(const GradusMaterial& desc, const ImageStore& images);
+Graph build_graph(const GradusMaterial& desc, const image::ImageStore& images);
 
-}  // namespace gradus
+}  // namespace gradus::shading

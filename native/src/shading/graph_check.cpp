@@ -5,7 +5,7 @@
 #include "shading/op_info.h"
 #include "shading/sky/sky.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 struct ModeRange {
@@ -67,7 +67,8 @@ bool table_fits(const GradusNode& node) {
     case GRADUS_OP_BRICK:
       return node.float_count >= 4;
     case GRADUS_OP_SKY:
-      return node.float_count >= kSkySettings || (node.mode <= GRADUS_SKY_HOSEK_WILKIE && node.float_count >= kAnalyticSkySettings);
+      return node.float_count >= kSkySettings ||
+             (node.mode <= GRADUS_SKY_HOSEK_WILKIE && node.float_count >= kAnalyticSkySettings);
     case GRADUS_OP_NORMAL_DOT:
       return node.float_count >= 3;
     case GRADUS_OP_TEX_COORD:
@@ -77,7 +78,9 @@ bool table_fits(const GradusNode& node) {
   }
 }
 
-bool takes_closure(uint32_t op, uint32_t input) { return (op == GRADUS_OP_MIX_SHADER && input > 0) || op == GRADUS_OP_ADD_SHADER; }
+bool takes_closure(uint32_t op, uint32_t input) {
+  return (op == GRADUS_OP_MIX_SHADER && input > 0) || op == GRADUS_OP_ADD_SHADER;
+}
 
 class Checker {
  public:
@@ -92,7 +95,8 @@ class Checker {
     that(desc_.name_count == 0 || desc_.names, "names missing");
     for (uint32_t i = 0; i < desc_.name_count; i++) that(desc_.names[i] != nullptr, "a name is missing");
     for (uint32_t i = 0; i < desc_.node_count; i++) node(i);
-    that(desc_.surface >= -1 && (desc_.surface < 0 || static_cast<uint32_t>(desc_.surface) < desc_.node_count), "the surface is no node");
+    that(desc_.surface >= -1 && (desc_.surface < 0 || static_cast<uint32_t>(desc_.surface) < desc_.node_count),
+         "the surface is no node");
     if (desc_.surface >= 0) that(is_closure_op(desc_.nodes[desc_.surface].op), "the surface is no closure");
   }
 
@@ -123,7 +127,8 @@ class Checker {
     that(in.node >= 0 && static_cast<uint32_t>(in.node) < i, "an input refers to a node that is not an earlier one", i);
     const uint32_t source = desc_.nodes[in.node].op;
     that(in.output < op_info(source)->outputs, "an input refers to an output that does not exist", i);
-    that(is_closure_op(source) == closure, closure ? "a value in place of a closure" : "a closure in place of a value", i);
+    that(is_closure_op(source) == closure, closure ? "a value in place of a closure" : "a closure in place of a value",
+         i);
   }
 
   const GradusMaterial& desc_;
@@ -133,4 +138,4 @@ class Checker {
 
 void check_program(const GradusMaterial& desc) { Checker(desc).run(); }
 
-}  // namespace gradus
+}  // namespace gradus::shading

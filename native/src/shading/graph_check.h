@@ -5,10 +5,10 @@
 
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::shading {
 
-// Throws Error INVALID_ARGUMENT, naming the material and the node, for unknown operations and modes, indices out of range, inputs that are
-// no earlier node, closures where values belong (and the reverse), and tables of a wrong size.
+// Throws Error INVALID_ARGUMENT, naming the material and the node, for unknown operations and modes, indices out of
+// range, inputs that are no earlier node, closures where values belong (and the reverse), and tables of a wrong size.
 void check_program(const GradusMaterial& desc);
 
-}  // namespace gradus
+}  // namespace gradus::shading

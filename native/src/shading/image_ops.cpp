@@ -3,24 +3,24 @@
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 const Vec4 kMissing(1.0f, 0.0f, 1.0f, 1.0f);
 
 struct Sampler {
-  const ImageStore* images;
+  const image::ImageStore* images;
   uint32_t index;
-  Interpolation interpolation;
-  Extension extension;
+  image::Interpolation interpolation;
+  image::Extension extension;
   bool unassociate;
   Vec4 at(const Vec2& uv) const { return images->lookup(index, uv, interpolation, extension, unassociate); }
 };
 
 Sampler sampler_of(const ResourceArgs& args, const ShadeContext& c) {
   const uint32_t interpolation = std::min(args.mode >> 2 & 3, 2u);
-  return {c.images, args.resource, static_cast<Interpolation>(interpolation), static_cast<Extension>(args.mode >> 4 & 3),
-          (args.mode >> 6 & 1) != 0};
+  return {c.images, args.resource, static_cast<image::Interpolation>(interpolation),
+          static_cast<image::Extension>(args.mode >> 4 & 3), (args.mode >> 6 & 1) != 0};
 }
 
 Vec2 sphere(const Vec3& p) {
@@ -39,7 +39,8 @@ Vec2 tube(const Vec3& p) {
 // Mix of two of three sides near an edge.
 float edge_weight(float a, float b, float blend) { return saturate((a / (a + b) - 0.5f * (1.0f - blend)) / blend); }
 
-// Weights of the projections along x, y, z: the nearest side alone, but for a band of width `blend` at edges and corners.
+// Weights of the projections along x, y, z: the nearest side alone, but for a band of width `blend` at edges and
+// corners.
 Vec3 box_weights(Vec3 n, float blend) {
   n = glm::abs(n);
   n /= n.x + n.y + n.z;
@@ -87,7 +88,9 @@ Vec2 mirror_ball(Vec3 d) {
   return Vec2(0.5f * (d.x + 1.0f), 0.5f * (d.z + 1.0f));
 }
 
-bool unusable(const ResourceArgs& args, const ShadeContext& c) { return !c.images || args.resource >= c.images->size(); }
+bool unusable(const ResourceArgs& args, const ShadeContext& c) {
+  return !c.images || args.resource >= c.images->size();
+}
 
 }  // namespace
 
@@ -118,4 +121,4 @@ Vec4 environment(const ResourceArgs& args, const ShadeContext& c) {
   return Vec4(Vec3(sampler_of(args, c).at(uv)), 1.0f);
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -7,7 +7,7 @@
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 class Machine {
@@ -19,7 +19,9 @@ class Machine {
     for (uint32_t pc = block.begin; pc < block.end;) pc = step(program_.code[pc], pc);
   }
 
-  const Vec4& at(Operand operand) const { return operand >= 0 ? registers_[operand] : program_.constants[static_cast<uint32_t>(~operand)]; }
+  const Vec4& at(Operand operand) const {
+    return operand >= 0 ? registers_[operand] : program_.constants[static_cast<uint32_t>(~operand)];
+  }
 
  private:
   uint32_t step(const Instruction& i, uint32_t pc) {
@@ -75,7 +77,8 @@ class Machine {
     }
     if (evaluate_pure(i.op, args, out)) return;
     args.resource = i.resource;
-    if (i.op != GRADUS_OP_IMAGE && i.op != GRADUS_OP_ENVIRONMENT && i.resource > 0) args.name = &program_.names[i.resource - 1];
+    if (i.op != GRADUS_OP_IMAGE && i.op != GRADUS_OP_ENVIRONMENT && i.resource > 0)
+      args.name = &program_.names[i.resource - 1];
     evaluate_context_op(i.op, args, context_, out);
   }
 
@@ -105,4 +108,4 @@ Vec4 run_block(const Program& program, uint32_t block, const ShadeContext& conte
   return machine.at(program.blocks[block].result);
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

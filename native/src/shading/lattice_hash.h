@@ -6,7 +6,7 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 namespace detail {
 inline void jenkins_final(uint32_t& a, uint32_t& b, uint32_t& c) {
@@ -73,4 +73,4 @@ float float_hash(Floats... x) {
   return static_cast<float>(lattice_hash(std::bit_cast<uint32_t>(x)...)) * (1.0f / static_cast<float>(0xFFFFFFFFu));
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

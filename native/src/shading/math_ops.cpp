@@ -4,7 +4,7 @@
 #include "shading/ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 // Polynomial smooth minimum (Quilez), cubic.
@@ -88,9 +88,12 @@ float map_one(uint32_t mode, const OpArgs& args, int i) {
   const float x = args.in[0][i], from0 = args.in[1][i], from1 = args.in[2][i], to0 = args.in[3][i], to1 = args.in[4][i];
   if (from0 == from1) return args.mode & 16 ? to0 : 0.0f;  // Cycles' two nodes differ here
   float t = safe_divide(x - from0, from1 - from0);
-  if (mode == GRADUS_MAP_RANGE_STEPPED) t = args.in[5][i] > 0.0f ? std::floor(t * (args.in[5][i] + 1.0f)) / args.in[5][i] : 0.0f;
-  if (mode == GRADUS_MAP_RANGE_SMOOTHSTEP) t = from0 > from1 ? 1.0f - smoothstep(from1, from0, x) : smoothstep(from0, from1, x);
-  if (mode == GRADUS_MAP_RANGE_SMOOTHERSTEP) t = from0 > from1 ? 1.0f - smootherstep(from1, from0, x) : smootherstep(from0, from1, x);
+  if (mode == GRADUS_MAP_RANGE_STEPPED)
+    t = args.in[5][i] > 0.0f ? std::floor(t * (args.in[5][i] + 1.0f)) / args.in[5][i] : 0.0f;
+  if (mode == GRADUS_MAP_RANGE_SMOOTHSTEP)
+    t = from0 > from1 ? 1.0f - smoothstep(from1, from0, x) : smoothstep(from0, from1, x);
+  if (mode == GRADUS_MAP_RANGE_SMOOTHERSTEP)
+    t = from0 > from1 ? 1.0f - smootherstep(from1, from0, x) : smootherstep(from0, from1, x);
   return to0 + t * (to1 - to0);
 }
 
@@ -157,4 +160,4 @@ Vec4 map_range(const OpArgs& args) {
   return r;
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

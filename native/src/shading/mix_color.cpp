@@ -3,7 +3,7 @@
 #include "shading/ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 Vec3 lerp(const Vec3& a, const Vec3& b, float t) { return a + (b - a) * t; }
@@ -98,4 +98,4 @@ Vec4 mix_color(const OpArgs& args) {
   return value(args.mode & 32 ? glm::clamp(mixed, 0.0f, 1.0f) : mixed);
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

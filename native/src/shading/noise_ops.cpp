@@ -4,12 +4,14 @@
 #include "shading/ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 // Far-away points that make the channels independent, the same as Blender's.
 float shift(float seed, float) { return 100.0f + float_hash(seed) * 100.0f; }
-Vec2 shift(float seed, const Vec2&) { return Vec2(100.0f + float_hash(seed, 0.0f) * 100.0f, 100.0f + float_hash(seed, 1.0f) * 100.0f); }
+Vec2 shift(float seed, const Vec2&) {
+  return Vec2(100.0f + float_hash(seed, 0.0f) * 100.0f, 100.0f + float_hash(seed, 1.0f) * 100.0f);
+}
 Vec3 shift(float seed, const Vec3&) { return Vec3(shift(seed, Vec2()), 100.0f + float_hash(seed, 2.0f) * 100.0f); }
 Vec4 shift(float seed, const Vec4&) { return Vec4(shift(seed, Vec3()), 100.0f + float_hash(seed, 3.0f) * 100.0f); }
 
@@ -36,7 +38,8 @@ void fill(uint32_t type, P p, float distortion, const Octaves& octaves, Vec4* ou
   const float first = fractal_noise(type, p, octaves);
   const float seed = dimension_count<P>();
   out[0] = splat(first);
-  out[1] = Vec4(first, fractal_noise(type, p + shift(seed, P()), octaves), fractal_noise(type, p + shift(seed + 1.0f, P()), octaves), 1.0f);
+  out[1] = Vec4(first, fractal_noise(type, p + shift(seed, P()), octaves),
+                fractal_noise(type, p + shift(seed + 1.0f, P()), octaves), 1.0f);
 }
 
 Octaves octaves_of(const OpArgs& args) {
@@ -92,4 +95,4 @@ void white_noise(const OpArgs& args, Vec4* out) {
   out[0] = splat(out[1].x);
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

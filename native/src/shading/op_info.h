@@ -6,7 +6,7 @@
 
 #include "gradus/gradus_nodes.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 struct OpInfo {
   const char* name = nullptr;  // nullptr: there is no such operation
@@ -27,6 +27,8 @@ inline constexpr std::array<OpInfo, GRADUS_OP_LIMIT> kOpTable = make_op_table();
 }  // namespace detail
 
 // nullptr for unknown operations.
-constexpr const OpInfo* op_info(uint32_t op) { return op < GRADUS_OP_LIMIT && detail::kOpTable[op].name ? &detail::kOpTable[op] : nullptr; }
+constexpr const OpInfo* op_info(uint32_t op) {
+  return op < GRADUS_OP_LIMIT && detail::kOpTable[op].name ? &detail::kOpTable[op] : nullptr;
+}
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -3,7 +3,7 @@
 #include "shading/scalar.h"
 #include "shading/sky/sky.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 Vec4 mix(const OpArgs& args) { return args.in[1] + (args.in[2] - args.in[1]) * args.in[0]; }
@@ -135,8 +135,9 @@ bool is_pure(uint32_t op) {
     case GRADUS_OP_SKY:
       return true;
     default:
-      return op >= GRADUS_OP_MAPPING && op <= GRADUS_OP_NORMAL_DOT && op != GRADUS_OP_VECTOR_TRANSFORM && op != GRADUS_OP_LIGHT_FALLOFF;
+      return op >= GRADUS_OP_MAPPING && op <= GRADUS_OP_NORMAL_DOT && op != GRADUS_OP_VECTOR_TRANSFORM &&
+             op != GRADUS_OP_LIGHT_FALLOFF;
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

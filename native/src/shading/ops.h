@@ -1,10 +1,11 @@
-// Operations whose result depends on their inputs alone. One function per node; formulas are those of the Cycles node of the same name.
+// Operations whose result depends on their inputs alone. One function per node; formulas are those of the Cycles node
+// of the same name.
 #pragma once
 
 #include "base/types.h"
 #include "gradus/gradus_nodes.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 struct OpArgs {
   uint32_t mode = 0;
@@ -55,4 +56,4 @@ Vec4 wave(const OpArgs& args);
 void magic(const OpArgs& args, Vec4* out);
 void brick(const OpArgs& args, Vec4* out);
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -3,7 +3,7 @@
 #include "shading/ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 // Keeps whole coordinates, where surfaces like to lie, off the borders of cells.
@@ -119,16 +119,19 @@ void brick(const OpArgs& args, Vec4* out) {
   }
   const int number = to_int(std::floor(safe_divide(p.x + shift, width)));
   const float x = p.x + shift - width * static_cast<float>(number), y = p.y - row_height * static_cast<float>(row);
-  const float tint = saturate(brick_tint((static_cast<uint32_t>(row) << 16) + (static_cast<uint32_t>(number) & 0xFFFFu)) + bias);
+  const float tint =
+      saturate(brick_tint((static_cast<uint32_t>(row) << 16) + (static_cast<uint32_t>(number) & 0xFFFFu)) + bias);
   const float border = std::min(std::min(x, y), std::min(width - x, row_height - y));
   float mortar = 0.0f;
   if (border < mortar_size) {
     const float depth = 1.0f - border / mortar_size;
-    mortar = mortar_smooth == 0.0f ? 1.0f : depth < mortar_smooth ? smoothstep(0.0f, 1.0f, depth / mortar_smooth) : 1.0f;
+    mortar = mortar_smooth == 0.0f   ? 1.0f
+             : depth < mortar_smooth ? smoothstep(0.0f, 1.0f, depth / mortar_smooth)
+                                     : 1.0f;
   }
   const Vec3 tinted = args.v(1) * (1.0f - tint) + args.v(2) * tint;
   out[0] = value(tinted * (1.0f - mortar) + args.v(3) * mortar);
   out[1] = splat(mortar);
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

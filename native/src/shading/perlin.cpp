@@ -4,7 +4,7 @@
 
 #include "shading/lattice_hash.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 float fade(float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); }
@@ -47,7 +47,8 @@ using Lanes = uint32_t __attribute__((vector_size(32)));
 using FloatLanes = float __attribute__((vector_size(32)));
 
 constexpr Lanes kStepX = {0, 1, 0, 1, 0, 1, 0, 1}, kStepY = {0, 0, 1, 1, 0, 0, 1, 1}, kStepZ = {0, 0, 0, 0, 1, 1, 1, 1};
-constexpr FloatLanes kOffsetX = {0, 1, 0, 1, 0, 1, 0, 1}, kOffsetY = {0, 0, 1, 1, 0, 0, 1, 1}, kOffsetZ = {0, 0, 0, 0, 1, 1, 1, 1};
+constexpr FloatLanes kOffsetX = {0, 1, 0, 1, 0, 1, 0, 1}, kOffsetY = {0, 0, 1, 1, 0, 0, 1, 1},
+                     kOffsetZ = {0, 0, 0, 0, 1, 1, 1, 1};
 
 Lanes rotate(Lanes v, int k) { return (v << k) | (v >> (32 - k)); }
 
@@ -107,7 +108,8 @@ float perlin4(const Cell& x, const Cell& y, const Cell& z, const Cell& w) {
 // The factors bring each dimension's range to about -1…1.
 float signed_noise(float p) {
   const Cell x = cell(wrapped(p));
-  return 0.25f * mix(gradient(lattice_hash(x.index), x.offset), gradient(lattice_hash(x.index + 1), x.offset - 1.0f), fade(x.offset));
+  return 0.25f * mix(gradient(lattice_hash(x.index), x.offset), gradient(lattice_hash(x.index + 1), x.offset - 1.0f),
+                     fade(x.offset));
 }
 
 float signed_noise(const Vec2& p) {
@@ -122,10 +124,12 @@ float signed_noise(const Vec2& p) {
   return 0.6616f * mix(rows[0], rows[1], fade(y.offset));
 }
 
-float signed_noise(const Vec3& p) { return 0.982f * perlin3(cell(wrapped(p.x)), cell(wrapped(p.y)), cell(wrapped(p.z))); }
+float signed_noise(const Vec3& p) {
+  return 0.982f * perlin3(cell(wrapped(p.x)), cell(wrapped(p.y)), cell(wrapped(p.z)));
+}
 
 float signed_noise(const Vec4& p) {
   return 0.8344f * perlin4(cell(wrapped(p.x)), cell(wrapped(p.y)), cell(wrapped(p.z)), cell(wrapped(p.w)));
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

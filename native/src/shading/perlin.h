@@ -3,11 +3,11 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 float signed_noise(float p);
 float signed_noise(const Vec2& p);
 float signed_noise(const Vec3& p);
 float signed_noise(const Vec4& p);
 
-}  // namespace gradus
+}  // namespace gradus::shading

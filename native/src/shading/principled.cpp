@@ -1,11 +1,12 @@
-// Principled BSDF of Blender 4.0 and later: layers, each scaled by what those above let through (Blender manual, "Principled BSDF").
+// Principled BSDF of Blender 4.0 and later: layers, each scaled by what those above let through (Blender manual,
+// "Principled BSDF").
 #include <optional>
 
 #include "shading/closure_ops.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 enum Input {
@@ -45,7 +46,11 @@ float ior_of_f0(float f0) {
 class Layers {
  public:
   Layers(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result)
-      : args_(args), c_(context), result_(result), weight_(args.weight), normal_(facing_normal(context, args.v(kNormal))) {}
+      : args_(args),
+        c_(context),
+        result_(result),
+        weight_(args.weight),
+        normal_(facing_normal(context, args.v(kNormal))) {}
 
   void add() {
     sheen();
@@ -61,9 +66,10 @@ class Layers {
  private:
   bool multiscatter() const { return (args_.mode & GRADUS_DISTRIBUTION_MULTIPLE) != 0; }
 
-  // A lobe to be filled where it stays: copies of what has just been written stall. It is a spare one where emission alone is wanted.
-  Lobe* new_layer(LobeType type, LightPass pass, const Rgb& weight, const Vec3& normal) {
-    Lobe* lobe = args_.mode & kEmissionOnly ? &spare_.emplace() : result_->closures.add();
+  // A lobe to be filled where it stays: copies of what has just been written stall. It is a spare one where emission
+  // alone is wanted.
+  bsdf::Lobe* new_layer(bsdf::LobeType type, bsdf::LightPass pass, const Rgb& weight, const Vec3& normal) {
+    bsdf::Lobe* lobe = args_.mode & kEmissionOnly ? &spare_.emplace() : result_->closures.add();
     lobe->type = type;
     lobe->pass = pass;
     lobe->weight = weight;
@@ -72,7 +78,7 @@ class Layers {
   }
 
   // The layers below a reflection lobe get the rest of its albedo.
-  void put_layer(Lobe* lobe) { weight_ = layered(weight_, lobe_albedo(lobe, c_.wo)); }
+  void put_layer(bsdf::Lobe* lobe) { weight_ = layered(weight_, bsdf::lobe_albedo(lobe, c_.wo)); }
 
   void sheen() {
     const float amount = std::max(args_.f(kSheenWeight), 0.0f);
@@ -81,7 +87,7 @@ class Layers {
     const Vec3 coat_normal = facing_normal(c_, args_.v(kCoatNormal));
     const float coated = saturate(args_.f(kCoatWeight));
     const Vec3 normal = facing_normal(c_, glm::mix(normal_, coat_normal, coated));
-    Lobe* lobe = new_layer(LobeType::Sheen, LightPass::Diffuse, tinted, normal);
+    bsdf::Lobe* lobe = new_layer(bsdf::LobeType::Sheen, bsdf::LightPass::Diffuse, tinted, normal);
     lobe->alpha_x = saturate(args_.f(kSheenRoughness));
     put_layer(lobe);
   }
@@ -89,8 +95,9 @@ class Layers {
   void coat() {
     const float amount = std::max(args_.f(kCoatWeight), 0.0f);
     if (!(amount * max_component(weight_) > kWeightCutoff)) return;
-    Lobe* lobe = new_layer(LobeType::GgxReflection, LightPass::Glossy, weight_ * amount, facing_normal(c_, args_.v(kCoatNormal)));
-    lobe->fresnel = FresnelType::Dielectric;
+    bsdf::Lobe* lobe = new_layer(bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight_ * amount,
+                                 facing_normal(c_, args_.v(kCoatNormal)));
+    lobe->fresnel = bsdf::FresnelType::Dielectric;
     lobe->ior = std::max(args_.f(kCoatIor), 1.0f);
     const float roughness = saturate(args_.f(kCoatRoughness));
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
@@ -99,7 +106,7 @@ class Layers {
   }
 
   // Beer's law: the tint is what a perpendicular crossing keeps, the path inside is longer by 1/cos.
-  void tint_below_coat(const Lobe& coat, float amount) {
+  void tint_below_coat(const bsdf::Lobe& coat, float amount) {
     const Vec3 tint = glm::max(args_.v(kCoatTint), Vec3(0.0f));
     if (tint == Vec3(1.0f)) return;
     const float cosine = glm::dot(c_.wo, coat.normal);
@@ -110,8 +117,9 @@ class Layers {
 
   void metal() {
     const float metallic = saturate(args_.f(kMetallic));
-    if (Lobe* lobe = add_lobe(result_, LobeType::GgxReflection, LightPass::Glossy, weight_ * metallic, normal_)) {
-      lobe->fresnel = FresnelType::PrincipledMetal;
+    if (bsdf::Lobe* lobe =
+            add_lobe(result_, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight_ * metallic, normal_)) {
+      lobe->fresnel = bsdf::FresnelType::PrincipledMetal;
       lobe->f0 = clamped_base();
       lobe->f90 = glm::clamp(args_.v(kSpecularTint), 0.0f, 1.0f);
       set_shape(lobe);
@@ -122,8 +130,9 @@ class Layers {
   void glass() {
     const float transmission = saturate(args_.f(kTransmission));
     const Vec3 outward = c_.backfacing ? -normal_ : normal_;
-    if (Lobe* lobe = add_lobe(result_, LobeType::GgxGlass, LightPass::Transmission, weight_ * transmission, outward)) {
-      lobe->fresnel = FresnelType::Schlick;
+    if (bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::GgxGlass, bsdf::LightPass::Transmission,
+                                    weight_ * transmission, outward)) {
+      lobe->fresnel = bsdf::FresnelType::Schlick;
       lobe->ior = std::max(args_.f(kIor), 1e-5f);
       lobe->f0 = f0_of_ior(lobe->ior) * glm::max(args_.v(kSpecularTint), Vec3(0.0f));
       lobe->transmission_tint = glm::sqrt(clamped_base());
@@ -143,8 +152,8 @@ class Layers {
       ior = ior < 1.0f ? 1.0f / adjusted : adjusted;
     }
     if (ior == 1.0f || !(max_component(weight_) > kWeightCutoff)) return;
-    Lobe* lobe = new_layer(LobeType::GgxReflection, LightPass::Glossy, weight_, normal_);
-    lobe->fresnel = FresnelType::Schlick;
+    bsdf::Lobe* lobe = new_layer(bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight_, normal_);
+    lobe->fresnel = bsdf::FresnelType::Schlick;
     lobe->ior = ior;
     lobe->f0 = f0 * glm::max(args_.v(kSpecularTint), Vec3(0.0f));
     set_shape(lobe);
@@ -153,16 +162,18 @@ class Layers {
 
   void diffuse() {
     const Rgb color = glm::max(args_.v(kBaseColor), Vec3(0.0f));
-    if (Lobe* lobe = add_lobe(result_, LobeType::Diffuse, LightPass::Diffuse, weight_ * color, normal_)) {
+    if (bsdf::Lobe* lobe =
+            add_lobe(result_, bsdf::LobeType::Diffuse, bsdf::LightPass::Diffuse, weight_ * color, normal_)) {
       lobe->alpha_x = saturate(args_.f(kDiffuseRoughness));
       lobe->multiscatter = true;
       lobe->f0 = color;
     }
   }
 
-  void set_shape(Lobe* lobe) {
+  void set_shape(bsdf::Lobe* lobe) {
     set_principled_roughness(lobe, args_.f(kRoughness), args_.f(kAnisotropic));
-    if (args_.f(kAnisotropic) > 0.0f) lobe->tangent = turned_tangent(c_, args_.v(kTangent), normal_, args_.f(kAnisotropicRotation));
+    if (args_.f(kAnisotropic) > 0.0f)
+      lobe->tangent = turned_tangent(c_, args_.v(kTangent), normal_, args_.f(kAnisotropicRotation));
     lobe->multiscatter = multiscatter();
   }
 
@@ -171,13 +182,15 @@ class Layers {
   const ClosureArgs& args_;
   const ShadeContext& c_;
   ShadeResult* result_;
-  std::optional<Lobe> spare_;
+  std::optional<bsdf::Lobe> spare_;
   Rgb weight_;
   Vec3 normal_;
 };
 
 }  // namespace
 
-void add_principled(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result) { Layers(args, context, result).add(); }
+void add_principled(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result) {
+  Layers(args, context, result).add();
+}
 
-}  // namespace gradus
+}  // namespace gradus::shading

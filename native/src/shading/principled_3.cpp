@@ -2,7 +2,7 @@
 #include "shading/closure_ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 enum Input {
@@ -51,34 +51,38 @@ class Parts {
 
   void diffuse() {
     const Rgb color = glm::max(args_.v(kDiffuseColor), Vec3(0.0f));
-    Lobe* lobe = add_lobe(result_, LobeType::Diffuse, LightPass::Diffuse, args_.weight * color * diffuse_, normal_);
+    bsdf::Lobe* lobe =
+        add_lobe(result_, bsdf::LobeType::Diffuse, bsdf::LightPass::Diffuse, args_.weight * color * diffuse_, normal_);
     if (!lobe) return;
-    lobe->fresnel = FresnelType::Schlick;  // Disney's diffuse
+    lobe->fresnel = bsdf::FresnelType::Schlick;  // Disney's diffuse
     lobe->alpha_x = saturate(args_.f(kRoughness));
   }
 
   void sheen() {
     const Rgb color = tinted(hue_, saturate(args_.f(kSheenTint)));
-    Lobe* lobe = add_lobe(result_, LobeType::Sheen, LightPass::Diffuse, args_.weight * color * (diffuse_ * std::max(args_.f(kSheen), 0.0f)),
-                          normal_);
-    if (lobe) lobe->fresnel = FresnelType::Schlick;
+    bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::Sheen, bsdf::LightPass::Diffuse,
+                                args_.weight * color * (diffuse_ * std::max(args_.f(kSheen), 0.0f)), normal_);
+    if (lobe) lobe->fresnel = bsdf::FresnelType::Schlick;
   }
 
   void specular() {
     const float amount = std::max(args_.f(kSpecular), 0.0f);
     if (amount <= kWeightCutoff && metallic_ <= kWeightCutoff) return;
-    const Rgb f0 = tinted(hue_, saturate(args_.f(kSpecularTint))) * (0.08f * amount * (1.0f - metallic_)) + base_ * metallic_;
-    Lobe* lobe = add_lobe(result_, LobeType::GgxReflection, LightPass::Glossy, args_.weight * (1.0f - transmission_), normal_);
+    const Rgb f0 =
+        tinted(hue_, saturate(args_.f(kSpecularTint))) * (0.08f * amount * (1.0f - metallic_)) + base_ * metallic_;
+    bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy,
+                                args_.weight * (1.0f - transmission_), normal_);
     if (!lobe) return;
     set_principled_roughness(lobe, args_.f(kRoughness), args_.f(kAnisotropic));
-    if (args_.f(kAnisotropic) > 0.0f) lobe->tangent = turned_tangent(c_, args_.v(kTangent), normal_, args_.f(kAnisotropicRotation));
+    if (args_.f(kAnisotropic) > 0.0f)
+      lobe->tangent = turned_tangent(c_, args_.v(kTangent), normal_, args_.f(kAnisotropicRotation));
     lobe->multiscatter = args_.mode & GRADUS_DISTRIBUTION_MULTIPLE;
     lobe->ior = 2.0f / (1.0f - std::sqrt(std::min(0.08f * amount, 0.99f))) - 1.0f;
-    lobe->fresnel = FresnelType::Schlick;
+    lobe->fresnel = bsdf::FresnelType::Schlick;
     lobe->f0 = f0;
     if (lobe->ior == 1.0f) {
       // No step at the interface: the curve that Fresnel follows is flat.
-      lobe->fresnel = FresnelType::None;
+      lobe->fresnel = bsdf::FresnelType::None;
       lobe->weight *= f0;
     }
   }
@@ -97,14 +101,16 @@ class Parts {
     const float ior = std::max(args_.f(kIor), 1e-5f);
     const float reflected = dielectric_reflectance(glm::dot(c_.wo, normal_), c_.backfacing ? 1.0f / ior : ior);
     const Rgb weight = args_.weight * transmission_;
-    if (Lobe* lobe = add_lobe(result_, LobeType::GgxReflection, LightPass::Glossy, weight * reflected, normal_)) {
+    if (bsdf::Lobe* lobe =
+            add_lobe(result_, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight * reflected, normal_)) {
       lobe->alpha_x = lobe->alpha_y = roughness * roughness;
-      lobe->fresnel = FresnelType::Schlick;
+      lobe->fresnel = bsdf::FresnelType::Schlick;
       lobe->ior = ior;
       lobe->f0 = tinted(base_, saturate(args_.f(kSpecularTint)));
     }
     const Vec3 outward = c_.backfacing ? -normal_ : normal_;
-    if (Lobe* lobe = add_lobe(result_, LobeType::GgxRefraction, LightPass::Transmission, weight * base_ * (1.0f - reflected), outward)) {
+    if (bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::GgxRefraction, bsdf::LightPass::Transmission,
+                                    weight * base_ * (1.0f - reflected), outward)) {
       float refracted = roughness;
       if (!(args_.mode & GRADUS_DISTRIBUTION_MULTIPLE))
         refracted = 1.0f - (1.0f - roughness) * (1.0f - saturate(args_.f(kTransmissionRoughness)));
@@ -115,23 +121,24 @@ class Parts {
 
   void multiple_scattering_glass(float roughness) {
     const Vec3 outward = c_.backfacing ? -normal_ : normal_;
-    Lobe* lobe = add_lobe(result_, LobeType::GgxGlass, LightPass::Transmission, args_.weight * transmission_, outward);
+    bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::GgxGlass, bsdf::LightPass::Transmission,
+                                args_.weight * transmission_, outward);
     if (!lobe) return;
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
     lobe->ior = std::max(args_.f(kIor), 1e-5f);
-    lobe->fresnel = FresnelType::Dielectric;
+    lobe->fresnel = bsdf::FresnelType::Dielectric;
     lobe->transmission_tint = base_;
     lobe->multiscatter = true;
   }
 
   void clearcoat() {
     const float amount = saturate(args_.f(kClearcoat));
-    Lobe* lobe = add_lobe(result_, LobeType::GgxReflection, LightPass::Glossy, args_.weight * (0.25f * amount),
-                          facing_normal(c_, args_.v(kClearcoatNormal)));
+    bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy,
+                                args_.weight * (0.25f * amount), facing_normal(c_, args_.v(kClearcoatNormal)));
     if (!lobe) return;
     const float roughness = saturate(args_.f(kClearcoatRoughness));
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
-    lobe->fresnel = FresnelType::Schlick;
+    lobe->fresnel = bsdf::FresnelType::Schlick;
     lobe->ior = 1.5f;
     lobe->f0 = Rgb(0.04f);
   }
@@ -149,6 +156,8 @@ class Parts {
 
 }  // namespace
 
-void add_principled_3(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result) { Parts(args, context, result).add(); }
+void add_principled_3(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result) {
+  Parts(args, context, result).add();
+}
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -8,7 +8,7 @@
 #include "base/types.h"
 #include "gradus/gradus_nodes.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 inline constexpr int kMaxRegisters = 256;
 inline constexpr int kMaxInputs = 24;
@@ -16,8 +16,9 @@ inline constexpr int kMaxOutputs = 5;
 
 // Control flow and closures, beside the operations of GradusOp. Closure operations keep their numbers.
 enum InternalOp : uint16_t {
-  kOpJumpIfZero = GRADUS_OP_LIMIT,  // operand 0: value; `first_float`: instruction to go to where the first component is 0
-  kOpMixWeights,                    // operands factor, weight -> weight·(1 − f), weight·f, with f clamped to 0…1
+  kOpJumpIfZero =
+      GRADUS_OP_LIMIT,  // operand 0: value; `first_float`: instruction to go to where the first component is 0
+  kOpMixWeights,        // operands factor, weight -> weight·(1 − f), weight·f, with f clamped to 0…1
 };
 
 // A register (≥ 0) or a constant of the program (~index).
@@ -65,4 +66,4 @@ struct Program {
   bool empty() const { return code.empty(); }
 };
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -5,7 +5,7 @@
 #include "shading/op_info.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 constexpr int kMaxClosures = 1024;
@@ -163,7 +163,8 @@ class Emitter {
     i.float_count = n.float_count;
     i.resource = n.resource;
     std::vector<Operand> operands;
-    for (size_t k = 0; k < n.inputs.size(); k++) operands.push_back(wants_input(n, k) ? operand(n.inputs[k]) : constant(Vec4(0.0f)));
+    for (size_t k = 0; k < n.inputs.size(); k++)
+      operands.push_back(wants_input(n, k) ? operand(n.inputs[k]) : constant(Vec4(0.0f)));
     i.first_operand = static_cast<uint32_t>(program_.operands.size());
     program_.operands.insert(program_.operands.end(), operands.begin(), operands.end());
     return i;
@@ -189,7 +190,8 @@ class Emitter {
     constexpr int kMaxBumpDepth = 3;
     if (depth_of_block_[block_] >= kMaxBumpDepth) return 0;
     for (size_t b = 1; b < heights_.size(); b++)
-      if (heights_[b].node == height.node && heights_[b].output == height.output && depth_of_block_[b] > depth_of_block_[block_])
+      if (heights_[b].node == height.node && heights_[b].output == height.output &&
+          depth_of_block_[b] > depth_of_block_[block_])
         return static_cast<uint32_t>(b);
     if (program_.blocks.size() >= kMaxBlocks) refuse("too many Bump nodes");
     program_.blocks.push_back({});
@@ -311,6 +313,8 @@ class Emitter {
 
 }  // namespace
 
-Program emit_program(const Graph& graph, ProgramScope scope, const std::string& name) { return Emitter(graph, scope, name).emit(); }
+Program emit_program(const Graph& graph, ProgramScope scope, const std::string& name) {
+  return Emitter(graph, scope, name).emit();
+}
 
-}  // namespace gradus
+}  // namespace gradus::shading

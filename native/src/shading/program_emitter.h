@@ -6,7 +6,7 @@
 #include "shading/graph.h"
 #include "shading/program.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 // Which closures a program is for; values that only other closures need are left out.
 enum class ProgramScope { All, Emission, Transparency };
@@ -20,8 +20,8 @@ struct VirtualOutputs {
   int count = 0;
 };
 
-// Replaces virtual registers by real ones, in every block; `outputs` belongs to Program::code. Outputs that nothing reads get none. Throws
-// Error INVALID_ARGUMENT if kMaxRegisters are not enough.
+// Replaces virtual registers by real ones, in every block; `outputs` belongs to Program::code. Outputs that nothing
+// reads get none. Throws Error INVALID_ARGUMENT if kMaxRegisters are not enough.
 void allocate_registers(Program* program, const std::vector<VirtualOutputs>& outputs, const std::string& name);
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -4,7 +4,7 @@
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 Vec3 normal_or_own(const Vec3& n, const ShadeContext& c) { return n == Vec3(0.0f) ? c.normal : safe_normalize(n); }
@@ -73,4 +73,4 @@ float light_falloff(const OpArgs& args, const ShadeContext& c) {
   return strength;
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

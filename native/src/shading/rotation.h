@@ -5,7 +5,7 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 // Euler angles in order X, Y, Z: R = Rz·Ry·Rx.
 inline Mat3 euler_matrix(const Vec3& angles) {
@@ -23,4 +23,4 @@ inline Vec3 rotate_around(const Vec3& v, const Vec3& axis, float angle) {
   return v * c + glm::cross(axis, v) * s + axis * (glm::dot(axis, v) * (1.0f - c));
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -6,7 +6,7 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 // NaN becomes 0, so that what is saturated can be an index.
 inline float saturate(float x) { return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f; }
@@ -50,4 +50,4 @@ inline float dielectric_reflectance(float cosine, float eta) {
   return 0.5f * a * a * (1.0f + b * b);
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -5,7 +5,7 @@
 #include "shading/interpreter.h"
 #include "shading/material.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 const MaterialData& material_of(const ShadedScene& scene, uint32_t index) {
@@ -20,17 +20,17 @@ void clear(ShadeResult* result) {
 }
 
 // Once all closures are added.
-void complete(const MaterialData& material, const Vec3& geometric_normal, const Vec3& normal, const Vec3& wo, float roughness_threshold,
-              ShadeResult* result) {
+void complete(const MaterialData& material, const Vec3& geometric_normal, const Vec3& normal, const Vec3& wo,
+              float roughness_threshold, ShadeResult* result) {
   result->closures.finish(wo, geometric_normal, roughness_threshold, normal);
   result->ignores_wo = !material.values_look_at_ray && result->closures.ignores_wo();
   result->complete = true;
 }
 
 // What the program of such a material comes to.
-void shade_lambert(const MaterialData& material, const SurfacePoint& point, const Vec3& wo, float roughness_threshold,
-                   ShadeResult* result) {
-  Lobe* lobe = result->closures.add();
+void shade_lambert(const MaterialData& material, const geometry::SurfacePoint& point, const Vec3& wo,
+                   float roughness_threshold, ShadeResult* result) {
+  bsdf::Lobe* lobe = result->closures.add();
   *lobe = material.lambert;
   lobe->normal = point.shading_normal;
   const bool backfacing = glm::dot(point.geometric_normal, wo) < 0.0f;
@@ -55,12 +55,13 @@ Rgb emission_of(const MaterialData& material, const ShadeContext& context) {
 
 }  // namespace
 
-void shade_surface(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
-                   ShadeResult* result) {
+void shade_surface(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo, const RayState& ray,
+                   float roughness_threshold, ShadeResult* result) {
   const MaterialData& material = material_of(scene, point.material);
   clear(result);
   result->fallback = material.uses_fallback;
-  // Nothing is recorded: from this side it looks the same from everywhere, and from the other it is worked out as quickly again.
+  // Nothing is recorded: from this side it looks the same from everywhere, and from the other it is worked out as
+  // quickly again.
   if (material.is_lambert) return shade_lambert(material, point, wo, roughness_threshold, result);
   const ShadeContext context = surface_context(scene, point, wo, ray);
   run_program(material.surface, context, result);
@@ -68,8 +69,9 @@ void shade_surface(const ShadedScene& scene, const SurfacePoint& point, const Ve
   complete(material, context.geometric_normal, context.normal, wo, roughness_threshold, result);
 }
 
-void shade_from_tape(const ShadedScene& scene, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
-                 const RayState& ray, float roughness_threshold, ShadeResult* result) {
+void shade_from_tape(const ShadedScene& scene, const geometry::SurfacePoint& point, const ClosureTape& tape,
+                     const Vec3& known_wo, const Vec3& wo, const RayState& ray, float roughness_threshold,
+                     ShadeResult* result) {
   const MaterialData& material = material_of(scene, point.material);
   const ShadeContext context = surface_context(scene, point, wo, ray);
   const bool same_side = context.backfacing == (glm::dot(point.geometric_normal, known_wo) < 0.0f);
@@ -82,8 +84,8 @@ void shade_from_tape(const ShadedScene& scene, const SurfacePoint& point, const 
   complete(material, context.geometric_normal, context.normal, wo, roughness_threshold, result);
 }
 
-void shade_without_closures(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
-                ShadeResult* result) {
+void shade_without_closures(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
+                            const RayState& ray, float roughness_threshold, ShadeResult* result) {
   const MaterialData& material = material_of(scene, point.material);
   if (material.may_be_transparent || material.has_holdout) {
     shade_surface(scene, point, wo, ray, roughness_threshold, result);
@@ -94,14 +96,15 @@ void shade_without_closures(const ShadedScene& scene, const SurfacePoint& point,
   result->emission = shade_emission(scene, point, wo, ray);
 }
 
-Rgb shade_emission(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray) {
+Rgb shade_emission(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo, const RayState& ray) {
   const MaterialData& material = material_of(scene, point.material);
   if (!material.emits) return Rgb(0.0f);
   if (material.emission_is_constant) return material.constant_emission;
   return emission_of(material, surface_context(scene, point, wo, ray));
 }
 
-Rgb shade_transparency(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray) {
+Rgb shade_transparency(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
+                       const RayState& ray) {
   const MaterialData& material = material_of(scene, point.material);
   if (!material.may_be_transparent || ((ray.flags & kRayShadow) && !material.transparent_shadow)) return Rgb(0.0f);
   if (material.transparency_is_constant) return material.constant_transparency;
@@ -121,4 +124,4 @@ Rgb shade_light(const ShadedScene& scene, uint32_t material, const LightShadingP
   return emission_of(*scene.materials[material], light_context(scene, point, ray));
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -5,7 +5,7 @@
 #include "bsdf/closures.h"
 #include "geometry/surface.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 class ShadedScene;
 class ClosureTape;
@@ -32,34 +32,38 @@ struct RayState {
 };
 
 struct ShadeResult {
-  Closures closures;             // finished
+  bsdf::Closures closures;       // finished
   Rgb emission = Rgb(0.0f);      // radiance towards wo
   Rgb transparency = Rgb(0.0f);  // weight of the ray that goes straight on
   Rgb holdout = Rgb(0.0f);
-  bool fallback = false;        // the material holds a replaced node
-  bool complete = false;        // the closures are there; then:
-  bool ignores_wo = false;      // all of this is the same seen from anywhere on this side
-  ClosureTape* tape = nullptr;  // not owned: if there is one, shade_surface() records the closures for shade_from_tape()
+  bool fallback = false;    // the material holds a replaced node
+  bool complete = false;    // the closures are there; then:
+  bool ignores_wo = false;  // all of this is the same seen from anywhere on this side
+  ClosureTape* tape =
+      nullptr;  // not owned: if there is one, shade_surface() records the closures for shade_from_tape()
 };
 
 // wo: towards the previous vertex. roughness_threshold: alpha that separates classes.
-void shade_surface(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
-                   ShadeResult* result);
-// What a ray sees before anything is scattered, which a path that ends here needs alone: without closures where the surface is opaque.
-// shade_surface() adds them.
-void shade_without_closures(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray, float roughness_threshold,
-                ShadeResult* result);
+void shade_surface(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo, const RayState& ray,
+                   float roughness_threshold, ShadeResult* result);
+// What a ray sees before anything is scattered, which a path that ends here needs alone: without closures where the
+// surface is opaque. shade_surface() adds them.
+void shade_without_closures(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
+                            const RayState& ray, float roughness_threshold, ShadeResult* result);
 // As shade_surface(), for a point that was shaded with a tape for `known_wo`.
-void shade_from_tape(const ShadedScene& scene, const SurfacePoint& point, const ClosureTape& tape, const Vec3& known_wo, const Vec3& wo,
-                 const RayState& ray, float roughness_threshold, ShadeResult* result);
+void shade_from_tape(const ShadedScene& scene, const geometry::SurfacePoint& point, const ClosureTape& tape,
+                     const Vec3& known_wo, const Vec3& wo, const RayState& ray, float roughness_threshold,
+                     ShadeResult* result);
 // Emission alone, for emitter points that light sampling chose.
-Rgb shade_emission(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
+Rgb shade_emission(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo, const RayState& ray);
 // Transparency alone, for shadow rays.
-Rgb shade_transparency(const ShadedScene& scene, const SurfacePoint& point, const Vec3& wo, const RayState& ray);
+Rgb shade_transparency(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
+                       const RayState& ray);
 // Background radiance from a direction (pointing away from the scene).
 Rgb shade_world(const ShadedScene& scene, const Vec3& direction, const RayState& ray);
 
-// A point of a light: what the light's program multiplies its strength by. material: index in the scene. uv: on its surface.
+// A point of a light: what the light's program multiplies its strength by. material: index in the scene. uv: on its
+// surface.
 struct LightShadingPoint {
   Vec3 position = Vec3(0.0f);
   Vec3 normal = Vec3(0, 0, 1);
@@ -69,4 +73,4 @@ struct LightShadingPoint {
 };
 Rgb shade_light(const ShadedScene& scene, uint32_t material, const LightShadingPoint& point, const RayState& ray);
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -2,7 +2,7 @@
 #include "shading/ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 // Value at x in 0…1 of a table of `count` rows of `stride` floats; beyond its ends the line through the last two rows.
@@ -42,4 +42,4 @@ Vec4 curves(const OpArgs& args) {
   return in + (mapped - in) * args.f(0);
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -1,28 +1,29 @@
 // Tangent and Normal Map nodes.
+#include "base/minimal_rotation.h"
 #include "geometry/mesh.h"
 #include "geometry/tangent_field.h"
-#include "base/minimal_rotation.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 // A tangent of the rest key, turned as the smooth normal is until the time of the hit.
 Vec4 turned_with_surface(const ShadeContext& c, const Vec4& tangent) {
   std::array<Vec3, 3> rest, then;
-  const MeshData& mesh = *c.instance->mesh;
-  if (mesh.shutter_keys == 0 || !triangle_normals(mesh, c.hit.triangle, &rest)) return tangent;
-  triangle_normals_in_shutter(mesh, c.hit.triangle, c.hit.time, &then);
-  const Vec3 from = safe_normalize(interpolate(rest, c.hit.barycentric)), to = safe_normalize(interpolate(then, c.hit.barycentric));
+  const geometry::MeshData& mesh = *c.instance->mesh;
+  if (mesh.shutter_keys == 0 || !geometry::triangle_normals(mesh, c.hit.triangle, &rest)) return tangent;
+  geometry::triangle_normals_in_shutter(mesh, c.hit.triangle, c.hit.time, &then);
+  const Vec3 from = safe_normalize(interpolate(rest, c.hit.barycentric)),
+             to = safe_normalize(interpolate(then, c.hit.barycentric));
   return Vec4(turned(Vec3(tangent), from, to), tangent.w);
 }
 
 // Interpolated over the triangle, in the object's space; w: handedness. 0: the mesh has no usable UV map.
 Vec4 uv_tangent(const ShadeContext& c, const std::string* name) {
   if (!c.instance) return Vec4(0.0f);
-  const MeshData& mesh = *c.instance->mesh;
-  const MeshAttribute* uv = name ? find_attribute(mesh, *name) : default_uv_map(mesh);
+  const geometry::MeshData& mesh = *c.instance->mesh;
+  const geometry::MeshAttribute* uv = name ? geometry::find_attribute(mesh, *name) : geometry::default_uv_map(mesh);
   for (const auto& field : c.instance->tangents)
     if (field->uv == uv) return turned_with_surface(c, interpolate(field->corners(c.hit.triangle), c.hit.barycentric));
   return Vec4(0.0f);
@@ -33,7 +34,8 @@ Vec3 unflipped(const ShadeContext& c) { return c.backfacing ? -c.normal : c.norm
 // In the object's space. As interpolated, not normalised: bakers and Cycles build the frame with it.
 Vec3 local_normal(const ShadeContext& c) {
   std::array<Vec3, 3> normals;
-  if (triangle_normals_in_shutter(*c.instance->mesh, c.hit.triangle, c.hit.time, &normals)) return interpolate(normals, c.hit.barycentric);
+  if (geometry::triangle_normals_in_shutter(*c.instance->mesh, c.hit.triangle, c.hit.time, &normals))
+    return interpolate(normals, c.hit.barycentric);
   return normal_to_local(c, unflipped(c));
 }
 
@@ -84,4 +86,4 @@ Vec3 normal_map(const ResourceArgs& args, const ShadeContext& c) {
   return n == Vec3(0.0f) ? c.normal : n;
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -5,7 +5,7 @@
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 Mat4 matrix(const float* values) {
@@ -25,7 +25,7 @@ Vec3 direction_from_camera(const Mat4& camera, const Vec3& v) {
 Vec3 to_object(const ResourceArgs& args, const ShadeContext& c) {
   const Vec3 p = world_position(c);
   if (args.float_count >= 16) return Vec3(matrix(args.floats) * Vec4(p, 1.0f));
-  Placement room;
+  geometry::Placement room;
   return c.instance ? Vec3(placement_of(c, &room).to_local * Vec4(c.position, 1.0f)) : p;
 }
 
@@ -36,7 +36,8 @@ Vec3 window(const ShadeContext& c) {
   const Vec3 p = to_camera(c, c.position);
   Vec2 plane(p);
   if (camera.type == GRADUS_CAMERA_PERSPECTIVE) plane = p.z != 0.0f ? plane / p.z : Vec2(0.0f);
-  if (camera.type == GRADUS_CAMERA_PANORAMA && (p == Vec3(0.0f) || !panorama_point(camera, safe_normalize(Vec3(p.x, p.y, -p.z)), &plane)))
+  if (camera.type == GRADUS_CAMERA_PANORAMA &&
+      (p == Vec3(0.0f) || !camera::panorama_point(camera, safe_normalize(Vec3(p.x, p.y, -p.z)), &plane)))
     return Vec3(0.0f);
   const float* w = camera.window;
   return Vec3(safe_divide(plane.x - w[0], w[1] - w[0]), safe_divide(plane.y - w[2], w[3] - w[2]), 0.0f);
@@ -53,8 +54,8 @@ Vec3 to_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext& 
   const float w = kind == GRADUS_TRANSFORM_POINT ? 1.0f : 0.0f;
   const Vec3 origin = c.scene ? c.scene->origin : Vec3(0.0f);
   if (space == kObject && c.instance) {
-    Placement room;
-    const Placement& placement = placement_of(c, &room);
+    geometry::Placement room;
+    const geometry::Placement& placement = placement_of(c, &room);
     if (kind == GRADUS_TRANSFORM_NORMAL) return placement.normal_to_world * v;
     return Vec3(placement.to_world * Vec4(v, w)) + origin * w;
   }
@@ -69,8 +70,8 @@ Vec3 from_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext
   const float w = kind == GRADUS_TRANSFORM_POINT ? 1.0f : 0.0f;
   const Vec3 origin = c.scene ? c.scene->origin : Vec3(0.0f);
   if (space == kObject && c.instance) {
-    Placement room;
-    const Placement& placement = placement_of(c, &room);
+    geometry::Placement room;
+    const geometry::Placement& placement = placement_of(c, &room);
     if (kind == GRADUS_TRANSFORM_NORMAL) return glm::transpose(Mat3(placement.to_world)) * v;
     return Vec3(placement.to_local * Vec4(v - origin * w, w));
   }
@@ -126,4 +127,4 @@ Vec3 vector_transform(const OpArgs& args, const ShadeContext& c) {
   return kind == GRADUS_TRANSFORM_NORMAL ? safe_normalize(moved) : moved;
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

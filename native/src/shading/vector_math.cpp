@@ -2,7 +2,7 @@
 #include "shading/ops.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 template <class F>
@@ -115,4 +115,4 @@ void vector_math(const OpArgs& args, Vec4* out) {
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

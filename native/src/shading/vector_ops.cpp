@@ -3,10 +3,12 @@
 #include "shading/rotation.h"
 #include "shading/scalar.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
-Vec3 divide(const Vec3& a, const Vec3& b) { return Vec3(safe_divide(a.x, b.x), safe_divide(a.y, b.y), safe_divide(a.z, b.z)); }
+Vec3 divide(const Vec3& a, const Vec3& b) {
+  return Vec3(safe_divide(a.x, b.x), safe_divide(a.y, b.y), safe_divide(a.z, b.z));
+}
 
 }  // namespace
 
@@ -39,4 +41,4 @@ Vec4 vector_rotate(const OpArgs& args) {
   return value(rotate_around(v - center, axis, inverse ? -args.f(3) : args.f(3)) + center);
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -1,5 +1,6 @@
-// φ of every type of camera: a link leads to the pixel whose ray passes nearest to the point that its own pixel shows. Rays have closed
-// forms (camera_test.cpp, panorama_test.cpp); the way back from points to the film, which φ goes, is not asked.
+// φ of every type of camera: a link leads to the pixel whose ray passes nearest to the point that its own pixel shows.
+// Rays have closed forms (camera_test.cpp, panorama_test.cpp); the way back from points to the film, which φ goes, is
+// not asked.
 #include <cmath>
 #include <set>
 
@@ -7,8 +8,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "camera/camera_fixture.h"
-#include "support/path_scene.h"
 #include "motion/pixel_matching.h"
+#include "support/path_scene.h"
 
 namespace gradus::test {
 namespace {
@@ -27,7 +28,8 @@ struct CameraType {
 
   // Its film comes back to its beginning.
   bool is_all_around() const {
-    return type == GRADUS_CAMERA_PANORAMA && (panorama == GRADUS_PANORAMA_EQUIRECTANGULAR || panorama == GRADUS_PANORAMA_CYLINDER) &&
+    return type == GRADUS_CAMERA_PANORAMA &&
+           (panorama == GRADUS_PANORAMA_EQUIRECTANGULAR || panorama == GRADUS_PANORAMA_CYLINDER) &&
            window[1] - window[0] >= kTurn;
   }
 };
@@ -40,8 +42,19 @@ constexpr CameraType kCameras[] = {
     {"PerspectiveRight", kPerspective, {-0.9f, 0.9f, -0.6f, 0.6f}, 0, 0.0f, kEye, 2.0f},
     {"Orthographic", GRADUS_CAMERA_ORTHOGRAPHIC, {-1.5f, 1.5f, -1.0f, 1.0f}},
     {"Equirectangular", kPanorama, {-kHalf, kHalf, -kQuarter, kQuarter}, GRADUS_PANORAMA_EQUIRECTANGULAR},
-    {"EquirectangularLeft", kPanorama, {-kHalf, kHalf, -kQuarter, kQuarter}, GRADUS_PANORAMA_EQUIRECTANGULAR, 0.0f, -kEye, 2.0f},
-    {"EquirectangularRight", kPanorama, {-kHalf, kHalf, -kQuarter, kQuarter}, GRADUS_PANORAMA_EQUIRECTANGULAR, 0.0f, kEye},
+    {"EquirectangularLeft",
+     kPanorama,
+     {-kHalf, kHalf, -kQuarter, kQuarter},
+     GRADUS_PANORAMA_EQUIRECTANGULAR,
+     0.0f,
+     -kEye,
+     2.0f},
+    {"EquirectangularRight",
+     kPanorama,
+     {-kHalf, kHalf, -kQuarter, kQuarter},
+     GRADUS_PANORAMA_EQUIRECTANGULAR,
+     0.0f,
+     kEye},
     {"EquirectangularPart", kPanorama, {2.0f, 4.5f, -0.5f, 1.2f}, GRADUS_PANORAMA_EQUIRECTANGULAR},
     {"CubeFace", kPanorama, {-kEighth, kEighth, -kEighth, kEighth}, GRADUS_PANORAMA_CUBE_FACE},
     {"MirrorBall", kPanorama, {-1.5f, 1.5f, -1.0f, 1.0f}, GRADUS_PANORAMA_MIRROR_BALL},
@@ -98,7 +111,7 @@ GradusCamera camera_of(const CameraType& type, const Mat4& pose, float zoom) {
 class TestFilm {
  public:
   TestFilm(const GradusCamera& desc, bool wraps) : wraps_(wraps) {
-    const Camera camera(desc, kWidth, kHeight);
+    const camera::Camera camera(desc, kWidth, kHeight);
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) rays_.push_back(camera.ray({Vec2(float(x) + 0.5f, float(y) + 0.5f)}));
     }
@@ -108,7 +121,8 @@ class TestFilm {
   Vec3 point(size_t pixel, float radius) const {
     const Ray& ray = rays_[pixel];
     const float middle = glm::dot(ray.origin, ray.direction);
-    return ray.origin + ray.direction * (std::sqrt(middle * middle + radius * radius - glm::dot(ray.origin, ray.origin)) - middle);
+    return ray.origin +
+           ray.direction * (std::sqrt(middle * middle + radius * radius - glm::dot(ray.origin, ray.origin)) - middle);
   }
   // The pixel whose ray passes nearest to a point, by the angle.
   int nearest(const Vec3& point) const {
@@ -153,7 +167,8 @@ class CorrespondenceOfCameras : public testing::TestWithParam<Case> {
   // Blurred: the shutter opens at the pose and closes elsewhere; half way there is what is seen in the middle of it.
   void add_frame(const Mat4& pose, float zoom, bool is_blurred) {
     const auto way = [](float x) { return translation(Vec3(x, 0.5f * x, 0.0f)); };
-    films_.emplace_back(camera_of(GetParam().camera, is_blurred ? way(0.15f) * pose : pose, zoom), GetParam().camera.is_all_around());
+    films_.emplace_back(camera_of(GetParam().camera, is_blurred ? way(0.15f) * pose : pose, zoom),
+                        GetParam().camera.is_all_around());
     GradusCamera camera = camera_of(GetParam().camera, pose, zoom);
     const Mat4 keys[2] = {pose, way(0.3f) * pose};
     if (is_blurred) {
@@ -165,33 +180,35 @@ class CorrespondenceOfCameras : public testing::TestWithParam<Case> {
     }
     scene_.scene.scene.set_camera(camera);
     snapshots_.push_back(scene_.scene.commit());
-    views_.push_back(view_centres(*snapshots_.back(), kWidth, kHeight, Region{0, 0, kWidth, kHeight}));
+    views_.push_back(motion::view_centres(*snapshots_.back(), kWidth, kHeight, Region{0, 0, kWidth, kHeight}));
   }
 
   PathScene scene_;
-  std::vector<std::shared_ptr<const Snapshot>> snapshots_;
-  std::vector<CentreView> views_;
+  std::vector<std::shared_ptr<const scene::Snapshot>> snapshots_;
+  std::vector<motion::CentreView> views_;
   std::vector<TestFilm> films_;
 };
 
 TEST_P(CorrespondenceOfCameras, LeadWhereTheSamePointIsSeen) {
   const auto& [type, change, in_room] = GetParam();
   const Mat4 pose = glm::rotate(translation(Vec3(0.2f, -0.1f, 0.3f)), 0.4f, glm::normalize(Vec3(0.2f, 1.0f, 0.1f)));
-  const Mat4 step = glm::rotate(translation(Vec3(0.11f, -0.05f, -0.07f)), 0.13f, glm::normalize(Vec3(0.1f, 1.0f, 0.2f)));
+  const Mat4 step =
+      glm::rotate(translation(Vec3(0.11f, -0.05f, -0.07f)), 0.13f, glm::normalize(Vec3(0.1f, 1.0f, 0.2f)));
   const bool moves = change == Change::Move || change == Change::Blur;
   add_frame(pose, 1.0f, change == Change::Blur);
   add_frame(moves ? step * pose : pose, change == Change::Zoom ? 1.12f : 1.0f, change == Change::Blur);
-  const std::vector<int32_t> correspondence = match_pixels(views_[0], views_[1]).pixel;
+  const std::vector<int32_t> correspondence = motion::match_pixels(views_[0], views_[1]).pixel;
   const bool is_static_at_infinity = type.type == GRADUS_CAMERA_ORTHOGRAPHIC && !in_room;
   std::set<int> wanted;  // pixels that others lead to
   int linked = 0, astray = 0, reached = 0;
   for (size_t i = 0; i < correspondence.size(); ++i) {
     if (!films_[0].sees(i)) {
-      EXPECT_EQ(correspondence[i], kNoCorrespondence) << "beyond the image circle: " << i;
+      EXPECT_EQ(correspondence[i], film::kNoCorrespondence) << "beyond the image circle: " << i;
       continue;
     }
-    const int expected = is_static_at_infinity ? int(i) : films_[1].nearest(films_[0].point(i, in_room ? kRoom : kFarAway));
-    if (correspondence[i] != kNoCorrespondence) {
+    const int expected =
+        is_static_at_infinity ? int(i) : films_[1].nearest(films_[0].point(i, in_room ? kRoom : kFarAway));
+    if (correspondence[i] != film::kNoCorrespondence) {
       ++linked;
       astray += films_[1].pixels_between(correspondence[i], expected) > 1 ? 1 : 0;
       if (change == Change::None) {
@@ -200,7 +217,7 @@ TEST_P(CorrespondenceOfCameras, LeadWhereTheSamePointIsSeen) {
     }
     if (films_[1].is_inside(expected)) {
       wanted.insert(expected);
-      reached += correspondence[i] != kNoCorrespondence ? 1 : 0;
+      reached += correspondence[i] != film::kNoCorrespondence ? 1 : 0;
     }
   }
   const bool has_steep_rim = type.type == kPanorama && type.panorama == GRADUS_PANORAMA_MIRROR_BALL;
@@ -210,7 +227,8 @@ TEST_P(CorrespondenceOfCameras, LeadWhereTheSamePointIsSeen) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, CorrespondenceOfCameras, testing::ValuesIn(all_cases()), [](const auto& info) {
-  return std::string(info.param.camera.name) + kChanges[int(info.param.change)] + (info.param.in_room ? "InARoom" : "UnderTheSky");
+  return std::string(info.param.camera.name) + kChanges[int(info.param.change)] +
+         (info.param.in_room ? "InARoom" : "UnderTheSky");
 });
 
 }  // namespace

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <set>
 
+#include "animation/sequence_fixture.h"
 #include "base/error.h"
 #include "film_io/store.h"
-#include "animation/sequence_fixture.h"
 #include "schema/options.h"
 
 namespace gradus {
@@ -22,7 +22,7 @@ GradusSettings settings_for(int32_t frame, uint32_t reconstruction, const char* 
   settings.use_decomposition = 1;
   settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
   settings.component_replays = 1;
-  set_text(&settings, *find_option("components"), components);
+  schema::set_text(&settings, *schema::find_option("components"), components);
   return settings;
 }
 
@@ -32,18 +32,19 @@ struct Pictures {
   std::vector<double> light;  // of each component, in the last frame
 };
 
-std::shared_ptr<Device> device_with_stand_in() {
+std::shared_ptr<scene::Device> device_with_stand_in() {
   GradusDeviceSettings settings{};
   settings.struct_size = sizeof(settings);
   settings.threads = 2;
   settings.denoiser_path = GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
-  return std::make_shared<Device>(settings);
+  return std::make_shared<scene::Device>(settings);
 }
 
 Pictures rendered(uint32_t reconstruction, const char* components, Scenario scenario = Scenario::Glass,
                   uint32_t denoiser = GRADUS_DENOISER_NONE) {
   Pan pan(1.0f, scenario);
-  const auto sequence = std::make_shared<Sequence>(device_with_stand_in(), SequenceSettings{0, kLast, 1, {}, ""});
+  const auto sequence =
+      std::make_shared<animation::Sequence>(device_with_stand_in(), animation::SequenceSettings{0, kLast, 1, {}, ""});
   for (int32_t frame = 0; frame <= kLast; ++frame) {
     GradusSettings settings = settings_for(frame, reconstruction, components);
     settings.denoiser = denoiser;
@@ -56,7 +57,7 @@ Pictures rendered(uint32_t reconstruction, const char* components, Scenario scen
     if (components == nullptr) continue;
     std::vector<float> sum(3 * kSide * kSide), part(sum);
     pictures.light.clear();
-    for (const ComponentPlanes& planes : task->film()->components) {
+    for (const film::ComponentPlanes& planes : task->film()->components) {
       task->read_component(planes.name, GRADUS_COMPONENT_COLOR, part.data());
       double light = 0.0;
       for (size_t i = 0; i < sum.size(); ++i) light += part[i];
@@ -79,13 +80,14 @@ TEST(SequenceDetails, AreOfAllSamplesAndOfWhatIsStored) {
   for (const bool again : {false, true}) {  // from files alone
     Pan pan(1.0f);
     const auto sequence = make_sequence(0, 2, folder.path());
-    for (int32_t frame = 0; frame <= 2; ++frame) sample(sequence.get(), pan.at(frame), settings_with(frame, GRADUS_COMPONENT_FACE_INDEX));
+    for (int32_t frame = 0; frame <= 2; ++frame)
+      sample(sequence.get(), pan.at(frame), settings_with(frame, GRADUS_COMPONENT_FACE_INDEX));
     const auto task = delivered(sequence.get(), 1);
-    const Film& frame = *task->film();
-    const auto& details = frame.components[size_t(find_component(frame, "Diffuse"))].details;
+    const film::Film& frame = *task->film();
+    const auto& details = frame.components[size_t(film::find_component(frame, "Diffuse"))].details;
     const size_t middle = size_t(kSide) * kSide / 2 + kSide / 2;
     ASSERT_EQ(details.size(), size_t(kSide) * kSide);
-    EXPECT_EQ(details[middle].segments, float(samples_at(frame, middle)));
+    EXPECT_EQ(details[middle].segments, float(film::samples_at(frame, middle)));
     EXPECT_EQ(details[middle].segments, 8.0f);
     std::vector<float> faces(kSide * kSide);
     task->read_component("Diffuse", GRADUS_COMPONENT_FACE_INDEX, faces.data());
@@ -93,7 +95,8 @@ TEST(SequenceDetails, AreOfAllSamplesAndOfWhatIsStored) {
     EXPECT_GE(faces[middle], 0.0f);
   }
   Pan pan(1.0f);
-  EXPECT_THROW(sample(make_sequence(0, 2, folder.path()).get(), pan.at(0), settings_with(0, GRADUS_COMPONENT_NORMAL)), Error);
+  EXPECT_THROW(sample(make_sequence(0, 2, folder.path()).get(), pan.at(0), settings_with(0, GRADUS_COMPONENT_NORMAL)),
+               Error);
 }
 
 // Motion is kept with a frame's own half, and was asked of the other one, too: no store with it could be gone on with.
@@ -121,7 +124,8 @@ void expect_to_add_up(const Pictures& pictures) {
   EXPECT_GE(std::count_if(pictures.light.begin(), pictures.light.end(), [](double light) { return light > 1.0; }), 3);
   for (size_t frame = 0; frame <= size_t(kLast); ++frame) {
     const std::vector<float>&sum = pictures.sums[frame], &rgba = pictures.combined[frame];
-    for (size_t i = 0; i < sum.size(); ++i) ASSERT_NEAR(sum[i], rgba[i / 3 * 4 + i % 3], 1e-5f * (std::fabs(sum[i]) + 1.0f)) << frame;
+    for (size_t i = 0; i < sum.size(); ++i)
+      ASSERT_NEAR(sum[i], rgba[i / 3 * 4 + i % 3], 1e-5f * (std::fabs(sum[i]) + 1.0f)) << frame;
   }
 }
 
@@ -169,31 +173,35 @@ TEST(ComponentsOfSequences, ErrorsOfWhatMakesUpForEachOtherAreNotAddedUp) {
   for (size_t i = 0; i < one.size(); ++i) ASSERT_NEAR(many[i], one[i], 1e-3f * largest) << i;
 }
 
-// A camera that moves past balls of glass: what they show goes other ways than they do. The replay of such a component is of where it was.
+// A camera that moves past balls of glass: what they show goes other ways than they do. The replay of such a component
+// is of where it was.
 TEST(ComponentsOfSequences, ReplayWhereReflectionsAndRefractionsWere) {
   Pan pan(1.0f, Scenario::Glass);
   const Folder folder;
   const auto sequence = make_sequence(0, 1, folder.path());
-  for (int32_t frame = 0; frame <= 1; ++frame) sample(sequence.get(), pan.at(frame), settings_for(frame, GRADUS_RECONSTRUCTION_L2, ""));
-  const auto replayed = SequenceFolder(folder.path()).load(1, FrameSamples::kReplayed);
-  const ReplayMap& replay_map = replayed->replayed;
-  const int diffuse = find_component(*replayed, "Diffuse");
+  for (int32_t frame = 0; frame <= 1; ++frame)
+    sample(sequence.get(), pan.at(frame), settings_for(frame, GRADUS_RECONSTRUCTION_L2, ""));
+  const auto replayed = animation::SequenceFolder(folder.path()).load(1, animation::FrameSamples::kReplayed);
+  const film::ReplayMap& replay_map = replayed->replayed;
+  const int diffuse = film::find_component(*replayed, "Diffuse");
   EXPECT_FALSE(replay_map.has_component_map(diffuse));
   size_t apart = 0;
   for (const char* name : {"Reflection", "Transmission"}) {
-    const int component = find_component(*replayed, name);
+    const int component = film::find_component(*replayed, name);
     ASSERT_TRUE(replay_map.has_component_map(component)) << name;
     const std::vector<int32_t>& own = replay_map.of_component[size_t(component)].pixel;
     std::set<int32_t> taken;
     for (size_t i = 0; i < own.size(); ++i) {
-      apart += own[i] != kNoCorrespondence && own[i] != replay_map.correspondence.pixel[i] ? 1 : 0;
-      EXPECT_TRUE(own[i] == kNoCorrespondence || taken.insert(own[i]).second) << name;
+      apart += own[i] != film::kNoCorrespondence && own[i] != replay_map.correspondence.pixel[i] ? 1 : 0;
+      EXPECT_TRUE(own[i] == film::kNoCorrespondence || taken.insert(own[i]).second) << name;
     }
   }
   EXPECT_GT(apart, 50u);
   const auto whole =
-      load_component(SequenceFolder(folder.path()).path(1, FrameSamples::kReplayed), "Transmission", StoredContent::kAll, [] { return false; });
-  EXPECT_EQ(whole->replayed.correspondence, replay_map.of_component[size_t(find_component(*replayed, "Transmission"))]);
+      film_io::load_component(animation::SequenceFolder(folder.path()).path(1, animation::FrameSamples::kReplayed),
+                              "Transmission", film_io::StoredContent::kAll, [] { return false; });
+  EXPECT_EQ(whole->replayed.correspondence,
+            replay_map.of_component[size_t(film::find_component(*replayed, "Transmission"))]);
 }
 
 TEST(ComponentsOfSequences, ReplayAlongSurfacesWhereOwnWaysAreOff) {
@@ -205,7 +213,9 @@ TEST(ComponentsOfSequences, ReplayAlongSurfacesWhereOwnWaysAreOff) {
     settings.component_replays = 0;
     sample(sequence.get(), pan.at(frame), settings);
   }
-  EXPECT_TRUE(SequenceFolder(folder.path()).load(1, FrameSamples::kReplayed)->replayed.of_component.empty());
+  EXPECT_TRUE(animation::SequenceFolder(folder.path())
+                  .load(1, animation::FrameSamples::kReplayed)
+                  ->replayed.of_component.empty());
 }
 
 // Whatever the links say, a replay is a sample of its pixel.
@@ -219,16 +229,18 @@ TEST(ComponentsOfSequences, ReplaysAlongOwnWaysHaveTheLightOfPlainSamples) {
     plain.frame = frame;
     sample(sequence.get(), pan.at(frame), plain);
   }
-  const auto light = [&](FrameSamples part, const char* name) {
-    const auto frame = load_component(SequenceFolder(folder.path()).path(1, part), name, StoredContent::kAll, [] { return false; });
+  const auto light = [&](animation::FrameSamples part, const char* name) {
+    const auto frame = film_io::load_component(animation::SequenceFolder(folder.path()).path(1, part), name,
+                                               film_io::StoredContent::kAll, [] { return false; });
     double sum = 0.0;
-    for (const float value : read_images(*frame, 0).primal) sum += value;
+    for (const float value : film::read_images(*frame, 0).primal) sum += value;
     return sum;
   };
   // Reflections of the light come by few samples.
   const std::pair<const char*, double> bounds[] = {{"Reflection", 0.12}, {"Transmission", 0.03}, {"Diffuse", 0.03}};
   for (const auto& [name, bound] : bounds) {
-    const double base = light(FrameSamples::kFresh, name), replayed = light(FrameSamples::kReplayed, name);
+    const double base = light(animation::FrameSamples::kFresh, name),
+                 replayed = light(animation::FrameSamples::kReplayed, name);
     EXPECT_GT(base, 1.0) << name;
     EXPECT_NEAR(replayed, base, bound * base) << name;
   }

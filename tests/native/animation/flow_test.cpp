@@ -3,11 +3,11 @@
 #include <cmath>
 #include <map>
 
+#include "animation/sequence_fixture.h"
 #include "film_io/store.h"
 #include "motion/flow_scene.h"
 #include "motion/tracking.h"
 #include "render/render.h"
-#include "animation/sequence_fixture.h"
 #include "schema/options.h"
 
 namespace gradus {
@@ -24,7 +24,8 @@ constexpr uint32_t kOfIrradiance = 1u << GRADUS_COMPONENT_IRRADIANCE_MOTION | 1u
 constexpr const char* kAllResidual = "Once=ERRRL";  // a set that nothing here belongs to
 constexpr uint32_t kOfLight = 1u << GRADUS_COMPONENT_MOTION | 1u << GRADUS_COMPONENT_TRACKED;
 
-GradusSettings flow_settings(int32_t frame, uint32_t passes = kOfIrradiance, const char* components = "", uint32_t samples = kFew) {
+GradusSettings flow_settings(int32_t frame, uint32_t passes = kOfIrradiance, const char* components = "",
+                             uint32_t samples = kFew) {
   GradusSettings settings = test_settings(kWidth, kHeight);
   settings.frame = frame;
   settings.samples = samples;
@@ -33,7 +34,7 @@ GradusSettings flow_settings(int32_t frame, uint32_t passes = kOfIrradiance, con
   settings.threads = 2;
   settings.use_decomposition = 1;
   settings.component_passes = passes;
-  set_text(&settings, *find_option("components"), components);
+  schema::set_text(&settings, *schema::find_option("components"), components);
   return settings;
 }
 
@@ -42,17 +43,19 @@ Mat4 shining_along(const Vec3& direction) {
   return Mat4(Vec4(x, 0), Vec4(y, 0), Vec4(z, 0), Vec4(0, 0, 0, 1));
 }
 
-// A floor that rests, seen from above, with the shadow of a ball beside the picture: it goes by kShift from frame to frame.
+// A floor that rests, seen from above, with the shadow of a ball beside the picture: it goes by kShift from frame to
+// frame.
 class MovingShadow {
  public:
   // angle: by which it is seen from the side. with_mirror: one that shows the floor stands in a corner of the picture.
-  std::shared_ptr<const Snapshot> at(int32_t frame, float angle = 0.0f, bool with_mirror = false) {
+  std::shared_ptr<const scene::Snapshot> at(int32_t frame, float angle = 0.0f, bool with_mirror = false) {
     PathScene& scene = scenes_[frame];
     const uint64_t matte_floor = scene.material(matte(Rgb(0.6f)));
     scene.quad(Vec3(-4, -4, 0), Vec3(8, 0, 0), Vec3(0, 8, 0), matte_floor);
     const Vec2 middle = kPixel * (float(frame) - 1.5f) * kShift;
     scene.ball(Vec3(middle, 0.0f) - 2.4f * kDirection, 0.3f, matte_floor, 24, true);
-    if (with_mirror) scene.quad(Vec3(0.8f, 0.6f, 0.01f), Vec3(0.2f, 0, 0.45f), Vec3(0, 0.4f, 0), scene.material(glossy(0.0f)));
+    if (with_mirror)
+      scene.quad(Vec3(0.8f, 0.6f, 0.01f), Vec3(0.2f, 0, 0.45f), Vec3(0, 0.4f, 0), scene.material(glossy(0.0f)));
     GradusLight sun = make_light(GRADUS_LIGHT_SUN, shining_along(kDirection), Rgb(3.0f));
     sun.angle = 0.08f;
     scene.light(sun);
@@ -65,12 +68,13 @@ class MovingShadow {
   std::map<int32_t, PathScene> scenes_;
 };
 
-std::shared_ptr<Sequence> flow_sequence(int32_t last, bool with_flow = true, const std::string& library = GRADUS_BINARY_DIR "/native",
-                                        const std::string& folder = "") {
-  SequenceSettings settings{0, last, 1, {}, folder};
+std::shared_ptr<animation::Sequence> flow_sequence(int32_t last, bool with_flow = true,
+                                                   const std::string& library = GRADUS_BINARY_DIR "/native",
+                                                   const std::string& folder = "") {
+  animation::SequenceSettings settings{0, last, 1, {}, folder};
   settings.with_flow = with_flow;
   settings.flow_folder = library;
-  return std::make_shared<Sequence>(two_threads(), settings);
+  return std::make_shared<animation::Sequence>(two_threads(), settings);
 }
 
 struct Flow {
@@ -79,22 +83,24 @@ struct Flow {
   size_t count(float value) const { return size_t(std::count(tracked.begin(), tracked.end(), value)); }
 };
 
-std::vector<float> read(const RenderTask& task, const std::string& component, uint32_t pass, size_t channels) {
+std::vector<float> read(const render::RenderTask& task, const std::string& component, uint32_t pass, size_t channels) {
   std::vector<float> values(channels * kPixels);
   task.read_component(component, pass, values.data());
   return values;
 }
 
-Flow read_flow(const RenderTask& task, const std::string& component, bool of_light = false) {
-  const std::vector<float> motion = read(task, component, of_light ? GRADUS_COMPONENT_MOTION : GRADUS_COMPONENT_IRRADIANCE_MOTION, 4);
+Flow read_flow(const render::RenderTask& task, const std::string& component, bool of_light = false) {
+  const std::vector<float> motion =
+      read(task, component, of_light ? GRADUS_COMPONENT_MOTION : GRADUS_COMPONENT_IRRADIANCE_MOTION, 4);
   Flow flow{std::vector<Vec4>(kPixels),
             read(task, component, of_light ? GRADUS_COMPONENT_TRACKED : GRADUS_COMPONENT_IRRADIANCE_TRACKED, 1)};
-  for (size_t i = 0; i < kPixels; ++i) flow.vectors[i] = Vec4(motion[4 * i], motion[4 * i + 1], motion[4 * i + 2], motion[4 * i + 3]);
+  for (size_t i = 0; i < kPixels; ++i)
+    flow.vectors[i] = Vec4(motion[4 * i], motion[4 * i + 1], motion[4 * i + 2], motion[4 * i + 3]);
   return flow;
 }
 
-void sample_all(Sequence* sequence, int32_t first, int32_t last, uint32_t passes = kOfIrradiance, const char* components = "",
-                uint32_t samples = kFew) {
+void sample_all(animation::Sequence* sequence, int32_t first, int32_t last, uint32_t passes = kOfIrradiance,
+                const char* components = "", uint32_t samples = kFew) {
   MovingShadow scene;
   for (int32_t frame = first; frame <= last; ++frame) {
     test::run(sequence->sample(scene.at(frame), flow_settings(frame, passes, components, samples)).get());
@@ -117,7 +123,7 @@ Edge measure_edge(const std::vector<float>& light, const Flow& flow) {
       const Vec2 across = glm::normalize(gradient);
       const size_t i = y * kWidth + x;
       ++edge.pixels;
-      if (flow.tracked[i] != kTracked) continue;
+      if (flow.tracked[i] != motion::kTracked) continue;
       const Vec2 before = Vec2(flow.vectors[i]) + kShift, after = Vec2(flow.vectors[i].z, flow.vectors[i].w) + kShift;
       ++edge.tracked;
       edge.right += std::max(std::abs(glm::dot(before, across)), std::abs(glm::dot(after, across))) < 0.2f;
@@ -147,7 +153,8 @@ TEST(SequenceFlow, ResidualMovesAsItsLight) {
   sample_all(sequence.get(), 0, 2, kOfLight | 1u << GRADUS_COMPONENT_COLOR, kAllResidual, kMany);
   delivered(sequence.get(), 0);
   const auto task = delivered(sequence.get(), 1);
-  const Edge edge = measure_edge(read(*task, "Residual", GRADUS_COMPONENT_COLOR, 3), read_flow(*task, "Residual", true));
+  const Edge edge =
+      measure_edge(read(*task, "Residual", GRADUS_COMPONENT_COLOR, 3), read_flow(*task, "Residual", true));
   ASSERT_GT(edge.pixels, 100u);
   EXPECT_GT(edge.tracked, edge.pixels * 9 / 10);
   EXPECT_GT(edge.right, edge.pixels * 55 / 100);
@@ -158,8 +165,8 @@ TEST(SequenceFlow, FirstAndLastFrameLackANeighbour) {
   sample_all(sequence.get(), 0, 2);
   for (const int32_t frame : {0, 1, 2}) {
     const Flow flow = read_flow(*delivered(sequence.get(), frame), "Diffuse");
-    EXPECT_EQ(flow.count(kNoNeighbour) > 0, frame != 1) << frame;
-    EXPECT_EQ(flow.count(kTracked) > 0, frame == 1) << frame;
+    EXPECT_EQ(flow.count(motion::kNoNeighbour) > 0, frame != 1) << frame;
+    EXPECT_EQ(flow.count(motion::kTracked) > 0, frame == 1) << frame;
     float farthest[2] = {};
     for (const Vec4& v : flow.vectors) {
       farthest[0] = std::max(farthest[0], glm::length(Vec2(v)));
@@ -171,11 +178,11 @@ TEST(SequenceFlow, FirstAndLastFrameLackANeighbour) {
 }
 
 TEST(SequenceFlow, AFrameNeedsTheNextOneWhereItIsAskedFor) {
-  constexpr WindowShape kWindows{4, 2};
+  constexpr reconstruct::WindowShape kWindows{4, 2};
   const auto last_of = [&](bool with_flow, int32_t frame) {
-    SequenceSettings settings{0, 20, 1, kWindows, ""};
+    animation::SequenceSettings settings{0, 20, 1, kWindows, ""};
     settings.with_flow = with_flow;
-    return Sequence(two_threads(), settings).needs(frame).last;
+    return animation::Sequence(two_threads(), settings).needs(frame).last;
   };
   bool more = false;
   for (int32_t frame = 0; frame <= 20; ++frame) {
@@ -193,8 +200,8 @@ TEST(SequenceFlow, WithoutTheLibraryNothingIsTrackedAndThatIsToldOnce) {
   for (const int32_t frame : {0, 1}) {
     const auto task = delivered(sequence.get(), frame);
     const Flow flow = read_flow(*task, "Diffuse");
-    EXPECT_EQ(flow.count(kTracked), 0u);
-    EXPECT_EQ(flow.count(frame == 0 ? kNoNeighbour : kNoFlowLibrary), kPixels);
+    EXPECT_EQ(flow.count(motion::kTracked), 0u);
+    EXPECT_EQ(flow.count(frame == 0 ? motion::kNoNeighbour : motion::kNoFlowLibrary), kPixels);
     told += task->stats().find("no motion of shadows") != std::string::npos;
   }
   EXPECT_EQ(told, 1u);
@@ -202,17 +209,17 @@ TEST(SequenceFlow, WithoutTheLibraryNothingIsTrackedAndThatIsToldOnce) {
 
 TEST(SequenceFlow, AStillHasTheSurfacesMotionUntracked) {
   MovingShadow scene;
-  auto moved = std::make_shared<Snapshot>(*scene.at(1));
+  auto moved = std::make_shared<scene::Snapshot>(*scene.at(1));
   moved->camera.matrix_previous[12] -= 2.0f * kPixel;
   moved->camera.matrix_next[12] += 2.0f * kPixel;
-  Render render(test_device(), moved, flow_settings(1, kOfIrradiance | kOfLight, kAllResidual));
+  render::Render render(test_device(), moved, flow_settings(1, kOfIrradiance | kOfLight, kAllResidual));
   render.wait(-1.0);
   for (const uint32_t pass : {uint32_t{GRADUS_COMPONENT_MOTION}, uint32_t{GRADUS_COMPONENT_IRRADIANCE_MOTION}}) {
     std::vector<float> vectors(4 * kPixels), tracked(kPixels);
     render.read_component("Residual", pass, vectors.data(), vectors.size());
     render.read_component("Residual", pass + 1, tracked.data(), tracked.size());
     for (size_t i = 0; i < kPixels; ++i) {
-      ASSERT_EQ(tracked[i], kNoNeighbour);
+      ASSERT_EQ(tracked[i], motion::kNoNeighbour);
       ASSERT_NEAR(vectors[4 * i], 2.0f, 0.02f);
       ASSERT_NEAR(vectors[4 * i + 2], 2.0f, 0.02f);
     }
@@ -221,13 +228,13 @@ TEST(SequenceFlow, AStillHasTheSurfacesMotionUntracked) {
 
 // The surfaces' motion is known from frame to frame, not over several.
 TEST(SequenceFlow, FramesThatAreLeftOutAreNoNeighbours) {
-  SequenceSettings settings{0, 4, 2, {}, ""};
+  animation::SequenceSettings settings{0, 4, 2, {}, ""};
   settings.with_flow = true;
   settings.flow_folder = GRADUS_BINARY_DIR "/native";
-  const auto sequence = std::make_shared<Sequence>(two_threads(), settings);
+  const auto sequence = std::make_shared<animation::Sequence>(two_threads(), settings);
   MovingShadow scene;
   for (const int32_t frame : {0, 2, 4}) test::run(sequence->sample(scene.at(frame), flow_settings(frame)).get());
-  EXPECT_EQ(read_flow(*delivered(sequence.get(), 2), "Diffuse").count(kNoNeighbour), kPixels);
+  EXPECT_EQ(read_flow(*delivered(sequence.get(), 2), "Diffuse").count(motion::kNoNeighbour), kPixels);
 }
 
 TEST(SequenceFlow, UnderACutNothingIsTracked) {
@@ -236,24 +243,25 @@ TEST(SequenceFlow, UnderACutNothingIsTracked) {
   test::run(sequence->sample(scene.at(0), flow_settings(0)).get());
   test::run(sequence->sample(scene.at(1, 0.7f), flow_settings(1)).get());
   const Flow flow = read_flow(*delivered(sequence.get(), 1), "Diffuse");
-  EXPECT_EQ(flow.count(kTracked), 0u);
-  EXPECT_EQ(flow.count(float(Tracking::ShotChange)), kPixels);
+  EXPECT_EQ(flow.count(motion::kTracked), 0u);
+  EXPECT_EQ(flow.count(float(motion::Tracking::ShotChange)), kPixels);
 }
 
 // Those that are on one side alone are not tracked there.
 TEST(SequenceFlow, AMirrorThatAppearsTakesNoFlowFromOthers) {
   const auto sequence = flow_sequence(3);
   MovingShadow scene;
-  for (const int32_t frame : {0, 1, 2, 3}) test::run(sequence->sample(scene.at(frame, 0.0f, frame >= 2), flow_settings(frame)).get());
+  for (const int32_t frame : {0, 1, 2, 3})
+    test::run(sequence->sample(scene.at(frame, 0.0f, frame >= 2), flow_settings(frame)).get());
   for (const int32_t frame : {0, 1, 2}) {
     const auto task = delivered(sequence.get(), frame);
-    ASSERT_EQ(find_component(*task->film(), "Reflection") >= 0, frame == 2) << frame;
+    ASSERT_EQ(film::find_component(*task->film(), "Reflection") >= 0, frame == 2) << frame;
     if (frame == 0) continue;
-    EXPECT_GT(read_flow(*task, "Diffuse").count(kTracked), kPixels / 2) << frame;
+    EXPECT_GT(read_flow(*task, "Diffuse").count(motion::kTracked), kPixels / 2) << frame;
     if (frame == 1) continue;
     const Flow reflected = read_flow(*task, "Reflection");
-    EXPECT_EQ(reflected.count(kTracked), 0u);
-    EXPECT_GT(reflected.count(kNoNeighbour), 20u);
+    EXPECT_EQ(reflected.count(motion::kTracked), 0u);
+    EXPECT_GT(reflected.count(motion::kNoNeighbour), 20u);
   }
 }
 
@@ -282,11 +290,12 @@ TEST(SequenceFlow, AFrameThatWasMadeAheadObeysItsOwnSettings) {
   sample_all(plain.get(), 0, 2);
   delivered(plain.get(), 0);
   const auto other = delivered(plain.get(), 1);
-  const std::vector<float> a = test::read(*task, GRADUS_PASS_COMBINED, 4), b = test::read(*other, GRADUS_PASS_COMBINED, 4);
+  const std::vector<float> a = test::read(*task, GRADUS_PASS_COMBINED, 4),
+                           b = test::read(*other, GRADUS_PASS_COMBINED, 4);
   for (size_t i = 0; i < a.size(); ++i) {
     ASSERT_NEAR(a[i], (i % 4 == 3 ? 1.0f : 2.0f) * b[i], 1e-5f);
   }
-  EXPECT_GT(read_flow(*task, "Diffuse").count(kTracked), kPixels / 2);
+  EXPECT_GT(read_flow(*task, "Diffuse").count(motion::kTracked), kPixels / 2);
 }
 
 // Files that are loaded to deliver frames 0 to 2, each as it was sampled for, but for what `change` does.
@@ -316,7 +325,9 @@ TEST(SequenceFlow, FramesOfAnotherExposureAreMadeOnce) {
 }
 
 // Its windows are those of each frame alone, with flow or without, and no frame is made twice.
-TEST(SequenceFlow, AKeyedAlphaIsThatOfTheFrameItself) { EXPECT_EQ(loads_by(0.2f, as_it_is, true), loads_by(0.2f, as_it_is, false)); }
+TEST(SequenceFlow, AKeyedAlphaIsThatOfTheFrameItself) {
+  EXPECT_EQ(loads_by(0.2f, as_it_is, true), loads_by(0.2f, as_it_is, false));
+}
 
 TEST(SequenceFlow, NothingIsMadeAheadUnlessItIsAskedFor) {
   const Folder requested, not_asked;
@@ -324,13 +335,13 @@ TEST(SequenceFlow, NothingIsMadeAheadUnlessItIsAskedFor) {
   const auto without = flow_sequence(2, true, GRADUS_BINARY_DIR "/native", not_asked.path());
   sample_all(with.get(), 0, 2);
   sample_all(without.get(), 0, 2, 1u << GRADUS_COMPONENT_COLOR);
-  const auto loads = [](Sequence* sequence) {
+  const auto loads = [](animation::Sequence* sequence) {
     const uint64_t before = sequence->folder().loads();
     delivered(sequence, 0);
     return sequence->folder().loads() - before;
   };
   EXPECT_EQ(loads(with.get()), loads(without.get()) + 2);
-  const auto frame = SequenceFolder(not_asked.path()).load(1, FrameSamples::kFresh);
+  const auto frame = animation::SequenceFolder(not_asked.path()).load(1, animation::FrameSamples::kFresh);
   EXPECT_TRUE(frame->components[0].shown.empty());
   EXPECT_TRUE(frame->components[0].motion.empty());
 }

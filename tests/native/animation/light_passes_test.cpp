@@ -13,7 +13,7 @@ constexpr int32_t kLast = 3;
 GradusSettings settings_for(int32_t frame, uint32_t reconstruction) {
   GradusSettings settings = settings_of(frame);
   settings.reconstruction = reconstruction;
-  settings.passes |= needed_passes(light_passes());
+  settings.passes |= schema::needed_passes(schema::light_passes());
   return settings;
 }
 
@@ -22,7 +22,8 @@ class SequenceLightPasses : public testing::TestWithParam<uint32_t> {};
 TEST_P(SequenceLightPasses, AddUpInEveryFrame) {
   Pan pan(1.0f, Scenario::Glass);
   const auto sequence = make_sequence(0, kLast);
-  for (int32_t frame = 0; frame <= kLast; ++frame) sample(sequence.get(), pan.at(frame), settings_for(frame, GetParam()));
+  for (int32_t frame = 0; frame <= kLast; ++frame)
+    sample(sequence.get(), pan.at(frame), settings_for(frame, GetParam()));
   for (int32_t frame = 0; frame <= kLast; ++frame) {
     const auto task = delivered(sequence.get(), frame);
     expect_light_to_add_up([&](uint32_t pass) { return read(*task, pass, 3); }, read(*task, GRADUS_PASS_COMBINED, 4));

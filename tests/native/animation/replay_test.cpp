@@ -4,10 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include "gradient/gradient_integrator.h"
 #include "integrator/pixel_loop.h"
+#include "motion/pixel_matching.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
-#include "motion/pixel_matching.h"
 
 namespace gradus::test {
 namespace {
@@ -24,20 +25,23 @@ GradusSettings settings_of(int32_t frame, uint32_t seed = 0) {
 
 const Region kWhole{0, 0, int32_t(kSize), int32_t(kSize)};
 
-Film sampled(const IntegratorContext& context, uint32_t samples, const ReplayMap* replay_map = nullptr, const Region& region = kWhole) {
-  Film frame(kSize, kSize, region, 3, 1, true);
-  WorkUnit unit;
+film::Film sampled(const integrator::IntegratorContext& context, uint32_t samples,
+                   const film::ReplayMap* replay_map = nullptr, const Region& region = kWhole) {
+  film::Film frame(kSize, kSize, region, 3, 1, true);
+  integrator::WorkUnit unit;
   unit.tile = frame.region;
   unit.count = samples;
   unit.replay_map = replay_map;
-  make_gradient_integrator(context)->sample(unit, &frame, &frame.counters, std::atomic<bool>{false});
+  gradient::make_gradient_integrator(context)->sample(unit, &frame, &frame.counters, std::atomic<bool>{false});
   return frame;
 }
 
-ReplayMap sources_of(const IntegratorContext& before, const IntegratorContext& now, const Region& region = kWhole) {
-  const PixelCorrespondence correspondence =
-      match_pixels(view_centres(*before.snapshot, kSize, kSize, region), view_centres(*now.snapshot, kSize, kSize, region));
-  return {before.settings.frame, inverse_correspondence(correspondence), 0, before.settings.seed};
+film::ReplayMap sources_of(const integrator::IntegratorContext& before, const integrator::IntegratorContext& now,
+                           const Region& region = kWhole) {
+  const film::PixelCorrespondence correspondence =
+      motion::match_pixels(motion::view_centres(*before.snapshot, kSize, kSize, region),
+                           motion::view_centres(*now.snapshot, kSize, kSize, region));
+  return {before.settings.frame, motion::inverse_correspondence(correspondence), 0, before.settings.seed};
 }
 
 class Replays : public testing::TestWithParam<Scenario> {};
@@ -45,17 +49,20 @@ class Replays : public testing::TestWithParam<Scenario> {};
 TEST_P(Replays, OfAStillSceneHaveTheBitsOfTheFrameBefore) {
   PathScene scene;
   build(GetParam(), &scene);
-  const IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
-  const ReplayMap replay_map = sources_of(before, now);
-  const Film base = sampled(before, 4), offset = sampled(now, 4, &replay_map), own = sampled(now, 4);
-  for (int half = 0; half < kHalves; ++half) {
+  const integrator::IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
+  const film::ReplayMap replay_map = sources_of(before, now);
+  const film::Film base = sampled(before, 4), offset = sampled(now, 4, &replay_map), own = sampled(now, 4);
+  for (int half = 0; half < film::kHalves; ++half) {
     EXPECT_EQ(base.components[0].primal[half], offset.components[0].primal[half]);
-    for (int k = 0; k < kOffsets; ++k) EXPECT_EQ(base.components[0].gradient[half][k], offset.components[0].gradient[half][k]);
+    for (int k = 0; k < film::kOffsets; ++k)
+      EXPECT_EQ(base.components[0].gradient[half][k], offset.components[0].gradient[half][k]);
     EXPECT_NE(base.components[0].primal[half], own.components[0].primal[half]);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Replays, testing::Values(Scenario::DiffuseArea, Scenario::Glass, Scenario::Transparent, Scenario::World),
+INSTANTIATE_TEST_SUITE_P(All, Replays,
+                         testing::Values(Scenario::DiffuseArea, Scenario::Glass, Scenario::Transparent,
+                                         Scenario::World),
                          [](const auto& info) { return std::string(name_of(info.param)); });
 
 // Moments of the shutter and points of the lens are random numbers like others.
@@ -63,31 +70,33 @@ TEST(Replay, SeesWhatWasSeenAtItsMomentsThroughTheLens) {
   PathScene scene;
   build(Scenario::Moving, &scene);
   scene.camera_desc.aperture_radius = 0.1f;
-  const IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
-  ReplayMap replay_map{7, {std::vector<int32_t>(size_t(kSize) * kSize)}, 0, 0, false};
+  const integrator::IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
+  film::ReplayMap replay_map{7, {std::vector<int32_t>(size_t(kSize) * kSize)}, 0, 0, false};
   std::iota(replay_map.correspondence.pixel.begin(), replay_map.correspondence.pixel.end(), 0);
-  const Film base = sampled(before, 4), offset = sampled(now, 4, &replay_map);
-  for (int half = 0; half < kHalves; ++half) EXPECT_TRUE(base.components[0].primal[half] == offset.components[0].primal[half]);
+  const film::Film base = sampled(before, 4), offset = sampled(now, 4, &replay_map);
+  for (int half = 0; half < film::kHalves; ++half)
+    EXPECT_TRUE(base.components[0].primal[half] == offset.components[0].primal[half]);
 }
 
 // Pixels of a region are counted from its corner, and their random numbers from that of the film.
 TEST(Replay, OfABorderTakesTheNumbersOfItsOwnPixels) {
   PathScene scene;
   build(Scenario::DiffuseArea, &scene);
-  const IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
+  const integrator::IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
   const Region border{9, 5, 31, 22};
-  ReplayMap replay_map = sources_of(before, now, border);
-  const Film base = sampled(before, 4, nullptr, border), offset = sampled(now, 4, &replay_map, border);
-  for (int half = 0; half < kHalves; ++half) EXPECT_EQ(base.components[0].primal[half], offset.components[0].primal[half]);
+  film::ReplayMap replay_map = sources_of(before, now, border);
+  const film::Film base = sampled(before, 4, nullptr, border), offset = sampled(now, 4, &replay_map, border);
+  for (int half = 0; half < film::kHalves; ++half)
+    EXPECT_EQ(base.components[0].primal[half], offset.components[0].primal[half]);
 }
 
 // What has no partner is sampled by both halves of its frame: the same numbers twice would tell nothing new.
 TEST(Replay, HolesHaveNumbersOfTheirOwn) {
   PathScene scene;
   build(Scenario::DiffuseArea, &scene);
-  const IntegratorContext now = scene.context(settings_of(8));
-  const ReplayMap holes{7, {std::vector<int32_t>(size_t(kSize) * kSize, kNoCorrespondence)}};
-  const Film own = sampled(now, 4), offset = sampled(now, 4, &holes);
+  const integrator::IntegratorContext now = scene.context(settings_of(8));
+  const film::ReplayMap holes{7, {std::vector<int32_t>(size_t(kSize) * kSize, film::kNoCorrespondence)}};
+  const film::Film own = sampled(now, 4), offset = sampled(now, 4, &holes);
   size_t lit = 0, alike = 0;
   for (size_t i = 0; i < holes.correspondence.pixel.size(); ++i) {
     const Radiance &a = own.components[0].primal[0][i], &b = offset.components[0].primal[0][i];
@@ -106,7 +115,7 @@ struct Pan {
     scene.camera(Vec3(0.12f, 0, 3.2f), Vec3(0.12f, 0, 0), 0.9f);
     now_desc = scene.camera_desc;
   }
-  IntegratorContext context(bool now, uint32_t seed) {
+  integrator::IntegratorContext context(bool now, uint32_t seed) {
     scene.camera_desc = now ? now_desc : before_desc;
     return scene.context(settings_of(now ? 2 : 1, seed));
   }
@@ -114,9 +123,9 @@ struct Pan {
   GradusCamera before_desc{}, now_desc{};
 };
 
-float gray(const Film& frame, size_t pixel) {
+float gray(const film::Film& frame, size_t pixel) {
   Radiance sum = frame.components[0].primal[0][pixel] + frame.components[0].primal[1][pixel];
-  const uint32_t count = samples_at(frame, pixel);
+  const uint32_t count = film::samples_at(frame, pixel);
   return (sum.x + sum.y + sum.z) / (3.0f * float(count));
 }
 
@@ -126,14 +135,14 @@ TEST(Replay, IsAPictureOfItsOwnFrame) {
   Moments replayed, fresh;
   int holes = 0;
   for (uint32_t seed = 0; seed < 48; ++seed) {
-    const IntegratorContext before = pan.context(false, seed), now = pan.context(true, seed);
-    const ReplayMap replay_map = sources_of(before, now);
-    const Film offset = sampled(now, 8, &replay_map), other = sampled(now, 8);
+    const integrator::IntegratorContext before = pan.context(false, seed), now = pan.context(true, seed);
+    const film::ReplayMap replay_map = sources_of(before, now);
+    const film::Film offset = sampled(now, 8, &replay_map), other = sampled(now, 8);
     std::vector<float> a(offset.count[0].size()), b(a.size());
     for (size_t i = 0; i < a.size(); ++i) a[i] = gray(offset, i), b[i] = gray(other, i);
     replayed.add(a);
     fresh.add(b);
-    for (const int32_t source : replay_map.correspondence.pixel) holes += source == kNoCorrespondence;
+    for (const int32_t source : replay_map.correspondence.pixel) holes += source == film::kNoCorrespondence;
   }
   EXPECT_GT(holes, 48 * 2 * int(kSize)) << "the strip that comes into view";
   double mean_a = 0.0, mean_b = 0.0, variance = 0.0;
@@ -147,24 +156,26 @@ TEST(Replay, IsAPictureOfItsOwnFrame) {
   EXPECT_NEAR(mean_a / mean_b, 1.0, 0.02);
 }
 
-// That is what it is for: differences over time between linked pixels have less noise than those of independent samples.
+// That is what it is for: differences over time between linked pixels have less noise than those of independent
+// samples.
 TEST(Replay, MakesDifferencesOverTimeQuieter) {
   for (const Scenario scenario : {Scenario::DiffuseArea, Scenario::World}) {
     Pan pan(scenario);
     double linked = 0.0, independent = 0.0;
     for (uint32_t seed = 0; seed < 6; ++seed) {
-      const IntegratorContext before = pan.context(false, seed), now = pan.context(true, seed);
-      const ReplayMap replay_map = sources_of(before, now);
-      const Film base = sampled(before, 4), offset = sampled(now, 4, &replay_map), other = sampled(now, 4);
+      const integrator::IntegratorContext before = pan.context(false, seed), now = pan.context(true, seed);
+      const film::ReplayMap replay_map = sources_of(before, now);
+      const film::Film base = sampled(before, 4), offset = sampled(now, 4, &replay_map), other = sampled(now, 4);
       for (size_t q = 0; q < replay_map.correspondence.pixel.size(); ++q) {
         const int32_t i = replay_map.correspondence.pixel[q];
-        if (i == kNoCorrespondence) continue;
+        if (i == film::kNoCorrespondence) continue;
         linked += std::pow(gray(offset, q) - gray(base, size_t(i)), 2);
         independent += std::pow(gray(other, q) - gray(base, size_t(i)), 2);
       }
     }
     EXPECT_LT(linked, 0.6 * independent) << name_of(scenario);
-    std::printf("  %s: energy of differences over time %.2f of independent samples'\n", name_of(scenario), linked / independent);
+    std::printf("  %s: energy of differences over time %.2f of independent samples'\n", name_of(scenario),
+                linked / independent);
   }
 }
 

@@ -1,4 +1,5 @@
-// What a frame repeats of the one before, whatever changes between them: random numbers and sub-pixel jitter (contract 1.1, 4.2).
+// What a frame repeats of the one before, whatever changes between them: random numbers and sub-pixel jitter
+// (contract 1.1, 4.2).
 #include <gtest/gtest.h>
 
 #include "sequence_fixture.h"
@@ -8,7 +9,7 @@ namespace {
 
 using Plane = std::vector<Radiance>;
 
-const Plane& plane_of(const Film& frame) { return frame.components[0].primal[0]; }
+const Plane& plane_of(const film::Film& frame) { return frame.components[0].primal[0]; }
 
 double energy_of_difference(const Plane& a, const Plane& b) {
   double sum = 0.0;
@@ -23,17 +24,18 @@ GradusSettings with_seed(int32_t frame, uint32_t seed, uint32_t samples = 8) {
   return settings;
 }
 
-// Replays took the seed of their own frame, so that differences over time were noise. Frames that differ in their seed alone are sampled:
-// both halves of them, and none is the file of another frame.
+// Replays took the seed of their own frame, so that differences over time were noise. Frames that differ in their seed
+// alone are sampled: both halves of them, and none is the file of another frame.
 TEST(C4_ReplayedFrames, ReplaysHaveTheSeedOfTheFrameBeforeWhereItIsKeyed) {
   Pan still(0.0f);
   const Folder folder;
   const auto sequence = make_sequence(1, 3, folder.path());
   for (uint32_t t = 1; t <= 3; ++t) sample(sequence.get(), still.at(int32_t(t)), with_seed(int32_t(t), t));
-  const SequenceFolder files(folder.path());
+  const animation::SequenceFolder files(folder.path());
   for (int32_t t = 2; t <= 3; ++t) {
-    const auto before = files.load(t - 1, FrameSamples::kFresh), own = files.load(t, FrameSamples::kFresh);
-    const auto replay = files.load(t, FrameSamples::kReplayed);
+    const auto before = files.load(t - 1, animation::FrameSamples::kFresh),
+               own = files.load(t, animation::FrameSamples::kFresh);
+    const auto replay = files.load(t, animation::FrameSamples::kReplayed);
     EXPECT_TRUE(plane_of(*replay) == plane_of(*before)) << t;
     EXPECT_FALSE(plane_of(*own) == plane_of(*before)) << t;
     EXPECT_EQ(own->frame_number, t);
@@ -75,8 +77,8 @@ TEST(C7_ReplayedFrames, ReplaysOfAnotherSeedAreSampledAnew) {
   EXPECT_EQ(found.combined, expected.combined);
 }
 
-// Cells of the frame before shared their jitter, or their pixels had their own: it was asked of the frame that replays them. The lens is
-// too small to blur anything.
+// Cells of the frame before shared their jitter, or their pixels had their own: it was asked of the frame that replays
+// them. The lens is too small to blur anything.
 TEST(C4_ReplayedFrames, ReplaysHaveTheJitterOfTheFrameBeforeWhereBlurStartsOrStops) {
   for (const int32_t blurred : {1, 2}) {
     PathScene scene;
@@ -90,10 +92,13 @@ TEST(C4_ReplayedFrames, ReplaysHaveTheJitterOfTheFrameBeforeWhereBlurStartsOrSto
       settings.filter_width = 1.5f;
       sample(sequence.get(), scene.context(settings).snapshot, settings);
     }
-    const SequenceFolder files(folder.path());
-    const auto before = files.load(1, FrameSamples::kFresh), own = files.load(2, FrameSamples::kFresh), replay = files.load(2, FrameSamples::kReplayed);
+    const animation::SequenceFolder files(folder.path());
+    const auto before = files.load(1, animation::FrameSamples::kFresh),
+               own = files.load(2, animation::FrameSamples::kFresh),
+               replay = files.load(2, animation::FrameSamples::kReplayed);
     const double replayed = energy_of_difference(plane_of(*replay), plane_of(*before));
-    EXPECT_LT(replayed, 0.01 * energy_of_difference(plane_of(*own), plane_of(*before))) << "frame " << blurred << " is blurred";
+    EXPECT_LT(replayed, 0.01 * energy_of_difference(plane_of(*own), plane_of(*before)))
+        << "frame " << blurred << " is blurred";
   }
 }
 

@@ -52,12 +52,12 @@ class Pan {
  public:
   explicit Pan(float pixels, Scenario scenario = Scenario::DiffuseArea) : pixels_(pixels) { build(scenario, &scene_); }
 
-  std::shared_ptr<const Snapshot> at(int32_t frame) {
+  std::shared_ptr<const scene::Snapshot> at(int32_t frame) {
     const float x = pixels_ * 1.8f * 3.2f / (2.0f * kSide) * float(frame);
     scene_.camera(Vec3(x, 0, 3.2f), Vec3(x, 0, 0), 0.9f);
     return scene_.context(settings_of(frame)).snapshot;
   }
-  std::shared_ptr<const Snapshot> turned(float angle) {
+  std::shared_ptr<const scene::Snapshot> turned(float angle) {
     scene_.camera(Vec3(0, 0, 3.2f), Vec3(std::sin(angle), 0, 3.2f - std::cos(angle)), 0.9f);
     return scene_.context(settings_of(0)).snapshot;
   }
@@ -72,40 +72,41 @@ struct Delivered {
   nlohmann::json stats;
 };
 
-inline void run(RenderTask* task) {
+inline void run(render::RenderTask* task) {
   task->run();
   std::string text;
   ASSERT_EQ(task->outcome(&text), GRADUS_OK) << text;
 }
 
-inline std::vector<float> read(const RenderTask& task, uint32_t pass, size_t channels) {
+inline std::vector<float> read(const render::RenderTask& task, uint32_t pass, size_t channels) {
   std::vector<float> pixels(size_t(task.delivered().area()) * channels);
   task.read_pass(pass, pixels.data());
   return pixels;
 }
 
 // The task that has delivered it.
-inline std::unique_ptr<RenderTask> delivered(Sequence* sequence, int32_t frame) {
+inline std::unique_ptr<render::RenderTask> delivered(animation::Sequence* sequence, int32_t frame) {
   auto task = sequence->deliver(frame, nullptr);
   run(task.get());
   return task;
 }
 
-inline Delivered deliver(Sequence* sequence, int32_t frame) {
+inline Delivered deliver(animation::Sequence* sequence, int32_t frame) {
   const auto task = delivered(sequence, frame);
-  return {read(*task, GRADUS_PASS_COMBINED, 4), read(*task, GRADUS_PASS_NOISY_IMAGE, 4), read(*task, GRADUS_PASS_GRADIENT_T, 3),
-          read(*task, GRADUS_PASS_GRADIENT_T_LINK, 3), nlohmann::json::parse(task->stats())};
+  return {read(*task, GRADUS_PASS_COMBINED, 4), read(*task, GRADUS_PASS_NOISY_IMAGE, 4),
+          read(*task, GRADUS_PASS_GRADIENT_T, 3), read(*task, GRADUS_PASS_GRADIENT_T_LINK, 3),
+          nlohmann::json::parse(task->stats())};
 }
 
-inline std::shared_ptr<Device> two_threads() {
+inline std::shared_ptr<scene::Device> two_threads() {
   GradusDeviceSettings settings{};
   settings.struct_size = sizeof(settings);
   settings.threads = 2;
-  return std::make_shared<Device>(settings);
+  return std::make_shared<scene::Device>(settings);
 }
 
-inline std::shared_ptr<Sequence> make_sequence(int32_t first, int32_t last, const std::string& folder = "") {
-  return std::make_shared<Sequence>(two_threads(), SequenceSettings{first, last, 1, {}, folder});
+inline std::shared_ptr<animation::Sequence> make_sequence(int32_t first, int32_t last, const std::string& folder = "") {
+  return std::make_shared<animation::Sequence>(two_threads(), animation::SequenceSettings{first, last, 1, {}, folder});
 }
 
 inline GradusSettings with_passes(GradusSettings settings) {
@@ -113,12 +114,13 @@ inline GradusSettings with_passes(GradusSettings settings) {
   return settings;
 }
 
-inline void sample(Sequence* sequence, const std::shared_ptr<const Snapshot>& snapshot, const GradusSettings& settings) {
+inline void sample(animation::Sequence* sequence, const std::shared_ptr<const scene::Snapshot>& snapshot,
+                   const GradusSettings& settings) {
   run(sequence->sample(snapshot, with_passes(settings)).get());
 }
 
-inline std::vector<Delivered> render(Pan* pan, Sequence* sequence, int32_t first, int32_t last, uint32_t samples = 8,
-                                     uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
+inline std::vector<Delivered> render(Pan* pan, animation::Sequence* sequence, int32_t first, int32_t last,
+                                     uint32_t samples = 8, uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
   std::vector<Delivered> frames;
   int32_t sampled = first;
   for (int32_t frame = first; frame <= last; ++frame) {

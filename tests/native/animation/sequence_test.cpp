@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "animation/frame_developer.h"
 #include "base/clock.h"
 #include "base/error.h"
-#include "animation/frame_developer.h"
 #include "sequence_fixture.h"
 #include "support/failing_disk.h"
 #include "support/file_calls.h"
@@ -66,12 +66,13 @@ TEST(C4_Sequence, FlickersLessThanItsSamples) {
     const auto [error, flicker] = energies(&Delivered::combined);
     EXPECT_LT(error, 0.3 * error_of_samples);
     EXPECT_LT(flicker, 0.25 * flicker_of_samples);
-    std::printf("  reconstruction %u: error %.3f, flicker %.3f of the samples'\n", reconstruction, error / error_of_samples,
-                flicker / flicker_of_samples);
+    std::printf("  reconstruction %u: error %.3f, flicker %.3f of the samples'\n", reconstruction,
+                error / error_of_samples, flicker / flicker_of_samples);
   }
 }
 
-// Frames that were sampled by one thread, to leave the others to something else, were delivered by all threads of the device.
+// Frames that were sampled by one thread, to leave the others to something else, were delivered by all threads of the
+// device.
 TEST(C3_Sequence, FramesAreMadeByAsManyThreadsAsTheirSettingsSay) {
   const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
   Pan pan(1.3f);
@@ -85,7 +86,7 @@ TEST(C3_Sequence, FramesAreMadeByAsManyThreadsAsTheirSettingsSay) {
       threads.insert(tbb::this_task_arena::max_concurrency());
       return false;
     };
-    FrameDeveloper(sequence.get(), 1, requested, listen).load();
+    animation::FrameDeveloper(sequence.get(), 1, requested, listen).load();
     return threads;
   };
   settings.threads = 1;
@@ -163,7 +164,8 @@ TEST(C7_Sequence, GoesOnWhereItEndedWithTheSameBits) {
   }
 }
 
-// Parts of a job that share a folder: each passes the frame before its first one by, and the frames are those of one job.
+// Parts of a job that share a folder: each passes the frame before its first one by, and the frames are those of one
+// job.
 TEST(C7_Sequence, PartsOfAJobMakeTheFramesOfTheWhole) {
   Pan pan(1.3f);
   const Folder at_once, in_parts;
@@ -180,8 +182,8 @@ TEST(C7_Sequence, PartsOfAJobMakeTheFramesOfTheWhole) {
   }
 }
 
-// Windows lie on a grid of frame numbers, whatever frame a job begins with: with its neighbours in the store, its pictures are those of the
-// whole.
+// Windows lie on a grid of frame numbers, whatever frame a job begins with: with its neighbours in the store, its
+// pictures are those of the whole.
 TEST(C7_Sequence, APartBesideStoredFramesHasThePicturesOfTheWhole) {
   Pan pan(1.3f);
   const Folder folder;
@@ -286,15 +288,19 @@ TEST(C7_Sequence, PartsOfAnAdaptiveJobAreLinked) {
   sequence->pass_by(pan.at(4), with_passes(adaptive(4, 8)));
   for (int32_t t = 5; t <= 6; ++t) sample(sequence.get(), pan.at(t), adaptive(t, 8));
   const std::vector<int32_t> sources =
-      SequenceFolder(folder.path()).load(5, FrameSamples::kReplayed, StoredContent::kSamples)->replayed.correspondence.pixel;
-  EXPECT_GT(size_t(std::count_if(sources.begin(), sources.end(), [](int32_t i) { return i != kNoCorrespondence; })), sources.size() / 2);
+      animation::SequenceFolder(folder.path())
+          .load(5, animation::FrameSamples::kReplayed, film_io::StoredContent::kSamples)
+          ->replayed.correspondence.pixel;
+  EXPECT_GT(
+      size_t(std::count_if(sources.begin(), sources.end(), [](int32_t i) { return i != film::kNoCorrespondence; })),
+      sources.size() / 2);
 }
 
 // Frames beside a job's own that another one has left in the folder.
 TEST(C7_Sequence, NeighboursOfAnotherJobAreLeftOut) {
   Pan pan(1.3f);
   const Folder shared, alone;
-  const auto of_seed = [&](Sequence* sequence, int32_t first, int32_t last, uint32_t seed) {
+  const auto of_seed = [&](animation::Sequence* sequence, int32_t first, int32_t last, uint32_t seed) {
     for (int32_t t = first; t <= last; ++t) {
       GradusSettings settings = settings_of(t);
       settings.seed = seed;
@@ -312,14 +318,15 @@ TEST(C7_Sequence, FramesOfOtherSettingsOrScenesAreRefusedByName) {
   Pan pan(1.3f);
   const Folder folder;
   render(&pan, make_sequence(1, 2, folder.path()).get(), 1, 2);
-  const auto text_of = [&](const std::shared_ptr<const Snapshot>& snapshot, const GradusSettings& settings) {
+  const auto text_of = [&](const std::shared_ptr<const scene::Snapshot>& snapshot, const GradusSettings& settings) {
     return refusal_of([&] { make_sequence(1, 2, folder.path())->sample(snapshot, settings); });
   };
   GradusSettings settings = with_passes(settings_of(1));
   EXPECT_EQ(text_of(pan.at(1), settings), "");
   EXPECT_NE(text_of(pan.at(2), settings).find("shows another scene"), std::string::npos);
   settings.max_bounces = 1;
-  EXPECT_NE(text_of(pan.at(1), settings).find("f+0000001.base.exr was sampled with other settings: max_bounces is 64, not 1:"),
+  EXPECT_NE(text_of(pan.at(1), settings)
+                .find("f+0000001.base.exr was sampled with other settings: max_bounces is 64, not 1:"),
             std::string::npos)
       << text_of(pan.at(1), settings);
   settings = with_passes(settings_of(1));
@@ -330,7 +337,8 @@ TEST(C7_Sequence, FramesOfOtherSettingsOrScenesAreRefusedByName) {
   EXPECT_NE(text_of(pan.at(1), settings).find("shows the whole frame, not region 0,0,16,16"), std::string::npos);
 }
 
-// Links to the frame before, reading and writing were in no stats: a frame of few samples spent most of its time unseen.
+// Links to the frame before, reading and writing were in no stats: a frame of few samples spent most of its time
+// unseen.
 TEST(Sequence, LinksAndFilesAreBilled) {
   Pan pan(1.3f);
   const auto sequence = make_sequence(0, 1);
@@ -347,22 +355,28 @@ TEST(Sequence, LinksAndFilesAreBilled) {
   EXPECT_GE(stats["process_cpu"].get<double>(), cpu["links"].get<double>() + cpu["store"].get<double>());
   EXPECT_LE(cpu["reconstruct"].get<double>(), since);
   double sum = 0.0;
-  for (const char* phase : {"sample", "preview", "links", "store", "reconstruct", "denoise"}) sum += cpu[phase].get<double>();
+  for (const char* phase : {"sample", "preview", "links", "store", "reconstruct", "denoise"})
+    sum += cpu[phase].get<double>();
   EXPECT_NEAR(cpu["total"].get<double>(), sum, 1e-9);
 }
 
-// Each took as long as a hundred of its samples, and was unpacked up to seven times: for checks, for its delivery, for each window.
+// Each took as long as a hundred of its samples, and was unpacked up to seven times: for checks, for its delivery, for
+// each window.
 TEST(C7_Sequence, FramesAreUnpackedForTheirWindowsAndForTheirDelivery) {
-  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_REGULARIZED}) {
+  for (const uint32_t reconstruction :
+       {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_REGULARIZED}) {
     for (const int overlap : {0, 2, 3}) {
       const Folder folder;
       for (const bool is_stored : {false, true}) {
         Pan pan(1.3f);
-        const auto sequence = std::make_shared<Sequence>(two_threads(), SequenceSettings{0, 11, 1, {6, overlap}, folder.path()});
+        const auto sequence = std::make_shared<animation::Sequence>(
+            two_threads(), animation::SequenceSettings{0, 11, 1, {6, overlap}, folder.path()});
         render(&pan, sequence.get(), 0, 11, 4, reconstruction);
-        // Gradient T reads a part of the next frame, where that is there: of windows that share nothing the last frame comes first.
+        // Gradient T reads a part of the next frame, where that is there: of windows that share nothing the last frame
+        // comes first.
         const uint64_t frames = 12, differences = overlap == 0 && !is_stored ? 10 : 11;
-        EXPECT_EQ(sequence->folder().loads(), 2 * 2 * frames + differences) << reconstruction << ", " << overlap << ", " << is_stored;
+        EXPECT_EQ(sequence->folder().loads(), 2 * 2 * frames + differences)
+            << reconstruction << ", " << overlap << ", " << is_stored;
       }
     }
   }
@@ -385,9 +399,9 @@ TEST(Sequence, FramesOfMorePixelsThanLinksCanNumberAreOnTheirOwn) {
   GradusSettings settings = settings_of(1);
   std::string why_not;
   settings.width = settings.height = 46340;
-  EXPECT_TRUE(sequence_applies(settings, &why_not)) << why_not;
+  EXPECT_TRUE(animation::sequence_applies(settings, &why_not)) << why_not;
   settings.width = 46342;
-  EXPECT_FALSE(sequence_applies(settings, &why_not));
+  EXPECT_FALSE(animation::sequence_applies(settings, &why_not));
   EXPECT_EQ(why_not, "its pixels are too many to be linked");
 }
 
@@ -395,7 +409,8 @@ TEST(C8_Sequence, ACutSeparatesWhatLiesBeforeAndAfter) {
   Pan pan(0.0f);
   const auto sequence = make_sequence(0, 3);
   const float quarter = 0.25f * kPi;
-  for (int32_t t = 0; t < 4; ++t) sample(sequence.get(), pan.turned((t < 2 ? 0.0f : quarter) + 0.01f * float(t)), settings_of(t));
+  for (int32_t t = 0; t < 4; ++t)
+    sample(sequence.get(), pan.turned((t < 2 ? 0.0f : quarter) + 0.01f * float(t)), settings_of(t));
   for (int32_t t = 0; t < 3; ++t) {
     const Delivered frame = deliver(sequence.get(), t);
     size_t linked = 0;
@@ -411,7 +426,8 @@ TEST(C8_Sequence, ACutSeparatesWhatLiesBeforeAndAfter) {
 using SettingsOf = std::function<GradusSettings(int32_t frame)>;
 
 // Deliveries of all frames but one that is passed by, after the frame before the first one.
-std::map<int32_t, Delivered> render_by(const SettingsOf& settings, Sequence* sequence, int32_t first, int32_t last, int32_t alone = -1) {
+std::map<int32_t, Delivered> render_by(const SettingsOf& settings, animation::Sequence* sequence, int32_t first,
+                                       int32_t last, int32_t alone = -1) {
   Pan pan(1.3f);
   std::map<int32_t, Delivered> frames;
   const auto pass_by = [&](int32_t frame) { sequence->pass_by(pan.at(frame), with_passes(settings(frame))); };
@@ -492,7 +508,8 @@ TEST(C7_Sequence, PartsOfAJobWithACutMakeTheFramesOfTheWhole) {
   };
   const auto whole = part(0, 14);
   for (const auto& [first, last] : {std::pair(0, 6), std::pair(7, 7), std::pair(8, 14)}) {
-    for (const auto& [frame, delivered] : part(first, last)) EXPECT_EQ(delivered.combined, whole.at(frame).combined) << frame;
+    for (const auto& [frame, delivered] : part(first, last))
+      EXPECT_EQ(delivered.combined, whole.at(frame).combined) << frame;
   }
 }
 
@@ -505,14 +522,16 @@ TEST(Sequence, GradientTIsTheDifferenceOfTheStoredHalves) {
   GradusSettings settings = with_passes(settings_of(0));
   const int32_t edges[4] = {border.x0, border.y0, border.x1, border.y1};
   std::copy(edges, edges + 4, settings.region);
-  for (settings.frame = 0; settings.frame <= 1; ++settings.frame) sample(sequence.get(), pan.at(settings.frame), settings);
+  for (settings.frame = 0; settings.frame <= 1; ++settings.frame)
+    sample(sequence.get(), pan.at(settings.frame), settings);
   settings.film_exposure = 2.0f;
   const auto task = sequence->deliver(0, &settings);
   run(task.get());
-  const std::vector<float> difference = read(*task, GRADUS_PASS_GRADIENT_T, 3), link = read(*task, GRADUS_PASS_GRADIENT_T_LINK, 3);
-  const auto base = SequenceFolder(folder.path()).load(0, FrameSamples::kFresh),
-             next = SequenceFolder(folder.path()).load(1, FrameSamples::kReplayed);
-  const GradientImages from = read_images(*base, 0), to = read_images(*next, 0);
+  const std::vector<float> difference = read(*task, GRADUS_PASS_GRADIENT_T, 3),
+                           link = read(*task, GRADUS_PASS_GRADIENT_T_LINK, 3);
+  const auto base = animation::SequenceFolder(folder.path()).load(0, animation::FrameSamples::kFresh),
+             next = animation::SequenceFolder(folder.path()).load(1, animation::FrameSamples::kReplayed);
+  const film::GradientImages from = film::read_images(*base, 0), to = film::read_images(*next, 0);
   size_t linked = 0, k = 0;
   for (int32_t y = border.y0; y < border.y1; ++y) {
     for (int32_t x = border.x0; x < border.x1; ++x, k += 3) {
@@ -520,7 +539,8 @@ TEST(Sequence, GradientTIsTheDifferenceOfTheStoredHalves) {
       const int32_t i = (y - base->region.y0) * from.width + x - base->region.x0;
       const int32_t q = i + int32_t(link[k + 1]) * from.width + int32_t(link[k]);
       for (size_t c = 0; c < 3; ++c) {
-        const float expected = 2.0f * (to.primal[size_t(q * from.channels) + c] - from.primal[size_t(i * from.channels) + c]);
+        const float expected =
+            2.0f * (to.primal[size_t(q * from.channels) + c] - from.primal[size_t(i * from.channels) + c]);
         EXPECT_EQ(difference[k + c], expected);
         linked += expected != 0.0f;
       }
@@ -540,7 +560,8 @@ TEST(Sequence, GradientTOfLightThatGrowsIsWhatItGrowsBy) {
     sample(sequence.get(), scene.context(settings_of(t)).snapshot, settings_of(t));
   }
   const Delivered frame = deliver(sequence.get(), 0);
-  const GradientImages before = read_images(*SequenceFolder(folder.path()).load(0, FrameSamples::kFresh), 0);
+  const film::GradientImages before =
+      film::read_images(*animation::SequenceFolder(folder.path()).load(0, animation::FrameSamples::kFresh), 0);
   for (size_t i = 0; i < size_t(kSide) * kSide; ++i) {
     ASSERT_EQ(frame.link[3 * i + 2], 1.0f);
     for (size_t c = 0; c < 3; ++c) {
@@ -608,15 +629,16 @@ TEST(A8_Sequence, ReplaysTakeTheCountsOfWhatTheyReplay) {
     return settings;
   };
   for (int32_t t = 0; t <= 1; ++t) sample(sequence.get(), pan.at(t), adaptive(t));
-  const SequenceFolder files(folder.path());
-  const auto base = files.load(0, FrameSamples::kFresh), offset = files.load(1, FrameSamples::kReplayed);
+  const animation::SequenceFolder files(folder.path());
+  const auto base = files.load(0, animation::FrameSamples::kFresh),
+             offset = files.load(1, animation::FrameSamples::kReplayed);
   uint32_t minimum = UINT32_MAX, maximum = 0;
   for (size_t q = 0; q < offset->replayed.correspondence.pixel.size(); ++q) {
     const int32_t source = offset->replayed.correspondence.pixel[q];
-    if (source == kNoCorrespondence) continue;
-    EXPECT_EQ(samples_at(*offset, q), samples_at(*base, size_t(source)));
-    minimum = std::min(minimum, samples_at(*offset, q));
-    maximum = std::max(maximum, samples_at(*offset, q));
+    if (source == film::kNoCorrespondence) continue;
+    EXPECT_EQ(film::samples_at(*offset, q), film::samples_at(*base, size_t(source)));
+    minimum = std::min(minimum, film::samples_at(*offset, q));
+    maximum = std::max(maximum, film::samples_at(*offset, q));
   }
   EXPECT_LT(minimum, maximum) << "the test says something";
   EXPECT_GT(deliver(sequence.get(), 0).stats["spp_offset"], 1.0);
@@ -643,13 +665,14 @@ TEST(K1_Sequence, ATimeLimitEndsBothHalves) {
 TEST(K1_Sequence, ACancelBetweenTheHalvesLeavesNothingInTheFolder) {
   Pan pan(1.3f);
   const Folder folder;
-  RenderTask* running = nullptr;
+  render::RenderTask* running = nullptr;
   int halves = 0;
-  const auto cancels_the_second = [&](const IntegratorContext& context, uint32_t integrator) {
+  const auto cancels_the_second = [&](const integrator::IntegratorContext& context, uint32_t integrator) {
     if (++halves == 2) running->cancel();
-    return make_integrator(context, integrator);
+    return render::make_integrator(context, integrator);
   };
-  const auto sequence = std::make_shared<Sequence>(two_threads(), SequenceSettings{1, 4, 1, {}, folder.path()}, cancels_the_second);
+  const auto sequence = std::make_shared<animation::Sequence>(
+      two_threads(), animation::SequenceSettings{1, 4, 1, {}, folder.path()}, cancels_the_second);
   const auto task = sequence->sample(pan.at(1), with_passes(settings_of(1)));
   running = task.get();
   task->run();
@@ -673,7 +696,7 @@ TEST(K1_Sequence, ACancelWhileHalvesAreSavedIsMadeGoodByTheNextRender) {
   watcher.join();
   std::string text;
   const bool is_done = task->outcome(&text) == GRADUS_OK;
-  EXPECT_EQ(SequenceFolder(folder.path()).holds(1), is_done) << text;
+  EXPECT_EQ(animation::SequenceFolder(folder.path()).holds(1), is_done) << text;
   const auto again = render(&pan, make_sequence(1, 1, folder.path()).get(), 1, 1);
   EXPECT_EQ(again[0].stats["stopped"], is_done ? "stored" : "samples");
   EXPECT_EQ(again[0].noisy, render(&pan, make_sequence(1, 1, fresh.path()).get(), 1, 1)[0].noisy);
@@ -704,7 +727,7 @@ TEST(K1_Sequence, ACancelledDeliveryReadsNoWholeFile) {
   const Folder folder;
   const auto sequence = make_sequence(1, 1, folder.path());
   run(sequence->sample(pan.at(1), settings_of(1)).get());
-  const std::string path = SequenceFolder(folder.path()).path(1, FrameSamples::kFresh);
+  const std::string path = animation::SequenceFolder(folder.path()).path(1, animation::FrameSamples::kFresh);
   fs::resize_file(path, fs::file_size(path) / 2);
   const auto outcome = [&](bool is_cancelled) {
     const auto task = sequence->deliver(1, nullptr);
@@ -737,7 +760,7 @@ TEST(K1_Sequence, ACancelledDeliveryReadsNoMoreFrames) {
   const Folder folder;
   const auto sequence = make_sequence(1, 4, folder.path());
   for (int32_t t = 1; t <= 4; ++t) run(sequence->sample(pan.at(t), settings_of(t)).get());
-  fs::resize_file(SequenceFolder(folder.path()).path(3, FrameSamples::kFresh), 100);
+  fs::resize_file(animation::SequenceFolder(folder.path()).path(3, animation::FrameSamples::kFresh), 100);
   const auto outcome = [&](bool is_cancelled) {
     const auto task = sequence->deliver(1, nullptr);
     if (is_cancelled) task->cancel();
@@ -756,7 +779,8 @@ TEST(E_Sequence, RegularizedDeliversItsErrorWhereItIsAskedFor) {
   GradusSettings settings = settings_of(0);
   settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
   settings.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
-  for (settings.frame = 0; settings.frame <= 2; ++settings.frame) sample(sequence.get(), pan.at(settings.frame), settings);
+  for (settings.frame = 0; settings.frame <= 2; ++settings.frame)
+    sample(sequence.get(), pan.at(settings.frame), settings);
   const auto error_of = [&](int32_t frame, float exposure) {
     settings.film_exposure = exposure;
     const auto task = sequence->deliver(frame, &settings);
@@ -791,7 +815,7 @@ TEST(K3_Sequence, ManyCancelsThenARenderHasTheBitsOfAFreshOne) {
   Pan pan(1.3f);
   const std::vector<Delivered> fresh = render(&pan, make_sequence(1, 3).get(), 1, 3);
   const auto sequence = make_sequence(1, 3);
-  const auto cancelled = [](std::unique_ptr<RenderTask> task, int microseconds) {
+  const auto cancelled = [](std::unique_ptr<render::RenderTask> task, int microseconds) {
     std::thread thread([&] { task->run(); });
     std::this_thread::sleep_for(std::chrono::microseconds(microseconds));
     task->cancel();
@@ -820,7 +844,7 @@ TEST(I2_Sequence, FramesBeforeAFaultAreDelivered) {
 }
 
 // What went wrong, and what is left in the folder.
-std::string outcome_of(RenderTask* task, const std::string& folder) {
+std::string outcome_of(render::RenderTask* task, const std::string& folder) {
   task->run();
   std::string text;
   const GradusError code = task->outcome(&text);
@@ -834,10 +858,13 @@ TEST(I2_Sequence, ADiskThatFillsWhileHalvesAreSavedIsNamed) {
   Pan pan(1.3f);
   const Folder folder, whole;
   sample(make_sequence(1, 1, whole.path()).get(), pan.at(1), settings_of(1));
-  const auto size_of = [&](FrameSamples part) { return fs::file_size(SequenceFolder(whole.path()).path(1, part)); };
-  for (const FrameSamples part : {FrameSamples::kReplayed, FrameSamples::kFresh}) {
-    const std::string size =
-        std::to_string(part == FrameSamples::kReplayed ? size_of(part) / 2 : size_of(FrameSamples::kReplayed) + size_of(part) / 2);
+  const auto size_of = [&](animation::FrameSamples part) {
+    return fs::file_size(animation::SequenceFolder(whole.path()).path(1, part));
+  };
+  for (const animation::FrameSamples part : {animation::FrameSamples::kReplayed, animation::FrameSamples::kFresh}) {
+    const std::string size = std::to_string(part == animation::FrameSamples::kReplayed
+                                                ? size_of(part) / 2
+                                                : size_of(animation::FrameSamples::kReplayed) + size_of(part) / 2);
     const auto what = failure_of([&] { return mount_disk(folder.path(), size.c_str()); },
                                  [&] {
                                    const auto sequence = make_sequence(1, 4, folder.path());
@@ -845,11 +872,12 @@ TEST(I2_Sequence, ADiskThatFillsWhileHalvesAreSavedIsNamed) {
                                    throw std::runtime_error(outcome_of(task.get(), folder.path()));
                                  });
     if (!what) GTEST_SKIP() << "no disk can be mounted here";
-    const std::string name = SequenceFolder(folder.path()).path(1, part);
+    const std::string name = animation::SequenceFolder(folder.path()).path(1, part);
     EXPECT_NE(what->find("cannot write " + name + ": No space left on device"), std::string::npos) << *what;
     EXPECT_EQ(what->find("base.exr, left"), std::string::npos) << *what;
     EXPECT_EQ(what->find(".part"), std::string::npos) << *what << ": half a file";
-    EXPECT_EQ(what->find("left: ") != std::string::npos, part == FrameSamples::kFresh) << *what << ": a whole offset alone";
+    EXPECT_EQ(what->find("left: ") != std::string::npos, part == animation::FrameSamples::kFresh)
+        << *what << ": a whole offset alone";
   }
 }
 
@@ -859,10 +887,13 @@ TEST(I2_Sequence, ADiskThatFillsWhileRowsAreSpooledIsNamed) {
   const Folder folder, temporary;
   const auto sequence = make_sequence(1, 4, folder.path());
   for (int32_t t = 1; t <= 4; ++t) sample(sequence.get(), pan.at(t), settings_of(t));
-  const auto what = failure_of([&] { return mount_disk(temporary.path(), "100k") && setenv("TMPDIR", temporary.path().c_str(), 1) == 0; },
-                               [&] { throw std::runtime_error(outcome_of(sequence->deliver(1, nullptr).get(), temporary.path())); });
+  const auto what = failure_of(
+      [&] { return mount_disk(temporary.path(), "100k") && setenv("TMPDIR", temporary.path().c_str(), 1) == 0; },
+      [&] { throw std::runtime_error(outcome_of(sequence->deliver(1, nullptr).get(), temporary.path())); });
   if (!what) GTEST_SKIP() << "no disk can be mounted here";
-  EXPECT_NE(what->find("cannot write a temporary file in " + temporary.path() + ": No space left on device"), std::string::npos) << *what;
+  EXPECT_NE(what->find("cannot write a temporary file in " + temporary.path() + ": No space left on device"),
+            std::string::npos)
+      << *what;
   EXPECT_EQ(what->find("left: "), std::string::npos) << *what;
   EXPECT_EQ(deliver(sequence.get(), 1).combined.size(), size_t{4} * kSide * kSide) << "where there is room";
 }

@@ -1,4 +1,5 @@
-// What a sequence finds in its folder, and what it takes of that: its frames are those of a job that was never ended (contract 7.2).
+// What a sequence finds in its folder, and what it takes of that: its frames are those of a job that was never ended
+// (contract 7.2).
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -9,15 +10,16 @@
 #include <thread>
 
 #include "base/error.h"
-#include "sequence_fixture.h"
 #include "schema/pass_table.h"
+#include "sequence_fixture.h"
 #include "support/refusal.h"
 
 namespace gradus::test {
 namespace {
 
-std::shared_ptr<Sequence> make_steps(int32_t first, int32_t last, uint32_t step, const std::string& folder) {
-  return std::make_shared<Sequence>(two_threads(), SequenceSettings{first, last, step, {}, folder});
+std::shared_ptr<animation::Sequence> make_steps(int32_t first, int32_t last, uint32_t step, const std::string& folder) {
+  return std::make_shared<animation::Sequence>(two_threads(),
+                                               animation::SequenceSettings{first, last, step, {}, folder});
 }
 
 void expect_same(const std::vector<Delivered>& found, const std::vector<Delivered>& whole) {
@@ -46,7 +48,7 @@ TEST(C7_StoredFrames, ProgressAndCancelDoNotWaitForAFileThatIsRead) {
   const auto sequence = make_sequence(1, 1, folder.path());
   const auto task = sequence->sample(pan.at(1), with_passes(settings_of(1)));
   run(task.get());
-  const std::string path = sequence->folder().path(1, FrameSamples::kFresh);
+  const std::string path = sequence->folder().path(1, animation::FrameSamples::kFresh);
   fs::remove(path);
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   auto reading = std::async(std::launch::async, [&] { return refusal_of([&] { task->film(); }); });
@@ -76,7 +78,7 @@ TEST(C7_StoredFrames, OffsetsOfAnotherStepAreSampledAnew) {
 TEST(C7_StoredFrames, PartsOfAStillStretchAreTheWholeWhenTheyAreAllThere) {
   Pan still(0.0f), moved(1.3f);
   const auto shown = [&](int32_t frame) { return frame <= 6 ? still.at(frame) : moved.at(frame); };
-  const auto sample_all = [&](Sequence* sequence, int32_t first, int32_t last) {
+  const auto sample_all = [&](animation::Sequence* sequence, int32_t first, int32_t last) {
     for (int32_t t = first; t <= last; ++t) sample(sequence, shown(t), settings_of(t));
   };
   const Folder parts, fresh;
@@ -85,7 +87,7 @@ TEST(C7_StoredFrames, PartsOfAStillStretchAreTheWholeWhenTheyAreAllThere) {
   sample_all(later.get(), 5, 8);
   sample_all(make_sequence(1, 4, parts.path()).get(), 1, 4);
   const auto again = make_sequence(1, 8, parts.path()), whole = make_sequence(1, 8, fresh.path());
-  for (Sequence* sequence : {again.get(), whole.get()}) sample_all(sequence, 1, 8);
+  for (animation::Sequence* sequence : {again.get(), whole.get()}) sample_all(sequence, 1, 8);
   for (int32_t t = 1; t <= 8; ++t) {
     const Delivered found = deliver(again.get(), t), expected = deliver(whole.get(), t);
     EXPECT_EQ(found.noisy, expected.noisy) << t;
@@ -93,7 +95,8 @@ TEST(C7_StoredFrames, PartsOfAStillStretchAreTheWholeWhenTheyAreAllThere) {
   }
 }
 
-// The frame before has another scene than it had: samples that follow it were added to those that follow the old one, as if all did.
+// The frame before has another scene than it had: samples that follow it were added to those that follow the old one,
+// as if all did.
 TEST(C7_StoredFrames, SamplesOfOtherSourcesAreNotAddedUp) {
   Pan pan(1.3f);
   const auto sample_both = [&](const std::string& folder, int32_t shown_first, uint32_t samples) {
@@ -150,13 +153,13 @@ std::vector<Delivered> run_static(const StaticJob& job, const std::string& folde
   return frames;
 }
 
-// Cells that were quiet early had fewer samples than were asked for: offsets were taken for unfinished and sampled anew under the number
-// of their own frame, beside the base of the first: "do not belong together".
+// Cells that were quiet early had fewer samples than were asked for: offsets were taken for unfinished and sampled anew
+// under the number of their own frame, beside the base of the first: "do not belong together".
 TEST(C7_StoredFrames, StillFramesWhoseCellsStopAreFoundAgain) {
   const Folder folder;
   const auto once = run_static({256, 0.1f}, folder.path());
-  const Film offset = *SequenceFolder(folder.path()).load(1, FrameSamples::kReplayed);
-  ASSERT_LT(mean_samples(offset), 100.0);
+  const film::Film offset = *animation::SequenceFolder(folder.path()).load(1, animation::FrameSamples::kReplayed);
+  ASSERT_LT(film::mean_samples(offset), 100.0);
   const auto again = run_static({256, 0.1f}, folder.path());
   expect_same(again, once);
   for (const Delivered& frame : again) EXPECT_EQ(frame.stats["stopped"], "stored");
@@ -196,7 +199,7 @@ TEST(C7_StoredFrames, FramesThatSampledTheirOffsetAnewAreNotSaidToBeStored) {
 TEST(K1_StoredFrames, ATimeLimitCountsTheSamplesThatItsRunTook) {
   Pan pan(1.3f);
   const Folder folder;
-  const SequenceFolder files(folder.path());
+  const animation::SequenceFolder files(folder.path());
   const auto sample_both = [&](float first_limit, float limit) {
     const auto sequence = make_sequence(1, 2, folder.path());
     for (int32_t t = 1; t <= 2; ++t) {
@@ -204,10 +207,10 @@ TEST(K1_StoredFrames, ATimeLimitCountsTheSamplesThatItsRunTook) {
       settings.time_limit = t == 1 ? first_limit : limit;
       sample(sequence.get(), pan.at(t), settings);
     }
-    return mean_samples(*files.load(2, FrameSamples::kFresh));
+    return film::mean_samples(*files.load(2, animation::FrameSamples::kFresh));
   };
   const double before = sample_both(0.5f, 0.25f), after = sample_both(1.5f, 0.3f);
-  const double offset = mean_samples(*files.load(2, FrameSamples::kReplayed));
+  const double offset = film::mean_samples(*files.load(2, animation::FrameSamples::kReplayed));
   EXPECT_GT(after, before) << "it goes on";
   EXPECT_LT(offset, 1.5 * 1.2 * (after - before));
 }
@@ -230,11 +233,11 @@ TEST(C7_StoredFrames, FramesOfATimeLimitGetTheSamplesOfAJobWithoutOne) {
 }
 
 // As if a time limit had ended it: how many samples it was asked for does not tell how many it has.
-void mark_ended_by_time(const SequenceFolder& files, int32_t frame) {
-  const auto base = files.load(frame, FrameSamples::kFresh);
+void mark_ended_by_time(const animation::SequenceFolder& files, int32_t frame) {
+  const auto base = files.load(frame, animation::FrameSamples::kFresh);
   base->settings.time_limit = 1.0f;
   base->settings.samples = 1u << 20;
-  files.save(*base, frame, FrameSamples::kFresh, [] { return false; });
+  files.save(*base, frame, animation::FrameSamples::kFresh, [] { return false; });
 }
 
 GradusSettings with_threshold(int32_t frame, uint32_t samples, float threshold) {
@@ -247,28 +250,28 @@ GradusSettings with_threshold(int32_t frame, uint32_t samples, float threshold) 
 TEST(C7_StoredFrames, AdaptiveFramesOfATimeLimitHaveTheSamplesOfTheirMean) {
   Pan pan(1.3f);
   const Folder folder;
-  const SequenceFolder files(folder.path());
+  const animation::SequenceFolder files(folder.path());
   sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), with_threshold(1, 120, 1e-3f));
   mark_ended_by_time(files, 1);
-  const auto limited = files.load(1, FrameSamples::kFresh);
+  const auto limited = files.load(1, animation::FrameSamples::kFresh);
   const auto maximum = uint32_t(limited->samples.total());
   ASSERT_EQ(limited->shared.mean, 60u);
   ASSERT_GT(maximum, 66u) << "cells that had more than the mean";
   const auto sequence = make_sequence(1, 1, folder.path());
   sample(sequence.get(), pan.at(1), with_threshold(1, 132, 1e-3f));
-  EXPECT_EQ(files.load(1, FrameSamples::kFresh)->shared.mean, 66u);
+  EXPECT_EQ(files.load(1, animation::FrameSamples::kFresh)->shared.mean, 66u);
   EXPECT_EQ(deliver(sequence.get(), 1).stats["stopped"], "samples");
 }
 
-// Its noise is as low as it is asked to be: that its samples are fewer than it may have is no reason to go on. A lower threshold is one,
-// whatever time the frame was given.
+// Its noise is as low as it is asked to be: that its samples are fewer than it may have is no reason to go on. A lower
+// threshold is one, whatever time the frame was given.
 TEST(C7_StoredFrames, AFrameOfATimeLimitIsDoneWhereItsNoiseIs) {
   Pan pan(1.3f);
   const Folder folder;
-  const SequenceFolder files(folder.path());
+  const animation::SequenceFolder files(folder.path());
   sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), with_threshold(1, 1000, 0.5f));
   mark_ended_by_time(files, 1);
-  const double taken = mean_samples(*files.load(1, FrameSamples::kFresh));
+  const double taken = film::mean_samples(*files.load(1, animation::FrameSamples::kFresh));
   ASSERT_LT(taken, 400.0) << "its noise ended it";
   const auto stopped = [&](float threshold, float time_limit) {
     const auto sequence = make_sequence(1, 1, folder.path());
@@ -280,7 +283,7 @@ TEST(C7_StoredFrames, AFrameOfATimeLimitIsDoneWhereItsNoiseIs) {
   EXPECT_EQ(stopped(0.5f, 0.0f), "stored");
   EXPECT_EQ(stopped(0.5f, 2.0f), "stored");
   EXPECT_NE(stopped(0.02f, 2.0f), "stored");
-  EXPECT_GT(mean_samples(*files.load(1, FrameSamples::kFresh)), taken);
+  EXPECT_GT(film::mean_samples(*files.load(1, animation::FrameSamples::kFresh)), taken);
 }
 
 // The files of frames that do not change are those of the first, and so was their exposure.
@@ -310,7 +313,7 @@ TEST(C7_StoredFrames, AutoIsWhatThePlanSaysNotWhatTheStoreWasSampledFor) {
   const auto with_features = [](uint32_t reconstruction) {
     GradusSettings settings = settings_of(1);
     settings.reconstruction = reconstruction;
-    settings.passes |= feature_passes();
+    settings.passes |= schema::feature_passes();
     return settings;
   };
   sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), with_features(GRADUS_RECONSTRUCTION_L2));
@@ -344,13 +347,13 @@ TEST(C7_StoredFrames, TheFrameBeforeTheRangeIsRepeatedOnlyIfItIsOfTheJob) {
     settings.seed = seed;
     return settings;
   };
-  const auto fresh_of = [&](const std::shared_ptr<const Snapshot>& stored, const GradusSettings& its_settings) {
+  const auto fresh_of = [&](const std::shared_ptr<const scene::Snapshot>& stored, const GradusSettings& its_settings) {
     const Folder folder;
     sample(make_sequence(1, 4, folder.path()).get(), stored, its_settings);
     const auto sequence = make_sequence(5, 6, folder.path());
     sequence->pass_by(pan.at(4), with_passes(of_seed(4, 1, 8)));
     sample(sequence.get(), pan.at(5), of_seed(5, 1, 8));
-    return SequenceFolder(folder.path()).load(5, FrameSamples::kFresh)->frame_number;
+    return animation::SequenceFolder(folder.path()).load(5, animation::FrameSamples::kFresh)->frame_number;
   };
   EXPECT_EQ(fresh_of(pan.at(4), of_seed(4, 1, 8)), 4);
   EXPECT_EQ(fresh_of(pan.at(4), of_seed(4, 2, 8)), 5) << "another seed";
@@ -358,11 +361,12 @@ TEST(C7_StoredFrames, TheFrameBeforeTheRangeIsRepeatedOnlyIfItIsOfTheJob) {
   EXPECT_EQ(fresh_of(other.at(4), of_seed(4, 1, 8)), 5) << "another scene";
 }
 
-void sample_frames(Sequence* sequence, Pan* pan, int32_t first, int32_t last) {
+void sample_frames(animation::Sequence* sequence, Pan* pan, int32_t first, int32_t last) {
   for (int32_t t = first; t <= last; ++t) sample(sequence, pan->at(t), settings_of(t));
 }
 
-// Frames 2 to 4 were the files of frame 1, and of those of another scene since then the new frames 1 and 2 were taken for repetitions.
+// Frames 2 to 4 were the files of frame 1, and of those of another scene since then the new frames 1 and 2 were taken
+// for repetitions.
 TEST(C7_StoredFrames, AStillStretchOfAnOlderSceneIsNotMixedIn) {
   for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_REGULARIZED}) {
     Pan old(0.0f), edited(0.0f, Scenario::GlossyFloor);
@@ -386,7 +390,8 @@ TEST(C7_StoredFrames, AStillStretchOfAnOlderSceneIsNotMixedIn) {
     }
     // All that is stored, as `gradus reconstruct` delivers it.
     const auto stored = make_sequence(1, 4, both.path());
-    for (int32_t t = 1; t <= 2; ++t) EXPECT_EQ(deliver(stored.get(), t).combined, deliver(alone.get(), t).combined) << t;
+    for (int32_t t = 1; t <= 2; ++t)
+      EXPECT_EQ(deliver(stored.get(), t).combined, deliver(alone.get(), t).combined) << t;
   }
 }
 
@@ -397,7 +402,7 @@ TEST(C7_StoredFrames, MovingFramesOfAnOlderSceneAreNotMixedIn) {
   sample_frames(make_sequence(1, 5, both.path()).get(), &old, 1, 5);
   for (const int32_t frame : {2, 3}) both.remove(frame);
   const auto beside = make_sequence(2, 3, both.path()), alone = make_sequence(2, 3, fresh.path());
-  for (Sequence* sequence : {beside.get(), alone.get()}) {
+  for (animation::Sequence* sequence : {beside.get(), alone.get()}) {
     sequence->pass_by(edited.at(1), with_passes(settings_of(1)));
     sample_frames(sequence, &edited, 2, 3);
   }

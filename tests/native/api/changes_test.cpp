@@ -1,5 +1,5 @@
-// J2: animations whose meshes and instances change, and renders that are cancelled. Under LeakSanitizer (make test-full) nothing may be
-// left; tests/memory counts what the library holds.
+// J2: animations whose meshes and instances change, and renders that are cancelled. Under LeakSanitizer (make
+// test-full) nothing may be left; tests/memory counts what the library holds.
 #include "api/changing_scene.h"
 
 namespace gradus::test {

@@ -1,5 +1,5 @@
-// A scene that changes as animations do, through the C API: its mesh has other triangles in every frame, and it is shown more or less
-// often.
+// A scene that changes as animations do, through the C API: its mesh has other triangles in every frame, and it is
+// shown more or less often.
 #pragma once
 
 #include <chrono>
@@ -54,7 +54,8 @@ inline void set_changing(GradusScene scene, int32_t frame) {
 }
 
 // By L2: valgrind cannot translate the regression's code.
-inline GradusSettings changing_settings(int32_t frame, uint32_t samples = 2, uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
+inline GradusSettings changing_settings(int32_t frame, uint32_t samples = 2,
+                                        uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
   GradusSettings settings = small_render(8, 8, samples);
   settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
   settings.reconstruction = reconstruction;
@@ -90,8 +91,8 @@ inline void cancel_changing(GradusScene scene, int32_t frame) {
   finish(render, 37 * (frame % 20));
 }
 
-// Frames 1 to `last`, sampled and delivered over windows of four. Number `cancelled` of these renders is cancelled, and the animation ends
-// there.
+// Frames 1 to `last`, sampled and delivered over windows of four. Number `cancelled` of these renders is cancelled, and
+// the animation ends there.
 inline void animate_changing(GradusDevice device, GradusScene scene, int32_t last, int cancelled = -1,
                              uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
   GradusSequenceSettings range = sized<GradusSequenceSettings>();

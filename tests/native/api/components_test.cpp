@@ -45,7 +45,8 @@ TEST_F(ComponentsApi, RefusesWithATextForTheUser) {
   EXPECT_NE(refusal(gradus_components_check("A=ED.*L;B=EDDL", &count)).find("overlap"), std::string::npos);
   EXPECT_NE(refusal(gradus_components_check(nullptr, &count)).find("components is NULL"), std::string::npos);
   EXPECT_NE(refusal(gradus_components_check("", nullptr)).find("count is NULL"), std::string::npos);
-  EXPECT_NE(refusal(gradus_components_item("", 5, nullptr, nullptr, nullptr)).find("no component 5"), std::string::npos);
+  EXPECT_NE(refusal(gradus_components_item("", 5, nullptr, nullptr, nullptr)).find("no component 5"),
+            std::string::npos);
   EXPECT_NE(refusal(gradus_components_classify("", "EX", &count)).find("no path"), std::string::npos);
 }
 
@@ -55,7 +56,8 @@ TEST_F(ComponentsApi, NamesThePassesOfComponents) {
   ASSERT_EQ(gradus_component_pass_info(GRADUS_COMPONENT_MOTION, &name, &channels), GRADUS_OK);
   EXPECT_STREQ(name, "Motion");
   EXPECT_EQ(channels, 4u);
-  EXPECT_NE(refusal(gradus_component_pass_info(GRADUS_COMPONENT_PASS_COUNT, &name, &channels)).find("no pass 13"), std::string::npos);
+  EXPECT_NE(refusal(gradus_component_pass_info(GRADUS_COMPONENT_PASS_COUNT, &name, &channels)).find("no pass 13"),
+            std::string::npos);
 }
 
 }  // namespace

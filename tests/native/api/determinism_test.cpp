@@ -37,8 +37,9 @@ class L1_Determinism : public WithScene<::testing::TestWithParam<uint32_t>> {
     return pixels;
   }
   static void expect_equal(GradusFilm a, GradusFilm b) {
-    for (const uint32_t p : {GRADUS_PASS_COMBINED, GRADUS_PASS_NOISY_IMAGE, GRADUS_PASS_GRADIENT_X, GRADUS_PASS_GRADIENT_Y,
-                             GRADUS_PASS_VARIANCE, GRADUS_PASS_ERROR, GRADUS_PASS_NORMAL, GRADUS_PASS_DIFFUSE_DIRECT}) {
+    for (const uint32_t p :
+         {GRADUS_PASS_COMBINED, GRADUS_PASS_NOISY_IMAGE, GRADUS_PASS_GRADIENT_X, GRADUS_PASS_GRADIENT_Y,
+          GRADUS_PASS_VARIANCE, GRADUS_PASS_ERROR, GRADUS_PASS_NORMAL, GRADUS_PASS_DIFFUSE_DIRECT}) {
       EXPECT_EQ(pass(a, p), pass(b, p)) << "pass " << p;
     }
   }

@@ -42,7 +42,8 @@ class ErrorOfFrames : public WithScene<> {
 
 TEST_F(ErrorOfFrames, IsThatOfTheRenderAndSurvivesTheStore) {
   const std::string path = testing::TempDir() + "/error_of_frames.exr";
-  for (const GradusReconstruction how : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
+  for (const GradusReconstruction how :
+       {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
     std::vector<float> of_render;
     const GradusFilm film = render(settings(how), &of_render);
     EXPECT_GT(*std::max_element(of_render.begin(), of_render.end()), 0.0f);
@@ -56,18 +57,24 @@ TEST_F(ErrorOfFrames, IsThatOfTheRenderAndSurvivesTheStore) {
   std::filesystem::remove(path);
 }
 
-// A frame that is reconstructed in another way has another error; and it need not be asked for when the frame was rendered.
+// A frame that is reconstructed in another way has another error; and it need not be asked for when the frame was
+// rendered.
 TEST_F(ErrorOfFrames, ComesWithAnotherReconstruction) {
   std::vector<float> of_l2, of_none, rgba(size_t{4} * kWidth * kHeight), error(of_l2.size());
-  const GradusFilm l2 = render(settings(GRADUS_RECONSTRUCTION_L2), &of_l2), none = render(settings(GRADUS_RECONSTRUCTION_NONE), &of_none);
+  const GradusFilm l2 = render(settings(GRADUS_RECONSTRUCTION_L2), &of_l2),
+                   none = render(settings(GRADUS_RECONSTRUCTION_NONE), &of_none);
   error.resize(of_l2.size());
-  EXPECT_OK(gradus_film_reconstruct(none, GRADUS_RECONSTRUCTION_L2, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), error.data()));
+  EXPECT_OK(gradus_film_reconstruct(none, GRADUS_RECONSTRUCTION_L2, 0.0f, GRADUS_DENOISER_NONE, rgba.data(),
+                                    rgba.size(), error.data()));
   EXPECT_EQ(error, of_l2);
-  EXPECT_OK(gradus_film_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), error.data()));
+  EXPECT_OK(gradus_film_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(),
+                                    rgba.size(), error.data()));
   EXPECT_EQ(error, of_none);
-  EXPECT_OK(gradus_film_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), nullptr));
+  EXPECT_OK(gradus_film_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(),
+                                    rgba.size(), nullptr));
   auto* misaligned = reinterpret_cast<float*>(reinterpret_cast<char*>(error.data()) + 1);
-  EXPECT_EQ(gradus_film_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), misaligned),
+  EXPECT_EQ(gradus_film_reconstruct(l2, GRADUS_RECONSTRUCTION_NONE, 0.0f, GRADUS_DENOISER_NONE, rgba.data(),
+                                    rgba.size(), misaligned),
             GRADUS_ERROR_INVALID_ARGUMENT);
   gradus_error(nullptr);
   for (const GradusFilm f : {l2, none}) EXPECT_OK(gradus_film_release(f));

@@ -203,7 +203,8 @@ TEST(G1_Handles, TenThousandRandomCalls) {
   calls(1);
   other.join();
   for (const uint64_t handle : handles) {
-    for (const auto release : {gradus_render_release, gradus_film_release, gradus_scene_release, gradus_device_release}) release(handle);
+    for (const auto release : {gradus_render_release, gradus_film_release, gradus_scene_release, gradus_device_release})
+      release(handle);
   }
   gradus_error(nullptr);
 }
@@ -291,15 +292,17 @@ TEST(G4_Exceptions, EveryEntryPointIsGuarded) {
   const std::filesystem::path native = GRADUS_SOURCE_DIR "/native";
   std::set<std::string> declared, guarded;
   const auto collect = [](const std::string& text, const std::regex& pattern, std::set<std::string>* names) {
-    for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match) names->insert((*match)[1]);
+    for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match)
+      names->insert((*match)[1]);
   };
   const std::regex declaration(R"(GradusError (gradus_\w+)\()"),
       definition(R"(\nGradusError (gradus_\w+)\([^{;]*\{\s*return (?:api::guard|with_scene)\()");
   collect(text_of(native / "include/gradus/gradus.h"), declaration, &declared);
-  for (const auto& file : std::filesystem::directory_iterator(native / "src/api")) collect(text_of(file.path()), definition, &guarded);
+  for (const auto& file : std::filesystem::directory_iterator(native / "src/api"))
+    collect(text_of(file.path()), definition, &guarded);
   EXPECT_GT(declared.size(), 30u);
-  EXPECT_TRUE(
-      std::regex_search(text_of(native / "src/api/scene.cpp"), std::regex(R"(\nGradusError with_scene\([^{;]*\{\s*return guard\()")));
+  EXPECT_TRUE(std::regex_search(text_of(native / "src/api/scene.cpp"),
+                                std::regex(R"(\nGradusError with_scene\([^{;]*\{\s*return guard\()")));
   guarded.insert("gradus_error");  // reads what the guard has kept
   EXPECT_EQ(declared, guarded);
 }
@@ -332,7 +335,8 @@ TEST(G6_Order, RendersOutliveTheirSceneAndDevice) {
   EXPECT_OK(gradus_film_size(film, &width, &height));
   EXPECT_EQ(width, 24u);
   std::vector<float> rgba(size_t(width) * height * 4);
-  EXPECT_OK(gradus_film_reconstruct(film, GRADUS_RECONSTRUCTION_L1, 0.2f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), nullptr));
+  EXPECT_OK(gradus_film_reconstruct(film, GRADUS_RECONSTRUCTION_L1, 0.2f, GRADUS_DENOISER_NONE, rgba.data(),
+                                    rgba.size(), nullptr));
   EXPECT_OK(gradus_film_release(film));
 }
 

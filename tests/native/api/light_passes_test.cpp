@@ -1,4 +1,5 @@
-// Light passes of a stored frame belong to the picture that was last made of it; until one is, to that of the frame's own settings.
+// Light passes of a stored frame belong to the picture that was last made of it; until one is, to that of the frame's
+// own settings.
 #include <algorithm>
 
 #include "api/test_scene.h"
@@ -19,7 +20,7 @@ class FrameLightPasses : public WithScene<::testing::Test> {
     GradusSettings settings = small_render(kSide, kSide, 4);
     settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
     settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
-    settings.passes |= needed_passes(light_passes()) | uint64_t{1} << GRADUS_PASS_ERROR;
+    settings.passes |= schema::needed_passes(schema::light_passes()) | uint64_t{1} << GRADUS_PASS_ERROR;
     ASSERT_OK(gradus_render_start(scene, &settings, &render));
     ASSERT_OK(gradus_render_wait(render, -1.0));
     ASSERT_OK(gradus_render_film(render, &film));
@@ -31,13 +32,14 @@ class FrameLightPasses : public WithScene<::testing::Test> {
   }
 
   std::vector<float> read(uint32_t pass) const {
-    std::vector<float> pixels(pass_info(pass).channels * kSide * kSide);
+    std::vector<float> pixels(schema::pass_info(pass).channels * kSide * kSide);
     EXPECT_OK(gradus_film_read_pass(film, pass, pixels.data(), pixels.size()));
     return pixels;
   }
   std::vector<float> reconstruct(uint32_t reconstruction) const {
     std::vector<float> rgba(4 * kSide * kSide);
-    EXPECT_OK(gradus_film_reconstruct(film, reconstruction, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), nullptr));
+    EXPECT_OK(
+        gradus_film_reconstruct(film, reconstruction, 0.0f, GRADUS_DENOISER_NONE, rgba.data(), rgba.size(), nullptr));
     return rgba;
   }
   void expect_to_add_up(const std::vector<float>& rgba) const {
@@ -57,7 +59,8 @@ TEST_F(FrameLightPasses, AreThoseOfTheRenderAtFirst) {
 
 // `gradus reconstruct --reconstruction l2 --passes all` wrote L2's picture and the light passes of another.
 TEST_F(FrameLightPasses, FollowTheLastReconstruction) {
-  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_NONE}) {
+  for (const uint32_t reconstruction :
+       {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_NONE}) {
     expect_to_add_up(reconstruct(reconstruction));
   }
   EXPECT_EQ(reconstruct(GRADUS_RECONSTRUCTION_NONE), read(GRADUS_PASS_NOISY_IMAGE));
@@ -76,7 +79,7 @@ TEST_F(FrameLightPasses, AreMadeAnewOfAMergedFrame) {
   GradusSettings settings = small_render(kSide, kSide, 4);
   settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
   settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
-  settings.passes |= needed_passes(light_passes()) | uint64_t{1} << GRADUS_PASS_ERROR;
+  settings.passes |= schema::needed_passes(schema::light_passes()) | uint64_t{1} << GRADUS_PASS_ERROR;
   settings.first_sample = 4;
   GradusRender more = 0;
   GradusFilm other = 0;

@@ -23,8 +23,8 @@ TEST(G9_Options, AreListed) {
   EXPECT_EQ(info.default_value, 64.0);
   EXPECT_EQ(info.maximum, 16777216.0);
   EXPECT_STREQ(info.choices, "");
-  ASSERT_NE(find_option("pixel_filter"), nullptr);
-  ASSERT_EQ(gradus_option(uint32_t(find_option("pixel_filter") - options().data()), &info), GRADUS_OK);
+  ASSERT_NE(schema::find_option("pixel_filter"), nullptr);
+  ASSERT_EQ(gradus_option(uint32_t(schema::find_option("pixel_filter") - schema::options().data()), &info), GRADUS_OK);
   EXPECT_STREQ(info.choices, "box gaussian blackman_harris");
   EXPECT_EQ(info.default_value, double(GRADUS_FILTER_BLACKMAN_HARRIS));
   EXPECT_EQ(gradus_option(gradus_option_count(), &info), GRADUS_ERROR_INVALID_ARGUMENT);
@@ -88,49 +88,49 @@ TEST(G9_Options, RefusalsNameOptionValueAndWhatIsAllowed) {
 }
 
 TEST(G9_Options, SurviveJson) {
-  GradusSettings s = default_settings();
+  GradusSettings s = schema::default_settings();
   s.noise_threshold = 0.1234567f;
   s.frame = -77;
   s.integrator = GRADUS_INTEGRATOR_PATH;
   s.passes = 12345;
   s.region[2] = 9;
   s.strict = 1;
-  const GradusSettings back = settings_from_json(settings_to_json(s));
+  const GradusSettings back = schema::settings_from_json(schema::settings_to_json(s));
   EXPECT_EQ(std::memcmp(&s, &back, sizeof(s)), 0);
 }
 
 // Films of earlier versions may name a reconstruction that was removed. Their samples are as good as before.
 TEST(G9_Options, AStoredChoiceThatWasRemovedIsReadAsTheDefaultWithAWarning) {
-  nlohmann::json stored = settings_to_json(default_settings());
+  nlohmann::json stored = schema::settings_to_json(schema::default_settings());
   stored["reconstruction"] = "weighted";
   std::vector<std::string> warnings;
-  EXPECT_EQ(settings_from_json(stored, &warnings).reconstruction, uint32_t{GRADUS_RECONSTRUCTION_AUTO});
+  EXPECT_EQ(schema::settings_from_json(stored, &warnings).reconstruction, uint32_t{GRADUS_RECONSTRUCTION_AUTO});
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0], "reconstruction weighted was removed: the stored settings are read as reconstruction auto");
   stored["reconstruction"] = "wieghted";
-  EXPECT_THROW(settings_from_json(stored, &warnings), Error) << "there never was such a choice";
+  EXPECT_THROW(schema::settings_from_json(stored, &warnings), Error) << "there never was such a choice";
 }
 
 TEST(G9_Options, ANumberThatNoChoiceHasIsRefused) {
   EXPECT_NE(refused("reconstruction", "weighted").find("one of auto none l2 l1 regularized"), std::string::npos);
   EXPECT_NE(refused("reconstruction", "-").find("one of auto none l2 l1 regularized"), std::string::npos);
-  GradusSettings s = default_settings();
+  GradusSettings s = schema::default_settings();
   s.reconstruction = 3;
-  EXPECT_THROW(check_settings(s), Error);
+  EXPECT_THROW(schema::check_settings(s), Error);
 }
 
 TEST(G9_Options, SamplingKeyIgnoresHowManySamples) {
-  GradusSettings a = default_settings(), b = a;
+  GradusSettings a = schema::default_settings(), b = a;
   b.samples = 7;
   b.time_limit = 3.0f;
   b.reconstruction = GRADUS_RECONSTRUCTION_L1;
   b.threads = 5;
-  EXPECT_EQ(sampling_key(a), sampling_key(b));
+  EXPECT_EQ(schema::sampling_key(a), schema::sampling_key(b));
   b.seed = 1;
-  EXPECT_NE(sampling_key(a), sampling_key(b));
+  EXPECT_NE(schema::sampling_key(a), schema::sampling_key(b));
   b = a;
   b.max_bounces = 3;
-  EXPECT_NE(sampling_key(a), sampling_key(b));
+  EXPECT_NE(schema::sampling_key(a), schema::sampling_key(b));
 }
 
 TEST(Passes, AreNamedOnce) {
@@ -149,9 +149,9 @@ TEST(Passes, AreNamedOnce) {
 
 TEST(Passes, LightPassesBringTheirColours) {
   const uint64_t direct = uint64_t{1} << GRADUS_PASS_GLOSSY_DIRECT;
-  EXPECT_EQ(needed_passes(direct), direct | uint64_t{1} << GRADUS_PASS_GLOSSY_COLOR);
-  EXPECT_EQ(make_pass_planes(direct, 10).size(), 2u);
-  EXPECT_EQ(make_pass_planes(uint64_t{1} << GRADUS_PASS_COMBINED, 10).size(), 0u);
+  EXPECT_EQ(schema::needed_passes(direct), direct | uint64_t{1} << GRADUS_PASS_GLOSSY_COLOR);
+  EXPECT_EQ(film::make_pass_planes(direct, 10).size(), 2u);
+  EXPECT_EQ(film::make_pass_planes(uint64_t{1} << GRADUS_PASS_COMBINED, 10).size(), 0u);
 }
 
 TEST(G9_Options, ATextIsKeptAsItIsWritten) {
@@ -159,17 +159,18 @@ TEST(G9_Options, ATextIsKeptAsItIsWritten) {
   EXPECT_STREQ(s.components, "");
   ASSERT_EQ(gradus_settings_parse(&s, "components", "Vase=ETTTTD.*L;A-b=EL"), GRADUS_OK);
   EXPECT_STREQ(s.components, "Vase=ETTTTD.*L;A-b=EL");
-  const GradusSettings back = settings_from_json(settings_to_json(s));
+  const GradusSettings back = schema::settings_from_json(schema::settings_to_json(s));
   EXPECT_STREQ(back.components, s.components);
-  EXPECT_NE(sampling_key(s), sampling_key(defaults()));
-  EXPECT_EQ(sampling_key(s), sampling_key(back));
-  EXPECT_NE(refused("components", std::string(512, 'D').c_str()).find("components is longer than 511 bytes"), std::string::npos);
+  EXPECT_NE(schema::sampling_key(s), schema::sampling_key(defaults()));
+  EXPECT_EQ(schema::sampling_key(s), schema::sampling_key(back));
+  EXPECT_NE(refused("components", std::string(512, 'D').c_str()).find("components is longer than 511 bytes"),
+            std::string::npos);
 }
 
 TEST(G9_Options, ATextThatIsNotEndedIsRefusedAndNotReadBeyond) {
   GradusSettings s = defaults();
   std::fill(std::begin(s.components), std::end(s.components), 'D');
-  EXPECT_THROW(check_settings(s), Error);
+  EXPECT_THROW(schema::check_settings(s), Error);
 }
 
 }  // namespace

@@ -44,7 +44,8 @@ constexpr size_t kAbsurd[] = {UINT32_MAX, SIZE_MAX, SIZE_MAX / 2, SIZE_MAX / 12 
 
 TEST_F(G2_Pointers, AbsurdCountsAreRefused) {
   for (const size_t count : kAbsurd) {
-    for (size_t GradusMesh::*field : {&GradusMesh::vertex_count, &GradusMesh::corner_count, &GradusMesh::triangle_count}) {
+    for (size_t GradusMesh::*field :
+         {&GradusMesh::vertex_count, &GradusMesh::corner_count, &GradusMesh::triangle_count}) {
       MeshData data;
       data.mesh.*field = count;
       EXPECT_EQ(gradus_scene_set_mesh(scene, 1, &data.mesh), GRADUS_ERROR_INVALID_ARGUMENT);
@@ -112,7 +113,9 @@ TEST_F(G2_Pointers, MaterialsWithBrokenReferencesAreRefused) {
   material.nodes = &node;
   material.inputs = &input;
   material.input_count = 1;
-  const auto refused = [&] { EXPECT_EQ(gradus_scene_set_material(scene, 1, &material), GRADUS_ERROR_INVALID_ARGUMENT); };
+  const auto refused = [&] {
+    EXPECT_EQ(gradus_scene_set_material(scene, 1, &material), GRADUS_ERROR_INVALID_ARGUMENT);
+  };
   node.first_input = 1;
   node.input_count = 1;
   refused();
@@ -172,7 +175,8 @@ TEST_F(G2_Pointers, ReadPassWantsTheExactCount) {
   ASSERT_OK(gradus_render_start(scene, &settings, &render));
   float pixels[8 * 8 * 4 + 1] = {};
   for (const size_t count : {size_t{0}, size_t{1}, size_t{255}, size_t{257}, size_t{UINT32_MAX}, SIZE_MAX}) {
-    EXPECT_EQ(gradus_render_read_pass(render, GRADUS_PASS_COMBINED, pixels, count), GRADUS_ERROR_INVALID_ARGUMENT) << count;
+    EXPECT_EQ(gradus_render_read_pass(render, GRADUS_PASS_COMBINED, pixels, count), GRADUS_ERROR_INVALID_ARGUMENT)
+        << count;
   }
   EXPECT_EQ(gradus_render_read_pass(render, GRADUS_PASS_COMBINED, nullptr, 256), GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(gradus_render_read_pass(render, GRADUS_PASS_COUNT, pixels, 256), GRADUS_ERROR_INVALID_ARGUMENT);

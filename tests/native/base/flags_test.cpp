@@ -22,8 +22,8 @@ TEST(L5_Flags, NumbersMayBeInfiniteAndSumsKeepTheirOrder) {
   const std::string commands = text_of(GRADUS_BINARY_DIR "/compile_commands.json");
   ASSERT_NE(commands.find("native/src/film/film.cpp"), std::string::npos);
   ASSERT_NE(commands.find("-Werror"), std::string::npos);
-  for (const char* flag : {"-ffast-math", "-Ofast", "-ffinite-math", "-funsafe-math", "-fassociative-math", "-freciprocal-math",
-                           "-fno-signed-zeros", "-march=native", "-mtune=native"}) {
+  for (const char* flag : {"-ffast-math", "-Ofast", "-ffinite-math", "-funsafe-math", "-fassociative-math",
+                           "-freciprocal-math", "-fno-signed-zeros", "-march=native", "-mtune=native"}) {
     EXPECT_EQ(commands.find(flag), std::string::npos) << flag;
   }
 }

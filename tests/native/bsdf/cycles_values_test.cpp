@@ -1,7 +1,8 @@
 // A9, for closures: values that Cycles (Blender 4.5.15) gives for the same closure and directions.
 //
-// Measured without noise: a unit sphere of 160,000 triangles under an orthographic camera along -Z, lit by one sun of 1 W/m2 without
-// an angle, 64 x 64 pixels, 1 sample, 0 bounces; the pixel's normal is its place on the sphere, its value f cos.
+// Measured without noise: a unit sphere of 160,000 triangles under an orthographic camera along -Z, lit by one sun of 1
+// W/m2 without an angle, 64 x 64 pixels, 1 sample, 0 bounces; the pixel's normal is its place on the sphere, its value
+// f cos.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -148,35 +149,35 @@ const Measured kMeasured[] = {
 
 const Vec3 kSuns[] = {Vec3(0, 0, 1), Vec3(0.5f, 0.3f, 0.81f), Vec3(0.9f, -0.2f, 0.3f), Vec3(0.2f, 0.1f, -0.97f)};
 
-Lobe coloured(Lobe lobe) {
+bsdf::Lobe coloured(bsdf::Lobe lobe) {
   lobe.weight = lobe.f0 = Rgb(0.8f, 0.5f, 0.2f);
   lobe.multiscatter = true;
   return lobe;
 }
 
-Lobe multiscatter(LobeType type, float roughness, FresnelType fresnel, float ior) {
-  Lobe lobe = make_lobe(type, roughness * roughness, fresnel, ior);
+bsdf::Lobe multiscatter(bsdf::LobeType type, float roughness, bsdf::FresnelType fresnel, float ior) {
+  bsdf::Lobe lobe = make_lobe(type, roughness * roughness, fresnel, ior);
   lobe.multiscatter = true;
   return lobe;
 }
 
-Lobe lobe_of(const std::string& name) {
-  if (name == "diffuse05") return coloured(make_lobe(LobeType::Diffuse, 0.5f));
-  if (name == "diffuse1") return coloured(make_lobe(LobeType::Diffuse, 1.0f));
-  if (name == "translucent") return make_lobe(LobeType::Translucent);
-  if (name == "ggx03") return make_lobe(LobeType::GgxReflection, 0.09f);
-  if (name == "ggx07") return make_lobe(LobeType::GgxReflection, 0.49f);
-  if (name == "mggx1") return multiscatter(LobeType::GgxReflection, 1.0f, FresnelType::None, 1.0f);
-  if (name == "refr05") return make_lobe(LobeType::GgxRefraction, 0.25f, FresnelType::None, 1.45f);
-  if (name == "glass05") return make_lobe(LobeType::GgxGlass, 0.25f, FresnelType::Dielectric, 1.45f);
-  if (name == "mglass05") return multiscatter(LobeType::GgxGlass, 0.5f, FresnelType::Dielectric, 1.45f);
-  if (name == "mglass1") return multiscatter(LobeType::GgxGlass, 1.0f, FresnelType::Dielectric, 1.45f);
-  Lobe metal = multiscatter(LobeType::GgxReflection, 0.5f, FresnelType::PrincipledMetal, 1.0f);
+bsdf::Lobe lobe_of(const std::string& name) {
+  if (name == "diffuse05") return coloured(make_lobe(bsdf::LobeType::Diffuse, 0.5f));
+  if (name == "diffuse1") return coloured(make_lobe(bsdf::LobeType::Diffuse, 1.0f));
+  if (name == "translucent") return make_lobe(bsdf::LobeType::Translucent);
+  if (name == "ggx03") return make_lobe(bsdf::LobeType::GgxReflection, 0.09f);
+  if (name == "ggx07") return make_lobe(bsdf::LobeType::GgxReflection, 0.49f);
+  if (name == "mggx1") return multiscatter(bsdf::LobeType::GgxReflection, 1.0f, bsdf::FresnelType::None, 1.0f);
+  if (name == "refr05") return make_lobe(bsdf::LobeType::GgxRefraction, 0.25f, bsdf::FresnelType::None, 1.45f);
+  if (name == "glass05") return make_lobe(bsdf::LobeType::GgxGlass, 0.25f, bsdf::FresnelType::Dielectric, 1.45f);
+  if (name == "mglass05") return multiscatter(bsdf::LobeType::GgxGlass, 0.5f, bsdf::FresnelType::Dielectric, 1.45f);
+  if (name == "mglass1") return multiscatter(bsdf::LobeType::GgxGlass, 1.0f, bsdf::FresnelType::Dielectric, 1.45f);
+  bsdf::Lobe metal = multiscatter(bsdf::LobeType::GgxReflection, 0.5f, bsdf::FresnelType::PrincipledMetal, 1.0f);
   metal.f0 = Rgb(0.9f, 0.6f, 0.3f);
   metal.f90 = Rgb(0.7f, 0.8f, 0.9f);
   if (name == "metal05") return metal;
   // The Glossy node with a colour, which acts on each bounce between facets.
-  Lobe glossy = multiscatter(LobeType::GgxReflection, 0.7f, FresnelType::None, 1.0f);
+  bsdf::Lobe glossy = multiscatter(bsdf::LobeType::GgxReflection, 0.7f, bsdf::FresnelType::None, 1.0f);
   glossy.weight = glossy.f0 = Rgb(0.8f, 0.5f, 0.2f);
   return glossy;
 }
@@ -187,14 +188,14 @@ TEST(A9_CyclesClosures, ValuesAgree) {
     const float x = (static_cast<float>(m.x) + 0.5f) / 32.0f - 1.0f;
     const float y = (static_cast<float>(m.y) + 0.5f) / 32.0f - 1.0f;
     const Vec3 normal(x, y, std::sqrt(1.0f - x * x - y * y));
-    Closures closures;
-    Lobe lobe = lobe_of(m.name);
+    bsdf::Closures closures;
+    bsdf::Lobe lobe = lobe_of(m.name);
     lobe.normal = normal;
     *closures.add() = lobe;
     closures.finish(wo, normal, 0.1f);
     Rgb value(0.0f);
-    for (int c = 0; c < kScatterClasses; c++) {
-      value += closures.evaluate(static_cast<ScatterClass>(c), wo, glm::normalize(kSuns[m.sun])).value;
+    for (int c = 0; c < bsdf::kScatterClasses; c++) {
+      value += closures.evaluate(static_cast<bsdf::ScatterClass>(c), wo, glm::normalize(kSuns[m.sun])).value;
     }
     for (int c = 0; c < 3; c++) {
       EXPECT_NEAR(static_cast<double>(value[c]), m.value[c], 0.005 * m.value[c] + 1e-5)
@@ -214,12 +215,13 @@ TEST(A9_CyclesClosures, BumpsDarkenSoftly) {
     const float x = (static_cast<float>(m.x) + 0.5f) / 32.0f - 1.0f;
     const float y = 0.5f / 32.0f;
     const Vec3 normal(x, y, std::sqrt(1.0f - x * x - y * y));
-    Closures closures;
-    Lobe lobe = make_lobe(LobeType::Diffuse);
+    bsdf::Closures closures;
+    bsdf::Lobe lobe = make_lobe(bsdf::LobeType::Diffuse);
     lobe.normal = glm::normalize(normal + Vec3(0.4f, 0.2f, 0.0f));
     *closures.add() = lobe;
     closures.finish(wo, normal, 0.1f, normal);
-    EXPECT_NEAR(closures.evaluate(ScatterClass::Diffuse, wo, glm::normalize(kSuns[2])).value.x, m.value, 2e-4f) << m.x;
+    EXPECT_NEAR(closures.evaluate(bsdf::ScatterClass::Diffuse, wo, glm::normalize(kSuns[2])).value.x, m.value, 2e-4f)
+        << m.x;
   }
 }
 

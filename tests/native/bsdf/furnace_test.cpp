@@ -11,7 +11,7 @@ namespace gradus::testing {
 namespace {
 
 // Mean of value/(pdf·P(class)) under uniform light: the directional albedo.
-Rgb measured_albedo(const Closures& closures, const Vec3& wo, int samples, uint64_t seed) {
+Rgb measured_albedo(const bsdf::Closures& closures, const Vec3& wo, int samples, uint64_t seed) {
   Random random(seed);
   Rgb sum(0.0f);
   for (int i = 0; i < samples; i++) {
@@ -21,11 +21,11 @@ Rgb measured_albedo(const Closures& closures, const Vec3& wo, int samples, uint6
     const int side = static_cast<int>(std::sqrt(static_cast<double>(samples)));
     const Vec2 u((static_cast<float>(i % side) + random.get()) / static_cast<float>(side),
                  (static_cast<float>(i / side % side) + random.get()) / static_cast<float>(side));
-    for (int c = 0; c < kScatterClasses; c++) {
-      const ScatterClass k = static_cast<ScatterClass>(c);
+    for (int c = 0; c < bsdf::kScatterClasses; c++) {
+      const bsdf::ScatterClass k = static_cast<bsdf::ScatterClass>(c);
       const float p = closures.class_probability(k);
       if (choice < p) {
-        BsdfSample s;
+        bsdf::BsdfSample s;
         if (closures.sample(k, wo, u_lobe, u, &s)) {
           EXPECT_TRUE(is_finite(s.value) && s.pdf > 0.0f && is_finite(s.pdf));
           sum += s.value / (s.pdf * p);
@@ -44,7 +44,7 @@ constexpr float kCosines[] = {1.0f, 0.8f, 0.6f, 0.4f, 0.3f, 0.2f, 0.1f, 0.03f, 0
 void check(const LobeCase& test, float threshold) {
   for (int i = 0; i < 10; i++) {
     const Vec3 wo = tilted_direction(kCosines[i], static_cast<float>(i));
-    const Closures closures = finished(test.lobe, wo, threshold);
+    const bsdf::Closures closures = finished(test.lobe, wo, threshold);
     const Rgb measured = measured_albedo(closures, wo, kSamples, 17 + static_cast<uint64_t>(i));
     EXPECT_LE(max_component(measured), test.bounded ? 1.01f : 1.6f) << test.name << " at cosine " << kCosines[i];
     if (test.lossless) {
@@ -69,17 +69,17 @@ TEST(A2_WhiteFurnace, Microfacets) {
 }
 
 TEST(A2_WhiteFurnace, DiracIsLossless) {
-  for (const FresnelType fresnel : {FresnelType::None, FresnelType::Dielectric}) {
+  for (const bsdf::FresnelType fresnel : {bsdf::FresnelType::None, bsdf::FresnelType::Dielectric}) {
     for (const float ior : {1.0f, 1.5f, 0.6f, 3.0f}) {
-      check({"DiracGlass", make_lobe(LobeType::DiracGlass, 0.0f, fresnel, ior), true}, 0.1f);
+      check({"DiracGlass", make_lobe(bsdf::LobeType::DiracGlass, 0.0f, fresnel, ior), true}, 0.1f);
     }
   }
-  check({"Mirror", make_lobe(LobeType::DiracReflection), true}, 0.1f);
+  check({"Mirror", make_lobe(bsdf::LobeType::DiracReflection), true}, 0.1f);
 }
 
 // The classes share one lobe's energy: the same albedo whether glass is one rough class or two specular ones.
 TEST(A2_WhiteFurnace, ClassesDoNotChangeEnergy) {
-  const Lobe glass = make_lobe(LobeType::GgxGlass, 0.25f, FresnelType::Dielectric, 1.5f);
+  const bsdf::Lobe glass = make_lobe(bsdf::LobeType::GgxGlass, 0.25f, bsdf::FresnelType::Dielectric, 1.5f);
   for (const float cosine : {1.0f, 0.5f, 0.1f}) {
     const Vec3 wo = tilted_direction(cosine, 1.0f);
     const float together = measured_albedo(finished(glass, wo, 0.1f), wo, kSamples, 5).x;
@@ -103,7 +103,7 @@ TEST(A2_WhiteFurnace, TabulatedAlbedo) {
     }
     for (const float cosine : {1.0f, 0.7f, 0.4f, 0.2f, 0.1f, 0.03f}) {
       const Vec3 wo = tilted_direction(cosine, 2.0f);
-      const Closures closures = finished(test.lobe, wo);
+      const bsdf::Closures closures = finished(test.lobe, wo);
       const Rgb measured = measured_albedo(closures, wo, kSamples, 3);
       const Rgb table = closures.albedo(wo);
       EXPECT_LE(max_component(glm::abs(measured - table)), 0.010f)

@@ -10,13 +10,14 @@ namespace gradus::testing {
 
 struct LobeCase {
   std::string name;
-  Lobe lobe;
+  bsdf::Lobe lobe;
   bool lossless = false;  // gives back all energy: albedo at least 0.99
   bool bounded = true;    // no more than all; not so for Disney's diffuse, which is kept as old files have it
 };
 
-inline Lobe make_lobe(LobeType type, float alpha = 0.0f, FresnelType fresnel = FresnelType::None, float ior = 1.0f) {
-  Lobe lobe;
+inline bsdf::Lobe make_lobe(bsdf::LobeType type, float alpha = 0.0f,
+                            bsdf::FresnelType fresnel = bsdf::FresnelType::None, float ior = 1.0f) {
+  bsdf::Lobe lobe;
   lobe.type = type;
   lobe.fresnel = fresnel;
   lobe.weight = Rgb(1.0f);
@@ -26,15 +27,16 @@ inline Lobe make_lobe(LobeType type, float alpha = 0.0f, FresnelType fresnel = F
 }
 
 inline std::vector<LobeCase> diffuse_cases() {
-  std::vector<LobeCase> cases = {{"Lambert", make_lobe(LobeType::Diffuse), true},
-                                 {"OrenNayar", make_lobe(LobeType::Diffuse, 1.0f), false},
-                                 {"EON", make_lobe(LobeType::Diffuse, 1.0f), true},
-                                 {"Disney", make_lobe(LobeType::Diffuse, 0.5f, FresnelType::Schlick), false, false},
-                                 {"DisneyRough", make_lobe(LobeType::Diffuse, 1.0f, FresnelType::Schlick), false, false},
-                                 {"Translucent", make_lobe(LobeType::Translucent), true},
-                                 {"Sheen", make_lobe(LobeType::Sheen, 0.5f), false},
-                                 {"SheenSmooth", make_lobe(LobeType::Sheen, 0.1f), false},
-                                 {"SheenGrazing", make_lobe(LobeType::Sheen, 0.0f, FresnelType::Schlick), false}};
+  std::vector<LobeCase> cases = {
+      {"Lambert", make_lobe(bsdf::LobeType::Diffuse), true},
+      {"OrenNayar", make_lobe(bsdf::LobeType::Diffuse, 1.0f), false},
+      {"EON", make_lobe(bsdf::LobeType::Diffuse, 1.0f), true},
+      {"Disney", make_lobe(bsdf::LobeType::Diffuse, 0.5f, bsdf::FresnelType::Schlick), false, false},
+      {"DisneyRough", make_lobe(bsdf::LobeType::Diffuse, 1.0f, bsdf::FresnelType::Schlick), false, false},
+      {"Translucent", make_lobe(bsdf::LobeType::Translucent), true},
+      {"Sheen", make_lobe(bsdf::LobeType::Sheen, 0.5f), false},
+      {"SheenSmooth", make_lobe(bsdf::LobeType::Sheen, 0.1f), false},
+      {"SheenGrazing", make_lobe(bsdf::LobeType::Sheen, 0.0f, bsdf::FresnelType::Schlick), false}};
   cases[2].lobe.multiscatter = true;
   return cases;
 }
@@ -43,19 +45,21 @@ inline std::vector<LobeCase> diffuse_cases() {
 inline std::vector<LobeCase> microfacet_cases(float roughness) {
   const float alpha = roughness * roughness;
   std::vector<LobeCase> cases = {
-      {"Reflection", make_lobe(LobeType::GgxReflection, alpha), false},
-      {"ReflectionMultiscatter", make_lobe(LobeType::GgxReflection, alpha), true},
-      {"ReflectionDielectric", make_lobe(LobeType::GgxReflection, alpha, FresnelType::Dielectric, 1.5f), false},
-      {"ReflectionSchlick", make_lobe(LobeType::GgxReflection, alpha, FresnelType::Schlick, 1.5f), false},
-      {"ReflectionMetal", make_lobe(LobeType::GgxReflection, alpha, FresnelType::PrincipledMetal), false},
-      {"Refraction", make_lobe(LobeType::GgxRefraction, alpha, FresnelType::None, 1.45f), false},
-      {"Glass", make_lobe(LobeType::GgxGlass, alpha, FresnelType::Dielectric, 1.5f), false},
-      {"GlassInside", make_lobe(LobeType::GgxGlass, alpha, FresnelType::Dielectric, 1.0f / 1.5f), false},
-      {"GlassDense", make_lobe(LobeType::GgxGlass, alpha, FresnelType::Dielectric, 3.0f), false},
-      {"GlassMultiscatter", make_lobe(LobeType::GgxGlass, alpha, FresnelType::Dielectric, 1.5f), true},
-      {"GlassMultiscatterInside", make_lobe(LobeType::GgxGlass, alpha, FresnelType::Dielectric, 1.0f / 1.5f), true},
-      {"GlassWithoutStep", make_lobe(LobeType::GgxGlass, alpha, FresnelType::Dielectric, 1.0f), true},
-      {"Anisotropic", make_lobe(LobeType::GgxReflection, alpha), false},
+      {"Reflection", make_lobe(bsdf::LobeType::GgxReflection, alpha), false},
+      {"ReflectionMultiscatter", make_lobe(bsdf::LobeType::GgxReflection, alpha), true},
+      {"ReflectionDielectric", make_lobe(bsdf::LobeType::GgxReflection, alpha, bsdf::FresnelType::Dielectric, 1.5f),
+       false},
+      {"ReflectionSchlick", make_lobe(bsdf::LobeType::GgxReflection, alpha, bsdf::FresnelType::Schlick, 1.5f), false},
+      {"ReflectionMetal", make_lobe(bsdf::LobeType::GgxReflection, alpha, bsdf::FresnelType::PrincipledMetal), false},
+      {"Refraction", make_lobe(bsdf::LobeType::GgxRefraction, alpha, bsdf::FresnelType::None, 1.45f), false},
+      {"Glass", make_lobe(bsdf::LobeType::GgxGlass, alpha, bsdf::FresnelType::Dielectric, 1.5f), false},
+      {"GlassInside", make_lobe(bsdf::LobeType::GgxGlass, alpha, bsdf::FresnelType::Dielectric, 1.0f / 1.5f), false},
+      {"GlassDense", make_lobe(bsdf::LobeType::GgxGlass, alpha, bsdf::FresnelType::Dielectric, 3.0f), false},
+      {"GlassMultiscatter", make_lobe(bsdf::LobeType::GgxGlass, alpha, bsdf::FresnelType::Dielectric, 1.5f), true},
+      {"GlassMultiscatterInside",
+       make_lobe(bsdf::LobeType::GgxGlass, alpha, bsdf::FresnelType::Dielectric, 1.0f / 1.5f), true},
+      {"GlassWithoutStep", make_lobe(bsdf::LobeType::GgxGlass, alpha, bsdf::FresnelType::Dielectric, 1.0f), true},
+      {"Anisotropic", make_lobe(bsdf::LobeType::GgxReflection, alpha), false},
   };
   cases[1].lobe.multiscatter = true;
   cases[3].lobe.f0 = Rgb(0.04f, 0.1f, 0.2f);
@@ -79,8 +83,8 @@ inline Vec3 tilted_direction(float cosine, float azimuth) {
   return glm::normalize(sine * std::cos(azimuth) * x + sine * std::sin(azimuth) * y + cosine * kTestNormal);
 }
 
-inline Closures finished(Lobe lobe, const Vec3& wo, float threshold = 0.1f) {
-  Closures closures;
+inline bsdf::Closures finished(bsdf::Lobe lobe, const Vec3& wo, float threshold = 0.1f) {
+  bsdf::Closures closures;
   lobe.normal = kTestNormal;
   lobe.tangent = Vec3(0, 1, 0);
   *closures.add() = lobe;

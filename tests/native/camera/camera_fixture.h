@@ -11,7 +11,8 @@ namespace gradus::test {
 // In the same place, with the same window, in all three frames; with a range, and a focus at 4 m. window: 4 values.
 inline void set_static(GradusCamera* camera, const float* window, const Mat4& pose) {
   for (float* to : {camera->window, camera->window_previous, camera->window_next}) std::copy(window, window + 4, to);
-  for (float* to : {camera->matrix, camera->matrix_previous, camera->matrix_next}) std::copy(&pose[0][0], &pose[0][0] + 16, to);
+  for (float* to : {camera->matrix, camera->matrix_previous, camera->matrix_next})
+    std::copy(&pose[0][0], &pose[0][0] + 16, to);
   camera->clip_start = 0.1f;
   camera->clip_end = 1000.0f;
   camera->aperture_ratio = 1.0f;

@@ -5,7 +5,7 @@
 
 #include "camera_fixture.h"
 #include "geometry/matrix_keys.h"
-#include "scene_fixture.h"
+#include "scene/scene_fixture.h"
 #include "support/chi_square.h"
 #include "support/refusal.h"
 
@@ -39,13 +39,14 @@ GradusCamera make_camera(const BlenderCamera& c, double w, double h, const Mat4&
   GradusCamera camera{};
   camera.struct_size = sizeof(camera);
   camera.type = c.orthographic ? GRADUS_CAMERA_ORTHOGRAPHIC : GRADUS_CAMERA_PERSPECTIVE;
-  const float window[4] = {float((-1 - p.axis_x) / p.m00), float((1 - p.axis_x) / p.m00), float((-1 - p.axis_y) / p.m11),
-                           float((1 - p.axis_y) / p.m11)};
+  const float window[4] = {float((-1 - p.axis_x) / p.m00), float((1 - p.axis_x) / p.m00),
+                           float((-1 - p.axis_y) / p.m11), float((1 - p.axis_y) / p.m11)};
   set_static(&camera, window, pose);
   return camera;
 }
 
-const Mat4 kPose = translation(Vec3(3, -2, 1)) * Mat4(Vec4(0.8f, 0.6f, 0, 0), Vec4(-0.6f, 0.8f, 0, 0), Vec4(0, 0, 1, 0), Vec4(0, 0, 0, 1));
+const Mat4 kPose = translation(Vec3(3, -2, 1)) *
+                   Mat4(Vec4(0.8f, 0.6f, 0, 0), Vec4(-0.6f, 0.8f, 0, 0), Vec4(0, 0, 1, 0), Vec4(0, 0, 0, 1));
 
 std::vector<BlenderCamera> all_cameras() {
   std::vector<BlenderCamera> cameras;
@@ -95,9 +96,9 @@ TEST(Camera, RaysOfAFilmPointMeetOnThePlaneOfFocus) {
     blender.orthographic = orthographic;
     GradusCamera desc = make_camera(blender, 640, 360, kPose);
     desc.aperture_radius = 0.3f;
-    const Camera camera(desc, 640, 360);
+    const camera::Camera camera(desc, 640, 360);
     desc.aperture_radius = 0.0f;
-    const Camera pinhole(desc, 640, 360);
+    const camera::Camera pinhole(desc, 640, 360);
     const Vec2 film(500, 70);
     const Ray sharp = pinhole.ray({film});
     const Vec3 focus = sharp.origin + sharp.direction * (4.0f * sharp.t_min / 0.1f);
@@ -118,7 +119,7 @@ void expect_uniform_lens(uint32_t blades, float rotation, float ratio) {
   desc.blades = blades;
   desc.blade_rotation = rotation;
   desc.aperture_ratio = ratio;
-  const Camera camera(desc, 100, 100);
+  const camera::Camera camera(desc, 100, 100);
   constexpr int kGrid = 40;
   constexpr size_t kSamples = 200000;
   std::vector<double> observed(kGrid * kGrid), expected(kGrid * kGrid);
@@ -174,9 +175,10 @@ TEST(Camera, MovesAndZoomsWhileTheShutterIsOpen) {
     moving.shutter_key_count = 3;
     moving.shutter_matrices = &matrices[0][0][0];
     moving.shutter_windows = windows.data();
-    const Camera camera(moving, 640, 360);
+    const camera::Camera camera(moving, 640, 360);
     for (const float time : {0.0f, 0.2f, 0.5f, 0.9f, 1.0f}) {
-      const Ray ray = camera.ray({Vec2(500, 70), Vec2(0.0f), time}), expected = Camera(frozen_at(time), 640, 360).ray({Vec2(500, 70)});
+      const Ray ray = camera.ray({Vec2(500, 70), Vec2(0.0f), time}),
+                expected = Camera(frozen_at(time), 640, 360).ray({Vec2(500, 70)});
       EXPECT_LT(glm::length(ray.origin - expected.origin), 1e-5f) << time;
       EXPECT_LT(glm::length(ray.direction - expected.direction), 1e-5f) << time;
       EXPECT_EQ(ray.time, time);
@@ -196,8 +198,8 @@ TEST(Camera, RefusesMoreShutterKeysThanThereMayBe) {
     EXPECT_EQ(refusal_of([&] { scene.scene.set_camera(moving); }), "");
   }
   const std::string refusal = "camera: 130 shutter keys, at most 129 are possible";
-  moving.shutter_key_count = kMaxShutterKeys + 1;
-  EXPECT_EQ(refusal_of([&] { Camera(moving, 640, 360); }), refusal);
+  moving.shutter_key_count = geometry::kMaxShutterKeys + 1;
+  EXPECT_EQ(refusal_of([&] { camera::Camera(moving, 640, 360); }), refusal);
   EXPECT_EQ(refusal_of([&] { scene.scene.set_camera(moving); }), refusal);
   moving.shutter_key_count = 1;
   EXPECT_EQ(refusal_of([&] { scene.scene.set_camera(moving); }), "camera: 1 shutter key, at least 2 are needed");

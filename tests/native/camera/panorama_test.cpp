@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "camera_fixture.h"
 #include "camera/camera.h"
-#include "scene_fixture.h"
+#include "camera_fixture.h"
+#include "scene/scene_fixture.h"
 
 namespace gradus::test {
 namespace {
@@ -25,8 +25,14 @@ constexpr Projection kProjections[] = {
     {"limited", GRADUS_PANORAMA_EQUIRECTANGULAR, {2.0f, 4.5f, -0.5f, 1.2f}, 0.0f},
     {"cube face", GRADUS_PANORAMA_CUBE_FACE, {-0.785398163f, 0.785398163f, -0.785398163f, 0.785398163f}, 0.0f},
     {"mirror ball", GRADUS_PANORAMA_MIRROR_BALL, {-1.0f, 1.0f, -1.0f, 1.0f}, 0.0f},
-    {"equidistant", GRADUS_PANORAMA_FISHEYE_EQUIDISTANT, {-1.57079633f, 1.57079633f, -1.57079633f, 1.57079633f}, 3.14159265f},
-    {"equidistant, all around", GRADUS_PANORAMA_FISHEYE_EQUIDISTANT, {-3.14159265f, 3.14159265f, -3.0f, 3.0f}, 6.28318531f},
+    {"equidistant",
+     GRADUS_PANORAMA_FISHEYE_EQUIDISTANT,
+     {-1.57079633f, 1.57079633f, -1.57079633f, 1.57079633f},
+     3.14159265f},
+    {"equidistant, all around",
+     GRADUS_PANORAMA_FISHEYE_EQUIDISTANT,
+     {-3.14159265f, 3.14159265f, -3.0f, 3.0f},
+     6.28318531f},
     {"equisolid", GRADUS_PANORAMA_FISHEYE_EQUISOLID, {-1.7f, 1.7f, -1.1f, 1.1f}, 3.14159265f},
     {"polynomial", GRADUS_PANORAMA_FISHEYE_POLYNOMIAL, {-18.0f, 18.0f, -12.0f, 12.0f}, 3.14159265f},
     {"bent polynomial", GRADUS_PANORAMA_FISHEYE_POLYNOMIAL, {-18.0f, 18.0f, -12.0f, 12.0f}, 2.5f},
@@ -40,7 +46,8 @@ GradusCamera make_camera(const Projection& p, const Mat4& pose = Mat4(1.0f)) {
   camera.panorama = p.type;
   camera.fisheye_fov = p.fov;
   const bool bent = p.fov == 2.5f;
-  const float straight[5] = {-1.17e-5f, -0.019988737f, -3.3525e-6f, 3.0993e-6f, -2.61e-8f}, curved[5] = {0.01f, -0.1f, 0.001f, 0, 0};
+  const float straight[5] = {-1.17e-5f, -0.019988737f, -3.3525e-6f, 3.0993e-6f, -2.61e-8f},
+              curved[5] = {0.01f, -0.1f, 0.001f, 0, 0};
   std::copy_n(bent ? curved : straight, 5, camera.fisheye_polynomial);
   set_static(&camera, p.window, pose);
   return camera;
@@ -75,7 +82,8 @@ glm::dvec3 expected_direction(const GradusCamera& c, double x, double y) {
   return {std::sin(angle) * x / r, std::sin(angle) * y / r, -std::cos(angle)};
 }
 
-const Mat4 kPose = translation(Vec3(3, -2, 1)) * Mat4(Vec4(0.8f, 0.6f, 0, 0), Vec4(-0.6f, 0.8f, 0, 0), Vec4(0, 0, 1, 0), Vec4(0, 0, 0, 1));
+const Mat4 kPose = translation(Vec3(3, -2, 1)) *
+                   Mat4(Vec4(0.8f, 0.6f, 0, 0), Vec4(-0.6f, 0.8f, 0, 0), Vec4(0, 0, 1, 0), Vec4(0, 0, 0, 1));
 
 class Panorama : public ::testing::TestWithParam<Projection> {};
 
@@ -89,7 +97,7 @@ TEST_P(Panorama, DirectionsAreThoseOfTheClosedForm) {
                  desc.window[2] + (desc.window[3] - desc.window[2]) * float(u(random)));
     const glm::dvec3 expected = expected_direction(desc, double(p.x), double(p.y));
     Vec3 found;
-    const bool sees = panorama_direction(desc, p, &found);
+    const bool sees = camera::panorama_direction(desc, p, &found);
     if (sees != (glm::length(expected) > 0.0)) {
       const double inside = glm::length(expected_direction(desc, double(p.x) * (1 - 1e-5), double(p.y) * (1 - 1e-5)));
       EXPECT_GT(inside, 0.0) << "not at the rim: " << p.x << " " << p.y;
@@ -99,14 +107,15 @@ TEST_P(Panorama, DirectionsAreThoseOfTheClosedForm) {
     ++seen;
     // The rim of a ball is steep: it shows what lies behind, where z is 1.
     const bool ball = GetParam().type == GRADUS_PANORAMA_MIRROR_BALL;
-    EXPECT_NEAR(glm::length(glm::dvec3(found) - expected), 0.0, 2e-6 + (ball ? 1e-7 / std::sqrt(0.5 - 0.5 * expected.z) : 0.0));
+    EXPECT_NEAR(glm::length(glm::dvec3(found) - expected), 0.0,
+                2e-6 + (ball ? 1e-7 / std::sqrt(0.5 - 0.5 * expected.z) : 0.0));
   }
   EXPECT_GT(seen, 3000);
 }
 
 TEST_P(Panorama, PointsOfRaysAppearWhereTheRaysLeft) {
   const GradusCamera desc = make_camera(GetParam(), kPose);
-  const Camera camera(desc, kWidth, kHeight);
+  const camera::Camera camera(desc, kWidth, kHeight);
   std::mt19937 random(18);
   std::uniform_real_distribution<float> u(0.0f, 1.0f);
   int seen = 0;
@@ -114,9 +123,11 @@ TEST_P(Panorama, PointsOfRaysAppearWhereTheRaysLeft) {
     const Vec2 film(u(random) * float(kWidth), u(random) * float(kHeight));
     const Ray ray = camera.ray({film, Vec2(0.0f)});
     if (is_none(ray)) continue;
-    if (desc.fisheye_polynomial[0] > 0.0f && glm::length(film - Vec2(320.0f, 240.0f)) < 5.0f) continue;  // the lens folds there
+    if (desc.fisheye_polynomial[0] > 0.0f && glm::length(film - Vec2(320.0f, 240.0f)) < 5.0f)
+      continue;  // the lens folds there
     const Vec3 relative = glm::transpose(Mat3(kPose)) * ray.direction;
-    const bool at_pole = std::fabs(relative.y) > 0.99f || relative.z > 0.99f;  // where a pixel is no larger than rounding
+    const bool at_pole =
+        std::fabs(relative.y) > 0.99f || relative.z > 0.99f;  // where a pixel is no larger than rounding
     Vec2 back;
     ASSERT_TRUE(camera.project(ray.origin + 7.0f * ray.direction, Moment::Now, &back));
     EXPECT_LT(glm::length(camera.film_displacement(film, back)), at_pole ? 0.5f : 0.01f) << film.x << " " << film.y;
@@ -132,10 +143,10 @@ TEST_P(Panorama, PointsOfRaysAppearWhereTheRaysLeft) {
 
 TEST_P(Panorama, RaysOfAFilmPointMeetAtTheDistanceOfFocus) {
   GradusCamera desc = make_camera(GetParam(), kPose);
-  const Camera pinhole(desc, kWidth, kHeight);
+  const camera::Camera pinhole(desc, kWidth, kHeight);
   desc.aperture_radius = 0.3f;
   desc.blades = 5;
-  const Camera camera(desc, kWidth, kHeight);
+  const camera::Camera camera(desc, kWidth, kHeight);
   std::mt19937 random(19);
   std::uniform_real_distribution<float> u(0.0f, 1.0f);
   for (const Vec2 film : {Vec2(320.0f, 240.0f), Vec2(400.0f, 130.0f), Vec2(250.0f, 300.0f)}) {
@@ -145,7 +156,8 @@ TEST_P(Panorama, RaysOfAFilmPointMeetAtTheDistanceOfFocus) {
     for (int i = 0; i < 50; ++i) {
       const Ray ray = camera.ray({film, Vec2(u(random), u(random))});
       EXPECT_LT(glm::length(glm::cross(ray.direction, focus - ray.origin)), 1e-5f);
-      EXPECT_LT(std::fabs(glm::dot(ray.origin - sharp.origin, sharp.direction)), 1e-5f) << "the lens lies across the direction";
+      EXPECT_LT(std::fabs(glm::dot(ray.origin - sharp.origin, sharp.direction)), 1e-5f)
+          << "the lens lies across the direction";
       EXPECT_LE(glm::length(ray.origin - sharp.origin), 0.30001f);
     }
   }
@@ -159,7 +171,7 @@ INSTANTIATE_TEST_SUITE_P(All, Panorama, ::testing::ValuesIn(kProjections), [](co
 });
 
 Ray ray_at(const Projection& p, float x, float y) {
-  return Camera(make_camera(p), kWidth, kHeight).ray({Vec2(x * float(kWidth), y * float(kHeight)), Vec2(0.0f)});
+  return camera::Camera(make_camera(p), kWidth, kHeight).ray({Vec2(x * float(kWidth), y * float(kHeight)), Vec2(0.0f)});
 }
 
 void expect_direction(const Ray& ray, const Vec3& expected) { EXPECT_LT(glm::length(ray.direction - expected), 1e-5f); }
@@ -183,14 +195,14 @@ TEST(PanoramaEdges, NothingLeavesOutsideOfTheImageCircle) {
 }
 
 TEST(PanoramaEdges, BehindACubeFaceNothingAppears) {
-  const Camera camera(make_camera(kProjections[2]), kWidth, kHeight);
+  const camera::Camera camera(make_camera(kProjections[2]), kWidth, kHeight);
   Vec2 film;
   EXPECT_TRUE(camera.project(Vec3(0.2f, 0.1f, -1.0f), Moment::Now, &film));
   EXPECT_FALSE(camera.project(Vec3(0.2f, 0.1f, 1.0f), Moment::Now, &film));
 }
 
 TEST(PanoramaEdges, MotionTakesTheShortestWayAround) {
-  const Camera camera(make_camera(kProjections[0]), kWidth, kHeight);
+  const camera::Camera camera(make_camera(kProjections[0]), kWidth, kHeight);
   Vec2 from, to;
   ASSERT_TRUE(camera.project(Vec3(0.01f, 0, 1), Moment::Now, &from));
   ASSERT_TRUE(camera.project(Vec3(-0.01f, 0, 1), Moment::Now, &to));
@@ -200,7 +212,7 @@ TEST(PanoramaEdges, MotionTakesTheShortestWayAround) {
 }
 
 TEST(PanoramaEdges, LongitudesAreThoseOfTheWindow) {
-  const Camera camera(make_camera(kProjections[1]), kWidth, kHeight);  // 2 to 4.5: over the seam of atan2
+  const camera::Camera camera(make_camera(kProjections[1]), kWidth, kHeight);  // 2 to 4.5: over the seam of atan2
   Vec2 film;
   ASSERT_TRUE(camera.project(Vec3(std::sin(4.0f), 0.0f, -std::cos(4.0f)), Moment::Now, &film));
   EXPECT_NEAR(film.x, (4.0 - 2.0) / 2.5 * kWidth, 0.01);
@@ -210,18 +222,20 @@ TEST(PanoramaEdges, LongitudesAreThoseOfTheWindow) {
 TEST(SphericalStereo, RaysLeaveTheEyesCircle) {
   GradusCamera desc = make_camera(kProjections[0]);
   desc.eye_offset = 0.5f;
-  const Camera parallel(desc, kWidth, kHeight);
+  const camera::Camera parallel(desc, kWidth, kHeight);
   const Ray right = parallel.ray({Vec2(0.75f * kWidth, 0.5f * kHeight), Vec2(0.0f)});
   EXPECT_LT(glm::length(right.origin - Vec3(0, 0, 0.5f)), 1e-6f) << "looking right, the right eye lies behind";
   expect_direction(right, Vec3(1, 0, 0));
   desc.convergence_distance = 2.0f;
-  const Ray ahead = Camera(desc, kWidth, kHeight).ray({Vec2(0.5f * kWidth, 0.5f * kHeight), Vec2(0.0f)});
+  const Ray ahead = camera::Camera(desc, kWidth, kHeight).ray({Vec2(0.5f * kWidth, 0.5f * kHeight), Vec2(0.0f)});
   EXPECT_LT(glm::length(ahead.origin - Vec3(0.5f, 0, 0)), 1e-6f);
   expect_direction(ahead, glm::normalize(Vec3(-0.5f, 0, -2)));
   desc.pole_merge_from = 1.0f;
   desc.pole_merge_to = 1.4f;
   const auto offset_at = [&](float latitude) {
-    return glm::length(Camera(desc, kWidth, kHeight).ray({Vec2(320.0f, (latitude / 3.14159265f + 0.5f) * kHeight), Vec2(0.0f)}).origin);
+    return glm::length(Camera(desc, kWidth, kHeight)
+                           .ray({Vec2(320.0f, (latitude / 3.14159265f + 0.5f) * kHeight), Vec2(0.0f)})
+                           .origin);
   };
   EXPECT_NEAR(offset_at(0.9f), 0.5f, 1e-5f);
   EXPECT_NEAR(offset_at(1.2f), 0.5f * std::sqrt(0.5f), 1e-4f);

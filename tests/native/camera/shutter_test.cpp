@@ -10,13 +10,13 @@
 namespace gradus {
 namespace {
 
-Shutter make_shutter(float open, float close, const std::vector<float>& curve) {
+camera::Shutter make_shutter(float open, float close, const std::vector<float>& curve) {
   GradusCamera camera{};
   camera.shutter_open = open;
   camera.shutter_close = close;
   camera.shutter_curve = curve.empty() ? nullptr : curve.data();
   camera.shutter_curve_count = uint32_t(curve.size());
-  return Shutter(camera);
+  return camera::Shutter(camera);
 }
 
 // Integral of the curve from 0 to x, in proportion to the whole.
@@ -34,9 +34,15 @@ double share_before(const std::vector<float>& curve, double x) {
 }
 
 TEST(Shutter, MomentsAreDistributedAsTheCurveIs) {
-  for (const std::vector<float>& curve :
-       {std::vector<float>{1, 1}, {0, 1}, {1, 0}, {0, 2, 0}, {0, 0, 1, 0, 0}, {3, 1, 0.5f, 4, 4, 0}, {1e-20f, 1e-20f}, {1e20f, 0, 1e20f}}) {
-    const Shutter shutter = make_shutter(-0.25f, 0.25f, curve);
+  for (const std::vector<float>& curve : {std::vector<float>{1, 1},
+                                          {0, 1},
+                                          {1, 0},
+                                          {0, 2, 0},
+                                          {0, 0, 1, 0, 0},
+                                          {3, 1, 0.5f, 4, 4, 0},
+                                          {1e-20f, 1e-20f},
+                                          {1e20f, 0, 1e20f}}) {
+    const camera::Shutter shutter = make_shutter(-0.25f, 0.25f, curve);
     EXPECT_TRUE(shutter.opens());
     for (int i = 0; i < 1000; ++i) {
       const float u = (float(i) + 0.5f) / 1000.0f;
@@ -49,7 +55,7 @@ TEST(Shutter, MomentsAreDistributedAsTheCurveIs) {
 }
 
 TEST(Shutter, WithoutACurveAllMomentsAreAlike) {
-  const Shutter shutter = make_shutter(0.0f, 0.5f, {});
+  const camera::Shutter shutter = make_shutter(0.0f, 0.5f, {});
   EXPECT_EQ(shutter.sample(0.25f), 0.25f);
   EXPECT_FLOAT_EQ(shutter.frame_time(0.5f), 0.25f);
 }

@@ -12,8 +12,8 @@
 
 #include "film/pass_planes.h"
 #include "film_io/store.h"
-#include "render/fake_integrator.h"
 #include "output/pass_read.h"
+#include "render/fake_integrator.h"
 #include "render/resume.h"
 #include "support/refusal.h"
 
@@ -24,7 +24,7 @@ using namespace test;
 
 GradusSettings with_features(uint32_t samples) {
   GradusSettings settings = small_settings(40, 30, samples);
-  settings.passes |= feature_passes();
+  settings.passes |= schema::feature_passes();
   return settings;
 }
 
@@ -35,26 +35,28 @@ GradusSettings without_features(uint32_t samples) {
 }
 
 // A frame that keeps them though nobody asked for them, as the plan may have it.
-Film with_unasked_features() {
-  Film film = *rendered(with_features(6));
+film::Film with_unasked_features() {
+  film::Film film = *rendered(with_features(6));
   film.settings.passes = uint64_t{1} << GRADUS_PASS_COMBINED;
   return film;
 }
 
 struct StoredFeatures : ::testing::Test {
   ~StoredFeatures() override { std::filesystem::remove(path); }
-  const std::string path = (std::filesystem::temp_directory_path() / ("gradus_features_" + std::to_string(getpid()) + ".exr")).string();
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("gradus_features_" + std::to_string(getpid()) + ".exr")).string();
 };
 
 TEST(Features, HalvesAverageToThePass) {
   const auto film = rendered(with_features(5));  // three of the one half, two of the other
-  ASSERT_TRUE(has_features(*film));
-  const Features both = read_features(*film), a = read_features(*film, {0, 1}), b = read_features(*film, {1, 2});
+  ASSERT_TRUE(film::has_features(*film));
+  const film::Features both = film::read_features(*film), a = film::read_features(*film, {0, 1}),
+                       b = film::read_features(*film, {1, 2});
   EXPECT_EQ(both.width, film->region.width());
   EXPECT_EQ(both.height, film->region.height());
   EXPECT_NE(a.normal.values, b.normal.values);
   std::vector<float> pass(size_t(film->region.area()) * 3);
-  read_film_pass(*film, GRADUS_PASS_DENOISING_NORMAL, film->region, pass.data());
+  output::read_film_pass(*film, GRADUS_PASS_DENOISING_NORMAL, film->region, pass.data());
   EXPECT_EQ(both.normal.values, pass);
   EXPECT_TRUE(a.normal.variance.empty());
   for (size_t i = 0; i < pass.size(); ++i) {
@@ -69,18 +71,18 @@ TEST(Features, HalvesAverageToThePass) {
 
 TEST(Features, OneHalfAloneHasNoVariance) {
   const auto film = rendered(with_features(1));
-  const Features features = read_features(*film);
+  const film::Features features = film::read_features(*film);
   const std::vector<float> none(features.albedo.values.size());
   EXPECT_NE(features.albedo.values, none);
-  EXPECT_EQ(read_features(*film, {1, 2}).albedo.values, none);
+  EXPECT_EQ(film::read_features(*film, {1, 2}).albedo.values, none);
   for (const float v : features.albedo.variance) EXPECT_TRUE(std::isnan(v));
 }
 
 TEST(Features, FramesWithoutThemSaySo) {
   const auto film = rendered(without_features(2));
-  EXPECT_FALSE(has_features(*film));
-  EXPECT_THROW(read_features(*film), Error);
-  EXPECT_THROW(read_feature(*rendered(with_features(2)), GRADUS_PASS_NORMAL), Error) << "not kept in halves";
+  EXPECT_FALSE(film::has_features(*film));
+  EXPECT_THROW(film::read_features(*film), Error);
+  EXPECT_THROW(film::read_feature(*rendered(with_features(2)), GRADUS_PASS_NORMAL), Error) << "not kept in halves";
 }
 
 // Counts of pixels and halves differ where tiles stop early.
@@ -92,21 +94,22 @@ TEST(Features, FollowTheCountsOfAdaptiveRenders) {
                               fake->feature_seed = 0;
                             }));
   ASSERT_TRUE(render->wait(-1.0));
-  const std::shared_ptr<const Film> film = render->film();
+  const std::shared_ptr<const film::Film> film = render->film();
   const auto [minimum, maximum] = std::minmax_element(film->count[0].begin(), film->count[0].end());
   ASSERT_LT(*minimum, *maximum);
-  const std::vector<float> depth = read_features(*film).depth.values, primal = read_images(*film, 0).primal;
+  const std::vector<float> depth = film::read_features(*film).depth.values, primal = film::read_images(*film, 0).primal;
   for (size_t i = 0; i < depth.size(); ++i) EXPECT_NEAR(depth[i], primal[3 * i], 1e-5f);  // made so above
 }
 
 TEST(Features, HalvesAreMergedApart) {
   GradusSettings late = with_features(25);
   late.first_sample = 7;
-  Film merged = *rendered(with_features(7));
-  merge_films(&merged, *rendered(late));
+  film::Film merged = *rendered(with_features(7));
+  render::merge_films(&merged, *rendered(late));
   const auto whole = rendered(with_features(32));
-  for (int half = 0; half < kHalves; ++half) {
-    const Features a = read_features(merged, {half, half + 1}), b = read_features(*whole, {half, half + 1});
+  for (int half = 0; half < film::kHalves; ++half) {
+    const film::Features a = film::read_features(merged, {half, half + 1}),
+                         b = film::read_features(*whole, {half, half + 1});
     for (size_t i = 0; i < a.albedo.values.size(); ++i) EXPECT_NEAR(a.albedo.values[i], b.albedo.values[i], 1e-5f);
   }
 }
@@ -118,27 +121,27 @@ TEST(L3_Resume, FeaturesHaveTheSameBits) {
 // A reconstruction that reads them would have met half of the samples, or none.
 TEST(L3_Resume, RefusesFramesThatLackWhatTheReconstructionReads) {
   const GradusSettings settings = without_features(16);
-  Plan plan = make_plan(settings, *empty_snapshot());
+  render::Plan plan = render::make_plan(settings, *empty_snapshot());
   const uint64_t scene = empty_snapshot()->content_key;
-  Film film = *rendered(without_features(8));
-  EXPECT_NO_THROW(check_resumable(film, settings, plan, scene));
-  plan.passes |= feature_passes();
-  EXPECT_THROW(check_resumable(film, settings, plan, scene), Error);
-  EXPECT_NO_THROW(check_resumable(with_unasked_features(), settings, plan, scene));
+  film::Film film = *rendered(without_features(8));
+  EXPECT_NO_THROW(render::check_resumable(film, settings, plan, scene));
+  plan.passes |= schema::feature_passes();
+  EXPECT_THROW(render::check_resumable(film, settings, plan, scene), Error);
+  EXPECT_NO_THROW(render::check_resumable(with_unasked_features(), settings, plan, scene));
 }
 
 TEST_F(StoredFeatures, ComeBackWithTheirHalves) {
-  const Film film = with_unasked_features();
-  save_film(film, path);
-  const auto back = load_film(path);
-  EXPECT_EQ(film_passes(*back), feature_passes());
+  const film::Film film = with_unasked_features();
+  film_io::save_film(film, path);
+  const auto back = film_io::load_film(path);
+  EXPECT_EQ(film::film_passes(*back), schema::feature_passes());
   EXPECT_TRUE(same_samples(film, *back));
-  EXPECT_EQ(read_features(*back).depth.variance, read_features(film).depth.variance);
+  EXPECT_EQ(film::read_features(*back).depth.variance, film::read_features(film).depth.variance);
 }
 
 // Files from before features had halves have one plane of each.
 TEST_F(StoredFeatures, FilesOfAnotherFormatAreRefused) {
-  save_film(*rendered(with_features(2)), path);
+  film_io::save_film(*rendered(with_features(2)), path);
   std::stringstream content;
   content << std::ifstream(path, std::ios::binary).rdbuf();
   std::string bytes = content.str();
@@ -147,7 +150,7 @@ TEST_F(StoredFeatures, FilesOfAnotherFormatAreRefused) {
   ASSERT_NE(format, std::string::npos);
   bytes[format + key.size()] = '3';
   std::ofstream(path, std::ios::binary) << bytes;
-  const std::string refusal = refusal_of([&] { load_film(path); });
+  const std::string refusal = refusal_of([&] { film_io::load_film(path); });
   EXPECT_NE(refusal.find("another version"), std::string::npos) << refusal;
 }
 

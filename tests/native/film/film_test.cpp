@@ -11,40 +11,40 @@
 namespace gradus {
 namespace {
 
-Film small_film() { return Film(4, 3, Region{0, 0, 4, 3}, 3, 1, true); }
+film::Film small_film() { return film::Film(4, 3, Region{0, 0, 4, 3}, 3, 1, true); }
 
-std::vector<float> variances(const Film& film) {
+std::vector<float> variances(const film::Film& film) {
   const size_t row = size_t(film.region.width()) * size_t(film.channels);
   std::vector<float> values(row * size_t(film.region.height()));
-  for (int y = 0; y < film.region.height(); ++y) read_variance_row(film, y, values.data() + row * size_t(y));
+  for (int y = 0; y < film.region.height(); ++y) film::read_variance_row(film, y, values.data() + row * size_t(y));
   return values;
 }
 
 TEST(B6_FiniteCheck, NonFiniteSamplesStayOutAndAreCounted) {
-  Film film = small_film();
-  Counters counters;
+  film::Film film = small_film();
+  film::Counters counters;
   const float bad[] = {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity};
   for (float value : bad) {
-    add_gradient(Radiance(1.0f, value, 0.0f, 0.0f), &film.components[0].gradient[0][kRight][5], &counters);
-    add_radiance(Radiance(value, 0.0f, 0.0f, 0.0f), &film.components[0].primal[0][5], &counters);
+    film::add_gradient(Radiance(1.0f, value, 0.0f, 0.0f), &film.components[0].gradient[0][film::kRight][5], &counters);
+    film::add_radiance(Radiance(value, 0.0f, 0.0f, 0.0f), &film.components[0].primal[0][5], &counters);
   }
   EXPECT_EQ(counters.nonfinite_gradient, 3u);
   EXPECT_EQ(counters.nonfinite_radiance, 3u);
-  for (const Radiance& value : film.components[0].gradient[0][kRight]) {
+  for (const Radiance& value : film.components[0].gradient[0][film::kRight]) {
     EXPECT_EQ(value, Radiance(0.0f));
   }
 }
 
 // Samples of 3e38 are finite, sums of two were not, nor were the mean of both halves and the variance.
 TEST(B6_FiniteCheck, SumsThatWouldOverflowStayOutAndAreCounted) {
-  Film film = small_film();
-  PassPlane plane = make_pass_planes(uint64_t{1} << GRADUS_PASS_DIFFUSE_COLOR, 12)[0];
-  for (int half = 0; half < kHalves; ++half) {
+  film::Film film = small_film();
+  film::PassPlane plane = film::make_pass_planes(uint64_t{1} << GRADUS_PASS_DIFFUSE_COLOR, 12)[0];
+  for (int half = 0; half < film::kHalves; ++half) {
     for (const float value : {3e38f, 6e36f, 6e36f}) {
       const float feature[3] = {value, value, value};
-      add_radiance(Radiance(half == 0 ? value : -value), &film.components[0].primal[half][5], &film.counters);
-      add_gradient(Radiance(value), &film.components[0].gradient[half][kRight][5], &film.counters);
-      add_feature(feature, 1.0f, 5, half, &plane, &film.counters);
+      film::add_radiance(Radiance(half == 0 ? value : -value), &film.components[0].primal[half][5], &film.counters);
+      film::add_gradient(Radiance(value), &film.components[0].gradient[half][film::kRight][5], &film.counters);
+      film::add_feature(feature, 1.0f, 5, half, &plane, &film.counters);
       ++film.count[half][5];
     }
   }
@@ -52,17 +52,17 @@ TEST(B6_FiniteCheck, SumsThatWouldOverflowStayOutAndAreCounted) {
   EXPECT_EQ(film.counters.nonfinite_gradient, 4u);
   EXPECT_EQ(film.counters.nonfinite_feature, 5u);
   EXPECT_EQ(film.components[0].primal[0][5].x, 6e36f);
-  EXPECT_TRUE(is_finite(read_images(film, 0).primal[15]));
+  EXPECT_TRUE(is_finite(film::read_images(film, 0).primal[15]));
   EXPECT_TRUE(is_finite(variances(film)[15]));
 }
 
 TEST(B6_FiniteCheck, NumbersOfObjectsAreThoseOfTheFirstSample) {
-  Counters counters;
-  NonSpecularDetails sum;
-  add_details({Vec3(0.0f), Rgb(5.0f), 1.0f}, &sum, &counters);  // a light has none
+  film::Counters counters;
+  film::NonSpecularDetails sum;
+  film::add_details({Vec3(0.0f), Rgb(5.0f), 1.0f}, &sum, &counters);  // a light has none
   EXPECT_EQ(sum.face, -1.0f);
   for (const auto& [object, sample] : {std::pair{3.0f, 6u}, {4.0f, 2u}, {5.0f, 2u}, {6.0f, 7u}}) {
-    add_details({Vec3(1.0f), Rgb(1.0f), 1.0f, object, 10.0f * object, sample}, &sum, &counters);
+    film::add_details({Vec3(1.0f), Rgb(1.0f), 1.0f, object, 10.0f * object, sample}, &sum, &counters);
   }
   EXPECT_EQ(sum.object, 4.0f);
   EXPECT_EQ(sum.face, 40.0f);
@@ -70,7 +70,7 @@ TEST(B6_FiniteCheck, NumbersOfObjectsAreThoseOfTheFirstSample) {
   EXPECT_EQ(sum.segments, 5.0f);
   EXPECT_EQ(sum.uv, Vec3(4.0f));
   EXPECT_EQ(sum.emission, Rgb(9.0f));
-  add_details({Vec3(1.0f), Rgb(kInfinity), 1.0f}, &sum, &counters);
+  film::add_details({Vec3(1.0f), Rgb(kInfinity), 1.0f}, &sum, &counters);
   EXPECT_EQ(sum.emission, Rgb(9.0f));
   EXPECT_EQ(sum.segments, 5.0f);
   EXPECT_EQ(counters.nonfinite_feature, 1u);
@@ -82,12 +82,14 @@ TEST(Film, BytesPerPixelAreThoseOfAllItsPlanes) {
   for (const int components : {1, 3}) {
     for (const bool gradients : {false, true}) {
       for (const uint64_t passes : {uint64_t{0}, (uint64_t{1} << GRADUS_PASS_COUNT) - 1}) {
-        Film film(4, 3, Region{0, 0, 4, 3}, 4, components, gradients);
-        film.passes = make_pass_planes(passes, kPixels);
+        film::Film film(4, 3, Region{0, 0, 4, 3}, 4, components, gradients);
+        film.passes = film::make_pass_planes(passes, kPixels);
         if (passes != 0) film.fallback.assign(kPixels, 0.0f);
-        for (const ComponentContent& kept : {ComponentContent{}, {.non_specular = true}, {.details = true}, {.motion = true, .shown = true}}) {
-          allocate_component_content(kept, &film);
-          EXPECT_EQ(film.memory_bytes() - sizeof(Film), kPixels * film_bytes_per_pixel(components, gradients, passes, kept));
+        for (const film::ComponentContent& kept :
+             {film::ComponentContent{}, {.non_specular = true}, {.details = true}, {.motion = true, .shown = true}}) {
+          film::allocate_component_content(kept, &film);
+          EXPECT_EQ(film.memory_bytes() - sizeof(film::Film),
+                    kPixels * film::film_bytes_per_pixel(components, gradients, passes, kept));
         }
       }
     }
@@ -96,30 +98,30 @@ TEST(Film, BytesPerPixelAreThoseOfAllItsPlanes) {
 
 // Differences come from the pair's own samples and the way back, each over its count.
 TEST(Film, MergesPairsByTheirCounts) {
-  Film film = small_film();
+  film::Film film = small_film();
   const size_t p = film.index(1, 1);
   const size_t q = film.index(2, 1);
-  film.components[0].gradient[0][kRight][p] = Radiance(6.0f);
-  film.components[0].gradient[0][kLeft][q] = Radiance(-2.0f);
-  film.pair_count[0][kRight][p] = 4.0f;
-  film.pair_count[0][kLeft][q] = 1.0f;
-  const GradientImages images = read_images(film, 0);
+  film.components[0].gradient[0][film::kRight][p] = Radiance(6.0f);
+  film.components[0].gradient[0][film::kLeft][q] = Radiance(-2.0f);
+  film.pair_count[0][film::kRight][p] = 4.0f;
+  film.pair_count[0][film::kLeft][q] = 1.0f;
+  const film::GradientImages images = film::read_images(film, 0);
   EXPECT_FLOAT_EQ(images.dx[3 * p], 3.5f);
-  EXPECT_TRUE(std::isnan(read_half_differences(film, 0).dx[3 * p])) << "absent in one half";
+  EXPECT_TRUE(std::isnan(film::read_half_differences(film, 0).dx[3 * p])) << "absent in one half";
   EXPECT_TRUE(std::isnan(images.dx[3 * q]));
-  film.pair_count[0][kLeft][q] = 0.0f;  // seen from one end alone: absent
-  EXPECT_TRUE(std::isnan(read_images(film, 0).dx[3 * p]));
+  film.pair_count[0][film::kLeft][q] = 0.0f;  // seen from one end alone: absent
+  EXPECT_TRUE(std::isnan(film::read_images(film, 0).dx[3 * p]));
 }
 
 TEST(Film, LastColumnAndRowHaveNoDifference) {
-  Film film = small_film();
-  for (int offset = 0; offset < kOffsets; ++offset) {
+  film::Film film = small_film();
+  for (int offset = 0; offset < film::kOffsets; ++offset) {
     film.components[0].gradient[0][offset].assign(12, Radiance(offset < 2 ? 1.0f : -1.0f));
   }
   for (auto& plane : film.pair_count[0]) {
     plane.assign(12, 1.0f);
   }
-  const GradientImages images = read_images(film, 0);
+  const film::GradientImages images = film::read_images(film, 0);
   EXPECT_EQ(images.dx[3 * film.index(3, 1)], 0.0f);
   EXPECT_EQ(images.dy[3 * film.index(1, 2)], 0.0f);
   EXPECT_EQ(images.dx[3 * film.index(2, 1)], 2.0f);
@@ -127,13 +129,13 @@ TEST(Film, LastColumnAndRowHaveNoDifference) {
 }
 
 TEST(Film, VarianceIsThatOfTheMean) {
-  Film film = small_film();
+  film::Film film = small_film();
   film.count[0].assign(12, 2);
   film.count[1].assign(12, 2);
   film.components[0].primal[0].assign(12, Radiance(2.0f));
   film.components[0].primal[1].assign(12, Radiance(6.0f));
   EXPECT_FLOAT_EQ(variances(film)[0], 1.0f);  // ((1 − 3)/2)²
-  EXPECT_FLOAT_EQ(read_half_differences(film, 0).primal[0], -1.0f);
+  EXPECT_FLOAT_EQ(film::read_half_differences(film, 0).primal[0], -1.0f);
 }
 
 }  // namespace

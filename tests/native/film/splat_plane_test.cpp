@@ -1,4 +1,5 @@
-// Contract 1.3: splats of units of work merge in a fixed order and are normalised globally. A small light tracer stands in for a real one.
+// Contract 1.3: splats of units of work merge in a fixed order and are normalised globally. A small light tracer stands
+// in for a real one.
 #include "film/splat_plane.h"
 
 #include <gtest/gtest.h>
@@ -18,11 +19,11 @@ constexpr uint64_t kPathsPerUnit = 512;
 float truth(int32_t x, int32_t y) { return 1.0f + 0.1f * float(x) + 0.3f * float(y); }
 
 // Light paths that meet the film everywhere around the region; a second splat, as of a longer path, half as bright.
-std::vector<Splat> trace(uint32_t unit) {
+std::vector<film::Splat> trace(uint32_t unit) {
   constexpr int kSide = 16;
   std::mt19937 random(unit);
   std::uniform_int_distribution<int32_t> at(0, kSide - 1);
-  std::vector<Splat> splats;
+  std::vector<film::Splat> splats;
   for (uint64_t i = 0; i < kPathsPerUnit; ++i) {
     for (const float share : {1.0f, 0.5f}) {
       const int32_t x = at(random), y = at(random);
@@ -33,10 +34,10 @@ std::vector<Splat> trace(uint32_t unit) {
 }
 
 std::vector<Radiance> render(int threads) {
-  SplatPlane plane(kRegion);
+  film::SplatPlane plane(kRegion);
   std::atomic<uint32_t> next{0};
   const auto work = [&] {
-    Counters counters;
+    film::Counters counters;
     // Pairs of units in the wrong order.
     for (uint32_t i = next++; i < kUnits; i = next++) plane.merge(i ^ 1u, kPathsPerUnit, trace(i ^ 1u), &counters);
   };
@@ -68,8 +69,8 @@ TEST(Splats, AreNormalisedByThePathsOfTheWholeFrame) {
 }
 
 TEST(Splats, WaitForTheUnitsBeforeThem) {
-  SplatPlane plane(kRegion);
-  Counters counters;
+  film::SplatPlane plane(kRegion);
+  film::Counters counters;
   plane.merge(1, 10, {{3, 2, Radiance(4.0f)}}, &counters);
   EXPECT_EQ(plane.paths(), 0u);
   EXPECT_EQ(plane.mean()[0], Radiance(0.0f));

@@ -9,18 +9,18 @@
 namespace gradus {
 namespace {
 
-Bytes noise(size_t size) {
+film_io::Bytes noise(size_t size) {
   std::mt19937 random(3);
-  Bytes bytes(size);
+  film_io::Bytes bytes(size);
   for (unsigned char& byte : bytes) byte = static_cast<unsigned char>(random());
   return bytes;
 }
 
 // Floats near 1 with low bits that are noise, as sums of samples are.
-Bytes floats(size_t count) {
+film_io::Bytes floats(size_t count) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uniform(1.0f, 2.0f);
-  Bytes bytes(4 * count);
+  film_io::Bytes bytes(4 * count);
   for (size_t i = 0; i < count; ++i) {
     const float value = uniform(random);
     std::memcpy(bytes.data() + 4 * i, &value, sizeof(value));
@@ -29,40 +29,45 @@ Bytes floats(size_t count) {
 }
 
 TEST(BlockCodec, WhatIsPackedComesBack) {
-  BlockCodec codec;
-  Bytes mixed = noise(100000);  // mostly noise, in stretches
+  film_io::BlockCodec codec;
+  film_io::Bytes mixed = noise(100000);  // mostly noise, in stretches
   std::fill(mixed.begin() + 20000, mixed.begin() + 30000, static_cast<unsigned char>(9));
-  for (const Bytes& block : {Bytes(4, 7), Bytes(100000, 0), noise(4), noise(4000), noise(1 << 20), floats(50000), mixed}) {
-    const Bytes packed = codec.pack(block);
+  for (const film_io::Bytes& block :
+       {film_io::Bytes(4, 7), film_io::Bytes(100000, 0), noise(4), noise(4000), noise(1 << 20), floats(50000), mixed}) {
+    const film_io::Bytes packed = codec.pack(block);
     EXPECT_LE(packed.size(), block.size());
-    Bytes back(block.size());
+    film_io::Bytes back(block.size());
     ASSERT_TRUE(codec.unpack(packed.data(), packed.size(), &back));
     EXPECT_EQ(back, block);
   }
 }
 
-TEST(BlockCodec, SameValuesTakeNextToNothing) { EXPECT_LT(BlockCodec().pack(Bytes(1 << 20, 0)).size(), size_t{4096}); }
+TEST(BlockCodec, SameValuesTakeNextToNothing) {
+  EXPECT_LT(film_io::BlockCodec().pack(film_io::Bytes(1 << 20, 0)).size(), size_t{4096});
+}
 
 TEST(BlockCodec, BetweenNoiseTheRestIsPacked) {
-  Bytes block = noise(400000);
+  film_io::Bytes block = noise(400000);
   std::fill(block.begin(), block.begin() + 200000, static_cast<unsigned char>(0));
-  const size_t size = BlockCodec().pack(block).size();
+  const size_t size = film_io::BlockCodec().pack(block).size();
   EXPECT_GE(size, size_t{200000});
   EXPECT_LT(size, size_t{203000});
 }
 
 // Sums of samples took nine tenths of the time that a frame took to be written, and lost a sixth of their size.
-TEST(BlockCodec, SumsOfNoisySamplesStayAsTheyAre) { EXPECT_EQ(BlockCodec().pack(floats(50000)).size(), size_t{200000}); }
+TEST(BlockCodec, SumsOfNoisySamplesStayAsTheyAre) {
+  EXPECT_EQ(film_io::BlockCodec().pack(floats(50000)).size(), size_t{200000});
+}
 
 // It would not get smaller, and readers know it by its size.
-TEST(BlockCodec, NoiseStaysAsItIs) { EXPECT_EQ(BlockCodec().pack(noise(1 << 16)), noise(1 << 16)); }
+TEST(BlockCodec, NoiseStaysAsItIs) { EXPECT_EQ(film_io::BlockCodec().pack(noise(1 << 16)), noise(1 << 16)); }
 
 TEST(BlockCodec, WhatIsBrokenIsRefused) {
-  BlockCodec codec;
-  const Bytes block = floats(20000);
-  Bytes packed = codec.pack(Bytes(80000, 1)), back(block.size());
+  film_io::BlockCodec codec;
+  const film_io::Bytes block = floats(20000);
+  film_io::Bytes packed = codec.pack(film_io::Bytes(80000, 1)), back(block.size());
   EXPECT_FALSE(codec.unpack(packed.data(), packed.size() - 1, &back)) << "cut short";
-  Bytes longer(block.size() + 4), shorter(block.size() - 4);
+  film_io::Bytes longer(block.size() + 4), shorter(block.size() - 4);
   EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &longer));
   EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &shorter));
   packed.push_back(0);

@@ -1,4 +1,5 @@
-// F6: stored frames are exact, whole or absent; damaged ones are refused. And frames read back resume and reconstruct alike.
+// F6: stored frames are exact, whole or absent; damaged ones are refused. And frames read back resume and reconstruct
+// alike.
 #include "film_io/store.h"
 
 #include <ImfChannelList.h>
@@ -65,13 +66,13 @@ TEST_F(F6_Store, RoundTripIsExact) {
   settings.film_transparent = 1;
   settings.frame = -7;
   const auto film = rendered(settings);
-  save_film(*film, path());
+  film_io::save_film(*film, path());
   EXPECT_EQ(files(), 1u);
-  const auto back = load_film(path());
+  const auto back = film_io::load_film(path());
   EXPECT_TRUE(same_samples(*film, *back));
   EXPECT_EQ(film->fallback, back->fallback);
   EXPECT_EQ(film->samples, back->samples);
-  EXPECT_EQ(back->samples.list(), (std::vector<SampleRange>{{0, 8}}));
+  EXPECT_EQ(back->samples.list(), (std::vector<film::SampleRange>{{0, 8}}));
   EXPECT_EQ(back->scene_key, film->scene_key);
   EXPECT_EQ(back->frame_number, -7);
   EXPECT_EQ(back->counters.rays_primary, film->counters.rays_primary);
@@ -83,99 +84,101 @@ TEST_F(F6_Store, RegionsAndPathFramesToo) {
   const uint32_t region[4] = {80, 60, 90, 67};
   std::copy(region, region + 4, settings.region);
   auto film = rendered(settings);
-  save_film(*film, path());
-  EXPECT_TRUE(same_samples(*film, *load_film(path())));
-  EXPECT_EQ(load_film(path())->region.y0, 16);  // 60 less the guard ring, where a square begins
+  film_io::save_film(*film, path());
+  EXPECT_TRUE(same_samples(*film, *film_io::load_film(path())));
+  EXPECT_EQ(film_io::load_film(path())->region.y0, 16);  // 60 less the guard ring, where a square begins
   settings.integrator = GRADUS_INTEGRATOR_PATH;
   film = rendered(settings);
-  save_film(*film, path());
-  EXPECT_TRUE(same_samples(*film, *load_film(path())));
-  EXPECT_FALSE(load_film(path())->gradients);
+  film_io::save_film(*film, path());
+  EXPECT_TRUE(same_samples(*film, *film_io::load_film(path())));
+  EXPECT_FALSE(film_io::load_film(path())->gradients);
 }
 
 TEST_F(F6_Store, L3_ResumeFromAFileHasTheSameBits) {
-  save_film(*rendered(all_passes(40, 30, 16)), path());
-  EXPECT_TRUE(same_samples(*rendered(all_passes(40, 30, 64), load_film(path())), *rendered(all_passes(40, 30, 64))));
+  film_io::save_film(*rendered(all_passes(40, 30, 16)), path());
+  EXPECT_TRUE(
+      same_samples(*rendered(all_passes(40, 30, 64), film_io::load_film(path())), *rendered(all_passes(40, 30, 64))));
 }
 
 TEST_F(F6_Store, ReconstructionFromAFileHasTheSameBits) {
   const auto film = rendered(small_settings(64, 48, 4));
-  save_film(*film, path());
-  SolveReport report;
+  film_io::save_film(*film, path());
+  reconstruct::SolveReport report;
   const auto never = [] { return false; };
   for (const uint32_t kind : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
-    EXPECT_EQ(combine(*film, kind, 0.2f, film->region, never, &report),
-              combine(*load_film(path()), kind, 0.2f, film->region, never, &report));
+    EXPECT_EQ(output::combine(*film, kind, 0.2f, film->region, never, &report),
+              output::combine(*film_io::load_film(path()), kind, 0.2f, film->region, never, &report));
   }
 }
 
 TEST_F(F6_Store, ReplaysKeepWhatTheyReplay) {
-  Film film = *rendered(small_settings(20, 10, 2));
+  film::Film film = *rendered(small_settings(20, 10, 2));
   film.replayed.stream_frame = -3;
   film.replayed.seed = 11;
-  for (int32_t i = 0; i < 200; ++i) film.replayed.correspondence.pixel.push_back(i % 7 == 0 ? kNoCorrespondence : 199 - i);
-  save_film(film, path());
-  EXPECT_EQ(load_film(path())->replayed.stream_frame, -3);
-  EXPECT_EQ(load_film(path())->replayed.seed, 11u);
-  EXPECT_EQ(load_film(path())->replayed.correspondence, film.replayed.correspondence);
+  for (int32_t i = 0; i < 200; ++i)
+    film.replayed.correspondence.pixel.push_back(i % 7 == 0 ? film::kNoCorrespondence : 199 - i);
+  film_io::save_film(film, path());
+  EXPECT_EQ(film_io::load_film(path())->replayed.stream_frame, -3);
+  EXPECT_EQ(film_io::load_film(path())->replayed.seed, 11u);
+  EXPECT_EQ(film_io::load_film(path())->replayed.correspondence, film.replayed.correspondence);
   film.replayed.correspondence.pixel[5] = 200;
-  save_film(film, path());
-  EXPECT_THROW(load_film(path()), Error);
+  film_io::save_film(film, path());
+  EXPECT_THROW(film_io::load_film(path()), Error);
 }
 
 TEST_F(F6_Store, ReplaysKeepWhereWaysEnd) {
-  Film film = *rendered(small_settings(20, 10, 2));
+  film::Film film = *rendered(small_settings(20, 10, 2));
   film.replayed.correspondence.pixel.assign(200, 3);
   film.replayed.correspondence.off_centre.assign(200, Vec2(0.25f, -0.5f));
   film.replayed.correspondence.off_centre[7] = Vec2(-0.125f, 0.0f);
-  save_film(film, path());
-  EXPECT_EQ(load_film(path())->replayed.correspondence, film.replayed.correspondence);
+  film_io::save_film(film, path());
+  EXPECT_EQ(film_io::load_film(path())->replayed.correspondence, film.replayed.correspondence);
 }
 
 // They would take any pixel of the still picture for what is seen, or none.
 TEST_F(F6_Store, WaysThatEndOutsideTheirPixelAreRefused) {
   for (const float wrong : {0.6f, -100.0f, NAN, INFINITY}) {
-    Film film = *rendered(small_settings(20, 10, 2));
+    film::Film film = *rendered(small_settings(20, 10, 2));
     film.replayed.correspondence.pixel.assign(200, 3);
     film.replayed.correspondence.off_centre.assign(200, Vec2(0.0f));
     film.replayed.correspondence.off_centre[7].y = wrong;
-    save_film(film, path());
-    EXPECT_THROW(load_film(path()), Error) << wrong;
+    film_io::save_film(film, path());
+    EXPECT_THROW(film_io::load_film(path()), Error) << wrong;
   }
 }
 
 class F6_StoredComponents : public F6_Store {
  protected:
   // Three, each as bright as its number.
-  Film film() const {
-    Film film = *rendered(small_settings(20, 10, 2));
-    const ComponentPlanes planes = film.components.front();
+  film::Film film() const {
+    film::Film film = *rendered(small_settings(20, 10, 2));
+    const film::ComponentPlanes planes = film.components.front();
     film.components.assign(3, planes);
     for (int c = 0; c < 3; ++c) {
       film.components[size_t(c)].name = kNames[c];
       film.components[size_t(c)].primal[0].assign(200, Radiance(Rgb(float(c + 1)), 0.0f));
     }
-    film.replayed.correspondence.pixel.assign(200, kNoCorrespondence);
+    film.replayed.correspondence.pixel.assign(200, film::kNoCorrespondence);
     film.replayed.of_component = {{}, {}, {std::vector<int32_t>(200, 7)}};
     return film;
   }
-  std::shared_ptr<Film> load(const char* name) const {
-    return load_component(path(), name, StoredContent::kAll, [] { return false; });
+  std::shared_ptr<film::Film> load(const char* name) const {
+    return film_io::load_component(path(), name, film_io::StoredContent::kAll, [] { return false; });
   }
   static constexpr const char* kNames[3] = {"Seen", "Diffuse", "Reflection"};
 };
 
 TEST_F(F6_StoredComponents, ComeBackTogether) {
-  const Film stored = film();
-  save_film(stored, path());
-  const auto back = load_film(path());
+  const film::Film stored = film();
+  film_io::save_film(stored, path());
+  const auto back = film_io::load_film(path());
   EXPECT_TRUE(same_samples(stored, *back));
   EXPECT_EQ(back->replayed.of_component, stored.replayed.of_component);
 }
 
 TEST_F(F6_StoredComponents, AreReadOneByOneWithTheirOwnWays) {
-  const Film stored = film();
-  save_film(stored, path());
+  const film::Film stored = film();
+  film_io::save_film(stored, path());
   for (int c = 0; c < 3; ++c) {
     const auto one = load(kNames[c]);
     ASSERT_EQ(one->components.size(), 1u);
@@ -183,13 +186,14 @@ TEST_F(F6_StoredComponents, AreReadOneByOneWithTheirOwnWays) {
     EXPECT_EQ(one->components[0].primal, stored.components[size_t(c)].primal);
     EXPECT_EQ(one->components[0].gradient, stored.components[size_t(c)].gradient);
     EXPECT_EQ(one->count, stored.count);
-    EXPECT_EQ(one->replayed.correspondence.pixel, c == 2 ? stored.replayed.of_component[2].pixel : stored.replayed.correspondence.pixel);
+    EXPECT_EQ(one->replayed.correspondence.pixel,
+              c == 2 ? stored.replayed.of_component[2].pixel : stored.replayed.correspondence.pixel);
     EXPECT_TRUE(one->replayed.of_component.empty());
   }
 }
 
 TEST_F(F6_StoredComponents, OneThatIsNotThereIsBlack) {
-  save_film(film(), path());
+  film_io::save_film(film(), path());
   const auto one = load("Glass");
   ASSERT_EQ(one->components.size(), 1u);
   EXPECT_EQ(one->components[0].name, "Glass");
@@ -197,10 +201,10 @@ TEST_F(F6_StoredComponents, OneThatIsNotThereIsBlack) {
 }
 
 TEST_F(F6_StoredComponents, WaysToPixelsThatDoNotExistAreRefused) {
-  Film stored = film();
+  film::Film stored = film();
   stored.replayed.of_component[2].pixel[3] = 200;
-  save_film(stored, path());
-  EXPECT_THROW(load_film(path()), Error);
+  film_io::save_film(stored, path());
+  EXPECT_THROW(film_io::load_film(path()), Error);
   EXPECT_THROW(load("Reflection"), Error);
   EXPECT_NO_THROW(load("Seen"));
 }
@@ -235,9 +239,9 @@ void rewrite(const std::string& from, const std::string& to, const Change& chang
 TEST_F(F6_Store, OpenExrReadsItAndWhatOpenExrPackedIsRead) {
   for (const auto& [width, height] : {std::pair{61u, 37u}, {64u, 48u}, {1u, 1u}}) {
     const auto film = rendered(all_passes(width, height, 4));
-    save_film(*film, path());
+    film_io::save_film(*film, path());
     rewrite(path(), path("again.exr"), [](std::vector<Imf::Header>*) {});
-    EXPECT_TRUE(same_samples(*film, *load_film(path("again.exr"))));
+    EXPECT_TRUE(same_samples(*film, *film_io::load_film(path("again.exr"))));
   }
 }
 
@@ -248,22 +252,23 @@ std::vector<std::string> names_of(const Imf::MultiPartInputFile& file) {
 }
 
 TEST_F(F6_Store, PartsAreThereByPurpose) {
-  save_film(*rendered(all_passes(20, 10, 2)), path());
+  film_io::save_film(*rendered(all_passes(20, 10, 2)), path());
   EXPECT_EQ(names_of(Imf::MultiPartInputFile(path().c_str())),
-            (std::vector<std::string>{"samples", "counts", "gradients", "pairs", "Emission", "Environment", "Diffuse_Direct",
-                                      "Diffuse_Indirect", "Glossy_Direct", "Glossy_Indirect", "Transmission_Direct",
-                                      "Transmission_Indirect", "Denoising_Normal", "Denoising_Albedo", "Denoising_Depth", "passes"}));
+            (std::vector<std::string>{"samples", "counts", "gradients", "pairs", "Emission", "Environment",
+                                      "Diffuse_Direct", "Diffuse_Indirect", "Glossy_Direct", "Glossy_Indirect",
+                                      "Transmission_Direct", "Transmission_Indirect", "Denoising_Normal",
+                                      "Denoising_Albedo", "Denoising_Depth", "passes"}));
   GradusSettings settings = small_settings(20, 10, 2);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
   settings.reconstruction = GRADUS_RECONSTRUCTION_NONE;  // reads no features
-  save_film(*rendered(settings), path());
+  film_io::save_film(*rendered(settings), path());
   EXPECT_EQ(names_of(Imf::MultiPartInputFile(path().c_str())), (std::vector<std::string>{"samples", "counts"}));
-  EXPECT_NO_THROW(load_film(path()));
+  EXPECT_NO_THROW(film_io::load_film(path()));
 }
 
 // Readers that throw the parts together lose none.
 TEST_F(F6_Store, NoChannelIsThereTwice) {
-  save_film(*rendered(all_passes(20, 10, 2)), path());
+  film_io::save_film(*rendered(all_passes(20, 10, 2)), path());
   const Imf::MultiPartInputFile file(path().c_str());
   std::set<std::string> names;
   for (int i = 0; i < file.parts(); ++i) {
@@ -275,7 +280,7 @@ TEST_F(F6_Store, NoChannelIsThereTwice) {
 // The first row of the file is the top of the picture (contract 7.2).
 TEST_F(F6_Store, RowsRunDownwards) {
   const auto film = rendered(small_settings(20, 10, 2));
-  save_film(*film, path());
+  film_io::save_film(*film, path());
   Imf::MultiPartInputFile file(path().c_str());
   std::vector<uint32_t> row(20);
   Imf::FrameBuffer buffer;
@@ -308,83 +313,87 @@ void set_format(int format, Imf::Header* header) {
 
 // Replays took the seed of their own frame, and did not tell.
 TEST_F(F6_Store, ReplaysOfEarlierVersionsHaveTheSeedOfTheirFrame) {
-  Film film = *rendered(small_settings(20, 10, 2));
+  film::Film film = *rendered(small_settings(20, 10, 2));
   film.settings.seed = 5;
   film.replayed = {3, {std::vector<int32_t>(200)}, 0, 4};
-  save_film(film, path());
-  EXPECT_EQ(load_header(path()).replayed_seed, 4u);
+  film_io::save_film(film, path());
+  EXPECT_EQ(film_io::load_header(path()).replayed_seed, 4u);
   rewrite(path(), path("earlier.exr"), [](std::vector<Imf::Header>* headers) {
     nlohmann::json j = description_of(headers->front());
     j.erase("replayed_seed");
     headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
   });
-  EXPECT_EQ(load_header(path("earlier.exr")).replayed_seed, 5u);
+  EXPECT_EQ(film_io::load_header(path("earlier.exr")).replayed_seed, 5u);
 }
 
 // The samples of such a film are good: it is read with a warning, and its picture is that of the automatic choice.
 TEST_F(F6_Store, AFilmWhoseReconstructionWasRemovedIsReadWithAWarning) {
-  save_film(*rendered(small_settings(20, 10, 2)), path());
-  EXPECT_TRUE(load_header(path()).warnings.empty());
+  film_io::save_film(*rendered(small_settings(20, 10, 2)), path());
+  EXPECT_TRUE(film_io::load_header(path()).warnings.empty());
   rewrite(path(), path("earlier.exr"), [](std::vector<Imf::Header>* headers) {
     nlohmann::json j = description_of(headers->front());
     j["settings"]["reconstruction"] = "weighted";
     headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
   });
-  EXPECT_EQ(load_film(path("earlier.exr"))->settings.reconstruction, uint32_t{GRADUS_RECONSTRUCTION_AUTO});
-  const std::vector<std::string> warnings = load_header(path("earlier.exr")).warnings;
+  EXPECT_EQ(film_io::load_film(path("earlier.exr"))->settings.reconstruction, uint32_t{GRADUS_RECONSTRUCTION_AUTO});
+  const std::vector<std::string> warnings = film_io::load_header(path("earlier.exr")).warnings;
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("reconstruction weighted was removed"), std::string::npos) << warnings[0];
 }
 
 // Nothing of what components show was kept but the first rough vertices.
 TEST_F(F6_Store, FramesOfEarlierVersionsHaveNoDetailsOfComponents) {
-  save_film(*rendered(small_settings(20, 10, 2)), path());
+  film_io::save_film(*rendered(small_settings(20, 10, 2)), path());
   rewrite(path(), path("earlier.exr"), [](std::vector<Imf::Header>* headers) {
     nlohmann::json j = description_of(headers->front());
     ASSERT_EQ(j.erase("details"), 1u);
     headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
   });
-  EXPECT_FALSE(load_header(path("earlier.exr")).of_components.details);
-  EXPECT_TRUE(load_film(path("earlier.exr"))->components[0].details.empty());
+  EXPECT_FALSE(film_io::load_header(path("earlier.exr")).of_components.details);
+  EXPECT_TRUE(film_io::load_film(path("earlier.exr"))->components[0].details.empty());
 }
 
 TEST_F(F6_StoredComponents, HaveTheirDetails) {
-  Film stored = film();
-  allocate_component_content({.details = true}, &stored);
+  film::Film stored = film();
+  film::allocate_component_content({.details = true}, &stored);
   float value = 0.0f;
-  for (ComponentPlanes& planes : stored.components) {
-    for (NonSpecularDetails& details : planes.details) {
+  for (film::ComponentPlanes& planes : stored.components) {
+    for (film::NonSpecularDetails& details : planes.details) {
       ++value;
       details = {Vec3(value, 2, 3), Rgb(4, value, 6), 7 * value, 8 * value, value, uint32_t(value)};
     }
   }
   stored.components[1].details[4] = {};
-  save_film(stored, path());
-  const auto same = [](const std::vector<NonSpecularDetails>& a, const std::vector<NonSpecularDetails>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(NonSpecularDetails)) == 0;
+  film_io::save_film(stored, path());
+  const auto same = [](const std::vector<film::NonSpecularDetails>& a, const std::vector<film::NonSpecularDetails>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(film::NonSpecularDetails)) == 0;
   };
-  const auto back = load_film(path());
+  const auto back = film_io::load_film(path());
   for (size_t c = 0; c < 3; ++c) {
     EXPECT_TRUE(same(back->components[c].details, stored.components[c].details));
     EXPECT_TRUE(same(load(kNames[c])->components[0].details, stored.components[c].details));
   }
-  for (const NonSpecularDetails& details : load("Glass")->components[0].details) ASSERT_EQ(details.sample, kNoSample);
+  for (const film::NonSpecularDetails& details : load("Glass")->components[0].details)
+    ASSERT_EQ(details.sample, film::kNoSample);
 }
 
 TEST_F(F6_Store, ForeignFilesAreRefusedByName) {
-  save_film(*rendered(all_passes(32, 32, 1)), path());
+  film_io::save_film(*rendered(all_passes(32, 32, 1)), path());
   const Refusal refusals[] = {
-      {"it was written by another version of Gradus", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { set_format(3, &h->front()); }},
+      {"it was written by another version of Gradus", GRADUS_ERROR_INVALID_ARGUMENT,
+       [](auto* h) { set_format(3, &h->front()); }},
       {"it is no frame of Gradus", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { h->front().erase("gradus"); }},
-      {"it was packed by another program", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { (*h)[1].compression() = Imf::PIZ_COMPRESSION; }},
+      {"it was packed by another program", GRADUS_ERROR_INVALID_ARGUMENT,
+       [](auto* h) { (*h)[1].compression() = Imf::PIZ_COMPRESSION; }},
       {"it has parts of something else", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { h->pop_back(); }},
       {"part gradients is missing", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { (*h)[2].setName("other"); }},
-      {"channel A.R is missing", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { h->front().channels()["A.R"].type = Imf::HALF; }},
+      {"channel A.R is missing", GRADUS_ERROR_INVALID_ARGUMENT,
+       [](auto* h) { h->front().channels()["A.R"].type = Imf::HALF; }},
   };
   for (const Refusal& refusal : refusals) {
     rewrite(path(), path("foreign.exr"), refusal.change);
     try {
-      load_film(path("foreign.exr"));
+      film_io::load_film(path("foreign.exr"));
       ADD_FAILURE() << refusal.what;
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), refusal.code);
@@ -396,18 +405,18 @@ TEST_F(F6_Store, ForeignFilesAreRefusedByName) {
 
 // Versions before multi-part files wrote one part without a name.
 TEST_F(F6_Store, FramesOfOnePartAreOfAnotherVersion) {
-  save_film(*rendered(small_settings(32, 32, 1)), path());
+  film_io::save_film(*rendered(small_settings(32, 32, 1)), path());
   Imf::Header header(32, 32);
   header.insert("gradus", Imf::MultiPartInputFile(path().c_str()).header(0)["gradus"]);
   set_format(3, &header);
   header.channels().insert("component0.A.primal.R", Imf::Channel(Imf::FLOAT));
   { Imf::OutputFile(path("old.exr").c_str(), header); }
-  const std::string refusal = refusal_of([&] { load_film(path("old.exr")); });
+  const std::string refusal = refusal_of([&] { film_io::load_film(path("old.exr")); });
   EXPECT_NE(refusal.find("it was written by another version of Gradus"), std::string::npos) << refusal;
 }
 
 TEST_F(F6_Store, AFrameLargerThanTheMemoryIsRefused) {
-  save_film(*rendered(small_settings(32, 32, 1)), path());
+  film_io::save_film(*rendered(small_settings(32, 32, 1)), path());
   const Imf::MultiPartInputFile file(path().c_str());
   std::vector<Imf::Header> headers;
   for (int i = 0; i < file.parts(); ++i) {
@@ -417,7 +426,7 @@ TEST_F(F6_Store, AFrameLargerThanTheMemoryIsRefused) {
   }
   { Imf::MultiPartOutputFile(path("large.exr").c_str(), headers.data(), int(headers.size())); }
   try {
-    load_film(path("large.exr"));
+    film_io::load_film(path("large.exr"));
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), GRADUS_ERROR_OUT_OF_MEMORY) << e.what();
@@ -426,14 +435,14 @@ TEST_F(F6_Store, AFrameLargerThanTheMemoryIsRefused) {
 
 TEST_F(F6_Store, FailuresNameThePath) {
   const auto film = rendered(small_settings(8, 8, 1));
-  const std::string refusal = refusal_of([&] { save_film(*film, path("missing/folder/frame.exr")); });
+  const std::string refusal = refusal_of([&] { film_io::save_film(*film, path("missing/folder/frame.exr")); });
   EXPECT_NE(refusal.find("missing/folder/frame.exr"), std::string::npos) << refusal;
-  EXPECT_THROW(load_film(path("absent.exr")), Error);
-  EXPECT_THROW(load_film(folder.string()), Error);
+  EXPECT_THROW(film_io::load_film(path("absent.exr")), Error);
+  EXPECT_THROW(film_io::load_film(folder.string()), Error);
 }
 
 TEST_F(F6_Store, DamagedFilesAreRefusedOrRead) {
-  save_film(*rendered(small_settings(48, 40, 2)), path());
+  film_io::save_film(*rendered(small_settings(48, 40, 2)), path());
   std::ifstream file(path(), std::ios::binary);
   const std::vector<char> good{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   std::mt19937 random(3);
@@ -443,11 +452,12 @@ TEST_F(F6_Store, DamagedFilesAreRefusedOrRead) {
     if (round % 2 == 0) {
       bad.resize(random() % bad.size());
     } else {
-      for (int i = 0; i < 8; ++i) bad[random() % std::min<size_t>(bad.size(), round % 4 == 1 ? 4096 : bad.size())] = char(random());
+      for (int i = 0; i < 8; ++i)
+        bad[random() % std::min<size_t>(bad.size(), round % 4 == 1 ? 4096 : bad.size())] = char(random());
     }
     std::ofstream(path("bad.exr"), std::ios::binary).write(bad.data(), std::streamsize(bad.size()));
     try {
-      load_film(path("bad.exr"));
+      film_io::load_film(path("bad.exr"));
     } catch (const Error&) {
       ++refused;
     }
@@ -458,25 +468,25 @@ TEST_F(F6_Store, DamagedFilesAreRefusedOrRead) {
 // They were delivered as they were, and a number of an object that is none was cast to an integer.
 TEST_F(F6_Store, NumbersThatNoComponentHasAreRefused) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const auto sound = std::make_shared<Film>(*rendered(small_settings(48, 40, 2)));
-  allocate_component_content({true, true, true, true}, sound.get());
-  const auto refusal_with = [&](const std::function<void(ComponentPlanes*)>& damage) {
-    Film film = *sound;
+  const auto sound = std::make_shared<film::Film>(*rendered(small_settings(48, 40, 2)));
+  film::allocate_component_content({true, true, true, true}, sound.get());
+  const auto refusal_with = [&](const std::function<void(film::ComponentPlanes*)>& damage) {
+    film::Film film = *sound;
     damage(&film.components[0]);
-    save_film(film, path());
-    return refusal_of([&] { load_film(path()); });
+    film_io::save_film(film, path());
+    return refusal_of([&] { film_io::load_film(path()); });
   };
-  const auto load_it = [&] { load_film(path()); };
-  save_film(*sound, path());
+  const auto load_it = [&] { film_io::load_film(path()); };
+  film_io::save_film(*sound, path());
   EXPECT_NO_THROW(load_it());
-  const std::pair<const char*, std::function<void(ComponentPlanes*)>> damages[] = {
-      {"motion", [&](ComponentPlanes* planes) { planes->motion[7].z = nan; }},
-      {"lost motion", [&](ComponentPlanes* planes) { planes->tracked[1900] = nan; }},
-      {"rough vertices", [&](ComponentPlanes* planes) { planes->non_specular[1][3].normal.y = nan; }},
-      {"details", [&](ComponentPlanes* planes) { planes->details[9].uv.x = nan; }},
-      {"shown points", [&](ComponentPlanes* planes) { planes->shown[11].object = nan; }},
-      {"shown points", [&](ComponentPlanes* planes) { planes->shown[11].object = 1e20f; }},
-      {"shown points", [&](ComponentPlanes* planes) { planes->shown[11].depth = kInfinity; }},
+  const std::pair<const char*, std::function<void(film::ComponentPlanes*)>> damages[] = {
+      {"motion", [&](film::ComponentPlanes* planes) { planes->motion[7].z = nan; }},
+      {"lost motion", [&](film::ComponentPlanes* planes) { planes->tracked[1900] = nan; }},
+      {"rough vertices", [&](film::ComponentPlanes* planes) { planes->non_specular[1][3].normal.y = nan; }},
+      {"details", [&](film::ComponentPlanes* planes) { planes->details[9].uv.x = nan; }},
+      {"shown points", [&](film::ComponentPlanes* planes) { planes->shown[11].object = nan; }},
+      {"shown points", [&](film::ComponentPlanes* planes) { planes->shown[11].object = 1e20f; }},
+      {"shown points", [&](film::ComponentPlanes* planes) { planes->shown[11].depth = kInfinity; }},
   };
   for (const auto& [what, damage] : damages) {
     const std::string refusal = refusal_with(damage);
@@ -487,7 +497,7 @@ TEST_F(F6_Store, NumbersThatNoComponentHasAreRefused) {
 
 // OpenEXR allows a block of sixteen rows where the picture has three.
 TEST_F(F6_Store, ABlockThatClaimsMoreRowsThanThereAreIsRefused) {
-  save_film(*rendered(small_settings(48, 3, 2)), path());
+  film_io::save_film(*rendered(small_settings(48, 3, 2)), path());
   std::ifstream file(path(), std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   const auto size_at = [&](size_t i) {
@@ -502,12 +512,12 @@ TEST_F(F6_Store, ABlockThatClaimsMoreRowsThanThereAreIsRefused) {
   std::memcpy(bytes.data() + place, &claimed, sizeof(claimed));
   bytes.resize(bytes.size() + size_t(claimed));
   std::ofstream(path("bad.exr"), std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
-  EXPECT_THROW(load_film(path("bad.exr")), Error);
+  EXPECT_THROW(film_io::load_film(path("bad.exr")), Error);
 }
 
 TEST_F(F6_Store, KilledAtAnyMomentLeavesAWholeFileOrNone) {
   const auto film = rendered(all_passes(96, 64, 2));
-  save_film(*film, path("reference.exr"));
+  film_io::save_film(*film, path("reference.exr"));
   std::mt19937 random(5);
   int whole = 0;
   for (int round = 0; round < 20; ++round) {
@@ -515,7 +525,7 @@ TEST_F(F6_Store, KilledAtAnyMomentLeavesAWholeFileOrNone) {
     fs::remove(target);
     const pid_t child = fork();
     if (child == 0) {
-      for (;;) save_film(*film, target);
+      for (;;) film_io::save_film(*film, target);
     }
     // Every other time after the first whole file, so that both cases are met however slow the machine is.
     while (round % 2 == 0 && !fs::exists(target)) usleep(1000);
@@ -524,16 +534,16 @@ TEST_F(F6_Store, KilledAtAnyMomentLeavesAWholeFileOrNone) {
     waitpid(child, nullptr, 0);
     if (!fs::exists(target)) continue;
     ++whole;
-    EXPECT_TRUE(same_samples(*film, *load_film(target)));
+    EXPECT_TRUE(same_samples(*film, *film_io::load_film(target)));
   }
   EXPECT_GE(whole, 10);
 }
 
 // One of them wins, whoever reads meanwhile sees a whole frame of one or the other.
 TEST_F(F6_Store, WritersOfOneFrameDoNotMeet) {
-  const std::shared_ptr<const Film> frames[] = {rendered(all_passes(64, 48, 1)), rendered(all_passes(64, 48, 2))};
+  const std::shared_ptr<const film::Film> frames[] = {rendered(all_passes(64, 48, 1)), rendered(all_passes(64, 48, 2))};
   const auto write = [&](int n) {
-    for (int i = 0; i < 20; ++i) save_film(*frames[n], path());
+    for (int i = 0; i < 20; ++i) film_io::save_film(*frames[n], path());
   };
   write(0);
   pid_t processes[2];
@@ -553,7 +563,7 @@ TEST_F(F6_Store, WritersOfOneFrameDoNotMeet) {
     });
   }
   while (writing > 0) {
-    const auto seen = load_film(path());
+    const auto seen = film_io::load_film(path());
     EXPECT_TRUE(same_samples(*seen, *frames[0]) || same_samples(*seen, *frames[1]));
   }
   for (std::thread& thread : threads) thread.join();
@@ -573,13 +583,13 @@ bool limit_files_to(rlim_t bytes) {
 
 TEST_F(F6_Store, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
   const auto film = rendered(all_passes(96, 64, 2));
-  save_film(*film, path("old.exr"));
-  const auto what = failure_of([] { return limit_files_to(100000); }, [&] { save_film(*film, path()); });
+  film_io::save_film(*film, path("old.exr"));
+  const auto what = failure_of([] { return limit_files_to(100000); }, [&] { film_io::save_film(*film, path()); });
   ASSERT_TRUE(what);
   EXPECT_NE(what->find("cannot write " + path() + ": File too large"), std::string::npos) << *what;
   EXPECT_EQ(files(), 1u);
-  EXPECT_NE(failure_of([] { return limit_files_to(100000); }, [&] { save_film(*film, path("old.exr")); }), "");
-  EXPECT_TRUE(same_samples(*film, *load_film(path("old.exr")))) << "the frame that was there remains";
+  EXPECT_NE(failure_of([] { return limit_files_to(100000); }, [&] { film_io::save_film(*film, path("old.exr")); }), "");
+  EXPECT_TRUE(same_samples(*film, *film_io::load_film(path("old.exr")))) << "the frame that was there remains";
 }
 
 // True when it has been asked that often. By several threads.
@@ -607,30 +617,33 @@ TEST_F(F6_Store, K2_ACancelledWriteLeavesWhatWasThere) {
   const auto left_by = [&](size_t kept) {
     return cancels_of([&](const CancelCheck& cancel) {
       EXPECT_EQ(files(), kept);
-      EXPECT_TRUE(kept == 0 || same_samples(*load_film(path()), *other));
-      save_film(*film, path(), {.cancel = cancel});
+      EXPECT_TRUE(kept == 0 || same_samples(*film_io::load_film(path()), *other));
+      film_io::save_film(*film, path(), {.cancel = cancel});
     });
   };
   EXPECT_GT(left_by(0), 3) << "of four blocks at least";
-  save_film(*other, path());
+  film_io::save_film(*other, path());
   EXPECT_GT(left_by(1), 3);
-  EXPECT_TRUE(same_samples(*load_film(path()), *film));
+  EXPECT_TRUE(same_samples(*film_io::load_film(path()), *film));
 }
 
 TEST_F(F6_Store, K2_ACancelIsHeardWhileAFileIsRead) {
   const auto film = rendered(all_passes(96, 64, 2));
-  save_film(*film, path());
-  std::shared_ptr<const Film> read;
-  EXPECT_GT(cancels_of([&](const CancelCheck& cancel) { read = load_film(path(), StoredContent::kAll, cancel); }), 3);
+  film_io::save_film(*film, path());
+  std::shared_ptr<const film::Film> read;
+  EXPECT_GT(cancels_of([&](const CancelCheck& cancel) {
+              read = film_io::load_film(path(), film_io::StoredContent::kAll, cancel);
+            }),
+            3);
   EXPECT_TRUE(same_samples(*read, *film));
 }
 
 // All of it was synced at the end of a file: half a frame of 4K for many seconds, in which no cancel is heard.
 TEST_F(F6_Store, K2_ALongFileIsSyncedWhileItIsWritten) {
   const std::vector<char> bytes(33 << 20);
-  for (const auto& [durable, syncs] : {std::pair(Durable::kYes, 1), {Durable::kNo, 0}}) {
+  for (const auto& [durable, syncs] : {std::pair(film_io::Durable::kYes, 1), {film_io::Durable::kNo, 0}}) {
     const int before = synced_files;
-    FileWriter writer(path(), durable);
+    film_io::FileWriter writer(path(), durable);
     writer.write(bytes.data(), bytes.size());
     EXPECT_EQ(synced_files, before + syncs);
   }
@@ -642,7 +655,7 @@ TEST_F(F6_Store, AFullDiskIsAnErrorAndLeavesNothing) {
   const auto what = failure_of([&] { return mount_disk(folder, "100k"); },
                                [&] {
                                  try {
-                                   save_film(*film, path());
+                                   film_io::save_film(*film, path());
                                  } catch (...) {
                                    if (files() > 0) throw std::runtime_error("something is left");
                                    throw;
@@ -654,9 +667,10 @@ TEST_F(F6_Store, AFullDiskIsAnErrorAndLeavesNothing) {
 
 TEST_F(F6_Store, AFolderThatIsReadOnlyIsNamed) {
   const auto film = rendered(small_settings(8, 8, 1));
-  fs::permissions(folder, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
+  fs::permissions(folder,
+                  fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
   const auto become_nobody = [] { return geteuid() != 0 || setuid(65534) == 0; };  // permissions do not hold for root
-  const auto what = failure_of(become_nobody, [&] { save_film(*film, path()); });
+  const auto what = failure_of(become_nobody, [&] { film_io::save_film(*film, path()); });
   fs::permissions(folder, fs::perms::owner_all);
   ASSERT_TRUE(what);
   EXPECT_NE(what->find("cannot create " + path() + ": Permission denied"), std::string::npos) << *what;
@@ -664,7 +678,7 @@ TEST_F(F6_Store, AFolderThatIsReadOnlyIsNamed) {
 
 TEST_F(F6_Store, AnAbandonedWriterLeavesNothing) {
   {
-    FileWriter writer(path("half"));
+    film_io::FileWriter writer(path("half"));
     writer.write("abc", 3);
   }
   EXPECT_EQ(files(), 0u);
@@ -674,11 +688,11 @@ TEST_F(F6_Store, ASecondNameTakesThePlaceOfWhatHadIt) {
   std::ofstream(path("a")) << "new";
   std::ofstream(path("b")) << "old";
   for (int time = 0; time < 2; ++time) {
-    EXPECT_TRUE(hard_link_file(path("a"), path("b")));
+    EXPECT_TRUE(film_io::hard_link_file(path("a"), path("b")));
     EXPECT_TRUE(fs::equivalent(path("a"), path("b")));
     EXPECT_EQ(files(), 2u);
   }
-  EXPECT_FALSE(hard_link_file(path("missing"), path("b")));
+  EXPECT_FALSE(film_io::hard_link_file(path("missing"), path("b")));
   EXPECT_EQ(files(), 2u);
 }
 
@@ -686,29 +700,29 @@ TEST_F(F6_Store, ASecondNameTakesThePlaceOfWhatHadIt) {
 TEST_F(F6_Store, WhatDeadWritersHaveLeftIsRemoved) {
   const pid_t child = fork();
   if (child == 0) {
-    FileWriter first(path("a.exr")), second(path("a.exr"));
+    film_io::FileWriter first(path("a.exr")), second(path("a.exr"));
     _exit(0);
   }
   waitpid(child, nullptr, 0);
   std::ofstream(path("b.exr." + std::to_string(child) + ".another-host.part")) << "of a machine that shares the folder";
   std::ofstream(path("notes." + std::to_string(child))) << "of someone else";
   ASSERT_EQ(files(), 4u);
-  FileWriter writer(path("c.exr"));
+  film_io::FileWriter writer(path("c.exr"));
   EXPECT_EQ(files(), 3u);  // and the new one
-  FileWriter other(path("c.exr"));
+  film_io::FileWriter other(path("c.exr"));
   EXPECT_EQ(files(), 4u) << "those that live keep theirs";
 }
 
 // Each frame of a long animation looked through the files of all those before it.
 TEST_F(F6_Store, AProcessLooksThroughAFolderOnce) {
-  FileWriter writer(path("a.exr"));
+  film_io::FileWriter writer(path("a.exr"));
   const pid_t child = fork();
   if (child == 0) {
-    FileWriter first(path("b.exr"));
+    film_io::FileWriter first(path("b.exr"));
     _exit(0);
   }
   waitpid(child, nullptr, 0);
-  FileWriter other(path("c.exr"));
+  film_io::FileWriter other(path("c.exr"));
   EXPECT_EQ(files(), 3u) << "what the child has left is the next process's to remove";
 }
 

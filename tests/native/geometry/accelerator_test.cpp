@@ -1,4 +1,5 @@
-// What rests is built once and shared by the snapshots; what moves lies beside it, and rays meet both as if they were one.
+// What rests is built once and shared by the snapshots; what moves lies beside it, and rays meet both as if they were
+// one.
 #include <algorithm>
 #include <ostream>
 
@@ -36,10 +37,10 @@ struct Answer {
   bool operator==(const Answer&) const = default;
 };
 
-std::vector<Answer> ask(const Snapshot& snapshot, const Queries& queries) {
+std::vector<Answer> ask(const scene::Snapshot& snapshot, const Queries& queries) {
   std::vector<Answer> answers;
   for (const Ray& ray : queries.rays) {
-    Hit hit;
+    geometry::Hit hit;
     Answer& a = answers.emplace_back();
     a.hit = snapshot.intersect(ray, GRADUS_VISIBLE_CAMERA, &hit);
     a.blocked = snapshot.occluded(ray);
@@ -50,11 +51,11 @@ std::vector<Answer> ask(const Snapshot& snapshot, const Queries& queries) {
 }
 
 // Packets of four give what single rays give.
-void expect_packets_agree(const Snapshot& snapshot, const Queries& queries, const std::vector<Answer>& answers) {
+void expect_packets_agree(const scene::Snapshot& snapshot, const Queries& queries, const std::vector<Answer>& answers) {
   for (size_t i = 0; i + 4 <= queries.rays.size(); i += 4) {
-    Hit hits[4];
+    geometry::Hit hits[4];
     snapshot.intersect4(&queries.rays[i], GRADUS_VISIBLE_CAMERA, hits);
-    Rays4 rays{};
+    geometry::Rays4 rays{};
     rays.time = queries.rays[i].time;
     const bool wanted[4] = {true, true, true, true};
     bool blocked[4];
@@ -62,8 +63,8 @@ void expect_packets_agree(const Snapshot& snapshot, const Queries& queries, cons
       const Ray& ray = queries.rays[i + size_t(k)];
       EXPECT_EQ(hits[k].valid(), answers[i + size_t(k)].hit);
       EXPECT_EQ(hits[k].instance, answers[i + size_t(k)].instance);
-      set_lane(k, ray.origin, &rays.origin);
-      set_lane(k, ray.direction, &rays.direction);
+      geometry::set_lane(k, ray.origin, &rays.origin);
+      geometry::set_lane(k, ray.direction, &rays.direction);
       rays.t_max[k] = ray.t_max;
     }
     snapshot.occluded4(rays, wanted, blocked);
@@ -83,12 +84,12 @@ void furnish(TestScene* scene, int side) {
   scene->instance(2, translation(Vec3(1, 2, 0)));
 }
 
-bool holds(const Accelerator& accelerator, const GeometryGroup* group) {
+bool holds(const geometry::Accelerator& accelerator, const geometry::GeometryGroup* group) {
   return accelerator.static_part.group.get() == group || accelerator.moving.group.get() == group;
 }
 
 // Triangles in the top levels of `now` that those of `before` do not share.
-uint64_t built_triangles(const Accelerator& now, const Accelerator& before) {
+uint64_t built_triangles(const geometry::Accelerator& now, const geometry::Accelerator& before) {
   uint64_t sum = 0;
   for (const auto* group : {now.static_part.group.get(), now.moving.group.get()}) {
     if (!group || holds(before, group)) continue;
@@ -105,7 +106,7 @@ struct Hints {
   void (*show)(TestScene* scene, int frame);
 };
 
-std::shared_ptr<const Snapshot> show_frame(TestScene* scene, int frame, const Hints& hints) {
+std::shared_ptr<const scene::Snapshot> show_frame(TestScene* scene, int frame, const Hints& hints) {
   while (scene->instance_count() > 0) scene->remove_last();
   scene->mesh(2, sphere(Vec3(0.0f), 1.0f, 20, 20));
   scene->instance(1);
@@ -123,12 +124,12 @@ class AcceleratorHints : public testing::TestWithParam<Hints> {};
 TEST(Accelerator, WhatRestsIsBuiltOnceAndSharedByTheFrames) {
   TestScene scene;
   furnish(&scene, kSoupSide);
-  std::weak_ptr<const GeometryGroup> static_part, moving;
+  std::weak_ptr<const geometry::GeometryGroup> static_part, moving;
   for (int frame = 1; frame < 5; ++frame) {
     scene.matrices_before = {Mat4(1.0f), translation(Vec3(float(frame - 1), 2, 0))};
     scene.move(1, translation(Vec3(float(frame), 2, 0)));
     const auto snapshot = scene.commit();
-    const Accelerator& built = *snapshot->accelerator;
+    const geometry::Accelerator& built = *snapshot->accelerator;
     ASSERT_TRUE(built.moving.group);
     EXPECT_EQ(built.static_part.instances, std::vector<uint32_t>{0});
     EXPECT_EQ(built.moving.instances, std::vector<uint32_t>{1});
@@ -138,8 +139,9 @@ TEST(Accelerator, WhatRestsIsBuiltOnceAndSharedByTheFrames) {
     EXPECT_NE(built.moving.group, moving.lock());
     static_part = built.static_part.group;
     moving = built.moving.group;
-    Hit hit;
-    ASSERT_TRUE(snapshot->intersect({Vec3(float(frame), 2, 5), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
+    geometry::Hit hit;
+    ASSERT_TRUE(
+        snapshot->intersect({Vec3(float(frame), 2, 5), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
     EXPECT_EQ(hit.instance, 1u);
     EXPECT_NEAR(hit.t, 4.0f, 1e-3f);
   }
@@ -182,7 +184,7 @@ TEST(Accelerator, BlurredInstancesLieBesideASmallScene) {
     const auto moment = still.commit();
     for (Ray ray : queries.rays) {
       ray.time = time;
-      Hit a, b;
+      geometry::Hit a, b;
       moment->intersect(ray, GRADUS_VISIBLE_CAMERA, &a);
       snapshot->intersect(ray, GRADUS_VISIBLE_CAMERA, &b);
       if (a.instance == 2 || b.instance == 2) {
@@ -200,7 +202,7 @@ TEST(Accelerator, WhatMayMoveLiesBesideALargeSceneThatRests) {
     const auto snapshot = scene.commit();
     const std::vector<uint32_t> moving = side == kSoupSide ? std::vector<uint32_t>{2} : std::vector<uint32_t>{};
     EXPECT_EQ(snapshot->accelerator->moving.instances, moving);
-    Hit hit;
+    geometry::Hit hit;
     ASSERT_TRUE(snapshot->intersect({Vec3(0, -3, 5), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
     EXPECT_EQ(hit.instance, 2u);
     EXPECT_TRUE(snapshot->occluded({Vec3(0, -3, 5), 0.0f, Vec3(0, 0, -1), 6.0f}));
@@ -245,7 +247,9 @@ constexpr uint32_t kFixed = GRADUS_VISIBLE_ALL;
 INSTANTIATE_TEST_SUITE_P(
     All, AcceleratorHints,
     testing::Values(Hints{"MovesUntold",
-                          [](TestScene* scene, int frame) { scene->instance(2, translation(Vec3(-3, float(frame), 0)), kFixed); }},
+                          [](TestScene* scene, int frame) {
+                            scene->instance(2, translation(Vec3(-3, float(frame), 0)), kFixed);
+                          }},
                     Hints{"DeformsUntold",
                           [](TestScene* scene, int frame) {
                             scene->mesh(3, sphere(Vec3(0.0f), 0.5f + 0.25f * float(frame), 20, 20));
@@ -264,10 +268,12 @@ INSTANTIATE_TEST_SUITE_P(
                             scene->instance(2, translation(Vec3(-3, 0, 0)),
                                             frame == 2 ? kFixed & ~uint32_t(GRADUS_VISIBLE_CAMERA) : kFixed);
                           }},
-                    Hints{"RestsThoughTold", [](TestScene* scene, int) { scene->instance(2, translation(Vec3(-3, 0, 0)), kMayMove); }},
+                    Hints{"RestsThoughTold",
+                          [](TestScene* scene, int) { scene->instance(2, translation(Vec3(-3, 0, 0)), kMayMove); }},
                     Hints{"IsToldNowAndThen",
                           [](TestScene* scene, int frame) {
-                            scene->instance(2, translation(Vec3(-3, float(frame / 2), 0)), frame == 2 ? kMayMove : kFixed);
+                            scene->instance(2, translation(Vec3(-3, float(frame / 2), 0)),
+                                            frame == 2 ? kMayMove : kFixed);
                           }}),
     [](const testing::TestParamInfo<Hints>& info) { return std::string(info.param.name); });
 
@@ -305,7 +311,7 @@ TEST(Accelerator, TheSameListIsSharedWhereItsPlacesChange) {
   EXPECT_EQ(first->accelerator->static_part.group, second->accelerator->static_part.group);
   EXPECT_EQ(second->accelerator->static_part.instances, std::vector<uint32_t>{3});
   for (const Answer& a : ask(*second, queries)) EXPECT_LT(a.hit ? a.instance : 0, 4u);
-  Hit hit;
+  geometry::Hit hit;
   ASSERT_TRUE(second->intersect({Vec3(0, 0, 0), 0.0f, Vec3(0, 0, 1), kInfinity, 0.5f}, GRADUS_VISIBLE_CAMERA, &hit));
   EXPECT_EQ(hit.instance, 3u);
   ASSERT_TRUE(first->intersect({Vec3(0, 0, 0), 0.0f, Vec3(0, 0, 1), kInfinity, 0.5f}, GRADUS_VISIBLE_CAMERA, &hit));
@@ -332,7 +338,7 @@ TEST(Accelerator, AChangeOfWhatRestsIsSeen) {
   const auto second = scene.commit();
   EXPECT_NE(first->accelerator->static_part.group, second->accelerator->static_part.group);
   EXPECT_EQ(first->accelerator->moving.group, second->accelerator->moving.group);
-  Hit hit;
+  geometry::Hit hit;
   ASSERT_TRUE(second->intersect({Vec3(0, 0, 0), 0.0f, Vec3(0, 0, 1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
   EXPECT_NEAR(hit.t, 6.0f, 1e-3f);
 }
@@ -343,7 +349,7 @@ TEST(RayBox, NeverLosesARayThatMeetsIt) {
   for (int i = 0; i < 200000; ++i) {
     const float size = std::pow(10.0f, 4.0f * unit(random)), far = std::pow(10.0f, 3.0f * unit(random));
     const Vec3 centre = Vec3(unit(random), unit(random), unit(random)) * far;
-    RayBox box;
+    geometry::RayBox box;
     box.add(centre - size, centre + size);
     box.widen();
     // From anywhere to a point of the box, axes among the directions.
@@ -356,7 +362,7 @@ TEST(RayBox, NeverLosesARayThatMeetsIt) {
     EXPECT_TRUE(box.may_meet(origin, line / length, 0.0f, length * 1.001f));
     EXPECT_TRUE(box.may_meet(origin, line / length, 0.0f, kInfinity));
   }
-  RayBox box;
+  geometry::RayBox box;
   box.add(Vec3(-1.0f), Vec3(1.0f));
   box.widen();
   EXPECT_FALSE(box.may_meet(Vec3(0, 0, 5), Vec3(0, 0, 1), 0.0f, kInfinity));

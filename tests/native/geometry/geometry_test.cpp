@@ -5,9 +5,9 @@
 
 #include "base/clock.h"
 #include "camera/camera.h"
-#include "light/light_sampling.h"
 #include "geometry/rays4.h"
-#include "scene_fixture.h"
+#include "light/light_sampling.h"
+#include "scene/scene_fixture.h"
 
 namespace gradus::test {
 namespace {
@@ -21,8 +21,9 @@ TEST(D1_Watertight, SphereFarFromTheOriginSeenFromInside) {
   std::mt19937 random(1);
   int misses = 0;
   for (int i = 0; i < 1000000; ++i) {
-    Hit hit;
-    misses += !snapshot->intersect({centre - snapshot->origin, 0.0f, random_direction(random)}, GRADUS_VISIBLE_CAMERA, &hit);
+    geometry::Hit hit;
+    misses +=
+        !snapshot->intersect({centre - snapshot->origin, 0.0f, random_direction(random)}, GRADUS_VISIBLE_CAMERA, &hit);
   }
   EXPECT_LE(misses, 20);
 }
@@ -42,14 +43,14 @@ int count_self_hits(const Snapshot& snapshot, uint32_t instance, uint32_t triang
   std::uniform_real_distribution<float> uniform;
   int again = 0;
   for (int i = 0; i < rays; ++i) {
-    Hit hit;
+    geometry::Hit hit;
     hit.instance = instance;
     hit.triangle = triangle;
     const float root = std::sqrt(uniform(random));
     hit.barycentric = Vec2(1.0f - root, uniform(random) * root);
-    const SurfacePoint point = snapshot.surface_point(hit);
+    const geometry::SurfacePoint point = snapshot.surface_point(hit);
     const Vec3 direction = random_direction(random);
-    Hit next;
+    geometry::Hit next;
     again += snapshot.intersect({offset_origin(point, direction), 0.0f, direction}, GRADUS_VISIBLE_CAMERA, &next);
   }
   return again;
@@ -88,7 +89,8 @@ TEST(D2_SelfHits, InstancesFarAwayAndScaled) {
   scene.mesh(1, big);
   for (int i = 0; i < 20; ++i) {
     const float size = std::pow(10.0f, 3.0f * uniform(random));
-    scene.instance(1, translation(1e5f * Vec3(uniform(random), uniform(random), uniform(random))) * scaling(Vec3(size)));
+    scene.instance(1,
+                   translation(1e5f * Vec3(uniform(random), uniform(random), uniform(random))) * scaling(Vec3(size)));
   }
   const auto snapshot = scene.commit();
   ASSERT_EQ(snapshot->instances[0].flat_triangles, nullptr);
@@ -96,14 +98,14 @@ TEST(D2_SelfHits, InstancesFarAwayAndScaled) {
   for (uint32_t i = 0; i < 20; ++i)
     for (int k = 0; k < 500; ++k) {
       // Outwards from a convex body: nothing can be in the way but itself.
-      Hit hit;
+      geometry::Hit hit;
       hit.instance = i;
       hit.triangle = random() % uint32_t(big.vertices.size() / 3);
       hit.barycentric = Vec2(0.3f, 0.3f);
-      const SurfacePoint point = snapshot->surface_point(hit);
+      const geometry::SurfacePoint point = snapshot->surface_point(hit);
       Vec3 direction = random_direction(random);
       if (glm::dot(direction, point.geometric_normal) < 0.0f) direction = -direction;
-      Hit next;
+      geometry::Hit next;
       if (snapshot->intersect({offset_origin(point, direction), 0.0f, direction}, GRADUS_VISIBLE_CAMERA, &next))
         again += next.instance == i;
     }
@@ -128,16 +130,17 @@ TEST(D2_SelfHits, TheWayToALightOnTheFarSideIsFree) {
     scene.instance(2, Mat4(1.0f), GRADUS_VISIBLE_ALL, 5);
     const auto snapshot = scene.commit();
     for (int k = 0; k < 100; ++k) {
-      Hit hit;
+      geometry::Hit hit;
       hit.instance = hit.triangle = 0;
       const float root = std::sqrt(uniform(random));
       hit.barycentric = Vec2(1.0f - root, uniform(random) * root);
-      const SurfacePoint point = snapshot->surface_point(hit);
-      LightPoint light_point;
-      LightEvaluation view;
+      const geometry::SurfacePoint point = snapshot->surface_point(hit);
+      light::LightPoint light_point;
+      light::LightEvaluation view;
       const float choice = uniform(random), u = uniform(random);
-      sample_light_point(*snapshot, {point.position, point.geometric_normal, false}, choice, Vec2(u, uniform(random)), &light_point, &view);
-      if (light_point.kind == LightKind::None || !(view.pdf > 0.0f)) continue;
+      sample_light_point(*snapshot, {point.position, point.geometric_normal, false}, choice, Vec2(u, uniform(random)),
+                         &light_point, &view);
+      if (light_point.kind == light::LightKind::None || !(view.pdf > 0.0f)) continue;
       ++requested;
       blocked += snapshot->occluded(ray_to_light(offset_origin(point, view.direction), point, light_point, view));
     }
@@ -186,7 +189,8 @@ TEST(D4_BrokenRays, AreMissesAndCheap) {
   const auto snapshot = scene.commit();
   constexpr int count = 100000;
   int hits = 0, broken_hits = 0;
-  const double good = time_of(*snapshot, make_rays(count, 0), &hits), broken = time_of(*snapshot, make_rays(count, 1), &broken_hits);
+  const double good = time_of(*snapshot, make_rays(count, 0), &hits),
+               broken = time_of(*snapshot, make_rays(count, 1), &broken_hits);
   EXPECT_EQ(hits, count);
   EXPECT_EQ(broken_hits, 0);
   EXPECT_LT(broken, 2.5 * good);
@@ -213,16 +217,17 @@ TEST(D4_BrokenRays, OfBrokenCamerasAreMissesOrFinite) {
     desc.clip_end = 100.0f;
     desc.aperture_radius = i % 3 == 0 ? 0.1f : 0.0f;
     desc.focus_distance = desc.aperture_ratio = 1.0f;
-    float* const fields[] = {desc.matrix + random() % 16, desc.window + random() % 4, &desc.clip_start,     &desc.clip_end,
-                             &desc.aperture_radius,       &desc.focus_distance,       &desc.blade_rotation, &desc.aperture_ratio};
+    float* const fields[] = {
+        desc.matrix + random() % 16, desc.window + random() % 4, &desc.clip_start,     &desc.clip_end,
+        &desc.aperture_radius,       &desc.focus_distance,       &desc.blade_rotation, &desc.aperture_ratio};
     *fields[i % 8] = bad[random() % 4];
     if (i % 5 == 0) desc.fisheye_polynomial[random() % 5] = bad[random() % 4];
     if (i % 7 == 0) desc.fisheye_fov = bad[random() % 4];
     desc.blades = i % 7;
-    const Ray ray = Camera(desc, 64, 48).ray({Vec2(20.5f, 30.5f), Vec2(0.3f, 0.6f)});
-    Hit hit;
+    const Ray ray = camera::Camera(desc, 64, 48).ray({Vec2(20.5f, 30.5f), Vec2(0.3f, 0.6f)});
+    geometry::Hit hit;
     if (!snapshot->intersect(ray, GRADUS_VISIBLE_CAMERA, &hit)) continue;
-    const SurfacePoint point = snapshot->surface_point(hit);
+    const geometry::SurfacePoint point = snapshot->surface_point(hit);
     EXPECT_TRUE(is_finite(point.position) && is_finite(hit.t)) << i;
   }
 }
@@ -237,15 +242,16 @@ TEST(Trace, FourAtOnceEqualsFourTimesOne) {
   int hits = 0;
   for (int i = 0; i < 20000; ++i) {
     Ray rays[4];
-    Hit four[4];
+    geometry::Hit four[4];
     bool blocked[4];
-    for (int k = 0; k < 4; ++k) rays[k] = {Vec3(0.0f), 0.0f, random_direction(random), k == 3 && i % 3 == 0 ? -1.0f : kInfinity};
+    for (int k = 0; k < 4; ++k)
+      rays[k] = {Vec3(0.0f), 0.0f, random_direction(random), k == 3 && i % 3 == 0 ? -1.0f : kInfinity};
     snapshot->intersect4(rays, GRADUS_VISIBLE_CAMERA, four);
     const Vec3 d[4] = {rays[0].direction, rays[1].direction, rays[2].direction, rays[3].direction};
     const bool wanted[4] = {true, true, true, rays[3].t_max > 0.0f};
     snapshot->occluded4({same(Vec3(0.0f)), lanes(d[0], d[1], d[2], d[3]), same(kInfinity)}, wanted, blocked);
     for (int k = 0; k < 4; ++k) {
-      Hit one;
+      geometry::Hit one;
       const bool hit = snapshot->intersect(rays[k], GRADUS_VISIBLE_CAMERA, &one);
       hits += hit;
       EXPECT_EQ(hit, four[k].valid());
@@ -266,7 +272,7 @@ TEST(Trace, MasksHideInstancesFromKindsOfRays) {
   scene.instance(1, Mat4(1.0f), GRADUS_VISIBLE_CAMERA);
   const auto snapshot = scene.commit();
   const Ray ray{Vec3(0.0f), 0.0f, Vec3(0, 0, 1), kInfinity};
-  Hit hit;
+  geometry::Hit hit;
   EXPECT_TRUE(snapshot->intersect(ray, GRADUS_VISIBLE_CAMERA, &hit));
   EXPECT_FALSE(snapshot->intersect(ray, GRADUS_VISIBLE_GLOSSY, &hit));
   EXPECT_FALSE(snapshot->occluded(ray));
@@ -277,9 +283,9 @@ TEST(SurfacePoint, NormalsOfMirroredInstancesStayOutside) {
   scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 20, 40));
   scene.instance(1, translation(Vec3(3, 0, 0)) * scaling(Vec3(-1, 1, 1)));
   const auto snapshot = scene.commit();
-  Hit hit;
+  geometry::Hit hit;
   ASSERT_TRUE(snapshot->intersect({Vec3(0.0f), 0.0f, Vec3(1, 0, 0.01f), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
-  const SurfacePoint point = snapshot->surface_point(hit);
+  const geometry::SurfacePoint point = snapshot->surface_point(hit);
   EXPECT_LT(point.geometric_normal.x, -0.9f);
   EXPECT_LT(point.shading_normal.x, -0.9f);
   EXPECT_NEAR(point.position.x, 2.0f, 0.02f);
@@ -296,14 +302,15 @@ TEST(Origin, FarScenesAreMovedAndNearOnesAreNot) {
   far.instance(1, translation(Vec3(1e7f, 0, 0)));
   const auto snapshot = far.commit();
   EXPECT_NEAR(snapshot->origin.x, 1e7f, 2.0f);
-  Hit hit;
-  EXPECT_TRUE(snapshot->intersect({Vec3(1e7f, 0, 5) - snapshot->origin, 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
+  geometry::Hit hit;
+  EXPECT_TRUE(snapshot->intersect({Vec3(1e7f, 0, 5) - snapshot->origin, 0.0f, Vec3(0, 0, -1), kInfinity},
+                                  GRADUS_VISIBLE_CAMERA, &hit));
 }
 
 TEST(Commit, EmptySceneIsEmpty) {
   TestScene scene;
   const auto snapshot = scene.commit();
-  Hit hit;
+  geometry::Hit hit;
   EXPECT_FALSE(snapshot->intersect({Vec3(0.0f), 0.0f, Vec3(0, 0, 1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
 }
 

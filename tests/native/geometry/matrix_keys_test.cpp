@@ -11,10 +11,12 @@ namespace {
 
 constexpr double kQuarter = 1.5707963267948966;
 
-glm::dmat4 turn(double angle, const glm::dvec3& axis = glm::dvec3(0, 0, 1)) { return glm::rotate(glm::dmat4(1.0), angle, axis); }
+glm::dmat4 turn(double angle, const glm::dvec3& axis = glm::dvec3(0, 0, 1)) {
+  return glm::rotate(glm::dmat4(1.0), angle, axis);
+}
 
 TEST(MatrixKeys, AWheelStaysRound) {
-  const MatrixKeys keys({turn(0.0), turn(kQuarter), turn(2 * kQuarter)});
+  const geometry::MatrixKeys keys({turn(0.0), turn(kQuarter), turn(2 * kQuarter)});
   for (int i = 0; i <= 100; ++i) {
     const float time = float(i) / 100.0f;
     const Vec3 rim = Vec3(keys.at(time) * Vec4(1, 0, 0, 1));
@@ -26,9 +28,10 @@ TEST(MatrixKeys, AWheelStaysRound) {
 }
 
 TEST(MatrixKeys, PassesThroughItsKeysExactly) {
-  const std::vector<glm::dmat4> given = {turn(0.3), glm::translate(turn(1.9, glm::normalize(glm::dvec3(1, 2, 3))), glm::dvec3(5, 1, 0)),
-                                         glm::scale(turn(0.2), glm::dvec3(1, -2, 3)), turn(-0.5)};
-  const MatrixKeys keys(given);
+  const std::vector<glm::dmat4> given = {
+      turn(0.3), glm::translate(turn(1.9, glm::normalize(glm::dvec3(1, 2, 3))), glm::dvec3(5, 1, 0)),
+      glm::scale(turn(0.2), glm::dvec3(1, -2, 3)), turn(-0.5)};
+  const geometry::MatrixKeys keys(given);
   for (size_t i = 0; i < given.size(); ++i) {
     const Mat4 found = keys.at(float(i) / float(given.size() - 1));
     for (int c = 0; c < 4; ++c) EXPECT_LT(glm::length(found[c] - Vec4(given[i][c])), 2e-6f) << i;
@@ -38,7 +41,7 @@ TEST(MatrixKeys, PassesThroughItsKeysExactly) {
 TEST(MatrixKeys, StraightMotionNeedsNoMoreKeys) {
   const glm::dmat4 a = glm::scale(turn(0.7), glm::dvec3(1, 2, 3)),
                    b = glm::scale(glm::translate(turn(0.7), glm::dvec3(1, 2, 3)), glm::dvec3(2));
-  const MatrixKeys keys({a, b});
+  const geometry::MatrixKeys keys({a, b});
   EXPECT_EQ(keys.keys().size(), 2u);
   const Mat4 middle = keys.at(0.5f);
   for (int c = 0; c < 4; ++c) EXPECT_LT(glm::length(middle[c] - Vec4((a[c] + b[c]) * 0.5)), 1e-6f);
@@ -47,28 +50,28 @@ TEST(MatrixKeys, StraightMotionNeedsNoMoreKeys) {
 // A mirrored object turns like any other; one that is turned inside out on the way has no rotation between.
 TEST(MatrixKeys, MirroredObjectsTurn) {
   const glm::dmat4 mirror = glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1));
-  const MatrixKeys keys({mirror, turn(kQuarter) * mirror});
+  const geometry::MatrixKeys keys({mirror, turn(kQuarter) * mirror});
   const Vec3 middle = Vec3(keys.at(0.5f) * Vec4(1, 0, 0, 0));
   EXPECT_LT(glm::length(middle - Vec3(-std::sqrt(0.5f), -std::sqrt(0.5f), 0)), 1e-3f);
-  const MatrixKeys inside_out({glm::dmat4(1.0), mirror});
+  const geometry::MatrixKeys inside_out({glm::dmat4(1.0), mirror});
   EXPECT_EQ(inside_out.keys().size(), 2u);
   EXPECT_EQ(inside_out.at(0.5f)[0].x, 0.0f);
 }
 
 TEST(MatrixKeys, NeverMoreThanEmbreeTakes) {
   std::vector<glm::dmat4> many;
-  for (uint32_t i = 0; i < kMaxShutterKeys; ++i) many.push_back(turn(2.0 * i));
-  EXPECT_EQ(MatrixKeys(many).keys().size(), kMaxShutterKeys);
+  for (uint32_t i = 0; i < geometry::kMaxShutterKeys; ++i) many.push_back(turn(2.0 * i));
+  EXPECT_EQ(geometry::MatrixKeys(many).keys().size(), geometry::kMaxShutterKeys);
   many.resize(100);
-  EXPECT_LE(MatrixKeys(many).keys().size(), kMaxShutterKeys);
-  EXPECT_LE(MatrixKeys({turn(0.0), turn(3.1)}).keys().size(), kMaxShutterKeys);
+  EXPECT_LE(geometry::MatrixKeys(many).keys().size(), geometry::kMaxShutterKeys);
+  EXPECT_LE(geometry::MatrixKeys({turn(0.0), turn(3.1)}).keys().size(), geometry::kMaxShutterKeys);
 }
 
 TEST(MatrixKeys, KeyPlaceHoldsAtBothEnds) {
-  EXPECT_EQ(key_place(0.0f, 3).before, 0u);
-  EXPECT_EQ(key_place(1.0f, 3).before, 1u);
-  EXPECT_EQ(key_place(1.0f, 3).share, 1.0f);
-  EXPECT_EQ(key_place(0.75f, 3).share, 0.5f);
+  EXPECT_EQ(geometry::key_place(0.0f, 3).before, 0u);
+  EXPECT_EQ(geometry::key_place(1.0f, 3).before, 1u);
+  EXPECT_EQ(geometry::key_place(1.0f, 3).share, 1.0f);
+  EXPECT_EQ(geometry::key_place(0.75f, 3).share, 0.5f);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene_fixture.h"
+#include "scene/scene_fixture.h"
 
 namespace gradus::test {
 namespace {
@@ -36,7 +36,8 @@ struct Quad {
   }
 };
 
-GradusAttribute make_attribute(const char* name, GradusDomain domain, uint32_t channels, const float* data, bool is_uv = false) {
+GradusAttribute make_attribute(const char* name, GradusDomain domain, uint32_t channels, const float* data,
+                               bool is_uv = false) {
   return {sizeof(GradusAttribute), uint32_t(domain), channels, is_uv ? 1u : 0u, name, data};
 }
 
@@ -48,9 +49,11 @@ TEST(Mesh, AttributesOfAllDomains) {
   Quad quad;
   quad.desc.attributes = attributes;
   quad.desc.attribute_count = 3;
-  const auto mesh = make_mesh(quad.make());
-  const auto value = [&](const char* name, uint32_t triangle) { return corner_values(*mesh, *find_attribute(*mesh, name), triangle); };
-  EXPECT_EQ(interpolate(value("p", 1), Vec2(0.5f, 0.25f)).x, 0.5f * 2 + 0.25f * 3);
+  const auto mesh = geometry::make_mesh(quad.make());
+  const auto value = [&](const char* name, uint32_t triangle) {
+    return corner_values(*mesh, *find_attribute(*mesh, name), triangle);
+  };
+  EXPECT_EQ(geometry::interpolate(value("p", 1), Vec2(0.5f, 0.25f)).x, 0.5f * 2 + 0.25f * 3);
   EXPECT_EQ(value("f", 0)[2], Vec4(4, 5, 6, 1));
   EXPECT_EQ(value("uv", 1)[1], Vec4(1, 1, 0, 1));
   EXPECT_EQ(default_uv_map(*mesh), find_attribute(*mesh, "uv"));
@@ -65,22 +68,22 @@ TEST(Mesh, DefaultUvMapIsTheNamedOne) {
   Quad quad;
   quad.desc.attributes = attributes;
   quad.desc.attribute_count = 3;
-  EXPECT_EQ(default_uv_map(*make_mesh(quad.make()))->name, "a");
+  EXPECT_EQ(geometry::default_uv_map(*geometry::make_mesh(quad.make()))->name, "a");
   quad.desc.default_uv = "b";
-  EXPECT_EQ(default_uv_map(*make_mesh(quad.make()))->name, "b");
+  EXPECT_EQ(geometry::default_uv_map(*geometry::make_mesh(quad.make()))->name, "b");
 }
 
 TEST(Mesh, GeneratedCoordinatesFillTheTextureSpace) {
   Quad quad;
   for (int i = 0; i < 3; ++i) quad.desc.generated_location[i] = 0.5f, quad.desc.generated_size[i] = 0.5f;
-  EXPECT_EQ(generated_at(*make_mesh(quad.make()), 0, Vec2(0, 1)), Vec3(1, 1, 0));
+  EXPECT_EQ(geometry::generated_at(*geometry::make_mesh(quad.make()), 0, Vec2(0, 1)), Vec3(1, 1, 0));
   const float rest[12] = {0, 0, 0, 1, 0, 0, 1, 1, 1, 0, 1, 0};
   quad.desc.generated_points = rest;
-  EXPECT_EQ(generated_at(*make_mesh(quad.make()), 0, Vec2(0, 1)), Vec3(1, 1, 1));
+  EXPECT_EQ(geometry::generated_at(*geometry::make_mesh(quad.make()), 0, Vec2(0, 1)), Vec3(1, 1, 1));
 }
 
-std::shared_ptr<const Snapshot> commit_quad(Scene* scene, const GradusMesh& mesh, const Mat4& matrix, const Mat4& previous,
-                                            const Mat4& next) {
+std::shared_ptr<const Snapshot> commit_quad(Scene* scene, const GradusMesh& mesh, const Mat4& matrix,
+                                            const Mat4& previous, const Mat4& next) {
   scene->set_mesh(1, mesh);
   const uint64_t key = 1;
   GradusInstances instances{};
@@ -109,13 +112,14 @@ TEST(C1_SurfaceMotion, DeformationAndMatrices) {
   const std::vector<float> rest = quad.positions;
   quad.positions.clear();
   for (const float key : {-1.0f, 0.0f, 1.0f})
-    for (size_t i = 0; i < rest.size(); ++i) quad.positions.push_back(rest[i] + (i % 3 == 2 ? 0.5f * key * rest[i - 2] : 0.0f));
+    for (size_t i = 0; i < rest.size(); ++i)
+      quad.positions.push_back(rest[i] + (i % 3 == 2 ? 0.5f * key * rest[i - 2] : 0.0f));
   const float times[3] = {-1, 0, 1};
   quad.desc.key_count = 3;
   quad.desc.key_times = times;
   Scene scene(test_device());
-  const auto snapshot =
-      commit_quad(&scene, quad.make(), Mat4(1.0f), translation(Vec3(-0.1f, 0, 0)), translation(Vec3(0.2f, 0, 0)) * scaling(Vec3(2, 1, 1)));
+  const auto snapshot = commit_quad(&scene, quad.make(), Mat4(1.0f), translation(Vec3(-0.1f, 0, 0)),
+                                    translation(Vec3(0.2f, 0, 0)) * scaling(Vec3(2, 1, 1)));
   const Hit hit = hit_at(Vec2(0.25f, 0.5f));  // at (0.75, 0.5)
   const Vec3 now = snapshot->surface_point(hit).position;
   const Vec3 before = snapshot->position_at(hit, Moment::Previous), after = snapshot->position_at(hit, Moment::Next);
@@ -138,7 +142,8 @@ TEST(C1_SurfaceMotion, AtRestItIsExactlyTheSamePosition) {
 
 TEST(SurfacePoint, NormalsByCornerAreInterpolatedAndBrokenOnesReplaced) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const float smooth[12] = {0, -1, 1, 0, -1, 1, 0, 1, 1, 0, 1, 1}, broken[12] = {nan, 0, 1, 0, 0, 0, 0, nan, nan, 0, 0, 0};
+  const float smooth[12] = {0, -1, 1, 0, -1, 1, 0, 1, 1, 0, 1, 1},
+              broken[12] = {nan, 0, 1, 0, 0, 0, 0, nan, nan, 0, 0, 0};
   Quad quad;
   quad.desc.normal_domain = GRADUS_DOMAIN_CORNER;
   Scene scene(test_device());

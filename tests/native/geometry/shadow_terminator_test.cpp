@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kReplayed = 0.3f;
 
-std::shared_ptr<const Snapshot> ball(float offset, bool smooth, const Mat4& place = Mat4(1.0f)) {
+std::shared_ptr<const scene::Snapshot> ball(float offset, bool smooth, const Mat4& place = Mat4(1.0f)) {
   PathScene scene;
   scene.scene.shadow_terminator_offset = offset;
   scene.place = place;
@@ -23,12 +23,12 @@ std::shared_ptr<const Snapshot> ball(float offset, bool smooth, const Mat4& plac
 }
 
 // Where rays towards the middle meet the ball, from all around.
-std::vector<SurfacePoint> points(const Snapshot& scene, const Vec3& centre = Vec3(0.0f)) {
-  std::vector<SurfacePoint> found;
+std::vector<geometry::SurfacePoint> points(const scene::Snapshot& scene, const Vec3& centre = Vec3(0.0f)) {
+  std::vector<geometry::SurfacePoint> found;
   for (int i = 0; i < 400; ++i) {
     const float z = 1.0f - (2.0f * float(i) + 1.0f) / 400.0f, around = 2.399963f * float(i);
     const Vec3 out(std::sqrt(1.0f - z * z) * std::cos(around), std::sqrt(1.0f - z * z) * std::sin(around), z);
-    Hit hit;
+    geometry::Hit hit;
     if (scene.intersect(Ray{centre + 10.0f * out, 0.0f, -out, kInfinity}, GRADUS_VISIBLE_ALL, &hit))
       found.push_back(scene.surface_point(hit));
   }
@@ -44,14 +44,15 @@ Vec3 grazing(const Vec3& normal, float side = 1.0f) {
 TEST(ShadowTerminator, ALightBehindTheFacetIsSeenWhereTheSmoothSurfaceSeesIt) {
   const auto scene = ball(kReplayed, true);
   int behind = 0;
-  for (const SurfacePoint& p : points(*scene)) {
+  for (const geometry::SurfacePoint& p : points(*scene)) {
     for (const float side : {-1.0f, 1.0f}) {
       const Vec3 along = grazing(p.shading_normal, side);
       if (glm::dot(along, p.geometric_normal) > 0.0f) continue;
       ++behind;
-      const Vec3 start = shadow_origin(*scene, p, along);
+      const Vec3 start = geometry::shadow_origin(*scene, p, along);
       EXPECT_FALSE(scene->occluded(Ray{start, 0.0f, along, kInfinity}));
-      EXPECT_TRUE(scene->occluded(Ray{offset_origin(p, along), 0.0f, along, kInfinity}));  // as it would be from the facet
+      EXPECT_TRUE(scene->occluded(
+          Ray{geometry::offset_origin(p, along), 0.0f, along, kInfinity}));  // as it would be from the facet
     }
   }
   EXPECT_GT(behind, 100);
@@ -60,8 +61,9 @@ TEST(ShadowTerminator, ALightBehindTheFacetIsSeenWhereTheSmoothSurfaceSeesIt) {
 // The bulge is as high as the sphere over its facets, within a factor of two.
 TEST(ShadowTerminator, RaysBeginOnTheSphere) {
   const auto scene = ball(kReplayed, true);
-  for (const SurfacePoint& p : points(*scene)) {
-    const float height = glm::length(shadow_origin(*scene, p, grazing(p.shading_normal))) - glm::length(p.position);
+  for (const geometry::SurfacePoint& p : points(*scene)) {
+    const float height =
+        glm::length(geometry::shadow_origin(*scene, p, grazing(p.shading_normal))) - glm::length(p.position);
     const float sphere = 1.0f - glm::length(p.position);
     EXPECT_GE(height, 0.4f * sphere - 1e-5f);
     EXPECT_LE(height, 2.5f * sphere + 1e-5f);
@@ -70,12 +72,13 @@ TEST(ShadowTerminator, RaysBeginOnTheSphere) {
 
 TEST(ShadowTerminator, NothingChangesFarFromItOrOnFlatFacesOrWithoutOffset) {
   const auto smooth = ball(kReplayed, true), flat = ball(kReplayed, false), off = ball(0.0f, true);
-  for (const SurfacePoint& p : points(*smooth)) EXPECT_EQ(shadow_origin(*smooth, p, p.shading_normal), offset_origin(p, p.shading_normal));
+  for (const geometry::SurfacePoint& p : points(*smooth))
+    EXPECT_EQ(geometry::shadow_origin(*smooth, p, p.shading_normal), geometry::offset_origin(p, p.shading_normal));
   for (const auto& scene : {flat, off}) {
-    for (const SurfacePoint& p : points(*scene)) {
+    for (const geometry::SurfacePoint& p : points(*scene)) {
       const Vec3 along = grazing(p.shading_normal);
-      EXPECT_EQ(shadow_origin(*scene, p, along), offset_origin(p, along));
-      EXPECT_TRUE(leaves_facet(p, along));
+      EXPECT_EQ(geometry::shadow_origin(*scene, p, along), geometry::offset_origin(p, along));
+      EXPECT_TRUE(geometry::leaves_facet(p, along));
     }
   }
 }
@@ -89,8 +92,8 @@ TEST(ShadowTerminator, InstancesAreLiftedOutwards) {
   const auto scene = ball(kReplayed, true, place);
   const auto all = points(*scene, Vec3(30.0f, -20.0f, 10.0f) - scene->origin);
   ASSERT_GT(all.size(), 300u);
-  for (const SurfacePoint& p : all) {
-    const Vec3 lift = shadow_origin(*scene, p, grazing(p.shading_normal)) - p.position;
+  for (const geometry::SurfacePoint& p : all) {
+    const Vec3 lift = geometry::shadow_origin(*scene, p, grazing(p.shading_normal)) - p.position;
     EXPECT_GE(glm::dot(lift, p.geometric_normal), 0.0f);
     EXPECT_LT(glm::length(lift), 0.5f);
   }
@@ -107,10 +110,10 @@ TEST(ShadowTerminator, BlackFacetsAtTheTerminatorOfACoarseBall) {
     from_the_right[0] = Vec4(glm::cross(Vec3(0, 1, 0), Vec3(from_the_right[2])), 0.0f);
     scene.light(make_light(GRADUS_LIGHT_SUN, from_the_right, Rgb(1.0f)));
     scene.camera(Vec3(0, 0, 4), Vec3(0.0f), 1.6f, GRADUS_CAMERA_ORTHOGRAPHIC);
-    const IntegratorContext context = scene.context(test_settings(32, 32));
-    Film film = make_test_film(context.settings, false);
-    sample_film(*make_path_integrator(context), 0, 16, &film);
-    return read_images(film, 0).primal;
+    const integrator::IntegratorContext context = scene.context(test_settings(32, 32));
+    film::Film film = make_test_film(context.settings, false);
+    sample_film(*integrator::make_path_integrator(context), 0, 16, &film);
+    return film::read_images(film, 0).primal;
   };
   const auto fine = image(0.0f, 200), coarse = image(0.0f, 5), lifted = image(kReplayed, 5);
   int black = 0, black_lifted = 0, lit_behind = 0;

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "gradus/gradus.h"
 #include "geometry/mesh.h"
+#include "gradus/gradus.h"
 #include "support/path_scene.h"
 
 namespace gradus {
@@ -28,7 +28,7 @@ TEST(SmoothNormals, SymmetricVertices) {
   desc.triangle_count = 8;
   desc.triangle_corners = triangles.data();
   desc.normal_domain = GRADUS_DOMAIN_POINT;
-  const auto mesh = make_mesh(desc);
+  const auto mesh = geometry::make_mesh(desc);
   ASSERT_EQ(mesh->normals.size(), 6u);
   for (uint32_t i = 0; i < 6; ++i) {
     const Vec3 p(positions[i * 3], positions[i * 3 + 1], positions[i * 3 + 2]);
@@ -36,7 +36,8 @@ TEST(SmoothNormals, SymmetricVertices) {
   }
 }
 
-// Two faces meet at a vertex with angles 90 and 45 degrees: the normal is their mean with those weights, whatever their areas.
+// Two faces meet at a vertex with angles 90 and 45 degrees: the normal is their mean with those weights, whatever their
+// areas.
 TEST(SmoothNormals, WeightedByAngle) {
   const std::array<float, 12> positions{0, 0, 0, 5, 0, 0, 0, 1, 0, 0, 1, 1};
   const std::array<int32_t, 6> corners{0, 1, 2, 0, 2, 3};
@@ -51,13 +52,13 @@ TEST(SmoothNormals, WeightedByAngle) {
   desc.triangle_count = 2;
   desc.triangle_corners = triangles.data();
   desc.normal_domain = GRADUS_DOMAIN_POINT;
-  const auto mesh = make_mesh(desc);
+  const auto mesh = geometry::make_mesh(desc);
   const Vec3 expected = glm::normalize(2.0f * Vec3(0, 0, 1) + Vec3(1, 0, 0));
   EXPECT_NEAR(glm::dot(mesh->normals[0], expected), 1.0f, 1e-6f);
 }
 
-// Stretching turns facets and normals apart: where a normal came to lie below its facet it was turned round, so that the facet took its
-// light from the wrong side, and glass was left instead of entered.
+// Stretching turns facets and normals apart: where a normal came to lie below its facet it was turned round, so that
+// the facet took its light from the wrong side, and glass was left instead of entered.
 TEST(SmoothNormals, NormalsBelowStretchedFacets) {
   test::PathScene scene;
   const Vec3 axis = glm::normalize(Vec3(1, 2, 3));  // of a coarse ball that is pressed flat
@@ -68,12 +69,13 @@ TEST(SmoothNormals, NormalsBelowStretchedFacets) {
   int below = 0;
   for (int i = 0; i < 1000; ++i) {
     const float z = 1.0f - (2.0f * float(i) + 1.0f) / 1000.0f, around = 2.399963f * float(i);
-    const Vec3 out = Mat3(scene.place) * Vec3(std::sqrt(1.0f - z * z) * std::cos(around), std::sqrt(1.0f - z * z) * std::sin(around), z);
-    Hit hit;
+    const Vec3 out = Mat3(scene.place) *
+                     Vec3(std::sqrt(1.0f - z * z) * std::cos(around), std::sqrt(1.0f - z * z) * std::sin(around), z);
+    geometry::Hit hit;
     ASSERT_TRUE(snapshot->intersect(Ray{3.0f * out, 0.0f, -glm::normalize(out), kInfinity}, GRADUS_VISIBLE_ALL, &hit));
-    const SurfacePoint point = snapshot->surface_point(hit);
+    const geometry::SurfacePoint point = snapshot->surface_point(hit);
     std::array<Vec3, 3> n;
-    ASSERT_TRUE(triangle_normals(*snapshot->instances[0].mesh, hit.triangle, &n));
+    ASSERT_TRUE(geometry::triangle_normals(*snapshot->instances[0].mesh, hit.triangle, &n));
     const Vec3 smooth = glm::normalize(snapshot->instances[0].normal_to_world * interpolate(n, hit.barycentric));
     below += glm::dot(smooth, point.geometric_normal) < 0.0f;
     EXPECT_GE(glm::dot(point.shading_normal, point.geometric_normal), 0.0f);
@@ -92,10 +94,10 @@ TEST(SmoothNormals, Curvature) {
   scene.place[3][3] = 1.0f;
   scene.ball(Vec3(0), 0.25f, material, 16, true);
   scene.quad(Vec3(0), Vec3(1, 0, 0), Vec3(0, 1, 0), material);
-  const IntegratorContext context = scene.context(test::test_settings(4, 4));
-  const Snapshot& snapshot = *context.snapshot;
+  const integrator::IntegratorContext context = scene.context(test::test_settings(4, 4));
+  const scene::Snapshot& snapshot = *context.snapshot;
   for (uint32_t i = 0; i < 2; ++i) {
-    Hit hit;
+    geometry::Hit hit;
     hit.instance = i;
     hit.triangle = snapshot.instances[i].mesh->triangle_count / 2;
     EXPECT_NEAR(snapshot.curvature(hit), snapshot.instances[i].mesh->triangle_count == 2 ? 0.0f : 2.0f, 0.1f);

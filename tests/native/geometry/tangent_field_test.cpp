@@ -10,8 +10,8 @@ namespace gradus {
 namespace {
 
 // Triangles of shared vertices, smooth, with a UV map by corner.
-std::shared_ptr<const MeshData> make(const std::vector<float>& positions, const std::vector<int32_t>& corners,
-                                     const std::vector<float>& uv) {
+std::shared_ptr<const geometry::MeshData> make(const std::vector<float>& positions, const std::vector<int32_t>& corners,
+                                               const std::vector<float>& uv) {
   std::vector<uint32_t> triangles(corners.size());
   for (uint32_t i = 0; i < triangles.size(); ++i) triangles[i] = i;
   GradusAttribute map{};
@@ -33,7 +33,7 @@ std::shared_ptr<const MeshData> make(const std::vector<float>& positions, const 
   desc.attributes = &map;
   desc.attribute_count = 1;
   desc.default_uv = "UVMap";
-  return make_mesh(desc);
+  return geometry::make_mesh(desc);
 }
 
 void expect_tangent(const Vec4& found, const Vec3& direction, float handedness) {
@@ -43,8 +43,9 @@ void expect_tangent(const Vec4& found, const Vec3& direction, float handedness) 
 
 // A roof over the y axis, mapped from above: on its ridge the normal points up and both sides share the tangent.
 TEST(TangentField, SharedAcrossAnEdge) {
-  const auto mesh = make({0, 0, 1, 0, 1, 1, 1, 0, 0, -1, 0, 0}, {0, 2, 1, 0, 1, 3}, {0, 0, 1, 0, 0, 1, 0, 0, 0, 1, -1, 0});
-  const auto field = make_tangents(mesh, *default_uv_map(*mesh));
+  const auto mesh =
+      make({0, 0, 1, 0, 1, 1, 1, 0, 0, -1, 0, 0}, {0, 2, 1, 0, 1, 3}, {0, 0, 1, 0, 0, 1, 0, 0, 0, 1, -1, 0});
+  const auto field = geometry::make_tangents(mesh, *geometry::default_uv_map(*mesh));
   const auto right = field->corners(0), left = field->corners(1);
   expect_tangent(right[0], Vec3(1, 0, 0), 1.0f);
   expect_tangent(right[2], Vec3(1, 0, 0), 1.0f);
@@ -54,24 +55,28 @@ TEST(TangentField, SharedAcrossAnEdge) {
   expect_tangent(left[2], Vec3(1, 0, 1), 1.0f);
 }
 
-// Two flat triangles at a vertex, with angles of 90 and 45 degrees and maps turned against each other by 90: weighed by the angles.
+// Two flat triangles at a vertex, with angles of 90 and 45 degrees and maps turned against each other by 90: weighed by
+// the angles.
 TEST(TangentField, WeighedByAngle) {
-  const auto mesh = make({0, 0, 0, 5, 0, 0, 0, 1, 0, -1, 1, 0}, {0, 1, 2, 0, 2, 3}, {0, 0, 5, 0, 0, 1, 0, 0, 1, 0, 1, 1});
-  const auto field = make_tangents(mesh, *default_uv_map(*mesh));
+  const auto mesh =
+      make({0, 0, 0, 5, 0, 0, 0, 1, 0, -1, 1, 0}, {0, 1, 2, 0, 2, 3}, {0, 0, 5, 0, 0, 1, 0, 0, 1, 0, 1, 1});
+  const auto field = geometry::make_tangents(mesh, *geometry::default_uv_map(*mesh));
   expect_tangent(field->corners(0)[0], 2.0f * Vec3(1, 0, 0) + Vec3(0, 1, 0), 1.0f);
 }
 
 // A map that is mirrored at a seam: the same direction of u, or its opposite, but never a mean of both.
 TEST(TangentField, MirroredMapsStayApart) {
-  const auto mesh = make({0, 0, 0, 0, 1, 0, 1, 0, 0, -1, 0, 0}, {0, 2, 1, 0, 1, 3}, {0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0});
-  const auto field = make_tangents(mesh, *default_uv_map(*mesh));
+  const auto mesh =
+      make({0, 0, 0, 0, 1, 0, 1, 0, 0, -1, 0, 0}, {0, 2, 1, 0, 1, 3}, {0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0});
+  const auto field = geometry::make_tangents(mesh, *geometry::default_uv_map(*mesh));
   expect_tangent(field->corners(0)[0], Vec3(1, 0, 0), 1.0f);
   expect_tangent(field->corners(1)[0], Vec3(-1, 0, 0), -1.0f);
 }
 
 TEST(TangentField, TrianglesWithoutAreaOnTheMapTakeTheirNeighbours) {
-  const auto mesh = make({0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0}, {0, 1, 2, 0, 2, 3}, {0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0.5f});
-  const auto field = make_tangents(mesh, *default_uv_map(*mesh));
+  const auto mesh =
+      make({0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0}, {0, 1, 2, 0, 2, 3}, {0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0.5f});
+  const auto field = geometry::make_tangents(mesh, *geometry::default_uv_map(*mesh));
   expect_tangent(field->corners(1)[0], Vec3(1, 0, 0), 1.0f);
   EXPECT_EQ(field->corners(1)[2], Vec4(0.0f));
 }

@@ -54,7 +54,8 @@ DVec3 rotate(const DVec3& from, const DVec3& to, const DVec3& v) {
 }
 
 // The half-vector copy from its definition, in double. False: the offset cannot scatter so.
-bool copy_in_double(const HalfVectorFrame& base, const HalfVectorFrame& offset, bool transmitted, const DVec3& wi, DVec3* out) {
+bool copy_in_double(const gradient::HalfVectorFrame& base, const gradient::HalfVectorFrame& offset, bool transmitted,
+                    const DVec3& wi, DVec3* out) {
   const DVec3 wo = to_double(base.wo);
   const DVec3 wo2 = to_double(offset.wo);
   const DVec3 h = glm::normalize(transmitted ? wo + double(base.eta) * wi : wo + wi);
@@ -87,8 +88,8 @@ class Random {
 };
 
 struct Case {
-  HalfVectorFrame base;
-  HalfVectorFrame offset;
+  gradient::HalfVectorFrame base;
+  gradient::HalfVectorFrame offset;
   Vec3 wi;
 };
 
@@ -125,17 +126,19 @@ void check_half_vector(bool transmitted) {
     Case c;
     while (!make_case(&random, transmitted, &c)) {
     }
-    const ShiftedDirection there = copy_half_vector(c.base, c.wi, c.offset, transmitted);
-    const auto map = [&](const DVec3& wi, DVec3* out) { return copy_in_double(c.base, c.offset, transmitted, wi, out); };
+    const gradient::ShiftedDirection there = gradient::copy_half_vector(c.base, c.wi, c.offset, transmitted);
+    const auto map = [&](const DVec3& wi, DVec3* out) {
+      return copy_in_double(c.base, c.offset, transmitted, wi, out);
+    };
     const double numeric = numeric_jacobian(map, to_double(c.wi));  // negative where the copy is impossible
-    verdicts_ok += (there.failure == ShiftFailure::None) == (numeric > 0.0) ? 1 : 0;
-    if (there.failure != ShiftFailure::None || !(numeric > 0.0)) {
+    verdicts_ok += (there.failure == gradient::ShiftFailure::None) == (numeric > 0.0) ? 1 : 0;
+    if (there.failure != gradient::ShiftFailure::None || !(numeric > 0.0)) {
       continue;
     }
     ++shifted;
     jacobians_ok += std::fabs(there.jacobian - numeric) <= 1e-4 * numeric ? 1 : 0;
-    const ShiftedDirection back = copy_half_vector(c.offset, there.wi, c.base, transmitted);
-    ways_back += back.failure == ShiftFailure::None && glm::length(back.wi - c.wi) < 1e-4f ? 1 : 0;
+    const gradient::ShiftedDirection back = gradient::copy_half_vector(c.offset, there.wi, c.base, transmitted);
+    ways_back += back.failure == gradient::ShiftFailure::None && glm::length(back.wi - c.wi) < 1e-4f ? 1 : 0;
     products_ok += std::fabs(there.jacobian * back.jacobian - 1.0f) < 1e-4f ? 1 : 0;
   }
   EXPECT_GE(shifted, 0.9 * kShifts);
@@ -151,23 +154,23 @@ TEST(B4_Shift, ReflectionHalfVector) { check_half_vector(false); }
 TEST(B4_Shift, RefractionHalfVector) { check_half_vector(true); }
 
 TEST(B4_Shift, RefractionAcrossDifferentGlass) {
-  HalfVectorFrame base{glm::normalize(Vec3(0.3f, 0.1f, 0.9f)), Vec3(0, 0, 1), 1.5f};
-  HalfVectorFrame offset = base;
+  gradient::HalfVectorFrame base{glm::normalize(Vec3(0.3f, 0.1f, 0.9f)), Vec3(0, 0, 1), 1.5f};
+  gradient::HalfVectorFrame offset = base;
   offset.eta = 1.3f;
   const Vec3 wi = glm::refract(-base.wo, glm::normalize(Vec3(0.05f, -0.02f, 1.0f)), 1.0f / base.eta);
-  const ShiftedDirection shifted = copy_half_vector(base, wi, offset, true);
-  ASSERT_EQ(shifted.failure, ShiftFailure::None);
+  const gradient::ShiftedDirection shifted = gradient::copy_half_vector(base, wi, offset, true);
+  ASSERT_EQ(shifted.failure, gradient::ShiftFailure::None);
   const auto map = [&](const DVec3& w, DVec3* out) { return copy_in_double(base, offset, true, w, out); };
   EXPECT_NEAR(shifted.jacobian / numeric_jacobian(map, to_double(wi)), 1.0, 1e-4);
 }
 
 TEST(B4_Shift, OppositeSidesAndNoStepAreRefusedBothWays) {
   const Vec3 wo = glm::normalize(Vec3(0.2f, 0.1f, 0.9f));
-  const HalfVectorFrame glass{wo, Vec3(0, 0, 1), 1.5f};
+  const gradient::HalfVectorFrame glass{wo, Vec3(0, 0, 1), 1.5f};
   for (float eta : {1.0f / 1.5f, 1.0f}) {
-    const HalfVectorFrame other{wo, Vec3(0, 0, 1), eta};
-    EXPECT_NE(copy_half_vector(glass, -wo, other, true).failure, ShiftFailure::None);
-    EXPECT_NE(copy_half_vector(other, -wo, glass, true).failure, ShiftFailure::None);
+    const gradient::HalfVectorFrame other{wo, Vec3(0, 0, 1), eta};
+    EXPECT_NE(gradient::copy_half_vector(glass, -wo, other, true).failure, gradient::ShiftFailure::None);
+    EXPECT_NE(gradient::copy_half_vector(other, -wo, glass, true).failure, gradient::ShiftFailure::None);
   }
 }
 
@@ -180,24 +183,26 @@ TEST(B4_Shift, Reconnection) {
     const Vec3 offset = base + 0.1f * random.direction();
     const Vec3 target = 3.0f * random.direction();
     const Vec3 normal = random.direction();
-    const Reconnection there = reconnect(base, offset, target, normal);
-    ASSERT_EQ(there.failure, ShiftFailure::None);
+    const gradient::Reconnection there = gradient::reconnect(base, offset, target, normal);
+    ASSERT_EQ(there.failure, gradient::ShiftFailure::None);
     // ω -> point of the plane -> ω'
     const auto map = [&](const DVec3& w, DVec3* out) {
-      const double t = glm::dot(to_double(target) - to_double(base), to_double(normal)) / glm::dot(w, to_double(normal));
+      const double t =
+          glm::dot(to_double(target) - to_double(base), to_double(normal)) / glm::dot(w, to_double(normal));
       *out = glm::normalize(to_double(base) + t * w - to_double(offset));
       return true;
     };
     const double numeric = numeric_jacobian(map, glm::normalize(to_double(target) - to_double(base)));
     ok += std::fabs(there.jacobian - numeric) <= 1e-4 * numeric ? 1 : 0;
-    const Reconnection back = reconnect(offset, base, target, normal);
+    const gradient::Reconnection back = gradient::reconnect(offset, base, target, normal);
     inverse_ok += std::fabs(there.jacobian * back.jacobian - 1.0f) < 1e-4f ? 1 : 0;
   }
   EXPECT_GE(ok, 0.999 * kShifts);
   EXPECT_GE(inverse_ok, 0.999 * kShifts);
 }
 
-// A base that meets a sharp surface at z, behind a rough vertex: the offset reaches z, too, copies the event there, and finds its way back.
+// A base that meets a sharp surface at z, behind a rough vertex: the offset reaches z, too, copies the event there, and
+// finds its way back.
 TEST(B4_Shift, ThroughASharedSharpVertexAndBack) {
   Random random(11);
   int shifted = 0, back_home = 0;
@@ -210,17 +215,19 @@ TEST(B4_Shift, ThroughASharedSharpVertexAndBack) {
       return p;
     };
     const Vec3 x = above(), y = x + 0.1f * random.direction();
-    const HalfVectorFrame from_x{glm::normalize(x), normal, 1.5f}, from_y{glm::normalize(y), normal, 1.5f};
+    const gradient::HalfVectorFrame from_x{glm::normalize(x), normal, 1.5f}, from_y{glm::normalize(y), normal, 1.5f};
     const Vec3 across(from_x.wo.x, from_x.wo.y, 0.0f);
-    const Vec3 ideal =
-        transmitted ? -across / 1.5f - normal * std::sqrt(1.0f - glm::dot(across, across) / 2.25f) : -across + normal * from_x.wo.z;
+    const Vec3 ideal = transmitted ? -across / 1.5f - normal * std::sqrt(1.0f - glm::dot(across, across) / 2.25f)
+                                   : -across + normal * from_x.wo.z;
     const Vec3 wi = glm::normalize(ideal + 0.1f * random.direction());
-    const ShiftedDirection there = copy_half_vector(from_x, wi, from_y, transmitted);
-    if (there.failure != ShiftFailure::None) continue;
+    const gradient::ShiftedDirection there = gradient::copy_half_vector(from_x, wi, from_y, transmitted);
+    if (there.failure != gradient::ShiftFailure::None) continue;
     ++shifted;
-    const ShiftedDirection back = copy_half_vector(from_y, there.wi, from_x, transmitted);
-    const float jacobian = reconnect(x, y, z, normal).jacobian * there.jacobian * reconnect(y, x, z, normal).jacobian * back.jacobian;
-    const bool home = back.failure == ShiftFailure::None && glm::length(back.wi - wi) < 1e-4f && std::fabs(jacobian - 1.0f) < 1e-4f;
+    const gradient::ShiftedDirection back = gradient::copy_half_vector(from_y, there.wi, from_x, transmitted);
+    const float jacobian = gradient::reconnect(x, y, z, normal).jacobian * there.jacobian *
+                           gradient::reconnect(y, x, z, normal).jacobian * back.jacobian;
+    const bool home = back.failure == gradient::ShiftFailure::None && glm::length(back.wi - wi) < 1e-4f &&
+                      std::fabs(jacobian - 1.0f) < 1e-4f;
     back_home += home ? 1 : 0;
   }
   EXPECT_GE(shifted, 0.99 * kShifts);
@@ -232,11 +239,12 @@ TEST(B4_Shift, BothEndsAgreeWhetherToShareASharpVertex) {
   int shared = 0;
   constexpr int kCases = 10000;
   for (int i = 0; i < kCases; ++i) {
-    const Vec3 x = random.direction(), y = x + std::exp2(-float(i % 8)) * random.direction(), z = 2.0f * random.direction();
+    const Vec3 x = random.direction(), y = x + std::exp2(-float(i % 8)) * random.direction(),
+               z = 2.0f * random.direction();
     const float curvature = std::exp2(float(i % 11) - 5.0f);
     const bool transmission = i % 3 == 0;
-    const bool shares = shares_sharp_vertex(x, y, z, curvature, transmission);
-    EXPECT_EQ(shares, shares_sharp_vertex(y, x, z, curvature, transmission));
+    const bool shares = gradient::shares_sharp_vertex(x, y, z, curvature, transmission);
+    EXPECT_EQ(shares, gradient::shares_sharp_vertex(y, x, z, curvature, transmission));
     shared += shares ? 1 : 0;
   }
   EXPECT_GT(shared, kCases / 10);
@@ -246,11 +254,11 @@ TEST(B4_Shift, BothEndsAgreeWhetherToShareASharpVertex) {
 TEST(B4_Shift, ASharpVertexIsSharedButOverShortEdgesAndThroughFlatPanes) {
   const Vec3 x(0, 0, 0), y(0.1f, 0, 0);
   const Vec3 far(0, 0, 1), close(0, 0, 0.05f);
-  EXPECT_TRUE(shares_sharp_vertex(x, y, far, 0.0f, false));
-  EXPECT_TRUE(shares_sharp_vertex(x, y, far, 5.0f, true));
-  EXPECT_FALSE(shares_sharp_vertex(x, y, far, 0.0f, true));
-  EXPECT_FALSE(shares_sharp_vertex(x, y, close, 0.0f, false));
-  EXPECT_FALSE(shares_sharp_vertex(x, y, close, 5.0f, true));
+  EXPECT_TRUE(gradient::shares_sharp_vertex(x, y, far, 0.0f, false));
+  EXPECT_TRUE(gradient::shares_sharp_vertex(x, y, far, 5.0f, true));
+  EXPECT_FALSE(gradient::shares_sharp_vertex(x, y, far, 0.0f, true));
+  EXPECT_FALSE(gradient::shares_sharp_vertex(x, y, close, 0.0f, false));
+  EXPECT_FALSE(gradient::shares_sharp_vertex(x, y, close, 5.0f, true));
 }
 
 TEST(B4_Shift, BothEndsAgreeWhetherAnEdgeIsShortAndALobeWide) {
@@ -261,11 +269,11 @@ TEST(B4_Shift, BothEndsAgreeWhetherAnEdgeIsShortAndALobeWide) {
     const Vec3 x = random.direction(), y = x + std::exp2(-float(i % 8)) * random.direction();
     const Vec3 z = x + std::exp2(-float(i % 5)) * random.direction();
     const float width = 0.1f * float(1 + i % 9);
-    EXPECT_EQ(is_parallax_below(x, y, z, width), is_parallax_below(y, x, z, width));
-    EXPECT_EQ(is_short_edge(x, y, z), is_short_edge(y, x, z));
-    EXPECT_EQ(looks_similar(x, y, z, width), looks_similar(y, x, z, width));
-    is_short += is_short_edge(x, y, z) ? 1 : 0;
-    alike += looks_similar(x, y, z, width) ? 1 : 0;
+    EXPECT_EQ(gradient::is_parallax_below(x, y, z, width), gradient::is_parallax_below(y, x, z, width));
+    EXPECT_EQ(gradient::is_short_edge(x, y, z), gradient::is_short_edge(y, x, z));
+    EXPECT_EQ(gradient::looks_similar(x, y, z, width), gradient::looks_similar(y, x, z, width));
+    is_short += gradient::is_short_edge(x, y, z) ? 1 : 0;
+    alike += gradient::looks_similar(x, y, z, width) ? 1 : 0;
   }
   EXPECT_GT(is_short, kCases / 10);
   EXPECT_GT(alike, kCases / 10);
@@ -274,32 +282,32 @@ TEST(B4_Shift, BothEndsAgreeWhetherAnEdgeIsShortAndALobeWide) {
 
 TEST(B4_Shift, ALobeLooksAlikeOverAnglesBelowItsWidth) {
   const Vec3 x(0, 0, 0), y(0.1f, 0, 0), z(0, 0, 2);
-  EXPECT_TRUE(looks_similar(x, y, z, 0.06f));
-  EXPECT_FALSE(looks_similar(x, y, z, 0.04f));
-  EXPECT_FALSE(looks_similar(x, y, z, 0.0f));  // Dirac
-  EXPECT_FALSE(is_short_edge(x, y, z));
-  EXPECT_TRUE(is_short_edge(x, y, Vec3(0, 0, 0.1f)));
-  EXPECT_TRUE(is_short_edge(x, y, x));
+  EXPECT_TRUE(gradient::looks_similar(x, y, z, 0.06f));
+  EXPECT_FALSE(gradient::looks_similar(x, y, z, 0.04f));
+  EXPECT_FALSE(gradient::looks_similar(x, y, z, 0.0f));  // Dirac
+  EXPECT_FALSE(gradient::is_short_edge(x, y, z));
+  EXPECT_TRUE(gradient::is_short_edge(x, y, Vec3(0, 0, 0.1f)));
+  EXPECT_TRUE(gradient::is_short_edge(x, y, x));
 }
 
 // The sharpest lobe of the class decides, whatever else the point has.
 TEST(B4_Shift, WidthOfAClassIsThatOfItsSharpestLobe) {
-  Closures closures;
-  const auto add = [&](LobeType type, float alpha_x, float alpha_y) {
-    Lobe* lobe = closures.add();
+  bsdf::Closures closures;
+  const auto add = [&](bsdf::LobeType type, float alpha_x, float alpha_y) {
+    bsdf::Lobe* lobe = closures.add();
     lobe->type = type;
     lobe->weight = Rgb(0.3f);
     lobe->normal = Vec3(0, 0, 1);
     lobe->alpha_x = alpha_x;
     lobe->alpha_y = alpha_y;
   };
-  add(LobeType::Diffuse, 0.0f, 0.0f);
-  add(LobeType::GgxReflection, 0.09f, 0.03f);
-  add(LobeType::GgxReflection, 0.05f, 0.05f);
-  add(LobeType::GgxReflection, 0.5f, 0.5f);  // of class D
+  add(bsdf::LobeType::Diffuse, 0.0f, 0.0f);
+  add(bsdf::LobeType::GgxReflection, 0.09f, 0.03f);
+  add(bsdf::LobeType::GgxReflection, 0.05f, 0.05f);
+  add(bsdf::LobeType::GgxReflection, 0.5f, 0.5f);  // of class D
   closures.finish(Vec3(0, 0, 1), Vec3(0, 0, 1), 0.1f);
-  EXPECT_FLOAT_EQ(class_width(closures, ScatterClass::Reflection), 0.03f);
-  EXPECT_EQ(class_width(closures, ScatterClass::Transmission), kInfinity);
+  EXPECT_FLOAT_EQ(gradient::class_width(closures, bsdf::ScatterClass::Reflection), 0.03f);
+  EXPECT_EQ(gradient::class_width(closures, bsdf::ScatterClass::Transmission), kInfinity);
 }
 
 TEST(B4_Shift, SmallestRotationIsUndoneByItsInverse) {
@@ -308,8 +316,8 @@ TEST(B4_Shift, SmallestRotationIsUndoneByItsInverse) {
     const Vec3 a = random.direction();
     const Vec3 b = i % 10 == 0 ? -a : random.direction();
     const Vec3 v = random.direction();
-    EXPECT_LT(glm::length(rotate_between(a, b, a) - b), 5e-4f);
-    EXPECT_LT(glm::length(rotate_between(b, a, rotate_between(a, b, v)) - v), 5e-4f);
+    EXPECT_LT(glm::length(gradient::rotate_between(a, b, a) - b), 5e-4f);
+    EXPECT_LT(glm::length(gradient::rotate_between(b, a, gradient::rotate_between(a, b, v)) - v), 5e-4f);
   }
 }
 

@@ -1,4 +1,5 @@
-// B4: random replay: undone by the way back, and its Jacobian is what r has in its place, against finite differences of the sampler.
+// B4: random replay: undone by the way back, and its Jacobian is what r has in its place, against finite differences of
+// the sampler.
 #include <cmath>
 #include <optional>
 #include <random>
@@ -11,33 +12,33 @@
 namespace gradus {
 namespace {
 
-Lobe lobe(LobeType type, float alpha, float weight) {
-  Lobe result;
+bsdf::Lobe lobe(bsdf::LobeType type, float alpha, float weight) {
+  bsdf::Lobe result;
   result.type = type;
   result.weight = Rgb(weight);
   result.alpha_x = result.alpha_y = alpha;
-  result.pass = type == LobeType::Diffuse ? LightPass::Diffuse : LightPass::Glossy;
+  result.pass = type == bsdf::LobeType::Diffuse ? bsdf::LightPass::Diffuse : bsdf::LightPass::Glossy;
   return result;
 }
 
-Vertex vertex(const std::vector<Lobe>& lobes, const Vec3& wo) {
-  Vertex v;
+path::Vertex vertex(const std::vector<bsdf::Lobe>& lobes, const Vec3& wo) {
+  path::Vertex v;
   v.wo = wo;
   v.point.geometric_normal = Vec3(0, 0, 1);
   v.shade.closures.clear();
-  for (const Lobe& l : lobes) *v.shade.closures.add() = l;
+  for (const bsdf::Lobe& l : lobes) *v.shade.closures.add() = l;
   v.shade.closures.finish(wo, Vec3(0, 0, 1), 0.1f);
   return v;
 }
 
 // What path/scatter.cpp makes of the numbers, for class D.
-std::optional<ScatterEvent> event_at(const Vertex& v, const VertexSample& u) {
-  const Closures& closures = v.shade.closures;
-  ScatterEvent event;
-  if (!closures.sample(ScatterClass::Diffuse, v.wo, u.lobe.y, u.bsdf, &event.sample)) {
+std::optional<path::ScatterEvent> event_at(const path::Vertex& v, const path::VertexSample& u) {
+  const bsdf::Closures& closures = v.shade.closures;
+  path::ScatterEvent event;
+  if (!closures.sample(bsdf::ScatterClass::Diffuse, v.wo, u.lobe.y, u.bsdf, &event.sample)) {
     return std::nullopt;
   }
-  event.pdf = closures.class_probability(ScatterClass::Diffuse) * event.sample.pdf;
+  event.pdf = closures.class_probability(bsdf::ScatterClass::Diffuse) * event.sample.pdf;
   event.factor = event.sample.value / event.pdf;
   return event;
 }
@@ -47,8 +48,8 @@ struct Numbers {
   std::uniform_real_distribution<float> uniform{0.05f, 0.95f};
   float operator()() { return uniform(engine); }
   Vec3 above() { return glm::normalize(Vec3((*this)() - 0.5f, (*this)() - 0.5f, 0.3f + (*this)())); }
-  VertexSample sample() {
-    VertexSample u{};
+  path::VertexSample sample() {
+    path::VertexSample u{};
     u.bsdf = Vec2((*this)(), (*this)());
     u.lobe = Vec2((*this)(), (*this)());
     return u;
@@ -56,14 +57,14 @@ struct Numbers {
 };
 
 // Solid angle per area of the numbers.
-double stretch(const Vertex& v, const VertexSample& u) {
+double stretch(const path::Vertex& v, const path::VertexSample& u) {
   constexpr float step = 2e-3f;
   Vec3 moved[2][2];
   for (int axis = 0; axis < 2; ++axis) {
     for (int side = 0; side < 2; ++side) {
-      VertexSample near = u;
+      path::VertexSample near = u;
       near.bsdf[axis] += side == 0 ? -step : step;
-      const std::optional<ScatterEvent> event = event_at(v, near);
+      const std::optional<path::ScatterEvent> event = event_at(v, near);
       if (!event) {
         return 0.0;
       }
@@ -76,19 +77,20 @@ double stretch(const Vertex& v, const VertexSample& u) {
 const int kReplays = test::full_run() ? 1000000 : 100000;
 
 TEST(B4_Replay, JacobianIsTheRatioOfDensities) {
-  for (const Lobe& one : {lobe(LobeType::Diffuse, 0.0f, 0.8f), lobe(LobeType::GgxReflection, 0.3f, 0.8f)}) {
+  for (const bsdf::Lobe& one :
+       {lobe(bsdf::LobeType::Diffuse, 0.0f, 0.8f), lobe(bsdf::LobeType::GgxReflection, 0.3f, 0.8f)}) {
     Numbers random;
     int done = 0, right = 0;
     for (int i = 0; i < kReplays; ++i) {
-      const Vertex x = vertex({one}, random.above()), y = vertex({one}, random.above());
-      const VertexSample u = random.sample();
-      const std::optional<ScatterEvent> event = event_at(x, u);
+      const path::Vertex x = vertex({one}, random.above()), y = vertex({one}, random.above());
+      const path::VertexSample u = random.sample();
+      const std::optional<path::ScatterEvent> event = event_at(x, u);
       const double from = stretch(x, u), to = stretch(y, u);
       if (!event || !(from > 0.0) || !(to > 0.0)) {
         continue;
       }
-      const ShiftedEvent there = replay_event(x, *event, u, y);
-      if (there.failure != ShiftFailure::None) {
+      const gradient::ShiftedEvent there = gradient::replay_event(x, *event, u, y);
+      if (there.failure != gradient::ShiftFailure::None) {
         continue;
       }
       ++done;
@@ -106,28 +108,33 @@ TEST(B4_Replay, ThereAndBack) {
   int done = 0, home = 0, refused = 0;
   for (int i = 0; i < kReplays; ++i) {
     const auto make = [&] {
-      return vertex({lobe(LobeType::Diffuse, 0.0f, random()), lobe(LobeType::GgxReflection, 0.2f + 0.5f * random(), random()),
-                     lobe(LobeType::GgxReflection, 0.01f, random())},
+      return vertex({lobe(bsdf::LobeType::Diffuse, 0.0f, random()),
+                     lobe(bsdf::LobeType::GgxReflection, 0.2f + 0.5f * random(), random()),
+                     lobe(bsdf::LobeType::GgxReflection, 0.01f, random())},
                     random.above());
     };
-    const Vertex x = make(), y = make();
-    const VertexSample u = random.sample();
-    const std::optional<ScatterEvent> event = event_at(x, u);
-    const std::optional<ScatterEvent> other = event_at(y, u);
+    const path::Vertex x = make(), y = make();
+    const path::VertexSample u = random.sample();
+    const std::optional<path::ScatterEvent> event = event_at(x, u);
+    const std::optional<path::ScatterEvent> other = event_at(y, u);
     if (!event || !other) {
       continue;
     }
-    const ShiftedEvent there = replay_event(x, *event, u, y);
-    if (there.failure != ShiftFailure::None) {
-      EXPECT_NE(replay_event(y, *other, u, x).failure, ShiftFailure::None) << "refused one way only";
+    const gradient::ShiftedEvent there = gradient::replay_event(x, *event, u, y);
+    if (there.failure != gradient::ShiftFailure::None) {
+      EXPECT_NE(gradient::replay_event(y, *other, u, x).failure, gradient::ShiftFailure::None)
+          << "refused one way only";
       ++refused;
       continue;
     }
     EXPECT_EQ(other->sample.wi, there.wi);
     EXPECT_NEAR(there.factor.x / other->factor.x, 1.0f, 1e-5f);
-    const ShiftedEvent back = replay_event(y, *other, u, x);
+    const gradient::ShiftedEvent back = gradient::replay_event(y, *other, u, x);
     ++done;
-    home += back.failure == ShiftFailure::None && back.wi == event->sample.wi && std::fabs(there.ratio * back.ratio - 1.0f) < 1e-5f ? 1 : 0;
+    home += back.failure == gradient::ShiftFailure::None && back.wi == event->sample.wi &&
+                    std::fabs(there.ratio * back.ratio - 1.0f) < 1e-5f
+                ? 1
+                : 0;
   }
   EXPECT_GT(done, kReplays / 4);
   EXPECT_GT(refused, kReplays / 100);
@@ -139,13 +146,14 @@ TEST(B4_Replay, ThereAndBack) {
 // The numbers choose a diffuse lobe at one vertex and a metal at the other: that is another path.
 TEST(B4_Replay, AnotherKindOfBounceIsRefusedBothWays) {
   const Vec3 wo = glm::normalize(Vec3(0.3f, 0.1f, 0.9f));
-  const Vertex matte = vertex({lobe(LobeType::Diffuse, 0.0f, 0.8f)}, wo), metal = vertex({lobe(LobeType::GgxReflection, 0.3f, 0.8f)}, wo);
-  VertexSample u{};
+  const path::Vertex matte = vertex({lobe(bsdf::LobeType::Diffuse, 0.0f, 0.8f)}, wo),
+                     metal = vertex({lobe(bsdf::LobeType::GgxReflection, 0.3f, 0.8f)}, wo);
+  path::VertexSample u{};
   u.bsdf = u.lobe = Vec2(0.4f);
-  const std::optional<ScatterEvent> of_matte = event_at(matte, u), of_metal = event_at(metal, u);
+  const std::optional<path::ScatterEvent> of_matte = event_at(matte, u), of_metal = event_at(metal, u);
   ASSERT_TRUE(of_matte && of_metal);
-  EXPECT_EQ(replay_event(matte, *of_matte, u, metal).failure, ShiftFailure::Class);
-  EXPECT_EQ(replay_event(metal, *of_metal, u, matte).failure, ShiftFailure::Class);
+  EXPECT_EQ(gradient::replay_event(matte, *of_matte, u, metal).failure, gradient::ShiftFailure::Class);
+  EXPECT_EQ(gradient::replay_event(metal, *of_metal, u, matte).failure, gradient::ShiftFailure::Class);
 }
 
 }  // namespace

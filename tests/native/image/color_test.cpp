@@ -19,31 +19,35 @@ namespace fs = std::filesystem;
 
 class F5_ColorConfig : public ::testing::Test {
  protected:
-  std::unique_ptr<ColorManager> make(const std::string& path) {
-    return std::make_unique<ColorManager>(path, [this](const std::string& text) { warnings_.push_back(text); });
+  std::unique_ptr<image::ColorManager> make(const std::string& path) {
+    return std::make_unique<image::ColorManager>(path, [this](const std::string& text) { warnings_.push_back(text); });
   }
   // A configuration in a temporary file.
   std::string write(const std::string& text) {
-    const fs::path path = fs::path(::testing::TempDir()) / ("gradus_color_" + std::to_string(fs::hash_value(text)) + ".ocio");
+    const fs::path path =
+        fs::path(::testing::TempDir()) / ("gradus_color_" + std::to_string(fs::hash_value(text)) + ".ocio");
     std::ofstream(path) << text;
     return path.string();
   }
   static std::string config(const std::string& role) {
     return "ocio_profile_version: 2\nstrictparsing: true\nroles:\n  " + role +
-           ": lin\n  default: lin\ndisplays:\n  sRGB:\n    - !<View> {name: Raw, colorspace: raw}\nactive_displays: []\nactive_views: []\n"
-           "colorspaces:\n  - !<ColorSpace>\n    name: lin\n    isdata: false\n  - !<ColorSpace>\n    name: raw\n    isdata: true\n"
-           "  - !<ColorSpace>\n    name: halved\n    isdata: false\n    to_scene_reference: !<MatrixTransform> {matrix: [0.5, 0, 0, 0, 0, "
+           ": lin\n  default: lin\ndisplays:\n  sRGB:\n    - !<View> {name: Raw, colorspace: raw}\nactive_displays: "
+           "[]\nactive_views: []\n"
+           "colorspaces:\n  - !<ColorSpace>\n    name: lin\n    isdata: false\n  - !<ColorSpace>\n    name: raw\n    "
+           "isdata: true\n"
+           "  - !<ColorSpace>\n    name: halved\n    isdata: false\n    to_scene_reference: !<MatrixTransform> "
+           "{matrix: [0.5, 0, 0, 0, 0, "
            "0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1]}\n";
   }
   std::vector<std::string> warnings_;
 };
 
-void expect_builtin(const ColorManager& color) {
-  EXPECT_EQ(color.transform("sRGB", true), ColorTransform::Srgb);
-  EXPECT_EQ(color.transform("Linear", false), ColorTransform::Data);
-  EXPECT_EQ(color.transform("Linear Rec.709", false), ColorTransform::Data);
-  EXPECT_EQ(color.transform("Non-Color", true), ColorTransform::Data);
-  EXPECT_EQ(color.transform("", true), ColorTransform::Data);
+void expect_builtin(const image::ColorManager& color) {
+  EXPECT_EQ(color.transform("sRGB", true), image::ColorTransform::Srgb);
+  EXPECT_EQ(color.transform("Linear", false), image::ColorTransform::Data);
+  EXPECT_EQ(color.transform("Linear Rec.709", false), image::ColorTransform::Data);
+  EXPECT_EQ(color.transform("Non-Color", true), image::ColorTransform::Data);
+  EXPECT_EQ(color.transform("", true), image::ColorTransform::Data);
   float pixel[4] = {0.5f, 0.0f, 1.0f, 0.25f};
   color.to_scene_linear("sRGB", true, pixel, 1, 4);
   EXPECT_NEAR(pixel[0], 0.21404114f, 1e-6f);
@@ -92,9 +96,9 @@ TEST_F(F5_ColorConfig, WithoutSceneLinearRoleFallsBack) {
 TEST_F(F5_ColorConfig, ConvertsBySpacesOfTheConfiguration) {
   const auto color = make(write(config("scene_linear")));
   EXPECT_TRUE(warnings_.empty()) << warnings_[0];
-  EXPECT_EQ(color->transform("lin", false), ColorTransform::Data);
-  EXPECT_EQ(color->transform("raw", true), ColorTransform::Data);
-  EXPECT_EQ(color->transform("halved", true), ColorTransform::Other);
+  EXPECT_EQ(color->transform("lin", false), image::ColorTransform::Data);
+  EXPECT_EQ(color->transform("raw", true), image::ColorTransform::Data);
+  EXPECT_EQ(color->transform("halved", true), image::ColorTransform::Other);
   std::vector<float> pixels(3 * 100000, 0.8f);
   color->to_scene_linear("halved", true, pixels.data(), pixels.size() / 3, 3);
   EXPECT_NEAR(pixels.front(), 0.4f, 1e-6f);
@@ -103,8 +107,8 @@ TEST_F(F5_ColorConfig, ConvertsBySpacesOfTheConfiguration) {
 
 TEST_F(F5_ColorConfig, UnknownSpaceWarnsOnce) {
   const auto color = make("");
-  EXPECT_EQ(color->transform("Odd", true), ColorTransform::Srgb);
-  EXPECT_EQ(color->transform("Odd", false), ColorTransform::Data);
+  EXPECT_EQ(color->transform("Odd", true), image::ColorTransform::Srgb);
+  EXPECT_EQ(color->transform("Odd", false), image::ColorTransform::Data);
   ASSERT_EQ(warnings_.size(), 1u);
   EXPECT_NE(warnings_[0].find("Odd"), std::string::npos);
 }
@@ -114,7 +118,7 @@ TEST_F(F5_ColorConfig, OverrideWins) {
   const float curve[3] = {0.0f, 0.25f, 1.0f};
   GradusColorSpace space{sizeof(GradusColorSpace), 3, "sRGB", curve, {0, 1, 0, 1, 0, 0, 0, 0, 2}};
   color->set_override(space);
-  EXPECT_EQ(color->transform("sRGB", true), ColorTransform::Other);
+  EXPECT_EQ(color->transform("sRGB", true), image::ColorTransform::Other);
   float pixel[3] = {0.5f, 1.0f, 0.75f};
   color->to_scene_linear("sRGB", true, pixel, 1, 3);
   EXPECT_NEAR(pixel[0], 1.0f, 1e-6f);
@@ -145,7 +149,7 @@ TEST_F(F5_ColorConfig, BlendersConfiguration) {
   const auto color = make(path);
   EXPECT_TRUE(warnings_.empty());
   expect_builtin(*color);
-  EXPECT_EQ(color->transform("Filmic sRGB", true), ColorTransform::Other);
+  EXPECT_EQ(color->transform("Filmic sRGB", true), image::ColorTransform::Other);
   // ACEScg has a smaller red: pure ACEScg red lies outside Rec. 709.
   float pixel[3] = {1.0f, 0.0f, 0.0f};
   color->to_scene_linear("Linear ACEScg", false, pixel, 1, 3);

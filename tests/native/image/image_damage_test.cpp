@@ -38,7 +38,8 @@ TEST(F1_MissingImages, Truncated) {
       {"t.hdr", make_hdr(64, 64, four_colors)}};
   for (const auto& [name, bytes] : files) {
     for (const double share : {0.02, 0.3, 0.7}) {
-      const FileBytes part(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(static_cast<double>(bytes.size()) * share));
+      const FileBytes part(bytes.begin(),
+                           bytes.begin() + static_cast<ptrdiff_t>(static_cast<double>(bytes.size()) * share));
       const std::string path = write_temporary(name, part);
       expect_fallback(store_file(path), path);
     }

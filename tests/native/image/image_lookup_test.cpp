@@ -12,7 +12,7 @@ namespace {
 
 // Two texels: black on the left, white on the right.
 StoredImage black_and_white() {
-  ImageSource source;
+  image::ImageSource source;
   source.color_space = "Non-Color";
   source.tiles.resize(1);
   source.tiles[0].source = GRADUS_IMAGE_BYTE;
@@ -22,8 +22,8 @@ StoredImage black_and_white() {
   return store_source(source);
 }
 
-ImageSource rgba_source(const std::vector<uint8_t>& pixel, uint32_t alpha_mode, const std::string& space) {
-  ImageSource source;
+image::ImageSource rgba_source(const std::vector<uint8_t>& pixel, uint32_t alpha_mode, const std::string& space) {
+  image::ImageSource source;
   source.color_space = space;
   source.alpha_mode = alpha_mode;
   source.tiles.resize(1);
@@ -35,53 +35,53 @@ ImageSource rgba_source(const std::vector<uint8_t>& pixel, uint32_t alpha_mode, 
 
 TEST(ImageLookup, ExtensionOfClosest) {
   const StoredImage image = black_and_white();
-  const auto at = [&](float u, Extension e) { return image.at(u, 0.5f, Interpolation::Closest, e).x; };
-  EXPECT_EQ(at(0.25f, Extension::Repeat), 0.0f);
-  EXPECT_EQ(at(0.75f, Extension::Repeat), 1.0f);
-  EXPECT_EQ(at(1.25f, Extension::Repeat), 0.0f);
-  EXPECT_EQ(at(-0.25f, Extension::Repeat), 1.0f);
-  EXPECT_EQ(at(1.25f, Extension::Extend), 1.0f);
-  EXPECT_EQ(at(-3.0f, Extension::Extend), 0.0f);
-  EXPECT_EQ(at(1.25f, Extension::Mirror), 1.0f);
-  EXPECT_EQ(at(1.75f, Extension::Mirror), 0.0f);
-  EXPECT_EQ(at(-0.75f, Extension::Mirror), 1.0f);
-  EXPECT_EQ(image.at(1.25f, 0.5f, Interpolation::Closest, Extension::Clip), Vec4(0.0f));
-  EXPECT_EQ(at(0.75f, Extension::Clip), 1.0f);
+  const auto at = [&](float u, image::Extension e) { return image.at(u, 0.5f, image::Interpolation::Closest, e).x; };
+  EXPECT_EQ(at(0.25f, image::Extension::Repeat), 0.0f);
+  EXPECT_EQ(at(0.75f, image::Extension::Repeat), 1.0f);
+  EXPECT_EQ(at(1.25f, image::Extension::Repeat), 0.0f);
+  EXPECT_EQ(at(-0.25f, image::Extension::Repeat), 1.0f);
+  EXPECT_EQ(at(1.25f, image::Extension::Extend), 1.0f);
+  EXPECT_EQ(at(-3.0f, image::Extension::Extend), 0.0f);
+  EXPECT_EQ(at(1.25f, image::Extension::Mirror), 1.0f);
+  EXPECT_EQ(at(1.75f, image::Extension::Mirror), 0.0f);
+  EXPECT_EQ(at(-0.75f, image::Extension::Mirror), 1.0f);
+  EXPECT_EQ(image.at(1.25f, 0.5f, image::Interpolation::Closest, image::Extension::Clip), Vec4(0.0f));
+  EXPECT_EQ(at(0.75f, image::Extension::Clip), 1.0f);
 }
 
 TEST(ImageLookup, Linear) {
   const StoredImage image = black_and_white();
-  const auto at = [&](float u, Extension e) { return image.at(u, 0.5f, Interpolation::Linear, e).x; };
-  EXPECT_NEAR(at(0.5f, Extension::Repeat), 0.5f, 1e-6f);
-  EXPECT_NEAR(at(0.25f, Extension::Repeat), 0.0f, 1e-6f);
-  EXPECT_NEAR(at(0.375f, Extension::Extend), 0.25f, 1e-6f);
-  EXPECT_NEAR(at(0.0f, Extension::Repeat), 0.5f, 1e-6f);
-  EXPECT_NEAR(at(0.0f, Extension::Extend), 0.0f, 1e-6f);
-  EXPECT_NEAR(at(0.0f, Extension::Mirror), 0.0f, 1e-6f);
+  const auto at = [&](float u, image::Extension e) { return image.at(u, 0.5f, image::Interpolation::Linear, e).x; };
+  EXPECT_NEAR(at(0.5f, image::Extension::Repeat), 0.5f, 1e-6f);
+  EXPECT_NEAR(at(0.25f, image::Extension::Repeat), 0.0f, 1e-6f);
+  EXPECT_NEAR(at(0.375f, image::Extension::Extend), 0.25f, 1e-6f);
+  EXPECT_NEAR(at(0.0f, image::Extension::Repeat), 0.5f, 1e-6f);
+  EXPECT_NEAR(at(0.0f, image::Extension::Extend), 0.0f, 1e-6f);
+  EXPECT_NEAR(at(0.0f, image::Extension::Mirror), 0.0f, 1e-6f);
 }
 
 // Clipped images ended at once where Cycles lets interpolation reach into the emptiness around them.
 TEST(ImageLookup, BordersOfClippedImagesFade) {
   const StoredImage image = store_source(rgba_source({255, 255, 255, 255}, GRADUS_ALPHA_STRAIGHT, "Non-Color"));
-  const auto at = [&](float u, Interpolation i) { return image.at(u, 0.5f, i, Extension::Clip); };
-  EXPECT_EQ(at(0.5f, Interpolation::Linear), Vec4(1.0f));
-  EXPECT_EQ(at(0.0f, Interpolation::Linear), Vec4(0.5f));
-  EXPECT_EQ(at(-0.25f, Interpolation::Linear), Vec4(0.25f));
-  EXPECT_EQ(at(1.25f, Interpolation::Linear), Vec4(0.25f));
-  EXPECT_EQ(at(1.5f, Interpolation::Linear), Vec4(0.0f));
+  const auto at = [&](float u, image::Interpolation i) { return image.at(u, 0.5f, i, image::Extension::Clip); };
+  EXPECT_EQ(at(0.5f, image::Interpolation::Linear), Vec4(1.0f));
+  EXPECT_EQ(at(0.0f, image::Interpolation::Linear), Vec4(0.5f));
+  EXPECT_EQ(at(-0.25f, image::Interpolation::Linear), Vec4(0.25f));
+  EXPECT_EQ(at(1.25f, image::Interpolation::Linear), Vec4(0.25f));
+  EXPECT_EQ(at(1.5f, image::Interpolation::Linear), Vec4(0.0f));
   const float middle = 4.0f / 6.0f;
-  EXPECT_NEAR(at(0.5f, Interpolation::Cubic).w, middle * middle, 1e-6f);
-  EXPECT_NEAR(at(1.5f, Interpolation::Cubic).w, middle / 6.0f, 1e-6f);
-  EXPECT_EQ(at(0.0f, Interpolation::Closest), Vec4(1.0f));
-  EXPECT_EQ(at(-0.01f, Interpolation::Closest), Vec4(0.0f));
-  EXPECT_EQ(at(1e9f, Interpolation::Linear), Vec4(0.0f));
+  EXPECT_NEAR(at(0.5f, image::Interpolation::Cubic).w, middle * middle, 1e-6f);
+  EXPECT_NEAR(at(1.5f, image::Interpolation::Cubic).w, middle / 6.0f, 1e-6f);
+  EXPECT_EQ(at(0.0f, image::Interpolation::Closest), Vec4(1.0f));
+  EXPECT_EQ(at(-0.01f, image::Interpolation::Closest), Vec4(0.0f));
+  EXPECT_EQ(at(1e9f, image::Interpolation::Linear), Vec4(0.0f));
 }
 
 TEST(ImageLookup, CubicWeightsSumToOne) {
   const StoredImage image = black_and_white();
   for (float u = -1.0f; u < 2.0f; u += 0.1f) {
-    const float a = image.at(u, 0.5f, Interpolation::Cubic, Extension::Repeat).x;
-    const float b = image.at(u + 0.5f, 0.5f, Interpolation::Cubic, Extension::Repeat).x;
+    const float a = image.at(u, 0.5f, image::Interpolation::Cubic, image::Extension::Repeat).x;
+    const float b = image.at(u + 0.5f, 0.5f, image::Interpolation::Cubic, image::Extension::Repeat).x;
     EXPECT_NEAR(a + b, 1.0f, 1e-5f);
   }
 }
@@ -90,8 +90,10 @@ TEST(ImageLookup, OddCoordinates) {
   const StoredImage image = black_and_white();
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   for (const float u : {kNan, kInfinity, -kInfinity, 1e30f, -1e30f, 3e9f}) {
-    for (const Extension e : {Extension::Repeat, Extension::Extend, Extension::Clip, Extension::Mirror}) {
-      for (const Interpolation i : {Interpolation::Linear, Interpolation::Closest, Interpolation::Cubic}) {
+    for (const image::Extension e :
+         {image::Extension::Repeat, image::Extension::Extend, image::Extension::Clip, image::Extension::Mirror}) {
+      for (const image::Interpolation i :
+           {image::Interpolation::Linear, image::Interpolation::Closest, image::Interpolation::Cubic}) {
         EXPECT_TRUE(is_finite(image.at(u, u, i, e).x));
       }
     }
@@ -102,10 +104,10 @@ TEST(ImageLookup, SrgbIsExact) {
   for (const int value : {0, 5, 10, 11, 64, 128, 200, 255}) {
     const uint8_t v = static_cast<uint8_t>(value);
     const StoredImage image = store_source(rgba_source({v, v, v, 255}, GRADUS_ALPHA_STRAIGHT, "sRGB"));
-    EXPECT_NEAR(image.at(0.5f, 0.5f).x, srgb_to_linear(static_cast<float>(value) / 255.0f), 2e-6f);
-    const StoredImage png =
-        store_encoded(make_png(4, 4, [&](float, float) { return Vec4(Rgb(static_cast<float>(value) / 255.0f), 1.0f); }, {16, 3, false}));
-    EXPECT_NEAR(png.at(0.5f, 0.5f).x, srgb_to_linear(static_cast<float>(value) / 255.0f), 6e-4f);
+    EXPECT_NEAR(image.at(0.5f, 0.5f).x, image::srgb_to_linear(static_cast<float>(value) / 255.0f), 2e-6f);
+    const StoredImage png = store_encoded(make_png(
+        4, 4, [&](float, float) { return Vec4(Rgb(static_cast<float>(value) / 255.0f), 1.0f); }, {16, 3, false}));
+    EXPECT_NEAR(png.at(0.5f, 0.5f).x, image::srgb_to_linear(static_cast<float>(value) / 255.0f), 6e-4f);
   }
 }
 
@@ -115,7 +117,8 @@ TEST(ImageLookup, AlphaModes) {
   const auto at = [&](uint32_t mode, bool unassociate) {
     const StoredImage image = store_source(rgba_source(half_red, mode, "Non-Color"));
     EXPECT_EQ(image.store.has_alpha(image.index), mode != GRADUS_ALPHA_NONE);
-    return image.store.lookup(image.index, Vec2(0.5f), Interpolation::Closest, Extension::Repeat, unassociate);
+    return image.store.lookup(image.index, Vec2(0.5f), image::Interpolation::Closest, image::Extension::Repeat,
+                              unassociate);
   };
   EXPECT_NEAR(at(GRADUS_ALPHA_STRAIGHT, false).x, a, 1e-6f);
   EXPECT_NEAR(at(GRADUS_ALPHA_STRAIGHT, true).x, 1.0f, 1e-6f);
@@ -126,11 +129,12 @@ TEST(ImageLookup, AlphaModes) {
   EXPECT_EQ(at(GRADUS_ALPHA_NONE, false), Vec4(1, 0, 0, 1));
 }
 
-// Of a large image every seventh texel and so on was looked at: a small hole was missed, and the material taken for opaque.
+// Of a large image every seventh texel and so on was looked at: a small hole was missed, and the material taken for
+// opaque.
 TEST(ImageLookup, OneTransparentTexelOfALargeImageCounts) {
   constexpr uint32_t kSide = 2048;
   std::vector<uint8_t> pixels(size_t{kSide} * kSide * 4, 255);
-  ImageSource source = rgba_source({255, 255, 255, 255}, GRADUS_ALPHA_STRAIGHT, "Non-Color");
+  image::ImageSource source = rgba_source({255, 255, 255, 255}, GRADUS_ALPHA_STRAIGHT, "Non-Color");
   source.tiles[0].width = source.tiles[0].height = kSide;
   source.tiles[0].data = pixels;
   const StoredImage opaque = store_source(source);
@@ -154,15 +158,15 @@ TEST(ImageLookup, FloatPixelsBottomRowFirst) {
   desc.alpha_mode = GRADUS_ALPHA_PREMULTIPLIED;
   desc.tile_count = 1;
   desc.tiles = &tile;
-  const StoredImage image = store_source(copy_image_source(desc));
+  const StoredImage image = store_source(image::copy_image_source(desc));
   EXPECT_EQ(image.at(0.5f, 0.25f), Vec4(1, 2, 3, 1));
   EXPECT_EQ(image.at(0.5f, 0.75f), Vec4(4, 5, 6, 1));
   tile.data_size = 4;
-  EXPECT_THROW(copy_image_source(desc), Error);
+  EXPECT_THROW(image::copy_image_source(desc), Error);
 }
 
 TEST(ImageLookup, NonFiniteTexelsAreBlack) {
-  ImageSource source;
+  image::ImageSource source;
   source.tiles.resize(1);
   source.tiles[0].source = GRADUS_IMAGE_FLOAT;
   source.tiles[0].width = source.tiles[0].height = 1;
@@ -173,10 +177,10 @@ TEST(ImageLookup, NonFiniteTexelsAreBlack) {
 }
 
 TEST(ImageLookup, UdimTiles) {
-  ImageSource source;
+  image::ImageSource source;
   source.color_space = "Non-Color";
   for (const uint32_t number : {1001u, 1002u, 1011u}) {
-    ImageSource::Tile tile;
+    image::ImageSource::Tile tile;
     tile.number = number;
     tile.source = GRADUS_IMAGE_BYTE;
     tile.width = tile.height = 1;
@@ -194,22 +198,23 @@ TEST(ImageLookup, UdimTiles) {
 TEST(ImageLookup, MeanIsLinear) {
   EXPECT_NEAR(black_and_white().store.mean(0).x, 0.5f, 1e-6f);
   const StoredImage grey = store_source(rgba_source({128, 128, 128, 255}, GRADUS_ALPHA_STRAIGHT, "sRGB"));
-  EXPECT_NEAR(grey.store.mean(0).x, srgb_to_linear(128.0f / 255.0f), 1e-5f);
+  EXPECT_NEAR(grey.store.mean(0).x, image::srgb_to_linear(128.0f / 255.0f), 1e-5f);
 }
 
 TEST(ImageLookup, KeysReplaceAndKeepTheirIndex) {
-  const ColorManager color("", nullptr);
-  ImageStore store;
-  const auto red = load_image(rgba_source({255, 0, 0, 255}, GRADUS_ALPHA_STRAIGHT, ""), color);
-  const auto green = load_image(rgba_source({0, 255, 0, 255}, GRADUS_ALPHA_STRAIGHT, ""), color);
+  const image::ColorManager color("", nullptr);
+  image::ImageStore store;
+  const auto red = image::load_image(rgba_source({255, 0, 0, 255}, GRADUS_ALPHA_STRAIGHT, ""), color);
+  const auto green = image::load_image(rgba_source({0, 255, 0, 255}, GRADUS_ALPHA_STRAIGHT, ""), color);
   const uint32_t first = store.add(10, red);
   const uint32_t second = store.add(11, green);
   EXPECT_NE(first, second);
   EXPECT_EQ(store.add(10, green), first);
   EXPECT_EQ(store.index_of(10), first);
-  EXPECT_EQ(store.index_of(12), ImageStore::kNone);
-  EXPECT_EQ(store.lookup(first, Vec2(0.5f), Interpolation::Linear, Extension::Repeat), Vec4(0, 1, 0, 1));
-  EXPECT_EQ(store.lookup(ImageStore::kNone, Vec2(0.5f), Interpolation::Linear, Extension::Repeat), Vec4(1, 0, 1, 1));
+  EXPECT_EQ(store.index_of(12), image::ImageStore::kNone);
+  EXPECT_EQ(store.lookup(first, Vec2(0.5f), image::Interpolation::Linear, image::Extension::Repeat), Vec4(0, 1, 0, 1));
+  EXPECT_EQ(store.lookup(image::ImageStore::kNone, Vec2(0.5f), image::Interpolation::Linear, image::Extension::Repeat),
+            Vec4(1, 0, 1, 1));
 }
 
 }  // namespace

@@ -112,7 +112,8 @@ TEST(F3_ImageReaders, ExrLayouts) {
 TEST(F3_ImageReaders, Hdr) {
   expect_four_colors(make_hdr(36, 20, four_colors), 0.01f);
   expect_four_colors(make_hdr(36, 20, four_colors, false), 0.01f);
-  const StoredImage bright = store_encoded(make_hdr(36, 20, [](float, float) { return Vec4(1e6f, 2e6f, 3.0f, 1.0f); }), "Linear");
+  const StoredImage bright =
+      store_encoded(make_hdr(36, 20, [](float, float) { return Vec4(1e6f, 2e6f, 3.0f, 1.0f); }), "Linear");
   EXPECT_NEAR(bright.at(0.5f, 0.5f).x, 1e6f, 1e4f);
   EXPECT_NEAR(bright.at(0.5f, 0.5f).y, 2e6f, 1e4f);
 }
@@ -168,7 +169,8 @@ TEST(F3_ImageReaders, FalseSizesAreRefused) {
   FileBytes jpeg = make_jpeg(16, 16, four_colors);
   for (size_t i = 0; i + 9 < jpeg.size(); i++) {
     if (jpeg[i] == 0xff && jpeg[i + 1] == 0xc0) {
-      std::fill(jpeg.begin() + static_cast<ptrdiff_t>(i) + 5, jpeg.begin() + static_cast<ptrdiff_t>(i) + 9, uint8_t{0xff});
+      std::fill(jpeg.begin() + static_cast<ptrdiff_t>(i) + 5, jpeg.begin() + static_cast<ptrdiff_t>(i) + 9,
+                uint8_t{0xff});
     }
   }
   expect_refused(jpeg, "JPEG");

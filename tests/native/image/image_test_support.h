@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "image/color.h"
 #include "gradus/gradus_nodes.h"
+#include "image/color.h"
 #include "image/image_store.h"
 #include "support/image_files.h"
 
@@ -37,26 +37,27 @@ class ImageMaterial {
 };
 
 struct StoredImage {
-  ImageStore store;
+  image::ImageStore store;
   uint32_t index = 0;
   std::vector<std::string> warnings;
 
-  Vec4 at(float u, float v, Interpolation interpolation = Interpolation::Closest, Extension extension = Extension::Repeat) const {
+  Vec4 at(float u, float v, image::Interpolation interpolation = image::Interpolation::Closest,
+          image::Extension extension = image::Extension::Repeat) const {
     return store.lookup(index, Vec2(u, v), interpolation, extension);
   }
 };
 
-inline StoredImage store_source(const ImageSource& source) {
-  const ColorManager color("", nullptr);
+inline StoredImage store_source(const image::ImageSource& source) {
+  const image::ColorManager color("", nullptr);
   StoredImage result;
-  const auto image = load_image(source, color);
-  result.warnings = warnings_of(*image);
+  const auto image = image::load_image(source, color);
+  result.warnings = image::warnings_of(*image);
   result.index = result.store.add(7, image);
   return result;
 }
 
-inline ImageSource encoded_source(const FileBytes& bytes, const std::string& space = "sRGB") {
-  ImageSource source;
+inline image::ImageSource encoded_source(const FileBytes& bytes, const std::string& space = "sRGB") {
+  image::ImageSource source;
   source.name = "test";
   source.color_space = space;
   source.tiles.resize(1);
@@ -70,7 +71,7 @@ inline StoredImage store_encoded(const FileBytes& bytes, const std::string& spac
 }
 
 inline StoredImage store_file(const std::string& path) {
-  ImageSource source;
+  image::ImageSource source;
   source.name = "test";
   source.color_space = "sRGB";
   source.tiles.resize(1);
@@ -80,7 +81,8 @@ inline StoredImage store_file(const std::string& path) {
 
 inline std::string write_temporary(const std::string& name, const FileBytes& bytes) {
   const std::string path = (std::filesystem::temp_directory_path() / ("gradus_test_" + name)).string();
-  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   return path;
 }
 

@@ -11,8 +11,8 @@ namespace {
 
 constexpr uint64_t kKey = 7;
 
-ImageSource grey(uint8_t value) {
-  ImageSource source;
+image::ImageSource grey(uint8_t value) {
+  image::ImageSource source;
   source.color_space = "Non-Color";
   source.tiles.resize(1);
   source.tiles[0].source = GRADUS_IMAGE_BYTE;
@@ -21,25 +21,27 @@ ImageSource grey(uint8_t value) {
   return source;
 }
 
-float committed_value(Scene::State* state) {
+float committed_value(scene::Scene::State* state) {
   const CommitMonitor monitor(nullptr, nullptr);
-  Snapshot snapshot;
-  load_images(*test_device(), monitor, state, &snapshot);
-  return snapshot.images->lookup(snapshot.images->index_of(kKey), Vec2(0.5f), Interpolation::Closest, Extension::Repeat).x;
+  scene::Snapshot snapshot;
+  scene::load_images(*test_device(), monitor, state, &snapshot);
+  return snapshot.images
+      ->lookup(snapshot.images->index_of(kKey), Vec2(0.5f), image::Interpolation::Closest, image::Extension::Repeat)
+      .x;
 }
 
-// A commit that is cancelled while the last image is decoded leaves it loaded: the next one had nothing to load, and kept the picture of
-// before.
+// A commit that is cancelled while the last image is decoded leaves it loaded: the next one had nothing to load, and
+// kept the picture of before.
 TEST(ImageUpdate, WhatACancelledCommitHasLoadedIsShownByTheNext) {
-  Scene::State state;
+  scene::Scene::State state;
   state.images[kKey] = {grey(0), nullptr};
   EXPECT_EQ(committed_value(&state), 0.0f);
-  state.images[kKey] = {grey(255), load_image(grey(255), test_device()->color())};
+  state.images[kKey] = {grey(255), image::load_image(grey(255), test_device()->color())};
   EXPECT_EQ(committed_value(&state), 1.0f);
 }
 
 TEST(ImageUpdate, UnchangedImagesKeepTheirStore) {
-  Scene::State state;
+  scene::Scene::State state;
   state.images[kKey] = {grey(0), nullptr};
   committed_value(&state);
   const auto store = state.image_store;
@@ -50,15 +52,16 @@ TEST(ImageUpdate, UnchangedImagesKeepTheirStore) {
 // A stroke on one image compiled all materials again, the tables of skies as well.
 TEST(ImageUpdate, OnlyMaterialsThatLookAtImagesAreCompiledAgain) {
   constexpr uint64_t kPlain = 1, kShown = 2;
-  Scene::State state;
+  scene::Scene::State state;
   state.images[kKey] = {grey(0), nullptr};
-  state.materials[kPlain] = std::make_shared<const MaterialSource>(MaterialDesc(GRADUS_OP_DIFFUSE, Rgb(0.5f)).desc());
-  state.materials[kShown] = std::make_shared<const MaterialSource>(testing::ImageMaterial(kKey).desc());
+  state.materials[kPlain] =
+      std::make_shared<const scene::MaterialSource>(MaterialDesc(GRADUS_OP_DIFFUSE, Rgb(0.5f)).desc());
+  state.materials[kShown] = std::make_shared<const scene::MaterialSource>(testing::ImageMaterial(kKey).desc());
   const auto compiled = [&] {
     committed_value(&state);
     const CommitMonitor monitor(nullptr, nullptr);
-    Snapshot snapshot;
-    compile_materials(monitor, &state, &snapshot);
+    scene::Snapshot snapshot;
+    scene::compile_materials(monitor, &state, &snapshot);
     return std::pair(state.compiled.at(kPlain).data, state.compiled.at(kShown).data);
   };
   const auto before = compiled();

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gradient/gradient_integrator.h"
 #include "support/path_scene.h"
 
 namespace gradus {
@@ -14,14 +15,15 @@ using Clock = std::chrono::steady_clock;
 TEST(K2_Cancel, IntegratorsStopBetweenSamples) {
   test::PathScene scene;
   test::build(test::Scenario::DiffuseArea, &scene);
-  const IntegratorContext context = scene.context(test::test_settings(16, 16));
+  const integrator::IntegratorContext context = scene.context(test::test_settings(16, 16));
   for (const bool gradient : {false, true}) {
-    const auto integrator = gradient ? make_gradient_integrator(context) : make_path_integrator(context);
-    Film film = test::make_test_film(context.settings, gradient);
+    const auto integrator =
+        gradient ? gradient::make_gradient_integrator(context) : integrator::make_path_integrator(context);
+    film::Film film = test::make_test_film(context.settings, gradient);
     std::atomic<bool> stop{false};
     std::atomic<Clock::rep> ended{0};
     std::thread worker([&] {
-      integrator->sample(WorkUnit{film.region, 0, 20000, nullptr}, &film, &film.counters, stop);
+      integrator->sample(integrator::WorkUnit{film.region, 0, 20000, nullptr}, &film, &film.counters, stop);
       ended = Clock::now().time_since_epoch().count();
     });
     std::this_thread::sleep_for(std::chrono::milliseconds(50));

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gradient/gradient_integrator.h"
 #include "support/path_scene.h"
 
 namespace gradus {
@@ -17,9 +18,10 @@ constexpr uint32_t kSide = 24;
 // By bounces, so that paths change their component at every vertex.
 const char* const kByBounces = "Seen=EL;Once=E.L;Twice=E..L;Thrice=E...L";
 
-Film sampled(const IntegratorContext& context, bool gradients, uint32_t samples = 6) {
-  Film film = test::make_test_film(context.settings, gradients, context.components.count());
-  const auto integrator = gradients ? make_gradient_integrator(context) : make_path_integrator(context);
+film::Film sampled(const integrator::IntegratorContext& context, bool gradients, uint32_t samples = 6) {
+  film::Film film = test::make_test_film(context.settings, gradients, context.components.count());
+  const auto integrator =
+      gradients ? gradient::make_gradient_integrator(context) : integrator::make_path_integrator(context);
   test::sample_film(*integrator, 0, samples, &film);
   return film;
 }
@@ -29,9 +31,9 @@ struct Sums {
 };
 
 template <class PlaneOf>
-Sums sums_at(const Film& film, size_t pixel, const PlaneOf& plane_of) {
+Sums sums_at(const film::Film& film, size_t pixel, const PlaneOf& plane_of) {
   Sums s;
-  for (const ComponentPlanes& planes : film.components) {
+  for (const film::ComponentPlanes& planes : film.components) {
     const Radiance value = plane_of(planes)[pixel];
     s.sum += value;
     s.magnitude += glm::abs(value);
@@ -41,7 +43,7 @@ Sums sums_at(const Film& film, size_t pixel, const PlaneOf& plane_of) {
 
 // Up to the order of additions. `scale`: of the largest terms.
 template <class PlaneOf>
-void expect_same_sums(const Film& one, const Film& many, float scale, const PlaneOf& plane_of) {
+void expect_same_sums(const film::Film& one, const film::Film& many, float scale, const PlaneOf& plane_of) {
   size_t pixels = 0;
   float worst = 0.0f;
   for (size_t i = 0; i < size_t(one.region.area()); ++i) {
@@ -63,61 +65,62 @@ float largest(const std::vector<Radiance>& plane) {
 class Scenarios : public testing::TestWithParam<int> {
  protected:
   Scenario scenario() const { return Scenario(GetParam()); }
-  IntegratorContext context(const char* components) {
+  integrator::IntegratorContext context(const char* components) {
     scene_ = std::make_unique<PathScene>();
     test::build(scenario(), scene_.get());
     GradusSettings settings = test::test_settings(kSide, kSide);
     settings.film_transparent = scenario() == Scenario::World ? 1 : 0;
     settings.clamp_indirect = scenario() == Scenario::GlossyFloor ? 2.0f : 0.0f;
-    IntegratorContext context = scene_->context(settings);
-    if (components != nullptr) context.components = ComponentSet::parse(components);
+    integrator::IntegratorContext context = scene_->context(settings);
+    if (components != nullptr) context.components = lpe::ComponentSet::parse(components);
     return context;
   }
   std::unique_ptr<PathScene> scene_;
 };
 
 TEST_P(Scenarios, SumsOfComponentsAreThoseOfOnePlane) {
-  const Film one = sampled(context(nullptr), true);
+  const film::Film one = sampled(context(nullptr), true);
   for (const char* set : {"", kByBounces}) {
-    const Film many = sampled(context(set), true);
+    const film::Film many = sampled(context(set), true);
     EXPECT_EQ(one.count, many.count);
     EXPECT_EQ(one.pair_count, many.pair_count);
     EXPECT_EQ(one.counters.rays_shift, many.counters.rays_shift);
-    for (int half = 0; half < kHalves; ++half) {
+    for (int half = 0; half < film::kHalves; ++half) {
       const float scale = largest(one.components[0].primal[half]);
       expect_same_sums(
-          one, many, scale, [=](const ComponentPlanes& p) -> const auto& { return p.primal[half]; });
-      for (int k = 0; k < kOffsets; ++k) {
+          one, many, scale, [=](const film::ComponentPlanes& p) -> const auto& { return p.primal[half]; });
+      for (int k = 0; k < film::kOffsets; ++k) {
         expect_same_sums(
-            one, many, scale, [=](const ComponentPlanes& p) -> const auto& { return p.gradient[half][k]; });
+            one, many, scale, [=](const film::ComponentPlanes& p) -> const auto& { return p.gradient[half][k]; });
       }
     }
   }
 }
 
 TEST_P(Scenarios, PlainPathsHaveTheSameComponents) {
-  const IntegratorContext c = context("");
-  const Film plain = sampled(c, false), with_gradients = sampled(c, true);
+  const integrator::IntegratorContext c = context("");
+  const film::Film plain = sampled(c, false), with_gradients = sampled(c, true);
   for (size_t i = 0; i < plain.components.size(); ++i) {
-    for (int half = 0; half < kHalves; ++half) {
-      EXPECT_EQ(plain.components[i].primal[half], with_gradients.components[i].primal[half]) << c.components[int(i)].name;
+    for (int half = 0; half < film::kHalves; ++half) {
+      EXPECT_EQ(plain.components[i].primal[half], with_gradients.components[i].primal[half])
+          << c.components[int(i)].name;
     }
   }
 }
 
 // What replays do where a component goes its own way.
 TEST_P(Scenarios, ComponentsSampledApartHaveTheBitsOfThoseSampledTogether) {
-  const IntegratorContext c = context("");
-  const Film whole = sampled(c, true);
-  Film apart = test::make_test_film(c.settings, true, c.components.count());
-  const auto integrator = make_gradient_integrator(c);
+  const integrator::IntegratorContext c = context("");
+  const film::Film whole = sampled(c, true);
+  film::Film apart = test::make_test_film(c.settings, true, c.components.count());
+  const auto integrator = gradient::make_gradient_integrator(c);
   const uint32_t own = 1u << c.components.find("Diffuse") | 1u << c.components.find("Reflection");
   // Own ways in every other pixel.
   const size_t pixels = size_t(apart.region.area());
-  std::vector<uint32_t> shared(pixels, kEveryComponent);
+  std::vector<uint32_t> shared(pixels, lpe::kEveryComponent);
   std::vector<uint8_t> map(pixels, 0);
   for (size_t i = 0; i < pixels; i += 2) shared[i] &= ~own, map[i] = 1;
-  WorkUnit unit{apart.region, 0, 6};
+  integrator::WorkUnit unit{apart.region, 0, 6};
   unit.component_map = &shared;
   integrator->sample(unit, &apart, &apart.counters, std::atomic<bool>{false});
   unit.component_map = nullptr;
@@ -130,18 +133,19 @@ TEST_P(Scenarios, ComponentsSampledApartHaveTheBitsOfThoseSampledTogether) {
   EXPECT_EQ(whole.count, apart.count);
   EXPECT_EQ(whole.pair_count, apart.pair_count);
   for (size_t i = 0; i < whole.components.size(); ++i) {
-    for (int half = 0; half < kHalves; ++half) {
+    for (int half = 0; half < film::kHalves; ++half) {
       EXPECT_EQ(whole.components[i].primal[half], apart.components[i].primal[half]) << c.components[int(i)].name;
-      for (int k = 0; k < kOffsets; ++k) EXPECT_EQ(whole.components[i].gradient[half][k], apart.components[i].gradient[half][k]);
+      for (int k = 0; k < film::kOffsets; ++k)
+        EXPECT_EQ(whole.components[i].gradient[half][k], apart.components[i].gradient[half][k]);
     }
   }
 }
 
 TEST_P(Scenarios, PathsThatLeadToNoWantedComponentEnd) {
-  const IntegratorContext c = context("");
-  Film whole = sampled(c, false), seen = test::make_test_film(c.settings, false, c.components.count());
-  const auto integrator = make_path_integrator(c);
-  WorkUnit unit{seen.region, 0, 6};
+  const integrator::IntegratorContext c = context("");
+  film::Film whole = sampled(c, false), seen = test::make_test_film(c.settings, false, c.components.count());
+  const auto integrator = integrator::make_path_integrator(c);
+  integrator::WorkUnit unit{seen.region, 0, 6};
   unit.components = 1u << c.components.find("Emission");
   integrator->sample(unit, &seen, &seen.counters, std::atomic<bool>{false});
   EXPECT_EQ(seen.components[0].primal, whole.components[0].primal);
@@ -152,7 +156,7 @@ TEST_P(Scenarios, PathsThatLeadToNoWantedComponentEnd) {
 INSTANTIATE_TEST_SUITE_P(Components, Scenarios, testing::Range(0, int(Scenario::Count)),
                          [](const auto& info) { return test::name_of(Scenario(info.param)); });
 
-double light_of(const Film& film, int component) {
+double light_of(const film::Film& film, int component) {
   double sum = 0.0;
   for (const auto& half : film.components[size_t(component)].primal) {
     for (const Radiance& r : half) sum += double(r.x) + r.y + r.z;
@@ -165,9 +169,9 @@ TEST(Components, AlphaBelongsToWhatTheCameraSees) {
   test::build(Scenario::World, &scene);
   GradusSettings settings = test::test_settings(kSide, kSide);
   settings.film_transparent = 1;
-  IntegratorContext context = scene.context(settings);
-  context.components = ComponentSet::parse("");
-  const Film film = sampled(context, true);
+  integrator::IntegratorContext context = scene.context(settings);
+  context.components = lpe::ComponentSet::parse("");
+  const film::Film film = sampled(context, true);
   const int seen = context.components.find("Emission");
   float maximum = 0.0f;
   for (int c = 0; c < context.components.count(); ++c) {
@@ -188,11 +192,12 @@ TEST(Components, AMirrorShowsReflectionsAndNoEmission) {
   light.emission = Rgb(2.0f);
   const uint64_t mirror = scene.material(test::glossy(0.0f));
   scene.quad(Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0), mirror);
-  scene.quad(Vec3(-8, -8, 6), Vec3(0, 16, 0), Vec3(16, 0, 0), scene.material(light), GRADUS_VISIBLE_ALL & ~uint32_t(GRADUS_VISIBLE_CAMERA));
+  scene.quad(Vec3(-8, -8, 6), Vec3(0, 16, 0), Vec3(16, 0, 0), scene.material(light),
+             GRADUS_VISIBLE_ALL & ~uint32_t(GRADUS_VISIBLE_CAMERA));
   scene.camera(Vec3(0, 0, 3), Vec3(0), 0.3f);
-  IntegratorContext context = scene.context(test::test_settings(kSide, kSide));
-  context.components = ComponentSet::parse("");
-  const Film film = sampled(context, true);
+  integrator::IntegratorContext context = scene.context(test::test_settings(kSide, kSide));
+  context.components = lpe::ComponentSet::parse("");
+  const film::Film film = sampled(context, true);
   for (int c = 0; c < context.components.count(); ++c) {
     EXPECT_EQ(light_of(film, c) > 0.0, context.components[c].name == "Reflection") << context.components[c].name;
   }

@@ -1,9 +1,10 @@
-// B8: gradients and what L2 makes of them, against the same sums and the same equations in double. (The factors that shifts bring along are
-// held against double one by one, to 1e-4: B4.)
+// B8: gradients and what L2 makes of them, against the same sums and the same equations in double. (The factors that
+// shifts bring along are held against double one by one, to 1e-4: B4.)
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "gradient/gradient_integrator.h"
 #include "reconstruct/solver.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
@@ -22,20 +23,20 @@ struct DoubleImages {
   Image primal = Image(kValues, 0.0), dx = primal, dy = primal;
 };
 
-GradientImages sampled(const IntegratorContext& context, uint32_t first, uint32_t count) {
-  Film film = test::make_test_film(context.settings, true);
-  test::sample_film(*make_gradient_integrator(context), first, count, &film);
-  return read_images(film, 0);
+film::GradientImages sampled(const integrator::IntegratorContext& context, uint32_t first, uint32_t count) {
+  film::Film film = test::make_test_film(context.settings, true);
+  test::sample_film(*gradient::make_gradient_integrator(context), first, count, &film);
+  return film::read_images(film, 0);
 }
 
 // Samples one by one, summed up in double.
-DoubleImages summed(const IntegratorContext& context) {
+DoubleImages summed(const integrator::IntegratorContext& context) {
   DoubleImages sums;
   const auto add = [](const std::vector<float>& image, Image* sum) {
     for (size_t i = 0; i < kValues; ++i) (*sum)[i] += double(image[i]) / kSamples;
   };
   for (uint32_t i = 0; i < kSamples; ++i) {
-    const GradientImages one = sampled(context, i, 1);
+    const film::GradientImages one = sampled(context, i, 1);
     add(one.primal, &sums.primal);
     add(one.dx, &sums.dx);
     add(one.dy, &sums.dy);
@@ -85,7 +86,8 @@ Image solved(const DoubleImages& images, double alpha) {
   return x;
 }
 
-// The largest difference in units of 1 % of the standard error (and a millionth of the brightest value, for rounding what has no noise).
+// The largest difference in units of 1 % of the standard error (and a millionth of the brightest value, for rounding
+// what has no noise).
 double worst(const std::vector<float>& image, const Image& in_double, const test::Moments& moments) {
   double brightest = 0.0, result = 0.0;
   for (size_t i = 0; i < kValues; ++i) brightest = std::max(brightest, std::fabs(in_double[i]));
@@ -96,9 +98,9 @@ double worst(const std::vector<float>& image, const Image& in_double, const test
   return result;
 }
 
-std::vector<float> reconstructed(const GradientImages& images) {
-  SolveReport report;
-  return reconstruct(
+std::vector<float> reconstructed(const film::GradientImages& images) {
+  reconstruct::SolveReport report;
+  return reconstruct::reconstruct(
       images, GRADUS_RECONSTRUCTION_L2, 0.0f, [] { return false; }, &report);
 }
 
@@ -107,20 +109,21 @@ class B8_DoubleGradients : public ::testing::TestWithParam<test::Scenario> {};
 TEST_P(B8_DoubleGradients, DifferByLessThanOnePercentOfTheirNoise) {
   test::PathScene scene;
   test::build(GetParam(), &scene);
-  IntegratorContext context = scene.context(test::test_settings(kWidth, kHeight));
+  integrator::IntegratorContext context = scene.context(test::test_settings(kWidth, kHeight));
   test::Moments dx, dy, l2;
   for (uint32_t seed = 1; seed <= 8; ++seed) {
     context.settings.seed = seed;
-    const GradientImages images = sampled(context, 0, kSamples);
+    const film::GradientImages images = sampled(context, 0, kSamples);
     dx.add(images.dx);
     dy.add(images.dy);
     l2.add(reconstructed(images));
   }
   context.settings.seed = 0;
-  const GradientImages images = sampled(context, 0, kSamples);
+  const film::GradientImages images = sampled(context, 0, kSamples);
   const DoubleImages in_double = summed(context);
   const double of_dx = worst(images.dx, in_double.dx, dx), of_dy = worst(images.dy, in_double.dy, dy),
-               of_l2 = worst(reconstructed(images), solved(in_double, chosen_alpha(GRADUS_RECONSTRUCTION_L2, 0.0f)), l2);
+               of_l2 = worst(reconstructed(images),
+                             solved(in_double, reconstruct::chosen_alpha(GRADUS_RECONSTRUCTION_L2, 0.0f)), l2);
   EXPECT_LE(of_dx, 1.0);
   EXPECT_LE(of_dy, 1.0);
   EXPECT_LE(of_l2, 1.0);
@@ -129,9 +132,12 @@ TEST_P(B8_DoubleGradients, DifferByLessThanOnePercentOfTheirNoise) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, B8_DoubleGradients,
-                         ::testing::Values(test::Scenario::DiffuseArea, test::Scenario::PointAndSun, test::Scenario::GlossyFloor,
-                                           test::Scenario::Glass, test::Scenario::Transparent),
-                         [](const ::testing::TestParamInfo<test::Scenario>& info) { return test::name_of(info.param); });
+                         ::testing::Values(test::Scenario::DiffuseArea, test::Scenario::PointAndSun,
+                                           test::Scenario::GlossyFloor, test::Scenario::Glass,
+                                           test::Scenario::Transparent),
+                         [](const ::testing::TestParamInfo<test::Scenario>& info) {
+                           return test::name_of(info.param);
+                         });
 
 }  // namespace
 }  // namespace gradus

@@ -1,4 +1,5 @@
-// B8 on real paths: the sum of the weights of all strategies, and the image with weights, throughput and sums in double.
+// B8 on real paths: the sum of the weights of all strategies, and the image with weights, throughput and sums in
+// double.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@ namespace {
 using test::Scenario;
 
 // No emitter of these scenes tells kinds of rays apart.
-const RayState kAnyRay;
+const shading::RayState kAnyRay;
 
 class B8_Double : public ::testing::TestWithParam<Scenario> {};
 
@@ -29,12 +30,13 @@ TEST_P(B8_Double, ImagesDifferByLessThanOnePercentOfTheirNoise) {
 }
 
 // Vertices of neighbouring pixels that camera rays meet.
-bool camera_vertex(const PathContext& path, const Sampler& sampler, const Vec2& film, Vertex* vertex) {
-  PathRay ray;
+bool camera_vertex(const path::PathContext& path, const path::Sampler& sampler, const Vec2& film,
+                   path::Vertex* vertex) {
+  path::PathRay ray;
   ray.ray = path.camera.ray({film});
-  Segment segment;
-  trace_segment(path, sampler, 0, nullptr, &ray, vertex, &segment);
-  return segment.end == SegmentEnd::Surface;
+  path::Segment segment;
+  path::trace_segment(path, sampler, 0, nullptr, &ray, vertex, &segment);
+  return segment.end == path::SegmentEnd::Surface;
 }
 
 // Densities of light and BSDF sampling for the emitter point at one vertex.
@@ -43,35 +45,39 @@ struct Strategies {
   double total() const { return light + bsdf; }
 };
 
-// The four strategies of a light sample, {light, BSDF} × {base, offset}, with densities as each of them asks for them: light sampling
-// knows its density when it draws, BSDF sampling asks for it when it has met an emitter.
+// The four strategies of a light sample, {light, BSDF} × {base, offset}, with densities as each of them asks for them:
+// light sampling knows its density when it draws, BSDF sampling asks for it when it has met an emitter.
 class B8_Strategies : public ::testing::TestWithParam<Scenario> {};
 
 TEST_P(B8_Strategies, WeightsSumToOne) {
   test::PathScene scene;
   test::build(GetParam(), &scene);
-  const IntegratorContext context = scene.context(test::test_settings(32, 24));
-  const PathContext path(*context.snapshot, context.camera, context.settings);
+  const integrator::IntegratorContext context = scene.context(test::test_settings(32, 24));
+  const path::PathContext path(*context.snapshot, context.camera, context.settings);
   constexpr int wanted = 100000;
-  const auto vertices = std::make_unique<Vertex[]>(2);
-  Vertex &x = vertices[0], &y = vertices[1];
+  const auto vertices = std::make_unique<path::Vertex[]>(2);
+  path::Vertex &x = vertices[0], &y = vertices[1];
   int done = 0, within = 0;
   for (uint32_t i = 0; done < wanted && i < 50u * uint32_t(wanted); ++i) {
-    SampleKey key;
+    path::SampleKey key;
     key.index = i;
-    const Sampler sampler(key, true);
+    const path::Sampler sampler(key, true);
     const Vec2 film = Vec2(31.0f, 24.0f) * sampler.get2(dimension::kFilm);
-    LightSample light;
+    path::LightSample light;
     if (!camera_vertex(path, sampler, film, &x) || !camera_vertex(path, sampler, film + Vec2(1, 0), &y)) continue;
-    if (!sample_light(path, sampler.vertex(0), x, 0, &light) || light.point.dirac) continue;
-    const LightEvaluation view = evaluate_light(path.scene, light.point, receiver_of(y));
-    const LitClass lit_x = light_class(path, x, ScatterClass::Diffuse, light, kAnyRay);
-    const LitClass lit_y = light_class(path, y, ScatterClass::Diffuse, LightSample{light.point, view}, kAnyRay);
+    if (!path::sample_light(path, sampler.vertex(0), x, 0, &light) || light.point.dirac) continue;
+    const light::LightEvaluation view = light::evaluate_light(path.scene, light.point, path::receiver_of(y));
+    const path::LitClass lit_x = path::light_class(path, x, bsdf::ScatterClass::Diffuse, light, kAnyRay);
+    const path::LitClass lit_y =
+        path::light_class(path, y, bsdf::ScatterClass::Diffuse, path::LightSample{light.point, view}, kAnyRay);
     if (!(lit_x.pdf_bsdf > 0.0f) || !(lit_y.pdf_bsdf > 0.0f) || !(view.pdf > 0.0f)) continue;
     ++done;
-    const float there = copy_jacobian(light.point, light.view, view), back = copy_jacobian(light.point, view, light.view);
-    const Strategies drawn_x{light.view.pdf, lit_x.pdf_bsdf}, met_x{light_point_pdf(path.scene, light.point, receiver_of(x)), lit_x.pdf_bsdf};
-    const Strategies drawn_y{view.pdf, lit_y.pdf_bsdf}, met_y{light_point_pdf(path.scene, light.point, receiver_of(y)), lit_y.pdf_bsdf};
+    const float there = gradient::copy_jacobian(light.point, light.view, view),
+                back = gradient::copy_jacobian(light.point, view, light.view);
+    const Strategies drawn_x{light.view.pdf, lit_x.pdf_bsdf},
+        met_x{light::light_point_pdf(path.scene, light.point, path::receiver_of(x)), lit_x.pdf_bsdf};
+    const Strategies drawn_y{view.pdf, lit_y.pdf_bsdf},
+        met_y{light::light_point_pdf(path.scene, light.point, path::receiver_of(y)), lit_y.pdf_bsdf};
     // Weight of a strategy: its density over that of all, in the measure of its own end.
     const auto weight = [](double density, const Strategies& own, double jacobian, const Strategies& other) {
       return density / (own.total() + jacobian * other.total());
@@ -86,15 +92,15 @@ TEST_P(B8_Strategies, WeightsSumToOne) {
   std::printf("  %d of %d within 1e-6\n", within, done);
 }
 
-const auto kScenarios =
-    ::testing::Values(Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::World, Scenario::GlossyFloor, Scenario::RoughMetal,
-                      Scenario::Glass, Scenario::RoughGlass, Scenario::Transparent, Scenario::LightsSeen);
+const auto kScenarios = ::testing::Values(Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::World,
+                                          Scenario::GlossyFloor, Scenario::RoughMetal, Scenario::Glass,
+                                          Scenario::RoughGlass, Scenario::Transparent, Scenario::LightsSeen);
 const auto kName = [](const ::testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); };
 
 INSTANTIATE_TEST_SUITE_P(All, B8_Double, kScenarios, kName);
 INSTANTIATE_TEST_SUITE_P(All, B8_Strategies,
-                         ::testing::Values(Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::World, Scenario::GlossyFloor,
-                                           Scenario::LightsSeen),
+                         ::testing::Values(Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::World,
+                                           Scenario::GlossyFloor, Scenario::LightsSeen),
                          kName);
 
 }  // namespace

@@ -1,5 +1,6 @@
 // What features show: the first surface that is not a mirror or clear glass, or what shines there instead.
 #include "film/features.h"
+#include "gradient/gradient_integrator.h"
 
 #include <gtest/gtest.h>
 
@@ -19,18 +20,22 @@ struct View {
   View() { scene.camera(Vec3(0.0f), Vec3(0, 0, -1), 0.01f); }
 
   // A square of 4 m that faces the camera or looks the same way as it.
-  void wall(float z, const test::Surface& surface) { scene.quad(Vec3(-2, -2, z), Vec3(4, 0, 0), Vec3(0, 4, 0), scene.material(surface)); }
+  void wall(float z, const test::Surface& surface) {
+    scene.quad(Vec3(-2, -2, z), Vec3(4, 0, 0), Vec3(0, 4, 0), scene.material(surface));
+  }
 
-  Film render(bool gradient, uint32_t samples) {
-    const IntegratorContext context = scene.context(settings);
-    Film film = test::make_test_film(settings, gradient);
-    film.passes = make_pass_planes(feature_passes(), film.count[0].size());
-    test::sample_film(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, samples, &film);
+  film::Film render(bool gradient, uint32_t samples) {
+    const integrator::IntegratorContext context = scene.context(settings);
+    film::Film film = test::make_test_film(settings, gradient);
+    film.passes = film::make_pass_planes(schema::feature_passes(), film.count[0].size());
+    test::sample_film(
+        gradient ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context), 0,
+        samples, &film);
     return film;
   }
 };
 
-void expect_near(const FeatureImage& image, size_t pixel, const std::vector<float>& expected, float tolerance) {
+void expect_near(const film::FeatureImage& image, size_t pixel, const std::vector<float>& expected, float tolerance) {
   for (size_t c = 0; c < expected.size(); ++c) {
     EXPECT_NEAR(image.values[pixel * image.channels + c], expected[c], tolerance) << "channel " << c;
   }
@@ -42,7 +47,7 @@ TEST_P(SeenFeatures, BehindAMirrorAreThoseOfWhatItShows) {
   View view;
   view.wall(-1.0f, test::glossy(0.0f));  // its colour is 0.8, 0.7, 0.6
   view.wall(2.0f, test::matte(Rgb(0.2f, 0.5f, 0.3f)));
-  const Features features = read_features(view.render(GetParam(), 8));
+  const film::Features features = film::read_features(view.render(GetParam(), 8));
   for (size_t i = 0; i < 16; ++i) {
     expect_near(features.albedo, i, {0.16f, 0.35f, 0.18f}, 1e-5f);
     expect_near(features.normal, i, {0.0f, 0.0f, -1.0f}, 1e-5f);
@@ -55,12 +60,12 @@ TEST_P(SeenFeatures, BehindAMirrorAreThoseOfWhatItShows) {
 TEST_P(SeenFeatures, OfTheSkyAreItsLight) {
   View view;
   view.scene.world(Rgb(0.3f, 0.4f, 5.0f));
-  Features features = read_features(view.render(GetParam(), 8));
+  film::Features features = film::read_features(view.render(GetParam(), 8));
   expect_near(features.albedo, 5, {0.3f, 0.4f, 1.0f}, 1e-6f);
   expect_near(features.normal, 5, {0.0f, 0.0f, 0.0f}, 0.0f);
   expect_near(features.depth, 5, {0.0f}, 0.0f);
   view.wall(-1.0f, test::glossy(0.0f));
-  features = read_features(view.render(GetParam(), 8));
+  features = film::read_features(view.render(GetParam(), 8));
   expect_near(features.albedo, 5, {0.24f, 0.28f, 1.0f}, 1e-6f);
   expect_near(features.normal, 5, {0.0f, 0.0f, 0.0f}, 0.0f);
 }
@@ -69,7 +74,7 @@ TEST_P(SeenFeatures, OfASkyThatTheFilmHidesAreNone) {
   View view;
   view.scene.world(Rgb(0.3f, 0.4f, 5.0f));
   view.settings.film_transparent = 1;
-  expect_near(read_features(view.render(GetParam(), 8)).albedo, 5, {0.0f, 0.0f, 0.0f}, 0.0f);
+  expect_near(film::read_features(view.render(GetParam(), 8)).albedo, 5, {0.0f, 0.0f, 0.0f}, 0.0f);
 }
 
 TEST_P(SeenFeatures, OfWhatShinesAreItsLightWithItsShape) {
@@ -77,7 +82,7 @@ TEST_P(SeenFeatures, OfWhatShinesAreItsLightWithItsShape) {
   light.emission = Rgb(0.5f, 0.2f, 7.0f);
   View view;
   view.wall(-1.0f, light);
-  const Features features = read_features(view.render(GetParam(), 8));
+  const film::Features features = film::read_features(view.render(GetParam(), 8));
   expect_near(features.albedo, 5, {0.5f, 0.2f, 1.0f}, 1e-6f);
   expect_near(features.normal, 5, {0.0f, 0.0f, 1.0f}, 1e-5f);
   expect_near(features.depth, 5, {1.0f}, 1e-3f);
@@ -90,7 +95,7 @@ TEST_P(SeenFeatures, OfALampAreItsLightBeforeTheWall) {
   GradusLight light = test::make_light(GRADUS_LIGHT_POINT, test::translation(Vec3(0, 0, -1)), Rgb(100.0f));
   light.radius = 0.1f;
   view.scene.light(light);
-  const Features features = read_features(view.render(GetParam(), 8));
+  const film::Features features = film::read_features(view.render(GetParam(), 8));
   expect_near(features.albedo, 5, {1.0f, 1.0f, 1.0f}, 1e-6f);
   expect_near(features.depth, 5, {2.0f}, 1e-3f);
 }
@@ -103,7 +108,7 @@ TEST_P(SeenFeatures, OfTransparentSurfacesAreMixedByTheirCover) {
     View view;
     view.wall(-1.0f, veil);
     view.wall(-2.0f, test::matte(Rgb(0.1f, 0.6f, 0.9f)));
-    const Features features = read_features(view.render(GetParam(), 64));
+    const film::Features features = film::read_features(view.render(GetParam(), 64));
     double albedo = 0.0, depth = 0.0, variance = 0.0;
     for (size_t i = 0; i < 16; ++i) {
       albedo += features.albedo.values[3 * i + 2] / 16.0;
@@ -121,11 +126,11 @@ TEST_P(SeenFeatures, GoToTheHalfOfTheirSample) {
   View view;
   view.wall(-1.0f, test::matte(Rgb(0.5f)));
   for (const uint32_t samples : {1u, 2u}) {
-    const Film film = view.render(GetParam(), samples);
-    for (const PassPlane& plane : film.passes) {
+    const film::Film film = view.render(GetParam(), samples);
+    for (const film::PassPlane& plane : film.passes) {
       const std::vector<float> none(plane.values[0].size());
-      EXPECT_NE(plane.values[0], none) << pass_info(plane.pass).name;
-      EXPECT_EQ(plane.values[1] == none, samples == 1) << pass_info(plane.pass).name;
+      EXPECT_NE(plane.values[0], none) << schema::pass_info(plane.pass).name;
+      EXPECT_EQ(plane.values[1] == none, samples == 1) << schema::pass_info(plane.pass).name;
     }
   }
 }
@@ -136,11 +141,13 @@ TEST_P(SeenFeatures, CostNoRaysAndChangeNoBit) {
   test::build(test::Scenario::World, &view.scene);
   view.settings = test::test_settings(24, 20);
   view.settings.max_bounces = 3;
-  const Film film = view.render(GetParam(), 4);
-  Film plain = test::make_test_film(view.settings, GetParam());
-  const IntegratorContext context = view.scene.context(view.settings);
+  const film::Film film = view.render(GetParam(), 4);
+  film::Film plain = test::make_test_film(view.settings, GetParam());
+  const integrator::IntegratorContext context = view.scene.context(view.settings);
   ASSERT_TRUE(context.snapshot->features.only_lights_emit);
-  test::sample_film(GetParam() ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, 4, &plain);
+  test::sample_film(
+      GetParam() ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context), 0, 4,
+      &plain);
   EXPECT_EQ(film.counters.rays_bounce, plain.counters.rays_bounce);
   EXPECT_EQ(film.components[0].primal, plain.components[0].primal);
   EXPECT_EQ(film.components[0].gradient, plain.components[0].gradient);

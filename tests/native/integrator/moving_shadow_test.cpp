@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gradient/gradient_integrator.h"
 #include "support/path_scene.h"
 
 namespace gradus::test {
@@ -12,7 +13,7 @@ constexpr uint32_t kWidth = 24, kHeight = 4;
 constexpr float kMetres = 2.88f;  // of the picture's width
 
 // The bar, which the camera does not see, lies over [-1, 0] when the shutter opens and over [0, 1] when it closes.
-IntegratorContext passing_bar(PathScene* scene, const GradusLight& light) {
+integrator::IntegratorContext passing_bar(PathScene* scene, const GradusLight& light) {
   const uint64_t grey = scene->material(matte(Rgb(0.5f)));
   scene->quad(Vec3(-3, -3, 0), Vec3(6, 0, 0), Vec3(0, 6, 0), grey);
   scene->scene.way = {Mat4(1.0f), translation(Vec3(1, 0, 0))};
@@ -28,17 +29,19 @@ IntegratorContext passing_bar(PathScene* scene, const GradusLight& light) {
 
 // Lights that are far above the bar, so that its shadow is as wide as it is.
 std::vector<GradusLight> lights() {
-  return {make_light(GRADUS_LIGHT_SUN, Mat4(1.0f), Rgb(1.0f)), make_light(GRADUS_LIGHT_POINT, translation(Vec3(0, 0, 200)), Rgb(4e5f))};
+  return {make_light(GRADUS_LIGHT_SUN, Mat4(1.0f), Rgb(1.0f)),
+          make_light(GRADUS_LIGHT_POINT, translation(Vec3(0, 0, 200)), Rgb(4e5f))};
 }
 
 TEST(MovingShadow, LightIsLookedForAtTheMomentOfThePath) {
   for (const GradusLight& light : lights()) {
     PathScene scene;
-    const IntegratorContext context = passing_bar(&scene, light);
+    const integrator::IntegratorContext context = passing_bar(&scene, light);
     for (const bool gradients : {false, true}) {
-      Film film = make_test_film(context.settings, gradients);
-      sample_film(gradients ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, 1024, &film);
-      const std::vector<float> image = read_images(film, 0).primal;
+      film::Film film = make_test_film(context.settings, gradients);
+      sample_film(gradients ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context),
+                  0, 1024, &film);
+      const std::vector<float> image = film::read_images(film, 0).primal;
       const float lit = image[3 * (kWidth + 1)];  // beyond the bar's reach
       ASSERT_GT(lit, 0.01f);
       for (uint32_t x = 0; x < kWidth; ++x) {

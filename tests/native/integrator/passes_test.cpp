@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "film/pass_planes.h"
+#include "gradient/gradient_integrator.h"
 #include "output/pass_read.h"
 #include "render/render.h"
 #include "schema/pass_table.h"
@@ -18,24 +19,26 @@ using test::Scenario;
 
 constexpr uint64_t kAllPasses = (uint64_t{1} << GRADUS_PASS_COUNT) - 1;
 
-std::vector<float> read(const Film& film, uint32_t pass) {
-  std::vector<float> pixels(static_cast<size_t>(film.region.area()) * pass_info(pass).channels);
-  read_film_pass(film, pass, film.region, pixels.data());
+std::vector<float> read(const film::Film& film, uint32_t pass) {
+  std::vector<float> pixels(static_cast<size_t>(film.region.area()) * schema::pass_info(pass).channels);
+  output::read_film_pass(film, pass, film.region, pixels.data());
   return pixels;
 }
 
-Film render_passes(test::PathScene* scene, bool gradient) {
+film::Film render_passes(test::PathScene* scene, bool gradient) {
   GradusSettings settings = test::test_settings(24, 20);
   settings.passes = kAllPasses;
-  const IntegratorContext context = scene->context(settings);
-  Film film = test::make_test_film(settings, gradient);
+  const integrator::IntegratorContext context = scene->context(settings);
+  film::Film film = test::make_test_film(settings, gradient);
   film.settings = settings;
-  film.passes = make_pass_planes(settings.passes, static_cast<size_t>(film.region.area()));
-  test::sample_film(gradient ? *make_gradient_integrator(context) : *make_path_integrator(context), 0, 8, &film);
+  film.passes = film::make_pass_planes(settings.passes, static_cast<size_t>(film.region.area()));
+  test::sample_film(
+      gradient ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context), 0, 8,
+      &film);
   return film;
 }
 
-Film render_passes(Scenario scenario, bool gradient) {
+film::Film render_passes(Scenario scenario, bool gradient) {
   test::PathScene scene;
   test::build(scenario, &scene);
   return render_passes(&scene, gradient);
@@ -43,7 +46,7 @@ Film render_passes(Scenario scenario, bool gradient) {
 
 class Passes : public testing::TestWithParam<Scenario> {};
 
-void expect_light_to_add_up(const Film& film) {
+void expect_light_to_add_up(const film::Film& film) {
   test::expect_light_to_add_up([&](uint32_t pass) { return read(film, pass); }, read(film, GRADUS_PASS_NOISY_IMAGE));
   EXPECT_EQ(film.counters.nonfinite_feature, 0u);
 }
@@ -60,10 +63,10 @@ TEST(LightPasses, LightBelowZeroAddsUpToo) {
 }
 
 TEST_P(Passes, PlainAndGradientTracingGiveTheSame) {
-  const Film plain = render_passes(GetParam(), false);
-  const Film gradient = render_passes(GetParam(), true);
+  const film::Film plain = render_passes(GetParam(), false);
+  const film::Film gradient = render_passes(GetParam(), true);
   for (size_t i = 0; i < plain.passes.size(); ++i) {
-    EXPECT_EQ(plain.passes[i].values, gradient.passes[i].values) << pass_info(plain.passes[i].pass).name;
+    EXPECT_EQ(plain.passes[i].values, gradient.passes[i].values) << schema::pass_info(plain.passes[i].pass).name;
   }
 }
 
@@ -73,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(All, Passes,
                          [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
 
 TEST(DataPasses, DepthIsPlanarAndBackgroundFar) {
-  const Film film = render_passes(Scenario::World, false);
+  const film::Film film = render_passes(Scenario::World, false);
   const std::vector<float> depth = read(film, GRADUS_PASS_DEPTH);
   // The back wall, 4.2 m from the camera along its axis, is the same everywhere on it.
   EXPECT_NEAR(depth[film.index(12, 12)], 4.2f, 1e-4f);
@@ -82,12 +85,12 @@ TEST(DataPasses, DepthIsPlanarAndBackgroundFar) {
 }
 
 TEST(DataPasses, NothingMovesAtRest) {
-  const Film film = render_passes(Scenario::World, false);
+  const film::Film film = render_passes(Scenario::World, false);
   for (float v : read(film, GRADUS_PASS_VECTOR)) EXPECT_EQ(v, 0.0f);
 }
 
 TEST(DataPasses, NormalsFaceTheViewer) {
-  const Film film = render_passes(Scenario::DiffuseArea, false);
+  const film::Film film = render_passes(Scenario::DiffuseArea, false);
   const std::vector<float> normal = read(film, GRADUS_PASS_NORMAL);
   const size_t i = 3 * film.index(12, 12);
   EXPECT_NEAR(normal[i], 0.0f, 1e-5f);
@@ -95,12 +98,13 @@ TEST(DataPasses, NormalsFaceTheViewer) {
   EXPECT_NEAR(normal[i + 2], 1.0f, 1e-5f);
 }
 
-// Alpha of an opaque film was 1 everywhere. Cycles lets a hole through it, be it an object or a shader, and shows the world behind all
-// else.
+// Alpha of an opaque film was 1 everywhere. Cycles lets a hole through it, be it an object or a shader, and shows the
+// world behind all else.
 TEST(Holdout, IsAHoleInAnOpaqueFilmToo) {
   test::PathScene scene;
   test::ProgramBuilder program;
-  const uint64_t shader = scene.material(program.desc(program.add(GRADUS_OP_HOLDOUT, {}))), wall = scene.material(test::matte(Rgb(0.8f)));
+  const uint64_t shader = scene.material(program.desc(program.add(GRADUS_OP_HOLDOUT, {}))),
+                 wall = scene.material(test::matte(Rgb(0.8f)));
   scene.quad(Vec3(-1, -0.5f, 0), Vec3(0.5f, 0, 0), Vec3(0, 1, 0), wall);
   scene.quad(Vec3(-0.5f, -0.5f, 0), Vec3(0.5f, 0, 0), Vec3(0, 1, 0), wall, GRADUS_VISIBLE_ALL | GRADUS_HOLDOUT);
   scene.quad(Vec3(0, -0.5f, 0), Vec3(0.5f, 0, 0), Vec3(0, 1, 0), shader);
@@ -108,12 +112,12 @@ TEST(Holdout, IsAHoleInAnOpaqueFilmToo) {
   GradusSettings settings = test::test_settings(16, 4);
   settings.samples = 4;
   settings.filter_width = 0.01f;  // no pixel has a part of two
-  const std::shared_ptr<const Snapshot> snapshot = scene.context(settings).snapshot;
+  const std::shared_ptr<const scene::Snapshot> snapshot = scene.context(settings).snapshot;
   for (const uint32_t integrator : {GRADUS_INTEGRATOR_PATH, GRADUS_INTEGRATOR_GRADIENT}) {
     for (const uint32_t transparent : {0u, 1u}) {
       settings.integrator = integrator;
       settings.film_transparent = transparent;
-      Render render(nullptr, snapshot, settings);
+      render::Render render(nullptr, snapshot, settings);
       ASSERT_TRUE(render.wait(-1.0));
       for (const uint32_t pass : {GRADUS_PASS_NOISY_IMAGE, GRADUS_PASS_COMBINED}) {
         std::vector<float> image(16 * 4 * 4);

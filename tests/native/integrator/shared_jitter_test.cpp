@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gradient/gradient_integrator.h"
 #include "integrator/pixel_loop.h"
 #include "support/path_scene.h"
 
@@ -24,14 +25,14 @@ std::vector<Jitter> jitters(float aperture, uint32_t size, uint32_t samples) {
   PathScene scene;
   test::build(Scenario::DiffuseArea, &scene);
   scene.camera_desc.aperture_radius = aperture;
-  const IntegratorContext context = scene.context(test::test_settings(size, size));
-  const PathContext path(*context.snapshot, context.camera, context.settings);
-  const Film film = test::make_test_film(context.settings, false);
-  const auto vertices = std::make_unique<CameraVertices>(path);
+  const integrator::IntegratorContext context = scene.context(test::test_settings(size, size));
+  const path::PathContext path(*context.snapshot, context.camera, context.settings);
+  const film::Film film = test::make_test_film(context.settings, false);
+  const auto vertices = std::make_unique<path::CameraVertices>(path);
   std::vector<Jitter> found;
-  for_each_sample(path, WorkUnit{film.region, 0, samples, nullptr}, film, vertices.get(), std::atomic<bool>{false},
-                  [&](const PixelSample& s) {
-                    found.push_back({s.x, s.y, s.number, s.film - pixel_centre(s.x, s.y)});
+  for_each_sample(path, integrator::WorkUnit{film.region, 0, samples, nullptr}, film, vertices.get(),
+                  std::atomic<bool>{false}, [&](const integrator::PixelSample& s) {
+                    found.push_back({s.x, s.y, s.number, s.film - path::pixel_centre(s.x, s.y)});
                   });
   EXPECT_EQ(found.size(), size_t(size) * size * samples);
   return found;
@@ -40,7 +41,7 @@ std::vector<Jitter> jitters(float aperture, uint32_t size, uint32_t samples) {
 TEST(SharedJitter, IsThatOfItsCellAndSampleNumber) {
   std::map<std::tuple<int, int, uint32_t>, Vec2> of_block;
   for (const Jitter& j : jitters(0.0f, 40, 3)) {
-    const auto key = std::make_tuple(pixel_block_of(j.x), pixel_block_of(j.y), j.number);
+    const auto key = std::make_tuple(film::pixel_block_of(j.x), film::pixel_block_of(j.y), j.number);
     const Vec2 first = of_block.emplace(key, j.offset).first->second;
     EXPECT_NEAR(glm::length(first - j.offset), 0.0f, 1e-5f);
   }
@@ -74,14 +75,14 @@ uint64_t shift_rays(float aperture, uint32_t size) {
   scene.camera_desc.aperture_radius = aperture;
   GradusSettings settings = test::test_settings(size, size);
   settings.max_bounces = 0;  // no edges that are replayed
-  const IntegratorContext context = scene.context(settings);
-  Film film = test::make_test_film(context.settings, true);
-  test::sample_film(*make_gradient_integrator(context), 0, 1, &film);
+  const integrator::IntegratorContext context = scene.context(settings);
+  film::Film film = test::make_test_film(context.settings, true);
+  test::sample_film(*gradient::make_gradient_integrator(context), 0, 1, &film);
   return film.counters.rays_shift;
 }
 
-// An offset of an opaque, diffuse scene without emitters to meet, at which base and offset would part, needs no ray of its own but where
-// its pixel lies in another cell: 4·16 pairs of two cells side by side and two above, from both ends.
+// An offset of an opaque, diffuse scene without emitters to meet, at which base and offset would part, needs no ray of
+// its own but where its pixel lies in another cell: 4·16 pairs of two cells side by side and two above, from both ends.
 TEST(SharedJitter, OffsetsTakeTheCameraRaysOfTheirPixels) {
   EXPECT_EQ(shift_rays(0.0f, 16), 0u);
   EXPECT_EQ(shift_rays(0.0f, 32), 2u * 4u * 16u);

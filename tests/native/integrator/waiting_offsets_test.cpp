@@ -1,13 +1,14 @@
 // Offsets wait with their reconnection until the base finds something behind it (offset_wait.cpp).
 #include <gtest/gtest.h>
 
+#include "gradient/gradient_integrator.h"
 #include "support/path_scene.h"
 
 namespace gradus {
 namespace {
 
 // A box with a point light that lights paths of so many bounces.
-Counters counters_of(uint32_t bounces_of_light) {
+film::Counters counters_of(uint32_t bounces_of_light) {
   test::PathScene scene;
   test::add_box(&scene, test::matte(Rgb(0.6f)));
   Mat4 place(1.0f);
@@ -15,15 +16,16 @@ Counters counters_of(uint32_t bounces_of_light) {
   GradusLight light = test::make_light(GRADUS_LIGHT_POINT, place, Rgb(5.0f));
   light.max_bounces = bounces_of_light;
   scene.light(light);
-  const IntegratorContext context = scene.context(test::test_settings(16, 16));
-  Film film = test::make_test_film(context.settings, true);
-  test::sample_film(*make_gradient_integrator(context), 0, 4, &film);
+  const integrator::IntegratorContext context = scene.context(test::test_settings(16, 16));
+  film::Film film = test::make_test_film(context.settings, true);
+  test::sample_film(*gradient::make_gradient_integrator(context), 0, 4, &film);
   return film.counters;
 }
 
-// But in corners, where one of the four is replayed and the others cannot wait: base_state_ and the like are for all of them.
+// But in corners, where one of the four is replayed and the others cannot wait: base_state_ and the like are for all of
+// them.
 TEST(DeferredOffsets, TraceNoConnectionBehindWhichNothingShines) {
-  const Counters direct = counters_of(0), later = counters_of(2);
+  const film::Counters direct = counters_of(0), later = counters_of(2);
   EXPECT_GT(direct.rays_bounce, direct.rays_primary);  // paths go on
   EXPECT_EQ(direct.shifts_attempted, later.shifts_attempted);
   EXPECT_GT(later.shifts_reconnected, later.shifts_attempted / 4);

@@ -19,17 +19,17 @@ struct Densities {
 Densities random_densities(std::mt19937* random) {
   std::uniform_real_distribution<float> exponent(-12.0f, 12.0f);
   std::uniform_real_distribution<float> kind(0.0f, 1.0f);
-  Densities d{std::exp(exponent(*random)), std::exp(exponent(*random)), std::exp(exponent(*random)), std::exp(exponent(*random)),
-              std::exp(0.25f * exponent(*random))};
+  Densities d{std::exp(exponent(*random)), std::exp(exponent(*random)), std::exp(exponent(*random)),
+              std::exp(exponent(*random)), std::exp(0.25f * exponent(*random))};
   if (kind(*random) < 0.1f) {
     d.light_x = d.light_y = 0.0f;  // an emitter that light sampling leaves out
   }
   return d;
 }
 
-// What a sample of technique density `pdf` at x adds to the coefficient of f(x) in the estimate, times its density: its weight.
-// PairCount works on C = f/(sum of densities); `own` is the base's count.
-double weight(const PairCount& pair, float r, double share) {
+// What a sample of technique density `pdf` at x adds to the coefficient of f(x) in the estimate, times its density: its
+// weight. PairCount works on C = f/(sum of densities); `own` is the base's count.
+double weight(const gradient::PairCount& pair, float r, double share) {
   const Radiance with_base = pair.paired(Radiance(1.0f), Radiance(0.0f), r);
   return -double(with_base.x) / pair.weight() * share;
 }
@@ -38,13 +38,13 @@ TEST(B8_Weights, TechniquesAndDirectionsSumToOne) {
   std::mt19937 random(1);
   for (int i = 0; i < 100000; ++i) {
     const Densities d = random_densities(&random);
-    const PairCount forward{float(1 + i % 5), float(1 + i % 3)};
-    const PairCount backward{forward.other, forward.own};
+    const gradient::PairCount forward{float(1 + i % 5), float(1 + i % 3)};
+    const gradient::PairCount backward{forward.other, forward.own};
     const float total_x = d.light_x + d.bsdf_x;
     const float total_y = d.light_y + d.bsdf_y;
     const float r = d.jacobian * total_y / total_x;
     // Light and BSDF samples of x, in their shares of x's density.
-    const double bsdf_share = bsdf_weight(d.light_x, d.bsdf_x);
+    const double bsdf_share = path::bsdf_weight(d.light_x, d.bsdf_x);
     const double there = weight(forward, r, bsdf_share) + weight(forward, r, 1.0 - bsdf_share);
     // The same coefficient from base paths y: the shifted-back contribution, C(x)·(1/r), at density y.
     const Radiance shifted = backward.paired(Radiance(0.0f), Radiance(1.0f), 1.0f / r);
@@ -58,7 +58,7 @@ TEST(B8_Weights, FloatIsEnough) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> value(0.0f, 5.0f), exponent(-20.0f, 20.0f);
   for (int i = 0; i < 100000; ++i) {
-    const PairCount pair{float(1 + i % 5), float(1 + i % 3)};
+    const gradient::PairCount pair{float(1 + i % 5), float(1 + i % 3)};
     const float r = std::exp(exponent(random)), base = value(random), offset = value(random);
     const double q = double(pair.other) / double(pair.own), weight = 0.5 * (1.0 + q) / (1.0 + q * double(r));
     const double exact = (double(r) * double(offset) - double(base)) * weight;
@@ -68,7 +68,7 @@ TEST(B8_Weights, FloatIsEnough) {
 }
 
 TEST(B8_Weights, FailedShiftCountsTheBaseAlone) {
-  const PairCount pair{3.0f, 2.0f};
+  const gradient::PairCount pair{3.0f, 2.0f};
   EXPECT_FLOAT_EQ(pair.unpaired(Radiance(1.0f)).x / pair.weight(), -1.0f);
 }
 
@@ -78,8 +78,8 @@ TEST(B4_Shift, SwapNegates) {
   std::uniform_real_distribution<float> value(0.0f, 5.0f), exponent(-9.0f, 9.0f);
   const int shifts = test::full_run() ? 1000000 : 100000;
   for (int i = 0; i < shifts; ++i) {
-    const PairCount pair{float(1 + i % 5), float(1 + i % 3)};
-    const PairCount swapped{pair.other, pair.own};
+    const gradient::PairCount pair{float(1 + i % 5), float(1 + i % 3)};
+    const gradient::PairCount swapped{pair.other, pair.own};
     const float r = std::exp(exponent(random));
     const Radiance base(value(random), value(random), 0.0f, value(random));
     const Radiance offset(value(random), 0.0f, value(random), value(random));

@@ -1,9 +1,9 @@
 // A4 for lights: densities of points, whichever way they were found; the choice among many.
 #include <gtest/gtest.h>
 
-#include "light/light_table.h"
 #include "light/light_sampling.h"
-#include "scene_fixture.h"
+#include "light/light_table.h"
+#include "scene/scene_fixture.h"
 
 namespace gradus::test {
 namespace {
@@ -45,7 +45,7 @@ std::shared_ptr<const Snapshot> mixed_scene(int analytic_lights) {
   return scene.commit();
 }
 
-Receiver random_receiver(std::mt19937& random) {
+light::Receiver random_receiver(std::mt19937& random) {
   std::uniform_real_distribution<float> u(-6.0f, 6.0f);
   const float x = u(random), y = u(random);
   return {Vec3(x, y, u(random)), random_direction(random), (random() & 3) == 0};
@@ -57,13 +57,13 @@ TEST(A4_LightDensity, SampledPointsHaveADensity) {
   std::uniform_real_distribution<float> u(0.0f, 0.9999999f);
   int sampled = 0, without = 0;
   for (int i = 0; i < 100000; ++i) {
-    const Receiver receiver = random_receiver(random);
+    const light::Receiver receiver = random_receiver(random);
     const float choice = u(random), x = u(random), y = u(random);
-    LightPoint point;
-    LightEvaluation at_once;
+    light::LightPoint point;
+    light::LightEvaluation at_once;
     sample_light_point(*snapshot, receiver, choice, Vec2(x, y), &point, &at_once);
-    if (point.kind == LightKind::None) continue;
-    const LightEvaluation view = evaluate_light(*snapshot, point, receiver);
+    if (point.kind == light::LightKind::None) continue;
+    const light::LightEvaluation view = evaluate_light(*snapshot, point, receiver);
     ++sampled;
     without += !(view.pdf > 0.0f);
     EXPECT_EQ(view.pdf, at_once.pdf);
@@ -75,24 +75,25 @@ TEST(A4_LightDensity, SampledPointsHaveADensity) {
   EXPECT_LE(without, sampled / 10000);
 }
 
-// What a ray meets in the sampled direction is the same point with the same density: else MIS weights would not sum to one.
+// What a ray meets in the sampled direction is the same point with the same density: else MIS weights would not sum to
+// one.
 TEST(A4_LightDensity, PointsMetByRaysHaveTheSameDensity) {
   const auto snapshot = mixed_scene(40);
   std::mt19937 random(13);
   std::uniform_real_distribution<float> u(0.0f, 0.9999999f);
   int compared = 0, different = 0, displaced = 0, missed = 0;
   for (int i = 0; i < 100000; ++i) {
-    const Receiver receiver = random_receiver(random);
+    const light::Receiver receiver = random_receiver(random);
     const float choice = u(random), x = u(random);
-    LightPoint point;
-    LightEvaluation sampled_view;
+    light::LightPoint point;
+    light::LightEvaluation sampled_view;
     sample_light_point(*snapshot, receiver, choice, Vec2(x, u(random)), &point, &sampled_view);
-    if (point.kind != LightKind::AnalyticLight || point.dirac) continue;
-    const LightEvaluation view = evaluate_light(*snapshot, point, receiver);
+    if (point.kind != light::LightKind::AnalyticLight || point.dirac) continue;
+    const light::LightEvaluation view = evaluate_light(*snapshot, point, receiver);
     if (!(view.pdf > 0.0f)) continue;
     std::vector<LightHit> hits;
     intersect_lights(*snapshot, {receiver.position, 0.0f, view.direction, kInfinity}, &hits);
-    const LightHit* met = nullptr;
+    const light::LightHit* met = nullptr;
     for (size_t k = 0; k < hits.size(); ++k) {
       if (hits[k].point.index == point.index) met = &hits[k];
       if (k > 0) {
@@ -104,9 +105,10 @@ TEST(A4_LightDensity, PointsMetByRaysHaveTheSameDensity) {
       ++missed;
       continue;
     }
-    const LightEvaluation again = evaluate_light(*snapshot, met->point, receiver);
+    const light::LightEvaluation again = evaluate_light(*snapshot, met->point, receiver);
     different += std::fabs(again.pdf - view.pdf) > 1e-4f * view.pdf;
-    if (view.distance != kInfinity) displaced += std::fabs(met->distance - view.distance) > 1e-3f * view.distance + 1e-4f;
+    if (view.distance != kInfinity)
+      displaced += std::fabs(met->distance - view.distance) > 1e-3f * view.distance + 1e-4f;
   }
   EXPECT_GT(compared, 20000);
   EXPECT_LE(missed, compared / 2000);  // rims
@@ -119,18 +121,18 @@ TEST(A4_LightDensity, TriangleMetByRay) {
   std::mt19937 random(14);
   int met = 0;
   for (int i = 0; i < 1000; ++i) {
-    const Receiver receiver{Vec3(0, 0, 3), Vec3(0, 0, -1), true};
+    const light::Receiver receiver{Vec3(0, 0, 3), Vec3(0, 0, -1), true};
     const Vec3 direction = glm::normalize(Vec3(2, 1, 0) + 0.5f * random_direction(random) - receiver.position);
     Hit hit;
     if (!snapshot->intersect({receiver.position, 0.0f, direction, kInfinity}, GRADUS_VISIBLE_CAMERA, &hit)) continue;
-    const LightPoint point = light_point_of_surface(*snapshot, snapshot->surface_point(hit));
-    ASSERT_EQ(point.kind, LightKind::Triangle);
-    const LightEvaluation view = evaluate_light(*snapshot, point, receiver);
+    const light::LightPoint point = light_point_of_surface(*snapshot, snapshot->surface_point(hit));
+    ASSERT_EQ(point.kind, light::LightKind::Triangle);
+    const light::LightEvaluation view = evaluate_light(*snapshot, point, receiver);
     EXPECT_GT(view.pdf, 0.0f);
     EXPECT_NEAR(view.radiance.x, 5.0f, 1e-5f);
     EXPECT_NEAR(view.distance, hit.t, 1e-4f);
     // Seen from there, nothing lies between but the emitter itself, which must not shadow itself.
-    SurfacePoint from;
+    geometry::SurfacePoint from;
     from.position = receiver.position;
     from.geometric_normal = receiver.normal;
     EXPECT_FALSE(snapshot->occluded(ray_to_light(offset_origin(from, view.direction), from, point, view)));
@@ -139,9 +141,9 @@ TEST(A4_LightDensity, TriangleMetByRay) {
   EXPECT_GT(met, 500);
 }
 
-double probability_sum(const LightTable& table, const Receiver& receiver) {
-  LightChoice room;
-  const GroupChoice group = table.choose(receiver, &room).group;
+double probability_sum(const light::LightTable& table, const light::Receiver& receiver) {
+  light::LightChoice room;
+  const light::GroupChoice group = table.choose(receiver, &room).group;
   double sum = group.world;
   for (size_t i = 0; i < table.suns.size(); ++i) sum += group.suns * table.sun_probability(i, receiver);
   for (uint32_t i = 0; i < table.tree.size(); ++i) sum += group.tree * table.tree.probability(i, receiver);
@@ -152,7 +154,8 @@ TEST(A4_LightChoice, ProbabilitiesSumToOne) {
   const auto snapshot = mixed_scene(1000);
   std::mt19937 random(15);
   for (int i = 0; i < 200; ++i)
-    EXPECT_NEAR(probability_sum(*snapshot->light_table, random_receiver(random)), 1.0, 4.0 * std::numeric_limits<float>::epsilon());
+    EXPECT_NEAR(probability_sum(*snapshot->light_table, random_receiver(random)), 1.0,
+                4.0 * std::numeric_limits<float>::epsilon());
 }
 
 // One memo in turn for receivers that differ in place, side or transmission: it must never answer for another.
@@ -160,9 +163,9 @@ TEST(A4_LightChoice, MemoChangesNoBit) {
   const auto snapshot = mixed_scene(60);
   std::mt19937 random(16);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
-  LightChoice memo;
+  light::LightChoice memo;
   for (int i = 0; i < 100; ++i) {
-    Receiver receiver = random_receiver(random);
+    light::Receiver receiver = random_receiver(random);
     for (const float side : {1.0f, -1.0f}) {
       for (const bool transmits : {false, true}) {
         receiver.normal *= side;
@@ -186,11 +189,11 @@ TEST(A4_LightChoice, MemoChangesNoBit) {
 
 TEST(A4_LightChoice, FrequenciesFollowProbabilities) {
   const auto snapshot = mixed_scene(60);
-  const LightTable& table = *snapshot->light_table;
+  const light::LightTable& table = *snapshot->light_table;
   std::mt19937 random(16);
   std::uniform_real_distribution<double> u(0.0, 1.0);
   for (int k = 0; k < 5; ++k) {
-    const Receiver receiver = random_receiver(random);
+    const light::Receiver receiver = random_receiver(random);
     constexpr int kCount = 200000;
     double probability;
     std::vector<int> frequency(table.tree.size());
@@ -226,7 +229,7 @@ TEST(E4_ManyLights, TreeBeatsUniformChoice) {
   const auto snapshot = scene.commit();
   double tree = 0.0, uniform = 0.0, exact_sum = 0.0, mean_sum = 0.0;
   for (int k = 0; k < 20; ++k) {
-    const Receiver receiver{Vec3(0.5f * u(random), 0.5f * u(random), 0), Vec3(0, 0, 1), false};
+    const light::Receiver receiver{Vec3(0.5f * u(random), 0.5f * u(random), 0), Vec3(0, 0, 1), false};
     const auto value = [&](uint32_t i) {
       const Vec3 d = snapshot->light_table->analytic_lights[i].position - receiver.position;
       return double(d.z) / std::pow(double(glm::dot(d, d)), 1.5);
@@ -236,10 +239,10 @@ TEST(E4_ManyLights, TreeBeatsUniformChoice) {
     double mean = 0.0, second = 0.0;
     constexpr int kCount = 2000;
     for (int i = 0; i < kCount; ++i) {
-      LightPoint point;
-      LightEvaluation sampled_view;
+      light::LightPoint point;
+      light::LightEvaluation sampled_view;
       sample_light_point(*snapshot, receiver, v(random), Vec2(0.5f), &point, &sampled_view);
-      const LightEvaluation view = evaluate_light(*snapshot, point, receiver);
+      const light::LightEvaluation view = evaluate_light(*snapshot, point, receiver);
       const double x = view.radiance.x * view.direction.z / view.pdf;
       mean += x / kCount;
       second += x * x / kCount;
@@ -293,17 +296,17 @@ struct Spread {
 };
 
 // Irradiance without shadows, by one triangle among all alike and a point on it.
-double by_uniform_choice(const Snapshot& snapshot, const Receiver& receiver, std::mt19937* random) {
+double by_uniform_choice(const Snapshot& snapshot, const light::Receiver& receiver, std::mt19937* random) {
   std::uniform_real_distribution<float> u(0.0f, 0.9999999f);
   const std::vector<EmissiveTriangle>& all = snapshot.light_table->triangles;
-  const EmissiveTriangle& triangle = all[size_t(u(*random) * float(all.size()))];
+  const light::EmissiveTriangle& triangle = all[size_t(u(*random) * float(all.size()))];
   const float root = std::sqrt(u(*random));
   Hit hit;
   hit.instance = triangle.instance;
   hit.triangle = triangle.triangle;
   hit.barycentric = Vec2(1.0f - root, u(*random) * root);
-  const LightPoint point = light_point_of_surface(snapshot, snapshot.surface_point(hit));
-  const LightEvaluation view = evaluate_light(snapshot, point, receiver);
+  const light::LightPoint point = light_point_of_surface(snapshot, snapshot.surface_point(hit));
+  const light::LightEvaluation view = evaluate_light(snapshot, point, receiver);
   const double cosine = std::max(double(glm::dot(receiver.normal, view.direction)), 0.0);
   return view.radiance.x * cosine * double(view.cosine) * double(triangle.area) * double(all.size()) /
          (double(view.distance) * double(view.distance));
@@ -317,11 +320,11 @@ TEST(E4_ManyLights, HundredThousandTrianglesAreBetterChosenThanUniformly) {
   double tree = 0.0, uniform = 0.0, ratio = 0.0;
   constexpr int kReceivers = 10;
   for (int k = 0; k < kReceivers; ++k) {
-    const Receiver receiver{Vec3(x(random), x(random), 0.0f), Vec3(0, 0, 1), false};
+    const light::Receiver receiver{Vec3(x(random), x(random), 0.0f), Vec3(0, 0, 1), false};
     Spread by_tree, by_chance;
     for (int i = 0; i < 10000; ++i) {
-      LightPoint point;
-      LightEvaluation view;
+      light::LightPoint point;
+      light::LightEvaluation view;
       const Vec2 at(u(random), u(random));
       sample_light_point(*snapshot, receiver, u(random), at, &point, &view);
       by_tree.add(view.pdf > 0.0f ? double(view.radiance.x * std::max(view.direction.z, 0.0f) / view.pdf) : 0.0);

@@ -1,11 +1,12 @@
-// A3: directions of light sampling against its density, which is asked for by rays (everything that a ray in that direction would meet).
+// A3: directions of light sampling against its density, which is asked for by rays (everything that a ray in that
+// direction would meet).
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "light/light_table.h"
 #include "light/light_sampling.h"
-#include "scene_fixture.h"
+#include "light/light_table.h"
+#include "scene/scene_fixture.h"
 #include "shading/program_builder.h"
 #include "shading/shade.h"
 #include "support/chi_square.h"
@@ -17,7 +18,7 @@ using gradus::testing::chi_square_sphere;
 using gradus::testing::ChiSquareOptions;
 using gradus::testing::ChiSquareResult;
 
-double density(const Snapshot& snapshot, const Receiver& receiver, const Vec3& direction) {
+double density(const Snapshot& snapshot, const light::Receiver& receiver, const Vec3& direction) {
   double sum = 0.0;
   const Ray ray{receiver.position, 0.0f, direction, kInfinity};
   std::vector<LightHit> hits;
@@ -26,7 +27,7 @@ double density(const Snapshot& snapshot, const Receiver& receiver, const Vec3& d
   sum += light_point_pdf(snapshot, light_point_of_world(snapshot, direction), receiver);
   // All surfaces on the ray: light sampling does not know which is in front.
   Ray rest = ray;
-  Hit hit;
+  geometry::Hit hit;
   for (int i = 0; i < 16 && snapshot.intersect(rest, GRADUS_VISIBLE_CAMERA, &hit); ++i) {
     const SurfacePoint point = snapshot.surface_point(hit);
     const LightPoint light_point = light_point_of_surface(snapshot, point);
@@ -36,13 +37,13 @@ double density(const Snapshot& snapshot, const Receiver& receiver, const Vec3& d
   return sum;
 }
 
-void expect_matching(const Snapshot& snapshot, const Receiver& receiver, const Vec3& axis, uint32_t seed) {
+void expect_matching(const Snapshot& snapshot, const light::Receiver& receiver, const Vec3& axis, uint32_t seed) {
   const auto sample = [&](const Vec2& u, const Vec2& v, Vec3* direction) {
-    LightPoint point;
-    LightEvaluation sampled_view;
+    light::LightPoint point;
+    light::LightEvaluation sampled_view;
     sample_light_point(snapshot, receiver, v.x, u, &point, &sampled_view);
-    if (point.kind == LightKind::None) return false;
-    const LightEvaluation view = evaluate_light(snapshot, point, receiver);
+    if (point.kind == light::LightKind::None) return false;
+    const light::LightEvaluation view = evaluate_light(snapshot, point, receiver);
     *direction = view.direction;
     return view.pdf > 0.0f;
   };
@@ -57,11 +58,11 @@ void expect_matching(const Snapshot& snapshot, const Receiver& receiver, const V
 }
 
 // Five receivers around a light at the origin that shines down.
-const Receiver kReceivers[5] = {{Vec3(0, 0, -1), Vec3(0, 0, 1), false},
-                                {Vec3(0.5f, 0.2f, -0.8f), Vec3(0, 0, 1), false},
-                                {Vec3(-1, 0.4f, -0.5f), Vec3(0.6f, 0, 0.8f), false},
-                                {Vec3(0.3f, 1.2f, -1.0f), Vec3(0, -1, 0), true},
-                                {Vec3(-0.2f, -0.3f, -0.4f), Vec3(0, 0, 1), true}};
+const light::Receiver kReceivers[5] = {{Vec3(0, 0, -1), Vec3(0, 0, 1), false},
+                                       {Vec3(0.5f, 0.2f, -0.8f), Vec3(0, 0, 1), false},
+                                       {Vec3(-1, 0.4f, -0.5f), Vec3(0.6f, 0, 0.8f), false},
+                                       {Vec3(0.3f, 1.2f, -1.0f), Vec3(0, -1, 0), true},
+                                       {Vec3(-0.2f, -0.3f, -0.4f), Vec3(0, 0, 1), true}};
 
 void expect_matching_light(const GradusLight& light) {
   TestScene scene;
@@ -143,12 +144,14 @@ TEST(A3_EnvironmentSampling, ConstantMapAndManySizes) {
   expect_matching(*scene.commit(), kReceivers[0], Vec3(0, 0, 1), 1);
 }
 
-// A sky whose sun has this angle across; scale: of its coordinates' height, where that is not 1 the sun's place cannot be told.
+// A sky whose sun has this angle across; scale: of its coordinates' height, where that is not 1 the sun's place cannot
+// be told.
 void set_sky(TestScene* scene, float size, float elevation, float scale = 1.0f) {
   ProgramBuilder b;
   const int place = b.add(GRADUS_OP_TEX_COORD, {}, GRADUS_TEX_COORD_GENERATED);
   const int turned =
-      b.add(GRADUS_OP_MAPPING, {In::from(place), In(Vec3(0.0f)), In(Vec3(0.3f, 0, 0.5f)), In(Vec3(1, 1, scale))}, GRADUS_MAPPING_POINT);
+      b.add(GRADUS_OP_MAPPING, {In::from(place), In(Vec3(0.0f)), In(Vec3(0.3f, 0, 0.5f)), In(Vec3(1, 1, scale))},
+            GRADUS_MAPPING_POINT);
   const int sky = b.add(GRADUS_OP_SKY, {In::from(turned)}, GRADUS_SKY_NISHITA, {elevation, 0.4f, size, 1, 0, 1, 1, 1});
   scene->scene.set_material(6, b.desc(b.add(GRADUS_OP_EMISSION, {In::from(sky), In(1.0f)})));
   scene->world(6);
@@ -171,16 +174,17 @@ TEST(A3_EnvironmentSampling, SkyWithSun) {
   }
 }
 
-// Too small for the cells of the chi-square test: what is estimated with the density must be the sky's light, with little noise.
+// Too small for the cells of the chi-square test: what is estimated with the density must be the sky's light, with
+// little noise.
 void expect_light(const Snapshot& snapshot, float noise) {
-  const Receiver receiver{Vec3(0.0f), Vec3(0, 0, 1), false};
+  const light::Receiver receiver{Vec3(0.0f), Vec3(0, 0, 1), false};
   std::mt19937 random(1);
   std::uniform_real_distribution<float> uniform(0.0f, 0.9999999f);
   constexpr int kCount = 20000;
   double sum = 0.0, squares = 0.0, grid = 0.0;
   for (int i = 0; i < kCount; ++i) {
-    LightPoint point;
-    LightEvaluation view;
+    light::LightPoint point;
+    light::LightEvaluation view;
     const Vec2 u(uniform(random), uniform(random));
     sample_light_point(snapshot, receiver, uniform(random), u, &point, &view);
     const double x = view.pdf > 0.0f ? double(view.radiance.x * std::max(view.direction.z, 0.0f) / view.pdf) : 0.0;
@@ -190,8 +194,10 @@ void expect_light(const Snapshot& snapshot, float noise) {
   // By a dense grid over the hemisphere; 2000 × 500 points see the sun some eight times.
   for (int y = 0; y < 500; ++y)
     for (int x = 0; x < 2000; ++x) {
-      const float z = (float(y) + 0.5f) / 500.0f, phi = 2.0f * kPi * (float(x) + 0.5f) / 2000.0f, s = std::sqrt(1.0f - z * z);
-      grid += double(z * shade_world(snapshot, Vec3(s * std::cos(phi), s * std::sin(phi), z), RayState()).x) * 2.0 * double(kPi) / 1e6;
+      const float z = (float(y) + 0.5f) / 500.0f, phi = 2.0f * kPi * (float(x) + 0.5f) / 2000.0f,
+                  s = std::sqrt(1.0f - z * z);
+      grid += double(z * shade_world(snapshot, Vec3(s * std::cos(phi), s * std::sin(phi), z), RayState()).x) * 2.0 *
+              double(kPi) / 1e6;
     }
   const double mean = sum / kCount, deviation = std::sqrt(squares / kCount - mean * mean);
   EXPECT_LT(deviation, double(noise) * mean);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "light/light_sampling.h"
-#include "scene_fixture.h"
+#include "scene/scene_fixture.h"
 
 namespace gradus::test {
 namespace {
@@ -12,24 +12,24 @@ namespace {
 const Mat4 kDown(1.0f);  // shines along -Z
 
 // Looking up from the origin. Mean of radiance·cos/pdf (Dirac: ·cos/choice).
-double irradiance(const Snapshot& snapshot, const Receiver& receiver, int count = 20000) {
+double irradiance(const Snapshot& snapshot, const light::Receiver& receiver, int count = 20000) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> uniform(0.0f, 0.9999999f);
   double sum = 0.0;
   for (int i = 0; i < count; ++i) {
     const float choice = uniform(random), x = uniform(random);
-    LightPoint point;
-    LightEvaluation sampled_view;
+    light::LightPoint point;
+    light::LightEvaluation sampled_view;
     sample_light_point(snapshot, receiver, choice, Vec2(x, uniform(random)), &point, &sampled_view);
-    if (point.kind == LightKind::None) continue;
-    const LightEvaluation view = evaluate_light(snapshot, point, receiver);
+    if (point.kind == light::LightKind::None) continue;
+    const light::LightEvaluation view = evaluate_light(snapshot, point, receiver);
     const float cosine = glm::dot(receiver.normal, view.direction);
     if (view.pdf > 0.0f && cosine > 0.0f) sum += view.radiance.x * cosine / view.pdf;
   }
   return sum / count;
 }
 
-double irradiance_of(const GradusLight& light, const Receiver& receiver = {Vec3(0.0f), Vec3(0, 0, 1), false}) {
+double irradiance_of(const GradusLight& light, const light::Receiver& receiver = {Vec3(0.0f), Vec3(0, 0, 1), false}) {
   TestScene scene;
   scene.lights({light});
   return irradiance(*scene.commit(), receiver);
@@ -94,7 +94,7 @@ TEST(LightUnits, SpotBlendAndExtraCosine) {
   const double x = 0.85;  // near the edge: the angle is about 0.4 of 0.5
   const double distance = std::sqrt(4.0 + x * x), cosine = 2.0 / distance, edge = std::cos(0.5);
   const double t = std::min(1.0, (cosine - edge) / ((1.0 - edge) * 0.5)), smooth = t * t * (3 - 2 * t);
-  const Receiver receiver{Vec3(float(x), 0, 0), Vec3(0, 0, 1), false};
+  const light::Receiver receiver{Vec3(float(x), 0, 0), Vec3(0, 0, 1), false};
   EXPECT_NEAR(irradiance_of(light, receiver), 3.0 * cosine / (distance * distance) * smooth, 1e-4);
   EXPECT_LT(smooth, 0.99);
   light.flags = GRADUS_LIGHT_SPOT_COSINE;
@@ -111,11 +111,12 @@ TEST(LightUnits, SunWithAndWithoutAngle) {
   EXPECT_NEAR(irradiance_of(light), 2.0 * 3.0 * kPi * std::pow(std::sin(0.25), 2), 2e-3);
 }
 
-// Irradiance of a Lambertian rectangle at height h above a corner-to-corner view (form factor of a parallel rectangle above the centre).
+// Irradiance of a Lambertian rectangle at height h above a corner-to-corner view (form factor of a parallel rectangle
+// above the centre).
 double rectangle_irradiance(double radiance, double width, double height, double h) {
   const double a = 0.5 * width / h, b = 0.5 * height / h;
-  const double corner =
-      a / std::sqrt(1 + a * a) * std::atan(b / std::sqrt(1 + a * a)) + b / std::sqrt(1 + b * b) * std::atan(a / std::sqrt(1 + b * b));
+  const double corner = a / std::sqrt(1 + a * a) * std::atan(b / std::sqrt(1 + a * a)) +
+                        b / std::sqrt(1 + b * b) * std::atan(a / std::sqrt(1 + b * b));
   return radiance * 2.0 * corner;  // four corners of (1/2)·(…)
 }
 
@@ -154,7 +155,8 @@ TEST(LightUnits, SpreadKeepsTheFlux) {
     for (int i = 0; i < kRings; ++i) {
       const double theta = (i + 0.5) * kPi / 2 / kRings;
       const Vec3 p = 10.0f * Vec3(float(std::sin(theta)), 0, -float(std::cos(theta)));
-      flux += irradiance(*snapshot, {p, glm::normalize(-p), false}, 4) * std::sin(theta) * 100.0 * 2 * kPi * (kPi / 2 / kRings);
+      flux += irradiance(*snapshot, {p, glm::normalize(-p), false}, 4) * std::sin(theta) * 100.0 * 2 * kPi *
+              (kPi / 2 / kRings);
     }
     EXPECT_NEAR(flux, kPi * 0.0004, 0.01 * kPi * 0.0004) << spread;
   }

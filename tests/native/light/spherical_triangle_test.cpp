@@ -9,7 +9,8 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-// ∫ω dω over a spherical polygon: half the sum over its edges of angle times normal (Lambert's formula for its irradiance).
+// ∫ω dω over a spherical polygon: half the sum over its edges of angle times normal (Lambert's formula for its
+// irradiance).
 glm::dvec3 first_moment(const Corners& corners, const Vec3& from) {
   glm::dvec3 v[3], sum(0.0);
   for (int i = 0; i < 3; ++i) v[i] = glm::normalize(glm::dvec3(corners[i]) - glm::dvec3(from));
@@ -29,14 +30,14 @@ const Corners kTriangles[] = {
 };
 
 TEST(SphericalTriangle, OctantIsAnEighthOfTheSphere) {
-  EXPECT_NEAR(SphericalTriangle(kTriangles[0], Vec3(0.0f)).solid_angle(), 0.5f * kPi, 1e-6f);
+  EXPECT_NEAR(light::SphericalTriangle(kTriangles[0], Vec3(0.0f)).solid_angle(), 0.5f * kPi, 1e-6f);
 }
 
 TEST(A3_SphericalTriangle, SamplesAreUniformInSolidAngle) {
   constexpr int n = 512;
   for (const Corners& corners : kTriangles) {
     const Vec3 from(0.01f, -0.02f, 0.0f);
-    const SphericalTriangle seen(corners, from);
+    const light::SphericalTriangle seen(corners, from);
     ASSERT_TRUE(seen.usable());
     glm::dvec3 mean(0.0);
     for (int i = 0; i < n * n; ++i) {
@@ -52,10 +53,10 @@ TEST(A3_SphericalTriangle, SamplesAreUniformInSolidAngle) {
 // The first coordinate is the share of the solid angle that lies before it.
 TEST(A3_SphericalTriangle, FirstCoordinateCutsOffItsShare) {
   for (const Corners& corners : kTriangles) {
-    const SphericalTriangle seen(corners, Vec3(0.0f));
+    const light::SphericalTriangle seen(corners, Vec3(0.0f));
     for (const float u : {0.1f, 0.5f, 0.8f}) {
       const Corners part = {corners[0], corners[1], seen.sample(Vec2(u, 1.0f))};
-      EXPECT_NEAR(SphericalTriangle(part, Vec3(0.0f)).solid_angle() / seen.solid_angle(), u, 2e-3f);
+      EXPECT_NEAR(light::SphericalTriangle(part, Vec3(0.0f)).solid_angle() / seen.solid_angle(), u, 2e-3f);
     }
   }
 }
@@ -64,7 +65,7 @@ TEST(SphericalTriangle, DirectionsFindTheirBarycentricCoordinates) {
   for (const Corners& p : kTriangles) {
     const Vec2 b(0.2f, 0.7f);
     const Vec3 target = p[0] * (1.0f - b.x - b.y) + p[1] * b.x + p[2] * b.y;
-    const Vec2 found = barycentric_towards(p, Vec3(0.0f), glm::normalize(target));
+    const Vec2 found = light::barycentric_towards(p, Vec3(0.0f), glm::normalize(target));
     EXPECT_NEAR(found.x, b.x, 1e-4f);
     EXPECT_NEAR(found.y, b.y, 1e-4f);
   }

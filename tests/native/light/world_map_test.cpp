@@ -64,7 +64,7 @@ void set_image(TestScene* scene, uint32_t width, uint32_t sun) {
   scene->scene.set_image(kImage, image);
 }
 
-const Distribution2D* map_of(const Snapshot& snapshot) { return snapshot.light_table->world.map(); }
+const light::Distribution2D* map_of(const scene::Snapshot& snapshot) { return snapshot.light_table->world.map(); }
 
 uint32_t image_map_width(uint32_t image_width) {
   TestScene scene;
@@ -97,7 +97,7 @@ TEST(WorldMap, OfAConstantWorldIsNotMade) {
   const auto snapshot = scene.commit();
   EXPECT_EQ(map_of(*snapshot), nullptr);
   EXPECT_FLOAT_EQ(snapshot->light_table->world.mean(), 2.0f);
-  EXPECT_FLOAT_EQ(snapshot->light_table->world.density(Vec3(0, 0, 1), Vec2(0.0f), Receiver()), 0.25f * kInvPi);
+  EXPECT_FLOAT_EQ(snapshot->light_table->world.density(Vec3(0, 0, 1), Vec2(0.0f), light::Receiver()), 0.25f * kInvPi);
 }
 
 TEST(WorldMap, FindsASunOfOneTexelFromOnePointInEachCell) {
@@ -112,8 +112,8 @@ TEST(WorldMap, FindsASunOfOneTexelFromOnePointInEachCell) {
   std::uniform_real_distribution<float> uniform(0.0f, 0.9999999f);
   for (int i = 0; i < 1000; ++i) {
     Vec2 place;
-    const Vec3 d = snapshot->light_table->world.sample(Receiver(), {uniform(random), uniform(random)}, &place);
-    hits += shade_world(*snapshot, d, RayState()).x > 1.0f;
+    const Vec3 d = snapshot->light_table->world.sample(light::Receiver(), {uniform(random), uniform(random)}, &place);
+    hits += shading::shade_world(*snapshot, d, shading::RayState()).x > 1.0f;
   }
   // The sun gives 5000 of about 5800 parts of the light.
   EXPECT_GT(hits, 500);
@@ -125,7 +125,7 @@ TEST(WorldMap, MeasuresEachCellAsOftenAsAsked) {
     ++calls;
     return Rgb(1.0f + d.z);
   };
-  Environment world;
+  light::Environment world;
   world.build(radiance, {}, {64, 1}, [] { return false; });
   EXPECT_EQ(calls, 64u * 32u);
   EXPECT_NEAR(world.mean(), 1.0f, 1e-3f);

@@ -37,7 +37,7 @@ std::regex oracle(const std::string& expression) {
 }
 
 void expect_like_regex(const std::string& text) {
-  const ComponentSet set = ComponentSet::parse(text);
+  const lpe::ComponentSet set = lpe::ComponentSet::parse(text);
   for (const std::string& path : paths(6)) {
     int expected = set.count() - 1;
     for (int i = 0; i < set.count() - 1; ++i) {
@@ -48,22 +48,22 @@ void expect_like_regex(const std::string& text) {
 }
 
 std::string refusal(const std::string& text) {
-  return test::refusal_of([&] { ComponentSet::parse(text); });
+  return test::refusal_of([&] { lpe::ComponentSet::parse(text); });
 }
 
 TEST(Components, HaveAResidualOnceSomeAreMerged) {
-  const ComponentSet set = ComponentSet::parse(""), without = set.without_empty(3u);
+  const lpe::ComponentSet set = lpe::ComponentSet::parse(""), without = set.without_empty(3u);
   ASSERT_EQ(without.residual(), 0u);
-  const ComponentSet merged = without.merged(1u << without.find("Diffuse"));
+  const lpe::ComponentSet merged = without.merged(1u << without.find("Diffuse"));
   EXPECT_EQ(merged.residual(), 2u);
-  EXPECT_EQ(merged[merged.classify("EDDL")].name, kResidual);
+  EXPECT_EQ(merged[merged.classify("EDDL")].name, lpe::kResidual);
   EXPECT_EQ(merged[merged.classify("EL")].name, "Emission");
   EXPECT_EQ(set.merged(0).count(), set.count());
   EXPECT_EQ(set.merged(set.all()).count(), 1);
 }
 
 TEST(Components, MatchesWordsAsRegularExpressionsDo) {
-  expect_like_regex(std::string(kDefaultComponents));
+  expect_like_regex(std::string(lpe::kDefaultComponents));
   expect_like_regex("A=ETTTTD.*L");
   expect_like_regex("A=E(D|R)L;B=E(DD|RR)+TL;C=ETT?T?DL");
   expect_like_regex("A = E ( D | ) L; B=ER+(T|D*R)L");
@@ -72,7 +72,7 @@ TEST(Components, MatchesWordsAsRegularExpressionsDo) {
 }
 
 TEST(Components, DefaultSetTellsTheFiveApart) {
-  const ComponentSet set = ComponentSet::parse("");
+  const lpe::ComponentSet set = lpe::ComponentSet::parse("");
   ASSERT_EQ(set.count(), 5);
   const auto name = [&](const char* path) { return set[set.classify(path)].name; };
   EXPECT_EQ(name("EL"), "Emission");
@@ -87,7 +87,7 @@ TEST(Components, DefaultSetTellsTheFiveApart) {
 }
 
 TEST(Components, OneComponentWithoutDecomposition) {
-  const ComponentSet set;
+  const lpe::ComponentSet set;
   EXPECT_EQ(set.count(), 1);
   for (const std::string& path : paths(3)) EXPECT_EQ(set.classify(path), 0);
 }
@@ -122,19 +122,22 @@ TEST(Components, RefusesWhatMatchesNoPath) {
   EXPECT_NE(refusal("A=EDEL").find("matches no path"), std::string::npos);
 }
 
-TEST(Components, RefusesAnAutomatonThatExplodes) { EXPECT_NE(refusal("A=E.*D..............L").find("too complex"), std::string::npos); }
+TEST(Components, RefusesAnAutomatonThatExplodes) {
+  EXPECT_NE(refusal("A=E.*D..............L").find("too complex"), std::string::npos);
+}
 
 TEST(Components, TakesAsManyAsThereIsRoomFor) {
   std::string text, longer = "D";
-  for (int i = 1; i < kMaxComponents; ++i) text += "C" + std::to_string(i) + "=E" + longer.substr(0, size_t(i) - 1) + "L;", longer += 'D';
-  EXPECT_EQ(ComponentSet::parse(text).count(), kMaxComponents);
+  for (int i = 1; i < lpe::kMaxComponents; ++i)
+    text += "C" + std::to_string(i) + "=E" + longer.substr(0, size_t(i) - 1) + "L;", longer += 'D';
+  EXPECT_EQ(lpe::ComponentSet::parse(text).count(), lpe::kMaxComponents);
   EXPECT_NE(refusal(text + "X=ERL").find("more than 15"), std::string::npos);
 }
 
 TEST(Components, GiveTheirPathsToResidualWhereTheyAreMerged) {
-  const ComponentSet all = ComponentSet::parse("");
+  const lpe::ComponentSet all = lpe::ComponentSet::parse("");
   const uint32_t small = 1u << all.find("Emission") | 1u << all.find("Reflection");
-  const ComponentSet some = all.merged(small);
+  const lpe::ComponentSet some = all.merged(small);
   ASSERT_EQ(some.count(), 3);
   EXPECT_EQ(some[2].name, "Residual");
   for (const std::string& path : paths(5)) {
@@ -142,13 +145,13 @@ TEST(Components, GiveTheirPathsToResidualWhereTheyAreMerged) {
     const bool stays = before == "Diffuse" || before == "Transmission";
     EXPECT_EQ(some[some.classify(path)].name, stays ? before : "Residual") << path;
   }
-  EXPECT_EQ(some.ahead(some.next(0, ScatterClass::Reflection)), 1u << 2);
+  EXPECT_EQ(some.ahead(some.next(0, bsdf::ScatterClass::Reflection)), 1u << 2);
 }
 
 TEST(Components, KnowsWhatLiesAheadOfAWord) {
-  const ComponentSet set = ComponentSet::parse("");
-  const auto has = [&](LpeState at, const char* name) { return (set.ahead(at) >> set.find(name) & 1) != 0; };
-  const LpeState r = set.next(0, ScatterClass::Reflection), rr = set.next(r, ScatterClass::Reflection);
+  const lpe::ComponentSet set = lpe::ComponentSet::parse("");
+  const auto has = [&](lpe::LpeState at, const char* name) { return (set.ahead(at) >> set.find(name) & 1) != 0; };
+  const lpe::LpeState r = set.next(0, bsdf::ScatterClass::Reflection), rr = set.next(r, bsdf::ScatterClass::Reflection);
   EXPECT_TRUE(has(0, "Emission") && has(0, "Transmission") && has(0, "Residual"));
   EXPECT_TRUE(has(r, "Reflection"));
   EXPECT_FALSE(has(r, "Diffuse"));
@@ -157,15 +160,16 @@ TEST(Components, KnowsWhatLiesAheadOfAWord) {
 }
 
 TEST(Components, ExamplesAreShortestWordsOfTheirComponent) {
-  const ComponentSet set = ComponentSet::parse("Vase=ETTTTD.*L");
+  const lpe::ComponentSet set = lpe::ComponentSet::parse("Vase=ETTTTD.*L");
   EXPECT_EQ(set.examples(0, 2), (std::vector<std::string>{"ETTTTDL", "ETTTTDDL"}));
   EXPECT_EQ(set.examples(1, 1), (std::vector<std::string>{"EL"}));
-  EXPECT_TRUE(ComponentSet::parse("All=E.*L").examples(1, 3).empty());
+  EXPECT_TRUE(lpe::ComponentSet::parse("All=E.*L").examples(1, 3).empty());
 }
 
 TEST(Components, RefusesWordsThatAreNoPath) {
-  const ComponentSet set = ComponentSet::parse("");
-  for (const char* path : {"", "E", "L", "LE", "EXL", "DL", "ED", "EELL"}) EXPECT_THROW(set.classify(path), Error) << path;
+  const lpe::ComponentSet set = lpe::ComponentSet::parse("");
+  for (const char* path : {"", "E", "L", "LE", "EXL", "DL", "ED", "EELL"})
+    EXPECT_THROW(set.classify(path), Error) << path;
 }
 
 }  // namespace

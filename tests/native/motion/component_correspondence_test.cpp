@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "render/component_replay.h"
 #include "motion/component_tracking.h"
+#include "render/component_replay.h"
 
 namespace gradus {
 namespace {
@@ -14,16 +14,18 @@ class ComponentCorrespondence : public testing::Test {
  protected:
   ComponentCorrespondence() {
     motion_.film.assign(6, Vec2(0.0f));
-    motion_.tracking.assign(6, Tracking::NoPath);
+    motion_.tracking.assign(6, motion::Tracking::NoPath);
   }
-  void chain(int pixel, float x, Tracking tracking = Tracking::Tracked) {
+  void chain(int pixel, float x, motion::Tracking tracking = motion::Tracking::Tracked) {
     motion_.film[size_t(pixel)] = Vec2(x, 0.5f);
     motion_.tracking[size_t(pixel)] = tracking;
   }
-  std::vector<int32_t> correspondence(const std::vector<int32_t>& surface) const { return match_component({surface}, kRow, motion_).pixel; }
+  std::vector<int32_t> correspondence(const std::vector<int32_t>& surface) const {
+    return motion::match_component({surface}, kRow, motion_).pixel;
+  }
 
   const Region kRow{0, 0, 6, 1};
-  ChainMotion motion_;
+  motion::ChainMotion motion_;
   const std::vector<int32_t> static_{0, 1, 2, 3, 4, 5};
 };
 
@@ -37,15 +39,15 @@ TEST_F(ComponentCorrespondence, FollowChainsWhereThereAreAnyAndSurfacesElsewhere
 
 // What it showed is gone, and no other way is better than the surface's, by which the picture as a whole goes.
 TEST_F(ComponentCorrespondence, GoWithTheSurfaceWhereAChainWasLost) {
-  chain(1, 1.5f, Tracking::Occluded);
+  chain(1, 1.5f, motion::Tracking::Occluded);
   EXPECT_EQ(correspondence(static_), static_);
 }
 
 TEST_F(ComponentCorrespondence, WhatHasNoChainGoesWithTheSurface) {
-  EXPECT_FALSE(is_seen_through_smooth(motion_));
+  EXPECT_FALSE(motion::is_seen_through_smooth(motion_));
   EXPECT_EQ(correspondence(static_), static_);
-  chain(1, 4.5f, Tracking::Gone);
-  EXPECT_TRUE(is_seen_through_smooth(motion_));
+  chain(1, 4.5f, motion::Tracking::Gone);
+  EXPECT_TRUE(motion::is_seen_through_smooth(motion_));
   EXPECT_EQ(correspondence(static_), static_);
 }
 
@@ -65,7 +67,8 @@ TEST_F(ComponentCorrespondence, OfTwoChainsTheNearerToTheCentreHasThePixel) {
 TEST_F(ComponentCorrespondence, KeepWhereTheirWaysEnd) {
   chain(1, 2.375f);
   chain(4, 4.5f);
-  const std::vector<Vec2> off = match_component({static_, std::vector<Vec2>(6, Vec2(0.25f, 0.0f))}, kRow, motion_).off_centre;
+  const std::vector<Vec2> off =
+      motion::match_component({static_, std::vector<Vec2>(6, Vec2(0.25f, 0.0f))}, kRow, motion_).off_centre;
   EXPECT_EQ(off[1], Vec2(-0.125f, 0.0f));
   EXPECT_EQ(off[4], Vec2(0.0f)) << "a chain that rests does so exactly";
   EXPECT_EQ(off[5], Vec2(0.25f, 0.0f)) << "the surface's way";
@@ -77,59 +80,61 @@ TEST_F(ComponentCorrespondence, TakeNoPlaceThatIsNotANumber) {
 }
 
 TEST(ComponentReplays, AreTakenWhereTheWaysPart) {
-  ReplayMap replay_map;
-  replay_map.correspondence.pixel = {0, 1, 2, kNoCorrespondence};
-  replay_map.of_component = {{}, {Row{0, 3, kNoCorrespondence, 2}}};
-  const ComponentReplays replays = replays_of_components(replay_map);
+  film::ReplayMap replay_map;
+  replay_map.correspondence.pixel = {0, 1, 2, film::kNoCorrespondence};
+  replay_map.of_component = {{}, {Row{0, 3, film::kNoCorrespondence, 2}}};
+  const render::ComponentReplays replays = render::replays_of_components(replay_map);
   ASSERT_EQ(replays.own.size(), 1u);
   EXPECT_EQ(replays.own[0].pixels, (std::vector<uint8_t>{0, 1, 0, 1}));
   EXPECT_EQ(replays.own[0].components, (std::vector<uint32_t>{0, 2, 0, 2}));
   EXPECT_EQ(replays.own[0].replay_map.correspondence, replay_map.of_component[1]);
-  EXPECT_EQ(replays.shared, (std::vector<uint32_t>{kEveryComponent, ~2u, kEveryComponent, ~2u}));
+  EXPECT_EQ(replays.shared, (std::vector<uint32_t>{lpe::kEveryComponent, ~2u, lpe::kEveryComponent, ~2u}));
   EXPECT_EQ(replays.pixels, 2u);
 }
 
 // As Residual goes with what is seen through glass: its paths are those of the same camera ray.
 TEST(ComponentReplays, TakeThoseTogetherThatGoTheSameWay) {
-  ReplayMap replay_map;
+  film::ReplayMap replay_map;
   replay_map.correspondence.pixel = {0, 1, 2, 3};
   replay_map.of_component = {{Row{1, 0, 2, 3}}, {}, {Row{1, 0, 3, 3}}, {Row{1, 1, 3, 3}}};
-  ReplayMap limited = replay_map;
-  limit_component_replays(&limited);
+  film::ReplayMap limited = replay_map;
+  render::limit_component_replays(&limited);
   EXPECT_EQ(limited.of_component, replay_map.of_component);
-  const ComponentReplays replays = replays_of_components(replay_map);
+  const render::ComponentReplays replays = render::replays_of_components(replay_map);
   ASSERT_EQ(replays.own.size(), 2u);
   EXPECT_EQ(replays.own[0].components, (std::vector<uint32_t>{1u | 4u | 8u, 1u | 4u, 0, 0}));
   EXPECT_EQ(replays.own[1].components, (std::vector<uint32_t>{0, 0, 4u | 8u, 0}));
-  EXPECT_EQ(replays.shared, (std::vector<uint32_t>{~13u, ~5u, ~12u, kEveryComponent}));
+  EXPECT_EQ(replays.shared, (std::vector<uint32_t>{~13u, ~5u, ~12u, lpe::kEveryComponent}));
   EXPECT_EQ(replays.pixels, 3u);
 }
 
 TEST(ComponentReplays, AreNoMoreThanOneForEachPixel) {
-  ReplayMap replay_map;
+  film::ReplayMap replay_map;
   replay_map.correspondence.pixel = {0, 1, 2, 3};
   replay_map.of_component = {{Row{1, 0, 3, 3}}, {Row{2, 1, 2, 3}}, {Row{3, 1, 2, 3}}};
-  ReplayMap limited = replay_map;
-  limit_component_replays(&limited);
-  EXPECT_EQ(limited.of_component, (std::vector<PixelCorrespondence>{replay_map.of_component[0], replay_map.of_component[1], {}}));
-  EXPECT_LE(replays_of_components(limited).pixels, 4u);
+  film::ReplayMap limited = replay_map;
+  render::limit_component_replays(&limited);
+  EXPECT_EQ(limited.of_component,
+            (std::vector<film::PixelCorrespondence>{replay_map.of_component[0], replay_map.of_component[1], {}}));
+  EXPECT_LE(render::replays_of_components(limited).pixels, 4u);
 }
 
 // Whatever came after a component that was too much was left out with it.
 TEST(ComponentReplays, AComponentThatIsTooMuchTakesNoOtherOnesPlace) {
-  ReplayMap replay_map;
+  film::ReplayMap replay_map;
   replay_map.correspondence.pixel = {0, 1, 2, 3};
   replay_map.of_component = {{Row{1, 0, 3, 3}}, {Row{2, 3, 2, 2}}, {Row{0, 3, 2, 3}}};
-  ReplayMap limited = replay_map;
-  limit_component_replays(&limited);
-  EXPECT_EQ(limited.of_component, (std::vector<PixelCorrespondence>{replay_map.of_component[0], {}, replay_map.of_component[2]}));
+  film::ReplayMap limited = replay_map;
+  render::limit_component_replays(&limited);
+  EXPECT_EQ(limited.of_component,
+            (std::vector<film::PixelCorrespondence>{replay_map.of_component[0], {}, replay_map.of_component[2]}));
 }
 
 TEST(ComponentReplays, AreNoneWhereAllGoWithTheSurface) {
-  ReplayMap replay_map;
+  film::ReplayMap replay_map;
   replay_map.correspondence.pixel = {0, 1};
-  EXPECT_TRUE(replays_of_components(replay_map).own.empty());
-  EXPECT_TRUE(replays_of_components(replay_map).shared.empty());
+  EXPECT_TRUE(render::replays_of_components(replay_map).own.empty());
+  EXPECT_TRUE(render::replays_of_components(replay_map).shared.empty());
 }
 
 }  // namespace

@@ -13,8 +13,10 @@ class ComponentMotionTest : public MotionTest {
  protected:
   static constexpr Region kRegion{0, 0, kSize, kSize};
 
-  ComponentMotion find(const IntegratorContext& context, const char* component) const {
-    return component_motion(*context.snapshot, context.settings, components_, 1u << components_.find(component), kRegion).at(0);
+  motion::ComponentMotion find(const integrator::IntegratorContext& context, const char* component) const {
+    return motion::component_motion(*context.snapshot, context.settings, components_, 1u << components_.find(component),
+                                    kRegion)
+        .at(0);
   }
   // Moves instance 3 of the scene.
   void key(const Mat4& before, const Mat4& now, const Mat4& after) {
@@ -28,8 +30,10 @@ class ComponentMotionTest : public MotionTest {
 
   // From a frame to those around it, each by itself.
   struct Around {
-    ChainMotion before, after;
-    bool tracks(size_t i) const { return before.tracking[i] == Tracking::Tracked && after.tracking[i] == Tracking::Tracked; }
+    motion::ChainMotion before, after;
+    bool tracks(size_t i) const {
+      return before.tracking[i] == motion::Tracking::Tracked && after.tracking[i] == motion::Tracking::Tracked;
+    }
     Vec4 vector(size_t i) const {
       const Vec2 centre(float(i % kSize) + 0.5f, float(i / kSize) + 0.5f);
       return Vec4(before.film[i] - centre, centre - after.film[i]);
@@ -50,7 +54,8 @@ TEST_F(ComponentMotionTest, IsThatOfTheComponentsThatThereAre) {
   add_room();
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
   const MotionFrame* middle = frame("Diffuse");
-  const auto all = component_motion(*middle->context.snapshot, middle->context.settings, components_, ~uint32_t{0}, kRegion);
+  const auto all =
+      motion::component_motion(*middle->context.snapshot, middle->context.settings, components_, ~uint32_t{0}, kRegion);
   EXPECT_EQ(all.size(), size_t(components_.count()));
 }
 
@@ -61,7 +66,7 @@ TEST_F(ComponentMotionTest, IsThatOfTheFramesAround) {
              after = glm::rotate(translation(Vec3(0.03f, 0, 0)), 0.1f, Vec3(0, 1, 0));
   key(before, now, after);
   const MotionFrame* middle = frame("Reflection");
-  const ComponentMotion found = find(middle->context, "Reflection");
+  const motion::ComponentMotion found = find(middle->context, "Reflection");
   const Around around = find_around(middle, [&](bool later) { scene_.scene.move(3, later ? after : before); });
   size_t tracked = 0;
   for (size_t i = 0; i < found.vectors.size(); ++i) {
@@ -85,7 +90,7 @@ TEST_F(ComponentMotionTest, OfAMeshThatDeforms) {
   scene_.scene.instance(900, Mat4(1.0f), GRADUS_VISIBLE_ALL, material);
   scene_.camera(Vec3(0.5f, 0.5f, 4), Vec3(0, 0, 0), 0.6f);
   const MotionFrame* middle = frame("Reflection");
-  const ComponentMotion found = find(middle->context, "Reflection");
+  const motion::ComponentMotion found = find(middle->context, "Reflection");
   const Around around = find_around(middle, [&](bool later) { set_sheet(&scene_, 900, later ? after : before); });
   size_t tracked = 0, lost = 0;
   for (size_t i = 0; i < found.vectors.size(); ++i) {
@@ -105,8 +110,8 @@ TEST_F(ComponentMotionTest, OfWhatIsRoughIsSurfaceMotion) {
   scene_.camera(Vec3(0, 0, 4), Vec3(0, 0, 0), 4.0f / 4.0f);
   const float pixel = 4.0f / float(kSize);
   key(translation(Vec3(-2 * pixel, 0, 0)), Mat4(1.0f), translation(Vec3(0, 3 * pixel, 0)));
-  const IntegratorContext context = scene_.context(test_settings(kSize, kSize));
-  const ComponentMotion found = find(context, "Diffuse");
+  const integrator::IntegratorContext context = scene_.context(test_settings(kSize, kSize));
+  const motion::ComponentMotion found = find(context, "Diffuse");
   const size_t middle = size_t(kSize) * (kSize / 2) + kSize / 2, above = size_t(kSize) * (kSize - 4) + kSize / 2;
   EXPECT_LT(glm::length(found.vectors[middle] - Vec4(-2, 0, 0, -3)), 1e-3f);
   EXPECT_EQ(found.tracked[middle], 1.0f);
@@ -118,34 +123,35 @@ TEST_F(ComponentMotionTest, OfWhatIsRoughIsSurfaceMotion) {
 TEST_F(ComponentMotionTest, OfWhatWasNotThereIsGone) {
   add_ball(grey());
   key(Mat4(NAN), Mat4(1.0f), Mat4(1.0f));
-  const ComponentMotion found = find(frame("Diffuse")->context, "Diffuse");
+  const motion::ComponentMotion found = find(frame("Diffuse")->context, "Diffuse");
   const size_t middle = size_t(kSize) * kSize / 2 + kSize / 2;
-  EXPECT_EQ(found.tracked[middle], float(Tracking::Gone));
+  EXPECT_EQ(found.tracked[middle], float(motion::Tracking::Gone));
   EXPECT_EQ(found.vectors[middle], Vec4(0.0f));
-  EXPECT_EQ(found.tracked[0], float(Tracking::Tracked));
+  EXPECT_EQ(found.tracked[0], float(motion::Tracking::Tracked));
 }
 
 TEST_F(ComponentMotionTest, OverACutIsNone) {
   add_ball(grey());
   std::fill_n(scene_.camera_desc.matrix_next, 16, NAN);
   const MotionFrame* middle = frame("Diffuse");
-  auto snapshot = std::make_shared<Snapshot>(*middle->context.snapshot);
+  auto snapshot = std::make_shared<scene::Snapshot>(*middle->context.snapshot);
   EXPECT_TRUE(std::isfinite(snapshot->camera.matrix_next[0]));
   EXPECT_FALSE(snapshot->shot_change_before);
   EXPECT_TRUE(snapshot->shot_change_after);
-  const ComponentMotion found = find(middle->context, "Diffuse");
+  const motion::ComponentMotion found = find(middle->context, "Diffuse");
   for (size_t i = 0; i < found.tracked.size(); ++i) {
-    if (found.tracked[i] == kNothingToTrack) continue;
-    ASSERT_EQ(found.tracked[i], float(Tracking::ShotChange)) << i;
+    if (found.tracked[i] == film::kNothingToTrack) continue;
+    ASSERT_EQ(found.tracked[i], float(motion::Tracking::ShotChange)) << i;
   }
 }
 
 TEST_F(ComponentMotionTest, OnlyWhatIsAskedForIsFound) {
   add_room();
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
-  const IntegratorContext context = scene_.context(test_settings(kSize, kSize));
-  EXPECT_TRUE(component_motion(*context.snapshot, context.settings, components_, 0, kRegion).empty());
-  const std::vector<ComponentMotion> two = component_motion(*context.snapshot, context.settings, components_, 0b110, kRegion);
+  const integrator::IntegratorContext context = scene_.context(test_settings(kSize, kSize));
+  EXPECT_TRUE(motion::component_motion(*context.snapshot, context.settings, components_, 0, kRegion).empty());
+  const std::vector<motion::ComponentMotion> two =
+      motion::component_motion(*context.snapshot, context.settings, components_, 0b110, kRegion);
   ASSERT_EQ(two.size(), 2u);
   EXPECT_EQ(two[1].counts.pixels[1], 2u * kSize * kSize) << "nothing is reflected";
 }
@@ -154,11 +160,12 @@ TEST_F(ComponentMotionTest, OnlyWhatIsAskedForIsFound) {
 TEST_F(ComponentMotionTest, OfARegionIsThatOfTheWholeFilm) {
   add_ball(mirror());
   key(translation(Vec3(-0.02f, 0, 0)), Mat4(1.0f), translation(Vec3(0.02f, 0.01f, 0)));
-  const IntegratorContext context = scene_.context(test_settings(kSize, kSize));
-  const ComponentMotion whole = find(context, "Reflection");
+  const integrator::IntegratorContext context = scene_.context(test_settings(kSize, kSize));
+  const motion::ComponentMotion whole = find(context, "Reflection");
   const Region part{10, 12, 38, 36};
-  const ComponentMotion cut =
-      component_motion(*context.snapshot, context.settings, components_, 1u << components_.find("Reflection"), part).at(0);
+  const motion::ComponentMotion cut = motion::component_motion(*context.snapshot, context.settings, components_,
+                                                               1u << components_.find("Reflection"), part)
+                                          .at(0);
   for (int32_t y = part.y0; y < part.y1; ++y)
     for (int32_t x = part.x0; x < part.x1; ++x) {
       const size_t i = size_t((y - part.y0) * part.width() + x - part.x0), j = size_t(y * kSize + x);
@@ -173,8 +180,9 @@ TEST_F(ComponentMotionTest, WhatNothingMovesInIsNotTraced) {
   scene_.ball(Vec3(1.2f, 0, 0), 0.5f, clear(), 32, true);
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 1.0f);
   key(translation(Vec3(-0.02f, 0, 0)), Mat4(1.0f), translation(Vec3(0.02f, 0.01f, 0)));
-  const IntegratorContext context = scene_.context(test_settings(kSize, kSize));
-  const TrackingCounts seen_through = find(context, "Transmission").counts, mirrored = find(context, "Reflection").counts;
+  const integrator::IntegratorContext context = scene_.context(test_settings(kSize, kSize));
+  const motion::TrackingCounts seen_through = find(context, "Transmission").counts,
+                               mirrored = find(context, "Reflection").counts;
   EXPECT_GT(seen_through.pixels[0], 100u);
   EXPECT_LT(float(seen_through.searched), 0.5f * float(seen_through.pixels[0]));
   EXPECT_GT(mirrored.searched, 20u);
@@ -183,8 +191,10 @@ TEST_F(ComponentMotionTest, WhatNothingMovesInIsNotTraced) {
 TEST_F(ComponentMotionTest, CanBeCancelled) {
   add_room();
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
-  const IntegratorContext context = scene_.context(test_settings(kSize, kSize));
-  EXPECT_THROW(component_motion(*context.snapshot, context.settings, components_, 2, kRegion, [] { return true; }), Error);
+  const integrator::IntegratorContext context = scene_.context(test_settings(kSize, kSize));
+  EXPECT_THROW(
+      motion::component_motion(*context.snapshot, context.settings, components_, 2, kRegion, [] { return true; }),
+      Error);
 }
 
 }  // namespace

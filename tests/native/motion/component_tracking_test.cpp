@@ -1,4 +1,5 @@
-// Ways of components between two frames of a job: in bands what they are over the whole film, and without a search where all rests.
+// Ways of components between two frames of a job: in bands what they are over the whole film, and without a search
+// where all rests.
 #include "motion/component_tracking.h"
 
 #include <gtest/gtest.h>
@@ -13,20 +14,24 @@ constexpr uint32_t kWidth = 48, kHeight = 140;
 
 class ComponentTracking : public MotionTest {
  protected:
-  std::unique_ptr<MotionFrame> seen() { return motion_frame(scene_.context(test_settings(kWidth, kHeight)), components_, "Reflection"); }
+  std::unique_ptr<MotionFrame> seen() {
+    return motion_frame(scene_.context(test_settings(kWidth, kHeight)), components_, "Reflection");
+  }
   // Against chains of all pixels, each of which is looked for.
   void expect_tracked_components(const MotionFrame& from, const MotionFrame& to) {
-    const ChainTracer there = to.chains.tracer();
-    const ChainMotion found = track_components(from.centres, there, components_, 1u << components_.find("Reflection"), kNever).at(0),
-                      expected = track_chains(from.chains, there, from.chains.region());
+    const motion::ChainTracer there = to.chains.tracer();
+    const motion::ChainMotion found = motion::track_components(from.centres, there, components_,
+                                                               1u << components_.find("Reflection"), kNever)
+                                          .at(0),
+                              expected = motion::track_chains(from.chains, there, from.chains.region());
     ASSERT_EQ(found.film.size(), size_t(kWidth) * kHeight);
     for (size_t i = 0; i < found.film.size(); ++i) {
       const int32_t place = from.chains.places[i];
       const bool is_seen_through = place >= 0 && from.chains.chains[size_t(place)].signature.length > 0;
-      ASSERT_EQ(found.tracking[i], is_seen_through ? expected.tracking[i] : Tracking::NoPath) << i;
-      if (found.tracking[i] != Tracking::Tracked) continue;
+      ASSERT_EQ(found.tracking[i], is_seen_through ? expected.tracking[i] : motion::Tracking::NoPath) << i;
+      if (found.tracking[i] != motion::Tracking::Tracked) continue;
       ++tracked_;
-      moving_ += found.film[i] != pixel_centre(int32_t(i % kWidth), int32_t(i / kWidth)) ? 1 : 0;
+      moving_ += found.film[i] != path::pixel_centre(int32_t(i % kWidth), int32_t(i / kWidth)) ? 1 : 0;
       ASSERT_NEAR(found.film[i].x, expected.film[i].x, 2e-3f);
       ASSERT_NEAR(found.film[i].y, expected.film[i].y, 2e-3f);
     }
@@ -50,8 +55,8 @@ TEST_F(ComponentTracking, OfWhatRestsRest) {
   add_ball(mirror());
   const auto from = seen();
   const auto to = seen();
-  const Change change = [&] {
-    Change made(*from->context.snapshot);
+  const motion::Change change = [&] {
+    motion::Change made(*from->context.snapshot);
     made.add(*to->context.snapshot);
     return made;
   }();
@@ -79,9 +84,10 @@ TEST_F(ComponentTracking, AreHiddenByWhatAppears) {
   const auto from = seen();
   scene_.quad(Vec3(-1, -0.9f, 1.5f), Vec3(2, 0, 0), Vec3(0, 1, 0), grey());
   const auto to = seen();
-  const ChainMotion found =
-      track_components(from->centres, to->chains.tracer(), components_, 1u << components_.find("Reflection"), kNever).at(0);
-  EXPECT_GT(std::count(found.tracking.begin(), found.tracking.end(), Tracking::Occluded), 20);
+  const motion::ChainMotion found = motion::track_components(from->centres, to->chains.tracer(), components_,
+                                                             1u << components_.find("Reflection"), kNever)
+                                        .at(0);
+  EXPECT_GT(std::count(found.tracking.begin(), found.tracking.end(), motion::Tracking::Occluded), 20);
 }
 
 }  // namespace

@@ -10,20 +10,23 @@ namespace {
 class FilmSearchTest : public MotionTest {
  protected:
   // From where the pixel is to where what it shows has gone; the mirror rests.
-  SearchEnd leap(const MotionFrame& from, const MotionFrame& to, int32_t x, int32_t y, SearchCounts* counts) {
-    const SpecularChain* chain = from.chains.at(x, y);
+  motion::SearchEnd leap(const MotionFrame& from, const MotionFrame& to, int32_t x, int32_t y,
+                         motion::SearchCounts* counts) {
+    const motion::SpecularChain* chain = from.chains.at(x, y);
     EXPECT_NE(chain, nullptr);
-    const ChainTracer before = from.chains.tracer(), after = to.chains.tracer();
-    Target target;
-    EXPECT_TRUE(true_target(before, after, *chain, &target));
-    const Target own{chain->shown, false};
-    const FilmSearch::Problem problem{before, after, chain->signature, own, target, Vec2(0.0f)};
-    FilmPlace place, start{Vec2(float(x) + 0.5f, float(y) + 0.5f), *chain, chain_jacobian(from.chains, own, x, y)};
-    return FilmSearch(problem, counts).leap(start, start.film, &place);
+    const motion::ChainTracer before = from.chains.tracer(), after = to.chains.tracer();
+    motion::Target target;
+    EXPECT_TRUE(motion::true_target(before, after, *chain, &target));
+    const motion::Target own{chain->shown, false};
+    const motion::FilmSearch::Problem problem{before, after, chain->signature, own, target, Vec2(0.0f)};
+    motion::FilmPlace place,
+        start{Vec2(float(x) + 0.5f, float(y) + 0.5f), *chain, motion::chain_jacobian(from.chains, own, x, y)};
+    return motion::FilmSearch(problem, counts).leap(start, start.film, &place);
   }
 };
 
-// A wall that slides sideways takes its image out of the mirror: that is seen at once, not by creeping up to the mirror's edge.
+// A wall that slides sideways takes its image out of the mirror: that is seen at once, not by creeping up to the
+// mirror's edge.
 TEST_F(FilmSearchTest, EndsWhereTheImageLeavesItsMirror) {
   scene_.quad(Vec3(-1, -1, 2), Vec3(2, 0, 0), Vec3(0, 0, -4), mirror());
   scene_.quad(Vec3(-4, -1, -2), Vec3(8, 0, 0), Vec3(0, 3, 0), grey());
@@ -35,9 +38,9 @@ TEST_F(FilmSearchTest, EndsWhereTheImageLeavesItsMirror) {
   int32_t last = kSize - 1;
   while (last > 0 && a->chains.at(last, kRow) == nullptr) --last;
   ASSERT_GT(last, kSize / 2);
-  SearchCounts inside, leaving;
-  EXPECT_EQ(leap(*a, *b, kSize / 2, kRow, &inside), SearchEnd::Found);
-  EXPECT_EQ(leap(*a, *b, last - 1, kRow, &leaving), SearchEnd::Ended);
+  motion::SearchCounts inside, leaving;
+  EXPECT_EQ(leap(*a, *b, kSize / 2, kRow, &inside), motion::SearchEnd::Found);
+  EXPECT_EQ(leap(*a, *b, last - 1, kRow, &leaving), motion::SearchEnd::Ended);
   EXPECT_LT(leaving.traced, 20u);
 }
 

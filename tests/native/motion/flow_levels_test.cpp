@@ -18,15 +18,16 @@ std::vector<Rgb> greys(const std::vector<float>& values) {
 }
 
 TEST(FlowLevels, BothFramesAreOnOneScaleThatTheyFill) {
-  const auto levels = flow_levels(2, 1, greys({1.0f, 2.0f}), greys({3.0f, 5.0f}), FlowDomain::Linear);
+  const auto levels = motion::flow_levels(2, 1, greys({1.0f, 2.0f}), greys({3.0f, 5.0f}), motion::FlowDomain::Linear);
   EXPECT_EQ(levels[0].levels[0], 0.0f);
   EXPECT_NEAR(levels[0].levels[1], 0.25f * 255.0f, 1e-3f);
   EXPECT_NEAR(levels[1].levels[0], 0.5f * 255.0f, 1e-3f);
 }
 
 TEST(FlowLevels, EqualRatiosAreEqualDistancesInTheLogarithmicDomain) {
-  const auto levels =
-      flow_levels(4, 1, greys({1.0f, 2.0f, 4.0f, 8.0f}), greys({1.0f, 2.0f, 4.0f, 8.0f}), FlowDomain::Logarithmic)[0].levels;
+  const auto levels = motion::flow_levels(4, 1, greys({1.0f, 2.0f, 4.0f, 8.0f}), greys({1.0f, 2.0f, 4.0f, 8.0f}),
+                                          motion::FlowDomain::Logarithmic)[0]
+                          .levels;
   EXPECT_NEAR(levels[2] - levels[1], levels[1] - levels[0], 2.0f);
 }
 
@@ -36,8 +37,9 @@ TEST(FlowLevels, AFireflyDoesNotTakeTheScale) {
   for (size_t i = 0; i < values.size(); ++i) values[i] += float(i % 100) * 0.01f;
   std::vector<float> with = values;
   with[77] = 1e6f;
-  const auto plain = flow_levels(50, 40, greys(values), greys(values), FlowDomain::Logarithmic)[0].levels;
-  const auto bright = flow_levels(50, 40, greys(values), greys(with), FlowDomain::Logarithmic);
+  const auto plain =
+      motion::flow_levels(50, 40, greys(values), greys(values), motion::FlowDomain::Logarithmic)[0].levels;
+  const auto bright = motion::flow_levels(50, 40, greys(values), greys(with), motion::FlowDomain::Logarithmic);
   EXPECT_GT(bright[0].levels[99], 0.0f);
   EXPECT_EQ(bright[1].levels[77], 255.0f);
   EXPECT_GT(plain[99] - plain[0], 100.0f);
@@ -46,8 +48,8 @@ TEST(FlowLevels, AFireflyDoesNotTakeTheScale) {
 TEST(FlowLevels, NoiseAloneIsNotDrawnOutToTheWholeScale) {
   std::vector<float> values;
   for (int i = 0; i < 400; ++i) values.push_back(i % 2 == 0 ? 1.0f : 1.01f);
-  for (const FlowDomain domain : {FlowDomain::Linear, FlowDomain::Logarithmic}) {
-    const auto levels = flow_levels(20, 20, greys(values), greys(values), domain)[0].levels;
+  for (const motion::FlowDomain domain : {motion::FlowDomain::Linear, motion::FlowDomain::Logarithmic}) {
+    const auto levels = motion::flow_levels(20, 20, greys(values), greys(values), domain)[0].levels;
     EXPECT_LT(levels[1] - levels[0], 15.0f);
     EXPECT_GT(levels[1] - levels[0], 1.0f);
   }
@@ -55,12 +57,13 @@ TEST(FlowLevels, NoiseAloneIsNotDrawnOutToTheWholeScale) {
 
 TEST(FlowLevels, AnyNumbersGiveLevels) {
   const float odd[] = {kNaN, kInfinity, -kInfinity, 3e38f, -3e38f, 0.0f, -1.0f, 1e-42f};
-  for (const FlowDomain domain : {FlowDomain::Linear, FlowDomain::Logarithmic}) {
-    for (const GreyImage& image : flow_levels(4, 2, greys({odd, odd + 8}), greys(std::vector<float>(8, kNaN)), domain)) {
+  for (const motion::FlowDomain domain : {motion::FlowDomain::Linear, motion::FlowDomain::Logarithmic}) {
+    for (const motion::GreyImage& image :
+         motion::flow_levels(4, 2, greys({odd, odd + 8}), greys(std::vector<float>(8, kNaN)), domain)) {
       ASSERT_EQ(image.levels.size(), 8u);
       for (const float level : image.levels) EXPECT_TRUE(level >= 0.0f && level <= 255.0f) << level;
     }
-    EXPECT_TRUE(flow_levels(0, 0, {}, {}, domain)[1].levels.empty());
+    EXPECT_TRUE(motion::flow_levels(0, 0, {}, {}, domain)[1].levels.empty());
   }
 }
 

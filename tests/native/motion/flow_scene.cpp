@@ -23,13 +23,14 @@ FlowFilm::FlowFilm(const FlowScene& scene, int frame) {
       surface.push_back(frame == 0 ? there : -scene.surface(place - there, middle.object));
       object.push_back(middle.object);
       depth.push_back(middle.depth);
-      tracked.push_back(kTracked);
+      tracked.push_back(motion::kTracked);
     }
   }
 }
 
 float flow_pattern(const Vec2& p) {
-  return std::sin(0.31f * p.x + 0.05f * p.y) + std::sin(0.27f * p.y - 0.11f * p.x + 1.0f) + std::sin(0.13f * p.x + 0.19f * p.y + 2.0f);
+  return std::sin(0.31f * p.x + 0.05f * p.y) + std::sin(0.27f * p.y - 0.11f * p.x + 1.0f) +
+         std::sin(0.13f * p.x + 0.19f * p.y + 2.0f);
 }
 
 float disc_shadow(const Vec2& place, const Vec2& centre, float radius, float softness, float dark) {
@@ -42,16 +43,17 @@ Vec2 turned(const Vec2& place, const Vec2& centre, float degrees) {
   return centre + Vec2(c * p.x - s * p.y, s * p.x + c * p.y);
 }
 
-std::shared_ptr<const FlowLibrary> flow_library_of_the_build() {
+std::shared_ptr<const motion::FlowLibrary> flow_library_of_the_build() {
   std::string why_not;
-  auto library = find_flow_library(GRADUS_BINARY_DIR "/native", &why_not);
+  auto library = motion::find_flow_library(GRADUS_BINARY_DIR "/native", &why_not);
   if (!library) throw std::runtime_error(why_not);
   return library;
 }
 
-std::array<PixelMotion, 2> motion_of(const FlowScene& scene, FlowDomain domain) {
+std::array<motion::PixelMotion, 2> motion_of(const FlowScene& scene, motion::FlowDomain domain) {
   const FlowFilm first(scene, 0), second(scene, 1);
-  return irradiance_motion(flow_library_of_the_build().get(), scene.width, scene.height, first.view(), second.view(), domain);
+  return motion::irradiance_motion(flow_library_of_the_build().get(), scene.width, scene.height, first.view(),
+                                   second.view(), domain);
 }
 
 float quantile(std::vector<float> values, float share) {

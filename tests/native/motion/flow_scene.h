@@ -1,4 +1,5 @@
-// Two frames of a film whose motion is known, made by formulas: light on surfaces, each of which moves, with shadows that move otherwise.
+// Two frames of a film whose motion is known, made by formulas: light on surfaces, each of which moves, with shadows
+// that move otherwise.
 #pragma once
 
 #include <functional>
@@ -27,7 +28,7 @@ struct FlowScene {
 class FlowFilm {
  public:
   FlowFilm(const FlowScene& scene, int frame);
-  ComponentFrame view() const { return {light, surface, tracked, object, depth}; }
+  motion::ComponentFrame view() const { return {light, surface, tracked, object, depth}; }
 
   std::vector<Rgb> light;
   std::vector<Vec2> surface;
@@ -42,8 +43,9 @@ float disc_shadow(const Vec2& place, const Vec2& centre, float radius, float sof
 // Turned about `centre`, by degrees.
 Vec2 turned(const Vec2& place, const Vec2& centre, float degrees);
 
-std::shared_ptr<const FlowLibrary> flow_library_of_the_build();
-std::array<PixelMotion, 2> motion_of(const FlowScene& scene, FlowDomain domain = FlowDomain::Logarithmic);
+std::shared_ptr<const motion::FlowLibrary> flow_library_of_the_build();
+std::array<motion::PixelMotion, 2> motion_of(const FlowScene& scene,
+                                             motion::FlowDomain domain = motion::FlowDomain::Logarithmic);
 
 // The share's smallest part of the values is no larger than this.
 float quantile(std::vector<float> values, float share);

@@ -1,5 +1,5 @@
-// Where specular motion ends: what cannot be followed is told by its cause, and nothing is ever made up (issue 7, "Bad input and hard
-// cases").
+// Where specular motion ends: what cannot be followed is told by its cause, and nothing is ever made up (issue 7, "Bad
+// input and hard cases").
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "motion/motion_scene.h"
@@ -9,24 +9,24 @@ namespace {
 
 class HardMotion : public MotionTest {
  protected:
-  static size_t count(const ChainMotion& motion, Tracking tracking) {
+  static size_t count(const motion::ChainMotion& motion, motion::Tracking tracking) {
     return size_t(std::count(motion.tracking.begin(), motion.tracking.end(), tracking));
   }
   // Of the pixels that show anything.
-  static float tracked_share(const ChainMotion& motion, const MotionFrame* from) {
-    return float(count(motion, Tracking::Tracked)) / float(from->chains.chains.size());
+  static float tracked_share(const motion::ChainMotion& motion, const MotionFrame* from) {
+    return float(count(motion, motion::Tracking::Tracked)) / float(from->chains.chains.size());
   }
   // Of what is tracked, how many pixels end where the way does not lead to what they show: must be none.
-  static size_t wrong_ends(const ChainMotion& motion, const MotionFrame& from, const MotionFrame& to) {
+  static size_t wrong_ends(const motion::ChainMotion& motion, const MotionFrame& from, const MotionFrame& to) {
     size_t wrong = 0;
     for (size_t i = 0; i < motion.film.size(); ++i) {
-      if (motion.tracking[i] != Tracking::Tracked) continue;
+      if (motion.tracking[i] != motion::Tracking::Tracked) continue;
       wrong += !shows_in(to, from, from.chains.chains[size_t(from.chains.places[i])], motion.film[i]);
     }
     return wrong;
   }
-  ChainMotion checked(const MotionFrame* from, const MotionFrame* to) {
-    const ChainMotion found = motion(from, to);
+  motion::ChainMotion checked(const MotionFrame* from, const MotionFrame* to) {
+    const motion::ChainMotion found = motion(from, to);
     expect_bounded(found);
     EXPECT_EQ(wrong_ends(found, *from, *to), 0u);
     return found;
@@ -37,16 +37,16 @@ TEST_F(HardMotion, AFlatShadedBallIsAMirrorInEachFacet) {
   add_ball(mirror(), 8, false);
   const MotionFrame* a = frame("Reflection");
   scene_.scene.move(3, translation(Vec3(0.01f, 0.01f, 0)));
-  const ChainMotion m = checked(a, frame("Reflection"));
+  const motion::ChainMotion m = checked(a, frame("Reflection"));
   EXPECT_GT(tracked_share(m, a), 0.5f);
-  EXPECT_GT(count(m, Tracking::Broken), 0u) << "facets end";
+  EXPECT_GT(count(m, motion::Tracking::Broken), 0u) << "facets end";
 }
 
 TEST_F(HardMotion, FacetsWhoseNormalsDisagreeWithThem) {
   add_ball(mirror(), 6, true);
   const MotionFrame* a = frame("Reflection");
   scene_.scene.move(3, translation(Vec3(0.02f, 0.01f, 0)));
-  const ChainMotion m = checked(a, frame("Reflection"));
+  const motion::ChainMotion m = checked(a, frame("Reflection"));
   EXPECT_GT(tracked_share(m, a), 0.7f);
 }
 
@@ -57,9 +57,9 @@ TEST_F(HardMotion, AMirrorSeenEdgeOn) {
   const MotionFrame* a = frame("Reflection");
   EXPECT_GT(a->chains.chains.size(), 50u);
   scene_.scene.move(3, glm::rotate(Mat4(1.0f), 0.02f, Vec3(1, 0, 0)));
-  const ChainMotion m = checked(a, frame("Reflection"));
+  const motion::ChainMotion m = checked(a, frame("Reflection"));
   EXPECT_GT(tracked_share(m, a), 0.6f);
-  EXPECT_GT(count(m, Tracking::Broken), 50u) << "its edge comes in between";
+  EXPECT_GT(count(m, motion::Tracking::Broken), 50u) << "its edge comes in between";
 }
 
 // A prism that turns until its back reflects all that it let through: beyond 41.8° within the glass.
@@ -74,19 +74,20 @@ TEST_F(HardMotion, TotalReflectionBeginsAndEnds) {
     return frame("Transmission");
   };
   const MotionFrame *through = turn(0.0f), *beyond = turn(0.15f);
-  EXPECT_GT(float(through->chains.chains.size()), 1.5f * float(beyond->chains.chains.size())) << "the scene shows no total reflection";
-  const ChainMotion begins = checked(through, beyond), ends = checked(beyond, through);
-  EXPECT_GT(count(begins, Tracking::Broken) + count(begins, Tracking::NotConverged), 50u);
-  EXPECT_EQ(count(ends, Tracking::NoPath), size_t(kSize * kSize) - beyond->chains.chains.size());
+  EXPECT_GT(float(through->chains.chains.size()), 1.5f * float(beyond->chains.chains.size()))
+      << "the scene shows no total reflection";
+  const motion::ChainMotion begins = checked(through, beyond), ends = checked(beyond, through);
+  EXPECT_GT(count(begins, motion::Tracking::Broken) + count(begins, motion::Tracking::NotConverged), 50u);
+  EXPECT_EQ(count(ends, motion::Tracking::NoPath), size_t(kSize * kSize) - beyond->chains.chains.size());
 }
 
 TEST_F(HardMotion, WhatAppearsStandsBefore) {
   add_ball(mirror());
   const MotionFrame* a = frame("Reflection");
   scene_.quad(Vec3(-1, -0.5f, 4.5f), Vec3(0, 3, 0), Vec3(2, 0, 0), grey());
-  const ChainMotion m = checked(a, frame("Reflection"));
-  EXPECT_GT(count(m, Tracking::Occluded), 20u);
-  EXPECT_EQ(count(m, Tracking::Occluded) + count(m, Tracking::Tracked), a->chains.chains.size());
+  const motion::ChainMotion m = checked(a, frame("Reflection"));
+  EXPECT_GT(count(m, motion::Tracking::Occluded), 20u);
+  EXPECT_EQ(count(m, motion::Tracking::Occluded) + count(m, motion::Tracking::Tracked), a->chains.chains.size());
 }
 
 TEST_F(HardMotion, WhatVanishesOrBecomesAnotherMeshIsGone) {
@@ -96,12 +97,12 @@ TEST_F(HardMotion, WhatVanishesOrBecomesAnotherMeshIsGone) {
   const size_t before = a->chains.chains.size();
   scene_.scene.mesh(901, sphere(Vec3(0, 1, 4.5f), 0.5f, 8, 16));
   scene_.scene.replace_mesh(4, 901);
-  const ChainMotion changed = checked(a, frame("Reflection"));
+  const motion::ChainMotion changed = checked(a, frame("Reflection"));
   scene_.scene.remove_last();
-  const ChainMotion vanished = checked(a, frame("Reflection"));
-  for (const ChainMotion* m : {&changed, &vanished}) {
-    EXPECT_GT(count(*m, Tracking::Gone), 20u);
-    EXPECT_GT(count(*m, Tracking::Tracked), before / 2);
+  const motion::ChainMotion vanished = checked(a, frame("Reflection"));
+  for (const motion::ChainMotion* m : {&changed, &vanished}) {
+    EXPECT_GT(count(*m, motion::Tracking::Gone), 20u);
+    EXPECT_GT(count(*m, motion::Tracking::Tracked), before / 2);
   }
 }
 
@@ -109,8 +110,8 @@ TEST_F(HardMotion, AMirrorThatVanishesBreaksItsWays) {
   add_ball(mirror());
   const MotionFrame* a = frame("Reflection");
   scene_.scene.remove_last();
-  const ChainMotion m = checked(a, frame("Reflection"));
-  EXPECT_EQ(count(m, Tracking::Broken), a->chains.chains.size());
+  const motion::ChainMotion m = checked(a, frame("Reflection"));
+  EXPECT_EQ(count(m, motion::Tracking::Broken), a->chains.chains.size());
 }
 
 TEST_F(HardMotion, AMirrorThatBecomesAnotherMeshIsStillAMirror) {
@@ -118,17 +119,17 @@ TEST_F(HardMotion, AMirrorThatBecomesAnotherMeshIsStillAMirror) {
   const MotionFrame* a = frame("Reflection");
   set_sheet(&scene_, 902, {8});
   scene_.scene.replace_mesh(3, 902);
-  const ChainMotion m = checked(a, frame("Reflection"));
+  const motion::ChainMotion m = checked(a, frame("Reflection"));
   EXPECT_GT(tracked_share(m, a), 0.2f);
-  EXPECT_GT(count(m, Tracking::Broken), 50u) << "where the sheet is not";
+  EXPECT_GT(count(m, motion::Tracking::Broken), 50u) << "where the sheet is not";
 }
 
 TEST_F(HardMotion, C8_ACutIsNoMotion) {
   add_ball(mirror());
   const MotionFrame* a = frame("Reflection");
   scene_.camera(Vec3(4, 0.5f, 0), Vec3(0, 0, 0), 0.5f);
-  const ChainMotion m = checked(a, frame("Reflection"));
-  EXPECT_EQ(count(m, Tracking::ShotChange), m.tracking.size());
+  const motion::ChainMotion m = checked(a, frame("Reflection"));
+  EXPECT_EQ(count(m, motion::Tracking::ShotChange), m.tracking.size());
 }
 
 TEST_F(HardMotion, WhatGoesFurtherThanTheFilmIsOutside) {
@@ -137,8 +138,8 @@ TEST_F(HardMotion, WhatGoesFurtherThanTheFilmIsOutside) {
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, -0.9f, 0), 0.1f);
   const MotionFrame* a = frame("Reflection");
   scene_.camera(Vec3(0.0f, 0.5f, 4), Vec3(0.8f, -0.9f, 0), 0.1f);
-  const ChainMotion m = checked(a, frame("Reflection"));
-  EXPECT_GT(count(m, Tracking::Outside), 100u);
+  const motion::ChainMotion m = checked(a, frame("Reflection"));
+  EXPECT_GT(count(m, motion::Tracking::Outside), 100u);
 }
 
 TEST_F(HardMotion, BrokenGeometryIsNoTrap) {
@@ -152,15 +153,16 @@ TEST_F(HardMotion, BrokenGeometryIsNoTrap) {
   scene_.scene.instance(903, Mat4(1.0f), GRADUS_VISIBLE_ALL, mirror());
   const MotionFrame* a = frame("Reflection");
   scene_.scene.move(3, translation(Vec3(0.02f, 0, 0)));
-  const ChainMotion m = checked(a, frame("Reflection"));
+  const motion::ChainMotion m = checked(a, frame("Reflection"));
   EXPECT_GT(tracked_share(m, a), 0.95f);
 }
 
 TEST_F(HardMotion, ACancelledSearchFindsNothing) {
   add_ball(mirror());
   const MotionFrame *a = frame("Reflection"), *b = frame("Reflection");
-  const ChainMotion m = track_chains(a->chains, b->chains.tracer(), a->chains.region(), [] { return true; });
-  EXPECT_EQ(count(m, Tracking::Tracked), 0u);
+  const motion::ChainMotion m =
+      motion::track_chains(a->chains, b->chains.tracer(), a->chains.region(), [] { return true; });
+  EXPECT_EQ(count(m, motion::Tracking::Tracked), 0u);
   expect_bounded(m);
 }
 
@@ -188,19 +190,19 @@ class PanoramaMotion : public HardMotion {
 TEST_F(PanoramaMotion, ItsSeamIsNoEdge) {
   const std::vector<const MotionFrame*> frames = ball_goes(Vec3(0.2f, 0.08f, 0), 16);
   const MotionFrame &first = *frames.front(), &last = *frames.back();
-  std::vector<ChainTracer> tracers;
+  std::vector<motion::ChainTracer> tracers;
   for (const MotionFrame* frame : frames) tracers.push_back(frame->chains.tracer());
-  std::vector<const ChainTracer*> path;
-  for (const ChainTracer& tracer : tracers) path.push_back(&tracer);
-  const ChainMotion m = motion(&first, &last);
+  std::vector<const motion::ChainTracer*> path;
+  for (const motion::ChainTracer& tracer : tracers) path.push_back(&tracer);
+  const motion::ChainMotion m = motion(&first, &last);
   size_t at_seam = 0, crossed = 0;
   for (size_t i = 0; i < m.film.size(); ++i) {
     const auto x = int(i % kWidth);
     if (first.chains.places[i] < 0 || std::min(x, kWidth - 1 - x) >= kSeam) continue;
     const Vec2 centre(float(x) + 0.5f, float(i / kWidth) + 0.5f);
     glm::dvec2 truth;
-    ASSERT_TRUE(true_place(path, first.chains.chains[size_t(first.chains.places[i])], centre, &truth)) << x;
-    ASSERT_EQ(m.tracking[i], Tracking::Tracked) << x;
+    ASSERT_TRUE(motion::true_place(path, first.chains.chains[size_t(first.chains.places[i])], centre, &truth)) << x;
+    ASSERT_EQ(m.tracking[i], motion::Tracking::Tracked) << x;
     EXPECT_TRUE(m.film[i].x >= 0.0f && m.film[i].x < float(kWidth)) << x << ' ' << m.film[i].x;
     EXPECT_LT(glm::length(last.centres.camera.film_displacement(Vec2(truth), m.film[i])), 0.1f) << x;
     EXPECT_LT(glm::length(last.centres.camera.film_displacement(centre, m.film[i])), 4.0f) << x;

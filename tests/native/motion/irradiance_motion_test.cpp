@@ -25,17 +25,17 @@ void each_inner(const FlowScene& scene, const Body& body) {
   }
 }
 
-float tracked_share(const FlowScene& scene, const PixelMotion& motion) {
+float tracked_share(const FlowScene& scene, const motion::PixelMotion& motion) {
   size_t tracked = 0, all = 0;
-  each_inner(scene, [&](const Vec2&, size_t p) { ++all, tracked += motion.tracked[p] == kTracked; });
+  each_inner(scene, [&](const Vec2&, size_t p) { ++all, tracked += motion.tracked[p] == motion::kTracked; });
   return float(tracked) / float(all);
 }
 
 template <class Truth>
-std::vector<float> errors(const FlowScene& scene, const PixelMotion& motion, const Truth& truth) {
+std::vector<float> errors(const FlowScene& scene, const motion::PixelMotion& motion, const Truth& truth) {
   std::vector<float> result;
   each_inner(scene, [&](const Vec2& place, size_t p) {
-    if (motion.tracked[p] == kTracked) result.push_back(glm::length(motion.vectors[p] - truth(place)));
+    if (motion.tracked[p] == motion::kTracked) result.push_back(glm::length(motion.vectors[p] - truth(place)));
   });
   return result;
 }
@@ -47,8 +47,9 @@ float predicted(const FlowScene& scene, const std::vector<float>& tracked, const
   const FlowFilm first(clean, 0), second(clean, 1);
   size_t right = 0, all = 0;
   each_inner(scene, [&](const Vec2& place, size_t p) {
-    if (tracked[p] != kTracked) return;
-    const float light = linear_at(FilmPlane<Rgb>{scene.width, scene.height, second.light}, place + vectors[p]).x;
+    if (tracked[p] != motion::kTracked) return;
+    const float light =
+        linear_at(motion::FilmPlane<Rgb>{scene.width, scene.height, second.light}, place + vectors[p]).x;
     ++all, right += std::abs(light - first.light[p].x) <= 0.02f * first.light[p].x;
   });
   return float(right) / float(all);
@@ -85,9 +86,11 @@ TEST(IrradianceMotion, ShadowsMoveOtherwiseThanWhatTheyFallOn) {
     const FlowFilm film(scene, 0);
     std::vector<float> across;  // what is along an edge, nobody sees
     each_inner(scene, [&](const Vec2& place, size_t p) {
-      const auto light = [&](int x, int y) { return film.light[size_t((int(place.y) + y) * scene.width + int(place.x) + x)].x; };
+      const auto light = [&](int x, int y) {
+        return film.light[size_t((int(place.y) + y) * scene.width + int(place.x) + x)].x;
+      };
       const Vec2 gradient = {light(1, 0) - light(-1, 0), light(0, 1) - light(0, -1)};
-      if (motion[0].tracked[p] != kTracked || glm::length(gradient) < 0.04f) return;
+      if (motion[0].tracked[p] != motion::kTracked || glm::length(gradient) < 0.04f) return;
       across.push_back(std::abs(glm::dot(motion[0].vectors[p] - kShadow, glm::normalize(gradient))));
     });
     EXPECT_GT(across.size(), 200u);
@@ -95,7 +98,8 @@ TEST(IrradianceMotion, ShadowsMoveOtherwiseThanWhatTheyFallOn) {
     EXPECT_LT(quantile(across, 0.95f), 0.1f) << softness;
     EXPECT_GT(tracked_share(scene, motion[0]), 0.6f) << softness;
     EXPECT_GT(predicted(scene, motion[0].tracked, motion[0].vectors), 0.94f) << softness;
-    EXPECT_LT(predicted(scene, std::vector<float>(film.light.size(), kTracked), film.surface), 0.9f) << "the scene asks for nothing";
+    EXPECT_LT(predicted(scene, std::vector<float>(film.light.size(), motion::kTracked), film.surface), 0.9f)
+        << "the scene asks for nothing";
   }
 }
 
@@ -103,7 +107,9 @@ TEST(IrradianceMotion, BothWaysAreEachOthersReverse) {
   const auto motion = motion_of(turning_light(0.0f));
   const FlowScene scene = turning_light(0.0f);
   EXPECT_LT(quantile(errors(scene, motion[0], turn), 0.95f), 0.08f);
-  EXPECT_LT(quantile(errors(scene, motion[1], [](const Vec2& p) { return turned(p, Vec2(80.0f, 60.0f), -2.0f) - p; }), 0.95f), 0.08f);
+  EXPECT_LT(
+      quantile(errors(scene, motion[1], [](const Vec2& p) { return turned(p, Vec2(80.0f, 60.0f), -2.0f) - p; }), 0.95f),
+      0.08f);
 }
 
 TEST(IrradianceMotion, NoiseOfAFinishedFrameDoesNotMatter) {
@@ -133,7 +139,8 @@ TEST(IrradianceMotion, NoiseAloneDoesNotMove) {
   EXPECT_LT(quantile(errors(scene, motion[0], [](const Vec2&) { return kSurface; }), 0.95f), 0.15f);
 }
 
-// What a reconstruction leaves of noise is smooth, and fitted so well that it was believed: half of a floor in the sun was flagged.
+// What a reconstruction leaves of noise is smooth, and fitted so well that it was believed: half of a floor in the sun
+// was flagged.
 TEST(IrradianceMotion, BlotchesOfAReconstructionDoNotMove) {
   FlowScene scene;
   scene.surface = [](const Vec2&, int32_t) { return kSurface; };
@@ -145,7 +152,7 @@ TEST(IrradianceMotion, BlotchesOfAReconstructionDoNotMove) {
   const auto motion = motion_of(scene);
   size_t tracked = 0, all = 0;
   each_inner(scene, [&](const Vec2& place, size_t p) {
-    if (place.y > 50.0f) ++all, tracked += motion[0].tracked[p] == kTracked;
+    if (place.y > 50.0f) ++all, tracked += motion[0].tracked[p] == motion::kTracked;
   });
   EXPECT_GT(float(tracked), 0.9f * float(all));
 }
@@ -164,7 +171,7 @@ TEST(IrradianceMotion, ShadowsInTheDarkAreFoundInTheLogarithmicDomainOnly) {
     const float level = place.x < 80.0f ? 0.05f : 1.0f;
     return FlowSample{level * (1.0f + 0.2f * flow_pattern(place - float(frame) * kShadow))};
   };
-  const auto off_in_the_dark = [&](FlowDomain domain) {
+  const auto off_in_the_dark = [&](motion::FlowDomain domain) {
     const auto motion = motion_of(scene, domain);
     std::vector<float> off;
     each_inner(scene, [&](const Vec2& place, size_t p) {
@@ -172,15 +179,17 @@ TEST(IrradianceMotion, ShadowsInTheDarkAreFoundInTheLogarithmicDomainOnly) {
     });
     return quantile(off, 0.9f);
   };
-  EXPECT_LT(off_in_the_dark(FlowDomain::Logarithmic), 0.1f);
-  EXPECT_GT(off_in_the_dark(FlowDomain::Linear), 0.1f);
+  EXPECT_LT(off_in_the_dark(motion::FlowDomain::Logarithmic), 0.1f);
+  EXPECT_GT(off_in_the_dark(motion::FlowDomain::Linear), 0.1f);
 }
 
 // A reconstruction may leave negative light; residual planes are taken as they are.
 TEST(IrradianceMotion, NegativeLightMovesInTheLinearDomain) {
   FlowScene scene;
-  scene.sample = [](const Vec2& place, int frame) { return FlowSample{0.2f * flow_pattern(place - float(frame) * kShadow)}; };
-  const auto motion = motion_of(scene, FlowDomain::Linear);
+  scene.sample = [](const Vec2& place, int frame) {
+    return FlowSample{0.2f * flow_pattern(place - float(frame) * kShadow)};
+  };
+  const auto motion = motion_of(scene, motion::FlowDomain::Linear);
   EXPECT_GT(tracked_share(scene, motion[0]), 0.95f);
   EXPECT_LT(quantile(errors(scene, motion[0], [](const Vec2&) { return kShadow; }), 0.95f), 0.05f);
 }
@@ -193,7 +202,8 @@ FlowScene disc_before_a_wall() {
   scene.sample = [](const Vec2& place, int frame) {
     const Vec2 centre = Vec2(70.0f, 60.0f) + float(frame) * kDisc;
     const bool on_disc = glm::length(place - centre) < 28.0f;
-    return FlowSample{1.0f + 0.2f * flow_pattern(on_disc ? place - centre : place), on_disc ? 2 : 1, on_disc ? 5.0f : 10.0f};
+    return FlowSample{1.0f + 0.2f * flow_pattern(on_disc ? place - centre : place), on_disc ? 2 : 1,
+                      on_disc ? 5.0f : 10.0f};
   };
   return scene;
 }
@@ -207,14 +217,14 @@ TEST(IrradianceMotion, EdgesAreFlaggedAndWhatTheyHide) {
                 later = glm::length(place - Vec2(70.0f, 60.0f) - kDisc) - 28.0f;
     const float tracked = motion[0].tracked[p];
     if (std::abs(from_edge) < 0.7f) {
-      EXPECT_EQ(tracked, kSilhouette) << place.x << " " << place.y;
+      EXPECT_EQ(tracked, motion::kSilhouette) << place.x << " " << place.y;
     }
     if (from_edge > 2.0f && later < -2.0f) {
-      EXPECT_EQ(tracked, kComesBackElsewhere) << "hidden later: " << place.x << " " << place.y;
+      EXPECT_EQ(tracked, motion::kComesBackElsewhere) << "hidden later: " << place.x << " " << place.y;
     }
     if (from_edge < -3.0f) {
-      ++disc, disc_tracked += tracked == kTracked;
-      if (tracked == kTracked) {
+      ++disc, disc_tracked += tracked == motion::kTracked;
+      if (tracked == motion::kTracked) {
         EXPECT_LT(glm::length(motion[0].vectors[p] - kDisc), 0.5f);
       }
     }
@@ -226,12 +236,13 @@ TEST(IrradianceMotion, EdgesAreFlaggedAndWhatTheyHide) {
 TEST(IrradianceMotion, EdgesAreSeenByDepthAlone) {
   const FlowScene scene = disc_before_a_wall();
   const FlowFilm first(scene, 0), second(scene, 1);
-  ComponentFrame a = first.view(), b = second.view();
+  motion::ComponentFrame a = first.view(), b = second.view();
   a.object = b.object = {};
-  const auto motion = irradiance_motion(flow_library_of_the_build().get(), scene.width, scene.height, a, b, FlowDomain::Logarithmic);
+  const auto motion = motion::irradiance_motion(flow_library_of_the_build().get(), scene.width, scene.height, a, b,
+                                                motion::FlowDomain::Logarithmic);
   each_inner(scene, [&](const Vec2& place, size_t p) {
     if (std::abs(glm::length(place - Vec2(70.0f, 60.0f)) - 28.0f) < 0.7f) {
-      EXPECT_EQ(motion[0].tracked[p], kSilhouette);
+      EXPECT_EQ(motion[0].tracked[p], motion::kSilhouette);
     }
   });
 }
@@ -245,7 +256,9 @@ TEST(IrradianceMotion, WhatHasNothingInCommonComesBackElsewhere) {
   EXPECT_LT(tracked_share(scene, motion[0]), 0.3f);
   each_inner(scene, [&](const Vec2&, size_t p) {
     const float tracked = motion[0].tracked[p];
-    EXPECT_TRUE(tracked == kTracked || tracked == kComesBackElsewhere || tracked == kOutsideFilm) << tracked;
+    EXPECT_TRUE(tracked == motion::kTracked || tracked == motion::kComesBackElsewhere ||
+                tracked == motion::kOutsideFilm)
+        << tracked;
   });
 }
 
@@ -257,8 +270,8 @@ TEST(IrradianceMotion, WhatLeavesTheFilmIsFlagged) {
   };
   const auto motion = motion_of(scene);
   for (int y = 20; y < 100; ++y) {
-    for (int x = 149; x < 160; ++x) EXPECT_EQ(motion[0].tracked[size_t(y * 160 + x)], kOutsideFilm) << x;
-    for (int x = 20; x < 140; ++x) EXPECT_EQ(motion[0].tracked[size_t(y * 160 + x)], kTracked) << x;
+    for (int x = 149; x < 160; ++x) EXPECT_EQ(motion[0].tracked[size_t(y * 160 + x)], motion::kOutsideFilm) << x;
+    for (int x = 20; x < 140; ++x) EXPECT_EQ(motion[0].tracked[size_t(y * 160 + x)], motion::kTracked) << x;
   }
 }
 
@@ -268,21 +281,21 @@ TEST(IrradianceMotion, CausesOfSurfacesGoOn) {
   const FlowFilm second(scene, 1);
   first.tracked[5000] = -2.0f, first.tracked[6000] = kNaN, first.tracked[7000] = 0.5f;
   first.surface[5000] = Vec2(kNaN, kInfinity);
-  const auto motion =
-      irradiance_motion(flow_library_of_the_build().get(), scene.width, scene.height, first.view(), second.view(), FlowDomain::Logarithmic);
+  const auto motion = motion::irradiance_motion(flow_library_of_the_build().get(), scene.width, scene.height,
+                                                first.view(), second.view(), motion::FlowDomain::Logarithmic);
   EXPECT_EQ(motion[0].tracked[5000], -2.0f);
   EXPECT_EQ(motion[0].vectors[5000], Vec2(0.0f));
-  EXPECT_EQ(motion[0].tracked[6000], kComesBackElsewhere);
-  EXPECT_EQ(motion[0].tracked[7000], kComesBackElsewhere);
+  EXPECT_EQ(motion[0].tracked[6000], motion::kComesBackElsewhere);
+  EXPECT_EQ(motion[0].tracked[7000], motion::kComesBackElsewhere);
 }
 
 TEST(IrradianceMotion, WithoutItsLibraryAllIsFlagged) {
   const FlowScene scene = shadows(2.0f);
   const FlowFilm first(scene, 0), second(scene, 1);
-  for (const PixelMotion& motion :
-       irradiance_motion(nullptr, scene.width, scene.height, first.view(), second.view(), FlowDomain::Logarithmic)) {
+  for (const motion::PixelMotion& motion : motion::irradiance_motion(nullptr, scene.width, scene.height, first.view(),
+                                                                     second.view(), motion::FlowDomain::Logarithmic)) {
     ASSERT_EQ(motion.tracked.size(), first.light.size());
-    for (const float tracked : motion.tracked) ASSERT_EQ(tracked, kNoFlowLibrary);
+    for (const float tracked : motion.tracked) ASSERT_EQ(tracked, motion::kNoFlowLibrary);
   }
 }
 
@@ -294,7 +307,9 @@ TEST(IrradianceMotion, AnyInputGivesFiniteVectorsWithinTheFilm) {
        {std::pair(0, 0), std::pair(1, 1), std::pair(2, 1), std::pair(1, 50), std::pair(7, 7), std::pair(33, 17)}) {
     const size_t count = size_t(width * height);
     for (const bool all_odd : {false, true}) {
-      const auto number = [&] { return all_odd || random() % 4 == 0 ? odd[random() % 8] : float(random() % 100) * 0.1f; };
+      const auto number = [&] {
+        return all_odd || random() % 4 == 0 ? odd[random() % 8] : float(random() % 100) * 0.1f;
+      };
       std::vector<Rgb> light[2];
       std::vector<Vec2> surface[2];
       std::vector<float> tracked[2], depth[2];
@@ -303,33 +318,38 @@ TEST(IrradianceMotion, AnyInputGivesFiniteVectorsWithinTheFilm) {
         for (size_t i = 0; i < count; ++i) {
           light[k].emplace_back(number(), number(), number());
           surface[k].emplace_back(number(), number());
-          tracked[k].push_back(random() % 3 == 0 ? number() : kTracked);
+          tracked[k].push_back(random() % 3 == 0 ? number() : motion::kTracked);
           depth[k].push_back(number());
           object[k].push_back(int32_t(random() % 3));
         }
       }
-      const auto frame = [&](int k) { return ComponentFrame{light[k], surface[k], tracked[k], object[k], depth[k]}; };
-      for (const FlowDomain domain : {FlowDomain::Logarithmic, FlowDomain::Linear}) {
-        for (const PixelMotion& motion : irradiance_motion(library.get(), width, height, frame(0), frame(1), domain)) {
+      const auto frame = [&](int k) {
+        return motion::ComponentFrame{light[k], surface[k], tracked[k], object[k], depth[k]};
+      };
+      for (const motion::FlowDomain domain : {motion::FlowDomain::Logarithmic, motion::FlowDomain::Linear}) {
+        for (const motion::PixelMotion& motion :
+             motion::irradiance_motion(library.get(), width, height, frame(0), frame(1), domain)) {
           ASSERT_EQ(motion.vectors.size(), count);
-          for (const Vec2& v : motion.vectors) ASSERT_TRUE(std::abs(v.x) <= float(width) && std::abs(v.y) <= float(height));
-          for (const float t : motion.tracked) ASSERT_TRUE(t == kTracked || t < 0.0f) << t;
+          for (const Vec2& v : motion.vectors)
+            ASSERT_TRUE(std::abs(v.x) <= float(width) && std::abs(v.y) <= float(height));
+          for (const float t : motion.tracked) ASSERT_TRUE(t == motion::kTracked || t < 0.0f) << t;
         }
       }
     }
   }
 }
 
-// The compiler made two variants of a loop over rows, which rounded differently; the first row of each piece of work got one, the others
-// the other.
+// The compiler made two variants of a loop over rows, which rounded differently; the first row of each piece of work
+// got one, the others the other.
 TEST(IrradianceMotion, NumberOfThreadsIsNotInTheBits) {
   const FlowScene scene = shadows(5.0f);
   const FlowFilm first(scene, 0), second(scene, 1);
   const auto library = flow_library_of_the_build();
   test::expect_same_bits_for_any_number_of_threads([&] {
-    const auto motion = irradiance_motion(library.get(), scene.width, scene.height, first.view(), second.view(), FlowDomain::Logarithmic);
+    const auto motion = motion::irradiance_motion(library.get(), scene.width, scene.height, first.view(), second.view(),
+                                                  motion::FlowDomain::Logarithmic);
     std::vector<float> bits = motion[0].tracked;
-    for (const PixelMotion& way : motion) {
+    for (const motion::PixelMotion& way : motion) {
       for (const Vec2& v : way.vectors) bits.insert(bits.end(), {v.x, v.y});
     }
     return bits;

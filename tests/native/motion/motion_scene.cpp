@@ -14,7 +14,8 @@ std::vector<Vec3> positions_of(const Sheet& sheet) {
   for (int y = 0; y <= sheet.cells; ++y)
     for (int x = 0; x <= sheet.cells; ++x) {
       const Vec2 p(2.0f * float(x) / float(sheet.cells) - 1.0f, 2.0f * float(y) / float(sheet.cells) - 1.0f);
-      positions.emplace_back(p, sheet.height * std::sin(3.0f * p.x + sheet.phase) * std::cos(2.0f * p.y + 0.5f * sheet.phase));
+      positions.emplace_back(
+          p, sheet.height * std::sin(3.0f * p.x + sheet.phase) * std::cos(2.0f * p.y + 0.5f * sheet.phase));
     }
   return positions;
 }
@@ -30,8 +31,12 @@ class Nodes {
     inputs_.insert(inputs_.end(), inputs.begin(), inputs.end());
     return int32_t(nodes_.size()) - 1;
   }
-  int32_t mirror(int32_t normal) { return add(GRADUS_OP_GLOSSY, 0, {value(0.8f), value(0.0f), value(0.0f), value(0.0f), of(normal)}); }
-  uint64_t material(PathScene* scene, int32_t surface) const { return scene->material(material_of(nodes_, inputs_, surface, "nodes")); }
+  int32_t mirror(int32_t normal) {
+    return add(GRADUS_OP_GLOSSY, 0, {value(0.8f), value(0.0f), value(0.0f), value(0.0f), of(normal)});
+  }
+  uint64_t material(PathScene* scene, int32_t surface) const {
+    return scene->material(material_of(nodes_, inputs_, surface, "nodes"));
+  }
 
  private:
   std::vector<GradusNode> nodes_;
@@ -78,10 +83,12 @@ void set_sheet(PathScene* scene, uint64_t mesh_key, const Sheet& sheet, const Sh
 uint64_t normal_mapped_mirror(PathScene* scene, float tilt, float waves) {
   Nodes n;
   const int32_t uv = n.add(GRADUS_OP_TEX_COORD, GRADUS_TEX_COORD_UV, {});
-  const int32_t turns = n.add(GRADUS_OP_VECTOR_MATH, GRADUS_VECTOR_MULTIPLY, {Nodes::of(uv), Nodes::value(2.0f * kPi * waves)});
+  const int32_t turns =
+      n.add(GRADUS_OP_VECTOR_MATH, GRADUS_VECTOR_MULTIPLY, {Nodes::of(uv), Nodes::value(2.0f * kPi * waves)});
   const int32_t wave = n.add(GRADUS_OP_VECTOR_MATH, GRADUS_VECTOR_SINE, {Nodes::of(turns)});
-  const int32_t color = n.add(GRADUS_OP_VECTOR_MATH, GRADUS_VECTOR_MULTIPLY_ADD,
-                              {Nodes::of(wave), Nodes::value(0.5f * tilt, 0.5f * tilt, 0.0f), Nodes::value(0.5f, 0.5f, 1.0f)});
+  const int32_t color =
+      n.add(GRADUS_OP_VECTOR_MATH, GRADUS_VECTOR_MULTIPLY_ADD,
+            {Nodes::of(wave), Nodes::value(0.5f * tilt, 0.5f * tilt, 0.0f), Nodes::value(0.5f, 0.5f, 1.0f)});
   const int32_t normal = n.add(GRADUS_OP_NORMAL_MAP, GRADUS_NORMAL_TANGENT, {Nodes::value(1.0f), Nodes::of(color)});
   return n.material(scene, n.mirror(normal));
 }
@@ -89,11 +96,13 @@ uint64_t normal_mapped_mirror(PathScene* scene, float tilt, float waves) {
 uint64_t bumped_mirror(PathScene* scene, float distance) {
   Nodes n;
   const int32_t place = n.add(GRADUS_OP_TEX_COORD, GRADUS_TEX_COORD_GENERATED, {});
-  const int32_t noise = n.add(GRADUS_OP_NOISE, 3,
-                              {Nodes::of(place), Nodes::value(0.0f), Nodes::value(3.0f), Nodes::value(0.0f), Nodes::value(0.5f),
-                               Nodes::value(2.0f), Nodes::value(0.0f), Nodes::value(1.0f), Nodes::value(0.0f)});
+  const int32_t noise =
+      n.add(GRADUS_OP_NOISE, 3,
+            {Nodes::of(place), Nodes::value(0.0f), Nodes::value(3.0f), Nodes::value(0.0f), Nodes::value(0.5f),
+             Nodes::value(2.0f), Nodes::value(0.0f), Nodes::value(1.0f), Nodes::value(0.0f)});
   const int32_t normal =
-      n.add(GRADUS_OP_BUMP, 0, {Nodes::value(1.0f), Nodes::value(distance), Nodes::of(noise), Nodes::value(0.0f), Nodes::value(1.0f)});
+      n.add(GRADUS_OP_BUMP, 0,
+            {Nodes::value(1.0f), Nodes::value(distance), Nodes::of(noise), Nodes::value(0.0f), Nodes::value(1.0f)});
   return n.material(scene, n.mirror(normal));
 }
 
@@ -115,22 +124,22 @@ const MotionFrame* MotionTest::frame(const char* component) {
   return frames_.back().get();
 }
 
-void MotionTest::expect_bounded(const ChainMotion& motion) {
+void MotionTest::expect_bounded(const motion::ChainMotion& motion) {
   for (size_t i = 0; i < motion.film.size(); ++i) {
     const Vec2 moved = motion.film[i] - Vec2(float(i % kSize) + 0.5f, float(i / kSize) + 0.5f);
     ASSERT_LE(std::max(std::fabs(moved.x), std::fabs(moved.y)), float(kSize));
-    ASSERT_TRUE(motion.tracking[i] == Tracking::Tracked || moved == Vec2(0.0f));
+    ASSERT_TRUE(motion.tracking[i] == motion::Tracking::Tracked || moved == Vec2(0.0f));
   }
 }
 
-ChainMotion MotionTest::expect_motion(const char* component, const std::function<void(float)>& at) {
+motion::ChainMotion MotionTest::expect_motion(const char* component, const std::function<void(float)>& at) {
   constexpr int kBetween = 32;
   std::vector<const MotionFrame*> path;
   for (int k = 0; k <= kBetween; ++k) {
     at(float(k) / float(kBetween));
     path.push_back(frame(component));
   }
-  const ChainMotion found = motion(path.front(), path.back());
+  const motion::ChainMotion found = motion(path.front(), path.back());
   expect_bounded(found);
   const size_t chains = path.front()->chains.chains.size();
   const MotionErrors e = errors_of(found, path, std::max<size_t>(1, chains / 80));
@@ -141,7 +150,7 @@ ChainMotion MotionTest::expect_motion(const char* component, const std::function
   EXPECT_EQ(e.invented, 0u);
   EXPECT_LE(e.quantile(0.5), 0.1f);
   EXPECT_LE(e.quantile(0.95), 0.5f);
-  const TrackingCounts& c = found.counts;
+  const motion::TrackingCounts& c = found.counts;
   const double searched = double(std::max<uint64_t>(c.searched, 1));
   RecordProperty("pixels", int(e.pixels));
   RecordProperty("invented", int(e.invented));

@@ -16,20 +16,21 @@ namespace gradus::test {
 
 // A frame seen by a component.
 struct MotionFrame {
-  IntegratorContext context;
-  CentreView centres;
-  ChainView chains;
+  integrator::IntegratorContext context;
+  motion::CentreView centres;
+  motion::ChainView chains;
 };
 
-inline std::unique_ptr<MotionFrame> motion_frame(const IntegratorContext& context, const ComponentSet& components, const char* name) {
+inline std::unique_ptr<MotionFrame> motion_frame(const integrator::IntegratorContext& context,
+                                                 const lpe::ComponentSet& components, const char* name) {
   auto frame = std::make_unique<MotionFrame>();
   frame->context = context;
   const GradusSettings& s = frame->context.settings;
   const Region region{0, 0, int32_t(s.width), int32_t(s.height)};
-  frame->centres = view_centres(*frame->context.snapshot, s.width, s.height, region);
+  frame->centres = motion::view_centres(*frame->context.snapshot, s.width, s.height, region);
   const int component = components.find(name);
   EXPECT_GE(component, 0) << name;
-  frame->chains = view_chains(frame->centres, s, components, 1u << component).at(0);
+  frame->chains = motion::view_chains(frame->centres, s, components, 1u << component).at(0);
   return frame;
 }
 
@@ -49,30 +50,33 @@ struct MotionErrors {
 };
 
 // Whether a place of the film of `to` shows what a chain of `from` does.
-inline bool shows_in(const MotionFrame& to, const MotionFrame& from, const SpecularChain& chain, const Vec2& film) {
-  const ChainTracer here = from.chains.tracer(), there = to.chains.tracer();
-  Target target;
-  return true_target(here, there, chain, &target) && shows(there, chain.signature, target, glm::dvec2(film), 3e-4);
+inline bool shows_in(const MotionFrame& to, const MotionFrame& from, const motion::SpecularChain& chain,
+                     const Vec2& film) {
+  const motion::ChainTracer here = from.chains.tracer(), there = to.chains.tracer();
+  motion::Target target;
+  return motion::true_target(here, there, chain, &target) &&
+         motion::shows(there, chain.signature, target, glm::dvec2(film), 3e-4);
 }
 
 // Against the truth, at every `stride`th pixel with a chain.
-inline MotionErrors errors_of(const ChainMotion& motion, const std::vector<const MotionFrame*>& frames, size_t stride) {
+inline MotionErrors errors_of(const motion::ChainMotion& motion, const std::vector<const MotionFrame*>& frames,
+                              size_t stride) {
   MotionErrors errors;
-  const ChainView& view = frames[0]->chains;
-  std::vector<ChainTracer> tracers;
+  const motion::ChainView& view = frames[0]->chains;
+  std::vector<motion::ChainTracer> tracers;
   for (const MotionFrame* frame : frames) tracers.push_back(frame->chains.tracer());
-  std::vector<const ChainTracer*> path;
-  for (const ChainTracer& tracer : tracers) path.push_back(&tracer);
+  std::vector<const motion::ChainTracer*> path;
+  for (const motion::ChainTracer& tracer : tracers) path.push_back(&tracer);
   const auto width = size_t(view.region().width());
   size_t number = 0;
   for (size_t i = 0; i < motion.film.size(); ++i) {
     const int32_t index = view.places[i];
-    EXPECT_TRUE(index >= 0 || motion.tracking[i] == Tracking::NoPath);
+    EXPECT_TRUE(index >= 0 || motion.tracking[i] == motion::Tracking::NoPath);
     if (index < 0 || number++ % stride != 0) continue;
     const Vec2 centre(float(i % width) + 0.5f, float(i / width) + 0.5f);
-    const bool tracked = motion.tracking[i] == Tracking::Tracked;
+    const bool tracked = motion.tracking[i] == motion::Tracking::Tracked;
     glm::dvec2 truth;
-    const bool exists = true_place(path, view.chains[size_t(index)], centre, &truth);
+    const bool exists = motion::true_place(path, view.chains[size_t(index)], centre, &truth);
     const double error = glm::length(truth - glm::dvec2(motion.film[i]));
     errors.pixels += exists;
     errors.tracked += exists && tracked;
@@ -91,7 +95,8 @@ struct Sheet {
   bool has_uv = true;
 };
 // later: how it is shaped one frame later, and as much the other way one frame before; nullptr: it keeps its shape.
-void set_sheet(PathScene* scene, uint64_t mesh_key, const Sheet& sheet, const Sheet* before = nullptr, const Sheet* later = nullptr);
+void set_sheet(PathScene* scene, uint64_t mesh_key, const Sheet& sheet, const Sheet* before = nullptr,
+               const Sheet* later = nullptr);
 // A mirror whose normals wave by `tilt`, by a normal map over the default UV map, or by a bump.
 uint64_t normal_mapped_mirror(PathScene* scene, float tilt, float waves);
 uint64_t bumped_mirror(PathScene* scene, float distance);
@@ -110,15 +115,16 @@ class MotionTest : public testing::Test {
   void add_ball(uint64_t material, int rings = 32, bool smooth = true);
   // What was built up to now, as a frame.
   const MotionFrame* frame(const char* component);
-  static ChainMotion motion(const MotionFrame* from, const MotionFrame* to) {
-    return track_chains(from->chains, to->chains.tracer(), from->chains.region());
+  static motion::ChainMotion motion(const MotionFrame* from, const MotionFrame* to) {
+    return motion::track_chains(from->chains, to->chains.tracer(), from->chains.region());
   }
-  // Moves the scene from 0 to 1; the motion of the component must pass the bars of issue 7 against the truth. Gives the motion.
-  ChainMotion expect_motion(const char* component, const std::function<void(float)>& at);
+  // Moves the scene from 0 to 1; the motion of the component must pass the bars of issue 7 against the truth. Gives the
+  // motion.
+  motion::ChainMotion expect_motion(const char* component, const std::function<void(float)>& at);
   // Whatever happens: every motion is finite and bounded by the film, and what is not tracked does not move.
-  static void expect_bounded(const ChainMotion& motion);
+  static void expect_bounded(const motion::ChainMotion& motion);
 
-  ComponentSet components_ = ComponentSet::parse("");
+  lpe::ComponentSet components_ = lpe::ComponentSet::parse("");
   PathScene scene_;
   std::vector<std::unique_ptr<MotionFrame>> frames_;
 };

@@ -1,4 +1,5 @@
-// Optical flow: what is found and what is refused, by stand-ins for its library; and the library itself on known motion.
+// Optical flow: what is found and what is refused, by stand-ins for its library; and the library itself on known
+// motion.
 #include "motion/optical_flow.h"
 
 #include <gtest/gtest.h>
@@ -33,24 +34,25 @@ class StandIn {
 
 std::string refusal(const std::string& folder) {
   std::string why_not;
-  EXPECT_EQ(find_flow_library(folder, &why_not), nullptr);
+  EXPECT_EQ(motion::find_flow_library(folder, &why_not), nullptr);
   return why_not;
 }
 
-std::shared_ptr<const FlowLibrary> real() {
+std::shared_ptr<const motion::FlowLibrary> real() {
   std::string why_not;
-  auto library = find_flow_library(kReal, &why_not);
+  auto library = motion::find_flow_library(kReal, &why_not);
   if (!library) throw std::runtime_error(why_not);
   return library;
 }
 
 // Waves of many directions and lengths: something to hold on to everywhere. Shifted by `shift`.
-GreyImage waves(int width, int height, const Vec2& shift) {
-  GreyImage image{width, height, {}};
+motion::GreyImage waves(int width, int height, const Vec2& shift) {
+  motion::GreyImage image{width, height, {}};
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const float u = float(x) - shift.x, v = float(y) - shift.y;
-      const float sum = std::sin(0.31f * u + 0.05f * v) + std::sin(0.27f * v - 0.11f * u + 1.0f) + std::sin(0.13f * u + 0.19f * v + 2.0f);
+      const float sum = std::sin(0.31f * u + 0.05f * v) + std::sin(0.27f * v - 0.11f * u + 1.0f) +
+                        std::sin(0.13f * u + 0.19f * v + 2.0f);
       image.levels.push_back(128.0f + 40.0f * sum);
     }
   }
@@ -60,7 +62,8 @@ GreyImage waves(int width, int height, const Vec2& shift) {
 float largest_error(const std::vector<Vec2>& flow, int width, int height, int border, const Vec2& truth) {
   float largest = 0.0f;
   for (int y = border; y < height - border; ++y) {
-    for (int x = border; x < width - border; ++x) largest = std::max(largest, glm::length(flow[size_t(y * width + x)] - truth));
+    for (int x = border; x < width - border; ++x)
+      largest = std::max(largest, glm::length(flow[size_t(y * width + x)] - truth));
   }
   return largest;
 }
@@ -68,7 +71,7 @@ float largest_error(const std::vector<Vec2>& flow, int width, int height, int bo
 TEST(OpticalFlow, ShiftsAreFoundToATenthOfAPixel) {
   const auto library = real();
   for (const Vec2 shift : {Vec2(0.0f), Vec2(0.3f, -0.2f), Vec2(-1.6f, 2.2f), Vec2(5.25f, 3.5f)}) {
-    const auto flow = optical_flow(*library, waves(160, 120, Vec2(0.0f)), waves(160, 120, shift));
+    const auto flow = motion::optical_flow(*library, waves(160, 120, Vec2(0.0f)), waves(160, 120, shift));
     EXPECT_LT(largest_error(flow, 160, 120, 16, shift), 0.1f) << shift.x << " " << shift.y;
   }
 }
@@ -77,30 +80,33 @@ TEST(OpticalFlow, OddAndTinySizesAreFiniteAndBounded) {
   const auto library = real();
   for (const auto& [width, height] :
        {std::pair(1, 1), std::pair(1, 40), std::pair(40, 1), std::pair(7, 5), std::pair(33, 17), std::pair(500, 3)}) {
-    const auto flow = optical_flow(*library, waves(width, height, Vec2(0.0f)), waves(width, height, Vec2(3.0f, -2.0f)));
+    const auto flow =
+        motion::optical_flow(*library, waves(width, height, Vec2(0.0f)), waves(width, height, Vec2(3.0f, -2.0f)));
     ASSERT_EQ(flow.size(), size_t(width * height));
-    for (const Vec2& v : flow) ASSERT_TRUE(std::abs(v.x) <= float(width) && std::abs(v.y) <= float(height)) << width << " " << height;
+    for (const Vec2& v : flow)
+      ASSERT_TRUE(std::abs(v.x) <= float(width) && std::abs(v.y) <= float(height)) << width << " " << height;
   }
-  EXPECT_TRUE(optical_flow(*library, {}, {}).empty());
+  EXPECT_TRUE(motion::optical_flow(*library, {}, {}).empty());
 }
 
 TEST(OpticalFlow, ConstantAndBrokenLevelsGiveFiniteVectors) {
   const auto library = real();
-  const GreyImage flat{48, 40, std::vector<float>(48 * 40, 77.0f)};
-  for (const Vec2& v : optical_flow(*library, flat, flat)) ASSERT_EQ(v, Vec2(0.0f));
-  GreyImage broken = waves(48, 40, Vec2(0.0f));
+  const motion::GreyImage flat{48, 40, std::vector<float>(48 * 40, 77.0f)};
+  for (const Vec2& v : motion::optical_flow(*library, flat, flat)) ASSERT_EQ(v, Vec2(0.0f));
+  motion::GreyImage broken = waves(48, 40, Vec2(0.0f));
   broken.levels[5] = kNaN, broken.levels[700] = kInfinity, broken.levels[900] = -1e30f, broken.levels[1200] = 1e30f;
-  for (const Vec2& v : optical_flow(*library, broken, flat)) ASSERT_TRUE(std::abs(v.x) <= 48.0f && std::abs(v.y) <= 40.0f);
+  for (const Vec2& v : motion::optical_flow(*library, broken, flat))
+    ASSERT_TRUE(std::abs(v.x) <= 48.0f && std::abs(v.y) <= 40.0f);
 }
 
 // DIS alone has another result with every number of stripes, and those are its number of threads.
 TEST(OpticalFlow, ManyThreadsAtOnceFindTheSame) {
   const auto library = real();
-  const GreyImage from = waves(200, 150, Vec2(0.0f)), to = waves(200, 150, Vec2(2.5f, 1.0f));
-  const auto alone = optical_flow(*library, from, to);
+  const motion::GreyImage from = waves(200, 150, Vec2(0.0f)), to = waves(200, 150, Vec2(2.5f, 1.0f));
+  const auto alone = motion::optical_flow(*library, from, to);
   std::vector<std::vector<Vec2>> found(4);
   std::vector<std::thread> threads;
-  for (auto& flow : found) threads.emplace_back([&] { flow = optical_flow(*library, from, to); });
+  for (auto& flow : found) threads.emplace_back([&] { flow = motion::optical_flow(*library, from, to); });
   for (std::thread& thread : threads) thread.join();
   for (const auto& flow : found) EXPECT_EQ(flow, alone);
 }
@@ -108,7 +114,7 @@ TEST(OpticalFlow, ManyThreadsAtOnceFindTheSame) {
 TEST(FlowLibrary, NamesTheVersionOfOpenCv) { EXPECT_TRUE(has(real()->version(), ".")); }
 
 TEST(FlowLibrary, LiesBesideTheCodeThatAsksForIt) {
-  EXPECT_EQ(flow_library_folder(), std::filesystem::canonical(kTests.substr(0, kTests.size() - 1)).string());
+  EXPECT_EQ(motion::flow_library_folder(), std::filesystem::canonical(kTests.substr(0, kTests.size() - 1)).string());
 }
 
 TEST(FlowLibrary, IsRefusedWithAReason) {
@@ -122,11 +128,13 @@ TEST(FlowLibrary, IsRefusedWithAReason) {
 TEST(FlowLibrary, IsMissedOnceAndByName) {
   Warnings warnings;
   std::string text;
-  EXPECT_NE(flow_library_or_warning(kReal, &warnings), nullptr);
+  EXPECT_NE(motion::flow_library_or_warning(kReal, &warnings), nullptr);
   EXPECT_FALSE(warnings.take(&text));
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(flow_library_or_warning("/no/such/folder", &warnings), nullptr);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(motion::flow_library_or_warning("/no/such/folder", &warnings), nullptr);
   ASSERT_TRUE(warnings.take(&text));
-  EXPECT_EQ(text, "no motion of shadows and of reflections on rough surfaces (/no/such/folder/libgradus_flow.so: there is no such file)");
+  EXPECT_EQ(text,
+            "no motion of shadows and of reflections on rough surfaces (/no/such/folder/libgradus_flow.so: there is no "
+            "such file)");
   EXPECT_FALSE(warnings.take(&text));
 }
 
@@ -137,9 +145,9 @@ class FakeFlow : public ::testing::Test {
     setenv("FAKE_FLOW", behaviour, 1);
     const StandIn place(kTests + "libfake_flow.so");
     std::string why_not;
-    const auto library = find_flow_library(place.folder(), &why_not);
+    const auto library = motion::find_flow_library(place.folder(), &why_not);
     if (!library) throw std::runtime_error(why_not);
-    return optical_flow(*library, waves(8, 6, Vec2(0.0f)), waves(8, 6, Vec2(0.0f)));
+    return motion::optical_flow(*library, waves(8, 6, Vec2(0.0f)), waves(8, 6, Vec2(0.0f)));
   }
 };
 

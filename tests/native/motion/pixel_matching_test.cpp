@@ -24,22 +24,23 @@ class CorrespondingFrames : public testing::Test {
   }
   void look_from(const Vec3& from) { scene_.camera(from, from - Vec3(0, 0, 1), 4.0f, GRADUS_CAMERA_ORTHOGRAPHIC); }
   // What was built up to now, as a frame.
-  CentreView* view() {
-    frames_.push_back(std::make_unique<IntegratorContext>(scene_.context(test_settings(kSize, kSize))));
-    const IntegratorContext& c = *frames_.back();
-    views_.push_back(std::make_unique<CentreView>(view_centres(*c.snapshot, kSize, kSize, Region{0, 0, kSize, kSize})));
+  motion::CentreView* view() {
+    frames_.push_back(std::make_unique<integrator::IntegratorContext>(scene_.context(test_settings(kSize, kSize))));
+    const integrator::IntegratorContext& c = *frames_.back();
+    views_.push_back(std::make_unique<motion::CentreView>(
+        motion::view_centres(*c.snapshot, kSize, kSize, Region{0, 0, kSize, kSize})));
     return views_.back().get();
   }
-  static std::vector<int32_t> correspondence(const CentreView* from, const CentreView* to) {
-    const PixelCorrespondence correspondence = match_pixels(*from, *to);
+  static std::vector<int32_t> correspondence(const motion::CentreView* from, const motion::CentreView* to) {
+    const film::PixelCorrespondence correspondence = motion::match_pixels(*from, *to);
     const std::vector<int32_t>& found = correspondence.pixel;
     std::set<int32_t> taken;
     for (const int32_t link : found) {
-      EXPECT_TRUE(link == kNoCorrespondence || taken.insert(link).second) << "two pixels lead to " << link;
+      EXPECT_TRUE(link == film::kNoCorrespondence || taken.insert(link).second) << "two pixels lead to " << link;
     }
-    const std::vector<int32_t> inverse = inverse_correspondence(correspondence).pixel;
+    const std::vector<int32_t> inverse = motion::inverse_correspondence(correspondence).pixel;
     for (size_t i = 0; i < found.size(); ++i) {
-      EXPECT_TRUE(found[i] == kNoCorrespondence || inverse[size_t(found[i])] == int32_t(i));
+      EXPECT_TRUE(found[i] == film::kNoCorrespondence || inverse[size_t(found[i])] == int32_t(i));
     }
     return found;
   }
@@ -47,15 +48,16 @@ class CorrespondingFrames : public testing::Test {
   static bool in_square(int x, int y) { return x >= 12 && x < 20 && y >= 12 && y < 20; }
 
   PathScene scene_;
-  std::vector<std::unique_ptr<IntegratorContext>> frames_;
-  std::vector<std::unique_ptr<CentreView>> views_;
+  std::vector<std::unique_ptr<integrator::IntegratorContext>> frames_;
+  std::vector<std::unique_ptr<motion::CentreView>> views_;
 };
 
 TEST_F(CorrespondingFrames, ACancelledViewTracesNothing) {
-  const IntegratorContext c = scene_.context(test_settings(kSize, kSize));
+  const integrator::IntegratorContext c = scene_.context(test_settings(kSize, kSize));
   int traced = 0;
-  const CentreView cancelled = view_centres(*c.snapshot, kSize, kSize, Region{0, 0, kSize, kSize}, [] { return true; });
-  for (const Hit& hit : cancelled.hits) traced += hit.valid() ? 1 : 0;
+  const motion::CentreView cancelled =
+      motion::view_centres(*c.snapshot, kSize, kSize, Region{0, 0, kSize, kSize}, [] { return true; });
+  for (const geometry::Hit& hit : cancelled.hits) traced += hit.valid() ? 1 : 0;
   EXPECT_EQ(traced, 0);
 }
 
@@ -65,25 +67,26 @@ TEST_F(CorrespondingFrames, WhatRestsIsLinkedToItself) {
 }
 
 TEST_F(CorrespondingFrames, APannedCameraShiftsAll) {
-  const CentreView* from = view();
+  const motion::CentreView* from = view();
   look_from(Vec3(3 * kPixel, -2 * kPixel, 3));
   const std::vector<int32_t> found = correspondence(from, view());
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kSize; ++x) {
       const bool sky = x < 2, stays = x >= 3 && y + 2 < kSize;
       if (!sky) {
-        EXPECT_EQ(found[size_t(pixel(x, y))], stays ? pixel(x - 3, y + 2) : kNoCorrespondence) << x << ' ' << y;
+        EXPECT_EQ(found[size_t(pixel(x, y))], stays ? pixel(x - 3, y + 2) : film::kNoCorrespondence) << x << ' ' << y;
       }
     }
 }
 
 TEST_F(CorrespondingFrames, KeepWhereTheirWaysEndInBothDirections) {
-  const CentreView* from = view();
+  const motion::CentreView* from = view();
   look_from(Vec3(3.25f * kPixel, -1.5f * kPixel, 3));
-  const PixelCorrespondence correspondence = match_pixels(*from, *view()), inverse = inverse_correspondence(correspondence);
+  const film::PixelCorrespondence correspondence = motion::match_pixels(*from, *view()),
+                                  inverse = motion::inverse_correspondence(correspondence);
   int linked = 0;
   for (size_t i = 0; i < correspondence.pixel.size(); ++i) {
-    if (correspondence.pixel[i] == kNoCorrespondence || !from->hits[i].valid()) continue;
+    if (correspondence.pixel[i] == film::kNoCorrespondence || !from->hits[i].valid()) continue;
     ++linked;
     EXPECT_EQ(correspondence.off_centre[i].x, -0.25f);
     EXPECT_EQ(std::abs(correspondence.off_centre[i].y), 0.5f);
@@ -93,63 +96,65 @@ TEST_F(CorrespondingFrames, KeepWhereTheirWaysEndInBothDirections) {
 }
 
 TEST_F(CorrespondingFrames, AMovingObjectTakesItsPixelsAlong) {
-  const CentreView* from = view();
+  const motion::CentreView* from = view();
   scene_.scene.move(1, translation(Vec3(4 * kPixel, 0, 0)));
-  const CentreView* to = view();
+  const motion::CentreView* to = view();
   const std::vector<int32_t> found = correspondence(from, to);
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kSize; ++x) {
       const bool covered = !in_square(x, y) && in_square(x - 4, y);
-      const int32_t expected = in_square(x, y) ? pixel(x + 4, y) : covered ? kNoCorrespondence : pixel(x, y);
+      const int32_t expected = in_square(x, y) ? pixel(x + 4, y) : covered ? film::kNoCorrespondence : pixel(x, y);
       EXPECT_EQ(found[size_t(pixel(x, y))], expected) << x << ' ' << y;
     }
   // What comes into view has no partner.
-  const std::vector<int32_t> inverse = inverse_correspondence({found}).pixel;
-  for (int x = 12; x < 16; ++x) EXPECT_EQ(inverse[size_t(pixel(x, 15))], kNoCorrespondence);
+  const std::vector<int32_t> inverse = motion::inverse_correspondence({found}).pixel;
+  for (int x = 12; x < 16; ++x) EXPECT_EQ(inverse[size_t(pixel(x, 15))], film::kNoCorrespondence);
 }
 
 TEST_F(CorrespondingFrames, WhatVanishesOrBecomesAnotherMeshHasNoPartner) {
-  const CentreView* from = view();
+  const motion::CentreView* from = view();
   scene_.scene.mesh(77, sphere(Vec3(0.0f), 0.5f, 8, 16));
   scene_.scene.replace_mesh(1, 77);
-  const CentreView* changed = view();
+  const motion::CentreView* changed = view();
   scene_.scene.remove_last();
-  const CentreView* gone = view();
-  for (const CentreView* to : {changed, gone}) {
+  const motion::CentreView* gone = view();
+  for (const motion::CentreView* to : {changed, gone}) {
     const std::vector<int32_t> found = correspondence(from, to);
     for (int y = 0; y < kSize; ++y)
-      for (int x = 0; x < kSize; ++x) EXPECT_EQ(found[size_t(pixel(x, y))], in_square(x, y) ? kNoCorrespondence : pixel(x, y));
+      for (int x = 0; x < kSize; ++x)
+        EXPECT_EQ(found[size_t(pixel(x, y))], in_square(x, y) ? film::kNoCorrespondence : pixel(x, y));
   }
 }
 
 // The wall behind it leads to where it is now, and nothing leads back.
 TEST_F(CorrespondingFrames, WhatAppearsHasNoPartner) {
-  const CentreView* there = view();
+  const motion::CentreView* there = view();
   scene_.scene.remove_last();
   const std::vector<int32_t> found = correspondence(view(), there);
   for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x) EXPECT_EQ(found[size_t(pixel(x, y))], in_square(x, y) ? kNoCorrespondence : pixel(x, y));
+    for (int x = 0; x < kSize; ++x)
+      EXPECT_EQ(found[size_t(pixel(x, y))], in_square(x, y) ? film::kNoCorrespondence : pixel(x, y));
 }
 
 // Of several pixels that come to lie in one, the nearest: a square that shrinks to half its size.
 TEST_F(CorrespondingFrames, ShrinkingIsOneToOne) {
-  const CentreView* from = view();
+  const motion::CentreView* from = view();
   scene_.scene.move(1, scaling(Vec3(0.5f)));
   const std::vector<int32_t> found = correspondence(from, view());
   int linked = 0;
   for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x) linked += in_square(x, y) && found[size_t(pixel(x, y))] != kNoCorrespondence;
+    for (int x = 0; x < kSize; ++x) linked += in_square(x, y) && found[size_t(pixel(x, y))] != film::kNoCorrespondence;
   EXPECT_EQ(linked, 16);
 }
 
 // A step of one pixel: what it covers is within a pixel of where the square came from, and leads to the same pixels.
 TEST_F(CorrespondingFrames, OfTwoThatMeetInAPixelTheNearestHasIt) {
-  const CentreView* from = view();
+  const motion::CentreView* from = view();
   scene_.scene.move(1, translation(Vec3(kPixel, 0, 0)));
   const std::vector<int32_t> found = correspondence(from, view());
   for (int y = 12; y < 20; ++y) {
     for (int x = 12; x < 20; ++x) EXPECT_EQ(found[size_t(pixel(x, y))], pixel(x + 1, y)) << x << ' ' << y;
-    EXPECT_EQ(found[size_t(pixel(20, y))], kNoCorrespondence) << "the wall that it covers";
+    EXPECT_EQ(found[size_t(pixel(20, y))], film::kNoCorrespondence) << "the wall that it covers";
   }
 }
 
@@ -159,10 +164,10 @@ TEST_F(CorrespondingFrames, C8_ACutIsNoMotion) {
   turned.matrix[8] = 0.6f, turned.matrix[10] = 0.8f;
   zoomed.window[1] *= 3.0f;
   other.type = GRADUS_CAMERA_PERSPECTIVE;
-  EXPECT_FALSE(is_shot_change(camera, camera));
-  EXPECT_TRUE(is_shot_change(camera, turned));
-  EXPECT_TRUE(is_shot_change(camera, zoomed));
-  EXPECT_TRUE(is_shot_change(camera, other));
+  EXPECT_FALSE(motion::is_shot_change(camera, camera));
+  EXPECT_TRUE(motion::is_shot_change(camera, turned));
+  EXPECT_TRUE(motion::is_shot_change(camera, zoomed));
+  EXPECT_TRUE(motion::is_shot_change(camera, other));
 }
 
 }  // namespace

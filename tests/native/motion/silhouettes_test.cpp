@@ -23,32 +23,32 @@ int count(const std::vector<uint8_t>& edges) { return std::accumulate(edges.begi
 
 TEST(Silhouettes, AreBothSidesOfAnObjectsEdge) {
   const auto object = plane([](int x, int) { return int32_t(x < 8 ? 1 : 2); });
-  const auto edges = silhouettes(kSize, kSize, object, {});
+  const auto edges = motion::silhouettes(kSize, kSize, object, {});
   for (int x = 0; x < kSize; ++x) EXPECT_EQ(edges[size_t(5 * kSize + x)], x == 7 || x == 8) << x;
 }
 
 TEST(Silhouettes, AreStepsOfDepth) {
   const auto depth = plane([](int x, int) { return x < 8 ? 3.0f : 4.0f; });
-  const auto edges = silhouettes(kSize, kSize, {}, depth);
+  const auto edges = motion::silhouettes(kSize, kSize, {}, depth);
   for (int x = 0; x < kSize; ++x) EXPECT_EQ(edges[size_t(5 * kSize + x)], x == 7 || x == 8) << x;
 }
 
 TEST(Silhouettes, AreEdgesBeforeNothing) {
   const auto depth = plane([](int x, int) { return x < 8 ? 3.0f : 0.0f; });
-  EXPECT_EQ(count(silhouettes(kSize, kSize, {}, depth)), 2 * kSize);
+  EXPECT_EQ(count(motion::silhouettes(kSize, kSize, {}, depth)), 2 * kSize);
 }
 
 // 1/depth is linear over a plane; depth is not, and a plane seen at a grazing angle was all edge.
 TEST(Silhouettes, APlaneSeenAtAGrazingAngleHasNone) {
   const auto depth = plane([](int, int y) { return 1.0f / (0.001f + 0.05f * float(kSize - y)); });
-  EXPECT_EQ(count(silhouettes(kSize, kSize, {}, depth)), 0);
+  EXPECT_EQ(count(motion::silhouettes(kSize, kSize, {}, depth)), 0);
 }
 
 TEST(Silhouettes, NothingKnownHasNone) {
-  EXPECT_EQ(count(silhouettes(kSize, kSize, {}, {})), 0);
-  EXPECT_TRUE(silhouettes(0, 0, {}, {}).empty());
+  EXPECT_EQ(count(motion::silhouettes(kSize, kSize, {}, {})), 0);
+  EXPECT_TRUE(motion::silhouettes(0, 0, {}, {}).empty());
   const std::vector<float> odd = {std::numeric_limits<float>::quiet_NaN()};
-  EXPECT_EQ(silhouettes(1, 1, {}, odd), std::vector<uint8_t>{0});
+  EXPECT_EQ(motion::silhouettes(1, 1, {}, odd), std::vector<uint8_t>{0});
 }
 
 }  // namespace

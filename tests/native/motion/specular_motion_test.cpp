@@ -15,10 +15,10 @@ TEST_F(SpecularMotion, WhatRestsMovesByExactlyZero) {
   scene_.ball(Vec3(0, 0, 0), 0.5f, mirror(), 32, true);
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 1.0f);
   const MotionFrame *a = frame("Reflection"), *b = frame("Reflection");
-  const ChainMotion m = motion(a, b);
+  const motion::ChainMotion m = motion(a, b);
   size_t tracked = 0, moved = 0;
   for (size_t i = 0; i < m.film.size(); ++i) {
-    tracked += m.tracking[i] == Tracking::Tracked;
+    tracked += m.tracking[i] == motion::Tracking::Tracked;
     moved += m.film[i] != Vec2(float(i % kSize) + 0.5f, float(i / kSize) + 0.5f);
   }
   EXPECT_EQ(moved, 0u);
@@ -31,14 +31,14 @@ TEST_F(SpecularMotion, AMovingPlaneMirrorShowsMirrorImages) {
   scene_.quad(Vec3(-2, -1, 2), Vec3(4, 0, 0), Vec3(0, 0, -4), mirror());
   scene_.quad(Vec3(-2, -1, -2), Vec3(4, 0, 0), Vec3(0, 3, 0), grey());
   scene_.camera(Vec3(0, 1.0f, 4), Vec3(0, -0.5f, 0), 1.0f);
-  const ChainMotion m = expect_motion("Reflection", [&](float s) {
+  const motion::ChainMotion m = expect_motion("Reflection", [&](float s) {
     scene_.scene.move(0, translation(Vec3(0, 0.05f * s, 0)));
     scene_.scene.move(1, translation(s * Vec3(0.1f, 0, 0.03f)));
   });
   const MotionFrame &a = *frames_.front(), &b = *frames_.back();
   for (size_t i = 0; i < m.film.size(); ++i) {
-    if (m.tracking[i] != Tracking::Tracked) continue;
-    const Hit& hit = a.chains.chains[size_t(a.chains.places[i])].last;
+    if (m.tracking[i] != motion::Tracking::Tracked) continue;
+    const geometry::Hit& hit = a.chains.chains[size_t(a.chains.places[i])].last;
     Vec3 p = a.context.snapshot->surface_point(hit).position + Vec3(0.1f, 0, 0.03f);
     p.y = 2 * (-0.95f) - p.y;
     Vec2 film;
@@ -61,15 +61,17 @@ TEST_F(SpecularMotion, TheFlatMirrorIsRightOfFlatMirrors) {
     const MotionFrame* a = frame("Reflection");
     scene_.scene.move(number, translation(Vec3(0.03f, 0.02f, 0.05f)));
     const MotionFrame* b = frame("Reflection");
-    const ChainMotion found = motion(a, b);
-    const SnapshotMotion surface(*a->context.snapshot, *b->context.snapshot);
+    const motion::ChainMotion found = motion(a, b);
+    const motion::SnapshotMotion surface(*a->context.snapshot, *b->context.snapshot);
     float worst = 0.0f;
     size_t told = 0;
     for (size_t i = 0; i < found.film.size(); ++i) {
-      if (found.tracking[i] != Tracking::Tracked) continue;
+      if (found.tracking[i] != motion::Tracking::Tracked) continue;
       Vec2 film;
-      const SpecularChain& chain = a->chains.chains[size_t(a->chains.places[i])];
-      if (!flat_mirror_motion(a->chains.tracer(), b->chains.tracer(), surface, chain, FlatMirror::MovesAlong, &film)) continue;
+      const motion::SpecularChain& chain = a->chains.chains[size_t(a->chains.places[i])];
+      if (!motion::flat_mirror_motion(a->chains.tracer(), b->chains.tracer(), surface, chain,
+                                      motion::FlatMirror::MovesAlong, &film))
+        continue;
       ++told;
       worst = std::max(worst, glm::length(film - found.film[i]));
     }
@@ -91,7 +93,9 @@ TEST_F(SpecularMotion, AMovingMirrorBall) {
 TEST_F(SpecularMotion, AMirrorBallSeenByAMovingCamera) {
   add_room();
   scene_.ball(Vec3(0, 0, 0), 0.8f, mirror(), 48, true);
-  expect_motion("Reflection", [&](float s) { scene_.camera(Vec3(0.2f * s, 0.5f + 0.05f * s, 4.0f - 0.1f * s), Vec3(0, 0, 0), 0.5f); });
+  expect_motion("Reflection", [&](float s) {
+    scene_.camera(Vec3(0.2f * s, 0.5f + 0.05f * s, 4.0f - 0.1f * s), Vec3(0, 0, 0), 0.5f);
+  });
 }
 
 TEST_F(SpecularMotion, ATurningEllipsoidOfMetal) {
@@ -99,7 +103,9 @@ TEST_F(SpecularMotion, ATurningEllipsoidOfMetal) {
   scene_.ball(Vec3(0, 0, 0), 0.8f, scene_.material(glossy(0.2f)), 48, true);  // sharp, but no mirror
   const Mat4 shape = scaling(Vec3(1.0f, 0.5f, 0.7f));
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
-  expect_motion("Reflection", [&](float s) { scene_.scene.move(3, glm::rotate(Mat4(1.0f), 0.05f * s, Vec3(0, 0.6f, 0.8f)) * shape); });
+  expect_motion("Reflection", [&](float s) {
+    scene_.scene.move(3, glm::rotate(Mat4(1.0f), 0.05f * s, Vec3(0, 0.6f, 0.8f)) * shape);
+  });
 }
 
 TEST_F(SpecularMotion, TheSkyInAMovingMirrorBall) {
@@ -125,8 +131,9 @@ TEST_F(SpecularMotion, ANormalMappedMirror) {
   set_sheet(&scene_, 900, {8});
   scene_.scene.instance(900, Mat4(1.0f), GRADUS_VISIBLE_ALL, normal_mapped_mirror(&scene_, 0.05f, 2.0f));
   scene_.camera(Vec3(0.5f, 0.5f, 4), Vec3(0, 0, 0), 0.6f);
-  expect_motion("Reflection",
-                [&](float s) { scene_.scene.move(3, glm::rotate(translation(s * Vec3(0.02f, 0.01f, 0)), 0.01f * s, Vec3(1, 0, 0))); });
+  expect_motion("Reflection", [&](float s) {
+    scene_.scene.move(3, glm::rotate(translation(s * Vec3(0.02f, 0.01f, 0)), 0.01f * s, Vec3(1, 0, 0)));
+  });
 }
 
 TEST_F(SpecularMotion, ABumpedMirror) {
@@ -134,13 +141,14 @@ TEST_F(SpecularMotion, ABumpedMirror) {
   set_sheet(&scene_, 900, {8, 0.0f, 0.0f, true, false});
   scene_.scene.instance(900, Mat4(1.0f), GRADUS_VISIBLE_ALL, bumped_mirror(&scene_, 0.02f));
   scene_.camera(Vec3(0.5f, 0.5f, 4), Vec3(0, 0, 0), 0.6f);
-  expect_motion("Reflection",
-                [&](float s) { scene_.scene.move(3, glm::rotate(translation(s * Vec3(0.02f, 0.01f, 0)), 0.01f * s, Vec3(1, 0, 0))); });
+  expect_motion("Reflection", [&](float s) {
+    scene_.scene.move(3, glm::rotate(translation(s * Vec3(0.02f, 0.01f, 0)), 0.01f * s, Vec3(1, 0, 0)));
+  });
 }
 
 // Light goes round a corner of mirrors.
 TEST_F(SpecularMotion, ThreeMirrorsOneAfterTheOther) {
-  components_ = ComponentSet::parse("Three=ERRRD.*L");
+  components_ = lpe::ComponentSet::parse("Three=ERRRD.*L");
   add_room();
   const uint64_t material = mirror();
   scene_.quad(Vec3(-1, -0.9f, 1), Vec3(2, 0, 0), Vec3(0, 0, -2), material);
@@ -167,13 +175,14 @@ TEST_F(SpecularMotion, AGlassSlabThatTurns) {
   scene_.quad(Vec3(-1, -0.8f, -0.1f), Vec3(0, 1.8f, 0), Vec3(2, 0, 0), material);
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.6f);
   expect_motion("Transmission", [&](float s) {
-    for (const size_t side : {3, 4}) scene_.scene.move(side, glm::rotate(translation(Vec3(0.03f * s, 0, 0)), 0.08f * s, Vec3(0, 1, 0)));
+    for (const size_t side : {3, 4})
+      scene_.scene.move(side, glm::rotate(translation(Vec3(0.03f * s, 0, 0)), 0.08f * s, Vec3(0, 1, 0)));
   });
 }
 
 // Eight refractions: through four balls behind one another.
 TEST_F(SpecularMotion, FourGlassBallsInARow) {
-  components_ = ComponentSet::parse("Four=ETTTTTTTTD.*L");
+  components_ = lpe::ComponentSet::parse("Four=ETTTTTTTTD.*L");
   add_room();
   Surface weak = glass(0.0f);
   weak.ior = 1.1f;
@@ -187,7 +196,7 @@ TEST_F(SpecularMotion, FourGlassBallsInARow) {
 
 // What a blurred picture's vectors hold on to are the moments of the frames.
 TEST_F(SpecularMotion, MotionBlurDoesNotChangeIt) {
-  std::array<ChainMotion, 2> found;
+  std::array<motion::ChainMotion, 2> found;
   for (const bool blurred : {false, true}) {
     PathScene scene;
     const uint64_t material = scene.material(glossy(0.0f));
@@ -211,7 +220,8 @@ TEST_F(SpecularMotion, MotionBlurDoesNotChangeIt) {
   }
   size_t both = 0;
   for (size_t i = 0; i < found[0].film.size(); ++i) {
-    if (found[0].tracking[i] != Tracking::Tracked || found[1].tracking[i] != Tracking::Tracked) continue;
+    if (found[0].tracking[i] != motion::Tracking::Tracked || found[1].tracking[i] != motion::Tracking::Tracked)
+      continue;
     ++both;
     EXPECT_LT(glm::length(found[0].film[i] - found[1].film[i]), 0.01f) << i;
   }

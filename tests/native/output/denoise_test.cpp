@@ -1,4 +1,5 @@
-// The host's denoiser: what is found and what is refused, by stand-ins for the library; and the library itself where there is one.
+// The host's denoiser: what is found and what is refused, by stand-ins for the library; and the library itself where
+// there is one.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -34,15 +35,15 @@ class FakeOidn : public ::testing::Test {
     dlclose(library);
     return result;
   }
-  static std::shared_ptr<const OidnLibrary> fake() {
+  static std::shared_ptr<const output::OidnLibrary> fake() {
     std::string why_not;
-    auto library = find_oidn({kFake, "libno_such_oidn.so"}, &why_not);
+    auto library = output::find_oidn({kFake, "libno_such_oidn.so"}, &why_not);
     EXPECT_TRUE(library) << why_not;
     return library;
   }
-  static std::string refusal(const OidnPlaces& places) {
+  static std::string refusal(const output::OidnPlaces& places) {
     std::string why_not;
-    EXPECT_EQ(find_oidn(places, &why_not), nullptr);
+    EXPECT_EQ(output::find_oidn(places, &why_not), nullptr);
     return why_not;
   }
 };
@@ -52,24 +53,26 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 TEST_F(FakeOidn, IsFoundByItsFileAndByItsFolder) {
   for (const std::string& path : {kFake, kFolder}) {
     std::string why_not;
-    const auto library = find_oidn({path, "libfake_oidn.so"}, &why_not);
+    const auto library = output::find_oidn({path, "libfake_oidn.so"}, &why_not);
     ASSERT_TRUE(library) << why_not;
     EXPECT_EQ(library->version, "2.7.5");
   }
 }
 
 TEST_F(FakeOidn, IsFoundWhereTheProcessHasItAlready) {
-  const OidnPlaces nowhere{"", "libfake_oidn_mapped.so"}, elsewhere{"/no/such/folder/lib.so", "libfake_oidn_mapped.so"};
+  const output::OidnPlaces nowhere{"", "libfake_oidn_mapped.so"},
+      elsewhere{"/no/such/folder/lib.so", "libfake_oidn_mapped.so"};
   EXPECT_TRUE(has(refusal(nowhere), "libfake_oidn_mapped.so"));
   EXPECT_TRUE(has(refusal(elsewhere), "/no/such/folder/lib.so"));
   ASSERT_TRUE(dlopen((kFolder + "libfake_oidn_mapped.so").c_str(), RTLD_LAZY | RTLD_LOCAL));
   std::string why_not;
-  EXPECT_TRUE(find_oidn(nowhere, &why_not)) << why_not;
-  EXPECT_TRUE(find_oidn(elsewhere, &why_not)) << why_not;
+  EXPECT_TRUE(output::find_oidn(nowhere, &why_not)) << why_not;
+  EXPECT_TRUE(output::find_oidn(elsewhere, &why_not)) << why_not;
 }
 
 TEST_F(FakeOidn, IsRefusedWithAReason) {
-  EXPECT_TRUE(has(refusal({kFolder + "libfake_oidn_incomplete.so", "libno_such_oidn.so"}), "it has no oidnSetFilterInt"));
+  EXPECT_TRUE(
+      has(refusal({kFolder + "libfake_oidn_incomplete.so", "libno_such_oidn.so"}), "it has no oidnSetFilterInt"));
   EXPECT_TRUE(has(refusal({GRADUS_SOURCE_DIR "/README.md", "libno_such_oidn.so"}), "README.md: "));
   EXPECT_TRUE(has(refusal({kFolder, "libno_such_oidn.so"}), "libno_such_oidn.so: "));
   behave("old");
@@ -80,7 +83,8 @@ TEST_F(FakeOidn, IsRefusedWithAReason) {
 
 // It named the path twice, and not what should lie there.
 TEST_F(FakeOidn, APathThatHoldsNothingIsNamedOnce) {
-  for (const std::string& path : {std::string("/no/such/lib.so"), kFolder, std::string(GRADUS_SOURCE_DIR "/README.md")}) {
+  for (const std::string& path :
+       {std::string("/no/such/lib.so"), kFolder, std::string(GRADUS_SOURCE_DIR "/README.md")}) {
     const std::string text = refusal({path, "libno_such_oidn.so"});
     const size_t first = text.find(path);
     ASSERT_NE(first, std::string::npos) << text;
@@ -94,8 +98,8 @@ TEST_F(FakeOidn, APathThatHoldsNothingIsNamedOnce) {
 const std::vector<float> kColor = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
 const std::vector<float> kAlbedo(12, 0.5f), kNormal(12, 0.25f);
 
-NoisyPicture picture(const std::vector<float>& color, size_t stride = 3) {
-  NoisyPicture result;
+output::NoisyPicture picture(const std::vector<float>& color, size_t stride = 3) {
+  output::NoisyPicture result;
   result.width = result.height = 2;
   result.color = color.data();
   result.stride = stride;
@@ -109,58 +113,58 @@ std::vector<float> plus(float offset) {
 
 TEST_F(FakeOidn, PictureAloneGoesThroughTheNetworkOnce) {
   const int before = value("runs");
-  EXPECT_EQ(denoise(*fake(), picture(kColor), 3, never), plus(1.0f));
+  EXPECT_EQ(output::denoise(*fake(), picture(kColor), 3, never), plus(1.0f));
   EXPECT_EQ(value("runs"), before + 1);
   EXPECT_EQ(value("hdr"), 1);
   EXPECT_EQ(value("numThreads"), 3);
   EXPECT_EQ(value("setAffinity"), 0);
-  EXPECT_EQ(value("quality"), kOidnQualityHigh);
+  EXPECT_EQ(value("quality"), output::kOidnQualityHigh);
 }
 
 TEST_F(FakeOidn, FourthChannelIsSteppedOver) {
   std::vector<float> rgba;
   for (size_t i = 0; i < 4; ++i) rgba.insert(rgba.end(), {kColor[3 * i], kColor[3 * i + 1], kColor[3 * i + 2], kNaN});
-  EXPECT_EQ(denoise(*fake(), picture(rgba, 4), 1, never), plus(1.0f));
+  EXPECT_EQ(output::denoise(*fake(), picture(rgba, 4), 1, never), plus(1.0f));
 }
 
 TEST_F(FakeOidn, GuidesAreTakenAsTheyAre) {
   const int before = value("runs");
-  NoisyPicture p = picture(kColor);
+  output::NoisyPicture p = picture(kColor);
   p.albedo = kAlbedo.data();
   p.normal = kNormal.data();
-  EXPECT_EQ(denoise(*fake(), p, 1, never), plus(1 + 0.5f + 2.5f));
+  EXPECT_EQ(output::denoise(*fake(), p, 1, never), plus(1 + 0.5f + 2.5f));
   EXPECT_EQ(value("cleanAux"), 1);
   EXPECT_EQ(value("runs"), before + 1);
 }
 
 TEST_F(FakeOidn, AlbedoAloneGuidesAsItIsAndNormalsAloneDoNot) {
-  NoisyPicture p = picture(kColor);
+  output::NoisyPicture p = picture(kColor);
   p.albedo = kAlbedo.data();
-  EXPECT_EQ(denoise(*fake(), p, 1, never), plus(1.5f));
+  EXPECT_EQ(output::denoise(*fake(), p, 1, never), plus(1.5f));
   p = picture(kColor);
   p.normal = kNormal.data();
-  EXPECT_EQ(denoise(*fake(), p, 1, never), plus(1.0f));
+  EXPECT_EQ(output::denoise(*fake(), p, 1, never), plus(1.0f));
 }
 
 TEST_F(FakeOidn, NumbersThatAreNoneCountAsZero) {
   std::vector<float> color = kColor, albedo = kAlbedo, normal = kNormal;
   color[0] = kNaN, color[5] = kInfinity, color[11] = -kInfinity, albedo[1] = kNaN, normal[2] = kInfinity;
-  NoisyPicture p = picture(color);
+  output::NoisyPicture p = picture(color);
   p.albedo = albedo.data();
   p.normal = normal.data();
   std::vector<float> expected = plus(4.0f);
   expected[0] = expected[5] = expected[11] = 4.0f, expected[1] -= 0.5f, expected[2] -= 2.5f;
-  EXPECT_EQ(denoise(*fake(), p, 1, never), expected);
+  EXPECT_EQ(output::denoise(*fake(), p, 1, never), expected);
 }
 
 TEST_F(FakeOidn, HugeValuesStayFinite) {
   const std::vector<float> color(12, std::numeric_limits<float>::max());
-  for (const float v : denoise(*fake(), picture(color), 1, never)) EXPECT_LE(v, 2e30f);
+  for (const float v : output::denoise(*fake(), picture(color), 1, never)) EXPECT_LE(v, 2e30f);
 }
 
 TEST_F(FakeOidn, WhatComesBackAsNoNumberIsThePicture) {
   behave("nan");
-  const std::vector<float> result = denoise(*fake(), picture(kColor), 1, never);
+  const std::vector<float> result = output::denoise(*fake(), picture(kColor), 1, never);
   for (size_t i = 0; i < 12; ++i) EXPECT_EQ(result[i], kColor[i] + float(i % 2 == 0));
 }
 
@@ -170,7 +174,7 @@ TEST_F(FakeOidn, FailuresCarryItsText) {
     behave(how);
     std::string text;
     try {
-      denoise(*library, picture(kColor), 1, never);
+      output::denoise(*library, picture(kColor), 1, never);
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), GRADUS_ERROR_UNKNOWN);
       text = e.what();
@@ -185,13 +189,13 @@ TEST_F(FakeOidn, FailuresCarryItsText) {
 }
 
 TEST_F(FakeOidn, StopsWhenCancelled) {
-  NoisyPicture p = picture(kColor);
+  output::NoisyPicture p = picture(kColor);
   p.albedo = kAlbedo.data();
   p.normal = kNormal.data();
   for (const int requested : {0, 1, 5, 12}) {  // in every phase
     int count = 0;
     try {
-      denoise(*fake(), p, 1, [&] { return ++count > requested; });
+      output::denoise(*fake(), p, 1, [&] { return ++count > requested; });
       ADD_FAILURE() << requested;
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), GRADUS_ERROR_CANCELLED) << requested;
@@ -206,12 +210,13 @@ double rms_error(const std::vector<float>& image, const std::vector<float>& trut
   return std::sqrt(sum / double(truth.size()));
 }
 
-// Two walls under noise, with and without guides; then a picture of values that are none, or too large. What went wrong, or "".
+// Two walls under noise, with and without guides; then a picture of values that are none, or too large. What went
+// wrong, or "".
 std::string check_real_library(const std::string& path) {
   std::string why_not;
-  const auto library = find_oidn({path}, &why_not);
+  const auto library = output::find_oidn({path}, &why_not);
   if (!library || !has(library->version, "2.")) return why_not + ", or another version";
-  NoisyPicture p;
+  output::NoisyPicture p;
   p.width = 67, p.height = 41;
   std::vector<float> truth, noisy, albedo, normal;
   std::mt19937 generator(1);
@@ -222,14 +227,14 @@ std::string check_real_library(const std::string& path) {
     normal.push_back(i % 3 == 2 ? 1.0f : 0.0f);
   }
   p.color = noisy.data();
-  const double before = rms_error(noisy, truth), plain = rms_error(denoise(*library, p, 2, never), truth);
+  const double before = rms_error(noisy, truth), plain = rms_error(output::denoise(*library, p, 2, never), truth);
   p.albedo = albedo.data();
   p.normal = normal.data();
-  const double guided = rms_error(denoise(*library, p, 2, never), truth);
+  const double guided = rms_error(output::denoise(*library, p, 2, never), truth);
   if (plain > 0.3 * before || guided > 0.3 * before || guided > plain) return "too much noise is left";
   std::fill(noisy.begin(), noisy.end(), std::numeric_limits<float>::max());
   noisy[0] = kNaN;
-  for (const float v : denoise(*library, p, 2, never)) {
+  for (const float v : output::denoise(*library, p, 2, never)) {
     if (!std::isfinite(v)) return "not finite";
   }
   return "";

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/device.h"
 #include "base/error.h"
 #include "render/scene_render.h"
+#include "scene/device.h"
 #include "schema/pass_table.h"
 #include "support/light_sum.h"
 
@@ -20,24 +20,24 @@ using test::Scenario;
 
 constexpr int kSide = 40;
 
-GradusSettings settings_for(uint32_t reconstruction, uint64_t passes = light_passes()) {
+GradusSettings settings_for(uint32_t reconstruction, uint64_t passes = schema::light_passes()) {
   GradusSettings settings = test::test_settings(kSide, kSide);
   settings.independent_sampler = 0;
   settings.samples = 8;
   settings.threads = 2;
-  settings.passes = needed_passes(passes);
+  settings.passes = schema::needed_passes(passes);
   settings.reconstruction = reconstruction;
   if (reconstruction != GRADUS_RECONSTRUCTION_NONE) settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
   return settings;
 }
 
-std::vector<float> read(const Render& render, uint32_t pass) {
-  std::vector<float> pixels(pass_info(pass).channels * kSide * kSide);
+std::vector<float> read(const render::Render& render, uint32_t pass) {
+  std::vector<float> pixels(schema::pass_info(pass).channels * kSide * kSide);
   render.read_pass(pass, pixels.data(), pixels.size());
   return pixels;
 }
 
-void expect_to_add_up(const Render& render) {
+void expect_to_add_up(const render::Render& render) {
   test::expect_light_to_add_up([&](uint32_t pass) { return read(render, pass); }, read(render, GRADUS_PASS_COMBINED));
 }
 
@@ -73,7 +73,7 @@ TEST_P(LightPassesBy, AddUpBehindADenoiser) {
   settings.denoiser = GRADUS_DENOISER_OIDN;
   PathScene scene;
   test::build(Scenario::Glass, &scene);
-  Render render(std::make_shared<Device>(of_device), scene.context(settings).snapshot, settings);
+  render::Render render(std::make_shared<scene::Device>(of_device), scene.context(settings).snapshot, settings);
   render.wait(-1.0);
   expect_to_add_up(render);
   EXPECT_GT(read(render, GRADUS_PASS_COMBINED)[0], read(render, GRADUS_PASS_NOISY_IMAGE)[0] + 0.5f);
@@ -90,11 +90,12 @@ TEST_P(LightPassesBy, LightBesideBlackIsNotLost) {
 
 INSTANTIATE_TEST_SUITE_P(Reconstructions, LightPassesBy,
                          testing::Values(uint32_t{GRADUS_RECONSTRUCTION_NONE}, uint32_t{GRADUS_RECONSTRUCTION_L2},
-                                         uint32_t{GRADUS_RECONSTRUCTION_L1}, uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
+                                         uint32_t{GRADUS_RECONSTRUCTION_L1},
+                                         uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
 
-std::vector<float> light_of(const Render& render, uint32_t pass) {
+std::vector<float> light_of(const render::Render& render, uint32_t pass) {
   std::vector<float> light = read(render, pass);
-  const std::vector<float> color = read(render, pass_info(pass).color);
+  const std::vector<float> color = read(render, schema::pass_info(pass).color);
   for (size_t i = 0; i < light.size(); ++i) light[i] *= color[i];
   return light;
 }
@@ -119,8 +120,8 @@ TEST(LightPasses, AreCleanerThanSampled) {
   for (const uint32_t pass : {GRADUS_PASS_DIFFUSE_DIRECT, GRADUS_PASS_DIFFUSE_INDIRECT, GRADUS_PASS_GLOSSY_INDIRECT}) {
     const double noisy = noise_of(pass, GRADUS_RECONSTRUCTION_NONE);
     ASSERT_GT(noisy, 0.0);
-    EXPECT_LT(noise_of(pass, GRADUS_RECONSTRUCTION_REGULARIZED), 0.75 * noisy) << pass_info(pass).name;
-    EXPECT_LT(noise_of(pass, GRADUS_RECONSTRUCTION_L1), 0.85 * noisy) << pass_info(pass).name;
+    EXPECT_LT(noise_of(pass, GRADUS_RECONSTRUCTION_REGULARIZED), 0.75 * noisy) << schema::pass_info(pass).name;
+    EXPECT_LT(noise_of(pass, GRADUS_RECONSTRUCTION_L1), 0.85 * noisy) << schema::pass_info(pass).name;
   }
 }
 
@@ -130,8 +131,8 @@ TEST(LightPasses, AreExposedAsThePictureIs) {
   const auto once = rendered(Scenario::GlossyFloor, settings);
   settings.film_exposure = 4.0f;
   const auto bright = rendered(Scenario::GlossyFloor, settings);
-  for (const PassInfo& info : stored_passes(light_passes())) {
-    if (!is_of_light(info.kind)) continue;
+  for (const schema::PassInfo& info : schema::stored_passes(schema::light_passes())) {
+    if (!schema::is_of_light(info.kind)) continue;
     const std::vector<float> a = read(*once, info.pass), b = read(*bright, info.pass);
     for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(4.0f * a[i], b[i], 1e-3f * (1.0f + b[i])) << info.name;
   }
@@ -139,7 +140,8 @@ TEST(LightPasses, AreExposedAsThePictureIs) {
 
 TEST(LightPasses, OfTheNoisyImageAreThoseSampled) {
   const auto render = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_NONE));
-  const std::vector<float> noisy = read(*render, GRADUS_PASS_NOISY_IMAGE), combined = read(*render, GRADUS_PASS_COMBINED);
+  const std::vector<float> noisy = read(*render, GRADUS_PASS_NOISY_IMAGE),
+                           combined = read(*render, GRADUS_PASS_COMBINED);
   EXPECT_EQ(noisy, combined);
   expect_to_add_up(*render);
 }
@@ -158,9 +160,11 @@ TEST(LightPasses, OneAloneIsCleanToo) {
 
 TEST(LightPasses, ThatNobodyAskedForTakeNoRoom) {
   const auto none = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED, 0));
-  EXPECT_FALSE(has_light_passes(*none->film()));
+  EXPECT_FALSE(output::has_light_passes(*none->film()));
   const auto all = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED));
-  const auto kept = [](const Render& render) { return render.progress().memory_bytes - render.film()->memory_bytes(); };
+  const auto kept = [](const render::Render& render) {
+    return render.progress().memory_bytes - render.film()->memory_bytes();
+  };
   EXPECT_EQ(kept(*all) - kept(*none), 8 * 3 * sizeof(float) * kSide * kSide);
 }
 
@@ -175,7 +179,7 @@ TEST(LightPasses, OfACancelledRenderAreThoseSampled) {
   const CancelCheck at_once = [] { return true; };
   const auto render = rendered(Scenario::Glass, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED));
   const std::vector<float> rgba = read(*render, GRADUS_PASS_COMBINED);
-  EXPECT_THROW(LightPasses(*render->film(), {0, 0, kSide, kSide}, rgba, at_once), Error);
+  EXPECT_THROW(output::LightPasses(*render->film(), {0, 0, kSide, kSide}, rgba, at_once), Error);
 }
 
 }  // namespace

@@ -19,10 +19,11 @@ constexpr Region kSampled{-20, -10, 310, 260}, kRead{5, 3, 295, 247};  // more r
 uint64_t bit(uint32_t pass) { return uint64_t{1} << pass; }
 
 // Sums of random samples; some pixels have none in one half, some pairs none at one end, some values are denormal.
-Film random_frame(int channels) {
-  Film frame(400, 300, kSampled, channels, 2, true);
+film::Film random_frame(int channels) {
+  film::Film frame(400, 300, kSampled, channels, 2, true);
   frame.settings.film_exposure = 2.0f;  // exact products: no bit depends on how they are added
-  frame.passes = make_pass_planes(bit(GRADUS_PASS_DEPTH) | bit(GRADUS_PASS_NORMAL) | bit(GRADUS_PASS_DENOISING_ALBEDO), kSampled.area());
+  frame.passes = film::make_pass_planes(
+      bit(GRADUS_PASS_DEPTH) | bit(GRADUS_PASS_NORMAL) | bit(GRADUS_PASS_DENOISING_ALBEDO), kSampled.area());
   frame.fallback.assign(size_t(kSampled.area()), 0.0f);
   std::minstd_rand random(7);
   const auto value = [&] {
@@ -32,8 +33,8 @@ Film random_frame(int channels) {
   const auto fill = [&](std::vector<Radiance>* plane) {
     for (Radiance& sum : *plane) sum = Radiance(value(), value(), value(), channels == 4 ? value() : 0.0f);
   };
-  for (int half = 0; half < kHalves; ++half) {
-    for (ComponentPlanes& planes : frame.components) {
+  for (int half = 0; half < film::kHalves; ++half) {
+    for (film::ComponentPlanes& planes : frame.components) {
       fill(&planes.primal[half]);
       for (std::vector<Radiance>& plane : planes.gradient[half]) fill(&plane);
     }
@@ -42,7 +43,7 @@ Film random_frame(int channels) {
       for (float& count : plane) count = float(random() % 3);
     }
   }
-  for (PassPlane& plane : frame.passes) {
+  for (film::PassPlane& plane : frame.passes) {
     for (std::vector<float>* values : {&plane.values[0], &plane.values[1], &plane.weight}) {
       for (float& sum : *values) sum = value();
     }
@@ -51,17 +52,17 @@ Film random_frame(int channels) {
   return frame;
 }
 
-std::vector<float> read(const Film& frame, uint32_t pass, const Region& region) {
-  std::vector<float> pixels(size_t(region.area()) * pass_info(pass).channels);
-  read_film_pass(frame, pass, region, pixels.data());
+std::vector<float> read(const film::Film& frame, uint32_t pass, const Region& region) {
+  std::vector<float> pixels(size_t(region.area()) * schema::pass_info(pass).channels);
+  output::read_film_pass(frame, pass, region, pixels.data());
   return pixels;
 }
 
 // As Gradient X and Y were read: each cropped from images of the whole frame.
-std::vector<float> gradient_of_images(const Film& frame, bool vertical) {
+std::vector<float> gradient_of_images(const film::Film& frame, bool vertical) {
   std::vector<float> pixels(3 * size_t(kRead.area()), 0.0f);
   for (int component = 0; component < int(frame.components.size()); ++component) {
-    const GradientImages images = read_images(frame, component);
+    const film::GradientImages images = film::read_images(frame, component);
     const std::vector<float>& plane = vertical ? images.dy : images.dx;
     size_t out = 0;
     for (int32_t y = kRead.y0; y < kRead.y1; ++y) {
@@ -78,14 +79,14 @@ std::vector<float> gradient_of_images(const Film& frame, bool vertical) {
 
 TEST(PassRead, GradientsHaveTheBitsOfWholeImages) {
   for (const int channels : {3, 4}) {
-    const Film frame = random_frame(channels);
+    const film::Film frame = random_frame(channels);
     EXPECT_EQ(read(frame, GRADUS_PASS_GRADIENT_X, kRead), gradient_of_images(frame, false)) << channels;
     EXPECT_EQ(read(frame, GRADUS_PASS_GRADIENT_Y, kRead), gradient_of_images(frame, true)) << channels;
   }
 }
 
 TEST(PassRead, VarianceIsThatOfTheHalvesMeans) {
-  const Film frame = random_frame(3);
+  const film::Film frame = random_frame(3);
   const std::vector<float> variance = read(frame, GRADUS_PASS_VARIANCE, kRead);
   size_t out = 0, unknown = 0;
   for (int32_t y = kRead.y0; y < kRead.y1; ++y) {
@@ -95,8 +96,9 @@ TEST(PassRead, VarianceIsThatOfTheHalvesMeans) {
       unknown += a == 0 || b == 0 ? 1 : 0;
       for (int c = 0; c < 3; ++c) {
         double half = 0.0;
-        for (const ComponentPlanes& planes : frame.components)
-          half += a == 0 || b == 0 ? 0.0 : 0.5 * (double(planes.primal[0][i][c]) / a - double(planes.primal[1][i][c]) / b);
+        for (const film::ComponentPlanes& planes : frame.components)
+          half +=
+              a == 0 || b == 0 ? 0.0 : 0.5 * (double(planes.primal[0][i][c]) / a - double(planes.primal[1][i][c]) / b);
         ASSERT_NEAR(variance[out + size_t(c)], 4.0 * half * half, 1e-5) << x << " " << y;
       }
     }
@@ -105,16 +107,16 @@ TEST(PassRead, VarianceIsThatOfTheHalvesMeans) {
 }
 
 TEST(PassRead, EveryPassHasTheSameBitsForAnyNumberOfThreads) {
-  const Film frame = random_frame(4);
-  for (const uint32_t pass : {GRADUS_PASS_NOISY_IMAGE, GRADUS_PASS_DEPTH, GRADUS_PASS_NORMAL, GRADUS_PASS_DENOISING_ALBEDO,
-                              GRADUS_PASS_GRADIENT_X, GRADUS_PASS_GRADIENT_Y, GRADUS_PASS_VARIANCE, GRADUS_PASS_SAMPLE_COUNT,
-                              GRADUS_PASS_FALLBACK}) {
-    SCOPED_TRACE(pass_info(pass).name);
+  const film::Film frame = random_frame(4);
+  for (const uint32_t pass : {GRADUS_PASS_NOISY_IMAGE, GRADUS_PASS_DEPTH, GRADUS_PASS_NORMAL,
+                              GRADUS_PASS_DENOISING_ALBEDO, GRADUS_PASS_GRADIENT_X, GRADUS_PASS_GRADIENT_Y,
+                              GRADUS_PASS_VARIANCE, GRADUS_PASS_SAMPLE_COUNT, GRADUS_PASS_FALLBACK}) {
+    SCOPED_TRACE(schema::pass_info(pass).name);
     expect_same_bits_for_any_number_of_threads([&] { return read(frame, pass, kRead); });
     // A piece that is read by one thread alone has the bits of the whole.
     const Region piece{40, 30, 50, 35};
     const std::vector<float> whole = read(frame, pass, kRead), part = read(frame, pass, piece);
-    const size_t channels = pass_info(pass).channels, row = channels * size_t(piece.width());
+    const size_t channels = schema::pass_info(pass).channels, row = channels * size_t(piece.width());
     for (int32_t y = piece.y0; y < piece.y1; ++y) {
       const size_t from = channels * (size_t(y - kRead.y0) * size_t(kRead.width()) + size_t(piece.x0 - kRead.x0));
       EXPECT_TRUE(std::equal(whole.begin() + ptrdiff_t(from), whole.begin() + ptrdiff_t(from + row),

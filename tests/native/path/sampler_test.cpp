@@ -8,8 +8,8 @@
 namespace gradus {
 namespace {
 
-SampleKey key_of(uint32_t seed, uint32_t stream, uint32_t index) {
-  SampleKey key;
+path::SampleKey key_of(uint32_t seed, uint32_t stream, uint32_t index) {
+  path::SampleKey key;
   key.seed = seed;
   key.stream = stream;
   key.index = index;
@@ -20,11 +20,11 @@ TEST(L4_Sampler, ValueIsPureFunctionOfKeyAndBlock) {
   std::vector<Vec2> forward;
   for (uint32_t index = 0; index < 32; ++index) {
     for (uint32_t block = 0; block < 32; ++block) {
-      forward.push_back(Sampler(key_of(7, 123, index)).get2(block));
+      forward.push_back(path::Sampler(key_of(7, 123, index)).get2(block));
     }
   }
   for (uint32_t index = 32; index-- > 0;) {
-    const Sampler sampler(key_of(7, 123, index));
+    const path::Sampler sampler(key_of(7, 123, index));
     for (uint32_t block = 32; block-- > 0;) {
       EXPECT_EQ(sampler.get2(block), forward[index * 32 + block]);
       EXPECT_EQ(sampler.get1(block), forward[index * 32 + block].x);
@@ -35,9 +35,9 @@ TEST(L4_Sampler, ValueIsPureFunctionOfKeyAndBlock) {
 TEST(L4_Sampler, VertexHoldsTheBlocksOfItsDepth) {
   for (const bool independent : {false, true}) {
     for (int depth = 0; depth < 40; ++depth) {
-      const Sampler sampler(key_of(7, 123, static_cast<uint32_t>(3 * depth)), independent);
+      const path::Sampler sampler(key_of(7, 123, static_cast<uint32_t>(3 * depth)), independent);
       const uint32_t first = dimension::kFirstVertex + static_cast<uint32_t>(depth) * dimension::kPerVertex;
-      const VertexSample u = sampler.vertex(depth);
+      const path::VertexSample u = sampler.vertex(depth);
       EXPECT_EQ(u.bsdf, sampler.get2(first + dimension::kBsdf));
       EXPECT_EQ(u.lobe, sampler.get2(first + dimension::kLobe));
       EXPECT_EQ(u.light, sampler.get2(first + dimension::kLight));
@@ -48,16 +48,16 @@ TEST(L4_Sampler, VertexHoldsTheBlocksOfItsDepth) {
 }
 
 TEST(L4_Sampler, EachPartOfTheKeyCounts) {
-  const SampleKey base = key_of(1, 2, 6);
-  std::vector<SampleKey> others(6, base);
+  const path::SampleKey base = key_of(1, 2, 6);
+  std::vector<path::SampleKey> others(6, base);
   others[0].seed = 2;
-  others[1].kind = StreamKind::Pilot;
+  others[1].kind = path::StreamKind::Pilot;
   others[2].stream = 3;
   others[3].stream_frame = 1;
   others[4].index = 8;  // same half
   others[5].index = 7;  // other half, same number within it
-  for (const SampleKey& other : others) {
-    EXPECT_NE(Sampler(base).get2(4), Sampler(other).get2(4));
+  for (const path::SampleKey& other : others) {
+    EXPECT_NE(path::Sampler(base).get2(4), path::Sampler(other).get2(4));
   }
 }
 
@@ -67,7 +67,7 @@ TEST(L4_Sampler, HalvesAreNets) {
     for (int log_x = 0; log_x <= 6; ++log_x) {
       std::vector<int> cells(64, 0);
       for (uint32_t i = 0; i < 64; ++i) {
-        const Vec2 u = Sampler(key_of(3, 99, 2 * i + half)).get2(11);
+        const Vec2 u = path::Sampler(key_of(3, 99, 2 * i + half)).get2(11);
         ASSERT_GE(u.x, 0.0f);
         ASSERT_LT(u.x, 1.0f);
         ASSERT_LT(u.y, 1.0f);
@@ -106,7 +106,7 @@ std::vector<double> residuals(uint32_t seed, uint32_t stream_step, uint32_t bloc
   for (uint32_t pixel = 0; pixel < 10000; ++pixel) {
     double sum = 0.0;
     for (uint32_t i = 0; i < 4; ++i) {
-      const Vec2 u = Sampler(key_of(seed, pixel + stream_step, i)).get2(block);
+      const Vec2 u = path::Sampler(key_of(seed, pixel + stream_step, i)).get2(block);
       sum += std::sin(3.0 * u.x) * u.y;
     }
     means.push_back(sum);
@@ -131,7 +131,7 @@ TEST(A8_Variance, HalvesOfTheSampler) {
   for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
     double half[2] = {0.0, 0.0};
     for (uint32_t i = 0; i < 16; ++i) {
-      const Vec2 u = Sampler(key_of(5, pixel, i)).get2(9);
+      const Vec2 u = path::Sampler(key_of(5, pixel, i)).get2(9);
       half[i % 2] += std::exp(u.x) * u.y * u.y / 8.0;
     }
     const double value = 0.5 * (half[0] + half[1]);
@@ -150,7 +150,7 @@ TEST(Sampler, IndependentValuesHaveTheVarianceOfRandomNumbers) {
   for (uint32_t pixel = 0; pixel < 4000; ++pixel) {
     double mean = 0.0;
     for (uint32_t i = 0; i < 16; ++i) {
-      mean += Sampler(key_of(5, pixel, i), true).get2(9).y / 16.0;
+      mean += path::Sampler(key_of(5, pixel, i), true).get2(9).y / 16.0;
     }
     sum += mean / 4000;
     squares += mean * mean / 4000;

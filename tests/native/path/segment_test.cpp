@@ -25,14 +25,14 @@ uint64_t pane(PathScene* scene) {
 }
 
 // The segment along +x from the origin for one of the sampler's samples.
-Segment trace(const PathContext& context, uint32_t sample, PathRay* ray) {
-  *ray = PathRay{};
+path::Segment trace(const path::PathContext& context, uint32_t sample, path::PathRay* ray) {
+  *ray = path::PathRay{};
   ray->ray = Ray{Vec3(0.0f), 0.0f, Vec3(1, 0, 0), kInfinity};
-  Vertex vertex;
-  Segment segment;
-  SampleKey key;
+  path::Vertex vertex;
+  path::Segment segment;
+  path::SampleKey key;
   key.index = sample;
-  trace_segment(context, Sampler(key), 0, nullptr, ray, &vertex, &segment);
+  path::trace_segment(context, path::Sampler(key), 0, nullptr, ray, &vertex, &segment);
   return segment;
 }
 
@@ -41,15 +41,17 @@ TEST(Segment, TheNinthLampOnARayIsSeenToo) {
   PathScene scene;
   for (int i = 0; i < 20; ++i) scene.light(light_at(Vec3(2.0f + 1.5f * float(i), 0.1f, 0.0f), 0.4f));
   scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
-  const IntegratorContext c = scene.context(test::test_settings(4, 4));
-  const PathContext context(*c.snapshot, c.camera, c.settings);
-  PathRay ray;
-  const Segment segment = trace(context, 0, &ray);
+  const integrator::IntegratorContext c = scene.context(test::test_settings(4, 4));
+  const path::PathContext context(*c.snapshot, c.camera, c.settings);
+  path::PathRay ray;
+  const path::Segment segment = trace(context, 0, &ray);
   ASSERT_EQ(segment.light_crossings.size(), 20u);
-  for (size_t i = 1; i < 20; ++i) EXPECT_GT(segment.light_crossings[i].distance, segment.light_crossings[i - 1].distance);
+  for (size_t i = 1; i < 20; ++i)
+    EXPECT_GT(segment.light_crossings[i].distance, segment.light_crossings[i - 1].distance);
 }
 
-// Lights that turn towards their receiver were met as seen from the last transparent surface, and weighed as seen from the vertex.
+// Lights that turn towards their receiver were met as seen from the last transparent surface, and weighed as seen from
+// the vertex.
 TEST(Segment, ALampBehindATransparentSurfaceFacesTheVertex) {
   PathScene scene;
   GradusLight light = light_at(Vec3(3.0f, 0.5f, 0.2f), 0.8f);
@@ -57,14 +59,15 @@ TEST(Segment, ALampBehindATransparentSurfaceFacesTheVertex) {
   scene.light(light);
   scene.quad(Vec3(2, -2, -2), Vec3(0, 4, 0), Vec3(0, 0, 4), pane(&scene));
   scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
-  const IntegratorContext c = scene.context(test::test_settings(4, 4));
-  const PathContext context(*c.snapshot, c.camera, c.settings);
+  const integrator::IntegratorContext c = scene.context(test::test_settings(4, 4));
+  const path::PathContext context(*c.snapshot, c.camera, c.settings);
   int seen = 0;
   for (uint32_t sample = 0; sample < 64; ++sample) {
-    PathRay ray;
-    const Segment segment = trace(context, sample, &ray);
-    for (const LightCrossing& light_crossing : segment.light_crossings) {
-      const LightEvaluation view = evaluate_light(context.scene, light_crossing.point, Receiver{ray.ray.origin, Vec3(0.0f), true});
+    path::PathRay ray;
+    const path::Segment segment = trace(context, sample, &ray);
+    for (const path::LightCrossing& light_crossing : segment.light_crossings) {
+      const light::LightEvaluation view =
+          light::evaluate_light(context.scene, light_crossing.point, light::Receiver{ray.ray.origin, Vec3(0.0f), true});
       EXPECT_LT(glm::length(view.direction - ray.ray.direction), 1e-5f);
       EXPECT_NEAR(view.distance, light_crossing.distance, 1e-4f);
       ++seen;
@@ -73,7 +76,8 @@ TEST(Segment, ALampBehindATransparentSurfaceFacesTheVertex) {
   EXPECT_GT(seen, 5);
 }
 
-// The last ray of a path asks for no surface where none shines, and must find the same: lights before and behind walls, and the world.
+// The last ray of a path asks for no surface where none shines, and must find the same: lights before and behind walls,
+// and the world.
 TEST(Segment, LastRaysFindTheSameLightsWithoutSurfaces) {
   PathScene scene;
   test::Surface grey;
@@ -84,25 +88,26 @@ TEST(Segment, LastRaysFindTheSameLightsWithoutSurfaces) {
   scene.light(light_at(Vec3(4, 0.5f, 0), 1.5f));
   scene.world(Rgb(0.5f));
   scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
-  const IntegratorContext c = scene.context(test::test_settings(4, 4));
-  const PathContext context(*c.snapshot, c.camera, c.settings);
+  const integrator::IntegratorContext c = scene.context(test::test_settings(4, 4));
+  const path::PathContext context(*c.snapshot, c.camera, c.settings);
   ASSERT_TRUE(context.scene.features.only_lights_emit);
   int light_crossings = 0, escaped = 0;
   for (uint32_t i = 0; i < 10000; ++i) {
-    SampleKey key;
+    path::SampleKey key;
     key.index = i;
-    const Vec2 u = Sampler(key).get2(0);
-    PathRay ray;
+    const Vec2 u = path::Sampler(key).get2(0);
+    path::PathRay ray;
     ray.ray = Ray{Vec3(0.0f), 0.0f, glm::normalize(Vec3(1.0f, 2.0f * u.x - 1.0f, 2.0f * u.y - 1.0f)), kInfinity};
-    Segment lights, all;
-    Vertex vertex;
-    trace_to_lights(context, ray, &lights);
-    trace_segment(context, Sampler(key), 0, nullptr, &ray, &vertex, &all);
+    path::Segment lights, all;
+    path::Vertex vertex;
+    path::trace_to_lights(context, ray, &lights);
+    path::trace_segment(context, path::Sampler(key), 0, nullptr, &ray, &vertex, &all);
     ASSERT_EQ(lights.light_crossings.size(), all.light_crossings.size());
-    for (size_t k = 0; k < all.light_crossings.size(); ++k) EXPECT_EQ(lights.light_crossings[k].distance, all.light_crossings[k].distance);
-    EXPECT_EQ(lights.end == SegmentEnd::Escaped, all.end == SegmentEnd::Escaped);
+    for (size_t k = 0; k < all.light_crossings.size(); ++k)
+      EXPECT_EQ(lights.light_crossings[k].distance, all.light_crossings[k].distance);
+    EXPECT_EQ(lights.end == path::SegmentEnd::Escaped, all.end == path::SegmentEnd::Escaped);
     light_crossings += int(all.light_crossings.size());
-    escaped += all.end == SegmentEnd::Escaped;
+    escaped += all.end == path::SegmentEnd::Escaped;
   }
   EXPECT_GT(light_crossings, 100);
   EXPECT_GT(escaped, 500);
@@ -116,12 +121,12 @@ TEST(Segment, TransmittanceGoesOnCountingTransparentSurfaces) {
   scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
   GradusSettings settings = test::test_settings(4, 4);
   settings.transparent_max_bounces = 3;
-  const IntegratorContext c = scene.context(settings);
-  const PathContext context(*c.snapshot, c.camera, c.settings);
-  PathRay kind;
+  const integrator::IntegratorContext c = scene.context(settings);
+  const path::PathContext context(*c.snapshot, c.camera, c.settings);
+  path::PathRay kind;
   for (uint16_t before = 0; before < 4; ++before) {
     uint16_t depth = before;
-    const Rgb through = segment_transmittance(context, Ray{Vec3(0.0f), 0.0f, Vec3(1, 0, 0), 5.0f}, kind, &depth);
+    const Rgb through = path::segment_transmittance(context, Ray{Vec3(0.0f), 0.0f, Vec3(1, 0, 0), 5.0f}, kind, &depth);
     EXPECT_NEAR(through.x, before <= 1 ? 0.25f : 0.0f, 1e-5f) << before;
     EXPECT_EQ(depth, before <= 1 ? before + 2 : 3);
   }
@@ -135,14 +140,14 @@ TEST(Segment, AllRaysMeasureTheirLengthFromWhereTheyStart) {
   const uint64_t material = scene.material(program.desc(program.add(GRADUS_OP_TRANSPARENT, {test::In::from(length)})));
   for (int i = 2; i <= 4; ++i) scene.quad(Vec3(float(i), -2, -2), Vec3(0, 4, 0), Vec3(0, 0, 4), material);
   scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
-  const IntegratorContext c = scene.context(test::test_settings(4, 4));
-  const PathContext context(*c.snapshot, c.camera, c.settings);
-  PathRay ray;
-  const Segment base = trace(context, 0, &ray);
+  const integrator::IntegratorContext c = scene.context(test::test_settings(4, 4));
+  const path::PathContext context(*c.snapshot, c.camera, c.settings);
+  path::PathRay ray;
+  const path::Segment base = trace(context, 0, &ray);
   EXPECT_NEAR(base.weight.x * base.probability, 2.0f * 3.0f * 4.0f, 1e-4f);
   uint16_t depth = 0;
   const Ray link{Vec3(0.0f), 0.0f, Vec3(1, 0, 0), 5.0f};
-  EXPECT_NEAR(segment_transmittance(context, link, PathRay{}, &depth).x, 24.0f, 1e-4f) << "connection";
+  EXPECT_NEAR(path::segment_transmittance(context, link, path::PathRay{}, &depth).x, 24.0f, 1e-4f) << "connection";
   EXPECT_NEAR(context.scene.transmittance(link, 8).x, 24.0f, 1e-4f) << "shadow ray";
 }
 
@@ -152,15 +157,15 @@ TEST(Segment, AWallJustBeforeTheOtherVertexBlocksTheConnection) {
   const uint64_t material = scene.material(test::matte(Rgb(0.5f)));
   for (const float x : {0.0f, 9.9995f, 10.0f}) scene.quad(Vec3(x, -2, -2), Vec3(0, 4, 0), Vec3(0, 0, 4), material);
   scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
-  const IntegratorContext c = scene.context(test::test_settings(4, 4));
+  const integrator::IntegratorContext c = scene.context(test::test_settings(4, 4));
   const auto point_behind = [&](float x) {
-    Hit hit;
+    geometry::Hit hit;
     EXPECT_TRUE(c.snapshot->intersect({Vec3(x, 0.3f, 0.2f), 0.0f, Vec3(1, 0, 0), 1.0f}, GRADUS_VISIBLE_CAMERA, &hit));
     return c.snapshot->surface_point(hit);
   };
-  const SurfacePoint from = point_behind(-0.5f), wall = point_behind(9.9f), to = point_behind(9.9998f);
-  EXPECT_TRUE(c.snapshot->occluded(spawn_ray_to(from, to)));
-  EXPECT_FALSE(c.snapshot->occluded(spawn_ray_to(from, wall)));
+  const geometry::SurfacePoint from = point_behind(-0.5f), wall = point_behind(9.9f), to = point_behind(9.9998f);
+  EXPECT_TRUE(c.snapshot->occluded(path::spawn_ray_to(from, to)));
+  EXPECT_FALSE(c.snapshot->occluded(path::spawn_ray_to(from, wall)));
 }
 
 }  // namespace

@@ -11,14 +11,14 @@ using namespace test;
 
 class Consistent : public ::testing::Test {
  protected:
-  static std::vector<float> solve(const GradientImages& images) {
-    SolveReport report;
-    const std::vector<float> x = reconstruct(images, GRADUS_RECONSTRUCTION_L1, 0.2f, never, &report);
+  static std::vector<float> solve(const film::GradientImages& images) {
+    reconstruct::SolveReport report;
+    const std::vector<float> x = reconstruct::reconstruct(images, GRADUS_RECONSTRUCTION_L1, 0.2f, never, &report);
     EXPECT_FALSE(report.hit_cap);
     return x;
   }
   // Without any noise.
-  static GradientImages exact(int w, int h, const std::vector<float>& image) {
+  static film::GradientImages exact(int w, int h, const std::vector<float>& image) {
     return noisy_images(
         w, h, 3, image, [](size_t) { return 0.0f; }, [](size_t) { return 0.0f; });
   }
@@ -33,9 +33,10 @@ TEST_F(Consistent, B1_KeepsAnImageWithItsOwnGradients) {
 
 // The floors of weights are relative to the image, not absolute (algorithms 14.2).
 TEST_F(Consistent, B2_ScalesWithTheImage) {
-  GradientImages images = noisy_images(64, 48);
+  film::GradientImages images = noisy_images(64, 48);
   std::vector<float> x = solve(images);
-  for (auto* plane : {&images.primal, &images.dx, &images.dy, &images.primal_deviation, &images.dx_deviation, &images.dy_deviation}) {
+  for (auto* plane :
+       {&images.primal, &images.dx, &images.dy, &images.primal_deviation, &images.dx_deviation, &images.dy_deviation}) {
     for (float& v : *plane) v *= 1024.0f;
   }
   const std::vector<float> y = solve(images);
@@ -45,8 +46,9 @@ TEST_F(Consistent, B2_ScalesWithTheImage) {
 
 TEST_F(Consistent, B2_LeavesOutWhatIsNotFinite) {
   const std::vector<float> ones(33 * 17 * 3, 1.0f);
-  GradientImages images = exact(33, 17, ones);
-  for (auto* deviation : {&images.primal_deviation, &images.dx_deviation, &images.dy_deviation}) deviation->assign(33 * 17, 0.1f);
+  film::GradientImages images = exact(33, 17, ones);
+  for (auto* deviation : {&images.primal_deviation, &images.dx_deviation, &images.dy_deviation})
+    deviation->assign(33 * 17, 0.1f);
   images.primal[41] = std::numeric_limits<float>::quiet_NaN();
   images.dx[90] = std::numeric_limits<float>::infinity();
   images.dy[130] = -std::numeric_limits<float>::infinity();
@@ -60,18 +62,18 @@ TEST_F(Consistent, B2_ABlackImageIsBlack) {
 
 // Weights are frozen: a fourth channel goes through those of the first three, and parts add up (contract 3.4).
 TEST_F(Consistent, B2_WeightsAreALinearOperator) {
-  const GradientImages images = noisy_images(48, 32, 4);
-  SolveReport report;
-  const auto solver = make_twiced(images, GRADUS_RECONSTRUCTION_L1, 0.2f, never, &report);
+  const film::GradientImages images = noisy_images(48, 32, 4);
+  reconstruct::SolveReport report;
+  const auto solver = reconstruct::make_twiced(images, GRADUS_RECONSTRUCTION_L1, 0.2f, never, &report);
   const size_t pixels = 48 * 32;
   std::vector<float> a(pixels * 4), b(pixels * 4), sum(pixels * 4);
-  GradientImages both = images;
+  film::GradientImages both = images;
   for (auto* plane : {&both.primal, &both.dx, &both.dy}) {
     for (size_t i = 0; i < pixels; ++i) (*plane)[4 * i] += (*plane)[4 * i + 1];
   }
-  solver->apply(planes_of(images, 0), a.data());
-  solver->apply(planes_of(images, 1), b.data());
-  solver->apply(planes_of(both, 0), sum.data());
+  solver->apply(reconstruct::planes_of(images, 0), a.data());
+  solver->apply(reconstruct::planes_of(images, 1), b.data());
+  solver->apply(reconstruct::planes_of(both, 0), sum.data());
   for (size_t i = 0; i < pixels; ++i) EXPECT_NEAR(a[4 * i] + b[4 * i], sum[4 * i], 1e-3) << i;
   // And the solution that comes with the weights is theirs.
   const std::vector<float> whole = solve(images);
@@ -79,7 +81,7 @@ TEST_F(Consistent, B2_WeightsAreALinearOperator) {
 }
 
 TEST_F(Consistent, L1_SameBitsForAnyNumberOfThreads) {
-  const GradientImages images = noisy_images(133, 71);
+  const film::GradientImages images = noisy_images(133, 71);
   test::expect_same_bits_for_any_number_of_threads([&] { return solve(images); });
 }
 

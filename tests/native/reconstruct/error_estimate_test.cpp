@@ -22,11 +22,11 @@ using test::mean;
 const CancelCheck kNever = [] { return false; };
 
 // Values that do not differ between the halves, which are then moved apart by what a test likes.
-Film make_frame(int width, int height, uint32_t samples_a, uint32_t samples_b, bool gradients) {
-  Film film(uint32_t(width), uint32_t(height), {0, 0, width, height}, 3, 1, gradients);
+film::Film make_frame(int width, int height, uint32_t samples_a, uint32_t samples_b, bool gradients) {
+  film::Film film(uint32_t(width), uint32_t(height), {0, 0, width, height}, 3, 1, gradients);
   const size_t pixels = size_t(width) * size_t(height);
-  const uint32_t samples[kHalves] = {samples_a, samples_b};
-  for (int half = 0; half < kHalves; ++half) {
+  const uint32_t samples[film::kHalves] = {samples_a, samples_b};
+  for (int half = 0; half < film::kHalves; ++half) {
     film.count[half].assign(pixels, samples[half]);
     film.components[0].primal[half].assign(pixels, Radiance(0.5f, 1.0f, 2.0f, 0.0f) * float(samples[half]));
     for (auto& count : film.pair_count[half]) count.assign(gradients ? pixels : 0, float(samples[half]));
@@ -34,10 +34,10 @@ Film make_frame(int width, int height, uint32_t samples_a, uint32_t samples_b, b
   return film;
 }
 
-void add_noise(float sigma, unsigned seed, Film* film) {
+void add_noise(float sigma, unsigned seed, film::Film* film) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal(0.0f, sigma);
-  for (int half = 0; half < kHalves; ++half) {
+  for (int half = 0; half < film::kHalves; ++half) {
     for (Radiance& sum : film->components[0].primal[half]) {
       const float x = normal(random), y = normal(random), z = normal(random);
       sum += Radiance(x, y, z, 0.0f);
@@ -45,16 +45,16 @@ void add_noise(float sigma, unsigned seed, Film* film) {
   }
 }
 
-std::vector<float> error_of(const Film& film, uint32_t reconstruction) {
-  SolveReport report;
-  return reconstruct_film(film, reconstruction, 0.0f, {.error = true}, kNever, &report).error;
+std::vector<float> error_of(const film::Film& film, uint32_t reconstruction) {
+  reconstruct::SolveReport report;
+  return reconstruct::reconstruct_film(film, reconstruction, 0.0f, {.error = true}, kNever, &report).error;
 }
 
 constexpr uint32_t kAll[] = {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1};
 
 // One sample in each half, of variance σ²: the mean's is σ²/2.
 TEST(ErrorEstimate, OfTheNoisyImageIsTheVarianceOfItsMean) {
-  Film film = make_frame(64, 48, 1, 1, false);
+  film::Film film = make_frame(64, 48, 1, 1, false);
   add_noise(0.3f, 5, &film);
   const std::vector<float> error = error_of(film, GRADUS_RECONSTRUCTION_NONE);
   ASSERT_EQ(error.size(), 64u * 48u);
@@ -67,7 +67,7 @@ TEST(ErrorEstimate, OfTheNoisyImageIsTheVarianceOfItsMean) {
 
 // Noise that no reconstruction takes away, in halves of different size.
 TEST(ErrorEstimate, OfHalvesApartIsTheSquareOfHalfTheirDistance) {
-  Film film = make_frame(40, 30, 3, 2, true);
+  film::Film film = make_frame(40, 30, 3, 2, true);
   for (Radiance& sum : film.components[0].primal[0]) sum += Radiance(3.0f * 0.7f);
   for (Radiance& sum : film.components[0].primal[1]) sum += Radiance(2.0f * -0.7f);
   for (const uint32_t reconstruction : kAll) {
@@ -76,25 +76,25 @@ TEST(ErrorEstimate, OfHalvesApartIsTheSquareOfHalfTheirDistance) {
 }
 
 TEST(ErrorEstimate, IsThereOnlyIfAskedFor) {
-  const Film film = make_frame(8, 8, 2, 2, true);
-  SolveReport report;
+  const film::Film film = make_frame(8, 8, 2, 2, true);
+  reconstruct::SolveReport report;
   for (const uint32_t reconstruction : kAll) {
-    EXPECT_TRUE(reconstruct_film(film, reconstruction, 0.0f, {}, kNever, &report).error.empty());
+    EXPECT_TRUE(reconstruct::reconstruct_film(film, reconstruction, 0.0f, {}, kNever, &report).error.empty());
   }
 }
 
 // Windows that ran over the border took the darkness beyond for pixels without error.
 TEST(ErrorEstimate, IsAsLargeAtTheBorder) {
-  ErrorTerms terms;
+  reconstruct::ErrorTerms terms;
   terms.noise.assign(size_t{3} * 20 * 15, 2.0f);
-  for (const float e : error_of_pixels(terms, 20, 15, 3)) EXPECT_FLOAT_EQ(e, 4.0f);
+  for (const float e : reconstruct::error_of_pixels(terms, 20, 15, 3)) EXPECT_FLOAT_EQ(e, 4.0f);
 }
 
 TEST(ErrorEstimate, FallsWithTheDistanceFromANoisyPixel) {
-  ErrorTerms terms;
+  reconstruct::ErrorTerms terms;
   terms.noise.assign(size_t{3} * 41 * 41, 0.0f);
   for (int c = 0; c < 3; ++c) terms.noise[3 * (20 * 41 + 20) + size_t(c)] = 10.0f;
-  const std::vector<float> error = error_of_pixels(terms, 41, 41, 3);
+  const std::vector<float> error = reconstruct::error_of_pixels(terms, 41, 41, 3);
   EXPECT_NEAR(std::accumulate(error.begin(), error.end(), 0.0), 100.0, 0.1);
   for (int x = 20; x < 24; ++x) {
     EXPECT_LT(error[20 * 41 + size_t(x) + 1], error[20 * 41 + size_t(x)]);
@@ -105,20 +105,21 @@ TEST(ErrorEstimate, FallsWithTheDistanceFromANoisyPixel) {
 
 // Of what is known of L2's error the distance from L2's image is taken away, but no more than three quarters.
 TEST(ErrorEstimate, OfABetterImageIsLessThanThatOfL2ByTheirDistance) {
-  EXPECT_EQ(squared_error(4.0, 1.0), 3.0);
-  EXPECT_EQ(squared_error(4.0, 5.0), 1.0);
-  ErrorTerms terms;
+  EXPECT_EQ(reconstruct::squared_error(4.0, 1.0), 3.0);
+  EXPECT_EQ(reconstruct::squared_error(4.0, 5.0), 1.0);
+  reconstruct::ErrorTerms terms;
   terms.noise.assign(size_t{3} * 30 * 30, 2.0f);
   terms.apart.assign(terms.noise.size(), 1.0f);
-  for (const float e : error_of_pixels(terms, 30, 30, 3)) EXPECT_FLOAT_EQ(e, 3.0f);
+  for (const float e : reconstruct::error_of_pixels(terms, 30, 30, 3)) EXPECT_FLOAT_EQ(e, 3.0f);
 }
 
 // Half of a lone sample counted as the difference of two: a picture of one sample looked twice as good as its square.
 TEST(ErrorEstimate, WhereAHalfIsEmptyIsTheSquareOfThePicture) {
   for (const bool first : {true, false}) {
-    const Film film = make_frame(24, 17, first ? 1 : 0, first ? 0 : 1, true);
+    const film::Film film = make_frame(24, 17, first ? 1 : 0, first ? 0 : 1, true);
     for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2}) {
-      for (const float e : error_of(film, reconstruction)) EXPECT_NEAR(e, (0.25f + 1.0f + 4.0f) / 3.0f, 1e-3f) << reconstruction;
+      for (const float e : error_of(film, reconstruction))
+        EXPECT_NEAR(e, (0.25f + 1.0f + 4.0f) / 3.0f, 1e-3f) << reconstruction;
     }
   }
 }
@@ -128,12 +129,13 @@ TEST(ErrorEstimate, IsFiniteForAnySizeSampleCountAndValue) {
   for (const auto& [width, height] : sizes) {
     for (const auto& [a, b] : {std::pair(0u, 0u), std::pair(1u, 0u), std::pair(3u, 2u)}) {
       for (const float scale : {1.0f, 1e30f}) {
-        Film film = make_frame(width, height, a, b, true);
+        film::Film film = make_frame(width, height, a, b, true);
         if (a + b > 0) add_noise(scale, 3, &film);
         for (const uint32_t reconstruction : kAll) {
           const std::vector<float> error = error_of(film, reconstruction);
           ASSERT_EQ(error.size(), size_t(width * height));
-          for (const float e : error) ASSERT_TRUE(std::isfinite(e) && e >= 0.0f) << width << "x" << height << ", " << reconstruction;
+          for (const float e : error)
+            ASSERT_TRUE(std::isfinite(e) && e >= 0.0f) << width << "x" << height << ", " << reconstruction;
         }
       }
     }
@@ -142,11 +144,13 @@ TEST(ErrorEstimate, IsFiniteForAnySizeSampleCountAndValue) {
 
 // A frame of what may have been rendered with other settings.
 TEST(ErrorEstimate, AndReconstructionRefuseFramesWithoutWhatTheyRead) {
-  Film film = make_frame(8, 8, 2, 2, false);
-  const auto message = [&](uint32_t reconstruction) { return test::refusal_of([&] { error_of(film, reconstruction); }); };
+  film::Film film = make_frame(8, 8, 2, 2, false);
+  const auto message = [&](uint32_t reconstruction) {
+    return test::refusal_of([&] { error_of(film, reconstruction); });
+  };
   EXPECT_NE(message(GRADUS_RECONSTRUCTION_L2).find("no gradients"), std::string::npos);
   EXPECT_NE(message(GRADUS_RECONSTRUCTION_REGULARIZED).find("no denoising features"), std::string::npos);
-  film.passes = make_pass_planes(feature_passes(), 64);
+  film.passes = film::make_pass_planes(schema::feature_passes(), 64);
   EXPECT_EQ(message(GRADUS_RECONSTRUCTION_REGULARIZED).find("no denoising features"), std::string::npos);
 }
 

@@ -29,7 +29,7 @@ struct Noisy {
       }
     }
   }
-  FeatureImage image;
+  film::FeatureImage image;
   std::vector<float> truth;
 };
 
@@ -41,7 +41,7 @@ double mean_square(const std::vector<float>& a, const std::vector<float>& b) {
 
 TEST(FeatureFilter, TakesNoiseAndKeepsTheEdge) {
   const Noisy noisy(0.1f);
-  const FeatureImage clean = filter_feature(noisy.image, kWidth, kHeight);
+  const film::FeatureImage clean = reconstruct::filter_feature(noisy.image, kWidth, kHeight);
   // Nine equal weights leave a ninth.
   EXPECT_LT(mean_square(clean.values, noisy.truth), mean_square(noisy.image.values, noisy.truth) / 5.0);
   for (int y = 0; y < kHeight; ++y) {
@@ -55,28 +55,30 @@ TEST(FeatureFilter, TakesNoiseAndKeepsTheEdge) {
 
 TEST(FeatureFilter, CleanFeaturesStay) {
   const Noisy clean(0.0f);
-  const FeatureImage filtered = filter_feature(clean.image, kWidth, kHeight);
+  const film::FeatureImage filtered = reconstruct::filter_feature(clean.image, kWidth, kHeight);
   for (size_t i = 0; i < clean.truth.size(); ++i) ASSERT_NEAR(filtered.values[i], clean.truth[i], 1e-4f);
 }
 
 // Texture of a fiftieth of the feature, which no noise explains.
 TEST(FeatureFilter, FineTextureWithoutNoiseStays) {
   Noisy clean(0.0f, 1);
-  for (size_t i = 0; i < clean.truth.size(); ++i) clean.truth[i] = clean.image.values[i] = 0.5f + (i % 2 ? 0.01f : -0.01f);
-  const FeatureImage filtered = filter_feature(clean.image, kWidth, kHeight);
+  for (size_t i = 0; i < clean.truth.size(); ++i)
+    clean.truth[i] = clean.image.values[i] = 0.5f + (i % 2 ? 0.01f : -0.01f);
+  const film::FeatureImage filtered = reconstruct::filter_feature(clean.image, kWidth, kHeight);
   EXPECT_LT(std::sqrt(mean_square(filtered.values, clean.truth)), 1e-4);
 }
 
-// Neighbours of a chequer that differ by twice their deviation count for something, but not for all: of what is measured in a quarter of
-// the true variance nothing would be taken, in four times that next to everything.
+// Neighbours of a chequer that differ by twice their deviation count for something, but not for all: of what is
+// measured in a quarter of the true variance nothing would be taken, in four times that next to everything.
 TEST(FeatureFilter, DifferencesCountByTheVariance) {
   Noisy noisy(0.0f, 1);
   const auto chequer = [](size_t i) { return (i % kWidth + i / kWidth) % 2 ? 0.1f : -0.1f; };
   for (size_t i = 0; i < noisy.truth.size(); ++i) noisy.image.values[i] = 0.5f + chequer(i);
   std::fill(noisy.image.variance.begin(), noisy.image.variance.end(), 0.01f);
-  const FeatureImage filtered = filter_feature(noisy.image, kWidth, kHeight);
+  const film::FeatureImage filtered = reconstruct::filter_feature(noisy.image, kWidth, kHeight);
   double left = 0.0;
-  for (size_t i = 0; i < filtered.values.size(); ++i) left += filtered.values[i] * chequer(i) / (0.01 * double(filtered.values.size()));
+  for (size_t i = 0; i < filtered.values.size(); ++i)
+    left += filtered.values[i] * chequer(i) / (0.01 * double(filtered.values.size()));
   EXPECT_GT(left, 0.4);
   EXPECT_LT(left, 0.95);
 }
@@ -87,7 +89,7 @@ TEST(FeatureFilter, AtTheBorderNeighboursCountByTheSameDistances) {
   const auto chequer = [](int x, int y) { return (x + y) % 2 ? 0.1f : -0.1f; };
   for (int i = 0; i < kWidth * kHeight; ++i) noisy.image.values[size_t(i)] = 0.5f + chequer(i % kWidth, i / kWidth);
   std::fill(noisy.image.variance.begin(), noisy.image.variance.end(), 0.01f);
-  const FeatureImage filtered = filter_feature(noisy.image, kWidth, kHeight);
+  const film::FeatureImage filtered = reconstruct::filter_feature(noisy.image, kWidth, kHeight);
   // Neighbours at the sides are 0.2 apart, where noise explains √0.02: (0.04 − 0.02)/(k² 0.02) = 2 variances.
   const float side = 1.0f / std::pow(1.0f + 0.25f * 2.0f, 4.0f);
   for (int y = 0; y < kHeight; ++y) {
@@ -107,32 +109,35 @@ TEST(FeatureFilter, AMirroredPictureIsFilteredAlike) {
     return values;
   };
   Noisy noisy(0.1f, 1);
-  const std::vector<float> expected = mirrored(filter_feature(noisy.image, kWidth, kHeight).values);
+  const std::vector<float> expected = mirrored(reconstruct::filter_feature(noisy.image, kWidth, kHeight).values);
   noisy.image.values = mirrored(noisy.image.values);
   noisy.image.variance = mirrored(noisy.image.variance);
-  const FeatureImage filtered = filter_feature(noisy.image, kWidth, kHeight);
-  for (size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(filtered.values[i], expected[i], 1e-3f) << i % kWidth << ' ' << i / kWidth;
+  const film::FeatureImage filtered = reconstruct::filter_feature(noisy.image, kWidth, kHeight);
+  for (size_t i = 0; i < expected.size(); ++i)
+    ASSERT_NEAR(filtered.values[i], expected[i], 1e-3f) << i % kWidth << ' ' << i / kWidth;
 }
 
 TEST(FeatureFilter, DoesNotDependOnTheUnit) {
   const Noisy small(0.1f, 1), large(0.1f, 1, kWidth, kHeight, 1000.0f);
-  const FeatureImage a = filter_feature(small.image, kWidth, kHeight), b = filter_feature(large.image, kWidth, kHeight);
+  const film::FeatureImage a = reconstruct::filter_feature(small.image, kWidth, kHeight),
+                           b = reconstruct::filter_feature(large.image, kWidth, kHeight);
   for (size_t i = 0; i < a.values.size(); ++i) ASSERT_NEAR(b.values[i], 1000.0f * a.values[i], 0.02f);
 }
 
-// Of a row or column that is cut off beyond the filter's reach, the rest is the same: tiles know enough of what is around them.
+// Of a row or column that is cut off beyond the filter's reach, the rest is the same: tiles know enough of what is
+// around them.
 TEST(FeatureFilter, TilesLeaveNoSeams) {
   constexpr int kWide = 600, kTall = 70, kCut = 5, kEdge = 3;
   const Noisy noisy(0.1f, 1, kWide, kTall);
-  const FeatureImage whole = filter_feature(noisy.image, kWide, kTall);
-  FeatureImage part{1, {}, {}};
+  const film::FeatureImage whole = reconstruct::filter_feature(noisy.image, kWide, kTall);
+  film::FeatureImage part{1, {}, {}};
   for (int y = kCut; y < kTall; ++y) {
     for (int x = kCut; x < kWide; ++x) {
       part.values.push_back(noisy.image.values[size_t(y * kWide + x)]);
       part.variance.push_back(noisy.image.variance[size_t(y * kWide + x)]);
     }
   }
-  part = filter_feature(std::move(part), kWide - kCut, kTall - kCut);
+  part = reconstruct::filter_feature(std::move(part), kWide - kCut, kTall - kCut);
   for (int y = kEdge; y < kTall - kCut; ++y) {
     for (int x = kEdge; x < kWide - kCut; ++x) {
       const float expected = whole.values[size_t((y + kCut) * kWide + x + kCut)];
@@ -144,7 +149,7 @@ TEST(FeatureFilter, TilesLeaveNoSeams) {
 TEST(FeatureFilter, NothingKnownOfTheNoiseCountsAsNone) {
   Noisy noisy(0.1f);
   std::fill(noisy.image.variance.begin(), noisy.image.variance.end(), kNaN);
-  const FeatureImage filtered = filter_feature(noisy.image, kWidth, kHeight);
+  const film::FeatureImage filtered = reconstruct::filter_feature(noisy.image, kWidth, kHeight);
   EXPECT_LT(mean_square(filtered.values, noisy.image.values), 0.1 * mean_square(noisy.image.values, noisy.truth));
 }
 
@@ -154,7 +159,7 @@ TEST(FeatureFilter, NumbersThatAreNoneHarmNothingElse) {
   noisy.image.values[3 * 900 + 1] = kInfinity;
   noisy.image.values[3 * 1300 + 2] = -std::numeric_limits<float>::max();
   noisy.image.variance[3 * 700] = std::numeric_limits<float>::max();
-  const FeatureImage filtered = filter_feature(noisy.image, kWidth, kHeight);
+  const film::FeatureImage filtered = reconstruct::filter_feature(noisy.image, kWidth, kHeight);
   size_t off = 0;
   for (size_t i = 0; i < filtered.values.size(); ++i) {
     ASSERT_TRUE(std::isfinite(filtered.values[i])) << i;
@@ -166,9 +171,10 @@ TEST(FeatureFilter, NumbersThatAreNoneHarmNothingElse) {
 TEST(FeatureFilter, ImagesOfOnePixelRowAndColumn) {
   for (const auto& [w, h] : {std::pair{1, 1}, {1, 50}, {50, 1}, {2, 2}, {3, 1}}) {
     const Noisy noisy(0.1f, 1, w, h);
-    const FeatureImage filtered = filter_feature(noisy.image, w, h);
+    const film::FeatureImage filtered = reconstruct::filter_feature(noisy.image, w, h);
     ASSERT_EQ(filtered.values.size(), size_t(w) * size_t(h));
-    for (size_t i = 0; i < filtered.values.size(); ++i) EXPECT_NEAR(filtered.values[i], noisy.truth[i], 0.3f) << w << 'x' << h;
+    for (size_t i = 0; i < filtered.values.size(); ++i)
+      EXPECT_NEAR(filtered.values[i], noisy.truth[i], 0.3f) << w << 'x' << h;
     if (w * h == 1) {
       EXPECT_EQ(filtered.values, noisy.image.values);
     }

@@ -22,16 +22,18 @@ struct FeatureFilm {
   unsigned seed = 1;
 };
 
-inline void fill_features(const FeatureFilm& description, Film* film) {
-  film->passes = make_pass_planes(feature_passes(), size_t(film->region.area()));
+inline void fill_features(const FeatureFilm& description, film::Film* film) {
+  film->passes = film::make_pass_planes(schema::feature_passes(), size_t(film->region.area()));
   int first = 0;
-  for (const uint32_t pass : {GRADUS_PASS_DENOISING_NORMAL, GRADUS_PASS_DENOISING_ALBEDO, GRADUS_PASS_DENOISING_DEPTH}) {
-    for (PassPlane& plane : film->passes) {
+  for (const uint32_t pass :
+       {GRADUS_PASS_DENOISING_NORMAL, GRADUS_PASS_DENOISING_ALBEDO, GRADUS_PASS_DENOISING_DEPTH}) {
+    for (film::PassPlane& plane : film->passes) {
       if (plane.pass != pass) continue;
-      for (int half = 0; half < kHalves; ++half) {
+      for (int half = 0; half < film::kHalves; ++half) {
         for (size_t i = 0; i < plane.values[half].size(); ++i) {
           const int pixel = int(i / plane.channels), channel = first + int(i % plane.channels);
-          plane.values[half][i] = description.feature(pixel % description.width, pixel / description.width, channel, half);
+          plane.values[half][i] =
+              description.feature(pixel % description.width, pixel / description.width, channel, half);
         }
       }
       first += int(plane.channels);
@@ -40,15 +42,15 @@ inline void fill_features(const FeatureFilm& description, Film* film) {
 }
 
 // One sample of each pixel and half. Alpha's are an eighth of red's, as alpha is.
-inline void fill_differences(const FeatureFilm& description, Film* film) {
+inline void fill_differences(const FeatureFilm& description, film::Film* film) {
   const int w = description.width, h = description.height;
   std::mt19937 random(100 + description.seed);
   std::normal_distribution<float> normal(0.0f, 1.0f);
-  for (int half = 0; half < kHalves; ++half) {
-    for (int o = 0; o < kOffsets; ++o) {
+  for (int half = 0; half < film::kHalves; ++half) {
+    for (int o = 0; o < film::kOffsets; ++o) {
       for (int y = 0; y < h; ++y) {
         for (int x = 0; x < w; ++x) {
-          const int nx = x + kOffsetX[o], ny = y + kOffsetY[o];
+          const int nx = x + film::kOffsetX[o], ny = y + film::kOffsetY[o];
           if (nx < 0 || nx >= w || ny < 0 || ny >= h) continue;
           const size_t i = size_t(y) * size_t(w) + size_t(x), n = size_t(ny) * size_t(w) + size_t(nx);
           film->pair_count[half][o][i] = 1.0f;
@@ -65,18 +67,19 @@ inline void fill_differences(const FeatureFilm& description, Film* film) {
   }
 }
 
-inline Film make_feature_film(const FeatureFilm& description, int channels = 3) {
+inline film::Film make_feature_film(const FeatureFilm& description, int channels = 3) {
   const int w = description.width, h = description.height;
-  Film film(uint32_t(w), uint32_t(h), {0, 0, w, h}, channels, 1, description.gradients);
+  film::Film film(uint32_t(w), uint32_t(h), {0, 0, w, h}, channels, 1, description.gradients);
   film.settings.width = uint32_t(w);
   film.settings.height = uint32_t(h);
   std::mt19937 random(description.seed);
   std::normal_distribution<float> normal(0.0f, 1.0f);
-  for (int half = 0; half < kHalves; ++half) {
+  for (int half = 0; half < film::kHalves; ++half) {
     for (size_t i = 0; i < size_t(w) * size_t(h); ++i) {
       film.count[half][i] = 1;
       Radiance& pixel = film.components[0].primal[half][i];
-      for (int c = 0; c < 3; ++c) pixel[c] = description.truth[3 * i + size_t(c)] + description.sigma(i) * normal(random);
+      for (int c = 0; c < 3; ++c)
+        pixel[c] = description.truth[3 * i + size_t(c)] + description.sigma(i) * normal(random);
       if (channels == 4) pixel[3] = pixel[0] / 8.0f;
     }
   }

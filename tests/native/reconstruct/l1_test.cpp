@@ -10,12 +10,12 @@ namespace {
 
 using namespace test;
 
-std::vector<float> solve(const GradientImages& images, SolveReport* report, float alpha = 0.2f) {
-  return reconstruct(images, GRADUS_RECONSTRUCTION_L1, alpha, never, report);
+std::vector<float> solve(const film::GradientImages& images, reconstruct::SolveReport* report, float alpha = 0.2f) {
+  return reconstruct::reconstruct(images, GRADUS_RECONSTRUCTION_L1, alpha, never, report);
 }
 
 // The objective: Σ α‖x−I‖ + ‖Dx−g‖ over all rows, in double.
-double energy(const GradientImages& images, const std::vector<float>& x, double alpha) {
+double energy(const film::GradientImages& images, const std::vector<float>& x, double alpha) {
   const int w = images.width, h = images.height, n = images.channels;
   double sum = 0.0;
   for (int py = 0; py < h; ++py) {
@@ -35,11 +35,11 @@ double energy(const GradientImages& images, const std::vector<float>& x, double 
 
 TEST(B2_Solver, L1ReportsItsResidual) {
   for (const auto& [w, h] : kSizes) {
-    GradientImages images = with_exact_gradients(w, h, 3, smooth_image(w, h, 3));
+    film::GradientImages images = with_exact_gradients(w, h, 3, smooth_image(w, h, 3));
     add_noise(&images.primal, 0.3f, 1);
     add_noise(&images.dx, 0.05f, 2);
     add_noise(&images.dy, 0.05f, 3);
-    SolveReport report;
+    reconstruct::SolveReport report;
     solve(images, &report);
     EXPECT_LE(report.residual, 1e-4f) << w << "x" << h;
     EXPECT_FALSE(report.hit_cap);
@@ -48,18 +48,19 @@ TEST(B2_Solver, L1ReportsItsResidual) {
   }
 }
 
-std::vector<float> minimise(const GradientImages& images) {
-  SolveReport report;
-  return interleave(minimise_l1(images, 0.2f, never, &report).solution);
+std::vector<float> minimise(const film::GradientImages& images) {
+  reconstruct::SolveReport report;
+  return reconstruct::interleave(reconstruct::minimise_l1(images, 0.2f, never, &report).solution);
 }
 
 TEST(B2_Solver, L1LowersItsObjective) {
-  GradientImages images = with_exact_gradients(64, 48, 3, smooth_image(64, 48, 3));
+  film::GradientImages images = with_exact_gradients(64, 48, 3, smooth_image(64, 48, 3));
   add_noise(&images.primal, 0.3f, 1);
   add_noise(&images.dx, 0.02f, 2);
   for (size_t i = 5; i < images.dx.size(); i += 301) images.dx[i] += 3.0f;
-  SolveReport report;
-  const std::vector<float> l1 = minimise(images), l2 = reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.2f, never, &report);
+  reconstruct::SolveReport report;
+  const std::vector<float> l1 = minimise(images),
+                           l2 = reconstruct::reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.2f, never, &report);
   const double best = energy(images, l1, 0.2);
   EXPECT_LT(best, 0.95 * energy(images, l2, 0.2));
   // Near a minimum: small random steps do not help.
@@ -72,7 +73,7 @@ TEST(B2_Solver, L1LowersItsObjective) {
 
 TEST(B2_Solver, L1IgnoresOutliersInGradientsAndPixels) {
   const std::vector<float> truth = smooth_image(64, 48, 3);
-  GradientImages images = with_exact_gradients(64, 48, 3, truth);
+  film::GradientImages images = with_exact_gradients(64, 48, 3, truth);
   add_noise(&images.primal, 0.05f, 1);
   for (const size_t pixel : {700u, 1501u, 2222u}) {
     for (int c = 0; c < 3; ++c) {
@@ -80,17 +81,18 @@ TEST(B2_Solver, L1IgnoresOutliersInGradientsAndPixels) {
       images.dy[3 * (pixel + 200) + c] -= 50.0f;
     }
   }
-  SolveReport report;
+  reconstruct::SolveReport report;
   const double l1 = rms_difference(solve(images, &report), truth);
-  const double l2 = rms_difference(reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.2f, never, &report), truth);
+  const double l2 =
+      rms_difference(reconstruct::reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.2f, never, &report), truth);
   EXPECT_LT(l1, 0.03);
   EXPECT_GT(l2, 10 * l1);
 }
 
-// Skewed noise: mean 1, median 0.1 of it. The minimiser alone estimates a median and loses 14 % here; so did the result, up to the
-// floor that its data rows had.
+// Skewed noise: mean 1, median 0.1 of it. The minimiser alone estimates a median and loses 14 % here; so did the
+// result, up to the floor that its data rows had.
 TEST(B3_L1, KeepsTheMeanOfSkewedNoise) {
-  GradientImages images = with_exact_gradients(128, 96, 3, std::vector<float>(128 * 96 * 3, 1.0f));
+  film::GradientImages images = with_exact_gradients(128, 96, 3, std::vector<float>(128 * 96 * 3, 1.0f));
   add_noise(&images.dx, 0.3f, 2);
   add_noise(&images.dy, 0.3f, 3);
   std::mt19937 random(1);
@@ -98,7 +100,7 @@ TEST(B3_L1, KeepsTheMeanOfSkewedNoise) {
     const float value = std::uniform_real_distribution<float>(0.0f, 1.0f)(random) < 0.1f ? 9.1f : 0.1f;
     for (int c = 0; c < 3; ++c) images.primal[i + c] = value;
   }
-  SolveReport report;
+  reconstruct::SolveReport report;
   EXPECT_LT(mean(minimise(images)) / mean(images.primal), 0.9);
   EXPECT_NEAR(mean(solve(images, &report)) / mean(images.primal), 1.0, 1e-5);
 }
@@ -107,26 +109,27 @@ TEST(B2_Solver, OutlierBoundGrowsWithTheSquareRootOfTheCount) {
   for (const size_t n : {100u, 1000u, 10000u}) {
     std::vector<float> squares(n, 4.0f);
     const double expected = 4.0 * double(n) / std::log(double(n));
-    EXPECT_NEAR(outlier_bound_squared(&squares) / expected, 1.0, 1e-4);
+    EXPECT_NEAR(reconstruct::outlier_bound_squared(&squares) / expected, 1.0, 1e-4);
     // ln n values of any size are outliers; they leave less of the sum to the others.
     std::vector<float> one(n, 4.0f);
     one[n / 2] = 1e30f;
-    EXPECT_NEAR(outlier_bound_squared(&one) / (4.0 * double(n - 1) / (std::log(double(n)) - 1.0)), 1.0, 1e-4);
+    EXPECT_NEAR(reconstruct::outlier_bound_squared(&one) / (4.0 * double(n - 1) / (std::log(double(n)) - 1.0)), 1.0,
+                1e-4);
     // Half of all values are no outliers.
     std::vector<float> half(n, 4.0f);
     std::fill_n(half.begin(), n / 2, 400.0f);
-    EXPECT_GT(outlier_bound_squared(&half), 400.0f);
+    EXPECT_GT(reconstruct::outlier_bound_squared(&half), 400.0f);
   }
   std::vector<float> none, single{5.0f}, zeros(100, 0.0f);
-  EXPECT_EQ(outlier_bound_squared(&none), kInfinity);
-  EXPECT_EQ(outlier_bound_squared(&single), kInfinity);
-  EXPECT_EQ(outlier_bound_squared(&zeros), 0.0f);
+  EXPECT_EQ(reconstruct::outlier_bound_squared(&none), kInfinity);
+  EXPECT_EQ(reconstruct::outlier_bound_squared(&single), kInfinity);
+  EXPECT_EQ(reconstruct::outlier_bound_squared(&zeros), 0.0f);
 }
 
 TEST(K2_Cancel, L1EndsAtOnce) {
-  const GradientImages images = with_exact_gradients(64, 64, 3, smooth_image(64, 64, 3));
-  SolveReport report;
-  reconstruct(
+  const film::GradientImages images = with_exact_gradients(64, 64, 3, smooth_image(64, 64, 3));
+  reconstruct::SolveReport report;
+  reconstruct::reconstruct(
       images, GRADUS_RECONSTRUCTION_L1, 0.2f, [] { return true; }, &report);
   EXPECT_EQ(report.inner_steps, 0);
 }

@@ -21,7 +21,7 @@ struct Size {
 constexpr Size kSizes[] = {{1, 1}, {1, 7}, {7, 1}, {2, 2}, {33, 17}, {64, 48}, {512, 512}};
 
 // ‖A x − b‖ / ‖b‖ with A = α² + DᵀD and b = α²I + Dᵀg, one channel.
-double residual(const GradientImages& images, const std::vector<float>& x, double alpha) {
+double residual(const film::GradientImages& images, const std::vector<float>& x, double alpha) {
   const int w = images.width, h = images.height;
   const auto at = [w](const std::vector<float>& v, int px, int py) { return double(v[size_t(py) * w + px]); };
   double error = 0.0, norm = 0.0;
@@ -51,9 +51,9 @@ double residual(const GradientImages& images, const std::vector<float>& x, doubl
   return norm > 0.0 ? std::sqrt(error / norm) : std::sqrt(error);
 }
 
-std::vector<float> solve(const GradientImages& images, float alpha = 0.2f) {
-  SolveReport report;
-  return reconstruct(images, GRADUS_RECONSTRUCTION_L2, alpha, never, &report);
+std::vector<float> solve(const film::GradientImages& images, float alpha = 0.2f) {
+  reconstruct::SolveReport report;
+  return reconstruct::reconstruct(images, GRADUS_RECONSTRUCTION_L2, alpha, never, &report);
 }
 
 TEST(B1_FixedPoint, L2KeepsAnImageWithItsOwnGradients) {
@@ -71,25 +71,27 @@ TEST(B1_FixedPoint, L2KeepsAConstant) {
 
 // Without a weight of the user's: not the zero that it is written as, under which the image's brightness is undefined.
 TEST(B2_Solver, AutomaticWeightIsThatOfTheSolver) {
-  GradientImages images = with_exact_gradients(33, 17, 3, smooth_image(33, 17, 3));
+  film::GradientImages images = with_exact_gradients(33, 17, 3, smooth_image(33, 17, 3));
   add_noise(&images.dx, 0.05f, 2);
   EXPECT_EQ(solve(images, 0.0f), solve(images, 0.4f));
-  SolveReport report;
-  const auto l1 = [&](float alpha) { return reconstruct(images, GRADUS_RECONSTRUCTION_L1, alpha, never, &report); };
+  reconstruct::SolveReport report;
+  const auto l1 = [&](float alpha) {
+    return reconstruct::reconstruct(images, GRADUS_RECONSTRUCTION_L1, alpha, never, &report);
+  };
   EXPECT_EQ(l1(0.0f), l1(0.2f));
 }
 
 TEST(B2_Solver, TooSmallAWeightIsRefused) {
-  EXPECT_NO_THROW(check_alpha(0.0f));
-  EXPECT_NO_THROW(check_alpha(1e-3f));
-  EXPECT_THROW(check_alpha(5e-4f), Error);
-  EXPECT_THROW(check_alpha(std::numeric_limits<float>::quiet_NaN()), Error);
+  EXPECT_NO_THROW(schema::check_alpha(0.0f));
+  EXPECT_NO_THROW(schema::check_alpha(1e-3f));
+  EXPECT_THROW(schema::check_alpha(5e-4f), Error);
+  EXPECT_THROW(schema::check_alpha(std::numeric_limits<float>::quiet_NaN()), Error);
 }
 
 TEST(B2_Solver, L2SolvesTheNormalEquations) {
   for (const Size s : kSizes) {
     for (const float alpha : {0.02f, 0.2f, 1.0f}) {
-      GradientImages images = with_exact_gradients(s.width, s.height, 1, smooth_image(s.width, s.height, 1));
+      film::GradientImages images = with_exact_gradients(s.width, s.height, 1, smooth_image(s.width, s.height, 1));
       add_noise(&images.primal, 0.3f, 1);
       add_noise(&images.dx, 0.05f, 2);
       add_noise(&images.dy, 0.05f, 3);
@@ -110,7 +112,8 @@ TEST(B2_Solver, L2OfHugeValuesIsFinite) {
 
 TEST(B2_Solver, L2OfASpikeKeepsItsMean) {
   for (const Size s : kSizes) {
-    GradientImages images = with_exact_gradients(s.width, s.height, 1, std::vector<float>(size_t(s.width) * s.height, 0.5f));
+    film::GradientImages images =
+        with_exact_gradients(s.width, s.height, 1, std::vector<float>(size_t(s.width) * s.height, 0.5f));
     images.primal[images.primal.size() / 2] = 1e6f;
     const std::vector<float> x = solve(images);
     EXPECT_LT(residual(images, x, 0.2), 1e-4);
@@ -126,24 +129,24 @@ TEST(B2_Solver, L2OfAStepAndAPlane) {
 }
 
 TEST(B2_Solver, L2LeavesOutWhatIsNotFinite) {
-  GradientImages images = with_exact_gradients(33, 17, 1, std::vector<float>(33 * 17, 1.0f));
+  film::GradientImages images = with_exact_gradients(33, 17, 1, std::vector<float>(33 * 17, 1.0f));
   images.primal[40] = std::numeric_limits<float>::quiet_NaN();
   images.dx[90] = std::numeric_limits<float>::infinity();
   for (const float v : solve(images)) EXPECT_TRUE(std::isfinite(v));
 }
 
 TEST(L1_Threads, L2HasTheSameBitsForAnyNumberOfThreads) {
-  GradientImages images = with_exact_gradients(133, 71, 3, smooth_image(133, 71, 3));
+  film::GradientImages images = with_exact_gradients(133, 71, 3, smooth_image(133, 71, 3));
   add_noise(&images.primal, 0.3f, 1);
   test::expect_same_bits_for_any_number_of_threads([&] { return solve(images); });
 }
 
 // A linear operator: applied to a sum, it gives the sum (contract 3.4).
 TEST(B2_Solver, L2IsLinear) {
-  GradientImages a = with_exact_gradients(33, 17, 1, smooth_image(33, 17, 1)), b = a;
+  film::GradientImages a = with_exact_gradients(33, 17, 1, smooth_image(33, 17, 1)), b = a;
   add_noise(&a.primal, 0.3f, 1);
   add_noise(&b.dx, 0.3f, 2);
-  GradientImages sum = a;
+  film::GradientImages sum = a;
   for (size_t i = 0; i < sum.primal.size(); ++i) {
     sum.primal[i] += b.primal[i];
     sum.dx[i] += b.dx[i];
@@ -155,17 +158,19 @@ TEST(B2_Solver, L2IsLinear) {
   EXPECT_LT(max_difference(x, solve(sum)), 1e-5);
 }
 
-// Pairs without samples are no rows: across a column of them, two pictures lie side by side that know nothing of each other.
+// Pairs without samples are no rows: across a column of them, two pictures lie side by side that know nothing of each
+// other.
 TEST(B2_Solver, L2LeavesOutPairsWithoutSamples) {
   const int w = 40, h = 24, left = 17;
-  GradientImages images = with_exact_gradients(w, h, 3, smooth_image(w, h, 3));
+  film::GradientImages images = with_exact_gradients(w, h, 3, smooth_image(w, h, 3));
   add_noise(&images.primal, 0.3f, 1);
   add_noise(&images.dx, 0.1f, 2);
   const auto part = [&](int begin, int width) {
     const auto cut = [&](const std::vector<float>& from) {
-      return make_image(width, h, 3, [&](int x, int y, int c) { return from[3 * (size_t(y) * w + size_t(begin + x)) + c]; });
+      return make_image(width, h, 3,
+                        [&](int x, int y, int c) { return from[3 * (size_t(y) * w + size_t(begin + x)) + c]; });
     };
-    GradientImages result = images;
+    film::GradientImages result = images;
     result.width = width;
     result.primal = cut(images.primal);
     result.dx = cut(images.dx);
@@ -174,7 +179,7 @@ TEST(B2_Solver, L2LeavesOutPairsWithoutSamples) {
   };
   const std::vector<float> a = part(0, left), b = part(left, w - left);
   for (int y = 0; y < h; ++y) {
-    for (int c = 0; c < 3; ++c) images.dx[3 * (size_t(y) * w + left - 1) + c] = kAbsentPair;
+    for (int c = 0; c < 3; ++c) images.dx[3 * (size_t(y) * w + left - 1) + c] = film::kAbsentPair;
   }
   const std::vector<float> x = solve(images);
   for (int y = 0; y < h; ++y) {
@@ -186,18 +191,18 @@ TEST(B2_Solver, L2LeavesOutPairsWithoutSamples) {
 }
 
 // Sums of noise; some pixels without samples.
-Film noisy_film(int width, int height, int channels) {
-  Film film(uint32_t(width), uint32_t(height), {0, 0, width, height}, channels, 1, true);
+film::Film noisy_film(int width, int height, int channels) {
+  film::Film film(uint32_t(width), uint32_t(height), {0, 0, width, height}, channels, 1, true);
   std::mt19937 random(1);
   std::normal_distribution<float> normal;
   std::uniform_int_distribution<uint32_t> samples(0, 3), pairs(1, 3);
   const auto fill = [&](std::vector<Radiance>* plane) {
     for (Radiance& value : *plane) value = {normal(random), normal(random), normal(random), normal(random)};
   };
-  for (int h = 0; h < kHalves; ++h) {
+  for (int h = 0; h < film::kHalves; ++h) {
     fill(&film.components[0].primal[h]);
     for (uint32_t& count : film.count[h]) count = samples(random);
-    for (int offset = 0; offset < kOffsets; ++offset) {
+    for (int offset = 0; offset < film::kOffsets; ++offset) {
       fill(&film.components[0].gradient[h][offset]);
       for (float& count : film.pair_count[h][offset]) count = static_cast<float>(pairs(random));
     }
@@ -210,18 +215,20 @@ TEST(B2_Solver, L2OfAFrameHasTheBitsOfItsImagesChannelByChannel) {
   const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
   for (const Size s : kSizes) {
     for (const int channels : {3, 4}) {
-      const Film film = noisy_film(s.width, s.height, channels);
-      const GradientImages images = read_images(film, 0);
+      const film::Film film = noisy_film(s.width, s.height, channels);
+      const film::GradientImages images = film::read_images(film, 0);
       std::vector<float> expected(images.primal.size());
       for (int c = 0; c < channels; ++c) {
-        const PoissonPlanes planes{images.primal.data() + c, images.dx.data() + c, images.dy.data() + c, size_t(channels)};
-        make_l2(s.width, s.height, 0.2f)->apply(planes, expected.data() + c);
+        const reconstruct::PoissonPlanes planes{images.primal.data() + c, images.dx.data() + c, images.dy.data() + c,
+                                                size_t(channels)};
+        reconstruct::make_l2(s.width, s.height, 0.2f)->apply(planes, expected.data() + c);
       }
       EXPECT_EQ(solve(images), expected);
       for (const int threads : {1, 3}) {
-        SolveReport report;
+        reconstruct::SolveReport report;
         std::vector<float> x;
-        tbb::task_arena(threads).execute([&] { x = reconstruct(film, 0, GRADUS_RECONSTRUCTION_L2, 0.2f, never, &report); });
+        tbb::task_arena(threads).execute(
+            [&] { x = reconstruct::reconstruct(film, 0, GRADUS_RECONSTRUCTION_L2, 0.2f, never, &report); });
         EXPECT_EQ(x, expected) << s.width << "x" << s.height << ", " << threads << " threads";
       }
     }

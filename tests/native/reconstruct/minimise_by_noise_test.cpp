@@ -9,16 +9,16 @@ namespace {
 
 using namespace test;
 
-std::vector<float> solve(const GradientImages& images, SolveReport* report) {
-  const Minimum minimum = minimise_by_noise(images, never, report);
+std::vector<float> solve(const film::GradientImages& images, reconstruct::SolveReport* report) {
+  const reconstruct::Minimum minimum = reconstruct::minimise_by_noise(images, never, report);
   return make_image(images.width, images.height, 3, [&](int x, int y, int c) { return minimum.solution.row(y, c)[x]; });
 }
 
-// It stops where the worst row is within a hundredth of its noise, not at a residual, which counts what is bright (CgGoal): here at up to
-// 1.1e-3, where L1 goes on to 1e-4.
+// It stops where the worst row is within a hundredth of its noise, not at a residual, which counts what is bright
+// (CgGoal): here at up to 1.1e-3, where L1 goes on to 1e-4.
 TEST(B2_ByNoise, ReportsItsResidual) {
   for (const auto& [w, h] : kSizes) {
-    SolveReport report;
+    reconstruct::SolveReport report;
     solve(noisy_images(w, h), &report);
     EXPECT_LE(report.residual, 2e-3f) << w << "x" << h;
     EXPECT_FALSE(report.hit_cap);
@@ -30,12 +30,13 @@ TEST(B2_ByNoise, GoesByTheNoiseOfEachPlace) {
   const int w = 96, h = 64;
   const std::vector<float> truth = smooth_image(w, h, 3);
   const auto left = [&](size_t i) { return int(i) % w < w / 2; };
-  const GradientImages images = noisy_images(
-      w, h, 3, truth, [&](size_t i) { return left(i) ? 0.01f : 1.0f; }, [&](size_t i) { return left(i) ? 1.0f : 0.01f; });
-  SolveReport report;
+  const film::GradientImages images = noisy_images(
+      w, h, 3, truth, [&](size_t i) { return left(i) ? 0.01f : 1.0f; },
+      [&](size_t i) { return left(i) ? 1.0f : 0.01f; });
+  reconstruct::SolveReport report;
   const double by_noise = rms_difference(solve(images, &report), truth);
   for (const float alpha : {0.1f, 0.4f, 1.0f, 3.0f}) {
-    const auto l2 = reconstruct(images, GRADUS_RECONSTRUCTION_L2, alpha, never, &report);
+    const auto l2 = reconstruct::reconstruct(images, GRADUS_RECONSTRUCTION_L2, alpha, never, &report);
     EXPECT_LT(by_noise, 0.6 * rms_difference(l2, truth)) << alpha;
   }
 }
@@ -44,7 +45,7 @@ TEST(B2_ByNoise, GoesByTheNoiseOfEachPlace) {
 TEST(B2_ByNoise, IgnoresOutliersOfOneHalf) {
   const int w = 64, h = 48;
   const std::vector<float> truth = smooth_image(w, h, 3);
-  GradientImages images = noisy_images(
+  film::GradientImages images = noisy_images(
       w, h, 3, truth, [](size_t) { return 0.1f; }, [](size_t) { return 0.01f; });
   for (const size_t pixel : {700u, 1501u, 2222u}) {
     for (int c = 0; c < 3; ++c) {
@@ -54,10 +55,11 @@ TEST(B2_ByNoise, IgnoresOutliersOfOneHalf) {
     images.primal_deviation[pixel] = 5e3f;
     images.dy_deviation[pixel + 200] = 50.0f;
   }
-  SolveReport report;
+  reconstruct::SolveReport report;
   const double by_noise = rms_difference(solve(images, &report), truth);
   EXPECT_LT(by_noise, 0.05);
-  EXPECT_GT(rms_difference(reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.4f, never, &report), truth), 20 * by_noise);
+  EXPECT_GT(rms_difference(reconstruct::reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.4f, never, &report), truth),
+            20 * by_noise);
 }
 
 // Beside a light of 30,000 the residual was small at once, and the solver stopped with dark holes left of its start.
@@ -67,9 +69,9 @@ TEST(B2_ByNoise, IsNotStoppedByALampInView) {
   const auto solve_beside = [&](float lamp) {
     std::vector<float> truth = smooth_image(w, h, 3);
     for (size_t i = 0; i < truth.size(); ++i) truth[i] += lit(i / 3) ? lamp : 0.0f;
-    GradientImages images = noisy_images(
+    film::GradientImages images = noisy_images(
         w, h, 3, truth, [](size_t) { return 0.3f; }, [](size_t i) { return i % 37 == 0 ? 10.0f : 0.01f; });
-    SolveReport report;
+    reconstruct::SolveReport report;
     std::vector<float> result = solve(images, &report);
     EXPECT_FALSE(report.hit_cap);
     for (size_t i = 0; i < result.size(); ++i) result[i] = lit(i / 3) ? 0.0f : result[i] - truth[i];
@@ -81,17 +83,18 @@ TEST(B2_ByNoise, IsNotStoppedByALampInView) {
   EXPECT_LT(rms_difference(solve_beside(3e4f), none), 1.2 * without);
 }
 
-// Noise over six decades, from one area to the next: the matrix was singular in single precision, and the picture of the size of 10⁷.
+// Noise over six decades, from one area to the next: the matrix was singular in single precision, and the picture of
+// the size of 10⁷.
 TEST(B2_ByNoise, DoesNotDivergeOverDecadesOfNoise) {
   const int w = 128, h = 96;
   const std::vector<float> truth = smooth_image(w, h, 3);
   const auto area = [&](size_t i, float scale) {
     return 0.5f + 0.5f * std::sin(scale * float(i % w) + 1.3f * std::sin(scale * float(i / w)));
   };
-  const GradientImages images = noisy_images(
+  const film::GradientImages images = noisy_images(
       w, h, 3, truth, [&](size_t i) { return std::pow(10.0f, -3.0f + 6.5f * area(i, 0.21f)); },
       [&](size_t i) { return std::pow(10.0f, -6.0f + 6.0f * area(i, 0.13f)); });
-  SolveReport report;
+  reconstruct::SolveReport report;
   const std::vector<float> result = solve(images, &report);
   EXPECT_FALSE(report.hit_cap);
   EXPECT_LT(rms_difference(result, truth), 1.0);
@@ -99,14 +102,16 @@ TEST(B2_ByNoise, DoesNotDivergeOverDecadesOfNoise) {
 
 // One sample per pixel: a half has none, and no noise is known.
 TEST(B2_ByNoise, WithoutKnownNoiseIsNearL2) {
-  GradientImages images = noisy_images(64, 48);
+  film::GradientImages images = noisy_images(64, 48);
   for (auto* deviation : {&images.primal_deviation, &images.dx_deviation, &images.dy_deviation}) {
     std::fill(deviation->begin(), deviation->end(), std::numeric_limits<float>::quiet_NaN());
   }
-  SolveReport report;
+  reconstruct::SolveReport report;
   const std::vector<float> truth = smooth_image(64, 48, 3);
   const double by_noise = rms_difference(solve(images, &report), truth);
-  EXPECT_LT(by_noise, 1.2 * rms_difference(reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.4f, never, &report), truth));
+  EXPECT_LT(
+      by_noise,
+      1.2 * rms_difference(reconstruct::reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.4f, never, &report), truth));
 }
 
 }  // namespace

@@ -13,10 +13,10 @@ using test::never;
 
 constexpr int kSizes[][2] = {{1, 1}, {1, 7}, {7, 1}, {2, 3}, {33, 17}, {160, 90}};
 
-Field random_field(int width, int height, int channels, unsigned seed) {
+reconstruct::Field random_field(int width, int height, int channels, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
-  Field field(width, height, channels);
+  reconstruct::Field field(width, height, channels);
   for (int y = 0; y < height; ++y) {
     for (int c = 0; c < channels; ++c) {
       for (int x = 0; x < width; ++x) field.row(y, c)[x] = normal(random);
@@ -26,7 +26,7 @@ Field random_field(int width, int height, int channels, unsigned seed) {
 }
 
 // Difference weights of three decades, without any order, as they are for a noisy image.
-void fill(Stencil* a) {
+void fill(reconstruct::Stencil* a) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> exponent(-0.5f, 2.5f);
   const int w = a->width(), h = a->height();
@@ -38,25 +38,27 @@ void fill(Stencil* a) {
   }
   for (int y = 0; y < h; ++y) {
     for (int x = 0; x < w; ++x) {
-      a->diagonal.row(y)[x] = 0.02f + a->right.row(y)[x] + a->right.row(y)[x - 1] + a->up.row(y)[x] + a->up.row(y - 1)[x];
+      a->diagonal.row(y)[x] =
+          0.02f + a->right.row(y)[x] + a->right.row(y)[x - 1] + a->up.row(y)[x] + a->up.row(y - 1)[x];
     }
   }
 }
 
-double dot(const Field& a, const Field& b) {
+double dot(const reconstruct::Field& a, const reconstruct::Field& b) {
   double sum = 0.0;
   for (int y = 0; y < a.height(); ++y) sum += dot_row(a.row(y), b.row(y), a.width());
   return sum;
 }
 
-Field product(const Stencil& a, const Field& x) {
-  Field result(x.width(), x.height(), 1);
-  for (int y = 0; y < x.height(); ++y) apply_row(a, x, y, 0, result.row(y));
+reconstruct::Field product(const reconstruct::Stencil& a, const reconstruct::Field& x) {
+  reconstruct::Field result(x.width(), x.height(), 1);
+  for (int y = 0; y < x.height(); ++y) reconstruct::apply_row(a, x, y, 0, result.row(y));
   return result;
 }
 
-Field interpolated(const Interpolation& p, const Field& coarse, int width, int height) {
-  Field fine(width, height, 1);
+reconstruct::Field interpolated(const reconstruct::Interpolation& p, const reconstruct::Field& coarse, int width,
+                                int height) {
+  reconstruct::Field fine(width, height, 1);
   std::vector<float> row(size_t(width) + 1);
   for (int y = 0; y < height; ++y) {
     p.interpolate_row(y, coarse.row(y / 2), coarse.row(y / 2 + 1), row.data());
@@ -65,8 +67,8 @@ Field interpolated(const Interpolation& p, const Field& coarse, int width, int h
   return fine;
 }
 
-Field restricted(const Interpolation& p, const Field& fine) {
-  Field coarse((fine.width() + 1) / 2, (fine.height() + 1) / 2, 1);
+reconstruct::Field restricted(const reconstruct::Interpolation& p, const reconstruct::Field& fine) {
+  reconstruct::Field coarse((fine.width() + 1) / 2, (fine.height() + 1) / 2, 1);
   for (int y = 0; y < coarse.height(); ++y) {
     p.restrict_rows(y, fine.row(2 * y - 1), fine.row(2 * y), fine.row(2 * y + 1), coarse.row(y));
   }
@@ -76,20 +78,22 @@ Field restricted(const Interpolation& p, const Field& fine) {
 // Two levels: the first one's matrix has no corners, the second one's has.
 TEST(B2_Multigrid, CoarseMatrixIsTheFineOneBetweenInterpolations) {
   for (const auto& [w, h] : kSizes) {
-    Stencil fine(w, h, false);
+    reconstruct::Stencil fine(w, h, false);
     fill(&fine);
     for (int level = 0; level < 2; ++level) {
       const int fw = fine.width(), fh = fine.height(), cw = (fw + 1) / 2, ch = (fh + 1) / 2;
-      Interpolation p(fw, fh);
+      reconstruct::Interpolation p(fw, fh);
       p.update(fine);
-      Stencil coarse(cw, ch, true);
+      reconstruct::Stencil coarse(cw, ch, true);
       p.coarsen(fine, &coarse);
-      const Field u = random_field(cw, ch, 1, 2), v = random_field(cw, ch, 1, 3);
-      const Field pu = interpolated(p, u, fw, fh), pv = interpolated(p, v, fw, fh);
+      const reconstruct::Field u = random_field(cw, ch, 1, 2), v = random_field(cw, ch, 1, 3);
+      const reconstruct::Field pu = interpolated(p, u, fw, fh), pv = interpolated(p, v, fw, fh);
       const double scale = dot(u, product(coarse, u)) + dot(v, product(coarse, v));
-      EXPECT_NEAR(dot(u, product(coarse, v)), dot(pu, product(fine, pv)), 1e-5 * scale) << w << "x" << h << " level " << level;
-      EXPECT_NEAR(dot(u, product(coarse, u)), dot(pu, product(fine, pu)), 1e-5 * scale) << w << "x" << h << " level " << level;
-      const Field f = random_field(fw, fh, 1, 4);
+      EXPECT_NEAR(dot(u, product(coarse, v)), dot(pu, product(fine, pv)), 1e-5 * scale)
+          << w << "x" << h << " level " << level;
+      EXPECT_NEAR(dot(u, product(coarse, u)), dot(pu, product(fine, pu)), 1e-5 * scale)
+          << w << "x" << h << " level " << level;
+      const reconstruct::Field f = random_field(fw, fh, 1, 4);
       EXPECT_NEAR(dot(u, restricted(p, f)), dot(pu, f), 1e-5 * (dot(f, f) + dot(u, u)));
       fine = coarse;
     }
@@ -97,25 +101,26 @@ TEST(B2_Multigrid, CoarseMatrixIsTheFineOneBetweenInterpolations) {
 }
 
 // Of each row the pixels with x + y even, side by side.
-std::vector<float> red_of(const Field& field, int y) {
+std::vector<float> red_of(const reconstruct::Field& field, int y) {
   std::vector<float> red;
-  for (int x = y & 1; x < field.width() + (y & 1); x += 2) red.push_back(y >= 0 && y < field.height() ? field.row(y)[x] : 0.0f);
+  for (int x = y & 1; x < field.width() + (y & 1); x += 2)
+    red.push_back(y >= 0 && y < field.height() ? field.row(y)[x] : 0.0f);
   return red;
 }
 
 TEST(B2_Multigrid, RedPixelsAreThoseOfTheWholeGrid) {
   for (const auto& [w, h] : kSizes) {
-    Stencil fine(w, h, false);
+    reconstruct::Stencil fine(w, h, false);
     fill(&fine);
-    Interpolation p(w, h);
+    reconstruct::Interpolation p(w, h);
     p.update(fine);
     const int cw = (w + 1) / 2, ch = (h + 1) / 2;
-    const Field coarse = random_field(cw, ch, 1, 2), whole = interpolated(p, coarse, w, h);
-    Field residual = random_field(w, h, 1, 3);
+    const reconstruct::Field coarse = random_field(cw, ch, 1, 2), whole = interpolated(p, coarse, w, h);
+    reconstruct::Field residual = random_field(w, h, 1, 3);
     for (int y = 0; y < h; ++y) {
       for (int x = 1 - (y & 1); x < w; x += 2) residual.row(y)[x] = 0.0f;
     }
-    const Field expected = restricted(p, residual);
+    const reconstruct::Field expected = restricted(p, residual);
     p.keep_red();
     for (int y = 0; y < h; ++y) {
       std::vector<float> red(static_cast<size_t>(cw), 0.0f);
@@ -125,7 +130,8 @@ TEST(B2_Multigrid, RedPixelsAreThoseOfTheWholeGrid) {
     }
     for (int y = 0; y < ch; ++y) {
       std::vector<float> out(static_cast<size_t>(cw)), below{0.0f}, above{0.0f};
-      const std::vector<float> under = red_of(residual, 2 * y - 1), here = red_of(residual, 2 * y), over = red_of(residual, 2 * y + 1);
+      const std::vector<float> under = red_of(residual, 2 * y - 1), here = red_of(residual, 2 * y),
+                               over = red_of(residual, 2 * y + 1);
       below.insert(below.end(), under.begin(), under.end());  // readable one pixel to the left
       above.insert(above.end(), over.begin(), over.end());
       p.restrict_red_rows(y, below.data() + 1, here.data(), above.data() + 1, out.data());
@@ -136,11 +142,11 @@ TEST(B2_Multigrid, RedPixelsAreThoseOfTheWholeGrid) {
 
 TEST(B2_Multigrid, CycleIsSymmetricAndPositive) {
   for (const auto& [w, h] : kSizes) {
-    Multigrid multigrid(w, h, 1);
+    reconstruct::Multigrid multigrid(w, h, 1);
     fill(&multigrid.matrix());
     multigrid.update();
-    const Field a = random_field(w, h, 1, 2), b = random_field(w, h, 1, 3);
-    Field za(w, h, 1), zb(w, h, 1);
+    const reconstruct::Field a = random_field(w, h, 1, 2), b = random_field(w, h, 1, 3);
+    reconstruct::Field za(w, h, 1), zb(w, h, 1);
     const double aa = multigrid.cycle(a, &za).total()[0], bb = multigrid.cycle(b, &zb).total()[0];
     EXPECT_GT(aa, 0.0);
     EXPECT_NEAR(aa, dot(a, za), 1e-5 * aa);
@@ -148,21 +154,21 @@ TEST(B2_Multigrid, CycleIsSymmetricAndPositive) {
   }
 }
 
-CgReport solve_without_order(int max_steps) {
+reconstruct::CgReport solve_without_order(int max_steps) {
   constexpr int w = 320, h = 180;
-  Multigrid multigrid(w, h, 1);
+  reconstruct::Multigrid multigrid(w, h, 1);
   fill(&multigrid.matrix());
   multigrid.update();
-  const Field b = random_field(w, h, 1, 2);
-  Field x(w, h, 1);
-  CgFields fields(w, h, 1);
-  return conjugate_gradient(&multigrid, b, &x, &fields, {.residual = 1e-4f}, max_steps, never);
+  const reconstruct::Field b = random_field(w, h, 1, 2);
+  reconstruct::Field x(w, h, 1);
+  reconstruct::CgFields fields(w, h, 1);
+  return reconstruct::conjugate_gradient(&multigrid, b, &x, &fields, {.residual = 1e-4f}, max_steps, never);
 }
 
-// With cells of 2×2 whose weights are those of the fine differences in series, which is weaker than the fine matrix where weights jump, it
-// took 136 steps.
+// With cells of 2×2 whose weights are those of the fine differences in series, which is weaker than the fine matrix
+// where weights jump, it took 136 steps.
 TEST(B2_Multigrid, WeightsWithoutOrderTakeFewSteps) {
-  const CgReport report = solve_without_order(200);
+  const reconstruct::CgReport report = solve_without_order(200);
   EXPECT_LE(report.steps, 40);
   EXPECT_TRUE(report.reached);
   EXPECT_LE(report.residual, 1e-4f);
@@ -170,8 +176,8 @@ TEST(B2_Multigrid, WeightsWithoutOrderTakeFewSteps) {
 
 // A solve that ends at its limit says so, and how far it came.
 TEST(B2_Multigrid, TheLimitOfStepsIsReported) {
-  SolveReport total;
-  add_solve(solve_without_order(2), &total);
+  reconstruct::SolveReport total;
+  reconstruct::add_solve(solve_without_order(2), &total);
   EXPECT_EQ(total.inner_steps, 2);
   EXPECT_TRUE(total.hit_cap);
   EXPECT_GT(total.residual, 1e-4f);

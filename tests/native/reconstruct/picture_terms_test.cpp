@@ -16,7 +16,7 @@ namespace {
 constexpr int kWidth = 40, kHeight = 30;
 const CancelCheck kNever = [] { return false; };
 
-Features flat_features() {
+film::Features flat_features() {
   const size_t pixels = size_t(kWidth) * size_t(kHeight);
   return {kWidth,
           kHeight,
@@ -25,14 +25,14 @@ Features flat_features() {
           {1, std::vector<float>(pixels, 1.0f), {}}};
 }
 
-Field flat(float value, int channels = 3) {
-  Field field(kWidth, kHeight, channels);
+reconstruct::Field flat(float value, int channels = 3) {
+  reconstruct::Field field(kWidth, kHeight, channels);
   for_values(&field, [value](float& v, int, int, int) { v = value; });
   return field;
 }
 
-HalvedImage noisy(float mean, float deviation, unsigned seed) {
-  HalvedImage image{Field(kWidth, kHeight, 3), Field(kWidth, kHeight, 3)};
+reconstruct::HalvedImage noisy(float mean, float deviation, unsigned seed) {
+  reconstruct::HalvedImage image{reconstruct::Field(kWidth, kHeight, 3), reconstruct::Field(kWidth, kHeight, 3)};
   std::mt19937 random(seed);
   std::normal_distribution<float> normal(0.0f, deviation);
   for (int y = 0; y < kHeight; ++y) {
@@ -47,15 +47,15 @@ HalvedImage noisy(float mean, float deviation, unsigned seed) {
   return image;
 }
 
-PictureTerm term_of(float value, float error) { return {flat(value), flat(error, 1), {}, false}; }
+reconstruct::PictureTerm term_of(float value, float error) { return {flat(value), flat(error, 1), {}, false}; }
 
-float sum_at(const std::vector<PictureTerm>& terms, int x, int y, int c) {
+float sum_at(const std::vector<reconstruct::PictureTerm>& terms, int x, int y, int c) {
   float sum = 0.0f;
-  for (const PictureTerm& term : terms) sum += term.image.row(y, c)[x];
+  for (const reconstruct::PictureTerm& term : terms) sum += term.image.row(y, c)[x];
   return sum;
 }
 
-void expect_flat(const Field& field, float value) {
+void expect_flat(const reconstruct::Field& field, float value) {
   for (int y = 0; y < kHeight; ++y) {
     for (int c = 0; c < field.channels(); ++c) {
       for (int x = 0; x < kWidth; ++x) ASSERT_NEAR(field.row(y, c)[x], value, 1e-5f) << x << " " << y << " " << c;
@@ -63,7 +63,7 @@ void expect_flat(const Field& field, float value) {
   }
 }
 
-double squared_error(const Field& field, float truth) {
+double squared_error(const reconstruct::Field& field, float truth) {
   double sum = 0.0;
   for (int y = 0; y < kHeight; ++y) {
     for (int c = 0; c < 3; ++c) {
@@ -74,10 +74,10 @@ double squared_error(const Field& field, float truth) {
 }
 
 TEST(Partition, APartWithoutNoiseStaysAsSharpAsItIs) {
-  HalvedImage image{Field(kWidth, kHeight, 3), Field(kWidth, kHeight, 3)};
+  reconstruct::HalvedImage image{reconstruct::Field(kWidth, kHeight, 3), reconstruct::Field(kWidth, kHeight, 3)};
   for_values(&image.mean, [](float& value, int x, int y, int c) { value = float((x + y + c) % 2); });
-  const Field before = image.mean;
-  const PictureTerm term = regress_term(flat_features(), image, kNever);
+  const reconstruct::Field before = image.mean;
+  const reconstruct::PictureTerm term = reconstruct::regress_term(flat_features(), image, kNever);
   for (int y = 0; y < kHeight; ++y) {
     for (int c = 0; c < 3; ++c) {
       for (int x = 0; x < kWidth; ++x) ASSERT_EQ(term.image.row(y, c)[x], before.row(y, c)[x]);
@@ -87,73 +87,77 @@ TEST(Partition, APartWithoutNoiseStaysAsSharpAsItIs) {
 }
 
 TEST(Partition, APartLosesMostOfItsNoise) {
-  const HalvedImage image = noisy(1.0f, 0.5f, 1);
-  const PictureTerm term = regress_term(flat_features(), image, kNever);
+  const reconstruct::HalvedImage image = noisy(1.0f, 0.5f, 1);
+  const reconstruct::PictureTerm term = reconstruct::regress_term(flat_features(), image, kNever);
   EXPECT_LT(squared_error(term.image, 1.0f), 0.1 * squared_error(image.mean, 1.0f));
 }
 
-// Windows of little noise over edges are wrong by more than the samples are: light of lights' edges went to what is not there.
+// Windows of little noise over edges are wrong by more than the samples are: light of lights' edges went to what is not
+// there.
 TEST(Partition, NoPartIsWrongByMoreThanItsSamples) {
-  HalvedImage image = noisy(0.0f, 0.02f, 4);
+  reconstruct::HalvedImage image = noisy(0.0f, 0.02f, 4);
   for_values(&image.mean, [](float& value, int x, int y, int) { value += (x / 3 + y / 3) % 2 == 0 ? 4.0f : 0.5f; });
-  const PictureTerm term = regress_term(flat_features(), image, kNever);
-  const Field noise = box_mean(make_field(kWidth, kHeight, [&](int x, int y) { return mean_of_squares(image.half_difference, x, y); }), 1);
+  const reconstruct::PictureTerm term = reconstruct::regress_term(flat_features(), image, kNever);
+  const reconstruct::Field noise = reconstruct::box_mean(
+      make_field(kWidth, kHeight,
+                 [&](int x, int y) { return reconstruct::mean_of_squares(image.half_difference, x, y); }),
+      1);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) ASSERT_LE(term.error.row(y)[x], 1.0001f * noise.row(y)[x]) << x << " " << y;
   }
 }
 
 TEST(Partition, WhatLacksGoesToTheUncertainParts) {
-  std::vector<PictureTerm> terms{term_of(1.0f, 0.0f), term_of(2.0f, 1.0f), term_of(3.0f, 3.0f)};
-  add_up(flat(7.0f), &terms);
+  std::vector<reconstruct::PictureTerm> terms{term_of(1.0f, 0.0f), term_of(2.0f, 1.0f), term_of(3.0f, 3.0f)};
+  reconstruct::add_up(flat(7.0f), &terms);
   expect_flat(terms[0].image, 1.0f);
   expect_flat(terms[1].image, 2.25f);
   expect_flat(terms[2].image, 3.75f);
 }
 
 TEST(Partition, WhereNothingIsKnownItGoesByLight) {
-  std::vector<PictureTerm> terms{term_of(1.0f, 0.0f), term_of(3.0f, 0.0f)};
-  add_up(flat(8.0f), &terms);
+  std::vector<reconstruct::PictureTerm> terms{term_of(1.0f, 0.0f), term_of(3.0f, 0.0f)};
+  reconstruct::add_up(flat(8.0f), &terms);
   expect_flat(terms[0].image, 2.0f);
   expect_flat(terms[1].image, 6.0f);
 }
 
 // The uncertain part alone was to give what it did not have, and became black light.
 TEST(Partition, NoPartGoesBelowZeroWhileAnotherHasLight) {
-  std::vector<PictureTerm> terms{term_of(4.0f, 0.001f), term_of(1.0f, 5.0f), term_of(2.0f, 0.0f)};
-  add_up(flat(2.5f), &terms);
+  std::vector<reconstruct::PictureTerm> terms{term_of(4.0f, 0.001f), term_of(1.0f, 5.0f), term_of(2.0f, 0.0f)};
+  reconstruct::add_up(flat(2.5f), &terms);
   expect_flat(terms[0].image, 0.5f);
   expect_flat(terms[1].image, 0.0f);
   expect_flat(terms[2].image, 2.0f);
 }
 
 TEST(Partition, LightGoesWhereItCanBe) {
-  std::vector<PictureTerm> terms{term_of(1.0f, 0.1f), term_of(1.0f, 1.0f)};
+  std::vector<reconstruct::PictureTerm> terms{term_of(1.0f, 0.1f), term_of(1.0f, 1.0f)};
   terms[1].room = flat(0.0f);
-  add_up(flat(3.0f), &terms);
+  reconstruct::add_up(flat(3.0f), &terms);
   expect_flat(terms[0].image, 3.0f);
   expect_flat(terms[1].image, 0.0f);
 }
 
 // L2 may be negative (contract 5.5), and its parts add up to that, too.
 TEST(Partition, APictureBelowZeroIsMetToo) {
-  std::vector<PictureTerm> terms{term_of(1.0f, 1.0f), term_of(1.0f, 0.0f), term_of(0.0f, 0.0f)};
-  add_up(flat(-2.0f), &terms);
+  std::vector<reconstruct::PictureTerm> terms{term_of(1.0f, 1.0f), term_of(1.0f, 0.0f), term_of(0.0f, 0.0f)};
+  reconstruct::add_up(flat(-2.0f), &terms);
   EXPECT_NEAR(sum_at(terms, 3, 4, 1), -2.0f, 1e-6f);
 }
 
 // Squared errors of strong light were infinite, and what they were to weigh no number.
 TEST(Partition, LightOfAnyStrengthStaysFinite) {
   for (const float strength : {1e-25f, 1e25f, 1e37f}) {
-    std::vector<PictureTerm> terms;
+    std::vector<reconstruct::PictureTerm> terms;
     for (const unsigned seed : {1u, 2u}) {
-      HalvedImage image = noisy(1.0f, 0.3f, seed);
-      for (Field* field : {&image.mean, &image.half_difference}) {
+      reconstruct::HalvedImage image = noisy(1.0f, 0.3f, seed);
+      for (reconstruct::Field* field : {&image.mean, &image.half_difference}) {
         for_values(field, [strength](float& value, int, int, int) { value *= strength; });
       }
-      terms.push_back(regress_term(flat_features(), std::move(image), kNever));
+      terms.push_back(reconstruct::regress_term(flat_features(), std::move(image), kNever));
     }
-    add_up(flat(2.5f * strength), &terms);
+    reconstruct::add_up(flat(2.5f * strength), &terms);
     for (int x = 0; x < kWidth; ++x) {
       EXPECT_NEAR(sum_at(terms, x, 7, 1) / strength, 2.5f, 1e-4f) << strength;
       EXPECT_NEAR(terms[0].image.row(7, 1)[x] / strength, 1.25f, 0.5f) << strength;
@@ -164,30 +168,31 @@ TEST(Partition, LightOfAnyStrengthStaysFinite) {
 TEST(Partition, AddsUpWhateverThePartsAre) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
-  std::vector<PictureTerm> terms;
+  std::vector<reconstruct::PictureTerm> terms;
   for (int k = 0; k < 9; ++k) {
-    PictureTerm term = term_of(0.0f, 0.0f);
-    for (Field* field : {&term.image, &term.error}) {
+    reconstruct::PictureTerm term = term_of(0.0f, 0.0f);
+    for (reconstruct::Field* field : {&term.image, &term.error}) {
       for (int y = 0; y < kHeight; ++y) {
         for (int c = 0; c < field->channels(); ++c) {
-          for (int x = 0; x < kWidth; ++x) field->row(y, c)[x] = uniform(random) < 0.3f ? 0.0f : std::pow(uniform(random), 6.0f);
+          for (int x = 0; x < kWidth; ++x)
+            field->row(y, c)[x] = uniform(random) < 0.3f ? 0.0f : std::pow(uniform(random), 6.0f);
         }
       }
     }
     terms.push_back(std::move(term));
   }
-  Field whole(kWidth, kHeight, 3);
+  reconstruct::Field whole(kWidth, kHeight, 3);
   for (int y = 0; y < kHeight; ++y) {
     for (int c = 0; c < 3; ++c) {
       for (int x = 0; x < kWidth; ++x) whole.row(y, c)[x] = 3.0f * uniform(random);
     }
   }
-  add_up(whole, &terms);
+  reconstruct::add_up(whole, &terms);
   for (int y = 0; y < kHeight; ++y) {
     for (int c = 0; c < 3; ++c) {
       for (int x = 0; x < kWidth; ++x) ASSERT_NEAR(sum_at(terms, x, y, c), whole.row(y, c)[x], 1e-5f);
       for (int x = 0; x < kWidth; ++x) {
-        for (const PictureTerm& term : terms) ASSERT_GE(term.image.row(y, c)[x], 0.0f);
+        for (const reconstruct::PictureTerm& term : terms) ASSERT_GE(term.image.row(y, c)[x], 0.0f);
       }
     }
   }

@@ -10,42 +10,44 @@ namespace {
 
 constexpr int kWidth = 60, kHeight = 40;
 
-Field filled(int channels, const std::function<float(int x)>& value) {
-  Field field(kWidth, kHeight, channels);
+reconstruct::Field filled(int channels, const std::function<float(int x)>& value) {
+  reconstruct::Field field(kWidth, kHeight, channels);
   for_values(&field, [&](float& v, int x, int, int) { v = value(x); });
   return field;
 }
-Field constant(float value, int channels = 3) {
+reconstruct::Field constant(float value, int channels = 3) {
   return filled(channels, [=](int) { return value; });
 }
 
-const Field kNone = constant(0.0f), kOne = constant(1.0f), kUnbiased = constant(0.0f, 1);
+const reconstruct::Field kNone = constant(0.0f), kOne = constant(1.0f), kUnbiased = constant(0.0f, 1);
 
 // Whether the figures are right, statistics tell (A8_Error); here it is what they multiply.
 TEST(A8_RegressionError, NoiseCountsForMoreThanTheWeightsShow) {
-  const Field noise = constant(0.1f), error = regression_error({kOne, kNone, kOne, noise}, kUnbiased);
+  const reconstruct::Field noise = constant(0.1f),
+                           error = reconstruct::regression_error({kOne, kNone, kOne, noise}, kUnbiased);
   EXPECT_GT(error.row(20)[30], 0.01);
-  EXPECT_NEAR(error.row(20)[30], kHidden * 0.01, 1e-6);
+  EXPECT_NEAR(error.row(20)[30], reconstruct::kHidden * 0.01, 1e-6);
 }
 
 // In absolute squares the wall would have a thousand times its error within three pixels of the light.
 TEST(A8_RegressionError, NoiseOfALampIsNotThatOfTheWallBesideIt) {
-  const Field light = filled(3, [](int x) { return x < 30 ? 100.0f : 1.0f; });
-  const Field noise = filled(3, [](int x) { return x < 30 ? 10.0f : 0.1f; });
-  const Field error = regression_error({light, kNone, light, noise}, kUnbiased);
-  EXPECT_NEAR(error.row(20)[31], kHidden * 0.01, 0.1 * kHidden * 0.01);
-  EXPECT_NEAR(error.row(20)[28], kHidden * 100.0, 0.1 * kHidden * 100.0);
+  const reconstruct::Field light = filled(3, [](int x) { return x < 30 ? 100.0f : 1.0f; });
+  const reconstruct::Field noise = filled(3, [](int x) { return x < 30 ? 10.0f : 0.1f; });
+  const reconstruct::Field error = reconstruct::regression_error({light, kNone, light, noise}, kUnbiased);
+  EXPECT_NEAR(error.row(20)[31], reconstruct::kHidden * 0.01, 0.1 * reconstruct::kHidden * 0.01);
+  EXPECT_NEAR(error.row(20)[28], reconstruct::kHidden * 100.0, 0.1 * reconstruct::kHidden * 100.0);
 }
 
 TEST(A8_RegressionError, BiasIsAddedAndNeverTakesAway) {
-  EXPECT_NEAR(regression_error({kOne, kNone, kOne, kNone}, constant(0.5f, 1)).row(20)[30], 0.5, 1e-6);
-  EXPECT_EQ(regression_error({kOne, kNone, kOne, kNone}, constant(-0.5f, 1)).row(20)[30], 0.0f);
+  EXPECT_NEAR(reconstruct::regression_error({kOne, kNone, kOne, kNone}, constant(0.5f, 1)).row(20)[30], 0.5, 1e-6);
+  EXPECT_EQ(reconstruct::regression_error({kOne, kNone, kOne, kNone}, constant(-0.5f, 1)).row(20)[30], 0.0f);
 }
 
 TEST(A8_RegressionError, LightThatIsLostIsKnownUnlessNoiseHidesIt) {
-  const Field before = constant(1.2f);
-  EXPECT_NEAR(regression_error({before, kNone, kOne, kNone}, kUnbiased).row(20)[30], kLost * 0.04, 1e-4);
-  EXPECT_EQ(regression_error({before, constant(4.0f), kOne, kNone}, kUnbiased).row(20)[30], 0.0f);
+  const reconstruct::Field before = constant(1.2f);
+  EXPECT_NEAR(reconstruct::regression_error({before, kNone, kOne, kNone}, kUnbiased).row(20)[30],
+              reconstruct::kLost * 0.04, 1e-4);
+  EXPECT_EQ(reconstruct::regression_error({before, constant(4.0f), kOne, kNone}, kUnbiased).row(20)[30], 0.0f);
 }
 
 }  // namespace

@@ -15,20 +15,20 @@ using namespace test;
 
 constexpr int kWidth = 72, kHeight = 50;
 
-Reconstructed solve_with_error(const Film& film) {
-  SolveReport report;
-  return regularize(film, false, never, &report);
+reconstruct::Reconstructed solve_with_error(const film::Film& film) {
+  reconstruct::SolveReport report;
+  return reconstruct::regularize(film, false, never, &report);
 }
 
-std::vector<float> solve(const Film& film) { return solve_with_error(film).image; }
-std::vector<float> noisy(const Film& film) { return read_images(film, 0).primal; }
+std::vector<float> solve(const film::Film& film) { return solve_with_error(film).image; }
+std::vector<float> noisy(const film::Film& film) { return film::read_images(film, 0).primal; }
 
-// Halves that lie `apart` above and below the truth everywhere: of such noise no window takes anything away, so its share in all that is
-// estimated is known.
-Film with_common_noise(FeatureFilm description, float apart) {
+// Halves that lie `apart` above and below the truth everywhere: of such noise no window takes anything away, so its
+// share in all that is estimated is known.
+film::Film with_common_noise(FeatureFilm description, float apart) {
   description.sigma = [](size_t) { return 0.0f; };
-  Film film = make_feature_film(description);
-  for (int half = 0; half < kHalves; ++half) {
+  film::Film film = make_feature_film(description);
+  for (int half = 0; half < film::kHalves; ++half) {
     for (Radiance& pixel : film.components[0].primal[half]) pixel += Radiance(half == 0 ? apart : -apart);
   }
   return film;
@@ -57,8 +57,8 @@ double amplitude_of(const std::vector<float>& image) {
   return sum / count;
 }
 
-void expect_finite_and_bounded(const Film& film, float bound) {
-  const Reconstructed result = solve_with_error(film);
+void expect_finite_and_bounded(const film::Film& film, float bound) {
+  const reconstruct::Reconstructed result = solve_with_error(film);
   for (const float v : result.image) ASSERT_LE(std::fabs(v), bound);
   for (const float v : result.error) ASSERT_TRUE(v >= 0.0f && v <= std::numeric_limits<float>::max()) << v;
 }
@@ -67,16 +67,17 @@ TEST(B2_Regularized, TakesMostOfTheNoise) {
   FeatureFilm description = room(kWidth, kHeight);
   for (const bool gradients : {false, true}) {
     description.gradients = gradients;
-    const Film film = make_feature_film(description);
-    EXPECT_LT(rms_difference(solve(film), description.truth), (gradients ? 0.2 : 0.3) * rms_difference(noisy(film), description.truth));
+    const film::Film film = make_feature_film(description);
+    EXPECT_LT(rms_difference(solve(film), description.truth),
+              (gradients ? 0.2 : 0.3) * rms_difference(noisy(film), description.truth));
   }
 }
 
 // Shadows, caustics and reflections are in no feature: there the differences have to tell.
 TEST(B2_Regularized, DifferencesTellWhatNoFeatureKnows) {
   FeatureFilm description = room(96, 64);
-  const std::vector<float> shadow =
-      make_image(96, 64, 3, [](int x, int y, int) { return (x - 50) * (x - 50) + (y - 30) * (y - 30) < 150 ? 0.3f : 1.0f; });
+  const std::vector<float> shadow = make_image(
+      96, 64, 3, [](int x, int y, int) { return (x - 50) * (x - 50) + (y - 30) * (y - 30) < 150 ? 0.3f : 1.0f; });
   for (size_t i = 0; i < shadow.size(); ++i) description.truth[i] *= shadow[i];
   const double without = rms_difference(solve(make_feature_film(description)), description.truth);
   description.gradients = true;
@@ -96,7 +97,8 @@ TEST(B2_Regularized, ErrorFallsWithTheNoise) {
   }
 }
 
-// Texture that is in no feature, hair, fine shadows: where there is no noise, nothing is changed; with a little, a little.
+// Texture that is in no feature, hair, fine shadows: where there is no noise, nothing is changed; with a little, a
+// little.
 TEST(B2_Regularized, KeepsDetailThatHasNoNoise) {
   FeatureFilm description = room(kWidth, kHeight);
   std::mt19937 random(3);
@@ -104,8 +106,10 @@ TEST(B2_Regularized, KeepsDetailThatHasNoNoise) {
   for (float& v : description.truth) v = uniform(random);
   for (const float sigma : {0.0f, 1e-3f, 1e-2f}) {
     description.sigma = [sigma](size_t) { return sigma; };
-    const Film film = make_feature_film(description);
-    EXPECT_LE(rms_difference(solve(film), description.truth), 1.2 * rms_difference(noisy(film), description.truth) + 1e-4) << sigma;
+    const film::Film film = make_feature_film(description);
+    EXPECT_LE(rms_difference(solve(film), description.truth),
+              1.2 * rms_difference(noisy(film), description.truth) + 1e-4)
+        << sigma;
   }
 }
 
@@ -113,28 +117,29 @@ TEST(B2_Regularized, ScalesWithTheImage) {
   for (const bool gradients : {false, true}) {
     FeatureFilm description = room(kWidth, kHeight);
     description.gradients = gradients;
-    Reconstructed small = solve_with_error(make_feature_film(description));
+    reconstruct::Reconstructed small = solve_with_error(make_feature_film(description));
     for (float& v : description.truth) v *= 1024.0f;
     description.sigma = [](size_t) { return 1024.0f * 0.4f; };
-    const Reconstructed large = solve_with_error(make_feature_film(description));
+    const reconstruct::Reconstructed large = solve_with_error(make_feature_film(description));
     for (float& v : small.image) v *= 1024.0f;
     EXPECT_LT(max_difference(small.image, large.image), 1e-2 * 1024.0);
     EXPECT_NEAR(mean(large.error) / mean(small.error), 1024.0 * 1024.0, 0.01 * 1024.0 * 1024.0);
   }
 }
 
-// Alpha, which is an eighth of red in these frames, goes through the weights of the colours, those of outliers, too. With differences it
-// was the regression's alone: coverage and colour of an edge were smoothed in two ways.
+// Alpha, which is an eighth of red in these frames, goes through the weights of the colours, those of outliers, too.
+// With differences it was the regression's alone: coverage and colour of an edge were smoothed in two ways.
 TEST(B2_Regularized, AlphaGoesThroughTheSameWeights) {
   FeatureFilm description = room(kWidth, kHeight);
   description.difference_sigma = 0.1f;
   for (const bool gradients : {false, true}) {
     description.gradients = gradients;
     for (const float firefly : {0.0f, 800.0f}) {
-      Film film = make_feature_film(description, 4);
+      film::Film film = make_feature_film(description, 4);
       film.components[0].primal[0][size_t(20 * kWidth + 30)] += Radiance(firefly, firefly, firefly, firefly / 8.0f);
       const std::vector<float> rgba = solve(film);
-      for (size_t i = 0; i < rgba.size(); i += 4) ASSERT_NEAR(8.0f * rgba[i + 3], rgba[i], 2e-3f) << i / 4 << ", " << gradients;
+      for (size_t i = 0; i < rgba.size(); i += 4)
+        ASSERT_NEAR(8.0f * rgba[i + 3], rgba[i], 2e-3f) << i / 4 << ", " << gradients;
     }
   }
 }
@@ -142,30 +147,30 @@ TEST(B2_Regularized, AlphaGoesThroughTheSameWeights) {
 TEST(B2_Regularized, HasTheSameBitsForAnyNumberOfThreads) {
   FeatureFilm description = room(170, 140);
   description.gradients = true;
-  const Film film = make_feature_film(description);
+  const film::Film film = make_feature_film(description);
   expect_same_bits_for_any_number_of_threads([&] { return solve(film); });
 }
 
-// What weights hide of the noise is that of light, whose rare samples are far brighter than the others. That of these frames has none
-// such, and nothing to hide: the estimate is kHidden times too large.
+// What weights hide of the noise is that of light, whose rare samples are far brighter than the others. That of these
+// frames has none such, and nothing to hide: the estimate is kHidden times too large.
 TEST(B2_Regularized, EstimatesItsError) {
   FeatureFilm description = room(160, 120);
   double estimated = 0.0, actual = 0.0;
   for (description.seed = 1; description.seed <= 4; ++description.seed) {
-    const Reconstructed result = solve_with_error(make_feature_film(description));
+    const reconstruct::Reconstructed result = solve_with_error(make_feature_film(description));
     for (const float v : result.error) estimated += v / double(result.error.size());
     actual += std::pow(rms_difference(result.image, description.truth), 2.0);
   }
   EXPECT_GT(estimated / actual, 1.0);
-  EXPECT_LT(estimated / actual, 1.1 * kHidden);
+  EXPECT_LT(estimated / actual, 1.1 * reconstruct::kHidden);
 }
 
 // Noise that windows cannot take away is in it whole, and so is what no feature explains.
 TEST(B2_Regularized, ErrorIsVarianceAndSquaredBias) {
   for (const float amplitude : {0.0f, 0.5f}) {
     for (const float apart : {1.0f, 2.0f}) {
-      const Reconstructed result = solve_with_error(with_common_noise(chequered(1.0f, amplitude), apart));
-      const double expected = kHidden * apart * apart + amplitude * amplitude;
+      const reconstruct::Reconstructed result = solve_with_error(with_common_noise(chequered(1.0f, amplitude), apart));
+      const double expected = reconstruct::kHidden * apart * apart + amplitude * amplitude;
       EXPECT_NEAR(mean(result.error), expected, 0.03 * expected) << amplitude << ", " << apart;
     }
   }
@@ -174,25 +179,27 @@ TEST(B2_Regularized, ErrorIsVarianceAndSquaredBias) {
 // Normals, albedos and depths of these frames jump from pixel to pixel: those of any other pixel explain nothing.
 TEST(B2_Regularized, KeepsWhatTheFeaturesExplain) {
   FeatureFilm description{kWidth, kHeight, {}, {}, [](int x, int y, int channel, int) {
-                             const float wave = std::sin(0.9f * float(x * (channel + 1)) + 0.37f * float(y * y * (channel + 2)));
-                             return channel < 6 ? wave : wave > 0.0f ? 3.0f : 1.0f;
-                           }};
+                            const float wave =
+                                std::sin(0.9f * float(x * (channel + 1)) + 0.37f * float(y * y * (channel + 2)));
+                            return channel < 6 ? wave : wave > 0.0f ? 3.0f : 1.0f;
+                          }};
   for (int explained = 0; explained < 7; ++explained) {
-    description.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return 5.0f + description.feature(x, y, explained, 0); });
+    description.truth = make_image(kWidth, kHeight, 3,
+                                   [&](int x, int y, int) { return 5.0f + description.feature(x, y, explained, 0); });
     EXPECT_LT(rms_difference(solve(with_common_noise(description, 1.0f)), description.truth), 0.02) << explained;
   }
 }
 
-// Half the difference of the halves says how far a pixel's own value is to be believed. Where windows are off by five times its square,
-// it has a third of all weight.
+// Half the difference of the halves says how far a pixel's own value is to be believed. Where windows are off by five
+// times its square, it has a third of all weight.
 TEST(B2_Regularized, BelievesPixelsByTheirVariance) {
   const double share = amplitude_of(solve(with_common_noise(chequered(100.0f, 2.0f), 1.0f))) / 2.0;
   EXPECT_GT(share, 0.2);
   EXPECT_LT(share, 0.5);
 }
 
-// Gaps between small balls, darker than all around them and with less noise: they were taken to be as noisy as the balls, and got their
-// light, with 128 samples more than twice the error of the samples alone.
+// Gaps between small balls, darker than all around them and with less noise: they were taken to be as noisy as the
+// balls, and got their light, with 128 samples more than twice the error of the samples alone.
 TEST(B2_Regularized, DarkGapsBetweenBrightNoisyPixelsStayDark) {
   const auto is_gap = [](int x, int y) { return x % 3 == 0 && y % 3 == 0; };
   FeatureFilm description{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
@@ -208,21 +215,23 @@ TEST(B2_Regularized, DarkGapsBetweenBrightNoisyPixelsStayDark) {
   EXPECT_LT(gaps / count, 0.3);
 }
 
-// One sample in sixteen carries all light: windows take it for outliers, and the first step loses nearly all of it. The second gives
-// most of it back, by the albedo. As one half alone has such samples, all of it may be chance, and the error knows.
+// One sample in sixteen carries all light: windows take it for outliers, and the first step loses nearly all of it. The
+// second gives most of it back, by the albedo. As one half alone has such samples, all of it may be chance, and the
+// error knows.
 TEST(B2_Regularized, GivesBackTheLightOfRareSamples) {
   const auto albedo = [](int x) { return (x / 6) % 2 ? 0.8f : 0.2f; };
   FeatureFilm description{kWidth,
-                           kHeight,
-                           {},
-                           [](size_t) { return 0.0f; },
-                           [&](int x, int, int channel, int) { return channel < 3 || channel > 5 ? 1.0f : albedo(x); }};
+                          kHeight,
+                          {},
+                          [](size_t) { return 0.0f; },
+                          [&](int x, int, int channel, int) { return channel < 3 || channel > 5 ? 1.0f : albedo(x); }};
   description.truth.assign(size_t{3} * kWidth * kHeight, 0.0f);
-  Film film = make_feature_film(description);
+  film::Film film = make_feature_film(description);
   for (int y = 0; y < kHeight; y += 4) {
-    for (int x = y / 4 % 4; x < kWidth; x += 4) film.components[0].primal[0][size_t(y * kWidth + x)] = Radiance(32.0f * albedo(x));
+    for (int x = y / 4 % 4; x < kWidth; x += 4)
+      film.components[0].primal[0][size_t(y * kWidth + x)] = Radiance(32.0f * albedo(x));
   }
-  const Reconstructed solved = solve_with_error(film);
+  const reconstruct::Reconstructed solved = solve_with_error(film);
   const std::vector<float>&image = solved.image, &error = solved.error;
   EXPECT_TRUE(solved.components.empty());
   double light = 0.0, beside_edges = 0.0, squares = 0.0;
@@ -237,30 +246,31 @@ TEST(B2_Regularized, GivesBackTheLightOfRareSamples) {
   EXPECT_GT(light, 0.55);
   EXPECT_LT(light, 1.05);
   EXPECT_NEAR(beside_edges, 1.0, 0.25);
-  EXPECT_GT(mean(error), kHidden * squares);
-  EXPECT_LT(mean(error), 1.25 * kHidden * squares);
+  EXPECT_GT(mean(error), reconstruct::kHidden * squares);
+  EXPECT_LT(mean(error), 1.25 * reconstruct::kHidden * squares);
 }
 
 TEST(B2_Regularized, DifferencesThatWereNotSampledAreTheRegressions) {
   FeatureFilm description = room(kWidth, kHeight);
   const std::vector<float> without = solve(make_feature_film(description));
   description.gradients = true;
-  Film film = make_feature_film(description);
+  film::Film film = make_feature_film(description);
   for (auto& half : film.pair_count) {
     for (auto& count : half) std::fill(count.begin(), count.end(), 0.0f);
   }
   EXPECT_LT(rms_difference(solve(film), without), 2e-3);
 }
 
-// Sampled differences whose variance is that of the regression's own have as much to say: they bring half of the chequer back.
+// Sampled differences whose variance is that of the regression's own have as much to say: they bring half of the
+// chequer back.
 TEST(B2_Regularized, DifferencesCountByTheirVariance) {
   FeatureFilm description = chequered(1.0f, 0.5f);
-  const double variance = kHidden + 0.25;
+  const double variance = reconstruct::kHidden + 0.25;
   EXPECT_LT(std::abs(amplitude_of(solve(with_common_noise(description, 1.0f)))), 0.05);
   description.gradients = true;
-  Film film = with_common_noise(description, 1.0f);
-  for (int half = 0; half < kHalves; ++half) {
-    for (const Offset offset : {kRight, kUp}) {
+  film::Film film = with_common_noise(description, 1.0f);
+  for (int half = 0; half < film::kHalves; ++half) {
+    for (const film::Offset offset : {film::kRight, film::kUp}) {
       for (Radiance& sum : film.components[0].gradient[half][offset])
         sum += Radiance(float((half == 0 ? 1.0 : -1.0) * std::sqrt(variance)));
     }
@@ -268,25 +278,28 @@ TEST(B2_Regularized, DifferencesCountByTheirVariance) {
   EXPECT_NEAR(amplitude_of(solve(film)), 0.25, 0.06);
 }
 
-// Beside highlights, of which windows had lost some light and differences had not, pixels became black, or coloured where one channel did.
-// More so where half of a difference is one sample's: by chance both halves agree to a tenth of what they are off by.
+// Beside highlights, of which windows had lost some light and differences had not, pixels became black, or coloured
+// where one channel did. More so where half of a difference is one sample's: by chance both halves agree to a tenth of
+// what they are off by.
 TEST(B2_Regularized, NoBlackHalosBesideHighlights) {
   const auto is_highlight = [](int x, int y) { return x >= 30 && x < 38 && y >= 20 && y < 26; };
   FeatureFilm description{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
-  description.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return is_highlight(x, y) ? 100.0f : 0.2f; });
+  description.truth =
+      make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return is_highlight(x, y) ? 100.0f : 0.2f; });
   description.sigma = [&](size_t i) { return is_highlight(int(i % kWidth), int(i / kWidth)) ? 40.0f : 0.05f; };
   description.gradients = true;
   for (description.seed = 1; description.seed <= 8; ++description.seed) {
-    Film film = make_feature_film(description);
+    film::Film film = make_feature_film(description);
     std::mt19937 random(description.seed);
     std::normal_distribution<float> normal(0.0f, 1.0f);
     for (int y = 1; y + 1 < kHeight; ++y) {
       for (int x = 1; x + 1 < kWidth; ++x) {
-        for (int o = 0; o < kOffsets; ++o) {
-          if (is_highlight(x, y) == is_highlight(x + kOffsetX[o], y + kOffsetY[o])) continue;
+        for (int o = 0; o < film::kOffsets; ++o) {
+          if (is_highlight(x, y) == is_highlight(x + film::kOffsetX[o], y + film::kOffsetY[o])) continue;
           const float off = 10.0f * normal(random), seen = 1.0f * normal(random);
-          for (int half = 0; half < kHalves; ++half) {
-            film.components[0].gradient[half][o][size_t(y) * kWidth + size_t(x)] += Radiance(off + (half == 0 ? seen : -seen));
+          for (int half = 0; half < film::kHalves; ++half) {
+            film.components[0].gradient[half][o][size_t(y) * kWidth + size_t(x)] +=
+                Radiance(off + (half == 0 ? seen : -seen));
           }
         }
       }
@@ -299,12 +312,13 @@ TEST(B2_Regularized, NoBlackHalosBesideHighlights) {
   }
 }
 
-// Without differences, too: the planes of windows with a light's reflection go below 0 beside it. On a mirror pixels were black whose
-// samples, and those around, were not.
+// Without differences, too: the planes of windows with a light's reflection go below 0 beside it. On a mirror pixels
+// were black whose samples, and those around, were not.
 TEST(B2_Regularized, NoBlackPixelsBesideReflectionsOfLamps) {
   const auto is_analytic = [](int x, int y) { return (x / 4) % 4 == 0 && (y / 3) % 4 == 0; };
   FeatureFilm description{kWidth, kHeight, {}, {}, [](int x, int y, int c, int) { return hashed(x, y, c, 0); }};
-  description.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return is_analytic(x, y) ? 50.0f : 0.5f; });
+  description.truth =
+      make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return is_analytic(x, y) ? 50.0f : 0.5f; });
   description.sigma = [&](size_t i) { return is_analytic(int(i % kWidth), int(i / kWidth)) ? 20.0f : 0.1f; };
   const std::vector<float> image = solve(make_feature_film(description));
   const float minimum = *std::min_element(image.begin(), image.end());
@@ -316,8 +330,9 @@ TEST(BadInput_Regularized, ConstantFeatures) {
   FeatureFilm description = room(kWidth, kHeight);
   for (const float value : {0.0f, 1.0f, -5e3f}) {
     description.feature = [value](int, int, int, int) { return value; };
-    const Film film = make_feature_film(description);
-    EXPECT_LT(rms_difference(solve(film), description.truth), 0.8 * rms_difference(noisy(film), description.truth)) << value;
+    const film::Film film = make_feature_film(description);
+    EXPECT_LT(rms_difference(solve(film), description.truth), 0.8 * rms_difference(noisy(film), description.truth))
+        << value;
   }
 }
 
@@ -326,14 +341,14 @@ TEST(BadInput_Regularized, FeaturesOfNoiseAlone) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
   description.feature = [&](int, int, int, int) { return uniform(random); };
-  const Film film = make_feature_film(description);
+  const film::Film film = make_feature_film(description);
   EXPECT_LT(rms_difference(solve(film), description.truth), rms_difference(noisy(film), description.truth));
 }
 
 TEST(BadInput_Regularized, FeaturesThatAreNotFinite) {
   const FeatureFilm description = room(kWidth, kHeight);
-  Film film = make_feature_film(description);
-  for (PassPlane& plane : film.passes) {
+  film::Film film = make_feature_film(description);
+  for (film::PassPlane& plane : film.passes) {
     plane.values[0][17 * plane.channels] = std::numeric_limits<float>::quiet_NaN();
     plane.values[1][400 * plane.channels] = std::numeric_limits<float>::infinity();
     plane.values[1][401 * plane.channels] = 1e37f;
@@ -347,10 +362,10 @@ TEST(BadInput_Regularized, MissingFeatures) {
   FeatureFilm description = room(kWidth, kHeight);
   description.feature = [](int, int, int channel, int) { return channel < 3 ? 0.5f : 0.0f; };
   expect_finite_and_bounded(make_feature_film(description), 10.0f);
-  Film film = make_feature_film(description);
+  film::Film film = make_feature_film(description);
   film.passes.clear();
-  SolveReport report;
-  EXPECT_THROW(regularize(film, false, never, &report), Error);
+  reconstruct::SolveReport report;
+  EXPECT_THROW(reconstruct::regularize(film, false, never, &report), Error);
 }
 
 TEST(BadInput_Regularized, ImagesSmallerThanAWindow) {
@@ -359,9 +374,10 @@ TEST(BadInput_Regularized, ImagesSmallerThanAWindow) {
     FeatureFilm description = room(w, h);
     for (const bool gradients : {false, true}) {
       description.gradients = gradients;
-      const Film film = make_feature_film(description);
+      const film::Film film = make_feature_film(description);
       expect_finite_and_bounded(film, 10.0f);
-      EXPECT_LT(rms_difference(solve(film), description.truth), 1.1 * rms_difference(noisy(film), description.truth) + 1e-6)
+      EXPECT_LT(rms_difference(solve(film), description.truth),
+                1.1 * rms_difference(noisy(film), description.truth) + 1e-6)
           << w << "x" << h;
     }
   }
@@ -371,7 +387,7 @@ TEST(BadInput_Regularized, ImagesSmallerThanAWindow) {
 TEST(BadInput_Regularized, HugeValues) {
   const FeatureFilm description = room(kWidth, kHeight);
   for (const float value : {1e6f, 1e20f, 1e36f}) {
-    Film film = make_feature_film(description);
+    film::Film film = make_feature_film(description);
     film.components[0].primal[0][size_t(20 * kWidth + 30)] = Radiance(value);
     expect_finite_and_bounded(film, value);
     const std::vector<float> image = solve(film);
@@ -387,10 +403,10 @@ TEST(BadInput_Regularized, HugeValues) {
 }
 
 TEST(BadInput_Regularized, ASingleSample) {
-  Film film = make_feature_film(room(kWidth, kHeight));
+  film::Film film = make_feature_film(room(kWidth, kHeight));
   std::fill(film.count[1].begin(), film.count[1].end(), 0u);
   std::fill(film.components[0].primal[1].begin(), film.components[0].primal[1].end(), Radiance(0.0f));
-  for (PassPlane& plane : film.passes) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
+  for (film::PassPlane& plane : film.passes) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
   const std::vector<float> truth = room(kWidth, kHeight).truth;
   expect_finite_and_bounded(film, 20.0f);
   EXPECT_LT(rms_difference(solve(film), truth), 0.7 * rms_difference(noisy(film), truth));
@@ -399,7 +415,7 @@ TEST(BadInput_Regularized, ASingleSample) {
 // Halves that say different things: half the picture is one of them alone.
 TEST(BadInput_Regularized, ContradictoryHalves) {
   const FeatureFilm description = room(kWidth, kHeight);
-  Film film = make_feature_film(description);
+  film::Film film = make_feature_film(description);
   for (size_t i = 0; i < size_t(kWidth) * 25; ++i) film.components[0].primal[1][i] = Radiance(0.0f);
   expect_finite_and_bounded(film, 10.0f);
 }
@@ -408,19 +424,21 @@ TEST(BadInput_Regularized, ContradictoryHalves) {
 struct Spoiled {
   const char* name;
   std::function<float(int x, int y, int channel, int half)> feature;  // in place of the room's
-  std::function<void(Film*)> spoil = [](Film*) {};
-  // Of L2's error, root mean square. Where features say nothing, and uniform differences as much as the pixels, L2 has the right weights
-  // without knowing, and windows are smaller than its reach: 1.09 and 1.10.
+  std::function<void(film::Film*)> spoil = [](film::Film*) {};
+  // Of L2's error, root mean square. Where features say nothing, and uniform differences as much as the pixels, L2 has
+  // the right weights without knowing, and windows are smaller than its reach: 1.09 and 1.10.
   double maximum = 1.12;
 };
 
-Spoiled spoiled(const char* name, const std::function<void(Film*)>& spoil) { return {name, test::room_feature, spoil, 1.01}; }
+Spoiled spoiled(const char* name, const std::function<void(film::Film*)>& spoil) {
+  return {name, test::room_feature, spoil, 1.01};
+}
 
-void empty_second_half(Film* film) {
+void empty_second_half(film::Film* film) {
   std::fill(film->count[1].begin(), film->count[1].end(), 0u);
   std::fill(film->components[0].primal[1].begin(), film->components[0].primal[1].end(), Radiance(0.0f));
-  for (PassPlane& plane : film->passes) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
-  for (int o = 0; o < kOffsets; ++o) {
+  for (film::PassPlane& plane : film->passes) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
+  for (int o = 0; o < film::kOffsets; ++o) {
     std::fill(film->pair_count[1][o].begin(), film->pair_count[1][o].end(), 0.0f);
     std::fill(film->components[0].gradient[1][o].begin(), film->components[0].gradient[1][o].end(), Radiance(0.0f));
   }
@@ -434,10 +452,10 @@ TEST_P(BadInput_BesideL2, IsNoWorse) {
   description.gradients = true;
   for (const float difference_sigma : {0.0f, 0.1f, 0.5f}) {
     description.difference_sigma = difference_sigma;
-    Film film = make_feature_film(description);
+    film::Film film = make_feature_film(description);
     GetParam().spoil(&film);
-    SolveReport report;
-    const std::vector<float> l2 = reconstruct(film, 0, GRADUS_RECONSTRUCTION_L2, 0.0f, never, &report);
+    reconstruct::SolveReport report;
+    const std::vector<float> l2 = reconstruct::reconstruct(film, 0, GRADUS_RECONSTRUCTION_L2, 0.0f, never, &report);
     const double error = rms_difference(solve(film), description.truth), of_l2 = rms_difference(l2, description.truth);
     std::printf("  %.1f: %.3f of L2\n", difference_sigma, error / of_l2);
     EXPECT_LE(error, GetParam().maximum * of_l2) << difference_sigma;
@@ -446,24 +464,25 @@ TEST_P(BadInput_BesideL2, IsNoWorse) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, BadInput_BesideL2,
-    ::testing::Values(Spoiled{"ConstantFeatures", [](int, int, int, int) { return 1.0f; }},
-                      Spoiled{"HugeFeatures", [](int, int, int, int) { return -5e3f; }},
-                      Spoiled{"MissingFeatures", [](int, int, int, int) { return 0.0f; }},
-                      Spoiled{"FeaturesOfNoise", [](int x, int y, int c, int half) { return 2.0f * hashed(x, y, c, half) - 1.0f; }},
-                      spoiled("FeaturesThatAreNotFinite",
-                              [](Film* film) {
-                                for (PassPlane& plane : film->passes) {
-                                  for (size_t i = 0; i < plane.values[0].size(); i += 11)
-                                    plane.values[0][i] = std::numeric_limits<float>::quiet_NaN();
-                                }
-                              }),
-                      spoiled("ContradictoryHalves",
-                              [](Film* film) {
-                                for (size_t i = 0; i < size_t(kWidth) * 25; ++i) film->components[0].primal[1][i] = Radiance(0.0f);
-                              }),
-                      spoiled("HugeValues",
-                              [](Film* film) { film->components[0].primal[0][size_t(20 * kWidth + 30)] = Radiance(1e20f); }),
-                      spoiled("ASingleSample", empty_second_half)),
+    ::testing::Values(
+        Spoiled{"ConstantFeatures", [](int, int, int, int) { return 1.0f; }},
+        Spoiled{"HugeFeatures", [](int, int, int, int) { return -5e3f; }},
+        Spoiled{"MissingFeatures", [](int, int, int, int) { return 0.0f; }},
+        Spoiled{"FeaturesOfNoise", [](int x, int y, int c, int half) { return 2.0f * hashed(x, y, c, half) - 1.0f; }},
+        spoiled("FeaturesThatAreNotFinite",
+                [](film::Film* film) {
+                  for (film::PassPlane& plane : film->passes) {
+                    for (size_t i = 0; i < plane.values[0].size(); i += 11)
+                      plane.values[0][i] = std::numeric_limits<float>::quiet_NaN();
+                  }
+                }),
+        spoiled("ContradictoryHalves",
+                [](film::Film* film) {
+                  for (size_t i = 0; i < size_t(kWidth) * 25; ++i) film->components[0].primal[1][i] = Radiance(0.0f);
+                }),
+        spoiled("HugeValues",
+                [](film::Film* film) { film->components[0].primal[0][size_t(20 * kWidth + 30)] = Radiance(1e20f); }),
+        spoiled("ASingleSample", empty_second_half)),
     [](const auto& info) { return info.param.name; });
 
 TEST(BadInput_Regularized, ABlackImageIsBlack) {
@@ -473,17 +492,17 @@ TEST(BadInput_Regularized, ABlackImageIsBlack) {
   EXPECT_EQ(solve(make_feature_film(description)), description.truth);
 }
 
-// The frame's light in three components: shares of it that differ from pixel to pixel, none of the last one in half of the picture, and
-// of one of them more than there is in some pixels.
-Film taken_apart(const Film& film) {
+// The frame's light in three components: shares of it that differ from pixel to pixel, none of the last one in half of
+// the picture, and of one of them more than there is in some pixels.
+film::Film taken_apart(const film::Film& film) {
   const auto share_of = [](size_t component, int x) {
     if (component == 1) return x < kWidth / 2 ? 0.0f : 0.25f;
     return component == 2 ? -0.5f * float(x % 2) : 1.0f - (x < kWidth / 2 ? 0.0f : 0.25f) + 0.5f * float(x % 2);
   };
-  Film apart = film;
+  film::Film apart = film;
   apart.components.assign(3, film.components[0]);
   for (size_t k = 0; k < apart.components.size(); ++k) {
-    for (int half = 0; half < kHalves; ++half) {
+    for (int half = 0; half < film::kHalves; ++half) {
       for (size_t i = 0; i < apart.components[k].primal[half].size(); ++i) {
         const float share = share_of(k, int(i) % kWidth);
         apart.components[k].primal[half][i] *= share;
@@ -502,9 +521,10 @@ TEST(B2_Regularized, ComponentsAreWhatThePictureWithoutThemIsMadeOf) {
     for (const int channels : {3, 4}) {
       FeatureFilm description = room(kWidth, kHeight);
       description.gradients = gradients;
-      const Film film = make_feature_film(description, channels);
-      SolveReport report;
-      const Reconstructed whole = regularize(film, false, never, &report), parts = regularize(taken_apart(film), true, never, &report);
+      const film::Film film = make_feature_film(description, channels);
+      reconstruct::SolveReport report;
+      const reconstruct::Reconstructed whole = reconstruct::regularize(film, false, never, &report),
+                                       parts = reconstruct::regularize(taken_apart(film), true, never, &report);
       ASSERT_EQ(parts.components.size(), 3u);
       for (size_t i = 0; i < whole.image.size(); ++i) {
         const float sum = parts.components[0][i] + parts.components[1][i] + parts.components[2][i];
@@ -516,23 +536,24 @@ TEST(B2_Regularized, ComponentsAreWhatThePictureWithoutThemIsMadeOf) {
   }
 }
 
-// One operator for all: of twice the light it makes twice as much, of light that is the same share of the picture everywhere that share.
+// One operator for all: of twice the light it makes twice as much, of light that is the same share of the picture
+// everywhere that share.
 TEST(B2_Regularized, ComponentsGoThroughOneLinearOperator) {
   for (const bool gradients : {false, true}) {
     FeatureFilm description = room(kWidth, kHeight);
     description.gradients = gradients;
-    Film film = make_feature_film(description);
+    film::Film film = make_feature_film(description);
     film.components.assign(3, film.components[0]);
     for (const auto& [component, share] : {std::pair{0, 0.2f}, {1, 0.7f}, {2, 0.1f}}) {
-      for (int half = 0; half < kHalves; ++half) {
+      for (int half = 0; half < film::kHalves; ++half) {
         for (Radiance& pixel : film.components[size_t(component)].primal[half]) pixel *= share;
         for (auto& gradient : film.components[size_t(component)].gradient[half]) {
           for (Radiance& difference : gradient) difference *= share;
         }
       }
     }
-    SolveReport report;
-    const Reconstructed result = regularize(film, true, never, &report);
+    reconstruct::SolveReport report;
+    const reconstruct::Reconstructed result = reconstruct::regularize(film, true, never, &report);
     for (size_t i = 0; i < result.image.size(); ++i) {
       ASSERT_NEAR(result.components[0][i], 0.2f * result.image[i], gradients ? 2e-3f : 1e-5f);
       ASSERT_NEAR(result.components[2][i], 0.1f * result.image[i], gradients ? 2e-3f : 1e-5f);
@@ -542,11 +563,11 @@ TEST(B2_Regularized, ComponentsGoThroughOneLinearOperator) {
 
 // What no path has found anything of is black, and not what the others' light around it leaves there.
 TEST(B2_Regularized, AComponentWithoutLightIsBlack) {
-  Film film = make_feature_film(room(kWidth, kHeight));
+  film::Film film = make_feature_film(room(kWidth, kHeight));
   film.components.push_back(film.components[0]);
   for (auto& half : film.components[1].primal) std::fill(half.begin(), half.end(), Radiance(0.0f));
-  SolveReport report;
-  const Reconstructed result = regularize(film, true, never, &report);
+  reconstruct::SolveReport report;
+  const reconstruct::Reconstructed result = reconstruct::regularize(film, true, never, &report);
   for (const float value : result.components[1]) ASSERT_EQ(value, 0.0f);
   EXPECT_EQ(result.components[0], result.image);
 }

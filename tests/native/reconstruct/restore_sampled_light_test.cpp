@@ -10,15 +10,15 @@ namespace {
 
 constexpr int kSize = 5, kCentre = 2;
 
-Field constant(float value) {
+reconstruct::Field constant(float value) {
   return make_field(kSize, kSize, [value](int, int) { return value; });
 }
 
 // The centre, after it took its share.
-float kept(const Field& sampled, float regressed) {
-  Field image = constant(1.0f);
+float kept(const reconstruct::Field& sampled, float regressed) {
+  reconstruct::Field image = constant(1.0f);
   image.row(kCentre)[kCentre] = regressed;
-  blend_sampled(restore_sampled_light(sampled, image), sampled, &image);
+  reconstruct::blend_sampled(reconstruct::restore_sampled_light(sampled, image), sampled, &image);
   return image.row(kCentre)[kCentre];
 }
 
@@ -32,25 +32,25 @@ TEST(B2_RestoreSampledLight, WhatIsBrighterStaysAsItIs) {
 }
 
 TEST(B2_RestoreSampledLight, AFireflyCountsAsItsNeighbours) {
-  Field sampled = constant(1.0f);
+  reconstruct::Field sampled = constant(1.0f);
   sampled.row(kCentre)[kCentre] = 1000.0f;
   EXPECT_NEAR(kept(sampled, -1.0f), 0.25f, 1e-3f);
 }
 
 TEST(B2_RestoreSampledLight, ADarkPixelStaysDark) {
-  Field sampled = constant(1.0f);
+  reconstruct::Field sampled = constant(1.0f);
   sampled.row(kCentre)[kCentre] = 0.0f;
   EXPECT_EQ(kept(sampled, 0.01f), 0.01f);
   EXPECT_NEAR(kept(sampled, -1.0f), 0.0f, 1e-6f);
 }
 
 TEST(B2_RestoreSampledLight, AllChannelsTakeTheShareOfTheDarkest) {
-  Field sampled(kSize, kSize, 3), regressed(kSize, kSize, 3);
+  reconstruct::Field sampled(kSize, kSize, 3), regressed(kSize, kSize, 3);
   for_values(&sampled, [](float& value, int, int, int) { value = 1.0f; });
   for_values(&regressed, [](float& value, int, int, int c) { value = c == 1 ? -1.0f : 0.5f; });
-  const Field share = restore_sampled_light(sampled, regressed);
+  const reconstruct::Field share = reconstruct::restore_sampled_light(sampled, regressed);
   EXPECT_NEAR(share.row(0)[0], 0.625f, 1e-6f);
-  blend_sampled(share, sampled, &regressed);
+  reconstruct::blend_sampled(share, sampled, &regressed);
   EXPECT_NEAR(regressed.row(0, 1)[0], 0.25f, 1e-6f);
   EXPECT_NEAR(regressed.row(0, 0)[0], 0.8125f, 1e-6f);
 }

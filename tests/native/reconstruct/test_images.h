@@ -12,8 +12,9 @@
 namespace gradus::test {
 
 // Forward differences of an image, as a frame would hold them: last column and row 0.
-inline GradientImages with_exact_gradients(int width, int height, int channels, const std::vector<float>& primal) {
-  GradientImages images;
+inline film::GradientImages with_exact_gradients(int width, int height, int channels,
+                                                 const std::vector<float>& primal) {
+  film::GradientImages images;
   images.width = width;
   images.height = height;
   images.channels = channels;
@@ -56,9 +57,11 @@ inline void add_noise(std::vector<float>* image, float sigma, unsigned seed) {
   for (float& v : *image) v += normal(random);
 }
 
-// The mean of two halves of an image, each with noise of its own, and the deviations that they show. sigma: of a half, by pixel.
+// The mean of two halves of an image, each with noise of its own, and the deviations that they show. sigma: of a half,
+// by pixel.
 template <class Sigma>
-void average_noisy_halves(std::vector<float>* mean, std::vector<float>* deviation, int channels, const Sigma& sigma, unsigned seed) {
+void average_noisy_halves(std::vector<float>* mean, std::vector<float>* deviation, int channels, const Sigma& sigma,
+                          unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal(0.0f, 1.0f);
   deviation->assign(mean->size() / size_t(channels), 0.0f);
@@ -74,16 +77,16 @@ void average_noisy_halves(std::vector<float>* mean, std::vector<float>* deviatio
 }
 
 template <class PixelSigma, class DifferenceSigma>
-GradientImages noisy_images(int w, int h, int channels, const std::vector<float>& truth, const PixelSigma& pixels,
-                            const DifferenceSigma& differences) {
-  GradientImages images = with_exact_gradients(w, h, channels, truth);
+film::GradientImages noisy_images(int w, int h, int channels, const std::vector<float>& truth, const PixelSigma& pixels,
+                                  const DifferenceSigma& differences) {
+  film::GradientImages images = with_exact_gradients(w, h, channels, truth);
   average_noisy_halves(&images.primal, &images.primal_deviation, channels, pixels, 1);
   average_noisy_halves(&images.dx, &images.dx_deviation, channels, differences, 2);
   average_noisy_halves(&images.dy, &images.dy_deviation, channels, differences, 3);
   return images;
 }
 
-inline GradientImages noisy_images(int w, int h, int channels = 3) {
+inline film::GradientImages noisy_images(int w, int h, int channels = 3) {
   return noisy_images(
       w, h, channels, smooth_image(w, h, channels), [](size_t) { return 0.4f; }, [](size_t) { return 0.05f; });
 }

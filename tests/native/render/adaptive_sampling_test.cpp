@@ -14,22 +14,25 @@ constexpr uint32_t kMean = 16;
 // Counts of a row of cells, that of the middle noisy, in the batch after the first.
 class RowOfBlocks : public testing::Test {
  protected:
-  RowOfBlocks() : film_(kCells * kPixelBlockSide, kPixelBlockSide, {0, 0, kCells * kPixelBlockSide, kPixelBlockSide}, 3, 1, false), sampling_(film_, 1e-6f, kMean) {}
+  RowOfBlocks()
+      : film_(kCells * film::kPixelBlockSide, film::kPixelBlockSide,
+              {0, 0, kCells * film::kPixelBlockSide, film::kPixelBlockSide}, 3, 1, false),
+        sampling_(film_, 1e-6f, kMean) {}
 
   std::vector<uint32_t> counts() {
     sampling_.start_batch(kMean);
     std::vector<uint32_t> counts;
-    for (int i = 0; i < kCells; ++i) counts.push_back(sampling_.batch().count[size_t(i) * kPixelBlockSide + 5]);
+    for (int i = 0; i < kCells; ++i) counts.push_back(sampling_.batch().count[size_t(i) * film::kPixelBlockSide + 5]);
     return counts;
   }
   void judge(double middle, double others) {
-    std::vector<BlockNoise> noise(kCells, {1.0, others});
+    std::vector<render::BlockNoise> noise(kCells, {1.0, others});
     noise[kMiddle].spread = middle;
     sampling_.judge(noise);
   }
 
-  Film film_;
-  AdaptiveSampling sampling_;
+  film::Film film_;
+  render::AdaptiveSampling sampling_;
 };
 
 // Nothing is known yet of where the noise is.

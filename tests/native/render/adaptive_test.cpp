@@ -20,20 +20,21 @@ GradusSettings adaptive_settings(uint32_t samples, float threshold = 1e-6f) {
   return settings;
 }
 
-IntegratorFactory quiet_at_the_left() {
+render::IntegratorFactory quiet_at_the_left() {
   return fake_factory([](FakeIntegrator* fake) { fake->quiet_until = kQuiet; });
 }
 
-std::shared_ptr<const Film> render_film(const GradusSettings& settings, std::shared_ptr<const Film> resumed = nullptr) {
+std::shared_ptr<const film::Film> render_film(const GradusSettings& settings,
+                                              std::shared_ptr<const film::Film> resumed = nullptr) {
   const auto render = start(settings, quiet_at_the_left(), std::move(resumed));
   render->wait(-1.0);
   return render->film();
 }
 
-double mean_count(const Film& film, int x0, int x1) {
+double mean_count(const film::Film& film, int x0, int x1) {
   double sum = 0.0;
   for (int y = 0; y < kHeight; ++y) {
-    for (int x = x0; x < x1; ++x) sum += samples_at(film, film.index(x, y));
+    for (int x = x0; x < x1; ++x) sum += film::samples_at(film, film.index(x, y));
   }
   return sum / double(kHeight * (x1 - x0));
 }
@@ -68,25 +69,25 @@ TEST(Adaptive, SamplesOfAPixelAreNumberedWithoutGaps) {
   GradusSettings settings = adaptive_settings(48);
   settings.first_sample = 5;
   const auto film = render_film(settings);
-  FakeIntegrator fake(IntegratorContext{nullptr, {}, settings}, false);
+  FakeIntegrator fake(integrator::IntegratorContext{nullptr, {}, settings}, false);
   fake.quiet_until = kQuiet;
   for (int y = 0; y < kHeight; y += 3) {
     for (int x = 0; x < kWidth; x += 3) {
       const size_t i = film->index(x, y);
-      float sum[kHalves] = {};
-      for (uint32_t s = 5; s < 5 + samples_at(*film, i); ++s) sum[s % 2] += fake.value_of(x, y, s);
+      float sum[film::kHalves] = {};
+      for (uint32_t s = 5; s < 5 + film::samples_at(*film, i); ++s) sum[s % 2] += fake.value_of(x, y, s);
       ASSERT_EQ(film->components[0].primal[0][i].x, sum[0]) << x << " " << y;
       ASSERT_EQ(film->components[0].primal[1][i].x, sum[1]) << x << " " << y;
     }
   }
   uint32_t maximum = 0;
-  for (size_t i = 0; i < film->count[0].size(); ++i) maximum = std::max(maximum, samples_at(*film, i));
-  EXPECT_EQ(film->samples.list(), (std::vector<SampleRange>{{5, 5 + maximum}}));
+  for (size_t i = 0; i < film->count[0].size(); ++i) maximum = std::max(maximum, film::samples_at(*film, i));
+  EXPECT_EQ(film->samples.list(), (std::vector<film::SampleRange>{{5, 5 + maximum}}));
 }
 
 TEST(L1_Threads, AdaptiveSamplesHaveTheSameBitsForAnyNumberOfThreads) {
   const tbb::global_control seven(tbb::global_control::max_allowed_parallelism, 8);
-  std::shared_ptr<const Film> first;
+  std::shared_ptr<const film::Film> first;
   for (const uint32_t threads : {1u, 2u, 3u, 7u}) {
     GradusSettings settings = adaptive_settings(64, 0.02f);
     settings.threads = threads;
@@ -104,7 +105,8 @@ TEST(L3_Resume, AdaptiveRendersGoOnWithTheSameBits) {
 }
 
 // Quiet cells cost more than others.
-std::shared_ptr<const Film> render_costly_below(const GradusSettings& settings, std::shared_ptr<const Film> from) {
+std::shared_ptr<const film::Film> render_costly_below(const GradusSettings& settings,
+                                                      std::shared_ptr<const film::Film> from) {
   const auto render = start(settings, fake_factory([](FakeIntegrator* fake) {
                               fake->quiet_until = kQuiet;
                               fake->rays_below = 40;
@@ -118,17 +120,17 @@ std::shared_ptr<const Film> render_costly_below(const GradusSettings& settings, 
 TEST(L3_Resume, CellsKeepTheirCostAndTheirStop) {
   GradusSettings settings = adaptive_settings(80, 0.05f);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
-  const auto part = [&](uint32_t samples, std::shared_ptr<const Film> from) {
+  const auto part = [&](uint32_t samples, std::shared_ptr<const film::Film> from) {
     settings.samples = samples;
     return render_costly_below(settings, std::move(from));
   };
   const auto whole = part(80, nullptr);
   const std::string path = testing::TempDir() + "/adaptive.exr";
-  std::shared_ptr<const Film> last;
+  std::shared_ptr<const film::Film> last;
   for (const uint32_t samples : {16u, 48u, 64u, 80u}) {
     last = part(samples, last);
-    save_film(*last, path);
-    last = load_film(path);
+    film_io::save_film(*last, path);
+    last = film_io::load_film(path);
     EXPECT_EQ(last->shared.mean, samples);
   }
   std::remove(path.c_str());
@@ -141,21 +143,22 @@ TEST(L3_Resume, CellsKeepTheirCostAndTheirStop) {
 TEST(L3_Resume, SamplesOfUnknownCostStayUnknown) {
   GradusSettings settings = adaptive_settings(16, 0.0f);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
-  const auto part = [&](uint32_t samples, std::shared_ptr<const Film> from) {
+  const auto part = [&](uint32_t samples, std::shared_ptr<const film::Film> from) {
     settings.samples = samples;
     return render_costly_below(settings, std::move(from));
   };
   const auto plain = part(16, nullptr);
   settings.noise_threshold = 0.001f;
   const std::string path = testing::TempDir() + "/adaptive_after_plain.exr";
-  save_film(*part(48, plain), path);
-  const auto halfway = load_film(path);
+  film_io::save_film(*part(48, plain), path);
+  const auto halfway = film_io::load_film(path);
   std::remove(path.c_str());
   EXPECT_EQ(halfway->shared.uncounted, 16u);
   EXPECT_TRUE(same_samples(*part(80, plain), *part(80, halfway)));
 }
 
-// A lower threshold starts cells again that had stopped at a higher one; without one their counts would differ for nothing.
+// A lower threshold starts cells again that had stopped at a higher one; without one their counts would differ for
+// nothing.
 TEST(L3_Resume, ALowerThresholdGoesOnWhereAHigherOneHadStopped) {
   const auto settings = [](uint32_t samples, float threshold) {
     GradusSettings s = adaptive_settings(samples, threshold);
@@ -173,29 +176,32 @@ TEST(L3_Resume, ALowerThresholdGoesOnWhereAHigherOneHadStopped) {
 TEST(L3_Merge, FramesOfUnequalCountsAreAddedPixelByPixel) {
   GradusSettings settings = adaptive_settings(32);
   const auto first = render_film(settings);
-  Film merged = *first;
+  film::Film merged = *first;
   settings.first_sample = 16;  // the noisy cells have taken these already
   const auto overlapping = render_film(settings);
   try {
-    merge_films(&merged, *overlapping);
+    render::merge_films(&merged, *overlapping);
     FAIL();
   } catch (const Error& e) {
     const uint32_t end = std::max(first->samples.list().back().end, overlapping->samples.list().back().end);
-    EXPECT_EQ(std::string(e.what()), "the frames share samples: render one of them with first_sample " + std::to_string(end));
+    EXPECT_EQ(std::string(e.what()),
+              "the frames share samples: render one of them with first_sample " + std::to_string(end));
   }
   settings.first_sample = 256;
   const auto second = render_film(settings);
-  merge_films(&merged, *second);
+  render::merge_films(&merged, *second);
   for (const int x : {3, kWidth - 5}) {
     const size_t i = merged.index(x, 7);
-    for (int half = 0; half < kHalves; ++half) {
+    for (int half = 0; half < film::kHalves; ++half) {
       EXPECT_EQ(merged.count[half][i], first->count[half][i] + second->count[half][i]);
-      EXPECT_EQ(merged.components[0].primal[half][i].x, first->components[0].primal[half][i].x + second->components[0].primal[half][i].x);
-      EXPECT_EQ(merged.pair_count[half][kUp][i], first->pair_count[half][kUp][i] + second->pair_count[half][kUp][i]);
+      EXPECT_EQ(merged.components[0].primal[half][i].x,
+                first->components[0].primal[half][i].x + second->components[0].primal[half][i].x);
+      EXPECT_EQ(merged.pair_count[half][film::kUp][i],
+                first->pair_count[half][film::kUp][i] + second->pair_count[half][film::kUp][i]);
     }
   }
   EXPECT_NE(merged.count[0][merged.index(3, 7)], merged.count[0][merged.index(kWidth - 5, 7)]);
-  EXPECT_THROW(start(adaptive_settings(1024), quiet_at_the_left(), std::make_shared<const Film>(merged)), Error)
+  EXPECT_THROW(start(adaptive_settings(1024), quiet_at_the_left(), std::make_shared<const film::Film>(merged)), Error)
       << "no one goes on from it";
 }
 

@@ -14,16 +14,17 @@ namespace {
 const CancelCheck kNever = [] { return false; };
 constexpr float kExposure = 2.0f;
 
-Film noisy_room(bool gradients) {
+film::Film noisy_room(bool gradients) {
   test::FeatureFilm description = test::room(40, 32);
   description.gradients = gradients;
-  Film film = test::make_feature_film(description);
+  film::Film film = test::make_feature_film(description);
   film.settings.film_exposure = kExposure;
   return film;
 }
 
 // Root of mean squared error over mean squared gray, by the estimate's sum over the cell.
-double relative_error(const Film& film, const Reconstructed& result, const Region& block, double error) {
+double relative_error(const film::Film& film, const reconstruct::Reconstructed& result, const Region& block,
+                      double error) {
   double signal = 0.0;
   for (int32_t y = block.y0; y < block.y1; ++y) {
     for (int32_t x = block.x0; x < block.x1; ++x) {
@@ -35,7 +36,7 @@ double relative_error(const Film& film, const Reconstructed& result, const Regio
   return std::sqrt(kExposure * kExposure * error / signal);
 }
 
-double sum_over(const Film& film, const std::vector<float>& pixels, const Region& block) {
+double sum_over(const film::Film& film, const std::vector<float>& pixels, const Region& block) {
   double sum = 0.0;
   for (int32_t y = block.y0; y < block.y1; ++y) {
     for (int32_t x = block.x0; x < block.x1; ++x) sum += pixels[film.index(x, y)];
@@ -43,14 +44,17 @@ double sum_over(const Film& film, const std::vector<float>& pixels, const Region
   return sum;
 }
 
-// Noise of the halves, which a reconstruction by features hides, says nothing of its error: its own estimate has to be taken.
+// Noise of the halves, which a reconstruction by features hides, says nothing of its error: its own estimate has to be
+// taken.
 TEST(BlockNoise, OfAReconstructionThatEstimatesItsErrorIsThatEstimate) {
   for (const bool gradients : {false, true}) {
-    const Film film = noisy_room(gradients);
-    SolveReport report;
-    const Reconstructed result = reconstruct_film(film, GRADUS_RECONSTRUCTION_REGULARIZED, 0.0f, {.error = true}, kNever, &report);
+    const film::Film film = noisy_room(gradients);
+    reconstruct::SolveReport report;
+    const reconstruct::Reconstructed result =
+        reconstruct::reconstruct_film(film, GRADUS_RECONSTRUCTION_REGULARIZED, 0.0f, {.error = true}, kNever, &report);
     const std::vector<Region> blocks = {{0, 0, 16, 16}, {16, 0, 40, 32}};
-    const std::vector<BlockNoise> noise = estimate_noise(film, blocks, GRADUS_RECONSTRUCTION_REGULARIZED, 0.0f, kNever);
+    const std::vector<render::BlockNoise> noise =
+        render::estimate_noise(film, blocks, GRADUS_RECONSTRUCTION_REGULARIZED, 0.0f, kNever);
     ASSERT_EQ(noise.size(), blocks.size());
     for (size_t k = 0; k < blocks.size(); ++k) {
       const double error = sum_over(film, result.error, blocks[k]);
@@ -63,11 +67,12 @@ TEST(BlockNoise, OfAReconstructionThatEstimatesItsErrorIsThatEstimate) {
 
 // The whole picture as one cell: what the windows of the pass spread stays in it, but for what the border cuts off.
 TEST(BlockNoise, OfAllIsTheSumOfThePass) {
-  const Film film = noisy_room(true);
+  const film::Film film = noisy_room(true);
   for (const uint32_t how : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2}) {
-    SolveReport report;
-    const Reconstructed result = reconstruct_film(film, how, 0.0f, {.error = true}, kNever, &report);
-    const BlockNoise noise = estimate_noise(film, {film.region}, how, 0.0f, kNever).front();
+    reconstruct::SolveReport report;
+    const reconstruct::Reconstructed result =
+        reconstruct::reconstruct_film(film, how, 0.0f, {.error = true}, kNever, &report);
+    const render::BlockNoise noise = render::estimate_noise(film, {film.region}, how, 0.0f, kNever).front();
     const double error = sum_over(film, result.error, film.region);
     EXPECT_NEAR(noise.relative_error / relative_error(film, result, film.region, error), 1.0, 0.02) << how;
   }

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "render/plan.h"
 #include "output/combine.h"
+#include "render/plan.h"
 #include "render/render.h"
 #include "schema/options.h"
 #include "support/path_scene.h"
@@ -19,10 +19,10 @@ using test::Scenario;
 constexpr uint32_t kWidth = 144, kHeight = 120;
 constexpr Region kBorder{68, 62, 108, 90};
 
-using FilmPointer = std::shared_ptr<const Film>;
+using FilmPointer = std::shared_ptr<const film::Film>;
 
 GradusSettings settings_of(uint32_t seed) {
-  GradusSettings settings = default_settings();
+  GradusSettings settings = schema::default_settings();
   settings.width = kWidth;
   settings.height = kHeight;
   settings.samples = 8;
@@ -30,19 +30,20 @@ GradusSettings settings_of(uint32_t seed) {
   settings.noise_threshold = 0.0f;
   settings.max_bounces = 4;
   settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
-  settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;  // its frames have features, which the others do not look at
+  settings.reconstruction =
+      GRADUS_RECONSTRUCTION_REGULARIZED;  // its frames have features, which the others do not look at
   return settings;
 }
 
-FilmPointer sampled(const std::shared_ptr<const Snapshot>& snapshot, const GradusSettings& settings) {
-  Render render(test::test_device(), snapshot, settings);
+FilmPointer sampled(const std::shared_ptr<const scene::Snapshot>& snapshot, const GradusSettings& settings) {
+  render::Render render(test::test_device(), snapshot, settings);
   EXPECT_TRUE(render.wait(-1.0));
   return render.film();
 }
 
 std::vector<float> border_of(const FilmPointer& film, uint32_t reconstruction) {
-  SolveReport report;
-  return combine(
+  reconstruct::SolveReport report;
+  return output::combine(
       *film, reconstruction, 0.0f, kBorder, [] { return false; }, &report);
 }
 
@@ -74,18 +75,20 @@ void check_samples(const Frames& f) {
 
 // Contract 2.1. It is 5e-5 at most.
 void check_l2(const Frames& f) {
-  const std::vector<float> a = border_of(f.full, GRADUS_RECONSTRUCTION_L2), b = border_of(f.part, GRADUS_RECONSTRUCTION_L2);
+  const std::vector<float> a = border_of(f.full, GRADUS_RECONSTRUCTION_L2),
+                           b = border_of(f.part, GRADUS_RECONSTRUCTION_L2);
   for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 1e-3f * std::max(0.01f, std::fabs(a[i])));
 }
 
-// Weights that follow the noise, or the outliers, are of all sizes, so that no ring bounds their reach as it does L2's. What is left is to
-// be a small part of the noise that the picture has anyway: a quarter of it adds 3 % to the error. Measured over eight scenes, it is 2 to
-// 19 % of the noise by L1. REGULARIZED goes by medians of the light and of depths, which are the region's: 1 to 16 %, and 56 % where lights
-// are points and there is hardly any noise.
+// Weights that follow the noise, or the outliers, are of all sizes, so that no ring bounds their reach as it does L2's.
+// What is left is to be a small part of the noise that the picture has anyway: a quarter of it adds 3 % to the error.
+// Measured over eight scenes, it is 2 to 19 % of the noise by L1. REGULARIZED goes by medians of the light and of
+// depths, which are the region's: 1 to 16 %, and 56 % where lights are points and there is hardly any noise.
 void check_noise(const Frames& f, uint32_t reconstruction, double maximum = 0.25) {
   const std::vector<float> a = border_of(f.full, reconstruction), b = border_of(f.part, reconstruction);
-  const double noise = 0.5 * squared_distance(a, border_of(f.other_seed, reconstruction)), difference = squared_distance(a, b);
-  const std::string name = choice_name(*find_option("reconstruction"), reconstruction);
+  const double noise = 0.5 * squared_distance(a, border_of(f.other_seed, reconstruction)),
+               difference = squared_distance(a, b);
+  const std::string name = schema::choice_name(*schema::find_option("reconstruction"), reconstruction);
   EXPECT_GT(noise, 0.0);
   EXPECT_LE(difference, maximum * maximum * noise) << name;
   std::printf("  %s: %.3f of the noise\n", name.c_str(), std::sqrt(difference / noise));
@@ -104,7 +107,8 @@ TEST_P(L3_Border, LooksAsTheFullFrame) {
   check_noise(frames, GRADUS_RECONSTRUCTION_REGULARIZED, 0.65);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, L3_Border, ::testing::Values(Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::Transparent),
+INSTANTIATE_TEST_SUITE_P(All, L3_Border,
+                         ::testing::Values(Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::Transparent),
                          [](const ::testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
 
 }  // namespace

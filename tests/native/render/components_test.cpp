@@ -1,4 +1,5 @@
-// Components of a render: planned by what the scene holds, reconstructed, and read by name; they add up to Combined (contract 3.4).
+// Components of a render: planned by what the scene holds, reconstructed, and read by name; they add up to Combined
+// (contract 3.4).
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -39,18 +40,19 @@ GradusSettings settings_with(const std::string& components, uint32_t reconstruct
   settings.reconstruction = reconstruction;
   settings.use_decomposition = 1;
   settings.component_passes = kAllPasses;
-  set_text(&settings, *find_option("components"), components);
+  schema::set_text(&settings, *schema::find_option("components"), components);
   return settings;
 }
 
-std::vector<float> combined(const Render& render) {
+std::vector<float> combined(const render::Render& render) {
   std::vector<float> rgba(4 * kSide * kSide);
   render.read_pass(GRADUS_PASS_COMBINED, rgba.data(), rgba.size());
   return rgba;
 }
 
-std::vector<float> component(const Render& render, const std::string& name, uint32_t pass = GRADUS_COMPONENT_COLOR) {
-  std::vector<float> values(component_pass_info(pass).channels * kSide * kSide);
+std::vector<float> component(const render::Render& render, const std::string& name,
+                             uint32_t pass = GRADUS_COMPONENT_COLOR) {
+  std::vector<float> values(schema::component_pass_info(pass).channels * kSide * kSide);
   render.read_component(name, pass, values.data(), values.size());
   return values;
 }
@@ -63,7 +65,7 @@ double sum_of(const std::vector<float>& values) {
 
 const char* const kDefaultNames[] = {"Emission", "Diffuse", "Reflection", "Transmission", "Residual"};
 
-std::string sampled_components(const Render& render) { return component_names(*render.film()); }
+std::string sampled_components(const render::Render& render) { return film::component_names(*render.film()); }
 
 class Modes : public testing::TestWithParam<uint32_t> {};
 
@@ -89,7 +91,8 @@ TEST_P(Modes, ComponentsAddUpToCombined) {
 
 INSTANTIATE_TEST_SUITE_P(Components, Modes,
                          testing::Values(uint32_t{GRADUS_RECONSTRUCTION_NONE}, uint32_t{GRADUS_RECONSTRUCTION_L2},
-                                         uint32_t{GRADUS_RECONSTRUCTION_L1}, uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
+                                         uint32_t{GRADUS_RECONSTRUCTION_L1},
+                                         uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
 
 // L2 has the same weights everywhere: what was taken apart comes together as if it had not been.
 TEST(Components, OfL2AddUpToThePictureOfOne) {
@@ -106,21 +109,25 @@ TEST(Components, OfL2AddUpToThePictureOfOne) {
 TEST(Components, ThatNoSurfaceCanMakeAreNotSampled) {
   const auto matte = rendered(Scenario::DiffuseArea, settings_with(""));
   EXPECT_EQ(sampled_components(*matte), "Emission, Diffuse");
-  EXPECT_NE(matte->stats_json().find("\"components Reflection, Transmission, Residual\""), std::string::npos) << matte->stats_json();
+  EXPECT_NE(matte->stats_json().find("\"components Reflection, Transmission, Residual\""), std::string::npos)
+      << matte->stats_json();
   EXPECT_EQ(sum_of(component(*matte, "Reflection")), 0.0);
   const auto mirror = rendered(Scenario::Mirror, settings_with(""));
   EXPECT_EQ(sampled_components(*mirror), "Emission, Diffuse, Reflection, Residual");
-  EXPECT_EQ(sampled_components(*rendered(Scenario::Glass, settings_with(""))), "Emission, Diffuse, Reflection, Transmission, Residual");
+  EXPECT_EQ(sampled_components(*rendered(Scenario::Glass, settings_with(""))),
+            "Emission, Diffuse, Reflection, Transmission, Residual");
   // A user's own set, too, and nothing is taken from it that may come.
-  EXPECT_EQ(sampled_components(*rendered(Scenario::DiffuseArea, settings_with("Caustic=ED+(R|T).*L;Rare=EDDDDDDDDDDDDL"))),
-            "Rare, Residual");
+  EXPECT_EQ(
+      sampled_components(*rendered(Scenario::DiffuseArea, settings_with("Caustic=ED+(R|T).*L;Rare=EDDDDDDDDDDDDL"))),
+      "Rare, Residual");
 }
 
 // A room with a mirror that shows its ceiling, or lies behind a wall.
 void build_room_with_mirror(PathScene* scene, float size, float z) {
   test::add_box(scene, test::matte(Rgb(0.6f)));
   test::add_ceiling_light(scene, 20.0f, 0.5f);
-  scene->quad(Vec3(-0.5f * size, -0.5f * size, z), Vec3(size, 0, 0), Vec3(0, size, -0.5f * size), scene->material(test::glossy(0.0f)));
+  scene->quad(Vec3(-0.5f * size, -0.5f * size, z), Vec3(size, 0, 0), Vec3(0, size, -0.5f * size),
+              scene->material(test::glossy(0.0f)));
 }
 
 GradusSettings light_alone(const std::string& components) {
@@ -134,12 +141,14 @@ TEST(Components, ThatAreSmallEverywhereBelongToResidual) {
   build_room_with_mirror(&hidden, 0.5f, -1.5f);  // behind the box's wall
   const auto render = rendered(&hidden, light_alone(""));
   EXPECT_EQ(sampled_components(*render), "Emission, Diffuse, Residual");
-  EXPECT_NE(render->stats_json().find("\"components Reflection\":\"automatic: "), std::string::npos) << render->stats_json();
+  EXPECT_NE(render->stats_json().find("\"components Reflection\":\"automatic: "), std::string::npos)
+      << render->stats_json();
   EXPECT_EQ(sum_of(component(*render, "Reflection")), 0.0);
-  const std::vector<float> rgba = combined(*render), diffuse = component(*render, "Diffuse"), emission = component(*render, "Emission"),
-                           residual = component(*render, "Residual");
+  const std::vector<float> rgba = combined(*render), diffuse = component(*render, "Diffuse"),
+                           emission = component(*render, "Emission"), residual = component(*render, "Residual");
   for (size_t i = 0; i < diffuse.size(); ++i) {
-    ASSERT_NEAR(diffuse[i] + emission[i] + residual[i], rgba[i / 3 * 4 + i % 3], 2e-6f * (rgba[i / 3 * 4 + i % 3] + 1.0f));
+    ASSERT_NEAR(diffuse[i] + emission[i] + residual[i], rgba[i / 3 * 4 + i % 3],
+                2e-6f * (rgba[i / 3 * 4 + i % 3] + 1.0f));
   }
 }
 
@@ -149,7 +158,8 @@ TEST(Components, ThatAreSmallAreKeptWhereSomebodyMayWantThem) {
   build_room_with_mirror(&seen, 0.1f, 0.0f);  // a few pixels
   const char* const kAll = "Emission, Diffuse, Reflection, Residual";
   EXPECT_EQ(sampled_components(*rendered(&seen, light_alone(""))), kAll);
-  EXPECT_EQ(sampled_components(*rendered(&hidden, light_alone(std::string(kDefaultComponents)))), kAll) << "a user's own set";
+  EXPECT_EQ(sampled_components(*rendered(&hidden, light_alone(std::string(lpe::kDefaultComponents)))), kAll)
+      << "a user's own set";
   GradusSettings with_normals = light_alone("");
   with_normals.component_passes |= 1u << GRADUS_COMPONENT_NORMAL;
   EXPECT_EQ(sampled_components(*rendered(&hidden, with_normals)), kAll);
@@ -170,13 +180,13 @@ TEST(Components, ThatAreSmallAreSoForAnyPartOfTheWork) {
   settings.seed = 0;
   settings.first_sample = 0;
   settings.samples = 8;
-  Render more(test::test_device(), hidden.context(settings).snapshot, settings, early->film());
+  render::Render more(test::test_device(), hidden.context(settings).snapshot, settings, early->film());
   ASSERT_TRUE(more.wait(-1.0));
   EXPECT_EQ(combined(more), combined(*whole));
   EXPECT_EQ(component(more, "Residual"), component(*whole, "Residual"));
   const uint32_t part[] = {0, 0, 8, 8};
   std::copy_n(part, 4, settings.region);
-  EXPECT_EQ(component_names(*rendered(&hidden, settings)->film()), sampled_components(*whole));
+  EXPECT_EQ(film::component_names(*rendered(&hidden, settings)->film()), sampled_components(*whole));
 }
 
 // All of it is small then, and what is left is Residual alone.
@@ -205,7 +215,7 @@ TEST(Components, BadSetsEndTheRenderWithWhatIsWrong) {
     const GradusSettings settings = settings_with(set);
     const auto snapshot = scene.context(settings).snapshot;
     try {
-      Render render(test::test_device(), snapshot, settings);
+      render::Render render(test::test_device(), snapshot, settings);
       ADD_FAILURE() << set;
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), GRADUS_ERROR_INVALID_ARGUMENT) << set;
@@ -247,7 +257,8 @@ TEST(Components, HaveTheSurfacesThatTheirPathsMeetFirst) {
   EXPECT_EQ(near[right / 3], 1e10f);
   EXPECT_EQ(far[left / 3], 1e10f);
   // Irradiance · reflectance is the colour again; of black surfaces it is the colour itself.
-  const std::vector<float> color = component(*render, "Diffuse"), light = component(*render, "Diffuse", GRADUS_COMPONENT_IRRADIANCE);
+  const std::vector<float> color = component(*render, "Diffuse"),
+                           light = component(*render, "Diffuse", GRADUS_COMPONENT_IRRADIANCE);
   EXPECT_GT(color[left], 0.0f);
   EXPECT_NEAR(light[left + 2] * 0.7f, color[left + 2], 1e-5f * color[left + 2]);
   EXPECT_EQ(light[right], color[right]);
@@ -277,8 +288,8 @@ void add_mapped_quad(PathScene* scene, const Vec3& corner, const Vec3& a, const 
   scene->scene.instance(key, Mat4(1.0f), GRADUS_VISIBLE_ALL, material);
 }
 
-constexpr uint32_t kDetails =
-    1u << GRADUS_COMPONENT_UV | 1u << GRADUS_COMPONENT_OBJECT_INDEX | 1u << GRADUS_COMPONENT_FACE_INDEX | 1u << GRADUS_COMPONENT_EMIT;
+constexpr uint32_t kDetails = 1u << GRADUS_COMPONENT_UV | 1u << GRADUS_COMPONENT_OBJECT_INDEX |
+                              1u << GRADUS_COMPONENT_FACE_INDEX | 1u << GRADUS_COMPONENT_EMIT;
 
 GradusSettings details_settings() {
   GradusSettings settings = settings_with("", GRADUS_RECONSTRUCTION_NONE);
@@ -293,7 +304,7 @@ struct Shown {
   float object, face;
 };
 
-Shown shown_at(const Render& render, const std::string& name, size_t pixel) {
+Shown shown_at(const render::Render& render, const std::string& name, size_t pixel) {
   const auto values = [&](uint32_t pass) { return component(render, name, pass); };
   const std::vector<float> uv = values(GRADUS_COMPONENT_UV), emit = values(GRADUS_COMPONENT_EMIT);
   const auto vec = [&](const std::vector<float>& v) { return Vec3(v[3 * pixel], v[3 * pixel + 1], v[3 * pixel + 2]); };
@@ -311,7 +322,8 @@ void expect_shown(const Shown& found, const Shown& expected) {
 
 const Shown kNothingShown{Vec3(0.0f), Vec3(0.0f), 0.0f, -1.0f};
 
-// A dim wall and a mirror, each with a map and an index of its own; the mirror shows a wall behind the camera that is a screen.
+// A dim wall and a mirror, each with a map and an index of its own; the mirror shows a wall behind the camera that is a
+// screen.
 TEST(Components, HaveTheMapsIndicesAndEmissionOfWhatTheyShow) {
   PathScene scene;
   test::Surface dim = test::matte(Rgb(0.3f)), mirror = test::glossy(0.0f), screen = test::matte(Rgb(0.9f));
@@ -327,8 +339,10 @@ TEST(Components, HaveTheMapsIndicesAndEmissionOfWhatTheyShow) {
   scene.camera(Vec3(0, 0, 3), Vec3(0), 0.3f);
   const auto render = rendered(&scene, details_settings());
   const size_t left = 20 * kSide + 10, right = 20 * kSide + 30;
-  const float x = 0.3f * (30.5f / kSide - 0.5f), y = 0.3f * (20.5f / kSide - 0.5f);  // of the ray to `right`, by distance
-  expect_shown(shown_at(*render, "Reflection", right), {Vec3(0.5f + y / 2.0f, 0.5f + x / 2.0f, 1), 1.5f * Vec3(2, 1, 0.5f), 9, 3});
+  const float x = 0.3f * (30.5f / kSide - 0.5f),
+              y = 0.3f * (20.5f / kSide - 0.5f);  // of the ray to `right`, by distance
+  expect_shown(shown_at(*render, "Reflection", right),
+               {Vec3(0.5f + y / 2.0f, 0.5f + x / 2.0f, 1), 1.5f * Vec3(2, 1, 0.5f), 9, 3});
   expect_shown(shown_at(*render, "Diffuse", right), kNothingShown);
   const Vec3 map_of_left(1.0f - 0.9f * (0.5f - 10.5f / kSide), 0.5f + 0.45f * (20.5f / kSide - 0.5f), 1);
   const Shown wall{map_of_left, Vec3(0.375f), 4, 3};
@@ -351,7 +365,8 @@ TEST(Components, EmissionOfWhatIsSeenIsItsLight) {
   GradusSettings settings = details_settings();
   settings.component_passes |= 1u << GRADUS_COMPONENT_COLOR;
   const auto render = rendered(&scene, settings);
-  const std::vector<float> color = component(*render, "Emission"), emit = component(*render, "Emission", GRADUS_COMPONENT_EMIT);
+  const std::vector<float> color = component(*render, "Emission"),
+                           emit = component(*render, "Emission", GRADUS_COMPONENT_EMIT);
   for (size_t i = 0; i < color.size(); ++i) ASSERT_NEAR(emit[i], color[i], 1e-5f * color[i]) << i;
   const size_t middle = 20 * kSide + 20;
   const float lit = color[3 * middle], world = color[0];
@@ -363,8 +378,10 @@ TEST(Components, EmissionOfWhatIsSeenIsItsLight) {
 TEST(Components, WhatShinesIsAsFarAsItIs) {
   PathScene scene;
   scene.world(Rgb(0.25f, 0.5f, 0.1f));
-  scene.light(test::make_light(GRADUS_LIGHT_RECTANGLE, test::translation(Vec3(0, 0, -1)) * test::scaling(Vec3(1, -1, -1)), Rgb(3.0f)));
-  scene.quad(Vec3(-0.5f, -0.5f, 0.0f), Vec3(0.5f, 0, 0), Vec3(0, 1, 0), scene.material(test::glossy(0.0f)));  // on the left
+  scene.light(test::make_light(GRADUS_LIGHT_RECTANGLE,
+                               test::translation(Vec3(0, 0, -1)) * test::scaling(Vec3(1, -1, -1)), Rgb(3.0f)));
+  scene.quad(Vec3(-0.5f, -0.5f, 0.0f), Vec3(0.5f, 0, 0), Vec3(0, 1, 0),
+             scene.material(test::glossy(0.0f)));  // on the left
   scene.camera(Vec3(0, 0, 3), Vec3(0), 0.3f);
   GradusSettings settings = settings_with("", GRADUS_RECONSTRUCTION_NONE);
   const auto render = rendered(&scene, settings);
@@ -377,7 +394,8 @@ TEST(Components, WhatShinesIsAsFarAsItIs) {
   EXPECT_GT(sum_of(component(*render, "Reflection")), 1.0);
 }
 
-// A surface that is lit and shines was counted twice: its normal had half its length, its reflectance was a mean of albedo and light.
+// A surface that is lit and shines was counted twice: its normal had half its length, its reflectance was a mean of
+// albedo and light.
 TEST(Components, ASurfaceThatShinesIsMetOnce) {
   PathScene scene;
   test::Surface screen = test::matte(Rgb(0.3f));
@@ -399,9 +417,11 @@ TEST(Components, AddUpBelowZero) {
   PathScene scene;
   test::add_box(&scene, test::matte(Rgb(0.6f)));
   scene.light(test::make_light(GRADUS_LIGHT_POINT, test::translation(Vec3(0, 0, 0.5f)), Rgb(-2.0f)));
-  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_REGULARIZED}) {
+  for (const uint32_t reconstruction :
+       {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_REGULARIZED}) {
     const auto render = rendered(&scene, settings_with("Direct=EDL;Indirect=EDD+L", reconstruction));
-    const std::vector<float> rgba = combined(*render), direct = component(*render, "Direct"), indirect = component(*render, "Indirect");
+    const std::vector<float> rgba = combined(*render), direct = component(*render, "Direct"),
+                             indirect = component(*render, "Indirect");
     const bool keeps = reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED;
     EXPECT_EQ(*std::min_element(rgba.begin(), rgba.end()) < -0.01f, keeps) << reconstruction;
     for (size_t i = 0; i < direct.size(); ++i) {
@@ -434,7 +454,9 @@ TEST(Components, IndicesOfMergedFramesAreThoseOfTheWhole) {
   PathScene scene;
   test::build(Scenario::Glass, &scene);
   GradusSettings settings = details_settings();
-  const auto details = [](const Film& film) { return film.components[size_t(find_component(film, "Transmission"))].details; };
+  const auto details = [](const film::Film& film) {
+    return film.components[size_t(film::find_component(film, "Transmission"))].details;
+  };
   const auto whole = details(*rendered(&scene, settings)->film());
   settings.samples = 4;
   const auto early = rendered(&scene, settings)->film();
@@ -442,8 +464,8 @@ TEST(Components, IndicesOfMergedFramesAreThoseOfTheWhole) {
   const auto late = rendered(&scene, settings)->film();
   size_t others = 0;
   for (const auto& [to, from] : {std::pair{early, late}, {late, early}}) {
-    Film merged = *to;
-    merge_films(&merged, *from);
+    film::Film merged = *to;
+    render::merge_films(&merged, *from);
     const auto found = details(merged);
     for (size_t i = 0; i < whole.size(); ++i) {
       ASSERT_EQ(found[i].object, whole[i].object);
@@ -464,30 +486,33 @@ TEST(Components, AreKeptInFramesAndGoOnFromThere) {
   settings.samples = 4;
   const auto first = rendered(&scene, settings);
   const std::string path = testing::TempDir() + "gradus_components.exr";
-  save_film(*first->film(), path);
-  const std::shared_ptr<const Film> stored = load_film(path);
-  EXPECT_EQ(component_names(*stored), component_names(*first->film()));
+  film_io::save_film(*first->film(), path);
+  const std::shared_ptr<const film::Film> stored = film_io::load_film(path);
+  EXPECT_EQ(film::component_names(*stored), film::component_names(*first->film()));
   EXPECT_EQ(stored->components[1].expression, "ED.*L");
   for (size_t c = 0; c < stored->components.size(); ++c) {
     EXPECT_EQ(stored->components[c].primal, first->film()->components[c].primal);
     EXPECT_EQ(stored->components[c].gradient, first->film()->components[c].gradient);
-    const auto &non_specular = stored->components[c].non_specular[1], &kept = first->film()->components[c].non_specular[1];
+    const auto &non_specular = stored->components[c].non_specular[1],
+               &kept = first->film()->components[c].non_specular[1];
     ASSERT_EQ(non_specular.size(), kept.size());
-    EXPECT_EQ(std::memcmp(non_specular.data(), kept.data(), non_specular.size() * sizeof(NonSpecularVertices)), 0);
+    EXPECT_EQ(std::memcmp(non_specular.data(), kept.data(), non_specular.size() * sizeof(film::NonSpecularVertices)),
+              0);
     const auto &details = stored->components[c].details, &kept_details = first->film()->components[c].details;
     ASSERT_EQ(details.size(), kept_details.size());
-    EXPECT_EQ(std::memcmp(details.data(), kept_details.data(), details.size() * sizeof(NonSpecularDetails)), 0);
+    EXPECT_EQ(std::memcmp(details.data(), kept_details.data(), details.size() * sizeof(film::NonSpecularDetails)), 0);
   }
   settings.samples = 8;
-  Render more(test::test_device(), scene.context(settings).snapshot, settings, stored);
+  render::Render more(test::test_device(), scene.context(settings).snapshot, settings, stored);
   ASSERT_TRUE(more.wait(-1.0));
   EXPECT_EQ(combined(more), combined(*whole));
-  for (const uint32_t pass : {GRADUS_COMPONENT_COLOR, GRADUS_COMPONENT_NORMAL, GRADUS_COMPONENT_FACE_INDEX, GRADUS_COMPONENT_EMIT}) {
+  for (const uint32_t pass :
+       {GRADUS_COMPONENT_COLOR, GRADUS_COMPONENT_NORMAL, GRADUS_COMPONENT_FACE_INDEX, GRADUS_COMPONENT_EMIT}) {
     EXPECT_EQ(component(more, "Transmission", pass), component(*whole, "Transmission", pass));
   }
   // Not as other components.
   const GradusSettings others = settings_with("Direct=EDL");
-  EXPECT_THROW(Render(test::test_device(), scene.context(others).snapshot, others, stored), Error);
+  EXPECT_THROW(render::Render(test::test_device(), scene.context(others).snapshot, others, stored), Error);
 }
 
 // It would have passes of half of its samples.
@@ -501,27 +526,27 @@ TEST(Components, DoNotGoOnFromFramesWithoutTheirSurfaces) {
     const auto first = rendered(&scene, settings)->film();
     settings.component_passes |= 1u << pass;
     settings.samples = 8;
-    EXPECT_THROW(Render(test::test_device(), scene.context(settings).snapshot, settings, first), Error) << pass;
+    EXPECT_THROW(render::Render(test::test_device(), scene.context(settings).snapshot, settings, first), Error) << pass;
     settings.samples = 4;
     settings.first_sample = 4;
-    Film merged = *first;
-    EXPECT_THROW(merge_films(&merged, *rendered(&scene, settings)->film()), Error) << pass;
+    film::Film merged = *first;
+    EXPECT_THROW(render::merge_films(&merged, *rendered(&scene, settings)->film()), Error) << pass;
   }
 }
 
 TEST(Components, OfDifferentSetsAreNotMerged) {
-  Film a(4, 4, {0, 0, 4, 4}, 3, 2, false), b = a;
+  film::Film a(4, 4, {0, 0, 4, 4}, 3, 2, false), b = a;
   a.components[0].name = "Diffuse";
   b.components[0].name = "Direct";
   b.samples.add({0, 1});
-  const std::string refusal = test::refusal_of([&] { merge_films(&a, b); });
+  const std::string refusal = test::refusal_of([&] { render::merge_films(&a, b); });
   EXPECT_NE(refusal.find("Direct"), std::string::npos) << refusal;
 }
 
 constexpr uint32_t kMotionPasses = 1u << GRADUS_COMPONENT_MOTION | 1u << GRADUS_COMPONENT_TRACKED;
 
 // A camera that turns from frame to frame.
-void turn_camera(Snapshot* snapshot) {
+void turn_camera(scene::Snapshot* snapshot) {
   std::copy_n(snapshot->camera.matrix, 16, snapshot->camera.matrix_previous);
   snapshot->camera.matrix_previous[12] -= 0.05f;
 }
@@ -531,24 +556,25 @@ TEST(Components, TellTheirMotion) {
   test::build(Scenario::Glass, &scene);
   GradusSettings settings = settings_with("");
   settings.component_passes = kMotionPasses;
-  const IntegratorContext context = scene.context(settings);
-  auto moved = std::make_shared<Snapshot>(*context.snapshot);
+  const integrator::IntegratorContext context = scene.context(settings);
+  auto moved = std::make_shared<scene::Snapshot>(*context.snapshot);
   turn_camera(moved.get());
-  Render render(test::test_device(), moved, settings);
+  render::Render render(test::test_device(), moved, settings);
   render.wait(-1.0);
-  const ComponentSet set = ComponentSet::parse("");
+  const lpe::ComponentSet set = lpe::ComponentSet::parse("");
   const Region region{0, 0, int32_t(kSide), int32_t(kSide)};
-  const auto expected = component_motion(*moved, settings, set, kEveryComponent, region);
+  const auto expected = motion::component_motion(*moved, settings, set, lpe::kEveryComponent, region);
   float farthest = 0.0f;
   for (int c = 0; c < set.count(); ++c) {
-    if (find_component(*render.film(), set[c].name) < 0) continue;
+    if (film::find_component(*render.film(), set[c].name) < 0) continue;
     const std::vector<float> vectors = component(render, set[c].name, GRADUS_COMPONENT_MOTION);
     const std::vector<float> tracked = component(render, set[c].name, GRADUS_COMPONENT_TRACKED);
     for (size_t i = 0; i < tracked.size(); ++i) {
       const float found = expected[size_t(c)].tracked[i];
-      const bool by_flow = set[c].name == kResidual && found == kTracked;  // of two frames
-      ASSERT_EQ(tracked[i], by_flow ? kNoNeighbour : found) << set[c].name;
-      for (size_t k = 0; k < 4; ++k) ASSERT_EQ(vectors[4 * i + k], expected[size_t(c)].vectors[i][int(k)]) << set[c].name;
+      const bool by_flow = set[c].name == lpe::kResidual && found == motion::kTracked;  // of two frames
+      ASSERT_EQ(tracked[i], by_flow ? motion::kNoNeighbour : found) << set[c].name;
+      for (size_t k = 0; k < 4; ++k)
+        ASSERT_EQ(vectors[4 * i + k], expected[size_t(c)].vectors[i][int(k)]) << set[c].name;
       farthest = std::max(farthest, std::fabs(vectors[4 * i]));
     }
   }
@@ -565,22 +591,24 @@ TEST(Components, ProgressCountsTheirMotionWhileItIsFound) {
   while (!render->wait(0.0)) render->progress();
   ASSERT_EQ(render->outcome(nullptr), GRADUS_OK);
   const auto film = render->film();
-  for (const ComponentPlanes& planes : film->components) EXPECT_EQ(planes.motion.size(), size_t{kSide} * kSide) << planes.name;
+  for (const film::ComponentPlanes& planes : film->components)
+    EXPECT_EQ(planes.motion.size(), size_t{kSide} * kSide) << planes.name;
   EXPECT_GE(render->progress().memory_bytes, film->memory_bytes());
 }
 
-// The last component of a set was taken for Residual where no path is left for that: it had the motion of the mirror, and as tracked.
+// The last component of a set was taken for Residual where no path is left for that: it had the motion of the mirror,
+// and as tracked.
 TEST(Components, OfSetsWithoutResidualTellTheMotionOfWhatTheyShow) {
   PathScene scene;
   test::build(Scenario::Mirror, &scene);
   const auto motion_of = [&](const std::string& set, const std::string& name, uint32_t pass) {
     GradusSettings settings = settings_with(set);
     settings.component_passes = kMotionPasses;
-    auto moved = std::make_shared<Snapshot>(*scene.context(settings).snapshot);
+    auto moved = std::make_shared<scene::Snapshot>(*scene.context(settings).snapshot);
     turn_camera(moved.get());
-    Render render(test::test_device(), moved, settings);
+    render::Render render(test::test_device(), moved, settings);
     render.wait(-1.0);
-    EXPECT_EQ(find_component(*render.film(), std::string(kResidual)) >= 0, set.empty());
+    EXPECT_EQ(film::find_component(*render.film(), std::string(lpe::kResidual)) >= 0, set.empty());
     return component(render, name, pass);
   };
   const std::string set = "Matte=E(D.*)?L;Shiny=E(R|T).*L";
@@ -590,10 +618,10 @@ TEST(Components, OfSetsWithoutResidualTellTheMotionOfWhatTheyShow) {
                            expected = motion_of("", "Reflection", GRADUS_COMPONENT_MOTION);
   size_t both = 0;
   for (size_t i = 0; i < tracked.size(); ++i) {
-    if (expected_tracked[i] == kNothingToTrack) {
-      ASSERT_NE(tracked[i], kTracked) << "nothing is mirrored there";
+    if (expected_tracked[i] == film::kNothingToTrack) {
+      ASSERT_NE(tracked[i], motion::kTracked) << "nothing is mirrored there";
     }
-    if (tracked[i] != kTracked || expected_tracked[i] != kTracked) continue;
+    if (tracked[i] != motion::kTracked || expected_tracked[i] != motion::kTracked) continue;
     ++both;
     for (size_t k = 0; k < 4; ++k) ASSERT_NEAR(vectors[4 * i + k], expected[4 * i + k], 1e-3f);
   }
@@ -604,8 +632,9 @@ TEST(Components, WhatIsNotThereIsNotTracked) {
   GradusSettings settings = settings_with("Nothing=ETTTTTTL");
   settings.component_passes = kMotionPasses;
   const auto render = rendered(Scenario::DiffuseArea, settings);
-  ASSERT_EQ(find_component(*render->film(), "Nothing"), -1);
-  for (const float value : component(*render, "Nothing", GRADUS_COMPONENT_TRACKED)) ASSERT_EQ(value, kNothingToTrack);
+  ASSERT_EQ(film::find_component(*render->film(), "Nothing"), -1);
+  for (const float value : component(*render, "Nothing", GRADUS_COMPONENT_TRACKED))
+    ASSERT_EQ(value, film::kNothingToTrack);
   for (const float value : component(*render, "Nothing", GRADUS_COMPONENT_MOTION)) ASSERT_EQ(value, 0.0f);
 }
 
@@ -621,9 +650,10 @@ TEST(Components, MotionIsStoredWithTheFrame) {
   GradusSettings settings = settings_with("");
   settings.component_passes = kMotionPasses;
   const auto film = rendered(Scenario::Glass, settings)->film();
-  const std::string path = (std::filesystem::temp_directory_path() / ("gradus_motion_" + std::to_string(getpid()) + ".exr")).string();
-  save_film(*film, path);
-  const auto back = load_film(path);
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("gradus_motion_" + std::to_string(getpid()) + ".exr")).string();
+  film_io::save_film(*film, path);
+  const auto back = film_io::load_film(path);
   std::filesystem::remove(path);
   ASSERT_FALSE(film->components[0].motion.empty());
   EXPECT_TRUE(film->components[0].shown.empty()) << "of animations alone";
@@ -638,21 +668,23 @@ TEST(Components, KeepNoSurfacesUnlessPassesShowThem) {
   GradusSettings settings = settings_with("", GRADUS_RECONSTRUCTION_REGULARIZED);
   settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
   const auto film = rendered(Scenario::Glass, settings)->film();
-  for (const ComponentPlanes& planes : film->components) EXPECT_TRUE(planes.non_specular[0].empty() && planes.details.empty());
+  for (const film::ComponentPlanes& planes : film->components)
+    EXPECT_TRUE(planes.non_specular[0].empty() && planes.details.empty());
   settings.component_passes = 1u << GRADUS_COMPONENT_NORMAL;
   const auto render = rendered(Scenario::Glass, settings);
-  for (const ComponentPlanes& planes : render->film()->components) EXPECT_TRUE(!planes.non_specular[0].empty() && planes.details.empty());
+  for (const film::ComponentPlanes& planes : render->film()->components)
+    EXPECT_TRUE(!planes.non_specular[0].empty() && planes.details.empty());
   EXPECT_THROW(component(*render, "Diffuse", GRADUS_COMPONENT_UV), Error);
 }
 
 // The picture is clamped, and so are its parts: by what there is too much of, nothing is added.
 TEST(Components, ThatAreClampedAddUpToThePictureAsClamped) {
   std::vector<std::vector<float>> images = {{2.0f, -1.0f, 1.0f, 0.5f}, {-1.0f, -1.0f, 3.0f, 0.25f}};
-  clamp_components(GRADUS_RECONSTRUCTION_L1, 4, &images);
+  reconstruct::clamp_components(GRADUS_RECONSTRUCTION_L1, 4, &images);
   EXPECT_EQ(images[0], (std::vector<float>{1.0f, 0.0f, 1.0f, 0.5f}));
   EXPECT_EQ(images[1], (std::vector<float>{0.0f, 0.0f, 3.0f, 0.25f}));
   std::vector<std::vector<float>> kept = {{2.0f, 0.0f, 0.0f}, {-1.0f, 0.0f, 0.0f}};
-  clamp_components(GRADUS_RECONSTRUCTION_L2, 3, &kept);
+  reconstruct::clamp_components(GRADUS_RECONSTRUCTION_L2, 3, &kept);
   EXPECT_EQ(kept[1][0], -1.0f);
 }
 

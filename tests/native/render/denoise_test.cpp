@@ -1,4 +1,5 @@
-// A denoiser behind the reconstruction, by the stand-in of tests/native/denoise: what it changes, what it leaves, what is said of it.
+// A denoiser behind the reconstruction, by the stand-in of tests/native/denoise: what it changes, what it leaves, what
+// is said of it.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -6,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "scene/device.h"
-#include "output/oidn_library.h"
 #include "film/features.h"
-#include "reconstruct/feature_filter.h"
 #include "output/denoise_combined.h"
+#include "output/oidn_library.h"
+#include "reconstruct/feature_filter.h"
 #include "render/fake_integrator.h"
+#include "scene/device.h"
 
 namespace gradus {
 namespace {
@@ -22,11 +23,11 @@ using nlohmann::json;
 const std::string kFake = GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
 constexpr Region kAll{0, 0, 40, 30};
 
-std::shared_ptr<Device> device_with(const std::string& denoiser) {
+std::shared_ptr<scene::Device> device_with(const std::string& denoiser) {
   GradusDeviceSettings settings{};
   settings.struct_size = sizeof(settings);
   settings.denoiser_path = denoiser.c_str();
-  return std::make_shared<Device>(settings);
+  return std::make_shared<scene::Device>(settings);
 }
 
 GradusSettings settings_with(uint32_t denoiser) {
@@ -41,23 +42,25 @@ GradusSettings settings_with(uint32_t denoiser) {
 class DenoisedRender : public ::testing::Test {
  protected:
   void TearDown() override { unsetenv("FAKE_OIDN"); }
-  std::unique_ptr<Render> start(const GradusSettings& settings, float noise = 1.0f, float light = 1.0f) const {
-    return std::make_unique<Render>(device, empty_snapshot(), settings, nullptr, fake_factory([=](FakeIntegrator* f) {
-                                      f->noise = noise;
-                                      f->light = light;
-                                    }));
+  std::unique_ptr<render::Render> start(const GradusSettings& settings, float noise = 1.0f, float light = 1.0f) const {
+    return std::make_unique<render::Render>(device, empty_snapshot(), settings, nullptr,
+                                            fake_factory([=](FakeIntegrator* f) {
+                                              f->noise = noise;
+                                              f->light = light;
+                                            }));
   }
-  std::unique_ptr<Render> finished(const GradusSettings& settings, float noise = 1.0f, float light = 1.0f) const {
+  std::unique_ptr<render::Render> finished(const GradusSettings& settings, float noise = 1.0f,
+                                           float light = 1.0f) const {
     auto render = start(settings, noise, light);
     render->wait(-1.0);
     return render;
   }
-  const std::shared_ptr<Device> device = device_with(kFake);
+  const std::shared_ptr<scene::Device> device = device_with(kFake);
 };
 
 // What the stand-in makes of a picture and the features without their noise.
-std::vector<float> denoised(std::vector<float> rgba, const Film& film) {
-  const Features features = filter_features(read_features(film));
+std::vector<float> denoised(std::vector<float> rgba, const film::Film& film) {
+  const film::Features features = reconstruct::filter_features(film::read_features(film));
   for (size_t i = 0; i < rgba.size(); ++i) {
     const size_t g = i / 4 * 3 + i % 4;
     if (i % 4 < 3) rgba[i] += 1.0f + features.albedo.values[g] + 10.0f * features.normal.values[g];
@@ -72,12 +75,13 @@ void expect_near(const std::vector<float>& a, const std::vector<float>& b) {
 
 TEST_F(DenoisedRender, CombinedGoesThroughItAndTheRestStays) {
   for (const float noise : {0.0f, 1.0f}) {
-    const auto plain = finished(settings_with(GRADUS_DENOISER_NONE), noise), render = finished(settings_with(GRADUS_DENOISER_OIDN), noise);
+    const auto plain = finished(settings_with(GRADUS_DENOISER_NONE), noise),
+               render = finished(settings_with(GRADUS_DENOISER_OIDN), noise);
     const auto expected = denoised(read(*plain, GRADUS_PASS_COMBINED, kAll), *render->film());
     expect_near(read(*render, GRADUS_PASS_COMBINED, kAll), expected);
     EXPECT_EQ(read(*render, GRADUS_PASS_NOISY_IMAGE, kAll), read(*plain, GRADUS_PASS_NOISY_IMAGE, kAll));
-    EXPECT_TRUE(has_features(*render->film())) << "nobody asked for the passes";
-    EXPECT_FALSE(has_features(*plain->film()));
+    EXPECT_TRUE(film::has_features(*render->film())) << "nobody asked for the passes";
+    EXPECT_FALSE(film::has_features(*plain->film()));
   }
 }
 
@@ -119,22 +123,24 @@ TEST_F(DenoisedRender, AutomaticOneIsLeftOutWhereTheTimeLimitLeavesFewSamples) {
   settings.reconstruction = GRADUS_RECONSTRUCTION_L2;
   settings.time_limit = 1e-3f;
   const auto slow = [](FakeIntegrator* fake) {
-    fake->before = [](const WorkUnit&) { std::this_thread::sleep_for(std::chrono::milliseconds(2)); };
+    fake->before = [](const integrator::WorkUnit&) { std::this_thread::sleep_for(std::chrono::milliseconds(2)); };
   };
-  Render render(device, empty_snapshot(), settings, nullptr, fake_factory(slow));
+  render::Render render(device, empty_snapshot(), settings, nullptr, fake_factory(slow));
   render.wait(-1.0);
   const json stats = json::parse(render.stats_json());
   EXPECT_EQ(stats["samples"], 1.0);
   EXPECT_TRUE(stats["denoiser"].is_null());
   EXPECT_EQ(stats["plan"]["skipped"]["denoiser"],
-            "automatic: 1.0 samples were taken within the time limit: with fewer than 8 samples its time buys more as samples");
+            "automatic: 1.0 samples were taken within the time limit: with fewer than 8 samples its time buys more as "
+            "samples");
   EXPECT_EQ(stats["unbiased"], true);
   EXPECT_EQ(render.film()->settings.denoiser, uint32_t{GRADUS_DENOISER_NONE});
   settings.samples = 8;
   settings.time_limit = 1e6f;
   const json quick = json::parse(finished(settings)->stats_json());
   EXPECT_EQ(quick["denoiser"], "Open Image Denoise 2.7.5");
-  EXPECT_EQ(quick["plan"]["chosen"]["denoiser Open Image Denoise 2.7.5"], "automatic: 8.0 samples were taken within the time limit");
+  EXPECT_EQ(quick["plan"]["chosen"]["denoiser Open Image Denoise 2.7.5"],
+            "automatic: 8.0 samples were taken within the time limit");
   EXPECT_EQ(quick["unbiased"], false);
 }
 
@@ -157,7 +163,8 @@ TEST_F(DenoisedRender, RegionIsDenoisedAlone) {
 
 double luminance(const float* pixel) { return (double(pixel[0]) + double(pixel[1]) + double(pixel[2])) / 3.0; }
 
-// A network makes nothing more of what is smooth: it looks at the noisy image, and the geometric mean of both is delivered.
+// A network makes nothing more of what is smooth: it looks at the noisy image, and the geometric mean of both is
+// delivered.
 TEST_F(DenoisedRender, RegularizedIsTheMeanWithTheNoisyImageDenoised) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_NONE);
   settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
@@ -209,7 +216,8 @@ TEST_F(DenoisedRender, ABorderIsThatOfTheFullFrame) {
 TEST_F(DenoisedRender, ABlackPictureStaysFinite) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_OIDN);
   settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
-  for (const float value : read(*finished(settings, 1.0f, 0.0f), GRADUS_PASS_COMBINED, kAll)) ASSERT_TRUE(std::isfinite(value)) << value;
+  for (const float value : read(*finished(settings, 1.0f, 0.0f), GRADUS_PASS_COMBINED, kAll))
+    ASSERT_TRUE(std::isfinite(value)) << value;
 }
 
 // The picture was there.
@@ -230,14 +238,16 @@ TEST_F(DenoisedRender, FailureIsAWarningAndThePictureStays) {
 // Only what Open Image Denoise itself reported was caught, and the render failed.
 TEST_F(DenoisedRender, NoMemoryForItIsAWarningToo) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_NONE);
-  settings.passes |= feature_passes();
+  settings.passes |= schema::feature_passes();
   const auto film = finished(settings)->film();
   std::string why_not, failure;
-  OidnLibrary library = *find_oidn({kFake}, &why_not);
-  library.api.commit_device = [](OidnApi::Device*) { throw std::bad_alloc(); };
+  output::OidnLibrary library = *output::find_oidn({kFake}, &why_not);
+  library.api.commit_device = [](output::OidnApi::Device*) { throw std::bad_alloc(); };
   const std::vector<float> combined(4 * size_t(kAll.area()), 0.5f);
   const auto never = [] { return false; };
-  EXPECT_TRUE(denoise_combined(library, *film, GRADUS_RECONSTRUCTION_REGULARIZED, kAll, 1, never, combined, &failure).empty());
+  EXPECT_TRUE(
+      output::denoise_combined(library, *film, GRADUS_RECONSTRUCTION_REGULARIZED, kAll, 1, never, combined, &failure)
+          .empty());
   EXPECT_EQ(failure, "the picture was not denoised: out of memory");
 }
 
@@ -257,7 +267,7 @@ TEST_F(DenoisedRender, CancelledMeanwhileItLeavesTheReconstruction) {
 TEST_F(DenoisedRender, IsRefusedBeforeTheFirstSampleWhereThereIsNone) {
   setenv("FAKE_OIDN", "old", 1);
   std::string why_not;
-  if (find_oidn({}, &why_not)) GTEST_SKIP() << "this machine has the library";
+  if (output::find_oidn({}, &why_not)) GTEST_SKIP() << "this machine has the library";
   try {
     start(settings_with(GRADUS_DENOISER_OIDN));
     FAIL();
@@ -272,7 +282,7 @@ TEST_F(DenoisedRender, IsRefusedBeforeTheFirstSampleWhereThereIsNone) {
   EXPECT_NE(stats["plan"]["skipped"]["denoiser"].get<std::string>().find("version 1.7.5"), std::string::npos);
   EXPECT_EQ(render->film()->settings.denoiser, uint32_t{GRADUS_DENOISER_NONE});
   EXPECT_TRUE(stats["denoiser"].is_null());
-  EXPECT_FALSE(has_features(*render->film()));
+  EXPECT_FALSE(film::has_features(*render->film()));
 }
 
 }  // namespace

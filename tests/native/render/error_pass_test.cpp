@@ -1,9 +1,9 @@
 // The pass Error of renders, and of their frames.
 #include <gtest/gtest.h>
 
-#include "render/plan.h"
 #include "output/combine.h"
 #include "render/fake_integrator.h"
+#include "render/plan.h"
 #include "support/statistics.h"
 
 namespace gradus {
@@ -45,11 +45,12 @@ TEST(ErrorPass, IsThatOfCombined) {
   }
 }
 
-// The fake scene's features are as noisy as its picture. What their noise makes of the regression is in no estimate, and shows with more
-// samples.
+// The fake scene's features are as noisy as its picture. What their noise makes of the regression is in no estimate,
+// and shows with more samples.
 TEST(ErrorPass, OfRegularizedIsThatOfCombined) {
   for (const uint32_t samples : {2u, 4u, 8u}) {
-    const auto render = start_and_wait(error_settings(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED, samples));
+    const auto render =
+        start_and_wait(error_settings(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED, samples));
     const double truth = true_error(read(*render, GRADUS_PASS_COMBINED, kAll));
     const double ratio = mean(read(*render, GRADUS_PASS_ERROR, kAll)) / truth;
     EXPECT_GT(ratio, 0.6) << samples;
@@ -73,11 +74,11 @@ TEST(ErrorPass, GoesWithTheExposure) {
 TEST(ErrorPass, OfAPartHasItsPixels) {
   GradusSettings settings = error_settings(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_NONE);
   const auto film = rendered(settings);
-  SolveReport report;
+  reconstruct::SolveReport report;
   std::vector<float> whole, part;
   const auto never = [] { return false; };
-  combine(*film, GRADUS_RECONSTRUCTION_NONE, 0.0f, kAll, never, &report, &whole);
-  combine(*film, GRADUS_RECONSTRUCTION_NONE, 0.0f, {7, 11, 30, 29}, never, &report, &part);
+  output::combine(*film, GRADUS_RECONSTRUCTION_NONE, 0.0f, kAll, never, &report, &whole);
+  output::combine(*film, GRADUS_RECONSTRUCTION_NONE, 0.0f, {7, 11, 30, 29}, never, &report, &part);
   ASSERT_EQ(part.size(), 23u * 18u);
   for (size_t i = 0; i < part.size(); ++i) EXPECT_EQ(part[i], whole[(11 + i / 23) * kSide + 7 + i % 23]);
 }
@@ -95,7 +96,7 @@ TEST(ErrorPass, AfterACancelIsThatOfTheNoisyImage) {
 
 TEST(ErrorPass, IsSaidToBeSkippedWhereItIs) {
   const auto skips_error = [](const GradusSettings& settings) {
-    for (const auto& [what, why] : make_plan(settings, *empty_snapshot()).skipped) {
+    for (const auto& [what, why] : render::make_plan(settings, *empty_snapshot()).skipped) {
       if (what.find("passes ") == 0 && (what + ",").find(" Error,") != std::string::npos) return true;
     }
     return false;

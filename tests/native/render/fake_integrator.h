@@ -27,13 +27,16 @@ inline float random_value(int32_t x, int32_t y, uint32_t sample) {
 }
 
 // Expectation of a pixel of the fake scene.
-inline float fake_truth(int32_t x, int32_t y) { return 0.5f + 0.3f * std::sin(0.2f * float(x)) * std::cos(0.15f * float(y)); }
+inline float fake_truth(int32_t x, int32_t y) {
+  return 0.5f + 0.3f * std::sin(0.2f * float(x)) * std::cos(0.15f * float(y));
+}
 
-struct FakeIntegrator final : Integrator {
-  explicit FakeIntegrator(const IntegratorContext& context, bool with_gradients) : settings(context.settings), gradients(with_gradients) {}
+struct FakeIntegrator final : integrator::Integrator {
+  explicit FakeIntegrator(const integrator::IntegratorContext& context, bool with_gradients)
+      : settings(context.settings), gradients(with_gradients) {}
 
   // Runs before each tile; may wait or throw.
-  std::function<void(const WorkUnit&)> before = [](const WorkUnit&) {};
+  std::function<void(const integrator::WorkUnit&)> before = [](const integrator::WorkUnit&) {};
   GradusSettings settings;
   bool gradients;
   float noise = 1.0f;
@@ -43,18 +46,20 @@ struct FakeIntegrator final : Integrator {
   uint32_t feature_seed = 0x10000;  // of the noise of features; 0: that of the image, which they explain then
   int32_t pairs_until = INT32_MAX;  // right of this column there are no gradients
 
-  uint32_t count_at(const WorkUnit& unit, const Film& film, int32_t x, int32_t y) const {
+  uint32_t count_at(const integrator::WorkUnit& unit, const film::Film& film, int32_t x, int32_t y) const {
     return unit.count_map ? (*unit.count_map)[film.index(x, y)] : unit.count;
   }
 
-  void sample(const WorkUnit& unit, Film* film, Counters* counters, const std::atomic<bool>& stop) const override {
+  void sample(const integrator::WorkUnit& unit, film::Film* film, film::Counters* counters,
+              const std::atomic<bool>& stop) const override {
     before(unit);
     for (int32_t y = unit.tile.y0; y < unit.tile.y1; ++y) {
       for (int32_t x = unit.tile.x0; x < unit.tile.x1; ++x) sample_pixel(unit, x, y, film, counters, stop);
     }
   }
 
-  void sample_pixel(const WorkUnit& unit, int32_t x, int32_t y, Film* film, Counters* counters, const std::atomic<bool>& stop) const {
+  void sample_pixel(const integrator::WorkUnit& unit, int32_t x, int32_t y, film::Film* film, film::Counters* counters,
+                    const std::atomic<bool>& stop) const {
     const size_t i = film->index(x, y);
     const uint32_t count = count_at(unit, *film, x, y);
     const uint32_t first = unit.first_map ? (*unit.first_map)[i] : unit.first_sample;
@@ -66,7 +71,8 @@ struct FakeIntegrator final : Integrator {
           Radiance(light * value, 0.5f * light * value, 2.0f * light * value, film->channels == 4 ? 0.75f : 0.0f);
       ++film->count[half][i];
       counters->rays_primary += y < rays_below ? 5 : 1;
-      for (PassPlane& plane : film->passes) add_pass(&plane, i, plane.in_halves ? value_of(x, y, s + feature_seed) : value, s);
+      for (film::PassPlane& plane : film->passes)
+        add_pass(&plane, i, plane.in_halves ? value_of(x, y, s + feature_seed) : value, s);
       if (gradients && x < pairs_until) add_gradients(unit, x, y, half, film);
     }
   }
@@ -75,7 +81,7 @@ struct FakeIntegrator final : Integrator {
     return fake_truth(x, y) + (x < quiet_until ? 0.1f : 1.0f) * noise * (random_value(x, y, sample) - 0.5f);
   }
 
-  static void add_pass(PassPlane* plane, size_t i, float value, uint32_t sample) {
+  static void add_pass(film::PassPlane* plane, size_t i, float value, uint32_t sample) {
     for (uint32_t c = 0; c < plane->channels; ++c) {
       float& v = plane->of_half(int(sample % 2))[i * plane->channels + c];
       v = plane->first_sample_only ? (sample == 0 ? value : v) : v + value;
@@ -84,10 +90,10 @@ struct FakeIntegrator final : Integrator {
   }
 
   // Exact differences of the truth, each direction carrying half.
-  void add_gradients(const WorkUnit& unit, int32_t x, int32_t y, int half, Film* film) const {
+  void add_gradients(const integrator::WorkUnit& unit, int32_t x, int32_t y, int half, film::Film* film) const {
     const size_t i = film->index(x, y);
-    for (int o = 0; o < kOffsets; ++o) {
-      const int32_t nx = x + kOffsetX[o], ny = y + kOffsetY[o];
+    for (int o = 0; o < film::kOffsets; ++o) {
+      const int32_t nx = x + film::kOffsetX[o], ny = y + film::kOffsetY[o];
       if (!film->region.contains(nx, ny) || count_at(unit, *film, nx, ny) == 0) continue;
       const float d = 0.5f * (fake_truth(nx, ny) - fake_truth(x, y));
       film->components[0].gradient[half][o][i] += Radiance(d, 0.5f * d, 2.0f * d, 0.0f);
@@ -98,16 +104,16 @@ struct FakeIntegrator final : Integrator {
 
 using Configure = std::function<void(FakeIntegrator*)>;
 
-inline IntegratorFactory fake_factory(Configure configure = [](FakeIntegrator*) {}) {
-  return [configure](const IntegratorContext& context, uint32_t integrator) {
+inline render::IntegratorFactory fake_factory(Configure configure = [](FakeIntegrator*) {}) {
+  return [configure](const integrator::IntegratorContext& context, uint32_t integrator) {
     auto fake = std::make_unique<FakeIntegrator>(context, integrator == GRADUS_INTEGRATOR_GRADIENT);
     configure(fake.get());
     return fake;
   };
 }
 
-inline std::shared_ptr<const Snapshot> empty_snapshot() {
-  auto snapshot = std::make_shared<Snapshot>();
+inline std::shared_ptr<const scene::Snapshot> empty_snapshot() {
+  auto snapshot = std::make_shared<scene::Snapshot>();
   snapshot->has_camera = true;
   snapshot->camera.clip_end = 100.0f;
   snapshot->content_key = 42;
@@ -115,7 +121,7 @@ inline std::shared_ptr<const Snapshot> empty_snapshot() {
 }
 
 inline GradusSettings small_settings(uint32_t width, uint32_t height, uint32_t samples) {
-  GradusSettings s = default_settings();
+  GradusSettings s = schema::default_settings();
   s.width = width;
   s.height = height;
   s.samples = samples;
@@ -125,31 +131,35 @@ inline GradusSettings small_settings(uint32_t width, uint32_t height, uint32_t s
   return s;
 }
 
-inline std::unique_ptr<Render> start(const GradusSettings& settings, const IntegratorFactory& factory = fake_factory(),
-                                     std::shared_ptr<const Film> resumed = nullptr) {
-  return std::make_unique<Render>(nullptr, empty_snapshot(), settings, std::move(resumed), factory);
+inline std::unique_ptr<render::Render> start(const GradusSettings& settings,
+                                             const render::IntegratorFactory& factory = fake_factory(),
+                                             std::shared_ptr<const film::Film> resumed = nullptr) {
+  return std::make_unique<render::Render>(nullptr, empty_snapshot(), settings, std::move(resumed), factory);
 }
 
-inline std::unique_ptr<Render> start_and_wait(const GradusSettings& settings, std::shared_ptr<const Film> resumed = nullptr) {
+inline std::unique_ptr<render::Render> start_and_wait(const GradusSettings& settings,
+                                                      std::shared_ptr<const film::Film> resumed = nullptr) {
   auto render = start(settings, fake_factory(), std::move(resumed));
   render->wait(-1.0);
   return render;
 }
 
-inline std::shared_ptr<const Film> rendered(const GradusSettings& settings, std::shared_ptr<const Film> resumed = nullptr) {
+inline std::shared_ptr<const film::Film> rendered(const GradusSettings& settings,
+                                                  std::shared_ptr<const film::Film> resumed = nullptr) {
   return start_and_wait(settings, std::move(resumed))->film();
 }
 
-inline std::vector<float> read(const Render& render, uint32_t pass, const Region& region) {
-  std::vector<float> pixels(size_t(region.area()) * pass_info(pass).channels);
+inline std::vector<float> read(const render::Render& render, uint32_t pass, const Region& region) {
+  std::vector<float> pixels(size_t(region.area()) * schema::pass_info(pass).channels);
   render.read_pass(pass, pixels.data(), pixels.size());
   return pixels;
 }
 
-inline bool same_samples(const Film& a, const Film& b) {
-  for (int half = 0; half < kHalves; ++half) {
+inline bool same_samples(const film::Film& a, const film::Film& b) {
+  for (int half = 0; half < film::kHalves; ++half) {
     if (a.components[0].primal[half] != b.components[0].primal[half] || a.count[half] != b.count[half]) return false;
-    if (a.components[0].gradient[half] != b.components[0].gradient[half] || a.pair_count[half] != b.pair_count[half]) return false;
+    if (a.components[0].gradient[half] != b.components[0].gradient[half] || a.pair_count[half] != b.pair_count[half])
+      return false;
   }
   for (size_t i = 0; i < a.passes.size(); ++i) {
     if (a.passes[i].values != b.passes[i].values || a.passes[i].weight != b.passes[i].weight) return false;

@@ -16,26 +16,26 @@ using namespace test;
 
 constexpr uint64_t bit(uint32_t pass) { return uint64_t{1} << pass; }
 
-std::string failure_of(const GradusSettings& settings, const std::shared_ptr<const Film>& resumed = nullptr) {
+std::string failure_of(const GradusSettings& settings, const std::shared_ptr<const film::Film>& resumed = nullptr) {
   return refusal_of([&] { start(settings, fake_factory(), resumed); });
 }
 
 TEST(Batches, GrowThenStayAndMeetAgainAfterResume) {
-  EXPECT_EQ(batch_end(0, 64), 1u);
-  EXPECT_EQ(batch_end(1, 64), 2u);
-  EXPECT_EQ(batch_end(2, 64), 4u);
-  EXPECT_EQ(batch_end(8, 64), 16u);
-  EXPECT_EQ(batch_end(16, 64), 32u);
-  EXPECT_EQ(batch_end(16, 20), 20u);
-  EXPECT_EQ(batch_end(20, 64), 32u);
-  EXPECT_EQ(batch_end(3, 64), 4u);
+  EXPECT_EQ(render::batch_end(0, 64), 1u);
+  EXPECT_EQ(render::batch_end(1, 64), 2u);
+  EXPECT_EQ(render::batch_end(2, 64), 4u);
+  EXPECT_EQ(render::batch_end(8, 64), 16u);
+  EXPECT_EQ(render::batch_end(16, 64), 32u);
+  EXPECT_EQ(render::batch_end(16, 20), 20u);
+  EXPECT_EQ(render::batch_end(20, 64), 32u);
+  EXPECT_EQ(render::batch_end(3, 64), 4u);
 }
 
 // So that shares by noise are corrected at least three times: the paper of T-GPT has four to eight batches.
 TEST(Batches, AreAQuarterOfARenderAtMost) {
   for (const uint32_t samples : {64u, 100u, 1024u}) {
     for (uint32_t begin = 0, end = 0; begin < samples; begin = end) {
-      end = batch_end(begin, samples);
+      end = render::batch_end(begin, samples);
       EXPECT_LE(end - begin, samples / 4);
     }
   }
@@ -45,7 +45,7 @@ TEST(L1_Threads, SamplesHaveTheSameBitsForAnyNumberOfThreads) {
   const tbb::global_control seven(tbb::global_control::max_allowed_parallelism, 8);
   GradusSettings settings = small_settings(150, 90, 20);
   settings.passes |= bit(GRADUS_PASS_DEPTH) | bit(GRADUS_PASS_VECTOR);
-  std::shared_ptr<const Film> first;
+  std::shared_ptr<const film::Film> first;
   std::vector<float> combined;
   for (const uint32_t threads : {1u, 2u, 3u, 7u}) {
     settings.threads = threads;
@@ -88,20 +88,20 @@ TEST(L3_Merge, AddsTheSamplesOfTwoRanges) {
   const auto whole = rendered(small_settings(40, 30, 64));
   GradusSettings late = small_settings(40, 30, 48);
   late.first_sample = 16;
-  Film merged = *rendered(small_settings(40, 30, 16));
-  merge_films(&merged, *rendered(late));
+  film::Film merged = *rendered(small_settings(40, 30, 16));
+  render::merge_films(&merged, *rendered(late));
   EXPECT_EQ(merged.settings.samples, 64u);
   EXPECT_EQ(merged.count, whole->count);
-  for (int half = 0; half < kHalves; ++half) {
+  for (int half = 0; half < film::kHalves; ++half) {
     for (size_t i = 0; i < merged.count[half].size(); ++i) {
       EXPECT_NEAR(merged.components[0].primal[half][i].x, whole->components[0].primal[half][i].x, 1e-5f * 64.0f);
     }
   }
-  Film again = *whole;
-  EXPECT_THROW(merge_films(&again, *whole), Error);  // the same samples
+  film::Film again = *whole;
+  EXPECT_THROW(render::merge_films(&again, *whole), Error);  // the same samples
 }
 
-std::shared_ptr<const Film> rendered_range(uint32_t first, uint32_t count) {
+std::shared_ptr<const film::Film> rendered_range(uint32_t first, uint32_t count) {
   GradusSettings settings = small_settings(40, 30, count);
   settings.first_sample = first;
   return rendered(settings);
@@ -109,28 +109,28 @@ std::shared_ptr<const Film> rendered_range(uint32_t first, uint32_t count) {
 
 // Only the sum of the sample counts was kept: samples 32 to 47 went in twice.
 TEST(L3_Merge, RangesWithAHoleStayApart) {
-  Film merged = *rendered_range(0, 16);
-  merge_films(&merged, *rendered_range(32, 16));
-  EXPECT_EQ(merged.samples.list(), (std::vector<SampleRange>{{0, 16}, {32, 48}}));
-  EXPECT_THROW(merge_films(&merged, *rendered_range(40, 8)), Error);
-  EXPECT_EQ(failure_of(small_settings(40, 30, 64), std::make_shared<const Film>(merged)),
+  film::Film merged = *rendered_range(0, 16);
+  render::merge_films(&merged, *rendered_range(32, 16));
+  EXPECT_EQ(merged.samples.list(), (std::vector<film::SampleRange>{{0, 16}, {32, 48}}));
+  EXPECT_THROW(render::merge_films(&merged, *rendered_range(40, 8)), Error);
+  EXPECT_EQ(failure_of(small_settings(40, 30, 64), std::make_shared<const film::Film>(merged)),
             "the frame lacks samples 16 to 31: render and merge these first");
-  merge_films(&merged, *rendered_range(16, 16));
-  EXPECT_EQ(merged.samples.list(), (std::vector<SampleRange>{{0, 48}}));
-  const auto resumed = rendered(small_settings(40, 30, 64), std::make_shared<const Film>(merged));
+  render::merge_films(&merged, *rendered_range(16, 16));
+  EXPECT_EQ(merged.samples.list(), (std::vector<film::SampleRange>{{0, 48}}));
+  const auto resumed = rendered(small_settings(40, 30, 64), std::make_shared<const film::Film>(merged));
   EXPECT_EQ(resumed->count, rendered_range(0, 64)->count);
-  EXPECT_EQ(resumed->samples.list(), (std::vector<SampleRange>{{0, 64}}));
+  EXPECT_EQ(resumed->samples.list(), (std::vector<film::SampleRange>{{0, 64}}));
 }
 
 // A time limit ends a frame before the samples that were asked for: what counts is what it has.
 TEST(L3_Merge, AFrameThatEndedEarlyLeavesItsOtherSamplesFree) {
   GradusSettings settings = small_settings(40, 30, 1u << 20);
   settings.time_limit = 0.02f;
-  Film early = *rendered(settings);
+  film::Film early = *rendered(settings);
   const uint32_t end = early.samples.list().front().end;
   ASSERT_LT(end, 1u << 20);
   settings.first_sample = end;
-  EXPECT_NO_THROW(merge_films(&early, *rendered(settings)));
+  EXPECT_NO_THROW(render::merge_films(&early, *rendered(settings)));
   EXPECT_EQ(early.samples.list().size(), 1u);
 }
 
@@ -144,7 +144,7 @@ TEST(L3_Border, SamplesOfARegionAreThoseOfTheFullFrame) {
   const auto part = start(settings);
   part->wait(-1.0);
   const Region r{60, 50, 97, 83};
-  const Film &a = *full->film(), &b = *part->film();
+  const film::Film &a = *full->film(), &b = *part->film();
   EXPECT_EQ(b.region.x0, 60 - 35);
   EXPECT_EQ(b.region.y1, 83 + 35);
   EXPECT_EQ(b.region.x1, 97 + 35);
@@ -164,7 +164,9 @@ TEST(L3_Border, SamplesOfARegionAreThoseOfTheFullFrame) {
 
 TEST(G8_Progress, LiesInTheUnitIntervalNeverFallsEndsAtOne) {
   auto render = start(small_settings(96, 64, 64), fake_factory([](FakeIntegrator* fake) {
-                        fake->before = [](const WorkUnit&) { std::this_thread::sleep_for(std::chrono::microseconds(200)); };
+                        fake->before = [](const integrator::WorkUnit&) {
+                          std::this_thread::sleep_for(std::chrono::microseconds(200));
+                        };
                       }));
   float last = 0.0f;
   uint32_t version = 0, samples = 0;
@@ -189,8 +191,9 @@ TEST(G8_Progress, LiesInTheUnitIntervalNeverFallsEndsAtOne) {
 
 TEST(K2_Cancel, EndsWithinAQuarterSecondAndStaysReadable) {
   std::atomic<int> tiles{0};
-  auto render = start(small_settings(512, 512, 100000),
-                      fake_factory([&tiles](FakeIntegrator* fake) { fake->before = [&tiles](const WorkUnit&) { ++tiles; }; }));
+  auto render = start(small_settings(512, 512, 100000), fake_factory([&tiles](FakeIntegrator* fake) {
+                        fake->before = [&tiles](const integrator::WorkUnit&) { ++tiles; };
+                      }));
   while (tiles < 600) std::this_thread::yield();
   const auto began = std::chrono::steady_clock::now();
   render->cancel();
@@ -224,22 +227,25 @@ TEST(Loop, CanBeReadWhileSampling) {
     ++reads;
   }
   EXPECT_GT(reads, 0);
-  for (const uint32_t pass : {GRADUS_PASS_NORMAL, GRADUS_PASS_VARIANCE, GRADUS_PASS_GRADIENT_X}) EXPECT_NO_THROW(read(*render, pass, all));
+  for (const uint32_t pass : {GRADUS_PASS_NORMAL, GRADUS_PASS_VARIANCE, GRADUS_PASS_GRADIENT_X})
+    EXPECT_NO_THROW(read(*render, pass, all));
   std::vector<float> pixels(7);
   EXPECT_THROW(render->read_pass(GRADUS_PASS_COMBINED, pixels.data(), pixels.size()), Error);
   EXPECT_THROW(read(*render, GRADUS_PASS_MIST, all), Error);
 }
 
-// The reader went from tile to tile behind a sampler and waited for each one's whole batch: the interface stood still for seconds.
+// The reader went from tile to tile behind a sampler and waited for each one's whole batch: the interface stood still
+// for seconds.
 TEST(Loop, ReadingDoesNotWaitForABatch) {
   GradusSettings settings = small_settings(70, 50, 32);
   settings.passes |= bit(GRADUS_PASS_VARIANCE);
   std::atomic<bool> released{false}, in_second_batch{false};
   auto render = start(settings, fake_factory([&](FakeIntegrator* fake) {
-                        fake->before = [&](const WorkUnit& unit) {
+                        fake->before = [&](const integrator::WorkUnit& unit) {
                           if (unit.first_sample == 0) return;
                           in_second_batch = true;
-                          for (int ms = 0; ms < 10000 && !released; ++ms) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                          for (int ms = 0; ms < 10000 && !released; ++ms)
+                            std::this_thread::sleep_for(std::chrono::milliseconds(1));
                         };
                       }));
   while (!in_second_batch) std::this_thread::yield();
@@ -284,11 +290,13 @@ TEST(Loop, StopsByTimeAndDeliversTheReconstruction) {
 }
 
 // Seconds of sampling with a limit, where each sample of the one tile takes this long.
-double limited_seconds(double limit, double sample, const std::shared_ptr<const Film>& resumed = nullptr) {
+double limited_seconds(double limit, double sample, const std::shared_ptr<const film::Film>& resumed = nullptr) {
   GradusSettings settings = small_settings(8, 8, 100000);
   settings.time_limit = float(limit);
   const auto slow = fake_factory([sample](FakeIntegrator* fake) {
-    fake->before = [sample](const WorkUnit& unit) { std::this_thread::sleep_for(std::chrono::duration<double>(sample * unit.count)); };
+    fake->before = [sample](const integrator::WorkUnit& unit) {
+      std::this_thread::sleep_for(std::chrono::duration<double>(sample * unit.count));
+    };
   });
   auto render = start(settings, slow, resumed);
   render->wait(20.0);
@@ -302,7 +310,9 @@ TEST(Loop, ATimeLimitIsMetWithinHalfASample) {
 }
 
 // The pace was taken from all samples, those of the frame that it went on from included.
-TEST(Loop, ATimeLimitHoldsForAResumedRender) { EXPECT_LT(limited_seconds(0.3, 0.05, rendered(small_settings(8, 8, 64))), 0.45); }
+TEST(Loop, ATimeLimitHoldsForAResumedRender) {
+  EXPECT_LT(limited_seconds(0.3, 0.05, rendered(small_settings(8, 8, 64))), 0.45);
+}
 
 // Statistics went by the reconstruction that was planned.
 TEST(Loop, NoisyImageThatThePilotLeavesIsUnbiased) {
@@ -321,14 +331,14 @@ TEST(Loop, StopsTilesByNoise) {
   settings.noise_threshold = 0.05f;
   auto render = start(settings, fake_factory([](FakeIntegrator* fake) { fake->noise = 0.5f; }));
   ASSERT_TRUE(render->wait(20.0));
-  const Film& film = *render->film();
+  const film::Film& film = *render->film();
   const auto stats = nlohmann::json::parse(render->stats_json());
   EXPECT_EQ(stats["stopped"], "noise");
   EXPECT_FALSE(stats["unbiased"]);
   uint32_t minimum = UINT32_MAX, maximum = 0;
   for (size_t i = 0; i < film.count[0].size(); ++i) {
-    minimum = std::min(minimum, samples_at(film, i));
-    maximum = std::max(maximum, samples_at(film, i));
+    minimum = std::min(minimum, film::samples_at(film, i));
+    maximum = std::max(maximum, film::samples_at(film, i));
   }
   EXPECT_GE(minimum, 16u);
   EXPECT_LT(maximum, 256u);
@@ -347,7 +357,7 @@ TEST(Loop, StopsTilesByNoise) {
 
 TEST(Loop, FailuresOfTheIntegratorBecomeTheOutcome) {
   const auto failing = [](FakeIntegrator* fake) {
-    fake->before = [](const WorkUnit& unit) {
+    fake->before = [](const integrator::WorkUnit& unit) {
       if (unit.first_sample >= 4) throw std::runtime_error("the lamp is broken");
     };
   };
@@ -361,7 +371,9 @@ TEST(Loop, FailuresOfTheIntegratorBecomeTheOutcome) {
 
 // The code also meant "still running", so that it was reported as UNKNOWN.
 TEST(Loop, AnInvalidOperationIsReportedAsSuch) {
-  const auto failing = [](FakeIntegrator* fake) { fake->before = [](const WorkUnit&) { throw invalid_operation("the film is shut"); }; };
+  const auto failing = [](FakeIntegrator* fake) {
+    fake->before = [](const integrator::WorkUnit&) { throw invalid_operation("the film is shut"); };
+  };
   auto render = start(small_settings(64, 48, 16), fake_factory(failing));
   ASSERT_TRUE(render->wait(10.0));
   std::string text;
@@ -398,7 +410,8 @@ TEST(Loop, AlphaAndExposureReachTheImage) {
   GradusSettings settings = small_settings(32, 32, 4);
   settings.film_transparent = 1;
   settings.film_exposure = 2.0f;
-  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
+  for (const uint32_t reconstruction :
+       {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
     settings.reconstruction = reconstruction;
     auto render = start(settings);
     render->wait(-1.0);

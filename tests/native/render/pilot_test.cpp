@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "render/l2_noise.h"
 #include "reconstruct/solver.h"
 #include "render/fake_integrator.h"
+#include "render/l2_noise.h"
 #include "render/pilot.h"
 #include "schema/options.h"
 
@@ -25,12 +25,12 @@ TEST(Benefit, IsTheMeanOverAllFrequencies) {
         sum += 1.0 / (1.0 + ratio * (4.0 - 2.0 * std::cos(u) - 2.0 * std::cos(v)));
       }
     }
-    EXPECT_NEAR(reconstructed_variance(ratio) / (sum / kSteps / kSteps), 1.0, 1e-3) << ratio;
+    EXPECT_NEAR(render::reconstructed_variance(ratio) / (sum / kSteps / kSteps), 1.0, 1e-3) << ratio;
   }
 }
 
-PilotSums quiet_sums() {  // differences a quarter as noisy as pixels, for twice the rays
-  PilotSums sums;
+render::PilotSums quiet_sums() {  // differences a quarter as noisy as pixels, for twice the rays
+  render::PilotSums sums;
   sums.pixels = sums.brightness = sums.pixel_deviation = sums.pixel_root = 100.0;
   sums.differences = 400.0;
   sums.difference_deviation = sums.plain_rays = 100.0;
@@ -40,32 +40,34 @@ PilotSums quiet_sums() {  // differences a quarter as noisy as pixels, for twice
 }
 
 TEST(Benefit, ComparesErrorWithCost) {
-  PilotSums sums = quiet_sums();
-  EXPECT_NEAR(estimate_benefit(sums).cost, 1.885, 1e-12);
-  EXPECT_NEAR(estimate_benefit(sums).error, reconstructed_variance(16.0) + 0.1, 1e-12);
-  EXPECT_TRUE(estimate_benefit(sums).pays());
+  render::PilotSums sums = quiet_sums();
+  EXPECT_NEAR(render::estimate_benefit(sums).cost, 1.885, 1e-12);
+  EXPECT_NEAR(render::estimate_benefit(sums).error, render::reconstructed_variance(16.0) + 0.1, 1e-12);
+  EXPECT_TRUE(render::estimate_benefit(sums).pays());
   sums.difference_deviation = 1600.0;
-  EXPECT_FALSE(estimate_benefit(sums).pays());
+  EXPECT_FALSE(render::estimate_benefit(sums).pays());
   sums.pixel_deviation = 0.0;
-  EXPECT_FALSE(estimate_benefit(sums).pays()) << "no noise, nothing to gain";
+  EXPECT_FALSE(render::estimate_benefit(sums).pays()) << "no noise, nothing to gain";
 }
 
-// In a thicket of leaves smaller than pixels all shifts fail. A difference is then that of the pixels' own samples, as noisy as they are;
-// the pilot took its noise for one of its own, expected half of the error, and had 2.5 times that of path tracing in the same time.
+// In a thicket of leaves smaller than pixels all shifts fail. A difference is then that of the pixels' own samples, as
+// noisy as they are; the pilot took its noise for one of its own, expected half of the error, and had 2.5 times that of
+// path tracing in the same time.
 TEST(Benefit, DifferencesOfThePixelsOwnSamplesAreWorthNothing) {
-  PilotSums sums = quiet_sums();
+  render::PilotSums sums = quiet_sums();
   sums.difference_deviation = 400.0 * std::sqrt(2.0);
   sums.l2_roots = {150.0, 120.0, 98.0};
-  EXPECT_GT(estimate_benefit(sums).error, 0.9);
-  EXPECT_FALSE(estimate_benefit(sums).pays());
+  EXPECT_GT(render::estimate_benefit(sums).error, 0.9);
+  EXPECT_FALSE(render::estimate_benefit(sums).pays());
   sums.l2_roots = {150.0, 60.0, 98.0};  // at its best weight L2 gains
-  EXPECT_TRUE(estimate_benefit(sums).pays());
+  EXPECT_TRUE(render::estimate_benefit(sums).pays());
 }
 
-// Unpaired paths stand in the differences as they stand in the pixel, and L2 gives back what they were. The pilot judged differences by
-// their deviations alone, and expected a third of the noise behind a glass teapot where all of it was left.
+// Unpaired paths stand in the differences as they stand in the pixel, and L2 gives back what they were. The pilot
+// judged differences by their deviations alone, and expected a third of the noise behind a glass teapot where all of it
+// was left.
 TEST(L2Noise, GivesBackWhatStandsAlone) {
-  const L2Noise l2(0.4);
+  const render::L2Noise l2(0.4);
   const Radiance c(3.0f, 1.0f, 2.0f, 0.0f);
   EXPECT_NEAR(l2.of(c, {-c, -c, -c, -c}), (9.0 + 1.0 + 4.0) / 3.0, 1e-9);
   EXPECT_NEAR(l2.of(Radiance(0.0f), {}), 0.0, 1e-12);
@@ -74,29 +76,30 @@ TEST(L2Noise, GivesBackWhatStandsAlone) {
 // The sum of squares over a picture that one sample changes.
 TEST(L2Noise, IsWhatTheSolverMakesOfASample) {
   constexpr int kSize = 64, kAt = 32;
-  GradientImages images;
+  film::GradientImages images;
   images.width = images.height = kSize;
   images.channels = 1;
   for (auto* plane : {&images.primal, &images.dx, &images.dy}) plane->assign(size_t(kSize) * kSize, 0.0f);
   const auto at = [&](int x, int y) { return size_t(y) * kSize + size_t(x); };
-  const float d[kOffsets] = {0.7f, -0.2f, -1.3f, 0.4f};
+  const float d[film::kOffsets] = {0.7f, -0.2f, -1.3f, 0.4f};
   images.primal[at(kAt, kAt)] = 2.0f;
-  images.dx[at(kAt, kAt)] = d[kRight];
-  images.dy[at(kAt, kAt)] = d[kUp];
-  images.dx[at(kAt - 1, kAt)] = -d[kLeft];
-  images.dy[at(kAt, kAt - 1)] = -d[kDown];
-  const std::vector<float> x = reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.4f, {}, nullptr);
+  images.dx[at(kAt, kAt)] = d[film::kRight];
+  images.dy[at(kAt, kAt)] = d[film::kUp];
+  images.dx[at(kAt - 1, kAt)] = -d[film::kLeft];
+  images.dy[at(kAt, kAt - 1)] = -d[film::kDown];
+  const std::vector<float> x = reconstruct::reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.4f, {}, nullptr);
   double sum = 0.0;
   for (const float v : x) sum += double(v) * v;
-  std::array<Radiance, kOffsets> differences;
-  for (int k = 0; k < kOffsets; ++k) differences[k] = Radiance(d[k]);
-  EXPECT_NEAR(L2Noise(0.4).of(Radiance(2.0f), differences) / sum, 1.0, 1e-3);
+  std::array<Radiance, film::kOffsets> differences;
+  for (int k = 0; k < film::kOffsets; ++k) differences[k] = Radiance(d[k]);
+  EXPECT_NEAR(render::L2Noise(0.4).of(Radiance(2.0f), differences) / sum, 1.0, 1e-3);
 }
 
-// One part that is dark for gradients, and has all the noise: what the others gain is not worth the time that it does without.
+// One part that is dark for gradients, and has all the noise: what the others gain is not worth the time that it does
+// without.
 TEST(Benefit, PartsAreChosenForThePicture) {
   const auto part = [](double noise, double error, double cost) {
-    Benefit b;
+    render::Benefit b;
     b.noisy = true;
     b.noise = noise;
     b.error = error;
@@ -106,19 +109,26 @@ TEST(Benefit, PartsAreChosenForThePicture) {
   };
   const std::vector<double> pixels(3, 100.0);
   using Chosen = std::vector<bool>;
-  EXPECT_EQ(choose_blocks({part(1, 0.1, 2), part(1, 0.2, 2), part(1, 0.1, 2)}, pixels), (Chosen{true, true, true}));
-  EXPECT_EQ(choose_blocks({part(1, 0.1, 2), part(100, 0.9, 2), part(1, 0.1, 2)}, pixels), (Chosen{false, false, false}));
-  EXPECT_EQ(choose_blocks({part(1, 0.1, 2), part(100, 0.1, 2), part(1, 0.9, 2)}, pixels), (Chosen{false, true, false}));
-  EXPECT_EQ(choose_blocks({part(1, 0.1, 2), part(1, 0.2, 2), part(1, 0.6, 2)}, pixels), (Chosen{true, true, true})) << "hardly better";
-  EXPECT_EQ(choose_blocks({part(0, 1, 2), part(0, 1, 1), part(0, 1, 3)}, pixels), (Chosen{false, false, false})) << "no noise";
+  EXPECT_EQ(render::choose_blocks({part(1, 0.1, 2), part(1, 0.2, 2), part(1, 0.1, 2)}, pixels),
+            (Chosen{true, true, true}));
+  EXPECT_EQ(render::choose_blocks({part(1, 0.1, 2), part(100, 0.9, 2), part(1, 0.1, 2)}, pixels),
+            (Chosen{false, false, false}));
+  EXPECT_EQ(render::choose_blocks({part(1, 0.1, 2), part(100, 0.1, 2), part(1, 0.9, 2)}, pixels),
+            (Chosen{false, true, false}));
+  EXPECT_EQ(render::choose_blocks({part(1, 0.1, 2), part(1, 0.2, 2), part(1, 0.6, 2)}, pixels),
+            (Chosen{true, true, true}))
+      << "hardly better";
+  EXPECT_EQ(render::choose_blocks({part(0, 1, 2), part(0, 1, 1), part(0, 1, 3)}, pixels), (Chosen{false, false, false}))
+      << "no noise";
 }
 
 // Pixels are noisy everywhere, differences only where x is at least `noisy_from`.
-struct HalfNoisy final : Integrator {
+struct HalfNoisy final : integrator::Integrator {
   explicit HalfNoisy(int32_t from) : noisy_from(from) {}
   int32_t noisy_from;
 
-  void sample(const WorkUnit& unit, Film* film, Counters* counters, const std::atomic<bool>& /*stop*/) const override {
+  void sample(const integrator::WorkUnit& unit, film::Film* film, film::Counters* counters,
+              const std::atomic<bool>& /*stop*/) const override {
     for (int32_t y = unit.tile.y0; y < unit.tile.y1; ++y) {
       for (int32_t x = unit.tile.x0; x < unit.tile.x1; ++x) {
         if (unit.pixel_map != nullptr && (*unit.pixel_map)[film->index(x, y)] == 0) continue;
@@ -130,7 +140,8 @@ struct HalfNoisy final : Integrator {
     }
   }
 
-  void sample_pixel(int32_t x, int32_t y, uint32_t s, bool has_gradients, Film* film, Counters* counters) const {
+  void sample_pixel(int32_t x, int32_t y, uint32_t s, bool has_gradients, film::Film* film,
+                    film::Counters* counters) const {
     const size_t i = film->index(x, y);
     const int half = int(s % 2);
     film->components[0].primal[half][i] += Radiance(random_value(x, y, s));
@@ -138,22 +149,23 @@ struct HalfNoisy final : Integrator {
     counters->rays_primary += 4;
     if (!has_gradients) return;
     counters->rays_shift += 4;
-    for (int k = 0; k < kOffsets; ++k) {
-      if (!film->region.contains(x + kOffsetX[k], y + kOffsetY[k])) continue;
-      film->components[0].gradient[half][k][i] += Radiance(x >= noisy_from ? 5.0f * random_value(x, y, s + 77 * uint32_t(k)) : 0.1f);
+    for (int k = 0; k < film::kOffsets; ++k) {
+      if (!film->region.contains(x + film::kOffsetX[k], y + film::kOffsetY[k])) continue;
+      film->components[0].gradient[half][k][i] +=
+          Radiance(x >= noisy_from ? 5.0f * random_value(x, y, s + 77 * uint32_t(k)) : 0.1f);
       film->pair_count[half][k][i] += 1.0f;
     }
   }
 };
 
-GradientMap pilot(const GradusSettings& settings, const Region& region, int32_t noisy_from,
-                  uint32_t reconstruction = GRADUS_RECONSTRUCTION_L1) {
+render::GradientMap pilot(const GradusSettings& settings, const Region& region, int32_t noisy_from,
+                          uint32_t reconstruction = GRADUS_RECONSTRUCTION_L1) {
   const std::atomic<bool> stop{false};
-  return run_pilot(HalfNoisy(noisy_from), pilot_settings(settings), reconstruction, region, 3, stop);
+  return render::run_pilot(HalfNoisy(noisy_from), render::pilot_settings(settings), reconstruction, region, 3, stop);
 }
 
 TEST(Pilot, LeavesGradientsWhereTheyPay) {
-  const GradientMap map = pilot(small_settings(256, 96, 4), {0, 0, 256, 96}, 128);
+  const render::GradientMap map = pilot(small_settings(256, 96, 4), {0, 0, 256, 96}, 128);
   EXPECT_EQ(map.pixels[10 * 256 + 20], 1);
   EXPECT_EQ(map.pixels[10 * 256 + 200], 0);
   EXPECT_NEAR(map.share, 0.5, 0.15);
@@ -167,7 +179,7 @@ TEST(Pilot, MapDependsOnThePictureAlone) {
   for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_L2}) {
     s.samples = 4;
     s.seed = s.frame = s.first_sample = 0;
-    const GradientMap full = pilot(s, {0, 0, 300, 200}, 230, reconstruction);
+    const render::GradientMap full = pilot(s, {0, 0, 300, 200}, 230, reconstruction);
     EXPECT_GT(full.share, 0.0);
     EXPECT_LT(full.share, 1.0);
     s.samples = 64;
@@ -175,10 +187,11 @@ TEST(Pilot, MapDependsOnThePictureAlone) {
     s.frame = 7;
     s.first_sample = 16;
     const Region part{77, 45, 251, 133};
-    const GradientMap map = pilot(s, part, 230, reconstruction);
+    const render::GradientMap map = pilot(s, part, 230, reconstruction);
     for (int32_t y = part.y0; y < part.y1; ++y) {
       for (int32_t x = part.x0; x < part.x1; ++x) {
-        ASSERT_EQ(map.pixels[size_t(y - part.y0) * size_t(part.width()) + size_t(x - part.x0)], full.pixels[size_t(y) * 300 + size_t(x)])
+        ASSERT_EQ(map.pixels[size_t(y - part.y0) * size_t(part.width()) + size_t(x - part.x0)],
+                  full.pixels[size_t(y) * 300 + size_t(x)])
             << x << ", " << y;
       }
     }
@@ -186,13 +199,17 @@ TEST(Pilot, MapDependsOnThePictureAlone) {
 }
 
 // A user could choose its seed, and had the samples that chose the map in the picture: L2 was biased.
-TEST(Pilot, ItsSeedIsNoUsers) { EXPECT_GT(pilot_settings(small_settings(8, 8, 1)).seed, find_option("seed")->maximum); }
+TEST(Pilot, ItsSeedIsNoUsers) {
+  EXPECT_GT(render::pilot_settings(small_settings(8, 8, 1)).seed, schema::find_option("seed")->maximum);
+}
 
-nlohmann::json stats_of(int32_t noisy_from, uint32_t integrator, std::shared_ptr<const Film>* film) {
+nlohmann::json stats_of(int32_t noisy_from, uint32_t integrator, std::shared_ptr<const film::Film>* film) {
   GradusSettings s = small_settings(256, 96, 4);
   s.integrator = integrator;
   s.reconstruction = GRADUS_RECONSTRUCTION_L1;
-  const auto factory = [&](const IntegratorContext&, uint32_t) { return std::make_unique<HalfNoisy>(noisy_from); };
+  const auto factory = [&](const integrator::IntegratorContext&, uint32_t) {
+    return std::make_unique<HalfNoisy>(noisy_from);
+  };
   const auto render = start(s, factory);
   render->wait(-1.0);
   std::string text;
@@ -201,17 +218,18 @@ nlohmann::json stats_of(int32_t noisy_from, uint32_t integrator, std::shared_ptr
   return nlohmann::json::parse(render->stats_json());
 }
 
-// Nothing that it had seen made the pilot leave gradients out, and the frame it was to go on from did not fit: a wrong argument.
+// Nothing that it had seen made the pilot leave gradients out, and the frame it was to go on from did not fit: a wrong
+// argument.
 TEST(Pilot, ACancelMeanwhileIsACancel) {
   GradusSettings s = small_settings(64, 48, 4);
   s.integrator = GRADUS_INTEGRATOR_AUTO;
   s.reconstruction = GRADUS_RECONSTRUCTION_L1;
-  const auto noisy = [](const IntegratorContext&, uint32_t) { return std::make_unique<HalfNoisy>(64); };
+  const auto noisy = [](const integrator::IntegratorContext&, uint32_t) { return std::make_unique<HalfNoisy>(64); };
   const auto first = start(s, noisy);
   first->wait(-1.0);
   ASSERT_TRUE(first->film()->gradients);
   std::atomic<bool> is_cancelled{false};
-  const auto waits = [&](const IntegratorContext& context, uint32_t integrator) {
+  const auto waits = [&](const integrator::IntegratorContext& context, uint32_t integrator) {
     while (!is_cancelled) std::this_thread::yield();
     return noisy(context, integrator);
   };
@@ -226,12 +244,12 @@ TEST(Pilot, ACancelMeanwhileIsACancel) {
 }
 
 TEST(Pilot, AutoDecidesAndSaysWhy) {
-  std::shared_ptr<const Film> film;
+  std::shared_ptr<const film::Film> film;
   const nlohmann::json some = stats_of(128, GRADUS_INTEGRATOR_AUTO, &film);
   EXPECT_EQ(some["integrator"], "gradient");
   EXPECT_TRUE(film->gradients);
-  EXPECT_GT(film->pair_count[0][kRight][10], 0.0f);
-  EXPECT_EQ(film->pair_count[0][kRight][200], 0.0f);
+  EXPECT_GT(film->pair_count[0][film::kRight][10], 0.0f);
+  EXPECT_EQ(film->pair_count[0][film::kRight][200], 0.0f);
   const nlohmann::json none = stats_of(0, GRADUS_INTEGRATOR_AUTO, &film);
   EXPECT_EQ(none["integrator"], "path");
   EXPECT_EQ(none["reconstruction"], "none");
@@ -239,7 +257,7 @@ TEST(Pilot, AutoDecidesAndSaysWhy) {
   EXPECT_NE(none["plan"]["skipped"]["gradients"].get<std::string>().find("pilot"), std::string::npos);
   // What the user says is obeyed.
   EXPECT_EQ(stats_of(0, GRADUS_INTEGRATOR_GRADIENT, &film)["integrator"], "gradient");
-  const GradientImages images = read_images(*film, 0);
+  const film::GradientImages images = film::read_images(*film, 0);
   for (const auto* differences : {&images.dx, &images.dy}) {
     EXPECT_TRUE(std::all_of(differences->begin(), differences->end(), [](float v) { return is_finite(v); }));
   }

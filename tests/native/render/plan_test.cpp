@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "render/plan.h"
 #include "render/fake_integrator.h"
+#include "render/plan.h"
 #include "schema/pass_table.h"
 
 namespace gradus {
@@ -12,11 +12,11 @@ namespace {
 
 using namespace test;
 
-Plan plan_for(uint32_t integrator, uint32_t reconstruction) {
+render::Plan plan_for(uint32_t integrator, uint32_t reconstruction) {
   GradusSettings s = small_settings(64, 64, 4);
   s.integrator = integrator;
   s.reconstruction = reconstruction;
-  return make_plan(s, *empty_snapshot());
+  return render::make_plan(s, *empty_snapshot());
 }
 
 GradusError refusal(uint32_t integrator, uint32_t reconstruction) {
@@ -30,16 +30,16 @@ GradusError refusal(uint32_t integrator, uint32_t reconstruction) {
 }
 
 TEST(Plan, AutoIsPathWithFeatures) {
-  const Plan plan = plan_for(GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_AUTO);
+  const render::Plan plan = plan_for(GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_AUTO);
   EXPECT_EQ(plan.integrator, uint32_t{GRADUS_INTEGRATOR_PATH});
   EXPECT_EQ(plan.reconstruction, uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED});
   EXPECT_FALSE(plan.pilot);
-  EXPECT_FALSE(delivers_unbiased(plan, plan.reconstruction, plan.denoises));
+  EXPECT_FALSE(render::delivers_unbiased(plan, plan.reconstruction, plan.denoises));
 }
 
 TEST(Plan, AutoIsGradientForWhatNeedsDifferences) {
   for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
-    const Plan plan = plan_for(GRADUS_INTEGRATOR_AUTO, reconstruction);
+    const render::Plan plan = plan_for(GRADUS_INTEGRATOR_AUTO, reconstruction);
     EXPECT_EQ(plan.integrator, uint32_t{GRADUS_INTEGRATOR_GRADIENT});
     EXPECT_TRUE(plan.pilot) << "wherever it pays";
   }
@@ -47,17 +47,18 @@ TEST(Plan, AutoIsGradientForWhatNeedsDifferences) {
   settings.passes |= uint64_t{1} << GRADUS_PASS_GRADIENT_X;
   settings.integrator = GRADUS_INTEGRATOR_AUTO;
   settings.reconstruction = GRADUS_RECONSTRUCTION_AUTO;
-  const Plan plan = make_plan(settings, *empty_snapshot());
+  const render::Plan plan = render::make_plan(settings, *empty_snapshot());
   EXPECT_TRUE(plan.gradients);
   EXPECT_FALSE(plan.pilot) << "its passes are asked for";
 }
 
 TEST(Plan, PathHasNoGradientsAndSaysSo) {
-  const Plan plan = plan_for(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_AUTO);
+  const render::Plan plan = plan_for(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_AUTO);
   EXPECT_EQ(plan.reconstruction, uint32_t{GRADUS_RECONSTRUCTION_NONE});
   EXPECT_FALSE(plan.gradients);
   const auto has = [&](const std::string& what) {
-    return std::any_of(plan.skipped.begin(), plan.skipped.end(), [&](const auto& entry) { return entry.first == what; });
+    return std::any_of(plan.skipped.begin(), plan.skipped.end(),
+                       [&](const auto& entry) { return entry.first == what; });
   };
   EXPECT_TRUE(has("gradients"));
   EXPECT_TRUE(has("reconstruction"));
@@ -68,38 +69,40 @@ TEST(Plan, KeepsThePassesThatAreAskedForAndWhatTheReconstructionReads) {
   GradusSettings settings = small_settings(64, 64, 4);
   settings.reconstruction = GRADUS_RECONSTRUCTION_NONE;
   settings.passes |= uint64_t{1} << GRADUS_PASS_MIST;
-  EXPECT_EQ(make_plan(settings, *empty_snapshot()).passes, settings.passes);
-  Plan plan;
-  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
+  EXPECT_EQ(render::make_plan(settings, *empty_snapshot()).passes, settings.passes);
+  render::Plan plan;
+  for (const uint32_t reconstruction :
+       {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
     plan.reconstruction = reconstruction;
-    EXPECT_FALSE(features_wanted(plan));
+    EXPECT_FALSE(render::features_wanted(plan));
   }
   plan.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
-  EXPECT_TRUE(features_wanted(plan));
+  EXPECT_TRUE(render::features_wanted(plan));
 }
 
 // Where the pilot found that gradients do not pay, any reconstruction became none.
 TEST(Plan, WithoutGradientsAReconstructionByFeaturesIsKept) {
-  Plan plan;
+  render::Plan plan;
   for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
     plan.reconstruction = reconstruction;
-    EXPECT_EQ(without_gradients(plan), uint32_t{GRADUS_RECONSTRUCTION_NONE});
+    EXPECT_EQ(render::without_gradients(plan), uint32_t{GRADUS_RECONSTRUCTION_NONE});
   }
   for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_REGULARIZED}) {
     plan.reconstruction = reconstruction;
-    EXPECT_EQ(without_gradients(plan), reconstruction);
+    EXPECT_EQ(render::without_gradients(plan), reconstruction);
   }
 }
 
 // The threshold was taken for 0.1, whatever the setting.
 TEST(Plan, HalfVectorShiftsAreJudgedByTheSettingOfTheThreshold) {
-  auto snapshot = std::make_shared<Snapshot>(*empty_snapshot());
+  auto snapshot = std::make_shared<scene::Snapshot>(*empty_snapshot());
   const auto skips = [&](float sharpest, float threshold) {
     snapshot->features.min_alpha = sharpest;
     GradusSettings s = small_settings(64, 64, 4);
     s.roughness_threshold = threshold;
-    const Plan plan = make_plan(s, *snapshot);
-    return std::any_of(plan.skipped.begin(), plan.skipped.end(), [](const auto& entry) { return entry.first == "half-vector shifts"; });
+    const render::Plan plan = render::make_plan(s, *snapshot);
+    return std::any_of(plan.skipped.begin(), plan.skipped.end(),
+                       [](const auto& entry) { return entry.first == "half-vector shifts"; });
   };
   EXPECT_FALSE(skips(0.2f, 0.5f));
   EXPECT_TRUE(skips(0.2f, 0.1f));
@@ -115,7 +118,8 @@ TEST(Plan, ObeysOrRefuses) {
   EXPECT_EQ(refusal(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED), GRADUS_OK);
   EXPECT_EQ(refusal(7, GRADUS_RECONSTRUCTION_AUTO), GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(refusal(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_NONE), GRADUS_OK);
-  EXPECT_FALSE(delivers_unbiased(plan_for(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1), GRADUS_RECONSTRUCTION_L1, false));
+  EXPECT_FALSE(render::delivers_unbiased(plan_for(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1),
+                                         GRADUS_RECONSTRUCTION_L1, false));
 }
 
 TEST(Plan, RefusesRegionsOutsideTheFrame) {
@@ -123,14 +127,14 @@ TEST(Plan, RefusesRegionsOutsideTheFrame) {
   const uint32_t bad[][4] = {{0, 0, 65, 64}, {10, 10, 10, 20}, {30, 10, 20, 20}, {0, 0, 0, 5}};
   for (const auto& region : bad) {
     std::copy(region, region + 4, s.region);
-    EXPECT_THROW(make_plan(s, *empty_snapshot()), Error);
+    EXPECT_THROW(render::make_plan(s, *empty_snapshot()), Error);
   }
 }
 
 TEST(E8_Sizes, ZeroSamplesGiveAText) {
   GradusSettings s = small_settings(64, 64, 0);
   try {
-    make_plan(s, *empty_snapshot());
+    render::make_plan(s, *empty_snapshot());
     FAIL();
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("0 samples"), std::string::npos);
@@ -143,7 +147,7 @@ TEST(Plan, LowThresholdsAskForMoreSamplesBeforeTilesStop) {
   const auto first_check = [&](float threshold, uint32_t minimum) {
     s.noise_threshold = threshold;
     s.min_samples = minimum;
-    return make_plan(s, *empty_snapshot()).first_check;
+    return render::make_plan(s, *empty_snapshot()).first_check;
   };
   EXPECT_EQ(first_check(0.05f, 0), 16u);
   EXPECT_EQ(first_check(0.01f, 0), 16u);
@@ -155,11 +159,12 @@ TEST(Plan, LowThresholdsAskForMoreSamplesBeforeTilesStop) {
 TEST(Plan, DenoiserIsBiasedAndAsksForFeatures) {
   GradusSettings s = small_settings(64, 64, 4);
   s.reconstruction = GRADUS_RECONSTRUCTION_L2;
-  const Plan plain = make_plan(s, *empty_snapshot()), denoised = make_plan(s, *empty_snapshot(), {"Some Denoiser 1.2.3", ""});
-  EXPECT_TRUE(delivers_unbiased(plain, plain.reconstruction, plain.denoises));
-  EXPECT_FALSE(delivers_unbiased(denoised, denoised.reconstruction, denoised.denoises));
-  EXPECT_EQ(plain.passes & feature_passes(), 0u);
-  EXPECT_EQ(denoised.passes & feature_passes(), feature_passes());
+  const render::Plan plain = render::make_plan(s, *empty_snapshot()),
+                     denoised = render::make_plan(s, *empty_snapshot(), {"Some Denoiser 1.2.3", ""});
+  EXPECT_TRUE(render::delivers_unbiased(plain, plain.reconstruction, plain.denoises));
+  EXPECT_FALSE(render::delivers_unbiased(denoised, denoised.reconstruction, denoised.denoises));
+  EXPECT_EQ(plain.passes & schema::feature_passes(), 0u);
+  EXPECT_EQ(denoised.passes & schema::feature_passes(), schema::feature_passes());
 }
 
 TEST(Plan, AutomaticDenoiserGoesByTheSamplesThatAreTaken) {
@@ -180,10 +185,10 @@ TEST(Plan, AutomaticDenoiserGoesByTheSamplesThatAreTaken) {
     s.denoiser = GRADUS_DENOISER_AUTO;
     s.time_limit = c.time_limit;
     s.noise_threshold = c.noise_threshold;
-    const Plan plan = make_plan(s, *empty_snapshot(), {"Some Denoiser 1.2.3", ""});
-    Reasons chosen = plan.chosen, skipped = plan.skipped;
-    EXPECT_EQ(denoises_after(plan, c.taken, &chosen, &skipped), c.denoises) << c.samples << " " << c.taken;
-    const auto names = [](const Reasons& list, const std::string& what) {
+    const render::Plan plan = render::make_plan(s, *empty_snapshot(), {"Some Denoiser 1.2.3", ""});
+    render::Reasons chosen = plan.chosen, skipped = plan.skipped;
+    EXPECT_EQ(render::denoises_after(plan, c.taken, &chosen, &skipped), c.denoises) << c.samples << " " << c.taken;
+    const auto names = [](const render::Reasons& list, const std::string& what) {
       return std::count_if(list.begin(), list.end(), [&](const auto& reason) { return reason.first == what; });
     };
     EXPECT_EQ(names(chosen, "denoiser Some Denoiser 1.2.3"), c.denoises ? 1 : 0);
@@ -192,14 +197,15 @@ TEST(Plan, AutomaticDenoiserGoesByTheSamplesThatAreTaken) {
   GradusSettings requested = small_settings(64, 64, 1);
   requested.denoiser = GRADUS_DENOISER_OIDN;
   requested.time_limit = 60.0f;
-  Reasons none;
-  EXPECT_TRUE(denoises_after(make_plan(requested, *empty_snapshot(), {"Some Denoiser 1.2.3", ""}), 1.0, &none, &none));
+  render::Reasons none;
+  EXPECT_TRUE(render::denoises_after(render::make_plan(requested, *empty_snapshot(), {"Some Denoiser 1.2.3", ""}), 1.0,
+                                     &none, &none));
   EXPECT_TRUE(none.empty());
 }
 
 TEST(Plan, NoCameraIsAnError) {
-  auto snapshot = std::make_shared<Snapshot>();
-  EXPECT_THROW(Render(nullptr, snapshot, small_settings(8, 8, 1), nullptr, fake_factory()), Error);
+  auto snapshot = std::make_shared<scene::Snapshot>();
+  EXPECT_THROW(render::Render(nullptr, snapshot, small_settings(8, 8, 1), nullptr, fake_factory()), Error);
 }
 
 }  // namespace

@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "scene/device.h"
-#include "render/plan.h"
 #include "output/upsample.h"
 #include "render/fake_integrator.h"
+#include "render/plan.h"
 #include "render/preview.h"
 #include "render/refresh_rule.h"
+#include "scene/device.h"
 #include "support/path_scene.h"
 
 namespace gradus {
@@ -21,7 +21,7 @@ using namespace test;
 constexpr uint32_t kForever = 1u << 24;  // samples that no test waits for
 
 TEST(RefreshRule, FollowsItsOwnCost) {
-  RefreshRule rule;
+  render::RefreshRule rule;
   rule.expect(1.0);
   EXPECT_FALSE(rule.is_due(1.0, 0.1)) << "the render will take 10 s: too short to give 1 s away at once";
   EXPECT_TRUE(rule.is_due(1.0, 0.05)) << "20 s: long enough, and it need not wait for them";
@@ -29,10 +29,10 @@ TEST(RefreshRule, FollowsItsOwnCost) {
   rule.done(4.0, 2.0);
   EXPECT_FALSE(rule.is_due(43.9, 1.0));
   EXPECT_TRUE(rule.is_due(44.0, 1.0));
-  EXPECT_TRUE(RefreshRule().is_due(0.0, 0.0)) << "nothing is known";
+  EXPECT_TRUE(render::RefreshRule().is_due(0.0, 0.0)) << "nothing is known";
 }
 
-bool is_quarter(const Integrator& integrator, const GradusSettings& settings) {
+bool is_quarter(const integrator::Integrator& integrator, const GradusSettings& settings) {
   const auto* fake = dynamic_cast<const FakeIntegrator*>(&integrator);
   return fake != nullptr && fake->settings.width < settings.width;
 }
@@ -43,7 +43,7 @@ Region region_of(const GradusSettings& s) {
 }
 
 // Reads as a window does, until the render ends.
-void watch(Render* render, const Region& region) {
+void watch(render::Render* render, const Region& region) {
   do {
     for (const uint32_t pass : {GRADUS_PASS_COMBINED, GRADUS_PASS_NOISY_IMAGE}) {
       for (const float v : read(*render, pass, region)) ASSERT_TRUE(std::isfinite(v));
@@ -57,15 +57,17 @@ void wait_for(Condition&& condition) {
   ASSERT_TRUE(condition());
 }
 
-nlohmann::json stats_of(const Render& render) { return nlohmann::json::parse(render.stats_json()); }
+nlohmann::json stats_of(const render::Render& render) { return nlohmann::json::parse(render.stats_json()); }
 
 // Slow enough to be watched.
-IntegratorFactory slow_factory(std::chrono::microseconds per_tile = std::chrono::microseconds(300)) {
-  return fake_factory(
-      [per_tile](FakeIntegrator* fake) { fake->before = [per_tile](const WorkUnit&) { std::this_thread::sleep_for(per_tile); }; });
+render::IntegratorFactory slow_factory(std::chrono::microseconds per_tile = std::chrono::microseconds(300)) {
+  return fake_factory([per_tile](FakeIntegrator* fake) {
+    fake->before = [per_tile](const integrator::WorkUnit&) { std::this_thread::sleep_for(per_tile); };
+  });
 }
 
-GradusSettings settings_of(uint32_t width, uint32_t height, uint32_t samples, uint32_t integrator, uint32_t reconstruction) {
+GradusSettings settings_of(uint32_t width, uint32_t height, uint32_t samples, uint32_t integrator,
+                           uint32_t reconstruction) {
   GradusSettings settings = small_settings(width, height, samples);
   settings.integrator = integrator;
   settings.reconstruction = reconstruction;
@@ -76,7 +78,8 @@ GradusSettings settings_of(uint32_t width, uint32_t height, uint32_t samples, ui
 TEST(Preview, WithoutAWatcherNothingIsMade) {
   const GradusSettings settings = settings_of(96, 64, 32, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2);
   std::atomic<int> quarters{0};
-  const auto render = start(settings, fake_factory([&](FakeIntegrator* fake) { quarters += is_quarter(*fake, settings) ? 1 : 0; }));
+  const auto render =
+      start(settings, fake_factory([&](FakeIntegrator* fake) { quarters += is_quarter(*fake, settings) ? 1 : 0; }));
   while (!render->wait(0.0005)) read(*render, GRADUS_PASS_NOISY_IMAGE, region_of(settings));
   read(*render, GRADUS_PASS_COMBINED, region_of(settings));
   EXPECT_EQ(quarters, 0);
@@ -123,7 +126,8 @@ TEST_P(WatchedRender, HasTheBitsOfAnUnwatchedOne) {
 }
 
 TEST_P(WatchedRender, MayBeOfAnySize) {
-  for (const auto& [width, height] : {std::pair{1u, 1u}, {2u, 1u}, {1u, 3u}, {3u, 3u}, {1u, 200u}, {200u, 1u}, {17u, 5u}}) {
+  for (const auto& [width, height] :
+       {std::pair{1u, 1u}, {2u, 1u}, {1u, 3u}, {3u, 3u}, {1u, 200u}, {200u, 1u}, {17u, 5u}}) {
     const GradusSettings settings = this->settings(width, height, 24);
     const auto render = start(settings, slow_factory());
     watch(render.get(), region_of(settings));
@@ -133,15 +137,16 @@ TEST_P(WatchedRender, MayBeOfAnySize) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, WatchedRender,
-                         ::testing::Values(Kind{"Noisy", GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_NONE},
-                                           Kind{"L2", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2},
-                                           Kind{"L1", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1},
-                                           Kind{"PathRegularized", GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED},
-                                           Kind{"Regularized", GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_REGULARIZED},
-                                           Kind{"AdaptiveL1", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1, 0.03f},
-                                           Kind{"AdaptiveRegularized", GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED, 0.03f}),
-                         [](const ::testing::TestParamInfo<Kind>& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    All, WatchedRender,
+    ::testing::Values(Kind{"Noisy", GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_NONE},
+                      Kind{"L2", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2},
+                      Kind{"L1", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1},
+                      Kind{"PathRegularized", GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED},
+                      Kind{"Regularized", GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_REGULARIZED},
+                      Kind{"AdaptiveL1", GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1, 0.03f},
+                      Kind{"AdaptiveRegularized", GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED, 0.03f}),
+    [](const ::testing::TestParamInfo<Kind>& info) { return info.param.name; });
 
 TEST(Preview, AResumedRenderIsWatchedFromItsSamples) {
   const GradusSettings settings = settings_of(96, 64, 48, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2);
@@ -150,7 +155,7 @@ TEST(Preview, AResumedRenderIsWatchedFromItsSamples) {
   std::atomic<int> quarters{0};
   const auto count = [&](FakeIntegrator* fake) {
     quarters += is_quarter(*fake, settings) ? 1 : 0;
-    fake->before = [](const WorkUnit&) { std::this_thread::sleep_for(std::chrono::microseconds(300)); };
+    fake->before = [](const integrator::WorkUnit&) { std::this_thread::sleep_for(std::chrono::microseconds(300)); };
   };
   const auto render = start(settings, fake_factory(count), rendered(first));
   watch(render.get(), region_of(settings));
@@ -164,8 +169,9 @@ TEST(Preview, AResumedRenderIsWatchedFromItsSamples) {
 TEST(Preview, ALongBatchDoesNotKeepTheWatcherWaiting) {
   const GradusSettings settings = settings_of(64, 64, kForever, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2);
   const auto render = start(settings, fake_factory([](FakeIntegrator* fake) {
-                              fake->before = [](const WorkUnit& unit) {
-                                if (unit.first_sample >= 16) std::this_thread::sleep_for(std::chrono::milliseconds(200));
+                              fake->before = [](const integrator::WorkUnit& unit) {
+                                if (unit.first_sample >= 16)
+                                  std::this_thread::sleep_for(std::chrono::milliseconds(200));
                               };
                             }));
   read(*render, GRADUS_PASS_COMBINED, region_of(settings));
@@ -179,14 +185,14 @@ TEST(Preview, ALongBatchDoesNotKeepTheWatcherWaiting) {
 
 // Seconds of sampling are given; those of pictures are what is billed, however long that takes here.
 TEST(Preview, TakesATwentiethOfTheTime) {
-  LoopInput input;
+  render::LoopInput input;
   input.settings = settings_of(96, 64, 2, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1);
-  const Plan plan = make_plan(input.settings, *empty_snapshot());
+  const render::Plan plan = render::make_plan(input.settings, *empty_snapshot());
   const std::atomic<bool> stop{false};
   tbb::task_arena arena(2);
-  Picture picture(plan.delivered);
-  ProgressTracker tracker;
-  Preview view(input, plan, stop, &arena, &picture, &tracker);
+  render::Picture picture(plan.delivered);
+  render::ProgressTracker tracker;
+  render::Preview view(input, plan, stop, &arena, &picture, &tracker);
   view.watch();
   const auto film = rendered(input.settings);
   const auto is_due = [&](double sampled) { return view.refresh_is_due(GRADUS_RECONSTRUCTION_L1, sampled, 0.5); };
@@ -210,7 +216,7 @@ TEST(Preview, IsAskedForNoMoreOftenThanItPays) {
   settings.time_limit = 0.25f;
   std::atomic<bool> is_watched{false};
   const auto render = start(settings, fake_factory([&](FakeIntegrator* fake) {
-                              fake->before = [&](const WorkUnit&) {
+                              fake->before = [&](const integrator::WorkUnit&) {
                                 while (!is_watched) std::this_thread::yield();
                                 std::this_thread::sleep_for(std::chrono::milliseconds(1));
                               };
@@ -222,18 +228,19 @@ TEST(Preview, IsAskedForNoMoreOftenThanItPays) {
   EXPECT_LE(render->progress().version, 3u) << "the quarter, one of the frame, and what is delivered";
 }
 
-// The limit is one of sampling (contract 4.6). A render ends within half a sample of it, so not before two thirds; and the picture takes so
-// long that no busy machine makes sampling as long.
+// The limit is one of sampling (contract 4.6). A render ends within half a sample of it, so not before two thirds; and
+// the picture takes so long that no busy machine makes sampling as long.
 TEST(Preview, TakesNothingFromTheTimeLimit) {
   GradusSettings settings = settings_of(16, 16, kForever, GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED);
   settings.time_limit = 0.1f;
   std::atomic<bool> is_watched{false};
-  const auto render =
-      start(settings, fake_factory([&](FakeIntegrator* fake) {
-              while (!is_watched) std::this_thread::yield();  // before sampling begins
-              const bool waits = is_quarter(*fake, settings);
-              fake->before = [waits](const WorkUnit&) { std::this_thread::sleep_for(std::chrono::milliseconds(waits ? 2000 : 10)); };
-            }));
+  const auto render = start(settings, fake_factory([&](FakeIntegrator* fake) {
+                              while (!is_watched) std::this_thread::yield();  // before sampling begins
+                              const bool waits = is_quarter(*fake, settings);
+                              fake->before = [waits](const integrator::WorkUnit&) {
+                                std::this_thread::sleep_for(std::chrono::milliseconds(waits ? 2000 : 10));
+                              };
+                            }));
   read(*render, GRADUS_PASS_COMBINED, region_of(settings));
   is_watched = true;
   render->wait(-1.0);
@@ -244,11 +251,12 @@ TEST(Preview, TakesNothingFromTheTimeLimit) {
 }
 
 TEST(Preview, ACancelEndsTheQuarter) {
-  const GradusSettings settings = settings_of(256, 256, kForever, GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED);
+  const GradusSettings settings =
+      settings_of(256, 256, kForever, GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED);
   std::atomic<int> tiles{0};
   const auto render = start(settings, fake_factory([&](FakeIntegrator* fake) {
                               const bool is_slow = is_quarter(*fake, settings);
-                              fake->before = [&tiles, is_slow](const WorkUnit&) {
+                              fake->before = [&tiles, is_slow](const integrator::WorkUnit&) {
                                 tiles += is_slow ? 1 : 0;
                                 std::this_thread::sleep_for(std::chrono::milliseconds(is_slow ? 50 : 1));
                               };
@@ -261,19 +269,21 @@ TEST(Preview, ACancelEndsTheQuarter) {
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(250));
   EXPECT_EQ(render->outcome(nullptr), GRADUS_ERROR_CANCELLED);
   EXPECT_LT(tiles, 10);  // of 16
-  EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, region_of(settings)), read(*render, GRADUS_PASS_NOISY_IMAGE, region_of(settings)));
+  EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, region_of(settings)),
+            read(*render, GRADUS_PASS_NOISY_IMAGE, region_of(settings)));
 }
 
 // It left raw noise, and holes where no sample had been taken, in place of the picture that was on the screen.
 TEST(Preview, ACancelBeforeTheFirstFullPictureLeavesTheQuarter) {
-  const GradusSettings settings = settings_of(256, 192, kForever, GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED);
+  const GradusSettings settings =
+      settings_of(256, 192, kForever, GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED);
   const Region all = region_of(settings);
   std::atomic<bool> is_watched{false}, released{false};
   std::atomic<int> tiles{0};
   const auto render = start(settings, fake_factory([&](FakeIntegrator* fake) {
                               while (!is_watched) std::this_thread::yield();  // before sampling begins
                               if (is_quarter(*fake, settings)) return;
-                              fake->before = [&](const WorkUnit&) {
+                              fake->before = [&](const integrator::WorkUnit&) {
                                 if (tiles++ < 4) return;
                                 while (!released) std::this_thread::sleep_for(std::chrono::milliseconds(1));
                               };
@@ -286,7 +296,8 @@ TEST(Preview, ACancelBeforeTheFirstFullPictureLeavesTheQuarter) {
   released = true;
   ASSERT_TRUE(render->wait(10.0));
   EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, all), seen);
-  const std::vector<float> noisy = read(*render, GRADUS_PASS_NOISY_IMAGE, all), error = read(*render, GRADUS_PASS_ERROR, all);
+  const std::vector<float> noisy = read(*render, GRADUS_PASS_NOISY_IMAGE, all),
+                           error = read(*render, GRADUS_PASS_ERROR, all);
   int holes = 0;
   double estimated = 0.0;
   for (size_t i = 0; i < error.size(); ++i) {
@@ -309,7 +320,8 @@ TEST(Preview, ACancelLeavesTheReconstructionThatWasSeen) {
   wait_for([&] { return render->progress().samples_done >= 8; });
   render->cancel();
   ASSERT_TRUE(render->wait(10.0));
-  const std::vector<float> combined = read(*render, GRADUS_PASS_COMBINED, all), noisy = read(*render, GRADUS_PASS_NOISY_IMAGE, all);
+  const std::vector<float> combined = read(*render, GRADUS_PASS_COMBINED, all),
+                           noisy = read(*render, GRADUS_PASS_NOISY_IMAGE, all);
   double left = 0.0, of_noisy = 0.0, estimated = 0.0;
   const std::vector<float> error = read(*render, GRADUS_PASS_ERROR, all);
   for (int32_t y = 0; y < 64; ++y) {
@@ -332,7 +344,8 @@ TEST(Preview, ACancelOfTheReconstructionLeavesTheSamples) {
   render->cancel();
   ASSERT_TRUE(render->wait(10.0));
   ASSERT_EQ(render->outcome(nullptr), GRADUS_ERROR_CANCELLED) << "the reconstruction was too fast";
-  EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, region_of(settings)), read(*render, GRADUS_PASS_NOISY_IMAGE, region_of(settings)));
+  EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, region_of(settings)),
+            read(*render, GRADUS_PASS_NOISY_IMAGE, region_of(settings)));
 }
 
 // The network takes too long to be run again and again; but there are features.
@@ -342,7 +355,8 @@ TEST(Preview, WhatIsToBeDenoisedIsReconstructedByItsFeatures) {
   with_denoiser.denoiser_path = GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
   GradusSettings settings = settings_of(96, 64, kForever, GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_NONE);
   settings.denoiser = GRADUS_DENOISER_OIDN;
-  Render render(std::make_shared<Device>(with_denoiser), empty_snapshot(), settings, nullptr, slow_factory());
+  render::Render render(std::make_shared<scene::Device>(with_denoiser), empty_snapshot(), settings, nullptr,
+                        slow_factory());
   const Region all = region_of(settings);
   read(render, GRADUS_PASS_COMBINED, all);
   wait_for([&] { return render.progress().samples_done >= 8; });
@@ -354,7 +368,8 @@ TEST(Preview, WhatIsToBeDenoisedIsReconstructedByItsFeatures) {
 }
 
 TEST(Preview, ManyCancelsOfWatchedRendersLeaveNothingBehind) {
-  const GradusSettings settings = settings_of(64, 48, kForever, GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_REGULARIZED);
+  const GradusSettings settings =
+      settings_of(64, 48, kForever, GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_REGULARIZED);
   for (int i = 0; i < 100; ++i) {
     const auto render = start(settings, slow_factory(std::chrono::microseconds(100)));
     std::atomic<bool> over{false};
@@ -385,18 +400,19 @@ class WatchedScene : public ::testing::Test {
   }
 
   std::vector<float> converged(const Region& region) const {
-    Render render(test_device(), snapshot_, settings);
+    render::Render render(test_device(), snapshot_, settings);
     render.wait(-1.0);
     return read(render, GRADUS_PASS_COMBINED, region);
   }
 
   // Waits before a sample of the frame, number `at`, until let go.
-  struct Held final : Integrator {
-    std::unique_ptr<Integrator> inner;
+  struct Held final : integrator::Integrator {
+    std::unique_ptr<integrator::Integrator> inner;
     uint32_t at = 0;
     std::atomic<int>* holds = nullptr;
     const std::atomic<bool>* released = nullptr;
-    void sample(const WorkUnit& unit, Film* film, Counters* counters, const std::atomic<bool>& stop) const override {
+    void sample(const integrator::WorkUnit& unit, film::Film* film, film::Counters* counters,
+                const std::atomic<bool>& stop) const override {
       if (unit.first_sample >= at) {
         ++*holds;
         while (!*released && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -406,21 +422,22 @@ class WatchedScene : public ::testing::Test {
   };
 
   // Combined and Noisy Image when sample `at` is about to be taken.
-  std::pair<std::vector<float>, std::vector<float>> seen(GradusSettings watched, uint32_t at, const Region& region) const {
+  std::pair<std::vector<float>, std::vector<float>> seen(GradusSettings watched, uint32_t at,
+                                                         const Region& region) const {
     watched.samples = kForever;
     watched.integrator = GRADUS_INTEGRATOR_AUTO;
     watched.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
     std::atomic<int> holds{0};
     std::atomic<bool> released{false};
-    const auto factory = [&](const IntegratorContext& context, uint32_t integrator) {
+    const auto factory = [&](const integrator::IntegratorContext& context, uint32_t integrator) {
       auto held = std::make_unique<Held>();
-      held->inner = make_integrator(context, integrator);
+      held->inner = render::make_integrator(context, integrator);
       held->at = at;
       held->holds = &holds;
       held->released = &released;
       return held;
     };
-    Render render(test_device(), snapshot_, watched, nullptr, factory);
+    render::Render render(test_device(), snapshot_, watched, nullptr, factory);
     read(render, GRADUS_PASS_COMBINED, region);
     wait_for([&] { return holds > 0; });
     std::pair<std::vector<float>, std::vector<float>> images{read(render, GRADUS_PASS_COMBINED, region),
@@ -440,25 +457,26 @@ class WatchedScene : public ::testing::Test {
 
  private:
   PathScene scene_;
-  std::shared_ptr<const Snapshot> snapshot_;
+  std::shared_ptr<const scene::Snapshot> snapshot_;
 };
 
 // The best that a quarter of the size can show.
 std::vector<float> coarse(const std::vector<float>& image, const GradusSettings& settings, const Region& region) {
-  const ImageSize full{settings.width, settings.height}, small{full.width / 4, full.height / 4};
+  const output::ImageSize full{settings.width, settings.height}, small{full.width / 4, full.height / 4};
   std::vector<float> means(4 * size_t{small.width} * small.height);
   for (size_t y = 0; y < full.height; ++y) {
     for (size_t x = 0; x < full.width; ++x) {
-      for (size_t c = 0; c < 4; ++c) means[4 * (y / 4 * small.width + x / 4) + c] += image[4 * (y * full.width + x) + c] / 16.0f;
+      for (size_t c = 0; c < 4; ++c)
+        means[4 * (y / 4 * small.width + x / 4) + c] += image[4 * (y * full.width + x) + c] / 16.0f;
     }
   }
-  const Region part = covering(region, full, small);
+  const Region part = output::covering(region, full, small);
   std::vector<float> rows;
   for (int32_t y = part.y0; y < part.y1; ++y) {
     const auto row = means.begin() + 4 * (ptrdiff_t(y) * small.width + part.x0);
     rows.insert(rows.end(), row, row + 4 * part.width());
   }
-  return enlarge(rows, 4, region, full, small);
+  return output::enlarge(rows, 4, region, full, small);
 }
 
 TEST_F(WatchedScene, TheFirstPictureIsWhatAQuarterOfTheSizeCanShow) {
@@ -484,7 +502,9 @@ TEST_F(WatchedScene, ARegionsFirstPictureLiesWhereItBelongs) {
   const double here = error(combined, coarse(truth, settings, part));
   std::printf("  error %.5f\n", here);
   for (const auto& [x, y] : {std::pair{4, 0}, {-4, 0}, {0, 4}, {0, -4}}) {
-    EXPECT_LT(here, 0.7 * error(combined, coarse(truth, settings, {part.x0 + x, part.y0 + y, part.x1 + x, part.y1 + y}))) << x << " " << y;
+    EXPECT_LT(here,
+              0.7 * error(combined, coarse(truth, settings, {part.x0 + x, part.y0 + y, part.x1 + x, part.y1 + y})))
+        << x << " " << y;
   }
 }
 

@@ -12,44 +12,45 @@ namespace {
 constexpr int64_t kPixels = 256;
 
 // Cells of the same number of samples.
-std::vector<BlockShare> blocks_with(const std::vector<double>& spreads, uint32_t taken) {
-  std::vector<BlockShare> blocks;
+std::vector<render::BlockShare> blocks_with(const std::vector<double>& spreads, uint32_t taken) {
+  std::vector<render::BlockShare> blocks;
   for (const double spread : spreads) blocks.push_back({kPixels, taken, spread, true});
   return blocks;
 }
 
-double given(const std::vector<BlockShare>& blocks, const std::vector<uint32_t>& counts) {
+double given(const std::vector<render::BlockShare>& blocks, const std::vector<uint32_t>& counts) {
   double sum = 0.0;
   for (size_t i = 0; i < blocks.size(); ++i) sum += double(blocks[i].pixels) * counts[i];
   return sum;
 }
 
 TEST(SampleShares, EqualNoiseSharesEqually) {
-  EXPECT_EQ(allocate_samples(blocks_with({0.3, 0.3, 0.3}, 16), 16), (std::vector<uint32_t>{16, 16, 16}));
-  EXPECT_EQ(allocate_samples(blocks_with({0.0, 0.0}, 16), 16), (std::vector<uint32_t>{16, 16}));
-  EXPECT_EQ(allocate_samples(blocks_with({0.3, 0.3}, 0), 1), (std::vector<uint32_t>{1, 1}));
+  EXPECT_EQ(render::allocate_samples(blocks_with({0.3, 0.3, 0.3}, 16), 16), (std::vector<uint32_t>{16, 16, 16}));
+  EXPECT_EQ(render::allocate_samples(blocks_with({0.0, 0.0}, 16), 16), (std::vector<uint32_t>{16, 16}));
+  EXPECT_EQ(render::allocate_samples(blocks_with({0.3, 0.3}, 0), 1), (std::vector<uint32_t>{1, 1}));
 }
 
 TEST(SampleShares, AllSamplesTogetherAreInProportionToTheNoise) {
-  const auto counts = allocate_samples(blocks_with({1.0, 2.0, 1.5, 1.5}, 16), 32);
+  const auto counts = render::allocate_samples(blocks_with({1.0, 2.0, 1.5, 1.5}, 16), 32);
   EXPECT_EQ(counts, (std::vector<uint32_t>{16, 48, 32, 32}));
 }
 
 TEST(SampleShares, WhoHasMoreThanItsShareTakesTheLeast) {
   auto blocks = blocks_with({1.0, 1.0}, 16);
   blocks[0].taken = 100;
-  const auto counts = allocate_samples(blocks, 16);
+  const auto counts = render::allocate_samples(blocks, 16);
   EXPECT_EQ(counts[0], 2u);
   EXPECT_EQ(counts[1], 30u);
 }
 
 TEST(SampleShares, ABatchHasItsMeanAndItsCountsAreEven) {
   for (const uint32_t mean : {4u, 7u, 16u}) {
-    std::vector<BlockShare> blocks;
+    std::vector<render::BlockShare> blocks;
     for (int i = 0; i < 200; ++i)
-      blocks.push_back({i % 10 == 9 ? 48 : kPixels, uint32_t(16 + 2 * (i % 5)), std::exp(0.03 * (i * 37 % 100)), i % 7 != 3});
+      blocks.push_back(
+          {i % 10 == 9 ? 48 : kPixels, uint32_t(16 + 2 * (i % 5)), std::exp(0.03 * (i * 37 % 100)), i % 7 != 3});
     double pixels = 0.0;
-    const auto counts = allocate_samples(blocks, mean);
+    const auto counts = render::allocate_samples(blocks, mean);
     for (size_t i = 0; i < blocks.size(); ++i) {
       if (!blocks[i].continues) {
         EXPECT_EQ(counts[i], 0u);
@@ -67,20 +68,21 @@ TEST(SampleShares, NoCellStarvesAndNoneTakesAll) {
   std::vector<double> spreads(100, 1.0);
   spreads[0] = 1e3;
   spreads[1] = 0.0;
-  const auto counts = allocate_samples(blocks_with(spreads, 32), 32);
-  EXPECT_EQ(32 + counts[0], uint32_t(kMaxShare * 64));
+  const auto counts = render::allocate_samples(blocks_with(spreads, 32), 32);
+  EXPECT_EQ(32 + counts[0], uint32_t(render::kMaxShare * 64));
   EXPECT_EQ(counts[1], 2u);  // it has half of the mean already
 }
 
 TEST(SampleShares, WhatIsNotFiniteCountsAsTheLargest) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(allocate_samples(blocks_with({1.0, nan, 2.0, infinity}, 16), 16), allocate_samples(blocks_with({1.0, 2.0, 2.0, 2.0}, 16), 16));
+  EXPECT_EQ(render::allocate_samples(blocks_with({1.0, nan, 2.0, infinity}, 16), 16),
+            render::allocate_samples(blocks_with({1.0, 2.0, 2.0, 2.0}, 16), 16));
 }
 
 TEST(SampleShares, TheErrorIsBelowThatOfEqualShares) {
   std::vector<double> spreads;
   for (int i = 0; i < 64; ++i) spreads.push_back(std::exp(0.02 * i));
-  const auto counts = allocate_samples(blocks_with(spreads, 16), 48);
+  const auto counts = render::allocate_samples(blocks_with(spreads, 16), 48);
   double shared = 0.0, equal = 0.0, minimum = 0.0;
   for (size_t i = 0; i < spreads.size(); ++i) {
     shared += spreads[i] * spreads[i] / (16.0 + counts[i]);

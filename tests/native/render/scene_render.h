@@ -11,11 +11,11 @@
 
 namespace gradus::test {
 
-inline std::unique_ptr<Render> started(PathScene* scene, const GradusSettings& settings) {
-  return std::make_unique<Render>(test_device(), scene->context(settings).snapshot, settings);
+inline std::unique_ptr<render::Render> started(PathScene* scene, const GradusSettings& settings) {
+  return std::make_unique<render::Render>(test_device(), scene->context(settings).snapshot, settings);
 }
 
-inline std::unique_ptr<Render> rendered(PathScene* scene, const GradusSettings& settings) {
+inline std::unique_ptr<render::Render> rendered(PathScene* scene, const GradusSettings& settings) {
   auto render = started(scene, settings);
   render->wait(-1.0);
   std::string text;
@@ -23,7 +23,7 @@ inline std::unique_ptr<Render> rendered(PathScene* scene, const GradusSettings& 
   return render;
 }
 
-inline std::unique_ptr<Render> rendered(Scenario scenario, const GradusSettings& settings) {
+inline std::unique_ptr<render::Render> rendered(Scenario scenario, const GradusSettings& settings) {
   PathScene scene;
   build(scenario, &scene);
   return rendered(&scene, settings);

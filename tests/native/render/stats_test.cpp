@@ -10,13 +10,14 @@
 namespace gradus::test {
 namespace {
 
-nlohmann::json warnings_of(const RenderStats& stats) {
-  return nlohmann::json::parse(stats_json(stats, Plan{}, make_test_film(test_settings(4, 4), true)))["warnings"];
+nlohmann::json warnings_of(const render::RenderStats& stats) {
+  return nlohmann::json::parse(
+      render::stats_json(stats, render::Plan{}, make_test_film(test_settings(4, 4), true)))["warnings"];
 }
 
 // Of stills alone it was a warning: frames of animations that are reconstructed together were delivered without a word.
 TEST(Stats, ASolverThatStoppedAtItsLimitIsAWarning) {
-  RenderStats stats;
+  render::RenderStats stats;
   stats.warnings = {"another"};
   EXPECT_EQ(warnings_of(stats), nlohmann::json({"another"}));
   stats.solve.hit_cap = true;

@@ -35,7 +35,7 @@ void build_room(test::PathScene* scene) {
 }
 
 TEST(L6_Whole, APictureWithAllPassesIsFinite) {
-  GradusSettings settings = default_settings();
+  GradusSettings settings = schema::default_settings();
   settings.width = kWidth;
   settings.height = kHeight;
   settings.samples = 2;
@@ -47,20 +47,20 @@ TEST(L6_Whole, APictureWithAllPassesIsFinite) {
   settings.reconstruction = GRADUS_RECONSTRUCTION_L1;
   test::PathScene scene;
   build_room(&scene);
-  Render render(test::test_device(), scene.context(settings).snapshot, settings);
+  render::Render render(test::test_device(), scene.context(settings).snapshot, settings);
   ASSERT_TRUE(render.wait(-1.0));
   std::string text;
   ASSERT_EQ(render.outcome(&text), GRADUS_OK) << text;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
-    std::vector<float> pixels(size_t(kWidth) * kHeight * pass_info(pass).channels);
+    std::vector<float> pixels(size_t(kWidth) * kHeight * schema::pass_info(pass).channels);
     render.read_pass(pass, pixels.data(), pixels.size());
     double sum = 0.0;
     for (const float value : pixels) {
-      ASSERT_TRUE(std::isfinite(value)) << pass_info(pass).name;
+      ASSERT_TRUE(std::isfinite(value)) << schema::pass_info(pass).name;
       sum += std::fabs(value);
     }
     if (pass == GRADUS_PASS_COMBINED || pass == GRADUS_PASS_GRADIENT_X) {
-      EXPECT_GT(sum, 0.01 * double(pixels.size())) << pass_info(pass).name;
+      EXPECT_GT(sum, 0.01 * double(pixels.size())) << schema::pass_info(pass).name;
     }
   }
 }

@@ -8,9 +8,9 @@
 #include "base/error.h"
 #include "base/fpu.h"
 #include "geometry/accelerator.h"
-#include "light/light_table.h"
 #include "geometry/mesh.h"
 #include "geometry/plane.h"
+#include "light/light_table.h"
 #include "scene_fixture.h"
 
 namespace gradus::test {
@@ -25,8 +25,8 @@ float random_bits(std::mt19937& random) {
   return f;
 }
 
-bool is_finite_hit(const Snapshot& snapshot, const Hit& hit) {
-  const SurfacePoint p = snapshot.surface_point(hit);
+bool is_finite_hit(const scene::Snapshot& snapshot, const geometry::Hit& hit) {
+  const geometry::SurfacePoint p = snapshot.surface_point(hit);
   return is_finite(p.position) && is_finite(p.geometric_normal) && is_finite(p.shading_normal) && is_finite(p.error);
 }
 
@@ -66,7 +66,7 @@ TEST(D3_Garbage, ThousandMeshesOfRandomBits) {
     scene.instance(1, matrix);
     const auto snapshot = scene.commit();
     for (int k = 0; k < 50; ++k) {
-      Hit hit;
+      geometry::Hit hit;
       if (snapshot->intersect({Vec3(0.0f), 0.0f, random_direction(random), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit)) {
         EXPECT_TRUE(is_finite_hit(*snapshot, hit));
       }
@@ -80,7 +80,8 @@ TEST(D3_Garbage, ThousandMeshesOfRandomBits) {
 // Render threads flush denormals.
 TEST(D7_Degenerate, TrianglesWhoseSquaredEdgesAreFlushedHaveAnError) {
   const FlushDenormals flush;
-  const Plane plane = plane_of({Vec3(6e-22f, 6e-26f, 0.0f), Vec3(0.0f, 2e-29f, 0.0f), Vec3(0.0f, 0.0f, 9e-15f)});
+  const geometry::Plane plane =
+      geometry::plane_of({Vec3(6e-22f, 6e-26f, 0.0f), Vec3(0.0f, 2e-29f, 0.0f), Vec3(0.0f, 0.0f, 9e-15f)});
   EXPECT_TRUE(is_finite(plane.error));
   EXPECT_GT(plane.normal.y, 0.99f);
 }
@@ -99,7 +100,7 @@ TEST(D7_Degenerate, OnlyWholeTrianglesAreHit) {
   scene.instance(1);
   const auto snapshot = scene.commit();
   EXPECT_EQ(snapshot->instances[0].mesh->dropped_triangles, 3u);
-  Hit hit;
+  geometry::Hit hit;
   ASSERT_TRUE(snapshot->intersect({Vec3(0.0f), 0.0f, Vec3(0, 0, 1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
   EXPECT_EQ(hit.triangle, 0u);
   std::mt19937 random(22);
@@ -116,7 +117,7 @@ TEST(D7_Degenerate, CoincidentTriangles) {
   TestScene scene;
   scene.mesh(1, soup);
   scene.instance(1);
-  Hit hit;
+  geometry::Hit hit;
   const auto snapshot = scene.commit();
   ASSERT_TRUE(snapshot->intersect({Vec3(0.0f), 0.0f, Vec3(0, 0, 1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
   EXPECT_TRUE(is_finite_hit(*snapshot, hit));
@@ -141,9 +142,9 @@ TEST(D8_Instances, HundredThousandAreAllThere) {
   const auto snapshot = scene.commit();
   ASSERT_EQ(snapshot->instances.size(), 100000u);
   for (uint32_t i = 0; i < 100000; i += 37) {
-    Hit hit;
-    ASSERT_TRUE(
-        snapshot->intersect({Vec3(float(i % 400), float(i / 400), 3), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
+    geometry::Hit hit;
+    ASSERT_TRUE(snapshot->intersect({Vec3(float(i % 400), float(i / 400), 3), 0.0f, Vec3(0, 0, -1), kInfinity},
+                                    GRADUS_VISIBLE_CAMERA, &hit));
     EXPECT_EQ(hit.instance, i);
     EXPECT_GT(snapshot->surface_point(hit).geometric_normal.z, 0.5f);
   }
@@ -163,7 +164,8 @@ TEST(BadMatrix, OneWarningNamesTheFirstAndCounts) {
   const auto snapshot = scene.commit();
   EXPECT_EQ(snapshot->instances.size(), 2u);
   ASSERT_EQ(snapshot->warnings.size(), 2u);
-  EXPECT_EQ(snapshot->warnings[0], "3 objects were left out, the first is 'number 1': its matrix is singular or not finite");
+  EXPECT_EQ(snapshot->warnings[0],
+            "3 objects were left out, the first is 'number 1': its matrix is singular or not finite");
 }
 
 // Triangles without a place vanished, and whole objects of them, and nobody was told.
@@ -207,7 +209,7 @@ TEST(BadMesh, ContradictingArraysAreRefusedByName) {
     MeshDesc mesh(sphere(Vec3(0.0f), 1.0f, 4, 8));
     change(mesh.desc);
     try {
-      make_mesh(mesh.desc);
+      geometry::make_mesh(mesh.desc);
     } catch (const Error& error) {
       return error.code() == GRADUS_ERROR_INVALID_ARGUMENT ? error.what() : "";
     }
@@ -221,7 +223,8 @@ TEST(BadMesh, ContradictingArraysAreRefusedByName) {
   EXPECT_NE(refusal([](GradusMesh& m) { m.key_count = 0; }), "");
   EXPECT_NE(refusal([](GradusMesh& m) { m.triangle_count = size_t(1) << 60; }), "");
   EXPECT_NE(refusal([](GradusMesh& m) { m.normal_domain = 9; }), "");
-  EXPECT_NE(refusal([&](GradusMesh& m) { m.corner_vertices = negative, m.corner_count = 3, m.triangle_count = 1; }), "");
+  EXPECT_NE(refusal([&](GradusMesh& m) { m.corner_vertices = negative, m.corner_count = 3, m.triangle_count = 1; }),
+            "");
   EXPECT_NE(refusal([&](GradusMesh& m) { m.key_count = 2, m.vertex_count /= 2, m.key_times = descending; }), "");
   EXPECT_EQ(refusal([](GradusMesh&) {}), "");
 }
@@ -244,7 +247,7 @@ TEST(Commit, UnchangedGeometryIsShared) {
   EXPECT_NE(third->accelerator, first->accelerator);
   EXPECT_NE(third->content_key, first->content_key);
   EXPECT_EQ(third->accelerator->static_part.group->mesh_scenes, first->accelerator->static_part.group->mesh_scenes);
-  Hit hit;
+  geometry::Hit hit;
   EXPECT_TRUE(second->intersect({Vec3(0, 0, 5), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
 }
 

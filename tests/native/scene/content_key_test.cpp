@@ -10,7 +10,7 @@
 namespace gradus::test {
 namespace {
 
-void set_image_file(uint64_t key, const std::string& path, Scene* scene) {
+void set_image_file(uint64_t key, const std::string& path, scene::Scene* scene) {
   GradusImageTile tile{};
   tile.path = path.c_str();
   GradusImage desc{};
@@ -51,9 +51,11 @@ uint64_t key_of(const Names& names) {
   return scene.commit()->content_key;
 }
 
-// Keys count up by first appearance: a job that goes on at a later frame has other ones than the job that began at the first, and its
-// frames were refused as those of another scene.
-TEST(C7_ContentKey, ASessionWithOtherKeysHasTheSame) { EXPECT_EQ(key_of({1, 2, 3, 4, 5}), key_of({19, 7, 50, 40, 30})); }
+// Keys count up by first appearance: a job that goes on at a later frame has other ones than the job that began at the
+// first, and its frames were refused as those of another scene.
+TEST(C7_ContentKey, ASessionWithOtherKeysHasTheSame) {
+  EXPECT_EQ(key_of({1, 2, 3, 4, 5}), key_of({19, 7, 50, 40, 30}));
+}
 
 TEST(C7_ContentKey, AnExchangeOfMeshesOrMaterialsShows) {
   const uint64_t key = key_of({1, 2, 3, 4, 5});

@@ -14,7 +14,7 @@ TEST(Device, TasksFlushDenormalsAndTheCallerKeepsItsState) {
   GradusDeviceSettings settings{};
   settings.struct_size = sizeof(settings);
   settings.threads = 2;
-  Device device(settings);
+  scene::Device device(settings);
   ASSERT_FALSE(FlushDenormals::active());
   std::atomic<int> without{0};
   device.arena().execute([&] {

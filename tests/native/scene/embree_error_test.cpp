@@ -5,8 +5,8 @@
 #include <atomic>
 #include <thread>
 
-#include "scene/device.h"
 #include "base/error.h"
+#include "scene/device.h"
 #include "scene/scene_fixture.h"
 
 namespace gradus {
@@ -50,8 +50,9 @@ TEST(G5_Memory, WhatEmbreeIsRefusedOnAWorkerReachesTheCaller) {
   test.mesh(1, sphere(Vec3(0.0f), 1.0f, 200, 400));
   test.instance(1);
   int elsewhere = 0;  // which thread asks for memory at the limit is chance
-  for (int round = 0; round < 50 && elsewhere == 0; ++round) elsewhere = commit_with_limits(&test, test_device()->embree().get());
-  Hit hit;
+  for (int round = 0; round < 50 && elsewhere == 0; ++round)
+    elsewhere = commit_with_limits(&test, test_device()->embree().get());
+  geometry::Hit hit;
   EXPECT_TRUE(test.commit()->intersect({Vec3(0, 0, 5), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
   if (elsewhere == 0) GTEST_SKIP() << "no worker took part";
 }

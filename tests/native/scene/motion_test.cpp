@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "path/segment.h"
 #include "geometry/matrix_keys.h"
 #include "geometry/mesh.h"
 #include "geometry/rays4.h"
+#include "path/segment.h"
 #include "scene_fixture.h"
 #include "support/refusal.h"
 
@@ -15,7 +15,7 @@ namespace {
 Mat4 turn(float angle, const Vec3& axis) { return glm::rotate(Mat4(1.0f), angle, axis); }
 
 // A sphere that flies, turns and grows, a sphere that deforms and flies, and one at rest.
-std::shared_ptr<const Snapshot> moving_spheres() {
+std::shared_ptr<const scene::Snapshot> moving_spheres() {
   TestScene scene;
   const Soup ball = sphere(Vec3(0.0f), 1.0f, 20, 40);
   scene.mesh(1, ball);
@@ -54,11 +54,11 @@ TEST(Motion, HitsLieOnTheRayAtItsTime) {
   int met[3] = {};
   for (int i = 0; i < 30000; ++i) {
     const Ray ray = random_ray(random);
-    Hit hit;
+    geometry::Hit hit;
     if (!snapshot->intersect(ray, GRADUS_VISIBLE_CAMERA, &hit)) continue;
     ++met[hit.instance];
     ASSERT_EQ(hit.time, ray.time);
-    const SurfacePoint point = snapshot->surface_point(hit);
+    const geometry::SurfacePoint point = snapshot->surface_point(hit);
     const Vec3 along = ray.origin + ray.direction * hit.t;
     ASSERT_LT(glm::length(point.position - along), 2e-4f) << hit.instance << ' ' << ray.time;
     const auto p = snapshot->corners(hit.instance, hit.triangle, ray.time);
@@ -74,15 +74,16 @@ TEST(Motion, RaysThatLeaveDoNotMeetTheirSurfaceAgain) {
   std::mt19937 random(4);
   int tried = 0;
   for (int i = 0; i < 60000; ++i) {
-    Hit hit;
+    geometry::Hit hit;
     if (!snapshot->intersect(random_ray(random), GRADUS_VISIBLE_CAMERA, &hit)) continue;
-    const SurfacePoint point = snapshot->surface_point(hit);
+    const geometry::SurfacePoint point = snapshot->surface_point(hit);
     Vec3 direction = random_direction(random);
     if (glm::dot(direction, point.geometric_normal) < 0.0f) direction = -direction;
-    Hit again;
+    geometry::Hit again;
     ++tried;
-    const bool met = snapshot->intersect(spawn_ray(point, direction), GRADUS_VISIBLE_CAMERA, &again);
-    ASSERT_FALSE(met && again.instance == hit.instance && again.t < 1e-3f) << hit.instance << " at " << hit.time << ": " << again.t;
+    const bool met = snapshot->intersect(path::spawn_ray(point, direction), GRADUS_VISIBLE_CAMERA, &again);
+    ASSERT_FALSE(met && again.instance == hit.instance && again.t < 1e-3f)
+        << hit.instance << " at " << hit.time << ": " << again.t;
   }
   EXPECT_GT(tried, 20000);
 }
@@ -91,13 +92,13 @@ TEST(Motion, RaysFromASurfaceAreAtItsTime) {
   const auto snapshot = moving_spheres();
   std::mt19937 random(6);
   for (int i = 0; i < 100; ++i) {
-    Hit hit, other;
+    geometry::Hit hit, other;
     if (!snapshot->intersect(random_ray(random), GRADUS_VISIBLE_CAMERA, &hit)) continue;
     if (!snapshot->intersect(random_ray(random), GRADUS_VISIBLE_CAMERA, &other)) continue;
     other.time = hit.time;
-    const SurfacePoint from = snapshot->surface_point(hit), to = snapshot->surface_point(other);
-    EXPECT_EQ(spawn_ray(from, random_direction(random)).time, hit.time);
-    EXPECT_EQ(spawn_ray_to(from, to).time, hit.time);
+    const geometry::SurfacePoint from = snapshot->surface_point(hit), to = snapshot->surface_point(other);
+    EXPECT_EQ(path::spawn_ray(from, random_direction(random)).time, hit.time);
+    EXPECT_EQ(path::spawn_ray_to(from, to).time, hit.time);
   }
 }
 
@@ -106,11 +107,11 @@ TEST(Motion, PacketsHaveTheTimesOfTheirRays) {
   std::mt19937 random(5);
   for (int i = 0; i < 5000; ++i) {
     Ray rays[4];
-    Hit four[4];
+    geometry::Hit four[4];
     for (Ray& ray : rays) ray = random_ray(random);
     snapshot->intersect4(rays, GRADUS_VISIBLE_CAMERA, four);
     for (int k = 0; k < 4; ++k) {
-      Hit one;
+      geometry::Hit one;
       snapshot->intersect(rays[k], GRADUS_VISIBLE_CAMERA, &one);
       ASSERT_EQ(one.instance, four[k].instance);
       if (one.valid()) {
@@ -141,9 +142,9 @@ TEST(Motion, NormalsTurnWithADeformation) {
     ray.direction = random_direction(random);
     ray.origin = -5.0f * ray.direction;
     ray.time = 1.0f;
-    Hit hit;
+    geometry::Hit hit;
     ASSERT_TRUE(snapshot->intersect(ray, GRADUS_VISIBLE_CAMERA, &hit));
-    const SurfacePoint point = snapshot->surface_point(hit);
+    const geometry::SurfacePoint point = snapshot->surface_point(hit);
     const Vec3 expected = glm::normalize(point.position / (stretch * stretch));
     EXPECT_GT(glm::dot(point.shading_normal, expected), 0.998f);
   }
@@ -152,14 +153,14 @@ TEST(Motion, NormalsTurnWithADeformation) {
 TEST(Motion, RefusesMoreShutterKeysThanThereMayBe) {
   TestScene scene;
   MeshDesc mesh(sphere(Vec3(0.0f), 1.0f, 4, 8));
-  const std::vector<Vec3> positions(mesh.desc.vertex_count * (kMaxShutterKeys + 1), Vec3(1.0f));
+  const std::vector<Vec3> positions(mesh.desc.vertex_count * (geometry::kMaxShutterKeys + 1), Vec3(1.0f));
   mesh.desc.shutter_positions = &positions[0].x;
-  mesh.desc.shutter_key_count = kMaxShutterKeys + 1;
+  mesh.desc.shutter_key_count = geometry::kMaxShutterKeys + 1;
   const std::string too_many = ": 130 shutter keys, at most 129 are possible";
   EXPECT_EQ(refusal_of([&] { scene.scene.set_mesh(1, mesh.desc); }), "mesh 'mesh'" + too_many);
   mesh.desc.shutter_key_count = 0;
   scene.scene.set_mesh(1, mesh.desc);
-  scene.way.assign(kMaxShutterKeys + 1, Mat4(1.0f));
+  scene.way.assign(geometry::kMaxShutterKeys + 1, Mat4(1.0f));
   scene.instance(1);
   EXPECT_EQ(refusal_of([&] { scene.commit(); }), "instance 0" + too_many);
 }

@@ -24,13 +24,13 @@ class MovedSnapshot : public testing::Test {
     scene_.matrices_before = {Mat4(1.0f), translation(Vec3(0, 0.3f, 0)), scaling(Vec3(-1, 1, 1))};
     scene_.matrices_after = {Mat4(1.0f), glm::rotate(Mat4(1.0f), 0.3f, Vec3(0, 0, 1)), translation(Vec3(0, 0, 0.4f))};
   }
-  static void expect_equal(const Snapshot& a, const Snapshot& b) {
+  static void expect_equal(const scene::Snapshot& a, const scene::Snapshot& b) {
     std::mt19937 random(1);
     size_t hits = 0;
     for (int i = 0; i < 2000; ++i) {
       const Vec3 at = Vec3(2, 0, 0) + 6.0f * random_direction(random);
       const Ray ray{at, 0.0f, glm::normalize(Vec3(4.0f * float(i % 100) / 100.0f, 0, 0) - at)};
-      Hit x, y;
+      geometry::Hit x, y;
       ASSERT_EQ(a.intersect(ray, GRADUS_VISIBLE_CAMERA, &x), b.intersect(ray, GRADUS_VISIBLE_CAMERA, &y));
       if (!x.valid()) continue;
       ++hits;
@@ -52,16 +52,16 @@ TEST_F(MovedSnapshot, ObjectsAreWhereTheirMatricesSay) {
   scene_.matrices_after.clear();
   for (const size_t k : {0, 1}) {
     for (size_t i = 0; i < 3; ++i) scene_.move(i, matrices[k][i]);
-    expect_equal(*moved_snapshot(*now, moments[k]), *scene_.commit());
+    expect_equal(*scene::moved_snapshot(*now, moments[k]), *scene_.commit());
   }
 }
 
 // Surface points of one are found in the other where the vectors say.
 TEST_F(MovedSnapshot, SurfacePointsAreWhereVectorsSay) {
   const auto now = scene_.commit();
-  const auto next = moved_snapshot(*now, Moment::Next);
+  const auto next = scene::moved_snapshot(*now, Moment::Next);
   for (uint32_t instance = 0; instance < 3; ++instance) {
-    Hit hit;
+    geometry::Hit hit;
     hit.instance = instance, hit.triangle = 40, hit.barycentric = Vec2(0.3f, 0.2f);
     EXPECT_LT(glm::length(now->position_at(hit, Moment::Next) - next->surface_point(hit).position), 1e-5f);
   }
@@ -73,10 +73,10 @@ TEST_F(MovedSnapshot, GoesAPartOfTheWay) {
   scene_.matrices_after = {translation(Vec3(1, 0, 0)), translation(Vec3(0, 2, 0)), translation(Vec3(0, 0, 4))};
   for (size_t i = 0; i < 3; ++i) scene_.move(i, Mat4(1.0f));
   const auto now = scene_.commit();
-  const auto half = moved_snapshot(
+  const auto half = scene::moved_snapshot(
       *now, Moment::Next, [] { return false; }, 0.5f);
   for (uint32_t instance = 0; instance < 3; ++instance) {
-    Hit hit;
+    geometry::Hit hit;
     hit.instance = instance, hit.triangle = 40, hit.barycentric = Vec2(0.3f, 0.2f);
     const Vec3 middle = 0.5f * (now->position_at(hit, Moment::Now) + now->position_at(hit, Moment::Next));
     EXPECT_LT(glm::length(middle - half->surface_point(hit).position), 1e-5f);
@@ -88,7 +88,7 @@ TEST_F(MovedSnapshot, WhatRestsIsShared) {
   scene_.matrices_before.clear();
   scene_.matrices_after.clear();
   const auto now = scene_.commit();
-  EXPECT_EQ(moved_snapshot(*now, Moment::Next)->accelerator, now->accelerator);
+  EXPECT_EQ(scene::moved_snapshot(*now, Moment::Next)->accelerator, now->accelerator);
 }
 
 TEST_F(MovedSnapshot, MeshesHaveTheShapeOfTheirKeys) {
@@ -103,21 +103,21 @@ TEST_F(MovedSnapshot, MeshesHaveTheShapeOfTheirKeys) {
   mesh.desc.normal_domain = GRADUS_DOMAIN_POINT;
   scene_.scene.set_mesh(0, mesh.desc);
   const auto now = scene_.commit();
-  const auto next = moved_snapshot(*now, Moment::Next), previous = moved_snapshot(*now, Moment::Previous);
+  const auto next = scene::moved_snapshot(*now, Moment::Next), previous = scene::moved_snapshot(*now, Moment::Previous);
   MeshDesc grown(large);
   grown.desc.normal_domain = GRADUS_DOMAIN_POINT;
   scene_.scene.set_mesh(0, grown.desc);
   for (size_t i = 0; i < 3; ++i) scene_.move(i, scene_.matrices_after[i]);
   expect_equal(*next, *scene_.commit());
   const Ray ray{Vec3(0, 0, 5), 0.0f, Vec3(0, 0, -1)};
-  Hit hit;
+  geometry::Hit hit;
   ASSERT_TRUE(previous->intersect(ray, GRADUS_VISIBLE_CAMERA, &hit));
   EXPECT_NEAR(hit.t, 4.2f, 0.02f) << "before its first key a mesh keeps its shape";
 }
 
 TEST_F(MovedSnapshot, CanBeCancelled) {
   const auto now = scene_.commit();
-  EXPECT_ANY_THROW(moved_snapshot(*now, Moment::Next, [] { return true; }));
+  EXPECT_ANY_THROW(scene::moved_snapshot(*now, Moment::Next, [] { return true; }));
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ int mixed_with(ProgramBuilder* b, int surface, int layer) {
 TEST(RichMaterial, WhatDoesNotCompileIsGreyAndNamedOnce) {
   ProgramBuilder b;
   int surface = b.add(GRADUS_OP_DIFFUSE, {In(0.5f)});
-  for (int i = 0; i < 2000; i++) surface = mixed_with(&b, surface, b.add(GRADUS_OP_DIFFUSE, {In(0.001f * static_cast<float>(i))}));
+  for (int i = 0; i < 2000; i++)
+    surface = mixed_with(&b, surface, b.add(GRADUS_OP_DIFFUSE, {In(0.001f * static_cast<float>(i))}));
   GradusMaterial desc = b.desc(surface);
   desc.name = "Layered";
   desc.pass_index = 7;
@@ -27,7 +28,7 @@ TEST(RichMaterial, WhatDoesNotCompileIsGreyAndNamedOnce) {
     ASSERT_EQ(snapshot->warnings.size(), 1u);
     EXPECT_EQ(snapshot->warnings[0], "material 'Layered': too many closures; it is rendered grey");
     ASSERT_EQ(snapshot->materials.size(), 3u);
-    const MaterialData& grey = *snapshot->materials[1];
+    const shading::MaterialData& grey = *snapshot->materials[1];
     EXPECT_TRUE(grey.uses_fallback);
     EXPECT_TRUE(grey.has_bsdf);
     EXPECT_EQ(grey.name, "Layered");
@@ -42,7 +43,8 @@ TEST(RichMaterial, SeventyBumpsCompile) {
   int surface = b.add(GRADUS_OP_DIFFUSE, {In(0.5f)});
   for (int i = 0; i < 70; i++) {
     const int place = b.add(GRADUS_OP_TEX_COORD, {}, GRADUS_TEX_COORD_GENERATED);
-    const int height = b.add(GRADUS_OP_VECTOR_MATH, {In::from(place), In(0.1f * static_cast<float>(i))}, GRADUS_VECTOR_DOT_PRODUCT);
+    const int height =
+        b.add(GRADUS_OP_VECTOR_MATH, {In::from(place), In(0.1f * static_cast<float>(i))}, GRADUS_VECTOR_DOT_PRODUCT);
     const int bump = b.add(GRADUS_OP_BUMP, {In(1.0f), In(0.1f), In::from(height, 1), In(0.0f), In(0.1f)});
     surface = mixed_with(&b, surface, b.add(GRADUS_OP_DIFFUSE, {In(0.5f), In(0.0f), In::from(bump)}));
   }

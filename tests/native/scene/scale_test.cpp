@@ -20,7 +20,8 @@ GradusCamera look_down(const Mat4& to_world, float scale) {
   GradusCamera camera{};
   camera.struct_size = sizeof(camera);
   const Mat4 pose = to_world * translation(Vec3(0, 0, 6 * scale));
-  for (float* m : {camera.matrix, camera.matrix_previous, camera.matrix_next}) std::copy(&pose[0][0], &pose[0][0] + 16, m);
+  for (float* m : {camera.matrix, camera.matrix_previous, camera.matrix_next})
+    std::copy(&pose[0][0], &pose[0][0] + 16, m);
   for (float* w : {camera.window, camera.window_previous, camera.window_next}) {
     const float window[4] = {-0.4f, 0.4f, -0.4f, 0.4f};
     std::copy(window, window + 4, w);
@@ -45,23 +46,25 @@ std::vector<double> render(float scale, const Vec3& shift, bool instanced) {
   scene.lights({light});
   scene.scene.set_camera(look_down(place, scale));
   const auto snapshot = scene.commit();
-  const Camera camera(snapshot->camera, 64, 64);
+  const camera::Camera camera(snapshot->camera, 64, 64);
   gradus::testing::Random random(3);
   std::vector<double> blocks(64);
   for (int i = 0; i < 64 * 64 * 16; ++i) {
     const int x = i % 64, y = i / 64 % 64;
     const Vec2 jitter = random.get2(), u = random.get2();
     const float choice = random.get();
-    Hit hit;
+    geometry::Hit hit;
     if (!snapshot->intersect(camera.ray({Vec2(x, y) + jitter, Vec2(0.5f)}), GRADUS_VISIBLE_CAMERA, &hit)) continue;
-    const SurfacePoint point = snapshot->surface_point(hit);
-    const Receiver receiver{point.position, point.geometric_normal, false};
-    LightEvaluation view;
-    LightPoint light_point;
-    sample_light_point(*snapshot, receiver, choice, u, &light_point, &view);
+    const geometry::SurfacePoint point = snapshot->surface_point(hit);
+    const light::Receiver receiver{point.position, point.geometric_normal, false};
+    light::LightEvaluation view;
+    light::LightPoint light_point;
+    light::sample_light_point(*snapshot, receiver, choice, u, &light_point, &view);
     const float cosine = glm::dot(view.direction, receiver.normal);
-    if (light_point.kind == LightKind::None || cosine <= 0.0f || view.pdf <= 0.0f) continue;
-    if (snapshot->occluded(ray_to_light(offset_origin(point, view.direction), point, light_point, view))) continue;
+    if (light_point.kind == light::LightKind::None || cosine <= 0.0f || view.pdf <= 0.0f) continue;
+    if (snapshot->occluded(
+            light::ray_to_light(geometry::offset_origin(point, view.direction), point, light_point, view)))
+      continue;
     blocks[size_t(y / 8 * 8 + x / 8)] += double(view.radiance.x * cosine / view.pdf) / (64 * 16);
   }
   return blocks;
@@ -83,7 +86,8 @@ void expect_same(const std::vector<double>& a, const std::vector<double>& b, int
 TEST(D5_Scale, DirectLightIsTheSame) {
   for (const bool instanced : {false, true}) {
     const std::vector<double> reference = render(1.0f, Vec3(0.0f), instanced);
-    for (const float scale : {1e-4f, 1e-2f, 1e2f, 1e4f}) expect_same(reference, render(scale, Vec3(0.0f), instanced), 0);
+    for (const float scale : {1e-4f, 1e-2f, 1e2f, 1e4f})
+      expect_same(reference, render(scale, Vec3(0.0f), instanced), 0);
   }
 }
 

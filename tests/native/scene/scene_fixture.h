@@ -8,19 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "scene/device.h"
 #include "gradus/gradus_nodes.h"
+#include "scene/device.h"
 #include "scene/scene.h"
 #include "scene/snapshot.h"
 
 namespace gradus::test {
 
-inline std::shared_ptr<Device> test_device() {
+inline std::shared_ptr<scene::Device> test_device() {
   static const auto device = [] {
     GradusDeviceSettings settings{};
     settings.struct_size = sizeof(settings);
     settings.threads = 2;
-    return std::make_shared<Device>(settings);
+    return std::make_shared<scene::Device>(settings);
   }();
   return device;
 }
@@ -78,8 +78,8 @@ inline Mat4 scaling(const Vec3& s) {
 }
 
 // Its program lives as long as it.
-inline GradusMaterial material_of(const std::vector<GradusNode>& nodes, const std::vector<GradusInput>& inputs, int32_t surface,
-                                  const char* name) {
+inline GradusMaterial material_of(const std::vector<GradusNode>& nodes, const std::vector<GradusInput>& inputs,
+                                  int32_t surface, const char* name) {
   GradusMaterial d{};
   d.struct_size = sizeof(d);
   d.node_count = uint32_t(nodes.size());
@@ -153,7 +153,8 @@ class TestScene {
     w.map_size = map_size;
     scene.set_world(w);
   }
-  void instance(uint64_t mesh_key, const Mat4& matrix = Mat4(1.0f), uint32_t visibility = GRADUS_VISIBLE_ALL, uint64_t material = 0) {
+  void instance(uint64_t mesh_key, const Mat4& matrix = Mat4(1.0f), uint32_t visibility = GRADUS_VISIBLE_ALL,
+                uint64_t material = 0) {
     meshes_.push_back(mesh_key);
     matrices_.push_back(matrix);
     visibility_.push_back(visibility);
@@ -178,7 +179,7 @@ class TestScene {
     terminators_.pop_back();
     pass_indices_.pop_back();
   }
-  std::shared_ptr<const Snapshot> commit() {
+  std::shared_ptr<const scene::Snapshot> commit() {
     GradusInstances instances{};
     instances.struct_size = sizeof(instances);
     instances.count = meshes_.size();
@@ -202,7 +203,7 @@ class TestScene {
     return scene.snapshot();
   }
 
-  Scene scene;
+  scene::Scene scene;
   std::vector<Mat4> matrices_before;      // one frame earlier, of all instances; of another number: at rest
   std::vector<Mat4> matrices_after;       // one frame later, likewise
   float shadow_terminator_offset = 0.0f;  // of the instances that follow
@@ -226,7 +227,8 @@ inline Soup sphere(const Vec3& centre, float radius, int rings, int segments) {
     if (r == 0) return centre + Vec3(0, 0, radius);
     if (r == rings) return centre - Vec3(0, 0, radius);
     const double theta = 3.14159265358979 * r / rings, phi = 2 * 3.14159265358979 * (s % segments) / segments;
-    return centre + Vec3(glm::dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)) * double(radius));
+    return centre + Vec3(glm::dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)) *
+                         double(radius));
   };
   for (int r = 0; r <= rings; ++r)
     for (int s = 0; s < segments; ++s) soup.positions.push_back(vertex(r, s));

@@ -65,9 +65,9 @@ TEST(AnalyticLights, AProgramMultipliesTheStrength) {
   light.material = 4;
   scene.lights({light});
   const auto snapshot = scene.commit();
-  LightPoint point;
-  LightEvaluation view;
-  sample_light_point(*snapshot, {Vec3(0.0f), Vec3(0, 0, 1), false}, 0.5f, Vec2(0.5f), &point, &view);
+  light::LightPoint point;
+  light::LightEvaluation view;
+  light::sample_light_point(*snapshot, {Vec3(0.0f), Vec3(0, 0, 1), false}, 0.5f, Vec2(0.5f), &point, &view);
   EXPECT_NEAR(view.radiance.x, 1.5f / 4, 1e-6f);
   EXPECT_NEAR(view.radiance.y, 6.0f / 4, 1e-6f);
 }

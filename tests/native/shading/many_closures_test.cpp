@@ -39,15 +39,15 @@ int rich_principled(ProgramBuilder* b, float roughness) {
   return b->add(GRADUS_OP_PRINCIPLED, in);
 }
 
-Closures closures_of(ProgramBuilder* b, const std::vector<int>& layers) {
-  ShadeContext context;
+bsdf::Closures closures_of(ProgramBuilder* b, const std::vector<int>& layers) {
+  shading::ShadeContext context;
   context.wo = kWo;
-  Closures closures = run(b->compile(mixed(b, layers))->surface, context).closures;
+  bsdf::Closures closures = run(b->compile(mixed(b, layers))->surface, context).closures;
   closures.finish(context.wo, context.geometric_normal, 0.1f);
   return closures;
 }
 
-Closures equal_principled(int count) {
+bsdf::Closures equal_principled(int count) {
   ProgramBuilder b;
   std::vector<int> layers;
   for (int i = 0; i < count; i++) layers.push_back(rich_principled(&b, 0.5f));
@@ -55,14 +55,17 @@ Closures equal_principled(int count) {
 }
 
 TEST(ManyClosures, EqualPrincipledMixedWentDarkFromTheThirdOn) {
-  const Closures one = equal_principled(1);
+  const bsdf::Closures one = equal_principled(1);
   for (const int count : {2, 3, 4, 16}) {
-    const Closures many = equal_principled(count);
-    for (const LightPass pass : {LightPass::Diffuse, LightPass::Glossy, LightPass::Transmission})
+    const bsdf::Closures many = equal_principled(count);
+    for (const bsdf::LightPass pass :
+         {bsdf::LightPass::Diffuse, bsdf::LightPass::Glossy, bsdf::LightPass::Transmission})
       EXPECT_LE(max_component(glm::abs(many.albedo(pass, kWo) - one.albedo(pass, kWo))), 1e-5f) << count;
     const Vec3 wi = glm::normalize(Vec3(-0.4f, -0.2f, 0.9f));
-    const Rgb f = one.evaluate(ScatterClass::Diffuse, kWo, wi).value;
-    EXPECT_LE(max_component(glm::abs(many.evaluate(ScatterClass::Diffuse, kWo, wi).value - f)), 1e-5f * max_component(f)) << count;
+    const Rgb f = one.evaluate(bsdf::ScatterClass::Diffuse, kWo, wi).value;
+    EXPECT_LE(max_component(glm::abs(many.evaluate(bsdf::ScatterClass::Diffuse, kWo, wi).value - f)),
+              1e-5f * max_component(f))
+        << count;
   }
 }
 
@@ -89,40 +92,40 @@ TEST(ManyClosures, ThirtyDiffuseLayersWithTheirOwnNormalsAreAsBrightAsOne) {
       const Vec3 normal = glm::normalize(Vec3(0.3f * std::cos(angle), 0.3f * std::sin(angle), 1.0f));
       layers.push_back(b.add(GRADUS_OP_DIFFUSE, {In(0.8f), In(0.0f), In(normal)}));
     }
-    const Closures closures = closures_of(&b, layers);
-    EXPECT_NEAR(closures.albedo(LightPass::Diffuse, kWo).x, 0.8f, 1e-5f) << count;
-    EXPECT_LE(closures.count(), kMaxLobes);
+    const bsdf::Closures closures = closures_of(&b, layers);
+    EXPECT_NEAR(closures.albedo(bsdf::LightPass::Diffuse, kWo).x, 0.8f, 1e-5f) << count;
+    EXPECT_LE(closures.count(), bsdf::kMaxLobes);
   }
 }
 
 // What is strong keeps its shape: a mirror in a crowd of weak rough lobes stays a mirror.
 TEST(ManyClosures, AMirrorStaysOneAmongManyWeakLobes) {
-  Closures closures;
+  bsdf::Closures closures;
   for (int i = 0; i < 40; i++) {
-    Lobe* lobe = closures.add();
-    lobe->type = LobeType::GgxReflection;
+    bsdf::Lobe* lobe = closures.add();
+    lobe->type = bsdf::LobeType::GgxReflection;
     lobe->weight = Rgb(i == 0 ? 0.5f : 0.01f);
     lobe->alpha_x = lobe->alpha_y = i == 0 ? 0.0f : 0.2f + 0.01f * static_cast<float>(i);
   }
   closures.finish(kWo, Vec3(0, 0, 1), 0.1f);
-  EXPECT_EQ(closures.lobe(0).type, LobeType::DiracReflection);
+  EXPECT_EQ(closures.lobe(0).type, bsdf::LobeType::DiracReflection);
   EXPECT_NEAR(closures.lobe(0).weight.x, 0.5f, 1e-6f);
 }
 
 // Lobes of one type that no one formula fits: their albedo goes to the stronger.
 TEST(ManyClosures, CurvesOfFresnelThatDoNotMixKeepTheirAlbedo) {
   const Rgb before(0.04f + 0.2f);
-  Lobe coat, metal;
-  coat.type = metal.type = LobeType::GgxReflection;
+  bsdf::Lobe coat, metal;
+  coat.type = metal.type = bsdf::LobeType::GgxReflection;
   coat.weight = Rgb(1.0f);
-  coat.fresnel = FresnelType::Dielectric;
+  coat.fresnel = bsdf::FresnelType::Dielectric;
   coat.ior = 1.5f;
   coat.alpha_x = coat.alpha_y = metal.alpha_x = metal.alpha_y = 0.2f;
   metal.weight = Rgb(0.4f);
-  metal.fresnel = FresnelType::PrincipledMetal;
+  metal.fresnel = bsdf::FresnelType::PrincipledMetal;
   metal.f0 = Rgb(0.5f);
-  Lobe both = merged(coat, metal);
-  const Rgb after = lobe_albedo(&both, Vec3(0, 0, 1));
+  bsdf::Lobe both = bsdf::merged(coat, metal);
+  const Rgb after = bsdf::lobe_albedo(&both, Vec3(0, 0, 1));
   EXPECT_NEAR(after.x, before.x, 0.01f);
 }
 

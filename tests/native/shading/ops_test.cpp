@@ -15,7 +15,9 @@ void expect_near(const Rgb& a, const Rgb& b, float tolerance = 1e-5f) {
   for (int i = 0; i < 3; i++) EXPECT_NEAR(a[i], b[i], tolerance) << "component " << i;
 }
 
-float math_of(uint32_t mode, float a, float b = 0.0f, float c = 0.0f) { return evaluate(GRADUS_OP_MATH, {a, b, c}, mode).x; }
+float math_of(uint32_t mode, float a, float b = 0.0f, float c = 0.0f) {
+  return evaluate(GRADUS_OP_MATH, {a, b, c}, mode).x;
+}
 
 TEST(NodeMath, ClosedForms) {
   const float a = 1.7f, b = -0.6f, c = 0.3f;
@@ -69,7 +71,9 @@ TEST(NodeMath, DefinedWhereTheFunctionIsNot) {
 
 TEST(NodeVectorMath, ClosedForms) {
   const Vec3 a(1, 2, 3), b(-2, 0.5f, 4);
-  const auto of = [&](uint32_t mode, uint32_t output) { return evaluate(GRADUS_OP_VECTOR_MATH, {a, b, 0.0f, 2.0f}, mode, {}, output); };
+  const auto of = [&](uint32_t mode, uint32_t output) {
+    return evaluate(GRADUS_OP_VECTOR_MATH, {a, b, 0.0f, 2.0f}, mode, {}, output);
+  };
   expect_near(of(GRADUS_VECTOR_CROSS_PRODUCT, 0), glm::cross(a, b));
   expect_near(of(GRADUS_VECTOR_PROJECT, 0), b * (glm::dot(a, b) / glm::dot(b, b)));
   expect_near(of(GRADUS_VECTOR_REFLECT, 0), glm::reflect(a, glm::normalize(b)));
@@ -83,19 +87,23 @@ TEST(NodeVectorMath, ClosedForms) {
 TEST(NodeMapping, PointAndTextureAreInverse) {
   const Vec3 v(0.3f, -1.1f, 2.0f), location(1, 2, 3), rotation(0.4f, 0.5f, 0.6f), scale(2.0f, 0.5f, 1.5f);
   const Vec3 there = evaluate(GRADUS_OP_MAPPING, {v, location, rotation, scale}, GRADUS_MAPPING_POINT);
-  expect_near(there, euler_matrix(rotation) * (v * scale) + location);
+  expect_near(there, shading::euler_matrix(rotation) * (v * scale) + location);
   expect_near(evaluate(GRADUS_OP_MAPPING, {there, location, rotation, scale}, GRADUS_MAPPING_TEXTURE), v);
 }
 
 TEST(NodeMapping, EulerTurnsAboutXThenYThenZ) {
-  const Mat3 quarter_x = euler_matrix(Vec3(kPi / 2, 0, 0)), quarter_z = euler_matrix(Vec3(0, 0, kPi / 2));
+  const Mat3 quarter_x = shading::euler_matrix(Vec3(kPi / 2, 0, 0)),
+             quarter_z = shading::euler_matrix(Vec3(0, 0, kPi / 2));
   expect_near(quarter_x * Vec3(0, 1, 0), Vec3(0, 0, 1));
   expect_near(quarter_z * Vec3(1, 0, 0), Vec3(0, 1, 0));
-  expect_near(euler_matrix(Vec3(kPi / 2, 0, kPi / 2)) * Vec3(0, 1, 0), quarter_z * (quarter_x * Vec3(0, 1, 0)));
+  expect_near(shading::euler_matrix(Vec3(kPi / 2, 0, kPi / 2)) * Vec3(0, 1, 0),
+              quarter_z * (quarter_x * Vec3(0, 1, 0)));
 }
 
 TEST(NodeMapRange, LinearSteppedAndClamped) {
-  const auto of = [](float x, uint32_t mode) { return evaluate(GRADUS_OP_MAP_RANGE, {x, 1.0f, 3.0f, 10.0f, 20.0f, 4.0f}, mode).x; };
+  const auto of = [](float x, uint32_t mode) {
+    return evaluate(GRADUS_OP_MAP_RANGE, {x, 1.0f, 3.0f, 10.0f, 20.0f, 4.0f}, mode).x;
+  };
   EXPECT_NEAR(of(1.5f, GRADUS_MAP_RANGE_LINEAR), 12.5f, 1e-5f);
   EXPECT_NEAR(of(4.0f, GRADUS_MAP_RANGE_LINEAR), 25.0f, 1e-5f);
   EXPECT_NEAR(of(4.0f, GRADUS_MAP_RANGE_LINEAR | 8), 20.0f, 1e-5f);
@@ -105,9 +113,11 @@ TEST(NodeMapRange, LinearSteppedAndClamped) {
 
 // An empty range: the smooth forms gave a step, or 0 in spite of the clamp. Values by Cycles.
 TEST(NodeMapRange, EmptyRangesAreThoseOfCycles) {
-  for (const uint32_t mode :
-       {GRADUS_MAP_RANGE_LINEAR, GRADUS_MAP_RANGE_STEPPED, GRADUS_MAP_RANGE_SMOOTHSTEP, GRADUS_MAP_RANGE_SMOOTHERSTEP}) {
-    const auto of = [&](uint32_t flags) { return evaluate(GRADUS_OP_MAP_RANGE, {0.9f, 0.5f, 0.5f, 0.25f, 0.75f, 4.0f}, mode | flags).x; };
+  for (const uint32_t mode : {GRADUS_MAP_RANGE_LINEAR, GRADUS_MAP_RANGE_STEPPED, GRADUS_MAP_RANGE_SMOOTHSTEP,
+                              GRADUS_MAP_RANGE_SMOOTHERSTEP}) {
+    const auto of = [&](uint32_t flags) {
+      return evaluate(GRADUS_OP_MAP_RANGE, {0.9f, 0.5f, 0.5f, 0.25f, 0.75f, 4.0f}, mode | flags).x;
+    };
     EXPECT_EQ(of(0), 0.0f) << mode;
     EXPECT_EQ(of(8), 0.25f) << mode;
     EXPECT_EQ(of(16), 0.25f) << mode;
@@ -116,7 +126,8 @@ TEST(NodeMapRange, EmptyRangesAreThoseOfCycles) {
 
 TEST(NodeNormal, TheDirectionHasUnitLength) {
   expect_near(evaluate(GRADUS_OP_NORMAL_DOT, {Vec3(0, 0, 2)}, 0, {0.0f, 0.6f, 1.8f}, 1), Rgb(0.948683f));
-  expect_near(evaluate(GRADUS_OP_NORMAL_DOT, {Vec3(0, 0, 2)}, 0, {0.0f, 0.6f, 1.8f}, 0), Rgb(0.0f, 0.316228f, 0.948683f));
+  expect_near(evaluate(GRADUS_OP_NORMAL_DOT, {Vec3(0, 0, 2)}, 0, {0.0f, 0.6f, 1.8f}, 0),
+              Rgb(0.0f, 0.316228f, 0.948683f));
   expect_near(evaluate(GRADUS_OP_NORMAL_DOT, {Vec3(0.0f)}, 0, {0.0f, 0.6f, 1.8f}, 1), Rgb(0.0f));
 }
 
@@ -145,7 +156,8 @@ TEST(NodeColor, BlendModes) {
   expect_near(evaluate(GRADUS_OP_MIX_COLOR, {1.0f, Vec3(2.0f), Vec3(3.0f)}, GRADUS_BLEND_ADD | 32), Vec3(1.0f));
 }
 
-// Candles were a tenth too pale and shone less than no blue light; beyond 12,000 K, where Cycles' colours end, ours went on.
+// Candles were a tenth too pale and shone less than no blue light; beyond 12,000 K, where Cycles' colours end, ours
+// went on.
 TEST(NodeColor, BlackBodiesHaveTheColoursOfCycles) {
   const auto of = [](float kelvin) { return evaluate(GRADUS_OP_BLACKBODY, {kelvin}); };
   expect_near(of(700.0f), Rgb(5.4133f, 0.0f, 0.0f), 0.01f);
@@ -178,13 +190,15 @@ TEST(NodeTables, CurvesExtrapolateOrNot) {
 TEST(NodeNoise, Properties) {
   for (int i = -3; i <= 3; i++) {
     const auto x = static_cast<float>(i);
-    EXPECT_NEAR(signed_noise(x), 0.0f, 1e-6f);
-    EXPECT_NEAR(signed_noise(Vec3(x, 2.0f, -1.0f)), 0.0f, 1e-6f);
-    EXPECT_NEAR(signed_noise(Vec3(x - 1e-4f, 0.3f, 0.7f)), signed_noise(Vec3(x + 1e-4f, 0.3f, 0.7f)), 2e-3f);
-    EXPECT_NEAR(signed_noise(Vec4(x - 1e-4f, 0.3f, 0.7f, 0.2f)), signed_noise(Vec4(x + 1e-4f, 0.3f, 0.7f, 0.2f)), 2e-3f);
+    EXPECT_NEAR(shading::signed_noise(x), 0.0f, 1e-6f);
+    EXPECT_NEAR(shading::signed_noise(Vec3(x, 2.0f, -1.0f)), 0.0f, 1e-6f);
+    EXPECT_NEAR(shading::signed_noise(Vec3(x - 1e-4f, 0.3f, 0.7f)), shading::signed_noise(Vec3(x + 1e-4f, 0.3f, 0.7f)),
+                2e-3f);
+    EXPECT_NEAR(shading::signed_noise(Vec4(x - 1e-4f, 0.3f, 0.7f, 0.2f)),
+                shading::signed_noise(Vec4(x + 1e-4f, 0.3f, 0.7f, 0.2f)), 2e-3f);
   }
   double sum = 0.0;
-  for (int i = 0; i < 20000; i++) sum += signed_noise(Vec3(0.37f, 0.73f, 0.51f) * static_cast<float>(i));
+  for (int i = 0; i < 20000; i++) sum += shading::signed_noise(Vec3(0.37f, 0.73f, 0.51f) * static_cast<float>(i));
   EXPECT_NEAR(sum / 20000.0, 0.0, 0.01);
 }
 
@@ -193,7 +207,7 @@ TEST(NodeNoise, LanesEqualTheDefinition) {
   const auto fade = [](float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); };
   const auto corner = [](const Vec3& cell, const Vec3& d) {
     const auto at = [&](int k) { return static_cast<uint32_t>(static_cast<int32_t>(cell[k])); };
-    const uint32_t h = lattice_hash(at(0), at(1), at(2)) & 15u;
+    const uint32_t h = shading::lattice_hash(at(0), at(1), at(2)) & 15u;
     const float u = h < 8u ? d.x : d.y, v = h < 4u ? d.y : (h == 12u || h == 14u ? d.x : d.z);
     return (h & 1u ? -u : u) + (h & 2u ? -v : v);
   };
@@ -207,7 +221,7 @@ TEST(NodeNoise, LanesEqualTheDefinition) {
       for (int axis = 0; axis < 3; axis++) weight *= step[axis] > 0.0f ? fade(d[axis]) : 1.0f - fade(d[axis]);
       expected += weight * corner(cell + step, d - step);
     }
-    EXPECT_NEAR(signed_noise(p), 0.982f * expected, 1e-5f) << i;
+    EXPECT_NEAR(shading::signed_noise(p), 0.982f * expected, 1e-5f) << i;
   }
 }
 
@@ -220,7 +234,7 @@ TEST(NodePatterns, CheckerAndGradient) {
 }
 
 TEST(NodeRay, FresnelAtNormalIncidenceAndFromInside) {
-  ShadeContext c;
+  shading::ShadeContext c;
   expect_near(evaluate(GRADUS_OP_FRESNEL, {1.5f, 0.0f}, 0, {}, 0, c), Rgb(0.04f), 1e-6f);
   c.wo = glm::normalize(Vec3(1.0f, 0.0f, 0.5f));  // beyond the critical angle of glass
   c.backfacing = true;
@@ -228,8 +242,8 @@ TEST(NodeRay, FresnelAtNormalIncidenceAndFromInside) {
 }
 
 TEST(NodeRay, LightPathReadsTheRay) {
-  ShadeContext c;
-  c.ray.flags = kRayShadow | kRayTransmission;
+  shading::ShadeContext c;
+  c.ray.flags = shading::kRayShadow | shading::kRayTransmission;
   c.ray.length = 2.5f;
   c.ray.depth = 3;
   const auto of = [&](uint32_t mode) { return evaluate(GRADUS_OP_LIGHT_PATH, {}, mode, {}, 0, c).x; };
@@ -244,9 +258,9 @@ TEST(NodeRay, LightPathReadsTheRay) {
 TEST(NodeClosures, GlassNormalsPointOutwards) {
   ProgramBuilder b;
   const auto m = b.compile(b.add(GRADUS_OP_GLASS, {Vec3(1.0f), 0.0f, 1.5f}));
-  ShadeContext c;
+  shading::ShadeContext c;
   c.backfacing = true;
-  const ShadeResult r = run(m->surface, c);
+  const shading::ShadeResult r = run(m->surface, c);
   ASSERT_EQ(r.closures.count(), 1);
   expect_near(r.closures.lobe(0).normal, Vec3(0, 0, -1));
 }
@@ -259,9 +273,9 @@ TEST(NodeClosures, MetalLeavesNothingForDiffuse) {
   inputs[2] = In(0.3f);
   inputs[3] = In(1.5f);
   inputs[6] = In(1.0f);
-  const ShadeResult r = run(b.compile(b.add(GRADUS_OP_PRINCIPLED, inputs))->surface);
+  const shading::ShadeResult r = run(b.compile(b.add(GRADUS_OP_PRINCIPLED, inputs))->surface);
   ASSERT_EQ(r.closures.count(), 1);
-  EXPECT_EQ(r.closures.lobe(0).fresnel, FresnelType::PrincipledMetal);
+  EXPECT_EQ(r.closures.lobe(0).fresnel, bsdf::FresnelType::PrincipledMetal);
 }
 
 TEST(NodeClosures, EmissionUnderCoatIsTheSameAlone) {
@@ -274,7 +288,7 @@ TEST(NodeClosures, EmissionUnderCoatIsTheSameAlone) {
   inputs[13] = In(Vec3(0.4f, 0.9f, 0.7f));
   inputs[17] = In(Vec3(3.0f, 2.0f, 1.0f));
   const auto m = b.compile(b.add(GRADUS_OP_PRINCIPLED, inputs));
-  ShadeContext c;
+  shading::ShadeContext c;
   c.wo = glm::normalize(Vec3(0.5f, 0.2f, 0.6f));
   const Rgb whole = run(m->surface, c).emission, alone = run(m->emission, c).emission;
   expect_near(whole, alone);

@@ -1,5 +1,5 @@
-// A9, for the Principled BSDF of Blender 4 and 5: values that Cycles (Blender 4.5.15) gives for the same sockets and directions,
-// measured as in bsdf/cycles_values_test.cpp.
+// A9, for the Principled BSDF of Blender 4 and 5: values that Cycles (Blender 4.5.15) gives for the same sockets and
+// directions, measured as in bsdf/cycles_values_test.cpp.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -230,19 +230,19 @@ TEST(A9_CyclesClosures, PrincipledAgrees) {
     const float x = (static_cast<float>(m.x) + 0.5f) / 32.0f - 1.0f;
     const float y = (static_cast<float>(m.y) + 0.5f) / 32.0f - 1.0f;
     const Case settings = make_case(m.number);
-    ShadeContext context;
+    shading::ShadeContext context;
     context.wo = wo;
     context.normal = context.geometric_normal = Vec3(x, y, std::sqrt(1.0f - x * x - y * y));
-    ClosureArgs args;
+    shading::ClosureArgs args;
     args.op = GRADUS_OP_PRINCIPLED;
     args.mode = settings.distribution;
     args.in = settings.sockets.data();
-    ShadeResult result;
-    add_principled(args, context, &result);
+    shading::ShadeResult result;
+    shading::add_principled(args, context, &result);
     result.closures.finish(wo, context.geometric_normal, 0.1f);
     Rgb value(0.0f);
-    for (int c = 0; c < kScatterClasses; c++) {
-      value += result.closures.evaluate(static_cast<ScatterClass>(c), wo, glm::normalize(kSuns[m.sun])).value;
+    for (int c = 0; c < bsdf::kScatterClasses; c++) {
+      value += result.closures.evaluate(static_cast<bsdf::ScatterClass>(c), wo, glm::normalize(kSuns[m.sun])).value;
     }
     for (int c = 0; c < 3; c++) {
       EXPECT_NEAR(static_cast<double>(value[c]), m.value[c], 0.02 * m.value[c] + 1e-5)

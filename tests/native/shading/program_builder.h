@@ -25,7 +25,8 @@ struct In {
 class ProgramBuilder {
  public:
   // Index of the new node.
-  int add(uint32_t op, std::vector<In> inputs, uint32_t mode = 0, std::vector<float> floats = {}, uint64_t resource = 0) {
+  int add(uint32_t op, std::vector<In> inputs, uint32_t mode = 0, std::vector<float> floats = {},
+          uint64_t resource = 0) {
     GradusNode node{};
     node.op = op;
     node.mode = mode;
@@ -56,22 +57,25 @@ class ProgramBuilder {
     return d;
   }
 
-  std::shared_ptr<const MaterialData> compile(int surface) const { return compile_material(desc(surface), ImageStore()); }
+  std::shared_ptr<const shading::MaterialData> compile(int surface) const {
+    return shading::compile_material(desc(surface), image::ImageStore());
+  }
 
   std::vector<GradusNode> nodes_;
   std::vector<GradusInput> inputs_;
   std::vector<float> floats_;
 };
 
-inline ShadeResult run(const Program& program, const ShadeContext& context = ShadeContext()) {
-  ShadeResult result;
-  run_program(program, context, &result);
+inline shading::ShadeResult run(const shading::Program& program,
+                                const shading::ShadeContext& context = shading::ShadeContext()) {
+  shading::ShadeResult result;
+  shading::run_program(program, context, &result);
   return result;
 }
 
 // Result of one operation as a colour, through an emission closure.
-inline Rgb evaluate(uint32_t op, std::vector<In> inputs, uint32_t mode = 0, std::vector<float> floats = {}, uint32_t output = 0,
-                    const ShadeContext& context = ShadeContext()) {
+inline Rgb evaluate(uint32_t op, std::vector<In> inputs, uint32_t mode = 0, std::vector<float> floats = {},
+                    uint32_t output = 0, const shading::ShadeContext& context = shading::ShadeContext()) {
   ProgramBuilder b;
   const int node = b.add(op, std::move(inputs), mode, std::move(floats));
   const int emission = b.add(GRADUS_OP_EMISSION, {In::from(node, output), In(1.0f)});

@@ -22,7 +22,8 @@ int emission(ProgramBuilder* b, const In& color) { return b->add(GRADUS_OP_EMISS
 TEST(NodeProgram, ConstantsAreFolded) {
   ProgramBuilder b;
   const int sum = b.add(GRADUS_OP_MATH, {In(2.0f), In(3.0f)}, GRADUS_MATH_ADD);
-  const int scaled = b.add(GRADUS_OP_VECTOR_MATH, {In(Vec3(1, 2, 3)), In(0.0f), In(0.0f), In::from(sum)}, GRADUS_VECTOR_SCALE);
+  const int scaled =
+      b.add(GRADUS_OP_VECTOR_MATH, {In(Vec3(1, 2, 3)), In(0.0f), In(0.0f), In::from(sum)}, GRADUS_VECTOR_SCALE);
   const auto m = b.compile(emission(&b, In::from(scaled)));
   EXPECT_EQ(m->surface.code.size(), 1u);
   EXPECT_TRUE(m->emission_is_constant);
@@ -32,14 +33,15 @@ TEST(NodeProgram, ConstantsAreFolded) {
 
 // A value that only the point decides gives the same through registers as through folding.
 TEST(NodeProgram, EvaluationEqualsFolding) {
-  ShadeContext c;
+  shading::ShadeContext c;
   c.position = Vec3(0.3f, -1.2f, 2.5f);
   const auto graph = [&](bool folded) {
     ProgramBuilder b;
     const int p = b.add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
     const In in = folded ? In(c.position) : In::from(p);
-    const int n = b.add(GRADUS_OP_NOISE, {in, In(0.0f), In(3.0f), In(2.5f), In(0.6f), In(2.1f), In(0.0f), In(0.0f), In(0.4f)},
-                        GRADUS_NOISE_MODE(3, 0, 1, 0));
+    const int n =
+        b.add(GRADUS_OP_NOISE, {in, In(0.0f), In(3.0f), In(2.5f), In(0.6f), In(2.1f), In(0.0f), In(0.0f), In(0.4f)},
+              GRADUS_NOISE_MODE(3, 0, 1, 0));
     const int h = b.add(GRADUS_OP_HUE_SATURATION, {In(0.6f), In(1.3f), In(0.8f), In(0.9f), In::from(n, 1)});
     const int m = b.add(GRADUS_OP_MIX_COLOR, {In::from(n), In::from(h), in}, GRADUS_BLEND_OVERLAY);
     const auto compiled = b.compile(emission(&b, In::from(m)));
@@ -66,9 +68,9 @@ TEST(NodeProgram, MixWeightsAndClampsTheFactor) {
     const int p = b.add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
     const int red = emission(&b, In(Vec3(1, 0, 0))), green = emission(&b, In(Vec3(0, 1, 0)));
     const auto m = b.compile(b.add(GRADUS_OP_MIX_SHADER, {In::from(p), In::from(red), In::from(green)}));
-    ShadeContext c;
+    shading::ShadeContext c;
     c.position = Vec3(f, 9.0f, 9.0f);
-    const float t = saturate(f);
+    const float t = shading::saturate(f);
     expect_near(run(m->surface, c).emission, Rgb(1.0f - t, t, 0.0f));
   }
 }
@@ -78,11 +80,12 @@ TEST(NodeProgram, SharedValuesSurviveSkippedBranches) {
   ProgramBuilder b;
   const int p = b.add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
   const int doubled = b.add(GRADUS_OP_VECTOR_MATH, {In::from(p), In::from(p)}, GRADUS_VECTOR_ADD);
-  const int first = emission(&b, In::from(doubled)), second = emission(&b, In::from(doubled)), third = emission(&b, In::from(doubled));
+  const int first = emission(&b, In::from(doubled)), second = emission(&b, In::from(doubled)),
+            third = emission(&b, In::from(doubled));
   const int inner = b.add(GRADUS_OP_MIX_SHADER, {In::from(p), In::from(first), In::from(second)});
   const auto m = b.compile(b.add(GRADUS_OP_ADD_SHADER, {In::from(inner), In::from(third)}));
   for (const float x : {0.0f, 0.5f, 1.0f}) {
-    ShadeContext c;
+    shading::ShadeContext c;
     c.position = Vec3(x, 2.0f, 3.0f);
     expect_near(run(m->surface, c).emission, c.position * 4.0f);
   }
@@ -91,7 +94,8 @@ TEST(NodeProgram, SharedValuesSurviveSkippedBranches) {
 TEST(NodeProgram, RegistersAreReused) {
   ProgramBuilder b;
   int last = b.add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
-  for (int i = 0; i < 5000; i++) last = b.add(GRADUS_OP_VECTOR_MATH, {In::from(last), In(Vec3(1.0f, 0.0f, 0.0f))}, GRADUS_VECTOR_ADD);
+  for (int i = 0; i < 5000; i++)
+    last = b.add(GRADUS_OP_VECTOR_MATH, {In::from(last), In(Vec3(1.0f, 0.0f, 0.0f))}, GRADUS_VECTOR_ADD);
   const auto m = b.compile(emission(&b, In::from(last)));
   EXPECT_LE(m->surface.register_count, 2);
   expect_near(run(m->surface).emission, Rgb(5000, 0, 0));
@@ -123,7 +127,8 @@ TEST(NodeProgram, PartsHoldWhatTheyNeed) {
 // Textured, coated and with a sheen: layers that depend on the direction, over values that do not.
 int coated_checker(ProgramBuilder* b) {
   const int p = b->add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
-  const int checker = b->add(GRADUS_OP_CHECKER, {In::from(p), In(Vec3(0.8f, 0.3f, 0.1f)), In(Vec3(0.1f, 0.6f, 0.9f)), In(3.0f)});
+  const int checker =
+      b->add(GRADUS_OP_CHECKER, {In::from(p), In(Vec3(0.8f, 0.3f, 0.1f)), In(Vec3(0.1f, 0.6f, 0.9f)), In(3.0f)});
   std::vector<In> inputs(21, In(0.0f));
   inputs[0] = In::from(checker);
   inputs[2] = In(0.4f);                          // roughness
@@ -137,8 +142,8 @@ int coated_checker(ProgramBuilder* b) {
   return b->add(GRADUS_OP_PRINCIPLED, inputs);
 }
 
-ShadeContext seen_from(const Vec3& wo) {
-  ShadeContext context;
+shading::ShadeContext seen_from(const Vec3& wo) {
+  shading::ShadeContext context;
   context.position = Vec3(0.13f, 0.27f, 0.31f);
   context.wo = glm::normalize(wo);
   return context;
@@ -148,16 +153,16 @@ TEST(NodeProgram, ClosuresFromATapeAreThoseOfTheProgram) {
   ProgramBuilder b;
   const auto m = b.compile(coated_checker(&b));
   ASSERT_FALSE(m->values_look_at_ray);
-  ClosureTape tape;
-  ShadeResult first;
+  shading::ClosureTape tape;
+  shading::ShadeResult first;
   first.tape = &tape;
-  const ShadeContext steep = seen_from(Vec3(0.1f, 0.2f, 1.0f)), flat = seen_from(Vec3(-1.0f, 0.3f, 0.2f));
-  run_program(m->surface, steep, &first);
-  ShadeResult replayed;
+  const shading::ShadeContext steep = seen_from(Vec3(0.1f, 0.2f, 1.0f)), flat = seen_from(Vec3(-1.0f, 0.3f, 0.2f));
+  shading::run_program(m->surface, steep, &first);
+  shading::ShadeResult replayed;
   EXPECT_FALSE(tape.replay(flat, &replayed)) << "the run has not ended";
   tape.finish();
   ASSERT_TRUE(tape.replay(flat, &replayed));
-  ShadeResult full = run(m->surface, flat);
+  shading::ShadeResult full = run(m->surface, flat);
   EXPECT_EQ(replayed.emission, full.emission);
   EXPECT_NE(replayed.emission, first.emission) << "the coat does not look at the direction: nothing is tested";
   replayed.closures.finish(flat.wo, flat.geometric_normal, 0.1f);
@@ -165,8 +170,8 @@ TEST(NodeProgram, ClosuresFromATapeAreThoseOfTheProgram) {
   ASSERT_EQ(replayed.closures.count(), full.closures.count());
   ASSERT_GE(full.closures.count(), 4);
   for (const Vec3& wi : {Vec3(0, 0, 1), glm::normalize(Vec3(1.0f, -0.3f, 0.2f))}) {
-    const BsdfEval a = replayed.closures.evaluate(ScatterClass::Diffuse, flat.wo, wi),
-                   e = full.closures.evaluate(ScatterClass::Diffuse, flat.wo, wi);
+    const bsdf::BsdfEval a = replayed.closures.evaluate(bsdf::ScatterClass::Diffuse, flat.wo, wi),
+                         e = full.closures.evaluate(bsdf::ScatterClass::Diffuse, flat.wo, wi);
     EXPECT_EQ(a.value, e.value);
     EXPECT_EQ(a.pdf, e.pdf);
   }
@@ -177,10 +182,10 @@ TEST(NodeProgram, ATapeOfConstantsReadsTheProgram) {
   const int red = b.add(GRADUS_OP_DIFFUSE, {In(Vec3(0.7f, 0.1f, 0.2f)), In(0.0f), In(Vec3(0.0f))});
   const int green = b.add(GRADUS_OP_DIFFUSE, {In(Vec3(0.1f, 0.6f, 0.2f)), In(0.3f), In(Vec3(0.0f))});
   const auto m = b.compile(b.add(GRADUS_OP_ADD_SHADER, {In::from(red), In::from(green)}));
-  ClosureTape tape;
-  ShadeResult first, replayed;
+  shading::ClosureTape tape;
+  shading::ShadeResult first, replayed;
   first.tape = &tape;
-  run_program(m->surface, seen_from(Vec3(0, 0, 1)), &first);
+  shading::run_program(m->surface, seen_from(Vec3(0, 0, 1)), &first);
   tape.finish();
   ASSERT_TRUE(tape.replay(seen_from(Vec3(1, 0, 1)), &replayed));
   ASSERT_EQ(replayed.closures.count(), 2);
@@ -192,12 +197,13 @@ TEST(NodeProgram, ATapeOfConstantsReadsTheProgram) {
 TEST(NodeProgram, ATapeWithoutRoomGivesNothing) {
   ProgramBuilder b;
   int sum = emission(&b, In(Vec3(1.0f)));
-  for (int i = 0; i < 8; i++) sum = b.add(GRADUS_OP_ADD_SHADER, {In::from(sum), In::from(emission(&b, In(float(i + 1))))});
+  for (int i = 0; i < 8; i++)
+    sum = b.add(GRADUS_OP_ADD_SHADER, {In::from(sum), In::from(emission(&b, In(float(i + 1))))});
   const auto m = b.compile(sum);
-  ClosureTape tape;
-  ShadeResult first, replayed;
+  shading::ClosureTape tape;
+  shading::ShadeResult first, replayed;
   first.tape = &tape;
-  run_program(m->surface, seen_from(Vec3(0, 0, 1)), &first);
+  shading::run_program(m->surface, seen_from(Vec3(0, 0, 1)), &first);
   tape.finish();
   EXPECT_FALSE(tape.replay(seen_from(Vec3(0, 0, 1)), &replayed));
 }
@@ -223,7 +229,8 @@ TEST(NodeProgram, RoughnessIsKnownWhereConstant) {
   EXPECT_TRUE(smooth.compile(smooth.add(GRADUS_OP_GLOSSY, {In(1.0f), In(0.1f)}))->min_alpha < 0.1f);
 }
 
-// What anisotropy makes of a rough lobe was bounded by Principled's, where Glossy's goes further; and roughness below 0 is none.
+// What anisotropy makes of a rough lobe was bounded by Principled's, where Glossy's goes further; and roughness below 0
+// is none.
 TEST(NodeProgram, NoLobeIsSharperThanItsMaterialSays) {
   const struct {
     uint32_t op;
@@ -239,7 +246,7 @@ TEST(NodeProgram, NoLobeIsSharperThanItsMaterialSays) {
   for (const auto& item : cases) {
     ProgramBuilder b;
     const auto material = b.compile(b.add(item.op, item.inputs));
-    ShadeResult r = run(material->surface);
+    shading::ShadeResult r = run(material->surface);
     ASSERT_EQ(r.closures.count(), 1);
     EXPECT_EQ(material->min_alpha, std::min(r.closures.lobe(0).alpha_x, r.closures.lobe(0).alpha_y));
   }
@@ -264,7 +271,7 @@ TEST(NodeProgram, WhatShinesNoFiniteLightIsBlack) {
 }
 
 TEST(NodeProgram, DefaultMaterialIsGrey) {
-  const ShadeResult r = run(default_material()->surface);
+  const shading::ShadeResult r = run(shading::default_material()->surface);
   ASSERT_EQ(r.closures.count(), 1);
   expect_near(r.closures.lobe(0).weight, Rgb(0.8f));
 }
@@ -276,10 +283,10 @@ void expect_refused(F change) {
   const int ramp = b.add(GRADUS_OP_RAMP, {In::from(p)}, 0, {0, 0, 0, 1, 1, 1, 1, 1});
   const int surface = emission(&b, In::from(ramp));
   GradusMaterial d = b.desc(surface);
-  compile_material(d, ImageStore());
+  shading::compile_material(d, image::ImageStore());
   change(&b, &d);
   try {
-    compile_material(d, ImageStore());
+    shading::compile_material(d, image::ImageStore());
     ADD_FAILURE() << "accepted";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), GRADUS_ERROR_INVALID_ARGUMENT);
@@ -327,14 +334,14 @@ TEST(NodeProgram, RandomProgramsDoNotCrash) {
     for (int n = 0; n < 12; n++) {
       uint32_t op = below(128);
       if (n == 11) op = GRADUS_OP_EMISSION;
-      const OpInfo* info = op_info(op);
+      const shading::OpInfo* info = shading::op_info(op);
       if (!info || (info->closure && n < 11)) continue;
       std::vector<In> inputs;
       for (uint32_t k = 0; k < info->inputs; k++) {
         In in(odd[below(11)]);
         if (!b.nodes_.empty() && below(2)) {
           const uint32_t source = below(static_cast<uint32_t>(b.nodes_.size()));
-          in = In::from(static_cast<int>(source), below(op_info(b.nodes_[source].op)->outputs));
+          in = In::from(static_cast<int>(source), below(shading::op_info(b.nodes_[source].op)->outputs));
         }
         inputs.push_back(in);
       }

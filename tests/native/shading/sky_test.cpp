@@ -18,7 +18,8 @@ float radians(float degrees) { return degrees * kPi / 180.0f; }
 // Sun at 30° of elevation, 25° from +y towards +x.
 std::vector<float> settings(uint32_t mode) {
   const float e = radians(30), r = radians(25);
-  if (mode <= GRADUS_SKY_HOSEK_WILKIE) return {std::cos(e) * std::sin(r), std::cos(e) * std::cos(r), std::sin(e), 3.5f, 0.4f};
+  if (mode <= GRADUS_SKY_HOSEK_WILKIE)
+    return {std::cos(e) * std::sin(r), std::cos(e) * std::cos(r), std::sin(e), 3.5f, 0.4f};
   return {e, r, -1.0f, 1.0f, 500.0f, 1.2f, 0.8f, 1.5f};
 }
 
@@ -57,9 +58,9 @@ const Known kKnown[] = {
 TEST(A9_Sky, ShinesAsInCycles) {
   for (uint32_t mode = 0; mode < kModes; ++mode) {
     SCOPED_TRACE(mode);
-    const std::vector<float> prepared = prepare_sky(mode, settings(mode).data());
+    const std::vector<float> prepared = shading::prepare_sky(mode, settings(mode).data());
     for (const Known& known : kKnown) {
-      const Rgb found = sky(mode, prepared.data(), known.direction);
+      const Rgb found = shading::sky(mode, prepared.data(), known.direction);
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], known.radiance[mode][c], 2e-3f * known.radiance[mode][c]) << c;
     }
   }
@@ -67,17 +68,17 @@ TEST(A9_Sky, ShinesAsInCycles) {
 
 // Irradiance of the disc alone on a plane that faces it.
 Rgb sun_irradiance(uint32_t mode, std::vector<float> given) {
-  const std::vector<float> with = prepare_sky(mode, given.data());
+  const std::vector<float> with = shading::prepare_sky(mode, given.data());
   given[2] = -1.0f;
-  const std::vector<float> without = prepare_sky(mode, given.data());
-  const SunDisc disc = *sun_disc(mode, with.data());
+  const std::vector<float> without = shading::prepare_sky(mode, given.data());
+  const shading::SunDisc disc = *shading::sun_disc(mode, with.data());
   const float h = std::sin(0.505f * disc.half_angle);
   const Cone cone{disc.direction, 2.0f * h * h};
   constexpr int kSide = 100;
   glm::dvec3 sum(0.0);
   for (int k = 0; k < kSide * kSide; ++k) {
     const Vec3 d = cone.sample((Vec2(float(k % kSide), float(k / kSide)) + 0.5f) / float(kSide));
-    sum += glm::dvec3(sky(mode, with.data(), d) - sky(mode, without.data(), d));
+    sum += glm::dvec3(shading::sky(mode, with.data(), d) - shading::sky(mode, without.data(), d));
   }
   return Rgb(sum * double(cone.solid_angle()) / double(kSide * kSide));
 }
@@ -101,24 +102,27 @@ TEST(A9_Sky, BeyondTheZenithTheSunComesDownOnTheOtherSide) {
   std::vector<float> over = settings(GRADUS_SKY_NISHITA), same = over;
   over[0] = radians(150);
   over[1] = radians(25 + 180 - 360);
-  const std::vector<float> a = prepare_sky(GRADUS_SKY_NISHITA, over.data()), b = prepare_sky(GRADUS_SKY_NISHITA, same.data());
+  const std::vector<float> a = shading::prepare_sky(GRADUS_SKY_NISHITA, over.data()),
+                           b = shading::prepare_sky(GRADUS_SKY_NISHITA, same.data());
   for (const Known& known : kKnown) {
-    const Rgb x = sky(GRADUS_SKY_NISHITA, a.data(), known.direction), y = sky(GRADUS_SKY_NISHITA, b.data(), known.direction);
+    const Rgb x = shading::sky(GRADUS_SKY_NISHITA, a.data(), known.direction),
+              y = shading::sky(GRADUS_SKY_NISHITA, b.data(), known.direction);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(x[c], y[c], 1e-3f * y[c]);
   }
 }
 
 void expect_finite(uint32_t mode, const std::vector<float>& given) {
-  const std::vector<float> prepared = prepare_sky(mode, given.data());
+  const std::vector<float> prepared = shading::prepare_sky(mode, given.data());
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  std::vector<Vec3> directions = {Vec3(0.0f), Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(1e30f), Vec3(kNan, 0, 1)};
-  if (const auto disc = sun_disc(mode, prepared.data())) directions.push_back(disc->direction);
+  std::vector<Vec3> directions = {Vec3(0.0f),    Vec3(0, 0, 1), Vec3(0, 0, -1),
+                                  Vec3(1, 0, 0), Vec3(1e30f),   Vec3(kNan, 0, 1)};
+  if (const auto disc = shading::sun_disc(mode, prepared.data())) directions.push_back(disc->direction);
   for (int i = 0; i < 64; ++i) {
     const float z = 2.0f * (float(i) + 0.5f) / 64.0f - 1.0f, s = std::sqrt(1.0f - z * z);
     directions.emplace_back(s * std::cos(2.4f * float(i)), s * std::sin(2.4f * float(i)), z);
   }
   for (const Vec3& d : directions) {
-    const Rgb found = sky(mode, prepared.data(), d);
+    const Rgb found = shading::sky(mode, prepared.data(), d);
     EXPECT_TRUE(is_finite(found)) << d.x << ' ' << d.y << ' ' << d.z;
     EXPECT_TRUE(found.x >= 0.0f && found.y >= 0.0f && found.z >= 0.0f);
   }
@@ -133,8 +137,9 @@ TEST(L_Sky, StaysFiniteWhateverItsSettings) {
       {1.5707963f, 9.0f, 3.2f, 1e30f, 100.0f, 1e30f, 1e-30f, -1.0f},
       {kNan, kNan, kNan, kNan, kNan, kNan, kNan, kNan},
       {kInfinity, -kInfinity, kInfinity, kInfinity, kInfinity, kInfinity, kInfinity, kInfinity}};
-  const std::vector<float> analytic[] = {{0, 0, 0, 0, -1},       {0, 0, -1, 1, 0},         {1, 0, 0, 10, 1},
-                                         {0, 1e-9f, 0, 1e9f, 5}, {kNan, 0, 1, kNan, kNan}, {0, 0, kInfinity, kInfinity, -kInfinity}};
+  const std::vector<float> analytic[] = {{0, 0, 0, 0, -1},         {0, 0, -1, 1, 0},
+                                         {1, 0, 0, 10, 1},         {0, 1e-9f, 0, 1e9f, 5},
+                                         {kNan, 0, 1, kNan, kNan}, {0, 0, kInfinity, kInfinity, -kInfinity}};
   for (uint32_t mode = 0; mode < kModes; ++mode) {
     SCOPED_TRACE(mode);
     for (int i = 0; i < 6; ++i) {
@@ -145,11 +150,13 @@ TEST(L_Sky, StaysFiniteWhateverItsSettings) {
 }
 
 // A world whose sky looks at what `mapping` makes of the direction.
-std::shared_ptr<const MaterialData> world(const Vec3& rotation, const Vec3& scale) {
+std::shared_ptr<const shading::MaterialData> world(const Vec3& rotation, const Vec3& scale) {
   ProgramBuilder b;
   const int place = b.add(GRADUS_OP_TEX_COORD, {}, GRADUS_TEX_COORD_GENERATED);
-  const int turned = b.add(GRADUS_OP_MAPPING, {In::from(place), In(Vec3(0.0f)), In(rotation), In(scale)}, GRADUS_MAPPING_POINT);
-  const int spun = b.add(GRADUS_OP_VECTOR_ROTATE, {In::from(turned), In(Vec3(0.0f)), In(Vec3(0, 0, 1)), In(0.4f), In(Vec3(0.0f))}, 0);
+  const int turned =
+      b.add(GRADUS_OP_MAPPING, {In::from(place), In(Vec3(0.0f)), In(rotation), In(scale)}, GRADUS_MAPPING_POINT);
+  const int spun = b.add(GRADUS_OP_VECTOR_ROTATE,
+                         {In::from(turned), In(Vec3(0.0f)), In(Vec3(0, 0, 1)), In(0.4f), In(Vec3(0.0f))}, 0);
   std::vector<float> given = settings(GRADUS_SKY_NISHITA);
   given[2] = 0.01f;
   const int sky = b.add(GRADUS_OP_SKY, {In::from(spun)}, GRADUS_SKY_NISHITA, given);
@@ -160,7 +167,7 @@ TEST(Sky, SunIsFoundThroughRotations) {
   const auto material = world(Vec3(0.3f, -0.2f, 1.1f), Vec3(1.0f));
   ASSERT_EQ(material->suns.size(), 1u);
   EXPECT_EQ(material->smallest_hidden_sun, 0.0f);
-  ShadeContext context;
+  shading::ShadeContext context;
   context.is_background = true;
   context.position = material->suns[0].direction;
   EXPECT_GT(run(material->emission, context).emission.x, 1e5f);

@@ -51,7 +51,8 @@ struct Grid {
 
   Vec3 direction(double theta, double phi) const {
     const double s = std::sin(theta);
-    const Vec3 local(static_cast<float>(s * std::cos(phi)), static_cast<float>(s * std::sin(phi)), static_cast<float>(std::cos(theta)));
+    const Vec3 local(static_cast<float>(s * std::cos(phi)), static_cast<float>(s * std::sin(phi)),
+                     static_cast<float>(std::cos(theta)));
     return glm::normalize(local.x * x + local.y * y + local.z * z);
   }
   size_t cell(const Vec3& d) const {
@@ -74,13 +75,16 @@ Grid make_grid(const ChiSquareOptions& options) {
 class CellIntegral {
  public:
   CellIntegral(const Grid& grid, const std::function<double(const Vec3&)>& pdf) : grid_(grid), pdf_(pdf) {}
-  double integrate(double t0, double t1, double p0, double p1) const { return refine(t0, t1, p0, p1, points(t0, t1, p0, p1), 0); }
+  double integrate(double t0, double t1, double p0, double p1) const {
+    return refine(t0, t1, p0, p1, points(t0, t1, p0, p1), 0);
+  }
   // 64×64 points, whatever they say.
   double integrate_fine(double t0, double t1, double p0, double p1) const {
     double sum = 0.0;
     for (int i = 0; i < 16; i++) {
       for (int j = 0; j < 16; j++) {
-        sum += points(t0 + (t1 - t0) * i / 16, t0 + (t1 - t0) * (i + 1) / 16, p0 + (p1 - p0) * j / 16, p0 + (p1 - p0) * (j + 1) / 16);
+        sum += points(t0 + (t1 - t0) * i / 16, t0 + (t1 - t0) * (i + 1) / 16, p0 + (p1 - p0) * j / 16,
+                      p0 + (p1 - p0) * (j + 1) / 16);
       }
     }
     return sum;
@@ -108,8 +112,8 @@ class CellIntegral {
     if (depth >= 6 || std::abs(sum - whole) <= std::max(2e-7, 1e-3 * sum)) {
       return sum;
     }
-    return refine(t0, tm, p0, pm, a, depth + 1) + refine(t0, tm, pm, p1, b, depth + 1) + refine(tm, t1, p0, pm, c, depth + 1) +
-           refine(tm, t1, pm, p1, d, depth + 1);
+    return refine(t0, tm, p0, pm, a, depth + 1) + refine(t0, tm, pm, p1, b, depth + 1) +
+           refine(tm, t1, p0, pm, c, depth + 1) + refine(tm, t1, pm, p1, d, depth + 1);
   }
   const Grid& grid_;
   const std::function<double(const Vec3&)>& pdf_;
@@ -119,8 +123,8 @@ void add_text(ChiSquareResult* result, const std::string& problem) { result->tex
 
 }  // namespace
 
-ChiSquareResult chi_square_counts(const std::vector<double>& observed, const std::vector<double>& expected, size_t sample_count,
-                                  size_t invalid, int tests) {
+ChiSquareResult chi_square_counts(const std::vector<double>& observed, const std::vector<double>& expected,
+                                  size_t sample_count, size_t invalid, int tests) {
   ChiSquareResult result;
   double pooled_expected = 0.0;
   double pooled_observed = 0.0;
@@ -157,8 +161,8 @@ ChiSquareResult chi_square_counts(const std::vector<double>& observed, const std
   if (!(result.p_value >= level)) add_text(&result, "p below the level");
   result.passed = result.text.empty();
   std::ostringstream numbers;
-  numbers << "chi2 " << result.statistic << ", " << result.degrees_of_freedom << " degrees of freedom, p " << result.p_value << ", mass "
-          << result.mass;
+  numbers << "chi2 " << result.statistic << ", " << result.degrees_of_freedom << " degrees of freedom, p "
+          << result.p_value << ", mass " << result.mass;
   result.text += numbers.str();
   return result;
 }
@@ -200,11 +204,13 @@ ChiSquareResult chi_square_sphere(const std::function<bool(const Vec2&, const Ve
       expected[at(row, column)] = integral.integrate(dt * row, dt * (row + 1), dp * column, dp * (column + 1));
     }
   }
-  // The edge of a density's support may touch a cell beyond all the points: look closer beside cells that are not empty.
+  // The edge of a density's support may touch a cell beyond all the points: look closer beside cells that are not
+  // empty.
   const std::vector<double> first = expected;
   for (int row = 0; row < options.rows; row++) {
     for (int column = 0; column < options.columns; column++) {
-      const bool beside = (row > 0 && first[at(row - 1, column)] > 0.0) || (row + 1 < options.rows && first[at(row + 1, column)] > 0.0) ||
+      const bool beside = (row > 0 && first[at(row - 1, column)] > 0.0) ||
+                          (row + 1 < options.rows && first[at(row + 1, column)] > 0.0) ||
                           first[at(row, (column + 1) % options.columns)] > 0.0 ||
                           first[at(row, (column + options.columns - 1) % options.columns)] > 0.0;
       if (beside && first[at(row, column)] <= 0.0) {

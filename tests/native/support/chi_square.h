@@ -1,4 +1,5 @@
-// Chi-square test of a sampler against its density as pbrt has it (bsdfs_test.cpp): its 80×160 grid over the sphere and its tolerance.
+// Chi-square test of a sampler against its density as pbrt has it (bsdfs_test.cpp): its 80×160 grid over the sphere and
+// its tolerance.
 #pragma once
 
 #include <cmath>
@@ -24,11 +25,11 @@ struct ChiSquareResult {
 // How many tests one run of the suite makes: Šidák's correction of the 1 % level.
 inline constexpr int kTestsPerRun = 200;
 
-// observed: counts per cell; expected: sample count times the density's integral. Cells with an expectation under 5 are pooled.
-// invalid: samples out of the domain. A lost sample (sampler returned false) is simply not in `observed`; the density then has a mass
-// below 1.
-ChiSquareResult chi_square_counts(const std::vector<double>& observed, const std::vector<double>& expected, size_t sample_count,
-                                  size_t invalid, int tests = kTestsPerRun);
+// observed: counts per cell; expected: sample count times the density's integral. Cells with an expectation under 5 are
+// pooled. invalid: samples out of the domain. A lost sample (sampler returned false) is simply not in `observed`; the
+// density then has a mass below 1.
+ChiSquareResult chi_square_counts(const std::vector<double>& observed, const std::vector<double>& expected,
+                                  size_t sample_count, size_t invalid, int tests = kTestsPerRun);
 
 struct ChiSquareOptions {
   size_t samples = 100000;

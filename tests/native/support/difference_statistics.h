@@ -13,10 +13,11 @@
 
 namespace gradus::test {
 
-// Seeds of independent renders; D = sampled difference − difference of the primal images has mean 0 if both are unbiased.
+// Seeds of independent renders; D = sampled difference − difference of the primal images has mean 0 if both are
+// unbiased.
 class DifferenceStatistics {
  public:
-  void add(const GradientImages& images, bool x) {
+  void add(const film::GradientImages& images, bool x) {
     const int step = images.channels * (x ? 1 : images.width);
     const std::vector<float>& plane = x ? images.dx : images.dy;
     sum_.resize(plane.size(), 0.0);
@@ -37,8 +38,8 @@ class DifferenceStatistics {
     total_squares_ += total * total;
     ++count_;
   }
-  // Mean of t² over all differences (1 without bias, but for the few degrees of freedom), t of each (A5's rule), and of all of them
-  // together.
+  // Mean of t² over all differences (1 without bias, but for the few degrees of freedom), t of each (A5's rule), and of
+  // all of them together.
   void check(const char* what, int minimum = 50) const {
     double sum_t2 = 0.0;
     int used = 0;
@@ -55,13 +56,15 @@ class DifferenceStatistics {
     ASSERT_GT(used, minimum) << what;
     const double expected = double(count_ - 1) / double(count_ - 3);
     EXPECT_LT(sum_t2 / used, 1.6 * expected) << what;
-    const auto off = std::count_if(p_values.begin(), p_values.end(), [&](double p) { return p < sidak(p_values.size()); });
+    const auto off =
+        std::count_if(p_values.begin(), p_values.end(), [&](double p) { return p < sidak(p_values.size()); });
     EXPECT_LE(double(off), 0.0025 * used) << what;
     // Differences share pixels and jitter, so the total's variance is that of whole renders.
     const double total = total_ / count_;
     const double total_variance = (total_squares_ - count_ * total * total) / (count_ - 1) / count_;
     EXPECT_LT(std::fabs(total), 5.0 * std::sqrt(total_variance)) << what;
-    std::printf("  %s: mean t² %.3f (expected %.3f), total %.4g ± %.2g\n", what, sum_t2 / used, expected, total, std::sqrt(total_variance));
+    std::printf("  %s: mean t² %.3f (expected %.3f), total %.4g ± %.2g\n", what, sum_t2 / used, expected, total,
+                std::sqrt(total_variance));
   }
 
  private:
@@ -75,7 +78,7 @@ class DifferenceStatistics {
 struct BothDirections {
   DifferenceStatistics dx, dy;
 
-  void add(const GradientImages& images) {
+  void add(const film::GradientImages& images) {
     dx.add(images, true);
     dy.add(images, false);
   }

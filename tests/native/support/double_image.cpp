@@ -13,41 +13,44 @@ namespace {
 using DVec3 = glm::dvec3;
 
 // No emitter of these scenes tells kinds of rays apart.
-const RayState kAnyRay;
+const shading::RayState kAnyRay;
 
 DVec3 to_double(const Vec3& v) { return DVec3(v.x, v.y, v.z); }
 
 // Follows a path and adds up its light.
-class DoubleObserver : public NoObserver {
+class DoubleObserver : public path::NoObserver {
  public:
-  explicit DoubleObserver(const PathContext& context) : context_(context) {}
+  explicit DoubleObserver(const path::PathContext& context) : context_(context) {}
   DVec3 radiance = DVec3(0.0);
 
-  void begin(const Sampler&, const CameraSample&) {
+  void begin(const path::Sampler&, const camera::CameraSample&) {
     radiance = DVec3(0.0);
     throughput_ = DVec3(1.0);
   }
-  void light_crossing(const RaySource&, const Contribution& c, const LightCrossing& light_crossing) { add(to_double(light_crossing.weight) * found(c)); }
-  void passed(const Segment& segment) { throughput_ *= to_double(segment.weight); }
-  void world(const RaySource&, const Contribution& c) { add(found(c)); }
-  void emission(const RaySource&, const Contribution& c, const Vertex&) { add(found(c)); }
-  void survived(float probability, const Vertex&) { throughput_ /= double(probability); }
-  void light(const Vertex& vertex, const LightSample& sample, ScatterClass scatter_class, const Contribution& c) {
-    const LitClass lit = light_class(context_, vertex, scatter_class, sample, kAnyRay);
+  void light_crossing(const path::RaySource&, const path::Contribution& c, const path::LightCrossing& light_crossing) {
+    add(to_double(light_crossing.weight) * found(c));
+  }
+  void passed(const path::Segment& segment) { throughput_ *= to_double(segment.weight); }
+  void world(const path::RaySource&, const path::Contribution& c) { add(found(c)); }
+  void emission(const path::RaySource&, const path::Contribution& c, const path::Vertex&) { add(found(c)); }
+  void survived(float probability, const path::Vertex&) { throughput_ /= double(probability); }
+  void light(const path::Vertex& vertex, const path::LightSample& sample, bsdf::ScatterClass scatter_class,
+             const path::Contribution& c) {
+    const path::LitClass lit = path::light_class(context_, vertex, scatter_class, sample, kAnyRay);
     add(to_double(lit.value) * to_double(c.light) / (double(c.pdf_light) + double(lit.pdf_bsdf)));
   }
-  void scatter(const Vertex& vertex, const VertexSample&, const ScatterEvent& event) {
+  void scatter(const path::Vertex& vertex, const path::VertexSample&, const path::ScatterEvent& event) {
     const double pdf = double(vertex.shade.closures.class_probability(event.scatter_class)) * double(event.sample.pdf);
     throughput_ *= to_double(event.sample.value) / pdf;
   }
 
  private:
-  static DVec3 found(const Contribution& c) {
+  static DVec3 found(const path::Contribution& c) {
     const double light = c.pdf_light, bsdf = c.pdf_bsdf;
     return to_double(c.light) * (light > 0.0 ? bsdf / (light + bsdf) : 1.0);
   }
   void add(const DVec3& value) { radiance += throughput_ * value; }
-  const PathContext& context_;
+  const path::PathContext& context_;
   DVec3 throughput_ = DVec3(1.0);
 };
 
@@ -66,25 +69,25 @@ double DoubleImage::worst() const {
   return result;
 }
 
-DoubleImage render_in_double(const IntegratorContext& context, uint32_t samples) {
-  const PathContext path(*context.snapshot, context.camera, context.settings);
-  Film film = make_test_film(context.settings, false);
-  const auto scratch = std::make_unique<PathScratch>();
-  PassRecorder recorder(path, &film, &film.counters);
+DoubleImage render_in_double(const integrator::IntegratorContext& context, uint32_t samples) {
+  const path::PathContext path(*context.snapshot, context.camera, context.settings);
+  film::Film film = make_test_film(context.settings, false);
+  const auto scratch = std::make_unique<path::PathScratch>();
+  path::PassRecorder recorder(path, &film, &film.counters);
   DoubleObserver observer(path);
-  PathTracer<DoubleObserver> tracer(path, scratch.get(), &recorder, &film.counters, &observer);
+  path::PathTracer<DoubleObserver> tracer(path, scratch.get(), &recorder, &film.counters, &observer);
   std::vector<Sums> sums(size_t(film.region.area()));
-  const WorkUnit unit{film.region, 0, samples, nullptr};
-  const auto vertices = std::make_unique<CameraVertices>(path);
-  for_each_sample(path, unit, film, vertices.get(), std::atomic<bool>{false}, [&](const PixelSample& s) {
-    const PathResult& result = tracer.trace(s.sampler, s.film, s.first);
-    add_primal(result, s, unit, &film, &film.counters);
-    if (!fits(result.radiance[0])) return;
+  const integrator::WorkUnit unit{film.region, 0, samples, nullptr};
+  const auto vertices = std::make_unique<path::CameraVertices>(path);
+  for_each_sample(path, unit, film, vertices.get(), std::atomic<bool>{false}, [&](const integrator::PixelSample& s) {
+    const path::PathResult& result = tracer.trace(s.sampler, s.film, s.first);
+    integrator::add_primal(result, s, unit, &film, &film.counters);
+    if (!film::fits(result.radiance[0])) return;
     sums[s.pixel].sum += observer.radiance;
     sums[s.pixel].squares += observer.radiance * observer.radiance;
   });
   DoubleImage result;
-  result.image = read_images(film, 0).primal;
+  result.image = film::read_images(film, 0).primal;
   for (size_t i = 0; i < result.image.size(); ++i) {
     const double mean = sums[i / 3].sum[int(i % 3)] / samples;
     const double variance = (sums[i / 3].squares[int(i % 3)] / samples - mean * mean) / std::max(1u, samples - 1);

@@ -1,4 +1,5 @@
-// The image in double precision: throughputs, weights and sums are made anew from the values and densities that sampling found in float.
+// The image in double precision: throughputs, weights and sums are made anew from the values and densities that
+// sampling found in float.
 #pragma once
 
 #include <vector>
@@ -11,11 +12,12 @@ struct DoubleImage {
   std::vector<float> image;   // of the plain path tracer, RGB
   std::vector<double> mean;   // the same in double
   std::vector<double> error;  // its standard error
-  // Largest difference of a value of the image, in units of its bound: 1 % of the standard error, and 1e-6 of the value for rounding it.
+  // Largest difference of a value of the image, in units of its bound: 1 % of the standard error, and 1e-6 of the value
+  // for rounding it.
   double worst() const;
 };
 
 // Samples that are not finite in float are in neither image.
-DoubleImage render_in_double(const IntegratorContext& context, uint32_t samples);
+DoubleImage render_in_double(const integrator::IntegratorContext& context, uint32_t samples);
 
 }  // namespace gradus::test

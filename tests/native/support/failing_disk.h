@@ -15,7 +15,8 @@
 
 namespace gradus::test {
 
-// Runs `write` in a process of its own, which has prepared itself: what went wrong, "" for nothing. No answer where it could not prepare.
+// Runs `write` in a process of its own, which has prepared itself: what went wrong, "" for nothing. No answer where it
+// could not prepare.
 inline std::optional<std::string> failure_of(const std::function<bool()>& prepare, const std::function<void()>& write) {
   int ends[2];
   EXPECT_EQ(pipe(ends), 0);

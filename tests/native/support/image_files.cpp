@@ -78,14 +78,14 @@ void append_png(png_structp png, png_bytep data, png_size_t length) {
 }
 void flush_png(png_structp) {}
 
-FileBytes write_png(uint32_t width, uint32_t height, int type, int bits, bool interlaced, const FileBytes& pixels, size_t row_bytes,
-                    const std::vector<png_color>& palette) {
+FileBytes write_png(uint32_t width, uint32_t height, int type, int bits, bool interlaced, const FileBytes& pixels,
+                    size_t row_bytes, const std::vector<png_color>& palette) {
   FileBytes out;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png_create_info_struct(png);
   png_set_write_fn(png, &out, append_png, flush_png);
-  png_set_IHDR(png, info, width, height, bits, type, interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png, info, width, height, bits, type, interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   if (!palette.empty()) {
     png_set_PLTE(png, info, palette.data(), static_cast<int>(palette.size()));
   }
@@ -113,10 +113,12 @@ Vec4 four_colors(float x, float y) {
 }
 
 FileBytes make_png(uint32_t width, uint32_t height, const Pattern& pattern, const PngOptions& options) {
-  constexpr int kTypes[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA};
+  constexpr int kTypes[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
+                            PNG_COLOR_TYPE_RGB_ALPHA};
   const FileBytes pixels = raster(width, height, pattern, options.channels, options.bits);
   const size_t row_bytes = static_cast<size_t>(width) * static_cast<size_t>(options.channels * options.bits / 8);
-  return write_png(width, height, kTypes[options.channels - 1], options.bits, options.interlaced, pixels, row_bytes, {});
+  return write_png(width, height, kTypes[options.channels - 1], options.bits, options.interlaced, pixels, row_bytes,
+                   {});
 }
 
 FileBytes make_palette_png(uint32_t width, uint32_t height) {
@@ -206,7 +208,8 @@ FileBytes make_tiff(uint32_t width, uint32_t height, const Pattern& pattern, con
         }
         const uint16_t s = static_cast<uint16_t>(plane);
         if (options.tiled) {
-          TIFFWriteEncodedTile(tiff, TIFFComputeTile(tiff, x0, y0, 0, s), block.data(), static_cast<tmsize_t>(block.size()));
+          TIFFWriteEncodedTile(tiff, TIFFComputeTile(tiff, x0, y0, 0, s), block.data(),
+                               static_cast<tmsize_t>(block.size()));
         } else {
           TIFFWriteEncodedStrip(tiff, TIFFComputeStrip(tiff, y0, s), block.data(), static_cast<tmsize_t>(block.size()));
         }
@@ -256,7 +259,8 @@ FileBytes make_exr(uint32_t width, uint32_t height, const Pattern& pattern, cons
   for (size_t k = 0; k < count; k++) {
     const std::string name = options.layer + options.channels[k];
     header.channels().insert(name, Imf::Channel(type));
-    char* base = reinterpret_cast<char*>(pixels.data()) + k * size - static_cast<ptrdiff_t>(x_stride) * options.offset_x -
+    char* base = reinterpret_cast<char*>(pixels.data()) + k * size -
+                 static_cast<ptrdiff_t>(x_stride) * options.offset_x -
                  static_cast<ptrdiff_t>(y_stride) * options.offset_y;
     buffer.insert(name, Imf::Slice(type, base, x_stride, y_stride));
   }
@@ -303,8 +307,10 @@ FileBytes make_deep_exr() {
     std::vector<unsigned> counts(16, 0);
     std::vector<char*> pointers(16, nullptr);
     Imf::DeepFrameBuffer buffer;
-    buffer.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()), sizeof(unsigned), 4 * sizeof(unsigned)));
-    buffer.insert("R", Imf::DeepSlice(Imf::HALF, reinterpret_cast<char*>(pointers.data()), sizeof(char*), 4 * sizeof(char*), 2));
+    buffer.insertSampleCountSlice(
+        Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()), sizeof(unsigned), 4 * sizeof(unsigned)));
+    buffer.insert(
+        "R", Imf::DeepSlice(Imf::HALF, reinterpret_cast<char*>(pointers.data()), sizeof(char*), 4 * sizeof(char*), 2));
     file.setFrameBuffer(buffer);
     file.writePixels(4);
   }
@@ -313,7 +319,8 @@ FileBytes make_deep_exr() {
 }
 
 FileBytes make_hdr(uint32_t width, uint32_t height, const Pattern& pattern, bool runs) {
-  const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(height) + " +X " + std::to_string(width) + "\n";
+  const std::string header =
+      "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(height) + " +X " + std::to_string(width) + "\n";
   FileBytes out(header.begin(), header.end());
   for (uint32_t y = 0; y < height; y++) {
     FileBytes row;
@@ -322,8 +329,9 @@ FileBytes make_hdr(uint32_t width, uint32_t height, const Pattern& pattern, bool
       int exponent = 0;
       const float largest = std::max({c.x, c.y, c.z});
       const float scale = largest > 1e-32f ? std::frexp(largest, &exponent) * 256.0f / largest : 0.0f;
-      row.insert(row.end(), {static_cast<uint8_t>(c.x * scale), static_cast<uint8_t>(c.y * scale), static_cast<uint8_t>(c.z * scale),
-                             static_cast<uint8_t>(largest > 1e-32f ? exponent + 128 : 0)});
+      row.insert(row.end(),
+                 {static_cast<uint8_t>(c.x * scale), static_cast<uint8_t>(c.y * scale),
+                  static_cast<uint8_t>(c.z * scale), static_cast<uint8_t>(largest > 1e-32f ? exponent + 128 : 0)});
     }
     if (!runs) {
       out.insert(out.end(), row.begin(), row.end());

@@ -26,7 +26,8 @@ FileBytes make_png(uint32_t width, uint32_t height, const Pattern& pattern, cons
 // Two bits per pixel, with a palette.
 FileBytes make_palette_png(uint32_t width, uint32_t height);
 
-FileBytes make_jpeg(uint32_t width, uint32_t height, const Pattern& pattern, bool grey = false, bool progressive = false);
+FileBytes make_jpeg(uint32_t width, uint32_t height, const Pattern& pattern, bool grey = false,
+                    bool progressive = false);
 
 struct TiffOptions {
   int bits = 8;  // 8, 16, or 32 for float

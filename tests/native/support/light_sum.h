@@ -10,7 +10,8 @@
 
 namespace gradus::test {
 
-// Σ Color · (Direct + Indirect) + Emission + Environment (contract 6.5), RGB. read: a pass, three values for each pixel.
+// Σ Color · (Direct + Indirect) + Emission + Environment (contract 6.5), RGB. read: a pass, three values for each
+// pixel.
 template <class Read>
 std::vector<float> sum_of_light(const Read& read) {
   std::vector<float> sum = read(GRADUS_PASS_EMISSION);

@@ -181,7 +181,7 @@ void PathScene::open_shutter(std::vector<float> curve, std::vector<Mat4> camera_
   camera_motion_ = std::move(camera_motion);
 }
 
-IntegratorContext PathScene::context(const GradusSettings& settings) {
+integrator::IntegratorContext PathScene::context(const GradusSettings& settings) {
   const float aspect = static_cast<float>(settings.height) / static_cast<float>(settings.width);
   const float window[4] = {-0.5f * field_, 0.5f * field_, -0.5f * field_ * aspect, 0.5f * field_ * aspect};
   for (int i = 0; i < 4; ++i) {
@@ -195,9 +195,9 @@ IntegratorContext PathScene::context(const GradusSettings& settings) {
   camera_desc.shutter_matrices = camera_keys_.empty() ? nullptr : &camera_keys_[0][0][0];
   scene.scene.set_camera(camera_desc);
   scene.lights(lights_);
-  IntegratorContext context;
+  integrator::IntegratorContext context;
   context.snapshot = scene.commit();
-  context.camera = Camera(context.snapshot->camera, settings.width, settings.height);
+  context.camera = camera::Camera(context.snapshot->camera, settings.width, settings.height);
   context.settings = settings;
   return context;
 }
@@ -223,8 +223,8 @@ void sample_at_pixel_centres(GradusSettings* settings) {
   settings->filter_width = 1e-4f;
 }
 
-void sample_film(const Integrator& integrator, uint32_t first, uint32_t count, Film* film) {
-  WorkUnit unit;
+void sample_film(const integrator::Integrator& integrator, uint32_t first, uint32_t count, film::Film* film) {
+  integrator::WorkUnit unit;
   unit.tile = film->region;
   unit.first_sample = first;
   unit.count = count;
@@ -232,9 +232,10 @@ void sample_film(const Integrator& integrator, uint32_t first, uint32_t count, F
   integrator.sample(unit, film, &film->counters, stop);
 }
 
-Film make_test_film(const GradusSettings& settings, bool gradients, int components) {
+film::Film make_test_film(const GradusSettings& settings, bool gradients, int components) {
   const Region region{0, 0, static_cast<int32_t>(settings.width), static_cast<int32_t>(settings.height)};
-  return Film(settings.width, settings.height, region, settings.film_transparent != 0 ? 4 : 3, components, gradients);
+  return film::Film(settings.width, settings.height, region, settings.film_transparent != 0 ? 4 : 3, components,
+                    gradients);
 }
 
 Surface matte(const Rgb& color) {
@@ -303,8 +304,9 @@ void add_lights_with_extent(PathScene* scene, uint32_t flags, float roughness) {
 }  // namespace
 
 const char* name_of(Scenario scenario) {
-  static const char* const names[] = {"DiffuseArea", "PointAndSun", "World",     "GlossyFloor", "RoughMetal", "Mirror",  "Glass",
-                                      "RoughGlass",  "Transparent", "LampsSeen", "LampsUnseen", "Facets",     "Fisheye", "Moving"};
+  static const char* const names[] = {"DiffuseArea", "PointAndSun", "World",      "GlossyFloor", "RoughMetal",
+                                      "Mirror",      "Glass",       "RoughGlass", "Transparent", "LampsSeen",
+                                      "LampsUnseen", "Facets",      "Fisheye",    "Moving"};
   return names[static_cast<int>(scenario)];
 }
 
@@ -339,7 +341,8 @@ void build(Scenario scenario, PathScene* scene) {
       add_ceiling_light(scene, 8.0f, 0.6f);
       scene->light(point_light(Vec3(-0.4f, 0.3f, 0.3f), 0.0f, 0.2f));
       break;
-    case Scenario::Facets: {  // many directions near the terminator, for lights that both techniques find, one, or the other
+    case Scenario::Facets: {  // many directions near the terminator, for lights that both techniques find, one, or the
+                              // other
       scene->scene.shadow_terminator_offset = 0.4f;
       add_lights_with_extent(scene, 0, 0.6f);
       scene->ball(Vec3(0.5f, -0.6f, 0.4f), 0.35f, scene->material(matte(Rgb(0.6f))), 4, true);
@@ -387,10 +390,12 @@ void build(Scenario scenario, PathScene* scene) {
       scene->camera_desc.panorama = GRADUS_PANORAMA_FISHEYE_EQUIDISTANT;
       scene->camera_desc.fisheye_fov = 3.0f;
       break;
-    case Scenario::Moving: {  // a light that turns, a ball that swells, a mirror and a glass ball that fly, seen by a moving eye
+    case Scenario::Moving: {  // a light that turns, a ball that swells, a mirror and a glass ball that fly, seen by a
+                              // moving eye
       Surface light;
       light.emission = Rgb(4.0f, 3.2f, 2.4f);
-      scene->scene.way = {translation(Vec3(-0.3f, 0, 0)), glm::rotate(translation(Vec3(0.3f, 0, 0)), 1.2f, Vec3(0, 0, 1))};
+      scene->scene.way = {translation(Vec3(-0.3f, 0, 0)),
+                          glm::rotate(translation(Vec3(0.3f, 0, 0)), 1.2f, Vec3(0, 0, 1))};
       scene->quad(Vec3(-0.4f, 0.5f, -0.4f), Vec3(0.8f, 0, 0), Vec3(0, 0, 0.8f), scene->material(light));
       scene->scene.way = {translation(Vec3(0, -0.15f, 0)), Mat4(1.0f), translation(Vec3(0.1f, 0.2f, 0))};
       scene->ball(Vec3(-0.5f, -0.6f, 0.3f), 0.3f, scene->material(glossy(0.0f)), 8, true);

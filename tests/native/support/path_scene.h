@@ -29,7 +29,8 @@ class PathScene {
   uint64_t material(const Surface& surface);
   uint64_t material(const GradusMaterial& desc);
   // A parallelogram: corner and two edges; its normal is along a × b.
-  void quad(const Vec3& corner, const Vec3& a, const Vec3& b, uint64_t material, uint32_t visibility = GRADUS_VISIBLE_ALL);
+  void quad(const Vec3& corner, const Vec3& a, const Vec3& b, uint64_t material,
+            uint32_t visibility = GRADUS_VISIBLE_ALL);
   // smooth: with normals of the true sphere.
   void ball(const Vec3& centre, float radius, uint64_t material, int rings = 12, bool smooth = false);
   void light(const GradusLight& light) { lights_.push_back(light); }
@@ -48,7 +49,7 @@ class PathScene {
   // Balls that follow swell by this factor while the shutter is open.
   float swelling = 1.0f;
   // Commits. settings.width and height give the camera's aspect.
-  IntegratorContext context(const GradusSettings& settings);
+  integrator::IntegratorContext context(const GradusSettings& settings);
 
   TestScene scene;
 
@@ -68,8 +69,8 @@ GradusSettings test_settings(uint32_t width, uint32_t height);
 void sample_at_pixel_centres(GradusSettings* settings);
 
 // All pixels with samples [first, first + count).
-void sample_film(const Integrator& integrator, uint32_t first, uint32_t count, Film* film);
-Film make_test_film(const GradusSettings& settings, bool gradients, int components = 1);
+void sample_film(const integrator::Integrator& integrator, uint32_t first, uint32_t count, film::Film* film);
+film::Film make_test_film(const GradusSettings& settings, bool gradients, int components = 1);
 
 // An open box with two coloured walls, seen from its open side, and a square light below its ceiling.
 void add_box(PathScene* scene, const Surface& floor);

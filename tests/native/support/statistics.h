@@ -40,7 +40,8 @@ double uniformity_p(const std::vector<double>& p_values);
 // Level of one of k tests for a level of 1 % of them all (Šidák).
 double sidak(size_t k);
 
-// |Σ d| / Σ|d| of signed differences averaged over 5×5 pixels (OSPRay's test): near 0 for noise, near 1 for bias. d: one value per pixel.
+// |Σ d| / Σ|d| of signed differences averaged over 5×5 pixels (OSPRay's test): near 0 for noise, near 1 for bias. d:
+// one value per pixel.
 struct SignRatio {
   void add(const std::vector<double>& d, int width, int height);
   double value() const;

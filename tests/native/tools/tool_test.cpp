@@ -50,8 +50,8 @@ class Tool : public ::testing::Test {
     EXPECT_OK(gradus_device_release(device));
   }
   Outcome run(const std::string& arguments, const std::string& environment = "") const {
-    const std::string command =
-        "cd '" + folder.string() + "' && " + environment + GRADUS_BINARY_DIR "/native/gradus " + arguments + " >out 2>err";
+    const std::string command = "cd '" + folder.string() + "' && " + environment + GRADUS_BINARY_DIR "/native/gradus " +
+                                arguments + " >out 2>err";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text("out"), text("err")};
   }
@@ -87,12 +87,14 @@ std::vector<float> channel_of(const fs::path& path, const char* name) {
 const char* const kStored = "store/good/ViewLayer/f+0000000.exr";
 
 TEST_F(Tool, RendersReconstructsAndCompares) {
-  const Outcome rendered = run("render good.gradus -o store --samples 16 --integrator gradient --image combined.exr --stats stats.jsonl");
+  const Outcome rendered =
+      run("render good.gradus -o store --samples 16 --integrator gradient --image combined.exr --stats stats.jsonl");
   ASSERT_EQ(rendered.code, 0) << rendered.err;
   EXPECT_NE(rendered.out.find(kStored), std::string::npos);
   EXPECT_NE(text("stats.jsonl").find("\"integrator\":\"gradient\""), std::string::npos);
   for (const char* how : {"regularized", "l2", "l1", "none"}) {
-    const Outcome made = run(std::string("reconstruct ") + kStored + " -o " + how + ".exr --passes noisy_image --reconstruction " + how);
+    const Outcome made =
+        run(std::string("reconstruct ") + kStored + " -o " + how + ".exr --passes noisy_image --reconstruction " + how);
     EXPECT_EQ(made.code, 0) << made.err;
     EXPECT_LT(relative_error(std::string(how) + ".exr", "combined.exr"), 0.1);
   }
@@ -103,7 +105,9 @@ TEST_F(Tool, RendersReconstructsAndCompares) {
 
 // Of the reconstruction that is written, whatever the frame was rendered for.
 TEST_F(Tool, WritesTheErrorOfWhatItReconstructs) {
-  ASSERT_EQ(run("render good.gradus -o f.exr --samples 16 --integrator gradient --reconstruction l2 --passes error --image l2.exr").code,
+  ASSERT_EQ(run("render good.gradus -o f.exr --samples 16 --integrator gradient --reconstruction l2 --passes error "
+                "--image l2.exr")
+                .code,
             0);
   ASSERT_EQ(run("reconstruct f.exr -o again.exr --passes error --reconstruction l2").code, 0);
   ASSERT_EQ(run("reconstruct f.exr -o none.exr --passes error --reconstruction none").code, 0);
@@ -128,7 +132,8 @@ TEST_F(Tool, ResumeHasTheBitsOfOneRender) {
 constexpr const char* kFakeDenoiser = " --denoiser oidn --denoiser-path " GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
 
 TEST_F(Tool, Denoises) {
-  const Outcome rendered = run(std::string("render good.gradus -o frame.exr --samples 16 --image combined.exr") + kFakeDenoiser);
+  const Outcome rendered =
+      run(std::string("render good.gradus -o frame.exr --samples 16 --image combined.exr") + kFakeDenoiser);
   ASSERT_EQ(rendered.code, 0) << rendered.err;
   ASSERT_EQ(run("reconstruct frame.exr -o plain.exr").code, 0);
   ASSERT_EQ(run(std::string("reconstruct frame.exr -o again.exr") + kFakeDenoiser).code, 0);
@@ -136,7 +141,8 @@ TEST_F(Tool, Denoises) {
   EXPECT_GT(relative_error("plain.exr", "combined.exr"), 0.1);
   const Outcome failed = run(std::string("reconstruct frame.exr -o failed.exr") + kFakeDenoiser, "FAKE_OIDN=fails ");
   EXPECT_EQ(failed.code, 0);
-  EXPECT_NE(failed.err.find("warning: the picture was not denoised: Open Image Denoise: the fake has no memory"), std::string::npos);
+  EXPECT_NE(failed.err.find("warning: the picture was not denoised: Open Image Denoise: the fake has no memory"),
+            std::string::npos);
   EXPECT_EQ(relative_error("failed.exr", "plain.exr"), 0.0);
 }
 
@@ -204,8 +210,9 @@ TEST_F(Tool, WritesNoPictureOverTheFrameThatItIsMadeOf) {
   const std::string frame = text("f.exr"), other = text("other.exr");
   for (const char* arguments :
        {"reconstruct f.exr -o f.exr", "reconstruct f.exr -o sub/../f.exr", "reconstruct f.exr -o symbolic.exr",
-        "reconstruct symbolic.exr -o f.exr", "reconstruct f.exr -o hard.exr", "reconstruct f.exr --merge other.exr -o other.exr",
-        "render good.gradus -o f.exr --image f.exr", "render good.gradus -o new.exr --image sub/../new.exr"}) {
+        "reconstruct symbolic.exr -o f.exr", "reconstruct f.exr -o hard.exr",
+        "reconstruct f.exr --merge other.exr -o other.exr", "render good.gradus -o f.exr --image f.exr",
+        "render good.gradus -o new.exr --image sub/../new.exr"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments;
     EXPECT_NE(outcome.err.find("which it would replace"), std::string::npos) << arguments << ": " << outcome.err;
@@ -224,7 +231,8 @@ TEST_F(Tool, BadValuesAreWrongUsage) {
         "render good.gradus -o store --integrator x", "render good.gradus -o store --region 1,2,3",
         "render good.gradus -o store --passes depth,nonsense", "reconstruct f.exr -o x.exr --reconstruction best",
         "reconstruct f.exr -o x.exr --denoiser yes", "reconstruct f.exr -o x.exr --passes nonsense",
-        "reconstruct f.exr -o x.exr --reconstruction l2 --alpha -1", "reconstruct f.exr -o x.exr --reconstruction l2 --alpha 1e-9"}) {
+        "reconstruct f.exr -o x.exr --reconstruction l2 --alpha -1",
+        "reconstruct f.exr -o x.exr --reconstruction l2 --alpha 1e-9"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments;
     const std::string given = arguments, last = given.substr(given.rfind("--"));
@@ -252,15 +260,18 @@ TEST_F(Tool, NoOptionIsIgnored) {
 
 // "all" failed at the first pass that the frame was rendered without.
 TEST_F(Tool, AllPassesAreThoseThatTheFrameHolds) {
-  ASSERT_EQ(run("render good.gradus -o f.exr --integrator path --reconstruction regularized --passes 'depth, uv'").code, 0);
+  ASSERT_EQ(run("render good.gradus -o f.exr --integrator path --reconstruction regularized --passes 'depth, uv'").code,
+            0);
   ASSERT_EQ(run("reconstruct f.exr -o all.exr --passes all").code, 0);
-  std::vector<std::string> names = image_channels((folder / "all.exr").string());
+  std::vector<std::string> names = film_io::image_channels((folder / "all.exr").string());
   const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
-  for (const char* name : {"R", "Noisy Image.R", "Depth.V", "UV.R", "Denoising Normal.R", "Error.V"}) EXPECT_TRUE(has(name)) << name;
+  for (const char* name : {"R", "Noisy Image.R", "Depth.V", "UV.R", "Denoising Normal.R", "Error.V"})
+    EXPECT_TRUE(has(name)) << name;
   for (const char* name : {"Mist.V", "Gradient X.R"}) EXPECT_FALSE(has(name)) << name;
   const Outcome outcome = run("reconstruct f.exr -o x.exr --passes depth,mist,gradient_x");
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.err.find("the frame was rendered without mist, gradient_x; it holds combined, noisy_image, depth"), std::string::npos)
+  EXPECT_NE(outcome.err.find("the frame was rendered without mist, gradient_x; it holds combined, noisy_image, depth"),
+            std::string::npos)
       << outcome.err;
 }
 
@@ -274,17 +285,18 @@ int occurrences(const std::string& text, const std::string& part) {
 std::vector<float> sum_of_layers(const std::string& path, const std::vector<std::string>& layers) {
   std::vector<float> sum;
   for (const std::string& layer : layers) {
-    const std::vector<float> rgb = load_rgb(path, layer).rgb;
+    const std::vector<float> rgb = film_io::load_rgb(path, layer).rgb;
     sum.resize(rgb.size());
     for (size_t i = 0; i < rgb.size(); ++i) sum[i] += rgb[i];
   }
   return sum;
 }
 
-const std::vector<std::string> kPaths = {"Path Emission", "Path Diffuse", "Path Reflection", "Path Transmission", "Path Residual"};
+const std::vector<std::string> kPaths = {"Path Emission", "Path Diffuse", "Path Reflection", "Path Transmission",
+                                         "Path Residual"};
 
 void expect_sum(const std::string& path) {
-  const std::vector<float> sum = sum_of_layers(path, kPaths), whole = load_rgb(path, "").rgb;
+  const std::vector<float> sum = sum_of_layers(path, kPaths), whole = film_io::load_rgb(path, "").rgb;
   double light = 0.0;
   for (size_t i = 0; i < whole.size(); ++i) {
     ASSERT_NEAR(sum[i], whole[i], 1e-4f + 1e-4f * std::abs(whole[i])) << path;
@@ -295,27 +307,32 @@ void expect_sum(const std::string& path) {
 
 TEST_F(Tool, WritesPassesOfComponents) {
   const std::string image = (folder / "i.exr").string(), again = (folder / "again.exr").string();
-  ASSERT_EQ(run("render good.gradus -o f.exr --image i.exr --use-decomposition 1 --component-passes color,normal").code, 0);
+  ASSERT_EQ(run("render good.gradus -o f.exr --image i.exr --use-decomposition 1 --component-passes color,normal").code,
+            0);
   expect_sum(image);
-  EXPECT_NO_THROW(load_rgb(image, "Path Diffuse Normal"));
+  EXPECT_NO_THROW(film_io::load_rgb(image, "Path Diffuse Normal"));
   for (const char* how : {"none", "regularized"}) {
-    const Outcome made = run(std::string("reconstruct f.exr -o again.exr --component-passes all --reconstruction ") + how);
+    const Outcome made =
+        run(std::string("reconstruct f.exr -o again.exr --component-passes all --reconstruction ") + how);
     ASSERT_EQ(made.code, 0) << made.err;
     expect_sum(again);
     for (const char* pass : {" Reflectance", " Irradiance", " Normal"})
-      EXPECT_NO_THROW(load_rgb(again, "Path Diffuse" + std::string(pass)));
+      EXPECT_NO_THROW(film_io::load_rgb(again, "Path Diffuse" + std::string(pass)));
   }
   const Outcome missing = run("reconstruct f.exr -o x.exr --component-passes color,motion");
   EXPECT_EQ(missing.code, 1);
-  EXPECT_NE(missing.err.find("without motion; there are color, reflectance, irradiance, normal"), std::string::npos) << missing.err;
+  EXPECT_NE(missing.err.find("without motion; there are color, reflectance, irradiance, normal"), std::string::npos)
+      << missing.err;
   EXPECT_EQ(run("reconstruct f.exr -o x.exr --component-passes light").code, 2);
   EXPECT_NE(run("reconstruct f.exr -o x.exr --component-passes uv").err.find("without uv"), std::string::npos);
   ASSERT_EQ(run("render good.gradus -o d.exr --use-decomposition 1 --component-passes object_index").code, 0);
   ASSERT_EQ(run("reconstruct d.exr -o details.exr --component-passes all").code, 0);
-  const std::vector<std::string> layers = image_channels((folder / "details.exr").string());
-  for (const char* layer : {"Path Diffuse UV.G", "Path Diffuse Object Index.V", "Path Diffuse Face Index.V", "Path Diffuse Emit.B"})
+  const std::vector<std::string> layers = film_io::image_channels((folder / "details.exr").string());
+  for (const char* layer :
+       {"Path Diffuse UV.G", "Path Diffuse Object Index.V", "Path Diffuse Face Index.V", "Path Diffuse Emit.B"})
     EXPECT_NE(std::find(layers.begin(), layers.end(), layer), layers.end()) << layer;
-  EXPECT_EQ(std::find(layers.begin(), layers.end(), "Path Diffuse Normal.R"), layers.end()) << "nobody asked for its sampling";
+  EXPECT_EQ(std::find(layers.begin(), layers.end(), "Path Diffuse Normal.R"), layers.end())
+      << "nobody asked for its sampling";
   ASSERT_EQ(run("render good.gradus -o whole.exr").code, 0);
   const Outcome whole = run("reconstruct whole.exr -o x.exr --component-passes color");
   EXPECT_EQ(whole.code, 1);
@@ -347,8 +364,8 @@ TEST_F(Tool, FilesThatAreCutShortAreNamedOnce) {
 TEST_F(Tool, RefusesImagesThatAreNotExr) {
   ASSERT_EQ(run("render good.gradus -o frame.exr --reconstruction l1").code, 0);
   std::ofstream(folder / "x.png") << "PNG";
-  for (const char* arguments : {"reconstruct frame.exr -o l1.png", "render good.gradus -o store --image l1.png", "compare x.png frame.exr",
-                                "compare frame.exr x.png"}) {
+  for (const char* arguments : {"reconstruct frame.exr -o l1.png", "render good.gradus -o store --image l1.png",
+                                "compare x.png frame.exr", "compare frame.exr x.png"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments;
     EXPECT_NE(outcome.err.find("only EXR"), std::string::npos) << arguments << ": " << outcome.err;
@@ -374,7 +391,8 @@ class ToolSequence : public Tool {
   }
   // Both files of a frame.
   void remove(int frame) const {
-    for (const char* part : {".base.exr", ".offset.exr"}) fs::remove(folder / kFolder / ("f+000000" + std::to_string(frame) + part));
+    for (const char* part : {".base.exr", ".offset.exr"})
+      fs::remove(folder / kFolder / ("f+000000" + std::to_string(frame) + part));
   }
   void render(uint32_t reconstruction, uint32_t samples = 4, bool is_static_scene = false) {
     fs::remove_all(folder / kFolder);
@@ -429,7 +447,8 @@ class ToolSequence : public Tool {
   }
   std::string stored() const {
     std::string all;
-    for (const auto& entry : fs::directory_iterator(folder / kFolder)) all += text(fs::path(kFolder) / entry.path().filename());
+    for (const auto& entry : fs::directory_iterator(folder / kFolder))
+      all += text(fs::path(kFolder) / entry.path().filename());
     return all;
   }
   static constexpr const char* kFolder = "store/anim/layer";
@@ -443,11 +462,12 @@ TEST_F(ToolSequence, WritesThePicturesThatWereDelivered) {
   EXPECT_NE(made.out.find("pictures/0001.exr"), std::string::npos) << made.out;
   for (int frame = 1; frame <= 6; ++frame) {
     const std::string path = (folder / ("pictures/000" + std::to_string(frame) + ".exr")).string();
-    const LoadedImage picture = load_rgb(path, "");
+    const scene::LoadedImage picture = film_io::load_rgb(path, "");
     for (size_t i = 0; i < 24 * 16; ++i) {
-      for (size_t c = 0; c < 3; ++c) ASSERT_EQ(picture.rgb[3 * i + c], delivered[size_t(frame) - 1][4 * i + c]) << frame;
+      for (size_t c = 0; c < 3; ++c)
+        ASSERT_EQ(picture.rgb[3 * i + c], delivered[size_t(frame) - 1][4 * i + c]) << frame;
     }
-    EXPECT_NO_THROW(load_rgb(path, "Gradient X"));
+    EXPECT_NO_THROW(film_io::load_rgb(path, "Gradient X"));
   }
   EXPECT_EQ(stored(), before) << "nothing is sampled";
 }
@@ -461,11 +481,12 @@ TEST_F(ToolSequence, WritesPassesOfComponents) {
     for (int frame = 1; frame <= 6; ++frame) {
       const std::string path = (folder / ("pictures/000" + std::to_string(frame) + ".exr")).string();
       expect_sum(path);
-      const std::vector<float> combined = load_rgb(path, "").rgb;
-      for (size_t i = 0; i < 24 * 16; ++i) ASSERT_NEAR(combined[3 * i], delivered[size_t(frame) - 1][4 * i], 1e-5f) << frame;
-      const std::vector<std::string> names = image_channels(path);
-      for (const char* name : {"Path Diffuse Motion.R", "Path Diffuse Tracked.V", "Path Diffuse Irradiance Tracked.V", "Path Diffuse UV.R",
-                               "Path Diffuse Face Index.V"}) {
+      const std::vector<float> combined = film_io::load_rgb(path, "").rgb;
+      for (size_t i = 0; i < 24 * 16; ++i)
+        ASSERT_NEAR(combined[3 * i], delivered[size_t(frame) - 1][4 * i], 1e-5f) << frame;
+      const std::vector<std::string> names = film_io::image_channels(path);
+      for (const char* name : {"Path Diffuse Motion.R", "Path Diffuse Tracked.V", "Path Diffuse Irradiance Tracked.V",
+                               "Path Diffuse UV.R", "Path Diffuse Face Index.V"}) {
         EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
       }
     }
@@ -476,7 +497,7 @@ TEST_F(ToolSequence, WritesPassesOfComponents) {
 TEST_F(ToolSequence, PartsHaveTheBitsOfTheWhole) {
   ASSERT_EQ(run("reconstruct store/anim/layer -o part --frames 3-4").code, 0);
   EXPECT_FALSE(fs::exists(folder / "part/0002.exr"));
-  const LoadedImage picture = load_rgb((folder / "part/0003.exr").string(), "");
+  const scene::LoadedImage picture = film_io::load_rgb((folder / "part/0003.exr").string(), "");
   for (size_t i = 0; i < 24 * 16; ++i) ASSERT_EQ(picture.rgb[3 * i], delivered[2][4 * i]);
 }
 
@@ -484,7 +505,7 @@ TEST_F(ToolSequence, ChangesHowFramesAreReconstructed) {
   for (const char* how : {"--reconstruction l1", "--alpha 0.05", "--window-size 2", "--film-exposure 2"}) {
     const Outcome made = run(std::string("reconstruct store/anim/layer -o other --frames 2 ") + how);
     ASSERT_EQ(made.code, 0) << how << ": " << made.err;
-    const LoadedImage picture = load_rgb((folder / "other/0002.exr").string(), "");
+    const scene::LoadedImage picture = film_io::load_rgb((folder / "other/0002.exr").string(), "");
     double sum = 0.0, delivered_sum = 0.0;
     bool same = true;
     for (size_t i = 0; i < 24 * 16; ++i) {
@@ -502,7 +523,7 @@ TEST_F(ToolSequence, WindowsHaveTheOverlapThatIsAskedFor) {
   const auto picture_with = [&](const std::string& windows) {
     const Outcome made = run("reconstruct store/anim/layer -o other --frames 2 " + windows);
     EXPECT_EQ(made.code, 0) << made.err;
-    return load_rgb((folder / "other/0002.exr").string(), "").rgb;
+    return film_io::load_rgb((folder / "other/0002.exr").string(), "").rgb;
   };
   EXPECT_EQ(picture_with("--window-size 4 --window-overlap 2"), picture_with("--window-size 4"));
   EXPECT_NE(picture_with("--window-size 4 --window-overlap 0"), picture_with("--window-size 4"));
@@ -541,7 +562,8 @@ TEST_F(ToolSequence, JobsOfAStepThatShareAFolderHaveThePicturesThatTheyDelivered
   ASSERT_EQ(made.code, 0) << made.err;
   EXPECT_EQ(made.err, "");
   for (int frame = 1; frame <= 6; ++frame) {
-    const LoadedImage picture = load_rgb((folder / ("pictures/000" + std::to_string(frame) + ".exr")).string(), "");
+    const scene::LoadedImage picture =
+        film_io::load_rgb((folder / ("pictures/000" + std::to_string(frame) + ".exr")).string(), "");
     for (size_t i = 0; i < 24 * 16; ++i) ASSERT_EQ(picture.rgb[3 * i], delivered[size_t(frame) - 1][4 * i]) << frame;
   }
   const Outcome info = run("info --json store/anim/layer");
@@ -566,7 +588,7 @@ TEST_F(ToolSequence, AnAutomaticDenoiserRunsWhereItPays) {
   const auto picture_with = [&](const std::string& options) {
     const Outcome made = run("reconstruct store/anim/layer -o other --frames 2" + options);
     EXPECT_EQ(made.code, 0) << made.err;
-    return load_rgb((folder / "other/0002.exr").string(), "").rgb;
+    return film_io::load_rgb((folder / "other/0002.exr").string(), "").rgb;
   };
   EXPECT_NE(picture_with(denoiser), picture_with(""));
 }
@@ -576,7 +598,7 @@ TEST_F(ToolSequence, StillFramesKeepTheirExposure) {
   render(GRADUS_RECONSTRUCTION_L2, 4, true);
   ASSERT_EQ(run("reconstruct store/anim/layer -o pictures").code, 0);
   const auto value_of = [&](int frame) {
-    return load_rgb((folder / ("pictures/000" + std::to_string(frame) + ".exr")).string(), "").rgb[600];
+    return film_io::load_rgb((folder / ("pictures/000" + std::to_string(frame) + ".exr")).string(), "").rgb[600];
   };
   ASSERT_GT(value_of(1), 0.0f);
   EXPECT_NEAR(value_of(4), 4.0f * value_of(1), 1e-3f * value_of(1));
@@ -585,7 +607,8 @@ TEST_F(ToolSequence, StillFramesKeepTheirExposure) {
 // A still had the name of an animation's own half: it took its place.
 TEST_F(ToolSequence, AStillBesideAnAnimationLeavesItAsItIs) {
   for (const char* part : {".base.exr", ".offset.exr"}) {
-    fs::copy_file(folder / kFolder / (std::string("f+0000001") + part), folder / kFolder / (std::string("f+0000000") + part));
+    fs::copy_file(folder / kFolder / (std::string("f+0000001") + part),
+                  folder / kFolder / (std::string("f+0000000") + part));
   }
   const std::string before = stored();
   fs::create_directories(folder / "stills/good");
@@ -601,7 +624,7 @@ TEST_F(ToolSequence, WritesWhatAutoDelivered) {
   render(GRADUS_RECONSTRUCTION_AUTO);
   const Outcome made = run("reconstruct store/anim/layer -o pictures --passes all");
   ASSERT_EQ(made.code, 0) << made.err;
-  const LoadedImage picture = load_rgb((folder / "pictures/0004.exr").string(), "");
+  const scene::LoadedImage picture = film_io::load_rgb((folder / "pictures/0004.exr").string(), "");
   for (size_t i = 0; i < 24 * 16; ++i) ASSERT_EQ(picture.rgb[3 * i], delivered[3][4 * i]);
   const Outcome l2 = run("reconstruct store/anim/layer -o other --reconstruction l2");
   EXPECT_EQ(l2.code, 1);
@@ -655,7 +678,8 @@ TEST_F(ToolSequence, InfoNamesDamagedFiles) {
   EXPECT_EQ(damaged.at("f+0000004.offset.exr").get<std::string>().find("f+0000004"), std::string::npos) << "named once";
   EXPECT_EQ(found.at("frames"), 3);
   EXPECT_EQ(found.at("missing"), "2, 4 to 5");
-  for (int frame = 1; frame <= 6; ++frame) fs::resize_file(store / ("f+000000" + std::to_string(frame) + ".base.exr"), 100);
+  for (int frame = 1; frame <= 6; ++frame)
+    fs::resize_file(store / ("f+000000" + std::to_string(frame) + ".base.exr"), 100);
   EXPECT_EQ(info(1).at("frames"), 0);
 }
 
@@ -663,7 +687,8 @@ TEST_F(ToolSequence, InfoNamesDamagedFiles) {
 TEST_F(ToolSequence, RefusesFramesThatDoNotFit) {
   ASSERT_EQ(run("render good.gradus -o f.exr --width 20 --integrator gradient").code, 0);
   for (const char* part : {"base", "offset"}) {
-    fs::copy_file(folder / "f.exr", folder / kFolder / (std::string("f+0000004.") + part + ".exr"), fs::copy_options::overwrite_existing);
+    fs::copy_file(folder / "f.exr", folder / kFolder / (std::string("f+0000004.") + part + ".exr"),
+                  fs::copy_options::overwrite_existing);
   }
   const Outcome outcome = run("reconstruct store/anim/layer -o pictures");
   EXPECT_EQ(outcome.code, 1);

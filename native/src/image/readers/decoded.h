@@ -1,5 +1,5 @@
-// What image readers deliver, and the limits they keep to. All readers take files as bytes in memory, treat them as hostile, and
-// report what is wrong as text.
+// What image readers deliver, and the limits they keep to. All readers take files as bytes in memory, treat them as
+// hostile, and report what is wrong as text.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,13 @@
 #include <span>
 #include <string>
 
-namespace gradus {
+namespace gradus::image {
 
 enum class PixelFormat : uint8_t { Byte, Short, Half, Float };  // 8 and 16 bit: 1.0 is the largest number
 
-inline size_t bytes_per_channel(PixelFormat format) { return format == PixelFormat::Byte ? 1 : format == PixelFormat::Float ? 4 : 2; }
+inline size_t bytes_per_channel(PixelFormat format) {
+  return format == PixelFormat::Byte ? 1 : format == PixelFormat::Float ? 4 : 2;
+}
 
 struct DecodedImage {
   uint32_t width = 0;
@@ -32,10 +34,11 @@ struct DecodedImage {
 inline constexpr uint64_t kMaxPixels = 1ull << 30;
 inline constexpr uint64_t kMaxSide = 1ull << 17;
 
-// Sets size and layout and reserves the pixels (not touched, so that a false header costs no memory). False, with a text, where the
-// size is impossible, or a file of `file_bytes` cannot hold that many bytes at `ratio` times compression.
-bool allocate(DecodedImage* image, uint64_t width, uint64_t height, uint32_t channels, PixelFormat format, size_t file_bytes,
-              uint64_t ratio, std::string* problem);
+// Sets size and layout and reserves the pixels (not touched, so that a false header costs no memory). False, with a
+// text, where the size is impossible, or a file of `file_bytes` cannot hold that many bytes at `ratio` times
+// compression.
+bool allocate(DecodedImage* image, uint64_t width, uint64_t height, uint32_t channels, PixelFormat format,
+              size_t file_bytes, uint64_t ratio, std::string* problem);
 
 using Bytes = std::span<const uint8_t>;
 
@@ -48,4 +51,4 @@ bool read_hdr(Bytes file, DecodedImage* image, std::string* problem);
 // By the first bytes, whatever the file is called.
 bool read_image(Bytes file, DecodedImage* image, std::string* problem);
 
-}  // namespace gradus
+}  // namespace gradus::image

@@ -1,5 +1,6 @@
-// OpenEXR: scanline and tiled, any compression, half, float and integer channels; of multipart files the first part with pixels, of
-// tiles the full resolution, of layers the plain channels or else the first layer. Deep images are refused.
+// OpenEXR: scanline and tiled, any compression, half, float and integer channels; of multipart files the first part
+// with pixels, of tiles the full resolution, of layers the plain channels or else the first layer. Deep images are
+// refused.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -16,7 +17,7 @@
 #include "image/readers/decoded.h"
 #include "image/readers/exr_header.h"
 
-namespace gradus {
+namespace gradus::image {
 namespace {
 
 class MemoryStream : public Imf::IStream {
@@ -62,22 +63,26 @@ std::vector<std::string> choose_channels(const Imf::ChannelList& list) {
       return chosen;
     }
     if (has(layer + "Y")) {
-      return has(layer + "A") ? std::vector<std::string>{layer + "Y", layer + "A"} : std::vector<std::string>{layer + "Y"};
+      return has(layer + "A") ? std::vector<std::string>{layer + "Y", layer + "A"}
+                              : std::vector<std::string>{layer + "Y"};
     }
   }
   return names.empty() ? names : std::vector<std::string>{names.front()};
 }
 
 bool all_half(const Imf::ChannelList& list, const std::vector<std::string>& names) {
-  return std::all_of(names.begin(), names.end(), [&](const std::string& name) { return list[name.c_str()].type == Imf::HALF; });
+  return std::all_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return list[name.c_str()].type == Imf::HALF; });
 }
 
 bool subsampled(const Imf::ChannelList& list, const std::vector<std::string>& names) {
-  return std::any_of(names.begin(), names.end(),
-                     [&](const std::string& name) { return list[name.c_str()].xSampling != 1 || list[name.c_str()].ySampling != 1; });
+  return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+    return list[name.c_str()].xSampling != 1 || list[name.c_str()].ySampling != 1;
+  });
 }
 
-bool read_light_pass(Imf::MultiPartInputFile* file, int part, size_t file_bytes, DecodedImage* image, std::string* problem) {
+bool read_light_pass(Imf::MultiPartInputFile* file, int part, size_t file_bytes, DecodedImage* image,
+                     std::string* problem) {
   const Imf::Header& header = file->header(part);
   const std::vector<std::string> names = choose_channels(header.channels());
   if (names.empty() || subsampled(header.channels(), names)) {
@@ -88,8 +93,8 @@ bool read_light_pass(Imf::MultiPartInputFile* file, int part, size_t file_bytes,
   const PixelFormat format = all_half(header.channels(), names) ? PixelFormat::Half : PixelFormat::Float;
   const int64_t width = static_cast<int64_t>(window.max.x) - window.min.x + 1;
   const int64_t height = static_cast<int64_t>(window.max.y) - window.min.y + 1;
-  if (!allocate(image, static_cast<uint64_t>(width), static_cast<uint64_t>(height), static_cast<uint32_t>(names.size()), format, file_bytes,
-                50000, problem)) {
+  if (!allocate(image, static_cast<uint64_t>(width), static_cast<uint64_t>(height), static_cast<uint32_t>(names.size()),
+                format, file_bytes, 50000, problem)) {
     return false;
   }
   image->associated_alpha = true;
@@ -99,8 +104,8 @@ bool read_light_pass(Imf::MultiPartInputFile* file, int part, size_t file_bytes,
   for (size_t c = 0; c < names.size(); c++) {
     char* first = reinterpret_cast<char*>(image->row_from_top(0)) + c * bytes_per_channel(format);
     buffer.insert(names[c], Imf::Slice(format == PixelFormat::Half ? Imf::HALF : Imf::FLOAT,
-                                       first - window.min.x * x_stride - window.min.y * y_stride, static_cast<size_t>(x_stride),
-                                       static_cast<size_t>(y_stride)));
+                                       first - window.min.x * x_stride - window.min.y * y_stride,
+                                       static_cast<size_t>(x_stride), static_cast<size_t>(y_stride)));
   }
   Imf::InputPart input(*file, part);
   input.setFrameBuffer(buffer);
@@ -132,4 +137,4 @@ bool read_exr(Bytes file, DecodedImage* image, std::string* problem) {
   return false;
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

@@ -1,11 +1,11 @@
-// Layout: magic, version and flags, then for each part attributes (name\0 type\0 size value), ended by an empty name; in multipart files
-// another empty name ends the last part. (openexr.com, "OpenEXR File Layout".)
+// Layout: magic, version and flags, then for each part attributes (name\0 type\0 size value), ended by an empty name;
+// in multipart files another empty name ends the last part. (openexr.com, "OpenEXR File Layout".)
 #include "image/readers/exr_header.h"
 
 #include <cstring>
 #include <string_view>
 
-namespace gradus {
+namespace gradus::image {
 namespace {
 
 constexpr uint32_t kMultipart = 0x1000;
@@ -130,4 +130,4 @@ bool check_exr_header(Bytes file, std::string* problem) {
   return true;
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

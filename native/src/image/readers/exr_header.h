@@ -5,9 +5,10 @@
 
 #include "image/readers/decoded.h"
 
-namespace gradus {
+namespace gradus::image {
 
-// Checks the data window (and the tile size) of every part. False, with a text, where one is impossible or the header is broken.
+// Checks the data window (and the tile size) of every part. False, with a text, where one is impossible or the header
+// is broken.
 bool check_exr_header(Bytes file, std::string* problem);
 
-}  // namespace gradus
+}  // namespace gradus::image

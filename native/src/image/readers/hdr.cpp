@@ -8,7 +8,7 @@
 
 #include "image/readers/decoded.h"
 
-namespace gradus {
+namespace gradus::image {
 namespace {
 
 class Reader {
@@ -127,7 +127,8 @@ bool read_row(Reader* reader, std::vector<uint8_t>* row, size_t width) {
   if (!reader->take(head, 4)) {
     return false;
   }
-  const bool planes = width >= 8 && width < 32768 && head[0] == 2 && head[1] == 2 && (head[2] << 8 | head[3]) == static_cast<int>(width);
+  const bool planes = width >= 8 && width < 32768 && head[0] == 2 && head[1] == 2 &&
+                      (head[2] << 8 | head[3]) == static_cast<int>(width);
   return planes ? read_planes(reader, row, width) : read_pixels(reader, row, width, head);
 }
 
@@ -179,4 +180,4 @@ bool read_hdr(Bytes file, DecodedImage* image, std::string* problem) {
   return true;
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

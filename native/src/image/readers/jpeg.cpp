@@ -1,5 +1,5 @@
-// JPEG through libjpeg-turbo: grey, RGB, and CMYK as Adobe writes it. libjpeg reports errors by longjmp: the functions that may be left
-// so hold nothing with a destructor.
+// JPEG through libjpeg-turbo: grey, RGB, and CMYK as Adobe writes it. libjpeg reports errors by longjmp: the functions
+// that may be left so hold nothing with a destructor.
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
@@ -9,7 +9,7 @@
 
 #include "image/readers/decoded.h"
 
-namespace gradus {
+namespace gradus::image {
 namespace {
 
 struct Jpeg {
@@ -87,8 +87,8 @@ bool decode(Jpeg* jpeg, Bytes file, DecodedImage* image, std::string* problem) {
   }
   const uint32_t components = jpeg->decoder.out_color_space == JCS_GRAYSCALE ? 1 : 3;
   // At least some bits per block of 64 pixels.
-  if (!allocate(image, jpeg->decoder.output_width, jpeg->decoder.output_height, components, PixelFormat::Byte, file.size(), 2000,
-                problem)) {
+  if (!allocate(image, jpeg->decoder.output_width, jpeg->decoder.output_height, components, PixelFormat::Byte,
+                file.size(), 2000, problem)) {
     return false;
   }
   const bool four = jpeg->decoder.out_color_space == JCS_CMYK;
@@ -135,4 +135,4 @@ bool read_jpeg(Bytes file, DecodedImage* image, std::string* problem) {
   return ok;
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

@@ -1,5 +1,5 @@
-// PNG of all kinds, through libpng: 8 or 16 bit, grey to RGBA. libpng reports errors by longjmp: the functions that may be left so hold
-// nothing with a destructor.
+// PNG of all kinds, through libpng: 8 or 16 bit, grey to RGBA. libpng reports errors by longjmp: the functions that may
+// be left so hold nothing with a destructor.
 #include <csetjmp>
 #include <cstring>
 #include <vector>
@@ -8,7 +8,7 @@
 
 #include "image/readers/decoded.h"
 
-namespace gradus {
+namespace gradus::image {
 namespace {
 
 struct Source {
@@ -69,8 +69,8 @@ bool decode(png_structp png, png_infop info, Source* source, DecodedImage* image
   }
   const PixelFormat format = png_get_bit_depth(png, info) == 16 ? PixelFormat::Short : PixelFormat::Byte;
   // Deflate reaches about 1030:1.
-  if (!allocate(image, png_get_image_width(png, info), png_get_image_height(png, info), png_get_channels(png, info), format, source->size,
-                1100, problem)) {
+  if (!allocate(image, png_get_image_width(png, info), png_get_image_height(png, info), png_get_channels(png, info),
+                format, source->size, 1100, problem)) {
     return false;
   }
   if (image->channels < 1 || image->channels > 4 || png_get_rowbytes(png, info) != image->row_bytes()) {
@@ -104,4 +104,4 @@ bool read_png(Bytes file, DecodedImage* image, std::string* problem) {
   return ok;
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

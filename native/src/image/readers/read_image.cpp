@@ -3,7 +3,7 @@
 
 #include "image/readers/decoded.h"
 
-namespace gradus {
+namespace gradus::image {
 namespace {
 
 bool starts_with(Bytes file, const char* magic, size_t length) {
@@ -17,14 +17,16 @@ struct Format {
   Reader reader;
 };
 constexpr Format kFormats[] = {
-    {"\x89PNG", 4, read_png}, {"\xff\xd8\xff", 3, read_jpeg}, {"II*\0", 4, read_tiff},           {"MM\0*", 4, read_tiff},
-    {"II+\0", 4, read_tiff},  {"MM\0+", 4, read_tiff},        {"\x76\x2f\x31\x01", 4, read_exr}, {"#?", 2, read_hdr},
+    {"\x89PNG", 4, read_png},          {"\xff\xd8\xff", 3, read_jpeg},
+    {"II*\0", 4, read_tiff},           {"MM\0*", 4, read_tiff},
+    {"II+\0", 4, read_tiff},           {"MM\0+", 4, read_tiff},
+    {"\x76\x2f\x31\x01", 4, read_exr}, {"#?", 2, read_hdr},
 };
 
 }  // namespace
 
-bool allocate(DecodedImage* image, uint64_t width, uint64_t height, uint32_t channels, PixelFormat format, size_t file_bytes,
-              uint64_t ratio, std::string* problem) {
+bool allocate(DecodedImage* image, uint64_t width, uint64_t height, uint32_t channels, PixelFormat format,
+              size_t file_bytes, uint64_t ratio, std::string* problem) {
   if (width == 0 || height == 0) {
     *problem = "it has no pixels";
     return false;
@@ -64,4 +66,4 @@ bool read_image(Bytes file, DecodedImage* image, std::string* problem) {
   return false;
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

@@ -1,5 +1,5 @@
-// TIFF and BigTIFF through libtiff: the usual layouts (8, 16 bit, half, float; grey to RGBA; strips or tiles) as they are, the rest
-// (palettes, CMYK, LAB, odd bits) through libtiff's own conversion to 8 bit RGBA.
+// TIFF and BigTIFF through libtiff: the usual layouts (8, 16 bit, half, float; grey to RGBA; strips or tiles) as they
+// are, the rest (palettes, CMYK, LAB, odd bits) through libtiff's own conversion to 8 bit RGBA.
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
@@ -10,7 +10,7 @@
 
 #include "image/readers/decoded.h"
 
-namespace gradus {
+namespace gradus::image {
 namespace {
 
 struct Source {
@@ -60,7 +60,8 @@ class Tiff {
     TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, source);
     TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, source);
     TIFFOpenOptionsSetMaxSingleMemAlloc(options, tmsize_t{1} << 32);
-    handle_ = TIFFClientOpenExt("image", "rm", source, read_bytes, no_write, seek, close_nothing, size_of, no_map, no_unmap, options);
+    handle_ = TIFFClientOpenExt("image", "rm", source, read_bytes, no_write, seek, close_nothing, size_of, no_map,
+                                no_unmap, options);
     TIFFOpenOptionsFree(options);
   }
   ~Tiff() {
@@ -90,7 +91,8 @@ struct Layout {
   bool direct() const {
     const bool depth = (sample_format == SAMPLEFORMAT_UINT && (bits == 8 || bits == 16)) ||
                        (sample_format == SAMPLEFORMAT_IEEEFP && (bits == 16 || bits == 32));
-    const bool colour = photometric == PHOTOMETRIC_RGB ? samples >= 3 : photometric == PHOTOMETRIC_MINISBLACK && samples >= 1;
+    const bool colour =
+        photometric == PHOTOMETRIC_RGB ? samples >= 3 : photometric == PHOTOMETRIC_MINISBLACK && samples >= 1;
     return depth && colour && orientation == ORIENTATION_TOPLEFT;
   }
   PixelFormat format() const {
@@ -108,7 +110,8 @@ struct Layout {
 bool read_layout(TIFF* tiff, Layout* layout) {
   uint16_t extra_count = 0;
   uint16_t* extra = nullptr;
-  if (!TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &layout->width) || !TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &layout->height) ||
+  if (!TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &layout->width) ||
+      !TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &layout->height) ||
       !TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &layout->photometric)) {
     return false;
   }
@@ -139,7 +142,8 @@ void copy_block(const uint8_t* data, const Block& block, DecodedImage* image) {
   const uint32_t used = std::min(block.samples, image->channels - block.plane);
   for (uint32_t y = 0; y < rows; y++) {
     const uint8_t* in = data + static_cast<size_t>(y) * block.width * block.samples * bytes;
-    uint8_t* out = image->row_from_top(block.y0 + y) + (static_cast<size_t>(block.x0) * image->channels + block.plane) * bytes;
+    uint8_t* out =
+        image->row_from_top(block.y0 + y) + (static_cast<size_t>(block.x0) * image->channels + block.plane) * bytes;
     for (uint32_t x = 0; x < columns; x++, in += block.samples * bytes, out += image->channels * bytes) {
       std::memcpy(out, in, used * bytes);
     }
@@ -218,4 +222,4 @@ bool read_tiff(Bytes file, DecodedImage* image, std::string* problem) {
   return ok;
 }
 
-}  // namespace gradus
+}  // namespace gradus::image

@@ -11,9 +11,13 @@ namespace {
 // DIS takes no image that is smaller than its patches at the scale where it begins.
 constexpr int kSmallestSide = 32;
 
-int silent(int /*status*/, const char* /*function*/, const char* /*text*/, const char* /*file*/, int /*line*/, void* /*user*/) { return 0; }
+int silent(int /*status*/, const char* /*function*/, const char* /*text*/, const char* /*file*/, int /*line*/,
+           void* /*user*/) {
+  return 0;
+}
 
-// This copy of OpenCV is nobody else's: it prints nothing, and DIS, whose result depends on the number of threads, has one.
+// This copy of OpenCV is nobody else's: it prints nothing, and DIS, whose result depends on the number of threads, has
+// one.
 void set_up() {
   static const bool done = [] {
     cv::redirectError(&silent);
@@ -54,15 +58,18 @@ void estimate(const GradusFlowImages& images, const GradusFlowEffort& effort, fl
 
 }  // namespace
 
-// OpenCV's archives refer to solvers of linear systems and to OpenGL, which optical flow never calls. The linker takes this in place of
-// them.
-extern "C" void gradus_flow_left_out() { throw cv::Exception(cv::Error::StsNotImplemented, "left out of libgradus_flow", "", "", 0); }
+// OpenCV's archives refer to solvers of linear systems and to OpenGL, which optical flow never calls. The linker takes
+// this in place of them.
+extern "C" void gradus_flow_left_out() {
+  throw cv::Exception(cv::Error::StsNotImplemented, "left out of libgradus_flow", "", "", 0);
+}
 
 uint32_t gradus_flow_interface() { return GRADUS_FLOW_INTERFACE; }
 
 const char* gradus_flow_version() { return CV_VERSION; }
 
-int32_t gradus_flow_estimate(const GradusFlowImages* images, const GradusFlowEffort* effort, float* flow, char* error, size_t error_size) {
+int32_t gradus_flow_estimate(const GradusFlowImages* images, const GradusFlowEffort* effort, float* flow, char* error,
+                             size_t error_size) {
   try {
     set_up();
     estimate(*images, *effort, flow);

@@ -1,4 +1,5 @@
-/* Optical flow between two grey images: the C interface of libgradus_flow.so, which alone holds OpenCV. It is loaded when it is asked for.
+/* Optical flow between two grey images: the C interface of libgradus_flow.so, which alone holds OpenCV. It is loaded
+ * when it is asked for.
  */
 #ifndef GRADUS_FLOW_H
 #define GRADUS_FLOW_H
@@ -30,11 +31,12 @@ typedef struct GradusFlowEffort {
 GRADUS_FLOW_API uint32_t gradus_flow_interface(void);
 GRADUS_FLOW_API const char* gradus_flow_version(void); /* of OpenCV */
 
-/* For each pixel of `from` how far it is, in pixels along the row and from row to row, to where `to` shows the same. `flow`, 2 floats per
-   pixel, is also where the search starts: zero, or a guess. The result does not depend on the machine's threads. 0, or else something went
-   wrong and `error` says what, cut to its size; `flow` is undefined then. */
-GRADUS_FLOW_API int32_t gradus_flow_estimate(const GradusFlowImages* images, const GradusFlowEffort* effort, float* flow, char* error,
-                                             size_t error_size);
+/* For each pixel of `from` how far it is, in pixels along the row and from row to row, to where `to` shows the same.
+   `flow`, 2 floats per pixel, is also where the search starts: zero, or a guess. The result does not depend on the
+   machine's threads. 0, or else something went wrong and `error` says what, cut to its size; `flow` is undefined then.
+ */
+GRADUS_FLOW_API int32_t gradus_flow_estimate(const GradusFlowImages* images, const GradusFlowEffort* effort,
+                                             float* flow, char* error, size_t error_size);
 
 #ifdef __cplusplus
 }

@@ -6,13 +6,13 @@
 #include "base/error.h"
 #include "reconstruct/space_time/window_source.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 void CorrespondenceMap::set_row(int y, const int32_t* targets, std::vector<bool>* taken) {
   Shift* shift = shifts_.data() + size_t(y) * size_t(width_);
   for (int x = 0; x < width_; ++x) {
     const int32_t target = targets[x];
-    if (target == kNoCorrespondence) {
+    if (target == film::kNoCorrespondence) {
       shift[x] = kNone;
       continue;
     }
@@ -37,4 +37,4 @@ CorrespondenceMap read_correspondence(const WindowSource& source, int t) {
   return correspondence;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

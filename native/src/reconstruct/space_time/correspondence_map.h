@@ -6,7 +6,7 @@
 
 #include "reconstruct/field.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 class WindowSource;
 
@@ -16,13 +16,14 @@ class CorrespondenceMap {
   using Shift = int32_t;
   static constexpr Shift kNone = INT32_MIN;
 
-  CorrespondenceMap(int width, int height) : width_(width), height_(height), shifts_(size_t(width) * size_t(height), kNone) {}
+  CorrespondenceMap(int width, int height)
+      : width_(width), height_(height), shifts_(size_t(width) * size_t(height), kNone) {}
   int width() const { return width_; }
   int height() const { return height_; }
   const Shift* row(int y) const { return shifts_.data() + size_t(y) * size_t(width_); }
 
-  // From target pixels (WindowSource::read_correspondence()). Throws invalid_argument where a target lies outside or is another pixel's, too:
-  // threads write to linked pixels.
+  // From target pixels (WindowSource::read_correspondence()). Throws invalid_argument where a target lies outside or is
+  // another pixel's, too: threads write to linked pixels.
   void set_row(int y, const int32_t* targets, std::vector<bool>* taken);
 
   // function(begin, end, dx, dy): pixels [begin, end) of row y go to the same place relative to themselves.
@@ -45,4 +46,4 @@ class CorrespondenceMap {
 // From frame t of a window to the next.
 CorrespondenceMap read_correspondence(const WindowSource& source, int t);
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <vector>
 
-#include "reconstruct/field.h"
 #include "base/rows.h"
+#include "reconstruct/field.h"
 #include "reconstruct/space_time/correspondence_map.h"
 #include "reconstruct/space_time/screened_laplacian.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // F_t: to[i] = next[φ(i)] in row y, all channels; pixels without a link are left alone.
 inline void gather_row(const CorrespondenceMap& correspondence, int y, const Field& next, RollingRows* to) {
@@ -21,7 +21,8 @@ inline void gather_row(const CorrespondenceMap& correspondence, int y, const Fie
 }
 
 // F_t x_{t+1} − x_t: to[i] = next[φ(i)] − x[i] in row y, all channels; pixels without a link are left alone.
-inline void subtract_row(const CorrespondenceMap& correspondence, int y, const Field& x, const Field& next, RollingRows* to) {
+inline void subtract_row(const CorrespondenceMap& correspondence, int y, const Field& x, const Field& next,
+                         RollingRows* to) {
   correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
     for (int c = 0; c < x.channels(); ++c) {
       const float *here = x.row(y, c), *there = next.row(y + dy, c) + dx;
@@ -42,8 +43,8 @@ inline void scatter_row(const CorrespondenceMap& correspondence, int y, const fl
   });
 }
 
-// Passes over all rows, in pieces with scratch of their own: Pass has make(y), called for each row with the ones before and behind it, and
-// rows beyond the border among them, and then use(y).
+// Passes over all rows, in pieces with scratch of their own: Pass has make(y), called for each row with the ones before
+// and behind it, and rows beyond the border among them, and then use(y).
 template <class MakePass>
 void roll_over_rows(int height, const MakePass& make_pass) {
   constexpr int kGrain = 64;  // a row on each side of a piece is made twice
@@ -61,8 +62,8 @@ void roll_over_rows(int height, const MakePass& make_pass) {
       kGrain);
 }
 
-// Passes over the rows of K v, where fill(y, &rows) makes row y of v out of zeros and use(y, &rows, products) takes row y of v
-// and of the product, all channels one after another.
+// Passes over the rows of K v, where fill(y, &rows) makes row y of v out of zeros and use(y, &rows, products) takes row
+// y of v and of the product, all channels one after another.
 template <class Fill, class Use>
 void for_product_rows(const ScreenedLaplacian& k, int channels, const Fill& fill, const Use& use) {
   struct Pass {
@@ -73,7 +74,8 @@ void for_product_rows(const ScreenedLaplacian& k, int channels, const Fill& fill
     void use(int y) {
       weights.load(k, y);
       for (int c = 0; c < channels; ++c) {
-        weights.apply(rows.row(y - 1, c), rows.row(y, c), rows.row(y + 1, c), products.data() + ptrdiff_t(c) * k.width());
+        weights.apply(rows.row(y - 1, c), rows.row(y, c), rows.row(y + 1, c),
+                      products.data() + ptrdiff_t(c) * k.width());
       }
       take(y, &rows, products.data());
     }
@@ -88,4 +90,4 @@ void for_product_rows(const ScreenedLaplacian& k, int channels, const Fill& fill
   roll_over_rows(k.height(), [&] { return Pass{k, channels, fill, use}; });
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

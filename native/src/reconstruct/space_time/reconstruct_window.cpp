@@ -5,7 +5,7 @@
 
 #include "reconstruct/solver_planes.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Half the differences of the halves in the place of the values.
@@ -13,7 +13,9 @@ class HalfDifferences final : public WindowSource {
  public:
   explicit HalfDifferences(const HalvedWindowSource& source) : source_(source) {}
   WindowSize size() const override { return source_.size(); }
-  void read_row(RowKind kind, int t, int y, float* out) const override { source_.read_half_differences(kind, t, y, out); }
+  void read_row(RowKind kind, int t, int y, float* out) const override {
+    source_.read_half_differences(kind, t, y, out);
+  }
   void read_correspondence(int t, int y, int32_t* out) const override { source_.read_correspondence(t, y, out); }
 
  private:
@@ -23,7 +25,8 @@ class HalfDifferences final : public WindowSource {
 // Of the first three channels, by frames.
 class WindowErrors {
  public:
-  WindowErrors(const HalvedWindowSource& source, uint32_t reconstruction, float alpha, const CancelCheck& cancel, SolveReport* report)
+  WindowErrors(const HalvedWindowSource& source, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
+               SolveReport* report)
       : noise_(l2(HalfDifferences(source), alpha, cancel, report)) {
     if (reconstruction != GRADUS_RECONSTRUCTION_L2) l2_ = l2(source, alpha, cancel, report);
   }
@@ -50,13 +53,15 @@ class WindowErrors {
 
 }  // namespace
 
-void reconstruct_window(const HalvedWindowSource& source, uint32_t reconstruction, float alpha, bool with_error, const CancelCheck& cancel,
-                        SolveReport* report, const std::function<void(int t, Reconstructed picture)>& take) {
+void reconstruct_window(const HalvedWindowSource& source, uint32_t reconstruction, float alpha, bool with_error,
+                        const CancelCheck& cancel, SolveReport* report,
+                        const std::function<void(int t, Reconstructed picture)>& take) {
   const WindowSize size = source.size();
   WindowSolver solver(source, reconstruction, alpha, cancel, report);
   std::vector<Frames> parts;
   parts.push_back(solver.take_solution());
-  for (int c = parts.front().front().channels(); c < size.channels; ++c) parts.push_back(solver.apply(source, c, 1, cancel, report));
+  for (int c = parts.front().front().channels(); c < size.channels; ++c)
+    parts.push_back(solver.apply(source, c, 1, cancel, report));
   std::optional<WindowErrors> errors;
   if (with_error && !cancel()) errors.emplace(source, reconstruction, alpha, cancel, report);
   if (cancel()) return;
@@ -66,10 +71,11 @@ void reconstruct_window(const HalvedWindowSource& source, uint32_t reconstructio
     int channel = 0;
     for (Frames& part : parts) {
       const Field field = std::move(part[size_t(t)]);
-      for (int c = 0; c < field.channels(); ++c) store_channel(field, c, size_t(size.channels), picture.image.data() + channel++);
+      for (int c = 0; c < field.channels(); ++c)
+        store_channel(field, c, size_t(size.channels), picture.image.data() + channel++);
     }
     take(t, std::move(picture));
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

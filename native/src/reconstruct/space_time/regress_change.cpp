@@ -10,7 +10,7 @@
 #include "reconstruct/space_time/rounded_displacements.h"
 #include "reconstruct/space_time/solve_tracks.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Errors are alike in neighbours, and differ from one frame to the next: docs/method.md.
@@ -47,7 +47,8 @@ Field square(Field field) {
 class DisocclusionFiller {
  public:
   // linked: 0 or 1.
-  explicit DisocclusionFiller(Field linked) : linked_(std::move(linked)), around_(box_mean(linked_, kDisocclusionRadius)) {}
+  explicit DisocclusionFiller(Field linked)
+      : linked_(std::move(linked)), around_(box_mean(linked_, kDisocclusionRadius)) {}
 
   // Of fields that are 0 in holes.
   void fill_with_mean(Field* field) const { fill(field, box_mean(*field, kDisocclusionRadius), identity); }
@@ -68,7 +69,8 @@ class DisocclusionFiller {
 };
 
 Field corresponding_pixels(const CorrespondenceMap& correspondence) {
-  return make_field(correspondence.width(), correspondence.height(), [&](int x, int y) { return correspondence.row(y)[x] == CorrespondenceMap::kNone ? 0.0f : 1.0f; });
+  return make_field(correspondence.width(), correspondence.height(),
+                    [&](int x, int y) { return correspondence.row(y)[x] == CorrespondenceMap::kNone ? 0.0f : 1.0f; });
 }
 
 // Of a component, in the scale of 1 for the median luminance.
@@ -78,7 +80,8 @@ struct ComponentChange {
 };
 
 // Without what the links' rounding makes of it.
-ComponentChange read_change(const HalvedWindowSource& source, int t, const CorrespondenceMap& correspondence, Field* rounding, float scale) {
+ComponentChange read_change(const HalvedWindowSource& source, int t, const CorrespondenceMap& correspondence,
+                            Field* rounding, float scale) {
   const WindowSize size = source.size();
   const auto values = [&](int y, float* row) { source.read_row(RowKind::kDt, t, y, row); };
   const auto halves = [&](int y, float* row) { source.read_half_differences(RowKind::kDt, t, y, row); };
@@ -108,8 +111,8 @@ Field join(const Field& colours, const Field& alpha, const Field& rounding, floa
 
 }  // namespace
 
-Change regress_change(const ComponentSources& components, int t, const std::vector<Field>& pictures, const Features& features, float scale,
-                      const CancelCheck& cancel) {
+Change regress_change(const ComponentSources& components, int t, const std::vector<Field>& pictures,
+                      const film::Features& features, float scale, const CancelCheck& cancel) {
   Change change;
   HalvedImage sum;
   std::vector<Field> colours, alphas, roundings;
@@ -139,4 +142,4 @@ Change regress_change(const ComponentSources& components, int t, const std::vect
   return change;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -11,7 +11,7 @@
 #include "reconstruct/solver_planes.h"
 #include "reconstruct/space_time/solve_tracks.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Squared error of what shows none, in median luminances.
@@ -20,10 +20,11 @@ constexpr float kMinError = 1e-6f;
 constexpr float kExplained = 64.0f;
 constexpr int kColors = 3;
 
-Field to_field(const Film& frame, const std::vector<float>& image, int channels) {
+Field to_field(const film::Film& frame, const std::vector<float>& image, int channels) {
   const auto w = size_t(frame.region.width()), n = size_t(channels);
   Field field(frame.region.width(), frame.region.height(), channels);
-  for_values(&field, [&](float& value, int x, int y, int c) { value = image[(size_t(y) * w + size_t(x)) * n + size_t(c)]; });
+  for_values(&field,
+             [&](float& value, int x, int y, int c) { value = image[(size_t(y) * w + size_t(x)) * n + size_t(c)]; });
   return field;
 }
 
@@ -36,7 +37,8 @@ float scale_of(const std::vector<Field>& pictures) {
   return robust_scale(colours);
 }
 
-// By how much the pictures change otherwise than the changes say, all components together, and the errors at the ends of their ways.
+// By how much the pictures change otherwise than the changes say, all components together, and the errors at the ends
+// of their ways.
 struct Apart {
   Field colours, error;
 };
@@ -49,7 +51,8 @@ Apart measure(const Change& change, const std::vector<Field>& here, const std::v
     for_rows(h, [&](int y) {
       change.correspondence[k].for_runs(y, [&](int begin, int end, int dx, int dy) {
         for (int c = 0; c < kColors; ++c) {
-          const float *from = here[k].row(y, c), *to = next[k].row(y + dy, c) + dx, *difference = change.difference[k].row(y, c);
+          const float *from = here[k].row(y, c), *to = next[k].row(y + dy, c) + dx,
+                      *difference = change.difference[k].row(y, c);
           float* sum = apart.colours.row(y, c);
           for (int i = begin; i < end; ++i) sum[i] += to[i] - from[i] - difference[i];
         }
@@ -62,7 +65,8 @@ Apart measure(const Change& change, const std::vector<Field>& here, const std::v
   return apart;
 }
 
-// Weights of a change. Where both pictures say otherwise, by more than their errors explain, it is known no better than it meets them.
+// Weights of a change. Where both pictures say otherwise, by more than their errors explain, it is known no better than
+// it meets them.
 Field weigh_change(const Change& change, const Apart& apart) {
   return make_field(apart.error.width(), apart.error.height(), [&](int x, int y) {
     const float weight = change.weight.row(y)[x];
@@ -97,7 +101,8 @@ Reconstructed to_picture(std::vector<Field> components, size_t brightest) {
 
 }  // namespace
 
-void RegularizedWindows::reconstruct(const FrameRange& frames, const CancelCheck& cancel, SolveReport* report, const Take& take) {
+void RegularizedWindows::reconstruct(const FrameRange& frames, const CancelCheck& cancel, SolveReport* report,
+                                     const Take& take) {
   estimates_.erase(estimates_.begin(), estimates_.lower_bound(frames.first));
   std::vector<const Estimate*> window;
   for (int frame = frames.first; frame <= frames.last && !cancel(); ++frame) {
@@ -107,7 +112,8 @@ void RegularizedWindows::reconstruct(const FrameRange& frames, const CancelCheck
   std::vector<Field> couplings;
   for (size_t t = 0; t + 1 < window.size(); ++t) {
     const Estimate &here = *window[t], &next = *window[t + 1];
-    couplings.push_back(weigh_change(*here.change, measure(*here.change, here.pictures, next.pictures, here.error, next.error)));
+    couplings.push_back(
+        weigh_change(*here.change, measure(*here.change, here.pictures, next.pictures, here.error, next.error)));
   }
   std::vector<std::vector<Field>> solved(window.size());  // by frame and component
   for (size_t k = 0; k < window[0]->pictures.size(); ++k) {
@@ -123,27 +129,32 @@ void RegularizedWindows::reconstruct(const FrameRange& frames, const CancelCheck
     solve_tracks(steps, &pictures, &weights);
     for (size_t t = 0; t < window.size(); ++t) solved[t].push_back(std::move(pictures[t]));
   }
-  for (size_t t = 0; t < window.size(); ++t) take(int(t), to_picture(std::exchange(solved[t], {}), window[t]->brightest));
+  for (size_t t = 0; t < window.size(); ++t)
+    take(int(t), to_picture(std::exchange(solved[t], {}), window[t]->brightest));
 }
 
-const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, bool changes, const CancelCheck& cancel, SolveReport* report) {
+const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, bool changes, const CancelCheck& cancel,
+                                                                  SolveReport* report) {
   auto known = estimates_.find(frame);
-  if (known == estimates_.end()) known = estimates_.emplace(frame, estimate_single_frame(*open_(frame, cancel), cancel, report)).first;
+  if (known == estimates_.end())
+    known = estimates_.emplace(frame, estimate_single_frame(*open_(frame, cancel), cancel, report)).first;
   Estimate& estimate = known->second;
   if (!changes || estimate.change) return estimate;
   const ComponentSources sources = differences_(frame, cancel);
   check_size(estimate.pictures, sources);
-  estimate.change =
-      regress_change(sources, 0, estimate.pictures, std::exchange(estimate.features, {}), scale_of(estimate.pictures), cancel);
+  estimate.change = regress_change(sources, 0, estimate.pictures, std::exchange(estimate.features, {}),
+                                   scale_of(estimate.pictures), cancel);
   return estimate;
 }
 
-RegularizedWindows::Estimate RegularizedWindows::estimate_single_frame(const Film& samples, const CancelCheck& cancel, SolveReport* report) {
+RegularizedWindows::Estimate RegularizedWindows::estimate_single_frame(const film::Film& samples,
+                                                                       const CancelCheck& cancel, SolveReport* report) {
   Estimate estimate;
-  estimate.features = filter_features(read_features(samples));
+  estimate.features = filter_features(film::read_features(samples));
   const Reconstructed picture = regularize(samples, estimate.features, samples.components.size() > 1, cancel, report);
   if (picture.components.empty()) estimate.pictures.push_back(to_field(samples, picture.image, samples.channels));
-  for (const std::vector<float>& image : picture.components) estimate.pictures.push_back(to_field(samples, image, samples.channels));
+  for (const std::vector<float>& image : picture.components)
+    estimate.pictures.push_back(to_field(samples, image, samples.channels));
   estimate.brightest = brightest(estimate.pictures);
   estimate.error = to_field(samples, picture.error, 1);
   const float scale = scale_of(estimate.pictures), minimum = kMinError * scale * scale;
@@ -152,4 +163,4 @@ RegularizedWindows::Estimate RegularizedWindows::estimate_single_frame(const Fil
   return estimate;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "base/cubic_weights.h"
+#include "base/rows.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
-#include "base/rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Neighbours whose ways differ by more, in pixels, belong to something else, which goes elsewhere.
@@ -66,7 +66,8 @@ Lookup look_up(const Displacements& ways, int x, int y, int width, int height) {
 
 }  // namespace
 
-Field rounding_change(const Field& picture, const CorrespondenceMap& correspondence, const HalvedWindowSource& source, int t) {
+Field rounding_change(const Field& picture, const CorrespondenceMap& correspondence, const HalvedWindowSource& source,
+                      int t) {
   const int width = picture.width(), height = picture.height();
   const Displacements ways = read_displacements(correspondence, source, t);
   Field change(width, height, picture.channels());
@@ -77,7 +78,8 @@ Field rounding_change(const Field& picture, const CorrespondenceMap& corresponde
       const Lookup lookup = look_up(ways, x, y, width, height);
       for (int c = 0; c < picture.channels(); ++c) {
         float sum = 0.0f;
-        for (size_t k = 0; k < lookup.weight.size(); ++k) sum += lookup.weight[k] * picture.row(int(lookup.y[k]), c)[lookup.x[k]];
+        for (size_t k = 0; k < lookup.weight.size(); ++k)
+          sum += lookup.weight[k] * picture.row(int(lookup.y[k]), c)[lookup.x[k]];
         change.row(y, c)[x] = sum - picture.row(y, c)[x];
       }
     }
@@ -102,4 +104,4 @@ void keep_sampled_share(const Field& sampled, Field* rounding) {
   });
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -1,12 +1,12 @@
-// W_s + Dᵀ W_g D on one grid: what a frame's own rows make of its pixels, and what temporal and mixed rows make of the differences along
-// the links.
+// W_s + Dᵀ W_g D on one grid: what a frame's own rows make of its pixels, and what temporal and mixed rows make of the
+// differences along the links.
 #pragma once
 
 #include <vector>
 
 #include "reconstruct/space_time/weight_plane.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 struct ScreenedLaplacian {
   ScreenedLaplacian(int width, int height) : screen(width, height), right(width, height), up(width, height) {}
@@ -21,7 +21,8 @@ struct ScreenedLaplacian {
 // The weights that a row's pixels take part in.
 class LaplacianRow {
  public:
-  explicit LaplacianRow(int width) : width_(width), screen_(width), up_(width), down_(width), right_(size_t(width) + 1, 0.0f) {}
+  explicit LaplacianRow(int width)
+      : width_(width), screen_(width), up_(width), down_(width), right_(size_t(width) + 1, 0.0f) {}
   void load(const ScreenedLaplacian& from, int y) {
     from.screen.read_row(y, screen_.data());
     for (float& s : screen_) s *= from.factor;
@@ -39,7 +40,8 @@ class LaplacianRow {
     const float *s = screen(), *r = right(), *u = up(), *d = down();
     for (int i = 0; i < width_; ++i) {
       const float x = here[i];
-      out[i] = s[i] * x + r[i] * (x - here[i + 1]) + r[i - 1] * (x - here[i - 1]) + u[i] * (x - above[i]) + d[i] * (x - below[i]);
+      out[i] = s[i] * x + r[i] * (x - here[i + 1]) + r[i - 1] * (x - here[i - 1]) + u[i] * (x - above[i]) +
+               d[i] * (x - below[i]);
     }
   }
 
@@ -48,4 +50,4 @@ class LaplacianRow {
   std::vector<float> screen_, up_, down_, right_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -5,9 +5,10 @@
 #include "base/error.h"
 #include "reconstruct/space_time/reconstruct_window.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
-SequencePictures::SequencePictures(const FrameRange& range, const WindowShape& shape, SequenceSource source, const SequenceMethod& method)
+SequencePictures::SequencePictures(const FrameRange& range, const WindowShape& shape, SequenceSource source,
+                                   const SequenceMethod& method)
     : grid_(range, shape),
       source_(std::move(source)),
       method_(method),
@@ -39,8 +40,9 @@ void SequencePictures::solve_next(const CancelCheck& cancel, SolveReport* report
   if (method_.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
     regularized_.reconstruct(frames, cancel, report, take);
   } else {
-    reconstruct_window(*source_.window(frames, cancel), method_.reconstruction, method_.alpha, method_.with_error, cancel, report, take);
+    reconstruct_window(*source_.window(frames, cancel), method_.reconstruction, method_.alpha, method_.with_error,
+                       cancel, report, take);
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -1,4 +1,5 @@
-// The pictures of a sequence, one after the other: a window is solved when a picture is asked for that has a share in it.
+// The pictures of a sequence, one after the other: a window is solved when a picture is asked for that has a share in
+// it.
 #pragma once
 
 #include <functional>
@@ -11,7 +12,7 @@
 #include "reconstruct/space_time/regularized_windows.h"
 #include "reconstruct/space_time/window_blend.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // What makes pictures of a sequence differ.
 struct SequenceMethod {
@@ -32,7 +33,8 @@ struct SequenceSource {
 
 class SequencePictures {
  public:
-  SequencePictures(const FrameRange& range, const WindowShape& shape, SequenceSource source, const SequenceMethod& method);
+  SequencePictures(const FrameRange& range, const WindowShape& shape, SequenceSource source,
+                   const SequenceMethod& method);
 
   const SequenceMethod& method() const { return method_; }
   // There are no frames beyond this one after all.
@@ -41,8 +43,8 @@ class SequencePictures {
   FrameRange around(int frame) const { return grid_.around(frame); }
   // Whether the picture can be taken: it was not yet, nor a later one.
   bool has(int frame) const;
-  // Channels interleaved. Each picture is taken once, in order, with gaps as the caller likes; the first one may be any. Empty, or
-  // the Error CANCELLED where a frame was being read: cancelled, and no picture can be taken any more.
+  // Channels interleaved. Each picture is taken once, in order, with gaps as the caller likes; the first one may be
+  // any. Empty, or the Error CANCELLED where a frame was being read: cancelled, and no picture can be taken any more.
   Reconstructed take(int frame, const CancelCheck& cancel, SolveReport* report);
 
  private:
@@ -57,4 +59,4 @@ class SequencePictures {
   std::map<int, Reconstructed> ready_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

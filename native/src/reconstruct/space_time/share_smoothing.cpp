@@ -5,7 +5,7 @@
 #include "reconstruct/field_values.h"
 #include "reconstruct/space_time/solve_tracks.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // Black has room for quotients and their squares.
@@ -36,7 +36,8 @@ Field weigh_correspondence(const CorrespondenceMap& correspondence, const Field&
     float* weight = weights.row(y);
     correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
       min_ratios(light, next, y, begin, end, dx, dy, weight);
-      for (int x = begin; x < end; ++x) weight[x] *= weight[x] * std::min(mean_of(light, x, y), mean_of(next, x + dx, y + dy));
+      for (int x = begin; x < end; ++x)
+        weight[x] *= weight[x] * std::min(mean_of(light, x, y), mean_of(next, x + dx, y + dy));
     });
   });
   return weights;
@@ -46,7 +47,8 @@ Field weigh_correspondence(const CorrespondenceMap& correspondence, const Field&
 
 void ShareSmoothing::add_frame(Field light, const CorrespondenceMap* correspondence) {
   for_values(&light, [](float& value, int, int, int) { value = std::max(value, kMinLight); });
-  lights_.push_back(to_plane(make_field(light.width(), light.height(), [&](int x, int y) { return mean_of(light, x, y); })));
+  lights_.push_back(
+      to_plane(make_field(light.width(), light.height(), [&](int x, int y) { return mean_of(light, x, y); })));
   if (lights_.size() > 1) couplings_.push_back(to_plane(weigh_correspondence(*correspondence, last_, light)));
   last_ = std::move(light);
 }
@@ -60,11 +62,12 @@ void ShareSmoothing::apply(const SpaceTimeSystem& system, float data_weight, Fra
   }
   const Field no_difference;
   std::vector<TrackStep> steps;
-  for (size_t t = 0; t < couplings.size(); ++t) steps.push_back({system.correspondence(int(t)), no_difference, couplings[t]});
+  for (size_t t = 0; t < couplings.size(); ++t)
+    steps.push_back({system.correspondence(int(t)), no_difference, couplings[t]});
   solve_tracks(steps, values, &weights);
   for (size_t t = 0; t < lights.size(); ++t) {
     for_values(&(*values)[t], [&](float& value, int x, int y, int) { value *= lights[t].row(y)[x]; });
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -1,12 +1,13 @@
-// Smooths along every pixel's track as shares s of the light l around it, so that what fades with a light goes out with it:
+// Smooths along every pixel's track as shares s of the light l around it, so that what fades with a light goes out with
+// it:
 //   v → l s,   s = argmin Σ α² (v − l s)²/l + Σ c (s(φ(i), t+1) − s(i, t))²,
-// c the lesser of the two lights, times the square of the ratio by which a channel changes most: of a light that goes off, or is
-// another's colour, the shares are others. Linear, and sums along tracks stay.
+// c the lesser of the two lights, times the square of the ratio by which a channel changes most: of a light that goes
+// off, or is another's colour, the shares are others. Linear, and sums along tracks stay.
 #pragma once
 
 #include "reconstruct/space_time/system.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 class ShareSmoothing {
  public:
@@ -19,4 +20,4 @@ class ShareSmoothing {
   std::vector<WeightPlane> lights_, couplings_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

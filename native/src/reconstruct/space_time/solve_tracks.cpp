@@ -2,7 +2,7 @@
 
 #include "base/rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // d of a channel in row y; zeros of one that the step lacks.
@@ -11,7 +11,8 @@ const float* differences(const TrackStep& step, int y, int channel, const std::v
 }
 
 // What a frame and those before it know of the next one: v + d, of weight w in series with c.
-void carry_forth(const TrackStep& step, const Field& values, const Field& weights, Field* next_values, Field* next_weights) {
+void carry_forth(const TrackStep& step, const Field& values, const Field& weights, Field* next_values,
+                 Field* next_weights) {
   const std::vector<float> zeros(size_t(values.width()), 0.0f);
   for_rows(values.height(), [&](int y) {
     step.correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
@@ -51,4 +52,4 @@ void solve_tracks(const std::vector<TrackStep>& steps, std::vector<Field>* value
   for (size_t t = steps.size(); t-- > 0;) carry_back(steps[t], v[t + 1], w[t], &v[t]);
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -8,7 +8,7 @@
 
 #include "reconstruct/space_time/correspondence_map.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // From a frame to the next.
 struct TrackStep {
@@ -17,10 +17,11 @@ struct TrackStep {
   const Field& weight;      // c; one channel
 };
 
-// Weight of what has this squared error, within bounds whose sums and quotients have room in float: light of any strength.
+// Weight of what has this squared error, within bounds whose sums and quotients have room in float: light of any
+// strength.
 inline float track_weight(float error) { return std::clamp(1.0f / error, 1e-30f, 1e30f); }
 
 // values: v, which become x. weights: w, one channel; they are used up.
 void solve_tracks(const std::vector<TrackStep>& steps, std::vector<Field>* values, std::vector<Field>* weights);
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

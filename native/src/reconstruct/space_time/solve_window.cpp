@@ -4,11 +4,11 @@
 
 #include "reconstruct/cg_loop.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
-// Errors do not fall from the first step on: the start is 0, and where weights span decades the preconditioner's measure of the error is
-// not quite the true one.
+// Errors do not fall from the first step on: the start is 0, and where weights span decades the preconditioner's
+// measure of the error is not quite the true one.
 constexpr float kDivergence = 100.0f;
 
 // Calls function(t, y, channel), which returns a double; their sums over all rows, per channel.
@@ -16,7 +16,8 @@ template <class Function>
 Sums sum_window(const Frames& frames, const Function& function) {
   Sums sums(size_t(frames.front().channels()), 0.0);
   for (size_t t = 0; t < frames.size(); ++t) {
-    const Sums more = sum_rows(frames[t].height(), frames[t].channels(), [&](int y, int c) { return function(t, y, c); });
+    const Sums more =
+        sum_rows(frames[t].height(), frames[t].channels(), [&](int y, int c) { return function(t, y, c); });
     for (size_t c = 0; c < sums.size(); ++c) sums[c] += more[c];
   }
   return sums;
@@ -91,4 +92,4 @@ CgReport solve_window(const SpaceTimeSystem& system, TimeLadder* preconditioner,
   return run_conjugate_gradient(Steps{system, preconditioner, *fields, x}, goal, kDivergence, max_steps, cancel);
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

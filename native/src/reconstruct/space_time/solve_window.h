@@ -4,7 +4,7 @@
 #include "reconstruct/conjugate_gradient.h"
 #include "reconstruct/space_time/time_ladder.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // Work space, kept from solve to solve: with x, all that a solve holds per channel, 16 bytes per pixel and frame.
 struct WindowFields {
@@ -16,4 +16,4 @@ struct WindowFields {
 CgReport solve_window(const SpaceTimeSystem& system, TimeLadder* preconditioner, const CgGoal& goal, int max_steps,
                       const CancelCheck& cancel, WindowFields* fields, Frames* x);
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

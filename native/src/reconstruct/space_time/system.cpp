@@ -3,7 +3,7 @@
 #include "reconstruct/space_time/correspondence_rows.h"
 #include "reconstruct/space_time/value_rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 std::vector<CorrespondenceMap> read_all_correspondences(const WindowSource& source) {
@@ -14,8 +14,8 @@ std::vector<CorrespondenceMap> read_all_correspondences(const WindowSource& sour
 
 // Calls use(y, products) with the rows of W_s v + Dᵀ W_g g, of three kinds of rows; all channels one after another.
 template <class Use>
-void for_right_side(const ScreenedLaplacian& weights, const WindowSource& source, const RowKind (&kinds)[3], int t, int first, int channels,
-                    const Use& use) {
+void for_right_side(const ScreenedLaplacian& weights, const WindowSource& source, const RowKind (&kinds)[3], int t,
+                    int first, int channels, const Use& use) {
   const int w = weights.width();
   for_pieces(weights.height(), [&](int begin, int end) {
     ValueRow value(source.size(), first, channels), right(value), up(value), down(value);
@@ -85,12 +85,15 @@ WeightPlane& SpaceTimeSystem::weights(RowKind kind, int t) {
 
 void SpaceTimeSystem::set_weights(RowKind kind, int t, int y, float* values) {
   const int w = width();
-  const bool to_right = kind == RowKind::kDx || kind == RowKind::kDxDt, upwards = kind == RowKind::kDy || kind == RowKind::kDyDt;
+  const bool to_right = kind == RowKind::kDx || kind == RowKind::kDxDt,
+             upwards = kind == RowKind::kDy || kind == RowKind::kDyDt;
   if (to_right) values[w - 1] = 0.0f;
   if (upwards && y + 1 == height()) std::fill_n(values, w, 0.0f);
   if (is_temporal(kind)) {
     const CorrespondenceMap::Shift* here = correspondence(t).row(y);
-    const CorrespondenceMap::Shift* other = to_right ? here + 1 : upwards && y + 1 < height() ? correspondence(t).row(y + 1) : here;
+    const CorrespondenceMap::Shift* other = to_right                      ? here + 1
+                                            : upwards && y + 1 < height() ? correspondence(t).row(y + 1)
+                                                                          : here;
     for (int x = 0; x < w; ++x) {
       if (to_right && x + 1 == w) break;
       if (here[x] == CorrespondenceMap::kNone || other[x] != here[x]) values[x] = 0.0f;
@@ -124,7 +127,8 @@ RowSums SpaceTimeSystem::multiply_frame(int t, const Field& x, Field* out) const
   return sums;
 }
 
-RowSums SpaceTimeSystem::multiply_coupling(int t, const Field& x, const Field& next, Field* out, Field* next_out) const {
+RowSums SpaceTimeSystem::multiply_coupling(int t, const Field& x, const Field& next, Field* out,
+                                           Field* next_out) const {
   const int w = width(), channels = x.channels();
   RowSums sums(height(), channels);
   const auto subtract = [&](int y, RollingRows* rows) { subtract_row(correspondence(t), y, x, next, rows); };
@@ -151,4 +155,4 @@ void SpaceTimeSystem::right_side(const WindowSource& source, int first_channel, 
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -1,18 +1,18 @@
-// The normal equations of a window. Rows along the links are differences d of linked pixels, and what their weights make of d is a
-// screened Laplacian K on the first frame's grid. So A = AᵀWA is block tridiagonal:
+// The normal equations of a window. Rows along the links are differences d of linked pixels, and what their weights
+// make of d is a screened Laplacian K on the first frame's grid. So A = AᵀWA is block tridiagonal:
 //   xᵀA x = Σ_t x_tᵀ B_t x_t + Σ_t d_tᵀ K_t d_t,   d_t = F_t x_{t+1} − x_t,
 // with F_t reading frame t + 1 along the links.
 #pragma once
 
 #include <vector>
 
-#include "reconstruct/field.h"
 #include "base/rows.h"
+#include "reconstruct/field.h"
 #include "reconstruct/space_time/correspondence_map.h"
 #include "reconstruct/space_time/screened_laplacian.h"
 #include "reconstruct/space_time/window_source.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 using Frames = std::vector<Field>;
 
@@ -51,4 +51,4 @@ class SpaceTimeSystem {
   std::vector<CorrespondenceMap> correspondence_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

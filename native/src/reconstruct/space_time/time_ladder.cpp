@@ -5,7 +5,7 @@
 #include "reconstruct/field_values.h"
 #include "reconstruct/space_time/correspondence_rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 float parallel_sum(float a, float b) { return a * inverse_or_zero(a + b) * b; }
@@ -33,7 +33,8 @@ void add(const ScreenedLaplacian& more, Stencil* matrix) {
 }
 
 // What a frame of matrix B leaves to the next: Fᵀ (B : K) F.
-void eliminate(const Stencil& matrix, const ScreenedLaplacian& coupling, const CorrespondenceMap& correspondence, Stencil* next) {
+void eliminate(const Stencil& matrix, const ScreenedLaplacian& coupling, const CorrespondenceMap& correspondence,
+               Stencil* next) {
   clear(next);
   for_pieces(coupling.height(), [&](int begin, int end) {
     LaplacianRow row(coupling.width());
@@ -42,7 +43,8 @@ void eliminate(const Stencil& matrix, const ScreenedLaplacian& coupling, const C
       const float *screen = matrix.diagonal.row(y), *right = matrix.right.row(y), *up = matrix.up.row(y);
       correspondence.for_runs(y, [&](int first, int last, int dx, int dy) {
         // A mixed row couples pixels that stay neighbours, so its edge is one of the next frame, too.
-        float *to_screen = next->diagonal.row(y + dy) + dx, *to_right = next->right.row(y + dy) + dx, *to_up = next->up.row(y + dy) + dx;
+        float *to_screen = next->diagonal.row(y + dy) + dx, *to_right = next->right.row(y + dy) + dx,
+              *to_up = next->up.row(y + dy) + dx;
         for (int x = first; x < last; ++x) {
           to_screen[x] = parallel_sum(screen[x], row.screen()[x]);
           to_right[x] = parallel_sum(right[x], row.right()[x]);
@@ -67,8 +69,8 @@ void copy(const Field& from, Field* to) {
   });
 }
 
-// Θ between what S⁻¹K makes of values that are smooth, of which S and K see the screens alone, and of such that are rough, of which they
-// see the diagonals. Cycles find what is rough the better.
+// Θ between what S⁻¹K makes of values that are smooth, of which S and K see the screens alone, and of such that are
+// rough, of which they see the diagonals. Cycles find what is rough the better.
 constexpr float kSmooth = 0.75f;
 
 // Θ, near S⁻¹K: what of the next frame's values a frame takes over before its cycle.
@@ -83,7 +85,8 @@ WeightPlane guess(const Stencil& s, const ScreenedLaplacian& coupling) {
       for (int x = 0; x < s.width(); ++x) {
         const float k_all = k.screen()[x] + k.right()[x] + k.right()[x - 1] + k.up()[x] + k.down()[x];
         const float screen = std::max(all[x] - right[x] - right[x - 1] - up[x] - down[x], k.screen()[x]);
-        row[size_t(x)] = kSmooth * k.screen()[x] * inverse_or_zero(screen) + (1.0f - kSmooth) * k_all * inverse_or_zero(all[x]);
+        row[size_t(x)] =
+            kSmooth * k.screen()[x] * inverse_or_zero(screen) + (1.0f - kSmooth) * k_all * inverse_or_zero(all[x]);
       }
       plane.write_row(y, row.data());
     }
@@ -178,7 +181,9 @@ struct CarriedBack {
 // The transpose, but for what is added after the cycle.
 void TimeLadder::carry_back(int t, const Field& next, Field* b) const {
   const Stencil& s = schur_[size_t(t)].matrix();
-  roll_over_rows(s.height(), [&] { return CarriedBack{system_.coupling(t), s, guesses_[size_t(t)], system_.correspondence(t), next, b}; });
+  roll_over_rows(s.height(), [&] {
+    return CarriedBack{system_.coupling(t), s, guesses_[size_t(t)], system_.correspondence(t), next, b};
+  });
 }
 
 // z += Θ F next
@@ -201,7 +206,8 @@ void TimeLadder::add_guess(int t, const Field& next, Field* z) const {
 std::vector<RowSums> TimeLadder::apply(const Frames& r, Frames* z) {
   const int channels = solved_.channels();
   const size_t last = schur_.size() - 1;
-  // z holds the right sides of the frames, to which the frame before adds its share on the way forth, and the frame behind on the way back.
+  // z holds the right sides of the frames, to which the frame before adds its share on the way forth, and the frame
+  // behind on the way back.
   for (size_t t = 0; t <= last; ++t) {
     Field& right_side = (*z)[t];
     copy(r[t], &right_side);
@@ -212,8 +218,9 @@ std::vector<RowSums> TimeLadder::apply(const Frames& r, Frames* z) {
   for (size_t t = last;; --t) {
     std::swap((*z)[t], solved_);
     const Field& solution = (*z)[t];
-    sums.push_back(sum_each_row(system_.height(), channels,
-                                [&](int y, int c) { return dot_row(r[t].row(y, c), solution.row(y, c), system_.width()); }));
+    sums.push_back(sum_each_row(system_.height(), channels, [&](int y, int c) {
+      return dot_row(r[t].row(y, c), solution.row(y, c), system_.width());
+    }));
     if (t == 0) return sums;
     carry_back(int(t) - 1, solution, &(*z)[t - 1]);
     schur_[t - 1].cycle((*z)[t - 1], &solved_);
@@ -221,4 +228,4 @@ std::vector<RowSums> TimeLadder::apply(const Frames& r, Frames* z) {
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -7,7 +7,7 @@
 #include "base/types.h"
 #include "reconstruct/space_time/window_source.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 class ValueRow {
  public:
@@ -40,4 +40,4 @@ class ValueRow {
   std::vector<float> values_, read_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

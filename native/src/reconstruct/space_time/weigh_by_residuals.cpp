@@ -4,7 +4,7 @@
 #include "reconstruct/space_time/correspondence_rows.h"
 #include "reconstruct/space_time/value_rows.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // A value, and its differences to the right and up.
@@ -21,7 +21,13 @@ struct SquaredResiduals {
 class Residuals {
  public:
   Residuals(const WindowSource& source, const RowTriple& kinds, int t, int channels)
-      : source_(source), kinds_(kinds), t_(t), channels_(channels), value_(source.size(), 0, channels), right_(value_), up_(value_) {}
+      : source_(source),
+        kinds_(kinds),
+        t_(t),
+        channels_(channels),
+        value_(source.size(), 0, channels),
+        right_(value_),
+        up_(value_) {}
 
   void read(int y, RollingRows* v, SquaredResiduals* out) {
     value_.load(source_, kinds_.value, t_, y);
@@ -49,8 +55,8 @@ class Residuals {
 
 // fill(y, &rows): as of for_product_rows().
 template <class Fill>
-void weigh(const WindowSource& source, const RowTriple& kinds, int t, int channels, const RowNorm& of_values, const RowNorm& of_differences,
-           const Fill& fill, SpaceTimeSystem* system) {
+void weigh(const WindowSource& source, const RowTriple& kinds, int t, int channels, const RowNorm& of_values,
+           const RowNorm& of_differences, const Fill& fill, SpaceTimeSystem* system) {
   const int w = system->width(), h = system->height();
   for_pieces(h, [&](int begin, int end) {
     RollingRows v(w, channels);
@@ -76,7 +82,8 @@ void weigh(const WindowSource& source, const RowTriple& kinds, int t, int channe
 
 }  // namespace
 
-void weigh_by_residuals(const WindowSource& source, const Frames& x, float alpha, float scale, float floor, SpaceTimeSystem* system) {
+void weigh_by_residuals(const WindowSource& source, const Frames& x, float alpha, float scale, float floor,
+                        SpaceTimeSystem* system) {
   const int w = system->width(), channels = x.front().channels();
   const RowNorm norm = row_norm(channels, scale, floor);
   for (int t = 0; t < system->frames(); ++t) {
@@ -85,12 +92,15 @@ void weigh_by_residuals(const WindowSource& source, const Frames& x, float alpha
     const auto copy = [&](int y, RollingRows* rows) {
       for (int c = 0; c < channels; ++c) std::copy_n(frame.row(y, c), w, rows->row(y, c));
     };
-    weigh(source, {RowKind::kPrimal, RowKind::kDx, RowKind::kDy}, t, channels, norm.of_pixels(alpha), norm, copy, system);
+    weigh(source, {RowKind::kPrimal, RowKind::kDx, RowKind::kDy}, t, channels, norm.of_pixels(alpha), norm, copy,
+          system);
   }
   for (int t = 0; t + 1 < system->frames(); ++t) {
-    const auto subtract = [&](int y, RollingRows* rows) { subtract_row(system->correspondence(t), y, x[size_t(t)], x[size_t(t) + 1], rows); };
+    const auto subtract = [&](int y, RollingRows* rows) {
+      subtract_row(system->correspondence(t), y, x[size_t(t)], x[size_t(t) + 1], rows);
+    };
     weigh(source, {RowKind::kDt, RowKind::kDxDt, RowKind::kDyDt}, t, channels, norm, norm, subtract, system);
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

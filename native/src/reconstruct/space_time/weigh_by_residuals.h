@@ -3,9 +3,10 @@
 
 #include "reconstruct/space_time/system.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // From the residuals at x, whose channels share them.
-void weigh_by_residuals(const WindowSource& source, const Frames& x, float alpha, float scale, float floor, SpaceTimeSystem* system);
+void weigh_by_residuals(const WindowSource& source, const Frames& x, float alpha, float scale, float floor,
+                        SpaceTimeSystem* system);
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -2,13 +2,13 @@
 
 #include "reconstruct/solver_planes.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 namespace {
 
-// Weight of a difference over time between pixels that lie apart, over that of one at rest: what is seen through another pixel differs by
-// the part of a pixel that φ was rounded by, and repeats less of the noise (docs/method.md). Links come from the scene alone, so that L2
-// stays without bias.
+// Weight of a difference over time between pixels that lie apart, over that of one at rest: what is seen through
+// another pixel differs by the part of a pixel that φ was rounded by, and repeats less of the noise (docs/method.md).
+// Links come from the scene alone, so that L2 stays without bias.
 constexpr float kMovingWeight = 0.1f;
 
 float correspondence_weight(int32_t target, int32_t pixel) { return target == pixel ? 1.0f : kMovingWeight; }
@@ -27,8 +27,10 @@ void weigh_uniformly(const WindowSource& source, float alpha, SpaceTimeSystem* s
           source.read_row(kind, t, y, values.data());
           if (is_temporal(kind)) source.read_correspondence(t, y, correspondence.data());
           for (int x = 0; x < size.width; ++x) {
-            const float weight = is_temporal(kind) ? correspondence_weight(correspondence[size_t(x)], y * size.width + x) : 1.0f;
-            weights[size_t(x)] = is_complete(values.data() + ptrdiff_t(x) * size.channels, size.channels) ? weight : 0.0f;
+            const float weight =
+                is_temporal(kind) ? correspondence_weight(correspondence[size_t(x)], y * size.width + x) : 1.0f;
+            weights[size_t(x)] =
+                is_complete(values.data() + ptrdiff_t(x) * size.channels, size.channels) ? weight : 0.0f;
           }
           system->set_weights(kind, t, y, weights.data());
         }
@@ -37,4 +39,4 @@ void weigh_uniformly(const WindowSource& source, float alpha, SpaceTimeSystem* s
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -3,9 +3,9 @@
 
 #include "reconstruct/space_time/system.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // A row is there if its value is, in all channels. Which are there must not depend on the samples; then L2 is unbiased.
 void weigh_uniformly(const WindowSource& source, float alpha, SpaceTimeSystem* system);
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

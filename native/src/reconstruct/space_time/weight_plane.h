@@ -1,5 +1,5 @@
-// Weights of a kind of rows, one per pixel, in 16 bits: a float without the lower half of its bits (bfloat16). What is kept is the weight,
-// to 0.4 %, and the system is solved for it as it is; 0 and 1 are exact.
+// Weights of a kind of rows, one per pixel, in 16 bits: a float without the lower half of its bits (bfloat16). What is
+// kept is the weight, to 0.4 %, and the system is solved for it as it is; 0 and 1 are exact.
 #pragma once
 
 #include <algorithm>
@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "reconstruct/field.h"
 #include "base/rows.h"
+#include "reconstruct/field.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 class WeightPlane {
  public:
@@ -42,4 +42,4 @@ inline WeightPlane to_plane(const Field& field) {
   return plane;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

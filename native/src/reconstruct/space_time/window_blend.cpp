@@ -1,6 +1,6 @@
 #include "reconstruct/space_time/window_blend.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 void scale(std::vector<float>* values, float factor) {
@@ -43,4 +43,4 @@ void WindowBlend::add(int window, int frame, Reconstructed picture) {
   }
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

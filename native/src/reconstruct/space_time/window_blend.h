@@ -8,7 +8,7 @@
 #include "reconstruct/reconstructed.h"
 #include "reconstruct/space_time/window_grid.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 class WindowBlend {
  public:
@@ -16,7 +16,8 @@ class WindowBlend {
   using Take = std::function<void(int frame, Reconstructed picture)>;
   WindowBlend(const WindowGrid& grid, Take take) : grid_(grid), take_(std::move(take)) {}
 
-  // Windows in order, and their frames in order. An error of two that are blended is taken as that of their blend: it is no larger.
+  // Windows in order, and their frames in order. An error of two that are blended is taken as that of their blend: it
+  // is no larger.
   void add(int window, int frame, Reconstructed picture);
 
   // Whether a window has added to the frame, and others will.
@@ -28,4 +29,4 @@ class WindowBlend {
   std::map<int, Reconstructed> begun_;  // sums, by frame
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

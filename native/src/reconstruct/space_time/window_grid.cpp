@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 WindowGrid::WindowGrid(const FrameRange& range, const WindowShape& shape) : range_(range), shape_(shape) {
   if (range.last < range.first) throw invalid_argument("a range of frames ends before it begins");
@@ -27,7 +27,9 @@ FrameRange WindowGrid::frames(int window) const {
   return {int(std::max<int64_t>(begin, range_.first)), int(std::min<int64_t>(last, range_.last))};
 }
 
-int WindowGrid::first_with(int frame) const { return std::max(first_, window_that_begins_before(int64_t{frame} - shape_.overlap)); }
+int WindowGrid::first_with(int frame) const {
+  return std::max(first_, window_that_begins_before(int64_t{frame} - shape_.overlap));
+}
 int WindowGrid::last_with(int frame) const { return std::min(last_, window_that_begins_before(frame)); }
 
 float WindowGrid::share(int window, int frame) const {
@@ -40,4 +42,4 @@ float WindowGrid::share(int window, int frame) const {
   return begins ? s * s : 1.0f - s * s;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 // Frames of a window, and those that it shares with the next one: half of them at most.
 struct WindowShape {
@@ -23,7 +23,8 @@ struct FrameRange {
 // The windows of a range of frames: its ends shrink them, and one that another then contains is left out.
 class WindowGrid {
  public:
-  // Throws invalid_argument for a range that ends before it begins, and for windows that share more than half of their frames.
+  // Throws invalid_argument for a range that ends before it begins, and for windows that share more than half of their
+  // frames.
   explicit WindowGrid(const FrameRange& range, const WindowShape& shape = {});
   int first() const { return first_; }
   int last() const { return last_; }
@@ -34,7 +35,8 @@ class WindowGrid {
   // The frames of these windows.
   FrameRange around(int frame) const { return {frames(first_with(frame)).first, frames(last_with(frame)).last}; }
   bool contains(int frame) const { return range_.contains(frame); }
-  // Share of a window in a frame's picture: a Hann window over what two of them share, where they add up to 1. 1 where there is no other.
+  // Share of a window in a frame's picture: a Hann window over what two of them share, where they add up to 1. 1 where
+  // there is no other.
   float share(int window, int frame) const;
   // There are no frames beyond this one after all: windows that are still to come end there. Shares stay as they were.
   void end_at(int frame) { range_.last = std::min(range_.last, frame); }
@@ -47,4 +49,4 @@ class WindowGrid {
   int first_, last_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -5,18 +5,18 @@
 #include "base/error.h"
 #include "reconstruct/solver_planes.h"
 #include "reconstruct/space_time/value_rows.h"
-#include "reconstruct/space_time/weigh_uniformly.h"
 #include "reconstruct/space_time/weigh_by_residuals.h"
+#include "reconstruct/space_time/weigh_uniformly.h"
 #include "reconstruct/weighted_least_squares.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 constexpr CgGoal kExact{.residual = 1e-5f};
 constexpr int kMaxSteps = 100;
 
-// As minimise_l1.cpp has them, but for how far a system is solved: what is left here has less than 1e-4 of the error's square
-// (docs/method.md, "Space-time reconstruction").
+// As minimise_l1.cpp has them, but for how far a system is solved: what is left here has less than 1e-4 of the error's
+// square (docs/method.md, "Space-time reconstruction").
 constexpr float kFirstFloor = 0.05f;
 constexpr float kLastFloor = 2e-3f;
 constexpr float kFloorFactor = 0.2f;
@@ -45,7 +45,8 @@ float window_scale(const WindowSource& source) {
 
 }  // namespace
 
-WindowSolver::WindowSolver(const WindowSource& source, uint32_t reconstruction, float alpha, const CancelCheck& cancel, SolveReport* report)
+WindowSolver::WindowSolver(const WindowSource& source, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
+                           SolveReport* report)
     : system_(source) {
   alpha = chosen_alpha(reconstruction, alpha);
   const int channels = std::min(source.size().channels, 3);
@@ -72,8 +73,8 @@ Frames WindowSolver::apply(const WindowSource& planes, int first_channel, int ch
   return x;
 }
 
-Frames WindowSolver::solve(const WindowSource& planes, int first_channel, int channels, const CgGoal& goal, int max_steps,
-                           const CancelCheck& cancel, SolveReport* report) const {
+Frames WindowSolver::solve(const WindowSource& planes, int first_channel, int channels, const CgGoal& goal,
+                           int max_steps, const CancelCheck& cancel, SolveReport* report) const {
   TimeLadder ladder(system_, channels);
   ladder.update();
   Frames x = system_.make_fields(channels);
@@ -83,8 +84,10 @@ Frames WindowSolver::solve(const WindowSource& planes, int first_channel, int ch
   return x;
 }
 
-// Iteratively reweighted least squares from L2 on; the first system needs no more digits than the others before the last.
-Frames WindowSolver::minimise_l1(const WindowSource& source, float alpha, const CancelCheck& cancel, SolveReport* report) {
+// Iteratively reweighted least squares from L2 on; the first system needs no more digits than the others before the
+// last.
+Frames WindowSolver::minimise_l1(const WindowSource& source, float alpha, const CancelCheck& cancel,
+                                 SolveReport* report) {
   const int channels = std::min(source.size().channels, 3);
   const float scale = window_scale(source);
   TimeLadder ladder(system_, channels);
@@ -112,4 +115,4 @@ Frames WindowSolver::minimise_l1(const WindowSource& source, float alpha, const 
   return x;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

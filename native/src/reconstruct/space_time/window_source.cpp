@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 void HalvedWindowSource::read_off_centre(int, int, Vec2* out) const { std::fill_n(out, size().width, Vec2(0.0f)); }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

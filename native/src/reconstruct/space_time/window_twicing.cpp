@@ -8,7 +8,7 @@
 #include "reconstruct/space_time/value_rows.h"
 #include "reconstruct/twicing.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 namespace {
 
 // ‖I − x₀‖² by pixel.
@@ -33,7 +33,8 @@ Field squared_residuals(const WindowSource& source, int t, const Field& estimate
 
 }  // namespace
 
-WindowTwicing::WindowTwicing(const WindowSource& source, const Frames& estimate, const SpaceTimeSystem& system, float alpha)
+WindowTwicing::WindowTwicing(const WindowSource& source, const Frames& estimate, const SpaceTimeSystem& system,
+                             float alpha)
     : dct_(source.size().width, source.size().height), data_weight_(alpha * alpha) {
   for (size_t t = 0; t < estimate.size(); ++t) {
     Field kept = squared_residuals(source, int(t), estimate[t]);
@@ -42,14 +43,16 @@ WindowTwicing::WindowTwicing(const WindowSource& source, const Frames& estimate,
     const Field& frame = estimate[t];
     Field light = smooth_frame(frame.channels(), [&](int y, float* row) {
       for (int c = 0; c < frame.channels(); ++c, row += frame.width()) {
-        std::transform(frame.row(y, c), frame.row(y, c) + frame.width(), row, [](float value) { return std::fabs(value); });
+        std::transform(frame.row(y, c), frame.row(y, c) + frame.width(), row,
+                       [](float value) { return std::fabs(value); });
       }
     });
     along_tracks_.add_frame(std::move(light), t > 0 ? &system.correspondence(int(t) - 1) : nullptr);
   }
 }
 
-void WindowTwicing::apply(const WindowSource& planes, int first_channel, const SpaceTimeSystem& system, Frames* x) const {
+void WindowTwicing::apply(const WindowSource& planes, int first_channel, const SpaceTimeSystem& system,
+                          Frames* x) const {
   const size_t w = size_t(dct_.width()), channels = size_t(x->front().channels());
   Frames lost;
   for (size_t t = 0; t < x->size(); ++t) {
@@ -86,4 +89,4 @@ Field WindowTwicing::smooth_frame(int channels, const PoissonDct::FillRow& fill)
   return smooth;
 }
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

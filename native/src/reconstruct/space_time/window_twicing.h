@@ -1,12 +1,13 @@
-// Twicing over a window (twicing.h): x = x₀ + S W (I − x₀) gives back what an estimate x₀ lost of the noisy images I. S smooths in every
-// frame as the L2 solver does, and then along the tracks, so that what it gives back does not flicker: as a share of the light there, for
-// bright frames have lost more than dark ones. W limits outliers of the residual, by squares.
+// Twicing over a window (twicing.h): x = x₀ + S W (I − x₀) gives back what an estimate x₀ lost of the noisy images I. S
+// smooths in every frame as the L2 solver does, and then along the tracks, so that what it gives back does not flicker:
+// as a share of the light there, for bright frames have lost more than dark ones. W limits outliers of the residual, by
+// squares.
 #pragma once
 
 #include "reconstruct/poisson_dct.h"
 #include "reconstruct/space_time/share_smoothing.h"
 
-namespace gradus {
+namespace gradus::reconstruct {
 
 class WindowTwicing {
  public:
@@ -25,4 +26,4 @@ class WindowTwicing {
   ShareSmoothing along_tracks_;
 };
 
-}  // namespace gradus
+}  // namespace gradus::reconstruct

@@ -3,7 +3,7 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 struct AnalyticSky {
   float sun[3];       // direction
@@ -24,4 +24,4 @@ struct SkyAngles {
 };
 SkyAngles sky_angles(const AnalyticSky& sky, const Vec3& direction);
 
-}  // namespace gradus
+}  // namespace gradus::shading

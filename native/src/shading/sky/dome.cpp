@@ -6,7 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 constexpr size_t kHeaderFloats = sizeof(DomeHeader) / sizeof(float);
@@ -108,4 +108,4 @@ float dome_horizon(float altitude) {
   return -std::acos(kRadius / (kRadius + std::max(altitude, 0.0f)));
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

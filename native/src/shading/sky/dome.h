@@ -1,4 +1,5 @@
-// Skies that are computed by following rays through an atmosphere: a table over the sphere of directions, and the sun's disc.
+// Skies that are computed by following rays through an atmosphere: a table over the sphere of directions, and the sun's
+// disc.
 #pragma once
 
 #include <functional>
@@ -6,7 +7,7 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 struct DomeSettings {
   float sun_elevation = 0.0f;  // -π/2…π/2
@@ -36,8 +37,8 @@ struct DomeHeader {
   float rotation;
 };
 
-// Rows of elevation, dense at the horizon: row coordinate v in 0…1 is at the elevation ±(2v - 1)²·π/2. Columns of azimuth, the sun's in the
-// middle. As large as that of Cycles, whose interpolation it shares.
+// Rows of elevation, dense at the horizon: row coordinate v in 0…1 is at the elevation ±(2v - 1)²·π/2. Columns of
+// azimuth, the sun's in the middle. As large as that of Cycles, whose interpolation it shares.
 inline constexpr int kDomeWidth = 512, kDomeHeight = 256;
 
 // Fills the first half of a row: radiance for each azimuth 0 … kDomeWidth/2 - 1. The other half mirrors it.
@@ -59,4 +60,4 @@ std::vector<float> prepare_single_scattering(const DomeSettings& settings, bool 
 // multiple_scattering.cpp
 std::vector<float> prepare_multiple_scattering(const DomeSettings& settings);
 
-}  // namespace gradus
+}  // namespace gradus::shading

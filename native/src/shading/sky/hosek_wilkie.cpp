@@ -6,7 +6,7 @@
 #include "shading/sky/hosek_wilkie_data.h"
 #include "shading/sky/sky_color.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 constexpr size_t kControlPoints = 6, kTurbidities = 10;
@@ -20,7 +20,8 @@ double curve(const float* points, size_t stride, double x) {
   constexpr int kBinomial[kControlPoints] = {1, 5, 10, 10, 5, 1};
   double sum = 0.0;
   for (size_t i = 0; i < kControlPoints; ++i)
-    sum += kBinomial[i] * std::pow(1.0 - x, int(kControlPoints - 1 - i)) * std::pow(x, int(i)) * double(points[i * stride]);
+    sum += kBinomial[i] * std::pow(1.0 - x, int(kControlPoints - 1 - i)) * std::pow(x, int(i)) *
+           double(points[i * stride]);
   return sum;
 }
 
@@ -28,15 +29,17 @@ struct State {
   double turbidity, albedo, height;  // height: cube root of the elevation over π/2
 };
 
-// A parameter for turbidities and albedos between those of the table; `width` parameters at each control point, `k` the one that is asked
-// for.
+// A parameter for turbidities and albedos between those of the table; `width` parameters at each control point, `k` the
+// one that is asked for.
 double parameter(const float* table, size_t width, size_t k, const State& state) {
   const size_t low = std::min(size_t(state.turbidity), kTurbidities) - 1;
   const double t = state.turbidity - 1.0 - double(low);
   const auto at = [&](size_t albedo, size_t turbidity) {
     return curve(table + (albedo * kTurbidities + turbidity) * kControlPoints * width + k, width, state.height);
   };
-  const auto over_albedo = [&](size_t turbidity) { return (1.0 - state.albedo) * at(0, turbidity) + state.albedo * at(1, turbidity); };
+  const auto over_albedo = [&](size_t turbidity) {
+    return (1.0 - state.albedo) * at(0, turbidity) + state.albedo * at(1, turbidity);
+  };
   return t > 0.0 ? (1.0 - t) * over_albedo(low) + t * over_albedo(low + 1) : over_albedo(low);
 }
 
@@ -73,4 +76,4 @@ Rgb hosek_wilkie(const AnalyticSky& sky, const Vec3& direction) {
   return glm::max(xyz_to_rgb(xyz), Rgb(0.0f));
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

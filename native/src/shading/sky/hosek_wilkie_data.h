@@ -1,5 +1,6 @@
-// Coefficients of "An Analytic Model for Full Spectral Sky-Dome Radiance" (Hosek and Wilkie 2012), data for CIE XYZ, version 1.4a, to seven
-// digits, from the authors' sample implementation (ArHosekSkyModelData_CIEXYZ.h), which comes with this notice:
+// Coefficients of "An Analytic Model for Full Spectral Sky-Dome Radiance" (Hosek and Wilkie 2012), data for CIE XYZ,
+// version 1.4a, to seven digits, from the authors' sample implementation (ArHosekSkyModelData_CIEXYZ.h), which comes
+// with this notice:
 //
 // This source is published under the following 3-clause BSD license.
 //
@@ -31,9 +32,10 @@
 // */
 #pragma once
 
-namespace gradus {
+namespace gradus::shading {
 
-// One channel. By ground albedo (0, 1), turbidity (1…10), control point of the solar elevation; then, of each shape, its nine parameters.
+// One channel. By ground albedo (0, 1), turbidity (1…10), control point of the solar elevation; then, of each shape,
+// its nine parameters.
 struct HosekWilkieTable {
   float shape[2 * 10 * 6 * 9];
   float scale[2 * 10 * 6];
@@ -41,4 +43,4 @@ struct HosekWilkieTable {
 
 extern const HosekWilkieTable kHosekWilkieX, kHosekWilkieY, kHosekWilkieZ;
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -1,7 +1,7 @@
 // X of the Hosek-Wilkie model: licence and layout in hosek_wilkie_data.h.
 #include "shading/sky/hosek_wilkie_data.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 // clang-format off
 const HosekWilkieTable kHosekWilkieX = {
@@ -149,4 +149,4 @@ const HosekWilkieTable kHosekWilkieX = {
      0.8574294f, 1.865155f, -2.364707f, 4.337793f, 50.92831f, 25.23432f}};
 // clang-format on
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -1,7 +1,7 @@
 // Y of the Hosek-Wilkie model: licence and layout in hosek_wilkie_data.h.
 #include "shading/sky/hosek_wilkie_data.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 // clang-format off
 const HosekWilkieTable kHosekWilkieY = {
@@ -149,4 +149,4 @@ const HosekWilkieTable kHosekWilkieY = {
      0.903157f, 1.863917f, -1.955738f, 3.032665f, 54.3429f, 26.4178f}};
 // clang-format on
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -1,7 +1,7 @@
 // Z of the Hosek-Wilkie model: licence and layout in hosek_wilkie_data.h.
 #include "shading/sky/hosek_wilkie_data.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 // clang-format off
 const HosekWilkieTable kHosekWilkieZ = {
@@ -149,4 +149,4 @@ const HosekWilkieTable kHosekWilkieZ = {
      0.8640731f, 0.9858301f, 1.854956f, -6.798097f, 59.36468f, 31.10255f}};
 // clang-format on
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -1,9 +1,9 @@
 // Sunlight that is scattered once or many times, over four wavelengths: 630, 560, 490 and 430 nm.
 //
-// Fernando García Liñán's atmosphere (master's thesis; "Spectral sky", fgarlin.com, 2024), as Blender 5.0's Cycles has it (intern/sky, MIT
-// licence): light of second and higher order comes from a fit to path-traced skies. The constants and the number of steps are theirs,
-// because they are part of the picture. Along a row of the table, one elevation, everything but the sun's angle is the same and computed
-// once.
+// Fernando García Liñán's atmosphere (master's thesis; "Spectral sky", fgarlin.com, 2024), as Blender 5.0's Cycles has
+// it (intern/sky, MIT licence): light of second and higher order comes from a fit to path-traced skies. The constants
+// and the number of steps are theirs, because they are part of the picture. Along a row of the table, one elevation,
+// everything but the sun's angle is the same and computed once.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "shading/sky/dome.h"
 #include "shading/sky/sky_color.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 constexpr float kGround = 6371.0f, kThickness = 100.0f, kSpace = kGround + kThickness;  // km from the Earth's centre
@@ -51,10 +51,12 @@ struct Coefficients {
 };
 
 Coefficients coefficients(const Densities& density, float height) {
-  const float aerosols = density.aerosols * kAerosolDensity * (std::exp(-height / kAerosolHeight) + kAerosolBackground / kAerosolDensity);
+  const float aerosols =
+      density.aerosols * kAerosolDensity * (std::exp(-height / kAerosolHeight) + kAerosolBackground / kAerosolDensity);
   const float log_height = std::log(std::max(height, 1e-4f));
   const float from_peak = log_height - 3.22261f;
-  const float ozone = density.ozone * kOzoneColumn * 3.78547397e20f * std::exp(-5.55555555f * from_peak * from_peak - log_height);
+  const float ozone =
+      density.ozone * kOzoneColumn * 3.78547397e20f * std::exp(-5.55555555f * from_peak * from_peak - log_height);
   Coefficients c;
   c.air = density.air * std::exp(-0.07771971f * std::pow(height, 1.16364243f)) * kAir;
   c.aerosols = aerosols * kScattered;
@@ -91,7 +93,8 @@ float height_of(double radius) { return std::max(float(radius - double(kGround))
 Vec4 transmittance_to_space(const Densities& density, const PolarRay& ray) {
   const double step = ray.to_sphere(double(kSpace), 1.0) / kSteps;
   Vec4 depth(0.0f);
-  for (int i = 0; i < kSteps; ++i) depth += coefficients(density, height_of(ray.radius_at((i + 0.5) * step))).extinction;
+  for (int i = 0; i < kSteps; ++i)
+    depth += coefficients(density, height_of(ray.radius_at((i + 0.5) * step))).extinction;
   return glm::exp(-depth * float(step));
 }
 
@@ -125,7 +128,8 @@ class SunTable {
   }
   Vec4 at_ground(float cosine) const { return in_row(Place(0.5f * cosine + 0.5f, kTableCosines), 0); }
   Vec4 to_zenith(const Place& height) const {
-    return mix(table_[index(kTableCosines - 1, height.first)], table_[index(kTableCosines - 1, height.second)], height.t);
+    return mix(table_[index(kTableCosines - 1, height.first)], table_[index(kTableCosines - 1, height.second)],
+               height.t);
   }
 
  private:
@@ -151,7 +155,8 @@ class View {
     const PolarRay ray{start_, double(sine_)};
     const double step = ray.length() / kSteps;
     Vec4 transmittance(1.0f);
-    for (int i = 0; i < kSteps; ++i) points_.push_back(make_point(density, ray, (i + 0.5) * step, float(step), &transmittance));
+    for (int i = 0; i < kSteps; ++i)
+      points_.push_back(make_point(density, ray, (i + 0.5) * step, float(step), &transmittance));
   }
 
   // azimuth: from the sun's.
@@ -161,7 +166,8 @@ class View {
     const float rayleigh = rayleigh_phase(mu), aerosol = aerosol_phase(mu);
     Vec4 sum(0.0f);
     for (const Point& p : points_) {
-      const float sun_cosine = float(((p.distance * direction.x) * sun_.x + (start_ + p.distance * direction.z) * sun_.y) / p.radius);
+      const float sun_cosine =
+          float(((p.distance * direction.x) * sun_.x + (start_ + p.distance * direction.z) * sun_.y) / p.radius);
       const Vec4 direct = table_.at(sun_cosine, p.height);
       const Vec4 indirect = from_atmosphere(sun_cosine) + p.from_ground * table_.at_ground(sun_cosine) * sun_cosine;
       sum += p.air * (rayleigh * direct + indirect) + p.aerosols * (aerosol * direct + indirect);
@@ -178,7 +184,8 @@ class View {
   };
 
   // Integral over a step in which everything is constant but the transmittance (Hillaire 2015, Frostbite).
-  Point make_point(const Densities& density, const PolarRay& ray, double distance, float step, Vec4* transmittance) const {
+  Point make_point(const Densities& density, const PolarRay& ray, double distance, float step,
+                   Vec4* transmittance) const {
     const double radius = ray.radius_at(distance);
     const float height = height_of(radius);
     const Coefficients c = coefficients(density, height);
@@ -225,9 +232,10 @@ std::vector<float> prepare_multiple_scattering(const DomeSettings& settings) {
   const auto row = [&](int y, Rgb* half) {
     const float l = 2.0f * (float(y) + 0.5f) / float(kDomeHeight) - 1.0f;
     const View view(table, density, altitude, std::copysign(0.5f * kPi * l * l, l), settings.sun_elevation);
-    for (int x = 0; x < kDomeWidth / 2; ++x) half[x] = view.radiance(2.0f * kPi * (float(x) + 0.5f) / float(kDomeWidth) - kPi);
+    for (int x = 0; x < kDomeWidth / 2; ++x)
+      half[x] = view.radiance(2.0f * kPi * (float(x) + 0.5f) / float(kDomeWidth) - kPi);
   };
   return make_dome(settings, sun_color(settings, density, altitude), row);
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -1,5 +1,5 @@
-// Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight" (SIGGRAPH 1999), appendix A.2: luminance and chromaticity after
-// Perez.
+// Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight" (SIGGRAPH 1999), appendix A.2: luminance and
+// chromaticity after Perez.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 #include "shading/sky/analytic.h"
 #include "shading/sky/sky_color.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 // Factor from kcd/m² of the paper to the node's colours.
@@ -15,20 +15,26 @@ constexpr float kLuminance = 0.06f;
 
 float perez(const float* p, float zenith, float sun) {
   const float cos_sun = std::cos(sun);
-  return (1.0f + p[0] * std::exp(p[1] / std::cos(zenith))) * (1.0f + p[2] * std::exp(p[3] * sun) + p[4] * cos_sun * cos_sun);
+  return (1.0f + p[0] * std::exp(p[1] / std::cos(zenith))) *
+         (1.0f + p[2] * std::exp(p[3] * sun) + p[4] * cos_sun * cos_sun);
 }
 
 // Rows of (factor of the turbidity, constant).
 struct Line {
   float slope, constant;
 };
-constexpr Line kPerez[3][5] = {{{-0.0193f, -0.2592f}, {-0.0665f, 0.0008f}, {-0.0004f, 0.2125f}, {-0.0641f, -0.8989f}, {-0.0033f, 0.0452f}},
-                               {{-0.0167f, -0.2608f}, {-0.0950f, 0.0092f}, {-0.0079f, 0.2102f}, {-0.0441f, -1.6537f}, {-0.0109f, 0.0529f}},
-                               {{0.1787f, -1.4630f}, {-0.3554f, 0.4275f}, {-0.0227f, 5.3251f}, {0.1206f, -2.5771f}, {-0.0670f, 0.3703f}}};
-// Chromaticity at the zenith: rows by powers of the turbidity (2, 1, 0), columns by those of the sun's zenith angle (3, 2, 1, 0).
-constexpr float kZenith[2][3][4] = {
-    {{0.00166f, -0.00375f, 0.00209f, 0.0f}, {-0.02903f, 0.06377f, -0.03202f, 0.00394f}, {0.11693f, -0.21196f, 0.06052f, 0.25886f}},
-    {{0.00275f, -0.00610f, 0.00317f, 0.0f}, {-0.04214f, 0.08970f, -0.04153f, 0.00516f}, {0.15346f, -0.26756f, 0.06670f, 0.26688f}}};
+constexpr Line kPerez[3][5] = {
+    {{-0.0193f, -0.2592f}, {-0.0665f, 0.0008f}, {-0.0004f, 0.2125f}, {-0.0641f, -0.8989f}, {-0.0033f, 0.0452f}},
+    {{-0.0167f, -0.2608f}, {-0.0950f, 0.0092f}, {-0.0079f, 0.2102f}, {-0.0441f, -1.6537f}, {-0.0109f, 0.0529f}},
+    {{0.1787f, -1.4630f}, {-0.3554f, 0.4275f}, {-0.0227f, 5.3251f}, {0.1206f, -2.5771f}, {-0.0670f, 0.3703f}}};
+// Chromaticity at the zenith: rows by powers of the turbidity (2, 1, 0), columns by those of the sun's zenith angle (3,
+// 2, 1, 0).
+constexpr float kZenith[2][3][4] = {{{0.00166f, -0.00375f, 0.00209f, 0.0f},
+                                     {-0.02903f, 0.06377f, -0.03202f, 0.00394f},
+                                     {0.11693f, -0.21196f, 0.06052f, 0.25886f}},
+                                    {{0.00275f, -0.00610f, 0.00317f, 0.0f},
+                                     {-0.04214f, 0.08970f, -0.04153f, 0.00516f},
+                                     {0.15346f, -0.26756f, 0.06670f, 0.26688f}}};
 
 float cubic(const float* c, float x) { return ((c[0] * x + c[1]) * x + c[2]) * x + c[3]; }
 
@@ -73,4 +79,4 @@ Rgb preetham(const AnalyticSky& sky, const Vec3& direction) {
   return glm::max(xyz_to_rgb(xyz), Rgb(0.0f));
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -1,7 +1,8 @@
 // Sunlight that is scattered once, by air or aerosols, and absorbed by ozone.
 //
-// Nishita et al., "Display of the Earth Taking into Account Atmospheric Scattering" (SIGGRAPH 1993), over 21 wavelengths. The atmosphere,
-// the number of steps and the quadratures are those of Cycles (intern/sky), because they are part of the picture.
+// Nishita et al., "Display of the Earth Taking into Account Atmospheric Scattering" (SIGGRAPH 1993), over 21
+// wavelengths. The atmosphere, the number of steps and the quadratures are those of Cycles (intern/sky), because they
+// are part of the picture.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +11,7 @@
 #include "shading/sky/sky_color.h"
 #include "shading/sky/spectrum.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 constexpr double kGroundRadius = 6360e3, kAtmosphereRadius = 6420e3;  // m
@@ -33,7 +34,8 @@ float rayleigh_phase(float mu) { return 3.0f / 16.0f * kInvPi * (1.0f + mu * mu)
 // Cornette and Shanks 1992.
 float aerosol_phase(float mu) {
   const float g2 = kAnisotropy * kAnisotropy;
-  return 3.0f / 8.0f * kInvPi * (1.0f - g2) * (1.0f + mu * mu) / ((2.0f + g2) * std::pow(1.0f + g2 - 2.0f * kAnisotropy * mu, 1.5f));
+  return 3.0f / 8.0f * kInvPi * (1.0f - g2) * (1.0f + mu * mu) /
+         ((2.0f + g2) * std::pow(1.0f + g2 - 2.0f * kAnisotropy * mu, 1.5f));
 }
 
 // A ray by its start's distance from the centre of the Earth and its cosine to the zenith there.
@@ -47,8 +49,8 @@ struct PolarRay {
   float height_at(double t) const { return float(radius_at(t) - kGroundRadius); }
 };
 
-// Towards the sun: Gauss-Laguerre quadrature of order 8, for densities that fall like an exponential. On a ray of length 1, so that the
-// last point is still in the atmosphere: points x/25, weights w·exp(x)/25.
+// Towards the sun: Gauss-Laguerre quadrature of order 8, for densities that fall like an exponential. On a ray of
+// length 1, so that the last point is still in the atmosphere: points x/25, weights w·exp(x)/25.
 constexpr int kSunSteps = 8;
 constexpr float kSunPoints[kSunSteps] = {0.006811185292f, 0.03614807107f, 0.09004346519f, 0.1706680068f,
                                          0.2818362161f,   0.4303406404f,  0.6296271457f,  0.9145252695f};
@@ -69,11 +71,13 @@ float extinction(const Vec3& depth, int k) {
 
 Rgb to_rgb(const Spectrum& spectrum) {
   Vec3 xyz(0.0f);
-  for (int k = 0; k < kWavelengths; ++k) xyz += Vec3(kObserver[k][0], kObserver[k][1], kObserver[k][2]) * spectrum[size_t(k)];
+  for (int k = 0; k < kWavelengths; ++k)
+    xyz += Vec3(kObserver[k][0], kObserver[k][1], kObserver[k][2]) * spectrum[size_t(k)];
   return xyz_to_rgb(xyz * kWavelengthStep);
 }
 
-// What a row of the table, one elevation, shares: points along the ray with their densities and what lies in front of them.
+// What a row of the table, one elevation, shares: points along the ray with their densities and what lies in front of
+// them.
 class View {
  public:
   View(const DomeSettings& settings, float altitude, float elevation)
@@ -105,7 +109,8 @@ class View {
       if (in_shadow(p.radius, along_sun)) continue;
       const Vec3 depth = p.depth + scale_ * optical_depth({p.radius, along_sun / p.radius});
       for (int k = 0; k < kWavelengths; ++k) {
-        const float scattered = rayleigh * p.density.x * kRayleighScattering[k] + aerosol * p.density.y * kAerosolScattering;
+        const float scattered =
+            rayleigh * p.density.x * kRayleighScattering[k] + aerosol * p.density.y * kAerosolScattering;
         spectrum[size_t(k)] += std::exp(-extinction(depth, k)) * scattered;
       }
     }
@@ -193,4 +198,4 @@ std::vector<float> prepare_single_scattering(const DomeSettings& settings, bool 
   return make_dome(settings, sun_color(settings, altitude, newer), row);
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

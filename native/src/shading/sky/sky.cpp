@@ -7,13 +7,15 @@
 #include "shading/sky/analytic.h"
 #include "shading/sky/dome.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 // A smaller disc is drawn this large (rad, as in Cycles): it shines alike, and floats still resolve it.
 constexpr float kSmallestSun = 0.0005f;
 
-float within(float x, float low, float high, float otherwise) { return is_finite(x) ? std::clamp(x, low, high) : otherwise; }
+float within(float x, float low, float high, float otherwise) {
+  return is_finite(x) ? std::clamp(x, low, high) : otherwise;
+}
 
 // Beyond the zenith the sun comes down on the other side.
 void wrap_sun(float elevation, float rotation, DomeSettings* settings) {
@@ -43,7 +45,8 @@ std::vector<float> prepare_analytic(uint32_t mode, const float* s) {
   const float length = glm::length(given);
   const Vec3 sun = is_finite(length) && length > 0.0f ? given / length : Vec3(0, 0, 1);
   const float turbidity = within(s[3], 1.0f, 10.0f, 2.2f), albedo = within(s[4], 0.0f, 1.0f, 0.3f);
-  const AnalyticSky sky = mode == GRADUS_SKY_PREETHAM ? prepare_preetham(sun, turbidity) : prepare_hosek_wilkie(sun, turbidity, albedo);
+  const AnalyticSky sky =
+      mode == GRADUS_SKY_PREETHAM ? prepare_preetham(sun, turbidity) : prepare_hosek_wilkie(sun, turbidity, albedo);
   std::vector<float> prepared(sizeof(sky) / sizeof(float));
   std::memcpy(prepared.data(), &sky, sizeof(sky));
   return prepared;
@@ -75,4 +78,4 @@ std::optional<SunDisc> sun_disc(uint32_t mode, const float* prepared) {
   return SunDisc{Vec3(h.sun[0], h.sun[1], h.sun[2]), h.half_angle};
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -1,5 +1,5 @@
-// The Sky Texture node. What depends on its settings alone is prepared once, when a material is compiled; the pictures are those of the sky
-// types of Cycles, in Blender 3.4 to 5.0.
+// The Sky Texture node. What depends on its settings alone is prepared once, when a material is compiled; the pictures
+// are those of the sky types of Cycles, in Blender 3.4 to 5.0.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 #include "base/types.h"
 #include "gradus/gradus_nodes.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 // How many settings gradus_nodes.h lists for PREETHAM and HOSEK_WILKIE, and for the rest.
 inline constexpr uint32_t kAnalyticSkySettings = 5, kSkySettings = 8;
@@ -24,4 +24,4 @@ struct SunDisc {
 };
 std::optional<SunDisc> sun_disc(uint32_t mode, const float* prepared);
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -3,12 +3,13 @@
 
 #include "base/types.h"
 
-namespace gradus {
+namespace gradus::shading {
 
 // Rec. 709 primaries, white D65. Colours that they cannot show have negative components.
 inline Rgb xyz_to_rgb(const Vec3& c) {
-  return Rgb(3.2404542f * c.x - 1.5371385f * c.y - 0.4985314f * c.z, -0.9692660f * c.x + 1.8760108f * c.y + 0.0415560f * c.z,
+  return Rgb(3.2404542f * c.x - 1.5371385f * c.y - 0.4985314f * c.z,
+             -0.9692660f * c.x + 1.8760108f * c.y + 0.0415560f * c.z,
              0.0556434f * c.x - 0.2040259f * c.y + 1.0572252f * c.z);
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -1,8 +1,8 @@
-// Spectra of sun, air and ozone, and the CIE 1931 observer, from 380 to 780 nm in steps of 20: the values that Cycles' sky model uses
-// (intern/sky, Blender Authors; the observer is the CIE's).
+// Spectra of sun, air and ozone, and the CIE 1931 observer, from 380 to 780 nm in steps of 20: the values that Cycles'
+// sky model uses (intern/sky, Blender Authors; the observer is the CIE's).
 #pragma once
 
-namespace gradus {
+namespace gradus::shading {
 
 inline constexpr int kWavelengths = 21;
 inline constexpr float kFirstWavelength = 380.0f, kWavelengthStep = 20.0f;  // nm
@@ -47,4 +47,4 @@ inline constexpr float kObserver[kWavelengths][3] = {
     {4.150994e-5f, 1.499e-5f, 0.0f}};
 // clang-format on
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -6,7 +6,7 @@
 #include "shading/ops.h"
 #include "shading/program.h"
 
-namespace gradus {
+namespace gradus::shading {
 namespace {
 
 constexpr int kMaxChainLength = 64;
@@ -84,9 +84,10 @@ Suns find_suns(const Graph& graph) {
     if (const std::optional<Mat3> rotation = rotation_to(graph, n.inputs[0]))
       suns.discs.push_back({glm::normalize(glm::transpose(*rotation) * disc->direction), disc->half_angle});
     else
-      suns.smallest_hidden = suns.smallest_hidden > 0.0f ? std::min(suns.smallest_hidden, disc->half_angle) : disc->half_angle;
+      suns.smallest_hidden =
+          suns.smallest_hidden > 0.0f ? std::min(suns.smallest_hidden, disc->half_angle) : disc->half_angle;
   }
   return suns;
 }
 
-}  // namespace gradus
+}  // namespace gradus::shading

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <numeric>
 
+#include "animation/frame_window.h"
 #include "base/error.h"
 #include "reconstruct/feature_frame.h"
 #include "reconstruct/regularized.h"
@@ -13,7 +14,6 @@
 #include "reconstruct/space_time/solve_tracks.h"
 #include "render/resume.h"
 #include "support/threads.h"
-#include "animation/frame_window.h"
 
 namespace gradus {
 namespace {
@@ -23,16 +23,16 @@ using namespace test;
 constexpr int kWidth = 72, kHeight = 50;
 
 // Of one component.
-ComponentSources alone(std::unique_ptr<HalvedWindowSource> source) {
-  ComponentSources sources;
+reconstruct::ComponentSources alone(std::unique_ptr<reconstruct::HalvedWindowSource> source) {
+  reconstruct::ComponentSources sources;
   sources.push_back(std::move(source));
   return sources;
 }
 
-// A room that is sampled as temporal frames are: a frame's own random numbers, and those of the frame before. The camera rests; the light
-// is light(t) times as bright.
+// A room that is sampled as temporal frames are: a frame's own random numbers, and those of the frame before. The
+// camera rests; the light is light(t) times as bright.
 struct Shot {
-  int frames = 6, channels = 3, halves = kHalves;
+  int frames = 6, channels = 3, halves = film::kHalves;
   std::function<float(int t)> light = [](int) { return 1.0f; };
   std::function<bool(int pixel)> linked = [](int) { return true; };
   bool gradients = false;
@@ -46,8 +46,8 @@ struct Shot {
     return room;
   }
   // The samples of frame t whose random numbers are those of frame `stream`.
-  Film sampled(int t, int stream) const {
-    Film film = make_feature_film(description(t), channels);
+  film::Film sampled(int t, int stream) const {
+    film::Film film = make_feature_film(description(t), channels);
     std::mt19937 random(unsigned(stream) + 11), other(unsigned(1000 + t));
     std::normal_distribution<float> noise(0.0f, 0.4f), apart(0.0f, replay_sigma);
     for (auto& half : film.components[0].primal) {
@@ -56,67 +56,74 @@ struct Shot {
         if (channels == 4) pixel[3] = pixel[0] / 8.0f;
       }
     }
-    for (int half = halves; half < kHalves; ++half) remove(half, &film);
+    for (int half = halves; half < film::kHalves; ++half) remove(half, &film);
     return film;
   }
-  static void remove(int half, Film* film) {
+  static void remove(int half, film::Film* film) {
     std::fill(film->count[half].begin(), film->count[half].end(), 0);
     std::fill(film->components[0].primal[half].begin(), film->components[0].primal[half].end(), Radiance(0.0f));
-    for (PassPlane& pass : film->passes) std::fill(pass.values[half].begin(), pass.values[half].end(), 0.0f);
+    for (film::PassPlane& pass : film->passes) std::fill(pass.values[half].begin(), pass.values[half].end(), 0.0f);
   }
-  std::shared_ptr<const Film> merged(int t) const {
-    auto film = std::make_shared<Film>(sampled(t, t));
-    merge_films(film.get(), sampled(t, t - 1));
+  std::shared_ptr<const film::Film> merged(int t) const {
+    auto film = std::make_shared<film::Film>(sampled(t, t));
+    render::merge_films(film.get(), sampled(t, t - 1));
     return film;
   }
-  std::shared_ptr<const TemporalFrame> temporal(int t) const {
-    auto film = std::make_shared<TemporalFrame>(make_temporal_frame(sampled(t, t), sampled(t, t - 1)));
+  std::shared_ptr<const animation::TemporalFrame> temporal(int t) const {
+    auto film =
+        std::make_shared<animation::TemporalFrame>(animation::make_temporal_frame(sampled(t, t), sampled(t, t - 1)));
     film->stream = t;
     film->replayed = {t - 1, {std::vector<int32_t>(size_t(kWidth) * kHeight)}};
-    for (int i = 0; i < kWidth * kHeight; ++i) film->replayed.correspondence.pixel[size_t(i)] = linked(i) ? i : kNoCorrespondence;
+    for (int i = 0; i < kWidth * kHeight; ++i)
+      film->replayed.correspondence.pixel[size_t(i)] = linked(i) ? i : film::kNoCorrespondence;
     return film;
   }
-  std::unique_ptr<HalvedWindowSource> pair(int t) const {
-    return std::make_unique<FrameWindow>(std::vector<std::shared_ptr<const TemporalFrame>>{temporal(t), temporal(t + 1)});
+  std::unique_ptr<reconstruct::HalvedWindowSource> pair(int t) const {
+    return std::make_unique<animation::FrameWindow>(
+        std::vector<std::shared_ptr<const animation::TemporalFrame>>{temporal(t), temporal(t + 1)});
   }
-  RegularizedWindows::OpenFilm open() const {
+  reconstruct::RegularizedWindows::OpenFilm open() const {
     return [this](int t, const CancelCheck&) { return merged(t); };
   }
-  RegularizedWindows::OpenDifferences differences() const {
+  reconstruct::RegularizedWindows::OpenDifferences differences() const {
     return [this](int t, const CancelCheck&) { return alone(pair(t)); };
   }
-  RegularizedWindows windows() const { return {open(), differences()}; }
-  FrameRange all() const { return {0, frames - 1}; }
+  reconstruct::RegularizedWindows windows() const { return {open(), differences()}; }
+  reconstruct::FrameRange all() const { return {0, frames - 1}; }
 };
 
-std::vector<Reconstructed> solve(RegularizedWindows* windows, const FrameRange& range) {
-  SolveReport report;
-  std::vector<Reconstructed> pictures;
-  windows->reconstruct(range, never, &report, [&](int t, Reconstructed picture) {
+std::vector<reconstruct::Reconstructed> solve(reconstruct::RegularizedWindows* windows,
+                                              const reconstruct::FrameRange& range) {
+  reconstruct::SolveReport report;
+  std::vector<reconstruct::Reconstructed> pictures;
+  windows->reconstruct(range, never, &report, [&](int t, reconstruct::Reconstructed picture) {
     EXPECT_EQ(t, int(pictures.size()));
     pictures.push_back(std::move(picture));
   });
   return pictures;
 }
-std::vector<Reconstructed> solve(const Shot& shot) {
-  RegularizedWindows windows = shot.windows();
+std::vector<reconstruct::Reconstructed> solve(const Shot& shot) {
+  reconstruct::RegularizedWindows windows = shot.windows();
   return solve(&windows, shot.all());
 }
-std::vector<Reconstructed> solve_each(const Shot& shot) {
-  SolveReport report;
-  std::vector<Reconstructed> pictures;
-  for (int t = 0; t < shot.frames; ++t) pictures.push_back(regularize(*shot.merged(t), false, never, &report));
+std::vector<reconstruct::Reconstructed> solve_each(const Shot& shot) {
+  reconstruct::SolveReport report;
+  std::vector<reconstruct::Reconstructed> pictures;
+  for (int t = 0; t < shot.frames; ++t)
+    pictures.push_back(reconstruct::regularize(*shot.merged(t), false, never, &report));
   return pictures;
 }
 
-double error_of(const Shot& shot, const std::vector<Reconstructed>& pictures) {
+double error_of(const Shot& shot, const std::vector<reconstruct::Reconstructed>& pictures) {
   double squares = 0.0;
-  for (int t = 0; t < shot.frames; ++t) squares += std::pow(rms_difference(pictures[size_t(t)].image, shot.description(t).truth), 2);
+  for (int t = 0; t < shot.frames; ++t)
+    squares += std::pow(rms_difference(pictures[size_t(t)].image, shot.description(t).truth), 2);
   return squares / shot.frames;
 }
-double flicker_of(const std::vector<Reconstructed>& pictures) {
+double flicker_of(const std::vector<reconstruct::Reconstructed>& pictures) {
   double squares = 0.0;
-  for (size_t t = 1; t < pictures.size(); ++t) squares += std::pow(rms_difference(pictures[t].image, pictures[t - 1].image), 2);
+  for (size_t t = 1; t < pictures.size(); ++t)
+    squares += std::pow(rms_difference(pictures[t].image, pictures[t - 1].image), 2);
   return squares / double(pictures.size() - 1);
 }
 
@@ -128,18 +135,19 @@ TEST(B2_Tracks, EqualTheDenseSolution) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> uniform(0.01f, 2.0f);
     const auto random_fields = [&](int count, int channels) {
-      std::vector<Field> fields(size_t(count), Field(w, h, channels));
-      for (Field& field : fields) {
+      std::vector<reconstruct::Field> fields(size_t(count), reconstruct::Field(w, h, channels));
+      for (reconstruct::Field& field : fields) {
         for (int y = 0; y < h; ++y)
           for (int c = 0; c < channels; ++c)
             for (int x = 0; x < w; ++x) field.row(y, c)[x] = uniform(random);
       }
       return fields;
     };
-    std::vector<Field> values = random_fields(frames, 2), weights = random_fields(frames, 1);
-    const std::vector<Field> differences = random_fields(frames - 1, 1), couplings = random_fields(frames - 1, 1);
-    std::vector<CorrespondenceMap> correspondence;
-    for (int t = 0; t + 1 < frames; ++t) correspondence.push_back(read_correspondence(window, t));
+    std::vector<reconstruct::Field> values = random_fields(frames, 2), weights = random_fields(frames, 1);
+    const std::vector<reconstruct::Field> differences = random_fields(frames - 1, 1),
+                                          couplings = random_fields(frames - 1, 1);
+    std::vector<reconstruct::CorrespondenceMap> correspondence;
+    for (int t = 0; t + 1 < frames; ++t) correspondence.push_back(reconstruct::read_correspondence(window, t));
     for (const int channel : {0, 1}) {  // of the second one there are no differences: they are 0
       Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(unknowns, unknowns);
       Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
@@ -149,7 +157,7 @@ TEST(B2_Tracks, EqualTheDenseSolution) {
         matrix(i, i) += weight;
         right[i] += weight * values[size_t(t)].row(y, channel)[x];
         const int there = window.correspondence[size_t(t)][size_t(i % pixels)];
-        if (t + 1 == frames || there == kNoCorrespondence) continue;
+        if (t + 1 == frames || there == film::kNoCorrespondence) continue;
         const int j = (t + 1) * pixels + there;
         const double c = couplings[size_t(t)].row(y)[x], d = channel == 0 ? differences[size_t(t)].row(y)[x] : 0.0;
         matrix(i, i) += c;
@@ -160,12 +168,13 @@ TEST(B2_Tracks, EqualTheDenseSolution) {
         right[j] += c * d;
       }
       const Eigen::VectorXd expected = matrix.ldlt().solve(right);
-      std::vector<Field> x = values, used = weights;
-      std::vector<TrackStep> steps;
+      std::vector<reconstruct::Field> x = values, used = weights;
+      std::vector<reconstruct::TrackStep> steps;
       for (size_t t = 0; t + 1 < frames; ++t) steps.push_back({correspondence[t], differences[t], couplings[t]});
-      solve_tracks(steps, &x, &used);
+      reconstruct::solve_tracks(steps, &x, &used);
       for (int i = 0; i < unknowns; ++i) {
-        ASSERT_NEAR(x[size_t(i / pixels)].row(i % pixels / w, channel)[i % w], expected[i], 1e-4) << i << ", motion " << int(motion);
+        ASSERT_NEAR(x[size_t(i / pixels)].row(i % pixels / w, channel)[i % w], expected[i], 1e-4)
+            << i << ", motion " << int(motion);
       }
     }
   }
@@ -175,7 +184,7 @@ TEST(B2_RegularizedWindow, HasLessErrorAndFarLessFlickerThanItsFrames) {
   for (const bool gradients : {false, true}) {
     Shot shot;
     shot.gradients = gradients;
-    const std::vector<Reconstructed> joined = solve(shot), each = solve_each(shot);
+    const std::vector<reconstruct::Reconstructed> joined = solve(shot), each = solve_each(shot);
     EXPECT_LT(error_of(shot, joined), 0.6 * error_of(shot, each));
     EXPECT_LT(flicker_of(joined), 0.1 * flicker_of(each));
   }
@@ -185,7 +194,7 @@ TEST(B2_RegularizedWindow, HasLessErrorAndFarLessFlickerThanItsFrames) {
 TEST(B2_RegularizedWindow, OfAStillSceneDoesNotFlicker) {
   Shot shot;
   shot.replay_sigma = 0.0f;
-  const std::vector<Reconstructed> pictures = solve(shot);
+  const std::vector<reconstruct::Reconstructed> pictures = solve(shot);
   EXPECT_LT(std::sqrt(flicker_of(pictures)), 2e-3);
 }
 
@@ -193,7 +202,7 @@ TEST(B2_RegularizedWindow, WithoutLinksPixelsKeepTheirStillPicture) {
   Shot shot;
   shot.frames = 3;
   shot.linked = [](int pixel) { return pixel % kWidth >= kWidth / 2; };
-  const std::vector<Reconstructed> joined = solve(shot), each = solve_each(shot);
+  const std::vector<reconstruct::Reconstructed> joined = solve(shot), each = solve_each(shot);
   for (size_t t = 0; t < joined.size(); ++t) {
     int changed = 0;
     for (size_t i = 0; i < each[t].image.size(); ++i) {
@@ -214,36 +223,38 @@ TEST(C5_RegularizedWindow, ALampThatIsSwitchedShowsAtOnce) {
   for (const auto& [before, after] : {std::pair(1.0f, 0.1f), std::pair(0.1f, 1.0f)}) {
     Shot shot;
     shot.light = [before = before, after = after](int t) { return t < 3 ? before : after; };
-    const std::vector<Reconstructed> pictures = solve(shot), each = solve_each(shot);
+    const std::vector<reconstruct::Reconstructed> pictures = solve(shot), each = solve_each(shot);
     for (int t = 0; t < shot.frames; ++t) {
       const std::vector<float> truth = shot.description(t).truth;
       EXPECT_NEAR(mean(pictures[size_t(t)].image) / mean(truth), 1.0, 0.02) << t;
-      EXPECT_LT(rms_difference(pictures[size_t(t)].image, truth), 1.2 * rms_difference(each[size_t(t)].image, truth)) << t;
+      EXPECT_LT(rms_difference(pictures[size_t(t)].image, truth), 1.2 * rms_difference(each[size_t(t)].image, truth))
+          << t;
     }
   }
 }
 
 // A window that is told that nothing changes, and for sure.
-class Blind final : public HalvedWindowSource {
+class Blind final : public reconstruct::HalvedWindowSource {
  public:
-  explicit Blind(std::unique_ptr<HalvedWindowSource> window) : window_(std::move(window)) {}
-  WindowSize size() const override { return window_->size(); }
-  void read_row(RowKind, int, int, float* out) const override { read(out); }
-  void read_half_differences(RowKind, int, int, float* out) const override { read(out); }
+  explicit Blind(std::unique_ptr<reconstruct::HalvedWindowSource> window) : window_(std::move(window)) {}
+  reconstruct::WindowSize size() const override { return window_->size(); }
+  void read_row(reconstruct::RowKind, int, int, float* out) const override { read(out); }
+  void read_half_differences(reconstruct::RowKind, int, int, float* out) const override { read(out); }
   void read_correspondence(int t, int y, int32_t* out) const override { window_->read_correspondence(t, y, out); }
 
  private:
   void read(float* out) const { std::fill_n(out, size_t(size().width) * size_t(size().channels), 0.0f); }
-  std::unique_ptr<HalvedWindowSource> window_;
+  std::unique_ptr<reconstruct::HalvedWindowSource> window_;
 };
 
 // Samples of both frames outweigh a change that seems to be known and is wrong.
 TEST(C5_RegularizedWindow, AChangeThatNobodySampledLeavesNoGhost) {
   Shot shot;
   shot.light = [](int t) { return t < 3 ? 1.0f : 0.1f; };
-  SolveReport report;
-  RegularizedWindows windows(shot.open(), [&](int t, const CancelCheck&) { return alone(std::make_unique<Blind>(shot.pair(t))); });
-  windows.reconstruct(shot.all(), never, &report, [&](int t, const Reconstructed& picture) {
+  reconstruct::SolveReport report;
+  reconstruct::RegularizedWindows windows(
+      shot.open(), [&](int t, const CancelCheck&) { return alone(std::make_unique<Blind>(shot.pair(t))); });
+  windows.reconstruct(shot.all(), never, &report, [&](int t, const reconstruct::Reconstructed& picture) {
     EXPECT_NEAR(mean(picture.image) / mean(shot.description(t).truth), 1.0, 0.05) << t;
   });
 }
@@ -254,8 +265,9 @@ TEST(B2_RegularizedWindow, AlphaGoesThroughTheSameWeights) {
   shot.channels = 4;
   shot.frames = 3;
   shot.light = [](int t) { return 1.0f + 0.2f * float(t); };
-  for (const Reconstructed& picture : solve(shot)) {
-    for (size_t i = 0; i < picture.image.size(); i += 4) ASSERT_NEAR(8.0f * picture.image[i + 3], picture.image[i], 4e-3f) << i / 4;
+  for (const reconstruct::Reconstructed& picture : solve(shot)) {
+    for (size_t i = 0; i < picture.image.size(); i += 4)
+      ASSERT_NEAR(8.0f * picture.image[i + 3], picture.image[i], 4e-3f) << i / 4;
   }
 }
 
@@ -266,8 +278,9 @@ TEST(B2_RegularizedWindow, AlphaBesideHolesGoesThroughTheSameWeights) {
   shot.frames = 3;
   shot.light = [](int t) { return 1.0f + 0.2f * float(t); };
   shot.linked = [](int pixel) { return pixel % kWidth % 4 == 0; };
-  for (const Reconstructed& picture : solve(shot)) {
-    for (size_t i = 0; i < picture.image.size(); i += 4) ASSERT_NEAR(8.0f * picture.image[i + 3], picture.image[i], 4e-3f) << i / 4;
+  for (const reconstruct::Reconstructed& picture : solve(shot)) {
+    for (size_t i = 0; i < picture.image.size(); i += 4)
+      ASSERT_NEAR(8.0f * picture.image[i + 3], picture.image[i], 4e-3f) << i / 4;
   }
 }
 
@@ -275,11 +288,11 @@ TEST(B2_RegularizedWindow, AlphaBesideHolesGoesThroughTheSameWeights) {
 TEST(B2_RegularizedWindow, ScalesWithTheLight) {
   Shot shot;
   shot.frames = 3;
-  const std::vector<Reconstructed> pictures = solve(shot);
+  const std::vector<reconstruct::Reconstructed> pictures = solve(shot);
   for (const float strength : {1e-18f, 1e-10f, 1e10f, 1e18f}) {
     shot.light = [strength](int) { return strength; };
     shot.replay_sigma = 0.02f * strength;
-    const std::vector<Reconstructed> scaled = solve(shot);
+    const std::vector<reconstruct::Reconstructed> scaled = solve(shot);
     for (size_t t = 0; t < pictures.size(); ++t) {
       for (size_t i = 0; i < pictures[t].image.size(); ++i) {
         const float value = scaled[t].image[i] / strength;
@@ -294,8 +307,8 @@ TEST(B2_RegularizedWindow, ScalesWithTheLight) {
 TEST(B2_RegularizedWindow, TakesFramesWithoutASecondHalf) {
   Shot shot;
   shot.halves = 1;
-  const std::vector<Reconstructed> pictures = solve(shot), each = solve_each(shot);
-  for (const Reconstructed& picture : pictures) {
+  const std::vector<reconstruct::Reconstructed> pictures = solve(shot), each = solve_each(shot);
+  for (const reconstruct::Reconstructed& picture : pictures) {
     for (const float value : picture.image) ASSERT_TRUE(std::isfinite(value));
   }
   EXPECT_LT(error_of(shot, pictures), error_of(shot, each));
@@ -307,7 +320,7 @@ TEST(B2_RegularizedWindow, SharesFramesWithTheWindowBefore) {
   shot.frames = 8;
   std::map<int, int> opened;
   std::map<int, int> changes;
-  RegularizedWindows both(
+  reconstruct::RegularizedWindows both(
       [&](int t, const CancelCheck&) {
         ++opened[t];
         return shot.merged(t);
@@ -317,11 +330,11 @@ TEST(B2_RegularizedWindow, SharesFramesWithTheWindowBefore) {
         return alone(shot.pair(t));
       });
   solve(&both, {0, 4});
-  const std::vector<Reconstructed> second = solve(&both, {3, 7});
+  const std::vector<reconstruct::Reconstructed> second = solve(&both, {3, 7});
   EXPECT_EQ(opened, (std::map<int, int>{{0, 1}, {1, 1}, {2, 1}, {3, 1}, {4, 1}, {5, 1}, {6, 1}, {7, 1}}));
   EXPECT_EQ(changes, (std::map<int, int>{{0, 1}, {1, 1}, {2, 1}, {3, 1}, {4, 1}, {5, 1}, {6, 1}}));
-  RegularizedWindows alone = shot.windows();
-  const std::vector<Reconstructed> expected = solve(&alone, {3, 7});
+  reconstruct::RegularizedWindows alone = shot.windows();
+  const std::vector<reconstruct::Reconstructed> expected = solve(&alone, {3, 7});
   ASSERT_EQ(second.size(), expected.size());
   for (size_t t = 0; t < expected.size(); ++t) {
     EXPECT_EQ(second[t].image, expected[t].image) << t;
@@ -338,10 +351,10 @@ TEST(B2_RegularizedWindow, HasTheSameBitsForAnyNumberOfThreads) {
 TEST(B2_RegularizedWindow, TakesNothingWhenCancelled) {
   Shot shot;
   shot.frames = 2;
-  SolveReport report;
-  RegularizedWindows windows = shot.windows();
+  reconstruct::SolveReport report;
+  reconstruct::RegularizedWindows windows = shot.windows();
   windows.reconstruct(
-      shot.all(), [] { return true; }, &report, [](int, const Reconstructed&) { ADD_FAILURE(); });
+      shot.all(), [] { return true; }, &report, [](int, const reconstruct::Reconstructed&) { ADD_FAILURE(); });
 }
 
 TEST(B2_RegularizedWindow, RefusesFramesOfAnotherSize) {
@@ -349,9 +362,9 @@ TEST(B2_RegularizedWindow, RefusesFramesOfAnotherSize) {
   shot.frames = 2;
   Shot other = shot;
   other.channels = 4;
-  SolveReport report;
-  RegularizedWindows windows(other.open(), shot.differences());
-  EXPECT_THROW(windows.reconstruct(shot.all(), never, &report, [](int, const Reconstructed&) {}), Error);
+  reconstruct::SolveReport report;
+  reconstruct::RegularizedWindows windows(other.open(), shot.differences());
+  EXPECT_THROW(windows.reconstruct(shot.all(), never, &report, [](int, const reconstruct::Reconstructed&) {}), Error);
 }
 
 // The light of a shot in two components, the second brighter to the right.
@@ -359,7 +372,7 @@ struct TakenApart {
   Shot shot;
   bool second_has_correspondence = true;
 
-  static void take_apart(Film* film) {
+  static void take_apart(film::Film* film) {
     film->components.push_back(film->components[0]);
     for (size_t k = 0; k < 2; ++k) {
       for (auto& half : film->components[k].primal) {
@@ -370,28 +383,29 @@ struct TakenApart {
       }
     }
   }
-  std::shared_ptr<const Film> merged(int t) const {
-    auto film = std::make_shared<Film>(*shot.merged(t));
+  std::shared_ptr<const film::Film> merged(int t) const {
+    auto film = std::make_shared<film::Film>(*shot.merged(t));
     take_apart(film.get());
     return film;
   }
-  std::shared_ptr<const TemporalFrame> temporal(int t, int component) const {
-    Film base = shot.sampled(t, t), replay = shot.sampled(t, t - 1);
+  std::shared_ptr<const animation::TemporalFrame> temporal(int t, int component) const {
+    film::Film base = shot.sampled(t, t), replay = shot.sampled(t, t - 1);
     take_apart(&base);
     take_apart(&replay);
-    auto film = std::make_shared<TemporalFrame>(make_temporal_frame(base, replay, {}, component));
+    auto film = std::make_shared<animation::TemporalFrame>(animation::make_temporal_frame(base, replay, {}, component));
     film->stream = t;
     film->replayed = shot.temporal(t)->replayed;
-    if (component == 1 && !second_has_correspondence) std::ranges::fill(film->replayed.correspondence.pixel, kNoCorrespondence);
+    if (component == 1 && !second_has_correspondence)
+      std::ranges::fill(film->replayed.correspondence.pixel, film::kNoCorrespondence);
     return film;
   }
-  RegularizedWindows windows() const {
+  reconstruct::RegularizedWindows windows() const {
     return {[this](int t, const CancelCheck&) { return merged(t); },
             [this](int t, const CancelCheck&) {
-              ComponentSources sources;
+              reconstruct::ComponentSources sources;
               for (int k = 0; k < 2; ++k) {
-                sources.push_back(
-                    std::make_unique<FrameWindow>(std::vector<std::shared_ptr<const TemporalFrame>>{temporal(t, k), temporal(t + 1, k)}));
+                sources.push_back(std::make_unique<animation::FrameWindow>(
+                    std::vector<std::shared_ptr<const animation::TemporalFrame>>{temporal(t, k), temporal(t + 1, k)}));
               }
               return sources;
             }};
@@ -403,8 +417,8 @@ TEST(B2_RegularizedWindow, ComponentsThatGoTheSameWayAreWhatTheirSumBecomes) {
   TakenApart apart;
   apart.shot.frames = 4;
   apart.shot.light = [](int t) { return 1.0f + 0.1f * float(t); };
-  RegularizedWindows windows = apart.windows();
-  const std::vector<Reconstructed> parts = solve(&windows, apart.shot.all()), whole = solve(apart.shot);
+  reconstruct::RegularizedWindows windows = apart.windows();
+  const std::vector<reconstruct::Reconstructed> parts = solve(&windows, apart.shot.all()), whole = solve(apart.shot);
   for (size_t t = 0; t < whole.size(); ++t) {
     ASSERT_EQ(parts[t].components.size(), 2u);
     EXPECT_LT(rms_difference(parts[t].image, whole[t].image), 1e-4) << t;
@@ -420,16 +434,17 @@ TEST(B2_RegularizedWindow, EveryComponentGoesItsOwnWay) {
   TakenApart apart;
   apart.shot.frames = 5;
   apart.second_has_correspondence = false;
-  RegularizedWindows windows = apart.windows();
-  const std::vector<Reconstructed> parts = solve(&windows, apart.shot.all());
+  reconstruct::RegularizedWindows windows = apart.windows();
+  const std::vector<reconstruct::Reconstructed> parts = solve(&windows, apart.shot.all());
   double linked = 0.0, still = 0.0;
   for (int t = 0; t < apart.shot.frames; ++t) {
-    SolveReport report;
-    const Reconstructed each = regularize(*apart.merged(t), true, never, &report);
+    reconstruct::SolveReport report;
+    const reconstruct::Reconstructed each = reconstruct::regularize(*apart.merged(t), true, never, &report);
     EXPECT_EQ(parts[size_t(t)].components[1], each.components[1]) << t;
     if (t == 0) continue;
     linked += rms_difference(parts[size_t(t)].components[0], parts[size_t(t) - 1].components[0]);
-    still += rms_difference(each.components[0], regularize(*apart.merged(t - 1), true, never, &report).components[0]);
+    still += rms_difference(each.components[0],
+                            reconstruct::regularize(*apart.merged(t - 1), true, never, &report).components[0]);
   }
   EXPECT_LT(linked, 0.5 * still);
 }

@@ -23,24 +23,24 @@ constexpr float kNoise = 0.5f;
 float light(float x, float y, int c) { return 2.0f + std::sin(0.4f * x + float(c)) * std::cos(0.3f * y); }
 
 // All pixels go `shift` to the right and as far upwards; those of the right half twice as far, if they part.
-class Way : public HalvedWindowSource {
+class Way : public reconstruct::HalvedWindowSource {
  public:
   Way(float shift, bool parts) : shift_(shift), parts_(parts) {}
-  WindowSize size() const override { return {kWidth, kHeight, 3, 2}; }
+  reconstruct::WindowSize size() const override { return {kWidth, kHeight, 3, 2}; }
   // Nothing but the picture's way changes it.
-  void read_row(RowKind, int, int y, float* out) const override {
+  void read_row(reconstruct::RowKind, int, int y, float* out) const override {
     for (int x = 0; x < kWidth; ++x) {
       const float off = shift(x) - float(std::lround(shift(x)));
       for (int c = 0; c < 3; ++c) *out++ = light(float(x) - off, float(y) - off, c) - light(float(x), float(y), c);
     }
   }
-  void read_half_differences(RowKind, int, int y, float* out) const override {
+  void read_half_differences(reconstruct::RowKind, int, int y, float* out) const override {
     for (int i = 0; i < 3 * kWidth; ++i) out[i] = (i + y) % 2 == 0 ? kNoise : -kNoise;
   }
   void read_correspondence(int, int y, int32_t* out) const override {
     for (int x = 0; x < kWidth; ++x) {
       const int there = x + int(std::lround(shift(x))), row = y + int(std::lround(shift(x)));
-      out[x] = there < kWidth && row < kHeight && shift(x) == shift(0) ? row * kWidth + there : kNoCorrespondence;
+      out[x] = there < kWidth && row < kHeight && shift(x) == shift(0) ? row * kWidth + there : film::kNoCorrespondence;
     }
   }
   void read_off_centre(int, int, Vec2* out) const override {
@@ -53,8 +53,8 @@ class Way : public HalvedWindowSource {
   bool parts_;
 };
 
-Field picture_at(float off) {
-  Field field(kWidth, kHeight, 3);
+reconstruct::Field picture_at(float off) {
+  reconstruct::Field field(kWidth, kHeight, 3);
   for (int y = 0; y < kHeight; ++y)
     for (int c = 0; c < 3; ++c)
       for (int x = 0; x < kWidth; ++x) field.row(y, c)[x] = light(float(x) - off, float(y) - off, c);
@@ -65,7 +65,9 @@ TEST(B2_RoundedDisplacements, ChangeAPictureByWhatLiesBesideThePixels) {
   for (const float shift : {0.25f, 0.5f, 1.625f, 2.75f}) {
     const Way way(shift, false);
     const float off = shift - float(std::lround(shift));
-    const Field here = picture_at(0.0f), moved = picture_at(off), change = rounding_change(here, read_correspondence(way, 0), way, 0);
+    const reconstruct::Field here = picture_at(0.0f), moved = picture_at(off),
+                             change =
+                                 reconstruct::rounding_change(here, reconstruct::read_correspondence(way, 0), way, 0);
     double error = 0.0, squares = 0.0;
     for (int y = 3; y < kHeight - 6; ++y)
       for (int c = 0; c < 3; ++c)
@@ -81,7 +83,8 @@ TEST(B2_RoundedDisplacements, ChangeAPictureByWhatLiesBesideThePixels) {
 TEST(B2_RoundedDisplacements, ChangeNothingWhereTheyEndInTheMiddle) {
   for (const float shift : {0.0f, 2.0f}) {
     const Way way(shift, false);
-    const Field change = rounding_change(picture_at(0.0f), read_correspondence(way, 0), way, 0);
+    const reconstruct::Field change =
+        reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(way, 0), way, 0);
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) EXPECT_EQ(change.row(y, 1)[x], 0.0f);
   }
@@ -90,10 +93,11 @@ TEST(B2_RoundedDisplacements, ChangeNothingWhereTheyEndInTheMiddle) {
 // What goes elsewhere, or nowhere, is not looked up: its light would come over the edge.
 TEST(B2_RoundedDisplacements, TakeNothingFromNeighboursThatPart) {
   const Way way(0.25f, true);
-  Field dark(kWidth, kHeight, 3);
+  reconstruct::Field dark(kWidth, kHeight, 3);
   for (int y = 0; y < kHeight; ++y)
     for (int x = kWidth / 2; x < kWidth; ++x) dark.row(y, 0)[x] = 1000.0f;
-  const Field change = rounding_change(dark, read_correspondence(way, 0), way, 0);
+  const reconstruct::Field change =
+      reconstruct::rounding_change(dark, reconstruct::read_correspondence(way, 0), way, 0);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) EXPECT_EQ(change.row(y, 0)[x], 0.0f) << x << ' ' << y;
 }
@@ -101,12 +105,13 @@ TEST(B2_RoundedDisplacements, TakeNothingFromNeighboursThatPart) {
 // A mirror moves and what it shows rests: the picture does not go with the surface, however this goes.
 TEST(B2_RoundedDisplacements, CountOnlyWhereTheSamplesChangeSo) {
   const Way way(0.375f, false);
-  const Field rounding = rounding_change(picture_at(0.0f), read_correspondence(way, 0), way, 0);
-  Field sampled = rounding, kept = rounding;
+  const reconstruct::Field rounding =
+      reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(way, 0), way, 0);
+  reconstruct::Field sampled = rounding, kept = rounding;
   for (int y = 0; y < kHeight; ++y)
     for (int c = 0; c < 3; ++c)
       for (int x = kWidth / 2; x < kWidth; ++x) sampled.row(y, c)[x] = 0.0f;
-  keep_sampled_share(sampled, &kept);
+  reconstruct::keep_sampled_share(sampled, &kept);
   for (int y = 0; y < kHeight; ++y) {
     EXPECT_NEAR(kept.row(y, 1)[5], rounding.row(y, 1)[5], 1e-5f);
     EXPECT_NEAR(kept.row(y, 1)[kWidth - 8], 0.0f, 1e-5f);
@@ -115,11 +120,12 @@ TEST(B2_RoundedDisplacements, CountOnlyWhereTheSamplesChangeSo) {
 
 TEST(B2_RoundedDisplacements, AreNeverTakenForMoreThanTheyMake) {
   const Way way(0.375f, false);
-  const Field rounding = rounding_change(picture_at(0.0f), read_correspondence(way, 0), way, 0);
+  const reconstruct::Field rounding =
+      reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(way, 0), way, 0);
   for (const float factor : {-3.0f, 0.5f, 1e6f}) {
-    Field sampled = rounding, kept = rounding;
+    reconstruct::Field sampled = rounding, kept = rounding;
     for_values(&sampled, [&](float& value, int, int, int) { value *= factor; });
-    keep_sampled_share(sampled, &kept);
+    reconstruct::keep_sampled_share(sampled, &kept);
     const float share = std::clamp(factor, 0.0f, 1.0f);
     for (int x = 0; x < kWidth; ++x) EXPECT_NEAR(kept.row(9, 0)[x], share * rounding.row(9, 0)[x], 1e-5f);
   }
@@ -127,14 +133,16 @@ TEST(B2_RoundedDisplacements, AreNeverTakenForMoreThanTheyMake) {
 
 // No feature tells what lies beside the pixels: by regression alone it would be noise.
 TEST(B2_RoundedDisplacements, AreInTheRegressedChange) {
-  ComponentSources sources;
+  reconstruct::ComponentSources sources;
   sources.push_back(std::make_unique<Way>(0.375f, false));
-  const Features features = filter_features(read_features(make_feature_film(test::room(kWidth, kHeight), 3)));
-  const Change change = regress_change(sources, 0, {picture_at(0.0f)}, features, 2.0f, [] { return false; });
+  const film::Features features =
+      reconstruct::filter_features(film::read_features(make_feature_film(test::room(kWidth, kHeight), 3)));
+  const motion::Change change =
+      reconstruct::regress_change(sources, 0, {picture_at(0.0f)}, features, 2.0f, [] { return false; });
   double error = 0.0, squares = 0.0;
   std::vector<float> truth(3 * kWidth);
   for (int y = 3; y < kHeight - 3; ++y) {
-    sources[0]->read_row(RowKind::kDt, 0, y, truth.data());
+    sources[0]->read_row(reconstruct::RowKind::kDt, 0, y, truth.data());
     for (int c = 0; c < 3; ++c)
       for (int x = 3; x < kWidth - 3; ++x) {
         error += std::pow(change.difference[0].row(y, c)[x] - truth[size_t(3 * x + c)], 2);
@@ -148,14 +156,16 @@ TEST(B2_RoundedDisplacements, AreInTheRegressedChange) {
 class StaticLight : public Way {
  public:
   using Way::Way;
-  void read_row(RowKind, int, int, float* out) const override { std::fill_n(out, 3 * kWidth, 0.0f); }
+  void read_row(reconstruct::RowKind, int, int, float* out) const override { std::fill_n(out, 3 * kWidth, 0.0f); }
 };
 
 TEST(B2_RoundedDisplacements, AreNotInAChangeThatWasNotSampled) {
-  ComponentSources sources;
+  reconstruct::ComponentSources sources;
   sources.push_back(std::make_unique<StaticLight>(0.375f, false));
-  const Features features = filter_features(read_features(make_feature_film(test::room(kWidth, kHeight), 3)));
-  const Change change = regress_change(sources, 0, {picture_at(0.0f)}, features, 2.0f, [] { return false; });
+  const film::Features features =
+      reconstruct::filter_features(film::read_features(make_feature_film(test::room(kWidth, kHeight), 3)));
+  const motion::Change change =
+      reconstruct::regress_change(sources, 0, {picture_at(0.0f)}, features, 2.0f, [] { return false; });
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) EXPECT_EQ(change.difference[0].row(y, 1)[x], 0.0f);
 }

@@ -10,12 +10,12 @@ namespace gradus::test {
 
 using Images = std::vector<std::vector<float>>;
 
-inline Images changing_images(const WindowSize& size) {
+inline Images changing_images(const reconstruct::WindowSize& size) {
   Images images;
   for (int t = 0; t < size.frames; ++t) {
     images.push_back(make_image(size.width, size.height, size.channels, [t](int x, int y, int c) {
-      return 1.0f + 0.3f * std::sin(0.2f * float(x) + 0.4f * float(t)) + 0.2f * std::cos(0.17f * float(y) - 0.3f * float(t * c)) +
-             (x > 3 * t ? 0.5f : 0.0f);
+      return 1.0f + 0.3f * std::sin(0.2f * float(x) + 0.4f * float(t)) +
+             0.2f * std::cos(0.17f * float(y) - 0.3f * float(t * c)) + (x > 3 * t ? 0.5f : 0.0f);
     }));
   }
   return images;
@@ -32,7 +32,7 @@ inline Window measured(int width, int height, int channels, int frames, Motion m
 // Two halves with noise of their own in every row; deviations are what these show. sigma(kind, pixel): of a half.
 template <class Sigma>
 void add_noise_of_halves(Window* window, const Sigma& sigma, unsigned seed) {
-  for (const RowKind kind : kRowKinds) {
+  for (const reconstruct::RowKind kind : reconstruct::kRowKinds) {
     for (int t = 0; t < window->size_.frames; ++t) {
       average_noisy_halves(
           &window->plane(kind, t), &window->deviations[size_t(kind)][size_t(t)], window->size_.channels,
@@ -42,26 +42,26 @@ void add_noise_of_halves(Window* window, const Sigma& sigma, unsigned seed) {
 }
 
 // A single frame's images, with deviations.
-inline GradientImages frame_of(const Window& window, int t) {
-  const auto deviation = [&](RowKind kind) { return window.deviations[size_t(kind)][size_t(t)]; };
-  GradientImages images;
+inline film::GradientImages frame_of(const Window& window, int t) {
+  const auto deviation = [&](reconstruct::RowKind kind) { return window.deviations[size_t(kind)][size_t(t)]; };
+  film::GradientImages images;
   images.width = window.size_.width;
   images.height = window.size_.height;
   images.channels = window.size_.channels;
-  images.primal = window.plane(RowKind::kPrimal, t);
-  images.dx = window.plane(RowKind::kDx, t);
-  images.dy = window.plane(RowKind::kDy, t);
-  images.primal_deviation = deviation(RowKind::kPrimal);
-  images.dx_deviation = deviation(RowKind::kDx);
-  images.dy_deviation = deviation(RowKind::kDy);
+  images.primal = window.plane(reconstruct::RowKind::kPrimal, t);
+  images.dx = window.plane(reconstruct::RowKind::kDx, t);
+  images.dy = window.plane(reconstruct::RowKind::kDy, t);
+  images.primal_deviation = deviation(reconstruct::RowKind::kPrimal);
+  images.dx_deviation = deviation(reconstruct::RowKind::kDx);
+  images.dy_deviation = deviation(reconstruct::RowKind::kDy);
   return images;
 }
 
 // All frames, one after another.
-inline std::vector<float> joined(const Frames& frames) {
+inline std::vector<float> joined(const reconstruct::Frames& frames) {
   std::vector<float> all;
-  for (const Field& field : frames) {
-    const std::vector<float> image = interleave(field);
+  for (const reconstruct::Field& field : frames) {
+    const std::vector<float> image = reconstruct::interleave(field);
     all.insert(all.end(), image.begin(), image.end());
   }
   return all;

@@ -20,20 +20,22 @@ using namespace test;
 constexpr uint32_t kL2 = GRADUS_RECONSTRUCTION_L2, kL1 = GRADUS_RECONSTRUCTION_L1;
 constexpr uint32_t kAll[] = {kL2, kL1};
 
-WindowSolver solver_of(const WindowSource& window, uint32_t reconstruction, float alpha = 0.0f) {
-  SolveReport report;
-  WindowSolver solver(window, reconstruction, alpha, never, &report);
+reconstruct::WindowSolver solver_of(const reconstruct::WindowSource& window, uint32_t reconstruction,
+                                    float alpha = 0.0f) {
+  reconstruct::SolveReport report;
+  reconstruct::WindowSolver solver(window, reconstruction, alpha, never, &report);
   EXPECT_FALSE(report.hit_cap);
   return solver;
 }
-std::vector<float> solve(const WindowSource& window, uint32_t reconstruction, float alpha = 0.0f) {
+std::vector<float> solve(const reconstruct::WindowSource& window, uint32_t reconstruction, float alpha = 0.0f) {
   return joined(solver_of(window, reconstruction, alpha).solution());
 }
 
 Window noisy_window(int width, int height, int channels, int frames, Motion motion) {
   Window window = measured(width, height, channels, frames, motion);
   add_noise_of_halves(
-      &window, [](RowKind kind, size_t) { return kind == RowKind::kPrimal ? 0.4f : 0.05f; }, 1);
+      &window, [](reconstruct::RowKind kind, size_t) { return kind == reconstruct::RowKind::kPrimal ? 0.4f : 0.05f; },
+      1);
   return window;
 }
 
@@ -42,7 +44,8 @@ TEST(B1_SpaceTime, ASequenceWithItsOwnDifferencesStays) {
     for (const uint32_t reconstruction : kAll) {
       const Window window = measured(33, 17, 3, 6, motion);
       const Images images = changing_images(window.size_);
-      EXPECT_LT(max_difference(solve(window, reconstruction), joined(images)), 2e-3) << int(motion) << " by " << reconstruction;
+      EXPECT_LT(max_difference(solve(window, reconstruction), joined(images)), 2e-3)
+          << int(motion) << " by " << reconstruction;
     }
   }
 }
@@ -62,22 +65,24 @@ TEST(B2_SpaceTime, AnySizeIsSolved) {
 // Frames that nothing links are single frames.
 TEST(B2_SpaceTime, WithoutLinksL2IsThatOfSingleFrames) {
   const Window window = noisy_window(96, 64, 3, 3, Motion::kNone);
-  const Frames x = solver_of(window, kL2).take_solution();
+  const reconstruct::Frames x = solver_of(window, kL2).take_solution();
   for (int t = 0; t < 3; ++t) {
-    SolveReport report;
-    EXPECT_LT(max_difference(interleave(x[size_t(t)]), reconstruct(frame_of(window, t), kL2, 0.0f, never, &report)), 5e-5);
+    reconstruct::SolveReport report;
+    EXPECT_LT(max_difference(reconstruct::interleave(x[size_t(t)]),
+                             reconstruct::reconstruct(frame_of(window, t), kL2, 0.0f, never, &report)),
+              5e-5);
   }
 }
 
 // But for the 16 bits that a weight has.
 TEST(B2_SpaceTime, WithoutLinksWeightsAreThoseOfSingleFrames) {
   const Window window = noisy_window(96, 64, 3, 3, Motion::kNone);
-  const Frames x = solver_of(window, kL1).take_solution();
+  const reconstruct::Frames x = solver_of(window, kL1).take_solution();
   for (int t = 0; t < 3; ++t) {
-    SolveReport report;
-    const std::vector<float> still = reconstruct(frame_of(window, t), kL1, 0.0f, never, &report);
-    const std::vector<float> l2 = reconstruct(frame_of(window, t), kL2, 0.0f, never, &report);
-    const double apart = rms_difference(interleave(x[size_t(t)]), still);
+    reconstruct::SolveReport report;
+    const std::vector<float> still = reconstruct::reconstruct(frame_of(window, t), kL1, 0.0f, never, &report);
+    const std::vector<float> l2 = reconstruct::reconstruct(frame_of(window, t), kL2, 0.0f, never, &report);
+    const double apart = rms_difference(reconstruct::interleave(x[size_t(t)]), still);
     EXPECT_LT(apart, 0.02 * rms_difference(l2, still));
   }
 }
@@ -86,13 +91,13 @@ TEST(B2_SpaceTime, L2KeepsTheMean) {
   for (const Motion motion : kMotions) {
     const Window window = noisy_window(64, 48, 1, 5, motion);
     Images primal;
-    for (int t = 0; t < 5; ++t) primal.push_back(window.plane(RowKind::kPrimal, t));
+    for (int t = 0; t < 5; ++t) primal.push_back(window.plane(reconstruct::RowKind::kPrimal, t));
     EXPECT_NEAR(mean(solve(window, kL2)) / mean(joined(primal)), 1.0, 1e-5) << int(motion);
   }
 }
 
-// Mean squared error that L2 leaves, by the modes of the static window's system (T-GPT eq. 4, with free ends): noise of deviation σ_I in
-// pixels, σ_g in differences in space, none along the links.
+// Mean squared error that L2 leaves, by the modes of the static window's system (T-GPT eq. 4, with free ends): noise of
+// deviation σ_I in pixels, σ_g in differences in space, none along the links.
 double noise_left(int w, int h, int frames, double alpha, double sigma_i, double sigma_g) {
   const auto eigenvalue = [](int k, int n) { return 2.0 - 2.0 * std::cos(std::numbers::pi * k / n); };
   double sum = 0.0;
@@ -117,9 +122,9 @@ TEST(B3_SpaceTime, AStaticShotKeepsTheNoiseThatTheoryLeaves) {
       Window window(w, h, 3, frames);
       link(&window, Motion::kStatic);
       for (int t = 0; t < frames; ++t) {
-        add_noise(&window.plane(RowKind::kPrimal, t), 1.0f, 100 * run + unsigned(t));
-        add_noise(&window.plane(RowKind::kDx, t), 0.2f, 100 * run + 20 + unsigned(t));
-        add_noise(&window.plane(RowKind::kDy, t), 0.2f, 100 * run + 40 + unsigned(t));
+        add_noise(&window.plane(reconstruct::RowKind::kPrimal, t), 1.0f, 100 * run + unsigned(t));
+        add_noise(&window.plane(reconstruct::RowKind::kDx, t), 0.2f, 100 * run + 20 + unsigned(t));
+        add_noise(&window.plane(reconstruct::RowKind::kDy, t), 0.2f, 100 * run + 40 + unsigned(t));
       }
       const std::vector<float> x = solve(window, kL2, 0.4f);
       squares += std::pow(rms_difference(x, std::vector<float>(x.size(), 0.0f)), 2) / runs;
@@ -140,8 +145,8 @@ TEST(B3_SpaceTime, L2IsUnbiased) {
   std::exponential_distribution<float> exponential(1.0f);
   for (int run = 0; run < runs; ++run) {
     Window window = exact;
-    for (const RowKind kind : kRowKinds) {
-      const float sigma = kind == RowKind::kPrimal ? 1.0f : 0.3f;
+    for (const reconstruct::RowKind kind : reconstruct::kRowKinds) {
+      const float sigma = kind == reconstruct::RowKind::kPrimal ? 1.0f : 0.3f;
       for (auto& plane : window.planes[size_t(kind)]) {
         for (float& v : plane) v += sigma * (exponential(random) - 1.0f);
       }
@@ -168,9 +173,9 @@ TEST(B3_SpaceTime, L2IsUnbiased) {
 // What the first three channels hold, in a source of its own: parts of an image, or its alpha.
 Window share_of(const Window& window, float share, float offset) {
   Window part = window;
-  for (const RowKind kind : kRowKinds) {
+  for (const reconstruct::RowKind kind : reconstruct::kRowKinds) {
     for (auto& plane : part.planes[size_t(kind)]) {
-      for (float& v : plane) v = share * v + (kind == RowKind::kPrimal ? offset : 0.0f);
+      for (float& v : plane) v = share * v + (kind == reconstruct::RowKind::kPrimal ? offset : 0.0f);
     }
   }
   return part;
@@ -179,8 +184,8 @@ Window share_of(const Window& window, float share, float offset) {
 TEST(B2_SpaceTime, FrozenWeightsAreALinearOperator) {
   for (const uint32_t reconstruction : kAll) {
     const Window window = noisy_window(64, 48, 3, 5, Motion::kTurn);
-    const WindowSolver solver = solver_of(window, reconstruction);
-    SolveReport report;
+    const reconstruct::WindowSolver solver = solver_of(window, reconstruction);
+    reconstruct::SolveReport report;
     const auto apply = [&](const Window& planes) { return joined(solver.apply(planes, 0, 3, never, &report)); };
     const std::vector<float> whole = joined(solver.solution());
     EXPECT_LT(rms_difference(apply(window), whole), 2e-3) << reconstruction;
@@ -193,11 +198,12 @@ TEST(B2_SpaceTime, FrozenWeightsAreALinearOperator) {
 
 TEST(B2_SpaceTime, AConstantIsKeptByWeightsOfOtherPlanes) {
   for (const uint32_t reconstruction : kAll) {
-    const WindowSolver solver = solver_of(noisy_window(64, 48, 3, 5, Motion::kTurn), reconstruction);
+    const reconstruct::WindowSolver solver = solver_of(noisy_window(64, 48, 3, 5, Motion::kTurn), reconstruction);
     Window flat = measured(64, 48, 1, 5, Motion::kTurn);
     flat.measure(Images(5, std::vector<float>(64 * 48, 0.75f)));
-    SolveReport report;
-    for (const float v : joined(solver.apply(flat, 0, 1, never, &report))) ASSERT_NEAR(v, 0.75f, 1e-3f) << reconstruction;
+    reconstruct::SolveReport report;
+    for (const float v : joined(solver.apply(flat, 0, 1, never, &report)))
+      ASSERT_NEAR(v, 0.75f, 1e-3f) << reconstruction;
   }
 }
 
@@ -216,34 +222,39 @@ TEST(B2_SpaceTime, L1IgnoresOutliersAlongTheLinks) {
   Window window = measured(64, 48, 3, 5, Motion::kStatic);
   const Images truth = changing_images(window.size_);
   add_noise_of_halves(
-      &window, [](RowKind kind, size_t) { return kind == RowKind::kPrimal ? 0.1f : 0.02f; }, 1);
+      &window, [](reconstruct::RowKind kind, size_t) { return kind == reconstruct::RowKind::kPrimal ? 0.1f : 0.02f; },
+      1);
   for (size_t i = 100; i < 64 * 48 * 3; i += 301) {
-    window.plane(RowKind::kDt, 2)[i] += 30.0f;
-    window.plane(RowKind::kDxDt, 1)[i] -= 30.0f;
-    window.plane(RowKind::kDyDt, 3)[i] -= 30.0f;
+    window.plane(reconstruct::RowKind::kDt, 2)[i] += 30.0f;
+    window.plane(reconstruct::RowKind::kDxDt, 1)[i] -= 30.0f;
+    window.plane(reconstruct::RowKind::kDyDt, 3)[i] -= 30.0f;
   }
   EXPECT_LT(error_of(window, kL1, truth), 0.06);
   EXPECT_GT(error_of(window, kL2, truth), 0.15);
 }
 
-// Bright values are the noisy ones where light is rare, so weights by noise lose them; twicing gives them back, and lets no frame flicker
-// more than its noise.
+// Bright values are the noisy ones where light is rare, so weights by noise lose them; twicing gives them back, and
+// lets no frame flicker more than its noise.
 TEST(B3_SpaceTime, WeightsKeepTheMeanOfSkewedNoise) {
   Window window(96, 64, 3, 5);
   link(&window, Motion::kStatic);
   window.measure(Images(5, std::vector<float>(96 * 64 * 3, 1.0f)));
   add_noise_of_halves(
-      &window, [](RowKind kind, size_t) { return kind == RowKind::kPrimal || is_temporal(kind) ? 0.0f : 0.3f; }, 1);
+      &window,
+      [](reconstruct::RowKind kind, size_t) {
+        return kind == reconstruct::RowKind::kPrimal || reconstruct::is_temporal(kind) ? 0.0f : 0.3f;
+      },
+      1);
   std::mt19937 random(1);
   std::uniform_real_distribution<float> uniform;
   Images primal;
   for (int t = 0; t < 5; ++t) {
     for (size_t i = 0; i < 96 * 64; ++i) {
       const float a = uniform(random) < 0.1f ? 9.1f : 0.1f, b = uniform(random) < 0.1f ? 9.1f : 0.1f;
-      for (size_t c = 0; c < 3; ++c) window.plane(RowKind::kPrimal, t)[3 * i + c] = 0.5f * (a + b);
+      for (size_t c = 0; c < 3; ++c) window.plane(reconstruct::RowKind::kPrimal, t)[3 * i + c] = 0.5f * (a + b);
       window.deviations[0][size_t(t)][i] = 0.5f * std::abs(a - b);
     }
-    primal.push_back(window.plane(RowKind::kPrimal, t));
+    primal.push_back(window.plane(reconstruct::RowKind::kPrimal, t));
   }
   EXPECT_NEAR(mean(solve(window, kL1)) / mean(joined(primal)), 1.0, 1e-3);
 }
@@ -251,7 +262,7 @@ TEST(B3_SpaceTime, WeightsKeepTheMeanOfSkewedNoise) {
 // A missing row is none: its value may be anything.
 TEST(B2_SpaceTime, RowsThatAreMissingAreLeftOut) {
   Window window = measured(33, 17, 3, 4, Motion::kTurn);
-  for (const RowKind kind : kRowKinds) {
+  for (const reconstruct::RowKind kind : reconstruct::kRowKinds) {
     for (size_t i = 3; i < 33 * 17 * 3; i += 37) window.plane(kind, 1)[i] = std::numeric_limits<float>::quiet_NaN();
   }
   for (const uint32_t reconstruction : kAll) {
@@ -260,22 +271,26 @@ TEST(B2_SpaceTime, RowsThatAreMissingAreLeftOut) {
   }
 }
 
-// Values that are random, of light that is: their sums along the tracks stay, and values that are everywhere the same share of the light.
+// Values that are random, of light that is: their sums along the tracks stay, and values that are everywhere the same
+// share of the light.
 TEST(B2_SpaceTime, SmoothingOfSharesKeepsSumsAndShares) {
   constexpr int w = 13, h = 9, frames = 5;
-  const SpaceTimeSystem system(measured(w, h, 1, frames, Motion::kTurn));
+  const reconstruct::SpaceTimeSystem system(measured(w, h, 1, frames, Motion::kTurn));
   std::mt19937 random(1);
   std::normal_distribution<float> normal;
-  ShareSmoothing smoothing;
-  Frames values = system.make_fields(2);
+  reconstruct::ShareSmoothing smoothing;
+  reconstruct::Frames values = system.make_fields(2);
   double sum = 0.0, kept = 0.0;
   for (int t = 0; t < frames; ++t) {
-    Field light = make_field(w, h, [&](int, int) { return std::exp(normal(random)); });
-    for_values(&values[size_t(t)], [&](float& value, int x, int y, int c) { value = c == 0 ? normal(random) : 0.3f * light.row(y)[x]; });
-    sum += sum_rows(h, 1, [&](int y, int) { return std::accumulate(values[size_t(t)].row(y), values[size_t(t)].row(y) + w, 0.0); })[0];
+    reconstruct::Field light = make_field(w, h, [&](int, int) { return std::exp(normal(random)); });
+    for_values(&values[size_t(t)],
+               [&](float& value, int x, int y, int c) { value = c == 0 ? normal(random) : 0.3f * light.row(y)[x]; });
+    sum += sum_rows(h, 1, [&](int y, int) {
+      return std::accumulate(values[size_t(t)].row(y), values[size_t(t)].row(y) + w, 0.0);
+    })[0];
     smoothing.add_frame(std::move(light), t > 0 ? &system.correspondence(t - 1) : nullptr);
   }
-  const Frames before = values;
+  const reconstruct::Frames before = values;
   smoothing.apply(system, 0.04f, &values);
   float moved = 0.0f;
   for (size_t t = 0; t < frames; ++t) {
@@ -296,18 +311,18 @@ TEST(B2_SpaceTime, SmoothingOfSharesKeepsSumsAndShares) {
 TEST(B2_SpaceTime, LinksThatAreNotOneToOneAreRefused) {
   Window window = measured(8, 8, 1, 2, Motion::kStatic);
   window.correspondence[0][3] = 4;
-  EXPECT_THROW(SpaceTimeSystem{window}, Error);
+  EXPECT_THROW(reconstruct::SpaceTimeSystem{window}, Error);
   window.correspondence[0][3] = 64;
-  EXPECT_THROW(SpaceTimeSystem{window}, Error);
-  window.correspondence[0][3] = kNoCorrespondence;
-  EXPECT_NO_THROW(SpaceTimeSystem{window});
+  EXPECT_THROW(reconstruct::SpaceTimeSystem{window}, Error);
+  window.correspondence[0][3] = film::kNoCorrespondence;
+  EXPECT_NO_THROW(reconstruct::SpaceTimeSystem{window});
 }
 
 TEST(K2_Cancel, WindowsEndAtOnce) {
   const Window window = noisy_window(64, 48, 3, 4, Motion::kStatic);
   for (const uint32_t reconstruction : kAll) {
-    SolveReport report;
-    const WindowSolver solver(
+    reconstruct::SolveReport report;
+    const reconstruct::WindowSolver solver(
         window, reconstruction, 0.0f, [] { return true; }, &report);
     EXPECT_EQ(report.inner_steps, 0) << reconstruction;
   }

@@ -13,12 +13,12 @@ namespace {
 using namespace test;
 
 // Weights of four decades without any order.
-void weigh_at_random(SpaceTimeSystem* system) {
+void weigh_at_random(reconstruct::SpaceTimeSystem* system) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> exponent(-2.0f, 2.0f);
   std::vector<float> row(static_cast<size_t>(system->width()));
-  for (const RowKind kind : kRowKinds) {
-    for (int t = 0; t + int(is_temporal(kind)) < system->frames(); ++t) {
+  for (const reconstruct::RowKind kind : reconstruct::kRowKinds) {
+    for (int t = 0; t + int(reconstruct::is_temporal(kind)) < system->frames(); ++t) {
       for (int y = 0; y < system->height(); ++y) {
         for (float& weight : row) weight = std::pow(10.0f, exponent(random));
         system->set_weights(kind, t, y, row.data());
@@ -27,10 +27,10 @@ void weigh_at_random(SpaceTimeSystem* system) {
   }
 }
 
-double weight(SpaceTimeSystem* system, RowKind kind, int t, int x, int y) {
+double weight(reconstruct::SpaceTimeSystem* system, reconstruct::RowKind kind, int t, int x, int y) {
   std::vector<float> row(static_cast<size_t>(system->width()));
   system->weights(kind, t).read_row(y, row.data());
-  const double factor = kind == RowKind::kPrimal ? system->frame(t).factor : 1.0;
+  const double factor = kind == reconstruct::RowKind::kPrimal ? system->frame(t).factor : 1.0;
   return factor * row[size_t(x)];
 }
 
@@ -39,11 +39,11 @@ struct Dense {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd right_side;
 };
-Dense write_down(const Window& window, SpaceTimeSystem* system) {
+Dense write_down(const Window& window, reconstruct::SpaceTimeSystem* system) {
   const auto [w, h, channels, frames] = window.size_;
   const int n = w * h * frames;
   Dense dense{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
-  window.for_rows([&](RowKind kind, int t, int x, int y, const Window::Terms& terms) {
+  window.for_rows([&](reconstruct::RowKind kind, int t, int x, int y, const Window::Terms& terms) {
     const double weight_of_row = weight(system, kind, t, x, y);
     const double value = window.plane(kind, t)[size_t((y * w + x) * channels)];
     for (const auto& [i, a] : terms) {
@@ -54,7 +54,7 @@ Dense write_down(const Window& window, SpaceTimeSystem* system) {
   return dense;
 }
 
-Eigen::VectorXd to_vector(const Frames& frames, int channel = 0) {
+Eigen::VectorXd to_vector(const reconstruct::Frames& frames, int channel = 0) {
   const int w = frames.front().width(), h = frames.front().height();
   Eigen::VectorXd v(w * h * int(frames.size()));
   for (size_t t = 0; t < frames.size(); ++t) {
@@ -65,11 +65,11 @@ Eigen::VectorXd to_vector(const Frames& frames, int channel = 0) {
   return v;
 }
 
-Frames random_frames(const SpaceTimeSystem& system, int channels, unsigned seed) {
+reconstruct::Frames random_frames(const reconstruct::SpaceTimeSystem& system, int channels, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
-  Frames frames = system.make_fields(channels);
-  for (Field& field : frames) {
+  reconstruct::Frames frames = system.make_fields(channels);
+  for (reconstruct::Field& field : frames) {
     for (int y = 0; y < field.height(); ++y) {
       for (int c = 0; c < channels; ++c) {
         for (int x = 0; x < field.width(); ++x) field.row(y, c)[x] = normal(random);
@@ -92,11 +92,11 @@ Window random_window(int w, int h, int channels, int frames, Motion motion) {
 TEST(B2_SpaceTime, SystemIsTheOneThatItsRowsDefine) {
   for (const Motion motion : kMotions) {
     const Window window = random_window(13, 9, 2, 4, motion);
-    SpaceTimeSystem system(window);
+    reconstruct::SpaceTimeSystem system(window);
     weigh_at_random(&system);
     const Dense dense = write_down(window, &system);
-    const Frames x = random_frames(system, 1, 3);
-    Frames product = system.make_fields(1), right_side = product;
+    const reconstruct::Frames x = random_frames(system, 1, 3);
+    reconstruct::Frames product = system.make_fields(1), right_side = product;
     const double energy = system.multiply(x, &product)[0];
     system.right_side(window, 0, &right_side);
     const Eigen::VectorXd v = to_vector(x), expected = dense.matrix * v;
@@ -108,10 +108,10 @@ TEST(B2_SpaceTime, SystemIsTheOneThatItsRowsDefine) {
 
 TEST(B2_SpaceTime, ProductIsSymmetric) {
   for (const Motion motion : kMotions) {
-    SpaceTimeSystem system(random_window(70, 140, 1, 5, motion));
+    reconstruct::SpaceTimeSystem system(random_window(70, 140, 1, 5, motion));
     weigh_at_random(&system);
-    const Frames a = random_frames(system, 1, 2), b = random_frames(system, 1, 3);
-    Frames pa = system.make_fields(1), pb = pa;
+    const reconstruct::Frames a = random_frames(system, 1, 2), b = random_frames(system, 1, 3);
+    reconstruct::Frames pa = system.make_fields(1), pb = pa;
     const double aa = system.multiply(a, &pa)[0], bb = system.multiply(b, &pb)[0];
     EXPECT_NEAR(to_vector(a).dot(to_vector(pb)), to_vector(b).dot(to_vector(pa)), 1e-5 * (aa + bb)) << int(motion);
   }
@@ -120,12 +120,12 @@ TEST(B2_SpaceTime, ProductIsSymmetric) {
 TEST(B2_TimeLadder, IsSymmetricAndPositive) {
   for (const Motion motion : kMotions) {
     const Window window = random_window(33, 17, 1, 5, motion);
-    SpaceTimeSystem system(window);
+    reconstruct::SpaceTimeSystem system(window);
     weigh_at_random(&system);
-    TimeLadder ladder(system, 1);
+    reconstruct::TimeLadder ladder(system, 1);
     ladder.update();
-    const Frames a = random_frames(system, 1, 2), b = random_frames(system, 1, 3);
-    Frames za = system.make_fields(1), zb = za;
+    const reconstruct::Frames a = random_frames(system, 1, 2), b = random_frames(system, 1, 3);
+    reconstruct::Frames za = system.make_fields(1), zb = za;
     double aa = 0.0, bb = 0.0;
     for (const RowSums& sums : ladder.apply(a, &za)) aa += sums.total()[0];
     for (const RowSums& sums : ladder.apply(b, &zb)) bb += sums.total()[0];
@@ -136,17 +136,18 @@ TEST(B2_TimeLadder, IsSymmetricAndPositive) {
 }
 
 struct Solved {
-  Frames x;
-  CgReport report;
+  reconstruct::Frames x;
+  reconstruct::CgReport report;
 };
-Solved solve(const Window& window, SpaceTimeSystem* system, float residual, int max_steps = 100) {
+Solved solve(const Window& window, reconstruct::SpaceTimeSystem* system, float residual, int max_steps = 100) {
   const int channels = window.size_.channels;
-  TimeLadder ladder(*system, channels);
+  reconstruct::TimeLadder ladder(*system, channels);
   ladder.update();
   Solved solved{system->make_fields(channels), {}};
-  WindowFields fields(solved.x);
+  reconstruct::WindowFields fields(solved.x);
   system->right_side(window, 0, &fields.r);
-  solved.report = solve_window(*system, &ladder, {.residual = residual}, max_steps, never, &fields, &solved.x);
+  solved.report =
+      reconstruct::solve_window(*system, &ladder, {.residual = residual}, max_steps, never, &fields, &solved.x);
   return solved;
 }
 
@@ -154,8 +155,8 @@ TEST(B2_SpaceTime, SolverMeetsTheDenseSolution) {
   for (const Motion motion : kMotions) {
     for (const bool alike : {true, false}) {
       const Window window = random_window(11, 8, 3, 4, motion);
-      SpaceTimeSystem system(window);
-      alike ? weigh_uniformly(window, 0.2f, &system) : weigh_at_random(&system);
+      reconstruct::SpaceTimeSystem system(window);
+      alike ? reconstruct::weigh_uniformly(window, 0.2f, &system) : weigh_at_random(&system);
       const Dense dense = write_down(window, &system);
       const Eigen::LLT<Eigen::MatrixXd> factors(dense.matrix);
       EXPECT_EQ(factors.info(), Eigen::Success) << "not positive definite";
@@ -171,8 +172,8 @@ TEST(B2_SpaceTime, SolverMeetsTheDenseSolution) {
 TEST(B2_SpaceTime, FewStepsWhateverTheMotion) {
   for (const Motion motion : kMotions) {
     const Window window = random_window(320, 180, 1, 10, motion);
-    SpaceTimeSystem system(window);
-    weigh_uniformly(window, 0.4f, &system);
+    reconstruct::SpaceTimeSystem system(window);
+    reconstruct::weigh_uniformly(window, 0.4f, &system);
     const int coarse = solve(window, &system, 1e-4f).report.steps, fine = solve(window, &system, 1e-6f).report.steps;
     EXPECT_LE(coarse, 8) << int(motion);
     EXPECT_LE(fine, 14) << int(motion);

@@ -12,37 +12,39 @@
 namespace gradus::test {
 
 // All planes in memory: [kind][t], interleaved; links[t] by pixel.
-struct Window final : HalvedWindowSource {
+struct Window final : reconstruct::HalvedWindowSource {
   Window(int width, int height, int channels, int frames) : size_{width, height, channels, frames} {
     const size_t pixels = size_t(width) * size_t(height);
     for (auto& kind : planes) kind.assign(size_t(frames), std::vector<float>(pixels * size_t(channels), 0.0f));
     for (auto& kind : halves) kind.assign(size_t(frames), std::vector<float>(pixels * size_t(channels), 0.0f));
-    for (auto& kind : deviations) kind.assign(size_t(frames), std::vector<float>(pixels, std::numeric_limits<float>::quiet_NaN()));
-    correspondence.assign(size_t(frames), std::vector<int32_t>(pixels, kNoCorrespondence));
+    for (auto& kind : deviations)
+      kind.assign(size_t(frames), std::vector<float>(pixels, std::numeric_limits<float>::quiet_NaN()));
+    correspondence.assign(size_t(frames), std::vector<int32_t>(pixels, film::kNoCorrespondence));
   }
-  WindowSize size() const override { return size_; }
-  void read_row(RowKind kind, int t, int y, float* out) const override {
+  reconstruct::WindowSize size() const override { return size_; }
+  void read_row(reconstruct::RowKind kind, int t, int y, float* out) const override {
     const size_t row = size_t(size_.width) * size_t(size_.channels);
     std::copy_n(plane(kind, t).begin() + ptrdiff_t(size_t(y) * row), row, out);
   }
-  void read_half_differences(RowKind kind, int t, int y, float* out) const override {
+  void read_half_differences(reconstruct::RowKind kind, int t, int y, float* out) const override {
     const size_t row = size_t(size_.width) * size_t(size_.channels);
     std::copy_n(halves[size_t(kind)][size_t(t)].begin() + ptrdiff_t(size_t(y) * row), row, out);
   }
   void read_correspondence(int t, int y, int32_t* out) const override {
     std::copy_n(correspondence[size_t(t)].begin() + ptrdiff_t(y) * size_.width, size_.width, out);
   }
-  std::vector<float>& plane(RowKind kind, int t) { return planes[size_t(kind)][size_t(t)]; }
-  const std::vector<float>& plane(RowKind kind, int t) const { return planes[size_t(kind)][size_t(t)]; }
+  std::vector<float>& plane(reconstruct::RowKind kind, int t) { return planes[size_t(kind)][size_t(t)]; }
+  const std::vector<float>& plane(reconstruct::RowKind kind, int t) const { return planes[size_t(kind)][size_t(t)]; }
 
-  // One row of the system: Σ sign · pixel. Pixels are t·width·height + y·width + x. Empty where the system has no such row.
+  // One row of the system: Σ sign · pixel. Pixels are t·width·height + y·width + x. Empty where the system has no such
+  // row.
   using Terms = std::vector<std::pair<int, float>>;
-  Terms row(RowKind kind, int t, int x, int y) const;
+  Terms row(reconstruct::RowKind kind, int t, int x, int y) const;
   // Fills all rows' values from a sequence of images.
   void measure(const std::vector<std::vector<float>>& images);
   template <class Function>
   void for_rows(const Function& function) const {
-    for (const RowKind kind : kRowKinds) {
+    for (const reconstruct::RowKind kind : reconstruct::kRowKinds) {
       for (int t = 0; t < size_.frames; ++t) {
         for (int y = 0; y < size_.height; ++y) {
           for (int x = 0; x < size_.width; ++x) {
@@ -54,28 +56,29 @@ struct Window final : HalvedWindowSource {
     }
   }
 
-  WindowSize size_;
+  reconstruct::WindowSize size_;
   std::vector<std::vector<float>> planes[6], halves[6], deviations[6];
   std::vector<std::vector<int32_t>> correspondence;
 };
 
-inline Window::Terms Window::row(RowKind kind, int t, int x, int y) const {
+inline Window::Terms Window::row(reconstruct::RowKind kind, int t, int x, int y) const {
   const int w = size_.width, n = w * size_.height, i = y * w + x;
-  const int right = kind == RowKind::kDx || kind == RowKind::kDxDt, up = kind == RowKind::kDy || kind == RowKind::kDyDt;
+  const int right = kind == reconstruct::RowKind::kDx || kind == reconstruct::RowKind::kDxDt,
+            up = kind == reconstruct::RowKind::kDy || kind == reconstruct::RowKind::kDyDt;
   if ((right && x + 1 == w) || (up && y + 1 == size_.height)) return {};
   const int j = i + right + up * w, at = t * n;
-  if (!is_temporal(kind)) return i == j ? Terms{{at + i, 1.0f}} : Terms{{at + i, -1.0f}, {at + j, 1.0f}};
+  if (!reconstruct::is_temporal(kind)) return i == j ? Terms{{at + i, 1.0f}} : Terms{{at + i, -1.0f}, {at + j, 1.0f}};
   if (t + 1 == size_.frames) return {};
   const int there = correspondence[size_t(t)][size_t(i)], other = correspondence[size_t(t)][size_t(j)];
-  if (there == kNoCorrespondence) return {};
+  if (there == film::kNoCorrespondence) return {};
   if (i == j) return {{at + i, -1.0f}, {at + n + there, 1.0f}};
-  if (other == kNoCorrespondence || other % w != there % w + right || other / w != there / w + up) return {};
+  if (other == film::kNoCorrespondence || other % w != there % w + right || other / w != there / w + up) return {};
   return {{at + i, 1.0f}, {at + j, -1.0f}, {at + n + there, -1.0f}, {at + n + other, 1.0f}};
 }
 
 inline void Window::measure(const std::vector<std::vector<float>>& images) {
   const int n = size_.width * size_.height, channels = size_.channels;
-  for_rows([&](RowKind kind, int t, int x, int y, const Terms& terms) {
+  for_rows([&](reconstruct::RowKind kind, int t, int x, int y, const Terms& terms) {
     for (int c = 0; c < channels; ++c) {
       float sum = 0.0f;
       for (const auto& [pixel, sign] : terms) sum += sign * images[size_t(pixel / n)][size_t(pixel % n * channels + c)];
@@ -84,7 +87,8 @@ inline void Window::measure(const std::vector<std::vector<float>>& images) {
   });
 }
 
-// Links pixels by target(x, y, t) → (x', y') in float, rounded; what lies outside or is taken has none, nor has what `hole` says.
+// Links pixels by target(x, y, t) → (x', y') in float, rounded; what lies outside or is taken has none, nor has what
+// `hole` says.
 inline void link(Window* window, const std::function<std::pair<float, float>(int, int, int)>& target,
                  const std::function<bool(int, int, int)>& hole) {
   const auto [w, h, channels, frames] = window->size_;
@@ -125,7 +129,8 @@ inline void link(Window* window, Motion motion) {
       return link(
           window,
           [=](int x, int y, int) {
-            const float dx = 1.03f * (float(x) - 0.5f * w), dy = 1.03f * (float(y) - 0.5f * h), c = std::cos(0.035f), s = std::sin(0.035f);
+            const float dx = 1.03f * (float(x) - 0.5f * w), dy = 1.03f * (float(y) - 0.5f * h), c = std::cos(0.035f),
+                        s = std::sin(0.035f);
             return std::pair(0.5f * w + c * dx - s * dy, 0.5f * h + s * dx + c * dy);
           },
           blobs);

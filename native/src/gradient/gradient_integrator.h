@@ -1,0 +1,12 @@
+#pragma once
+
+#include <memory>
+
+#include "integrator/integrator.h"
+
+namespace gradus::gradient {
+
+// Makes the integrator of gradient-domain path tracing (thesis, section 5.4).
+std::unique_ptr<integrator::Integrator> make_gradient_integrator(const integrator::IntegratorContext& context);
+
+}  // namespace gradus::gradient
