@@ -20,7 +20,7 @@ struct CompareArguments {
 // An image, or a stored frame as its settings reconstruct it.
 compare::RgbImage load(const std::string& path, const std::string& layer) {
   if (!film_io::is_film_file(path)) {
-    scene::LoadedImage image = film_io::load_rgb(path, layer);
+    film_io::LoadedImage image = film_io::load_rgb(path, layer);
     return {image.width, image.height, std::move(image.rgb)};
   }
   const client::Device device;

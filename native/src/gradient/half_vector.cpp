@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bsdf/lobe.h"
+
 namespace gradus::gradient {
 
 namespace {

@@ -54,7 +54,7 @@ void OffsetPaths::light_all(const path::LightSample& sample, bsdf::ScatterClass 
     const light::LightEvaluation& c = offsets_[2].light.view;
     const light::LightEvaluation& d = offsets_[3].light.view;
     const geometry::Lanes3 direction = geometry::lanes(a.direction, b.direction, c.direction, d.direction);
-    const reconstruct::Lanes distance{a.distance, b.distance, c.distance, d.distance};
+    const geometry::Lanes distance{a.distance, b.distance, c.distance, d.distance};
     const geometry::Points4 points = offset_points();
     geometry::Lanes3 start = geometry::offset_origins(points, direction);
     for (int k = 0; k < film::kOffsets; ++k) {

@@ -48,7 +48,7 @@ Vec2 jitter_of_block(const path::PathContext& context, const Source& source, uin
                  row = static_cast<uint32_t>(film::pixel_block_of(source.y));
   const path::Sampler sampler =
       make_sampler(context, source, path::StreamKind::PixelBlock, (row << 16) ^ (column & 0xffffu), number);
-  return context.filter.sample(sampler.get2(dimension::kFilm));
+  return context.filter.sample(sampler.get2(path::dimension::kFilm));
 }
 
 }  // namespace
@@ -100,7 +100,7 @@ Vec2 pixel_jitter(const path::PathContext& context, const WorkUnit& unit, const 
                   const PixelSample& sample) {
   const Source source = source_of(context, unit, film, sample.x, sample.y);
   if (source.shares_jitter) return jitter_of_block(context, source, sample.number);
-  return context.filter.sample(sample.sampler.get2(dimension::kFilm));
+  return context.filter.sample(sample.sampler.get2(path::dimension::kFilm));
 }
 
 void add_primal(const path::PathResult& result, const PixelSample& sample, const WorkUnit& unit, film::Film* film,

@@ -3,7 +3,7 @@
 namespace gradus::light {
 
 geometry::Rays4 rays_to_light(const geometry::Lanes3& start, const geometry::Points4& from,
-                              const geometry::Lanes3& direction, const reconstruct::Lanes& distance,
+                              const geometry::Lanes3& direction, const geometry::Lanes& distance,
                               const LightPoint& to) {
   if (to.at_infinity()) return {start, direction, geometry::same(kInfinity), from.time};
   if (to.kind == LightKind::Triangle) {

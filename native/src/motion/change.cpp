@@ -51,7 +51,7 @@ void Change::add(const scene::Snapshot& other) {
     const geometry::InstanceData &a = now_.instances[i],
                                  *b = there[i] != kNoInstance ? &other.instances[there[i]] : nullptr;
     if (b != nullptr) is_new[there[i]] = false;
-    if (b != nullptr && gradus::is_static({now_, a}, {other, *b})) continue;
+    if (b != nullptr && motion::is_static({now_, a}, {other, *b})) continue;
     instances_[i] = any_ = true;
     add_box(a);
     if (b != nullptr) add_box(*b);

@@ -37,7 +37,7 @@ class FlowVectors {
  private:
   template <class Body>
   void each_pixel(const Body& body) const {
-    gradus::each_pixel(from_.width(), from_.height(), [&](int, int, size_t p) { body(p); });
+    motion::each_pixel(from_.width(), from_.height(), [&](int, int, size_t p) { body(p); });
   }
 
   // Whether the surface of a pixel is in the other frame, unhidden, and no edge is near.
@@ -110,7 +110,7 @@ class FlowVectors {
     std::vector<float> rows(values.size()), result(values.size());
     const FilmPlane<float> down{from_.width(), from_.height(), rows};
     const auto sum = [&](const FilmPlane<float>& plane, int dx, int dy, std::vector<float>* sums) {
-      gradus::each_pixel(plane.width, plane.height, [&](int x, int y, size_t p) {
+      motion::each_pixel(plane.width, plane.height, [&](int x, int y, size_t p) {
         float total = 0.0f;
         for (int i = -kPatch; i <= kPatch; ++i) total += plane.at(x + i * dx, y + i * dy);
         (*sums)[p] = total / float(2 * kPatch + 1);

@@ -82,7 +82,7 @@ class Refinement {
   size_t index(int x, int y) const { return size_t(y) * size_t(width_) + size_t(x); }
   template <class Body>
   void each_pixel(const Body& body) {
-    gradus::each_pixel(width_, height_, body);
+    motion::each_pixel(width_, height_, body);
   }
 
   // The other image where the vectors lead to. Where it cannot show the same: this one, with which nothing is wrong.

@@ -28,11 +28,11 @@ reconstruct::HalfSums remainder_of(const film::Film& film, const LightPassPlanes
 }  // namespace
 
 reconstruct::HalvedImage read_light_pass(const film::Film& film, const film::PassPlane& plane) {
-  return read_halves(film, [&](size_t i) { return sums_of(plane, i); });
+  return reconstruct::read_halves(film, [&](size_t i) { return sums_of(plane, i); });
 }
 
 reconstruct::HalvedImage read_remainder(const film::Film& film, const LightPassPlanes& planes) {
-  return read_halves(film, [&](size_t i) { return remainder_of(film, planes, i); });
+  return reconstruct::read_halves(film, [&](size_t i) { return remainder_of(film, planes, i); });
 }
 
 film::FeatureImage read_color(const film::Film& film, const film::PassPlane& plane) {

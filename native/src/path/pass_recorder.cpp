@@ -40,7 +40,7 @@ Vec3 uv_of(const geometry::MeshData& mesh, const geometry::Hit& hit) {
   if (map == nullptr) {
     return Vec3(0.0f);
   }
-  const Vec4 uv = interpolate(geometry::corner_values(mesh, *map, hit.triangle), hit.barycentric);
+  const Vec4 uv = geometry::interpolate(geometry::corner_values(mesh, *map, hit.triangle), hit.barycentric);
   return Vec3(uv.x, uv.y, 1.0f);
 }
 

@@ -90,11 +90,11 @@ struct Steps {
     return {rows.total(), rows.largest()};
   }
   Sums direct(const Sums& factor) {
-    const Sums pap = gradus::direct(a, fields.z, factor, fields.p, &fields.next_p);
+    const Sums pap = reconstruct::direct(a, fields.z, factor, fields.p, &fields.next_p);
     std::swap(fields.p, fields.next_p);
     return pap;
   }
-  Sums advance(const Sums& step) { return gradus::advance(a, step, fields.p, x, &fields.r); }
+  Sums advance(const Sums& step) { return reconstruct::advance(a, step, fields.p, x, &fields.r); }
 
   Multigrid* preconditioner;
   const Stencil& a;

@@ -70,8 +70,8 @@ void AdaptiveSampling::start_batch(uint32_t mean) {
   batch_.first.resize(size_t(region_.area()));
   batch_.count.resize(size_t(region_.area()));
   for (size_t i = 0; i < grid_.blocks.size(); ++i) {
-    fill(grid_.blocks[i], region_, first_sample_ + taken_[i], &batch_.first);
-    fill(grid_.blocks[i], region_, counts[i], &batch_.count);
+    film::fill(grid_.blocks[i], region_, first_sample_ + taken_[i], &batch_.first);
+    film::fill(grid_.blocks[i], region_, counts[i], &batch_.count);
     taken_[i] += counts[i];
   }
 }

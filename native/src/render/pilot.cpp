@@ -183,7 +183,7 @@ GradientMap run_pilot(const integrator::Integrator& integrator, const GradusSett
     if (part.width() <= 0 || part.height() <= 0) continue;
     total.add(sums[i], 1.0);
     if (!chosen[i]) continue;
-    fill(part, region, uint8_t{1}, &map.pixels);
+    film::fill(part, region, uint8_t{1}, &map.pixels);
     kept += part.area();
   }
   map.share = double(kept) / double(region.area());

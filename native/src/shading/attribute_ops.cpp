@@ -13,7 +13,7 @@ Vec4 attribute_value(const ShadeContext& c, const std::string* name, bool uv, ui
   if (!found && !name && uv) found = geometry::default_uv_map(mesh);
   if (!found) return Vec4(0.0f);
   if (channels) *channels = found->channels;
-  return interpolate(geometry::corner_values(mesh, *found, c.hit.triangle), c.hit.barycentric);
+  return geometry::interpolate(geometry::corner_values(mesh, *found, c.hit.triangle), c.hit.barycentric);
 }
 
 void attribute(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {

@@ -14,8 +14,8 @@ Vec4 turned_with_surface(const ShadeContext& c, const Vec4& tangent) {
   const geometry::MeshData& mesh = *c.instance->mesh;
   if (mesh.shutter_keys == 0 || !geometry::triangle_normals(mesh, c.hit.triangle, &rest)) return tangent;
   geometry::triangle_normals_in_shutter(mesh, c.hit.triangle, c.hit.time, &then);
-  const Vec3 from = safe_normalize(interpolate(rest, c.hit.barycentric)),
-             to = safe_normalize(interpolate(then, c.hit.barycentric));
+  const Vec3 from = safe_normalize(geometry::interpolate(rest, c.hit.barycentric)),
+             to = safe_normalize(geometry::interpolate(then, c.hit.barycentric));
   return Vec4(turned(Vec3(tangent), from, to), tangent.w);
 }
 
@@ -25,7 +25,7 @@ Vec4 uv_tangent(const ShadeContext& c, const std::string* name) {
   const geometry::MeshData& mesh = *c.instance->mesh;
   const geometry::MeshAttribute* uv = name ? geometry::find_attribute(mesh, *name) : geometry::default_uv_map(mesh);
   for (const auto& field : c.instance->tangents)
-    if (field->uv == uv) return turned_with_surface(c, interpolate(field->corners(c.hit.triangle), c.hit.barycentric));
+    if (field->uv == uv) return turned_with_surface(c, geometry::interpolate(field->corners(c.hit.triangle), c.hit.barycentric));
   return Vec4(0.0f);
 }
 
@@ -35,7 +35,7 @@ Vec3 unflipped(const ShadeContext& c) { return c.backfacing ? -c.normal : c.norm
 Vec3 local_normal(const ShadeContext& c) {
   std::array<Vec3, 3> normals;
   if (geometry::triangle_normals_in_shutter(*c.instance->mesh, c.hit.triangle, c.hit.time, &normals))
-    return interpolate(normals, c.hit.barycentric);
+    return geometry::interpolate(normals, c.hit.barycentric);
   return normal_to_local(c, unflipped(c));
 }
 

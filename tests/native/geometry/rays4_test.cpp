@@ -76,7 +76,7 @@ TEST_F(Rays4Test, ReachEmittersOfAllKindsAsOneShadowRayDoes) {
     const geometry::Points4 points = geometry::gather(from[0], from[1], from[2], from[3], 0.0f);
     const geometry::Lanes3 direction =
         geometry::lanes(view[0].direction, view[1].direction, view[2].direction, view[3].direction);
-    const reconstruct::Lanes distance{view[0].distance, view[1].distance, view[2].distance, view[3].distance};
+    const geometry::Lanes distance{view[0].distance, view[1].distance, view[2].distance, view[3].distance};
     const geometry::Rays4 rays =
         rays_to_light(geometry::offset_origins(points, direction), points, direction, distance, light_point);
     for (int i = 0; i < 4; ++i) {

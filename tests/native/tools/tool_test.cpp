@@ -462,7 +462,7 @@ TEST_F(ToolSequence, WritesThePicturesThatWereDelivered) {
   EXPECT_NE(made.out.find("pictures/0001.exr"), std::string::npos) << made.out;
   for (int frame = 1; frame <= 6; ++frame) {
     const std::string path = (folder / ("pictures/000" + std::to_string(frame) + ".exr")).string();
-    const scene::LoadedImage picture = film_io::load_rgb(path, "");
+    const film_io::LoadedImage picture = film_io::load_rgb(path, "");
     for (size_t i = 0; i < 24 * 16; ++i) {
       for (size_t c = 0; c < 3; ++c)
         ASSERT_EQ(picture.rgb[3 * i + c], delivered[size_t(frame) - 1][4 * i + c]) << frame;
@@ -497,7 +497,7 @@ TEST_F(ToolSequence, WritesPassesOfComponents) {
 TEST_F(ToolSequence, PartsHaveTheBitsOfTheWhole) {
   ASSERT_EQ(run("reconstruct store/anim/layer -o part --frames 3-4").code, 0);
   EXPECT_FALSE(fs::exists(folder / "part/0002.exr"));
-  const scene::LoadedImage picture = film_io::load_rgb((folder / "part/0003.exr").string(), "");
+  const film_io::LoadedImage picture = film_io::load_rgb((folder / "part/0003.exr").string(), "");
   for (size_t i = 0; i < 24 * 16; ++i) ASSERT_EQ(picture.rgb[3 * i], delivered[2][4 * i]);
 }
 
@@ -505,7 +505,7 @@ TEST_F(ToolSequence, ChangesHowFramesAreReconstructed) {
   for (const char* how : {"--reconstruction l1", "--alpha 0.05", "--window-size 2", "--film-exposure 2"}) {
     const Outcome made = run(std::string("reconstruct store/anim/layer -o other --frames 2 ") + how);
     ASSERT_EQ(made.code, 0) << how << ": " << made.err;
-    const scene::LoadedImage picture = film_io::load_rgb((folder / "other/0002.exr").string(), "");
+    const film_io::LoadedImage picture = film_io::load_rgb((folder / "other/0002.exr").string(), "");
     double sum = 0.0, delivered_sum = 0.0;
     bool same = true;
     for (size_t i = 0; i < 24 * 16; ++i) {
@@ -562,7 +562,7 @@ TEST_F(ToolSequence, JobsOfAStepThatShareAFolderHaveThePicturesThatTheyDelivered
   ASSERT_EQ(made.code, 0) << made.err;
   EXPECT_EQ(made.err, "");
   for (int frame = 1; frame <= 6; ++frame) {
-    const scene::LoadedImage picture =
+    const film_io::LoadedImage picture =
         film_io::load_rgb((folder / ("pictures/000" + std::to_string(frame) + ".exr")).string(), "");
     for (size_t i = 0; i < 24 * 16; ++i) ASSERT_EQ(picture.rgb[3 * i], delivered[size_t(frame) - 1][4 * i]) << frame;
   }
@@ -624,7 +624,7 @@ TEST_F(ToolSequence, WritesWhatAutoDelivered) {
   render(GRADUS_RECONSTRUCTION_AUTO);
   const Outcome made = run("reconstruct store/anim/layer -o pictures --passes all");
   ASSERT_EQ(made.code, 0) << made.err;
-  const scene::LoadedImage picture = film_io::load_rgb((folder / "pictures/0004.exr").string(), "");
+  const film_io::LoadedImage picture = film_io::load_rgb((folder / "pictures/0004.exr").string(), "");
   for (size_t i = 0; i < 24 * 16; ++i) ASSERT_EQ(picture.rgb[3 * i], delivered[3][4 * i]);
   const Outcome l2 = run("reconstruct store/anim/layer -o other --reconstruction l2");
   EXPECT_EQ(l2.code, 1);

@@ -70,7 +70,7 @@ struct Steps {
     return products;
   }
   Sums direct(const Sums& factor) {
-    gradus::direct(factor, fields.z, &fields.p);
+    reconstruct::direct(factor, fields.z, &fields.p);
     return system.multiply(fields.p, &fields.z);
   }
   Sums advance(Sums step) {

@@ -33,7 +33,7 @@ void WindowBlend::add(int window, int frame, Reconstructed picture) {
   const float share = grid_.share(window, frame);
   if (share < 1.0f) scale(&picture, share);
   if (const auto begun = begun_.find(frame); begun != begun_.end()) {
-    gradus::add(begun->second, &picture);
+    reconstruct::add(begun->second, &picture);
     begun_.erase(begun);
   }
   if (window < grid_.last_with(frame)) {
