@@ -37,7 +37,8 @@ bool has_choice(const Option& option, double value) {
 }
 
 void check_range(const Option& option, double value) {
-  if (option.type == GRADUS_OPTION_ENUM && !has_choice(option, value)) throw refused(option, number(value), "one of " + choice_names(option));
+  if (option.type == GRADUS_OPTION_ENUM && !has_choice(option, value))
+    throw refused(option, number(value), "one of " + choice_names(option));
   if (value >= option.minimum && value <= option.maximum) return;  // NaN fails
   std::string allowed = "at least " + number(option.minimum);
   if (option.maximum < 2e9) allowed = number(option.minimum) + " to " + number(option.maximum);

@@ -35,9 +35,8 @@ const ComponentPassInfo& component_pass_info(uint32_t pass) {
 }
 
 bool wants_any(uint32_t component_passes, bool (*is_of_kind)(uint32_t component_pass)) {
-  return std::ranges::any_of(all_component_passes(), [&](const ComponentPassInfo& info) {
-    return wants(component_passes, info.pass) && is_of_kind(info.pass);
-  });
+  return std::ranges::any_of(all_component_passes(),
+                             [&](const ComponentPassInfo& info) { return wants(component_passes, info.pass) && is_of_kind(info.pass); });
 }
 
 uint64_t needed_passes(uint64_t passes) {
