@@ -15,8 +15,8 @@ ROWS: tuple[dict[str, Any], ...] = (
         label="Samples",
         doc=(
             "Samples per pixel. Twice as many take twice as long and halve the squared error of the sampled "
-            "picture. With a noise threshold it is the mean over the picture: noisy tiles take up to four times as "
-            "many"
+            "picture. With a noise threshold it is the mean over the picture: noisy pixel blocks take up to four "
+            "times as many"
         ),
         minimum=1,
         maximum=16777216,
@@ -28,8 +28,8 @@ ROWS: tuple[dict[str, Any], ...] = (
         default=0,
         label="Min Samples",
         doc=(
-            "Minimum samples per pixel before a tile may stop at the noise threshold. 0 = automatic: 16, or 0.16 / "
-            "noise threshold if that is more"
+            "Minimum samples per pixel before a pixel block may stop at the noise threshold. 0 = automatic: 16, or "
+            "0.16 / noise threshold if that is more"
         ),
         minimum=0,
         maximum=16777216,
@@ -41,7 +41,7 @@ ROWS: tuple[dict[str, Any], ...] = (
         default=0.01,
         label="Noise Threshold",
         doc=(
-            "A tile of 16×16 pixels stops when the estimated relative error of its picture falls below this; the "
+            "A block of 16×16 pixels stops when the estimated relative error of its picture falls below this; the "
             "others share the remaining samples by their noise. Lower values leave less noise and take longer. 0 = "
             "off: every pixel takes the same number. The same value leaves less noise than in Cycles"
         ),

@@ -152,7 +152,9 @@ class Engine:
 
 
 def render_viewport(scene: bpy.types.Scene, _folder: Path) -> Outcome:
+    scene.update_tag()  # as the interface does
     engine, depsgraph = Engine(), bpy.context.evaluated_depsgraph_get()
+    depsgraph.update()
     view = viewport.View(engine, depsgraph)
     window = Matrix.Translation((0.0, 0.0, -5.0))
     view.synchronize(depsgraph, ViewOverride.from_view(window, Matrix(), (0.1, 100.0), WIDTH, HEIGHT))

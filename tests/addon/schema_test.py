@@ -20,7 +20,8 @@ GENERATED = (
 
 
 def generate(root: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([PYTHON, root / "tools/schema/generate.py", *arguments], capture_output=True, text=True, timeout=60)
+    command = [PYTHON, root / "tools/schema/generate.py", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60)
 
 
 @pytest.fixture

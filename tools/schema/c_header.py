@@ -68,8 +68,8 @@ def struct(schema: Schema, item: Struct) -> list[str]:
 
 
 def value_name(item: Enum, name: str) -> str:
-    """Name of a value in C. The value 0 of Error is GRADUS_OK."""
-    return f"GRADUS_{name}" if item.name == "Error" and name in ("OK", "TIMEOUT") else f"GRADUS_{item.prefix}{name}"
+    """Name of a value in C."""
+    return f"GRADUS_{name}" if name in item.bare else f"GRADUS_{item.prefix}{name}"
 
 
 def enum(item: Enum) -> list[str]:

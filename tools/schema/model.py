@@ -47,6 +47,7 @@ class Enum:
     values: tuple[Value, ...]
     flags: bool = False
     python: str = ""  # name of the class in Python where it is another one
+    bare: tuple[str, ...] = ()  # values that have no prefix in C
 
     def number_of(self, name: str) -> int:
         for value in self.values:
@@ -244,7 +245,8 @@ def _op(name: str, number: int, shape: str, doc: str, parameters: str = "") -> O
 
 
 def _enum(row: dict[str, Any], values: tuple[Value, ...]) -> Enum:
-    return Enum(row["name"], row["prefix"], plain(row["doc"]), values, row.get("flags", False), row.get("python", ""))
+    further = (row.get("flags", False), row.get("python", ""), tuple(row.get("bare", ())))
+    return Enum(row["name"], row["prefix"], plain(row["doc"]), values, *further)
 
 
 def _read(name: str) -> dict[str, Any]:

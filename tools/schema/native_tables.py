@@ -34,7 +34,7 @@ def layout(schema: Schema, note: str) -> str:
     body += ["std::span<const StructLayout> struct_layouts() { return kStructs; }"]
     body += ["std::span<const EnumLayout> enum_layouts() { return kEnums; }", ""]
     includes = ['#include "schema/layout.h"', "", '#include "gradus/gradus.h"']
-    return _file(note, "Layouts of the public structs and values of the public enums.", includes, "gradus::api", body)
+    return _file(note, "Layouts of the public structs and values of the public enums.", includes, "gradus::schema", body)
 
 
 def _factor(text: str, struct: str, owner: str) -> str:
@@ -43,7 +43,7 @@ def _factor(text: str, struct: str, owner: str) -> str:
     name = text.removeprefix("owner.")
     elements = re.fullmatch(r"elements\((\w+)\)", name)
     if elements:
-        return f"domain_size({holder}, {struct}.{elements[1]})"
+        return f"geometry::domain_size({holder}, {struct}.{elements[1]})"
     return f"uint64_t{{{name}}}" if name.isdigit() else f"{holder}.{name}"
 
 
@@ -118,7 +118,7 @@ def archive(schema: Schema, note: str) -> str:
             body += ["  s.struct_size = sizeof(s);"] if item.sized else []
             body += [*_values(item), *_texts(item), *_arrays(schema, item), "}", ""]
     purpose = "visit() for every struct of the scene calls; see api/archive.h. A change needs another kSceneFormat."
-    includes = ['#include "gradus/gradus.h"', '#include "geometry/mesh.h"']
+    includes = ['#include "geometry/mesh.h"', '#include "gradus/gradus.h"']
     return _file(note, purpose, includes, "gradus::api", body, guard=True)
 
 
@@ -179,7 +179,7 @@ def options(schema: Schema, note: str) -> str:
     body += ["  {#field, type, offsetof(GradusSettings, field), value, low, high, choices, sampling, doc}", ""]
     body += ["constexpr Option kOptions[] = {", *(_option(schema, item) for item in schema.native_options), "};"]
     body += ["", "}  // namespace", "", "std::span<const Option> options() { return kOptions; }", ""]
-    return _file(note, "The options of GradusSettings.", ['#include "schema/options.h"'], "gradus", body)
+    return _file(note, "The options of GradusSettings.", ['#include "schema/options.h"'], "gradus::schema", body)
 
 
 def _pass(item: Pass) -> str:
@@ -201,5 +201,5 @@ def passes(schema: Schema, note: str) -> str:
     body += ["};", "", "}  // namespace", "", "std::span<const PassInfo> all_passes() { return kPasses; }"]
     body += ["std::span<const ComponentPassInfo> all_component_passes() { return kComponentPasses; }", ""]
     purpose = "The passes of a picture and of its components."
-    return _file(note, purpose, ['#include "schema/pass_table.h"'], "gradus", body)
+    return _file(note, purpose, ['#include "schema/pass_table.h"'], "gradus::schema", body)
 

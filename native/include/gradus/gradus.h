@@ -485,10 +485,10 @@ typedef struct GradusSettings {
                                        = the full frame. [pixels] */
   uint32_t samples;                 /* Samples per pixel. Twice as many take twice as long and halve the squared
                                        error of the sampled picture. With a noise threshold it is the mean over the
-                                       picture: noisy tiles take up to four times as many. */
-  uint32_t min_samples;             /* Minimum samples per pixel before a tile may stop at the noise threshold. 0 =
-                                       automatic: 16, or 0.16 / noise threshold if that is more. */
-  float noise_threshold;            /* A tile of 16×16 pixels stops when the estimated relative error of its picture
+                                       picture: noisy pixel blocks take up to four times as many. */
+  uint32_t min_samples;             /* Minimum samples per pixel before a pixel block may stop at the noise
+                                       threshold. 0 = automatic: 16, or 0.16 / noise threshold if that is more. */
+  float noise_threshold;            /* A block of 16×16 pixels stops when the estimated relative error of its picture
                                        falls below this; the others share the remaining samples by their noise. Lower
                                        values leave less noise and take longer. 0 = off: every pixel takes the same
                                        number. The same value leaves less noise than in Cycles. */

@@ -24,7 +24,7 @@ const char* gradus_version_text(void) {
 
 uint64_t gradus_abi_hash(void) {
   uint64_t hash = 0;
-  api::guard([&] { hash = api::abi_hash(); });
+  api::guard([&] { hash = schema::abi_hash(); });
   return hash;
 }
 
@@ -33,7 +33,7 @@ GradusError gradus_error(const char** text) { return api::take_error(text); }
 GradusError gradus_struct_layout(const char* name, size_t* size, size_t* offsets, size_t capacity,
                                  size_t* field_count) {
   return api::guard([&] {
-    const api::StructLayout* layout = api::find_struct(std::string_view(&api::require(name, "name")));
+    const schema::StructLayout* layout = schema::find_struct(std::string_view(&api::require(name, "name")));
     if (!layout) throw invalid_argument("no struct Gradus" + std::string(name));
     if (size) *size = layout->size;
     if (field_count) *field_count = layout->fields.size();

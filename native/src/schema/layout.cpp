@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace gradus::api {
+namespace gradus::schema {
 namespace {
 
 std::string abi_text() {
@@ -40,4 +40,4 @@ uint64_t abi_hash() {
   return hash;
 }
 
-}  // namespace gradus::api
+}  // namespace gradus::schema

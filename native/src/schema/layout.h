@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-namespace gradus::api {
+namespace gradus::schema {
 
 struct FieldLayout {
   const char* name;
@@ -33,4 +33,4 @@ const StructLayout* find_struct(std::string_view name);
 // FNV-1a over the text that gradus.h describes.
 uint64_t abi_hash();
 
-}  // namespace gradus::api
+}  // namespace gradus::schema

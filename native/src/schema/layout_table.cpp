@@ -6,7 +6,7 @@
 #include "gradus/gradus.h"
 
 // clang-format off
-namespace gradus::api {
+namespace gradus::schema {
 namespace {
 
 #define FIELD(type, field) {#field, offsetof(type, field), sizeof(type::field)}
@@ -516,5 +516,5 @@ constexpr EnumLayout kEnums[] = {
 std::span<const StructLayout> struct_layouts() { return kStructs; }
 std::span<const EnumLayout> enum_layouts() { return kEnums; }
 
-}  // namespace gradus::api
+}  // namespace gradus::schema
 // clang-format on

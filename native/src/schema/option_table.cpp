@@ -43,12 +43,12 @@ constexpr Option kOptions[] = {
            "Height of the full frame."),
     OPTION(samples, GRADUS_OPTION_INT, 64, 1, 16777216, {}, false,
            "Samples per pixel. Twice as many take twice as long and halve the squared error of the sampled picture. "
-           "With a noise threshold it is the mean over the picture: noisy tiles take up to four times as many."),
+           "With a noise threshold it is the mean over the picture: noisy pixel blocks take up to four times as many."),
     OPTION(min_samples, GRADUS_OPTION_INT, 0, 0, 16777216, {}, false,
-           "Minimum samples per pixel before a tile may stop at the noise threshold. 0 = automatic: 16, or 0.16 / "
-           "noise threshold if that is more."),
+           "Minimum samples per pixel before a pixel block may stop at the noise threshold. 0 = automatic: 16, or "
+           "0.16 / noise threshold if that is more."),
     OPTION(noise_threshold, GRADUS_OPTION_FLOAT, 0.01, 0, 3.4e+38, {}, false,
-           "A tile of 16×16 pixels stops when the estimated relative error of its picture falls below this; the "
+           "A block of 16×16 pixels stops when the estimated relative error of its picture falls below this; the "
            "others share the remaining samples by their noise. Lower values leave less noise and take longer. 0 = "
            "off: every pixel takes the same number. The same value leaves less noise than in Cycles."),
     OPTION(time_limit, GRADUS_OPTION_FLOAT, 0, 0, 3.4e+38, {}, false,

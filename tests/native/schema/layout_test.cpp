@@ -7,7 +7,7 @@
 
 #include "gradus/gradus.h"
 
-namespace gradus::api {
+namespace gradus::schema {
 namespace {
 
 TEST(H1_StructLayout, IsToldThroughTheApi) {
@@ -67,4 +67,4 @@ TEST(H3_StructSize, OlderCallersGetDefaultsNewerAreRefused) {
 }
 
 }  // namespace
-}  // namespace gradus::api
+}  // namespace gradus::schema
