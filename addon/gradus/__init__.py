@@ -1,4 +1,7 @@
-"""Gradus, a gradient-domain path tracer for Blender 3.4 to 5.0. This module imports without Blender; register() needs it."""
+"""Gradus, a gradient-domain path tracer for Blender 3.4 to 5.0.
+
+This module imports without Blender; register() needs it.
+"""
 
 from __future__ import annotations
 
@@ -15,14 +18,17 @@ bl_info = {
 
 
 def register() -> None:
-    """Idempotent; a missing or wrong native library does not keep it from registering (it is reported when a render starts)."""
+    """Registers the add-on. May be called repeatedly.
+
+    A missing or wrong native library does not prevent registration: it is reported when a render starts.
+    """
     from . import registration
 
     registration.register()
 
 
 def unregister() -> None:
-    """Idempotent; stops all renders and frees what the library holds."""
+    """Unregisters the add-on, stops all renders and releases all native objects. May be called repeatedly."""
     from . import registration
 
     registration.unregister()

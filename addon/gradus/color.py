@@ -1,7 +1,8 @@
-"""Colour spaces for the native device: Blender's own configuration, and values baked from it where the library cannot read it.
+"""Colour spaces of Blender's configuration, baked where the library cannot read the configuration.
 
-The library's OpenColorIO 2.1 refuses configurations of profile 2.4 (Blender 5.0); the PyOpenColorIO inside Blender reads them
-(contract 8.1). A colour space is handed over as a curve over [0, 1] and a matrix into scene-linear, where that describes it exactly.
+The library's OpenColorIO 2.1 refuses configurations of profile 2.4 (Blender 5.0), which Blender's own PyOpenColorIO
+reads. A colour space is passed to the device as a curve over [0, 1] and a matrix to scene-linear, if these describe it
+exactly.
 """
 
 from __future__ import annotations
@@ -17,17 +18,17 @@ from . import native
 
 CURVE_SAMPLES = 1024
 TOLERANCE = 2e-3
-"""Largest difference, relative to 1, between a colour space and its curve and matrix; measured on saturated and dark probes."""
+"""Maximum difference, relative to 1, between a colour space and its curve and matrix, on saturated and dark probes."""
 READABLE_PROFILE = (2, 1)
 PROBES = ((0.2, 0.5, 0.9), (0.9, 0.1, 0.3), (0.02, 0.6, 0.05), (0.7, 0.7, 0.1))
 
 Convert = Callable[[array], None]
-"""Converts RGB triples, one after another in an array('f'), in place into scene-linear."""
+"""Converts RGB triples in an array('f') to scene-linear, in place."""
 CurveAndMatrix = tuple[array, list[float]]
 
 
 def profile_of(text: str) -> tuple[int, int]:
-    """(major, minor) of an OpenColorIO configuration; (1, 0) if it does not say."""
+    """Returns the profile (major, minor) of an OpenColorIO configuration, by default (1, 0)."""
     match = re.search(r"^ocio_profile_version:\s*(\d+)(?:\.(\d+))?", text, re.MULTILINE)
     return (int(match.group(1)), int(match.group(2) or 0)) if match else (1, 0)
 
@@ -41,10 +42,10 @@ def needs_baking(config_path: str) -> bool:
 
 
 def curve_and_matrix(convert: Convert) -> CurveAndMatrix | None:
-    """The curve (CURVE_SAMPLES values, encoded -> linear; empty for a linear space) and row-major matrix that equal `convert`; None if
-    none do.
+    """Returns the curve and row-major matrix that equal `convert`, or None if there are none.
 
-    White (1, 1, 1) fixes the scale: with M the matrix and c the curve, convert(t, t, t) = M · (c(t), c(t), c(t)), and c(1) = 1.
+    The curve maps CURVE_SAMPLES encoded values to linear ones and is empty for a linear space. White fixes the scale:
+    with the matrix M and the curve c, convert(t, t, t) = M · (c(t), c(t), c(t)), and c(1) = 1.
     """
     corners = array("f", (1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0))
     convert(corners)
@@ -67,7 +68,8 @@ def curve_and_matrix(convert: Convert) -> CurveAndMatrix | None:
 def _curve(convert: Convert, row_sums: Sequence[float]) -> array:
     grays = array("f", (index / (CURVE_SAMPLES - 1) for index in range(CURVE_SAMPLES) for _ in range(3)))
     convert(grays)
-    return array("f", (sum(grays[3 * index + row] / row_sums[row] for row in range(3)) / 3.0 for index in range(CURVE_SAMPLES)))
+    means = (sum(grays[3 * index + row] / row_sums[row] for row in range(3)) / 3.0 for index in range(CURVE_SAMPLES))
+    return array("f", means)
 
 
 def _look_up(curve: array, value: float) -> float:
@@ -83,7 +85,7 @@ def _is_identity(curve: array) -> bool:
 
 
 class Baker:
-    """Colour spaces of one configuration, baked when an image first asks for them: making all takes seconds."""
+    """Bakes colour spaces of one configuration when an image first uses them. Baking all of them would take seconds."""
 
     def __init__(self, ocio: Any, config: Any) -> None:
         self._ocio = ocio
@@ -91,31 +93,37 @@ class Baker:
         self._known: set[str] = set()
 
     def bake(self, name: str) -> CurveAndMatrix | None:
-        """None for a space that is unknown, or is no curve and matrix."""
+        """Returns a colour space, or None if it is unknown or cannot be described by a curve and a matrix."""
         space = self._config.getColorSpace(name)
         if space is None:
             return None
         try:
-            processor = self._config.getProcessor(space, self._config.getColorSpace("scene_linear")).getDefaultCPUProcessor()
+            linear = self._config.getColorSpace("scene_linear")
+            processor = self._config.getProcessor(space, linear).getDefaultCPUProcessor()
         except self._ocio.Exception:
             return None
         return curve_and_matrix(lambda rgb: processor.apply(self._ocio.PackedImageDesc(rgb, len(rgb) // 3, 1, 3)))
 
-    def hand_over(self, library: Any, device: int, names: Iterable[str]) -> None:
-        """Sets those of `names` on the device that it does not have yet. The library itself warns of one that is still missing."""
+    def define(self, library: Any, device: int, names: Iterable[str]) -> None:
+        """Defines colour spaces on the device that are not defined yet.
+
+        The library warns of those that are still missing.
+        """
         for name in sorted(set(names) - self._known):
             self._known.add(name)
             found = self.bake(name)
             if found is not None:
-                space = native.ColorSpace(name=native.text(name), curve_count=len(found[0]), curve=native.pointer(found[0]))
-                space.matrix[:] = found[1]
+                curve, matrix = found
+                space = native.ColorSpace(name=native.text(name), curve_count=len(curve), curve=native.pointer(curve))
+                space.matrix[:] = matrix
                 library.device_set_color_space(device, ctypes.byref(space))
 
 
 def baker_for(config_path: str, packages: str) -> Baker | None:
-    """A baker for a configuration that the library cannot read; None for one that it can, or where PyOpenColorIO is missing or refuses.
+    """Returns a baker for a configuration that the library cannot read.
 
-    `packages`: folder in which PyOpenColorIO may be.
+    Returns None if the library can read it, or if PyOpenColorIO is missing or fails. `packages` is the folder of
+    PyOpenColorIO.
     """
     if not needs_baking(config_path):
         return None
@@ -125,5 +133,5 @@ def baker_for(config_path: str, packages: str) -> Baker | None:
         import PyOpenColorIO as ocio
 
         return Baker(ocio, ocio.Config.CreateFromFile(config_path))
-    except Exception:  # whatever it is, the library falls back and says so
+    except Exception:  # the library then falls back to sRGB and warns
         return None

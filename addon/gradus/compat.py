@@ -1,4 +1,4 @@
-"""Differences between Blender's versions that are neither passes nor geometry, by feature probe."""
+"""Differences between Blender's versions that concern neither passes nor geometry."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from typing import Any
 import bpy
 
 VERSION: tuple[int, int, int] = tuple(bpy.app.version)
-"""Of the running Blender."""
+"""The version of the running Blender."""
 
 
 def color_config_path() -> str:
-    """OpenColorIO configuration that this Blender uses: the variable OCIO if it is set, else the one that came with it."""
+    """Returns Blender's OpenColorIO configuration: the environment variable OCIO, else the bundled file."""
     chosen = os.environ.get("OCIO")
     if chosen:
         return chosen
@@ -27,7 +27,10 @@ def color_config_path() -> str:
 
 
 def bundled_python_packages() -> str:
-    """Folder of the Python packages inside the bpy module (PyOpenColorIO among them); "" in the application, where they are on the path."""
+    """Returns the folder of the Python packages inside the bpy module, such as PyOpenColorIO.
+
+    Returns "" in the application, where they are on the path.
+    """
     if not getattr(bpy.app, "module", False):
         return ""
     root = Path(bpy.utils.resource_path("LOCAL")) / "python" / "lib"
@@ -36,34 +39,37 @@ def bundled_python_packages() -> str:
 
 
 def bundled_libraries() -> str:
-    """Folder of the libraries that Blender brings along; "" where it uses the system's."""
+    """Returns the folder of Blender's bundled libraries, or "" if it uses those of the system."""
     resources = bpy.utils.resource_path("LOCAL")
     folder = Path(resources).parent / "lib"
     return str(folder) if resources and folder.is_dir() else ""
 
 
 def image_color_spaces() -> set[str]:
-    """Names of the colour spaces of all images."""
+    """Returns the names of the colour spaces of all images."""
     return {image.colorspace_settings.name for image in bpy.data.images}
 
 
 def default_surface_is_principled() -> bool:
-    """Faces without a material are an untouched Principled BSDF; before 5.0 a grey diffuse."""
+    """Returns whether faces without a material are an unchanged Principled BSDF.
+
+    Before 5.0 they are grey and diffuse.
+    """
     return VERSION >= (5, 0, 0)
 
 
 def fixed_threads(render: Any) -> int:
-    """Threads that the scene asks for; 0 = all."""
+    """Returns the number of threads that the scene sets, or 0 for all."""
     return render.threads if render.threads_mode == "FIXED" else 0
 
 
 def as_float32(value: float) -> float:
-    """Rounds like a C float, in which Blender computes borders."""
+    """Rounds to a C float, which Blender uses for borders."""
     return ctypes.c_float(value).value
 
 
 def view_names(render: Any) -> list[str]:
-    """Names of the views to render, [""] without multi-view."""
+    """Returns the names of the views to render, or [""] without multi-view."""
     if not render.use_multiview:
         return [""]
     views = [view.name for view in render.views if view.use]
@@ -73,9 +79,10 @@ def view_names(render: Any) -> list[str]:
 
 
 def action_curves(action: Any) -> list[Any]:
-    """F-curves of an action, whoever it moves; none of none. From 4.4 on they lie in channel bags."""
+    """Returns all F-curves of an action, which may be None. From 4.4 on they are stored in channel bags."""
     if action is None:
         return []
     if not hasattr(action, "layers"):
         return list(action.fcurves)
-    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves]
+    bags = [bag for layer in action.layers for strip in layer.strips for bag in strip.channelbags]
+    return [curve for bag in bags for curve in bag.fcurves]

@@ -1,4 +1,7 @@
-"""Components of the picture by light path expressions: their names, and what the library says of a set. No Blender here."""
+"""Components of the picture by light path expressions: their names, and what the library says of a set.
+
+No Blender here.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,10 @@ class Component:
 
 
 def names(text: str) -> list[str]:
-    """Returns the names of a set, without the library. Entries of a malformed set that have no valid name are left out."""
+    """Returns the names of a set, without the library.
+
+    Entries of a malformed set that have no valid name are left out.
+    """
     if not text:
         return [*DEFAULT, RESIDUAL]
     found: dict[str, str] = {}
@@ -41,8 +47,8 @@ def names(text: str) -> list[str]:
 def syntax_error(text: str) -> str:
     """Returns the first mistake in the spelling of a set, or "" if there is none.
 
-    This is an early check for callers that have no library yet. It looks at names, characters and parentheses only: whether expressions
-    overlap or match no path is decided by the library alone.
+    This is an early check for callers that have no library yet. It looks at names, characters and parentheses only:
+    whether expressions overlap or match no path is decided by the library alone.
     """
     entries = [entry for entry in text.split(";") if entry.strip(" ")]
     if text and not entries:
@@ -99,6 +105,6 @@ def component_of(library: Library, text: bytes, path: str) -> Component:
     return describe(library, text)[index.value]
 
 
-def written(components: tuple[Component, ...]) -> str:
+def to_text(components: tuple[Component, ...]) -> str:
     """Returns a set as users write it."""
     return ";".join(f"{component.name}={component.expression}" for component in components if component.expression)

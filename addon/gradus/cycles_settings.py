@@ -1,7 +1,7 @@
-"""Settings of Cycles that say what the picture shows, and that ours can take over: limits of bounces, exposure, pixel filter.
+"""Settings of Cycles that have a counterpart here: limits of bounces, exposure and the pixel filter.
 
-A scene that was made for Cycles keeps them; ours begin at their own defaults, which are Cycles'. Clamps are not among them: they are bias,
-and Cycles' default of 10 stands for a denoiser that we do not need.
+A scene that was made for Cycles keeps them, while those of Gradus start at their defaults, which equal Cycles'
+defaults. Clamping is not copied, because it adds bias, and Cycles clamps by default.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ SAME_NAME = (
 
 
 def values(scene: Any) -> dict[str, Any]:
-    """Setting of ours -> what the scene's Cycles settings say; {} where Cycles is switched off."""
+    """Returns values for settings of Gradus from the scene's Cycles settings, or {} if Cycles is disabled."""
     cycles = getattr(scene, "cycles", None)
     if cycles is None:
         return {}
@@ -30,29 +30,31 @@ def values(scene: Any) -> dict[str, Any]:
 
 
 def copy(scene: Any) -> None:
-    """Makes ours equal to Cycles'."""
+    """Copies the settings of Cycles."""
     for name, value in values(scene).items():
         setattr(scene.gradus, name, value)
 
 
 def untouched(scene: Any) -> dict[str, Any]:
-    """Those that Cycles has at another value, and that nobody has set for us in this scene."""
+    """Returns the settings of Cycles that differ from those of Gradus and were never set for Gradus in this scene."""
     ours = scene.gradus
-    return {name: value for name, value in values(scene).items() if not ours.is_property_set(name) and getattr(ours, name) != value}
+    return {
+        name: value
+        for name, value in values(scene).items()
+        if not ours.is_property_set(name) and getattr(ours, name) != value
+    }
 
 
 def warnings(scene: Any, given: set[str]) -> list[str]:
-    """What a render has to say about it. given: settings that the command line sets."""
+    """Returns a warning about settings that differ from Cycles. given: settings that the command line sets."""
     listed = ", ".join(
         f"{name} {_text(getattr(scene.gradus, name))} (Cycles: {_text(value)})"
         for name, value in untouched(scene).items()
         if name not in given
     )
-    return (
-        [f"Settings are not those that the scene has for Cycles (Light Paths > Copy from Cycles takes them over): {listed}"]
-        if listed
-        else []
-    )
+    if not listed:
+        return []
+    return [f"Settings differ from those that the scene has for Cycles (use Light Paths > Copy from Cycles): {listed}"]
 
 
 def _text(value: Any) -> str:

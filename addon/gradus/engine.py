@@ -1,4 +1,7 @@
-"""The RenderEngine: a thin shim. Each method is one call into renderer.py or viewport.py inside one try/except that reports."""
+"""The RenderEngine.
+
+Each method makes one call into renderer.py or viewport.py, inside one try/except that reports errors.
+"""
 
 from __future__ import annotations
 
@@ -13,18 +16,21 @@ from .failure import is_expected, user_text
 
 
 def free(state: dict[str, Any]) -> None:
-    """Releases what an engine object holds. Bears half-built objects: Blender deletes many that never rendered."""
-    for part in (state.pop("job", None), state.pop("view", None)):
-        if part is not None:
-            part.free()
+    """Releases what an engine object holds. Accepts half-built objects: Blender deletes many that never rendered."""
+    for owned in (state.pop("job", None), state.pop("view", None)):
+        if owned is not None:
+            owned.free()
 
 
-# Looked up now: at the end of Blender its types may be gone before the last engine, and then a look-up crashes.
+# Looked up now: when Blender exits, its types may be freed before the last engine, and then a look-up crashes.
 _parent_del: Callable[[Any], None] | None = getattr(bpy.types.RenderEngine, "__del__", None)
 
 
 class GradusRenderEngine(bpy.types.RenderEngine):
-    """No __init__: in Blender 4.5 and 5.0 it would run twice on one object. State is in class-level defaults."""
+    """The engine.
+
+    It has no __init__, which Blender 4.5 and 5.0 would call twice: class-level defaults hold the initial state.
+    """
 
     bl_idname = "GRADUS"
     bl_label = "Gradus"
@@ -41,12 +47,14 @@ class GradusRenderEngine(bpy.types.RenderEngine):
     failed = False
 
     def __del__(self) -> None:
-        # At the end of Blender its side of the object is gone before ours, and then every look-up on self raises.
+        # When Blender exits, it frees its side of the object first, and then every look-up on self raises.
         free(object.__getattribute__(self, "__dict__"))
         if _parent_del is not None:
             _parent_del(self)
 
-    def update_render_passes(self, scene: bpy.types.Scene | None = None, renderlayer: bpy.types.ViewLayer | None = None) -> None:
+    def update_render_passes(
+        self, scene: bpy.types.Scene | None = None, renderlayer: bpy.types.ViewLayer | None = None
+    ) -> None:
         self._guard(lambda: renderer.register_passes(self, scene, renderlayer))
 
     def update(self, data: bpy.types.BlendData, depsgraph: bpy.types.Depsgraph) -> None:
@@ -67,7 +75,10 @@ class GradusRenderEngine(bpy.types.RenderEngine):
         self._guard(lambda: viewport.draw(self, context, depsgraph))
 
     def _guard(self, action: Callable[[], Any]) -> None:
-        """Only report({'ERROR'}) makes a failed render visible: else Blender writes a blank frame and ends with code 0."""
+        """Runs an action and reports its exceptions.
+
+        Only report({'ERROR'}) makes a render fail: otherwise Blender writes a blank frame and exits with code 0.
+        """
         try:
             action()
         except Exception as error:

@@ -1,19 +1,19 @@
-"""Failures that the user is told about, and how any exception is put into words."""
+"""Failures that are reported to the user, and the text that is reported for any exception."""
 
 from __future__ import annotations
 
 
 class Failure(Exception):
-    """No right picture can be made; the text says why, and what to do where that is known."""
+    """No correct picture can be made. The text says why and, where it is known, what to do."""
 
 
 def is_expected(error: BaseException) -> bool:
-    """Whether the text says all: a traceback would only bury it."""
+    """Returns whether the text of an exception suffices, so that no traceback is printed."""
     return isinstance(error, Failure) or type(error).__name__ in ("GradusError", "ExportError", "OptionError")
 
 
 def user_text(error: BaseException) -> str:
-    """One line for report(): never empty, since an empty report is shown as nothing."""
+    """Returns one line for report(). It is never empty, because Blender does not show an empty report."""
     if isinstance(error, MemoryError):
         return "out of memory"
     text = " ".join(str(error).split())

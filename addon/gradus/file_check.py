@@ -1,4 +1,4 @@
-"""Whether a picture that Blender wrote is whole: a full disk cuts files short, and Blender does not say so (contract 9.3)."""
+"""Checks that an image file that Blender wrote is complete: on a full disk Blender truncates files without an error."""
 
 from __future__ import annotations
 
@@ -11,11 +11,14 @@ JPEG_START, JPEG_END = b"\xff\xd8\xff", b"\xff\xd9"
 EXR_START = b"\x76\x2f\x31\x01"
 EXR_TILED_BIT, EXR_MULTIPART_BIT = 0x200, 0x1000
 EXR_ROWS = (1, 1, 1, 16, 32, 16, 32, 32, 32, 256)
-"""Rows in a chunk, by compression (OpenEXR's technical introduction)."""
+"""Rows of pixels in a chunk by compression method, as listed in OpenEXR's technical introduction."""
 
 
-def is_whole(path: Path) -> bool:
-    """False for a file too short for any picture, and for a PNG, JPEG or OpenEXR file without its end. OSError where there is no file."""
+def is_complete(path: Path) -> bool:
+    """Returns whether a file has its end. Formats other than PNG, JPEG and OpenEXR need a minimum size only.
+
+    Raises OSError if the file does not exist.
+    """
     size = path.stat().st_size
     with path.open("rb") as file:
         start = file.read(8)
@@ -26,9 +29,9 @@ def is_whole(path: Path) -> bool:
         if start.startswith(EXR_START):
             try:
                 return _has_all_chunks(file, size)
-            except (struct.error, KeyError, IndexError):  # cut within the header
+            except (struct.error, KeyError, IndexError):  # truncated within the header
                 return False
-    return size >= len(PNG_START)  # no picture is smaller
+    return size >= len(PNG_START)  # no image file is smaller
 
 
 def _ends_with(file: BinaryIO, size: int, end: bytes) -> bool:
@@ -37,11 +40,14 @@ def _ends_with(file: BinaryIO, size: int, end: bytes) -> bool:
 
 
 def _has_all_chunks(file: BinaryIO, size: int) -> bool:
-    """The table of chunks is written last, so a file that was cut has zeros in it, or entries beyond its end."""
+    """Returns whether an OpenEXR file has its last chunk.
+
+    The table of chunks is written last: in a truncated file it holds zeros, or offsets beyond the end of the file.
+    """
     file.seek(4)
     (version,) = struct.unpack("<I", file.read(4))
     if version & EXR_TILED_BIT:
-        return True  # not written by Blender
+        return True  # Blender does not write tiled files
     multipart = bool(version & EXR_MULTIPART_BIT)
     headers = [_read_header(file)]
     while multipart and (header := _read_header(file)):
@@ -51,13 +57,13 @@ def _has_all_chunks(file: BinaryIO, size: int) -> bool:
     if not offsets or min(offsets) == 0:
         return False
     last = max(offsets)
-    file.seek(last + (8 if multipart else 4))  # part and row; row
+    file.seek(last + (8 if multipart else 4))  # behind the number of the part, if there are several, and the row
     (length,) = struct.unpack("<I", file.read(4))
     return length > 0 and file.tell() + length <= size
 
 
 def _read_header(file: BinaryIO) -> dict[str, bytes]:
-    """Attributes by name; empty at the end of the list of headers."""
+    """Returns the attributes of the next header by name; none at the end of the list of headers."""
     attributes: dict[str, bytes] = {}
     while name := _read_text(file):
         _read_text(file)  # type

@@ -1,5 +1,8 @@
-"""Where the raw frames of a scene are kept: STORE/<scene>/<layer>[.<view>]/f<frame>.exr of a frame on its own, and .base.exr and
-.offset.exr of one of an animation, which the library writes (contract 7.2). None takes the place of another."""
+"""Paths of raw frames: STORE/<scene>/<layer>[.<view>]/f<frame>.exr for a frame that is rendered independently.
+
+The frames of an animation are stored in the same folder as f<frame>.base.exr and f<frame>.offset.exr, which the library
+writes.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +18,12 @@ _SAFE = frozenset("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz012345678
 
 
 def escape(name: str) -> str:
-    """A name as one folder name: other bytes as %XX, so that two names never meet."""
-    return "".join(chr(byte) if chr(byte) in _SAFE else f"%{byte:02X}" for byte in name.encode("utf-8", "surrogateescape"))
+    """Returns a name as a folder name.
+
+    Bytes that are not safe in file names become %XX, so that different names stay different.
+    """
+    encoded = name.encode("utf-8", "surrogateescape")
+    return "".join(chr(byte) if chr(byte) in _SAFE else f"%{byte:02X}" for byte in encoded)
 
 
 def folder_of(folder: str, scene: str, layer: str, view: str) -> Path:
@@ -29,7 +36,10 @@ def frame_path(folder: str, scene: str, layer: str, view: str, frame: int) -> Pa
 
 
 def save(library: native.Library, render: int, folder: str, scene: Any, layer: Any, view: str) -> None:
-    """The library writes under a temporary name and renames: a file is whole or absent."""
+    """Saves the raw frame of a render.
+
+    The library writes to a temporary file first, so that a file is complete or absent.
+    """
     path = frame_path(folder, scene.name, layer.name, view, scene.frame_current)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

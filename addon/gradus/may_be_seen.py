@@ -1,6 +1,6 @@
-"""Whether a rendered picture may show an object, itself or by what it does to others.
+"""Finds out whether an object may affect the rendered image, directly or through other objects.
 
-In doubt it may: what is taken for seen costs time, and what is taken for unseen would stand still in the picture.
+In doubt the answer is yes: a wrong yes costs time, while a wrong no would leave a simulation static in the image.
 """
 
 from __future__ import annotations
@@ -13,34 +13,35 @@ import bpy
 
 from . import compat
 
-_HOLDERS = (bpy.types.Collection, bpy.types.Scene)
-"""They list objects, and show nothing that the view layers do not tell. Editors are not among Blender's users."""
+_CONTAINERS = (bpy.types.Collection, bpy.types.Scene)
+"""Types of users that only list objects. Whether they show an object follows from the view layers."""
 
 
 class MayBeSeen:
-    """Of some scenes. layer: of the first one, which is rendered, too, where it is switched off."""
+    """Answers for a list of scenes. layer: a view layer of the first scene that is rendered even if it is disabled."""
 
     def __init__(self, scenes: Iterable[Any], layer: str = "") -> None:
         self._scenes = list(scenes)
         self._layer = layer
 
     def __call__(self, obj: Any) -> bool:
-        return obj in self._shown or is_keyed(obj, "hide_render") or _acts_unasked(obj) or self._is_used(obj)
+        return obj in self._shown or is_keyed(obj, "hide_render") or _affects_simulations(obj) or self._is_used(obj)
 
     @cached_property
     def _shown(self) -> set[Any]:
-        return {obj for scene in self._scenes for each in _rendered_layers(scene, self._layer) for obj in _shown_by(each)}
+        layers = [layer for scene in self._scenes for layer in _rendered_layers(scene, self._layer)]
+        return {obj for layer in layers for obj in _shown_by(layer)}
 
     @cached_property
     def _users(self) -> dict[Any, set[Any]]:
         return bpy.data.user_map(key_types={"OBJECT", "COLLECTION"})
 
     def _is_used(self, obj: Any) -> bool:
-        """By what makes something of it: children, modifiers, nodes, drivers, instances of the collections that it is in."""
+        """Returns whether children, modifiers, nodes, drivers or instanced collections use the object."""
         waiting, seen = [obj], {obj}
         while waiting:
             users = self._users.get(waiting.pop(), set()) - seen
-            if any(not isinstance(user, _HOLDERS) for user in users):
+            if any(not isinstance(user, _CONTAINERS) for user in users):
                 return True
             seen |= users
             waiting += [user for user in users if isinstance(user, bpy.types.Collection)]
@@ -48,7 +49,7 @@ class MayBeSeen:
 
 
 def is_keyed(owner: Any, switch: str) -> bool:
-    """Whether a switch of an object, of one of its modifiers or of a scene's layers may change from frame to frame."""
+    """Returns whether a switch of an object, of its modifiers or of a scene's view layers may change between frames."""
     animation = owner.animation_data
     if animation is None:
         return False
@@ -58,30 +59,38 @@ def is_keyed(owner: Any, switch: str) -> bool:
 
 def _rendered_layers(scene: Any, layer: str) -> list[Any]:
     layers = list(scene.view_layers)
-    return layers if is_keyed(scene, '"].use') else [each for each in layers if each.use or each.name == layer] or layers
+    if is_keyed(scene, '"].use'):
+        return layers
+    return [each for each in layers if each.use or each.name == layer] or layers
 
 
 def _shown_by(layer: Any) -> Iterator[Any]:
-    """Objects that a view layer renders now. What hides a collection hides those inside, what excludes it does not."""
+    """Yields the objects that a view layer renders at this frame.
+
+    A hidden collection hides its child collections, while an excluded one does not exclude them.
+    """
     waiting = [(layer.layer_collection, False)]
     while waiting:
-        place, hidden = waiting.pop()
-        hidden = hidden or place.collection.hide_render
-        if not hidden and not place.exclude:
-            yield from (obj for obj in place.collection.objects if not obj.hide_render)
-        waiting += [(child, hidden) for child in place.children]
+        layer_collection, hidden = waiting.pop()
+        hidden = hidden or layer_collection.collection.hide_render
+        if not hidden and not layer_collection.exclude:
+            yield from (obj for obj in layer_collection.collection.objects if not obj.hide_render)
+        waiting += [(child, hidden) for child in layer_collection.children]
 
 
-def _acts_unasked(obj: Any) -> bool:
-    """On simulations of others, which do not name it. Rigid bodies act on their own world alone."""
-    return _is_force(obj.field) or any(_modifier_acts(modifier) for modifier in obj.modifiers)
+def _affects_simulations(obj: Any) -> bool:
+    """Returns whether the object affects simulations of other objects that do not refer to it.
+
+    Rigid bodies are not considered, because they affect their own rigid body world only.
+    """
+    return _is_force(obj.field) or any(_modifier_affects_simulations(modifier) for modifier in obj.modifiers)
 
 
 def _is_force(field: Any) -> bool:
     return field is not None and field.type != "NONE"
 
 
-def _modifier_acts(modifier: Any) -> bool:
+def _modifier_affects_simulations(modifier: Any) -> bool:
     if modifier.type == "PARTICLE_SYSTEM":
         settings = modifier.particle_system.settings
         return _is_force(settings.force_field_1) or _is_force(settings.force_field_2)

@@ -1,7 +1,7 @@
-"""Loads libgradus.so and calls it: `load()` gives the one Library of the process, whose methods raise GradusError.
+"""Loads libgradus.so: load() returns the one Library of the process, whose methods raise GradusError.
 
-Every function of gradus.h is a method of Library under its name without the prefix `gradus_`. Structs and enums of abi.py are
-re-exported, so that users of the C API import this module only: native.Mesh, native.Settings, native.Pass …
+Every function of gradus.h is a method of Library under its name without the prefix `gradus_`. The structs and enums of
+abi.py are re-exported, so that users of the C API import this module only: native.Mesh, native.Settings, native.Pass.
 """
 
 from __future__ import annotations
@@ -61,11 +61,11 @@ LIBRARY_NAME = "libgradus.so"
 ENVIRONMENT_VARIABLE = "GRADUS_LIBRARY"
 CPU_INFO = Path("/proc/cpuinfo")
 CPU_FLAGS = ("avx2", "fma")
-"""What the library is compiled for (CMakeLists.txt)."""
+"""Instruction sets that the library is compiled for; see CMakeLists.txt."""
 
 
 class GradusError(Exception):
-    """A call that the library refused, or a library that cannot be used. `code` is an abi.Error, `text` the message for people."""
+    """A call failed, or the library cannot be used. `code` is an abi.Error, `text` is the message for users."""
 
     def __init__(self, code: int, text: str) -> None:
         super().__init__(text)
@@ -73,20 +73,23 @@ class GradusError(Exception):
         self.text = text
 
 
-def is_cut_short(path: Path) -> bool:
-    """Whether an ELF file ends before its section headers, which lie behind all else: the loader would map what is missing and crash."""
+def is_truncated(path: Path) -> bool:
+    """Returns whether an ELF file ends before its section headers, which are stored last.
+
+    The loader would crash on such a file.
+    """
     with path.open("rb") as file:
         header = file.read(64)
     if len(header) < 64 or header[:5] != b"\x7fELF\x02":
-        return False  # not a 64-bit ELF file: the loader says so
+        return False  # not a 64-bit ELF file, which the loader reports
     offset, entry_size, count = struct.unpack_from("<Q10xHH", header, 40)
     return path.stat().st_size < offset + entry_size * count
 
 
 def missing_cpu_flags(info: Path) -> list[str]:
-    """CPU_FLAGS that the processor lacks. Without them the first instruction of ours, before any check of our own, would kill Blender.
+    """Returns the CPU_FLAGS that the processor lacks, or [] where the system does not list them.
 
-    None where the system does not say.
+    Without this check, the first instruction of the library would end Blender.
     """
     try:
         lines = info.read_text(errors="replace").splitlines()
@@ -103,13 +106,15 @@ class Library:
         self.path = Path(path)
         if not self.path.is_file():
             raise GradusError(Error.UNSUPPORTED, f"library not found: {self.path}")
-        if is_cut_short(self.path):
-            raise GradusError(Error.UNSUPPORTED, f"library cannot be loaded: {self.path}: the file is cut short")
+        if is_truncated(self.path):
+            raise GradusError(Error.UNSUPPORTED, f"library cannot be loaded: {self.path}: the file is truncated")
         missing = missing_cpu_flags(CPU_INFO)
         if missing:
-            raise GradusError(Error.UNSUPPORTED, f"this processor lacks {' and '.join(missing)}, which the library needs: {self.path}")
+            flags = " and ".join(missing)
+            raise GradusError(Error.UNSUPPORTED, f"this processor lacks {flags}, which the library needs: {self.path}")
         try:
-            # RTLD_LOCAL: nothing of ours may enter the host's global scope (architecture, rule 10).
+            # RTLD_LOCAL keeps the library's symbols out of Blender's global scope, where they could replace others of
+            # the same name.
             self.cdll = ctypes.CDLL(str(self.path), mode=ctypes.RTLD_LOCAL)
         except OSError as error:
             raise GradusError(Error.UNSUPPORTED, f"library cannot be loaded: {self.path}: {error}") from error
@@ -118,19 +123,21 @@ class Library:
             setattr(self, name.removeprefix("gradus_"), self._bind(name))
 
     def _check(self) -> None:
-        """Refuses a library of another version before any struct crosses (H1, H5); these two functions never change."""
+        """Refuses a library of another version before any struct is passed to it.
+
+        The two functions called here never change.
+        """
         try:
             version, layout = self._bind("gradus_version")(), self._bind("gradus_abi_hash")()
         except AttributeError as error:
             raise GradusError(Error.UNSUPPORTED, f"not a Gradus library: {self.path}: {error}") from error
         if version != VERSION[0] * 10000 + VERSION[1] * 100 + VERSION[2]:
             found = f"{version // 10000}.{version // 100 % 100}.{version % 100}"
-            raise GradusError(Error.UNSUPPORTED, f"library {self.path} has version {found}, the add-on needs {'.'.join(map(str, VERSION))}")
+            needed = ".".join(map(str, VERSION))
+            raise GradusError(Error.UNSUPPORTED, f"library {self.path} has version {found}, the add-on needs {needed}")
         if layout != abi.layout_hash():
-            raise GradusError(
-                Error.UNSUPPORTED,
-                f"library {self.path} has layout {layout:016x}, the add-on {abi.layout_hash():016x}: install both from one release",
-            )
+            layouts = f"layout {layout:016x}, the add-on {abi.layout_hash():016x}"
+            raise GradusError(Error.UNSUPPORTED, f"library {self.path} has {layouts}: install both from one release")
         missing = [name for name in abi.FUNCTIONS if not hasattr(self.cdll, name)]
         if missing:
             raise GradusError(Error.UNSUPPORTED, f"library {self.path} lacks {', '.join(missing)}")
@@ -148,17 +155,17 @@ class Library:
         return code
 
     def take_error(self) -> str:
-        """Text of this thread's first error not yet read; "" without one."""
+        """Returns the text of this thread's first error that has not been read yet, or ""."""
         message = ctypes.c_char_p()
         self.cdll.gradus_error(byref(message))
         return (message.value or b"").decode("utf-8", "replace")
 
     def take_device_warnings(self, device: int) -> list[str]:
-        """All warnings about the device that nobody has taken yet, oldest first."""
+        """Returns all warnings about the device that have not been taken yet, oldest first."""
         return self._take_warnings(self.device_warning, device)
 
     def take_scene_warnings(self, scene: int) -> list[str]:
-        """The same about what was committed to a scene."""
+        """Returns all warnings of a scene's commits that have not been taken yet, oldest first."""
         return self._take_warnings(self.scene_warning, scene)
 
     def _take_warnings(self, function: Callable[..., int], handle: int) -> list[str]:
@@ -171,7 +178,7 @@ class Library:
             warnings.append(message.value.decode("utf-8", "replace"))
 
     def options(self) -> list[OptionInfo]:
-        """The library's table of settings: name, type, default, range, meaning."""
+        """Returns the library's table of settings: name, type, default, range and description."""
         infos = []
         for index in range(self.option_count()):
             info = OptionInfo()
@@ -180,11 +187,11 @@ class Library:
         return infos
 
     def call(self, name: str, *arguments: Any) -> int:
-        """gradus_<name>(*arguments), for callers that go through a table of names."""
+        """Calls gradus_<name>(*arguments), for callers that have the name in a variable."""
         return getattr(self, name)(*arguments)
 
     def __getattr__(self, name: str) -> Any:
-        # Functions are instance attributes and never get here; the declarations are reachable through the library, too.
+        # Functions are instance attributes, which Python finds before it calls this method.
         if name in _DECLARED:
             return getattr(abi, name)
         raise AttributeError(f"gradus_{name} is not in gradus.h")
@@ -193,22 +200,28 @@ class Library:
 _DECLARED = frozenset(kind.__name__ for kind in (*abi.STRUCTS, *abi.ENUMS))
 
 
-# ------------------------------------------------------------------------------------------------ one library per process
+# ------------------------------------------------------------------------------------------------ the loaded library
 
 _lock = threading.Lock()
 _libraries: dict[str, Library] = {}
 preferred_path: str = ""
-"""Path set in the add-on's preferences; "" = the library beside the package."""
+"""The path set in the add-on's preferences; "" for the library beside the package."""
 
 
 def library_path() -> Path:
-    """Where the library is looked for: the environment wins over the preference, the preference over the package's lib folder."""
+    """Returns the path of the library.
+
+    It is that of the environment variable, else of the preferences, else in the package's lib folder.
+    """
     chosen = os.environ.get(ENVIRONMENT_VARIABLE) or preferred_path
     return Path(chosen) if chosen else Path(__file__).resolve().parent / "lib" / LIBRARY_NAME
 
 
 def load(path: str | os.PathLike[str] | None = None) -> Library:
-    """The library at `path` (default: library_path()), loaded once. Raises GradusError with a message for people."""
+    """Returns the library at `path` (default: library_path()), loaded once.
+
+    Raises GradusError with a message for users.
+    """
     key = os.path.realpath(path if path is not None else library_path())
     with _lock:
         if key not in _libraries:
@@ -224,14 +237,16 @@ _CODES = {"f": ctypes.c_float, "i": ctypes.c_int32, "I": ctypes.c_uint32, "Q": c
 
 
 def pointer(values: array | None) -> Any:
-    """Typed pointer to an array('f'|'i'|'I'|'Q'|'B'), which it keeps alive; NULL (None) for None or an empty array.
+    """Returns a typed pointer to an array('f'|'i'|'I'|'Q'|'B'), or NULL (None) for None or an empty array.
 
-    Anything else is a TypeError: a wrong item type would be read as garbage, a strided or read-only buffer not at all (H6).
+    The pointer keeps the array alive. Raises TypeError for anything else, because a wrong item type would be read as
+    garbage.
     """
     if values is None:
         return None
     if not isinstance(values, array) or values.typecode not in _CODES:
-        raise TypeError(f"expected array('f'|'i'|'I'|'Q'|'B'), got {type(values).__name__} {getattr(values, 'typecode', '')}")
+        found = f"{type(values).__name__} {getattr(values, 'typecode', '')}"
+        raise TypeError(f"expected array('f'|'i'|'I'|'Q'|'B'), got {found}")
     if not values:
         return None
     kind = _CODES[values.typecode]
@@ -239,16 +254,16 @@ def pointer(values: array | None) -> Any:
 
 
 def text(value: str | None) -> bytes | None:
-    """UTF-8 for a const char* field; the surrogates of undecodable file names become their original bytes again."""
+    """Encodes a string for a const char* field. Surrogates of undecodable file names become their original bytes."""
     return None if value is None else value.encode("utf-8", "surrogateescape")
 
 
 def text_array(values: Sequence[str]) -> Any:
-    """const char* const*; NULL (None) if empty."""
+    """Returns a const char* const*, or NULL (None) if there are no values."""
     return (ctypes.c_char_p * len(values))(*(text(value) for value in values)) if values else None
 
 
 def struct_array(kind: type[StructT], items: Iterable[StructT]) -> Any:
-    """A C array of structs, NULL (None) if empty; it keeps alive what the items point to."""
+    """Returns a C array of structs, or NULL (None) if there are none. It keeps alive what the items point to."""
     listed = list(items)
     return (kind * len(listed))(*listed) if listed else None

@@ -1,4 +1,7 @@
-"""Checks around the files that Blender writes itself: a full disk gives short files and exit code 0 there (contract 9.3)."""
+"""Checks of the files that Blender writes.
+
+On a full disk Blender writes truncated files and still exits with code 0.
+"""
 
 from __future__ import annotations
 
@@ -14,14 +17,20 @@ from .failure import Failure
 from .passes import PassInfo
 
 MARGIN_BYTES = 1 << 20
-"""Metadata, and what else writes to the disk meanwhile."""
+"""Free space that is required beyond the size of the passes, for metadata and other writers."""
 
-LONGEST_CHANNEL = 64
-"""Bytes of a channel's name that Blender before 5.0 writes into an OpenEXR file: of channels that are called the same then, one is left."""
+MAX_CHANNEL_BYTES = 64
+"""Bytes of a channel's name that Blender before 5.0 writes into an OpenEXR file.
+
+Channels of equal truncated names replace each other.
+"""
 
 
 def make_folder(path: str) -> Path:
-    """The folder of `path`. Blender makes a missing one only when it writes, and forgets to tell."""
+    """Creates and returns the folder of `path`.
+
+    Raises Failure if that is impossible, which Blender would not report.
+    """
     folder = Path(path).absolute().parent
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -40,43 +49,54 @@ def require_space(path: str, needed: int) -> None:
     except OSError as error:
         raise Failure(f"output folder {folder}: {error.strerror}") from error
     if free < needed + MARGIN_BYTES:
-        raise Failure(f"not enough space in {folder}: {free >> 20} MiB free, {(needed + MARGIN_BYTES) >> 20} MiB needed")
+        required = (needed + MARGIN_BYTES) >> 20
+        raise Failure(f"not enough space in {folder}: {free >> 20} MiB free, {required} MiB needed")
 
 
-def cut_names(settings: Any, layer: str, views: Iterable[str], infos: Iterable[PassInfo], version: tuple[int, ...]) -> list[str]:
-    """A warning about the passes of a layer that a file of these image settings will lose."""
+def truncated_names(
+    settings: Any, layer: str, views: Iterable[str], infos: Iterable[PassInfo], version: tuple[int, ...]
+) -> list[str]:
+    """Returns a warning if a file with these image settings will lose passes whose names are too long."""
     if version >= (5, 0, 0) or settings.file_format != "OPEN_EXR_MULTILAYER":
         return []
-    longest_view = max((len(f".{view}".encode()) for view in views if view and settings.views_format == "MULTIVIEW"), default=0)
-    room = LONGEST_CHANNEL - longest_view - len(".X")
-    cut = [name for name in (info.blender_name(version) for info in infos) if len(f"{layer}.{name}".encode()) > room]
-    if not cut:
+    has_views = settings.views_format == "MULTIVIEW"
+    longest_view = max((len(f".{view}".encode()) for view in views if view and has_views), default=0)
+    room = MAX_CHANNEL_BYTES - longest_view - len(".X")
+    names = (info.blender_name(version) for info in infos)
+    lost = [name for name in names if len(f"{layer}.{name}".encode()) > room]
+    if not lost:
         return []
-    others = f" and {len(cut) - 1} others" if len(cut) > 1 else ""
-    return [f"OpenEXR files of this Blender lose pass '{cut[0]}'{others} of layer '{layer}': their names are too long"]
+    others = f" and {len(lost) - 1} others" if len(lost) > 1 else ""
+    return [f"OpenEXR files of this Blender lose pass '{lost[0]}'{others} of layer '{layer}': their names are too long"]
 
 
-def require_whole(path: str) -> None:
-    """Raises Failure if the file of the frame before is cut short. One that is gone was moved by a script: that is no fault."""
+def require_complete(path: str) -> None:
+    """Raises Failure if the file of the previous frame is truncated.
+
+    A file that is missing may have been moved by a script.
+    """
     try:
-        whole = file_check.is_whole(Path(path))
+        complete = file_check.is_complete(Path(path))
     except OSError:
         return
-    if not whole:
-        raise Failure(f"the frame before was not written as a whole: {path}")
+    if not complete:
+        raise Failure(f"the file of the previous frame is truncated: {path}")
 
 
 @dataclass
 class FrameFiles:
-    """Follows the frames of one animation. `previous`: the file that must be whole when the next frame starts."""
+    """Checks the files of one animation. `previous` is the file that must be complete when the next frame starts."""
 
     previous: str = ""
 
     def before_frame(self, render: Any, frame: int, frame_bytes: int) -> None:
-        """`frame_bytes`: size of the passes in memory; no format that Blender writes needs more."""
+        """Checks the previous frame's file and the free space.
+
+        frame_bytes: size of the passes in memory, which is the maximum for all formats that Blender writes.
+        """
         previous, self.previous = self.previous, ""
         if previous:
-            require_whole(previous)
+            require_complete(previous)
         path = render.frame_path(frame=frame)
         if path:
             require_space(path, frame_bytes)

@@ -1,5 +1,7 @@
-"""THE table of passes: Blender's names, channels and switches, and the native plane. Registration, the settings mask and the upload
-are all made from list_passes(). No Blender here."""
+"""The table of passes: Blender's names, channels and switches, and the native plane. No Blender here.
+
+Registration, the settings mask and the upload all use list_passes().
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,7 @@ from typing import Any
 from .abi import ComponentPass, Pass
 
 LONG_NAMES_SINCE = (5, 0, 0)
-MOTION_OF_COMPONENTS = (
+COMPONENT_MOTION = (
     ComponentPass.MOTION,
     ComponentPass.TRACKED,
     ComponentPass.IRRADIANCE_MOTION,
@@ -19,8 +21,8 @@ MOTION_OF_COMPONENTS = (
 
 
 @dataclass(frozen=True)
-class Part:
-    """A plane of one component of the picture."""
+class ComponentPlane:
+    """A plane of one component."""
 
     component: str
     plane: ComponentPass
@@ -28,14 +30,17 @@ class Part:
 
 @dataclass(frozen=True)
 class PassInfo:
-    """A pass as Blender knows it. `switch`: property of the view layer, or of view_layer.gradus where it starts with "gradus."."""
+    """A pass of Blender.
 
-    plane: Pass | Part
+    `switch` is a property of the view layer, or of view_layer.gradus if it starts with "gradus.".
+    """
+
+    plane: Pass | ComponentPlane
     name: str
     long_name: str  # from Blender 5.0 on
     ids: str  # one letter per channel
     kind: str  # VALUE, VECTOR or COLOR
-    switch: str  # "" = always, "reconstructed" = whenever Combined is a reconstruction
+    switch: str  # "": always on; "reconstructed": on if Combined is a reconstruction
 
     @property
     def channels(self) -> int:
@@ -43,16 +48,16 @@ class PassInfo:
 
     @property
     def is_motion(self) -> bool:
-        """Whether it needs the moments before and after the frame."""
-        if isinstance(self.plane, Part):
-            return self.plane.plane in MOTION_OF_COMPONENTS
+        """Returns whether the pass needs the times before and after the frame."""
+        if isinstance(self.plane, ComponentPlane):
+            return self.plane.plane in COMPONENT_MOTION
         return self.plane == Pass.VECTOR
 
     def blender_name(self, version: tuple[int, ...]) -> str:
         return self.long_name if version >= LONG_NAMES_SINCE else self.name
 
 
-def _same(plane: Pass | Part, name: str, ids: str, kind: str, switch: str) -> PassInfo:
+def _same(plane: Pass | ComponentPlane, name: str, ids: str, kind: str, switch: str) -> PassInfo:
     return PassInfo(plane, name, name, ids, kind, switch)
 
 
@@ -98,8 +103,8 @@ TABLE: tuple[PassInfo, ...] = (
 
 
 @dataclass(frozen=True)
-class PartInfo:
-    """A pass that every component has. `suffix`: of its name, after that of the component."""
+class ComponentPassInfo:
+    """A pass that every component has. Its name is `Path`, the name of the component, and `suffix`."""
 
     plane: ComponentPass
     suffix: str
@@ -108,59 +113,83 @@ class PartInfo:
     switch: str
 
     def of(self, component: str) -> PassInfo:
-        return _same(Part(component, self.plane), f"Path {component}{self.suffix}", self.ids, self.kind, self.switch)
+        plane, name = ComponentPlane(component, self.plane), f"Path {component}{self.suffix}"
+        return _same(plane, name, self.ids, self.kind, self.switch)
 
 
-PARTS: tuple[PartInfo, ...] = (
-    PartInfo(ComponentPass.COLOR, "", "RGB", "COLOR", "gradus.use_pass_components"),
-    PartInfo(ComponentPass.REFLECTANCE, " Reflectance", "RGB", "COLOR", "gradus.use_pass_component_reflectance"),
-    PartInfo(ComponentPass.IRRADIANCE, " Irradiance", "RGB", "COLOR", "gradus.use_pass_component_irradiance"),
-    PartInfo(ComponentPass.NORMAL, " Normal", "XYZ", "VECTOR", "gradus.use_pass_component_normal"),
-    PartInfo(ComponentPass.MOTION, " Motion", "XYZW", "VECTOR", "gradus.use_pass_component_motion"),
-    PartInfo(ComponentPass.TRACKED, " Tracked", "X", "VALUE", "gradus.use_pass_component_motion"),
-    PartInfo(ComponentPass.IRRADIANCE_MOTION, " Irradiance Motion", "XYZW", "VECTOR", "gradus.use_pass_component_irradiance_motion"),
-    PartInfo(ComponentPass.IRRADIANCE_TRACKED, " Irradiance Tracked", "X", "VALUE", "gradus.use_pass_component_irradiance_motion"),
-    PartInfo(ComponentPass.DEPTH, " Depth", "X", "VALUE", "gradus.use_pass_component_depth"),
-    PartInfo(ComponentPass.UV, " UV", "UVA", "VECTOR", "gradus.use_pass_component_uv"),
-    PartInfo(ComponentPass.OBJECT_INDEX, " Object Index", "X", "VALUE", "gradus.use_pass_component_index"),
-    PartInfo(ComponentPass.FACE_INDEX, " Face Index", "X", "VALUE", "gradus.use_pass_component_index"),
-    PartInfo(ComponentPass.EMIT, " Emit", "RGB", "COLOR", "gradus.use_pass_component_emit"),
+COMPONENT_TABLE: tuple[ComponentPassInfo, ...] = (
+    ComponentPassInfo(ComponentPass.COLOR, "", "RGB", "COLOR", "gradus.use_pass_components"),
+    ComponentPassInfo(
+        ComponentPass.REFLECTANCE, " Reflectance", "RGB", "COLOR", "gradus.use_pass_component_reflectance"
+    ),
+    ComponentPassInfo(ComponentPass.IRRADIANCE, " Irradiance", "RGB", "COLOR", "gradus.use_pass_component_irradiance"),
+    ComponentPassInfo(ComponentPass.NORMAL, " Normal", "XYZ", "VECTOR", "gradus.use_pass_component_normal"),
+    ComponentPassInfo(ComponentPass.MOTION, " Motion", "XYZW", "VECTOR", "gradus.use_pass_component_motion"),
+    ComponentPassInfo(ComponentPass.TRACKED, " Tracked", "X", "VALUE", "gradus.use_pass_component_motion"),
+    ComponentPassInfo(
+        ComponentPass.IRRADIANCE_MOTION,
+        " Irradiance Motion",
+        "XYZW",
+        "VECTOR",
+        "gradus.use_pass_component_irradiance_motion",
+    ),
+    ComponentPassInfo(
+        ComponentPass.IRRADIANCE_TRACKED,
+        " Irradiance Tracked",
+        "X",
+        "VALUE",
+        "gradus.use_pass_component_irradiance_motion",
+    ),
+    ComponentPassInfo(ComponentPass.DEPTH, " Depth", "X", "VALUE", "gradus.use_pass_component_depth"),
+    ComponentPassInfo(ComponentPass.UV, " UV", "UVA", "VECTOR", "gradus.use_pass_component_uv"),
+    ComponentPassInfo(ComponentPass.OBJECT_INDEX, " Object Index", "X", "VALUE", "gradus.use_pass_component_index"),
+    ComponentPassInfo(ComponentPass.FACE_INDEX, " Face Index", "X", "VALUE", "gradus.use_pass_component_index"),
+    ComponentPassInfo(ComponentPass.EMIT, " Emit", "RGB", "COLOR", "gradus.use_pass_component_emit"),
 )
-"""Passes of a component: Path NAME, Path NAME Reflectance … (contract 6.6)."""
+"""Passes of a component: Path NAME, Path NAME Reflectance …"""
 
 GROUPS: dict[str, tuple[Pass, ...]] = {
     "GRADIENTS": (Pass.GRADIENT_X, Pass.GRADIENT_Y, Pass.GRADIENT_T, Pass.GRADIENT_T_LINK),
     "DENOISING": (Pass.DENOISING_NORMAL, Pass.DENOISING_ALBEDO, Pass.DENOISING_DEPTH),
     "ALL": tuple(info.plane for info in TABLE),
 }
-"""Names that `--gradus-passes` takes besides those of single planes."""
+"""Names that `--gradus-passes` accepts besides those of single planes."""
 
 
 def is_reconstructed(integrator: str, reconstruction: str, denoiser: str) -> bool:
-    """Whether Combined is a reconstruction, so that the sampled image becomes a pass of its own (contract 6.1). Identifiers of
-    settings.py; AUTO may find that gradients do not pay, or no denoiser: then both are the same."""
+    """Returns whether Combined may be a reconstruction, so that the sampled image gets a pass of its own.
+
+    The arguments are identifiers of settings.py. AUTO may choose plain samples during the render: then both passes are
+    equal.
+    """
     return reconstruction == "REGULARIZED" or (integrator != "PATH" and reconstruction != "NONE") or denoiser != "NONE"
 
 
 @dataclass(frozen=True)
-class Extra:
-    """Planes asked for on the command line."""
+class ExtraPasses:
+    """Planes that the command line adds."""
 
     planes: frozenset[Pass] = frozenset()
-    parts: frozenset[ComponentPass] = frozenset()
+    component_planes: frozenset[ComponentPass] = frozenset()
 
 
-NOTHING = Extra()
+NO_EXTRA = ExtraPasses()
 
 
-def list_passes(view_layer: Any, reconstructed: bool, components: Iterable[str] = (), extra: Extra = NOTHING) -> Iterator[PassInfo]:
-    """The passes of a view layer. `components`: names of those into which the picture is taken apart."""
+def list_passes(
+    view_layer: Any, reconstructed: bool, components: Iterable[str] = (), extra: ExtraPasses = NO_EXTRA
+) -> Iterator[PassInfo]:
+    """Yields the passes of a view layer. `components`: names of all components, if the image is decomposed."""
     for info in TABLE:
         if info.plane in extra.planes or _is_on(info.switch, view_layer, reconstructed):
             yield info
-    parts = [part for part in PARTS if part.plane in extra.parts or _is_on(part.switch, view_layer, reconstructed)]
+    infos = [
+        info
+        for info in COMPONENT_TABLE
+        if info.plane in extra.component_planes or _is_on(info.switch, view_layer, reconstructed)
+    ]
     for component in components:
-        yield from (part.of(component) for part in parts)
+        yield from (info.of(component) for info in infos)
 
 
 def _is_on(switch: str, view_layer: Any, reconstructed: bool) -> bool:
@@ -174,18 +203,18 @@ def _is_on(switch: str, view_layer: Any, reconstructed: bool) -> bool:
 
 
 def mask(infos: Iterable[PassInfo]) -> int:
-    """GradusSettings.passes: one bit for each plane."""
-    return _bits(info.plane for info in infos if not isinstance(info.plane, Part))
+    """Returns GradusSettings.passes: one bit for each plane."""
+    return _bits(info.plane for info in infos if not isinstance(info.plane, ComponentPlane))
 
 
 def component_mask(infos: Iterable[PassInfo]) -> int:
-    """GradusSettings.component_passes."""
-    return _bits(info.plane.plane for info in infos if isinstance(info.plane, Part))
+    """Returns GradusSettings.component_passes: one bit for each plane."""
+    return _bits(info.plane.plane for info in infos if isinstance(info.plane, ComponentPlane))
 
 
 def needs_next_frame(infos: Iterable[PassInfo]) -> bool:
-    """Whether some are made of two frames of an animation, by optical flow: irradiance's motion, and Residual's."""
-    return any(info.is_motion and isinstance(info.plane, Part) for info in infos)
+    """Returns whether passes need optical flow between two frames: the motion of irradiance and of Residual."""
+    return any(info.is_motion and isinstance(info.plane, ComponentPlane) for info in infos)
 
 
 def _bits(planes: Iterable[int]) -> int:

@@ -1,6 +1,7 @@
-"""One way to hand pixels to Blender, for all versions: a single foreach_set of one array('f') for all passes of a layer.
+"""Uploads pixels to Blender: a single foreach_set of one array('f') for all passes of a layer.
 
-Blender reads an array.array as one block of memory; a ctypes array, or one call per pass, costs a hundred times as much in some version.
+Blender reads an array.array as one block of memory. A ctypes array, or one call per pass, takes a hundred times as long
+in some versions.
 """
 
 from __future__ import annotations
@@ -11,23 +12,23 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from .abi import Pass
-from .passes import Part, PassInfo
+from .passes import ComponentPlane, PassInfo
 
 FLOAT_BYTES = 4
 
-Read = Callable[[Pass | Part, Any, int], Any]
-"""Writes a plane to a pointer to floats, so many of them."""
+Read = Callable[[Pass | ComponentPlane, Any, int], Any]
+"""Writes a plane to a pointer to floats. The last argument is their number."""
 
 
 class PassBuffer:
-    """Memory for all passes of a render layer in Blender's order, one after the other; reused between refreshes."""
+    """Memory for all passes of a render layer, one after another in Blender's order. It is reused between refreshes."""
 
     def __init__(self) -> None:
         self._values = array("f")
         self._layout: list[tuple[PassInfo | None, int, int]] = []  # pass, first float, floats
 
     def prepare(self, passes: Iterable[Any], infos: dict[str, PassInfo], width: int, height: int) -> None:
-        """Lays the buffer out for `passes` (name, channels), which Blender keeps in this order. What is not in `infos` stays 0."""
+        """Lays out the buffer for `passes`, whose order Blender keeps. Passes that are not in `infos` stay 0."""
         self._layout = []
         total = 0
         for render_pass in passes:
@@ -38,10 +39,10 @@ class PassBuffer:
             self._layout.append((info, total, count))
             total += count
         if len(self._values) != total:
-            self._values = array("f", [0.0]) * total  # from bytes it would take the memory, and the time to touch it, twice
+            self._values = array("f", [0.0]) * total  # bytes() would allocate and touch the memory twice
 
     def fill(self, read: Read, only: frozenset[Pass] | None = None) -> None:
-        """Lets `read` write every pass in place, or those in `only`."""
+        """Calls `read` for every pass, or for those in `only`."""
         if not self._values:
             return
         memory = (ctypes.c_float * len(self._values)).from_buffer(self._values)
@@ -53,7 +54,10 @@ class PassBuffer:
         del memory
 
     def upload(self, layer: Any) -> None:
-        """Too short an array would be written in part and too long a one accepted: so the size is checked here."""
+        """Uploads the buffer to a layer.
+
+        The size is checked here, because Blender accepts long arrays and partly copies short ones.
+        """
         passes = layer.passes
         if len(passes) != len(self._layout):
             raise ValueError(f"the layer has {len(passes)} passes, the buffer {len(self._layout)}")

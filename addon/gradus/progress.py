@@ -1,4 +1,4 @@
-"""What the user sees of a render that runs in the library, and how it is waited for."""
+"""Waits for renders of the library, and shows their progress and their images."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ def is_watched() -> bool:
 
 
 def wait(job: Any, handle: int, display: Display, result: Any = None) -> None:
-    """Until the library is done; a cancelled render ends well, too: what it has so far is there. result: where the picture grows."""
+    """Waits until a render of the library ends. After a cancel, its samples so far can be read.
+
+    result: Blender's result in which the image so far is shown, if somebody watches.
+    """
     library = job.session.library
     picture = LivePicture(job, handle, result) if result is not None and is_watched() else None
     progress = native.Progress()
@@ -38,7 +41,7 @@ def wait(job: Any, handle: int, display: Display, result: Any = None) -> None:
                 running = False
             elif error.code != Error.INVALID_OPERATION:
                 raise
-        if running and not job.cancelled and job.stop():
+        if running and not job.cancelled and job.is_stop_requested():
             job.cancelled = True
             library.render_cancel(handle)
         library.render_poll(handle, byref(progress))
@@ -48,17 +51,17 @@ def wait(job: Any, handle: int, display: Display, result: Any = None) -> None:
 
 
 class Display:
-    """Progress text and bar, of one render after the other: often enough to be lively, seldom enough to cost nothing."""
+    """Shows progress text and bar of consecutive renders. The text changes once per second at most."""
 
     TEXT_SECONDS = 1.0
 
     def __init__(self, job: Any) -> None:
         self.job = job
         self.next_text = time.monotonic()
-        self.follow()
+        self.begin()
 
-    def follow(self, label: str = "", done: float = 0.0, share: float = 1.0) -> None:
-        """The render to come: what its text begins with, where the bar is, and how much of the bar is its."""
+    def begin(self, label: str = "", done: float = 0.0, share: float = 1.0) -> None:
+        """Begins a render. Its text starts with `label`, and its bar covers a `share` of the whole bar after `done`."""
         self.label, self.done, self.share = label, done, share
 
     def show(self, progress: native.Progress) -> None:
@@ -67,18 +70,19 @@ class Display:
         if now >= self.next_text:
             self.next_text = now + self.TEXT_SECONDS
             engine.update_stats("", f"Gradus: {self.label}{self._text(progress)}")
-            engine.update_memory_stats(memory_used=progress.memory_bytes / 2**20, memory_peak=progress.peak_memory_bytes / 2**20)
+            used, peak = progress.memory_bytes / 2**20, progress.peak_memory_bytes / 2**20
+            engine.update_memory_stats(memory_used=used, memory_peak=peak)
 
     def _text(self, progress: native.Progress) -> str:
         if progress.phase == Phase.RECONSTRUCTING:
             return "reconstructing"
-        return f"sample {progress.samples_done}/{self.job.shot.settings.samples}, {100.0 * progress.fraction:.0f} %"
+        return f"sample {progress.samples_done}/{self.job.current.settings.samples}, {100.0 * progress.fraction:.0f} %"
 
 
 class LivePicture:
-    """The picture so far of a render, where somebody looks."""
+    """Shows the image so far of a render in Blender's window."""
 
-    FIRST_REFRESH, LONGEST_REFRESH = 0.5, 16.0  # s between pictures; each one waits longer than the one before
+    FIRST_REFRESH, LONGEST_REFRESH = 0.5, 16.0  # s between images; the interval grows
 
     def __init__(self, job: Any, handle: int, result: Any) -> None:
         self.job, self.handle, self.result = job, handle, result
@@ -86,7 +90,7 @@ class LivePicture:
         self.refresh = self.FIRST_REFRESH
         self.next_refresh = self.start + self.refresh
         self.version = 0
-        job.read(handle, frozenset((passes.Pass.COMBINED,)))  # there is nothing yet, but the library knows then that somebody looks
+        job.read(handle, frozenset((passes.Pass.COMBINED,)))  # tells the library to prepare a first image at once
 
     def show(self, progress: native.Progress) -> None:
         now = time.monotonic()
@@ -105,11 +109,12 @@ class LivePicture:
 
 @contextmanager
 def open_result(job: Any, view: str, is_kept: bool = True) -> Iterator[Any]:
-    """Blender's picture of the job's shot, with the job's buffer laid out for it.
+    """Opens Blender's result for the job's current view, and lays out the job's buffer for it.
 
-    is_kept: what is in it in the end is the frame's. After a cancel it always is: what was seen last stays.
+    is_kept: whether the content of the result is that of the frame. After a cancel it always is, so that the last image
+    stays visible.
     """
-    engine, settings = job.engine, job.shot.settings
+    engine, settings = job.engine, job.current.settings
     result = engine.begin_result(0, 0, settings.width, settings.height, layer=job.layer.name, view=view)
     if result is None:
         raise Failure("the render border leaves nothing to render")
@@ -119,10 +124,11 @@ def open_result(job: Any, view: str, is_kept: bool = True) -> Iterator[Any]:
         if job.animation is not None and (width, height) != (x1 - x0, y1 - y0):
             raise Failure("the size of the picture changes in the animation: switch Temporal off")
         settings.region[:] = [x0, y0, x0 + width, y0 + height]
-        job.buffer.prepare(result.layers[0].passes, passes.by_name(job.filled(), compat.VERSION), width, height)
+        requested = passes.by_name(job.requested_passes(), compat.VERSION)
+        job.buffer.prepare(result.layers[0].passes, requested, width, height)
         yield result
     finally:
-        # Also after a failure, which the caller reports: an open result would stay in memory.
+        # Also after an exception, because Blender never frees a result that stays open.
         is_kept = is_kept or job.cancelled
         engine.end_result(result, cancel=not is_kept)
         job.has_result = job.has_result or is_kept

@@ -1,4 +1,4 @@
-"""scene.gradus and view_layer.gradus, made from the table of settings.py."""
+"""The properties scene.gradus and view_layer.gradus, created from the table of settings.py."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from . import native, settings
 from .settings import Setting
 
 CHANGE_PASSES = frozenset(("integrator", "reconstruction", "denoiser", "use_decomposition", "components"))
-"""Settings by which there are passes or not."""
+"""Settings that add or remove passes."""
 
 
 def _show_passes(group: Any, _context: Any) -> None:
-    """Sockets of the compositor's Render Layers follow at once. Any layer speaks for all of the scene."""
+    """Updates the sockets of the compositor's Render Layers nodes. One view layer updates all of the scene."""
     group.id_data.view_layers[0].update_render_passes()
 
 
 def _property(setting: Setting) -> Any:
-    """The bpy property of a setting."""
+    """Returns the bpy property of a setting."""
     common = {"name": setting.label, "description": setting.doc, "default": setting.default}
     if setting.name in CHANGE_PASSES:
         common["update"] = _show_passes
     if setting.kind == settings.BOOL:
         return BoolProperty(**common)
     if setting.kind == settings.ENUM:
-        # The library's own numbers, so that files keep their meaning when choices are added between.
+        # The numbers of the library, so that files keep their meaning when choices are inserted.
         items = [(identifier, label, doc, number) for identifier, label, doc, number in setting.choices]
         return EnumProperty(**common, items=items)
     if setting.kind == settings.TEXT:
@@ -51,47 +51,72 @@ def _switch(name: str, description: str, default: bool = False) -> Any:
 
 
 class GradusViewLayerSettings(bpy.types.PropertyGroup):
-    """Passes of the engine that Blender has no switch for."""
+    """Switches of passes for which Blender has none."""
 
     use_pass_gradients: _switch(
         "Gradients",
-        "Sampled differences to the right and the upper neighbour: Gradient X, Gradient Y; in animations to the next frame, "
-        "Gradient T, and where the surface is there: Gradient T Link",
+        "Adds the passes Gradient X and Gradient Y, the sampled differences to the right and upper neighbour. In "
+        "animations, adds Gradient T, the difference to the next frame, and Gradient T Link, the position of the "
+        "surface there",
     )
-    use_pass_variance: _switch("Variance", "Estimated variance of the mean of Noisy Image")
-    use_pass_error: _switch("Error", "Estimated squared error of Combined, mean over red, green and blue")
-    use_pass_sample_count: _switch("Sample Count", "Samples that each pixel took")
-    use_pass_denoising: _switch("Denoising Data", "Denoising Normal, Albedo and Depth, as the compositor's Denoise node takes them")
+    use_pass_variance: _switch("Variance", "Adds the estimated variance of Noisy Image")
+    use_pass_error: _switch("Error", "Adds the estimated squared error of Combined, averaged over red, green and blue")
+    use_pass_sample_count: _switch("Sample Count", "Adds the number of samples of each pixel")
+    use_pass_denoising: _switch(
+        "Denoising Data", "Adds the passes Denoising Normal, Albedo and Depth, which the compositor's Denoise node uses"
+    )
     use_pass_components: _switch(
-        "Color", "Each component of the picture, reconstructed by itself; they add up to Combined: Path Diffuse, Path Reflection …", True
+        "Color",
+        "Adds one pass for each component: Path Diffuse, Path Reflection … Each is reconstructed separately, and their "
+        "sum is Combined",
+        True,
     )
-    use_pass_component_reflectance: _switch("Reflectance", "Albedo of the first rough surface on the component's paths")
-    use_pass_component_irradiance: _switch("Irradiance", "The component divided by its reflectance: light without texture")
-    use_pass_component_normal: _switch("Normal", "Normal of the first rough surface on the component's paths")
+    use_pass_component_reflectance: _switch(
+        "Reflectance", "Adds the albedo of the first non-specular surface on the paths of each component"
+    )
+    use_pass_component_irradiance: _switch(
+        "Irradiance", "Adds each component divided by its reflectance: the light without textures"
+    )
+    use_pass_component_normal: _switch(
+        "Normal", "Adds the normal of the first non-specular surface on the paths of each component"
+    )
     use_pass_component_depth: _switch(
-        "Depth", "Length of the component's paths to their first rough surface: of a reflection by way of the mirror"
+        "Depth",
+        "Adds the length of the paths of each component to their first non-specular surface. For reflections, this "
+        "includes the distance to the mirror",
     )
-    use_pass_component_uv: _switch("UV", "Texture coordinates of that surface, as pass UV has them of what the camera sees")
+    use_pass_component_uv: _switch(
+        "UV", "Adds the texture coordinates of the first non-specular surface on the paths of each component"
+    )
     use_pass_component_index: _switch(
-        "Object and Face Index", "Pass index of that surface's object, and the number of its face in the mesh: of what a mirror shows"
+        "Object and Face Index",
+        "Adds the pass index of the object and the index of the face of the first non-specular surface on the paths of "
+        "each component",
     )
-    use_pass_component_emit: _switch("Emit", "Light that this surface sends out itself, before any mirror or glass has coloured it")
+    use_pass_component_emit: _switch(
+        "Emit",
+        "Adds the emission of the first non-specular surface on the paths of each component, without the tint of "
+        "mirrors and glass",
+    )
     use_pass_component_motion: _switch(
-        "Motion", "Where the component comes from and goes to, as pass Vector tells it of surfaces, and Tracked: 1 where that is known"
+        "Motion",
+        "Adds the motion of each component to the previous and next frame, in the format of pass Vector, and Tracked, "
+        "which is 1 where the motion is known",
     )
     use_pass_component_irradiance_motion: _switch(
         "Irradiance Motion",
-        "Where the light on the component's surfaces comes from and goes to: its shadows. In animations, from the frames before and after",
+        "Adds the motion of the light on the surfaces of each component, such as shadows. It is found by optical "
+        "flow, in animations only",
     )
 
 
 class GradusWindowState(bpy.types.PropertyGroup):
-    """What the interface remembers; no file does."""
+    """State of the interface that is not saved in files."""
 
     path: StringProperty(
         name="Try a Path",
-        description="E, then D (rough), R (sharp reflection) or T (sharp transmission) for each scattering, then L: to which component it "
-        "belongs is shown below",
+        description="A light path: E, then D (diffuse or rough), R (specular reflection) or T (specular "
+        "transmission) for each scattering event, then L. The component to which it belongs is shown below",
         default="ETTDL",
     )
 
@@ -107,7 +132,8 @@ class GradusPreferences(bpy.types.AddonPreferences):
 
     library_path: StringProperty(
         name="Library",
-        description="Path of libgradus.so; empty = the one that came with the add-on. The environment variable GRADUS_LIBRARY wins over it",
+        description="Path of libgradus.so. If empty, the library of the add-on is used. The environment variable "
+        "GRADUS_LIBRARY overrides this setting",
         subtype="FILE_PATH",
         update=_set_library,
     )

@@ -1,4 +1,4 @@
-"""What register() and unregister() of the add-on do, in order; both may be called any number of times."""
+"""The order in which the modules of the add-on are registered. Both functions may be called repeatedly."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Final renders and previews: what engine.py's update() and render() do."""
+"""Final renders and previews: the work of the engine's update() and render()."""
 
 from __future__ import annotations
 
@@ -38,7 +38,10 @@ _files = output.FrameFiles()
 
 
 def stop_requested(engine: Any) -> bool:
-    """Whether the user wants the render to end: Escape, or SIGINT in the background. Asked at least every 0.1 s in every phase."""
+    """Returns whether the user cancels the render: by Escape, or by SIGINT in the background.
+
+    It is polled every 0.1 s in all phases.
+    """
     return engine.test_break()
 
 
@@ -46,14 +49,15 @@ def stop_requested(engine: Any) -> bool:
 
 
 def active_passes(scene: Any, view_layer: Any, overrides: options.Overrides) -> list[passes.PassInfo]:
-    """Passes of the layer, with the command line's wishes."""
+    """Returns the passes of a view layer, with those of the command line."""
     names = ("integrator", "reconstruction", "denoiser")
-    reconstructed = passes.is_reconstructed(*((overrides.value(name) or getattr(scene.gradus, name)).upper() for name in names))
+    choices = ((overrides.value(name) or getattr(scene.gradus, name)).upper() for name in names)
+    reconstructed = passes.is_reconstructed(*choices)
     return list(passes.list_passes(view_layer, reconstructed, _component_names(scene, overrides), overrides.passes))
 
 
 def _component_names(scene: Any, overrides: options.Overrides) -> list[str]:
-    """Of the parts into which the picture is taken apart; none if it is one."""
+    """Returns the names of all components, or [] if the image is not decomposed."""
     switch, text = overrides.switch("use_decomposition"), overrides.text("components")
     if not (scene.gradus.use_decomposition if switch is None else switch):
         return []
@@ -61,26 +65,32 @@ def _component_names(scene: Any, overrides: options.Overrides) -> list[str]:
 
 
 def register_passes(engine: Any, scene: Any, view_layer: Any) -> None:
-    """Also called by the interface at any time: cheap, and without the library."""
+    """Registers the passes of a view layer.
+
+    The interface calls this at any time, so it is cheap and does not need the library.
+    """
     if scene is None or view_layer is None:
         return
     try:
         overrides = options.current()
     except options.OptionError:
-        overrides = options.Overrides()  # update() reports it, once
+        overrides = options.Overrides()  # update() reports the error once
     for info in active_passes(scene, view_layer, overrides):
         engine.register_pass(scene, view_layer, info.blender_name(compat.VERSION), info.channels, info.ids, info.kind)
 
 
 def host_value(name: str, scene: Any, overrides: options.Overrides) -> Any:
-    """A setting that the library does not have."""
+    """Returns a setting that the library does not have."""
     return overrides.host.get(name, getattr(scene.gradus, name))
 
 
 def native_settings(
     library: native.Library, scene: Any, view_layer: Any, overrides: options.Overrides, is_final: bool = True
 ) -> native.Settings:
-    """Everything but size, region and passes. Only final renders take the picture apart: to others no set is malformed."""
+    """Returns the native settings of a view layer without size, region and passes.
+
+    Only final renders decompose the image: in previews and the viewport, a malformed set of components is not an error.
+    """
     result = native.Settings()
     library.settings_default(byref(result))
     settings.fill(result, scene.gradus, () if is_final else settings.OF_COMPONENTS)
@@ -94,14 +104,14 @@ def native_settings(
     for name, text in overrides.native:
         library.settings_parse(byref(result), native.text(name), native.text(text))
     if result.use_decomposition:
-        components.describe(library, result.components)  # refuses what is no set, before the export
+        components.describe(library, result.components)  # refuses a malformed set before the export
     elif is_final:
         overrides.refuse_components()
     return result
 
 
 def limit_preview(result: native.Settings, samples: int) -> None:
-    """Previews leave half of the processor to the user and to a render that runs at the same time, and are never strict."""
+    """Adapts settings to previews, which use half of the processor and are never strict."""
     result.samples = min(result.samples, samples)
     result.threads = max(1, store.process_cpu_threads() // 2)
     result.denoiser = native.Denoiser.NONE
@@ -109,7 +119,7 @@ def limit_preview(result: native.Settings, samples: int) -> None:
 
 
 def region_of(render: Any, width: int, height: int) -> tuple[int, int, int, int]:
-    """x0, y0, x1, y1 of the border in the full frame, rounded as Blender does it (float32 products, truncated)."""
+    """Returns x0, y0, x1, y1 of the render border in the full frame, in which Blender truncates float32 products."""
     if not render.use_border:
         return 0, 0, width, height
     x0, x1 = (int(compat.as_float32(value * width)) for value in (render.border_min_x, render.border_max_x))
@@ -121,8 +131,8 @@ def region_of(render: Any, width: int, height: int) -> tuple[int, int, int, int]
 
 
 @dataclass
-class Shot:
-    """One view of one frame, as it is rendered."""
+class ViewRender:
+    """The render of one view of one frame."""
 
     settings: native.Settings = field(default_factory=native.Settings)
     clock: stats.Clock = field(default_factory=stats.Clock)
@@ -130,7 +140,7 @@ class Shot:
 
 
 class Job:
-    """What update() prepares and render() finishes, for one view layer of one frame."""
+    """The render of one view layer of one frame. update() prepares it and render() finishes it."""
 
     def __init__(self, engine: Any, depsgraph: Any) -> None:
         self.engine = engine
@@ -145,16 +155,16 @@ class Job:
         kind, space = (PREVIEW, id(self)) if self.is_preview else (FINAL, 0)
         self.key = Key(kind, self.scene.name_full, self.layer.name, space)
         self.session: Session | None = None
-        self.shot: Shot | None = None
+        self.current: ViewRender | None = None
         self.animation: Animation | None = None
-        self.size = (0, 0)  # pixels of the frame that was exported last
-        self.frame_by_frame = ""  # why a frame of an animation is rendered on its own
-        self.unsupported: list[str] = []  # warnings about the frame that was exported last that `strict` turns into an error
+        self.size = (0, 0)  # pixels of the last exported frame
+        self.frame_by_frame = ""  # why a frame of an animation is rendered independently
+        self.unsupported: list[str] = []  # warnings about the last exported frame that are errors if `strict`
         self.buffer = pixels.PassBuffer()
 
     @property
     def scene(self) -> Any:
-        """As evaluated; its layers have other addresses after each evaluation."""
+        """The evaluated scene. Its view layers have other addresses after each evaluation."""
         return self.depsgraph.scene_eval
 
     @property
@@ -165,80 +175,84 @@ class Job:
         return host_value(name, self.scene, self.overrides)
 
     def prepare(self) -> None:
-        """Extraction, under Blender's draw lock: nobody edits meanwhile."""
-        self.begin_shot()
+        """Exports the frame. Blender holds its draw lock during this call, so that no user edits the scene."""
+        self.begin_view()
         self.session = store.acquire(self.key, self.overrides.threads, bool(self.overrides.save_scene))
-        self.shot.settings = self.new_settings()
-        self.warn(cycles_settings.warnings(self.scene, {name for name, _ in self.overrides.native}), changes_picture=False)
+        self.current.settings = self.new_settings()
+        given = {name for name, _ in self.overrides.native}
+        self.warn(cycles_settings.warnings(self.scene, given), changes_picture=False)
         self.warn_of_simulations()
-        self.warn(output.cut_names(self.scene.render.image_settings, self.layer.name, self.views, self.infos, compat.VERSION))
+        image_settings = self.scene.render.image_settings
+        self.warn(output.truncated_names(image_settings, self.layer.name, self.views, self.infos, compat.VERSION))
         self.animation = animation.of_job(self)
         if self.animation is None:
-            self.show_simulations()
+            self.compute_simulations()
             self.export(self.views[0])
 
-    def begin_shot(self) -> None:
-        self.shot = Shot()
+    def begin_view(self) -> None:
+        self.current = ViewRender()
 
     def new_settings(self) -> native.Settings:
-        """Those of the frame that the depsgraph shows."""
+        """Returns the settings of the depsgraph's frame."""
         settings = native_settings(native.load(), self.scene, self.layer, self.overrides, not self.is_preview)
-        settings.width, settings.height = self.engine.resolution_x, self.engine.resolution_y  # by which plans are made before the export
-        infos = self.filled()
+        # The size is needed for plans that are made before the export.
+        settings.width, settings.height = self.engine.resolution_x, self.engine.resolution_y
+        infos = self.requested_passes()
         settings.passes, settings.component_passes = passes.mask(infos), passes.component_mask(infos)
         if self.is_preview:
             limit_preview(settings, self.host_value("preview_samples"))
         return settings
 
     def export(self, view: str) -> None:
-        """The first view exports the frame, with the cameras of the others."""
-        with self.shot.clock.phase("export"):
+        """Exports a view. The first view exports the frame with the cameras of all views."""
+        with self.current.clock.phase("export"):
             if view == self.views[0]:
                 self._export_frame()
             else:
                 self.session.show_view(view)
         if view:
             self.engine.active_view_set(view)
-        settings, (width, height) = self.shot.settings, self.size
+        settings, (width, height) = self.current.settings, self.size
         settings.width, settings.height = width, height
         settings.region[:] = region_of(self.scene.render, width, height)
 
     def _export_frame(self) -> None:
         vectors = self.wants_vectors()
-        report = self.session.sync(self.depsgraph, self.engine, None, self.is_preview, self.stop, vectors, self.views)
+        arguments = (self.depsgraph, self.engine, None, self.is_preview, self.is_stop_requested, vectors, self.views)
+        report = self.session.sync(*arguments)
         self.size = report.width, report.height
         self.warn(report.warnings)
 
     def build(self) -> None:
-        with self.shot.clock.phase("build"):
-            self.session.commit(self.stop)
+        with self.current.clock.phase("build"):
+            self.session.commit(self.is_stop_requested)
         self.warn([])
         self.refuse_unsupported()
         if self.overrides.save_scene:
             path = self.overrides.save_scene.replace("%f", str(self.scene.frame_current))
-            self.session.library.scene_save(self.session.scene, byref(self.shot.settings), native.text(path))
+            self.session.library.scene_save(self.session.scene, byref(self.current.settings), native.text(path))
 
     def read(self, handle: int, only: frozenset[passes.Pass] | None = None) -> None:
-        """Passes of a render into the buffer."""
+        """Reads passes of a render into the buffer."""
         library = self.session.library
 
-        def read_plane(plane: passes.Pass | passes.Part, target: Any, count: int) -> None:
-            if isinstance(plane, passes.Part):
+        def read_plane(plane: passes.Pass | passes.ComponentPlane, target: Any, count: int) -> None:
+            if isinstance(plane, passes.ComponentPlane):
                 library.render_read_component(handle, native.text(plane.component), plane.plane, target, count)
             else:
                 library.render_read_pass(handle, plane, target, count)
 
         self.buffer.fill(read_plane, only)
 
-    def show_simulations(self) -> None:
-        """Those that are not baked, in an animation: Blender's own way to a frame does not compute them."""
+    def compute_simulations(self) -> None:
+        """Computes simulations that are not baked, which Blender does not do when it renders an animation."""
         simulations = self.simulations() if bpy.app.background else None
         if simulations is not None:
             frame = self.scene.frame_current
-            with self.shot.clock.phase("export"):
-                beyond = self.frames_beyond()
-                simulations.compute(frame + beyond, animation.last_of_job(self.scene) + beyond, self.stop)
-                simulations.show(frame)
+            with self.current.clock.phase("export"):
+                after = self.frames_after()
+                simulations.compute(frame + after, animation.last_of_job(self.scene) + after, self.is_stop_requested)
+                simulations.go_to(frame)
                 self.engine.frame_set(frame, subframe=0.0)
 
     def simulations(self) -> simulation.Simulations | None:
@@ -247,60 +261,64 @@ class Job:
         return simulation.of_job(self.depsgraph)
 
     def warn_of_simulations(self) -> None:
-        """The interface draws what the scene's own depsgraph has: it must not be stepped under it."""
+        """Warns of simulations that are not baked if Blender has a window, in which they cannot be stepped."""
         if not bpy.app.background and (simulations := self.simulations()) is not None:
             names = simulations.names
-            self.warn(
-                [f"{len(names)} simulations are not baked and may stand still, the first is '{names[0]}': bake them before rendering"]
-            )
+            count = "1 simulation is" if len(names) == 1 else f"{len(names)} simulations are"
+            self.warn([f"{count} not baked and may not move, the first is '{names[0]}': bake them before rendering"])
 
-    def frames_beyond(self) -> int:
-        """How far an export looks beyond its frame; simulations must have been there."""
+    def frames_after(self) -> int:
+        """Returns how many frames after its own an export evaluates. Simulations must be computed up to there."""
         shutter = shutter_of(self.scene, self.layer)
         return max(int(self.wants_vectors()), math.ceil(shutter.close) if shutter is not None else 0)
 
-    def filled(self) -> list[passes.PassInfo]:
-        """Passes that the library is asked for; the others stay 0."""
-        return [info for info in self.infos if not self.keeps_still(info)]
+    def requested_passes(self) -> list[passes.PassInfo]:
+        """Returns the passes that the library computes. All others stay 0."""
+        return [info for info in self.infos if not self.is_left_empty(info)]
 
-    def keeps_still(self, info: passes.PassInfo) -> bool:
-        """Under motion blur Vector is 0 unless that is asked for, as in Cycles: whoever blurs by it would blur twice. Motion of components,
-        which Cycles does not have, is always what it says."""
-        if not info.is_motion or isinstance(info.plane, passes.Part) or self.host_value("vector_with_motion_blur"):
+    def is_left_empty(self, info: passes.PassInfo) -> bool:
+        """Returns whether a pass stays 0.
+
+        As in Cycles, Vector is 0 in images with motion blur unless a setting asks for it, because a Vector Blur node
+        would blur twice. Motion of components, which Cycles does not have, is always computed.
+        """
+        if info.plane != passes.Pass.VECTOR or self.host_value("vector_with_motion_blur"):
             return False
         return shutter_of(self.scene, self.layer) is not None
 
     def wants_vectors(self) -> bool:
-        if any(self.keeps_still(info) for info in self.infos):
-            text = "Pass Vector is 0: the picture has motion blur (Motion Blur > Vector Pass gives it all the same)"
+        if any(self.is_left_empty(info) for info in self.infos):
+            text = "Pass Vector is 0, because the image has motion blur (Motion Blur > Vector Pass computes it)"
             self.warn([text], changes_picture=False)
-        return any(info.is_motion for info in self.filled())
+        return any(info.is_motion for info in self.requested_passes())
 
     def warn(self, texts: list[str], changes_picture: bool = True) -> None:
-        """Reports `texts`, and what the library has to say, once per session.
+        """Reports `texts` and the warnings of the library, each once per session.
 
-        changes_picture: whether the texts name something that the scene asks for and the picture will not have.
+        changes_picture: whether the texts name something that the scene asks for and the image will not have.
         """
         if self.is_silent:
             return
         for text in self.session.take_new_warnings(texts):
-            self.shot.warnings.append(text)
+            self.current.warnings.append(text)
             if not self.is_preview:
                 self.engine.report({"WARNING"}, f"Gradus: {text}")
         if changes_picture:
             self.unsupported += [text for text in texts if text not in self.unsupported]
 
     def refuse_unsupported(self) -> None:
-        """Raises Failure in a strict render of a frame that Gradus would render differently from what the scene asks for.
+        """Raises Failure if the render is strict and the image will not have what the scene asks for.
 
-        Only the warnings of Python are looked at here: the library refuses those of its own commits when the render starts.
+        This covers warnings of the export. The library refuses the warnings of its own commit when the render starts.
         """
+        if self.is_silent:
+            return
         texts, self.unsupported = self.unsupported, []
-        if self.shot.settings.strict and texts:
+        if self.current.settings.strict and texts:
             others = f" (and {len(texts) - 1} other warnings)" if len(texts) > 1 else ""
             raise Failure(f"strict: {texts[0]}{others}")
 
-    def stop(self) -> bool:
+    def is_stop_requested(self) -> bool:
         return stop_requested(self.engine)
 
     def free(self) -> None:
@@ -321,7 +339,10 @@ def update(engine: Any, _data: Any, depsgraph: Any) -> None:
 
 
 def _check_output(engine: Any, job: Job) -> None:
-    """In the background every frame becomes a file; in the window only those of an animation."""
+    """Checks the output folder and the previous file, if Blender will write a file for this frame.
+
+    In the background it writes one for every frame, in the window only for frames of an animation.
+    """
     if not (bpy.app.background or engine.is_animation):
         return
     channels = sum(info.channels for info in job.infos)
@@ -346,7 +367,7 @@ def render(engine: Any, depsgraph: Any) -> None:
         if not job.has_result:
             _empty_result(job)
     finally:
-        engine.job = None  # engine and job refer to each other, and the buffers are large
+        engine.job = None  # frees the buffers at once: engine and job refer to each other
         job.free()
     if engine.is_animation and not job.is_preview and not job.cancelled:
         _files.after_frame(job.scene.render, job.scene.frame_current)
@@ -357,7 +378,7 @@ def frame_finished(engine: Any) -> None:
 
 
 def _empty_result(job: Job) -> None:
-    """A cancelled render without a result at all would crash Blender's multilayer writer."""
+    """Delivers an empty result. A cancelled render without any result would crash Blender's multilayer writer."""
     result = job.engine.begin_result(0, 0, job.engine.resolution_x, job.engine.resolution_y, layer=job.layer.name)
     if result is not None:
         job.engine.end_result(result)
@@ -367,10 +388,10 @@ def _prepare_view(job: Job, index: int, view: str) -> None:
     if job.cancelled:
         raise Cancelled
     if job.animation is not None:
-        job.shot = job.animation.take_shot(view, job.scene.frame_current)
+        job.current = job.animation.take_view(view, job.scene.frame_current)
         return
     if index > 0:
-        job.shot = Shot(job.shot.settings)  # with times of its own
+        job.current = ViewRender(job.current.settings)  # measures its own times
         job.export(view)
     job.engine.update_stats("", "Gradus: building the scene")
     job.build()
@@ -384,7 +405,7 @@ def _render_view(job: Job, view: str) -> None:
 def _sample(job: Job, view: str, result: Any) -> None:
     handle = _start(job, view)
     try:
-        # A frame of an animation is reconstructed in one go: there is no picture of it before.
+        # A frame of an animation is reconstructed at once: it has no intermediate image.
         wait(job, handle, Display(job), result if job.animation is None else None)
         _deliver(job, view, handle, result)
     finally:
@@ -393,14 +414,14 @@ def _sample(job: Job, view: str, result: Any) -> None:
 
 def _start(job: Job, view: str) -> int:
     if job.animation is not None:
-        return job.animation.deliver(view, job.scene.frame_current, job.shot.settings)
+        return job.animation.deliver(view, job.scene.frame_current, job.current.settings)
     handle = ctypes.c_uint64()
-    job.session.library.render_start(job.session.scene, byref(job.shot.settings), byref(handle))
+    job.session.library.render_start(job.session.scene, byref(job.current.settings), byref(handle))
     return handle.value
 
 
 def _read(job: Job, handle: int) -> None:
-    """Of a frame whose files were still being read when it was cancelled there is nothing to show."""
+    """Reads all passes. Raises Cancelled if the render was cancelled before the library had any of them."""
     try:
         job.read(handle)
     except GradusError as error:
@@ -410,7 +431,7 @@ def _read(job: Job, handle: int) -> None:
 
 
 def _deliver(job: Job, view: str, handle: int, result: Any) -> None:
-    with job.shot.clock.phase("upload"):
+    with job.current.clock.phase("upload"):
         _read(job, handle)
         job.buffer.upload(result.layers[0])
     if job.is_preview or job.cancelled:
@@ -423,7 +444,8 @@ def _deliver(job: Job, view: str, handle: int, result: Any) -> None:
     text = ctypes.c_char_p()
     library.render_stats(handle, byref(text))
     host = {"frame": job.scene.frame_current, "layer": job.layer.name, "scene": job.scene.name, "view": view}
-    summary = stats.complete((text.value or b"").decode("utf-8", "replace"), host, job.shot.clock, job.shot.warnings)
+    native_stats = (text.value or b"").decode("utf-8", "replace")
+    summary = stats.complete(native_stats, host, job.current.clock, job.current.warnings)
     if job.frame_by_frame:
         summary.setdefault("plan", {})["frame_by_frame"] = job.frame_by_frame
     store.summaries[(job.scene.name, job.layer.name)] = summary
@@ -433,7 +455,7 @@ def _deliver(job: Job, view: str, handle: int, result: Any) -> None:
 
 
 def _stamp(engine: Any, summary: dict[str, Any]) -> None:
-    """Metadata of the file: how the picture was made (I9)."""
+    """Adds metadata to the file about how the image was rendered."""
     stamped = engine.get_result()
     if stamped is None or not hasattr(stamped, "stamp_data_add_field"):
         return

@@ -1,6 +1,7 @@
-"""What outlives an engine object: the native device, and one native scene for each (kind, scene, view layer, space) (contract 7.4).
+"""Native objects that outlive an engine object.
 
-Blender makes an engine object per frame, and more of them for every change of a pass switch; nothing heavy may hang on those.
+These are the device, and one native scene for each (kind, scene, view layer, space). Blender creates an engine object
+for each frame and for each change of a pass switch, so engine objects own nothing large.
 """
 
 from __future__ import annotations
@@ -29,11 +30,11 @@ class Key(NamedTuple):
     kind: str
     scene: str
     layer: str
-    space: int  # of the viewport or preview: which engine; 0 for final renders
+    space: int  # identifies the viewport or preview; 0 for final renders
 
 
 class Session:
-    """A native scene, and the exporter that keeps it equal to Blender's."""
+    """A native scene, and the exporter that keeps it equal to Blender's scene."""
 
     def __init__(self, library: native.Library, device: int, record: bool = False) -> None:
         self.library = library
@@ -47,25 +48,25 @@ class Session:
         self.reported: set[str] = set()
 
     def sync(self, *arguments: Any) -> Any:
-        """Exporter.sync, after the colour spaces that the images need are known to the device."""
+        """Defines the colour spaces of all images on the device, then calls Exporter.sync()."""
         baker = _bakers.get(self.device)
         if baker is not None:
-            baker.hand_over(self.library, self.device, compat.image_color_spaces())
+            baker.define(self.library, self.device, compat.image_color_spaces())
         return self.exporter.sync(*arguments)
 
     def show_view(self, view: str) -> None:
-        """Exporter.show_view."""
+        """Sets the camera of another view; see Exporter.show_view()."""
         self.exporter.show_view(view)
 
     def commit(self, cancelled: Callable[[], bool]) -> None:
-        """Builds the snapshot on another thread, asking `cancelled` meanwhile. Raises Cancelled or GradusError."""
+        """Builds the snapshot on another thread while it polls `cancelled`. Raises Cancelled or GradusError."""
         cancel, progress = ctypes.c_int32(0), ctypes.c_float(0.0)
         failures: list[BaseException] = []
 
         def work() -> None:
             try:
                 self.library.scene_commit(self.scene, byref(cancel), byref(progress))
-            except BaseException as error:  # handed to the thread that waits
+            except BaseException as error:  # raised again by the waiting thread
                 failures.append(error)
 
         thread = threading.Thread(target=work, name="gradus-commit", daemon=True)
@@ -80,7 +81,7 @@ class Session:
             raise failures[0]
 
     def take_new_warnings(self, texts: list[str]) -> list[str]:
-        """Those of `texts`, the scene and the device that this session has not reported yet: every missing file is named once."""
+        """Returns those of `texts` and of the warnings of scene and device that are new in this session."""
         about_device = _device_warnings.setdefault(self.device, [])
         about_device += self.library.take_device_warnings(self.device)
         fresh = []
@@ -101,19 +102,19 @@ _sessions: dict[Key, Session] = {}
 _devices: dict[tuple[str, int], int] = {}
 _bakers: dict[int, color.Baker] = {}
 _device_warnings: dict[int, list[str]] = {}
-"""All that were made: each session reports them, whichever comes first."""
+"""All warnings of each device. Every session reports them, whichever takes them from the library."""
 summaries: dict[tuple[str, str], dict[str, Any]] = {}
-"""(scene, layer) -> stats of the last final render, for the panels."""
+"""The stats of the last final render by (scene, view layer), for the panels."""
 
 
 def device(library: native.Library, threads: int = 0) -> int:
-    """The device for Blender's present colour configuration; threads count for the first caller."""
+    """Returns the device for Blender's current colour configuration and a number of threads."""
     path = compat.color_config_path()
     with _lock:
         key = (path, threads)
         if key not in _devices:
             baker = color.baker_for(path, compat.bundled_python_packages())
-            # With a baker, the configuration would only make the library say that it cannot read it.
+            # The library cannot read a configuration that has a baker, and would warn of it.
             settings = native.DeviceSettings(threads=threads, color_config=None if baker else native.text(path) or None)
             settings.denoiser_path = native.text(compat.bundled_libraries()) or None
             handle = ctypes.c_uint64()
@@ -125,7 +126,7 @@ def device(library: native.Library, threads: int = 0) -> int:
 
 
 def acquire(key: Key, threads: int = 0, record: bool = False) -> Session:
-    """The session of `key`, made if there is none."""
+    """Returns the session of `key`, and creates it if there is none."""
     library = native.load()
     with _lock:
         if key not in _sessions:
@@ -148,7 +149,7 @@ def release_kind(kind: str) -> None:
 
 
 def clear() -> None:
-    """Frees all sessions and devices."""
+    """Releases all sessions and devices."""
     _end_job()
     with _lock:
         keys = list(_sessions)
@@ -167,7 +168,7 @@ def clear() -> None:
 # ------------------------------------------------------------------------------------------------ handlers
 
 job_ends: list[Callable[[], None]] = []
-"""Called after the last frame of a render, whether it is finished, cancelled or gone with its file."""
+"""Functions that are called when a render ends: it is finished or cancelled, or another file is loaded."""
 
 
 def _end_job() -> None:
@@ -177,7 +178,10 @@ def _end_job() -> None:
 
 @bpy.app.handlers.persistent
 def _after_render(scene: Any, *_: Any) -> None:
-    """An animation keeps its scene between frames, also without persistent data; after its end the memory goes back."""
+    """Releases the native scene after the last frame, unless Blender is to keep persistent data.
+
+    An animation keeps its scene between frames even without persistent data.
+    """
     _end_job()
     simulation.clear()
     if scene is None or not scene.render.use_persistent_data:
@@ -187,7 +191,7 @@ def _after_render(scene: Any, *_: Any) -> None:
 @bpy.app.handlers.persistent
 def _before_load(*_: Any) -> None:
     _end_job()
-    simulation.forget()
+    simulation.discard()
     release_kind(FINAL)
     summaries.clear()
 
@@ -210,5 +214,5 @@ def unregister_handlers() -> None:
 
 
 def process_cpu_threads() -> int:
-    """Hardware threads this process may use."""
+    """Returns the number of hardware threads that this process may use."""
     return len(os.sched_getaffinity(0))

@@ -1,4 +1,4 @@
-"""The part of a viewport that is rendered: all of it, or the border the user drew."""
+"""The region of a viewport that is rendered: all of it, or the render border."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ Rectangle = tuple[int, int, int, int]
 
 
 def region(context: Any, scene: Any) -> Rectangle:
-    """x0, y0, x1, y1 in pixels of the region, upper bounds exclusive; the same corner twice where the border lies outside."""
+    """Returns x0, y0, x1, y1 in pixels, with exclusive upper bounds.
+
+    The rectangle is empty if the border lies outside.
+    """
     width, height = context.region.width, context.region.height
     full = (0.0, 0.0, float(width), float(height))
     if context.region_data.view_perspective == "CAMERA":
@@ -20,13 +23,15 @@ def region(context: Any, scene: Any) -> Rectangle:
 
 
 def _border(owner: Any) -> tuple[float, float, float, float]:
-    """Of the scene's render settings, or of a 3D viewport: the same four numbers under other names."""
+    """Returns the border of the scene's render settings or of a 3D viewport, which use different property names."""
     prefix = "render_border" if hasattr(owner, "render_border_min_x") else "border"
     return tuple(getattr(owner, f"{prefix}_{side}") for side in ("min_x", "min_y", "max_x", "max_y"))
 
 
-def clip(border: tuple[float, float, float, float] | None, frame: tuple[float, float, float, float], width: int, height: int) -> Rectangle:
-    """`border` (0..1 in `frame`, which is in pixels) as whole pixels inside width x height."""
+def clip(
+    border: tuple[float, float, float, float] | None, frame: tuple[float, float, float, float], width: int, height: int
+) -> Rectangle:
+    """Returns a border in whole pixels. `border` is relative to `frame`, which is in pixels."""
     if border is None:
         return 0, 0, width, height
     left, bottom, right, top = frame
@@ -37,7 +42,7 @@ def clip(border: tuple[float, float, float, float] | None, frame: tuple[float, f
 
 
 def camera_frame(context: Any, scene: Any) -> tuple[float, float, float, float] | None:
-    """Left, bottom, right, top of the camera's frame in pixels of the region; None without a camera."""
+    """Returns left, bottom, right, top of the camera's frame in pixels of the region, or None without a camera."""
     space = context.space_data
     camera = space.camera if space.use_local_camera else scene.camera
     if camera is None or camera.type != "CAMERA":

@@ -1,7 +1,8 @@
-"""The Rendered viewport: a progressive image that starts again on every change, drawn through Blender's display transform.
+"""The Rendered viewport: a progressive image that restarts on every change, drawn with Blender's display transform.
 
-Blender's data is read on the main thread, where view_update() and view_draw() run; building and sampling happen on threads of our own,
-which never touch Blender. Each viewport has its own native scene, so that several of them and a final render do not meet.
+Blender's data is read on the main thread, where view_update() and view_draw() run. Other threads build and sample the
+native scene, and never access Blender. Each viewport has its own native scene, so that viewports and final renders are
+independent.
 """
 
 from __future__ import annotations
@@ -25,16 +26,17 @@ from .store import VIEWPORT, Key, Session
 
 REFRESH_SECONDS = 0.1
 RESIZE_SECONDS = 0.25
-"""A region that changes its size is left alone for that long: every step of a drag would start a render."""
+"""Delay after a change of the region's size, so that dragging a border does not start a render at every step."""
 JOIN_SECONDS = 0.3
-"""The library leaves a commit within 0.25 s of its cancellation."""
+"""Time to wait for a worker. The library ends a commit within 0.25 s of its cancellation."""
 
 
 class View:
     """One viewport in rendered shading."""
 
     def __init__(self, engine: Any, depsgraph: Any) -> None:
-        # Weak: engine and view would keep each other alive, and the view's threads with them, after Blender dropped the engine.
+        # Weak, because engine and view would otherwise keep each other and the threads alive after Blender freed the
+        # engine.
         self._engine = weakref.ref(engine)
         scene, layer = depsgraph.scene, depsgraph.view_layer
         self.key = Key(VIEWPORT, scene.name_full, layer.name, id(self))
@@ -46,7 +48,7 @@ class View:
         self.cancel = ctypes.c_int32(0)
         self.render = 0
         self.settings: native.Settings | None = None
-        self.stale = True  # the picture is not that of the scene: start as soon as the worker is free
+        self.stale = True  # the image is outdated: a render starts as soon as the worker ends
         self.resized_at = 0.0
         self.error: BaseException | None = None
         self.failed = False
@@ -56,7 +58,7 @@ class View:
 
     @property
     def engine(self) -> Any:
-        """Raises ReferenceError when Blender has dropped it."""
+        """The engine. Raises ReferenceError if Blender has freed it."""
         engine = self._engine()
         if engine is None:
             raise ReferenceError("the viewport is gone")
@@ -65,7 +67,7 @@ class View:
     # Reading Blender.
 
     def synchronize(self, depsgraph: Any, override: ViewOverride) -> None:
-        """Exports all that changed. Leaves it for a later update if the native scene is still busy."""
+        """Exports all changes. If the native scene is still busy, requests another update instead."""
         if not self.interrupt():
             self.engine.tag_update()
             return
@@ -76,18 +78,19 @@ class View:
         self.stale = True
 
     def move(self, depsgraph: Any, override: ViewOverride) -> None:
-        """The view changed and nothing else."""
+        """Exports a change of the view only."""
         if not self.interrupt():
             self.engine.tag_redraw()
             return
-        if self.override is not None and (override.width, override.height) != (self.override.width, self.override.height):
+        old = self.override
+        if old is not None and (override.width, override.height) != (old.width, old.height):
             self.resized_at = time.monotonic()
         self.session.exporter.sync_camera(depsgraph, override)
         self.override = override
         self.stale = True
 
     def interrupt(self) -> bool:
-        """Stops building and sampling; False if the library has not left the scene yet."""
+        """Cancels building and sampling. Returns False if the worker still uses the native scene."""
         self.cancel.value = 1
         if self.render:
             self.session.library.render_cancel(self.render)
@@ -101,19 +104,20 @@ class View:
     # Rendering.
 
     def start(self, scene: Any, layer: Any, region: tuple[int, int, int, int]) -> None:
-        """Builds and samples on another thread. Only when `interrupt` has succeeded."""
+        """Builds and samples on another thread. interrupt() must have returned True."""
         settings = renderer.native_settings(self.session.library, scene, layer, options.Overrides(), is_final=False)
         settings.samples = scene.gradus.preview_samples
         settings.noise_threshold = settings.time_limit = 0.0
         settings.strict = False
-        settings.integrator, settings.reconstruction, settings.denoiser = Integrator.PATH, _reconstruction(scene.gradus), Denoiser.NONE
-        settings.threads = max(1, store.process_cpu_threads() - 1)  # one is left for the interface
+        settings.integrator, settings.denoiser = Integrator.PATH, Denoiser.NONE
+        settings.reconstruction = _reconstruction(scene.gradus)
+        settings.threads = max(1, store.process_cpu_threads() - 1)  # leaves one thread to the interface
         settings.width, settings.height = self.override.width, self.override.height
         settings.region[:] = region
         settings.passes = 1 << Pass.COMBINED
         self.settings, self.region = settings, region
         self.stale = self.done = False
-        self.picture.version = 0  # of the new render: there is nothing yet
+        self.picture.version = 0  # the new render has no image yet
         self.cancel.value = 0
         old, self.render = self.render, 0
         self.worker = threading.Thread(target=self._work, args=(old,), name="gradus-viewport", daemon=True)
@@ -131,23 +135,23 @@ class View:
                 return
             library.render_start(self.session.scene, byref(self.settings), byref(handle))
             self.render = handle.value
-            # interrupt() sets `cancel` and then looks for a render: whichever comes first, one of the two sees the other.
+            # interrupt() sets `cancel` before it reads `render`, so that either it or this thread cancels the render.
             if self.cancel.value:
                 library.render_cancel(self.render)
             else:
-                self._look(library)
+                self._request_image(library)
         except GradusError as error:
             if error.code != Error.CANCELLED:
                 self.error = error
 
-    def _look(self, library: native.Library) -> None:
-        """There is nothing to see yet, but the library makes a first picture at once for who looks."""
+    def _request_image(self, library: native.Library) -> None:
+        """Reads the empty image, which makes the library prepare a first image as early as possible."""
         x0, y0, x1, y1 = self.region
         count = 4 * (x1 - x0) * (y1 - y0)
         library.render_read_pass(self.render, Pass.COMBINED, (ctypes.c_float * count)(), count)
 
     def refresh(self) -> None:
-        """Takes the newest image of the running render into the texture."""
+        """Reads the newest image of the running render into the texture."""
         if not self.render:
             return
         library, progress = self.session.library, native.Progress()
@@ -155,7 +159,7 @@ class View:
         if progress.phase == Phase.FAILED:
             self.done = True
             library.render_wait(self.render, 0.0)  # raises the failure
-        # Without a reconstruction the first pictures have holes.
+        # Without a reconstruction, the first images lack pixels.
         has_picture = progress.samples_done > 0 or self.settings.reconstruction != Reconstruction.NONE
         if progress.version != self.picture.version and has_picture:
             self.picture.take(library, self.render, self.region, progress.version)
@@ -175,13 +179,13 @@ class View:
 
 
 def _reconstruction(settings: Any) -> Reconstruction:
-    """Whoever wants to see the samples in the final picture wants it here, too."""
+    """Returns NONE if the final render shows plain samples, else REGULARIZED."""
     wanted = passes.is_reconstructed(settings.integrator, settings.reconstruction, settings.denoiser)
     return Reconstruction.REGULARIZED if wanted else Reconstruction.NONE
 
 
 def _redraw_while_running(view: View) -> None:
-    """A timer that asks for redraws until the render is done. It must not keep the view alive."""
+    """Registers a timer that requests redraws until the render ends. It does not keep the view alive."""
     if view.ticking:
         return
     view.ticking = True
@@ -203,11 +207,11 @@ def _redraw_while_running(view: View) -> None:
 
 
 class _Picture:
-    """The image on screen: a texture and where it lies in the region of the viewport."""
+    """The image on screen: a texture and its place in the region of the viewport."""
 
     def __init__(self) -> None:
         self.texture: Any = None
-        self.version = 0  # GradusProgress.version of the picture
+        self.version = 0  # GradusProgress.version of the image
         self.rectangle = (0, 0, 0, 0)
         self._pixels = array("f")
 
@@ -217,7 +221,7 @@ class _Picture:
         if len(self._pixels) != count:
             self._pixels = array("f", bytes(4 * count))
         library.render_read_pass(render, Pass.COMBINED, native.pointer(self._pixels), count)
-        # 32-bit: a half float overflows at 65520 and would turn black.
+        # A 16-bit texture would overflow at 65520 and turn black.
         data = gpu.types.Buffer("FLOAT", count, self._pixels)
         self.texture = gpu.types.GPUTexture((width, height), format="RGBA32F", data=data)
         self.version = version
@@ -234,7 +238,7 @@ class _Picture:
         gpu.state.blend_set("NONE")
 
 
-# ------------------------------------------------------------------------------------------------ callbacks of the engine
+# ------------------------------------------------------------------------------------------------ engine callbacks
 
 
 def update(engine: Any, context: Any, depsgraph: Any) -> None:
@@ -290,18 +294,21 @@ def _override(context: Any) -> ViewOverride:
 def _has_edits(depsgraph: Any) -> bool:
     """Returns whether the update is of more than the scene itself.
 
-    Blender tags the scene alone when something is selected, but also when objects are hidden or settings change; see _signature().
-    Before 5.0 the scene's compositor is tagged along with it. It works on the finished picture and does not concern the renderer.
+    Blender tags the scene alone when something is selected, but also when objects are hidden or settings change; see
+    _signature(). Before 5.0 the scene's compositor is tagged along with it. It works on the finished picture and does
+    not concern the renderer.
     """
-    return any(not isinstance(update.id, (bpy.types.Scene, bpy.types.CompositorNodeTree)) for update in depsgraph.updates)
+    ignored = (bpy.types.Scene, bpy.types.CompositorNodeTree)
+    return any(not isinstance(update.id, ignored) for update in depsgraph.updates)
 
 
 def _signature(depsgraph: Any) -> object:
     """Returns a value that differs if an update of the scene alone has changed the picture.
 
-    Blender lists every other change in depsgraph.updates, instances included. What remains are settings, the frame, replaced datablocks,
-    and which objects and collections the view layer shows: hiding and unhiding objects of a view layer tags the scene alone. The objects
-    are read and hashed by two calls into Blender and Python, without a loop over them, and instances are not read at all.
+    Blender lists every other change in depsgraph.updates, instances included. What remains are settings, the frame,
+    replaced datablocks, and which objects and collections the view layer shows: hiding and unhiding objects of a view
+    layer tags the scene alone. The objects are read and hashed by two calls into Blender and Python, without a loop
+    over them, and instances are not read at all.
     """
     scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
     values = tuple(getattr(scene.gradus, name) for name in settings.BY_NAME if name not in settings.OF_COMPONENTS)

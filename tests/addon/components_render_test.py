@@ -26,7 +26,7 @@ def sample() -> bpy.types.Scene:
 
 
 def show_all(layer: bpy.types.ViewLayer) -> None:
-    for part in passes.PARTS:
+    for part in passes.COMPONENT_TABLE:
         setattr(layer.gradus, part.switch.removeprefix("gradus."), True)
 
 
@@ -100,7 +100,7 @@ def test_what_a_scene_does_not_have_is_black(sample: bpy.types.Scene, render: Ca
     bpy.data.objects.remove(bpy.data.objects["Glass"])
     bpy.data.objects.remove(bpy.data.objects["Slab"])
     rendered = render(sample)
-    shown = [info.suffix for info in passes.PARTS if not info.suffix.endswith(("Tracked", "Depth", "Face Index"))]
+    shown = [info.suffix for info in passes.COMPONENT_TABLE if not info.suffix.endswith(("Tracked", "Depth", "Face Index"))]
     assert not any(part(rendered, "Transmission", suffix).any() for suffix in shown)
     assert (part(rendered, "Transmission", " Face Index") == -1.0).all()
     require_sum(rendered, DEFAULT)
@@ -225,7 +225,7 @@ def test_names_registered_are_names_in_the_file(sample: bpy.types.Scene, render:
     """With names of 24 letters, the longest: file formats and nodes have room for 64 bytes."""
     names = ("Abcdefghijklmnopqrstuvwx", "B")
     rendered = render(sample, components=f"{names[0]}=ED.*L;{names[1]}=ERDL")
-    expected = {info.of(name).name: info for name in (*names, "Residual") for info in passes.PARTS}
+    expected = {info.of(name).name: info for name in (*names, "Residual") for info in passes.COMPONENT_TABLE}
     assert path_passes(rendered) == set(expected)
     for name, info in expected.items():
         assert rendered[f"ViewLayer.{name}"].shape[2] == len(info.ids), name
@@ -251,7 +251,7 @@ def test_layers_have_their_own_switches(sample: bpy.types.Scene, render: Callabl
     second.gradus.use_pass_components = False
     second.gradus.use_pass_component_normal = True
     rendered = render(sample)
-    assert path_passes(rendered) == {info.of(name).name for name in DEFAULT for info in passes.PARTS}
+    assert path_passes(rendered) == {info.of(name).name for name in DEFAULT for info in passes.COMPONENT_TABLE}
     assert path_passes(rendered, "Second") == {f"Path {name} Normal" for name in DEFAULT}
 
 
@@ -273,7 +273,7 @@ def test_each_eye_has_its_components(sample: bpy.types.Scene, tmp_path: Path) ->
     bpy.ops.render.render(write_still=True, scene=sample.name)
     left, right = (images.read(tmp_path / f"eye_{side}.exr") for side in "LR")
     for eye in (left, right):
-        assert path_passes(eye) == {info.of(name).name for name in DEFAULT for info in passes.PARTS}
+        assert path_passes(eye) == {info.of(name).name for name in DEFAULT for info in passes.COMPONENT_TABLE}
         require_sum(eye, DEFAULT)
     assert not np.array_equal(part(left, "Diffuse"), part(right, "Diffuse"))
 
@@ -287,7 +287,7 @@ def test_frames_of_an_animation_have_them(sample: bpy.types.Scene, tmp_path: Pat
     bpy.ops.render.render(animation=True, scene=sample.name)
     frames = [images.read(tmp_path / f"f_{frame:04d}.exr") for frame in (1, 2, 3)]
     for rendered in frames:
-        assert path_passes(rendered) == {info.of(name).name for name in DEFAULT for info in passes.PARTS}
+        assert path_passes(rendered) == {info.of(name).name for name in DEFAULT for info in passes.COMPONENT_TABLE}
         require_sum(rendered, DEFAULT)
         assert (part(rendered, "Diffuse", " Object Index")[0, :30] == 3.0).all()
         assert (part(rendered, "Reflection", " Object Index") == 3.0).mean() > 0.01, "the ball shows the floor"
@@ -349,7 +349,7 @@ def test_the_command_line_takes_a_picture_apart(blender: Callable[..., applicati
     )  # fmt: skip
     assert outcome.code == 0, outcome.output
     rendered = images.read(tmp_path / "f_0001.exr")
-    assert path_passes(rendered) == {info.of(name).name for name in ("Direct", "Residual") for info in passes.PARTS}
+    assert path_passes(rendered) == {info.of(name).name for name in ("Direct", "Residual") for info in passes.COMPONENT_TABLE}
 
 
 # ------------------------------------------------------------------------------------------------ File Output
@@ -393,7 +393,7 @@ def compositor(scene: bpy.types.Scene) -> bpy.types.NodeTree:
 
 
 def test_a_file_output_node_writes_them(sample: bpy.types.Scene, render: Callable[..., images.Passes], tmp_path: Path) -> None:
-    names = [info.of(name).name for name in DEFAULT for info in passes.PARTS]
+    names = [info.of(name).name for name in DEFAULT for info in passes.COMPONENT_TABLE]
     folder = tmp_path / "nodes"
     folder.mkdir()
     written = file_output(sample, names, folder)

@@ -39,7 +39,7 @@ def test_a_set_that_is_refused_has_the_names_that_can_be_read() -> None:
 def test_the_default_set_written_out_is_the_default_set() -> None:
     library = native.load()
     found = components.describe(library, b"")
-    again = components.describe(library, components.written(found).encode())
+    again = components.describe(library, components.to_text(found).encode())
     assert again == found
     assert [component.expression for component in found] == ["EL", "ED.*L", "ER(D.*)?L", "ETT(D.*)?L", ""]
 
@@ -251,5 +251,5 @@ def test_without_a_library_writing_out_was_a_traceback(scene: bpy.types.Scene, m
 
 
 def test_components_have_a_panel_among_the_passes() -> None:
-    switches = {part.switch.removeprefix("gradus.") for part in passes.PARTS}
+    switches = {part.switch.removeprefix("gradus.") for part in passes.COMPONENT_TABLE}
     assert set(ui.pass_panels.OF_COMPONENTS) == switches

@@ -457,12 +457,12 @@ RENAMED = {
 
 
 def test_the_manual_lists_every_node_that_is_translated() -> None:
-    from gradus.nodes import registry
+    from gradus.nodes import node
 
     manual = (ROOT / "docs" / "user-guide.md").read_text()
     listed = {name.strip(" .\n") for line in manual.split("\n- ")[1:] for name in line.partition("\n\n")[0].partition(":")[2].split(",")}
     listed = {" ".join(name.split()) for name in listed} | {"Velvet BSDF"}  # named as replaced
-    for bl_idname in registry.known():
+    for bl_idname in node.translated_nodes():
         kind = getattr(bpy.types, bl_idname, None)
         if kind is not None:
             name = kind.bl_rna.name

@@ -67,9 +67,9 @@ def test_passes_of_components() -> None:
     """Numbers of planes and of parts begin at 0 both: Combined and Color must not be taken for each other."""
     wanted = parse(["--gradus-passes", "component-color,combined,component_motion"]).passes
     assert wanted.planes == {Pass.COMBINED}
-    assert sorted(plane.name for plane in wanted.parts) == ["COLOR", "MOTION"]
-    assert len(parse(["--gradus-passes", "components"]).passes.parts) == ComponentPass.PASS_COUNT
-    assert parse(["--gradus-passes", "all"]).passes.parts == frozenset()
+    assert sorted(plane.name for plane in wanted.component_planes) == ["COLOR", "MOTION"]
+    assert len(parse(["--gradus-passes", "components"]).passes.component_planes) == ComponentPass.PASS_COUNT
+    assert parse(["--gradus-passes", "all"]).passes.component_planes == frozenset()
 
 
 def test_text_keeps_its_case_and_switches_take_what_the_library_takes() -> None:

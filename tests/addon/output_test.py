@@ -59,13 +59,13 @@ def test_f7_a_frame_cut_short_is_found(tmp_path: Path, scene: bpy.types.Scene) -
         path = tmp_path / f"{name}.{codec}"
         image.save_render(str(path), scene=scene)
         data = path.read_bytes()
-        assert file_check.is_whole(path), (name, codec)
+        assert file_check.is_complete(path), (name, codec)
         for length in (0, 5, 20, len(data) // 3, len(data) - 1):
             path.write_bytes(data[:length])
-            assert not file_check.is_whole(path), (name, codec, length)
+            assert not file_check.is_complete(path), (name, codec, length)
         if codec:
             path.write_bytes(data[:400] + bytes(len(data) - 400))  # its size was reserved and nothing followed
-            assert not file_check.is_whole(path), (name, codec)
+            assert not file_check.is_complete(path), (name, codec)
 
 
 def test_f7_a_multilayer_file_is_whole(tmp_path: Path, scene: bpy.types.Scene) -> None:
@@ -74,9 +74,9 @@ def test_f7_a_multilayer_file_is_whole(tmp_path: Path, scene: bpy.types.Scene) -
     path = tmp_path / "frame.exr"
     images.use_exr(scene, path)
     bpy.ops.render.render(write_still=True)
-    assert file_check.is_whole(path)
+    assert file_check.is_complete(path)
     path.write_bytes(path.read_bytes()[:-7])
-    assert not file_check.is_whole(path)
+    assert not file_check.is_complete(path)
 
 
 def test_stats_are_one_line_with_all_phases(tmp_path: Path) -> None:
@@ -116,15 +116,15 @@ def test_texts_for_people_are_one_line_and_never_empty() -> None:
         (21, ("",), (4, 5, 0), 1),
         (21, ("",), (5, 0, 0), 0),
         (20, ("left", "right"), (4, 5, 0), 1),
-        (63, ("",), (3, 4, 1), len(passes.PARTS)),
+        (63, ("",), (3, 4, 1), len(passes.COMPONENT_TABLE)),
     ],
 )
 def test_names_that_blender_cuts_in_files_are_told(layer: int, views: tuple[str, ...], version: tuple[int, ...], lost: int) -> None:
     """Channels were gone without a word where a layer and a component both have long names."""
-    parts = [part.of("Abcdefghijklmnopqrstuvwx") for part in passes.PARTS]
+    parts = [part.of("Abcdefghijklmnopqrstuvwx") for part in passes.COMPONENT_TABLE]
     settings = SimpleNamespace(file_format="OPEN_EXR_MULTILAYER", views_format="MULTIVIEW")
     longest = [info for info in parts if info.name.endswith("Reflectance")] if lost < 2 else parts
-    found = output.cut_names(settings, "L" * layer, views, longest, version)
+    found = output.truncated_names(settings, "L" * layer, views, longest, version)
     others = f" and {lost - 1} others" if lost > 1 else ""
     assert [others in text and f"'{'L' * layer}'" in text for text in found] == [True] * min(lost, 1)
-    assert output.cut_names(SimpleNamespace(file_format="PNG", views_format="MULTIVIEW"), "L" * layer, views, longest, version) == []
+    assert output.truncated_names(SimpleNamespace(file_format="PNG", views_format="MULTIVIEW"), "L" * layer, views, longest, version) == []

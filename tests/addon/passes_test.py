@@ -73,13 +73,13 @@ def test_channels_are_those_of_the_library() -> None:
 
 def layer(**on: bool) -> SimpleNamespace:
     ours = {name.removeprefix("gradus_"): value for name, value in on.items() if name.startswith("gradus_")}
-    infos = (*passes.TABLE, *passes.PARTS)
+    infos = (*passes.TABLE, *passes.COMPONENT_TABLE)
     defaults = dict.fromkeys((info.switch.removeprefix("gradus.") for info in infos if info.switch.startswith("gradus.")), False)
     return SimpleNamespace(gradus=SimpleNamespace(**(defaults | ours)), **on)
 
 
 def listed(view_layer: SimpleNamespace, reconstructed: bool = False, extra: tuple = ()) -> list[Pass]:
-    return [info.plane for info in passes.list_passes(view_layer, reconstructed, (), passes.Extra(frozenset(extra)))]
+    return [info.plane for info in passes.list_passes(view_layer, reconstructed, (), passes.ExtraPasses(frozenset(extra)))]
 
 
 def test_only_what_is_enabled() -> None:
@@ -114,7 +114,7 @@ def test_noisy_image_exists_whenever_combined_is_reconstructed(integrator: str, 
 
 def test_switches_exist_in_this_blender() -> None:
     view_layer = bpy.context.scene.view_layers[0]
-    for info in (*passes.TABLE, *passes.PARTS):
+    for info in (*passes.TABLE, *passes.COMPONENT_TABLE):
         if info.switch.startswith("gradus."):
             assert hasattr(view_layer.gradus, info.switch.removeprefix("gradus."))
         elif info.switch.startswith("use_"):
@@ -128,7 +128,7 @@ def test_mask() -> None:
 # ------------------------------------------------------------------------------------------------ components
 
 
-def named(view_layer: SimpleNamespace, components: tuple[str, ...], extra: passes.Extra = passes.NOTHING) -> list[str]:
+def named(view_layer: SimpleNamespace, components: tuple[str, ...], extra: passes.ExtraPasses = passes.NO_EXTRA) -> list[str]:
     return [info.name for info in passes.list_passes(view_layer, False, components, extra)]
 
 
@@ -137,33 +137,33 @@ def test_each_component_has_the_passes_that_are_switched_on() -> None:
     assert named(layer(gradus_use_pass_component_motion=True), ("A",)) == ["Combined", "Path A Motion", "Path A Tracked"]
     assert named(layer(gradus_use_pass_component_index=True), ("A",)) == ["Combined", "Path A Object Index", "Path A Face Index"]
     assert named(layer(gradus_use_pass_components=True), ()) == ["Combined"]
-    wanted = passes.Extra(parts=frozenset((ComponentPass.NORMAL,)))
+    wanted = passes.ExtraPasses(component_planes=frozenset((ComponentPass.NORMAL,)))
     assert named(layer(), ("A",), wanted) == ["Combined", "Path A Normal"]
 
 
 def test_channels_and_names_of_parts_are_those_of_the_library() -> None:
     library = native.load()
-    assert [part.plane for part in passes.PARTS] == list(range(ComponentPass.PASS_COUNT))
-    for part in passes.PARTS:
+    assert [part.plane for part in passes.COMPONENT_TABLE] == list(range(ComponentPass.PASS_COUNT))
+    for part in passes.COMPONENT_TABLE:
         name, channels = ctypes.c_char_p(), ctypes.c_uint32()
         library.component_pass_info(part.plane, byref(name), byref(channels))
         assert (part.suffix.strip() or "Color", len(part.ids)) == ((name.value or b"").decode(), channels.value)
 
 
 def test_names_of_the_longest_component_fit_into_blender_s_64_bytes() -> None:
-    assert all(len(part.of("X" * 24).name) < 64 for part in passes.PARTS)
+    assert all(len(part.of("X" * 24).name) < 64 for part in passes.COMPONENT_TABLE)
 
 
 def test_color_of_a_component_is_not_taken_for_combined() -> None:
     """Both planes are number 0 of their kind."""
-    color, combined = passes.PARTS[0].of("Diffuse"), passes.TABLE[0]
+    color, combined = passes.COMPONENT_TABLE[0].of("Diffuse"), passes.TABLE[0]
     assert color.plane not in frozenset((Pass.COMBINED,))
     assert (passes.mask([color]), passes.component_mask([color])) == (0, 1)
     assert (passes.mask([combined]), passes.component_mask([combined])) == (1, 0)
 
 
 def test_motion_is_what_needs_the_moments_around_the_frame() -> None:
-    parts = [part.of("A") for part in passes.PARTS]
+    parts = [part.of("A") for part in passes.COMPONENT_TABLE]
     assert [info.name for info in (*passes.TABLE, *parts) if info.is_motion] == [
         "Vector", "Path A Motion", "Path A Tracked", "Path A Irradiance Motion", "Path A Irradiance Tracked"
     ]  # fmt: skip

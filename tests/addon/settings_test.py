@@ -176,5 +176,5 @@ def test_the_manual_lists_every_setting_with_its_default() -> None:
 
 def test_the_manual_lists_every_pass_of_a_component() -> None:
     manual = (Path(__file__).resolve().parents[2] / "docs" / "user-guide.md").read_text()
-    for part in passes.PARTS:
+    for part in passes.COMPONENT_TABLE:
         assert f"| `Path NAME{part.suffix}` | `component_{part.plane.name.lower()}` |" in manual

@@ -7,10 +7,10 @@ from gradus.ui import stock
 
 
 def test_predicate() -> None:
-    assert stock.joins("RENDER_PT_output", {"BLENDER_RENDER", "CYCLES"})
-    assert not stock.joins("RENDER_PT_output", {"CYCLES"})
-    assert not stock.joins("DATA_PT_light", {"BLENDER_RENDER"})
-    assert stock.joins("DATA_PT_camera_dof", {"BLENDER_EEVEE"})
+    assert stock.is_shown("RENDER_PT_output", {"BLENDER_RENDER", "CYCLES"})
+    assert not stock.is_shown("RENDER_PT_output", {"CYCLES"})
+    assert not stock.is_shown("DATA_PT_light", {"BLENDER_RENDER"})
+    assert stock.is_shown("DATA_PT_camera_dof", {"BLENDER_EEVEE"})
 
 
 def test_every_entry_has_a_reason() -> None:

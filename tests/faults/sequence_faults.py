@@ -421,7 +421,7 @@ SEQUENCES = (
         HOST,
         "the scene stays at the last frame that was sampled",
         ANIMATION,
-        "    finally:\n        show(own)\n",
+        "    finally:\n        go_to(own)\n",
         "    finally:\n        pass\n",
         (animation("files_of_frames_are_saved"),),
     ),

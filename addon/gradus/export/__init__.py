@@ -1,4 +1,4 @@
-"""From Blender's depsgraph to the C API, one module for each kind of data."""
+"""Export of Blender's depsgraph to the C API, with one module for each kind of data."""
 
 from __future__ import annotations
 

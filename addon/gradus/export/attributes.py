@@ -33,20 +33,24 @@ class AttributeArrays:
 
 
 def default_uv(mesh: Any) -> str:
-    """Name of the UV map that renders take; geometry nodes deliver maps as plain attributes, so the first of those stands in."""
+    """Returns the name of the UV map that is active for renders.
+
+    Geometry nodes output UV maps as plain attributes: if there are no UV maps, the first such attribute is used.
+    """
     for layer in mesh.uv_layers:
         if layer.active_render:
             return layer.name
     if len(mesh.uv_layers):
         return mesh.uv_layers[0].name
     for attribute in mesh.attributes:
-        if attribute.domain == "CORNER" and attribute.data_type == "FLOAT2" and not attribute.name.startswith("."):
+        is_uv = attribute.domain == "CORNER" and attribute.data_type == "FLOAT2"
+        if is_uv and not attribute.name.startswith("."):
             return attribute.name
     return ""
 
 
 def default_color(mesh: Any) -> str:
-    """Name of the colour attribute that renders take, for nodes that name none."""
+    """Returns the name of the colour attribute that is active for renders."""
     layers = mesh.color_attributes
     index = layers.render_color_index
     return layers[index].name if 0 <= index < len(layers) else ""
@@ -70,7 +74,10 @@ def _read_generic(attribute: Any, name: str) -> AttributeArrays | None:
 
 
 def read_attributes(mesh: Any, wanted: frozenset[str] | None, uv_name: str) -> list[AttributeArrays]:
-    """Those attributes of `mesh` that are wanted (None = all), and the UV map that renders take. The name "" asks for the render colour."""
+    """Returns the attributes of a mesh whose names are in `wanted` (None for all), and the UV map `uv_name`.
+
+    The name "" stands for the colour attribute that is active for renders.
+    """
     found = []
     uv_layers = {layer.name: layer for layer in mesh.uv_layers}
     for name, layer in uv_layers.items():
@@ -95,7 +102,7 @@ def read_attributes(mesh: Any, wanted: frozenset[str] | None, uv_name: str) -> l
 
 
 def fill_attributes(arrays: list[AttributeArrays]) -> Any:
-    """A ctypes array of native Attributes, or None."""
+    """Returns a ctypes array of native Attributes, or None."""
     return native.struct_array(
         native.Attribute,
         (

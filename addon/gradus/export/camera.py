@@ -1,7 +1,7 @@
-"""Cameras: Blender's sensor, fit and shift to the window of the full frame on the plane at distance 1.
+"""Cameras. Blender's sensor, fit and shift become the window of the full frame on the plane at distance 1.
 
-The formula is the one that Blender's `object.calc_matrix_camera` follows; tests/addon compares both. Shift moves the
-window, so the axis appears at minus the shift.
+The formula equals that of Blender's `object.calc_matrix_camera`. Shift moves the window, so the view axis appears at
+minus the shift.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from .shutter import Shutter
 
 _PERSPECTIVE, _ORTHOGRAPHIC, _PANORAMA = native.CameraType
 _MIN_FSTOP = 1e-5
-_DEFAULT_LENS = 35.0  # mm; what Blender takes for objects that are no camera
+_DEFAULT_LENS = 35.0  # mm, for objects that are not cameras, as in Blender
 _DEFAULT_SENSOR = 36.0  # mm
 _FAR = 1e30
 
 
 @dataclass(frozen=True)
 class ViewOverride:
-    """A view that is no camera object: the viewport's."""
+    """The view of a viewport, which is not a camera object."""
 
     matrix: tuple[float, ...]  # 16, column-major, view to world, without scale
     window: tuple[float, float, float, float]  # left, right, bottom, top; as GradusCamera.window
@@ -38,8 +38,10 @@ class ViewOverride:
     projection: panorama.Projection | None = None
 
     @classmethod
-    def from_view(cls, view_matrix: Any, window_matrix: Any, clip: tuple[float, float], width: int, height: int) -> ViewOverride:
-        """From the matrices of a `region_data`: inverting the projection is exact for every mode of the viewport."""
+    def from_view(
+        cls, view_matrix: Any, window_matrix: Any, clip: tuple[float, float], width: int, height: int
+    ) -> ViewOverride:
+        """Derives the view from the matrices of a `region_data`, which is exact in every mode of the viewport."""
         projection = window_matrix
         m00, m11 = projection[0][0], projection[1][1]
         if projection[3][2] != 0.0:  # perspective: clip.w = -z
@@ -48,7 +50,7 @@ class ViewOverride:
             kind, x, y = "ORTHO", -projection[0][3], -projection[1][3]
         window = ((x - 1.0) / m00, (x + 1.0) / m00, (y - 1.0) / m11, (y + 1.0) / m11)
         if kind == "ORTHO" and clip[0] > 0.0:
-            # The viewport's orthographic view sees what is behind its origin, too.
+            # The orthographic view of the viewport also shows objects behind its origin.
             clip = (-clip[1], clip[1])
         return cls(tuple(matrix_values(view_matrix.inverted().normalized())), window, kind, clip, width, height)
 
@@ -56,9 +58,12 @@ class ViewOverride:
     def from_panorama(
         cls, data: Any, view_matrix: Any, frame: tuple[float, float, float, float], render: Any, size: tuple[int, int]
     ) -> ViewOverride:
-        """Through a panoramic camera. frame: left, bottom, right, top of its frame in pixels of the view."""
+        """Returns the view through a panoramic camera.
+
+        frame: left, bottom, right, top of the camera's frame in pixels of the view.
+        """
         left, bottom, right, top = frame
-        part = (
+        section = (
             -left / (right - left),
             (size[0] - left) / (right - left),
             -bottom / (top - bottom),
@@ -66,23 +71,23 @@ class ViewOverride:
         )
         aspect = (render.pixel_aspect_x, render.pixel_aspect_y)
         shift = (data.shift_x, data.shift_y)
-        window = panorama.window(data, shift, (render.resolution_x, render.resolution_y), aspect, part)
+        window = panorama.window(data, shift, (render.resolution_x, render.resolution_y), aspect, section)
         matrix = tuple(matrix_values(view_matrix.inverted().normalized()))
         return cls(matrix, window, "PANO", (data.clip_start, data.clip_end), *size, panorama.Projection.of(data))
 
 
 @dataclass(frozen=True)
 class Eye:
-    """Of spherical stereo: how far it lies to the right of the camera; 0: in it."""
+    """An eye of spherical stereo."""
 
-    offset: float = 0.0
+    offset: float = 0.0  # distance from the camera to the right
     convergence_distance: float = 0.0
     pole_merge: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass
 class CameraState:
-    """A camera at one moment."""
+    """A camera at one time."""
 
     matrix: tuple[float, ...]
     window: tuple[float, float, float, float]
@@ -100,9 +105,10 @@ class CameraState:
 def frame_window(
     extent: float, fit: str, shift: tuple[float, float], width: int, height: int, aspect: tuple[float, float]
 ) -> tuple[float, float, float, float]:
-    """Left, right, bottom, top of the frame. extent: size of the fitted side at distance 1 (sensor/lens), or ortho_scale in metres.
+    """Returns left, right, bottom, top of the frame.
 
-    fit: HORIZONTAL or VERTICAL; aspect: the pixel's, x and y.
+    extent: size of the fitted side at distance 1 (sensor / lens), or ortho_scale in metres. fit: HORIZONTAL or
+    VERTICAL. aspect: width and height of a pixel.
     """
     pixel_height = aspect[1] / aspect[0]
     view = width if fit == "HORIZONTAL" else pixel_height * height
@@ -113,14 +119,14 @@ def frame_window(
 
 
 def resolve_fit(fit: str, width: int, height: int, aspect: tuple[float, float]) -> str:
-    """AUTO fits the longer side of the frame."""
+    """Returns HORIZONTAL or VERTICAL. AUTO fits the longer side of the frame."""
     if fit != "AUTO":
         return fit
     return "HORIZONTAL" if width * aspect[0] >= height * aspect[1] else "VERTICAL"
 
 
 def _focus_distance(dof: Any, matrix: Any) -> float:
-    """Along the view axis."""
+    """Returns the distance to the focus along the view axis."""
     if dof.focus_object is None:
         return dof.focus_distance
     target = dof.focus_object.matrix_world
@@ -136,7 +142,8 @@ def _set_depth_of_field(state: CameraState, data: Any, matrix: Any) -> None:
     if not dof.use_dof:
         return
     fstop = max(dof.aperture_fstop, _MIN_FSTOP)
-    state.aperture_radius = 0.5 / fstop if data.type == "ORTHO" else data.lens * 1e-3 / (2.0 * fstop)
+    focal_length = 1.0 if data.type == "ORTHO" else data.lens * 1e-3  # m
+    state.aperture_radius = focal_length / (2.0 * fstop)
     state.focus_distance = max(_focus_distance(dof, matrix), 1e-5)
     state.blades = dof.aperture_blades
     state.blade_rotation = dof.aperture_rotation
@@ -144,9 +151,10 @@ def _set_depth_of_field(state: CameraState, data: Any, matrix: Any) -> None:
 
 
 def _camera_matrix(camera: Any, engine: Any, scene: Any) -> Any:
-    """Camera to world without scale; the eye's own in a stereo render."""
+    """Returns camera to world without scale, for the current eye of a stereo render."""
     if engine is not None and scene.render.use_multiview:
-        return engine.camera_model_matrix(camera, use_spherical_stereo=engine.use_spherical_stereo(camera)).normalized()
+        is_spherical = engine.use_spherical_stereo(camera)
+        return engine.camera_model_matrix(camera, use_spherical_stereo=is_spherical).normalized()
     return camera.matrix_world.normalized()
 
 
@@ -172,24 +180,25 @@ def _eye(camera: Any, engine: Any, scene: Any) -> Eye:
 def _refuse_unknown(camera: Any) -> None:
     data = camera.data
     if data.type == "CUSTOM":
-        raise ExportError(f"Camera '{camera.name}' is custom: Gradus runs no camera shaders")
+        raise ExportError(f"Camera '{camera.name}' is of type Custom: Gradus does not support camera shaders")
     if data.type == "PANO" and not panorama.is_known(data):
-        raise ExportError(f"Camera '{camera.name}' has a panorama type that Gradus does not know")
+        raise ExportError(f"Camera '{camera.name}' has a panorama type that Gradus does not support")
 
 
 def camera_state(camera: Any, scene: Any, width: int, height: int, engine: Any = None) -> CameraState:
-    """The state of a camera object (or a lamp or empty that the scene looks through) at the evaluated frame."""
+    """Returns the state of a camera at the evaluated frame. `camera` may be any object that is the scene's camera."""
     aspect = (scene.render.pixel_aspect_x, scene.render.pixel_aspect_y)
     matrix = _camera_matrix(camera, engine, scene)
     values = tuple(matrix_values(matrix))
     if not all(map(math.isfinite, values)):
-        raise ExportError(f"Camera '{camera.name}' has no place: its matrix is not finite")
+        raise ExportError(f"Camera '{camera.name}' cannot be used: its matrix is not finite")
     if camera.type != "CAMERA":
         lens = _DEFAULT_LENS
         if camera.type == "LIGHT" and camera.data.type == "SPOT":
             lens = 16.0 / max(math.tan(0.5 * camera.data.spot_size), 1e-6)
         fit = resolve_fit("AUTO", width, height, aspect)
-        return CameraState(values, frame_window(_DEFAULT_SENSOR / lens, fit, (0.0, 0.0), width, height, aspect), clip=(0.1, _FAR))
+        window = frame_window(_DEFAULT_SENSOR / lens, fit, (0.0, 0.0), width, height, aspect)
+        return CameraState(values, window, clip=(0.1, _FAR))
     data = camera.data
     _refuse_unknown(camera)
     shift = (_shift_x(camera, engine, scene), data.shift_y)
@@ -215,7 +224,7 @@ def _flat_window(
 
 
 def view_state(view: ViewOverride) -> CameraState:
-    """The state of the viewport."""
+    """Returns the camera state of a viewport."""
     kind = {"PERSP": _PERSPECTIVE, "ORTHO": _ORTHOGRAPHIC, "PANO": _PANORAMA}[view.type]
     return CameraState(tuple(view.matrix), view.window, kind, view.clip, projection=view.projection)
 
@@ -227,9 +236,10 @@ def fill_camera(
     shutter: Shutter | None = None,
     keys: Sequence[CameraState] = (),
 ) -> tuple[native.Camera, list[Any]]:
-    """A native Camera, and what must stay alive until it has been copied; without other moments it is at rest.
+    """Returns a native Camera, and the objects that must stay alive until the library has copied it.
 
-    keys: the camera while the shutter is open.
+    previous, following: the camera one frame before and after; None if it is static. keys: the camera while the shutter
+    is open.
     """
     struct = native.Camera()
     previous = previous or now
@@ -262,5 +272,6 @@ def fill_camera(
     struct.shutter_curve_count = len(shutter.curve or ())
     struct.shutter_curve = native.pointer(shutter.curve)
     struct.shutter_key_count = len(keys)
-    struct.shutter_matrices, struct.shutter_windows = native.pointer(matrices or None), native.pointer(windows or None)
+    struct.shutter_matrices = native.pointer(matrices or None)
+    struct.shutter_windows = native.pointer(windows or None)
     return struct, [shutter, matrices, windows]

@@ -1,7 +1,8 @@
-"""Everything that the depsgraph shows, collected in one pass: one loop for objects, matrices in one bulk read.
+"""Collects everything that the depsgraph shows: one loop over the instances, and one bulk read of their matrices.
 
-Blender's wrappers die after the loop step, so each entry copies what it needs. Evaluated objects and data stay valid until the next
-evaluation; what is needed after that (addresses, names, keys of materials) is copied, too.
+Blender's wrapper of an instance is valid only during its step of the loop, so each entry copies what it needs.
+Evaluated objects and data stay valid until the next evaluation. Addresses, names and material keys are copied, because
+they are needed after that.
 """
 
 from __future__ import annotations
@@ -11,11 +12,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from . import left_out, shadow_terminator
+from . import shadow_terminator, unsupported
 from .arrays import read
 from .may_move import MayMove
 from .object_random import name_hash
-from .shutter import SHARP, Blur, blur_of
+from .shutter import NO_BLUR, Blur, blur_of
 from .visibility import ALL_RAYS, MAY_MOVE, visibility
 
 InstanceKey = tuple[int, ...]
@@ -23,20 +24,20 @@ InstanceKey = tuple[int, ...]
 
 @dataclass(slots=True)
 class Entry:
-    """One instance of a geometry, or a lamp."""
+    """One instance of a geometry, or one light."""
 
     index: int  # in depsgraph.object_instances
-    key: InstanceKey  # stable over frames
-    object: Any  # evaluated object that owns what is shown
+    key: InstanceKey  # the same in all frames
+    object: Any  # the evaluated object that owns the data
     data: Any  # evaluated mesh or light
-    place: int  # what is shown, by address: equal for instances that share it, within one evaluation
+    data_address: int  # equal for instances that share their data, within one evaluation
     name: str
     visibility: int
     random_id: int
     pass_index: int
     color: tuple[float, ...]
     shadow_terminator_offset: float
-    blur: Blur = SHARP
+    blur: Blur = NO_BLUR
     generated: tuple[float, ...] = (0.0, 0.0, 0.0)
     uv: tuple[float, ...] = (0.0, 0.0)
     materials: tuple[Any, ...] = ()
@@ -45,16 +46,19 @@ class Entry:
 
 @dataclass
 class Collected:
-    """What object_instances held, in its order."""
+    """The instances of a depsgraph, in its order."""
 
     matrices: array  # 16 per item of object_instances, column-major
     surfaces: list[Entry] = field(default_factory=list)
     lights: list[Entry] = field(default_factory=list)
-    left_out: list[str] = field(default_factory=list)  # warnings about what cannot be shown yet
+    unsupported: list[str] = field(default_factory=list)  # warnings about objects that are not rendered
 
 
 def slot_materials(obj: Any, data: Any, override: Any) -> tuple[Any, ...]:
-    """Materials by slot. Slots linked to the object win; geometry nodes set theirs on the evaluated mesh only."""
+    """Returns materials by slot. Slots linked to the object override those of the data.
+
+    Geometry nodes set materials on the evaluated mesh only, so slots without an object link are read from there.
+    """
     slots = obj.material_slots
     stored = getattr(data, "materials", ())
     count = max(len(slots), len(stored))
@@ -62,7 +66,8 @@ def slot_materials(obj: Any, data: Any, override: Any) -> tuple[Any, ...]:
         return (override,) * max(count, 1)
     materials = []
     for index in range(count):
-        if index < len(slots) and (slots[index].link == "OBJECT" or index >= len(stored)):
+        is_of_object = index < len(slots) and (slots[index].link == "OBJECT" or index >= len(stored))
+        if is_of_object:
             materials.append(slots[index].material)
         else:
             materials.append(stored[index])
@@ -70,8 +75,8 @@ def slot_materials(obj: Any, data: Any, override: Any) -> tuple[Any, ...]:
 
 
 @dataclass(slots=True)
-class _Facts:
-    """What all instances that one instancer makes of one object share."""
+class _ObjectProperties:
+    """Properties that all instances of one object by one instancer share."""
 
     key: InstanceKey
     visibility: int
@@ -82,50 +87,52 @@ class _Facts:
     blur: Blur
 
 
-class _Parts:
-    """Facts of objects, each looked up once: most of an export of many instances is this loop."""
+class _ObjectCache:
+    """Properties and materials of objects, each read once, because scenes may have many instances of few objects."""
 
     def __init__(self, view_layer: Any, warnings: list[str], may_move: MayMove | None) -> None:
         self._view_layer = view_layer
         self._may_move = may_move
         self._warnings = warnings
         self._override = view_layer.material_override
-        self._facts: dict[tuple[int, int], _Facts] = {}
+        self._properties: dict[tuple[int, int], _ObjectProperties] = {}
         self._materials: dict[tuple[int, int], tuple[Any, ...]] = {}
         self.has_node_instances = False
 
-    def facts(self, obj: Any, owner: Any, parent: Any) -> _Facts:
-        place = (owner.as_pointer(), parent.as_pointer() if parent is not None else 0)
-        found = self._facts.get(place)
+    def properties(self, obj: Any, owner: Any, parent: Any) -> _ObjectProperties:
+        evaluated = (owner.as_pointer(), parent.as_pointer() if parent is not None else 0)
+        found = self._properties.get(evaluated)
         if found is None:
-            # Originals: a new depsgraph, as each frame of an animation may have, has other evaluated addresses.
+            # The key has addresses of original objects, because those of evaluated objects differ between depsgraphs.
             key = (owner.original.as_pointer(), parent.original.as_pointer() if parent is not None else 0)
             bits = visibility(obj, parent, self._view_layer)
             if self._may_move is not None and obj.type == "MESH" and self._may_move(owner, parent):
                 bits |= MAY_MOVE
-            terminator = shadow_terminator.geometry_offset(obj)
-            found = self._facts[place] = _Facts(key, bits, owner.name, obj.pass_index, tuple(obj.color), terminator, blur_of(owner, parent))
-            self._warnings.extend(left_out.of_object(owner, self._view_layer))
+            offset = shadow_terminator.geometry_offset(obj)
+            blur = blur_of(owner, parent)
+            found = _ObjectProperties(key, bits, owner.name, obj.pass_index, tuple(obj.color), offset, blur)
+            self._properties[evaluated] = found
+            self._warnings.extend(unsupported.of_object(owner, self._view_layer))
             if parent is not None:
                 self.has_node_instances |= any(modifier.type == "NODES" for modifier in parent.modifiers)
         return found
 
-    def materials(self, obj: Any, data: Any, place: tuple[int, int]) -> tuple[Any, ...]:
-        found = self._materials.get(place)
+    def materials(self, obj: Any, data: Any, key: tuple[int, int]) -> tuple[Any, ...]:
+        found = self._materials.get(key)
         if found is None:
-            found = self._materials[place] = slot_materials(obj, data, self._override)
+            found = self._materials[key] = slot_materials(obj, data, self._override)
         return found
 
 
 def collect(depsgraph: Any, poll: Callable[[], None], may_move: MayMove | None = None) -> Collected:
-    """All visible surfaces and lamps of the depsgraph at its frame. may_move: hints for the surfaces; None: without any.
+    """Returns all visible surfaces and lights of the depsgraph at its frame.
 
-    Curves, text, surfaces and metaballs come twice: as themselves, and as an instance that shows the mesh which Blender made of
-    them (3.4 to 5.0). Only the latter has a surface.
+    may_move: predicts which surfaces move, or None. Blender 3.4 to 5.0 lists curves, text, surfaces and metaballs
+    twice: as themselves, and as an instance of the mesh that it made of them. Only the latter is exported.
     """
     instances = depsgraph.object_instances
     collected = Collected(array("f"))
-    parts = _Parts(depsgraph.view_layer_eval, collected.left_out, may_move)
+    cache = _ObjectCache(depsgraph.view_layer_eval, collected.unsupported, may_move)
     surfaces = depsgraph.view_layer_eval.use_solid
     for index, instance in enumerate(instances):
         if index & 255 == 0:
@@ -136,20 +143,20 @@ def collect(depsgraph: Any, poll: Callable[[], None], may_move: MayMove | None =
         kind = obj.type
         is_light = kind == "LIGHT"
         if is_light or (kind == "MESH" and surfaces):
-            entry = _entry(index, instance, obj, is_light, parts)
+            entry = _entry(index, instance, obj, is_light, cache)
             if entry is not None:
                 (collected.lights if is_light else collected.surfaces).append(entry)
-        elif kind in left_out.KINDS:
-            collected.left_out.append(left_out.of_kind(obj.name, kind))
-    collected.matrices = _matrices(instances, parts.has_node_instances)
+        elif kind in unsupported.KINDS:
+            collected.unsupported.append(unsupported.of_kind(obj.name, kind))
+    collected.matrices = _matrices(instances, cache.has_node_instances)
     return collected
 
 
 def _matrices(instances: Any, one_by_one: bool) -> array:
-    """The matrices of all instances, column-major.
+    """Returns the matrices of all instances in column-major order.
 
-    foreach_get never frees 244 bytes for each instance that geometry nodes made (Blender 3.4 and 4.5). That is too much over an
-    animation, so such scenes are read one by one, five times slower.
+    In Blender 3.4 and 4.5, foreach_get leaks 244 bytes for each instance of geometry nodes, which is too much in an
+    animation. Such scenes are read one by one, which takes five times as long.
     """
     if not one_by_one:
         return read(instances, "matrix_world", "f", 16)
@@ -160,41 +167,41 @@ def _matrices(instances: Any, one_by_one: bool) -> array:
     return values
 
 
-def _entry(index: int, instance: Any, obj: Any, is_light: bool, parts: _Parts) -> Entry | None:
+def _entry(index: int, instance: Any, obj: Any, is_light: bool, cache: _ObjectCache) -> Entry | None:
     copies = instance.is_instance
     owner = instance.instance_object if copies else obj
-    facts = parts.facts(obj, owner, instance.parent if copies else None)
+    properties = cache.properties(obj, owner, instance.parent if copies else None)
     data = obj.data
-    if facts.visibility & ALL_RAYS == 0 or data is None or (is_light and _is_portal(data)):
+    if properties.visibility & ALL_RAYS == 0 or data is None or (is_light and _is_portal(data)):
         return None
-    place = data.as_pointer()
+    address = data.as_pointer()
     if copies:
-        key = facts.key + tuple(instance.persistent_id)
+        key = properties.key + tuple(instance.persistent_id)
         random_id = instance.random_id & 0xFFFFFFFF
     else:
-        key, random_id = facts.key, name_hash(facts.name)
+        key, random_id = properties.key, name_hash(properties.name)
     entry = Entry(
         index,
         key,
         owner,
         data,
-        place,
-        facts.name,
-        facts.visibility,
+        address,
+        properties.name,
+        properties.visibility,
         random_id,
-        facts.pass_index,
-        facts.color,
-        facts.shadow_terminator_offset,
-        facts.blur,
+        properties.pass_index,
+        properties.color,
+        properties.shadow_terminator_offset,
+        properties.blur,
     )
     if copies:
         entry.generated = tuple(instance.orco)
         entry.uv = tuple(instance.uv)
     if not is_light:
-        entry.materials = parts.materials(obj, data, (facts.key[0], place))
+        entry.materials = cache.materials(obj, data, (properties.key[0], address))
     return entry
 
 
 def _is_portal(data: Any) -> bool:
-    """Portals of Cycles guide its sampling and shine on nothing."""
+    """Returns whether a light is a portal of Cycles, which guides sampling and emits nothing."""
     return bool(getattr(getattr(data, "cycles", None), "is_portal", False))

@@ -1,5 +1,8 @@
-"""One sync: everything of the rendered frame is read first, then (for vectors and motion blur) the moments around it, then instances and
-cameras are set."""
+"""Export of one frame.
+
+Everything of the rendered frame is read first, then the times around it for vectors and motion blur. Instances and
+cameras are set last.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from typing import Any
 import bpy
 
 from .. import compat, native
-from . import camera, instances, left_out, light, mesh, motion, world
+from . import camera, instances, light, mesh, motion, unsupported, world
 from .collect import Collected, Entry, InstanceKey, collect
 from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
 from .material import Materials, Resources
@@ -19,13 +22,16 @@ from .may_move import MayMove
 from .mesh import MeshArrays
 from .motion import Deforming, Shape
 from .report import ExportReport, Poll, Warnings
-from .shutter import SHARP, blur_of, shutter_of
+from .shutter import NO_BLUR, blur_of, shutter_of
 from .target import Target
 from .views import States, cameras_of, states_of
 
 
 class Exporter:
-    """Keeps a native scene equal to Blender's; what did not change since the last sync is not set again."""
+    """Keeps a native scene equal to Blender's scene.
+
+    Objects that are unchanged since the last sync are not set again.
+    """
 
     def __init__(self, library: Any, scene_handle: int) -> None:
         self._target = Target(library, scene_handle)
@@ -45,17 +51,20 @@ class Exporter:
         vectors: bool | None = None,
         views: Sequence[str] = ("",),
     ) -> ExportReport:
-        """Sets all that the depsgraph shows at its frame. Raises ExportError (text for the user) and Cancelled.
+        """Sets everything that the depsgraph shows at its frame.
 
-        view: the viewport's, in place of the camera; then and in previews there is no motion.
-        vectors: whether the Vector pass is wanted; None: where the view layer has it.
-        views: of multi-view. The first is set; show_view sets another.
+        Raises ExportError (with a text for the user) and Cancelled.
+
+        view: the view of a viewport, which replaces the camera. Viewports and previews have no motion. vectors: whether
+        the Vector pass is computed; None: if it is enabled in the view layer. views: views of multi-view. The first one
+        is set; show_view() sets another.
         """
         start = time.perf_counter()
         wants_vectors = depsgraph.view_layer_eval.use_pass_vector if vectors is None else vectors
-        wanted = motion.Wanted()
+        wanted = motion.MotionRequest()
         if view is None and not is_preview:
-            wanted = motion.Wanted(wants_vectors, shutter_of(depsgraph.scene_eval, depsgraph.view_layer_eval))
+            shutter = shutter_of(depsgraph.scene_eval, depsgraph.view_layer_eval)
+            wanted = motion.MotionRequest(wants_vectors, shutter)
         run = _Sync(self, depsgraph, engine, view, wanted, views, Poll(cancelled))
         tables = ((KIND_MESH, self._meshes), (KIND_IMAGE, self._images), (KIND_MATERIAL, self._materials))
         for table in (self._ids, *(table for _, table in tables)):
@@ -64,23 +73,23 @@ class Exporter:
             run.run()
         except Exception:
             for _, table in tables:
-                table.distrust()
+                table.invalidate()
             raise
         self._ids.sweep()
         for kind, table in tables:
             for key in table.sweep():
                 self._target.remove(kind, key)
-        self._views = run.filled
+        self._views = run.cameras
         self.show_view(views[0])
         return ExportReport(*run.size, run.warnings.texts, time.perf_counter() - start)
 
     def show_view(self, view: str) -> None:
-        """Sets the camera of another view of the frame that was exported last: nothing else of it differs."""
+        """Sets the camera of another view of the last exported frame. The views share everything else."""
         struct, _keep = self._views[view]
         self._target.set_camera(struct)
 
     def sync_camera(self, depsgraph: Any, view: camera.ViewOverride) -> None:
-        """Sets the viewport's camera alone: for redraws in which nothing but the view changed."""
+        """Sets only the camera of a viewport, when nothing else has changed."""
         self._target.set_camera(camera.fill_camera(camera.view_state(view))[0])
 
 
@@ -93,7 +102,7 @@ class _Sync:
         depsgraph: Any,
         engine: Any,
         view: camera.ViewOverride | None,
-        wanted: motion.Wanted,
+        wanted: motion.MotionRequest,
         views: Sequence[str],
         poll: Poll,
     ) -> None:
@@ -108,10 +117,11 @@ class _Sync:
         self._scene = depsgraph.scene_eval
         self.size = self._resolution()
         self._wanted = wanted
-        resources = Resources(self._target, exporter._images, self._scene.frame_current, bpy.path.abspath, self.warnings)
+        frame = self._scene.frame_current
+        resources = Resources(self._target, exporter._images, frame, bpy.path.abspath, self.warnings)
         self._materials = Materials(self._target, exporter._materials, resources, poll, self.warnings)
         self._cameras = cameras_of(views, engine, self._scene) if view is None else {}
-        self.filled: dict[str, tuple[native.Camera, Any]] = {}  # the cameras, by view
+        self.cameras: dict[str, tuple[native.Camera, Any]] = {}  # by view
         self._deforming: dict[InstanceKey, Deforming] = {}
 
     def _resolution(self) -> tuple[int, int]:
@@ -125,12 +135,9 @@ class _Sync:
 
     def run(self) -> None:
         now = self._view_states()
-        # Where the moments around are read, they tell exactly what moves.
+        # No prediction is needed if the times around the frame are read, because they show what moves.
         collected = collect(self._depsgraph, self._poll, None if self._wanted.any() else MayMove())
-        for text in (
-            *left_out.of_scene(self._scene, self._depsgraph.view_layer_eval),
-            *collected.left_out,
-        ):
+        for text in (*unsupported.of_scene(self._scene, self._depsgraph.view_layer_eval), *collected.unsupported):
             self.warnings.add(text)
         for entry in collected.surfaces:
             entry.material_keys = self._materials.surface_keys(entry.materials)
@@ -151,16 +158,20 @@ class _Sync:
         return states_of(self._cameras, self._depsgraph, self._engine, self.size)
 
     def _fill_camera(self, view: str, now: camera.CameraState, moments: motion.Moments) -> None:
-        around = [motion.camera_at(view, moments[time]) for time in motion.AROUND] if self._wanted.vectors else [None, None]
+        around: list[camera.CameraState | None] = [None, None]
+        if self._wanted.vectors:
+            around = [motion.camera_at(view, moments[time]) for time in motion.NEIGHBORS]
         shutter = self._wanted.shutter
         keys = motion.camera_blur(view, self._cameras[view], now, shutter, moments) if shutter is not None else []
-        self.filled[view] = camera.fill_camera(now, *around, shutter, keys)
+        self.cameras[view] = camera.fill_camera(now, *around, shutter, keys)
 
     def _moments(self, collected: Collected) -> motion.Moments:
         if not self._wanted.any():
             return {}
-        times = self._wanted.times({*map(blur_of, self._cameras.values()), *(entry.blur for entry in collected.surfaces)})
-        return motion.read_moments(self._depsgraph, self._engine, times, self._deforming, self._cameras, self.size, self._poll)
+        blurs = {*map(blur_of, self._cameras.values()), *(entry.blur for entry in collected.surfaces)}
+        times = self._wanted.times(blurs)
+        arguments = (times, self._deforming, self._cameras, self.size, self._poll)
+        return motion.read_moments(self._depsgraph, self._engine, *arguments)
 
     def _add_motion(self, found: Deforming, moments: motion.Moments) -> None:
         arrays, shutter = found.arrays, self._wanted.shutter
@@ -170,16 +181,20 @@ class _Sync:
             return
         arrays.blur = motion.mesh_blur(found, shutter, moments)
         if motion.changes_topology(found, shutter, moments):
-            self.warnings.add(f"Object '{found.name}' changes its topology within the exposure: its deformation is not blurred")
+            problem = "changes its topology while the shutter is open: its deformation is not blurred"
+            self.warnings.add(f"Object '{found.name}' {problem}")
 
     # Meshes
 
     def _shape(self, entry: Entry) -> Shape:
-        """What the instances that share a mesh in the picture have in common. Without a shutter, all of the same mesh share it."""
-        return entry.place, entry.blur if self._wanted.shutter is not None else SHARP
+        """Returns the key of a mesh and its motion blur. Instances with equal keys share a native mesh."""
+        return entry.data_address, entry.blur if self._wanted.shutter is not None else NO_BLUR
 
     def _read_meshes(self, collected: Collected) -> dict[Shape, int]:
-        """Keys by shape; those of deforming meshes follow when the frames around have been read."""
+        """Returns keys of meshes by shape.
+
+        Keys of deforming meshes are 0 until the times around the frame have been read.
+        """
         keys: dict[Shape, int] = {}
         deforming: dict[Shape, Deforming] = {}
         wanted = frozenset(self._materials.attribute_names)
@@ -201,7 +216,8 @@ class _Sync:
         original = entry.object.original
         undeformed = None
         has_shape_keys = getattr(original.data, "shape_keys", None) is not None
-        if original.type == "MESH" and (original.modifiers or has_shape_keys or motion.is_deformed_by_parent(original)):
+        may_deform = original.modifiers or has_shape_keys or motion.is_deformed_by_parent(original)
+        if original.type == "MESH" and may_deform:
             undeformed = original.data
         if len(entry.data.polygons) == 0:
             return None
@@ -210,7 +226,8 @@ class _Sync:
         if self._wanted.vectors:
             arrays.motion = motion.velocity_motion(entry.data, arrays, frames_per_second)
         if self._wanted.shutter is not None:
-            arrays.blur = motion.velocity_blur(entry.data, arrays, entry.blur, self._wanted.shutter, frames_per_second)
+            shutter = self._wanted.shutter
+            arrays.blur = motion.velocity_blur(entry.data, arrays, entry.blur, shutter, frames_per_second)
         return arrays
 
     def _set_mesh(self, arrays: MeshArrays) -> int:
@@ -224,7 +241,7 @@ class _Sync:
         mesh_keys = [mesh_of[self._shape(entry)] for entry in collected.surfaces]
         arrays = instances.instance_arrays(collected, mesh_keys, self._ids.key)
         if self._wanted.vectors:
-            around = (moments[time] for time in motion.AROUND)
+            around = (moments[time] for time in motion.NEIGHBORS)
             arrays.previous, arrays.following = (self._matrices_at(arrays.entries, moment) for moment in around)
         if self._wanted.shutter is not None:
             arrays.blur = motion.instance_blur(arrays.entries, arrays.matrices, self._wanted.shutter, moments)
@@ -232,6 +249,8 @@ class _Sync:
         self._target.set_instances(struct)
 
     def _matrices_at(self, entries: list[Entry], moment: motion.Moment) -> array:
+        """Returns the matrices of instances at another time, NaN for those that are missing or replaced."""
+
         def is_another_mesh(entry: Entry) -> bool:
             found = self._deforming.get(entry.key)
             return found is not None and found.shape in moment.other_topology and not found.by_velocity
@@ -241,7 +260,8 @@ class _Sync:
     # Lights and the world
 
     def _set_lights(self, collected: Collected) -> None:
-        records = native.struct_array(native.Light, (self._light(entry, collected.matrices) for entry in collected.lights))
+        lights = (self._light(entry, collected.matrices) for entry in collected.lights)
+        records = native.struct_array(native.Light, lights)
         self._target.set_lights(records, len(collected.lights))
 
     def _light(self, entry: Entry, matrices: array) -> native.Light:
@@ -269,6 +289,6 @@ class _Sync:
     def _set_world(self) -> None:
         layer = self._depsgraph.view_layer_eval
         found = getattr(layer, "world_override", None) or self._scene.world
-        # Without sky the layer has no world at all, as in Cycles: neither seen nor shining.
+        # Without sky the view layer has no world, which then is neither visible nor emits light, as in Cycles.
         key = self._materials.key(found, "WORLD") if layer.use_sky else 0
         self._target.set_world(world.fill_world(found, key))

@@ -1,7 +1,7 @@
-"""Images for the native library: paths where it can read the file itself, Blender's pixels where only Blender has them.
+"""Images for the native library.
 
-Blender would load a whole file into memory for `pixels` (an 8192 x 8192 byte image becomes 1.07 GB of floats), so
-files and packed data go as they are.
+The library decodes files and packed files itself. Blender's pixels are read only where no file has them, because
+Blender would then load the whole image into memory: an 8192 x 8192 byte image becomes 1.07 GB of floats.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ FILE, ENCODED, FLOAT, BYTE = range(4)
 STRAIGHT, PREMULTIPLIED, CHANNEL_PACKED, ALPHA_NONE = range(4)
 _ALPHA = {"STRAIGHT": STRAIGHT, "PREMUL": PREMULTIPLIED, "CHANNEL_PACKED": CHANNEL_PACKED, "NONE": ALPHA_NONE}
 
-# First bytes of the formats that the library reads itself: PNG, JPEG, TIFF (both byte orders, and BigTIFF), OpenEXR, Radiance.
+# First bytes of the formats that the library reads itself: PNG, JPEG, TIFF (both byte orders, and BigTIFF), OpenEXR,
+# Radiance.
 _READABLE = (b"\x89PNG", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*", b"II+\x00", b"MM\x00+", b"\x76\x2f\x31\x01", b"#?")
 _FLOAT_FORMATS = (b"\x76\x2f\x31\x01", b"#?")
 _SEQUENCE_NUMBER = re.compile(r"(\d+)(?!.*\d)")
@@ -49,7 +50,7 @@ class ImageState:
 
 
 def user_frame(user: Any, frame: int) -> int:
-    """Number of the file of a sequence at a scene frame, as Blender counts it."""
+    """Returns the number of the file of an image sequence at a scene frame, as in Blender."""
     length = user.frame_duration
     if length <= 0:
         return 0
@@ -62,7 +63,7 @@ def user_frame(user: Any, frame: int) -> int:
 
 
 def sequence_path(path: str, number: int) -> str:
-    """`path` with its last number replaced, as many digits at least."""
+    """Returns `path` with its last number replaced. The number keeps its digits at least."""
     folder, name = os.path.split(path)
     match = _SEQUENCE_NUMBER.search(name)
     if match is None:
@@ -72,7 +73,7 @@ def sequence_path(path: str, number: int) -> str:
 
 
 def tile_path(path: str, number: int) -> str:
-    """The file of a UDIM tile."""
+    """Returns the file of a UDIM tile."""
     u, v = (number - 1001) % 10 + 1, (number - 1001) // 10 + 1
     return path.replace("<UDIM>", str(number)).replace("<UVTILE>", f"u{u}_v{v}")
 
@@ -94,14 +95,14 @@ def _head(path: str) -> bytes:
 
 
 def _is_float(head: bytes) -> bool:
-    """Whether Blender would keep the file as floats."""
+    """Returns whether Blender stores the image as floats, by the first bytes of its file."""
     if head.startswith(b"\x89PNG") and len(head) > 24:
         return head[24] == 16  # bits per channel in the IHDR chunk
     return head.startswith(_FLOAT_FORMATS)
 
 
 def _pixels(image: Any, number: int) -> TileState | None:
-    """Blender's own pixels: float RGBA, bottom row first; of tiled images the first tile only."""
+    """Returns Blender's own pixels: float RGBA, bottom row first. Tiled images have pixels of the first tile only."""
     width, height = image.size
     if width == 0 or height == 0:
         return None
@@ -113,7 +114,7 @@ def _pixels(image: Any, number: int) -> TileState | None:
 
 
 def _to_rgba(values: Any, channels: int) -> Any:
-    """Grey is repeated, a missing alpha is 1."""
+    """Returns RGBA pixels. Grey becomes red, green and blue, and a missing alpha becomes 1."""
     count = len(values) // channels
     rgba = type(values)("f", [1.0]) * (4 * count)
     for channel in range(3):
@@ -122,7 +123,7 @@ def _to_rgba(values: Any, channels: int) -> Any:
 
 
 def _packed_data(image: Any, number: int) -> bytes | None:
-    """Bytes of the packed file; of the tile with that number."""
+    """Returns the bytes of the packed file of a tile, or None."""
     if number == 0 and image.packed_file is not None:
         return bytes(image.packed_file.data)
     for packed in image.packed_files:
@@ -132,9 +133,9 @@ def _packed_data(image: Any, number: int) -> bytes | None:
 
 
 def _file_tile(image: Any, path: str, number: int, allow_pixels: bool) -> tuple[TileState, bool]:
-    """A tile from packed data or a file, and whether it is stored as float.
+    """Returns a tile from packed data or a file, and whether it is stored as floats.
 
-    A missing file goes as FILE: the native side warns with its path.
+    A missing file is passed on as FILE, so that the library warns of its path.
     """
     packed = _packed_data(image, number)
     head = packed[:32] if packed is not None else _head(path)
@@ -151,7 +152,8 @@ def _file_tile(image: Any, path: str, number: int, allow_pixels: bool) -> tuple[
 def _tiles(image: Any, user: Any, frame: int, abspath: Any) -> tuple[list[TileState], bool]:
     path = abspath(image.filepath, library=image.library) if image.filepath else ""
     if image.source == "TILED":
-        results = [_file_tile(image, tile_path(path, tile.number), tile.number, tile.number == 1001) for tile in image.tiles]
+        numbers = [tile.number for tile in image.tiles]
+        results = [_file_tile(image, tile_path(path, number), number, number == 1001) for number in numbers]
         return [tile for tile, _ in results], any(is_float for _, is_float in results)
     if image.source == "SEQUENCE" and user is not None:
         path = sequence_path(path, user_frame(user, frame))
@@ -165,7 +167,10 @@ def _tiles(image: Any, user: Any, frame: int, abspath: Any) -> tuple[list[TileSt
 
 
 def signature(image: Any, user: Any, frame: int, abspath: Any) -> tuple[Any, ...] | None:
-    """What identifies the content of files and packed data without reading them; None where Blender's pixels count."""
+    """Returns a value that identifies the content of files and packed data without reading them.
+
+    Returns None if only Blender has the pixels.
+    """
     if image.is_dirty or image.source not in {"FILE", "SEQUENCE", "TILED"}:
         return None
     path = abspath(image.filepath, library=image.library) if image.filepath else ""
@@ -179,13 +184,13 @@ def signature(image: Any, user: Any, frame: int, abspath: Any) -> tuple[Any, ...
 
 
 def image_state(image: Any, user: Any, frame: int, abspath: Any) -> ImageState:
-    """What the library needs of an image. user: the node's ImageUser or None; abspath: bpy.path.abspath."""
+    """Returns what the library needs of an image. user: the node's ImageUser or None; abspath: bpy.path.abspath."""
     tiles, is_float = _tiles(image, user, frame, abspath)
     settings = image.colorspace_settings
     space = "" if settings.is_data else settings.name
     alpha = _ALPHA.get(image.alpha_mode, STRAIGHT)
     if is_float and tiles[0].source == FLOAT:
-        # Blender's float buffers are scene-linear with associated alpha already.
+        # Blender's float buffers are scene-linear with associated alpha.
         space = ""
         if alpha == STRAIGHT:
             alpha = PREMULTIPLIED
@@ -193,20 +198,20 @@ def image_state(image: Any, user: Any, frame: int, abspath: Any) -> ImageState:
 
 
 def content(state: ImageState) -> tuple[Any, ...]:
-    """Equal for equal content; files by path, time and size, data by hash."""
+    """Returns a value that is equal for equal content. Files are compared by path, time and size, data by a hash."""
     tiles = tuple(
-        (tile.source, tile.path, tile.number, tile.width, tile.height, tile.stamp, _digest(tile.data) if tile.data is not None else b"")
+        (tile.source, tile.path, tile.number, tile.width, tile.height, tile.stamp, _digest(tile.data))
         for tile in state.tiles
     )
     return (state.alpha_mode, state.color_space, state.is_float, tiles)
 
 
 def _digest(data: Any) -> bytes:
-    return hashlib.sha1(data, usedforsecurity=False).digest()
+    return b"" if data is None else hashlib.sha1(data, usedforsecurity=False).digest()
 
 
 def fill_image(state: ImageState) -> tuple[native.Image, list[Any]]:
-    """A native Image, and what must stay alive until it has been copied."""
+    """Returns a native Image, and the objects that must stay alive until the library has copied it."""
     records = native.struct_array(native.ImageTile, (native.ImageTile() for _ in state.tiles))
     for record, tile in zip(records, state.tiles, strict=True):
         record.number = tile.number

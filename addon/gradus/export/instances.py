@@ -1,4 +1,4 @@
-"""Instances as parallel arrays: meshes, matrices, material slots, and the facts that Object Info reads."""
+"""Instances as parallel arrays: meshes, matrices, material slots and values of Object Info."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .motion import InstanceBlur
 
 
 def _pick(values: array, entries: list[Entry]) -> array:
-    """The matrices of `entries` out of those of all instances."""
+    """Returns the matrices of `entries` from those of all instances."""
     if len(entries) * 16 == len(values):
         return values
     picked = array("f")
@@ -38,8 +38,10 @@ class InstanceArrays:
     blur: InstanceBlur | None = None
 
 
-def instance_arrays(collected: Collected, mesh_keys: list[int], instance_id: Callable[[InstanceKey], int]) -> InstanceArrays:
-    """Arrays of the surfaces whose mesh exists. mesh_keys: one for each surface, 0 = no mesh."""
+def instance_arrays(
+    collected: Collected, mesh_keys: list[int], instance_id: Callable[[InstanceKey], int]
+) -> InstanceArrays:
+    """Returns arrays of the surfaces that have a mesh. mesh_keys: the key of each surface's mesh, or 0."""
     entries = [entry for entry, key in zip(collected.surfaces, mesh_keys, strict=True) if key]
     arrays = InstanceArrays(
         entries=entries,
@@ -50,12 +52,12 @@ def instance_arrays(collected: Collected, mesh_keys: list[int], instance_id: Cal
         material_first=array("I"),
         material_count=array("I"),
     )
-    places: dict[tuple[int, ...], int] = {}
+    first_of_slots: dict[tuple[int, ...], int] = {}
     for entry in entries:
         slots = entry.material_keys
-        first = places.get(slots)
+        first = first_of_slots.get(slots)
         if first is None:
-            first = places[slots] = len(arrays.materials)
+            first = first_of_slots[slots] = len(arrays.materials)
             arrays.materials.extend(slots)
         arrays.material_first.append(first)
         arrays.material_count.append(len(slots))
@@ -63,7 +65,7 @@ def instance_arrays(collected: Collected, mesh_keys: list[int], instance_id: Cal
 
 
 def fill_instances(arrays: InstanceArrays) -> tuple[native.Instances, list[Any]]:
-    """A native Instances, and what must stay alive until it has been copied."""
+    """Returns a native Instances, and the objects that must stay alive until the library has copied it."""
     entries = arrays.entries
     struct = native.Instances()
     struct.count = len(entries)
@@ -87,7 +89,8 @@ def fill_instances(arrays: InstanceArrays) -> tuple[native.Instances, list[Any]]
         "materials": arrays.materials,
     }
     if arrays.blur is not None:
-        columns |= {"shutter_first": arrays.blur.first, "shutter_count": arrays.blur.count, "shutter_matrices": arrays.blur.matrices}
+        columns["shutter_first"], columns["shutter_count"] = arrays.blur.first, arrays.blur.count
+        columns["shutter_matrices"] = arrays.blur.matrices
         struct.shutter_size = len(arrays.blur.matrices) // 16
     for name, values in columns.items():
         setattr(struct, name, native.pointer(values))

@@ -1,7 +1,7 @@
 """64-bit keys of native objects, with mark and sweep.
 
-A token is anything hashable that says what the object is (a content hash, a pointer with a kind). Keys count up in
-order of first appearance, so that two runs of the same file give the same keys whatever Blender's addresses are.
+A token is a hashable value that identifies the object, such as a content hash or a pointer with a kind. Keys are
+numbered in the order of first appearance, so that they do not depend on Blender's addresses.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ KIND_MESH, KIND_IMAGE, KIND_MATERIAL = 0, 1, 2
 
 
 class KeyTable:
-    """Tokens of one kind to keys, over all syncs of an exporter."""
+    """Maps tokens of one kind to keys, over all syncs of an exporter."""
 
     def __init__(self) -> None:
         self._keys: dict[Hashable, int] = {}
@@ -21,11 +21,11 @@ class KeyTable:
         self._next = 1
 
     def begin(self) -> None:
-        """Starts a sync: nothing is used yet."""
+        """Starts a sync, in which no token is used yet."""
         self._used.clear()
 
     def key(self, token: Hashable) -> int:
-        """The key of a token, made at its first appearance, and marked as used."""
+        """Returns the key of a token and marks it as used. A new token gets a new key."""
         key = self._keys.get(token)
         if key is None:
             key = self._next
@@ -35,23 +35,23 @@ class KeyTable:
         return key
 
     def changed(self, key: int, content: Hashable) -> bool:
-        """Whether the native object of `key` must be set (again): its content differs from what was set before."""
+        """Returns whether the native object of `key` must be set, because its content differs from the last one."""
         if self._contents.get(key) == content:
             return False
         self._contents[key] = content
         return True
 
-    def distrust(self) -> None:
-        """After a failed call: everything is set anew by the next sync."""
+    def invalidate(self) -> None:
+        """Makes the next sync set all objects again, after a failed call."""
         self._contents = dict.fromkeys(self._contents)
 
     def sweep(self) -> list[int]:
-        """Ends a sync: drops all tokens that were not used, and returns the keys that the native side holds in vain."""
+        """Ends a sync: drops all tokens that were not used. Returns the keys of native objects that must be removed."""
         dead = [token for token, key in self._keys.items() if key not in self._used]
-        held = []
+        unused = []
         for token in dead:
             key = self._keys.pop(token)
             if key in self._contents:
                 del self._contents[key]
-                held.append(key)
-        return held
+                unused.append(key)
+        return unused

@@ -1,8 +1,8 @@
 """Lights in the units of the running Blender.
 
-What a watt means changed in Blender 4.0 (area lights by 4/pi, spots lost a cosine) and follows the running version,
-never the file: Blender converts old files when it loads them. Each factor is measured with Cycles in 3.4, 4.5 and
-5.0.
+The meaning of a watt changed in Blender 4.0: area lights changed by 4/pi, and spots lost a cosine. It depends on the
+running version and not on the file, because Blender converts old files when it loads them. All factors were measured
+with Cycles in 3.4, 4.5 and 5.0.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ NO_LIMIT = 0xFFFFFFFF
 
 @dataclass
 class LightState:
-    """A light without its place: what GradusLight holds."""
+    """The values of a GradusLight, without its matrix."""
 
     type: int
     strength: tuple[float, float, float]
@@ -34,7 +34,7 @@ class LightState:
 
 
 def _power(light: Any) -> tuple[float, float, float]:
-    """Colour times energy, with 4.5's exposure and temperature."""
+    """Returns colour times energy, with exposure and temperature, which Blender has from 4.5 on."""
     power = light.energy * 2.0 ** getattr(light, "exposure", 0.0)
     color = tuple(light.color)
     if getattr(light, "use_temperature", False):
@@ -49,7 +49,7 @@ def _scaled(values: tuple[float, ...], factor: float) -> tuple[float, float, flo
 def _flags(light: Any) -> int:
     cycles = getattr(light, "cycles", None)
     flags = 0
-    # Cycles kept its own switch until Blender's became that of all engines.
+    # Before 4.2, Cycles has a switch of its own.
     if not getattr(cycles, "cast_shadow", light.use_shadow):
         flags |= NO_SHADOW
     if not getattr(cycles, "use_multiple_importance_sampling", True):
@@ -58,16 +58,19 @@ def _flags(light: Any) -> int:
 
 
 def _is_disk(light: Any, version: tuple[int, ...]) -> bool:
-    """Round lights were disks facing the receiver before 4.1; soft falloff keeps that."""
+    """Returns whether a round light is a disk that faces the receiver.
+
+    This is always so before 4.1, and with soft falloff from then on.
+    """
     return version < (4, 1, 0) or getattr(light, "use_soft_falloff", True)
 
 
 def _round(light: Any, power: tuple[float, float, float], version: tuple[int, ...]) -> LightState:
-    """Point and spot: P/(4 pi) W/sr."""
+    """Returns a point light with the intensity P / (4 pi) W/sr. Spot lights are derived from it."""
     radius = max(light.shadow_soft_size, 0.0)
     intensity = _scaled(power, 0.25 / math.pi)
     if not getattr(light, "normalize", True):
-        # Radiance energy/pi over the disk; without a radius energy/pi is the intensity (measured in 4.5 and 5.0).
+        # The disk has the radiance energy/pi; without a radius, the intensity is energy/pi (measured in 4.5 and 5.0).
         intensity = _scaled(power, radius * radius if radius > 0.0 else 1.0 / math.pi)
     state = LightState(POINT, intensity, radius=radius)
     if _is_disk(light, version):
@@ -75,12 +78,15 @@ def _round(light: Any, power: tuple[float, float, float], version: tuple[int, ..
     return state
 
 
-def _spot(light: Any, power: tuple[float, float, float], version: tuple[int, ...], scale: tuple[float, ...]) -> LightState:
+def _spot(
+    light: Any, power: tuple[float, float, float], version: tuple[int, ...], scale: tuple[float, ...]
+) -> LightState:
     state = _round(light, power, version)
     state.type = SPOT
     state.cone = light.spot_size
     if version >= (4, 0, 0) and scale[2] > 0.0 and light.spot_size < math.pi:
-        # From 4.0 on scale widens or narrows the cone; unequal x and y, an elliptic cone, become their geometric mean.
+        # From 4.0 on, the scale changes the cone. An elliptic cone becomes a circular one with the geometric mean of
+        # its axes.
         state.cone = 2.0 * math.atan(math.tan(0.5 * light.spot_size) * math.sqrt(scale[0] * scale[1]) / scale[2])
     state.blend = light.spot_blend
     if version < (4, 0, 0):
@@ -89,10 +95,10 @@ def _spot(light: Any, power: tuple[float, float, float], version: tuple[int, ...
 
 
 def sun_radiance(angle: float, version: tuple[int, ...]) -> float:
-    """Radiance per W/m2 of a sun with an angle; 0 = that of a disk whose irradiance is exact.
+    """Returns the radiance per W/m2 of a sun with an angle, or 0 for a disk with the exact irradiance.
 
-    Before 4.0 a sun was a disk of radius tan(angle/2) at distance 1, weighted with 1/cos^3: its irradiance falls short by
-    the mean cosine over that disk.
+    Before 4.0, a sun was a disk of radius tan(angle/2) at distance 1, weighted with 1/cos^3: its irradiance is too
+    small by the mean cosine over that disk.
     """
     half = 0.5 * angle
     if version >= (4, 0, 0) or half <= 1e-4 or half >= 0.5 * math.pi:
@@ -104,12 +110,14 @@ def sun_radiance(angle: float, version: tuple[int, ...]) -> float:
 def _sun(light: Any, power: tuple[float, float, float], version: tuple[int, ...]) -> LightState:
     angle = min(max(light.angle, 0.0), math.pi)
     if not getattr(light, "normalize", True) and angle > 0.0:
-        power = _scaled(power, math.pi * math.sin(0.5 * angle) ** 2)  # energy is the radiance
+        power = _scaled(power, math.pi * math.sin(0.5 * angle) ** 2)  # the energy is a radiance
     return LightState(SUN, power, angle=angle, sun_radiance_per_irradiance=sun_radiance(angle, version))
 
 
-def _area(light: Any, power: tuple[float, float, float], version: tuple[int, ...], scale: tuple[float, ...]) -> LightState:
-    """Area lights: radiance; the true area, scale included."""
+def _area(
+    light: Any, power: tuple[float, float, float], version: tuple[int, ...], scale: tuple[float, ...]
+) -> LightState:
+    """Returns an area light. Its strength is a radiance, and its size includes the scale of the object."""
     round_shape = light.shape in {"DISK", "ELLIPSE"}
     height = light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size
     size = (light.size * scale[0], height * scale[1])
@@ -120,11 +128,15 @@ def _area(light: Any, power: tuple[float, float, float], version: tuple[int, ...
         factor = 1.0 / ((4.0 if version < (4, 0, 0) else math.pi) * area)
     else:
         factor = 0.0
-    return LightState(ELLIPSE if round_shape else RECTANGLE, _scaled(power, factor), size=size, spread=getattr(light, "spread", math.pi))
+    kind, spread = ELLIPSE if round_shape else RECTANGLE, getattr(light, "spread", math.pi)
+    return LightState(kind, _scaled(power, factor), size=size, spread=spread)
 
 
 def light_state(light: Any, scale: tuple[float, ...], version: tuple[int, ...]) -> LightState:
-    """light: evaluated light data; scale: lengths of the object's axes; version: of the running Blender."""
+    """Returns the state of an evaluated light.
+
+    scale: lengths of the object's axes; version: that of the running Blender.
+    """
     power = _power(light)
     if light.type == "AREA":
         state = _area(light, power, version, scale)
@@ -136,13 +148,16 @@ def light_state(light: Any, scale: tuple[float, ...], version: tuple[int, ...]) 
         state = _round(light, power, version)
     state.flags |= _flags(light)
     bounces = getattr(getattr(light, "cycles", None), "max_bounces", None)
-    if bounces is not None and bounces < 1024:  # Cycles' default, meant as no limit
+    if bounces is not None and bounces < 1024:  # 1024 is Cycles' default and stands for no limit
         state.max_bounces = max(bounces, 0)
     return state
 
 
 def constant_emission(light: Any) -> tuple[float, float, float] | None:
-    """Colour times strength of a light's Emission node if nothing is linked to it; (1, 1, 1) without nodes; None: a program is needed."""
+    """Returns colour times strength of a light's Emission node, or (1, 1, 1) without nodes.
+
+    Returns None if the light needs a node program.
+    """
     tree = light.node_tree if light.use_nodes else None
     if tree is None:
         return (1.0, 1.0, 1.0)
@@ -152,8 +167,9 @@ def constant_emission(light: Any) -> tuple[float, float, float] | None:
     surface = output.inputs["Surface"]
     if not surface.is_linked:
         return (0.0, 0.0, 0.0)
-    node = surface.links[0].from_node
-    if node.bl_idname != "ShaderNodeEmission" or node.mute or not surface.links[0].is_valid or surface.links[0].is_muted:
+    link = surface.links[0]
+    node = link.from_node
+    if node.bl_idname != "ShaderNodeEmission" or node.mute or not link.is_valid or link.is_muted:
         return None
     if node.inputs["Color"].is_linked or node.inputs["Strength"].is_linked:
         return None

@@ -1,4 +1,4 @@
-"""Materials, worlds and light trees as node programs; and what those programs ask of the exporter."""
+"""Materials, worlds and node trees of lights as node programs, and the images that they use."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ from .target import Target
 
 
 class Resources:
-    """What the node translation asks for: keys of images."""
+    """Provides the keys of images for the translation of nodes."""
 
-    def __init__(self, target: Target, keys: KeyTable, frame: int, abspath: Callable[..., str], warnings: Warnings) -> None:
+    def __init__(
+        self, target: Target, keys: KeyTable, frame: int, abspath: Callable[..., str], warnings: Warnings
+    ) -> None:
         self._target = target
         self._keys = keys
         self._abspath = abspath
@@ -23,7 +25,7 @@ class Resources:
         self.frame = frame
 
     def image(self, image: Any, image_user: Any = None) -> int:
-        """The key of an image at the rendered frame; sets it if it is new or has changed."""
+        """Returns the key of an image at the rendered frame. Sets the native image if it is new or has changed."""
         if image is None:
             return 0
         signature = images.signature(image, image_user, self.frame, self._abspath)
@@ -42,9 +44,11 @@ class Resources:
 
 
 class Materials:
-    """Programs by material, each translated once a sync."""
+    """Node programs of materials. Each is translated once per sync."""
 
-    def __init__(self, target: Target, keys: KeyTable, resources: Resources, poll: Callable[[], None], warnings: Warnings) -> None:
+    def __init__(
+        self, target: Target, keys: KeyTable, resources: Resources, poll: Callable[[], None], warnings: Warnings
+    ) -> None:
         self._target = target
         self._keys = keys
         self._resources = resources
@@ -54,36 +58,42 @@ class Materials:
         self.attribute_names: set[str] = set()
 
     def key(self, block: Any, kind: str = "MATERIAL") -> int:
-        """The key of a material (kind MATERIAL), world (WORLD) or light (LIGHT); 0 for None: the default grey, or black."""
+        """Returns the key of a material (kind MATERIAL), world (WORLD) or light (LIGHT).
+
+        Returns 0 for None: the default grey material, or a black world.
+        """
         if block is None:
             return 0
         pointer = block.original.as_pointer()
-        place = (kind, pointer)
-        key = self._done.get(place)
+        token = (kind, pointer)
+        key = self._done.get(token)
         if key is None:
             self._poll()
-            key = self._done[place] = self._keys.key(place)
+            key = self._done[token] = self._keys.key(token)
             self._translate(key, block, kind)
         return key
 
     def surface_keys(self, materials: tuple[Any, ...]) -> tuple[int, ...]:
-        """The keys of a surface's slots. Without slots it is as with an empty one."""
+        """Returns the keys of a surface's material slots.
+
+        A surface without slots is treated like one with an empty slot.
+        """
         if compat.default_surface_is_principled():
             return tuple(self.key(material) or self._default_surface() for material in materials or (None,))
         return tuple(self.key(material) for material in materials)
 
     def _default_surface(self) -> int:
-        place = ("DEFAULT", 0)
-        key = self._done.get(place)
+        token = ("DEFAULT", 0)
+        key = self._done.get(token)
         if key is None:
             from .. import nodes
 
-            key = self._done[place] = self._keys.key(place)
+            key = self._done[token] = self._keys.key(token)
             self._set(key, nodes.default_surface())
         return key
 
     def _translate(self, key: int, block: Any, kind: str) -> None:
-        from .. import nodes  # the translation is large: loaded with the first material
+        from .. import nodes  # imported with the first material, because the package is large
 
         self._set(key, nodes.translate(block, kind, self._resources))
 

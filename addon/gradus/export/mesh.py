@@ -1,7 +1,7 @@
-"""Evaluated meshes to arrays, without a Python loop over vertices, faces or corners.
+"""Reads evaluated meshes into arrays, without a Python loop over vertices, faces or corners.
 
-Accessors differ by Blender version and are probed by feature; the type code of each array is the one in which Blender
-stores the property, else `foreach_get` goes item by item.
+The accessors differ between Blender versions. The type code of each array is the one in which Blender stores the
+property, because `foreach_get` otherwise reads item by item.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ POINT, FACE, CORNER = 0, 1, 2
 
 @dataclass
 class MeshArrays:
-    """What the C API takes of a mesh, ready to be handed over."""
+    """The data of a GradusMesh."""
 
     name: str
     positions: array
@@ -39,7 +39,10 @@ class MeshArrays:
     blur: array | None = None  # positions while the shutter is open, key after key
 
     def content_hash(self) -> bytes:
-        """Equal for equal content, whatever object it comes from. SHA-1 because processors have it built in: 50 MB in 26 ms."""
+        """Returns a hash that is equal for equal content.
+
+        SHA-1 is fast because processors support it: 50 MB take 26 ms.
+        """
         digest = hashlib.sha1(usedforsecurity=False)
         for values in (self.positions, self.corner_vertices, self.triangle_corners, self.triangle_faces):
             digest.update(values)
@@ -62,7 +65,7 @@ class MeshArrays:
 
 
 def read_positions(mesh: Any) -> array:
-    """3 floats per vertex."""
+    """Returns 3 floats per vertex."""
     position = mesh.attributes.get("position")
     if position is not None and position.data_type == "FLOAT_VECTOR":
         return read(position.data, "vector", "f", 3)
@@ -70,7 +73,7 @@ def read_positions(mesh: Any) -> array:
 
 
 def corner_vertices(mesh: Any) -> array:
-    """The vertex of each corner."""
+    """Returns the vertex of each corner."""
     stored = mesh.attributes.get(".corner_vert")
     if stored is not None:
         return read(stored.data, "value", "i")
@@ -86,7 +89,7 @@ def _triangle_faces(mesh: Any) -> array:
 
 
 def _normals(mesh: Any) -> tuple[int, array | None]:
-    """Domain and values of the shading normals."""
+    """Returns domain and values of the shading normals."""
     if hasattr(mesh, "corner_normals"):
         if mesh.normals_domain == "FACE":
             return FACE, None
@@ -97,22 +100,26 @@ def _normals(mesh: Any) -> tuple[int, array | None]:
 
 
 def _normals_by_flags(mesh: Any) -> tuple[int, array | None]:
-    """Before 4.1: the domain follows from the faces' flags; normals of corners must be asked for."""
+    """Returns domain and values of the shading normals before 4.1, where the flags of faces define the domain."""
     if not mesh.use_auto_smooth and not mesh.has_custom_normals:
         smooth = sum(read(mesh.polygons, "use_smooth", "I"))
         if smooth == 0:
             return FACE, None
         if smooth == len(mesh.polygons):
-            # The native side makes them: Blender before 4.0 sums them in any order, so that their last bits differ between evaluations.
+            # The library computes them: Blender before 4.0 sums them in any order, so that their last bits differ
+            # between evaluations.
             return POINT, None
     mesh.calc_normals_split()
-    return CORNER, _without_those_of_vertices(mesh, read(mesh.loops, "normal", "f", 3))
+    return CORNER, _without_vertex_normals(mesh, read(mesh.loops, "normal", "f", 3))
 
 
-def _without_those_of_vertices(mesh: Any, normals: array) -> array:
-    """Normals of corners, 0 where they are their vertex's own: the native side makes those, for the same reason. With them the bits of a
-    mesh, and so the key of its scene, differed from process to process."""
-    import numpy as np  # Blender's own; its import takes a while, and few meshes have normals of corners
+def _without_vertex_normals(mesh: Any, normals: array) -> array:
+    """Returns the normals of corners, and 0 where a corner has the normal of its vertex.
+
+    The library computes vertex normals, because those of Blender before 4.0 differ in their last bits from process to
+    process, and with them the key of the scene would differ.
+    """
+    import numpy as np  # imported late, because few meshes have normals of corners and the import is slow
 
     def bits(values: array) -> Any:
         return np.frombuffer(values, dtype=np.int32).reshape(-1, 3)
@@ -123,7 +130,7 @@ def _without_those_of_vertices(mesh: Any, normals: array) -> array:
 
 
 def _face_materials(mesh: Any) -> array | None:
-    """Slots by face; the attribute is missing where all faces use slot 0."""
+    """Returns the material slot of each face, or None if all faces use slot 0."""
     stored = mesh.attributes.get("material_index")
     if stored is None or stored.domain != "FACE" or stored.data_type != "INT":
         return None
@@ -133,8 +140,9 @@ def _face_materials(mesh: Any) -> array | None:
 def read_mesh(mesh: Any, wanted: frozenset[str] | None, generated_from: Any = None) -> MeshArrays:
     """Reads an evaluated mesh.
 
-    wanted: names of the attributes that materials ask for (None = all); the UV map that is active for renders always comes along.
-    generated_from: the undeformed mesh, for generated coordinates; used if it has as many vertices.
+    wanted: names of the attributes that materials use, None for all; the UV map that is active for renders is always
+    read. generated_from: the undeformed mesh for generated coordinates, which is used if it has the same number of
+    vertices.
     """
     mesh.calc_loop_triangles()
     domain, normals = _normals(mesh)
@@ -160,7 +168,7 @@ def read_mesh(mesh: Any, wanted: frozenset[str] | None, generated_from: Any = No
 
 
 def fill_mesh(arrays: MeshArrays) -> tuple[native.Mesh, list[Any]]:
-    """A native Mesh, and what must stay alive until it has been copied."""
+    """Returns a native Mesh, and the objects that must stay alive until the library has copied it."""
     struct = native.Mesh()
     positions, times = arrays.positions, None
     struct.key_count = 1

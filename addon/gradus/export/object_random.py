@@ -1,12 +1,12 @@
-"""The number behind Object Info > Random of an object that is no instance, as in Cycles: a hash of its name."""
+"""The value of Object Info > Random for objects that are not instances: a hash of the name, as in Cycles."""
 
 from __future__ import annotations
 
 
 def name_hash(name: str) -> int:
-    """32 bits: a multiplicative hash of the name's bytes, mixed once.
+    """Returns 32 bits: a multiplicative hash of the bytes of the name, followed by a mixing step.
 
-    Source of the mixing step: Bob Jenkins, lookup3 (public domain), final() with a second word of 0.
+    The mixing step is final() of lookup3 by Bob Jenkins (public domain), with a second word of 0.
     """
     value = 0
     for byte in name.encode("utf-8", "surrogateescape"):

@@ -1,4 +1,4 @@
-"""Panoramic cameras: what each type measures on its film, and the window of the frame in that measure; see GradusPanorama."""
+"""Panoramic cameras: the window of the frame in the film coordinates of each type; see GradusPanorama."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _WHOLE = (0.0, 1.0, 0.0, 1.0)
 
 @dataclass(frozen=True)
 class Projection:
-    """What the frame's window does not say."""
+    """The properties of a panoramic projection besides its window."""
 
     kind: Panorama
     fov: float  # of the image circle
@@ -42,12 +42,12 @@ def is_known(data: Any) -> bool:
 
 
 def settings_of(data: Any) -> Any:
-    """Of a camera; they were Cycles' until Blender 4.5."""
+    """Returns the owner of a camera's panorama properties: Cycles before Blender 4.5, the camera from then on."""
     return data if hasattr(data, "panorama_type") else getattr(data, "cycles", None)
 
 
 def sensor_size(data: Any, size: tuple[int, int], aspect: tuple[float, float]) -> tuple[float, float]:
-    """In millimetres, with the frame's shape."""
+    """Returns width and height in millimetres, in the proportions of the frame."""
     x, y = size[0] * aspect[0], size[1] * aspect[1]
     horizontal = x > y if data.sensor_fit == "AUTO" else data.sensor_fit == "HORIZONTAL"
     side = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
@@ -64,7 +64,8 @@ def _whole_frame(kind: Panorama, panorama: Any, sensor: tuple[float, float]) -> 
     if kind == Panorama.CYLINDER:
         radius = panorama.central_cylindrical_radius
         bottom, top = panorama.central_cylindrical_range_v_min, panorama.central_cylindrical_range_v_max
-        return (panorama.central_cylindrical_range_u_min, panorama.central_cylindrical_range_u_max, bottom / radius, top / radius)
+        left, right = panorama.central_cylindrical_range_u_min, panorama.central_cylindrical_range_u_max
+        return (left, right, bottom / radius, top / radius)
     if kind == Panorama.CUBE_FACE:
         return _centred(0.5 * math.pi, 0.5 * math.pi)
     if kind == Panorama.MIRROR_BALL:
@@ -75,14 +76,19 @@ def _whole_frame(kind: Panorama, panorama: Any, sensor: tuple[float, float]) -> 
     return _centred(sensor[0] * scale, sensor[1] * scale)
 
 
-def window(data: Any, shift: tuple[float, float], size: tuple[int, int], aspect: tuple[float, float], part: Window = _WHOLE) -> Window:
-    """Left, right, bottom, top of a part of the frame. Shift is in frames, as the part is."""
+def window(
+    data: Any, shift: tuple[float, float], size: tuple[int, int], aspect: tuple[float, float], section: Window = _WHOLE
+) -> Window:
+    """Returns left, right, bottom, top of a section of the frame.
+
+    Shift and section are relative to the size of the frame.
+    """
     panorama = settings_of(data)
     left, right, bottom, top = _whole_frame(TYPES[panorama.panorama_type], panorama, sensor_size(data, size, aspect))
     width, height = right - left, top - bottom
     return (
-        left + width * (part[0] + shift[0]),
-        left + width * (part[1] + shift[0]),
-        bottom + height * (part[2] + shift[1]),
-        bottom + height * (part[3] + shift[1]),
+        left + width * (section[0] + shift[0]),
+        left + width * (section[1] + shift[0]),
+        bottom + height * (section[2] + shift[1]),
+        bottom + height * (section[3] + shift[1]),
     )

@@ -1,4 +1,4 @@
-"""What an export hands back, and what goes through all of its parts."""
+"""The result of an export, its warnings, and the polling of its cancellation."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 
 
 class ExportError(RuntimeError):
-    """The scene cannot be rendered as it is; the text is for the user."""
+    """The scene cannot be rendered. The text is for the user."""
 
 
 class Cancelled(Exception):
-    """The user asked to stop while the scene was exported."""
+    """The user cancelled the export."""
 
 
 @dataclass
@@ -24,7 +24,7 @@ class ExportReport:
 
 
 class Warnings:
-    """Texts for the user, each once."""
+    """A list of texts for the user without duplicates."""
 
     def __init__(self) -> None:
         self.texts: list[str] = []
@@ -35,16 +35,16 @@ class Warnings:
 
 
 class Poll:
-    """Asks `cancelled` now and then: asking Blender costs, and every object would be too often."""
+    """Calls `cancelled` at intervals, because asking Blender for every object would be slow."""
 
-    INTERVAL = 0.05  # s; test K2 wants the longest gap below 0.25 s
+    INTERVAL = 0.05  # s; well below the 0.25 s within which a cancel must be noticed
 
     def __init__(self, cancelled: Callable[[], bool] | None) -> None:
         self._cancelled = cancelled
         self._last = 0.0
 
     def __call__(self) -> None:
-        """Raises Cancelled when the user wants to stop."""
+        """Raises Cancelled if the user has cancelled."""
         if self._cancelled is None:
             return
         now = time.monotonic()

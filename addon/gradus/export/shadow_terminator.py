@@ -1,4 +1,4 @@
-"""Cycles' setting of objects against the steps in which faceted meshes with smooth normals turn away from a light."""
+"""The shadow terminator settings of objects, which reduce artifacts of smooth normals on coarse meshes."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from typing import Any
 GEOMETRY_OFFSET = "shadow_terminator_geometry_offset"
 SHADING_OFFSETS = ("shadow_terminator_offset", "shadow_terminator_shading_offset")
 DEFAULT = 0.1
-"""Where Cycles is switched off, and Blender does not have the setting itself."""
+"""The geometry offset where neither Blender nor Cycles has the setting."""
 
 
 def owner(obj: Any) -> Any:
-    """What has the setting: the object in newer Blenders, else Cycles' part of it; None where neither does."""
+    """Returns the owner of the settings: the object in newer versions of Blender, else its Cycles settings, or None."""
     if hasattr(obj, GEOMETRY_OFFSET):
         return obj
     cycles = getattr(obj, "cycles", None)
@@ -19,10 +19,10 @@ def owner(obj: Any) -> Any:
 
 
 def geometry_offset(obj: Any) -> float:
-    """Cosine to a light below which its shadow rays begin above the facet."""
+    """Returns the cosine to a light below which shadow rays start above the facet."""
     return getattr(owner(obj), GEOMETRY_OFFSET, DEFAULT)
 
 
 def has_shading_offset(obj: Any) -> bool:
-    """The darker shading towards the terminator, which we do not have."""
+    """Returns whether an object has a shading offset, which Gradus does not support."""
     return any(getattr(owner(obj), name, 0.0) != 0.0 for name in SHADING_OFFSETS)

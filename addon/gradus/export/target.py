@@ -1,4 +1,4 @@
-"""The native scene as the exporter sees it: one method for each kind of object."""
+"""The native scene for the exporter, with one method for each kind of object."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 
 class Target:
-    """Passes filled structs on to the library. The structs' arrays are copied before a call returns."""
+    """Passes structs to the library, which copies their arrays before a call returns."""
 
     def __init__(self, library: Any, scene: int) -> None:
         self._library = library

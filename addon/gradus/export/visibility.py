@@ -1,4 +1,4 @@
-"""Which kinds of ray see an object, and what replaces it in the picture."""
+"""The flags of an instance: kinds of rays that see it, holdout, and whether it may move."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ RAY_SWITCHES = (
     ("visible_volume_scatter", VOLUME),
     ("visible_shadow", SHADOW),
 )
-"""Properties of an object, and the kind of ray that each lets see it."""
+"""Properties of an object and the kinds of rays that they enable."""
 
 
 def ray_visibility(obj: Any) -> int:
-    """Bits of the kinds of ray that see an object."""
+    """Returns the flags of the kinds of rays that see an object."""
     bits = 0
     for name, bit in RAY_SWITCHES:
         if getattr(obj, name, True):
@@ -30,7 +30,11 @@ def ray_visibility(obj: Any) -> int:
 
 
 def visibility(obj: Any, parent: Any, view_layer: Any) -> int:
-    """Bits of an instance: object and instancer together. Holdout and indirect-only are of the view layer, so of the instancer."""
+    """Returns the flags of an instance, from those of the object and of its instancer.
+
+    Holdout and indirect-only of a view layer belong to the instancer, because the object itself may be in no view
+    layer.
+    """
     bits = ray_visibility(obj)
     owner = obj
     if parent is not None:

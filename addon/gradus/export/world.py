@@ -9,12 +9,18 @@ from .visibility import ALL_RAYS, CAMERA, DIFFUSE, GLOSSY, TRANSMISSION, VOLUME
 
 _MIST = {"QUADRATIC": 0, "LINEAR": 1, "INVERSE_QUADRATIC": 2}
 _IMPORTANCE = {"NONE": 0, "AUTOMATIC": 1, "MANUAL": 2}
-# Where Cycles keeps the visibility of the world.
-_CYCLES_VISIBILITY = (("camera", CAMERA), ("diffuse", DIFFUSE), ("glossy", GLOSSY), ("transmission", TRANSMISSION), ("scatter", VOLUME))
+# Names of Cycles' properties for the visibility of the world.
+_CYCLES_VISIBILITY = (
+    ("camera", CAMERA),
+    ("diffuse", DIFFUSE),
+    ("glossy", GLOSSY),
+    ("transmission", TRANSMISSION),
+    ("scatter", VOLUME),
+)
 
 
 def world_visibility(world: Any) -> int:
-    """Kinds of ray that see the world."""
+    """Returns the flags of the kinds of rays that see the world."""
     switches = getattr(world, "cycles_visibility", None)
     bits = ALL_RAYS
     for name, bit in _CYCLES_VISIBILITY:
@@ -24,7 +30,7 @@ def world_visibility(world: Any) -> int:
 
 
 def fill_world(world: Any, material: int) -> native.World:
-    """A native World; `world` may be None: black, and no mist."""
+    """Returns a native World. `world` may be None: the world is then black and has no mist."""
     struct = native.World()
     struct.visibility = ALL_RAYS
     struct.importance = 1

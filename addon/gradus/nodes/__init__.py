@@ -1,26 +1,25 @@
-"""Shader graphs of Blender as native node programs.
+"""Translation of Blender's shader graphs to native node programs.
 
-    program = nodes.translate(material, "SURFACE", resources)
-    struct, keep_alive = program.to_native(native)
+program = nodes.translate(material, "SURFACE", resources) struct, keep_alive = program.to_native(native)
 
-`resources` has image(image, image_user) -> key. Warnings are in program.warnings, one per replaced node, naming material and node.
+`resources` has image(image, image_user) -> key. program.warnings has one warning for each replaced node, with its name
+and its material.
 """
 
 from __future__ import annotations
 
-from . import (  # noqa: F401  (they register themselves)
+from . import (  # noqa: F401  (importing them registers their translators)
     colors,
     inputs,
     normals,
     numbers,
     principled,
     shaders,
-    sky,
     tables,
     textures,
     vectors,
 )
-from .default_surface import default_surface
+from .principled import default_surface
 from .program import Program
 from .translate import translate
 

@@ -1,11 +1,10 @@
-"""Colour arithmetic."""
+"""Nodes of colours."""
 
 from __future__ import annotations
 
-from .node import NodeView
+from .node import NodeView, translator
 from .ops import Blend, ColorModel, Op
 from .program import Value
-from .registry import translator
 
 _CLAMP_RESULT = 32
 
@@ -16,8 +15,8 @@ def mix_colors(view: NodeView, factor: Value, a: Value, b: Value, blend: str, cl
 
 @translator("ShaderNodeMixRGB")
 def mix_rgb(view: NodeView) -> Value:
-    factor = view.clamped(view.value("Fac"))
-    return mix_colors(view, factor, view.value("Color1"), view.value("Color2"), view.node.blend_type, view.node.use_clamp)
+    factor, a, b = view.clamped(view.value("Fac")), view.value("Color1"), view.value("Color2")
+    return mix_colors(view, factor, a, b, view.node.blend_type, view.node.use_clamp)
 
 
 @translator("ShaderNodeHueSaturation")
@@ -62,7 +61,8 @@ def separate_color(view: NodeView) -> Value:
 
 @translator("ShaderNodeCombineColor")
 def combine_color(view: NodeView) -> Value:
-    return view.add(Op.COMBINE, (view.value("Red"), view.value("Green"), view.value("Blue")), ColorModel[view.node.mode])
+    inputs = (view.value("Red"), view.value("Green"), view.value("Blue"))
+    return view.add(Op.COMBINE, inputs, ColorModel[view.node.mode])
 
 
 @translator("ShaderNodeSeparateRGB")

@@ -1,13 +1,32 @@
-"""Kinds of values, conversions between them, defaults of sockets."""
+"""Kinds of values, conversions between them, and default values of sockets."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from .ops import Op
-from .program import BLACK_CLOSURE, COLOR, FLOAT, SHADER, VECTOR, Program, Value, constant_color, constant_float, constant_vector
+from .program import (
+    BLACK_CLOSURE,
+    COLOR,
+    FLOAT,
+    SHADER,
+    VECTOR,
+    Program,
+    Value,
+    constant_color,
+    constant_float,
+    constant_vector,
+)
 
-_KINDS = {"VALUE": FLOAT, "INT": FLOAT, "BOOLEAN": FLOAT, "VECTOR": VECTOR, "ROTATION": VECTOR, "RGBA": COLOR, "SHADER": SHADER}
+_KINDS = {
+    "VALUE": FLOAT,
+    "INT": FLOAT,
+    "BOOLEAN": FLOAT,
+    "VECTOR": VECTOR,
+    "ROTATION": VECTOR,
+    "RGBA": COLOR,
+    "SHADER": SHADER,
+}
 
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 
@@ -17,7 +36,7 @@ def kind_of(socket: Any) -> str:
 
 
 def default_value(socket: Any) -> Value:
-    """What an input gives where nothing is linked."""
+    """Returns the value of an input without a link."""
     kind = kind_of(socket)
     if kind == SHADER:
         return BLACK_CLOSURE
@@ -39,13 +58,13 @@ def _to_float(program: Program, value: Value) -> Value:
 
 
 def convert(program: Program, value: Value, kind: str) -> Value | None:
-    """`value` as another kind; None where there is no such conversion (a closure as a number)."""
+    """Returns `value` as another kind, or None if there is no conversion, as from a closure to a number."""
     if value.kind == kind:
         return value
     if value.kind == SHADER:
         return None
     if kind == SHADER:
-        # A colour shines, as in Cycles.
+        # A colour becomes emission, as in Cycles.
         return Value(SHADER, node=program.add(Op.EMISSION, (value, constant_float(1.0))))
     if kind == FLOAT:
         return _to_float(program, value)

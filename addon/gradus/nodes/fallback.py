@@ -1,4 +1,4 @@
-"""What stands in for nodes that are not translated: never black, never an exception, always one warning."""
+"""Replacements of nodes without a translator. They are never black, raise no exceptions, and add one warning."""
 
 from __future__ import annotations
 
@@ -17,27 +17,31 @@ TEXTURE_MEANS = {
     ("ShaderNodeTexGabor", "Phase"): 0.5,
     ("ShaderNodeTexGabor", "Intensity"): 0.27,
 }
-"""By node and output, at default settings, as measured in Cycles. Musgrave's is 0, which would be black: it becomes grey."""
+"""Mean values by node and output at default settings, measured in Cycles.
+
+Musgrave has a mean of 0 and becomes grey instead.
+"""
 
 
 def replace(view: Any) -> Value | None:
-    """The value of an output of a node without translator."""
+    """Returns the value of an output of a node without a translator."""
     name = view.node.bl_idname
     kind = convert.kind_of(view.socket)
     if kind == SHADER:
-        view.warn_replaced("is not supported yet and is replaced by a diffuse surface or its input")
+        view.warn_replaced("is not supported and is replaced by its shader input or by a diffuse surface")
         return _closure(view)
     if name.startswith("ShaderNodeTex"):
         mean = TEXTURE_MEANS.get((name, view.socket.identifier))
-        view.warn_replaced(f"is not supported yet and is replaced by {'grey' if mean is None else 'its mean at default settings'}")
+        substitute = "grey" if mean is None else "its mean at default settings"
+        view.warn_replaced(f"is not supported and is replaced by {substitute}")
         value = 0.5 if mean is None else mean
         return constant_float(value) if kind == FLOAT else Value(kind, (value, value, value, 1.0))
-    view.warn_replaced("is not supported yet and is passed through")
+    view.warn_replaced("is not supported and its input is passed through")
     return _pass_through(view)
 
 
 def _closure(view: Any) -> Value | None:
-    """The first shader that comes in, else a diffuse surface in the node's colour."""
+    """Returns the first shader input, or a diffuse surface with the node's colour."""
     for socket in view.node.inputs:
         if convert.kind_of(socket) == SHADER:
             value = view.walker.linked(socket, view.path)
@@ -45,7 +49,8 @@ def _closure(view: Any) -> Value | None:
                 return value
     socket = find_socket(view.node.inputs, "Base Color", "Color")
     color = view.walker.input(socket, view.path) if socket is not None else constant_color(_GREY)
-    return view.add_closure(Op.DIFFUSE, (color, constant_float(0.0), view.direction("Normal") if view.has("Normal") else NO_NORMAL))
+    normal = view.direction("Normal") if view.has("Normal") else NO_NORMAL
+    return view.add_closure(Op.DIFFUSE, (color, constant_float(0.0), normal))
 
 
 def _pass_through(view: Any) -> Value | None:

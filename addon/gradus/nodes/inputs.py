@@ -1,11 +1,10 @@
-"""Nodes that know the point, the object or the ray."""
+"""Nodes that read properties of the surface point, the object or the ray."""
 
 from __future__ import annotations
 
-from .node import NodeView
+from .node import NodeView, translator
 from .ops import Geometry, LightPath, Op, Tangent, TexCoord
 from .program import FLOAT, VECTOR, Value, constant_color, constant_float
-from .registry import translator
 
 _GEOMETRY = {
     "Position": Geometry.POSITION,
@@ -49,7 +48,7 @@ def geometry(view: NodeView) -> Value | None:
         return view.add_float(Op.GEOMETRY, (), Geometry.BACKFACING)
     if view.output in _GEOMETRY:
         return view.add_vector(Op.GEOMETRY, (), _GEOMETRY[view.output])
-    view.warn_replaced(f"has an output that is not supported yet: {view.output}")
+    view.warn_replaced(f"has an output that is not supported: {view.output}")
     return constant_float(0.5)
 
 
@@ -83,13 +82,14 @@ def uv_map(view: NodeView) -> Value:
 @translator("ShaderNodeTangent")
 def tangent(view: NodeView) -> Value:
     if view.node.direction_type == "RADIAL":
-        return view.add_vector(Op.TANGENT, (), {"X": Tangent.RADIAL_X, "Y": Tangent.RADIAL_Y, "Z": Tangent.RADIAL_Z}[view.node.axis])
+        axes = {"X": Tangent.RADIAL_X, "Y": Tangent.RADIAL_Y, "Z": Tangent.RADIAL_Z}
+        return view.add_vector(Op.TANGENT, (), axes[view.node.axis])
     name = view.node.uv_map
     return view.add_vector(Op.TANGENT, (), Tangent.UV, resource=view.name_resource(name) if name else 0)
 
 
 _ATTRIBUTE_OUTPUTS = {"Color": (0, "color"), "Vector": (1, VECTOR), "Fac": (2, FLOAT), "Alpha": (3, FLOAT)}
-# Properties of the object that Object Info has, too.
+# Properties of objects that are also outputs of Object Info.
 _OBJECT_PROPERTIES = {"color": 1, "pass_index": 2, "location": 0}
 
 
@@ -103,7 +103,7 @@ def attribute(view: NodeView) -> Value:
         if view.output == "Alpha":
             return view.add(Op.OBJECT_INFO, kind=kind, output=4) if name == "color" else constant_float(1.0)
         return view.add(Op.OBJECT_INFO, kind=kind, output=_OBJECT_PROPERTIES[name])
-    view.warn_replaced(f"asks for property '{name}', which is not supported yet")
+    view.warn_replaced(f"uses the property '{name}', which is not supported")
     return constant_float(0.0)
 
 

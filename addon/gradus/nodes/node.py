@@ -1,7 +1,8 @@
-"""What a translator sees: one node, the output that is asked for, and its inputs as values."""
+"""The interface of translators to a node, and their registry by bl_idname."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from . import convert
@@ -14,7 +15,10 @@ if TYPE_CHECKING:
 
 
 class NodeView:
-    """A node on its way of groups. Inputs are found by identifier, older and newer ones as aliases."""
+    """A node inside a path of groups, and the output to translate.
+
+    Inputs are found by identifier. Several identifiers are alternatives of different versions of Blender.
+    """
 
     def __init__(self, walker: Walker, node: Any, socket: Any, path: tuple[Any, ...]) -> None:
         self.walker = walker
@@ -32,7 +36,7 @@ class NodeView:
 
     @property
     def output(self) -> str:
-        """Identifier of the output that is asked for."""
+        """The identifier of the output to translate."""
         return self.socket.identifier
 
     def find(self, *identifiers: str) -> Any:
@@ -46,18 +50,18 @@ class NodeView:
         return socket is not None and self.walker.linked(socket, self.path) is not None
 
     def value(self, *identifiers: str, default: float = 0.0) -> Value:
-        """An input in its own kind; a constant float where the node has no such input."""
+        """Returns the value of an input, or the constant `default` if the node has no such input."""
         socket = self.find(*identifiers)
         return constant_float(default) if socket is None else self.walker.input(socket, self.path)
 
     def linked(self, *identifiers: str) -> Value | None:
-        """What is linked to an input, as a vector; None where nothing is."""
+        """Returns what is linked to an input as a vector, or None."""
         socket = self.find(*identifiers)
         value = self.walker.linked(socket, self.path) if socket is not None else None
         return None if value is None else convert.convert(self.program, value, VECTOR)
 
     def direction(self, *identifiers: str) -> Value:
-        """A normal or tangent: zero, meaning the surface's own, where nothing is linked."""
+        """Returns a normal or tangent. Without a link it is zero, which stands for that of the surface."""
         return self.linked(*identifiers) or NO_NORMAL
 
     def add(
@@ -71,14 +75,14 @@ class NodeView:
         kind: str = COLOR,
         output: int = 0,
     ) -> Value:
-        """A node of the program; the value of one of its outputs."""
+        """Adds a node to the program. Returns the value of one of its outputs."""
         return Value(kind, node=self.program.add(op, inputs, mode, floats, resource), output=output)
 
-    def add_float(self, op: Op, inputs: tuple[Value, ...] = (), mode: int = 0, **rest: Any) -> Value:
-        return self.add(op, inputs, mode, kind=FLOAT, **rest)
+    def add_float(self, op: Op, inputs: tuple[Value, ...] = (), mode: int = 0, **options: Any) -> Value:
+        return self.add(op, inputs, mode, kind=FLOAT, **options)
 
-    def add_vector(self, op: Op, inputs: tuple[Value, ...] = (), mode: int = 0, **rest: Any) -> Value:
-        return self.add(op, inputs, mode, kind=VECTOR, **rest)
+    def add_vector(self, op: Op, inputs: tuple[Value, ...] = (), mode: int = 0, **options: Any) -> Value:
+        return self.add(op, inputs, mode, kind=VECTOR, **options)
 
     def add_closure(self, op: Op, inputs: tuple[Value, ...] = (), mode: int = 0) -> Value:
         return self.add(op, inputs, mode, kind=SHADER)
@@ -87,7 +91,7 @@ class NodeView:
         return self.add_float(Op.MATH, (a, b), operation)
 
     def clamped(self, value: Value) -> Value:
-        """A float kept in 0…1."""
+        """Returns a float clamped to 0…1."""
         if value.is_constant:
             return constant_float(min(max(value.constant[0], 0.0), 1.0))
         return Value(value.kind, node=self.program.add(Op.CLAMP, (value, constant_float(0.0), constant_float(1.0))))
@@ -96,6 +100,36 @@ class NodeView:
         return self.program.name_index(name)
 
     def warn_replaced(self, text: str) -> None:
-        """One warning that names material and node; its pixels count as replaced."""
+        """Adds a warning with the names of material and node. Pass Fallback marks the pixels of the material."""
         self.program.uses_fallback = True
         self.program.warn(f"{self.program.name}: node '{self.node.name}' ({self.node.bl_label}) {text}")
+
+
+# ------------------------------------------------------------------------------------------------ registry
+
+Translator = Callable[[NodeView], "Value | None"]
+
+_translators: dict[str, Translator] = {}
+
+
+def translator(*bl_idnames: str) -> Callable[[Translator], Translator]:
+    """Registers a function that returns the value of the output `view.output`.
+
+    The function may return None, which is treated like a missing link.
+    """
+
+    def register(function: Translator) -> Translator:
+        for name in bl_idnames:
+            _translators[name] = function
+        return function
+
+    return register
+
+
+def find_translator(bl_idname: str) -> Translator | None:
+    return _translators.get(bl_idname)
+
+
+def translated_nodes() -> frozenset[str]:
+    """Returns the names of all nodes that have a translator."""
+    return frozenset(_translators)

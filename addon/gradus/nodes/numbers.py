@@ -1,12 +1,11 @@
-"""Math, Clamp, Map Range, Mix of numbers and vectors."""
+"""Nodes of numbers: Math, Clamp, Map Range and Mix."""
 
 from __future__ import annotations
 
 from .colors import mix_colors
-from .node import NodeView
+from .node import NodeView, translator
 from .ops import MapRange, Math, Op
 from .program import FLOAT, VECTOR, Value
-from .registry import translator
 
 _CLAMP_RESULT = 64
 _CLAMP_RANGE, _OF_VECTORS = 8, 16
@@ -38,13 +37,15 @@ def map_range(view: NodeView) -> Value:
 @translator("ShaderNodeMix")
 def mix(view: NodeView) -> Value | None:
     node = view.node
-    factor = view.value("Factor_Vector" if node.data_type == "VECTOR" and node.factor_mode == "NON_UNIFORM" else "Factor_Float")
+    is_vector_factor = node.data_type == "VECTOR" and node.factor_mode == "NON_UNIFORM"
+    factor = view.value("Factor_Vector" if is_vector_factor else "Factor_Float")
     if node.clamp_factor:
         factor = view.clamped(factor)
     if node.data_type == "RGBA":
-        return mix_colors(view, factor, view.value("A_Color"), view.value("B_Color"), node.blend_type, node.clamp_result)
+        a, b = view.value("A_Color"), view.value("B_Color")
+        return mix_colors(view, factor, a, b, node.blend_type, node.clamp_result)
     if node.data_type == "ROTATION":
-        view.warn_replaced("mixes rotations, which is not supported yet")
+        view.warn_replaced("mixes rotations, which is not supported: its first input is used")
         return view.value("A_Rotation")
     suffix, kind = ("Vector", VECTOR) if node.data_type == "VECTOR" else ("Float", FLOAT)
     return view.add(Op.MIX, (factor, view.value(f"A_{suffix}"), view.value(f"B_{suffix}")), kind=kind)

@@ -1,12 +1,15 @@
-"""Principled BSDF: before 4.0 by its own operation, with emission and alpha around it; from 4.0 on with alpha around it."""
+"""Principled BSDF, and the default surface.
+
+Before Blender 4.0, the node is a native operation to which emission and alpha are added. From 4.0 on, only alpha is
+added.
+"""
 
 from __future__ import annotations
 
-from .node import NodeView
+from .node import NodeView, translator
 from .ops import Op, VectorMath
-from .program import Value, constant_color, constant_float
-from .registry import translator
-from .shaders import distribution_mode
+from .program import NO_NORMAL, Program, Value, constant_color, constant_float
+from .shaders import MULTIPLE_SCATTERING, distribution_mode
 
 _WHITE = constant_color((1.0, 1.0, 1.0))
 
@@ -26,15 +29,17 @@ def _with_alpha(view: NodeView, surface: Value) -> Value:
     return view.add_closure(Op.MIX_SHADER, (alpha, clear, surface))
 
 
-def _note_subsurface(view: NodeView, weight: Value) -> None:
+def _warn_of_subsurface(view: NodeView, weight: Value) -> None:
     if not weight.is_zero():
         view.warn_replaced("has subsurface scattering, which is rendered as diffuse")
 
 
 def _before_4(view: NodeView) -> Value:
     base, subsurface = view.value("Base Color"), view.value("Subsurface")
-    _note_subsurface(view, subsurface)
-    diffuse = base if subsurface.is_zero() else view.add(Op.MIX, (view.clamped(subsurface), base, view.value("Subsurface Color")))
+    _warn_of_subsurface(view, subsurface)
+    diffuse = base
+    if not subsurface.is_zero():
+        diffuse = view.add(Op.MIX, (view.clamped(subsurface), base, view.value("Subsurface Color")))
     inputs = (
         base,
         diffuse,
@@ -72,10 +77,10 @@ def _emission(view: NodeView) -> Value:
 
 
 def _since_4(view: NodeView) -> Value:
-    _note_subsurface(view, view.value("Subsurface Weight"))
+    _warn_of_subsurface(view, view.value("Subsurface Weight"))
     thickness = view.value("Thin Film Thickness")
     if not thickness.is_zero():
-        view.warn_replaced("has a thin film, which is left out")
+        view.warn_replaced("has a thin film, which is ignored")
     inputs = (
         view.value("Base Color"),
         view.value("Metallic"),
@@ -100,3 +105,39 @@ def _since_4(view: NodeView) -> Value:
         view.direction("Tangent"),
     )
     return view.add_closure(Op.PRINCIPLED, inputs, distribution_mode(view))
+
+
+_NONE = constant_float(0.0)
+_DEFAULT_INPUTS = (
+    constant_color((0.8, 0.8, 0.8)),  # base colour
+    _NONE,  # metallic
+    constant_float(0.5),  # roughness
+    constant_float(1.5),  # IOR
+    _NONE,  # diffuse roughness
+    constant_float(0.5),  # specular IOR level
+    _WHITE,  # specular tint
+    _NONE,  # anisotropic
+    _NONE,  # anisotropic rotation
+    _NONE,  # transmission
+    _NONE,  # coat
+    constant_float(0.03),  # coat roughness
+    constant_float(1.5),  # coat IOR
+    _WHITE,  # coat tint
+    _NONE,  # sheen
+    constant_float(0.5),  # sheen roughness
+    _WHITE,  # sheen tint
+    _NONE,  # emission
+    NO_NORMAL,
+    NO_NORMAL,  # coat normal
+    NO_NORMAL,  # tangent
+)
+
+
+def default_surface() -> Program:
+    """Returns the program of surfaces without a material from Blender 5.0 on: an unchanged Principled BSDF.
+
+    Before 5.0, such surfaces are grey and diffuse, which is the library's own default material (key 0).
+    """
+    program = Program(name="Default Surface")
+    program.surface = program.add(Op.PRINCIPLED, _DEFAULT_INPUTS, MULTIPLE_SCATTERING)
+    return program

@@ -1,4 +1,4 @@
-"""The node program under construction: values, nodes, constants; and its hand-over to the native library."""
+"""Node programs: values, nodes and constants, and their conversion to native structs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FLOAT, VECTOR, COLOR, SHADER = "float", "vector", "color", "shader"
 
 @dataclass(frozen=True)
 class Value:
-    """A constant (node -1), or an output of a node of the program."""
+    """A constant (node -1), or an output of a node of a program."""
 
     kind: str
     constant: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
@@ -42,13 +42,13 @@ def constant_color(v: Any) -> Value:
 
 
 NO_NORMAL = Value(VECTOR)
-"""The surface's own normal, or its default tangent."""
+"""Stands for the normal of the surface, or for its default tangent."""
 BLACK_CLOSURE = Value(SHADER)
 
 
 @dataclass
 class Program:
-    """What a material, world or light becomes. Equal nodes are stored once."""
+    """The program of a material, world or light. Equal nodes are stored once."""
 
     name: str = ""
     surface: int = -1
@@ -58,15 +58,17 @@ class Program:
     uses_fallback: bool = False
     warnings: list[str] = field(default_factory=list)
     attribute_names: set[str] = field(default_factory=set)
-    """Attributes and UV maps that meshes must bring; "" is the colour attribute that renders take."""
+    """Attributes and UV maps that meshes must have; "" is the colour attribute that is active for renders."""
     nodes: list[tuple[int, int, int, int, int, int, int]] = field(default_factory=list)
     inputs: list[tuple[int, int, tuple[float, float, float, float]]] = field(default_factory=list)
     floats: array = field(default_factory=lambda: array("f"))
     names: list[str] = field(default_factory=list)
     _known: dict[Any, int] = field(default_factory=dict)
 
-    def add(self, op: Op, inputs: tuple[Value, ...] = (), mode: int = 0, floats: tuple[float, ...] = (), resource: int = 0) -> int:
-        """Index of a node. Values are what gradus_nodes.h lists for `op`, in order."""
+    def add(
+        self, op: Op, inputs: tuple[Value, ...] = (), mode: int = 0, floats: tuple[float, ...] = (), resource: int = 0
+    ) -> int:
+        """Adds a node and returns its index. gradus_nodes.h lists the inputs and floats of `op` in order."""
         key = (op, inputs, mode, floats, resource)
         index = self._known.get(key)
         if index is None:
@@ -78,7 +80,7 @@ class Program:
         return index
 
     def name_index(self, name: str) -> int:
-        """What a node's resource is for an attribute or UV map; the mesh must bring it."""
+        """Returns the resource number of an attribute or UV map, and requests it from meshes."""
         self.attribute_names.add(name)
         if name not in self.names:
             self.names.append(name)
@@ -89,7 +91,7 @@ class Program:
             self.warnings.append(text)
 
     def content(self) -> tuple[Any, ...]:
-        """Equal for equal programs."""
+        """Returns a value that is equal for equal programs."""
         return (
             self.name,
             self.surface,
@@ -104,7 +106,7 @@ class Program:
         )
 
     def to_native(self, native: Any) -> tuple[Any, list[Any]]:
-        """A native Material, and what must stay alive until it has been copied."""
+        """Returns a native Material, and the objects that must stay alive until the library has copied it."""
         nodes = (native.Node * max(len(self.nodes), 1))()
         for record, values in zip(nodes, self.nodes, strict=False):
             record.op, record.mode, record.first_input, record.input_count = values[:4]

@@ -1,23 +1,25 @@
-"""BSDFs but Principled, emission, mixing."""
+"""Shader nodes except the Principled BSDF."""
 
 from __future__ import annotations
 
-from .node import NodeView
+from .node import NodeView, translator
 from .ops import Op
 from .program import BLACK_CLOSURE, Value, constant_float
-from .registry import translator
 
 _RENDERED = frozenset({"GGX", "MULTI_GGX", "SHARP"})
 
 
 MULTIPLE_SCATTERING = 1
-"""Mode of closures, GRADUS_DISTRIBUTION_MULTIPLE."""
+"""The mode GRADUS_DISTRIBUTION_MULTIPLE of closures."""
 
 
 def distribution_mode(view: NodeView) -> int:
-    """MULTIPLE_SCATTERING, or 0. Other distributions (Beckmann, Ashikhmin-Shirley) are rendered as GGX of the same roughness.
+    """Returns MULTIPLE_SCATTERING or 0.
 
-    Smooth surfaces have none: Beckmann is what glass starts with in Blender 3.4, at a roughness of 0.
+    Other distributions (Beckmann, Ashikhmin-Shirley) are rendered as GGX with a warning.
+
+    A smooth surface gets no warning, because its distribution has no effect: Blender 3.4 creates glass with Beckmann
+    and a roughness of 0.
     """
     distribution = getattr(view.node, "distribution", "GGX")
     if distribution not in _RENDERED and not roughness(view).is_zero():
@@ -26,7 +28,7 @@ def distribution_mode(view: NodeView) -> int:
 
 
 def roughness(view: NodeView) -> Value:
-    """SHARP was a distribution before 4.0; it has no roughness."""
+    """Returns the roughness input. Before Blender 4.0 the distribution SHARP stood for a roughness of 0."""
     if getattr(view.node, "distribution", "") == "SHARP":
         return constant_float(0.0)
     return view.value("Roughness")
@@ -34,7 +36,7 @@ def roughness(view: NodeView) -> Value:
 
 @translator("ShaderNodeBsdfDiffuse")
 def diffuse(view: NodeView) -> Value:
-    # Rough surfaces conserve energy since 4.2.
+    # The Oren-Nayar model conserves energy from 4.2 on.
     mode = 1 if view.version >= (4, 2, 0) else 0
     return view.add_closure(Op.DIFFUSE, (view.value("Color"), view.value("Roughness"), view.direction("Normal")), mode)
 
@@ -66,13 +68,14 @@ def glass(view: NodeView) -> Value:
 @translator("ShaderNodeBsdfRefraction")
 def refraction(view: NodeView) -> Value:
     distribution_mode(view)
-    return view.add_closure(Op.REFRACTION, (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal")))
+    inputs = (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal"))
+    return view.add_closure(Op.REFRACTION, inputs)
 
 
 @translator("ShaderNodeBsdfMetallic")
 def metallic(view: NodeView) -> Value:
     if getattr(view.node, "fresnel_type", "F82") != "F82":
-        view.warn_replaced("is rendered with base and edge colour in place of a conductor's indices")
+        view.warn_replaced("is rendered with base and edge colour instead of the refractive indices of a conductor")
     inputs = (
         view.value("Base Color"),
         view.value("Edge Tint"),
@@ -87,9 +90,12 @@ def metallic(view: NodeView) -> Value:
 
 @translator("ShaderNodeBsdfSheen", "ShaderNodeBsdfVelvet")
 def sheen(view: NodeView) -> Value:
-    """Microfibres, as Blender has them since 4.0; before, Velvet was the lobe of Ashikhmin, which later Sheen nodes can choose."""
+    """Translates to the microfiber sheen of Blender 4.0.
+
+    The Ashikhmin distribution of Velvet and Sheen nodes is replaced by it.
+    """
     if getattr(view.node, "distribution", "ASHIKHMIN") == "ASHIKHMIN":
-        view.warn_replaced("is rendered as a sheen of microfibres")
+        view.warn_replaced("is rendered with the distribution Microfiber")
     return view.add_closure(Op.SHEEN, (view.value("Color"), view.value("Roughness", "Sigma"), view.direction("Normal")))
 
 

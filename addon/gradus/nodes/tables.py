@@ -1,13 +1,12 @@
-"""Colour ramps and curves, sampled as Cycles does."""
+"""Colour ramps and curves as tables, sampled as in Cycles."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from .node import NodeView
+from .node import NodeView, translator
 from .ops import Curves, Op
 from .program import COLOR, FLOAT, VECTOR, Value
-from .registry import translator
 
 _SAMPLES = 256
 
@@ -16,13 +15,13 @@ _SAMPLES = 256
 def color_ramp(view: NodeView) -> Value:
     ramp = view.node.color_ramp
     floats = tuple(float(c) for i in range(_SAMPLES) for c in ramp.evaluate(i / (_SAMPLES - 1)))
-    alpha = view.output == "Alpha"
     mode = 1 if ramp.interpolation == "CONSTANT" else 0
-    return view.add(Op.RAMP, (view.value("Fac"),), mode, floats, kind=FLOAT if alpha else COLOR, output=1 if alpha else 0)
+    kind, output = (FLOAT, 1) if view.output == "Alpha" else (COLOR, 0)
+    return view.add(Op.RAMP, (view.value("Fac"),), mode, floats, kind=kind, output=output)
 
 
 def _range(curves: list[Any]) -> tuple[float, float]:
-    """Where any of the curves has points."""
+    """Returns the range in which the curves have points."""
     lows = [curve.points[0].location[0] for curve in curves]
     highs = [curve.points[len(curve.points) - 1].location[0] for curve in curves]
     low, high = min(lows), max(highs)
@@ -30,10 +29,10 @@ def _range(curves: list[Any]) -> tuple[float, float]:
 
 
 def _header(mapping: Any, curves: list[Any]) -> tuple[list[float], list[float]]:
-    """Range and extrapolation, and the places to sample."""
+    """Returns range and extrapolation, and the positions to sample."""
     low, high = _range(curves)
-    places = [low + (high - low) * i / (_SAMPLES - 1) for i in range(_SAMPLES)]
-    return [low, high, 1.0 if mapping.extend == "EXTRAPOLATED" else 0.0], places
+    positions = [low + (high - low) * i / (_SAMPLES - 1) for i in range(_SAMPLES)]
+    return [low, high, 1.0 if mapping.extend == "EXTRAPOLATED" else 0.0], positions
 
 
 @translator("ShaderNodeRGBCurve")
@@ -41,9 +40,9 @@ def rgb_curves(view: NodeView) -> Value:
     mapping = view.node.mapping
     mapping.initialize()
     red, green, blue, combined = mapping.curves
-    floats, places = _header(mapping, [red, green, blue, combined])
-    for place in places:
-        base = mapping.evaluate(combined, place)
+    floats, positions = _header(mapping, [red, green, blue, combined])
+    for position in positions:
+        base = mapping.evaluate(combined, position)
         floats.extend(mapping.evaluate(curve, base) for curve in (red, green, blue))
     return view.add(Op.CURVES, (view.value("Fac"), view.value("Color")), Curves.RGB, tuple(floats))
 
@@ -53,9 +52,9 @@ def vector_curves(view: NodeView) -> Value:
     mapping = view.node.mapping
     mapping.initialize()
     curves = list(mapping.curves)[:3]
-    floats, places = _header(mapping, curves)
-    for place in places:
-        floats.extend(mapping.evaluate(curve, place) for curve in curves)
+    floats, positions = _header(mapping, curves)
+    for position in positions:
+        floats.extend(mapping.evaluate(curve, position) for curve in curves)
     return view.add(Op.CURVES, (view.value("Fac"), view.value("Vector")), Curves.VECTOR, tuple(floats), kind=VECTOR)
 
 
@@ -64,6 +63,7 @@ def float_curve(view: NodeView) -> Value:
     mapping = view.node.mapping
     mapping.initialize()
     curve = mapping.curves[0]
-    floats, places = _header(mapping, [curve])
-    floats.extend(mapping.evaluate(curve, place) for place in places)
-    return view.add(Op.CURVES, (view.value("Factor", "Fac"), view.value("Value")), Curves.FLOAT, tuple(floats), kind=FLOAT)
+    floats, positions = _header(mapping, [curve])
+    floats.extend(mapping.evaluate(curve, position) for position in positions)
+    inputs = (view.value("Factor", "Fac"), view.value("Value"))
+    return view.add(Op.CURVES, inputs, Curves.FLOAT, tuple(floats), kind=FLOAT)

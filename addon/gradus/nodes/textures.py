@@ -2,30 +2,32 @@
 
 from __future__ import annotations
 
-from .node import NodeView
-from .ops import Gradient, Mapping, NoiseType, Op, Projection, TexCoord
+from typing import Any
+
+from .node import NodeView, translator
+from .ops import Gradient, Mapping, NoiseType, Op, Projection, Sky, TexCoord
 from .program import COLOR, FLOAT, Value, constant_vector
-from .registry import translator
 
 _INTERPOLATION = {"Linear": 0, "Closest": 1, "Cubic": 2, "Smart": 2}
 _EXTENSION = {"REPEAT": 0, "EXTEND": 1, "CLIP": 2, "MIRROR": 3}
 _PROJECTION = {"FLAT": Projection.FLAT, "BOX": Projection.BOX, "SPHERE": Projection.SPHERE, "TUBE": Projection.TUBE}
+_NO_DISC = -1.0
 
 
 def _mapped(view: NodeView, vector: Value) -> Value:
-    """The node's own mapping, which has no sockets; scripts and old files set it."""
+    """Applies the texture mapping of a node, which has no sockets and is set by scripts and old files."""
     mapping = getattr(view.node, "texture_mapping", None)
     if mapping is None:
         return vector
     location, rotation, scale = tuple(mapping.translation), tuple(mapping.rotation), tuple(mapping.scale)
     if not any(location) and not any(rotation) and scale == (1.0, 1.0, 1.0):
         return vector
-    mode = {"POINT": Mapping.POINT, "TEXTURE": Mapping.TEXTURE, "VECTOR": Mapping.VECTOR, "NORMAL": Mapping.NORMAL}[mapping.vector_type]
-    return view.add_vector(Op.MAPPING, (vector, constant_vector(location), constant_vector(rotation), constant_vector(scale)), mode)
+    inputs = (vector, constant_vector(location), constant_vector(rotation), constant_vector(scale))
+    return view.add_vector(Op.MAPPING, inputs, Mapping[mapping.vector_type])
 
 
 def coordinates(view: NodeView, default: TexCoord) -> Value:
-    """What is linked to Vector, else the coordinates that such textures take by themselves."""
+    """Returns what is linked to Vector, or the default coordinates of the texture."""
     linked = view.linked("Vector")
     return _mapped(view, view.add_vector(Op.TEX_COORD, (), default) if linked is None else linked)
 
@@ -35,7 +37,7 @@ def _generated(view: NodeView) -> Value:
 
 
 def _divides_by_alpha(view: NodeView, image: object) -> bool:
-    """As Cycles: where the Alpha output is used, colours are not associated."""
+    """Returns whether colours are divided by alpha: if the Alpha output is used, as in Cycles."""
     if image is None or image.alpha_mode in {"CHANNEL_PACKED", "NONE"} or image.colorspace_settings.is_data:
         return False
     return view.node.outputs["Alpha"].is_linked
@@ -45,12 +47,13 @@ def _divides_by_alpha(view: NodeView, image: object) -> bool:
 def image_texture(view: NodeView) -> Value:
     node, image = view.node, view.node.image
     key = view.walker.resources.image(image, node.image_user) if image is not None else 0
-    mode = _PROJECTION[node.projection] | _INTERPOLATION[node.interpolation] << 2 | _EXTENSION.get(node.extension, 0) << 4
+    mode = _PROJECTION[node.projection] | _INTERPOLATION[node.interpolation] << 2
+    mode |= _EXTENSION.get(node.extension, 0) << 4
     mode |= _divides_by_alpha(view, image) << 6
     floats = (float(node.projection_blend),) if node.projection == "BOX" else ()
-    alpha = view.output == "Alpha"
     vector = coordinates(view, TexCoord.UV)
-    return view.add(Op.IMAGE, (vector,), mode, floats, key, kind=FLOAT if alpha else COLOR, output=1 if alpha else 0)
+    kind, output = (FLOAT, 1) if view.output == "Alpha" else (COLOR, 0)
+    return view.add(Op.IMAGE, (vector,), mode, floats, key, kind=kind, output=output)
 
 
 @translator("ShaderNodeTexEnvironment")
@@ -63,8 +66,10 @@ def environment_texture(view: NodeView) -> Value:
     return view.add(Op.ENVIRONMENT, (vector,), mode, resource=key)
 
 
-def _color_or_factor(view: NodeView, op: Op, inputs: tuple[Value, ...], mode: int = 0, floats: tuple[float, ...] = ()) -> Value:
-    """Patterns: color is output 0, factor 1."""
+def _color_or_factor(
+    view: NodeView, op: Op, inputs: tuple[Value, ...], mode: int = 0, floats: tuple[float, ...] = ()
+) -> Value:
+    """Adds a pattern, whose output 0 is the colour and whose output 1 is the factor."""
     factor = view.output == "Fac"
     return view.add(op, inputs, mode, floats, kind=FLOAT if factor else COLOR, output=1 if factor else 0)
 
@@ -92,7 +97,8 @@ def noise(view: NodeView) -> Value:
 
 @translator("ShaderNodeTexChecker")
 def checker(view: NodeView) -> Value:
-    return _color_or_factor(view, Op.CHECKER, (_generated(view), view.value("Color1"), view.value("Color2"), view.value("Scale")))
+    inputs = (_generated(view), view.value("Color1"), view.value("Color2"), view.value("Scale"))
+    return _color_or_factor(view, Op.CHECKER, inputs)
 
 
 @translator("ShaderNodeTexGradient")
@@ -107,7 +113,8 @@ def white_noise(view: NodeView) -> Value:
     linked = view.linked("Vector")
     vector = view.value("Vector") if linked is None else linked
     mode = int(view.node.noise_dimensions[0])
-    return view.add(Op.WHITE_NOISE, (vector, view.value("W")), mode, kind=FLOAT if value else COLOR, output=0 if value else 1)
+    kind, output = (FLOAT, 0) if value else (COLOR, 1)
+    return view.add(Op.WHITE_NOISE, (vector, view.value("W")), mode, kind=kind, output=output)
 
 
 @translator("ShaderNodeTexWave")
@@ -134,3 +141,19 @@ def brick(view: NodeView) -> Value:
     inputs = (_generated(view), *(view.value(name) for name in names))
     floats = (float(node.offset), float(node.offset_frequency), float(node.squash), float(node.squash_frequency))
     return _color_or_factor(view, Op.BRICK, inputs, 0, floats)
+
+
+def _sky_settings(node: Any) -> tuple[float, ...]:
+    """Returns the floats of SKY in the order of gradus_nodes.h. The library interprets them."""
+    if node.sky_type in {"PREETHAM", "HOSEK_WILKIE"}:
+        return (*node.sun_direction, node.turbidity, node.ground_albedo)
+    aerosols = node.aerosol_density if hasattr(node, "aerosol_density") else node.dust_density  # renamed in 5.0
+    size = node.sun_size if node.sun_disc else _NO_DISC
+    densities = (node.air_density, aerosols, node.ozone_density)
+    return (node.sun_elevation, node.sun_rotation, size, node.sun_intensity, node.altitude, *densities)
+
+
+@translator("ShaderNodeTexSky")
+def sky_texture(view: NodeView) -> Value:
+    vector = coordinates(view, TexCoord.GENERATED)
+    return view.add(Op.SKY, (vector,), Sky[view.node.sky_type], _sky_settings(view.node))

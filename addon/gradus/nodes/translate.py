@@ -1,4 +1,4 @@
-"""From a material, world or light to its program."""
+"""Translates a material, world or light to its program."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .program import SHADER, Program, constant_color, constant_float
 from .tree import find_socket
 from .walker import Walker
 
-# A chain of nodes is a chain of calls, about four deep per node.
+# The translation of a chain of nodes is recursive, with about four nested calls per node.
 _RECURSION_LIMIT = 20000
 
 _KINDS = {"MATERIAL": "SURFACE", "SURFACE": "SURFACE", "WORLD": "WORLD", "LIGHT": "LIGHT"}
@@ -23,7 +23,10 @@ def host_version() -> tuple[int, ...]:
 
 
 def translate(block: Any, kind: str, resources: Any, version: tuple[int, ...] | None = None) -> Program:
-    """The program of a material (kind SURFACE or MATERIAL), world (WORLD) or light (LIGHT). Never raises for what a graph contains."""
+    """Returns the program of a material (kind SURFACE or MATERIAL), world (WORLD) or light (LIGHT).
+
+    Does not raise for any content of a graph.
+    """
     kind = _KINDS[kind]
     version = version or host_version()
     program = Program(name=block.name)
@@ -36,7 +39,7 @@ def translate(block: Any, kind: str, resources: Any, version: tuple[int, ...] | 
     sys.setrecursionlimit(max(limit, _RECURSION_LIMIT))
     try:
         _walk(program, tree, resources, version, kind)
-    except Exception as error:  # noqa: BLE001  (a graph that nobody thought of must cost its material, never the frame)
+    except Exception as error:  # noqa: BLE001  (an unexpected graph must not prevent the frame)
         _replace_all(program, kind, f"{type(error).__name__}: {error}")
     finally:
         sys.setrecursionlimit(limit)
@@ -44,10 +47,10 @@ def translate(block: Any, kind: str, resources: Any, version: tuple[int, ...] | 
 
 
 def _replace_all(program: Program, kind: str, reason: str) -> None:
-    program.warn(f"{program.name}: its nodes could not be translated, grey instead ({reason})")
+    program.warn(f"{program.name}: its nodes could not be translated and are replaced by grey ({reason})")
     program.uses_fallback = True
-    op = Op.DIFFUSE if kind == "SURFACE" else Op.EMISSION
-    program.surface = program.add(op, (constant_color((0.8, 0.8, 0.8)), constant_float(1.0 if op == Op.EMISSION else 0.0)))
+    op, strength_or_roughness = (Op.DIFFUSE, 0.0) if kind == "SURFACE" else (Op.EMISSION, 1.0)
+    program.surface = program.add(op, (constant_color((0.8, 0.8, 0.8)), constant_float(strength_or_roughness)))
 
 
 def _settings(program: Program, block: Any, kind: str) -> None:
@@ -55,8 +58,9 @@ def _settings(program: Program, block: Any, kind: str) -> None:
         return
     program.pass_index = getattr(block, "pass_index", 0)
     cycles = getattr(block, "cycles", None)
-    # 3.4: a switch; later an enumeration.
-    program.sample_as_light = bool(getattr(cycles, "sample_as_light", True)) and getattr(cycles, "emission_sampling", "AUTO") != "NONE"
+    # Cycles has a Boolean in 3.4 and an enumeration later.
+    is_sampled = getattr(cycles, "emission_sampling", "AUTO") != "NONE"
+    program.sample_as_light = is_sampled and bool(getattr(cycles, "sample_as_light", True))
     shadow = getattr(block, "use_transparent_shadow", None)
     if shadow is None:
         shadow = getattr(cycles, "use_transparent_shadow", True)
@@ -64,7 +68,7 @@ def _settings(program: Program, block: Any, kind: str) -> None:
 
 
 def _node_tree(block: Any, version: tuple[int, ...]) -> Any:
-    """None: it has no nodes, or they are switched off (not possible from 5.0 on but for lights)."""
+    """Returns the node tree, or None if nodes are disabled. From 5.0 on, they can be disabled for lights only."""
     if _is_light(block) or version < (5, 0, 0):
         return block.node_tree if block.use_nodes else None
     return block.node_tree
@@ -95,20 +99,20 @@ def _walk(program: Program, tree: Any, resources: Any, version: tuple[int, ...],
     if value.kind == SHADER and not value.is_constant:
         program.surface = value.node
     if _is_fed(walker, output, "Volume"):
-        _leave_out(program, "volume")
+        _warn_left_out(program, "volume")
         if kind == "SURFACE" and program.surface < 0:
-            # A surface that only bounds a volume is not seen; without this a box of fog would be a black box.
+            # A surface that only bounds a volume is invisible. Without this, a box of fog would be black.
             program.surface = program.add(Op.TRANSPARENT, (constant_color((1.0, 1.0, 1.0)),))
     if kind == "SURFACE" and _is_fed(walker, output, "Displacement"):
-        _leave_out(program, "displacement")
+        _warn_left_out(program, "displacement")
 
 
 def _is_fed(walker: Walker, output: Any, name: str) -> bool:
-    """Whether something is linked to an input of the output node."""
+    """Returns whether an input of the output node has a link."""
     socket = find_socket(output.inputs, name)
     return socket is not None and walker.tree(()).source(socket) is not None
 
 
-def _leave_out(program: Program, what: str) -> None:
-    program.warn(f"{program.name}: {what} is not supported yet and is left out")
+def _warn_left_out(program: Program, what: str) -> None:
+    program.warn(f"{program.name}: {what} is not supported and is left out")
     program.uses_fallback = True

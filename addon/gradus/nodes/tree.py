@@ -1,4 +1,4 @@
-"""What is linked to what in a node tree, found once: `socket.links` searches all links of the tree each time."""
+"""The links of a node tree by socket. `socket.links` would search all links of the tree in each call."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 
 class Tree:
-    """Valid links of a node tree, by the socket they lead to. Muted and invalid links are none."""
+    """The links of a node tree by their input socket, without muted and invalid links."""
 
     def __init__(self, node_tree: Any) -> None:
         self.node_tree = node_tree
@@ -16,11 +16,11 @@ class Tree:
                 self._sources[link.to_socket.as_pointer()] = (link.from_node, link.from_socket)
 
     def source(self, socket: Any) -> tuple[Any, Any] | None:
-        """Node and output that feed an input."""
+        """Returns the node and the output that are linked to an input, or None."""
         return self._sources.get(socket.as_pointer())
 
     def group_output(self) -> Any:
-        """The group output node that counts; None if there is none."""
+        """Returns the active group output node, or None."""
         outputs = [node for node in self.node_tree.nodes if node.bl_idname == "NodeGroupOutput"]
         for node in outputs:
             if node.is_active_output:
@@ -29,7 +29,10 @@ class Tree:
 
 
 def find_socket(sockets: Any, *identifiers: str) -> Any:
-    """The first of the given identifiers (aliases over Blender's versions) among a node's sockets; None if there is none."""
+    """Returns the socket with the first identifier that exists, or None.
+
+    Identifiers differ between versions of Blender.
+    """
     for identifier in identifiers:
         for socket in sockets:
             if socket.identifier == identifier:

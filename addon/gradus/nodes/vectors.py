@@ -1,11 +1,10 @@
-"""Mapping, vector arithmetic and transforms."""
+"""Nodes of vectors: mapping, arithmetic and transforms."""
 
 from __future__ import annotations
 
-from .node import NodeView
+from .node import NodeView, translator
 from .ops import Mapping, Op, VectorMath
 from .program import FLOAT, VECTOR, Value
-from .registry import translator
 
 
 @translator("ShaderNodeMapping")
@@ -26,7 +25,8 @@ def vector_math(view: NodeView) -> Value:
 @translator("ShaderNodeVectorRotate")
 def vector_rotate(view: NodeView) -> Value:
     mode = {"AXIS_ANGLE": 0, "X_AXIS": 1, "Y_AXIS": 2, "Z_AXIS": 3, "EULER_XYZ": 4}[view.node.rotation_type]
-    inputs = (view.value("Vector"), view.value("Center"), view.value("Axis"), view.value("Angle"), view.value("Rotation"))
+    names = ("Vector", "Center", "Axis", "Angle", "Rotation")
+    inputs = tuple(view.value(name) for name in names)
     return view.add_vector(Op.VECTOR_ROTATE, inputs, mode | bool(view.node.invert) << 3)
 
 

@@ -1,20 +1,20 @@
-"""Walks a graph from its output backwards: links, groups, reroutes, muted nodes, loops."""
+"""Walks a graph backwards from its output, through links, groups, reroutes and muted nodes."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from . import convert, fallback, registry
-from .node import NodeView
+from . import convert, fallback
+from .node import NodeView, find_translator
 from .program import SHADER, Program, Value
 from .tree import Tree, find_socket
 
 Path = tuple[Any, ...]
-"""The group nodes that were entered, outermost first."""
+"""The group nodes around a node, outermost first."""
 
 
 class Walker:
-    """Translates what an input needs. Each output of each node is translated once per way of groups that leads to it."""
+    """Translates the nodes that an input needs. Each output of a node is translated once per path of groups."""
 
     def __init__(self, program: Program, resources: Any, node_tree: Any, version: tuple[int, ...], kind: str) -> None:
         self.program = program
@@ -34,7 +34,7 @@ class Walker:
         return self._trees[key]
 
     def input(self, socket: Any, path: Path) -> Value:
-        """Value of an input: what is linked, converted to the socket's kind, or its default."""
+        """Returns the value of an input: the linked value, converted to the kind of the socket, or its default."""
         linked = self.linked(socket, path)
         kind = convert.kind_of(socket)
         if linked is not None:
@@ -44,12 +44,12 @@ class Walker:
         return convert.default_value(socket)
 
     def linked(self, socket: Any, path: Path) -> Value | None:
-        """Value of what feeds an input; None where nothing does."""
+        """Returns the value that is linked to an input, or None."""
         source = self.tree(path).source(socket)
         return self.output(source[0], source[1], path) if source else None
 
     def output(self, node: Any, socket: Any, path: Path) -> Value | None:
-        """Value of an output. A loop counts as nothing linked."""
+        """Returns the value of an output. A link that closes a loop is ignored."""
         key = (tuple(group.as_pointer() for group in path), node.as_pointer(), socket.identifier)
         if key in self._done:
             return self._done[key]
@@ -74,18 +74,18 @@ class Walker:
         if name == "ShaderNodeGroup" or node.type == "GROUP":
             return self._group(node, socket, path)
         view = NodeView(self, node, socket, path)
-        translate = registry.find(name)
+        translate = find_translator(name)
         return translate(view) if translate else fallback.replace(view)
 
     def _pass_through(self, node: Any, socket: Any, path: Path) -> Value | None:
-        """A muted node hands on the inputs that Blender connects inside."""
+        """Returns the value that a muted node passes through, by its internal links."""
         for link in node.internal_links:
             if link.to_socket.identifier == socket.identifier:
                 return self.linked_or_default(link.from_socket, socket, path)
         return None
 
     def linked_or_default(self, socket: Any, output: Any, path: Path) -> Value | None:
-        """An input's value as an output would carry it."""
+        """Returns the value of an input, converted to the kind of an output."""
         kind = convert.kind_of(output)
         value = self.input(socket, path)
         if kind == SHADER and value.is_constant:

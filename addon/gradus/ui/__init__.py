@@ -1,15 +1,33 @@
-"""Panels of the engine, and Blender's own where they apply."""
+"""The panels of Gradus, and the panels of Blender that are shown for Gradus."""
 
 from __future__ import annotations
 
 import bpy
 
-from . import decomposition_panels, layer_panels, motion_panels, object_panels, pass_panels, presets, render_panels, shading_panels, stock
+from . import (
+    decomposition_panels,
+    motion_panels,
+    object_panels,
+    presets,
+    render_panels,
+    shading_panels,
+    stock,
+    view_layer_panels,
+)
+
+MODULES = (
+    presets,
+    render_panels,
+    decomposition_panels,
+    motion_panels,
+    view_layer_panels,
+    object_panels,
+    shading_panels,
+)
 
 
 def classes() -> tuple[type, ...]:
-    modules = (presets, render_panels, decomposition_panels, motion_panels, pass_panels, layer_panels, object_panels, shading_panels)
-    return tuple(kind for module in modules for kind in module.CLASSES)
+    return tuple(kind for module in MODULES for kind in module.CLASSES)
 
 
 def register() -> None:

@@ -1,4 +1,4 @@
-"""What all panels of ours share."""
+"""Base classes of all panels."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ ENGINE = "GRADUS"
 
 
 class EnginePanel:
-    """Mixin: a panel of the properties editor that shows for our engine only."""
+    """Mixin for panels of the properties editor that are shown for Gradus only."""
 
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
@@ -19,7 +19,7 @@ class EnginePanel:
         return context.engine == ENGINE
 
     def columns(self) -> Any:
-        """The layout, in Blender's usual two columns of label and value."""
+        """Returns the layout with Blender's two columns of labels and values."""
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False

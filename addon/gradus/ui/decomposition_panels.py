@@ -1,4 +1,4 @@
-"""Components of the picture: the set, what the library makes of it, and to which of them a path belongs."""
+"""Components: the set, its description by the library, and the component of a path."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .render_panels import characters
 
 
 def described(scene: Any) -> tuple[components.Component, ...]:
-    """Components of the scene's set. Raises GradusError or Failure where it is none."""
+    """Returns the components of the scene's set. Raises GradusError or Failure if the set is malformed."""
     return components.describe(native.load(), _text(scene))
 
 
@@ -40,7 +40,7 @@ class GRADUS_RENDER_PT_decomposition(RenderPanel, bpy.types.Panel):
 
 
 def draw_set(layout: Any, context: Any) -> None:
-    """What the library makes of the set, or why it is none."""
+    """Draws the components of the set, or its error."""
     try:
         found = described(context.scene)
     except (native.GradusError, Failure) as error:
@@ -58,17 +58,17 @@ def draw_error(layout: Any, text: str, width: int) -> None:
 
 
 def draw_components(layout: Any, found: tuple[components.Component, ...]) -> None:
-    """A row for each: name, expression, some of its paths."""
+    """Draws a row for each component: its name, its expression and some of its paths."""
     column = layout.column(align=True)
     for component in found:
-        name, rest = _halves(column, 0.3)
-        expression, examples = _halves(rest, 0.4)
+        name, remainder = _split(column, 0.3)
+        expression, examples = _split(remainder, 0.4)
         name.label(text=component.name)
-        expression.label(text=component.expression or "all else")
-        examples.label(text=component.examples or "nothing")
+        expression.label(text=component.expression or "all other paths")
+        examples.label(text=component.examples or "no paths")
 
 
-def _halves(layout: Any, share: float) -> tuple[Any, Any]:
+def _split(layout: Any, share: float) -> tuple[Any, Any]:
     split = layout.split(factor=share)
     return split.row(), split.row()
 
@@ -83,10 +83,10 @@ def draw_path(layout: Any, scene: Any, path: str, width: int) -> None:
 
 
 class GRADUS_OT_write_out_components(bpy.types.Operator):
-    """Write the automatic set into the field, to be changed"""
+    """Write the default set into the field, so that it can be edited"""
 
     bl_idname = "gradus.write_out_components"
-    bl_label = "Write Out"
+    bl_label = "Insert Default Components"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
 
     @classmethod
@@ -96,10 +96,10 @@ class GRADUS_OT_write_out_components(bpy.types.Operator):
     def execute(self, context: Any) -> set[str]:
         try:
             found = described(context.scene)
-        except native.GradusError as error:  # without the library nobody knows the set
+        except native.GradusError as error:  # the library is missing
             self.report({"ERROR"}, error.text)
             return {"CANCELLED"}
-        context.scene.gradus.components = components.written(found)
+        context.scene.gradus.components = components.to_text(found)
         return {"FINISHED"}
 
 

@@ -1,4 +1,7 @@
-"""Motion blur: of the scene, and of an object. Position and steps are where Cycles keeps them, so that a scene means the same to both."""
+"""Panels of motion blur for scenes and objects.
+
+Position and steps are properties of Cycles, which both engines share.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,16 @@ import bpy
 from ..export import shutter
 from .base import EnginePanel, RenderPanel
 from .object_panels import SURFACES
+
+CURVE_SHAPES = (
+    ("SMOOTH", "SMOOTHCURVE"),
+    ("ROUND", "SPHERECURVE"),
+    ("ROOT", "ROOTCURVE"),
+    ("SHARP", "SHARPCURVE"),
+    ("LINE", "LINCURVE"),
+    ("MAX", "NOCURVE"),
+)
+"""Presets of the shutter curve and their icons."""
 
 
 class GRADUS_RENDER_PT_motion_blur(RenderPanel, bpy.types.Panel):
@@ -38,8 +51,7 @@ class GRADUS_RENDER_PT_motion_blur_curve(RenderPanel, bpy.types.Panel):
         layout.active = render.use_motion_blur
         layout.template_curve_mapping(render, "motion_blur_shutter_curve")
         row = layout.row(align=True)
-        for shape, icon in (("SMOOTH", "SMOOTHCURVE"), ("ROUND", "SPHERECURVE"), ("ROOT", "ROOTCURVE"), ("SHARP", "SHARPCURVE"),
-                            ("LINE", "LINCURVE"), ("MAX", "NOCURVE")):  # fmt: skip
+        for shape, icon in CURVE_SHAPES:
             row.operator("render.shutter_curve_preset", icon=icon, text="").shape = shape
 
 

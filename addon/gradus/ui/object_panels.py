@@ -1,4 +1,4 @@
-"""Objects: which rays see them (the stock panel Visibility leaves this to the engine), and their shadow terminator."""
+"""Panels of objects: ray visibility, which Blender leaves to the engine, and the shadow terminator."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..export.visibility import RAY_SWITCHES
 from .base import EnginePanel
 
 SURFACES = frozenset({"MESH", "CURVE", "SURFACE", "META", "FONT"})
-SHOWN = SURFACES | {"LIGHT", "EMPTY"}  # empties show collections
+SHOWN = SURFACES | {"LIGHT", "EMPTY"}  # empties may instance collections
 
 
 class GRADUS_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
@@ -41,10 +41,12 @@ class GRADUS_OBJECT_PT_shadow_terminator(EnginePanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context: Any) -> bool:
         obj = context.object
-        return super().poll(context) and obj is not None and obj.type in SURFACES and shadow_terminator.owner(obj) is not None
+        is_surface = obj is not None and obj.type in SURFACES
+        return super().poll(context) and is_surface and shadow_terminator.owner(obj) is not None
 
     def draw(self, context: Any) -> None:
-        self.columns().prop(shadow_terminator.owner(context.object), shadow_terminator.GEOMETRY_OFFSET, text="Geometry Offset")
+        owner = shadow_terminator.owner(context.object)
+        self.columns().prop(owner, shadow_terminator.GEOMETRY_OFFSET, text="Geometry Offset")
 
 
 CLASSES = (GRADUS_OBJECT_PT_ray_visibility, GRADUS_OBJECT_PT_shadow_terminator)

@@ -1,4 +1,4 @@
-"""Presets of the sampling settings: three of ours, and those that the user saves."""
+"""Presets of the sampling settings: three built-in ones, and those of the user."""
 
 from __future__ import annotations
 
@@ -13,11 +13,24 @@ FOLDER = "gradus/sampling"
 BUILT_IN: dict[str, tuple[str, dict[str, Any]]] = {
     "DRAFT": ("Draft", {"samples": 16, "noise_threshold": 0.1, "reconstruction": "AUTO"}),
     "FINAL": ("Final", {"samples": 256, "noise_threshold": 0.01, "reconstruction": "AUTO"}),
-    "REFERENCE": ("Reference", {"samples": 4096, "noise_threshold": 0.0, "integrator": "PATH", "reconstruction": "NONE"}),
+    "REFERENCE": (
+        "Reference",
+        {"samples": 4096, "noise_threshold": 0.0, "integrator": "PATH", "reconstruction": "NONE"},
+    ),
 }
-"""Identifier -> label, values; what is not named goes to its default."""
+"""Label and values by identifier. Settings that are not listed are reset to their defaults."""
 
-SAVED = ("samples", "min_samples", "noise_threshold", "time_limit", "integrator", "reconstruction", "reconstruction_alpha", "denoiser")
+SAVED = (
+    "samples",
+    "min_samples",
+    "noise_threshold",
+    "time_limit",
+    "integrator",
+    "reconstruction",
+    "reconstruction_alpha",
+    "denoiser",
+)
+"""Settings that a preset contains."""
 
 
 def apply(settings: Any, identifier: str) -> None:

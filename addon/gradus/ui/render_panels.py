@@ -1,4 +1,4 @@
-"""Panels of the render tab."""
+"""Panels of the render properties."""
 
 from __future__ import annotations
 
@@ -29,22 +29,28 @@ class GRADUS_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
 
 
 FROM_GRADIENTS = ("L2", "L1")
-"""Reconstructions that need gradients, and weigh the image against them."""
+"""Reconstructions that need gradients and weigh the sampled image against them."""
 
 
 def bias(settings: Any, samples: int) -> tuple[str, str]:
-    """What is known of the result's bias before it is rendered, and the icon. Whether there is a denoiser is found out by the render."""
+    """Returns a text about the bias of the settings, and its icon.
+
+    Only the render finds out whether there is a denoiser.
+    """
     if settings.integrator == "PATH" and settings.reconstruction in FROM_GRADIENTS:
-        return "Plain paths have no gradients to reconstruct from", "ERROR"
+        return "Path tracing has no gradients for this reconstruction", "ERROR"
     if settings.denoiser == "OIDN":
-        return "Biased: it is denoised", "INFO"
+        return "Biased by the denoiser", "INFO"
     if settings.denoiser == "AUTO" and samples >= DENOISER_PAYS:
-        return "Biased where a denoiser is found", "INFO"
+        return "Biased if a denoiser is found", "INFO"
     if settings.clamp_direct > 0.0 or settings.clamp_indirect > 0.0:
-        return "Biased: light is clamped", "INFO"
-    if settings.reconstruction in ("L1", "REGULARIZED") or (settings.reconstruction == "AUTO" and settings.integrator != "PATH"):
+        return "Biased by clamping", "INFO"
+    is_automatic = settings.reconstruction == "AUTO" and settings.integrator != "PATH"
+    if is_automatic or settings.reconstruction in ("L1", "REGULARIZED"):
         return "Consistent", "INFO"
-    return ("Unbiased at threshold 0", "INFO") if settings.noise_threshold > 0.0 else ("Unbiased", "CHECKMARK")
+    if settings.noise_threshold > 0.0:
+        return "Unbiased if the noise threshold is 0", "INFO"
+    return "Unbiased", "CHECKMARK"
 
 
 class GRADUS_RENDER_PT_method(RenderPanel, bpy.types.Panel):
@@ -97,14 +103,23 @@ class GRADUS_RENDER_PT_advanced(RenderPanel, bpy.types.Panel):
             layout.prop(settings, name)
 
 
+BOUNCE_LIMITS = (
+    "max_bounces",
+    "diffuse_bounces",
+    "glossy_bounces",
+    "transmission_bounces",
+    "transparent_max_bounces",
+)
+
+
 class GRADUS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
     bl_label = "Light Paths"
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
 
     def draw(self, context: Any) -> None:
         layout, settings = self.columns(), context.scene.gradus
-        column = layout.column(align=True, heading="Most Bounces")
-        for name in ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "transparent_max_bounces"):
+        column = layout.column(align=True, heading="Max Bounces")
+        for name in BOUNCE_LIMITS:
             column.prop(settings, name)
         column = layout.column(align=True, heading="Clamping")
         column.prop(settings, "clamp_direct")
@@ -114,7 +129,7 @@ class GRADUS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
 
 
 class GRADUS_OT_copy_from_cycles(bpy.types.Operator):
-    """Set the limits of bounces, the exposure and the pixel filter to those that this scene has for Cycles"""
+    """Copy the limits of bounces, the exposure and the pixel filter from the Cycles settings of this scene"""
 
     bl_idname = "gradus.copy_from_cycles"
     bl_label = "Copy from Cycles"
@@ -161,39 +176,41 @@ class GRADUS_RENDER_PT_plan(RenderPanel, bpy.types.Panel):
         layout = self.layout
         summary = store.summaries.get((context.scene.name, context.view_layer.name))
         if summary is None:
-            layout.label(text="Nothing was rendered yet")
+            layout.label(text="No render yet")
             return
         column, width = layout.column(align=True), characters(context)
         for line in plan_lines(summary):
-            for part in textwrap.wrap(line, width, subsequent_indent="    "):
-                column.label(text=part)
+            for wrapped in textwrap.wrap(line, width, subsequent_indent="    "):
+                column.label(text=wrapped)
         for text in summary.get("warnings", []):
-            for index, part in enumerate(textwrap.wrap(text, width)):
-                column.label(text=part, icon="BLANK1" if index else "ERROR")
+            for index, wrapped in enumerate(textwrap.wrap(text, width)):
+                column.label(text=wrapped, icon="BLANK1" if index else "ERROR")
 
 
 def characters(context: Any) -> int:
-    """How many fit into a line of the panel; labels do not wrap by themselves."""
+    """Returns how many characters fit into a line of a panel, because Blender does not wrap labels."""
     per_character = 6.5 * context.preferences.system.ui_scale  # pixels, on average
     return max(20, int(context.region.width / per_character) - 6)
 
 
 PHASES = ("export", "build", "links", "sample", "preview", "store", "reconstruct", "denoise", "filter", "upload")
-"""Of a stats object, in the order in which they come."""
+"""Phases of a stats object in the order of the render."""
 
 
 def plan_lines(summary: dict[str, Any]) -> list[str]:
-    """What was rendered, how, and why: the plan of a stats object in words."""
+    """Returns the stats and the plan of a render as lines of text."""
     seconds = summary.get("seconds", {})
-    lines = [f"Frame {summary.get('frame')}: {summary.get('samples', 0):g} samples per pixel in {seconds.get('total', 0.0):.1f} s"]
+    samples, total = summary.get("samples", 0), seconds.get("total", 0.0)
+    lines = [f"Frame {summary.get('frame')}: {samples:g} samples per pixel in {total:.1f} s"]
     lines += [f"{phase.capitalize()}: {seconds[phase]:.2f} s" for phase in PHASES if seconds.get(phase, 0.0) >= 0.005]
     for name, value in summary.get("plan", {}).items():
+        label = name.replace("_", " ").capitalize()
         if isinstance(value, dict):
-            lines += [f"{name.replace('_', ' ').capitalize()}: {key.replace('_', ' ')}: {reason}" for key, reason in value.items()]
+            lines += [f"{label}: {key.replace('_', ' ')}: {reason}" for key, reason in value.items()]
         elif isinstance(value, list):
-            lines += [f"{name.replace('_', ' ').capitalize()}: {item}" for item in value]
+            lines += [f"{label}: {item}" for item in value]
         else:
-            lines.append(f"{name.replace('_', ' ').capitalize()}: {value}")
+            lines.append(f"{label}: {value}")
     return lines
 
 

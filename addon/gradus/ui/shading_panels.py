@@ -1,4 +1,4 @@
-"""Surfaces, worlds and lights: the values that Blender's stock panels leave to the engine."""
+"""Panels of materials, worlds and lights, whose values Blender leaves to the engine."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .base import LightPanel, MaterialPanel, WorldPanel
 
 
 def draw_output(layout: Any, tree: Any, name: str) -> None:
-    """The socket `name` of the active output node, with what is linked to it."""
+    """Draws the socket `name` of the active output node, with the node that is linked to it."""
     output = tree.get_output_node("CYCLES")
     if output is None:
         layout.label(text="No output node")
@@ -37,7 +37,7 @@ class GRADUS_MATERIAL_PT_settings(MaterialPanel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         layout, material = self.columns(), context.material
         layout.prop(material, "pass_index")
-        # From 4.2 on the material's own; before, and for sampling always, of Cycles' add-on.
+        # Before 4.2, transparent shadows are a property of Cycles. Sampling is one in all versions.
         for owner in (material, getattr(material, "cycles", None)):
             for name in ("use_transparent_shadow", "emission_sampling", "sample_as_light"):
                 if hasattr(owner, name):
@@ -75,7 +75,7 @@ class GRADUS_WORLD_PT_settings(WorldPanel, bpy.types.Panel):
         layout, world = self.columns(), context.world
         layout.prop(world.light_settings, "distance", text="Ambient Occlusion Distance")
         visibility, sampling = (getattr(world, name, None) for name in ("cycles_visibility", "cycles"))
-        if sampling is not None:  # these two are of Cycles' add-on
+        if sampling is not None:  # a property of the Cycles add-on
             layout.prop(sampling, "sampling_method", text="Sampling")
             if sampling.sampling_method == "MANUAL":
                 layout.prop(sampling, "sample_map_resolution")
@@ -99,9 +99,9 @@ class GRADUS_DATA_PT_light(LightPanel, bpy.types.Panel):
         light = context.light
         self.layout.row().prop(light, "type", expand=True)
         layout = self.columns()
-        names = ("use_temperature", "temperature", "color", "energy", "exposure", "normalize", *self.VALUES[light.type])
-        for name in names:
-            if hasattr(light, name):  # temperature, exposure and normalize came with 4.5
+        names = ("use_temperature", "temperature", "color", "energy", "exposure", "normalize")
+        for name in (*names, *self.VALUES[light.type]):
+            if hasattr(light, name):  # temperature, exposure and normalize exist from 4.5 on
                 layout.prop(light, name)
         if light.type == "AREA" and light.shape in ("RECTANGLE", "ELLIPSE"):
             layout.prop(light, "size_y")

@@ -1,7 +1,7 @@
-"""Which of Blender's own panels show for our engine: a pure predicate of a panel's name and engines.
+"""Blender's own panels that are shown for Gradus, by the name and the engines of a panel.
 
-Excluded is what would promise something that we do not do, or what we draw ourselves; in doubt a panel is included. Nothing is
-remembered: joining and leaving compute the list again, so both may be called any number of times. Checked on 3.4, 4.5 and 5.0.
+Panels of unsupported features and panels that Gradus replaces are excluded. All others are included. The list is
+computed again in each call, so that the functions may be called repeatedly. It was checked on Blender 3.4, 4.5 and 5.0.
 """
 
 from __future__ import annotations
@@ -11,50 +11,50 @@ from typing import Any
 
 ENGINE = "GRADUS"
 MEMBER_OF = "BLENDER_RENDER"
-"""Panels that every engine may join list this one."""
+"""The engine in COMPAT_ENGINES of all panels that are not specific to an engine."""
 
 EXCLUDED = {
-    "VIEWLAYER_PT_layer_passes": "an empty shell; ours lists the passes that we have",
-    "VIEWLAYER_PT_eevee_next_layer_passes_data": "EEVEE's passes",
-    "VIEWLAYER_PT_filter": "hair and volumes are not rendered yet; ours has the rest",
-    "VIEWLAYER_PT_override": "ours has the samples of the layer, too",
+    "VIEWLAYER_PT_layer_passes": "empty; replaced by a panel with the passes of Gradus",
+    "VIEWLAYER_PT_eevee_next_layer_passes_data": "passes of EEVEE",
+    "VIEWLAYER_PT_filter": "has switches of hair and volumes, which are not supported; replaced",
+    "VIEWLAYER_PT_override": "replaced by a panel that also has the samples",
     "RENDER_PT_freestyle": "needs bl_use_custom_freestyle",
     "VIEWLAYER_PT_freestyle": "needs bl_use_custom_freestyle",
     "VIEWLAYER_PT_freestyle_lineset": "needs bl_use_custom_freestyle",
     "MATERIAL_PT_freestyle_line": "needs bl_use_custom_freestyle",
-    "DATA_PT_light": "chooses the type only; ours has the values, too",
-    "NODE_DATA_PT_light": "chooses the type only; ours has the values, too",
-    "DATA_PT_area": "ours has the shape",
-    "DATA_PT_falloff_curve": "a falloff of Blender Internal",
-    "RENDER_PT_gpencil": "grease pencil is Blender's own",
-    "RENDER_PT_motion_blur_curve": "ours is below our panel of motion blur",
-    "RENDER_PT_hair": "hair is not rendered yet",
-    "DATA_PT_volume_render": "volumes are not rendered yet",
-    "DATA_PT_lightprobe": "light probes are EEVEE's",
-    "RENDER_PT_eevee_performance": "EEVEE's",
-    "OBJECT_PT_shadow_terminator": "has a shading offset, too; ours has what we render",
+    "DATA_PT_light": "has the type only; replaced",
+    "NODE_DATA_PT_light": "has the type only; replaced",
+    "DATA_PT_area": "replaced",
+    "DATA_PT_falloff_curve": "not supported; belongs to Blender Internal",
+    "RENDER_PT_gpencil": "Blender renders grease pencil",
+    "RENDER_PT_motion_blur_curve": "replaced by a child of the panel Motion Blur",
+    "RENDER_PT_hair": "hair is not supported",
+    "DATA_PT_volume_render": "volumes are not supported",
+    "DATA_PT_lightprobe": "light probes belong to EEVEE",
+    "RENDER_PT_eevee_performance": "belongs to EEVEE",
+    "OBJECT_PT_shadow_terminator": "has a shading offset, which is not supported; replaced",
 }
-"""Panel -> why it does not show."""
+"""Panels that are not shown, and why."""
 
 INCLUDED = {
-    "MATERIAL_PT_preview": "material previews are rendered by us",
+    "MATERIAL_PT_preview": "material previews are rendered by Gradus",
     "WORLD_PT_context_world": "the world's datablock",
     "EEVEE_MATERIAL_PT_context_material": "list of material slots (the stock panel of all engines but Cycles)",
     "DATA_PT_camera_dof": "depth of field",
     "DATA_PT_camera_dof_aperture": "aperture and blades",
 }
-"""Panel that does not list MEMBER_OF -> why it shows."""
+"""Panels that do not list MEMBER_OF and are shown, with their purpose."""
 
 
-def joins(name: str, engines: frozenset[str] | set[str]) -> bool:
-    """Whether the stock panel `name`, which shows for `engines`, is to show for ours."""
+def is_shown(name: str, engines: frozenset[str] | set[str]) -> bool:
+    """Returns whether the panel `name`, which is shown for `engines`, is shown for Gradus."""
     if name in EXCLUDED:
         return False
     return name in INCLUDED or MEMBER_OF in engines
 
 
 def stock_panels() -> Iterator[tuple[str, MutableSet[str]]]:
-    """(name, COMPAT_ENGINES) of all panels that choose by engine, ours aside."""
+    """Yields (name, COMPAT_ENGINES) of all panels that depend on the engine, except those of Gradus."""
     import bpy
 
     pending: list[Any] = list(bpy.types.Panel.__subclasses__())
@@ -68,7 +68,7 @@ def stock_panels() -> Iterator[tuple[str, MutableSet[str]]]:
 
 def join_all() -> None:
     for name, engines in stock_panels():
-        if joins(name, engines - {ENGINE}):
+        if is_shown(name, engines - {ENGINE}):
             engines.add(ENGINE)
 
 

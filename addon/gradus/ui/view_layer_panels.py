@@ -1,4 +1,7 @@
-"""Passes of a view layer: Blender's switches where it has them, ours besides. The stock panel is an empty shell."""
+"""Panels of view layers: passes, visibility and overrides.
+
+Blender has switches of some passes, and Gradus adds others.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,8 @@ from .base import EnginePanel
 DATA = ("use_pass_z", "use_pass_mist", "use_pass_position", "use_pass_normal", "use_pass_vector", "use_pass_uv")
 INDEXES = ("use_pass_object_index", "use_pass_material_index")
 LIGHT = tuple(
-    (kind, tuple(f"use_pass_{kind}_{part}" for part in ("direct", "indirect", "color"))) for kind in ("diffuse", "glossy", "transmission")
+    (kind, tuple(f"use_pass_{kind}_{suffix}" for suffix in ("direct", "indirect", "color")))
+    for kind in ("diffuse", "glossy", "transmission")
 )
 OTHER_LIGHT = ("use_pass_emit", "use_pass_environment", "use_pass_ambient_occlusion")
 OF_COMPONENTS = (
@@ -26,21 +30,21 @@ OF_COMPONENTS = (
     "use_pass_component_motion",
     "use_pass_component_irradiance_motion",
 )
-OURS = ("use_pass_gradients", "use_pass_variance", "use_pass_error", "use_pass_sample_count", "use_pass_denoising")
+GRADUS_PASSES = ("use_pass_gradients", "use_pass_variance", "use_pass_error", "use_pass_sample_count", "use_pass_denoising")
 
 
-class PassPanel(EnginePanel):
+class ViewLayerPanel(EnginePanel):
     bl_context = "view_layer"
 
 
-class GRADUS_VIEWLAYER_PT_passes(PassPanel, bpy.types.Panel):
+class GRADUS_VIEWLAYER_PT_passes(ViewLayerPanel, bpy.types.Panel):
     bl_label = "Passes"
 
     def draw(self, _context: Any) -> None:
         pass
 
 
-class GRADUS_VIEWLAYER_PT_passes_data(PassPanel, bpy.types.Panel):
+class GRADUS_VIEWLAYER_PT_passes_data(ViewLayerPanel, bpy.types.Panel):
     bl_label = "Data"
     bl_parent_id = "GRADUS_VIEWLAYER_PT_passes"
 
@@ -55,7 +59,7 @@ class GRADUS_VIEWLAYER_PT_passes_data(PassPanel, bpy.types.Panel):
         layout.prop(layer, "pass_alpha_threshold")
 
 
-class GRADUS_VIEWLAYER_PT_passes_light(PassPanel, bpy.types.Panel):
+class GRADUS_VIEWLAYER_PT_passes_light(ViewLayerPanel, bpy.types.Panel):
     bl_label = "Light"
     bl_parent_id = "GRADUS_VIEWLAYER_PT_passes"
 
@@ -70,17 +74,17 @@ class GRADUS_VIEWLAYER_PT_passes_light(PassPanel, bpy.types.Panel):
             column.prop(layer, name)
 
 
-class GRADUS_VIEWLAYER_PT_passes_gradus(PassPanel, bpy.types.Panel):
+class GRADUS_VIEWLAYER_PT_passes_gradus(ViewLayerPanel, bpy.types.Panel):
     bl_label = "Sampling"
     bl_parent_id = "GRADUS_VIEWLAYER_PT_passes"
 
     def draw(self, context: Any) -> None:
         column = self.columns().column(heading="Include", align=True)
-        for name in OURS:
+        for name in GRADUS_PASSES:
             column.prop(context.view_layer.gradus, name)
 
 
-class GRADUS_VIEWLAYER_PT_passes_components(PassPanel, bpy.types.Panel):
+class GRADUS_VIEWLAYER_PT_passes_components(ViewLayerPanel, bpy.types.Panel):
     bl_label = "Components"
     bl_parent_id = "GRADUS_VIEWLAYER_PT_passes"
 
@@ -94,10 +98,35 @@ class GRADUS_VIEWLAYER_PT_passes_components(PassPanel, bpy.types.Panel):
             layout.label(text="Render Properties > Decomposition is off", icon="INFO")
 
 
+class GRADUS_VIEWLAYER_PT_filter(ViewLayerPanel, bpy.types.Panel):
+    bl_label = "Filter"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
+
+    def draw(self, context: Any) -> None:
+        layer = context.view_layer
+        column = self.columns().column(heading="Include")
+        column.prop(layer, "use_sky", text="Environment")
+        column.prop(layer, "use_solid", text="Surfaces")
+
+
+class GRADUS_VIEWLAYER_PT_override(ViewLayerPanel, bpy.types.Panel):
+    bl_label = "Override"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
+
+    def draw(self, context: Any) -> None:
+        layout, layer = self.columns(), context.view_layer
+        layout.prop(layer, "material_override")
+        if hasattr(layer, "world_override"):  # not in 3.4
+            layout.prop(layer, "world_override")
+        layout.prop(layer, "samples")
+
+
 CLASSES = (
     GRADUS_VIEWLAYER_PT_passes,
     GRADUS_VIEWLAYER_PT_passes_data,
     GRADUS_VIEWLAYER_PT_passes_light,
     GRADUS_VIEWLAYER_PT_passes_components,
     GRADUS_VIEWLAYER_PT_passes_gradus,
+    GRADUS_VIEWLAYER_PT_filter,
+    GRADUS_VIEWLAYER_PT_override,
 )
