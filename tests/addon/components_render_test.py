@@ -337,7 +337,7 @@ def test_what_needs_components_is_exit_code_1_without_them(
     sample = SAMPLE.with_name("cornell.blend")
     outcome = blender("--addons", "gradus", sample, "-o", tmp_path / "f_", "-f", "1", "--", *option, "--gradus-samples", "1")
     assert (outcome.code, list(tmp_path.glob("f_*"))) == (1, []), outcome.output
-    assert f"{option[0]}: the picture is not taken apart into components; add --gradus-use-decomposition 1" in outcome.output
+    assert f"{option[0]}: the image is not decomposed into components; add --gradus-use-decomposition 1" in outcome.output
 
 
 @pytest.mark.application

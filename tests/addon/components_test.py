@@ -252,4 +252,4 @@ def test_without_a_library_writing_out_was_a_traceback(scene: bpy.types.Scene, m
 
 def test_components_have_a_panel_among_the_passes() -> None:
     switches = {part.switch.removeprefix("gradus.") for part in passes.COMPONENT_TABLE}
-    assert set(ui.pass_panels.OF_COMPONENTS) == switches
+    assert set(ui.view_layer_panels.OF_COMPONENTS) == switches

@@ -419,7 +419,7 @@ def test_a_surface_around_a_volume_is_clear_and_not_black() -> None:
     assert op_names(program) == ["TRANSPARENT"]
     assert program.inputs[0][2][:3] == (1.0, 1.0, 1.0)
     assert program.uses_fallback
-    assert program.warnings == ["Fog: volume is not supported yet and is left out"]
+    assert program.warnings == ["Fog: volume is not supported and is left out"]
 
 
 def test_a_volume_inside_a_surface_leaves_the_surface() -> None:
@@ -430,7 +430,7 @@ def test_a_volume_inside_a_surface_leaves_the_surface() -> None:
     show(material, glass.outputs[0])
     program = translate(material)
     assert op_names(program) == ["GLASS"]
-    assert program.warnings == ["Murky glass: volume is not supported yet and is left out"]
+    assert program.warnings == ["Murky glass: volume is not supported and is left out"]
 
 
 def test_the_volume_of_a_world_is_named() -> None:
@@ -442,7 +442,7 @@ def test_the_volume_of_a_world_is_named() -> None:
     end = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeOutputWorld")
     tree.links.new(volume.outputs[0], end.inputs["Volume"])
     program = translate(world, "WORLD")
-    assert program.warnings == ["Haze: volume is not supported yet and is left out"]
+    assert program.warnings == ["Haze: volume is not supported and is left out"]
     assert op_names(program) == ["EMISSION"]
 
 

@@ -40,7 +40,7 @@ def test_f7_the_frame_before(tmp_path: Path) -> None:
     files.before_frame(render, 2, 1)
     files.after_frame(render, 2)
     (tmp_path / "2.png").write_bytes(b"")
-    with pytest.raises(Failure, match="not written as a whole"):
+    with pytest.raises(Failure, match="is truncated"):
         files.before_frame(render, 3, 1)
     files.after_frame(render, 7)
     files.before_frame(render, 8, 1)  # moved away by a script

@@ -153,14 +153,14 @@ def method(**values: Any) -> SimpleNamespace:
 @pytest.mark.parametrize(
     ("values", "samples", "text"),
     [
-        ({"denoiser": "OIDN"}, 4, "Biased: it is denoised"),
-        ({"denoiser": "AUTO"}, 8, "Biased where a denoiser is found"),
+        ({"denoiser": "OIDN"}, 4, "Biased by the denoiser"),
+        ({"denoiser": "AUTO"}, 8, "Biased if a denoiser is found"),
         ({"denoiser": "AUTO"}, 7, "Consistent"),
         ({"denoiser": "AUTO", "integrator": "PATH", "reconstruction": "NONE"}, 7, "Unbiased"),
-        ({"reconstruction": "NONE", "clamp_indirect": 3.0}, 64, "Biased: light is clamped"),
-        ({"reconstruction": "L2", "noise_threshold": 0.01}, 64, "Unbiased at threshold 0"),
+        ({"reconstruction": "NONE", "clamp_indirect": 3.0}, 64, "Biased by clamping"),
+        ({"reconstruction": "L2", "noise_threshold": 0.01}, 64, "Unbiased if the noise threshold is 0"),
         ({"reconstruction": "L2"}, 64, "Unbiased"),
-        ({"reconstruction": "L2", "integrator": "PATH"}, 64, "Plain paths have no gradients to reconstruct from"),
+        ({"reconstruction": "L2", "integrator": "PATH"}, 64, "Path tracing has no gradients for this reconstruction"),
     ],
 )
 def test_the_panel_promises_no_denoiser_that_may_not_run(values: dict[str, Any], samples: int, text: str) -> None:

@@ -181,5 +181,5 @@ bpy.app.handlers.render_write.append(cut)
 """
     outcome = animate(blender, tmp_path, cut, range(1, 4), kind=kind)
     assert outcome.code == 1, outcome.output
-    assert "the frame before was not written as a whole" in outcome.output
+    assert "the file of the previous frame is truncated" in outcome.output
     assert len(files(tmp_path)) == 1

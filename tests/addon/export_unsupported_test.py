@@ -27,14 +27,14 @@ def test_a_shading_offset_is_named(scene: bpy.types.Scene, plane: bpy.types.Obje
     owner = shadow_terminator.owner(plane)
     name = next(name for name in shadow_terminator.SHADING_OFFSETS if hasattr(owner, name))
     setattr(owner, name, 0.25)
-    assert warnings(scene) == ["Object 'Plane': the shading offset of its shadow terminator is left out"]
+    assert warnings(scene) == ["Object 'Plane': the shading offset of its shadow terminator is ignored"]
 
 
 def test_hair_particles_are_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
     modifier = plane.modifiers.new("Fur", "PARTICLE_SYSTEM")
     settings = modifier.particle_system.settings
     settings.type, settings.render_type = "HAIR", "PATH"
-    assert warnings(scene) == ["Object 'Plane': hair particles are not rendered yet"]
+    assert warnings(scene) == ["Object 'Plane': hair particles are not supported"]
     scene.view_layers[0].use_strand = False
     assert warnings(scene) == []
     scene.view_layers[0].use_strand = True
@@ -50,14 +50,14 @@ def test_a_shadow_catcher_is_named(scene: bpy.types.Scene, plane: bpy.types.Obje
 def test_a_camera_of_scale_0_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
     """It gave a black picture without a word. (Cycles shows the world's colour all over.)"""
     scene.camera.scale = (1.0, 1.0, 0.0)
-    assert warnings(scene) == ["Camera 'Camera' has scale 0: it has no direction to look to"]
+    assert warnings(scene) == ["Camera 'Camera' has scale 0, so that its direction is undefined"]
 
 
 @pytest.mark.parametrize("kind", ["object", "material", "asset"])
 def test_cryptomatte_is_named(scene: bpy.types.Scene, plane: bpy.types.Object, kind: str) -> None:
     layer = scene.view_layers[0]
     setattr(layer, f"use_pass_cryptomatte_{kind}", True)
-    assert warnings(scene) == [f"View layer '{layer.name}': Cryptomatte passes are not rendered yet"]
+    assert warnings(scene) == [f"View layer '{layer.name}': Cryptomatte passes are not supported"]
 
 
 def test_light_linking_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
@@ -65,9 +65,9 @@ def test_light_linking_is_named(scene: bpy.types.Scene, plane: bpy.types.Object)
     if not hasattr(lamp, "light_linking"):
         pytest.skip("no light linking in this Blender")
     lamp.light_linking.receiver_collection = bpy.data.collections.new("Lit")
-    assert warnings(scene) == ["Object 'Lamp': light linking is left out, it shines on everything"]
+    assert warnings(scene) == ["Object 'Lamp': light linking is ignored"]
 
 
 def test_kinds_that_are_not_rendered_are_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
     recording.add(bpy.data.volumes.new("Smoke"), "Smoke")
-    assert warnings(scene) == ["Object 'Smoke' is left out: volumes are not rendered yet"]
+    assert warnings(scene) == ["Object 'Smoke' is left out: volumes are not supported"]
