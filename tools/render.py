@@ -164,7 +164,11 @@ def render(wanted: Request) -> None:
         wall = time.monotonic() - start
         missing = [file for file in files if not file.exists() or file.stat().st_size == 0]
         if code != 0 or missing:
-            absent = f"; not written: {', '.join(map(str, missing[:6]))}{' …' if len(missing) > 6 else ''}" if missing else ""
+            absent = (
+                f"; not written: {', '.join(map(str, missing[:6]))}{' …' if len(missing) > 6 else ''}"
+                if missing
+                else ""
+            )
             raise RenderError(f"Blender ended with code {code}{absent}")
         print(f"render: {names[0]}.png and .exr" + (f" … {names[-1]}.png and .exr" if len(names) > 1 else ""))
         print(f"render: {timing(len(names), wall, stats_of(stats))}")

@@ -1,4 +1,4 @@
-"""The sample whose compositor grades the reflection, blurs each component by its own motion and sums up, rendered in background."""
+"""The sample whose compositor grades the reflection, blurs each component by its motion and adds them up."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WARM = np.array((1.6, 0.9, 0.5), np.float32)
 
 @pytest.fixture(scope="module")
 def render(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., images.Passes]:
-    """render("Grade"): all passes of the sample and its composite, with these nodes muted."""
+    """render("Grade"): all passes of the sample and its composite, with the named nodes muted."""
 
     @cache
     def passes(*muted: str) -> images.Passes:
@@ -49,15 +49,17 @@ def test_the_grade_changes_the_reflection_alone(render: Callable[..., images.Pas
 
 
 def test_what_a_mirror_shows_was_blurred_by_the_depth_of_the_mirror() -> None:
-    """And all behind glass by that of the glass: near and far could not hide each other."""
+    """Objects in a mirror and behind glass need depths of their own to cover each other in the Vector Blur node."""
     bpy.ops.wm.open_mainfile(filepath=str(SAMPLE))
     for name, blur in zip(NAMES, BLURS, strict=True):
-        sources = {link.from_socket.name for link in compositing.tree_of(bpy.context.scene).links if link.to_node.name == blur}
+        sources = {
+            link.from_socket.name for link in compositing.tree_of(bpy.context.scene).links if link.to_node.name == blur
+        }
         assert {f"Path {name} Depth", f"Path {name} Motion"} < sources
 
 
 def show_the_world(scene: bpy.types.Scene) -> None:
-    """Behind the room, transparent; the sum takes the render's alpha."""
+    """Makes the world transparent behind the room, and gives the sum the alpha of the render."""
     bpy.data.objects.remove(bpy.data.objects["Back"])
     scene.render.film_transparent = True
     tree = compositing.tree_of(scene)
@@ -66,7 +68,9 @@ def show_the_world(scene: bpy.types.Scene) -> None:
         alpha.mode = "REPLACE_ALPHA"
     else:
         alpha.inputs["Type"].default_value = "Replace Alpha"
-    ((total, output),) = ((link.from_socket, link.to_socket) for link in tree.links if link.from_node.name == "Add Residual")
+    ((total, output),) = (
+        (link.from_socket, link.to_socket) for link in tree.links if link.from_node.name == "Add Residual"
+    )
     (render,) = (node for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers")
     tree.links.new(total, alpha.inputs["Image"])
     tree.links.new(render.outputs["Alpha"], alpha.inputs["Alpha"])
@@ -74,7 +78,7 @@ def show_the_world(scene: bpy.types.Scene) -> None:
 
 
 def test_the_sum_before_a_transparent_film_takes_its_alpha_from_the_render(tmp_path: Path) -> None:
-    """As the user guide has it."""
+    """The compositor tree follows the user guide."""
     settings = {"percentage": 25, "frame": 12, "samples": 4, "change": show_the_world}
     passes = compositing.render_muted(SAMPLE, tmp_path, ("Grade", *BLURS), **settings)
     assert (passes[COMBINED][..., 3].min(), passes[COMBINED][..., 3].max()) == (0.0, 1.0)

@@ -1,4 +1,4 @@
-"""Motion of components where a frame is no shot with those around it, or shows what these do not: flagged with its cause (issue 7)."""
+"""Motion of components at shot changes and disocclusions, where pass Tracked holds the cause."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ TRACKED, NOTHING, GONE, CUT = 1.0, -1.0, -2.0, -8.0
 
 @pytest.fixture
 def room(scene: Any) -> Any:
-    """A wall before a camera, and a second camera, which stands still beside it."""
+    """A wall in front of a camera, and a second static camera beside it."""
     bpy.ops.mesh.primitive_plane_add(size=20.0, location=(0, 5, 0), rotation=(np.pi / 2, 0, 0))
     sun = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
     scene.collection.objects.link(sun)

@@ -1,4 +1,4 @@
-"""`Path NAME Motion` and `Tracked` as Blender gets them: of reflections in place of mirrors, under motion blur, in the compositor."""
+"""The passes `Path NAME Motion` and `Tracked` in Blender: of reflections, with motion blur, and in the compositor."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ NO_NEIGHBOUR = -12.0
 
 @pytest.fixture
 def sample() -> bpy.types.Scene:
-    """A mirror ball rolls to the right, a box slides by behind a slab of glass, the rest stands still but for the lamp."""
+    """A rolling mirror ball, a box that moves behind a slab of glass, and a moving light in a static room."""
     bpy.ops.wm.open_mainfile(filepath=str(SAMPLES / "mirror_and_glass.blend"))
     scene = bpy.context.scene
     images.prepare(scene)
@@ -29,17 +29,19 @@ def sample() -> bpy.types.Scene:
 
 
 def motion(rendered: images.Passes, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Vectors, and where they are known."""
+    """Returns the motion of a component, and a mask of the pixels where it is known."""
     return rendered[f"ViewLayer.Path {name} Motion"], rendered[f"ViewLayer.Path {name} Tracked"][..., 0] == 1.0
 
 
 def lit(rendered: images.Passes, name: str) -> np.ndarray:
-    """Where the component is most of the picture."""
+    """Returns a mask of the pixels in which the component is most of the image."""
     combined = rendered["ViewLayer.Combined"][..., :3].sum(axis=-1)
     return rendered[f"ViewLayer.Path {name}"].sum(axis=-1) > 0.7 * combined
 
 
-def test_what_is_seen_directly_moves_as_its_surface(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+def test_what_is_seen_directly_moves_as_its_surface(
+    sample: bpy.types.Scene, render: Callable[..., images.Passes]
+) -> None:
     bpy.data.objects.remove(bpy.data.objects["Slab"])
     rendered = render(sample, frame=12)
     vectors, known = motion(rendered, "Diffuse")
@@ -47,11 +49,13 @@ def test_what_is_seen_directly_moves_as_its_surface(sample: bpy.types.Scene, ren
     inside = known & lit(rendered, "Diffuse")
     assert inside.sum() > 0.9 * lit(rendered, "Diffuse").sum()
     away = np.abs(vectors - surface)[inside].max(axis=-1)
-    assert np.percentile(away, 95) < 0.02  # the rest are edges
+    assert np.percentile(away, 95) < 0.02  # all others are edges
     assert (np.abs(vectors[inside]).max(axis=-1) > 0.3).sum() > 100, "the box moves"
 
 
-def test_a_reflection_moves_otherwise_than_its_mirror(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+def test_a_reflection_moves_otherwise_than_its_mirror(
+    sample: bpy.types.Scene, render: Callable[..., images.Passes]
+) -> None:
     rendered = render(sample, frame=12)
     vectors, known = motion(rendered, "Reflection")
     mirror = known & lit(rendered, "Reflection")
@@ -61,7 +65,9 @@ def test_a_reflection_moves_otherwise_than_its_mirror(sample: bpy.types.Scene, r
     assert np.median(np.abs(vectors)[mirror].max(axis=-1)) > 0.2
 
 
-def test_what_glass_shows_moves_behind_glass_that_stands(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+def test_what_glass_shows_moves_behind_glass_that_stands(
+    sample: bpy.types.Scene, render: Callable[..., images.Passes]
+) -> None:
     rendered = render(sample, frame=12)
     vectors, known = motion(rendered, "Transmission")
     glass = known & lit(rendered, "Transmission")
@@ -76,7 +82,7 @@ def test_what_is_not_tracked_is_0_with_a_cause(sample: bpy.types.Scene, render: 
         vectors, known = motion(rendered, name)
         tracked = rendered[f"ViewLayer.Path {name} Tracked"][..., 0]
         assert (tracked[~known] < 0.0).all()
-        if name != "Residual":  # a still tells of its surfaces alone
+        if name != "Residual":  # a single frame has motion of its surfaces only
             assert not vectors[~known].any()
         assert np.isfinite(vectors).all()
         assert np.abs(vectors).max() <= max(WIDTH, HEIGHT)
@@ -85,8 +91,13 @@ def test_what_is_not_tracked_is_0_with_a_cause(sample: bpy.types.Scene, render: 
     assert not known.any(), "of Residual, the last"
 
 
-def test_components_tell_their_motion_under_motion_blur(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
-    """Between the moments that the frames stand for, as without blur. Vector alone is 0, so that nobody blurs twice, and says so."""
+def test_components_tell_their_motion_under_motion_blur(
+    sample: bpy.types.Scene, render: Callable[..., images.Passes]
+) -> None:
+    """Components have the same motion with and without motion blur.
+
+    Vector is 0 with a warning, so that no one blurs twice.
+    """
     still, known = motion(render(sample, frame=12), "Reflection")
     sample.render.use_motion_blur = True
     store.summaries.clear()
@@ -101,11 +112,11 @@ def test_components_tell_their_motion_under_motion_blur(sample: bpy.types.Scene,
     assert render(sample, vector_with_motion_blur=True)["ViewLayer.Vector"].any()
 
 
-# ------------------------------------------------------------------------------------------------ the compositor's sample
+# -------------------------------------------------------------------------------- the compositor's sample
 
 
 def composite(folder: Path, blurred: str) -> images.Passes:
-    """The sample of the compositor with one component blurred, and none graded."""
+    """The compositor's sample with one component blurred and none graded."""
     muted = ("Grade", *(f"Blur {name}" for name in NAMES if name != blurred))
     return compositing.render_muted(SAMPLES / "components.blend", folder, muted, percentage=50, frame=18, samples=4)
 
@@ -122,7 +133,7 @@ def test_each_component_is_blurred_where_it_moves(tmp_path: Path, name: str) -> 
 
 
 def grown(mask: np.ndarray, by: int) -> np.ndarray:
-    """The mask and what is nearer to it than `by` pixels along rows and columns: there a blur smears to."""
+    """Returns a mask grown by `by` pixels along rows and columns, as far as a blur may reach."""
     for axis in (0, 1):
         mask = np.any([np.roll(mask, shift, axis) for shift in range(-by, by + 1)], axis=0)
     return mask

@@ -1,4 +1,4 @@
-"""Components as Blender gets them: their sum, their names in files and nodes, layers, views, borders, animations, refusals."""
+"""Components in Blender: their sum, names in files and nodes, layers, views, borders, animations and errors."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DEFAULT = ("Emission", "Diffuse", "Reflection", "Transmission", "Residual")
 
 @pytest.fixture
 def sample() -> bpy.types.Scene:
-    """A mirror ball, glass, a lantern and a textured floor, small; every pass of every component."""
+    """A small image of a mirror ball, glass, a lantern and a textured floor, with all passes of all components."""
     bpy.ops.wm.open_mainfile(filepath=str(SAMPLE))
     scene = bpy.context.scene
     images.prepare(scene)
@@ -35,7 +35,8 @@ def part(rendered: images.Passes, name: str, suffix: str = "", layer: str = "Vie
 
 
 def require_sum(rendered: images.Passes, names: tuple[str, ...], layer: str = "ViewLayer") -> None:
-    """1e-5 of what was added up: L2 has parts below 0."""
+    """Requires that components add up to Combined, within 1e-5 of the sum of their absolute values, because L2 may be
+    negative."""
     parts = [part(rendered, name, "", layer).astype(np.float64) for name in names]
     combined = rendered[f"{layer}.Combined"][..., :3]
     scale = np.maximum(sum(np.abs(image) for image in parts), 1e-3)
@@ -43,12 +44,16 @@ def require_sum(rendered: images.Passes, names: tuple[str, ...], layer: str = "V
     np.testing.assert_array_less(np.abs(sum(parts) - combined) / scale, 1e-5)
 
 
-# ------------------------------------------------------------------------------------------------ sums
+# -------------------------------------------------------------------------------- sums
 
 
 @pytest.mark.parametrize("reconstruction", ["NONE", "REGULARIZED", "L2", "L1"])
-def test_components_add_up_to_combined(sample: bpy.types.Scene, render: Callable[..., images.Passes], reconstruction: str) -> None:
-    rendered = render(sample, frame=12, reconstruction=reconstruction, integrator="PATH" if reconstruction == "NONE" else "GRADIENT")
+def test_components_add_up_to_combined(
+    sample: bpy.types.Scene, render: Callable[..., images.Passes], reconstruction: str
+) -> None:
+    rendered = render(
+        sample, frame=12, reconstruction=reconstruction, integrator="PATH" if reconstruction == "NONE" else "GRADIENT"
+    )
     require_sum(rendered, DEFAULT)
     combined = rendered["ViewLayer.Combined"][..., :3].sum()
     assert all(part(rendered, name).sum() > 0.0005 * combined for name in DEFAULT)
@@ -56,8 +61,10 @@ def test_components_add_up_to_combined(sample: bpy.types.Scene, render: Callable
 
 
 @pytest.mark.parametrize("case", ["film", "holdout", "clamped", "denoised", "exposed"])
-def test_they_add_up_whatever_is_done_to_the_picture(sample: bpy.types.Scene, render: Callable[..., images.Passes], case: str) -> None:
-    """The denoiser, where this Blender has one, works on their sum."""
+def test_they_add_up_whatever_is_done_to_the_picture(
+    sample: bpy.types.Scene, render: Callable[..., images.Passes], case: str
+) -> None:
+    """The denoiser, where this Blender has one, denoises their sum."""
     bpy.data.objects.remove(bpy.data.objects["Back"])
     sample.render.film_transparent = case == "film"
     bpy.data.objects["Glass"].is_holdout = case == "holdout"
@@ -76,14 +83,20 @@ PLACES = {"Diffuse": (2, 3), "Reflection": (33, 15), "Transmission": (21, 15), "
 
 
 @pytest.mark.parametrize("name", list(PLACES))
-def test_a_component_is_what_its_name_says(sample: bpy.types.Scene, render: Callable[..., images.Passes], name: str) -> None:
+def test_a_component_is_what_its_name_says(
+    sample: bpy.types.Scene, render: Callable[..., images.Passes], name: str
+) -> None:
     rendered = render(sample, frame=12, reconstruction="NONE", samples=16)
     x, y = PLACES[name]
-    shares = {other: part(rendered, other)[y, x].sum() / rendered["ViewLayer.Combined"][y, x, :3].sum() for other in DEFAULT}
+    shares = {
+        other: part(rendered, other)[y, x].sum() / rendered["ViewLayer.Combined"][y, x, :3].sum() for other in DEFAULT
+    }
     assert shares[name] > 0.8, shares
 
 
-def test_own_components_add_up_and_are_what_their_expressions_say(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+def test_own_components_add_up_and_are_what_their_expressions_say(
+    sample: bpy.types.Scene, render: Callable[..., images.Passes]
+) -> None:
     rendered = render(sample, components="Direct=EDL;Indirect=ED.+L;Seen=EL")
     names = ("Direct", "Indirect", "Seen", "Residual")
     require_sum(rendered, names)
@@ -96,20 +109,26 @@ def test_own_components_add_up_and_are_what_their_expressions_say(sample: bpy.ty
 
 
 def test_what_a_scene_does_not_have_is_black(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
-    """The plan leaves it out; its passes are there all the same."""
+    """Components without paths are not computed, but their passes exist."""
     bpy.data.objects.remove(bpy.data.objects["Glass"])
     bpy.data.objects.remove(bpy.data.objects["Slab"])
     rendered = render(sample)
-    shown = [info.suffix for info in passes.COMPONENT_TABLE if not info.suffix.endswith(("Tracked", "Depth", "Face Index"))]
+    shown = [
+        info.suffix for info in passes.COMPONENT_TABLE if not info.suffix.endswith(("Tracked", "Depth", "Face Index"))
+    ]
     assert not any(part(rendered, "Transmission", suffix).any() for suffix in shown)
     assert (part(rendered, "Transmission", " Face Index") == -1.0).all()
     require_sum(rendered, DEFAULT)
 
 
-def test_irradiance_times_reflectance_is_the_component(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+def test_irradiance_times_reflectance_is_the_component(
+    sample: bpy.types.Scene, render: Callable[..., images.Passes]
+) -> None:
     rendered = render(sample)
     for name in DEFAULT:
-        color, reflectance, irradiance = (part(rendered, name, suffix) for suffix in ("", " Reflectance", " Irradiance"))
+        color, reflectance, irradiance = (
+            part(rendered, name, suffix) for suffix in ("", " Reflectance", " Irradiance")
+        )
         expected = np.where(reflectance >= 1e-3, irradiance * reflectance, irradiance)
         np.testing.assert_allclose(color, expected, rtol=1e-4, atol=1e-6)
     floor = part(rendered, "Diffuse", " Normal")[1, 1:30]
@@ -117,21 +136,26 @@ def test_irradiance_times_reflectance_is_the_component(sample: bpy.types.Scene, 
     np.testing.assert_allclose(floor[:, 2], 1.0, atol=0.05)
 
 
-# ------------------------------------------------------------------------------------------------ surfaces
+# -------------------------------------------------------------------------------- surfaces
 
 STEPS, CELL = 16, 1.25
-"""Faces along a side of the wall, and how large they are."""
+"""Number of faces along a side of the wall, and their size."""
 
 
 def add_plane(name: str, height: float, steps: int, cell: float, pass_index: int) -> bpy.types.Material:
-    """steps × steps faces about the z axis, row by row, with a UV map over all of them; its material, without nodes."""
+    """Adds a plane of steps × steps faces with a UV map. Returns its material, which has no nodes."""
     side, half = steps + 1, 0.5 * steps
     vertices = [((x - half) * cell, (y - half) * cell, height) for y in range(side) for x in range(side)]
-    corners = [(y * side + x, y * side + x + 1, (y + 1) * side + x + 1, (y + 1) * side + x) for y in range(steps) for x in range(steps)]
+    corners = [
+        (y * side + x, y * side + x + 1, (y + 1) * side + x + 1, (y + 1) * side + x)
+        for y in range(steps)
+        for x in range(steps)
+    ]
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(vertices, [], corners)
     mesh.uv_layers.new(name="UVMap").data.foreach_set(
-        "uv", [value / steps for corner in mesh.loops for value in (corner.vertex_index % side, corner.vertex_index // side)]
+        "uv",
+        [value / steps for corner in mesh.loops for value in (corner.vertex_index % side, corner.vertex_index // side)],
     )
     material = bpy.data.materials.new(name)
     material.use_nodes = True
@@ -144,7 +168,7 @@ def add_plane(name: str, height: float, steps: int, cell: float, pass_index: int
 
 
 def shade(material: bpy.types.Material, *kinds: str) -> list[bpy.types.Node]:
-    """Gives it the sum of these shaders."""
+    """Gives a material the sum of shaders."""
     tree = material.node_tree
     shaders = [tree.nodes.new(f"ShaderNode{kind}") for kind in kinds]
     total = shaders[0].outputs[0]
@@ -159,7 +183,7 @@ def shade(material: bpy.types.Material, *kinds: str) -> list[bpy.types.Node]:
 
 @pytest.fixture
 def mirror(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A camera at height 3 looks down at a mirror, and so at a wall above itself, which shines."""
+    """A camera at height 3 that looks down at a mirror, and through it at an emissive wall above itself."""
     gloss = shade(add_plane("Mirror", 0.0, 1, 20.0, 7), "BsdfGlossy")[0]
     gloss.inputs["Roughness"].default_value = 0.0
     gloss.inputs["Color"].default_value = (0.5, 0.5, 0.5, 1.0)
@@ -174,8 +198,9 @@ def mirror(scene: bpy.types.Scene) -> bpy.types.Scene:
 
 
 def on_the_wall() -> tuple[np.ndarray, np.ndarray]:
-    """Where the middles of pixels meet it by way of the mirror, in faces from its corner: 9 m along the camera's axis."""
-    width = 9.0 * 36.0 / 50.0 / CELL  # of sensor and lens
+    """Returns where the centres of pixels meet the wall through the mirror, in faces from its corner, 9 m along the
+    axis."""
+    width = 9.0 * 36.0 / 50.0 / CELL  # sensor / lens
     y, x = np.mgrid[0:36, 0:64]
     return STEPS / 2 + width * ((x + 0.5) / 64 - 0.5), STEPS / 2 + width * (y + 0.5 - 18) / 64
 
@@ -194,13 +219,17 @@ def test_a_mirror_has_the_map_the_indices_and_the_light_of_what_it_shows(
     assert inside.sum() > 500
     np.testing.assert_array_equal(faces[inside], expected[inside])
     assert len(set(faces[inside])) > 10
-    np.testing.assert_allclose(part(rendered, "Reflection", " Emit"), np.broadcast_to((0.5, 1.0, 2.0), uv.shape), rtol=1e-5)
-    for name in ("Diffuse", "Emission"):  # the mirror itself is neither rough nor bright
+    np.testing.assert_allclose(
+        part(rendered, "Reflection", " Emit"), np.broadcast_to((0.5, 1.0, 2.0), uv.shape), rtol=1e-5
+    )
+    for name in ("Diffuse", "Emission"):  # the mirror itself is specular and emits nothing
         assert (part(rendered, name, " Face Index") == -1.0).all()
         assert not any(part(rendered, name, suffix).any() for suffix in (" UV", " Object Index", " Emit"))
 
 
-def test_a_surface_that_is_seen_has_what_blender_s_own_passes_have(mirror: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+def test_a_surface_that_is_seen_has_what_blender_s_own_passes_have(
+    mirror: bpy.types.Scene, render: Callable[..., images.Passes]
+) -> None:
     bpy.data.objects["Mirror"].location.z = 100.0
     mirror.camera.rotation_euler.x = np.pi
     layer = mirror.view_layers[0]
@@ -210,10 +239,12 @@ def test_a_surface_that_is_seen_has_what_blender_s_own_passes_have(mirror: bpy.t
     for name in ("Diffuse", "Emission"):
         for suffix, own in ((" UV", "UV"), (" Object Index", index), (" Emit", emit)):
             assert rendered[f"ViewLayer.{own}"].any()
-            np.testing.assert_allclose(part(rendered, name, suffix), rendered[f"ViewLayer.{own}"], rtol=1e-5, atol=1e-6, err_msg=own)
+            np.testing.assert_allclose(
+                part(rendered, name, suffix), rendered[f"ViewLayer.{own}"], rtol=1e-5, atol=1e-6, err_msg=own
+            )
 
 
-# ------------------------------------------------------------------------------------------------ names
+# -------------------------------------------------------------------------------- names
 
 
 def path_passes(rendered: images.Passes, layer: str = "ViewLayer") -> set[str]:
@@ -222,7 +253,7 @@ def path_passes(rendered: images.Passes, layer: str = "ViewLayer") -> set[str]:
 
 
 def test_names_registered_are_names_in_the_file(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
-    """With names of 24 letters, the longest: file formats and nodes have room for 64 bytes."""
+    """Names have 24 letters, the maximum, because file formats and nodes have 64 bytes for them."""
     names = ("Abcdefghijklmnopqrstuvwx", "B")
     rendered = render(sample, components=f"{names[0]}=ED.*L;{names[1]}=ERDL")
     expected = {info.of(name).name: info for name in (*names, "Residual") for info in passes.COMPONENT_TABLE}
@@ -232,8 +263,11 @@ def test_names_registered_are_names_in_the_file(sample: bpy.types.Scene, render:
     require_sum(rendered, (*names, "Residual"))
 
 
-def test_the_longest_name_that_is_not_cut_is_64_bytes(scene: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
-    """The limit as this Blender has it: Abc…x is a component's longest name, and 20 letters are left for the layer."""
+def test_the_longest_name_that_is_not_cut_is_64_bytes(
+    scene: bpy.types.Scene, render: Callable[..., images.Passes]
+) -> None:
+    """Blender's limit leaves 20 letters for the name of the view layer, if the name of the component has the maximum
+    length."""
     scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     scene.collection.objects.link(scene.camera)
     layer = scene.view_layers[0]
@@ -258,7 +292,12 @@ def test_layers_have_their_own_switches(sample: bpy.types.Scene, render: Callabl
 def test_a_border_is_the_crop_of_the_whole(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
     whole = render(sample, reconstruction="NONE")
     sample.render.use_border = sample.render.use_crop_to_border = True
-    sample.render.border_min_x, sample.render.border_max_x, sample.render.border_min_y, sample.render.border_max_y = 0.25, 0.75, 0.25, 0.75
+    sample.render.border_min_x, sample.render.border_max_x, sample.render.border_min_y, sample.render.border_max_y = (
+        0.25,
+        0.75,
+        0.25,
+        0.75,
+    )
     crop = render(sample)
     for name in DEFAULT:
         for suffix in ("", " UV", " Object Index", " Face Index", " Emit"):
@@ -297,7 +336,7 @@ def test_frames_of_an_animation_have_them(sample: bpy.types.Scene, tmp_path: Pat
 def test_k5_a_cancelled_render_keeps_its_picture(
     sample: bpy.types.Scene, render: Callable[..., images.Passes], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Components are there when all is sampled; that must not cost the picture so far."""
+    """Components are computed after sampling, but a cancelled render must keep its image without them."""
     calls: list[int] = []
     monkeypatch.setattr(renderer, "stop_requested", lambda engine: calls.append(1) or len(calls) > 4)
     rendered = render(sample, samples=100000)
@@ -309,35 +348,56 @@ def test_decomposition_off_leaves_nothing_behind(sample: bpy.types.Scene, render
     assert path_passes(render(sample, use_decomposition=False)) == set()
 
 
-# ------------------------------------------------------------------------------------------------ refusals
+# -------------------------------------------------------------------------------- refusals
 
 
 MALFORMED = "A=EDL;B=ED.*L"
 
 
-def test_a_malformed_set_ends_the_render_with_its_reason(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+def test_a_malformed_set_ends_the_render_with_its_reason(
+    sample: bpy.types.Scene, render: Callable[..., images.Passes]
+) -> None:
     with pytest.raises(RuntimeError, match="components A and B overlap: both match EDL"):
         render(sample, components=MALFORMED)
 
 
 @pytest.mark.application
-def test_a_malformed_set_on_the_command_line_is_exit_code_1(blender: Callable[..., application.Outcome], tmp_path: Path) -> None:
-    arguments = ("--addons", "gradus", SAMPLE, "-o", tmp_path / "f_", "-f", "1", "--", "--gradus-use-decomposition", "1")
+def test_a_malformed_set_on_the_command_line_is_exit_code_1(
+    blender: Callable[..., application.Outcome], tmp_path: Path
+) -> None:
+    arguments = (
+        "--addons",
+        "gradus",
+        SAMPLE,
+        "-o",
+        tmp_path / "f_",
+        "-f",
+        "1",
+        "--",
+        "--gradus-use-decomposition",
+        "1",
+    )
     outcome = blender(*arguments, "--gradus-components", MALFORMED, "--gradus-samples", "1")
     assert (outcome.code, list(tmp_path.glob("f_*"))) == (1, []), outcome.output
     assert "overlap: both match EDL" in outcome.output
 
 
 @pytest.mark.application
-@pytest.mark.parametrize("option", [("--gradus-components", "A=ED("), ("--gradus-passes", "components")], ids=lambda option: option[0])
+@pytest.mark.parametrize(
+    "option", [("--gradus-components", "A=ED("), ("--gradus-passes", "components")], ids=lambda option: option[0]
+)
 def test_what_needs_components_is_exit_code_1_without_them(
     blender: Callable[..., application.Outcome], tmp_path: Path, option: tuple[str, str]
 ) -> None:
-    """It was passed over: the picture came without its parts."""
+    """The options were ignored, and the image had no components."""
     sample = SAMPLE.with_name("cornell.blend")
-    outcome = blender("--addons", "gradus", sample, "-o", tmp_path / "f_", "-f", "1", "--", *option, "--gradus-samples", "1")
+    outcome = blender(
+        "--addons", "gradus", sample, "-o", tmp_path / "f_", "-f", "1", "--", *option, "--gradus-samples", "1"
+    )
     assert (outcome.code, list(tmp_path.glob("f_*"))) == (1, []), outcome.output
-    assert f"{option[0]}: the image is not decomposed into components; add --gradus-use-decomposition 1" in outcome.output
+    assert (
+        f"{option[0]}: the image is not decomposed into components; add --gradus-use-decomposition 1" in outcome.output
+    )
 
 
 @pytest.mark.application
@@ -345,23 +405,31 @@ def test_the_command_line_takes_a_picture_apart(blender: Callable[..., applicati
     sample = SAMPLE.with_name("cornell.blend")
     outcome = blender(
         "--addons", "gradus", sample, "-o", tmp_path / "f_", "-F", "OPEN_EXR_MULTILAYER", "-f", "1", "--",
-        "--gradus-use-decomposition", "1", "--gradus-components", "Direct=EDL", "--gradus-passes", "components", "--gradus-samples", "1",
+        "--gradus-use-decomposition", "1", "--gradus-components", "Direct=EDL",
+        "--gradus-passes", "components", "--gradus-samples", "1",
     )  # fmt: skip
     assert outcome.code == 0, outcome.output
     rendered = images.read(tmp_path / "f_0001.exr")
-    assert path_passes(rendered) == {info.of(name).name for name in ("Direct", "Residual") for info in passes.COMPONENT_TABLE}
+    assert path_passes(rendered) == {
+        info.of(name).name for name in ("Direct", "Residual") for info in passes.COMPONENT_TABLE
+    }
 
 
-# ------------------------------------------------------------------------------------------------ File Output
+# -------------------------------------------------------------------------------- File Output
 
 
 def layer_of(name: str) -> str:
-    """Under which a File Output node writes a pass. Blender 3.4 cuts names off after 29 letters: long ones get shorter names there."""
+    """Returns the layer name with which a File Output node writes a pass.
+
+    Blender 3.4 truncates names after 29 letters.
+    """
     return name if bpy.app.version >= (4, 0) else name.replace("Irradiance ", "Flow ")[:29]
 
 
-def file_output(scene: bpy.types.Scene, names: list[str], folder: Path, dimensions: int | None = None) -> Callable[[], images.Passes]:
-    """A File Output node fed by passes of the render; what it has written."""
+def file_output(
+    scene: bpy.types.Scene, names: list[str], folder: Path, dimensions: int | None = None
+) -> Callable[[], images.Passes]:
+    """Adds a File Output node with passes of the render. Returns a function that reads its file."""
     tree = compositor(scene)
     render, node = tree.nodes.new("CompositorNodeRLayers"), tree.nodes.new("CompositorNodeOutputFile")
     settings = node.format
@@ -371,7 +439,9 @@ def file_output(scene: bpy.types.Scene, names: list[str], folder: Path, dimensio
     if hasattr(node, "file_output_items"):
         node.directory, node.file_name = str(folder), "out"
         for name in names:
-            item = node.file_output_items.new({"VALUE": "FLOAT", "RGBA": "RGBA"}.get(render.outputs[name].type, "VECTOR"), name)
+            item = node.file_output_items.new(
+                {"VALUE": "FLOAT", "RGBA": "RGBA"}.get(render.outputs[name].type, "VECTOR"), name
+            )
             if dimensions is not None and item.socket_type == "VECTOR":
                 item.vector_socket_dimensions = dimensions
     else:
@@ -392,7 +462,9 @@ def compositor(scene: bpy.types.Scene) -> bpy.types.NodeTree:
     return tree
 
 
-def test_a_file_output_node_writes_them(sample: bpy.types.Scene, render: Callable[..., images.Passes], tmp_path: Path) -> None:
+def test_a_file_output_node_writes_them(
+    sample: bpy.types.Scene, render: Callable[..., images.Passes], tmp_path: Path
+) -> None:
     names = [info.of(name).name for name in DEFAULT for info in passes.COMPONENT_TABLE]
     folder = tmp_path / "nodes"
     folder.mkdir()
@@ -409,10 +481,12 @@ def test_a_file_output_node_writes_them(sample: bpy.types.Scene, render: Callabl
 def test_the_fourth_number_of_a_motion_in_a_file_output(
     sample: bpy.types.Scene, render: Callable[..., images.Passes], tmp_path: Path
 ) -> None:
-    """The user guide says which Blender writes it."""
+    """Only some versions of Blender write it, as the user guide says."""
     keeps, asked = ((4, 0) <= bpy.app.version < (5, 0)), bpy.app.version >= (5, 0)
     name = "Path Diffuse Motion"
-    for index, (dimensions, expected) in enumerate([(None, 4 if keeps else 3), (4, 4)] if asked else [(None, 4 if keeps else 3)]):
+    for index, (dimensions, expected) in enumerate(
+        [(None, 4 if keeps else 3), (4, 4)] if asked else [(None, 4 if keeps else 3)]
+    ):
         folder = tmp_path / f"nodes{index}"
         folder.mkdir()
         written = file_output(sample, [name], folder, dimensions)

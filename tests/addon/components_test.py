@@ -1,4 +1,4 @@
-"""Components: names without the library, what the library says of a set, the panel and Blender's sockets."""
+"""Components: names without the library, descriptions by the library, the panel and Blender's sockets."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_names_are_those_of_the_library(text: str) -> None:
 
 
 def test_a_set_that_is_refused_has_the_names_that_can_be_read() -> None:
-    """Their sockets stay while the user is still writing."""
+    """The sockets of valid names stay while the user edits the set."""
     assert components.names("A=EDL;=ERL;2x=EL;a=ETL;residual=EL;B") == ["A", "B", "Residual"]
     assert components.names(";") == ["Residual"]
 
@@ -46,7 +46,14 @@ def test_the_default_set_written_out_is_the_default_set() -> None:
 
 @pytest.mark.parametrize(
     ("path", "name"),
-    [("EL", "Emission"), ("EDL", "Diffuse"), ("EDTTL", "Diffuse"), ("ERDRL", "Reflection"), ("ETTL", "Transmission"), ("ETL", "Residual")],
+    [
+        ("EL", "Emission"),
+        ("EDL", "Diffuse"),
+        ("EDTTL", "Diffuse"),
+        ("ERDRL", "Reflection"),
+        ("ETTL", "Transmission"),
+        ("ETL", "Residual"),
+    ],
 )
 def test_where_a_path_belongs(path: str, name: str) -> None:
     assert components.component_of(native.load(), b"", path).name == name
@@ -91,7 +98,10 @@ def test_a_malformed_set_is_refused_before_the_export(scene: bpy.types.Scene, te
 def test_options_win_over_the_scene_s_set(scene: bpy.types.Scene) -> None:
     scene.gradus.components = "A=ED("
     filled = renderer.native_settings(
-        native.load(), scene, scene.view_layers[0], parse(["--gradus-components", "B=EDL", "--gradus-use-decomposition", "1"])
+        native.load(),
+        scene,
+        scene.view_layers[0],
+        parse(["--gradus-components", "B=EDL", "--gradus-use-decomposition", "1"]),
     )
     assert (filled.components, filled.use_decomposition) == (b"B=EDL", 1)
 
@@ -100,8 +110,10 @@ NEED_PARTS = ([f"{PREFIX}components", "A=ED("], [f"{PREFIX}components="], [f"{PR
 
 
 @pytest.mark.parametrize("arguments", NEED_PARTS, ids=lambda arguments: arguments[0])
-def test_options_of_components_were_passed_over_in_a_picture_that_is_one(scene: bpy.types.Scene, arguments: list[str]) -> None:
-    """A malformed set was no error, and passes were missing without a word."""
+def test_options_of_components_were_passed_over_in_a_picture_that_is_one(
+    scene: bpy.types.Scene, arguments: list[str]
+) -> None:
+    """A malformed set was not reported, and passes were missing without an error."""
     layer = scene.view_layers[0]
     off, on = ([f"{PREFIX}use-decomposition", value] for value in "01")
     for given in (arguments, arguments + off):
@@ -119,11 +131,15 @@ def test_too_long_a_set_is_named(scene: bpy.types.Scene) -> None:
         renderer.native_settings(native.load(), scene, scene.view_layers[0], parse([]))
 
 
-# ------------------------------------------------------------------------------------------------ passes and sockets
+# -------------------------------------------------------------------------------- passes
 
 
 def registered(scene: bpy.types.Scene, arguments: tuple[str, ...] = ()) -> list[str]:
-    return [info.name for info in renderer.active_passes(scene, scene.view_layers[0], parse(arguments)) if info.name.startswith("Path")]
+    return [
+        info.name
+        for info in renderer.active_passes(scene, scene.view_layers[0], parse(arguments))
+        if info.name.startswith("Path")
+    ]
 
 
 def test_path_passes_are_there_whenever_the_picture_is_decomposed(scene: bpy.types.Scene) -> None:
@@ -146,13 +162,15 @@ def sockets(scene: bpy.types.Scene) -> list[str]:
 
 
 def test_sockets_come_and_go_with_the_settings(scene: bpy.types.Scene) -> None:
-    """In 3.4 the compositor showed no socket until something else made it look for passes."""
+    """In Blender 3.4 the compositor showed no sockets until another event updated the passes."""
     compositing.new_tree(scene)
     assert not any(name.startswith("Path") for name in sockets(scene))
     scene.gradus.use_decomposition = True
     scene.gradus.components = "Sky=EL;Far_away=ERR.*L"
     scene.view_layers[0].gradus.use_pass_component_motion = True
-    expected = {f"Path {name}{suffix}" for name in ("Sky", "Far_away", "Residual") for suffix in ("", " Motion", " Tracked")}
+    expected = {
+        f"Path {name}{suffix}" for name in ("Sky", "Far_away", "Residual") for suffix in ("", " Motion", " Tracked")
+    }
     assert {name for name in sockets(scene) if name.startswith("Path")} == expected
     scene.view_layers[0].gradus.use_pass_components = False
     scene.gradus.components = "Sky=EL"
@@ -170,11 +188,11 @@ def test_sockets_of_the_longest_names_are_whole(scene: bpy.types.Scene) -> None:
     assert {f"Path {name}", f"Path {name} Reflectance", f"Path {name} Irradiance"} <= set(sockets(scene))
 
 
-# ------------------------------------------------------------------------------------------------ the panel
+# -------------------------------------------------------------------------------- the panel
 
 
 class Labels:
-    """Writes down labels and icons, and which properties are shown; takes all else."""
+    """Records labels, icons and properties, and accepts all other calls."""
 
     def __init__(self) -> None:
         self.found: list[tuple[str, str]] = []
@@ -223,7 +241,9 @@ def test_the_panel_says_why_a_set_is_refused(scene: bpy.types.Scene, text: str) 
 
 
 @pytest.mark.parametrize(("text", "shown"), [("", ["components", "path"]), ("A=ED(", ["components"])])
-def test_a_set_that_is_none_hid_a_switch_that_has_nothing_to_do_with_it(scene: bpy.types.Scene, text: str, shown: list[str]) -> None:
+def test_a_set_that_is_none_hid_a_switch_that_has_nothing_to_do_with_it(
+    scene: bpy.types.Scene, text: str, shown: list[str]
+) -> None:
     scene.gradus.components = text
     assert drawn(scene).properties == [*shown, "component_replays"]
 
@@ -242,9 +262,11 @@ def test_the_automatic_set_can_be_written_out(scene: bpy.types.Scene) -> None:
     assert not bpy.ops.gradus.write_out_components.poll()
 
 
-def test_without_a_library_writing_out_was_a_traceback(scene: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_without_a_library_writing_out_was_a_traceback(
+    scene: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.setenv(native.ENVIRONMENT_VARIABLE, str(tmp_path / "libgradus.so"))
-    with pytest.raises(RuntimeError, match="library not found") as refused:  # as a script hears of a report
+    with pytest.raises(RuntimeError, match="library not found") as refused:  # a report raises an exception in scripts
         bpy.ops.gradus.write_out_components()
     assert "Traceback" not in str(refused.value)
     assert bpy.context.scene.gradus.components == ""

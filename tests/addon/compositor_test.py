@@ -1,4 +1,4 @@
-"""The sample whose compositor consumes the passes: Denoise, Vector Blur, and Mix with a background by Mist, rendered in background."""
+"""The sample whose compositor uses the passes in the nodes Denoise, Vector Blur and Mix, rendered in the background."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ COMPOSITE, COMBINED = "Composite.Combined", "ViewLayer.Combined"
 
 @pytest.fixture(scope="module")
 def render(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., images.Passes]:
-    """render("Vector Blur"): all passes of the sample and its composite, with these nodes muted."""
+    """render("Vector Blur"): all passes of the sample and its composite, with the named nodes muted."""
 
     @cache
     def passes(*muted: str) -> images.Passes:
@@ -45,7 +45,8 @@ def test_the_mix_puts_the_background_where_the_mist_is(render: Callable[..., ima
 
 
 def test_the_vector_blur_smears_what_moves_along_its_motion(render: Callable[..., images.Passes]) -> None:
-    """The ball rolls to the right: its left and right rims blur, top and bottom do not, nor does the room that stands still."""
+    """The ball rolls to the right: its left and right rims are blurred, but not its top and bottom, nor the static
+    room."""
     changed = np.abs(render()[COMPOSITE] - render("Vector Blur")[COMPOSITE])[..., :3].max(axis=2)
     speed = np.abs(render()["ViewLayer.Vector"][..., :2])
     ball = (speed[..., 0] > 1.0) & (speed[..., 0] > 4.0 * speed[..., 1])
@@ -56,7 +57,7 @@ def test_the_vector_blur_smears_what_moves_along_its_motion(render: Callable[...
 
 
 def test_denoise_smooths_the_picture(render: Callable[..., images.Passes]) -> None:
-    """Debian's 3.4 has no denoiser: there the node hands its image on."""
+    """Debian's 3.4 has no denoiser, and its node passes the image through."""
     smooth, noisy = render()[COMPOSITE], render("Denoise")[COMPOSITE]
     if bpy.app.version < (4, 0, 0) and np.array_equal(smooth, noisy):
         return

@@ -1,4 +1,4 @@
-"""Scenes made for Cycles: their limits of bounces, exposure and filter are named and can be taken over."""
+"""Scenes made for Cycles: differences of bounces, exposure and filter are reported and can be copied."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def test_the_defaults_are_those_of_cycles(cycles: bpy.types.Scene) -> None:
     assert cycles_settings.warnings(cycles, set()) == []
 
 
-def test_cycles_bounce_limits_were_ignored_without_a_word(cycles: bpy.types.Scene) -> None:
+def test_differences_from_cycles_are_reported(cycles: bpy.types.Scene) -> None:
     cycles.cycles.diffuse_bounces, cycles.cycles.film_exposure = 1, 2.5
     [text] = cycles_settings.warnings(cycles, set())
     assert "diffuse_bounces 4 (Cycles: 1)" in text and "film_exposure 1 (Cycles: 2.5)" in text

@@ -1,4 +1,4 @@
-"""D7 through Blender: faces that are not convex cover what they enclose; edges and vertices without faces cover nothing."""
+"""Degenerate meshes: concave faces are triangulated correctly, and loose edges and vertices are invisible."""
 
 from __future__ import annotations
 
@@ -9,17 +9,33 @@ import numpy as np
 import pytest
 from support import recording
 
-# Outline and, where there is one, a hole that two coinciding edges join to it: how Blender's own tools make holes.
+# Outlines. Holes are joined to them by two coinciding edges, as in Blender's tools.
 SHAPES = {
     "L": ([(-1, -1), (1, -1), (1, 0), (0, 0), (0, 1), (-1, 1)], 3.0),
-    "frame": ([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1), (-0.5, -0.5), (-0.5, 0.5), (0.5, 0.5), (0.5, -0.5), (-0.5, -0.5)], 3.0),
+    "frame": (
+        [
+            (-1, -1),
+            (1, -1),
+            (1, 1),
+            (-1, 1),
+            (-1, -1),
+            (-0.5, -0.5),
+            (-0.5, 0.5),
+            (0.5, 0.5),
+            (0.5, -0.5),
+            (-0.5, -0.5),
+        ],
+        3.0,
+    ),
     "star": ([(0, 1), (0.2, 0.2), (1, 0), (0.2, -0.2), (0, -1), (-0.2, -0.2), (-1, 0), (-0.2, 0.2)], 0.8),
     "no faces": ([], 0.0),
 }
 
 
 @pytest.mark.parametrize("name", list(SHAPES))
-def test_d7_faces_with_holes_and_loose_edges(scene: bpy.types.Scene, render: Callable[..., dict[str, np.ndarray]], name: str) -> None:
+def test_d7_faces_with_holes_and_loose_edges(
+    scene: bpy.types.Scene, render: Callable[..., dict[str, np.ndarray]], name: str
+) -> None:
     outline, area = SHAPES[name]
     count = len(outline)
     loose = [(3.0, 0.0, 0.0), (-3.0, 0.0, 0.0), (0.0, 3.0, 0.0), (0.0, 0.0, 0.5)]

@@ -1,4 +1,4 @@
-"""The denoiser of the host: Open Image Denoise in the bpy modules, none in Debian's Blender 3.4."""
+"""The denoiser of the host. The bpy modules have Open Image Denoise, Debian's Blender 3.4 has none."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Render = Callable[..., images.Passes]
 
 @pytest.fixture
 def corner(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A cube on a floor under a large lamp, against nothing: noise in penumbrae and bounces, and an alpha of 0 to 1."""
+    """A cube on a floor under a large light with noisy penumbrae, and a transparent background."""
     bpy.ops.mesh.primitive_cube_add(size=1.5, location=(0.0, 0.0, 0.75))
     bpy.ops.mesh.primitive_plane_add(size=5.0)
     lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "AREA"))
@@ -52,7 +52,7 @@ def test_noise_falls_and_the_rest_stays(corner: bpy.types.Scene, render: Render,
 
 @pytest.mark.module
 def test_error_is_that_of_the_denoised_picture(corner: bpy.types.Scene, render: Render) -> None:
-    """In so small a picture half of all lies in a hundredth of the pixels, at edges, where the estimate is too small."""
+    """The mean over all pixels is compared, because single pixels at edges have too small estimates."""
     truth = render(corner, samples=2048)["Combined"][..., :3]
     corner.view_layers[0].gradus.use_pass_error = True
     passes = render(corner, samples=16, reconstruction="REGULARIZED", denoiser="OIDN")
@@ -62,7 +62,9 @@ def test_error_is_that_of_the_denoised_picture(corner: bpy.types.Scene, render: 
 
 
 @pytest.mark.module
-def test_stats_name_it(corner: bpy.types.Scene, render: Render, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stats_name_it(
+    corner: bpy.types.Scene, render: Render, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = tmp_path / "stats.jsonl"
     monkeypatch.setattr("sys.argv", ["blender", "--", "--gradus-stats", str(path), "--gradus-denoiser", "auto"])
     render(corner, samples=8)
@@ -93,7 +95,9 @@ def test_denoised_frames_are_the_same_again(corner: bpy.types.Scene, render: Ren
 
 @pytest.mark.application
 def test_where_there_is_none_it_is_refused_by_name(corner: bpy.types.Scene, render: Render) -> None:
-    with pytest.raises(RuntimeError, match="denoiser oidn: no Open Image Denoise in this process.*use denoiser auto or none"):
+    with pytest.raises(
+        RuntimeError, match="denoiser oidn: no Open Image Denoise in this process.*use denoiser auto or none"
+    ):
         render(corner, samples=1, denoiser="OIDN")
 
 
@@ -121,4 +125,6 @@ def test_bundled_libraries_hold_it_where_blender_brings_it_along() -> None:
 
 
 def test_menu_names_what_the_library_knows() -> None:
-    assert [(name, value) for name, _, _, value in settings.DENOISERS] == [(kind.name, kind.value) for kind in native.Denoiser]
+    assert [(name, value) for name, _, _, value in settings.DENOISERS] == [
+        (kind.name, kind.value) for kind in native.Denoiser
+    ]

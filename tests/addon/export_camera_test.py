@@ -1,4 +1,4 @@
-"""Cameras: the window of the frame for every setting, depth of field, and what a scene can look through besides cameras."""
+"""Cameras: the window of the frame for all settings, depth of field, and objects that are used as cameras."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ POINTS = (Vector((0.3, -0.2, 0.0)), Vector((-0.7, 0.4, 1.0)), Vector((1.2, 0.9, 
 
 
 def _pixel(camera: object, window: list[float], point: Vector, size: tuple[int, int], orthographic: bool) -> np.ndarray:
-    """Where a world point appears, in pixels, by the exported matrix and window."""
-    world = np.array(camera.matrix).reshape(4, 4).T  # the API's matrices are column-major
+    """Returns the position of a world point in pixels, by the exported matrix and window."""
+    world = np.array(camera.matrix).reshape(4, 4).T  # matrices of the C API are column-major
     local = np.linalg.inv(world) @ np.array([*point, 1.0])
     place = local[:2] if orthographic else local[:2] / -local[2]
     left, right, bottom, top = window
@@ -26,12 +26,19 @@ def _pixel(camera: object, window: list[float], point: Vector, size: tuple[int, 
 @pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
 @pytest.mark.parametrize("fit", ["AUTO", "HORIZONTAL", "VERTICAL"])
 def test_projection_equals_blender(scene: bpy.types.Scene, kind: str, fit: str) -> None:
-    """Known points within 0.01 px of Blender's own projection, over frame shapes, pixel aspects and shifts."""
-    camera = recording.add_camera(type=kind, sensor_fit=fit, lens=35.0, sensor_width=36.0, sensor_height=20.0, ortho_scale=4.0)
+    """Points project within 0.01 px of Blender's own projection, for several sizes, pixel aspects and shifts."""
+    camera = recording.add_camera(
+        type=kind, sensor_fit=fit, lens=35.0, sensor_width=36.0, sensor_height=20.0, ortho_scale=4.0
+    )
     camera.rotation_euler = (0.2, -0.1, 0.3)
     for (width, height, aspect_x, aspect_y), shift in itertools.product(FRAMES, ((0.0, 0.0), (0.3, -0.2))):
         render = scene.render
-        render.resolution_x, render.resolution_y, render.pixel_aspect_x, render.pixel_aspect_y = width, height, aspect_x, aspect_y
+        render.resolution_x, render.resolution_y, render.pixel_aspect_x, render.pixel_aspect_y = (
+            width,
+            height,
+            aspect_x,
+            aspect_y,
+        )
         camera.data.shift_x, camera.data.shift_y = shift
         recorded, _ = recording.export(scene)
         depsgraph = bpy.context.evaluated_depsgraph_get()
@@ -54,7 +61,9 @@ def test_depth_of_field(scene: bpy.types.Scene) -> None:
     assert (recorded.focus_distance, recorded.blades) == (pytest.approx(3.0), 6)
     assert (recorded.blade_rotation, recorded.aperture_ratio) == (pytest.approx(0.25), pytest.approx(1.5))
     dof.focus_object = recording.add(None, "Focus", (3.0, 4.0, 1.0))
-    assert recording.export(scene)[0].camera.focus_distance == pytest.approx(4.0), "along the view axis, not the distance"
+    assert recording.export(scene)[0].camera.focus_distance == pytest.approx(4.0), (
+        "along the view axis, not the distance"
+    )
     camera.data.type = "ORTHO"
     assert recording.export(scene)[0].camera.aperture_radius == pytest.approx(0.25)
 
@@ -68,7 +77,7 @@ def test_scale_of_a_camera_does_not_count(scene: bpy.types.Scene) -> None:
 
 @pytest.mark.parametrize("kind", ["SPOT", "EMPTY"])
 def test_what_is_no_camera_looks_as_blender_s_viewport_does(scene: bpy.types.Scene, kind: str) -> None:
-    """They were seen through a sensor of 32 mm, which made everything 12 % too large."""
+    """The sensor was 32 mm wide instead of 36 mm, so that everything was 12 % too large."""
     data = None if kind == "EMPTY" else bpy.data.lights.new("Eye", kind)
     scene.camera = recording.add(data, "Eye")
     left, right, _, _ = recording.export(scene)[0].camera.window
@@ -90,7 +99,7 @@ def test_camera_shader_is_refused(scene: bpy.types.Scene) -> None:
 
 
 def test_sensor_of_a_fisheye_has_the_frame_s_shape(scene: bpy.types.Scene) -> None:
-    """An equisolid lens of 10 mm before a sensor of 20 mm: the edge is at sine 0.5 of half the angle."""
+    """With an equisolid lens of 10 mm and a sensor of 20 mm, the sine of half the angle at the edge is 0.5."""
     camera = recording.add_camera(type="PANO", sensor_width=20.0, sensor_fit="HORIZONTAL")
     panorama = camera.data if hasattr(camera.data, "panorama_type") else camera.data.cycles
     panorama.panorama_type, panorama.fisheye_lens, panorama.fisheye_fov = "FISHEYE_EQUISOLID", 10.0, 3.0
@@ -109,7 +118,7 @@ def test_no_camera_is_refused(scene: bpy.types.Scene) -> None:
 
 @pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
 def test_view_from_matrices_equals_the_camera(scene: bpy.types.Scene, kind: str) -> None:
-    """A viewport's matrices give the window that the same camera gives."""
+    """The matrices of a viewport result in the window of the same camera."""
     from gradus.export import ViewOverride
 
     camera = recording.add_camera(type=kind, shift_x=0.1, shift_y=-0.2)
@@ -122,13 +131,15 @@ def test_view_from_matrices_equals_the_camera(scene: bpy.types.Scene, kind: str)
 
 
 def test_view_through_a_panorama_shows_the_part_of_the_frame_in_view(scene: bpy.types.Scene) -> None:
-    """A frame that fills the middle half of a view: the window is twice as wide, about the same middle."""
+    """If the frame fills the middle half of a view, the window is twice as wide about the same centre."""
     from gradus.export import ViewOverride
 
     camera = recording.add_camera(type="PANO", shift_x=0.1)
     (camera.data if hasattr(camera.data, "panorama_type") else camera.data.cycles).panorama_type = "FISHEYE_EQUIDISTANT"
     whole = list(recording.export(scene)[0].camera.window)
-    view = ViewOverride.from_panorama(camera.data, camera.matrix_world.inverted(), (20.0, 10.0, 60.0, 30.0), scene.render, (80, 40))
+    view = ViewOverride.from_panorama(
+        camera.data, camera.matrix_world.inverted(), (20.0, 10.0, 60.0, 30.0), scene.render, (80, 40)
+    )
     found = recording.export(scene, view=view)[0].camera
     assert found.type == 2 and found.fisheye_fov == pytest.approx(3.14159265)
     width, height = whole[1] - whole[0], whole[3] - whole[2]

@@ -1,4 +1,4 @@
-"""The export inside a render: an engine of the test's own exports with the render's depsgraph and steps frames."""
+"""The export inside a render, by an engine that exports with the depsgraph of the render and changes frames."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SAMPLES = Path(__file__).resolve().parents[2] / "sample_blends"
 
 
 class RecordingEngine(bpy.types.RenderEngine):
-    """Exports and delivers an empty picture."""
+    """An engine that exports the scene and delivers an empty image."""
 
     bl_idname = "GRADUS_TEST_EXPORT"
     bl_label = "Gradus test: export"
@@ -70,7 +70,9 @@ def _open(name: str) -> bpy.types.Scene:
     return bpy.context.scene
 
 
-@pytest.mark.parametrize("name", ["hero", "cornell", "glass_and_chrome", "many_lights", "textures_world", "compositor", "animated"])
+@pytest.mark.parametrize(
+    "name", ["hero", "cornell", "glass_and_chrome", "many_lights", "textures_world", "compositor", "animated"]
+)
 def test_sample_scenes(exported: Callable[[], SimpleNamespace], name: str) -> None:
     scene = _open(name)
     found = exported()
@@ -81,7 +83,8 @@ def test_sample_scenes(exported: Callable[[], SimpleNamespace], name: str) -> No
 
 
 def test_vectors_of_the_animated_scene(exported: Callable[[], SimpleNamespace]) -> None:
-    """The ball rolls, the block turns, the flag waves, the camera moves, the walls rest; and the frame is what it was."""
+    """Moving, rotating and deforming objects and the camera have vectors, static walls do not, and the frame is
+    restored."""
     scene = _open("animated")
     scene.view_layers[0].use_pass_vector = True
     scene.frame_set(6)
@@ -96,7 +99,11 @@ def test_vectors_of_the_animated_scene(exported: Callable[[], SimpleNamespace]) 
     assert np.array_equal(instances["previous"][wall], instances["matrices"][wall])
     assert not np.allclose(instances["previous"][places["Block"]], instances["matrices"][places["Block"]])
     assert {mesh.name: mesh.keys for mesh in found.recorded.meshes.values()}["Flag"] == 3
-    assert found.recorded.camera.matrix_previous[12] < found.recorded.camera.matrix[12] < found.recorded.camera.matrix_next[12]
+    assert (
+        found.recorded.camera.matrix_previous[12]
+        < found.recorded.camera.matrix[12]
+        < found.recorded.camera.matrix_next[12]
+    )
     assert found.frame == 6 and scene.frame_current == 6
 
 
@@ -110,8 +117,8 @@ def test_subframes_are_kept(exported: Callable[[], SimpleNamespace]) -> None:
     assert scene.frame_subframe == pytest.approx(0.5)
 
 
-def test_frames_share_what_rests(exported: Callable[..., SimpleNamespace]) -> None:
-    """Each frame has a new depsgraph; meshes and materials are set once, identities stay."""
+def test_frames_share_static_objects(exported: Callable[..., SimpleNamespace]) -> None:
+    """Each frame has a new depsgraph, but meshes and materials are set once and keep their keys."""
     from gradus.export import Exporter
 
     scene = _open("animated")
@@ -130,7 +137,7 @@ def test_frames_share_what_rests(exported: Callable[..., SimpleNamespace]) -> No
 
 
 def test_percentage_and_border(exported: Callable[[], SimpleNamespace]) -> None:
-    """The full frame counts, whatever part is rendered."""
+    """The exported size is that of the full frame, even with a border."""
     scene = _open("cornell")
     scene.render.resolution_percentage = 50
     scene.render.use_border = True
@@ -140,7 +147,7 @@ def test_percentage_and_border(exported: Callable[[], SimpleNamespace]) -> None:
 
 
 def test_stereo_views_have_their_own_cameras(exported: Callable[..., SimpleNamespace]) -> None:
-    """The eyes lie apart along the camera's x axis, by the camera's own distance."""
+    """The eyes are displaced along the x axis of the camera by its interocular distance."""
     from gradus.export import Exporter
 
     scene = _open("cornell")

@@ -1,4 +1,4 @@
-"""Images: files, packed data, generated pixels, tiles, sequences; their colour space and alpha; what is missing."""
+"""Images: files, packed data, generated pixels, tiles and sequences, colour space and alpha, and missing files."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ def _state(block: bpy.types.Image, user: object = None, frame: int = 1) -> image
 
 
 @pytest.mark.parametrize(
-    "kind, suffix, is_float", [("PNG", "png", False), ("JPEG", "jpg", False), ("TIFF", "tif", False), ("OPEN_EXR", "exr", True)]
+    "kind, suffix, is_float",
+    [("PNG", "png", False), ("JPEG", "jpg", False), ("TIFF", "tif", False), ("OPEN_EXR", "exr", True)],
 )
 def test_files_go_as_paths(scene: bpy.types.Scene, tmp_path: Path, kind: str, suffix: str, is_float: bool) -> None:
     path = _save(tmp_path / f"picture.{suffix}", kind)
@@ -69,10 +70,16 @@ def test_float_pixels_are_linear_already(scene: bpy.types.Scene) -> None:
 
 
 @pytest.mark.parametrize(
-    "make", [lambda path: None, lambda path: path.write_bytes(b""), lambda path: path.mkdir(), lambda path: path.write_text("no image")]
+    "make",
+    [
+        lambda path: None,
+        lambda path: path.write_bytes(b""),
+        lambda path: path.mkdir(),
+        lambda path: path.write_text("no image"),
+    ],
 )
 def test_f1_what_cannot_be_read_keeps_its_path(scene: bpy.types.Scene, tmp_path: Path, make: object) -> None:
-    """The native side warns with that path."""
+    """The library warns with this path."""
     path = tmp_path / "broken.png"
     make(path)
     block = bpy.data.images.new("Broken", 1, 1)
@@ -95,9 +102,12 @@ def test_tiles(scene: bpy.types.Scene, tmp_path: Path) -> None:
     assert found == {number: f"tile.{number}.png" for number in (1001, 1002, 1011)}
 
 
-def test_packed_tiles_are_told_by_their_number(scene: bpy.types.Scene, tmp_path: Path) -> None:
-    """Tile 1002 was the first packed file whose name holds 1002: here both do."""
-    files = {1001: _save(tmp_path / "v1002_1001.png", color=(1, 0, 0)), 1002: _save(tmp_path / "v1002_1002.png", color=(0, 1, 0))}
+def test_packed_tiles_are_identified_by_their_number(scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """Tiles were identified by the first packed file whose name contains their number."""
+    files = {
+        1001: _save(tmp_path / "v1002_1001.png", color=(1, 0, 0)),
+        1002: _save(tmp_path / "v1002_1002.png", color=(0, 1, 0)),
+    }
     block = bpy.data.images.load(str(files[1001]))
     block.source = "TILED"
     block.filepath = str(tmp_path / "v1002_<UDIM>.png")
@@ -113,7 +123,8 @@ def test_tile_names() -> None:
 
 
 @pytest.mark.parametrize(
-    "frame, cyclic, expected", [(1, False, 1), (5, False, 5), (12, False, 10), (0, False, 0), (12, True, 2), (10, True, 10), (-3, True, 7)]
+    "frame, cyclic, expected",
+    [(1, False, 1), (5, False, 5), (12, False, 10), (0, False, 0), (12, True, 2), (10, True, 10), (-3, True, 7)],
 )
 def test_sequence_frames(frame: int, cyclic: bool, expected: int) -> None:
     user = SimpleNamespace(frame_duration=10, frame_start=1, frame_offset=0, use_cyclic=cyclic)

@@ -1,4 +1,4 @@
-"""Instances: matrices, identity, visibility, slots, and the facts that Object Info reads."""
+"""Instances: matrices, identity, visibility, slots and values of Object Info."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ CAMERA, GLOSSY, HOLDOUT = 1, 4, 64
 
 
 def _collection_instances(count: int) -> bpy.types.Object:
-    """A collection of one grid, shown by empties that also stand in a parent."""
+    """Adds a collection with one grid, which is instanced by parented empties."""
     source = bpy.data.collections.new("Source")
     obj = bpy.data.objects.new("Inner", recording.grid(1))
     obj.location = (0, 0, 1)
@@ -29,7 +29,9 @@ def test_collection_instances_share_a_mesh(scene: bpy.types.Scene) -> None:
     _collection_instances(4)
     recorded, _ = recording.export(scene)
     assert recorded.instances["count"] == 4 and len(recorded.meshes) == 1
-    places = sorted(tuple(matrix[3, :3]) for matrix in recorded.instances["matrices"])  # column-major: translation in the last row
+    places = sorted(
+        tuple(matrix[3, :3]) for matrix in recorded.instances["matrices"]
+    )  # column-major, so that the translation is the last row
     assert np.allclose(places, [(i, 0, 1) for i in range(4)])
     assert len(set(recorded.instances["ids"])) == 4
     assert len(set(recorded.instances["random"])) == 4
@@ -46,7 +48,10 @@ def test_identity_survives_renames_and_order(scene: bpy.types.Scene) -> None:
 
     def ids_by_place() -> dict[float, int]:
         exporter.sync(bpy.context.evaluated_depsgraph_get())
-        return {float(matrix[3, 0]): key for matrix, key in zip(recorded.instances["matrices"], recorded.instances["ids"], strict=True)}
+        return {
+            float(matrix[3, 0]): key
+            for matrix, key in zip(recorded.instances["matrices"], recorded.instances["ids"], strict=True)
+        }
 
     before = ids_by_place()
     bpy.data.objects["Object 0"].name = "Zzz"
@@ -92,7 +97,7 @@ def test_hidden_instancer_and_excluded_collection(scene: bpy.types.Scene) -> Non
     gone.objects.link(bpy.data.objects.new("Gone", recording.grid(1)))
     scene.view_layers[0].layer_collection.children["Gone"].exclude = True
     recorded, _ = recording.export(scene)
-    assert recorded.instances["count"] == 10  # the copies, and the child itself
+    assert recorded.instances["count"] == 10  # the instances and the child itself
     assert set(recorded.instances["names"]) == {"Child"}
 
 
@@ -121,7 +126,10 @@ def test_material_override(scene: bpy.types.Scene) -> None:
     recording.add(recording.grid(2))
     scene.view_layers[0].material_override = bpy.data.materials.new("Override")
     recorded, _ = recording.export(scene)
-    assert [[recorded.materials[key] for key in keys] for keys in recorded.instances["materials"]] == [["Override"], ["Override"]]
+    assert [[recorded.materials[key] for key in keys] for keys in recorded.instances["materials"]] == [
+        ["Override"],
+        ["Override"],
+    ]
 
 
 def test_object_facts(scene: bpy.types.Scene) -> None:
@@ -145,14 +153,24 @@ def test_shadow_terminator_offsets(scene: bpy.types.Scene) -> None:
 
 
 def test_coordinates_of_the_instancer(scene: bpy.types.Scene) -> None:
-    """Faces as instancers give a UV and a generated coordinate to each copy."""
+    """Instances on faces have a UV and a generated coordinate of the instancer."""
     recording.add_camera()
     parent = recording.add(recording.grid(2, name="Instancer"), "Instancer")
     parent.instance_type = "FACES"
     recording.add(recording.grid(1, name="Child"), "Child").parent = parent
     recorded, _ = recording.export(scene)
-    uvs = {tuple(uv) for uv, name in zip(recorded.instances["uvs"], recorded.instances["names"], strict=True) if name == "Child"}
-    assert uvs == {(0.0, 0.0), (0.25, 0.25), (0.25, 0.75), (0.75, 0.25), (0.75, 0.75)}  # the child itself has none
+    uvs = {
+        tuple(uv)
+        for uv, name in zip(recorded.instances["uvs"], recorded.instances["names"], strict=True)
+        if name == "Child"
+    }
+    assert uvs == {
+        (0.0, 0.0),
+        (0.25, 0.25),
+        (0.25, 0.75),
+        (0.75, 0.25),
+        (0.75, 0.75),
+    }  # the child itself has no such coordinates
 
 
 def test_motion_of_instances_and_camera(scene: bpy.types.Scene) -> None:
@@ -163,7 +181,7 @@ def test_motion_of_instances_and_camera(scene: bpy.types.Scene) -> None:
         for frame in (1, 11):
             obj.location.x += 10.0 * (frame == 11)
             obj.keyframe_insert("location", frame=frame)
-        obj.animation_data.action = obj.animation_data.action  # evaluated at once
+        obj.animation_data.action = obj.animation_data.action  # as evaluated in one depsgraph
     bpy.context.preferences.edit.keyframe_new_interpolation_type = "BEZIER"
     scene.frame_set(6)
     recorded, _ = recording.export(scene)
@@ -194,9 +212,11 @@ def test_e2_broken_matrices_pass_through(scene: bpy.types.Scene, scale: tuple[fl
     assert recording.export(scene)[0].instances["count"] == 1
 
 
-@pytest.mark.parametrize("name, expected", [("Cube", 0.31314194202), ("Suzanne.001", 0.45797663927), ("é", 0.64412963390)])
+@pytest.mark.parametrize(
+    "name, expected", [("Cube", 0.31314194202), ("Suzanne.001", 0.45797663927), ("é", 0.64412963390)]
+)
 def test_random_id_of_an_object_is_cycles_hash(name: str, expected: float) -> None:
-    """What Object Info > Random shows of these names, read from renders with Cycles in 3.4 and 5.0."""
+    """The expected values of Object Info > Random were rendered with Cycles in 3.4 and 5.0."""
     from gradus.export.object_random import name_hash
 
     assert name_hash(name) / 2**32 == pytest.approx(expected, rel=1e-6)

@@ -1,4 +1,4 @@
-"""Lights in the units of the running Blender, against closed forms; what an image of them shows is in light_render_test.py."""
+"""Lights in the units of the running Blender, against closed forms. light_render_test.py tests their images."""
 
 from __future__ import annotations
 
@@ -40,9 +40,11 @@ def test_spot(scene: bpy.types.Scene) -> None:
     assert bool(light.flags & SPOT_COSINE) == BEFORE_40
 
 
-@pytest.mark.parametrize("shape, factor", [("SQUARE", 1.0), ("RECTANGLE", 2.0), ("DISK", math.pi / 4), ("ELLIPSE", math.pi / 2)])
+@pytest.mark.parametrize(
+    "shape, factor", [("SQUARE", 1.0), ("RECTANGLE", 2.0), ("DISK", math.pi / 4), ("ELLIPSE", math.pi / 2)]
+)
 def test_area(scene: bpy.types.Scene, shape: str, factor: float) -> None:
-    """Radiance P/(4A) before 4.0, P/(pi A) since; A is the true area with the object's scale."""
+    """The radiance is P/(4A) before 4.0 and P/(pi A) from then on, where A includes the scale of the object."""
     light = _export(scene, "AREA", (3.0, 0.5, 1.0), energy=100.0, shape=shape, size=0.5, size_y=1.0, spread=1.0)
     area = 0.25 * 1.5 * factor
     assert light.strength[0] == pytest.approx(100 / ((4 if BEFORE_40 else math.pi) * area))
@@ -94,8 +96,8 @@ def test_constant_emission_is_folded(scene: bpy.types.Scene) -> None:
     assert light.material == 0
 
 
-def test_a_muted_link_to_the_output_does_not_shine(scene: bpy.types.Scene) -> None:
-    """The constant of the node behind it was taken nevertheless."""
+def test_a_light_with_a_muted_link_to_its_output_emits_nothing(scene: bpy.types.Scene) -> None:
+    """The emission of the node behind the muted link was used."""
     from gradus.export import light
 
     data = bpy.data.lights.new("Light", "POINT")

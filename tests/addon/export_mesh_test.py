@@ -1,4 +1,4 @@
-"""Meshes: attributes of every domain, normals, materials by face, sharing, motion, and what becomes a mesh."""
+"""Meshes: attributes of all domains, normals, face materials, sharing, motion, and objects that become meshes."""
 
 from __future__ import annotations
 
@@ -37,7 +37,9 @@ def _attribute(mesh: bpy.types.Mesh, kind: str, domain: str, key: str, values: l
         ("FLOAT_COLOR", "color", lambda i: (i, 0.5, 0.25, 1.0)),
     ],
 )
-def test_attribute_domains_and_types(scene: bpy.types.Scene, domain: str, code: int, count: int, kind: str, key: str, make: object) -> None:
+def test_attribute_domains_and_types(
+    scene: bpy.types.Scene, domain: str, code: int, count: int, kind: str, key: str, make: object
+) -> None:
     mesh = recording.grid(2)
     values = [make(i) for i in range(count)]
     _attribute(mesh, kind, domain, key, values)
@@ -65,7 +67,11 @@ def test_only_what_is_asked_for(scene: bpy.types.Scene) -> None:
     mesh.attributes.new("Other", "FLOAT", "POINT")
     mesh.uv_layers["UVMap"].active_render = True
     assert [attribute.name for attribute in read_mesh(mesh, frozenset()).attributes] == ["UVMap"]
-    assert {attribute.name for attribute in read_mesh(mesh, frozenset({"Other", "Second"})).attributes} == {"UVMap", "Second", "Other"}
+    assert {attribute.name for attribute in read_mesh(mesh, frozenset({"Other", "Second"})).attributes} == {
+        "UVMap",
+        "Second",
+        "Other",
+    }
     mesh.uv_layers["Second"].active_render = True
     assert read_mesh(mesh, frozenset()).default_uv == "Second"
 
@@ -91,13 +97,13 @@ def test_normal_domains(scene: bpy.types.Scene) -> None:
     mesh.polygons[0].use_smooth = False
     mesh.update()
     mixed = _only_mesh(recording.export(scene)[0])
-    is_none = ~mixed.normals.any(axis=1)  # left to the native side
+    is_none = ~mixed.normals.any(axis=1)  # computed by the library
     assert mixed.normal_domain == CORNER and np.allclose(mixed.normals[~is_none], (0, 0, 1))
 
 
 @pytest.mark.skipif(bpy.app.version >= (4, 1, 0), reason="normals have the same bits in every process")
-def test_normals_that_blender_sums_in_any_order_are_left_to_the_native_side(scene: bpy.types.Scene) -> None:
-    """Smooth faces beside flat ones: the last bits of their normals differed from process to process, and a frame store was refused."""
+def test_normals_that_blender_sums_in_any_order_are_computed_by_the_library(scene: bpy.types.Scene) -> None:
+    """The last bits of normals of smooth and flat faces differed between processes: stores were refused."""
     recording.add_camera()
     mesh = recording.grid(2)
     mesh.vertices[4].co.z = 1.0
@@ -136,7 +142,7 @@ def test_materials_by_face(scene: bpy.types.Scene) -> None:
 
 
 def test_equal_meshes_are_stored_once(scene: bpy.types.Scene) -> None:
-    """Linked copies, and copies that only a modifier makes different meshes in Blender."""
+    """This includes linked duplicates, and copies that Blender evaluates to separate meshes because of a modifier."""
     recording.add_camera()
     mesh = recording.grid(3)
     for index in range(3):
@@ -199,7 +205,7 @@ def test_generated_coordinates_come_from_the_undeformed_mesh(scene: bpy.types.Sc
 
 
 def test_motion_of_a_shape_key(scene: bpy.types.Scene) -> None:
-    """Positions one frame before and after, only for what deforms; the frame is the user's again afterwards."""
+    """Only deforming meshes have positions of neighbouring frames, and the scene returns to its frame."""
     recording.add_camera()
     scene.view_layers[0].use_pass_vector = True
     obj = recording.add(recording.grid(1), "Deforming")
@@ -262,7 +268,7 @@ def test_e2_broken_meshes_pass_through(scene: bpy.types.Scene, case: str) -> Non
 
 
 def _lines_run(scene: bpy.types.Scene, cells: int) -> int:
-    """How many lines of Python an export of one grid takes."""
+    """Returns the number of Python lines that the export of one grid executes."""
     mesh = recording.grid(cells)
     obj = recording.add(mesh)
     bpy.context.evaluated_depsgraph_get().update()
@@ -284,7 +290,7 @@ def _lines_run(scene: bpy.types.Scene, cells: int) -> int:
 
 
 def test_large_meshes_take_no_more_lines_of_python(scene: bpy.types.Scene) -> None:
-    """No loop over vertices, faces or corners: a million triangles would take many seconds (figures: make bench-host)."""
+    """There is no loop over vertices, faces or corners, which would take many seconds for a million triangles."""
     recording.add_camera()
     _lines_run(scene, 2)  # imports what is imported late
     assert _lines_run(scene, 4) == _lines_run(scene, 64)

@@ -1,4 +1,4 @@
-"""E1 to E5: scenes that go wrong elsewhere are exported without an exception; what they look like is tested where pictures are made."""
+"""Pathological scenes are exported without an exception. Their images are tested elsewhere."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def _nested_groups(depth: int) -> bpy.types.NodeTree:
 
 
 def test_e5_materials(scene: bpy.types.Scene) -> None:
-    """No material, an empty slot, eight groups deep, many materials."""
+    """Covers no material, an empty slot, eight nested groups, and many materials."""
     recording.add_camera()
     recording.add(recording.grid(1), "None")
     empty = recording.grid(2)
@@ -127,7 +127,9 @@ def test_e5_materials(scene: bpy.types.Scene) -> None:
     if bpy.app.version < (5, 0, 0):
         assert materials["None"] == [] and materials["Empty slot"] == [0]
     else:
-        assert [recorded.materials[key] for key in materials["None"] + materials["Empty slot"]] == ["Default Surface"] * 2
+        assert [recorded.materials[key] for key in materials["None"] + materials["Empty slot"]] == [
+            "Default Surface"
+        ] * 2
     assert len(materials["Many"]) == 101
 
 

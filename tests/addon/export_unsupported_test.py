@@ -1,4 +1,4 @@
-"""What is not rendered yet is named: a picture that silently lacks something sends people looking for a fault of theirs."""
+"""Warnings about everything that a scene contains and Gradus does not render."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A9 for the pixel filter: the edge of a bright plane is as soft as in Cycles of the same Blender."""
+"""The pixel filter: the edge of a bright plane equals that of Cycles in the same Blender."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from support.nodes import new_material, show, socket
 
 @pytest.fixture(scope="module")
 def edge() -> bpy.types.Scene:
-    """A plane that shines and covers the left half of an orthographic view, up to the middle of a column of pixels."""
+    """An emissive plane that covers the left half of an orthographic view, up to the centre of a column of pixels."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     images.prepare(scene)
@@ -31,12 +31,20 @@ def edge() -> bpy.types.Scene:
     return scene
 
 
-@pytest.mark.parametrize("kind, width", [("BOX", 3.0), ("GAUSSIAN", 1.5), ("BLACKMAN_HARRIS", 1.5), ("BLACKMAN_HARRIS", 3.0)])
+@pytest.mark.parametrize(
+    "kind, width", [("BOX", 3.0), ("GAUSSIAN", 1.5), ("BLACKMAN_HARRIS", 1.5), ("BLACKMAN_HARRIS", 3.0)]
+)
 def test_a9_filter_is_as_wide_as_in_cycles(kind: str, width: float, edge: bpy.types.Scene, tmp_path: Path) -> None:
     cycles = edge.cycles
     cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = 128, False, False
     cycles.pixel_filter_type, cycles.filter_width = kind, width
-    settings = {"samples": 128, "integrator": "PATH", "reconstruction": "NONE", "pixel_filter": kind, "filter_width": width}
+    settings = {
+        "samples": 128,
+        "integrator": "PATH",
+        "reconstruction": "NONE",
+        "pixel_filter": kind,
+        "filter_width": width,
+    }
     profiles = []
     for engine in ("CYCLES", "GRADUS"):
         edge.render.engine = engine

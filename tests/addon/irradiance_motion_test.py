@@ -1,4 +1,4 @@
-"""`Path NAME Irradiance Motion` as Blender gets it in an animation: a shadow moves over a floor that rests."""
+"""The pass `Path NAME Irradiance Motion` in an animation of a moving shadow on a static floor."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from support import images, recording
 from support.animation import key
 
 WIDTH, HEIGHT = 96, 64
-SHIFT = 1.5  # pixels from frame to frame, to the right
+SHIFT = 1.5  # pixels per frame, to the right
 LAST = 4
 NO_NEIGHBOUR = -12.0
 
 
 @pytest.fixture
 def shadow(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A ball above the camera, whose shadow goes through the picture."""
+    """A ball above the camera whose shadow moves through the image."""
     recording.add_camera(type="ORTHO", ortho_scale=4.0).location = (0.0, 0.0, 5.0)
     recording.add(recording.grid(1, 20.0), "Floor")
     bpy.ops.mesh.primitive_uv_sphere_add(radius=0.5, segments=48, ring_count=24)
@@ -59,9 +59,12 @@ def test_a_shadow_has_vectors_where_the_floor_rests(shadow: bpy.types.Scene, tmp
         edge[:, :8] = edge[:, -8:] = False
         seen = edge & (known == 1.0)
         assert seen.sum() > 0.5 * edge.sum() > 20
-        # Along an edge nobody sees it move.
+        # Motion along an edge is not visible.
         across = slope[seen] / steepness[seen][:, None]
-        away = [np.abs(((vectors[seen][:, side] + (SHIFT, 0.0)) * across).sum(axis=1)) for side in (slice(0, 2), slice(2, 4))]
+        away = [
+            np.abs(((vectors[seen][:, side] + (SHIFT, 0.0)) * across).sum(axis=1))
+            for side in (slice(0, 2), slice(2, 4))
+        ]
         assert np.median(np.maximum(*away)) < 0.2
 
 

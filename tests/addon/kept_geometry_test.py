@@ -1,4 +1,7 @@
-"""What rests is built once for all frames of an animation. Where a hint of what moves lacks or lies, pictures are right all the same."""
+"""Static geometry is built once for all frames of an animation.
+
+Images are correct even if the prediction of motion is wrong.
+"""
 
 from __future__ import annotations
 
@@ -16,14 +19,14 @@ from gradus.export.may_move import MayMove
 from support import images, recording, simulations
 from support.animation import key, step
 
-CELLS = 364  # of the room: more triangles than are built again as quickly as they are kept
+CELLS = 364  # so many triangles that the library keeps them instead of rebuilding them
 
 Change = Callable[[bpy.types.Scene], None]
 
 
 @pytest.fixture
 def room(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A large floor, and a square that is told to move above a corner of it; frames without blur and vectors."""
+    """A large floor, and a square that is predicted to move above a corner of it, without motion blur and vectors."""
     recording.add_camera(type="ORTHO", ortho_scale=6.0)
     recording.add(_floor(), "Room", (0, 0, -3))
     key(recording.add(recording.grid(1, size=0.5), "Told"), "location", {0: (-2.0, -1.0, 0.0), 10: (0.0, -1.0, 0.0)})
@@ -37,7 +40,7 @@ def room(scene: bpy.types.Scene) -> bpy.types.Scene:
 
 @pytest.fixture
 def each_frame() -> Iterator[Callable[[Callable[[int], None]], None]]:
-    """each_frame(change): a handler of the file that changes it for each frame."""
+    """each_frame(change): adds a frame change handler that changes the scene."""
     handlers = bpy.app.handlers.frame_change_pre
     before = list(handlers)
     yield lambda change: handlers.append(lambda scene, *_: change(scene.frame_current))
@@ -64,10 +67,12 @@ def _square(name: str = "Square") -> bpy.types.Object:
     return recording.add(recording.grid(4, size=1.5), name, (1.0, 0.5, 0.0))
 
 
-# ------------------------------------------------------------------------------------------------ time
+# -------------------------------------------------------------------------------- time
 
 
-def test_frames_without_blur_and_vectors_keep_what_rests(room: bpy.types.Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_frames_without_blur_and_vectors_keep_static_geometry(
+    room: bpy.types.Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     seconds: list[float] = []
 
     def commit(session: store.Session, cancelled: Callable[[], bool], original: Any = store.Session.commit) -> None:
@@ -87,7 +92,7 @@ def test_frames_without_blur_and_vectors_keep_what_rests(room: bpy.types.Scene, 
     assert not np.array_equal(told[0], told[1])
 
 
-# ------------------------------------------------------------------------------------------------ pictures
+# -------------------------------------------------------------------------------- pictures
 
 
 def _moved_by_a_handler(each_frame: Any) -> None:
@@ -194,11 +199,15 @@ TOLD = [_shown_by_keys, _shaped_by_keys, _bent_by_an_armature, _falling, _strewn
 
 @pytest.mark.parametrize("change", UNTOLD + TOLD)
 def test_pictures_are_those_of_frames_built_from_nothing(
-    room: bpy.types.Scene, each_frame: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: Callable[[Any], None]
+    room: bpy.types.Scene,
+    each_frame: Any,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    change: Callable[[Any], None],
 ) -> None:
     change(each_frame)
     bpy.data.objects["Told"].animation_data_clear()
-    step(bpy.data.objects["Told"], "location", {1: (-2.0, -1.0, 0.0)})  # told, and where it is
+    step(bpy.data.objects["Told"], "location", {1: (-2.0, -1.0, 0.0)})  # predicted to move, but static
     kept = _animate(room, tmp_path / "kept")
 
     def sync(session: store.Session, *arguments: Any, original: Any = store.Session.sync) -> Any:

@@ -1,4 +1,4 @@
-"""A compositor that makes the picture of Blender's light passes: clean ones, whose sum is Combined, rendered in background."""
+"""A compositor that combines Blender's light passes to the reconstructed image, rendered in the background."""
 
 from __future__ import annotations
 
@@ -23,8 +23,13 @@ def socket(render: bpy.types.Node, name: str) -> bpy.types.NodeSocket:
     return render.outputs[info.blender_name(bpy.app.version)]
 
 
-def mixed(tree: bpy.types.NodeTree, kind: str, first: bpy.types.NodeSocket, second: bpy.types.NodeSocket) -> bpy.types.NodeSocket:
-    """Since 5.0 the node is the one of shaders, whose sockets of colours follow those of numbers and vectors."""
+def mixed(
+    tree: bpy.types.NodeTree, kind: str, first: bpy.types.NodeSocket, second: bpy.types.NodeSocket
+) -> bpy.types.NodeSocket:
+    """Returns the output of a Mix node.
+
+    From 5.0 on it is the shader node, whose colour sockets follow those of other types.
+    """
     since_5_0 = bpy.app.version >= (5, 0, 0)
     mix = tree.nodes.new("ShaderNodeMix" if since_5_0 else "CompositorNodeMixRGB")
     if since_5_0:
@@ -46,7 +51,7 @@ def summed(tree: bpy.types.NodeTree, render: bpy.types.Node) -> bpy.types.NodeSo
 
 
 def compose(scene: bpy.types.Scene) -> None:
-    """Render → Σ Color · (Direct + Indirect) + Emission + Environment → output."""
+    """Composes Σ Color · (Direct + Indirect) + Emission + Environment."""
     tree, render, output = compositing.new_tree(scene)
     tree.links.new(summed(tree, render), output)
 

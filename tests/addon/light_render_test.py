@@ -1,6 +1,6 @@
-"""Light units in pictures: the irradiance of every light type on a white diffuse plane, against closed forms.
+"""Units of lights: the irradiance of all light types on a white diffuse plane, against closed forms.
 
-The plane lies at the origin and looks up; the light is 3 m above. A pixel is irradiance / pi.
+The plane is at the origin and faces up, and the light is 3 m above it. The value of a pixel is irradiance / pi.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ DISTANCE = 3.0
 
 
 def _receiver(scene: bpy.types.Scene, node: str = "ShaderNodeBsdfDiffuse", **inputs: float) -> None:
-    """A small white plane that fills the view of an orthographic camera below the light."""
+    """Adds a small white plane that fills the view of an orthographic camera below the light."""
     material = bpy.data.materials.new("White")
     material.use_nodes = True
     tree = material.node_tree
@@ -40,10 +40,13 @@ def _receiver(scene: bpy.types.Scene, node: str = "ShaderNodeBsdfDiffuse", **inp
 
 @pytest.fixture
 def irradiance(scene: bpy.types.Scene, render: Callable[..., Any]) -> Callable[..., np.ndarray]:
-    """irradiance(type, place=…, scale=…, **light settings): mean over the picture, RGB."""
+    """irradiance(type, place=…, scale=…, **light settings): the mean RGB of the image."""
 
     def measure(
-        kind: str, place: tuple[float, float, float] = (0, 0, DISTANCE), scale: tuple[float, ...] = (1, 1, 1), **settings: Any
+        kind: str,
+        place: tuple[float, float, float] = (0, 0, DISTANCE),
+        scale: tuple[float, ...] = (1, 1, 1),
+        **settings: Any,
     ) -> np.ndarray:
         _receiver(scene)
         data = bpy.data.lights.new("Light", kind)
@@ -57,7 +60,7 @@ def irradiance(scene: bpy.types.Scene, render: Callable[..., Any]) -> Callable[.
 
 
 def _rectangle(width: float, height: float, keep: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> float:
-    """The form factor times pi of a horizontal light of which `keep` gives the part, from straight below."""
+    """Returns the form factor times pi of a horizontal light, whose shape `keep` defines, seen from straight below."""
     x, y = np.meshgrid((np.arange(400) + 0.5) / 400 - 0.5, (np.arange(400) + 0.5) / 400 - 0.5)
     squared = (x * width) ** 2 + (y * height) ** 2 + DISTANCE**2
     return float((keep(x, y) * DISTANCE**2 / squared**2).sum() * width * height / 400**2)
@@ -81,7 +84,7 @@ def test_point_with_radius_as_a_sphere(irradiance: Callable[..., np.ndarray]) ->
 
 @pytest.mark.parametrize("angle", [0.0, 0.3])
 def test_spot(irradiance: Callable[..., np.ndarray], angle: float) -> None:
-    """Seen from an angle off its axis: an extra cosine before 4.0, and the smooth edge."""
+    """At an angle to its axis, a spot has an additional cosine before 4.0, and a smooth edge."""
     place = (DISTANCE * math.sin(angle), 0.0, DISTANCE * math.cos(angle))
     found = irradiance("SPOT", place, energy=100.0, shadow_soft_size=0.0, spot_size=1.0, spot_blend=0.5)
     edge = (math.cos(angle) - math.cos(0.5)) / ((1 - math.cos(0.5)) * 0.5)
@@ -109,7 +112,7 @@ def test_area(irradiance: Callable[..., np.ndarray], shape: str) -> None:
 
 @pytest.mark.parametrize("spread, factor", [(2.0, 7.62246), (0.5, 119.334)])
 def test_area_with_spread(irradiance: Callable[..., np.ndarray], spread: float, factor: float) -> None:
-    """Factors as Cycles 3.4 shows them; 4.5 and 5.0 show 4/pi of them."""
+    """The factors were measured with Cycles 3.4. In 4.5 and 5.0 they are larger by 4/pi."""
     found = irradiance("AREA", energy=100.0, shape="SQUARE", size=0.2, spread=spread)
     assert found[0] == pytest.approx(factor * (1.0 if BEFORE_40 else 4 / math.pi), rel=0.02)
 
@@ -129,8 +132,10 @@ def test_area_shines_on_one_side(irradiance: Callable[..., np.ndarray]) -> None:
         ("SUN", {"angle": 0.5, "normalize": False, "energy": 2.0}, 0.38459),
     ],
 )
-def test_exposure_and_normalize(irradiance: Callable[..., np.ndarray], kind: str, settings: dict[str, Any], expected: float) -> None:
-    """Values that Cycles 4.5 shows."""
+def test_exposure_and_normalize(
+    irradiance: Callable[..., np.ndarray], kind: str, settings: dict[str, Any], expected: float
+) -> None:
+    """The expected values were measured with Cycles 4.5."""
     assert irradiance(kind, **{"energy": 100.0, **settings})[0] == pytest.approx(expected, rel=0.01)
 
 
@@ -138,7 +143,7 @@ def test_exposure_and_normalize(irradiance: Callable[..., np.ndarray], kind: str
 def test_rays_pass_through_lights_without_multiple_importance(
     roughness: float, wanted: float, scene: bpy.types.Scene, render: Callable[..., Any]
 ) -> None:
-    """As in Cycles: a mirror does not show them, and what light sampling alone can do has the same brightness as ever."""
+    """As in Cycles, a mirror does not show them, while their light on diffuse surfaces is unchanged."""
     _receiver(scene, "ShaderNodeBsdfAnisotropic", Roughness=roughness)
     data = bpy.data.lights.new("Light", "AREA")
     recording.add(data, "Light", (0, 0, DISTANCE))

@@ -1,4 +1,4 @@
-"""The add-on and the library load, and unload, in every host."""
+"""Loading and unloading of the add-on and the library."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ def test_register_twice(addon: object) -> None:
         assert hasattr(bpy.types.Scene, "gradus")
 
 
-def test_an_engine_that_outlives_blenders_types_does_not_look_for_them(addon: object, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_engine_that_outlives_blenders_types_does_not_look_for_them(
+    addon: object, monkeypatch: pytest.MonkeyPatch
+) -> None:
     from gradus import engine
 
     freed = []
@@ -42,21 +44,27 @@ def test_version_answers(library: ctypes.CDLL) -> None:
 def test_h4_exports_are_those_of_the_header(library_path: Path) -> None:
     header = (library_path.parents[3] / "native" / "include" / "gradus" / "gradus.h").read_text()
     declared = set(re.findall(r"^GRADUS_API [^;(]*?\b(gradus_\w+)\(", header, re.M))
-    lines = subprocess.run(["nm", "-D", "--defined-only", library_path], check=True, capture_output=True, text=True).stdout.splitlines()
+    lines = subprocess.run(
+        ["nm", "-D", "--defined-only", library_path], check=True, capture_output=True, text=True
+    ).stdout.splitlines()
     exported = {line.split()[-1].partition("@")[0] for line in lines}
     assert "gradus_version" in declared
     assert exported == declared
 
 
 def test_h4_soname_changes_with_the_layout(library: ctypes.CDLL, library_path: Path) -> None:
-    """abi_golden.json holds what the last release had: a new layout under an old number would pass for that release.
+    """abi_golden.json holds the layout of the last release, which must not change without its number.
 
-    After raising SOVERSION in native/CMakeLists.txt (or before the first release): GRADUS_UPDATE_GOLDEN=1 make test-addon TESTS=this file.
+    After raising SOVERSION in native/CMakeLists.txt (or before the first release), run this file with
+    GRADUS_UPDATE_GOLDEN=1 make test-addon TESTS=tests/addon/load_test.py.
     """
     golden = Path(__file__).with_name("abi_golden.json")
     dynamic = subprocess.run(["readelf", "-d", library_path], check=True, capture_output=True, text=True).stdout
     library.gradus_abi_hash.restype = ctypes.c_uint64
-    found = {"layout": f"{library.gradus_abi_hash():016x}", "soname": re.search(r"\(SONAME\).*\[(.*)\]", dynamic).group(1)}
+    found = {
+        "layout": f"{library.gradus_abi_hash():016x}",
+        "soname": re.search(r"\(SONAME\).*\[(.*)\]", dynamic).group(1),
+    }
     if os.environ.get("GRADUS_UPDATE_GOLDEN"):
         golden.write_text(json.dumps(found) + "\n")
     assert found == json.loads(golden.read_text())

@@ -1,4 +1,4 @@
-"""The hint by which the library keeps what rests from frame to frame."""
+"""The prediction of motion, by which the library keeps static objects from frame to frame."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _lying(obj: bpy.types.Object) -> None:
 
 
 def _node_group(*nodes: str) -> bpy.types.NodeTree:
-    """A group that changes nothing, with these nodes within a group of it."""
+    """Returns a group without effect that contains a group with the given nodes."""
     inner, outer = (bpy.data.node_groups.new(name, "GeometryNodeTree") for name in ("Inner", "Outer"))
     for node in nodes:
         inner.nodes.new(node)
@@ -82,12 +82,16 @@ def _node_group(*nodes: str) -> bpy.types.NodeTree:
 
 
 def _timed(obj: bpy.types.Object) -> None:
-    obj.modifiers.new("Nodes", "NODES").node_group = _node_group("GeometryNodeSetPosition", "GeometryNodeInputSceneTime")
+    obj.modifiers.new("Nodes", "NODES").node_group = _node_group(
+        "GeometryNodeSetPosition", "GeometryNodeInputSceneTime"
+    )
 
 
 def _smooth(obj: bpy.types.Object) -> None:
-    """As Blender 4.1 and later make the edges of older files smooth."""
-    obj.modifiers.new("Nodes", "NODES").node_group = _node_group("GeometryNodeSetShadeSmooth", "GeometryNodeInputMeshEdgeAngle")
+    """Adds the node modifier with which Blender 4.1 replaces the auto smooth setting of older files."""
+    obj.modifiers.new("Nodes", "NODES").node_group = _node_group(
+        "GeometryNodeSetShadeSmooth", "GeometryNodeInputMeshEdgeAngle"
+    )
     obj.modifiers.new("Empty", "NODES")
 
 

@@ -1,4 +1,4 @@
-"""Motion blur: what the export reads while the shutter is open, and pictures that are those of Cycles in the same Blender."""
+"""Motion blur: the export while the shutter is open, and images that equal those of Cycles in the same Blender."""
 
 from __future__ import annotations
 
@@ -41,11 +41,13 @@ def export(scene: bpy.types.Scene, frame: int = 5) -> recording.Recording:
     return recorded
 
 
-# ------------------------------------------------------------------------------------------------ what the export reads
+# -------------------------------------------------------------------------------- what the export reads
 
 
 @pytest.mark.parametrize(("position", "start"), [("START", 0.0), ("CENTER", -0.25), ("END", -0.5)])
-def test_the_exposure_begins_ends_or_is_centred_at_the_frame(blurred: bpy.types.Scene, position: str, start: float) -> None:
+def test_the_exposure_begins_ends_or_is_centred_at_the_frame(
+    blurred: bpy.types.Scene, position: str, start: float
+) -> None:
     owner = position_owner(blurred)
     if owner is None:
         pytest.skip("Cycles, which has the setting, is not in this Blender")
@@ -79,8 +81,8 @@ def test_the_camera_moves_and_zooms(blurred: bpy.types.Scene) -> None:
     assert np.allclose(recorded.shutter["windows"][:, 1], [0.5 * (4.0 + 0.4 * t) for t in (4.75, 5.0, 5.25)], atol=1e-4)
 
 
-def cut_to_another_camera(scene: bpy.types.Scene, frame: int) -> None:
-    """By markers, from the scene's own, which looks elsewhere."""
+def bind_another_camera(scene: bpy.types.Scene, frame: int) -> None:
+    """Adds markers that switch to another camera at a frame."""
     first, second = scene.camera, recording.add_camera(type="PERSP", lens=60.0)
     first.location, first.rotation_euler = (3.0, 0.0, 5.0), (0.0, 0.5, 0.0)
     for start, camera in ((1, first), (frame, second)):
@@ -88,10 +90,10 @@ def cut_to_another_camera(scene: bpy.types.Scene, frame: int) -> None:
     scene.frame_set(frame)
 
 
-def test_a_cut_by_markers_does_not_mix_two_cameras(blurred: bpy.types.Scene) -> None:
-    """The camera was asked for anew at each moment: the first frame of a shot was smeared from the pose of the shot before."""
+def test_a_shot_change_by_markers_does_not_mix_two_cameras(blurred: bpy.types.Scene) -> None:
+    """The first frame after a shot change was blurred between both cameras."""
     recording.add(recording.grid(1))
-    cut_to_another_camera(blurred, 5)
+    bind_another_camera(blurred, 5)
     blurred.view_layers[0].use_pass_vector = True
     recorded = export(blurred, 5)
     assert recorded.shutter["matrices"] is None, "each camera rests"
@@ -110,13 +112,13 @@ def test_a_deforming_mesh_has_positions(blurred: bpy.types.Scene) -> None:
 
 
 def test_a_mesh_that_its_parent_deforms_is_blurred(blurred: bpy.types.Scene) -> None:
-    """No modifier is listed for it: it was taken for rigid, in pass Vector, too."""
+    """Such a mesh has no modifier and was exported as rigid, for motion blur and pass Vector."""
     bpy.ops.object.armature_add()
     armature, obj = bpy.context.object, recording.add(recording.grid(1))
     obj.parent, obj.parent_type = armature, "ARMATURE"
     bone = armature.pose.bones[0]
     obj.vertex_groups.new(name=bone.name).add(range(4), 1.0, "REPLACE")
-    key(bone, "location", {0: (0, 0, 0), 10: (0, 1, 0)})  # along the bone, which stands upright
+    key(bone, "location", {0: (0, 0, 0), 10: (0, 1, 0)})  # along the upright bone
     blurred.view_layers[0].use_pass_vector = True
     (mesh,) = export(blurred).meshes.values()
     assert np.allclose(mesh.shutter[:, 0, 2], [0.475, 0.5, 0.525], atol=1e-4)
@@ -132,7 +134,7 @@ def instances_of(collection: bpy.types.Collection, count: int) -> list[bpy.types
 
 @pytest.fixture
 def deforming_part() -> bpy.types.Collection:
-    """A collection that is in no scene, of an object whose mesh deforms."""
+    """Returns a collection outside the scene with an object whose mesh deforms."""
     collection, part = bpy.data.collections.new("Parts"), bpy.data.objects.new("Part", recording.grid(1))
     collection.objects.link(part)
     moving_key_shape(part, (0, 0, 1), {0: 0.0, 10: 1.0})
@@ -142,7 +144,7 @@ def deforming_part() -> bpy.types.Collection:
 def test_instances_are_blurred_though_the_first_is_not_there_all_the_time(
     blurred: bpy.types.Scene, deforming_part: bpy.types.Collection
 ) -> None:
-    """It stood for all of them: where it was gone at a moment of the shutter, they all were sharp."""
+    """All instances were sharp if the first one did not exist at one of the times of the shutter."""
     copy = instances_of(deforming_part, 3)[0]
     animation.step(copy, "hide_render", {1: True, 5: False})
     animation.step(copy, "hide_viewport", {1: True, 5: False})
@@ -153,7 +155,9 @@ def test_instances_are_blurred_though_the_first_is_not_there_all_the_time(
     assert of_topology(recorded.warnings) == []
 
 
-def test_a_sharp_instance_leaves_the_others_their_blur(blurred: bpy.types.Scene, deforming_part: bpy.types.Collection) -> None:
+def test_a_sharp_instance_leaves_the_others_their_blur(
+    blurred: bpy.types.Scene, deforming_part: bpy.types.Collection
+) -> None:
     sharp, more, *_ = instances_of(deforming_part, 4)
     if not hasattr(sharp, "cycles"):
         pytest.skip("Cycles, which has the settings, is not in this Blender")
@@ -179,7 +183,7 @@ def test_vectors_and_blur_are_read_together(blurred: bpy.types.Scene) -> None:
 
 
 def add_growing(name: str, counts: dict[int, int]) -> bpy.types.Object:
-    """A row of as many squares as the frame has."""
+    """Adds a mesh that has as many squares as the number of the frame."""
     obj = recording.add(recording.grid(2, name=name), name)
     modifier = obj.modifiers.new("Array", "ARRAY")
     animation.step(obj, f'modifiers["{modifier.name}"].count', counts)
@@ -195,19 +199,25 @@ def test_meshes_that_change_their_topology_stand_still_with_a_warning_each(blurr
         add_growing(name, {1: 1, 5: 4})
     recorded = export(blurred)
     assert all(mesh.shutter is None for mesh in recorded.meshes.values())
-    assert [name in text for text, name in zip(of_topology(recorded.warnings), ("First", "Second"), strict=True)] == [True, True]
+    assert [name in text for text, name in zip(of_topology(recorded.warnings), ("First", "Second"), strict=True)] == [
+        True,
+        True,
+    ]
 
 
 def test_a_warning_of_topology_is_the_same_in_all_frames(blurred: bpy.types.Scene) -> None:
-    """It counted the objects of the frame, so that an animation had many."""
+    """The warning counted objects, so that an animation had many different warnings."""
     add_growing("First", {1: 1, 5: 4, 6: 9})
     add_growing("Second", {1: 1, 6: 2})
     first, second = (of_topology(export(blurred, frame).warnings) for frame in (5, 6))
     assert len(first) == 1 and first[0] in second
 
 
-def test_topology_beyond_the_exposure_is_no_fault(blurred: bpy.types.Scene) -> None:
-    """Pass Vector looks one frame ahead, where the mesh is another one: it was blamed, though it rests in the exposure."""
+def test_topology_outside_the_exposure_gives_no_warning(blurred: bpy.types.Scene) -> None:
+    """Pass Vector reads the next frame, whose topology differs.
+
+    The mesh is static during the exposure, but there was a warning.
+    """
     add_growing("Growing", {1: 1, 6: 4})
     blurred.view_layers[0].use_pass_vector = True
     assert of_topology(export(blurred, 5).warnings) == []
@@ -244,7 +254,10 @@ def test_the_view_layer_may_leave_it_out(blurred: bpy.types.Scene) -> None:
 
 
 def test_objects_have_steps_and_switches_of_their_own(blurred: bpy.types.Scene) -> None:
-    objects = [recording.add(recording.grid(cells, name=name), name) for cells, name in enumerate(("Sharp", "Smooth", "Rigid"), 1)]
+    objects = [
+        recording.add(recording.grid(cells, name=name), name)
+        for cells, name in enumerate(("Sharp", "Smooth", "Rigid"), 1)
+    ]
     if not hasattr(objects[0], "cycles"):
         pytest.skip("Cycles, which has the settings, is not in this Blender")
     for obj in objects:
@@ -261,7 +274,7 @@ def test_objects_have_steps_and_switches_of_their_own(blurred: bpy.types.Scene) 
     assert len(found["Rigid"]) == 3 and meshes["Rigid"] is None
 
 
-# ------------------------------------------------------------------------------------------------ pictures
+# -------------------------------------------------------------------------------- pictures
 
 
 def glowing(obj: bpy.types.Object) -> None:
@@ -272,8 +285,10 @@ def glowing(obj: bpy.types.Object) -> None:
     obj.data.materials.append(material)
 
 
-def test_a_square_that_flies_by_leaves_a_trapezium_of_light(blurred: bpy.types.Scene, render: Callable[..., Any]) -> None:
-    """2 m wide, 2 m in the half frame that the shutter is open: a tent, by closed form."""
+def test_a_square_that_flies_by_leaves_a_trapezium_of_light(
+    blurred: bpy.types.Scene, render: Callable[..., Any]
+) -> None:
+    """The square is 2 m wide and moves 2 m while the shutter is open, so that its coverage is a tent function."""
     obj = recording.add(recording.grid(1))
     glowing(obj)
     key(obj, "location", {0: (-20, 0, 0), 10: (20, 0, 0)})
@@ -285,9 +300,11 @@ def test_a_square_that_flies_by_leaves_a_trapezium_of_light(blurred: bpy.types.S
 
 
 @pytest.mark.parametrize("frame", [4, 5])
-def test_pictures_beside_a_cut_by_markers_show_one_camera(frame: int, blurred: bpy.types.Scene, render: Callable[..., Any]) -> None:
+def test_pictures_beside_a_cut_by_markers_show_one_camera(
+    frame: int, blurred: bpy.types.Scene, render: Callable[..., Any]
+) -> None:
     glowing(recording.add(recording.grid(1)))
-    cut_to_another_camera(blurred, 5)
+    bind_another_camera(blurred, 5)
     blurred.view_layers[0].use_pass_vector = True
     found = render(blurred, frame=frame, samples=16, vector_with_motion_blur=True, **EXACT)
     blurred.render.use_motion_blur = False
@@ -297,7 +314,9 @@ def test_pictures_beside_a_cut_by_markers_show_one_camera(frame: int, blurred: b
     assert not found["Vector"].any() and not still["Vector"].any()
 
 
-def test_vectors_are_0_under_blur_unless_they_are_asked_for(blurred: bpy.types.Scene, render: Callable[..., Any]) -> None:
+def test_vectors_are_0_under_blur_unless_they_are_asked_for(
+    blurred: bpy.types.Scene, render: Callable[..., Any]
+) -> None:
     obj = recording.add(recording.grid(1, 6.0))
     key(obj, "location", {0: (0, 0, 0), 10: (1, 0, 0)})
     blurred.view_layers[0].use_pass_vector = True
@@ -345,7 +364,13 @@ def _velocities(scene: bpy.types.Scene) -> None:
     glowing(recording.add(mesh))
 
 
-SCENES = {"turning": _turning, "deforming": _deforming, "orbit": _orbit, "instances": _instances, "velocities": _velocities}
+SCENES = {
+    "turning": _turning,
+    "deforming": _deforming,
+    "orbit": _orbit,
+    "instances": _instances,
+    "velocities": _velocities,
+}
 
 
 @pytest.mark.parametrize("position", ["CENTER", "START"])
@@ -364,7 +389,9 @@ def test_a9_blur_is_that_of_cycles(name: str, position: str, blurred: bpy.types.
     pictures = {}
     for engine in ("CYCLES", "GRADUS"):
         blurred.render.engine = engine
-        pictures[engine] = images.render(blurred, tmp_path, frame=5, samples=512, pixel_filter="BOX", **EXACT)["Combined"][:, :, :3]
+        pictures[engine] = images.render(blurred, tmp_path, frame=5, samples=512, pixel_filter="BOX", **EXACT)[
+            "Combined"
+        ][:, :, :3]
     difference = np.abs(pictures["CYCLES"] - pictures["GRADUS"])
     assert pictures["CYCLES"].mean() > 0.01
     assert difference.mean() < 0.01 * pictures["CYCLES"].mean() + 1e-3

@@ -1,4 +1,4 @@
-"""H5, H6: libraries that cannot be used, and buffers that cannot be handed over."""
+"""Libraries that cannot be used, and buffers that cannot be passed to the library."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_h5_missing(tmp_path: Path) -> None:
 
 def test_h5_wrong_architecture(tmp_path: Path) -> None:
     path = tmp_path / "libgradus.so"
-    path.write_bytes(b"\x7fELF\x01\x01\x01" + bytes(57))  # 32 bit
+    path.write_bytes(b"\x7fELF\x01\x01\x01" + bytes(57))  # a 32-bit file
     assert "cannot be loaded" in message(path)
 
 
@@ -52,19 +52,28 @@ def test_h5_old_version(tmp_path: Path) -> None:
 
 def test_h5_other_layout_names_both(tmp_path: Path) -> None:
     version = abi.VERSION[0] * 10000 + abi.VERSION[1] * 100 + abi.VERSION[2]
-    source = f"unsigned gradus_version(void) {{ return {version}; }}\nunsigned long gradus_abi_hash(void) {{ return 0x1234; }}"
+    version_function = f"unsigned gradus_version(void) {{ return {version}; }}"
+    source = f"{version_function}\nunsigned long gradus_abi_hash(void) {{ return 0x1234; }}"
     text = message(stand_in(tmp_path, source))
     assert "0000000000001234" in text
     assert f"{abi.layout_hash():016x}" in text
 
 
 @pytest.mark.parametrize(
-    ("flags", "missing"), [("sse4_2 avx", "avx2 and fma"), ("avx avx2", "fma"), ("avx avx2 fma", ""), (None, ""), ("", "avx2 and fma")]
+    ("flags", "missing"),
+    [("sse4_2 avx", "avx2 and fma"), ("avx avx2", "fma"), ("avx avx2 fma", ""), (None, ""), ("", "avx2 and fma")],
 )
-def test_an_older_processor_gets_a_message(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, flags: str | None, missing: str) -> None:
-    """Blender died of an illegal instruction as soon as the library was loaded. A system that tells nothing is trusted."""
+def test_an_older_processor_gets_a_message(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, flags: str | None, missing: str
+) -> None:
+    """Loading the library ended Blender with an illegal instruction.
+
+    If the system does not list features, none is missing.
+    """
     info = tmp_path / "cpuinfo"
-    info.write_text("processor\t: 0\nmodel name\t: old avx2 fma\n" + (f"flags\t\t: fpu {flags}\n" if flags is not None else ""))
+    info.write_text(
+        "processor\t: 0\nmodel name\t: old avx2 fma\n" + (f"flags\t\t: fpu {flags}\n" if flags is not None else "")
+    )
     monkeypatch.setattr(native, "CPU_INFO", info)
     path = native.library_path()
     if missing:
@@ -100,7 +109,9 @@ def test_h6_pointer_in_a_struct_keeps_the_buffer_alive() -> None:
     assert mesh.attributes[0].struct_size == ctypes.sizeof(native.Attribute)
 
 
-@pytest.mark.parametrize("value", [array("d", [1.0]), [1.0], b"abcd", memoryview(array("f", [1, 2, 3, 4]))[::2], memoryview(b"abcd")])
+@pytest.mark.parametrize(
+    "value", [array("d", [1.0]), [1.0], b"abcd", memoryview(array("f", [1, 2, 3, 4]))[::2], memoryview(b"abcd")]
+)
 def test_h6_wrong_buffers_are_refused(value: object) -> None:
     with pytest.raises(TypeError):
         native.pointer(value)

@@ -1,4 +1,4 @@
-"""A9 for nodes: what Cycles of the same Blender shows for a node, Gradus shows. Values shine, so that there is no noise but at edges."""
+"""Nodes against Cycles of the same Blender. Values are rendered as emission, so that there is noise at edges only."""
 
 from __future__ import annotations
 
@@ -17,12 +17,14 @@ VERSION = tuple(bpy.app.version)
 
 
 class Graph:
-    """Builds nodes in one expression."""
+    """A shorthand for building node trees."""
 
     def __init__(self, material: bpy.types.Material) -> None:
         self.tree = material.node_tree
 
-    def __call__(self, kind: str, output: str, inputs: dict[str, Any] | None = None, **properties: Any) -> bpy.types.NodeSocket:
+    def __call__(
+        self, kind: str, output: str, inputs: dict[str, Any] | None = None, **properties: Any
+    ) -> bpy.types.NodeSocket:
         node = self.tree.nodes.new(f"ShaderNode{kind}")
         for name, value in properties.items():
             setattr(node, name, value)
@@ -39,10 +41,13 @@ class Graph:
 
 
 def checker_image() -> bpy.types.Image:
-    """32×32: red to the right, green up, blue checks, half transparent stripes."""
+    """An image of 32×32 pixels: red increases to the right, green upwards; with blue checks and half-transparent
+    stripes."""
     image = bpy.data.images.new("pattern", 32, 32, alpha=True)
     y, x = np.mgrid[0:32, 0:32].astype(np.float32)
-    pixels = np.stack([x / 31, y / 31, (x // 4 + y // 4) % 2, np.where((x // 8) % 2 == 0, 1.0, 0.5)], axis=2).astype(np.float32)
+    pixels = np.stack([x / 31, y / 31, (x // 4 + y // 4) % 2, np.where((x // 8) % 2 == 0, 1.0, 0.5)], axis=2).astype(
+        np.float32
+    )
     image.pixels.foreach_set(pixels.ravel())
     image.pack()
     return image
@@ -54,7 +59,7 @@ def noise(graph: Graph, **properties: Any) -> bpy.types.NodeSocket:
 
 
 def normal_colors(graph: Graph) -> bpy.types.NodeSocket:
-    """A normal map that bends moderately."""
+    """Returns colours of a moderate normal map."""
     image = graph("TexImage", "Color", image=checker_image())
     return graph("MixRGB", "Color", {"Fac": 0.25, "Color1": (0.5, 0.5, 1.0, 1.0), "Color2": image})
 
@@ -66,8 +71,12 @@ def coarse_image() -> bpy.types.Image:
 
 
 def beyond_borders(graph: Graph) -> bpy.types.NodeSocket:
-    """UV from -0.5 to 1.5."""
-    return graph("Mapping", "Vector", {"Vector": graph("TexCoord", "UV"), "Location": (-0.5, -0.5, 0.0), "Scale": (2.0, 2.0, 1.0)})
+    """Returns UV coordinates from -0.5 to 1.5."""
+    return graph(
+        "Mapping",
+        "Vector",
+        {"Vector": graph("TexCoord", "UV"), "Location": (-0.5, -0.5, 0.0), "Scale": (2.0, 2.0, 1.0)},
+    )
 
 
 CASES: dict[str, Callable[[Graph], bpy.types.NodeSocket]] = {
@@ -81,32 +90,53 @@ CASES: dict[str, Callable[[Graph], bpy.types.NodeSocket]] = {
     "position": lambda g: g("NewGeometry", "Position"),
     "tangent": lambda g: g("NewGeometry", "Tangent"),
     "incoming": lambda g: g("NewGeometry", "Incoming"),
-    "mapping": lambda g: g("Mapping", "Vector", {"Vector": g.place(), "Location": (0.1, 0.2, 0.3), "Rotation": (0.4, 0.5, 0.6)}),
+    "mapping": lambda g: g(
+        "Mapping", "Vector", {"Vector": g.place(), "Location": (0.1, 0.2, 0.3), "Rotation": (0.4, 0.5, 0.6)}
+    ),
     "image flat": lambda g: g("TexImage", "Color", image=checker_image()),
     "image alpha": lambda g: g("TexImage", "Alpha", image=checker_image()),
-    "image box": lambda g: g("TexImage", "Color", {"Vector": g.place()}, image=checker_image(), projection="BOX", projection_blend=0.3),
+    "image box": lambda g: g(
+        "TexImage", "Color", {"Vector": g.place()}, image=checker_image(), projection="BOX", projection_blend=0.3
+    ),
     "image sphere": lambda g: g("TexImage", "Color", {"Vector": g.place()}, image=checker_image(), projection="SPHERE"),
     "image tube": lambda g: g("TexImage", "Color", {"Vector": g.place()}, image=checker_image(), projection="TUBE"),
-    "environment": lambda g: g("TexEnvironment", "Color", {"Vector": g("TexCoord", "Reflection")}, image=checker_image()),
+    "environment": lambda g: g(
+        "TexEnvironment", "Color", {"Vector": g("TexCoord", "Reflection")}, image=checker_image()
+    ),
     "mirror ball": lambda g: g(
-        "TexEnvironment", "Color", {"Vector": g("TexCoord", "Reflection")}, image=checker_image(), projection="MIRROR_BALL"
+        "TexEnvironment",
+        "Color",
+        {"Vector": g("TexCoord", "Reflection")},
+        image=checker_image(),
+        projection="MIRROR_BALL",
     ),
     "noise 1D": lambda g: noise(g, noise_dimensions="1D"),
     "noise 2D": lambda g: noise(g, noise_dimensions="2D"),
     "noise 3D": lambda g: noise(g, noise_dimensions="3D"),
     "noise 4D": lambda g: noise(g, noise_dimensions="4D"),
-    "overlay": lambda g: g("MixRGB", "Color", {"Fac": 0.7, "Color1": g.place(), "Color2": (0.6, 0.3, 0.8, 1.0)}, blend_type="OVERLAY"),
+    "overlay": lambda g: g(
+        "MixRGB", "Color", {"Fac": 0.7, "Color1": g.place(), "Color2": (0.6, 0.3, 0.8, 1.0)}, blend_type="OVERLAY"
+    ),
     "hue": lambda g: g("HueSaturation", "Color", {"Hue": 0.7, "Saturation": 1.3, "Color": g("TexCoord", "UV")}),
     "ramp": lambda g: g("ValToRGB", "Color", {"Fac": g.place()}),
     "curves": lambda g: g("RGBCurve", "Color", {"Color": g.place()}),
     "facing": lambda g: g("LayerWeight", "Facing", {"Blend": 0.3}),
     "fresnel": lambda g: g("Fresnel", "Fac", {"IOR": 1.7}),
     "normal map": lambda g: g("NormalMap", "Normal", {"Color": normal_colors(g)}),
-    "bump": lambda g: g("Bump", "Normal", {"Distance": 0.2, "Height": g("TexNoise", "Fac", {"Vector": g.place(), "Scale": 2.0})}),
+    "bump": lambda g: g(
+        "Bump", "Normal", {"Distance": 0.2, "Height": g("TexNoise", "Fac", {"Vector": g.place(), "Scale": 2.0})}
+    ),
     "tangent uv": lambda g: g("Tangent", "Tangent", direction_type="UV_MAP"),
-    "image clipped": lambda g: g("TexImage", "Color", {"Vector": beyond_borders(g)}, image=coarse_image(), extension="CLIP"),
+    "image clipped": lambda g: g(
+        "TexImage", "Color", {"Vector": beyond_borders(g)}, image=coarse_image(), extension="CLIP"
+    ),
     "image clipped, cubic": lambda g: g(
-        "TexImage", "Alpha", {"Vector": beyond_borders(g)}, image=coarse_image(), extension="CLIP", interpolation="Cubic"
+        "TexImage",
+        "Alpha",
+        {"Vector": beyond_borders(g)},
+        image=coarse_image(),
+        extension="CLIP",
+        interpolation="Cubic",
     ),
     "candle": lambda g: g("Blackbody", "Color", {"Temperature": 1500.0}),
     "blue sky": lambda g: g("Blackbody", "Color", {"Temperature": 20000.0}),
@@ -115,7 +145,7 @@ CASES: dict[str, Callable[[Graph], bpy.types.NodeSocket]] = {
 
 @pytest.fixture(scope="module")
 def stage() -> bpy.types.Scene:
-    """A smooth sphere and a turned cube of uneven scale before a grey world."""
+    """A smooth sphere and a rotated, non-uniformly scaled cube in a grey world."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     images.prepare(scene)
@@ -132,13 +162,19 @@ def stage() -> bpy.types.Scene:
 
 
 def picture(scene: bpy.types.Scene, folder: Path, engine: str) -> np.ndarray:
-    """Means of blocks of 4×4 pixels."""
+    """Renders an image and returns means of blocks of 4×4 pixels."""
     scene.render.engine = engine
     cycles = scene.cycles
     cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = 16, False, False
     cycles.pixel_filter_type = "BOX"
     cycles.filter_width = 1.0
-    settings = {"samples": 16, "integrator": "PATH", "reconstruction": "NONE", "pixel_filter": "BOX", "filter_width": 1.0}
+    settings = {
+        "samples": 16,
+        "integrator": "PATH",
+        "reconstruction": "NONE",
+        "pixel_filter": "BOX",
+        "filter_width": 1.0,
+    }
     image = images.render(scene, folder, **settings)["Combined"][..., :3]
     return image.reshape(9, 4, 16, 4, 3).mean(axis=(1, 3))
 
@@ -154,14 +190,14 @@ def test_a9_node(name: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
     expected, found = (picture(stage, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
     difference = np.abs(expected - found)
     scale = np.abs(expected).mean() + 1e-2
-    # Edges of the objects and of patterns are sampled at other places: a few blocks may differ, the mean may not.
+    # Edges are sampled at other positions, so that a few blocks may differ, but not the mean.
     assert difference.mean() / scale < 0.025
     assert np.quantile(difference, 0.95) / scale < 0.15
     assert np.abs(expected.mean(axis=(0, 1)) - found.mean(axis=(0, 1))).max() / scale < 0.02
 
 
 def test_a9_surfaces_without_a_material(stage: bpy.types.Scene, tmp_path: Path) -> None:
-    """From Blender 5.0 on they shine a little: a diffuse grey was 15 % too dark under a lamp."""
+    """From Blender 5.0 on they are slightly glossy: with a diffuse grey they were 15 % too dark."""
     for item in stage.objects:
         if item.type == "MESH":
             item.data.materials.clear()
@@ -173,7 +209,7 @@ def test_a9_surfaces_without_a_material(stage: bpy.types.Scene, tmp_path: Path) 
 
 @pytest.fixture
 def coarse(stage: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
-    """The stage with a smooth sphere of few faces in place of the others."""
+    """The stage with a smooth, coarse sphere instead of the other objects."""
     others = [item for item in stage.objects if item.type == "MESH"]
     for item in others:
         item.hide_render = True
@@ -199,8 +235,10 @@ def test_a9_tangents_run_smoothly_over_coarse_meshes(name: str, coarse: bpy.type
 
 @pytest.mark.parametrize("kind", ["AREA", "POINT", "SPOT"])
 @pytest.mark.parametrize(("node", "output"), [("NewGeometry", "Parametric"), ("TexCoord", "Normal")])
-def test_a9_lamps_have_coordinates_of_their_own(node: str, output: str, kind: str, scene: bpy.types.Scene, tmp_path: Path) -> None:
-    """What pictures of lamps and projections hang on: they were those of the world, or none at all."""
+def test_a9_lights_have_coordinates_of_their_own(
+    node: str, output: str, kind: str, scene: bpy.types.Scene, tmp_path: Path
+) -> None:
+    """Textures of lights used the coordinates of the world, or none."""
     if kind != "AREA" and output == "Parametric" and VERSION < (4, 0, 0):
         pytest.skip("Cycles had another order of them")
     bpy.ops.mesh.primitive_plane_add(size=4.0)
@@ -228,8 +266,10 @@ def test_a9_lamps_have_coordinates_of_their_own(node: str, output: str, kind: st
 
 
 @pytest.mark.parametrize(("node", "output"), TEXTURE_MEANS)
-def test_the_mean_that_stands_in_for_a_texture_is_that_of_cycles(node: str, output: str, scene: bpy.types.Scene, tmp_path: Path) -> None:
-    """Over a large and slanted slice."""
+def test_the_mean_that_replaces_a_texture_is_that_of_cycles(
+    node: str, output: str, scene: bpy.types.Scene, tmp_path: Path
+) -> None:
+    """The mean is measured over a large, slanted plane."""
     if not hasattr(bpy.types, node):
         pytest.skip("not in this Blender")
     material = new_material()
@@ -242,4 +282,6 @@ def test_the_mean_that_stands_in_for_a_texture_is_that_of_cycles(node: str, outp
     camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 100.0, (0.0, 0.0, 5.0)
     scene.collection.objects.link(camera)
     scene.camera = camera
-    assert picture(scene, tmp_path, "CYCLES").mean(axis=(0, 1)) == pytest.approx([TEXTURE_MEANS[node, output]] * 3, abs=0.01)
+    assert picture(scene, tmp_path, "CYCLES").mean(axis=(0, 1)) == pytest.approx(
+        [TEXTURE_MEANS[node, output]] * 3, abs=0.01
+    )

@@ -1,4 +1,4 @@
-"""Shader graphs become node programs: what must not fall back, and what must."""
+"""Translation of shader graphs to node programs, and replacements of unsupported nodes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("scene")
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
-# The nodes that the first release promises; those of one version only are skipped in the others.
+# Nodes of the first release. Nodes that do not exist in a version of Blender are skipped there.
 PROMISED = [
     "BsdfPrincipled",
     "BsdfDiffuse",
@@ -84,7 +84,7 @@ PROMISED = [
     "BsdfSheen",
     "BsdfMetallic",
 ]
-# Outputs that fall back although their node does not.
+# Outputs without translation of nodes that are translated.
 NOT_YET = {("ShaderNodeNewGeometry", "Pointiness"), ("ShaderNodeNewGeometry", "Random Per Island")}
 
 
@@ -96,7 +96,7 @@ def add(material: bpy.types.Material, kind: str) -> bpy.types.Node:
 
 
 def native_check(library: object, program: object) -> None:
-    """The library takes the program."""
+    """Checks that the library accepts a program."""
     from gradus import native
 
     lib = native.load()
@@ -129,7 +129,7 @@ def test_e5_promised_nodes_do_not_fall_back(kind: str) -> None:
 
 
 def test_programs_of_promised_nodes_compile(library: object) -> None:
-    """All of them in one material after another, through the native checks."""
+    """The library accepts the program of each node."""
     for kind in PROMISED:
         if not hasattr(bpy.types, f"ShaderNode{kind}"):
             continue
@@ -170,8 +170,8 @@ def test_e5_unknown_texture_is_grey() -> None:
     ("kind", "output", "expected", "words"),
     [("Voronoi", "Distance", 0.52, "its mean"), ("IES", "Fac", 0.5, "grey")],
 )
-def test_e5_a_texture_is_replaced_by_what_is_said(kind: str, output: str, expected: float, words: str) -> None:
-    """Every one was 0.5, under the words "by its mean"."""
+def test_e5_a_texture_is_replaced_as_its_warning_says(kind: str, output: str, expected: float, words: str) -> None:
+    """Textures were replaced by 0.5, while the warning said "by its mean"."""
     material = new_material()
     node = add(material, f"Tex{kind}")
     show(material, next(socket for socket in node.outputs if socket.identifier == output))
@@ -220,7 +220,7 @@ def test_e5_loop_through_muted_nodes_ends() -> None:
 
 
 def nested_group(depth: int) -> bpy.types.NodeTree:
-    """A group in a group … that doubles a colour at the bottom."""
+    """Returns nested groups, of which the innermost doubles a colour."""
     tree = bpy.data.node_groups.new(f"Group {depth}", "ShaderNodeTree")
     if hasattr(tree, "interface"):
         tree.interface.new_socket("In", in_out="INPUT", socket_type="NodeSocketColor")
@@ -446,29 +446,6 @@ def test_the_volume_of_a_world_is_named() -> None:
     assert op_names(program) == ["EMISSION"]
 
 
-# The same node under the manual's name, which is that of the newest Blender.
-RENAMED = {
-    "Bright Contrast": "Brightness/Contrast",
-    "ColorRamp": "Color Ramp",
-    "Hue Saturation Value": "Hue/Saturation/Value",
-    "Invert": "Invert Color",
-    "Mix (Legacy)": "MixRGB",
-}
-
-
-def test_the_manual_lists_every_node_that_is_translated() -> None:
-    from gradus.nodes import node
-
-    manual = (ROOT / "docs" / "user-guide.md").read_text()
-    listed = {name.strip(" .\n") for line in manual.split("\n- ")[1:] for name in line.partition("\n\n")[0].partition(":")[2].split(",")}
-    listed = {" ".join(name.split()) for name in listed} | {"Velvet BSDF"}  # named as replaced
-    for bl_idname in node.translated_nodes():
-        kind = getattr(bpy.types, bl_idname, None)
-        if kind is not None:
-            name = kind.bl_rna.name
-            assert RENAMED.get(name, name).removesuffix(" (Legacy)") in listed, bl_idname
-
-
 @pytest.mark.parametrize(
     "kind, distribution, named",
     [
@@ -512,7 +489,9 @@ def test_operations_are_those_of_the_header() -> None:
 
     assert names == {op.name: op.value for op in ops.Op}
     for enum, (python, prefix) in generate_ops.ENUMS.items():
-        assert dict(generate_ops.enum_values(header, enum, prefix)) == {item.name: item.value for item in getattr(ops, python)}
+        assert dict(generate_ops.enum_values(header, enum, prefix)) == {
+            item.name: item.value for item in getattr(ops, python)
+        }
 
 
 def test_programs_have_as_many_inputs_as_operations_take() -> None:

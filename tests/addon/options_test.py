@@ -1,4 +1,4 @@
-"""Options after `--` (contract 5.4)."""
+"""Options after `--` on the command line."""
 
 from __future__ import annotations
 
@@ -16,7 +16,17 @@ def test_both_spellings() -> None:
 
 
 def test_host_options() -> None:
-    parsed = parse(["--gradus-stats", "a.jsonl", "--gradus-save-scene=x.gradus", "--gradus-threads", "2", "--gradus-preview-samples", "7"])
+    parsed = parse(
+        [
+            "--gradus-stats",
+            "a.jsonl",
+            "--gradus-save-scene=x.gradus",
+            "--gradus-threads",
+            "2",
+            "--gradus-preview-samples",
+            "7",
+        ]
+    )
     assert (parsed.stats, parsed.save_scene, parsed.threads) == ("a.jsonl", "x.gradus", 2)
     assert parsed.host == {"preview_samples": 7}
     assert parsed.native == ()
@@ -30,7 +40,7 @@ def test_a_negative_value_is_a_value() -> None:
     assert parse(["--gradus-seed", "-1"]).native == (("seed", "-1"),)
 
 
-def test_others_are_ignored() -> None:
+def test_options_of_others_are_ignored() -> None:
     assert parse(["--cycles-device", "CPU", "samples", "-x"]) == options.Overrides()
 
 
@@ -64,7 +74,7 @@ def test_passes() -> None:
 
 
 def test_passes_of_components() -> None:
-    """Numbers of planes and of parts begin at 0 both: Combined and Color must not be taken for each other."""
+    """Planes of the image and of components are both numbered from 0: Combined and Color must not be confused."""
     wanted = parse(["--gradus-passes", "component-color,combined,component_motion"]).passes
     assert wanted.planes == {Pass.COMBINED}
     assert sorted(plane.name for plane in wanted.component_planes) == ["COLOR", "MOTION"]
@@ -75,7 +85,11 @@ def test_passes_of_components() -> None:
 def test_text_keeps_its_case_and_switches_take_what_the_library_takes() -> None:
     parsed = parse(["--gradus-components", "A=ED-L", "--gradus-use-decomposition", "On", "--gradus-strict", "maybe"])
     assert parsed.text("components") == "A=ED-L"
-    assert (parsed.switch("use_decomposition"), parsed.switch("strict"), parsed.switch("use_temporal")) == (True, None, None)
+    assert (parsed.switch("use_decomposition"), parsed.switch("strict"), parsed.switch("use_temporal")) == (
+        True,
+        None,
+        None,
+    )
 
 
 def test_the_last_value_counts() -> None:

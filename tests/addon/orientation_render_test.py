@@ -1,4 +1,4 @@
-"""Orientation of textures and environments: four colours, each where it belongs."""
+"""Orientation of textures and environments, by images with four colours."""
 
 from __future__ import annotations
 
@@ -15,10 +15,17 @@ RED, GREEN, BLUE, YELLOW = (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0)
 SETTINGS = {"samples": 4, "integrator": "PATH", "reconstruction": "NONE", "max_bounces": 0}
 
 
-def _image(width: int, height: int, color_at: Callable[[float, float], tuple[float, float, float]], pack: bool) -> bpy.types.Image:
-    """Rows from the bottom; pure colours are the same encoded and linear."""
+def _image(
+    width: int, height: int, color_at: Callable[[float, float], tuple[float, float, float]], pack: bool
+) -> bpy.types.Image:
+    """Creates an image from rows that start at the bottom. Pure colours are equal in encoded and linear form."""
     block = bpy.data.images.new("Colours", width, height)
-    pixels = [value for y in range(height) for x in range(width) for value in (*color_at((x + 0.5) / width, (y + 0.5) / height), 1.0)]
+    pixels = [
+        value
+        for y in range(height)
+        for x in range(width)
+        for value in (*color_at((x + 0.5) / width, (y + 0.5) / height), 1.0)
+    ]
     block.pixels.foreach_set(pixels)
     if pack:
         block.pack()
@@ -34,7 +41,9 @@ def _emissive(image: bpy.types.Image) -> bpy.types.Material:
     material.use_nodes = True
     tree = material.node_tree
     tree.nodes.clear()
-    texture, emission, output = (tree.nodes.new(f"ShaderNode{name}") for name in ("TexImage", "Emission", "OutputMaterial"))
+    texture, emission, output = (
+        tree.nodes.new(f"ShaderNode{name}") for name in ("TexImage", "Emission", "OutputMaterial")
+    )
     texture.image = image
     tree.links.new(texture.outputs["Color"], emission.inputs["Color"])
     tree.links.new(emission.outputs[0], output.inputs["Surface"])
@@ -43,7 +52,7 @@ def _emissive(image: bpy.types.Image) -> bpy.types.Material:
 
 @pytest.mark.parametrize("pack", [True, False])
 def test_image_texture(scene: bpy.types.Scene, render: Callable[..., Any], pack: bool) -> None:
-    """Lower left red, lower right green, upper left blue, upper right yellow; from packed data and from pixels."""
+    """Red is at the lower left, green at the lower right, blue at the upper left, yellow at the upper right."""
     recording.add_camera(type="ORTHO", ortho_scale=2.0)
     scene.render.resolution_x = scene.render.resolution_y = 32
     mesh = recording.grid(1)
@@ -58,7 +67,9 @@ def _world(scene: bpy.types.Scene, image: bpy.types.Image, turn: float) -> None:
     world = bpy.data.worlds.new("World")
     world.use_nodes = True
     tree = world.node_tree
-    coordinates, mapping, texture = (tree.nodes.new(f"ShaderNode{name}") for name in ("TexCoord", "Mapping", "TexEnvironment"))
+    coordinates, mapping, texture = (
+        tree.nodes.new(f"ShaderNode{name}") for name in ("TexCoord", "Mapping", "TexEnvironment")
+    )
     mapping.inputs["Rotation"].default_value = (0.0, 0.0, turn)
     texture.image = image
     tree.links.new(coordinates.outputs["Generated"], mapping.inputs["Vector"])
@@ -68,7 +79,8 @@ def _world(scene: bpy.types.Scene, image: bpy.types.Image, turn: float) -> None:
 
 
 def _horizon(u: float, v: float) -> tuple[int, int, int]:
-    """+X is the centre of the image: red; +Y, a quarter left of it: green; -X blue; -Y yellow; white above, black below."""
+    """Returns an environment: red at +X, the centre of the image, green at +Y, blue at -X, yellow at -Y, white above,
+    black below."""
     if v > 0.75:
         return (1, 1, 1)
     if v < 0.25:
@@ -76,13 +88,13 @@ def _horizon(u: float, v: float) -> tuple[int, int, int]:
     return (BLUE, GREEN, RED, YELLOW)[int((u * 4.0 + 0.5) % 4.0)]
 
 
-# Rotation of a camera that looks along a direction.
+# Rotations of a camera by its direction.
 VIEWS = {
     "+X": ((math.pi / 2, 0, -math.pi / 2), RED),
     "+Y": ((math.pi / 2, 0, 0), GREEN),
     "-X": ((math.pi / 2, 0, math.pi / 2), BLUE),
     "-Y": ((math.pi / 2, 0, math.pi), YELLOW),
-    # Beside the poles, where bilinear interpolation meets the opposite edge of the image (so does Cycles').
+    # Not exactly at the poles, where bilinear interpolation reaches the opposite edge of the image, as in Cycles.
     "+Z": ((math.pi - 0.3, 0, 0), (1, 1, 1)),
     "-Z": ((0.3, 0, 0), (0, 0, 0)),
 }
@@ -98,7 +110,7 @@ def test_environment(scene: bpy.types.Scene, render: Callable[..., Any], directi
 
 
 def test_rotated_environment(scene: bpy.types.Scene, render: Callable[..., Any]) -> None:
-    """Mapping turns the direction before the look-up: +90 degrees about Z makes +X look where +Y was."""
+    """Mapping rotates the direction before the lookup: with +90 degrees about Z, +X shows what +Y showed."""
     camera = recording.add_camera(lens=200.0)
     camera.rotation_euler, _ = VIEWS["+X"]
     scene.render.resolution_x = scene.render.resolution_y = 4
@@ -107,7 +119,7 @@ def test_rotated_environment(scene: bpy.types.Scene, render: Callable[..., Any])
 
 
 def test_environment_lights_from_its_side(scene: bpy.types.Scene, render: Callable[..., Any]) -> None:
-    """A white wall that faces +X gets mostly red light."""
+    """A white wall that faces +X receives mostly red light."""
     _world(scene, _image(64, 32, _horizon, True), 0.0)
     material = bpy.data.materials.new("White")
     material.use_nodes = True

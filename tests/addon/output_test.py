@@ -1,4 +1,4 @@
-"""Files that Blender writes: space before a frame, the frame before (contract 9.3); stats and frame store paths (contract 7)."""
+"""Files that Blender writes: free space, the previous frame, stats and paths of the frame store."""
 
 from __future__ import annotations
 
@@ -20,19 +20,25 @@ def test_f7_space(tmp_path: Path) -> None:
 
 
 def test_f7_a_folder_that_cannot_be_created_is_called_so() -> None:
-    """The space of the nearest parent was counted: "not enough space in /proc"."""
+    """The free space of the nearest existing folder was reported: "not enough space in /proc"."""
     with pytest.raises(Failure, match="output folder /proc/nope cannot be created"):
         output.require_space("/proc/nope/c_0001.exr", 1)
 
 
-def test_f7_a_folder_that_cannot_be_written_is_noticed_before_rendering(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(output.os, "access", lambda path, mode: not mode & output.os.W_OK)  # root may write everywhere
+def test_f7_a_folder_that_cannot_be_written_is_noticed_before_rendering(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        output.os, "access", lambda path, mode: not mode & output.os.W_OK
+    )  # root can write to all folders
     with pytest.raises(Failure, match="cannot be written to"):
         output.require_space(str(tmp_path / "a.exr"), 1)
 
 
 def test_f7_the_frame_before(tmp_path: Path) -> None:
-    render = SimpleNamespace(frame_path=lambda frame: str(tmp_path / f"{frame}.png"), is_movie_format=False, use_multiview=False)
+    render = SimpleNamespace(
+        frame_path=lambda frame: str(tmp_path / f"{frame}.png"), is_movie_format=False, use_multiview=False
+    )
     files = output.FrameFiles()
     files.before_frame(render, 1, 1)
     files.after_frame(render, 1)
@@ -43,11 +49,11 @@ def test_f7_the_frame_before(tmp_path: Path) -> None:
     with pytest.raises(Failure, match="is truncated"):
         files.before_frame(render, 3, 1)
     files.after_frame(render, 7)
-    files.before_frame(render, 8, 1)  # moved away by a script
+    files.before_frame(render, 8, 1)  # as if a script had moved it
 
 
-def test_f7_a_frame_cut_short_is_found(tmp_path: Path, scene: bpy.types.Scene) -> None:
-    """Only empty files were found; a full disk cuts them anywhere."""
+def test_f7_a_truncated_frame_is_found(tmp_path: Path, scene: bpy.types.Scene) -> None:
+    """Only empty files were found, but a full disk may truncate files anywhere."""
     image = bpy.data.images.new("noise", 61, 47, float_buffer=True)
     image.pixels.foreach_set([(7 * i % 101) / 100 for i in range(61 * 47 * 4)])
     codecs = ("ZIP", "ZIPS", "PIZ", "RLE", "NONE", "DWAA")
@@ -64,7 +70,7 @@ def test_f7_a_frame_cut_short_is_found(tmp_path: Path, scene: bpy.types.Scene) -
             path.write_bytes(data[:length])
             assert not file_check.is_complete(path), (name, codec, length)
         if codec:
-            path.write_bytes(data[:400] + bytes(len(data) - 400))  # its size was reserved and nothing followed
+            path.write_bytes(data[:400] + bytes(len(data) - 400))  # only zeros after the header
             assert not file_check.is_complete(path), (name, codec)
 
 
@@ -97,7 +103,10 @@ def test_stats_are_one_line_with_all_phases(tmp_path: Path) -> None:
 
 
 def test_frame_store_names_are_escaped_and_differ() -> None:
-    assert str(frame_store.frame_path("/s", "My Scene", "View/Layer", "left", -5)) == "/s/My%20Scene/View%2FLayer.left/f-0000005.exr"
+    assert (
+        str(frame_store.frame_path("/s", "My Scene", "View/Layer", "left", -5))
+        == "/s/My%20Scene/View%2FLayer.left/f-0000005.exr"
+    )
     assert frame_store.frame_path("/s", "a", "b", "", 1048574).name == "f+1048574.exr"
     assert frame_store.escape("a%20b") != frame_store.escape("a b")
 
@@ -119,12 +128,19 @@ def test_texts_for_people_are_one_line_and_never_empty() -> None:
         (63, ("",), (3, 4, 1), len(passes.COMPONENT_TABLE)),
     ],
 )
-def test_names_that_blender_cuts_in_files_are_told(layer: int, views: tuple[str, ...], version: tuple[int, ...], lost: int) -> None:
-    """Channels were gone without a word where a layer and a component both have long names."""
+def test_names_that_blender_truncates_are_reported(
+    layer: int, views: tuple[str, ...], version: tuple[int, ...], lost: int
+) -> None:
+    """Channels were lost without a warning if both a view layer and a component had long names."""
     parts = [part.of("Abcdefghijklmnopqrstuvwx") for part in passes.COMPONENT_TABLE]
     settings = SimpleNamespace(file_format="OPEN_EXR_MULTILAYER", views_format="MULTIVIEW")
     longest = [info for info in parts if info.name.endswith("Reflectance")] if lost < 2 else parts
     found = output.truncated_names(settings, "L" * layer, views, longest, version)
     others = f" and {lost - 1} others" if lost > 1 else ""
     assert [others in text and f"'{'L' * layer}'" in text for text in found] == [True] * min(lost, 1)
-    assert output.truncated_names(SimpleNamespace(file_format="PNG", views_format="MULTIVIEW"), "L" * layer, views, longest, version) == []
+    assert (
+        output.truncated_names(
+            SimpleNamespace(file_format="PNG", views_format="MULTIVIEW"), "L" * layer, views, longest, version
+        )
+        == []
+    )

@@ -1,4 +1,4 @@
-"""Every panel of ours draws in every host, closed ones too: all properties that it names exist."""
+"""All panels draw in all hosts, and all their properties exist."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from gradus.ui import presets, render_panels
 
 
 class Layout:
-    """Takes all calls of a UILayout; a property must exist, and an operator gives something to set values on."""
+    """Accepts all calls of a UILayout, and checks that properties and operators exist."""
 
     def prop(self, data: Any, name: str, **_: Any) -> None:
         assert name in data.bl_rna.properties, f"{type(data).__name__}.{name}"
@@ -73,7 +73,7 @@ def test_panels_show_for_our_engine_only(scene: bpy.types.Scene) -> None:
 
 
 class Names(Layout):
-    """Writes down the properties that are drawn."""
+    """Records the properties that are drawn."""
 
     def __init__(self) -> None:
         self.drawn: set[str] = set()
@@ -87,13 +87,20 @@ class Names(Layout):
 
 
 def test_what_the_export_reads_can_be_set_somewhere(scene: bpy.types.Scene) -> None:
-    """Blender leaves these to each engine's panels; without a panel of ours only a script could change them."""
+    """Blender leaves these properties to the panels of engines. Without a panel, only scripts could change them."""
     names = Names()
     for panel in PANELS:
         for light in ("POINT", "SPOT", "SUN", "AREA"):
             instance = SimpleNamespace(layout=names, columns=lambda: names, VALUES=getattr(panel, "VALUES", None))
             panel.draw(instance, context(scene, light))
-    wanted = {"visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow", "is_holdout"}
+    wanted = {
+        "visible_camera",
+        "visible_diffuse",
+        "visible_glossy",
+        "visible_transmission",
+        "visible_shadow",
+        "is_holdout",
+    }
     wanted |= {"use_sky", "use_solid", "material_override", "samples", "pass_alpha_threshold", "film_transparent"}
     wanted |= {"pass_index", "distance", "use_nodes", "spot_size", "spread", "angle"}
     if bpy.app.version >= (4, 5, 0):
@@ -102,7 +109,7 @@ def test_what_the_export_reads_can_be_set_somewhere(scene: bpy.types.Scene) -> N
 
 
 class Labels(Layout):
-    """Writes down the labels."""
+    """Records the labels."""
 
     def __init__(self) -> None:
         self.texts: list[str] = []
@@ -115,12 +122,15 @@ class Labels(Layout):
         return lambda *_, **__: self
 
 
-def test_plan_is_put_into_words(scene: bpy.types.Scene) -> None:
+def test_the_plan_is_shown_as_text(scene: bpy.types.Scene) -> None:
     summary = {
         "frame": 3,
         "samples": 16.0,
         "seconds": {"sample": 2.5, "total": 3.0, "filter": 0.0},
-        "plan": {"chosen": {"integrator gradient": "the default"}, "skipped": {"lens samples": "the camera is a pinhole"}},
+        "plan": {
+            "chosen": {"integrator gradient": "the default"},
+            "skipped": {"lens samples": "the camera is a pinhole"},
+        },
         "warnings": ["image missing"],
     }
     assert render_panels.plan_lines(summary) == [
@@ -133,13 +143,24 @@ def test_plan_is_put_into_words(scene: bpy.types.Scene) -> None:
     labels = Labels()
     render_panels.GRADUS_RENDER_PT_plan.draw(SimpleNamespace(layout=labels), context(scene, "POINT"))
     store.summaries.clear()
-    assert " ".join(text.strip() for text in labels.texts).endswith("Skipped: lens samples: the camera is a pinhole image missing")
+    assert " ".join(text.strip() for text in labels.texts).endswith(
+        "Skipped: lens samples: the camera is a pinhole image missing"
+    )
     assert max(map(len, labels.texts)) < 32
 
 
 def test_phases_of_the_last_render_come_in_their_order() -> None:
-    """They came by the alphabet, those of the add-on last."""
-    seconds = {"denoise": 1.0, "filter": 0.0, "links": 8.0, "preview": 2.0, "reconstruct": 3.0, "sample": 4.0, "store": 9.0, "total": 40.0}
+    """Phases were listed alphabetically, with those of the add-on at the end."""
+    seconds = {
+        "denoise": 1.0,
+        "filter": 0.0,
+        "links": 8.0,
+        "preview": 2.0,
+        "reconstruct": 3.0,
+        "sample": 4.0,
+        "store": 9.0,
+        "total": 40.0,
+    }
     lines = render_panels.plan_lines({"frame": 1, "seconds": {**seconds, "export": 5.0, "build": 6.0, "upload": 7.0}})
     order = ["Export", "Build", "Links", "Sample", "Preview", "Store", "Reconstruct", "Denoise", "Upload"]
     assert [line.split(":")[0] for line in lines[1:]] == order
@@ -163,16 +184,21 @@ def method(**values: Any) -> SimpleNamespace:
         ({"reconstruction": "L2", "integrator": "PATH"}, 64, "Path tracing has no gradients for this reconstruction"),
     ],
 )
-def test_the_panel_promises_no_denoiser_that_may_not_run(values: dict[str, Any], samples: int, text: str) -> None:
-    """With AUTO it said that the picture is denoised where there is no denoiser, and where samples are too few for it."""
+def test_the_bias_of_settings(values: dict[str, Any], samples: int, text: str) -> None:
+    """With AUTO, the panel must not claim that the image is denoised: there may be no denoiser or too few samples."""
     assert render_panels.bias(method(**values), samples)[0] == text
 
 
-def test_presets_set_what_they_name_and_reset_the_rest(scene: bpy.types.Scene) -> None:
+def test_presets_set_their_values_and_reset_others(scene: bpy.types.Scene) -> None:
     scene.gradus.samples, scene.gradus.min_samples = 7, 9
     bpy.ops.gradus.preset(preset="REFERENCE")
     settings = bpy.context.scene.gradus
-    assert (settings.integrator, settings.reconstruction, settings.samples, settings.min_samples) == ("PATH", "NONE", 4096, 0)
+    assert (settings.integrator, settings.reconstruction, settings.samples, settings.min_samples) == (
+        "PATH",
+        "NONE",
+        4096,
+        0,
+    )
     bpy.ops.gradus.preset(preset="FINAL")
     assert (settings.integrator, settings.samples) == ("AUTO", 256)
     assert all(set(values) <= set(presets.SAVED) for _, values in presets.BUILT_IN.values())

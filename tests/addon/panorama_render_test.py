@@ -1,4 +1,4 @@
-"""Panoramas against Cycles, pixel by pixel: the points that are seen, distances, and what lies outside of the image circle."""
+"""Panoramas against Cycles, pixel by pixel: visible points, distances, and the outside of the image circle."""
 
 from __future__ import annotations
 
@@ -12,25 +12,45 @@ import pytest
 from mathutils import Vector
 from support import images, recording
 
-EXACT = {"samples": 1, "integrator": "PATH", "reconstruction": "NONE", "pixel_filter": "GAUSSIAN", "filter_width": 0.01, "max_bounces": 0}
+EXACT = {
+    "samples": 1,
+    "integrator": "PATH",
+    "reconstruction": "NONE",
+    "pixel_filter": "GAUSSIAN",
+    "filter_width": 0.01,
+    "max_bounces": 0,
+}
 RADIUS = 50.0
 
-# Camera, then panorama settings, then the frame's.
+# Settings of the camera, the panorama and the frame.
 CASES: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
     "equirectangular": ("EQUIRECTANGULAR", {}, {}),
-    "limits": ("EQUIRECTANGULAR", {"latitude_min": -0.5, "latitude_max": 1.2, "longitude_min": -2.0, "longitude_max": 0.7}, {}),
+    "limits": (
+        "EQUIRECTANGULAR",
+        {"latitude_min": -0.5, "latitude_max": 1.2, "longitude_min": -2.0, "longitude_max": 0.7},
+        {},
+    ),
     "shifted": ("EQUIRECTANGULAR", {}, {"shift": (0.1, -0.2)}),
     "cube face": ("EQUIANGULAR_CUBEMAP_FACE", {}, {"shift": (0.1, -0.2)}),
     "mirror ball": ("MIRRORBALL", {}, {"aspect": (2.0, 1.0)}),
     "equidistant": ("FISHEYE_EQUIDISTANT", {}, {}),
     "equidistant, wide": ("FISHEYE_EQUIDISTANT", {"fisheye_fov": 4.0}, {"size": (20, 34), "shift": (0.1, -0.2)}),
     "equisolid": ("FISHEYE_EQUISOLID", {"fisheye_lens": 11.0}, {}),
-    "equisolid, portrait": ("FISHEYE_EQUISOLID", {"fisheye_fov": 2.0, "fisheye_lens": 15.0}, {"size": (20, 34), "aspect": (1.0, 2.0)}),
+    "equisolid, portrait": (
+        "FISHEYE_EQUISOLID",
+        {"fisheye_fov": 2.0, "fisheye_lens": 15.0},
+        {"size": (20, 34), "aspect": (1.0, 2.0)},
+    ),
     "equisolid, vertical fit": ("FISHEYE_EQUISOLID", {}, {"fit": "VERTICAL", "shift": (0.1, -0.2)}),
     "polynomial": ("FISHEYE_LENS_POLYNOMIAL", {}, {"fit": "HORIZONTAL", "size": (20, 34)}),
     "polynomial, bent": (
         "FISHEYE_LENS_POLYNOMIAL",
-        {"fisheye_fov": 2.5, "fisheye_polynomial_k0": 0.01, "fisheye_polynomial_k1": -0.1, "fisheye_polynomial_k2": 0.001},
+        {
+            "fisheye_fov": 2.5,
+            "fisheye_polynomial_k0": 0.01,
+            "fisheye_polynomial_k1": -0.1,
+            "fisheye_polynomial_k2": 0.001,
+        },
         {"aspect": (1.0, 1.5)},
     ),
     "cylinder": ("CENTRAL_CYLINDRICAL", {}, {"shift": (0.1, -0.2)}),
@@ -62,7 +82,9 @@ def _prepare(scene: bpy.types.Scene) -> None:
 
 
 def _camera(scene: bpy.types.Scene, kind: str, settings: dict[str, Any], frame: dict[str, Any]) -> bpy.types.Object:
-    camera = recording.add_camera(type="PANO", sensor_width=36.0, sensor_height=20.0, sensor_fit=frame.get("fit", "AUTO"))
+    camera = recording.add_camera(
+        type="PANO", sensor_width=36.0, sensor_height=20.0, sensor_fit=frame.get("fit", "AUTO")
+    )
     camera.location, camera.rotation_euler = (1.0, -2.0, 3.0), (1.1, 0.2, 0.4)
     camera.data.shift_x, camera.data.shift_y = frame.get("shift", (0.0, 0.0))
     panorama = camera.data if hasattr(camera.data, "panorama_type") else camera.data.cycles
@@ -75,7 +97,9 @@ def _camera(scene: bpy.types.Scene, kind: str, settings: dict[str, Any], frame: 
     render.resolution_x, render.resolution_y = frame.get("size", (36, 24))
     render.pixel_aspect_x, render.pixel_aspect_y = frame.get("aspect", (1.0, 1.0))
     if hasattr(render.image_settings, "use_exr_interleave"):
-        render.image_settings.use_exr_interleave = True  # 5.0 cannot write one part per pass where pixels are not square
+        render.image_settings.use_exr_interleave = (
+            True  # 5.0 cannot write multipart files of images without square pixels
+        )
     return camera
 
 
@@ -93,7 +117,7 @@ def test_shows_what_cycles_shows(scene: bpy.types.Scene, render: Callable[..., A
     seen = np.any(cycles["Position"] != 0.0, axis=2)
     assert np.array_equal(np.any(ours["Position"] != 0.0, axis=2), seen)
     assert seen.any()
-    # The filter's hundredth of a pixel is up to 2 * pi * RADIUS / 24 / 100 wide; next to poles less matters.
+    # A hundredth of a pixel, the width of the filter, is up to 2 * pi * RADIUS / 24 / 100 wide.
     away = np.linalg.norm(ours["Position"] - cycles["Position"], axis=2)[seen]
     assert np.percentile(away, 90) < 0.15 and away.max() < 1.0
     assert np.allclose(ours["Depth"], cycles["Depth"], rtol=5e-3)
@@ -102,8 +126,10 @@ def test_shows_what_cycles_shows(scene: bpy.types.Scene, render: Callable[..., A
 
 
 @pytest.mark.parametrize("transparent", [False, True])
-def test_outside_of_the_image_circle_is_black_and_opaque(scene: bpy.types.Scene, render: Callable[..., Any], transparent: bool) -> None:
-    """As in Cycles: no ray leaves there, so nothing is seen through."""
+def test_outside_of_the_image_circle_is_black_and_opaque(
+    scene: bpy.types.Scene, render: Callable[..., Any], transparent: bool
+) -> None:
+    """As in Cycles, there are no rays outside of the image circle."""
     _prepare(scene)
     bpy.data.objects.remove(scene.objects["Sphere"])
     world = scene.world
@@ -118,15 +144,19 @@ def test_outside_of_the_image_circle_is_black_and_opaque(scene: bpy.types.Scene,
 
 
 @pytest.mark.parametrize("kind", ["EQUIRECTANGULAR", "MIRRORBALL"])
-def test_window_coordinates_are_those_of_the_picture(scene: bpy.types.Scene, render: Callable[..., Any], kind: str) -> None:
-    """In 3.4 Cycles mirrors those of fisheyes, later it does not."""
+def test_window_coordinates_are_those_of_the_picture(
+    scene: bpy.types.Scene, render: Callable[..., Any], kind: str
+) -> None:
+    """Cycles of 3.4 mirrors those of fisheyes, later versions do not."""
     _prepare(scene)
     material = bpy.data.materials.new("Window")
     material.use_nodes = True
     tree = material.node_tree
     emission, where = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new("ShaderNodeTexCoord")
     tree.links.new(where.outputs["Window"], emission.inputs["Color"])
-    tree.links.new(emission.outputs[0], next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL").inputs["Surface"])
+    tree.links.new(
+        emission.outputs[0], next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL").inputs["Surface"]
+    )
     scene.objects["Sphere"].data.materials.append(material)
     _camera(scene, kind, {}, {"size": (24, 24)})
     ours, cycles = _both(scene, render)
@@ -135,8 +165,10 @@ def test_window_coordinates_are_those_of_the_picture(scene: bpy.types.Scene, ren
 
 
 @pytest.mark.parametrize("kind", ["EQUIRECTANGULAR", "MIRRORBALL", "FISHEYE_EQUIDISTANT"])
-def test_depth_of_field_has_the_shape_that_it_has_in_cycles(scene: bpy.types.Scene, render: Callable[..., Any], kind: str) -> None:
-    """A small lamp far out of focus is a picture of the aperture: triangular, and stretched."""
+def test_depth_of_field_has_the_shape_that_it_has_in_cycles(
+    scene: bpy.types.Scene, render: Callable[..., Any], kind: str
+) -> None:
+    """A small light far out of focus has the shape of the aperture: triangular and stretched."""
     bpy.ops.mesh.primitive_uv_sphere_add(radius=0.25)
     images.prepare(scene)
     camera = _camera(scene, kind, {}, {"size": (24, 24)})

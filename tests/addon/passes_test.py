@@ -1,4 +1,4 @@
-"""The pass table: names per version as Blender has them, channels, switches (contract 6)."""
+"""The table of passes: names of all versions of Blender, channels and switches."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from gradus import native, passes
 from gradus.abi import ComponentPass, Pass
 
-# Copied from Blender's documentation and source, not from our table.
+# From Blender's documentation and source.
 NAMES = {
     Pass.COMBINED: ("Combined", "Combined", 4),
     Pass.NOISY_IMAGE: ("Noisy Image", "Noisy Image", 4),
@@ -74,12 +74,16 @@ def test_channels_are_those_of_the_library() -> None:
 def layer(**on: bool) -> SimpleNamespace:
     ours = {name.removeprefix("gradus_"): value for name, value in on.items() if name.startswith("gradus_")}
     infos = (*passes.TABLE, *passes.COMPONENT_TABLE)
-    defaults = dict.fromkeys((info.switch.removeprefix("gradus.") for info in infos if info.switch.startswith("gradus.")), False)
+    defaults = dict.fromkeys(
+        (info.switch.removeprefix("gradus.") for info in infos if info.switch.startswith("gradus.")), False
+    )
     return SimpleNamespace(gradus=SimpleNamespace(**(defaults | ours)), **on)
 
 
 def listed(view_layer: SimpleNamespace, reconstructed: bool = False, extra: tuple = ()) -> list[Pass]:
-    return [info.plane for info in passes.list_passes(view_layer, reconstructed, (), passes.ExtraPasses(frozenset(extra)))]
+    return [
+        info.plane for info in passes.list_passes(view_layer, reconstructed, (), passes.ExtraPasses(frozenset(extra)))
+    ]
 
 
 def test_only_what_is_enabled() -> None:
@@ -108,8 +112,12 @@ def test_only_what_is_enabled() -> None:
         ("GRADIENT", "NONE", "AUTO", True),
     ],
 )
-def test_noisy_image_exists_whenever_combined_is_reconstructed(integrator: str, reconstruction: str, denoiser: str, expected: bool) -> None:
-    assert (Pass.NOISY_IMAGE in listed(layer(), passes.is_reconstructed(integrator, reconstruction, denoiser))) == expected
+def test_noisy_image_exists_whenever_combined_is_reconstructed(
+    integrator: str, reconstruction: str, denoiser: str, expected: bool
+) -> None:
+    assert (
+        Pass.NOISY_IMAGE in listed(layer(), passes.is_reconstructed(integrator, reconstruction, denoiser))
+    ) == expected
 
 
 def test_switches_exist_in_this_blender() -> None:
@@ -125,17 +133,27 @@ def test_mask() -> None:
     assert passes.mask([info for info in passes.TABLE if info.plane in (Pass.COMBINED, Pass.DEPTH)]) == 0b101
 
 
-# ------------------------------------------------------------------------------------------------ components
+# -------------------------------------------------------------------------------- components
 
 
-def named(view_layer: SimpleNamespace, components: tuple[str, ...], extra: passes.ExtraPasses = passes.NO_EXTRA) -> list[str]:
+def named(
+    view_layer: SimpleNamespace, components: tuple[str, ...], extra: passes.ExtraPasses = passes.NO_EXTRA
+) -> list[str]:
     return [info.name for info in passes.list_passes(view_layer, False, components, extra)]
 
 
 def test_each_component_has_the_passes_that_are_switched_on() -> None:
     assert named(layer(gradus_use_pass_components=True), ("Diffuse", "A_1")) == ["Combined", "Path Diffuse", "Path A_1"]
-    assert named(layer(gradus_use_pass_component_motion=True), ("A",)) == ["Combined", "Path A Motion", "Path A Tracked"]
-    assert named(layer(gradus_use_pass_component_index=True), ("A",)) == ["Combined", "Path A Object Index", "Path A Face Index"]
+    assert named(layer(gradus_use_pass_component_motion=True), ("A",)) == [
+        "Combined",
+        "Path A Motion",
+        "Path A Tracked",
+    ]
+    assert named(layer(gradus_use_pass_component_index=True), ("A",)) == [
+        "Combined",
+        "Path A Object Index",
+        "Path A Face Index",
+    ]
     assert named(layer(gradus_use_pass_components=True), ()) == ["Combined"]
     wanted = passes.ExtraPasses(component_planes=frozenset((ComponentPass.NORMAL,)))
     assert named(layer(), ("A",), wanted) == ["Combined", "Path A Normal"]
@@ -155,7 +173,7 @@ def test_names_of_the_longest_component_fit_into_blender_s_64_bytes() -> None:
 
 
 def test_color_of_a_component_is_not_taken_for_combined() -> None:
-    """Both planes are number 0 of their kind."""
+    """Both planes have the number 0."""
     color, combined = passes.COMPONENT_TABLE[0].of("Diffuse"), passes.TABLE[0]
     assert color.plane not in frozenset((Pass.COMBINED,))
     assert (passes.mask([color]), passes.component_mask([color])) == (0, 1)

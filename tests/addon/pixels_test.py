@@ -1,4 +1,4 @@
-"""The buffer that is uploaded: layout, order, reuse, sizes."""
+"""The upload buffer: layout, order, reuse and sizes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from gradus.abi import Pass
 
 
 class Collection(list):
-    """Blender's collection of passes as far as the upload uses it."""
+    """Stands in for Blender's collection of passes."""
 
     received: object = None
 
@@ -20,7 +20,9 @@ class Collection(list):
 
 
 def layer(*names_and_channels: tuple[str, int]) -> SimpleNamespace:
-    return SimpleNamespace(passes=Collection(SimpleNamespace(name=name, channels=channels) for name, channels in names_and_channels))
+    return SimpleNamespace(
+        passes=Collection(SimpleNamespace(name=name, channels=channels) for name, channels in names_and_channels)
+    )
 
 
 INFOS = passes.by_name(passes.TABLE, (4, 5, 0))

@@ -1,4 +1,4 @@
-"""The camera in pictures: the point that a pixel shows projects to that pixel, for every setting; depth and clipping."""
+"""Rendered cameras: the point in a pixel projects to that pixel for all settings; depth and clipping."""
 
 from __future__ import annotations
 
@@ -11,18 +11,29 @@ import pytest
 from mathutils import Vector
 from support import recording
 
-EXACT = {"samples": 1, "integrator": "PATH", "reconstruction": "NONE", "pixel_filter": "GAUSSIAN", "filter_width": 0.01, "max_bounces": 0}
+EXACT = {
+    "samples": 1,
+    "integrator": "PATH",
+    "reconstruction": "NONE",
+    "pixel_filter": "GAUSSIAN",
+    "filter_width": 0.01,
+    "max_bounces": 0,
+}
 
 
 def _check(scene: bpy.types.Scene, render: Callable[..., Any]) -> None:
-    """Position, projected by Blender, is the pixel's centre within 0.01 px and the half width of the filter."""
+    """Requires that pass Position projects to the centre of its pixel, within 0.01 px and half the filter."""
     camera = scene.camera
     scene.view_layers[0].use_pass_position = True
     position = render(scene, **EXACT)["Position"]
     height, width, _ = position.shape
     settings = scene.render
     matrix = camera.calc_matrix_camera(
-        bpy.context.evaluated_depsgraph_get(), x=width, y=height, scale_x=settings.pixel_aspect_x, scale_y=settings.pixel_aspect_y
+        bpy.context.evaluated_depsgraph_get(),
+        x=width,
+        y=height,
+        scale_x=settings.pixel_aspect_x,
+        scale_y=settings.pixel_aspect_y,
     )
     view = matrix @ camera.matrix_world.normalized().inverted()
     for y in range(0, height, 5):
@@ -35,20 +46,39 @@ def _check(scene: bpy.types.Scene, render: Callable[..., Any]) -> None:
 @pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
 @pytest.mark.parametrize(
     "fit, size, aspect",
-    [("AUTO", (40, 24), (1, 1)), ("AUTO", (24, 40), (1, 2)), ("VERTICAL", (40, 24), (2, 1)), ("HORIZONTAL", (24, 40), (1, 1))],
+    [
+        ("AUTO", (40, 24), (1, 1)),
+        ("AUTO", (24, 40), (1, 2)),
+        ("VERTICAL", (40, 24), (2, 1)),
+        ("HORIZONTAL", (24, 40), (1, 1)),
+    ],
 )
 def test_projection(
-    scene: bpy.types.Scene, render: Callable[..., Any], kind: str, fit: str, size: tuple[int, int], aspect: tuple[int, int]
+    scene: bpy.types.Scene,
+    render: Callable[..., Any],
+    kind: str,
+    fit: str,
+    size: tuple[int, int],
+    aspect: tuple[int, int],
 ) -> None:
     camera = recording.add_camera(
-        type=kind, sensor_fit=fit, lens=30.0, ortho_scale=3.0, shift_x=0.2, shift_y=-0.1, sensor_width=36.0, sensor_height=20.0
+        type=kind,
+        sensor_fit=fit,
+        lens=30.0,
+        ortho_scale=3.0,
+        shift_x=0.2,
+        shift_y=-0.1,
+        sensor_width=36.0,
+        sensor_height=20.0,
     )
     camera.rotation_euler = (0.1, -0.15, 0.4)
     recording.add(recording.grid(1, 200.0))
     scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.pixel_aspect_x, scene.render.pixel_aspect_y = aspect
     if hasattr(scene.render.image_settings, "use_exr_interleave"):
-        scene.render.image_settings.use_exr_interleave = True  # 5.0 cannot write one part per pass where pixels are not square
+        scene.render.image_settings.use_exr_interleave = (
+            True  # 5.0 cannot write multipart files of images without square pixels
+        )
     _check(scene, render)
 
 
@@ -67,7 +97,7 @@ def test_border_shows_the_same_points(scene: bpy.types.Scene, render: Callable[.
 
 @pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
 def test_depth_is_planar(scene: bpy.types.Scene, render: Callable[..., Any], kind: str) -> None:
-    """A plane across the view axis has one depth, in the corners too."""
+    """A plane perpendicular to the view axis has a constant depth."""
     recording.add_camera(type=kind, lens=15.0, ortho_scale=8.0)
     recording.add(recording.grid(1, 200.0))
     scene.view_layers[0].use_pass_z = True
@@ -75,7 +105,7 @@ def test_depth_is_planar(scene: bpy.types.Scene, render: Callable[..., Any], kin
 
 
 def test_clipping(scene: bpy.types.Scene, render: Callable[..., Any]) -> None:
-    """Surfaces before clip_start and behind clip_end are not seen."""
+    """Surfaces nearer than clip_start and farther than clip_end are invisible."""
     camera = recording.add_camera()
     recording.add(recording.grid(1, 200.0))
     scene.view_layers[0].use_pass_z = True

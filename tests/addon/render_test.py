@@ -1,4 +1,4 @@
-"""What Blender gets from a render: sizes, borders, layers, views, passes, animations, errors (E8 and the engine's part of I4)."""
+"""Renders in Blender: sizes, borders, view layers, views, passes, animations and errors."""
 
 from __future__ import annotations
 
@@ -62,8 +62,12 @@ def test_e8_odd_sizes(cube: bpy.types.Scene, render: Render, size: tuple[int, in
     assert render(cube, samples=1)["Combined"].shape[:2] == size[::-1]
 
 
-@pytest.mark.parametrize("border", [(0.1, 0.5, 0.2, 0.7), (0.0, 0.033, 0.9, 1.0), (0.55, 1.0, 0.0, 0.31), (0.3, 0.7, 0.5, 0.55)])
-def test_e8_a_cropped_border_is_the_crop_of_the_whole(cube: bpy.types.Scene, render: Render, border: tuple[float, ...]) -> None:
+@pytest.mark.parametrize(
+    "border", [(0.1, 0.5, 0.2, 0.7), (0.0, 0.033, 0.9, 1.0), (0.55, 1.0, 0.0, 0.31), (0.3, 0.7, 0.5, 0.55)]
+)
+def test_e8_a_cropped_border_is_the_crop_of_the_whole(
+    cube: bpy.types.Scene, render: Render, border: tuple[float, ...]
+) -> None:
     whole = render(cube)["Combined"]
     cube.render.use_border = cube.render.use_crop_to_border = True
     cube.render.border_min_x, cube.render.border_max_x, cube.render.border_min_y, cube.render.border_max_y = border
@@ -75,7 +79,12 @@ def test_e8_a_cropped_border_is_the_crop_of_the_whole(cube: bpy.types.Scene, ren
 def test_e8_a_border_leaves_the_rest_black(cube: bpy.types.Scene, render: Render) -> None:
     whole = render(cube)["Combined"]
     cube.render.use_border = True
-    cube.render.border_min_x, cube.render.border_max_x, cube.render.border_min_y, cube.render.border_max_y = 0.25, 0.75, 0.25, 0.75
+    cube.render.border_min_x, cube.render.border_max_x, cube.render.border_min_y, cube.render.border_max_y = (
+        0.25,
+        0.75,
+        0.25,
+        0.75,
+    )
     part = render(cube)["Combined"]
     assert part.shape == whole.shape
     assert np.array_equal(part[6:18, 10:30], whole[6:18, 10:30])
@@ -127,7 +136,7 @@ def test_passes_are_in_the_file_under_this_version_s_names(cube: bpy.types.Scene
         assert name in passes
     assert (passes["Debug Sample Count"] == 3.0).all()
     assert passes["Vector"].shape[2] == 4
-    assert not passes["Vector"].any()  # at rest, and never Blender's 10000
+    assert not passes["Vector"].any()  # static, and not Blender's 10000
 
 
 def test_noisy_image_beside_a_reconstruction(cube: bpy.types.Scene, render: Render) -> None:
@@ -137,8 +146,10 @@ def test_noisy_image_beside_a_reconstruction(cube: bpy.types.Scene, render: Rend
     assert passes["Noisy Image"].any()
 
 
-def test_error_is_the_square_of_what_halves_differ_by(cube: bpy.types.Scene, render: Render, arguments: Callable[..., None]) -> None:
-    """Of plain paths: a cube before a grey world, which has no noise."""
+def test_error_is_the_square_of_what_halves_differ_by(
+    cube: bpy.types.Scene, render: Render, arguments: Callable[..., None]
+) -> None:
+    """Renders a cube by path tracing in a grey world, which has no noise."""
     cube.view_layers[0].gradus.use_pass_error = True
     passes = render(cube, samples=16, reconstruction="NONE")
     error, image = passes["Error"][..., 0], passes["Combined"][..., :3]
@@ -186,24 +197,33 @@ def test_stats_line(cube: bpy.types.Scene, render: Render, tmp_path: Path, argum
     lines = [json.loads(line) for line in path.read_text().splitlines()]
     assert [(line["frame"], line["layer"]) for line in lines] == [(7, cube.view_layers[0].name), (7, "Second")]
     keys = (
-        "schema version scene view seed integrator reconstruction spp_base spp_offset unbiased resolution samples plan seconds cpu_seconds"
+        "schema version scene view seed integrator reconstruction spp_base spp_offset unbiased resolution samples plan "
+        "seconds cpu_seconds"
     )
     keys += " denoiser rays shifts nonfinite_dropped peak_memory_bytes process_cpu warnings"
     assert set(keys.split()) <= lines[0].keys()
-    assert {"export", "build", "sample", "reconstruct", "denoise", "filter", "upload", "total"} <= lines[0]["seconds"].keys()
-    assert lines[0]["seconds"]["preview"] == lines[0]["cpu_seconds"]["preview"] == 0.0  # nobody looks
+    assert {"export", "build", "sample", "reconstruct", "denoise", "filter", "upload", "total"} <= lines[0][
+        "seconds"
+    ].keys()
+    assert lines[0]["seconds"]["preview"] == lines[0]["cpu_seconds"]["preview"] == 0.0  # there is no window
     assert lines[0]["samples"] == 3
     assert lines[0]["resolution"] == [40, 24]
 
 
-def test_i7_an_unknown_option_is_an_error(cube: bpy.types.Scene, render: Render, arguments: Callable[..., None]) -> None:
+def test_i7_an_unknown_option_is_an_error(
+    cube: bpy.types.Scene, render: Render, arguments: Callable[..., None]
+) -> None:
     arguments("--gradus-sampels", 3)
     with pytest.raises(RuntimeError, match="--gradus-sampels"):
         render(cube)
 
 
-@pytest.mark.parametrize(("name", "value"), [("samples", "many"), ("samples", "0"), ("integrator", "best"), ("noise-threshold", "-1")])
-def test_i7_a_wrong_value_is_an_error(cube: Any, render: Render, arguments: Callable[..., None], name: str, value: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "value"), [("samples", "many"), ("samples", "0"), ("integrator", "best"), ("noise-threshold", "-1")]
+)
+def test_i7_a_wrong_value_is_an_error(
+    cube: Any, render: Render, arguments: Callable[..., None], name: str, value: str
+) -> None:
     arguments(f"--gradus-{name}={value}")
     with pytest.raises(RuntimeError, match=name.replace("-", "_")):
         render(cube)
@@ -316,7 +336,9 @@ def test_warnings_are_reported_once(cube: bpy.types.Scene, render: Render) -> No
     assert summary[(cube.name, cube.view_layers[0].name)]["frame"] == 2
 
 
-def test_scene_file_and_frame_store(cube: bpy.types.Scene, render: Render, tmp_path: Path, arguments: Callable[..., None]) -> None:
+def test_scene_file_and_frame_store(
+    cube: bpy.types.Scene, render: Render, tmp_path: Path, arguments: Callable[..., None]
+) -> None:
     arguments("--gradus-save-scene", tmp_path / "s_%f.gradus", "--gradus-frame-store", tmp_path / "store")
     render(cube, frame=4)
     assert (tmp_path / "s_4.gradus").stat().st_size > 100
@@ -325,14 +347,16 @@ def test_scene_file_and_frame_store(cube: bpy.types.Scene, render: Render, tmp_p
     assert stored[0].parent.parent.name == frame_store_name(cube.name)
 
 
-def test_stored_frames_open_in_other_programs(cube: Any, render: Render, tmp_path: Path, arguments: Callable[..., None]) -> None:
+def test_stored_frames_open_in_other_programs(
+    cube: Any, render: Render, tmp_path: Path, arguments: Callable[..., None]
+) -> None:
     import OpenImageIO as oiio
 
     arguments("--gradus-frame-store", tmp_path, "--gradus-integrator", "gradient", "--gradus-passes", "denoising,depth")
     render(cube)
     path = str(next(tmp_path.rglob("*.exr")))
     image = bpy.data.images.load(path)
-    image.size[:]  # reads it
+    image.size[:]  # reads the file
     assert image.type == "MULTILAYER"
     file, parts = oiio.ImageInput.open(path), {}
     while file.seek_subimage(len(parts), 0):
@@ -349,8 +373,10 @@ def frame_store_name(name: str) -> str:
     return frame_store.escape(name)
 
 
-def test_a_saved_scene_renders_to_the_same_picture(cube: Any, render: Render, tmp_path: Path, arguments: Callable[..., None]) -> None:
-    """What the tool gets is what Blender showed."""
+def test_a_saved_scene_renders_to_the_same_picture(
+    cube: Any, render: Render, tmp_path: Path, arguments: Callable[..., None]
+) -> None:
+    """The saved scene renders to the image that Blender showed."""
     import ctypes
     from ctypes import byref
 

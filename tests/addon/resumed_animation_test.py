@@ -1,4 +1,4 @@
-"""Animations that go on from a frame store: the bits of one that was never ended, whatever changes from frame to frame."""
+"""Animations that continue from a frame store have the bits of uninterrupted ones."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Scene = bpy.types.Scene
 
 @pytest.fixture
 def square(scene: Scene) -> Scene:
-    """A square before a grey world, twenty frames long."""
+    """A square in a grey world, with twenty frames."""
     recording.add_camera(type="ORTHO", ortho_scale=4.0)
     recording.add(recording.grid(2), "Square")
     scene.world = bpy.data.worlds.new("World")
@@ -33,7 +33,7 @@ def square(scene: Scene) -> Scene:
 
 @pytest.fixture
 def lines(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callable[[], list[dict[str, Any]]]]:
-    """lines(): the stats of all delivered frames, in order."""
+    """lines(): the stats of all delivered frames in order."""
     path = tmp_path / "stats.jsonl"
     monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-stats", str(path)])
     yield lambda: [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
@@ -55,11 +55,11 @@ def require_equal(found: dict[int, np.ndarray], whole: dict[int, np.ndarray], fr
     assert differing == []
 
 
-# ------------------------------------------------------------------------------------------------ what changes
+# -------------------------------------------------------------------------------- what changes
 
 
 def deform(_scene: Scene, _folder: Path) -> None:
-    """A mesh of other positions in each frame."""
+    """Gives a mesh other positions in each frame."""
     square = bpy.data.objects["Square"]
     square.shape_key_add(name="Basis")
     shape = square.shape_key_add(name="Bent")
@@ -70,7 +70,7 @@ def deform(_scene: Scene, _folder: Path) -> None:
 
 
 def show_a_film(_scene: Scene, folder: Path) -> None:
-    """A material with another picture in each frame."""
+    """Gives a material another image in each frame."""
     for number in range(21):
         picture = images.oiio.ImageBuf(images.oiio.ImageSpec(2, 2, 3, "uint8"))
         images.oiio.ImageBufAlgo.fill(picture, (number / 21.0, 0.5, 0.2))
@@ -89,7 +89,8 @@ def show_a_film(_scene: Scene, folder: Path) -> None:
 
 
 def let_objects_appear(_scene: Scene, _folder: Path) -> None:
-    """Objects before and behind it in the order of the scene, each with a mesh and a material of its own, some of them for a while."""
+    """Adds objects before and after the square in the order of the scene, of which some are visible for some frames
+    only."""
     for name, first, last in (("A", 3, 9), ("Z", 5, 30), ("B", 12, 30)):
         material = bpy.data.materials.new(name)
         material.diffuse_color = (0.2, 0.4, 0.6, 1.0)
@@ -103,7 +104,7 @@ def let_objects_appear(_scene: Scene, _folder: Path) -> None:
 
 
 def cut_between_cameras(scene: Scene, _folder: Path) -> None:
-    """Cameras that are bound to markers, from frame 4 and 15 on."""
+    """Binds cameras to markers at the frames 4 and 15."""
     first = scene.camera
     key(first, "location", {0: (-0.5, 0.0, 5.0), 21: (0.5, 0.0, 5.0)})
     second = recording.add_camera(type="ORTHO", ortho_scale=3.0)
@@ -118,7 +119,8 @@ def cut_between_cameras(scene: Scene, _folder: Path) -> None:
 def test_c7_an_animation_goes_on_where_it_ended(
     square: Scene, tmp_path: Path, change: Callable[[Scene, Path], None], persistent: bool
 ) -> None:
-    """Keys of meshes, images and objects count up as they appear: frames were refused as those of another scene."""
+    """Keys depend on the order in which meshes, images and objects appear: frames were refused as those of another
+    scene."""
     whole, rest = tmp_path / "whole", tmp_path / "rest"
     for folder in (whole, rest):
         folder.mkdir()
@@ -139,15 +141,19 @@ def test_c8_cameras_of_markers_cut_the_animation(square: Scene, tmp_path: Path) 
     cut_between_cameras(square, tmp_path)
     square.view_layers[0].gradus.use_pass_gradients = True
     animate(square, tmp_path, 1, 6)
-    linked = {frame: images.read(tmp_path / f"f_{frame:04d}.exr")["Gradient T Link"][..., 2].any() for frame in range(1, 6)}
+    linked = {
+        frame: images.read(tmp_path / f"f_{frame:04d}.exr")["Gradient T Link"][..., 2].any() for frame in range(1, 6)
+    }
     assert linked == {1: True, 2: True, 3: False, 4: True, 5: True}
 
 
-# ------------------------------------------------------------------------------------------------ one store for several jobs
+# -------------------------------------------------------------------------------- one store for several jobs
 
 
-def test_c7_a_still_beside_an_animation_leaves_its_frames(square: Scene, render: Callable[..., images.Passes], tmp_path: Path) -> None:
-    """It had the name of an animation's own half, whose other half stayed: the frame was made of samples of both."""
+def test_c7_a_still_beside_an_animation_leaves_its_frames(
+    square: Scene, render: Callable[..., images.Passes], tmp_path: Path
+) -> None:
+    """The file of the still replaced a half of a frame of the animation, which was then mixed with the still."""
     deform(square, tmp_path)
     square.gradus.frame_store = str(tmp_path / "store")
     before, after = tmp_path / "before", tmp_path / "after"
@@ -157,8 +163,10 @@ def test_c7_a_still_beside_an_animation_leaves_its_frames(square: Scene, render:
     require_equal(pictures(after), pictures(before), range(1, 7))
 
 
-def test_c7_two_steps_in_one_store_are_linked(square: Scene, lines: Callable[[], list[dict[str, Any]]], tmp_path: Path) -> None:
-    """Frames of every second one replay the one two before: half of the pairs of the whole had no links."""
+def test_c7_two_steps_in_one_store_are_linked(
+    square: Scene, lines: Callable[[], list[dict[str, Any]]], tmp_path: Path
+) -> None:
+    """With a frame step of two, frames replay the frame two before. Half of the pairs had no correspondences."""
     deform(square, tmp_path)
     square.view_layers[0].gradus.use_pass_gradients = True
     square.gradus.frame_store = str(tmp_path / "store")
@@ -173,7 +181,7 @@ def test_c7_two_steps_in_one_store_are_linked(square: Scene, lines: Callable[[],
 
 
 def test_c7_parts_of_a_still_stretch_are_the_whole(square: Scene, tmp_path: Path) -> None:
-    """The later part is rendered first: it does not know yet that its frames are those of the earlier one."""
+    """The later range is rendered first, when it is not yet known that its frames equal those of the earlier range."""
     key(bpy.data.objects["Square"], "location", {6: (0.0, 0.0, 0.0), 9: (1.0, 0.0, 0.0)})
     parts, again, whole = (tmp_path / name for name in ("parts", "again", "whole"))
     square.gradus.frame_store = str(tmp_path / "store")
@@ -186,7 +194,7 @@ def test_c7_parts_of_a_still_stretch_are_the_whole(square: Scene, tmp_path: Path
 
 
 def test_c7_another_seed_samples_a_still_stretch_anew(square: Scene, tmp_path: Path) -> None:
-    """The frame before the range was taken as it lay in the store, and all frames of the stretch with it."""
+    """The stored frame before the range was used, although its seed was another one."""
     square.gradus.frame_store = str(tmp_path / "store")
     animate(square, tmp_path / "old", 1, 4)
     found, expected = tmp_path / "found", tmp_path / "expected"
@@ -201,7 +209,7 @@ def test_c7_another_seed_samples_a_still_stretch_anew(square: Scene, tmp_path: P
 def test_c7_a_still_stretch_that_noise_ended_is_found_again(
     square: Scene, lines: Callable[[], list[dict[str, Any]]], tmp_path: Path
 ) -> None:
-    """Cells that were quiet early had fewer samples than were asked for: the rerun ended with "do not belong together"."""
+    """Pixel blocks with little noise had fewer samples than requested, and the rerun was refused."""
     square.gradus.samples, square.gradus.noise_threshold = 256, 0.1
     square.gradus.frame_store = str(tmp_path / "store")
     for run in ("once", "again"):
@@ -211,7 +219,7 @@ def test_c7_a_still_stretch_that_noise_ended_is_found_again(
 
 
 def test_c7_a_still_stretch_of_an_older_scene_is_not_mixed_in(square: Scene, tmp_path: Path) -> None:
-    """The new frames were taken to be like the old ones beside them, whose files have the same number."""
+    """New frames were considered equal to neighbouring old ones of the store."""
     store = tmp_path / "store"
     square.gradus.frame_store = str(store)
     animate(square, tmp_path / "old", 1, 6)
@@ -226,8 +234,10 @@ def test_c7_a_still_stretch_of_an_older_scene_is_not_mixed_in(square: Scene, tmp
     require_equal(pictures(found), pictures(expected), range(1, 4))
 
 
-def test_c7_a_store_without_the_features_of_the_reconstruction_is_refused_by_name(square: Scene, tmp_path: Path) -> None:
-    """It was taken, and failed when its frames were to be delivered, with neither a name nor a way out."""
+def test_c7_a_store_without_the_features_of_the_reconstruction_is_refused_by_name(
+    square: Scene, tmp_path: Path
+) -> None:
+    """The store was accepted, and the delivery of its frames failed with an unclear error."""
     square.gradus.frame_store = str(tmp_path / "store")
     animate(square, tmp_path / "sampled", 1, 2)
     square.gradus.reconstruction = "REGULARIZED"

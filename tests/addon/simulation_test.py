@@ -1,5 +1,7 @@
-"""Simulations that are not baked, in rendered animations, frame by frame and ahead of their delivery: what is exported of a frame is what
-stepping the scene to it gives."""
+"""Simulations that are not baked, in rendered animations.
+
+The export of a frame, independent or ahead of its delivery, must equal the scene after stepping to that frame.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,7 @@ from support import animation, images, recording, simulations
 from support.exports import Exports
 
 LAST = 8
-TOLERANCE = 2e-4  # particles go through caches of less precision
+TOLERANCE = 2e-4  # caches of particles have less precision
 
 
 @pytest.fixture
@@ -28,7 +30,7 @@ def new_scene(kind: str, first: int = 1, last: int = LAST, temporal: bool = Fals
     scene = bpy.context.scene
     images.prepare(scene)
     recording.add_camera(type="ORTHO", ortho_scale=20.0)
-    scene.frame_start, scene.frame_end = 1, 50  # caches take their range from the scene's
+    scene.frame_start, scene.frame_end = 1, 50  # caches use the range of the scene
     simulations.KINDS[kind]()
     scene.frame_start, scene.frame_end = first, last
     scene.render.resolution_x, scene.render.resolution_y = 16, 9
@@ -47,7 +49,9 @@ def compare(truth: dict[int, simulations.Places], found: list[tuple[int, simulat
         assert set(places) == set(truth[frame]), frame
         for name, place in places.items():
             assert place == pytest.approx(truth[frame][name], abs=TOLERANCE), (frame, name)
-    moving = {name for name in truth[LAST] if truth[LAST][name] != pytest.approx(truth[first].get(name, ()), abs=TOLERANCE)}
+    moving = {
+        name for name in truth[LAST] if truth[LAST][name] != pytest.approx(truth[first].get(name, ()), abs=TOLERANCE)
+    }
     assert moving, "the scene simulates something"
 
 
@@ -57,7 +61,7 @@ def render(scene: bpy.types.Scene, folder: Path) -> None:
 
 
 def check_changed(change: Callable[[bpy.types.Scene], None], temporal: bool, exports: Exports, folder: Path) -> None:
-    """With the scene of a cloth changed before it is rendered."""
+    """Changes the scene of a cloth and checks its animation."""
     scene = new_scene("cloth", temporal=temporal)
     change(scene)
     render(scene, folder)
@@ -78,28 +82,34 @@ def temporal(request: pytest.FixtureRequest) -> bool:
     return request.param
 
 
-def test_c6_a_simulation_is_that_of_the_scene_stepped_in_order(kind: str, temporal: bool, exports: Exports, tmp_path: Path) -> None:
+def test_c6_a_simulation_is_that_of_the_scene_stepped_in_order(
+    kind: str, temporal: bool, exports: Exports, tmp_path: Path
+) -> None:
     render(new_scene(kind, temporal=temporal), tmp_path)
     check(kind, exports.of["ViewLayer"], range(1, LAST + 1))
 
 
 @pytest.mark.application
-def test_c6_a_liquid_that_is_computed_as_it_is_played(temporal: bool, exports: Exports, tmp_path: Path) -> None:
-    """In the modules Mantaflow does not find its own Python code."""
+def test_c6_a_liquid_that_is_computed_during_playback(temporal: bool, exports: Exports, tmp_path: Path) -> None:
+    """In the bpy modules, Mantaflow does not find its Python code."""
     render(new_scene("liquid", temporal=temporal), tmp_path)
     check("liquid", exports.of["ViewLayer"], range(1, LAST + 1))
 
 
-def test_c6_a_later_first_frame_and_persistent_data_change_nothing(kind: str, temporal: bool, exports: Exports, tmp_path: Path) -> None:
+def test_c6_a_later_first_frame_and_persistent_data_change_nothing(
+    kind: str, temporal: bool, exports: Exports, tmp_path: Path
+) -> None:
     scene = new_scene(kind, first=4, temporal=temporal)
     scene.render.use_persistent_data = True
     render(scene, tmp_path)
     check(kind, exports.of["ViewLayer"], range(4, LAST + 1), starts_at=4 if kind == "simulation zone" else 1)
 
 
-def test_c6_layers_and_frames_around_for_vectors_change_nothing(kind: str, temporal: bool, exports: Exports, tmp_path: Path) -> None:
+def test_c6_layers_and_frames_around_for_vectors_change_nothing(
+    kind: str, temporal: bool, exports: Exports, tmp_path: Path
+) -> None:
     scene = new_scene(kind, temporal=temporal)
-    scene.gradus.window_size, scene.gradus.window_overlap = 4, 2  # so that frames are looked for ahead more than once
+    scene.gradus.window_size, scene.gradus.window_overlap = 4, 2  # so that there are several windows
     scene.view_layers.new("Second")
     for layer in scene.view_layers:
         layer.use_pass_vector = True
@@ -109,20 +119,22 @@ def test_c6_layers_and_frames_around_for_vectors_change_nothing(kind: str, tempo
         check(kind, found[name], range(1, LAST + 1))
 
 
-def test_c6_windows_that_are_looked_for_one_after_the_other_show_it(kind: str, exports: Exports, tmp_path: Path) -> None:
-    """Particles were gone in all frames of the second window but its last."""
+def test_c6_windows_that_are_looked_for_one_after_the_other_show_it(
+    kind: str, exports: Exports, tmp_path: Path
+) -> None:
+    """Particles were missing in all frames of the second window except the last."""
     scene = new_scene(kind, temporal=True)
     scene.gradus.window_size, scene.gradus.window_overlap = 4, 2
     render(scene, tmp_path)
     check(kind, exports.of["ViewLayer"], range(1, LAST + 1))
 
 
-# ------------------------------------------------------------------------------------------------ motion blur
+# -------------------------------------------------------------------------------- motion blur
 
 
 @pytest.fixture
 def opened(monkeypatch: pytest.MonkeyPatch) -> dict[int, motion.Moments]:
-    """By frame: what the export reads while the shutter is open."""
+    """Returns by frame what the export reads while the shutter is open."""
     found: dict[int, motion.Moments] = {}
     read = motion.read_moments
 
@@ -136,7 +148,7 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> dict[int, motion.Moments]:
 
 
 def height(moment: motion.Moment) -> float:
-    """Of the one thing that falls."""
+    """Returns the height of the falling object."""
     (matrix,) = moment.matrices.values()
     positions = next(iter(moment.positions.values()), (0.0, 0.0, 0.0))
     return matrix[14] + sum(positions[2::3]) / len(positions[2::3])
@@ -146,12 +158,15 @@ def height(moment: motion.Moment) -> float:
 def test_c6_the_moments_of_a_shutter_lie_between_the_frames(
     kind: str, temporal: bool, opened: dict[int, motion.Moments], tmp_path: Path
 ) -> None:
-    """Half a frame before and after, of what falls: its acceleration moves it by less than a tenth of what it falls in a frame."""
+    """Positions half a frame before and after are interpolated: the acceleration within a frame is small."""
     scene = new_scene(kind, temporal=temporal)
     scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
     render(scene, tmp_path)
     falls = simulations.in_order(new_scene(kind), 1, LAST + 1)
-    (heights,) = ([place[2] + place[5] for place in places] for places in zip(*(falls[frame].values() for frame in falls), strict=True))
+    (heights,) = (
+        [place[2] + place[5] for place in places]
+        for places in zip(*(falls[frame].values() for frame in falls), strict=True)
+    )
     assert sorted(opened)[-(LAST):] == list(range(1, LAST + 1))
     for frame in range(3, LAST + 1):
         before, now, after = heights[frame - 2 : frame + 1]
@@ -160,11 +175,11 @@ def test_c6_the_moments_of_a_shutter_lie_between_the_frames(
         assert height(opened[frame][0.5]) == pytest.approx(0.5 * (now + after), abs=0.1 * (now - after)), frame
 
 
-# ------------------------------------------------------------------------------------------------ simulations that are elsewhere
+# -------------------------------------------------------------------------------- other places of simulations
 
 
 def put_into_an_instanced_collection(scene: bpy.types.Scene) -> None:
-    """Into one inside another, so that the scene holds nothing but an instance of that."""
+    """Moves an object to a nested collection, so that the scene contains an instance of it only."""
     inner, outer = (bpy.data.collections.new(name) for name in ("Inner", "Outer"))
     for obj in [obj for obj in scene.objects if obj.type == "MESH"]:
         scene.collection.objects.unlink(obj)
@@ -184,8 +199,10 @@ def put_into_the_background(scene: bpy.types.Scene) -> None:
 
 
 @pytest.mark.parametrize("put_away", [put_into_an_instanced_collection, put_into_the_background])
-def test_c6_a_simulation_that_the_scene_shows_from_elsewhere(put_away: Callable, temporal: bool, exports: Exports, tmp_path: Path) -> None:
-    """It was not looked for there: it stood still, and no warning told."""
+def test_c6_a_simulation_that_the_scene_shows_from_elsewhere(
+    put_away: Callable, temporal: bool, exports: Exports, tmp_path: Path
+) -> None:
+    """Such simulations were not found: they were static, without a warning."""
     check_changed(put_away, temporal, exports, tmp_path)
 
 
@@ -197,7 +214,7 @@ def test_a_rigid_body_in_the_background_is_found() -> None:
 
 
 def test_a_cancel_on_the_way_leaves_the_scene_at_its_frame() -> None:
-    """It stayed where it had been stepped to."""
+    """After a cancel, the scene stayed at the last stepped frame."""
     scene = new_scene("cloth", first=4)
     scene.frame_set(4)
     with pytest.raises(Cancelled):
@@ -205,7 +222,7 @@ def test_a_cancel_on_the_way_leaves_the_scene_at_its_frame() -> None:
     assert scene.frame_current == 4
 
 
-# ------------------------------------------------------------------------------------------------ simulations that nothing shows
+# -------------------------------------------------------------------------------- invisible simulations
 
 
 def hide(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
@@ -213,7 +230,7 @@ def hide(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
 
 
 def collect(scene: bpy.types.Scene, obj: bpy.types.Object, *names: str) -> list[bpy.types.LayerCollection]:
-    """Into collections, each inside the one before; their places in the first view layer."""
+    """Moves an object to nested collections. Returns their layer collections in the first view layer."""
     scene.collection.objects.unlink(obj)
     places = [scene.view_layers[0].layer_collection]
     for name in names:
@@ -241,13 +258,15 @@ WAYS_TO_HIDE = [hide, exclude, hide_the_collection_around, leave_to_a_layer_that
 
 
 def simulated_object(kind: str) -> bpy.types.Object:
-    return bpy.data.objects[{"rigid body": "Falling", "cloth": "Cloth", "soft body": "Soft", "particles": "Emitter"}[kind]]
+    return bpy.data.objects[
+        {"rigid body": "Falling", "cloth": "Cloth", "soft body": "Soft", "particles": "Emitter"}[kind]
+    ]
 
 
 @pytest.mark.parametrize("kind", ["rigid body", "cloth", "soft body", "particles"])
 @pytest.mark.parametrize("put_away", WAYS_TO_HIDE)
 def test_a_simulation_that_no_picture_shows_is_none(put_away: Callable, kind: str) -> None:
-    """It took time from what is shown: in a window frames were rendered one by one, else the scene was stepped from its start."""
+    """Simulations that are not visible must not make frames independent, nor have the scene stepped."""
     scene = new_scene(kind)
     assert len(simulation.Simulations(scene).names) == 1
     put_away(scene, simulated_object(kind))
@@ -255,7 +274,7 @@ def test_a_simulation_that_no_picture_shows_is_none(put_away: Callable, kind: st
 
 
 def test_a_rigid_body_world_without_bodies_is_none(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """It stays where its bodies are deleted, and the scene was stepped from its first frame."""
+    """Blender keeps a rigid body world after its bodies were deleted, and the scene was stepped for it."""
     scene = new_scene("rigid body", temporal=True)
     bpy.data.objects.remove(bpy.data.objects["Falling"])
     assert scene.rigidbody_world is not None
@@ -264,7 +283,7 @@ def test_a_rigid_body_world_without_bodies_is_none(monkeypatch: pytest.MonkeyPat
     render(scene, tmp_path)
 
 
-# ------------------------------------------------------------------------------------------------ and those that something shows
+# -------------------------------------------------------------------------------- visible simulations
 
 
 def show_in_another_layer(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
@@ -418,7 +437,7 @@ def test_a_layer_that_is_keyed_counts_while_it_is_off() -> None:
 
 
 def test_a_modifier_that_is_keyed_counts_while_it_is_off() -> None:
-    """It stood still from the frame on where it was switched on."""
+    """The simulation was static from the frame at which the modifier was enabled."""
     scene = new_scene("cloth")
     cloth = bpy.data.objects["Cloth"]
     animation.step(cloth, 'modifiers["Cloth"].show_render', {1: False, LAST: True})
@@ -427,7 +446,7 @@ def test_a_modifier_that_is_keyed_counts_while_it_is_off() -> None:
 
 
 def carry_something_unseen(scene: bpy.types.Scene) -> None:
-    """Also in the viewport, whose depsgraph is the one that is stepped."""
+    """Adds an invisible simulated object, which is also hidden in the viewport, whose depsgraph is stepped."""
     cloth = bpy.data.objects["Cloth"]
     carry(scene, cloth)
     bpy.data.objects["Shown"].parent_vertices = [48, 48, 48]
@@ -438,7 +457,7 @@ def test_c6_what_hangs_on_a_hidden_simulation_moves_with_it(temporal: bool, expo
     check_changed(carry_something_unseen, temporal, exports, tmp_path)
 
 
-# ------------------------------------------------------------------------------------------------ what is left behind
+# -------------------------------------------------------------------------------- what is left behind
 
 
 def test_caches_are_the_users_again_after_the_render(exports: Exports, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""A9 for Sky Texture: radiance by direction, the sky's mean and the sun's irradiance are those of Cycles in the same Blender."""
+"""Sky Texture against Cycles of the same Blender: radiance by direction, the mean, and the irradiance of the sun."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ SIZE = 64
 
 @pytest.fixture
 def stage() -> bpy.types.Scene:
-    """A camera in a world of nodes, and nothing else. Pixels are sampled at their centres: engines can be compared one by one."""
+    """A camera in a world with nodes.
+
+    Pixels are sampled at their centres, so that engines can be compared pixel by pixel.
+    """
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     images.prepare(scene)
@@ -37,7 +40,7 @@ def stage() -> bpy.types.Scene:
 
 
 def new_sky(tree: bpy.types.NodeTree, kind: str, elevation: float, **properties: Any) -> bpy.types.Node:
-    """By default without a disc, 25 degrees from +y."""
+    """Adds a Sky Texture, by default without a sun disc, 25 degrees from +y."""
     node = tree.nodes.new("ShaderNodeTexSky")
     node.sky_type = kind
     e, r = math.radians(elevation), math.radians(25.0)
@@ -58,12 +61,18 @@ def light_world(scene: bpy.types.Scene, node: bpy.types.Node) -> None:
 def picture(scene: bpy.types.Scene, folder: Path, engine: str, samples: int = 1, width: float = 0.01) -> np.ndarray:
     scene.render.engine = engine
     scene.cycles.samples, scene.cycles.filter_width = samples, width
-    settings = {"samples": samples, "integrator": "PATH", "reconstruction": "NONE", "pixel_filter": "GAUSSIAN", "filter_width": width}
+    settings = {
+        "samples": samples,
+        "integrator": "PATH",
+        "reconstruction": "NONE",
+        "pixel_filter": "GAUSSIAN",
+        "filter_width": width,
+    }
     return images.render(scene, folder, **settings)["Combined"][..., :3].astype(np.float64)
 
 
 def pictures(scene: bpy.types.Scene, folder: Path, **options: Any) -> tuple[np.ndarray, np.ndarray]:
-    """What Cycles shows, and what Gradus does."""
+    """Returns the images of Cycles and of Gradus."""
     expected, found = (picture(scene, folder, engine, **options) for engine in ("CYCLES", "GRADUS"))
     assert expected.max() > 0.0
     return expected, found
@@ -81,11 +90,13 @@ def calculate(tree: bpy.types.NodeTree, operation: str, *values: Any) -> bpy.typ
 
 
 def all_directions(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
-    """Over a UV map: azimuth to the right, elevation upwards."""
-    place, parts, join = (tree.nodes.new(f"ShaderNode{name}") for name in ("TexCoord", "SeparateXYZ", "CombineXYZ"))
-    tree.links.new(place.outputs["UV"], parts.inputs[0])
-    azimuth = calculate(tree, "MULTIPLY", parts.outputs[0], 2 * math.pi)
-    elevation = calculate(tree, "MULTIPLY_ADD", parts.outputs[1], math.pi, -math.pi / 2)
+    """Maps UV to directions: azimuth to the right, elevation upwards."""
+    coordinates, separate, join = (
+        tree.nodes.new(f"ShaderNode{name}") for name in ("TexCoord", "SeparateXYZ", "CombineXYZ")
+    )
+    tree.links.new(coordinates.outputs["UV"], separate.inputs[0])
+    azimuth = calculate(tree, "MULTIPLY", separate.outputs[0], 2 * math.pi)
+    elevation = calculate(tree, "MULTIPLY_ADD", separate.outputs[1], math.pi, -math.pi / 2)
     for index, function in enumerate(("COSINE", "SINE")):
         flat = calculate(tree, "MULTIPLY", calculate(tree, function, azimuth), calculate(tree, "COSINE", elevation))
         tree.links.new(flat, join.inputs[index])
@@ -95,7 +106,7 @@ def all_directions(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
 
 @pytest.fixture
 def chart(stage: bpy.types.Scene) -> bpy.types.Scene:
-    """A plane that shines as the sky in all directions, filling the picture."""
+    """A plane that fills the image and emits the radiance of the sky in all directions."""
     bpy.ops.mesh.primitive_plane_add(size=1.0)
     stage.camera.data.type, stage.camera.data.ortho_scale = "ORTHO", 1.0
     stage.camera.location = (0.0, 0.0, 1.0)
@@ -147,14 +158,16 @@ def test_a9_hosek_wilkie_at_its_ends(turbidity: float, albedo: float, chart: bpy
     ],
     ids=("high", "clean", "dusty", "airless"),
 )
-def test_a9_sky_of_other_atmospheres(kind: str, atmosphere: dict[str, float], chart: bpy.types.Scene, tmp_path: Path) -> None:
+def test_a9_sky_of_other_atmospheres(
+    kind: str, atmosphere: dict[str, float], chart: bpy.types.Scene, tmp_path: Path
+) -> None:
     show_sky(chart, kind, 20.0, **atmosphere)
     expect_equal_charts(chart, tmp_path)
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a9_sky_on_generated_coordinates(kind: str, chart: bpy.types.Scene, tmp_path: Path) -> None:
-    """Without a link: they are no directions, and of any length."""
+    """Without a link, the coordinates are generated ones, which are not directions."""
     node = show_sky(chart, kind, 20.0)
     tree = node.id_data
     tree.links.remove(node.inputs[0].links[0])
@@ -179,8 +192,11 @@ def test_a9_world_of_a_turned_sky(kind: str, stage: bpy.types.Scene, tmp_path: P
 @pytest.mark.parametrize("kind", ATMOSPHERES)
 @pytest.mark.parametrize("elevation", [70.0, 12.0, 0.1, -0.6])
 def test_a9_sun_disc(kind: str, elevation: float, stage: bpy.types.Scene, tmp_path: Path) -> None:
-    """Through a telephoto lens: irradiance, limb darkening, where it ends at the horizon."""
-    light_world(stage, new_sky(stage.world.node_tree, kind, elevation, sun_disc=True, sun_size=math.radians(2.0), sun_intensity=0.7))
+    """Compares irradiance, limb darkening and the horizon through a telephoto lens."""
+    light_world(
+        stage,
+        new_sky(stage.world.node_tree, kind, elevation, sun_disc=True, sun_size=math.radians(2.0), sun_intensity=0.7),
+    )
     stage.camera.data.angle = math.radians(3.0)
     stage.camera.rotation_euler = (math.pi / 2 + math.radians(elevation), 0.0, -math.radians(25.0))
     expected, found = pictures(stage, tmp_path)
@@ -190,11 +206,11 @@ def test_a9_sun_disc(kind: str, elevation: float, stage: bpy.types.Scene, tmp_pa
 
 @pytest.mark.parametrize("kind", ATMOSPHERES)
 def test_a9_sun_lights_a_plane(kind: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
-    """A sun of Earth's size, which light sampling has to find."""
+    """The sun has its real size, so that light sampling must find it."""
     light_world(stage, new_sky(stage.world.node_tree, kind, 35.0, sun_disc=True))
     bpy.ops.mesh.primitive_plane_add(size=10.0)
     stage.camera.location = (0.0, 0.0, 2.0)
-    material = new_material()  # without one, Cycles of 5.0 shows something that is not quite diffuse
+    material = new_material()  # the default surface of 5.0 is not diffuse
     surface = material.node_tree.nodes.new("ShaderNodeBsdfDiffuse")
     material.node_tree.links.new(surface.outputs[0], output_of(material).inputs["Surface"])
     bpy.context.object.data.materials.append(material)

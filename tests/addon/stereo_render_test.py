@@ -1,4 +1,4 @@
-"""Stereo against Cycles: what each eye sees, for every way in which the eyes may converge, flat and all around."""
+"""Stereo against Cycles: the images of both eyes for all convergence modes, planar and panoramic."""
 
 from __future__ import annotations
 
@@ -9,12 +9,19 @@ import numpy as np
 import pytest
 from support import images, recording
 
-EXACT = {"samples": 1, "integrator": "PATH", "reconstruction": "NONE", "pixel_filter": "GAUSSIAN", "filter_width": 0.01, "max_bounces": 0}
+EXACT = {
+    "samples": 1,
+    "integrator": "PATH",
+    "reconstruction": "NONE",
+    "pixel_filter": "GAUSSIAN",
+    "filter_width": 0.01,
+    "max_bounces": 0,
+}
 EYES = {"left": "_L", "right": "_R"}
 
 
 def _prepare(scene: bpy.types.Scene, **camera_settings: object) -> bpy.types.Object:
-    """A ball around the camera and one before it; both engines at one sample in the pixel's middle."""
+    """A ball around the camera and one in front of it. Both engines take one sample in the centre of the pixel."""
     bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=20.0)
     bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=0.8, location=(0.3, 0.2, 0.0))
     cycles = scene.cycles
@@ -29,7 +36,7 @@ def _prepare(scene: bpy.types.Scene, **camera_settings: object) -> bpy.types.Obj
 
 
 def _render(scene: bpy.types.Scene, engine: str, folder: Path) -> dict[str, np.ndarray]:
-    """Positions that the eyes see."""
+    """Returns the positions that the eyes see."""
     scene.render.engine = engine
     images.use_exr(scene, folder / f"{engine}.exr")
     scene.render.image_settings.views_format = "INDIVIDUAL"
@@ -41,8 +48,8 @@ def _compare(scene: bpy.types.Scene, folder: Path) -> dict[str, np.ndarray]:
     ours, cycles = _render(scene, "GRADUS", folder), _render(scene, "CYCLES", folder)
     for eye in EYES:
         away = np.linalg.norm(ours[eye] - cycles[eye], axis=2)
-        assert np.percentile(away, 95) < 0.02, eye  # the rest are edges
-    # The eyes differ by more than they may from Cycles.
+        assert np.percentile(away, 95) < 0.02, eye  # all others are edges
+    # The eyes differ by more than the tolerance.
     assert np.percentile(np.linalg.norm(ours["left"] - ours["right"], axis=2), 50) > 0.1
     return ours
 

@@ -1,4 +1,4 @@
-"""Which stock panels show for our engine: the predicate alone, then in the host."""
+"""Blender's panels that are shown for Gradus: the predicate, and the registration in the host."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What sessions share."""
+"""Warnings that sessions share."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ def session(library: SimpleNamespace, scene: int) -> store.Session:
     return made
 
 
-def test_a_warning_is_told_by_the_session_that_it_is_about() -> None:
-    """A warning of a viewport came up in the next final render, and one about colour in the first session alone."""
+def test_warnings_belong_to_their_session() -> None:
+    """A final render reported warnings of a viewport, and only the first session reported warnings about colour."""
     about_device, about_scene = [["colour"], []], {1: [["a missing image"], []], 2: [[], []]}
     library = SimpleNamespace(
         take_device_warnings=lambda _device: about_device.pop(0) if about_device else [],

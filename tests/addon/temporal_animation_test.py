@@ -1,4 +1,4 @@
-"""Animations whose frames are sampled ahead: what Blender gets of them, and what happens when something goes wrong on the way."""
+"""Animations whose frames are sampled ahead: their results in Blender, and their errors."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ WIDTH, HEIGHT = 32, 18
 
 @pytest.fixture
 def moving(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A square that moves before a grey world, ten frames long."""
+    """A square that moves in a grey world, with ten frames."""
     recording.add_camera(type="ORTHO", ortho_scale=4.0)
     key(recording.add(recording.grid(2), "Moving"), "location", {0: (-1.0, 0.0, 0.0), 20: (1.0, 0.0, 0.0)})
     scene.world = bpy.data.worlds.new("World")
@@ -43,7 +43,7 @@ def exports(monkeypatch: pytest.MonkeyPatch) -> Exports:
 
 @pytest.fixture
 def lines(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callable[[], list[dict[str, Any]]]]:
-    """lines(): the stats of all delivered frames, in order."""
+    """lines(): the stats of all delivered frames in order."""
     path = tmp_path / "stats.jsonl"
     monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-stats", str(path)])
     yield lambda: [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
@@ -66,7 +66,7 @@ def require_nothing_kept() -> None:
     assert animation._running == {}
 
 
-# ------------------------------------------------------------------------------------------------ every frame
+# -------------------------------------------------------------------------------- every frame
 
 
 @pytest.mark.parametrize("persistent", [False, True])
@@ -95,14 +95,18 @@ def test_c3_any_range_and_step(
     assert all(line["spp_offset"] == 2 for line in lines())
 
 
-def test_c2_a_job_of_one_frame_is_a_still(moving: bpy.types.Scene, render: Callable[..., images.Passes], tmp_path: Path) -> None:
+def test_c2_a_job_of_one_frame_is_a_still(
+    moving: bpy.types.Scene, render: Callable[..., images.Passes], tmp_path: Path
+) -> None:
     still = render(moving, frame=5)["Combined"]
     moving.frame_start = moving.frame_end = 5
     animate(moving, tmp_path)
     assert np.array_equal(combined(tmp_path, 5), still)
 
 
-def test_c2_without_temporal_all_frames_are_stills(moving: bpy.types.Scene, render: Callable[..., images.Passes], tmp_path: Path) -> None:
+def test_c2_without_temporal_all_frames_are_stills(
+    moving: bpy.types.Scene, render: Callable[..., images.Passes], tmp_path: Path
+) -> None:
     still = render(moving, frame=5)["Combined"]
     moving.gradus.use_temporal = False
     moving.frame_end = 6
@@ -118,17 +122,17 @@ def test_differences_over_time_follow_the_surface(moving: bpy.types.Scene, tmp_p
     passes = [images.read(tmp_path / f"f_{frame:04d}.exr") for frame in (1, 3)]
     links = passes[0]["Gradient T Link"]
     found = links[..., 2] == 1.0
-    moves = 0.1 * WIDTH / 4.0  # pixels in a frame: links are whole
+    moves = 0.1 * WIDTH / 4.0  # pixels per frame, so that correspondences are exact
     assert found.mean() > 0.8
     assert set(np.unique(links[found][:, 0])) <= {0.0, np.round(moves)}
     assert (links[found][:, 0] == np.round(moves)).any()
     assert not passes[1]["Gradient T"].any(), "the last frame has none after it"
 
 
-def test_c6_what_stays_keeps_its_links_when_others_come_go_and_are_renamed(
+def test_c6_correspondences_remain_when_other_objects_appear_and_are_renamed(
     moving: bpy.types.Scene, exports: Exports, tmp_path: Path
 ) -> None:
-    """The square comes last among the objects: how many there are before it changes from frame to frame, and its name does."""
+    """The square is the last object: the number of objects before it and its name change from frame to frame."""
     square = bpy.data.objects["Moving"]
     guest = recording.add(recording.grid(1, 0.5, name="Guest"), "Guest", (1.5, 0.0, 0.0))
     row = recording.add(recording.grid(1, 0.2, name="Row"), "Row", (0.0, 0.0, -1.0))  # behind the square
@@ -162,7 +166,9 @@ def test_i9_the_files_of_an_animation_say_how_they_were_made(moving: bpy.types.S
     animate(moving, tmp_path)
     for frame in (1, 2, 3):
         spec = images.oiio.ImageInput.open(str(tmp_path / f"f_{frame:04d}.exr")).spec()
-        found = {name: spec.getattribute(f"gradus.{name}") for name in ("integrator", "reconstruction", "samples", "seed")}
+        found = {
+            name: spec.getattribute(f"gradus.{name}") for name in ("integrator", "reconstruction", "samples", "seed")
+        }
         assert found == {"integrator": "gradient", "reconstruction": "l2", "samples": "4.0", "seed": "7"}
         assert re.match(r"\d+\.\d+\.\d+", spec.getattribute("gradus.version"))
 
@@ -182,7 +188,9 @@ def test_i8_what_stands_still_is_sampled_once(moving: bpy.types.Scene, lines: An
     assert [line["stopped"] for line in lines()] == ["samples", *["unchanged"] * 9]
 
 
-def test_layers_have_animations_of_their_own(moving: bpy.types.Scene, exports: Exports, lines: Any, tmp_path: Path) -> None:
+def test_layers_have_animations_of_their_own(
+    moving: bpy.types.Scene, exports: Exports, lines: Any, tmp_path: Path
+) -> None:
     moving.view_layers.new("Second").samples = 2
     moving.frame_end = 6
     animate(moving, tmp_path)
@@ -201,7 +209,9 @@ def test_views_have_sequences_of_their_own_and_share_the_export(
     moving.camera.location.z = 5.0
     animate(moving, tmp_path)
     assert exports.frames() == list(range(1, 7))
-    assert [(line["frame"], line["view"]) for line in lines()] == [(frame, view) for frame in range(1, 7) for view in ("left", "right")]
+    assert [(line["frame"], line["view"]) for line in lines()] == [
+        (frame, view) for frame in range(1, 7) for view in ("left", "right")
+    ]
 
 
 def test_a_border_is_the_part_of_the_whole(moving: bpy.types.Scene, lines: Any, tmp_path: Path) -> None:
@@ -210,7 +220,12 @@ def test_a_border_is_the_part_of_the_whole(moving: bpy.types.Scene, lines: Any, 
     whole, part = tmp_path / "whole", tmp_path / "part"
     animate(moving, whole)
     moving.render.use_border = moving.render.use_crop_to_border = True
-    moving.render.border_min_x, moving.render.border_max_x, moving.render.border_min_y, moving.render.border_max_y = 0.25, 0.75, 0.5, 1.0
+    moving.render.border_min_x, moving.render.border_max_x, moving.render.border_min_y, moving.render.border_max_y = (
+        0.25,
+        0.75,
+        0.5,
+        1.0,
+    )
     animate(moving, part)
     cropped, expected = combined(part, 3), combined(whole, 3)[HEIGHT // 2 :, WIDTH // 4 : WIDTH * 3 // 4]
     assert np.allclose(cropped, expected, atol=1e-3)
@@ -224,14 +239,18 @@ def test_motion_blur_returns_to_the_frame(moving: bpy.types.Scene, exports: Expo
     moving.frame_end = 6
     animate(moving, tmp_path)
     assert exports.frames() == list(range(1, 7))
-    assert np.allclose([places["Moving [0]"][0] for _, places in exports.of["ViewLayer"]], [-0.9, -0.8, -0.7, -0.6, -0.5, -0.4], atol=1e-5)
+    assert np.allclose(
+        [places["Moving [0]"][0] for _, places in exports.of["ViewLayer"]],
+        [-0.9, -0.8, -0.7, -0.6, -0.5, -0.4],
+        atol=1e-5,
+    )
     vector = images.read(tmp_path / "f_0004.exr")["Vector"]
     assert np.allclose(vector[HEIGHT // 2, int(WIDTH * 0.35), [0, 2]], -0.1 * WIDTH / 4.0, atol=0.01)
 
 
 def test_the_files_of_frames_are_saved_as_the_scene_is_in_them(moving: bpy.types.Scene, tmp_path: Path) -> None:
-    """Blender takes the exposure of pictures that it saves from the scene itself."""
-    simulations.rigid_body()  # for which the scene is stepped
+    """Blender reads the exposure of saved images from the scene, which is not evaluated."""
+    simulations.rigid_body()  # so that the scene is stepped
     for frame, exposure in ((1, 0.0), (6, -5.0)):
         moving.view_settings.exposure = exposure
         moving.keyframe_insert("view_settings.exposure", frame=frame)
@@ -249,11 +268,11 @@ def test_the_files_of_frames_are_saved_as_the_scene_is_in_them(moving: bpy.types
     assert brightness[True][0] > 2.0 * brightness[True][5]
 
 
-# ------------------------------------------------------------------------------------------------ frames unlike those beside them
+# -------------------------------------------------------------------------------- frames that differ from their neighbours
 
 
 def animate_with_store(scene: bpy.types.Scene, folder: Path) -> Path:
-    """Looks at the frame before the first one, as parts of a job do."""
+    """Renders a range with a frame store, so that the frame before the range is exported."""
     folder.mkdir()
     scene.gradus.frame_store = str(folder / "store")
     animate(scene, folder)
@@ -261,7 +280,7 @@ def animate_with_store(scene: bpy.types.Scene, folder: Path) -> Path:
 
 
 def expect_ranges_alone(scene: bpy.types.Scene, whole: Path, ranges: list[tuple[int, int]]) -> None:
-    """The frames of each range are those of an animation of that range."""
+    """Requires that the frames of each range equal those of an animation of that range."""
     for first, last in ranges:
         scene.frame_start, scene.frame_end = first, last
         part = animate_with_store(scene, whole.with_name(f"{first}"))
@@ -278,14 +297,14 @@ def key_holdout(_scene: bpy.types.Scene) -> None:
 
 
 def key_reconstruction(scene: bpy.types.Scene) -> None:
-    step(scene, "gradus.reconstruction", {1: "L2", 5: "REGULARIZED"})  # which takes plain paths under AUTO
+    step(scene, "gradus.reconstruction", {1: "L2", 5: "REGULARIZED"})  # AUTO then uses path tracing
 
 
 @pytest.mark.parametrize("change", [key_film, key_holdout, key_reconstruction])
-def test_c8_frames_with_other_channels_or_planes_are_a_cut(
+def test_c8_frames_with_other_channels_or_planes_are_a_shot_change(
     moving: bpy.types.Scene, exports: Exports, tmp_path: Path, change: Callable[..., None]
 ) -> None:
-    """They ended the animation."""
+    """Such frames ended the animation."""
     moving.view_layers[0].gradus.use_pass_gradients = False
     change(moving)
     whole = animate_with_store(moving, tmp_path / "whole")
@@ -303,7 +322,7 @@ def test_c8_frames_with_other_channels_or_planes_are_a_cut(
         ("gradus.use_temporal", True, False, "temporal is off"),
     ],
 )
-def test_c8_a_frame_without_differences_over_time_is_the_still_and_cuts(
+def test_c8_an_independent_frame_is_a_still_and_a_shot_change(
     moving: bpy.types.Scene,
     render: Callable[..., images.Passes],
     exports: Exports,
@@ -314,14 +333,16 @@ def test_c8_a_frame_without_differences_over_time_is_the_still_and_cuts(
     alone: Any,
     why: str,
 ) -> None:
-    """It ended the animation, as a fault of that frame."""
+    """Such a frame ended the animation with an error."""
     moving.view_layers[0].gradus.use_pass_gradients = False
     if path == "gradus.integrator":
-        moving.gradus.reconstruction = "REGULARIZED"  # L2 has no picture of plain paths, alone or not
+        moving.gradus.reconstruction = "REGULARIZED"  # L2 needs gradients
     step(moving, path, {1: usual, 5: alone, 6: usual})
     whole = animate_with_store(moving, tmp_path / "whole")
     assert frames_in(whole) == list(range(1, 11))
-    assert sorted(exports.frames()) == [0, 1, 2, 3, 4, 5, 5, 6, 7, 8, 9, 10], "it is shown to the next one, and in its turn"
+    assert sorted(exports.frames()) == [0, 1, 2, 3, 4, 5, 5, 6, 7, 8, 9, 10], (
+        "it is shown to the next one, and in its turn"
+    )
     assert [line["frame"] for line in lines() if line["plan"].get("frame_by_frame") == why] == [5]
     assert [line["frame"] for line in lines() if not line.get("spp_offset")] == [5]
     assert np.array_equal(combined(whole, 5), render(moving, frame=5)["Combined"])
@@ -340,10 +361,12 @@ def test_c7_a_frame_of_its_own_does_not_disturb_a_frame_store(moving: bpy.types.
         assert np.array_equal(combined(whole, frame), combined(again, frame)), frame
 
 
-# ------------------------------------------------------------------------------------------------ parts of an animation
+# -------------------------------------------------------------------------------- parts of an animation
 
 
-def test_files_that_are_there_split_the_animation(moving: bpy.types.Scene, exports: Exports, lines: Any, tmp_path: Path) -> None:
+def test_files_that_are_there_split_the_animation(
+    moving: bpy.types.Scene, exports: Exports, lines: Any, tmp_path: Path
+) -> None:
     moving.render.use_overwrite = False
     for frame in (4, 7, 8):
         (tmp_path / f"f_{frame:04d}.exr").write_bytes(b"mine")
@@ -354,8 +377,10 @@ def test_files_that_are_there_split_the_animation(moving: bpy.types.Scene, expor
 
 
 def test_files_of_several_views_split_the_animation(moving: bpy.types.Scene, exports: Exports, tmp_path: Path) -> None:
-    """They were looked for without the view's suffix: frames that are there were sampled for their neighbours. The file of one view is
-    enough for Blender to leave a frame out."""
+    """The suffix of the view was ignored, and frames with files were sampled.
+
+    Blender skips a frame if one view has a file.
+    """
     moving.render.use_multiview, moving.render.use_overwrite = True, False
     images.use_exr(moving, tmp_path / "f_####")
     moving.render.use_file_extension, moving.render.image_settings.views_format = True, "INDIVIDUAL"
@@ -363,17 +388,23 @@ def test_files_of_several_views_split_the_animation(moving: bpy.types.Scene, exp
     moving.frame_end = 6
     bpy.ops.render.render(animation=True, scene=moving.name)
     assert exports.frames() == [1, 2, 3, 5, 6]
-    assert sorted(path.name for path in tmp_path.glob("*_L.exr")) == [f"f_{frame:04d}_L.exr" for frame in (1, 2, 3, 5, 6)]
+    assert sorted(path.name for path in tmp_path.glob("*_L.exr")) == [
+        f"f_{frame:04d}_L.exr" for frame in (1, 2, 3, 5, 6)
+    ]
 
 
-def test_frames_that_processes_share_by_placeholders_are_on_their_own(moving: bpy.types.Scene, lines: Any, tmp_path: Path) -> None:
+def test_frames_that_processes_share_by_placeholders_are_on_their_own(
+    moving: bpy.types.Scene, lines: Any, tmp_path: Path
+) -> None:
     moving.render.use_overwrite, moving.render.use_placeholder = False, True
     moving.frame_end = 3
     animate(moving, tmp_path)
     assert [line.get("spp_offset", 0) for line in lines()] == [0, 0, 0]
 
 
-def test_c7_parts_that_share_a_frame_store_are_the_whole(moving: bpy.types.Scene, exports: Exports, tmp_path: Path) -> None:
+def test_c7_parts_that_share_a_frame_store_are_the_whole(
+    moving: bpy.types.Scene, exports: Exports, tmp_path: Path
+) -> None:
     whole, parts, again = (tmp_path / name for name in ("whole", "parts", "again"))
     for folder in (whole, parts, again):
         folder.mkdir()
@@ -386,14 +417,14 @@ def test_c7_parts_that_share_a_frame_store_are_the_whole(moving: bpy.types.Scene
         animate(moving, parts)
     for frame in range(6, 11):
         assert np.array_equal(combined(parts, frame), combined(whole, frame))
-    # The first part has not seen the second; with all frames in the store it is the same, too.
+    # The first range was rendered before the second. With all frames in the store, it is unchanged.
     moving.frame_start, moving.frame_end = 1, 5
     animate(moving, again)
     for frame in range(1, 6):
         assert np.array_equal(combined(again, frame), combined(whole, frame))
 
 
-# ------------------------------------------------------------------------------------------------ faults
+# -------------------------------------------------------------------------------- faults
 
 
 def raise_in_export(frame: int, exports: Exports, _monkeypatch: pytest.MonkeyPatch) -> None:
@@ -418,7 +449,11 @@ def raise_in_library(frame: int, _exports: Exports, monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.parametrize("fault", [raise_in_export, raise_in_library])
 def test_i2_a_fault_waits_for_its_frame(
-    moving: bpy.types.Scene, exports: Exports, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, fault: Callable[..., None]
+    moving: bpy.types.Scene,
+    exports: Exports,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    fault: Callable[..., None],
 ) -> None:
     with monkeypatch.context() as patched:
         fault(5, exports, patched)
@@ -427,7 +462,7 @@ def test_i2_a_fault_waits_for_its_frame(
     assert frames_in(tmp_path) == [1, 2, 3, 4]
     assert all(np.isfinite(combined(tmp_path, frame)).all() for frame in range(1, 5))
     require_nothing_kept()
-    # Without the fault a rerun does the rest.
+    # Without the error, a rerun renders the remaining frames.
     exports.before = lambda _frame: None
     moving.render.use_overwrite = False
     animate(moving, tmp_path)
@@ -458,7 +493,7 @@ def test_i2_with_a_frame_store_the_rerun_gives_what_an_undisturbed_render_does(
 def test_escape_ends_the_frames_ahead(
     moving: bpy.types.Scene, exports: Exports, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, frame: int, samples: int
 ) -> None:
-    moving.gradus.samples = samples  # 100000 would take minutes
+    moving.gradus.samples = samples  # 100000 samples would take minutes
     moving.frame_end = 6
     delivered: list[int] = []
     deliver = animation.Animation.deliver
@@ -471,7 +506,7 @@ def test_escape_ends_the_frames_ahead(
     require_nothing_kept()
 
 
-# Its files were read to their end, however long that took; then there was a picture.
+# Its files were read to their end before the cancel was noticed.
 def test_k5_a_frame_that_is_cancelled_while_it_is_read_ends_well(
     moving: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -491,7 +526,7 @@ def test_k5_a_frame_that_is_cancelled_while_it_is_read_ends_well(
     require_nothing_kept()
 
 
-# ------------------------------------------------------------------------------------------------ the command line
+# -------------------------------------------------------------------------------- the command line
 
 
 def test_single_frames_are_told_from_the_command_line() -> None:

@@ -1,4 +1,4 @@
-"""C1: the Vector pass of known motions, within 0.01 px: XY = previous - current, ZW = current - next, in pixels, y up."""
+"""Pass Vector of known motions within 0.01 px: XY = previous - current, ZW = current - next, in pixels, y upwards."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import pytest
 from support import animation, images, recording
 
 SETTINGS = {"samples": 2, "integrator": "PATH", "reconstruction": "NONE", "max_bounces": 0}
-PIXELS_PER_METRE = 16.0  # 64 px over 4 m
+PIXELS_PER_METRE = 16.0  # px/m: 64 px cover 4 m
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def vectors(scene: bpy.types.Scene, render: Callable[..., Any]) -> Callable[[], 
 
 
 def _covered(vector: np.ndarray) -> np.ndarray:
-    """The middle of the picture, which the object covers at all frames."""
+    """Returns the centre of the image, which the object covers in all frames."""
     height, width, _ = vector.shape
     return vector[height // 2 - 4 : height // 2 + 4, width // 2 - 4 : width // 2 + 4]
 
@@ -53,7 +53,7 @@ def test_c1_resting_object_is_exactly_zero(vectors: Callable[[], np.ndarray]) ->
 
 
 def test_c1_deformation(vectors: Callable[[], np.ndarray]) -> None:
-    """A shape key that moves all points."""
+    """A shape key moves all points."""
     obj = recording.add(recording.grid(2, 2.0))
     obj.shape_key_add(name="Basis")
     key = obj.shape_key_add(name="Moved")
@@ -64,7 +64,7 @@ def test_c1_deformation(vectors: Callable[[], np.ndarray]) -> None:
 
 
 def test_c1_instances(vectors: Callable[[], np.ndarray], scene: bpy.types.Scene) -> None:
-    """A moving empty shows a resting collection."""
+    """A moving empty instances a static collection."""
     source = bpy.data.collections.new("Source")
     source.objects.link(bpy.data.objects.new("Inner", recording.grid(1, 1.5)))
     empty = recording.add(None, "Copy")
@@ -74,14 +74,14 @@ def test_c1_instances(vectors: Callable[[], np.ndarray], scene: bpy.types.Scene)
 
 
 def test_c1_camera_pan(vectors: Callable[[], np.ndarray], scene: bpy.types.Scene) -> None:
-    """What rests moves against the camera."""
+    """Static objects move relative to the camera."""
     recording.add(recording.grid(1, 1.5))
     animation.key(scene.camera, "location", {1: (-0.25, 0, 5), 2: (0, 0, 5), 3: (0.25, 0, 5)})
     assert np.allclose(_covered(vectors()), (4.0, 0.0, 4.0, 0.0), atol=0.01)
 
 
 def test_c1_each_view_has_vectors_of_its_own_camera(scene: bpy.types.Scene, tmp_path: Path) -> None:
-    """The frame is exported once for all of them."""
+    """The frame is exported once for all views."""
     recording.add(recording.grid(1, 1.5))
     for name in ("Camera_R", "Camera_L"):
         recording.add_camera(type="ORTHO", ortho_scale=4.0).name = name
@@ -100,20 +100,20 @@ def test_c1_each_view_has_vectors_of_its_own_camera(scene: bpy.types.Scene, tmp_
 
 
 def test_c1_camera_zoom(vectors: Callable[[], np.ndarray], scene: bpy.types.Scene) -> None:
-    """A point at p pixels from the centre was at p s_2/s_1 before."""
+    """A point at p pixels from the centre was at p s_2/s_1 in the previous frame."""
     recording.add(recording.grid(1, 8.0))
     animation.key(scene.camera.data, "ortho_scale", {1: 5.0, 2: 4.0, 3: 3.2})
     found = vectors()
     height, width, _ = found.shape
     x = np.arange(width) + 0.5 - width / 2
     row = found[height // 2]
-    # Averaged over samples within the pixel: half a filter width times the relative change.
+    # Samples within the pixel are averaged: half a filter width times the relative change.
     assert np.allclose(row[:, 0], x * (4.0 / 5.0 - 1.0), atol=0.25)
     assert np.allclose(row[:, 2], x * (1.0 - 4.0 / 3.2), atol=0.25)
 
 
 def _panorama(camera: bpy.types.Object, kind: str) -> Any:
-    """Its settings; the camera looks along Y, in a room whose walls are seen all around."""
+    """Sets up a panorama that looks along Y, in a room whose walls are visible all around."""
     camera.data.type = "PANO"
     camera.location, camera.rotation_euler = (0, 0, 0), (math.pi / 2, 0, 0)
     bpy.ops.mesh.primitive_cube_add(size=8.0, location=(0.5, 0.3, 0.2))
@@ -123,16 +123,21 @@ def _panorama(camera: bpy.types.Object, kind: str) -> Any:
 
 
 def test_c1_panorama_turns(scene: bpy.types.Scene, vectors: Callable[[], np.ndarray]) -> None:
-    """Everything moves by the same angle, over the seam, too; next to the poles a pixel is as small as rounding."""
+    """Everything moves by the same angle, also across the seam.
+
+    Near the poles, pixels are as small as rounding errors.
+    """
     _panorama(scene.camera, "EQUIRECTANGULAR")
-    animation.key(scene.camera, "rotation_euler", {1: (math.pi / 2, 0, -0.1), 2: (math.pi / 2, 0, 0), 3: (math.pi / 2, 0, 0.2)})
+    animation.key(
+        scene.camera, "rotation_euler", {1: (math.pi / 2, 0, -0.1), 2: (math.pi / 2, 0, 0), 3: (math.pi / 2, 0, 0.2)}
+    )
     found = vectors()
     pixels = found.shape[1] / (2 * math.pi)
     assert np.allclose(found[3:-3], (-0.1 * pixels, 0, -0.2 * pixels, 0), atol=0.01)
 
 
 def test_c1_fisheye_zooms(scene: bpy.types.Scene, vectors: Callable[[], np.ndarray]) -> None:
-    """The radius in the picture is proportional to the focal length."""
+    """The radius in the image is proportional to the focal length."""
     settings = _panorama(scene.camera, "FISHEYE_EQUISOLID")
     animation.key(settings, "fisheye_lens", {1: 10.0, 2: 15.0, 3: 18.0})
     scene.gradus.pixel_filter, scene.gradus.filter_width = "GAUSSIAN", 0.01
@@ -143,11 +148,11 @@ def test_c1_fisheye_zooms(scene: bpy.types.Scene, vectors: Callable[[], np.ndarr
     expected = np.concatenate([place * (10 / 15 - 1), place * (1 - 18 / 15)], axis=2)
     seen = np.any(found != 0.0, axis=2)
     assert seen.sum() > 1000
-    assert np.allclose(found[seen], expected[seen], atol=0.016)  # the filter is half a hundredth wide
+    assert np.allclose(found[seen], expected[seen], atol=0.016)  # half the width of the filter
 
 
 def test_c1_rotation(vectors: Callable[[], np.ndarray]) -> None:
-    """A quad that turns about the view axis: vectors across the radius, of its length times the angle."""
+    """A quad rotates about the view axis: vectors are perpendicular to the radius, with its length times the angle."""
     obj = recording.add(recording.grid(1, 3.0))
     angle = 0.01
     animation.key(obj, "rotation_euler", {1: (0, 0, -angle), 2: (0, 0, 0), 3: (0, 0, angle)})
@@ -159,7 +164,7 @@ def test_c1_rotation(vectors: Callable[[], np.ndarray]) -> None:
 
 
 def test_c1_camera_orbit(scene: bpy.types.Scene, vectors: Callable[[], np.ndarray]) -> None:
-    """A perspective camera goes around what it looks at: where a ray meets the floor, and where the other cameras see that."""
+    """A perspective camera orbits: the expected vectors follow from the point on the floor and the other cameras."""
     recording.add(recording.grid(1, 40.0))
     camera, pivot = scene.camera, recording.add(None, "Pivot")
     camera.parent, camera.data.type, camera.data.lens, camera.data.sensor_width = pivot, "PERSP", 50.0, 36.0
@@ -169,7 +174,7 @@ def test_c1_camera_orbit(scene: bpy.types.Scene, vectors: Callable[[], np.ndarra
     scene.gradus.pixel_filter, scene.gradus.filter_width = "GAUSSIAN", 0.01
     found = vectors()
     height, width, _ = found.shape
-    scale = width / (2 * 18.0 / 50.0)  # pixels of a metre at distance 1
+    scale = width / (2 * 18.0 / 50.0)  # px/m at distance 1
     y, x = np.mgrid[0:height, 0:width] + 0.5
     film = np.stack([x - width / 2, y - height / 2], axis=2)
     pose = np.array(mathutils.Matrix.Translation((0, -4, 4)) @ mathutils.Matrix.Rotation(math.pi / 4, 4, "X"))
@@ -184,7 +189,7 @@ def test_c1_camera_orbit(scene: bpy.types.Scene, vectors: Callable[[], np.ndarra
     expected = np.concatenate([seen(turns[1]) - film, film - seen(turns[3])], axis=2)
     away = np.abs(found - expected).max(axis=2)
     assert np.abs(expected).max() > 1.0
-    assert np.quantile(away, 0.999) < 0.02  # the filter is half a hundredth wide
+    assert np.quantile(away, 0.999) < 0.02  # half the width of the filter
 
 
 def test_c1_skin(vectors: Callable[[], np.ndarray]) -> None:
@@ -205,7 +210,7 @@ def test_c1_topology_change_does_not_crash(vectors: Callable[[], np.ndarray]) ->
 
 
 def test_c1_velocities_are_motion(vectors: Callable[[], np.ndarray]) -> None:
-    """Of fluids and caches, whose topology changes: they moved by their matrices alone."""
+    """Fluids and caches, whose topology changes, had the motion of their matrices only."""
     mesh = recording.grid(1, 1.5)
     velocity = mesh.attributes.new("velocity", "FLOAT_VECTOR", "POINT")
     for item in velocity.data:
@@ -214,7 +219,9 @@ def test_c1_velocities_are_motion(vectors: Callable[[], np.ndarray]) -> None:
     assert np.allclose(_covered(vectors()), (-4.0, 2.0, -4.0, 2.0), atol=0.01)
 
 
-def test_c1_without_motion_blur_or_vector_the_pass_is_absent(scene: bpy.types.Scene, render: Callable[..., Any]) -> None:
+def test_c1_without_motion_blur_or_vector_the_pass_is_absent(
+    scene: bpy.types.Scene, render: Callable[..., Any]
+) -> None:
     recording.add_camera()
     assert "Vector" not in render(scene, **SETTINGS)
 
@@ -222,7 +229,7 @@ def test_c1_without_motion_blur_or_vector_the_pass_is_absent(scene: bpy.types.Sc
 def test_c1_vectors_asked_for_on_the_command_line_move_too(
     scene: bpy.types.Scene, render: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The frames around were read only for a view layer that has the pass itself, so that everything seemed to rest."""
+    """Neighbouring frames were read only if the view layer had the pass, so that everything was static."""
     recording.add_camera(type="ORTHO", ortho_scale=4.0)
     animation.key(recording.add(recording.grid(1, 1.5)), "location", {1: (-0.25, 0, 0), 2: (0, 0, 0), 3: (0.25, 0, 0)})
     monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-passes", "vector"])

@@ -1,4 +1,4 @@
-"""What makes the Rendered viewport start again. Drawing itself is tested in a window (robustness/window_test.py)."""
+"""Changes that restart the Rendered viewport. Drawing is tested in a window by robustness/window_test.py."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ def clay(layer: bpy.types.ViewLayer) -> None:
 
 
 class Engine:
-    """As much of one as an export of a view takes."""
+    """Stands in for an engine in an export of a view."""
 
     resolution_x = resolution_y = 0
 
 
 @pytest.fixture
 def view(scene: bpy.types.Scene) -> Iterator[viewport.View]:
-    """A viewport onto an empty scene, exported."""
+    """A viewport with an exported empty scene."""
     engine, depsgraph = Engine(), bpy.context.evaluated_depsgraph_get()
     made = viewport.View(engine, depsgraph)
     made.synchronize(depsgraph, ViewOverride.from_view(Matrix(), Matrix(), (0.1, 100.0), WIDTH, HEIGHT))
@@ -53,8 +53,10 @@ def view(scene: bpy.types.Scene) -> Iterator[viewport.View]:
 
 
 @pytest.mark.parametrize("text", ["A=ED(", "A=EDL;B=ED.*L", "A=" + "E" * 600])
-def test_a_set_that_is_none_did_not_let_the_viewport_start(scene: bpy.types.Scene, view: viewport.View, text: str) -> None:
-    """Rendered shading ended with the set's refusal, over a picture that has no components."""
+def test_a_malformed_set_of_components_does_not_stop_the_viewport(
+    scene: bpy.types.Scene, view: viewport.View, text: str
+) -> None:
+    """The viewport refused malformed sets, although it has no components."""
     scene.gradus.use_decomposition, scene.gradus.components, scene.gradus.preview_samples = True, text, 1
     depsgraph = bpy.context.evaluated_depsgraph_get()
     view.start(depsgraph.scene_eval, depsgraph.view_layer_eval, (0, 0, WIDTH, HEIGHT))
@@ -66,7 +68,7 @@ def test_a_set_that_is_none_did_not_let_the_viewport_start(scene: bpy.types.Scen
 
 
 def test_components_are_edited_without_a_new_picture(scene: bpy.types.Scene) -> None:
-    """Each letter of a set started the viewport again, which has no components."""
+    """Each change of the set restarted the viewport, which has no components."""
     before = signature()
     settings = scene.gradus
     settings.use_decomposition, settings.components, settings.component_replays = True, "A=EDL", False
@@ -78,7 +80,7 @@ def test_components_are_edited_without_a_new_picture(scene: bpy.types.Scene) -> 
 
 
 def has_edits(change: Callable[[], None]) -> bool:
-    """Whether the update after a change is more than one of the scene."""
+    """Returns whether the update after a change is of more than the scene."""
     found: list[bool] = []
 
     def look(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
@@ -93,8 +95,9 @@ def has_edits(change: Callable[[], None]) -> bool:
     return any(found)
 
 
-def test_with_a_compositor_every_setting_was_an_edit(scene: bpy.types.Scene) -> None:
-    """Its tree is updated with the scene, and the viewport started again."""
+def test_an_update_of_the_compositor_is_not_an_edit(scene: bpy.types.Scene) -> None:
+    """Before Blender 5.0, the compositor is tagged with the scene, and every change of a setting restarted the
+    viewport."""
     compositing.new_tree(scene)
     obj = recording.add(recording.grid(1))
     assert not has_edits(lambda: setattr(scene.gradus, "components", "A=EDL"))
@@ -102,8 +105,10 @@ def test_with_a_compositor_every_setting_was_an_edit(scene: bpy.types.Scene) -> 
 
 
 @pytest.mark.parametrize("change", [no_sky, no_surfaces, clay], ids=lambda change: change.__name__)
-def test_a_changed_view_layer_starts_the_picture_again(scene: bpy.types.Scene, change: Callable[[bpy.types.ViewLayer], None]) -> None:
-    """Blender tells of these by an update of the scene alone, as it does when something is selected."""
+def test_a_changed_view_layer_starts_the_picture_again(
+    scene: bpy.types.Scene, change: Callable[[bpy.types.ViewLayer], None]
+) -> None:
+    """Blender tags only the scene for these changes, as it does for selections."""
     obj = recording.add(recording.grid(1))
     before = signature()
     obj.select_set(True)
@@ -204,5 +209,7 @@ def test_an_update_does_not_visit_the_instances(scene: bpy.types.Scene) -> None:
             recording.add(mesh)
         depsgraph = bpy.context.evaluated_depsgraph_get()
         depsgraph.update()
-        counts.append(calls_of(lambda depsgraph=depsgraph: (viewport._signature(depsgraph), viewport._has_edits(depsgraph))))
+        counts.append(
+            calls_of(lambda depsgraph=depsgraph: (viewport._signature(depsgraph), viewport._has_edits(depsgraph)))
+        )
     assert counts[0] == counts[1]

@@ -1,4 +1,4 @@
-"""The viewport's threads, without a window: a native library in Python stands in."""
+"""Threads of the viewport without a window, by a library in Python."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from gradus import native, viewport
 
 
 class FakeLibrary:
-    """Calls `during` in the middle of one function."""
+    """Calls `during` within one of its functions."""
 
     def __init__(self, name: str, during: Callable[[], None]) -> None:
         self.calls: list[str] = []
@@ -51,10 +51,10 @@ def interrupted_during(name: str) -> FakeLibrary:
 
 @pytest.mark.parametrize(("name", "calls"), [("commit", ["commit"]), ("start", ["commit", "start", "cancel"])])
 def test_k4_a_cancel_before_the_render_has_a_handle_is_not_lost(name: str, calls: list[str]) -> None:
-    """The render went on beside the edit that had stopped it."""
+    """The render continued after the edit that had cancelled it."""
     assert interrupted_during(name).calls == calls
 
 
-def test_the_library_knows_at_once_that_somebody_looks() -> None:
-    """Else its first picture comes after the first sample of all pixels."""
+def test_a_first_image_is_requested_at_once() -> None:
+    """Without the request, the first image would come after the first sample of all pixels."""
     assert interrupted_during("nothing").calls == ["commit", "start", "read"]

@@ -144,7 +144,7 @@ SEQUENCES = (
         MOTION,
         "matches.push_back(found != by_id.end() ? found->second : kNoInstance);",
         "matches.push_back(uint32_t(std::min(matches.size(), to.instances.size() - 1)));",
-        (animation("c6_what_stays"),),
+        (animation("c6_correspondences_remain"),),
     ),
     Fault(
         24,

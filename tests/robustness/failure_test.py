@@ -54,10 +54,28 @@ FAULTS = {
 
 
 def animate(
-    blender: Callable[..., Outcome], folder: Path, fault: str, frames: range, *arguments: str, kind: str = "PNG", at: int = 2
+    blender: Callable[..., Outcome],
+    folder: Path,
+    fault: str,
+    frames: range,
+    *arguments: str,
+    kind: str = "PNG",
+    at: int = 2,
 ) -> Outcome:
     script = SETUP.replace("FAULT", str(at)) + fault
-    head = ["--addons", "gradus", "-E", "GRADUS", "--python-expr", script, "-o", f"{folder}/f_####", "-F", kind, *arguments]
+    head = [
+        "--addons",
+        "gradus",
+        "-E",
+        "GRADUS",
+        "--python-expr",
+        script,
+        "-o",
+        f"{folder}/f_####",
+        "-F",
+        kind,
+        *arguments,
+    ]
     return blender(*head, "-s", str(frames.start), "-e", str(frames.stop - 1), "-a")
 
 
@@ -76,7 +94,9 @@ def test_i1_injected_failures(blender: Callable[..., Outcome], tmp_path: Path, n
 
 
 @pytest.mark.parametrize("name", ["update", "render", "upload"])
-def test_i1_with_multilayer_files_blender_does_not_crash(blender: Callable[..., Outcome], tmp_path: Path, name: str) -> None:
+def test_i1_with_multilayer_files_blender_does_not_crash(
+    blender: Callable[..., Outcome], tmp_path: Path, name: str
+) -> None:
     outcome = animate(blender, tmp_path, FAULTS[name], range(1, 4), kind="OPEN_EXR_MULTILAYER")
     assert outcome.code == 1, outcome.output
     assert files(tmp_path) == ["f_0001.exr"]
@@ -95,7 +115,20 @@ def test_i1_unwritable_folder(blender: Callable[..., Outcome], tmp_path: Path) -
 
 def test_i1_unwritable_statistics(blender: Callable[..., Outcome], tmp_path: Path) -> None:
     script = SETUP.replace("FAULT", "9")
-    head = ["--addons", "gradus", "-E", "GRADUS", "--python-expr", script, "-o", f"{tmp_path}/f_####", "-F", "PNG", "-f", "1"]
+    head = [
+        "--addons",
+        "gradus",
+        "-E",
+        "GRADUS",
+        "--python-expr",
+        script,
+        "-o",
+        f"{tmp_path}/f_####",
+        "-F",
+        "PNG",
+        "-f",
+        "1",
+    ]
     outcome = blender(*head, "--", "--gradus-stats", "/proc/nowhere/stats.jsonl")
     assert outcome.code == 1, outcome.output
     assert files(tmp_path) == []
@@ -147,7 +180,11 @@ def test_make_render_fails_where_a_strict_render_does(tmp_path: Path) -> None:
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "lost.blend"))
     for strict, code in (("0", 0), ("1", 1)):
         arguments = f"--gradus-samples 1 --gradus-strict {strict}"
-        environment = os.environ | {"SCENE": str(tmp_path / "lost.blend"), "OUT": str(tmp_path / strict), "ARGS": arguments}
+        environment = os.environ | {
+            "SCENE": str(tmp_path / "lost.blend"),
+            "OUT": str(tmp_path / strict),
+            "ARGS": arguments,
+        }
         command = ["/usr/bin/python3", str(ROOT / "tools" / "render.py")]
         result = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120, check=False)
         assert result.returncode == code, result.stdout + result.stderr
@@ -171,7 +208,9 @@ def test_i2_a_rerun_completes_the_job(blender: Callable[..., Outcome], tmp_path:
 
 
 @pytest.mark.parametrize("kind", ["PNG", "OPEN_EXR_MULTILAYER"])
-def test_f7_a_frame_cut_short_by_a_full_disk_ends_the_job(blender: Callable[..., Outcome], tmp_path: Path, kind: str) -> None:
+def test_f7_a_frame_cut_short_by_a_full_disk_ends_the_job(
+    blender: Callable[..., Outcome], tmp_path: Path, kind: str
+) -> None:
     cut = """
 import os
 def cut(scene, *_):

@@ -53,10 +53,21 @@ def refused(name: str, value: str, message: str, *options: str) -> None:
     [
         ("", []),
         ("Default", ["--gradus-use-decomposition", "1", "--gradus-components=", "--gradus-passes", "components"]),
-        ("A=ED(T|R)*L;B=EL", ["--gradus-use-decomposition", "1", "--gradus-components=A=ED(T|R)*L;B=EL", "--gradus-passes", "components"]),
+        (
+            "A=ED(T|R)*L;B=EL",
+            [
+                "--gradus-use-decomposition",
+                "1",
+                "--gradus-components=A=ED(T|R)*L;B=EL",
+                "--gradus-passes",
+                "components",
+            ],
+        ),
     ],
 )
-def test_components_are_asked_for_with_all_of_their_passes(monkeypatch: pytest.MonkeyPatch, text: str, options: list[str]) -> None:
+def test_components_are_asked_for_with_all_of_their_passes(
+    monkeypatch: pytest.MonkeyPatch, text: str, options: list[str]
+) -> None:
     monkeypatch.setenv("COMPONENTS", text)
     monkeypatch.setenv("ARGS", "--gradus-samples 4")
     monkeypatch.setenv("OUT", "/tmp")

@@ -128,8 +128,3 @@ def translator(*bl_idnames: str) -> Callable[[Translator], Translator]:
 
 def find_translator(bl_idname: str) -> Translator | None:
     return _translators.get(bl_idname)
-
-
-def translated_nodes() -> frozenset[str]:
-    """Returns the names of all nodes that have a translator."""
-    return frozenset(_translators)

@@ -30,7 +30,13 @@ OF_COMPONENTS = (
     "use_pass_component_motion",
     "use_pass_component_irradiance_motion",
 )
-GRADUS_PASSES = ("use_pass_gradients", "use_pass_variance", "use_pass_error", "use_pass_sample_count", "use_pass_denoising")
+GRADUS_PASSES = (
+    "use_pass_gradients",
+    "use_pass_variance",
+    "use_pass_error",
+    "use_pass_sample_count",
+    "use_pass_denoising",
+)
 
 
 class ViewLayerPanel(EnginePanel):
