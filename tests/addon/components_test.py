@@ -227,7 +227,7 @@ def test_the_panel_has_a_row_for_each_component_with_paths(scene: bpy.types.Scen
     row = labels.texts().index("Reflection")
     assert labels.texts()[row + 1] == "ER(D.*)?L"
     assert labels.texts()[row + 2].startswith("ERL, ERDL")
-    assert labels.texts()[labels.texts().index("Residual") + 1] == "all else"
+    assert labels.texts()[labels.texts().index("Residual") + 1] == "all other paths"
     assert labels.found[-1] == ("ETTDL belongs to Transmission", "CHECKMARK")
 
 
