@@ -1,7 +1,4 @@
-"""Components of the picture by light path expressions: their names, and what the library says of a set.
-
-No Blender here.
-"""
+"""Components by light path expressions: names, an early check, and descriptions by the library. No Blender here."""
 
 from __future__ import annotations
 

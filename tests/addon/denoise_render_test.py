@@ -21,11 +21,11 @@ def corner(scene: bpy.types.Scene) -> bpy.types.Scene:
     """A cube on a floor under a large light with noisy penumbrae, and a transparent background."""
     bpy.ops.mesh.primitive_cube_add(size=1.5, location=(0.0, 0.0, 0.75))
     bpy.ops.mesh.primitive_plane_add(size=5.0)
-    lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "AREA"))
-    lamp.data.energy, lamp.data.size, lamp.location = 300.0, 3.0, (0.0, 0.0, 4.0)
+    light = bpy.data.objects.new("Light", bpy.data.lights.new("Light", "AREA"))
+    light.data.energy, light.data.size, light.location = 300.0, 3.0, (0.0, 0.0, 4.0)
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.location, camera.rotation_euler = (5.0, -5.0, 4.0), (1.05, 0.0, 0.785)
-    for item in (lamp, camera):
+    for item in (light, camera):
         scene.collection.objects.link(item)
     scene.camera = camera
     scene.render.film_transparent = True

@@ -19,7 +19,7 @@ def plane(scene: bpy.types.Scene) -> bpy.types.Object:
 
 
 def test_nothing_is_left_out_of_an_ordinary_scene(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
-    recording.add(bpy.data.lights.new("Lamp", "POINT"), "Lamp").is_shadow_catcher = True  # Blender's default for lamps
+    recording.add(bpy.data.lights.new("Light", "POINT"), "Light").is_shadow_catcher = True  # Blender's default for lights
     assert warnings(scene) == []
 
 
@@ -61,11 +61,11 @@ def test_cryptomatte_is_named(scene: bpy.types.Scene, plane: bpy.types.Object, k
 
 
 def test_light_linking_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
-    lamp = recording.add(bpy.data.lights.new("Lamp", "POINT"), "Lamp")
-    if not hasattr(lamp, "light_linking"):
+    light = recording.add(bpy.data.lights.new("Light", "POINT"), "Light")
+    if not hasattr(light, "light_linking"):
         pytest.skip("no light linking in this Blender")
-    lamp.light_linking.receiver_collection = bpy.data.collections.new("Lit")
-    assert warnings(scene) == ["Object 'Lamp': light linking is ignored"]
+    light.light_linking.receiver_collection = bpy.data.collections.new("Lit")
+    assert warnings(scene) == ["Object 'Light': light linking is ignored"]
 
 
 def test_kinds_that_are_not_rendered_are_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:

@@ -25,9 +25,9 @@ def shadow(scene: bpy.types.Scene) -> bpy.types.Scene:
     bpy.ops.mesh.primitive_uv_sphere_add(radius=0.5, segments=48, ring_count=24)
     across = SHIFT * 4.0 / WIDTH
     key(bpy.context.object, "location", {0: (-2 * across, 0.0, 8.0), 10: (8 * across, 0.0, 8.0)})
-    lamp = bpy.data.lights.new("Sun", "SUN")
-    lamp.energy, lamp.angle = 3.0, math.radians(3.0)
-    recording.add(lamp, "Sun")
+    light = bpy.data.lights.new("Sun", "SUN")
+    light.energy, light.angle = 3.0, math.radians(3.0)
+    recording.add(light, "Sun")
     scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
     scene.frame_start, scene.frame_end = 1, LAST
     scene.gradus.samples, scene.gradus.use_decomposition = 64, True

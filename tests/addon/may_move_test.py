@@ -130,9 +130,9 @@ def test_frames_that_tell_of_motion_need_no_hint(scene: bpy.types.Scene) -> None
     assert _moving(scene) == set()
 
 
-def test_lamps_have_no_hint(scene: bpy.types.Scene) -> None:
+def test_lights_have_no_prediction(scene: bpy.types.Scene) -> None:
     recording.add_camera()
-    _keyed(recording.add(bpy.data.lights.new("Lamp", "POINT"), "Lamp"))
+    _keyed(recording.add(bpy.data.lights.new("Light", "POINT"), "Light"))
     recorded, _ = recording.export(scene)
     assert [light.visibility & MAY_MOVE for light in recorded.lights] == [0]
 

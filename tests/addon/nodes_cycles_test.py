@@ -242,7 +242,7 @@ def test_a9_lights_have_coordinates_of_their_own(
     if kind != "AREA" and output == "Parametric" and VERSION < (4, 0, 0):
         pytest.skip("Cycles had another order of them")
     bpy.ops.mesh.primitive_plane_add(size=4.0)
-    data = bpy.data.lights.new("Lamp", kind)
+    data = bpy.data.lights.new("Light", kind)
     data.energy, data.use_nodes = 200.0, True
     if kind != "AREA":
         data.shadow_soft_size = 0.1
@@ -252,9 +252,9 @@ def test_a9_lights_have_coordinates_of_their_own(
         item.default_value = (constant,) * 3
     emission = next(item for item in graph.tree.nodes if item.bl_idname == "ShaderNodeEmission")
     graph.tree.links.new(shown, emission.inputs["Color"])
-    lamp = bpy.data.objects.new("Lamp", data)
-    lamp.location, lamp.rotation_euler = (0.4, -0.3, 1.5), (0.3, 0.2, 0.1)
-    scene.collection.objects.link(lamp)
+    light = bpy.data.objects.new("Light", data)
+    light.location, light.rotation_euler = (0.4, -0.3, 1.5), (0.3, 0.2, 0.1)
+    scene.collection.objects.link(light)
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 4.0, (0.0, 0.0, 9.0)
     scene.collection.objects.link(camera)

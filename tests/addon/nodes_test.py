@@ -389,7 +389,7 @@ def test_world_and_light() -> None:
     program = translate(world, "WORLD")
     assert op_names(program) == ["EMISSION"]
     assert program.inputs[1][2][0] == 2.0
-    light = bpy.data.lights.new("Lamp", "POINT")
+    light = bpy.data.lights.new("Light", "POINT")
     assert op_names(translate(light, "LIGHT")) == ["EMISSION"]
 
 

@@ -173,7 +173,7 @@ def test_depth_of_field_has_the_shape_that_it_has_in_cycles(
     images.prepare(scene)
     camera = _camera(scene, kind, {}, {"size": (24, 24)})
     scene.objects["Sphere"].location = camera.matrix_basis @ Vector((0.3, 0.4, -2.0))
-    material = bpy.data.materials.new("Lamp")
+    material = bpy.data.materials.new("Light")
     material.use_nodes = True
     material.node_tree.nodes.clear()
     emission, output = (material.node_tree.nodes.new(f"ShaderNode{name}") for name in ("Emission", "OutputMaterial"))

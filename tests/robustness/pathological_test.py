@@ -230,7 +230,7 @@ def test_e3_a_custom_camera_is_named(stage: bpy.types.Scene, render: Render) -> 
     if "CUSTOM" not in stage.camera.data.bl_rna.properties["type"].enum_items:
         pytest.skip("this Blender has none")
     stage.camera.data.type = "CUSTOM"
-    with pytest.raises(RuntimeError, match="custom"):
+    with pytest.raises(RuntimeError, match="camera shaders"):
         picture(stage, render)
 
 
