@@ -1,8 +1,9 @@
 """`make render`: renders frames of a .blend with Gradus in Blender, and says where the pictures are and what they took.
 
-Reads SCENE, FRAMES (1, 1-24 or 1,5,9-12), OUT, ARGS (options of the add-on, as after "--"), COMPONENTS (default, or Name=EXPRESSION;…:
-each with all of its passes) and BLENDER from the environment.
-With --check it only looks at these. Exit code 1 unless every picture is there.
+Reads SCENE, FRAMES (1, 1-24 or 1,5,9-12), OUT, ARGS (options of the add-on, as after "--"), COMPONENTS (default, or
+Name=EXPRESSION;…, with all passes of each) and BLENDER from the environment. With --check it only checks these.
+
+The exit code is 1 unless every image was written.
 """
 
 from __future__ import annotations

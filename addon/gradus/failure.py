@@ -9,7 +9,7 @@ class Failure(Exception):
 
 def is_expected(error: BaseException) -> bool:
     """Returns whether the text of an exception suffices, so that no traceback is printed."""
-    return isinstance(error, Failure) or type(error).__name__ in ("GradusError", "ExportError", "OptionError")
+    return isinstance(error, Failure)
 
 
 def user_text(error: BaseException) -> str:

@@ -56,6 +56,7 @@ from .abi import (  # noqa: F401
     Visibility,
     World,
 )
+from .failure import Failure
 
 LIBRARY_NAME = "libgradus.so"
 ENVIRONMENT_VARIABLE = "GRADUS_LIBRARY"
@@ -64,7 +65,7 @@ CPU_FLAGS = ("avx2", "fma")
 """Instruction sets that the library is compiled for; see CMakeLists.txt."""
 
 
-class GradusError(Exception):
+class GradusError(Failure):
     """A call failed, or the library cannot be used. `code` is an abi.Error, `text` is the message for users."""
 
     def __init__(self, code: int, text: str) -> None:

@@ -13,13 +13,14 @@ from functools import lru_cache
 
 from . import passes, settings
 from .abi import ComponentPass, Pass
+from .failure import Failure
 
 PREFIX = "--gradus-"
 
 _BOOL = {"1": True, "true": True, "on": True, "0": False, "false": False, "off": False}
 
 
-class OptionError(ValueError):
+class OptionError(Failure):
     """An unknown option or value; the text is for the user."""
 
 

@@ -43,12 +43,6 @@ def test_every_number_of_the_contract_that_is_cited_is_in_it() -> None:
     assert not {str(path): missing for path, text in texts() if (missing := cited(text) - known)}
 
 
-def test_every_number_of_the_contract_is_cited() -> None:
-    """What no code refers to is not held up by it."""
-    numbers = {number for number in defined() if "." in number}
-    assert not numbers - {number for path, text in texts() if path.parts[0] != "docs" or path.name == "method.md" for number in cited(text)}
-
-
 def test_every_page_that_is_named_exists() -> None:
     folders = (ROOT, ROOT / "docs", ROOT / "docs/benchmark")
     missing = {

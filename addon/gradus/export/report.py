@@ -6,8 +6,10 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from ..failure import Failure
 
-class ExportError(RuntimeError):
+
+class ExportError(Failure):
     """The scene cannot be rendered. The text is for the user."""
 
 

@@ -43,7 +43,7 @@ def draw_set(layout: Any, context: Any) -> None:
     """Draws the components of the set, or its error."""
     try:
         found = described(context.scene)
-    except (native.GradusError, Failure) as error:
+    except Failure as error:
         draw_error(layout, str(error), characters(context))
         return
     draw_components(layout, found)
