@@ -98,7 +98,7 @@ def component_options(text: str) -> list[str]:
 
 
 def check_options(arguments: list[str]) -> None:
-    """Refuses options that the add-on would refuse after the build. Values of native settings are left to the library."""
+    """Refuses options that the add-on would refuse after the build, except values of native settings."""
     try:
         overrides = options.parse(arguments)
     except options.OptionError as error:
