@@ -309,11 +309,12 @@ class Job:
     def refuse_unsupported(self) -> None:
         """Raises Failure if the render is strict and the image will not have what the scene asks for.
 
-        This covers warnings of the export. The library refuses the warnings of its own commit when the render starts.
+        This covers warnings of the export and about colours. The library refuses the warnings of its own commit when
+        the render starts.
         """
         if self.is_silent:
             return
-        texts, self.unsupported = self.unsupported, []
+        texts, self.unsupported = [*self.unsupported, *self.session.device_warnings()], []
         if self.current.settings.strict and texts:
             others = f" (and {len(texts) - 1} other warnings)" if len(texts) > 1 else ""
             raise Failure(f"strict: {texts[0]}{others}")

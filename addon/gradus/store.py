@@ -91,6 +91,10 @@ class Session:
                 fresh.append(text)
         return fresh
 
+    def device_warnings(self) -> list[str]:
+        """Returns all warnings about the device that were taken so far, such as unknown colour spaces."""
+        return list(_device_warnings.get(self.device, ()))
+
     def free(self) -> None:
         scene, self.scene = self.scene, 0
         if scene:

@@ -289,6 +289,18 @@ def test_strict_holds_with_persistent_data(cube: bpy.types.Scene, render: Render
         store.release_kind(store.FINAL)
 
 
+def test_strict_covers_warnings_about_colours(
+    cube: bpy.types.Scene, render: Render, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They belong to the device, which several scenes share."""
+    from gradus import store
+
+    monkeypatch.setattr(store.Session, "device_warnings", lambda _session: ["colour: the space X is not known"])
+    render(cube)
+    with pytest.raises(RuntimeError, match="strict: colour: the space X is not known"):
+        render(cube, strict=True)
+
+
 def test_strict_does_not_refuse_what_changes_no_picture(cube: bpy.types.Scene, render: Render) -> None:
     """Limits that differ from Cycles' are reported, and are what the scene asks Gradus for."""
     cube.cycles.max_bounces = 3
