@@ -37,5 +37,10 @@ def test_copy_from_cycles(cycles: bpy.types.Scene) -> None:
     with bpy.context.temp_override(scene=cycles):
         bpy.ops.gradus.copy_from_cycles()
     ours = cycles.gradus
-    assert (ours.max_bounces, ours.transparent_max_bounces, ours.pixel_filter, ours.filter_width) == (5, 64, "GAUSSIAN", 2.0)
+    assert (ours.max_bounces, ours.transparent_max_bounces, ours.pixel_filter, ours.filter_width) == (
+        5,
+        64,
+        "GAUSSIAN",
+        2.0,
+    )
     assert cycles_settings.warnings(cycles, set()) == []

@@ -19,7 +19,9 @@ def plane(scene: bpy.types.Scene) -> bpy.types.Object:
 
 
 def test_nothing_is_left_out_of_an_ordinary_scene(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
-    recording.add(bpy.data.lights.new("Light", "POINT"), "Light").is_shadow_catcher = True  # Blender's default for lights
+    recording.add(
+        bpy.data.lights.new("Light", "POINT"), "Light"
+    ).is_shadow_catcher = True  # Blender's default for lights
     assert warnings(scene) == []
 
 
