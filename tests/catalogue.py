@@ -110,7 +110,7 @@ ELSEWHERE = {
     "A10": [("L1: threads", "every change")],
     "B5": [("docs/benchmark/README.md (`make bench`)", "on demand")],
     "L5": [("`make compilers`: A1, A2, A4 to A6, B8 at -O0 and with clang", "on demand")],
-    "L6": [("tools/test.py: L6, L3, G2 and passes under valgrind; all native tests under sanitizers", "make test-full")],
+    "L6": [("tools/runner/plan.py: some native tests under sanitizers", "every change"), ("all of them, and L6, L3, G2 and passes under valgrind", "make test-full")],
     "M3": [("tests named after what went wrong, in all files", "every change")],
     "M4": [("tests/faults (`make faults`), result in docs/faults.md", "on demand")],
 }

@@ -1,6 +1,6 @@
-"""Fixtures and marks of all tests. They run in Blender 3.4, in the bpy modules, and in plain Python (tools/test.py starts them).
+"""Fixtures and marks of all tests. They run in Blender 3.4, in the bpy modules, and in plain Python (tools/test.py).
 
-Fixtures: `host_version`, `library`, `scene`, `render`, `blender` (3.4 only), `shared_scenes`; the add-on is registered throughout.
+Fixtures: `host_version`, `library`, `scene`, `render`, `blender`, `shared_scenes`; the add-on is registered throughout.
 Temporary folders are pytest's `tmp_path`.
 """
 
@@ -24,13 +24,13 @@ ROOT = Path(__file__).resolve().parent.parent
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leaves out the tests of another host or of the long run. Tests that start Blender get the mark "application" from their fixture."""
+    """Leaves out the tests of another host or of the long run. The fixture `blender` gives the mark "application"."""
     is_module = bpy is not None and getattr(bpy.app, "module", False)
     out = []
     for item in items:
         if "blender" in getattr(item, "fixturenames", ()):
             item.add_marker("application")
-        wrong_host = is_module and item.get_closest_marker("application") or not is_module and item.get_closest_marker("module")
+        wrong_host = item.get_closest_marker("application" if is_module else "module")
         if wrong_host or (item.get_closest_marker("full") and os.environ.get("GRADUS_TEST_FULL") != "1"):
             out.append(item)
     items[:] = [item for item in items if item not in out]

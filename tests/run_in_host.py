@@ -4,8 +4,9 @@
     blender -b --python run_in_host.py -- --serve DESCRIPTOR   runs pytest for every line that arrives at a socket
     python3 run_in_host.py -- --plain …                        the same without bpy, which then cannot be imported
 
-A served line is a JSON list of pytest's arguments, and the answer to it is a line with pytest's exit code. The process ends itself at
-once, without the interpreter's shutdown: the 4.5 module can hang there, and Blender's own exit code says nothing about tests.
+A served line is a JSON list of pytest's arguments, and the answer to it is a line with pytest's exit code. The process
+ends itself at once, without the interpreter's shutdown: the 4.5 module can hang there, and Blender's own exit code says
+nothing about tests.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from pathlib import Path
 
 PLAIN = "--plain" in sys.argv
 if PLAIN:
-    sys.modules["bpy"] = None  # type: ignore[assignment]  # a test that imports bpy fails here, even if the environment has it
+    sys.modules["bpy"] = None  # type: ignore[assignment]  # importing it fails, even if the environment has it
 else:
     import bpy  # before anything that could load another TBB or Imath
 import pytest  # noqa: E402
@@ -37,7 +38,7 @@ def run(arguments: list[str]) -> int:
 
 
 class Surroundings:
-    """What a test file may leave behind in the process. restore() takes the next file back to the state at the start."""
+    """What a test file may change in the process. restore() takes it back to the state before the first file."""
 
     def __init__(self) -> None:
         self.path, self.environment, self.folder = list(sys.path), dict(os.environ), os.getcwd()

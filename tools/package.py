@@ -1,4 +1,4 @@
-"""Makes dist/gradus-<version>.zip: the add-on's folder with the library and all it needs, for Blender 3.4 (add-on) to 5.0 (extension).
+"""Makes dist/gradus-<version>.zip: the add-on's folder with the library and all it needs, for Blender 3.4 (add-on) to 5.2 (extension).
 
 The folder is the only thing at the top level of the zip, which both ways of installing accept. Same sources, same bytes.
 """

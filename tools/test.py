@@ -1,10 +1,10 @@
-"""Runs the tests and sums them up; the last line is "N passed, N failed[, N skipped]". The build must be there: use `make test`.
+"""Runs the tests and sums them up; the last line is "N passed, N failed[, N skipped]". `make test` builds before.
 
     test.py [--full] [--hosts plain,3.4,bpy45,bpy50,bpy52] [--files a_test.py,b_test.py] [--jobs 2] all | native | addon
 
-Native tests are GoogleTest programs. The others are pytest files: those that need no Blender run in plain Python, the others in one
-process per host. A file that crashes or hangs counts as one failure and costs a new process, and the rest goes on. Which files run in
-which host is said in runner/plan.py.
+Native tests are GoogleTest programs. The others are pytest files: those that need no Blender run in plain Python, the
+others in one process per host. A file that crashes or hangs counts as one failure and costs a new process, and the rest
+goes on. runner/plan.py says which files run in which host.
 """
 
 from __future__ import annotations
@@ -23,11 +23,13 @@ ROOT = plan.ROOT
 
 
 def environment_of_tests(full: bool) -> dict[str, str]:
-    environment = {key: value for key, value in os.environ.items() if not key.startswith(("BLENDER_", "PYTEST_", "MAKE", "MFLAGS"))}
-    # Blender's Python takes its modules from beside the first python3.11 in PATH: that must be the system's, not a version manager's.
+    foreign = ("BLENDER_", "PYTEST_", "MAKE", "MFLAGS")
+    environment = {key: value for key, value in os.environ.items() if not key.startswith(foreign)}
+    # Blender's Python takes its modules from beside the first python3.11 in PATH: that must be the system's.
     environment["PATH"] = "/usr/bin:/bin:" + environment.get("PATH", "")
     environment |= {"PYTHONDONTWRITEBYTECODE": "1", "GRADUS_TEST_FULL": "1" if full else "0"}
-    environment["OPENBLAS_NUM_THREADS"] = "1"  # NumPy's threads wait for each other in loops, for longer than small matrices take
+    # NumPy's threads wait for each other in loops, for longer than small matrices take.
+    environment["OPENBLAS_NUM_THREADS"] = "1"
     return environment
 
 
@@ -36,7 +38,7 @@ def main() -> int:
     parser.add_argument("what", choices=("all", "native", "addon"))
     parser.add_argument("--full", action="store_true", help="with tests that take long, and everything in all hosts")
     parser.add_argument("--hosts", default=os.environ.get("HOSTS", ""), help="run everything in these hosts only")
-    parser.add_argument("--files", default=os.environ.get("TESTS", ""), help="test files, separated by commas; default: all")
+    parser.add_argument("--files", default=os.environ.get("TESTS", ""), help="test files; default: all")
     parser.add_argument("--jobs", type=int, default=2, help="how many programs and hosts run at a time")
     options = parser.parse_args()
 
@@ -47,13 +49,16 @@ def main() -> int:
     if options.what in ("all", "native"):
         together["native"], alone["native"] = plan.native_plan(options.full)
         if options.what == "all" or options.full:
-            together["checks"] = [*CHECKS, *plan.sanitized_plan(options.full)]
+            sanitized, sanitized_alone = plan.sanitized_plan(options.full)
+            together["checks"] = [*CHECKS, *sanitized]
+            alone["native"] += sanitized_alone
     if options.what in ("all", "addon"):
         hosts = [host for host in options.hosts.split(",") if host]
         lanes = plan.hosts_plan(hosts, plan.test_files(options.files), options.full)
         for host in [host for host in lanes if is_missing(host)]:
             del lanes[host]
-            report.add(Result(host, skipped=1, notes=[f"{host} is skipped: no Python 3.13 was found (tools/setup/setup bpy)"]))
+            note = f"{host} is skipped: no Python 3.13 was found (tools/setup/setup bpy)"
+            report.add(Result(host, skipped=1, notes=[note]))
         shared, separate = plan.split_alone(lanes)
         together |= shared
         alone |= separate

@@ -1,4 +1,4 @@
-"""Gradus, a gradient-domain path tracer for Blender 3.4 to 5.0.
+"""Gradus, a gradient-domain path tracer for Blender 3.4 to 5.2.
 
 This module imports without Blender; register() needs it.
 """

@@ -46,8 +46,8 @@ def bundled_libraries() -> str:
 
 
 def image_color_spaces() -> set[str]:
-    """Returns the names of the colour spaces of all images."""
-    return {image.colorspace_settings.name for image in bpy.data.images}
+    """Names of the colour spaces of all images but Blender's own viewers, which have none: 5.2 warns when theirs is read."""
+    return {image.colorspace_settings.name for image in bpy.data.images if image.source != "VIEWER"}
 
 
 def default_surface_is_principled() -> bool:

@@ -66,6 +66,7 @@ def test_i2_a_fault_in_frame_5_ends_with_code_1_after_frame_4(blender: Callable[
     assert [path.name for path in sorted(tmp_path.glob("f_*.png"))] == [f"f_{frame:04d}.png" for frame in range(1, 5)]
 
 
+@pytest.mark.alone
 @pytest.mark.application
 @pytest.mark.parametrize("seconds", [0.1, 0.6, 1.5])
 def test_k1_sigint_ends_the_frames_ahead_within_a_second(tmp_path: Path, seconds: float) -> None:

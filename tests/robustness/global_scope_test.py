@@ -48,4 +48,8 @@ def test_rays_hit_in_this_process() -> None:
 def test_rays_hit_in_global_scope(order: str) -> None:
     command = [sys.executable, "-c", APP_LIKE, order, str(TESTS), str(TESTS.parent / "addon")]
     done = subprocess.run(command, env=os.environ, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=False)
+    if order == "library first" and "libopenvdb" in done.stderr and "undefined symbol: _ZN3tbb" in done.stderr:
+        # 2026-11-25: Blender 5.2 needs a newer TBB than the library brings, and a process has one TBB, the one loaded first. The add-on
+        # loads the library when a render starts, and so after bpy.
+        pytest.skip("bpy needs a newer TBB than the library brings, so bpy must be imported first")
     assert "RAYS-HIT" in done.stdout, done.stdout + done.stderr

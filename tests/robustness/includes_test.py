@@ -24,7 +24,8 @@ def problems(folder: Path, files: dict[str, str]) -> list[str]:
 def test_includes_of_folders_above_and_of_the_own_folder_are_allowed(tmp_path: Path) -> None:
     (tmp_path / "native" / "include" / "gradus").mkdir(parents=True)
     (tmp_path / "native" / "include" / "gradus" / "gradus.h").write_text("")
-    includes_above = '#include "light/tree.h"\n#include "scene/parts/part.h"\n#include "near.h"\n#include <vector>\n#include "gradus/gradus.h"\n'
+    names = ('"light/tree.h"', '"scene/parts/part.h"', '"near.h"', "<vector>", '"gradus/gradus.h"')
+    includes_above = "".join(f"#include {name}\n" for name in names)
     files = {
         "base/types.h": "namespace gradus {\nusing A = int;\n}\n",
         "scene/scene.h": includes_above + SCENE,
@@ -43,7 +44,7 @@ def test_includes_of_folders_above_and_of_the_own_folder_are_allowed(tmp_path: P
         ("scene/parts/part.h", '  #  include "film/film.h"\n' + SCENE, "scene/ may not include film/film.h"),
         ("scene/scene.h", '#include "elsewhere/x.h"\n' + SCENE, "in no folder of the list"),
         ("scene/scene.h", "namespace gradus {\nstruct Scene;\n}\n", "declares nothing in namespace gradus::scene"),
-        ("scene/scene.h", SCENE + "namespace gradus {\nstruct Other;\n}\n", "opens namespace gradus, which is that of base/"),
+        ("scene/scene.h", SCENE + "namespace gradus {\nstruct A;\n}\n", "opens namespace gradus, which is that of base/"),
         ("scene/scene.h", SCENE + "namespace gradus::api {\nstruct Device;\n}\n", "opens namespace gradus::api"),
         ("scene/scene.h", "// namespace gradus::scene {\nint a;\n", "declares nothing in namespace gradus::scene"),
         ("base/types.h", "namespace gradus::scene {\n}\n", "declares nothing in namespace gradus"),

@@ -23,7 +23,7 @@ for venv in bpy45 bpy50 bpy52; do
   if [ -d "$VENVS/$venv" ]; then mount --bind "$VENVS/$venv" "$ROOTFS/opt/$venv"; fi
 done
 if [ -n "$PYTHON" ]; then mount --bind "$PYTHON" "$ROOTFS/opt/python"; fi
-exec env -i PYTHONPATH="$MODULES" HOME=/work/home PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 TMPDIR=/work chroot "$ROOTFS" "$@"
+exec env -i PYTHONPATH="$MODULES" LD_LIBRARY_PATH="${PYTHON:+/opt/python/lib}" HOME=/work/home PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 TMPDIR=/work chroot "$ROOTFS" "$@"
 """
 
 

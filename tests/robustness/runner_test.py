@@ -1,4 +1,4 @@
-"""The test runner (tools/runner): a file that crashes or hangs costs itself, and what a file changes is undone before the next one."""
+"""The test runner (tools/runner): a file that crashes or hangs costs itself, and its changes of the process are undone."""
 
 from __future__ import annotations
 

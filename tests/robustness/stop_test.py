@@ -68,6 +68,7 @@ def check_whole(folder: Path) -> int:
     return len(paths)
 
 
+@pytest.mark.alone
 def test_k1_sigint_ends_the_render_within_a_second(tmp_path: Path) -> None:
     """Moments spread over export, build, sampling and reconstruction of a frame that would take minutes."""
     seconds = []

@@ -16,7 +16,7 @@ import OpenImageIO as oiio
 import pytest
 from support.application import ROOT, environment
 
-pytestmark = pytest.mark.application
+pytestmark = [pytest.mark.application, pytest.mark.alone]
 
 LIMIT = 240
 

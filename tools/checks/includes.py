@@ -2,8 +2,8 @@
 
     includes.py [FOLDER]      default: native/src
 
-A folder may include itself and the folders above it in FOLDERS. Its files declare things in gradus::<folder>; those of base/ in gradus.
-A file may open the namespace of a folder above its own, for forward declarations.
+A folder may include itself and the folders above it in FOLDERS. Its files declare things in gradus::<folder>; those of
+base/ in gradus. A file may open the namespace of a folder above its own, for forward declarations.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 FOLDERS = (
-    "base", "schema", "image", "geometry", "camera", "bsdf", "medium", "shading", "light", "scene", "lpe", "film", "film_io", "path",
-    "integrator", "gradient", "reconstruct", "motion", "output", "render", "animation", "api",
+    "base", "schema", "image", "geometry", "camera", "bsdf", "medium", "shading", "light", "scene", "lpe", "film",
+    "film_io", "path", "integrator", "gradient", "reconstruct", "motion", "output", "render", "animation", "api",
 )  # fmt: skip
 ENDINGS = {".h", ".hpp", ".cpp", ".c"}
 ROOT = Path(__file__).resolve().parents[2]

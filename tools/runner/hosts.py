@@ -1,4 +1,4 @@
-"""One process per host that runs test files one after another. A file that crashes or hangs costs itself and a new process."""
+"""One process per host runs test files one after another. A file that crashes or hangs costs itself and a new process."""
 
 from __future__ import annotations
 
@@ -28,7 +28,9 @@ def module(name: str) -> list[str]:
 # "plain" has the packages of bpy45's environment, but cannot import bpy.
 HOSTS = {
     "plain": [*module("bpy45"), "--plain"],
-    "3.4": ["blender", "-b", "--factory-startup", "-noaudio", "--python-exit-code", "3", "--python", str(RUNNER), "--"],
+    "3.4": [
+        "blender", "-b", "--factory-startup", "-noaudio", "--python-exit-code", "3", "--python", str(RUNNER), "--"
+    ],  # fmt: skip
     "bpy45": module("bpy45"),
     "bpy50": module("bpy50"),
     "bpy52": module("bpy52"),
@@ -42,7 +44,7 @@ def is_missing(host: str) -> bool:
 
 @dataclass(frozen=True)
 class TestFile:
-    """A test file for one host. `marks` is a pytest expression over marks that limits it; `tests` limits it to tests by name."""
+    """A test file for one host. `marks`, an expression of pytest over marks, and `tests`, their names, limit it."""
 
     path: Path
     limit: float  # seconds
@@ -58,8 +60,8 @@ class TestFile:
     def arguments(self, folder: Path) -> list[str]:
         paths = [f"{self.path}::{test}" for test in self.tests] or [str(self.path)]
         marks = ["-m", self.marks] if self.marks else []
-        options = ["-q", "--tb=short", "-p", "no:cacheprovider", f"--junitxml={folder}/report.xml", f"--basetemp={folder}/tmp"]
-        return [*paths, *marks, *options]
+        outputs = [f"--junitxml={folder}/report.xml", f"--basetemp={folder}/tmp"]
+        return [*paths, *marks, "-q", "--tb=short", "-p", "no:cacheprovider", *outputs]
 
 
 class HostProcess:
@@ -84,7 +86,7 @@ class HostProcess:
                 count_report(report, result)
         self._output.seek(start)
         output = self._output.read().decode("utf-8", "replace")
-        # 0: passed, 5: no test of the file belongs to this host. After others, the report may lack what went wrong.
+        # 0: passed, 5: no test of the file belongs to this host. With other codes the report may lack what went wrong.
         if isinstance(code, str) or (code not in (0, 5) and not result.failed):
             result.failed += 1
             result.notes.append(f"{result.name} ended with {code}")
@@ -104,7 +106,7 @@ class HostProcess:
         self._channel = ours
 
     def _ask(self, arguments: list[str], limit: float) -> int | str:
-        """Pytest's exit code for these arguments, or a text if the process ended or exceeded the limit; then it is closed."""
+        """Pytest's exit code for these arguments; a text if the process ended or exceeded the limit, and was stopped."""
         answer, end = b"", time.monotonic() + limit
         try:
             self._channel.sendall(json.dumps(arguments).encode() + b"\n")

@@ -43,7 +43,8 @@ def at_import(node: ast.AST) -> Iterator[ast.stmt]:
     """The statements that run when a module is imported."""
     for child in ast.iter_child_nodes(node):
         is_typing = isinstance(child, ast.If) and ast.unparse(child.test).endswith("TYPE_CHECKING")
-        if isinstance(child, ast.stmt) and not isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef)) and not is_typing:
+        is_function = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef)
+        if isinstance(child, ast.stmt) and not is_function and not is_typing:
             yield child
             yield from at_import(child)
 

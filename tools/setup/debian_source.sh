@@ -15,9 +15,11 @@ LIST
 apt_options=(-o "Dir::Etc::sourcelist=$PWD/sources.list" -o Dir::Etc::sourceparts=- -o "Dir::State::lists=$PWD/lists")
 apt-get "${apt_options[@]}" update
 # The packaging archive may be missing on a mirror (exit code 100); what counts is the orig archive, checked below.
-apt-get "${apt_options[@]}" source --download-only "$package=$version*" || apt-get "${apt_options[@]}" source --download-only "$package" || true
+apt-get "${apt_options[@]}" source --download-only "$package=$version*" ||
+  apt-get "${apt_options[@]}" source --download-only "$package" || true
 
 orig=$(ls "${package}_${version}"*.orig.tar.*z)
-source_sha256=$(awk -v f="$orig" '/^Checksums-Sha256:/ {on=1; next} /^[A-Z]/ {on=0} on && $3 == f {print $1}' "${package}"_*.dsc)
+source_sha256=$(awk -v f="$orig" '/^Checksums-Sha256:/ {on=1; next} /^[A-Z]/ {on=0} on && $3 == f {print $1}' \
+  "${package}"_*.dsc)
 echo "$source_sha256  $orig" | sha256sum --check --strict
 tar -xf "$orig"

@@ -23,16 +23,18 @@ cd "$work"
 cd "$(find source -maxdepth 1 -type d -name 'embree*' | head -n 1)"
 touch readme.pdf                 # removed from Debian's archive, but named by the install step
 
-# Embree compiles the sources of all kinds of geometry even where the options below switch them off, and with a single instruction set
-# it compiles most sources twice, into embree3 and embree_avx2, of which the linker takes the former. Neither reaches libgradus.so
-# (a linker map shows it), and they are three quarters of the time. A kind of geometry that is switched on needs its sources here again.
+# Embree compiles the sources of all kinds of geometry even where the options below switch them off, and with a single
+# instruction set it compiles most sources twice, into embree3 and embree_avx2, of which the linker takes the former.
+# None of this reaches libgradus.so (a linker map shows it), and it is more than half of the time. A kind of geometry
+# that is switched on below needs its sources here again.
 cat > unused.cmake <<'LIST'
 LIST(REMOVE_ITEM EMBREE_LIBRARY_FILES
   common/rtcore_builder.cpp common/scene_curves.cpp common/scene_line_segments.cpp common/scene_grid_mesh.cpp
   common/scene_points.cpp common/scene_quad_mesh.cpp common/motion_derivative.cpp
   subdiv/bezier_curve.cpp subdiv/bspline_curve.cpp subdiv/catmullrom_curve.cpp
-  geometry/curve_intersector_virtual_4v.cpp geometry/curve_intersector_virtual_4i.cpp geometry/curve_intersector_virtual_4i_mb.cpp
-  geometry/curve_intersector_virtual_8v.cpp geometry/curve_intersector_virtual_8i.cpp geometry/curve_intersector_virtual_8i_mb.cpp
+  geometry/curve_intersector_virtual_4v.cpp geometry/curve_intersector_virtual_8v.cpp
+  geometry/curve_intersector_virtual_4i.cpp geometry/curve_intersector_virtual_8i.cpp
+  geometry/curve_intersector_virtual_4i_mb.cpp geometry/curve_intersector_virtual_8i_mb.cpp
   bvh/bvh_builder_hair.cpp bvh/bvh_builder_hair_mb.cpp)
 LIST(FILTER EMBREE_LIBRARY_FILES_AVX2 EXCLUDE REGEX "curve_intersector_virtual|common/scene_|bvh_builder_hair")
 LIST(REMOVE_ITEM EMBREE_LIBRARY_FILES_AVX2 ${EMBREE_LIBRARY_FILES})

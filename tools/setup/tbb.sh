@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds oneTBB 2021.8 with ThreadSanitizer and installs it in the cache folder, for the tests that look for data races.
 #
-# Why from source: how Debian's libtbb passes work between threads is invisible to ThreadSanitizer, which would report every hand-over.
+# Why from source: how Debian's libtbb passes work between threads is invisible to ThreadSanitizer, which would report
+# every hand-over.
 #
 # usage: tbb.sh PREFIX      PREFIX is complete when PREFIX/.complete exists; builds of several checkouts may share it.
 set -euo pipefail
@@ -19,7 +20,8 @@ work=$(mktemp -d "$prefix.build.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 "$here/debian_source.sh" onetbb "$version" "$work/source"
 cmake -S "$work/source/oneTBB-$version" -B "$work/build" -G Ninja \
-  -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE="-O1 -g -DNDEBUG" -DCMAKE_INSTALL_PREFIX="$work/install" -DCMAKE_INSTALL_LIBDIR=lib \
+  -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE="-O1 -g -DNDEBUG" \
+  -DCMAKE_INSTALL_PREFIX="$work/install" -DCMAKE_INSTALL_LIBDIR=lib \
   -DTBB_SANITIZE=thread -DTBB_TEST=OFF -DTBB_STRICT=OFF -DTBBMALLOC_BUILD=OFF -DTBB_DISABLE_HWLOC_AUTOMATIC_SEARCH=ON
 cmake --build "$work/build"
 cmake --install "$work/build"

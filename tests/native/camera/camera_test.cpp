@@ -59,13 +59,13 @@ std::vector<BlenderCamera> all_cameras() {
   return cameras;
 }
 
-TEST(Camera, ProjectsAsBlenderAndRaysGoBackThere) {
+TEST(camera::Camera, ProjectsAsBlenderAndRaysGoBackThere) {
   std::mt19937 random(31);
   std::uniform_real_distribution<float> u(0.0f, 1.0f);
   for (const auto& [w, h] : {std::pair{640, 360}, std::pair{300, 500}})
     for (const BlenderCamera& blender : all_cameras()) {
       const GradusCamera desc = make_camera(blender, w, h, kPose);
-      const Camera camera(desc, uint32_t(w), uint32_t(h));
+      const camera::Camera camera(desc, uint32_t(w), uint32_t(h));
       const Projection p = blender_projection(blender, w, h);
       for (int i = 0; i < 20; ++i) {
         const Vec2 film(u(random) * float(w), u(random) * float(h));
@@ -90,7 +90,7 @@ TEST(Camera, ProjectsAsBlenderAndRaysGoBackThere) {
     }
 }
 
-TEST(Camera, RaysOfAFilmPointMeetOnThePlaneOfFocus) {
+TEST(camera::Camera, RaysOfAFilmPointMeetOnThePlaneOfFocus) {
   for (const bool orthographic : {false, true}) {
     BlenderCamera blender;
     blender.orthographic = orthographic;
@@ -155,7 +155,7 @@ void expect_uniform_lens(uint32_t blades, float rotation, float ratio) {
 }
 
 // At each moment its rays are those of a camera that rests where it is then, with the window that it has then.
-TEST(Camera, MovesAndZoomsWhileTheShutterIsOpen) {
+TEST(camera::Camera, MovesAndZoomsWhileTheShutterIsOpen) {
   for (const bool orthographic : {false, true}) {
     BlenderCamera blender;
     blender.orthographic = orthographic;
@@ -178,7 +178,7 @@ TEST(Camera, MovesAndZoomsWhileTheShutterIsOpen) {
     const camera::Camera camera(moving, 640, 360);
     for (const float time : {0.0f, 0.2f, 0.5f, 0.9f, 1.0f}) {
       const Ray ray = camera.ray({Vec2(500, 70), Vec2(0.0f), time}),
-                expected = Camera(frozen_at(time), 640, 360).ray({Vec2(500, 70)});
+                expected = camera::Camera(frozen_at(time), 640, 360).ray({Vec2(500, 70)});
       EXPECT_LT(glm::length(ray.origin - expected.origin), 1e-5f) << time;
       EXPECT_LT(glm::length(ray.direction - expected.direction), 1e-5f) << time;
       EXPECT_EQ(ray.time, time);
@@ -187,14 +187,14 @@ TEST(Camera, MovesAndZoomsWhileTheShutterIsOpen) {
 }
 
 // A camera was made of the first 129 keys, as if the shutter closed there, where meshes and instances refuse more.
-TEST(Camera, RefusesMoreShutterKeysThanThereMayBe) {
+TEST(camera::Camera, RefusesMoreShutterKeysThanThereMayBe) {
   GradusCamera moving = make_camera(BlenderCamera{}, 640, 360, kPose);
-  const std::vector<Mat4> matrices(kMaxShutterKeys + 1, kPose);
+  const std::vector<Mat4> matrices(geometry::kMaxShutterKeys + 1, kPose);
   moving.shutter_matrices = &matrices[0][0][0];
   TestScene scene;
-  for (const uint32_t count : {2u, kMaxShutterKeys}) {
+  for (const uint32_t count : {2u, geometry::kMaxShutterKeys}) {
     moving.shutter_key_count = count;
-    EXPECT_EQ(refusal_of([&] { Camera(moving, 640, 360); }), "");
+    EXPECT_EQ(refusal_of([&] { camera::Camera(moving, 640, 360); }), "");
     EXPECT_EQ(refusal_of([&] { scene.scene.set_camera(moving); }), "");
   }
   const std::string refusal = "camera: 130 shutter keys, at most 129 are possible";

@@ -233,7 +233,7 @@ TEST(SphericalStereo, RaysLeaveTheEyesCircle) {
   desc.pole_merge_from = 1.0f;
   desc.pole_merge_to = 1.4f;
   const auto offset_at = [&](float latitude) {
-    return glm::length(Camera(desc, kWidth, kHeight)
+    return glm::length(camera::Camera(desc, kWidth, kHeight)
                            .ray({Vec2(320.0f, (latitude / 3.14159265f + 0.5f) * kHeight), Vec2(0.0f)})
                            .origin);
   };
@@ -258,7 +258,7 @@ TEST(SphericalStereo, PointsOfRaysAppearWhereTheRaysLeft) {
         desc.convergence_distance = convergence;
         desc.pole_merge_from = 0.8f;
         desc.pole_merge_to = merge;
-        const Camera camera(desc, kWidth, kHeight);
+        const camera::Camera camera(desc, kWidth, kHeight);
         for (int i = 0; i < 1000; ++i) {
           const Vec2 film((0.1f + 0.8f * u(random)) * float(kWidth), (0.1f + 0.8f * u(random)) * float(kHeight));
           const Ray ray = camera.ray({film, Vec2(0.0f)});

@@ -51,13 +51,13 @@ TEST(Mesh, AttributesOfAllDomains) {
   quad.desc.attribute_count = 3;
   const auto mesh = geometry::make_mesh(quad.make());
   const auto value = [&](const char* name, uint32_t triangle) {
-    return corner_values(*mesh, *find_attribute(*mesh, name), triangle);
+    return geometry::corner_values(*mesh, *geometry::find_attribute(*mesh, name), triangle);
   };
-  EXPECT_EQ(geometry::interpolate(value("p", 1), Vec2(0.5f, 0.25f)).x, 0.5f * 2 + 0.25f * 3);
-  EXPECT_EQ(value("f", 0)[2], Vec4(4, 5, 6, 1));
-  EXPECT_EQ(value("uv", 1)[1], Vec4(1, 1, 0, 1));
-  EXPECT_EQ(default_uv_map(*mesh), find_attribute(*mesh, "uv"));
-  EXPECT_EQ(find_attribute(*mesh, "no"), nullptr);
+  EXPECT_EQ(geometry::interpolate(shading::value("p", 1), Vec2(0.5f, 0.25f)).x, 0.5f * 2 + 0.25f * 3);
+  EXPECT_EQ(shading::value("f", 0)[2], Vec4(4, 5, 6, 1));
+  EXPECT_EQ(shading::value("uv", 1)[1], Vec4(1, 1, 0, 1));
+  EXPECT_EQ(geometry::default_uv_map(*mesh), geometry::find_attribute(*mesh, "uv"));
+  EXPECT_EQ(geometry::find_attribute(*mesh, "no"), nullptr);
 }
 
 TEST(Mesh, DefaultUvMapIsTheNamedOne) {
@@ -82,7 +82,7 @@ TEST(Mesh, GeneratedCoordinatesFillTheTextureSpace) {
   EXPECT_EQ(geometry::generated_at(*geometry::make_mesh(quad.make()), 0, Vec2(0, 1)), Vec3(1, 1, 1));
 }
 
-std::shared_ptr<const Snapshot> commit_quad(Scene* scene, const GradusMesh& mesh, const Mat4& matrix,
+std::shared_ptr<const scene::Snapshot> commit_quad(scene::Scene* scene, const GradusMesh& mesh, const Mat4& matrix,
                                             const Mat4& previous, const Mat4& next) {
   scene->set_mesh(1, mesh);
   const uint64_t key = 1;
@@ -98,8 +98,8 @@ std::shared_ptr<const Snapshot> commit_quad(Scene* scene, const GradusMesh& mesh
   return scene->snapshot();
 }
 
-Hit hit_at(const Vec2& barycentric) {
-  Hit hit;
+geometry::Hit hit_at(const Vec2& barycentric) {
+  geometry::Hit hit;
   hit.instance = 0;
   hit.triangle = 0;
   hit.barycentric = barycentric;
@@ -117,10 +117,10 @@ TEST(C1_SurfaceMotion, DeformationAndMatrices) {
   const float times[3] = {-1, 0, 1};
   quad.desc.key_count = 3;
   quad.desc.key_times = times;
-  Scene scene(test_device());
+  scene::Scene scene(test_device());
   const auto snapshot = commit_quad(&scene, quad.make(), Mat4(1.0f), translation(Vec3(-0.1f, 0, 0)),
                                     translation(Vec3(0.2f, 0, 0)) * scaling(Vec3(2, 1, 1)));
-  const Hit hit = hit_at(Vec2(0.25f, 0.5f));  // at (0.75, 0.5)
+  const geometry::Hit hit = hit_at(Vec2(0.25f, 0.5f));  // at (0.75, 0.5)
   const Vec3 now = snapshot->surface_point(hit).position;
   const Vec3 before = snapshot->position_at(hit, Moment::Previous), after = snapshot->position_at(hit, Moment::Next);
   EXPECT_LT(glm::length(now - Vec3(0.75f, 0.5f, 0)), 1e-6f);
@@ -130,11 +130,11 @@ TEST(C1_SurfaceMotion, DeformationAndMatrices) {
 
 TEST(C1_SurfaceMotion, AtRestItIsExactlyTheSamePosition) {
   Quad quad;
-  Scene scene(test_device());
+  scene::Scene scene(test_device());
   const Mat4 matrix = translation(Vec3(0.1f, 0.7f, -0.3f)) * scaling(Vec3(1.3f, 0.9f, 1.0f));
   const auto snapshot = commit_quad(&scene, quad.make(), matrix, matrix, matrix);
   for (int i = 0; i < 100; ++i) {
-    const Hit hit = hit_at(Vec2(0.37f, 0.005f * float(i)));
+    const geometry::Hit hit = hit_at(Vec2(0.37f, 0.005f * float(i)));
     EXPECT_EQ(snapshot->position_at(hit, Moment::Previous), snapshot->position_at(hit, Moment::Next));
     EXPECT_EQ(snapshot->position_at(hit, Moment::Next), snapshot->surface_point(hit).position);
   }
@@ -146,7 +146,7 @@ TEST(SurfacePoint, NormalsByCornerAreInterpolatedAndBrokenOnesReplaced) {
               broken[12] = {nan, 0, 1, 0, 0, 0, 0, nan, nan, 0, 0, 0};
   Quad quad;
   quad.desc.normal_domain = GRADUS_DOMAIN_CORNER;
-  Scene scene(test_device());
+  scene::Scene scene(test_device());
   quad.desc.normals = smooth;
   auto snapshot = commit_quad(&scene, quad.make(), Mat4(1.0f), Mat4(1.0f), Mat4(1.0f));
   const Vec3 n = snapshot->surface_point(hit_at(Vec2(0.25f, 0.5f))).shading_normal;
@@ -162,7 +162,7 @@ TEST(SurfacePoint, CornersWithoutANormalHaveThatOfTheirVertex) {
   Quad quad;
   quad.desc.normal_domain = GRADUS_DOMAIN_CORNER;
   quad.desc.normals = some;
-  Scene scene(test_device());
+  scene::Scene scene(test_device());
   const auto snapshot = commit_quad(&scene, quad.make(), Mat4(1.0f), Mat4(1.0f), Mat4(1.0f));
   EXPECT_LT(glm::length(snapshot->surface_point(hit_at(Vec2(0.5f, 0.0f))).shading_normal - Vec3(0, 0, 1)), 1e-6f);
   EXPECT_GT(snapshot->surface_point(hit_at(Vec2(0, 0.9f))).shading_normal.y, 0.5f);

@@ -78,7 +78,7 @@ TEST_F(Rays4Test, ReachEmittersOfAllKindsAsOneShadowRayDoes) {
         geometry::lanes(view[0].direction, view[1].direction, view[2].direction, view[3].direction);
     const geometry::Lanes distance{view[0].distance, view[1].distance, view[2].distance, view[3].distance};
     const geometry::Rays4 rays =
-        rays_to_light(geometry::offset_origins(points, direction), points, direction, distance, light_point);
+        light::rays_to_light(geometry::offset_origins(points, direction), points, direction, distance, light_point);
     for (int i = 0; i < 4; ++i) {
       const Ray one =
           light::ray_to_light(geometry::offset_origin(from[i], view[i].direction), from[i], light_point, view[i]);

@@ -33,7 +33,7 @@ std::vector<GradusLight> random_lights(std::mt19937& random, int count, bool dir
 }
 
 // Lights of all kinds, an emissive sphere, a world.
-std::shared_ptr<const Snapshot> mixed_scene(int analytic_lights) {
+std::shared_ptr<const scene::Snapshot> mixed_scene(int analytic_lights) {
   std::mt19937 random(11);
   TestScene scene;
   scene.lights(random_lights(random, analytic_lights, false));
@@ -61,13 +61,13 @@ TEST(A4_LightDensity, SampledPointsHaveADensity) {
     const float choice = u(random), x = u(random), y = u(random);
     light::LightPoint point;
     light::LightEvaluation at_once;
-    sample_light_point(*snapshot, receiver, choice, Vec2(x, y), &point, &at_once);
+    light::sample_light_point(*snapshot, receiver, choice, Vec2(x, y), &point, &at_once);
     if (point.kind == light::LightKind::None) continue;
-    const light::LightEvaluation view = evaluate_light(*snapshot, point, receiver);
+    const light::LightEvaluation view = light::evaluate_light(*snapshot, point, receiver);
     ++sampled;
     without += !(view.pdf > 0.0f);
     EXPECT_EQ(view.pdf, at_once.pdf);
-    EXPECT_EQ(view.pdf, light_point_pdf(*snapshot, point, receiver));
+    EXPECT_EQ(view.pdf, light::light_point_pdf(*snapshot, point, receiver));
     EXPECT_GE(view.pdf, 0.0f);
   }
   EXPECT_GT(sampled, 50000);
@@ -87,12 +87,12 @@ TEST(A4_LightDensity, PointsMetByRaysHaveTheSameDensity) {
     const float choice = u(random), x = u(random);
     light::LightPoint point;
     light::LightEvaluation sampled_view;
-    sample_light_point(*snapshot, receiver, choice, Vec2(x, u(random)), &point, &sampled_view);
+    light::sample_light_point(*snapshot, receiver, choice, Vec2(x, u(random)), &point, &sampled_view);
     if (point.kind != light::LightKind::AnalyticLight || point.dirac) continue;
-    const light::LightEvaluation view = evaluate_light(*snapshot, point, receiver);
+    const light::LightEvaluation view = light::evaluate_light(*snapshot, point, receiver);
     if (!(view.pdf > 0.0f)) continue;
-    std::vector<LightHit> hits;
-    intersect_lights(*snapshot, {receiver.position, 0.0f, view.direction, kInfinity}, &hits);
+    std::vector<light::LightHit> hits;
+    light::intersect_lights(*snapshot, {receiver.position, 0.0f, view.direction, kInfinity}, &hits);
     const light::LightHit* met = nullptr;
     for (size_t k = 0; k < hits.size(); ++k) {
       if (hits[k].point.index == point.index) met = &hits[k];
@@ -105,7 +105,7 @@ TEST(A4_LightDensity, PointsMetByRaysHaveTheSameDensity) {
       ++missed;
       continue;
     }
-    const light::LightEvaluation again = evaluate_light(*snapshot, met->point, receiver);
+    const light::LightEvaluation again = light::evaluate_light(*snapshot, met->point, receiver);
     different += std::fabs(again.pdf - view.pdf) > 1e-4f * view.pdf;
     if (view.distance != kInfinity)
       displaced += std::fabs(met->distance - view.distance) > 1e-3f * view.distance + 1e-4f;
@@ -123,11 +123,11 @@ TEST(A4_LightDensity, TriangleMetByRay) {
   for (int i = 0; i < 1000; ++i) {
     const light::Receiver receiver{Vec3(0, 0, 3), Vec3(0, 0, -1), true};
     const Vec3 direction = glm::normalize(Vec3(2, 1, 0) + 0.5f * random_direction(random) - receiver.position);
-    Hit hit;
+    geometry::Hit hit;
     if (!snapshot->intersect({receiver.position, 0.0f, direction, kInfinity}, GRADUS_VISIBLE_CAMERA, &hit)) continue;
-    const light::LightPoint point = light_point_of_surface(*snapshot, snapshot->surface_point(hit));
+    const light::LightPoint point = light::light_point_of_surface(*snapshot, snapshot->surface_point(hit));
     ASSERT_EQ(point.kind, light::LightKind::Triangle);
-    const light::LightEvaluation view = evaluate_light(*snapshot, point, receiver);
+    const light::LightEvaluation view = light::evaluate_light(*snapshot, point, receiver);
     EXPECT_GT(view.pdf, 0.0f);
     EXPECT_NEAR(view.radiance.x, 5.0f, 1e-5f);
     EXPECT_NEAR(view.distance, hit.t, 1e-4f);
@@ -135,7 +135,7 @@ TEST(A4_LightDensity, TriangleMetByRay) {
     geometry::SurfacePoint from;
     from.position = receiver.position;
     from.geometric_normal = receiver.normal;
-    EXPECT_FALSE(snapshot->occluded(ray_to_light(offset_origin(from, view.direction), from, point, view)));
+    EXPECT_FALSE(snapshot->occluded(light::ray_to_light(geometry::offset_origin(from, view.direction), from, point, view)));
     ++met;
   }
   EXPECT_GT(met, 500);
@@ -170,18 +170,18 @@ TEST(A4_LightChoice, MemoChangesNoBit) {
       for (const bool transmits : {false, true}) {
         receiver.normal *= side;
         receiver.transmits = transmits;
-        Receiver with_memo = receiver;
+        light::Receiver with_memo = receiver;
         with_memo.memo = &memo;
         const float choice = uniform(random);
         const Vec2 u(uniform(random), uniform(random));
-        LightPoint point, same_point;
-        LightEvaluation view, same_view;
-        sample_light_point(*snapshot, receiver, choice, u, &point, &view);
-        sample_light_point(*snapshot, with_memo, choice, u, &same_point, &same_view);
+        light::LightPoint point, same_point;
+        light::LightEvaluation view, same_view;
+        light::sample_light_point(*snapshot, receiver, choice, u, &point, &view);
+        light::sample_light_point(*snapshot, with_memo, choice, u, &same_point, &same_view);
         ASSERT_EQ(point.kind, same_point.kind);
         ASSERT_EQ(point.index, same_point.index);
         ASSERT_EQ(view.pdf, same_view.pdf);
-        ASSERT_EQ(light_point_pdf(*snapshot, point, receiver), light_point_pdf(*snapshot, point, with_memo));
+        ASSERT_EQ(light::light_point_pdf(*snapshot, point, receiver), light::light_point_pdf(*snapshot, point, with_memo));
       }
     }
   }
@@ -235,14 +235,14 @@ TEST(E4_ManyLights, TreeBeatsUniformChoice) {
       return double(d.z) / std::pow(double(glm::dot(d, d)), 1.5);
     };
     double exact = 0.0, squares = 0.0;
-    for (uint32_t i = 0; i < 10000; ++i) exact += value(i), squares += value(i) * value(i);
+    for (uint32_t i = 0; i < 10000; ++i) exact += shading::value(i), squares += shading::value(i) * shading::value(i);
     double mean = 0.0, second = 0.0;
     constexpr int kCount = 2000;
     for (int i = 0; i < kCount; ++i) {
       light::LightPoint point;
       light::LightEvaluation sampled_view;
-      sample_light_point(*snapshot, receiver, v(random), Vec2(0.5f), &point, &sampled_view);
-      const light::LightEvaluation view = evaluate_light(*snapshot, point, receiver);
+      light::sample_light_point(*snapshot, receiver, v(random), Vec2(0.5f), &point, &sampled_view);
+      const light::LightEvaluation view = light::evaluate_light(*snapshot, point, receiver);
       const double x = view.radiance.x * view.direction.z / view.pdf;
       mean += x / kCount;
       second += x * x / kCount;
@@ -257,7 +257,7 @@ TEST(E4_ManyLights, TreeBeatsUniformChoice) {
 }
 
 // A hundred thousand triangles: little balls that float in a room, their materials of three strengths.
-std::shared_ptr<const Snapshot> shining_balls(std::mt19937* random) {
+std::shared_ptr<const scene::Snapshot> shining_balls(std::mt19937* random) {
   std::uniform_real_distribution<float> x(-5.0f, 5.0f), z(0.5f, 3.0f), radius(0.02f, 0.1f);
   TestScene scene;
   for (uint64_t kind = 0; kind < 3; ++kind) {
@@ -296,17 +296,17 @@ struct Spread {
 };
 
 // Irradiance without shadows, by one triangle among all alike and a point on it.
-double by_uniform_choice(const Snapshot& snapshot, const light::Receiver& receiver, std::mt19937* random) {
+double by_uniform_choice(const scene::Snapshot& snapshot, const light::Receiver& receiver, std::mt19937* random) {
   std::uniform_real_distribution<float> u(0.0f, 0.9999999f);
-  const std::vector<EmissiveTriangle>& all = snapshot.light_table->triangles;
+  const std::vector<light::EmissiveTriangle>& all = snapshot.light_table->triangles;
   const light::EmissiveTriangle& triangle = all[size_t(u(*random) * float(all.size()))];
   const float root = std::sqrt(u(*random));
-  Hit hit;
+  geometry::Hit hit;
   hit.instance = triangle.instance;
   hit.triangle = triangle.triangle;
   hit.barycentric = Vec2(1.0f - root, u(*random) * root);
-  const light::LightPoint point = light_point_of_surface(snapshot, snapshot.surface_point(hit));
-  const light::LightEvaluation view = evaluate_light(snapshot, point, receiver);
+  const light::LightPoint point = light::light_point_of_surface(snapshot, snapshot.surface_point(hit));
+  const light::LightEvaluation view = light::evaluate_light(snapshot, point, receiver);
   const double cosine = std::max(double(glm::dot(receiver.normal, view.direction)), 0.0);
   return view.radiance.x * cosine * double(view.cosine) * double(triangle.area) * double(all.size()) /
          (double(view.distance) * double(view.distance));
@@ -326,7 +326,7 @@ TEST(E4_ManyLights, HundredThousandTrianglesAreBetterChosenThanUniformly) {
       light::LightPoint point;
       light::LightEvaluation view;
       const Vec2 at(u(random), u(random));
-      sample_light_point(*snapshot, receiver, u(random), at, &point, &view);
+      light::sample_light_point(*snapshot, receiver, u(random), at, &point, &view);
       by_tree.add(view.pdf > 0.0f ? double(view.radiance.x * std::max(view.direction.z, 0.0f) / view.pdf) : 0.0);
     }
     for (int i = 0; i < 100000; ++i) by_chance.add(by_uniform_choice(*snapshot, receiver, &random));

@@ -18,32 +18,32 @@ using gradus::testing::chi_square_sphere;
 using gradus::testing::ChiSquareOptions;
 using gradus::testing::ChiSquareResult;
 
-double density(const Snapshot& snapshot, const light::Receiver& receiver, const Vec3& direction) {
+double density(const scene::Snapshot& snapshot, const light::Receiver& receiver, const Vec3& direction) {
   double sum = 0.0;
   const Ray ray{receiver.position, 0.0f, direction, kInfinity};
-  std::vector<LightHit> hits;
-  intersect_lights(snapshot, ray, &hits);
-  for (const LightHit& met : hits) sum += light_point_pdf(snapshot, met.point, receiver);
-  sum += light_point_pdf(snapshot, light_point_of_world(snapshot, direction), receiver);
+  std::vector<light::LightHit> hits;
+  light::intersect_lights(snapshot, ray, &hits);
+  for (const light::LightHit& met : hits) sum += light::light_point_pdf(snapshot, met.point, receiver);
+  sum += light::light_point_pdf(snapshot, light::light_point_of_world(snapshot, direction), receiver);
   // All surfaces on the ray: light sampling does not know which is in front.
   Ray rest = ray;
   geometry::Hit hit;
   for (int i = 0; i < 16 && snapshot.intersect(rest, GRADUS_VISIBLE_CAMERA, &hit); ++i) {
     const SurfacePoint point = snapshot.surface_point(hit);
-    const LightPoint light_point = light_point_of_surface(snapshot, point);
-    if (light_point.kind != LightKind::None) sum += light_point_pdf(snapshot, light_point, receiver);
-    rest.origin = offset_origin(point, direction);
+    const light::LightPoint light_point = light::light_point_of_surface(snapshot, point);
+    if (light_point.kind != light::LightKind::None) sum += light::light_point_pdf(snapshot, light_point, receiver);
+    rest.origin = geometry::offset_origin(point, direction);
   }
   return sum;
 }
 
-void expect_matching(const Snapshot& snapshot, const light::Receiver& receiver, const Vec3& axis, uint32_t seed) {
+void expect_matching(const scene::Snapshot& snapshot, const light::Receiver& receiver, const Vec3& axis, uint32_t seed) {
   const auto sample = [&](const Vec2& u, const Vec2& v, Vec3* direction) {
     light::LightPoint point;
     light::LightEvaluation sampled_view;
-    sample_light_point(snapshot, receiver, v.x, u, &point, &sampled_view);
+    light::sample_light_point(snapshot, receiver, v.x, u, &point, &sampled_view);
     if (point.kind == light::LightKind::None) return false;
-    const light::LightEvaluation view = evaluate_light(snapshot, point, receiver);
+    const light::LightEvaluation view = light::evaluate_light(snapshot, point, receiver);
     *direction = view.direction;
     return view.pdf > 0.0f;
   };
@@ -160,7 +160,7 @@ void set_sky(TestScene* scene, float size, float elevation, float scale = 1.0f) 
 TEST(A3_EnvironmentSampling, SkyWithSun) {
   // The rim of the sampled cone, which is a little wider than the disc, lies between rows of the test's grid.
   const auto size_of = [](float rows) { return 2.0f * (rows * kPi / 80.0f - 1e-5f) / 1.001f; };
-  const std::pair<float, float> suns[] = {{size_of(3.0f), 0.6f}, {size_of(14.0f), 0.05f}};  // size, elevation
+  const std::pair<float, float> suns[] = {{schema::size_of(3.0f), 0.6f}, {schema::size_of(14.0f), 0.05f}};  // size, elevation
   for (const auto& [size, elevation] : suns) {
     TestScene scene;
     set_sky(&scene, size, elevation);
@@ -176,7 +176,7 @@ TEST(A3_EnvironmentSampling, SkyWithSun) {
 
 // Too small for the cells of the chi-square test: what is estimated with the density must be the sky's light, with
 // little noise.
-void expect_light(const Snapshot& snapshot, float noise) {
+void expect_light(const scene::Snapshot& snapshot, float noise) {
   const light::Receiver receiver{Vec3(0.0f), Vec3(0, 0, 1), false};
   std::mt19937 random(1);
   std::uniform_real_distribution<float> uniform(0.0f, 0.9999999f);
@@ -186,7 +186,7 @@ void expect_light(const Snapshot& snapshot, float noise) {
     light::LightPoint point;
     light::LightEvaluation view;
     const Vec2 u(uniform(random), uniform(random));
-    sample_light_point(snapshot, receiver, uniform(random), u, &point, &view);
+    light::sample_light_point(snapshot, receiver, uniform(random), u, &point, &view);
     const double x = view.pdf > 0.0f ? double(view.radiance.x * std::max(view.direction.z, 0.0f) / view.pdf) : 0.0;
     sum += x;
     squares += x * x;
@@ -196,7 +196,7 @@ void expect_light(const Snapshot& snapshot, float noise) {
     for (int x = 0; x < 2000; ++x) {
       const float z = (float(y) + 0.5f) / 500.0f, phi = 2.0f * kPi * (float(x) + 0.5f) / 2000.0f,
                   s = std::sqrt(1.0f - z * z);
-      grid += double(z * shade_world(snapshot, Vec3(s * std::cos(phi), s * std::sin(phi), z), RayState()).x) * 2.0 *
+      grid += double(z * shading::shade_world(snapshot, Vec3(s * std::cos(phi), s * std::sin(phi), z), RayState()).x) * 2.0 *
               double(kPi) / 1e6;
     }
   const double mean = sum / kCount, deviation = std::sqrt(squares / kCount - mean * mean);

@@ -9,10 +9,10 @@
 namespace gradus::test {
 namespace {
 
-const Mat4 kDown(1.0f);  // shines along -Z
+const Mat4 film::kDown(1.0f);  // shines along -Z
 
 // Looking up from the origin. Mean of radiance·cos/pdf (Dirac: ·cos/choice).
-double irradiance(const Snapshot& snapshot, const light::Receiver& receiver, int count = 20000) {
+double irradiance(const scene::Snapshot& snapshot, const light::Receiver& receiver, int count = 20000) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> uniform(0.0f, 0.9999999f);
   double sum = 0.0;
@@ -20,9 +20,9 @@ double irradiance(const Snapshot& snapshot, const light::Receiver& receiver, int
     const float choice = uniform(random), x = uniform(random);
     light::LightPoint point;
     light::LightEvaluation sampled_view;
-    sample_light_point(snapshot, receiver, choice, Vec2(x, uniform(random)), &point, &sampled_view);
+    light::sample_light_point(snapshot, receiver, choice, Vec2(x, uniform(random)), &point, &sampled_view);
     if (point.kind == light::LightKind::None) continue;
-    const light::LightEvaluation view = evaluate_light(snapshot, point, receiver);
+    const light::LightEvaluation view = light::evaluate_light(snapshot, point, receiver);
     const float cosine = glm::dot(receiver.normal, view.direction);
     if (view.pdf > 0.0f && cosine > 0.0f) sum += view.radiance.x * cosine / view.pdf;
   }
@@ -87,7 +87,7 @@ TEST(LightUnits, NegativeLightsTakeAwayAndHugeOnesStayPositive) {
 }
 
 TEST(LightUnits, SpotBlendAndExtraCosine) {
-  GradusLight light = make_light(GRADUS_LIGHT_SPOT, translation(Vec3(0, 0, 2)) * kDown, Rgb(3.0f));
+  GradusLight light = make_light(GRADUS_LIGHT_SPOT, translation(Vec3(0, 0, 2)) * film::kDown, Rgb(3.0f));
   light.cone = 1.0f;
   light.blend = 0.5f;
   EXPECT_NEAR(irradiance_of(light), 3.0 / 4.0, 1e-5);
@@ -103,7 +103,7 @@ TEST(LightUnits, SpotBlendAndExtraCosine) {
 }
 
 TEST(LightUnits, SunWithAndWithoutAngle) {
-  GradusLight light = make_light(GRADUS_LIGHT_SUN, kDown, Rgb(2.0f));
+  GradusLight light = make_light(GRADUS_LIGHT_SUN, film::kDown, Rgb(2.0f));
   EXPECT_NEAR(irradiance_of(light), 2.0, 1e-5);
   light.angle = 0.5f;
   EXPECT_NEAR(irradiance_of(light), 2.0, 2e-3);
@@ -144,7 +144,7 @@ TEST(LightUnits, AreaIsDarkFromBehind) {
 // Flux through a hemisphere around a small light does not depend on the spread.
 TEST(LightUnits, SpreadKeepsTheFlux) {
   for (const float spread : {0.5f, 2.0f, kPi}) {
-    GradusLight light = make_light(GRADUS_LIGHT_RECTANGLE, kDown, Rgb(1.0f));
+    GradusLight light = make_light(GRADUS_LIGHT_RECTANGLE, film::kDown, Rgb(1.0f));
     light.size[0] = light.size[1] = 0.02f;
     light.spread = spread;
     TestScene scene;
