@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "film/read_pixels.h"
 #include "film/features.h"
 #include "film/pass_planes.h"
 #include "gradient/gradient_integrator.h"
@@ -16,6 +17,15 @@
 
 namespace gradus {
 namespace {
+
+// Returns the estimated variance of the mean of each pixel and channel.
+std::vector<float> read_variance(const film::Film& film) {
+  const auto height = film.region.height();
+  const size_t row = size_t(film.region.width()) * size_t(film.channels);
+  std::vector<float> variance(row * size_t(height));
+  for (int y = 0; y < height; ++y) film::read_variance_row(film, y, variance.data() + size_t(y) * row);
+  return variance;
+}
 
 using test::Scenario;
 

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 FOLDERS = (
-    "base", "schema", "image", "geometry", "camera", "bsdf", "medium", "shading", "light", "scene", "lpe", "film",
+    "base", "schema", "image", "compare", "geometry", "camera", "bsdf", "medium", "shading", "light", "scene", "lpe", "film",
     "film_io", "path", "integrator", "gradient", "reconstruct", "motion", "output", "render", "animation", "api",
 )  # fmt: skip
 ENDINGS = {".h", ".hpp", ".cpp", ".c"}
@@ -48,7 +48,8 @@ def problems_of(path: Path, source: Path) -> Iterator[str]:
         elif target not in allowed:
             yield f"{name}: {folder}/ may not include {included}: {target}/ is below it"
     opened = {match or "base" for match in NAMESPACE.findall(without_comments(text))}
-    if folder not in opened and not (path.suffix == ".c" or 'extern "C"' in text):
+    defines_c_api = path.suffix == ".c" or folder == "api" or 'extern "C"' in text
+    if folder not in opened and not defines_c_api:
         yield f"{name}: declares nothing in namespace {'gradus' if folder == 'base' else f'gradus::{folder}'}"
     for other in sorted(opened - set(allowed)):
         yield f"{name}: opens namespace gradus::{other}, which is not above {folder}/"

@@ -13,8 +13,6 @@ namespace gradus::scene {
 class Scene;
 }  // namespace gradus::scene
 
-namespace gradus {}
-
 namespace gradus::api {
 
 // Kinds of records, in the order in which a file holds and a reader sets them.

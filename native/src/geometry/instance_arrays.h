@@ -4,12 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "base/hash.h"
 #include "base/types.h"
 #include "gradus/gradus.h"
-
-namespace gradus {
-class ContentHash;
-}  // namespace gradus
 
 namespace gradus::geometry {
 

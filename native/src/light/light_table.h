@@ -4,13 +4,11 @@
 #include <memory>
 #include <vector>
 
+#include "base/commit_monitor.h"
 #include "light/analytic_light.h"
 #include "light/environment.h"
 #include "light/light_tree.h"
 
-namespace gradus {
-class CommitMonitor;
-}  // namespace gradus
 
 namespace gradus::light {
 

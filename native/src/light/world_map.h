@@ -4,11 +4,9 @@
 #include <memory>
 #include <vector>
 
+#include "base/commit_monitor.h"
 #include "light/environment.h"
 
-namespace gradus {
-class CommitMonitor;
-}  // namespace gradus
 namespace gradus::image {
 class Image;
 }  // namespace gradus::image

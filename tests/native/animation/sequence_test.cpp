@@ -12,6 +12,7 @@
 #include <tbb/global_control.h>
 
 #include "animation/frame_developer.h"
+#include "base/threads.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "sequence_fixture.h"

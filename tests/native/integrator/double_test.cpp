@@ -62,7 +62,7 @@ TEST_P(B8_Strategies, WeightsSumToOne) {
     path::SampleKey key;
     key.index = i;
     const path::Sampler sampler(key, true);
-    const Vec2 film = Vec2(31.0f, 24.0f) * sampler.get2(dimension::kFilm);
+    const Vec2 film = Vec2(31.0f, 24.0f) * sampler.get2(path::dimension::kFilm);
     path::LightSample light;
     if (!camera_vertex(path, sampler, film, &x) || !camera_vertex(path, sampler, film + Vec2(1, 0), &y)) continue;
     if (!path::sample_light(path, sampler.vertex(0), x, 0, &light) || light.point.dirac) continue;

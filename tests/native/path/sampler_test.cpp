@@ -36,13 +36,13 @@ TEST(L4_Sampler, VertexHoldsTheBlocksOfItsDepth) {
   for (const bool independent : {false, true}) {
     for (int depth = 0; depth < 40; ++depth) {
       const path::Sampler sampler(key_of(7, 123, static_cast<uint32_t>(3 * depth)), independent);
-      const uint32_t first = dimension::kFirstVertex + static_cast<uint32_t>(depth) * dimension::kPerVertex;
+      const uint32_t first = path::dimension::kFirstVertex + static_cast<uint32_t>(depth) * path::dimension::kPerVertex;
       const path::VertexSample u = sampler.vertex(depth);
-      EXPECT_EQ(u.bsdf, sampler.get2(first + dimension::kBsdf));
-      EXPECT_EQ(u.lobe, sampler.get2(first + dimension::kLobe));
-      EXPECT_EQ(u.light, sampler.get2(first + dimension::kLight));
-      EXPECT_EQ(u.light_choice, sampler.get2(first + dimension::kLightChoice));
-      EXPECT_EQ(u.roulette, sampler.get2(first + dimension::kRoulette));
+      EXPECT_EQ(u.bsdf, sampler.get2(first + path::dimension::kBsdf));
+      EXPECT_EQ(u.lobe, sampler.get2(first + path::dimension::kLobe));
+      EXPECT_EQ(u.light, sampler.get2(first + path::dimension::kLight));
+      EXPECT_EQ(u.light_choice, sampler.get2(first + path::dimension::kLightChoice));
+      EXPECT_EQ(u.roulette, sampler.get2(first + path::dimension::kRoulette));
     }
   }
 }

@@ -99,7 +99,7 @@ TEST(Partition, NoPartIsWrongByMoreThanItsSamples) {
   for_values(&image.mean, [](float& value, int x, int y, int) { value += (x / 3 + y / 3) % 2 == 0 ? 4.0f : 0.5f; });
   const reconstruct::PictureTerm term = reconstruct::regress_term(flat_features(), image, kNever);
   const reconstruct::Field noise = reconstruct::box_mean(
-      make_field(kWidth, kHeight,
+      reconstruct::make_field(kWidth, kHeight,
                  [&](int x, int y) { return reconstruct::mean_of_squares(image.half_difference, x, y); }),
       1);
   for (int y = 0; y < kHeight; ++y) {

@@ -11,7 +11,7 @@ namespace {
 constexpr int kSize = 5, kCentre = 2;
 
 reconstruct::Field constant(float value) {
-  return make_field(kSize, kSize, [value](int, int) { return value; });
+  return reconstruct::make_field(kSize, kSize, [value](int, int) { return value; });
 }
 
 // The centre, after it took its share.

@@ -137,7 +137,7 @@ TEST(B2_RoundedDisplacements, AreInTheRegressedChange) {
   sources.push_back(std::make_unique<Way>(0.375f, false));
   const film::Features features =
       reconstruct::filter_features(film::read_features(make_feature_film(test::room(kWidth, kHeight), 3)));
-  const motion::Change change =
+  const reconstruct::Change change =
       reconstruct::regress_change(sources, 0, {picture_at(0.0f)}, features, 2.0f, [] { return false; });
   double error = 0.0, squares = 0.0;
   std::vector<float> truth(3 * kWidth);
@@ -164,7 +164,7 @@ TEST(B2_RoundedDisplacements, AreNotInAChangeThatWasNotSampled) {
   sources.push_back(std::make_unique<StaticLight>(0.375f, false));
   const film::Features features =
       reconstruct::filter_features(film::read_features(make_feature_film(test::room(kWidth, kHeight), 3)));
-  const motion::Change change =
+  const reconstruct::Change change =
       reconstruct::regress_change(sources, 0, {picture_at(0.0f)}, features, 2.0f, [] { return false; });
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) EXPECT_EQ(change.difference[0].row(y, 1)[x], 0.0f);

@@ -282,7 +282,7 @@ TEST(B2_SpaceTime, SmoothingOfSharesKeepsSumsAndShares) {
   reconstruct::Frames values = system.make_fields(2);
   double sum = 0.0, kept = 0.0;
   for (int t = 0; t < frames; ++t) {
-    reconstruct::Field light = make_field(w, h, [&](int, int) { return std::exp(normal(random)); });
+    reconstruct::Field light = reconstruct::make_field(w, h, [&](int, int) { return std::exp(normal(random)); });
     for_values(&values[size_t(t)],
                [&](float& value, int x, int y, int c) { value = c == 0 ? normal(random) : 0.3f * light.row(y)[x]; });
     sum += sum_rows(h, 1, [&](int y, int) {
