@@ -17,7 +17,7 @@ namespace {
 
 struct CauseInfo {
   const char* name;
-  uint64_t Counters::*count;
+  uint64_t film::Counters::*count;
 };
 constexpr CauseInfo kCauseInfo[kCauses] = {
     {"missed", &film::Counters::fail_missed},    {"occluded", &film::Counters::fail_occluded},

@@ -53,9 +53,9 @@ TEST(Mesh, AttributesOfAllDomains) {
   const auto value = [&](const char* name, uint32_t triangle) {
     return geometry::corner_values(*mesh, *geometry::find_attribute(*mesh, name), triangle);
   };
-  EXPECT_EQ(geometry::interpolate(shading::value("p", 1), Vec2(0.5f, 0.25f)).x, 0.5f * 2 + 0.25f * 3);
-  EXPECT_EQ(shading::value("f", 0)[2], Vec4(4, 5, 6, 1));
-  EXPECT_EQ(shading::value("uv", 1)[1], Vec4(1, 1, 0, 1));
+  EXPECT_EQ(geometry::interpolate(value("p", 1), Vec2(0.5f, 0.25f)).x, 0.5f * 2 + 0.25f * 3);
+  EXPECT_EQ(value("f", 0)[2], Vec4(4, 5, 6, 1));
+  EXPECT_EQ(value("uv", 1)[1], Vec4(1, 1, 0, 1));
   EXPECT_EQ(geometry::default_uv_map(*mesh), geometry::find_attribute(*mesh, "uv"));
   EXPECT_EQ(geometry::find_attribute(*mesh, "no"), nullptr);
 }

@@ -235,7 +235,7 @@ TEST(E4_ManyLights, TreeBeatsUniformChoice) {
       return double(d.z) / std::pow(double(glm::dot(d, d)), 1.5);
     };
     double exact = 0.0, squares = 0.0;
-    for (uint32_t i = 0; i < 10000; ++i) exact += shading::value(i), squares += shading::value(i) * shading::value(i);
+    for (uint32_t i = 0; i < 10000; ++i) exact += value(i), squares += value(i) * value(i);
     double mean = 0.0, second = 0.0;
     constexpr int kCount = 2000;
     for (int i = 0; i < kCount; ++i) {

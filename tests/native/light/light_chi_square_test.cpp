@@ -29,7 +29,7 @@ double density(const scene::Snapshot& snapshot, const light::Receiver& receiver,
   Ray rest = ray;
   geometry::Hit hit;
   for (int i = 0; i < 16 && snapshot.intersect(rest, GRADUS_VISIBLE_CAMERA, &hit); ++i) {
-    const SurfacePoint point = snapshot.surface_point(hit);
+    const geometry::SurfacePoint point = snapshot.surface_point(hit);
     const light::LightPoint light_point = light::light_point_of_surface(snapshot, point);
     if (light_point.kind != light::LightKind::None) sum += light::light_point_pdf(snapshot, light_point, receiver);
     rest.origin = geometry::offset_origin(point, direction);
@@ -160,7 +160,7 @@ void set_sky(TestScene* scene, float size, float elevation, float scale = 1.0f) 
 TEST(A3_EnvironmentSampling, SkyWithSun) {
   // The rim of the sampled cone, which is a little wider than the disc, lies between rows of the test's grid.
   const auto size_of = [](float rows) { return 2.0f * (rows * kPi / 80.0f - 1e-5f) / 1.001f; };
-  const std::pair<float, float> suns[] = {{schema::size_of(3.0f), 0.6f}, {schema::size_of(14.0f), 0.05f}};  // size, elevation
+  const std::pair<float, float> suns[] = {{size_of(3.0f), 0.6f}, {size_of(14.0f), 0.05f}};  // size, elevation
   for (const auto& [size, elevation] : suns) {
     TestScene scene;
     set_sky(&scene, size, elevation);
@@ -196,7 +196,7 @@ void expect_light(const scene::Snapshot& snapshot, float noise) {
     for (int x = 0; x < 2000; ++x) {
       const float z = (float(y) + 0.5f) / 500.0f, phi = 2.0f * kPi * (float(x) + 0.5f) / 2000.0f,
                   s = std::sqrt(1.0f - z * z);
-      grid += double(z * shading::shade_world(snapshot, Vec3(s * std::cos(phi), s * std::sin(phi), z), RayState()).x) * 2.0 *
+      grid += double(z * shading::shade_world(snapshot, Vec3(s * std::cos(phi), s * std::sin(phi), z), shading::RayState()).x) * 2.0 *
               double(kPi) / 1e6;
     }
   const double mean = sum / kCount, deviation = std::sqrt(squares / kCount - mean * mean);

@@ -9,7 +9,7 @@
 namespace gradus::test {
 namespace {
 
-const Mat4 film::kDown(1.0f);  // shines along -Z
+const Mat4 kDown(1.0f);  // shines along -Z
 
 // Looking up from the origin. Mean of radiance·cos/pdf (Dirac: ·cos/choice).
 double irradiance(const scene::Snapshot& snapshot, const light::Receiver& receiver, int count = 20000) {
@@ -87,7 +87,7 @@ TEST(LightUnits, NegativeLightsTakeAwayAndHugeOnesStayPositive) {
 }
 
 TEST(LightUnits, SpotBlendAndExtraCosine) {
-  GradusLight light = make_light(GRADUS_LIGHT_SPOT, translation(Vec3(0, 0, 2)) * film::kDown, Rgb(3.0f));
+  GradusLight light = make_light(GRADUS_LIGHT_SPOT, translation(Vec3(0, 0, 2)) * kDown, Rgb(3.0f));
   light.cone = 1.0f;
   light.blend = 0.5f;
   EXPECT_NEAR(irradiance_of(light), 3.0 / 4.0, 1e-5);
@@ -103,7 +103,7 @@ TEST(LightUnits, SpotBlendAndExtraCosine) {
 }
 
 TEST(LightUnits, SunWithAndWithoutAngle) {
-  GradusLight light = make_light(GRADUS_LIGHT_SUN, film::kDown, Rgb(2.0f));
+  GradusLight light = make_light(GRADUS_LIGHT_SUN, kDown, Rgb(2.0f));
   EXPECT_NEAR(irradiance_of(light), 2.0, 1e-5);
   light.angle = 0.5f;
   EXPECT_NEAR(irradiance_of(light), 2.0, 2e-3);
@@ -144,7 +144,7 @@ TEST(LightUnits, AreaIsDarkFromBehind) {
 // Flux through a hemisphere around a small light does not depend on the spread.
 TEST(LightUnits, SpreadKeepsTheFlux) {
   for (const float spread : {0.5f, 2.0f, kPi}) {
-    GradusLight light = make_light(GRADUS_LIGHT_RECTANGLE, film::kDown, Rgb(1.0f));
+    GradusLight light = make_light(GRADUS_LIGHT_RECTANGLE, kDown, Rgb(1.0f));
     light.size[0] = light.size[1] = 0.02f;
     light.spread = spread;
     TestScene scene;
