@@ -63,12 +63,14 @@ def _rendered_layers(scene: Any, layer: str) -> list[Any]:
 
 def _shown_by(layer: Any) -> Iterator[Any]:
     """Objects that a view layer renders now. What hides a collection hides those inside, what excludes it does not."""
-    waiting = [(layer.layer_collection, False)]
+    # In Blender 5.2 a layer that was never shown has no collections of its own yet, and excludes none of the scene's.
+    waiting = [(layer.layer_collection or layer.id_data.collection, False)]
     while waiting:
         place, hidden = waiting.pop()
-        hidden = hidden or place.collection.hide_render
-        if not hidden and not place.exclude:
-            yield from (obj for obj in place.collection.objects if not obj.hide_render)
+        collection = getattr(place, "collection", place)
+        hidden = hidden or collection.hide_render
+        if not hidden and not getattr(place, "exclude", False):
+            yield from (obj for obj in collection.objects if not obj.hide_render)
         waiting += [(child, hidden) for child in place.children]
 
 
