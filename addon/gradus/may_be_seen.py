@@ -69,13 +69,15 @@ def _shown_by(layer: Any) -> Iterator[Any]:
 
     A hidden collection hides its child collections, while an excluded one does not exclude them.
     """
-    waiting = [(layer.layer_collection, False)]
+    # In Blender 5.2 a layer that was never shown has no collections of its own yet, and excludes none of the scene's.
+    waiting = [(layer.layer_collection or layer.id_data.collection, False)]
     while waiting:
-        layer_collection, hidden = waiting.pop()
-        hidden = hidden or layer_collection.collection.hide_render
-        if not hidden and not layer_collection.exclude:
-            yield from (obj for obj in layer_collection.collection.objects if not obj.hide_render)
-        waiting += [(child, hidden) for child in layer_collection.children]
+        place, hidden = waiting.pop()
+        collection = getattr(place, "collection", place)
+        hidden = hidden or collection.hide_render
+        if not hidden and not getattr(place, "exclude", False):
+            yield from (obj for obj in collection.objects if not obj.hide_render)
+        waiting += [(child, hidden) for child in place.children]
 
 
 def _affects_simulations(obj: Any) -> bool:

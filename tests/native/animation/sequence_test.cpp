@@ -807,7 +807,7 @@ TEST(I2_Sequence, AFolderThatCannotBeWrittenEndsTheRenderWithItsName) {
   const auto task = sequence->sample(pan.at(1), with_passes(settings_of(1)));
   task->run();
   std::string text;
-  EXPECT_EQ(task->outcome(&text), GRADUS_ERROR_UNKNOWN);
+  EXPECT_EQ(task->outcome(&text), GRADUS_ERROR_INVALID_OPERATION);
   EXPECT_NE(text.find("f+0000001.offset.exr"), std::string::npos) << text;
 }
 
