@@ -16,9 +16,10 @@ LINK = re.compile(r"\]\(([^)\s]+)\)|(?:src|href)=\"([^\"]+)\"")
 
 
 def sources() -> Iterator[tuple[Path, str]]:
+    """Yields all sources but the benchmark, which writes pages of its own to out/bench."""
     for folder in FOLDERS:
         for path in sorted((ROOT / folder).rglob("*")):
-            if path.suffix in ENDINGS and path.is_file():
+            if path.suffix in ENDINGS and path.is_file() and not path.is_relative_to(ROOT / "tools/bench"):
                 yield path.relative_to(ROOT), path.read_text()
 
 

@@ -44,7 +44,7 @@ def bias(settings: Any, samples: int) -> tuple[str, str]:
     if settings.denoiser == "AUTO" and samples >= DENOISER_PAYS:
         return "Biased if a denoiser is found", "INFO"
     if settings.clamp_direct > 0.0 or settings.clamp_indirect > 0.0:
-        return "Biased: light is clamped", "INFO"
+        return "Biased by clamping", "INFO"
     if settings.reconstruction in ("L1", "REGULARIZED") or (
         settings.reconstruction == "AUTO" and settings.integrator != "PATH"
     ):
