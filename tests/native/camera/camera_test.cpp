@@ -59,7 +59,7 @@ std::vector<BlenderCamera> all_cameras() {
   return cameras;
 }
 
-TEST(camera::Camera, ProjectsAsBlenderAndRaysGoBackThere) {
+TEST(Camera, ProjectsAsBlenderAndRaysGoBackThere) {
   std::mt19937 random(31);
   std::uniform_real_distribution<float> u(0.0f, 1.0f);
   for (const auto& [w, h] : {std::pair{640, 360}, std::pair{300, 500}})
@@ -90,7 +90,7 @@ TEST(camera::Camera, ProjectsAsBlenderAndRaysGoBackThere) {
     }
 }
 
-TEST(camera::Camera, RaysOfAFilmPointMeetOnThePlaneOfFocus) {
+TEST(Camera, RaysOfAFilmPointMeetOnThePlaneOfFocus) {
   for (const bool orthographic : {false, true}) {
     BlenderCamera blender;
     blender.orthographic = orthographic;
@@ -155,7 +155,7 @@ void expect_uniform_lens(uint32_t blades, float rotation, float ratio) {
 }
 
 // At each moment its rays are those of a camera that rests where it is then, with the window that it has then.
-TEST(camera::Camera, MovesAndZoomsWhileTheShutterIsOpen) {
+TEST(Camera, MovesAndZoomsWhileTheShutterIsOpen) {
   for (const bool orthographic : {false, true}) {
     BlenderCamera blender;
     blender.orthographic = orthographic;
@@ -187,7 +187,7 @@ TEST(camera::Camera, MovesAndZoomsWhileTheShutterIsOpen) {
 }
 
 // A camera was made of the first 129 keys, as if the shutter closed there, where meshes and instances refuse more.
-TEST(camera::Camera, RefusesMoreShutterKeysThanThereMayBe) {
+TEST(Camera, RefusesMoreShutterKeysThanThereMayBe) {
   GradusCamera moving = make_camera(BlenderCamera{}, 640, 360, kPose);
   const std::vector<Mat4> matrices(geometry::kMaxShutterKeys + 1, kPose);
   moving.shutter_matrices = &matrices[0][0][0];
