@@ -15,8 +15,8 @@ EXPORTED_MOTION = "addon/gradus/export/motion.py"
 EXPORTED_SHUTTER = "addon/gradus/export/shutter.py"
 EXPORTER = "addon/gradus/export/exporter.py"
 
-MOVED = "camera_sample_.moved(Vec2(kOffsetX[k], kOffsetY[k]))"
-MOVED_FILM = "camera_sample_.film + Vec2(kOffsetX[k], kOffsetY[k])"
+MOVED = "camera_sample_.moved(Vec2(film::kOffsetX[k], film::kOffsetY[k]))"
+MOVED_FILM = "camera_sample_.film + Vec2(film::kOffsetX[k], film::kOffsetY[k])"
 
 
 def blur(choice: str) -> Test:
@@ -75,8 +75,8 @@ MOTION = (
         MOMENT,
         "lamps are looked for at the opening of the shutter",
         EMITTERS,
-        "return ray_between(start, target, view.direction, from.hit.time);",
-        "return ray_between(start, target, view.direction, 0.0f);",
+        "return geometry::ray_between(start, target, view.direction, from.hit.time);",
+        "return geometry::ray_between(start, target, view.direction, 0.0f);",
         OF_SHADOWS,
     ),
     Fault(

@@ -115,8 +115,8 @@ RENDERER = (
         "last row lost",
         "of each cell of pixels",
         "native/src/integrator/pixel_loop.h",
-        "for (int32_t y = cell.y0; y < cell.y1; ++y)",
-        "for (int32_t y = cell.y0; y < cell.y1 - 1; ++y)",
+        "for (int32_t y = block.y0; y < block.y1; ++y)",
+        "for (int32_t y = block.y0; y < block.y1 - 1; ++y)",
         (statistics("All/A1_Furnace*"),),
     ),
     Fault(
@@ -124,8 +124,10 @@ RENDERER = (
         "last row lost",
         "of the delivered picture",
         "native/src/output/pass_read.cpp",
-        "  for (int32_t y = region.y0; y < region.y1; ++y) {\n",
-        "  for (int32_t y = region.y0; y < region.y1 - 1; ++y) {\n",
+        "      for (int32_t x = region.x0; x < region.x1; ++x) function(film.index(x, y), out++);\n",
+        "      for (int32_t x = region.x0; x < region.x1; ++x, ++out) {\n"
+        "        if (y < region.y1 - 1) function(film.index(x, y), out);\n"
+        "      }\n",
         (Test("regression", "M1_Pictures.M2_LookAsStored"),),
     ),
     Fault(
