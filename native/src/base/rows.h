@@ -13,7 +13,8 @@
 
 namespace gradus {
 
-// Calls function(begin, end) for ranges that together cover [0, height), in parallel. A range has at most `grain` rows.
+// Calls function(begin, end) for ranges that together cover [0, height), in parallel. Ranges of at most `grain` rows
+// are not split.
 template <class Function>
 void for_pieces(int height, Function&& function, int grain = 32) {
   if (height <= grain) return static_cast<void>(function(0, height));  // a task would cost more than it saves
@@ -23,7 +24,7 @@ void for_pieces(int height, Function&& function, int grain = 32) {
   });
 }
 
-// Calls function(y) for each row y of [0, height), in parallel; one task computes at most `grain` rows.
+// Calls function(y) for each row y of [0, height), in parallel. Ranges of at most `grain` rows are not split.
 template <class Function>
 void for_rows(int height, Function&& function, int grain = 32) {
   for_pieces(
