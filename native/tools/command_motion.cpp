@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "api/recorder.h"
+#include "base/clock.h"
 #include "base/error.h"
-#include "base/scoped_timer.h"
 #include "common.h"
 #include "motion_check.h"
 #include "path/context.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/clock.h"
 #include "base/error.h"
-#include "base/scoped_timer.h"
 #include "base/threads.h"
 #include "output/component_read.h"
 #include "output/pass_read.h"

@@ -3,8 +3,8 @@
 #include <iterator>
 
 #include "animation/frame_window.h"
+#include "base/clock.h"
 #include "base/error.h"
-#include "base/scoped_timer.h"
 #include "base/threads.h"
 #include "film/features.h"
 #include "output/combine.h"

@@ -6,8 +6,8 @@
 #include "animation/fresh_replayed_shares.h"
 #include "animation/replay_plan.h"
 #include "animation/stored_samples.h"
+#include "base/clock.h"
 #include "base/error.h"
-#include "base/scoped_timer.h"
 #include "base/threads.h"
 #include "schema/options.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "animation/frame_window.h"
-#include "base/throw_if_cancelled.h"
+#include "base/cancel_check.h"
 
 namespace gradus::animation {
 

@@ -14,7 +14,7 @@ void CommitMonitor::check() const {
 void CommitMonitor::report(float fraction) const {
   if (!progress_) return;
   std::atomic_ref<float> shared(*progress_);
-  // Embree reports from several threads: never let it fall.
+  // Embree reports from several threads, in any order; the shared value only ever rises.
   float before = shared.load();
   while (before < fraction && !shared.compare_exchange_weak(before, fraction)) continue;
 }

@@ -6,17 +6,20 @@
 
 namespace gradus {
 
-// Receives the fraction of a step that is done; returns false to stop it.
+// Callback of a build: receives the finished fraction of a step, in [0, 1], and returns false to stop the build.
 using BuildProgress = std::function<bool(float)>;
 
-// Reports the progress of a commit to the caller and asks whether to go on. Embree calls it from several threads.
+// Reports the progress of a commit to the caller and reads the caller's cancel flag. It is thread-safe, because Embree
+// calls it from several threads. Both pointers may be null.
 class CommitMonitor {
  public:
   CommitMonitor(const volatile int32_t* cancel, float* progress) : cancel_(cancel), progress_(progress) {}
   bool is_running() const { return !cancel_ || *cancel_ == 0; }
-  void check() const;  // throws Error CANCELLED
-  // fraction of the step that runs from `first` to `last`.
+  // Throws Error CANCELLED if the caller has set the cancel flag.
+  void check() const;
+  // Returns the callback of a step that covers the fractions from `first` to `last` of the whole commit.
   BuildProgress step(float first, float last) const;
+  // Raises the progress of the whole commit to `fraction`, in [0, 1]; a smaller value than before has no effect.
   void report(float fraction) const;
 
  private:

@@ -1,4 +1,4 @@
-// Exceptions inside the library; src/api maps them to codes.
+// Exceptions of the library. The C API catches them and returns their error codes.
 #pragma once
 
 #include <stdexcept>
@@ -8,6 +8,7 @@
 
 namespace gradus {
 
+// The library's exception: an error code of the C API with a message for the user.
 class Error : public std::runtime_error {
  public:
   Error(GradusError code, const std::string& text) : std::runtime_error(text), code_(code) {}

@@ -1,11 +1,12 @@
-// Floating-point state of our own threads: denormals are flushed (the host leaves FTZ and DAZ off in its threads).
+// Floating-point mode of the threads that compute pictures: denormals are flushed to 0, because they are slow.
 #pragma once
 
 #include <immintrin.h>
 
 namespace gradus {
 
-// Sets FTZ and DAZ for a scope and restores what was there, because threads of the host pass through here, too.
+// Sets the modes FTZ and DAZ in its scope and then restores the previous modes. The restoration matters because threads
+// of the host application, which has both modes off, run this code, too.
 class FlushDenormals {
  public:
   FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | kFlushToZero | kDenormalsAreZero); }
@@ -13,6 +14,7 @@ class FlushDenormals {
   FlushDenormals(const FlushDenormals&) = delete;
   FlushDenormals& operator=(const FlushDenormals&) = delete;
 
+  // Returns whether denormals are flushed in the calling thread.
   static bool active() {
     return (_mm_getcsr() & (kFlushToZero | kDenormalsAreZero)) == (kFlushToZero | kDenormalsAreZero);
   }

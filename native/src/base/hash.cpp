@@ -5,7 +5,8 @@
 
 namespace gradus {
 
-// The state seeds the hash of what is added, so that the order counts. XXH3 takes the size into account.
+// The state is the seed of the next hash, so that the result depends on the order of the additions. XXH3 includes the
+// size in its hash.
 void ContentHash::bytes(const void* data, size_t size) { state_ = XXH3_64bits_withSeed(data, size, state_); }
 
 }  // namespace gradus

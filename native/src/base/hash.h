@@ -1,5 +1,4 @@
-// Hashes of content by XXH3 (xxHash): they tell unchanged data from changed, and key a scene (contract 7.2). Not for
-// random numbers.
+// Hashes of data. They detect changed data and make the content keys of scenes. They are not meant for random numbers.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +9,8 @@
 
 namespace gradus {
 
-// Finaliser of MurmurHash3 (Appleby), which spreads every input bit over all output bits. Numbers of specular chains
-// are made of it.
+// Spreads every bit of `h` over all bits of the result, by the finaliser of MurmurHash3 (Appleby). The hashes of
+// specular chains use it.
 inline uint64_t mix_bits(uint64_t h) {
   h ^= h >> 33;
   h *= 0xff51afd7ed558ccdULL;
@@ -20,6 +19,8 @@ inline uint64_t mix_bits(uint64_t h) {
   return h ^ (h >> 33);
 }
 
+// A 64-bit hash of a sequence of values by XXH3 (xxHash). It depends on the order of the additions. Strings and
+// arrays are added with their sizes.
 class ContentHash {
  public:
   void bytes(const void* data, size_t size);

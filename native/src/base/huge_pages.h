@@ -1,4 +1,4 @@
-// Large arrays that are read at random: with pages of 4 KiB nearly each access would look for its page in memory, too.
+// Memory for large arrays that are read in random order. With pages of 4 KiB nearly every access would miss the TLB.
 #pragma once
 
 #include <sys/mman.h>
@@ -11,7 +11,8 @@
 
 namespace gradus {
 
-// Asks for huge pages where an array fills them; without them all works as well.
+// Allocator that requests huge pages (2 MiB) for arrays of at least that size. The request is a hint: a system without
+// huge pages returns ordinary memory.
 template <class T>
 struct HugePageAllocator {
   using value_type = T;

@@ -5,8 +5,8 @@
 
 namespace gradus {
 
-// v, turned as `from` is when it becomes `to`. Where they are opposite no turn is smallest: v is mirrored at the
-// origin.
+// Applies the smallest rotation that takes the unit vector `from` to the unit vector `to` to `v`. If the two are nearly
+// opposite the smallest rotation is not unique, and the result is −v.
 inline Vec3 turned(const Vec3& v, const Vec3& from, const Vec3& to) {
   const float cosine = glm::dot(from, to);
   if (!(cosine > -0.999f)) return cosine < 0.0f ? -v : v;

@@ -1,5 +1,4 @@
-// Two unit vectors at right angles to a unit vector (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT
-// 2017).
+// Orthonormal bases around a unit vector.
 #pragma once
 
 #include <cmath>
@@ -8,6 +7,8 @@
 
 namespace gradus {
 
+// Writes two unit vectors that form a right-handed orthonormal basis (x, y, n) with the unit vector `n` (Duff et al.,
+// "Building an Orthonormal Basis, Revisited", JCGT 2017).
 inline void orthonormal_basis(const Vec3& n, Vec3* x, Vec3* y) {
   const float sign = std::copysign(1.0f, n.z);
   const float a = -1.0f / (sign + n.z);

@@ -1,4 +1,4 @@
-// Pixels of the film, and what they hold.
+// Rectangles of film pixels, and the value of a pixel.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace gradus {
 
-// Integer rectangle of film pixels, upper bounds exclusive.
+// An integer rectangle of film pixels; x1 and y1 are exclusive.
 struct Region {
   int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   int32_t width() const { return x1 - x0; }
@@ -17,7 +17,7 @@ struct Region {
   bool operator==(const Region&) const = default;
 };
 
-// Radiance (RGB) and, with a transparent film, alpha as the fourth channel; 0 otherwise.
+// Scene-linear RGB radiance. The fourth channel is alpha if the film is transparent, else 0.
 using Radiance = Vec4;
 
 }  // namespace gradus

@@ -1,5 +1,5 @@
-// Loops over rows, spread over the threads of the current arena. Every row is one thread's alone, so results do not
-// depend on threads; sums are kept per row and added in order.
+// Parallel loops and sums over the rows of an image, in the current TBB arena. One thread computes a whole row, and the
+// sums of rows are added in order, so results do not depend on the number of threads.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -13,16 +13,18 @@
 
 namespace gradus {
 
-// Calls function(begin, end) for pieces of [0, height).
+// Calls function(begin, end) for ranges that together cover [0, height), in parallel. Ranges of at most `grain` rows
+// are not split.
 template <class Function>
 void for_pieces(int height, Function&& function, int grain = 32) {
-  if (height <= grain) return static_cast<void>(function(0, height));  // coarse grids: no task is worth its cost
+  if (height <= grain) return static_cast<void>(function(0, height));  // a task would cost more than it saves
   tbb::parallel_for(tbb::blocked_range<int>(0, height, grain), [&](const tbb::blocked_range<int>& range) {
     const FlushDenormals flush;
     function(range.begin(), range.end());
   });
 }
 
+// Calls function(y) for each row y of [0, height), in parallel. Ranges of at most `grain` rows are not split.
 template <class Function>
 void for_rows(int height, Function&& function, int grain = 32) {
   for_pieces(
@@ -33,10 +35,10 @@ void for_rows(int height, Function&& function, int grain = 32) {
       grain);
 }
 
-// One sum per channel.
+// Holds one sum for each channel.
 using Sums = std::vector<double>;
 
-// Parts of sums, to be filled by row and channel.
+// Sums of single rows, for each channel. Threads fill it by row; total() adds the rows in order.
 class RowSums {
  public:
   RowSums(int height, int channels) : channels_(channels), parts_(size_t(height) * size_t(channels)) {}
@@ -46,7 +48,7 @@ class RowSums {
     for (size_t i = 0; i < parts_.size(); ++i) sums[i % channels_] += parts_[i];
     return sums;
   }
-  // Of the magnitudes.
+  // Returns the largest magnitude of a row's sum, over all rows and channels.
   double largest() const {
     double largest = 0.0;
     for (const double part : parts_) largest = std::max(largest, std::fabs(part));
@@ -58,7 +60,7 @@ class RowSums {
   std::vector<double> parts_;
 };
 
-// Sums of rows, per channel: function(y, channel) returns a double.
+// Computes the sum of each row and channel, in parallel. function(y, channel) returns that sum as a double.
 template <class Function>
 RowSums sum_each_row(int height, int channels, Function&& function) {
   RowSums sums(height, channels);
@@ -68,14 +70,14 @@ RowSums sum_each_row(int height, int channels, Function&& function) {
   return sums;
 }
 
-// Sum over rows, per channel.
+// Computes the sum over all rows for each channel, in parallel. function(y, channel) returns the sum of a row.
 template <class Function>
 Sums sum_rows(int height, int channels, Function&& function) {
   return sum_each_row(height, channels, function).total();
 }
 
-// Three rows of an image that is made row by row and never stored: row y takes the place of row y - 3. With zeros
-// around; y from -3 on.
+// A ring buffer of three rows of an image that is computed row by row and never stored as a whole: row y overwrites row
+// y - 3. A row has kPad zeros on either side, which stencils may read. y is at least -3.
 class RollingRows {
  public:
   RollingRows(int width, int channels)
@@ -90,7 +92,7 @@ class RollingRows {
   std::vector<float> values_;
 };
 
-// Dot product of a row: floats in blocks, blocks in double.
+// Returns the dot product of two rows. Blocks of 64 products are added in float with 8 lanes, and blocks in double.
 inline double dot_row(const float* a, const float* b, int width) {
   constexpr int kBlock = 64;
   double sum = 0.0;

@@ -1,5 +1,5 @@
-// A temporary file without a name: it goes when whoever uses it goes, however that ends. What is in it is in memory as
-// far as the system has room, and counts as free there.
+// A temporary file without a name. The system removes it when the process ends, even if the process is killed. The
+// system's page cache holds its contents while there is free memory, and does not count them as memory in use.
 #pragma once
 
 #include <cstddef>
@@ -10,20 +10,21 @@ namespace gradus {
 
 class SpoolFile {
  public:
-  // In the folder for temporary files (TMPDIR). All throw Error(INVALID_OPERATION) with the folder and the system's
-  // reason.
+  // Creates the file in the folder for temporary files (TMPDIR). This and all other members throw
+  // Error(INVALID_OPERATION) on failure; the message has the folder and the system's reason.
   SpoolFile();
   ~SpoolFile();
   SpoolFile(const SpoolFile&) = delete;
   SpoolFile& operator=(const SpoolFile&) = delete;
 
-  // Thread-safe where places differ.
+  // Write and read `size` bytes at the byte offset `place`. Threads may call them at the same time for separate ranges.
   void write(uint64_t place, const void* data, size_t size);
   void read(uint64_t place, void* data, size_t size) const;
 
  private:
   [[noreturn]] void fail(const char* action, int reason) const;
-  // Until all is done: step(done) does more and returns how much, 0 for the reason `nothing`, below 0 for errno's.
+  // Calls step(done) until `size` bytes are done, where `done` is the number so far. The step returns the number of
+  // further bytes. 0 is a failure with the reason `nothing`, a negative number is a failure with the reason in errno.
   template <class Step>
   void repeat(const char* action, int nothing, size_t size, const Step& step) const;
 

@@ -22,6 +22,7 @@ int open_folder(const fs::path& folder) {
   return open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
 }
 
+// Removes a folder unless a living process holds its lock.
 void remove_unlocked(const fs::path& folder) {
   const int lock = open_folder(folder);
   if (lock < 0) return;
@@ -30,6 +31,7 @@ void remove_unlocked(const fs::path& folder) {
   close(lock);
 }
 
+// Removes all temporary folders of this class whose owners were killed.
 void remove_stale_folders(const fs::path& place) {
   std::error_code problem;
   for (fs::directory_iterator entry(place, problem), end; !problem && entry != end; entry.increment(problem)) {
@@ -56,7 +58,7 @@ TemporaryFolder::TemporaryFolder() {
     path_ = (place / (std::string(kPrefix) + "XXXXXX")).string();
     if (mkdtemp(path_.data()) == nullptr) fail(errno);
     lock_ = open_folder(path_);
-    if (lock_ < 0 && errno == ENOENT) continue;  // another process took it for a dead one's before it was locked
+    if (lock_ < 0 && errno == ENOENT) continue;  // another process removed it as stale before it was locked
     if (lock_ < 0) {
       const int reason = errno;
       rmdir(path_.c_str());

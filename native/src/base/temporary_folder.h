@@ -1,5 +1,5 @@
-// A folder for temporary files that goes with its owner. Where the owner is killed it goes when the next one is made:
-// it is locked while its owner lives.
+// A folder for temporary files, removed by the destructor. The process holds a lock on the folder. If the process is
+// killed the lock ends, and the next object of this class removes the folder.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@ namespace gradus {
 
 class TemporaryFolder {
  public:
-  // Throws Error(INVALID_OPERATION) with the folder it would lie in and the system's reason.
+  // Creates the folder. Throws Error(INVALID_OPERATION) on failure; the message has the parent folder and the system's
+  // reason.
   TemporaryFolder();
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
@@ -21,7 +22,7 @@ class TemporaryFolder {
   int lock_ = -1;
 };
 
-// Where temporary files lie: TMPDIR or what the system has in its place.
+// Returns the folder for temporary files: TMPDIR, or the system's default if that is not set.
 std::string temporary_path();
 
 }  // namespace gradus

@@ -4,7 +4,8 @@
 
 namespace gradus {
 
-// Concurrency of an arena for so many threads: no more than TBB has, which would print a warning.
+// Returns the concurrency of a TBB arena for `threads` threads: at least 1, and at most the number that TBB allows,
+// because TBB prints a warning for more.
 int arena_size(uint32_t threads);
 
 }  // namespace gradus

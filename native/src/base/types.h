@@ -1,4 +1,4 @@
-// Value types shared by all stages. Vectors are GLM's; colours are scene-linear RGB.
+// Value types of all folders: vectors and matrices from GLM, scene-linear RGB colours, rays, moments of time.
 #pragma once
 
 #include <cstdint>
@@ -24,24 +24,24 @@ inline float max_component(const Rgb& c) { return c.x > c.y ? (c.x > c.z ? c.x :
 inline float mean_component(const Rgb& c) { return (c.x + c.y + c.z) * (1.0f / 3.0f); }
 inline bool is_black(const Rgb& c) { return c.x == 0.0f && c.y == 0.0f && c.z == 0.0f; }
 
-// Written so that NaN is not finite, whatever the compiler's flags.
+// Returns whether `x` is neither infinite nor NaN. The expression works with -ffinite-math-only, too.
 inline bool is_finite(float x) { return x - x == 0.0f; }
 inline bool is_finite(const Vec3& v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
 
-// A ray segment; direction has unit length and all fields are finite (t_max may be infinite).
+// A ray segment. The direction has unit length. All fields are finite, but t_max may be infinite.
 struct Ray {
   Vec3 origin;
   float t_min = 0.0f;
   Vec3 direction;
   float t_max = kInfinity;
-  float time = 0.0f;  // of the shutter: 0 its opening, 1 its closing
+  float time = 0.0f;  // time of the shutter: 0 at its opening, 1 at its closing
 };
 
-// In the place of a ray where there is none.
+// The value that stands for "no ray"; is_none() recognises it.
 constexpr Ray kNoRay{Vec3(0.0f), 1.0f, Vec3(0.0f), 0.0f};
 inline bool is_none(const Ray& ray) { return ray.direction == Vec3(0.0f); }
 
-// The rendered frame of an animation, the one before it and the one after it.
+// A frame of an animation relative to the rendered frame: the frame itself, the one before or the one after it.
 enum class Moment { Now, Previous, Next };
 
 }  // namespace gradus

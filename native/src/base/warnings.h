@@ -1,4 +1,4 @@
-// Texts for people, each once, until somebody takes them.
+// Queue of warnings for the user.
 #pragma once
 
 #include <deque>
@@ -7,13 +7,14 @@
 
 namespace gradus {
 
+// A thread-safe queue that accepts each text once, even after the text has been taken.
 class Warnings {
  public:
   static constexpr size_t kMax = 1000;
 
-  // Each text is kept once; at most kMax in all.
+  // Adds a text, unless it has been added before or kMax different texts have been added.
   void add(const std::string& text);
-  // The oldest that nobody has taken; false: there is none.
+  // Moves the oldest text of the queue to *text and returns true, or returns false if the queue is empty.
   bool take(std::string* text);
 
  private:

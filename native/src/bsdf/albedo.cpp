@@ -1,4 +1,4 @@
-// Directional albedo of lobes, and energy compensation of microfacet lobes from it.
+// Directional albedo of lobes, and the energy compensation of microfacet lobes that follows from it.
 #include <cmath>
 
 #include "bsdf/albedo_tables.h"
@@ -8,11 +8,11 @@
 namespace gradus::bsdf {
 namespace {
 
+// Returns the geometric mean of both alphas, clamped at 1, because the albedo tables are isotropic.
 float mean_alpha(const Lobe& lobe) { return std::min(1.0f, std::sqrt(lobe.alpha_x * lobe.alpha_y)); }
 
-// Fresnel term averaged over the cosine hemisphere, for light that bounces between facets. Dielectric: fit of Kulla and
-// Conty
-// ("Revisiting Physically Based Shading at Imageworks", 2017).
+// Returns the dielectric Fresnel term averaged over the cosine-weighted hemisphere (fit of Kulla and Conty, "Revisiting
+// Physically Based Shading at Imageworks", 2017).
 float mean_dielectric(float eta) {
   if (eta < 1.0f) {
     return 0.997118f + eta * (0.1014f - eta * (0.965241f + 0.130607f * eta));
@@ -20,6 +20,8 @@ float mean_dielectric(float eta) {
   return (eta - 1.0f) / (4.08567f + 1.00071f * eta);
 }
 
+// Returns the Fresnel term of a lobe averaged over the cosine-weighted hemisphere. It colours the light that bounces
+// between microfacets.
 Rgb mean_fresnel(const Lobe& lobe) {
   switch (lobe.fresnel) {
     case FresnelType::None:
@@ -32,14 +34,14 @@ Rgb mean_fresnel(const Lobe& lobe) {
           f0 < 1e-6f ? 1.0f / 21.0f : std::clamp((mean_dielectric(lobe.ior) - f0) / (1.0f - f0), 0.0f, 1.0f);
       return glm::mix(lobe.f0, lobe.f90, s);
     }
-    // 2∫(1−c)^5 c dc = 1/21 and 2∫c(1−c)^6 c dc = 1/126.
+    // The averages are 2∫(1−c)^5 c dc = 1/21 and 2∫c(1−c)^6 c dc = 1/126.
     case FresnelType::PrincipledMetal:
       return lobe.f0 + (Rgb(1.0f) - lobe.f0) * (1.0f / 21.0f) - f82_factor(lobe.f0, lobe.f90) * (1.0f / 126.0f);
   }
   return Rgb(1.0f);
 }
 
-// Albedo of single scattering by the reflection side, without weight.
+// Returns the single-scattering albedo of the reflection side, without the lobe's weight.
 Rgb single_reflection(const Lobe& lobe, float alpha, float cosine) {
   const bool two_sided = lobe.type == LobeType::GgxGlass;
   if (lobe.fresnel == FresnelType::Dielectric || (two_sided && lobe.fresnel == FresnelType::None)) {
@@ -63,12 +65,14 @@ Rgb single_reflection(const Lobe& lobe, float alpha, float cosine) {
   }
 }
 
+// Returns single_reflection(), from the lobe's cached value if that is for the same cosine and IOR.
 Rgb reflected_once(const Lobe& lobe, float cosine) {
   const bool known = lobe.known.cosine == cosine && lobe.known.ior == lobe.ior;
   return known ? lobe.known.reflected : single_reflection(lobe, mean_alpha(lobe), cosine);
 }
 
-// Of the transmission side. Schlick-type glass: the dielectric share, scaled by what its own Fresnel term leaves.
+// Returns the single-scattering albedo of the transmission side, without the lobe's weight. For glass with a Schlick
+// term it is the dielectric albedo, scaled to the energy that the Schlick term does not reflect.
 Rgb single_transmission(const Lobe& lobe, float alpha, float cosine) {
   const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
   if (lobe.type == LobeType::GgxRefraction && lobe.fresnel == FresnelType::None) {
@@ -100,8 +104,8 @@ Rgb multiscatter_energy(const Lobe& lobe, float cosine) {
     const bool alone = lobe.type == LobeType::GgxRefraction;
     return Rgb(1.0f / std::clamp(alone ? glass.crossing : glass.reflected + glass.transmitted, 0.3f, 1.0f));
   }
-  // Turquin 2019 ("Practical multiple scattering compensation for microfacet models"): scale the single scattering; the
-  // colour of the part that bounced more than once after Kulla and Conty 2017.
+  // Multiple scattering scales single scattering (Turquin 2019, "Practical multiple scattering compensation for
+  // microfacet models"); its colour is that of Kulla and Conty 2017.
   const float single = std::clamp(ggx_moments(alpha, cosine).one, 0.05f, 1.0f);
   const float missing = (1.0f - single) / single;
   const float mean = ggx_mean_albedo(alpha);
@@ -131,8 +135,8 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {
   }
 }
 
-// Layers take what Cycles takes: the albedo as if no energy were lost between facets, and below an IOR of 1 that of its
-// inverse, as its tables end there.
+// As in Cycles, the albedo for layering ignores the energy that single scattering loses. Cycles' tables start at an IOR
+// of 1, so a smaller IOR takes the albedo of its inverse.
 Rgb lobe_albedo(Lobe* lobe, const Vec3& wo) {
   Lobe prepared = *lobe;
   prepare_lobe(&prepared, glm::dot(lobe->normal, wo) < 0.0f ? -lobe->normal : lobe->normal, wo);

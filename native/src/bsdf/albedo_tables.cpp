@@ -12,7 +12,8 @@
 namespace gradus::bsdf {
 namespace {
 
-// Axes: square root of the cosine and of alpha, as both functions bend most near 0; for glass 1−|…|: see ior_position().
+// Sizes of the tables. The axes are the square roots of the cosine and of alpha, because the albedos curve most near 0.
+// eta_at() defines the third axis of the glass tables.
 constexpr int kCosines = 28;
 constexpr int kAlphas = 24;
 constexpr int kIors = 20;
@@ -24,6 +25,7 @@ float axis_value(int i, int count) {
   return x * x;
 }
 
+// A position on an axis: the grid point at or below it, and the fraction of the step beyond that point.
 struct Cell {
   int index;
   float fraction;
@@ -36,19 +38,20 @@ Cell locate(float position, int count) {
 
 Vec3 direction_at(float cosine) { return Vec3(std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)), 0.0f, cosine); }
 
-// Calls visit(distribution, h) for visible normals, at the points of a golden-ratio lattice (total reflection cuts the integrand, which a
-// regular grid takes badly).
+// Calls visit(distribution, h) for `n` visible normals h, at the points of a golden-ratio lattice. A regular grid would
+// integrate the discontinuity at the critical angle badly.
 template <typename Visit>
 void integrate_visible(float alpha, const Vec3& wo, int n, Visit visit) {
   const Ggx ggx{alpha, alpha};
   for (int i = 0; i < n; i++) {
     const float x = (static_cast<float>(i) + 0.5f) / static_cast<float>(n);
     const float golden = static_cast<float>(i) * 0.618033989f;
-    // Half the azimuths are enough: wo lies in the xz plane.
+    // Half of the azimuths suffice, because wo lies in the xz plane and the integrand is symmetric about it.
     visit(ggx, ggx.sample_visible(wo, Vec2(0.5f * (golden - std::floor(golden)), x)));
   }
 }
 
+// Returns G2(wo, wi) / G1(wo), the weight of a reflected or refracted direction when visible normals are sampled.
 float shadowing(const Ggx& ggx, const Vec3& wo, const Vec3& wi) {
   return ggx.masking_over_cosines(wo, wi) * std::abs(wi.z) / ggx.masking_over_cosine(wo);
 }
@@ -91,7 +94,7 @@ GlassAlbedo compute_glass(float alpha, float cosine, float eta) {
   return {sum.reflected * scale, sum.transmitted * scale, sum.crossing * scale};
 }
 
-// Up to four functions of alpha and cosine in one register; all are interpolated at once.
+// Up to four tabulated functions of alpha and cosine in one SIMD register, so that they are interpolated together.
 using Values = float __attribute__((vector_size(16)));
 using Plane = std::array<Values, size_t(kAlphas) * kCosines>;
 
@@ -107,7 +110,7 @@ Cell alpha_cell(float alpha) { return locate(std::sqrt(std::max(0.0f, alpha)), k
 Cell cosine_cell(float cosine) { return locate(std::sqrt(std::max(0.0f, cosine)), kCosines); }
 
 struct MomentTable {
-  Plane values;  // of GgxMoments, in order
+  Plane values;  // the members of GgxMoments, in order
   std::array<float, kAlphas> mean;
 
   MomentTable() {
@@ -119,7 +122,7 @@ struct MomentTable {
       mean[static_cast<size_t>(a)] = mean_of_row(a);
     }
   }
-  // 2∫E(c)·c dc with c = x²: midpoints of the table's own interpolation.
+  // Returns the mean albedo 2∫E(c)·c dc of row `a`, with c = x², by the midpoint rule on the interpolated table.
   float mean_of_row(int a) const {
     constexpr int kSteps = 256;
     float sum = 0.0f;
@@ -137,13 +140,13 @@ const MomentTable& moment_table() {
   return table;
 }
 
-// (η−1)/(η+1) = x², so that the axis is that of the fourth root of F0.
+// Returns η at position `i` of the IOR axis. The axis is x with (η−1)/(η+1) = x², the fourth root of F0.
 float eta_at(int i) {
   const float root = std::min(axis_value(i, kIors), 0.998f);
   return (1.0f + root) / (1.0f - root);
 }
 
-// Of one η: GlassAlbedo's values, in order.
+// Computes the table of one η; its values are the members of GlassAlbedo, in order.
 Plane make_glass_plane(float eta) {
   Plane plane;
   for (int a = 0; a < kAlphas; a++) {
@@ -155,8 +158,9 @@ Plane make_glass_plane(float eta) {
   return plane;
 }
 
-// Made when it is asked for: a scene has few indices, and all of them take half a second. Place i on the axis of η above 1, or of its
-// inverses: the critical angle makes them different functions.
+// The glass table at position `i` of the IOR axis, for η or, if `inverse`, for 1/η. The two need separate tables,
+// because only one of them has a critical angle. A table is computed at its first use, because a scene has few IORs and
+// all tables together take half a second. get() is thread-safe.
 class LazyGlassPlane {
  public:
   const Plane& get(int i, bool inverse) {

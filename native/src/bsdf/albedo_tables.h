@@ -1,27 +1,29 @@
-// Directional albedos of single-scattering GGX interfaces, tabulated once per process: the moments on first use, glass by the indices
-// that are asked for (10 ms each).
+// Directional albedos of single-scattering GGX interfaces. The tables are computed once for each process at their first
+// use; the glass tables are computed one IOR at a time, in 10 ms each.
 #pragma once
 
 namespace gradus::bsdf {
 
-// Integrals over the cosine-weighted reflection lobe with white masking-shadowing: of 1, of (1−c)^5 and of c(1−c)^6, c the cosine at
-// the half-vector. Any Schlick or F82 lobe's albedo is linear in them.
+// Integrals of 1, (1−c)^5 and c(1−c)^6 over the cosine-weighted reflection lobe without Fresnel term, where c is the
+// cosine at the half-vector. The albedo of a Schlick or F82 lobe is linear in them.
 struct GgxMoments {
   float one;
   float schlick;
   float f82;
 };
-// alpha in [0, 1], cosine of wo in [0, 1].
+// Returns the moments for `alpha` in [0, 1] and the cosine of wo in [0, 1].
 GgxMoments ggx_moments(float alpha, float cosine);
-// Mean of `one` over the cosine hemisphere.
+// Returns the mean of GgxMoments::one over the cosine-weighted hemisphere.
 float ggx_mean_albedo(float alpha);
 
-// Reflected and transmitted share of a rough dielectric interface. eta: IOR of the far side over the near one, any positive value.
+// Albedos of a rough dielectric interface.
 struct GlassAlbedo {
   float reflected;
   float transmitted;
-  float crossing;  // what would be transmitted if nothing but total reflection were reflected
+  float crossing;  // transmitted share if the Fresnel term were 0 except under total reflection
 };
+// Returns the albedos for `alpha` and the cosine of wo in [0, 1]. `eta` is the positive IOR of the far side divided by
+// that of the near side.
 GlassAlbedo glass_albedo(float alpha, float cosine, float eta);
 
 }  // namespace gradus::bsdf

@@ -1,4 +1,4 @@
-// Building the closures of a surface point: normals, Dirac limits, classes and their probabilities.
+// Preparation of the closures of a surface point: normals, Dirac limits, classes and their probabilities.
 #include "bsdf/closures.h"
 
 #include <algorithm>
@@ -13,9 +13,10 @@
 namespace gradus::bsdf {
 namespace {
 
-// A sampled side gets at least this share of its lobe: albedos come from tables.
+// Minimum share of a lobe's weight with which a side is sampled. A tabulated albedo of 0 may be slightly wrong.
 constexpr float kSmallestShare = 0.01f;
 
+// Returns the perfectly smooth counterpart of a microfacet type.
 LobeType dirac_of(LobeType type) {
   switch (type) {
     case LobeType::GgxReflection:
@@ -43,7 +44,8 @@ uint8_t sides_of(LobeType type) {
   }
 }
 
-// Clamps what users can type, and makes lobes Dirac that float cannot hold: too smooth, or without a step in the IOR.
+// Clamps roughness and IOR to their ranges. A lobe becomes Dirac where floats cannot represent it: if it is too smooth,
+// or if it transmits without a step in the IOR.
 void limit_microfacets(Lobe* lobe) {
   lobe->ior = std::clamp(is_finite(lobe->ior) ? lobe->ior : 1.0f, 1e-2f, 1e2f);
   lobe->alpha_x = std::clamp(is_finite(lobe->alpha_x) ? lobe->alpha_x : 1.0f, 0.0f, 4.0f);
@@ -62,6 +64,7 @@ void limit_microfacets(Lobe* lobe) {
   }
 }
 
+// Returns the smaller alpha of a lobe, which is compared with the roughness threshold.
 float sharpness(const Lobe& lobe) { return is_microfacet(lobe.type) ? std::min(lobe.alpha_x, lobe.alpha_y) : 1.0f; }
 
 }  // namespace
@@ -80,7 +83,7 @@ void Closures::make_room() {
   if (count_ < kMaxLobes) {
     return;
   }
-  // There are fewer kinds of lobes than places: some two are of one kind.
+  // There are fewer combinations of type and pass than places, so at least two lobes can be merged.
   size_t first = 0, second = 1;
   float minimum = kInfinity;
   for (size_t i = 0; i < lobes_.size(); i++) {
@@ -121,8 +124,8 @@ void Closures::keep_originals() {
 
 namespace {
 
-// A surface's own normal comes as it is, and stays so to the bit: where a lobe has it, nothing asks for a bump's
-// shadowing.
+// Returns the normalised `normal`, or the geometric normal if it has no direction. A normal of unit length is returned
+// unchanged to the bit, because equality with the smooth normal tells that no bump needs shadowing.
 Vec3 unit_normal(const Vec3& normal, const Vec3& geometric_normal) {
   const float length2 = glm::dot(normal, normal);
   if (std::abs(length2 - 1.0f) < 1e-6f) {
@@ -131,7 +134,7 @@ Vec3 unit_normal(const Vec3& normal, const Vec3& geometric_normal) {
   return is_finite(length2) && length2 > 1e-12f ? normal / std::sqrt(length2) : geometric_normal;
 }
 
-// On the side of the geometric normal.
+// Returns unit_normal() on the side of the geometric normal.
 Vec3 outward_unit_normal(const Vec3& normal, const Vec3& geometric_normal) {
   const Vec3 unit = unit_normal(normal, geometric_normal);
   return glm::dot(unit, geometric_normal) < 0.0f ? -unit : unit;
@@ -220,7 +223,7 @@ void Closures::normalise() {
 
 bool Closures::is_one_lambert() const { return count_ == 1 && is_lambert(lobes_[0]); }
 
-// The commonest surface: what the general way comes to, probabilities of 1 among them.
+// A fast path for a single Lambert lobe, the most common surface. The results are those of the general code.
 void Closures::finish_lambert() {
   Lobe& lobe = lobes_[0];
   lobe.normal = outward_unit_normal(original_[0].normal, geometric_normal_);
@@ -228,7 +231,7 @@ void Closures::finish_lambert() {
   lobe.energy = Rgb(1.0f);
   lobe.sample_weight = mean_component(lobe.weight);
   lobe.scatter_class = ScatterClass::Diffuse;
-  const bool scatters = is_finite(lobe.sample_weight);  // it is not black
+  const bool scatters = is_finite(lobe.sample_weight);  // drop_black_lobes() has ensured that it is not 0
   constexpr size_t k = static_cast<size_t>(ScatterClass::Diffuse);
   has_smooth_[k] = scatters;
   entry_count_[k] = scatters ? 1 : 0;

@@ -1,8 +1,8 @@
 // The scattering function of one surface point: a small set of weighted lobes, grouped into classes.
 //
-// Scattering first samples a class, with probability class_probability(c), then a direction within it; a light sample
-// is split over the classes (contract 1.4). All directions point away from the surface; `wo` towards the previous
-// vertex, `wi` towards the next.
+// Scattering first samples a class, with probability class_probability(c), then a direction by the density of that
+// class. A light sample is split over the classes. All directions are unit vectors that point away from the surface:
+// `wo` towards the previous vertex of the path, `wi` towards the next.
 #pragma once
 
 #include <array>
@@ -12,11 +12,11 @@
 
 namespace gradus::bsdf {
 
-// Letters of a path word (contract 3.1): D rough, R specular reflection, T specular transmission.
+// Scattering events of light path expressions: D (rough), R (specular reflection) and T (specular transmission).
 enum class ScatterClass : uint8_t { Diffuse = 0, Reflection = 1, Transmission = 2 };
 inline constexpr int kScatterClasses = 3;
 
-// What Blender's light passes call a lobe; independent of the class.
+// The light pass of Blender that a lobe contributes to. It does not depend on the class.
 enum class LightPass : uint8_t { Diffuse = 0, Glossy = 1, Transmission = 2 };
 
 enum class LobeType : uint8_t {
@@ -34,86 +34,94 @@ enum class LobeType : uint8_t {
 
 enum class FresnelType : uint8_t { None, Dielectric, Schlick, PrincipledMetal };
 
-// What single scattering reflects of light from one direction, without weight.
+// A cached single-scattering albedo of the reflection side of a lobe, without the lobe's weight.
 struct KnownAlbedo {
-  float cosine = -1.0f;  // under which it is seen; -1: not known
+  float cosine = -1.0f;  // cosine of the normal and wo; -1 if nothing is cached
   float ior = 1.0f;
   Rgb reflected = Rgb(0.0f);
 };
 
-// One lobe. Frame: normal, and tangent where anisotropic.
+// One lobe. Its frame is the normal and, where it is anisotropic, the tangent.
 //
-// Which fields count:
-//   Diffuse                alpha_x = Oren-Nayar roughness, 0 = Lambert; multiscatter: energy conserving, f0 = the
-//   surface's colour (which
-//                          weight holds, too); fresnel Schlick: Disney's diffuse, alpha_x = roughness
-//   Sheen                  alpha_x = sheen roughness, not squared; fresnel Schlick: the grazing term of Blender
-//   before 4.0 Ggx…, Dirac…           alpha_x, alpha_y, ior, fresnel; finish() makes a Ggx lobe Dirac where alpha is
-//   too small for float fresnel Dielectric     of ior fresnel Schlick        mix(f0, f90, s): s follows the dielectric
-//   curve of ior, scaled to 0…1, as in Blender 4; ior 1: fifth power fresnel PrincipledMetal  f0, and f90 = tint at 82
-//   degrees (1 = plain Schlick)
-// multiscatter: the colour of repeated bounces between facets comes from the Fresnel term; without one from f0, a
-// colour that weight holds, too (Cycles' MULTI_GGX). Glass reflects with weight·F and transmits with
-// weight·transmission_tint·(1 − F).
+// The types use these fields:
+// - Diffuse: alpha_x is the Oren-Nayar roughness; 0 means Lambert. With multiscatter the lobe conserves energy, and f0
+//   is the surface's colour, which is also a factor of the weight. With fresnel Schlick it is Disney's diffuse lobe,
+//   and alpha_x its roughness.
+// - Sheen: alpha_x is the sheen roughness, not squared. With fresnel Schlick it is the grazing term of Blender before
+//   4.0.
+// - Ggx and Dirac types: alpha_x, alpha_y, ior and fresnel. finish() turns a Ggx lobe into a Dirac lobe if its alpha is
+//   too small for floats. Glass reflects with weight·F and transmits with weight·transmission_tint·(1 − F).
+//
+// The Fresnel types are:
+// - Dielectric: the dielectric term of ior.
+// - Schlick: mix(f0, f90, s), where s is the dielectric curve of ior scaled to 0…1, as in Blender 4. For an ior of 1, s
+//   is Schlick's fifth power.
+// - PrincipledMetal: f0, and f90 as the tint at 82 degrees. A tint of 1 gives the plain Schlick term.
+//
+// With multiscatter the Fresnel term colours the light that bounces between microfacets. A lobe without a Fresnel term
+// takes f0 as that colour, which is also a factor of its weight (Cycles' MULTI_GGX).
 struct Lobe {
   LobeType type = LobeType::Diffuse;
   FresnelType fresnel = FresnelType::None;
   LightPass pass = LightPass::Diffuse;
-  bool multiscatter = false;     // energy lost by single scattering is given back
+  bool multiscatter = false;     // adds the energy that single scattering loses
   Rgb weight = Rgb(0.0f);        // throughput of the node graph times colour
-  Vec3 normal = Vec3(0, 0, 1);   // outwards, never flipped towards wo: finish() does that, and inverts ior with it
-  Vec3 tangent = Vec3(1, 0, 0);  // made orthonormal by finish(); free where isotropic
-  float alpha_x = 0.0f;          // roughness², after anisotropy; diffuse: Oren-Nayar sigma
+  Vec3 normal = Vec3(0, 0, 1);   // outward normal; finish() flips it to the side of wo and then inverts ior
+  Vec3 tangent = Vec3(1, 0, 0);  // finish() makes it orthonormal; unused if isotropic
+  float alpha_x = 0.0f;          // roughness² along the tangent; for Diffuse the Oren-Nayar roughness
   float alpha_y = 0.0f;
-  float ior = 1.0f;    // of the inside against the outside; after finish(): of the far side against that of wo
-  Rgb f0 = Rgb(1.0f);  // Schlick
+  float ior = 1.0f;    // IOR inside over outside; after finish() that of the far side over the side of wo
+  Rgb f0 = Rgb(1.0f);  // reflectance at normal incidence
   Rgb f90 = Rgb(1.0f);
-  Rgb transmission_tint = Rgb(1.0f);  // glass lobes
-  float sample_weight = 0.0f;         // filled by Closures::finish()
-  Rgb energy = Rgb(1.0f);             // multiple scattering, filled by finish()
-  KnownAlbedo known;                  // what lobe_albedo() found: finish() mostly asks for the same
+  Rgb transmission_tint = Rgb(1.0f);  // factor of the transmission side of glass
+  float sample_weight = 0.0f;         // weight for sampling, set by finish()
+  Rgb energy = Rgb(1.0f);             // factor of multiple scattering, set by finish()
+  KnownAlbedo known;                  // cache from lobe_albedo() to finish(), which mostly needs the same albedo
   ScatterClass scatter_class =
-      ScatterClass::Diffuse;  // reflection side; for GgxGlass the transmission side is T, unless rough (D)
+      ScatterClass::Diffuse;  // class of the reflection side; the transmission side of glass is T unless this is D
 };
 
-// f·|cos(wi)| and its density in solid angle.
+// A scattering value f·|cos(wi)| with its density in solid angle, p(wi | class).
 struct BsdfEval {
   Rgb value = Rgb(0.0f);
-  float pdf = 0.0f;  // p(wi | class)
+  float pdf = 0.0f;
 };
 
-// The whole class, and of it the lobes that make the same kind of bounce (diffuse or not): what limits on bounces,
-// visibility to kinds of rays, and the Light Path node look at.
+// The value of a whole class, and of its lobes that make the same kind of bounce: diffuse or not. Bounce limits, ray
+// visibility and the Light Path node depend on that kind.
 struct KindEval {
   BsdfEval all, kind;
 };
 
 struct BsdfSample {
   Vec3 wi = Vec3(0.0f);
-  Rgb value = Rgb(0.0f);  // f·|cos|, of the whole class for smooth lobes; for Dirac the coefficient
-  float pdf = 0.0f;       // p(wi | class); for Dirac the discrete probability within the class
+  Rgb value = Rgb(0.0f);  // f·|cos| of the class's smooth lobes together, or the coefficient of a Dirac lobe
+  float pdf = 0.0f;       // p(wi | class), or the discrete probability of a Dirac lobe within the class
   bool dirac = false;
-  bool transmitted = false;  // wi on the other side of the geometric surface
+  bool transmitted = false;  // whether wi is on the other side of the geometric surface
   uint8_t lobe = 0;          // index of the sampled lobe
-  bool diffuse = false;      // kind of the sampled lobe
-  BsdfEval kind;             // value and density of the class's lobes of this kind; for Dirac value and pdf again
+  bool diffuse = false;      // whether the sampled lobe makes a diffuse bounce
+  BsdfEval kind;             // value and density of the class's lobes of that kind; value and pdf for a Dirac lobe
 };
 
-// Directional albedo of one lobe by itself, weight included, before finish(): for layering, so without what single
-// scattering loses. wo is inside where normal·wo < 0. All that the lobe looks like must be set; its `known` is filled.
+// Returns the directional albedo of one lobe before finish(), including its weight, for the layers below it. It ignores
+// the energy that single scattering loses. wo is inside the object if normal·wo < 0. All inputs of the lobe must be
+// set; the function fills `lobe->known`.
 Rgb lobe_albedo(Lobe* lobe, const Vec3& wo);
 
 inline constexpr int kMaxLobes = 12;
 
+// The lobes of a surface point. A caller adds lobes, calls finish(), and then evaluates and samples.
 class Closures {
  public:
-  // Building: add lobes, then finish() once. Where there are kMaxLobes already, the two most alike become one.
   void clear() { count_ = prepared_ = 0; }
+  // Returns a new lobe. If there are kMaxLobes already, the two most similar lobes are merged first.
   Lobe* add();
-  // wo and geometric_normal in world space, geometric_normal on the side of wo. Sorts lobes into classes by
-  // roughness_threshold (alpha), drops black ones, fills sampling weights. Can be called again for another wo (a
-  // shifted path), and must be: all that follows takes the wo of the last finish(). smooth_normal: interpolated, on the
-  // side of wo, without bumps; diffuse lobes with another normal darken softly where it turns away. 0: none.
+  // Sorts the lobes into classes by `roughness_threshold` (an alpha), removes black lobes and sets the sampling
+  // weights. `wo` and `geometric_normal` are in world space, the normal on the side of wo. All functions below require
+  // the wo of the last finish(); call it again for another wo, as shifted paths do. `smooth_normal` is the interpolated
+  // normal without bumps, on the side of wo, or 0 for none. Diffuse lobes with another normal darken gradually where
+  // the surface faces away.
   void finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold,
               const Vec3& smooth_normal = Vec3(0.0f));
 
@@ -121,49 +129,50 @@ class Closures {
   const Lobe& lobe(int i) const { return lobes_[i]; }
   bool empty() const { return count_ == 0; }
 
-  // Value, density and class probabilities are the same for every wo on one side: all lobes are Lambert's.
+  // Returns whether value, density and class probabilities are equal for all wo on one side: all lobes are Lambert.
   bool ignores_wo() const { return ignores_wo_; }
 
-  // P(class); the probabilities of the classes that are present sum to one. 0: class absent.
+  // Returns the probability of a class, or 0 if it has no lobes. The probabilities sum to 1.
   float class_probability(ScatterClass c) const { return class_probability_[static_cast<int>(c)]; }
-  // The class has lobes that are not Dirac, so that evaluate() can be non-zero.
+  // Returns whether the class has lobes that are not Dirac, so that evaluate() can be non-zero.
   bool has_smooth(ScatterClass c) const { return has_smooth_[static_cast<int>(c)]; }
 
-  // Dirac lobes of the class.
+  // Returns the number of Dirac lobes of the class.
   int dirac_count(ScatterClass c) const { return dirac_count_[static_cast<int>(c)]; }
 
-  // Any class has.
+  // Returns whether any class has lobes that are not Dirac.
   bool has_smooth() const { return has_smooth_[0] || has_smooth_[1] || has_smooth_[2]; }
 
-  // All smooth lobes of one class together.
+  // Returns the sum of all smooth lobes of one class.
   BsdfEval evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const;
-  // The same, and apart the lobes that make diffuse bounces, or those that do not.
+  // Returns that sum, and separately the sum of the lobes whose bounces are diffuse, or not, as `diffuse` says.
   KindEval evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi, bool diffuse) const;
-  // The same where the side of wi is not for the geometric normal to say.
+  // Returns the sum of all smooth lobes where the caller, not the geometric normal, decides the side of wi.
   BsdfEval evaluate_side(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted) const;
-  // Its value, split by Blender's light passes (contract 6.5).
+  // Returns the value of evaluate_side(), split by Blender's light passes.
   std::array<Rgb, 3> evaluate_by_pass(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted) const;
-  // u: direction; u_lobe: choice of the lobe. False: absorbed.
+  // Samples a direction of the class. `u_lobe` chooses the lobe and `u` the direction; both are uniform in [0, 1).
+  // Returns false if the light is absorbed.
   bool sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& u, BsdfSample* out) const;
-  // One given lobe alone: what a shift needs to replay a Dirac event with the same lobe. False if the lobe cannot do
-  // it.
+  // Scatters by one given Dirac lobe, as a shifted path does to replay a Dirac event. Returns false if the lobe does
+  // not scatter to that side.
   bool evaluate_dirac(int lobe, const Vec3& wo, bool transmitted, BsdfSample* out) const;
 
-  // Albedo of the lobes of a pass, for colour passes and denoising.
+  // Returns the albedo of the lobes of a pass, or of all, for colour passes and denoising.
   Rgb albedo(LightPass pass, const Vec3& wo) const;
   Rgb albedo(const Vec3& wo) const;
-  // Average normal of the lobes, weighted as sampled; for the denoising normal.
+  // Returns the average normal of the lobes by their sampling weights, for denoising.
   Vec3 average_normal() const;
 
  private:
-  // One side (or both) of one lobe in one class.
+  // One side, or both sides, of one lobe as a member of a class.
   struct Entry {
     uint8_t lobe = 0;
     uint8_t sides = 0;
     bool dirac = false;
-    float probability = 0.0f;  // within the class
+    float probability = 0.0f;  // probability within the class
   };
-  // As given to add(): finish() starts from these each time.
+  // The inputs of a lobe that finish() overwrites, so that each call starts from the same values.
   struct Original {
     LobeType type;
     Vec3 normal;
@@ -178,8 +187,8 @@ class Closures {
   void normalise();
   bool is_one_lambert() const;
   void finish_lambert();
-  // Value and density (times the entry's probability) of one smooth entry; zero where its normal sees wi on the other
-  // side.
+  // Returns value and density of one smooth entry, the density times the entry's probability. The result is 0 if the
+  // lobe's normal sees wi on the other side than `transmitted` says.
   BsdfEval evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3& wi, bool transmitted) const;
   template <class Add>
   void for_smooth(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted, Add&& add) const;
@@ -187,7 +196,7 @@ class Closures {
 
   std::array<Lobe, kMaxLobes> lobes_;
   int count_ = 0;
-  int prepared_ = 0;  // lobes whose original is kept
+  int prepared_ = 0;  // number of lobes whose inputs are in original_
   std::array<Original, kMaxLobes> original_;
   std::array<std::array<Entry, kMaxLobes>, kScatterClasses> entries_;
   std::array<int, kScatterClasses> entry_count_{};
@@ -199,11 +208,12 @@ class Closures {
   Vec3 smooth_normal_ = Vec3(0.0f);
 };
 
-// Returns whether a lobe scatters within a class: glass scatters within transmission and reflection.
+// Returns whether a lobe scatters within a class. Glass belongs to reflection and transmission.
 bool scatters_within(const Lobe& lobe, ScatterClass c);
 
-// Number of a Dirac lobe among those of its class, and the lobe with that number (-1: there is none): a Dirac event is
-// replayed by the lobe of equal rank, which is a one-to-one relation between two vertices.
+// dirac_rank() returns the rank of a Dirac lobe among those of its class; dirac_lobe() returns the lobe of a rank, or
+// -1 if there is none. A shifted path replays a Dirac event by the lobe of equal rank, so that the lobes of two
+// vertices correspond one to one.
 int dirac_rank(const Closures& closures, ScatterClass c, int lobe);
 int dirac_lobe(const Closures& closures, ScatterClass c, int rank);
 

@@ -1,10 +1,10 @@
-// Lambert; Oren-Nayar in Fujii's improved form, and its energy-conserving extension EON; Disney's diffuse with
-// retro-reflection.
+// Diffuse lobes: Lambert, Oren-Nayar in Fujii's improved form, its energy-conserving extension EON, and Disney's
+// diffuse lobe with retro-reflection.
 //
 // Fujii, "A tiny improvement of Oren-Nayar reflectance model" (2012); Portsmouth, Kutz, Hill, "EON: A practical
-// energy-preserving rough diffuse BRDF" (2024), whose equation numbers are given below. Cycles uses the first up to 4.1
-// and the second from 4.2 on. Disney's (Burley 2015, "Extending the Disney BRDF to a BSDF with integrated subsurface
-// scattering", eq. 4) is the base of Principled before 4.0.
+// energy-preserving rough diffuse BRDF" (2024), whose equation numbers are given below. Cycles uses Fujii's model up to
+// 4.1 and EON from 4.2 on. Disney's lobe (Burley 2015, "Extending the Disney BRDF to a BSDF with integrated subsurface
+// scattering", eq. 4) is the base of the Principled BSDF before 4.0.
 #include <algorithm>
 #include <cmath>
 
@@ -15,26 +15,26 @@
 namespace gradus::bsdf {
 namespace {
 
-// Coefficients A and B = A·roughness of Fujii's model, times π.
+// Returns the coefficient A of Fujii's model times π. The coefficient B is A·roughness.
 float fujii_a(float roughness) { return 1.0f / (1.0f + roughness * (0.5f - 2.0f / (3.0f * kPi))); }
 
-// Directional albedo of Fujii's model with white colour (eq. 12, 13).
+// Returns the directional albedo of Fujii's model for a white surface (eq. 12, 13).
 float fujii_albedo(float cosine, float roughness) {
   const float a = fujii_a(roughness);
   const float s = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
-  // (s/c)(1 - s³) cancels badly at grazing angles, where it tends to 3c/2.
+  // (s/c)(1 - s³) loses its digits by cancellation at grazing angles, where it tends to 3c/2.
   const float ratio = cosine < 1e-2f ? 1.5f * cosine : s / cosine * (1.0f - s * s * s);
   const float g = s * (std::acos(std::min(1.0f, cosine)) - s * cosine) + (2.0f / 3.0f) * (ratio - s);
   return a * (1.0f + roughness * kInvPi * g);
 }
 
-// Mean albedo over the cosine hemisphere (eq. 14).
+// Returns the mean of fujii_albedo() over the cosine-weighted hemisphere (eq. 14).
 float fujii_mean_albedo(float roughness) {
   return fujii_a(roughness) * (1.0f + roughness * (2.0f / 3.0f - 28.0f / (15.0f * kPi)));
 }
 
-// What bounces between the grooves (eq. 20), over the surface's colour. One factor of colour more than published, as in
-// Cycles: its result is multiplied by the colour once again.
+// Returns the multiple-scattering term (eq. 20), which the caller multiplies by the surface's colour. That is one
+// factor of colour more than published, as in Cycles.
 Rgb multiple_scattering(const Lobe& lobe, float cos_o, float cos_i) {
   const float mean = fujii_mean_albedo(lobe.alpha_x);
   const float shape =
@@ -43,7 +43,8 @@ Rgb multiple_scattering(const Lobe& lobe, float cos_o, float cos_i) {
   return color * color * (mean * std::max(0.0f, shape)) / (Rgb(1.0f) - color * (1.0f - mean));
 }
 
-// Times π. At grazing angles darker than Lambert where smooth, brighter towards the light where rough.
+// Returns Disney's diffuse lobe times π. At grazing angles it is darker than Lambert if smooth, and brighter towards
+// the light if rough.
 float disney(float roughness, const Vec3& wo, const Vec3& wi) {
   const float fl = pow5(std::clamp(1.0f - wi.z, 0.0f, 1.0f));
   const float fv = pow5(std::clamp(1.0f - wo.z, 0.0f, 1.0f));

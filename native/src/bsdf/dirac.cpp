@@ -1,4 +1,4 @@
-// Perfectly smooth interfaces: mirror, refraction, glass.
+// Lobes of perfectly smooth interfaces: mirror, refraction, glass.
 #include "bsdf/closures.h"
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"

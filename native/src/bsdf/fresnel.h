@@ -1,4 +1,4 @@
-// Reflectance of an interface under the angle to the (micro)normal.
+// Reflectance of an interface as a function of the angle to its normal or microfacet normal.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,9 @@
 
 namespace gradus::bsdf {
 
-// Unpolarised dielectric reflectance. cosine >= 0 on the side of arrival; eta: IOR of the far side over the near one. 1
-// beyond the critical angle. (Born and Wolf §1.5; this form: Walter et al. 2007, eq. 22.)
+// Returns the dielectric reflectance of unpolarised light, which is 1 beyond the critical angle. `cosine` >= 0 is on
+// the side of arrival, and `eta` is the IOR of the far side over that of the near side (Born and Wolf §1.5, in the form
+// of Walter et al. 2007, eq. 22).
 inline float fresnel_dielectric(float cosine, float eta) {
   const float g2 = eta * eta - 1.0f + cosine * cosine;
   if (!(g2 > 0.0f)) {
@@ -21,7 +22,7 @@ inline float fresnel_dielectric(float cosine, float eta) {
   return std::min(1.0f, 0.5f * a * a * (1.0f + b * b));
 }
 
-// At normal incidence.
+// Returns the dielectric reflectance at normal incidence.
 inline float fresnel_f0(float eta) {
   const float root = (eta - 1.0f) / (eta + 1.0f);
   return root * root;
@@ -32,7 +33,8 @@ inline float pow5(float x) {
   return x2 * x2 * x;
 }
 
-// Position between f0 (0) and f90 (1) on the dielectric curve of eta; Schlick's fifth power (1994) where eta is 1.
+// Returns the dielectric curve of `eta` scaled to 0 at normal and 1 at grazing incidence. If `eta` is 1 it returns
+// Schlick's fifth power (1994).
 inline float schlick_position(float cosine, float eta) {
   const float f0 = fresnel_f0(eta);
   if (f0 < 1e-6f) {
@@ -41,8 +43,8 @@ inline float schlick_position(float cosine, float eta) {
   return std::clamp((fresnel_dielectric(cosine, eta) - f0) / (1.0f - f0), 0.0f, 1.0f);
 }
 
-// Factor b of the term −b·c·(1−c)^6 that pulls Schlick's curve down to f0…1 times `tint` at 82° (Kutz, Hasan, Edmondson
-// 2021, "Novel aspects of the Adobe Standard Material", eq. 6).
+// Returns the factor b of the term −b·c·(1−c)^6, by which Schlick's curve from f0 to 1 is multiplied by `tint` at 82°
+// (Kutz, Hasan, Edmondson 2021, "Novel aspects of the Adobe Standard Material", eq. 6).
 inline Rgb f82_factor(const Rgb& f0, const Rgb& tint) {
   const float c = 6.0f / 7.0f;
   const float c5 = pow5(c);
@@ -50,6 +52,7 @@ inline Rgb f82_factor(const Rgb& f0, const Rgb& tint) {
   return schlick * (7.0f / (c5 * c)) * (Rgb(1.0f) - tint);
 }
 
+// Returns the reflectance of the F82 model: Schlick's curve from f0 to 1 with `tint` at 82°.
 inline Rgb fresnel_f82(float cosine, const Rgb& f0, const Rgb& tint) {
   const float s = std::max(0.0f, 1.0f - cosine);
   const float s5 = pow5(s);
@@ -57,7 +60,7 @@ inline Rgb fresnel_f82(float cosine, const Rgb& f0, const Rgb& tint) {
   return glm::clamp(schlick - f82_factor(f0, tint) * (cosine * s5 * s), 0.0f, 1.0f);
 }
 
-// Reflectance of a lobe whose microfacet meets the ray under `cosine`; lobe.ior as after finish().
+// Returns the Fresnel term of a finished lobe, where `cosine` is that of the ray and the microfacet normal.
 inline Rgb lobe_fresnel(const Lobe& lobe, float cosine) {
   switch (lobe.fresnel) {
     case FresnelType::None:
@@ -72,10 +75,10 @@ inline Rgb lobe_fresnel(const Lobe& lobe, float cosine) {
   return Rgb(1.0f);
 }
 
-// Whether light crosses the interface under this angle at all.
+// Returns whether light crosses the interface, that is, whether there is no total reflection.
 inline bool refracts(float cosine, float eta) { return eta * eta - 1.0f + cosine * cosine > 0.0f; }
 
-// Reflected and transmitted share of a lobe that has both sides, or only one (then the other is not drawn at all).
+// Reflected and transmitted share of light at a microfacet. A lobe with one side has 0 for the other.
 struct FresnelSplit {
   Rgb reflected;
   Rgb transmitted;

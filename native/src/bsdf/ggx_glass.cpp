@@ -1,5 +1,5 @@
-// One rough dielectric interface. Where both sides belong to one class, the side is chosen by the Fresnel term of the
-// sampled normal; where reflection and transmission are different classes, each is sampled by itself.
+// The lobe of a rough dielectric interface. If both sides belong to one class, the Fresnel term of the sampled normal
+// chooses the side. If reflection and transmission are different classes, each side is sampled alone.
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
 #include "bsdf/lobe.h"
@@ -8,6 +8,7 @@
 namespace gradus::bsdf {
 namespace {
 
+// Returns the probability of choosing reflection at a microfacet.
 float reflection_probability(const Lobe& lobe, float cosine) {
   const FresnelSplit split = lobe_fresnel_split(lobe, std::min(1.0f, cosine));
   const float reflected = mean_component(split.reflected);
@@ -15,7 +16,7 @@ float reflection_probability(const Lobe& lobe, float cosine) {
   return reflected > 0.0f ? reflected / (reflected + transmitted) : 0.0f;
 }
 
-// Cosine at the half-vector that reflects or refracts wo into wi.
+// Returns the cosine of wo and the half-vector that reflects or refracts wo into wi.
 float half_cosine(const Lobe& lobe, const Vec3& wo, const Vec3& wi) {
   const Vec3 h = wi.z > 0.0f ? wo + wi : wo + lobe.ior * wi;
   const float length2 = glm::dot(h, h);

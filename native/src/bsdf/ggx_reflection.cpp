@@ -1,4 +1,4 @@
-// Reflection by GGX microfacets (Walter et al. 2007, eq. 20), visible normals sampled.
+// Reflection by GGX microfacets (Walter et al. 2007, eq. 20). Samples are drawn from the visible normals.
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
 #include "bsdf/lobe.h"

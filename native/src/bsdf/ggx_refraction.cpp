@@ -1,6 +1,6 @@
-// Refraction by GGX microfacets (Walter et al. 2007, eq. 21), visible normals sampled. Radiance is not scaled by the
-// square of the IOR ratio, as in Cycles: a closed glass object gives the same picture, and energy stays bounded at each
-// interface.
+// Refraction by GGX microfacets (Walter et al. 2007, eq. 21). Samples are drawn from the visible normals. As in Cycles,
+// radiance is not scaled by the square of the IOR ratio. The picture of a closed glass object is the same, and no
+// single interface amplifies light.
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
 #include "bsdf/lobe.h"
@@ -25,7 +25,7 @@ BsdfEval evaluate_ggx_refraction(const Lobe& lobe, const Vec3& wo, const Vec3& w
     return {};
   }
   const Ggx ggx{lobe.alpha_x, lobe.alpha_y};
-  // D times the Jacobian of the half-vector, without cosines at the surface.
+  // D times the Jacobian of the half-vector, without the cosines at the macrosurface.
   const float density = ggx.density(h) * cos_o * -cos_i * eta * eta / length2;
   const float shape = density * ggx.masking_over_cosines(wo, wi) * -wi.z;
   const Rgb fresnel = lobe_fresnel_split(lobe, std::min(1.0f, cos_o)).transmitted;

@@ -1,22 +1,25 @@
-// What every kind of lobe offers, in the lobe's own frame (z = normal, wo.z > 0 but for diffuse lobes with bumps).
+// Functions of single lobes, grouped by type. Directions are in the lobe's frame, where z is the normal. wo.z is
+// positive, except for diffuse lobes with bumps.
 #pragma once
 
 #include "bsdf/closures.h"
 
 namespace gradus::bsdf {
 
-// Sides of the surface that an entry of a class scatters to.
+// Bit mask of the sides of the surface to which a lobe scatters.
 enum : uint8_t { kReflects = 1, kTransmits = 2, kBothSides = 3 };
 
-// f·|cos| of the given sides of one smooth lobe, weight included; density of `sample` with the same sides.
+// Evaluates f·|cos| of the given sides of a smooth lobe, including its weight, and the density of the sampling function
+// with the same sides.
 using EvaluateLobe = BsdfEval (*)(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides);
-// u_side: chooses reflection or transmission where both are asked for. False: the sample is lost.
+// Samples a direction. `u_side` chooses reflection or transmission if both sides are given. Returns false if the sample
+// is invalid.
 using SampleLobe = bool (*)(const Lobe& lobe, const Vec3& wo, float u_side, const Vec2& u, uint8_t sides, Vec3* wi);
 
-// Lambert's lobe needs no more than the cosine of wi and its normal.
 inline bool is_lambert(const Lobe& lobe) {
   return lobe.type == LobeType::Diffuse && lobe.fresnel != FresnelType::Schlick && lobe.alpha_x <= 0.0f;
 }
+// Evaluates a Lambert lobe, for which the cosine of wi and the normal suffices.
 inline BsdfEval evaluate_lambert(const Lobe& lobe, float cos_i) {
   const float pdf = cos_i * kInvPi;
   return cos_i > 0.0f ? BsdfEval{lobe.weight * pdf, pdf} : BsdfEval{};
@@ -30,7 +33,7 @@ bool sample_translucent(const Lobe& lobe, const Vec3& wo, float u_side, const Ve
 
 BsdfEval evaluate_sheen(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides);
 bool sample_sheen(const Lobe& lobe, const Vec3& wo, float u_side, const Vec2& u, uint8_t sides, Vec3* wi);
-// Directional albedo without the weight.
+// Returns the directional albedo of a sheen lobe without its weight, for the cosine of wo.
 float sheen_albedo(const Lobe& lobe, float cosine);
 
 BsdfEval evaluate_ggx_reflection(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides);
@@ -42,30 +45,32 @@ bool sample_ggx_refraction(const Lobe& lobe, const Vec3& wo, float u_side, const
 BsdfEval evaluate_ggx_glass(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides);
 bool sample_ggx_glass(const Lobe& lobe, const Vec3& wo, float u_side, const Vec2& u, uint8_t sides, Vec3* wi);
 
-// Direction and coefficient (weight included) of one side of a Dirac lobe; false if that side does not exist from wo.
+// Computes the direction and the coefficient, including the weight, of one side of a Dirac lobe. Returns false if the
+// lobe does not scatter wo to that side.
 bool dirac_direction(const Lobe& lobe, const Vec3& wo, bool transmitted, Vec3* wi, Rgb* coefficient);
 
 inline bool is_dirac(LobeType type) { return type >= LobeType::DiracReflection; }
 inline bool is_microfacet(LobeType type) { return type >= LobeType::GgxReflection; }
 
-// Turns the normal to the side of wo, limits what users can type, makes it Dirac where float demands it, fills
-// `energy`.
+// Completes one lobe: flips its normal to the side of `geometric_normal` and wo, clamps its inputs to their ranges,
+// makes it Dirac where floats cannot represent it, and sets `energy`.
 void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo);
 
-// What merging two lobes changes, after Ward ("Hierarchical Grouping to Optimize an Objective Function", 1963): 0 for
-// equal shapes, little where one of them is weak; infinite for other kinds of lobes.
+// Returns the cost of merging two lobes (Ward, "Hierarchical Grouping to Optimize an Objective Function", 1963). It is
+// 0 for equal shapes, small if one of the lobes is weak, and infinite for lobes of different type or pass.
 float merge_cost(const Lobe& a, const Lobe& b);
-// One lobe for two that are not finished: the mean shape, and the albedo of both as seen along the normal.
+// Merges two lobes that are not finished into one with their mean shape and, at normal incidence, their total albedo.
 Lobe merged(const Lobe& a, const Lobe& b);
 
-// Directional albedo of both sides of a lobe, weight and energy compensation included, seen under the cosine of wo and
-// the lobe's normal; lobe as after finish().
+// Directional albedos of both sides of a lobe.
 struct LobeAlbedo {
   Rgb reflected = Rgb(0.0f);
   Rgb transmitted = Rgb(0.0f);
 };
+// Returns the directional albedos of a finished lobe, including weight and energy compensation. `cosine` is that of wo
+// and the lobe's normal.
 LobeAlbedo two_sided_albedo(const Lobe& lobe, float cosine);
-// Factor by which multiple scattering raises a microfacet lobe seen under `cosine`.
+// Returns the factor by which multiple scattering raises a microfacet lobe, for the cosine of wo and the normal.
 Rgb multiscatter_energy(const Lobe& lobe, float cosine);
 
 }  // namespace gradus::bsdf

@@ -1,4 +1,4 @@
-// Making two lobes one, where a surface has more than there is room for.
+// Merging of lobes, for surfaces with more lobes than kMaxLobes.
 #include "bsdf/lobe.h"
 
 namespace gradus::bsdf {
@@ -7,10 +7,10 @@ namespace {
 float squared_length(const Vec3& v) { return glm::dot(v, v); }
 float square(float x) { return x * x; }
 
-// How different the shapes are. Other kinds of lobes are never alike.
+// Returns a squared distance of two lobes' shapes. It is infinite for lobes of different type or pass.
 float squared_distance(const Lobe& a, const Lobe& b) {
   if (a.type != b.type || a.pass != b.pass) return kInfinity;
-  // Another Fresnel curve is further away than any parameters are: such lobes are merged last.
+  // Lobes with different Fresnel types are merged last, so their distance exceeds that of any parameters.
   constexpr float kOtherCurve = 1e6f;
   const bool anisotropic = a.alpha_x != a.alpha_y || b.alpha_x != b.alpha_y;
   return (a.fresnel == b.fresnel ? 0.0f : kOtherCurve) + (a.multiscatter == b.multiscatter ? 0.0f : 1.0f) +
@@ -20,7 +20,7 @@ float squared_distance(const Lobe& a, const Lobe& b) {
          squared_length(a.transmission_tint - b.transmission_tint);
 }
 
-// Albedo as seen along the normal.
+// Returns the albedo at normal incidence.
 Rgb head_on_albedo(Lobe lobe) {
   lobe.normal = Vec3(0, 0, 1);
   return lobe_albedo(&lobe, lobe.normal);

@@ -1,4 +1,4 @@
-// Snell's law in vectors.
+// Refraction of directions by Snell's law.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace gradus::bsdf {
 
-// Direction beyond an interface with unit normal h, wo·h > 0. eta: IOR of the far side over the near one. False: total
-// reflection.
+// Computes the refracted direction *wi at an interface with the unit normal h, where wo·h > 0. `eta` is the IOR of the
+// far side over that of the near side. Returns false under total reflection.
 inline bool refract_direction(const Vec3& wo, const Vec3& h, float eta, Vec3* wi) {
   const float cosine = glm::dot(wo, h);
   const float inverse = 1.0f / eta;

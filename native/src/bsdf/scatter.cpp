@@ -1,4 +1,4 @@
-// Evaluating and sampling finished closures.
+// Evaluation and sampling of finished closures.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +15,7 @@ struct LobeFunctions {
   EvaluateLobe evaluate;
   SampleLobe sample;
 };
-// By LobeType; Dirac lobes have neither.
+// The functions of each LobeType, in its order. Dirac lobes have none.
 constexpr std::array<LobeFunctions, static_cast<size_t>(LobeType::Count)> kFunctions = {{
     {evaluate_diffuse, sample_diffuse},
     {evaluate_translucent, sample_translucent},
@@ -29,7 +29,7 @@ constexpr std::array<LobeFunctions, static_cast<size_t>(LobeType::Count)> kFunct
 }};
 const LobeFunctions& functions_of(const Lobe& lobe) { return kFunctions[static_cast<size_t>(lobe.type)]; }
 
-// Glass counts as glossy on the side where it reflects, as in Cycles.
+// Returns the light pass of one side of a lobe. As in Cycles, the reflection side of glass is glossy.
 size_t pass_of(const Lobe& lobe, bool transmitted) {
   const bool reflecting_glass = !transmitted && (lobe.type == LobeType::GgxGlass || lobe.type == LobeType::DiracGlass);
   return static_cast<size_t>(reflecting_glass && lobe.pass == LightPass::Transmission ? LightPass::Glossy : lobe.pass);
@@ -37,8 +37,8 @@ size_t pass_of(const Lobe& lobe, bool transmitted) {
 
 bool is_diffuse(const Lobe& lobe) { return lobe.pass == LightPass::Diffuse; }
 
-// Compiled once: the density of a sharp lobe shows in how its arithmetic is contracted, and sample() and evaluate()
-// must agree.
+// Evaluates a lobe in its frame. It must not be inlined: sample() and evaluate() have to agree, and the density of a
+// sharp lobe depends on where the compiler contracts multiplications and additions.
 [[gnu::noinline]] BsdfEval evaluate_in_frame(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides) {
   const Frame3 frame = make_frame(lobe.normal, lobe.tangent);
   return functions_of(lobe).evaluate(lobe, frame.to_local(wo), frame.to_local(wi), sides);
@@ -50,13 +50,13 @@ float stay_below_one(float u) { return std::min(u, 0.99999994f); }
 
 inline bool Closures::crosses(const Vec3& wi) const { return glm::dot(geometric_normal_, wi) < 0.0f; }
 
-// Inlined, as are the sums below, so that values stay in registers: what is stored in parts and loaded as a whole
-// stalls.
+// This function and for_smooth() are inlined so that values stay in registers. A value that is stored by components and
+// loaded as a vector would stall the processor.
 [[gnu::always_inline]] inline BsdfEval Closures::evaluate_entry(const Entry& entry, const Vec3& wo, const Vec3& wi,
                                                                 bool transmitted) const {
   const Lobe& source = lobes_[entry.lobe];
-  // Shading and geometric side must agree: no light through walls, and a test that a shifted path meets in the same
-  // form.
+  // The sides of the shading and the geometric normal must agree, so that no light leaks through surfaces. Shifted
+  // paths apply the same test.
   const float cos_i = glm::dot(wi, source.normal);
   if ((cos_i < 0.0f) != transmitted) {
     return {};
@@ -69,7 +69,7 @@ inline bool Closures::crosses(const Vec3& wi) const { return glm::dot(geometric_
   return eval;
 }
 
-// Calls add(lobe, BsdfEval) for the smooth entries of a class.
+// Calls add(lobe, evaluation) for each smooth entry of a class.
 template <class Add>
 [[gnu::always_inline]] inline void Closures::for_smooth(ScatterClass c, const Vec3& wo, const Vec3& wi,
                                                         bool transmitted, Add&& add) const {
@@ -145,7 +145,7 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
   if (entry_count_[k] == 0) {
     return false;
   }
-  // Choose the entry; what is left of u_lobe chooses the side.
+  // u_lobe chooses the entry; its remainder, scaled to [0, 1), chooses the side.
   int chosen = 0;
   float rest = u_lobe;
   while (chosen < entry_count_[k] - 1 && rest >= entries_[k][static_cast<size_t>(chosen)].probability) {

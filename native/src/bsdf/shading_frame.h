@@ -16,15 +16,16 @@ struct Frame3 {
   Vec3 to_world(const Vec3& v) const { return v.x * x + v.y * y + v.z * z; }
 };
 
-// Some unit vector across a unit normal, without a pole (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT
-// 2017).
+// Returns a unit vector perpendicular to a unit normal, well defined for all normals (Duff et al., "Building an
+// Orthonormal Basis, Revisited", JCGT 2017).
 inline Vec3 perpendicular(const Vec3& n) {
   const float sign = std::copysign(1.0f, n.z);
   const float a = -1.0f / (sign + n.z);
   return Vec3(1.0f + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x);
 }
 
-// The part of `tangent` across the unit normal, normalised; any other direction across it where that vanishes.
+// Returns the component of `tangent` perpendicular to the unit normal, normalised. If that vanishes it returns another
+// perpendicular direction.
 inline Vec3 orthonormal_tangent(const Vec3& normal, const Vec3& tangent) {
   const Vec3 across = tangent - normal * glm::dot(normal, tangent);
   const float length2 = glm::dot(across, across);
@@ -34,7 +35,7 @@ inline Vec3 orthonormal_tangent(const Vec3& normal, const Vec3& tangent) {
   return across / std::sqrt(length2);
 }
 
-// For what is a unit vector but for rounding: one step of Newton's from length 1.
+// Normalises a vector that has unit length except for rounding errors, by one Newton step.
 inline Vec3 renormalise(const Vec3& v) { return v * (1.5f - 0.5f * glm::dot(v, v)); }
 
 inline Frame3 make_frame(const Vec3& normal, const Vec3& tangent) {

@@ -1,4 +1,4 @@
-// Shading normals that agree with the geometry as far as mirrors need.
+// Corrections for shading normals that disagree with the geometric normal.
 #pragma once
 
 #include <algorithm>
@@ -8,10 +8,10 @@
 
 namespace gradus::bsdf {
 
-// Tilts `normal` (unit, on the side of geometric_normal) towards geometric_normal just so far that the mirror direction
-// of wo stays above the geometric surface; otherwise bumps at grazing view turn black. All unit; wo on the side of
-// geometric_normal. With N = sinφ·X + cosφ·Z, wo = a·X + c·Z + …, the mirror direction's Z part is a·sin2φ + c·cos2φ =
-// |(a,c)|·cos(2φ − atan2(a, c)).
+// Tilts `normal` towards `geometric_normal` just so far that the mirror direction of wo stays above the geometric
+// surface. Otherwise bumps at grazing views would turn black. All vectors are unit vectors, and `normal` and wo lie on
+// the side of `geometric_normal`. With N = sinφ·X + cosφ·Z and wo = a·X + c·Z + …, the Z component of the mirror
+// direction is a·sin2φ + c·cos2φ = |(a,c)|·cos(2φ − atan2(a, c)).
 inline Vec3 keep_reflection_above(const Vec3& normal, const Vec3& geometric_normal, const Vec3& wo) {
   const float c = glm::dot(wo, geometric_normal);
   const float lowest = std::min(0.9f * c, 0.01f);
@@ -31,10 +31,10 @@ inline Vec3 keep_reflection_above(const Vec3& normal, const Vec3& geometric_norm
   return glm::normalize(std::sin(phi) * x + std::cos(phi) * geometric_normal);
 }
 
-// Factor for diffuse reflection towards wi by a bump with `normal` on a surface with smooth_normal: bumps that face
-// light which the surface turns away from would otherwise end in a hard edge. Smith masking by facets as wide as the
-// bump is tilted (Estevez, Lecocq, Stein 2019, "A Microfacet-Based Shadowing Function to Solve the Bump Terminator
-// Problem", Ray Tracing Gems ch. 12); as in Blender 4.
+// Returns a factor for diffuse reflection towards wi, where a bump has `normal` and the surface `smooth_normal`.
+// Without it, bumps that face a light behind the surface would end at a hard edge. The factor is Smith masking with a
+// roughness from the tilt of the bump (Estevez, Lecocq, Stein 2019, "A Microfacet-Based Shadowing Function to Solve the
+// Bump Terminator Problem", Ray Tracing Gems ch. 12), as in Blender 4.
 inline float bump_shadowing(const Vec3& smooth_normal, const Vec3& normal, const Vec3& wi) {
   const float cos_d = std::clamp(std::abs(glm::dot(smooth_normal, normal)), 1e-3f, 1.0f);
   const float cos_i = std::clamp(std::abs(glm::dot(smooth_normal, wi)), 1e-6f, 1.0f);

@@ -1,6 +1,6 @@
-// Sheen. From Blender 4.0 on a layer of fibres: a linearly transformed cosine (Zeltner, Burley, Chiang 2022, "Practical
-// Multiple-Scattering Sheen Using Linearly Transformed Cosines"), with parameters of our own fit. Before: Disney's
-// grazing term (Burley 2012), which a lobe with fresnel Schlick asks for.
+// Sheen lobes. As in Blender 4.0 and later, sheen is a layer of fibres: a linearly transformed cosine (Zeltner, Burley,
+// Chiang 2022, "Practical Multiple-Scattering Sheen Using Linearly Transformed Cosines") with the parameters of
+// sheen_table.h. Lobes with fresnel Schlick have Disney's grazing term (Burley 2012), as in Blender before 4.0.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,14 +13,14 @@
 namespace gradus::bsdf {
 namespace {
 
-// ---- Disney's term: (1 − ω_i·h)^5 cos θ_i.
+// ---- Disney's grazing term: (1 − ω_i·h)^5 cos θ_i.
 
 float grazing_term(const Vec3& wo, const Vec3& wi) {
   const Vec3 h = glm::normalize(wo + wi);
   return pow5(std::clamp(1.0f - glm::dot(wi, h), 0.0f, 1.0f)) * wi.z;
 }
 
-// Its albedo at cosines (i/31)².
+// Albedo of the grazing term, tabulated at the cosines (i/31)².
 struct GrazingTable {
   static constexpr int kCosines = 32;
   std::array<float, kCosines> values;
@@ -37,7 +37,7 @@ struct GrazingTable {
     float sum = 0.0f;
     for (int i = 0; i < kSteps; i++) {
       for (int j = 0; j < kSteps; j++) {
-        // Uniform in z² and in half the azimuths.
+        // The midpoint rule is uniform in √z and covers half of the azimuths, because the integrand is symmetric.
         const float s = (static_cast<float>(i) + 0.5f) / kSteps;
         const float z = s * s;
         const float phi = kPi * (static_cast<float>(j) + 0.5f) / kSteps;
@@ -58,8 +58,10 @@ float grazing_albedo(float cosine) {
   return table.at(cosine);
 }
 
-// ---- The fibres: ω' = (s·x + k·z, s·y, z), normalised, is distributed by cosine; x lies along ω_o.
+// ---- The layer of fibres: ω' = (s·x + k·z, s·y, z), normalised, has a cosine distribution; the x axis is the
+// projection of ω_o.
 
+// Parameters of the fibre lobe: s (scale), k (skew) and the directional albedo.
 struct Fibres {
   float scale;
   float skew;
@@ -81,12 +83,13 @@ Fibres fibres_at(float roughness, float cosine) {
   return {mix(kSheenScale), mix(kSheenSkew), mix(kSheenAlbedo)};
 }
 
-// Unit vector along the projection of ω_o.
+// Returns the unit vector along the projection of ω_o onto the surface.
 Vec2 heading(const Vec3& wo) {
   const float length2 = wo.x * wo.x + wo.y * wo.y;
   return length2 > 1e-12f ? Vec2(wo.x, wo.y) / std::sqrt(length2) : Vec2(1.0f, 0.0f);
 }
 
+// Returns the density in solid angle of wi, given wo.
 float fibre_density(const Fibres& fibres, const Vec3& wo, const Vec3& wi) {
   const Vec2 axis = heading(wo);
   const float x = fibres.scale * (wi.x * axis.x + wi.y * axis.y) + fibres.skew * wi.z;

@@ -1,9 +1,8 @@
-// The parameters of the microfiber sheen by roughness (rows, 0 to 1) and cosine of the view (columns, 0 to 1), in steps
-// of 1/8.
+// Parameters of the microfiber sheen by roughness (rows, 0 to 1) and cosine of wo (columns, 0 to 1), in steps of 1/8.
 //
-// Fitted to values of Cycles (Blender 4.5.15), measured without noise as for A9_CyclesClosures: with c1, c2, c3 from
-// least squares on sqrt(z/value) = c1 (x^2 + y^2) + c2 x z + c3 z^2, which is the lobe's form. At cosine 0
-// extrapolated; roughness 0 is black.
+// They are fitted to values of Cycles (Blender 4.5.15), measured without noise as for the test A9_CyclesClosures. The
+// coefficients c1, c2, c3 are the least-squares solution of sqrt(z/value) = c1 (x^2 + y^2) + c2 x z + c3 z^2, which is
+// the form of the lobe. Values at cosine 0 are extrapolated. Roughness 0 is black.
 #pragma once
 
 namespace gradus::bsdf {

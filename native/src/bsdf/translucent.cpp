@@ -1,4 +1,4 @@
-// Lambert on the far side.
+// The translucent lobe: a Lambert lobe on the far side of the surface.
 #include "bsdf/lobe.h"
 #include "bsdf/warp.h"
 

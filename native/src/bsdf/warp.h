@@ -1,4 +1,4 @@
-// Unit square to directions around +z.
+// Mappings from the unit square to directions around +z.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,8 @@
 
 namespace gradus::bsdf {
 
-// Density cos/π. Polar disk map, lifted (Malley).
+// Samples a direction with the density cos/π by Malley's method: a uniform point of the unit disk, projected up to the
+// hemisphere.
 inline Vec3 sample_cosine_hemisphere(const Vec2& u) {
   const float radius = std::sqrt(u.x);
   const SineCosine phi = sine_cosine(2.0f * kPi * u.y);

@@ -8,7 +8,7 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
-#include "base/throw_if_cancelled.h"
+#include "base/cancel_check.h"
 #include "film_io/block_file.h"
 #include "film_io/block_rows.h"
 #include "film_io/check_planes.h"

@@ -1,4 +1,4 @@
-// A colour space given by values: one curve for all channels, then a matrix.
+// A colour space that is defined by values: one curve for all channels, followed by a matrix.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ class BakedSpace {
   Rgb apply(const Rgb& encoded) const;
 
  private:
-  // Linear between samples over [0, 1]; the first and last segments go on outside.
+  // Interpolates the curve's samples over [0, 1] linearly. Outside it continues the first and the last segment.
   float curve(float x) const;
 
   std::vector<float> curve_;

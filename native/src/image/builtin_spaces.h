@@ -1,4 +1,4 @@
-// Colour spaces that are known without a configuration.
+// Built-in colour spaces, which are known without a configuration.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace gradus::image {
 
-// By the names that Blender has used for them. nullopt: not one of these.
+// Returns the transform of a built-in space by any name that Blender has used for it, or nothing for other names.
 std::optional<ColorTransform> builtin_transform(const std::string& space);
 
 }  // namespace gradus::image

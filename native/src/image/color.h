@@ -1,4 +1,4 @@
-// Colour spaces to scene-linear, by OpenColorIO with the host's configuration (contract 8.1).
+// Conversion of colour spaces to scene-linear by OpenColorIO, with the host's configuration.
 #pragma once
 
 #include <cstddef>
@@ -10,32 +10,34 @@
 
 namespace gradus::image {
 
-// How values of a colour space become scene-linear.
+// The conversion from a colour space to scene-linear.
 enum class ColorTransform {
-  Data,   // not colour (Non-Color, Raw, ""), or already scene-linear: values stay
-  Srgb,   // the sRGB curve on Rec. 709 primaries, where those are the scene-linear ones
-  Other,  // through to_scene_linear() only
+  Data,   // none, because the values are no colours (Non-Color, Raw, "") or already scene-linear
+  Srgb,   // the sRGB curve alone, because the primaries are those of scene-linear
+  Other,  // any other conversion, applied by to_scene_linear()
 };
 
 class ColorManager {
  public:
   using Warn = std::function<void(const std::string&)>;
 
-  // config_path: a file of OpenColorIO, UTF-8. Missing, unreadable or without a scene-linear role: one warning, then
-  // sRGB and linear alone are known. Never throws but for lack of memory.
+  // Reads the OpenColorIO configuration at `config_path`, in UTF-8. If it is missing, unreadable or without a
+  // scene-linear role it emits one warning, and only the built-in spaces, sRGB and linear, are known. Throws only
+  // std::bad_alloc.
   ColorManager(const std::string& config_path, Warn warn);
   ~ColorManager();
   ColorManager(const ColorManager&) = delete;
   ColorManager& operator=(const ColorManager&) = delete;
 
-  // Values baked elsewhere, which win over the configuration. Throws Error(INVALID_ARGUMENT) for a nameless space or
-  // non-finite values.
+  // Sets a space by baked values, which take precedence over the configuration. Throws Error(INVALID_ARGUMENT) if the
+  // name is empty or a value is not finite.
   void set_override(const GradusColorSpace& space);
 
-  // Which transform `space` needs. Unknown names: one warning with the name, then Srgb if is_byte, else Data.
+  // Returns the transform of `space`. An unknown name causes one warning; its transform is Srgb if `is_byte`, else
+  // Data.
   ColorTransform transform(const std::string& space, bool is_byte) const;
-  // In place: the first three of `channels` (3 or 4) floats of each pixel become scene-linear; alpha, not associated,
-  // stays.
+  // Converts pixels of 3 or 4 `channels` in place. The first three become scene-linear. Alpha does not change, and the
+  // colours must not be multiplied by it.
   void to_scene_linear(const std::string& space, bool is_byte, float* pixels, size_t pixel_count, int channels) const;
 
  private:
@@ -43,7 +45,7 @@ class ColorManager {
   std::unique_ptr<State> state_;
 };
 
-// The piecewise sRGB curve (IEC 61966-2-1), encoded to linear and back; any finite argument.
+// The piecewise sRGB curve (IEC 61966-2-1) and its inverse, for any finite argument.
 float srgb_to_linear(float encoded);
 float linear_to_srgb(float linear);
 

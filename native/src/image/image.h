@@ -1,4 +1,4 @@
-// Pixels of one image, ready for look-ups.
+// The pixels of one image, stored for look-ups.
 #pragma once
 
 #include <memory>
@@ -11,16 +11,16 @@
 namespace gradus::image {
 
 struct ImageTile {
-  uint32_t number = 0;  // UDIM; 0 = not tiled
-  uint32_t width = 0;   // 0: could not be read
+  uint32_t number = 0;  // UDIM number; 0 if the image is not tiled
+  uint32_t width = 0;   // 0 if the tile could not be read
   uint32_t height = 0;
   uint32_t channels = 0;  // as in DecodedImage
   PixelFormat format = PixelFormat::Byte;
-  bool srgb = false;                  // interpolated as encoded, then made linear, as Cycles does with 8 bit images
-  std::unique_ptr<uint8_t[]> pixels;  // bottom row first; alpha associated, if it is at all
+  bool srgb = false;                  // sRGB values, converted after interpolation as Cycles does for 8-bit images
+  std::unique_ptr<uint8_t[]> pixels;  // bottom row first; colours are multiplied by alpha if the image associates it
 
   size_t size_bytes() const { return static_cast<size_t>(width) * height * channels * bytes_per_channel(format); }
-  // Stored value of a texel, alpha 1 where there is none. x < width, y < height.
+  // Returns the stored value of a texel, with alpha 1 if there is no alpha channel. x < width and y < height.
   Vec4 texel(uint32_t x, uint32_t y) const;
 };
 
@@ -29,13 +29,13 @@ class Image {
   std::string name;
   std::vector<ImageTile> tiles;
   std::vector<std::string> warnings;
-  bool ignores_alpha = false;  // alpha reads 1
+  bool ignores_alpha = false;  // look-ups return alpha 1
   bool has_alpha = false;      // some texel is not opaque
-  Rgb mean = Rgb(0.0f);        // scene-linear
-  uint64_t content_hash = 0;   // of what it was made of, wherever that lies
+  Rgb mean = Rgb(0.0f);        // scene-linear mean colour
+  uint64_t content_hash = 0;   // hash of the source data and settings, independent of paths
 };
 
-// Stored value to scene-linear; outside 0…1 by the formula.
+// Converts a stored value to scene-linear. sRGB values outside 0…1 take the exact formula instead of a table.
 Vec4 decode_texel(const ImageTile& tile, const Vec4& stored);
 
 }  // namespace gradus::image

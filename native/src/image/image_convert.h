@@ -1,4 +1,4 @@
-// From decoded files to stored tiles: colour space, alpha, broken numbers.
+// Conversion of decoded files to stored tiles: colour space, alpha, and removal of infinities and NaN.
 #pragma once
 
 #include <string>
@@ -9,13 +9,14 @@ namespace gradus::image {
 
 class ColorManager;
 
-// 8 bit data and sRGB stay 8 bit; 16 bit data stay 16 bit; other integers become half, floats stay what they are.
-// Straight alpha that is not associated yet becomes so if `associate`.
+// Converts a decoded image. 8-bit data without a conversion and 8-bit sRGB stay 8 bit, 16-bit data without a conversion
+// stay 16 bit, other integers become half, and floats stay floats. If `associate`, colours are multiplied by alpha
+// unless the file has done so.
 ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const std::string& space, bool associate);
 
-// Mean colour over at most about a million texels.
+// Returns the scene-linear mean colour of at most about a million texels.
 Rgb mean_color(const ImageTile& tile);
-// Whether the alpha of any texel is below 1: all are looked at, for a material may be taken for opaque by it.
+// Returns whether any texel has an alpha below 1. It tests all texels, because materials become opaque on its account.
 bool has_transparency(const ImageTile& tile);
 
 }  // namespace gradus::image

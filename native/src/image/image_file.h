@@ -1,4 +1,4 @@
-// Whole files into memory.
+// Reading of files into memory.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace gradus::image {
 
-// False, with a text, for what is not a readable regular file.
+// Reads a whole file. Returns false, with the reason in *problem, if it is not a readable regular file of at most 16
+// GiB.
 bool read_file(const std::string& path, std::vector<uint8_t>* bytes, std::string* problem);
 
 }  // namespace gradus::image

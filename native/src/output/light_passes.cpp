@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/throw_if_cancelled.h"
+#include "base/cancel_check.h"
 #include "film/pass_planes.h"
 #include "output/light_pass_samples.h"
 #include "reconstruct/box_mean.h"

@@ -1,6 +1,6 @@
 #include "render/denoise_timed.h"
 
-#include "base/scoped_timer.h"
+#include "base/clock.h"
 
 namespace gradus::render {
 

@@ -4,7 +4,6 @@
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "base/scoped_timer.h"
 #include "base/threads.h"
 #include "film/pass_planes.h"
 #include "motion/component_motion.h"

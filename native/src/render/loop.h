@@ -8,7 +8,7 @@
 
 #include <tbb/task_arena.h>
 
-#include "base/stopwatch.h"
+#include "base/clock.h"
 #include "film/film.h"
 #include "output/light_passes.h"
 #include "output/oidn_library.h"

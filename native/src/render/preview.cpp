@@ -1,6 +1,6 @@
 #include "render/preview.h"
 
-#include "base/scoped_timer.h"
+#include "base/clock.h"
 #include "render/quarter_preview.h"
 #include "render/show_combined.h"
 

@@ -9,7 +9,6 @@
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "base/stopwatch.h"
 #include "film/film.h"
 #include "gradus/gradus.h"
 #include "render/progress_tracker.h"

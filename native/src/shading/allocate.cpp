@@ -1,5 +1,5 @@
-// Register allocation by linear scan. Jumps go forward only, and what runs between a jump and its target is not used
-// after it, so that the order of the code is an order of lifetimes.
+// Register allocation by linear scan. Jumps only go forward, and values that are computed between a jump and its target
+// are not used after the target. Therefore the lifetimes follow the order of the code.
 #include <algorithm>
 
 #include "base/error.h"
@@ -56,14 +56,14 @@ class Allocator {
   }
 
   void allocate(uint32_t pc) {
-    // Inputs are read before outputs are written: a register may serve both.
+    // Inputs are read before outputs are written, so an output may take the register of an input.
     for_each_operand(pc, [&](Operand* o) {
       if (*o < 0) return;
       const auto v = static_cast<size_t>(*o);
       *o = real_[v];
       if (last_use_[v] == pc) {
         free_.push_back(real_[v]);
-        last_use_[v] = -1;  // an operand may come twice
+        last_use_[v] = -1;  // an instruction may use an operand twice
       }
     });
     const VirtualOutputs& written = outputs_[pc];

@@ -4,7 +4,9 @@
 
 namespace gradus::shading {
 
-// name nullptr: the UV map that the mesh renders with. *channels (may be null): 0 where there is no such attribute.
+// Returns an attribute of the mesh, interpolated at the hit. If `name` is null and `uv` is true it is the mesh's
+// default UV map. `channels` may be null; *channels receives the number of channels, or 0 if there is no such
+// attribute.
 Vec4 attribute_value(const ShadeContext& c, const std::string* name, bool uv, uint32_t* channels) {
   if (channels) *channels = 0;
   if (!c.instance) return Vec4(0.0f);
@@ -19,7 +21,7 @@ Vec4 attribute_value(const ShadeContext& c, const std::string* name, bool uv, ui
 void attribute(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
   uint32_t channels = 0;
   Vec4 v = attribute_value(c, args.name, false, &channels);
-  if (channels == 0) v.w = 1.0f;  // as in Cycles: what is missing is black, but opaque
+  if (channels == 0) v.w = 1.0f;  // as in Cycles, a missing attribute is black and opaque
   if (channels == 1) v = Vec4(v.x, v.x, v.x, 1.0f);
   out[0] = out[1] = Vec4(Vec3(v), 1.0f);
   out[2] = splat(channels == 1 ? v.x : mean_component(Vec3(v)));

@@ -1,4 +1,4 @@
-// Colour of a black body: Planck's law through the CIE 1931 observer.
+// The colour of a black body: Planck's law, seen by the CIE 1931 observer.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,8 @@
 
 namespace gradus::shading {
 
-// Temperatures beyond those that Cycles knows have the colour of its last one; what Rec. 709 cannot show is cut off.
+// Temperatures are clamped to the range of Cycles, 800 to 12000 K. Components outside the gamut of Rec. 709 are clamped
+// at 0.
 Rgb blackbody(float kelvin) {
   const double t = std::clamp(kelvin, 800.0f, 12000.0f);
   glm::dvec3 xyz(0.0);

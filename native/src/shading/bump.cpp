@@ -6,12 +6,13 @@
 namespace gradus::shading {
 namespace {
 
-// About one pixel of a 1080p picture, as an angle. A step that depends on the point alone: a path that is shifted onto
-// a point must find the normal that any other path finds there.
+// The angle of about one pixel of a 1080p picture, which gives the step of the finite differences. The step depends on
+// the point alone, because a path that is shifted onto a point must get the same normal as any other path there.
 constexpr float kPixelAngle = 7e-4f;
-// Steps shorter than this share of the coordinates drown in rounding.
+// Minimum step as a fraction of the largest coordinate; a shorter step would be lost in rounding errors.
 constexpr float kSmallestStep = 2e-5f;
 
+// Returns the step of the finite differences, in scene units.
 float step_length(const ShadeContext& c, float filter_width) {
   const Vec3 p = glm::abs(c.position);
   float distance = c.scene->radius;
@@ -26,7 +27,7 @@ float step_length(const ShadeContext& c, float filter_width) {
 
 }  // namespace
 
-// Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU" (2010).
+// The method is that of Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU" (2010).
 Vec3 bump(const Program& program, uint32_t block, const OpArgs& args, const ShadeContext& c) {
   const Vec3 own = safe_normalize(args.v(3));
   const Vec3 normal = own == Vec3(0.0f) ? c.normal : own;

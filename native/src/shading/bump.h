@@ -1,4 +1,4 @@
-// Bump node: a normal from finite differences of a height.
+// The Bump node: a normal from finite differences of a height.
 #pragma once
 
 #include "shading/context_ops.h"
@@ -6,7 +6,8 @@
 
 namespace gradus::shading {
 
-// block: program of the height. Inputs as GRADUS_OP_BUMP.
+// Returns the unit normal. `block` is the index of the program block that computes the height; 0 stands for a flat
+// height. The inputs are those of GRADUS_OP_BUMP.
 Vec3 bump(const Program& program, uint32_t block, const OpArgs& args, const ShadeContext& context);
 
 }  // namespace gradus::shading

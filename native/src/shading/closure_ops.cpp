@@ -51,7 +51,8 @@ void add_refraction(const ClosureArgs& args, const ShadeContext& c, ShadeResult*
   lobe->ior = std::max(args.f(2), 1e-5f);
 }
 
-// Before Blender 4.0 Fresnel at the shading normal, not at the microfacets, chose between the sides.
+// Adds the glass of Blender before 4.0, where the Fresnel term of the shading normal, not of the microfacets, weights
+// reflection and refraction.
 void add_legacy_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   const Vec3 normal = facing_normal(c, args.v(3));
   const Rgb weight = args.weight * non_negative(args.v(0));

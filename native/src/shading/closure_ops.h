@@ -1,4 +1,4 @@
-// Closure operations: fill lobes, emission and transparency.
+// Closure operations, which add lobes, emission and transparency to a result.
 #pragma once
 
 #include "shading/context.h"
@@ -6,40 +6,44 @@
 
 namespace gradus::shading {
 
-// Bits that compile adds to the mode of PRINCIPLED: only its emission is wanted.
+// Flag in the mode of PRINCIPLED, set by the compiler: only its emission is needed.
 inline constexpr uint32_t kEmissionOnly = 1u << 16;
 
+// Arguments of a closure operation: its operation code, the weight of its lobes, and its inputs.
 struct ClosureArgs : OpArgs {
   uint32_t op = 0;
   Rgb weight = Rgb(1.0f);
 };
 
+// Runs the closure operation args.op.
 void add_closure(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result);
 
-// principled.cpp, principled_3.cpp
+// Defined in principled.cpp and principled_3.cpp.
 void add_principled(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result);
 void add_principled_3(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result);
 
-// Helpers for both.
-inline constexpr float kWeightCutoff = 1e-5f;  // closures below are left out, as in Cycles
+// Closures with a smaller weight are omitted, as in Cycles.
+inline constexpr float kWeightCutoff = 1e-5f;
 
-// Direction towards the viewer's side; zero: the surface's own normal.
+// Returns the unit normal of an input, moved to the viewer's side if needed. A zero input stands for the surface's own
+// normal.
 Vec3 facing_normal(const ShadeContext& context, const Vec3& normal);
-// The same, pointing outwards, as lobes with two sides want it.
+// Returns facing_normal() pointing out of the object, as lobes with two sides need it.
 Vec3 outward_normal(const ShadeContext& context, const Vec3& normal);
-// Widths of a reflection lobe from roughness and Principled's anisotropy (0…1).
+// Sets the alphas of a reflection lobe from a roughness and the anisotropy of the Principled BSDF, both in 0…1.
 void set_principled_roughness(bsdf::Lobe* lobe, float roughness, float anisotropic);
-// The same for the Glossy BSDF, whose anisotropy runs from -1 to 1.
+// Sets the alphas of a reflection lobe from a roughness and the anisotropy of the Glossy BSDF, in -1…1.
 void set_glossy_roughness(bsdf::Lobe* lobe, float roughness, float anisotropy);
-// Tangent (zero: the default one), turned by `turns` around the normal.
+// Returns the tangent of an input, rotated by `turns` full turns around the normal. A zero input stands for the default
+// tangent.
 Vec3 turned_tangent(const ShadeContext& context, const Vec3& tangent, const Vec3& normal, float turns);
-// A new lobe with the given weight; nullptr: too weak.
+// Adds a lobe and returns it, or returns null if its weight is below kWeightCutoff.
 bsdf::Lobe* add_lobe(ShadeResult* result, bsdf::LobeType type, bsdf::LightPass pass, const Rgb& weight,
                      const Vec3& normal);
-// Broken inputs must not cost the light of others, which shares its samples (architecture rule 2): what is not finite
-// is black.
+// Adds `value` to *sum if it is finite. Otherwise one invalid emission would invalidate samples that also carry the
+// light of other materials.
 void add_finite(const Rgb& value, Rgb* sum);
-// What is left for the layers below one of the given albedo.
+// Returns the weight of the layers below a layer with the given albedo.
 Rgb layered(const Rgb& weight, const Rgb& albedo);
 
 }  // namespace gradus::shading

@@ -1,6 +1,6 @@
-// The closures of one run of a node program, with what went into them. Where the program's values look at the point
-// alone, this is enough to see the point from another direction, without running textures again: so shifted paths see a
-// vertex of their base.
+// A record of the closure operations of one run of a node program. If the program's values depend on the point alone,
+// the record suffices to shade the point for another direction without evaluating textures again. Shifted paths use it
+// at the vertices of their base path.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 
 namespace gradus::shading {
 
+// Records closure operations with their inputs, at most kRoom of them. Usage: clear(), add()…, finish(), replay().
 class ClosureTape {
  public:
   void clear() {
@@ -18,7 +19,8 @@ class ClosureTape {
     complete_ = false;
   }
   void finish() { complete_ = count_ <= kRoom; }
-  // inputs: that have to be kept; 0: they are the program's constants.
+  // Records an operation. `inputs` is the number of inputs to copy; 0 means that args.in points to the program's
+  // constants, which outlive the record.
   void add(const ClosureArgs& args, int inputs) {
     if (count_ < kRoom) {
       Entry& entry = entries_[static_cast<size_t>(count_)];
@@ -30,7 +32,7 @@ class ClosureTape {
     }
     ++count_;
   }
-  // False: nothing was recorded, or more closures than there is room for.
+  // Runs the recorded operations for another context. Returns false if nothing was recorded or kRoom was exceeded.
   bool replay(const ShadeContext& context, ShadeResult* result) const {
     if (!complete_) return false;
     for (int i = 0; i < count_; i++) add_closure(entries_[static_cast<size_t>(i)].args, context, result);

@@ -7,7 +7,7 @@ namespace {
 
 float smallest(const Vec3& c) { return std::min(c.x, std::min(c.y, c.z)); }
 
-// Hue of a colour that is not grey.
+// Returns the hue, in 0…1, of a colour that is not grey. `upper` is the largest component, `delta` the range.
 float hue(const Vec3& c, float upper, float delta) {
   float h;
   if (c.x == upper)

@@ -1,4 +1,4 @@
-// HSV and HSL, hue in 0…1.
+// Conversions between RGB and the models HSV and HSL, with the hue in 0…1.
 #pragma once
 
 #include "base/types.h"

@@ -1,4 +1,4 @@
-// Separate and Combine, Hue/Saturation, Gamma, Invert, Bright/Contrast.
+// The nodes Separate Color, Combine Color, Hue/Saturation/Value, Gamma, Invert Color and Brightness/Contrast.
 #include "shading/color_models.h"
 #include "shading/ops.h"
 #include "shading/scalar.h"

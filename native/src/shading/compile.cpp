@@ -1,4 +1,4 @@
-// From a GradusMaterial to programs, and what can be said of them in advance.
+// Compiles a GradusMaterial to node programs and derives properties of the material from them.
 #include "bsdf/lobe.h"
 #include "image/image_store.h"
 #include "shading/interpreter.h"
@@ -14,11 +14,12 @@ bool is_lobe_op(uint32_t op) {
   return is_closure_op(op) && op != GRADUS_OP_TRANSPARENT && op != GRADUS_OP_HOLDOUT && op != GRADUS_OP_EMISSION;
 }
 
+// Returns the value of a constant operand, or `unknown` if the operand is computed.
 Vec4 operand_or(const Program& p, Operand o, const Vec4& unknown) {
   return o < 0 ? p.constants[static_cast<uint32_t>(~o)] : unknown;
 }
 
-// Input of the roughness of a closure; -1: always rough.
+// Returns the index of a closure's roughness input, or -1 if the closure is always rough.
 int roughness_input(uint32_t op) {
   switch (op) {
     case GRADUS_OP_GLOSSY:
@@ -35,7 +36,7 @@ int roughness_input(uint32_t op) {
   }
 }
 
-// Input of Principled's kind of anisotropy; -1: the closure has none.
+// Returns the index of the input with the Principled BSDF's kind of anisotropy, or -1 if the closure has none.
 int anisotropy_input(uint32_t op) {
   switch (op) {
     case GRADUS_OP_METALLIC:
@@ -49,6 +50,7 @@ int anisotropy_input(uint32_t op) {
   }
 }
 
+// Derives the properties of a material that follow from its closures.
 class Analysis {
  public:
   Analysis(const Program& program, MaterialData* m) : p_(program), m_(*m) {}
@@ -62,13 +64,14 @@ class Analysis {
   Vec4 input(const Instruction& i, int k, float unknown) const {
     return operand_or(p_, p_.operands[i.first_operand + static_cast<uint32_t>(k)], Vec4(unknown));
   }
+  // Lowers the minimum alpha of the material.
   void sharpen(float alpha) { m_.min_alpha = std::min(m_.min_alpha, alpha); }
   void sharpen_by_coat(const Instruction& i) {
     const float roughness = saturate(input(i, 11, 0.0f).x);
     if (input(i, 10, 1.0f).x > 0.0f) sharpen(roughness * roughness);
   }
 
-  // Of a reflection lobe along its narrower axis; what is not known is as sharp as it can be.
+  // Returns the smaller alpha of a reflection lobe. Unknown inputs take the value that makes the lobe sharpest.
   float narrowest_alpha(const Instruction& i, int rough) const {
     const float roughness = input(i, rough, 0.0f).x;
     bsdf::Lobe lobe;
@@ -104,7 +107,7 @@ class Analysis {
   MaterialData& m_;
 };
 
-// Nothing but closures of `op`, of constants.
+// Returns whether a program consists of closures `op` with constant inputs only.
 bool is_constant(const Program& p, uint32_t op) {
   for (const Instruction& i : p.code) {
     if (i.op != op || i.weight >= 0) return false;
@@ -114,7 +117,7 @@ bool is_constant(const Program& p, uint32_t op) {
   return true;
 }
 
-// Closures aside.
+// Returns whether a value of the program depends on the ray. The dependence of closures themselves does not count.
 bool values_look_at_ray(const Program& p) {
   for (const Instruction& i : p.code) {
     const bool geometry =
@@ -127,13 +130,14 @@ bool values_look_at_ray(const Program& p) {
   return false;
 }
 
-// Principled's coat dims its emission.
+// Returns whether the emission depends on the ray, which includes the coat of Principled, as it dims the emission.
 bool emission_looks_at_ray(const Program& p) {
   return values_look_at_ray(p) ||
          std::any_of(p.code.begin(), p.code.end(), [](const Instruction& i) { return i.op == GRADUS_OP_PRINCIPLED; });
 }
 
-// Light sampling and BSDF sampling see the same values of the modes that are left out.
+// Returns whether the program reads a Light Path output that can differ between light sampling and BSDF sampling. The
+// excluded outputs have equal values in both.
 bool looks_at_kind(const Program& p) {
   return std::any_of(p.code.begin(), p.code.end(), [](const Instruction& i) {
     return i.op == GRADUS_OP_LIGHT_PATH && i.mode != GRADUS_LIGHT_PATH_CAMERA && i.mode != GRADUS_LIGHT_PATH_SHADOW &&
@@ -146,6 +150,7 @@ bool asks_for_tangents(const Instruction& i) {
          (i.op == GRADUS_OP_TANGENT && i.mode == GRADUS_TANGENT_UV);
 }
 
+// Returns the UV maps, each once, whose tangents the program reads. "" is the default UV map.
 std::vector<std::string> tangent_maps(const Program& p) {
   std::vector<std::string> names;
   for (const Instruction& i : p.code) {
@@ -156,7 +161,7 @@ std::vector<std::string> tangent_maps(const Program& p) {
   return names;
 }
 
-// Mean luminance over a few places, textures at their mean colour.
+// Returns the mean luminance of an emission program over a few places, with textures at their mean colour.
 float estimate(const Program& p, const image::ImageStore& images) {
   constexpr int kPlaces = 8;
   float sum = 0.0f;
@@ -164,7 +169,7 @@ float estimate(const Program& p, const image::ImageStore& images) {
     ShadeContext c;
     c.images = &images;
     c.mean_textures = true;
-    // Halton points.
+    // The places form a low-discrepancy sequence.
     const auto f = static_cast<float>(k);
     c.position = Vec3((f + 0.5f) / kPlaces, fraction(f * 0.618034f), fraction(f * 0.754878f));
     c.uv = Vec2(c.position);
@@ -173,7 +178,7 @@ float estimate(const Program& p, const image::ImageStore& images) {
     const float l = luminance(glm::max(r.emission, Vec3(0.0f)));
     if (is_finite(l)) sum += l;
   }
-  // Where only the place decides (attributes), something is better than never.
+  // An emission that depends on attributes alone is black here. A positive estimate ensures that it is sampled.
   return sum > 0.0f ? sum / kPlaces : 1.0f;
 }
 
@@ -199,7 +204,7 @@ void describe_transparency(MaterialData* m) {
   m->constant_transparency = r.transparency;
 }
 
-// A normal that is given would be read, too.
+// Returns whether a Diffuse operation has no normal input.
 bool has_own_normal(const Program& p, const Instruction& diffuse) {
   return Vec3(operand_or(p, p.operands[diffuse.first_operand + 2], Vec4(1.0f))) == Vec3(0.0f);
 }

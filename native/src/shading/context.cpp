@@ -72,7 +72,7 @@ ShadeContext moved_context(const ShadeContext& context, const std::array<Vec3, 3
 
 Vec3 normal_to_local(const ShadeContext& c, const Vec3& normal) {
   if (c.light_axes) return glm::transpose(*c.light_axes) * normal;
-  // The inverse of the inverse transpose.
+  // Normals map to local space by the transpose of the object's matrix, the inverse of the matrix of normals.
   geometry::Placement room;
   return c.instance ? safe_normalize(glm::transpose(Mat3(placement_of(c, &room).to_world)) * normal) : normal;
 }

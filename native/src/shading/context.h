@@ -1,4 +1,4 @@
-// What a node program knows of the point it runs at.
+// The inputs of a node program: the point that is shaded and the ray that arrives there.
 #pragma once
 
 #include <array>
@@ -15,36 +15,38 @@ class ImageStore;
 namespace gradus::shading {
 
 struct ShadeContext {
-  const ShadedScene* scene = nullptr;  // nullptr: estimates without a scene
+  const ShadedScene* scene = nullptr;  // null for estimates without a scene
   const image::ImageStore* images = nullptr;
-  const geometry::InstanceData* instance = nullptr;  // nullptr: world and lights
+  const geometry::InstanceData* instance = nullptr;  // null for the world and for lights
   geometry::Hit hit;
-  Vec3 position = Vec3(0.0f);             // internal space; world: the direction
-  Vec3 normal = Vec3(0, 0, 1);            // shading normal, turned as the geometric normal is
+  Vec3 position = Vec3(0.0f);             // in internal space; the direction for the world
+  Vec3 normal = Vec3(0, 0, 1);            // shading normal, flipped together with the geometric normal
   Vec3 geometric_normal = Vec3(0, 0, 1);  // on the side of wo
   Vec3 wo = Vec3(0, 0, 1);
-  Vec2 uv = Vec2(0.0f);              // of lights
-  const Mat3* light_axes = nullptr;  // nullptr: no light
+  Vec2 uv = Vec2(0.0f);              // coordinates on the surface of a light
+  const Mat3* light_axes = nullptr;  // axes of a light; null for other points
   RayState ray;
   bool backfacing = false;
   bool is_background = false;
-  bool mean_textures = false;  // estimates: images give their mean colour
+  bool mean_textures = false;  // makes images return their mean colour, for estimates
 };
 
+// Contexts for a point of a surface, for the background in a direction that points away from the scene, and for a point
+// of a light.
 ShadeContext surface_context(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
                              const RayState& ray);
 ShadeContext background_context(const ShadedScene& scene, const Vec3& direction, const RayState& ray);
 ShadeContext light_context(const ShadedScene& scene, const LightShadingPoint& point, const RayState& ray);
 
-// Of the instance at the time of the hit.
+// Returns the placement of the instance at the time of the hit. `room` stores it if it has to be interpolated.
 const geometry::Placement& placement_of(const ShadeContext& context, geometry::Placement* room);
-// Position in world space; the direction for backgrounds.
+// Returns the position in world space, or the direction for the background.
 Vec3 world_position(const ShadeContext& context);
-// Corners of the triangle in internal space, and the context moved along the surface by `step`: interpolated values
-// follow it.
+// world_corners() returns the corners of the hit triangle in internal space. moved_context() returns the context moved
+// by `step` along that triangle; interpolated values are those of the new point.
 std::array<Vec3, 3> world_corners(const ShadeContext& context);
 ShadeContext moved_context(const ShadeContext& context, const std::array<Vec3, 3>& corners, const Vec3& step);
-// Directions and normals between spaces of the object; without an object they stay.
+// Transform normals between internal space and the object's space. Without an object they return the normal unchanged.
 Vec3 normal_to_local(const ShadeContext& context, const Vec3& normal);
 Vec3 normal_to_world(const ShadeContext& context, const Vec3& normal);
 

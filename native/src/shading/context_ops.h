@@ -1,4 +1,4 @@
-// Operations that look at the point, the ray, the object or an image.
+// Operations that depend on the point, the ray, the object or an image. Each is the Cycles node of that name.
 #pragma once
 
 #include "shading/context.h"
@@ -6,12 +6,13 @@
 
 namespace gradus::shading {
 
+// Arguments of an operation with an image or a name.
 struct ResourceArgs : OpArgs {
   uint32_t resource = 0;              // index of the image
-  const std::string* name = nullptr;  // nullptr: none given
+  const std::string* name = nullptr;  // name of an attribute; null if none is given
 };
 
-// False: not one of these.
+// Evaluates `op` and writes all its outputs to `out`. Returns false if `op` is not an operation of this file.
 bool evaluate_context_op(uint32_t op, const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 
 // geometry_ops.cpp

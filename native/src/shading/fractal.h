@@ -1,5 +1,5 @@
-// Sums and products of noise over octaves (Musgrave, in "Texturing and Modeling", ch. 16), in the form of Blender's
-// Noise node.
+// Fractal noise: sums and products of noise over octaves (Musgrave, in "Texturing and Modeling", ch. 16), in the form
+// of Blender's Noise Texture. A point P is a float or a vector of 2 to 4 dimensions.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,9 @@
 
 namespace gradus::shading {
 
+// Parameters of the Noise Texture.
 struct Octaves {
-  float detail = 0.0f;  // number of octaves beyond the first, its fraction fades in one more
+  float detail = 0.0f;  // number of octaves beyond the first; its fraction blends in one more octave
   float roughness = 0.0f;
   float lacunarity = 2.0f;
   float offset = 0.0f;
@@ -92,6 +93,7 @@ float ridged_multifractal(P p, const Octaves& o) {
   return result;
 }
 
+// Evaluates the fractal noise of a GRADUS_NOISE_ type.
 template <class P>
 float fractal_noise(uint32_t type, const P& p, const Octaves& o) {
   switch (type) {

@@ -1,4 +1,4 @@
-// Geometry node.
+// The Geometry node.
 #include "geometry/mesh.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
@@ -10,7 +10,7 @@ Vec3 generated(const ShadeContext& c) {
   return geometry::generated_at(*c.instance->mesh, c.hit.triangle, c.hit.barycentric);
 }
 
-// Around the z axis of the texture space.
+// Returns the tangent around the z axis of the object's generated coordinates, perpendicular to the normal.
 Vec3 default_tangent(const ShadeContext& c) {
   if (!c.instance) return Vec3(1, 0, 0);
   const Vec3 g = generated(c) - 0.5f;

@@ -10,7 +10,7 @@
 namespace gradus::shading {
 namespace {
 
-// A table of a sky takes 1.5 MB and a third of a second.
+// Maximum number of Sky Textures in a material. The table of one takes 1.5 MB and a third of a second.
 constexpr int kMaxSkies = 16;
 
 GraphValue constant(const Vec4& v) {
@@ -19,6 +19,7 @@ GraphValue constant(const Vec4& v) {
   return g;
 }
 
+// Builds the graph of a checked material.
 class Builder {
  public:
   Builder(const GradusMaterial& desc, const image::ImageStore& images) : desc_(desc), images_(images) {}
@@ -63,7 +64,7 @@ class Builder {
                                : graph_.nodes[in.node].outputs[in.output];
   }
 
-  // The settings' place is taken by the table that is made of them.
+  // Replaces the settings of a Sky Texture by the table that is computed from them.
   void prepare(GraphNode* n) {
     if (++skies_ > kMaxSkies)
       throw invalid_argument("material '" + std::string(desc_.name ? desc_.name : "") + "': too many Sky Textures");
@@ -76,7 +77,7 @@ class Builder {
   void simplify(GraphNode* n) const {
     if (n->op == GRADUS_OP_IMAGE) return simplify_image(n);
     if (n->op == GRADUS_OP_BUMP && n->inputs[2].is_constant()) {
-      // A flat height bends nothing.
+      // A constant height does not change the normal.
       n->outputs[0] = n->inputs[3];
       return;
     }
@@ -88,12 +89,14 @@ class Builder {
     if (is_pure(n->op)) fold(n);
   }
 
-  // Alpha of a picture without any is 1, which makes many a material opaque. CLIP adds transparent surroundings.
+  // Replaces the alpha of an opaque image by 1, so that its material can be opaque. The extension CLIP adds transparent
+  // surroundings and prevents this.
   void simplify_image(GraphNode* n) const {
     const bool clips = (n->mode >> 4 & 3) == static_cast<uint32_t>(image::Extension::Clip);
     if (!clips && n->resource < images_.size() && !images_.has_alpha(n->resource)) n->outputs[1] = constant(Vec4(1.0f));
   }
 
+  // Evaluates a node whose inputs are all constant.
   void fold(GraphNode* n) const {
     Vec4 in[16];
     for (size_t k = 0; k < n->inputs.size(); k++) {

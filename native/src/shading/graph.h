@@ -1,4 +1,5 @@
-// A node program as given, checked and simplified: constants folded, branches of constant mixes followed.
+// The graph of a node program, checked and simplified: constant nodes are evaluated, and mixes with a constant factor
+// of 0 or 1 are replaced by their input.
 #pragma once
 
 #include <string>
@@ -16,7 +17,7 @@ namespace gradus::shading {
 
 // A constant, or an output of a node.
 struct GraphValue {
-  int32_t node = -1;  // -1: constant
+  int32_t node = -1;  // index of the node, or -1 for a constant
   uint32_t output = 0;
   Vec4 constant = Vec4(0.0f);
   bool is_constant() const { return node < 0; }
@@ -28,10 +29,10 @@ struct GraphNode {
   uint32_t mode = 0;
   uint32_t first_float = 0;
   uint32_t float_count = 0;
-  uint32_t resource = 0;            // image: index in the store; else index of the name + 1
-  std::vector<GraphValue> inputs;   // as many as the operation has; closures at their places are unused
-  int32_t closures[2] = {-1, -1};   // MIX_SHADER, ADD_SHADER: -1 = black
-  std::vector<GraphValue> outputs;  // what users of this node take: itself, a constant or another node
+  uint32_t resource = 0;            // index of an image in the store, or index of a name + 1
+  std::vector<GraphValue> inputs;   // one for each input of the operation; those of closures are unused
+  int32_t closures[2] = {-1, -1};   // nodes that MIX_SHADER and ADD_SHADER combine; -1 is black
+  std::vector<GraphValue> outputs;  // the values of the outputs: of this node, a constant or of another node
 };
 
 struct Graph {
@@ -46,7 +47,7 @@ inline constexpr uint32_t kMaxNodes = 1u << 16;
 inline bool is_closure_op(uint32_t op) { return op <= GRADUS_OP_METALLIC; }
 inline bool is_shader_combination(uint32_t op) { return op == GRADUS_OP_MIX_SHADER || op == GRADUS_OP_ADD_SHADER; }
 
-// Throws Error INVALID_ARGUMENT that names the material.
+// Checks and simplifies the node program of a material. Throws Error INVALID_ARGUMENT with the material's name.
 Graph build_graph(const GradusMaterial& desc, const image::ImageStore& images);
 
 }  // namespace gradus::shading

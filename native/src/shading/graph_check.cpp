@@ -13,7 +13,7 @@ struct ModeRange {
   uint32_t last;
 };
 
-// Last mode of each operation that has modes; 0 for the rest.
+// The last mode of each operation that has modes. All other operations have mode 0 only.
 constexpr ModeRange kModes[] = {
     {GRADUS_OP_DIFFUSE, 1},
     {GRADUS_OP_GLOSSY, GRADUS_DISTRIBUTION_MULTIPLE},

@@ -1,4 +1,4 @@
-// Image Texture and Environment Texture nodes.
+// The Image Texture and Environment Texture nodes.
 #include "image/image_store.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
@@ -23,6 +23,7 @@ Sampler sampler_of(const ResourceArgs& args, const ShadeContext& c) {
           static_cast<image::Extension>(args.mode >> 4 & 3), (args.mode >> 6 & 1) != 0};
 }
 
+// Spherical projection of a point to UV coordinates.
 Vec2 sphere(const Vec3& p) {
   const float length = glm::length(p);
   if (!(length > 0.0f)) return Vec2(0.0f);
@@ -30,17 +31,18 @@ Vec2 sphere(const Vec3& p) {
   return Vec2(u, 1.0f - std::acos(std::clamp(p.z / length, -1.0f, 1.0f)) * kInvPi);
 }
 
+// Cylindrical projection of a point to UV coordinates.
 Vec2 tube(const Vec3& p) {
   const float length = std::sqrt(p.x * p.x + p.y * p.y);
   if (!(length > 0.0f)) return Vec2(0.0f);
   return Vec2((1.0f - std::atan2(p.x, p.y) * kInvPi) * 0.5f, (p.z + 1.0f) * 0.5f);
 }
 
-// Mix of two of three sides near an edge.
+// Returns the weight of side `a` near the edge between two sides with the normal components a and b.
 float edge_weight(float a, float b, float blend) { return saturate((a / (a + b) - 0.5f * (1.0f - blend)) / blend); }
 
-// Weights of the projections along x, y, z: the nearest side alone, but for a band of width `blend` at edges and
-// corners.
+// Returns the weights of the projections along x, y and z. It is 1 for the side that the normal faces, except in bands
+// of the width `blend` at edges and corners.
 Vec3 box_weights(Vec3 n, float blend) {
   n = glm::abs(n);
   n /= n.x + n.y + n.z;
@@ -67,20 +69,20 @@ Vec3 box_weights(Vec3 n, float blend) {
 Vec4 box(const Sampler& sampler, const Vec3& p, const Vec3& n, float blend) {
   const Vec3 weights = box_weights(n, blend);
   Vec4 sum(0.0f);
-  // Mirrored on the far sides, so that texts can be read from everywhere.
+  // The image is mirrored on the opposite sides, so that text is readable on all sides.
   if (weights.x > 0.0f) sum += weights.x * sampler.at(Vec2(n.x < 0.0f ? 1.0f - p.y : p.y, p.z));
   if (weights.y > 0.0f) sum += weights.y * sampler.at(Vec2(n.y > 0.0f ? 1.0f - p.x : p.x, p.z));
   if (weights.z > 0.0f) sum += weights.z * sampler.at(Vec2(n.z > 0.0f ? 1.0f - p.y : p.y, p.x));
   return sum;
 }
 
-// Equirectangular: +X in the middle of the picture.
+// Equirectangular projection with +X in the middle of the image.
 Vec2 latitude_longitude(const Vec3& d) {
   const float u = d.x == 0.0f && d.y == 0.0f ? 0.5f : 0.5f - std::atan2(d.y, d.x) * (0.5f * kInvPi);
   return Vec2(u, std::atan2(d.z, std::sqrt(d.x * d.x + d.y * d.y)) * kInvPi + 0.5f);
 }
 
-// Mirror ball, seen along +Y.
+// Projection of a mirror ball that is seen along +Y.
 Vec2 mirror_ball(Vec3 d) {
   d.y -= 1.0f;
   const float scale = 2.0f * std::sqrt(std::max(-0.5f * d.y, 0.0f));

@@ -10,6 +10,7 @@
 namespace gradus::shading {
 namespace {
 
+// The registers and the instruction loop of one run.
 class Machine {
  public:
   Machine(const Program& program, const ShadeContext& context, ShadeResult* result)

@@ -1,4 +1,4 @@
-// Runs compiled node programs.
+// Interpreter of compiled node programs.
 #pragma once
 
 #include "shading/closure_ops.h"
@@ -6,9 +6,9 @@
 
 namespace gradus::shading {
 
-// Adds to `result` what the program's closures give. No allocation; the registers lie on the stack.
+// Runs the program and adds its closures to `result`. It does not allocate memory; the registers are on the stack.
 void run_program(const Program& program, const ShadeContext& context, ShadeResult* result);
-// The value of a block (the height of a Bump node).
+// Runs one block and returns its value, which is the height of a Bump node.
 Vec4 run_block(const Program& program, uint32_t block, const ShadeContext& context);
 
 }  // namespace gradus::shading

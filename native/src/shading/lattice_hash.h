@@ -1,4 +1,4 @@
-// Hashes of lattice points and floats: Bob Jenkins' lookup3 ("final" and "mix" steps), as Blender's textures use it.
+// Hashes of lattice points and floats by Bob Jenkins' lookup3 (the "final" and "mix" steps), as in Blender's textures.
 #pragma once
 
 #include <bit>
@@ -67,7 +67,7 @@ inline uint32_t lattice_hash(uint32_t x, uint32_t y, uint32_t z, uint32_t w) {
   return c;
 }
 
-// A number in 0…1 from the bits of 1 to 4 floats.
+// Returns a number in 0…1 that is the hash of the bits of 1 to 4 floats.
 template <class... Floats>
 float float_hash(Floats... x) {
   return static_cast<float>(lattice_hash(std::bit_cast<uint32_t>(x)...)) * (1.0f / static_cast<float>(0xFFFFFFFFu));

@@ -1,5 +1,4 @@
-// A material as the snapshot keeps it: compiled programs, and what the rest of the renderer may know without running
-// them.
+// A compiled material: node programs, and properties that the renderer can read without running them.
 #pragma once
 
 #include <memory>
@@ -18,48 +17,48 @@ class ImageStore;
 
 namespace gradus::shading {
 
-// Immutable. All flags are conservative: false means "surely not".
+// An immutable compiled material. The flags are conservative: false is certain, true means "possibly".
 struct MaterialData {
   std::string name;
-  Program surface;       // all closures
-  Program emission;      // emission alone: what light sampling and the world need
-  Program transparency;  // transparent closures alone: what shadow rays need
+  Program surface;       // program of all closures
+  Program emission;      // program of the emission alone, for light sampling and the world
+  Program transparency;  // program of the transparent closures alone, for shadow rays
 
   bool emits = false;
-  bool may_be_transparent = false;  // some light goes straight through
+  bool may_be_transparent = false;  // some light passes straight through
   bool has_holdout = false;
   bool has_bsdf = false;
-  bool may_transmit = false;       // some lobe sends light to the other side
-  bool transparent_shadow = true;  // 0: shadow rays take it for opaque
+  bool may_transmit = false;       // some lobe scatters light to the other side
+  bool transparent_shadow = true;  // false if shadow rays treat the material as opaque
   bool sample_as_light = true;
-  bool uses_fallback = false;
-  bool depends_on_ray = false;      // uses Light Path, or the direction it is seen from, in emission
-  bool values_look_at_ray = false;  // some value of `surface` does; closures aside
+  bool uses_fallback = false;       // some node was replaced, or the material did not compile
+  bool depends_on_ray = false;      // the emission reads Light Path, or the direction of the viewer
+  bool values_look_at_ray = false;  // some value of `surface` depends on the ray; closures themselves do not count
   bool depends_on_kind =
-      false;               // emission or transparency look at the kind of ray beyond camera or not, or at its depth
-  float min_alpha = 1.0f;  // of all lobes, where known; 0 where a texture decides
-  float min_refracting_alpha = kInfinity;  // likewise, of lobes that refract; infinite where there is none
-  bool emission_is_constant = false;       // over points and directions; then:
+      false;               // emission or transparency read the ray's depth, or its kind other than camera or shadow
+  float min_alpha = 1.0f;  // smallest alpha of all lobes; 0 if a texture decides
+  float min_refracting_alpha = kInfinity;  // smallest alpha of the lobes that refract; infinite if there is none
+  bool emission_is_constant = false;       // the emission is constant_emission at all points and directions
   Rgb constant_emission = Rgb(0.0f);
-  bool transparency_is_constant = false;
+  bool transparency_is_constant = false;  // the transparency is constant_transparency at all points and directions
   Rgb constant_transparency = Rgb(0.0f);
   float emission_estimate =
-      0.0f;                 // luminance for the choice of lights: exact where constant, else textures at their mean
-  bool is_lambert = false;  // the surface is one Lambert lobe of constant colour with the surface's normal; then:
-  bsdf::Lobe lambert;       // all but its normal
+      0.0f;                 // luminance for light selection: exact if constant, else with textures at their mean
+  bool is_lambert = false;  // the surface is the single lobe `lambert` with the surface's normal
+  bsdf::Lobe lambert;       // the Lambert lobe of constant colour, without its normal
   int32_t pass_index = 0;
-  std::vector<SunDisc> suns;              // of its Sky Textures, if it is the world
-  float smallest_hidden_sun = 0.0f;       // half angle of one whose place is unknown; 0: there is none
-  std::vector<std::string> tangent_maps;  // names of UV maps ("": the default) whose tangents it asks for
+  std::vector<SunDisc> suns;              // sun discs of the material's Sky Textures
+  float smallest_hidden_sun = 0.0f;       // half angle of the smallest sun at an unknown position; 0 if there is none
+  std::vector<std::string> tangent_maps;  // UV maps whose tangents the surface reads; "" is the default map
 };
 
-// Compiles a node program: folds constants, drops what nothing needs, allots registers. Throws Error INVALID_ARGUMENT,
-// with the material's name, for what is not a program (check_program()) or needs more closures, Bump nodes or registers
-// than there are. Image keys that the store does not know look magenta.
+// Compiles a node program: evaluates constant nodes, omits nodes without effect, and allocates registers. Throws Error
+// INVALID_ARGUMENT, with the material's name, if the program is invalid (check_program()) or needs too many closures,
+// Bump nodes or registers. Images that the store does not contain are magenta.
 std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc, const image::ImageStore& images);
-// What stands for a material that does not compile: the default one under its name.
+// Returns the replacement of a material that does not compile: the default material with the material's name.
 std::shared_ptr<const MaterialData> fallback_material(const GradusMaterial& desc);
-// Diffuse 0.8: surfaces without a material.
+// Returns the material of surfaces without one: diffuse with an albedo of 0.8.
 std::shared_ptr<const MaterialData> default_material();
 
 }  // namespace gradus::shading

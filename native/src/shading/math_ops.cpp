@@ -1,4 +1,4 @@
-// Math, Clamp and Map Range nodes.
+// The Math, Clamp and Map Range nodes.
 #include <cfloat>
 
 #include "shading/ops.h"
@@ -7,7 +7,7 @@
 namespace gradus::shading {
 namespace {
 
-// Polynomial smooth minimum (Quilez), cubic.
+// Cubic polynomial smooth minimum (Quilez).
 float smooth_min(float a, float b, float k) {
   if (k == 0.0f) return std::min(a, b);
   const float h = std::max(k - std::fabs(a - b), 0.0f) / k;
@@ -84,9 +84,11 @@ float clamp_one(float x, float lower, float upper, bool range) {
   return std::min(std::max(x, lower), upper);
 }
 
+// Maps component `i` of the vector of a Map Range node.
 float map_one(uint32_t mode, const OpArgs& args, int i) {
   const float x = args.in[0][i], from0 = args.in[1][i], from1 = args.in[2][i], to0 = args.in[3][i], to1 = args.in[4][i];
-  if (from0 == from1) return args.mode & 16 ? to0 : 0.0f;  // Cycles' two nodes differ here
+  // The float and the vector version of Cycles' node differ for an empty range.
+  if (from0 == from1) return args.mode & 16 ? to0 : 0.0f;
   float t = safe_divide(x - from0, from1 - from0);
   if (mode == GRADUS_MAP_RANGE_STEPPED)
     t = args.in[5][i] > 0.0f ? std::floor(t * (args.in[5][i] + 1.0f)) / args.in[5][i] : 0.0f;

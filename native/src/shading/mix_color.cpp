@@ -1,4 +1,4 @@
-// Mix node for colours: blend modes. The factor is not clamped here.
+// The Mix node for colours with its blend modes. It does not clamp the factor.
 #include "shading/color_models.h"
 #include "shading/ops.h"
 #include "shading/scalar.h"

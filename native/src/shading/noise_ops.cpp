@@ -1,4 +1,4 @@
-// Noise and White Noise nodes.
+// The Noise Texture and White Noise Texture nodes.
 #include "shading/fractal.h"
 #include "shading/lattice_hash.h"
 #include "shading/ops.h"
@@ -7,7 +7,7 @@
 namespace gradus::shading {
 namespace {
 
-// Far-away points that make the channels independent, the same as Blender's.
+// Offsets to distant points, which make the channels independent. They are those of Blender.
 float shift(float seed, float) { return 100.0f + float_hash(seed) * 100.0f; }
 Vec2 shift(float seed, const Vec2&) {
   return Vec2(100.0f + float_hash(seed, 0.0f) * 100.0f, 100.0f + float_hash(seed, 1.0f) * 100.0f);

@@ -1,4 +1,4 @@
-// What gradus_nodes.h says about each operation, as a table.
+// A table of the operations of gradus_nodes.h.
 #pragma once
 
 #include <array>
@@ -8,8 +8,9 @@
 
 namespace gradus::shading {
 
+// Name and shape of an operation.
 struct OpInfo {
-  const char* name = nullptr;  // nullptr: there is no such operation
+  const char* name = nullptr;  // null if the number stands for no operation
   uint8_t inputs = 0;
   uint8_t outputs = 0;
   bool closure = false;
@@ -26,7 +27,7 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_op_table() {
 inline constexpr std::array<OpInfo, GRADUS_OP_LIMIT> kOpTable = make_op_table();
 }  // namespace detail
 
-// nullptr for unknown operations.
+// Returns the entry of an operation, or null if the operation is unknown.
 constexpr const OpInfo* op_info(uint32_t op) {
   return op < GRADUS_OP_LIMIT && detail::kOpTable[op].name ? &detail::kOpTable[op] : nullptr;
 }

@@ -1,4 +1,4 @@
-// One place where the pure operations are named.
+// Dispatch of the pure operations.
 #include "shading/ops.h"
 #include "shading/scalar.h"
 #include "shading/sky/sky.h"

@@ -1,5 +1,5 @@
-// Operations whose result depends on their inputs alone. One function per node; formulas are those of the Cycles node
-// of the same name.
+// Pure operations, whose result depends on their inputs alone. There is one function for each node, with the formulas
+// of the Cycles node of that name.
 #pragma once
 
 #include "base/types.h"
@@ -7,16 +7,17 @@
 
 namespace gradus::shading {
 
+// Arguments of an operation. Scalar inputs are the first component of a Vec4.
 struct OpArgs {
   uint32_t mode = 0;
-  const Vec4* in = nullptr;  // as many as the operation has
+  const Vec4* in = nullptr;  // one for each input of the operation
   const float* floats = nullptr;
   uint32_t float_count = 0;
   float f(int i) const { return in[i].x; }
   Vec3 v(int i) const { return Vec3(in[i]); }
 };
 
-// False: not one of these. `out` has room for all outputs of the operation.
+// Evaluates `op` and writes all its outputs to `out`. Returns false if `op` is not pure.
 bool evaluate_pure(uint32_t op, const OpArgs& args, Vec4* out);
 bool is_pure(uint32_t op);
 
@@ -41,7 +42,7 @@ Vec4 hue_saturation(const OpArgs& args);
 Vec4 gamma_op(const OpArgs& args);
 Vec4 invert(const OpArgs& args);
 Vec4 bright_contrast(const OpArgs& args);
-// blackbody.cpp: colour of luminance 1, linear Rec. 709
+// blackbody.cpp: returns the linear Rec. 709 colour with luminance 1
 Rgb blackbody(float kelvin);
 // table_ops.cpp
 void ramp(const OpArgs& args, Vec4* out);

@@ -1,4 +1,4 @@
-// Checker, Gradient, Wave, Magic and Brick nodes.
+// The Checker, Gradient, Wave, Magic and Brick Texture nodes.
 #include "shading/fractal.h"
 #include "shading/ops.h"
 #include "shading/scalar.h"
@@ -6,7 +6,7 @@
 namespace gradus::shading {
 namespace {
 
-// Keeps whole coordinates, where surfaces like to lie, off the borders of cells.
+// Moves integer coordinates off the borders of cells, because surfaces often have such coordinates.
 Vec3 off_border(const Vec3& p) { return (p + 0.000001f) * 0.999999f; }
 
 float gradient_value(uint32_t mode, const Vec3& p) {
@@ -45,7 +45,7 @@ float wave_profile(uint32_t profile, float phase) {
   return profile == 1 ? fraction(turns) : std::fabs(turns - std::floor(turns + 0.5f)) * 2.0f;
 }
 
-// Hash of a brick, in 0…1; arithmetic modulo 2^32.
+// Returns the hash of a brick in 0…1. The arithmetic is modulo 2^32.
 float brick_tint(uint32_t n) {
   n = (n + 1013u) & 0x7fffffffu;
   n = (n >> 13) ^ n;
@@ -59,7 +59,7 @@ bool every(int row, int frequency) { return frequency != 0 && row % frequency ==
 
 void checker(const OpArgs& args, Vec4* out) {
   const Vec3 p = glm::abs(glm::floor(off_border(args.v(0) * args.f(3))));
-  const auto odd = [](float x) { return 0.5f * x != std::floor(0.5f * x); };  // of whole numbers
+  const auto odd = [](float x) { return 0.5f * x != std::floor(0.5f * x); };  // for integers
   const bool first = (odd(p.x) == odd(p.y)) == odd(p.z);
   out[0] = args.in[first ? 1 : 2];
   out[1] = splat(first ? 1.0f : 0.0f);

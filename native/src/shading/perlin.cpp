@@ -26,6 +26,7 @@ float gradient(uint32_t hash, float x, float y, float z, float w) {
   return flip(u, h & 1u) + flip(v, h & 2u) + flip(s, h & 4u);
 }
 
+// A lattice cell along one axis, and the position within it in 0…1.
 struct Cell {
   uint32_t index;
   float offset;
@@ -36,13 +37,14 @@ Cell cell(float x) {
   return {static_cast<uint32_t>(static_cast<int32_t>(lower)), x - lower};
 }
 
-// Keeps coordinates where a float still has fractions, and turns what is not finite into 0.
+// Wraps coordinates to a range where floats have fractions, and replaces infinity and NaN by 0.
 float wrapped(float x) {
   if (!is_finite(x)) return 0.0f;
   return std::fabs(x) < 1e5f ? x : std::fmod(x, 1e5f) + (std::fabs(x) >= 1e6f ? 0.5f : 0.0f);
 }
 
-// Eight lanes, one per corner of a cell: bit 0 of the lane is the step along x, bit 1 along y, bit 2 along z.
+// Eight SIMD lanes, one for each corner of a cell. Bit 0 of the lane number is the step along x, bit 1 along y, and bit
+// 2 along z.
 using Lanes = uint32_t __attribute__((vector_size(32)));
 using FloatLanes = float __attribute__((vector_size(32)));
 
@@ -52,7 +54,7 @@ constexpr FloatLanes kOffsetX = {0, 1, 0, 1, 0, 1, 0, 1}, kOffsetY = {0, 0, 1, 1
 
 Lanes rotate(Lanes v, int k) { return (v << k) | (v >> (32 - k)); }
 
-// lattice_hash(x, y, z) in every lane.
+// Computes lattice_hash(x, y, z) in every lane.
 Lanes hash_lanes(Lanes x, Lanes y, Lanes z) {
   const uint32_t start = detail::jenkins_start(3);
   Lanes a = x + start, b = y + start, c = z + start;
@@ -105,7 +107,7 @@ float perlin4(const Cell& x, const Cell& y, const Cell& z, const Cell& w) {
 
 }  // namespace
 
-// The factors bring each dimension's range to about -1…1.
+// The factors of the four functions below scale the range to about -1…1.
 float signed_noise(float p) {
   const Cell x = cell(wrapped(p));
   return 0.25f * mix(gradient(lattice_hash(x.index), x.offset), gradient(lattice_hash(x.index + 1), x.offset - 1.0f),

@@ -1,4 +1,5 @@
-// Gradient noise on 1 to 4 dimensions (Perlin, "Improving Noise", 2002), hashed and scaled as in Blender. About -1…1.
+// Gradient noise in 1 to 4 dimensions (Perlin, "Improving Noise", 2002), with the hash and the scale of Blender. The
+// values lie in about -1…1.
 #pragma once
 
 #include "base/types.h"

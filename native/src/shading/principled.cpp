@@ -1,5 +1,5 @@
-// Principled BSDF of Blender 4.0 and later: layers, each scaled by what those above let through (Blender manual,
-// "Principled BSDF").
+// The Principled BSDF of Blender 4.0 and later. It is a stack of layers; each is scaled by the light that the layers
+// above it let through (Blender manual, "Principled BSDF").
 #include <optional>
 
 #include "shading/closure_ops.h"
@@ -43,6 +43,7 @@ float ior_of_f0(float f0) {
   return (1.0f + root) / (1.0f - root);
 }
 
+// Adds the layers from top to bottom. weight_ is the weight of the layers that are still to come.
 class Layers {
  public:
   Layers(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result)
@@ -66,8 +67,8 @@ class Layers {
  private:
   bool multiscatter() const { return (args_.mode & GRADUS_DISTRIBUTION_MULTIPLE) != 0; }
 
-  // A lobe to be filled where it stays: copies of what has just been written stall. It is a spare one where emission
-  // alone is wanted.
+  // Returns a new lobe of the result, which the caller fills in place, because copying a lobe that was just written
+  // stalls the processor. If only the emission is needed it is a temporary lobe.
   bsdf::Lobe* new_layer(bsdf::LobeType type, bsdf::LightPass pass, const Rgb& weight, const Vec3& normal) {
     bsdf::Lobe* lobe = args_.mode & kEmissionOnly ? &spare_.emplace() : result_->closures.add();
     lobe->type = type;
@@ -77,7 +78,7 @@ class Layers {
     return lobe;
   }
 
-  // The layers below a reflection lobe get the rest of its albedo.
+  // Reduces the weight of the layers below by the albedo of this lobe.
   void put_layer(bsdf::Lobe* lobe) { weight_ = layered(weight_, bsdf::lobe_albedo(lobe, c_.wo)); }
 
   void sheen() {
@@ -105,7 +106,8 @@ class Layers {
     tint_below_coat(*lobe, saturate(amount));
   }
 
-  // Beer's law: the tint is what a perpendicular crossing keeps, the path inside is longer by 1/cos.
+  // Applies the coat's tint by Beer's law. The tint is the transmittance of a perpendicular path; the actual path
+  // inside the coat is longer by 1/cos.
   void tint_below_coat(const bsdf::Lobe& coat, float amount) {
     const Vec3 tint = glm::max(args_.v(kCoatTint), Vec3(0.0f));
     if (tint == Vec3(1.0f)) return;

@@ -1,4 +1,5 @@
-// Principled BSDF of Blender before 4.0 (after Burley 2012 and 2015). Subsurface comes mixed into the diffuse colour.
+// The Principled BSDF of Blender before 4.0 (after Burley 2012 and 2015). The diffuse colour includes subsurface
+// scattering.
 #include "shading/closure_ops.h"
 #include "shading/scalar.h"
 
@@ -26,9 +27,10 @@ enum Input {
   kTangent,
 };
 
-class Parts {
+// Adds the lobes of the BSDF.
+class Lobes {
  public:
-  Parts(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result)
+  Lobes(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result)
       : args_(args), c_(context), result_(result), normal_(facing_normal(context, args.v(kNormal))) {
     base_ = glm::max(args.v(kBaseColor), Vec3(0.0f));
     const float grey = luminance(base_);
@@ -81,7 +83,7 @@ class Parts {
     lobe->fresnel = bsdf::FresnelType::Schlick;
     lobe->f0 = f0;
     if (lobe->ior == 1.0f) {
-      // No step at the interface: the curve that Fresnel follows is flat.
+      // Without a step in the IOR the Fresnel term is constant.
       lobe->fresnel = bsdf::FresnelType::None;
       lobe->weight *= f0;
     }
@@ -96,7 +98,7 @@ class Parts {
       multiple_scattering_glass(roughness);
   }
 
-  // Reflection and refraction are chosen by Fresnel at the shading normal, and may differ in roughness.
+  // Adds glass as two lobes, weighted by the Fresnel term of the shading normal. Their roughness may differ.
   void single_scattering_glass(float roughness) {
     const float ior = std::max(args_.f(kIor), 1e-5f);
     const float reflected = dielectric_reflectance(glm::dot(c_.wo, normal_), c_.backfacing ? 1.0f / ior : ior);
@@ -157,7 +159,7 @@ class Parts {
 }  // namespace
 
 void add_principled_3(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result) {
-  Parts(args, context, result).add();
+  Lobes(args, context, result).add();
 }
 
 }  // namespace gradus::shading

@@ -1,4 +1,4 @@
-// A compiled node program: flat blocks of instructions over a file of registers.
+// Compiled node programs: blocks of instructions over a set of registers.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,13 @@ inline constexpr int kMaxRegisters = 256;
 inline constexpr int kMaxInputs = 24;
 inline constexpr int kMaxOutputs = 5;
 
-// Control flow and closures, beside the operations of GradusOp. Closure operations keep their numbers.
+// Instructions that exist only in compiled programs, in addition to the operations of GradusOp.
 enum InternalOp : uint16_t {
-  kOpJumpIfZero =
-      GRADUS_OP_LIMIT,  // operand 0: value; `first_float`: instruction to go to where the first component is 0
-  kOpMixWeights,        // operands factor, weight -> weight·(1 − f), weight·f, with f clamped to 0…1
+  kOpJumpIfZero = GRADUS_OP_LIMIT,  // continues at instruction `first_float` if the RGB of operand 0 is black
+  kOpMixWeights,  // has the operands f and weight, and the outputs weight·(1 − f) and weight·f, with f clamped to 0…1
 };
 
-// A register (≥ 0) or a constant of the program (~index).
+// A register (≥ 0), or a constant of the program (~index).
 using Operand = int32_t;
 inline constexpr int16_t kNoRegister = -1;
 
@@ -29,22 +28,23 @@ struct Instruction {
   uint16_t op = 0;
   uint16_t input_count = 0;
   uint32_t mode = 0;
-  uint32_t first_operand = 0;  // in Program::operands
-  uint32_t first_float = 0;    // in Program::floats; kOpJumpIfZero: target
+  uint32_t first_operand = 0;  // index in Program::operands
+  uint32_t first_float = 0;    // index in Program::floats; the target of kOpJumpIfZero
   uint32_t float_count = 0;
-  uint32_t resource = 0;  // image: index in ImageStore; names: index + 1 in Program::names; BUMP: block of the height
-  Operand weight = -1;    // closures: what the lobe is multiplied by
-  // Closures: their inputs lie in a row in Program::inputs, but for those that are computed.
+  uint32_t resource = 0;  // index in ImageStore, index + 1 in Program::names, or the block of a BUMP's height
+  Operand weight = -1;    // weight of a closure
+  // A closure's inputs are consecutive in Program::inputs. Those that are not constant are in Program::computed.
   uint32_t first_input = 0;
-  uint32_t first_computed = 0;  // in Program::computed
+  uint32_t first_computed = 0;
   uint32_t computed_count = 0;
   int16_t outputs[kMaxOutputs] = {kNoRegister, kNoRegister, kNoRegister, kNoRegister, kNoRegister};
 };
 
+// A range of instructions. The first block is the program; the others compute heights of Bump nodes.
 struct Block {
   uint32_t begin = 0;
   uint32_t end = 0;
-  Operand result = -1;  // blocks of BUMP: the height
+  Operand result = -1;  // the height
 };
 
 // An input of a closure that is not constant.
@@ -54,11 +54,11 @@ struct ComputedInput {
 };
 
 struct Program {
-  std::vector<Block> blocks;  // the first is the entry; empty: no program, no closures
+  std::vector<Block> blocks;  // the first is the entry; empty if there are no closures
   std::vector<Instruction> code;
   std::vector<Operand> operands;
   std::vector<Vec4> constants;  // the first is 1
-  std::vector<Vec4> inputs;     // of closures
+  std::vector<Vec4> inputs;     // inputs of closures
   std::vector<ComputedInput> computed;
   std::vector<float> floats;
   std::vector<std::string> names;

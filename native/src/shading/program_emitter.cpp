@@ -11,9 +11,9 @@ namespace {
 constexpr int kMaxClosures = 1024;
 constexpr int kMaxClosureDepth = 256;
 constexpr size_t kMaxBlocks = 256;
-constexpr uint32_t kHeight = 2;  // input of BUMP
+constexpr uint32_t kHeight = 2;  // index of BUMP's height input
 
-// Inputs of PRINCIPLED that its emission depends on: sheen and coat lie above it.
+// Returns whether the emission of a PRINCIPLED depends on its input `k`. Sheen and coat lie above the emission.
 bool matters_for_emission(const GraphNode& n, size_t k) {
   if (k == 17) return true;  // emission
   const bool sheen = !n.inputs[14].is_zero(), coat = !n.inputs[10].is_zero();
@@ -23,6 +23,7 @@ bool matters_for_emission(const GraphNode& n, size_t k) {
   return k == 19 && (sheen || coat);  // coat normal
 }
 
+// Emits the instructions of a graph.
 class Emitter {
  public:
   Emitter(const Graph& graph, ProgramScope scope, const std::string& name) : graph_(graph), scope_(scope), name_(name) {
@@ -37,7 +38,7 @@ class Emitter {
     begin_block();
     emit_closure(graph_.surface, constant(Vec4(1.0f)), 0);
     program_.blocks[0].end = static_cast<uint32_t>(program_.code.size());
-    // Blocks may ask for further blocks.
+    // Emitting a block may append further blocks.
     for (size_t b = 1; b < program_.blocks.size(); b++) emit_height(b);
     allocate_registers(&program_, outputs_, name_);
     for (Instruction& i : program_.code)
@@ -50,6 +51,7 @@ class Emitter {
 
   [[noreturn]] void refuse(const char* text) const { throw invalid_argument("material '" + name_ + "': " + text); }
 
+  // Returns whether a closure contributes to the program's scope.
   bool leaf_present(const GraphNode& n) const {
     switch (scope_) {
       case ProgramScope::Emission:
@@ -64,6 +66,7 @@ class Emitter {
 
   bool child_present(int32_t child) const { return child >= 0 && present_[static_cast<size_t>(child)]; }
 
+  // Finds the closures and combinations that contribute to the program's scope.
   void find_present() {
     present_.assign(graph_.nodes.size(), 0);
     for (size_t i = 0; i < graph_.nodes.size(); i++) {
@@ -105,7 +108,7 @@ class Emitter {
     return n.op != GRADUS_OP_PRINCIPLED || scope_ != ProgramScope::Emission || matters_for_emission(n, k);
   }
 
-  // Value nodes that must run before `v` is known, emitted ones excepted.
+  // Adds to *set the value nodes that `v` depends on, except those already emitted.
   void need(const GraphValue& v, NodeSet* set) const {
     std::vector<int32_t> open;
     const auto visit = [&](const GraphValue& x) {
@@ -124,7 +127,7 @@ class Emitter {
     }
   }
 
-  // All values below a closure.
+  // Adds to *set the value nodes that a closure and its children depend on.
   void need_closure(int32_t closure, NodeSet* set) const {
     if (!child_present(closure)) return;
     std::vector<int32_t> open = {closure};
@@ -142,7 +145,7 @@ class Emitter {
     }
   }
 
-  // The wire order is topological.
+  // Emits a set of value nodes. Their indices are a topological order, because inputs refer to earlier nodes.
   void emit_values(const NodeSet& set) {
     for (size_t i = 0; i < set.size(); i++)
       if (set[i] && !emitted_[i]) emit_node(i);
@@ -185,7 +188,8 @@ class Emitter {
     outputs_.push_back({first_output, outputs});
   }
 
-  // Heights of Bump nodes below others' heights: deeper ones than this are flat.
+  // Returns the block that computes a height. Bump nodes may be nested in the heights of others; below kMaxBumpDepth
+  // levels the height is flat, block 0.
   uint32_t height_block(const GraphValue& height) {
     constexpr int kMaxBumpDepth = 3;
     if (depth_of_block_[block_] >= kMaxBumpDepth) return 0;
@@ -221,7 +225,7 @@ class Emitter {
     push(i, 0, 0);
   }
 
-  // Most inputs are constants: a closure reads them where they lie.
+  // Stores the inputs of a closure consecutively, because most are constants and the closure then reads them in place.
   void lay_out_inputs(Instruction* i) {
     i->first_input = static_cast<uint32_t>(program_.inputs.size());
     i->first_computed = static_cast<uint32_t>(program_.computed.size());
@@ -233,7 +237,7 @@ class Emitter {
     i->computed_count = static_cast<uint32_t>(program_.computed.size()) - i->first_computed;
   }
 
-  // What both sides need runs before either: one of them may be skipped.
+  // Emits the values that both sides depend on before either side, because a side may be skipped at run time.
   void emit_shared(const GraphNode& n) {
     if (!child_present(n.closures[0]) || !child_present(n.closures[1])) return;
     NodeSet first(graph_.nodes.size(), 0), second(graph_.nodes.size(), 0);
@@ -282,7 +286,8 @@ class Emitter {
       if (child_present(n.closures[side])) emit_side(n.closures[side], weights + side, depth);
   }
 
-  // Skipped where its weight is zero. What ran inside may not be relied on afterwards.
+  // Emits one side of a mix, with a jump that skips it if its weight is zero. Values that are emitted inside are not
+  // reused after it.
   void emit_side(int32_t child, Operand weight, int depth) {
     Instruction jump;
     jump.op = kOpJumpIfZero;
@@ -306,7 +311,7 @@ class Emitter {
   std::vector<Operand> registers_;  // first virtual register of each emitted node
   Operand next_register_ = 0;
   size_t block_ = 0;
-  std::vector<GraphValue> heights_ = {GraphValue()};  // by block
+  std::vector<GraphValue> heights_ = {GraphValue()};  // the height of each block
   std::vector<int> depth_of_block_ = {0};
   int closures_ = 0;
 };

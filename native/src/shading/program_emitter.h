@@ -1,4 +1,4 @@
-// From a graph to a flat program.
+// Code generation: from a graph to a program.
 #pragma once
 
 #include <string>
@@ -8,20 +8,21 @@
 
 namespace gradus::shading {
 
-// Which closures a program is for; values that only other closures need are left out.
+// The closures that a program evaluates. Values that only other closures depend on are omitted.
 enum class ProgramScope { All, Emission, Transparency };
 
-// Throws Error INVALID_ARGUMENT for graphs beyond all reason (thousands of closures, hundreds of values alive at once).
+// Emits the program of a graph. Throws Error INVALID_ARGUMENT, with the material's `name`, if it has too many closures
+// or Bump nodes, or if too many values are live at once.
 Program emit_program(const Graph& graph, ProgramScope scope, const std::string& name);
 
-// Virtual registers that an instruction writes: `count` of them from `first` on.
+// The `count` virtual registers, starting at `first`, that an instruction writes.
 struct VirtualOutputs {
   Operand first = 0;
   int count = 0;
 };
 
-// Replaces virtual registers by real ones, in every block; `outputs` belongs to Program::code. Outputs that nothing
-// reads get none. Throws Error INVALID_ARGUMENT if kMaxRegisters are not enough.
+// Replaces the virtual registers of every block by real registers. `outputs` has an element for each instruction.
+// Outputs that nothing reads get no register. Throws Error INVALID_ARGUMENT if kMaxRegisters do not suffice.
 void allocate_registers(Program* program, const std::vector<VirtualOutputs>& outputs, const std::string& name);
 
 }  // namespace gradus::shading

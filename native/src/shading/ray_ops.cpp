@@ -1,4 +1,4 @@
-// Light Path, Layer Weight, Fresnel and Light Falloff nodes.
+// The Light Path, Layer Weight, Fresnel and Light Falloff nodes.
 #include <cfloat>
 
 #include "shading/context_ops.h"
@@ -62,7 +62,8 @@ float fresnel(const OpArgs& args, const ShadeContext& c) {
   return dielectric_reflectance(glm::dot(c.wo, normal_or_own(args.v(1), c)), c.backfacing ? 1.0f / eta : eta);
 }
 
-// Undoes the inverse square law in part: strength times the ray's length (linear) or its square (constant).
+// Changes the inverse square law of a light: the strength is multiplied by the ray's length for a linear falloff, or by
+// its square for none.
 float light_falloff(const OpArgs& args, const ShadeContext& c) {
   const float length = std::min(c.ray.length, 1e18f);
   float strength = args.f(0);

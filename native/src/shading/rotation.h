@@ -1,4 +1,4 @@
-// Rotation matrices of shader nodes.
+// Rotations of shader nodes.
 #pragma once
 
 #include <cmath>
@@ -7,9 +7,9 @@
 
 namespace gradus::shading {
 
-// Euler angles in order X, Y, Z: R = Rz·Ry·Rx.
+// Returns the matrix R = Rz·Ry·Rx of the Euler angles in the order X, Y, Z, in radians.
 inline Mat3 euler_matrix(const Vec3& angles) {
-  if (angles == Vec3(0.0f)) return Mat3(1.0f);  // what most nodes are left at
+  if (angles == Vec3(0.0f)) return Mat3(1.0f);  // the default of most nodes
   const float cx = std::cos(angles.x), sx = std::sin(angles.x);
   const float cy = std::cos(angles.y), sy = std::sin(angles.y);
   const float cz = std::cos(angles.z), sz = std::sin(angles.z);
@@ -17,7 +17,7 @@ inline Mat3 euler_matrix(const Vec3& angles) {
               Vec3(sy * cx * cz + sx * sz, sy * cx * sz - sx * cz, cy * cx));
 }
 
-// Rodrigues' formula; axis of unit length.
+// Rotates `v` around the unit vector `axis` by `angle` radians, by Rodrigues' formula.
 inline Vec3 rotate_around(const Vec3& v, const Vec3& axis, float angle) {
   const float c = std::cos(angle), s = std::sin(angle);
   return v * c + glm::cross(axis, v) * s + axis * (glm::dot(axis, v) * (1.0f - c));

@@ -1,4 +1,5 @@
-// Safe scalar functions: defined for every argument, with the values that shading languages agree on.
+// Scalar functions that are defined for every argument. For invalid arguments they return what shading languages
+// return.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +9,12 @@
 
 namespace gradus::shading {
 
-// NaN becomes 0, so that what is saturated can be an index.
+// Clamps to 0…1. NaN becomes 0, so that the result can be converted to an index.
 inline float saturate(float x) { return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f; }
 inline float safe_divide(float a, float b) { return b != 0.0f ? a / b : 0.0f; }
 inline float safe_modulo(float a, float b) { return b != 0.0f ? std::fmod(a, b) : 0.0f; }
 inline float fraction(float x) { return x - std::floor(x); }
-// Real powers only: negative bases take whole exponents.
+// Returns a power, or 0 for a negative base with an exponent that is not an integer.
 inline float safe_power(float a, float b) { return a < 0.0f && b != std::trunc(b) ? 0.0f : std::pow(a, b); }
 inline float sign(float x) { return x > 0.0f ? 1.0f : x < 0.0f ? -1.0f : 0.0f; }
 inline float wrap(float x, float upper, float lower) {
@@ -31,15 +32,16 @@ inline float smootherstep(float lower, float upper, float x) {
   const float t = saturate(safe_divide(x - lower, upper - lower));
   return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f);
 }
-// Zero for vectors without a direction.
+// Returns the unit vector, or zero if the vector has no direction.
 inline Vec3 safe_normalize(const Vec3& v) {
   const float length = glm::length(v);
   return length > 0.0f && is_finite(length) ? v / length : Vec3(0.0f);
 }
-// To an int, whatever the argument.
+// Converts to an int, clamped to ±2·10⁹.
 inline int to_int(float x) { return x > -2e9f ? (x < 2e9f ? static_cast<int>(x) : 2000000000) : -2000000000; }
 
-// Unpolarised reflectance of a dielectric interface; eta: index of the far side over that of the near side.
+// Returns the reflectance of a dielectric interface for unpolarised light. `eta` is the IOR of the far side over that
+// of the near side.
 inline float dielectric_reflectance(float cosine, float eta) {
   const float c = std::fabs(cosine);
   const float g2 = eta * eta - 1.0f + c * c;

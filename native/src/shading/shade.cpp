@@ -19,7 +19,7 @@ void clear(ShadeResult* result) {
   if (result->tape) result->tape->clear();
 }
 
-// Once all closures are added.
+// Finishes the closures of a result after all have been added.
 void complete(const MaterialData& material, const Vec3& geometric_normal, const Vec3& normal, const Vec3& wo,
               float roughness_threshold, ShadeResult* result) {
   result->closures.finish(wo, geometric_normal, roughness_threshold, normal);
@@ -27,7 +27,7 @@ void complete(const MaterialData& material, const Vec3& geometric_normal, const 
   result->complete = true;
 }
 
-// What the program of such a material comes to.
+// A fast path for materials with is_lambert. The result is that of their program.
 void shade_lambert(const MaterialData& material, const geometry::SurfacePoint& point, const Vec3& wo,
                    float roughness_threshold, ShadeResult* result) {
   bsdf::Lobe* lobe = result->closures.add();
@@ -38,7 +38,7 @@ void shade_lambert(const MaterialData& material, const geometry::SurfacePoint& p
            backfacing ? -point.shading_normal : point.shading_normal, wo, roughness_threshold, result);
 }
 
-// Where a program's closures are not wanted; large, so that it is made once.
+// Returns a cleared temporary result for programs whose closures are not needed. It is large, so each thread keeps one.
 ShadeResult* scratch() {
   thread_local ShadeResult result;
   clear(&result);
@@ -60,8 +60,8 @@ void shade_surface(const ShadedScene& scene, const geometry::SurfacePoint& point
   const MaterialData& material = material_of(scene, point.material);
   clear(result);
   result->fallback = material.uses_fallback;
-  // Nothing is recorded: from this side it looks the same from everywhere, and from the other it is worked out as
-  // quickly again.
+  // A Lambert surface is not recorded on the tape. It does not depend on the direction on this side, and shading it
+  // again for the other side is as fast as a replay.
   if (material.is_lambert) return shade_lambert(material, point, wo, roughness_threshold, result);
   const ShadeContext context = surface_context(scene, point, wo, ray);
   run_program(material.surface, context, result);

@@ -1,4 +1,4 @@
-// From a hit to closures: runs the material's node program at a surface point.
+// Shading: runs the node program of a material at a surface point, on the background or on a light.
 #pragma once
 
 #include "base/types.h"
@@ -10,17 +10,18 @@ namespace gradus::shading {
 class ShadedScene;
 class ClosureTape;
 
-// Kind of ray that arrives: what the Light Path node sees.
+// The kind of the ray that arrives, as bits. The Light Path node reads them.
 enum RayFlag : uint32_t {
   kRayCamera = 1,
   kRayDiffuse = 2,
   kRayGlossy = 4,
-  kRaySingular = 8,  // Dirac
+  kRaySingular = 8,  // scattered by a Dirac lobe
   kRayReflection = 16,
   kRayTransmission = 32,
   kRayShadow = 64,
 };
 
+// The history of the ray that arrives, for the Light Path node.
 struct RayState {
   uint32_t flags = kRayCamera;
   float length = 0.0f;
@@ -32,45 +33,45 @@ struct RayState {
 };
 
 struct ShadeResult {
-  bsdf::Closures closures;       // finished
+  bsdf::Closures closures;       // finished closures
   Rgb emission = Rgb(0.0f);      // radiance towards wo
-  Rgb transparency = Rgb(0.0f);  // weight of the ray that goes straight on
+  Rgb transparency = Rgb(0.0f);  // weight of the ray that continues straight through the surface
   Rgb holdout = Rgb(0.0f);
-  bool fallback = false;    // the material holds a replaced node
-  bool complete = false;    // the closures are there; then:
-  bool ignores_wo = false;  // all of this is the same seen from anywhere on this side
-  ClosureTape* tape =
-      nullptr;  // not owned: if there is one, shade_surface() records the closures for shade_from_tape()
+  bool fallback = false;    // the material has a replaced node
+  bool complete = false;    // the closures have been evaluated
+  bool ignores_wo = false;  // a complete result is equal for all directions on this side
+  ClosureTape* tape = nullptr;  // records the closures for shade_from_tape(); not owned, may be null
 };
 
-// wo: towards the previous vertex. roughness_threshold: alpha that separates classes.
+// Shades a surface point completely. `wo` points towards the previous vertex. `roughness_threshold` is the alpha that
+// separates rough from specular classes.
 void shade_surface(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo, const RayState& ray,
                    float roughness_threshold, ShadeResult* result);
-// What a ray sees before anything is scattered, which a path that ends here needs alone: without closures where the
-// surface is opaque. shade_surface() adds them.
+// Evaluates only emission, transparency and holdout, for a path that ends here. The result is not complete unless these
+// require the whole program; shade_surface() completes it.
 void shade_without_closures(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
                             const RayState& ray, float roughness_threshold, ShadeResult* result);
-// As shade_surface(), for a point that was shaded with a tape for `known_wo`.
+// Has the result of shade_surface(), for a point that has been shaded for `known_wo` and recorded on a tape.
 void shade_from_tape(const ShadedScene& scene, const geometry::SurfacePoint& point, const ClosureTape& tape,
                      const Vec3& known_wo, const Vec3& wo, const RayState& ray, float roughness_threshold,
                      ShadeResult* result);
-// Emission alone, for emitter points that light sampling chose.
+// Returns the emission alone, for points that light sampling has chosen.
 Rgb shade_emission(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo, const RayState& ray);
-// Transparency alone, for shadow rays.
+// Returns the transparency alone, for shadow rays.
 Rgb shade_transparency(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
                        const RayState& ray);
-// Background radiance from a direction (pointing away from the scene).
+// Returns the radiance of the background in a direction that points away from the scene.
 Rgb shade_world(const ShadedScene& scene, const Vec3& direction, const RayState& ray);
 
-// A point of a light: what the light's program multiplies its strength by. material: index in the scene. uv: on its
-// surface.
+// A point of a light.
 struct LightShadingPoint {
   Vec3 position = Vec3(0.0f);
   Vec3 normal = Vec3(0, 0, 1);
   Vec3 wo = Vec3(0, 0, 1);  // towards the receiver
-  Vec2 uv = Vec2(0.0f);
-  Mat3 axes{1.0f};  // of the light, without scale
+  Vec2 uv = Vec2(0.0f);  // coordinates on the light's surface
+  Mat3 axes{1.0f};       // axes of the light, without scale
 };
+// Returns the factor by which the node program multiplies the light's strength. `material` is an index in the scene.
 Rgb shade_light(const ShadedScene& scene, uint32_t material, const LightShadingPoint& point, const RayState& ray);
 
 }  // namespace gradus::shading

@@ -1,4 +1,4 @@
-// What shading needs of a scene: its geometry, the materials on it, images, camera and world.
+// The data of a scene that shading reads: geometry, materials, images, camera and world.
 #pragma once
 
 #include <memory>
@@ -12,14 +12,14 @@ class ImageStore;  // image/image_store.h
 
 namespace gradus::shading {
 
-struct MaterialData;  // shading/material.h: compiled node program and flags
+struct MaterialData;  // defined in shading/material.h
 
-// Geometry with materials and images. Functions that run node programs take this part of a snapshot.
+// Geometry with materials and images. It is the base class of a snapshot that functions which run node programs take.
 class ShadedScene : public geometry::Geometry {
  public:
-  std::vector<std::shared_ptr<const MaterialData>> materials;  // 0: the default grey
+  std::vector<std::shared_ptr<const MaterialData>> materials;  // the first is the default material
   std::shared_ptr<const image::ImageStore> images;
-  GradusCamera camera{};  // in internal space; its arrays are those of Snapshot::camera_keys
+  GradusCamera camera{};  // in internal space; its arrays belong to Snapshot::camera_keys
   bool has_camera = false;
   GradusWorld world{};
   uint32_t world_material = UINT32_MAX;

@@ -1,11 +1,12 @@
-// Colour Ramp and Curves nodes: look-ups in tables that the host has sampled.
+// The Color Ramp and Curves nodes: look-ups in tables that the host has sampled.
 #include "shading/ops.h"
 #include "shading/scalar.h"
 
 namespace gradus::shading {
 namespace {
 
-// Value at x in 0…1 of a table of `count` rows of `stride` floats; beyond its ends the line through the last two rows.
+// Interpolates a table of `count` rows of `stride` floats at `x` in 0…1. Outside that range it continues the line
+// through the outermost two rows if `extrapolate`, else it clamps.
 float lookup(const float* table, int count, int stride, float x, bool extrapolate) {
   const float last = static_cast<float>(count - 1);
   const auto at = [&](int i) { return table[i * stride]; };

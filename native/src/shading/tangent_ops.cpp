@@ -1,4 +1,4 @@
-// Tangent and Normal Map nodes.
+// The Tangent and Normal Map nodes.
 #include "base/minimal_rotation.h"
 #include "geometry/mesh.h"
 #include "geometry/tangent_field.h"
@@ -8,7 +8,7 @@
 namespace gradus::shading {
 namespace {
 
-// A tangent of the rest key, turned as the smooth normal is until the time of the hit.
+// Rotates a tangent of the undeformed mesh as the smooth normal rotates from there to the time of the hit.
 Vec4 turned_with_surface(const ShadeContext& c, const Vec4& tangent) {
   std::array<Vec3, 3> rest, then;
   const geometry::MeshData& mesh = *c.instance->mesh;
@@ -19,19 +19,22 @@ Vec4 turned_with_surface(const ShadeContext& c, const Vec4& tangent) {
   return Vec4(turned(Vec3(tangent), from, to), tangent.w);
 }
 
-// Interpolated over the triangle, in the object's space; w: handedness. 0: the mesh has no usable UV map.
+// Returns the tangent interpolated over the triangle, in the object's space, with its handedness in w. It is 0 if the
+// mesh has no usable UV map.
 Vec4 uv_tangent(const ShadeContext& c, const std::string* name) {
   if (!c.instance) return Vec4(0.0f);
   const geometry::MeshData& mesh = *c.instance->mesh;
   const geometry::MeshAttribute* uv = name ? geometry::find_attribute(mesh, *name) : geometry::default_uv_map(mesh);
   for (const auto& field : c.instance->tangents)
-    if (field->uv == uv) return turned_with_surface(c, geometry::interpolate(field->corners(c.hit.triangle), c.hit.barycentric));
+    if (field->uv == uv)
+      return turned_with_surface(c, geometry::interpolate(field->corners(c.hit.triangle), c.hit.barycentric));
   return Vec4(0.0f);
 }
 
 Vec3 unflipped(const ShadeContext& c) { return c.backfacing ? -c.normal : c.normal; }
 
-// In the object's space. As interpolated, not normalised: bakers and Cycles build the frame with it.
+// Returns the interpolated normal in the object's space. It is not normalised, because normal map bakers and Cycles
+// build the frame that way.
 Vec3 local_normal(const ShadeContext& c) {
   std::array<Vec3, 3> normals;
   if (geometry::triangle_normals_in_shutter(*c.instance->mesh, c.hit.triangle, c.hit.time, &normals))
@@ -58,7 +61,7 @@ Vec3 tangent_space_normal(const ResourceArgs& args, const ShadeContext& c, Vec3 
 Vec3 tangent(const ResourceArgs& args, const ShadeContext& c) {
   Vec3 direction;
   if (args.mode == GRADUS_TANGENT_UV) {
-    // By the matrix of normals, as in Cycles, which turns it on an object of uneven scale.
+    // As in Cycles the matrix of normals transforms the tangent, which rotates it on an object of non-uniform scale.
     direction = normal_to_world(c, Vec3(uv_tangent(c, args.name)));
   } else {
     const Vec3 g = generated(c) - 0.5f;

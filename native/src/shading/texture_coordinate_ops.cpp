@@ -1,4 +1,4 @@
-// Texture Coordinate, Camera Data and Vector Transform nodes.
+// The Texture Coordinate, UV Map, Camera Data and Vector Transform nodes.
 #include <cstring>
 
 #include "camera/panorama.h"
@@ -14,7 +14,7 @@ Mat4 matrix(const float* values) {
   return m;
 }
 
-// The camera's matrix has no scale. Camera space looks along +z.
+// Transform directions to and from camera space, which looks along +z. The camera's matrix has no scale.
 Vec3 direction_to_camera(const Mat4& camera, const Vec3& v) {
   return Vec3(glm::dot(Vec3(camera[0]), v), glm::dot(Vec3(camera[1]), v), -glm::dot(Vec3(camera[2]), v));
 }
@@ -29,7 +29,7 @@ Vec3 to_object(const ResourceArgs& args, const ShadeContext& c) {
   return c.instance ? Vec3(placement_of(c, &room).to_local * Vec4(c.position, 1.0f)) : p;
 }
 
-// 0…1 over the picture.
+// Returns the position in the picture, which spans 0…1 on both axes.
 Vec3 window(const ShadeContext& c) {
   if (!c.scene || !c.scene->has_camera) return Vec3(0.0f);
   const GradusCamera& camera = c.scene->camera;
@@ -84,7 +84,7 @@ Vec3 from_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext
 
 }  // namespace
 
-// p: internal space; backgrounds: a direction.
+// Transforms a point of internal space, or a direction on the background, to camera space.
 Vec3 to_camera(const ShadeContext& c, const Vec3& p) {
   if (!c.scene || !c.scene->has_camera) return p;
   const Mat4 camera = matrix(c.scene->camera.matrix);

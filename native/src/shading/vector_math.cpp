@@ -1,4 +1,4 @@
-// Vector Math node.
+// The Vector Math node.
 #include "shading/ops.h"
 #include "shading/scalar.h"
 

@@ -1,4 +1,4 @@
-// Mapping and Vector Rotate nodes.
+// The Mapping and Vector Rotate nodes.
 #include "shading/ops.h"
 #include "shading/rotation.h"
 #include "shading/scalar.h"

@@ -28,9 +28,10 @@ DomeHeader make_header(const DomeSettings& settings, const SunColor& color) {
   return h;
 }
 
-// Angle between vectors, as if both had unit length: accurate for small angles, and the measure that Cycles takes.
+// Returns the angle between two unit vectors. The formula is accurate for small angles and is that of Cycles.
 float angle_between(const Vec3& a, const Vec3& b) { return 2.0f * std::atan2(glm::length(a - b), glm::length(a + b)); }
 
+// Returns the radiance of the sun's disc at an angle from its centre and an elevation.
 Rgb disc(const DomeHeader& h, float angle, float elevation) {
   const float range = h.high_elevation - h.low_elevation;
   const float t = range > 0.0f ? (elevation - h.low_elevation) / range : 0.5f;
@@ -98,7 +99,7 @@ Vec3 dome_sun_direction(const DomeSettings& s) {
 }
 
 float disc_solid_angle(float size) {
-  // 2π(1 - cos) without the cancellation.
+  // This is 2π(1 - cos) in a form without cancellation.
   const float s = std::sin(0.25f * size);
   return 4.0f * kPi * s * s;
 }

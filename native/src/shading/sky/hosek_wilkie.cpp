@@ -1,4 +1,4 @@
-// Hosek and Wilkie, "An Analytic Model for Full Spectral Sky-Dome Radiance" (SIGGRAPH 2012), in CIE XYZ.
+// The sky of Hosek and Wilkie, "An Analytic Model for Full Spectral Sky-Dome Radiance" (SIGGRAPH 2012), in CIE XYZ.
 #include <algorithm>
 #include <cmath>
 
@@ -10,12 +10,13 @@ namespace gradus::shading {
 namespace {
 
 constexpr size_t kControlPoints = 6, kTurbidities = 10;
-// From the model's luminous units, with the factor that Blender has always given it.
+// Converts from the model's luminous units, and includes the factor that Blender applies to the model.
 constexpr float kScale = 2.0f * kPi / 683.0f;
 
 const HosekWilkieTable* const kChannels[3] = {&kHosekWilkieX, &kHosekWilkieY, &kHosekWilkieZ};
 
-// Quintic Bézier curve over the cube root of the sun's height (section 5.4); `stride` between the control points.
+// Evaluates a quintic Bézier curve over the cube root of the sun's elevation (section 5.4). Control points are `stride`
+// floats apart.
 double curve(const float* points, size_t stride, double x) {
   constexpr int kBinomial[kControlPoints] = {1, 5, 10, 10, 5, 1};
   double sum = 0.0;
@@ -26,11 +27,10 @@ double curve(const float* points, size_t stride, double x) {
 }
 
 struct State {
-  double turbidity, albedo, height;  // height: cube root of the elevation over π/2
+  double turbidity, albedo, height;  // the height is the cube root of the elevation divided by π/2
 };
 
-// A parameter for turbidities and albedos between those of the table; `width` parameters at each control point, `k` the
-// one that is asked for.
+// Interpolates parameter `k` of a table over turbidity and albedo. Each control point has `width` parameters.
 double parameter(const float* table, size_t width, size_t k, const State& state) {
   const size_t low = std::min(size_t(state.turbidity), kTurbidities) - 1;
   const double t = state.turbidity - 1.0 - double(low);
@@ -43,7 +43,7 @@ double parameter(const float* table, size_t width, size_t k, const State& state)
   return t > 0.0 ? (1.0 - t) * over_albedo(low) + t * over_albedo(low + 1) : over_albedo(low);
 }
 
-// Equations 8 and 9 of the paper, with the limit of the square root at the horizon as in the authors' implementation.
+// Evaluates equations 8 and 9 of the paper, with the square root at the horizon as in the authors' implementation.
 float radiance(const float* p, const SkyAngles& at) {
   const float cos_zenith = std::cos(at.zenith), cos_sun = std::cos(at.sun);
   const float rayleigh = cos_sun * cos_sun;
@@ -56,7 +56,7 @@ float radiance(const float* p, const SkyAngles& at) {
 
 AnalyticSky prepare_hosek_wilkie(const Vec3& sun, float turbidity, float albedo) {
   AnalyticSky sky{};
-  // The model knows no sun below the horizon: it stays on it.
+  // The model has no sun below the horizon, so its elevation is clamped there.
   const float z = std::clamp(sun.z, 0.0f, 1.0f);
   const Vec2 flat = sun.x == 0.0f && sun.y == 0.0f ? Vec2(0.0f) : std::sqrt(1.0f - z * z) * glm::normalize(Vec2(sun));
   const Vec3 above(flat, z);

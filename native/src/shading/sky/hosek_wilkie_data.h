@@ -34,8 +34,8 @@
 
 namespace gradus::shading {
 
-// One channel. By ground albedo (0, 1), turbidity (1…10), control point of the solar elevation; then, of each shape,
-// its nine parameters.
+// Coefficients of one channel, indexed by ground albedo (0, 1), turbidity (1…10) and control point of the solar
+// elevation; for the shape also by its nine parameters.
 struct HosekWilkieTable {
   float shape[2 * 10 * 6 * 9];
   float scale[2 * 10 * 6];

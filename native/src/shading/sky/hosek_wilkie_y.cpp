@@ -1,4 +1,4 @@
-// Y of the Hosek-Wilkie model: licence and layout in hosek_wilkie_data.h.
+// Coefficients of Y of the Hosek-Wilkie model. Their licence and layout are in hosek_wilkie_data.h.
 #include "shading/sky/hosek_wilkie_data.h"
 
 namespace gradus::shading {

@@ -1,9 +1,9 @@
-// Sunlight that is scattered once or many times, over four wavelengths: 630, 560, 490 and 430 nm.
+// A sky with single and multiple scattering, simulated at four wavelengths: 630, 560, 490 and 430 nm.
 //
-// Fernando García Liñán's atmosphere (master's thesis; "Spectral sky", fgarlin.com, 2024), as Blender 5.0's Cycles has
-// it (intern/sky, MIT licence): light of second and higher order comes from a fit to path-traced skies. The constants
-// and the number of steps are theirs, because they are part of the picture. Along a row of the table, one elevation,
-// everything but the sun's angle is the same and computed once.
+// The model is Fernando García Liñán's atmosphere (master's thesis; "Spectral sky", fgarlin.com, 2024), as in Cycles of
+// Blender 5.0 (intern/sky, MIT licence). Light of second and higher order comes from a fit to path-traced skies. The
+// constants and the number of steps are those of Cycles, because the picture depends on them. A row of the table has
+// one elevation, so everything except the angle to the sun is computed once for the row.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,11 +25,11 @@ const Vec4 kAir(6.605e-3f, 1.067e-2f, 1.842e-2f, 3.156e-2f);               // sc
 const Vec4 kOzone(3.472e-25f, 3.914e-25f, 1.349e-25f, 11.03e-27f);         // absorption cross section
 const Vec4 kAbsorbed(2.8722e-24f, 4.6168e-24f, 7.9706e-24f, 1.3578e-23f);  // cross sections of urban aerosols
 const Vec4 kScattered(1.5908e-22f, 1.7711e-22f, 2.0942e-22f, 2.4033e-22f);
-constexpr float kOzoneColumn = 334.5f;  // Dobson units, mean of the year
+constexpr float kOzoneColumn = 334.5f;  // annual mean in Dobson units
 constexpr float kAerosolDensity = 1.3681e20f, kAerosolBackground = 2e6f, kAerosolHeight = 0.73f;
-constexpr float kAnisotropy = 0.8f;  // of aerosols
+constexpr float kAnisotropy = 0.8f;  // asymmetry of the aerosols' phase function
 constexpr float kGroundAlbedo = 0.3f;
-// Columns: XYZ of the four wavelengths.
+// The XYZ colours of the four wavelengths.
 constexpr float kToXyz[4][3] = {{53.386918f, 22.981338f, 0.0f},
                                 {43.904844f, 71.347796f, 0.10250687f},
                                 {1.6137278f, 18.422961f, 31.742921f},
@@ -41,12 +41,14 @@ Rgb to_rgb(const Vec4& spectrum) {
   return xyz_to_rgb(xyz);
 }
 
+// Densities relative to the standard atmosphere.
 struct Densities {
   float air, aerosols, ozone;
 };
 
+// Coefficients of the atmosphere at one height, in 1/km.
 struct Coefficients {
-  Vec4 air, aerosols;  // scattering, 1/km
+  Vec4 air, aerosols;  // scattering
   Vec4 extinction;
 };
 
@@ -66,20 +68,20 @@ Coefficients coefficients(const Densities& density, float height) {
 
 float rayleigh_phase(float mu) { return 3.0f / 16.0f * kInvPi * (1.0f + mu * mu); }
 
-// Henyey and Greenstein.
+// The phase function of Henyey and Greenstein.
 float aerosol_phase(float mu) {
   const float d = 1.0f + kAnisotropy * kAnisotropy - 2.0f * kAnisotropy * mu;
   return 0.25f * kInvPi * (1.0f - kAnisotropy * kAnisotropy) / (d * std::sqrt(d));
 }
 
-// A ray by its start's distance from the Earth's centre and its cosine to the zenith there.
+// A ray, given by the distance of its origin from the Earth's centre and the cosine to the zenith there.
 struct PolarRay {
   double radius, cosine;
   double to_sphere(double r, double sign) const {
     const double along = radius * cosine, root = along * along - radius * radius + r * r;
     return root < 0.0 ? -1.0 : -along + sign * std::sqrt(root);
   }
-  // To the ground or to space.
+  // Returns the distance to the ground or to space.
   double length() const {
     const double ground = cosine < 0.0 ? to_sphere(double(kGround), -1.0) : -1.0;
     return ground >= 0.0 ? ground : to_sphere(double(kSpace), 1.0);
@@ -89,7 +91,7 @@ struct PolarRay {
 
 float height_of(double radius) { return std::max(float(radius - double(kGround)), 0.0f); }
 
-// To space, even where the ground is in the way: then next to nothing is left.
+// Returns the transmittance to space. It also passes through the ground, where it becomes nearly 0.
 Vec4 transmittance_to_space(const Densities& density, const PolarRay& ray) {
   const double step = ray.to_sphere(double(kSpace), 1.0) / kSteps;
   Vec4 depth(0.0f);
@@ -100,7 +102,7 @@ Vec4 transmittance_to_space(const Densities& density, const PolarRay& ray) {
 
 Vec4 mix(const Vec4& a, const Vec4& b, float t) { return a + t * (b - a); }
 
-// Where a value lies between the entries of a table over 0…1.
+// The position of a value between the entries of a table over 0…1.
 struct Place {
   int first, second;
   float t;
@@ -112,7 +114,7 @@ struct Place {
   }
 };
 
-// Transmittance from a height to the sun, by cosine of the sun to the zenith.
+// A table of the transmittance from a height to the sun, by the cosine of the sun to the zenith.
 class SunTable {
  public:
   explicit SunTable(const Densities& density) : table_(size_t(kTableCosines) * kTableHeights) {
@@ -138,12 +140,12 @@ class SunTable {
   std::vector<Vec4> table_;
 };
 
-// Light of second and higher order that comes from the air, for a sun at this cosine to the zenith.
+// Returns the light of second and higher order from the air, for the cosine of the sun to the zenith.
 Vec4 from_atmosphere(float sun_cosine) {
   return Vec4(0.217f, 0.347f, 0.594f, 1.0f) * (0.02f / (1.0f + 5.0f * std::exp(-17.92f * sun_cosine)));
 }
 
-// The rays of a row: what each step adds to the radiance, per light that arrives there.
+// The rays of one row of the table, with the factor by which each step scatters the light that arrives there.
 class View {
  public:
   View(const SunTable& table, const Densities& density, float altitude, float elevation, float sun_elevation)
@@ -159,7 +161,7 @@ class View {
       points_.push_back(make_point(density, ray, (i + 0.5) * step, float(step), &transmittance));
   }
 
-  // azimuth: from the sun's.
+  // Returns the radiance for an azimuth relative to the sun.
   Rgb radiance(float azimuth) const {
     const Vec3 direction(cosine_ * std::cos(azimuth), cosine_ * std::sin(azimuth), sine_);
     const float mu = direction.x * sun_.x + direction.z * sun_.y;
@@ -179,11 +181,11 @@ class View {
   struct Point {
     double distance, radius;
     Place height;
-    Vec4 air, aerosols;  // scattering, integrated over the step and seen through what lies in front
-    Vec4 from_ground;    // light of the ground per transmittance from the sun to it and cosine there
+    Vec4 air, aerosols;  // scattering integrated over the step, times the transmittance to the viewer
+    Vec4 from_ground;    // light from the ground, divided by the ground's transmittance to the sun and cosine
   };
 
-  // Integral over a step in which everything is constant but the transmittance (Hillaire 2015, Frostbite).
+  // Integrates a step in which everything except the transmittance is constant (Hillaire 2015, Frostbite).
   Point make_point(const Densities& density, const PolarRay& ray, double distance, float step,
                    Vec4* transmittance) const {
     const double radius = ray.radius_at(distance);
@@ -193,7 +195,8 @@ class View {
     const Vec4 weight = *transmittance * (1.0f - through) / glm::max(c.extinction, Vec4(1e-7f));
     *transmittance *= through;
     const Place place(height / kThickness, kTableHeights);
-    // Diffuse ground over the solid angle of the Earth, isotropic scattering, and the air between both.
+    // The ground is diffuse and covers the solid angle of the Earth. Its light passes the air in between and is
+    // scattered isotropically.
     const double sine = double(kGround) / radius;
     const float solid_angle = 2.0f * kPi * (1.0f - float(std::sqrt(std::max(0.0, 1.0 - sine * sine))));
     const Vec4 between = table_.to_zenith(Place(0.0f, kTableHeights)) / glm::max(table_.to_zenith(place), Vec4(1e-30f));

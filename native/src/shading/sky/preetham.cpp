@@ -1,5 +1,5 @@
-// Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight" (SIGGRAPH 1999), appendix A.2: luminance and
-// chromaticity after Perez.
+// The sky of Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight" (SIGGRAPH 1999), appendix A.2, with
+// luminance and chromaticity after Perez.
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +19,7 @@ float perez(const float* p, float zenith, float sun) {
          (1.0f + p[2] * std::exp(p[3] * sun) + p[4] * cos_sun * cos_sun);
 }
 
-// Rows of (factor of the turbidity, constant).
+// A linear function of the turbidity.
 struct Line {
   float slope, constant;
 };
@@ -27,8 +27,8 @@ constexpr Line kPerez[3][5] = {
     {{-0.0193f, -0.2592f}, {-0.0665f, 0.0008f}, {-0.0004f, 0.2125f}, {-0.0641f, -0.8989f}, {-0.0033f, 0.0452f}},
     {{-0.0167f, -0.2608f}, {-0.0950f, 0.0092f}, {-0.0079f, 0.2102f}, {-0.0441f, -1.6537f}, {-0.0109f, 0.0529f}},
     {{0.1787f, -1.4630f}, {-0.3554f, 0.4275f}, {-0.0227f, 5.3251f}, {0.1206f, -2.5771f}, {-0.0670f, 0.3703f}}};
-// Chromaticity at the zenith: rows by powers of the turbidity (2, 1, 0), columns by those of the sun's zenith angle (3,
-// 2, 1, 0).
+// Coefficients of the chromaticity at the zenith. Rows are powers of the turbidity (2, 1, 0), columns powers of the
+// sun's zenith angle (3, 2, 1, 0).
 constexpr float kZenith[2][3][4] = {{{0.00166f, -0.00375f, 0.00209f, 0.0f},
                                      {-0.02903f, 0.06377f, -0.03202f, 0.00394f},
                                      {0.11693f, -0.21196f, 0.06052f, 0.25886f}},
@@ -52,7 +52,7 @@ float zenith_luminance(float turbidity, float angle) {
 
 SkyAngles sky_angles(const AnalyticSky& sky, const Vec3& direction) {
   const float z = std::clamp(direction.z, -1.0f, 1.0f);
-  // On the unit sphere, at the height z.
+  // The direction is moved to the unit sphere at its height z.
   const Vec2 flat = direction.x == 0.0f && direction.y == 0.0f ? Vec2(0, 1) : glm::normalize(Vec2(direction));
   const Vec3 unit(std::sqrt(1.0f - z * z) * flat, z);
   const float cos_sun = glm::dot(unit, Vec3(sky.sun[0], sky.sun[1], sky.sun[2]));

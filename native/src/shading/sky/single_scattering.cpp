@@ -1,8 +1,8 @@
-// Sunlight that is scattered once, by air or aerosols, and absorbed by ozone.
+// A sky of sunlight that is scattered once by air or aerosols, and absorbed by ozone.
 //
-// Nishita et al., "Display of the Earth Taking into Account Atmospheric Scattering" (SIGGRAPH 1993), over 21
-// wavelengths. The atmosphere, the number of steps and the quadratures are those of Cycles (intern/sky), because they
-// are part of the picture.
+// The model is that of Nishita et al., "Display of the Earth Taking into Account Atmospheric Scattering" (SIGGRAPH
+// 1993), at 21 wavelengths. The atmosphere, the number of steps and the quadratures are those of Cycles (intern/sky),
+// because the picture depends on them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,15 +15,15 @@ namespace gradus::shading {
 namespace {
 
 constexpr double kGroundRadius = 6360e3, kAtmosphereRadius = 6420e3;  // m
-constexpr float kAirHeight = 8e3f, kAerosolHeight = 1.2e3f;           // m, over which the density falls by e
+constexpr float kAirHeight = 8e3f, kAerosolHeight = 1.2e3f;           // scale heights in m
 constexpr float kAerosolScattering = 2e-5f;                           // 1/m
 constexpr float kAerosolExtinction = 1.11f * kAerosolScattering;
-constexpr float kAnisotropy = 0.76f;  // of aerosols
+constexpr float kAnisotropy = 0.76f;  // asymmetry of the aerosols' phase function
 constexpr int kViewSteps = 32;
 
 using Spectrum = std::array<float, kWavelengths>;
 
-// Relative to the ground: air, aerosols, ozone.
+// Returns the densities of air, aerosols and ozone relative to those of the tabulated coefficients.
 Vec3 density(float height) {
   const float ozone = std::max(0.0f, 1.0f - std::fabs(height - 25e3f) / 15e3f);
   return {std::exp(-height / kAirHeight), std::exp(-height / kAerosolHeight), ozone};
@@ -31,14 +31,14 @@ Vec3 density(float height) {
 
 float rayleigh_phase(float mu) { return 3.0f / 16.0f * kInvPi * (1.0f + mu * mu); }
 
-// Cornette and Shanks 1992.
+// The phase function of Cornette and Shanks 1992.
 float aerosol_phase(float mu) {
   const float g2 = kAnisotropy * kAnisotropy;
   return 3.0f / 8.0f * kInvPi * (1.0f - g2) * (1.0f + mu * mu) /
          ((2.0f + g2) * std::pow(1.0f + g2 - 2.0f * kAnisotropy * mu, 1.5f));
 }
 
-// A ray by its start's distance from the centre of the Earth and its cosine to the zenith there.
+// A ray, given by the distance of its origin from the Earth's centre and the cosine to the zenith there.
 struct PolarRay {
   double radius, cosine;
   double to_space() const {
@@ -49,15 +49,15 @@ struct PolarRay {
   float height_at(double t) const { return float(radius_at(t) - kGroundRadius); }
 };
 
-// Towards the sun: Gauss-Laguerre quadrature of order 8, for densities that fall like an exponential. On a ray of
-// length 1, so that the last point is still in the atmosphere: points x/25, weights w·exp(x)/25.
+// Gauss-Laguerre quadrature of order 8 towards the sun, because the densities fall exponentially. It is scaled to a ray
+// of length 1, with the points x/25 and the weights w·exp(x)/25, so that the last point is still in the atmosphere.
 constexpr int kSunSteps = 8;
 constexpr float kSunPoints[kSunSteps] = {0.006811185292f, 0.03614807107f, 0.09004346519f, 0.1706680068f,
                                          0.2818362161f,   0.4303406404f,  0.6296271457f,  0.9145252695f};
 constexpr float kSunWeights[kSunSteps] = {0.01750893642f, 0.04135477391f, 0.06678839063f, 0.09507698807f,
                                           0.1283416365f,  0.1707430204f,  0.2327233347f,  0.3562490486f};
 
-// Densities summed up along a ray, m.
+// Returns the densities integrated along a ray to space, in m.
 Vec3 optical_depth(const PolarRay& ray) {
   const double length = ray.to_space();
   Vec3 sum(0.0f);
@@ -65,6 +65,7 @@ Vec3 optical_depth(const PolarRay& ray) {
   return sum * float(length);
 }
 
+// Returns the optical thickness at wavelength `k` for integrated densities.
 float extinction(const Vec3& depth, int k) {
   return depth.x * kRayleighScattering[k] + depth.y * kAerosolExtinction + depth.z * kOzoneAbsorption[k];
 }
@@ -76,8 +77,8 @@ Rgb to_rgb(const Spectrum& spectrum) {
   return xyz_to_rgb(xyz * kWavelengthStep);
 }
 
-// What a row of the table, one elevation, shares: points along the ray with their densities and what lies in front of
-// them.
+// The rays of one row of the table, which have the same elevation. They share the points along the ray, with their
+// densities and optical depths.
 class View {
  public:
   View(const DomeSettings& settings, float altitude, float elevation)
@@ -98,7 +99,7 @@ class View {
     }
   }
 
-  // azimuth: from the sun's.
+  // Returns the radiance for an azimuth relative to the sun.
   Rgb radiance(float azimuth) const {
     const Vec3 direction(cosine_ * std::cos(azimuth), cosine_ * std::sin(azimuth), sine_);
     const float mu = direction.x * sun_.x + direction.z * sun_.y;
@@ -124,7 +125,8 @@ class View {
     Vec3 density, depth;
   };
 
-  // The sun lies below the horizontal plane, and its line through the point meets the Earth.
+  // Returns whether the Earth hides the sun from a point: the sun is below the horizontal plane, and the line from the
+  // point to the sun meets the Earth.
   bool in_shadow(double radius, double along_sun) const {
     return sun_.y < 0.0f && along_sun * along_sun >= radius * radius - kGroundRadius * kGroundRadius;
   }
@@ -137,7 +139,7 @@ class View {
   std::array<Point, kViewSteps> points_{};
 };
 
-// Sunlight that arrives from an elevation, spread over the disc; ozone is left out, as in Cycles.
+// Returns the radiance of the sun's disc at an elevation. As in Cycles, ozone is ignored.
 Rgb sun_radiance(const DomeSettings& settings, float altitude, float elevation) {
   const Vec3 scale(settings.air, settings.aerosols, 0.0f);
   const Vec3 depth = scale * optical_depth({kGroundRadius + double(altitude), std::sin(double(elevation))});
@@ -162,13 +164,13 @@ SunColor sun_color(const DomeSettings& settings, float altitude, bool newer) {
   return sun;
 }
 
-// Below the horizon its light fades to black.
+// Returns the factor by which the light of the horizon fades to black below it.
 float fade(float elevation) {
   const float f = std::max(0.0f, 1.0f - 2.5f * std::sin(-elevation));
   return f * f * f;
 }
 
-// Elevations that the rows show; Cycles' older table is read half a row off.
+// Returns the elevation of a row. Before Blender 5.0, Cycles read its table with an offset of half a row.
 float row_elevation(int row, bool newer) {
   constexpr float kHalf = 0.5f * kDomeHeight;
   const float right_angle = 0.5f * kPi;
@@ -182,7 +184,7 @@ float row_elevation(int row, bool newer) {
 }  // namespace
 
 std::vector<float> prepare_single_scattering(const DomeSettings& settings, bool newer) {
-  // Space begins at 60 km.
+  // The atmosphere ends at 60 km.
   const float altitude = std::clamp(settings.altitude, 1.0f, 59999.0f);
   const auto fill = [&](float elevation, Rgb* half) {
     const View view(settings, altitude, elevation);

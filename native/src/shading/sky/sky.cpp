@@ -10,14 +10,16 @@
 namespace gradus::shading {
 namespace {
 
-// A smaller disc is drawn this large (rad, as in Cycles): it shines alike, and floats still resolve it.
+// Minimum angular diameter of the sun's disc in radians, as in Cycles, so that floats resolve it. A smaller sun emits
+// the same light.
 constexpr float kSmallestSun = 0.0005f;
 
+// Clamps `x`, or returns `otherwise` if `x` is not finite.
 float within(float x, float low, float high, float otherwise) {
   return is_finite(x) ? std::clamp(x, low, high) : otherwise;
 }
 
-// Beyond the zenith the sun comes down on the other side.
+// Normalises the sun's angles. A sun beyond the zenith is on the opposite side of the sky.
 void wrap_sun(float elevation, float rotation, DomeSettings* settings) {
   elevation = std::remainder(elevation, 2.0f * kPi);
   if (std::fabs(elevation) > 0.5f * kPi) {

@@ -1,5 +1,5 @@
-// The Sky Texture node. What depends on its settings alone is prepared once, when a material is compiled; the pictures
-// are those of the sky types of Cycles, in Blender 3.4 to 5.0.
+// The Sky Texture node. Everything that depends on its settings alone is prepared when a material is compiled. The sky
+// types are those of Cycles in Blender 3.4 to 5.0.
 #pragma once
 
 #include <optional>
@@ -10,18 +10,20 @@
 
 namespace gradus::shading {
 
-// How many settings gradus_nodes.h lists for PREETHAM and HOSEK_WILKIE, and for the rest.
+// Numbers of settings in gradus_nodes.h for PREETHAM and HOSEK_WILKIE, and for all other modes.
 inline constexpr uint32_t kAnalyticSkySettings = 5, kSkySettings = 8;
-// The table that sky() reads. Settings that are out of range or not finite become the nearest that are not.
+// Returns the table that sky() reads. Settings out of range are clamped; settings that are not finite are replaced by a
+// default.
 std::vector<float> prepare_sky(uint32_t mode, const float* settings);
-// Radiance along a direction, whose length is not looked at but for where the node takes it for one (as Cycles).
+// Returns the radiance in a direction. As in Cycles, the direction should be a unit vector and is not normalised.
 Rgb sky(uint32_t mode, const float* prepared, const Vec3& direction);
 
-// A sun that a sky draws.
+// The disc of a sun. The angle is in radians.
 struct SunDisc {
   Vec3 direction = Vec3(0, 0, 1);
   float half_angle = 0.0f;
 };
+// Returns the sun's disc of a prepared sky, or nothing if it has none.
 std::optional<SunDisc> sun_disc(uint32_t mode, const float* prepared);
 
 }  // namespace gradus::shading

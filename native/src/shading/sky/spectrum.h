@@ -1,5 +1,5 @@
-// Spectra of sun, air and ozone, and the CIE 1931 observer, from 380 to 780 nm in steps of 20: the values that Cycles'
-// sky model uses (intern/sky, Blender Authors; the observer is the CIE's).
+// Spectra of sun, air and ozone, and the CIE 1931 observer, from 380 to 780 nm in steps of 20 nm. The values are those
+// of Cycles' sky model (intern/sky, Blender Authors); the observer is that of the CIE.
 #pragma once
 
 namespace gradus::shading {
@@ -8,17 +8,17 @@ inline constexpr int kWavelengths = 21;
 inline constexpr float kFirstWavelength = 380.0f, kWavelengthStep = 20.0f;  // nm
 
 // clang-format off
-// Above the atmosphere, W/(m² nm).
+// Solar irradiance above the atmosphere, in W/(m² nm).
 inline constexpr float kSunIrradiance[kWavelengths] = {
     1.457568f, 1.565963f, 1.651484f, 1.714962f, 1.75798f, 1.782564f, 1.790951f,
     1.785416f, 1.768156f, 1.741221f, 1.706471f, 1.665561f, 1.619934f, 1.570836f,
     1.519323f, 1.466285f, 1.412459f, 1.35845f, 1.304749f, 1.25175f, 1.19976f};
-// At sea level, 1/m.
+// Scattering coefficient of air at sea level, in 1/m.
 inline constexpr float kRayleighScattering[kWavelengths] = {
     5.42482e-5f, 4.41855e-5f, 3.635152e-5f, 3.017929e-5f, 2.52632e-5f, 2.130859e-5f, 1.809838e-5f,
     1.547057e-5f, 1.330285e-5f, 1.150185e-5f, 9.995574e-6f, 8.728e-6f, 7.655137e-6f, 6.742172e-6f,
     5.961341e-6f, 5.290346e-6f, 4.711157e-6f, 4.209105e-6f, 3.772184e-6f, 3.390513e-6f, 3.055915e-6f};
-// Where its density is largest, 1/m.
+// Absorption coefficient of ozone at its maximum density, in 1/m.
 inline constexpr float kOzoneAbsorption[kWavelengths] = {
     3.251268e-9f, 5.853954e-9f, 1.977191e-8f, 7.309569e-8f, 2.008456e-7f, 4.038396e-7f, 6.355134e-7f,
     9.670704e-7f, 1.547974e-6f, 2.090386e-6f, 2.461281e-6f, 2.735513e-6f, 2.151259e-6f, 1.590518e-6f,

@@ -12,12 +12,13 @@ namespace {
 constexpr int kMaxChainLength = 64;
 constexpr float kTolerance = 1e-4f;
 
+// Returns whether the node outputs the direction when it is evaluated for the world.
 bool is_direction(const GraphNode& n) {
   return (n.op == GRADUS_OP_TEX_COORD && n.mode == GRADUS_TEX_COORD_GENERATED) ||
          (n.op == GRADUS_OP_GEOMETRY && n.mode == GRADUS_GEOMETRY_POSITION);
 }
 
-// The one input that is no constant.
+// Returns the index of the only input that is not constant, or nothing if there is none or more than one.
 std::optional<size_t> single_variable(const GraphNode& n) {
   std::optional<size_t> found;
   for (size_t k = 0; k < n.inputs.size(); ++k) {
@@ -28,7 +29,7 @@ std::optional<size_t> single_variable(const GraphNode& n) {
   return found;
 }
 
-// A pure node as a function of one of its inputs.
+// Evaluates an output of a pure node with `x` as the input `variable`.
 Vec3 evaluate_at(const Graph& graph, const GraphNode& n, size_t variable, uint32_t output, const Vec3& x) {
   Vec4 in[kMaxInputs];
   for (size_t k = 0; k < n.inputs.size(); ++k) in[k] = k == variable ? value(x) : n.inputs[k].constant;
@@ -44,7 +45,8 @@ Vec3 evaluate_at(const Graph& graph, const GraphNode& n, size_t variable, uint32
 
 bool near(const Vec3& a, const Vec3& b) { return is_finite(a) && glm::length(a - b) < kTolerance; }
 
-// The rotation that a node is, by what it makes of the axes; two more vectors tell whether it is linear.
+// Returns the rotation that a node applies to its input, or nothing if it is not a rotation. The images of the axes
+// give the matrix; three more vectors test that the node is linear.
 std::optional<Mat3> rotation_of(const Graph& graph, const GraphNode& n, size_t variable, uint32_t output) {
   const auto f = [&](const Vec3& x) { return evaluate_at(graph, n, variable, output, x); };
   const Mat3 m(f(Vec3(1, 0, 0)), f(Vec3(0, 1, 0)), f(Vec3(0, 0, 1)));
@@ -56,7 +58,7 @@ std::optional<Mat3> rotation_of(const Graph& graph, const GraphNode& n, size_t v
   return m;
 }
 
-// What turns the world's direction into this value.
+// Returns the rotation from the world's direction to a value, or nothing if the value is not a rotated direction.
 std::optional<Mat3> rotation_to(const Graph& graph, const GraphValue& v) {
   Mat3 all(1.0f);
   GraphValue at = v;

@@ -1,4 +1,4 @@
-// Where in the world the suns of its Sky Textures stand.
+// Directions of the suns in the Sky Textures of a world.
 #pragma once
 
 #include <vector>
@@ -10,11 +10,12 @@ namespace gradus::shading {
 
 struct Suns {
   std::vector<SunDisc> discs;
-  // Half the angle of the smallest sun whose place could not be told, because something but a rotation turns its sky;
-  // 0: there is none.
+  // Half angle of the smallest sun whose direction is unknown, because its texture coordinates are not a rotation of
+  // the direction; 0 if there is none.
   float smallest_hidden = 0.0f;
 };
 
+// Finds the suns of all Sky Textures of a graph.
 Suns find_suns(const Graph& graph);
 
 }  // namespace gradus::shading
