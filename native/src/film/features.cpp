@@ -15,7 +15,7 @@ namespace gradus::film {
 
 namespace {
 
-// Row by row: function(pixel).
+// Calls function(pixel index) for all pixels of the region, with rows distributed over the threads.
 template <class Function>
 void for_pixels(const Film& film, const Function& function) {
   const auto width = static_cast<size_t>(film.region.width());
@@ -36,7 +36,7 @@ void read_mean(const Film& film, const PassPlane& plane, HalfRange halves, size_
   }
 }
 
-// half: half the difference of the halves' means.
+// Returns the estimated variance of a mean. half: half the difference between the means of half-buffers A and B.
 float variance_of(float half, bool is_known) {
   return is_known ? std::min(half * half, std::numeric_limits<float>::max()) : std::numeric_limits<float>::quiet_NaN();
 }

@@ -1,4 +1,4 @@
-// What is known of a stored frame without unpacking its planes.
+// Metadata of a stored film, which can be read without unpacking its planes.
 #pragma once
 
 #include "film/film.h"
@@ -10,17 +10,17 @@ struct FilmHeader {
   Region region;
   int channels = 3;
   bool gradients = false;
-  uint64_t planes = 0;  // of passes, a bit each
+  uint64_t planes = 0;  // stored passes, one bit each
   ComponentContent of_components;
   GradusSettings settings{};
   SampleRanges samples;
   uint64_t scene_key = 0;
   int32_t frame_number = 0;
-  int32_t replayed_frame = 0;  // of a replay
-  uint64_t replayed_key = 0;   // of its scene; 0: not known
+  int32_t replayed_frame = 0;  // number of the frame whose samples are replayed
+  uint64_t replayed_key = 0;   // scene key of that frame; 0 if unknown
   uint32_t replayed_seed = 0;
   AdaptiveState shared;
-  std::vector<std::string> warnings;  // what the file asks for that this version does not have
+  std::vector<std::string> warnings;  // features in the file that this version does not support
 };
 
 inline FilmHeader header_of(const Film& film) {

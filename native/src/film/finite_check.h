@@ -1,5 +1,5 @@
-// The one gate into a frame: what is not finite, or would make a sum so, stays out and is counted by cause
-// (architecture rule 2).
+// The finite check, through which all values enter a film: a value that is not finite, or that would make a sum too
+// large, is dropped and counted by cause.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 
 namespace gradus::film {
 
-// Largest sum: what is read is the mean of two halves or the difference of two ends, which then have room in float.
+// Largest absolute sum. The limit leaves room in float for the mean of two half-buffers and the difference of two ends.
 inline constexpr float kLargestSum = 1e37f;
 
-// Written so that NaN does not fit.
+// Returns whether a sum is within the limit; false for NaN.
 inline bool fits(float v) { return std::fabs(v) <= kLargestSum; }
 inline bool fits(const Radiance& v) { return fits(v.x) && fits(v.y) && fits(v.z) && fits(v.w); }
 
-// One sample of a pixel. A dropped value counts as 0: the sample itself has been taken.
+// Adds one sample of a pixel. A dropped value counts as 0, because the sample count includes the sample.
 inline void add_radiance(const Radiance& value, Radiance* sum, Counters* counters) {
   const Radiance next = *sum + value;
   if (fits(next)) {
@@ -26,7 +26,7 @@ inline void add_radiance(const Radiance& value, Radiance* sum, Counters* counter
   }
 }
 
-// Gradient sample of a pair, already weighted (gradient/pair.h).
+// Adds the gradient sample of a pair, already weighted (gradient/pair.h).
 inline void add_gradient(const Radiance& value, Radiance* sum, Counters* counters) {
   const Radiance next = *sum + value;
   if (fits(next)) {
@@ -36,7 +36,7 @@ inline void add_gradient(const Radiance& value, Radiance* sum, Counters* counter
   }
 }
 
-// A vertex of one sample.
+// Adds the first non-specular vertex of one sample.
 inline void add_non_specular(const NonSpecularVertices& vertex, NonSpecularVertices* sum, Counters* counters) {
   const NonSpecularVertices next{sum->reflectance + vertex.reflectance, sum->normal + vertex.normal,
                                  sum->inverse_depth + vertex.inverse_depth, sum->samples + vertex.samples};
@@ -47,7 +47,7 @@ inline void add_non_specular(const NonSpecularVertices& vertex, NonSpecularVerti
   }
 }
 
-// Of a segment of one sample, or of other samples: the first of all tells which object and face it is.
+// Adds the details of one segment, or sums over other samples. Object and face come from the lowest sample number.
 inline void add_details(const NonSpecularDetails& more, NonSpecularDetails* sum, Counters* counters) {
   NonSpecularDetails next = more.sample < sum->sample ? more : *sum;
   next.uv = sum->uv + more.uv;
@@ -60,7 +60,7 @@ inline void add_details(const NonSpecularDetails& more, NonSpecularDetails* sum,
   }
 }
 
-// Values of a pass: added to its sums, or kept as they are where only the first sample counts.
+// Adds one sample's values of a pass to its sums, or stores them if the pass keeps only the first sample.
 inline void add_feature(const float* values, float weight, size_t pixel, int half, PassPlane* plane,
                         Counters* counters) {
   float* sum = plane->of_half(half).data() + pixel * plane->channels;

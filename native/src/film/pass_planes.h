@@ -1,29 +1,30 @@
-// The planes of data and light passes that an integrator fills.
+// Planes of data and light passes that an integrator fills.
 #pragma once
 
 #include "film/film.h"
 
 namespace gradus::film {
 
-// Zeroed, in order of pass number. passes: what is asked for; pixels: of the frame's region.
+// Returns zeroed planes in order of pass number. passes: requested passes, one bit each; pixels: area of the region.
 std::vector<PassPlane> make_pass_planes(uint64_t passes, size_t pixels);
 
-// What a frame keeps of its components beside their light.
+// Data that a film keeps for its components beside their radiance.
 struct ComponentContent {
-  bool non_specular = false;  // the first rough vertices of their paths
-  bool details = false;       // more of these
+  bool non_specular = false;  // NonSpecularVertices
+  bool details = false;       // NonSpecularDetails
   bool motion = false;
-  bool shown = false;  // what they show at the centres of pixels
+  bool shown = false;  // ShownPoint
 };
-// Room for it; nothing of it is known yet.
+// Allocates the planes for `content` with initial values.
 void allocate_component_content(const ComponentContent& content, Film* film);
+// Returns the content that the film has planes for.
 ComponentContent component_content(const Film& film);
 
-// Which passes the frame has planes of, a bit each.
+// Returns the passes that the film has planes for, one bit each.
 uint64_t film_passes(const Film& film);
-// nullptr: there is none.
+// Returns the plane of a pass, or nullptr.
 const PassPlane* find_plane(const Film& film, uint32_t pass);
-// What Film::memory_bytes() counts per pixel, with planes for these passes.
+// Returns the bytes per pixel that Film::memory_bytes() counts for a film with these passes and this content.
 uint64_t film_bytes_per_pixel(int components, bool gradients, uint64_t passes, const ComponentContent& content = {});
 
 }  // namespace gradus::film

@@ -1,5 +1,5 @@
-// The lattice of cells of 16×16 pixels, fixed to the full frame, on which sub-pixel jitter is shared and noise is
-// judged (contract 1.6, 5.3).
+// Pixel blocks of 16×16 pixels, aligned to the full frame. The pixels of a block share sub-pixel jitter, and adaptive
+// sampling estimates noise per block.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@ namespace gradus::film {
 
 inline constexpr int32_t kPixelBlockSide = 16;
 
-// Cell of `side` that holds a coordinate; below 0, too, towards minus infinity.
+// Returns the index of the block that contains coordinate x: x / side, rounded towards minus infinity.
 inline int32_t pixel_block_of(int32_t x, int32_t side = kPixelBlockSide) {
   return x >= 0 ? x / side : -((-x + side - 1) / side);
 }

@@ -1,5 +1,5 @@
-// Cells of a lattice that is fixed to the full frame: work tiles, and the cells on which jitter is shared and noise is
-// judged.
+// Grids of pixel blocks aligned to the full frame: work tiles, and the blocks that share jitter and are
+// tested for noise.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 
 namespace gradus::film {
 
-// Squares of `side` pixels, aligned to multiples of it, cut to the region; row by row.
+// Returns the blocks of `side`×`side` pixels, aligned to multiples of `side` and clipped to the region, row-major.
 std::vector<Region> make_pixel_blocks(const Region& region, int side = kPixelBlockSide);
 Region intersection(const Region& a, const Region& b);
 
-// The cells of a region, as rows and columns.
+// The pixel blocks of a region, indexed by column and row.
 struct PixelBlockGrid {
   explicit PixelBlockGrid(const Region& region, int side = kPixelBlockSide);
   size_t index(int32_t column, int32_t row) const { return size_t(row) * size_t(columns) + size_t(column); }
@@ -24,7 +24,8 @@ struct PixelBlockGrid {
   int32_t columns, rows;
 };
 
-// The cell and those around it, the near ones counting more: visit(cell, weight).
+// Calls visit(block index, weight) for a block and its neighbours. Weights are 4 for the block, 2 for neighbours at its
+// sides and 1 at its corners.
 template <class Visit>
 void for_each_around(const PixelBlockGrid& grid, size_t block, Visit&& visit) {
   const auto column = int32_t(block % size_t(grid.columns)), row = int32_t(block / size_t(grid.columns));
@@ -35,7 +36,7 @@ void for_each_around(const PixelBlockGrid& grid, size_t block, Visit&& visit) {
   }
 }
 
-// Sets a part of a map that has a value for every pixel of the region.
+// Sets the pixels of `part` to `value` in a map with one value per pixel of `region`.
 template <class T>
 void fill(const Region& part, const Region& region, T value, std::vector<T>* map) {
   for (int32_t y = part.y0; y < part.y1; ++y) {

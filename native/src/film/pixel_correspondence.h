@@ -1,4 +1,4 @@
-// Links between the pixels of a frame and those of the next one.
+// Pixel correspondences between a frame and the next one.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,14 @@
 
 namespace gradus::film {
 
-// Linked to nothing.
+// Marks a pixel without a correspondence.
 inline constexpr int32_t kNoCorrespondence = -1;
 
-// From the pixels of one of the two frames to those of the other; no pixels: none is linked.
+// Maps pixels of one frame to pixels of the other; empty if no pixel has a correspondence.
 struct PixelCorrespondence {
-  std::vector<int32_t> pixel;  // kNoCorrespondence: none
-  // Where the way from the earlier frame ends, from the middle of the pixel in the later one: within half a pixel, so
-  // that a link is the way to a whole pixel. Likewise by `pixel`; empty: in the middle.
+  std::vector<int32_t> pixel;  // pixel index in the other frame, or kNoCorrespondence
+  // End of the film displacement from the earlier frame, relative to the centre of the pixel in the later frame, in
+  // [-0.5, 0.5] pixels per axis. Indexed like `pixel`; empty if all displacements end at pixel centres.
   std::vector<Vec2> off_centre{};
 
   bool empty() const { return pixel.empty(); }

@@ -12,7 +12,7 @@ namespace gradus::film {
 
 namespace {
 
-// Writes the channels of a mean.
+// Writes the channels of one mean value.
 template <int kChannels>
 void store(const Radiance& value, float* to) {
   for (int c = 0; c < kChannels; ++c) to[c] = value[c];
@@ -32,8 +32,9 @@ void read_primal(const Film& film, const ComponentPlanes& planes, HalfRange halv
   }
 }
 
-// Differences between `count` pixels from `first` on and those `step` further, of which they are `offset`: own samples
-// of the pair with +, the neighbour's of the way back with −. A pair with samples at one end alone is absent.
+// Computes differences between `count` pixels from index `first` and their neighbours `step` indices further, which lie
+// in direction `offset`. The pixel's own samples of the pair count with +, the neighbour's samples in the opposite
+// direction with −. A pair with samples at only one end becomes kAbsentPair.
 template <int kChannels>
 void read_differences(const Film& film, const ComponentPlanes& planes, Offset offset, HalfRange halves, size_t first,
                       size_t step, int count, float* to) {
@@ -51,7 +52,7 @@ void read_differences(const Film& film, const ComponentPlanes& planes, Offset of
   }
 }
 
-// All rows of an image: read_row(y, where to).
+// Returns an image of all rows: read_row(y, row) writes one.
 template <class ReadRow>
 std::vector<float> read_rows(const Film& film, const ReadRow& read_row) {
   const size_t row = size_t(film.region.width()) * size_t(film.channels);
@@ -85,7 +86,7 @@ void read_difference_row(const Film& film, int component, Offset offset, HalfRan
 
 namespace {
 
-// Images by rows: read_primal(y, row) and read_difference(offset, y, row).
+// Returns images whose rows read_primal(y, row) and read_difference(offset, y, row) write.
 template <class ReadPrimal, class ReadDifference>
 GradientImages read_all(const Film& film, bool differences, const ReadPrimal& read_primal,
                         const ReadDifference& read_difference) {
@@ -100,7 +101,7 @@ GradientImages read_all(const Film& film, bool differences, const ReadPrimal& re
   return images;
 }
 
-// (A − B)/2 of a row: read(halves, where to).
+// Writes (A − B)/2 for a row; read(half, row) writes the row of one half-buffer.
 template <class Read>
 void read_half_difference(size_t size, const Read& read, float* row) {
   std::vector<float> other(size);
@@ -109,7 +110,7 @@ void read_half_difference(size_t size, const Read& read, float* row) {
   for (size_t i = 0; i < size; ++i) row[i] = 0.5f * (row[i] - other[i]);
 }
 
-// Where a half has no samples, the whole of the other one's mean in place of half of it.
+// Doubles the value of pixels with samples in only one half-buffer, which gives the mean of that half-buffer.
 void fill_unknown(const Film& film, int y, float* row) {
   const auto width = static_cast<size_t>(film.region.width());
   for (size_t i = size_t(y) * width; i < size_t(y + 1) * width; ++i, row += film.channels) {
@@ -152,13 +153,13 @@ GradientImages read_half_differences_of_pixels(const Film& film, int component) 
 
 namespace {
 
-// Both halves of a row, and whether each has samples.
+// One row of both half-buffers; `sampled` is 1 where both have samples.
 struct HalfRows {
   std::vector<float> values[kHalves];
   std::vector<uint8_t> sampled;
 };
 
-// Root mean square over RGB of half the differences of a row's halves.
+// Writes the root mean square over RGB of half the difference between the half-buffers; NaN where one has no samples.
 void deviations_of_row(const HalfRows& rows, int channels, float* to) {
   for (size_t x = 0; x < rows.sampled.size(); ++x) {
     const float *a = rows.values[0].data() + x * channels, *b = rows.values[1].data() + x * channels;
@@ -168,7 +169,8 @@ void deviations_of_row(const HalfRows& rows, int channels, float* to) {
   }
 }
 
-// All rows: read_half(half, y, where to); is_sampled(half, pixel).
+// Returns the deviations of all pixels. read_half(half, y, row) writes a row of one half-buffer, and is_sampled(half,
+// pixel) returns whether it has samples.
 template <class ReadHalf, class IsSampled>
 std::vector<float> deviations(const Film& film, const ReadHalf& read_half, const IsSampled& is_sampled) {
   const size_t w = size_t(film.region.width());

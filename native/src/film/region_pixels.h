@@ -1,4 +1,4 @@
-// Pixels of a frame's region, row by row over the threads.
+// Iterates over the pixels of a region of a film, with rows distributed over the threads.
 #pragma once
 
 #include "base/rows.h"
@@ -6,7 +6,7 @@
 
 namespace gradus::film {
 
-// function(i, out): the pixel's place in the frame's planes, and in those of the region.
+// Calls function(i, out) per pixel, where i is its index in the film's planes and out its index within `region`.
 template <class Function>
 void for_pixels(const Film& film, const Region& region, const Function& function) {
   for_rows(region.height(), [&](int row) {

@@ -1,4 +1,4 @@
-// Whose random numbers the pixels of a frame take, where they replay those of another one (contract 1.1).
+// The replay map of a frame: for each pixel, the pixel of another frame whose random numbers it replays.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,14 @@
 namespace gradus::film {
 
 struct ReplayMap {
-  int32_t stream_frame = 0;            // number of the frame that is replayed
-  PixelCorrespondence correspondence;  // by pixels of the region: the pixel of the same region; kNoCorrespondence: a
-                                       // stream of its own, tagged as a hole
-  uint64_t scene_key = 0;              // of the scene that the replayed frame shows; 0: not known
-  uint32_t seed = 0;                   // of the frame that is replayed
-  bool shares_jitter = true;           // whether its cells did. Not stored: its scene tells
-  // Of components that go their own ways, as reflections do: likewise, by component; empty, or none: `correspondence`.
+  int32_t stream_frame = 0;  // number of the replayed frame
+  // Replayed pixel of the same region for each pixel; kNoCorrespondence marks a disocclusion, which has its own stream.
+  PixelCorrespondence correspondence;
+  uint64_t scene_key = 0;     // scene key of the replayed frame; 0 if unknown
+  uint32_t seed = 0;          // seed of the replayed frame
+  bool shares_jitter = true;  // pixel blocks of the replayed frame share jitter; not stored, derived from its scene
+  // Maps of components whose film displacement differs, such as reflections. A component without a map, or with an
+  // empty one, uses `correspondence`.
   std::vector<PixelCorrespondence> of_component{};
 
   bool has_component_map(int component) const {

@@ -1,5 +1,5 @@
-// Which sample numbers a frame holds: ranges in order, with gaps between them. Frames that were rendered apart are
-// added by these.
+// Sample numbers that a film holds, as sorted ranges with gaps between them. They are needed to merge films that were
+// rendered separately.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,16 @@ struct SampleRange {
 class SampleRanges {
  public:
   SampleRanges() = default;
-  // Throws invalid_argument unless they are in order, not empty, and apart.
+  // Throws invalid_argument unless the ranges are sorted, non-empty and separated by gaps.
   explicit SampleRanges(std::vector<SampleRange> ranges);
 
-  // Ranges that touch become one; what is there already stays once.
+  // Adds a range. Ranges that touch or overlap are merged.
   void add(const SampleRange& range);
+  // Returns whether a sample number is in both sets.
   bool overlap(const SampleRanges& other) const;
-  // "samples 16 to 31" of the first gap from `first` on; "" if the samples from there on lie in one range.
+  // Returns the first gap from sample number `first` on, such as "samples 16 to 31", or "" if there is none.
   std::string first_gap(uint32_t first) const;
+  // Returns the number of samples in all ranges.
   uint64_t total() const;
   const std::vector<SampleRange>& list() const { return ranges_; }
   bool operator==(const SampleRanges&) const = default;

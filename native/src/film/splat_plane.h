@@ -1,10 +1,9 @@
-// Sums of samples that do not belong to the pixel that asked for them (contract 1.3): a light path or a chain adds to
-// whatever pixels it meets. The plane is normalised globally, by the number of paths, where the planes of a frame are
-// normalised by their pixels' counts.
+// Sums of splats: contributions of a light path or Markov chain to any pixel of the film. The plane is normalised by
+// the total number of paths, whereas the other planes of a film are normalised by the sample count of each pixel.
 //
-// Workers hand in a unit's splats as a whole. They are added in the order of the units' numbers, whoever comes first,
-// so that the sums have the same bits for any number of threads; units that are early wait in memory, as many as there
-// are workers.
+// Workers submit all splats of a work unit at once. Units are added in the order of their numbers, so that the sums
+// have the same bits for any number of threads. Units that finish early wait in memory, at most as many as there are
+// workers.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +16,7 @@
 namespace gradus::film {
 
 struct Splat {
-  int32_t x = 0, y = 0;  // pixel of the full frame; outside of the region it is left out
+  int32_t x = 0, y = 0;  // pixel of the full frame; ignored outside of the region
   Radiance value = Radiance(0.0f);
 };
 
@@ -25,11 +24,11 @@ class SplatPlane {
  public:
   explicit SplatPlane(const Region& region);
 
-  // The paths of unit number `unit` (0, 1, 2 …, each once) and what they have splatted. Thread-safe.
+  // Adds the splats of work unit `unit` (0, 1, 2 …, each once) and its number of paths. Thread-safe.
   void merge(uint32_t unit, uint64_t paths, std::vector<Splat> splats, Counters* counters);
-  // Paths of the units that are in the sums.
+  // Returns the number of paths of all units that have been added.
   uint64_t paths() const;
-  // Sum over all paths divided by their number; row-major over the region.
+  // Returns the sums divided by the number of paths, row-major over the region.
   std::vector<Radiance> mean() const;
 
  private:

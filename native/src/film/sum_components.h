@@ -1,11 +1,11 @@
-// What all components of a frame have found together.
+// Sums the components of a film.
 #pragma once
 
 #include "film/film.h"
 
 namespace gradus::film {
 
-// Samples and differences of a frame without decomposition: its one component is the sum of all. Without passes.
+// Returns a film with one component, the sum of all components' samples and differences. It has no passes.
 Film sum_components(const Film& film);
 
 }  // namespace gradus::film
