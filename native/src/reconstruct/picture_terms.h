@@ -16,7 +16,7 @@ namespace gradus::reconstruct {
 struct PictureTerm {
   Field image;
   Field error;  // estimated squared error, mean over the channels; one channel
-  // Per pixel and channel: the largest possible value of the term over its largest possible value in the pixels around.
+  // Per pixel and channel: the term's possible light, such as an albedo, over its mean in the pixels around, at most 1.
   // Where it is 0, the term is 0. An empty field stands for 1 everywhere.
   Field room;
   bool may_be_negative = false;  // whether negative values were sampled
