@@ -46,7 +46,7 @@ struct RegressionResult {
   Field mean;  // x, three channels
   // The same operator's result for half the difference of the half-buffers. Its square estimates the variance of x.
   Field noise;
-  // Estimated squared bias, mean over the channels, one channel. Where noise hides the bias, half the values are negative.
+  // Estimated squared bias, mean over the channels, one channel. Where noise hides it, half the values are negative.
   Field bias;
 };
 
