@@ -7,7 +7,8 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Means of the values within `radius` of each, of those that there are. Fields have zeros around.
+// Writes the mean of the values within `radius` of each, as far as they lie in the row. Fields have zeros around the
+// image.
 void mean_along(const float* from, int length, int radius, float* to) {
   std::copy_n(from, length, to);
   for (int d = 1; d <= radius; ++d) {

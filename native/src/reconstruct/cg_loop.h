@@ -1,4 +1,4 @@
-// The loop of preconditioned conjugate gradients, of whatever its vectors are: of an image, or of a window of frames.
+// Loop of preconditioned conjugate gradients, for vectors of any type, such as an image or a window of frames.
 #pragma once
 
 #include <algorithm>
@@ -10,23 +10,23 @@
 
 namespace gradus::reconstruct {
 
-// Sums of products of vectors.
+// Scalar products by channel: b·b and r·r at the start, and r·z in a step.
 struct CgStart {
   Sums bb, rr;
 };
 struct CgProducts {
   Sums rz;
-  double largest_row = 0.0;  // of any image
+  double largest_row = 0.0;  // maximum of r·z over the rows and channels of all images
 };
 
-// Steps has the system and its vectors, and
+// Runs the loop. `Steps` holds the system and its vectors, and performs
 //   CgStart start()                   r = b − A x
 //   CgProducts precondition()         z ≈ A⁻¹ r
-//   Sums direct(const Sums& factor)   p = z + factor p; p·Ap
-//   Sums advance(const Sums& step)    x += step p, r −= step A p; r·r
-//   int width()                       of an image.
-// divergence: errors fall, but not from step to step. Beyond this factor single precision has been lost, and what
-// follows is worse.
+//   Sums direct(const Sums& factor)   p = z + factor p; returns p·Ap
+//   Sums advance(const Sums& step)    x += step p, r −= step A p; returns r·r
+//   int width()                       width of an image
+// The loop stops when the row error exceeds `divergence` times its minimum: errors need not fall in every step, but
+// beyond this factor single precision is exhausted and further steps make x worse.
 template <class Steps>
 CgReport run_conjugate_gradient(Steps steps, const CgGoal& goal, float divergence, int max_steps,
                                 const CancelCheck& cancel) {

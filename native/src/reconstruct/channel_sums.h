@@ -1,5 +1,5 @@
-// What conjugate gradients make of sums per channel: all channels are solved side by side, each with its own step
-// sizes.
+// Operations on sums per channel, as conjugate gradients need them: all channels are solved side by side, each with its
+// own step sizes.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,15 @@
 
 namespace gradus::reconstruct {
 
-// a / b; 0 for a channel that is solved, which stands still.
+// Returns a / b by channel; 0 for a channel that is already solved, which then no longer changes.
 inline Sums quotient(const Sums& a, const Sums& b) {
   Sums q(a.size());
   for (size_t c = 0; c < a.size(); ++c) q[c] = b[c] > 0.0 ? a[c] / b[c] : 0.0;
   return q;
 }
 
-// The worst channel's residual from squared norms: of the residual, and of the right side.
+// Returns the maximum over the channels of the relative residual. `rr` holds squared norms of the residual, `bb` of the
+// right side.
 inline float worst(const Sums& rr, const Sums& bb) {
   double result = 0.0;
   for (size_t c = 0; c < rr.size(); ++c) result = std::max(result, bb[c] > 0.0 ? rr[c] / bb[c] : rr[c]);

@@ -5,7 +5,7 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Rows at a time: direct() makes two rows around each piece once more.
+// Number of rows in a piece of work. direct() computes two rows around each piece twice.
 constexpr int kGrain = 64;
 constexpr float kDivergence = 3.0f;
 
@@ -13,7 +13,7 @@ Sums dot(const Field& a, const Field& b) {
   return sum_rows(a.height(), a.channels(), [&](int y, int c) { return dot_row(a.row(y, c), b.row(y, c), a.width()); });
 }
 
-// r = b - A x; returns r·r.
+// Computes r = b - A x and returns r·r.
 Sums residual(const Stencil& a, const Field& b, const Field& x, Field* r) {
   return sum_rows(a.height(), b.channels(), [&](int y, int c) {
     float* to = r->row(y, c);
@@ -24,19 +24,19 @@ Sums residual(const Stencil& a, const Field& b, const Field& x, Field* r) {
   });
 }
 
-// The next direction: p = z + factor before; returns p·Ap.
+// Computes the next direction, p = z + factor before, and returns p·Ap.
 Sums direct(const Stencil& a, const Field& z, const Sums& factor, const Field& before, Field* p) {
   const int w = a.width(), channels = z.channels();
   const auto add = [&](int y, int c, float* to) {
     const auto f = static_cast<float>(factor[c]);
-    const float *from = z.row(y, c), *old = before.row(y, c);  // beyond the border 0
+    const float *from = z.row(y, c), *old = before.row(y, c);  // 0 beyond the border
     for (int i = 0; i < w; ++i) to[i] = from[i] + f * old[i];
   };
   RowSums sums(a.height(), channels);
   for_pieces(
       a.height(),
       [&](int begin, int end) {
-        // The rows around the piece are another one's to write.
+        // Other threads write the rows of p around the piece, so this piece computes its own copies.
         RollingRows outer(w, channels);
         std::vector<float> product(static_cast<size_t>(w));
         for (int c = 0; c < channels; ++c) {
@@ -58,7 +58,8 @@ Sums direct(const Stencil& a, const Field& z, const Sums& factor, const Field& b
   return sums.total();
 }
 
-// x += step p; r -= step A p; returns r·r. A p is made anew: that takes less time than to store and load it.
+// Computes x += step p and r -= step A p, and returns r·r. A p is computed again, which takes less time than to store
+// and load it.
 Sums advance(const Stencil& a, const Sums& step, const Field& p, Field* x, Field* r) {
   const int w = a.width(), channels = p.channels();
   RowSums sums(a.height(), channels);
@@ -81,7 +82,7 @@ Sums advance(const Stencil& a, const Sums& step, const Field& p, Field* x, Field
   return sums.total();
 }
 
-// Of an image.
+// The vector operations of run_conjugate_gradient() for one image.
 struct Steps {
   int width() const { return a.width(); }
   CgStart start() { return {dot(b, b), residual(a, b, *x, &fields.r)}; }

@@ -37,7 +37,8 @@ Dct::Dct(int length) : length_(length), twiddle_(size_t(length)) {
   }
   const Scratch scratch(length);
   const std::lock_guard lock(planner_mutex());
-  // Estimated: measured plans cost seconds and differ from run to run, and so would the last bits (contract 2.4).
+  // FFTW_ESTIMATE, because measured plans take seconds to make and differ from run to run, and with them the last bits
+  // of the result.
   forward_ = fftwf_plan_dft_1d(length, fftw(scratch.time), fftw(scratch.frequency), FFTW_FORWARD, FFTW_ESTIMATE);
   backward_ = fftwf_plan_dft_1d(length, fftw(scratch.frequency), fftw(scratch.time), FFTW_BACKWARD, FFTW_ESTIMATE);
   if (!forward_ || !backward_) throw std::bad_alloc();
@@ -62,7 +63,7 @@ void Dct::forward(float* a, float* b, Scratch* scratch) const {
   for (int k = 1; 2 * k <= n; ++k) {
     const float pr = f[k].real(), pi = f[k].imag(), qr = f[n - k].real(), qi = f[n - k].imag();
     const float wr = twiddle_[k].real(), wi = twiddle_[k].imag();
-    // 2V of both rows, from the symmetry of a real row's transform.
+    // 2V of both rows, separated by the symmetry of a real row's transform.
     const float ar = pr + qr, ai = pi - qi, br = pi + qi, bi = qr - pr;
     // Written in this order so that for k = n - k both agree.
     a[n - k] = -(wr * ai + wi * ar);
@@ -104,11 +105,11 @@ void Dct::filter(const float* gain_a, const float* gain_b, double sum_a, Scratch
   for (int k = 1; 2 * k <= n; ++k) {
     const float pr = f[k].real(), pi = f[k].imag(), qr = f[n - k].real(), qi = f[n - k].imag();
     const float wr = twiddle_[k].real(), wi = twiddle_[k].imag();
-    // As in forward().
+    // The same arithmetic as in forward().
     float ar = pr + qr, ai = pi - qi, br = pi + qi, bi = qr - pr;
     const float ak = gain_a[k] * (wr * ar - wi * ai), an = -gain_a[n - k] * (wr * ai + wi * ar);
     const float bk = gain_b[k] * (wr * br - wi * bi), bn = -gain_b[n - k] * (wr * bi + wi * br);
-    // As in inverse().
+    // The same arithmetic as in inverse().
     ar = wr * ak - wi * an, ai = -wr * an - wi * ak;
     br = wr * bk - wi * bn, bi = -wr * bn - wi * bk;
     f[n - k] = {0.5f * (ar + bi), 0.5f * (br - ai)};

@@ -14,15 +14,15 @@ namespace gradus::reconstruct {
 struct FftwFree {
   void operator()(void* p) const;
 };
-// Memory as FFTW wants it for its vector code.
+// Memory with the alignment that FFTW's vector code needs.
 using FftBuffer = std::unique_ptr<std::complex<float>[], FftwFree>;
 
-// X[k] = 2 Σ x[n] cos(π (2n+1) k / 2N) and its inverse without the factor 1/N, both in place (DCT-II and -III; Makhoul
-// 1980, "A fast cosine transform in one and two dimensions": the even samples, then the odd ones backwards, by one
-// Fourier transform of the same length).
+// Transforms rows of `length` values: X[k] = 2 Σ x[n] cos(π (2n+1) k / 2N), and its inverse without the factor 1/N,
+// both in place (DCT-II and -III; Makhoul 1980, "A fast cosine transform in one and two dimensions": the even samples,
+// then the odd ones backwards, by one Fourier transform of the same length).
 class Dct {
  public:
-  // Scratch of one thread.
+  // Work space of one thread.
   struct Scratch {
     explicit Scratch(int length);
     FftBuffer time, frequency;
@@ -34,14 +34,14 @@ class Dct {
   Dct& operator=(const Dct&) = delete;
 
   int length() const { return length_; }
-  // Any number of threads, each with its own scratch.
+  // Transform the rows a and b in place. Thread-safe if each thread has its own scratch.
   void forward(float* a, float* b, Scratch* scratch) const;
   void inverse(float* a, float* b, Scratch* scratch) const;
 
-  // Where x[i] of a pair lies in scratch->time.
+  // Returns the index in scratch->time at which x[i] of both rows lies.
   int place(int i) const { return i % 2 == 0 ? i / 2 : length_ - 1 - i / 2; }
-  // Forth, times gain_a[k] and gain_b[k], and back, of what lies in scratch->time. sum_a: Σx of a where it is known
-  // better than by sums of floats, or kUnknownSum.
+  // Filters the pair of rows in scratch->time: transforms them, multiplies by gain_a[k] and gain_b[k], and transforms
+  // them back. `sum_a` is Σx of row a where the caller knows it more exactly than by sums of floats, else kUnknownSum.
   static constexpr double kUnknownSum = std::numeric_limits<double>::quiet_NaN();
   void filter(const float* gain_a, const float* gain_b, double sum_a, Scratch* scratch) const;
 

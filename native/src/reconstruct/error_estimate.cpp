@@ -9,13 +9,13 @@ namespace gradus::reconstruct {
 namespace {
 
 constexpr double kMinErrorShare = 0.25;
-// Windows' Gaussian curves, in pixels: those of 0.7 to 6 under which true errors are likeliest over twelve scenes
-// (docs/method.md). Where two estimates are subtracted it takes more pixels to know the difference.
+// Standard deviations of the Gaussian windows in pixels: of 0.7 to 6, those under which the true errors are most likely
+// (measured on twelve scenes). The difference of two estimates needs a larger window.
 constexpr double kSigma = 1.5, kSigmaOfDifference = 2.0;
-// Sums of a few of these are finite.
+// Limit of a square, so that sums of several remain finite.
 constexpr double kLargest = 1e37;
 
-// One plane of squares, and its blur.
+// One value for each pixel.
 using Plane = std::vector<float>;
 
 Plane squares_of(const std::vector<float>& image, int width, int height, int channels) {
@@ -23,7 +23,7 @@ Plane squares_of(const std::vector<float>& image, int width, int height, int cha
   for_rows(height, [&](int y) {
     for (size_t i = size_t(y) * size_t(width); i < size_t(y + 1) * size_t(width); ++i) {
       const double square = mean_square(&image[i * size_t(channels)]);
-      squares[i] = static_cast<float>(square < kLargest ? square : kLargest);  // NaN, too
+      squares[i] = static_cast<float>(square < kLargest ? square : kLargest);  // also replaces NaN
     }
   });
   return squares;
@@ -35,7 +35,7 @@ class Window {
     for (int i = 0; i <= radius_; ++i) weights_.push_back(float(std::exp(-0.5 * i * i / (sigma * sigma))));
   }
 
-  // Means of what the window covers of the image.
+  // Replaces each value by the weighted mean over the window around it, as far as that lies in the image.
   void blur(Plane* plane, int width, int height) const {
     Plane between(plane->size());
     for_rows(height,

@@ -12,27 +12,28 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Patches are of 3×3 pixels, and variances are means over as many.
+// Radius of a patch, 3×3 pixels, and of the window over which variances are averaged.
 constexpr int kPatch = 1;
-// How far a pixel's neighbours, their patches, and those patches' variance reach.
+// Distance up to which pixels affect a pixel: its neighbours, their patches, and the window of the patches' variances.
 constexpr int kReach = 1 + 2 * kPatch;
-// Tiles stay in the second cache; with what they reach they are as tall as one thread's rows (reconstruct/rows.h).
+// Size of a tile, so that it fits in the second-level cache. With its margin it is as tall as the rows of one thread
+// (base/rows.h).
 constexpr int kTileWidth = 250, kTileHeight = 26;
-// k²: squared differences are measured in this many variances (docs/method.md has what was tried).
+// k² of NL-means: the unit of squared differences in variances.
 constexpr float kVariances = 0.5f;
-// Differences below this share of the feature's typical magnitude are none.
+// Differences below this share of the feature's typical magnitude count as 0.
 constexpr float kNegligible = 5e-3f;
-// Every so many values are looked at for that; not a multiple of the channels.
+// The typical magnitude is the median of every kStride-th value. Not a multiple of the number of channels.
 constexpr size_t kStride = 7;
 constexpr float kLargest = 1e15f, kLargestVariance = 1e30f, kMin = 1e-30f;
 
 struct Neighbour {
   int x, y;
 };
-// Half of the neighbours: distances are symmetric.
+// Half of the eight neighbours: distances are symmetric.
 constexpr Neighbour kNeighbours[] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
 
-// A part of an image, whole pixels.
+// A rectangle of pixels.
 struct Part {
   int x0, y0, x1, y1;
   int width() const { return x1 - x0; }
@@ -56,7 +57,7 @@ Field load(const std::vector<float>& values, int image_width, const Part& part, 
   return field;
 }
 
-// Median of the magnitudes that are not 0, which a few that are far off do not change; from a part of them.
+// Returns the median of the magnitudes that are not 0, which outliers hardly change, from a subset of the values.
 float typical(const std::vector<float>& values) {
   std::vector<float> magnitudes;
   for (size_t i = 0; i < values.size(); i += kStride) {
@@ -65,11 +66,11 @@ float typical(const std::vector<float>& values) {
   return std::min(median_or_one(&magnitudes), kLargest);
 }
 
-// The first column that has a neighbour there.
+// Returns the first column that has a neighbour at `offset`.
 int first_column(Neighbour offset) { return std::max(0, -offset.x); }
 
-// By how much the squared difference of p and p + offset exceeds what noise explains, in variances, mean over the
-// channels: of those pairs that there are, the first one at the lower left.
+// Returns how far the squared difference of p and p + offset exceeds what noise explains, in variances, mean over the
+// channels. The field has one value for each pair in the image; the first one is at the lower left.
 Field distances(const Field& values, const Field& variance, Neighbour offset, float negligible) {
   const int channels = values.channels(), begin = first_column(offset);
   const float share = 1.0f / static_cast<float>(channels);
@@ -88,13 +89,13 @@ Field distances(const Field& values, const Field& variance, Neighbour offset, fl
   return result;
 }
 
-// About exp(-distance).
+// Returns an approximation of exp(-distance).
 float weight_of(float distance) {
   const float t = 1.0f + 0.25f * std::max(distance, 0.0f), squared = t * t;
   return 1.0f / (squared * squared);
 }
 
-// Adds to each pixel its neighbours at offset and at -offset.
+// Adds to each pixel its neighbours at `offset` and at -`offset`, by their weights.
 void gather(const Field& values, const Field& distance, Neighbour offset, Field* sum, Field* weights) {
   const int w = values.width(), h = values.height();
   for_rows(h, [&](int y) {
@@ -113,7 +114,7 @@ void gather(const Field& values, const Field& distance, Neighbour offset, Field*
   });
 }
 
-// What a tile needs of the pixels around it, and writes of its own.
+// Filters one tile: reads it with a margin of kReach pixels and writes its own pixels.
 void filter_tile(const film::FeatureImage& image, int width, int height, const Part& tile, float negligible,
                  std::vector<float>* result) {
   const Part all{std::max(0, tile.x0 - kReach), std::max(0, tile.y0 - kReach), std::min(width, tile.x1 + kReach),

@@ -15,32 +15,34 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Figures of this file: docs/method.md, "Regression on features".
+// The values below were chosen by measurement: docs/method.md, "Regression on features".
 const RegressionSettings kFine{
     .octaves = {{.side = 2, .small = true}}, .lattices = 2, .coordinates = true, .ridge = 3e-4f, .floor = 1e-6f};
 const RegressionSettings kCoarse{
     .octaves = {{.side = 4}, {.side = 8}}, .coordinates = true, .ridge = 3e-4f, .floor = 1e-6f};
 const RegressionSettings kOfResidual{.octaves = {{.side = 8}}, .coordinates = false, .ridge = 1e-3f, .floor = 1e-6f};
-// Pixels' noise is taken from a window, but where a pixel's own is far larger, as of a firefly.
+// The noise of a pixel is the mean of a window of this radius, unless kOwnShare times the pixel's own noise is larger,
+// as for a firefly.
 constexpr int kNoiseRadius = 7;
 constexpr float kOwnShare = 0.3f;
-// Noise that is not told from none: a share of the light around, and one of the image's median luminance.
+// Minimum of the noise: a share of the light around the pixel, and a share of the image's median luminance.
 constexpr float kShareOfLight = 0.02f, kShareOfMedian = 0.01f;
-// A pixel's own value counts by the noise around it and for this share, since the mean of windows is better than its
-// parts; for less where it stands out, and where noise is above a tenth of the light: there both halves may have met
-// the same firefly, if the pixel is not darker than what is around it. kMinVariance: of what shows none.
+// A pixel's own value gets the weight of the noise around it, times kOwnTrust, because the mean of windows is better
+// than its single values. The weight is less for a pixel that stands out. It is also less where noise exceeds the share
+// kVisible of the light: there both half-buffers may have met the same firefly, if the pixel is not darker than those
+// around it. kMinVariance is the variance of a pixel that shows none.
 constexpr float kOwnTrust = 0.3f, kVisible = 0.1f, kMinVariance = 1e-10f;
-// Noise goes with the root of the light, as of photons, down to this share of the noise around: below it pixels may be
-// dark by chance.
+// Noise is in proportion to the square root of the light, as for photons, down to this share of the noise around: below
+// it, a pixel may be dark by chance.
 constexpr float kDarkByChance = 0.5f;
-// Light around a pixel, by which residuals are measured.
+// Radius of the mean light relative to which residuals are measured.
 constexpr int kLightRadius = 3;
-// Around a pixel, where small and large windows are compared, by their share of the light close to it.
+// Radius within which small and large windows are compared, and radius of the light relative to which they are.
 constexpr int kShareRadius = 4, kShareLightRadius = 2;
-// Side of squares that share a bound on outliers.
+// Side of the blocks that share a bound on outliers.
 constexpr int kBlockSide = 16;
 
-// Of all pixels: noise and light, their own and around them.
+// Noise and light of each pixel, and their means around each pixel.
 struct Surroundings {
   Field own_noise, own_light, noise, light;
 };
@@ -60,9 +62,9 @@ Field weigh_in_windows(const Surroundings& of) {
   });
 }
 
-// What is to be expected of each pixel by its light, and no more than is around it. Noise is averaged over the root of
-// the light, not light and noise by themselves: a light, which has light and no noise, says nothing of the wall beside
-// it.
+// Returns the noise that is to be expected of each pixel from its light, at most the noise around it. The ratio of
+// noise to the root of the light is averaged, not noise and light separately: a light source, which has light and no
+// noise, says nothing about the wall beside it.
 Field expected_noise(const Surroundings& of) {
   const auto root = [&](int x, int y) {
     return std::sqrt(std::max(of.own_light.row(y)[x], kDarkByChance * of.noise.row(y)[x]));
@@ -77,13 +79,15 @@ Field expected_noise(const Surroundings& of) {
                     [&](int x, int y) { return std::min(of.noise.row(y)[x], relative.row(y)[x] * root(x, y)); });
 }
 
-// Of a pixel's own value: 1/variance. firefly: whether both halves may have met one, 1 where that is as likely as not.
+// Returns the weight 1/variance of a pixel's own value. `excess` is its noise over that around it. `firefly` says how
+// probable it is that both half-buffers met the same firefly; at 1 that is as likely as not.
 float weigh_pixel(float expected, float excess, float firefly) {
   const float doubt = excess * excess * (1.0f + firefly * firefly);
   return kOwnTrust / (expected * expected * doubt * doubt + kMinVariance);
 }
 
-// Changes of light may be 0 between greater ones by chance: those are not called dark.
+// Returns the weights of all pixels' own values. Changes of light may be 0 by chance between larger ones, so a small
+// change does not count as dark.
 Field weigh_pixel(const Surroundings& of, bool is_light) {
   const Field expected = is_light ? expected_noise(of) : of.noise;
   return make_field(of.noise.width(), of.noise.height(), [&](int x, int y) {
@@ -94,7 +98,7 @@ Field weigh_pixel(const Surroundings& of, bool is_light) {
   });
 }
 
-// Median of the depths that are there; 1 without any.
+// Returns the median of the finite, positive depths; 1 if there are none.
 float median_depth(const std::vector<float>& depths) {
   std::vector<float> there;
   std::copy_if(depths.begin(), depths.end(), std::back_inserter(there),
@@ -104,7 +108,8 @@ float median_depth(const std::vector<float>& depths) {
 
 float bounded(float value) { return is_finite(value) ? std::clamp(value, -1.0f, 1.0f) : 0.0f; }
 
-// Normal, albedo, and d/(d + median) of the depth, which does not depend on the scene's unit.
+// Returns the features of the regression: normal, albedo, and d/(d + median) of the depth d, which does not depend on
+// the scene's unit.
 Field basis_of(const film::Features& features) {
   const float median = median_depth(features.depth.values);
   Field basis(features.width, features.height, 7);
@@ -126,7 +131,7 @@ Field albedo_of(const film::Features& features) {
   return albedo;
 }
 
-// 1/light² around each pixel, so that residuals count by their share of it.
+// Returns 1/light² around each pixel, so that residuals count relative to the light.
 Field weigh_by_light(const Field& image, int radius) {
   Field light = squared_light(image, radius);
   for_values(&light, [](float& value, int, int, int) { value = 1.0f / value; });
@@ -143,7 +148,7 @@ void scale_by(const Field& factors, Field* to) {
   for_values(to, [&](float& value, int x, int y, int) { value *= factors.row(y)[x]; });
 }
 
-// Share of each residual that lies within the bound of its square (reconstruct/twicing.h), relative to the light around
+// Returns the share of each residual that lies within the bound on outliers (twicing.h), relative to the light around
 // it.
 Field limit_outliers(const Field& residual, const Field& weights) {
   const int w = residual.width(), h = residual.height();
@@ -159,8 +164,9 @@ Field limit_outliers(const Field& residual, const Field& weights) {
   return share;
 }
 
-// Share of small windows in their mean with large ones. The large ones' bias is what both differ by, less what noise
-// makes them differ by; with the small ones' noise almost all of that, the mean of least squared error is Wiener's.
+// Returns the share of small windows in their mean with large ones. The bias of the large windows is their difference
+// from the small ones, minus the part of it that noise explains. Almost all of that noise is in the small windows, so
+// the mean of minimum squared error is Wiener's.
 Field share_of_fine(const RegressionResult& fine, const RegressionResult& coarse) {
   const int w = fine.mean.width(), h = fine.mean.height();
   const Field by_light = weigh_by_light(fine.mean, kShareLightRadius);
@@ -177,14 +183,14 @@ Field share_of_fine(const RegressionResult& fine, const RegressionResult& coarse
   });
 }
 
-// a and b become share · a + (1 − share) · b in a.
+// Replaces a by share · a + (1 − share) · b.
 void blend(const Field& share, const Field& b, Field* a) {
   for_values(a, [&](float& value, int x, int y, int c) {
     value = b.row(y, c)[x] + share.row(y)[x] * (value - b.row(y, c)[x]);
   });
 }
 
-// The same of squared biases: large windows have that of the small ones and more.
+// Blends squared biases. Large windows have the bias of the small ones and an additional one.
 void blend_bias(const Field& share, const Field& coarse, Field* fine) {
   for_values(fine, [&](float& value, int x, int y, int) {
     const float of_coarse = 1.0f - share.row(y)[x], more = std::max(coarse.row(y)[x] - value, 0.0f);
@@ -192,7 +198,8 @@ void blend_bias(const Field& share, const Field& coarse, Field* fine) {
   });
 }
 
-// Weights by light, by which the mean is kept, with something of those by noise, which keep out outliers.
+// Returns the weights of the residual's regression: weights by light, which preserve the mean, with some influence of
+// the weights by noise, which suppress outliers.
 Field weigh_residual(const Field& by_light, const Field& by_noise) {
   return make_field(by_light.width(), by_light.height(), [&](int x, int y) {
     const float light = std::sqrt(by_light.row(y)[x]), noise = std::sqrt(by_noise.row(y)[x]);

@@ -1,6 +1,6 @@
-// The image by its features: regression in small windows, and in large ones where these do as well, then what that lost
-// is given back by regression of the residual. All steps are linear in the image once their weights are known, so other
-// planes can go through them (contract 3.4).
+// Regression of an image on its features: in small windows, and in large ones where these are as good. A second
+// regression, of the residual, then restores what the first one lost. All steps are linear in the image once their
+// weights are known, so other planes can go through them.
 #pragma once
 
 #include "film/features.h"
@@ -11,24 +11,25 @@ namespace gradus::reconstruct {
 
 class FeatureRegression {
  public:
+  // Regresses `image` on `features` and freezes the weights of all steps.
   FeatureRegression(const film::Features& features, const HalvedImage& image, const CancelCheck& cancel);
 
   const Field& image() const { return image_; }
-  // Estimated squared error of the image, mean over its channels, bias included.
+  // Returns the estimated squared error of the image, mean over its channels, bias included.
   const Field& error() const { return error_; }
-  // One channel, or three, by the frozen weights.
+  // Applies the frozen operator to one or three channels.
   Field apply(const Field& values, const CancelCheck& cancel) const;
 
  private:
-  // The second step: `first` becomes the mean and the noise of both.
+  // Adds the regression of the residual to the mean and the noise of `first`.
   void add_residual(const film::Features& features, const HalvedImage& image, const Field& by_noise,
                     RegressionResult* first, const CancelCheck& cancel);
 
   LocalRegression fine_, coarse_, of_residual_;
-  Field share_;           // of each pixel that the fine windows have
-  Field residual_share_;  // share of each pixel's residual that is given back: outliers are limited
-  Field own_;  // share of its own sampled value that a pixel has in the end, against black beside highlights; none for
-               // changes
+  Field share_;           // share of the small windows in each pixel
+  Field residual_share_;  // share of each pixel's residual that is restored: outliers are limited
+  // Share of each pixel's own sampled value in the result (restore_sampled_light.h). Empty for changes of light.
+  Field own_;
   Field image_, error_;
 };
 

@@ -1,6 +1,6 @@
-// Images of the iterative solver: rows of one channel after another ([y][channel][x]), so that weights are read once
-// for all channels and inner loops run over contiguous floats. A rim of zeros, some pixels left and right and the rows
-// -1 and height, is there for stencils to read.
+// Image of the iterative solvers. A row holds one channel after another ([y][channel][x]), so that weights are read
+// once for all channels and inner loops run over contiguous floats. A rim of zeros surrounds the image (8 pixels to the
+// left and right, and the rows -1 and height), so that stencils need no test at the border.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Every value of a field, row by row over the threads.
+// Functions of all values of a field. for_values() and its callers share the rows between the threads.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace gradus::reconstruct {
 
-// function(value, x, y, channel), which may change the value.
+// Calls function(value, x, y, channel) for every value; the function may change the value.
 template <class Function>
 void for_values(Field* field, const Function& function) {
   for_rows(field->height(), [&](int y) {
@@ -19,7 +19,7 @@ void for_values(Field* field, const Function& function) {
   });
 }
 
-// Whether any value is such.
+// Returns whether is_such(value) is true for any value.
 template <class Test>
 bool any_value(const Field& field, const Test& is_such) {
   for (int y = 0; y < field.height(); ++y) {
@@ -38,7 +38,7 @@ inline void add(const Field& term, Field* sum) {
   for_values(sum, [&](float& value, int x, int y, int c) { value += term.row(y, c)[x]; });
 }
 
-// Over the channels of a pixel.
+// Returns the mean of the values, or of their squares, over the channels of pixel (x, y).
 inline float mean_of(const Field& field, int x, int y) {
   float sum = 0.0f;
   for (int c = 0; c < field.channels(); ++c) sum += field.row(y, c)[x];
@@ -50,7 +50,7 @@ inline float mean_of_squares(const Field& field, int x, int y) {
   return sum / static_cast<float>(field.channels());
 }
 
-// Colours by a factor; alpha, the fourth channel, is a share, whatever the light.
+// Multiplies the first three channels by `factor`. The fourth channel is alpha, which does not scale with the light.
 inline void scale_light(float factor, Field* image) {
   for_values(image, [factor](float& value, int, int, int c) { value *= c < 3 ? factor : 1.0f; });
 }
@@ -61,7 +61,7 @@ inline Field channels_of(const Field& field, int first, int count) {
   return part;
 }
 
-// Those of one field, then those of the other.
+// Returns a field with the channels of `first`, then those of `other`. Both have the same size.
 inline Field join_channels(const Field& first, const Field& other) {
   const int before = first.channels();
   Field joined(first.width(), first.height(), before + other.channels());
@@ -71,7 +71,7 @@ inline Field join_channels(const Field& first, const Field& other) {
   return joined;
 }
 
-// One channel from function(x, y).
+// Returns a field of one channel with the values function(x, y).
 template <class Function>
 Field make_field(int width, int height, const Function& function) {
   Field field(width, height, 1);

@@ -7,13 +7,13 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Errors of the regression are alike in pixels that lie close together, so it counts for less than as many independent
-// pixels.
+// The regression's errors are similar in pixels that lie close together, so a pixel counts less than an independent
+// one.
 constexpr float kSharedError = 8.0f;
-// Of its differences nothing is, within windows.
+// The regression's differences share no error within a window.
 constexpr float kSharedDifference = 1.0f;
 constexpr float kMinError = 1e-12f;
-// How often dark pixels are held more firmly.
+// Maximum number of solves after which the data weights of dark pixels are increased.
 constexpr int kClampPasses = 2;
 
 struct Step {
@@ -25,8 +25,8 @@ bool has_next(const Field& field, Step step, int x, int y) {
   return x + step.x < field.width() && y + step.y < field.height();
 }
 
-// The regression's difference joins a sampled one, of which `weights` are: that becomes the weight of both. Returns its
-// share.
+// Adds the weight of the regression's difference to `weights`, those of the sampled differences. Returns the
+// regression's share of the sum.
 Field join_weights(const Field& error, Step step, Field* weights) {
   return make_field(error.width(), error.height(), [&](int x, int y) {
     if (!has_next(error, step, x, y)) return 0.0f;
@@ -38,8 +38,7 @@ Field join_weights(const Field& error, Step step, Field* weights) {
   });
 }
 
-// Mean of two estimates of a difference: the regression's takes the place of a sampled one that is absent. Alpha has no
-// scale.
+// Blends the regression's difference into the sampled one; where none was sampled, it replaces it. Alpha has no scale.
 void blend_differences(const Field& image, const Field& share, Step step, float scale, Field* sampled) {
   for_values(sampled, [&](float& value, int x, int y, int c) {
     if (c < 3) value /= scale;

@@ -1,5 +1,5 @@
-// The regression as the data of a least squares problem whose differences are those sampled and the regression's own,
-// by their errors.
+// Combination of the regression with sampled differences. The regression is the data of a least squares problem; each
+// difference is the mean of the sampled one and the regression's own, weighted by their errors.
 #pragma once
 
 #include "reconstruct/weighted_least_squares.h"
@@ -8,14 +8,14 @@ namespace gradus::reconstruct {
 
 class FusedDifferences {
  public:
-  // images: of the frame, with deviations; scale: 1 of the regression, in their units; unknown: the deviation of
-  // differences of which nothing is known. Estimates all weights from `regressed`, whose squared error is `error`, and
-  // freezes them. Alpha goes through those of the colours.
+  // Estimates all weights and freezes them. `images` belong to the film and have deviations. One unit of `regressed` is
+  // `scale` units of `images`; `error` is its squared error. `unknown` is the deviation of differences without a
+  // measured one. Alpha goes through the weights of the colours.
   FusedDifferences(const film::GradientImages& images, float scale, float unknown, const Field& regressed,
                    const Field& error, const CancelCheck& cancel, SolveReport* report);
 
   Field take_solution() { return std::move(solution_); }
-  // Of other planes by the same weights.
+  // Returns the solution for other planes by the frozen weights.
   Field apply(const film::GradientImages& images, const Field& regressed, const CancelCheck& cancel,
               SolveReport* report);
 
@@ -23,7 +23,7 @@ class FusedDifferences {
   SolverPlanes blend(const film::GradientImages& images, const Field& regressed) const;
 
   float scale_;
-  Field share_x_, share_y_;  // of a difference that the regression's has
+  Field share_x_, share_y_;  // share of the regression in each difference
   WeightedLeastSquares system_;
   Field solution_;
 };

@@ -8,7 +8,7 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Most that a pixel is taken for, in median luminances: its square and the sums of such have room in float.
+// Maximum magnitude of a pixel in median luminances, so that sums of its square fit in a float.
 constexpr float kMax = 1e12f;
 
 bool is_known(const Field& field) {

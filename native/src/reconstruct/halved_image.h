@@ -1,4 +1,4 @@
-// What is known of light that is reconstructed: what was sampled of it, and by how much the two halves disagree.
+// An image of sampled light and the difference of its half-buffers, as input of the regression.
 #pragma once
 
 #include "film/film.h"
@@ -6,21 +6,23 @@
 
 namespace gradus::reconstruct {
 
-// Three channels, in the scale of 1 for its median luminance once it is normalised.
+// Three channels. After normalise() the unit is the image's median luminance.
 struct HalvedImage {
   Field mean;
-  Field half_difference;  // (A − B)/2; a guess where a half has no samples
-  bool is_light = true;   // not negative; else changes of it
+  Field half_difference;  // (A − B)/2; an estimate where a half-buffer has no samples
+  bool is_light = true;   // true: light, not negative; false: changes of light, of either sign
 };
 
-// Of a pixel's light.
+// Sums of the samples of one pixel in both half-buffers.
 using HalfSums = std::array<Rgb, film::kHalves>;
 
-// Where a half has no samples nothing is known of the noise: its half difference is not finite. What differs from the
-// pixels around stands for it: too much where there is detail, and hardly too little elsewhere.
+// Replaces half differences that are not finite, of pixels where a half-buffer has no samples. The replacement is the
+// pixel's deviation from the mean of the pixels around it, which is too large where there is detail and rarely too
+// small elsewhere.
 void guess_noise(HalvedImage* image);
 
-// From sums_at(pixel), by the samples that the frame has taken there; a mean that is not finite is 0.
+// Reads the means and half differences of a film from the sums that sums_at(pixel) returns and the film's sample
+// counts. A mean that is not finite becomes 0.
 template <class SumsAt>
 HalvedImage read_halves(const film::Film& film, const SumsAt& sums_at) {
   const int w = film.region.width(), h = film.region.height();
@@ -41,7 +43,7 @@ HalvedImage read_halves(const film::Film& film, const SumsAt& sums_at) {
   return image;
 }
 
-// Brings what was read into that scale, within bounds.
+// Divides both images by `scale` and clamps them to ±1e12.
 void normalise(float scale, HalvedImage* image);
 
 }  // namespace gradus::reconstruct

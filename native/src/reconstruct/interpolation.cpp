@@ -10,16 +10,16 @@ namespace {
 
 float quotient(float a, float b) { return a * inverse_or_zero(b); }
 
-// Coarse pixels at a time in coarsen().
+// Number of coarse pixels that coarsen() handles at a time.
 constexpr int kBlock = 64;
-// What a coarse pixel gives to its own fine pixel.
+// Weights of coarse pixels in their own fine pixels.
 constexpr auto kOnes = [] {
   std::array<float, kBlock> ones{};
   ones.fill(1.0f);
   return ones;
 }();
 
-// Couplings of the pixels of one fine row with their neighbours; those with missing corners are 0.
+// Couplings of the pixels of one fine row with their neighbours. Diagonal couplings are 0 in a matrix without them.
 struct Row {
   Row(const Stencil& a, int y)
       : diagonal(a.diagonal.row(y)), right(a.right.row(y)), up(a.up.row(y)), down(a.up.row(y - 1)), corners(a.corners) {
@@ -95,7 +95,7 @@ Interpolation::Columns Interpolation::columns(int x, int y) const {
 }
 
 void Interpolation::coarsen_block(const Stencil& fine, int x, int y, int count, Stencil* coarse) const {
-  // A times columns of P, on the 5×5 fine pixels around each.
+  // Product of A with columns of P, on the 5×5 fine pixels around each coarse pixel.
   float product[5][5][kBlock] = {};
   const Columns own = columns(x, y);
   for (int j = 0; j < 3; ++j) {
@@ -121,7 +121,7 @@ void Interpolation::coarsen_block(const Stencil& fine, int x, int y, int count, 
       add(1, -1, -1.0f, row.down_right);
     }
   }
-  // Those times the columns of the coarse pixels at x + dx, y + dy.
+  // Writes the product of these with the columns of the coarse pixels at x + dx, y + dy.
   const auto fill = [&](int dx, int dy, float sign, float* out) {
     const Columns other = columns(x + dx, y + dy);
     float sums[kBlock] = {};

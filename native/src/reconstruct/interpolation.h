@@ -1,5 +1,5 @@
-// Black-box multigrid's way from a grid to the one of every second pixel and back (Dendy 1982, "Black box multigrid"):
-// interpolation by the matrix itself, so that a value spreads along strong couplings and not across weak ones.
+// Black-box multigrid's transfer between a grid and the grid of every second pixel (Dendy 1982, "Black box multigrid").
+// The matrix itself defines the interpolation, so that a value spreads along strong couplings and not across weak ones.
 #pragma once
 
 #include <array>
@@ -8,45 +8,46 @@
 
 namespace gradus::reconstruct {
 
-// Coarse pixel (X, Y) is fine pixel (2X, 2Y). Weights of the fine pixels to its right, above it and diagonally between,
-// by coarse pixel.
+// The interpolation P. Coarse pixel (X, Y) is fine pixel (2X, 2Y). For each coarse pixel, P stores the weights of the
+// fine pixels to its right, above it, and diagonally between.
 class Interpolation {
  public:
   Interpolation() = default;
-  // For a fine grid of this size.
+  // Prepares the interpolation to a fine grid of this size.
   Interpolation(int width, int height);
 
-  // Weights from the fine matrix: a pixel takes the value that solves its own equation, where along an edge of the
-  // coarse grid the couplings across the edge are counted as if the value did not change across it.
+  // Computes the weights from the fine matrix. A pixel takes the value that solves its own equation; on an edge of the
+  // coarse grid, couplings across the edge count as if the value did not change across it.
   void update(const Stencil& fine);
-  // coarse = Pᵀ A P
+  // Computes coarse = Pᵀ A P.
   void coarsen(const Stencil& fine, Stencil* coarse) const;
 
-  // Fine row y of P x, from the coarse rows y / 2 and the one above it. Writes an even number of values.
+  // Writes fine row y of P x, from the coarse rows y / 2 (`lower`) and y / 2 + 1 (`upper`). Writes an even number of
+  // values.
   void interpolate_row(int y, const float* lower, const float* upper, float* out) const;
-  // Coarse row y of Pᵀ r, from the fine rows 2y - 1, 2y, 2y + 1.
+  // Writes coarse row y of Pᵀ r, from the fine rows 2y - 1, 2y and 2y + 1 of r.
   void restrict_rows(int y, const float* below, const float* here, const float* above, float* out) const;
 
-  // The same for pixels with x + y even, of which there are every second in a row, side by side. Adds to them.
+  // Adds fine row y of P x to a row that has only the pixels with even x + y, next to each other in memory.
   void add_to_red_row(int y, const float* lower, const float* upper, float* red) const;
-  // Of residuals that are 0 elsewhere.
+  // Writes coarse row y of Pᵀ r from rows that have only the pixels with even x + y. All other residuals must be 0.
   void restrict_red_rows(int y, const float* below, const float* here, const float* above, float* out) const;
-  // Gives the rest back: from here on, red pixels are all that is asked for.
+  // Frees the weights of the other pixels. Afterwards only add_to_red_row() and restrict_red_rows() may be called.
   void keep_red();
 
  private:
-  // Weights of coarse row y, from pixel x on, for the 3×3 fine pixels around each: columns of P. Row y - 1 of them is
-  // beyond the border for y = 0 and 0 there, as all beyond it is.
+  // Columns of P: weights of coarse row y, from pixel x on, for the 3×3 fine pixels around each. Weights of row y - 1
+  // for y = 0 lie in the rim of the fields and are 0, as are all others beyond the border.
   struct Columns {
     const float* at[3][3];
   };
   Columns columns(int x, int y) const;
-  // coarsen() for coarse pixels [x, x + count) of row y
+  // Performs coarsen() for coarse pixels [x, x + count) of row y.
   void coarsen_block(const Stencil& fine, int x, int y, int count, Stencil* coarse) const;
 
-  Field from_left_, from_right_;                // of (2X + 1, 2Y)
-  Field from_below_, from_above_;               // of (2X, 2Y + 1)
-  std::array<std::array<Field, 2>, 2> corner_;  // of (2X + 1, 2Y + 1): [above][right]
+  Field from_left_, from_right_;                // weights of fine pixel (2X + 1, 2Y)
+  Field from_below_, from_above_;               // weights of fine pixel (2X, 2Y + 1)
+  std::array<std::array<Field, 2>, 2> corner_;  // weights of (2X + 1, 2Y + 1): [above][right]
 };
 
 }  // namespace gradus::reconstruct

@@ -1,5 +1,5 @@
-// L2: minimises α²‖x−I‖² + ‖Dx−g‖² (thesis eq. 5.13 with k = 2). Linear in its input, hence unbiased if the gradients
-// are.
+// L2 minimises α²‖x−I‖² + ‖Dx−g‖² (thesis eq. 5.13 with k = 2). It is linear in its input, hence unbiased if the
+// gradients are.
 #include "reconstruct/l2.h"
 
 #include <algorithm>
@@ -13,12 +13,13 @@
 namespace gradus::reconstruct {
 namespace {
 
-// A value that is missing counts as none: one non-finite number would spread over the whole image.
+// Replaces a missing value by 0: one non-finite number would spread over the whole image.
 float guarded(float v) { return is_finite(v) ? v : 0.0f; }
 
 constexpr int kMaxChannels = 4;
 
-// Room for the sums of the transforms, which are as large as the image is long: a power of two, so that no bit is lost.
+// The input is scaled down because the sums of the transforms are as large as the image is long and could overflow. A
+// power of two loses no bits.
 constexpr float kRoom = 0x1p-24f;
 
 class L2 {
@@ -29,7 +30,7 @@ class L2 {
         row_size_(size_t(width) * channels_),
         data_weight_(alpha * alpha) {}
 
-  // As solve_l2().
+  // Solves all channels; see solve_l2().
   bool solve(const L2Rows& rows, const L2Take& take, float* work) const {
     std::vector<RightSideRow> done(static_cast<size_t>(dct_.height()));
     const auto fill = [&](int y, float* row) {
@@ -51,16 +52,16 @@ class L2 {
 
  private:
   struct RightSideRow {
-    std::array<double, kMaxChannels> sums{};  // of α²I by channel: the gradients' parts cancel over the image
+    std::array<double, kMaxChannels> sums{};  // sums of α²I by channel; Dᵀg sums to 0 over the image
     bool complete = true;
   };
 
-  // α²I + Dᵀg of one row, times kRoom.
+  // Writes one row of the right side, α²I + Dᵀg, times kRoom.
   RightSideRow fill_row(const L2Row& in, int y, float* row) const {
     const bool has_up = y + 1 < dct_.height(), has_down = y > 0;
     const float up = has_up ? kRoom : 0.0f, down = has_down ? kRoom : 0.0f;
     const float *dy = has_up ? in.dy : in.primal, *dy_below = has_down ? in.dy_below : in.primal;
-    // Differences to the right; none in front of the first pixel and behind the last.
+    // Differences to the right. There is none in front of the first pixel and behind the last.
     std::vector<float> flux(row_size_ + channels_, 0.0f), values(row_size_), right_side(row_size_);
     int missing = 0;
     for (size_t i = 0; i + channels_ < row_size_; ++i) {
@@ -108,7 +109,7 @@ class L2Operator final : public LinearOperator {
   size_t width_, height_;
 };
 
-// Row y of the first channels of a plane.
+// Copies row y of the first `channels` channels of a plane.
 std::vector<float> compact_row(const float* plane, size_t stride, int width, int channels, int y) {
   std::vector<float> row;
   row.reserve(size_t(width) * size_t(channels));

@@ -1,4 +1,4 @@
-// The exact L2 solution of an image whose rows are made as they are needed.
+// Exact L2 reconstruction of an image whose rows are made on demand.
 #pragma once
 
 #include <functional>
@@ -9,24 +9,25 @@
 
 namespace gradus::reconstruct {
 
-// One row of the planes, channels interleaved, and of dy the row below, which the first row has not.
+// One row of the planes, with interleaved channels. `dy_below` is dy of the row below; unused for row 0.
 struct L2Row {
   const float *primal, *dx, *dy, *dy_below;
 };
 using L2Use = std::function<void(const L2Row& row)>;
-// Lets `use` see row y; called from several threads, each row once.
+// Calls use(row y). Called from several threads, once for each row.
 using L2Rows = std::function<void(int y, const L2Use& use)>;
 
-// Takes row y of the solution, one channel after another; likewise.
+// Receives row y of the solution, one channel after another. Called from several threads, once for each row.
 using L2Take = std::function<void(int y, const float* row)>;
 
-// Rows of the first channels of planes that are there.
+// Returns the rows of the first `channels` channels of planes in memory. The planes must outlive the result.
 L2Rows rows_of(const PoissonPlanes& planes, int width, int channels);
 
-// All channels at once; each has the bits that make_l2() gives. work: width·height·channels floats; `take` may write
-// its row y. False: values are missing, which asks for weights; they counted as none.
+// Solves all channels at once, 1 to 4; each has the same bits as by make_l2(). `work` holds width·height·channels
+// floats; `take` may overwrite its row y. Returns false if values are missing: these counted as 0, and the caller
+// should solve with weights instead (l2_with_gaps.h). Throws `unsupported` for other numbers of channels.
 bool solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows, const L2Take& take, float* work);
-// The same as an image with interleaved channels; nothing where values are missing.
+// Returns the solution as an image with interleaved channels, or nothing if values are missing.
 std::optional<std::vector<float>> solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows);
 
 }  // namespace gradus::reconstruct

@@ -11,7 +11,7 @@ namespace {
 constexpr CgGoal kGoal{.residual = 1e-6f};
 constexpr int kMaxSteps = 100;
 
-// Weights of rows that are there, all channels alike.
+// Writes `weight` for each pixel whose value is known in all channels, and 0 for the others.
 void weigh(const std::vector<float>& values, int channels, int width, int y, float weight, float* weights) {
   const float* value = values.data() + size_t(y) * size_t(width) * size_t(channels);
   for (int x = 0; x < width; ++x, value += channels) weights[x] = is_complete(value, channels) ? weight : 0.0f;

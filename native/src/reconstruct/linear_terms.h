@@ -1,4 +1,4 @@
-// What a linear operator makes of the parts of a sum (contract 3.4).
+// Application of one linear operator to all terms of a sum, so that the results add up exactly.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,14 @@
 
 namespace gradus::reconstruct {
 
+// Subtracts `term` from `from`, which has the same size.
 void subtract(const Field& term, Field* from);
-// The part with most light; of several with as much the first.
+// Returns the index of the term with the largest sum of absolute RGB values; the first of several equal ones.
 size_t brightest(const std::vector<Field>& terms);
 
-// Each part becomes what apply(part's number, part) makes of it, which is not asked about black ones. The brightest is
-// what the others leave of `whole`, what the operator makes of the sum: so parts add up whatever the rounding, and the
-// dearest costs nothing.
+// Replaces each term k by apply(k, term). `whole` is what the operator makes of the sum of the terms. Black terms are
+// skipped. The brightest term becomes `whole` minus all others: the terms then add up in spite of rounding, and the
+// most expensive term costs nothing.
 template <class Apply>
 void apply_to_terms(const Field& whole, const Apply& apply, std::vector<Field>* terms) {
   const size_t remainder = brightest(*terms);

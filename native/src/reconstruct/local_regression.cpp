@@ -13,8 +13,9 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Squares of a tile, with what windows reach beyond it whole vectors. Its sums are in the second cache; the taller, the
-// less is done twice. Parts of a picture are black in much of it, where small tiles are passed over.
+// Size of a tile in blocks. With the margin that windows need, its width is a multiple of the vector length. Its
+// moments fit in the second-level cache. A taller tile repeats less work at its margins. Components are black in much
+// of the image, where small tiles can be skipped.
 struct TileSize {
   int width, height;
 };
@@ -42,7 +43,7 @@ void run_tiles(const RegressionTask& task, const OctaveTask<Estimates>& octave, 
                     });
 }
 
-// Lattice by lattice, from the coarsest octave to the finest.
+// Runs all octaves of one lattice after another, from the coarsest octave to the finest.
 template <int P, int C, bool Coordinates, bool Estimates, class Confidence>
 void run_octaves(const RegressionTask& task, const Confidence& confidence, const CancelCheck& cancel) {
   const std::vector<Octave>& octaves = task.settings->octaves;

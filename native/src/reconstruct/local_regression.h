@@ -1,22 +1,22 @@
-// First-order regression in windows. Around every pixel, in windows of several sizes, the image is taken to be linear
-// in the features:
+// First-order regression in windows. In windows of several sizes around every pixel, the image is modelled as linear in
+// the features:
 //   a_q = argmin Σ_{p in window} w_p (I_p − a·φ_p)² + λ Σw |a|²     (λ not for the constant)
-// and a pixel's value is the mean of what all windows that hold it say, those with little error first:
-//   x_p = (Σ_q η_q a_q·φ_p + I_p/v_p) / (Σ_q η_q + 1/v_p),     η = 1/(windows of that size that hold a pixel ·
-//   estimated squared error).
-// The pixel itself, of variance v_p, is the smallest window: as noise vanishes the image becomes what was sampled,
-// features or not. Moon, Carr, Yoon 2014 and Bitterli et al. 2016 (NFOR) regress on features; here weights belong to
-// pixels, not to pairs of them, so that windows are sums (as of the guided filter: He, Sun, Tang 2010), and several
-// sizes take the place of weights by distance.
+// A pixel's value is the mean of the predictions of all windows that contain it, weighted by their confidence η:
+//   x_p = (Σ_q η_q a_q·φ_p + I_p/v_p) / (Σ_q η_q + 1/v_p),
+//   η = 1/(number of windows of that size that contain a pixel · estimated squared error).
+// The pixel itself, of variance v_p, is the smallest window: as noise vanishes, the image tends to the sampled one,
+// whatever the features. Moon, Carr, Yoon 2014 and Bitterli et al. 2016 (NFOR) regress on features. Here, weights
+// belong to pixels and not to pairs of pixels, so that windows are sums (as in the guided filter: He, Sun, Tang 2010),
+// and several window sizes replace weights by distance.
 //
-// Windows begin on a lattice. They are made of squares of pixels, the sums of two squares side by side are those of
-// both, and what windows say goes back to their squares in the same way: a window of any size costs some additions and
-// its solve.
+// Windows begin on a regular lattice and consist of square blocks of pixels. The moments of two adjacent blocks add up
+// to those of their union, and the estimates of windows are distributed to their blocks by the adjoint operation. A
+// window of any size therefore costs a few additions and one solve.
 //
-// The error of a window comes from the half-buffers: of the mean v and half the difference d of the two halves, with
-// the same weights,
+// The error of a window is estimated from the half-buffers, by regressing their mean v and half their difference d with
+// the same weights:
 //   bias² = (Σ w e_v² − Σ w e_d²)/Σw    noise = Σ w (a_d·φ)²/Σw
-// since noise leaves as much in the residuals e_v as in e_d, and what the features cannot explain is in e_v alone.
+// Noise contributes equally to the residuals e_v and e_d; what the features cannot explain is in e_v alone.
 #pragma once
 
 #include <memory>
@@ -27,7 +27,8 @@
 
 namespace gradus::reconstruct {
 
-// Windows of one step: they begin at every square of `side` pixels, and are of 4 × 4 such squares; of 2 × 2 besides.
+// Windows of one scale. They begin at every block of `side` × `side` pixels and consist of 4 × 4 such blocks; if
+// `small`, there are also windows of 2 × 2 blocks.
 struct Octave {
   int side = 2;  // 2 or a multiple of 4
   bool small = false;
@@ -35,21 +36,21 @@ struct Octave {
 
 struct RegressionSettings {
   std::vector<Octave> octaves;  // ascending, each side twice the one before
-  int lattices = 1;             // 2: the same windows a pixel up and to the right, too
-  bool coordinates = false;     // the pixel's x and y are features, too
+  int lattices = 1;             // 2: also the same windows shifted by a pixel along both axes
+  bool coordinates = false;     // whether the pixel's x and y are features, too
   float ridge = 1e-3f;          // λ, for features that range over about 1
-  float floor = 1e-4f;          // squared error that no window is believed to stay below
+  float floor = 1e-4f;          // minimum of the estimated squared error of a window
 };
 
 struct RegressionResult {
-  Field mean;   // x, three channels
-  Field noise;  // what the same operator makes of half the difference of the halves: its square estimates the variance
-                // of x
-  Field bias;  // estimated squared bias, mean over the channels; one channel; where noise hides it, as often below 0 as
-               // above
+  Field mean;  // x, three channels
+  // The same operator's result for half the difference of the half-buffers. Its square estimates the variance of x.
+  Field noise;
+  // Estimated squared bias, mean over the channels, one channel. Where noise hides it, half the values are negative.
+  Field bias;
 };
 
-// What the image is taken to follow, and by how much each pixel counts: several regressions can share it.
+// Features that the image is modelled by, and the weight of each pixel. Several regressions can share them.
 struct Predictors {
   Field features;  // 7 channels with coordinates, or 3 without, in about [−1, 1]
   Field weights;   // one channel, 0 where a pixel does not count
@@ -58,20 +59,20 @@ struct Predictors {
 class LocalRegression {
  public:
   LocalRegression() = default;
-  // own: 1/v, one channel; none: pixels are not windows of their own.
+  // `own` is 1/v, one channel. If it is empty, pixels are no windows of their own.
   LocalRegression(std::shared_ptr<const Predictors> predictors, Field own, RegressionSettings settings);
 
-  // Regresses three channels, given half the difference of the halves, and freezes η. Deterministic for any number of
-  // threads.
+  // Regresses three channels, estimates η from half the difference of the half-buffers, and freezes it. Deterministic
+  // for any number of threads.
   RegressionResult estimate(const Field& mean, const Field& half_difference, const CancelCheck& cancel);
-  // One channel, or three, by the frozen operator.
+  // Applies the frozen operator to one or three channels.
   Field apply(const Field& values, const CancelCheck& cancel) const;
 
  private:
   std::shared_ptr<const Predictors> predictors_;
   Field own_;
   RegressionSettings settings_;
-  std::vector<Field> confidence_;  // η of each octave's windows, lattice by lattice
+  std::vector<Field> confidence_;  // η of the windows of each octave, for one lattice after another
 };
 
 }  // namespace gradus::reconstruct

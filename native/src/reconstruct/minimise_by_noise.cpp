@@ -9,9 +9,9 @@
 namespace gradus::reconstruct {
 namespace {
 
-// No row of the image is off by more than a hundredth of its noise, root mean square: 5 to 12 steps. The residual says
-// nothing: beside a bright light it is small at once, and where weights span six decades it is that of the rows with
-// little noise.
+// Stops when the root mean square error of every row of the image is below a hundredth of its noise, after 5 to 12
+// steps. The residual is no criterion: beside a bright light it is small at once, and where weights span six decades
+// the rows with little noise dominate it.
 constexpr CgGoal kGoal{.row_error = 1e-2f};
 constexpr int kMaxSteps = 60;
 

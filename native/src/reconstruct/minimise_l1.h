@@ -6,7 +6,8 @@
 
 namespace gradus::reconstruct {
 
-// Estimates the weights from the first three channels of `images`, which share them, and freezes them.
+// Estimates the weights from the first three channels of `images`, which share them, and freezes them. `report`
+// collects the steps and the residual of all solves.
 Minimum minimise_l1(const film::GradientImages& images, float alpha, const CancelCheck& cancel, SolveReport* report);
 
 }  // namespace gradus::reconstruct

@@ -1,7 +1,7 @@
-// Sums of products over squares of pixels, from which windows' normal equations are made, and how those of two squares
-// side by side become those of both. Planes in rows, eight squares to a vector.
+// Moments: sums of products over square blocks of pixels, from which the normal equations of windows are made. The
+// moments of two adjacent blocks combine to those of their union. Planes are stored in rows, eight blocks to a vector.
 //
-// Coordinates count from the square's own centre: from anywhere else, floats would not hold the constant of a window
+// Coordinates count from the centre of each block: with another origin, floats could not hold the constant of a window
 // with steep slopes.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace gradus::reconstruct {
 
-// Planes of a row of squares.
+// Several planes of values for one row of blocks.
 class Rows {
  public:
   Rows(int count, int width)
@@ -24,7 +24,7 @@ class Rows {
   void clear() { std::fill(values_.begin(), values_.end(), 0.0f); }
 
  private:
-  size_t width_;  // whole vectors
+  size_t width_;  // rounded up to whole vectors
   std::vector<float> values_;
 };
 
@@ -35,15 +35,17 @@ inline Lanes load(const float* from) {
 }
 inline void store(const Lanes& lanes, float* to) { std::memcpy(to, &lanes, sizeof(lanes)); }
 
-// P features, of which the first is constant and the last two are the coordinates if there are such, and C right sides.
+// Moments of P features and C right sides. The first feature is constant; the last two are the coordinates if
+// Coordinates.
 template <int P, int C, bool Coordinates>
 struct Moments {
   static constexpr int kX = P - 2, kY = P - 1;
-  // Products of features, those with the right sides, and w (v² − d²) over the channels.
+  // Order of the planes: products of features, products of features with the right sides, and the sum of w (v² − d²)
+  // over the channels.
   static constexpr int kRight = packed(P, 0), kSquares = kRight + P * C, kCount = kSquares + 1;
 
-  // The square made of `a` and of `b`, each with its centre `half` from the other's border along coordinate K: to[x] of
-  // a[x], b[x + shift].
+  // Joins block a[x] with block b[x + shift] into to[x]. The blocks adjoin along coordinate K, and the centre of each
+  // is `half` away from their common border.
   template <int K>
   static void join(const Rows& a, const Rows& b, int shift, float half, Rows* to) {
     const int n = a.width() - shift;
@@ -71,12 +73,14 @@ struct Moments {
   }
 };
 
-// What windows say, summed over those that hold a square: coefficients times η, η, bias times η.
+// Estimates of windows, summed over all windows that contain a block: coefficients times the confidence η, η itself,
+// and bias times η.
 template <int P, int C, bool Coordinates>
 struct WindowEstimates {
   static constexpr int kConfidence = P * C, kBias = P * C + 1, kCount = P * C + 2;
 
-  // The adjoint of joining: to[x] += what a[x] says of its lower half, and b[x − shift] of its upper one.
+  // Adds to to[x] the estimates of a[x] for its lower half and those of b[x − shift] for its upper half. This is the
+  // adjoint of Moments::join().
   template <int K>
   static void split(const Rows& a, const Rows& b, int shift, float half, Rows* to) {
     const int n = a.width();

@@ -7,14 +7,14 @@
 namespace gradus::reconstruct {
 namespace {
 
-// The coarsest grid is small enough that these sweeps of Jacobi solve it well enough; a polynomial of A, so the cycle
-// stays symmetric.
+// The coarsest grid is so small that this number of Jacobi sweeps solves it well enough. They are a polynomial of A, so
+// the cycle remains symmetric.
 constexpr int kCoarsestSide = 2;
 constexpr int kCoarsestSweeps = 8;
-// Rows at a time: the passes below make some rows around each piece once more.
+// Number of rows in a piece of work. The passes below compute some rows around each piece twice.
 constexpr int kGrain = 64;
 
-// to = x + S(b - A x), make(y, scratch, &rows) making row y of x. scratch: as long as a row, and one more.
+// Computes to = x + S(b - A x). make(y, scratch, &rows) makes row y of x; `scratch` has one float more than a row.
 template <class Make>
 void sweep(const Stencil& a, const Field& b, const Make& make, Field* to) {
   const int w = a.width(), h = a.height(), channels = b.channels();
@@ -43,7 +43,7 @@ void sweep(const Stencil& a, const Field& b, const Make& make, Field* to) {
       kGrain);
 }
 
-// Two sweeps from 0.
+// Writes the result of two Jacobi sweeps from 0.
 void sweep_twice(const Stencil& a, const Field& b, Field* to) {
   const auto sweep_zero = [&](int y, float* s, RollingRows* x) {
     read_smoothing(a, y, s);
@@ -56,7 +56,7 @@ void sweep_twice(const Stencil& a, const Field& b, Field* to) {
   sweep(a, b, sweep_zero, to);
 }
 
-// Two sweeps from x + P coarse, which overwrite x.
+// Writes the result of two Jacobi sweeps from x + P coarse to `x`. Overwrites `to`.
 void sweep_interpolated_twice(const Stencil& a, const Interpolation& p, const Field& b, const Field& coarse, Field* x,
                               Field* to) {
   const auto interpolate = [&](int y, float* more, RollingRows* rows) {
@@ -75,7 +75,7 @@ void sweep_interpolated_twice(const Stencil& a, const Interpolation& p, const Fi
   std::swap(*x, *to);
 }
 
-// coarse = Pᵀ(b - A x)
+// Computes coarse = Pᵀ(b - A x).
 void restrict_residual(const Stencil& a, const Interpolation& p, const Field& b, const Field& x, Field* coarse) {
   for_pieces(
       coarse->height(),
@@ -106,7 +106,7 @@ void restrict_residual(const Stencil& a, const Interpolation& p, const Field& b,
       kGrain / 2);
 }
 
-// Sweeps of Jacobi from 0.
+// Solves the coarsest grid by Jacobi sweeps from 0 and returns b·z of each row.
 RowSums solve_coarsest(const Stencil& a, const Field& b, Field* z) {
   Field x(a.width(), a.height(), b.channels());
   std::vector<float> s(static_cast<size_t>(a.width()));

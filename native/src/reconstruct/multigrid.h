@@ -1,5 +1,6 @@
-// One symmetric V-cycle as preconditioner: z ≈ A⁻¹ b. Red-black Gauss-Seidel on the finest grid (red_black.h), damped
-// Jacobi twice before and twice after on the coarse ones, black-box interpolation.
+// One symmetric V-cycle of multigrid as a preconditioner, z ≈ A⁻¹ b. It uses red-black Gauss-Seidel on the finest grid
+// (red_black.h), damped Jacobi twice before and twice after each coarse correction on the other grids, and black-box
+// interpolation (interpolation.h).
 #pragma once
 
 #include <memory>
@@ -10,7 +11,8 @@
 
 namespace gradus::reconstruct {
 
-// Values on coarse grids while a cycle runs. Multigrids of one size may share it, one cycle at a time.
+// Work space of a cycle: values on the coarse grids. Multigrids of one size may share it, but only one cycle may run at
+// a time.
 class MultigridWork {
  public:
   MultigridWork(int width, int height, int channels);
@@ -20,7 +22,7 @@ class MultigridWork {
   struct Level {
     Field b, z, swept;
   };
-  std::vector<Level> levels_;  // the first is empty: its fields are the caller's
+  std::vector<Level> levels_;  // the first is empty: the caller owns the fields of the finest grid
 };
 
 class Multigrid {
@@ -28,21 +30,22 @@ class Multigrid {
   Multigrid(int width, int height, int channels)
       : Multigrid(width, height, std::make_shared<MultigridWork>(width, height, channels)) {}
   Multigrid(int width, int height, std::shared_ptr<MultigridWork> work);
-  // The finest matrix, to be filled; then update().
+  // The matrix of the finest grid. Fill it, then call update().
   Stencil& matrix() { return levels_.front().matrix; }
   const Stencil& matrix() const { return levels_.front().matrix; }
-  // Makes the coarse matrices from the finest.
+  // Computes the coarse matrices from the finest one.
   void update();
-  // Overwrites z and returns b·z of each row; b must have the grid's size and the multigrid's channels. Not for two
-  // threads at once, nor for two multigrids that share their work space.
+  // Writes z ≈ A⁻¹ b and returns b·z of each row. b must have the size of the grid and the number of channels of the
+  // multigrid. Not thread-safe, neither for one multigrid nor for several that share their work space.
   RowSums cycle(const Field& b, Field* z);
 
  private:
   struct Level {
     Stencil matrix;
-    Interpolation interpolation;  // from the next one
+    Interpolation interpolation;  // from the next coarser grid to this one
   };
-  // What a coarse grid and those below make of its right side, → its z.
+  // Runs the cycle on a coarse grid and all coarser ones. Reads the right side from the level's work space and returns
+  // its z.
   const Field& solve_coarse(size_t level);
   std::vector<Level> levels_;
   std::shared_ptr<MultigridWork> work_;

@@ -11,8 +11,8 @@ bool is_lit(const float* pixel, int channels) {
   return pixel[0] != 0.0f || pixel[1] != 0.0f || pixel[2] != 0.0f || (channels == 4 && pixel[3] == 0.0f);
 }
 
-// Pixels whose rows show no deviation: those of the pixel and of the four differences that it has a part in. The last
-// column and row have no differences.
+// Returns 1 for each lit pixel of which neither the value nor one of the up to four differences to its neighbours shows
+// a deviation. The last column and row have no differences to the right and upwards.
 std::vector<uint8_t> find_quiet(const film::GradientImages& images) {
   const int w = images.width, h = images.height;
   const auto is_zero = [w](const std::vector<float>& deviation, int x, int y) {
@@ -42,7 +42,7 @@ std::vector<float> crop_plane(const std::vector<float>& plane, int width, int ch
   return result;
 }
 
-// A part of all images but halves.
+// Returns a rectangle of all images except the half-buffers.
 film::GradientImages crop(const film::GradientImages& images, const Region& part) {
   film::GradientImages result;
   result.width = part.width();

@@ -8,13 +8,13 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Noise that is not told from none, in the image's scale. Between 3e-3 and 3e-2 the error against the truth hardly
-// changes (measured).
+// Noise below this value, in units of the image's scale, counts as none. Between 3e-3 and 3e-2 the error against the
+// truth hardly changes (measured).
 constexpr float kFloor = 1e-2f;
-// exp(−1/2σ²) for a Gaussian window of σ = 0.7 pixels.
+// Weight exp(−1/2σ²) of a direct neighbour in a Gaussian window of σ = 0.7 pixels.
 constexpr float kBeside = 0.36f;
-// Most that a neighbour lends to the mean, times what is usual around it. 3 to 8 give the same error; without, it is a
-// tenth more (docs/method.md).
+// Maximum contribution of a neighbour to the mean, in multiples of the level that is usual around it. Values of 3 to 8
+// give the same error; without the limit the error is a tenth larger (measured).
 constexpr float kMaxLent = 4.0f;
 
 float beside(const Field& f, int x, int y) {
@@ -46,8 +46,9 @@ void NoiseWeights::read_row(int y, float scale, float unknown, float* weights) c
   }
 }
 
-// Of the four lines through a row's value, the largest that both neighbours on it have: large within areas and along
-// edges of noise, small around an outlier, even where differences have two of them side by side.
+// Considers the four lines through a row and its neighbours. Each line has the smaller of its two neighbours'
+// deviations; returns the largest of these. The result is large within areas and along edges of noise and small around
+// an outlier, even where differences have two outliers side by side.
 float NoiseWeights::typical_level(int x, int y) const {
   const float *below = own_.row(y - 1) + x, *here = own_.row(y) + x, *above = own_.row(y + 1) + x;
   return std::max({std::min(here[-1], here[1]), std::min(below[0], above[0]), std::min(below[-1], above[1]),

@@ -1,4 +1,4 @@
-// Weights of rows by the noise that was measured of them.
+// Weights of the rows of a least squares system by their measured noise. A row is a pixel or a difference.
 #pragma once
 
 #include <vector>
@@ -7,17 +7,18 @@
 
 namespace gradus::reconstruct {
 
-// Deviation of differences over that of pixels where nobody knows their noise: as of the L2 solver.
+// Deviation of a difference over that of a pixel, for unknown noise; the same value as α of the L2 solver.
 inline constexpr float kUnknownAlpha = 0.4f;
 
-// Weights scale²/(s² + floor²) of a kind of rows. s: the mean over the 3×3 rows around each of the deviations that the
-// two halves show, the row's own with 1/3 of all weight. Neighbours lend theirs, but an outlier, as which a firefly
-// stands in its pixel and all differences beside it, lends no more than is usual around it.
+// Weights scale²/(s² + floor²) for all rows of one kind. s is the mean of the measured deviations over the 3×3 rows
+// around each; the row's own deviation has about 1/3 of the total weight. A firefly is an outlier in its pixel and in
+// all differences of that pixel, so the contribution of an outlier to its neighbours' mean is limited to the level that
+// is usual around it.
 class NoiseWeights {
  public:
-  // Deviations by pixel, not finite where they are unknown.
+  // `deviations` has one value for each pixel; values that are not finite are unknown.
   NoiseWeights(const std::vector<float>& deviations, int width, int height);
-  // unknown: s of rows around which no deviation is known, in units of the scale.
+  // Writes the weights of row y. `unknown` is s, in units of `scale`, where no deviation is known nearby.
   void read_row(int y, float scale, float unknown, float* weights) const;
 
  private:
@@ -26,10 +27,10 @@ class NoiseWeights {
   Field own_, lent_, known_;
 };
 
-// Single precision tells a pixel's weight from its differences' down to a ratio of some 1e-6. Where differences were
-// known far better than pixels, as under fireflies, the matrix would be singular and conjugate gradients diverge. So a
-// difference is taken to be uncertain by this share of its pixel's noise, which loses nothing: it takes the mean of a
-// million pixels to bring theirs down to it.
+// Single precision cannot represent a pixel's weight beside its differences' weights below a ratio of about 1e-6. Where
+// differences are known far better than pixels, as under fireflies, the matrix becomes singular and conjugate gradients
+// diverge. Differences therefore get a minimum uncertainty, this share of their pixel's noise. This loses nothing: the
+// mean of a million pixels has that much noise.
 inline constexpr float kMinShare = 1e-3f;
 inline float limited_difference(float weight, float of_pixel) {
   return of_pixel > 0.0f ? weight / (1.0f + kMinShare * kMinShare * weight / of_pixel) : weight;

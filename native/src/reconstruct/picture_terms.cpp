@@ -13,7 +13,8 @@ namespace {
 
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
-// What was sampled there errs by no more, and where nothing of a part was met there is nothing to be wrong.
+// Limits the estimated error to the noise of the samples around each pixel: the sampled values themselves have no
+// larger error. Where no path of the term was found, its error is therefore 0.
 void limit_by_noise(const Field& half_difference, Field* error) {
   const int w = error->width(), h = error->height();
   const Field noise =
@@ -21,17 +22,19 @@ void limit_by_noise(const Field& half_difference, Field* error) {
   for_values(error, [&](float& value, int x, int y, int) { value = std::min(value, noise.row(y)[x]); });
 }
 
-// Squares of strong light are beyond single precision.
+// Converts a squared error to the picture's units. Squares of strong light exceed single precision, so they are limited
+// to the largest float.
 void scale_error(float scale, Field* error) {
   for_values(error, [scale](float& value, int, int, int) { value = std::min(scale * (scale * value), kMaxFloat); });
 }
 
-// A value of one channel and pixel in one part. In double: weights are squares.
+// Value of one term in one pixel and channel. In double precision, because weights are squares.
 struct Share {
   double value, weight, minimum;
 };
 
-// All of `lack` by weight, what may not go below its least value no further than that. Returns what is left of it.
+// Distributes `lack` over the shares in proportion to their weights. A share that reaches its minimum takes no more,
+// and the others take its remainder. Returns what could not be distributed.
 double spread(double lack, std::vector<Share>& shares, double (*weight_of)(const Share&)) {
   for (size_t round = 0; round < shares.size() && lack != 0.0; ++round) {
     const auto is_open = [lack](const Share& share) { return lack > 0.0 || share.value > share.minimum; };

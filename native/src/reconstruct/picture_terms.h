@@ -1,8 +1,8 @@
-// What a picture is split into, and what its parts become: light passes, and whatever else adds up to it.
+// Reconstruction of the terms that a picture is split into, such as light passes, so that they add up to the picture.
 //
-// No differences are sampled of a part, so that each goes through a regression of its own, with weights by its own
-// noise: a linear operator once these are known. What all of them then lack of the picture is spread over them by their
-// estimated errors (contract 3.4).
+// A term has no sampled gradients, so each goes through a regression of its own, with weights by its own noise: a
+// linear operator once the weights are known. The difference between the picture and the sum of its terms is then
+// distributed over the terms by their estimated errors.
 #pragma once
 
 #include <vector>
@@ -12,22 +12,24 @@
 
 namespace gradus::reconstruct {
 
-// A part in three channels, as it is and as sampled: in the picture's units.
+// One term of a picture: three channels in the picture's units, as the regression estimates it.
 struct PictureTerm {
   Field image;
   Field error;  // estimated squared error, mean over the channels; one channel
-  // Of each channel: how much light there can be of the part, over that in the pixels around. 0: none, whatever is
-  // lacking. None: as much.
+  // Per pixel and channel: the term's possible light, such as an albedo, over its mean in the pixels around, at most 1.
+  // Where it is 0, the term is 0. An empty field stands for 1 everywhere.
   Field room;
-  bool may_be_negative = false;  // light below 0 was sampled of it
+  bool may_be_negative = false;  // whether negative values were sampled
 };
 
-// A part without noise stays what it is.
+// Regresses a sampled term on the features `guides`. A term whose half-buffers agree everywhere is returned as it was
+// sampled.
 PictureTerm regress_term(const film::Features& guides, HalvedImage sampled, const CancelCheck& cancel);
 
-// The parts, of one size, become such that they add up to `whole`, three channels. What lacks of the sum goes to all
-// that have room, by their errors; where these tell nothing, by their light; where there is none, to the last of them.
-// What was not negative stays so unless the sum cannot be had otherwise.
+// Changes the terms so that they add up to `whole`, an image of three channels and the same size. The missing light of
+// each pixel and channel goes to the terms whose `room` is not 0, in proportion to room² · error; where these are 0, in
+// proportion to the terms' absolute values; where these are 0 too, to the last such term. Terms that may not be
+// negative stay at or above 0 unless the sum cannot be reached otherwise.
 void add_up(const Field& whole, std::vector<PictureTerm>* terms);
 
 }  // namespace gradus::reconstruct

@@ -13,7 +13,8 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Columns transformed together: one cache line of floats, so that the image is read and written by whole lines.
+// Number of columns transformed together: one cache line of floats, so that the image is read and written by whole
+// lines.
 constexpr int kColumnBlock = 16;
 constexpr int kRowGrain = 8;
 
@@ -29,8 +30,8 @@ std::vector<float> eigenvalues(int length) {
 
 using Range = tbb::blocked_range<int>;
 
-// Calls body(y, row y, row y + 1, whether that one exists, scratch) for every second row: one complex transform serves
-// two rows.
+// Calls body(y, row y, row y + 1, whether row y + 1 exists, scratch) for every second row y. One complex transform
+// handles two rows.
 template <class Body>
 void for_row_pairs(int w, int h, int channels, float* work, const Body& body) {
   const size_t row = size_t(w) * size_t(channels);
@@ -73,7 +74,7 @@ void PoissonDct::rows_forward(int channels, const FillRow& fill, float* work) co
 void PoissonDct::columns(float data_weight, int channels, const double* sums, float* work) const {
   const int w = width(), h = height(), blocks = (w + kColumnBlock - 1) / kColumnBlock;
   const size_t row = size_t(w) * size_t(channels);
-  // Both transforms forth and back multiply by the lengths, and by 4.
+  // The forward and inverse transforms of both axes together multiply by the two lengths and by 4.
   const float scale = 1.0f / (static_cast<float>(w) * static_cast<float>(h));
   const auto gains = [&](int x, std::vector<float>* to) {
     const float base = data_weight + eigenvalue_x_[std::min(x, w - 1)];
@@ -93,7 +94,7 @@ void PoissonDct::columns(float data_weight, int channels, const double* sums, fl
         for (int x = 0; x < n; x += 2) pairs[x / 2].time[place] = {from[x], x + 1 < n ? from[x + 1] : 0.0f};
       }
       for (int x = 0; x < n; x += 2) {
-        // Along a row the transform has doubled its sum.
+        // The transform along the row has doubled the sum.
         const double sum = x0 + x == 0 && sums ? 2.0 * sums[channel] : Dct::kUnknownSum;
         gains(x0 + x, &gain_a);
         gains(x0 + x + 1, &gain_b);

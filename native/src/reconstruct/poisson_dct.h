@@ -1,5 +1,5 @@
-// (α² + DᵀD)⁻¹ by cosine transforms: exact, for constant weights and a free border (Bhat et al. 2008, "Fourier analysis
-// of the 2D screened Poisson equation for gradient domain problems").
+// Applies (α² + DᵀD)⁻¹ by cosine transforms. This is exact for constant weights and a free border (Bhat et al. 2008,
+// "Fourier analysis of the 2D screened Poisson equation for gradient domain problems").
 #pragma once
 
 #include <functional>
@@ -15,15 +15,15 @@ class PoissonDct {
   int width() const { return row_.length(); }
   int height() const { return column_.length(); }
 
-  // Writes row y of the right side, one channel after another; called from several threads, each row once.
+  // Writes row y of the right side, one channel after another. Called from several threads, once for each row.
   using FillRow = std::function<void(int y, float* row)>;
-  // Takes row y of the solution; likewise.
+  // Receives row y of the solution, one channel after another. Called from several threads, once for each row.
   using TakeRow = std::function<void(int y, const float* row)>;
-  // Σb of a channel, asked for after all rows are filled, where it is known better than by sums of floats; may be
-  // empty.
+  // Returns Σb of a channel, where the caller knows it more exactly than by sums of floats. Called after all rows are
+  // filled; may be empty.
   using Sum = std::function<double(int channel)>;
-  // Solves (data_weight + DᵀD) x = b. work: width·height·channels floats. Deterministic for any number of threads; a
-  // channel's bits do not depend on the others.
+  // Solves (data_weight + DᵀD) x = b. `work` holds width·height·channels floats. The result is deterministic for any
+  // number of threads, and a channel's bits do not depend on the other channels.
   void solve(float data_weight, int channels, const FillRow& fill, const Sum& sum, const TakeRow& take,
              float* work) const;
 

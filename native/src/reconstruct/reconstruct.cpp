@@ -13,8 +13,9 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Rows of a frame, which its images would take longer to write down than to make. A thread goes from one row to the
-// next, so the row below is often there already.
+// Makes the rows of a film's component for the L2 solver on demand, because writing all images to memory takes longer
+// than making their rows. A thread usually goes from one row to the next, so it keeps the vertical differences of the
+// row below for reuse.
 class FilmRows {
  public:
   FilmRows(const film::Film& film, int component) : film_(film), component_(component) {}
@@ -35,7 +36,7 @@ class FilmRows {
 
  private:
   struct Rows {
-    int y = -2;  // of dy
+    int y = -2;  // row that dy belongs to
     std::vector<float> primal, dx, dy, dy_below;
   };
   const film::Film& film_;
@@ -74,7 +75,7 @@ std::vector<float> reconstruct(const film::GradientImages& images, uint32_t reco
     if (c < solver->solved_channels()) {
       solver->read_solution(planes_of(images, c), c, result.data() + c);
     } else {
-      solver->apply(planes_of(images, c), result.data() + c);  // alpha, by the same weights
+      solver->apply(planes_of(images, c), result.data() + c);  // alpha uses the weights of the colours
     }
   }
   return result;

@@ -25,7 +25,7 @@ bool is_zero(const std::vector<Radiance>& plane) {
   return std::all_of(plane.begin(), plane.end(), [](const Radiance& value) { return value == Radiance(0.0f); });
 }
 
-// Neither its paths nor their offsets have found anything.
+// Returns whether all primal and gradient samples of a component are 0.
 bool is_black(const film::ComponentPlanes& planes) {
   for (int half = 0; half < film::kHalves; ++half) {
     const auto& gradient = planes.gradient[half];

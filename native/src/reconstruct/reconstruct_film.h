@@ -1,4 +1,4 @@
-// What a frame becomes: its picture, and what is known of the picture's error.
+// Reconstruction of a whole film: its image and, on request, its estimated error and its components.
 #pragma once
 
 #include "reconstruct/reconstructed.h"
@@ -6,28 +6,30 @@
 
 namespace gradus::reconstruct {
 
-// What is wanted besides the picture.
+// Optional results of reconstruct_film().
 struct ReconstructionOutputs {
   bool error = false, components = false;
 };
 
-// The sum of all components (contract 3.4): each by its own solver, or all by one operator (REGULARIZED).
-// reconstruction: never AUTO. Throws invalid_operation for a frame without what it reads.
+// Reconstructs the sum of all components: each by its own solver, or all by one operator (REGULARIZED).
+// `reconstruction` is never AUTO. Throws `invalid_operation` if the film lacks the gradients or features that the
+// reconstruction reads.
 Reconstructed reconstruct_film(const film::Film& film, uint32_t reconstruction, float alpha,
                                ReconstructionOutputs wanted, const CancelCheck& cancel, SolveReport* report);
 
-// One component, by all reconstructions but REGULARIZED; without an error: see error_estimate.h.
+// Reconstructs one component by any reconstruction except REGULARIZED. For its error see error_estimate.h.
 std::vector<float> reconstruct_component(const film::Film& film, int component, uint32_t reconstruction, float alpha,
                                          const CancelCheck& cancel, SolveReport* report);
 
-// Of light that lights below 0 take away (contract 5.5): linear reconstructions keep it, others cut it off.
+// Returns whether a reconstruction may deliver negative values: linear reconstructions may, the others are clamped at
+// 0.
 bool keeps_negative(uint32_t reconstruction);
 
-// Where pictures are clamped components become such that none is negative and that they add up to the picture as
-// clamped. images: of the frame's channels; alpha stays what it is.
+// Changes component images so that no value is negative and that they add up to the clamped image. Does nothing if the
+// reconstruction may deliver negative values. `images` have the film's channels; alpha is unchanged.
 void clamp_components(uint32_t reconstruction, int channels, std::vector<std::vector<float>>* images);
 
-// *sum += term, image by image; an empty sum is 0.
+// Adds `term` to `sum`. An empty sum counts as 0.
 void add_image(std::vector<float> term, std::vector<float>* sum);
 
 }  // namespace gradus::reconstruct

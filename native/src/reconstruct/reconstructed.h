@@ -4,21 +4,21 @@
 
 namespace gradus::reconstruct {
 
-// What the estimate of a squared error is made of (reconstruct/error_estimate.h), images of values that have signs:
-// terms of parts add up to those of their sum, as errors do not. One pixel's squares say little: their sums over a cell
-// or a window do.
+// Terms of the estimate of a squared error (reconstruct/error_estimate.h). They are images of signed values, so the
+// terms of components add up to the terms of their sum, which squared errors do not. The square of one pixel is a poor
+// estimate; use sums over a pixel block or a window.
 struct ErrorTerms {
-  std::vector<float> noise;  // what the reconstruction, or L2 in its place, makes of half the difference of the halves
-  std::vector<float> apart;  // distance of the image from L2's; empty where the reconstruction is linear
+  // The reconstruction, or L2 in its place, of half the difference of the two half-buffers.
+  std::vector<float> noise;
+  std::vector<float> apart;  // the image minus the one by L2; empty if the reconstruction is linear
 };
 
-// What a frame, or a component of one, becomes: its picture, and what is known of the picture's error.
+// Result of the reconstruction of a film or of one of its components.
 struct Reconstructed {
   std::vector<float> image;  // width·height·channels
-  std::vector<float>
-      error;  // width·height: estimated squared error of the image, mean over RGB; empty unless asked for
-  std::vector<std::vector<float>> components{};  // images that add up to it; none unless asked for
-  ErrorTerms terms{};                            // of RGB, of pictures by L2 or L1 over time: in the place of the error
+  std::vector<float> error;  // width·height: estimated squared error, mean over RGB; empty unless requested
+  std::vector<std::vector<float>> components{};  // images that add up to `image`; empty unless requested
+  ErrorTerms terms{};  // RGB; replaces `error` for images that L2 or L1 reconstructs over several frames
 };
 
 }  // namespace gradus::reconstruct

@@ -6,13 +6,13 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Rows at a time: passes make two or three rows around each piece once more.
+// Number of rows in a piece of work. The passes compute two or three rows around each piece twice.
 constexpr int kGrain = 64;
 
 enum class Color { kRed, kBlack };
 
-// Some rows of x as a pass moves up the grid. Each is taken apart into pixels of even and of odd x, in which a colour
-// lies side by side.
+// A window of rows of x that a pass moves up the grid. Each row is split into the pixels of even and of odd x, so that
+// pixels of one colour lie next to each other in memory.
 class CheckeredRows {
  public:
   CheckeredRows(const Stencil& a, const Field& b)
@@ -30,23 +30,24 @@ class CheckeredRows {
     }
   }
 
-  // Row y, after row y - 1; rows beyond the grid are 0. Red pixels take what half a sweep makes of 0.
+  // Loads row y; rows must come in order. Rows beyond the grid are 0. Red pixels get the result of half a sweep from 0.
   void load(int y);
-  // Solves the equations of a row's pixels of one colour for the other's values around them.
+  // Solves the equations of all pixels of one colour in a row, given the values of the other colour around them.
   void relax(int y, Color color);
-  // Puts what is left of a row's red equations in the place of its red values. After black ones are solved, nothing
-  // else is left.
+  // Replaces the red values of a row by the residuals of their equations. Once the black pixels are solved, all other
+  // residuals are 0.
   void leave_residual(int y);
 
   float* values(int y, Color color, int channel) { return values_of(y, side(y, color), channel); }
-  // An even number of values: behind a row of odd width the rim's 0.
+  // Writes row y of one channel with both colours interleaved. Writes an even number of values: for an odd width, the
+  // last one goes to the rim and is 0.
   void join(int y, int channel, float* row);
 
  private:
   static constexpr int kRows = 6;
   static constexpr size_t kPad = 8, kWeights = 6;
 
-  // Of the pixels of one half of a row: weights, and values of the other colour.
+  // Weights and values of the other colour around the pixels of one parity in a row.
   struct Neighbours {
     const float *weight[4], *value[4];
     float sum(ptrdiff_t i) const {
@@ -56,7 +57,7 @@ class CheckeredRows {
   };
   Neighbours neighbours(int y, int side, int channel);
 
-  // 0: even x, 1: odd x
+  // Returns which pixels of row y have the colour: 0 for those of even x, 1 for odd x.
   static int side(int y, Color color) { return (y & 1) ^ int(color); }
   float* half(int y, size_t plane) {
     return halves_.get() + kPad + stride_ * (size_t((y + kRows) % kRows) * planes_ + plane);
@@ -102,7 +103,8 @@ void CheckeredRows::load(int y) {
 
 CheckeredRows::Neighbours CheckeredRows::neighbours(int y, int side, int channel) {
   const float* beside = values_of(y, 1 - side, channel);
-  // Even pixels have their odd neighbours of the same index to the right, odd ones their even ones to the left.
+  // Pixels of even x have the odd pixel of the same index to their right; those of odd x have the even pixel of the
+  // same index to their left.
   const ptrdiff_t beyond = side == 0 ? -1 : 1, weight_beyond = side == 0 ? -1 : 0;
   return {{right(y, 0), right(y, 1) + weight_beyond, up(y, side), up(y - 1, side)},
           {beside, beside + beyond, values_of(y + 1, side, channel), values_of(y - 1, side, channel)}};

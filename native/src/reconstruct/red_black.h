@@ -1,6 +1,6 @@
-// Red-black Gauss-Seidel on a cycle's finest grid, whose pixels couple with four neighbours: red ones (x + y even) with
-// black ones alone, so that half a sweep solves all equations of one colour. It leaves far less of what is rough than
-// Jacobi does, for the same arithmetic.
+// Red-black Gauss-Seidel on the finest grid of a cycle, where pixels couple with four neighbours. Red pixels (x + y
+// even) then couple with black ones only, so that half a sweep solves all equations of one colour. It removes far more
+// of the high frequencies than Jacobi does, for the same arithmetic.
 #pragma once
 
 #include "base/rows.h"
@@ -8,11 +8,11 @@
 
 namespace gradus::reconstruct {
 
-// coarse = Pᵀ (b − A x), x what a sweep over red, then black pixels makes of 0.
+// Computes coarse = Pᵀ (b − A x), where x is the result of a sweep from 0 over the red, then the black pixels.
 void restrict_after_sweep(const Stencil& a, const Interpolation& p, const Field& b, Field* coarse);
 
-// z = what a sweep over black, then red pixels makes of x + P coarse: the transpose of the way down, so that a cycle is
-// symmetric. Returns b·z of each row.
+// Computes z, the result of a sweep over the black, then the red pixels from x + P coarse, where x is that of
+// restrict_after_sweep(). The order is reversed so that the cycle is symmetric. Returns b·z of each row.
 RowSums sweep_interpolated(const Stencil& a, const Interpolation& p, const Field& b, const Field& coarse, Field* z);
 
 }  // namespace gradus::reconstruct

@@ -9,16 +9,18 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Figures of this file: docs/method.md, "Regression on features".
-// Light that a pixel is taken for is that of 3×3: its own would make errors of dark pixels beside bright ones the
-// smaller the larger they are.
+// The values below were chosen by measurement: docs/method.md, "Regression on features".
+//
+// The light of a pixel is the mean over 3×3 pixels. With its own light alone, the estimated error of a dark pixel
+// beside a bright one would fall as its true error rises.
 constexpr int kLightRadius = 1;
-// Squares of noise are averaged, since one says little.
+// Squared noise is averaged over this radius, because a single square is a poor estimate.
 constexpr int kNoiseRadius = 3;
-// Around a pixel, where what went in and what came out should have the same mean.
+// Radius of the window in which the sampled and the regressed image should have the same mean.
 constexpr int kLostRadius = 8;
 
-// Squared loss of light around each pixel, less what noise makes of it, over the squared light there.
+// Returns the squared loss of light around each pixel, minus what noise contributes to it, over the squared light
+// there.
 Field lost_share(const Smoothed& smoothed) {
   const int w = smoothed.mean.width(), h = smoothed.mean.height();
   Field terms(w, h, 3);
@@ -40,7 +42,7 @@ Field lost_share(const Smoothed& smoothed) {
 
 Field regression_error(const Smoothed& smoothed, const Field& bias) {
   const Field light = squared_light(smoothed.image, kLightRadius), lost = lost_share(smoothed);
-  // As shares of the light: noise of a light is not that of the wall beside it.
+  // Noise is averaged relative to the light: the noise of a light source says nothing about the wall beside it.
   Field error =
       box_mean(make_field(light.width(), light.height(),
                           [&](int x, int y) { return mean_of_squares(smoothed.noise, x, y) / light.row(y)[x]; }),

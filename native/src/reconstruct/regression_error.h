@@ -1,25 +1,26 @@
-// Estimated squared error of the regression on features: what is left of the noise, the windows' bias, and light that
-// was lost.
+// Estimated squared error of the regression on features. It is the sum of the remaining noise, the bias of the windows,
+// and the lost light.
 #pragma once
 
 #include "reconstruct/field.h"
 
 namespace gradus::reconstruct {
 
-// The weights follow the noise, and hide a third of its variance from what they leave of half the difference.
+// Factor on the remaining noise. The weights follow the noise and hide about a third of its variance from the regressed
+// half difference.
 inline constexpr float kHidden = 1.7f;
-// Share of pixels' squared light that is lost where what went in and what came out differ: rare bright samples lie in
-// few of them.
+// Factor on the squared light that is lost where the means of the sampled and the regressed image differ: rare bright
+// samples lie in few of those pixels.
 inline constexpr float kLost = 0.3f;
 
-// Three channels each.
+// Input and output of the regression, three channels each.
 struct Smoothed {
-  const Field &mean, &half_difference;  // what there was, and half the difference of its halves
-  const Field &image, &noise;           // what became of both
+  const Field &mean, &half_difference;  // sampled mean of the half-buffers, and half their difference
+  const Field &image, &noise;           // the regression of `mean` and of `half_difference`
 };
 
-// Mean over the channels, one channel. bias: squared, of windows, as far as their residuals tell; single values may be
-// below 0.
+// Returns the squared error, mean over the channels, as one channel. `bias` is the squared bias of the windows as
+// estimated from their residuals; single values may be negative.
 Field regression_error(const Smoothed& smoothed, const Field& bias);
 
 }  // namespace gradus::reconstruct

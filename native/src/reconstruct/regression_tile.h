@@ -1,5 +1,5 @@
-// The windows of one octave in a tile of squares, row by row: sums of pixels over squares, windows made of these, their
-// solves, and what they say back to the squares and to their pixels.
+// Regression in the windows of one octave within a tile, row by row. It sums the moments of blocks, joins blocks to
+// windows, solves the windows, and distributes their estimates to the blocks and to their pixels.
 #pragma once
 
 #include <algorithm>
@@ -12,34 +12,35 @@
 
 namespace gradus::reconstruct {
 
-// Squares that windows reach beyond the first of theirs.
+// Number of blocks that a window extends beyond its first one along each axis.
 inline constexpr int kReach = 3;
-// Pixels in a unit of the coordinates: some windows, so that their slopes feel the ridge as little as those of the
-// other features do.
+// Number of pixels in a unit of the coordinates: several windows, so that the ridge affects their slopes as little as
+// those of the other features.
 inline constexpr float kCoordinateUnit = 20.0f;
-// Pixels of a square that are summed at a time.
+// Number of pixels of a block that are summed at a time.
 inline constexpr int kGroup = 4;
 
-// Of an image.
+// Input and output of the regression of one image.
 struct RegressionTask {
   const Field *features, *weights;
-  const Field* own;                  // null: none
-  std::vector<const Field*> values;  // the mean and half the difference where η is estimated, else one
-  std::vector<Field*> results;       // until the last lattice is done, sums over windows
+  const Field* own;                  // 1/variance of each pixel's own value; null if it does not count
+  std::vector<const Field*> values;  // the mean and half the difference if η is estimated, else one image
+  std::vector<Field*> results;       // sums over windows until the last lattice is done, then the results
   Field *totals, *bias;              // sums of η and of η · bias
   const RegressionSettings* settings;
 };
 
-// Of an octave on one of the lattices. Squares begin `shift` pixels before the image.
+// Input and output of one octave on one of the lattices. Its blocks begin `shift` pixels before the image.
 template <bool Estimates>
 struct OctaveTask {
   using Confidence = std::conditional_t<Estimates, Field, const Field>;
   Octave octave;
   int shift;
-  Confidence*
-      confidence;  // a channel for each size of windows, large ones first; row and column of the first square + kReach
-  const Field* coarse;      // opinions of the next octave
-  Field* window_estimates;  // of this; null for the finest, which writes results
+  // η of the windows: a channel for each window size, large ones first. The window of first block (i, j) is at
+  // (i + kReach, j + kReach).
+  Confidence* confidence;
+  const Field* coarse;      // estimates of the next coarser octave; null for the coarsest
+  Field* window_estimates;  // estimates of this octave; null for the finest, which writes the results
 };
 
 inline int ceil_divided(int pixels, int side) { return (pixels + side - 1) / side; }
@@ -47,7 +48,7 @@ inline int ceil_divided(int pixels, int side) { return (pixels + side - 1) / sid
 template <int P, int C, bool Coordinates, bool Estimates>
 class Tile {
  public:
-  // Of the squares [x0, x1) × [y0, y1).
+  // Prepares the tile of the blocks [x0, x1) × [y0, y1).
   Tile(const RegressionTask& task, const OctaveTask<Estimates>& octave, int x0, int x1, int y0, int y1)
       : task_(task),
         octave_(octave),
@@ -85,19 +86,19 @@ class Tile {
  private:
   using M = Moments<P, C, Coordinates>;
   using O = WindowEstimates<P, C, Coordinates>;
-  enum Size : int { kLarge, kSmall };  // of windows
-  static constexpr int kSides = P * C,
-                       kChannels = C / 2;            // of the image, if the sides are its mean and half the difference
-  static constexpr int B = Coordinates ? P - 2 : P;  // but for the coordinates
-  static constexpr int kWeight = B - 1, kValues = kWeight + 1,
-                       kPixel = kValues + C;  // of a pixel: features, weight, values
+  enum Size : int { kLarge, kSmall };  // window size
+  // kChannels is the number of image channels if the right sides are the mean and half the difference.
+  static constexpr int kSides = P * C, kChannels = C / 2;
+  static constexpr int B = Coordinates ? P - 2 : P;  // number of features without the coordinates
+  // Order of a pixel's planes: features without the constant, weight, values.
+  static constexpr int kWeight = B - 1, kValues = kWeight + 1, kPixel = kValues + C;
 
   template <size_t N>
   static Rows& at(std::array<Rows, N>& ring, int j) {
     return ring[size_t(j + 64 * int(N)) % N];
   }
 
-  // Nothing is in reach of its squares.
+  // Returns whether all values are 0 that the windows of the tile contain.
   bool is_black() const {
     const int w = task_.weights->width(), h = task_.weights->height();
     const auto at = [&](int square) { return square * side_ - octave_.shift; };
@@ -111,7 +112,8 @@ class Tile {
     return true;
   }
 
-  // All windows say 0, as surely as any can; the octave above may have more to say.
+  // Writes the results of a black tile: all its windows estimate 0 with the maximum confidence. The coarser octave may
+  // still contribute other values.
   void pass_over() {
     const float maximum = 1.0f / (float(task_.settings->lattices) * task_.settings->floor);
     if constexpr (Estimates) {
@@ -125,7 +127,8 @@ class Tile {
     }
   }
 
-  // Small windows that begin two squares before the image hold none of it.
+  // Stores the maximum confidence for all windows whose first block is in row m. Small windows that begin two blocks
+  // before the image contain none of its pixels.
   void store_max_confidence(int m, float maximum) {
     for (int x = 0; x < boxes_.width(); x += kLanes) {
       store_confidence(m, kLarge, x, Lanes{} + 0.0625f * maximum);
@@ -136,7 +139,7 @@ class Tile {
     }
   }
 
-  // Pixel k of group g.
+  // Position of pixel k of group g within its block.
   int pixel_x(int g, int k) const { return side_ == 2 ? k % 2 : (kGroup * g + k) % side_; }
   int pixel_y(int g, int k) const { return side_ == 2 ? k / 2 : (kGroup * g + k) / side_; }
   int pixel_row(int j, int g, int k) const { return j * side_ + pixel_y(g, k) - octave_.shift; }
@@ -145,7 +148,7 @@ class Tile {
 
   const float* value_row(int y, int c) const { return task_.values[size_t(c) / 3]->row(y, c % 3); }
 
-  // Of every square of row j the k-th pixel of a group, side by side.
+  // Reads the k-th pixel of a group for every block of row j, so that the blocks lie next to each other.
   void read_pixels(int j, int g) {
     for (int k = 0; k < kGroup; ++k) {
       const int y = pixel_row(j, g, k), dx = pixel_x(g, k);
@@ -157,7 +160,7 @@ class Tile {
     }
   }
 
-  // Squares whose pixel dx is in the image.
+  // Range of blocks whose pixel dx lies in the image.
   int first_inside(int dx) const { return std::max(0, ceil_divided(octave_.shift - dx, side_) - first_); }
   int end_inside(int dx) const { return ceil_divided(task_.weights->width() + octave_.shift - dx, side_) - first_; }
 
@@ -175,7 +178,7 @@ class Tile {
     for (int x = std::max(begin, end); x < pixels_.width(); ++x) to[x] = 0.0f;
   }
 
-  // Moments of the squares of row j.
+  // Computes the moments of the blocks of row j.
   void sum_squares(int j) {
     if (j < 0 || j >= ceil_divided(task_.weights->height() + octave_.shift, side_)) return moments_.clear();
     for (int g = 0; g < groups(); ++g) {
@@ -186,7 +189,7 @@ class Tile {
     }
   }
 
-  // φ of the group's pixel k.
+  // Returns feature i (φ) of pixel k of group g, for eight blocks.
   Lanes feature(int i, int g, int k, int x) const {
     if (i == 0) return Lanes{} + 1.0f;
     if (i < B) return load(pixels_[k * kPixel + i - 1] + x);
@@ -221,7 +224,7 @@ class Tile {
     put(M::kSquares, weight, squared);
   }
 
-  // Windows whose first row of squares is m.
+  // Regresses the windows whose first row of blocks is m.
   void regress_small(int m) {
     M::template join<M::kY>(at(pairs_, m), at(pairs_, m + 1), 0, unit_, &boxes_);
     if (octave_.octave.small) regress(m, kSmall, &at(small_, m));
@@ -232,7 +235,7 @@ class Tile {
     regress(m, kLarge, &estimate_);
   }
 
-  // What they say, to the squares that they hold.
+  // Distributes the estimates of windows to the blocks that they contain. Once a row is complete, writes its results.
   void collect(int m) {
     Rows &large = at(large_, m), &small = at(small_, m), &column = at(columns_, m);
     large.clear();
@@ -248,7 +251,7 @@ class Tile {
     octave_.window_estimates != nullptr ? write_estimates(m) : write_pixels(m);
   }
 
-  // Eight windows side by side: coefficients, error and, by these, what they have to say.
+  // Regresses a row of windows, eight at a time: computes their coefficients, their error and their confidence.
   void regress(int m, Size size, Rows* estimate) {
     for (int x = 0; x < boxes_.width(); x += kLanes) regress(m, size, x, estimate);
   }
@@ -289,7 +292,7 @@ class Tile {
     store(eta * bias, (*estimate)[O::kBias] + x);
   }
 
-  // Of eight windows.
+  // Returns whether the right sides of eight windows are all 0.
   bool holds_nothing(int x) const {
     auto any = load(boxes_[M::kRight] + x) != Lanes{};
     for (int i = 1; i < kSides; ++i) any |= load(boxes_[M::kRight + i] + x) != Lanes{};
@@ -299,7 +302,7 @@ class Tile {
     return true;
   }
 
-  // Every window is kept by one tile alone.
+  // Stores the confidence of eight windows. Exactly one tile stores each window.
   void store_confidence(int m, Size size, int x, const Lanes& eta) {
     if ((m < y0_ && y0_ > 0) || m >= y1_) return;
     for (int l = 0; l < kLanes; ++l) {
@@ -355,7 +358,7 @@ class Tile {
     }
   }
 
-  // Sums over the lattices, and after the last what they come to.
+  // Adds this lattice's estimates to pixel row y. After the last lattice, divides the sums by their total weight.
   void write_pixels(int y, int g, int k) {
     std::array<float*, C + 2> rows{};
     for (int c = 0; c < C; ++c) rows[size_t(c)] = task_.results[size_t(c) / 3]->row(y, c % 3);

@@ -20,7 +20,7 @@ HalfSums sums_of(const film::ComponentPlanes& component, size_t pixel) {
   return {Rgb(component.primal[0][pixel]), Rgb(component.primal[1][pixel])};
 }
 
-// Mean deviation of the pixels.
+// Returns the mean of the standard deviation over all pixels.
 float typical_noise(const HalvedImage& image) {
   const int w = image.mean.width(), h = image.mean.height();
   const Sums sums = sum_rows(h, 1, [&](int y, int) {
@@ -31,7 +31,7 @@ float typical_noise(const HalvedImage& image) {
   return float(sums[0] / (double(w) * h));
 }
 
-// All channels as they were sampled, in units of the scale; what is not finite is 0.
+// Returns all channels of a component as sampled, colours in units of `scale`. Values that are not finite become 0.
 Field read_sampled(const film::Film& film, int component, float scale) {
   const auto channels = size_t(film.channels);
   Field sampled(film.region.width(), film.region.height(), film.channels);
@@ -52,10 +52,10 @@ Field read_sampled(const film::Film& film, int component, float scale) {
   return sampled;
 }
 
-// What becomes of a frame's light. Linear in it once it is made.
+// The operator of REGULARIZED: regression, then fusion with sampled differences. Once constructed it is linear.
 class Operator {
  public:
-  // frame: of one component.
+  // `film` must have one component.
   Operator(const film::Film& film, const film::Features& features, const CancelCheck& cancel, SolveReport* report)
       : cancel_(cancel), report_(report) {
     HalvedImage image = read_halves(film, [&](size_t i) { return sums_of(film.components[0], i); });
@@ -78,7 +78,7 @@ class Operator {
   const Field& solution() const { return solution_; }
   const Field& error() const { return regression_->error(); }
 
-  // Of a component, as it was sampled.
+  // Applies the operator to a component; `sampled` are its channels from read_sampled().
   Field apply(const film::Film& film, int component, const Field& sampled) {
     Field regressed = regression_->apply(channels_of(sampled, 0, 3), cancel_);
     if (film.channels == 4) {
@@ -97,7 +97,7 @@ class Operator {
   Field solution_;
 };
 
-// In units of the picture.
+// Returns the field as an interleaved image in the units of the film.
 std::vector<float> to_image(Field field, float scale) {
   scale_light(scale, &field);
   return interleave(field);
@@ -121,11 +121,11 @@ Reconstructed regularize(const film::Film& film, const film::Features& features,
   for_values(&error, [scale](float& value, int, int, int) { value *= scale * scale; });
   Reconstructed result{to_image(op.solution(), scale), interleave(error)};
   if (!by_components) return result;
-  std::vector<Field> parts;
-  for (size_t k = 0; k < components; ++k) parts.push_back(read_sampled(film, int(k), scale));
+  std::vector<Field> terms;
+  for (size_t k = 0; k < components; ++k) terms.push_back(read_sampled(film, int(k), scale));
   apply_to_terms(
-      op.solution(), [&](size_t k, const Field& part) { return op.apply(film, int(k), part); }, &parts);
-  for (Field& part : parts) result.components.push_back(to_image(std::move(part), scale));
+      op.solution(), [&](size_t k, const Field& term) { return op.apply(film, int(k), term); }, &terms);
+  for (Field& term : terms) result.components.push_back(to_image(std::move(term), scale));
   return result;
 }
 

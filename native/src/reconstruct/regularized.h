@@ -1,4 +1,5 @@
-// REGULARIZED: the features of the frame, its samples and, where there are any, its sampled differences.
+// The reconstruction REGULARIZED: regression on the features of the film, combined with its sampled differences if it
+// has gradients.
 #pragma once
 
 #include "film/features.h"
@@ -7,11 +8,11 @@
 
 namespace gradus::reconstruct {
 
-// With its error, always. Throws invalid_operation for a frame without features.
-// by_components: what becomes of each of them, too. All go through one operator, that of their sum, so that they are
-// what the picture is made of, however it was found (contract 3.4).
+// Reconstructs a film and estimates the error. Throws `invalid_operation` if the film has no features. `by_components`
+// requests the image of each component. All components go through one operator, that of their sum, so that they add up
+// to the image whatever their light.
 Reconstructed regularize(const film::Film& film, bool by_components, const CancelCheck& cancel, SolveReport* report);
-// The same by its features, filtered.
+// Reconstructs a film by its features, which the caller has already filtered (feature_filter.h).
 Reconstructed regularize(const film::Film& film, const film::Features& features, bool by_components,
                          const CancelCheck& cancel, SolveReport* report);
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kMinShare = 0.25f;
 
-// Of the 3×3 pixels around, those of the image.
+// Returns the median over those of the 3×3 pixels around (x, y) that lie in the image.
 float median_around(const Field& image, int x, int y, int channel) {
   std::array<float, 9> values;
   size_t count = 0;
@@ -22,7 +22,7 @@ float median_around(const Field& image, int x, int y, int channel) {
   return values[count / 2];
 }
 
-// Share of the sampled value with which a channel is no less than it may be.
+// Returns the share of the sampled value that lifts one channel to its minimum, a quarter of the sampled light.
 float share_of_own(const Field& sampled, const Field& regressed, int x, int y, int channel) {
   const float own = sampled.row(y, channel)[x], value = regressed.row(y, channel)[x];
   if (value >= kMinShare * own) return 0.0f;

@@ -1,17 +1,17 @@
-// Light is not negative. Windows that hold the edge of a highlight are planes, which go below 0 on its dark side: black
-// pixels on mirrors.
+// Protection against black pixels beside highlights. A window that contains the edge of a highlight is fitted by a
+// plane, which falls below 0 on the dark side of the edge; this shows as black pixels on mirrors.
 #pragma once
 
 #include "reconstruct/field.h"
 
 namespace gradus::reconstruct {
 
-// Share of its own sampled value that each pixel takes, so that in no channel less than a quarter is left of what was
-// sampled there: of the pixel, or of the median of 3×3 where that is less, since the pixel may be a firefly. One
-// channel; 0 for most.
+// Returns, per pixel, the share of the sampled value to blend into the regressed value, so that each channel keeps at
+// least a quarter of what was sampled: of the pixel's own value, or of the median of 3×3 pixels if that is less,
+// because the pixel may be a firefly. One channel; 0 in most pixels.
 Field restore_sampled_light(const Field& sampled, const Field& regressed);
 
-// The regressed value moves to the sampled one by that share.
+// Moves the regressed values to the sampled ones by `share`.
 void blend_sampled(const Field& share, const Field& sampled, Field* regressed);
 
 }  // namespace gradus::reconstruct

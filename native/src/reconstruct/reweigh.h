@@ -1,19 +1,21 @@
-// Weights of the least squares that joins the regression with differences, set anew by what became of the regression.
-// Differences beside highlights, whose halves agree by chance, seem to be far better known than they are, and the
-// regression has lost some of the highlight's light: to have both, what lies around it would be black.
+// Changes the weights of the least squares problem that combines the regression with sampled differences, by comparing
+// its solution with the regression. The half-buffers of differences beside highlights agree by chance, so these
+// differences seem known far better than they are, while the regression has lost some of the highlight's light. To
+// satisfy both, the solver would make the pixels around the highlight black.
 #pragma once
 
 #include "reconstruct/weighted_least_squares.h"
 
 namespace gradus::reconstruct {
 
-// Light is not negative, and what is dark is off by a share of itself: where the solution has less than a quarter of
-// the regression in some channel, the pixel is held by half its light, each time ten times as firmly. False: there is
-// no such pixel.
+// Increases the data weights of pixels that the solution makes too dark: where it has less than a quarter of the
+// regression in some channel, the pixel's standard deviation becomes at most half its light, and each call multiplies
+// the weight by at least ten. Light is not negative, and the error of a dark pixel is in proportion to its light.
+// Returns whether there is such a pixel.
 bool clamp_dark_pixels(const Field& regressed, const Field& solution, WeightedLeastSquares* system);
 
-// Differences of pixels that went further from the regression than its variance says, `times` its squared error, count
-// for the less: by that variance over the square of the way.
+// Reduces the weights of the differences of pixels that moved further from the regression than its variance, `times`
+// its squared error, explains. The factor is that variance over the squared distance.
 void downweight_differences(const Field& regressed, const Field& solution, const Field& error, float times,
                             WeightedLeastSquares* system);
 

@@ -1,7 +1,7 @@
-// Reconstruction: from a noisy primal image and its sampled gradients to one image.
+// Reconstruction of one image from a noisy primal image and its sampled gradients.
 //
-// A solver is W = estimate(images) and x = W(planes), with W a frozen linear operator (contract 3.4), so that alpha,
-// light passes and components can go through the same weights and add up exactly.
+// A solver first estimates weights from the images, W = estimate(images), then applies x = W(planes). W is a frozen
+// linear operator, so that alpha, light passes and components can go through the same weights and add up exactly.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@ struct PoissonPlanes {
   const float* primal = nullptr;
   const float* dx = nullptr;
   const float* dy = nullptr;
-  size_t stride = 1;  // floats from pixel to pixel (interleaved channels)
+  size_t stride = 1;  // distance in floats from pixel to pixel, for interleaved channels
 };
 
 inline PoissonPlanes planes_of(const film::GradientImages& images, int channel) {
@@ -25,41 +25,43 @@ inline PoissonPlanes planes_of(const film::GradientImages& images, int channel) 
           size_t(images.channels)};
 }
 
-// A frozen linear operator on (primal, dx, dy).
+// A frozen linear operator on (primal, dx, dy). Deterministic for any number of threads.
 class LinearOperator {
  public:
   virtual ~LinearOperator() = default;
-  // out: width·height values at `stride`. Deterministic for any number of threads.
+  // Writes width·height values to `out`, one at every `stride`-th float.
   virtual void apply(const PoissonPlanes& planes, float* out) const = 0;
 };
 
 struct SolveReport {
   int outer_steps = 0;
   int inner_steps = 0;
-  float residual = 0.0f;  // relative to the right side
-  bool hit_cap = false;
+  float residual = 0.0f;  // norm of the residual over that of the right side; maximum over all solves
+  bool hit_cap = false;  // whether a solve ended at its maximum number of steps before it converged
 };
 
-// L2, exact by DCT: minimises α²‖x−I‖² + ‖Dx−g‖². Unbiased. (Thesis eq. 5.13 with k = 2; Bhat et al. 2008 for the DCT.)
+// Returns the L2 solver, which minimises α²‖x−I‖² + ‖Dx−g‖² exactly by DCT. It is unbiased. (Thesis eq. 5.13 with k =
+// 2; Bhat et al. 2008 for the DCT.)
 std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha);
-// L1, with weights that are estimated from the images (all channels together) and then frozen. Consistent, not
-// unbiased.
+// Returns the solver of `reconstruction`, which is L1, followed by twicing (twicing.h). Its weights are estimated from
+// the images (all channels together) and then frozen. It is consistent, not unbiased. Throws `unsupported` for other
+// reconstructions.
 std::unique_ptr<LinearOperator> make_twiced(const film::GradientImages& images, uint32_t reconstruction, float alpha,
                                             const CancelCheck& cancel, SolveReport* report);
 
-// Weight of the primal against the gradients; 0: what measures best. Noisy differences, of paths that met other
-// surfaces than their neighbours did, ask L2 for a larger one than the thesis's 0.2; L1's weights do that by
-// themselves.
+// Returns α, the weight of the primal image against the gradients; `alpha` 0 selects the value with the smallest
+// measured error. Offset paths that meet other surfaces than their base paths give noisy differences, so L2 needs a
+// larger α than the thesis's 0.2. L1's weights adapt to that noise by themselves.
 inline float chosen_alpha(uint32_t reconstruction, float alpha) {
   return alpha > 0.0f ? alpha : reconstruction == GRADUS_RECONSTRUCTION_L2 ? 0.4f : 0.2f;
 }
 
-// Reconstructs all channels; returns width·height·channels. `reconstruction` is GRADUS_RECONSTRUCTION_L2 or
-// GRADUS_RECONSTRUCTION_L1.
+// Reconstructs all channels of `images` and returns width·height·channels values. `reconstruction` is
+// GRADUS_RECONSTRUCTION_L2 or GRADUS_RECONSTRUCTION_L1.
 std::vector<float> reconstruct(const film::GradientImages& images, uint32_t reconstruction, float alpha,
                                const CancelCheck& cancel, SolveReport* report);
 
-// The same of the images that read_images() makes of a frame's component.
+// Reconstructs one component of a film, from the images that film::read_images() returns for it.
 std::vector<float> reconstruct(const film::Film& film, int component, uint32_t reconstruction, float alpha,
                                const CancelCheck& cancel, SolveReport* report);
 

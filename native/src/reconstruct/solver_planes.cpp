@@ -8,7 +8,7 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Enough pixels for a median within a fraction of a percent.
+// Number of pixels that give a median within a fraction of a percent.
 constexpr size_t kMedianSamples = 1 << 16;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Primal and differences as the iterative solvers' fields.
+// Conversion between interleaved images and the fields of the iterative solvers.
 #pragma once
 
 #include "base/types.h"
@@ -13,22 +13,22 @@ struct SolverPlanes {
   Field primal, dx, dy;
 };
 
-// Takes channels [0, channels) from interleaved planes.
+// Copies channels [0, channels) of interleaved planes.
 SolverPlanes load_planes(const PoissonPlanes& planes, int width, int height, int channels);
-// The middle one; 1 of none. Reorders them.
+// Returns the median, or 1 if there are no values. Reorders them.
 float median_or_one(std::vector<float>* values);
-// Scale of the image: the median of the luminances that are not 0; 1 for a black image. Residuals and noise are
-// measured in it.
+// Returns the scale of an image: the median of the positive luminances, or 1 for a black image. Residuals and noise are
+// measured in this unit.
 float robust_scale(const Field& image);
-// Whether a row's value is there in all of some channels, interleaved.
+// Returns whether the interleaved values of a pixel are finite in all `channels` channels.
 inline bool is_complete(const float* value, int channels) {
   bool complete = true;
   for (int c = 0; c < channels; ++c) complete = complete && is_finite(value[c]);
   return complete;
 }
-// Writes one channel of a field as every `stride`-th value of `out`.
+// Writes one channel of a field to every `stride`-th value of `out`.
 void store_channel(const Field& from, int channel, size_t stride, float* out);
-// An image of the first channels, interleaved.
+// Returns an image of the first `channels` channels, interleaved.
 std::vector<float> interleave(const Field& field, int channels);
 inline std::vector<float> interleave(const Field& field) { return interleave(field, field.channels()); }
 

@@ -5,7 +5,7 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Damped Jacobi: of 0.6 to 0.9 this takes fewest steps, for weights of rendered images (measured).
+// Damping of Jacobi. Of 0.6 to 0.9, this value needs the fewest steps for weights of rendered images (measured).
 constexpr float kDamping = 0.8f;
 
 }  // namespace
@@ -32,7 +32,7 @@ void apply_row(const Stencil& a, int y, const float* below, const float* here, c
   }
   const float *up_right = a.up_right.row(y), *up_left = a.up_left.row(y), *down_left = a.up_right.row(y - 1),
               *down_right = a.up_left.row(y - 1);
-  // More rows than compilers compare with each other: none of them is `out`.
+  // There are more rows than compilers check for overlap; none of them is `out`.
 #pragma GCC ivdep
   for (int i = 0; i < w; ++i) {
     out[i] = diagonal[i] * here[i] - right[i] * here[i + 1] - right[i - 1] * here[i - 1] - up[i] * above[i] -

@@ -1,4 +1,4 @@
-// A symmetric matrix on a grid that couples each pixel with its eight neighbours at most.
+// A symmetric matrix on a grid that couples each pixel with at most eight neighbours.
 #pragma once
 
 #include <algorithm>
@@ -20,15 +20,17 @@ struct Stencil {
   bool corners = false;
 };
 
-// 1/d; 0 where d is not positive, as of a pixel that nothing holds. Without a branch, so that loops of it take vectors.
+// Returns 1/d, or 0 if d is not positive, as for a pixel without any row of weight above 0. Without a branch, so that
+// loops can be vectorised.
 inline float inverse_or_zero(float d) {
   constexpr float kMin = std::numeric_limits<float>::min();
   return std::clamp(d / kMin, 0.0f, 1.0f) / std::max(d, kMin);
 }
 
-// Damped Jacobi of row y: damping / diagonal.
+// Writes the factors of damped Jacobi for row y: damping / diagonal.
 void read_smoothing(const Stencil& a, int y, float* out);
-// out = A x for row y of one channel, from that row of x and the rows below and above it.
+// Computes out = A x for row y of one channel, from that row of x and the rows below and above it. `out` must not
+// overlap them.
 void apply_row(const Stencil& a, int y, const float* below, const float* here, const float* above, float* out);
 inline void apply_row(const Stencil& a, const Field& x, int y, int channel, float* out) {
   apply_row(a, y, x.row(y - 1, channel), x.row(y, channel), x.row(y + 1, channel), out);

@@ -10,15 +10,15 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Least side of the squares that share a bound: some times S's reach, which is 1/α = 5 pixels, and enough pixels for ln
-// n = 7 outliers.
+// Minimum side of the blocks that share a bound: several times the reach of S, which is 1/α = 5 pixels, and enough
+// pixels for ln n = 7 outliers.
 constexpr int kMinSide = 32;
 
-int square_count(int length) { return std::max(1, length / kMinSide); }
-// Where a square begins; the one behind the last begins at `length`.
-int block_begin(int length, int block) { return static_cast<int>(int64_t(length) * block / square_count(length)); }
+int block_count(int length) { return std::max(1, length / kMinSide); }
+// Returns where a block begins; block number block_count() begins at `length`.
+int block_begin(int length, int block) { return static_cast<int>(int64_t(length) * block / block_count(length)); }
 
-// ‖I − x₀‖² of a pixel.
+// Returns ‖I − x₀‖² of a pixel.
 float squared_residual(const film::GradientImages& images, const Field& estimate, int x, int y) {
   const float* primal = images.primal.data() + (size_t(y) * images.width + x) * images.channels;
   float sum = 0.0f;
@@ -36,8 +36,8 @@ float outlier_bound_squared(std::vector<float>* squares) {
   if (!(share > 0.0f)) return kInfinity;
   const auto maximum = static_cast<size_t>(std::ceil(share));
   std::partial_sort(squares->begin(), squares->begin() + ptrdiff_t(maximum), squares->end(), std::greater<>());
-  // With the k largest beyond the bound, its square is the sum of the others over ln n − k. The least such k, summed
-  // from the smallest up.
+  // If the k largest squares lie beyond the bound, its square is the sum of the others over ln n − k. The minimum of
+  // such k is the solution; the squares are summed from the smallest up.
   double rest = 0.0, bound = 0.0;
   for (size_t i = maximum; i < squares->size(); ++i) rest += (*squares)[i];
   for (size_t k = maximum; k-- > 0;) {
@@ -60,9 +60,9 @@ Twicing::Twicing(const film::GradientImages& images, const Field& estimate, floa
 void limit_blocks(Field* field) {
   const int w = field->width(), h = field->height();
   for_rows(
-      square_count(h),
+      block_count(h),
       [&](int row) {
-        for (int i = 0; i < square_count(w); ++i) {
+        for (int i = 0; i < block_count(w); ++i) {
           limit_block(block_begin(w, i), block_begin(w, i + 1), block_begin(h, row), block_begin(h, row + 1), field);
         }
       },

@@ -9,14 +9,15 @@
 namespace gradus::reconstruct {
 namespace {
 
-// The frozen operator is linear as far as it is solved: parts that add up must add up to much better than the noise.
+// The operator is only linear to the accuracy of the solve, so this must be far below the noise for components to add
+// up.
 constexpr CgGoal kOperatorGoal{.residual = 1e-6f};
 constexpr int kMaxOperatorSteps = 200;
 
-// What stands for a value that is missing; its row's weight is 0, so any finite value would do.
+// Replaces a missing value. The weight of its row is 0, so any finite value would do.
 float finite_or_zero(float v) { return is_finite(v) ? v : 0.0f; }
 
-// b = W_d I + Dᵀ W_g g
+// Computes b = W_d I + Dᵀ W_g g.
 void right_side(const Field& data_weights, const Stencil& matrix, const SolverPlanes& planes, Field* b) {
   const int w = data_weights.width(), h = data_weights.height(), channels = planes.primal.channels();
   for_rows(h, [&](int y) {

@@ -6,7 +6,7 @@
 namespace gradus::reconstruct {
 namespace {
 
-// The estimate needs no more digits than this.
+// An error estimate needs no higher accuracy.
 constexpr CgGoal kGoal{.residual = 1e-2f, .row_error = 0.1f};
 constexpr int kMaxSteps = 10;
 

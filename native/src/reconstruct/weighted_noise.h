@@ -1,5 +1,5 @@
-// Estimates the noise that L1 leaves, from the difference of the two half-buffers (contract 1.2). The weights are those
-// of the measured noise (minimise_by_noise.h), which are close to L1's and need no iteration.
+// Estimates the noise that remains after L1, from the difference of the two half-buffers. The weights are those of the
+// measured noise (minimise_by_noise.h), which are close to L1's and need no iteration.
 #pragma once
 
 #include <vector>
@@ -8,14 +8,15 @@
 
 namespace gradus::reconstruct {
 
-// Images of GradientImages' layout: W(p_A/2 + p_B/2) and W(p_A/2 − p_B/2) of the planes p of both halves. W follows the
-// noise and hides a part of it from the second, whose squares tell pixels apart, but say too little (error_estimate.h).
+// `image` is W(p_A/2 + p_B/2) and `noise` is W(p_A/2 − p_B/2), where p are the planes of each half-buffer; both have
+// the layout of GradientImages. W depends on the noise and so hides a part of it from `noise`: the squares of `noise`
+// compare pixels well, but are too small (error_estimate.h).
 struct NoiseLeft {
   std::vector<float> image, noise;
 };
 
-// images: with deviations; half_differences: of the same frame (read_half_differences()). Channels beyond the third,
-// which have no part in the weights, stay 0.
+// `images` must have deviations; `half_differences` belong to the same film (film::read_half_differences()). Channels
+// beyond the third do not take part in the weights and stay 0.
 NoiseLeft noise_left(const film::GradientImages& images, const film::GradientImages& half_differences, float alpha,
                      const CancelCheck& cancel);
 

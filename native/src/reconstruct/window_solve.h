@@ -1,4 +1,4 @@
-// Normal equations of eight windows side by side.
+// Solver for the normal equations of eight windows side by side, one in each lane of a vector.
 #pragma once
 
 namespace gradus::reconstruct {
@@ -7,13 +7,13 @@ using Lanes = float __attribute__((vector_size(32)));
 
 inline constexpr int kLanes = 8;
 
-// Row-major lower triangle of a symmetric matrix: (i, j), j <= i.
+// Returns the index of (i, j), j <= i, in the row-major lower triangle of a symmetric matrix.
 constexpr int packed(int i, int j) { return i * (i + 1) / 2 + j; }
 
-// Solves M a = R for C right sides by M = L D Lᵀ (no square roots), in place: `matrix` becomes L and D, `right` the
-// solutions, right[C·i + c] the i-th coefficient of side c. M is positive semidefinite but for rounding; a pivot that
-// rounding has left nothing of counts as infinite, which leaves its coefficient out. Unrolled, it takes two thirds of
-// the time.
+// Solves M a = R for C right sides by M = L D Lᵀ (no square roots), in place: `matrix` becomes L and D, and `right` the
+// solutions, where right[C·i + c] is coefficient i of side c. M is positive semidefinite except for rounding. A pivot
+// that is negligible after rounding counts as infinite, which sets its coefficient to 0. Unrolling saves a third of the
+// time.
 template <int P, int C>
 inline void solve_windows(Lanes* matrix, Lanes* right) {
   const Lanes zero{}, minimum = zero + 1e-30f;
@@ -35,7 +35,7 @@ inline void solve_windows(Lanes* matrix, Lanes* right) {
       matrix[packed(i, j)] = sum * inverse[j];
     }
   }
-  // All sides at once: each is a chain of operations that wait for one another.
+  // All right sides are solved at once, because each is a chain of operations that depend on one another.
 #pragma GCC unroll 16
   for (int i = 1; i < P; ++i) {
     Lanes sums[C];

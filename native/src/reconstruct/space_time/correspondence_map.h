@@ -1,4 +1,4 @@
-// The link map φ from a frame to the next: one-to-one, and not everywhere.
+// The pixel correspondence φ from one frame to the next. It is one-to-one and not defined for all pixels.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ class WindowSource;
 
 class CorrespondenceMap {
  public:
-  // Where a pixel goes, relative to itself. Equal for neighbours that stay neighbours.
+  // Displacement of a pixel to its correspondence. Neighbours that remain neighbours have equal shifts.
   using Shift = int32_t;
   static constexpr Shift kNone = INT32_MIN;
 
@@ -22,11 +22,12 @@ class CorrespondenceMap {
   int height() const { return height_; }
   const Shift* row(int y) const { return shifts_.data() + size_t(y) * size_t(width_); }
 
-  // From target pixels (WindowSource::read_correspondence()). Throws invalid_argument where a target lies outside or is
-  // another pixel's, too: threads write to linked pixels.
+  // Sets row y from target pixels (WindowSource::read_correspondence()). `taken` has a bit for each pixel, set for
+  // those that are a target already. Throws `invalid_argument` if a target lies outside the image or is already taken:
+  // threads write to target pixels without a lock.
   void set_row(int y, const int32_t* targets, std::vector<bool>* taken);
 
-  // function(begin, end, dx, dy): pixels [begin, end) of row y go to the same place relative to themselves.
+  // Calls function(begin, end, dx, dy) for each run of pixels [begin, end) of row y with the same displacement.
   template <class Function>
   void for_runs(int y, const Function& function) const {
     const Shift* shift = row(y);
@@ -40,10 +41,10 @@ class CorrespondenceMap {
 
  private:
   int width_, height_;
-  std::vector<Shift> shifts_;  // dy and dx, 16 bits each
+  std::vector<Shift> shifts_;  // dy in the upper and dx in the lower 16 bits
 };
 
-// From frame t of a window to the next.
+// Reads the pixel correspondence from frame t of a window to frame t + 1.
 CorrespondenceMap read_correspondence(const WindowSource& source, int t);
 
 }  // namespace gradus::reconstruct

@@ -1,4 +1,4 @@
-// Row by row over the pixels that are linked.
+// Operations on rows of pixels that have a correspondence in the next frame.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace gradus::reconstruct {
 
-// F_t: to[i] = next[φ(i)] in row y, all channels; pixels without a link are left alone.
+// Applies F_t: to[i] = next[φ(i)] in row y, for all channels. Pixels without a correspondence are unchanged.
 inline void gather_row(const CorrespondenceMap& correspondence, int y, const Field& next, RollingRows* to) {
   correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
     for (int c = 0; c < next.channels(); ++c) {
@@ -20,7 +20,8 @@ inline void gather_row(const CorrespondenceMap& correspondence, int y, const Fie
   });
 }
 
-// F_t x_{t+1} − x_t: to[i] = next[φ(i)] − x[i] in row y, all channels; pixels without a link are left alone.
+// Applies F_t x_{t+1} − x_t: to[i] = next[φ(i)] − x[i] in row y, for all channels. Pixels without a correspondence are
+// unchanged.
 inline void subtract_row(const CorrespondenceMap& correspondence, int y, const Field& x, const Field& next,
                          RollingRows* to) {
   correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
@@ -32,7 +33,7 @@ inline void subtract_row(const CorrespondenceMap& correspondence, int y, const F
   });
 }
 
-// F_tᵀ: next[φ(i)] += from[i] in row y, of the rows of all channels one after another.
+// Applies F_tᵀ: next[φ(i)] += from[i] in row y. `from` holds the rows of all channels, one after another.
 inline void scatter_row(const CorrespondenceMap& correspondence, int y, const float* from, Field* next) {
   correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
     for (int c = 0; c < next->channels(); ++c) {
@@ -43,11 +44,11 @@ inline void scatter_row(const CorrespondenceMap& correspondence, int y, const fl
   });
 }
 
-// Passes over all rows, in pieces with scratch of their own: Pass has make(y), called for each row with the ones before
-// and behind it, and rows beyond the border among them, and then use(y).
+// Runs a pass over all rows, in pieces with scratch of their own. Calls make(y) for each row and the row on either side
+// of the piece, also beyond the border, and use(y) once the rows y − 1 to y + 1 are made.
 template <class MakePass>
 void roll_over_rows(int height, const MakePass& make_pass) {
-  constexpr int kGrain = 64;  // a row on each side of a piece is made twice
+  constexpr int kGrain = 64;  // rows in a piece; the row on each side of it is made twice
   for_pieces(
       height,
       [&](int begin, int end) {
@@ -62,8 +63,8 @@ void roll_over_rows(int height, const MakePass& make_pass) {
       kGrain);
 }
 
-// Passes over the rows of K v, where fill(y, &rows) makes row y of v out of zeros and use(y, &rows, products) takes row
-// y of v and of the product, all channels one after another.
+// Computes K v row by row. fill(y, &rows) makes row y of v from zeros; use(y, &rows, products) receives row y of v and
+// of the product, all channels one after another.
 template <class Fill, class Use>
 void for_product_rows(const ScreenedLaplacian& k, int channels, const Fill& fill, const Use& use) {
   struct Pass {

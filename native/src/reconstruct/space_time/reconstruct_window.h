@@ -1,4 +1,4 @@
-// The pictures of a window by L2 or L1, and what their errors are made of.
+// Reconstruction of the frames of a window by L2 or L1, with the terms of their errors.
 #pragma once
 
 #include <functional>
@@ -8,9 +8,9 @@
 
 namespace gradus::reconstruct {
 
-// The pictures of a window's frames by W of all channels, interleaved; each is made when it is taken. with_error: the
-// terms of their errors, too, as of still frames (reconstruct/error_estimate.h): two more solves at most. Nothing is
-// taken when cancelled.
+// Reconstructs all frames of a window by one operator and passes each image, with interleaved channels, to take(). Each
+// is made just before. `with_error` adds the terms of the error, as for single frames (reconstruct/error_estimate.h),
+// for at most two more solves. When cancelled, take() is not called.
 void reconstruct_window(const HalvedWindowSource& source, uint32_t reconstruction, float alpha, bool with_error,
                         const CancelCheck& cancel, SolveReport* report,
                         const std::function<void(int t, Reconstructed picture)>& take);

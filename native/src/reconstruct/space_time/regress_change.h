@@ -1,5 +1,5 @@
-// How the light of pixels changes along their links from a frame to the next: what was sampled of it, by regression on
-// features. Where nothing changes it is exactly 0.
+// Estimate of the change of pixels along their correspondences from one frame to the next, by regression of the sampled
+// change on features. Where nothing changes the estimate is exactly 0.
 #pragma once
 
 #include <memory>
@@ -11,18 +11,19 @@
 
 namespace gradus::reconstruct {
 
-// From one frame to the next, of components that may go different ways.
+// Change from one frame to the next. Components may have different correspondences.
 struct Change {
-  std::vector<CorrespondenceMap> correspondence;  // of each
-  std::vector<Field> difference;  // likewise, channels of the sources; of pixels without a link any number
-  Field weight;                   // 1/(estimated squared error of all differences of a pixel together)
+  std::vector<CorrespondenceMap> correspondence;  // one for each component
+  // Difference of each component, in the channels of its source; undefined for pixels without a correspondence.
+  std::vector<Field> difference;
+  Field weight;  // 1/(estimated squared error of the sum of a pixel's differences)
 };
 
 using ComponentSources = std::vector<std::unique_ptr<HalvedWindowSource>>;
 
-// From frame t on. All components go through one regression, that of their sum. pictures: of the components of the
-// frame, by which the part of the change that links to whole pixels make is known; features: the frame's, filtered;
-// scale: its median luminance.
+// Estimates the change from frame t to t + 1. All components go through the regression of their sum. `pictures` are the
+// images of the components in frame t; they show which part of the change comes from rounding correspondences to whole
+// pixels. `features` are those of the frame, filtered; `scale` is its median luminance.
 Change regress_change(const ComponentSources& components, int t, const std::vector<Field>& pictures,
                       const film::Features& features, float scale, const CancelCheck& cancel);
 

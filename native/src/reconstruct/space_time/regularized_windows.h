@@ -1,9 +1,9 @@
-// REGULARIZED over time. The picture of each frame by itself is the data, and what linked pixels change by from frame
-// to frame, by regression too, joins them along their tracks; each counts by its estimated error. What changes was
-// sampled: it shows at once.
+// REGULARIZED over several frames. The data are the images of each frame by itself. The regressed change of
+// corresponding pixels from frame to frame joins them along their tracks. Both are weighted by their estimated errors.
+// Changes are sampled, so they show without delay.
 //
-// Components go their own ways, each with its picture and its changes. All else they share: what they become where
-// their ways agree is what becomes of their sum.
+// Components may have different correspondences, and each has its own images and changes. They share all weights, so
+// that where their correspondences agree they add up to the reconstruction of their sum.
 #pragma once
 
 #include <functional>
@@ -22,35 +22,37 @@ namespace gradus::reconstruct {
 
 class RegularizedWindows {
  public:
-  // All samples of a frame, replays too, with features: asked for once, and not kept. Both throw the Error CANCELLED.
+  // Returns all samples of a frame, fresh and replayed, with features. Called once for each frame; the film is not
+  // kept. Both callbacks throw the error CANCELLED.
   using OpenFilm = std::function<std::shared_ptr<const film::Film>(int frame, const CancelCheck& cancel)>;
-  // Of each component a window of a frame and the next one, of which rows of pixels over time are read; after the frame
-  // itself.
+  // Returns, for each component, a window of a frame and the next one, of which the temporal rows of pixels are read.
+  // Called after OpenFilm for the same frame.
   using OpenDifferences = std::function<ComponentSources(int frame, const CancelCheck& cancel)>;
   RegularizedWindows(OpenFilm open, OpenDifferences differences)
       : open_(std::move(open)), differences_(std::move(differences)) {}
 
-  // Takes the pictures of a window's frames, in order, t counted from its first. Windows come in order: what two of
-  // them share is computed once. Nothing is taken when cancelled.
+  // Reconstructs the frames of a window and passes their images to take(), in order, with t counted from the window's
+  // first frame. Windows must come in order; what two of them share is computed once. When cancelled, take() is not
+  // called.
   using Take = std::function<void(int t, Reconstructed picture)>;
   void reconstruct(const FrameRange& frames, const CancelCheck& cancel, SolveReport* report, const Take& take);
 
  private:
   struct Estimate {
-    std::vector<Field> pictures;   // of the components
-    Field error;                   // of their sum
+    std::vector<Field> pictures;   // images of the components
+    Field error;                   // squared error of their sum
     Field weight;                  // 1/error
-    size_t brightest = 0;          // of the components
-    film::Features features;       // until the change is known
-    std::optional<Change> change;  // to the next frame, where that is in the same window
+    size_t brightest = 0;          // index of the brightest component
+    film::Features features;       // kept until the change is known
+    std::optional<Change> change;  // change to the next frame, if that is in the same window
   };
-  // changes: the next frame is in the window, too.
+  // Returns the estimate of a frame, made at the first call. `changes`: whether the next frame is in the window, too.
   const Estimate& estimated(int frame, bool changes, const CancelCheck& cancel, SolveReport* report);
   static Estimate estimate_single_frame(const film::Film& samples, const CancelCheck& cancel, SolveReport* report);
 
   OpenFilm open_;
   OpenDifferences differences_;
-  std::map<int, Estimate> estimates_;  // by frame
+  std::map<int, Estimate> estimates_;  // key: frame number
 };
 
 }  // namespace gradus::reconstruct

@@ -1,4 +1,5 @@
-// What is left of ways when links take them to whole pixels: by less than a pixel, and otherwise from pixel to pixel.
+// Correction of displacements that are rounded to whole pixels: the change of an image by the remaining fraction of a
+// pixel.
 #pragma once
 
 #include "reconstruct/field.h"
@@ -7,13 +8,14 @@
 
 namespace gradus::reconstruct {
 
-// By how much frame t's picture would change along the links if it did nothing but follow its ways to frame t + 1, for
-// these end beside the middles of the pixels that are linked. 0 without a link, and where all ways end in the middle.
+// Returns the change of frame t's image along the correspondences if it only moved with its film displacements, because
+// these end beside the centres of the corresponding pixels. 0 without a correspondence and where all displacements end
+// at the centres.
 Field rounding_change(const Field& picture, const CorrespondenceMap& correspondence, const HalvedWindowSource& source,
                       int t);
 
-// Takes as much of it as the sampled change shows around each pixel, by least squares: what a surface shows need not go
-// with the surface.
+// Scales the change to the share that the sampled change shows around each pixel, by least squares: what a surface
+// shows, such as a reflection, need not move with the surface.
 void keep_sampled_share(const Field& sampled, Field* rounding);
 
 }  // namespace gradus::reconstruct

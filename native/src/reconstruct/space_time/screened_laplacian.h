@@ -1,5 +1,5 @@
-// W_s + Dᵀ W_g D on one grid: what a frame's own rows make of its pixels, and what temporal and mixed rows make of the
-// differences along the links.
+// The matrix W_s + Dᵀ W_g D on one grid. A frame's own rows give such a matrix for its pixels; temporal and mixed rows
+// give one for the differences along correspondences.
 #pragma once
 
 #include <vector>
@@ -13,12 +13,12 @@ struct ScreenedLaplacian {
   int width() const { return screen.width(); }
   int height() const { return screen.height(); }
 
-  WeightPlane screen;     // W_s, but for the factor
+  WeightPlane screen;     // W_s without the factor
   WeightPlane right, up;  // W_g; 0 in the last column and row
-  float factor = 1.0f;    // of all screens
+  float factor = 1.0f;    // factor of all values of `screen`
 };
 
-// The weights that a row's pixels take part in.
+// The weights of all rows of the system that contain pixels of one image row.
 class LaplacianRow {
  public:
   explicit LaplacianRow(int width)
@@ -35,7 +35,7 @@ class LaplacianRow {
   const float* up() const { return up_.data(); }
   const float* down() const { return down_.data(); }  // `up` of the row below
 
-  // out = row of the product, of values that are readable one pixel left and right.
+  // Computes one row of the product. Values must be readable one pixel to the left and right.
   void apply(const float* below, const float* here, const float* above, float* out) const {
     const float *s = screen(), *r = right(), *u = up(), *d = down();
     for (int i = 0; i < width_; ++i) {

@@ -1,5 +1,4 @@
-// The pictures of a sequence, one after the other: a window is solved when a picture is asked for that has a share in
-// it.
+// The images of a sequence, one after another. A window is solved when an image is requested that it contributes to.
 #pragma once
 
 #include <functional>
@@ -14,19 +13,20 @@
 
 namespace gradus::reconstruct {
 
-// What makes pictures of a sequence differ.
+// Options of a sequence's reconstruction.
 struct SequenceMethod {
   uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2;  // L2, L1 or REGULARIZED
-  float alpha = 0.0f;                                  // 0: what measures best
-  bool with_error = false;                             // whether the pictures' errors, or their terms, are wanted
+  float alpha = 0.0f;                                  // 0 selects the default (chosen_alpha())
+  bool with_error = false;                             // whether to estimate errors, or their terms
   bool operator==(const SequenceMethod&) const = default;
 };
 
-// Where a sequence comes from. Its frames are of one size.
+// Input of a sequence. All frames have the same size.
 struct SequenceSource {
-  // The frames of a window, for all but REGULARIZED. Windows come in order. Throws the Error CANCELLED.
+  // Opens the frames of a window, for all reconstructions except REGULARIZED. Windows come in order. Throws the error
+  // CANCELLED.
   std::function<std::unique_ptr<HalvedWindowSource>(const FrameRange& frames, const CancelCheck& cancel)> window;
-  // For REGULARIZED.
+  // Callbacks for REGULARIZED.
   RegularizedWindows::OpenFilm frame;
   RegularizedWindows::OpenDifferences differences;
 };
@@ -37,14 +37,15 @@ class SequencePictures {
                    const SequenceMethod& method);
 
   const SequenceMethod& method() const { return method_; }
-  // There are no frames beyond this one after all.
+  // Ends the sequence after `frame`.
   void end_at(int frame) { grid_.end_at(frame); }
-  // The frames that have a share in the picture of one of them.
+  // Returns the frames that contribute to the image of `frame`.
   FrameRange around(int frame) const { return grid_.around(frame); }
-  // Whether the picture can be taken: it was not yet, nor a later one.
+  // Returns whether take(frame) is possible: neither this image nor a later one was taken.
   bool has(int frame) const;
-  // Channels interleaved. Each picture is taken once, in order, with gaps as the caller likes; the first one may be
-  // any. Empty, or the Error CANCELLED where a frame was being read: cancelled, and no picture can be taken any more.
+  // Returns the image of a frame, with interleaved channels. Each image is taken once, in ascending order; frames may
+  // be skipped, and the first one is arbitrary. When cancelled, returns an empty image, or throws the error CANCELLED
+  // if a frame was being read; after that no image can be taken.
   Reconstructed take(int frame, const CancelCheck& cancel, SolveReport* report);
 
  private:

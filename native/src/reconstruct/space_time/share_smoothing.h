@@ -1,8 +1,7 @@
-// Smooths along every pixel's track as shares s of the light l around it, so that what fades with a light goes out with
-// it:
+// Smooths values v along every pixel's track, as shares s of the light l around it, so that values fade with the light:
 //   v → l s,   s = argmin Σ α² (v − l s)²/l + Σ c (s(φ(i), t+1) − s(i, t))²,
-// c the lesser of the two lights, times the square of the ratio by which a channel changes most: of a light that goes
-// off, or is another's colour, the shares are others. Linear, and sums along tracks stay.
+// where c is the smaller of the two lights, times the square of the ratio by which a channel changes most: when a light
+// is switched off or changes colour, the shares change. The operation is linear and preserves sums along tracks.
 #pragma once
 
 #include "reconstruct/space_time/system.h"
@@ -11,12 +10,13 @@ namespace gradus::reconstruct {
 
 class ShareSmoothing {
  public:
-  // The next frame's light, by channels, and the links that lead to it; those of the first frame are not read.
+  // Adds the light of the next frame, by channels, and the pixel correspondences that lead to it. Those of the first
+  // frame are not read.
   void add_frame(Field light, const CorrespondenceMap* correspondence);
   void apply(const SpaceTimeSystem& system, float data_weight, Frames* values) const;
 
  private:
-  Field last_;  // light of the last frame
+  Field last_;  // light of the frame that was added last
   std::vector<WeightPlane> lights_, couplings_;
 };
 

@@ -1,7 +1,8 @@
-// The normal equations of a window. Rows along the links are differences d of linked pixels, and what their weights
-// make of d is a screened Laplacian K on the first frame's grid. So A = AᵀWA is block tridiagonal:
+// Normal equations of a window. Temporal and mixed rows contain only differences d of corresponding pixels, and their
+// weights form a screened Laplacian K on the first frame's grid. So the matrix A of the normal equations is block
+// tridiagonal:
 //   xᵀA x = Σ_t x_tᵀ B_t x_t + Σ_t d_tᵀ K_t d_t,   d_t = F_t x_{t+1} − x_t,
-// with F_t reading frame t + 1 along the links.
+// where F_t reads frame t + 1 at the corresponding pixels.
 #pragma once
 
 #include <vector>
@@ -18,7 +19,7 @@ using Frames = std::vector<Field>;
 
 class SpaceTimeSystem {
  public:
-  // All weights 0, but the links are there.
+  // Reads the correspondences of a window; all weights are 0.
   explicit SpaceTimeSystem(const WindowSource& source);
 
   int width() const { return frames_.front().width(); }
@@ -28,19 +29,20 @@ class SpaceTimeSystem {
 
   ScreenedLaplacian& frame(int t) { return frames_[size_t(t)]; }
   const ScreenedLaplacian& frame(int t) const { return frames_[size_t(t)]; }
-  // From frame t to the next.
+  // Returns K_t, which couples frame t with the next.
   ScreenedLaplacian& coupling(int t) { return couplings_[size_t(t)]; }
   const ScreenedLaplacian& coupling(int t) const { return couplings_[size_t(t)]; }
   const CorrespondenceMap& correspondence(int t) const { return correspondence_[size_t(t)]; }
 
-  // The plane that holds the weights of a kind of rows.
+  // Returns the plane that holds the weights of a kind of rows.
   WeightPlane& weights(RowKind kind, int t);
-  // Writes weights of a row; those of rows that the system has not become 0.
+  // Sets the weights of an image row. Values of rows that the system does not have are set to 0, in `values`, too.
   void set_weights(RowKind kind, int t, int y, float* values);
 
-  // out = A x; returns xᵀA x.
+  // Computes out = A x and returns xᵀA x.
   Sums multiply(const Frames& x, Frames* out) const;
-  // out = Aᵀ W b, b the values of the rows: channels [first, first + channels of out).
+  // Computes the right side of the normal equations from the values of the rows, for as many channels as `out` has,
+  // from `first_channel` on.
   void right_side(const WindowSource& source, int first_channel, Frames* out) const;
 
  private:

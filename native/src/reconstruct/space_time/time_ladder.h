@@ -1,15 +1,15 @@
-// The preconditioner of a window's system: A ≈ (S + C) S⁻¹ (S + Cᵀ), block elimination from the first frame to the
-// last, with one multigrid cycle per frame for S⁻¹.
+// Preconditioner of a window's system: A ≈ (S + C) S⁻¹ (S + Cᵀ), block elimination from the first frame to the last,
+// with one multigrid cycle per frame for S⁻¹.
 //
-// Eliminating frame t leaves of its matrix B and the coupling K to the next frame their parallel sum B − B (B + K)⁻¹ B,
-// carried along the links: conductances in series (Anderson and Duffin 1969). Of two screened Laplacians that is nearly
-// a screened Laplacian again, whose screens and edges are the parallel sums ab/(a + b) of theirs: exact for what is
-// smooth and for what is rough, and otherwise less than the true one by up to 3 % where all weights are alike. So every
-// pixel and every edge is a ladder of its own along its track.
+// Elimination of frame t leaves the parallel sum B − B (B + K)⁻¹ B of its matrix B and the coupling K to the next
+// frame, carried along the correspondences, like conductances in series (Anderson and Duffin 1969). For two screened
+// Laplacians that is nearly a screened Laplacian again, whose screens and edges are the parallel sums ab/(a + b) of
+// theirs. It is exact for very low and very high frequencies; between these it is up to 3 % too small where all weights
+// are alike. So every pixel and every edge is a ladder network of its own along its track.
 //
-// The cycle V is not quite S⁻¹. Where the coupling is far stronger than all else, what it misses would be, too. So a
-// frame takes over a share Θ of what the next one has, and its cycle finds the rest: S⁻¹K ≈ Θ + V(K − SΘ), which is
-// exact for any Θ if V is. The way forth has the transpose.
+// The cycle V is not exactly S⁻¹. Where the coupling is far stronger than all else, the error would be as large. So a
+// frame takes a share Θ of the next frame's values, and its cycle finds the remainder: S⁻¹K ≈ Θ + V(K − SΘ), which is
+// exact for any Θ if V is. The forward elimination uses the transpose.
 #pragma once
 
 #include <memory>
@@ -22,9 +22,9 @@ namespace gradus::reconstruct {
 class TimeLadder {
  public:
   TimeLadder(const SpaceTimeSystem& system, int channels);
-  // After the system's weights have changed.
+  // Must be called after the system's weights have changed.
   void update();
-  // z ≈ A⁻¹ r; returns r·z by frame, from the last to the first. Symmetric and positive definite.
+  // Computes z ≈ A⁻¹ r and returns r·z for each frame, from the last to the first. Symmetric and positive definite.
   std::vector<RowSums> apply(const Frames& r, Frames* z);
 
  private:
@@ -33,9 +33,9 @@ class TimeLadder {
   void add_guess(int t, const Field& next, Field* z) const;
 
   const SpaceTimeSystem& system_;
-  std::vector<Multigrid> schur_;      // of B_t + K_t, B_t with what earlier frames leave
+  std::vector<Multigrid> schur_;      // B_t + K_t, where B_t includes the remainders of earlier frames
   std::vector<WeightPlane> guesses_;  // Θ
-  Field solved_;                      // of one frame
+  Field solved_;                      // work space for one frame
 };
 
 }  // namespace gradus::reconstruct

@@ -1,4 +1,4 @@
-// Values of a kind of rows as they are used: some channels, one after another.
+// Reads the values of one kind of rows: some of the channels, one after another.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ class ValueRow {
         values_(size_t(size.width) * size_t(channels)),
         read_(size_t(size.width) * size_t(size.channels)) {}
 
-  // Rows beyond the border are 0.
+  // Loads row y of frame t. Rows below the image are 0.
   void load(const WindowSource& source, RowKind kind, int t, int y) {
     if (y < 0) return static_cast<void>(std::fill(values_.begin(), values_.end(), 0.0f));
     source.read_row(kind, t, y, read_.data());
@@ -27,7 +27,7 @@ class ValueRow {
       for (size_t x = 0; x < w; ++x, from += stride) values_[c * w + x] = *from;
     }
   }
-  // For sums in which what is missing has weight 0: any number would do.
+  // Replaces missing values by 0, for sums in which they have weight 0.
   void replace_missing() {
     for (float& v : values_) v = is_finite(v) ? v : 0.0f;
   }

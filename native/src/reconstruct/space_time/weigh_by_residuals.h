@@ -1,11 +1,11 @@
-// Weights of one step of iteratively reweighted least squares over a window, as of a single frame (l1_weights.h).
+// Weights for one step of iteratively reweighted least squares over a window, as for a single frame (l1_weights.h).
 #pragma once
 
 #include "reconstruct/space_time/system.h"
 
 namespace gradus::reconstruct {
 
-// From the residuals at x, whose channels share them.
+// Sets the weights from the residuals at x, whose channels share them. See reweight() for the arguments.
 void weigh_by_residuals(const WindowSource& source, const Frames& x, float alpha, float scale, float floor,
                         SpaceTimeSystem* system);
 

@@ -1,5 +1,6 @@
-// Weights of a kind of rows, one per pixel, in 16 bits: a float without the lower half of its bits (bfloat16). What is
-// kept is the weight, to 0.4 %, and the system is solved for it as it is; 0 and 1 are exact.
+// Weights of a kind of rows, one per pixel, in 16 bits: a float without the lower half of its bits (bfloat16). The
+// error of 0.4 % does not affect the solution's accuracy, because the rounded weights define the system; 0 and 1 are
+// exact.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +24,7 @@ class WeightPlane {
     uint16_t* to = values_.data() + size_t(y) * size_t(width_);
     for (int x = 0; x < width_; ++x) to[x] = uint16_t((std::bit_cast<uint32_t>(from[x]) + 0x8000u) >> 16);
   }
-  // Rows beyond the border are 0.
+  // Reads row y. Rows beyond the border are 0.
   void read_row(int y, float* to) const {
     if (y < 0 || y >= height_) return static_cast<void>(std::fill_n(to, width_, 0.0f));
     const uint16_t* from = values_.data() + size_t(y) * size_t(width_);
@@ -35,7 +36,7 @@ class WeightPlane {
   std::vector<uint16_t> values_;
 };
 
-// Of the field's first channel.
+// Returns the first channel of a field as weights.
 inline WeightPlane to_plane(const Field& field) {
   WeightPlane plane(field.width(), field.height());
   for_rows(field.height(), [&](int y) { plane.write_row(y, field.row(y)); });

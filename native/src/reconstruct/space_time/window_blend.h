@@ -1,4 +1,4 @@
-// Pictures of windows become one sequence, with no more kept than what the next window overlaps.
+// Blends the images of overlapping windows to one sequence. Keeps only the frames that the next window overlaps.
 #pragma once
 
 #include <functional>
@@ -12,21 +12,21 @@ namespace gradus::reconstruct {
 
 class WindowBlend {
  public:
-  // Takes a frame's picture when all windows have added to it; frames come in order.
+  // Receives a frame's image once all windows have contributed to it. Frames come in order.
   using Take = std::function<void(int frame, Reconstructed picture)>;
   WindowBlend(const WindowGrid& grid, Take take) : grid_(grid), take_(std::move(take)) {}
 
-  // Windows in order, and their frames in order. An error of two that are blended is taken as that of their blend: it
-  // is no larger.
+  // Adds the image of a frame by one window. Windows come in order, and so do their frames. The blended error of two
+  // images stands for the error of their blend, which is at most that large.
   void add(int window, int frame, Reconstructed picture);
 
-  // Whether a window has added to the frame, and others will.
+  // Returns whether some, but not all, windows have contributed to the frame.
   bool has_begun(int frame) const { return begun_.count(frame) > 0; }
 
  private:
   WindowGrid grid_;
   Take take_;
-  std::map<int, Reconstructed> begun_;  // sums, by frame
+  std::map<int, Reconstructed> begun_;  // weighted sums; key: frame number
 };
 
 }  // namespace gradus::reconstruct

@@ -1,4 +1,5 @@
-// Windows on a fixed grid of frame numbers, such as [5k, 5k + 9], and how their pictures become one (contract 4.1).
+// Windows on a fixed grid of frame numbers, such as [5k, 5k + 9], which does not depend on the job, and the weights by
+// which their images are blended.
 #pragma once
 
 #include <algorithm>
@@ -6,39 +7,39 @@
 
 namespace gradus::reconstruct {
 
-// Frames of a window, and those that it shares with the next one: half of them at most.
+// Number of frames of a window, and of those that it shares with the next one: at most half.
 struct WindowShape {
   int frames = 10, overlap = 5;
   int step() const { return frames - overlap; }
   bool operator==(const WindowShape&) const = default;
 };
 
-// First and last.
+// The frames from `first` to `last`, both included.
 struct FrameRange {
   int first = 0, last = 0;
   int count() const { return last - first + 1; }
   bool contains(int frame) const { return frame >= first && frame <= last; }
 };
 
-// The windows of a range of frames: its ends shrink them, and one that another then contains is left out.
+// The windows of a range of frames. Windows are shortened at the ends of the range; one that another then contains is
+// left out.
 class WindowGrid {
  public:
-  // Throws invalid_argument for a range that ends before it begins, and for windows that share more than half of their
-  // frames.
+  // Throws `invalid_argument` if the range ends before it begins or windows share more than half of their frames.
   explicit WindowGrid(const FrameRange& range, const WindowShape& shape = {});
   int first() const { return first_; }
   int last() const { return last_; }
   FrameRange frames(int window) const;
-  // The windows that hold a frame of the range.
+  // Returns the first or last window that contains a frame of the range.
   int first_with(int frame) const;
   int last_with(int frame) const;
-  // The frames of these windows.
+  // Returns all frames of the windows that contain `frame`.
   FrameRange around(int frame) const { return {frames(first_with(frame)).first, frames(last_with(frame)).last}; }
   bool contains(int frame) const { return range_.contains(frame); }
-  // Share of a window in a frame's picture: a Hann window over what two of them share, where they add up to 1. 1 where
-  // there is no other.
+  // Returns the share of a window in a frame's image: a Hann window over the frames that two windows share, where the
+  // shares add up to 1; 1 where there is no other window.
   float share(int window, int frame) const;
-  // There are no frames beyond this one after all: windows that are still to come end there. Shares stay as they were.
+  // Ends the range after `frame`: later windows end there. Shares are unchanged.
   void end_at(int frame) { range_.last = std::min(range_.last, frame); }
 
  private:

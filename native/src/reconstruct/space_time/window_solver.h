@@ -1,6 +1,6 @@
 // Space-time screened Poisson reconstruction of a window (Manzi et al. 2016, "Temporal gradient-domain path tracing",
-// eq. 3): pixels, their differences in space, along the links from frame to frame, and mixed ones. The system lies in
-// system.h, its solver in time_ladder.h.
+// eq. 3), from pixels, their differences in space, their differences along correspondences from frame to frame, and
+// mixed ones. The system is in system.h, its preconditioner in time_ladder.h.
 #pragma once
 
 #include <memory>
@@ -11,21 +11,22 @@
 
 namespace gradus::reconstruct {
 
-// A frozen linear operator W: weights and links come from one source, and every other plane of these frames goes
-// through the same ones (contract 3.4). L2: minimises α²‖x−I‖² + Σ‖Hx−g‖² over all kinds of differences; unbiased. L1:
-// as of single frames, with rows of all kinds; consistent. Solutions are exact to a residual of 1e-5 of the right side.
+// A frozen linear operator W: weights and correspondences come from one source, and all other planes of these frames go
+// through the same ones. L2 minimises α²‖x−I‖² + Σ‖Hx−g‖² over all kinds of differences and is unbiased. L1 works as
+// for single frames, with rows of all kinds, and is consistent. Solutions are exact to a residual of 1e-5 of the right
+// side.
 class WindowSolver {
  public:
-  // reconstruction: L2 or L1, whose weights come from the first three channels of `source`. alpha 0: what measures best
-  // (chosen_alpha()).
+  // `reconstruction` is L2 or L1; the weights come from the first three channels of `source`. `alpha` 0 selects the
+  // default (chosen_alpha()).
   WindowSolver(const WindowSource& source, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
                SolveReport* report);
 
-  // The channels that the constructor has solved for, the first three at most, by frames.
+  // Returns the solution of the constructor, at most the first three channels, for each frame.
   const Frames& solution() const { return solution_; }
   Frames take_solution() { return std::move(solution_); }
 
-  // x = W(planes) for some channels, three at most, of a source with the same frames.
+  // Returns x = W(planes) for at most three channels of a source with the same frames.
   Frames apply(const WindowSource& planes, int first_channel, int channels, const CancelCheck& cancel,
                SolveReport* report) const;
 
@@ -35,7 +36,7 @@ class WindowSolver {
   Frames minimise_l1(const WindowSource& source, float alpha, const CancelCheck& cancel, SolveReport* report);
 
   SpaceTimeSystem system_;
-  std::unique_ptr<const WindowTwicing> twicing_;  // of L1
+  std::unique_ptr<const WindowTwicing> twicing_;  // only for L1
   Frames solution_;
 };
 

@@ -1,5 +1,5 @@
-// What a space-time reconstruction reads: rows of a window's frames, each as often as it is needed, so that inputs need
-// not be resident.
+// Input of a space-time reconstruction: rows of a window's frames, read as often as needed, so that inputs need not be
+// in memory.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,11 @@
 
 namespace gradus::reconstruct {
 
-// Kinds of rows of the system. The last three belong to a frame and the next one, along the links φ between them: of
-// pixel i of frame t, with D to the right or up,
+// Kinds of rows of the system. The last three belong to a frame and the next one, along the pixel correspondence φ
+// between them. For pixel i of frame t, with D a difference to the right (Dx) or upwards (Dy):
 //   dt    x(φ(i), t+1) − x(i, t)
-//   dxdt  Dx x(φ(i), t+1) − Dx x(i, t), and dydt likewise with Dy.
+//   dxdt  Dx x(φ(i), t+1) − Dx x(i, t)
+//   dydt  Dy x(φ(i), t+1) − Dy x(i, t)
 enum class RowKind { kPrimal, kDx, kDy, kDt, kDxDt, kDyDt };
 inline constexpr RowKind kRowKinds[] = {RowKind::kPrimal, RowKind::kDx,   RowKind::kDy,
                                         RowKind::kDt,     RowKind::kDxDt, RowKind::kDyDt};
@@ -25,22 +26,23 @@ class WindowSource {
  public:
   virtual ~WindowSource() = default;
   virtual WindowSize size() const = 0;
-  // Row y of frame t, channels interleaved. A value that is not finite is missing: its row is left out of the system.
-  // So are differences beyond the border, temporal rows without a link, and mixed ones between pixels that do not stay
-  // neighbours; whatever is read for these. Temporal rows are read of all frames but the last. Called from several
-  // threads.
+  // Reads row y of frame t, with interleaved channels. A value that is not finite is missing, and its row is left out
+  // of the system. Differences beyond the border, temporal rows without a correspondence, and mixed rows between pixels
+  // that do not remain neighbours are left out, too, whatever is read for them. Temporal rows are read for all frames
+  // except the last. Called from several threads.
   virtual void read_row(RowKind kind, int t, int y, float* out) const = 0;
-  // The pixels of frame t + 1 that those of row y of frame t are linked to, as y·width + x, or kNoCorrespondence.
+  // Reads the pixels of frame t + 1 that correspond to those of row y of frame t, as y·width + x, or kNoCorrespondence.
   // One-to-one.
   virtual void read_correspondence(int t, int y, int32_t* out) const = 0;
 };
 
-// With the noise of every channel.
+// A window source with half-buffers, from which the noise of every channel is known.
 class HalvedWindowSource : public WindowSource {
  public:
-  // (A − B)/2 of the two halves of what read_row() gives.
+  // Reads (A − B)/2 of the two half-buffers of read_row()'s values.
   virtual void read_half_differences(RowKind kind, int t, int y, float* out) const = 0;
-  // Where ways to linked pixels end, from the middle of these (PixelCorrespondence::off_centre). By default there.
+  // Reads where film displacements end, relative to the centres of the corresponding pixels
+  // (PixelCorrespondence::off_centre). By default at the centres.
   virtual void read_off_centre(int t, int y, Vec2* out) const;
 };
 

@@ -1,7 +1,7 @@
-// Twicing over a window (twicing.h): x = x₀ + S W (I − x₀) gives back what an estimate x₀ lost of the noisy images I. S
-// smooths in every frame as the L2 solver does, and then along the tracks, so that what it gives back does not flicker:
-// as a share of the light there, for bright frames have lost more than dark ones. W limits outliers of the residual, by
-// squares.
+// Twicing over a window (twicing.h): x = x₀ + S W (I − x₀) restores what an estimate x₀ lost of the noisy images I. S
+// smooths in every frame as the L2 solver does, then along the tracks, so that the restored light does not flicker. It
+// smooths shares of the light at each pixel, because bright frames have lost more than dark ones. W limits outliers of
+// the residual in blocks.
 #pragma once
 
 #include "reconstruct/poisson_dct.h"
@@ -11,13 +11,13 @@ namespace gradus::reconstruct {
 
 class WindowTwicing {
  public:
-  // Estimates W from the first channels of `source`, as many as x₀ has, and freezes it.
+  // Estimates W from the first channels of `source`, as many as x₀ (`estimate`) has, and freezes it.
   WindowTwicing(const WindowSource& source, const Frames& estimate, const SpaceTimeSystem& system, float alpha);
-  // x₀ → x for channels of `planes` from first_channel on.
+  // Replaces x₀ by x for the channels of `planes` from `first_channel` on.
   void apply(const WindowSource& planes, int first_channel, const SpaceTimeSystem& system, Frames* x) const;
 
  private:
-  // The L2 solver's part in S, of what fill(y, row) writes into rows of all channels, one after another.
+  // Applies the L2 solver in S to one frame. fill(y, row) writes rows of all channels, one after another.
   Field smooth_frame(int channels, const PoissonDct::FillRow& fill) const;
 
   std::vector<WeightPlane> kept_;  // W; 0 where I is not finite
