@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "integrator/pixel_loop.h"
-#include "motion/component_correspondence.h"
 #include "motion/component_tracking.h"
 #include "motion/pixel_matching.h"
 #include "render/component_replay.h"
