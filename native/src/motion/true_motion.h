@@ -9,13 +9,13 @@
 
 namespace gradus::motion {
 
-// Returns the angle in radians between the last ray of the chain from a film position and the line to the target; a huge
-// value if there is no chain.
+// Returns the angle in radians between the last ray of the chain from a film position and the line to the target; a
+// huge value if there is no chain.
 double angle_to(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target,
                 const glm::dvec2& film);
 
-// Returns the film position within `reach` pixels of `around` that shows the target best. It searches a grid, then finer
-// grids around the best position until their step is `finest` pixels.
+// Returns the film position within `reach` pixels of `around` that shows the target best. It searches a grid, then
+// finer grids around the best position until their step is `finest` pixels.
 glm::dvec2 brute_force(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target,
                        const glm::dvec2& around, double reach, double finest);
 
