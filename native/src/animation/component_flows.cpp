@@ -10,10 +10,10 @@
 namespace gradus::animation {
 namespace {
 
-// What surfaces, or what is seen through them, do towards one side.
+// Motion of a component towards the previous or the next frame, found by following surfaces and specular chains.
 struct KnownMotion {
-  std::vector<Vec2> vectors;
-  std::vector<float> tracked;
+  std::vector<Vec2> vectors;   // to the other frame, in pixels, for each delivered pixel
+  std::vector<float> tracked;  // kTracked or a negative cause (motion/tracking.h)
 };
 
 KnownMotion known_motion(const DevelopedFrame& developed, size_t component, Side side) {
@@ -28,7 +28,8 @@ KnownMotion known_motion(const DevelopedFrame& developed, size_t component, Side
   return known;
 }
 
-// Without the film's exposure, which may change from frame to frame.
+// Returns the radiance or irradiance on which the flow is estimated. The film's exposure is divided out, because it may
+// change from frame to frame.
 std::vector<Rgb> light_of(const DevelopedFrame& developed, const FlowKind& kind) {
   const Region& region = developed.delivered();
   const uint32_t pass =
@@ -45,6 +46,7 @@ std::vector<Rgb> light_of(const DevelopedFrame& developed, const FlowKind& kind)
   return light;
 }
 
+// Owns what optical flow reads of one component of one frame.
 class FlowInput {
  public:
   FlowInput(const DevelopedFrame& developed, const FlowKind& kind, Side side)
@@ -67,7 +69,7 @@ class FlowInput {
   std::vector<float> depth_;
 };
 
-// The end of the list: it has none.
+// Returns the index in @p kinds of the flow of a component in a domain, or the size of @p kinds if there is none.
 size_t place_of(const std::vector<FlowKind>& kinds, const DevelopedFrame& developed, const std::string& component,
                 motion::FlowDomain domain) {
   const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const FlowKind& kind) {

@@ -1,4 +1,5 @@
-// A frame of a sequence as it is delivered, but for what is made of several frames.
+// A frame of a sequence with its delivered picture and passes, except for the passes by optical flow, which need
+// several frames.
 #pragma once
 
 #include <memory>
@@ -10,7 +11,8 @@
 
 namespace gradus::animation {
 
-// What its picture is made by; never AUTO but for the denoiser of a frame that was sampled elsewhere.
+// Options that turn the samples of a frame into its picture. None is AUTO, except for the denoiser of a frame that
+// another process sampled.
 struct Delivery {
   uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2;
   float reconstruction_alpha = 0.0f;
@@ -23,11 +25,12 @@ struct DevelopedFrame {
   int32_t number = 0;
   Delivery by;
   FrameRecord record;
-  std::shared_ptr<film::Film> film;            // all of its samples
-  std::vector<float> combined, error;          // of the region: RGBA, and pass Error where it is asked for
-  std::vector<std::vector<float>> components;  // RGB of each, where some pass or flow is made of it
+  std::shared_ptr<film::Film> film;            // fresh and replayed samples, merged
+  std::vector<float> combined, error;          // RGBA of the delivered region; pass Error, empty if not requested
+  std::vector<std::vector<float>> components;  // RGB of each component; empty if no pass or flow reads them
   output::LightPasses light;
-  std::vector<float> difference, link;  // to the next frame; three values per pixel of the region
+  // Passes Gradient T and Gradient T Link, towards the next frame: three values for each pixel of the region.
+  std::vector<float> difference, link;
 
   const Region& delivered() const { return record.plan.delivered; }
 };

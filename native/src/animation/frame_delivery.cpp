@@ -16,6 +16,7 @@ namespace {
 
 constexpr const char* kNotDelivered = "the frame was not delivered: ";
 
+// Whether some pass of the frame needs optical flow, and its film knows which points its components show.
 bool has_flow(const DevelopedFrame& developed) {
   return schema::needs_flow(developed.film->settings) && !developed.film->components[0].shown.empty();
 }
@@ -24,8 +25,8 @@ bool can_flow(const DevelopedFrame& from, const DevelopedFrame& to) {
   return has_flow(from) && has_flow(to) && from.delivered() == to.delivered();
 }
 
-// A frame as another one is changed. Numbers may have keys: those that the other is asked for as it was sampled for are
-// its own.
+// Applies to the settings of `frame` the changes that `changed` makes to the settings of another frame, `other`.
+// Numbers may be animated: a number that is unchanged in the other frame keeps the value of `frame`.
 GradusSettings as_changed(GradusSettings frame, const GradusSettings& other, const GradusSettings& changed) {
   frame.reconstruction = changed.reconstruction;
   frame.denoiser = changed.denoiser;
@@ -35,9 +36,9 @@ GradusSettings as_changed(GradusSettings frame, const GradusSettings& other, con
   return frame;
 }
 
-// Where a flow was not to be had although it should lead there.
-motion::Tracking or_no_neighbour(motion::Tracking leads) {
-  return leads == motion::Tracking::Tracked ? motion::Tracking::NoNeighbour : leads;
+// Returns the cause to report where a flow is missing: NoNeighbour if nothing else forbids the flow.
+motion::Tracking or_no_neighbour(motion::Tracking expected) {
+  return expected == motion::Tracking::Tracked ? motion::Tracking::NoNeighbour : expected;
 }
 
 }  // namespace
@@ -68,7 +69,7 @@ std::shared_ptr<const DevelopedFrame> FrameDelivery::make() {
   if (!is_developed) {
     sequence_->back_.clear();
     if (leads_to(sequence_->place_of(number_)) == motion::Tracking::Tracked)
-      previous = develop_neighbour(number_ - 1);  // first: pictures are taken in order
+      previous = develop_neighbour(number_ - 1);  // before this frame, because pictures are solved in order
     own = developer.load();
   }
   {
@@ -85,7 +86,7 @@ GradusSettings FrameDelivery::sampled_settings(int32_t number) const {
 }
 
 std::shared_ptr<DevelopedFrame> FrameDelivery::develop_neighbour(int32_t number) const {
-  std::optional<GradusSettings> requested;  // nothing: what the folder knows
+  std::optional<GradusSettings> requested;  // without a value: the settings that the folder holds
   if (changed_) requested = as_changed(sampled_settings(number), sampled_settings(number_), *changed_);
   FrameDeveloper developer(sequence_.get(), number, requested, cancel_);
   std::shared_ptr<DevelopedFrame> developed = developer.load();
@@ -165,7 +166,7 @@ void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
   }
   if (frame.light.read(pass, pixels)) return;
   const Region& region = frame.delivered();
-  if (pass == GRADUS_PASS_ERROR) {  // it was cancelled: nothing is known of the picture
+  if (pass == GRADUS_PASS_ERROR) {  // empty after a cancelled delivery: the error is not known
     std::fill_n(pixels, size_t(region.area()), 0.0f);
     return;
   }

@@ -1,4 +1,5 @@
-// Delivers a frame of a sequence: as it is made, and with what flow tells of it and the frames beside it.
+// Task that delivers a frame of a sequence: it develops the picture and its passes, and estimates optical flow to the
+// neighbouring frames where a pass needs it.
 #pragma once
 
 #include <memory>
@@ -12,6 +13,7 @@ namespace gradus::animation {
 
 class FrameDelivery final : public render::RenderTask {
  public:
+  // settings: options that replace those with which the frame was sampled (see Sequence::deliver()), or nullptr.
   FrameDelivery(std::shared_ptr<Sequence> sequence, int32_t frame, const GradusSettings* settings);
 
   const Region& delivered() const override;
@@ -24,20 +26,21 @@ class FrameDelivery final : public render::RenderTask {
   void render() override;
   uint64_t memory_bytes() const override;
 
-  // The frame before it, where flow needs it.
+  // Develops the frame. Returns the frame before it if that had to be developed for flow, otherwise nullptr.
   std::shared_ptr<const DevelopedFrame> make();
-  // What a frame was sampled for.
+  // Returns the settings with which a frame was sampled.
   GradusSettings sampled_settings(int32_t number) const;
   std::shared_ptr<DevelopedFrame> develop_neighbour(int32_t number) const;
-  // Whether flow leads from the frame before `place` to that; if not, why.
+  // Returns Tracked if flow can be estimated between the frame at `place` and the one before, otherwise the cause.
   motion::Tracking leads_to(int place);
-  // Of components. What is made ahead is billed to the frame that it is for.
+  // Estimates the flow of components. The time spent on developing the next frame is counted in that frame's stats.
   void find_flow(const DevelopedFrame* previous, double* seconds_ahead, double* cpu_ahead);
   void join(const DevelopedFrame* previous, motion::Tracking leads_here, std::shared_ptr<DevelopedFrame> next,
             motion::Tracking leads_on);
-  // False: there is none.
+  // Reads a component pass from flow. Returns false if the component has no such flow.
   bool read_flow(size_t component, uint32_t pass, float* pixels) const;
-  // Returns the frame, which does not change after the end: readers do not keep the lock, which progress() takes.
+  // Returns the frame, which does not change after the end of the task. Readers do not keep the lock, because
+  // progress() takes it.
   std::shared_ptr<const DevelopedFrame> developed(const char* what) const;
 
   const std::shared_ptr<Sequence> sequence_;
@@ -46,7 +49,7 @@ class FrameDelivery final : public render::RenderTask {
   const CancelCheck cancel_ = [this] { return is_stopped(); };
   std::shared_ptr<DevelopedFrame> developed_;
   std::vector<FlowPass> flows_;
-  std::vector<std::string> warnings_;  // of looking for flow
+  std::vector<std::string> warnings_;  // from loading the flow library
 };
 
 }  // namespace gradus::animation

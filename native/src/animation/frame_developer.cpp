@@ -17,7 +17,7 @@
 namespace gradus::animation {
 namespace {
 
-// Of a frame that was sampled by another process, or in another session.
+// Reconstructs the plan of a frame that another process or another session sampled.
 render::Plan plan_of(const film::Film& film) {
   render::Plan plan;
   plan.integrator = film.settings.integrator;
@@ -32,7 +32,8 @@ render::Plan plan_of(const film::Film& film) {
   return plan;
 }
 
-// Names of components, those that share what they are reconstructed by.
+// Returns groups of names of components that are reconstructed with the same weights: all of them by REGULARIZED, each
+// one alone by other methods.
 std::vector<std::vector<std::string>> reconstructed_together(const film::Film& film, uint32_t reconstruction) {
   std::vector<std::vector<std::string>> groups;
   for (const film::ComponentPlanes& planes : film.components) {
@@ -104,8 +105,8 @@ bool FrameDeveloper::would_develop(const DevelopedFrame& developed) const {
          delivery(developed.record, sequence_.records_.count(number_) > 0, *developed.film) == developed.by;
 }
 
-// AUTO is what the plan has come to. Of a frame that was sampled elsewhere it is what that was sampled for, and a
-// denoiser where it pays.
+// AUTO becomes what the plan has chosen. For a frame that another process sampled it becomes the reconstruction with
+// which that was sampled, and a denoiser if the number of samples makes one worthwhile.
 Delivery FrameDeveloper::delivery(const FrameRecord& record, bool is_planned, const film::Film& film) const {
   const GradusSettings& own = film.settings;
   if (!requested_) return {own.reconstruction, own.reconstruction_alpha, own.denoiser, own.film_exposure};
@@ -156,7 +157,7 @@ void FrameDeveloper::reconstruct(DevelopedFrame* developed) {
       reconstruct::add_image(std::move(part.terms.apart), &picture.terms.apart);
     }
   } catch (...) {
-    sequence_.pictures_.clear();  // a window that was not solved has left no share in its frames
+    sequence_.pictures_.clear();  // its frames lack the share of the window that was not solved
     throw;
   }
   sequence_.retain_pictures(groups);

@@ -1,4 +1,5 @@
-// Makes a frame of a sequence: its picture from the windows that hold it, its passes from all of its samples.
+// Develops a frame of a sequence: its picture comes from the space-time windows that contain the frame, its passes from
+// all of its samples, fresh and replayed.
 #pragma once
 
 #include <optional>
@@ -13,16 +14,17 @@ namespace gradus::animation {
 
 class FrameDeveloper {
  public:
-  // asked: what it is made of otherwise than it was sampled for, and the number of threads that make it; nothing: what
-  // the folder knows. All that is given lives as long as it.
+  // requested: options that replace those with which the frame was sampled, and the number of threads; without a value
+  // the settings that the folder holds are used. The sequence and `is_cancelled` must outlive the developer.
   FrameDeveloper(Sequence* sequence, int32_t number, const std::optional<GradusSettings>& requested,
                  const CancelCheck& is_cancelled);
 
-  // In this order. Both throw the Error CANCELLED.
+  // Loads the samples of the frame. Throws Error CANCELLED, and invalid_argument for files that do not fit.
   std::shared_ptr<DevelopedFrame> load();
+  // Reconstructs, denoises and splits the picture of a frame that load() returned. Throws Error CANCELLED.
   void develop_picture(DevelopedFrame* developed);
 
-  // Whether it would be made the same way.
+  // Whether `developed` is the same frame, developed with the same options.
   bool would_develop(const DevelopedFrame& developed) const;
 
  private:
@@ -31,9 +33,9 @@ class FrameDeveloper {
   Delivery delivery(const FrameRecord& record, bool is_planned, const film::Film& film) const;
   void reconstruct(DevelopedFrame* developed);
   void denoise(DevelopedFrame* developed);
-  // Light passes follow what the picture has become.
+  // Scales the light passes so that they add up to the reconstructed and denoised picture.
   void split_light(DevelopedFrame* developed);
-  // Passes Gradient T and Gradient T Link, of the frame's own half.
+  // Computes the passes Gradient T and Gradient T Link from the fresh samples of the frame.
   void read_differences_over_time(const film::Film& fresh, DevelopedFrame* developed);
 
   Sequence& sequence_;

@@ -1,4 +1,4 @@
-// What a sequence remembers of its frames, besides their files.
+// What a sequence keeps in memory of its frames, besides their files.
 #pragma once
 
 #include <cstdint>
@@ -13,46 +13,47 @@
 
 namespace gradus::animation {
 
-// What frames must have in common to share a window, and whom a frame follows.
+// Properties that frames must have in common to share a window, and those that identify the frame that is replayed.
 struct FrameTraits {
   Region region;  // with its guard ring
   int channels = 0;
   bool gradients = false, features = false;
   GradusSettings settings{};
-  int32_t stream = 0, replayed_stream = 0;     // whose random numbers its own half has taken, and whose the other has
-  uint64_t scene_key = 0, replayed_scene = 0;  // 0: not known
+  int32_t stream = 0, replayed_stream = 0;     // frames whose random numbers the fresh and the replayed samples use
+  uint64_t scene_key = 0, replayed_scene = 0;  // keys of the scenes of this and of the replayed frame; 0: not known
   uint32_t replayed_seed = 0;
 };
-// base, offset: its own half, and the one that replays the frame before.
+// Collects the traits of a frame from the headers of its fresh and its replayed samples.
 FrameTraits traits_of(const film::FilmHeader& fresh, const film::FilmHeader& replayed);
-// Whether `frame` follows another scene than `before` shows, or other samples of it: one of the two was stored before
-// the scene or the seed was changed.
+// Whether the samples of `frame` replay another scene or another seed than those of `before`. Then one of the two
+// frames was stored before the scene or the seed was changed.
 bool follows_another_frame(const FrameTraits& before, const FrameTraits& frame);
-// Whether one window can hold both: they have all that it reads of its frames, and are of one animation.
+// Whether one window can contain both frames: they have all planes that it reads, and belong to the same animation.
 bool share_windows(const FrameTraits& before, const FrameTraits& frame, uint32_t reconstruction);
 
-// The frame before the next one that is sampled.
+// The frame that the next sampled frame may replay.
 struct PreviousFrame {
   std::shared_ptr<const scene::Snapshot> snapshot;
   GradusSettings settings{};
-  int32_t stream_frame =
-      0;  // whose random numbers it has taken: its own, or those of the first of several that are alike
-  std::vector<uint32_t> counts;   // samples of each pixel; empty: as many as the settings say, or not known
-  std::optional<Region> sampled;  // region of its own half; nothing: it was not sampled
+  // Frame whose random numbers the fresh samples use: this one, or the first one of a series of identical frames.
+  int32_t stream_frame = 0;
+  std::vector<uint32_t> counts;   // samples of each pixel; empty: as many as in the settings, or not known
+  std::optional<Region> sampled;  // region of the fresh samples; without a value: the frame was not sampled
 };
-// base: its own half; nullptr where it was not sampled.
+// fresh: header of the fresh samples, or nullptr if the frame was not sampled.
 std::unique_ptr<PreviousFrame> make_previous_frame(std::shared_ptr<const scene::Snapshot> snapshot,
                                                    const GradusSettings& settings, const film::FilmHeader* fresh);
 
-// How a frame was sampled, for the stats of its delivery.
+// How a frame was sampled; the stats of its delivery start from it.
 struct FrameRecord {
   render::Plan plan;
   render::RenderStats stats;
 };
 
-// Whether pixels may differ in their samples, which a replay then repeats.
+// Whether pixels may have different numbers of samples. A replay then repeats the number of each pixel.
 bool has_counts(const GradusSettings& settings);
-// Whether frames with these settings show the same region with the same passes, sampled alike but for their numbers.
+// Whether frames with these settings show the same region and passes and are sampled alike, except for their frame
+// numbers.
 bool are_equivalent(const GradusSettings& a, const GradusSettings& b);
 bool show_same_region(const GradusSettings& a, const GradusSettings& b);
 

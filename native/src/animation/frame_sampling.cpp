@@ -20,8 +20,8 @@ FrameSampling::FrameSampling(std::shared_ptr<Sequence> sequence, render::LoopInp
     require_features(*stored_fresh_, sequence_->folder_.path(input_.settings.frame, FrameSamples::kFresh));
   }
   sequence_->warn_of_needs(record_.plan, &record_.stats.warnings);
-  record_.plan.chosen.emplace_back("differences over time",
-                                   "frames of an animation: half of the samples repeat those of the frame before");
+  record_.plan.chosen.emplace_back("temporal gradients",
+                                   "frame of an animation: half of its samples replay those of the previous frame");
 }
 
 render::LoopInput FrameSampling::fresh_input() const {
@@ -96,12 +96,12 @@ std::optional<film::FilmHeader> FrameSampling::stored_fresh() const {
   std::optional<film::FilmHeader> fresh = stored(FrameSamples::kFresh);
   const bool is_of_earlier = fresh && fresh->frame_number != input_.settings.frame;
   if (is_of_earlier && !stored(FrameSamples::kReplayed))
-    return std::nullopt;  // of an earlier frame come both halves, or none
+    return std::nullopt;  // fresh and replayed samples are both taken from an earlier frame, or neither
   return fresh;
 }
 
 bool FrameSampling::has_enough(const film::FilmHeader& half, FrameSamples kind) const {
-  // Counted offsets have what they have by their base.
+  // With different numbers of samples per pixel, the replayed samples repeat the counts of the fresh ones.
   const bool follows_fresh = kind == FrameSamples::kReplayed && has_counts(half.settings);
   return follows_fresh || has_as_many(half, kind, input_.settings);
 }
@@ -111,13 +111,13 @@ std::optional<film::FilmHeader> FrameSampling::stored(FrameSamples kind) const {
   const int32_t number = input_.settings.frame;
   if (!folder.holds(number)) return std::nullopt;
   std::optional<film::FilmHeader> frame = read_with_advice([&] { return folder.header(number, kind); });
-  // The file of an earlier frame that was as this one, and is no longer, or has too few samples: taken anew, or from
-  // that frame again.
+  // The file may be that of an earlier frame that was identical. If the frames differ now, or the file has too few
+  // samples, the frame is sampled anew or repeats the earlier frame again.
   if (frame->frame_number != number && (!has_enough(*frame, kind) || differs_from_before())) return std::nullopt;
   GradusSettings settings = input_.settings;
-  settings.frame = frame->frame_number;  // that of the first of several frames that are alike
+  settings.frame = frame->frame_number;  // number of the first one of a series of identical frames
   if (settings.integrator == GRADUS_INTEGRATOR_AUTO)
-    settings.integrator = frame->settings.integrator;  // what it came to
+    settings.integrator = frame->settings.integrator;  // the stored frame holds what AUTO was resolved to
   require_same(*frame, kind, folder.path(number, kind), settings, input_.snapshot->content_key);
   return frame;
 }
@@ -207,11 +207,12 @@ void FrameSampling::sample_replayed(const film::FilmHeader& fresh, const std::ve
   input.settings.samples = samples_of(FrameSamples::kReplayed, input.settings.samples);
   std::optional<film::FilmHeader> found = stored(FrameSamples::kReplayed);
   if (found && found->frame_number != fresh.frame_number) found.reset();
-  if (found && fresh.frame_number != input_.settings.frame) return;  // both are those of the earlier frame
+  if (found && fresh.frame_number != input_.settings.frame) return;  // both files are those of the earlier frame
   if (found && !replays_before(*found)) found.reset();
   const bool counted = has_counts(input_.settings);
   if (found && !counted && has_as_many(*found, FrameSamples::kReplayed, input_.settings)) return;
-  if (found && !samples_fresh && input.settings.time_limit > 0.0f) return;  // as many as the time of its base allowed
+  // With a time limit, the stored replay has as many samples as the time of the fresh samples allowed.
+  if (found && !samples_fresh && input.settings.time_limit > 0.0f) return;
   input.replay = follow(fresh, fresh_counts);
   const std::vector<uint32_t>& counts = input.replay->counts;
   if (found && counted &&
@@ -262,9 +263,9 @@ std::shared_ptr<const render::Replay> FrameSampling::follow(const film::FilmHead
   replay->components = render::replays_of_components(replay->replay_map);
   if (const uint64_t apart = replay->components.pixels; apart > 0) {
     const double share = 100.0 * double(apart) / double(fresh.region.area());
-    record_.plan.chosen.emplace_back("replays of components by themselves",
+    record_.plan.chosen.emplace_back("separate replays of components",
                                      "in " + std::to_string(std::lround(share)) +
-                                         " % of the pixels what mirrors and glass show goes another way than they do");
+                                         " % of the pixels, reflections or refractions move differently from surfaces");
   }
   if (!has_counts(input_.settings)) return replay;
   const double mean = mean_of(counts);

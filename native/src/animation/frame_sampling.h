@@ -1,4 +1,5 @@
-// Samples a frame of a sequence: its own half, and the one that replays the frame before.
+// Task that samples a frame of a sequence: fresh samples with random numbers of its own, and replayed samples with
+// those of the previous frame. Both are written to the sequence's folder.
 #pragma once
 
 #include <memory>
@@ -17,7 +18,7 @@ class FrameSampling final : public render::RenderTask {
   void cancel() override;
   GradusProgress progress() const override;
   const Region& delivered() const override { return fresh_.delivered(); }
-  // Of its own half.
+  // Passes, while the frame is sampled, are those of the fresh samples.
   void read_pass(uint32_t pass, float* pixels) const override { fresh_.read_pass(pass, pixels); }
   void read_component(const std::string& name, uint32_t pass, float* pixels) const override {
     fresh_.read_component(name, pass, pixels);
@@ -29,31 +30,35 @@ class FrameSampling final : public render::RenderTask {
   void render() override;
   uint64_t memory_bytes() const override { return 0; }
 
-  // What the folder has of the frame, if it fits.
+  // Returns the header of stored samples of the frame if they can be used. Throws invalid_argument if the folder holds
+  // samples of the same frame that were taken with other settings.
   std::optional<film::FilmHeader> stored(FrameSamples kind) const;
   std::optional<film::FilmHeader> stored_fresh() const;
-  // Of a half of an earlier frame, which gets no more samples.
+  // Whether the samples of an identical earlier frame, to which none are added, suffice for this frame.
   bool has_enough(const film::FilmHeader& half, FrameSamples kind) const;
   // Returns the frame that was sampled, or reads the stored one. Takes the lock, but not while it reads a file.
   std::shared_ptr<const film::Film> fresh_film(const char* what) const;
   std::shared_ptr<film::Film> read(FrameSamples kind, film_io::StoredContent content, const CancelCheck& cancel) const;
   std::shared_ptr<film::Film> load(FrameSamples kind, film_io::StoredContent content = film_io::StoredContent::kAll);
+  // Whether the frame is identical to the previous one, so that it can use its files.
   bool repeats_before() const;
   bool differs_from_before() const;
   void repeat_before();
   void sample_fresh_and_replayed();
   void resume_samples();
-  // counts: the base's samples of each pixel, where pixels may differ in them.
+  // counts: number of fresh samples of each pixel; empty unless has_counts(). samples_fresh: whether fresh samples were
+  // taken, rather than read.
   void sample_replayed(const film::FilmHeader& fresh, const std::vector<uint32_t>& counts, bool samples_fresh);
   void run(render::RenderLoop* loop);
   void save(const film::Film& frame, FrameSamples kind);
   bool follows_before() const;
-  // Whether a stored offset is of what the frame follows now: other steps, parts or scenes of a job have other frames
-  // before it. Where nobody has told what comes before, it is.
+  // Whether stored replayed samples replay the frame that is the previous one now: a job with another step, range or
+  // scene has another previous frame. True if the previous frame is not known.
   bool replays_before(const film::FilmHeader& replayed) const;
+  // Plans the replay of the previous frame: which pixels it replays, and how many samples each pixel takes.
   std::shared_ptr<const render::Replay> follow(const film::FilmHeader& fresh, const std::vector<uint32_t>& counts);
   render::LoopInput fresh_input() const;
-  // From here on it is the frame before.
+  // Records how the frame was sampled and makes it the sequence's previous frame.
   void finish(const film::FilmHeader& fresh, std::vector<uint32_t> counts);
 
   const std::shared_ptr<Sequence> sequence_;
@@ -61,9 +66,9 @@ class FrameSampling final : public render::RenderTask {
   const std::optional<film::FilmHeader> stored_fresh_;
   render::RenderLoop fresh_;
   std::unique_ptr<render::RenderLoop> replayed_;
-  double resumed_mean_ = 0.0;                       // samples per pixel that the base went on from
+  double resumed_mean_ = 0.0;                       // stored fresh samples per pixel, to which new ones are added
   mutable std::mutex reading_;                      // is held while a stored frame is read, so that it is read once
-  mutable std::shared_ptr<const film::Film> film_;  // of one that was stored: when it is asked for
+  mutable std::shared_ptr<const film::Film> film_;  // fresh samples; if stored, they are read on first use
   FrameRecord record_;
 };
 

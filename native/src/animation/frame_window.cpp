@@ -13,7 +13,7 @@ const std::vector<float>& plane_of(const film::GradientImages& images, reconstru
   return images.primal;
 }
 
-// Mean over all samples; what one of the two lacks is the other's.
+// Returns the mean over all samples. If one of the two values is missing (NaN), returns the other one.
 float mixed(float fresh, float replay, float share) {
   if (std::isnan(fresh)) return replay;
   if (std::isnan(replay)) return fresh;

@@ -1,6 +1,6 @@
-// Frames of a sequence as a space-time reconstruction reads them: pixels and differences in space are those of all
-// samples of a frame, differences over time those between a frame and the replay of its random numbers in the next
-// (Manzi et al. 2016, section 4).
+// Frames of a sequence as a space-time reconstruction reads them. Pixels and spatial differences come from all samples
+// of a frame. Temporal differences are those between the fresh samples of a frame and the samples of the next frame
+// that replay their random numbers (Manzi et al. 2016, section 4).
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@ namespace gradus::animation {
 
 class FrameWindow final : public reconstruct::HalvedWindowSource {
  public:
-  // In order. Throws invalid_argument unless they are of one size.
+  // frames: consecutive frames, at least one. Throws invalid_argument unless all have the same size and planes.
   explicit FrameWindow(std::vector<std::shared_ptr<const TemporalFrame>> frames);
 
   reconstruct::WindowSize size() const override;
@@ -24,11 +24,11 @@ class FrameWindow final : public reconstruct::HalvedWindowSource {
 
  private:
   using Part = film::GradientImages HalvedImages::*;
-  // What is linear in the images: of their values, or of the differences of their halves.
+  // Reads a row, either of values or of half the differences of the half-buffers: both are linear in the images.
   void read(reconstruct::RowKind kind, int t, int y, Part part, float* out) const;
 
   std::vector<std::shared_ptr<const TemporalFrame>> frames_;
-  std::vector<film::PixelCorrespondence> correspondence_;  // from each frame but the last
+  std::vector<film::PixelCorrespondence> correspondence_;  // from each frame except the last to the next one
 };
 
 }  // namespace gradus::animation

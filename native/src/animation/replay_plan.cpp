@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "integrator/pixel_loop.h"
-#include "motion/component_correspondence.h"
 #include "motion/component_tracking.h"
 #include "motion/pixel_matching.h"
 #include "render/component_replay.h"
@@ -21,7 +20,8 @@ namespace {
 
 using Sources = std::vector<film::PixelCorrespondence>;
 
-// What is left for Residual is mostly seen in mirrors of mirrors: it goes with what goes its own way there.
+// Returns the replay map of Residual. Its light is mostly seen in mirrors of mirrors, so it follows a component whose
+// motion differs from that of the surface, where there is one.
 film::PixelCorrespondence sources_of_residual(const film::PixelCorrespondence& surface, const Sources& others) {
   film::PixelCorrespondence replay_map = surface;
   for (const film::PixelCorrespondence& own : others) {
@@ -36,6 +36,7 @@ film::PixelCorrespondence sources_of_residual(const film::PixelCorrespondence& s
   return replay_map;
 }
 
+// Returns a replay map for each component that is seen through smooth surfaces; empty if there is none.
 Sources sources_of_components(const motion::CentreView& from, const motion::CentreView& to,
                               const GradusSettings& settings, const lpe::ComponentSet& components,
                               const film::PixelCorrespondence& correspondence, const film::PixelCorrespondence& surface,
@@ -43,12 +44,12 @@ Sources sources_of_components(const motion::CentreView& from, const motion::Cent
   if (components.count() == 1 || settings.component_replays == 0) return {};
   Sources replay_map(static_cast<size_t>(components.count()));
   const motion::ChainTracer tracer{*to.snapshot, to.camera, settings};
-  const std::vector<motion::ChainMotion> ways =
+  const std::vector<motion::ChainMotion> motion =
       motion::track_components(from, tracer, components, components.all() & ~components.residual(), cancel);
   bool any = false;
-  for (size_t c = 0; c < ways.size(); ++c) {
-    if (!motion::is_seen_through_smooth(ways[c])) continue;
-    replay_map[c] = motion::inverse_correspondence(motion::match_component(correspondence, from.region, ways[c]));
+  for (size_t c = 0; c < motion.size(); ++c) {
+    if (!motion::is_seen_through_smooth(motion[c])) continue;
+    replay_map[c] = motion::inverse_correspondence(motion::match_component(correspondence, from.region, motion[c]));
     any = true;
   }
   if (!any) return {};

@@ -1,4 +1,4 @@
-// What a frame repeats of the one before: whose random numbers its pixels take, and how many of them.
+// Plans the replay of the previous frame: the pixel whose random numbers each pixel takes, and its number of samples.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,24 @@
 
 namespace gradus::animation {
 
-// Whether the frame before shows the same pixels, without a cut between. before: nullptr where there is none.
+// Whether the frame can replay the previous one: both show the same region at the same size, and there is no shot
+// change between them. before: nullptr if there is no previous frame.
 bool follows(const PreviousFrame* before, const scene::Snapshot& now, const GradusSettings& settings);
 
-// Of each pixel of the region the one that shows the same point in the frame before; of components that are seen
-// through smooth surfaces the one in which these show the same. Empty once cancelled.
+// Returns for each pixel of the region the pixel of the previous frame that shows the same surface point. Components
+// that are seen through smooth surfaces have maps of their own, to the pixel in which the smooth surfaces show the same
+// point. The map is empty after cancelling.
 film::ReplayMap make_replay_map(const PreviousFrame& before, const scene::Snapshot& now, const GradusSettings& settings,
                                 const lpe::ComponentSet& components, const Region& region, const CancelCheck& cancel);
 
 double mean_of(const std::vector<uint32_t>& counts);
 
-// The samples of each pixel: those of what it replays, the mean in holes, and where that is not known (nullptr, or
-// without counts).
+// Returns the number of replayed samples of each pixel: that of the pixel that it replays, or `mean` in disocclusions
+// and where the counts of the previous frame are not known. before: nullptr, or a frame that may have counts.
 std::vector<uint32_t> replayed_counts(const film::ReplayMap& replay_map, const PreviousFrame* before, double mean);
 
-// No more of them than `maximum` on average: where a frame is dearer than the one before, a time limit allows fewer.
+// Scales the counts so that their mean is at most `maximum`, but keeps at least one sample per pixel. A time limit
+// allows fewer samples where a frame takes longer than the previous one.
 void limit_mean(double maximum, std::vector<uint32_t>* counts);
 
 }  // namespace gradus::animation

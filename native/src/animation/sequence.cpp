@@ -19,18 +19,18 @@ namespace gradus::animation {
 
 namespace {
 
-// No pilot: what it found in a frame would not hold for the next. Without gradients the features and differences over
-// time are left.
+// Returns the integrator for a frame of a sequence. There is no pilot render, because its findings in one frame would
+// not hold for the next. Only a reconstruction by features can do without gradients in space.
 uint32_t integrator_of(const GradusSettings& settings) {
   const uint32_t r = settings.reconstruction;
   const bool by_features = r == GRADUS_RECONSTRUCTION_AUTO || r == GRADUS_RECONSTRUCTION_REGULARIZED;
   return by_features ? settings.integrator : uint32_t{GRADUS_INTEGRATOR_GRADIENT};
 }
 
-// Whether a stored frame is what the sequence would sample of the snapshot.
+// Whether a stored frame has the samples that the sequence would take of the snapshot.
 bool is_frame_of(const film::FilmHeader& stored, const scene::Snapshot& snapshot, GradusSettings settings) {
   if (settings.integrator == GRADUS_INTEGRATOR_AUTO)
-    settings.integrator = stored.settings.integrator;  // what it came to
+    settings.integrator = stored.settings.integrator;  // the stored frame holds what AUTO was resolved to
   return stored.scene_key == snapshot.content_key && are_equivalent(stored.settings, settings) &&
          has_as_many(stored, FrameSamples::kFresh, settings);
 }
@@ -43,7 +43,7 @@ bool sequence_applies(const GradusSettings& settings, std::string* why_not) {
   *why_not = settings.integrator == GRADUS_INTEGRATOR_PATH ? "the integrator is path"
              : r == GRADUS_RECONSTRUCTION_NONE             ? "reconstruction is none"
              : settings.samples < 2                        ? "there is one sample per pixel"
-             : pixels > INT32_MAX                          ? "its pixels are too many to be linked"
+             : pixels > INT32_MAX                          ? "the film has more than 2^31 - 1 pixels"
                                                            : "";
   return why_not->empty();
 }
@@ -55,13 +55,13 @@ Sequence::Sequence(std::shared_ptr<scene::Device> device, const SequenceSettings
       factory_(std::move(factory)),
       folder_(settings.folder),
       last_(settings.last) {
-  if (settings.step < 1) throw invalid_argument("a sequence has a step of at least 1");
-  reconstruct::WindowGrid(job_places(), settings.windows);  // which looks at them
+  if (settings.step < 1) throw invalid_argument("the step of a sequence must be at least 1");
+  reconstruct::WindowGrid(job_places(), settings.windows);  // throws if the range or the windows are not valid
 }
 
 int Sequence::place_of(int32_t frame) const {
   const int64_t from_first = int64_t(frame) - settings_.first, step = settings_.step;
-  if (from_first % step != 0) throw invalid_argument("frame " + std::to_string(frame) + " is none of the sequence");
+  if (from_first % step != 0) throw invalid_argument("frame " + std::to_string(frame) + " is not part of the sequence");
   const int64_t first = settings_.first;
   return int(from_first / step + (first >= 0 ? first / step : -((step - 1 - first) / step)));
 }
@@ -93,7 +93,7 @@ void Sequence::warn_of_needs(const render::Plan& plan, std::vector<std::string>*
 reconstruct::FrameRange Sequence::places_with_neighbours() const {
   reconstruct::FrameRange range = job_places();
   if (folder_.is_temporary()) return range;
-  const int maximum = settings_.windows.frames;  // more have no share
+  const int maximum = settings_.windows.frames;  // frames further away share no window with the job
   for (int i = 0; i < maximum && folder_.holds(frame_at(range.first - 1)); ++i) --range.first;
   for (int i = 0; i < maximum && last_ == settings_.last && folder_.holds(frame_at(range.last + 1)); ++i) ++range.last;
   return range;
@@ -113,7 +113,8 @@ bool Sequence::shares_window_with_previous(int place, uint32_t reconstruction) {
   if (passed_by_.count(frame_at(place)) > 0 || passed_by_.count(frame_at(place - 1)) > 0) return false;
   const FrameTraits &here = traits_at(place), &before = traits_at(place - 1);
   const reconstruct::FrameRange own = job_places();
-  const bool one_job = own.contains(place) && own.contains(place - 1);  // its settings may change from frame to frame
+  // Settings may be animated within a job.
+  const bool one_job = own.contains(place) && own.contains(place - 1);
   return (one_job || are_equivalent(before.settings, here.settings)) && share_windows(before, here, reconstruction);
 }
 
@@ -134,8 +135,8 @@ void Sequence::end_at(int32_t frame) {
 std::unique_ptr<render::RenderTask> Sequence::sample(std::shared_ptr<const scene::Snapshot> snapshot,
                                                      const GradusSettings& settings) {
   std::string why_not;
-  if (!sequence_applies(settings, &why_not)) throw invalid_argument("no differences over time: " + why_not);
-  place_of(settings.frame);  // looks at it
+  if (!sequence_applies(settings, &why_not)) throw invalid_argument("no temporal gradients: " + why_not);
+  place_of(settings.frame);  // throws if the frame is not part of the sequence
   render::LoopInput input;
   input.device = device_;
   input.snapshot = std::move(snapshot);
@@ -151,7 +152,7 @@ void Sequence::pass_by(std::shared_ptr<const scene::Snapshot> snapshot, const Gr
   GradusSettings resolved = settings;
   resolved.integrator = integrator_of(settings);
   if (settings.frame >= settings_.first && settings.frame <= settings_.last) passed_by_.insert(settings.frame);
-  std::optional<film::FilmHeader> fresh;  // that of another part of the job
+  std::optional<film::FilmHeader> fresh;  // another process of the same job may have sampled the frame
   if (folder_.holds(settings.frame)) fresh = folder_.header(settings.frame, FrameSamples::kFresh);
   if (fresh && !is_frame_of(*fresh, *snapshot, resolved)) fresh.reset();
   auto before = make_previous_frame(std::move(snapshot), resolved, fresh ? &*fresh : nullptr);
@@ -179,14 +180,15 @@ LoadSamples Sequence::load_samples(FrameSamples kind, const std::vector<std::str
 }
 
 void Sequence::merge(int32_t number, film::Film* fresh, const film::Film& replayed) const {
-  const film::ComponentContent of_base = film::component_content(*fresh), of_offset = film::component_content(replayed);
-  if (of_base.non_specular != of_offset.non_specular || of_base.details != of_offset.details ||
+  const film::ComponentContent of_fresh = film::component_content(*fresh),
+                               of_replayed = film::component_content(replayed);
+  if (of_fresh.non_specular != of_replayed.non_specular || of_fresh.details != of_replayed.details ||
       fresh->count[0].size() != replayed.count[0].size() || fresh->channels != replayed.channels ||
       fresh->gradients != replayed.gradients || fresh->passes.size() != replayed.passes.size() ||
       !film::same_components(*fresh, replayed) ||
       schema::sampling_key(fresh->settings) != schema::sampling_key(replayed.settings)) {
     throw invalid_argument("stored frame " + folder_.path(number, FrameSamples::kFresh) +
-                           " and its offset do not belong together");
+                           " and its replayed samples do not belong together");
   }
   render::add_sums(fresh, replayed);
   fresh->frame_number = number;
@@ -241,15 +243,15 @@ void Sequence::retain_pictures(const std::vector<std::vector<std::string>>& grou
 
 motion::Tracking Sequence::flows_to(int place, uint32_t reconstruction) {
   if (!settings_.with_flow || settings_.step != 1)
-    return motion::Tracking::NoNeighbour;  // the surfaces' motion is that from frame to frame
+    return motion::Tracking::NoNeighbour;  // the motion of surfaces is known for a step of one frame
   const int32_t frame = frame_at(place);
-  const bool comes = last_ == settings_.last || frame <= last_;
-  if (!comes || !folder_.holds(frame) || !folder_.holds(frame - 1) ||
+  const bool is_expected = last_ == settings_.last || frame <= last_;
+  if (!is_expected || !folder_.holds(frame) || !folder_.holds(frame - 1) ||
       !shares_window_with_previous(place, reconstruction))
     return motion::Tracking::NoNeighbour;
   const reconstruct::WindowGrid grid(places_with_neighbours(), settings_.windows);
   if (!folder_.holds(frame_at(grid.around(place - 1).first)))
-    return motion::Tracking::NoNeighbour;  // forgotten: it was delivered before
+    return motion::Tracking::NoNeighbour;  // the frame was delivered, and its files were removed
   const FrameTraits &before = traits_at(place - 1), &here = traits_at(place);
   return here.stream == before.stream || here.replayed_stream == before.stream ? motion::Tracking::Tracked
                                                                                : motion::Tracking::ShotChange;

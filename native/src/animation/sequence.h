@@ -1,7 +1,7 @@
-// Frames of an animation, sampled one after the other and reconstructed together (contract 4; Manzi et al. 2016,
-// "Temporal gradient-domain path tracing"). Each frame is sampled twice, with half of its samples each time: with its
-// own random numbers, and with those of the frame before, moved along to where the same surfaces are seen now.
-// Differences between the two have little noise.
+// Frames of an animation, sampled one after the other and reconstructed together (Manzi et al. 2016, "Temporal
+// gradient-domain path tracing"). Each frame is sampled twice, with half of its samples each time: with its own random
+// numbers (fresh), and with those of the previous frame, moved to the pixels that show the same surfaces now
+// (replayed). Differences between replayed samples and those that they replay have little noise.
 #pragma once
 
 #include <map>
@@ -13,8 +13,8 @@
 
 #include "animation/component_flows.h"
 #include "animation/frame_record.h"
-#include "animation/load_samples.h"
 #include "animation/sequence_folder.h"
+#include "animation/temporal_frame.h"
 #include "reconstruct/space_time/sequence_pictures.h"
 #include "render/loop_input.h"
 #include "render/render_task.h"
@@ -23,40 +23,41 @@
 namespace gradus::animation {
 
 struct SequenceSettings {
-  int32_t first = 0, last = 0;  // frames that are rendered: first, first + step … not beyond last
+  int32_t first = 0, last = 0;  // rendered frame numbers: first, first + step … up to last
   uint32_t step = 1;
   reconstruct::WindowShape windows;
-  std::string folder;         // where raw frames are kept and found again; empty: nowhere
-  bool with_flow = false;     // passes by optical flow are asked for: frames need the next one, too
-  std::string flow_folder{};  // where libgradus_flow.so is; empty: beside this library
+  std::string folder;         // folder of the frame store; empty: a temporary folder
+  bool with_flow = false;     // whether passes by optical flow are requested, for which a frame needs the next one
+  std::string flow_folder{};  // folder of libgradus_flow.so; empty: that of this library
 };
 
-// Whether frames with these settings have differences over time, and why not.
+// Whether frames with these settings can have temporal gradients. If not, sets *why_not to the reason.
 bool sequence_applies(const GradusSettings& settings, std::string* why_not);
 
 class Sequence : public std::enable_shared_from_this<Sequence> {
  public:
-  // Throws invalid_argument for settings that make no sense, invalid_operation where the folder cannot be made.
+  // Throws invalid_argument for settings that are not valid, invalid_operation if the folder cannot be made.
   Sequence(std::shared_ptr<scene::Device> device, const SequenceSettings& settings,
            render::IntegratorFactory factory = render::make_integrator);
   Sequence(const Sequence&) = delete;
   Sequence& operator=(const Sequence&) = delete;
 
-  // Frames of the range that must have been sampled before `frame` can be delivered.
+  // Returns the range of frames that must have been sampled before `frame` can be delivered.
   reconstruct::FrameRange needs(int32_t frame) const;
-  // Frames beyond this one do not come after all.
+  // Ends the sequence early: `frame` is its last one.
   void end_at(int32_t frame);
 
-  // Tasks to be run, one at a time: the next is asked for when the one before has ended.
+  // sample() and deliver() return tasks to be run one at a time: a task may only be requested when the previous one has
+  // ended.
   //
-  // Samples settings.frame, unless the folder holds it, or nothing has changed since the frame before.
+  // Samples settings.frame, unless the folder holds its samples or nothing has changed since the previous frame.
   std::unique_ptr<render::RenderTask> sample(std::shared_ptr<const scene::Snapshot> snapshot,
                                              const GradusSettings& settings);
-  // The snapshot shows settings.frame, which is not sampled here: the next frame follows it. Windows end before it and
-  // begin after it.
+  // Passes by settings.frame, which is not sampled here. The snapshot shows that frame, so that the next one can replay
+  // it. Windows end before it and begin after it.
   void pass_by(std::shared_ptr<const scene::Snapshot> snapshot, const GradusSettings& settings);
-  // Reconstructs and delivers a frame. settings: what it is made of otherwise than it was sampled for (reconstruction,
-  // alpha, denoiser, exposure); nullptr: nothing. Frames in order.
+  // Reconstructs and delivers a frame. Frames must be delivered in order. settings: options that replace those with
+  // which the frame was sampled (reconstruction, alpha, denoiser, exposure, threads), or nullptr.
   std::unique_ptr<render::RenderTask> deliver(int32_t frame, const GradusSettings* settings);
   const SequenceFolder& folder() const { return folder_; }
 
@@ -65,35 +66,36 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   friend class FrameDelivery;
   friend class FrameDeveloper;
 
-  // Frames are counted in steps, so that those of one grid are next to each other whatever part of a job they are
-  // rendered in.
+  // Converts a frame number to a place: places count in steps, so that frames of one sequence are next to each other,
+  // and do not depend on which range of frames a job renders. Throws invalid_argument between two steps.
   int place_of(int32_t frame) const;
   int32_t frame_at(int place) const;
   reconstruct::FrameRange job_places() const;
-  // Warns once where the machine may have less memory, or the disk less room, than the animation takes.
+  // Warns once if the machine has less memory, or the disk less room, than the animation is estimated to need.
   void warn_of_needs(const render::Plan& plan, std::vector<std::string>* warnings);
-  // The frames that are rendered, and those beside them that the folder holds.
+  // Returns the places of the job and of the frames next to it that the folder holds.
   reconstruct::FrameRange places_with_neighbours() const;
-  // Whether the frame at `place` can share windows with the one before. Where it cannot, they are cut.
+  // Whether the frame at `place` can share windows with the previous one. If not, windows end between the two.
   bool shares_window_with_previous(int place, uint32_t reconstruction);
   const FrameTraits& traits_at(int place);
-  // Of these components, in this order.
+  // Returns a function that loads stored samples with these components alone, in this order.
   LoadSamples load_samples(FrameSamples kind, const std::vector<std::string>& components) const;
-  // All samples of a frame, in the place of its own half.
+  // Adds the replayed samples to the fresh ones. Throws invalid_argument if the two do not belong together.
   void merge(int32_t frame, film::Film* fresh, const film::Film& replayed) const;
   reconstruct::SequenceSource source(const reconstruct::SequenceMethod& method,
                                      const std::vector<std::string>& components) const;
-  // Of components that are reconstructed together, that have the picture of `frame`: begun anew where it was taken
-  // before, or by another method.
+  // Returns the reconstruction of components that share their weights, from which the picture of `frame` can be taken.
+  // It starts anew if that picture was already taken or the method has changed.
   reconstruct::SequencePictures* pictures(const std::vector<std::string>& components,
                                           const reconstruct::SequenceMethod& method, int32_t frame);
-  // Of these groups of components alone: others are of a set that has changed.
+  // Removes all reconstructions except those of these groups of components, since the component set may have changed.
   void retain_pictures(const std::vector<std::vector<std::string>>& groups);
-  // Whether flow leads from the frame before to the one at `place`; if not, why. reconstruction: of their pictures.
+  // Returns Tracked if flow can be estimated between the frame at `place` and the previous one, otherwise the cause.
+  // reconstruction: method of both pictures.
   motion::Tracking flows_to(int place, uint32_t reconstruction);
-  // nullptr: there is none, which is told once.
+  // Returns the flow library, or nullptr if there is none. The first call then adds a warning.
   const motion::FlowLibrary* flow_library(std::vector<std::string>* warnings);
-  // Those that no picture to come needs.
+  // Forgets frames before this one, which no later picture needs.
   void forget_before(int32_t frame);
 
   const std::shared_ptr<scene::Device> device_;
@@ -104,12 +106,12 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   bool needs_are_checked_ = false;
   std::unique_ptr<const PreviousFrame> before_;
   std::map<int32_t, FrameRecord> records_;
-  std::map<int32_t, FrameTraits> traits_;  // of frames that were sampled or looked at
+  std::map<int32_t, FrameTraits> traits_;  // of frames that were sampled, or whose headers were read
   std::set<int32_t> passed_by_;
   std::map<std::vector<std::string>, std::unique_ptr<reconstruct::SequencePictures>> pictures_;
-  std::shared_ptr<DevelopedFrame> ahead_;  // made for the frame before it, by flow, and not delivered yet
-  FrameFlows back_;                        // of `ahead_` to the frame before it
-  std::optional<std::shared_ptr<const motion::FlowLibrary>> flow_library_;  // once it was looked for
+  std::shared_ptr<DevelopedFrame> ahead_;  // next frame to deliver, if flow from the previous one needed it
+  FrameFlows back_;                        // flows from `ahead_` to its previous frame
+  std::optional<std::shared_ptr<const motion::FlowLibrary>> flow_library_;  // without a value until it is searched for
 };
 
 }  // namespace gradus::animation

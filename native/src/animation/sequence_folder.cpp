@@ -29,7 +29,7 @@ SequenceFolder::SequenceFolder(const std::string& path)
   fs::create_directories(path_, error);
   if (error)
     throw Error(GRADUS_ERROR_INVALID_OPERATION,
-                "cannot make the frame store's folder " + path_ + ": " + error.message());
+                "cannot create the folder of the frame store " + path_ + ": " + error.message());
 }
 
 std::string SequenceFolder::path(int32_t frame, const char* ending) const {

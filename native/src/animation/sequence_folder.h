@@ -1,5 +1,5 @@
-// Where the raw frames of a sequence lie: f<number>.base.exr and f<number>.offset.exr in one folder (contract 7.2),
-// beside them f<number>.json with the settings that the frame was asked for.
+// The files of a sequence, all in one folder: f<number>.base.exr with the fresh and f<number>.offset.exr with the
+// replayed samples of a frame, and f<number>.json with the settings that were requested for the frame.
 #pragma once
 
 #include <atomic>
@@ -12,38 +12,41 @@
 
 namespace gradus::animation {
 
-// What a frame of a sequence is sampled in: with random numbers of its own, and with those of the frame before.
+// The two kinds of samples of a frame: those with random numbers of its own, and those that replay the random numbers
+// of the previous frame.
 enum class FrameSamples { kFresh, kReplayed };
 
 class SequenceFolder {
  public:
-  // path: made if it is not there; empty: a folder for temporary files, which goes when this does.
+  // path: folder, which is created if it does not exist; empty: a temporary folder, which the destructor removes.
+  // Throws invalid_operation if the folder cannot be created.
   explicit SequenceFolder(const std::string& path);
 
   bool is_temporary() const { return temporary_ != nullptr; }
   const std::string& path() const { return path_; }
   std::string path(int32_t frame, FrameSamples kind) const;
-  // Whether both parts of a frame are there.
+  // Whether both the fresh and the replayed samples of a frame exist.
   bool holds(int32_t frame) const;
-  // Both throw invalid_argument with path and cause. The second by the threads of the caller's arena; so does save().
-  // `cancel`: as of film_io/store.h.
+  // header() and load() throw invalid_argument with path and cause. load() and save() use the threads of the caller's
+  // arena; `cancel` is polled as in film_io/store.h.
   film::FilmHeader header(int32_t frame, FrameSamples kind) const;
   std::shared_ptr<film::Film> load(
       int32_t frame, FrameSamples kind, film_io::StoredContent content = film_io::StoredContent::kAll,
       const CancelCheck& cancel = [] { return false; }) const;
-  // Of one component alone (film_io/store.h).
+  // Loads the planes of one component alone (film_io/store.h).
   std::shared_ptr<film::Film> load_component(int32_t frame, FrameSamples kind, const std::string& component,
                                              const CancelCheck& cancel) const;
   void save(const film::Film& content, int32_t frame, FrameSamples kind, const CancelCheck& cancel) const;
-  // Of delivery (exposure and the like): frames that are alike share their files, and may differ in these. Throws
-  // invalid_argument with the path; nothing: those of its files.
+  // Returns the settings for delivery, such as the exposure: identical frames share their files, but may differ in
+  // these. Without a value there is no file, and the settings in the headers hold. Throws invalid_argument with the
+  // path.
   std::optional<GradusSettings> settings(int32_t frame) const;
   void save_settings(const GradusSettings& settings, int32_t frame) const;
-  // Frame `to` gets the files of frame `from`.
+  // Gives frame `to` the samples of frame `from`, by hard links or copies of its files.
   void repeat(int32_t from, int32_t to) const;
-  // Of a temporary folder: the frame is not needed any more.
+  // Removes the files of a frame that is no longer needed, if the folder is temporary.
   void forget(int32_t frame) const;
-  // How many files were unpacked: each takes as long as it took to write.
+  // Returns the number of files that were read and decompressed so far, which is the main cost of loading.
   uint64_t loads() const { return loads_; }
 
  private:

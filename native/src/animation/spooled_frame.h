@@ -1,5 +1,4 @@
-// The rows of a frame in a temporary file: while a window is solved, its inputs take no memory that is needed
-// otherwise.
+// The rows of a frame in a temporary file, so that the inputs of a window take no memory while it is solved.
 #pragma once
 
 #include <memory>
@@ -13,16 +12,16 @@ namespace gradus::animation {
 
 class SpooledFrame {
  public:
-  // Its pixels and their differences in space, as many kinds as `content` says. By the threads of the caller's arena,
-  // which ask `cancel` row by row: throws the Error CANCELLED.
+  // Writes the pixels and spatial differences that `content` selects. Uses the threads of the caller's arena, which
+  // poll `cancel` for each row. Throws Error CANCELLED.
   SpooledFrame(const std::shared_ptr<const TemporalFrame>& frame, TemporalContent content, const CancelCheck& cancel);
-  // Their differences to the next one.
+  // Writes the temporal differences from this frame to the next one. Throws Error CANCELLED.
   void write_differences(const std::shared_ptr<const TemporalFrame>& frame,
                          const std::shared_ptr<const TemporalFrame>& next, const CancelCheck& cancel);
 
-  // Of this frame alone.
+  // Size of the frame, as a window of one frame.
   const reconstruct::WindowSize& size() const { return size_; }
-  // Throw invalid_operation for what the frame or `content` lacks.
+  // Read row `y`, or the (A − B)/2 of its half-buffers. Throw invalid_operation for rows that were not written.
   void read_row(reconstruct::RowKind kind, int y, float* out) const { read(kind, kValues, y, out); }
   void read_half_differences(reconstruct::RowKind kind, int y, float* out) const {
     read(kind, kHalfDifferences, y, out);

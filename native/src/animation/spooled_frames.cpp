@@ -9,7 +9,8 @@
 namespace gradus::animation {
 namespace {
 
-// A solver passes over its rows again and again, each time over those of all frames: it is the rows that ask.
+// A window whose rows are read from temporary files. Each read polls for cancelling, because a solver reads the rows of
+// all frames many times.
 class SpooledWindow final : public reconstruct::HalvedWindowSource {
  public:
   SpooledWindow(std::vector<std::shared_ptr<const SpooledFrame>> frames, CancelCheck cancel)
@@ -36,7 +37,7 @@ class SpooledWindow final : public reconstruct::HalvedWindowSource {
   const CancelCheck cancel_;
 };
 
-// function(plane) for all planes of the images.
+// Calls function(plane) for every plane of the images.
 template <class Images, class Function>
 void for_planes(Images* images, const Function& function) {
   for (auto* part : {&images->values, &images->half_differences}) {
@@ -46,7 +47,8 @@ void for_planes(Images* images, const Function& function) {
 
 }  // namespace
 
-// The base of a frame, until the window comes that has the next one, too.
+// The fresh samples of a window's last frame in a temporary file, until the next window needs them for the temporal
+// differences to the frame after.
 class SpooledFrames::SpooledFresh {
  public:
   SpooledFresh(int place, const TemporalFrame& frame, const CancelCheck& cancel)
@@ -110,7 +112,7 @@ std::shared_ptr<const TemporalFrame> SpooledFrames::fresh_of(int place, const Ca
 
 std::unique_ptr<reconstruct::HalvedWindowSource> SpooledFrames::window(int first, int last, const CancelCheck& cancel) {
   frames_.erase(frames_.begin(), frames_.lower_bound(first));
-  std::shared_ptr<const TemporalFrame> before;  // of the frame before
+  std::shared_ptr<const TemporalFrame> before;  // the frame at place - 1
   for (int place = first; place <= last; ++place) {
     if (frames_.count(place) > 0) continue;
     throw_if_cancelled(cancel);

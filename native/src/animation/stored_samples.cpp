@@ -12,7 +12,7 @@
 namespace gradus::animation {
 namespace {
 
-// "depth, normal": those of `passes` that `others` lack.
+// Returns the names of the passes that are in `passes` but not in `others`, for example "depth, normal".
 std::string names_of_missing(uint64_t passes, uint64_t others) {
   std::string names;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
@@ -28,13 +28,14 @@ std::string region_text(const uint32_t* r) {
   return text;
 }
 
+// Whether a requested component pass needs features of surfaces that the stored frame lacks.
 bool lacks_surfaces(const film::ComponentContent& held, const GradusSettings& settings) {
   if (settings.use_decomposition == 0) return false;
   return (!held.non_specular && schema::any_wanted(settings.component_passes, schema::is_of_non_specular_vertices)) ||
          (!held.details && schema::any_wanted(settings.component_passes, schema::is_of_non_specular_details));
 }
 
-// What makes a stored frame another one than is asked for; "" if it fits.
+// Returns how a stored frame differs from the requested one, or "" if it fits. The text follows "stored frame <path> ".
 std::string difference(const film::FilmHeader& stored, FrameSamples kind, const GradusSettings& settings,
                        uint64_t scene_key) {
   const GradusSettings& other = stored.settings;

@@ -1,4 +1,4 @@
-// What of a frame store a job may take for its own. All errors name the file and the way out.
+// Checks whether stored samples fit a job. All errors name the file and how to resolve the conflict.
 #pragma once
 
 #include <string>
@@ -11,13 +11,14 @@ namespace gradus::animation {
 
 inline constexpr const char* kAdvice = ": remove it, or choose another frame store";
 
-// Throws invalid_argument that says what differs, where a half was sampled otherwise than these settings ask for, but
-// for its samples.
+// Throws invalid_argument, with the difference, if samples were taken with other settings, passes, region or scene than
+// these. Their number may differ.
 void require_same(const film::FilmHeader& stored, FrameSamples kind, const std::string& path,
                   const GradusSettings& settings, uint64_t scene_key);
-// Throws invalid_argument where it lacks what REGULARIZED reads.
+// Throws invalid_argument if the frame lacks the features that the reconstruction REGULARIZED reads.
 void require_features(const film::FilmHeader& stored, const std::string& path);
 
+// Returns read(). Appends kAdvice to the text of any Error that it throws, except CANCELLED.
 template <class Read>
 auto read_with_advice(const Read& read) {
   try {

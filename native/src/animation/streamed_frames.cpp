@@ -19,7 +19,7 @@ std::vector<std::unique_ptr<reconstruct::HalvedWindowSource>> StreamedFrames::di
                                                                                           const CancelCheck& cancel) {
   const Images frame = images(place, cancel), next = images(place + 1, cancel);
   images_ = {{place + 1, next}};
-  if (frame.size() != next.size()) throw invalid_argument("two frames of a sequence have other components");
+  if (frame.size() != next.size()) throw invalid_argument("two frames of a sequence have different components");
   std::vector<std::unique_ptr<reconstruct::HalvedWindowSource>> windows;
   for (size_t k = 0; k < frame.size(); ++k) {
     windows.push_back(

@@ -1,4 +1,5 @@
-// Frames of a sequence one after the other, each with its differences to the next, read once.
+// Reads the frames of a sequence in order, each with its temporal differences to the next frame. Each file is read
+// once.
 #pragma once
 
 #include <functional>
@@ -6,7 +7,6 @@
 #include <memory>
 #include <vector>
 
-#include "animation/load_samples.h"
 #include "animation/temporal_frame.h"
 #include "reconstruct/space_time/window_source.h"
 
@@ -14,27 +14,28 @@ namespace gradus::animation {
 
 class StreamedFrames {
  public:
-  // All samples of a frame, made of its two parts.
+  // Merges the fresh and the replayed samples of a frame.
   using Merge = std::function<std::shared_ptr<const film::Film>(int place, std::shared_ptr<film::Film> fresh,
                                                                 const film::Film& replay)>;
-  // Parts of frames with the same components.
+  // fresh, replay: load samples of frames, all with the same components.
   StreamedFrames(LoadSamples fresh, LoadSamples replay, Merge merge);
 
-  // In order: a frame, then its differences. Other orders read more often. By the threads of the caller's arena. Throws
-  // the Error CANCELLED.
+  // Returns all samples of a frame. To read each file once, call frame() and then differences() for each place in
+  // order. Uses the threads of the caller's arena. Throws Error CANCELLED.
   std::shared_ptr<const film::Film> frame(int place, const CancelCheck& cancel);
-  // Of each component a window of the frame and the next one, with pixels and their differences over time alone.
+  // Returns for each component a window of this frame and the next one. It has pixels and their temporal differences
+  // only. Throws Error CANCELLED, and invalid_argument if the two frames have different components.
   std::vector<std::unique_ptr<reconstruct::HalvedWindowSource>> differences(int place, const CancelCheck& cancel);
 
  private:
-  using Images = std::vector<std::shared_ptr<const TemporalFrame>>;  // by component
+  using Images = std::vector<std::shared_ptr<const TemporalFrame>>;  // one for each component
   const Images& images(int place, const CancelCheck& cancel);
   void load(int place, const CancelCheck& cancel);
 
   const LoadSamples fresh_, replay_;
   const Merge merge_;
-  std::map<int, Images> images_;                             // of two at most
-  std::map<int, std::shared_ptr<const film::Film>> merged_;  // of the last one that was read, until it is asked for
+  std::map<int, Images> images_;                             // at most two frames
+  std::map<int, std::shared_ptr<const film::Film>> merged_;  // the last frame that was read, until frame() returns it
 };
 
 }  // namespace gradus::animation

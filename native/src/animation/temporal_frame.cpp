@@ -12,7 +12,7 @@ namespace gradus::animation {
 
 namespace {
 
-// *sum is empty before the first.
+// Adds the planes of `term` to those of *sum, which is empty before the first term.
 void add(film::GradientImages term, film::GradientImages* sum) {
   if (sum->primal.empty()) return static_cast<void>(*sum = std::move(term));
   for (auto plane : {&film::GradientImages::primal, &film::GradientImages::dx, &film::GradientImages::dy}) {
@@ -20,6 +20,7 @@ void add(film::GradientImages term, film::GradientImages* sum) {
   }
 }
 
+// Reads the images of one component, or the sum of the images of all components.
 HalvedImages read_halved(const film::Film& frame, TemporalContent content, int component = kAllComponents) {
   HalvedImages images;
   const bool is_one = component != kAllComponents;
@@ -33,7 +34,7 @@ HalvedImages read_halved(const film::Film& frame, TemporalContent content, int c
   return images;
 }
 
-// Of one component: where that was.
+// Returns the replay map of a component: its own if it has one, otherwise that of the surfaces.
 film::ReplayMap sources_of(const film::ReplayMap& replayed, int component) {
   film::ReplayMap replay_map = replayed;
   if (component != kAllComponents && replayed.has_component_map(component))

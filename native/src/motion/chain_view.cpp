@@ -10,6 +10,7 @@ namespace {
 
 using Row = std::vector<SpecularChain>;
 
+// Moves the chains of all rows into the view, and makes its indices refer to the joined list.
 void join(std::vector<Row>* rows, ChainView* view) {
   const auto width = size_t(view->region().width());
   for (size_t row = 0; row < rows->size(); ++row) {
@@ -21,6 +22,30 @@ void join(std::vector<Row>* rows, ChainView* view) {
     view->chains.insert(view->chains.end(), (*rows)[row].begin(), (*rows)[row].end());
     (*rows)[row] = {};
   }
+}
+
+// Maximum relative change between the differences on both sides of a pixel. Where it is larger, the pixel lies at an
+// edge between facets.
+constexpr float kLargestBend = 0.5f;
+
+// Computes one column of the Jacobian: a central difference where both neighbours have the signature of the centre, a
+// one-sided difference where only one has it.
+bool column(const ChainView& view, const Aim& aim, const SpecularChain& centre, const Vec3& here, glm::ivec2 at,
+            glm::ivec2 by, Vec3* column) {
+  std::array<Vec3, 2> difference;
+  size_t count = 0;
+  for (const int side : {-1, 1}) {
+    const SpecularChain* neighbour = view.at(at.x + side * by.x, at.y + side * by.y);
+    Vec3 there;
+    if (neighbour == nullptr || neighbour->signature != centre.signature || !aim.miss(neighbour->ray.ray, &there))
+      continue;
+    difference[count++] = float(side) * (there - here);
+  }
+  if (count == 0) return false;
+  *column = difference[0];
+  if (count == 1) return true;
+  *column = 0.5f * (difference[0] + difference[1]);
+  return glm::length(difference[1] - difference[0]) < kLargestBend * glm::length(*column);
 }
 
 }  // namespace
@@ -73,6 +98,18 @@ ChainView view_surfaces(const CentreView& centres, const GradusSettings& setting
     chain.is_static = change != nullptr && !change->of_all() && change->is_static(chain.ray.ray, hit, hit.t);
   });
   return view;
+}
+
+FilmJacobian chain_jacobian(const ChainView& view, const Target& target, int32_t x, int32_t y) {
+  FilmJacobian jacobian;
+  const SpecularChain& chain = *view.at(x, y);
+  const Aim aim(target, chain.ray.ray.origin);
+  Vec3 here;
+  jacobian.axis = aim.axis();
+  jacobian.known = aim.miss(chain.ray.ray, &here) &&
+                   column(view, aim, chain, here, {x, y}, {1, 0}, &jacobian.columns[0]) &&
+                   column(view, aim, chain, here, {x, y}, {0, 1}, &jacobian.columns[1]);
+  return jacobian;
 }
 
 }  // namespace gradus::motion

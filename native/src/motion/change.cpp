@@ -13,13 +13,14 @@ bool same_view(const GradusCamera& a, const GradusCamera& b) {
   return std::equal(a.matrix, a.matrix + 16, b.matrix) && std::equal(a.window, a.window + 4, b.window);
 }
 
+// An instance with the snapshot that contains it.
 struct Placed {
   const scene::Snapshot& snapshot;
   const geometry::InstanceData& instance;
 
   uint32_t kind() const { return instance.visibility | GRADUS_MAY_MOVE; }
   size_t slots() const { return instance.materials.size(); }
-  // nullptr: the default one, which every snapshot has of its own.
+  // Returns the material of a slot, or nullptr for the default material, of which every snapshot has its own copy.
   const shading::MaterialData* material(size_t slot) const {
     const uint32_t material = instance.materials[slot];
     return material > 0 ? snapshot.materials[material].get() : nullptr;
@@ -32,6 +33,7 @@ bool same_materials(const Placed& a, const Placed& b) {
   return same;
 }
 
+// Whether an instance is the same in two snapshots.
 bool is_static(const Placed& a, const Placed& b) {
   return a.instance.mesh == b.instance.mesh && a.instance.to_world == b.instance.to_world && !a.instance.moves() &&
          a.kind() == b.kind() && same_materials(a, b);
@@ -39,7 +41,8 @@ bool is_static(const Placed& a, const Placed& b) {
 
 }  // namespace
 
-// A camera or an object that moves within the frame is elsewhere at each of its moments.
+// A camera that moves while the shutter is open has no single position in the frame, so everything counts as changed.
+// An instance that moves while the shutter is open is never static, for the same reason.
 Change::Change(const scene::Snapshot& now)
     : now_(now), all_(now.camera.shutter_key_count > 0), instances_(now.instances.size()) {}
 

@@ -13,7 +13,7 @@ namespace gradus::motion {
 
 namespace {
 
-// Another moment of the scene.
+// The scene at the previous or the next frame, with a camera and a chain tracer.
 struct OtherFrame {
   OtherFrame(const scene::Snapshot& scene, Moment when, const GradusSettings& settings, const CancelCheck& is_cancelled)
       : snapshot(scene::moved_snapshot(scene, when, is_cancelled)),
@@ -26,18 +26,19 @@ struct OtherFrame {
   ChainTracer tracer;
 };
 
-static_assert(float(Tracking::NoPath) == film::kNothingToTrack, "what planes of motion begin with");
+static_assert(float(Tracking::NoPath) == film::kNothingToTrack, "planes of motion are initialised with NoPath");
 
-// Rows of the film that are done together: chains of all pixels would take more memory than a frame.
+// Number of film rows that are tracked together. The chains of all pixels would take more memory than a frame.
 constexpr int32_t kBand = 64;
 
-// With the pixels around, whose chains tell how things change along the film.
+// Returns the band with a border of one pixel: chain_jacobian() needs the chains of neighbouring pixels.
 Region with_neighbours(const Region& band, const GradusSettings& settings) {
   return {std::max(band.x0 - 1, 0), std::max(band.y0 - 1, 0), std::min(band.x1 + 1, int32_t(settings.width)),
           std::min(band.y1 + 1, int32_t(settings.height))};
 }
 
-// By views. has_surfaces: the last one is view_surfaces(), whose motion is that of all that others show directly.
+// Returns the motion of each view. has_surfaces: whether the last view is view_surfaces(); its motion is then used for
+// everything that other views show directly.
 std::vector<ChainMotion> track_views(const std::vector<ChainView>& views, bool has_surfaces, const ChainTracer& to,
                                      const Region& band, const CancelCheck& is_cancelled) {
   std::vector<ChainMotion> motion(views.size());
@@ -49,7 +50,7 @@ std::vector<ChainMotion> track_views(const std::vector<ChainView>& views, bool h
   return motion;
 }
 
-// pixel: the first of the band.
+// Writes the motion of a band to both frames. pixel: index of the first pixel of the band in `joined`.
 void join(const camera::Camera& camera, const Region& band, const ChainMotion& previous, const ChainMotion& next,
           size_t pixel, ComponentMotion* joined) {
   const auto width = size_t(band.width());
@@ -65,9 +66,10 @@ void join(const camera::Camera& camera, const Region& band, const ChainMotion& p
   }
 }
 
-constexpr uint64_t kNumbers = uint64_t{1} << 24;  // that a float tells apart
+constexpr uint64_t kNumbers = uint64_t{1} << 24;  // count of integers that a float represents exactly
 
-// The same in every frame: of the way, and of the object at its end.
+// Returns a number, 1 or larger, for the specular signature of a chain and the object at its end. It is the same in all
+// frames.
 float number_of(const scene::Snapshot& snapshot, const SpecularChain& chain) {
   const uint64_t end = chain.last.valid() ? snapshot.instances[chain.last.instance].id + 1 : 0;
   const uint64_t hash =
@@ -76,7 +78,7 @@ float number_of(const scene::Snapshot& snapshot, const SpecularChain& chain) {
   return float(1 + hash % (kNumbers - 1));
 }
 
-// shown: from the first pixel of the band on.
+// Writes what the chains of a band show. shown: points to the entry of the band's first pixel.
 void write_shown_points(const ChainView& view, const Region& band, film::ShownPoint* shown) {
   for (int32_t y = band.y0; y < band.y1; ++y) {
     for (int32_t x = band.x0; x < band.x1; ++x, ++shown) {

@@ -1,4 +1,4 @@
-// Motion of components for passes: Path <Component> Motion and Path <Component> Tracked (contract 6.6).
+// Motion of components for the passes Path <Component> Motion and Path <Component> Tracked.
 #pragma once
 
 #include <vector>
@@ -7,17 +7,18 @@
 
 namespace gradus::motion {
 
-// By pixels of a region.
+// Motion of a component, one value for each pixel of a region.
 struct ComponentMotion {
-  std::vector<Vec4> vectors;   // previous − now, now − next: pixels, y up; 0 where it is not tracked to both
-  std::vector<float> tracked;  // a Tracking: 1, or the cause of the first that failed
+  std::vector<Vec4> vectors;   // (previous − now, now − next) in pixels, y up; 0 unless both frames are tracked
+  std::vector<float> tracked;  // a Tracking: 1, or the cause why the previous or else the next frame is not tracked
   std::vector<film::ShownPoint> shown;
   TrackingCounts counts;
 };
 
-// Of the components whose bit is set in `wanted`, in order, by the vector keys that the snapshot holds, for the middle
-// of the lens and the moment of the frame. No path stands for Residual: in its place are the surfaces that the camera
-// sees. Throws Error CANCELLED or OUT_OF_MEMORY.
+// Returns the motion of the components whose bits are set in `wanted`, in order. It holds for the middle of the lens
+// and the time of the frame. The neighbouring frames are given by the vector keys of the snapshot. Residual has no
+// representative path; its motion is that of the surfaces that the camera sees. Throws Error CANCELLED or
+// OUT_OF_MEMORY.
 std::vector<ComponentMotion> component_motion(
     const scene::Snapshot& snapshot, const GradusSettings& settings, const lpe::ComponentSet& components,
     uint32_t wanted, const Region& region, const CancelCheck& is_cancelled = [] { return false; });

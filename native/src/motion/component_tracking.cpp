@@ -3,22 +3,25 @@
 #include <algorithm>
 #include <bit>
 
+#include "motion/pixel_matching.h"
+
 namespace gradus::motion {
 
 namespace {
 
-// Rows that are followed together: chains of all pixels would take more memory than a frame.
+// Number of film rows that are tracked together. The chains of all pixels would take more memory than a frame.
 constexpr int32_t kBand = 64;
 
-// Rows [y0, y1) of a view.
+// Returns a copy of rows [y0, y1) of a view.
 CentreView rows_of(const CentreView& view, int32_t y0, int32_t y1) {
   const auto place = [&](int32_t y) { return ptrdiff_t(y - view.region.y0) * view.region.width(); };
-  const auto cut = [&](const auto& list) {
+  const auto rows = [&](const auto& list) {
     return std::decay_t<decltype(list)>(list.begin() + place(y0), list.begin() + place(y1));
   };
-  return {view.snapshot, view.camera, {view.region.x0, y0, view.region.x1, y1}, cut(view.hits), cut(view.directions)};
+  return {view.snapshot, view.camera, {view.region.x0, y0, view.region.x1, y1}, rows(view.hits), rows(view.directions)};
 }
 
+// Removes the chains without smooth vertices.
 void exclude_directly_seen(ChainView* view) {
   for (int32_t& place : view->places) {
     if (place >= 0 && view->chains[size_t(place)].signature.length == 0) place = -1;
@@ -42,7 +45,7 @@ std::vector<ChainMotion> track_components(const CentreView& from, const ChainTra
   std::vector<ChainMotion> motion(size_t(std::popcount(wanted)));
   for (int32_t y = film.y0; y < film.y1; y += kBand) {
     const Region band{film.x0, y, film.x1, std::min(y + kBand, film.y1)};
-    // With the rows around, whose chains tell how things change along the film.
+    // The rows above and below are included, since chain_jacobian() needs the chains of neighbouring pixels.
     const CentreView rows = rows_of(from, std::max(y - 1, film.y0), std::min(band.y1 + 1, film.y1));
     std::vector<ChainView> views = view_chains(rows, to.settings(), components, wanted, is_cancelled, &change);
     for (size_t k = 0; k < views.size(); ++k) {
@@ -55,6 +58,39 @@ std::vector<ChainMotion> track_components(const CentreView& from, const ChainTra
 
 bool is_seen_through_smooth(const ChainMotion& motion) {
   return std::any_of(motion.tracking.begin(), motion.tracking.end(), [](Tracking t) { return t != Tracking::NoPath; });
+}
+
+film::PixelCorrespondence match_component(const film::PixelCorrespondence& surface, const Region& region,
+                                          const ChainMotion& motion) {
+  const size_t pixels = surface.pixel.size();
+  film::PixelCorrespondence correspondence{std::vector<int32_t>(pixels, film::kNoCorrespondence),
+                                           std::vector<Vec2>(pixels, Vec2(0.0f))};
+  std::vector<int32_t> owner(pixels, film::kNoCorrespondence);
+  std::vector<float> distances(pixels, kInfinity);
+  for (size_t i = 0; i < pixels; ++i) {
+    if (motion.tracking[i] != Tracking::Tracked) continue;
+    const Vec2 film = motion.film[i];
+    const int32_t there = pixel_at(region, film);
+    if (there == film::kNoCorrespondence) continue;
+    const auto next = size_t(there);
+    const float distance = glm::length(film - centre_of(region, next));
+    if (!(distance < distances[next])) continue;
+    if (owner[next] != film::kNoCorrespondence) correspondence.pixel[size_t(owner[next])] = film::kNoCorrespondence;
+    distances[next] = distance;
+    owner[next] = int32_t(i);
+    correspondence.pixel[i] = there;
+    correspondence.off_centre[i] = off_centre(region, next, film);
+  }
+  for (size_t i = 0; i < pixels; ++i) {
+    const int32_t there = surface.pixel[i];
+    if (correspondence.pixel[i] != film::kNoCorrespondence || there == film::kNoCorrespondence ||
+        owner[size_t(there)] != film::kNoCorrespondence)
+      continue;
+    owner[size_t(there)] = int32_t(i);
+    correspondence.pixel[i] = there;
+    correspondence.off_centre[i] = surface.off_centre.empty() ? Vec2(0.0f) : surface.off_centre[i];
+  }
+  return correspondence;
 }
 
 }  // namespace gradus::motion

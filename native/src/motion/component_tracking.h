@@ -1,18 +1,28 @@
-// Where what components show through smooth surfaces has gone in the next frame.
+// Finds where the next frame shows what components show through smooth surfaces, and the resulting correspondence of
+// pixels.
 #pragma once
 
 #include <vector>
 
+#include "film/pixel_correspondence.h"
 #include "motion/specular_motion.h"
 
 namespace gradus::motion {
 
-// Of the components whose bits are set in `wanted`, in order, by pixels of `from`; NoPath where a component is seen
-// directly, or not at all. Cancelled: pixels are NotConverged.
+// Returns the motion of the components whose bits are set in `wanted`, in order, one value for each pixel of `from`.
+// Tracking is NoPath where a component is seen directly or not at all. After cancelling, pixels are NotConverged.
 std::vector<ChainMotion> track_components(const CentreView& from, const ChainTracer& to,
                                           const lpe::ComponentSet& components, uint32_t wanted,
                                           const CancelCheck& is_cancelled);
-// Whether a component is seen through smooth surfaces anywhere.
+// Whether the component is seen through smooth surfaces in some pixel.
 bool is_seen_through_smooth(const ChainMotion& motion);
+
+// Returns for each pixel the pixel of the next frame in which the component shows the same. It follows specular motion
+// where there is a tracked chain of smooth surfaces, and surface motion elsewhere. surface: match_pixels() of the two
+// frames over `region`. motion: result of track_components() for the component. The correspondence is one-to-one: a
+// pixel to which several chains lead goes to the chain that arrives nearest to its centre, and chains take precedence
+// over surfaces.
+film::PixelCorrespondence match_component(const film::PixelCorrespondence& surface, const Region& region,
+                                          const ChainMotion& motion);
 
 }  // namespace gradus::motion

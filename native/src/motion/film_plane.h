@@ -1,5 +1,5 @@
-// Values between the pixels of a plane. Positions count pixels from the middle of the first one; beyond the outermost
-// these go on.
+// Interpolation of values on a plane of pixels. Positions are in pixels, with 0 at the centre of the first pixel.
+// Beyond the outermost pixel centres the plane continues with the values at its border.
 #pragma once
 
 #include <algorithm>
@@ -21,17 +21,18 @@ struct FilmPlane {
   }
 };
 
-// The nearest position whose neighbours are pixels of the plane.
+// Returns the nearest position that lies between pixel centres of the plane.
 inline Vec2 clamped_to(const Vec2& p, int width, int height) {
   return glm::clamp(p, Vec2(0.0f), Vec2(float(width - 1), float(height - 1)));
 }
 
-// No longer than the film; 0 where it is not finite.
+// Clamps a vector to the width and height of the film. A vector that is not finite becomes 0.
 inline Vec2 bounded(const Vec2& vector, int width, int height) {
   const Vec2 maximum = {float(width), float(height)};
   return is_finite(vector.x) && is_finite(vector.y) ? glm::clamp(vector, -maximum, maximum) : Vec2(0.0f);
 }
 
+// Interpolates bilinearly.
 template <class T>
 T linear_at(const FilmPlane<T>& plane, const Vec2& position) {
   const Vec2 p = clamped_to(position, plane.width, plane.height), first = glm::floor(p), u = p - first;
@@ -41,6 +42,7 @@ T linear_at(const FilmPlane<T>& plane, const Vec2& position) {
   return (1.0f - u.y) * upper + u.y * lower;
 }
 
+// Interpolates bicubically (base/cubic_weights.h).
 template <class T>
 T cubic_at(const FilmPlane<T>& plane, const Vec2& position) {
   const Vec2 p = clamped_to(position, plane.width, plane.height), first = glm::floor(p);

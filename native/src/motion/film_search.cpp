@@ -13,21 +13,22 @@ namespace {
 constexpr int kMaxSteps = 24;
 constexpr int kMaxHalvings = 6;
 constexpr float kLongestStep = 64.0f;     // pixels
-constexpr float kDifference = 0.125f;     // pixels: below the width of what a pixel sees, far above rounding
-constexpr float kMinDeterminant = 1e-4f;  // of unit columns: below, the picture folds
-constexpr float kFirstAdvance = 0.25f, kSmallestAdvance = 1.0f / 64.0f;  // of a frame
-// Of the Jacobian, relative to itself, over a step in time. As long as it changes by less than 1 no fold lies in
+constexpr float kDifference = 0.125f;     // pixels: width of finite differences, below a pixel but far above rounding
+constexpr float kMinDeterminant = 1e-4f;  // of normalised columns: below it the image folds
+constexpr float kFirstAdvance = 0.25f, kSmallestAdvance = 1.0f / 64.0f;  // steps in time, in frames
+// Maximum relative change of the Jacobian over a step in time. As long as it changes by less than 1 there is no fold in
 // between.
 constexpr float kLargestChange = 0.5f;
-constexpr float kRounding = 2e-6f;   // of the distance to the target
-constexpr float kRoughness = 2e-5f;  // likewise: of normals that are differences themselves, those of bumps
-// Pixels: a place that is found so near to where it was expected is the one that was meant.
+constexpr float kRounding = 2e-6f;   // error of a miss by rounding, relative to the distance of the target
+constexpr float kRoughness = 2e-5f;  // the same error where normals are finite differences, as those of bump maps
+// Pixels: a position found within this distance of the expected one is accepted as the same image.
 constexpr float kNear = 0.25f;
-// Pixels: over longer ways the Jacobian is found anew, not carried along.
+// Pixels: over longer displacements the Jacobian is computed anew rather than carried along.
 constexpr float kFar = 1.0f;
-// Pixels: steps from two places that lead so near to each other are believed to lead to the target.
+// Pixels: two steps that lead to positions this close are taken to lead to the target.
 constexpr float kSame = 0.01f;
 
+// Computes the Newton step for a miss. Returns false if the Jacobian is singular.
 bool newton_step(const glm::mat2& jacobian, const Vec2& miss, Vec2* step) {
   const float lengths = glm::length(jacobian[0]) * glm::length(jacobian[1]);
   if (!(std::fabs(glm::determinant(jacobian)) > kMinDeterminant * lengths)) return false;
@@ -40,10 +41,10 @@ Vec2 limited(const Vec2& step) {
   return length > kLongestStep ? step * (kLongestStep / length) : step;
 }
 
-// Whether the picture neither folds nor changes much from one place to another.
+// Whether the image neither folds nor changes much from one position to another.
 bool is_same_image(const FilmJacobian& from, const FilmJacobian& to, const Aim& aim, bool near) {
-  const glm::mat2 change = glm::inverse(from.about(aim)) * to.about(aim), rest = change - glm::mat2(1.0f);
-  const float square = glm::dot(rest[0], rest[0]) + glm::dot(rest[1], rest[1]);
+  const glm::mat2 change = glm::inverse(from.about(aim)) * to.about(aim), difference = change - glm::mat2(1.0f);
+  const float square = glm::dot(difference[0], difference[0]) + glm::dot(difference[1], difference[1]);
   return square < kLargestChange * kLargestChange || (near && glm::determinant(change) > 0.0f);
 }
 
@@ -53,15 +54,15 @@ glm::mat2 FilmJacobian::about(const Aim& aim) const {
   return {aim.flat(turned(columns[0], axis, aim.axis())), aim.flat(turned(columns[1], axis, aim.axis()))};
 }
 
-// Where the iteration stands.
+// State of the Newton iteration.
 struct FilmSearch::State {
   float time;
   Vec2 film;
   SpecularChain chain;
   Vec2 miss;
   glm::mat2 jacobian;
-  bool fresh = false;             // the Jacobian is of this very place
-  Vec2 beyond = Vec2(kInfinity);  // where a whole step led last at which the way broke
+  bool fresh = false;             // whether the Jacobian was computed at exactly this position
+  Vec2 beyond = Vec2(kInfinity);  // end of the last full step at which there was no chain
 };
 
 Target FilmSearch::target(float time) const {
@@ -70,7 +71,8 @@ Target FilmSearch::target(float time) const {
   return {after.in_sky ? glm::normalize(place) : place, after.in_sky};
 }
 
-// Between the frames: by the same point of the first surface in both.
+// Traces the chain at a position and time. Between the frames its last ray is interpolated between two chains through
+// the same point of the first smooth surface.
 bool FilmSearch::look(float time, const Vec2& film, SpecularChain* chain) {
   const Problem& p = problem_;
   SpecularChain before;
@@ -93,7 +95,7 @@ bool FilmSearch::miss(float time, const Aim& aim, const Vec2& film, SpecularChai
   return true;
 }
 
-// One-sided, on the side where the way does not break.
+// Computes the Jacobian by one-sided differences, on a side where a chain exists.
 bool FilmSearch::differentiate(const Aim& aim, const State& state, glm::mat2* jacobian) {
   for (int axis = 0; axis < 2; ++axis) {
     bool found = false;
@@ -110,13 +112,13 @@ bool FilmSearch::differentiate(const Aim& aim, const State& state, glm::mat2* ja
   return true;
 }
 
-// A step, or half of it and so on, that brings the target nearer.
+// Takes a step that reduces the estimated distance to the target, halving the step until it does.
 SearchEnd FilmSearch::take(const Aim& aim, const Vec2& newton, State* state) {
   const Vec2 step = limited(newton);
   const float before = glm::length(newton), length = glm::length(step);
   SearchEnd end = SearchEnd::Broken;
   float share = 1.0f;
-  // With a Jacobian that is only a guess, halving may be in vain.
+  // With an estimated Jacobian, halving the step may not help.
   for (int i = 0; i < (state->fresh ? kMaxHalvings : 1); ++i, share *= 0.5f) {
     const Vec2 film = state->film + share * step;
     SpecularChain chain;
@@ -128,10 +130,10 @@ SearchEnd FilmSearch::take(const Aim& aim, const Vec2& newton, State* state) {
     }
     end = SearchEnd::Stuck;
     if (!newton_step(state->jacobian, by, &left) || !(glm::length(left) < before - 0.25f * share * length)) continue;
-    // Broyden's update.
+    // Broyden's update of the Jacobian.
     const Vec2 moved = film - state->film;
-    const Vec2 unforeseen = (by - state->miss - state->jacobian * moved) / glm::dot(moved, moved);
-    state->jacobian += glm::outerProduct(unforeseen, moved);
+    const Vec2 residual = (by - state->miss - state->jacobian * moved) / glm::dot(moved, moved);
+    state->jacobian += glm::outerProduct(residual, moved);
     state->film = film;
     state->chain = chain;
     state->miss = by;
@@ -141,8 +143,9 @@ SearchEnd FilmSearch::take(const Aim& aim, const Vec2& newton, State* state) {
   return end;
 }
 
-// The last correction, which tells whether the Jacobian is to be believed: at the edge of a facet a guess of it may be
-// far too large, and make everything seem near. What is there already, as what rests is, stays.
+// Applies the last correction and checks that it reduces the miss. This rejects an estimated Jacobian that is far too
+// large, as at the edge of a facet, where any step would seem short enough. A position whose miss is mere rounding, as
+// that of a static target, is not changed.
 bool FilmSearch::converge(const Aim& aim, const Vec2& step, State* state) {
   const float before = glm::length(state->miss);
   if (before < kRounding * aim.distance()) return true;

@@ -1,6 +1,6 @@
-// The place on the film from which a way through smooth surfaces leads to a target: Newton's method on the film inside
-// steps in time. Every way is traced from the camera, so that reflections and refractions hold exactly, and there are
-// two unknowns for any number of surfaces (Jakob and Marschner 2012, Manifold Exploration; Zimmer et al. 2015,
+// Finds the position on the film from which a specular chain leads to a target: Newton's method on the film, inside
+// steps in time. Every chain is traced from the camera, so that it obeys reflection and refraction exactly, and there
+// are two unknowns for any number of surfaces (Jakob and Marschner 2012, Manifold Exploration; Zimmer et al. 2015,
 // section 4.1).
 #pragma once
 
@@ -11,61 +11,64 @@
 
 namespace gradus::motion {
 
-// How a miss changes along the film.
+// How the miss of a target (Aim::miss()) changes along the film.
 struct FilmJacobian {
   bool known = false;
-  Vec3 axis = Vec3(0, 0, 1);      // of the aim
-  std::array<Vec3, 2> columns{};  // miss for one pixel to the right, and up
+  Vec3 axis = Vec3(0, 0, 1);      // axis of the aim for which it was computed
+  std::array<Vec3, 2> columns{};  // change of the miss for one pixel in x, and for one pixel in y
 
-  // Turned to the axis of another aim, where it is a guess.
+  // Returns the Jacobian rotated to the axis of another aim, for which it is only an estimate.
   glm::mat2 about(const Aim& aim) const;
 };
 
 struct FilmPlace {
   Vec2 film = Vec2(0.0f);
-  SpecularChain chain;    // from there
-  FilmJacobian jacobian;  // before a search, a guess
+  SpecularChain chain;    // chain from that position
+  FilmJacobian jacobian;  // before a search, an estimate
 };
 
 struct SearchCounts {
-  uint64_t traced = 0;  // ways that were followed
-  uint64_t space = 0;   // steps of Newton's
+  uint64_t traced = 0;  // chains that were traced
+  uint64_t space = 0;   // steps of Newton's method
   uint64_t time = 0;    // steps in time
 };
 
 enum class SearchEnd : uint8_t {
   Found,
-  Broken,  // the way does not exist where it was looked for
-  Ended,   // nor does it where, by all that is known, the target would be seen: beyond an edge
-  Stuck,
-  Turned,  // a place was found, but between it and the start the picture may fold: it may be another image of the same
-           // thing
+  Broken,  // no chain with the signature exists at the positions that were tried
+  Ended,   // nor at the predicted position of the target: it lies beyond an edge
+  Stuck,   // the iteration did not converge
+  Turned,  // a position was found, but the image may fold between it and the start: it may be another image of the
+           // same target
 };
 
 class FilmSearch {
  public:
-  // What one way shows in two frames, and where.
+  // A specular signature, and the targets that its chains show in two frames.
   struct Problem {
     const ChainTracer &before, &after;
     const SpecularSignature& signature;
     Target target_before, target_after;
-    Vec2 moved;  // of the first smooth vertex on the film
+    Vec2 moved;  // displacement of the first smooth vertex on the film, in pixels
   };
-  // All that is given lives as long as it.
+  // `problem` and `counts` must outlive the search.
   FilmSearch(const Problem& problem, SearchCounts* counts) : problem_(problem), counts_(*counts) {}
 
-  // One step in time, from `from` to a guess of the place in the frame after.
+  // Searches the next frame in one step in time, from `from` to `guess`, an estimate of the position there.
   SearchEnd leap(const FilmPlace& from, const Vec2& guess, FilmPlace* place);
-  // From `from` to the frame after in steps that are halved where the picture changes much. What lies between the
-  // frames is taken to be between the rays that the same points of the first smooth surface send on.
+  // Searches the next frame in several steps in time, which are halved where the image changes much. Between the
+  // frames, the last ray of a chain is interpolated between those of both frames through the same point of the first
+  // smooth surface.
   SearchEnd march(const FilmPlace& from, FilmPlace* place);
-  // At a place that is known to show the target before: its Jacobian.
+  // Computes the Jacobian at a position that shows the target in the first frame, unless it is known. Returns false if
+  // that fails.
   bool complete(FilmPlace* place);
 
-  static constexpr float kFilmTolerance = 1e-3f;  // pixels: of a step before the last correction
+  static constexpr float kFilmTolerance = 1e-3f;  // pixels: below this length a step is the last correction
 
  private:
   struct State;
+  // Times lie between 0, the first frame, and 1, the second one.
   Target target(float time) const;
   bool look(float time, const Vec2& film, SpecularChain* chain);
   bool miss(float time, const Aim& aim, const Vec2& film, SpecularChain* chain, Vec2* by);

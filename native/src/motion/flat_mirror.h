@@ -1,5 +1,5 @@
-// Motion of reflections where every reflector is a flat mirror: what Cycles' specular motion does, to compare with. One
-// reflection, no refraction, no curvature.
+// Motion of reflections under the assumption that every reflector is a flat mirror, as in Cycles' specular motion: one
+// reflection, no refraction, no curvature. It serves for comparison only.
 #pragma once
 
 #include "motion/snapshot_motion.h"
@@ -7,11 +7,11 @@
 
 namespace gradus::motion {
 
-// What becomes of the mirror between the frames.
+// Whether the mirror is assumed to be static between the frames, or moves with its surface.
 enum class FlatMirror : uint8_t { Static, MovesAlong };
 
-// Where the mirror image of what a chain shows lies in the other frame. motion: to that frame. False: the chain is no
-// single reflection, or nothing of it is there.
+// Computes the film position in the other frame of the mirror image that a chain shows. motion: surface motion to that
+// frame. Returns false if the chain is not a single reflection, or if its end or its mirror is not in that frame.
 bool flat_mirror_motion(const ChainTracer& from, const ChainTracer& to, const SnapshotMotion& motion,
                         const SpecularChain& chain, FlatMirror mirror, Vec2* film);
 

@@ -1,4 +1,5 @@
-// A frame before any flow: what it shows on one scale with the other, and what is known of its surfaces.
+// A frame as input of optical flow: its grey levels, on a scale that both frames share, and what is known of the motion
+// of its surfaces.
 #pragma once
 
 #include "motion/film_plane.h"
@@ -8,7 +9,7 @@ namespace gradus::motion {
 
 class FlowFrame {
  public:
-  // Both live as long as it.
+  // `image`, and the `tracked` values of `frame`, must outlive the object.
   FlowFrame(const GreyImage& image, const ComponentFrame& frame);
 
   const GreyImage& image() const { return image_; }
@@ -17,16 +18,19 @@ class FlowFrame {
   size_t count() const { return surface_.size(); }
 
   FilmPlane<float> levels() const { return plane(image_.levels); }
-  const std::vector<Vec2>& surface() const { return surface_; }  // finite, no longer than the film
+  const std::vector<Vec2>& surface() const { return surface_; }  // motion of surfaces: finite, no longer than the film
   std::span<const float> tracked() const { return tracked_; }
-  const std::vector<int32_t>& object() const { return object_; }  // all of them 0 where they are not known
+  const std::vector<int32_t>& object() const { return object_; }  // all 0 if objects are not known
   bool shows_edge(size_t pixel) const { return edges_[pixel] != 0; }
 
+  // Returns the position of a pixel's centre, as of film_plane.h.
   Vec2 place(size_t pixel) const {
     const size_t row = pixel / size_t(width());
     return Vec2(float(pixel - row * size_t(width())), float(row));
   }
+  // Returns the pixel whose centre is nearest to a position.
   size_t nearest(const Vec2& place) const;
+  // Whether a position lies on the film.
   bool holds(const Vec2& place) const;
 
   template <class T>

@@ -8,20 +8,21 @@
 namespace gradus::motion {
 namespace {
 
-constexpr float kFloor = 0.01f;         // of the mean, added before the logarithm: below it is black
+constexpr float kFloor = 0.01f;         // share of the mean that is added before the logarithm: values below are black
 constexpr float kOutliers = 0.002f;     // share of pixels beyond each end of the scale
-constexpr float kMinLogarithms = 0.5f;  // that the scale spans
-constexpr float kMinShare = 0.25f;      // of the mean that the scale spans in the linear domain
+constexpr float kMinLogarithms = 0.5f;  // minimum range of the scale in the logarithmic domain
+constexpr float kMinShare = 0.25f;      // minimum range of the scale in the linear domain, as a share of the mean
 constexpr float kBrightest = 1e30f;
 
 using Values = std::vector<float>;
 
+// Returns the luminance, clamped to a finite range; 0 if it is not finite.
 float tamed(const Rgb& radiance) {
   const float value = luminance(radiance);
   return is_finite(value) ? std::clamp(value, -kBrightest, kBrightest) : 0.0f;
 }
 
-// Values of both frames, in rows of the film: twice its height.
+// Returns the mean magnitude of the values of both frames. rows: twice the height of the film.
 float mean_magnitude(const Values& values, int width, int rows) {
   const Sums sums = sum_rows(rows, 1, [&](int y, int) {
     double sum = 0.0;
@@ -35,7 +36,7 @@ struct Scale {
   float low, high;
 };
 
-// All but the outliers.
+// Returns the range of the values without outliers.
 Scale scale_of(Values values) {
   const auto place = [&](float share) {
     return values.begin() + ptrdiff_t(std::lround(share * float(values.size() - 1)));

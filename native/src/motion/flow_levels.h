@@ -1,4 +1,4 @@
-// Two frames of a component as grey images on which optical flow works.
+// Converts two frames of a component to grey images for optical flow.
 #pragma once
 
 #include <array>
@@ -9,12 +9,13 @@
 namespace gradus::motion {
 
 enum class FlowDomain {
-  Logarithmic,  // irradiance: shadows of any brightness stand out alike
+  Logarithmic,  // for irradiance: shadows have the same contrast at any brightness
   Linear,
 };
 
-// Both on one scale, whose ends are the darkest and the brightest but for a few pixels. Noise alone is not drawn out to
-// the whole scale. What is not finite counts as black.
+// Returns both frames as levels from 0 to 255 on a common scale. The scale spans the values of all but 0.2 % of the
+// pixels at either end, and a minimum range, so that noise alone is not stretched over the whole scale. Values that are
+// not finite count as black.
 std::array<GreyImage, 2> flow_levels(int width, int height, std::span<const Rgb> first, std::span<const Rgb> second,
                                      FlowDomain domain);
 

@@ -7,14 +7,18 @@
 namespace gradus::motion {
 namespace {
 
-constexpr float kSurfaceReturn =
-    0.5f;  // pixels that a surface's way there and back may be off, the way back being the nearest pixel's
-constexpr float kMinNoiseLevel = 0.5f;               // levels: of their rounding
-constexpr float kDeviation = 1.4826f / 1.41421356f;  // of a level, from the median of the differences of two
-constexpr int kPatch = 7;                            // pixels around one, over which two vectors are compared
-constexpr float kMinNoise = 1.0f;  // levels of noise: reconstructions leave blotches, which DIS fits well
-constexpr float kGain = 1.5f;  // variances that a vector must explain, as a mean over the patch: less fits by chance
+// Pixels: maximum error of a surface's motion to the other frame and back. The motion back is that of the nearest
+// pixel.
+constexpr float kSurfaceReturn = 0.5f;
+constexpr float kMinNoiseLevel = 0.5f;  // levels: rounding of the levels
+// Standard deviation of a level, relative to the median magnitude of the difference of two levels.
+constexpr float kDeviation = 1.4826f / 1.41421356f;
+constexpr int kPatch = 7;          // radius in pixels of the patch over which two vectors are compared
+constexpr float kMinNoise = 1.0f;  // levels: reconstructions leave correlated errors, which DIS fits well
+constexpr float kGain = 1.5f;      // variances, mean over the patch, that a vector must explain: less may fit by chance
 
+// Estimates the vectors from one frame to another. The other frame is first compensated by the motion of surfaces, so
+// that optical flow finds the motion relative to them, the residual.
 class FlowVectors {
  public:
   FlowVectors(const FlowFrame& from, const FlowFrame& to) : from_(from), to_(to), seen_(from.count()) {
@@ -24,10 +28,10 @@ class FlowVectors {
   std::vector<Vec2> vectors(const FlowLibrary& library) const {
     const GreyImage there = compensated();
     const std::vector<Vec2> found = optical_flow(library, from_.image(), there);
-    const std::vector<float> still = squared_mismatch(there, std::vector<Vec2>(found.size())),
+    const std::vector<float> unmoved = squared_mismatch(there, std::vector<Vec2>(found.size())),
                              moved = squared_mismatch(there, found);
     const std::vector<float> noise = deviations(moved);
-    std::vector<Vec2> residual = believed(found, still, moved, noise);
+    std::vector<Vec2> residual = significant(found, unmoved, moved, noise);
     refine_flow({from_.levels(), to_.levels(), noise, from_.surface(), seen_, from_.object()}, &residual);
     each_pixel(
         [&](size_t p) { residual[p] = bounded(from_.surface()[p] + residual[p], from_.width(), from_.height()); });
@@ -40,7 +44,7 @@ class FlowVectors {
     motion::each_pixel(from_.width(), from_.height(), [&](int, int, size_t p) { body(p); });
   }
 
-  // Whether the surface of a pixel is in the other frame, unhidden, and no edge is near.
+  // Whether the surface of a pixel is visible in the other frame, with no edge near either pixel.
   bool is_seen(size_t p) const {
     const Vec2 there = from_.place(p) + from_.surface()[p];
     if (from_.tracked()[p] != kTracked || from_.shows_edge(p) || !to_.holds(there)) return false;
@@ -49,7 +53,7 @@ class FlowVectors {
     return glm::length(from_.surface()[p] + to_.surface()[q]) <= kSurfaceReturn;
   }
 
-  // The other frame as the surfaces' motion leads to it; this one where it does not.
+  // Returns the other frame, warped by the motion of surfaces. Pixels that it does not show keep the levels of `from`.
   GreyImage compensated() const {
     GreyImage image = from_.image();
     each_pixel([&](size_t p) {
@@ -67,7 +71,8 @@ class FlowVectors {
     return result;
   }
 
-  // Of a level, by what is still off where most pixels moved as they should.
+  // Returns the standard deviation of a level, from the median of the squared mismatch: most pixels are moved
+  // correctly.
   float deviation(const std::vector<float>& squares) const {
     std::vector<float> seen;
     for (size_t p = 0; p < squares.size(); ++p) {
@@ -79,7 +84,8 @@ class FlowVectors {
     return std::max(kMinNoiseLevel, kDeviation * std::sqrt(*middle));
   }
 
-  // At each pixel: where the light is noisier than in most of the film, what is still off tells around it.
+  // Returns the standard deviation of a level at each pixel. Where the image is noisier than in most of the film, it is
+  // estimated from the mismatch around the pixel.
   std::vector<float> deviations(const std::vector<float>& squares) const {
     const float overall = deviation(squares);
     std::vector<float> result = patch_means(squares);
@@ -87,11 +93,12 @@ class FlowVectors {
     return result;
   }
 
-  // The vectors that explain more than chance; no rest for the others.
-  std::vector<Vec2> believed(const std::vector<Vec2>& found, std::vector<float> still, const std::vector<float>& moved,
-                             const std::vector<float>& noise) const {
-    each_pixel([&](size_t p) { still[p] -= moved[p]; });
-    const std::vector<float> gain = patch_means(still);
+  // Returns the residuals of vectors that explain more of the mismatch than chance would; 0 for the others. unmoved,
+  // moved: squared mismatch without the vectors and with them.
+  std::vector<Vec2> significant(const std::vector<Vec2>& found, std::vector<float> unmoved,
+                                const std::vector<float>& moved, const std::vector<float>& noise) const {
+    each_pixel([&](size_t p) { unmoved[p] -= moved[p]; });
+    const std::vector<float> gain = patch_means(unmoved);
     std::vector<Vec2> residual(found.size(), Vec2(0.0f));
     each_pixel([&](size_t p) {
       const Vec2 place = from_.place(p) + found[p];
@@ -99,12 +106,13 @@ class FlowVectors {
       const float minimum = std::max(noise[p], kMinNoise);
       if (gain[p] < kGain * minimum * minimum || !seen_[p] || !seen_[q] || from_.object()[p] != from_.object()[q])
         return;
-      // What it shows there has gone on with the surface of that place.
+      // The compensated image was warped by the surface motion at `place`, not by that at `p`.
       residual[p] = found[p] + linear_at(from_.plane(from_.surface()), place) - from_.surface()[p];
     });
     return residual;
   }
 
+  // Returns the mean over the patch around each pixel.
   std::vector<float> patch_means(const std::vector<float>& values) const {
     const FilmPlane<float> across{from_.width(), from_.height(), values};
     std::vector<float> rows(values.size()), result(values.size());
@@ -128,7 +136,7 @@ class FlowVectors {
 }  // namespace
 
 std::vector<Vec2> flow_vectors(const FlowLibrary& library, const FlowFrame& from, const FlowFrame& to) {
-  const FlushDenormals flush;  // in whatever thread it is, so that its bits are the same
+  const FlushDenormals flush;  // gives the same bits in every thread
   return FlowVectors(from, to).vectors(library);
 }
 

@@ -8,14 +8,15 @@
 namespace gradus::motion {
 namespace {
 
-constexpr float kReturn = 0.1f;  // pixels that a way there and back may be off (Zimmer et al. 2015, 4.2)
+constexpr float kReturn = 0.1f;  // pixels: maximum error of a flow there and back (Zimmer et al. 2015, section 4.2)
 
-// Why the vector of a pixel is none to go by, or kTracked.
+// Decides whether the vector of a pixel is reliable.
 class Check {
  public:
   Check(const FlowFrame& from, const FlowFrame& to, const std::vector<Vec2>& there, const std::vector<Vec2>& back)
       : from_(from), to_(to), there_(there), back_(to.plane(back)) {}
 
+  // Returns kTracked, or the cause why the vector is not reliable.
   float cause(size_t p) const {
     if (from_.tracked()[p] != kTracked) return from_.tracked()[p] < 0.0f ? from_.tracked()[p] : kComesBackElsewhere;
     if (from_.shows_edge(p)) return kSilhouette;
@@ -33,6 +34,7 @@ class Check {
   const FilmPlane<Vec2> back_;
 };
 
+// Returns the vectors that pass the check, and the motion of surfaces for the other pixels.
 PixelMotion checked(const FlowFrame& from, const FlowFrame& to, const std::vector<Vec2>& there,
                     const std::vector<Vec2>& back) {
   const Check check(from, to, there, back);

@@ -14,7 +14,7 @@ namespace gradus::motion {
 namespace {
 
 constexpr const char* kFileName = "libgradus_flow.so";
-// Compared with others in docs/method.md, "Motion of shadows and of the rest".
+// The preset was chosen by comparison with others (docs/method.md, "Motion of shadows and of the rest").
 constexpr GradusFlowEffort kEffort{GRADUS_FLOW_MEDIUM, 0};
 
 using Unusable = std::runtime_error;

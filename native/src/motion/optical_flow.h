@@ -1,4 +1,4 @@
-// Optical flow between two grey images, by libgradus_flow.so where it is there: found when it is asked for, never
+// Optical flow between two grey images by libgradus_flow.so. The library is optional: it is loaded at run time, never
 // linked.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace gradus::motion {
 
-// Row by row, levels 0 to 255.
+// A grey image, row by row, with levels from 0 to 255.
 struct GreyImage {
   int width = 0, height = 0;
   std::vector<float> levels;
@@ -23,16 +23,18 @@ struct FlowLibrary {
   decltype(&gradus_flow_estimate) estimate = nullptr;
 };
 
-// Where libgradus_flow.so should lie: the folder of the file that holds this code.
+// Returns the folder in which libgradus_flow.so is expected: that of the file that contains this code.
 std::string flow_library_folder();
-// nullptr where there is none that works, and why. What was loaded stays for the life of the process.
+// Loads the library from a folder. Returns nullptr and sets *why_not if there is no usable one. A loaded library stays
+// in memory for the life of the process.
 std::shared_ptr<const FlowLibrary> find_flow_library(const std::string& folder, std::string* why_not);
-// The same; where there is none, `warnings` say what is not there without it.
+// Loads the library as find_flow_library() does. If there is none, adds a warning that names what is missing without
+// it.
 std::shared_ptr<const FlowLibrary> flow_library_or_warning(const std::string& folder, Warnings* warnings);
 
-// By pixels of `from`: how far away `to`, an image of the same size, shows the same; x along a row, y from row to row.
-// Finite, no vector longer than the image. Levels that are not finite count as 0. Throws Error UNKNOWN with the
-// library's text.
+// Returns for each pixel of `from` the displacement, in pixels, to where `to` shows the same; x along a row, y from row
+// to row. Both images must have the same size. Vectors are finite and no longer than the image. Levels that are not
+// finite count as 0. Throws Error UNKNOWN with the text of the library.
 std::vector<Vec2> optical_flow(const FlowLibrary& library, const GreyImage& from, const GreyImage& to);
 
 }  // namespace gradus::motion

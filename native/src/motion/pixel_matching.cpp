@@ -17,13 +17,14 @@ const float kShotChangeCosine = std::cos(kPi / 6.0f);
 constexpr float kShotChangeZoom = 1.5f;
 constexpr float kStepsOfPixel = 256.0f;
 
-// Where a pixel's centre goes, and how far from the camera that is.
+// Position of what a pixel shows in the other frame, and its distance from the camera.
 struct Target {
   Vec2 film{0.0f};
   float distance = kInfinity;
   bool found = false;
 };
 
+// Follows what pixels of one view show to the film of another.
 class Tracker {
  public:
   Tracker(const CentreView& from, const CentreView& to) : from_(from), to_(to), motion_(*from.snapshot, *to.snapshot) {}
@@ -44,13 +45,14 @@ class Tracker {
   }
 
  private:
-  // What is at infinity looks the same all over an orthographic film: it rests.
+  // Whether all pixels see the sky in the same direction, so that it does not move on the film.
   bool shows_one_direction() const { return to_.snapshot->camera.type == GRADUS_CAMERA_ORTHOGRAPHIC; }
 
   const CentreView &from_, &to_;
   SnapshotMotion motion_;
 };
 
+// Whether the motion of pixel `next` of the other frame leads back to within kLargestReturn of a pixel.
 bool returns(const Tracker& back, const CentreView& from, size_t pixel, int32_t next) {
   const Target t = back.target(size_t(next));
   const Vec2 away = glm::abs(from.camera.film_displacement(centre_of(from.region, pixel), t.film));
@@ -111,7 +113,7 @@ film::PixelCorrespondence match_pixels(const CentreView& from, const CentreView&
     found.off_centre[i] = off_centre(to.region, size_t(next), t.film);
     distances[i] = t.distance;
   });
-  // In the pixels' order, so that ties go the same way on any number of threads.
+  // Serial and in the order of pixels, so that ties are decided alike for any number of threads.
   std::vector<int32_t> owner(to.hits.size(), film::kNoCorrespondence);
   for (size_t i = 0; i < correspondence.size(); ++i) {
     if (correspondence[i] == film::kNoCorrespondence) continue;

@@ -1,6 +1,6 @@
-// Which pixel of the next frame shows what a pixel shows: the map φ of temporal gradients (Manzi et al. 2016, Temporal
-// Gradient-Domain Path Tracing, section 4.2). It decides who is compared with whom, nothing else: a wrong link costs
-// variance, never the right result.
+// Finds for each pixel the pixel of the next frame that shows the same surface point: the map φ of temporal gradients
+// (Manzi et al. 2016, Temporal Gradient-Domain Path Tracing, section 4.2). The map only selects which pixels are
+// compared. A wrong correspondence increases variance, but never makes the result wrong.
 #pragma once
 
 #include <vector>
@@ -13,36 +13,39 @@
 
 namespace gradus::motion {
 
-// A frame as its pixel centres see it, at the moment of the frame and through the middle of the lens.
+// Camera rays through the pixel centres of a frame, and what they hit, at the time of the frame and through the middle
+// of the lens.
 struct CentreView {
   const scene::Snapshot* snapshot = nullptr;
-  camera::Camera camera;  // of that moment
+  camera::Camera camera;  // at the time of the frame, without a lens
   Region region;
-  std::vector<geometry::Hit> hits;  // by pixels of the region; not valid: the ray left the scene
+  std::vector<geometry::Hit> hits;  // for each pixel of the region; not valid where the ray leaves the scene
   std::vector<Vec3> directions;     // of the rays
 };
-// The snapshot lives as long as the view; the region is one of a film of width × height. Cancelled: some of its pixels
-// see nothing.
+// Traces the rays of a view. The snapshot must outlive it. region: part of a film of width × height pixels. After
+// cancelling, some hits are missing.
 CentreView view_centres(
     const scene::Snapshot& snapshot, uint32_t width, uint32_t height, const Region& region,
     const CancelCheck& is_cancelled = [] { return false; });
 
-// Middle of a pixel of the region.
+// Returns the film position of a pixel's centre. pixel: index in the region.
 Vec2 centre_of(const Region& region, size_t pixel);
-// The pixel of the region that holds a film position; kNoCorrespondence outside.
+// Returns the index of the pixel that contains a film position, or kNoCorrespondence outside the region.
 int32_t pixel_at(const Region& region, const Vec2& film);
 
-// How far a film position lies from the middle of its pixel, in steps that leave what rests exactly there.
+// Returns the offset of a film position from the centre of its pixel, within half a pixel. It is rounded to 1/256
+// pixel, so that it is exactly 0 for what does not move.
 Vec2 off_centre(const Region& region, size_t pixel, const Vec2& film);
 
-// By pixels of `from`: the pixel of `to`. One-to-one. A link leads back to within a pixel of where it came from; of
-// several pixels that lead to one the nearest to the camera has it. Both views have the same region.
+// Returns for each pixel of `from` the corresponding pixel of `to`. The map is one-to-one. A pixel corresponds to
+// another only if the motion back leads to within a pixel of it. If several pixels lead to the same one, the nearest to
+// the camera gets it. Both views must have the same region.
 film::PixelCorrespondence match_pixels(const CentreView& from, const CentreView& to);
-// The other way round: by pixels of `to`, the pixel of `from`.
+// Returns the inverse map: for each pixel of `to` the pixel of `from`.
 film::PixelCorrespondence inverse_correspondence(const film::PixelCorrespondence& correspondence);
 
-// Whether the film or the view changes so much between two frames that they are no motion but a cut (test C8: a turn of
-// more than 30°, another type of camera, a jump of the zoom).
+// Whether there is a shot change between two frames: the camera turns by more than 30°, has another type, or zooms by a
+// factor of 1.5 or more.
 bool is_shot_change(const GradusCamera& from, const GradusCamera& to);
 
 }  // namespace gradus::motion

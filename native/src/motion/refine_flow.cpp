@@ -8,15 +8,15 @@ namespace gradus::motion {
 namespace {
 
 constexpr int kWarps = 5, kSweeps = 10;
-constexpr int kWindow = 3;           // pixels around one, Gaussian of half that
-constexpr float kSmoothness = 5.0f;  // per pixel of difference between neighbours, against squares of data by its noise
-constexpr float kAlike = 0.1f;       // pixels: differences below it count by their squares
-constexpr float kOutlier = 3.0f;     // standard deviations: data beyond it counts by its magnitude
-constexpr float kPriorWeight = 1e-4f;    // weight of no rest, for where nothing else says anything
-constexpr float kOverRelaxation = 1.7f;  // of Gauss and Seidel's steps
-constexpr float kLongestStep = 1.0f;     // pixels, for which a gradient is good
+constexpr int kWindow = 3;             // radius of the window in pixels; its Gaussian has half of it as deviation
+constexpr float kSmoothness = 5.0f;    // weight per pixel of difference, against squared data relative to its variance
+constexpr float kAlike = 0.1f;         // pixels: smaller differences are penalised by their squares
+constexpr float kOutlier = 3.0f;       // standard deviations: larger data is penalised by its magnitude
+constexpr float kPriorWeight = 1e-4f;  // weight of a zero residual, which decides where there is no other data
+constexpr float kOverRelaxation = 1.7f;  // factor of Gauss-Seidel steps
+constexpr float kLongestStep = 1.0f;     // pixels: range over which a gradient is valid
 
-// What quadratic terms ask of a vector: (xx xy; xy yy) vector = right.
+// Normal equations of a vector: (xx xy; xy yy) vector = right.
 struct Normal {
   float xx = 0.0f, xy = 0.0f, yy = 0.0f;
   Vec2 right{0.0f};
@@ -24,9 +24,9 @@ struct Normal {
   void add(float weight, const Normal& other) {
     xx += weight * other.xx, xy += weight * other.xy, yy += weight * other.yy, right += weight * other.right;
   }
-  // Pulls towards a vector.
+  // Adds a quadratic term with its minimum at `vector`.
   void pull(float weight, const Vec2& vector) { xx += weight, yy += weight, right += weight * vector; }
-  // The same about the vector itself: vector = (xx xy; xy yy) right.
+  // Returns the solved form, vector = (xx xy; xy yy) right; all 0 if the matrix is not positive definite.
   Normal inverse() const {
     const float determinant = xx * yy - xy * xy;
     if (!(determinant > 0.0f)) return {};
@@ -45,6 +45,8 @@ std::array<float, 2 * kWindow + 1> window_weights() {
   return weights;
 }
 
+// Alternates between warping the second image by the present vectors and solving for a step by successive
+// over-relaxation.
 class Refinement {
  public:
   Refinement(const FlowPair& pair, std::vector<Vec2>* residual)
@@ -85,13 +87,14 @@ class Refinement {
     motion::each_pixel(width_, height_, body);
   }
 
-  // The other image where the vectors lead to. Where it cannot show the same: this one, with which nothing is wrong.
+  // Returns the level of the second image at the end of a pixel's vector. A pixel that it cannot show gets its own
+  // level, so that it has no mismatch.
   float warped(int x, int y, size_t p) const {
     return pair_.seen[p] ? cubic_at(pair_.to, Vec2(float(x), float(y)) + pair_.bootstrap[p] + residual_[p])
                          : pair_.from.values[p];
   }
 
-  // What one pixel asks of the step: change + gradient · step = 0, the gradient that of the mean of both images.
+  // Returns the data term of one pixel: change + gradient · step = 0, with the gradient of the mean of both images.
   Normal pixel_data(int x, int y, size_t p) const {
     if (!pair_.seen[p]) return {};
     const FilmPlane<float> warped{width_, height_, warped_};
@@ -103,6 +106,7 @@ class Refinement {
             -weight * change * gradient};
   }
 
+  // Sums the data terms over the window around each pixel, and adds the prior.
   void sum_windows() {
     each_pixel([this](int x, int y, size_t p) {
       Normal sum;
@@ -120,14 +124,14 @@ class Refinement {
   }
   float weight(int offset) const { return weights_[size_t(ptrdiff_t(offset) + kWindow)]; }
 
-  // How strongly the rests of two neighbours are held together.
+  // Returns the weight of smoothness between the residuals of two neighbours.
   float likeness(size_t p, size_t q) const {
     if (pair_.object[p] != pair_.object[q]) return 0.0f;
     const Vec2 difference = residual_[q] - residual_[p];
     return kSmoothness / std::sqrt(glm::dot(difference, difference) + kAlike * kAlike);
   }
 
-  // What a pixel's step is while its neighbours make none.
+  // Returns the solved equations of a pixel's step, with its right side for neighbours that make no step.
   Normal solved(int x, int y, size_t p) const {
     Normal normal = data_[p];
     const size_t row = size_t(width_);
@@ -138,8 +142,8 @@ class Refinement {
     return normal.inverse();
   }
 
-  // Every other pixel of a row, by its neighbours' steps: those of one colour of a chessboard do not depend on each
-  // other. Apart from what calls it, as of motion/for_each_pixel.h.
+  // Relaxes every other pixel of a row: pixels of one colour of a chessboard do not depend on each other. It must not
+  // be inlined, for the reason that motion/for_each_pixel.h gives for its rows.
   [[gnu::noinline]] void relax(int y, int colour) {
     for (int x = (y + colour) & 1; x < width_; x += 2) {
       const size_t p = index(x, y), row = size_t(width_);
@@ -157,11 +161,11 @@ class Refinement {
   const FlowPair& pair_;
   const int width_, height_;
   std::vector<Vec2>& residual_;
-  std::vector<Vec2> step_;  // from one warp to the next
+  std::vector<Vec2> step_;  // step of this warp
   std::vector<float> warped_;
-  std::vector<Normal> pixels_, rows_,
-      data_;  // of each alone (then solved with its neighbours), summed along rows, over windows
-  std::vector<float> right_, below_;  // likeness of a pixel and its neighbours
+  std::vector<Normal> pixels_;        // data of single pixels, later the solved equations
+  std::vector<Normal> rows_, data_;   // data summed along rows, and over windows
+  std::vector<float> right_, below_;  // smoothness between a pixel and its right and lower neighbour
   const std::array<float, 2 * kWindow + 1> weights_ = window_weights();
 };
 

@@ -9,13 +9,13 @@
 namespace gradus::motion {
 namespace {
 
-// Of 1/depth, which is linear over a plane in perspective: a bend larger than this share of it is a step between
-// surfaces.
+// Maximum second difference of 1/depth over a continuous surface, relative to 1/depth, which is linear over a plane in
+// perspective. A larger one is a step between surfaces.
 constexpr float kStep = 0.05f;
 
 float nearness(float depth) { return is_finite(depth) && depth > 0.0f ? 1.0f / depth : 0.0f; }
 
-// Between three pixels in a line: a step, and no bend, if one side is nearer than the other side leads to.
+// Whether there is a step between three pixels in a line. At a mere bend, the differences on both sides are similar.
 bool steps(float before, float here, float after) {
   const float one = std::abs(here - before), other = std::abs(after - here);
   return std::abs(before - 2.0f * here + after) > kStep * std::max(here, std::max(before, after)) &&

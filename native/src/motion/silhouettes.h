@@ -1,4 +1,4 @@
-// Pixels that show an edge: more than one surface, whose motions differ.
+// Finds pixels that show an edge of an object. They show more than one surface, and the surfaces may move differently.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,9 @@
 
 namespace gradus::motion {
 
-// By pixels of the film: 1 where one of the eight around it shows another object, or a depth that its own surface does
-// not lead to. `object` and `depth`: row by row; empty: not known. Depth 0 or not finite: nothing is there.
+// Returns for each pixel of the film 1 if one of its eight neighbours shows another object, or if the depth has a step
+// between it and a neighbour in its row or column; otherwise 0. `object` and `depth` hold one value for each pixel, row
+// by row, or are empty if not known. A depth of 0, or one that is not finite, means that there is no surface.
 std::vector<uint8_t> silhouettes(int width, int height, std::span<const int32_t> object, std::span<const float> depth);
 
 }  // namespace gradus::motion

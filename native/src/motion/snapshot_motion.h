@@ -1,4 +1,4 @@
-// Surface motion between two frames: the same point of the same triangle of the same instance.
+// Motion of surface points between two frames: a point stays on the same triangle of the same instance.
 #pragma once
 
 #include <vector>
@@ -8,23 +8,23 @@
 namespace gradus::motion {
 
 inline constexpr uint32_t kNoInstance = UINT32_MAX;
-// For each instance of `from` the one of `to` that has its identity.
+// Returns for each instance of `from` the index of the instance of `to` with the same id, or kNoInstance.
 std::vector<uint32_t> matching_instances(const scene::Snapshot& from, const scene::Snapshot& to);
 
 class SnapshotMotion {
  public:
-  // Both live as long as it.
+  // Both snapshots must outlive the object.
   SnapshotMotion(const scene::Snapshot& from, const scene::Snapshot& to);
 
-  // Where a surface point of `from` is at the moment of the frame of `to`, in the internal space of `to`. False: it is
-  // not there, or its mesh has another topology.
+  // Computes the position of a surface point of `from` at the time of frame `to`, in the internal space of `to`.
+  // Returns false if the instance does not exist there or its mesh has another topology.
   bool position(const geometry::Hit& hit, Vec3* position) const;
-  // The point itself, as a hit of `to`.
+  // Converts a surface point of `from` to a hit of `to`. Returns false under the same conditions.
   bool hit(const geometry::Hit& hit, geometry::Hit* there) const;
 
  private:
   const scene::Snapshot& to_;
-  std::vector<uint32_t> instance_;  // in `to`, for each of `from`; kNoInstance: none, or of another topology
+  std::vector<uint32_t> instance_;  // for each instance of `from` that of `to`; kNoInstance: none, or other topology
 };
 
 }  // namespace gradus::motion

@@ -13,10 +13,10 @@ namespace gradus::motion {
 
 namespace {
 
-// Surfaces that a search for a chain may look at, where the stronger way leads nowhere.
+// Maximum number of surfaces that a search for a chain visits, including those on branches that lead nowhere.
 constexpr int kMaxSurfaces = 24;
 
-// The strongest lobe of a class, taken for perfectly smooth.
+// Direction and strength of the strongest lobe of a class, treated as perfectly smooth. A strength of 0 means none.
 struct SmoothScattering {
   Vec3 wi = Vec3(0.0f);
   float strength = 0.0f;
@@ -56,11 +56,12 @@ path::PathRay ChainTracer::camera_ray(const Vec2& film) const {
 
 struct ChainTracer::Arrival {
   geometry::Hit hit;
-  path::Vertex vertex;               // missing where only transparency was asked for, and there is none
-  bool surely_non_specular = false;  // and dark: closures are missing
+  path::Vertex vertex;               // not set for Shades::Transparency on a material without transparency
+  bool surely_non_specular = false;  // known from the material: non-specular, without emission; it has no closures
 };
 
-// To the next surface that stops the ray. False: it leaves the scene.
+// Traces a ray to the next surface that it does not pass. known: first hit of the ray, or nullptr. Returns false if the
+// ray leaves the scene.
 bool ChainTracer::advance(Shades shades, const geometry::Hit* known, path::PathRay* ray, Arrival* arrival) const {
   path::Vertex* vertex = &arrival->vertex;
   vertex->wo = -ray->ray.direction;
@@ -91,7 +92,8 @@ bool ChainTracer::advance(Shades shades, const geometry::Hit* known, path::PathR
   }
 }
 
-// How much goes that way; 0: nothing, and the ray stays what it was.
+// Replaces the ray by the one that a vertex scatters specularly. Returns the share of light that it carries; if that is
+// 0 the ray is unchanged.
 float ChainTracer::scatter(const path::Vertex& vertex, bsdf::ScatterClass event, path::PathRay* ray) const {
   const bool transmitted = event == bsdf::ScatterClass::Transmission;
   const SmoothScattering scattering = smooth_scattering(vertex.shade.closures, event, vertex.wo);
@@ -103,6 +105,7 @@ float ChainTracer::scatter(const path::Vertex& vertex, bsdf::ScatterClass event,
   return scattering.strength;
 }
 
+// State of the search for the chain of one component.
 struct ChainTracer::Search {
   const lpe::ComponentSet& components;
   int component;
@@ -114,7 +117,7 @@ struct ChainTracer::Search {
   bool is_static(const path::PathRay& ray, const geometry::Hit& hit) const {
     return change != nullptr && change->is_static(ray.ray, hit, ray.state.length);
   }
-  // A rough surface or one that shines, where that belongs to the component.
+  // Whether the chain ends here: on a non-specular surface or an emitter whose light belongs to the component.
   bool ends_at(const Arrival& arrival, lpe::LpeState lpe_state) const {
     if (arrival.surely_non_specular) return reaches(components.next(lpe_state, bsdf::ScatterClass::Diffuse));
     const path::Vertex& vertex = arrival.vertex;
@@ -124,7 +127,7 @@ struct ChainTracer::Search {
   }
 };
 
-// The stronger one first.
+// Returns the specular events at a vertex that can lead to the component, the stronger one first.
 std::array<ChainTracer::Branch, 2> ChainTracer::branches(const Search& search, const path::Vertex& vertex,
                                                          const path::PathRay& ray, lpe::LpeState lpe_state) const {
   std::array<Branch, 2> found{
@@ -137,7 +140,7 @@ std::array<ChainTracer::Branch, 2> ChainTracer::branches(const Search& search, c
   return found;
 }
 
-// In the sky.
+// Ends a chain in the sky. Returns false if the component does not contain the light of the sky.
 bool ChainTracer::is_seen(const Search& search, lpe::LpeState lpe_state, SpecularChain* chain) const {
   chain->end = ChainEnd::Sky;
   chain->length = 0.0f;
@@ -146,7 +149,7 @@ bool ChainTracer::is_seen(const Search& search, lpe::LpeState lpe_state, Specula
 
 bool ChainTracer::extend(Search* search, path::PathRay ray, lpe::LpeState lpe_state, SpecularChain* chain) const {
   if (++search->surfaces > kMaxSurfaces) return false;
-  thread_local std::array<Arrival, kMaxChainLength + 1> arrivals;  // large: one for each depth
+  thread_local std::array<Arrival, kMaxChainLength + 1> arrivals;  // one for each depth, too large for the stack
   Arrival& arrival = arrivals[chain->signature.length];
   chain->ray = ray;
   const bool is_surface = advance(Shades::All, nullptr, &ray, &arrival);
@@ -155,7 +158,7 @@ bool ChainTracer::extend(Search* search, path::PathRay ray, lpe::LpeState lpe_st
   return is_surface ? continue_chain(search, arrival, ray, lpe_state, chain) : is_seen(*search, lpe_state, chain);
 }
 
-// ray: as it arrived.
+// Ends the chain at a vertex or extends it beyond. ray: the ray that arrived there.
 bool ChainTracer::continue_chain(Search* search, const Arrival& arrival, const path::PathRay& ray,
                                  lpe::LpeState lpe_state, SpecularChain* chain) const {
   const path::Vertex& vertex = arrival.vertex;
@@ -220,7 +223,7 @@ bool ChainTracer::follow(const Vec2& film, const SpecularSignature& signature, S
 }
 
 bool ChainTracer::meets(const SpecularChain& chain, float distance) const {
-  constexpr float kRounding = 1e-4f;  // of what finish() tells for hits behind transparent surfaces
+  constexpr float kRounding = 1e-4f;  // relative error of distances by finish() behind transparent surfaces
   Ray ray = chain.ray.ray;
   ray.t_max = std::min(ray.t_max, distance * (1.0f + kRounding));
   return snapshot_.meets(ray, chain.ray.visibility);

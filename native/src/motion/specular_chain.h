@@ -1,8 +1,8 @@
-// Representative paths (Zimmer et al. 2015, section 4.1): from the camera through smooth surfaces to the first thing
-// that they show.
+// Representative paths (Zimmer et al. 2015, section 4.1), called specular chains here: from the camera through smooth
+// surfaces to the first non-specular vertex, emitter or the sky.
 //
-// A sharp lobe counts as perfectly smooth about its shading normal. Surfaces of which more goes straight through than
-// stays are passed.
+// A sharp lobe counts as perfectly smooth about its shading normal. A chain passes straight through surfaces that are
+// more than half transparent.
 #pragma once
 
 #include "camera/camera.h"
@@ -13,16 +13,17 @@
 
 namespace gradus::motion {
 
-// Smooth vertices of a chain.
+// Maximum number of smooth vertices of a chain.
 inline constexpr int kMaxChainLength = 8;
 
 enum class ChainEnd : uint8_t { None, Surface, Sky };
 
-// The way through the smooth surfaces: how it scatters, and on which objects.
+// Identifies a sequence of smooth vertices: how each one scatters, and on which objects they lie. It is the same in
+// every frame, so that chains of two frames can be compared.
 struct SpecularSignature {
   uint8_t length = 0;
   uint16_t events = 0;    // ScatterClass of each vertex, two bits each
-  uint64_t surfaces = 0;  // hash of the instances' ids: the same in every frame
+  uint64_t surfaces = 0;  // hash of the ids of the instances
 
   bsdf::ScatterClass event(int vertex) const { return bsdf::ScatterClass(events >> (2 * vertex) & 3); }
   void add(bsdf::ScatterClass event, uint64_t instance_id);
@@ -31,31 +32,33 @@ struct SpecularSignature {
 
 struct SpecularChain {
   SpecularSignature signature;
-  bool is_static = false;  // nothing of it changes, and nothing that moves may come between
+  bool is_static = false;  // whether no vertex changes between the frames, and nothing that moves can occlude the chain
   ChainEnd end = ChainEnd::None;
-  geometry::Hit first;      // its first smooth vertex; not valid where there is none
-  geometry::Hit last;       // what it shows, if that is a surface
-  Vec3 shown = Vec3(0.0f);  // and where that is
-  float length = 0.0f;      // of the way to it
-  path::PathRay ray;        // the last
+  geometry::Hit first;      // first smooth vertex; not valid if there is none
+  geometry::Hit last;       // what the chain shows, if that is a surface
+  Vec3 shown = Vec3(0.0f);  // position of `last`
+  float length = 0.0f;      // length of the path to `last`
+  path::PathRay ray;        // last ray
 };
 
 class ChainTracer {
  public:
-  // camera: at rest, without a lens (CentreView's). What is referred to lives as long as the tracer.
+  // camera: static and without a lens, as that of a CentreView. All arguments must outlive the tracer.
   ChainTracer(const scene::Snapshot& snapshot, const camera::Camera& camera, const GradusSettings& settings);
 
-  // Chains at a place of the film: bits of the components of `wanted` that have one, which is put at their place in
-  // `chains`. Where surfaces both reflect and transmit, the stronger way that leads to the component; it ends on the
-  // first surface that is rough or shines as the component asks, or in the sky. known: what the camera ray meets.
-  // change: nullptr where it is not known; then no chain rests.
+  // Finds chains at a film position for the components whose bits are set in `wanted`. Returns the bits of those that
+  // have one, and stores it at the index of the component in `chains`. Where a surface both reflects and transmits, the
+  // chain follows the stronger event that leads to the component. It ends on the first surface that is non-specular or
+  // emits light of the component, or in the sky. known: what the camera ray hits. change: nullptr if not known; then no
+  // chain is static.
   uint32_t find(const Vec2& film, const geometry::Hit& known, const lpe::ComponentSet& components, uint32_t wanted,
                 const Change* change, std::array<SpecularChain, lpe::kMaxComponents>* chains) const;
-  // Goes a way from another place of the film, up to its last ray, which is not traced. False: the way breaks.
+  // Traces the chain with a given signature from a film position, up to its last ray, which is not traced. Returns
+  // false if there is no such chain.
   bool follow(const Vec2& film, const SpecularSignature& signature, SpecularChain* chain) const;
-  // Whether its last ray may meet something within about that distance, transparent or not: cheaper than to ask what.
+  // Whether the last ray may hit something, transparent or not, within about `distance`. It is cheaper than finish().
   bool meets(const SpecularChain& chain, float distance) const;
-  // What its last ray meets; t: from where that ray begins. False: it ends in the sky.
+  // Traces the last ray. hit->t is the distance from its origin. Returns false if it leaves the scene.
   bool finish(const SpecularChain& chain, geometry::Hit* hit) const;
 
   const scene::Snapshot& snapshot() const { return snapshot_; }

@@ -8,7 +8,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include "motion/chain_jacobian.h"
+#include "motion/chain_view.h"
 #include "motion/snapshot_motion.h"
 #include "path/context.h"
 
@@ -16,29 +16,33 @@ namespace gradus::motion {
 
 namespace {
 
-// Pixels are tracked in small tiles, row by row: each begins where its neighbour's motion leads to.
+// Side of a tile in pixels. Pixels are tracked in small tiles, row by row, because the search in a pixel starts from
+// the motion of its neighbours.
 constexpr int32_t kTile = 16;
-// Of the distance: what is no nearer than this before a target may be its own surface.
+// Tolerance of the occlusion test, relative to the distance: a hit closer to the target may be the target's own
+// surface.
 constexpr float kOwnSurface = 1e-3f;
 
 size_t pixel_of(const Region& part, int32_t x, int32_t y) {
   return size_t(y - part.y0) * size_t(part.width()) + size_t(x - part.x0);
 }
 
+// Result for one pixel.
 struct Track {
   Tracking tracking = Tracking::NoPath;
   Vec2 film{0.0f};
-  const SpecularChain* chain = nullptr;  // in the first frame
+  const SpecularChain* chain = nullptr;  // chain in the first frame
 };
 
-// Of a pixel, those that were tracked before it; nullptr: not of the tile.
+// Neighbours of a pixel that were tracked before it; nullptr if they are outside the tile.
 struct Neighbours {
   const Track *left, *below, *corner;
 };
 
+// Tracks the chains of single pixels.
 class Tracker {
  public:
-  // known: of the part.
+  // known: motion of another view over the same part, or nullptr.
   Tracker(const ChainView& from, const ChainTracer& to, const Region& part, const KnownMotion* known)
       : from_(from),
         here_(from.tracer()),
@@ -47,7 +51,7 @@ class Tracker {
         part_(part),
         known_(known) {}
 
-  // In the first frame; nullptr: there is none.
+  // Returns the chain of a pixel in the first frame, or nullptr.
   const SpecularChain* chain(int32_t x, int32_t y) const { return from_.at(x, y); }
 
   Track track(int32_t x, int32_t y, const SpecularChain& chain, const Neighbours& before,
@@ -77,28 +81,28 @@ class Tracker {
   }
 
  private:
-  // In the other frame.
+  // Computes what the chain shows, in the other frame. Returns false if it does not exist there.
   bool find_target(const SpecularChain& chain, Target* target) const {
     target->in_sky = chain.end == ChainEnd::Sky;
     target->place = chain.ray.ray.direction;
     return target->in_sky || motion_.position(chain.last, &target->place);
   }
-  // In the first frame.
+  // Returns what the chain shows in the first frame.
   static Target own_target(const SpecularChain& chain) {
     const bool in_sky = chain.end == ChainEnd::Sky;
     return {in_sky ? chain.ray.ray.direction : chain.shown, in_sky};
   }
 
-  // Seen directly, as by the view whose motion is known.
+  // Whether the chain shows something directly that the view with known motion shows as well.
   bool is_known(const SpecularChain& chain, int32_t x, int32_t y) const {
     if (known_ == nullptr || chain.signature.length > 0) return false;
     const SpecularChain* other = known_->view.at(x, y);
     return other != nullptr && other->signature.length == 0 && other->end == chain.end && other->last == chain.last;
   }
 
-  // What is seen directly.
+  // Tracks what is seen directly.
   void straight(const Target& target, Track* track) const {
-    // What is at infinity looks the same all over an orthographic film: it rests.
+    // An orthographic camera sees the sky in the same direction in all pixels, so that it does not move on the film.
     const bool is_static = target.in_sky && here_.snapshot().camera.type == GRADUS_CAMERA_ORTHOGRAPHIC;
     const bool seen =
         is_static || (target.in_sky ? to_.camera().project_direction(target.place, Moment::Now, &track->film)
@@ -116,7 +120,8 @@ class Tracker {
     return to_.meets(chain, distance) && to_.finish(chain, &hit) && hit.t < distance;
   }
 
-  // In one step of time from guesses in turn, then in smaller ones.
+  // Searches for the target through smooth surfaces: in one step in time from several estimates in turn, then in
+  // smaller steps.
   void search(const Target& target, int32_t x, int32_t y, const Neighbours& before, Track* track,
               TrackingCounts* counts) const {
     const SpecularChain& chain = *track->chain;
@@ -131,7 +136,7 @@ class Tracker {
     FilmPlace start{centre, chain, chain_jacobian(from_, own, x, y)}, found;
     track->tracking = Tracking::Broken;
     if (!newton.complete(&start)) return;
-    // False: nothing else is to be tried. The first cause stays.
+    // Returns false if nothing else is to be tried. The cause of the first failure is kept.
     const auto attempt = [&](SearchEnd end) {
       const bool is_first = track->tracking == Tracking::Broken, is_found = end == SearchEnd::Found;
       if (is_first || is_found) track->tracking = judge(end, target, found);
@@ -139,7 +144,7 @@ class Tracker {
       return !is_found && !(is_first && end == SearchEnd::Ended);
     };
     const std::optional<Vec2> guess = guess_by(before, chain.signature);
-    // What the neighbours' motion leads to may be another image, whose way ends elsewhere.
+    // The motion of the neighbours may belong to another image of the target.
     bool is_open = !guess || attempt(newton.leap(start, *guess, &found)) || track->tracking == Tracking::Broken;
     if (is_open && is_there) is_open = attempt(newton.leap(start, first, &found));
     if (is_open) attempt(newton.march(start, &found));
@@ -150,11 +155,11 @@ class Tracker {
     ++counts->searched;
   }
 
-  // Where the motion of the neighbours that go the same way leads a pixel: as it changes along the film, or as that of
-  // one of them.
-  std::optional<Vec2> guess_by(const Neighbours& before, const SpecularSignature& displacement) const {
+  // Predicts the position from neighbours with the same signature: linearly from three of them, or from the motion of
+  // one.
+  std::optional<Vec2> guess_by(const Neighbours& before, const SpecularSignature& signature) const {
     const auto leads = [&](const Track* track) {
-      return track != nullptr && track->tracking == Tracking::Tracked && track->chain->signature == displacement;
+      return track != nullptr && track->tracking == Tracking::Tracked && track->chain->signature == signature;
     };
     const bool beside = leads(before.left), under = leads(before.below);
     if (beside && under && leads(before.corner))
@@ -164,7 +169,7 @@ class Tracker {
     return std::nullopt;
   }
 
-  // Searches go past the seam of a panorama, whose film comes back to its beginning.
+  // Returns a position within the width of the film: a search may cross the seam of a panorama, whose film is periodic.
   Vec2 on_film(const Vec2& film) const {
     const auto width = float(to_.settings().width);
     if (film.x >= 0.0f && film.x < width) return film;
@@ -172,7 +177,8 @@ class Tracker {
     return middle + to_.camera().film_displacement(middle, film);
   }
 
-  // Where the point of the first smooth surface is in the other frame; to the bit where it was, if it rests.
+  // Computes the film position in the other frame of the first smooth vertex. A static vertex keeps its position
+  // exactly. Returns false if the vertex does not exist there or is not on the film.
   bool first_vertex(const SpecularChain& chain, Vec2* film) const {
     Vec3 position;
     Vec2 there;
@@ -208,7 +214,7 @@ void TrackingCounts::add(const TrackingCounts& other) {
 
 namespace {
 
-// The rows of a tile, one after the other.
+// Tracks the rows of a tile in order.
 class Tile {
  public:
   Tile(const Tracker& tracker, const Region& part, int32_t x0, ChainMotion* motion, TrackingCounts* counts)

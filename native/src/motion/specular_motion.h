@@ -1,5 +1,5 @@
-// Specular motion: where on the film of another frame is what a component shows in a pixel (Zimmer et al. 2015,
-// section 4.1). See docs/method.md, "Specular motion".
+// Specular motion: the film position in another frame of what a component shows in a pixel through smooth surfaces
+// (Zimmer et al. 2015, section 4.1). See docs/method.md, "Specular motion".
 #pragma once
 
 #include <array>
@@ -12,27 +12,27 @@
 namespace gradus::motion {
 
 struct TrackingCounts {
-  std::array<uint64_t, kTrackingCauses + 1> pixels{};  // by -cause; 0: tracked
-  SearchCounts search;                                 // of the tracked pixels with smooth vertices
-  uint64_t searched = 0;                               // those pixels
+  std::array<uint64_t, kTrackingCauses + 1> pixels{};  // pixels for each -cause; at 0 those that are tracked
+  SearchCounts search;                                 // effort for the tracked pixels with smooth vertices
+  uint64_t searched = 0;                               // number of these pixels
 
   void add(const TrackingCounts& other);
 };
 
-// By pixels of a region.
+// Motion of the chains of a component, one value for each pixel of a region.
 struct ChainMotion {
-  std::vector<Vec2> film;  // the place in the other frame; of an untracked pixel its own centre
+  std::vector<Vec2> film;  // film position in the other frame; the pixel's own centre if it is not tracked
   std::vector<Tracking> tracking;
   TrackingCounts counts;
 };
-// Of a view, from the same part of it to the same frame: what others show directly, as it does, need not be looked for
-// again.
+// Motion of another view, over the same part and to the same frame. Where two views show the same directly, it need not
+// be searched for again.
 struct KnownMotion {
   const ChainView& view;
   const ChainMotion& motion;
 };
-// Of a part of the view `from` in the frame that `to` sees, which may be at another time or by another camera.
-// Cancelled: pixels are NotConverged. known: nullptr: none.
+// Returns the motion of a part of the view `from` to the frame of `to`, which may have another time and another camera.
+// After cancelling, pixels are NotConverged. known: motion of another view, or nullptr.
 ChainMotion track_chains(
     const ChainView& from, const ChainTracer& to, const Region& part,
     const CancelCheck& is_cancelled = [] { return false; }, const KnownMotion* known = nullptr);

@@ -1,5 +1,5 @@
-// By how much a ray misses what it is to show. In a plane through the target, across the line of sight: the target's
-// own surface need not be hit, and near the target the miss is as linear in the ray as can be.
+// Measures by how much a ray misses a target, in the plane through the target across the line of sight. The surface of
+// the target need not be hit, and near the target the miss is almost linear in the ray.
 #pragma once
 
 #include "base/types.h"
@@ -9,13 +9,13 @@ namespace gradus::motion {
 
 // A point, or a direction of the sky.
 struct Target {
-  Vec3 place = Vec3(0.0f);
+  Vec3 place = Vec3(0.0f);  // position in metres, or unit direction
   bool in_sky = false;
 };
 
 class Aim {
  public:
-  // origin: about where rays to the target come from.
+  // origin: approximate origin of the rays to the target.
   Aim(const Target& target, const Vec3& origin) : target_(target) {
     const Vec3 line = target.in_sky ? target.place : target.place - origin;
     const float length = glm::length(line);
@@ -24,7 +24,8 @@ class Aim {
     frame_ = bsdf::make_frame(axis, bsdf::perpendicular(axis));
   }
 
-  // Across the axis, in metres; for the sky in tangents of angles. False: the ray goes away from the target.
+  // Computes the miss across the axis, in metres, or as the tangent of an angle for the sky. Returns false if the ray
+  // points away from the target.
   bool miss(const Ray& ray, Vec3* by) const {
     constexpr float kMinCosine = 0.05f;
     const float cosine = glm::dot(ray.direction, axis());
@@ -38,12 +39,12 @@ class Aim {
     *by = ray.direction * (distance / cosine) - line;
     return distance > 0.0f;
   }
-  // Coordinates of a miss.
+  // Returns the two coordinates of a miss across the axis.
   Vec2 flat(const Vec3& by) const { return {glm::dot(by, frame_.x), glm::dot(by, frame_.y)}; }
   const Vec3& axis() const { return frame_.z; }
-  // To the target; what a miss is small against.
+  // Returns the distance of the target, 1 for the sky, relative to which a miss is judged.
   float distance() const { return distance_; }
-  // From coordinates, with the axis' own as the third.
+  // Returns the matrix from coordinates across and along the axis to vectors of space.
   Mat3 axes() const { return {frame_.x, frame_.y, frame_.z}; }
 
  private:

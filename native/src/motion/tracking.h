@@ -1,5 +1,5 @@
-// Whether a pixel's motion was found: 1, or why not. Values of the pass Path <Component> Tracked (contract 6.6). What
-// is not 1 is no motion to go by.
+// Tells whether the motion of a pixel was found: 1, or a negative cause why not. These are the values of the pass
+// Path <Component> Tracked. Only a motion with the value 1 is reliable.
 #pragma once
 
 #include <cstdint>
@@ -9,20 +9,20 @@ namespace gradus::motion {
 enum class Tracking : int8_t {
   Tracked = 1,
   NoPath = -1,        // the component shows nothing here
-  Gone = -2,          // what it shows is not in the other frame, or is another mesh there
-  NotConverged = -3,  // no place on the film was found
-  Occluded = -4,      // something stands before it
-  Broken = -5,        // no way leads there any more: an edge, total reflection, another object
-  Outside = -6,       // followed: further away than the film is wide or high; by flow: not on the film
-  Elsewhere = -7,     // it is seen at several places, and what was found is not what this image of it becomes
-  ShotChange = -8,    // the two frames are not one shot
-  // Of flow alone (motion/irradiance_motion.h):
-  ComesBackElsewhere = -9,  // the flow there leads back to another place: hidden, or nothing to hold on to
-  Silhouette = -10,         // the pixel, or where it goes, shows an edge of an object
+  Gone = -2,          // what the component shows is not in the other frame, or is another mesh there
+  NotConverged = -3,  // no position on the film was found
+  Occluded = -4,      // the position on the film is hidden by something else
+  Broken = -5,        // no chain leads there: an edge, total reflection, another object
+  Outside = -6,       // by chains: further away than the film is wide or high; by flow: not on the film
+  Elsewhere = -7,     // there are several images of the target, and the one found does not continue this one
+  ShotChange = -8,    // there is a shot change between the two frames
+  // Causes of flow alone (motion/irradiance_motion.h):
+  ComesBackElsewhere = -9,  // the flow back leads to another position: the pixel is hidden, or lacks texture
+  Silhouette = -10,         // the pixel, or the one it moves to, shows an edge of an object
   NoFlowLibrary = -11,      // libgradus_flow.so is missing
-  NoNeighbour = -12,        // the frame before, or the one after, is not rendered
+  NoNeighbour = -12,        // the previous or the next frame is not rendered
 };
-inline constexpr int kTrackingCauses = 8;  // of chains that are followed
+inline constexpr int kTrackingCauses = 8;  // number of causes that tracking of chains reports
 
 inline constexpr auto kTracked = float(Tracking::Tracked);
 inline constexpr auto kOutsideFilm = float(Tracking::Outside);

@@ -8,9 +8,9 @@ namespace gradus::motion {
 
 namespace {
 
-constexpr double kBreaks = 1e9;
-constexpr double kFinest = 2e-5;   // pixels
-constexpr double kRadians = 1e-4;  // what is seen is met so well
+constexpr double kBreaks = 1e9;    // angle where there is no chain
+constexpr double kFinest = 2e-5;   // pixels: finest step of the search
+constexpr double kRadians = 1e-4;  // maximum angle to a target that is seen
 
 }  // namespace
 
@@ -27,7 +27,7 @@ glm::dvec2 brute_force(const ChainTracer& tracer, const SpecularSignature& signa
                        const glm::dvec2& around, double reach, double finest) {
   glm::dvec2 best(around);
   double minimum = kBreaks;
-  // True: a better one was found.
+  // Searches a grid. Returns whether a better position was found.
   const auto look = [&](const glm::dvec2 centre, double half, double step) {
     const double before = minimum;
     for (double y = -half; y <= half + 1e-9; y += step)

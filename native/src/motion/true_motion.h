@@ -1,5 +1,5 @@
-// Where on the film a way shows a target, by trying: what the search of film_search.h is held against. It shares
-// nothing with it but rays.
+// Finds the film position at which a specular chain shows a target by brute force. It is the reference against which
+// tests check the search of film_search.h, and shares only the tracing of rays with it.
 #pragma once
 
 #include <vector>
@@ -9,29 +9,30 @@
 
 namespace gradus::motion {
 
-// Angle between a way's last ray from a place of the film and the line to the target; huge where the way breaks.
+// Returns the angle in radians between the last ray of the chain from a film position and the line to the target; a
+// huge value if there is no chain.
 double angle_to(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target,
                 const glm::dvec2& film);
 
-// The place of the film within `reach` pixels of `around` that shows the target best, by trying them all and then
-// around the best ever more finely.
+// Returns the film position within `reach` pixels of `around` that shows the target best. It searches a grid, then
+// finer grids around the best position until their step is `finest` pixels.
 glm::dvec2 brute_force(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target,
                        const glm::dvec2& around, double reach, double finest);
 
-// Whether that place really shows the target: nothing stands before it.
+// Whether a film position shows the target: the last ray deviates by at most `radians` and is not occluded.
 bool shows(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target, const glm::dvec2& film,
            double radians);
 
-// What a chain of `from` shows, where it is in another frame. False: nowhere.
+// Computes what a chain of `from` shows, in another frame. Returns false if it does not exist there.
 bool true_target(const ChainTracer& from, const ChainTracer& to, const SpecularChain& chain, Target* target);
 
-// What a pixel shows is followed through frames one after the other, by brute force about the place in the one before:
-// half a pixel from one to the next at most. False: it is lost on the way, because it ceases or comes out of nowhere.
+// Follows what a pixel shows through consecutive frames, by brute force within half a pixel of the position in the
+// previous frame. Returns false if it is lost in some frame, because the image of the target disappears or appears.
 bool true_place(const std::vector<const ChainTracer*>& frames, const SpecularChain& chain, const Vec2& centre,
                 glm::dvec2* place);
 
-// Whether the target is seen by that way anywhere within `reach` pixels of a place, by trying them all half a pixel
-// apart.
+// Whether the target is seen by a chain with that signature anywhere within `reach` pixels of a position. It tries
+// positions half a pixel apart.
 bool seen_near(const ChainTracer& tracer, const SpecularSignature& signature, const Target& target, const Vec2& around,
                double reach);
 

@@ -403,7 +403,7 @@ TEST(Sequence, FramesOfMorePixelsThanLinksCanNumberAreOnTheirOwn) {
   EXPECT_TRUE(animation::sequence_applies(settings, &why_not)) << why_not;
   settings.width = 46342;
   EXPECT_FALSE(animation::sequence_applies(settings, &why_not));
-  EXPECT_EQ(why_not, "its pixels are too many to be linked");
+  EXPECT_EQ(why_not, "the film has more than 2^31 - 1 pixels");
 }
 
 TEST(C8_Sequence, ACutSeparatesWhatLiesBeforeAndAfter) {

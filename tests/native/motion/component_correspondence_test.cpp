@@ -1,9 +1,8 @@
 // Links by component: chains of smooth surfaces go where what they show has gone.
-#include "motion/component_correspondence.h"
+#include "motion/component_tracking.h"
 
 #include <gtest/gtest.h>
 
-#include "motion/component_tracking.h"
 #include "render/component_replay.h"
 
 namespace gradus {

@@ -1,7 +1,7 @@
 // The search itself: how it ends, and what it costs.
 #include "motion/film_search.h"
 
-#include "motion/chain_jacobian.h"
+#include "motion/chain_view.h"
 #include "motion/motion_scene.h"
 
 namespace gradus::test {

@@ -8,7 +8,7 @@
 
 namespace {
 
-// DIS takes no image that is smaller than its patches at the scale where it begins.
+// Minimum width and height in pixels: DIS needs images that are at least as large as its patches at its coarsest scale.
 constexpr int kSmallestSide = 32;
 
 int silent(int /*status*/, const char* /*function*/, const char* /*text*/, const char* /*file*/, int /*line*/,
@@ -16,8 +16,8 @@ int silent(int /*status*/, const char* /*function*/, const char* /*text*/, const
   return 0;
 }
 
-// This copy of OpenCV is nobody else's: it prints nothing, and DIS, whose result depends on the number of threads, has
-// one.
+// Configures OpenCV once; no other code uses this copy of it. OpenCV must not print, and must use one thread, because
+// the result of DIS depends on their number.
 void set_up() {
   static const bool done = [] {
     cv::redirectError(&silent);
@@ -27,6 +27,7 @@ void set_up() {
   static_cast<void>(done);
 }
 
+// Extends an image to the minimum size by repeating its border.
 cv::Mat padded(const cv::Mat& image) {
   const int right = std::max(kSmallestSide - image.cols, 0), bottom = std::max(kSmallestSide - image.rows, 0);
   cv::Mat result;
@@ -58,8 +59,8 @@ void estimate(const GradusFlowImages& images, const GradusFlowEffort& effort, fl
 
 }  // namespace
 
-// OpenCV's archives refer to solvers of linear systems and to OpenGL, which optical flow never calls. The linker takes
-// this in place of them.
+// OpenCV's archives refer to solvers of linear systems and to OpenGL, which optical flow never calls. The linker
+// resolves these symbols to this function.
 extern "C" void gradus_flow_left_out() {
   throw cv::Exception(cv::Error::StsNotImplemented, "left out of libgradus_flow", "", "", 0);
 }
