@@ -1,4 +1,4 @@
-"""The seeded faults apply to the sources of now: one that does not would be noticed only when all of them are tried."""
+"""Checks that every seeded fault still applies to the sources, without building any of them."""
 
 from __future__ import annotations
 

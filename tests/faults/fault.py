@@ -1,7 +1,7 @@
-"""A seeded fault, and the tests that must catch it.
+"""Types for a seeded fault and the tests that must catch it.
 
-A fault is an edit of the sources that compiles and looks harmless. Its old text must be there exactly once, or the tool stops: a fault that
-no longer applies proves nothing.
+A fault is an edit of the sources that compiles and looks harmless. Its old text must occur exactly once in its file;
+otherwise the tool stops, because a fault that no longer applies proves nothing.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Test:
-    """A few tests of one program, or of one file in Blender 3.4."""
+    """Selects tests of one test program, or of one Python test file that runs in Blender 3.4."""
 
-    program: str  # native, statistics, stress, memory, regression: GoogleTest; else a file of pytest
-    choice: str  # filter of GoogleTest, or expression of pytest's -k
+    program: str  # native, statistics, stress, memory or regression (GoogleTest), or the path of a pytest file
+    choice: str  # --gtest_filter of GoogleTest, or -k expression of pytest
 
     @property
     def name(self) -> str:
@@ -27,13 +27,15 @@ class Test:
 
 @dataclass(frozen=True)
 class Fault:
-    number: int
-    name: str  # as in the catalogue of tests
-    meaning: str
+    """Replaces `old` by `new` in `file`."""
+
+    number: int  # of the kind of fault
+    name: str  # of the kind of fault
+    meaning: str  # what the edited code does wrong
     file: str
     old: str
     new: str
-    tests: tuple[Test, ...]  # each of them must fail
+    tests: tuple[Test, ...]  # each of these selections must fail
 
 
 def native(choice: str) -> Test:

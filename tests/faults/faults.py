@@ -2,8 +2,8 @@
 
     faults.py [--only PART_OF_A_NAME_OR_FILE] [--new] [--table FILE]
 
-Each fault is put into a copy of the sources in build-faults/, built, and the tests that are named with it must fail. Before, the same tests
-must pass without any. The table goes to docs/faults.md.
+For each fault, the tool edits a copy of the sources in build-faults/, builds it, and runs the tests that the fault names: they
+must fail. Before that, the same tests must pass without a fault. The table of results goes to docs/faults.md.
 """
 
 from __future__ import annotations
@@ -28,12 +28,13 @@ from sequence_faults import SEQUENCES
 ROOT = Path(__file__).resolve().parents[2]
 FAULTS = (*RENDERER, *RECONSTRUCTION, *MOTION, *SEQUENCES, *LIGHT)
 COPY = ROOT / "build-faults"
-LIMIT = 200  # seconds for one choice of tests; one that does not end has caught its fault, too
+LIMIT = 200  # seconds for one selection of tests; a selection that does not end counts as failed
 
 
 def copy_sources() -> None:
-    """What git would commit now. Files that did not change keep their times, so that a second run builds little."""
-    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, check=True, capture_output=True, text=True)
+    """Copies all files that git would commit. Unchanged files keep their times, so that a second run builds little."""
+    command = ["git", "ls-files", "-co", "--exclude-standard"]
+    listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)
     names = listed.stdout.splitlines()
     for folder in {name.split("/")[0] for name in names if "/" in name}:
         for path in (COPY / folder).rglob("*.*"):
@@ -50,7 +51,8 @@ def copy_sources() -> None:
 
 def build(tests: tuple[Test, ...]) -> None:
     if not (COPY / "build" / "build.ninja").exists():
-        subprocess.run(["cmake", "-S", ".", "-B", "build", "-G", "Ninja"], cwd=COPY, check=True, stdout=subprocess.DEVNULL)
+        command = ["cmake", "-S", ".", "-B", "build", "-G", "Ninja"]
+        subprocess.run(command, cwd=COPY, check=True, stdout=subprocess.DEVNULL)
     targets = {f"gradus_{test.program}_tests" if test.is_native else "gradus" for test in tests}
     run(["ninja", "-C", "build", *sorted(targets)], "the build failed")
     if "gradus" in targets:
@@ -64,7 +66,7 @@ def run(command: list[str], complaint: str) -> None:
 
 
 def passes(test: Test) -> bool:
-    """Whether all of these tests pass; that there are some is checked, too."""
+    """Returns whether all of these tests pass. Exits if the selection is empty."""
     environment = {key: value for key, value in os.environ.items() if not key.startswith("BLENDER_")}
     # Blender takes relative paths from PWD, not from the folder that it runs in.
     environment |= {"GRADUS_TEST_FULL": "0", "PWD": str(COPY), "PATH": "/usr/bin:/bin:" + environment.get("PATH", "")}
@@ -77,7 +79,13 @@ def passes(test: Test) -> bool:
             command = [*blender, "--python", str(COPY / "tests" / "run_in_host.py"), "--", test.program, *options]
         try:
             done = subprocess.run(
-                command, cwd=COPY, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=LIMIT
+                command,
+                cwd=COPY,
+                env=environment,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                timeout=LIMIT,
             )
         except subprocess.TimeoutExpired:
             return False
@@ -90,7 +98,7 @@ def require_places(faults: list[Fault]) -> None:
     for fault in faults:
         count = (COPY / fault.file).read_text().count(fault.old)
         if count != 1:
-            sys.exit(f"{fault.name} ({fault.meaning}): its text is {count} times in {fault.file}, not once")
+            sys.exit(f"{fault.name} ({fault.meaning}): its text occurs {count} times in {fault.file}, not once")
 
 
 @contextmanager
@@ -105,7 +113,7 @@ def seeded(fault: Fault) -> Iterator[None]:
 
 
 def key(fault: Fault) -> str:
-    """A fault whose code has moved to another file is to be tried again."""
+    """Returns the start of the table row. It includes the file: a fault whose code has moved is tried again."""
     return f"| {fault.number} | {fault.name} | {fault.meaning} | `{fault.file}` |"
 
 
@@ -116,8 +124,8 @@ def row(fault: Fault, caught: dict[Test, bool]) -> str:
 
 HEAD = """# Seeded faults
 
-Written by `make faults`. The faults of tests/faults are put into a copy of the sources, one at a time; these tests, which pass
-without them, fail with them.
+Written by `make faults`. Each fault of tests/faults is put into a copy of the sources, one at a time. The tests in
+the last column pass without the fault and fail with it.
 
 | | fault | where | seeded in | caught by |
 |---|---|---|---|---|
@@ -125,7 +133,7 @@ without them, fail with them.
 
 
 def rows_of(table: Path) -> dict[str, str]:
-    """What earlier runs found of the faults that there are."""
+    """Returns the rows that earlier runs wrote for faults that still exist."""
     lines = table.read_text().splitlines() if table.exists() else []
     return {key(fault): line for fault in FAULTS for line in lines if line.startswith(key(fault))}
 
@@ -141,9 +149,9 @@ def write(table: Path, rows: dict[str, str]) -> None:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--only", default="", help="faults whose name or file holds this; the others' rows of the table stay as they are")
-    parser.add_argument("--new", action="store_true", help="faults that the table has no row of, where they are now")
-    parser.add_argument("--table", type=Path, default=ROOT / "docs" / "faults.md", help="where the table goes")
+    parser.add_argument("--only", default="", help="try only faults whose name or file contains this; other rows stay")
+    parser.add_argument("--new", action="store_true", help="try only faults without a row in the table")
+    parser.add_argument("--table", type=Path, default=ROOT / "docs" / "faults.md", help="path of the table")
     options = parser.parse_args()
     faults = [fault for fault in FAULTS if options.only in fault.name or options.only in fault.file]
     rows = rows_of(options.table)
@@ -156,8 +164,8 @@ def main() -> int:
     build(tests)
     broken = [test.name for test in tests if not passes(test)]
     if broken:
-        sys.exit("these fail without a fault: " + "; ".join(broken))
-    print(f"{len(tests)} choices of tests pass without a fault", flush=True)
+        sys.exit("these tests fail without a fault: " + "; ".join(broken))
+    print(f"{len(tests)} selections of tests pass without a fault", flush=True)
 
     for fault in faults:
         with seeded(fault):
@@ -165,7 +173,7 @@ def main() -> int:
             rows[key(fault)] = row(fault, {test: not passes(test) for test in fault.tests})
         print(rows[key(fault)], flush=True)
         write(options.table, rows)
-    build(tests)  # the copy is whole again
+    build(tests)  # of the sources without a fault
     missed = sum("**not by**" in rows[key(fault)] for fault in faults)
     print(f"{len(faults)} faults, {missed} of them missed")
     return 1 if missed else 0

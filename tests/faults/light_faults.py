@@ -1,4 +1,4 @@
-"""Faults in light passes beside a reconstructed picture: their sum, what it is spread by, and whose picture they are parts of."""
+"""Faults in light passes that are made consistent with a reconstructed image."""
 
 from __future__ import annotations
 
@@ -8,22 +8,26 @@ PARTITION = "native/src/reconstruct/picture_terms.cpp"
 LIGHT_PASSES = "native/src/output/light_passes.cpp"
 FRAME = "native/src/api/film.cpp"
 
-APART = "light passes apart"
+APART = "light passes inconsistent with the image"
 
 LIGHT = (
     Fault(
         32,
         APART,
-        "what lacks of the picture is left out",
+        "the difference to the image is not distributed",
         PARTITION,
         "        distribute(whole.row(y, c)[x], shares);\n",
         "        if (x < 0) distribute(whole.row(y, c)[x], shares);\n",
-        (native("Reconstructions/LightPassesBy.*"), native("Reconstructions/SequenceLightPasses.*"), native("Partition.AddsUp*")),
+        (
+            native("Reconstructions/LightPassesBy.*"),
+            native("Reconstructions/SequenceLightPasses.*"),
+            native("Partition.AddsUp*"),
+        ),
     ),
     Fault(
         32,
         APART,
-        "it goes to all alike",
+        "the difference to the image is distributed equally",
         PARTITION,
         "{ return share.weight; }",
         "{ return share.weight > 0.0 ? 1.0 : 0.0; }",
@@ -32,7 +36,7 @@ LIGHT = (
     Fault(
         32,
         APART,
-        "parts go below 0",
+        "light passes fall below 0",
         PARTITION,
         "std::max(wanted, share.minimum)",
         "wanted",
@@ -41,16 +45,19 @@ LIGHT = (
     Fault(
         32,
         APART,
-        "light stays where there is no colour",
+        "light remains where there is no colour",
         PARTITION,
         "if (room == 0.0) {",
         "if (room < 0.0) {",
-        (native("Partition.LightGoesWhereItCanBe"), native("Reconstructions/LightPassesBy.LightBesideBlackIsNotLost/*")),
+        (
+            native("Partition.LightGoesWhereItCanBe"),
+            native("Reconstructions/LightPassesBy.LightBesideBlackIsNotLost/*"),
+        ),
     ),
     Fault(
         32,
         APART,
-        "parts are wrong by more than their samples",
+        "light passes deviate by more than the noise of their samples",
         PARTITION,
         "  limit_by_noise(sampled.half_difference, &term.error);\n",
         "  if (term.may_be_negative) limit_by_noise(sampled.half_difference, &term.error);\n",
@@ -59,7 +66,7 @@ LIGHT = (
     Fault(
         32,
         APART,
-        "squares of strong light are infinite",
+        "squares of strong light overflow to infinity",
         PARTITION,
         "std::min(scale * (scale * value), kMaxFloat)",
         "scale * scale * value",
@@ -68,7 +75,7 @@ LIGHT = (
     Fault(
         32,
         APART,
-        "they are not exposed",
+        "light passes lack the exposure",
         LIGHT_PASSES,
         ", film.settings.film_exposure);",
         ");",
@@ -77,7 +84,7 @@ LIGHT = (
     Fault(
         32,
         APART,
-        "those of a stored frame are the first picture's",
+        "light passes of a stored frame belong to its first reconstruction",
         FRAME,
         "film->components.size() > 1))\n    object->developed = kept;",
         "film->components.size() > 1) && !object->developed)\n    object->developed = kept;",

@@ -1,4 +1,4 @@
-"""Faults in motion blur, cameras and vectors: moments, keys, eyes and lenses."""
+"""Faults in motion blur, cameras and motion vectors."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ OF_MOTION = (native("Motion.*"),)
 OF_SHADOWS = (native("MovingShadow.LightIsLookedForAtTheMomentOfThePath"),)
 OF_VECTORS = (blur("vectors_and_blur"),)
 
-MOMENT = "moment lost"
+MOMENT = "shutter time lost"
 SHUTTER_SETTINGS = "shutter ignored"
-KEYS = "keys mixed up"
+KEYS = "motion keys mixed up"
 CAMERAS = "wrong camera"
-VECTORS = "vectors of another moment"
+VECTORS = "motion vectors of another time"
 
 MOTION = (
     Fault(
         18,
         MOMENT,
-        "shifted paths see the opening of the shutter",
+        "offset paths are traced at the opening of the shutter",
         OFFSET_RAYS,
         MOVED,
         f"{{{MOVED_FILM}, camera_sample_.lens}}",
@@ -46,7 +46,7 @@ MOTION = (
     Fault(
         18,
         MOMENT,
-        "shifted paths go through the middle of the lens",
+        "offset paths go through the centre of the lens",
         OFFSET_RAYS,
         MOVED,
         f"{{{MOVED_FILM}, Vec2(0.0f), camera_sample_.time}}",
@@ -55,7 +55,7 @@ MOTION = (
     Fault(
         18,
         MOMENT,
-        "rays that leave a surface forget when they are",
+        "rays that leave a surface lose their time",
         SEGMENT,
         "direction, distance, from.hit.time}",
         "direction, distance, 0.0f}",
@@ -64,7 +64,7 @@ MOTION = (
     Fault(
         18,
         MOMENT,
-        "shifted paths meet their bases at the opening of the shutter",
+        "offset paths reconnect at the opening of the shutter",
         SEGMENT,
         "direction, from.hit.time);",
         "direction, 0.0f);",
@@ -73,7 +73,7 @@ MOTION = (
     Fault(
         18,
         MOMENT,
-        "lamps are looked for at the opening of the shutter",
+        "shadow rays to analytic and mesh lights are traced at the opening of the shutter",
         EMITTERS,
         "return geometry::ray_between(start, target, view.direction, from.hit.time);",
         "return geometry::ray_between(start, target, view.direction, 0.0f);",
@@ -82,7 +82,7 @@ MOTION = (
     Fault(
         18,
         MOMENT,
-        "the sun is looked for at the opening of the shutter",
+        "shadow rays to the sun are traced at the opening of the shutter",
         EMITTERS,
         "return Ray{start, 0.0f, view.direction, kInfinity, from.hit.time};",
         "return Ray{start, 0.0f, view.direction, kInfinity, 0.0f};",
@@ -91,7 +91,7 @@ MOTION = (
     Fault(
         19,
         SHUTTER_SETTINGS,
-        "its curve",
+        "the shutter curve is ignored",
         SHUTTER,
         "if (cumulative_.empty()) return u;",
         "if (cumulative_.empty() || u >= 0.0f) return u;",
@@ -100,7 +100,7 @@ MOTION = (
     Fault(
         19,
         SHUTTER_SETTINGS,
-        "where in the exposure the frame is",
+        "the position of the frame within the exposure is ignored",
         SHUTTER,
         "std::clamp(-open_ / (close_ - open_), 0.0f, 1.0f)",
         "0.5f",
@@ -118,7 +118,7 @@ MOTION = (
     Fault(
         19,
         SHUTTER_SETTINGS,
-        "steps of an object",
+        "the motion steps of an object are ignored",
         EXPORTED_SHUTTER,
         "Blur(min(2**steps + 1, MAX_KEYS), deform)",
         "Blur(3, deform)",
@@ -136,7 +136,7 @@ MOTION = (
     Fault(
         20,
         KEYS,
-        "velocities are metres per frame",
+        "velocities are taken as metres per frame",
         EXPORTED_MOTION,
         "[time / frames_per_second for time in (shutter.open, shutter.close)]",
         "[time for time in (shutter.open, shutter.close)]",
@@ -145,7 +145,7 @@ MOTION = (
     Fault(
         20,
         KEYS,
-        "a deformation is shaded where it lies, at its nearest key",
+        "a deformed mesh is shaded at its nearest key",
         MESH,
         "p[k] = a[v] * (1.0f - place.share) + b[v] * place.share;",
         "p[k] = place.share < 0.5f ? a[v] : b[v];",
@@ -154,7 +154,7 @@ MOTION = (
     Fault(
         20,
         KEYS,
-        "normals do not turn",
+        "normals do not turn with a deformation",
         MESH,
         "k < 3 && mesh.shutter_keys > 0; ++k",
         "k < 3 && mesh.shutter_keys > 99; ++k",
@@ -163,7 +163,7 @@ MOTION = (
     Fault(
         21,
         CAMERAS,
-        "it rests while the shutter is open",
+        "the camera does not move while the shutter is open",
         CAMERA,
         "const Mat4 m = keys_.at(time);",
         "const Mat4 m = keys_.at(0.0f * time);",
@@ -172,7 +172,7 @@ MOTION = (
     Fault(
         21,
         CAMERAS,
-        "it does not zoom while the shutter is open",
+        "the camera does not zoom while the shutter is open",
         CAMERA,
         "a[i] * (1.0f - place.share) + b[i] * place.share;",
         "a[i] + 0.0f * b[i];",
@@ -181,7 +181,7 @@ MOTION = (
     Fault(
         21,
         CAMERAS,
-        "the lens of a panorama lies across its axis, not across each direction",
+        "the lens of a panorama is perpendicular to the axis of the camera, not to each direction",
         CAMERA,
         "panorama_lens_axes(desc_, direction, &u, &v);",
         "panorama_lens_axes(desc_, Vec3(0, 0, -1), &u, &v);",
@@ -190,7 +190,7 @@ MOTION = (
     Fault(
         21,
         CAMERAS,
-        "the eyes are exchanged",
+        "the left and the right eye are exchanged",
         STEREO,
         "const Vec3 side = glm::cross(*direction, up);",
         "const Vec3 side = glm::cross(up, *direction);",
@@ -199,7 +199,7 @@ MOTION = (
     Fault(
         22,
         VECTORS,
-        "those of instances, where blur is read, too",
+        "instances: the times of motion blur are taken for those of the neighbouring frames",
         EXPORTER,
         "around = (moments[time] for time in motion.NEIGHBORS)",
         "around = (moments[time] for time in sorted(moments)[:2])",
@@ -208,7 +208,7 @@ MOTION = (
     Fault(
         22,
         VECTORS,
-        "that of the camera, where blur is read, too",
+        "the camera: the times of motion blur are taken for those of the neighbouring frames",
         EXPORTER,
         "around = [motion.camera_at(view, moments[time]) for time in motion.NEIGHBORS]",
         "around = [motion.camera_at(view, moments[time]) for time in sorted(moments)[:2]]",
@@ -217,7 +217,7 @@ MOTION = (
     Fault(
         22,
         VECTORS,
-        "those of meshes, where blur is read, too",
+        "meshes: the times of motion blur are taken for those of the neighbouring frames",
         EXPORTED_MOTION,
         "found = [moments[time].positions.get(deforming.shape) for time in NEIGHBORS]",
         "found = [moments[time].positions.get(deforming.shape) for time in sorted(moments)[:2]]",

@@ -1,4 +1,4 @@
-"""Faults in reconstruction by features: halves, features, variances, and the frozen operator."""
+"""Faults in feature-based reconstruction: half-buffers, features, variances and the frozen operator."""
 
 from __future__ import annotations
 
@@ -31,19 +31,19 @@ GIVES_BACK = (native("B2_Regularized.GivesBackTheLightOfRareSamples"),)
 OF_ALPHA = (native("B2_Regularized.AlphaGoesThroughTheSameWeights"),)
 OF_ESTIMATE = (native("ErrorEstimate.OfHalvesApartIsTheSquareOfHalfTheirDistance"),)
 
-HALVES = "halves mixed"
+HALVES = "half-buffers mixed"
 SHIFT = "features shifted"
 VARIANCE = "variance off by 4"
 SECOND_STEP = "second step dropped"
-FROZEN = "alpha beside the operator"
-COMPONENTS = "components apart"
+FROZEN = "alpha does not go through the frozen operator"
+COMPONENTS = "components inconsistent with the image"
 OF_COMPONENTS = (native("B2_Regularized.ComponentsAreWhatThePictureWithoutThemIsMadeOf"),)
 
 RECONSTRUCTION = (
     Fault(
         13,
         HALVES,
-        "A is read in place of B: there is no noise",
+        "half-buffer A is read in place of B, so that no noise is seen",
         REGULARIZED,
         "Rgb(component.primal[1][pixel])",
         "Rgb(component.primal[0][pixel])",
@@ -52,7 +52,7 @@ RECONSTRUCTION = (
     Fault(
         13,
         HALVES,
-        "their sum in place of their difference",
+        "their sum is taken in place of their difference",
         HALVED_IMAGE,
         "0.5f * (sums[0][c] / a - sums[1][c] / b)",
         "0.5f * (sums[0][c] / a + sums[1][c] / b)",
@@ -88,7 +88,7 @@ RECONSTRUCTION = (
     Fault(
         13,
         HALVES,
-        "of a feature, half A is summed twice",
+        "half-buffer A of a feature is added twice",
         FEATURES,
         "sum += plane.values[h][plane.channels * pixel + c];",
         "sum += plane.values[0][plane.channels * pixel + c];",
@@ -97,7 +97,7 @@ RECONSTRUCTION = (
     Fault(
         13,
         HALVES,
-        "of a feature, half B is divided by the samples of A",
+        "half-buffer B of a feature is divided by the sample count of A",
         FEATURES,
         "plane.values[1][i] / static_cast<float>(b)",
         "plane.values[1][i] / static_cast<float>(a)",
@@ -106,7 +106,7 @@ RECONSTRUCTION = (
     Fault(
         13,
         HALVES,
-        "their sum in place of their difference, of samples and differences",
+        "the sum of the half-buffers is read in place of their difference",
         READ,
         "row[i] = 0.5f * (row[i] - other[i]);",
         "row[i] = 0.5f * (row[i] + other[i]);",
@@ -115,7 +115,7 @@ RECONSTRUCTION = (
     Fault(
         13,
         HALVES,
-        "the error of L2 is that of the image, not of the difference",
+        "the error of L2 is computed from the image in place of the half-buffer difference",
         ERROR_ESTIMATE,
         "ErrorTerms terms{reconstruct(differences, GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report), {}};",
         "ErrorTerms terms{reconstruct(film, component, GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report), {}};",
@@ -124,7 +124,7 @@ RECONSTRUCTION = (
     Fault(
         14,
         SHIFT,
-        "by one pixel, all of them",
+        "all features, by one pixel",
         FEATURE_REGRESSION,
         "const size_t i = size_t(y) * size_t(features.width) + size_t(x);",
         "const size_t i = size_t(y) * size_t(features.width) + size_t(std::min(x + 1, features.width - 1));",
@@ -133,7 +133,7 @@ RECONSTRUCTION = (
     Fault(
         14,
         SHIFT,
-        "by one pixel, the albedo of the second step",
+        "the albedo of the second step, by one pixel",
         FEATURE_REGRESSION,
         "features.albedo.values[3 * (size_t(y) * size_t(features.width) + size_t(x)) + size_t(c)]",
         "features.albedo.values[3 * (size_t(y) * size_t(features.width) + size_t(std::max(x - 1, 0))) + size_t(c)]",
@@ -142,7 +142,7 @@ RECONSTRUCTION = (
     Fault(
         14,
         SHIFT,
-        "by one row, in windows",
+        "the features of a window, by one row",
         TILE,
         "task_.features->row(y, c)",
         "task_.features->row(std::max(y - 1, 0), c)",
@@ -151,7 +151,7 @@ RECONSTRUCTION = (
     Fault(
         14,
         SHIFT,
-        "by one pixel, as they are read",
+        "all features, by one pixel as they are read",
         FEATURES,
         "read_mean(film, *plane, halves, i, image.values.data() + i * image.channels);",
         "read_mean(film, *plane, halves, i > 0 ? i - 1 : 0, image.values.data() + i * image.channels);",
@@ -160,7 +160,7 @@ RECONSTRUCTION = (
     Fault(
         14,
         SHIFT,
-        "by one pixel, what their filter knows of the left and lower neighbours",
+        "the filter's distances to the left and lower neighbours, by one pixel",
         FEATURE_FILTER,
         "distance.row(other) + step - first_column(offset);",
         "distance.row(other) - first_column(offset);",
@@ -169,7 +169,7 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "four times, of the image",
+        "the variance of the image is four times too large",
         HALVED_IMAGE,
         "0.5f * (sums[0][c] / a - sums[1][c] / b)",
         "sums[0][c] / a - sums[1][c] / b",
@@ -178,7 +178,7 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "a quarter, of the image",
+        "the variance of the image is a quarter of the true value",
         HALVED_IMAGE,
         "0.5f * (sums[0][c] / a - sums[1][c] / b)",
         "0.25f * (sums[0][c] / a - sums[1][c] / b)",
@@ -187,7 +187,7 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "four times, of a pixel's own value",
+        "the variance of a pixel's own value is four times too large",
         FEATURE_REGRESSION,
         "kOwnTrust / (expected * expected * doubt * doubt + kMinVariance)",
         "kOwnTrust / (4.0f * expected * expected * doubt * doubt + kMinVariance)",
@@ -196,7 +196,7 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "a quarter, of a pixel's own value",
+        "the variance of a pixel's own value is a quarter of the true value",
         FEATURE_REGRESSION,
         "kOwnTrust / (expected * expected * doubt * doubt + kMinVariance)",
         "kOwnTrust / (0.25f * expected * expected * doubt * doubt + kMinVariance)",
@@ -205,7 +205,7 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "four times, of what windows say",
+        "the variance of a window's estimate is four times too large",
         TILE,
         "(noise > zero ? unit * noise : zero)",
         "(noise > zero ? 4.0f * unit * noise : zero)",
@@ -214,7 +214,7 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "a quarter, of what windows say",
+        "the variance of a window's estimate is a quarter of the true value",
         TILE,
         "(noise > zero ? unit * noise : zero)",
         "(noise > zero ? 0.25f * unit * noise : zero)",
@@ -223,7 +223,7 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "four times, of windows' bias",
+        "the squared bias of a window is four times too large",
         TILE,
         "bias = unit * residual;",
         "bias = 4.0f * unit * residual;",
@@ -232,7 +232,7 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "four times, of the regression beside sampled differences",
+        "the variance of regressed differences is four times too large",
         FUSED,
         "0.5f * kSharedDifference * both",
         "2.0f * kSharedDifference * both",
@@ -241,7 +241,7 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "a quarter, of sampled differences",
+        "the variance of sampled differences is a quarter of the true value",
         READ,
         "rows.sampled[x] ? 0.5f * std::sqrt(sum / 3.0f)",
         "rows.sampled[x] ? 0.25f * std::sqrt(sum / 3.0f)",
@@ -250,7 +250,7 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "four times, of a feature",
+        "the variance of a feature is four times too large",
         FEATURES,
         "const float half = 0.5f * (plane.values[0]",
         "const float half = (plane.values[0]",
@@ -259,7 +259,7 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "a quarter, of a feature",
+        "the variance of a feature is a quarter of the true value",
         FEATURES,
         "const float half = 0.5f * (plane.values[0]",
         "const float half = 0.25f * (plane.values[0]",
@@ -268,7 +268,7 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "four times, in the features' filter",
+        "the variance in the feature filter is four times too large",
         FEATURE_FILTER,
         "noise = of_a[x] + of_b[x];",
         "noise = 4.0f * (of_a[x] + of_b[x]);",
@@ -277,7 +277,7 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "a quarter, in the features' filter",
+        "the variance in the feature filter is a quarter of the true value",
         FEATURE_FILTER,
         "noise = of_a[x] + of_b[x];",
         "noise = 0.25f * (of_a[x] + of_b[x]);",
@@ -286,7 +286,7 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "in Error: the scale is not squared",
+        "the scale in the pass Error is not squared",
         REGULARIZED,
         "value *= scale * scale;",
         "value *= scale;",
@@ -295,19 +295,35 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "in Error: bias is left out",
+        "the pass Error omits the bias",
         REGRESSION_ERROR,
         "std::max(bias.row(y)[x], 0.0f)",
         "std::min(bias.row(y)[x], 0.0f)",
         OF_ERROR,
     ),
-    Fault(15, VARIANCE, "in Error: bias below 0 counts", REGRESSION_ERROR, "std::max(bias.row(y)[x], 0.0f)", "bias.row(y)[x]", OF_PARTS),
-    Fault(15, VARIANCE, "in Error: noise is not a share of the light", REGRESSION_ERROR, " / light.row(y)[x]; }", "; }", OF_PARTS),
-    Fault(15, VARIANCE, "in Error: lost light is left out", REGRESSION_ERROR, " + kLost * lost.row(y)[x]", "", OF_PARTS),
     Fault(
         15,
         VARIANCE,
-        "in Error: noise of the second step is left out",
+        "the pass Error includes bias below 0",
+        REGRESSION_ERROR,
+        "std::max(bias.row(y)[x], 0.0f)",
+        "bias.row(y)[x]",
+        OF_PARTS,
+    ),
+    Fault(
+        15,
+        VARIANCE,
+        "the noise in the pass Error is not relative to the light",
+        REGRESSION_ERROR,
+        " / light.row(y)[x]; }",
+        "; }",
+        OF_PARTS,
+    ),
+    Fault(15, VARIANCE, "the pass Error omits lost light", REGRESSION_ERROR, " + kLost * lost.row(y)[x]", "", OF_PARTS),
+    Fault(
+        15,
+        VARIANCE,
+        "the pass Error omits the noise of the second step",
         FEATURE_REGRESSION,
         "  add(second.noise, &first->noise);\n",
         "",
@@ -316,17 +332,25 @@ RECONSTRUCTION = (
     Fault(
         15,
         VARIANCE,
-        "in Error of L2: a half's difference is not halved",
+        "the half-buffer difference in the pass Error of L2 is not halved",
         READ,
         "row[i] = 0.5f * (row[i] - other[i]);",
         "row[i] = row[i] - other[i];",
         OF_ESTIMATE,
     ),
-    Fault(16, SECOND_STEP, "of the image", FEATURE_REGRESSION, "  add(second.mean, &first->mean);\n", "", GIVES_BACK),
     Fault(
         16,
         SECOND_STEP,
-        "of what else goes through the weights",
+        "the image lacks the second step",
+        FEATURE_REGRESSION,
+        "  add(second.mean, &first->mean);\n",
+        "",
+        GIVES_BACK,
+    ),
+    Fault(
+        16,
+        SECOND_STEP,
+        "other channels that go through the weights lack the second step",
         FEATURE_REGRESSION,
         "  add(of_residual_.apply(residual, cancel), &result);\n",
         "",
@@ -335,7 +359,7 @@ RECONSTRUCTION = (
     Fault(
         17,
         FROZEN,
-        "it stays as noisy as it was sampled",
+        "alpha stays as noisy as it was sampled",
         REGULARIZED,
         "regression_->apply(channels_of(read_sampled(film, 0, scale_), 3, 1), cancel)",
         "channels_of(read_sampled(film, 0, scale_), 3, 1)",
@@ -344,16 +368,17 @@ RECONSTRUCTION = (
     Fault(
         17,
         FROZEN,
-        "beside differences it is the regression's alone",
+        "beside differences, alpha is that of the regression alone",
         FUSED,
         "  solve();\n}\n",
-        "  solve();\n  for_values(&solution_, [&](float& v, int x, int y, int c) { v = c < 3 ? v : regressed.row(y, c)[x]; });\n}\n",
+        "  solve();\n"
+        "  for_values(&solution_, [&](float& v, int x, int y, int c) { v = c < 3 ? v : regressed.row(y, c)[x]; });\n}\n",
         OF_ALPHA,
     ),
     Fault(
         17,
         FROZEN,
-        "its outliers keep all of their light",
+        "outliers of alpha keep all of their light",
         FEATURE_REGRESSION,
         "Field residual = difference(values, result);\n"
         "  scale_by(residual_share_, &residual);\n",
@@ -363,7 +388,7 @@ RECONSTRUCTION = (
     Fault(
         17,
         FROZEN,
-        "large windows have no part in it",
+        "large windows do not contribute to alpha",
         FEATURE_REGRESSION,
         "  blend(share_, coarse_.apply(values, cancel), &result);\n",
         "",
@@ -372,7 +397,7 @@ RECONSTRUCTION = (
     Fault(
         17,
         FROZEN,
-        "its pixels' own values count for nothing",
+        "the own values of pixels do not contribute to alpha",
         TILE,
         "load(boxes_[c] + x) + own *",
         "load(boxes_[c] + x) + (Estimates ? own : zero) *",
@@ -381,7 +406,7 @@ RECONSTRUCTION = (
     Fault(
         33,
         COMPONENTS,
-        "what others leave is not taken off the brightest",
+        "the remainder of the other components is not subtracted from the brightest",
         LINEAR_PARTS,
         "    subtract((*terms)[k], &left);\n",
         "",
@@ -390,7 +415,7 @@ RECONSTRUCTION = (
     Fault(
         33,
         COMPONENTS,
-        "beside differences they are the regression's alone",
+        "beside differences, components are those of the regression alone",
         REGULARIZED,
         "fusion_ ? fusion_->apply(film::read_images(film, component), regressed, cancel_, report_) : regressed",
         "component < 0 ? fusion_->apply(film::read_images(film, component), regressed, cancel_, report_) : regressed",
@@ -399,7 +424,7 @@ RECONSTRUCTION = (
     Fault(
         33,
         COMPONENTS,
-        "all go the way of the first",
+        "all components follow the correspondence of the first",
         REGULARIZED_WINDOWS,
         "window[t]->change->correspondence[k], window",
         "window[t]->change->correspondence[0], window",
@@ -408,7 +433,7 @@ RECONSTRUCTION = (
     Fault(
         33,
         COMPONENTS,
-        "changes are not added up before they are weighed",
+        "changes of components are not added before they are weighted",
         REGRESS_CHANGE,
         "      add(component.image.half_difference, &sum.half_difference);\n",
         "",

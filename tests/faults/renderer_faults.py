@@ -1,4 +1,4 @@
-"""Faults in rendering, from the cosine to the add-on."""
+"""Faults in rendering, from sampling to the add-on."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ RENDERER = (
     Fault(
         4,
         "NaN sample",
-        "one sample of 1,000 is no number",
+        "one sample of 1,000 is NaN",
         PIXELS,
         "    Radiance value = result.radiance[c];\n",
         "    Radiance value = result.radiance[c];\n"
@@ -50,7 +50,7 @@ RENDERER = (
     Fault(
         4,
         "NaN sample",
-        "the gate lets it through",
+        "the finite check accepts NaN and infinity",
         "native/src/film/finite_check.h",
         "inline bool fits(float v) { return std::fabs(v) <= kLargestSum; }",
         "inline bool fits(float v) { return !(std::fabs(v) > kInfinity); }",
@@ -113,7 +113,7 @@ RENDERER = (
     Fault(
         8,
         "last row lost",
-        "of each cell of pixels",
+        "of each pixel block",
         "native/src/integrator/pixel_loop.h",
         "for (int32_t y = block.y0; y < block.y1; ++y)",
         "for (int32_t y = block.y0; y < block.y1 - 1; ++y)",
@@ -122,7 +122,7 @@ RENDERER = (
     Fault(
         8,
         "last row lost",
-        "of the delivered picture",
+        "of every rendered pass",
         "native/src/output/pass_read.cpp",
         "      for (int32_t x = region.x0; x < region.x1; ++x) function(film.index(x, y), out++);\n",
         "      for (int32_t x = region.x0; x < region.x1; ++x, ++out) {\n"

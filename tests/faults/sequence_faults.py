@@ -1,4 +1,4 @@
-"""Faults in animations: replays, links, differences over time, windows, stored frames, and what Blender gets of them."""
+"""Faults in animations: replays, correspondence, differences over time, windows, stored frames and the add-on."""
 
 from __future__ import annotations
 
@@ -36,21 +36,21 @@ def animation(choice: str) -> Test:
     return Test("tests/addon/temporal_animation_test.py", choice)
 
 
-REPLAY = "wrong numbers replayed"
-LINK = "wrong links"
-CUT = "cut not found"
+REPLAY = "wrong random numbers replayed"
+LINK = "wrong pixel correspondence"
+CUT = "shot change not found"
 DIFFERENCE = "wrong difference over time"
-HALVES = "halves of a frame mixed"
-WINDOWS = "wrong windows"
+HALVES = "fresh and replayed samples mixed"
+WINDOWS = "wrong temporal windows"
 STORE = "wrong stored frame"
 CHANGE = "wrong change over time"
-HOST = "wrong frame in the host"
+HOST = "wrong frame in Blender"
 
 SEQUENCES = (
     Fault(
         23,
         REPLAY,
-        "those of the frame's own seed",
+        "a replay takes the numbers of the frame's own seed",
         PIXELS,
         "return numbers_of(context, unit, film.region.x0",
         "return numbers_of(context, WorkUnit{unit.tile}, film.region.x0",
@@ -59,7 +59,7 @@ SEQUENCES = (
     Fault(
         23,
         REPLAY,
-        "cells have the jitter of the frame's own seed",
+        "pixel blocks take the jitter of the frame's own seed",
         PIXELS,
         "numbers_of(context, unit, block.x0, block.y0)",
         "numbers_of(context, WorkUnit{unit.tile}, block.x0, block.y0)",
@@ -68,7 +68,7 @@ SEQUENCES = (
     Fault(
         23,
         REPLAY,
-        "those of the same pixel, whatever moves",
+        "a replay takes the numbers of the same pixel, even where the scene moves",
         PIXELS,
         "film.region.x0 + pixel % width, film.region.y0 + pixel / width)",
         "pixel < 0 ? width : x, y)",
@@ -77,7 +77,7 @@ SEQUENCES = (
     Fault(
         23,
         REPLAY,
-        "pixels of a border are counted from the film's corner",
+        "pixels of a border are counted from the corner of the film",
         PIXELS,
         "film.region.x0 + pixel % width",
         "pixel % width",
@@ -86,7 +86,7 @@ SEQUENCES = (
     Fault(
         23,
         REPLAY,
-        "a hole is not tagged: it has the frame's own numbers twice",
+        "a disocclusion takes the frame's own numbers a second time",
         PIXELS,
         "return {path::StreamKind::Disocclusion, x, y, context.settings.frame, context.settings.seed};",
         "return numbers_of(context, WorkUnit{unit.tile}, x, y);",
@@ -95,7 +95,7 @@ SEQUENCES = (
     Fault(
         23,
         REPLAY,
-        "as many as the frame's mean, not as the frame before has taken",
+        "a replay takes the mean sample count in place of that of the replayed pixel",
         REPLAY_PLAN,
         "if (source != film::kNoCorrespondence) counts[i] = before->counts[size_t(source)];",
         "if (source < film::kNoCorrespondence) counts[i] = before->counts[size_t(source)];",
@@ -104,7 +104,7 @@ SEQUENCES = (
     Fault(
         24,
         LINK,
-        "two pixels lead to one",
+        "two pixels correspond to one",
         LINKS,
         "    if (!nearest) correspondence[i] = film::kNoCorrespondence;\n",
         "",
@@ -113,7 +113,7 @@ SEQUENCES = (
     Fault(
         24,
         LINK,
-        "the farthest of two has the pixel",
+        "of two pixels that meet in one, the farther is kept",
         LINKS,
         "distances[i] < distances[size_t(other)]",
         "distances[i] > distances[size_t(other)]",
@@ -122,7 +122,7 @@ SEQUENCES = (
     Fault(
         24,
         LINK,
-        "they need not lead back",
+        "correspondence need not lead back to the pixel",
         LINKS,
         "if (next == film::kNoCorrespondence || !returns(back, from, i, next)) return;",
         "if (next == film::kNoCorrespondence || (i > correspondence.size() && !returns(back, from, i, next))) return;",
@@ -131,7 +131,7 @@ SEQUENCES = (
     Fault(
         24,
         LINK,
-        "a mesh of other triangles is the same",
+        "a mesh with other triangles is taken for the same mesh",
         MOTION,
         "if (from.instances[i].mesh->topology_hash !=",
         "if (false && from.instances[i].mesh->topology_hash !=",
@@ -140,7 +140,7 @@ SEQUENCES = (
     Fault(
         24,
         LINK,
-        "objects are counted, not known",
+        "objects are matched by index, not by identity",
         MOTION,
         "matches.push_back(found != by_id.end() ? found->second : kNoInstance);",
         "matches.push_back(uint32_t(std::min(matches.size(), to.instances.size() - 1)));",
@@ -149,7 +149,7 @@ SEQUENCES = (
     Fault(
         24,
         LINK,
-        "from the next frame to this one",
+        "the correspondence is that of the next frame to this one",
         TEMPORAL_FRAME,
         "follows && !is_repeated(frame, next) ? motion::inverse_correspondence(replayed.correspondence)\n"
         "                                              : film::PixelCorrespondence{std::move(pixel)}",
@@ -159,7 +159,7 @@ SEQUENCES = (
     Fault(
         24,
         LINK,
-        "the other way round they end in the middle of pixels",
+        "inverse correspondence ends in the centres of pixels",
         LINKS,
         "    if (!correspondence.off_centre.empty()) inverse.off_centre[end] = correspondence.off_centre[i];\n",
         "",
@@ -168,7 +168,7 @@ SEQUENCES = (
     Fault(
         24,
         LINK,
-        "what their rounding makes is forgotten",
+        "the effect of rounded displacements is left out of the regressed change",
         REGRESS_CHANGE,
         ") + rounding.row(y, c)[x];",
         ") + 0.0f * rounding.row(y, c)[x];",
@@ -177,7 +177,7 @@ SEQUENCES = (
     Fault(
         24,
         LINK,
-        "pictures always go with them",
+        "the effect of rounded displacements is included where no change was sampled",
         REGRESS_CHANGE,
         "  keep_sampled_share(change.image.mean, rounding);\n",
         "",
@@ -186,7 +186,7 @@ SEQUENCES = (
     Fault(
         25,
         CUT,
-        "all frames are linked",
+        "a shot change is not detected between frames",
         REPLAY_PLAN,
         " && !motion::is_shot_change(before->snapshot->camera, now.camera)",
         "",
@@ -195,7 +195,7 @@ SEQUENCES = (
     Fault(
         25,
         CUT,
-        "a zoom is none",
+        "a zoom is not a shot change",
         LINKS,
         "zoom < kShotChangeZoom && zoom > 1.0f / kShotChangeZoom",
         "zoom > 0.0f * kShotChangeZoom",
@@ -213,7 +213,7 @@ SEQUENCES = (
     Fault(
         25,
         CUT,
-        "windows reach over a frame that is passed by",
+        "windows extend over a skipped frame",
         SEQUENCE,
         "passed_by_.insert(settings.frame);",
         "passed_by_.erase(settings.frame);",
@@ -222,7 +222,7 @@ SEQUENCES = (
     Fault(
         26,
         DIFFERENCE,
-        "with the wrong sign",
+        "the difference has the wrong sign",
         FRAME_WINDOW,
         "next[size_t(link) * channels + c] - fresh[i * channels + c]",
         "fresh[i * channels + c] - next[size_t(link) * channels + c]",
@@ -231,7 +231,7 @@ SEQUENCES = (
     Fault(
         26,
         DIFFERENCE,
-        "of the next frame's own samples, which are independent",
+        "the difference takes the next frame's fresh samples, which are independent",
         FRAME_WINDOW,
         "plane_of(frames_[size_t(t) + 1]->replay.*part, kind)",
         "plane_of(frames_[size_t(t) + 1]->fresh.*part, kind)",
@@ -240,7 +240,7 @@ SEQUENCES = (
     Fault(
         26,
         DIFFERENCE,
-        "of the pixel itself, not along its link",
+        "the difference is that of the pixel itself, not of the corresponding pixel",
         FRAME_WINDOW,
         "next[size_t(link) * channels + c]",
         "next[i * channels + c]",
@@ -249,7 +249,7 @@ SEQUENCES = (
     Fault(
         26,
         DIFFERENCE,
-        "there is none between frames that are alike",
+        "an unchanged frame is not recognised as a repetition",
         REPEATED,
         "return next.stream == frame.stream && next.scene_key",
         "return next.stream == frame.stream + 1 && next.scene_key",
@@ -258,7 +258,7 @@ SEQUENCES = (
     Fault(
         27,
         HALVES,
-        "differences over time are those of the next frame's own half",
+        "differences over time take the fresh samples of the next frame",
         MAKER,
         "folder.load(next, FrameSamples::kReplayed, film_io::StoredContent::kSamples, is_cancelled_)",
         "folder.load(next, FrameSamples::kFresh, film_io::StoredContent::kSamples, is_cancelled_)",
@@ -267,7 +267,7 @@ SEQUENCES = (
     Fault(
         27,
         HALVES,
-        "the base alone, in windows",
+        "windows read the fresh samples alone",
         FRAME_WINDOW,
         "return fresh + share * (replay - fresh);",
         "return fresh + 0.0f * share * (replay - fresh);",
@@ -276,7 +276,7 @@ SEQUENCES = (
     Fault(
         27,
         HALVES,
-        "the base alone, in passes",
+        "passes read the fresh samples alone",
         SEQUENCE,
         "  render::add_sums(fresh, replayed);\n",
         "",
@@ -285,7 +285,7 @@ SEQUENCES = (
     Fault(
         27,
         HALVES,
-        "a half each, whatever their samples",
+        "fresh and replayed samples have equal shares, whatever their counts",
         TEMPORAL_FRAME,
         "own + other > 0.0f ? other / (own + other) : 0.0f",
         "own + other > 0.0f ? 0.5f : 0.0f",
@@ -294,7 +294,7 @@ SEQUENCES = (
     Fault(
         28,
         WINDOWS,
-        "their shares do not add up to 1",
+        "the shares of windows in a frame do not sum to 1",
         GRID,
         "begins ? s * s : 1.0f - s * s",
         "begins ? s * s : 1.0f - s",
@@ -303,7 +303,7 @@ SEQUENCES = (
     Fault(
         28,
         WINDOWS,
-        "the grid begins with the job",
+        "the grid of windows begins at the first frame of the job",
         SEQUENCE,
         "return int(from_first / step + (first >= 0 ? first / step : -((step - 1 - first) / step)));",
         "return int(from_first / step + 0 * first);",
@@ -312,7 +312,7 @@ SEQUENCES = (
     Fault(
         28,
         WINDOWS,
-        "the last one has the frame",
+        "the last window replaces the others in a frame",
         BLEND,
         "reconstruct::add(begun->second, &picture);",
         "reconstruct::add(picture, &begun->second);\n    scale(&picture, 1.0f / share);",
@@ -321,7 +321,7 @@ SEQUENCES = (
     Fault(
         28,
         WINDOWS,
-        "halves' differences are the values",
+        "half-buffer differences are read as values",
         SPOOLED,
         "rows.read_half_differences(kind, 0, y, row.data());",
         "rows.read_row(kind, 0, y, row.data());",
@@ -330,7 +330,7 @@ SEQUENCES = (
     Fault(
         29,
         STORE,
-        "of other settings",
+        "a stored frame of other settings is accepted",
         STORED_HALF,
         "if (schema::sampling_key(other) != schema::sampling_key(settings))\n    return",
         "if (schema::sampling_key(other) == 0)\n    return",
@@ -339,7 +339,7 @@ SEQUENCES = (
     Fault(
         29,
         STORE,
-        "of another scene",
+        "a stored frame of another scene is accepted",
         STORED_HALF,
         "if (stored.scene_key != scene_key)",
         "if (stored.scene_key != scene_key && scene_key == 0)",
@@ -348,7 +348,7 @@ SEQUENCES = (
     Fault(
         29,
         STORE,
-        "of another job, beside this one's",
+        "a stored neighbour of another job is accepted",
         SEQUENCE,
         "(one_job || are_equivalent(before.settings, here.settings))",
         "(one_job || are_equivalent(before.settings, before.settings))",
@@ -357,7 +357,7 @@ SEQUENCES = (
     Fault(
         29,
         STORE,
-        "with too few samples",
+        "a stored frame with too few samples is accepted",
         SAMPLING,
         "stored_fresh_ && !has_as_many(*stored_fresh_, FrameSamples::kFresh, input_.settings)",
         "stored_fresh_ && input_.settings.samples == 0",
@@ -366,7 +366,7 @@ SEQUENCES = (
     Fault(
         29,
         STORE,
-        "its part file stays",
+        "the temporary file of a stored frame remains",
         FILE_WRITER,
         "rename(temporary_.c_str(), path_.c_str()) != 0",
         "(unlink(path_.c_str()), link(temporary_.c_str(), path_.c_str())) != 0",
@@ -375,7 +375,7 @@ SEQUENCES = (
     Fault(
         29,
         STORE,
-        "it has its name before it is whole",
+        "a stored frame gets its name before it is complete",
         FILE_WRITER,
         "  temporary_ = part.name;\n",
         "  rename(part.name.c_str(), path.c_str());\n  temporary_ = path;\n",
@@ -384,7 +384,7 @@ SEQUENCES = (
     Fault(
         30,
         CHANGE,
-        "that of the frame before",
+        "the change is that of the frame before",
         REGULARIZED,
         "= differences_(frame, cancel);",
         "= differences_(frame > 0 ? frame - 1 : 0, cancel);",
@@ -393,7 +393,7 @@ SEQUENCES = (
     Fault(
         30,
         CHANGE,
-        "its links alone, and no change",
+        "the change is 0 and only the correspondence is used",
         TRACKS,
         "return channel < step.difference.channels() ? step.difference.row(y, channel) : zeros.data();",
         "return channel < 0 ? step.difference.row(y, channel) : zeros.data();",
@@ -402,7 +402,7 @@ SEQUENCES = (
     Fault(
         30,
         CHANGE,
-        "what pictures say against it does not count",
+        "a change that contradicts the images keeps its full weight",
         REGULARIZED,
         "return excess > 0.0f ?",
         "return excess < 0.0f ?",
@@ -411,7 +411,7 @@ SEQUENCES = (
     Fault(
         31,
         HOST,
-        "a fault ends the frames before it, too",
+        "a failure also ends the frames before it",
         ANIMATION,
         "if self._fault is not None and self._fault[0] <= frame:",
         "if self._fault is not None:",
@@ -420,7 +420,7 @@ SEQUENCES = (
     Fault(
         31,
         HOST,
-        "the scene stays at the last frame that was sampled",
+        "the scene stays at the last sampled frame",
         ANIMATION,
         "    finally:\n        go_to(own)\n",
         "    finally:\n        pass\n",
@@ -429,7 +429,7 @@ SEQUENCES = (
     Fault(
         31,
         HOST,
-        "parts of a job are not linked",
+        "stored frames of neighbouring jobs are not linked",
         ANIMATION,
         "                if self._has_folder and begins:\n",
         "                if self._has_folder and not begins:\n",
