@@ -36,6 +36,7 @@ class OffsetPaths {
   void light(const path::Vertex& vertex, const path::LightSample& sample, bsdf::ScatterClass scatter_class,
              const path::Contribution& c);
   void scatter(const path::Vertex& vertex, const path::VertexSample& u, const path::ScatterEvent& event);
+  // Returns the vertex that PathTracer must keep because reconnection to it is deferred, or null.
   const path::Vertex* retained() const { return deferred_vertex_; }
   void absorbed(const path::Vertex& vertex, const path::VertexSample& u) { decouple_by_class(vertex, u); }
 

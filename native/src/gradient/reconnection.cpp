@@ -18,9 +18,9 @@ bool is_parallax_below(const Vec3& x, const Vec3& y, const Vec3& z, float angle)
 bool is_short_edge(const Vec3& x, const Vec3& y, const Vec3& z) { return !is_parallax_below(x, y, z, 1.0f); }
 
 bool shares_sharp_vertex(const Vec3& x, const Vec3& y, const Vec3& z, float curvature, bool transmission) {
-  // minimum curvature · edge; at this value the spread of directions behind z is about equal with and without sharing
+  // Minimum curvature · edge. Here the directions behind z differ about equally with and without sharing.
   constexpr float kCurved = 0.5f;
-  // maximum parallax at a mirror; above it the loss at the rim of the mirror exceeds the gain from its flatness
+  // Maximum parallax at a mirror. Above it the loss at the rim of the mirror exceeds the gain from its flatness.
   constexpr float kSmall = 0.2f;
   const float edge = std::min(glm::length(z - x), glm::length(z - y));
   return curvature * edge > kCurved ? !is_short_edge(x, y, z) : !transmission && is_parallax_below(x, y, z, kSmall);
