@@ -1,4 +1,4 @@
-// B5: what gradients gain in the same time.
+// B5: compares the error of gradient-domain and plain path tracing after equal time.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -22,7 +22,8 @@ int seeds() { return test::full_run() ? 32 : 8; }
 uint32_t samples() { return test::full_run() ? 16 : 8; }
 
 struct Measured {
-  double error = 0.0;  // relative squared error of one image, from the spread over seeds: both estimators are unbiased
+  // Relative squared error of one image, from the spread over seeds, because both estimators are unbiased.
+  double error = 0.0;
   double seconds = 0.0;
 };
 
@@ -54,15 +55,15 @@ Measured measure(const integrator::IntegratorContext& base, bool gradient, uint3
 constexpr Scenario kScenarios[] = {Scenario::DiffuseArea, Scenario::PointAndSun, Scenario::World,
                                    Scenario::RoughMetal,  Scenario::Glass,       Scenario::Transparent};
 
-// The error of path tracing falls as 1/n, so what it had after the time of the gradients follows from its own samples
-// and time.
+// Path tracing has an error that falls as 1/n. So its error after the time of the gradient integrator follows from its
+// own samples and time.
 TEST(B5_Benefit, MostScenesAreBetterInTheSameTimeAndNoneMuchWorse) {
   int better = 0;
   for (const Scenario scenario : kScenarios) {
     test::PathScene scene;
     test::build(scenario, &scene);
-    // The light is out of the picture: at its edge, 160 times as bright as the wall behind, L2 spreads the noise of
-    // coverage.
+    // The light is outside the picture. At its edge, where it is 160 times as bright as the wall behind it, L2 spreads
+    // the noise of pixel coverage.
     scene.camera(Vec3(0.0f, -0.3f, 3.2f), Vec3(0.0f, -0.4f, 0.0f), 0.6f);
     GradusSettings settings = test::test_settings(kWidth, kHeight);
     settings.independent_sampler = 0;
@@ -78,9 +79,9 @@ TEST(B5_Benefit, MostScenesAreBetterInTheSameTimeAndNoneMuchWorse) {
   EXPECT_GE(better, 4);
 }
 
-// --- The same of whole renders, pilot and reconstruction included, with what is chosen where the user says nothing.
+// --- The same comparison for whole renders with default options, including pilot and reconstruction.
 
-// Of the squared error of value i of RGBA.
+// Returns the weight of the squared error of value i in an RGBA image, 0 for alpha.
 double weight(const test::Moments& truth, size_t i) {
   const size_t pixel = i / 4 * 4;
   const double gray = (truth.mean(pixel) + truth.mean(pixel + 1) + truth.mean(pixel + 2)) / 3.0;
@@ -119,8 +120,8 @@ Rendered render(test::PathScene* scene, uint32_t integrator, uint32_t first_seed
   return result;
 }
 
-// Of one image. By the spread over seeds for path tracing, which has no bias, and whose mean is what the others are
-// held against: its own error is taken off.
+// Returns the error of one path-traced image from the spread over seeds. The mean of these images is the unbiased
+// reference.
 double error_of_path(const Rendered& path) {
   double error = 0.0;
   for (size_t i = 0; i < path.moments.size(); ++i)
@@ -128,6 +129,7 @@ double error_of_path(const Rendered& path) {
   return error;
 }
 
+// Returns the error of one image against the mean of the path-traced images, less the error of that mean.
 double error_against(const Rendered& path, const Rendered& rendered) {
   double error = 0.0;
   for (size_t i = 0; i < path.moments.size(); ++i) {

@@ -1,5 +1,5 @@
-// Components against an independent path tracer that spells out the word of every path, and their gradients against
-// differences of their images.
+// Compares components with an independent path tracer that spells out the light path of every sample, and their
+// gradients with differences of their images.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using test::Scenario;
 
 constexpr uint32_t kSide = 20;
 
-// A matte, glossy and sharp floor below a large light, a ball of glass and one of rough metal.
+// Builds a floor with a matte and a glossy lobe below a large light, with one ball of glass and one of rough metal.
 void build_mixed(PathScene* scene) {
   test::Surface floor = test::matte(Rgb(0.5f));
   floor.glossy = Rgb(0.3f);
@@ -29,7 +29,7 @@ void build_mixed(PathScene* scene) {
   scene->ball(Vec3(0.45f, -0.5f, 0.2f), 0.45f, scene->material(test::glossy(0.5f)), 10, true);
 }
 
-// Mean of the picture's channels, by components.
+// Returns the mean over pixels and channels of each component.
 std::vector<float> means(const film::Film& film) {
   std::vector<float> result;
   for (int c = 0; c < int(film.components.size()); ++c) {
@@ -70,7 +70,7 @@ TEST(Components, HaveTheMeansThatAnIndependentTracerFinds) {
     }
     for (int c = 0; c < set.count(); ++c) {
       const size_t i = size_t(c);
-      EXPECT_GT(truth.mean(i), 1e-4) << set[c].name;  // there is something to compare
+      EXPECT_GT(truth.mean(i), 1e-4) << set[c].name;  // The component must contain light.
       if (truth.variance_of_mean(i) > 1e-12) {
         EXPECT_GT(test::welch_p(ours, truth, i), 1e-3)
             << set[c].name << ": " << ours.mean(i) << " and " << truth.mean(i);

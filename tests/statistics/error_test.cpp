@@ -1,4 +1,4 @@
-// The pass Error against the squared error that pictures have.
+// Compares the pass Error with the squared error that pictures have.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -33,7 +33,8 @@ film::Film render(const integrator::IntegratorContext& scene, bool gradients, ui
   return film;
 }
 
-// Mean of many samples and its variance, the latter mean over RGB: what it adds to squared distances from it.
+// Mean of many images. squared_distance() returns the squared distance of an image from it, averaged over RGB, less the
+// variance of the mean itself.
 struct Reference {
   test::Moments images;
   double squared_distance(size_t pixel, const std::vector<float>& image) const {
@@ -56,7 +57,7 @@ Reference make_reference(const integrator::IntegratorContext& scene) {
   return reference;
 }
 
-// Of the same pixels.
+// Sums of the estimated and the actual squared error over the same pixels.
 struct Sums {
   double estimated = 0.0, actual = 0.0;
   void add(double e, double a) {
@@ -66,7 +67,7 @@ struct Sums {
   double ratio() const { return estimated / actual; }
 };
 
-// Over all pixels, the half of them that is said to be better, and the tenth that is said to be worst.
+// Sums over all pixels, over the half with the lowest estimated error, and over the tenth with the highest.
 struct Parts {
   Sums all, better_half, worst_tenth;
 };
@@ -94,15 +95,15 @@ struct Kind {
   double maximum = 1.3, min_of_better_half = 0.5;
 };
 
-// REGULARIZED's allows for what its weights hide of the noise of rare bright samples
-// (reconstruct/regression_error.cpp), of which these rooms have few.
+// The bound of REGULARIZED allows for the noise of rare bright samples that its weights hide
+// (reconstruct/regression_error.cpp). These rooms have few of them.
 constexpr Kind kKinds[] = {
     {GRADUS_RECONSTRUCTION_NONE}, {GRADUS_RECONSTRUCTION_L2}, {GRADUS_RECONSTRUCTION_REGULARIZED, false, 2.2, 0.4}};
 
 class A8_Error : public testing::TestWithParam<Scenario> {};
 
-// An estimate that is the same everywhere is right for the picture, but for no part of it. In the better half windows
-// reach over the edges of what has no noise at all.
+// A constant estimate would be right for the whole picture but wrong for each group of pixels. In the better half,
+// reconstruction windows extend over the edges of regions without noise.
 TEST_P(A8_Error, IsThatOfThePictureAndTellsItsPixelsApart) {
   test::PathScene scene;
   test::build(GetParam(), &scene);

@@ -12,7 +12,8 @@ namespace {
 
 enum class Lighting { Point, FourPoints, Emission };
 
-using Case = std::tuple<Lighting, GradusCameraType, bool, bool>;  // … gradient integrator, independent sampler
+// Lighting, camera, whether the integrator is the gradient integrator, whether the sampler is independent.
+using Case = std::tuple<Lighting, GradusCameraType, bool, bool>;
 
 GradusLight point_at_centre(float intensity) {
   return test::make_light(GRADUS_LIGHT_POINT, Mat4(1.0f), Rgb(intensity));
@@ -23,7 +24,8 @@ void build_sphere(Lighting lighting, GradusCameraType camera, test::PathScene* s
   surface.diffuse = Rgb(0.5f);
   surface.emission = lighting == Lighting::Emission ? Rgb(0.5f) : Rgb(0.0f);
   scene->ball(Vec3(0.0f), 1.0f, scene->material(surface), 64);
-  // Intensity π: irradiance π on the sphere, reflected 0.5, and 0.5/(1 − 0.5) after all bounces.
+  // Intensity π gives irradiance π on the sphere, which reflects radiance 0.5. All bounces together give 0.5/(1 − 0.5)
+  // = 1.
   for (int i = 0; i < (lighting == Lighting::Point ? 1 : lighting == Lighting::FourPoints ? 4 : 0); ++i) {
     scene->light(point_at_centre(lighting == Lighting::Point ? kPi : 0.25f * kPi));
   }
@@ -47,7 +49,7 @@ TEST_P(A1_Furnace, RadianceIsOne) {
   double sum = 0.0;
   for (float value : images.primal) sum += value;
   EXPECT_NEAR(sum / double(images.primal.size()), 1.0, 0.025);
-  // The image is constant (but for the facets of the sphere): so are its gradients 0.
+  // The image is constant except for the facets of the sphere, so its gradients are 0.
   double slope = 0.0;
   for (float value : images.dx) slope += value;
   for (float value : images.dy) slope += value;

@@ -1,4 +1,4 @@
-// Differences of two pixels that were wrong in the mean, each for a reason of its own.
+// Regression tests: differences of two pixels that were biased, each for a different cause.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 using test::PathScene;
 using test::Surface;
 
-// The sampled difference against that of the images, over renders of two pixels.
+// Checks that the sampled difference of two pixels agrees in the mean with the difference of their images.
 void check_difference(PathScene* scene, GradusSettings settings, uint32_t samples) {
   constexpr int renders = 300;
   test::sample_at_pixel_centres(&settings);
@@ -33,8 +33,8 @@ void check_difference(PathScene* scene, GradusSettings settings, uint32_t sample
   EXPECT_LT(std::fabs(mean), 4.0 * error);
 }
 
-// Where the classes of base and offset differ, light samples behind the vertex they share next were paired by
-// themselves, and BSDF samples that met the same emitter by the density of both techniques.
+// Regression: where the classes of base and offset differ, light samples behind the next shared vertex were paired by
+// themselves. But BSDF samples that met the same emitter were weighted by the density of both techniques.
 TEST(B7_EdgeOfAMirror, EmittersBehindTheNextVertexAreWeighedAlikeByBothTechniques) {
   PathScene scene;
   Surface left = test::matte(Rgb(0.8f)), right = left, metal, light;
@@ -52,7 +52,8 @@ TEST(B7_EdgeOfAMirror, EmittersBehindTheNextVertexAreWeighedAlikeByBothTechnique
   check_difference(&scene, settings, 1024);
 }
 
-// A floor whose left half is seen through a veil, below another one; light from above that one.
+// Adds a floor below a second transparent plane; a veil covers its left half. The light comes from above the second
+// plane.
 void add_veiled_floor(PathScene* scene) {
   Surface veil = test::matte(Rgb(0.05f));
   veil.transparent = 0.9f;
@@ -71,7 +72,8 @@ GradusSettings one_veil_only() {
   return settings;
 }
 
-// A path that came through the first veil gets no light through the second; its pair was given that of its base.
+// Regression: a path that has passed the first veil gets no light through the second. Its gradient sample used the
+// light of its base.
 TEST(B7_LimitOfTransparentSurfaces, CountsForTheLightOfSharedVertices) {
   PathScene scene;
   add_veiled_floor(&scene);

@@ -1,5 +1,5 @@
-// The integrators against each other and against differences of images: B3 and B7 for the sampled planes, bit equality
-// of the primal.
+// Compares the integrators with each other (the primal has the same bits) and sampled differences with differences of
+// images (B3 and B7).
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +22,7 @@ using test::PathScene;
 using test::Scenario;
 using test::Surface;
 
-// More than one cell of the lattice, with jitter of its own.
+// The image has more than one pixel block, each with jitter of its own.
 constexpr uint32_t kWidth = 20;
 constexpr uint32_t kHeight = 20;
 
@@ -33,16 +33,16 @@ class Scenarios : public testing::TestWithParam<Scenario> {
     GradusSettings settings = test::test_settings(kWidth, kHeight);
     settings.seed = seed;
     settings.independent_sampler = independent ? 1 : 0;
-    if (GetParam() == Scenario::RoughMetal) {  // any filter, and the same point of the lens for base and offset
+    if (GetParam() == Scenario::RoughMetal) {  // covers a wide filter and a lens, whose point base and offset share
       settings.pixel_filter = GRADUS_FILTER_BLACKMAN_HARRIS;
       settings.filter_width = 2.5f;
       scene_.camera_desc.aperture_radius = 0.1f;
       scene_.camera_desc.focus_distance = 3.0f;
     }
-    settings.film_transparent = GetParam() == Scenario::World ? 1 : 0;  // alpha is a channel with gradients of its own
+    settings.film_transparent = GetParam() == Scenario::World ? 1 : 0;  // covers gradients of alpha
     return scene_.context(settings);
   }
-  // Of frames that sample(integrator, frame) fills, one for each of 24 seeds.
+  // Checks the differences of films that sample(integrator, film) fills, one for each of 24 seeds.
   template <class Sample>
   void check_differences(uint32_t first_seed, Sample&& sample) {
     BothDirections differences;
@@ -93,8 +93,7 @@ TEST_P(Scenarios, B7_GradientsAreDifferencesOfTheImage) {
       counters.fail_side, counters.fail_density, counters.fail_jacobian);
 }
 
-// What the planner says of a scene is what its offsets do: where no lobe is sharp, none tries to copy an event of class
-// R or T.
+// The planner skips half-vector shifts only in scenes in which no offset tries to copy an event of class R or T.
 TEST_P(Scenarios, NoHalfVectorIsCopiedWhereThePlannerSkipsIt) {
   integrator::IntegratorContext c = context(1);
   c.settings.samples = 16;
@@ -123,7 +122,7 @@ TEST_P(Scenarios, NoHalfVectorIsCopiedWhereThePlannerSkipsIt) {
   }
 }
 
-// Contract 1.5: neighbours with different counts, some with none, over two batches.
+// Checks differences of neighbours with different sample counts, some with none, over two batches.
 TEST_P(Scenarios, B7_UnequalCounts) {
   check_differences(500, [](const integrator::Integrator& integrator, film::Film* film) {
     const std::atomic<bool> stop{false};
@@ -135,7 +134,7 @@ TEST_P(Scenarios, B7_UnequalCounts) {
   });
 }
 
-// Adaptive sampling: cells that differ in their counts and in the numbers of their samples, even and odd.
+// Checks adaptive sampling: pixel blocks differ in their counts and in their sample numbers, even and odd.
 TEST_P(Scenarios, B7_CellsWithSampleNumbersOfTheirOwn) {
   check_differences(900, [](const integrator::Integrator& integrator, film::Film* film) {
     const std::atomic<bool> stop{false};
@@ -152,15 +151,15 @@ TEST_P(Scenarios, B7_CellsWithSampleNumbersOfTheirOwn) {
   });
 }
 
-// A cancel between tiles leaves pairs whose ends took different numbers of samples; their gradients kept the norm of
-// whole batches and came out too small.
+// Regression: a cancel between tiles leaves pairs whose ends have different numbers of samples. Their gradients were
+// divided by the weight of whole batches and were too small.
 TEST_P(Scenarios, B7_BatchCutShortByACancelKeepsTheScale) {
   check_differences(700, [](const integrator::Integrator& integrator, film::Film* film) {
     const std::atomic<bool> stop{false};
     test::sample_film(integrator, 0, 16, film);
     for (int32_t y = 0; y < static_cast<int32_t>(kHeight); ++y) {
       for (int32_t x = y % 2; x < static_cast<int32_t>(kWidth);
-           x += 2) {  // every other pixel, so that every pair is cut
+           x += 2) {  // covers every other pixel, so that every pair is incomplete
         integrator.sample(integrator::WorkUnit{Region{x, y, x + 1, y + 1}, 16, 16, nullptr}, film, &film->counters,
                           stop);
       }
@@ -168,7 +167,7 @@ TEST_P(Scenarios, B7_BatchCutShortByACancelKeepsTheScale) {
   });
 }
 
-// L3: split into batches and tiles, in any order: the same bits.
+// L3: the result has the same bits for any split into batches and tiles, in any order.
 TEST_P(Scenarios, L3_BatchesAndTilesDoNotMatter) {
   const integrator::IntegratorContext c = context(3, false);
   const auto integrator = gradient::make_gradient_integrator(c);
@@ -192,8 +191,8 @@ TEST_P(Scenarios, L3_BatchesAndTilesDoNotMatter) {
   }
 }
 
-// A few pixels, far apart, whose light comes over rough metal from an emitter that they cannot see; found with light
-// sampling or without.
+// Renders a few distant pixels that get light by reflection in rough metal from an emitter that is hidden from them.
+// The emitter is found with or without light sampling.
 film::GradientImages light_over_metal(uint32_t seed, bool sampled_as_light) {
   PathScene scene;
   test::Surface floor;
@@ -218,9 +217,9 @@ film::GradientImages light_over_metal(uint32_t seed, bool sampled_as_light) {
   return film::read_images(film, 0);
 }
 
-// An offset that has joined its base scatters at the shared vertex with a density of its own; a light that BSDF
-// sampling found next was weighed with the base's. Without light sampling there is nothing to weigh: the gradients must
-// agree, and they have far less noise than differences of images.
+// Regression: a reconnected offset scatters at the shared vertex with a density of its own, but a light that BSDF
+// sampling found next was weighted with the base's density. Without light sampling there are no such weights, so the
+// gradients with and without it must agree. They have much less noise than differences of images.
 TEST(B7_SharedVertex, LightFoundBehindItIsWeighedByEachPathsOwnDensity) {
   DifferenceStatistics difference;
   for (uint32_t seed = 0; seed < 32; ++seed) {
@@ -233,8 +232,8 @@ TEST(B7_SharedVertex, LightFoundBehindItIsWeighedByEachPathsOwnDensity) {
   difference.check("dx", 8);
 }
 
-// The same point of the lens for both ends of a difference: out of focus, one of them seen through its middle would be
-// sharp.
+// Both ends of a difference use the same point of the lens. An end seen through the centre of the lens would be sharp
+// where the image is out of focus.
 TEST(B7_Lens, DifferencesAreThoseOfTheBlurredImage) {
   PathScene scene;
   Surface light;
@@ -255,18 +254,18 @@ TEST(B7_Lens, DifferencesAreThoseOfTheBlurredImage) {
   difference.check("dx");
 }
 
-// What depends on the kind of a bounce.
+// One case in which light transport depends on the kind of a bounce.
 struct KindCase {
   const char* name;
-  uint32_t visibility = GRADUS_VISIBLE_ALL;  // of the light
+  uint32_t visibility = GRADUS_VISIBLE_ALL;  // visibility of the light
   int emission_kind = -1;
   uint32_t diffuse_bounces = 8;
 };
 
 class Kinds : public testing::TestWithParam<KindCase> {
  protected:
-  // A floor whose halves scatter with the same class but mostly diffuse and mostly glossy, under a light and its
-  // reflection in a wall.
+  // Renders a floor below a light and its reflection in a wall. Both halves of the floor scatter with the same class,
+  // but one is mostly diffuse and the other mostly glossy.
   film::GradientImages image(uint32_t seed, bool sampled_as_light, uint32_t samples) {
     PathScene scene;
     test::Surface left, right, wall, light;
@@ -294,14 +293,15 @@ class Kinds : public testing::TestWithParam<KindCase> {
   }
 };
 
-// A pixel's paths differ by which lobe their direction came from, which no density told.
+// Regression: the lobe that produced a direction is part of the path, but no density contained its probability.
 TEST_P(Kinds, B7_TheSampledLobeIsPartOfThePath) {
   DifferenceStatistics dx;
   for (uint32_t seed = 0; seed < 32; ++seed) dx.add(image(seed, true, 512), true);
   dx.check("dx", 40);
 }
 
-// Light sampling and BSDF sampling saw different emissions: the picture depended on how a light was found.
+// Regression: light sampling and BSDF sampling saw different emissions, so the picture depended on the technique that
+// found a light.
 TEST_P(Kinds, B7_BothTechniquesSeeTheSameEmission) {
   DifferenceStatistics difference;
   for (uint32_t seed = 0; seed < 32; ++seed) {
@@ -322,8 +322,7 @@ INSTANTIATE_TEST_SUITE_P(
                     KindCase{"EmissionByDepth", GRADUS_VISIBLE_ALL, GRADUS_LIGHT_PATH_DIFFUSE_DEPTH}),
     [](const testing::TestParamInfo<KindCase>& info) { return std::string(info.param.name); });
 
-// Two pixels, left and right, that look straight at a plane of two halves, lit by a light. right: no material, no
-// surface.
+// Two pixels, left and right, that look straight at a lit plane of two halves. The right half may be absent.
 struct Halves {
   const char* name;
   Surface left;
@@ -366,8 +365,8 @@ class Edges : public testing::TestWithParam<Halves> {
   }
 };
 
-// Where nothing could be shared behind the edge, a path's contribution came back from the reconstruction as the spike
-// that it was.
+// Regression: where paths could not be shared across an edge, the reconstruction kept the contribution of a single path
+// as a bright pixel.
 TEST_P(Edges, B7_ADifferenceAcrossAnEdgeHasLessNoiseThanThatOfTheImage) {
   constexpr int renders = 400;
   double sum[3] = {}, squares[3] = {};
@@ -375,7 +374,7 @@ TEST_P(Edges, B7_ADifferenceAcrossAnEdgeHasLessNoiseThanThatOfTheImage) {
     const film::GradientImages images = image(seed);
     const double sampled = images.dx[0], of_image = double(images.primal[images.channels]) - double(images.primal[0]);
     if (images.channels == 4) {
-      EXPECT_EQ(images.dx[3], images.primal[7] - images.primal[3]);  // alpha has no noise here
+      EXPECT_EQ(images.dx[3], images.primal[7] - images.primal[3]);  // Alpha has no noise in this scene.
     }
     const double values[3] = {sampled, of_image, sampled - of_image};
     for (int i = 0; i < 3; ++i) {
@@ -384,7 +383,7 @@ TEST_P(Edges, B7_ADifferenceAcrossAnEdgeHasLessNoiseThanThatOfTheImage) {
     }
   }
   const auto variance = [&](int i) { return squares[i] / renders - (sum[i] / renders) * (sum[i] / renders); };
-  EXPECT_LT(variance(0), 0.75 * variance(1));  // a half, but for what the two sides share
+  EXPECT_LT(variance(0), 0.75 * variance(1));  // The ideal ratio is 0.5, plus what the two sides share.
   EXPECT_LT(std::fabs(sum[2] / renders), 4.0 * std::sqrt(variance(2) / renders));
   std::printf("  variance %.3f of the image's, difference of means %.2f sigma\n", variance(0) / variance(1),
               sum[2] / renders / std::sqrt(variance(2) / renders));
@@ -408,12 +407,12 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Edges,
                                          Halves{"OfAHoldoutShader", {}, true, test::matte(Rgb(0.8f)), Halves::Shader}),
                          [](const testing::TestParamInfo<Halves>& info) { return std::string(info.param.name); });
 
-// Two pixels of a floor under a light, and what stands on it or hangs above.
+// Two pixels of a floor below a light, and an object that `add` places on or above the floor.
 struct Above {
   const char* name;
   void (*add)(PathScene*);
   Surface floor;
-  float maximum;  // variance of the sampled difference over that of the image
+  float maximum;  // maximum ratio of the variance of the sampled difference to that of the image's difference
 };
 
 uint64_t wall(PathScene* scene) { return scene->material(test::matte(Rgb(0.8f))); }
@@ -462,7 +461,8 @@ class Reflections : public testing::TestWithParam<Above> {
   }
 };
 
-// A path that missed the ball where its base met it, or met another part of it, shared nothing of what the ball shows.
+// Regression: an offset that missed the ball where its base met it, or met another point of it, shared nothing of the
+// light that the ball reflects.
 TEST_P(Reflections, B7_WhatTheyCastOnTheFloorIsSharedByNeighbours) {
   constexpr int renders = 400;
   double sum[3] = {}, squares[3] = {};

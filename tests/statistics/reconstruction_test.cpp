@@ -1,4 +1,4 @@
-// B3: reconstructed images against plain path tracing.
+// B3: compares reconstructed images with plain path tracing.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -42,14 +42,14 @@ std::vector<float> reconstructed(const film::Film& film, GradusReconstruction re
       .image;
 }
 
-// Mean of the channels.
+// Returns the mean of the channels of each pixel.
 std::vector<float> gray(const std::vector<float>& rgb) {
   std::vector<float> result(rgb.size() / 3);
   for (size_t i = 0; i < rgb.size(); ++i) result[i / 3] += rgb[i] / 3.0f;
   return result;
 }
 
-// Means over blocks of side×side pixels, row by row.
+// Returns the means over blocks of side×side pixels, row by row.
 std::vector<float> block_means(const std::vector<float>& image, int width, int height, int side) {
   std::vector<float> result;
   for (int y = 0; y + side <= height; y += side) {
@@ -64,7 +64,7 @@ std::vector<float> block_means(const std::vector<float>& image, int width, int h
 
 // --- L2
 
-// Blocks of 8×8 that start 32 pixels apart, so that 24 lie between them: 12 of a scene.
+// Blocks of 8×8 pixels start 32 pixels apart, so that 24 pixels separate them. There are 12 in each scene.
 constexpr int kWidth = 104, kHeight = 72, kBlock = 8, kApart = 4;
 
 struct Comparison {
@@ -135,7 +135,8 @@ TEST(B3_L2, NoBlockDiffers) {
   }
 }
 
-// The mean of all scenes' relative differences over its standard deviation.
+// Returns the mean of all scenes' relative differences divided by its standard deviation. `factor` scales the L2
+// images.
 double pooled_z(double factor) {
   double sum = 0.0, variance = 0.0;
   for (const Comparison& c : comparisons()) {
@@ -167,7 +168,7 @@ TEST(B3_L2, DifferencesHaveNoSign) {
   EXPECT_LE(ratio.value(), 0.1);
 }
 
-// --- L1, REGULARIZED: biased, by no more than this (docs/method.md).
+// --- L1 and REGULARIZED are biased. The bias stays within these bounds (docs/method.md).
 
 struct Biased {
   GradusReconstruction reconstruction;
@@ -175,12 +176,12 @@ struct Biased {
   double max_mean = 0.005, max_block = 0.03;
 };
 
-// REGULARIZED is dark where rare samples carry the light: windows take them for outliers.
+// REGULARIZED is too dark where rare samples carry the light, because its windows treat them as outliers.
 constexpr Biased kBiased[] = {{GRADUS_RECONSTRUCTION_L1, "L1"},
                               {GRADUS_RECONSTRUCTION_REGULARIZED, "REGULARIZED", 0.04, 0.1}};
 
-// Block means of the primal, which is unbiased, and how much those of the reconstructions of the same renders differ:
-// most of the noise is shared.
+// Block means of the primal, which is unbiased, and how much the reconstructions of the same renders differ from it.
+// They share most of the noise.
 struct Differences {
   std::vector<float> truth, from_truth[std::size(kBiased)];
 };
@@ -226,7 +227,7 @@ TEST_P(B3_Consistent, BiasStaysWithinItsBound) {
   for (size_t r = 0; r < std::size(kBiased); ++r) check_bias(truth, differences[r], kBiased[r]);
 }
 
-// Share of the light that REGULARIZED loses or adds.
+// Returns the relative bias of REGULARIZED: its total light divided by that of the primal, minus 1.
 double bias_of_regularized(const integrator::IntegratorContext& context, int samples, size_t seeds) {
   std::vector<double> sampled(seeds), solved(seeds);
   tbb::parallel_for(size_t(0), seeds, [&](size_t k) {

@@ -1,5 +1,5 @@
-// B3, C4 to C6: pictures of sequences against plain path tracing of the same frames, or against what a still of each
-// would be.
+// B3, C4 to C6: compares pictures of sequences with plain path tracing of the same frames, or with the same
+// reconstruction of each frame as a still.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -34,7 +34,8 @@ GradusSettings settings_of(int32_t frame, uint32_t seed, uint32_t samples,
   settings.seed = seed;
   settings.samples = samples;
   settings.max_bounces = 4;
-  settings.filter_width = 0.01f;  // pixels of a cell share their jitter: along an edge their errors would be one
+  // Pixels of a block share their jitter, so their errors along an edge would be correlated.
+  settings.filter_width = 0.01f;
   settings.reconstruction = reconstruction;
   settings.integrator =
       reconstruction == GRADUS_RECONSTRUCTION_AUTO ? GRADUS_INTEGRATOR_AUTO : GRADUS_INTEGRATOR_GRADIENT;
@@ -51,7 +52,7 @@ Snapshots frames_of(int count, const std::function<void(int frame, PathScene* sc
   return frames;
 }
 
-// A camera that moves aside by 1.3 pixels from frame to frame.
+// Returns frames of a camera that moves sideways by 1.3 pixels per frame.
 Snapshots pan(Scenario scenario, int count) {
   return frames_of(count, [scenario](int t, PathScene* scene) {
     build(scenario, scene);
@@ -75,7 +76,7 @@ std::vector<float> run(render::RenderTask* task) {
   return gray(rgba);
 }
 
-// Pictures of all frames.
+// Returns the delivered pictures of all frames.
 std::vector<std::vector<float>> sequence_pictures(const Snapshots& frames, uint32_t seed, uint32_t samples,
                                                   uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2,
                                                   float noise_threshold = 0.0f) {
@@ -103,7 +104,7 @@ std::vector<float> plain_picture(const std::shared_ptr<const scene::Snapshot>& f
   return result;
 }
 
-// By the same reconstruction, without the frames beside it.
+// Renders one frame as a still, with the same reconstruction.
 std::vector<float> single_frame_picture(const std::shared_ptr<const scene::Snapshot>& frame,
                                         const GradusSettings& settings) {
   render::Render render(test::test_device(), frame, settings);
@@ -113,8 +114,8 @@ std::vector<float> single_frame_picture(const std::shared_ptr<const scene::Snaps
   return gray(rgba);
 }
 
-// By frames: moments of pictures over seeds, of a sequence's and of frames by themselves: of plain path tracing, which
-// L2 has the mean of, or of the same reconstruction.
+// Moments of pictures over seeds for each frame: of the sequence, and of separately rendered frames. The latter are
+// path-traced for L2, which has their mean, and reconstructed as stills otherwise.
 struct Compared {
   std::vector<Moments> sequence, plain;
 };
@@ -174,15 +175,15 @@ void expect_means_of_plain_paths(const Compared& c, const std::string& name, siz
   }
 }
 
-// Unbiased wherever φ leads: no link, right or wrong, moves the mean of L2.
+// L2 is unbiased for any correspondence φ: no pixel correspondence, right or wrong, changes its mean.
 TEST(B3_SequenceL2, HasTheMeanOfPlainPathsInEveryFrame) {
   for (const Scenario scenario : {Scenario::DiffuseArea, Scenario::World, Scenario::Glass}) {
     expect_means_of_plain_paths(compare(pan(scenario, 4), blocks), name_of(scenario), 3);
   }
 }
 
-// What differs from frame to frame where the shutter is open: a camera that pans and flies, and a ball that swells,
-// seen through a lens.
+// Returns frames with motion blur, seen through a lens: a camera that pans from frame to frame and moves while the
+// shutter is open, and a ball that swells.
 Snapshots blurred(Scenario scenario, int count) {
   return frames_of(count, [scenario](int t, PathScene* scene) {
     build(scenario, scene);
@@ -212,9 +213,9 @@ TEST(B3_SequenceL2, HasTheMeanOfPlainPathsThroughALensWithBlurAndDeformation) {
   }
 }
 
-// Replays have the counts of what they replay: pixels of a frame have as many samples as their noise asks for. What
-// that moves the mean by (contract 2.2) is less than what can be seen here: a percent or two of a block, half a percent
-// of the picture.
+// Replayed samples have the counts of the samples that they replay, and pixels have as many samples as their noise
+// requires. This dependence may move the mean, because only L2 without a noise threshold is unbiased. The test detects
+// shifts of one or two percent in a block and of half a percent in the picture; the actual shift is smaller.
 TEST(B3_SequenceL2, HasTheMeanOfPlainPathsWithANoiseThreshold) {
   const Sampling requested{.samples = 40, .noise_threshold = 0.035f, .seeds = 12};
   const Snapshots frames = blurred(Scenario::DiffuseArea, 3);
@@ -226,14 +227,15 @@ TEST(B3_SequenceL2, HasTheMeanOfPlainPathsWithANoiseThreshold) {
   run(task.get());
   const std::vector<uint32_t> counts = film::samples_of_pixels(*task->film());
   const auto [minimum, maximum] = std::minmax_element(counts.begin(), counts.end());
-  EXPECT_LT(*minimum, *maximum) << "the test says something";
+  EXPECT_LT(*minimum, *maximum) << "the noise threshold has no effect, so the test checks nothing";
   expect_means_of_plain_paths(compare(frames, blocks_and_whole, requested), "noise threshold", 1);
 }
 
 class Ghosts : public testing::TestWithParam<uint32_t> {
  protected:
-  // Frames have the mean that they have by themselves, and their noise is small enough to tell what is left of brighter
-  // ones. L1 takes the median of a change, and rare paths have much of it: it leaves a thousandth in the first frame.
+  // Checks that each frame of a sequence has the mean of the same frame as a still, with noise low enough to detect
+  // light left from brighter frames. L1 solves for the median of a change, and rare paths carry much of the change, so
+  // L1 leaves a thousandth in the first frame.
   void check(const Snapshots& frames, const std::function<std::vector<float>(const std::vector<float>&)>& read) const {
     const Compared c = compare(frames, read, {.reconstruction = GetParam()});
     double brightest = 0.0;
@@ -243,7 +245,7 @@ class Ghosts : public testing::TestWithParam<uint32_t> {
       const double noise = std::sqrt(c.sequence[t].variance_of_mean(0) + c.plain[t].variance_of_mean(0)),
                    expected = c.plain[t].mean(0);
       EXPECT_NEAR(c.sequence[t].mean(0), expected, 0.02 * expected + 3.0 * noise + left) << "frame " << t;
-      EXPECT_LT(noise, 0.03 * brightest) << "frame " << t << ": the test says something";
+      EXPECT_LT(noise, 0.03 * brightest) << "frame " << t << ": too much noise to detect a ghost";
     }
   }
 };
@@ -268,7 +270,7 @@ INSTANTIATE_TEST_SUITE_P(All, Ghosts,
                                          GRADUS_RECONSTRUCTION_REGULARIZED, GRADUS_RECONSTRUCTION_AUTO),
                          kNameOfParam);
 
-// A light that goes off: its light is gone in that very frame (impulse lag 0).
+// A light is switched off. Its light is absent from that very frame (impulse lag 0).
 TEST_P(Ghosts, C5_ALampThatGoesOffLeavesNoLight) {
   check(frames_of(6,
                   [](int t, PathScene* scene) {
@@ -287,7 +289,7 @@ std::vector<float> middle(const std::vector<float>& image) {
   return {float(sum / 100.0)};
 }
 
-// What is in the middle of the picture goes aside, on and on.
+// An object in the middle of the picture moves sideways until it has left the middle.
 TEST_P(Ghosts, C5_AnObjectThatLeavesARegionLeavesNoTrace) {
   check(frames_of(8,
                   [](int t, PathScene* scene) {
@@ -300,7 +302,7 @@ TEST_P(Ghosts, C5_AnObjectThatLeavesARegionLeavesNoTrace) {
         middle);
 }
 
-// An object that is there in some frames only, and one whose triangles are others in every frame.
+// One object exists in some frames only, and another has different triangles in every frame.
 TEST_P(Ghosts, C6_ObjectsThatComeAndGoLeaveNoGhost) {
   check(frames_of(9,
                   [](int t, PathScene* scene) {
@@ -314,7 +316,8 @@ TEST_P(Ghosts, C6_ObjectsThatComeAndGoLeaveNoGhost) {
         middle);
 }
 
-// Under a light that changes a little, so that every frame is sampled: half as much as frames by themselves, and less.
+// The light changes a little, so that every frame is sampled. The sequence flickers less than half as much as separate
+// frames.
 TEST(C4_Sequence, FlickersLessThanFramesByThemselves) {
   const Snapshots frames = frames_of(16, [](int t, PathScene* scene) {
     add_box(scene, test::matte(Rgb(0.5f)));
@@ -340,7 +343,7 @@ TEST(C4_Sequence, FlickersLessThanFramesByThemselves) {
   }
 }
 
-// Over 32 frames of a camera at rest, under a light that changes: what is left of the error in their mean is noise.
+// The camera does not move, and the light changes over 32 frames. The error of the mean over time is noise alone.
 TEST(C4_Sequence, TheMeanOverTimeHasNoBias) {
   const Snapshots frames = frames_of(32, [](int t, PathScene* scene) {
     add_box(scene, test::matte(Rgb(0.5f)));

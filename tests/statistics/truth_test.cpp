@@ -1,5 +1,5 @@
-// The integrators against a second, independent path tracer: A5 (z-tests of pixels), A6 (global bias), A7 (the error
-// falls with samples).
+// Compares the integrators with a second, independent path tracer: A5 (z-tests of pixels), A6 (global bias) and A7 (the
+// error falls with samples).
 #include <cmath>
 #include <map>
 
@@ -19,16 +19,17 @@ namespace {
 
 using test::PathScene;
 
-// At least 1,400 blocks of 5×5 pixels, or the sign ratio of noise alone, 1.25/√blocks, comes too near its bound; 2e6
-// samples in full.
+// There are at least 1,400 blocks of 5×5 pixels. With fewer the sign ratio of noise alone, 1.25/√blocks, comes too near
+// its bound. The full run takes 2e6 samples.
 constexpr uint32_t kWidth = 224, kHeight = 160;
 constexpr int kPixels = int(kWidth * kHeight);
 int samples() { return test::full_run() ? 56 : 6; }
 int reference_samples() { return test::full_run() ? 280 : 28; }
-// The z-test takes a few dozen samples for normal: single pixels in full, else squares of 4×4.
+// The z-test assumes that the mean of a few dozen samples is normally distributed. So it compares single pixels in the
+// full run and squares of 4×4 pixels otherwise.
 uint32_t block_side() { return test::full_run() ? 1 : 4; }
 
-// Light sources are large, so that BSDF sampling alone finds them.
+// The lights are large, so that BSDF sampling alone finds them.
 enum class Truth { Box, GlassBalls, RoughMetal, Textures, Environment, Sky, ManyLights, Motion, Count };
 const char* const kNames[] = {"Box",         "GlassBalls", "RoughMetal", "Textures",
                               "Environment", "Sky",        "ManyLights", "Motion"};
@@ -42,7 +43,7 @@ uint64_t checker(PathScene* scene, uint32_t closure, const Vec3& a, const Vec3& 
   return scene->material(p.desc(p.add(closure, inputs)));
 }
 
-// Its sun is as wide as 70°, and shines in at the side of the camera.
+// Returns a sky whose sun is 70° wide and illuminates the box from the side of the camera.
 uint64_t sky(PathScene* scene) {
   test::ProgramBuilder p;
   const int where = p.add(GRADUS_OP_TEX_COORD, {}, GRADUS_TEX_COORD_GENERATED);
@@ -63,7 +64,7 @@ void add_many_lights(PathScene* scene) {
   scene->light(ball);
 }
 
-// A large light that swings, a ball that swells while it flies, and an eye that moves aside.
+// Adds a large light that swings, a ball that swells while it moves, and a camera that moves sideways.
 void add_motion(PathScene* scene) {
   scene->scene.way = {test::translation(Vec3(-0.2f, 0, 0)),
                       test::translation(Vec3(0.3f, -0.4f, 0)) * glm::rotate(Mat4(1.0f), 0.5f, Vec3(0, 0, 1))};
@@ -83,7 +84,7 @@ void build(Truth truth, PathScene* scene) {
   test::add_box(scene, floor);
   if (truth == Truth::Environment) {
     scene->world(checker(scene, GRADUS_OP_EMISSION, Vec3(2.0f, 1.5f, 1.0f), Vec3(0.1f, 0.2f, 0.4f), 3.0f), 64);
-    scene->camera(Vec3(0, 0, 3.2f), Vec3(0), 1.4f);  // sees past the box
+    scene->camera(Vec3(0, 0, 3.2f), Vec3(0), 1.4f);  // The camera sees the world beyond the box.
   } else if (truth == Truth::Sky) {
     scene->world(sky(scene), 64);
     scene->camera(Vec3(0, 0, 3.2f), Vec3(0), 1.4f);
@@ -111,20 +112,20 @@ void build(Truth truth, PathScene* scene) {
 
 enum class Estimator { Path, Gradient, BsdfOnly };
 
-// Means over runs of `side` pixels of a row.
+// Returns the means over runs of `side` pixels of a row.
 std::vector<float> run_means(const std::vector<float>& image, uint32_t side) {
   std::vector<float> means(image.size() / side, 0.0f);
   for (size_t i = 0; i < image.size(); ++i) means[i / 3 / side * 3 + i % 3] += image[i] / float(side);
   return means;
 }
 
-// Neighbours of a row share their sub-pixel jitter (contract 1.6), so that variances of sums are those of whole runs;
-// rows do not, because they take other sample numbers.
+// Moments over samples. Neighbours in a row of a pixel block share their sub-pixel jitter, so variances of sums come
+// from whole runs. Rows are independent, because they use different sample numbers.
 struct Statistics {
   test::Moments pixels, block_runs, jitter_block_runs;
 };
 
-// Samples of all pixels as images, one by one, spread over the threads by rows.
+// Computes the moments of `count` images with one sample per pixel, with rows in parallel.
 template <class SampleRow>
 Statistics sample_images(int count, const SampleRow& sample_row) {
   Statistics moments;
@@ -151,7 +152,7 @@ Statistics estimate(const integrator::IntegratorContext& context, Estimator esti
   const auto integrator = estimator == Estimator::Gradient ? gradient::make_gradient_integrator(context)
                                                            : integrator::make_path_integrator(context);
   return sample_images(samples(), [&](int i, int y, float* row) {
-    // Rows above and below are in the frame, so that all pairs of pixels are present.
+    // The film includes the rows above and below, so that all pairs of pixels are present.
     film::Film film(kWidth, kHeight, Region{0, y - 1, int32_t(kWidth), y + 2}, 3, 1, estimator == Estimator::Gradient);
     integrator::WorkUnit unit{Region{0, y, int32_t(kWidth), y + 1},
                               uint32_t(2 * (i * film::kPixelBlockSide + y % film::kPixelBlockSide)), 1, nullptr};
@@ -162,7 +163,7 @@ Statistics estimate(const integrator::IntegratorContext& context, Estimator esti
   });
 }
 
-// Made once for all tests.
+// Returns the moments, which are computed once for all tests.
 const Statistics& moments(Truth truth, Estimator estimator) {
   static std::map<std::pair<Truth, Estimator>, Statistics> made;
   const auto key = std::make_pair(truth, estimator);
@@ -182,7 +183,7 @@ struct BlockTest {
   size_t tests = 0, failed = 0;
 };
 
-// z-tests of cells and channels, with the variances of their runs pooled.
+// Runs a z-test for each block and channel, with the pooled variances of its runs.
 BlockTest test_blocks(const Statistics& image, const Statistics& truth, double factor) {
   const test::Moments &runs = image.block_runs, &true_runs = truth.block_runs;
   const uint32_t side = block_side();
@@ -204,7 +205,8 @@ BlockTest test_blocks(const Statistics& image, const Statistics& truth, double f
 }
 
 struct Bias {
-  double mean = 0.0, truth = 0.0, deviation = 0.0;  // of the image's mean; standard deviation of the difference
+  // Means of the image and of the truth, and the standard deviation of their difference.
+  double mean = 0.0, truth = 0.0, deviation = 0.0;
   double sign_ratio = 0.0;
   bool passes() const { return std::fabs(mean - truth) <= 4.0 * deviation && sign_ratio <= 0.1; }
 };
@@ -223,7 +225,7 @@ Bias measure_bias(const Statistics& all, const Statistics& all_true, double fact
     variance +=
         factor * factor * all.jitter_block_runs.variance_of_mean(i) + all_true.jitter_block_runs.variance_of_mean(i);
   }
-  // Channels of a pixel come from the same paths: as if they were fully correlated.
+  // Channels of a pixel come from the same paths, so they are treated as fully correlated.
   bias.deviation = std::sqrt(3.0 * variance) / double(all.jitter_block_runs.size());
   test::SignRatio ratio;
   ratio.add(difference, int(kWidth), int(kHeight));
@@ -257,7 +259,7 @@ INSTANTIATE_TEST_SUITE_P(All, Truths,
                                   (std::get<1>(info.param) == Estimator::Path ? "Path" : "Gradient");
                          });
 
-// The mean of all scenes' relative differences over its standard deviation.
+// Returns the mean of all scenes' relative differences divided by its standard deviation. `factor` scales the images.
 double pooled_z(Estimator estimator, double factor) {
   double sum = 0.0, variance = 0.0;
   for (int i = 0; i < int(Truth::Count); ++i) {
@@ -268,7 +270,8 @@ double pooled_z(Estimator estimator, double factor) {
   return sum / std::sqrt(variance);
 }
 
-// What the tests of noisy pixels forgive. Few samples show it over all scenes together, all of them in each.
+// Shows that the tests detect a darkening of one percent despite the noise. With few samples all scenes together show
+// it; in the full run each scene does.
 TEST(A6_Bias, OnePercentOfDarkeningIsCaught) {
   for (const Estimator estimator : {Estimator::Path, Estimator::Gradient}) {
     EXPECT_LT(std::fabs(pooled_z(estimator, 1.0)), 4.0);
@@ -280,7 +283,7 @@ TEST(A6_Bias, OnePercentOfDarkeningIsCaught) {
   }
 }
 
-// Squared error of n samples, by the spread of independent images about a reference of many more.
+// Returns the mean squared error of images with n samples against a reference with many more.
 double mean_squared_error(const integrator::IntegratorContext& base, int n, int images,
                           const std::vector<double>& reference) {
   double error = 0.0;
@@ -299,7 +302,7 @@ double mean_squared_error(const integrator::IntegratorContext& base, int n, int 
   return error / images;
 }
 
-// Above the bounds: bias; below: a broken reference.
+// A ratio above the bounds means bias; one below them means a wrong reference.
 TEST(A7_Convergence, FourTimesTheSamplesQuarterTheError) {
   for (const Truth truth : {Truth::Box, Truth::Environment, Truth::ManyLights}) {
     PathScene scene;

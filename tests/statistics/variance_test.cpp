@@ -1,4 +1,4 @@
-// A8: the reported variance of the mean against the spread over seeds. A10: seeds and pixels are uncorrelated.
+// A8: compares the reported variance of the mean with the spread over seeds. A10: seeds and pixels are uncorrelated.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ GradusSettings sobol_settings(uint32_t size) {
 
 class A8_Variance : public testing::TestWithParam<Scenario> {};
 
-// Sum over a block of 16×16 pixels.
+// Returns the sum over a block of 16×16 pixels.
 template <class Value>
 double block_sum(uint32_t width, uint32_t x0, uint32_t y0, const Value& value) {
   double sum = 0.0;
@@ -48,8 +48,8 @@ double block_sum(uint32_t width, uint32_t x0, uint32_t y0, const Value& value) {
   return sum;
 }
 
-// At the pixels' centres: along the edges of a bright light a whole cell shares its jitter, and a few of them would
-// decide. Both integrators have this primal, bit for bit.
+// Samples lie at the pixel centres. Otherwise a whole pixel block would share its jitter along the edges of a bright
+// light, and a few blocks would dominate. The primal of the gradient integrator has the same bits.
 TEST_P(A8_Variance, HalfBuffersAgreeWithTheSpreadOverSeeds) {
   test::PathScene scene;
   test::build(GetParam(), &scene);
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(All, A8_Variance,
                                          Scenario::RoughMetal, Scenario::Glass, Scenario::LightsSeen),
                          [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
 
-// Features behind a lens, which alone gives them noise here.
+// Features get their noise from the lens alone in this scene.
 TEST(A8_Features, HalvesAgreeWithTheSpreadOverSeeds) {
   test::PathScene scene;
   test::build(Scenario::Mirror, &scene);
@@ -117,11 +117,11 @@ TEST(A8_Features, HalvesAgreeWithTheSpreadOverSeeds) {
   std::printf("\n");
 }
 
-// Samples that are given where the noise is: the estimate is still that of the spread, and the mean that of equal
-// counts. Both could be off, as counts depend on the samples that they weigh: what was bright by chance is followed by
-// more samples and counts for less.
+// Adaptive samples: the estimate still agrees with the spread, and the mean with that of equal counts. Both could be
+// biased, because counts depend on the samples that they weight: a bright outlier causes more samples and then counts
+// for less.
 TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
-  constexpr uint32_t size = 40, samples = 32;  // 9 cells; a light in the picture, its shadow and walls differ in noise
+  constexpr uint32_t size = 40, samples = 32;  // 9 pixel blocks; light, shadow and walls differ in noise
   test::PathScene scene;
   test::build(Scenario::DiffuseArea, &scene);
   GradusSettings settings = sobol_settings(size);
@@ -136,7 +136,7 @@ TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
     settings.seed = uint32_t(seed);
     for (const float threshold : {1e-6f, 0.0f}) {
       settings.noise_threshold = threshold;
-      // The primal of both integrators is the same.
+      // Both integrators have the same primal.
       settings.integrator = threshold > 0.0f ? GRADUS_INTEGRATOR_GRADIENT : GRADUS_INTEGRATOR_PATH;
       render::Render render(nullptr, snapshot, settings);
       ASSERT_TRUE(render.wait(-1.0));
@@ -152,7 +152,8 @@ TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
     }
   }
   EXPECT_LT(minimum, samples * 3 / 4);
-  EXPECT_GT(maximum, samples * 5 / 4);  // twice the least, with what REGULARIZED leaves of the noise
+  // The maximum is about twice the minimum, because REGULARIZED removes much of the noise.
+  EXPECT_GT(maximum, samples * 5 / 4);
   double empirical = 0.0, difference = 0.0, sum = 0.0;
   for (size_t i = 0; i < shared.size(); ++i) {
     empirical += shared.variance_of_mean(i) * seeds;
@@ -162,7 +163,7 @@ TEST(A8_Adaptive, SamplesKeepEstimateAndMean) {
   std::printf("  counts %u to %u, estimate/spread %.3f, mean %+.3f %%\n", minimum, maximum, estimated / empirical,
               100.0 * difference / sum);
   EXPECT_GT(estimated / empirical, 0.85);
-  EXPECT_LT(estimated / empirical, 1.2);  // 1.14 over 64 seeds, 1.17 over 16
+  EXPECT_LT(estimated / empirical, 1.2);  // The ratio is 1.14 over 64 seeds and 1.17 over 16.
   EXPECT_LT(std::fabs(difference), 0.005 * sum);
 }
 
@@ -179,7 +180,7 @@ std::vector<float> reconstructed(const film::Film& film, uint32_t reconstruction
                    film, 0, reconstruction, 0.0f, [] { return false; }, &report);
 }
 
-// Σ squared error over the values of an image, as what stops cells estimates it.
+// Returns the sum of squared errors over the values of an image, as the estimate that stops pixel blocks gives it.
 double estimated_error(const film::Film& film, uint32_t reconstruction, const std::vector<float>& image) {
   const double relative =
       render::estimate_noise(film, {film.region}, reconstruction, 0.0f, [] { return false; }).front().relative_error;
@@ -191,8 +192,9 @@ double estimated_error(const film::Film& film, uint32_t reconstruction, const st
   return relative * relative * signal;
 }
 
-// Cells were judged by L2's error whatever was delivered: L1 took more samples than its threshold asks for. By its own
-// weights, which follow the noise, it would have stopped far too early.
+// Regression: pixel blocks stopped by the error of L2 whatever the delivered reconstruction, so L1 took more samples
+// than its threshold required. An estimate with L1's own weights, which follow the noise, would have stopped it much
+// too early.
 TEST_P(A8_Delivered, ErrorThatStopsCellsIsThatOfTheReconstructionDelivered) {
   test::PathScene scene;
   test::build(GetParam(), &scene);
@@ -227,8 +229,8 @@ INSTANTIATE_TEST_SUITE_P(All, A8_Delivered,
                          testing::Values(Scenario::DiffuseArea, Scenario::RoughMetal, Scenario::World),
                          [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
 
-// Residuals of the lighting against the mean over seeds: without the jitter that neighbours share, which shows at
-// edges.
+// Returns the residuals of images against their mean over seeds. Samples lie at the pixel centres, because the jitter
+// that neighbours share would correlate them at edges.
 std::vector<std::vector<double>> residuals(uint32_t size, int seeds) {
   test::PathScene scene;
   test::build(Scenario::World, &scene);
@@ -269,7 +271,7 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b, s
 TEST(A10_Seeds, ResidualsAreUncorrelated) {
   constexpr uint32_t size = 96;
   const auto images = residuals(size, 24);
-  // Subtracting the mean of n seeds leaves −1/(n − 1) between two of them.
+  // Subtracting the mean of n seeds causes a correlation of −1/(n − 1) between two of them.
   EXPECT_NEAR(correlation(images[0], images[1], 0), -1.0 / 23.0, 0.05);
   EXPECT_NEAR(correlation(images[0], images[0], 1), 0.0, 0.05);
   EXPECT_NEAR(correlation(images[0], images[0], size), 0.0, 0.05);

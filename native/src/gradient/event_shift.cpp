@@ -15,8 +15,8 @@ bool is_transmission(const path::Vertex& vertex, const Vec3& wi) { return glm::d
 ShiftedEvent weigh(const path::ScatterEvent& event, const Vec3& wi, const Rgb& value, float pdf, float jacobian) {
   ShiftedEvent shifted;
   if (!(pdf > 0.0f) || is_black(value)) {
-    return failed(
-        ShiftFailure::Density);  // the offset's sampler cannot make this event: nor can the shift back start from it
+    // The sampler at the offset's vertex cannot produce this event, so the inverse shift could not start from it.
+    return failed(ShiftFailure::Density);
   }
   shifted.wi = wi;
   shifted.pdf = pdf;
@@ -41,7 +41,8 @@ ShiftedEvent copy_dirac(const path::ScatterEvent& event, const path::Vertex& y) 
   return weigh(event, sample.wi, sample.value, closures.class_probability(event.scatter_class) * sample.pdf, 1.0f);
 }
 
-// The side and the kind of the bounce (diffuse or not) are part of the path.
+// Compares the two samples. The side and the kind of a bounce (diffuse or not) are part of the path, so they must
+// agree.
 ShiftFailure compare(const bsdf::BsdfSample& x, const bsdf::BsdfSample& y) {
   if (x.dirac != y.dirac || x.diffuse != y.diffuse) {
     return ShiftFailure::Class;
@@ -58,7 +59,7 @@ ShiftedEvent event_towards(const path::ScatterEvent& event, const path::Vertex& 
     return failed(ShiftFailure::Class);
   }
   const bsdf::KindEval eval = closures.evaluate(event.scatter_class, y.wo, wi, event.sample.diffuse);
-  // A kind is diffuse or not, reflected or transmitted; the latter follows from the direction.
+  // A kind is a pair (diffuse or not, reflected or transmitted). The direction alone determines the second entry.
   const bool same_side = is_transmission(y, wi) == event.sample.transmitted;
   const float share = same_side && eval.all.pdf > 0.0f ? eval.kind.pdf / eval.all.pdf : 0.0f;
   const float kind_ratio = share / event.kind_share();

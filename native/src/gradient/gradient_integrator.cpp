@@ -1,5 +1,5 @@
-// Gradient-domain path tracing (thesis 5.4): each base path with four offsets. The primal is that of plain path
-// tracing, bit for bit. Unbiased, and so are the gradients.
+// Gradient-domain path tracing (thesis, section 5.4). It traces each base path with four offset paths. The primal
+// equals that of plain path tracing bit for bit. Primal and gradients are unbiased.
 #include "gradient/gradient_integrator.h"
 
 #include "gradient/offset_paths.h"
@@ -10,7 +10,7 @@ namespace gradus::gradient {
 
 namespace {
 
-// What one worker needs; large, so kept from sample to sample.
+// State of one worker thread. It is large, so the worker keeps it for all samples of its work unit.
 struct Worker {
   Worker(const path::PathContext& context, film::Film* film, film::Counters* counters)
       : recorder(context, film, counters),
@@ -21,12 +21,12 @@ struct Worker {
     for (size_t i = 0; i < std::size(tapes); ++i) scratch.vertices[i].shade.tape = &tapes[i];
   }
   path::PathScratch scratch;
-  shading::ClosureTape tapes[3];  // of the base's vertices, which offsets see again
+  shading::ClosureTape tapes[3];  // for the base vertices, which are shaded again as seen from the offsets
   path::PassRecorder recorder;
   path::CameraVertices vertices;
   OffsetPaths offsets;
   path::PathTracer<OffsetPaths> tracer;
-  // Where no gradients are wanted.
+  // For pixels without gradients.
   path::PathScratch plain_scratch;
   path::NoObserver nobody;
   path::PathTracer<path::NoObserver> plain;
@@ -36,8 +36,8 @@ bool has_gradients(const integrator::WorkUnit& unit, size_t pixel) {
   return unit.gradient_map == nullptr || (*unit.gradient_map)[pixel] != 0;
 }
 
-// Counts of a pixel's half and its neighbours' (contract 1.5): none outside of the sampled region, so that such pairs
-// are absent.
+// Returns the sample counts of a pixel and of its neighbours in one half-buffer. A neighbour outside the sampled
+// region, or without gradients, keeps the count 0, so that its pair is absent.
 std::array<PairCount, film::kOffsets> pair_counts(const integrator::WorkUnit& unit, const film::Film& film, int32_t x,
                                                   int32_t y, int half) {
   std::array<PairCount, film::kOffsets> pairs{};
@@ -52,7 +52,8 @@ std::array<PairCount, film::kOffsets> pair_counts(const integrator::WorkUnit& un
   return pairs;
 }
 
-// Most paths have found nothing for most components, whose planes are left alone.
+// Adds the gradient sample of a path to the planes of one component. Most paths contribute nothing to most components,
+// so zero samples are skipped to save memory traffic.
 void add_gradients(const std::array<Radiance, film::kOffsets>& gradients, const integrator::PixelSample& s,
                    int channels, film::ComponentPlanes* planes, film::Counters* counters) {
   for (int k = 0; k < film::kOffsets; ++k) {

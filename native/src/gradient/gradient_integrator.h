@@ -6,7 +6,7 @@
 
 namespace gradus::gradient {
 
-// Makes the integrator of gradient-domain path tracing (thesis, section 5.4).
+// Returns a new integrator for gradient-domain path tracing (thesis, section 5.4).
 std::unique_ptr<integrator::Integrator> make_gradient_integrator(const integrator::IntegratorContext& context);
 
 }  // namespace gradus::gradient

@@ -9,9 +9,9 @@ namespace gradus::gradient {
 
 namespace {
 
-// Below this difference of indices a refraction hardly bends and its half-vector has no direction.
+// Minimum |η − 1| of a refraction. Below it the direction hardly changes, and the half-vector is undefined.
 constexpr float kMinBend = 1e-3f;
-// Shortest |wo + η wi|, |wo + wi| that still has a direction in float.
+// Minimum length of wo + η wi and wo + wi for which the normalised vector is accurate in float.
 constexpr float kMinLength = 1e-4f;
 
 ShiftedDirection failed(ShiftFailure failure) { return {Vec3(0.0f), 0.0f, failure}; }
@@ -24,24 +24,25 @@ ShiftedDirection copy_reflection(const HalfVectorFrame& base, const Vec3& wi, co
   }
   const Vec3 h = sum / length;
   const Vec3 shifted = rotate_between(base.normal, offset.normal, h);
-  // h halves the angle between unit vectors. Its dot product with wi has the error of h, which at grazing angles is
-  // large.
+  // The half-vector bisects the angle between the unit vectors wo and wi, so its cosine with wi is half of the length.
+  // The dot product of h and wi would have the rounding error of h, which is large at grazing angles.
   const float cos_base = 0.5f * length;
   const float cos_shifted = glm::dot(shifted, offset.wo);
   if (!(cos_shifted > 0.0f)) {
-    return failed(ShiftFailure::Side);  // the way back would give -h
+    return failed(ShiftFailure::Side);  // the inverse shift would return -h
   }
   return {glm::normalize(2.0f * cos_shifted * shifted - offset.wo), cos_shifted / cos_base, ShiftFailure::None};
 }
 
-// wi beyond the microfacet h, which lies on the side where wo + eta·wi points; false: total reflection.
+// Computes the direction wi of wo refracted at the microfacet with normal h, which lies on the side where wo + eta·wi
+// points. Returns false on total internal reflection.
 bool refract_through(const Vec3& wo, const Vec3& h, float eta, Vec3* wi) {
   const float cos_o = glm::dot(wo, h);
   const float under_root = 1.0f - (1.0f - cos_o * cos_o) / (eta * eta);
   if (!(under_root > 0.0f)) {
     return false;
   }
-  // Component of wi along h: opposite to wo's.
+  // Component of wi along h. Its sign is opposite to that of wo.
   const float cos_i = cos_o > 0.0f ? -std::sqrt(under_root) : std::sqrt(under_root);
   *wi = glm::normalize(h * cos_i - (wo - h * cos_o) / eta);
   return true;
@@ -51,8 +52,8 @@ ShiftedDirection copy_refraction(const HalfVectorFrame& base, const Vec3& wi, co
   if (std::fabs(base.eta - 1.0f) < kMinBend || std::fabs(offset.eta - 1.0f) < kMinBend) {
     return failed(ShiftFailure::Jacobian);
   }
-  // H points to the side of the denser medium, while the frames' normals lie on the side of wo on both vertices: a pair
-  // that passes from thin to dense on one path and from dense to thin on the other cannot share a half-vector.
+  // The half-vector points to the denser medium, while the normals of both frames lie on the side of wo. So two
+  // vertices cannot share a half-vector if one path enters the denser medium and the other leaves it.
   if ((base.eta > 1.0f) != (offset.eta > 1.0f)) {
     return failed(ShiftFailure::Side);
   }
@@ -63,7 +64,7 @@ ShiftedDirection copy_refraction(const HalfVectorFrame& base, const Vec3& wi, co
   }
   const Vec3 h = sum / length;
   const Vec3 shifted = rotate_between(base.normal, offset.normal, h);
-  // wo and wi lie on different sides of h, and wo on the same side on both paths.
+  // wo and wi lie on different sides of h, and wo must lie on the same side of h on both paths.
   const float cos_o = glm::dot(base.wo, h);
   const float cos_o_shifted = glm::dot(offset.wo, shifted);
   if (!(cos_o * cos_o_shifted > 0.0f)) {
@@ -84,11 +85,11 @@ ShiftedDirection copy_refraction(const HalfVectorFrame& base, const Vec3& wi, co
 }  // namespace
 
 Vec3 rotate_between(const Vec3& from, const Vec3& to, const Vec3& v) {
-  // Rodrigues' formula with axis from × to (Möller and Hughes 1999).
+  // Rodrigues' formula with the axis from × to (Möller and Hughes 1999).
   const float c = glm::dot(from, to);
   const Vec3 axis = glm::cross(from, to);
   if (c < -0.99999f) {
-    // Opposite normals: the half turn about an axis that both directions choose alike.
+    // The normals are opposite. Use the half turn about an axis that does not depend on the order of the two normals.
     const Vec3 a = std::fabs(from.x) > 0.5f ? Vec3(0, 1, 0) : Vec3(1, 0, 0);
     const Vec3 u = glm::normalize(a - from * glm::dot(a, from));
     return 2.0f * glm::dot(u, v) * u - v;

@@ -1,4 +1,14 @@
-// Where base and offset cannot go on together, although each goes on.
+// Decoupling: base and offset share no further vertices, although at least one of them continues.
+//
+// Their common prefix is a pair with ratio r like any other, and the rest of the path does not change r. So each path
+// continues separately, the offset like a path of its own pixel. Contributions behind the prefix are paired with 0:
+// −C/(1 + r) for the base and r·C'/(1 + r) for the offset. An unpaired contribution would count −C. The inverse shift
+// does the same, because the decision depends on the pair alone. Paths decouple in two cases:
+//   - One of the two rays met a surface that scatters, and the other did not.
+//   - The classes of the two vertices differ, and the base's random number chooses different ones.
+// Rays of the same kind must have found both vertices: from the camera, by copied events, or by replayed events. A
+// direction copied at class D does not qualify: if the offset's next event were of class D, its path would have been
+// reconnected.
 //
 // Their common part is a pair like any other, with its ratio r; what follows is not needed for it. So each goes on by
 // itself, the offset like a path of its own pixel, and what either finds is paired with nothing: −C/(1 + r) for the
@@ -23,7 +33,8 @@ bool OffsetPaths::continues(const OffsetPath& o) const {
          !(o.from_camera && path::is_holdout(context_, *o.here));
 }
 
-// continues: the offset; leaves: it stands at a vertex that was lit.
+// Decouples offset k because of `cause`, and traces the rest of its path if `continues`. `leaves` says that light
+// samples at its vertex are complete and that it scatters next.
 void OffsetPaths::decouple(int k, ShiftFailure cause, bool continues, bool leaves) {
   OffsetPath& o = offsets_[k];
   count_failure(&counters_, cause);
@@ -39,8 +50,9 @@ void OffsetPaths::decouple(int k, ShiftFailure cause, bool continues, bool leave
   finalize(&o, OffsetStage::Decoupled);
 }
 
-// Where the classes differ and the base's number takes both to the same, the event is copied, but the number is no
-// longer free: the probabilities of the class leave r.
+// Decouples the offsets whose vertex differs in its classes from the base's, if the base's random number chooses
+// different classes. Otherwise the event is copied; the random number is no longer a free coordinate, so the
+// probabilities of the class are removed from r.
 void OffsetPaths::decouple_by_class(const path::Vertex& vertex, const path::VertexSample& u) {
   for (int k = 0; k < film::kOffsets; ++k) {
     OffsetPath& o = offsets_[k];

@@ -1,4 +1,10 @@
-// Reconnection put off until it is needed.
+// Deferred reconnection.
+//
+// Behind the vertex of reconnection an offset differs from its base by a throughput and a ratio. Neither is needed
+// until the base finds emission there, so until then no connection is traced and no vertex is shaded again. Half of all
+// paths in rooms end without emission, and nearly all do where lights are hard to find. The base's vertex is kept in
+// the meantime. base_state_, base_event_ and the other members that describe the base keep their values from that
+// vertex, because arrive() does not change them while no offset is open.
 //
 // Behind the vertex at which offsets would be linked they differ from their base by a throughput and a ratio. As long
 // as the base finds nothing there, neither is asked for: no connection is traced, nothing is shaded again. Half of all
@@ -11,7 +17,8 @@
 
 namespace gradus::gradient {
 
-// All that are open are to be linked here. Surfaces that let paths through would have to be counted meanwhile.
+// Returns whether all open offsets are pending, so that their reconnection can be deferred. Scenes with transparency
+// are excluded, because transparent surfaces on the path would have to be counted in the meantime.
 bool OffsetPaths::may_defer() const {
   const auto pending = std::count_if(offsets_.begin(), offsets_.end(),
                                      [](const OffsetPath& o) { return o.stage == OffsetStage::Pending; });
@@ -19,7 +26,7 @@ bool OffsetPaths::may_defer() const {
 }
 
 void OffsetPaths::defer(const path::Vertex& vertex, const path::ScatterEvent& event) {
-  flush_final();  // from here on the suffix's weight is that since this event, which link() makes
+  flush_final();  // from now on suffix_.weight starts at this event, whose factor reconnect_at() applies
   for (OffsetPath& o : offsets_) {
     if (o.stage == OffsetStage::Pending) {
       o.stage = OffsetStage::Deferred;
@@ -31,7 +38,8 @@ void OffsetPaths::defer(const path::Vertex& vertex, const path::ScatterEvent& ev
   sees_deferred_ = true;
 }
 
-// The base has found something: now as scatter(), and what was told since, would have done.
+// Performs the deferred reconnection because the base has found emission. The result equals that of an immediate
+// reconnection in scatter() followed by the notifications since.
 void OffsetPaths::resume() {
   const path::Vertex& vertex = *std::exchange(deferred_vertex_, nullptr);
   const Rgb since = suffix_.weight;

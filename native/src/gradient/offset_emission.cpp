@@ -1,5 +1,19 @@
 // Emitters at the ends of offset paths.
 //
+// Two techniques find an emitter: light sampling with density p_n and BSDF sampling with density p_b. With the balance
+// heuristic both give the contribution C = f/(p_n + p_b). Where both techniques use the same shift (class D: the point
+// on the light is copied) and see the same integrand, a gradient sample is weighted against all four strategies,
+// {light, BSDF} × {base, offset} (thesis, section 5.4.2):
+//   (r·C' − C) / (m_p + m_q·r)  with  r = |T'|·(p_n(y) + p_b(y)) / (p_n(x) + p_b(x)).
+// Otherwise each technique is paired with itself: r = |T'|·p_t(y)/p_t(x), with the same C and C'. This applies to sharp
+// classes, where BSDF samples copy the half-vector and light samples the point on the light. It also applies where
+// shadow rays and scattered rays see different surfaces, as at the shadow terminator of faceted meshes at either end.
+// Both pairings are unbiased.
+//
+// Where base and offset both traced a ray of their own (from the camera, or after a copied event), the emission that a
+// segment shows is one function of the ray, so the pair needs no condition. seen() forms it even if one of the two
+// segments shows nothing. So the edges of visible lights, and of their mirror images, are sampled from both sides.
+//
 // An emitter is found by two techniques, light sampling with density p_n and BSDF sampling with p_b. With the balance
 // heuristic a contribution is C = f/(p_n + p_b) whichever found it. Where both techniques take the same shift (class D:
 // the emitter point is copied) and see the same integrand, a gradient sample is weighed against all four strategies,
@@ -21,22 +35,23 @@ namespace gradus::gradient {
 
 namespace {
 
-// From the ratio of BSDF densities, which r holds already, to that of all techniques.
+// Returns the factor that turns a ratio of BSDF densities into the ratio of the summed densities of both techniques.
 float all_techniques(const path::Contribution& base, float pdf_light, float pdf_bsdf) {
   return (1.0f + pdf_light / pdf_bsdf) / (1.0f + base.pdf_light / base.pdf_bsdf);
 }
 
 }  // namespace
 
-// 1 where the choice of the point is discrete, or a direction that is copied.
+// The Jacobian is 1 where the choice of the point is discrete (Dirac lights), and where a direction is copied
+// (infinity).
 float copy_jacobian(const light::LightPoint& point, const light::LightEvaluation& base,
                     const light::LightEvaluation& offset) {
   const bool copied = point.dirac || point.at_infinity();
   return copied ? 1.0f : light_point_jacobian(base.cosine, base.distance, offset.cosine, offset.distance);
 }
 
-// Where the classes of the two vertices differ, BSDF samples share the random number of the class, which light samples
-// do not have.
+// Returns whether all four strategies can be weighted together for this light. They cannot where the classes of the two
+// vertices differ, because BSDF samples then share the random number of the class, which light samples lack.
 bool OffsetPaths::joint(const light::LightEvaluation& view, const OffsetPath& offset) const {
   return joint_ && !offset.mixed && view.casts_shadow && (view.visibility & path::kAllBounces) == path::kAllBounces;
 }
@@ -46,8 +61,8 @@ bool OffsetPaths::both_leave_facets(const path::Vertex& base, const Vec3& base_d
   return geometry::leaves_facet(base.point, base_direction) && geometry::leaves_facet(offset.here->point, direction);
 }
 
-// What the offset's own segment shows; alpha is 1 − what the camera sees through. Brings its throughput to the end of
-// the segment.
+// Returns the emission that the offset's own segment shows. Alpha is minus the share of the film that
+// the segment leaves transparent. Multiplies the throughput of the offset by the weight of the segment.
 Radiance OffsetPaths::see(OffsetPath* o) const {
   Radiance seen(0.0f);
   for (const path::LightCrossing& light_crossing : o->segment->light_crossings) {
@@ -63,16 +78,16 @@ Radiance OffsetPaths::see(OffsetPath* o) const {
     if (o->from_camera && path::is_holdout(context_, *o->here)) {
       return seen - Radiance(0.0f, 0.0f, 0.0f, all);
     }
-    const float hole = o->from_camera ? path::holdout_alpha(o->state.throughput, shade.holdout) : 0.0f;
+    const float held_out = o->from_camera ? path::holdout_alpha(o->state.throughput, shade.holdout) : 0.0f;
     if (is_black(shade.emission)) {
-      return seen - Radiance(0.0f, 0.0f, 0.0f, hole);
+      return seen - Radiance(0.0f, 0.0f, 0.0f, held_out);
     }
-    seen += Radiance(path::emission_contribution(context_, o->source(), o->state, *o->here).clamped, -hole);
+    seen += Radiance(path::emission_contribution(context_, o->source(), o->state, *o->here).clamped, -held_out);
   }
   return seen;
 }
 
-// What a camera ray shows is the same for all whose offset it is.
+// Returns see(o), evaluated once for a camera ray that several base paths use as their offset.
 Radiance OffsetPaths::shown_once(OffsetPath* o) const {
   if (o->camera == nullptr) {
     return see(o);
@@ -88,7 +103,8 @@ void OffsetPaths::seen() {
   if (open_ == 0) {
     return;
   }
-  const int component = context_.components.component(base_state_.lpe_state);  // of both: the shift copies classes
+  // This component is that of base and offset, because the shift copies classes.
+  const int component = context_.components.component(base_state_.lpe_state);
   for (int k = 0; k < film::kOffsets; ++k) {
     OffsetPath& o = offsets_[k];
     if (o.fresh) {
@@ -109,8 +125,9 @@ void OffsetPaths::seen() {
   }
 }
 
-// From class D: the emitter point is copied. base, offset: as seen from the two vertices; probability: of the base's
-// decisions up to it.
+// Pairs the contribution c of an emitter found by BSDF sampling of class D with that of offset k, to which the point on
+// the light is copied. `base` and `offset` evaluate the light from the two vertices. `probability` is that of the
+// base's decisions at transparent surfaces on the segment to the light.
 void OffsetPaths::copy_light_point(int k, const path::RaySource& source, const path::Contribution& c,
                                    const light::LightPoint& point, const light::LightEvaluation& base,
                                    const light::LightEvaluation& offset, float probability) {
@@ -137,9 +154,9 @@ void OffsetPaths::copy_light_point(int k, const path::RaySource& source, const p
   pair(k, c, value, o.ratio * event.ratio * (all ? all_techniques(c, offset.pdf, event.pdf) : 1.0f));
 }
 
-// An emitter that the shared path found; weight: of the segment up to it. Straight after the first shared vertex the
-// offset scattered with a density of its own, so its weight against light sampling, whose density both share, is its
-// own too.
+// Pairs the contribution c of an emitter that the shared path found; `weight` is that of the segment up to it. Directly
+// behind the first shared vertex, the offset scattered with a density of its own. So its weight against light sampling,
+// whose density both paths share, differs from the base's.
 void OffsetPaths::found_by_reconnected(int k, const path::RaySource& source, const path::Contribution& c,
                                        const Rgb& weight, bool joint) {
   const OffsetPath& o = offsets_[k];
@@ -148,7 +165,7 @@ void OffsetPaths::found_by_reconnected(int k, const path::RaySource& source, con
     return;
   }
   const Rgb value = o.state.throughput * weight * c.light * path::bsdf_weight(c.pdf_light, o.shared_pdf);
-  // Light samples of sharp classes know nothing of shared directions.
+  // Light samples of sharp classes are shifted without sharing a direction, so they cannot be weighted jointly.
   const bool all = joint && reconnects(base_event_.scatter_class) &&
                    geometry::leaves_facet(source.vertex->point, base_state_.ray.ray.direction);
   pair(k, c, value, o.ratio * (all ? all_techniques(c, c.pdf_light, o.shared_pdf) : 1.0f));
@@ -202,12 +219,12 @@ void OffsetPaths::world(const path::RaySource& source, const path::Contribution&
     if (is_beside(o.stage)) {
       found_by_reconnected(k, source, c, Rgb(1.0f), joint(base, o));
     } else if (o.stage == OffsetStage::Pending) {
-      // The same direction, so the same radiance.
+      // The offset copies the direction, so it sees the same radiance.
       light::LightEvaluation view = base;
       view.radiance = c.light;
       view.pdf = path::light_pdf(context_, path::RaySource{o.here, source.event}, sampled);
       light::LightPoint point = sampled;
-      point.kind = light::LightKind::World;  // also where light sampling leaves it out
+      point.kind = light::LightKind::World;  // even if light sampling excludes the world
       copy_light_point(k, source, c, point, base, view, base_segment_->probability);
     }
   }
@@ -228,7 +245,8 @@ void OffsetPaths::emission(const path::RaySource& source, const path::Contributi
       continue;
     }
     if (is_beside(o.stage)) {
-      found_by_reconnected(k, source, c, Rgb(1.0f), joint_ && !o.mixed);  // as for light samples there
+      // The condition is the same as for light samples at this vertex.
+      found_by_reconnected(k, source, c, Rgb(1.0f), joint_ && !o.mixed);
     } else if (o.stage == OffsetStage::Pending) {
       const Rgb emission = o.connection.open ? reconnected_emission(o, vertex) : Rgb(0.0f);
       if (is_black(emission)) {

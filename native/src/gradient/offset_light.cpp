@@ -1,4 +1,4 @@
-// Light samples of the base, for its offsets. The weights are explained in offset_emission.cpp.
+// Light samples of the base path, shifted to its offset paths. The comment of offset_emission.cpp explains the weights.
 #include "geometry/shadow_terminator.h"
 #include "gradient/offset_paths.h"
 #include "light/emitter_rays4.h"
@@ -7,7 +7,8 @@ namespace gradus::gradient {
 
 namespace {
 
-// A point of the world shines from the same direction, with the same radiance, wherever one looks from.
+// Evaluates the light sample from `vertex`. A sample of the world has the same direction and radiance everywhere, so
+// only its density is evaluated again.
 light::LightEvaluation view_from(const path::PathContext& context, const path::LightSample& sample,
                                  const path::Vertex& vertex) {
   if (sample.point.kind != light::LightKind::World) {
@@ -20,8 +21,8 @@ light::LightEvaluation view_from(const path::PathContext& context, const path::L
 
 }  // namespace
 
-// The copied emitter point as seen from the offsets that stand at vertices of their own; shadow rays together, and none
-// where nothing would be scattered.
+// Evaluates the copied light sample at the vertices of all offsets at stage Traced. Shadow rays are traced together,
+// and only for offsets whose vertex scatters the light.
 void OffsetPaths::light_all(const path::LightSample& sample, bsdf::ScatterClass scatter_class) {
   bool wanted[film::kOffsets];
   bool blocked[film::kOffsets] = {};
@@ -94,7 +95,8 @@ void OffsetPaths::light_decoupled_vertex(int k, const path::Vertex& vertex, cons
   pair(k, c, value, o.ratio * copy_jacobian(sample.point, sample.view, view) * pdf / base_pdf);
 }
 
-// Whether light that reaches the base's vertex does so for a path that came there through so many transparent surfaces.
+// Returns whether a light sample that is visible from the base's vertex is also visible to a path that has already
+// passed `transparent_depth` transparent surfaces, whose number is limited.
 bool OffsetPaths::is_lit(const path::Vertex& vertex, const path::LightSample& sample,
                          uint32_t transparent_depth) const {
   if (!context_.scene.features.has_transparent_shadows ||
@@ -104,7 +106,8 @@ bool OffsetPaths::is_lit(const path::Vertex& vertex, const path::LightSample& sa
   return !is_black(path::light_transmittance(context_, vertex.point, sample.point, sample.view, transparent_depth));
 }
 
-// At the shared vertex, seen from the offset's last one: emitter, shadow and p_n are those of the base.
+// Pairs the light sample at the shared vertex with its contribution to offset k. The light, its visibility and its
+// density p_n are those of the base; only the outgoing direction differs.
 void OffsetPaths::light_reconnected(int k, const path::Vertex& vertex, const path::LightSample& sample,
                                     bsdf::ScatterClass scatter_class, const path::Contribution& c) {
   OffsetPath& o = offsets_[k];
@@ -122,8 +125,8 @@ void OffsetPaths::light_reconnected(int k, const path::Vertex& vertex, const pat
   const path::LitClass lit = o.connection.looks_same ? path::LitClass{}
                                                      : path::light_class(context_, *o.reconnected, scatter_class,
                                                                          sample, base_state_.ray.state);
-  // A texture that looks at the ray may make the vertex rough for the offset alone: then the way back would be a
-  // replay.
+  // A texture that depends on the ray may make the vertex rough for the offset alone. The inverse shift would then be a
+  // replay, so this pair is not allowed.
   if (is_black(lit.value) || !(connection_ratio > 0.0f) || replays(o.here->point.position, *o.reconnected)) {
     ++counters_.fail_class;
     add_unpaired(k, c);

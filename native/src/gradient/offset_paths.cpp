@@ -112,7 +112,8 @@ void OffsetPaths::finalize(OffsetPath* o, OffsetStage stage) {
   }
 }
 
-// All that comes is shared, but for the limit of transparent surfaces.
+// Joins the offset to its base, which share the rest of the path. The stage is Deeper if the limit of transparent
+// surfaces may still stop the offset alone.
 void OffsetPaths::join(OffsetPath* o) {
   if (!(o->ratio > 0.0f) || !is_finite(o->ratio)) {
     fail(o, ShiftFailure::Jacobian);
@@ -210,8 +211,8 @@ void OffsetPaths::arrive(const path::RaySource& source, const path::PathState& s
   }
 }
 
-// An offset that has passed more transparent surfaces than its base may meet the limit on the shared segments; so may
-// the base on the way back.
+// An offset that has passed more transparent surfaces than its base may reach their limit on the shared segments. So
+// may the base in the inverse shift.
 void OffsetPaths::passed(const path::Segment& segment) {
   scale(segment.weight);
   if (open_ == 0) {
@@ -231,7 +232,7 @@ void OffsetPaths::passed(const path::Segment& segment) {
   }
 }
 
-// Roulette is the base's decision; both contributions are divided by its probability and r leaves it out.
+// The base decides Russian roulette. Both contributions are divided by its probability, and r excludes it.
 void OffsetPaths::survived(float probability, const path::Vertex& vertex) {
   const float factor = 1.0f / probability;
   scale(Rgb(factor));
@@ -240,11 +241,11 @@ void OffsetPaths::survived(float probability, const path::Vertex& vertex) {
   }
   for (OffsetPath& o : offsets_) {
     if (is_final(o.stage)) {
-      continue;  // told by the suffix
+      continue;  // flush_final() applies the factor
     }
     o.state.throughput *= factor;
     if (o.stage == OffsetStage::Pending) {
-      o.connection.throughput *= factor;  // a connection that emission already asked for
+      o.connection.throughput *= factor;  // the connection may exist already, because emission() needed it
     } else if (o.stage == OffsetStage::Traced) {
       path::shade_vertex(context_, o.state.ray.state, o.here);
       o.mixed = !same_classes(vertex.shade.closures, o.here->shade.closures);

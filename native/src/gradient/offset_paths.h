@@ -1,4 +1,4 @@
-// Observer of a base path that makes its gradient samples.
+// Observer of a base path that traces its offset paths and computes its gradient samples.
 #pragma once
 
 #include "geometry/rays4.h"
@@ -10,17 +10,18 @@ namespace gradus::gradient {
 
 class OffsetPaths {
  public:
-  // vertices: of the cell that is being sampled.
+  // `vertices` are the camera vertices of the pixel block that is being sampled.
   OffsetPaths(const path::PathContext& context, film::Counters* counters, path::CameraVertices* vertices);
 
-  // Before each sample. wanted: bits of the components that count.
+  // Prepares for a sample; called before each one. Bit c of `wanted` selects component c.
   void start(const std::array<PairCount, film::kOffsets>& pairs, const integrator::PixelSample& sample,
              uint32_t wanted);
-  // After it: the weighted gradient sample of each pair, by components, alpha included.
+  // Completes the gradient samples; called after each sample.
   void finish() { flush_final(); }
+  // Returns the weighted gradient sample of each pair for one component, alpha included.
   const std::array<Radiance, film::kOffsets>& gradient(int component) const { return gradient_[size_t(component)]; }
 
-  // What PathTracer tells.
+  // Notifications of PathTracer, in the order of the path.
   void begin(const path::Sampler& sampler, const camera::CameraSample& sample);
   void arrive(const path::RaySource& source, const path::PathState& state, const path::Segment& segment,
               const path::Vertex& vertex);
@@ -35,40 +36,41 @@ class OffsetPaths {
   void light(const path::Vertex& vertex, const path::LightSample& sample, bsdf::ScatterClass scatter_class,
              const path::Contribution& c);
   void scatter(const path::Vertex& vertex, const path::VertexSample& u, const path::ScatterEvent& event);
+  // Returns the vertex that PathTracer must keep because reconnection to it is deferred, or null.
   const path::Vertex* retained() const { return deferred_vertex_; }
   void absorbed(const path::Vertex& vertex, const path::VertexSample& u) { decouple_by_class(vertex, u); }
 
  private:
-  // Adds the gradient sample of one contribution: with the offset's, or alone.
+  // Adds the gradient sample of one contribution c, paired with the offset's value.
   void pair(int k, const path::Contribution& c, const Rgb& offset_value, float ratio);
   void add_unpaired(int k, const path::Contribution& c) {
     add(k, c.component, pairs_[k].unpaired(Radiance(c.clamped, 0.0f)));
   }
   void add(int k, int component, const Radiance& sample) { gradient_[size_t(component)][size_t(k)] += sample; }
-  // Settled offsets: a contribution of the base, behind a segment of this weight; what all of them have found so far;
-  // one more of them.
+  // Update the suffix for offsets in final stages. collect() adds a contribution of the base behind a segment of the
+  // given weight, scale() multiplies the throughput, and flush_final() turns the suffix into gradient samples.
   void collect(const path::Contribution& c, const Rgb& weight);
   void scale(const Rgb& factor);
   void flush_final();
-  // A path that shares a segment passes so many of its surfaces, as the base did.
+  // Returns whether the offset may pass as many transparent surfaces as the base did on a shared segment.
   bool passes(const OffsetPath& offset, int crossed) const;
   void note_arrival(const path::RaySource& source, const path::PathState& state, const path::Segment& segment,
                     const path::Vertex& vertex);
   void finalize(OffsetPath* offset, OffsetStage stage);
   void join(OffsetPath* offset);
   void fail(OffsetPath* offset, ShiftFailure cause);
-  // Where the offsets stand.
+  // Returns the surface points of the offsets' current vertices.
   geometry::Points4 offset_points() const;
-  // Some offset is at this stage.
+  // Returns whether at least one offset is at this stage.
   bool any(OffsetStage stage) const;
 
-  // Parting (offset_part.cpp).
+  // Decoupling (offset_decouple.cpp).
   void decouple(int k, ShiftFailure cause, bool continues, bool leaves);
   void decouple_by_class(const path::Vertex& vertex, const path::VertexSample& u);
   bool base_continues() const;
   bool continues(const OffsetPath& offset) const;
 
-  // Rays of their own (offset_rays.cpp).
+  // Rays that offsets trace themselves (offset_rays.cpp).
   void trace_camera(const path::PathState& state);
   path::CameraVertex* known_vertex(int k) const;
   void share(OffsetPath* offset, path::CameraVertex* vertex);
@@ -77,12 +79,12 @@ class OffsetPaths {
   void replay_short_edges(const path::Vertex& vertex);
   void replay(OffsetPath* offset, const path::Vertex& vertex);
   bool trace_surface(OffsetPath* offset, const ShiftedEvent& event);
-  // From here on the path depends on the kind of its last bounce.
+  // Multiplies the ratio by the factor for the kind of the last bounce, on which the path depends from here on.
   void include_kind(OffsetPath* offset);
   void leave(OffsetPath* offset, const ShiftedEvent& event, const path::PathState& state);
   void trace(OffsetPath* offset, const geometry::Hit* first);
 
-  // Reconnection (offset_link.cpp).
+  // Reconnection (offset_reconnect.cpp).
   void reconnect_all(const path::Vertex& vertex);
   ShiftFailure try_reconnection(OffsetPath* offset, const path::Vertex& vertex, ShiftedEvent* event) const;
   bool arrives(OffsetPath* offset, const path::Vertex& vertex);
@@ -98,7 +100,7 @@ class OffsetPaths {
   bool shares_direction(const Vec3& y, const path::Vertex& z, const path::ScatterEvent& event) const;
   ShiftedEvent reconnected_event(OffsetPath* offset, const path::Vertex& vertex, const path::ScatterEvent& event) const;
 
-  // Reconnection put off (offset_wait.cpp).
+  // Deferred reconnection (offset_defer.cpp).
   bool may_defer() const;
   void defer(const path::Vertex& vertex, const path::ScatterEvent& event);
   void resume();
@@ -118,7 +120,8 @@ class OffsetPaths {
                         const light::LightPoint& point, const light::LightEvaluation& base,
                         const light::LightEvaluation& offset, float probability);
   bool joint(const light::LightEvaluation& view, const OffsetPath& offset) const;
-  // Towards an emitter, in its direction from each.
+  // Returns whether the directions to an emitter leave the facets of both vertices, so that shadow rays need no
+  // correction at the terminator.
   static bool both_leave_facets(const path::Vertex& base, const Vec3& base_direction, const OffsetPath& offset,
                                 const Vec3& direction);
 
@@ -131,19 +134,20 @@ class OffsetPaths {
   std::array<PairCount, film::kOffsets> pairs_{};
   std::array<std::array<Radiance, film::kOffsets>, lpe::kMaxComponents> gradient_{};
   std::array<OffsetPath, film::kOffsets> offsets_;
-  int open_ = 0;  // offsets that are neither absent nor waiting nor settled
+  int open_ = 0;  // number of offsets that are neither absent, deferred nor in a final stage
   Suffix suffix_;
-  bool clamps_ = false;  // contributions are clamped one by one
-  // What the base's current segment shows.
+  bool clamps_ = false;  // each contribution is clamped separately
+  // Emission that the base's current segment shows, and its alpha.
   Radiance seen_ = Radiance(0.0f);
-  // Of the base: what its last ray met, and from where and how that ray left, unless it came from the camera.
+  // State of the base: its last segment, and the vertex, position and event at which the segment starts. The latter
+  // three are not set if it starts at the camera.
   const path::Segment* base_segment_ = nullptr;
   bool base_in_holdout_ = false;
   const path::Vertex* base_from_ = nullptr;
   Vec3 base_position_ = Vec3(0.0f);
   path::ScatterEvent base_event_;
   path::PathState base_state_;
-  // While offsets wait: for what, and where the base has arrived since.
+  // Vertex and event at which offsets are deferred, and the latest arrival of the base.
   const path::Vertex* deferred_vertex_ = nullptr;
   path::ScatterEvent deferred_event_;
   struct {
@@ -152,18 +156,20 @@ class OffsetPaths {
     const path::Segment* segment = nullptr;
     const path::Vertex* vertex = nullptr;
   } latest_;
-  bool sees_deferred_ = false;  // the base's segment begins at the kept vertex, and is not done with
-  // Light and BSDF sampling see the same integrand, so that all four strategies can be weighed together.
+  // The base's current segment starts at deferred_vertex_, and its emission is not complete.
+  bool sees_deferred_ = false;
+  // Light sampling and BSDF sampling see the same integrand, so that all four strategies can be weighted together.
   bool joint_ = false;
-  // Traces what parted offsets find.
+  // Traces the rest of decoupled offsets.
   path::PathScratch decoupled_scratch_;
   film::Counters decoupled_rays_;
   path::NoObserver nobody_;
   path::PathTracer<path::NoObserver> decoupled_tracer_;
 };
 
+// Increments the counter of a failed shift; does nothing for ShiftFailure::None.
 void count_failure(film::Counters* counters, ShiftFailure cause);
-// Jacobian of copying an emitter point between two receivers, see gradient/reconnection.h.
+// Returns the Jacobian of copying a point on a light between two receivers; see gradient/reconnection.h.
 float copy_jacobian(const light::LightPoint& point, const light::LightEvaluation& base,
                     const light::LightEvaluation& offset);
 

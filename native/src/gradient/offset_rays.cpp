@@ -1,4 +1,4 @@
-// Segments that offsets trace themselves, before they share the base's.
+// Segments that offsets trace themselves, before they share those of the base.
 #include <utility>
 
 #include "gradient/class_match.h"
@@ -6,8 +6,8 @@
 
 namespace gradus::gradient {
 
-// Traces an offset's ray. first: its nearest hit if it is known. What the two segments show is compared in any case,
-// see seen().
+// Traces an offset's ray. `first` is its nearest hit, or null if it is unknown. seen() compares the emission on the two
+// segments in any case.
 void OffsetPaths::trace(OffsetPath* o, const geometry::Hit* first) {
   o->advance();
   o->fresh = true;
@@ -20,7 +20,8 @@ void OffsetPaths::trace(OffsetPath* o, const geometry::Hit* first) {
                       path::Shading::Later);
 }
 
-// In the base's cell of the lattice an offset's camera ray is that of its pixel's base path.
+// Returns the camera vertex of the pixel of offset k, or null if it is not known. In the base's pixel block, an
+// offset's camera ray equals that of the base path of its own pixel.
 path::CameraVertex* OffsetPaths::known_vertex(int k) const {
   const int32_t x = sample_->x + film::kOffsetX[k], y = sample_->y + film::kOffsetY[k];
   const bool same_block = film::pixel_block_of(x) == film::pixel_block_of(sample_->x) &&
@@ -36,9 +37,9 @@ void OffsetPaths::share(OffsetPath* o, path::CameraVertex* v) {
   o->fresh = true;
 }
 
-// Same position in the pixel, same point of the lens, same moment: the camera's part of r is 1. With a lens the four
-// rays are traced together; without one most are known, and a packet of the one that leaves the cell would take as long
-// as three rays.
+// Traces the camera rays of the offsets. They have the base's position in the pixel, point on the lens and time, so the
+// camera's factor of r is 1. With a lens the four rays are traced together. Without one most rays are known, and a
+// packet for the one that leaves the pixel block would take as long as three single rays.
 void OffsetPaths::trace_camera(const path::PathState& state) {
   Ray rays[film::kOffsets];
   geometry::Hit hits[film::kOffsets];
@@ -83,7 +84,8 @@ void OffsetPaths::include_kind(OffsetPath* o) {
   }
 }
 
-// The offset scatters; its ray looks like the base's to the scene.
+// Lets the offset scatter by `event`. Its new ray has the ray state of the base's, except for the count of transparent
+// surfaces.
 void OffsetPaths::leave(OffsetPath* o, const ShiftedEvent& event, const path::PathState& state) {
   const uint16_t transparent_depth = o->state.ray.state.transparent_depth;
   o->state.ray = state.ray;
@@ -98,14 +100,15 @@ void OffsetPaths::leave(OffsetPath* o, const ShiftedEvent& event, const path::Pa
   o->from_camera = false;
 }
 
-// A class R or T event of the base at its last vertex, replayed at the offsets' last vertices. Behind glass the rays go
-// apart: one by one they are faster than together.
+// Copies the base's last event, of class R or T, to the last vertices of the offsets. Behind glass the rays diverge, so
+// single rays are faster than a packet.
 void OffsetPaths::copy_events(const path::RaySource& source, const path::PathState& state) {
   for (OffsetPath& o : offsets_) {
     if (o.stage != OffsetStage::Traced) {
       continue;
     }
-    ++counters_.shifts_half_vector;  // tried: none in a scene for which the planner skips them
+    // Attempts are counted; there are none in a scene for which the planner skips these shifts.
+    ++counters_.shifts_half_vector;
     const ShiftedEvent event = copy_event(*source.vertex, *source.event, *o.here);
     if (event.failure != ShiftFailure::None) {
       fail(&o, event.failure);
@@ -117,9 +120,9 @@ void OffsetPaths::copy_events(const path::RaySource& source, const path::PathSta
   }
 }
 
-// A ray of the offset's own after class D. False: it met no surface, and the shift has failed.
+// Traces a ray of the offset's own after class D. Returns false, and fails the shift, if the ray meets no surface.
 bool OffsetPaths::trace_surface(OffsetPath* o, const ShiftedEvent& event) {
-  ++counters_.shifts_replayed;  // tried, too
+  ++counters_.shifts_replayed;  // counts attempts
   if (event.failure != ShiftFailure::None) {
     fail(o, event.failure);
     return false;
@@ -137,8 +140,8 @@ bool OffsetPaths::trace_surface(OffsetPath* o, const ShiftedEvent& event) {
   return true;
 }
 
-// Class D before class R or T, away from the base's vertex: in the base's direction. The way back must not share this
-// vertex.
+// Copies the base's direction at class D before class R or T to the offset, which then does not share the base's
+// vertex. Fails if the inverse shift would share the vertex.
 void OffsetPaths::copy_direction(OffsetPath* o, const path::ScatterEvent& next) {
   if (!trace_surface(o, event_towards(base_event_, *o->here, base_event_.sample.wi, 1.0f))) {
     return;
@@ -153,8 +156,8 @@ void OffsetPaths::copy_direction(OffsetPath* o, const path::ScatterEvent& next) 
   include_kind(o);
 }
 
-// Class D before z over a short edge. Not at a surface that is sharp alone: there the direction is copied, which
-// nothing forbids at the other end.
+// Returns whether class D before z over a short edge is shifted by random replay. It is not at a surface that is only
+// sharp: there the direction is copied, and the inverse shift may do the same.
 bool OffsetPaths::replays(const Vec3& y, const path::Vertex& z) const {
   const bool non_specular = z.shade.closures.class_probability(bsdf::ScatterClass::Diffuse) > 0.0f;
   return non_specular && is_short_edge(base_position_, y, z.point.position);
@@ -168,7 +171,8 @@ void OffsetPaths::replay_short_edges(const path::Vertex& vertex) {
   }
 }
 
-// By the base's random numbers. The way back must be a replay, too.
+// Replays the base's last event at the offset with the same random numbers. Fails if the inverse shift would not be a
+// replay.
 void OffsetPaths::replay(OffsetPath* o, const path::Vertex& vertex) {
   if (!trace_surface(o, replay_event(*base_from_, base_event_, sampler_->vertex(base_state_.depth - 1), *o->here))) {
     return;

@@ -5,7 +5,7 @@
 
 namespace gradus::gradient {
 
-// Everything but visibility.
+// Computes the reconnection of an offset to the base's vertex, apart from visibility.
 ShiftFailure OffsetPaths::try_reconnection(OffsetPath* o, const path::Vertex& vertex, ShiftedEvent* event) const {
   const Reconnection connection =
       reconnect(base_position_, o->here->point.position, vertex.point.position, vertex.point.geometric_normal);
@@ -16,8 +16,8 @@ ShiftFailure OffsetPaths::try_reconnection(OffsetPath* o, const path::Vertex& ve
   return event->failure;
 }
 
-// The offset arrives at the shared vertex. The base's decisions on its segment were made for both paths: the offset's
-// own surfaces on the way weigh with their expectation.
+// Stores the connection of an offset to the shared vertex. The base's decisions at transparent surfaces on its segment
+// apply to both paths, so the transparent surfaces of the offset's own segment are weighted by their expectation.
 void OffsetPaths::open_connection(OffsetPath* o, const ShiftedEvent& event, const Rgb& through) {
   o->connection.open = true;
   o->connection.throughput = o->state.throughput * event.factor * through / base_segment_->probability;
@@ -27,7 +27,7 @@ void OffsetPaths::open_connection(OffsetPath* o, const ShiftedEvent& event, cons
   o->reconnected->wo = -event.wi;
 }
 
-// The ray by which the offset arrives there.
+// Returns the state of the ray by which the offset arrives at the shared vertex.
 shading::RayState OffsetPaths::reconnected_ray(const OffsetPath& o, const path::Vertex& vertex) const {
   shading::RayState ray = base_state_.ray.state;
   ray.transparent_depth = o.connection.transparent_depth;
@@ -35,14 +35,15 @@ shading::RayState OffsetPaths::reconnected_ray(const OffsetPath& o, const path::
   return ray;
 }
 
-// What the shared vertex emits towards the offset: its closures may not be wanted.
+// Returns the emission of the shared vertex towards the offset. It does not evaluate closures, which may not be needed.
 Rgb OffsetPaths::reconnected_emission(const OffsetPath& o, const path::Vertex& vertex) const {
   const bool same = vertex.shade.ignores_wo && glm::dot(vertex.facing_normal(), o.reconnected->wo) > 0.0f;
   return same ? vertex.shade.emission
               : shading::shade_emission(context_.scene, vertex.point, o.reconnected->wo, reconnected_ray(o, vertex));
 }
 
-// The shared vertex, whose closures are known, from the offset's side. Most walls look alike from everywhere.
+// Shades the shared vertex as seen from the offset; its closures are known. Most walls look the same from all
+// directions and need no new shading.
 void OffsetPaths::shade_reconnected(OffsetPath* o, const path::Vertex& vertex) const {
   if (std::exchange(o->connection.shaded, true)) {
     return;
@@ -56,7 +57,7 @@ void OffsetPaths::shade_reconnected(OffsetPath* o, const path::Vertex& vertex) c
   }
 }
 
-// The base's event at the shared vertex.
+// Returns the base's event at the shared vertex, as seen from the offset.
 ShiftedEvent OffsetPaths::reconnected_event(OffsetPath* o, const path::Vertex& vertex,
                                             const path::ScatterEvent& event) const {
   shade_reconnected(o, vertex);
@@ -71,7 +72,7 @@ ShiftedEvent OffsetPaths::reconnected_event(OffsetPath* o, const path::Vertex& v
   return same;
 }
 
-// Connects all pending offsets that have not tried yet.
+// Connects all pending offsets that have no connection yet to the base's vertex.
 void OffsetPaths::reconnect_all(const path::Vertex& vertex) {
   ShiftedEvent events[film::kOffsets];
   bool wanted[film::kOffsets];
@@ -112,10 +113,11 @@ void OffsetPaths::reconnect_all(const path::Vertex& vertex) {
   }
 }
 
-// Whether the offset has a connection to the shared vertex, from the side that the base sees.
+// Returns whether the offset has a connection to the shared vertex on the side that the base sees. Fails the offset if
+// not.
 bool OffsetPaths::arrives(OffsetPath* o, const path::Vertex& vertex) {
   if (!o->connection.open) {
-    finalize(o, OffsetStage::Failed);  // its cause was counted
+    finalize(o, OffsetStage::Failed);  // reconnect_all() has counted the cause
   } else if (!(glm::dot(vertex.facing_normal(), o->reconnected->wo) > 0.0f)) {
     fail(o, ShiftFailure::Side);
   }
@@ -127,15 +129,16 @@ bool OffsetPaths::shares(const Vec3& y, const path::Vertex& z, bsdf::ScatterClas
                              next == bsdf::ScatterClass::Transmission);
 }
 
-// The event at z, seen from the base's vertex or from y, has a lobe that looks alike from both.
+// Returns whether the lobe of the event at z looks alike from the base's vertex and from y, so that they can share its
+// direction.
 bool OffsetPaths::shares_direction(const Vec3& y, const path::Vertex& z, const path::ScatterEvent& event) const {
   const float width = event.sample.dirac ? 0.0f : class_width(z.shade.closures, event.scatter_class);
   return looks_similar(base_position_, y, z.point.position, width);
 }
 
-// Class D before class R or T: the offset shares its base's vertex, and where the lobe is wide the direction, too; or
-// it goes on by a ray of its own. Where a texture looks at the ray, the two paths may judge the lobe differently: then
-// so they would on the way back.
+// Shifts class D before class R or T. The offset shares the base's vertex, and also its direction where the lobe is
+// wide, or it continues with a ray of its own. Where a texture depends on the ray, the two paths may judge the lobe
+// differently. The inverse shift would then differ too, so the shift fails.
 void OffsetPaths::reach_sharp(const path::Vertex& vertex, const path::ScatterEvent& event) {
   for (OffsetPath& o : offsets_) {
     if (o.stage == OffsetStage::Pending && !shares(o.here->point.position, vertex, event.scatter_class) &&
@@ -161,7 +164,7 @@ void OffsetPaths::reach_sharp(const path::Vertex& vertex, const path::ScatterEve
   }
 }
 
-// The base's vertex as seen from the offset becomes a vertex of its own, at which the event will be copied.
+// Makes the base's vertex, as seen from the offset, a vertex of the offset, at which the event will be copied.
 void OffsetPaths::share_vertex(OffsetPath* o, const path::Vertex& vertex) {
   ++counters_.shifts_reconnected;
   shade_reconnected(o, vertex);
@@ -205,7 +208,7 @@ void OffsetPaths::scatter(const path::Vertex& vertex, const path::VertexSample& 
   }
 }
 
-// The rest is shared.
+// Reconnects the offset at the base's vertex; both share the rest of the path.
 void OffsetPaths::reconnect_at(OffsetPath* o, const path::Vertex& vertex, const path::ScatterEvent& event) {
   const ShiftedEvent shared = reconnected_event(o, vertex, event);
   if (shared.failure != ShiftFailure::None) {
@@ -223,7 +226,7 @@ void OffsetPaths::reconnect_at(OffsetPath* o, const path::Vertex& vertex, const 
   o->kind_ratio = shared.kind_ratio;
   o->shared_pdf = shared.pdf;
   if (o->connection.looks_same) {
-    join(o);  // its density is the base's
+    join(o);  // both paths have the same density at the vertex
   } else {
     o->stage = OffsetStage::Reconnected;
   }

@@ -18,8 +18,10 @@ bool is_parallax_below(const Vec3& x, const Vec3& y, const Vec3& z, float angle)
 bool is_short_edge(const Vec3& x, const Vec3& y, const Vec3& z) { return !is_parallax_below(x, y, z, 1.0f); }
 
 bool shares_sharp_vertex(const Vec3& x, const Vec3& y, const Vec3& z, float curvature, bool transmission) {
-  constexpr float kCurved = 0.5f;  // curvature · edge: where the directions behind z differ alike in both cases
-  constexpr float kSmall = 0.2f;   // parallax at a mirror: what is lost at its rim outweighs what its flatness keeps
+  // Minimum curvature · edge. Here the directions behind z differ about equally with and without sharing.
+  constexpr float kCurved = 0.5f;
+  // Maximum parallax at a mirror. Above it the loss at the rim of the mirror exceeds the gain from its flatness.
+  constexpr float kSmall = 0.2f;
   const float edge = std::min(glm::length(z - x), glm::length(z - y));
   return curvature * edge > kCurved ? !is_short_edge(x, y, z) : !transmission && is_parallax_below(x, y, z, kSmall);
 }
