@@ -38,8 +38,8 @@ inline constexpr uint64_t kMaxPixels = 1ull << 30;
 inline constexpr uint64_t kMaxSide = 1ull << 17;
 
 // Sets size and layout of the image and allocates its pixels. It does not write to them, so that a wrong header
-// occupies no physical memory. Returns false, with the reason in *problem, if the size is zero or above the limits, or if a file
-// of `file_bytes` cannot hold so many pixels at a compression ratio of `ratio`.
+// occupies no physical memory. Returns false, with the reason in *problem, if the size is zero or above the limits, or
+// if a file of `file_bytes` cannot hold so many pixels at a compression ratio of `ratio`.
 bool allocate(DecodedImage* image, uint64_t width, uint64_t height, uint32_t channels, PixelFormat format,
               size_t file_bytes, uint64_t ratio, std::string* problem);
 
