@@ -1,4 +1,4 @@
-// G5: each allocation of a frame is refused once.
+// Refuses each allocation of a frame in turn, to test that every failure is reported and leaks nothing.
 #include "api/registry.h"
 #include "memory/allocations.h"
 #include "memory/sequence.h"
@@ -11,14 +11,15 @@ using test::error_text;
 
 constexpr size_t kValues = 8 * 8 * 4;
 
-// A call with its k-th allocation refused.
+// The result of a call whose k-th allocation was refused.
 struct Attempt {
-  bool hit = false;  // there was one
+  bool hit = false;  // the call made at least k allocations
   GradusError code = GRADUS_OK;
-  int64_t kept = 0;  // pieces of memory, afterwards
+  int64_t kept = 0;  // allocations that the call did not free
   std::string text;
 };
 
+// Makes a call while its k-th allocation is refused.
 template <class Call>
 Attempt attempt(uint64_t k, const Call& call) {
   Attempt result;
@@ -27,14 +28,14 @@ Attempt attempt(uint64_t k, const Call& call) {
   result.code = call();
   result.hit = was_refused();
   refuse(0);
-  result.kept = live() - before;  // now: messages of failures are pieces, too
+  result.kept = live() - before;  // before the next line, which allocates a text
   result.text = error_text();
   return result;
 }
 
 class G5_Allocations : public ::testing::TestWithParam<uint32_t> {};
 
-// One OUT_OF_MEMORY, nothing is kept, and the next render has the bits of the first.
+// Every refusal gives OUT_OF_MEMORY and no leak, and a render after all refusals has the bits of the first one.
 TEST_P(G5_Allocations, EachMayBeRefused) {
   const GradusDevice device = test::make_device();
   std::vector<float> first(kValues), image(kValues);
@@ -57,8 +58,9 @@ TEST_P(G5_Allocations, EachMayBeRefused) {
 INSTANTIATE_TEST_SUITE_P(Integrators, G5_Allocations,
                          ::testing::Values(GRADUS_INTEGRATOR_AUTO, GRADUS_INTEGRATOR_PATH, GRADUS_INTEGRATOR_GRADIENT));
 
-// A device without memory was refused for a processor without AVX2, or for another Embree in the process. Embree does
-// without a few allocations (and keeps a few pieces of what failed).
+// Creating a device without memory must report OUT_OF_MEMORY, and not that the processor lacks AVX2 or that another
+// Embree is loaded, as it did before. Embree recovers from a few failed allocations, and leaks a few objects after
+// others, so that leaks are not tested here.
 TEST(G5_Device, WithoutMemorySaysSo) {
   ASSERT_OK(gradus_device_release(test::make_device()));
   int refusals = 0, told = 0;
@@ -79,7 +81,8 @@ TEST(G5_Device, WithoutMemorySaysSo) {
   ASSERT_OK(gradus_device_release(test::make_device()));
 }
 
-// The list of free slots had no room: a slot was lost with each handle that failed.
+// A handle that cannot be added must leave its slot in the list of free slots. Before, each failure lost a slot,
+// because the list had no room for it.
 TEST(G5_Registry, ARefusedHandleLosesNoSlot) {
   for (uint64_t k = 1; k < 100; ++k) {
     api::Registry registry;

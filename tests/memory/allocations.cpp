@@ -17,6 +17,7 @@ std::atomic<bool> refused{false};
 std::atomic<int64_t> pieces{0}, bytes{0}, max_bytes{0};
 std::atomic<int> unrefused{0};
 
+// Adds the size of an allocation to the bytes in use and updates their maximum.
 void count(void* memory) noexcept {
   const int64_t now = bytes += int64_t(malloc_usable_size(memory));
   int64_t maximum = max_bytes;
@@ -24,6 +25,7 @@ void count(void* memory) noexcept {
   }
 }
 
+// Returns memory, or nullptr if this is the allocation that refuse() selected.
 void* allocate(size_t size, size_t alignment) noexcept {
   const uint64_t k = unrefused == 0 ? ++requests : 0;
   if (k != 0 && k == refused_request.load(std::memory_order_relaxed)) {
@@ -50,6 +52,7 @@ void release(void* memory) noexcept {
   std::free(memory);
 }
 
+// Returns the number of entries of a folder.
 int entries(const char* folder) {
   int count = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++count;
@@ -77,7 +80,7 @@ int64_t peak_bytes() { return max_bytes; }
 void forget_peak() { max_bytes = bytes.load(); }
 
 uint64_t resident_bytes() {
-  malloc_trim(0);  // what the allocator keeps for later is no leak
+  malloc_trim(0);  // memory that the allocator keeps for later use is not a leak
   unsigned long total = 0, resident = 0;
   FILE* file = std::fopen("/proc/self/statm", "r");
   if (file == nullptr || std::fscanf(file, "%lu %lu", &total, &resident) != 2) resident = 0;

@@ -1,15 +1,16 @@
-// Counts what operator new hands out in this program, and refuses the k-th request on purpose.
+// Replaces operator new in the test program. It counts allocations, and can refuse the k-th one on purpose.
 #pragma once
 
 #include <cstdint>
 
 namespace gradus::memory {
 
-// The k-th request from now on, from any thread, is refused; 0 ends that. Returns how many were made since the last
-// call.
+// Makes the k-th allocation from now on fail, whichever thread requests it; k = 0 refuses none. Returns the number of
+// allocations requested since the last call.
 uint64_t refuse(uint64_t k);
+// Returns whether an allocation has been refused since the last call of refuse().
 bool was_refused();
-// While it lives no request is counted or refused, whichever thread makes it.
+// While an object of this class exists, no allocation of any thread is counted for refuse() or refused.
 class Unrefused {
  public:
   Unrefused();
@@ -17,14 +18,14 @@ class Unrefused {
   Unrefused(const Unrefused&) = delete;
   Unrefused& operator=(const Unrefused&) = delete;
 };
-// Pieces that are not given back yet.
+// Returns the number of allocations that have not been freed.
 int64_t live();
-// Bytes of them, and the most of these since the last call of forget_peak().
+// Return the bytes of these allocations, and their maximum since the last call of forget_peak().
 int64_t live_bytes();
 int64_t peak_bytes();
 void forget_peak();
 
-// Of this process, now.
+// Return the resident memory, the open file descriptors and the threads of this process.
 uint64_t resident_bytes();
 int descriptors();
 int threads();

@@ -1,4 +1,4 @@
-// The estimate of an animation's memory and files against what it takes.
+// Compares the estimated memory and disk space of an animation with what it uses.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -22,6 +22,7 @@ struct Job {
   uint32_t integrator, reconstruction;
 };
 
+// A combination of integrator and reconstruction.
 class AnimationEstimate : public ::testing::TestWithParam<Job> {};
 
 GradusSettings settings_of(const Job& job, int32_t frame) {
@@ -46,7 +47,8 @@ void finish(std::unique_ptr<render::RenderTask> task) {
   ASSERT_EQ(task->outcome(&text), GRADUS_OK) << text;
 }
 
-// A factor of 2 either way: it is to tell an animation that fits from one that does not.
+// The estimate must be within a factor of 2 of the peak, which is enough to find animations that do not fit into
+// memory.
 TEST_P(AnimationEstimate, IsNearThePeak) {
   const std::string folder = fs::temp_directory_path() / "gradus-animation-estimate";
   fs::remove_all(folder);

@@ -1,4 +1,5 @@
-// J2: 200 frames whose meshes and instances change, 50 exports anew, 200 cancels, frame by frame and over windows.
+// Tests for leaks in 200 frames with changing meshes and instances, 50 repeated exports and 200 cancelled renders, both
+// for single frames and for animations.
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
@@ -12,22 +13,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kChanges = 15;  // frames after which the scene is as it was
+constexpr int kChanges = 15;  // number of frames after which the changes of the scene repeat
 
-// Temporary files are made in a folder of its own, so that those of others are not counted.
+// Sets TMPDIR to a folder of the test's own, and expects that no temporary file is left there.
 class J2_Growth : public test::WithScene<> {
  protected:
   void SetUp() override {
     const char* before = std::getenv("TMPDIR");
     before_ = before != nullptr ? before : "";
     folder_ = (fs::temp_directory_path() / "gradus-test-XXXXXX").string();
-    if (mkdtemp(folder_.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    if (mkdtemp(folder_.data()) == nullptr) throw std::runtime_error("cannot create a temporary folder");
     setenv("TMPDIR", folder_.c_str(), 1);
     WithScene<>::SetUp();
   }
   void TearDown() override {
     WithScene<>::TearDown();
-    EXPECT_TRUE(fs::is_empty(folder_)) << "temporary files stay";
+    EXPECT_TRUE(fs::is_empty(folder_)) << "temporary files are left";
     fs::remove_all(folder_);
     if (before_.empty()) {
       unsetenv("TMPDIR");
@@ -59,7 +60,7 @@ TEST_F(J2_Growth, CancelledFrames) {
   });
 }
 
-// 20 animations of ten frames.
+// Renders 20 animations of ten frames.
 TEST_F(J2_Growth, Sequences) {
   for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_REGULARIZED}) {
     expect_no_growth(20, pools_of(200), [&](int) { test::animate_changing(device, scene, 10, -1, reconstruction); });

@@ -1,11 +1,11 @@
-// Requests that Embree makes for itself are not refused: its thread pool keeps a lock when one fails (3.13.5,
-// ThreadPool::add), and the next commit waits for ever. What Embree is refused by its memory monitor is tested by
-// G5_Memory. The linker puts these in place of Embree's functions (--wrap in tests/CMakeLists.txt).
+// Wrappers that keep Embree's own allocations from being refused. When one fails in ThreadPool::add (3.13.5), Embree
+// does not release a lock, and the next commit waits for ever. The tests G5_Memory cover memory that Embree's memory
+// monitor refuses. The linker replaces Embree's functions with these wrappers (--wrap in tests/CMakeLists.txt).
 #include <embree3/rtcore.h>
 
 #include "memory/allocations.h"
 
-// NOLINTBEGIN(bugprone-reserved-identifier): names that the linker asks for
+// NOLINTBEGIN(bugprone-reserved-identifier): the linker prescribes these names
 #define GRADUS_WRAP(Result, name, parameters, arguments) \
   extern "C" Result __real_##name parameters;            \
   extern "C" Result __wrap_##name parameters {           \

@@ -1,4 +1,4 @@
-// G10, and J1 for the library: what is created and released leaves nothing behind.
+// Objects of the C API that are created and released, and renders, leave no memory, files or threads behind.
 #include "memory/growth.h"
 #include "memory/sequence.h"
 #include "support/statistics.h"
@@ -21,7 +21,7 @@ TEST(G10_Pairs, OfDevices) {
   expect_no_growth(count, pools_of(count), [](int) { ASSERT_OK(gradus_device_release(test::make_device())); });
 }
 
-// Frames of an animation, for the library.
+// Repeated renders, as for the frames of an animation, do not let the process grow.
 TEST(J1_Growth, Renders) {
   const GradusDevice device = test::make_device();
   for (const uint32_t integrator : {GRADUS_INTEGRATOR_PATH, GRADUS_INTEGRATOR_GRADIENT}) {

@@ -1,4 +1,4 @@
-// The estimate of a render's memory against what it takes.
+// Compares the estimated memory of a render with its peak, and tests the warnings that depend on the estimate.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -11,8 +11,9 @@
 namespace gradus::memory {
 namespace {
 
-constexpr uint32_t kWidth = 400, kHeight = 300;  // what rows and threads take is little beside
+constexpr uint32_t kWidth = 400, kHeight = 300;  // memory of rows and threads is small beside it
 
+// Settings of a render. With `gaps` the integrator is AUTO, whose pilot leaves parts of the picture without gradients.
 struct Case {
   const char* name;
   uint32_t integrator, reconstruction;
@@ -25,7 +26,7 @@ class MemoryEstimate : public ::testing::TestWithParam<Case> {};
 GradusSettings settings_of(const Case& c) {
   GradusSettings settings = test::small_settings(kWidth, kHeight, c.adaptive ? 20 : 2);
   settings.threads = 1;
-  settings.integrator = c.gaps ? uint32_t{GRADUS_INTEGRATOR_AUTO} : c.integrator;  // a pilot
+  settings.integrator = c.gaps ? uint32_t{GRADUS_INTEGRATOR_AUTO} : c.integrator;  // AUTO runs a pilot
   settings.reconstruction = c.reconstruction;
   settings.noise_threshold = c.adaptive ? 1e-6f : 0.0f;
   settings.passes |= uint64_t{1} << GRADUS_PASS_NORMAL | schema::feature_passes();
@@ -37,8 +38,7 @@ GradusSettings settings_of(const Case& c) {
   return settings;
 }
 
-// It is to tell a render that fits from one that does not: a factor of 2 either way. The stand-in for a denoiser takes
-// nothing.
+// The estimate must be within a factor of 2 of the peak, which is enough to find renders that do not fit into memory.
 TEST_P(MemoryEstimate, IsNearTheRendersPeak) {
   const GradusSettings settings = settings_of(GetParam());
   const auto factory =
@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(All, MemoryEstimate,
 TEST(MemoryWarning, ComesWhereTheMachineHasLess) {
   constexpr uint64_t gib = uint64_t{1} << 30;
   EXPECT_EQ(render::memory_warning(5 * gib, 5 * gib), "");
-  EXPECT_EQ(render::memory_warning(5 * gib, 0), "") << "nobody knows";
+  EXPECT_EQ(render::memory_warning(5 * gib, 0), "") << "the memory of the machine is unknown";
   EXPECT_EQ(
       render::memory_warning(6 * gib, 5 * gib),
       "the render takes about 6 GiB of memory, and the machine has 5 GiB: render fewer pixels, passes or components");
@@ -82,11 +82,11 @@ TEST(MemoryWarning, ComesWhereTheMachineHasLess) {
             estimate);
 }
 
-// A job of nine hours ended at night, when the disk was full.
+// The warning comes before the render, because an animation of nine hours had failed when the disk was full.
 TEST(DiskWarning, NamesTheFolderThatIsTooSmall) {
   const std::string folder = std::filesystem::temp_directory_path();
   EXPECT_EQ(render::disk_warning(0, folder), "");
-  EXPECT_EQ(render::disk_warning(uint64_t{1} << 60, folder + "/that/is/not/there"), "") << "nobody knows";
+  EXPECT_EQ(render::disk_warning(uint64_t{1} << 60, folder + "/that/is/not/there"), "") << "the free space is unknown";
   EXPECT_NE(render::disk_warning(uint64_t{1} << 60, folder).find(folder), std::string::npos);
 }
 

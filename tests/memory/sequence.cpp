@@ -4,6 +4,7 @@ namespace gradus::memory {
 
 namespace {
 
+// Fills the scene and commits it.
 GradusError prepare(GradusScene scene) {
   for (const auto step : {test::set_quad, test::set_instance, test::set_light, test::set_camera}) {
     if (const GradusError code = step(scene); code != GRADUS_OK) return code;
@@ -11,6 +12,7 @@ GradusError prepare(GradusScene scene) {
   return gradus_scene_commit(scene, nullptr, nullptr);
 }
 
+// Waits for the render, reconstructs its film and reads Combined.
 GradusError finish(GradusRender render, std::vector<float>* image) {
   if (const GradusError code = gradus_render_wait(render, -1.0); code != GRADUS_OK) return code;
   GradusFilm film = 0;
@@ -33,7 +35,7 @@ GradusError render_once(GradusDevice device, uint32_t integrator, std::vector<fl
   GradusRender render = 0;
   if (code == GRADUS_OK) code = gradus_render_start(scene, &settings, &render);
   if (code == GRADUS_OK) code = finish(render, image);
-  // Where nothing was made there is nothing to release.
+  // A handle of 0 was never created and needs no release.
   const bool released = (render == 0 || gradus_render_release(render) == GRADUS_OK) &&
                         (scene == 0 || gradus_scene_release(scene) == GRADUS_OK);
   EXPECT_TRUE(released);

@@ -1,4 +1,4 @@
-// J1 of windows: what their solver holds, and what it takes.
+// Measures the memory and the CPU time of reconstructing windows of frames.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,9 +16,10 @@
 namespace gradus::memory {
 namespace {
 
+// A cancel check that never cancels.
 constexpr auto kNever = [] { return false; };
 
-// One of its frames and the next.
+// Two consecutive frames of another source, from `first` on.
 class PairOf final : public reconstruct::HalvedWindowSource {
  public:
   PairOf(const reconstruct::HalvedWindowSource& source, int first) : source_(source), first_(first) {}
@@ -40,8 +41,8 @@ class PairOf final : public reconstruct::HalvedWindowSource {
   int first_;
 };
 
-// A flat picture with the noise of few samples: few bright pixels, and differences with heavy tails. Held in memory, as
-// a system holds the file of a window, so that what is timed is the solver.
+// A flat picture with the noise of few samples: few bright pixels, and differences with heavy tails. The values are
+// kept in memory, so that reading them takes no time; the operating system likewise caches the file of a window.
 class NoisySource final : public reconstruct::HalvedWindowSource {
  public:
   NoisySource(const reconstruct::WindowSize& size, test::Motion motion)
@@ -68,6 +69,7 @@ class NoisySource final : public reconstruct::HalvedWindowSource {
  private:
   size_t at(int t, int y) const { return row_ * size_t(t * size_.height + y); }
 
+  // Fills the rows of one kind with random numbers.
   void fill(reconstruct::RowKind kind, uint32_t state) {
     for (float& value : values_[size_t(kind)]) {
       const float u = uniform(&state), v = uniform(&state);
@@ -75,6 +77,7 @@ class NoisySource final : public reconstruct::HalvedWindowSource {
                                                     : 0.1f * (u - 0.5f) * (v < 0.02f ? 40.0f : 1.0f);
     }
   }
+  // Returns a random number in [0, 1] from the PCG generator.
   static float uniform(uint32_t* state) {
     *state = *state * 747796405u + 2891336453u;
     const uint32_t word = ((*state >> ((*state >> 28) + 4)) ^ *state) * 277803737u;
@@ -90,17 +93,18 @@ class NoisySource final : public reconstruct::HalvedWindowSource {
 constexpr reconstruct::WindowSize small_window() { return {320, 180, 3, 10}; }
 constexpr reconstruct::WindowSize full_window() { return {1280, 720, 3, 10}; }
 
-// Most bytes per pixel and frame: of the full window, and of the small one, whose rims are wider for its size.
+// Maximum bytes per pixel and frame of the solver. A small window has a larger maximum, because its borders are wider
+// in relation to its size.
 double max_bytes() { return test::full_run() ? 95.0 : 102.0; }
 
-// Steps of all systems. Where links lead anywhere, weights by noise are those of four decades in disorder, in time,
-// too.
+// Maximum number of steps of all systems together. With random correspondences the weights of neighbours, in space and
+// time, differ by up to four orders of magnitude, which takes more steps.
 int max_steps(test::Motion motion, uint32_t reconstruction) {
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) return 7;
   const bool smooth = motion == test::Motion::kStatic || motion == test::Motion::kPan;
   return smooth ? 19 : motion == test::Motion::kTurn ? 30 : 55;
 }
-// CPU-s of the full window, where pixels move alike. The small one is over before it can be timed.
+// Maximum CPU seconds of the full window if all pixels move alike. The small window is too short to be timed.
 double max_seconds(test::Motion motion) {
   return test::full_run() && (motion == test::Motion::kStatic || motion == test::Motion::kPan) ? 15.0 : 1e3;
 }
@@ -129,7 +133,7 @@ TEST(J1_Window, HoldsFourFieldsAndTheirGrids) {
   }
 }
 
-// A frame's samples among it: it is opened when its turn comes.
+// The bytes include the film of the one frame that is open at a time; frames are opened when they are needed.
 TEST(J1_Window, RegressionOverTimeHoldsOneFrameAndAFewFields) {
   const reconstruct::WindowSize size = test::full_run() ? full_window() : small_window();
   test::FeatureFilm description = test::room(size.width, size.height);
@@ -160,6 +164,7 @@ TEST(J1_Window, RegressionOverTimeHoldsOneFrameAndAFewFields) {
   EXPECT_LE(bytes, 160.0);
 }
 
+// Returns a film without light in which each pixel has one sample in each half-buffer.
 std::shared_ptr<film::Film> flat_film(const reconstruct::WindowSize& size, int32_t number) {
   auto frame = std::make_shared<film::Film>(uint32_t(size.width), uint32_t(size.height),
                                             Region{0, 0, size.width, size.height}, 3, 1, true);
@@ -168,7 +173,7 @@ std::shared_ptr<film::Film> flat_film(const reconstruct::WindowSize& size, int32
   return frame;
 }
 
-// Two frames at a time while they are read, then none.
+// While frames are read, at most two of them are in memory; afterwards none is.
 TEST(J1_Window, InputsAreNotHeld) {
   const reconstruct::WindowSize size = test::full_run() ? full_window() : small_window();
   const double pixels = double(size.width) * size.height * size.frames;
@@ -185,7 +190,7 @@ TEST(J1_Window, InputsAreNotHeld) {
   EXPECT_LE(maximum, 80.0);
 }
 
-// What is kept does not grow with the length of a sequence.
+// The peak of memory does not grow with the length of a sequence.
 TEST(J1_Window, SequencesOfAnyLengthNeedTheMemoryOfOneWindow) {
   const auto peak_of = [](int frames) {
     const int64_t before = live_bytes();

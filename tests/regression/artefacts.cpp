@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 
 const fs::path kFolder = fs::path(GRADUS_BINARY_DIR) / "pictures";
 
+// Returns the file in which remember() saves the picture with these bits.
 fs::path remembered(const std::string& bits) { return kFolder / "stored" / (bits + ".exr"); }
 
 void save(const fs::path& path, const std::vector<float>& rgba) {
@@ -34,7 +35,7 @@ std::vector<float> without_alpha(const std::vector<float>& rgba) {
   return rgb;
 }
 
-// Block means as a picture of squares.
+// Returns an RGB picture that shows the mean of its block in each pixel.
 std::vector<float> squares(const std::vector<float>& means) {
   std::vector<float> rgb(size_t(kWidth) * kHeight * 3);
   for (uint32_t i = 0; i < rgb.size(); ++i) {
@@ -44,6 +45,7 @@ std::vector<float> squares(const std::vector<float>& means) {
   return rgb;
 }
 
+// Returns the relMSE of an RGB image: squared errors are divided by 1e-3 plus the square of the reference's grey value.
 double relative_error(const std::vector<float>& image, const std::vector<float>& reference) {
   double sum = 0.0;
   for (size_t i = 0; i < reference.size(); i += 3) {
@@ -53,12 +55,14 @@ double relative_error(const std::vector<float>& image, const std::vector<float>&
   return sum / double(reference.size());
 }
 
+// Returns 16 times the absolute difference of two images.
 std::vector<float> difference(const std::vector<float>& a, const std::vector<float>& b) {
   std::vector<float> result(a.size());
   for (size_t i = 0; i < a.size(); ++i) result[i] = 16.0f * std::fabs(a[i] - b[i]);
   return result;
 }
 
+// Writes RGB images side by side to a PNG file with the sRGB curve.
 void save_beside_each_other(const fs::path& path, const std::vector<std::vector<float>>& images) {
   const uint32_t width = kWidth * uint32_t(images.size());
   const auto color = [&](float u, float v) {

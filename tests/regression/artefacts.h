@@ -1,4 +1,4 @@
-// What is kept in the build folder of a picture that differs, to be looked at.
+// Files in the build folder that show how a picture differs from the stored one.
 #pragma once
 
 #include <string>
@@ -6,13 +6,14 @@
 
 namespace gradus::regression {
 
-// Pixels are not stored, only their block means. Those of a picture with the stored bits are remembered here, for the
-// day it changes.
+// Saves the pixels of a picture that has the stored bits, unless a file for these bits exists. Only block means are
+// under version control, so that keep() needs this file to compare pixels when the picture changes later.
 void remember(const std::string& bits, const std::vector<float>& rgba);
 
-// Writes the picture as EXR, and as PNG beside each other the reference, the picture, and 16 times their difference.
-// The reference is the remembered picture of these bits, else the block means, which are then compared with the
-// picture's. Returns what differs and where it is.
+// Writes the picture as an EXR file, and a PNG file with the reference, the picture and 16 times their difference side
+// by side. The reference is the picture that remember() saved for `bits`. Without one it is the block means `means`,
+// and the block means of the picture are compared with it. Returns a text with the relative error and the path of the
+// files.
 std::string keep(const std::string& name, const std::string& bits, const std::vector<float>& means,
                  const std::vector<float>& rgba);
 

@@ -1,4 +1,4 @@
-// The pictures that are stored: small scenes and settings.
+// The pictures of the regression test: small scenes with settings.
 #pragma once
 
 #include <functional>
@@ -9,21 +9,23 @@
 
 namespace gradus::regression {
 
+// Size of the pictures and edge of a block, in pixels.
 inline constexpr uint32_t kWidth = 128, kHeight = 72, kBlock = 8;
 
 struct Picture {
   std::string name;
   std::function<void(test::PathScene*)> build;
-  std::function<void(GradusSettings*)> change;  // from small defaults
-  // Its mean depends on the number of samples: what is stored of it has as many as what is compared with it.
+  std::function<void(GradusSettings*)> change;  // changes the settings that render() starts from
+  // Whether the mean depends on the number of samples, so that stored and compared pictures need equally many.
   bool is_biased = false;
 };
 
+// Returns all pictures, with unique names.
 std::vector<Picture> pictures();
 
-// Combined, RGBA.
+// Renders a picture and returns its Combined pass as RGBA.
 std::vector<float> render(const Picture& picture, uint32_t samples, uint32_t seed);
-// Means of RGB over squares of 8×8 pixels.
+// Returns the mean RGB of each block of 8×8 pixels.
 std::vector<float> block_means(const std::vector<float>& rgba);
 
 }  // namespace gradus::regression

@@ -1,6 +1,6 @@
-// M1, M2: pictures are as they were stored in pictures.json: on any machine their block means, within the noise; on the
-// kind of machine and compiler that stored them their bits, so that no change of them goes by unseen. What differs is
-// kept in the build folder, to be looked at. Where pictures are meant to change, they are stored anew:
+// Compares pictures with those stored in pictures.json. On any machine their block means must agree within the noise.
+// On a machine with the processor, compiler and libraries that stored them their bits must agree, so that every change
+// is noticed. Pictures that differ are written to the build folder. After an intended change, store them again with
 //   GRADUS_STORE_PICTURES=1 build/tests/gradus_regression_tests
 #include <algorithm>
 #include <cmath>
@@ -27,10 +27,11 @@ using nlohmann::json;
 
 const char* const kFile = GRADUS_SOURCE_DIR "/tests/regression/pictures.json";
 constexpr uint32_t kStoredSeeds = 16, kStoredSamples = 8, kSeeds = 4, kSamples = 2;
-// A pixel with less light may have lit ones beside it.
+// Minimum brightness that is assumed for the neighbours of a pixel, so that single lit pixels of a dark region are no
+// outliers.
 constexpr float kDark = 0.01f;
 
-// The value of a line of /proc/cpuinfo.
+// Returns the value of the first line of /proc/cpuinfo that begins with `key`.
 std::string processor(const std::string& key) {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {
@@ -39,8 +40,9 @@ std::string processor(const std::string& key) {
   return "unknown " + key;
 }
 
-// What bits depend on: the compiler, and the code that libraries choose by the processor (the C library's functions,
-// Embree's kernels, whose approximate reciprocals are not the same in all processors).
+// Returns a text with all that the bits depend on: the compiler, and the processor by which libraries choose their
+// code. These are the functions of the C library and Embree's kernels, whose approximate reciprocals differ between
+// processors.
 std::string machine() {
   std::string name = processor("model name");
   std::istringstream flags(processor("flags"));
@@ -56,6 +58,7 @@ std::string machine() {
 #endif
 }
 
+// Returns a hash of the bits of an image in hexadecimal digits.
 std::string bits(const std::vector<float>& image) {
   uint64_t hash = 14695981039346656037u;  // FNV-1a
   for (size_t i = 0; i < image.size() * sizeof(float); ++i) {
@@ -66,9 +69,10 @@ std::string bits(const std::vector<float>& image) {
   return text;
 }
 
-// The picture that bits are of.
+// Renders the image whose bits are stored.
 std::vector<float> render_stored(const Picture& picture) { return render(picture, 2, 0); }
 
+// Mean and variance of blocks and pixels over several seeds.
 struct Measured {
   test::Moments blocks, pixels;
 };
@@ -89,7 +93,7 @@ std::vector<float> means(const test::Moments& moments) {
   return result;
 }
 
-// The brightest of the pixels around this one.
+// Returns the maximum of a channel over the eight neighbours of a pixel.
 float brightest_neighbour(const std::vector<float>& rgba, int x, int y, size_t channel) {
   float brightest = 0.0f;
   for (int v = std::max(0, y - 1); v < std::min(int(kHeight), y + 2); ++v) {
@@ -100,7 +104,7 @@ float brightest_neighbour(const std::vector<float>& rgba, int x, int y, size_t c
   return brightest;
 }
 
-// What is wrong with single pixels; "": nothing.
+// Describes the first pixel that is not finite or much brighter than its neighbours. Returns "" if there is none.
 std::string flaw(const std::vector<float>& rgba) {
   for (int y = 0; y < int(kHeight); ++y) {
     for (int x = 0; x < int(kWidth); ++x) {
@@ -121,6 +125,7 @@ json stored() {
   return json::parse(file);
 }
 
+// Returns the entry of a picture for pictures.json. If the bits are as before, that is the entry from before.
 json measured(const Picture& picture, const json& before) {
   json entry;
   entry["bits"] = bits(render_stored(picture));
@@ -128,14 +133,15 @@ json measured(const Picture& picture, const json& before) {
   const uint32_t samples = picture.is_biased ? kSamples : kStoredSamples;
   const test::Moments moments = measure(picture, kStoredSeeds * kStoredSamples / samples, samples).blocks;
   for (size_t i = 0; i < moments.size(); ++i) {
-    // Whole numbers of 1e-5: short, and far below the noise.
+    // Integers in units of 1e-5 keep the file short. Their rounding is far below the noise.
     entry["mean"].push_back(std::lround(1e5 * moments.mean(i)));
     entry["error"].push_back(std::lround(1e5 * std::sqrt(moments.variance_of_mean(i))));
   }
   return entry;
 }
 
-// A picture a line, so that one sees which have changed. The others are kept.
+// Writes pictures.json with one picture per line, so that a diff shows which have changed. The entries of pictures with
+// unchanged bits stay.
 void store() {
   const json before = std::ifstream(kFile).good() ? stored()["pictures"] : json::object();
   std::ofstream file(kFile);
@@ -161,7 +167,8 @@ std::vector<float> means_of(const json& entry) {
   return means;
 }
 
-// A5's rule for blocks: 99.75 % within Šidák's bound of all of them. Their mean within 4 deviations.
+// Returns whether 99.75 % of the block means lie within Šidák's bound for all blocks, taken as 5 standard deviations
+// plus 0.2 % and 1e-4, of the stored ones, and the sum of their differences within 4 standard deviations.
 bool looks_as_stored(const test::Moments& moments, const json& entry) {
   const double scale = std::sqrt(double(kStoredSeeds * kStoredSamples) / (kSeeds * kSamples));
   size_t off = 0;
@@ -174,7 +181,7 @@ bool looks_as_stored(const test::Moments& moments, const json& entry) {
     sum += difference;
     variance += noise * noise;
   }
-  // Channels of a block come from the same paths.
+  // The factor 3 is there because the three channels of a block come from the same paths and are correlated.
   return double(off) <= 0.0025 * double(moments.size()) && std::fabs(sum) <= 4.0 * std::sqrt(3.0 * variance);
 }
 

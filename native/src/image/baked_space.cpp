@@ -25,7 +25,7 @@ float BakedSpace::curve(float x) const {
   }
   const float position = x * static_cast<float>(curve_.size() - 1);
   const float last = static_cast<float>(curve_.size() - 2);
-  // Beyond the ends along the first and the last slope; a NaN stays one.
+  // The clamped index makes values beyond the ends continue the first or the last segment. A NaN stays a NaN.
   const size_t i = position > 0.0f ? static_cast<size_t>(std::min(position, last)) : 0;
   return curve_[i] + (curve_[i + 1] - curve_[i]) * (position - static_cast<float>(i));
 }

@@ -7,9 +7,11 @@
 namespace gradus::image {
 namespace {
 
+// Names of spaces whose values need no conversion, because they are data or already scene-linear.
 constexpr std::array<std::string_view, 10> kUnchanged = {
     "",       "Non-Color",      "Non-Colour Data", "Generic Data",    "Raw", "Utility - Raw",
     "Linear", "Linear Rec.709", "scene_linear",    "lin_rec709_scene"};
+// Names of sRGB, as Blender's own and common OpenColorIO configurations spell it.
 constexpr std::array<std::string_view, 5> kSrgb = {"sRGB", "sRGB - Texture", "Utility - sRGB - Texture", "srgb_tx",
                                                    "srgb_rec709_scene"};
 

@@ -21,12 +21,14 @@ namespace OCIO = OCIO_NAMESPACE;
 namespace gradus::image {
 namespace {
 
-// A resolved space: what kind it is, and how to apply it if it is neither data nor sRGB.
+// A colour space whose name has been looked up. `kind` selects its conversion; if it is Other, either `baked` or
+// `processor` converts the values.
 struct Space {
   ColorTransform kind = ColorTransform::Data;
   OCIO::ConstCPUProcessorRcPtr processor;
   std::shared_ptr<const BakedSpace> baked;
 
+  // Converts `count` interleaved pixels to scene-linear in place, by the conversion that `kind` selects.
   void apply(float* pixels, size_t count, int channels) const {
     if (kind == ColorTransform::Srgb) {
       for (size_t i = 0; i < count; i++, pixels += channels) {
@@ -36,6 +38,7 @@ struct Space {
       apply_other(pixels, count, channels);
     }
   }
+  // Converts with the baked values if there are any, else with OpenColorIO, whatever `kind` says.
   void apply_other(float* pixels, size_t count, int channels) const {
     if (baked) {
       for (size_t i = 0; i < count; i++, pixels += channels) {
@@ -44,7 +47,7 @@ struct Space {
       }
       return;
     }
-    // In rows, as OpenColorIO counts pixels by long but indexes lines by int.
+    // The pixels are passed in rows, because OpenColorIO counts pixels by long but indexes a row by int.
     constexpr size_t kRow = 1 << 16;
     for (size_t first = 0; first < count; first += kRow) {
       const size_t n = std::min(kRow, count - first);
@@ -54,10 +57,12 @@ struct Space {
   }
 };
 
-// Values that tell whether a transform is one of the exact ones; some beyond 1, as images may be.
+// Values by which recognise() compares a transform with the identity and with the sRGB curve. They are four RGB pixels
+// between 0 and 1.
 constexpr std::array<float, 12> kProbe = {0.0f, 0.02f, 0.03f, 0.04f, 0.05f, 0.18f, 0.3f, 0.5f, 0.75f, 0.9f, 1.0f, 0.6f};
 
-// Tables of sRGB in configurations differ from the formula by a few 1e-5.
+// Returns Data or Srgb if the space maps the probe values as the identity or the sRGB curve does, else Other. The
+// tolerance for sRGB is 1e-4, because the tables in OpenColorIO configurations differ from the formula by a few 1e-5.
 ColorTransform recognise(const Space& space) {
   std::array<float, kProbe.size()> mapped = kProbe;
   space.apply_other(mapped.data(), mapped.size() / 3, 3);
@@ -72,19 +77,21 @@ ColorTransform recognise(const Space& space) {
 
 }  // namespace
 
+// The configuration and the spaces found so far. `mutex` guards `spaces` and `unknown`.
 struct ColorManager::State {
   Warn warn;
   OCIO::ConstConfigRcPtr config;
   mutable std::mutex mutex;
   mutable std::map<std::string, Space> spaces;
-  mutable std::set<std::string> unknown;
+  mutable std::set<std::string> unknown;  // names that a warning has been given for
 
+  // Reads the configuration. Keeps none, and warns, if it cannot be read or has no scene-linear role.
   void load(const std::string& path) {
     if (path.empty()) {
       return;
     }
     try {
-      // The library's parser leaks memory on a stream that cannot be read, as that of a folder.
+      // Folders are refused here, because OpenColorIO's parser leaks memory when its stream cannot be read.
       if (std::filesystem::is_directory(path)) throw invalid_argument("it is a folder");
       OCIO::ConstConfigRcPtr loaded = OCIO::Config::CreateFromFile(path.c_str());
       if (!loaded->hasRole(OCIO::ROLE_SCENE_LINEAR) || !loaded->getColorSpace(OCIO::ROLE_SCENE_LINEAR)) {
@@ -98,6 +105,7 @@ struct ColorManager::State {
   }
   static std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
+  // Returns the space of the configuration, or nothing if it has no such space or cannot convert it.
   std::optional<Space> from_config(const std::string& name) const {
     if (!config || name.empty()) {
       return std::nullopt;
@@ -119,7 +127,8 @@ struct ColorManager::State {
     }
   }
 
-  // The lock is held while a space is made, so that its warning comes once.
+  // Returns a space by name: first an override, then the configuration's, then a built-in one, then the default for
+  // unknown names. The lock is held while a space is made, so that each warning is given once.
   Space find(const std::string& name, bool is_byte) const {
     const std::lock_guard lock(mutex);
     if (const auto found = spaces.find(name); found != spaces.end()) {

@@ -16,12 +16,12 @@ float half_to_float(uint16_t bits) {
   h.setBits(bits);
   return h;
 }
-// Beyond the range of half: its largest number, not infinity.
+// Converts to half precision. Values beyond its range become its largest number, not infinity.
 uint16_t float_to_half(float x) { return Imath::half(std::clamp(x, -65504.0f, 65504.0f)).bits(); }
 
 bool has_alpha_channel(uint32_t channels) { return channels == 2 || channels == 4; }
 
-// Row of any format to floats of 3 or 4 channels.
+// Converts a row of any format to floats with `out_channels` channels, which is 3 or 4.
 void unpack_row(const ImageTile& tile, uint32_t y, float* out, uint32_t out_channels) {
   for (uint32_t x = 0; x < tile.width; x++, out += out_channels) {
     const Vec4 v = tile.texel(x, y);
@@ -32,6 +32,7 @@ void unpack_row(const ImageTile& tile, uint32_t y, float* out, uint32_t out_chan
   }
 }
 
+// Stores a value at position `index`, as half if the format is Half, else as float.
 void store_value(uint8_t* pixels, PixelFormat format, size_t index, float value) {
   if (format == PixelFormat::Half) {
     const uint16_t bits = float_to_half(value);
@@ -41,7 +42,8 @@ void store_value(uint8_t* pixels, PixelFormat format, size_t index, float value)
   }
 }
 
-// Every row through the colour transform, to half, or float where the file has floats.
+// Returns a copy of the tile, converted to scene-linear row by row. It has 3 or 4 channels, and stores floats if the
+// source does, else halves.
 ImageTile transform_tile(const ImageTile& source, const ColorManager& color, const std::string& space, bool is_byte) {
   ImageTile tile;
   tile.number = source.number;
@@ -62,7 +64,8 @@ ImageTile transform_tile(const ImageTile& source, const ColorManager& color, con
   return tile;
 }
 
-// 16 bit sRGB in place, by a table of all values; to half.
+// Converts a tile of 16-bit sRGB values, integers or halves, to linear halves in place. A table of all 65,536 values
+// replaces the formula. Values that are not finite become 0.
 void linearise_shorts(ImageTile* tile) {
   const bool half = tile->format == PixelFormat::Half;
   std::vector<uint16_t> table(65536);
@@ -83,6 +86,7 @@ void linearise_shorts(ImageTile* tile) {
   tile->format = PixelFormat::Half;
 }
 
+// Multiplies the colours of `count` pixels by alpha, which is the last of `channels`, with multiply(colour, alpha).
 template <typename T, typename Multiply>
 void associate(T* values, size_t count, uint32_t channels, Multiply multiply) {
   for (size_t i = 0; i < count; i++, values += channels) {
@@ -92,6 +96,7 @@ void associate(T* values, size_t count, uint32_t channels, Multiply multiply) {
   }
 }
 
+// Multiplies the colours of a tile by alpha. Bytes and shorts are rounded to the nearest integer.
 void associate_alpha(ImageTile* tile) {
   const size_t count = static_cast<size_t>(tile->width) * tile->height;
   uint8_t* pixels = tile->pixels.get();
@@ -115,7 +120,7 @@ void associate_alpha(ImageTile* tile) {
   }
 }
 
-// A texel with a number that is not finite becomes 0 as a whole, as in Cycles.
+// Sets all channels of a texel to 0 if one of them is not finite, as Cycles does.
 template <typename T, typename Finite>
 void clean(T* values, size_t count, uint32_t channels, Finite finite) {
   for (size_t i = 0; i < count; i++, values += channels) {
@@ -125,6 +130,8 @@ void clean(T* values, size_t count, uint32_t channels, Finite finite) {
   }
 }
 
+// Removes infinities and NaN from a tile of halves or floats; integers have none. A half is infinite or NaN if all bits
+// of its exponent are set.
 void clean_tile(ImageTile* tile) {
   const size_t count = static_cast<size_t>(tile->width) * tile->height;
   if (tile->format == PixelFormat::Half) {
@@ -140,7 +147,8 @@ const T* as(const uint8_t* pixels) {
   return reinterpret_cast<const T*>(pixels);
 }
 
-// One texel of 1 to 4 channels, without a loop over them: the most frequent read of all.
+// Expands a texel of 1 to 4 channels to RGBA. Grey fills all colours, and a missing alpha is 1. There is no loop over
+// the channels, because every texture look-up runs through this function.
 template <class T, class ToFloat>
 Vec4 expand(const T* v, uint32_t channels, ToFloat&& to_float) {
   const float first = to_float(v[0]);
@@ -191,7 +199,7 @@ ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const st
 
 Rgb mean_color(const ImageTile& tile) {
   const uint64_t count = static_cast<uint64_t>(tile.width) * tile.height;
-  // An odd step, so that it does not meet the same columns in each row.
+  // The step is odd, so that images with a power of two as width are not sampled in the same columns of each row.
   const uint64_t step = (count >> 20) | 1u;
   double sum[3] = {0.0, 0.0, 0.0};
   uint64_t n = 0;

@@ -10,11 +10,13 @@
 namespace gradus::image {
 namespace {
 
+// Largest file that read_file() accepts: 16 GiB.
 constexpr off_t kLargestFile = off_t{1} << 34;
 
+// A file descriptor that is open for reading until the object is destroyed; negative if the file could not be opened.
 class Descriptor {
  public:
-  // Not blocking: a pipe or device that is named by mistake must not stop a render.
+  // O_NONBLOCK keeps open() from waiting if a path names a pipe or a device by mistake.
   explicit Descriptor(const char* path) : value_(::open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
   ~Descriptor() {
     if (value_ >= 0) {
@@ -35,11 +37,11 @@ bool read_file(const std::string& path, std::vector<uint8_t>* bytes, std::string
   const Descriptor file(path.c_str());
   struct stat info {};
   if (path.empty() || file.get() < 0 || ::fstat(file.get(), &info) != 0) {
-    *problem = path.empty() ? "no file is named" : std::strerror(errno);
+    *problem = path.empty() ? "the path is empty" : std::strerror(errno);
     return false;
   }
   if (!S_ISREG(info.st_mode)) {
-    *problem = S_ISDIR(info.st_mode) ? "it is a folder" : "it is not a file";
+    *problem = S_ISDIR(info.st_mode) ? "it is a folder" : "it is not a regular file";
     return false;
   }
   if (info.st_size > kLargestFile) {

@@ -1,4 +1,4 @@
-// Decoding of all tiles of an image.
+// Decodes all tiles of an image and converts them for look-ups.
 #include <utility>
 
 #include "base/hash.h"
@@ -11,10 +11,11 @@
 namespace gradus::image {
 namespace {
 
-// What an artist sees in place of an image that is not there, in Cycles as here.
+// The colour of an image that cannot be read: magenta, as in Cycles.
 constexpr Rgb kMissingColor(1.0f, 0.0f, 1.0f);
 
-// The caller's own pixels; float or byte RGBA, bottom row first.
+// Copies pixels that the caller passed as float or byte RGBA with the bottom row first. Returns false, with the reason
+// in *problem, if they cannot be stored.
 bool wrap_pixels(const ImageSource::Tile& tile, DecodedImage* image, std::string* problem) {
   const PixelFormat format = tile.source == GRADUS_IMAGE_FLOAT ? PixelFormat::Float : PixelFormat::Byte;
   if (!allocate(image, tile.width, tile.height, 4, format, tile.data.size(), 1, problem)) {
@@ -24,6 +25,8 @@ bool wrap_pixels(const ImageSource::Tile& tile, DecodedImage* image, std::string
   return true;
 }
 
+// Decodes a tile from pixels, from an encoded file in memory, or from a file on disk, and adds its content to the hash.
+// Returns false, with the reason in *problem, if it cannot be read.
 bool decode_tile(const ImageSource::Tile& tile, DecodedImage* image, std::string* problem, ContentHash* hash) {
   for (const uint32_t v : {tile.number, tile.width, tile.height}) hash->value(v);
   hash->array(tile.data);
@@ -39,6 +42,7 @@ bool decode_tile(const ImageSource::Tile& tile, DecodedImage* image, std::string
   return is_read && read_image(bytes, image, problem);
 }
 
+// Returns the text of a warning, which names the image and the file.
 std::string describe(const ImageSource& source, const ImageSource::Tile& tile, const std::string& problem) {
   const std::string where = tile.path.empty() ? "(packed)" : tile.path;
   return "image " + source.name + ": " + where + ": " + problem;

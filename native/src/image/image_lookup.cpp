@@ -1,4 +1,4 @@
-// Look-ups in images: extension, interpolation, UDIM tiles, as Cycles has them.
+// Look-ups in images: extension, interpolation and UDIM tiles behave as in Cycles.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,9 +10,11 @@
 namespace gradus::image {
 namespace {
 
+// Result of a look-up in an image or a UDIM tile that is absent: magenta.
 const Vec4 kMissing(1.0f, 0.0f, 1.0f, 1.0f);
 
-// The sRGB curve by linear interpolation: exact in the straight part, 1e-6 elsewhere.
+// The sRGB curve from a table with linear interpolation. It is exact in the linear segment of the curve; elsewhere its
+// error is about 1e-6. Values outside [0, 1) take the formula.
 class SrgbTable {
  public:
   SrgbTable() {
@@ -34,10 +36,12 @@ class SrgbTable {
   std::array<float, 1026> values_;
 };
 
-// Beyond this a clipped image is empty, whatever its size: cubic weights reach two texels out.
+// Distance from a clipped image, in widths of it, at which coordinates are clamped. A look-up there is empty whatever
+// the image's size, because cubic weights reach only two texels beyond the border.
 constexpr float kEmpty = 3.0f;
 
-// One axis: brings any coordinate close to 0…1 without changing what it means, then texel numbers into the image.
+// Maps a coordinate along one axis to an equivalent one near [0, 1], so that texel numbers fit an int. A coordinate
+// that is not finite becomes 0.
 float reduce(float u, Extension extension) {
   if (!is_finite(u)) {
     return 0.0f;
@@ -54,11 +58,13 @@ float reduce(float u, Extension extension) {
   }
 }
 
+// Returns the texel in 0 … size - 1 that the extension assigns to texel number `i`. For Clip and Extend that is the
+// nearest one.
 uint32_t wrap(int i, uint32_t size, Extension extension) {
   const int n = static_cast<int>(size);
   switch (extension) {
     case Extension::Repeat:
-      // Close to the image already, by reduce(): faster than a division.
+      // After reduce(), `i` is close to the image. The loops run at most a few times and are faster than a division.
       while (i < 0) {
         i += n;
       }
@@ -75,14 +81,15 @@ uint32_t wrap(int i, uint32_t size, Extension extension) {
   }
 }
 
-// Texels and weights along one axis.
+// The texels that contribute to a look-up along one axis, with their weights.
 template <int N>
 struct Taps {
   std::array<uint32_t, N> texel;
   std::array<float, N> weight;
 };
 
-// The texels from number `first` on. Around a clipped image lies nothing: interpolation fades its border, as in Cycles.
+// Returns N texels from number `first` on. Texels outside a clipped image get weight 0, so that interpolation fades the
+// image to 0 across its border, as in Cycles.
 template <int N>
 Taps<N> make_taps(int first, const std::array<float, N>& weight, uint32_t size, Extension extension) {
   Taps<N> taps{{}, weight};
@@ -106,7 +113,8 @@ Taps<2> linear_taps(float u, uint32_t size, Extension extension) {
   return make_taps<2>(static_cast<int>(first), {1.0f - t, t}, size, extension);
 }
 
-// Uniform cubic B-spline: smooth, and not interpolating, as in Cycles.
+// Returns the taps of the uniform cubic B-spline, as in Cycles. The curve is smooth and does not pass through the texel
+// values.
 Taps<4> cubic_taps(float u, uint32_t size, Extension extension) {
   const float x = u * static_cast<float>(size) - 0.5f;
   const float first = std::floor(x);
@@ -119,6 +127,7 @@ Taps<4> cubic_taps(float u, uint32_t size, Extension extension) {
                       size, extension);
 }
 
+// Returns the weighted sum of the texels.
 template <int N>
 Vec4 gather(const ImageTile& tile, const Taps<N>& x, const Taps<N>& y) {
   Vec4 sum(0.0f);
@@ -132,6 +141,7 @@ Vec4 gather(const ImageTile& tile, const Taps<N>& x, const Taps<N>& y) {
   return sum;
 }
 
+// Returns the stored value at `uv`, before conversion to scene-linear.
 Vec4 interpolate(const ImageTile& tile, const Vec2& uv, Interpolation interpolation, Extension extension) {
   const float u = reduce(uv.x, extension);
   const float v = reduce(uv.y, extension);
@@ -145,7 +155,8 @@ Vec4 interpolate(const ImageTile& tile, const Vec2& uv, Interpolation interpolat
   }
 }
 
-// The tile that holds uv, and uv within it; nullptr: none.
+// Returns the tile that holds *uv, or nullptr if there is none, and makes *uv relative to it. UDIM number
+// 1001 + column + 10 row covers [column, column + 1) x [row, row + 1).
 const ImageTile* find_tile(const Image& image, Vec2* uv) {
   if (image.tiles.empty()) {
     return nullptr;

@@ -1,4 +1,4 @@
-// Deep copies of what the caller describes.
+// Deep copies of the image descriptions that the caller passes, with checks of their sizes.
 #include "base/error.h"
 #include "image/image_store.h"
 #include "image/readers/decoded.h"
@@ -8,6 +8,7 @@ namespace {
 
 std::string text_of(const char* text) { return text ? text : ""; }
 
+// Throws if the size of a tile of raw pixels is out of range or does not match its data.
 void check_pixels(const GradusImageTile& tile, size_t bytes_per_pixel, const std::string& name) {
   if (tile.width == 0 || tile.height == 0 || tile.width > kMaxSide || tile.height > kMaxSide ||
       static_cast<uint64_t>(tile.width) * tile.height > kMaxPixels) {
@@ -18,6 +19,7 @@ void check_pixels(const GradusImageTile& tile, size_t bytes_per_pixel, const std
   }
 }
 
+// Returns a deep copy of a tile. Throws, with the image's name, if the tile is invalid.
 ImageSource::Tile copy_tile(const GradusImageTile& tile, const std::string& name) {
   ImageSource::Tile copy;
   copy.number = tile.number;

@@ -1,6 +1,6 @@
-// OpenEXR: scanline and tiled, any compression, half, float and integer channels; of multipart files the first part
-// with pixels, of tiles the full resolution, of layers the plain channels or else the first layer. Deep images are
-// refused.
+// Reads OpenEXR files with scan lines or tiles, any compression, and half, float or integer channels. From a multipart
+// file it reads the first part that has pixels; from a tiled part, the full resolution; from several layers, the
+// channels without a layer name or else the first layer. Deep images are refused.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -20,6 +20,7 @@
 namespace gradus::image {
 namespace {
 
+// Lets OpenEXR read a file from memory.
 class MemoryStream : public Imf::IStream {
  public:
   explicit MemoryStream(Bytes file) : Imf::IStream("image"), file_(file) {}
@@ -40,7 +41,8 @@ class MemoryStream : public Imf::IStream {
   uint64_t position_ = 0;
 };
 
-// Names of the channels to read, in order; one, three or four of them.
+// Returns the names of the channels to read, in order: RGB, RGBA, Y, Y and A, or the first channel of the file. The
+// result is empty if the file has no channels.
 std::vector<std::string> choose_channels(const Imf::ChannelList& list) {
   std::vector<std::string> names;
   for (auto it = list.begin(); it != list.end(); ++it) {
@@ -70,17 +72,20 @@ std::vector<std::string> choose_channels(const Imf::ChannelList& list) {
   return names.empty() ? names : std::vector<std::string>{names.front()};
 }
 
+// Returns whether all named channels are of type half.
 bool all_half(const Imf::ChannelList& list, const std::vector<std::string>& names) {
   return std::all_of(names.begin(), names.end(),
                      [&](const std::string& name) { return list[name.c_str()].type == Imf::HALF; });
 }
 
+// Returns whether any of the named channels has a lower resolution than the image, as chroma channels may.
 bool subsampled(const Imf::ChannelList& list, const std::vector<std::string>& names) {
   return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
     return list[name.c_str()].xSampling != 1 || list[name.c_str()].ySampling != 1;
   });
 }
 
+// Reads the chosen channels of one part of the file, as halves if all of them are halves, else as floats.
 bool read_light_pass(Imf::MultiPartInputFile* file, int part, size_t file_bytes, DecodedImage* image,
                      std::string* problem) {
   const Imf::Header& header = file->header(part);
@@ -99,7 +104,7 @@ bool read_light_pass(Imf::MultiPartInputFile* file, int part, size_t file_bytes,
   }
   image->associated_alpha = true;
   const int64_t x_stride = static_cast<int64_t>(names.size() * bytes_per_channel(format));
-  const int64_t y_stride = -static_cast<int64_t>(image->row_bytes());  // the first row of the file is the last of ours
+  const int64_t y_stride = -static_cast<int64_t>(image->row_bytes());  // negative: files have the top row first
   Imf::FrameBuffer buffer;
   for (size_t c = 0; c < names.size(); c++) {
     char* first = reinterpret_cast<char*>(image->row_from_top(0)) + c * bytes_per_channel(format);

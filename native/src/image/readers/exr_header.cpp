@@ -1,5 +1,6 @@
-// Layout: magic, version and flags, then for each part attributes (name\0 type\0 size value), ended by an empty name;
-// in multipart files another empty name ends the last part. (openexr.com, "OpenEXR File Layout".)
+// An OpenEXR file begins with a magic number and with version and flags. The attributes of each part follow, each as
+// name\0 type\0 size value. An empty name ends a part, and in multipart files another empty name ends the last part.
+// Source: openexr.com, "OpenEXR File Layout".
 #include "image/readers/exr_header.h"
 
 #include <cstring>
@@ -8,8 +9,10 @@
 namespace gradus::image {
 namespace {
 
+// Flag of multipart files in the version field.
 constexpr uint32_t kMultipart = 0x1000;
 
+// Reads numbers and texts from a file in memory. Its functions return false at the end of the file.
 class Scanner {
  public:
   explicit Scanner(Bytes file) : file_(file) {}
@@ -21,7 +24,7 @@ class Scanner {
     position_ += 4;
     return true;
   }
-  // Zero-terminated, at most 255 characters.
+  // Reads a zero-terminated text of at most 255 characters.
   bool text(std::string_view* value) {
     const size_t start = position_;
     while (position_ < file_.size() && position_ - start < 256 && file_[position_] != 0) {
@@ -48,6 +51,7 @@ class Scanner {
   size_t position_ = 0;
 };
 
+// Checks a data window (x minimum, y minimum, x maximum, y maximum, all inclusive) against the limits of images.
 bool check_window(const uint8_t* value, std::string* problem) {
   int32_t box[4];
   std::memcpy(box, value, sizeof(box));
@@ -65,6 +69,7 @@ bool check_window(const uint8_t* value, std::string* problem) {
   return true;
 }
 
+// Checks the width and height of a part's tiles.
 bool check_tiles(const uint8_t* value, std::string* problem) {
   uint32_t size[2];
   std::memcpy(size, value, sizeof(size));
@@ -75,7 +80,7 @@ bool check_tiles(const uint8_t* value, std::string* problem) {
   return true;
 }
 
-// One part's attributes; *last where there were none.
+// Reads and checks the attributes of one part. Sets *last if it has none, which ends a multipart header.
 bool check_part(Scanner* scanner, bool* last, std::string* problem) {
   std::string_view name;
   std::string_view type;

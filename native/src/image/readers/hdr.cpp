@@ -1,4 +1,5 @@
-// Radiance .hdr (RGBE), plain and with either run-length code (Ward, "Real Pixels", Graphics Gems II, 1991).
+// Reads Radiance .hdr files (RGBE), uncompressed or with the old or the new run-length code.
+// Source: Ward, "Real Pixels", Graphics Gems II, 1991.
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -11,10 +12,11 @@
 namespace gradus::image {
 namespace {
 
+// Reads lines and bytes from a file in memory.
 class Reader {
  public:
   explicit Reader(Bytes file) : file_(file) {}
-  // Up to the next line feed, which is skipped; false at the end.
+  // Reads up to the next line feed, which is skipped. Returns false if none follows.
   bool line(std::string_view* text) {
     const size_t start = position_;
     while (position_ < file_.size() && file_[position_] != '\n') {
@@ -27,6 +29,7 @@ class Reader {
     position_++;
     return true;
   }
+  // Copies the next `count` bytes. Returns false if fewer are left.
   bool take(uint8_t* out, size_t count) {
     if (count > file_.size() - position_) {
       return false;
@@ -41,14 +44,15 @@ class Reader {
   size_t position_ = 0;
 };
 
+// Size and orientation of the picture.
 struct Resolution {
   unsigned long width = 0;
   unsigned long height = 0;
-  bool flip_x = false;
-  bool flip_y = false;  // first row is the bottom one
+  bool flip_x = false;  // rows run from right to left
+  bool flip_y = false;  // the first row is the bottom one
 };
 
-// "-Y 480 +X 640"; rotated orders are not in use.
+// Parses a resolution line such as "-Y 480 +X 640". Orders with X first, which rotate the picture, are refused.
 bool parse_resolution(std::string_view text, Resolution* resolution) {
   const std::string line(text.substr(0, 100));
   char sign_y = 0;
@@ -61,7 +65,8 @@ bool parse_resolution(std::string_view text, Resolution* resolution) {
   return true;
 }
 
-// One row with the four components after one another, runs marked by counts above 128.
+// Reads a row of the new run-length code, which stores all values of each of the four components in turn. A count above
+// 128 marks a run of count - 128 equal values. Returns false if the row is damaged.
 bool read_planes(Reader* reader, std::vector<uint8_t>* row, size_t width) {
   for (size_t component = 0; component < 4; component++) {
     for (size_t x = 0; x < width;) {
@@ -96,7 +101,9 @@ bool read_planes(Reader* reader, std::vector<uint8_t>* row, size_t width) {
   return true;
 }
 
-// Pixels one by one; 1 1 1 n repeats the last one, each further n counting 256 times more.
+// Reads a row of whole pixels, the first of which is `first`, in the old run-length code. A pixel (1, 1, 1, n) repeats
+// the pixel before it n times; in a sequence of them each n counts 256 times as much as the one before. Returns false
+// if the row is damaged.
 bool read_pixels(Reader* reader, std::vector<uint8_t>* row, size_t width, const uint8_t first[4]) {
   uint8_t pixel[4] = {first[0], first[1], first[2], first[3]};
   unsigned shift = 0;
@@ -122,6 +129,7 @@ bool read_pixels(Reader* reader, std::vector<uint8_t>* row, size_t width, const 
   return true;
 }
 
+// Reads one row. The bytes 2 2 and the width mark the new run-length code, which is used for widths of 8 to 32767.
 bool read_row(Reader* reader, std::vector<uint8_t>* row, size_t width) {
   uint8_t head[4];
   if (!reader->take(head, 4)) {
@@ -132,6 +140,7 @@ bool read_row(Reader* reader, std::vector<uint8_t>* row, size_t width) {
   return planes ? read_planes(reader, row, width) : read_pixels(reader, row, width, head);
 }
 
+// Converts a row from RGBE, which shares one exponent with bias 128, to RGB floats: component / 256 * 2^(e - 128).
 void to_float(const std::vector<uint8_t>& row, float* out, size_t width, bool flip) {
   for (size_t x = 0; x < width; x++, out += 3) {
     const uint8_t* rgbe = &row[4 * (flip ? width - 1 - x : x)];
@@ -161,10 +170,10 @@ bool read_hdr(Bytes file, DecodedImage* image, std::string* problem) {
   }
   Resolution resolution;
   if (!reader.line(&text) || !parse_resolution(text, &resolution)) {
-    *problem = "it names no size";
+    *problem = "its header has no valid size";
     return false;
   }
-  // A run of 127 pixels takes 8 bytes, and becomes 1524; the old code reaches further.
+  // In the new code a run of 127 pixels takes 8 bytes and becomes 1524. The old code compresses more.
   if (!allocate(image, resolution.width, resolution.height, 3, PixelFormat::Float, file.size(), 1u << 16, problem)) {
     return false;
   }

@@ -1,5 +1,5 @@
-// JPEG through libjpeg-turbo: grey, RGB, and CMYK as Adobe writes it. libjpeg reports errors by longjmp: the functions
-// that may be left so hold nothing with a destructor.
+// Reads JPEG files with libjpeg-turbo: grey, RGB, and CMYK as Adobe writes it. libjpeg reports errors by longjmp, so
+// the functions that call setjmp hold no object with a destructor.
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
@@ -12,24 +12,27 @@
 namespace gradus::image {
 namespace {
 
+// The decoder and the state of its error handlers.
 struct Jpeg {
   jpeg_decompress_struct decoder;
   jpeg_error_mgr errors;
   std::jmp_buf jump;
   char message[JMSG_LENGTH_MAX];
-  bool ended_early;          // the data ran out
-  uint32_t rows_before_end;  // complete rows until then
-  uint32_t rows;
+  bool ended_early;          // the data ended before the end marker
+  uint32_t rows_before_end;  // rows that were complete when the data ended
+  uint32_t rows;  // rows that are complete so far
 };
 
 Jpeg* jpeg_of(j_common_ptr info) { return static_cast<Jpeg*>(info->client_data); }
 
+// Stores the error text and returns to the last setjmp.
 void on_error(j_common_ptr info) {
   Jpeg* jpeg = jpeg_of(info);
   info->err->format_message(info, jpeg->message);
   std::longjmp(jpeg->jump, 1);
 }
 
+// Notes the first warning that the data ended early. Other warnings and messages are ignored.
 void on_message(j_common_ptr info, int level) {
   Jpeg* jpeg = jpeg_of(info);
   if (level < 0 && info->err->msg_code == JWRN_JPEG_EOF && !jpeg->ended_early) {
@@ -40,6 +43,7 @@ void on_message(j_common_ptr info, int level) {
 
 void no_output(j_common_ptr) {}
 
+// Reads the header and selects the colour space of the output: CMYK, grey or RGB.
 bool read_header(Jpeg* jpeg, Bytes file) {
   if (setjmp(jpeg->jump)) {
     return false;
@@ -49,7 +53,7 @@ bool read_header(Jpeg* jpeg, Bytes file) {
   const J_COLOR_SPACE space = jpeg->decoder.jpeg_color_space;
   const bool four = space == JCS_CMYK || space == JCS_YCCK;
   jpeg->decoder.out_color_space = four ? JCS_CMYK : space == JCS_GRAYSCALE ? JCS_GRAYSCALE : JCS_RGB;
-  // Progressive files keep all coefficients in memory; the decoder may not take more than the largest image needs.
+  // The decoder keeps all coefficients of a progressive file in memory. Its limit is what the largest image needs.
   jpeg->decoder.mem->max_memory_to_use = 1l << 32;
   jpeg_calc_output_dimensions(&jpeg->decoder);
   return true;
@@ -71,7 +75,7 @@ bool read_row(Jpeg* jpeg, uint8_t* row) {
   return true;
 }
 
-// Adobe's CMYK is stored inverted: 255 is no ink.
+// Converts a row of CMYK, which Adobe stores inverted (255 means no ink), to RGB.
 void cmyk_to_rgb(const uint8_t* cmyk, uint8_t* rgb, uint32_t width) {
   for (uint32_t x = 0; x < width; x++, cmyk += 4, rgb += 3) {
     for (int c = 0; c < 3; c++) {
@@ -80,13 +84,14 @@ void cmyk_to_rgb(const uint8_t* cmyk, uint8_t* rgb, uint32_t width) {
   }
 }
 
+// Decodes the file into `image`. A file that ends early by at most 32 rows gives a warning, else an error.
 bool decode(Jpeg* jpeg, Bytes file, DecodedImage* image, std::string* problem) {
   if (!read_header(jpeg, file)) {
     *problem = jpeg->message;
     return false;
   }
   const uint32_t components = jpeg->decoder.out_color_space == JCS_GRAYSCALE ? 1 : 3;
-  // At least some bits per block of 64 pixels.
+  // Each block of 64 pixels takes at least a few bits, so the compression ratio stays below 2000.
   if (!allocate(image, jpeg->decoder.output_width, jpeg->decoder.output_height, components, PixelFormat::Byte,
                 file.size(), 2000, problem)) {
     return false;
@@ -106,7 +111,7 @@ bool decode(Jpeg* jpeg, Bytes file, DecodedImage* image, std::string* problem) {
     *problem = jpeg->message;
     return false;
   }
-  // A missing end marker alone, as some cameras and tools leave it, does no harm: the last blocks are there.
+  // Some cameras and tools leave out only the end marker. The last blocks are then complete, and the image is usable.
   if (jpeg->ended_early && jpeg->rows_before_end + 32 < image->height) {
     *problem = "it is truncated";
     return false;
@@ -125,7 +130,7 @@ bool read_jpeg(Bytes file, DecodedImage* image, std::string* problem) {
   jpeg->errors.output_message = no_output;
   jpeg->decoder.client_data = jpeg.get();
   if (setjmp(jpeg->jump)) {
-    *problem = "libjpeg does not start";
+    *problem = "libjpeg could not be initialised";
     return false;
   }
   jpeg_create_decompress(&jpeg->decoder);

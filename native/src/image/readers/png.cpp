@@ -1,5 +1,5 @@
-// PNG of all kinds, through libpng: 8 or 16 bit, grey to RGBA. libpng reports errors by longjmp: the functions that may
-// be left so hold nothing with a destructor.
+// Reads PNG files of all kinds with libpng, as 8 or 16 bit and grey to RGBA. libpng reports errors by longjmp, so the
+// functions that call setjmp hold no object with a destructor.
 #include <csetjmp>
 #include <cstring>
 #include <vector>
@@ -11,6 +11,7 @@
 namespace gradus::image {
 namespace {
 
+// A file in memory, the position in it, and the text of the error that ended the decoding.
 struct Source {
   const uint8_t* data;
   size_t size;
@@ -18,6 +19,7 @@ struct Source {
   char message[200];
 };
 
+// Reads bytes from memory for libpng.
 void read_bytes(png_structp png, png_bytep out, png_size_t length) {
   Source* source = static_cast<Source*>(png_get_io_ptr(png));
   if (length > source->size - source->position) {
@@ -27,6 +29,7 @@ void read_bytes(png_structp png, png_bytep out, png_size_t length) {
   source->position += length;
 }
 
+// Stores the error text and returns to the last setjmp.
 void on_error(png_structp png, png_const_charp text) {
   Source* source = static_cast<Source*>(png_get_error_ptr(png));
   std::strncpy(source->message, text, sizeof(source->message) - 1);
@@ -35,13 +38,13 @@ void on_error(png_structp png, png_const_charp text) {
 
 void on_warning(png_structp, png_const_charp) {}
 
-// Reads the header and asks for 8 or 16 bit grey or RGB, with alpha where there is any.
+// Reads the header and selects 8 or 16 bit grey or RGB for the output, with alpha if the file has any.
 bool read_header(png_structp png, png_infop info, Source* source) {
   if (setjmp(png_jmpbuf(png))) {
     return false;
   }
   png_set_read_fn(png, source, read_bytes);
-  // Not larger than any image we take, so that libpng itself refuses the rest.
+  // libpng itself refuses images that are larger than the limit.
   png_set_user_limits(png, static_cast<png_uint_32>(kMaxSide), static_cast<png_uint_32>(kMaxSide));
   png_set_chunk_malloc_max(png, 16u << 20);
   png_read_info(png, info);
@@ -68,7 +71,7 @@ bool decode(png_structp png, png_infop info, Source* source, DecodedImage* image
     return false;
   }
   const PixelFormat format = png_get_bit_depth(png, info) == 16 ? PixelFormat::Short : PixelFormat::Byte;
-  // Deflate reaches about 1030:1.
+  // Deflate compresses by at most about 1030:1.
   if (!allocate(image, png_get_image_width(png, info), png_get_image_height(png, info), png_get_channels(png, info),
                 format, source->size, 1100, problem)) {
     return false;
@@ -98,7 +101,7 @@ bool read_png(Bytes file, DecodedImage* image, std::string* problem) {
   if (info) {
     ok = decode(png, info, &source, image, problem);
   } else {
-    *problem = "libpng does not start";
+    *problem = "libpng could not be initialised";
   }
   png_destroy_read_struct(&png, &info, nullptr);
   return ok;

@@ -11,6 +11,7 @@ bool starts_with(Bytes file, const char* magic, size_t length) {
 }
 
 using Reader = bool (*)(Bytes, DecodedImage*, std::string*);
+// A file format with the bytes that its files begin with.
 struct Format {
   const char* magic;
   size_t length;

@@ -1,5 +1,6 @@
-// TIFF and BigTIFF through libtiff: the usual layouts (8, 16 bit, half, float; grey to RGBA; strips or tiles) as they
-// are, the rest (palettes, CMYK, LAB, odd bits) through libtiff's own conversion to 8 bit RGBA.
+// Reads TIFF and BigTIFF files with libtiff. The usual layouts (8 or 16 bit, half or float; grey to RGBA; strips or
+// tiles) keep their values. Others (palettes, CMYK, LAB, other bit depths) go through libtiff's conversion to 8-bit
+// RGBA.
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
@@ -13,12 +14,14 @@
 namespace gradus::image {
 namespace {
 
+// A file in memory, the position in it, and the text of its first error.
 struct Source {
   Bytes file;
   uint64_t position = 0;
   std::string message;
 };
 
+// The following functions let libtiff read from memory. Reading stops at the end of the file, as with a real file.
 tmsize_t read_bytes(thandle_t handle, void* out, tmsize_t count) {
   Source* source = static_cast<Source*>(handle);
   const uint64_t left = source->position < source->file.size() ? source->file.size() - source->position : 0;
@@ -41,7 +44,8 @@ toff_t size_of(thandle_t handle) { return static_cast<Source*>(handle)->file.siz
 int no_map(thandle_t, void**, toff_t*) { return 0; }
 void no_unmap(thandle_t, void*, toff_t) {}
 
-// Keeps the first error of this file; the process-wide handlers are the host's.
+// Keeps the first error of this file. The handler is set for this file only, because the process-wide ones belong to
+// the host.
 int on_error(TIFF*, void* user, const char*, const char* format, va_list arguments) {
   Source* source = static_cast<Source*>(user);
   if (source->message.empty()) {
@@ -53,6 +57,7 @@ int on_error(TIFF*, void* user, const char*, const char* format, va_list argumen
 }
 int on_warning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
 
+// An open TIFF file; get() is nullptr if it could not be opened.
 class Tiff {
  public:
   explicit Tiff(Source* source) {
@@ -77,6 +82,7 @@ class Tiff {
   TIFF* handle_ = nullptr;
 };
 
+// The tags of a TIFF file that determine how its pixels are stored, with the defaults of the TIFF specification.
 struct Layout {
   uint32_t width = 0;
   uint32_t height = 0;
@@ -86,8 +92,9 @@ struct Layout {
   uint16_t planes = PLANARCONFIG_CONTIG;
   uint16_t photometric = 0;
   uint16_t orientation = ORIENTATION_TOPLEFT;
-  bool associated = false;
+  bool associated = false;  // colours are multiplied by alpha
 
+  // Returns whether the values can be copied as they are, without libtiff's conversion.
   bool direct() const {
     const bool depth = (sample_format == SAMPLEFORMAT_UINT && (bits == 8 || bits == 16)) ||
                        (sample_format == SAMPLEFORMAT_IEEEFP && (bits == 16 || bits == 32));
@@ -101,12 +108,14 @@ struct Layout {
     }
     return bits == 16 ? PixelFormat::Short : PixelFormat::Byte;
   }
+  // Returns the number of channels to read. Extra samples beyond alpha are left out.
   uint32_t channels() const {
     const uint32_t wanted = photometric == PHOTOMETRIC_RGB ? (samples >= 4 ? 4u : 3u) : (samples >= 2 ? 2u : 1u);
     return wanted;
   }
 };
 
+// Reads the layout. Returns false if a required tag is missing.
 bool read_layout(TIFF* tiff, Layout* layout) {
   uint16_t extra_count = 0;
   uint16_t* extra = nullptr;
@@ -126,15 +135,16 @@ bool read_layout(TIFF* tiff, Layout* layout) {
   return layout->sample_format != SAMPLEFORMAT_VOID || (layout->sample_format = SAMPLEFORMAT_UINT);
 }
 
-// Copies a decoded block (strip or tile) of one plane, or of all interleaved samples, into the image.
+// A decoded block, which is a strip or a tile, of one plane or of all interleaved samples.
 struct Block {
-  uint32_t x0;
-  uint32_t y0;
-  uint32_t width;  // of the block in the buffer
+  uint32_t x0;  // left column in the image
+  uint32_t y0;  // top row in the image
+  uint32_t width;  // width in the buffer, which may reach beyond the image
   uint32_t height;
-  uint32_t samples;  // interleaved in the buffer
-  uint32_t plane;    // first channel that it fills
+  uint32_t samples;  // interleaved samples per pixel in the buffer
+  uint32_t plane;    // first channel of the image that the block fills
 };
+// Copies a block from the buffer into the image.
 void copy_block(const uint8_t* data, const Block& block, DecodedImage* image) {
   const size_t bytes = bytes_per_channel(image->format);
   const uint32_t columns = std::min(block.width, image->width - block.x0);
@@ -150,6 +160,7 @@ void copy_block(const uint8_t* data, const Block& block, DecodedImage* image) {
   }
 }
 
+// Reads all strips or tiles of a file with a direct layout into the image.
 bool read_blocks(TIFF* tiff, const Layout& layout, DecodedImage* image, std::string* problem) {
   const bool tiled = TIFFIsTiled(tiff) != 0;
   uint32_t width = layout.width;
@@ -192,12 +203,13 @@ bool read_blocks(TIFF* tiff, const Layout& layout, DecodedImage* image, std::str
   return true;
 }
 
+// Reads a file of any other layout as 8-bit RGBA with libtiff's conversion.
 bool read_converted(TIFF* tiff, const Layout& layout, size_t file_bytes, DecodedImage* image, std::string* problem) {
   if (!allocate(image, layout.width, layout.height, 4, PixelFormat::Byte, file_bytes, 20000, problem)) {
     return false;
   }
   image->associated_alpha = true;
-  // uint32 pixels with R in the lowest byte: RGBA in memory, bottom row first.
+  // libtiff writes uint32 pixels with R in the lowest byte, which is RGBA in memory, with the bottom row first.
   uint32_t* raster = reinterpret_cast<uint32_t*>(image->pixels.get());
   return TIFFReadRGBAImageOriented(tiff, image->width, image->height, raster, ORIENTATION_BOTLEFT, 1) != 0;
 }
