@@ -12,7 +12,7 @@ namespace gradus::camera {
 
 namespace {
 
-// Area-preserving map of the square to the disk (Shirley and Chiu 1997).
+// Maps the unit square to the unit disk and preserves relative area (Shirley and Chiu 1997).
 Vec2 concentric_disk(const Vec2& u) {
   const Vec2 p = 2.0f * u - 1.0f;
   if (p == Vec2(0.0f)) return p;
@@ -22,8 +22,8 @@ Vec2 concentric_disk(const Vec2& u) {
   return r * Vec2(std::cos(phi), std::sin(phi));
 }
 
-// Uniform in a regular polygon with circumradius 1: first the sector, then a point of its triangle. The middle of a
-// side lies at `rotation`.
+// Returns a uniform point in a regular polygon with circumradius 1. It chooses a sector first, then a point of its
+// triangle. The middle of one side lies at the angle `rotation`.
 Vec2 regular_polygon(uint32_t corners, float rotation, const Vec2& u) {
   const float scaled = u.x * float(corners);
   const auto sector = std::min(uint32_t(scaled), corners - 1);
@@ -95,7 +95,7 @@ Camera Camera::frozen_at(float time) const {
   if (!moves()) return frozen;
   Pose& now = frozen.poses_[int(Moment::Now)];
   pose_at(time, &now);
-  now.inverse = Mat3(glm::inverse(glm::dmat3(now.axes)));  // as of any camera at rest
+  now.inverse = Mat3(glm::inverse(glm::dmat3(now.axes)));  // Uses double precision, as for every static camera.
   frozen.keys_ = {};
   frozen.windows_.clear();
   return frozen;
@@ -120,12 +120,12 @@ Ray Camera::ray(const CameraSample& sample) const {
   Vec3 direction = orthographic ? Vec3(0, 0, -1) : Vec3(x, y, -1.0f);
   if (has_lens()) {
     const Vec3 offset(lens_point(sample.lens), 0.0f);
-    // All rays of a film point meet on the plane of focus.
+    // All rays of a film point meet on the focus plane.
     const float focus = std::max(desc_.focus_distance, 1e-5f);
     direction = direction * focus - offset;
     origin += offset;
   }
-  const float slant = glm::length(direction) / -direction.z;  // distance along the ray for one unit of depth
+  const float slant = glm::length(direction) / -direction.z;  // Distance along the ray per unit of depth.
   if (has_eye() && !orthographic) {
     direction = glm::normalize(direction);
     move_to_eye(desc_, stereo_axis(now), &origin, &direction);
@@ -139,7 +139,7 @@ Ray Camera::ray(const CameraSample& sample) const {
   return ray;
 }
 
-// The lens lies across the direction of each film point, and all its rays meet at the distance of focus.
+// The lens is perpendicular to the direction of each film point, and all rays of that point meet at the focus distance.
 Ray Camera::panorama_ray(const Pose& pose, const Vec2& point, const CameraSample& sample) const {
   Vec3 origin(0.0f), direction;
   if (!panorama_direction(desc_, point, &direction)) return kNoRay;
@@ -160,14 +160,15 @@ Ray Camera::panorama_ray(const Pose& pose, const Vec2& point, const CameraSample
   return ray;
 }
 
-// The eyes stay level in the world, or with the panorama. Cycles' space of mirror balls is mirrored, so that left is
-// right.
+// The axis is the world's up axis for a perspective camera and the camera's for a panorama. The space of mirror balls
+// is mirrored in Cycles, which exchanges left and right.
 Vec3 Camera::stereo_axis(const Pose& pose) const {
   if (!is_panorama()) return glm::normalize(glm::transpose(pose.axes) * Vec3(0, 0, 1));
   return Vec3(0.0f, desc_.panorama == GRADUS_PANORAMA_MIRROR_BALL ? -1.0f : 1.0f, 0.0f);
 }
 
-// Of the longitudes of a direction, the one next to the middle of the window.
+// Projects a direction to the panorama's plane. Of its equivalent longitudes, it takes the one nearest to the window's
+// middle.
 bool Camera::panorama_plane(const Pose& pose, const Vec3& local, Vec2* point) const {
   if (!panorama_point(desc_, glm::normalize(local), point)) return false;
   if (panorama_wraps(desc_)) {
@@ -210,7 +211,7 @@ bool Camera::project(const Vec3& world, Moment when, Vec2* film) const {
 }
 
 bool Camera::project_direction(const Vec3& direction, Moment when, Vec2* film) const {
-  // An orthographic camera sees no point at infinity but the one along its axis, everywhere.
+  // An orthographic camera sees only one point at infinity, that along its axis, and it appears at every film position.
   if (desc_.type == GRADUS_CAMERA_ORTHOGRAPHIC) return false;
   const Pose& p = pose(when);
   return to_film(p, p.inverse * direction, true, film);

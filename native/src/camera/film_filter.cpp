@@ -9,7 +9,8 @@ namespace gradus::camera {
 
 namespace {
 
-// v in [-1/2, 1/2] of the support. Cycles' filters: exp(-2 (6 v)²), and the four-term Blackman-Harris window.
+// Returns the filter at v in [-1/2, 1/2], in units of its support. The filters are those of Cycles: exp(-2 (6 v)²), and
+// the four-term Blackman-Harris window.
 double filter_value(uint32_t type, double v) {
   if (type == GRADUS_FILTER_GAUSSIAN) {
     return std::exp(-72.0 * v * v);
@@ -21,8 +22,8 @@ double filter_value(uint32_t type, double v) {
   return 1.0;
 }
 
-// Full support in pixels. Cycles' width means a third of a Gauss curve's support and a half of Blackman-Harris's; its
-// box takes none.
+// Returns the full support in pixels. Cycles' width is a third of the Gaussian's support and half of Blackman-Harris's.
+// Its box filter has no width.
 double support(uint32_t type, float width) {
   switch (type) {
     case GRADUS_FILTER_GAUSSIAN:

@@ -1,5 +1,6 @@
-// Pixel filters by importance sampling: the sample's film offset is drawn with the density of the filter, so that every
-// sample weighs the same and base and shifted paths, which share the offset, give exact gradients for any filter.
+// Pixel filters by importance sampling. The film offset of a sample is drawn with the filter as its density, so that
+// all samples have the same weight. Base and offset paths share the film offset, which gives exact gradients for any
+// filter.
 #pragma once
 
 #include <array>
@@ -12,16 +13,16 @@ namespace gradus::camera {
 class FilmFilter {
  public:
   FilmFilter() = default;
-  // type: GradusPixelFilter. width: in pixels, as Cycles understands it: about the width at a tenth of the height; the
-  // box is always one pixel wide.
+  // `type` is a GradusPixelFilter. `width` is in pixels and has the meaning of Cycles' filter width, about the filter's
+  // width at a tenth of its height. The box filter ignores it and is one pixel wide.
   FilmFilter(uint32_t type, float width);
-  // Offset from the pixel's centre.
+  // Returns the offset from the pixel's centre in pixels, for u in [0, 1)².
   Vec2 sample(const Vec2& u) const { return Vec2(sample_axis(u.x), sample_axis(u.y)); }
 
  private:
   static constexpr int kCells = 1024;
   float sample_axis(float u) const;
-  std::array<float, kCells + 1> inverse_{};  // inverse of the cumulated filter over its support
+  std::array<float, kCells + 1> inverse_{};  // Inverse of the cumulative distribution, in pixels.
 };
 
 }  // namespace gradus::camera

@@ -7,7 +7,7 @@ namespace gradus::camera {
 
 namespace {
 
-// Longitude to the right of the view axis, latitude above it.
+// Returns the direction at a longitude (to the right of the view axis) and a latitude (above it).
 Vec3 from_latitude(const Vec2& p) {
   const float across = std::cos(p.y);
   return {across * std::sin(p.x), std::sin(p.y), -across * std::cos(p.x)};
@@ -16,13 +16,13 @@ Vec3 from_latitude(const Vec2& p) {
 float longitude(const Vec3& d) { return std::atan2(d.x, -d.z); }
 float across(const Vec3& d) { return std::sqrt(d.x * d.x + d.z * d.z); }
 
-// Longitude, and the height on a cylinder of radius 1.
+// Returns the direction at a longitude and a height on a cylinder of radius 1.
 Vec3 from_cylinder(const Vec2& p) { return glm::normalize(Vec3(std::sin(p.x), p.y, -std::cos(p.x))); }
 
-// Two angles, each of which turns the view axis by itself.
+// Returns the direction for two angles, each of which rotates the view axis independently.
 Vec3 from_cube_angles(const Vec2& p) { return glm::normalize(Vec3(std::tan(p.x), std::tan(p.y), -1.0f)); }
 
-// What a mirroring ball shows from far away; p: the point of the ball, in radii.
+// Computes the direction that a mirror ball reflects to a distant viewer at its point p, in units of the radius.
 bool from_mirror_ball(const Vec2& p, Vec3* d) {
   const float square = 1.0f - glm::dot(p, p);
   if (!(square >= 0.0f)) return false;
@@ -32,12 +32,12 @@ bool from_mirror_ball(const Vec2& p, Vec3* d) {
 
 bool to_mirror_ball(const Vec3& d, Vec2* p) {
   const float depth = std::sqrt(std::max(0.5f * (1.0f - d.z), 0.0f));
-  if (!(depth > 0.0f)) return false;  // the rim shows what lies straight behind, all around
+  if (!(depth > 0.0f)) return false;  // The whole rim shows the direction straight behind the ball.
   *p = Vec2(d) / (2.0f * depth);
   return true;
 }
 
-// A fisheye: angle from the view axis, in the direction of p.
+// Returns a fisheye's direction at an angle from the view axis, towards p on the film.
 Vec3 at_angle(float angle, const Vec2& p) {
   const float r = glm::length(p);
   const Vec2 towards = r > 0.0f ? p / r : Vec2(0.0f, 1.0f);
@@ -58,7 +58,7 @@ bool from_equidistant(float fov, const Vec2& p, Vec3* d) {
   return true;
 }
 
-// p: in units of twice the focal length.
+// Computes the direction of p, which is in units of twice the focal length.
 bool from_equisolid(float fov, const Vec2& p, Vec3* d) {
   const float r = glm::length(p);
   if (!(r <= std::sin(0.25f * fov))) return false;
@@ -76,7 +76,7 @@ bool from_lens_polynomial(const float* k, float fov, const Vec2& p, Vec3* d) {
   return true;
 }
 
-// Newton's method, from where a lens without distortion has it.
+// Inverts the lens polynomial by Newton's method, which starts from the radius of a lens without distortion.
 bool to_lens_polynomial(const float* k, const Vec3& d, Vec2* p) {
   const float angle = angle_of(d);
   float r = -(angle + k[0]) / k[1];
@@ -144,7 +144,8 @@ bool panorama_wraps(const GradusCamera& camera) {
   return camera.panorama == GRADUS_PANORAMA_EQUIRECTANGULAR || camera.panorama == GRADUS_PANORAMA_CYLINDER;
 }
 
-// Cycles spans the lens from its x axis, which is the view axis, but for mirror balls, whose space is mirrored, too.
+// Cycles derives the lens axes from its x axis. This is the view axis, except for mirror balls, whose space is also
+// mirrored.
 void panorama_lens_axes(const GradusCamera& camera, const Vec3& d, Vec3* u, Vec3* v) {
   const bool ball = camera.panorama == GRADUS_PANORAMA_MIRROR_BALL;
   const Vec3 axis = ball ? Vec3(1, 0, 0) : Vec3(0, 0, -1);

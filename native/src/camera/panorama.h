@@ -1,8 +1,9 @@
-// Panoramic projections: between directions and points of the film, in the coordinates that each projection has there.
+// Panoramic projections between directions and points on the film, which are in the coordinates of each projection
+// (for example longitude and latitude).
 //
-// The camera's window is measured in these coordinates (gradus.h, GradusCamera), so that sensor, limits and shift are
-// all part of it. Directions are in camera space, which looks along -z, y up. The formulae are those of Cycles
-// (kernel/camera/projection.h).
+// The camera's window is measured in these coordinates (gradus.h, GradusCamera), so that it
+// includes sensor size, limits and shift. Directions are in camera space, which looks along -z, y up. The formulae are
+// those of Cycles (kernel/camera/projection.h).
 #pragma once
 
 #include "base/types.h"
@@ -10,16 +11,18 @@
 
 namespace gradus::camera {
 
-// False where the film sees nothing: outside of the image circle. The direction has unit length.
+// Computes the unit direction of a film point. Returns false where the film shows nothing, which is outside of the
+// image circle.
 bool panorama_direction(const GradusCamera& camera, const Vec2& point, Vec3* direction);
 
-// The inverse. False for directions that the projection does not show, whatever the window. Longitudes are in [-π, π].
+// Computes the film point of a unit direction. Returns false if the projection does not show the direction with any
+// window. Longitudes are in [-π, π].
 bool panorama_point(const GradusCamera& camera, const Vec3& direction, Vec2* point);
 
-// Whether x is an angle that comes back to the same direction after a full turn.
+// Returns whether x is an angle, so that a full turn gives the same direction.
 bool panorama_wraps(const GradusCamera& camera);
 
-// The axes of the lens for a direction: u and v span the plane across it.
+// Computes the lens axes u and v, which span the plane perpendicular to the direction.
 void panorama_lens_axes(const GradusCamera& camera, const Vec3& direction, Vec3* u, Vec3* v);
 
 }  // namespace gradus::camera

@@ -16,7 +16,7 @@ Shutter::Shutter(const GradusCamera& desc) {
     const float value = desc.shutter_curve[i];
     curve_.push_back(is_finite(value) ? std::max(value, 0.0f) : 0.0f);
   }
-  // Its scale says nothing, and squares must not overflow.
+  // The curve's scale has no meaning. Normalisation prevents overflow of squares in sample().
   const float maximum = *std::max_element(curve_.begin(), curve_.end());
   for (float& value : curve_) value = maximum > 0.0f ? value / maximum : 0.0f;
   double sum = 0.0;
@@ -34,7 +34,7 @@ float Shutter::sample(float u) const {
   const auto i = size_t(found - cumulative_.begin());
   const float before = i > 0 ? cumulative_[i - 1] : 0.0f;
   const float inside = std::clamp((u - before) / std::max(*found - before, 1e-30f), 0.0f, 1.0f);
-  // Inverse of the integral of the line from a to b, in the form that stands a = b and a = 0.
+  // Inverts the integral of the line from a to b, in a form that is valid for a = b and a = 0.
   const float a = curve_[i], b = curve_[i + 1];
   const float root = std::sqrt(a * a + (b * b - a * a) * inside);
   const float x = a + root > 0.0f ? (a + b) * inside / (a + root) : 0.0f;

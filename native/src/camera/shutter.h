@@ -1,4 +1,4 @@
-// When the shutter is open, and the choice of a moment.
+// The shutter interval and the sampling of times in it.
 #pragma once
 
 #include <vector>
@@ -7,26 +7,28 @@
 
 namespace gradus::camera {
 
-// Times of rays run from 0, the opening, to 1, the closing.
+// The shutter of a camera. Shutter times run from 0 (opening) to 1 (closing).
 class Shutter {
  public:
   Shutter() = default;
-  // Of GradusCamera's fields. Closed for good (a frame is a moment) where they are not finite or the curve is 0
-  // everywhere.
+  // Reads the shutter fields of `desc`. If they are not finite, or if the curve is 0 everywhere, the interval is empty
+  // and the frame shows a single moment.
   explicit Shutter(const GradusCamera& desc);
 
+  // Returns whether the shutter interval has a length above 0.
   bool opens() const { return close_ > open_; }
-  // The moment of u in [0, 1): its density is the curve, linear between its values.
+  // Returns the shutter time for u in [0, 1). Its density is the curve, interpolated linearly between its values.
   float sample(float u) const;
-  // Frames relative to the one rendered.
+  // Converts a shutter time to frames relative to the rendered frame.
   float frame_time(float time) const { return open_ + (close_ - open_) * time; }
-  // The time that is nearest to the frame rendered.
+  // Returns the shutter time that is nearest to the rendered frame.
   float time_of_frame() const;
 
  private:
   float open_ = 0.0f, close_ = 0.0f;
-  std::vector<float>
-      cumulative_;  // of the curve, at the end of each of its intervals, the last 1; empty: open all the time
+  // Cumulative distribution of the curve at the end of each of its intervals; the last value is 1. Empty without a
+  // curve.
+  std::vector<float> cumulative_;
   std::vector<float> curve_;
 };
 

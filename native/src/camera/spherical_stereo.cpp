@@ -7,7 +7,8 @@ namespace gradus::camera {
 
 namespace {
 
-// Towards the poles, where the eyes have no side, the offset may fade out.
+// Returns the eye offset at the sine of an altitude. It can fade out towards the poles, where no side direction is
+// defined.
 float offset_at(const GradusCamera& c, float sine) {
   if (!(c.pole_merge_to > 0.0f)) return c.eye_offset;
   const float altitude = std::fabs(std::asin(std::clamp(sine, -1.0f, 1.0f)));
@@ -16,7 +17,8 @@ float offset_at(const GradusCamera& c, float sine) {
   return c.eye_offset * std::cos((altitude - c.pole_merge_from) / (c.pole_merge_to - c.pole_merge_from) * 0.5f * kPi);
 }
 
-// A point of a moved ray is side·x + direction·y, with the direction as it was. From its distance to the centre.
+// Returns the coordinates (x, y) of the point side·x + direction·y of a ray moved to the eye, at a distance from the
+// centre. `direction` is that of the ray before the move.
 Vec2 along_ray(const GradusCamera& c, float offset, float distance, bool at_infinity) {
   const float o2 = offset * offset, d2 = distance * distance, focus = c.convergence_distance;
   if (!(focus > 0.0f)) return {at_infinity ? 0.0f : offset, std::sqrt(std::max(at_infinity ? d2 : d2 - o2, 0.0f))};
@@ -43,9 +45,10 @@ bool direction_from_centre(const GradusCamera& c, const Vec3& up, const Vec3& po
   if (!(distance > 0.0f)) return false;
   float sine = height / distance;
   Vec2 place;
-  for (int i = 0; i < 20; ++i) {  // the offset depends on the altitude, a little
+  for (int i = 0; i < 20; ++i) {  // The offset depends weakly on the altitude, so the solution is iterated.
     place = along_ray(c, offset_at(c, sine), distance, at_infinity);
-    if (!(place.y > 0.0f && std::fabs(height) <= place.y * 1.00001f)) return false;  // nearer than the eye
+    if (!(place.y > 0.0f && std::fabs(height) <= place.y * 1.00001f))
+      return false;  // The point is nearer to the centre than the eye.
     sine = std::clamp(height / place.y, -1.0f, 1.0f);
   }
   const float cosine = std::sqrt(std::max(1.0f - sine * sine, 0.0f));

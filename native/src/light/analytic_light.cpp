@@ -11,7 +11,7 @@ namespace gradus::light {
 
 namespace {
 
-// Axes of the matrix without its scale; a matrix without volume leaves an arbitrary frame.
+// Sets the light's axes from its matrix, without scale. A matrix without volume gives an arbitrary orthonormal frame.
 void set_axes(const GradusLight& d, AnalyticLight* light) {
   const Mat4 m = glm::make_mat4(d.matrix);
   const float lengths[3] = {glm::length(Vec3(m[0])), glm::length(Vec3(m[1])), glm::length(Vec3(m[2]))};
@@ -23,6 +23,7 @@ void set_axes(const GradusLight& d, AnalyticLight* light) {
   }
 }
 
+// Sets the fields of a point or spot light.
 void set_round(const GradusLight& d, AnalyticLight* light) {
   light->is_spot = d.type == GRADUS_LIGHT_SPOT;
   light->spot_cosine = (d.flags & GRADUS_LIGHT_SPOT_COSINE) != 0;
@@ -31,14 +32,15 @@ void set_round(const GradusLight& d, AnalyticLight* light) {
     const float width = (1.0f - light->cos_cone) * std::max(d.blend, 0.0f);
     light->cone_slope = width > 0.0f ? 1.0f / width : kInfinity;
   }
-  constexpr float kPointRadius = 1e-12f;  // m; below, the radiance would leave float's range
+  constexpr float kPointRadius = 1e-12f;  // In metres. With a smaller radius, the radiance would overflow a float.
   if (!(d.radius > kPointRadius)) return;
   light->shape = d.flags & GRADUS_LIGHT_DISK_FACING ? AnalyticLight::Shape::FacingDisk : AnalyticLight::Shape::Sphere;
   light->radius = d.radius;
   light->area = kPi * d.radius * d.radius;
-  light->intensity /= light->area;  // the radiance whose disk or sphere has this intensity
+  light->intensity /= light->area;  // The radiance of a disk or sphere with this intensity.
 }
 
+// Sets the fields of a rectangular or elliptical area light.
 void set_area(const GradusLight& d, AnalyticLight* light) {
   const bool round = d.type == GRADUS_LIGHT_ELLIPSE;
   light->shape = round ? AnalyticLight::Shape::Ellipse : AnalyticLight::Shape::Rectangle;
@@ -46,13 +48,14 @@ void set_area(const GradusLight& d, AnalyticLight* light) {
   light->half_height = 0.5f * std::fabs(d.size[1]);
   light->area = (round ? kPi : 4.0f) * light->half_width * light->half_height;
   if (d.spread >= kPi) return;
-  // Falls with the tangent, as behind a grid of slats; scaled so that the flux stays: the integral over the hemisphere
-  // of cos(x) (1 - tan(x)/tan(a)) is (tan(a) - a) / tan(a) of that of cos(x).
+  // The radiance falls linearly with the tangent of the angle, as behind a grid of slats. The scale keeps the flux: the
+  // integral over the hemisphere of cos(x) (1 - tan(x)/tan(a)) is (tan(a) - a) / tan(a) times that of cos(x).
   const float a = 0.5f * std::max(d.spread, kPi / 180.0f);
   light->tan_spread = std::tan(a);
   light->spread_scale = 1.0f / (light->tan_spread - a);
 }
 
+// Sets the fields of a sun light.
 void set_sun(const GradusLight& d, AnalyticLight* light) {
   const float half = 0.5f * std::clamp(d.angle, 0.0f, kPi);
   light->shape = half > 1e-6f ? AnalyticLight::Shape::Cone : AnalyticLight::Shape::Direction;
@@ -103,9 +106,9 @@ LightBounds light_bounds(const AnalyticLight& light) {
   b.cos_normals = flat ? 1.0f : -1.0f;
   if (light.is_spot) {
     b.cos_normals = light.cos_cone;
-    b.cos_emission = 0.9999f;  // nothing leaves the cone
+    b.cos_emission = 0.9999f;  // A spot emits nothing outside its cone.
   }
-  // Intensity along the axis grows as the spread narrows.
+  // The intensity along the axis grows as the spread narrows.
   if (flat && is_finite(light.tan_spread)) {
     b.power = std::min(b.power * light.tan_spread * light.spread_scale, 1e30f);
     b.cos_emission = 1.0f / std::sqrt(1.0f + light.tan_spread * light.tan_spread);

@@ -1,4 +1,5 @@
-// Lights: lights that are not surfaces. Units as in gradus.h, strengths as in Cycles.
+// Analytic lights: point, spot, area and sun lights, which are not part of a mesh. Units are those of gradus.h.
+// Strengths have the same meaning as in Cycles.
 #pragma once
 
 #include "base/types.h"
@@ -8,7 +9,7 @@
 
 namespace gradus::light {
 
-// In the snapshot's internal space, with what sampling needs worked out.
+// An analytic light in the snapshot's internal space, with precomputed values for sampling.
 struct AnalyticLight {
   enum class Shape : uint8_t { Point, Sphere, FacingDisk, Rectangle, Ellipse, Direction, Cone };
 
@@ -16,46 +17,55 @@ struct AnalyticLight {
   bool is_spot = false;
   bool spot_cosine = false;
   bool casts_shadow = true;
-  bool multiple_importance = true;  // off: rays pass through it, as in Cycles
+  bool multiple_importance =
+      true;  // False: only light sampling finds the light, and rays pass through it, as in Cycles.
   uint32_t visibility = GRADUS_VISIBLE_ALL;
   uint32_t max_bounces = UINT32_MAX;
   int32_t pass_index = 0;
-  uint32_t material = UINT32_MAX;  // index in the snapshot whose emission multiplies; UINT32_MAX: constant
+  // Index of the snapshot's material whose emission multiplies `intensity`; UINT32_MAX: the factor is 1.
+  uint32_t material = UINT32_MAX;
   Vec3 position{0.0f};
   Vec3 axis_x{1, 0, 0};
   Vec3 axis_y{0, 1, 0};
-  Vec3 emission_direction{0, 0, -1};  // where it shines to
-  Rgb intensity{0.0f};                // point: W/sr; direction: W/m2; all with extent: radiance
+  Vec3 emission_direction{0, 0, -1};  // Unit direction of emission, away from the light.
+  Rgb intensity{0.0f};                // Point: W/sr; direction: irradiance in W/m²; every light with extent: radiance.
   float radius = 0.0f;
   float half_width = 0.0f, half_height = 0.0f;
-  float area = 0.0f;        // of rectangle, ellipse, disk
-  float cos_cone = -1.0f;   // spot
-  float cone_slope = 0.0f;  // 1 / ((1 - cos_cone)·blend)
-  float tan_spread = kInfinity;
-  float spread_scale = 1.0f;
-  float one_minus_cos_sun = 0.0f;  // of half the angle
+  float area = 0.0f;               // Area in m² of a rectangle, ellipse, disk, or of a sphere's cross section.
+  float cos_cone = -1.0f;          // Cosine of half a spot's cone angle.
+  float cone_slope = 0.0f;         // 1 / ((1 - cos_cone)·blend) of a spot.
+  float tan_spread = kInfinity;    // Tangent of half an area light's spread; infinite: no limit.
+  float spread_scale = 1.0f;       // Factor that keeps the flux when the spread is limited.
+  float one_minus_cos_sun = 0.0f;  // 1 - cos of half a sun's angle.
 
+  // Returns whether the light is a single position or direction, without extent.
   bool dirac() const { return shape == Shape::Point || shape == Shape::Direction; }
+  // Returns whether a BSDF sample can hit the light.
   bool found_by_rays() const { return !dirac() && multiple_importance; }
   bool at_infinity() const { return shape == Shape::Direction || shape == Shape::Cone; }
 };
 
+// Returns whether all numbers of a light description are finite.
 bool is_finite_light(const GradusLight& desc);
-// False: it cannot shine (non-finite values, no strength, no area).
+// Fills `light` from its description; positions become relative to `origin`. Returns false if the light emits nothing:
+// values that are not finite, no strength, or an area light without area.
 bool make_analytic_light(const GradusLight& desc, const Vec3& origin, AnalyticLight* light);
-// Of lights that are not at infinity.
+// Returns the bounds of a light that is not at infinity.
 LightBounds light_bounds(const AnalyticLight& light);
 
-// A point of the light as sampled from `from`, written to a fresh one; false: it does not shine there. solid_angle: see
-// evaluate_analytic_light().
+// Samples a point of the light for a receiver at `from`, with u in [0, 1)². `point` must have its default value.
+// Returns false if the light does not emit towards the receiver. `solid_angle` receives the solid angle in which the
+// point is uniform, or 0 if it is sampled differently; evaluate_analytic_light() takes it.
 bool sample_analytic_light(const AnalyticLight& light, const Vec3& from, const Vec2& u, LightPoint* point,
                            float* solid_angle);
-// Direction, distance, cosine, radiance (material left out), and the density of sample_analytic_light() in solid angle
-// (1 if Dirac). solid_angle: what sample_analytic_light() found from there, so that it need not be found again; 0: the
-// light is sampled in another way. view: a fresh one.
+// Evaluates a point of the light as seen from `from`: direction, distance, cosine, radiance (without the light's
+// material), and the density of sample_analytic_light() in solid angle (1 if Dirac). `solid_angle` is the value that
+// sample_analytic_light() returned for the same receiver, which saves its computation; null: it is computed here.
+// `view` must have its default value.
 void evaluate_analytic_light(const AnalyticLight& light, const LightPoint& point, const Vec3& from,
                              const float* solid_angle, LightEvaluation* view);
-// Where a ray crosses a light with extent; false: nowhere between t_min and t_max.
+// Intersects a ray with a light that has extent, and writes the point and the distance along the ray. Returns false if
+// there is no intersection between t_min and t_max.
 bool intersect_light(const AnalyticLight& light, const Ray& ray, LightPoint* point, float* distance);
 
 }  // namespace gradus::light

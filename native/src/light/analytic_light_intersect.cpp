@@ -1,4 +1,4 @@
-// Rays against lights with extent.
+// Intersection of rays with lights that have extent.
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +30,7 @@ bool hit_sphere(const AnalyticLight& light, const Ray& ray, LightPoint* point, f
 
 bool hit_plane(const Ray& ray, const Vec3& position, const Vec3& normal, float* distance, Vec3* offset) {
   const float cosine = glm::dot(ray.direction, normal);
-  if (!(cosine < 0.0f)) return false;  // one-sided
+  if (!(cosine < 0.0f)) return false;  // Flat lights emit from one side only.
   *distance = glm::dot(position - ray.origin, normal) / cosine;
   if (!within(ray, *distance)) return false;
   *offset = ray.origin + ray.direction * *distance - position;
@@ -55,7 +55,8 @@ bool within_ellipse(const AnalyticLight& light, float x, float y) {
   return u * u + v * v <= 1.0f;
 }
 
-// One test at the end: on which side a ray passes the light cannot be foretold, that it misses nearly always can.
+// Combines all conditions into one branch at the end, without short-circuit evaluation. The processor cannot predict on
+// which side a ray passes the light, but it can predict that the ray misses, which is nearly always true.
 bool hit_flat(const AnalyticLight& light, const Ray& ray, LightPoint* point, float* distance) {
   const float cosine = glm::dot(ray.direction, light.emission_direction);
   *distance = glm::dot(light.position - ray.origin, light.emission_direction) / cosine;

@@ -1,5 +1,5 @@
-// Sampling of lights, and the density with which a given point would be sampled: both from the same receiver-dependent
-// quantities.
+// Sampling of analytic lights, and the density with which a given point would be sampled. Both derive from the same
+// receiver-dependent quantities.
 #include <algorithm>
 #include <cmath>
 
@@ -17,15 +17,17 @@ Vec2 uniform_disk(const Vec2& u) {
   return {r * std::cos(phi), r * std::sin(phi)};
 }
 
-// 1 - cos of the half angle under which a sphere is seen; 2 from inside: then all directions are sampled.
+// Returns 1 - cos of the half angle that a sphere subtends at the receiver. From inside the sphere it is 2, because all
+// directions are sampled.
 float sphere_one_minus_cos(const AnalyticLight& light, const Vec3& to_centre) {
   const float sine2 = light.radius * light.radius / glm::dot(to_centre, to_centre);
   if (!(sine2 < 1.0f)) return 2.0f;
   return sine2 / (1.0f + std::sqrt(1.0f - sine2));
 }
 
-// Normal of the visible side at a point sampled uniformly in solid angle (pbrt-v4 section 6.2.4): by the angle at the
-// centre, because the difference of points would cancel for a small or distant sphere.
+// Returns the normal at a point of a sphere's visible side, sampled uniformly in solid angle (pbrt-v4 section 6.2.4).
+// The computation uses the angle at the sphere's centre, because a difference of points would cancel for a small or
+// distant sphere.
 Vec3 sample_visible_normal(const Vec3& axis, float one_minus_cos, const Vec2& u) {
   const float max_sine2 = one_minus_cos * (2.0f - one_minus_cos);
   const float h = u.x * one_minus_cos;
@@ -39,7 +41,7 @@ Vec3 sample_visible_normal(const Vec3& axis, float one_minus_cos, const Vec2& u)
   return glm::normalize((x * std::cos(phi) + y * std::sin(phi)) * sine - axis * cosine);
 }
 
-// From inside: uniform directions, and where they leave the sphere.
+// Samples a direction uniformly from a point inside the sphere, and returns the normal where it leaves the sphere.
 Vec3 sample_normal_from_inside(const AnalyticLight& light, const Vec3& to_centre, const Vec2& u) {
   const Vec3 direction = Cone{Vec3(0, 0, 1), 2.0f}.sample(u);
   const float middle = glm::dot(to_centre, direction);
@@ -97,7 +99,7 @@ bool sample_analytic_light(const AnalyticLight& light, const Vec3& from, const V
       sample_sphere(light, from, u, point);
       return true;
     case AnalyticLight::Shape::FacingDisk:
-      // The disk turns with the receiver: what stays the same from another one are the coordinates on it.
+      // The disk turns towards each receiver. Only the coordinates on the disk are independent of the receiver.
       point->barycentric = uniform_disk(u);
       point->position = facing_disk_position(light, from, point->barycentric, &point->normal);
       return true;
@@ -126,7 +128,8 @@ bool sample_analytic_light(const AnalyticLight& light, const Vec3& from, const V
 
 namespace {
 
-// Share of a spot's strength along a direction that leaves it (Cycles' kernel/light/spot.h: smoothstep over the blend).
+// Returns the fraction of a spot's strength along a direction away from it (Cycles' kernel/light/spot.h: smoothstep
+// over the blend).
 float spot_falloff(const AnalyticLight& light, const Vec3& leaving) {
   if (!light.is_spot) return 1.0f;
   const float cosine = glm::dot(leaving, light.emission_direction);
@@ -135,6 +138,7 @@ float spot_falloff(const AnalyticLight& light, const Vec3& leaving) {
   return t * t * (3.0f - 2.0f * t) * (light.spot_cosine ? std::max(cosine, 0.0f) : 1.0f);
 }
 
+// Returns the factor by which an area light's limited spread scales its radiance at a cosine from its normal.
 float spread_falloff(const AnalyticLight& light, float cosine) {
   if (!is_finite(light.tan_spread)) return 1.0f;
   const float tangent = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
@@ -152,7 +156,7 @@ void view_sphere(const AnalyticLight& light, const Vec3& normal, const Vec3& fro
   const float one_minus_cos = sphere_one_minus_cos(light, to_centre);
   const float cosine = -glm::dot(normal, view->direction);
   view->cosine = std::fabs(cosine);
-  if (one_minus_cos < 2.0f && cosine <= 0.0f) return;  // the far side
+  if (one_minus_cos < 2.0f && cosine <= 0.0f) return;  // The point is on the far side of the sphere.
   view->pdf = 1.0f / (2.0f * kPi * one_minus_cos);
   view->radiance = light.intensity * spot_falloff(light, -view->direction);
 }

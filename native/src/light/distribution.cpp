@@ -6,7 +6,8 @@ namespace gradus::light {
 
 namespace {
 
-// Cumulates in double, ends at exactly 1; a row without weight becomes uniform. Returns the sum.
+// Writes the cumulative distribution of `count` values to `out`, which has count + 1 elements and ends at exactly 1.
+// The sum runs in double precision. Values that are all zero become uniform. Returns the sum of the values.
 template <class Value>
 double cumulate(uint32_t count, Value&& value, float* out) {
   double sum = 0.0;
@@ -21,13 +22,15 @@ double cumulate(uint32_t count, Value&& value, float* out) {
   return sum;
 }
 
-// Index of the cell whose interval of the cumulated values holds u; never one of width zero.
+// Returns the index of the cell whose interval of the cumulative values contains u. A cell of zero width is never
+// returned.
 uint32_t find(const float* cumulated, uint32_t count, float u) {
   const float* above = std::upper_bound(cumulated, cumulated + count + 1, u);
   if (above > cumulated + count) above = std::lower_bound(cumulated, cumulated + count + 1, 1.0f);
   return uint32_t(std::max<ptrdiff_t>(0, above - cumulated - 1));
 }
 
+// Returns the position in [0, 1) at which the cumulative distribution reaches u, which lies in cell i.
 float within(const float* cumulated, uint32_t count, uint32_t i, float u) {
   const float width = cumulated[i + 1] - cumulated[i];
   const float offset = width > 0.0f ? (u - cumulated[i]) / width : 0.5f;
@@ -35,6 +38,7 @@ float within(const float* cumulated, uint32_t count, uint32_t i, float u) {
   return std::min((float(i) + std::clamp(offset, 0.0f, kBelowOne)) / float(count), kBelowOne);
 }
 
+// Returns the index of the cell that contains x.
 uint32_t cell(float x, uint32_t count) { return std::min(uint32_t(std::max(x, 0.0f) * float(count)), count - 1); }
 
 }  // namespace

@@ -13,33 +13,36 @@ namespace gradus::light {
 namespace {
 
 constexpr uint32_t kMinWidth = 16, kMaxWidth = 4096;
-// At most this part of the samples goes to suns: what lies in their shadow has the rest for the sky, but gets most of
-// its noise from surfaces in the sun. Measured for a block on a floor, sun at 35°: variance in the shade 1.34 at a
-// half, 0.88 at 3/4, 0.73 at 7/8, 0.70 at 15/16.
+// Maximum fraction of the samples that go to suns. Points in shadow use only the remaining samples for the sky, but
+// most of their noise comes from surfaces in the sun. Measured for a block on a floor, sun at 35°: the variance in the
+// shadow is 1.34 at a fraction of 1/2, 0.88 at 3/4, 0.73 at 7/8, 0.70 at 15/16.
 constexpr double kMaxSunShare = 0.875;
-// Parts are whole eighths: a net's points fall on both sides in just these numbers.
+// The fraction of the samples that go to suns is rounded to eighths, because a digital net divides into eighths with
+// exactly proportional numbers of points.
 constexpr double kParts = 8.0;
-// Suns that give less than this part of the world's light are left to the map.
+// A sun whose irradiance is below this fraction of the map's (pi times the mean radiance) is left to the map.
 constexpr float kFaintSun = 1e-4f;
 
+// Returns the direction at a position on the map.
 Vec3 to_direction(const Vec2& p) {
   const float phi = 2.0f * kPi * p.x, theta = kPi * p.y;
   const float s = std::sin(theta);
   return {s * std::cos(phi), s * std::sin(phi), std::cos(theta)};
 }
 
+// Returns the position of a direction on the map.
 Vec2 to_map(const Vec3& d) {
   const float phi = std::atan2(d.y, d.x);
   return {(phi < 0.0f ? phi + 2.0f * kPi : phi) / (2.0f * kPi), std::acos(std::clamp(d.z, -1.0f, 1.0f)) / kPi};
 }
 
-// Negative and non-finite radiance counts as none.
+// Returns the mean channel of the radiance at a position on the map. Negative and non-finite radiance counts as zero.
 float measure_at(const Environment::Radiance& radiance, const Vec2& p) {
   const float value = mean_component(glm::max(radiance(to_direction(p)), Rgb(0.0f)));
   return is_finite(value) ? std::min(value, 1e15f) : 0.0f;
 }
 
-// Mean channel of the radiance in each cell. Returns false when stopped.
+// Writes the mean channel of the radiance of each cell to `out`. Returns false if cancelled.
 bool measure(const Environment::Radiance& radiance, uint32_t width, uint32_t points, const CancelCheck& cancel,
              std::vector<float>* out) {
   const uint32_t height = width / 2;
@@ -64,6 +67,7 @@ bool measure(const Environment::Radiance& radiance, uint32_t width, uint32_t poi
   return !stopped;
 }
 
+// Returns the sine of the colatitude at the centre of a row.
 float row_sine(uint32_t y, uint32_t height) { return std::sin(kPi * (float(y) + 0.5f) / float(height)); }
 
 float mean_over_sphere(const std::vector<float>& values, uint32_t width) {
@@ -77,8 +81,9 @@ float mean_over_sphere(const std::vector<float>& values, uint32_t width) {
   return float(sum / weight);
 }
 
-// Weight of a cell: the largest of it and its neighbours, because within a cell the density is constant while the
-// radiance is interpolated; and a little everywhere, so that what the map's points missed can still be found.
+// Returns the sampling weight of each cell: the maximum of its value and a quarter of its neighbours', because the
+// density is constant within a cell while the radiance is interpolated. A small constant is added, so that light that
+// the measured positions missed can still be sampled.
 std::vector<float> weights(const std::vector<float>& values, uint32_t width, float mean) {
   const uint32_t height = width / 2;
   std::vector<float> out(values.size());
@@ -94,10 +99,10 @@ std::vector<float> weights(const std::vector<float>& values, uint32_t width, flo
   return out;
 }
 
-// A part of the unit interval as a whole one.
+// Maps x in [0, length) to [0, 1).
 float stretched(double x, double length) { return std::clamp(float(x / length), 0.0f, 0x1.fffffep-1f); }
 
-// The direction itself, or where a sun is in the way one beside it.
+// Returns the direction itself, or, if it lies within a sun, a direction just outside that sun.
 Vec3 beside_suns(const std::vector<Cone>& suns, const Vec3& direction) {
   for (const Cone& sun : suns) {
     if (!sun.contains(direction)) continue;
@@ -111,7 +116,7 @@ Vec3 beside_suns(const std::vector<Cone>& suns, const Vec3& direction) {
   return direction;
 }
 
-// What a sun adds to the irradiance of a plane that faces it.
+// Returns the irradiance that a sun adds to the background's on a plane facing the sun (mean channel).
 float measure_sun(const Environment::Radiance& radiance, const Cone& sun) {
   constexpr int kSide = 8;
   float sum = 0.0f;
@@ -180,7 +185,7 @@ Vec3 Environment::sample(const Receiver& receiver, const Vec2& u, Vec2* place) c
   const double part = share_of_suns(receiver, &sum);
   double x = u.x;
   if (x >= part) return sample_map(Vec2(stretched(x - part, 1.0 - part), u.y), place);
-  // Over the suns, [0, part) is as long as their weights.
+  // The interval [0, part) is rescaled to the sum of the suns' weights.
   x *= sum / part;
   size_t sun = 0;
   double weight = sun_weight(suns_[0], receiver);

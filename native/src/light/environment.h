@@ -1,7 +1,7 @@
-// Directions of light from the world: an importance map over the sphere, or uniform; and suns, which are too small and
-// bright for a map.
+// Sampling of directions towards the world's light. An importance map over the sphere (or a uniform density) covers the
+// background. Suns are too small and bright for a map, and are sampled separately.
 //
-// One density for all of it: a direction within a sun may have been chosen for either reason.
+// One mixture density covers both, because a direction within a sun may come from the map or from the sun.
 #pragma once
 
 #include <functional>
@@ -23,47 +23,50 @@ class Environment {
   using Radiance = std::function<Rgb(const Vec3&)>;
 
   struct Resolution {
-    uint32_t width = 256;  // of the map; its height is half of it
-    uint32_t points = 2;   // radiance is measured at points² places in each cell
+    uint32_t width = 256;  // Width of the map in cells; its height is half of that.
+    uint32_t points = 2;   // Each cell evaluates the radiance at points² positions.
   };
 
-  // A world that shines alike from everywhere; mean: of the channels of its radiance.
+  // Returns a world with the same radiance in every direction; `mean` is the mean of the radiance's channels.
   static Environment uniform(float mean);
-  // suns: cones that hold little but a sun each; those that shine no more than what lies beside them are left to the
-  // map. cancel is polled. Without a map where the radiance turns out to be constant. black(): there is nothing to
-  // sample.
+  // Measures the radiance and builds the map. `suns` are cones that closely enclose one sun each. A cone that is no
+  // brighter than its surroundings is left to the map. No map is built if the radiance is constant. `cancel` is polled;
+  // a cancelled build leaves no map.
   void build(const Radiance& radiance, const std::vector<Cone>& suns, const Resolution& resolution,
              const CancelCheck& cancel);
+  // Returns whether the world has no light to sample.
   bool black() const { return mean_ <= 0.0f && suns_.empty(); }
-  // Mean over the sphere of the mean channel, without the suns.
+  // Returns the mean of the radiance's channels over the sphere, without the suns.
   float mean() const { return mean_; }
-  // Null: directions are chosen uniformly. Copies share it.
+  // Returns the map, which copies share; null if directions are sampled uniformly.
   const Distribution2D* map() const { return map_.get(); }
   size_t sun_count() const { return suns_.size(); }
 
-  // Estimate of the irradiance, to weigh the world against other emitters.
+  // Returns an estimate of the irradiance at the receiver, which weighs the world against other emitters.
   float irradiance(const Receiver& receiver) const;
-  // place: of the direction on the map, worth keeping: density() is cheap with it. Without a map it means nothing. u.x
-  // also chooses between suns and map: what either gets of well-spread points is well-spread, too.
+  // Returns a sampled direction, and writes its position on the map to `place`, which makes density() cheap. Without a
+  // map, `place` has no meaning. u.x also chooses between suns and map, so that a well-distributed set of points
+  // remains well-distributed in each of them.
   Vec3 sample(const Receiver& receiver, const Vec2& u, Vec2* place) const;
+  // Returns the position of a direction on the map.
   Vec2 place_of(const Vec3& direction) const;
-  // Solid angle density.
+  // Returns the density in solid angle with which sample() returns the direction, whose position on the map is `place`.
   float density(const Vec3& direction, const Vec2& place, const Receiver& receiver) const;
 
  private:
   struct Sun {
     Cone cone;
-    float irradiance = 0.0f;  // mean channel, on a plane that faces it, beyond that of what lies behind
+    float irradiance = 0.0f;  // Mean channel of the irradiance on a plane facing the sun, in excess of the background.
   };
 
   float sun_weight(const Sun& sun, const Receiver& receiver) const;
-  // Part of the samples that go to suns; sum: of their weights.
+  // Returns the fraction of the samples that go to suns, and writes the sum of the suns' weights to `sum`.
   double share_of_suns(const Receiver& receiver, double* sum) const;
   Vec3 sample_map(const Vec2& u, Vec2* place) const;
   float map_density(const Vec3& direction, const Vec2& place) const;
 
-  std::shared_ptr<const Distribution2D> map_;  // x: longitude, y: colatitude from +Z
-  float mean_ = 0.0f;
+  std::shared_ptr<const Distribution2D> map_;  // Axes: x is the longitude, y the colatitude from +Z.
+  float mean_ = 0.0f;                          // See mean().
   std::vector<Sun> suns_;
 };
 

@@ -9,12 +9,12 @@ namespace {
 
 float clamped_acos(float c) { return std::acos(std::clamp(c, -1.0f, 1.0f)); }
 
-// Any unit vector at right angles to a unit vector.
+// Returns any unit vector perpendicular to the unit vector v.
 Vec3 perpendicular(const Vec3& v) {
   return glm::normalize(std::fabs(v.x) > 0.7f ? glm::cross(v, Vec3(0, 1, 0)) : glm::cross(v, Vec3(1, 0, 0)));
 }
 
-// `from` turned towards `to` by an angle, in their plane.
+// Returns `from` rotated by `angle` towards `to`, in their common plane.
 Vec3 turn(const Vec3& from, const Vec3& to, float angle) {
   Vec3 side = to - from * glm::dot(from, to);
   const float length = glm::length(side);
@@ -22,12 +22,13 @@ Vec3 turn(const Vec3& from, const Vec3& to, float angle) {
   return glm::normalize(from * std::cos(angle) + side * std::sin(angle));
 }
 
-// Smallest cone around both cones (as pbrt-v4's DirectionCone, section 3.8.4).
+// Sets the axis and angle of `out` to the smallest cone that contains both cones (pbrt-v4's DirectionCone,
+// section 3.8.4).
 void unite_cones(const LightBounds& a, const LightBounds& b, LightBounds* out) {
-  // The axis of a two-sided emitter has no sign: take the one nearer to the other cone.
+  // The axis of a two-sided emitter has no sign. The sign nearer to the other cone gives the smaller union.
   const Vec3 b_axis = b.two_sided && glm::dot(a.axis, b.axis) < 0.0f ? -b.axis : b.axis;
-  // The frequent case when a group is gathered: a single normal that lies within the cone, or a cone that is full
-  // already.
+  // This is the frequent case when the bounds of a group are accumulated: b is a single normal within the cone of a, or
+  // one of the cones is already the full sphere.
   const float cos_between = glm::dot(a.axis, b_axis);
   out->axis = a.axis;
   out->cos_normals = std::min(a.cos_normals, b.cos_normals);
@@ -58,8 +59,8 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
   u.two_sided = a.two_sided || b.two_sided;
   u.cos_emission = std::min(a.cos_emission, b.cos_emission);
   unite_cones(a, b, &u);
-  // A flipped one-sided axis would be wrong; it is only flipped against a two-sided one, and then the union is
-  // two-sided.
+  // Flipping the axis of a one-sided emitter would be wrong. unite_cones() flips only the axis of two-sided bounds, and
+  // then the union is two-sided.
   return u;
 }
 
@@ -72,7 +73,8 @@ float orientation_cost(const LightBounds& b, float stretch) {
       kPi / 2 * (2 * all * sin_normals - std::cos(normals - 2 * all) - 2 * normals * sin_normals + b.cos_normals);
   const Vec3 d = b.upper - b.lower;
   const float area = 2 * (d.x * d.y + d.y * d.z + d.z * d.x);
-  // Length beside area, so that lights on a line or in one point still differ.
+  // The squared diagonal is added to the area, so that boxes without area (lights on a line) still have different
+  // costs.
   return b.power * solid_angle * stretch * (area + 1e-3f * glm::dot(d, d));
 }
 

@@ -14,7 +14,8 @@ namespace gradus::light {
 
 namespace {
 
-// Light sampling does not know which lobe asks: the Light Path node sees no kind of ray (as in Cycles).
+// Returns the ray state for light sampling. It has no ray kind for the Light Path node, because light sampling does not
+// depend on the BSDF lobe (as in Cycles).
 shading::RayState light_ray(float length) {
   shading::RayState state;
   state.flags = 0;
@@ -22,12 +23,13 @@ shading::RayState light_ray(float length) {
   return state;
 }
 
+// Returns barycentric coordinates that are uniform in the triangle's area.
 Vec2 sample_triangle_area(const Vec2& u) {
   const float root = std::sqrt(u.x);
   return Vec2(1.0f - root, u.y * root);
 }
 
-// The surface is that of the emissive triangle with this index.
+// Fills a light sample from a surface point on the emissive triangle at `index` of the light table.
 void set_triangle_point(uint32_t index, const geometry::SurfacePoint& surface, LightPoint* point) {
   point->kind = LightKind::Triangle;
   point->index = index;
@@ -40,10 +42,11 @@ void set_triangle_point(uint32_t index, const geometry::SurfacePoint& surface, L
   point->error = surface.error;
 }
 
-// What is found on the way to an emitter point, which is written in place: the probability with which its emitter was
-// chosen (of all, or of its group), and the solid angle in which it was sampled uniformly, 0 if it was not.
+// Values from sampling a point that its evaluation reuses.
 struct Finding {
+  // Probability with which the emitter was chosen, among its group at first and finally among all emitters.
   double probability = 1.0;
+  // Solid angle in which the point was sampled uniformly; 0 if it was sampled differently.
   float solid_angle = 0.0f;
 };
 
@@ -112,7 +115,7 @@ void sample_any(const LitScene& scene, const Receiver& receiver, double choice, 
   }
 }
 
-// Probability that the emitter of the point is chosen.
+// Returns the probability with which the emitter of the light sample is chosen.
 double choice_probability(const LightTable& table, const LightPoint& point, const Receiver& receiver) {
   if (table.is_single_light()) return 1.0;
   LightChoice room;
@@ -137,20 +140,20 @@ geometry::SurfacePoint surface_of(const LitScene& scene, const LightPoint& point
   return scene.surface_point(hit);
 }
 
-// Emission that is the same everywhere; nullptr: the program has to run.
+// Returns the emission of a material with constant emission, or null if its program must be evaluated.
 const Rgb* constant_emission(const LitScene& scene, const LightPoint& point) {
   const shading::MaterialData& material = *scene.materials[scene.material_of(point.instance, point.triangle)];
   return material.emission_is_constant ? &material.constant_emission : nullptr;
 }
 
-// 0..1 over a sphere of directions.
+// Returns the coordinates in [0, 1]² of a direction on the sphere.
 Vec2 spherical(const Vec3& d) {
   const float u = d.x == 0.0f && d.y == 0.0f ? 0.0f : 0.5f * (1.0f - std::atan2(d.x, d.y) * kInvPi);
   return {u, 1.0f - std::acos(std::clamp(d.z, -1.0f, 1.0f)) * kInvPi};
 }
 
-// Coordinates as Cycles has them: 0..1 over an area light, over the directions around a point, over the square that a
-// spot's cone touches.
+// Returns the texture coordinates of a point on a light, as in Cycles. They span [0, 1]² over an area light, over all
+// directions of a point light, and over the square that encloses a spot's cone.
 Vec2 light_uv(const AnalyticLight& light, const LightPoint& point, const shading::LightShadingPoint& at) {
   if (light.half_width > 0.0f && light.half_height > 0.0f) {
     const Vec3 d = point.position - light.position;
@@ -164,6 +167,7 @@ Vec2 light_uv(const AnalyticLight& light, const LightPoint& point, const shading
   return d.z < 0.0f && tangent > 0.0f ? 0.5f + 0.5f * Vec2(d) / (-d.z * tangent) : Vec2(0.5f);
 }
 
+// Returns the factor by which the light's material scales its radiance.
 Rgb light_emission(const LitScene& scene, const AnalyticLight& light, const LightPoint& point,
                    const LightEvaluation& view) {
   if (light.material == UINT32_MAX || is_black(view.radiance)) return Rgb(1.0f);
@@ -181,14 +185,15 @@ float triangle_solid_angle(const LitScene& scene, const LightPoint& point, const
       .sampled_solid_angle();
 }
 
-// That of the table is the area at rest.
+// Returns the area of an emissive triangle. The area in the table is valid only for an instance that does not move.
 float triangle_area(const LitScene& scene, const LightPoint& point) {
   if (!scene.instances[point.instance].moves()) return scene.light_table->triangles[point.index].area;
   const std::array<Vec3, 3> p = scene.corners(point.instance, point.triangle, point.time);
   return 0.5f * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
 }
 
-// Geometry and solid angle density of an emissive triangle.
+// Evaluates geometry and solid angle density of a light sample on an emissive triangle. `solid_angle` is the one in
+// which the point was sampled, if it is known, else null.
 void view_triangle(const LitScene& scene, const LightPoint& point, const Receiver& receiver, const float* solid_angle,
                    LightEvaluation* view) {
   view->visibility = scene.instances[point.instance].visibility & GRADUS_VISIBLE_ALL;
@@ -209,8 +214,9 @@ void view_world(const LitScene& scene, const LightPoint& point, const Receiver& 
   view->pdf = scene.light_table->world.density(point.direction, point.barycentric, receiver);
 }
 
-// All but the radiance of triangles and world, and the light's program; the density without the choice. solid_angle: in
-// which the point was sampled from there, if that is known.
+// Evaluates a light sample except for the radiance of triangles and the world and for a light's material. The pdf
+// excludes the probability of the emitter. `solid_angle` is the one in which the point was sampled for this receiver,
+// if it is known, else null.
 void view_geometry(const LitScene& scene, const LightPoint& point, const Receiver& receiver, const float* solid_angle,
                    LightEvaluation* view) {
   std::construct_at(view);
@@ -226,6 +232,7 @@ void multiply_choice(double probability, LightEvaluation* view) {
   if (!is_finite(view->pdf)) view->pdf = 0.0f;
 }
 
+// Returns whether the radiance of a triangle or the world depends on the kind of ray.
 bool depends_on_kind(const LitScene& scene, const LightPoint& point) {
   const uint32_t material =
       point.kind == LightKind::World ? scene.world_material : scene.material_of(point.instance, point.triangle);
@@ -236,6 +243,7 @@ bool comes_from_behind(const Receiver& receiver, const Vec3& direction) {
   return !receiver.transmits && glm::dot(receiver.normal, direction) < 0.0f;
 }
 
+// Evaluates the materials for the radiance of a light sample.
 void shade_view(const LitScene& scene, const LightPoint& point, LightEvaluation* view) {
   if (point.kind == LightKind::AnalyticLight) {
     view->radiance *= light_emission(scene, scene.light_table->analytic_lights[point.index], point, *view);
@@ -256,7 +264,7 @@ Rgb evaluated_radiance(const LitScene& scene, const LightPoint& point, const Lig
 
 void sample_light_point(const LitScene& scene, const Receiver& receiver, float choice, const Vec2& u, LightPoint* point,
                         LightEvaluation* view) {
-  std::construct_at(point);  // assignment would make it on the stack, and copy it
+  std::construct_at(point);  // An assignment would construct a temporary and copy it.
   Finding finding;
   sample_any(scene, receiver, choice, u, point, &finding);
   view_geometry(scene, *point, receiver, &finding.solid_angle, view);

@@ -1,7 +1,7 @@
-// Everything that emits towards surfaces: lights, emissive triangles, the world.
+// Sampling of everything that emits towards surfaces: analytic lights, emissive triangles and the world.
 //
-// An LightPoint is independent of the point that is lit, so that a shift can copy it and ask for its density from the
-// offset vertex (same random numbers would give another point).
+// A LightPoint is independent of the receiver. A shift can therefore copy it and evaluate its density from the offset
+// path's vertex, where the same random numbers would give a different point.
 #pragma once
 
 #include <vector>
@@ -22,85 +22,97 @@ struct LightChoice;  // light/light_table.h
 
 enum class LightKind : uint8_t { None, AnalyticLight, Triangle, World };
 
+// A light sample: a point of an emitter, or a direction towards an emitter at infinity.
 struct LightPoint {
   LightKind kind = LightKind::None;
-  bool dirac = false;         // a position or direction without extent
-  bool found_by_rays = true;  // false: BSDF sampling can never find it (Dirac, or a light without multiple importance)
-  uint32_t index = 0;         // light, or emissive triangle
-  uint32_t instance = UINT32_MAX;  // of an emissive triangle
-  uint32_t triangle = UINT32_MAX;
-  Vec2 barycentric =
-      Vec2(0.0f);  // on the triangle; facing disk: coordinates on the unit disk; world: Environment's place
-  Vec3 position =
-      Vec3(0.0f);  // finite emitters; a facing disk turns with its receiver: take direction and distance of the view
-  Vec3 normal = Vec3(0.0f);     // geometric; 0 for points
-  Vec3 direction = Vec3(0.0f);  // towards the emitter: world and suns
-  float error = 0.0f;           // bound on the rounding error of `position` along the normal
-  float time = 0.0f;            // of the shutter, as the ray's that it is for
+  bool dirac = false;  // The emitter is a single position or direction, without extent.
+  // False: BSDF sampling can never find the point (a Dirac light, or a light without multiple importance sampling).
+  bool found_by_rays = true;
+  uint32_t index = 0;              // Index in LightTable::analytic_lights or LightTable::triangles.
+  uint32_t instance = UINT32_MAX;  // Instance of an emissive triangle.
+  uint32_t triangle = UINT32_MAX;  // Index of an emissive triangle in its mesh.
+  // Triangle: barycentric coordinates. Facing disk: coordinates on the unit disk. World: position on Environment's map.
+  Vec2 barycentric = Vec2(0.0f);
+  // Position on a finite emitter. A facing disk turns towards its receiver, so that its position depends on the
+  // receiver: use the direction and distance of the LightEvaluation.
+  Vec3 position = Vec3(0.0f);
+  Vec3 normal = Vec3(0.0f);     // Geometric normal; 0 for point lights and at infinity.
+  Vec3 direction = Vec3(0.0f);  // Unit direction towards the emitter, for the world and suns.
+  float error = 0.0f;           // Bound on the rounding error of `position` along the normal.
+  float time = 0.0f;            // Shutter time, equal to that of the receiver's ray.
+
+  // Returns whether the emitter is the world or a sun.
   bool at_infinity() const {
     return kind == LightKind::World ||
            (kind == LightKind::AnalyticLight && normal == Vec3(0.0f) && direction != Vec3(0.0f));
   }
 };
 
-// An emitter point as seen from a receiver.
+// A light sample as seen from a receiver.
 struct LightEvaluation {
-  Vec3 direction = Vec3(0.0f);  // from the receiver, unit
-  float distance = kInfinity;
-  Rgb radiance = Rgb(
-      0.0f);  // towards the receiver; Dirac: intensity/d² (point) or irradiance (sun): the integrand without a density
-  float pdf = 0.0f;     // solid angle at the receiver, choice of the emitter included; Dirac: the choice alone
-  float cosine = 1.0f;  // |normal·direction| at the emitter; 1 at infinity
+  Vec3 direction = Vec3(0.0f);  // Unit direction from the receiver to the light sample.
+  float distance = kInfinity;   // Distance from the receiver; infinite for the world and suns.
+  // Radiance towards the receiver. For a Dirac light, the integrand without a density: intensity/d² (point) or
+  // irradiance (sun).
+  Rgb radiance = Rgb(0.0f);
+  // Density in solid angle at the receiver, including the probability of the emitter. For a Dirac light, only that
+  // probability.
+  float pdf = 0.0f;
+  float cosine = 1.0f;  // |normal·direction| at the emitter; 1 at infinity.
   bool casts_shadow = true;
-  uint32_t visibility = 0;  // GradusVisibility bits: which kinds of bounce may see it
+  uint32_t visibility = 0;  // GradusVisibility bits of the ray kinds that see the emitter.
   uint32_t max_bounces = UINT32_MAX;
-  bool by_kind =
-      false;  // the radiance depends on the kind of ray that looks: ask evaluated_radiance(); `radiance` is 1
+  // True: the radiance depends on the kind of ray. Then `radiance` is 1, and evaluated_radiance() returns the radiance.
+  bool by_kind = false;
 };
 
-// The receiver of light; normal 0 for points without an orientation.
+// A point that receives light. The normal is 0 for points without an orientation.
 struct Receiver {
   Vec3 position = Vec3(0.0f);
   Vec3 normal = Vec3(0.0f);
-  bool transmits = false;  // also lit from behind
-  float time = 0.0f;       // of the shutter
-  // Where the choice among emitters is kept for the next that asks from here; nullptr: nowhere.
+  bool transmits = false;  // The point also receives light from behind.
+  float time = 0.0f;       // Shutter time.
+  // Cache of the choice among emitters, for further calls with the same receiver; null: nothing is cached.
   LightChoice* memo = nullptr;
+  // Compares the fields on which the choice among emitters depends.
   bool operator==(const Receiver& other) const {
     return position == other.position && normal == other.normal && transmits == other.transmits;
   }
 };
 
-// Samples a point on some emitter. choice: which one; u: where. kind None if there is nothing to sample from here.
-// view: what evaluate_light() would give, but cheaper, because the choice is made and its probability found in one go;
-// only the radiance is left out, as 0, where the light comes from behind a receiver that does not transmit. Both are
-// written where the caller keeps them: copies of what has just been written stall.
+// Chooses an emitter by `choice` in [0, 1) and samples a point on it by u in [0, 1)². The point's kind is None if no
+// emitter reaches the receiver. `view` receives the result of evaluate_light(), which costs less here because the
+// choice and its probability are computed together. One exception: the radiance is 0 if the light comes from behind a
+// receiver that does not transmit. The results are written in place, because a copy of recently written memory stalls
+// the processor.
 void sample_light_point(const LitScene& scene, const Receiver& receiver, float choice, const Vec2& u, LightPoint* point,
                         LightEvaluation* view);
-// The same point from any receiver: pdf 0 where it cannot be sampled from there, radiance 0 where it does not shine
-// there.
+// Evaluates a light sample for any receiver. The pdf is 0 if the point cannot be sampled from the receiver. The
+// radiance is 0 if the emitter does not emit towards it.
 LightEvaluation evaluate_light(const LitScene& scene, const LightPoint& point, const Receiver& receiver);
-// Radiance of a triangle or the world towards the receiver, for a ray of this kind.
+// Returns the radiance of an emissive triangle or the world towards the receiver, for a ray of the given state.
 Rgb evaluated_radiance(const LitScene& scene, const LightPoint& point, const LightEvaluation& view,
                        const shading::RayState& ray);
-// The density of evaluate_light() alone: for weights, where the radiance is known or not needed.
+// Returns only the pdf of evaluate_light(), for weights where the radiance is known or not needed.
 float light_point_pdf(const LitScene& scene, const LightPoint& point, const Receiver& receiver);
-// The segment from a surface to an emitter, both ends off their surfaces; start: of the ray, beside `from`.
+// Returns the segment from the surface point `from` to a light sample. Both ends are offset from their surfaces;
+// `start` is the offset origin of the ray.
 Ray ray_to_light(const Vec3& start, const geometry::SurfacePoint& from, const LightPoint& to,
                  const LightEvaluation& view);
-// The emitter point of a surface that a ray hit (kind None if it is not sampled as a light).
+// Returns the light sample at a surface point that a ray hit; its kind is None if the surface is not sampled as a
+// light.
 LightPoint light_point_of_surface(const LitScene& scene, const geometry::SurfacePoint& point);
-// The emitter point of a ray that left the scene.
+// Returns the light sample for a ray that left the scene; its kind is None if the world is black.
 LightPoint light_point_of_world(const LitScene& scene, const Vec3& direction);
 
-// Lights do not stop rays: a ray sees all that it crosses before its hit. Calls visit(LightPoint, distance) for each
-// light with extent between ray.t_min and ray.t_max, and for each sun with extent, at infinity, if ray.t_max is
-// infinite.
+// An intersection of a ray with an analytic light.
 struct LightHit {
   LightPoint point;
   float distance;
 };
-// Fills `hits`, sorted by distance.
+// Replaces `hits` by the intersections of a ray with all lights that have extent, sorted by distance. Analytic lights
+// do not stop rays, so that a ray crosses every light between t_min and t_max. Suns with extent are hit at infinite
+// distance if t_max is infinite.
 void intersect_lights(const LitScene& scene, const Ray& ray, std::vector<LightHit>* hits);
 
 }  // namespace gradus::light

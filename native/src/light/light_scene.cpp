@@ -10,13 +10,16 @@ namespace gradus::light {
 
 namespace {
 
+// Maximum number of finite lights that are tested one by one, without an Embree scene.
 constexpr size_t kMaxListed = 12;
 
-// Equal distances by index, so that the order does not depend on the traversal.
+// Orders hits by distance. Hits of equal distance are ordered by index, so that the result does not depend on
+// traversal.
 bool before(const LightHit& a, const LightHit& b) {
   return a.distance != b.distance ? a.distance < b.distance : a.point.index < b.point.index;
 }
 
+// Appends the intersection of a ray with one light, if there is one.
 void try_light(const std::vector<AnalyticLight>& analytic_lights, uint32_t index, const Ray& ray,
                std::vector<LightHit>* hits) {
   LightHit hit{};
@@ -26,7 +29,7 @@ void try_light(const std::vector<AnalyticLight>& analytic_lights, uint32_t index
 }
 
 struct Query {
-  RTCIntersectContext context;  // first: Embree hands out its address
+  RTCIntersectContext context;  // Must be first: Embree passes its address to meet_light().
   const std::vector<AnalyticLight>* analytic_lights;
   const std::vector<uint32_t>* placed;
   const Ray* ray;
@@ -46,7 +49,7 @@ void bound_light(const RTCBoundsFunctionArguments* args) {
   *args->bounds_o = {lower.x, lower.y, lower.z, 0.0f, upper.x, upper.y, upper.z, 0.0f};
 }
 
-// Collects, and never reports a hit to Embree: the ray goes on to the end.
+// Embree's intersection callback. It collects the hit but does not report it to Embree, so that traversal continues.
 void meet_light(const RTCIntersectFunctionNArguments* args) {
   if (!args->valid[0]) return;
   auto* query = reinterpret_cast<Query*>(args->context);
@@ -77,7 +80,7 @@ LightScene::LightScene(const geometry::EmbreeDevice& device, const std::vector<A
   rtcCommitScene(scene_);
   if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) {
     rtcReleaseScene(scene_);
-    throw Error(GRADUS_ERROR_UNKNOWN, "Embree failed to build the lamps");
+    throw Error(GRADUS_ERROR_UNKNOWN, "Embree failed to build the scene of analytic lights");
   }
 }
 

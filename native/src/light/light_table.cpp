@@ -9,14 +9,17 @@ namespace gradus::light {
 
 namespace {
 
-// Every group that can shine at all gets its share of this part of the samples, whatever the estimates say.
+// Fraction of the samples that is divided equally among all groups whose estimate is not zero, because the estimates
+// ignore occlusion.
 constexpr double kDefensive = 0.2;
 
+// Returns an upper bound of a sun's irradiance at the receiver, without occlusion.
 float sun_importance(float irradiance, const AnalyticLight& sun, const Receiver& receiver) {
   return irradiance *
          Cone{-sun.emission_direction, sun.one_minus_cos_sun}.highest_cosine(receiver.normal, receiver.transmits);
 }
 
+// Returns the probability of a group with this weight, where `groups` groups have a weight above 0.
 double defended(double weight, double sum, int groups) {
   return weight > 0.0 ? (1.0 - kDefensive) * weight / sum + kDefensive / groups : 0.0;
 }

@@ -1,4 +1,4 @@
-// All emitters of a scene, and the choice among them.
+// The table of all emitters of a scene, and the choice among them.
 #pragma once
 
 #include <memory>
@@ -9,26 +9,26 @@
 #include "light/environment.h"
 #include "light/light_tree.h"
 
-
 namespace gradus::light {
 
 class LightScene;  // light/light_scene.h
 struct WorldMap;   // light/world_map.h
 
+// A triangle that is sampled as a light.
 struct EmissiveTriangle {
   uint32_t instance = 0;
   uint32_t triangle = 0;
-  float area = 0.0f;
+  float area = 0.0f;  // Area in m² at the middle of the shutter interval.
 };
 
-// Probabilities of the three kinds of emitters for one receiver; they sum to one, or are all 0: nothing reaches it.
+// Probabilities of the three groups of emitters for one receiver. They sum to one, or are all 0 if no light reaches it.
 struct GroupChoice {
   double tree = 0.0, suns = 0.0, world = 0.0;
 };
 
-// The choice among all emitters as one receiver sees it.
+// The distribution over all emitters for one receiver.
 struct LightChoice {
-  bool known = false;
+  bool known = false;  // True once the other fields are computed.
   Receiver receiver;
   LightTree::Cut cut;
   GroupChoice group;
@@ -36,37 +36,39 @@ struct LightChoice {
 
 struct LightTable {
   std::vector<AnalyticLight> analytic_lights;
-  std::vector<EmissiveTriangle> triangles;  // instance after instance, ascending
-  std::vector<uint32_t> first_triangle;     // of each instance, in `triangles`; one more at the end
-  std::vector<uint32_t> beyond_limit;  // instances with more triangles than there was room for: found by rays alone
-  LightTree tree;                      // lights: those of tree_lights, then the triangles
-  std::vector<uint32_t> tree_lights;   // lights that are not at infinity
-  std::vector<uint32_t> suns;          // lights that are
-  std::vector<uint32_t> slot;          // of each light, in tree_lights or suns
-  std::vector<float> sun_irradiance;   // of each sun
+  std::vector<EmissiveTriangle> triangles;  // Sorted by instance, then by triangle.
+  std::vector<uint32_t> first_triangle;     // Offset of each instance in `triangles`, and the total.
+  // Emissive instances whose triangles exceed the limit of the table. Only BSDF sampling finds them.
+  std::vector<uint32_t> beyond_limit;
+  LightTree tree;                     // Its lights are `tree_lights`, followed by `triangles`.
+  std::vector<uint32_t> tree_lights;  // Indices of the analytic lights at finite distance.
+  std::vector<uint32_t> suns;         // Indices of the analytic lights at infinity.
+  std::vector<uint32_t> slot;         // Position of each analytic light in `tree_lights` or `suns`.
+  std::vector<float> sun_irradiance;  // Irradiance of each sun on a plane facing it.
   Environment world;
   std::shared_ptr<const LightScene> lights_with_extent;
 
-  // There is nothing to choose.
+  // Returns whether there is exactly one emitter, so that no choice is needed.
   bool is_single_light() const { return tree.size() == 1 && suns.empty() && world.black(); }
-  // The choice for a receiver, from its memo if that has it; room: where else to work it out. A vertex is asked by its
-  // own light sample, for the weight of what its ray finds, and by the offsets of its pixel's neighbours.
+  // Returns the choice for a receiver. The receiver's memo caches it; without a memo it is computed in `room`. A path
+  // vertex needs the choice several times: for its light sample, for the weight of the emitter that its BSDF sample
+  // hits, and for the offset paths of neighbouring pixels.
   const LightChoice& choose(const Receiver& receiver, LightChoice* room) const;
-  // Of one sun among the suns.
+  // Returns the probability with which sample_sun() chooses the sun at index `sun` of `suns`.
   double sun_probability(size_t sun, const Receiver& receiver) const;
-  // Index in `lights` of the sun that is chosen by u in [0, 1), with that probability.
+  // Returns the index in `analytic_lights` of the sun chosen by u in [0, 1), and writes the probability of that choice.
   uint32_t sample_sun(const Receiver& receiver, double u, double* probability) const;
-  // Index in `triangles`, UINT32_MAX if it is not sampled as a light.
+  // Returns the index of a triangle in `triangles`, or UINT32_MAX if it is not sampled as a light.
   uint32_t find_triangle(uint32_t instance, uint32_t triangle) const;
 
  private:
-  // cut: through the tree, for this receiver.
+  // Returns the probabilities of the groups. `cut` is the cut through the tree for the same receiver.
   GroupChoice choose_group(const Receiver& receiver, const LightTree::Cut& cut) const;
   double irradiance_of_suns(const Receiver& receiver) const;
 };
 
-// The scene is complete but for its emitters. lights_with_extent is left to the caller. world: what the commit before
-// left, which this one brings up to date. Throws Error CANCELLED.
+// Builds the table of a scene that is complete except for its light table. The caller sets `lights_with_extent`.
+// `world` is the world map of the previous commit, which is updated. Throws Error CANCELLED.
 std::shared_ptr<LightTable> build_light_table(const LitScene& scene, std::vector<AnalyticLight> analytic_lights,
                                               WorldMap* world, const CommitMonitor& monitor);
 

@@ -1,4 +1,4 @@
-// The emitters of a commit: lights, emissive triangles with their power, the tree.
+// Builds the light table of a commit: analytic lights, emissive triangles with their power, and the light tree.
 #include <algorithm>
 #include <cmath>
 
@@ -17,9 +17,11 @@ namespace gradus::light {
 
 namespace {
 
-// More emissive triangles than this are left to BSDF sampling: 100 bytes and 2 µs of building each.
+// Maximum number of emissive triangles in the table; only BSDF sampling finds the others. Each one costs 100 bytes and
+// 2 µs of build time.
 constexpr size_t kMaxTriangles = 4u << 20;
-// Triangles whose textured emission is measured point by point; beyond, the material's estimate serves for all.
+// Maximum number of emissive triangles for which textured emission is measured per triangle. With more triangles, the
+// material's estimate replaces the measurement for all of them.
 constexpr size_t kMaxMeasured = 1u << 19;
 
 bool is_light(const shading::MaterialData* material) {
@@ -53,7 +55,7 @@ void find_triangles(const LitScene& scene, const CommitMonitor& monitor, LightTa
   table->first_triangle.push_back(uint32_t(triangles.size()));
 }
 
-// Mean radiance of a triangle over four points and both sides.
+// Returns the mean radiance of a triangle over four points and both sides.
 float measure_radiance(const LitScene& scene, const EmissiveTriangle& triangle) {
   constexpr float kPoints[4][2] = {{1 / 3.0f, 1 / 3.0f}, {0.15f, 0.15f}, {0.7f, 0.15f}, {0.15f, 0.7f}};
   shading::RayState state;
@@ -78,11 +80,11 @@ float radiance_estimate(const LitScene& scene, const EmissiveTriangle& triangle,
   const shading::MaterialData& material = *scene.materials[scene.material_of(triangle.instance, triangle.triangle)];
   if (material.emission_is_constant) return mean_component(glm::abs(material.constant_emission));
   if (!measure) return std::max(material.emission_estimate, 1e-6f);
-  // The points may all lie on dark texels: keep a part of the estimate for the whole material.
+  // All four points may lie on dark texels, so a fraction of the material's estimate is added.
   return measure_radiance(scene, triangle) + 0.05f * std::max(material.emission_estimate, 0.0f) + 1e-6f;
 }
 
-// Without its power.
+// Returns the bounds of a triangle without its power.
 LightBounds bounds_of_corners(const std::array<Vec3, 3>& p) {
   LightBounds b;
   b.lower = glm::min(p[0], glm::min(p[1], p[2]));
@@ -94,8 +96,8 @@ LightBounds bounds_of_corners(const std::array<Vec3, 3>& p) {
   return b;
 }
 
-// All places where it is while the shutter is open, as far as a few moments tell: only the choice among lights depends
-// on them.
+// Returns the bounds of a triangle over the shutter interval, from five moments if it moves. This approximation is
+// sufficient because only the choice among lights depends on the bounds.
 LightBounds triangle_bounds(const LitScene& scene, const EmissiveTriangle& triangle, bool measure) {
   constexpr int kMoments = 5;
   const bool moves = scene.instances[triangle.instance].moves();
@@ -106,6 +108,7 @@ LightBounds triangle_bounds(const LitScene& scene, const EmissiveTriangle& trian
   return b;
 }
 
+// Returns the bounds of all lights of the tree: finite analytic lights, then triangles.
 std::vector<LightBounds> all_bounds(const LitScene& scene, const LightTable& table, const CommitMonitor& monitor) {
   std::vector<LightBounds> bounds;
   for (const uint32_t light : table.tree_lights) bounds.push_back(light_bounds(table.analytic_lights[light]));
@@ -122,6 +125,7 @@ std::vector<LightBounds> all_bounds(const LitScene& scene, const LightTable& tab
   return bounds;
 }
 
+// Divides the analytic lights into finite lights and suns.
 void sort_lights(LightTable* table) {
   for (uint32_t i = 0; i < table->analytic_lights.size(); ++i) {
     const AnalyticLight& light = table->analytic_lights[i];
@@ -129,7 +133,7 @@ void sort_lights(LightTable* table) {
     table->slot.push_back(uint32_t(list.size()));
     list.push_back(i);
     if (!light.at_infinity()) continue;
-    // Irradiance facing the disk: radiance times its projected solid angle pi sin².
+    // The irradiance on a plane facing the sun is its radiance times its projected solid angle, pi sin².
     const float projected = kPi * light.one_minus_cos_sun * (2.0f - light.one_minus_cos_sun);
     table->sun_irradiance.push_back(mean_component(glm::abs(light.intensity)) * (light.dirac() ? 1.0f : projected));
   }

@@ -7,12 +7,13 @@ namespace gradus::light {
 
 namespace {
 
-// Part of the samples that the parts of a cut share evenly: what seems to shine strongest may be hidden.
+// Fraction of the samples that is divided equally among the nodes of a cut, because the node with the maximum weight
+// may be occluded.
 constexpr double kDefensive = 0.2;
 
 float sine(float cosine) { return std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)); }
 
-// cos and sin of max(0, a - b).
+// These functions return the cosine and the sine of max(0, a - b).
 float cos_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
   return cos_a > cos_b ? 1.0f : cos_a * cos_b + sin_a * sin_b;
 }
@@ -20,7 +21,7 @@ float sin_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
   return cos_a > cos_b ? 0.0f : sin_a * cos_b - cos_a * sin_b;
 }
 
-// Largest cosine at the receiver towards the bounding sphere, whose half angle is given.
+// Returns the maximum cosine at the receiver towards a bounding sphere, whose half angle has the sine and cosine given.
 float receiver_cosine(const Receiver& receiver, const Vec3& to_light, float sin_b, float cos_b) {
   if (receiver.normal == Vec3(0.0f)) return 1.0f;
   float c = std::clamp(glm::dot(receiver.normal, to_light), -1.0f, 1.0f);
@@ -30,11 +31,12 @@ float receiver_cosine(const Receiver& receiver, const Vec3& to_light, float sin_
 
 }  // namespace
 
-// Conty Estévez and Kulla 2018, section 4.2; cosines of clamped angle differences as in pbrt-v4 section 12.6.3.
+// The measure is from Conty Estévez and Kulla 2018, section 4.2. The cosines of clamped angle differences are computed
+// as in pbrt-v4 section 12.6.3.
 float LightTree::importance(const Node& node, const Receiver& receiver) {
   const Vec3 to_light = node.centre - receiver.position;
   const float distance2 = glm::dot(to_light, to_light);
-  // Within the bounding sphere every direction is possible, and the distance is taken as the radius.
+  // Inside the bounding sphere every direction is possible, and the radius replaces the distance.
   if (distance2 <= node.radius2 || distance2 == 0.0f) return node.power / std::max(node.radius2, 1e-20f);
   const Vec3 direction = to_light / std::sqrt(distance2);
   const float sin2_b = node.radius2 / distance2;
@@ -53,8 +55,8 @@ float LightTree::importance(const Node& node, const Receiver& receiver) {
   return node.power * std::max(cos_light, 0.0f) * at_receiver / distance2;
 }
 
-// Where neither child seems to reach the receiver, by power: the sample will be black, but the probabilities still sum
-// to one.
+// If neither child has a positive bound, the probability is in proportion to power. The sample is then black, but the
+// probabilities still sum to one.
 double LightTree::first_probability(const Node& node, const Receiver& receiver) const {
   const Node& a = nodes_[node.child];
   const Node& b = nodes_[node.child + 1];
@@ -66,15 +68,16 @@ double LightTree::first_probability(const Node& node, const Receiver& receiver) 
   return x + y > 0.0 && std::isfinite(x + y) ? x / (x + y) : 0.5;
 }
 
-// Their splitting heuristic (section 5.4), which looks at how much 1/d² varies within the node, comes down to such a
-// ratio.
+// The splitting heuristic of Conty Estévez and Kulla 2018 (section 5.4) measures the variation of 1/d² within the node,
+// which reduces to a limit on the ratio of distance to radius.
 bool LightTree::is_near(const Node& node, const Receiver& receiver) {
-  constexpr float kNear = 2.0f;  // radii
+  constexpr float kNear = 2.0f;  // Distance limit in multiples of the node's radius.
   const Vec3 to_light = node.centre - receiver.position;
   return !(node.child & kLeaf) && glm::dot(to_light, to_light) < kNear * kNear * node.radius2;
 }
 
-// Level by level, so that where there is no room for all it is the same for the whole neighbourhood.
+// The refinement proceeds level by level. If kMax limits it, the depth of the cut is then nearly the same for all near
+// nodes.
 void LightTree::refine(const Receiver& receiver, Cut* cut) const {
   bool found = true;
   while (found) {
@@ -92,7 +95,6 @@ void LightTree::refine(const Receiver& receiver, Cut* cut) const {
   }
 }
 
-// Leaves the parts that can shine. False: nothing reaches the receiver, or more than floats hold.
 bool LightTree::weigh(const Receiver& receiver, Cut* cut) const {
   int count = 0;
   double sum = 0.0;
@@ -123,7 +125,7 @@ void LightTree::cut(const Receiver& receiver, Cut* cut) const {
   cut->count_ = 1;
   refine(receiver, cut);
   if (weigh(receiver, cut)) return;
-  // All of the tree then; that the sum is 0 tells.
+  // No light reaches the receiver. The cut is the root alone, and its sum of 0 marks this case.
   cut->cut_nodes_[0] = root;
   cut->count_ = 1;
 }

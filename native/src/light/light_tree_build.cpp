@@ -9,18 +9,20 @@
 
 namespace gradus::light {
 
-// Top-down, by the cheapest of kBuckets - 1 planes in each of three directions.
+// Builds the tree top-down. Each split is the one of minimum cost among kBuckets - 1 planes along each of three axes.
 struct LightTree::Builder {
   static constexpr int kBuckets = 12;
-  // Trails have 64 bits: from here on halves are taken, which ends within 32 more levels.
+  // Depth from which a split halves the number of lights. This bounds the remaining depth to 32 levels, so that a path
+  // from the root fits in 64 bits.
   static constexpr int kMaxUnbalanced = 30;
+  // Number of lights above which the two children of a node are built in parallel.
   static constexpr uint32_t kParallel = 4096;
 
   LightTree* tree;
   const std::vector<LightBounds>& lights;
   const CancelCheck& cancel;
   std::vector<uint32_t> order;
-  std::atomic<uint32_t> next{1};  // node not yet used
+  std::atomic<uint32_t> next{1};  // Index of the first unused node.
   std::atomic<bool> stopped{false};
 
   struct Split {
@@ -35,6 +37,7 @@ struct LightTree::Builder {
     return std::clamp(int(float(kBuckets) * ((position - lower) / extent)), 0, kBuckets - 1);
   }
 
+  // Returns the split of minimum cost along one axis. The bounds are those of the lights' centres.
   Split best_along(int axis, uint32_t first, uint32_t last, const Vec3& lower, const Vec3& extent) const {
     std::array<LightBounds, kBuckets> buckets;
     for (uint32_t i = first; i < last; ++i) {
@@ -58,6 +61,7 @@ struct LightTree::Builder {
     return best;
   }
 
+  // Partitions the lights at their median along an axis, and returns the index of the median.
   uint32_t split_at_middle(uint32_t first, uint32_t last, int axis) {
     const uint32_t middle = (first + last) / 2;
     std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last, [&](uint32_t a, uint32_t b) {
@@ -67,6 +71,7 @@ struct LightTree::Builder {
     return middle;
   }
 
+  // Partitions the lights of a node, and returns the index of the second child's first light.
   uint32_t split(uint32_t first, uint32_t last, int depth) {
     Vec3 lower(kInfinity), upper(-kInfinity);
     for (uint32_t i = first; i < last; ++i) {
@@ -88,6 +93,7 @@ struct LightTree::Builder {
     return uint32_t(middle - order.begin());
   }
 
+  // Builds the node at `index` from the lights [first, last) of `order`, and returns its bounds.
   LightBounds build(uint32_t index, uint32_t first, uint32_t last, int depth, uint64_t trail) {
     if (last - first == 1) {
       tree->trails_[order[first]] = trail;
@@ -111,6 +117,7 @@ struct LightTree::Builder {
     return fill(index, unite(a, b), child);
   }
 
+  // Writes the node at `index`, and returns its bounds.
   LightBounds fill(uint32_t index, const LightBounds& b, uint32_t child) const {
     const Vec3 diagonal = b.upper - b.lower;
     Node& node = tree->nodes_[index];

@@ -1,4 +1,4 @@
-// What light sampling needs of a scene: shaded geometry and the table of all emitters.
+// The scene data that light sampling needs: shaded geometry and the table of all emitters.
 #pragma once
 
 #include <memory>
@@ -7,9 +7,9 @@
 
 namespace gradus::light {
 
-struct LightTable;  // light/light_table.h: analytic lights, emissive triangles, environment distribution, their choice
+struct LightTable;  // See light/light_table.h.
 
-// A shaded scene with its emitters. Functions that sample or evaluate light take this part of a snapshot.
+// A shaded scene with its emitters. It is the base class of a snapshot that functions for light sampling take.
 class LitScene : public shading::ShadedScene {
  public:
   std::shared_ptr<const LightTable> light_table;

@@ -12,18 +12,19 @@ namespace {
 
 float sine_of(float cosine) { return std::sqrt(std::max(0.0f, (1.0f - cosine) * (1.0f + cosine))); }
 
-// A complex number whose argument is the solid angle of the rectangle from the foot of the perpendicular, of length z,
-// to (x, y).
+// Returns a complex number whose argument is the solid angle of the rectangle that extends from the foot of the
+// perpendicular, which has length z, to (x, y).
 std::complex<double> corner(double x, double y, double z) { return {z * std::sqrt(x * x + y * y + z * z), x * y}; }
 
-// a·b by components: finite numbers need no more.
+// Returns a·b by components. This omits the checks of operator* for numbers that are not finite.
 std::complex<double> times(const std::complex<double>& a, const std::complex<double>& b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
-// The four corners' angles, atan(xy / (z·sqrt(x²+y²+z²))), add up with alternating signs to one in (0, 2π): a single
-// arctangent of the product. About 0 rounding decides the sign, so that what is nearly all of the hemisphere counts as
-// nothing, too.
+// Returns the solid angle of a rectangle at distance z. The angles of its four corners, atan(xy / (z·sqrt(x²+y²+z²))),
+// add up with alternating signs to an angle in (0, 2π), which is a single arctangent of a complex product. Near 0,
+// rounding determines the sign. A small negative angle is therefore not wrapped to 2π, and a rectangle that covers
+// nearly the whole hemisphere also counts as not usable.
 float solid_angle_of(float x0, float x1, float y0, float y1, float z) {
   const std::complex<double> plus = times(corner(x1, y1, z), corner(x0, y0, z)),
                              minus = times(corner(x0, y1, z), corner(x1, y0, z));
@@ -39,7 +40,7 @@ SphericalRectangle::SphericalRectangle(const Vec3& centre, const Vec3& axis_x, c
                                        float half_height, const Vec3& from)
     : from_(from), x_(axis_x), y_(axis_y), z_(glm::cross(axis_x, axis_y)) {
   const Vec3 d = centre - from;
-  // The plane lies at negative z of the local frame.
+  // The rectangle's plane lies at negative z of the local frame.
   z0_ = glm::dot(d, z_);
   if (z0_ > 0.0f) {
     z_ = -z_;
@@ -54,11 +55,11 @@ SphericalRectangle::SphericalRectangle(const Vec3& centre, const Vec3& axis_x, c
 }
 
 Vec3 SphericalRectangle::sample(const Vec2& u) const {
-  // z components of the unit normals of the four planes through the point and an edge; the others follow from them.
+  // These are z components of the unit normals of the planes through the point and one edge each.
   const float n0 = -y0_ / std::sqrt(z0_ * z0_ + y0_ * y0_), n2 = y1_ / std::sqrt(z0_ * z0_ + y1_ * y1_);
   const float n3 = -x0_ / std::sqrt(z0_ * z0_ + x0_ * x0_);
-  // The paper's angle is a share of the solid angle less two angles at corners, whose cosines are known: addition
-  // theorems need no inverse functions.
+  // The paper's angle is a fraction of the solid angle minus two corner angles, whose cosines are known. The addition
+  // theorems avoid inverse functions.
   const float cos_a = -n2 * n3, cos_b = -n3 * n0;
   const float sin_a = sine_of(cos_a), sin_b = sine_of(cos_b);
   const float cos_ab = cos_a * cos_b - sin_a * sin_b, sin_ab = sin_a * cos_b + cos_a * sin_b;

@@ -9,15 +9,15 @@ namespace {
 
 float sine_of(float cosine) { return std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)); }
 
-// 1 − a·b of unit vectors, without cancellation.
+// Returns 1 − a·b of unit vectors, without cancellation.
 float one_minus_dot(const Vec3& a, const Vec3& b) { return 0.5f * glm::dot(a - b, a - b); }
 
-// Unit vector at right angles to `axis`, in the half plane of v.
+// Returns the unit vector perpendicular to `axis` in the half plane that contains v.
 Vec3 side_towards(const Vec3& v, const Vec3& axis) { return glm::normalize(v - axis * glm::dot(v, axis)); }
 
 }  // namespace
 
-// Van Oosterom and Strackee 1983, "The Solid Angle of a Plane Triangle".
+// The solid angle is that of Van Oosterom and Strackee 1983, "The Solid Angle of a Plane Triangle".
 SphericalTriangle::SphericalTriangle(const std::array<Vec3, 3>& corners, const Vec3& from)
     : a_(glm::normalize(corners[0] - from)),
       b_(glm::normalize(corners[1] - from)),
@@ -26,9 +26,9 @@ SphericalTriangle::SphericalTriangle(const std::array<Vec3, 3>& corners, const V
   solid_angle_ = 2.0f * std::atan2(volume_, 1.0f + glm::dot(a_, b_) + glm::dot(b_, c_) + glm::dot(c_, a_));
 }
 
-// Arvo's names: a part of the triangle with area A' shares the corner a, its angle α and the side c towards b, and ends
-// in a corner c' on the side from a to c; the point lies between b and c'. Cosines near 1 are replaced by their
-// distance from it.
+// The names are Arvo's. A subtriangle with area A' shares with the triangle the corner a, its angle α and the side c
+// towards b. Its third corner c' lies on the side from a to c, and the sampled point lies between b and c'. The
+// computation replaces cosines near 1 by 1 − cos, to avoid cancellation.
 Vec3 SphericalTriangle::sample(const Vec2& u) const {
   const Vec3 ab = glm::cross(a_, b_), ac = glm::cross(a_, c_);
   const float lengths = std::sqrt(glm::dot(ab, ab) * glm::dot(ac, ac));
@@ -46,7 +46,7 @@ Vec3 SphericalTriangle::sample(const Vec2& u) const {
   return (1.0f - h) * b_ + std::sqrt(std::max(0.0f, h * (2.0f - h))) * side_towards(end, b_);
 }
 
-// Möller and Trumbore 1997.
+// The intersection is that of Möller and Trumbore 1997.
 Vec2 barycentric_towards(const std::array<Vec3, 3>& corners, const Vec3& from, const Vec3& direction) {
   const Vec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0], s = from - corners[0];
   const Vec3 p = glm::cross(direction, e2);

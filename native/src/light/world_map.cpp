@@ -13,11 +13,14 @@ namespace gradus::light {
 
 namespace {
 
-constexpr uint32_t kManual = 2;  // GradusWorld::importance
-constexpr uint32_t kWidest =
-    1024;  // Cycles follows larger images, too; the density then only gains below half a degree
-constexpr uint32_t kWidthOfNodes = 256;  // worlds of nodes alone are smooth, or have edges that no map can follow
+constexpr uint32_t kManual = 2;  // Value of GradusWorld::importance for a map of manual size.
+// Maximum width of a map of automatic size. Cycles uses larger maps for larger images, but these improve the density
+// only at scales below half a degree.
+constexpr uint32_t kWidest = 1024;
+// Width of the map of a world without images. Such a world is smooth, or has edges that no map resolves.
+constexpr uint32_t kWidthOfNodes = 256;
 
+// Returns the indices of the images that a program uses.
 std::vector<uint32_t> image_indices(const shading::Program& program, const image::ImageStore& images) {
   std::vector<uint32_t> found;
   for (const shading::Instruction& i : program.code)
@@ -26,6 +29,7 @@ std::vector<uint32_t> image_indices(const shading::Program& program, const image
   return found;
 }
 
+// Returns the inputs of the scene's world map, without the map; empty if the world is not sampled.
 WorldMap describe(const LitScene& scene) {
   WorldMap map;
   if (scene.world_material == UINT32_MAX || scene.world.importance == 0) return map;
@@ -43,7 +47,8 @@ bool same_world(const WorldMap& a, const WorldMap& b) {
   return a.material == b.material && a.images == b.images && a.importance == b.importance && a.map_size == b.map_size;
 }
 
-// Cells and points so close that no sun can hide between them, within reason.
+// Increases the resolution so that a sun of this half angle is not missed between the measured positions, within
+// limits.
 void look_for_sun(float half_angle, uint32_t map_size, Environment::Resolution* resolution) {
   constexpr uint32_t kMaxPoints = 4;
   if (map_size == 0) resolution->width = kWidest;
@@ -51,8 +56,9 @@ void look_for_sun(float half_angle, uint32_t map_size, Environment::Resolution* 
   resolution->points = std::clamp(uint32_t(std::ceil(cell / (1.2f * half_angle))), resolution->points, kMaxPoints);
 }
 
-// One point in each cell sees every texel of an image that is no wider than the map: look-ups are interpolated.
-// Otherwise 2×2, so that a small sun is not missed between cell centres.
+// Returns the resolution of the map. One point per cell covers every texel of an image that is at most as wide as the
+// map, because image look-ups are interpolated. Otherwise each cell has 2×2 points, so that a small sun between cell
+// centres is not missed.
 Environment::Resolution resolution(const LitScene& scene, const WorldMap& map) {
   uint32_t widest = 0;
   for (const uint32_t i : image_indices(map.material->emission, *scene.images))
@@ -64,7 +70,8 @@ Environment::Resolution resolution(const LitScene& scene, const WorldMap& map) {
   return result;
 }
 
-// A little larger than the discs, so that none of the sun's rim is left to the map.
+// Returns cones around the material's sun discs. They are slightly larger, so that the map contains no part of a disc's
+// rim.
 std::vector<Cone> sun_cones(const shading::MaterialData& material) {
   std::vector<Cone> cones;
   for (const shading::SunDisc& sun : material.suns) {
@@ -74,6 +81,7 @@ std::vector<Cone> sun_cones(const shading::MaterialData& material) {
   return cones;
 }
 
+// Builds the distribution from the inputs in `map`. Throws Error CANCELLED.
 Environment measure_world(const LitScene& scene, const WorldMap& map, const CommitMonitor& monitor) {
   if (!map.material) return {};
   if (map.material->emission_is_constant)
