@@ -6,29 +6,33 @@ namespace gradus::geometry {
 
 namespace {
 
-// Meshes whose copies hold no more triangles than this in sum are copied into the top level: cheaper to trace than
-// instances.
+// Maximum number of triangles in all copies of one mesh. Up to this number the copies go into the top level of the
+// acceleration structure, because triangles there are cheaper to trace than instances.
 constexpr uint64_t kMaxCopiedTriangles = 1u << 14;
-// Fewer triangles at rest are built again beside those that move, in less time than rays would need to ask for both.
+// Minimum number of static triangles for which a group of their own pays. Below it, building them again together with
+// the moving ones takes less time than the rays need to query two groups.
 constexpr uint64_t kMinKeptTriangles = 1u << 18;
 
 using UserCounts = std::unordered_map<const MeshData*, uint64_t>;
 
+// Returns whether the triangles of an instance are copied into the top level instead of being referenced.
 bool is_in_top_level(const InstanceData& instance, const UserCounts& users) {
   if (instance.moves()) return false;
   const uint64_t count = users.at(instance.mesh.get());
   return count == 1 || count * instance.mesh->triangle_count <= kMaxCopiedTriangles;
 }
 
-// By what the frame itself tells of those around it: a picture must not depend on what was rendered before.
+// Returns whether an instance is the same in the previous, the current and the next frame. Only the data of the current
+// frame count, because a picture must not depend on which frames were rendered before it.
 bool is_static(const InstanceData& instance) {
   return !instance.moves() && (instance.visibility & GRADUS_MAY_MOVE) == 0 &&
          instance.to_world_previous == instance.to_world && instance.to_world_next == instance.to_world &&
          instance.was_there && instance.will_be_there && instance.mesh->key_times.size() < 2;
 }
 
-// Embree asks for triangles and for blurred instances one after the other: there a box around all that moves costs rays
-// nothing.
+// Returns whether static and moving instances get separate groups. With motion blur the separation is free for rays:
+// Embree traverses triangles and blurred instances one after the other anyway. Without it, enough static triangles must
+// be kept.
 bool pays_to_split(const std::vector<InstanceData>& instances, const std::vector<bool>& flat) {
   uint64_t kept = 0;
   bool all_static = true, blurred = false;
@@ -40,10 +44,12 @@ bool pays_to_split(const std::vector<InstanceData>& instances, const std::vector
   return !all_static && (blurred || kept >= kMinKeptTriangles);
 }
 
+// Members of the static and of the moving group.
 struct Split {
   GroupInput static_part, moving;
 };
 
+// Distributes the instances over the two groups. If there is only one group, it is the static one.
 Split split_instances(const AcceleratorInput& input) {
   const std::vector<InstanceData>& instances = *input.instances;
   UserCounts users;
@@ -60,7 +66,8 @@ Split split_instances(const AcceleratorInput& input) {
   return split;
 }
 
-// Builds groups that the accelerator before does not have.
+// Builds the groups of an accelerator. Groups and mesh scenes of the previous accelerator are reused where their input
+// is unchanged.
 class Builder {
  public:
   Builder(const EmbreeDevice& device, const Accelerator* before) : device_(device) {
@@ -101,7 +108,7 @@ bool same(const Accelerator::Part& a, const Accelerator::Part& b) {
 std::shared_ptr<const Accelerator> build_accelerator(const EmbreeDevice& device, const AcceleratorInput& input,
                                                      const BuildProgress& progress,
                                                      const std::shared_ptr<const Accelerator>& before) {
-  constexpr float kStaticShare = 0.5f;  // of the progress
+  constexpr float kStaticShare = 0.5f;  // share of the static group in the progress
   const Split split = split_instances(input);
   Builder builder(device, before.get());
   auto built = std::make_shared<Accelerator>();

@@ -12,23 +12,26 @@ namespace gradus::geometry {
 
 namespace {
 
-// A foreign Embree that took over our symbols answers with another version, or its rays miss: Blender has one, too.
+// Checks version and features of the loaded Embree. Blender contains an Embree of its own, and the dynamic linker may
+// bind our calls to it. Such a library reports another version, or lacks the features that Gradus needs.
 void check_embree(RTCDevice device) {
   const auto version = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION);
   if (version != RTC_VERSION)
-    throw unsupported("the Embree in this process has version " + std::to_string(version) + " in place of " +
+    throw unsupported("the Embree in this process has version " + std::to_string(version) + " instead of " +
                       std::to_string(RTC_VERSION));
   if (!rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED) ||
       !rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_USER_GEOMETRY_SUPPORTED))
     throw unsupported("the Embree in this process lacks ray masks or user geometry");
 }
 
-// Why Embree did not do what it must: it had no memory, or `otherwise`. device: nullptr if there is none.
+// Returns the error of a failed start: OUT_OF_MEMORY if Embree reports it, else UNSUPPORTED with the text `otherwise`.
+// `device` is nullptr if it could not be created.
 Error failure_of(RTCDevice device, const std::string& otherwise) {
   const bool no_memory = rtcGetDeviceError(device) == RTC_ERROR_OUT_OF_MEMORY;
   return no_memory ? Error(GRADUS_ERROR_OUT_OF_MEMORY, "out of memory while Embree starts") : unsupported(otherwise);
 }
 
+// Makes a scene of one triangle in the plane z = 2. The caller releases it.
 RTCScene make_test_triangle(RTCDevice device) {
   const RTCScene scene = rtcNewScene(device);
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -48,7 +51,7 @@ RTCScene make_test_triangle(RTCDevice device) {
   return scene;
 }
 
-// One ray that must hit a triangle at distance 2.
+// Returns whether a ray from the origin hits the test triangle at distance 2. With a wrong Embree it misses.
 bool trace_test_ray(RTCDevice device) {
   const RTCScene scene = make_test_triangle(device);
   RTCIntersectContext context;
@@ -74,7 +77,7 @@ EmbreeDevice make_embree_device(uint32_t threads) {
   if (!device) throw failure_of(nullptr, "Embree cannot start on this processor (AVX2 is needed)");
   check_embree(device.get());
   if (!trace_test_ray(device.get()))
-    throw failure_of(device.get(), "Embree's test ray missed: another Embree in this process has taken its place");
+    throw failure_of(device.get(), "Embree's test ray missed: another Embree is loaded in this process");
   return device;
 }
 

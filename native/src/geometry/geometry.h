@@ -1,4 +1,4 @@
-// Instances of meshes, and what rays meet of them.
+// Instances of meshes, and ray queries against them.
 #pragma once
 
 #include <array>
@@ -19,70 +19,75 @@ struct TangentField;  // geometry/tangent_field.h
 struct Rays4;         // geometry/rays4.h
 struct FlatTriangle;  // geometry/flat_triangle.h
 
-// Identifier of an instance that belongs to no object.
+// Value of InstanceData::id for an instance that belongs to no object.
 inline constexpr uint64_t kNobody = UINT64_MAX;
 
-// A mesh placed as in the rendered frame. Its geometric normals point to the side from which the corners run
-// counter-clockwise in the mesh, mirrored or not.
+// A mesh with its placement in the rendered frame. Geometric normals point to the side from which the corners run
+// counter-clockwise in the mesh's own space, also if the instance is mirrored.
 struct InstanceData : Placement {
   std::shared_ptr<const MeshData> mesh;
-  const FlatTriangle* flat_triangles = nullptr;  // where the mesh lies in the top level; owned by the accelerator
-  std::shared_ptr<const MatrixKeys> keys;        // while the shutter is open; nullptr: it stands still
-  bool deforms = false;                          // its mesh has positions of its own for that time
+  const FlatTriangle* flat_triangles = nullptr;  // owned by the accelerator; nullptr: not in the top level
+  std::shared_ptr<const MatrixKeys> keys;        // matrices while the shutter is open; nullptr: constant
+  bool deforms = false;                          // the mesh has shutter keys
   Mat4 to_world_previous{1.0f};
   Mat4 to_world_next{1.0f};
-  bool was_there = true, will_be_there = true;  // in the frames around
+  bool was_there = true, will_be_there = true;  // the instance exists in the previous, in the next frame
   bool mirrored = false;
   uint32_t visibility = GRADUS_VISIBLE_ALL;
-  uint64_t id = 0;  // the same in every frame; kNobody: of none
+  uint64_t id = 0;  // the same in every frame; kNobody: belongs to no object
   uint32_t random_id = 0;
   int32_t pass_index = 0;
   Vec4 color{1.0f};
   float shadow_terminator_offset = 0.0f;  // cosine, see shadow_terminator.h
   Vec3 generated{0.0f};
   Vec2 uv{0.0f};
-  std::vector<uint32_t> materials;                            // by slot: index in Snapshot::materials
-  std::vector<std::shared_ptr<const TangentField>> tangents;  // of the UV maps for which a material asks
+  std::vector<uint32_t> materials;                            // index in Snapshot::materials of each slot
+  std::vector<std::shared_ptr<const TangentField>> tangents;  // of the UV maps that a material uses
 
+  // Whether the instance moves or deforms while the shutter is open.
   bool moves() const { return keys != nullptr || deforms; }
-  // At a time of the shutter; worked out in `room` if it moves.
+  // Returns the placement at a shutter time from 0 to 1. `room` is storage for the result, used if the matrix changes.
   const Placement& placement(float time, Placement* room) const;
 };
 
-// Placed meshes with their acceleration structure: answers ray queries, and turns hits into surface points. Positions
-// are in internal space: world = internal + origin.
+// Placed meshes with their acceleration structure. Answers ray queries, and computes surface points from hits.
+// Positions are in internal space: world = internal + origin.
 class Geometry {
  public:
-  // Nearest surface among those visible to `visibility` (GradusVisibility bits). False: the ray left the scene.
+  // Finds the nearest surface that is visible to one of the ray types in `visibility` (GradusVisibility bits). Returns
+  // false if the ray leaves the scene.
   bool intersect(const Ray& ray, uint32_t visibility, Hit* hit) const;
-  // Four rays at once (inactive lanes: t_max < t_min); equal results to four calls.
+  // Traces four rays at once. The results equal those of four calls of intersect(). Rays with t_max < t_min are
+  // inactive.
   void intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) const;
-  // Some surface that is visible to shadow rays lies on the segment, transparency ignored.
+  // Returns whether a surface that is visible to shadow rays lies on the segment. Transparency is ignored.
   bool occluded(const Ray& ray) const;
-  // Some surface that such rays meet lies on it.
+  // Returns whether a surface that is visible to one of the ray types in `visibility` lies on the segment.
   bool meets(const Ray& ray, uint32_t visibility) const;
-  // The same of four rays at once; false where none is wanted.
+  // Computes occluded() for four rays at once. Lanes that are not wanted give false.
   void occluded4(const Rays4& rays, const bool wanted[4], bool blocked[4]) const;
-  // Geometry at a hit. place() writes it where it is wanted: copies of what has just been written stall.
+  // Computes the surface point of a hit. place() writes it in place: copying a point that has just been written stalls
+  // the processor's store forwarding. surface_point() returns it by value.
   void place(const Hit& hit, SurfacePoint* point) const;
   SurfacePoint surface_point(const Hit& hit) const;
-  // Asks memory for what place() will need, some hundred nanoseconds before.
+  // Prefetches the memory that place() will read. Call it some hundred nanoseconds before.
   void prefetch(const Hit& hit) const;
-  // World position of the hit in the frame, whenever the ray was, or one frame earlier or later: surface motion.
+  // Returns the position of the hit surface point in the current, previous or next frame, for surface motion. The
+  // shutter time of the hit has no effect.
   Vec3 position_at(const Hit& hit, Moment when) const;
 
-  // Corners of a triangle of an instance, in internal space, at a time of the shutter.
+  // Returns the corners of a triangle of an instance, in internal space, at a shutter time from 0 to 1.
   std::array<Vec3, 3> corners(uint32_t instance, uint32_t triangle, float time) const;
-  // Largest change of the smooth normal along an edge of the triangle, per length: one over a sphere's radius; 0 where
-  // faces are flat.
+  // Returns the maximum change of the smooth normal along an edge of the triangle, per unit of length. It is 1 / radius
+  // on a sphere, and 0 on flat faces.
   float curvature(const Hit& hit) const;
-  // Material (index in `materials`) of a triangle of an instance.
+  // Returns the material (index in Snapshot::materials) of a triangle of an instance.
   uint32_t material_of(uint32_t instance, uint32_t triangle) const;
 
   std::vector<InstanceData> instances;
   std::shared_ptr<const Accelerator> accelerator;
-  Vec3 origin{0.0f};    // world = internal + origin: the scene is moved to its centre (float precision)
-  float radius = 1.0f;  // of the bounding sphere
+  Vec3 origin{0.0f};    // world = internal + origin; near the scene's centre, for float precision
+  float radius = 1.0f;  // radius of the scene's bounding sphere
 };
 
 }  // namespace gradus::geometry

@@ -13,19 +13,22 @@ namespace gradus::geometry {
 
 namespace {
 
+// Maps the progress of one Embree build to the interval first..last of a whole build.
 struct Monitor {
   const BuildProgress* progress;
   float first, last;
 };
 
+// Embree's progress callback. Returning false cancels the build.
 bool on_progress(void* data, double fraction) {
   const auto* m = static_cast<const Monitor*>(data);
   return (*m->progress)(m->first + (m->last - m->first) * float(fraction));
 }
 
-// Without memory for what grows with the scene, nodes and leaves, Embree gives back what it has and says so. Where the
-// few bytes of a build's entry in its thread pool are refused, it keeps the pool's lock (3.13.5, ThreadPool::add), and
-// the next build waits for ever: that only tests refuse (tests/memory/embree_guard.cpp).
+// Builds an Embree scene. Throws Error CANCELLED, OUT_OF_MEMORY or UNKNOWN. If the allocation of nodes and leaves
+// fails, Embree frees its memory and reports an error. If the few bytes of a build's entry in its thread pool cannot
+// be allocated, Embree 3.13.5 keeps the pool's lock (ThreadPool::add), and the next build waits forever. Only tests
+// make so small an allocation fail (tests/memory/embree_guard.cpp).
 void commit_scene(RTCDevice device, RTCScene scene, const BuildProgress& progress, float first, float last) {
   Monitor monitor{&progress, first, last};
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
@@ -41,7 +44,7 @@ void commit_scene(RTCDevice device, RTCScene scene, const BuildProgress& progres
     throw Error(GRADUS_ERROR_UNKNOWN, "Embree failed with code " + std::to_string(int(error)));
 }
 
-// positions: key after key.
+// Adds the triangles of a mesh to a scene. `positions` holds all vertices of the first key, then of the next.
 void attach_triangles(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, const MeshData& mesh,
                       const Vec3* positions, unsigned keys) {
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -57,6 +60,7 @@ void attach_triangles(RTCDevice device, RTCScene scene, unsigned id, unsigned ma
   rtcReleaseGeometry(geometry);
 }
 
+// Adds a reference to the scene of a mesh, with the instance's matrix or matrix keys.
 void attach_instance(RTCDevice device, RTCScene scene, unsigned id, unsigned mask, RTCScene instanced,
                      const InstanceData& instance) {
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
@@ -72,6 +76,7 @@ void attach_instance(RTCDevice device, RTCScene scene, unsigned id, unsigned mas
   rtcReleaseGeometry(geometry);
 }
 
+// Builds the scene of one mesh in its own space. The progress stays at `at`.
 std::shared_ptr<const MeshScene> build_mesh_scene(const EmbreeDevice& device,
                                                   const std::shared_ptr<const MeshData>& mesh,
                                                   const BuildProgress& progress, float at) {
@@ -87,7 +92,8 @@ std::shared_ptr<const MeshScene> build_mesh_scene(const EmbreeDevice& device,
   return built;
 }
 
-// In double: a mesh that lies far from its own origin may be brought back by its matrix.
+// Returns the vertices of a mesh transformed by `m`, and one element of padding, because Embree reads 16 bytes at a
+// time. The arithmetic is in double, because a mesh may lie far from its own origin and its matrix may move it back.
 std::unique_ptr<std::vector<Vec3>> transform_positions(const MeshData& mesh, const glm::dmat4& m) {
   auto out = std::make_unique<std::vector<Vec3>>(size_t(mesh.vertex_count) + 1);
   const Vec3* in = mesh.frame_positions();
@@ -99,6 +105,7 @@ std::unique_ptr<std::vector<Vec3>> transform_positions(const MeshData& mesh, con
   return out;
 }
 
+// Returns the bounds of a scene over the time that the shutter is open.
 RayBox bounds_of(RTCScene scene) {
   RTCLinearBounds bounds;
   rtcGetSceneLinearBounds(scene, &bounds);
@@ -109,6 +116,7 @@ RayBox bounds_of(RTCScene scene) {
   return box;
 }
 
+// Builds one GeometryGroup. Mesh scenes are taken from `known`, and new ones are added to it.
 class GroupBuild {
  public:
   GroupBuild(const EmbreeDevice& device, uint64_t key, const BuildProgress& progress, MeshScenes* known)
@@ -119,7 +127,7 @@ class GroupBuild {
   }
 
   std::shared_ptr<const GeometryGroup> run(const GroupInput& input) {
-    constexpr float kMeshShare = 0.4f;  // of the progress
+    constexpr float kMeshShare = 0.4f;  // share of the meshes in the progress
     for (size_t i = 0; i < input.members.size(); ++i) {
       const GroupInput::Member& member = input.members[i];
       const float done = kMeshShare * float(i) / float(input.members.size());

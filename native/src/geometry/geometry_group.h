@@ -1,5 +1,5 @@
-// Some of a snapshot's instances in a scene of Embree's. A mesh with one user lies in its top level in world space (no
-// price for instancing); a mesh with several is built once and referenced.
+// A group of instances in one Embree scene. A mesh with one user is copied into the top level of the scene in internal
+// space, which avoids the cost of instancing. A mesh with several users is built once and referenced.
 #pragma once
 
 #include <functional>
@@ -29,40 +29,42 @@ struct MeshScene {
 
 using MeshScenes = std::unordered_map<const MeshData*, std::shared_ptr<const MeshScene>>;
 
-// Exact matrix of each instance; InstanceData::to_world is rounded.
+// Function that returns the matrix to internal space of an instance, by index, in double precision.
+// InstanceData::to_world is rounded to float.
 using ExactMatrices = std::function<glm::dmat4(size_t)>;
 
+// The instances from which a group is built.
 struct GroupInput {
   struct Member {
-    uint32_t instance;
-    uint32_t mask;  // Embree's
-    bool flat;      // in the top level
+    uint32_t instance;  // index in `instances`
+    uint32_t mask;  // Embree ray mask
+    bool flat;      // the triangles are copied into the top level
   };
   const std::vector<InstanceData>* instances;
   const ExactMatrices* to_internal;
   std::vector<Member> members;
 
   const InstanceData& instance(const Member& member) const { return (*instances)[member.instance]; }
-  // Equal where a group that was built of one input is that of the other.
+  // Returns a hash of the input. Inputs with equal keys give equal groups.
   uint64_t key() const;
 };
 
-// Immutable. Embree's geometry ids are places in the list of members: which instances these are may change from
-// snapshot to snapshot.
+// An immutable Embree scene of several instances. Embree's geometry ids are indices in the list of members. The
+// snapshot's index of a member may change from snapshot to snapshot; Accelerator::Part maps members to instances.
 struct GeometryGroup {
   EmbreeDevice device;
-  uint64_t key = 0;  // of its input
+  uint64_t key = 0;  // GroupInput::key() of its input
   RTCSceneTy* scene = nullptr;
   std::vector<std::shared_ptr<const MeshScene>> mesh_scenes;
-  std::vector<std::shared_ptr<const MeshData>> meshes;             // whose index buffers the top level reads
-  std::vector<std::unique_ptr<std::vector<Vec3>>> flat_positions;  // likewise, of its vertices
+  std::vector<std::shared_ptr<const MeshData>> meshes;             // keep the index buffers that the top level reads
+  std::vector<std::unique_ptr<std::vector<Vec3>>> flat_positions;  // vertex buffers that the top level reads
   std::vector<FlatTriangles> flat_triangles;                       // of each member; empty: not in the top level
-  RayBox box;                                                      // around all, as long as the shutter is open
+  RayBox box;                                                      // bounds while the shutter is open
   ~GeometryGroup();
 };
 
-// key: the input's. known: mesh scenes that exist; those that are built are added. Throws Error CANCELLED or
-// OUT_OF_MEMORY.
+// Builds a group. `key` is input.key(). `known` holds the existing mesh scenes; new ones are added to it. Throws Error
+// CANCELLED or OUT_OF_MEMORY.
 std::shared_ptr<const GeometryGroup> build_group(const EmbreeDevice& device, const GroupInput& input, uint64_t key,
                                                  const BuildProgress& progress, MeshScenes* known);
 

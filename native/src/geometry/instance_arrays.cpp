@@ -16,7 +16,7 @@ void require(bool good, const char* text) {
   if (!good) throw invalid_argument(std::string("instances: ") + text);
 }
 
-// `width` elements of From make one To.
+// Copies `count` elements. Several consecutive values of type From may form one element of type To.
 template <class To, class From>
 std::vector<To> copy(const From* data, size_t count) {
   std::vector<To> out;
@@ -26,6 +26,7 @@ std::vector<To> copy(const From* data, size_t count) {
   return out;
 }
 
+// Throws Error INVALID_ARGUMENT if an array is missing or a range exceeds its array.
 void check(const GradusInstances& d) {
   require(d.count < kMaxInstances, "too many");
   require(d.count == 0 || d.meshes, "meshes missing");

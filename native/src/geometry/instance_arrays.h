@@ -1,4 +1,4 @@
-// Owning copy of the instances that the caller set.
+// An owning copy of the instances that the caller passed to Scene::set_instances().
 #pragma once
 
 #include <string>
@@ -10,11 +10,13 @@
 
 namespace gradus::geometry {
 
+// One element per instance in each array, except where a comment says otherwise. The meaning of the arrays is that of
+// the GradusInstances members of the same name.
 struct InstanceArrays {
   size_t count = 0;
   std::vector<uint64_t> meshes;
   std::vector<uint64_t> ids;
-  std::vector<Mat4> matrices, matrices_previous, matrices_next;  // the last two may be empty: at rest
+  std::vector<Mat4> matrices, matrices_previous, matrices_next;  // the last two are empty: unchanged
   std::vector<uint32_t> visibility;
   std::vector<uint32_t> random_ids;
   std::vector<int32_t> pass_indices;
@@ -23,19 +25,21 @@ struct InstanceArrays {
   std::vector<Vec2> uvs;
   std::vector<float> shadow_terminator_offsets;
   std::vector<uint32_t> material_first, material_count;  // empty: no materials
-  std::vector<uint64_t> materials;
+  std::vector<uint64_t> materials;                       // keys of the slots of all instances
   std::vector<uint32_t> shutter_first, shutter_count;  // empty: nothing moves while the shutter is open
-  std::vector<Mat4> shutter_matrices;
-  std::vector<uint32_t> name_index;
-  std::vector<std::string> names;
+  std::vector<Mat4> shutter_matrices;                  // keys of all instances
+  std::vector<uint32_t> name_index;  // index in `names` of each instance
+  std::vector<std::string> names;    // names of objects
 
-  // What a message calls instance i.
+  // Returns the name of instance i for messages, or its number if it has none.
   std::string name(size_t i) const;
-  // Without ids and the keys of meshes and materials, which are the caller's names for them.
+  // Adds the contents to a hash. Ids, and the keys of meshes and materials, are left out: they are names that the
+  // caller chose, and may differ from one session to the next.
   void hash(ContentHash* hash) const;
 };
 
-// Throws Error INVALID_ARGUMENT.
+// Checks and copies the caller's arrays. Throws Error INVALID_ARGUMENT if an array is missing or an index is out of
+// range.
 InstanceArrays copy_instances(const GradusInstances& desc);
 
 }  // namespace gradus::geometry

@@ -11,11 +11,11 @@ namespace gradus::geometry {
 
 namespace {
 
-// A chord of this turn leaves the circle by 3e-4 of its radius.
+// Maximum rotation between two keys, in radians. A chord of this angle deviates from its circle by 3e-4 of the radius.
 constexpr double kLargestTurn = 0.05;
 
-// m = rotation · stretch, the rotation being nearest to m (Higham 1986: Newton's iteration for the polar
-// decomposition). A mirrored matrix has its sign in the stretch.
+// A polar decomposition m = rotation · stretch, in which the rotation is the one nearest to m. Source: Higham (1986),
+// Newton's iteration for the polar decomposition. The stretch of a mirrored matrix has a negative determinant.
 struct Polar {
   glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
   glm::dmat3 stretch{1.0};
@@ -34,17 +34,20 @@ Polar decompose(const glm::dmat3& m) {
   return {glm::normalize(glm::quat_cast(rotation)), glm::transpose(rotation) * m};
 }
 
+// Returns whether exactly one of the matrices is mirrored. No rotation leads from one to the other then.
 bool turns_over(const glm::dmat4& a, const glm::dmat4& b) {
   return (glm::determinant(glm::dmat3(a)) < 0.0) != (glm::determinant(glm::dmat3(b)) < 0.0);
 }
 
+// Returns the angle between the rotations of two matrices in radians, or 0 if only one of them is mirrored.
 double angle_between(const glm::dmat4& a, const glm::dmat4& b) {
   if (turns_over(a, b)) return 0.0;
   const double cosine = std::fabs(glm::dot(decompose(glm::dmat3(a)).rotation, decompose(glm::dmat3(b)).rotation));
   return 2.0 * std::acos(std::min(cosine, 1.0));
 }
 
-// Parts of each of the intervals.
+// Returns into how many equal steps each interval between two keys is divided. At least 1, and no more than Embree's
+// maximum number of keys allows.
 size_t parts_between(const std::vector<glm::dmat4>& keys) {
   double angle = 0.0;
   for (size_t i = 1; i < keys.size(); ++i) angle = std::max(angle, angle_between(keys[i - 1], keys[i]));

@@ -9,6 +9,7 @@ namespace gradus::geometry {
 
 namespace {
 
+// Returns the index of the element of a domain to which corner k of a triangle belongs.
 uint32_t element(const MeshData& mesh, GradusDomain domain, uint32_t triangle, uint32_t k) {
   const size_t i = size_t(triangle) * 3 + k;
   if (domain == GRADUS_DOMAIN_POINT) return mesh.triangle_vertices[i];
@@ -16,13 +17,15 @@ uint32_t element(const MeshData& mesh, GradusDomain domain, uint32_t triangle, u
   return mesh.face(triangle);
 }
 
+// Returns the local corners of a triangle in a time key.
 std::array<Vec3, 3> positions_of_key(const MeshData& mesh, uint32_t triangle, uint32_t key) {
   const Vec3* p = mesh.positions.data() + size_t(key) * mesh.vertex_count;
   const uint32_t* v = mesh.triangle_vertices.data() + size_t(triangle) * 3;
   return {p[v[0]], p[v[1]], p[v[2]]};
 }
 
-// A normal of the rest key, turned as the smooth normal of its vertex turns until then.
+// Returns a normal of the rendered frame, rotated as the smooth normal of its vertex rotates from the frame to the
+// shutter time.
 Vec3 turned_with_vertex(const MeshData& mesh, uint32_t vertex, float time, const Vec3& normal) {
   const KeyPlace place = key_place(time, mesh.shutter_keys);
   const Vec3* key = mesh.shutter_normals.data() + size_t(place.before + 1) * mesh.vertex_count;

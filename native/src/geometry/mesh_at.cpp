@@ -8,6 +8,7 @@ namespace gradus::geometry {
 
 namespace {
 
+// Returns the local vertex positions at a time, and one element of padding.
 std::vector<Vec3> positions_at(const MeshData& mesh, float frames) {
   const MeshMoment moment = mesh_moment(mesh, frames);
   const Vec3* before = mesh.positions.data() + size_t(moment.before) * mesh.vertex_count;
@@ -17,6 +18,8 @@ std::vector<Vec3> positions_at(const MeshData& mesh, float frames) {
   return positions;
 }
 
+// Rotates the normals of `mesh` as the smooth vertex normals rotate from the rendered frame of `from` to the positions
+// of `mesh`.
 void turn_normals(const MeshData& from, MeshData* mesh) {
   if (mesh->normals.empty() || mesh->normal_domain == GRADUS_DOMAIN_FACE) return;
   const std::vector<Vec3> rest = smooth_normals(from, from.frame_positions()),
@@ -33,6 +36,7 @@ void turn_normals(const MeshData& from, MeshData* mesh) {
   }
 }
 
+// Sets the bounds of a mesh from its positions, without dropped triangles.
 void find_bounds(MeshData* mesh) {
   mesh->lower = Vec3(kInfinity);
   mesh->upper = Vec3(-kInfinity);

@@ -1,4 +1,4 @@
-// A mesh as it is at one of the moments that it knows.
+// A static copy of a mesh at another time.
 #pragma once
 
 #include <memory>
@@ -7,8 +7,8 @@
 
 namespace gradus::geometry {
 
-// The same triangles where they are `frames` after the frame rendered, resting there. Normals turn as the smooth
-// normals of their vertices do; what is painted on stays.
+// Returns a copy of the mesh as it is `frames` frames after the rendered frame (negative: before it), without motion.
+// Normals rotate as the smooth normals of their vertices do. Attributes and generated coordinates stay the same.
 std::shared_ptr<const MeshData> mesh_at(const MeshData& mesh, float frames);
 
 }  // namespace gradus::geometry

@@ -1,4 +1,4 @@
-// From the caller's arrays to MeshData: everything that can be wrong with them is found here.
+// Conversion of the caller's arrays to MeshData, with all checks of these arrays.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -13,12 +13,15 @@ namespace gradus::geometry {
 
 namespace {
 
-// Indices are 32 bits, and Embree takes at most 2^32 - 2^5 primitives; more is surely a mistake of the caller.
+// Maximum number of elements. Indices have 32 bits, and Embree takes at most 2^32 - 2^5 primitives. A larger number is
+// an error of the caller.
 constexpr size_t kMaxElements = size_t(1) << 31;
 constexpr uint32_t kMaxKeys = kMaxShutterKeys;
-// Embree leaves out triangles beyond about 1.8e18; lengths are squared in float elsewhere.
+// Maximum magnitude of a coordinate. Embree leaves out triangles beyond about 1.8e18, and other code squares lengths in
+// float.
 constexpr float kMaxCoordinate = 1e18f;
 
+// Throws Error INVALID_ARGUMENT with the name of the mesh if a condition is false.
 class Check {
  public:
   explicit Check(const std::string& mesh) : mesh_(mesh) {}
@@ -31,11 +34,13 @@ class Check {
   const std::string& mesh_;
 };
 
-// A comparison instead of is_finite: rejects NaN, infinity and what no ray can reach.
+// Returns whether Embree can trace a vertex. The comparisons are false for NaN, infinity and coordinates that are too
+// large.
 bool usable(const Vec3& p) {
   return std::fabs(p.x) < kMaxCoordinate && std::fabs(p.y) < kMaxCoordinate && std::fabs(p.z) < kMaxCoordinate;
 }
 
+// Throws Error INVALID_ARGUMENT if a count is out of range or an array is missing.
 void check_counts(const GradusMesh& m, const Check& check) {
   check.that(m.key_count >= 1 && m.key_count <= kMaxKeys, "number of time keys out of range");
   check.that(m.vertex_count < kMaxElements && m.corner_count < kMaxElements && m.triangle_count < kMaxElements &&
@@ -71,7 +76,8 @@ void copy_shutter_keys(const GradusMesh& m, MeshData* out) {
   std::memcpy(out->shutter_positions.data(), m.shutter_positions, m.vertex_count * m.shutter_key_count * sizeof(Vec3));
 }
 
-// After the triangles: the normals are theirs.
+// Computes the smooth normals of all shutter keys. Call it after copy_triangles(), because they depend on the
+// triangles.
 void add_shutter_normals(MeshData* mesh) {
   if (mesh->shutter_keys == 0 || mesh->normals.empty()) return;
   mesh->shutter_normals = smooth_normals(*mesh, mesh->frame_positions());
@@ -108,6 +114,7 @@ void copy_triangles(const GradusMesh& m, const Check& check, MeshData* out) {
   }
 }
 
+// Drops the triangles with unusable vertices, and sets the bounds of the others.
 void drop_unusable(MeshData* mesh) {
   std::vector<bool> good(mesh->vertex_count);
   for (uint32_t i = 0; i < mesh->vertex_count; ++i) good[i] = usable_in_all_keys(*mesh, i);
@@ -132,10 +139,11 @@ void copy_face_materials(const GradusMesh& m, MeshData* out) {
   const size_t faces = domain_size(m, GRADUS_DOMAIN_FACE);
   if (!m.face_materials || faces == 0) return;
   out->face_materials.resize(faces);
-  // Blender allows any number here; which slots exist is known by the instance.
+  // Blender allows any slot number here. The number of slots belongs to the instance, which limits it again.
   for (size_t i = 0; i < faces; ++i) out->face_materials[i] = uint32_t(std::clamp(m.face_materials[i], 0, 32767));
 }
 
+// Copies values, with 0 in place of NaN and infinity.
 std::vector<float> copy_finite(const float* data, size_t count) {
   std::vector<float> values(data, data + count);
   for (float& v : values)
@@ -143,6 +151,7 @@ std::vector<float> copy_finite(const float* data, size_t count) {
   return values;
 }
 
+// Replaces corner normals of length 0 by the smooth normal of the vertex.
 void fill_smooth_corners(const GradusMesh& m, MeshData* out) {
   const auto first = std::find(out->normals.begin(), out->normals.end(), Vec3(0.0f));
   if (first == out->normals.end()) return;

@@ -1,18 +1,19 @@
-// Where an object stands: its matrix with what is worked out from it.
+// The matrix of an object, with its inverse and the matrix of its normals.
 #pragma once
 
 #include "base/types.h"
 
 namespace gradus::geometry {
 
-// Matrices lead to and from the snapshot's internal space (Snapshot::origin).
+// Transformations between an object's local space and the snapshot's internal space. "World" in the names means
+// internal space here: true world coordinates differ from it by the snapshot's origin.
 struct Placement {
   Mat4 to_world{1.0f};
   Mat4 to_local{1.0f};
-  Mat3 normal_to_world{1.0f};  // inverse transpose: a mirrored object keeps outside outside
+  Mat3 normal_to_world{1.0f};  // inverse transpose; outward normals stay outward if mirrored
 };
 
-// m: affine, with an inverse.
+// Computes the placement of an object from its affine, invertible matrix `m` to internal space.
 Placement make_placement(const glm::dmat4& m);
 
 }  // namespace gradus::geometry

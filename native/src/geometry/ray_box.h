@@ -1,4 +1,4 @@
-// Whether a ray may meet what lies in a box. Errs on the side of meeting.
+// A bounding box with a conservative intersection test: it may report a hit where there is none, but misses none.
 #pragma once
 
 #include <algorithm>
@@ -8,20 +8,23 @@
 
 namespace gradus::geometry {
 
+// An axis-aligned bounding box; empty until something is added.
 struct RayBox {
   Vec3 lower{kInfinity}, upper{-kInfinity};
 
+  // Enlarges the box so that it contains the box from a to b.
   void add(const Vec3& a, const Vec3& b) {
     lower = glm::min(lower, a);
     upper = glm::max(upper, b);
   }
-  // Room for the rounding of the test, and of what finds the hits.
+  // Enlarges the box by a margin for the rounding errors of may_meet() and of the traversal of the contents.
   void widen() {
     const Vec3 margin = (glm::max(glm::abs(lower), glm::abs(upper)) + (upper - lower)) * 1e-5f;
     lower -= margin;
     upper += margin;
   }
 
+  // Returns false if the segment t_min..t_max of a ray certainly misses the box.
   bool may_meet(const Vec3& origin, const Vec3& direction, float t_min, float t_max) const {
     for (int i = 0; i < 3; ++i) {
       const float inverse =

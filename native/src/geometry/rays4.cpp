@@ -12,7 +12,8 @@ Lanes dot(const Lanes3& a, const Lanes3& b) { return a.x * b.x + a.y * b.y + a.z
 
 constexpr int32_t kSign = INT32_MIN;
 
-// The float next to v in the direction of `up`, as in surface.cpp.
+// Returns the float next to v in the direction of the sign of `up`, for each lane; v where `up` is 0. The same function
+// for one value is in surface.cpp.
 Lanes step_away(const Lanes& v, const Lanes& up) {
   const Bits up_bits = (Bits)up;
   const Bits bits = v == 0.0f ? up_bits & kSign : (Bits)v;
@@ -20,6 +21,7 @@ Lanes step_away(const Lanes& v, const Lanes& up) {
   return up == 0.0f ? v : (Lanes)away;
 }
 
+// Returns the same point in all lanes.
 Points4 gather(const SurfacePoint& p) {
   return {same(p.position), same(p.geometric_normal), same(p.error), p.hit.time};
 }

@@ -7,9 +7,9 @@ namespace gradus::geometry {
 
 namespace {
 
-// Height of the bulge over a facet at barycentrics w, for corners p and their unit normals n, all seen from the outside
-// of the bulge. Half of a parabola through the corners, or the envelope of their tangent planes where that is higher; 0
-// where the surface is hollow.
+// Returns the height of the bulge over a facet at the barycentric coordinates w, for corners p with unit normals n on
+// the outer side of the bulge. The height is half of a parabola through the corners, or the envelope of their tangent
+// planes where that is higher. It is 0 where the surface is concave.
 float bulge(const std::array<Vec3, 3>& p, const std::array<Vec3, 3>& n, const Vec3& w) {
   const Vec3 point = p[0] * w.x + p[1] * w.y + p[2] * w.z;
   const auto bend = [&](int i, int j) { return glm::dot(n[j] - n[i], p[j] - p[i]); };
@@ -31,10 +31,11 @@ Vec3 shadow_origin(const Geometry& geometry, const SurfacePoint& point, const Ve
   const InstanceData& instance = geometry.instances[point.hit.instance];
   std::array<Vec3, 3> normals{};
   triangle_normals_in_shutter(*instance.mesh, point.hit.triangle, point.hit.time,
-                              &normals);  // it has them: without, the point's offset is 0
+                              &normals);  // the mesh has normals: flat faces have offset 0
   Placement room;
   const Placement& placement = instance.placement(point.hit.time, &room);
-  // The side of the smooth surface on which the light lies; from within, the bulge points inwards.
+  // Geometric normal on the light's side of the smooth surface. For a light inside the object, the bulge points
+  // inwards.
   const Vec3 outside = std::copysign(1.0f, glm::dot(point.shading_normal, direction)) * point.geometric_normal;
   const Vec3 smooth = placement.normal_to_world * interpolate(normals, point.hit.barycentric);
   const float side = std::copysign(1.0f, glm::dot(smooth, outside));

@@ -1,4 +1,4 @@
-// Normals of vertices where the caller gives none.
+// Smooth vertex normals, for meshes whose caller gives none.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,11 @@
 
 namespace gradus::geometry {
 
-// Unit normals of all vertices where they stand at `positions`: those of the triangles around, weighted by their angles
-// (Thürmer and Wüthrich, Computing Vertex Normals from Polygonal Facets, 1998), as Blender does. Summed in order of
-// triangles, so that equal meshes have equal bits: Blender before 4.0 sums in any order, and its normals differ in the
-// last bit between two evaluations. Vertices without area: 0.
+// Returns the unit normals of all vertices, for vertices at `positions`. A vertex normal is the sum of the normals of
+// the adjacent triangles, weighted by their angles at the vertex, as in Blender. A vertex without adjacent area has the
+// normal 0. Source: Thürmer and Wüthrich, Computing Vertex Normals from Polygonal Facets (1998). The normals are summed
+// in the order of the triangles, so that equal meshes have bitwise equal normals. Blender before 4.0 sums in an
+// arbitrary order, and its normals differ in the last bit between two evaluations.
 std::vector<Vec3> smooth_normals(const MeshData& mesh, const Vec3* positions);
 
 }  // namespace gradus::geometry

@@ -13,12 +13,14 @@ namespace gradus::geometry {
 
 namespace {
 
-// |m|·v + |t|, the size of the terms that an affine transformation adds up.
+// Returns |A|·v + |t| for the affine matrix m = (A, t): the magnitude of the terms that the transformation of a point
+// adds.
 Vec3 magnitudes(const Mat4& m, const Vec3& v) {
   return glm::abs(Vec3(m[0])) * v.x + glm::abs(Vec3(m[1])) * v.y + glm::abs(Vec3(m[2])) * v.z + glm::abs(Vec3(m[3]));
 }
 
-// Linear in the barycentrics; where the mesh is flat or its normals are broken, the geometric normal.
+// Sets the shading normal: the corner normals interpolated linearly, or the geometric normal if the mesh is flat or its
+// normals have no direction.
 void set_shading_normal(const InstanceData& instance, const Placement& placement, const Hit& hit, SurfacePoint* point) {
   std::array<Vec3, 3> n;
   const bool smooth = triangle_normals_in_shutter(*instance.mesh, hit.triangle, hit.time, &n);
@@ -29,11 +31,12 @@ void set_shading_normal(const InstanceData& instance, const Placement& placement
   point->shadow_terminator_offset = smooth ? instance.shadow_terminator_offset : 0.0f;
 }
 
-// Blender shows the last slot where a face names one that does not exist.
+// Returns the material of a slot. For a slot that does not exist it is that of the last slot, as in Blender.
 uint32_t material_of_slot(const InstanceData& instance, uint32_t slot) {
   return instance.materials.empty() ? 0 : instance.materials[std::min<size_t>(slot, instance.materials.size() - 1)];
 }
 
+// Computes the surface point of a triangle in the top level, without the shading normal.
 void place_flat(const InstanceData& instance, const Hit& hit, SurfacePoint* point) {
   const FlatTriangle& triangle = instance.flat_triangles[hit.triangle];
   const std::array<Vec3, 3>& p = triangle.corners;
@@ -45,6 +48,7 @@ void place_flat(const InstanceData& instance, const Hit& hit, SurfacePoint* poin
   point->material = material_of_slot(instance, triangle.slot);
 }
 
+// Computes the surface point of a triangle of an instanced mesh, without the shading normal.
 void place_instanced(const InstanceData& instance, const Placement& placement, const Hit& hit, SurfacePoint* point) {
   const std::array<Vec3, 3> p = triangle_positions_in_shutter(*instance.mesh, hit.triangle, hit.time);
   const Plane plane = plane_of(p);
@@ -53,8 +57,8 @@ void place_instanced(const InstanceData& instance, const Placement& placement, c
       interpolate(std::array<Vec3, 3>{glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])}, hit.barycentric);
   point->position = Vec3(placement.to_world * Vec4(local, 1.0f));
   point->geometric_normal = safe_unit(placement.normal_to_world * plane.normal, Vec3(0, 0, 1));
-  // There: corners, sum, matrix. And back: Embree takes the next ray into the mesh's space, with rounding of its own
-  // there. What moves is interpolated between its keys, here and there.
+  // Number of rounded operations: interpolation of the corners, sum, and transformation to internal space. Embree
+  // transforms the next ray back to the mesh's space, with as many. Motion adds the interpolation between keys.
   const int roundings = instance.moves() ? 16 : 8;
   const Mat4 linear(placement.to_world[0], placement.to_world[1], placement.to_world[2], Vec4(0.0f));
   const Vec3 back = magnitudes(placement.to_local, glm::abs(point->position));
@@ -72,7 +76,8 @@ void place_at(const InstanceData& instance, const Placement& placement, const Hi
   set_shading_normal(instance, placement, hit, point);
 }
 
-// The float next to v in the direction of `up`: std::nextafter for finite v. By bits: signs cannot be foretold.
+// Returns the float next to v in the direction of the sign of `up`, as std::nextafter does for finite v; v if `up` is
+// 0. It computes with bits instead of branches, because branch prediction fails for the signs.
 float step_away(float v, float up) {
   const auto bits = std::bit_cast<int32_t>(v), up_bits = std::bit_cast<int32_t>(up);
   const int32_t away = bits + (((bits ^ up_bits) >> 31) | 1);
@@ -146,7 +151,7 @@ Vec3 Geometry::position_at(const Hit& hit, Moment when) const {
   const Mat4& to_world = when == Moment::Now    ? instance.to_world
                          : when == Moment::Next ? instance.to_world_next
                                                 : instance.to_world_previous;
-  // At rest the very same position, so that its motion is exactly zero.
+  // A static point has exactly the same position, so that its motion is exactly zero.
   if (instance.mesh->key_times.size() == 1 && to_world == instance.to_world && !instance.moves())
     return surface_point(hit).position;
   const float frames = when == Moment::Now ? 0.0f : when == Moment::Next ? 1.0f : -1.0f;
@@ -154,8 +159,8 @@ Vec3 Geometry::position_at(const Hit& hit, Moment when) const {
   return Vec3(to_world * Vec4(local, 1.0f));
 }
 
-// pbrt-v4 section 6.8.6: along the geometric normal by the bound, then one float further so that rounding the sum
-// cannot undo it.
+// Moves the point along the geometric normal by the error bound, then to the next float, so that the rounding of the
+// sum cannot undo the step. Source: pbrt-v4 section 6.8.6.
 Vec3 offset_origin(const SurfacePoint& point, const Vec3& direction) {
   const Vec3 n = point.geometric_normal;
   const Vec3 offset = n * std::copysign(point.error, glm::dot(n, direction));

@@ -15,31 +15,35 @@ namespace gradus::geometry {
 
 namespace {
 
+// Returns the unit vector, or 0 if v has no direction.
 Vec3 unit_or_zero(const Vec3& v) {
   const float length = glm::length(v);
   return length > 0.0f && is_finite(length) ? v / length : Vec3(0.0f);
 }
 
+// Returns the unit vector of v projected to the plane with this unit normal.
 Vec3 within_plane(const Vec3& v, const Vec3& normal) { return unit_or_zero(v - normal * glm::dot(normal, v)); }
 
-// What decides which corners share a tangent.
+// A corner of a triangle, with the data that decide which corners share a tangent.
 struct Corner {
   uint32_t vertex;
   Vec3 normal;
   Vec2 uv;
-  float handedness;  // 0: the triangle has no area on the map
-  Vec4 tangent;      // weighed by the angle; w unused
+  float handedness;  // ±1; 0: the triangle has no area in the UV map
+  Vec4 tangent;      // weighted by the angle at the corner; w unused
 
   auto place() const { return std::tuple(normal.x, normal.y, normal.z, uv.x, uv.y); }
-  // Those without a handedness come last, after neighbours whose tangent they take.
+  // Order of the corners at a vertex. Corners without handedness come last, after the neighbours whose tangent they
+  // take.
   auto key() const { return std::tuple_cat(place(), std::tuple(handedness == 0.0f ? 2.0f : -handedness)); }
-  // Whether it shares the tangent of one that comes before it.
+  // Returns whether this corner shares the tangent of an earlier corner `o`.
   bool joins(const Corner& o) const {
     return vertex == o.vertex && place() == o.place() && (handedness == o.handedness || handedness == 0.0f);
   }
 };
 
-// Direction of increasing u in the triangle, not normalised, and the handedness in w.
+// Returns the direction of increasing u in the triangle, not normalised, with the handedness in w. It is 0 if the
+// triangle has no area in the UV map.
 Vec4 direction_of_u(const std::array<Vec3, 3>& p, const std::array<Vec4, 3>& uv) {
   const Vec2 d1 = Vec2(uv[1]) - Vec2(uv[0]), d2 = Vec2(uv[2]) - Vec2(uv[0]);
   const float area = d1.x * d2.y - d2.x * d1.y;
@@ -48,7 +52,7 @@ Vec4 direction_of_u(const std::array<Vec3, 3>& p, const std::array<Vec4, 3>& uv)
   return Vec4(((p[1] - p[0]) * d2.y - (p[2] - p[0]) * d1.y) * handedness, handedness);
 }
 
-// Angle of the triangle at a corner, seen along the normal.
+// Returns the angle of the triangle at corner k, projected along the normal.
 float angle_at(const std::array<Vec3, 3>& p, int k, const Vec3& normal) {
   const Vec3 a = within_plane(p[(k + 1) % 3] - p[k], normal), b = within_plane(p[(k + 2) % 3] - p[k], normal);
   return std::acos(std::clamp(glm::dot(a, b), -1.0f, 1.0f));
@@ -77,8 +81,8 @@ std::vector<Corner> corners_of(const MeshData& mesh, const MeshAttribute& uv) {
   return corners;
 }
 
-// Indices of the corners, those that share a tangent one after another. By index among equals, so that sums have the
-// same bits anywhere.
+// Returns the indices of the corners in an order in which corners that share a tangent are consecutive. Equal corners
+// are ordered by index, so that sums are bitwise equal on every machine.
 std::vector<uint32_t> grouped(const std::vector<Corner>& corners, uint32_t vertex_count) {
   std::vector<uint32_t> first(size_t(vertex_count) + 1, 0);
   for (const Corner& c : corners)

@@ -1,4 +1,4 @@
-// Tangents that follow a UV map smoothly: those that normal maps are baked for.
+// Smooth tangents of a UV map, as tangent-space normal maps require them.
 #pragma once
 
 #include <memory>
@@ -9,18 +9,21 @@
 
 namespace gradus::geometry {
 
-// At each vertex the mean of the triangles' directions of increasing u, weighed by their angles there; apart for
-// corners that differ in normal or UV coordinates or see the map from its other side. Source: M. Mikkelsen, Simulation
-// of Wrinkled Surfaces Revisited (2008), 3.3, whose convention (MikkTSpace) Blender, Cycles and bakers share.
+// Tangents at the corners of a mesh. The tangent at a vertex is the mean of the adjacent triangles' directions of
+// increasing u, weighted by their angles at the vertex. Corners that differ in normal, UV coordinates or handedness
+// have separate tangents. Source: M. Mikkelsen, Simulation of Wrinkled Surfaces Revisited (2008), 3.3. Blender, Cycles
+// and bakers use the same convention (MikkTSpace).
 struct TangentField {
-  const MeshAttribute* uv = nullptr;      // of the mesh it was made for
-  std::shared_ptr<const MeshData> mesh;   // keeps it alive
+  const MeshAttribute* uv = nullptr;      // UV map, owned by `mesh`
+  std::shared_ptr<const MeshData> mesh;   // the mesh, which stays alive with the field
   std::vector<uint32_t> corner_tangents;  // 3 per triangle: index in `tangents`
-  std::vector<Vec4> tangents;             // local, unit; w: handedness, ±1. All 0: the map gives no direction there
+  std::vector<Vec4> tangents;             // local, unit; w: handedness, ±1. 0: the map defines no direction
 
+  // Returns the tangents at the corners of a triangle.
   std::array<Vec4, 3> corners(uint32_t triangle) const;
 };
 
+// Computes the tangents of a UV map `uv` of the mesh.
 std::shared_ptr<const TangentField> make_tangents(const std::shared_ptr<const MeshData>& mesh, const MeshAttribute& uv);
 
 }  // namespace gradus::geometry

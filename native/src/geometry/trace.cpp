@@ -1,5 +1,5 @@
-// Ray queries of a snapshot. Embree's internal assertions abort on rays that are not finite, and NaN makes traversal
-// slow: such rays are misses and never reach it.
+// Ray queries of a snapshot. Rays that are not finite miss and are never passed to Embree: its internal assertions
+// abort on them, and NaN makes its traversal slow.
 #include <algorithm>
 #include <cstring>
 
@@ -13,7 +13,7 @@ namespace gradus::geometry {
 
 namespace {
 
-// A segment that can meet anything: comparisons are false for NaN.
+// Returns whether a ray is finite and its segment is not empty. The comparisons are false for NaN.
 bool traceable(const Ray& ray) {
   const float sum =
       ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z;
@@ -37,6 +37,7 @@ void set_ray(const Ray& ray, uint32_t mask, RTCRay* r) {
 
 using LaneBits = int32_t __attribute__((vector_size(16)));
 
+// Copies four values to a field of an Embree ray packet.
 template <class Field, class Values>
 void set(Field* lanes, const Values& values) {
   std::memcpy(lanes, &values, sizeof(values));
@@ -58,17 +59,19 @@ void set_lane(const Ray& ray, uint32_t mask, int i, Packet* r) {
   r->flags[i] = 0;
 }
 
-// A triangle in the top level carries the member's place as its geometry id; within an instanced mesh scene that id is
-// 0.
+// Returns the snapshot's index of the instance that was hit. The geometry id of a triangle in the top level is the
+// index of the group's member. For an instanced mesh the instance id is that index, and the geometry id is 0.
 uint32_t instance_of(const Accelerator::Part& part, unsigned instance_id, unsigned geometry_id) {
   return part.instances[instance_id != RTC_INVALID_GEOMETRY_ID ? instance_id : geometry_id];
 }
 
+// Returns whether a ray may hit something in the moving group.
 bool may_meet_moving(const Accelerator& accelerator, const RTCRay& r) {
   return accelerator.moving.group && accelerator.moving.group->box.may_meet(
                                          {r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tnear, r.tfar);
 }
 
+// Returns whether a ray hits an instance that shares a bit with `mask`.
 bool blocked_by(const Accelerator& accelerator, const Ray& ray, uint32_t mask) {
   if (!traceable(ray)) return false;
   RTCIntersectContext context;
@@ -80,7 +83,8 @@ bool blocked_by(const Accelerator& accelerator, const Ray& ray, uint32_t mask) {
   return r.tfar < 0.0f;
 }
 
-// Of the valid lanes; false: there are none. Occluded rays end before they start.
+// Clears the valid lanes whose rays certainly miss the moving group. Returns whether any valid lane is left. Embree
+// sets the end of an occluded ray to minus infinity, so that its lane is cleared too.
 bool mask_lanes_that_meet_moving(const Accelerator& accelerator, const RTCRay4& r, int valid[4]) {
   if (!accelerator.moving.group) return false;
   const RayBox& box = accelerator.moving.group->box;
@@ -94,7 +98,8 @@ bool mask_lanes_that_meet_moving(const Accelerator& accelerator, const RTCRay4& 
   return any;
 }
 
-// In the part: nearer than what the query has. The query keeps that if there is nothing.
+// Finds a hit in one group that is nearer than the query's current hit. Returns false if there is none; the query's
+// distance is unchanged then.
 bool intersect(const Accelerator::Part& part, RTCRayHit* query) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);

@@ -1,4 +1,4 @@
-// Warnings about objects: one in all for each cause, with the first name.
+// Collects the objects that have the same problem, for one warning with the name of the first.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct AffectedObjects {
   void add(const std::string& name) {
     if (count++ == 0) first = name;
   }
-  // what: of one object; of_several: of more.
+  // Appends the warning, if there are objects. `what` is the predicate for one object, `of_several` that for more.
   void warn(const std::string& what, const std::string& of_several, const std::string& why,
             std::vector<std::string>* warnings) const {
     if (count == 0) return;

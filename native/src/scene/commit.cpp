@@ -1,4 +1,4 @@
-// Scene::commit: from what was set to an immutable snapshot.
+// Scene::commit(): makes an immutable snapshot of the scene that the caller set.
 #include <algorithm>
 #include <atomic>
 
@@ -37,8 +37,8 @@ void move_matrix(float* matrix, const Vec3& origin) {
   for (int i = 0; i < 3; ++i) matrix[12 + i] = float(double(matrix[12 + i]) - double(origin[i]));
 }
 
-// A camera that is elsewhere in the frame around, and no longer or not yet the same one, is said to be nowhere. Told;
-// and then it rests.
+// Returns whether there is a shot change to an adjacent frame. The caller marks it by a matrix that is not finite. The
+// matrix and the window are then replaced by those of the current frame.
 bool remove_shot_change(const GradusCamera& now, float* matrix, float* window) {
   if (std::all_of(matrix, matrix + 16, [](float value) { return is_finite(value); })) return false;
   std::copy_n(now.matrix, 16, matrix);
@@ -60,7 +60,7 @@ void place_camera(const Scene::State& state, Snapshot* snapshot) {
   snapshot->shutter = camera::Shutter(snapshot->camera);
 }
 
-// Whether the moment within the shutter makes a difference.
+// Sets has_motion: whether anything moves while the shutter is open.
 void find_motion(Snapshot* snapshot) {
   const bool moves =
       snapshot->camera.shutter_key_count > 0 || std::any_of(snapshot->instances.begin(), snapshot->instances.end(),
@@ -73,7 +73,7 @@ void place_world(const Scene::State& state, const MaterialIndex& indices, Snapsh
   if (state.has_world) snapshot->world_material = index_of(indices, state.world.material, UINT32_MAX);
 }
 
-// A program that emits the same everywhere is folded into the light's strength.
+// Sets the material of a light. Constant emission is multiplied into the light's intensity instead.
 void set_light_material(const Snapshot& snapshot, uint32_t material, light::AnalyticLight* analytic_light) {
   analytic_light->material = material;
   if (material == UINT32_MAX || !snapshot.materials[material]->emission_is_constant) return;
@@ -133,7 +133,7 @@ void find_sharpest(Snapshot* snapshot) {
     std::for_each(instance.materials.begin(), instance.materials.end(), look_at);
 }
 
-// Holes in the film, by their object or by a shader.
+// Sets has_holdouts: whether an object or a shader makes holdouts, which have alpha 0 in the film.
 void find_holdouts(Snapshot* snapshot) {
   const auto holds_out = [&](uint32_t m) { return snapshot->materials[m]->has_holdout; };
   snapshot->features.has_holdouts =
@@ -190,8 +190,7 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     find_holdouts(snapshot.get());
     find_emission(snapshot.get());
   };
-  // Isolated: while it waits for its own tasks, this thread must not take tiles of a render that runs in the same
-  // arena.
+  // Isolation keeps this thread from executing tiles of a render in the same arena while it waits for its own tasks.
   device_->arena().execute([&] { tbb::this_task_arena::isolate(build); });
   snapshot->content_key = content_key(*state_);
   monitor.report(1.0f);

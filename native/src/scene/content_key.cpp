@@ -1,5 +1,5 @@
-// Key of all that a frame shows (contract 7.2: the scene key of a frame). Of contents alone: the keys under which a
-// caller holds meshes, materials and images differ from one session to the next.
+// The content key of a frame: a hash of everything that it shows. It depends on contents only, because the caller's
+// keys of meshes, materials and images differ from one session to the next.
 #include "image/image.h"
 #include "scene/scene_state.h"
 
@@ -9,7 +9,7 @@ namespace {
 
 void hash_matrix(const float* m, ContentHash* hash) { hash->bytes(m, 16 * sizeof(float)); }
 
-// 0 for what is not there.
+// Content hashes of meshes, images and materials by the caller's keys; 0 if there is no such object.
 class Contents {
  public:
   explicit Contents(const Scene::State& state) : state_(state) {}

@@ -1,4 +1,4 @@
-// What renders of one host share: threads, Embree's device, colour management, warnings.
+// Resources that all renders of one host share: threads, the Embree device, colour management and warnings.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ namespace gradus::scene {
 
 class Device {
  public:
-  // Throws Error UNSUPPORTED if Embree or TBB are not those it was built with (contract 7.5).
+  // Throws Error UNSUPPORTED if Embree or TBB are not those that Gradus was built with.
   explicit Device(const GradusDeviceSettings& settings);
   ~Device();
   Device(const Device&) = delete;
@@ -31,7 +31,7 @@ class Device {
   uint32_t threads() const { return threads_; }
   image::ColorManager& color() { return *color_; }
   const std::string& denoiser_path() const { return denoiser_path_; }
-  // Of the device itself: colour management. Those of scenes are with the scenes.
+  // Warnings of colour management. Warnings of a scene are in its snapshot.
   Warnings& warnings() { return warnings_; }
 
  private:

@@ -18,9 +18,9 @@ class MaterialSource {
   // Pointers into this object; valid as long as it.
   GradusMaterial view() const;
   uint64_t content_hash() const { return content_hash_; }
-  // The same with hashes of the images in the place of their keys.
+  // Returns the content hash with the hashes of the images instead of their keys.
   uint64_t hash_with(const std::function<uint64_t(uint64_t key)>& image) const;
-  // What it compiles to depends on images, too.
+  // Returns whether the compiled material depends on images.
   bool looks_at_images() const;
   const std::string& name() const { return name_; }
 

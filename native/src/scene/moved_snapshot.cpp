@@ -16,7 +16,7 @@ namespace {
 
 using Meshes = std::map<const geometry::MeshData*, std::shared_ptr<const geometry::MeshData>>;
 
-// A part of the way to the frame after, or to that before.
+// A step to the next or the previous frame, or a share of it.
 struct Step {
   Moment when;
   float share;
@@ -38,7 +38,7 @@ std::shared_ptr<const geometry::MeshData> moved_mesh(const std::shared_ptr<const
   return moved;
 }
 
-// True: it is not what it was.
+// Moves an instance. Returns whether it changed.
 bool move_instance(const Step& step, Meshes* meshes, geometry::InstanceData* instance) {
   if (!(step.is_next() ? instance->will_be_there : instance->was_there)) {
     instance->id = geometry::kNobody;
@@ -53,7 +53,7 @@ bool move_instance(const Step& step, Meshes* meshes, geometry::InstanceData* ins
   instance->mirrored = glm::determinant(glm::dmat3(matrix)) < 0.0;
   instance->keys = nullptr;
   instance->deforms = false;
-  instance->visibility |= GRADUS_MAY_MOVE;  // built apart from what rests, which is shared
+  instance->visibility |= GRADUS_MAY_MOVE;  // keeps it out of the shared static group
   if (mesh != instance->mesh) instance->tangents.clear();
   instance->mesh = mesh;
   return true;

@@ -1,4 +1,4 @@
-// The scene one frame earlier or later, as far as vectors know it.
+// A snapshot of the scene one frame earlier or later, made from the motion data of the current frame.
 #pragma once
 
 #include <memory>
@@ -8,9 +8,10 @@
 
 namespace gradus::scene {
 
-// when: Previous or Next. Objects, shapes and the camera are where they are then, at rest; materials and lights are
-// those of the frame. What does not move is shared. share: of the way there; vertices go straight, objects and the
-// camera as while the shutter is open. Throws Error CANCELLED or OUT_OF_MEMORY.
+// Returns the snapshot at the Previous or Next frame. Objects, shapes and the camera are static at their positions of
+// that frame; materials and lights are those of the current frame. Unchanged data are shared. `share` is the fraction
+// of the motion, 0 to 1: vertices move linearly, objects and the camera as while the shutter is open. Throws Error
+// CANCELLED or OUT_OF_MEMORY.
 std::shared_ptr<const Snapshot> moved_snapshot(
     const Snapshot& snapshot, Moment when, const CancelCheck& is_cancelled = [] { return false; }, float share = 1.0f);
 

@@ -1,5 +1,5 @@
-// From the instances as set to those of a snapshot: broken ones are left out, and the scene is moved to its centre
-// where it is far away.
+// Makes the instances of a snapshot from those that the caller set. Broken instances are left out. A scene that is far
+// from the origin is moved to its centre, for float precision.
 #include <cmath>
 
 #include "base/hash.h"
@@ -10,9 +10,10 @@ namespace gradus::scene {
 
 namespace {
 
-// A scene further from the origin than this many radii is moved: below, positions keep 18 bits within the scene.
+// Distance from the origin, in radii of the scene, beyond which the scene is moved. Below it, positions keep 18 bits
+// within the scene.
 constexpr double kFarRadii = 64.0;
-// Columns of a matrix that are closer to a plane than this (relative volume) have no inverse worth having in float.
+// Minimum relative volume of a matrix's columns. Below it, the inverse is not accurate enough in float.
 constexpr double kMinVolume = 1e-10;
 
 bool is_usable(const Mat4& m) {
@@ -43,7 +44,8 @@ void add_box(const geometry::MeshData& mesh, const glm::dmat4& m, Bounds* bounds
   }
 }
 
-// Snapped to a coarse grid, so that an animated scene keeps its origin, and so that subtracting it is exact.
+// Returns the origin of internal space. It lies on a coarse grid, so that it stays the same during an animation, and so
+// that its subtraction is exact.
 Vec3 choose_origin(const Bounds& bounds) {
   if (bounds.empty()) return Vec3(0.0f);
   const glm::dvec3 c = bounds.centre();
@@ -96,7 +98,7 @@ void set_matrices(const geometry::InstanceArrays& a, size_t i, const Vec3& origi
   out->to_world_next = next ? moved(a.matrices_next[i], origin) : out->to_world;
 }
 
-// While the shutter is open. One that degenerates on the way stands still.
+// Sets the motion while the shutter is open. An instance with an unusable shutter matrix does not move.
 void set_keys(const geometry::InstanceArrays& a, size_t i, const Vec3& origin, geometry::InstanceData* out) {
   out->deforms = out->mesh->shutter_keys > 0;
   if (a.shutter_first.empty() || a.shutter_count[i] == 0) return;

@@ -22,7 +22,7 @@ void Scene::set_mesh(uint64_t key, const GradusMesh& mesh) {
   std::shared_ptr<const geometry::MeshData> made = geometry::make_mesh(mesh);
   const Lock lock(state_->mutex);
   std::shared_ptr<const geometry::MeshData>& slot = state_->meshes[key];
-  // Equal content keeps the object, and with it what was built from it.
+  // A mesh with equal content keeps its object, and with it the acceleration structures that were built from it.
   if (!slot || slot->content_hash != made->content_hash) slot = std::move(made);
 }
 
@@ -35,7 +35,8 @@ void Scene::set_image(uint64_t key, const GradusImage& image) {
 void Scene::set_material(uint64_t key, const GradusMaterial& material) {
   if (key == 0) throw invalid_argument("material: key 0 is the default grey");
   auto source = std::make_shared<const MaterialSource>(material);
-  // Finds mistakes now, while the caller knows what it does. What is only too much is commit's to replace.
+  // Invalid programs are rejected here, where the caller can handle the error. commit() replaces programs that exceed a
+  // limit.
   shading::check_program(source->view());
   const Lock lock(state_->mutex);
   std::shared_ptr<const MaterialSource>& slot = state_->materials[key];

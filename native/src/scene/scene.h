@@ -1,4 +1,4 @@
-// The editable scene behind the C API: keeps what was set, makes snapshots.
+// The editable scene of the C API. It stores the caller's data and makes snapshots of them.
 #pragma once
 
 #include <memory>
@@ -32,7 +32,7 @@ class Scene {
   // Throws Error CANCELLED when *cancel becomes non-zero (the snapshot before stays); progress runs from 0 to 1 and
   // never falls.
   void commit(const volatile int32_t* cancel, float* progress);
-  std::shared_ptr<const Snapshot> snapshot() const;  // of the last commit; nullptr before
+  std::shared_ptr<const Snapshot> snapshot() const;  // of the last commit; nullptr if there was none
   const std::shared_ptr<Device>& device() const { return device_; }
 
   struct State;  // scene/scene_state.h

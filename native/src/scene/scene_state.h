@@ -1,4 +1,4 @@
-// What a Scene keeps between calls; private to scene/.
+// The data that a Scene stores between calls; private to scene/.
 #pragma once
 
 #include <functional>
@@ -32,7 +32,7 @@ struct LightSource {
 
 struct LoadedImage {
   image::ImageSource source;
-  std::shared_ptr<const image::Image> image;  // null: to be loaded by the next commit
+  std::shared_ptr<const image::Image> image;  // nullptr: the next commit loads it
 };
 
 // Image key -> pixels.
@@ -41,7 +41,7 @@ using StoredImages = std::map<uint64_t, std::shared_ptr<const image::Image>>;
 struct CompiledMaterial {
   std::shared_ptr<const MaterialSource> source;
   std::shared_ptr<const shading::MaterialData> data;
-  std::string warning;  // why `data` is the fallback; empty: it is not
+  std::string warning;  // reason for a fallback in `data`; else empty
 };
 
 // Material key -> index in Snapshot::materials.
@@ -60,7 +60,7 @@ struct Scene::State {
   GradusWorld world{};
   bool has_world = false;
 
-  // Results of the last commit that the next may take over.
+  // Results of the last commit that the next commit may reuse.
   std::shared_ptr<const Snapshot> current;
   std::shared_ptr<const image::ImageStore> image_store;
   StoredImages stored_images;  // in image_store
@@ -79,7 +79,7 @@ std::vector<size_t> place_instances(const Scene::State& state, Snapshot* snapsho
 void load_images(Device& device, const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot);
 // Fills materials, the default one first, and warnings. Needs load_images().
 MaterialIndex compile_materials(const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot);
-// Hash of all that was set.
+// Returns a hash of everything that the caller set.
 uint64_t content_key(const Scene::State& state);
 
 }  // namespace gradus::scene

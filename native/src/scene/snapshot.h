@@ -19,13 +19,13 @@ struct SceneFeatures {
   bool has_transparent_shadows = false;
   bool has_lights_with_extent = false;
   float min_alpha = 1.0f;                  // roughness: surely no lobe is sharper
-  float min_refracting_alpha = kInfinity;  // likewise, of those that refract; infinite: there are none
+  float min_refracting_alpha = kInfinity;  // minimum of refracting lobes; infinite: there are none
   bool has_lights = false;
   bool only_lights_emit =
       false;  // no surface has anything to show to a ray that ends a path: it sees lights and the world alone
   bool world_emits = true;
   bool has_motion = false;    // something moves while the shutter is open
-  bool has_holdouts = false;  // holes in the film, which have alpha 0 in an opaque one, too
+  bool has_holdouts = false;  // objects or shaders that make alpha 0 in the film
 };
 
 // All positions that go in and come out are in internal space: world = internal + origin. The camera and the lights are
@@ -37,8 +37,8 @@ class Snapshot : public light::LitScene {
   Rgb transmittance(const Ray& ray, uint32_t max_transparent) const;
 
   std::shared_ptr<const camera::CameraKeys> camera_keys;
-  bool shot_change_before = false, shot_change_after = false;  // the frame around is seen by another camera
-  bool is_other_shot = false;                                  // of moved_snapshot() over such a cut
+  bool shot_change_before = false, shot_change_after = false;  // another shot in the adjacent frame
+  bool is_other_shot = false;                                  // moved_snapshot() across a shot change
   camera::Shutter shutter;
   SceneFeatures features;
   uint64_t content_key = 0;

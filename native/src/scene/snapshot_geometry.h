@@ -1,4 +1,4 @@
-// What rays meet of a snapshot: built of its instances and their materials.
+// Builds the acceleration structure of a snapshot from its instances and their materials.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Images and materials of a commit: what did not change since the one before is taken over.
+// Loading of images and compilation of materials in a commit. Unchanged ones are reused from the previous commit.
 #include <set>
 
 #include <tbb/parallel_for.h>
@@ -12,7 +12,7 @@ namespace gradus::scene {
 
 namespace {
 
-// Decodes what is new, several at once.
+// Decodes new images in parallel.
 void load_new_images(Device& device, Scene::State* state, const CommitMonitor& monitor) {
   std::vector<LoadedImage*> pending;
   for (auto& [key, image] : state->images)
@@ -23,7 +23,7 @@ void load_new_images(Device& device, Scene::State* state, const CommitMonitor& m
   monitor.check();
 }
 
-// A material that does not compile costs itself, not the frame.
+// Compiles a material. One that does not compile gets a fallback and a warning, and the frame is rendered.
 CompiledMaterial compile(const std::shared_ptr<const MaterialSource>& source, const image::ImageStore& images) {
   const GradusMaterial desc = source->view();
   try {

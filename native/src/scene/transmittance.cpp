@@ -7,7 +7,7 @@ namespace gradus::scene {
 
 Rgb Snapshot::transmittance(const Ray& ray, uint32_t max_transparent) const {
   if (!features.has_transparent_shadows) return occluded(ray) ? Rgb(0.0f) : Rgb(1.0f);
-  // What is opaque for sure decides most rays, and no material has to run.
+  // Opaque surfaces decide most rays without the evaluation of a material.
   if (geometry::trace_any(*accelerator, ray, geometry::kMaskOpaqueShadow)) return Rgb(0.0f);
   Rgb through(1.0f);
   Ray rest = ray;
