@@ -198,14 +198,14 @@ GradientMap run_pilot(const integrator::Integrator& integrator, const GradusSett
 void explain(const GradientMap& map, Reasons* chosen, Reasons* skipped) {
   char text[200];
   std::snprintf(text, sizeof(text),
-                "a pilot of %llu samples, thrown away, expects them to leave %.2f of the noise for %.1f times the CPU "
-                "time (all of the picture)",
+                "a pilot of %llu discarded samples expects that they leave %.2f of the noise for %.1f times the CPU "
+                "time (over the whole image)",
                 static_cast<unsigned long long>(map.samples), map.benefit.error, map.benefit.cost);
   if (map.none()) {
-    skipped->emplace_back("gradients", "they pay nowhere: " + std::string(text));
+    skipped->emplace_back("gradients", "they do not reduce the error at equal time anywhere: " + std::string(text));
     return;
   }
-  chosen->emplace_back("gradients in " + std::to_string(std::lround(100.0 * map.share)) + " % of the picture", text);
+  chosen->emplace_back("gradients in " + std::to_string(std::lround(100.0 * map.share)) + " % of the image", text);
 }
 
 }  // namespace gradus::render
