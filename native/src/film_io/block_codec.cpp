@@ -12,7 +12,7 @@
 namespace gradus::film_io {
 namespace {
 
-// The fastest, and within 1 % of the size of the others: what is not noise is plain.
+// Compression level: the fastest, and within 1 % of the size of the others.
 constexpr int kLevel = 1;
 constexpr int kMiddle = 128;
 
@@ -41,7 +41,8 @@ void differentiate(const Bytes& block, size_t begin, size_t end, unsigned char* 
   }
 }
 
-// Sums of differences, sixteen at a time: one by one each would wait for the one before.
+// Reverses differentiate(): sums the differences, sixteen at a time, because one by one each sum would wait for the
+// previous one.
 void integrate(Bytes* bytes) {
   constexpr size_t kLanes = 16;
   unsigned char* const at = bytes->data();
@@ -73,7 +74,7 @@ void join(const Bytes& halves, Bytes* block) {
   }
 }
 
-// Bits that the bytes take by how often each is there (their entropy).
+// Returns the entropy of the bytes in bits.
 double bits_of(const unsigned char* bytes, size_t size) {
   constexpr size_t kCounts = 4;  // one alone would wait for itself where bytes are the same
   std::array<std::array<uint32_t, 256>, kCounts> counts{};
@@ -87,8 +88,8 @@ double bits_of(const unsigned char* bytes, size_t size) {
   return bits;
 }
 
-// Most noisy sums lose a quarter of their size at most, and take most of the time: they stay as they are. Looks at a
-// piece of every four.
+// Returns whether the block compresses well, judged by every fourth piece. Most noisy sums lose at most a quarter of
+// their size and take most of the time, so they are stored unpacked.
 bool is_worth_packing(const Bytes& block) {
   constexpr size_t kPiece = 4096, kEvery = 4;
   constexpr double kShare = 0.72;

@@ -1,7 +1,8 @@
-// Blocks of OpenEXR's ZIP compression: sixteen rows, of each row one channel after the other, packed in zlib's format.
+// Packs and unpacks blocks of OpenEXR's ZIP compression: sixteen rows, in each row one channel after the other,
+// compressed in zlib's format.
 //
-// OpenEXR does the same by zlib alone, and packs all. That takes two to three times as long where planes are smooth,
-// and many times as long where they are noisy sums, which are hardly worth packing.
+// OpenEXR uses zlib for all blocks. That takes two to three times as long for smooth planes, and many times as long for
+// noisy sums, which hardly compress.
 #pragma once
 
 #include <cstddef>
@@ -17,13 +18,13 @@ inline constexpr int kBlockRows = 16;
 
 using Bytes = std::vector<unsigned char>;
 
-// For one thread. Blocks have an even number of bytes.
+// A codec for one thread. Blocks have an even number of bytes.
 class BlockCodec {
  public:
   BlockCodec();
-  // What stands in a file for the block: the block itself where packing gains little.
+  // Returns the bytes to store for the block: the block itself if compression gains little.
   Bytes pack(const Bytes& block);
-  // *block has its size. False: the bytes stand for no such block.
+  // Unpacks into *block, which has its final size. Returns false if the bytes are damaged.
   bool unpack(const unsigned char* packed, size_t size, Bytes* block);
 
  private:

@@ -1,5 +1,4 @@
-// A file of OpenEXR with parts of scan lines, written block by block as they come packed: its own writer packs them one
-// after the other.
+// Writes an OpenEXR file with scan-line parts from packed blocks. OpenEXR's own writer packs one block after the other.
 #pragma once
 
 #include <ImfHeader.h>
@@ -11,15 +10,15 @@
 
 namespace gradus::film_io {
 
-// All parts of ZIP compression and of one size, rows downwards. (OpenEXR, "OpenEXR File Layout": magic number, version,
-// headers, where the blocks of each part lie, blocks.)
+// All parts have ZIP compression, one size and rows from the top down. (OpenEXR, "OpenEXR File Layout": magic number,
+// version, headers, offset tables of the blocks of each part, blocks.)
 class BlockFile {
  public:
-  // Headers name their parts.
+  // Writes the headers, which contain the names of the parts.
   BlockFile(std::vector<Imf::Header> headers, WriterStream* stream);
-  // Any block of any part, each once.
+  // Writes a block. Blocks may come in any order, each once.
   void write(int part, int block, const Bytes& packed);
-  // Where they lie, when all are written.
+  // Writes the offset tables after all blocks.
   void finish();
 
  private:
@@ -31,8 +30,8 @@ class BlockFile {
 
   WriterStream* const stream_;
   int top_;
-  uint64_t table_;                             // where it lies
-  std::vector<std::vector<uint64_t>> places_;  // by parts and blocks
+  uint64_t table_;                             // position of the offset tables
+  std::vector<std::vector<uint64_t>> places_;  // offsets by part and block
 };
 
 }  // namespace gradus::film_io

@@ -1,5 +1,5 @@
-// Rows of a frame as they lie in a file: blocks of sixteen from the top down, of each row one channel after the other
-// by its name.
+// The rows of a film in the order of the file: blocks of sixteen from the top down, in each row one channel after the
+// other, sorted by name.
 #pragma once
 
 #include <vector>
@@ -14,14 +14,14 @@ class BlockRows {
   BlockRows(std::vector<StoredPlane> planes, int width, int height);
   int blocks() const { return (height_ + kBlockRows - 1) / kBlockRows; }
   size_t bytes(int block) const { return size_t(rows(block)) * planes_.size() * row_bytes_; }
-  size_t max_bytes() const { return size_t{kBlockRows} * planes_.size() * row_bytes_; }  // of any
-  // *bytes has their number.
+  size_t max_bytes() const { return size_t{kBlockRows} * planes_.size() * row_bytes_; }  // maximum size of a block
+  // Copy the planes to the bytes of a block and back. `bytes` has bytes(block) elements.
   void gather(int block, Bytes* bytes) const;
   void scatter(const Bytes& bytes, int block) const;
 
  private:
   int rows(int block) const;
-  // Where row `row` of the file lies in the plane.
+  // Returns the start of row `row` of the file in the plane.
   unsigned char* row_of(const StoredPlane& plane, int row) const;
   template <class Function>
   void for_each_row(int block, const Function& function) const;

@@ -1,11 +1,12 @@
-// What a file may hold and no frame does: what was sampled has passed the gate, and what was found is bounded.
+// Checks values that a damaged file may hold and no film does.
 #pragma once
 
 #include "film/film.h"
 
 namespace gradus::film_io {
 
-// Of what passes of components are made of, by the threads of the caller's arena. Throws invalid_argument.
+// Checks the planes for passes of components, with the threads of the caller's task arena. Throws `invalid_argument`
+// for a value that is not finite or out of range.
 void check_planes(const film::Film& film);
 
 }  // namespace gradus::film_io

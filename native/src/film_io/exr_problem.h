@@ -1,4 +1,4 @@
-// What is wrong with an OpenEXR file, in words.
+// Describes an error of an OpenEXR file.
 #pragma once
 
 #include <exception>
@@ -6,7 +6,7 @@
 
 namespace gradus::film_io {
 
-// Without the file's name, which OpenEXR puts before its reasons and whoever reports them gives himself.
+// Returns the text of the exception without the file name, which callers add themselves.
 std::string exr_problem(const std::exception& exception);
 
 }  // namespace gradus::film_io

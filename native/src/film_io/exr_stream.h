@@ -1,4 +1,4 @@
-// OpenEXR's output through a writer that is atomic.
+// Output of OpenEXR to an atomic FileWriter.
 #pragma once
 
 #include <ImfIO.h>
@@ -11,7 +11,7 @@
 
 namespace gradus::film_io {
 
-// Errors that OpenEXR swallows (its destructors write, too) are kept for afterwards.
+// A stream that keeps errors which OpenEXR ignores (its destructors also write) for rethrow().
 class WriterStream final : public Imf::OStream {
  public:
   WriterStream(FileWriter* writer, const std::string& path) : Imf::OStream(path.c_str()), writer_(writer) {}
@@ -40,7 +40,7 @@ class WriterStream final : public Imf::OStream {
   std::exception_ptr failure_;
 };
 
-// Runs write(&stream) and commits; what goes wrong is thrown as Error with path and cause, and leaves no file.
+// Calls write(&stream) and commits the file. Throws Error with path and cause on failure, and leaves no file.
 template <class Function>
 void write_exr(const std::string& path, Function&& write, Durable durable = Durable::kYes) {
   FileWriter writer(path, durable);

@@ -14,7 +14,8 @@
 namespace gradus::film_io {
 namespace {
 
-// So that the new name itself survives a power cut. Not every file system can do it; the data is safe already.
+// Syncs the folder so that the new name survives a power failure. Failures are ignored, because not every file system
+// supports it and the data is on the disk already.
 void sync_folder_of(const std::string& path) {
   const size_t slash = path.rfind('/');
   const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
@@ -24,7 +25,7 @@ void sync_folder_of(const std::string& path) {
   close(fd);
 }
 
-// A sync cannot be cancelled. That of half a frame of 4K, all at its end, takes seconds, or many on a slow disk.
+// Maximum number of bytes between two syncs. A sync cannot be cancelled, and one of half a 4K film takes seconds.
 constexpr size_t kMaxUnsynced = size_t{1} << 25;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// A file that appears as a whole or not at all: written under PATH.<pid>.<host>.part, synced, then renamed
-// (contract 7.2). Whoever is killed leaves at most a .part file behind.
+// Writes a file atomically: under PATH.<pid>.<host>.part, synced, then renamed. A killed process leaves at most a .part
+// file.
 #pragma once
 
 #include <cstdint>
@@ -8,23 +8,22 @@
 
 namespace gradus::film_io {
 
-// Whether a file outlasts a crash of the machine. One that is removed before long need not: to sync it would keep the
-// disk busy for nothing.
+// Whether a file survives a crash of the machine. A temporary file need not, and to sync it would only load the disk.
 enum class Durable { kYes, kNo };
 
 class FileWriter {
  public:
-  // All throw Error(INVALID_OPERATION) with path and the system's reason.
+  // All functions throw Error(INVALID_OPERATION) with path and the system's reason.
   explicit FileWriter(const std::string& path, Durable durable = Durable::kYes);
   ~FileWriter();  // removes the temporary file unless commit() was called
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
 
-  // Of a durable file, most of what was written is on the disk when this returns.
+  // Appends bytes. Durable files are synced regularly.
   void write(const void* data, size_t size);
   uint64_t position() const;
   void seek(uint64_t position);
-  // It has its name when this returns, and a durable one is on the disk.
+  // Renames the file to its final name. A durable file is on the disk on return.
   void commit();
 
  private:
@@ -36,7 +35,7 @@ class FileWriter {
   size_t unsynced_ = 0;
 };
 
-// As it is, under another name, in the place of what has that. Throws as FileWriter.
+// Copies a file and replaces an existing one. Throws as FileWriter does.
 void copy_file(const std::string& path, const std::string& name, Durable durable = Durable::kYes);
 
 }  // namespace gradus::film_io

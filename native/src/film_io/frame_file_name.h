@@ -1,4 +1,4 @@
-// Names of frames in a folder of a frame store (contract 7.2).
+// File names of frames in a folder of stored films.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace gradus::film_io {
 
-// "f+0000017.base.exr". ending: what follows the number.
+// Returns a name such as "f+0000017.base.exr". `ending` follows the number.
 inline std::string frame_name(int32_t frame, const char* ending) {
   std::array<char, 40> name{};
   std::snprintf(name.data(), name.size(), "f%+08d.%s", frame, ending);

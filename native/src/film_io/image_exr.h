@@ -1,4 +1,4 @@
-// Plain images in OpenEXR: what the tool writes, and reads to compare.
+// Reads and writes plain images in OpenEXR for the command-line tool.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct ImageLayer {
   std::vector<float> pixels;
 };
 
-// 32-bit float, ZIP; whole or not at all. Throws Error with path and cause.
+// Writes a 32-bit float image with ZIP compression, atomically. Throws Error with path and cause.
 void save_image(const std::string& path, int width, int height, const std::vector<ImageLayer>& layers);
 
 struct LoadedImage {
@@ -23,9 +23,9 @@ struct LoadedImage {
 // Reads R, G, B of the layer whose channel names end with `layer` (".R" and so on); "": the plain RGB, else a layer
 // Combined. Throws invalid_argument with path and cause, naming the layers there are.
 LoadedImage load_rgb(const std::string& path, const std::string& layer);
-// Names of all channels.
+// Returns the names of all channels.
 std::vector<std::string> image_channels(const std::string& path);
-// The file is a frame store of Gradus, not an image.
+// Returns whether the file is a stored film of Gradus instead of an image.
 bool is_film_file(const std::string& path);
 
 }  // namespace gradus::film_io

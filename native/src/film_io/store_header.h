@@ -1,5 +1,5 @@
-// What stands before the planes of a stored frame: sizes and channels, and in words keys, settings, samples and the
-// version of the format.
+// The headers of a stored film: sizes, channels, and a JSON description with keys, settings, samples and format
+// version.
 #pragma once
 
 #include <ImfHeader.h>
@@ -12,14 +12,15 @@
 
 namespace gradus::film_io {
 
-// One for each part; the description is in the first.
+// Returns one header for each part; the first contains the description.
 std::vector<Imf::Header> make_headers(const film::Film& film, const std::vector<StoredPart>& parts);
 
-// From the first part's. All throw Error with what is wrong: no frame, another version, larger than the memory.
+// Reads the description from the first header. All functions throw Error with the problem: not a film, another version,
+// larger than the memory.
 film::FilmHeader read_header(const Imf::Header& header);
-// A frame with zeroed planes. only: the component that has any; nullptr: all have.
+// Returns a film with zeroed planes. `only` is the single component with planes; nullptr: all have planes.
 film::Film make_frame(const Imf::Header& header, StoredContent content, const std::string* only = nullptr);
-// The header of a part as make_headers() makes it.
+// Throws Error unless the header is one that make_headers() makes for the part.
 void check_part(const Imf::Header& header, const Imf::Header& first, const StoredPart& part);
 
 }  // namespace gradus::film_io

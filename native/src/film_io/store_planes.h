@@ -1,4 +1,4 @@
-// The parts of a stored frame and their channels, in one list for writing and for reading.
+// The parts of a stored film and their channels, in one list for writing and reading.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct StoredPart {
   std::vector<StoredPlane> planes;
 };
 
-// Points into the frame, which must not change its planes meanwhile.
+// Returns parts that point into the film, whose planes must not change while they are used.
 std::vector<StoredPart> stored_parts(film::Film* film);
 
 }  // namespace gradus::film_io

@@ -1,5 +1,5 @@
-// Files that are being written, PATH.<pid>.<host>.part: no two writers have one in common, and each is locked while its
-// writer lives, so that what a killed one has left is known.
+// Temporary files PATH.<pid>.<host>.part. No two writers share one, and each is locked while its writer lives, so that
+// files of killed writers can be recognised.
 #pragma once
 
 #include <string>
@@ -11,9 +11,10 @@ struct TemporaryFile {
   int descriptor = -1;  // -1: it could not be made, for errno's reason
 };
 
-// New and locked. Those that dead processes of this host have left in its folder are removed.
+// Creates and locks a new file. Removes those that dead processes of this host left in its folder.
 TemporaryFile make_temporary_file(const std::string& path);
-// A second name for a file in the same folder, in the place of what has it. False: not every file system can do it.
+// Creates a second name for a file in the same folder and replaces an existing one. Returns false if the file system
+// does not support it.
 bool hard_link_file(const std::string& path, const std::string& name);
 
 }  // namespace gradus::film_io

@@ -30,7 +30,8 @@ void AdaptiveSampling::judge(const std::vector<BlockNoise>& noise) {
   judged_ = true;
   for (size_t i = 0; i < grid_.blocks.size(); ++i) {
     spread_[i] = noise[i].spread * std::sqrt(double(taken_[i]));
-    if (taken_[i] >= first_check_ && noise[i].relative_error < threshold_) stopped_[i] = 1;  // NaN goes on
+    // a block with NaN does not stop
+    if (taken_[i] >= first_check_ && noise[i].relative_error < threshold_) stopped_[i] = 1;
   }
 }
 
@@ -43,7 +44,8 @@ size_t AdaptiveSampling::index(int32_t x, int32_t y) const {
                      film::pixel_block_of(y) - film::pixel_block_of(region_.y0));
 }
 
-// With the cells around: a cell where no light was found yet lies beside others where it was.
+// Returns the spread of a block averaged with the blocks around it. A block in which no sample has found light yet
+// often lies beside blocks that have some.
 double AdaptiveSampling::smooth_spread(size_t block) const {
   double sum = 0.0, weights = 0.0;
   for_each_around(grid_, block, [&](size_t i, double weight) {
@@ -53,7 +55,8 @@ double AdaptiveSampling::smooth_spread(size_t block) const {
   return sum / weights;
 }
 
-// 1 where none were counted: before the first batch of a render that goes on from samples that were not taken for it.
+// Returns the mean number of rays per sample. It is 1 where none were counted: before the first batch of a render that
+// continues samples that were not taken adaptively.
 double AdaptiveSampling::rays_per_sample(size_t block) const {
   const double samples = double(grid_.blocks[block].area()) * (taken_[block] - uncounted_);
   return rays_[block] > 0 ? double(rays_[block]) / samples : 1.0;

@@ -1,5 +1,5 @@
-// Where the next samples go: cells of 16×16 that are good enough stop (contract 5.3), and the others share a batch by
-// their noise.
+// Adaptive sampling: pixel blocks of 16×16 stop when their estimated error is below the noise threshold, and the others
+// share the samples of a batch by their noise.
 #pragma once
 
 #include <cstdint>
@@ -11,31 +11,34 @@
 
 namespace gradus::render {
 
-// Of each pixel of the region: number of its next sample, and how many it takes (WorkUnit::first_map, count_map).
+// For each pixel of the region: the number of its next sample, and how many samples it takes in the batch
+// (WorkUnit::first_map, count_map).
 struct SampleMap {
   std::vector<uint32_t> first, count;
 };
 
 class AdaptiveSampling {
  public:
-  // Goes on from `frame`, in which all pixels of a cell have the same number of samples. A cell may stop from
-  // `first_check` samples on; once stopped it stays so.
+  // Starts from the samples of `film`, in which all pixels of a block have the same number of samples. A block may stop
+  // once it has `first_check` samples, and then stays stopped.
   AdaptiveSampling(const film::Film& film, float threshold, uint32_t first_check);
 
+  // Takes the estimated noise of each block: stops the blocks whose relative error is below the threshold, and updates
+  // the spreads by which the others share samples.
   void judge(const std::vector<BlockNoise>& noise);
-  // What the samples of a cell in a batch have cost: rays, which are the same whenever and wherever they are traced,
-  // where times are not. Thread-safe for different cells.
+  // Adds the cost of the samples of a block. The cost is counted in rays, because the number of rays is the same in
+  // every run and CPU time is not. Thread-safe for different blocks.
   void add_rays(const Region& block, uint64_t rays) { rays_[index(block.x0, block.y0)] += rays; }
   const std::vector<Region>& blocks() const { return grid_.blocks; }
   bool all_done() const;
 
-  // Begins a batch with `mean` samples per pixel of the cells that go on. Equal for all until judge() has told them
-  // apart.
+  // Begins a batch with `mean` samples per pixel on average over the blocks that have not stopped. All blocks get the
+  // same number until the first call of judge().
   void start_batch(uint32_t mean);
   const SampleMap& batch() const { return batch_; }
-  // Samples of the pixels that have most.
+  // Returns the maximum number of samples of any pixel.
   uint32_t max_taken() const;
-  // What the next render needs to go on, after batches of `mean` samples altogether.
+  // Returns the state that a later render needs to continue, after batches with `mean` samples in total.
   film::AdaptiveState state(uint32_t mean) const { return {mean, uncounted_, rays_, stopped_}; }
 
  private:
@@ -48,10 +51,10 @@ class AdaptiveSampling {
   float threshold_;
   uint32_t first_check_;
   film::PixelBlockGrid grid_;
-  uint32_t uncounted_ = 0;       // samples of each pixel whose rays are not known
-  std::vector<uint32_t> taken_;  // samples of each cell's pixels
+  uint32_t uncounted_ = 0;       // samples of each pixel whose rays were not counted
+  std::vector<uint32_t> taken_;  // samples of each pixel, by block
   std::vector<uint64_t> rays_;
-  std::vector<double> spread_;  // relative deviation of one sample
+  std::vector<double> spread_;  // relative standard deviation of one sample, by block
   std::vector<uint8_t> stopped_;
   bool judged_ = false;
   SampleMap batch_;

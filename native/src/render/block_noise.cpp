@@ -12,15 +12,16 @@
 namespace gradus::render {
 namespace {
 
-// Keeps the relative error of black areas finite; radiance² at display exposure (the measures' constant).
+// Keeps the relative error of black areas finite. Unit: squared radiance at display exposure; the same constant as in
+// the error measures.
 constexpr double kEpsilon = 1e-3;
 
-// Of all components together.
+// The image and its estimated noise, summed over all components.
 struct FilmNoise {
-  std::vector<float> image;  // what is delivered
+  std::vector<float> image;  // the reconstructed image
   reconstruct::ErrorTerms terms;
-  std::vector<float> by_its_weights;  // noise; empty where these do not follow it
-  std::vector<float> error;           // of a reconstruction that estimates it itself, in place of the terms
+  std::vector<float> by_its_weights;  // noise by the measured weights of L1; empty for other reconstructions
+  std::vector<float> error;           // squared error by pixel, if the reconstruction estimates it; replaces `terms`
 };
 
 void add_terms(const film::Film& film, int component, uint32_t reconstruction, float alpha,
@@ -30,7 +31,8 @@ void add_terms(const film::Film& film, int component, uint32_t reconstruction, f
   reconstruct::add_image(std::move(terms.apart), &sum->terms.apart);
 }
 
-// Estimates the noise of L1 by weights of the measured noise, which are close to L1's weights and need no iteration.
+// Adds a component whose reconstruction is L1. Estimates its noise by weights of the measured noise, which are close to
+// the weights of L1 and need no iteration.
 void add_l1(const film::Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
             FilmNoise* sum) {
   film::GradientImages images = film::read_images(film, component);
@@ -43,6 +45,7 @@ void add_l1(const film::Film& film, int component, uint32_t reconstruction, floa
   reconstruct::add_image(std::move(left.noise), &sum->by_its_weights);
 }
 
+// Adds a component whose reconstruction is L2 or NONE.
 void add_other(const film::Film& film, int component, uint32_t reconstruction, float alpha, const CancelCheck& cancel,
                FilmNoise* sum) {
   reconstruct::SolveReport report;
@@ -68,15 +71,16 @@ FilmNoise noise_of(const film::Film& film, uint32_t reconstruction, float alpha,
   return sum;
 }
 
-// Mean over RGB.
+// Returns the mean over RGB.
 double gray(const float* pixel) { return (double(pixel[0]) + pixel[1] + pixel[2]) / 3.0; }
 
-// Of a pixel, squared; `i` is its index, `v` that of its first value.
+// Squared noise of a pixel.
 struct PixelNoise {
-  double noise = 0.0, apart = 0.0;  // see squared_error()
-  double own = 0.0;                 // by the own weights
+  double noise = 0.0, apart = 0.0;  // the two arguments of squared_error()
+  double own = 0.0;                 // by the weights of the reconstruction
 };
 
+// Returns the squared noise of pixel `i`, whose first channel value has the index `v`.
 PixelNoise noise_of_pixel(const FilmNoise& images, size_t i, size_t v) {
   PixelNoise pixel;
   pixel.noise = images.error.empty() ? reconstruct::mean_square(&images.terms.noise[v]) : double(images.error[i]);

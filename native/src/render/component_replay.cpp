@@ -8,11 +8,12 @@ namespace gradus::render {
 
 namespace {
 
+// Returns whether the component has a source pixel that differs from that of the surface.
 bool parts(const film::PixelCorrespondence& own, const film::PixelCorrespondence& surface, size_t pixel) {
   return own.pixel[pixel] != film::kNoCorrespondence && own.pixel[pixel] != surface.pixel[pixel];
 }
 
-// The first component that goes where this one goes; itself, if none before does.
+// Returns the first component with the same source pixel as this one; `component` itself if no earlier one has it.
 size_t first_with_same_replay(const film::ReplayMap& replay_map, size_t component, size_t pixel) {
   const int32_t source = replay_map.of_component[component].pixel[pixel];
   for (size_t c = 0; c < component; ++c) {
@@ -22,7 +23,7 @@ size_t first_with_same_replay(const film::ReplayMap& replay_map, size_t componen
   return component;
 }
 
-// That are sampled once more for this component.
+// Returns the number of pixels that are sampled additionally for this component.
 size_t parting_pixels(const film::ReplayMap& replay_map, size_t component) {
   const film::PixelCorrespondence& own = replay_map.of_component[component];
   size_t pixels = 0;
@@ -54,7 +55,7 @@ void limit_component_replays(film::ReplayMap* replay_map) {
 ComponentReplays replays_of_components(const film::ReplayMap& replay_map) {
   ComponentReplays replays;
   const size_t pixels = replay_map.correspondence.pixel.size();
-  std::vector<size_t> places(replay_map.of_component.size());  // in replays.own
+  std::vector<size_t> places(replay_map.of_component.size());  // by component: index in replays.own
   for (size_t c = 0; c < places.size(); ++c) {
     if (!replay_map.has_component_map(int(c))) continue;
     const film::PixelCorrespondence& own = replay_map.of_component[c];

@@ -1,5 +1,6 @@
-// Components that replay other pixels than the surface does, as reflections do (contract 4.2): their samples are taken
-// by themselves, where the ways part.
+// Replays of single components. A component such as a reflection may move over the image differently from the surface
+// that shows it, and then replays the samples of other pixels of the previous frame than the surface does. Where the
+// two differ, the samples of the component are taken in an additional pass.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +10,24 @@
 
 namespace gradus::render {
 
-// Along the ways of one component; others that go the same way from a pixel are sampled with it.
+// The replay of one component. Other components with the same source pixel are sampled with it.
 struct ComponentReplay {
   film::ReplayMap replay_map;
-  std::vector<uint8_t> pixels;       // 1: it is sampled there
-  std::vector<uint32_t> components;  // bits of those that are, by pixels
+  std::vector<uint8_t> pixels;       // 1 where this replay samples the pixel
+  std::vector<uint32_t> components;  // by pixel: bits of the components that are sampled
 };
 
 struct ComponentReplays {
   std::vector<ComponentReplay> own;
-  std::vector<uint32_t>
-      shared;           // bits of the components that go with the surface, by pixels; empty: all of them, everywhere
-  uint64_t pixels = 0;  // that are sampled once more, for some components or others
+  // By pixel: bits of the components that are replayed with the surface. Empty: all components in all pixels.
+  std::vector<uint32_t> shared;
+  uint64_t pixels = 0;  // number of additional pixel replays, summed over `own`
 };
 
-// Pixels are sampled no more than once again on average: a component beyond that goes with the surface after all.
+// Removes component maps until at most as many additional pixels are sampled as the film has. A component beyond that
+// limit is replayed with the surface.
 void limit_component_replays(film::ReplayMap* replay_map);
-// By sources.of_component. A component without a way stays with the surface, whose samples are as good as others.
+// Returns the replays by replay_map.of_component. A component without a source pixel is replayed with the surface.
 ComponentReplays replays_of_components(const film::ReplayMap& replay_map);
 
 }  // namespace gradus::render

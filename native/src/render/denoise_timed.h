@@ -1,4 +1,4 @@
-// The step of the denoiser, of a render and of a frame of a sequence.
+// Runs the denoiser for a still image or a frame of an animation, and records it in the statistics.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace gradus::render {
 
-// denoise_combined() by the frame's own reconstruction; the stats tell what it took, by whom, or what went wrong. Empty
-// then.
+// Calls denoise_combined() with the film's own reconstruction. Adds the time, the name of the denoiser or a warning
+// about its failure to `stats`. Returns RGBA of the region, or an empty vector on failure.
 std::vector<float> denoise_timed(const output::OidnLibrary& library, const film::Film& film, const Region& region,
                                  uint32_t threads, const CancelCheck& cancel, const std::vector<float>& combined,
                                  RenderStats* stats);

@@ -9,35 +9,35 @@ namespace gradus::render {
 
 namespace {
 
-// What is left because noise is not the same everywhere, which the model supposes: the error that is measured on twelve
-// scenes is 0 to 0.3 above the model's, 0.1 in the median (docs/method.md).
+// Error that the model leaves out because it supposes the same noise everywhere: the error measured on twelve scenes is
+// 0 to 0.3 above that of the model, 0.1 in the median.
 constexpr double kUneven = 0.1;
 
-// Outliers, which roots of deviations hardly count, are shifted no better than the rest, and often worse: mean squares
-// of many more samples have 1 to 5 times the share that L2 leaves by roots, 1.8 in the median of twelve scenes
-// (docs/method.md).
+// Correction for outliers, which roots of deviations hardly count. Shifts reduce outliers no better than the rest, and
+// often less: by mean squares of many more samples, L2 leaves 1 to 5 times the share that roots predict, 1.8 in the
+// median of twelve scenes.
 constexpr double kOutliers = 1.35;
 
-// CPU time of the offsets over that of base paths: for themselves, and for each of their rays per ray of the base,
-// shading included. Least squares over twelve scenes, within 10 % on eleven.
+// CPU time of the offset paths over that of base paths: a constant for the paths themselves, and the time of each of
+// their rays per ray of the base path, shading included. Least squares over twelve scenes, within 10 % on eleven.
 constexpr double kOffsetPaths = 0.36, kShiftRay = 0.50, kShiftShadowRay = 0.55;
 
-// Of squared brightness, as in the stopping rule: below it noise is not seen.
+// Added to the squared brightness, as in the stopping rule: noise in areas darker than this is not visible.
 constexpr double kDark = 1e-3;
 
-// A part of the picture has to promise this against all or nothing: of many uncertain sums the least is one that is too
-// low.
+// A partial choice of blocks must reach this share of the result of all or no blocks. The minimum over many uncertain
+// sums tends to be one that was estimated too low.
 constexpr double kWorthParting = 0.75;
 
 double squared(double x) { return x * x; }
 
-// What L2 leaves of the noise, by roots of deviations, at the best of the weights: with all correlation between pixels
-// and differences.
+// Returns the share of the variance that L2 leaves, by roots of deviations and at the best of the weights. It includes
+// all correlation between pixels and differences.
 double l2_share(const PilotSums& sums) {
   return squared(squared(*std::min_element(sums.l2_roots.begin(), sums.l2_roots.end()) / sums.pixel_root));
 }
 
-// All but the error.
+// Returns the benefit without its `error`.
 Benefit known_benefit(const PilotSums& sums) {
   Benefit benefit;
   if (sums.plain_rays > 0.0) {
@@ -111,7 +111,7 @@ std::vector<bool> choose_blocks(const std::vector<Benefit>& blocks, const std::v
       best = n + 1;
     }
   }
-  // error and cost are now those of all.
+  // Now `error` and `cost` are the sums with gradients in all blocks.
   const double all = error * cost;
   if (minimum > kWorthParting * std::min(all, none)) best = all < none ? blocks.size() : 0;
   std::vector<bool> chosen(blocks.size(), false);

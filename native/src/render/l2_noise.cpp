@@ -6,7 +6,8 @@
 namespace gradus::render {
 namespace {
 
-// The integrands are smooth but for α near 0, where little of a spectrum is.
+// Steps of the numerical integration over each frequency. The integrands are smooth except for α near 0, where that
+// region holds little of the spectrum.
 constexpr int kSteps = 128;
 
 }  // namespace

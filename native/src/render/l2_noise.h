@@ -1,12 +1,13 @@
-// What the least-squares reconstruction leaves of the noise of one sample.
+// Computes the noise that the least-squares reconstruction leaves of one sample.
 //
-// L2 is linear, x = S(α²I + Dᵀg) with S = (α² + DᵀD)⁻¹, and away from borders the same everywhere. A sample of a pixel
-// adds v₀ to I there and v_k to the differences towards its four neighbours, so its mark on the whole picture has the
+// L2 is linear, x = S(α²I + Dᵀg) with S = (α² + DᵀD)⁻¹, and shift-invariant away from borders. A sample of a pixel adds
+// v₀ to I there and v_k to the differences towards its four neighbours, so its contribution to the image has the
 // Fourier transform Σ v_j ψ_j,
 //   ψ₀ = α²/(α² + λ),  ψ_k = (e^{iu_k} − 1)/(α² + λ),  λ = 4 − 2 cos u − 2 cos v,  u_k: u, v, −u, −v
-// and by Parseval the sum of squares Σ v_j v_l ⟨ψ_j ψ̄_l⟩. Samples of different pixels are independent: the mean of this
-// over the deviations of samples is the mean squared error, with all correlation between a pixel and its differences.
-// Nothing that stands alone is lost: v = C(1, −1, −1, −1, −1), a path whose four shifts fail, gives C².
+// and by Parseval's theorem the sum of squares Σ v_j v_l ⟨ψ_j ψ̄_l⟩. Samples of different pixels are independent: the
+// mean of this sum over the deviations of samples is the mean squared error, with all correlation between a pixel and
+// its differences. An unpaired sample keeps all its noise: v = C(1, −1, −1, −1, −1), a path whose four shifts fail,
+// gives C².
 #pragma once
 
 #include <array>
@@ -15,17 +16,18 @@
 
 namespace gradus::render {
 
-// Mean over RGB of the products.
+// Returns the mean over RGB of the products of the two colours.
 double mean_product(const Radiance& a, const Radiance& b);
 
 class L2Noise {
  public:
   explicit L2Noise(double alpha);
-  // Sum of squares over the picture, mean over RGB, of what these deviations become.
+  // Returns the sum of squares over the image, mean over RGB, that L2 makes of these deviations of one sample.
   double of(const Radiance& pixel, const std::array<Radiance, film::kOffsets>& differences) const;
 
  private:
-  // ⟨ψ_j ψ̄_l⟩ by the directions of the two: the pixel is 0, two differences are the same, at right angles, or opposite.
+  // The means ⟨ψ_j ψ̄_l⟩, by the pair of j and l: both the pixel, the pixel and a difference, the same difference, two
+  // differences at right angles, two opposite differences.
   double pixel_ = 0.0, mixed_ = 0.0, same_ = 0.0, right_angle_ = 0.0, opposite_ = 0.0;
 };
 

@@ -23,10 +23,10 @@
 namespace gradus::render {
 namespace {
 
-// How often a long batch says that there is something new to see.
+// Minimum time between two notifications of a new image during a long batch.
 constexpr int64_t kImageIntervalMs = 300;
 
-// Of what is delivered after a cancel.
+// Writes pass Error of the noisy image, which is delivered after a cancelled render.
 void read_error_of_noisy(const film::Film& film, const Region& region, float* pixels) {
   reconstruct::SolveReport report;
   std::vector<float> error;
@@ -35,6 +35,7 @@ void read_error_of_noisy(const film::Film& film, const Region& region, float* pi
   std::copy(error.begin(), error.end(), pixels);
 }
 
+// Copies the names and expressions of the components into the film.
 void name_planes(const lpe::ComponentSet& set, film::Film* film) {
   for (int c = 0; c < set.count(); ++c) {
     film->components[size_t(c)].name = set[c].name;
@@ -42,7 +43,8 @@ void name_planes(const lpe::ComponentSet& set, film::Film* film) {
   }
 }
 
-// What is small in one frame of an animation may not be in the next.
+// Returns the plan of the render. A frame of an animation keeps all components, because a component that is small in
+// one frame may not be small in the next.
 Plan planned(const LoopInput& input, const HostDenoiser& denoiser) {
   Plan plan = make_plan(input.planned_settings(), *input.snapshot, denoiser);
   if (!plan.merges_components || !input.samples_only) return plan;
@@ -52,7 +54,7 @@ Plan planned(const LoopInput& input, const HostDenoiser& denoiser) {
   return plan;
 }
 
-// Throws where a strict render would show something else than what the scene asks for.
+// Throws `unsupported` if the setting `strict` is on and the scene has warnings.
 void refuse_warnings(const LoopInput& input) {
   const std::vector<std::string>& warnings = input.snapshot->warnings;
   if (!input.settings.strict || warnings.empty()) return;
@@ -61,7 +63,7 @@ void refuse_warnings(const LoopInput& input) {
                     (others > 0 ? " (and " + std::to_string(others) + " other warnings)" : ""));
 }
 
-// From here on every pixel has samples of both halves: there is something to reconstruct.
+// Number of samples from which every pixel has samples in both half-buffers, which the reconstruction needs.
 constexpr uint32_t kBothHalves = 2;
 
 }  // namespace
@@ -118,7 +120,8 @@ GradientMap RenderLoop::choose_gradients() {
   map.share = plan_.gradients ? 1.0 : 0.0;
   if (!plan_.pilot) return map;
   const GradusSettings settings = pilot_settings(input_.settings);
-  // A reconstruction that needs differences may turn out not to come.
+  // The preview is requested for the reconstruction without gradients, because the pilot may find that no gradients are
+  // used.
   Interruption quarter;
   quarter.is_due = [this] { return !input_.resumed && live_view_.quarter_is_due(without_gradients(plan_)); };
   quarter.run = [this] { live_view_.show_quarter(); };
@@ -128,7 +131,7 @@ GradientMap RenderLoop::choose_gradients() {
     map = run_pilot(*integrator, settings, plan_.reconstruction, plan_.sampled, plan_.channels, stop_, quarter);
   });
   stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu) - live_view_.cpu_seconds();
-  // A pilot that was cut short has found nothing out.
+  // The result of a cancelled pilot is not usable.
   check_cancelled();
   return map;
 }
@@ -172,7 +175,7 @@ void RenderLoop::prepare() {
     film->shared.stopped.assign(film->shared.stopped.size(), 0);
   film->settings = settings;
   film->settings.struct_size = sizeof(GradusSettings);
-  // AUTO is resolved here, once: whoever reads the frame later must not decide again.
+  // The film stores the choices made for AUTO, so that its later readers do not choose again.
   film->settings.integrator = integrator;
   film->settings.reconstruction = gradients_.none() ? without_gradients(plan_) : plan_.reconstruction;
   film->settings.denoiser = plan_.denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
@@ -181,7 +184,8 @@ void RenderLoop::prepare() {
   if (input_.replay) film->replayed = input_.replay->replay_map;
   stats_.warnings = input_.snapshot->warnings;
   const std::string warning = memory_warning(estimated_memory(plan_), machine_memory_bytes());
-  if (!warning.empty() && !input_.samples_only) stats_.warnings.push_back(warning);  // Sequence warns of its frames
+  // an animation checks the memory of all its frames itself
+  if (!warning.empty() && !input_.samples_only) stats_.warnings.push_back(warning);
 
   integrator_ = input_.make_integrator(film->settings, integrator, components_);
   picture_.expect_tiles();
@@ -194,12 +198,12 @@ bool RenderLoop::next_batch(uint32_t begin, uint32_t* end) const {
   if (is_stopped() || begin >= input_.settings.samples) return false;
   *end = std::min(batch_end(begin, input_.settings.samples), begin + affordable_samples(begin));
   if (input_.replay && !input_.replay->counts.empty())
-    *end = input_.settings.samples;  // their number is not the same everywhere
+    *end = input_.settings.samples;  // the number of replayed samples differs between pixels
   return *end > begin;
 }
 
-// How many more samples per pixel the time limit allows, by the pace so far and rounded to the nearest: a render ends
-// within half a sample of the limit. The first one is always taken.
+// Returns how many more samples per pixel the time limit allows, at the mean speed so far and rounded to the nearest
+// integer: a render ends within half a sample of the limit. The first sample is always taken.
 uint32_t RenderLoop::affordable_samples(uint32_t begin) const {
   const double limit = input_.settings.time_limit;
   if (!(limit > 0.0) || input_.replay) return kMaxBatch;
@@ -221,11 +225,12 @@ void RenderLoop::judge() {
   stats_.cpu_seconds.reconstruct += 1e-9 * double(process_cpu_nanoseconds() - cpu);
 }
 
-// In adaptive renders `begin` and `end` count the samples of pixels on average over the cells that go on.
+// Takes all batches. In adaptive renders `begin` and `end` count the mean number of samples of pixels in blocks that
+// have not stopped.
 void RenderLoop::sample() {
   sampling_.start();
   const auto cancel = [this] { return is_stopped(); };
-  // A render that is too short to be so may go on as one that is.
+  // Uses the setting and not the plan: a render with too few samples to be adaptive may be resumed as one with enough.
   const bool adaptively = input_.settings.noise_threshold > 0.0f && !input_.replay;
   uint32_t begin = input_.resumed ? resumed_samples(*input_.resumed, adaptively) : 0;
   const uint32_t first = input_.settings.first_sample;
@@ -239,7 +244,7 @@ void RenderLoop::sample() {
   work_done_ = uint64_t(begin) * uint64_t(plan_.sampled.area());
   for (uint32_t end = 0; next_batch(begin, &end); begin = end) {
     if (adaptive_ && begin >= kMaxBatch && (begin % kMaxBatch == 0 || begin == first_begin_)) judge();
-    if (is_done()) film_->shared = adaptive_->state(begin);  // what the last batch has come to
+    if (is_done()) film_->shared = adaptive_->state(begin);  // so that a later render can continue from it
     if (cancel() || is_done()) break;
     if (show_is_due(begin)) show(begin);
     if (cancel()) break;
@@ -299,7 +304,7 @@ void RenderLoop::tile_done(const Region& tile, uint64_t pixel_samples) {
   const double sampled = sampling_.seconds();
   if (input_.settings.time_limit > 0.0f) fraction = std::max(fraction, sampled / input_.settings.time_limit);
   tracker_.raise_to(ProgressTracker::kSamplingShare * static_cast<float>(std::min(fraction, 1.0)));
-  if (picture_.is_reconstructed()) return;  // tiles are not seen
+  if (picture_.is_reconstructed()) return;  // the reconstruction is shown, not the tiles
   const auto ms = static_cast<int64_t>(1e3 * sampled);
   int64_t last = last_image_ms_.load(std::memory_order_relaxed);
   if (ms - last >= kImageIntervalMs && last_image_ms_.compare_exchange_strong(last, ms)) tracker_.new_image();
@@ -319,7 +324,7 @@ void RenderLoop::find_motion() {
                                       plan_.sampled, cancel);
   });
   check_cancelled();
-  // progress() adds up the sizes of these vectors meanwhile.
+  // progress() reads the sizes of these vectors at the same time.
   const std::lock_guard lock(mutex_);
   for (size_t c = 0; c < motion.size(); ++c) {
     film_->components[c].motion = std::move(motion[c].vectors);
@@ -384,7 +389,7 @@ void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
   if (film && pass == GRADUS_PASS_ERROR && schema::has_bit(plan_.passes, pass))
     return read_error_of_noisy(*film, plan_.delivered, pixels);
   if (film) {
-    // Not the render's own arena, whose threads may still be reconstructing.
+    // Uses a second arena, because the threads of the render's arena may still be reconstructing.
     tbb::task_arena(arena_size(input_.threads)).execute([&] {
       output::read_film_pass(*film, pass, plan_.delivered, pixels);
     });
@@ -408,7 +413,7 @@ void RenderLoop::read_component(const std::string& name, uint32_t pass, float* p
     throw invalid_operation("pass " + std::string(schema::component_pass_info(pass).name) +
                             " of components was not asked for");
   std::vector<float> color = picture_.component(component);
-  if (color.empty() && schema::is_of_picture(pass)) {  // it was cancelled
+  if (color.empty() && schema::is_of_picture(pass)) {  // the render was cancelled
     color = output::crop_components(*film, GRADUS_RECONSTRUCTION_NONE, {film::read_images(*film, component).primal},
                                     plan_.delivered)
                 .front();
@@ -421,7 +426,7 @@ std::string RenderLoop::stats() const {
     const std::lock_guard lock(mutex_);
     require_film(film_, "its stats come", "the render failed before it began: ");
   }
-  // Nothing of it changes after the end, so progress() need not wait for the sums over all pixels.
+  // The film and the statistics do not change after the end, so the lock is released before the sums over all pixels.
   return stats_json(stats_, plan_, *film_);
 }
 

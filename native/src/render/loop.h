@@ -1,4 +1,4 @@
-// The loop of one render.
+// The loop of one render: plan, batches of samples, reconstruction, denoiser.
 #pragma once
 
 #include <atomic>
@@ -29,9 +29,10 @@ class RenderLoop final : public RenderTask {
   explicit RenderLoop(LoopInput input);
 
   const Plan& plan() const { return plan_; }
-  // Goes on from the samples of a frame; before run(). Throws invalid_argument if its keys or planes differ.
+  // Continues from the samples of a film. Must be called before run(). Throws `invalid_argument` if the keys or planes
+  // of the film differ.
   void resume(std::shared_ptr<const film::Film> film);
-  // When it has ended.
+  // Returns the statistics. Valid after the render has ended.
   const RenderStats& what_it_took() const { return stats_; }
 
   const Region& delivered() const override { return plan_.delivered; }
@@ -45,29 +46,30 @@ class RenderLoop final : public RenderTask {
   void ending(GradusError code) override;
   uint64_t memory_bytes() const override;
   void prepare();
-  // Whether gradients pay, and where; all of the picture if that is not asked.
+  // Returns the pixels with gradients, as a pilot finds them; all or no pixels if the plan has no pilot.
   GradientMap choose_gradients();
-  // Those of the plan, but for the small ones.
+  // Returns the components of the plan, with the small ones merged into the remainder.
   lpe::ComponentSet choose_components();
   void sample();
   void reconstruct_film();
-  // Of components, from what the scene knows of the frames around.
+  // Computes the motion of components from the snapshot, which knows the frames before and after.
   void find_motion();
   void denoise_film();
-  // Light passes follow what the picture has become.
+  // Splits the final image into light passes.
   void split_light();
-  // False: nothing more to do.
+  // Sets the end of the batch that begins at `begin`. Returns false if there is no further batch.
   bool next_batch(uint32_t begin, uint32_t* end) const;
+  // Returns how many more samples per pixel the time limit allows.
   uint32_t affordable_samples(uint32_t begin) const;
-  // Finds out which cells are done and where the next samples go.
+  // Estimates the noise of the blocks, stops those below the threshold and updates how the others share samples.
   void judge();
   void run_batch(uint32_t begin, uint32_t end);
   void tile_done(const Region& tile, uint64_t pixel_samples);
-  // What a watcher is shown (render/preview.h), before the samples from `begin` on are taken or between two of their
-  // tiles.
+  // Returns whether the preview (render/preview.h) has a new image to show, before the samples from `begin` on are
+  // taken or between two of their tiles.
   bool show_is_due(uint32_t begin) const;
   void show(uint32_t begin);
-  bool is_done() const { return adaptive_ && adaptive_->all_done(); }  // by noise
+  bool is_done() const { return adaptive_ && adaptive_->all_done(); }  // whether all blocks are below the threshold
   bool is_sampling() const { return phase_ < GRADUS_PHASE_RECONSTRUCTING; }
   void set_phase(GradusPhase phase);
 
@@ -77,24 +79,24 @@ class RenderLoop final : public RenderTask {
   const Plan plan_;
   mutable tbb::task_arena arena_;
   Picture picture_;
-  mutable Preview live_view_;  // readers are its watchers
+  mutable Preview live_view_;  // readers of passes register as its viewers
 
-  // Set by prepare(), before the phase becomes SAMPLING; the frame's content is the samplers' alone until that phase
-  // ends.
+  // Set by prepare() before the phase becomes SAMPLING. Until that phase ends, only the samplers access the content of
+  // the film.
   std::shared_ptr<film::Film> film_;
   std::unique_ptr<integrator::Integrator> integrator_;
   GradientMap gradients_;
   lpe::ComponentSet components_;
-  std::unique_ptr<AdaptiveSampling> adaptive_;  // where the plan is
+  std::unique_ptr<AdaptiveSampling> adaptive_;  // nullptr if the render is not adaptive
 
   std::unique_ptr<TileSampler> sampler_;
 
-  std::atomic<uint64_t> work_done_{0};  // pixel samples
+  std::atomic<uint64_t> work_done_{0};  // finished samples, summed over pixels
   std::atomic<int64_t> last_image_ms_{0};
-  Stopwatch sampling_;        // without what a watcher is shown meanwhile
-  uint32_t first_begin_ = 0;  // samples that were resumed
+  Stopwatch sampling_;        // time of sampling, without previews
+  uint32_t first_begin_ = 0;  // samples per pixel of the resumed film
   RenderStats stats_;
-  std::shared_ptr<const output::LightPasses> light_;  // of the picture; nullptr where it has none
+  std::shared_ptr<const output::LightPasses> light_;  // light passes of the final image; nullptr if it has none
 };
 
 }  // namespace gradus::render

@@ -1,4 +1,4 @@
-// What a render is made of.
+// The input of a render: snapshot, settings, and optional samples to continue from or to replay.
 #pragma once
 
 #include <memory>
@@ -11,14 +11,14 @@
 
 namespace gradus::render {
 
-// What a frame of a sequence repeats of the frame before (contract 4.2).
+// The samples of the previous frame that a frame of an animation replays.
 struct Replay {
   film::ReplayMap replay_map;
-  std::vector<uint32_t> counts;  // samples of each pixel; empty: those of the settings
-  ComponentReplays components;   // of the sources
+  std::vector<uint32_t> counts;  // samples of each pixel; empty: the number in the settings
+  ComponentReplays components;   // replays of single components, by replay_map.of_component
 };
 
-// Threads that a render with these settings has. device: may be nullptr if settings.threads is set.
+// Returns the number of threads of a render with these settings. `device` may be nullptr if settings.threads is set.
 inline uint32_t threads_of(const GradusSettings& settings, const scene::Device* device) {
   return settings.threads > 0 ? settings.threads : device != nullptr ? device->threads() : 1;
 }
@@ -30,18 +30,20 @@ struct LoopInput {
   std::shared_ptr<const film::Film> resumed;
   IntegratorFactory factory;
   uint32_t threads = 1;
-  // A part of a frame of a sequence: it is sampled everywhere, and reconstructed later, with others.
+  // Whether the render only takes samples of a frame of an animation. It then samples all components and is
+  // reconstructed later together with other samples of the frame.
   bool samples_only = false;
-  uint32_t whole_samples = 0;            // of the frame, by which both parts are planned; 0: those of the settings
+  // Samples of the whole frame, fresh and replayed, for which the render is planned; 0: the number in the settings.
+  uint32_t whole_samples = 0;
   std::shared_ptr<const Replay> replay;  // nullptr: the samples are the frame's own
 
-  // What the plan goes by.
+  // Returns the settings for which the render is planned.
   GradusSettings planned_settings() const {
     GradusSettings planned = settings;
     if (whole_samples > 0) planned.samples = whole_samples;
     return planned;
   }
-  // An integrator of the snapshot's camera, for settings that may differ from the render's.
+  // Makes an integrator for the camera of the snapshot. `its_settings` may differ from the settings of the render.
   std::unique_ptr<integrator::Integrator> make_integrator(const GradusSettings& its_settings, uint32_t integrator,
                                                           lpe::ComponentSet components = {}) const;
 };

@@ -9,12 +9,12 @@
 namespace gradus::render {
 namespace {
 
-// Bytes of a pixel, as measured (tests/memory/memory_estimate_test.cpp).
-constexpr uint64_t kPicture = 8 * sizeof(float);  // what is shown and what is delivered, RGBA each
+// Bytes per pixel, as measured by tests/memory/memory_estimate_test.cpp.
+constexpr uint64_t kPicture = 8 * sizeof(float);  // the shown and the delivered image, RGBA each
 constexpr uint64_t kReconstruction =
     260;                             // images, features or weights, and the work space of a solver or a regression
 constexpr uint64_t kDenoiser = 900;  // the network of Open Image Denoise, with its input and output
-constexpr uint64_t kReconstructedComponent = 48;  // pictures of a component, while those of others are made
+constexpr uint64_t kReconstructedComponent = 48;  // images of a component, while those of the others are made
 constexpr uint64_t kWindowFrame = 100;            // a frame of a window, while the window is solved
 
 uint64_t frame_bytes(const Plan& plan) {
@@ -45,7 +45,7 @@ uint64_t estimated_memory(const Plan& plan, const reconstruct::WindowShape& wind
   return uint64_t(plan.sampled.area()) * (2 * frame_bytes(plan) + reconstruction_bytes(plan) + of_window);
 }
 
-// A frame is stored in two parts, the second with its links to the frame before.
+// A frame is stored in two files, the second with its pixel correspondence to the previous frame.
 uint64_t estimated_files(const Plan& plan, int frames) {
   return uint64_t(plan.sampled.area()) * uint64_t(frames) * 2 * (frame_bytes(plan) + sizeof(int32_t) + sizeof(Vec2));
 }

@@ -1,4 +1,4 @@
-// A parallel loop that something else can come in between.
+// A parallel loop that can pause so that other work runs in between.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -11,8 +11,9 @@
 
 namespace gradus::render {
 
-// Calls body(i) for each i that is not done, on all threads of the caller's arena, until one of them says to pause. The
-// body sets done[i], or leaves it to be called again, and says whether to pause. True: all are done.
+// Calls body(i) for each i that is not done, on all threads of the caller's arena, until a call returns true, which
+// requests a pause. The body sets done[i], or leaves it 0 so that it is called again later. Returns whether all are
+// done.
 template <class Body>
 bool run_until_pause(std::vector<uint8_t>* done, Body&& body) {
   std::atomic<bool> pause{false};

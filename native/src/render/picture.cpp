@@ -35,7 +35,7 @@ void Picture::show(std::vector<float> rgba, std::vector<float> error, std::vecto
 }
 
 void Picture::show_denoised(std::vector<float> rgba, float error) {
-  std::vector<std::vector<float>> components = components_;  // who reads them waits for no more than the exchange
+  std::vector<std::vector<float>> components = components_;  // copied so that readers wait only for the exchange below
   output::follow_picture(combined_, rgba, &components);
   const std::lock_guard lock(mutex_);
   components_ = std::move(components);

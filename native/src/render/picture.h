@@ -1,7 +1,7 @@
-// What can be seen of a render at any time, from any thread: the noisy image, tile by tile, and what stands in the
-// place of Combined.
+// The images of a running render that can be read at any time and from any thread: the noisy image, updated tile by
+// tile, and the reconstruction that is shown as Combined.
 //
-// Readers take the picture from here: they wait for no sampler, whose batch may take long, and see no half of one.
+// Readers do not wait for samplers, whose batch may take long, and never see a partially written image.
 #pragma once
 
 #include <cstddef>
@@ -16,31 +16,31 @@ class Picture {
  public:
   explicit Picture(const Region& region) : region_(region) {}
 
-  // Room for tiles: black, until they come.
+  // Allocates the noisy image, black until tiles are shown.
   void expect_tiles();
-  // What the tile has now becomes what is seen of it in the noisy image.
+  // Copies the current mean of the samples of `tile` into the noisy image.
   void show_tile(const film::Film& film, const Region& tile);
-  // RGBA of the region, and pass Error of it where that is asked for: Combined from now on.
-  // components: RGB of each, or none.
+  // Sets Combined: RGBA of the region, pass Error (empty if it is not wanted), and RGB of each component (empty: none).
   void show(std::vector<float> rgba, std::vector<float> error, std::vector<std::vector<float>> components = {});
-  // In place of what was shown, by the thread that showed it. error: its squared error, over that of what was shown.
+  // Replaces Combined by the denoised image. Must be called by the thread that called show(). `error` is the factor by
+  // which the squared error changes.
   void show_denoised(std::vector<float> rgba, float error);
-  // From now on the frame tells what the noisy image is.
+  // Releases the noisy image. From now on it is read from the film.
   void end_tiles();
 
   bool is_reconstructed() const;
-  // For the thread that shows it, alone.
+  // Returns Combined. Only for the thread that calls show(), because it takes no lock.
   const std::vector<float>& combined() const { return combined_; }
-  // False: there is nothing of this pass.
+  // Copies the image of a pass. Returns false if there is none.
   bool read(uint32_t pass, float* pixels) const;
-  // Of a component; empty where there is none.
+  // Returns RGB of a component; empty if there is none.
   std::vector<float> component(int number) const;
   size_t memory_bytes() const;
 
  private:
   const Region region_;
   mutable std::mutex mutex_;
-  std::vector<float> noisy_, combined_;  // RGBA; empty where there is none
+  std::vector<float> noisy_, combined_;  // RGBA; empty if there is no such image
   std::vector<float> error_;
   std::vector<std::vector<float>> components_;
 };

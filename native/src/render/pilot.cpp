@@ -16,20 +16,23 @@
 namespace gradus::render {
 namespace {
 
-// A square of kSquare pixels is judged by some pixels in it and those in the squares around: 1/16 of a sample per
-// pixel. They stand apart, for neighbours see the same.
+// Each block of kBlockSide² pixels has kColumns·kRows test pixels with kSamples samples, 1/16 of a sample per pixel. It
+// is judged by its own test pixels and those of the blocks around. Test pixels are spread out, because neighbouring
+// pixels see nearly the same.
 constexpr int kBlockSide = 32;
 constexpr int kColumns = 8, kRows = 4;
 constexpr uint32_t kSamples = 2;
-// No user's seed, which are below 2³¹: else the samples of frame 0 would be those that are kept.
+// The seed of the pilot. Seeds of users are below 2³¹; with one of them the pilot's samples could be those of frame 0
+// that are kept.
 constexpr uint32_t kSeed = 0xf0696c6fu;
 
+// Returns the region enlarged by `by` pixels on each side, within `limit`.
 Region grown(const Region& r, int by, const Region& limit) {
   return film::intersection({r.x0 - by, r.y0 - by, r.x1 + by, r.y1 + by}, limit);
 }
 
-// One pixel somewhere in each stratum of the square, so that no pattern of the picture meets all of them alike. Squares
-// at the border may be narrower than they have strata.
+// Returns the indices of the test pixels of a block: a random pixel in each stratum, so that no regular pattern of the
+// image aligns with all of them. Blocks at the border may have fewer pixels per side than there are strata.
 std::vector<size_t> pixels_of(const Region& block, const film::Film& film, uint32_t seed) {
   std::vector<size_t> pixels;
   const int columns = std::min(kColumns, block.width()), rows = std::min(kRows, block.height());
@@ -54,16 +57,16 @@ double gray(const Radiance& c) { return (double(c.x) + c.y + c.z) / 3.0; }
 
 using L2Noises = std::array<L2Noise, kPilotAlphas>;
 
-// At its own weight where L2 will run; else at weights among which the best one lies, on all scenes that were looked
-// at.
+// Returns the noise models of L2: at the weight α of the render if L2 will run; else at three weights between which the
+// best one was on all scenes that were examined.
 L2Noises l2_noises(const GradusSettings& settings, uint32_t reconstruction) {
   if (reconstruction != GRADUS_RECONSTRUCTION_L2) return {L2Noise(0.2), L2Noise(0.4), L2Noise(0.8)};
   const L2Noise own(reconstruct::chosen_alpha(reconstruction, settings.reconstruction_alpha));
   return {own, own, own};
 }
 
-// The pixel has one sample of each half. A difference of neighbours has such samples from both of its ends, which are
-// alike: √2.
+// Adds a test pixel, which has one sample in each half-buffer. In the render, a difference of neighbours has samples
+// from both of its pixels, with the same distribution; here only from one, hence the factor √2.
 void add_pixel(const film::Film& film, size_t pixel, const L2Noises& l2, PilotSums* sums) {
   const film::ComponentPlanes& planes = film.components[0];
   const Radiance spread = planes.primal[0][pixel] - planes.primal[1][pixel];
@@ -83,13 +86,13 @@ void add_pixel(const film::Film& film, size_t pixel, const L2Noises& l2, PilotSu
     sums->l2_roots[i] += std::sqrt(std::sqrt(std::max(l2[i].of(spread, spreads), 0.0)));
 }
 
-// Whole squares but for the frame's border: all that touch the region.
+// Returns the blocks that touch the region, whole except at the border of the frame, as one region.
 Region grown_to_blocks(const Region& r, const Region& full) {
   const auto down = [](int32_t x) { return film::pixel_block_of(x, kBlockSide) * kBlockSide; };
   return film::intersection({down(r.x0), down(r.y0), down(r.x1 - 1) + kBlockSide, down(r.y1 - 1) + kBlockSide}, full);
 }
 
-// Every square with those around it, twice: one of 32 samples knows too little of what seldom fails.
+// Averages each block with the blocks around it, twice: the few samples of one block do not show rare failures.
 std::vector<PilotSums> spread_out(const film::PixelBlockGrid& blocks, std::vector<PilotSums> sums) {
   for (int step = 0; step < 2; ++step) {
     std::vector<PilotSums> next(sums.size());
@@ -105,8 +108,9 @@ Benefit benefit_of(const PilotSums& sums, bool is_l2) {
   return is_l2 ? estimate_benefit_for_l2(sums) : estimate_benefit(sums);
 }
 
-// Which squares are to have differences. L2 has one error for the picture, and outliers in one part of it outweigh all
-// else; where rows go by their noise every part is for itself.
+// Returns which blocks have gradients. L2 minimises one error for the whole image, and outliers in one block outweigh
+// everything else, so its blocks are chosen together. Where rows are weighted by their noise, each block is chosen by
+// itself.
 std::vector<bool> choose(const film::PixelBlockGrid& blocks, const std::vector<PilotSums>& sums,
                          uint32_t reconstruction) {
   const bool is_l2 = reconstruction == GRADUS_RECONSTRUCTION_L2;
@@ -126,8 +130,8 @@ std::vector<bool> choose(const film::PixelBlockGrid& blocks, const std::vector<P
 }  // namespace
 
 GradusSettings pilot_settings(GradusSettings settings) {
-  // The same for all seeds and frames: renders that are merged have the same gradients, and a scene that stands still
-  // the same map.
+  // The result must not depend on seed and frame, so that renders that are merged have the same gradients, and an
+  // unchanged scene has the same map in all frames.
   settings.seed = kSeed;
   settings.frame = 0;
   settings.passes = 0;
@@ -141,7 +145,7 @@ GradientMap run_pilot(const integrator::Integrator& integrator, const GradusSett
   const Region full{0, 0, int32_t(settings.width), int32_t(settings.height)};
   const bool is_l2 = reconstruction == GRADUS_RECONSTRUCTION_L2;
   const auto is_stopped = [&stop] { return stop.load(std::memory_order_relaxed); };
-  // Squares at the region's border are judged by those beyond, too; L2's by all.
+  // Blocks at the border of the region are judged by those beyond it, too; blocks of L2 by all of the frame.
   const film::PixelBlockGrid blocks(is_l2 ? full : grown_to_blocks(grown(region, 2 * kBlockSide, full), full),
                                     kBlockSide);
   const L2Noises l2 = l2_noises(settings, reconstruction);
@@ -194,14 +198,14 @@ GradientMap run_pilot(const integrator::Integrator& integrator, const GradusSett
 void explain(const GradientMap& map, Reasons* chosen, Reasons* skipped) {
   char text[200];
   std::snprintf(text, sizeof(text),
-                "a pilot of %llu samples, thrown away, expects them to leave %.2f of the noise for %.1f times the CPU "
-                "time (all of the picture)",
+                "a pilot of %llu discarded samples expects that they leave %.2f of the noise for %.1f times the CPU "
+                "time (over the whole image)",
                 static_cast<unsigned long long>(map.samples), map.benefit.error, map.benefit.cost);
   if (map.none()) {
-    skipped->emplace_back("gradients", "they pay nowhere: " + std::string(text));
+    skipped->emplace_back("gradients", "they do not reduce the error at equal time anywhere: " + std::string(text));
     return;
   }
-  chosen->emplace_back("gradients in " + std::to_string(std::lround(100.0 * map.share)) + " % of the picture", text);
+  chosen->emplace_back("gradients in " + std::to_string(std::lround(100.0 * map.share)) + " % of the image", text);
 }
 
 }  // namespace gradus::render

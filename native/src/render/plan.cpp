@@ -13,7 +13,8 @@
 namespace gradus::render {
 namespace {
 
-// Below this the variance estimated from two halves says too little (contract 5.3).
+// Minimum samples of a pixel before its block may stop: with fewer, the variance estimated from two half-buffers is too
+// uncertain.
 constexpr uint32_t kFirstCheck = 16;
 
 std::string choice_of(const char* option, uint32_t value) {
@@ -24,9 +25,10 @@ bool needs_gradients(uint32_t reconstruction) {
   return reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_L1;
 }
 
-// Samples from which the host's denoiser takes more off the error than those that its time would buy (docs/method.md).
+// Number of samples per pixel from which the host's denoiser reduces the error more than further samples in the same
+// time would.
 constexpr uint32_t kDenoiserPays = 8;
-static_assert(kDenoiserPays <= kFirstCheck);  // tiles that stop by their noise have enough
+static_assert(kDenoiserPays <= kFirstCheck);  // blocks that stop by their noise have enough samples to denoise
 
 std::string too_few_to_denoise() {
   return "with fewer than " + std::to_string(kDenoiserPays) + " samples its time buys more as samples";
@@ -35,7 +37,8 @@ std::string too_few_to_denoise() {
 void choose_automatically(const GradusSettings& settings, Plan* plan) {
   const bool wants_differences = schema::has_bit(settings.passes, GRADUS_PASS_GRADIENT_X) ||
                                  schema::has_bit(settings.passes, GRADUS_PASS_GRADIENT_Y);
-  if (!needs_gradients(settings.reconstruction) && !wants_differences) {  // on all of 13 scenes (docs/method.md)
+  // plain paths gave the smaller error at equal time on all of 13 scenes
+  if (!needs_gradients(settings.reconstruction) && !wants_differences) {
     plan->integrator = GRADUS_INTEGRATOR_PATH;
     const bool none = settings.reconstruction == GRADUS_RECONSTRUCTION_NONE;
     plan->chosen.emplace_back("integrator path",
@@ -71,7 +74,7 @@ void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
                            "integrator gradient or reconstruction none");
   }
   plan->reconstruction = requested;
-  if (requested == GRADUS_RECONSTRUCTION_AUTO) {  // whoever asks for plain paths wants to see them
+  if (requested == GRADUS_RECONSTRUCTION_AUTO) {  // a user who chose plain paths expects the noisy image
     const bool plain = settings.integrator == GRADUS_INTEGRATOR_PATH;
     plan->reconstruction = plain ? GRADUS_RECONSTRUCTION_NONE : GRADUS_RECONSTRUCTION_REGULARIZED;
   }
@@ -115,8 +118,8 @@ void choose_region(const GradusSettings& settings, Plan* plan) {
   if (plan->solves || plan->denoises) {
     plan->sampled.x0 = std::max(full.x0, plan->delivered.x0 - kGuardRing);
     plan->sampled.y0 = std::max(full.y0, plan->delivered.y0 - kGuardRing);
-    if (plan->reconstruction ==
-        GRADUS_RECONSTRUCTION_REGULARIZED) {  // its windows and squares begin where those of the full frame do
+    // The windows and blocks of REGULARIZED begin at the same pixels as those of the full frame.
+    if (plan->reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
       plan->sampled.x0 -= plan->sampled.x0 % kMaxRegressionBlock;
       plan->sampled.y0 -= plan->sampled.y0 % kMaxRegressionBlock;
     }
@@ -125,7 +128,7 @@ void choose_region(const GradusSettings& settings, Plan* plan) {
   }
   if (plan->sampled.area() > plan->delivered.area()) {
     plan->chosen.emplace_back("guard ring of 35 pixels",
-                              "the region is a part of the frame, and its picture should hardly feel the border");
+                              "the region is smaller than the frame, and its border should hardly change the image");
   }
 }
 
@@ -142,7 +145,7 @@ void list_scene(const GradusSettings& settings, const scene::Snapshot& snapshot,
     plan->skipped.emplace_back("alpha channel", "the film is opaque, and no surface is held out");
 }
 
-// Bits of the classes by which some surface may scatter.
+// Returns the bits of the scatter classes that some surface of the scene has.
 uint32_t events_of(const GradusSettings& settings, const scene::SceneFeatures& features) {
   const float sharp = std::max(settings.roughness_threshold, bsdf::kSmallestAlpha);
   const auto bit = [](bsdf::ScatterClass c) { return 1u << uint32_t(c); };
@@ -150,6 +153,7 @@ uint32_t events_of(const GradusSettings& settings, const scene::SceneFeatures& f
          (features.min_refracting_alpha < sharp ? bit(bsdf::ScatterClass::Transmission) : 0);
 }
 
+// Returns whether the camera may see light directly.
 bool shows_light(const scene::SceneFeatures& features) {
   return features.world_emits || features.has_lights_with_extent || !features.only_lights_emit;
 }
@@ -164,7 +168,8 @@ void choose_components(const GradusSettings& settings, const scene::SceneFeature
   plan->component_motion = schema::any_wanted(settings.component_passes, schema::is_motion);
   const uint32_t kept = all.reached(events_of(settings, features)) | seen;
   plan->components = all.without_empty(kept);
-  // Data of what has no light may be wanted all the same.
+  // Components are not merged if passes of surface data are requested, which may be wanted for a component without
+  // light.
   plan->merges_components =
       text.empty() && !plan->non_specular_vertices && !plan->non_specular_details && !plan->component_motion;
   std::string names, absent;
@@ -191,9 +196,10 @@ void list_passes(Plan* plan) {
   if (!names.empty()) plan->skipped.emplace_back("passes " + names, "not asked for");
 }
 
-// What `min_samples` 0 means. Along a straight edge all pixels of a cell, which share their jitter, are wrong by the
-// same share of coverage, and both halves agree on it two times out of three. n samples leave an error of about 0.2/n
-// of the cell (docs/method.md), so no fewer are believed than leave the threshold.
+// Returns the number of samples before a block may stop. If `min_samples` is 0, it follows from the threshold. Along a
+// straight edge all pixels of a block, which share their jitter, have the same error of coverage, and both half-buffers
+// agree on it in two of three cases. n samples leave an error of about 0.2/n of the block, so the minimum number of
+// samples is one that leaves about the threshold.
 uint32_t first_check(const GradusSettings& settings) {
   const double minimum = 0.16 / std::max(1e-6, double(settings.noise_threshold));
   return std::max(kFirstCheck, settings.min_samples > 0 ? settings.min_samples : uint32_t(std::lround(minimum)));

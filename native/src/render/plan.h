@@ -1,4 +1,4 @@
-// The planner: what this scene and these settings need, and what they do not, each with its reason.
+// The planner: chooses what a render of this scene with these settings does and what it skips, each with its reason.
 #pragma once
 
 #include <cstdint>
@@ -13,65 +13,68 @@
 
 namespace gradus::render {
 
-using Reasons = std::vector<std::pair<std::string, std::string>>;  // what, why
+using Reasons = std::vector<std::pair<std::string, std::string>>;  // pairs of a choice and its reason
 
-// What the setting `denoiser` comes to here.
+// The denoiser that the setting `denoiser` selects on this machine.
 struct HostDenoiser {
-  std::string name;     // empty: none
-  std::string why_not;  // that there is none
+  std::string name;     // name and version; empty: there is none
+  std::string why_not;  // the reason why there is none
 };
 
 struct Plan {
   uint32_t integrator = GRADUS_INTEGRATOR_PATH;          // never AUTO
   uint32_t reconstruction = GRADUS_RECONSTRUCTION_NONE;  // never AUTO
   bool gradients = false;
-  bool pilot = false;                // a few samples tell where gradients pay
-  bool solves = false;               // Combined comes from a solver
-  bool denoises = false;             // … and then from the host's denoiser
-  bool denoises_if_it_pays = false;  // which is seen when sampling has ended: denoises_after()
-  std::string denoiser;              // its name
-  bool unbiased = true;              // what is sampled; see delivers_unbiased()
-  bool adaptive = false;             // tiles take samples by their noise, and may stop early
+  bool pilot = false;                // whether a pilot finds where gradients are used
+  bool solves = false;               // whether Combined is reconstructed
+  bool denoises = false;             // whether Combined is denoised by the host's denoiser
+  bool denoises_if_it_pays = false;  // whether that is decided after sampling, by denoises_after()
+  std::string denoiser;              // name of the denoiser
+  bool unbiased = true;              // whether the samples are unbiased; see delivers_unbiased()
+  bool adaptive = false;             // whether blocks get samples by their noise and may stop early
   int channels = 3;
-  lpe::ComponentSet components;        // that are sampled
-  bool merges_components = false;      // those that a pilot finds small everywhere belong to Residual
-  bool component_motion = false;       // of which passes tell where they were, and go
-  bool non_specular_vertices = false;  // of which passes look at where paths become rough
-  bool non_specular_details = false;   // and more closely
-  uint64_t passes = 0;                 // that the frame keeps: those asked for, and what the reconstruction reads
-  uint32_t first_check = 0;            // samples before a tile may stop
+  lpe::ComponentSet components;  // the components that are sampled
+  // whether components that a pilot finds small everywhere are merged into the remainder
+  bool merges_components = false;
+  bool component_motion = false;       // whether motion passes of components are requested
+  bool non_specular_vertices = false;  // whether passes of first non-specular vertices are requested
+  bool non_specular_details = false;   // whether details of these vertices are requested
+  uint64_t passes = 0;                 // bits of the passes in the film: requested, or read by the reconstruction
+  uint32_t first_check = 0;            // samples before a block may stop
   Region delivered;
-  Region sampled;  // with the guard ring
+  Region sampled;  // `delivered` with the guard ring
   Reasons chosen, skipped;
 };
 
-// Pixels around a region that are sampled, too, so that the reconstruction of the region does not feel its border: L2's
-// response decays by 0.82 per pixel at alpha 0.2 (contract 2.1).
+// Width in pixels of the ring around a region that is sampled, too, so that the border of the region hardly changes its
+// reconstruction: the response of L2 decays by 0.82 per pixel at alpha 0.2.
 inline constexpr int kGuardRing = 35;
 
-// Throws invalid_argument or unsupported for what cannot be obeyed: settings are obeyed or refused, never replaced
-// (contract 5.1).
+// Returns the plan of a render. Throws `invalid_argument` or `unsupported` for settings that cannot be followed: a
+// setting is never replaced silently.
 Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot,
                const HostDenoiser& denoiser = {"", "denoiser is none"});
 
-// Of REGULARIZED, in pixels: all others are parts of it (reconstruct/feature_regression.cpp).
+// Maximum block size of REGULARIZED in pixels; all smaller block sizes divide it (reconstruct/feature_regression.cpp).
 constexpr int kMaxRegressionBlock = 16;
 
-// The reconstruction where no gradients are sampled, because the integrator has none or the pilot found that they pay
-// nowhere.
+// Returns the reconstruction if no gradients are sampled, because the integrator has none or the pilot found no
+// benefit.
 uint32_t without_gradients(const Plan& plan);
 
-// Whether the denoiser takes more off the error of so many samples per pixel than those that its time would buy.
+// Returns whether the denoiser reduces the error of `samples` samples per pixel more than further samples in the same
+// time would.
 bool denoiser_pays(double samples);
 
-// Whether the denoiser runs after so many samples per pixel. Where the plan left that open it says what was decided,
-// and why.
+// Returns whether the denoiser runs after `samples` samples per pixel. Where the plan left that open, adds the decision
+// and its reason to `chosen` or `skipped`.
 bool denoises_after(const Plan& plan, double samples, Reasons* chosen, Reasons* skipped);
 
-// Contract 2.2. reconstruction, denoises: what is done in the end, which may be that without gradients.
+// Returns whether the delivered image is unbiased. `reconstruction` and `denoises` are what the render does in the end,
+// which may be the reconstruction without gradients.
 bool delivers_unbiased(const Plan& plan, uint32_t reconstruction, bool denoises);
 
-// What the reconstruction reads besides the image: features (schema/pass_table.h).
+// Returns whether the reconstruction or the denoiser reads denoising features (schema/pass_table.h).
 bool features_wanted(const Plan& plan);
 
 }  // namespace gradus::render

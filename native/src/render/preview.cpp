@@ -10,7 +10,8 @@ Preview::Preview(const LoopInput& input, const Plan& plan, const std::atomic<boo
                  Picture* picture, ProgressTracker* tracker)
     : input_(input), plan_(plan), stop_(stop), arena_(arena), picture_(picture), tracker_(tracker) {}
 
-// The denoiser's network takes tens of times as long as a regression on the features that are there for it anyway.
+// Previews use REGULARIZED in place of the denoiser: the network takes tens of times as long as a regression on the
+// denoising features, which the film has anyway.
 uint32_t Preview::shown(uint32_t reconstruction) const {
   return reconstruction == GRADUS_RECONSTRUCTION_NONE && plan_.denoises ? uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}
                                                                         : reconstruction;

@@ -1,5 +1,5 @@
-// What a watcher sees while a render takes its samples: first a picture at a quarter of the size, then reconstructions
-// of the frame, so seldom that they cost little. Nothing of it touches the frame; without a watcher nothing is done.
+// Previews while a render takes its samples: first an image at a quarter of the size, then reconstructions of the film,
+// so rarely that they take little time. Previews do not change the film, and are made only if a viewer reads Combined.
 #pragma once
 
 #include <atomic>
@@ -16,20 +16,22 @@ namespace gradus::render {
 
 class Preview {
  public:
-  // What it is given lives as long as it.
+  // All arguments must outlive the object.
   Preview(const LoopInput& input, const Plan& plan, const std::atomic<bool>& stop, tbb::task_arena* arena,
           Picture* picture, ProgressTracker* tracker);
 
-  // Somebody looks at Combined. From any thread.
+  // Notes that a viewer reads Combined. Thread-safe.
   void watch() { watched_.store(true, std::memory_order_relaxed); }
 
-  // Whether it is time, where `reconstruction` will run in the end. From any thread.
+  // Return whether the quarter preview or the next refresh (see RefreshRule) is due, if `reconstruction` will run in
+  // the end. Thread-safe.
   bool quarter_is_due(uint32_t reconstruction) const;
-  bool refresh_is_due(uint32_t reconstruction, double sampled, double fraction) const;  // see RefreshRule
+  bool refresh_is_due(uint32_t reconstruction, double sampled, double fraction) const;
 
-  // Called while no samples are taken.
+  // Makes and shows the quarter preview. Called while no samples are taken.
   void show_quarter();
-  // frame: with samples of both halves in all pixels.
+  // Reconstructs the film and shows the result. All pixels have samples in both half-buffers. `sampled` is the time of
+  // sampling so far, in seconds.
   void refresh(const film::Film& film, double sampled);
 
   double seconds() const { return seconds_; }
@@ -37,7 +39,8 @@ class Preview {
 
  private:
   bool is_watched() const { return watched_.load(std::memory_order_relaxed); }
-  // What is shown where that will run; NONE: tiles are.
+  // Returns the reconstruction that previews use if `reconstruction` will run in the end. NONE: the noisy tiles are
+  // shown.
   uint32_t shown(uint32_t reconstruction) const;
   bool is_stopped() const { return stop_.load(std::memory_order_relaxed); }
 

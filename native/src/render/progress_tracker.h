@@ -1,4 +1,4 @@
-// Progress as seen from outside: a number in [0, 1] that never falls, readable from any thread.
+// Progress of a render: a fraction in [0, 1] that never falls. Thread-safe.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +9,10 @@ namespace gradus::render {
 
 class ProgressTracker {
  public:
-  // Share of the whole that sampling is; the rest is reconstruction.
+  // Share of sampling in the progress; the rest is reconstruction.
   static constexpr float kSamplingShare = 0.95f;
 
+  // Sets the fraction if it is larger than the present one.
   void raise_to(float fraction) {
     fraction = std::clamp(fraction, 0.0f, 1.0f);
     float now = fraction_.load(std::memory_order_relaxed);

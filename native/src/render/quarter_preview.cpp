@@ -14,7 +14,7 @@ namespace gradus::render {
 namespace {
 
 constexpr uint32_t kShrink = 4;
-constexpr uint32_t kSamples = 2;  // one of each half
+constexpr uint32_t kSamples = 2;  // one sample in each half-buffer
 
 output::ImageSize size_of(const GradusSettings& settings) { return {settings.width, settings.height}; }
 

@@ -1,5 +1,5 @@
-// A picture before there are samples to make one of: at a quarter of the width and height, by the features of the
-// surfaces, enlarged. Its samples are its own and thrown away, an eighth of one per pixel.
+// The first preview, before the film has enough samples: a quarter of the width and height, reconstructed with
+// denoising features and enlarged. It takes its own samples, an eighth of one per full-size pixel, and discards them.
 #pragma once
 
 #include <atomic>
@@ -10,16 +10,17 @@
 
 namespace gradus::render {
 
-// The settings that its integrator is made for, which takes plain paths.
+// Returns the settings for the integrator of the preview, which takes plain paths.
 GradusSettings quarter_settings(GradusSettings settings);
 
 struct QuarterPreview {
-  std::vector<float> rgba;         // of the region; empty if it was stopped
-  std::vector<float> error;        // where pass Error is asked for: of what this size can show
-  double seconds_per_pixel = 0.0;  // of its reconstruction
+  std::vector<float> rgba;         // RGBA of the region; empty if `stop` became true
+  std::vector<float> error;        // pass Error of the preview, if that pass is requested
+  double seconds_per_pixel = 0.0;  // time of its reconstruction per small pixel
 };
 
-// Of the region that is delivered. Runs in the caller's arena. settings and plan: the render's.
+// Renders the preview of the delivered region in the caller's task arena. `settings` and `plan` are those of the full
+// render.
 QuarterPreview render_quarter_preview(const integrator::Integrator& integrator, const GradusSettings& settings,
                                       const Plan& plan, const std::atomic<bool>& stop);
 

@@ -1,8 +1,8 @@
-// When what a watcher sees is reconstructed again: so seldom that it takes a twentieth of the time, of a short render a
-// quarter once.
+// Decides when the preview is reconstructed again: so rarely that it takes a twentieth of the time, and up to a quarter
+// for the first one of a short render.
 //
-// Seconds are those of the wall. They are what the artist waits for, on any number of threads and however well either
-// part uses them; CPU time of the process would hold what the host does besides.
+// All times are wall-clock times, because these are what the user waits for, with any number of threads. CPU time of
+// the process would include work of the host.
 #pragma once
 
 #include <algorithm>
@@ -11,19 +11,22 @@ namespace gradus::render {
 
 class RefreshRule {
  public:
-  static constexpr double kTimes = 20.0;  // its own cost that passes between two
-  static constexpr double kFirstTimes =
-      4.0;  // and before the first at most: a picture in full is worth more than one more of them
+  // Time between two previews, in multiples of the time of one.
+  static constexpr double kTimes = 20.0;
+  // Maximum time before the first preview, in the same unit. It is shorter, because the first full-size image matters
+  // more than further ones.
+  static constexpr double kFirstTimes = 4.0;
 
-  // What the first one should take. Unknown, it counts for nothing.
+  // Sets the expected time of the first preview. Without this call it is 0.
   void expect(double seconds) { cost_ = seconds; }
 
-  // sampled: seconds of sampling so far; fraction: the share of all samples that they brought. The first one need not
-  // wait until it is earned if the render will be long enough for it.
+  // Returns whether a preview is due. `sampled` is the time of sampling so far in seconds, `fraction` the share of all
+  // samples that were taken in it. The first preview comes earlier if the render will be long enough for it.
   bool is_due(double sampled, double fraction) const {
     return is_first_ ? sampled >= cost_ * std::min(kFirstTimes, kTimes * fraction) : sampled - last_ >= kTimes * cost_;
   }
 
+  // Records a preview that ended after `sampled` seconds of sampling and took `seconds`.
   void done(double sampled, double seconds) {
     last_ = sampled;
     cost_ = seconds;
@@ -32,7 +35,7 @@ class RefreshRule {
 
  private:
   double cost_ = 0.0;
-  double last_ = 0.0;  // seconds of sampling when it ended
+  double last_ = 0.0;  // seconds of sampling when the last preview ended
   bool is_first_ = true;
 };
 

@@ -14,7 +14,8 @@
 namespace gradus::render {
 namespace {
 
-// Signals are the host's: they must reach its threads, not ours, nor the workers that ours start.
+// Blocks all signals while threads are started, which inherit the mask: signals must reach the threads of the host, not
+// those of the library.
 class BlockSignals {
  public:
   BlockSignals() {

@@ -1,5 +1,4 @@
-// The loop (contract 1.8): plan, batches, frame, reconstruction, error, next batch. It alone loops; it owns cancel,
-// progress, clock.
+// A running render: a thread with a task, and access to its progress, results and cancellation from other threads.
 #pragma once
 
 #include <functional>
@@ -20,7 +19,7 @@ namespace gradus::render {
 
 class RenderTask;
 
-// Makes the integrator of a plan: `integrator` is a GradusIntegrator, never AUTO. Tests bring their own.
+// Makes the integrator of a plan. `integrator` is a GradusIntegrator, never AUTO. Tests pass their own factory.
 using IntegratorFactory = std::function<std::unique_ptr<integrator::Integrator>(
     const integrator::IntegratorContext& context, uint32_t integrator)>;
 std::unique_ptr<integrator::Integrator> make_integrator(const integrator::IntegratorContext& context,
@@ -28,13 +27,13 @@ std::unique_ptr<integrator::Integrator> make_integrator(const integrator::Integr
 
 class Render {
  public:
-  // Starts on a thread of its own. Throws invalid_argument for settings that cannot be obeyed (contract 5.1). resumed:
-  // go on from its samples; invalid_argument if its keys or planes differ. device: for the number of threads; may be
-  // nullptr if settings.threads is set.
+  // Starts a render on its own thread. Throws `invalid_argument` for settings that cannot be followed. If `resumed` is
+  // set, the render continues from its samples; throws `invalid_argument` if its keys or planes differ. `device` gives
+  // the number of threads and may be nullptr if settings.threads is set.
   Render(std::shared_ptr<scene::Device> device, std::shared_ptr<const scene::Snapshot> snapshot,
          const GradusSettings& settings, std::shared_ptr<const film::Film> resumed = nullptr,
          const IntegratorFactory& factory = make_integrator);
-  // Runs another task.
+  // Runs any task on its own thread.
   explicit Render(std::unique_ptr<RenderTask> task);
   ~Render();  // cancels and waits
   Render(const Render&) = delete;
@@ -42,16 +41,18 @@ class Render {
 
   GradusProgress progress() const;
   void cancel();
-  // False: still running after `seconds` (negative: no limit). Rethrows nothing; see outcome().
+  // Waits until the render has ended. Returns false if it is still running after `seconds` (negative: no limit). Does
+  // not rethrow errors; see outcome().
   bool wait(double seconds);
-  GradusError outcome(std::string* text) const;  // OK, CANCELLED or the failure, once ended
-  // The delivered region. While sampling, Noisy Image is the noisy image so far, each tile as of its last batch that
-  // ended, 0 before the first one; so is Combined until its reader, a watcher, is shown more (render/preview.h). Never
-  // waits. Others: invalid_operation until then.
+  GradusError outcome(std::string* text) const;  // OK, CANCELLED or the error; invalid_operation while running
+  // Copies a pass of the delivered region. Never waits. While sampling, Noisy Image is the mean of the samples so far,
+  // each tile as of its last finished batch, 0 before the first one; so is Combined until a preview is shown
+  // (render/preview.h). Other passes throw `invalid_operation` until sampling has ended. Throws `invalid_argument` if
+  // `count` is not the number of floats of the pass.
   void read_pass(uint32_t pass, float* pixels, size_t count) const;
-  // Of a component, once sampling has ended: invalid_operation until then.
+  // Copies a pass of a component. Throws `invalid_operation` until sampling has ended.
   void read_component(const std::string& name, uint32_t pass, float* pixels, size_t count) const;
-  // Throw invalid_operation while running.
+  // Return the statistics and the film. Throw `invalid_operation` while running.
   std::string stats_json() const;
   std::shared_ptr<const film::Film> film() const;
 

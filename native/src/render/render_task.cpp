@@ -35,7 +35,7 @@ void RenderTask::end(GradusError code, const std::string& text) noexcept {
     if (code == GRADUS_OK) tracker_.raise_to(1.0f);
     tracker_.new_image();
     text_ = text;
-  } catch (...) {  // only the text can fail; the phase is set
+  } catch (...) {  // only the copy of the text can throw, and the phase is already set
   }
   ended_.notify_all();
 }
@@ -43,7 +43,7 @@ void RenderTask::end(GradusError code, const std::string& text) noexcept {
 bool RenderTask::wait(double seconds) const {
   std::unique_lock lock(mutex_);
   const auto ended = [this] { return is_ended(); };
-  // Far beyond any render, and no overflow of the clock.
+  // Longer waits have no limit, because they would overflow the clock.
   if (!(seconds >= 0.0) || seconds > 1e8) {
     ended_.wait(lock, ended);
     return true;

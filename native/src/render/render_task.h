@@ -1,4 +1,4 @@
-// What runs on a thread of its own, and what can be asked of it meanwhile from others: progress, cancel, outcome.
+// A task that runs on its own thread, with progress, cancellation and outcome for other threads.
 #pragma once
 
 #include <atomic>
@@ -22,47 +22,48 @@ class RenderTask {
   RenderTask(const RenderTask&) = delete;
   RenderTask& operator=(const RenderTask&) = delete;
 
-  // Does the work; called once, on the task's thread. Never throws: what goes wrong becomes the outcome.
+  // Does the work. Called once, on the thread of the task. Never throws: an error becomes the outcome.
   void run() noexcept;
 
   virtual void cancel() { stop_.store(true, std::memory_order_relaxed); }
-  // False: still running after `seconds` (negative: no limit).
+  // Waits until the task has ended. Returns false if it is still running after `seconds` (negative: no limit).
   bool wait(double seconds) const;
   virtual GradusProgress progress() const;
-  // OK, CANCELLED or the failure. Throws invalid_operation while running; so do stats() and frame().
+  // Returns OK, CANCELLED or the error. outcome(), stats() and film() throw `invalid_operation` while running.
   GradusError outcome(std::string* text) const;
 
-  // What read_pass() gives.
+  // Returns the region that read_pass() and read_component() copy.
   virtual const Region& delivered() const = 0;
   virtual void read_pass(uint32_t pass, float* pixels) const = 0;
-  // Of a component.
+  // Copies a pass of a component; see Render::read_component().
   virtual void read_component(const std::string& name, uint32_t pass, float* pixels) const = 0;
   virtual std::string stats() const = 0;
   virtual std::shared_ptr<const film::Film> film() const = 0;
 
  protected:
   virtual void render() = 0;
-  // Called with the lock, when nothing more is done.
+  // Called with mutex_ locked, after render() has ended.
   virtual void ending(GradusError) {}
-  // Called with the lock.
+  // Returns the present memory of the task in bytes. Called with mutex_ locked.
   virtual uint64_t memory_bytes() const = 0;
 
   bool is_stopped() const { return stop_.load(std::memory_order_relaxed); }
-  // Throws the Error CANCELLED.
+  // Throws the Error CANCELLED if the task was cancelled.
   void check_cancelled() const {
     if (is_stopped()) throw cancelled();
   }
   bool is_ended() const { return phase_ >= GRADUS_PHASE_DONE; }
-  // Throws invalid_operation while running. With the lock.
+  // Throws `invalid_operation` while running; `what` names the result that was requested. Called with mutex_ locked.
   void require_end(const char* what) const;
-  // The same, and where the task has ended without a frame: `failure`, and why. With the lock.
+  // Like require_end(), and throws `invalid_operation` with `failure` and the cause if the task has ended without a
+  // film. Called with mutex_ locked.
   void require_film(const std::shared_ptr<const film::Film>& film, const char* what, const char* failure) const;
   double seconds() const { return clock_.seconds(); }
   double process_cpu_seconds() const { return 1e-9 * double(process_cpu_nanoseconds() - process_cpu_start_); }
 
   std::atomic<bool> stop_{false};
   ProgressTracker tracker_;
-  mutable std::mutex mutex_;  // guards what follows, and what its heirs say
+  mutable std::mutex mutex_;  // guards phase_, text_ and the members that derived classes name
   GradusPhase phase_ = GRADUS_PHASE_WAITING;
   std::string text_;
 

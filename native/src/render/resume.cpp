@@ -15,7 +15,7 @@
 namespace gradus::render {
 namespace {
 
-// The key is taken with the integrator that was used, not with AUTO.
+// Returns the sampling key, taken with the integrator that was used instead of AUTO.
 uint64_t key_of(GradusSettings settings, uint32_t integrator) {
   settings.integrator = integrator;
   return schema::sampling_key(settings);
@@ -27,7 +27,7 @@ void add(std::vector<T>* to, const std::vector<T>& from) {
 }
 
 void add_planes(film::PassPlane* to, const film::PassPlane& from) {
-  if (to->first_sample_only) return;  // the frame that has sample 0 came first
+  if (to->first_sample_only) return;  // merge_films() has already kept the plane of the film with the first sample
   for (int half = 0; half < film::kHalves; ++half) add(&to->values[half], from.values[half]);
   add(&to->weight, from.weight);
 }
@@ -42,7 +42,7 @@ bool same_planes(const film::Film& a, const film::Film& b) {
   return true;
 }
 
-// A pilot may have found that gradients pay nowhere.
+// Returns whether a film of this plan may have this integrator. If a pilot found no benefit of gradients, it is PATH.
 bool may_contain(const Plan& plan, uint32_t integrator) {
   return integrator == plan.integrator || (plan.pilot && integrator == GRADUS_INTEGRATOR_PATH);
 }
@@ -61,7 +61,7 @@ uint32_t resumed_samples(const film::Film& film, bool adaptively) {
     for (int32_t y = part.y0; y < part.y1; ++y) {
       for (int32_t x = part.x0; x < part.x1; ++x) {
         if (film::samples_at(film, film.index(x, y)) == first) continue;
-        throw invalid_argument("the frame's pixels differ in their sample counts: a render cannot go on from it");
+        throw invalid_argument("the frame's pixels differ in their sample counts: a render cannot continue from it");
       }
     }
   }
@@ -155,7 +155,7 @@ void merge_films(film::Film* film, const film::Film& other) {
     if (film->passes[i].first_sample_only && other_is_first) film->passes[i] = other.passes[i];
   }
   add_sums(film, other);
-  film->shared = {};  // each has taken other samples of a cell
+  film->shared = {};  // the adaptive states of two films with different samples cannot be combined
   for (const film::SampleRange& range : other.samples.list()) film->samples.add(range);
   if (other_is_first) film->settings.first_sample = other.settings.first_sample;
   film->settings.samples = uint32_t(std::min<uint64_t>(film->samples.total(), UINT32_MAX));

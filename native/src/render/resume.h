@@ -1,4 +1,5 @@
-// Going on from the samples of a frame (contract 2.1: 16 and then 48 samples have the bits of 64), and adding frames.
+// Continues a render from the samples of a film, and merges films. A render of 16 samples that is continued by 48 is
+// bit-identical to a render of 64.
 #pragma once
 
 #include <cstdint>
@@ -8,21 +9,22 @@
 
 namespace gradus::render {
 
-// Samples that every pixel of the frame has; to go on adaptively, their mean over the pixels that go on. Throws
-// invalid_argument if pixels differ otherwise (a frame that was cancelled, or added up from adaptive ones).
+// Returns the number of samples that every pixel of the film has; to continue adaptively, the mean over the pixels that
+// have not stopped. Throws `invalid_argument` if pixels differ for another reason (a cancelled film, or a sum of
+// adaptive ones).
 uint32_t resumed_samples(const film::Film& film, bool adaptively);
-// Those with which a render goes on from the frame: where small ones of the plan were merged into Residual, as in the
-// frame.
+// Returns the components of a render that continues from the film. Components of the plan that the film merged into the
+// remainder are merged again.
 lpe::ComponentSet resumed_components(const film::Film& film, const Plan& plan);
-// Throws invalid_argument with the reason if a render with these settings cannot go on from the frame.
+// Throws `invalid_argument` with the reason if a render with these settings cannot continue from the film.
 void check_resumable(const film::Film& film, const GradusSettings& settings, const Plan& plan, uint64_t scene_key);
-// Throws invalid_argument if the frame has gradients and none are wanted, or the other way round.
+// Throws `invalid_argument` if the film has gradients and none are wanted, or has none and they are wanted.
 void check_gradients(const film::Film& film, bool wanted);
 
-// Adds the sums and counts of `other`, which has the same planes; what belongs to the first sample stays.
+// Adds the sums and counts of `other`, which has the same planes. Planes of the first sample only are not changed.
 void add_sums(film::Film* film, const film::Film& other);
-// Adds the samples of `other`, which has other sample numbers. Throws invalid_argument with the reason if they do not
-// fit together.
+// Adds the samples of `other`, which has other sample numbers. Throws `invalid_argument` with the reason if the films
+// differ in scene, settings, planes or components, or share samples.
 void merge_films(film::Film* film, const film::Film& other);
 
 }  // namespace gradus::render

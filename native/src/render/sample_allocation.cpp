@@ -6,7 +6,8 @@
 namespace gradus::render {
 namespace {
 
-// Spreads that are finite and positive.
+// Returns the spreads, replaced where they are not finite (by the maximum) or too small, so that all are positive. All
+// are 1 if none is positive.
 std::vector<double> usable_spreads(const std::vector<BlockShare>& blocks) {
   double largest = 0.0;
   for (const BlockShare& block : blocks) {
@@ -36,7 +37,7 @@ class Shares {
 
   std::vector<uint32_t> rounded() const {
     std::vector<uint32_t> counts(blocks_.size(), 0);
-    double left_over = 0.0;  // samples of pixels that rounding has not given yet
+    double left_over = 0.0;  // samples, summed over pixels, that rounding has not assigned yet
     for (size_t i = 0; i < blocks_.size(); ++i) {
       if (!blocks_[i].continues) continue;
       const double due = wanted(i, factor_), pixels = double(blocks_[i].pixels);
@@ -60,7 +61,7 @@ class Shares {
     return sum;
   }
 
-  // That of which all samples together are the budget; total() does not fall.
+  // Finds the factor for which the total number of samples is the budget, by bisection: total() is monotone.
   double find_factor() const {
     double low = 0.0, high = kMaxShare * mean_in_all_ / *std::min_element(spreads_.begin(), spreads_.end());
     for (int step = 0; step < 100; ++step) {

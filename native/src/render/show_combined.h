@@ -1,4 +1,4 @@
-// Combined as it is shown: while samples are taken, and in the end.
+// Reconstructs Combined and shows it, for previews and for the final image.
 #pragma once
 
 #include <atomic>
@@ -12,8 +12,8 @@
 
 namespace gradus::render {
 
-// Reconstructs the frame in the arena, with its error where the plan has that pass, and shows it. False: stopped, and
-// nothing is shown, for half of it is none.
+// Reconstructs the film in the task arena, with pass Error if the plan has it, and shows the result. Returns false if
+// `stop` became true; then nothing is shown.
 bool show_combined(const film::Film& film, uint32_t reconstruction, const Plan& plan, const std::atomic<bool>& stop,
                    tbb::task_arena* arena, Picture* picture, reconstruct::SolveReport* report);
 

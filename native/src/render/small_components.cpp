@@ -15,13 +15,14 @@
 namespace gradus::render {
 namespace {
 
-// A pixel is looked at in every cell of so many pixels a side, or in smaller ones of a small film.
+// Maximum side in pixels of the blocks with one test pixel each. Blocks of a small film are smaller, so that there are
+// about kMinPixels test pixels.
 constexpr int32_t kMaxBlockSide = 16;
 constexpr int64_t kMinPixels = 1024;
 constexpr uint32_t kSamples = 4;
-// What a square of so many cells a side shows of a component is compared with the light of a typical square.
+// Side of a group, in blocks. The light of a component in a group is compared with the light of a typical group.
 constexpr int32_t kBlocksPerGroupSide = 4;
-// A component is small if it has no more of that light in any square, and on average.
+// A component is small if it has at most these shares of the typical light, in every group and on average.
 constexpr double kSmallInGroup = 1e-2, kSmallInAll = 1e-3;
 
 using Light = std::array<double, lpe::kMaxComponents>;
@@ -30,7 +31,7 @@ int32_t block_side(const Region& film) {
   return std::clamp(int32_t(std::sqrt(double(film.area()) / double(kMinPixels))), int32_t{1}, kMaxBlockSide);
 }
 
-// Somewhere in the cell, so that no pattern of the picture meets all of them alike.
+// Returns a random pixel of the block, so that no regular pattern of the image aligns with all test pixels.
 Region pixel_of(const Region& block, uint32_t seed) {
   const uint32_t h = path::combine(path::combine(seed, uint32_t(block.x0)), uint32_t(block.y0));
   const int32_t x = block.x0 + int32_t((h & 0xffffu) % uint32_t(block.width())),
@@ -38,7 +39,7 @@ Region pixel_of(const Region& block, uint32_t seed) {
   return {x, y, x + 1, y + 1};
 }
 
-// Of one pixel: mean of the channels, summed over samples.
+// Returns the light of each component in a film of one pixel: mean of the channels, summed over samples.
 Light light_of(const film::Film& frame) {
   Light light{};
   for (size_t c = 0; c < frame.components.size(); ++c) {
@@ -58,7 +59,7 @@ double sum_of(const Light& light) {
   return sum;
 }
 
-// A firefly does not change it.
+// Returns the median light of the groups, which a firefly does not change.
 double typical(const std::vector<Light>& groups) {
   std::vector<double> sums;
   for (const Light& group : groups) sums.push_back(sum_of(group));
@@ -76,7 +77,7 @@ bool is_small(const std::vector<Light>& groups, size_t component, double light) 
   return maximum <= kSmallInGroup * light && sum <= kSmallInAll * light * double(groups.size());
 }
 
-// Of a pixel, in each square of the film.
+// Returns the mean light of a test pixel, for each group of the film.
 std::vector<Light> measure_groups(const integrator::Integrator& integrator, const GradusSettings& settings,
                                   const Region& film, int components, int channels, const std::atomic<bool>& stop) {
   const int32_t side = block_side(film);
@@ -107,7 +108,7 @@ SmallComponents find_small_components(const integrator::Integrator& integrator, 
   const Region film{0, 0, int32_t(settings.width), int32_t(settings.height)};
   const std::vector<Light> groups = measure_groups(integrator, settings, film, set.count(), channels, stop);
   SmallComponents small;
-  if (stop.load(std::memory_order_relaxed)) return small;  // that was cut short and has found nothing out
+  if (stop.load(std::memory_order_relaxed)) return small;  // cancelled: the result is not complete
   small.samples = kSamples * uint64_t(film::make_pixel_blocks(film, block_side(film)).size());
   const double light = typical(groups);
   for (int c = 0; c < set.count(); ++c) {
@@ -125,8 +126,8 @@ void explain(const SmallComponents& small, const lpe::ComponentSet& set, Reasons
   if (names.empty()) return;
   skipped->emplace_back("components " + names,
                         "automatic: " + std::to_string(small.samples) +
-                            " samples, thrown away, found next to no light of their kind anywhere; what there is of "
-                            "it belongs to Residual");
+                            " discarded samples found hardly any light of their kind anywhere; it is added to "
+                            "Residual");
 }
 
 }  // namespace gradus::render

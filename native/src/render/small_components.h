@@ -1,8 +1,8 @@
-// Which components are small everywhere, as a few samples tell that are thrown away.
+// Finds components that are small in the whole image, by a few samples that are discarded.
 //
-// As in the other pilot (render/pilot.h) the answer hangs on scene and settings alone: not on samples that are kept, on
-// how many will be taken, on threads or on the region, or frames that are merged would hold different components
-// (contract 2.1).
+// As in the pilot for gradients (render/pilot.h), the result depends only on scene and settings: not on samples that
+// are kept, on their number, on threads or on the region. Otherwise films that are merged would hold different
+// components.
 #pragma once
 
 #include <atomic>
@@ -15,15 +15,16 @@
 namespace gradus::render {
 
 struct SmallComponents {
-  uint32_t bits = 0;     // of the set
-  uint64_t samples = 0;  // that were taken, and thrown away
+  uint32_t bits = 0;     // bits of the small components of the set
+  uint64_t samples = 0;  // number of samples taken, which are discarded
 };
 
-// Runs in the caller's arena. `integrator`: without offsets, made for pilot_settings() and the set.
+// Takes the samples in the caller's task arena. `integrator` has no offset paths and was made for pilot_settings() and
+// `set`.
 SmallComponents find_small_components(const integrator::Integrator& integrator, const GradusSettings& settings,
                                       const lpe::ComponentSet& set, int channels, const std::atomic<bool>& stop);
 
-// Says which belong to Residual, and why.
+// Adds the merged components and the reason to `skipped`.
 void explain(const SmallComponents& small, const lpe::ComponentSet& set, Reasons* skipped);
 
 }  // namespace gradus::render

@@ -102,7 +102,7 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const film::F
   j["peak_memory_bytes"] = peak_memory_bytes();
   j["warnings"] = stats.warnings;
   if (stats.solve.hit_cap) j["warnings"].push_back("the reconstruction stopped at its limit of steps");
-  // Names come from files: what is not UTF-8 must not end the frame.
+  // Replaces invalid UTF-8 in names, which come from files, so that it does not cause an error.
   return j.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

@@ -1,4 +1,4 @@
-// The stats object of one rendered frame (contract 7.1), without the fields that only the host knows.
+// The statistics of one rendered frame as JSON, without the fields that only the host knows.
 #pragma once
 
 #include <string>
@@ -12,11 +12,11 @@ namespace gradus::render {
 
 struct PhaseTimes {
   double sample = 0.0;
-  double preview = 0.0;  // what a watcher saw meanwhile
+  double preview = 0.0;  // previews while sampling
   double reconstruct = 0.0;
   double denoise = 0.0;
-  double correspondence = 0.0;  // of a frame of a sequence to the one before
-  double store = 0.0;           // reading and writing frames
+  double correspondence = 0.0;  // pixel correspondence of a frame of an animation to the previous one
+  double store = 0.0;           // reading and writing stored films
   void add(const PhaseTimes& other) {
     sample += other.sample;
     preview += other.preview;
@@ -29,20 +29,21 @@ struct PhaseTimes {
 };
 
 struct RenderStats {
-  // CPU time of samples is that of our threads, by tiles; that of all else (the pilot, previews, estimates of noise,
-  // solves, the denoiser, links, files) is the whole process's meanwhile, what the host does in these moments included.
+  // CPU time of sampling is that of the library's threads, measured by tile. CPU time of everything else (the pilot,
+  // previews, noise estimates, solvers, the denoiser, correspondences, files) is that of the whole process in the
+  // meantime, including work of the host.
   PhaseTimes seconds, cpu_seconds;
   double total_seconds = 0.0;
   double process_cpu = 0.0;
   uint32_t threads = 0;  // Threads that took the samples; 0 = unknown.
-  std::string denoiser;  // name and version of the host's; empty: none was used
+  std::string denoiser;  // name and version of the denoiser; empty: none was used
   std::string stopped;   // why sampling ended: samples, noise, time, cancelled
   reconstruct::SolveReport solve;
   std::vector<std::string> warnings;
-  Reasons chosen, skipped;        // what was decided after the plan, by samples
-  double replayed_samples = 0.0;  // per pixel, those that replay the frame before
+  Reasons chosen, skipped;        // choices made after the plan, by samples
+  double replayed_samples = 0.0;  // replayed samples per pixel
 
-  // The work of a second part of the frame.
+  // Adds the times and warnings of another render of the same frame.
   void add(const RenderStats& part);
 };
 

@@ -74,7 +74,7 @@ film::Counters TileSampler::sample(const integrator::WorkUnit& unit) {
   return counters;
 }
 
-// What goes with the surface, and then the components that go their own ways.
+// Replays the samples of the components that share the source pixels of the surface, then those with their own.
 film::Counters TileSampler::sample_replay(integrator::WorkUnit unit) {
   const ComponentReplays& components = replay_->components;
   if (!components.shared.empty()) unit.component_map = &components.shared;
@@ -90,7 +90,7 @@ film::Counters TileSampler::sample_replay(integrator::WorkUnit unit) {
   return sum;
 }
 
-// Cell by cell, so that the cost of each is known.
+// Samples block by block, so that the cost of each block is known.
 film::Counters TileSampler::sample_blocks(integrator::WorkUnit unit) {
   unit.first_map = &adaptive_->batch().first;
   unit.count_map = &adaptive_->batch().count;

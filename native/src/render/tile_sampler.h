@@ -1,5 +1,5 @@
-// Takes the samples of a batch, tile by tile on all threads. A batch may be long: it can pause between tiles, and the
-// frame is at rest then.
+// Takes the samples of a batch, tile by tile on all threads. A batch may be long: it can pause between tiles, and no
+// thread writes to the film then.
 #pragma once
 
 #include <atomic>
@@ -16,16 +16,17 @@ namespace gradus::render {
 
 class TileSampler {
  public:
-  // What it is given lives as long as it. adaptive: nullptr where all pixels take the same samples. replay: nullptr
-  // where they are the frame's own.
+  // All arguments must outlive the object. `adaptive` is nullptr if all pixels take the same number of samples.
+  // `replay` is nullptr if the samples are fresh ones of the frame.
   TileSampler(const integrator::Integrator& integrator, std::vector<Region> tiles, const GradientMap& gradients,
               AdaptiveSampling* adaptive, const Replay* replay, const std::atomic<bool>& stop, film::Film* film);
 
-  // Samples [begin, end) of each pixel; in adaptive renders that many on average, as the sharing of these says.
+  // Starts the batch of samples [begin, end) of each pixel; in adaptive renders `end - begin` samples on average.
   void start_batch(uint32_t begin, uint32_t end);
-  // Called for each tile when it has its samples, on the thread that took them. True: pause.
+  // Called after each tile, on the thread that sampled it. Returns true to pause.
   using AfterTile = std::function<bool(const Region& tile, uint64_t pixel_samples)>;
-  // Goes on with the batch, in the caller's arena. False: not all of it is done yet, for it has paused or was stopped.
+  // Continues the batch in the caller's task arena. Returns false if it is not complete, because it paused or was
+  // stopped.
   bool run(const AfterTile& after_tile);
 
   double cpu_seconds() const { return 1e-9 * double(cpu_.load()); }
@@ -46,7 +47,7 @@ class TileSampler {
   const uint32_t first_sample_;
 
   uint32_t begin_ = 0, end_ = 0;
-  std::vector<uint8_t> done_;  // of the batch, by tiles
+  std::vector<uint8_t> done_;  // by tile: 1 if the batch has its samples
   std::atomic<uint64_t> cpu_{0};
   std::mutex counters_mutex_;
 };
