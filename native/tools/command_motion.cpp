@@ -20,7 +20,7 @@ using nlohmann::ordered_json;
 constexpr std::array<const char*, motion::kTrackingCauses + 1> kCauses = {
     "tracked", "no path", "gone", "not converged", "occluded", "broken", "outside", "elsewhere", "cut"};
 
-// What simpler answers differ by from a motion that was found, where something moves.
+// Measures how far simpler estimates differ from the tracked motion, for specular chains that are not static.
 ordered_json compare(const motion::ChainView& view, const motion::ChainTracer& next, const motion::ChainMotion& found) {
   const motion::ChainTracer here = view.tracer();
   SimplerMotion simpler(here, next);
@@ -43,7 +43,7 @@ ordered_json count(const motion::TrackingCounts& counts) {
           {"ways_traced", double(counts.search.traced) / pixels}};
 }
 
-// checked: pixels of each component to be held against the truth.
+// Measures tracking. `checked` is the number of pixels per component that are compared with a brute-force search.
 ordered_json measure(const scene::Snapshot& snapshot, const GradusSettings& settings,
                      const lpe::ComponentSet& components, size_t checked) {
   double wall = 0.0, cpu = 0.0;

@@ -24,8 +24,8 @@ struct RenderArguments {
   OptionFlags options;
 };
 
-// FILE.exr itself, or in a store: STORE/<scene>/ViewLayer/f<frame>.exr; frames of animations have other names
-// (contract 7.2).
+// Returns the file to write: FILE.exr itself, or STORE/<scene>/ViewLayer/f<frame>.exr in a frame store. Frames of
+// animations have other names.
 fs::path frame_path(const RenderArguments& args, int32_t frame) {
   const fs::path output = args.output;
   if (output.extension() == ".exr") return output;

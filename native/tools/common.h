@@ -1,4 +1,4 @@
-// What the subcommands of the tool share.
+// Helper functions that the subcommands of the tool share.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,17 +15,17 @@ inline constexpr int kExitFailure = 1;
 inline constexpr int kExitUsage = 2;
 inline constexpr int kExitInterrupted = 130;  // as shells report SIGINT
 
-// Each adds its subcommand to `app`; *exit_code is what the program ends with.
+// Each function adds its subcommand to `app`. The subcommand sets *exit_code to the exit code of the program.
 void add_render(CLI::App* app, int* exit_code);
 void add_reconstruct(CLI::App* app, int* exit_code);
 void add_compare(CLI::App* app, int* exit_code);
 void add_info(CLI::App* app, int* exit_code);
 void add_motion(CLI::App* app, int* exit_code);
 
-// Render options from the library's own table: what the user gave overlays settings.
+// Command-line flags for all render options of the library. apply() overwrites the settings that the user gave.
 class OptionFlags {
  public:
-  // `skipped`: names that the subcommand has another meaning for.
+  // Adds a flag for each option of the library to the command.
   void add_to(CLI::App* command);
   void apply(GradusSettings* settings) const;
 
@@ -37,11 +37,11 @@ class OptionFlags {
   std::string region_, passes_, component_passes_;
 };
 
-// Parts between commas, without the spaces around them.
+// Splits a text at commas and removes the spaces around each item.
 std::vector<std::string> split(const std::string& text);
-// As names are typed: in lower case and with '_'.
+// Returns a name in the form that users type: in lower case and with '_'.
 std::string canonical(std::string text);
-// What a parser throws; "": nothing.
+// Returns the message of the exception that a parser throws, or "" if it throws none.
 template <class Parse>
 std::string refusal(const Parse& parse) {
   try {
@@ -54,23 +54,23 @@ std::string refusal(const Parse& parse) {
 
 inline constexpr uint64_t kAllPasses = (uint64_t{1} << GRADUS_PASS_COUNT) - 1;
 PassNames pass_names();
-// As parse_names(); Combined is always among them.
+// Parses names as parse_names() does and adds Combined to the mask.
 uint64_t parse_passes(const std::string& text);
-// For CLI::Option::check: what is wrong with a file name that does not end in .exr, the only format that the tool reads
-// and writes.
+// Returns an error text, for CLI::Option::check, if a file name does not end in .exr, the only format that the tool
+// reads and writes. Otherwise returns "".
 std::string exr_only(const std::string& path);
-// The same of values for the library's options, and of names of passes.
+// Return an error text, for CLI::Option::check, for an invalid option value or pass name. Otherwise return "".
 std::string bad_value(const std::string& option, const std::string& value);
 std::string bad_passes(const std::string& text);
-// Value of `reconstruction` or `denoiser`; throws as the library does.
+// Returns the enum value of `reconstruction` or `denoiser`. Throws the library's error if the value is invalid.
 uint32_t parse_choice(const std::string& option, const std::string& value);
 
-// Both throw CLI::ValidationError, which is wrong usage. The first where `written` is the file `kept`, by whatever name
-// or link.
+// Both throw CLI::ValidationError, which counts as wrong usage: check_apart() if `written` and `kept` are the same file,
+// also through links; check_denoiser_path() if a path is given although no denoiser is used.
 void check_apart(const std::string& option, const std::string& written, const std::string& kept);
 void check_denoiser_path(const std::string& path, uint32_t denoiser);
 
-// Adds --denoiser-path, for what client::Device takes.
+// Adds the option --denoiser-path, whose value client::Device takes.
 void add_denoiser_path(CLI::App* command, std::string* path);
 
 void print_warnings(const client::Device& device);

@@ -14,19 +14,19 @@
 namespace gradus::tool {
 
 inline constexpr uint32_t kAllComponentPasses = (uint32_t{1} << GRADUS_COMPONENT_PASS_COUNT) - 1;
-// As parse_passes() and bad_passes().
+// Do the same for names of component passes as parse_passes() and bad_passes() do for names of passes.
 uint32_t parse_component_passes(const std::string& text);
 std::string bad_component_passes(const std::string& text);
 
-// Those of `requested` that the frame was sampled for: all of them, unless it is everything. Throws Error with what is
-// missing.
+// Returns the requested passes that the frame was sampled for. Throws Error with the missing ones, unless all passes are
+// requested.
 uint32_t available_component_passes(const film::FilmHeader& frame, uint32_t requested);
-// Whether some are made of two frames: of an animation, by optical flow.
+// Returns whether some passes are computed from two frames of an animation by optical flow.
 bool need_two_frames(uint32_t passes);
 
 using ReadComponent = std::function<void(const char* component, uint32_t pass, std::vector<float>* pixels)>;
 ReadComponent reader_of(const client::Film& frame);
-// Of every component of the settings' set; pixels: of the image.
+// Adds the passes of every component in the settings' set as layers. `pixels` is the number of pixels of the image.
 void add_component_layers(const GradusSettings& settings, uint32_t passes, size_t pixels, const ReadComponent& read,
                           std::vector<film_io::ImageLayer>* layers);
 

@@ -54,9 +54,9 @@ namespace {
 struct Pixel {
   size_t number;
   const motion::SpecularChain* chain;
-  bool exists = false;     // what it shows is seen to the end
-  bool reappears = false;  // it does not, but is there in the end
-  bool invented = false;   // tracked to where it is not to be seen
+  bool exists = false;     // Its content is visible through all steps.
+  bool reappears = false;  // Its content is hidden in between, but visible in the last step.
+  bool invented = false;   // It was tracked to a place where its content is not visible.
   glm::dvec2 truth{0.0};
 };
 

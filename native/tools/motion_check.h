@@ -1,4 +1,4 @@
-// Motion of components, and simpler answers to the same question, against the truth that brute force finds.
+// Compares the motion of components, and simpler estimates of it, with the result of a brute-force search.
 #pragma once
 
 #include <memory>
@@ -21,7 +21,7 @@ class Distances {
   std::vector<double> pixels_;
 };
 
-// What simpler formulas say of where a chain goes, next to an answer of another kind.
+// Measures how far simpler formulas for the motion of a specular chain differ from a given place on the film.
 class SimplerMotion {
  public:
   SimplerMotion(const motion::ChainTracer& here, const motion::ChainTracer& next)
@@ -40,10 +40,10 @@ class SimplerMotion {
   Distances first_, static_mirror_, along_;
 };
 
-// The scene in small steps from its frame to the next one, in which what pixels show is followed.
+// The scene in small time steps from its frame to the next one, through which the content of pixels is tracked.
 class StepsBetween {
  public:
-  // farthest: pixels that anything moves, or nearly.
+  // `farthest` is a high quantile of all motions in pixels. It sets the number of steps.
   StepsBetween(const scene::Snapshot& snapshot, const GradusSettings& settings, double farthest);
 
   // Of about `pixels` pixels spread evenly over those of the view in which something changes.
@@ -62,7 +62,7 @@ class StepsBetween {
   std::vector<std::unique_ptr<Film>> frames_;
 };
 
-// The quantile of 99 % of all ways that are known: those found, and those of surfaces.
+// Returns the 99 % quantile of all known displacements on the film in pixels: tracked ones and those of surfaces.
 double farthest_displacement(const motion::ChainTracer& next, const std::vector<motion::ChainView>& views,
                              const std::vector<motion::ChainMotion>& found);
 

@@ -1,4 +1,4 @@
-// Passes by the names that users type, of a frame or of its components.
+// Parses the names of passes of a frame or of its components as users type them.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace gradus::tool {
 
 struct PassNames {
   uint32_t count;
-  std::function<std::string(uint32_t pass)> of;  // as it is typed
+  std::function<std::string(uint32_t pass)> of;  // Returns the name as users type it.
   std::string unknown, known;                    // "there is no pass ", "; there are ": of a refusal
 };
 
@@ -19,7 +19,7 @@ uint64_t parse_names(const PassNames& names, const std::string& text);
 
 struct AvailablePasses {
   uint64_t mask = 0;
-  std::string names, missing;  // missing: those of the asked that are not held
+  std::string names, missing;  // Lists of the available passes, and of the requested ones that are not available.
 };
 AvailablePasses find_available(const PassNames& names, uint64_t requested,
                                const std::function<bool(uint32_t pass)>& holds);

@@ -1,4 +1,4 @@
-// What `gradus reconstruct` is told, for one frame and for those of a sequence.
+// Arguments of `gradus reconstruct`, for one frame and for a sequence.
 #pragma once
 
 #include <optional>
@@ -15,14 +15,14 @@ struct ReconstructArguments {
                              frames;
   std::vector<std::string> merged;
   float alpha = 0.0f;
-  double exposure = -1.0;                               // below 0: as it was sampled for
-  std::optional<uint32_t> window_size, window_overlap;  // not given: as the library has them, and half of the size
+  double exposure = -1.0;                               // Below 0: the exposure of the stored settings.
+  std::optional<uint32_t> window_size, window_overlap;  // Default: the library's window size, and half of it.
 };
 
-// Those of `requested` that are there: all of them, unless it is everything. Throws with the names of what is missing.
+// Returns the requested passes that the film has. Throws Error with the missing ones, unless all passes are requested.
 uint64_t available_passes(const film::Film& film, uint64_t requested);
 
-// input: a folder with frames of an animation; output: one for their pictures. Returns the exit code.
+// Reconstructs the frames of an animation in the folder `input` into the folder `output`. Returns the exit code.
 int reconstruct_sequence(const ReconstructArguments& args);
 
 }  // namespace gradus::tool

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of the files of one kind, with the number; "": of frames on their own.
+// Returns the pattern of file names of one kind, with the frame number as group 1. The kind "" stands for still frames.
 std::regex name_of(const std::string& kind) {
   return std::regex("f([+-][0-9]{7,8})" + (kind.empty() ? "" : "\\." + kind) + "\\.exr");
 }
@@ -34,7 +34,8 @@ std::set<int32_t> numbers_in(const std::string& folder, const std::string& kind)
   return numbers;
 }
 
-// ": try a, b": the folders below that do. A frame store has one for each scene, layer and view.
+// Returns ": try a, b" with the folders below that hold sequences, or "". A frame store has a folder for each scene,
+// view layer and view.
 std::string advice(const std::string& folder) {
   const std::regex name = name_of("base");
   std::set<std::string> places;
@@ -73,7 +74,7 @@ std::string text_of(int32_t first, int32_t last) {
   return first == last ? std::to_string(first) : std::to_string(first) + " to " + std::to_string(last);
 }
 
-// "4, 7 to 9": those of a list that are meant.
+// Returns the frames of a list for which is_meant(frame) is true as a text, for example "4, 7 to 9".
 template <class IsMeant>
 std::string name_runs(const std::vector<int32_t>& frames, const IsMeant& is_meant) {
   std::string text;
@@ -91,7 +92,7 @@ std::string name_runs(const std::vector<int32_t>& frames, const IsMeant& is_mean
   return text;
 }
 
-// What of an error is not the name of the file, which is told beside it.
+// Returns an error text without the leading file name, which is printed separately.
 std::string cause_of(const std::string& error, const std::string& path) {
   const std::string name = path + ": ";
   const size_t begin = error.find(name);
@@ -151,7 +152,7 @@ bool StoredSequence::is_unlinked(int32_t frame) const {
   const auto here = traits_.find(frame), before = traits_.find(frame - step_);
   if (here == traits_.end() || before == traits_.end()) return false;
   const animation::FrameTraits& form = here->second;
-  if (form.stream == frame && form.replayed_stream == frame) return false;  // a cut, or the first of a job
+  if (form.stream == frame && form.replayed_stream == frame) return false;  // A shot change, or a job's first frame.
   const bool follows = form.stream == before->second.stream || form.replayed_stream == before->second.stream;
   return !follows || animation::follows_another_frame(before->second, form);
 }

@@ -1,4 +1,4 @@
-// Frames of an animation in a folder of a frame store, as the names of their files tell (contract 7.2).
+// Finds the frames of an animation in a folder of a frame store by the names of their files.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +13,19 @@ namespace gradus::tool {
 
 class StoredSequence {
  public:
-  // left_out: frames that are taken for missing. Throws Error where the folder holds no others.
+  // Reads the folder. Frames in `left_out` count as missing. Throws Error if the folder holds no other frames.
   explicit StoredSequence(const std::string& folder, const std::set<int32_t>& left_out = {});
 
   const std::string& folder() const { return folder_; }
   std::string path(int32_t frame) const;
-  // In order; those of which base and offset are there.
+  // Returns the frames whose fresh and replayed samples are both stored, in ascending order.
   const std::vector<int32_t>& frames() const { return frames_; }
-  // From a frame to the one that replays it.
+  // Returns the number of frames from a frame to the one that replays it.
   int32_t step() const { return step_; }
   // Those of [first, last] that the steps meet, in as many lists as jobs have shared the folder: two of a step of 2,
   // say.
   std::vector<std::vector<int32_t>> chains(int32_t first, int32_t last) const;
-  // "4, 7 to 9": the expected ones that are not there.
+  // Returns the expected frames that are not stored, for example "4, 7 to 9".
   std::string missing(int32_t first, int32_t last) const;
   // Those that replay another frame than is stored before them: nothing links the two.
   std::string unlinked(int32_t first, int32_t last) const;

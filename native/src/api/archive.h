@@ -69,8 +69,8 @@ class ArchiveWriter {
   std::vector<char> bytes_;
 };
 
-// Trusts nothing: every length is checked against what is left before it is used. Pointers it hands out live as long as
-// the reader and the bytes.
+// Reads untrusted bytes: each length is checked against the remaining size before use. Returned pointers are valid as
+// long as the reader and the bytes exist.
 class ArchiveReader {
  public:
   // `begin` must be aligned to kArchiveAlignment.

@@ -51,7 +51,8 @@ uint32_t threads_for(const FilmObject& object, const film::Film& film) {
   return film.settings.threads > 0 ? film.settings.threads : object.device->threads();
 }
 
-// RGBA, and the error unless it is nullptr, by as many threads as a render with the frame's settings has.
+// Reconstructs and denoises the film. Writes the estimated error to `error` unless it is nullptr. Uses as many threads
+// as a render with the film's settings.
 DevelopedPicture develop_picture(FilmObject* object, const film::Film& film, uint32_t reconstruction, float alpha,
                                  uint32_t denoiser, float* error) {
   const auto never = [] { return false; };
@@ -87,7 +88,7 @@ DevelopedPicture develop_picture(FilmObject* object, const film::Film& film, uin
   return {std::move(image), std::move(components), reconstruction == GRADUS_RECONSTRUCTION_NONE && !library, {}};
 }
 
-// Light passes and components that are read from now on are those of this picture.
+// Stores the picture, so that light passes and components that are read later belong to it.
 std::shared_ptr<DevelopedPicture> store_developed(FilmObject* object, const std::shared_ptr<const film::Film>& film,
                                                   DevelopedPicture developed) {
   auto kept = std::make_shared<DevelopedPicture>(std::move(developed));
@@ -111,7 +112,7 @@ std::vector<float> read_error(FilmObject* object, const film::Film& film) {
   return error;
 }
 
-// The picture that was made last; that of the frame's own settings where none was.
+// Returns the picture that was stored last. If there is none, develops the film with its own settings.
 std::shared_ptr<DevelopedPicture> developed_picture_of(FilmObject* object,
                                                        const std::shared_ptr<const film::Film>& film) {
   {
@@ -123,7 +124,7 @@ std::shared_ptr<DevelopedPicture> developed_picture_of(FilmObject* object,
                          develop_picture(object, *film, s.reconstruction, s.reconstruction_alpha, s.denoiser, nullptr));
 }
 
-// Reads a pass of what was sampled, by as many threads.
+// Reads a pass directly from the samples, with as many threads as a render with the film's settings.
 void read_sampled(const FilmObject& object, const film::Film& film, uint32_t pass, float* pixels) {
   tbb::task_arena arena(arena_size(threads_for(object, film)));
   arena.execute([&] { output::read_film_pass(film, pass, film::delivered_region(film), pixels); });

@@ -9,7 +9,8 @@
 
 namespace gradus::api {
 
-// Returns what the function returns if that is a code, which then leaves the error slot as it is.
+// Calls the function and stores an exception in the error slot. If the function returns a code, that is returned and
+// the error slot stays unchanged; otherwise a normal return gives GRADUS_OK.
 template <class Function>
 GradusError guard(Function&& function) noexcept {
   try {

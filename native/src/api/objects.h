@@ -18,7 +18,8 @@ namespace gradus::api {
 
 class SceneRecorder;  // api/recorder.h
 
-// The oldest warning, or NULL; valid until the thread's next call.
+// Removes the oldest warning and sets *text to it, or to NULL if there is none. The text is valid until the thread's
+// next call.
 inline void take_warning(Warnings* warnings, const char** text) {
   thread_local std::string taken;
   *text = warnings->take(&taken) ? taken.c_str() : nullptr;
@@ -31,8 +32,8 @@ struct SceneObject {
   std::shared_ptr<const scene::Snapshot> snapshot();
   std::mutex mutex;  // calls of one scene wait for each other
   scene::Scene scene;
-  Warnings warnings;                        // of commits
-  std::shared_ptr<SceneRecorder> recorder;  // nullptr: not recording
+  Warnings warnings;                        // Warnings of commits that the caller has not yet read.
+  std::shared_ptr<SceneRecorder> recorder;  // nullptr if scene calls are not recorded.
 };
 
 struct RenderObject {
@@ -53,10 +54,11 @@ struct SequenceObject {
   std::mutex mutex;  // calls of one sequence wait for each other
   std::shared_ptr<scene::Device> device;
   std::shared_ptr<animation::Sequence> sequence;
-  std::weak_ptr<RenderObject> running;  // what was started last
+  std::weak_ptr<RenderObject> running;  // The render that was started last.
 };
 
-// What was last made of a frame, and its light passes once they are read: none of the noisy image, whose own they are.
+// The picture that was last reconstructed from a film. Its light passes are computed when they are first read. The
+// noisy image needs none, because the light passes of the film belong to it.
 struct DevelopedPicture {
   std::vector<float> rgba;
   std::vector<std::vector<float>> components;  // RGB of each
@@ -71,7 +73,7 @@ struct FilmObject {
   std::shared_ptr<scene::Device> device;
   std::shared_ptr<const film::Film> film;
   std::shared_ptr<DevelopedPicture>
-      developed;  // of the frame; its light is read with the mutex. nullptr: nothing, or it has no parts
+      developed;  // nullptr if there is no picture yet or it has no light passes or components. `mutex` guards `light`.
   std::shared_ptr<const film::Film> get() {
     const std::lock_guard lock(mutex);
     return film;

@@ -1,4 +1,4 @@
-// Keeps the last value of each scene call as bytes, so that a scene can be saved (contract 7.3).
+// Keeps the last value of each scene call as bytes, so that a scene can be saved.
 #pragma once
 
 #include <cstdint>

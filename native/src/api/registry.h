@@ -34,7 +34,7 @@ class Registry {
   std::vector<uint32_t> free_;
 };
 
-// The one registry of the process: handles come from callers that know nothing else of us.
+// Returns the registry of the process. It is global because a handle is all that a C function receives.
 Registry& registry();
 
 // Which type of handle stands for which class.

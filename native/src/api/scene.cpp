@@ -22,7 +22,7 @@ GradusError with_scene(GradusScene scene, Function&& function) noexcept {
   });
 }
 
-// What was left out or replaced is told to whoever asks next.
+// Commits the scene and keeps its warnings until gradus_scene_warning() reads them.
 void commit(SceneObject* object, const volatile int32_t* cancel, float* progress) {
   object->scene.commit(cancel, progress);
   for (const std::string& text : object->scene.snapshot()->warnings) object->warnings.add(text);

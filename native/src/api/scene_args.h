@@ -1,5 +1,5 @@
 // Arguments of gradus_scene_set_*: complete structs (older callers), checked pointers, counts and enums; texts that may
-// be NULL become "". What the arrays say is judged by the scene itself.
+// be NULL become "". The scene itself checks the contents of the arrays.
 #pragma once
 
 #include <vector>

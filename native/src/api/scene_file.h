@@ -29,7 +29,7 @@ static_assert(sizeof(RecordHeader) % kArchiveAlignment == 0);
 
 inline uint64_t padded(uint64_t size) { return (size + kArchiveAlignment - 1) / kArchiveAlignment * kArchiveAlignment; }
 
-// Finds damage, not intent.
+// Returns a checksum that detects accidental damage. It does not protect against deliberate changes.
 inline uint64_t checksum(const char* data, size_t size) {
   ContentHash hash;
   hash.bytes(data, size);

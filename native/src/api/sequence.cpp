@@ -20,7 +20,7 @@ animation::SequenceSettings settings_of(const GradusSequenceSettings& given) {
   return settings;
 }
 
-// With the sequence's lock.
+// Throws invalid_operation while a render of the sequence is running. The caller holds the sequence's mutex.
 void require_idle(const SequenceObject& object) {
   const auto running = object.running.lock();
   if (running && !running->render.wait(0.0)) throw invalid_operation("a frame of the sequence is still being rendered");

@@ -40,7 +40,7 @@ T read_struct(const T* from, const char* name, const T& defaults = T{}) {
   return result;
 }
 
-// Elements of one size, that of the first.
+// Copies an array of structs. All elements must have the struct_size of the first one.
 template <class T>
 std::vector<T> read_struct_array(const T* from, size_t count, const char* name) {
   std::vector<T> result;

@@ -12,9 +12,10 @@ namespace gradus::output {
 namespace {
 
 constexpr double kMaxFloat = std::numeric_limits<float>::max();
-constexpr int kPixels = 4096;  // that a task is worth
+constexpr int kPixels = 4096;  // Number of pixels that one task handles.
 
-// value(i, c) of a reconstructed image, as it is delivered.
+// Returns a function of (pixel, channel) that gives a value of a reconstructed image as it is delivered: multiplied by
+// the exposure, and not negative unless the reconstruction keeps negative values.
 auto value_of(const film::Film& film, uint32_t reconstruction, const std::vector<float>& image) {
   const float exposure = film.settings.film_exposure,
               minimum = reconstruct::keeps_negative(reconstruction) ? -INFINITY : 0.0f;
@@ -24,7 +25,8 @@ auto value_of(const film::Film& film, uint32_t reconstruction, const std::vector
   };
 }
 
-// A change of the picture over a value of the components, by the light that they have there.
+// Distributes a change of one picture value over the components, in proportion to their absolute values. The last
+// component takes the change where all components are 0.
 void spread(float change, size_t value, std::vector<std::vector<float>>* components) {
   float light = 0.0f;
   for (const std::vector<float>& component : *components) light += std::fabs(component[value]);

@@ -12,10 +12,10 @@
 namespace gradus::output {
 namespace {
 
-// Below this a surface tells nothing of the light that falls on it.
+// Smallest reflectance by which colour is divided. Darker surfaces carry no information about their irradiance.
 constexpr float kMinReflectance = 1e-3f;
 
-// Mean over the samples that have met a rough vertex; 0 where none has.
+// Returns the mean over the samples that reached a non-specular vertex, or 0 if there are none.
 film::NonSpecularVertices mean_at(const film::ComponentPlanes& planes, size_t i) {
   const film::NonSpecularVertices &a = planes.non_specular[0][i], &b = planes.non_specular[1][i];
   const float samples = a.samples + b.samples, factor = samples > 0.0f ? 1.0f / samples : 0.0f;
@@ -39,7 +39,7 @@ Vec3 value_of(uint32_t pass, const film::NonSpecularDetails& details, float expo
   return pass == GRADUS_COMPONENT_UV ? factor * details.uv : exposure * (factor * details.emission);
 }
 
-// Where the component shows nothing.
+// Returns the value of a pass where the component has no paths.
 float nothing_of(const schema::ComponentPassInfo& info) {
   if (info.pass == GRADUS_COMPONENT_DEPTH) return schema::kFarDepth;
   if (info.pass == GRADUS_COMPONENT_FACE_INDEX) return schema::kNoFace;
@@ -50,7 +50,8 @@ Error not_asked_for(const schema::ComponentPassInfo& info) {
   return invalid_operation("pass " + std::string(info.name) + " of components was not asked for");
 }
 
-// Flow takes two frames.
+// Returns the tracking state of a pixel when only one frame exists: optical flow needs two frames, so a tracked pixel
+// is reported as having no neighbour.
 float tracked_in_one_frame(float tracked, bool by_flow) {
   return by_flow && tracked == motion::kTracked ? motion::kNoNeighbour : tracked;
 }

@@ -8,9 +8,9 @@
 namespace gradus::output {
 namespace {
 
-using Image = std::vector<float>;  // 3 floats per pixel
+using Image = std::vector<float>;  // 3 floats per pixel.
 
-// Sums over blocks of pixels stay finite, too.
+// Largest absolute value that the network receives, so that sums over blocks of pixels stay finite, too.
 constexpr float kBrightest = 1e30f;
 
 float tamed(float value) { return std::isfinite(value) ? std::clamp(value, -kBrightest, kBrightest) : 0.0f; }
@@ -23,7 +23,7 @@ Image packed(const float* pixels, size_t stride, size_t count) {
   return result;
 }
 
-// The network, for images of one size.
+// A device and a filter of Open Image Denoise for images of one size.
 class Network {
  public:
   Network(const OidnApi& api, int width, int height, uint32_t threads, const CancelCheck& cancel)
@@ -34,12 +34,12 @@ class Network {
         device_(api.new_device(kOidnCpu), api.release_device) {
     if (!device_) throw failure("no device");
     api_.set_device_int(device_.get(), "numThreads", int(threads));
-    api_.set_device_bool(device_.get(), "setAffinity", false);  // its threads are TBB's, and go on to other work
+    api_.set_device_bool(device_.get(), "setAffinity", false);  // TBB's threads do other work later.
     api_.commit_device(device_.get());
     check();
   }
 
-  // `color` in place. Empty: there is no such guide.
+  // Denoises `color` in place. An empty guide is not used.
   void denoise(Image* color, Image* albedo, Image* normal) {
     std::vector<Parameter> images = {{"color", color}, {"output", color}};
     if (!albedo->empty()) images.emplace_back("albedo", albedo);

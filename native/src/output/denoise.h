@@ -1,8 +1,8 @@
-// A picture without its noise, by the host's Open Image Denoise: a stage of its own, picture in, picture out.
+// Denoises a picture with the host's copy of Open Image Denoise. Input and output are plain pictures.
 //
-// Its network is guided by albedo and normal of what the camera sees, which it takes to be free of noise. (It could
-// clean them first, one by one, as Cycles' "accurate" has it; that is two thirds of the time, and
-// reconstruct/feature_filter.h does it for a hundredth of that.)
+// The network is guided by the albedo and the normal of the visible surfaces, which it assumes to be free of noise.
+// (The library can denoise these guides first, as Cycles does with its "accurate" prefilter. That takes two thirds of
+// the time; reconstruct/feature_filter.h needs a hundredth of that.)
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,16 @@ namespace gradus::output {
 
 struct NoisyPicture {
   int width = 0, height = 0;
-  const float* color = nullptr;  // scene-linear RGB
-  size_t stride = 3;             // floats from pixel to pixel
-  // 3 floats per pixel; nullptr: there is none.
-  const float* albedo = nullptr;  // 0 to 1
-  const float* normal = nullptr;  // -1 to 1; the network takes it only together with the albedo
+  const float* color = nullptr;  // Scene-linear RGB.
+  size_t stride = 3;             // Number of floats from one pixel of `color` to the next.
+  // Guides with 3 floats per pixel, or nullptr if there is no such guide.
+  const float* albedo = nullptr;  // Values from 0 to 1.
+  const float* normal = nullptr;  // Values from -1 to 1. The network accepts it only together with the albedo.
 };
 
-// RGB, 3 floats per pixel, finite. Numbers that are not count as 0. Throws Error CANCELLED, or UNKNOWN with the
-// library's text. Call it from outside of TBB's arenas: it brings its own, of `threads`.
+// Returns the denoised picture as RGB, 3 finite floats per pixel. Input values that are not finite count as 0. Throws
+// Error CANCELLED, or Error UNKNOWN with the library's text. It must be called from outside of TBB arenas, because the
+// library makes its own arena of `threads` threads.
 std::vector<float> denoise(const OidnLibrary& library, const NoisyPicture& picture, uint32_t threads,
                            const CancelCheck& cancel);
 

@@ -1,4 +1,4 @@
-// What was sampled of the parts of a frame's light, in both halves.
+// Reads the samples of the light passes of a film, separately for half-buffers A and B.
 #pragma once
 
 #include <vector>
@@ -10,12 +10,12 @@ namespace gradus::output {
 
 using LightPassPlanes = std::vector<const film::PassPlane*>;
 
-// Of a plane that is kept in halves, three channels. Where a half has no samples, what differs from the pixels around
-// stands for the noise.
+// Returns the half-buffers of a light pass with three channels. The plane must be stored in halves. Where a
+// half-buffer has no samples, the difference from the surrounding pixels serves as the estimate of the noise.
 reconstruct::HalvedImage read_light_pass(const film::Film& film, const film::PassPlane& plane);
-// What of the light is in none of the planes.
+// Returns the half-buffers of the light that none of the given planes contains.
 reconstruct::HalvedImage read_remainder(const film::Film& film, const LightPassPlanes& planes);
-// Means of a colour pass.
+// Returns the mean over the samples of each pixel of a colour pass, 0 where there are no samples.
 film::FeatureImage read_color(const film::Film& film, const film::PassPlane& plane);
 
 }  // namespace gradus::output

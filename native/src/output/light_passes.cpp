@@ -18,7 +18,7 @@ namespace gradus::output {
 namespace {
 
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
-// What a colour must be for light to be found again in the quotient by it.
+// Smallest colour by which light is divided. Below it, quotient times colour does not give back the light.
 constexpr float kMinColor = 1e-6f;
 
 LightPassPlanes light_planes(const film::Film& film) {
@@ -29,13 +29,13 @@ LightPassPlanes light_planes(const film::Film& film) {
   return planes;
 }
 
-// nullptr: the pass is not divided by one.
+// Returns the colour plane by which the pass is divided, or nullptr if there is none.
 const film::PassPlane* color_plane(const film::Film& film, const film::PassPlane& plane) {
   const schema::PassInfo& info = schema::pass_info(plane.pass);
   return info.kind == schema::PassKind::Light ? film::find_plane(film, info.color) : nullptr;
 }
 
-// Three channels of `channels`, of the part of `whole` that lies in `region`.
+// Returns the first three of `channels` interleaved channels for the pixels of `whole` that lie in `region`.
 reconstruct::Field to_field(const std::vector<float>& values, size_t channels, const Region& whole,
                             const Region& region) {
   reconstruct::Field field(region.width(), region.height(), 3);
@@ -46,7 +46,7 @@ reconstruct::Field to_field(const std::vector<float>& values, size_t channels, c
   return field;
 }
 
-// The part of what is known of the frame that lies in the region.
+// Returns the pixels of a field of the whole film region that lie in `region`, multiplied by `factor`.
 reconstruct::Field crop(const reconstruct::Field& field, const film::Film& film, const Region& region,
                         float factor = 1.0f) {
   reconstruct::Field term(region.width(), region.height(), field.channels());
@@ -57,7 +57,8 @@ reconstruct::Field crop(const reconstruct::Field& field, const film::Film& film,
   return term;
 }
 
-// At its silhouette a surface has little of a pixel, and light that lacks there would be a great quotient.
+// Returns the weight, 0 to 1, with which a pass may take up light that is missing in the sum of all passes. It is small
+// at silhouettes, where a surface covers little of a pixel and missing light would become a large quotient.
 reconstruct::Field room_of(const reconstruct::Field& color) {
   reconstruct::Field room = reconstruct::box_mean(color, 1);
   for_values(&room, [&](float& value, int x, int y, int c) {
@@ -74,18 +75,19 @@ void divide(const reconstruct::Field& color, reconstruct::Field* light) {
   });
 }
 
-// What parts are regressed on.
+// The features that light passes are regressed on.
 class Guides {
  public:
-  // picture: what the frame has become in the region.
+  // `picture` is the reconstructed picture of the region.
   Guides(const film::Film& film, const Region& region, const reconstruct::Field& picture)
       : has_features_(film::has_features(film)),
         shared_(has_features_ ? reconstruct::filter_features(film::read_features(film))
                               : features_of(picture, film, region)) {}
 
   const film::Features& shared() const { return shared_; }
-  // Diffuse light has the texture of its own colour. That of reflections and of what is behind glass is their surfaces'
-  // as the mirror or the glass shows them: the albedo of the features has it, where there are any.
+  // Returns the features for one light pass. Diffuse light has the texture of its own colour pass. Reflections and
+  // refractions have the texture of the surfaces that the mirror or the glass shows, which the albedo of the film's
+  // features holds. The colour pass serves for them only if the film has no features.
   film::Features of(const film::Film& film, const film::PassPlane& plane) const {
     film::Features own = shared_;
     const film::PassPlane* const color = color_plane(film, plane);
@@ -95,8 +97,8 @@ class Guides {
   }
 
  private:
-  // A frame without features is guided by what it has become, of which the parts have the edges; beyond the region by
-  // what is nearest.
+  // Returns features for a film that has none. The reconstructed picture stands in for them, because light passes have
+  // the same edges. Pixels outside of the region take the value of the nearest pixel inside.
   static film::Features features_of(const reconstruct::Field& picture, const film::Film& film, const Region& region) {
     const int w = film.region.width(), h = film.region.height();
     const size_t pixels = size_t(w) * size_t(h);
@@ -129,7 +131,7 @@ reconstruct::PictureTerm make_term(const film::Film& film, const Region& region,
   throw_if_cancelled(cancel);
   reconstruct::PictureTerm term = reconstruct::regress_term(guides, std::move(sampled), cancel);
   term.image = crop(term.image, film, region, film.settings.film_exposure);
-  term.error = crop(term.error, film, region);  // by which parts compare, whatever the exposure
+  term.error = crop(term.error, film, region);  // Only ratios of errors matter, so the exposure is left out.
   return term;
 }
 

@@ -1,4 +1,4 @@
-// Light passes as they are delivered beside a reconstructed picture: as clean, and they add up to it (contract 6.5).
+// Computes the light passes of a reconstructed picture. They are as free of noise as the picture and add up to it.
 #pragma once
 
 #include <map>
@@ -9,17 +9,18 @@
 
 namespace gradus::output {
 
-// Some of the frame's passes are parts of its light.
+// Returns whether the film has at least one light pass.
 bool has_light_passes(const film::Film& film);
 
 class LightPasses {
  public:
   LightPasses() = default;
-  // rgba: what the frame has become in `region`, of which its light passes are parts. What of its light is in none of
-  // them is taken for one part more. Throws the Error CANCELLED.
+  // Computes all light passes that the film has. `rgba` is the reconstructed picture of `region`, to which the light
+  // passes add up. Light that belongs to none of the passes is treated as one more pass. Throws Error CANCELLED.
   LightPasses(const film::Film& film, const Region& region, const std::vector<float>& rgba, const CancelCheck& cancel);
 
-  // Three values for each pixel of the region, divided by their colours (contract 6.5). False: it is not one of them.
+  // Writes the pass, 3 floats for each pixel of the region. Passes that have a colour pass are divided by it, as in
+  // Cycles. Returns false if the pass is not one of the computed light passes.
   bool read(uint32_t pass, float* pixels) const;
   size_t memory_bytes() const;
 

@@ -13,7 +13,7 @@ constexpr int kMajor = 2;
 
 using Unusable = std::runtime_error;
 
-// Throws Unusable.
+// Looks up all functions of the API. Throws Unusable if one is missing.
 OidnApi bind(void* library) {
   OidnApi api{};
   const auto take = [library](const char* name, auto** function) {
@@ -40,7 +40,8 @@ OidnApi bind(void* library) {
   return api;
 }
 
-// Only a device knows the version. Throws Unusable.
+// Returns the version of the library. A device is created for this, because only a device reports the version. Throws
+// Unusable if that fails or if the major version is not kMajor.
 std::string check_version(const OidnApi& api) {
   OidnApi::Device* const device = api.new_device(kOidnCpu);
   if (!device) {
@@ -57,12 +58,12 @@ std::string check_version(const OidnApi& api) {
   return version;
 }
 
-// nullptr: not there; *error: what the loader says of it, without the name.
+// Loads a library. If that fails, returns nullptr and sets *error to the text of the loader without the library's name.
 void* load(const std::string& name, int flags, std::string* error) {
   void* const library = dlopen(name.c_str(), RTLD_LAZY | RTLD_LOCAL | flags);
   const char* const text = library ? nullptr : dlerror();
   if (text) *error = text;
-  if (error->rfind(name + ": ", 0) == 0) error->erase(0, name.size() + 2);  // whoever reports it names it
+  if (error->rfind(name + ": ", 0) == 0) error->erase(0, name.size() + 2);  // The caller adds the name.
   return library;
 }
 
@@ -83,7 +84,7 @@ std::shared_ptr<const OidnLibrary> find_oidn(const OidnPlaces& places, std::stri
   const struct Place {
     std::string name;
     int flags;
-    bool is_reported;  // that nothing is there
+    bool is_reported;  // Whether a missing library in this place is an error to report.
   } list[] = {{places.soname, RTLD_NOLOAD, false}, {file_of(places), 0, true}, {places.soname, 0, false}};
   const std::string what = places.soname + " or the folder that holds it";
   std::string reasons;

@@ -19,10 +19,11 @@
 namespace gradus::output {
 namespace {
 
-// Depth of a pixel that sees nothing, as in Blender.
+// Largest finite float, to which quotients of light passes are clamped.
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
-// What is worth a task. The tiles that samplers show are smaller: their threads take up no other work in between.
+// Number of pixels that one task reads. Tiles that are shown during sampling are smaller, so that a sampling thread
+// reads its tile alone and does not take up other tasks meanwhile.
 constexpr int32_t kPixelsOfTask = 1 << 15;
 
 // Sets the floating-point state of a thread for a scope.
@@ -37,9 +38,9 @@ class BorrowedFpuState {
   const unsigned own_;
 };
 
-// Calls function(first, last) for runs of the region's rows, on the threads of the caller's arena. They have the
-// caller's floating-point state meanwhile, which of a host's thread flushes no denormals, so that the bits do not
-// depend on threads.
+// Calls function(first, last) for ranges of the region's rows, on the threads of the caller's arena. Meanwhile all
+// threads have the floating-point state of the caller, so that the bits of the result do not depend on the thread. A
+// thread of the host does not flush denormals; the threads of the arena may.
 template <class Function>
 void for_runs(const Region& region, const Function& function) {
   const int32_t rows = std::max(kPixelsOfTask / std::max(region.width(), 1), 1);
@@ -52,7 +53,7 @@ void for_runs(const Region& region, const Function& function) {
                     });
 }
 
-// Calls function(i, out) for each pixel: its places in the frame's planes and in those of the region.
+// Calls function(i, out) for each pixel of the region: its index in the planes of the film and its index in the region.
 template <class Function>
 void for_pixels(const film::Film& film, const Region& region, const Function& function) {
   for_runs(region, [&](int32_t first, int32_t last) {
@@ -63,8 +64,8 @@ void for_pixels(const film::Film& film, const Region& region, const Function& fu
   });
 }
 
-// Reads whole rows of the frame one by one, read(y, values), y counted from its first row, and calls function(pixel,
-// out) for those of their pixels that lie in the region.
+// Reads whole rows of the film with read(y, values), where y is counted from the film's first row. Then calls
+// function(pixel, out) for each pixel of the region, with its values and its index in the region.
 template <class Read, class Function>
 void for_rows_of_frame(const film::Film& film, const Region& region, const Read& read, const Function& function) {
   const auto channels = size_t(film.channels), width = size_t(region.width());
@@ -97,14 +98,14 @@ void read_noisy(const film::Film& film, const Region& region, float* pixels) {
   });
 }
 
-// Forward difference of the noisy image's expectation, of all components together.
+// Writes an estimate of the forward differences of the picture, the sum over all components.
 void read_gradient(const film::Film& film, const Region& region, bool vertical, float* pixels) {
   std::fill_n(pixels, size_t(region.area()) * 3, 0.0f);
   if (!film.gradients) return;
   const float exposure = film.settings.film_exposure;
   for (int component = 0; component < int(film.components.size()); ++component) {
     const auto read = [&](int y, float* row) {
-      const FlushDenormals flush;  // as solvers read them
+      const FlushDenormals flush;  // The solvers read the differences in this state.
       film::read_difference_row(film, component, vertical ? film::kUp : film::kRight, {}, y, row);
     };
     for_rows_of_frame(film, region, read, [&](const float* pixel, size_t out) {
@@ -140,7 +141,8 @@ void read_derived(const film::Film& film, uint32_t pass, const Region& region, f
   }
 }
 
-// Sum of radiance over sum of colours; their product is the radiance again, as Cycles' compositing expects.
+// Writes the sum of radiance divided by the sum of colours. The product of the pass and its colour pass is the radiance
+// again, as compositing of Cycles' passes expects.
 void read_light(const film::Film& film, const film::PassPlane& light, const film::PassPlane& color,
                 const Region& region, float* pixels) {
   for_pixels(film, region, [&](size_t i, size_t out) {

@@ -1,4 +1,4 @@
-// Reading passes out of a frame: means, quotients and differences of its sums, cropped to what is delivered.
+// Reads passes from a film: means, quotients and differences of its sums, cropped to the requested region.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,12 @@
 
 namespace gradus::output {
 
-// Writes width·height·channels floats of `region` (inside the frame's region; row 0 is the bottom). Combined is the
-// noisy image here. Throws invalid_operation with the pass's name if the frame has no plane for it. Pixels without
-// samples are 0. Rows are read by the threads of the caller's arena.
+// Writes width·height·channels floats of `region`, which must lie inside the film's region; row 0 is the bottom row.
+// The noisy image serves as Combined. Pixels without samples are 0. Throws invalid_operation with the name of the pass
+// if the film has no plane for it. The threads of the caller's TBB arena read the rows in parallel.
 void read_film_pass(const film::Film& film, uint32_t pass, const Region& region, float* pixels);
 
-// Whether the frame can give the pass.
+// Returns whether read_film_pass() can read the pass from this film.
 bool has_pass(const film::Film& film, uint32_t pass);
 
 }  // namespace gradus::output

@@ -8,10 +8,10 @@
 namespace gradus::output {
 namespace {
 
-// Along one axis: where the centre of pixel i of `full` lies among the centres of `small`.
+// Returns, along one axis, the position of the centre of pixel i of `full` among the pixel centres of `small`.
 double position(int32_t i, uint32_t full, uint32_t small) { return (i + 0.5) * double(small) / double(full) - 0.5; }
 
-// Two neighbours within [begin, end), and the share of the second.
+// Two neighbouring pixels, clamped to [begin, end) and counted from `begin`, and the weight of the second.
 struct Between {
   int32_t first, second;
   float share;

@@ -1,4 +1,4 @@
-// A smaller picture of a frame, brought to the frame's own size.
+// Enlarges a picture of reduced resolution to the full resolution.
 #pragma once
 
 #include <vector>
@@ -11,10 +11,12 @@ struct ImageSize {
   uint32_t width = 0, height = 0;
 };
 
-// Pixels of the frame `small` between whose centres those of `region`, a part of the frame `full`, lie.
+// Returns the pixels of a picture of size `small` that enlarge() needs for `region`, which is a region of the picture
+// of size `full`.
 Region covering(const Region& region, ImageSize full, ImageSize small);
 
-// Bilinear. image: the pixels covering(region, full, small), their channels side by side. Runs in the caller's arena.
+// Returns the pixels of `region` by bilinear interpolation. `image` holds the pixels of covering(region, full, small)
+// with interleaved channels. It runs in the caller's TBB arena.
 std::vector<float> enlarge(const std::vector<float>& image, size_t channels, const Region& region, ImageSize full,
                            ImageSize small);
 
