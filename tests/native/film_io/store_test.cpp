@@ -373,7 +373,8 @@ TEST_F(F6_StoredComponents, HaveTheirDetails) {
     EXPECT_TRUE(same(back->components[c].details, stored.components[c].details));
     EXPECT_TRUE(same(load(kNames[c])->components[0].details, stored.components[c].details));
   }
-  for (const film::NonSpecularDetails& details : load("Glass")->components[0].details)
+  const auto glass = load("Glass");
+  for (const film::NonSpecularDetails& details : glass->components[0].details)
     ASSERT_EQ(details.sample, film::kNoSample);
 }
 
