@@ -10,7 +10,6 @@ Vec3 generated(const ShadeContext& c) {
   return geometry::generated_at(*c.instance->mesh, c.hit.triangle, c.hit.barycentric);
 }
 
-// Returns the tangent around the z axis of the object's generated coordinates, perpendicular to the normal.
 Vec3 default_tangent(const ShadeContext& c) {
   if (!c.instance) return Vec3(1, 0, 0);
   const Vec3 g = generated(c) - 0.5f;
@@ -18,7 +17,9 @@ Vec3 default_tangent(const ShadeContext& c) {
   return safe_normalize(glm::cross(c.normal, safe_normalize(glm::cross(around, c.normal))));
 }
 
-Vec3 geometry(uint32_t mode, const ShadeContext& c) {
+namespace {
+
+Vec3 quantity(uint32_t mode, const ShadeContext& c) {
   switch (mode) {
     case GRADUS_GEOMETRY_NORMAL:
       return c.normal;
@@ -37,5 +38,9 @@ Vec3 geometry(uint32_t mode, const ShadeContext& c) {
       return world_position(c);
   }
 }
+
+}  // namespace
+
+void geometry_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) { out[0] = value(quantity(args.mode, c)); }
 
 }  // namespace gradus::shading

@@ -56,9 +56,7 @@ Vec3 tangent_space_normal(const ResourceArgs& args, const ShadeContext& c, Vec3 
   return c.backfacing ? -world : world;
 }
 
-}  // namespace
-
-Vec3 tangent(const ResourceArgs& args, const ShadeContext& c) {
+Vec3 own_tangent(const ResourceArgs& args, const ShadeContext& c) {
   Vec3 direction;
   if (args.mode == GRADUS_TANGENT_UV) {
     // As in Cycles the matrix of normals transforms the tangent, which rotates it on an object of non-uniform scale.
@@ -71,7 +69,7 @@ Vec3 tangent(const ResourceArgs& args, const ShadeContext& c) {
   return safe_normalize(glm::cross(c.normal, safe_normalize(glm::cross(direction, c.normal))));
 }
 
-Vec3 normal_map(const ResourceArgs& args, const ShadeContext& c) {
+Vec3 mapped_normal(const ResourceArgs& args, const ShadeContext& c) {
   const float strength = args.f(0);
   Vec3 color = (args.v(1) - 0.5f) * 2.0f;
   if (args.mode == GRADUS_NORMAL_TANGENT) {
@@ -87,6 +85,14 @@ Vec3 normal_map(const ResourceArgs& args, const ShadeContext& c) {
   if (c.backfacing) n = -n;
   if (strength != 1.0f) n = safe_normalize(c.normal + (n - c.normal) * std::max(strength, 0.0f));
   return n == Vec3(0.0f) ? c.normal : n;
+}
+
+}  // namespace
+
+void tangent_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) { out[0] = value(own_tangent(args, c)); }
+
+void normal_map_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
+  out[0] = value(mapped_normal(args, c));
 }
 
 }  // namespace gradus::shading

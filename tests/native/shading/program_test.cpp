@@ -335,7 +335,7 @@ TEST(NodeProgram, RandomProgramsDoNotCrash) {
       uint32_t op = below(128);
       if (n == 11) op = GRADUS_OP_EMISSION;
       const shading::OpInfo* info = shading::op_info(op);
-      if (!info || (info->closure && n < 11)) continue;
+      if (!info || (info->kind == shading::OpKind::Closure && n < 11)) continue;
       std::vector<In> inputs;
       for (uint32_t k = 0; k < info->inputs; k++) {
         In in(odd[below(11)]);

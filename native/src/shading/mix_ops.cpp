@@ -1,6 +1,6 @@
-// The Mix node for colours with its blend modes. It does not clamp the factor.
+// The Mix node, for values and for colours with its blend modes. It does not clamp the factor.
 #include "shading/color_models.h"
-#include "shading/ops.h"
+#include "shading/op_functions.h"
 #include "shading/scalar.h"
 
 namespace gradus::shading {
@@ -93,9 +93,11 @@ Vec3 blend(uint32_t mode, const Vec3& a, const Vec3& b, float t) {
 
 }  // namespace
 
-Vec4 mix_color(const OpArgs& args) {
+void mix_op(const OpArgs& args, Vec4* out) { out[0] = args.in[1] + (args.in[2] - args.in[1]) * args.in[0]; }
+
+void mix_color_op(const OpArgs& args, Vec4* out) {
   const Vec3 mixed = blend(args.mode & 31, args.v(1), args.v(2), args.f(0));
-  return value(args.mode & 32 ? glm::clamp(mixed, 0.0f, 1.0f) : mixed);
+  out[0] = value(args.mode & 32 ? glm::clamp(mixed, 0.0f, 1.0f) : mixed);
 }
 
 }  // namespace gradus::shading
