@@ -34,8 +34,8 @@ void set_triangle_point(uint32_t index, const geometry::SurfacePoint& surface, L
   point->kind = LightKind::Triangle;
   point->index = index;
   point->instance = surface.hit.instance;
-  point->triangle = surface.hit.triangle;
-  point->barycentric = surface.hit.barycentric;
+  point->triangle = surface.hit.primitive;
+  point->barycentric = surface.hit.uv;
   point->time = surface.hit.time;
   point->position = surface.position;
   point->normal = surface.geometric_normal;
@@ -57,10 +57,9 @@ void sample_triangle(const LitScene& scene, uint32_t index, const Receiver& rece
   const SphericalTriangle seen(corners, receiver.position);
   geometry::Hit hit;
   hit.instance = t.instance;
-  hit.triangle = t.triangle;
+  hit.primitive = t.triangle;
   hit.time = receiver.time;
-  hit.barycentric =
-      seen.usable() ? barycentric_towards(corners, receiver.position, seen.sample(u)) : sample_triangle_area(u);
+  hit.uv = seen.usable() ? barycentric_towards(corners, receiver.position, seen.sample(u)) : sample_triangle_area(u);
   set_triangle_point(index, scene.surface_point(hit), point);
   finding->solid_angle = seen.sampled_solid_angle();
 }
@@ -134,8 +133,8 @@ double choice_probability(const LightTable& table, const LightPoint& point, cons
 geometry::SurfacePoint surface_of(const LitScene& scene, const LightPoint& point) {
   geometry::Hit hit;
   hit.instance = point.instance;
-  hit.triangle = point.triangle;
-  hit.barycentric = point.barycentric;
+  hit.primitive = point.triangle;
+  hit.uv = point.barycentric;
   hit.time = point.time;
   return scene.surface_point(hit);
 }
@@ -292,7 +291,7 @@ float light_point_pdf(const LitScene& scene, const LightPoint& point, const Rece
 }
 
 LightPoint light_point_of_surface(const LitScene& scene, const geometry::SurfacePoint& surface) {
-  const uint32_t index = scene.light_table->find_triangle(surface.hit.instance, surface.hit.triangle);
+  const uint32_t index = scene.light_table->find_triangle(surface.hit.instance, surface.hit.primitive);
   LightPoint point;
   if (index != UINT32_MAX) set_triangle_point(index, surface, &point);
   return point;

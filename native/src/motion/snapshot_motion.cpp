@@ -37,7 +37,7 @@ bool SnapshotMotion::hit(const geometry::Hit& hit, geometry::Hit* there) const {
 bool SnapshotMotion::position(const geometry::Hit& hit, Vec3* position) const {
   geometry::Hit there;
   if (!this->hit(hit, &there)) return false;
-  *position = geometry::interpolate(to_.corners(there.instance, there.triangle, there.time), there.barycentric);
+  *position = to_.position(there);
   return true;
 }
 

@@ -31,7 +31,7 @@ void CameraVertices::trace(int32_t x, int32_t y, Packet* packet) const {
 // Whether a ray may go on behind its nearest hit, which each path decides for itself.
 bool CameraVertices::passes(const geometry::Hit& hit) const {
   return hit.valid() &&
-         context_.scene.materials[context_.scene.material_of(hit.instance, hit.triangle)]->may_be_transparent;
+         context_.scene.materials[context_.scene.material_of(hit)]->may_be_transparent;
 }
 
 CameraVertex* CameraVertices::at(int32_t x, int32_t y) {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "film/finite_check.h"
-#include "geometry/mesh.h"
+#include "geometry/surface_values.h"
 #include "schema/pass_table.h"
 #include "shading/material.h"
 
@@ -35,12 +35,12 @@ constexpr uint32_t first_pass(int light_pass) {
 }
 
 // As Blender's pass has it: u, v, 1; 0 without a UV map.
-Vec3 uv_of(const geometry::MeshData& mesh, const geometry::Hit& hit) {
-  const geometry::MeshAttribute* map = geometry::default_uv_map(mesh);
+Vec3 uv_of(const geometry::InstanceData& instance, const geometry::Hit& hit) {
+  const geometry::MeshAttribute* map = geometry::default_uv_map(*instance.mesh);
   if (map == nullptr) {
     return Vec3(0.0f);
   }
-  const Vec4 uv = geometry::interpolate(geometry::corner_values(mesh, *map, hit.triangle), hit.barycentric);
+  const Vec4 uv = geometry::attribute_at(instance, *map, hit);
   return Vec3(uv.x, uv.y, 1.0f);
 }
 
@@ -180,7 +180,7 @@ void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, con
   add(GRADUS_PASS_MATERIAL_INDEX, static_cast<float>(context_.scene.materials[vertex.point.material]->pass_index));
   add(GRADUS_PASS_NORMAL, shown_normal(vertex));
   if (plane(GRADUS_PASS_UV) != nullptr) {
-    add(GRADUS_PASS_UV, uv_of(*instance.mesh, vertex.point.hit));
+    add(GRADUS_PASS_UV, uv_of(instance, vertex.point.hit));
   }
   if (plane(GRADUS_PASS_VECTOR) != nullptr) {
     motion(vertex);
@@ -294,8 +294,8 @@ void PassRecorder::details(const PathState& state, const Vertex& vertex) {
   const geometry::Hit& hit = vertex.point.hit;
   const geometry::InstanceData& instance = context_.scene.instances[hit.instance];
   const auto object = static_cast<float>(instance.pass_index),
-             face = static_cast<float>(instance.mesh->face(hit.triangle));
-  record(components, {uv_of(*instance.mesh, hit), vertex.shade.emission, 0.0f, object, face, number_});
+             face = static_cast<float>(instance.mesh->face(hit.primitive));
+  record(components, {uv_of(instance, hit), vertex.shade.emission, 0.0f, object, face, number_});
 }
 
 // What a segment shows counts once, be it several lights and the surface behind them.

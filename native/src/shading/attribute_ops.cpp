@@ -1,5 +1,5 @@
 // Attribute, Color Attribute and Object Info nodes.
-#include "geometry/mesh.h"
+#include "geometry/surface_values.h"
 #include "shading/context_ops.h"
 
 namespace gradus::shading {
@@ -12,7 +12,7 @@ Vec4 attribute_value(const ShadeContext& c, const std::string* name, bool uv, ui
   if (!found && !name && uv) found = geometry::default_uv_map(mesh);
   if (!found) return Vec4(0.0f);
   if (channels) *channels = found->channels;
-  return geometry::interpolate(geometry::corner_values(mesh, *found, c.hit.triangle), c.hit.barycentric);
+  return geometry::attribute_at(*c.instance, *found, c.hit);
 }
 
 void attribute_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {

@@ -1,5 +1,5 @@
 // The Geometry node.
-#include "geometry/mesh.h"
+#include "geometry/surface_values.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 
@@ -7,7 +7,7 @@ namespace gradus::shading {
 
 Vec3 generated(const ShadeContext& c) {
   if (!c.instance) return world_position(c);
-  return geometry::generated_at(*c.instance->mesh, c.hit.triangle, c.hit.barycentric);
+  return geometry::generated_at(*c.instance, c.hit);
 }
 
 Vec3 default_tangent(const ShadeContext& c) {
@@ -30,8 +30,7 @@ Vec3 quantity(uint32_t mode, const ShadeContext& c) {
     case GRADUS_GEOMETRY_INCOMING:
       return c.wo;
     case GRADUS_GEOMETRY_PARAMETRIC:
-      if (c.light_axes) return Vec3(c.uv, 0.0f);
-      return Vec3(1.0f - c.hit.barycentric.x - c.hit.barycentric.y, c.hit.barycentric.x, 0.0f);
+      return c.light_axes ? Vec3(c.uv, 0.0f) : geometry::parametric_at(c.hit);
     case GRADUS_GEOMETRY_BACKFACING:
       return Vec3(c.backfacing ? 1.0f : 0.0f);
     default:

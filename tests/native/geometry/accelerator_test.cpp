@@ -44,7 +44,7 @@ std::vector<Answer> ask(const scene::Snapshot& snapshot, const Queries& queries)
     Answer& a = answers.emplace_back();
     a.hit = snapshot.intersect(ray, GRADUS_VISIBLE_CAMERA, &hit);
     a.blocked = snapshot.occluded(ray);
-    a.t = hit.t, a.instance = hit.instance, a.triangle = hit.triangle;
+    a.t = hit.t, a.instance = hit.instance, a.triangle = hit.primitive;
     if (a.hit) a.position = snapshot.surface_point(hit).position;
   }
   return answers;

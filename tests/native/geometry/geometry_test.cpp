@@ -45,9 +45,9 @@ int count_self_hits(const scene::Snapshot& snapshot, uint32_t instance, uint32_t
   for (int i = 0; i < rays; ++i) {
     geometry::Hit hit;
     hit.instance = instance;
-    hit.triangle = triangle;
+    hit.primitive = triangle;
     const float root = std::sqrt(uniform(random));
-    hit.barycentric = Vec2(1.0f - root, uniform(random) * root);
+    hit.uv = Vec2(1.0f - root, uniform(random) * root);
     const geometry::SurfacePoint point = snapshot.surface_point(hit);
     const Vec3 direction = random_direction(random);
     geometry::Hit next;
@@ -100,8 +100,8 @@ TEST(D2_SelfHits, InstancesFarAwayAndScaled) {
       // Outwards from a convex body: nothing can be in the way but itself.
       geometry::Hit hit;
       hit.instance = i;
-      hit.triangle = random() % uint32_t(big.vertices.size() / 3);
-      hit.barycentric = Vec2(0.3f, 0.3f);
+      hit.primitive = random() % uint32_t(big.vertices.size() / 3);
+      hit.uv = Vec2(0.3f, 0.3f);
       const geometry::SurfacePoint point = snapshot->surface_point(hit);
       Vec3 direction = random_direction(random);
       if (glm::dot(direction, point.geometric_normal) < 0.0f) direction = -direction;
@@ -131,9 +131,9 @@ TEST(D2_SelfHits, TheWayToALightOnTheFarSideIsFree) {
     const auto snapshot = scene.commit();
     for (int k = 0; k < 100; ++k) {
       geometry::Hit hit;
-      hit.instance = hit.triangle = 0;
+      hit.instance = hit.primitive = 0;
       const float root = std::sqrt(uniform(random));
-      hit.barycentric = Vec2(1.0f - root, uniform(random) * root);
+      hit.uv = Vec2(1.0f - root, uniform(random) * root);
       const geometry::SurfacePoint point = snapshot->surface_point(hit);
       light::LightPoint light_point;
       light::LightEvaluation view;
@@ -256,8 +256,8 @@ TEST(Trace, FourAtOnceEqualsFourTimesOne) {
       hits += hit;
       EXPECT_EQ(hit, four[k].valid());
       EXPECT_EQ(hit, blocked[k]);
-      if (!hit || one.triangle != four[k].triangle) continue;
-      EXPECT_NEAR(one.barycentric.x, four[k].barycentric.x, 2e-5f);
+      if (!hit || one.primitive != four[k].primitive) continue;
+      EXPECT_NEAR(one.uv.x, four[k].uv.x, 2e-5f);
       EXPECT_NEAR(one.t, four[k].t, 1e-5f);
     }
   }
@@ -289,6 +289,27 @@ TEST(SurfacePoint, NormalsOfMirroredInstancesStayOutside) {
   EXPECT_LT(point.geometric_normal.x, -0.9f);
   EXPECT_LT(point.shading_normal.x, -0.9f);
   EXPECT_NEAR(point.position.x, 2.0f, 0.02f);
+}
+
+// Steps along a primitive, turned into its parameters and back into positions.
+TEST(SurfaceDerivatives, ParametersFollowSteps) {
+  Soup soup;
+  soup.triangle({-1, -1, 0.5f}, {2, -1, 0}, {0.5f, 3, 1});
+  TestScene scene;
+  scene.mesh(1, soup);
+  scene.instance(1, Mat4(1.0f));
+  const auto snapshot = scene.commit();
+  geometry::Hit hit;
+  hit.instance = hit.primitive = 0;
+  hit.uv = Vec2(0.3f, 0.2f);
+  const geometry::SurfaceDerivatives derivatives = snapshot->derivatives(hit);
+  const Vec3 from = snapshot->position(hit), step = 0.1f * derivatives.dpdu - 0.05f * derivatives.dpdv;
+  EXPECT_LT(glm::distance(from, snapshot->surface_point(hit).position), 1e-6f);
+  hit.uv += derivatives.duv(step);
+  EXPECT_NEAR(hit.uv.x, 0.4f, 1e-6f);
+  EXPECT_NEAR(hit.uv.y, 0.15f, 1e-6f);
+  EXPECT_LT(glm::distance(snapshot->position(hit), from + step), 1e-6f);
+  EXPECT_EQ((geometry::SurfaceDerivatives{Vec3(1, 0, 0), Vec3(2, 0, 0)}.duv(step)), Vec2(0.0f));
 }
 
 TEST(Origin, FarScenesAreMovedAndNearOnesAreNot) {

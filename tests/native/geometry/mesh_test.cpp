@@ -101,8 +101,8 @@ std::shared_ptr<const scene::Snapshot> commit_quad(scene::Scene* scene, const Gr
 geometry::Hit hit_at(const Vec2& barycentric) {
   geometry::Hit hit;
   hit.instance = 0;
-  hit.triangle = 0;
-  hit.barycentric = barycentric;
+  hit.primitive = 0;
+  hit.uv = barycentric;
   return hit;
 }
 

@@ -75,8 +75,8 @@ TEST(SmoothNormals, NormalsBelowStretchedFacets) {
     ASSERT_TRUE(snapshot->intersect(Ray{3.0f * out, 0.0f, -glm::normalize(out), kInfinity}, GRADUS_VISIBLE_ALL, &hit));
     const geometry::SurfacePoint point = snapshot->surface_point(hit);
     std::array<Vec3, 3> n;
-    ASSERT_TRUE(geometry::triangle_normals(*snapshot->instances[0].mesh, hit.triangle, &n));
-    const Vec3 smooth = glm::normalize(snapshot->instances[0].normal_to_world * geometry::interpolate(n, hit.barycentric));
+    ASSERT_TRUE(geometry::triangle_normals(*snapshot->instances[0].mesh, hit.primitive, &n));
+    const Vec3 smooth = glm::normalize(snapshot->instances[0].normal_to_world * geometry::interpolate(n, hit.uv));
     below += glm::dot(smooth, point.geometric_normal) < 0.0f;
     EXPECT_GE(glm::dot(point.shading_normal, point.geometric_normal), 0.0f);
     // Mirrored at the facet: what lies along it stays.
@@ -99,7 +99,7 @@ TEST(SmoothNormals, Curvature) {
   for (uint32_t i = 0; i < 2; ++i) {
     geometry::Hit hit;
     hit.instance = i;
-    hit.triangle = snapshot.instances[i].mesh->triangle_count / 2;
+    hit.primitive = snapshot.instances[i].mesh->triangle_count / 2;
     EXPECT_NEAR(snapshot.curvature(hit), snapshot.instances[i].mesh->triangle_count == 2 ? 0.0f : 2.0f, 0.1f);
   }
 }

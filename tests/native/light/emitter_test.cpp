@@ -303,8 +303,8 @@ double by_uniform_choice(const scene::Snapshot& snapshot, const light::Receiver&
   const float root = std::sqrt(u(*random));
   geometry::Hit hit;
   hit.instance = triangle.instance;
-  hit.triangle = triangle.triangle;
-  hit.barycentric = Vec2(1.0f - root, u(*random) * root);
+  hit.primitive = triangle.triangle;
+  hit.uv = Vec2(1.0f - root, u(*random) * root);
   const light::LightPoint point = light::light_point_of_surface(snapshot, snapshot.surface_point(hit));
   const light::LightEvaluation view = light::evaluate_light(snapshot, point, receiver);
   const double cosine = std::max(double(glm::dot(receiver.normal, view.direction)), 0.0);

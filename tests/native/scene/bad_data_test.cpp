@@ -102,7 +102,7 @@ TEST(D7_Degenerate, OnlyWholeTrianglesAreHit) {
   EXPECT_EQ(snapshot->instances[0].mesh->dropped_triangles, 3u);
   geometry::Hit hit;
   ASSERT_TRUE(snapshot->intersect({Vec3(0.0f), 0.0f, Vec3(0, 0, 1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
-  EXPECT_EQ(hit.triangle, 0u);
+  EXPECT_EQ(hit.primitive, 0u);
   std::mt19937 random(22);
   for (int i = 0; i < 100000; ++i) {
     if (snapshot->intersect({Vec3(0.0f), 0.0f, random_direction(random), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit)) {

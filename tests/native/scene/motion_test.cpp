@@ -61,7 +61,7 @@ TEST(Motion, HitsLieOnTheRayAtItsTime) {
     const geometry::SurfacePoint point = snapshot->surface_point(hit);
     const Vec3 along = ray.origin + ray.direction * hit.t;
     ASSERT_LT(glm::length(point.position - along), 2e-4f) << hit.instance << ' ' << ray.time;
-    const auto p = snapshot->corners(hit.instance, hit.triangle, ray.time);
+    const auto p = snapshot->corners(hit.instance, hit.primitive, ray.time);
     const Vec3 normal = glm::normalize(glm::cross(p[1] - p[0], p[2] - p[0]));
     ASSERT_GT(std::fabs(glm::dot(normal, point.geometric_normal)), 0.9999f);
     ASSERT_GT(glm::dot(point.shading_normal, point.geometric_normal), 0.9f);

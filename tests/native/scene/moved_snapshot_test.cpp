@@ -62,7 +62,7 @@ TEST_F(MovedSnapshot, SurfacePointsAreWhereVectorsSay) {
   const auto next = scene::moved_snapshot(*now, Moment::Next);
   for (uint32_t instance = 0; instance < 3; ++instance) {
     geometry::Hit hit;
-    hit.instance = instance, hit.triangle = 40, hit.barycentric = Vec2(0.3f, 0.2f);
+    hit.instance = instance, hit.primitive = 40, hit.uv = Vec2(0.3f, 0.2f);
     EXPECT_LT(glm::length(now->position_at(hit, Moment::Next) - next->surface_point(hit).position), 1e-5f);
   }
 }
@@ -77,7 +77,7 @@ TEST_F(MovedSnapshot, GoesAPartOfTheWay) {
       *now, Moment::Next, [] { return false; }, 0.5f);
   for (uint32_t instance = 0; instance < 3; ++instance) {
     geometry::Hit hit;
-    hit.instance = instance, hit.triangle = 40, hit.barycentric = Vec2(0.3f, 0.2f);
+    hit.instance = instance, hit.primitive = 40, hit.uv = Vec2(0.3f, 0.2f);
     const Vec3 middle = 0.5f * (now->position_at(hit, Moment::Now) + now->position_at(hit, Moment::Next));
     EXPECT_LT(glm::length(middle - half->surface_point(hit).position), 1e-5f);
     EXPECT_GT(glm::length(middle - now->position_at(hit, Moment::Now)), 0.4f);
