@@ -67,15 +67,15 @@ def test_a_changed_option_reaches_library_and_add_on(copy: Path) -> None:
 
 
 def test_a_new_operation_is_declared_and_dispatched(copy: Path) -> None:
-    row = '  ["SAWTOOTH", 120, "value, period -> value", "A saw.", { last_mode = 1 }],\n'
+    row = '  ["MADE_UP", 127, "value, period -> value", "A test.", { last_mode = 1 }],\n'
     change(copy / "schema" / "nodes.toml", '  ["MIX", 99', row + '  ["MIX", 99')
     assert generate(copy).returncode == 0
     shading = copy / "native" / "src" / "shading"
-    declaration = "void sawtooth_op(const OpArgs& args, Vec4* out);"
+    declaration = "void made_up_op(const OpArgs& args, Vec4* out);"
     assert declaration in (shading / "op_functions.h").read_text(encoding="utf-8")
     table = (shading / "op_table.cpp").read_text(encoding="utf-8")
-    assert '{"SAWTOOTH", OpKind::Pure, 2, 1, 0, 1}' in table
-    assert "case GRADUS_OP_SAWTOOTH:\n      sawtooth_op(args, out);" in table
+    assert '{"MADE_UP", OpKind::Pure, 2, 1, 0, 1}' in table
+    assert "case GRADUS_OP_MADE_UP:\n      made_up_op(args, out);" in table
 
 
 def test_the_guide_s_tables_are_filled_between_their_markers(copy: Path) -> None:

@@ -40,11 +40,14 @@ bool is_frame_of(const film::FilmHeader& stored, const scene::Snapshot& snapshot
 bool sequence_applies(const GradusSettings& settings, std::string* why_not) {
   const uint32_t r = settings.reconstruction;
   const uint64_t pixels = uint64_t(settings.width) * settings.height;
-  *why_not = settings.integrator == GRADUS_INTEGRATOR_PATH ? "the integrator is path"
-             : r == GRADUS_RECONSTRUCTION_NONE             ? "reconstruction is none"
-             : settings.samples < 2                        ? "there is one sample per pixel"
-             : pixels > INT32_MAX                          ? "the film has more than 2^31 - 1 pixels"
-                                                           : "";
+  const bool has_gradients =
+      settings.integrator == GRADUS_INTEGRATOR_AUTO || settings.integrator == GRADUS_INTEGRATOR_GRADIENT;
+  const std::string integrator = schema::choice_name(*schema::find_option("integrator"), settings.integrator);
+  *why_not = !has_gradients                    ? "the integrator is " + integrator
+             : r == GRADUS_RECONSTRUCTION_NONE ? "reconstruction is none"
+             : settings.samples < 2            ? "there is one sample per pixel"
+             : pixels > INT32_MAX              ? "the film has more than 2^31 - 1 pixels"
+                                               : "";
   return why_not->empty();
 }
 

@@ -155,7 +155,8 @@ void RenderLoop::prepare() {
   const GradusSettings& settings = input_.settings;
   gradients_ = choose_gradients();
   components_ = choose_components();
-  const uint32_t integrator = gradients_.none() ? uint32_t{GRADUS_INTEGRATOR_PATH} : plan_.integrator;
+  const bool has_lost_gradients = plan_.gradients && gradients_.none();
+  const uint32_t integrator = has_lost_gradients ? uint32_t{GRADUS_INTEGRATOR_PATH} : plan_.integrator;
   if (plan_.pilot) explain(gradients_, &stats_.chosen, &stats_.skipped);
   std::shared_ptr<film::Film> film;
   if (input_.resumed) {
