@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gradient/footprint.h"
 #include "gradient/reconnection.h"
 #include "support/statistics.h"
 
@@ -243,8 +244,8 @@ TEST(B4_Shift, BothEndsAgreeWhetherToShareASharpVertex) {
                z = 2.0f * random.direction();
     const float curvature = std::exp2(float(i % 11) - 5.0f);
     const bool transmission = i % 3 == 0;
-    const bool shares = gradient::shares_sharp_vertex(x, y, z, curvature, transmission);
-    EXPECT_EQ(shares, gradient::shares_sharp_vertex(y, x, z, curvature, transmission));
+    const bool shares = gradient::shares_specular_vertex(x, y, z, curvature, transmission);
+    EXPECT_EQ(shares, gradient::shares_specular_vertex(y, x, z, curvature, transmission));
     shared += shares ? 1 : 0;
   }
   EXPECT_GT(shared, kCases / 10);
@@ -254,11 +255,11 @@ TEST(B4_Shift, BothEndsAgreeWhetherToShareASharpVertex) {
 TEST(B4_Shift, ASharpVertexIsSharedButOverShortEdgesAndThroughFlatPanes) {
   const Vec3 x(0, 0, 0), y(0.1f, 0, 0);
   const Vec3 far(0, 0, 1), close(0, 0, 0.05f);
-  EXPECT_TRUE(gradient::shares_sharp_vertex(x, y, far, 0.0f, false));
-  EXPECT_TRUE(gradient::shares_sharp_vertex(x, y, far, 5.0f, true));
-  EXPECT_FALSE(gradient::shares_sharp_vertex(x, y, far, 0.0f, true));
-  EXPECT_FALSE(gradient::shares_sharp_vertex(x, y, close, 0.0f, false));
-  EXPECT_FALSE(gradient::shares_sharp_vertex(x, y, close, 5.0f, true));
+  EXPECT_TRUE(gradient::shares_specular_vertex(x, y, far, 0.0f, false));
+  EXPECT_TRUE(gradient::shares_specular_vertex(x, y, far, 5.0f, true));
+  EXPECT_FALSE(gradient::shares_specular_vertex(x, y, far, 0.0f, true));
+  EXPECT_FALSE(gradient::shares_specular_vertex(x, y, close, 0.0f, false));
+  EXPECT_FALSE(gradient::shares_specular_vertex(x, y, close, 5.0f, true));
 }
 
 TEST(B4_Shift, BothEndsAgreeWhetherAnEdgeIsShortAndALobeWide) {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gradient/offset_paths.h"
+#include "gradient/emission_shift.h"
 #include "integrator/pixel_loop.h"
 #include "support/double_image.h"
 #include "support/path_scene.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gradient/pair.h"
+#include "gradient/gradient_accumulator.h"
 #include "path/light.h"
 #include "support/statistics.h"
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gradient/offset_paths.h"
+#include "gradient/emission_shift.h"
 #include "support/chi_square.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gradient/event_shift.h"
+#include "gradient/random_replay.h"
 #include "support/statistics.h"
 
 namespace gradus {

@@ -1,5 +1,5 @@
 // The relation between the classes of two vertices looks alike from both, and misses no event.
-#include "gradient/class_match.h"
+#include "gradient/decoupling.h"
 
 #include <vector>
 
