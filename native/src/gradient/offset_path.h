@@ -16,14 +16,13 @@
 
 namespace gradus::gradient {
 
-// An offset path starts at Coupled, or at Absent, and moves downwards:
+// Transitions between the stages of an offset path. Each of them may also end at Failed.
 //
 //   Absent
-//   Coupled ◀──▶ Pending ──▶ Reconnected ──▶ Deeper
-//      │            │  ▲         │
-//      │            │  └─▶ Deferred
-//      ▼            ▼            ▼
-//   Decoupled     Failed       Shared
+//   Coupled  ──▶ Pending (class D), Decoupled
+//   Pending  ──▶ Coupled (replay, direction copy, shared specular vertex), Deferred, Reconnected, Deeper, Shared
+//   Deferred ──▶ Pending
+//   Reconnected ──▶ Deeper, Shared (after one segment)
 //
 // The vertices x_i and y_i below are the latest of the base and of the offset that correspond to each other.
 enum class OffsetStage : uint8_t {

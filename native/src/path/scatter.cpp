@@ -5,23 +5,6 @@
 
 namespace gradus::path {
 
-bool choose_class(const bsdf::Closures& closures, float u, bsdf::ScatterClass* chosen) {
-  float sum = 0.0f;
-  bool found = false;
-  for (int c = 0; c < bsdf::kScatterClasses; ++c) {
-    const float p = closures.class_probability(static_cast<bsdf::ScatterClass>(c));
-    if (p > 0.0f) {
-      *chosen = static_cast<bsdf::ScatterClass>(c);
-      found = true;
-      sum += p;
-      if (u < sum) {
-        break;
-      }
-    }
-  }
-  return found;
-}
-
 namespace {
 
 // Returns whether the path may not scatter again. A limit of n bounces still shows the emission that bounce n + 1
@@ -31,17 +14,6 @@ bool reaches_limit(const GradusSettings& settings, const PathState& state) {
   return static_cast<uint32_t>(state.depth) > settings.max_bounces || r.diffuse_depth > settings.diffuse_bounces ||
          r.glossy_depth > settings.glossy_bounces || r.transmission_depth > settings.transmission_bounces;
 }
-
-}  // namespace
-
-uint32_t bounce_visibility(bsdf::LightPass pass, bool transmitted) {
-  if (transmitted) {
-    return GRADUS_VISIBLE_TRANSMISSION;
-  }
-  return pass == bsdf::LightPass::Diffuse ? GRADUS_VISIBLE_DIFFUSE : GRADUS_VISIBLE_GLOSSY;
-}
-
-namespace {
 
 // Counts a bounce.
 void advance(bool diffuse, bool transmitted, bool dirac, shading::RayState* state) {
@@ -64,6 +36,30 @@ void leave_surface(const geometry::SurfacePoint& from, const Vec3& direction, bs
 }
 
 }  // namespace
+
+uint32_t bounce_visibility(bsdf::LightPass pass, bool transmitted) {
+  if (transmitted) {
+    return GRADUS_VISIBLE_TRANSMISSION;
+  }
+  return pass == bsdf::LightPass::Diffuse ? GRADUS_VISIBLE_DIFFUSE : GRADUS_VISIBLE_GLOSSY;
+}
+
+bool choose_class(const bsdf::Closures& closures, float u, bsdf::ScatterClass* chosen) {
+  float sum = 0.0f;
+  bool found = false;
+  for (int c = 0; c < bsdf::kScatterClasses; ++c) {
+    const float p = closures.class_probability(static_cast<bsdf::ScatterClass>(c));
+    if (p > 0.0f) {
+      *chosen = static_cast<bsdf::ScatterClass>(c);
+      found = true;
+      sum += p;
+      if (u < sum) {
+        break;
+      }
+    }
+  }
+  return found;
+}
 
 shading::RayState next_ray_state(const shading::RayState& before, bool diffuse, bool transmitted, bool dirac) {
   shading::RayState state = before;
