@@ -12,12 +12,12 @@ namespace {
 
 using DVec3 = glm::dvec3;
 
-// No emitter of these scenes tells kinds of rays apart.
+// No light of these scenes depends on the kind of ray.
 const shading::RayState kAnyRay;
 
 DVec3 to_double(const Vec3& v) { return DVec3(v.x, v.y, v.z); }
 
-// Follows a path and adds up its light.
+// Sums the contributions of a path in double.
 class DoubleObserver : public path::NoObserver {
  public:
   explicit DoubleObserver(const path::PathContext& context) : context_(context) {}
