@@ -15,8 +15,8 @@ EXPORTED_MOTION = "addon/gradus/export/motion.py"
 EXPORTED_SHUTTER = "addon/gradus/export/shutter.py"
 EXPORTER = "addon/gradus/export/exporter.py"
 
-MOVED = "camera_sample_.moved(Vec2(film::kOffsetX[k], film::kOffsetY[k]))"
-MOVED_FILM = "camera_sample_.film + Vec2(film::kOffsetX[k], film::kOffsetY[k])"
+MOVED = "base.camera_sample.moved(Vec2(film::kOffsetX[k], film::kOffsetY[k]))"
+MOVED_FILM = "base.camera_sample.film + Vec2(film::kOffsetX[k], film::kOffsetY[k])"
 
 
 def blur(choice: str) -> Test:
@@ -40,7 +40,7 @@ MOTION = (
         "offset paths are traced at the opening of the shutter",
         OFFSET_RAYS,
         MOVED,
-        f"{{{MOVED_FILM}, camera_sample_.lens}}",
+        f"{{{MOVED_FILM}, base.camera_sample.lens}}",
         (statistics("*/Scenarios.B7_GradientsAreDifferencesOfTheImage/Moving"),),
     ),
     Fault(
@@ -49,7 +49,7 @@ MOTION = (
         "offset paths go through the centre of the lens",
         OFFSET_RAYS,
         MOVED,
-        f"{{{MOVED_FILM}, Vec2(0.0f), camera_sample_.time}}",
+        f"{{{MOVED_FILM}, Vec2(0.0f), base.camera_sample.time}}",
         (statistics("B7_Lens.DifferencesAreThoseOfTheBlurredImage"),),
     ),
     Fault(

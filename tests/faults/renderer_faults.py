@@ -153,8 +153,8 @@ RENDERER = (
         "shared random stream",
         "all pixels take the same random numbers",
         PIXELS,
-        "static_cast<uint32_t>(source.y) * context.settings.width + static_cast<uint32_t>(source.x);",
-        "0u * static_cast<uint32_t>(source.x + source.y);",
+        "static_cast<uint32_t>(stream.y) * context.settings.width + static_cast<uint32_t>(stream.x);",
+        "0u * static_cast<uint32_t>(stream.x + stream.y);",
         (statistics("A10_Seeds.*"),),
     ),
     Fault(

@@ -52,8 +52,8 @@ SEQUENCES = (
         REPLAY,
         "a replay takes the numbers of the frame's own seed",
         PIXELS,
-        "return numbers_of(context, unit, film.region.x0",
-        "return numbers_of(context, WorkUnit{unit.tile}, film.region.x0",
+        "return stream_of_pixel(context, unit, film.region.x0",
+        "return stream_of_pixel(context, WorkUnit{unit.tile}, film.region.x0",
         OF_REPLAYS,
     ),
     Fault(
@@ -61,8 +61,8 @@ SEQUENCES = (
         REPLAY,
         "pixel blocks take the jitter of the frame's own seed",
         PIXELS,
-        "numbers_of(context, unit, block.x0, block.y0)",
-        "numbers_of(context, WorkUnit{unit.tile}, block.x0, block.y0)",
+        "stream_of_pixel(context, unit, block.x0, block.y0)",
+        "stream_of_pixel(context, WorkUnit{unit.tile}, block.x0, block.y0)",
         OF_REPLAYS,
     ),
     Fault(
@@ -89,7 +89,7 @@ SEQUENCES = (
         "a disocclusion takes the frame's own numbers a second time",
         PIXELS,
         "return {path::StreamKind::Disocclusion, x, y, context.settings.frame, context.settings.seed};",
-        "return numbers_of(context, WorkUnit{unit.tile}, x, y);",
+        "return stream_of_pixel(context, WorkUnit{unit.tile}, x, y);",
         (native("Replay.HolesHaveNumbersOfTheirOwn"),),
     ),
     Fault(

@@ -6,17 +6,17 @@ namespace gradus::integrator {
 
 namespace {
 
-// Whose random numbers a pixel takes.
-struct Source {
+// Stream of random numbers that a pixel uses.
+struct Stream {
   path::StreamKind kind = path::StreamKind::Pixel;
   int32_t x = 0, y = 0;
   int32_t frame = 0;
   uint32_t seed = 0;
-  bool shares_jitter = false;  // with its cell
+  bool shares_jitter = false;  // with its pixel block
 };
 
-// A pixel's of the frame itself, or of the one that it replays.
-Source numbers_of(const path::PathContext& context, const WorkUnit& unit, int32_t x, int32_t y) {
+// Returns the stream of a pixel in its own frame, or in the frame that the unit replays.
+Stream stream_of_pixel(const path::PathContext& context, const WorkUnit& unit, int32_t x, int32_t y) {
   const film::ReplayMap* replayed = unit.replay_map;
   if (replayed != nullptr)
     return {path::StreamKind::Pixel, x, y, replayed->stream_frame, replayed->seed, replayed->shares_jitter};
@@ -28,26 +28,29 @@ Source numbers_of(const path::PathContext& context, const WorkUnit& unit, int32_
           shares_jitter(context.camera, context.scene)};
 }
 
-Source source_of(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, int32_t x, int32_t y) {
-  if (unit.replay_map == nullptr) return numbers_of(context, unit, x, y);
+// Returns the stream that a pixel of the film uses: its own, that of its correspondence in the replayed frame, or one
+// for disocclusions.
+Stream find_stream(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, int32_t x,
+                   int32_t y) {
+  if (unit.replay_map == nullptr) return stream_of_pixel(context, unit, x, y);
   const int32_t pixel = unit.replay_map->correspondence.pixel[film.index(x, y)];
   if (pixel == film::kNoCorrespondence)
     return {path::StreamKind::Disocclusion, x, y, context.settings.frame, context.settings.seed};
   const int32_t width = film.region.width();
-  return numbers_of(context, unit, film.region.x0 + pixel % width, film.region.y0 + pixel / width);
+  return stream_of_pixel(context, unit, film.region.x0 + pixel % width, film.region.y0 + pixel / width);
 }
 
-path::Sampler make_sampler(const path::PathContext& context, const Source& source, path::StreamKind kind,
-                           uint32_t stream, uint32_t number) {
-  return path::Sampler({source.seed, kind, stream, source.frame, number}, context.settings.independent_sampler != 0);
+path::Sampler make_sampler(const path::PathContext& context, const Stream& stream, path::StreamKind kind,
+                           uint32_t index, uint32_t number) {
+  return path::Sampler({stream.seed, kind, index, stream.frame, number}, context.settings.independent_sampler != 0);
 }
 
-// Jitter of the cell that holds a pixel.
-Vec2 jitter_of_block(const path::PathContext& context, const Source& source, uint32_t number) {
-  const uint32_t column = static_cast<uint32_t>(film::pixel_block_of(source.x)),
-                 row = static_cast<uint32_t>(film::pixel_block_of(source.y));
+// Returns the jitter of the pixel block that contains a pixel of the stream.
+Vec2 jitter_of_block(const path::PathContext& context, const Stream& stream, uint32_t number) {
+  const uint32_t column = static_cast<uint32_t>(film::pixel_block_of(stream.x)),
+                 row = static_cast<uint32_t>(film::pixel_block_of(stream.y));
   const path::Sampler sampler =
-      make_sampler(context, source, path::StreamKind::PixelBlock, (row << 16) ^ (column & 0xffffu), number);
+      make_sampler(context, stream, path::StreamKind::PixelBlock, (row << 16) ^ (column & 0xffffu), number);
   return context.filter.sample(sampler.get2(path::dimension::kFilm));
 }
 
@@ -79,27 +82,27 @@ bool shares_rays(const path::PathContext& context, const WorkUnit& unit, const f
 }
 
 Vec2 block_jitter(const path::PathContext& context, const WorkUnit& unit, const Region& block, uint32_t number) {
-  return jitter_of_block(context, numbers_of(context, unit, block.x0, block.y0), number);
+  return jitter_of_block(context, stream_of_pixel(context, unit, block.x0, block.y0), number);
 }
 
 PixelSample make_pixel_sample(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, int32_t x,
                               int32_t y, uint32_t number) {
-  const Source source = source_of(context, unit, film, x, y);
+  const Stream stream = find_stream(context, unit, film, x, y);
   PixelSample sample;
   sample.x = x;
   sample.y = y;
   sample.pixel = film.index(x, y);
   sample.number = number;
   sample.half = static_cast<int>(number & 1u);
-  const uint32_t stream = static_cast<uint32_t>(source.y) * context.settings.width + static_cast<uint32_t>(source.x);
-  sample.sampler = make_sampler(context, source, source.kind, stream, number);
+  const uint32_t index = static_cast<uint32_t>(stream.y) * context.settings.width + static_cast<uint32_t>(stream.x);
+  sample.sampler = make_sampler(context, stream, stream.kind, index, number);
   return sample;
 }
 
 Vec2 pixel_jitter(const path::PathContext& context, const WorkUnit& unit, const film::Film& film,
                   const PixelSample& sample) {
-  const Source source = source_of(context, unit, film, sample.x, sample.y);
-  if (source.shares_jitter) return jitter_of_block(context, source, sample.number);
+  const Stream stream = find_stream(context, unit, film, sample.x, sample.y);
+  if (stream.shares_jitter) return jitter_of_block(context, stream, sample.number);
   return context.filter.sample(sample.sampler.get2(path::dimension::kFilm));
 }
 

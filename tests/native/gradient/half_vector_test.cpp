@@ -1,4 +1,4 @@
-// B4: every Jacobian against central differences of the map itself, written anew in double; there and back; J·J⁻¹ = 1.
+// B4: Jacobians equal central differences of an independent map in double. The inverse map returns, and J·J⁻¹ = 1.
 #include "gradient/half_vector.h"
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gradient/footprint.h"
 #include "gradient/reconnection.h"
 #include "support/statistics.h"
 
@@ -26,7 +27,7 @@ void make_basis(const DVec3& n, DVec3* s, DVec3* t) {
   *t = glm::cross(n, *s);
 }
 
-// |∂ω'/∂ω| in solid angle, by central differences along the tangents.
+// Returns |∂ω'/∂ω| in solid angle by central differences along the tangents.
 double numeric_jacobian(const DirectionMap& map, const DVec3& wi) {
   constexpr double h = 1e-5;
   DVec3 s;
@@ -53,7 +54,7 @@ DVec3 rotate(const DVec3& from, const DVec3& to, const DVec3& v) {
   return v * c + glm::cross(k, v) * s + k * (glm::dot(k, v) * (1.0 - c));
 }
 
-// The half-vector copy from its definition, in double. False: the offset cannot scatter so.
+// Copies the half-vector by its definition, in double. Returns false if the offset has no such direction.
 bool copy_in_double(const gradient::HalfVectorFrame& base, const gradient::HalfVectorFrame& offset, bool transmitted,
                     const DVec3& wi, DVec3* out) {
   const DVec3 wo = to_double(base.wo);
@@ -116,7 +117,7 @@ bool make_case(Random* random, bool transmitted, Case* c) {
   return glm::length(c->wi) > 0.5f;
 }
 
-// Whether parts of a whole are all but a thousandth of it.
+// Expects that `part` is at least 99.9 % of the whole.
 void expect_nearly_all(int part, int whole, const char* what) { EXPECT_GE(part, 0.999 * whole) << what; }
 
 void check_half_vector(bool transmitted) {
@@ -150,7 +151,7 @@ void check_half_vector(bool transmitted) {
 
 TEST(B4_Shift, ReflectionHalfVector) { check_half_vector(false); }
 
-// Indices differ between base and offset: without the factor (η/η')² none of these would pass.
+// The indices of base and offset differ. Without the factor (η/η')² none of these would pass.
 TEST(B4_Shift, RefractionHalfVector) { check_half_vector(true); }
 
 TEST(B4_Shift, RefractionAcrossDifferentGlass) {
@@ -201,8 +202,8 @@ TEST(B4_Shift, Reconnection) {
   EXPECT_GE(inverse_ok, 0.999 * kShifts);
 }
 
-// A base that meets a sharp surface at z, behind a rough vertex: the offset reaches z, too, copies the event there, and
-// finds its way back.
+// The base meets a specular surface at z behind a non-specular vertex. The offset shares z and copies the event there,
+// and the inverse shift returns to the base.
 TEST(B4_Shift, ThroughASharedSharpVertexAndBack) {
   Random random(11);
   int shifted = 0, back_home = 0;
@@ -243,8 +244,8 @@ TEST(B4_Shift, BothEndsAgreeWhetherToShareASharpVertex) {
                z = 2.0f * random.direction();
     const float curvature = std::exp2(float(i % 11) - 5.0f);
     const bool transmission = i % 3 == 0;
-    const bool shares = gradient::shares_sharp_vertex(x, y, z, curvature, transmission);
-    EXPECT_EQ(shares, gradient::shares_sharp_vertex(y, x, z, curvature, transmission));
+    const bool shares = gradient::shares_specular_vertex(x, y, z, curvature, transmission);
+    EXPECT_EQ(shares, gradient::shares_specular_vertex(y, x, z, curvature, transmission));
     shared += shares ? 1 : 0;
   }
   EXPECT_GT(shared, kCases / 10);
@@ -254,11 +255,11 @@ TEST(B4_Shift, BothEndsAgreeWhetherToShareASharpVertex) {
 TEST(B4_Shift, ASharpVertexIsSharedButOverShortEdgesAndThroughFlatPanes) {
   const Vec3 x(0, 0, 0), y(0.1f, 0, 0);
   const Vec3 far(0, 0, 1), close(0, 0, 0.05f);
-  EXPECT_TRUE(gradient::shares_sharp_vertex(x, y, far, 0.0f, false));
-  EXPECT_TRUE(gradient::shares_sharp_vertex(x, y, far, 5.0f, true));
-  EXPECT_FALSE(gradient::shares_sharp_vertex(x, y, far, 0.0f, true));
-  EXPECT_FALSE(gradient::shares_sharp_vertex(x, y, close, 0.0f, false));
-  EXPECT_FALSE(gradient::shares_sharp_vertex(x, y, close, 5.0f, true));
+  EXPECT_TRUE(gradient::shares_specular_vertex(x, y, far, 0.0f, false));
+  EXPECT_TRUE(gradient::shares_specular_vertex(x, y, far, 5.0f, true));
+  EXPECT_FALSE(gradient::shares_specular_vertex(x, y, far, 0.0f, true));
+  EXPECT_FALSE(gradient::shares_specular_vertex(x, y, close, 0.0f, false));
+  EXPECT_FALSE(gradient::shares_specular_vertex(x, y, close, 5.0f, true));
 }
 
 TEST(B4_Shift, BothEndsAgreeWhetherAnEdgeIsShortAndALobeWide) {
@@ -290,7 +291,7 @@ TEST(B4_Shift, ALobeLooksAlikeOverAnglesBelowItsWidth) {
   EXPECT_TRUE(gradient::is_short_edge(x, y, x));
 }
 
-// The sharpest lobe of the class decides, whatever else the point has.
+// The sharpest lobe of the class decides, whatever other lobes the point has.
 TEST(B4_Shift, WidthOfAClassIsThatOfItsSharpestLobe) {
   bsdf::Closures closures;
   const auto add = [&](bsdf::LobeType type, float alpha_x, float alpha_y) {

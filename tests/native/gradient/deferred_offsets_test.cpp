@@ -1,4 +1,4 @@
-// Offsets wait with their reconnection until the base finds something behind it (offset_wait.cpp).
+// Offset paths defer their reconnection until the base path finds emission behind it (gradient_observer.cpp).
 #include <gtest/gtest.h>
 
 #include "gradient/gradient_integrator.h"
@@ -7,7 +7,7 @@
 namespace gradus {
 namespace {
 
-// A box with a point light that lights paths of so many bounces.
+// Renders a box with a point light that lights paths of at most this many bounces, and returns the counters.
 film::Counters counters_of(uint32_t bounces_of_light) {
   test::PathScene scene;
   test::add_box(&scene, test::matte(Rgb(0.6f)));
@@ -22,9 +22,8 @@ film::Counters counters_of(uint32_t bounces_of_light) {
   return film.counters;
 }
 
-// But in corners, where one of the four is replayed and the others cannot wait: base_state_ and the like are for all of
-// them.
-TEST(DeferredOffsets, TraceNoConnectionBehindWhichNothingShines) {
+// The bounds leave room for corners, where one of the four offsets is replayed and the others cannot be deferred.
+TEST(DeferredOffsets, TraceNoConnectionBehindWhichNothingEmits) {
   const film::Counters direct = counters_of(0), later = counters_of(2);
   EXPECT_GT(direct.rays_bounce, direct.rays_primary);  // paths go on
   EXPECT_EQ(direct.shifts_attempted, later.shifts_attempted);

@@ -1,12 +1,12 @@
-// B4: random replay: undone by the way back, and its Jacobian is what r has in its place, against finite differences of
-// the sampler.
+// B4: the inverse of a random replay returns to the base event, and the factor of r equals finite differences of the
+// sampler.
 #include <cmath>
 #include <optional>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "gradient/event_shift.h"
+#include "gradient/random_replay.h"
 #include "support/statistics.h"
 
 namespace gradus {
@@ -31,7 +31,7 @@ path::Vertex vertex(const std::vector<bsdf::Lobe>& lobes, const Vec3& wo) {
   return v;
 }
 
-// What path/scatter.cpp makes of the numbers, for class D.
+// Returns the event that path/scatter.cpp samples with these random numbers in class D.
 std::optional<path::ScatterEvent> event_at(const path::Vertex& v, const path::VertexSample& u) {
   const bsdf::Closures& closures = v.shade.closures;
   path::ScatterEvent event;
@@ -56,7 +56,7 @@ struct Numbers {
   }
 };
 
-// Solid angle per area of the numbers.
+// Returns the solid angle per area of the random numbers.
 double stretch(const path::Vertex& v, const path::VertexSample& u) {
   constexpr float step = 2e-3f;
   Vec3 moved[2][2];
@@ -102,7 +102,7 @@ TEST(B4_Replay, JacobianIsTheRatioOfDensities) {
   }
 }
 
-// Diffuse, rough metal and a sharp lobe, whose shares differ between the vertices.
+// Diffuse, rough metal and specular lobes, whose shares differ between the vertices.
 TEST(B4_Replay, ThereAndBack) {
   Numbers random;
   int done = 0, home = 0, refused = 0;
@@ -143,7 +143,7 @@ TEST(B4_Replay, ThereAndBack) {
   std::printf("  %d of %d replayed, %d refused\n", done, kReplays, refused);
 }
 
-// The numbers choose a diffuse lobe at one vertex and a metal at the other: that is another path.
+// If the random numbers choose a diffuse lobe at one vertex and metal at the other, the paths do not correspond.
 TEST(B4_Replay, AnotherKindOfBounceIsRefusedBothWays) {
   const Vec3 wo = glm::normalize(Vec3(0.3f, 0.1f, 0.9f));
   const path::Vertex matte = vertex({lobe(bsdf::LobeType::Diffuse, 0.0f, 0.8f)}, wo),

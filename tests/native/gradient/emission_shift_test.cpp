@@ -1,10 +1,10 @@
-// B4: copying an emitter point, in every way in which emitters are sampled: its Jacobian against finite differences,
-// and undone.
+// B4: copying a point on a light of every kind. The Jacobian equals finite differences, and the inverse copy returns
+// to the start.
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "gradient/offset_paths.h"
+#include "gradient/emission_shift.h"
 #include "support/chi_square.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
@@ -33,7 +33,7 @@ void add_emitting_object(Kind kind, test::PathScene* scene) {
   scene->light(light);
 }
 
-// Where the emitter's point lies as seen from a receiver, and its plane there: a facing disk turns with the receiver.
+// The point on a light and its plane as seen from a receiver. A facing disk turns with the receiver.
 struct Seen {
   DVec3 receiver, position, normal;
 };
@@ -46,7 +46,7 @@ Seen see(const Vec3& receiver, const light::LightEvaluation& view, const Vec3& n
           glm::normalize(facing ? from - DVec3(0.2, 0.1, 0.3) : to_double(normal))};
 }
 
-// |∂ω/∂A| by central differences in the plane of the emitter.
+// Returns |∂ω/∂A| by central differences in the plane of the light.
 double solid_angle_of_area(const Seen& seen) {
   constexpr double h = 1e-5;
   const DVec3 s =

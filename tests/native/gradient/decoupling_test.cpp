@@ -1,5 +1,5 @@
-// The relation between the classes of two vertices looks alike from both, and misses no event.
-#include "gradient/class_match.h"
+// The comparison of the classes of two vertices is symmetric, and covers every event of both.
+#include "gradient/decoupling.h"
 
 #include <vector>
 
@@ -41,7 +41,7 @@ std::vector<bsdf::Closures> cases() {
           make({glass}),
           make({glass, matte}),
           make({mirror, mirror}),
-          make({glass}, glm::normalize(Vec3(0.9f, 0, -0.4f)))};  // total reflection
+          make({glass}, glm::normalize(Vec3(0.9f, 0, -0.4f)))};  // total internal reflection
 }
 
 TEST(ClassMatch, LooksAlikeFromBothEnds) {
@@ -49,7 +49,8 @@ TEST(ClassMatch, LooksAlikeFromBothEnds) {
   for (size_t i = 0; i < all.size(); ++i) {
     EXPECT_TRUE(gradient::same_classes(all[i], all[i])) << i;
     for (size_t j = 0; j < all.size(); ++j) {
-      const bool mirrors = (i == 2 && j == 9) || (i == 9 && j == 2);  // glass that reflects all is one
+      const bool mirrors =
+          (i == 2 && j == 9) || (i == 9 && j == 2);  // glass under total internal reflection is a mirror
       EXPECT_EQ(gradient::same_classes(all[i], all[j]), i == j || mirrors) << i << " " << j;
       for (float u = 0.0f; u < 1.0f; u += 1.0f / 64) {
         EXPECT_EQ(gradient::choose_same_class(all[i], all[j], u), gradient::choose_same_class(all[j], all[i], u))
@@ -59,7 +60,7 @@ TEST(ClassMatch, LooksAlikeFromBothEnds) {
   }
 }
 
-// The length of the random numbers that take both vertices to one class is the overlap of that class's two intervals.
+// The random numbers that choose one class at both vertices are the overlap of the two intervals of that class.
 TEST(ClassMatch, SharesTheOverlapOfTheIntervals) {
   const bsdf::Closures matte = make({{bsdf::LobeType::Diffuse, 0.0f, 1.0f}});
   const bsdf::Closures polished =
