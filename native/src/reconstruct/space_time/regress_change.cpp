@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/fault.h"
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/feature_regression.h"
@@ -86,7 +87,7 @@ ComponentChange read_change(const HalvedWindowSource& source, int t, const Corre
   const auto values = [&](int y, float* row) { source.read_row(RowKind::kDt, t, y, row); };
   const auto halves = [&](int y, float* row) { source.read_half_differences(RowKind::kDt, t, y, row); };
   ComponentChange change{{read_channels(size, 0, 3, values), read_channels(size, 0, 3, halves), false}, {}};
-  keep_sampled_share(change.image.mean, rounding);
+  if (!GRADUS_FAULT(rounding_included_without_samples)) keep_sampled_share(change.image.mean, rounding);
   for_values(&change.image.mean, [&](float& value, int x, int y, int c) { value -= rounding->row(y, c)[x]; });
   normalise(scale, &change.image);
   const DisocclusionFiller holes(corresponding_pixels(correspondence));
@@ -104,7 +105,8 @@ ComponentChange read_change(const HalvedWindowSource& source, int t, const Corre
 Field join(const Field& colours, const Field& alpha, const Field& rounding, float scale) {
   Field joined(colours.width(), colours.height(), alpha.width() > 0 ? 4 : 3);
   for_values(&joined, [&](float& value, int x, int y, int c) {
-    value = (c < 3 ? scale * colours.row(y, c)[x] : alpha.row(y)[x]) + rounding.row(y, c)[x];
+    value = (c < 3 ? scale * colours.row(y, c)[x] : alpha.row(y)[x]) +
+            (GRADUS_FAULT(rounding_left_out_of_change) ? 0.0f : rounding.row(y, c)[x]);
   });
   return joined;
 }
@@ -126,7 +128,7 @@ Change regress_change(const ComponentSources& components, int t, const std::vect
       sum = std::move(component.image);
     } else {
       add(component.image.mean, &sum.mean);
-      add(component.image.half_difference, &sum.half_difference);
+      if (!GRADUS_FAULT(component_changes_not_added)) add(component.image.half_difference, &sum.half_difference);
     }
   }
   const FeatureRegression regression(features, sum, cancel);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/fault.h"
 #include "reconstruct/feature_filter.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/linear_terms.h"
@@ -71,7 +72,8 @@ Field weigh_change(const Change& change, const Apart& apart) {
   return make_field(apart.error.width(), apart.error.height(), [&](int x, int y) {
     const float weight = change.weight.row(y)[x];
     const float excess = mean_of_squares(apart.colours, x, y) - kExplained * (apart.error.row(y)[x] + 1.0f / weight);
-    return excess > 0.0f ? track_weight(1.0f / weight + excess) : weight;
+    return excess > 0.0f && !GRADUS_FAULT(contradicting_change_keeps_weight) ? track_weight(1.0f / weight + excess)
+                                                                             : weight;
   });
 }
 
@@ -119,7 +121,8 @@ void RegularizedWindows::reconstruct(const FrameRange& frames, const CancelCheck
   for (size_t k = 0; k < window[0]->pictures.size(); ++k) {
     std::vector<TrackStep> steps;
     for (size_t t = 0; t + 1 < window.size(); ++t) {
-      steps.push_back({window[t]->change->correspondence[k], window[t]->change->difference[k], couplings[t]});
+      steps.push_back({window[t]->change->correspondence[GRADUS_FAULT(components_follow_the_first) ? 0 : k],
+                       window[t]->change->difference[k], couplings[t]});
     }
     std::vector<Field> pictures, weights;
     for (const Estimate* estimate : window) {
@@ -140,7 +143,8 @@ const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, boo
     known = estimates_.emplace(frame, estimate_single_frame(*open_(frame, cancel), cancel, report)).first;
   Estimate& estimate = known->second;
   if (!changes || estimate.change) return estimate;
-  const ComponentSources sources = differences_(frame, cancel);
+  const bool is_late = GRADUS_FAULT(change_is_that_of_frame_before) && frame > 0;
+  const ComponentSources sources = differences_(is_late ? frame - 1 : frame, cancel);
   check_size(estimate.pictures, sources);
   estimate.change = regress_change(sources, 0, estimate.pictures, std::exchange(estimate.features, {}),
                                    scale_of(estimate.pictures), cancel);

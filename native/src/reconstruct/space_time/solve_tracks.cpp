@@ -1,5 +1,6 @@
 #include "reconstruct/space_time/solve_tracks.h"
 
+#include "base/fault.h"
 #include "base/rows.h"
 
 namespace gradus::reconstruct {
@@ -7,6 +8,7 @@ namespace {
 
 // d of a channel in row y; zeros of one that the step lacks.
 const float* differences(const TrackStep& step, int y, int channel, const std::vector<float>& zeros) {
+  if (GRADUS_FAULT(change_is_zero)) return zeros.data();
   return channel < step.difference.channels() ? step.difference.row(y, channel) : zeros.data();
 }
 
