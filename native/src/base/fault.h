@@ -8,6 +8,7 @@
 #define GRADUS_FAULT_NAMES(X)                    \
   X(lambert_without_cosine)                      \
   X(lambert_density_halved)                      \
+  X(finite_check_accepts_all)                    \
   X(render_thread_swallows_exception)            \
   X(c_api_swallows_exception)                    \
   X(srgb_decoded_twice)                          \
@@ -18,10 +19,14 @@
   X(mean_regressed_as_difference)                \
   X(residual_noise_counts_as_bias)               \
   X(second_step_takes_image_for_noise)           \
+  X(feature_half_buffer_a_added_twice)           \
+  X(feature_half_buffer_b_divided_by_count_of_a) \
+  X(sum_of_halves_read_for_difference)           \
   X(l2_error_computed_from_image)                \
   X(features_shifted_by_a_column)                \
   X(second_step_albedo_shifted)                  \
   X(window_features_shifted_by_a_row)            \
+  X(features_read_one_pixel_early)               \
   X(filter_distances_shifted)                    \
   X(image_variance_times_4)                      \
   X(image_variance_over_4)                       \
@@ -31,6 +36,9 @@
   X(window_variance_over_4)                      \
   X(window_bias_times_4)                         \
   X(regressed_difference_variance_times_4)       \
+  X(sampled_difference_variance_over_4)          \
+  X(feature_variance_times_4)                    \
+  X(feature_variance_over_4)                     \
   X(filter_variance_times_4)                     \
   X(filter_variance_over_4)                      \
   X(error_scale_not_squared)                     \
@@ -39,6 +47,7 @@
   X(error_noise_not_relative_to_light)           \
   X(error_omits_lost_light)                      \
   X(error_omits_second_step)                     \
+  X(half_difference_not_halved)                  \
   X(second_step_dropped)                         \
   X(second_step_of_other_channels_dropped)       \
   X(alpha_stays_noisy)                           \
@@ -89,6 +98,8 @@
   X(stored_frame_of_other_scene_accepted)        \
   X(stored_neighbour_of_other_job_accepted)      \
   X(stored_frame_with_few_samples_accepted)      \
+  X(temporary_file_remains)                      \
+  X(stored_frame_named_before_complete)          \
   X(change_is_that_of_frame_before)              \
   X(change_is_zero)                              \
   X(contradicting_change_keeps_weight)           \
