@@ -59,6 +59,10 @@
   X(components_ignore_differences)               \
   X(components_follow_the_first)                 \
   X(component_changes_not_added)                 \
+  X(offset_rays_lose_time)                       \
+  X(offset_rays_lose_lens)                       \
+  X(spawned_rays_lose_time)                      \
+  X(reconnection_rays_lose_time)                 \
   X(shadow_rays_lose_time)                       \
   X(sun_rays_lose_time)                          \
   X(shutter_curve_ignored)                       \

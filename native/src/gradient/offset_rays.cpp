@@ -1,6 +1,7 @@
 // Segments that offsets trace themselves, before they share those of the base.
 #include <utility>
 
+#include "base/fault.h"
 #include "gradient/class_match.h"
 #include "gradient/offset_paths.h"
 
@@ -59,7 +60,10 @@ void OffsetPaths::trace_camera(const path::PathState& state) {
     }
     o.state.ray = path::PathRay{};
     o.state.ray.visibility = state.ray.visibility;
-    o.state.ray.ray = context_.camera.ray(camera_sample_.moved(Vec2(film::kOffsetX[k], film::kOffsetY[k])));
+    camera::CameraSample moved = camera_sample_.moved(Vec2(film::kOffsetX[k], film::kOffsetY[k]));
+    if (GRADUS_FAULT(offset_rays_lose_time)) moved.time = 0.0f;
+    if (GRADUS_FAULT(offset_rays_lose_lens)) moved.lens = Vec2(0.0f);
+    o.state.ray.ray = context_.camera.ray(moved);
     if (sample_->first != nullptr) {
       trace(&o, known != nullptr ? &known->hit : nullptr);
     } else {
