@@ -8,11 +8,16 @@
 #define GRADUS_FAULT_NAMES(X)                    \
   X(lambert_without_cosine)                      \
   X(lambert_density_halved)                      \
+  X(samples_one_percent_darker)                  \
+  X(one_sample_in_1000_is_nan)                   \
   X(finite_check_accepts_all)                    \
   X(render_thread_swallows_exception)            \
   X(c_api_swallows_exception)                    \
+  X(last_row_of_pixel_blocks_lost)               \
   X(srgb_decoded_twice)                          \
   X(flat_normals_flipped)                        \
+  X(random_stream_shared_by_pixels)              \
+  X(cancel_missed_between_samples)               \
   X(cancel_missed_by_render)                     \
   X(half_buffer_a_read_for_b)                    \
   X(sum_of_halves_taken_for_difference)          \
@@ -73,6 +78,11 @@
   X(camera_does_not_zoom)                        \
   X(panorama_lens_faces_camera_axis)             \
   X(stereo_eyes_exchanged)                       \
+  X(replayed_pixels_take_own_seed)               \
+  X(replayed_blocks_take_own_seed)               \
+  X(replay_takes_same_pixel)                     \
+  X(replay_ignores_border_corner)                \
+  X(disocclusion_takes_own_numbers_again)        \
   X(replay_takes_mean_count)                     \
   X(two_pixels_match_one)                        \
   X(farther_pixel_keeps_match)                   \
