@@ -11,6 +11,7 @@
   X(samples_one_percent_darker)                  \
   X(one_sample_in_1000_is_nan)                   \
   X(finite_check_accepts_all)                    \
+  X(library_leaks_memory)                        \
   X(render_thread_swallows_exception)            \
   X(c_api_swallows_exception)                    \
   X(last_row_of_pixel_blocks_lost)               \
@@ -101,6 +102,7 @@
   X(temporal_difference_takes_fresh_samples)     \
   X(temporal_difference_of_same_pixel)           \
   X(unchanged_frame_not_repeated)                \
+  X(temporal_difference_loads_fresh_frame)       \
   X(windows_read_fresh_samples_alone)            \
   X(passes_read_fresh_samples_alone)             \
   X(fresh_and_replayed_share_equally)            \
