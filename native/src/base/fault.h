@@ -15,6 +15,7 @@
   X(render_thread_swallows_exception)            \
   X(c_api_swallows_exception)                    \
   X(last_row_of_pixel_blocks_lost)               \
+  X(last_row_of_passes_lost)                     \
   X(srgb_decoded_twice)                          \
   X(flat_normals_flipped)                        \
   X(random_stream_shared_by_pixels)              \
@@ -124,7 +125,9 @@
   X(light_passes_below_zero)                     \
   X(light_without_colour_remains)                \
   X(light_passes_exceed_their_noise)             \
-  X(squares_of_light_overflow)
+  X(squares_of_light_overflow)                   \
+  X(light_passes_lack_exposure)                  \
+  X(light_passes_keep_first_reconstruction)
 // clang-format on
 
 namespace gradus {
