@@ -15,9 +15,9 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Squared error of what shows none, in median luminances.
+// Minimum of the squared error, in units of the squared median luminance.
 constexpr float kMinError = 1e-6f;
-// Squared distance that errors explain, in these: eight deviations.
+// Squared distance of two pictures that their errors explain, in units of the squared error: eight standard deviations.
 constexpr float kExplained = 64.0f;
 constexpr int kColors = 3;
 
@@ -29,7 +29,7 @@ Field to_field(const film::Film& frame, const std::vector<float>& image, int cha
   return field;
 }
 
-// Median luminance.
+// Returns the median luminance of the sum of the pictures.
 float scale_of(const std::vector<Field>& pictures) {
   Field colours(pictures[0].width(), pictures[0].height(), kColors);
   for (const Field& picture : pictures) {
@@ -38,8 +38,8 @@ float scale_of(const std::vector<Field>& pictures) {
   return robust_scale(colours);
 }
 
-// By how much the pictures change otherwise than the changes say, all components together, and the errors at the ends
-// of their ways.
+// The difference between the pictures' change and the estimated change, summed over the components, and the squared
+// error of the pictures at both ends of the correspondence: the maximum over the components.
 struct Apart {
   Field colours, error;
 };
@@ -66,8 +66,8 @@ Apart measure(const Change& change, const std::vector<Field>& here, const std::v
   return apart;
 }
 
-// Weights of a change. Where both pictures say otherwise, by more than their errors explain, it is known no better than
-// it meets them.
+// Returns the weights of a change. Where the pictures contradict the change by more than their errors explain, the
+// excess is added to its squared error.
 Field weigh_change(const Change& change, const Apart& apart) {
   return make_field(apart.error.width(), apart.error.height(), [&](int x, int y) {
     const float weight = change.weight.row(y)[x];
@@ -87,7 +87,7 @@ void check_size(const std::vector<Field>& pictures, const ComponentSources& sour
   }
 }
 
-// Of components, each with the error in one more channel.
+// Makes the picture from its components, each of which has the error in an additional last channel.
 Reconstructed to_picture(std::vector<Field> components, size_t brightest) {
   const int channels = components[0].channels() - 1;
   Reconstructed picture;

@@ -14,7 +14,7 @@ WindowGrid::WindowGrid(const FrameRange& range, const WindowShape& shape) : rang
   if (shape.frames < 1 || shape.overlap < 0 || shape.overlap > shape.frames / 2)
     throw invalid_argument("windows overlap by half of their frames at most");
   first_ = window_that_begins_before(range.first);
-  // One that holds no more than those that the window before shares with it is left out.
+  // A last window is left out if the window before it contains all of its frames.
   last_ = std::max(first_, window_that_begins_before(int64_t{range.last} - shape.overlap));
 }
 
