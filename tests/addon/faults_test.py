@@ -27,6 +27,7 @@ def test_m4_each_fault_has_one_switch() -> None:
 
 @pytest.mark.parametrize("fault", EDITS, ids=lambda fault: fault.name)
 def test_m4_edits_of_the_addon_have_their_place(fault: Fault) -> None:
+    assert fault.edit.file.startswith("addon/")
     assert (ROOT / fault.edit.file).read_text().count(fault.edit.old) == 1
     assert fault.edit.old != fault.edit.new
 
