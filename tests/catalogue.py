@@ -112,7 +112,7 @@ ELSEWHERE = {
     "L5": [("`make compilers`: A1, A2, A4 to A6, B8 at -O0 and with clang", "on demand")],
     "L6": [("tools/runner/plan.py: some native tests under sanitizers", "every change"), ("all of them, and L6, L3, G2 and passes under valgrind", "make test-full")],
     "M3": [("tests named after what went wrong, in all files", "every change")],
-    "M4": [("tests/faults (`make faults`), result in docs/faults.md", "on demand")],
+    "M4": [("tests/faults/faults.toml (`make faults`), result in docs/faults.md", "on demand")],
 }
 
 NATIVE = re.compile(r"^(?:INSTANTIATE_)?TEST(?:_[FP])?\((\w+),\s*(\w+)\)", re.M)

@@ -10,6 +10,7 @@
 #include "animation/streamed_frames.h"
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/fault.h"
 #include "render/memory_estimate.h"
 #include "render/resume.h"
 #include "schema/options.h"
@@ -65,7 +66,7 @@ Sequence::Sequence(std::shared_ptr<scene::Device> device, const SequenceSettings
 int Sequence::place_of(int32_t frame) const {
   const int64_t from_first = int64_t(frame) - settings_.first, step = settings_.step;
   if (from_first % step != 0) throw invalid_argument("frame " + std::to_string(frame) + " is not part of the sequence");
-  const int64_t first = settings_.first;
+  const int64_t first = GRADUS_FAULT(window_grid_begins_at_job) ? 0 : settings_.first;
   return int(from_first / step + (first >= 0 ? first / step : -((step - 1 - first) / step)));
 }
 
@@ -118,7 +119,9 @@ bool Sequence::shares_window_with_previous(int place, uint32_t reconstruction) {
   const reconstruct::FrameRange own = job_places();
   // Settings may be animated within a job.
   const bool one_job = own.contains(place) && own.contains(place - 1);
-  return (one_job || are_equivalent(before.settings, here.settings)) && share_windows(before, here, reconstruction);
+  return (one_job || GRADUS_FAULT(stored_neighbour_of_other_job_accepted) ||
+          are_equivalent(before.settings, here.settings)) &&
+         share_windows(before, here, reconstruction);
 }
 
 reconstruct::FrameRange Sequence::needs(int32_t frame) const {
@@ -154,7 +157,9 @@ std::unique_ptr<render::RenderTask> Sequence::sample(std::shared_ptr<const scene
 void Sequence::pass_by(std::shared_ptr<const scene::Snapshot> snapshot, const GradusSettings& settings) {
   GradusSettings resolved = settings;
   resolved.integrator = integrator_of(settings);
-  if (settings.frame >= settings_.first && settings.frame <= settings_.last) passed_by_.insert(settings.frame);
+  if (settings.frame >= settings_.first && settings.frame <= settings_.last &&
+      !GRADUS_FAULT(windows_extend_over_skipped_frame))
+    passed_by_.insert(settings.frame);
   std::optional<film::FilmHeader> fresh;  // another process of the same job may have sampled the frame
   if (folder_.holds(settings.frame)) fresh = folder_.header(settings.frame, FrameSamples::kFresh);
   if (fresh && !is_frame_of(*fresh, *snapshot, resolved)) fresh.reset();
@@ -193,7 +198,7 @@ void Sequence::merge(int32_t number, film::Film* fresh, const film::Film& replay
     throw invalid_argument("stored frame " + folder_.path(number, FrameSamples::kFresh) +
                            " and its replayed samples do not belong together");
   }
-  render::add_sums(fresh, replayed);
+  if (!GRADUS_FAULT(passes_read_fresh_samples_alone)) render::add_sums(fresh, replayed);
   fresh->frame_number = number;
   fresh->settings.frame = number;
   fresh->settings.samples += replayed.settings.samples;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/fault.h"
 #include "film/film.h"
 
 namespace gradus::film {
@@ -13,7 +14,7 @@ namespace gradus::film {
 inline constexpr float kLargestSum = 1e37f;
 
 // Returns whether a sum is within the limit; false for NaN.
-inline bool fits(float v) { return std::fabs(v) <= kLargestSum; }
+inline bool fits(float v) { return std::fabs(v) <= kLargestSum || GRADUS_FAULT(finite_check_accepts_all); }
 inline bool fits(const Radiance& v) { return fits(v.x) && fits(v.y) && fits(v.z) && fits(v.w); }
 
 // Adds one sample of a pixel. A dropped value counts as 0, because the sample count includes the sample.

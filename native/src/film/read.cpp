@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/fault.h"
 #include "base/fpu.h"
 #include "film/film.h"
 #include "film/read_pixels.h"
@@ -107,7 +108,9 @@ void read_half_difference(size_t size, const Read& read, float* row) {
   std::vector<float> other(size);
   read(HalfRange{0, 1}, row);
   read(HalfRange{1, 2}, other.data());
-  for (size_t i = 0; i < size; ++i) row[i] = 0.5f * (row[i] - other[i]);
+  for (size_t i = 0; i < size; ++i)
+    row[i] = (GRADUS_FAULT(half_difference_not_halved) ? 1.0f : 0.5f) *
+             (GRADUS_FAULT(sum_of_halves_read_for_difference) ? row[i] + other[i] : row[i] - other[i]);
 }
 
 // Doubles the value of pixels with samples in only one half-buffer, which gives the mean of that half-buffer.
@@ -165,7 +168,8 @@ void deviations_of_row(const HalfRows& rows, int channels, float* to) {
     const float *a = rows.values[0].data() + x * channels, *b = rows.values[1].data() + x * channels;
     float sum = 0.0f;
     for (int c = 0; c < 3; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
-    to[x] = rows.sampled[x] ? 0.5f * std::sqrt(sum / 3.0f) : std::numeric_limits<float>::quiet_NaN();
+    to[x] = rows.sampled[x] ? (GRADUS_FAULT(sampled_difference_variance_over_4) ? 0.25f : 0.5f) * std::sqrt(sum / 3.0f)
+                            : std::numeric_limits<float>::quiet_NaN();
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/fault.h"
 #include "geometry/flat_triangle.h"
 #include "geometry/geometry.h"
 #include "geometry/mesh.h"
@@ -42,7 +43,8 @@ void place_flat(const InstanceData& instance, const Hit& hit, SurfacePoint* poin
   const std::array<Vec3, 3>& p = triangle.corners;
   const std::array<Vec3, 3> sizes = {glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])};
   point->position = interpolate(p, hit.uv);
-  point->geometric_normal = instance.mirrored ? -triangle.plane.normal : triangle.plane.normal;
+  point->geometric_normal =
+      instance.mirrored != GRADUS_FAULT(flat_normals_flipped) ? -triangle.plane.normal : triangle.plane.normal;
   const Vec3 error = gamma_bound(7) * interpolate(sizes, hit.uv);
   point->error = glm::dot(glm::abs(point->geometric_normal), error) + triangle.plane.error;
   point->material = material_of_slot(instance, triangle.slot);

@@ -1,5 +1,7 @@
 #include "gradient/offset_rays.h"
 
+#include "base/fault.h"
+
 namespace gradus::gradient {
 
 namespace {
@@ -51,7 +53,10 @@ void trace_camera_rays(const BasePath& base, const integrator::PixelSample& samp
     }
     o.state.ray = path::PathRay{};
     o.state.ray.visibility = visibility;
-    o.state.ray.ray = base.context.camera.ray(base.camera_sample.moved(Vec2(film::kOffsetX[k], film::kOffsetY[k])));
+    camera::CameraSample moved = base.camera_sample.moved(Vec2(film::kOffsetX[k], film::kOffsetY[k]));
+    if (GRADUS_FAULT(offset_rays_lose_time)) moved.time = 0.0f;
+    if (GRADUS_FAULT(offset_rays_lose_lens)) moved.lens = Vec2(0.0f);
+    o.state.ray.ray = base.context.camera.ray(moved);
     if (sample.first != nullptr) {
       trace_own_segment(base, known != nullptr ? &known->hit : nullptr, &o, counters);
     } else {

@@ -1,6 +1,9 @@
 #include "integrator/pixel_loop.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "base/fault.h"
 
 namespace gradus::integrator {
 
@@ -15,9 +18,8 @@ struct Stream {
   bool shares_jitter = false;  // with its pixel block
 };
 
-// Returns the stream of a pixel in its own frame, or in the frame that the unit replays.
-Stream stream_of_pixel(const path::PathContext& context, const WorkUnit& unit, int32_t x, int32_t y) {
-  const film::ReplayMap* replayed = unit.replay_map;
+// Returns the stream of a pixel in its own frame, or in the frame that is replayed if `replayed` is given.
+Stream stream_of_pixel(const path::PathContext& context, const film::ReplayMap* replayed, int32_t x, int32_t y) {
   if (replayed != nullptr)
     return {path::StreamKind::Pixel, x, y, replayed->stream_frame, replayed->seed, replayed->shares_jitter};
   return {path::StreamKind::Pixel,
@@ -32,12 +34,16 @@ Stream stream_of_pixel(const path::PathContext& context, const WorkUnit& unit, i
 // for disocclusions.
 Stream find_stream(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, int32_t x,
                    int32_t y) {
-  if (unit.replay_map == nullptr) return stream_of_pixel(context, unit, x, y);
+  if (unit.replay_map == nullptr) return stream_of_pixel(context, nullptr, x, y);
   const int32_t pixel = unit.replay_map->correspondence.pixel[film.index(x, y)];
+  if (pixel == film::kNoCorrespondence && GRADUS_FAULT(disocclusion_takes_own_numbers_again))
+    return stream_of_pixel(context, nullptr, x, y);
   if (pixel == film::kNoCorrespondence)
     return {path::StreamKind::Disocclusion, x, y, context.settings.frame, context.settings.seed};
-  const int32_t width = film.region.width();
-  return stream_of_pixel(context, unit, film.region.x0 + pixel % width, film.region.y0 + pixel / width);
+  if (GRADUS_FAULT(replay_takes_same_pixel)) return stream_of_pixel(context, unit.replay_map, x, y);
+  const film::ReplayMap* replayed = GRADUS_FAULT(replayed_pixels_take_own_seed) ? nullptr : unit.replay_map;
+  const int32_t width = film.region.width(), x0 = GRADUS_FAULT(replay_ignores_border_corner) ? 0 : film.region.x0;
+  return stream_of_pixel(context, replayed, x0 + pixel % width, film.region.y0 + pixel / width);
 }
 
 path::Sampler make_sampler(const path::PathContext& context, const Stream& stream, path::StreamKind kind,
@@ -82,7 +88,8 @@ bool shares_rays(const path::PathContext& context, const WorkUnit& unit, const f
 }
 
 Vec2 block_jitter(const path::PathContext& context, const WorkUnit& unit, const Region& block, uint32_t number) {
-  return jitter_of_block(context, stream_of_pixel(context, unit, block.x0, block.y0), number);
+  const film::ReplayMap* replayed = GRADUS_FAULT(replayed_blocks_take_own_seed) ? nullptr : unit.replay_map;
+  return jitter_of_block(context, stream_of_pixel(context, replayed, block.x0, block.y0), number);
 }
 
 PixelSample make_pixel_sample(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, int32_t x,
@@ -94,7 +101,8 @@ PixelSample make_pixel_sample(const path::PathContext& context, const WorkUnit& 
   sample.pixel = film.index(x, y);
   sample.number = number;
   sample.half = static_cast<int>(number & 1u);
-  const uint32_t index = static_cast<uint32_t>(stream.y) * context.settings.width + static_cast<uint32_t>(stream.x);
+  const uint32_t own = static_cast<uint32_t>(stream.y) * context.settings.width + static_cast<uint32_t>(stream.x),
+                 index = GRADUS_FAULT(random_stream_shared_by_pixels) ? 0u : own;
   sample.sampler = make_sampler(context, stream, stream.kind, index, number);
   return sample;
 }
@@ -111,6 +119,8 @@ void add_primal(const path::PathResult& result, const PixelSample& sample, const
   const uint32_t wanted = unit_components(unit, sample.pixel);
   for (size_t c = 0; c < film->components.size(); ++c) {
     Radiance value = result.radiance[c];
+    if (GRADUS_FAULT(samples_one_percent_darker)) value *= 0.99f;
+    if (GRADUS_FAULT(one_sample_in_1000_is_nan) && (sample.pixel * 31 + sample.number) % 1000 == 0) value.x = NAN;
     if (film->channels < 4) {
       value.w = 0.0f;
     }

@@ -1,6 +1,7 @@
 // Loop over the samples of a work unit, shared by all integrators that start paths at the camera.
 #pragma once
 
+#include "base/fault.h"
 #include "film/finite_check.h"
 #include "film/pixel_blocks.h"
 #include "integrator/integrator.h"
@@ -73,13 +74,13 @@ void for_each_sample(const path::PathContext& context, const WorkUnit& unit, con
       const uint32_t number = first + i;
       const Vec2 jitter = is_shared ? block_jitter(context, unit, block, number) : Vec2(0.0f);
       vertices->begin(jitter);
-      for (int32_t y = block.y0; y < block.y1; ++y) {
+      for (int32_t y = block.y0; y < block.y1 - (GRADUS_FAULT(last_row_of_pixel_blocks_lost) ? 1 : 0); ++y) {
         for (int32_t x = block.x0; x < block.x1; ++x) {
           const size_t pixel = film.index(x, y);
           if (i >= unit_count(unit, pixel) || (unit.pixel_map != nullptr && (*unit.pixel_map)[pixel] == 0)) {
             continue;
           }
-          if (stop.load(std::memory_order_relaxed)) {
+          if (stop.load(std::memory_order_relaxed) && !GRADUS_FAULT(cancel_missed_between_samples)) {
             return;
           }
           PixelSample sample = make_pixel_sample(context, unit, film, x, y, number);

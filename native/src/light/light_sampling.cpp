@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "base/fault.h"
 #include "light/light_table.h"
 #include "light/lit_scene.h"
 #include "light/spherical_triangle.h"
@@ -308,7 +309,8 @@ LightPoint light_point_of_world(const LitScene& scene, const Vec3& direction) {
 
 Ray ray_to_light(const Vec3& start, const geometry::SurfacePoint& from, const LightPoint& to,
                  const LightEvaluation& view) {
-  if (to.at_infinity()) return Ray{start, 0.0f, view.direction, kInfinity, from.hit.time};
+  if (to.at_infinity())
+    return Ray{start, 0.0f, view.direction, kInfinity, GRADUS_FAULT(sun_rays_lose_time) ? 0.0f : from.hit.time};
   Vec3 target = from.position + view.direction * view.distance;
   if (to.kind == LightKind::Triangle) {
     geometry::SurfacePoint end;
@@ -317,7 +319,8 @@ Ray ray_to_light(const Vec3& start, const geometry::SurfacePoint& from, const Li
     end.error = to.error;
     target = geometry::offset_origin(end, -view.direction);
   }
-  return geometry::ray_between(start, target, view.direction, from.hit.time);
+  return geometry::ray_between(start, target, view.direction,
+                               GRADUS_FAULT(shadow_rays_lose_time) ? 0.0f : from.hit.time);
 }
 
 }  // namespace gradus::light

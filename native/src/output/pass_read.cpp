@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "base/error.h"
+#include "base/fault.h"
 #include "base/fpu.h"
 #include "film/pass_planes.h"
 #include "film/read_pixels.h"
@@ -59,6 +60,7 @@ void for_pixels(const film::Film& film, const Region& region, const Function& fu
   for_runs(region, [&](int32_t first, int32_t last) {
     size_t out = size_t(first - region.y0) * size_t(region.width());
     for (int32_t y = first; y < last; ++y) {
+      if (GRADUS_FAULT(last_row_of_passes_lost) && y == region.y1 - 1) continue;
       for (int32_t x = region.x0; x < region.x1; ++x) function(film.index(x, y), out++);
     }
   });

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/fault.h"
+
 namespace gradus::path {
 
 namespace {
@@ -135,13 +137,14 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int depth
 }
 
 Ray spawn_ray(const geometry::SurfacePoint& from, const Vec3& direction, float distance) {
-  return Ray{geometry::offset_origin(from, direction), 0.0f, direction, distance, from.hit.time};
+  return Ray{geometry::offset_origin(from, direction), 0.0f, direction, distance,
+             GRADUS_FAULT(spawned_rays_lose_time) ? 0.0f : from.hit.time};
 }
 
 Ray spawn_ray_to(const geometry::SurfacePoint& from, const geometry::SurfacePoint& to) {
   const Vec3 direction = glm::normalize(to.position - from.position);
   return geometry::ray_between(geometry::offset_origin(from, direction), geometry::offset_origin(to, -direction),
-                               direction, from.hit.time);
+                               direction, GRADUS_FAULT(reconnection_rays_lose_time) ? 0.0f : from.hit.time);
 }
 
 Rgb segment_transmittance(const PathContext& context, const Ray& ray, const PathRay& kind,

@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/fault.h"
 #include "base/threads.h"
 #include "film/pass_planes.h"
 #include "motion/component_motion.h"
@@ -153,6 +154,7 @@ lpe::ComponentSet RenderLoop::choose_components() {
 
 void RenderLoop::prepare() {
   const GradusSettings& settings = input_.settings;
+  if (GRADUS_FAULT(library_leaks_memory)) std::fill_n(new char[1 << 20], 1 << 20, char(1));
   gradients_ = choose_gradients();
   components_ = choose_components();
   const bool has_lost_gradients = plan_.gradients && gradients_.none();

@@ -195,7 +195,7 @@ TEST(G1_Handles, TenThousandRandomCalls) {
       if (i % 16 == 0) make(random);
       const GradusError code = functions[random() % functions.size()](any(random));
       EXPECT_GE(code, GRADUS_OK);
-      EXPECT_LE(code, GRADUS_ERROR_CANCELLED);
+      EXPECT_LE(code, GRADUS_TIMEOUT);
       gradus_error(nullptr);
     }
   };
