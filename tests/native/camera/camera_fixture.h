@@ -1,4 +1,4 @@
-// What cameras of tests have in common.
+// Settings that the tests of cameras share.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace gradus::test {
 
-// In the same place, with the same window, in all three frames; with a range, and a focus at 4 m. window: 4 values.
+// Gives all three frames the same pose and window, a clip range, and a focus at 4 m. window: 4 values.
 inline void set_static(GradusCamera* camera, const float* window, const Mat4& pose) {
   for (float* to : {camera->window, camera->window_previous, camera->window_next}) std::copy(window, window + 4, to);
   for (float* to : {camera->matrix, camera->matrix_previous, camera->matrix_next})
