@@ -1,4 +1,4 @@
-// D1, D2, D4 of the catalogue, and what a hit tells.
+// D1, D2 and D4: watertightness, self-hits and broken rays; the values of a hit.
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ Vec3 random_point(std::mt19937& random) {
   return {x, y, random_coordinate(random)};
 }
 
-// Spawns rays from points of a triangle, which must not meet it again. Returns how many do.
+// Spawns rays from points of a triangle, which must not meet it again. Returns the number of rays that do.
 int count_self_hits(const scene::Snapshot& snapshot, uint32_t instance, uint32_t triangle, int rays, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform;
   int again = 0;
@@ -97,7 +97,7 @@ TEST(D2_SelfHits, InstancesFarAwayAndScaled) {
   int again = 0;
   for (uint32_t i = 0; i < 20; ++i)
     for (int k = 0; k < 500; ++k) {
-      // Outwards from a convex body: nothing can be in the way but itself.
+      // Rays leave a convex body outwards: they could only meet the body itself.
       geometry::Hit hit;
       hit.instance = i;
       hit.triangle = random() % uint32_t(big.vertices.size() / 3);
@@ -112,8 +112,8 @@ TEST(D2_SelfHits, InstancesFarAwayAndScaled) {
   EXPECT_EQ(again, 0);
 }
 
-// A shadow ray ends before the emitter that it goes to, whatever the size of both.
-TEST(D2_SelfHits, TheWayToALightOnTheFarSideIsFree) {
+// A shadow ray ends before the emitter that it is traced to, whatever the size of both.
+TEST(D2_SelfHits, ALightOnTheFarSideIsNotOccluded) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> exponent(-8.0f, 8.0f), uniform;
   int blocked = 0, requested = 0;
@@ -149,7 +149,7 @@ TEST(D2_SelfHits, TheWayToALightOnTheFarSideIsFree) {
   EXPECT_EQ(blocked, 0);
 }
 
-// Random rays from within a ball; the fields of every `broken`-th one are spoilt in turn (0: of none).
+// Returns random rays from within a ball. In every ray of number `broken` another field is invalid; 0: all are valid.
 std::vector<Ray> make_rays(int count, int broken) {
   std::mt19937 random(4);
   const float bad[3] = {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity};
@@ -167,7 +167,7 @@ std::vector<Ray> make_rays(int count, int broken) {
   return rays;
 }
 
-// CPU seconds of tracing them, the least of some rounds; hits: of one round.
+// Returns the minimum CPU time in seconds over several rounds of tracing them; hits: those of one round.
 double time_of(const scene::Snapshot& snapshot, const std::vector<Ray>& rays, int* hits) {
   double minimum = kInfinity;
   for (int round = 0; round < 5; ++round) {
@@ -196,7 +196,7 @@ TEST(D4_BrokenRays, AreMissesAndCheap) {
   EXPECT_LT(broken, 2.5 * good);
 }
 
-// What a camera of numbers that are none asks for.
+// Rays of cameras whose parameters are not finite.
 TEST(D4_BrokenRays, OfBrokenCamerasAreMissesOrFinite) {
   TestScene scene;
   scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 50, 100));
@@ -232,7 +232,7 @@ TEST(D4_BrokenRays, OfBrokenCamerasAreMissesOrFinite) {
   }
 }
 
-TEST(Trace, FourAtOnceEqualsFourTimesOne) {
+TEST(Trace, PacketsOfFourEqualSingleRays) {
   TestScene scene;
   scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 50, 100));
   scene.instance(1, translation(Vec3(0, 0, 2)));
@@ -278,7 +278,7 @@ TEST(Trace, MasksHideInstancesFromKindsOfRays) {
   EXPECT_FALSE(snapshot->occluded(ray));
 }
 
-TEST(SurfacePoint, NormalsOfMirroredInstancesStayOutside) {
+TEST(SurfacePoint, NormalsOfMirroredInstancesPointOutside) {
   TestScene scene;
   scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 20, 40));
   scene.instance(1, translation(Vec3(3, 0, 0)) * scaling(Vec3(-1, 1, 1)));

@@ -1,4 +1,4 @@
-// The relation between the classes of two vertices looks alike from both, and misses no event.
+// The relation between the classes of two vertices is symmetric and covers every event.
 #include "gradient/class_match.h"
 
 #include <vector>
@@ -44,12 +44,12 @@ std::vector<bsdf::Closures> cases() {
           make({glass}, glm::normalize(Vec3(0.9f, 0, -0.4f)))};  // total reflection
 }
 
-TEST(ClassMatch, LooksAlikeFromBothEnds) {
+TEST(ClassMatch, IsSymmetric) {
   const std::vector<bsdf::Closures> all = cases();
   for (size_t i = 0; i < all.size(); ++i) {
     EXPECT_TRUE(gradient::same_classes(all[i], all[i])) << i;
     for (size_t j = 0; j < all.size(); ++j) {
-      const bool mirrors = (i == 2 && j == 9) || (i == 9 && j == 2);  // glass that reflects all is one
+      const bool mirrors = (i == 2 && j == 9) || (i == 9 && j == 2);  // glass with total reflection is a mirror
       EXPECT_EQ(gradient::same_classes(all[i], all[j]), i == j || mirrors) << i << " " << j;
       for (float u = 0.0f; u < 1.0f; u += 1.0f / 64) {
         EXPECT_EQ(gradient::choose_same_class(all[i], all[j], u), gradient::choose_same_class(all[j], all[i], u))
@@ -59,7 +59,7 @@ TEST(ClassMatch, LooksAlikeFromBothEnds) {
   }
 }
 
-// The length of the random numbers that take both vertices to one class is the overlap of that class's two intervals.
+// The measure of the random numbers that choose a class at both vertices is the overlap of its two intervals.
 TEST(ClassMatch, SharesTheOverlapOfTheIntervals) {
   const bsdf::Closures matte = make({{bsdf::LobeType::Diffuse, 0.0f, 1.0f}});
   const bsdf::Closures polished =

@@ -1,5 +1,5 @@
-// B4: copying an emitter point, in every way in which emitters are sampled: its Jacobian against finite differences,
-// and undone.
+// B4: copying a point on an emitter, for each technique by which emitters are sampled: its Jacobian against finite
+// differences, and its inverse.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ void add_emitting_object(Kind kind, test::PathScene* scene) {
   scene->light(light);
 }
 
-// Where the emitter's point lies as seen from a receiver, and its plane there: a facing disk turns with the receiver.
+// A point on an emitter as seen from a receiver, and the emitter's plane there: a facing disk turns with the receiver.
 struct Seen {
   DVec3 receiver, position, normal;
 };
@@ -46,7 +46,7 @@ Seen see(const Vec3& receiver, const light::LightEvaluation& view, const Vec3& n
           glm::normalize(facing ? from - DVec3(0.2, 0.1, 0.3) : to_double(normal))};
 }
 
-// |∂ω/∂A| by central differences in the plane of the emitter.
+// Returns |∂ω/∂A| by central differences in the plane of the emitter.
 double solid_angle_of_area(const Seen& seen) {
   constexpr double h = 1e-5;
   const DVec3 s =
@@ -59,7 +59,7 @@ double solid_angle_of_area(const Seen& seen) {
 
 class B4_LightPointCopy : public ::testing::TestWithParam<Kind> {};
 
-TEST_P(B4_LightPointCopy, JacobianAndWayBack) {
+TEST_P(B4_LightPointCopy, JacobianAndInverse) {
   test::PathScene scene;
   add_emitting_object(GetParam(), &scene);
   scene.camera(Vec3(0, 0, 3), Vec3(0), 1.0f);

@@ -1,4 +1,4 @@
-// B4: every Jacobian against central differences of the map itself, written anew in double; there and back; J·J⁻¹ = 1.
+// B4: every Jacobian against central differences of the map itself, implemented again in double; inverses; J·J⁻¹ = 1.
 #include "gradient/half_vector.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ void make_basis(const DVec3& n, DVec3* s, DVec3* t) {
   *t = glm::cross(n, *s);
 }
 
-// |∂ω'/∂ω| in solid angle, by central differences along the tangents.
+// Returns |∂ω'/∂ω| in solid angle, by central differences along the tangents.
 double numeric_jacobian(const DirectionMap& map, const DVec3& wi) {
   constexpr double h = 1e-5;
   DVec3 s;
@@ -53,7 +53,7 @@ DVec3 rotate(const DVec3& from, const DVec3& to, const DVec3& v) {
   return v * c + glm::cross(k, v) * s + k * (glm::dot(k, v) * (1.0 - c));
 }
 
-// The half-vector copy from its definition, in double. False: the offset cannot scatter so.
+// Copies the half-vector by its definition, in double. Returns false if the offset path cannot scatter so.
 bool copy_in_double(const gradient::HalfVectorFrame& base, const gradient::HalfVectorFrame& offset, bool transmitted,
                     const DVec3& wi, DVec3* out) {
   const DVec3 wo = to_double(base.wo);
@@ -93,7 +93,7 @@ struct Case {
   Vec3 wi;
 };
 
-// A pair of neighbouring vertices, and a direction that the base could have sampled.
+// A pair of neighbouring vertices, and a direction that the base path could have sampled.
 bool make_case(Random* random, bool transmitted, Case* c) {
   c->base.normal = random->direction();
   c->offset.normal = random->near(c->base.normal, 0.2f);
@@ -116,7 +116,7 @@ bool make_case(Random* random, bool transmitted, Case* c) {
   return glm::length(c->wi) > 0.5f;
 }
 
-// Whether parts of a whole are all but a thousandth of it.
+// Expects `part` to be at least 99.9 % of `whole`.
 void expect_nearly_all(int part, int whole, const char* what) { EXPECT_GE(part, 0.999 * whole) << what; }
 
 void check_half_vector(bool transmitted) {
@@ -130,7 +130,7 @@ void check_half_vector(bool transmitted) {
     const auto map = [&](const DVec3& wi, DVec3* out) {
       return copy_in_double(c.base, c.offset, transmitted, wi, out);
     };
-    const double numeric = numeric_jacobian(map, to_double(c.wi));  // negative where the copy is impossible
+    const double numeric = numeric_jacobian(map, to_double(c.wi));  // negative if the copy is impossible
     verdicts_ok += (there.failure == gradient::ShiftFailure::None) == (numeric > 0.0) ? 1 : 0;
     if (there.failure != gradient::ShiftFailure::None || !(numeric > 0.0)) {
       continue;
@@ -150,7 +150,7 @@ void check_half_vector(bool transmitted) {
 
 TEST(B4_Shift, ReflectionHalfVector) { check_half_vector(false); }
 
-// Indices differ between base and offset: without the factor (η/η')² none of these would pass.
+// Indices of refraction differ between base and offset: without the factor (η/η')² none of these tests would pass.
 TEST(B4_Shift, RefractionHalfVector) { check_half_vector(true); }
 
 TEST(B4_Shift, RefractionAcrossDifferentGlass) {
@@ -164,7 +164,7 @@ TEST(B4_Shift, RefractionAcrossDifferentGlass) {
   EXPECT_NEAR(shifted.jacobian / numeric_jacobian(map, to_double(wi)), 1.0, 1e-4);
 }
 
-TEST(B4_Shift, OppositeSidesAndNoStepAreRefusedBothWays) {
+TEST(B4_Shift, OppositeSidesAndNoStepAreRefusedInBothDirections) {
   const Vec3 wo = glm::normalize(Vec3(0.2f, 0.1f, 0.9f));
   const gradient::HalfVectorFrame glass{wo, Vec3(0, 0, 1), 1.5f};
   for (float eta : {1.0f / 1.5f, 1.0f}) {
@@ -201,9 +201,9 @@ TEST(B4_Shift, Reconnection) {
   EXPECT_GE(inverse_ok, 0.999 * kShifts);
 }
 
-// A base that meets a sharp surface at z, behind a rough vertex: the offset reaches z, too, copies the event there, and
-// finds its way back.
-TEST(B4_Shift, ThroughASharedSharpVertexAndBack) {
+// The base path meets a specular surface at z behind a rough vertex. The offset path reaches z, too, copies the event
+// there, and the shift is inverted.
+TEST(B4_Shift, ThroughASharedSpecularVertexAndBack) {
   Random random(11);
   int shifted = 0, back_home = 0;
   for (int i = 0; i < kShifts; ++i) {
@@ -234,7 +234,7 @@ TEST(B4_Shift, ThroughASharedSharpVertexAndBack) {
   EXPECT_GE(back_home, 0.999 * shifted);
 }
 
-TEST(B4_Shift, BothEndsAgreeWhetherToShareASharpVertex) {
+TEST(B4_Shift, BothEndsAgreeWhetherToShareASpecularVertex) {
   Random random(13);
   int shared = 0;
   constexpr int kCases = 10000;
@@ -251,7 +251,7 @@ TEST(B4_Shift, BothEndsAgreeWhetherToShareASharpVertex) {
   EXPECT_LT(shared, kCases - kCases / 10);
 }
 
-TEST(B4_Shift, ASharpVertexIsSharedButOverShortEdgesAndThroughFlatPanes) {
+TEST(B4_Shift, ASpecularVertexIsSharedExceptOverShortEdgesAndThroughFlatPanes) {
   const Vec3 x(0, 0, 0), y(0.1f, 0, 0);
   const Vec3 far(0, 0, 1), close(0, 0, 0.05f);
   EXPECT_TRUE(gradient::shares_sharp_vertex(x, y, far, 0.0f, false));
@@ -280,7 +280,7 @@ TEST(B4_Shift, BothEndsAgreeWhetherAnEdgeIsShortAndALobeWide) {
   EXPECT_LT(is_short + alike, kCases - kCases / 10);
 }
 
-TEST(B4_Shift, ALobeLooksAlikeOverAnglesBelowItsWidth) {
+TEST(B4_Shift, ALobeIsSimilarOverAnglesBelowItsWidth) {
   const Vec3 x(0, 0, 0), y(0.1f, 0, 0), z(0, 0, 2);
   EXPECT_TRUE(gradient::looks_similar(x, y, z, 0.06f));
   EXPECT_FALSE(gradient::looks_similar(x, y, z, 0.04f));
@@ -290,8 +290,8 @@ TEST(B4_Shift, ALobeLooksAlikeOverAnglesBelowItsWidth) {
   EXPECT_TRUE(gradient::is_short_edge(x, y, x));
 }
 
-// The sharpest lobe of the class decides, whatever else the point has.
-TEST(B4_Shift, WidthOfAClassIsThatOfItsSharpestLobe) {
+// The narrowest lobe of the class decides, whatever other lobes the point has.
+TEST(B4_Shift, WidthOfAClassIsThatOfItsNarrowestLobe) {
   bsdf::Closures closures;
   const auto add = [&](bsdf::LobeType type, float alpha_x, float alpha_y) {
     bsdf::Lobe* lobe = closures.add();

@@ -1,5 +1,5 @@
-// B4: random replay: undone by the way back, and its Jacobian is what r has in its place, against finite differences of
-// the sampler.
+// B4: random replay: the inverse shift undoes it, and its Jacobian, which takes the place of r, agrees with finite
+// differences of the sampler.
 #include <cmath>
 #include <optional>
 #include <random>
@@ -31,7 +31,7 @@ path::Vertex vertex(const std::vector<bsdf::Lobe>& lobes, const Vec3& wo) {
   return v;
 }
 
-// What path/scatter.cpp makes of the numbers, for class D.
+// Returns the event that path/scatter.cpp makes of the numbers, for class D.
 std::optional<path::ScatterEvent> event_at(const path::Vertex& v, const path::VertexSample& u) {
   const bsdf::Closures& closures = v.shade.closures;
   path::ScatterEvent event;
@@ -56,7 +56,7 @@ struct Numbers {
   }
 };
 
-// Solid angle per area of the numbers.
+// Returns the solid angle per area of the random numbers.
 double stretch(const path::Vertex& v, const path::VertexSample& u) {
   constexpr float step = 2e-3f;
   Vec3 moved[2][2];
@@ -102,8 +102,8 @@ TEST(B4_Replay, JacobianIsTheRatioOfDensities) {
   }
 }
 
-// Diffuse, rough metal and a sharp lobe, whose shares differ between the vertices.
-TEST(B4_Replay, ThereAndBack) {
+// Diffuse, rough metal and a narrow lobe, whose shares differ between the vertices.
+TEST(B4_Replay, InverseUndoesTheShift) {
   Numbers random;
   int done = 0, home = 0, refused = 0;
   for (int i = 0; i < kReplays; ++i) {
@@ -143,8 +143,8 @@ TEST(B4_Replay, ThereAndBack) {
   std::printf("  %d of %d replayed, %d refused\n", done, kReplays, refused);
 }
 
-// The numbers choose a diffuse lobe at one vertex and a metal at the other: that is another path.
-TEST(B4_Replay, AnotherKindOfBounceIsRefusedBothWays) {
+// The numbers choose a diffuse lobe at one vertex and a metal at the other: these are different paths.
+TEST(B4_Replay, AnotherKindOfBounceIsRefusedInBothDirections) {
   const Vec3 wo = glm::normalize(Vec3(0.3f, 0.1f, 0.9f));
   const path::Vertex matte = vertex({lobe(bsdf::LobeType::Diffuse, 0.0f, 0.8f)}, wo),
                      metal = vertex({lobe(bsdf::LobeType::GgxReflection, 0.3f, 0.8f)}, wo);

@@ -1,4 +1,4 @@
-// Offsets wait with their reconnection until the base finds something behind it (offset_wait.cpp).
+// Offset paths defer their reconnection until the base path finds light behind it.
 #include <gtest/gtest.h>
 
 #include "gradient/gradient_integrator.h"
@@ -7,7 +7,7 @@
 namespace gradus {
 namespace {
 
-// A box with a point light that lights paths of so many bounces.
+// Returns the counters of a box with a point light that lights paths of the given number of bounces.
 film::Counters counters_of(uint32_t bounces_of_light) {
   test::PathScene scene;
   test::add_box(&scene, test::matte(Rgb(0.6f)));
@@ -22,11 +22,11 @@ film::Counters counters_of(uint32_t bounces_of_light) {
   return film.counters;
 }
 
-// But in corners, where one of the four is replayed and the others cannot wait: base_state_ and the like are for all of
-// them.
-TEST(DeferredOffsets, TraceNoConnectionBehindWhichNothingShines) {
+// Corners are exempt, where one of the four offset paths is replayed and the others cannot be deferred: base_state_ and
+// similar members are shared by all four.
+TEST(DeferredOffsets, TraceNoConnectionBehindWhichThereIsNoLight) {
   const film::Counters direct = counters_of(0), later = counters_of(2);
-  EXPECT_GT(direct.rays_bounce, direct.rays_primary);  // paths go on
+  EXPECT_GT(direct.rays_bounce, direct.rays_primary);  // paths are longer than one segment
   EXPECT_EQ(direct.shifts_attempted, later.shifts_attempted);
   EXPECT_GT(later.shifts_reconnected, later.shifts_attempted / 4);
   EXPECT_LT(direct.shifts_reconnected, direct.shifts_attempted / 20);
