@@ -12,7 +12,7 @@ namespace {
 
 using DVec3 = glm::dvec3;
 
-// No emitter of these scenes tells kinds of rays apart.
+// No emitter of these scenes depends on the kind of ray.
 const shading::RayState kAnyRay;
 
 DVec3 to_double(const Vec3& v) { return DVec3(v.x, v.y, v.z); }

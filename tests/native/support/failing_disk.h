@@ -1,4 +1,4 @@
-// Disks that fill, in a process of its own.
+// Disks that become full, in a process of its own.
 #pragma once
 
 #include <sched.h>
@@ -15,8 +15,8 @@
 
 namespace gradus::test {
 
-// Runs `write` in a process of its own, which has prepared itself: what went wrong, "" for nothing. No answer where it
-// could not prepare.
+// Runs `prepare` and then `write` in a process of its own. Returns the error message of `write`, or ""; nothing if
+// `prepare` returned false.
 inline std::optional<std::string> failure_of(const std::function<bool()>& prepare, const std::function<void()>& write) {
   int ends[2];
   EXPECT_EQ(pipe(ends), 0);
@@ -43,7 +43,8 @@ inline std::optional<std::string> failure_of(const std::function<bool()>& prepar
   return status == 0 ? std::optional(what) : std::nullopt;
 }
 
-// A disk of that size ("100k") in the place of a folder: for those who may mount one in a name space of their own.
+// Mounts a disk of that size ("100k") over a folder, in a name space of its own. Returns false where that is not
+// permitted.
 inline bool mount_disk(const std::string& folder, const char* size) {
   return (unshare(CLONE_NEWNS) == 0 || unshare(CLONE_NEWUSER | CLONE_NEWNS) == 0) &&
          mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&

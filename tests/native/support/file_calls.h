@@ -1,4 +1,4 @@
-// Calls of the system by which files are written: in test programs they are counted, and heard.
+// Hooks in the system calls that write files: test programs count and observe them.
 #pragma once
 
 #include <atomic>
@@ -6,9 +6,9 @@
 
 namespace gradus::test {
 
-// How often a file or a folder was forced to its disk.
+// Number of fsync calls on files and folders.
 extern std::atomic<int> synced_files;
-// Called, where there is one, when a file that is open is about to be written.
+// If set, called before data is written to an open file.
 extern std::function<void()> on_open_file;
 
 }  // namespace gradus::test

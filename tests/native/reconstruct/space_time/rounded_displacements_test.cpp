@@ -1,4 +1,4 @@
-// What the rounding of links to whole pixels makes of a picture's change.
+// The change of a picture that is caused by rounding correspondences to whole pixels.
 #include "reconstruct/space_time/rounded_displacements.h"
 
 #include <gtest/gtest.h>
@@ -22,12 +22,12 @@ constexpr float kNoise = 0.5f;
 
 float light(float x, float y, int c) { return 2.0f + std::sin(0.4f * x + float(c)) * std::cos(0.3f * y); }
 
-// All pixels go `shift` to the right and as far upwards; those of the right half twice as far, if they part.
-class Way : public reconstruct::HalvedWindowSource {
+// All pixels move by `shift` to the right and upwards; if `part`, those of the right half move twice as far.
+class Shift : public reconstruct::HalvedWindowSource {
  public:
-  Way(float shift, bool parts) : shift_(shift), parts_(parts) {}
+  Shift(float shift, bool parts) : shift_(shift), parts_(parts) {}
   reconstruct::WindowSize size() const override { return {kWidth, kHeight, 3, 2}; }
-  // Nothing but the picture's way changes it.
+  // The picture changes by its motion alone.
   void read_row(reconstruct::RowKind, int, int y, float* out) const override {
     for (int x = 0; x < kWidth; ++x) {
       const float off = shift(x) - float(std::lround(shift(x)));
@@ -61,7 +61,7 @@ reconstruct::Field picture_at(float off) {
   return field;
 }
 
-TEST(B2_RoundedDisplacements, ChangeAPictureByWhatLiesBesideThePixels) {
+TEST(B2_RoundedDisplacements, ChangeAPictureByItsSlope) {
   for (const float shift : {0.25f, 0.5f, 1.625f, 2.75f}) {
     const Way way(shift, false);
     const float off = shift - float(std::lround(shift));
@@ -80,7 +80,7 @@ TEST(B2_RoundedDisplacements, ChangeAPictureByWhatLiesBesideThePixels) {
   }
 }
 
-TEST(B2_RoundedDisplacements, ChangeNothingWhereTheyEndInTheMiddle) {
+TEST(B2_RoundedDisplacements, ChangeNothingWhereTheyEndInPixelCentres) {
   for (const float shift : {0.0f, 2.0f}) {
     const Way way(shift, false);
     const reconstruct::Field change =
@@ -90,8 +90,8 @@ TEST(B2_RoundedDisplacements, ChangeNothingWhereTheyEndInTheMiddle) {
   }
 }
 
-// What goes elsewhere, or nowhere, is not looked up: its light would come over the edge.
-TEST(B2_RoundedDisplacements, TakeNothingFromNeighboursThatPart) {
+// A neighbour with another displacement, or none, is not used: its light would leak across the edge.
+TEST(B2_RoundedDisplacements, UseNoNeighboursWithOtherDisplacements) {
   const Way way(0.25f, true);
   reconstruct::Field dark(kWidth, kHeight, 3);
   for (int y = 0; y < kHeight; ++y)
@@ -102,7 +102,7 @@ TEST(B2_RoundedDisplacements, TakeNothingFromNeighboursThatPart) {
     for (int x = 0; x < kWidth; ++x) EXPECT_EQ(change.row(y, 0)[x], 0.0f) << x << ' ' << y;
 }
 
-// A mirror moves and what it shows rests: the picture does not go with the surface, however this goes.
+// A mirror moves and its reflection is static: the picture does not follow the surface.
 TEST(B2_RoundedDisplacements, CountOnlyWhereTheSamplesChangeSo) {
   const Way way(0.375f, false);
   const reconstruct::Field rounding =
@@ -118,7 +118,7 @@ TEST(B2_RoundedDisplacements, CountOnlyWhereTheSamplesChangeSo) {
   }
 }
 
-TEST(B2_RoundedDisplacements, AreNeverTakenForMoreThanTheyMake) {
+TEST(B2_RoundedDisplacements, AreNeverOverestimated) {
   const Way way(0.375f, false);
   const reconstruct::Field rounding =
       reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(way, 0), way, 0);
@@ -131,7 +131,7 @@ TEST(B2_RoundedDisplacements, AreNeverTakenForMoreThanTheyMake) {
   }
 }
 
-// No feature tells what lies beside the pixels: by regression alone it would be noise.
+// No feature describes the neighbourhood of pixels: by regression alone, the change would be noise.
 TEST(B2_RoundedDisplacements, AreInTheRegressedChange) {
   reconstruct::ComponentSources sources;
   sources.push_back(std::make_unique<Way>(0.375f, false));
@@ -152,8 +152,8 @@ TEST(B2_RoundedDisplacements, AreInTheRegressedChange) {
   EXPECT_LT(error, 0.02 * squares);
 }
 
-// The same surface, and what it shows rests.
-class StaticLight : public Way {
+// The same surface with a static reflection.
+class StaticLight : public Shift {
  public:
   using Way::Way;
   void read_row(reconstruct::RowKind, int, int, float* out) const override { std::fill_n(out, 3 * kWidth, 0.0f); }
