@@ -12,11 +12,10 @@
 #include <tbb/global_control.h>
 
 #include "animation/frame_developer.h"
-#include "base/threads.h"
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/threads.h"
 #include "sequence_fixture.h"
-#include "support/failing_disk.h"
 #include "support/file_calls.h"
 #include "support/refusal.h"
 

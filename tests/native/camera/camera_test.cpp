@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "camera_fixture.h"
 #include "geometry/matrix_keys.h"
 #include "scene/scene_fixture.h"
 #include "support/chi_square.h"

@@ -25,9 +25,9 @@ double density(const camera::FilmFilter& filter, double place) {
 struct Measured {
   uint32_t type;
   float width;
-  double centre,
-      // weight of a line 0.02 pixels wide through the centre of the neighbouring pixel in Cycles 4.5; noise below 0.04
-      neighbour;
+  // Densities at the centre of the pixel and of its neighbour: the weight of a line 0.02 pixels wide in Cycles 4.5,
+  // with a noise below 0.04.
+  double centre, neighbour;
 };
 
 TEST(FilmFilter, IsAsWideAsThatOfCycles) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "camera/camera.h"
-#include "camera_fixture.h"
 #include "scene/scene_fixture.h"
 
 namespace gradus::test {

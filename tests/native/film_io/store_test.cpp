@@ -31,7 +31,6 @@
 #include "film_io/temporary_file.h"
 #include "output/combine.h"
 #include "render/fake_integrator.h"
-#include "support/failing_disk.h"
 #include "support/file_calls.h"
 #include "support/refusal.h"
 

@@ -39,7 +39,8 @@ Vec3 random_point(std::mt19937& random) {
 }
 
 // Spawns rays from points of a triangle, which must not meet it again. Returns the number of rays that do.
-int count_self_hits(const scene::Snapshot& snapshot, uint32_t instance, uint32_t triangle, int rays, std::mt19937& random) {
+int count_self_hits(const scene::Snapshot& snapshot, uint32_t instance, uint32_t triangle, int rays,
+                    std::mt19937& random) {
   std::uniform_real_distribution<float> uniform;
   int again = 0;
   for (int i = 0; i < rays; ++i) {
@@ -51,7 +52,8 @@ int count_self_hits(const scene::Snapshot& snapshot, uint32_t instance, uint32_t
     const geometry::SurfacePoint point = snapshot.surface_point(hit);
     const Vec3 direction = random_direction(random);
     geometry::Hit next;
-    again += snapshot.intersect({geometry::offset_origin(point, direction), 0.0f, direction}, GRADUS_VISIBLE_CAMERA, &next);
+    again +=
+        snapshot.intersect({geometry::offset_origin(point, direction), 0.0f, direction}, GRADUS_VISIBLE_CAMERA, &next);
   }
   return again;
 }
@@ -106,7 +108,8 @@ TEST(D2_SelfHits, InstancesFarAwayAndScaled) {
       Vec3 direction = random_direction(random);
       if (glm::dot(direction, point.geometric_normal) < 0.0f) direction = -direction;
       geometry::Hit next;
-      if (snapshot->intersect({geometry::offset_origin(point, direction), 0.0f, direction}, GRADUS_VISIBLE_CAMERA, &next))
+      if (snapshot->intersect({geometry::offset_origin(point, direction), 0.0f, direction}, GRADUS_VISIBLE_CAMERA,
+                              &next))
         again += next.instance == i;
     }
   EXPECT_EQ(again, 0);
@@ -138,11 +141,12 @@ TEST(D2_SelfHits, ALightOnTheFarSideIsNotOccluded) {
       light::LightPoint light_point;
       light::LightEvaluation view;
       const float choice = uniform(random), u = uniform(random);
-      light::sample_light_point(*snapshot, {point.position, point.geometric_normal, false}, choice, Vec2(u, uniform(random)),
-                         &light_point, &view);
+      light::sample_light_point(*snapshot, {point.position, point.geometric_normal, false}, choice,
+                                Vec2(u, uniform(random)), &light_point, &view);
       if (light_point.kind == light::LightKind::None || !(view.pdf > 0.0f)) continue;
       ++requested;
-      blocked += snapshot->occluded(light::ray_to_light(geometry::offset_origin(point, view.direction), point, light_point, view));
+      blocked += snapshot->occluded(
+          light::ray_to_light(geometry::offset_origin(point, view.direction), point, light_point, view));
     }
   }
   EXPECT_GT(requested, 50000);
@@ -249,7 +253,9 @@ TEST(Trace, PacketsOfFourEqualSingleRays) {
     snapshot->intersect4(rays, GRADUS_VISIBLE_CAMERA, four);
     const Vec3 d[4] = {rays[0].direction, rays[1].direction, rays[2].direction, rays[3].direction};
     const bool wanted[4] = {true, true, true, rays[3].t_max > 0.0f};
-    snapshot->occluded4({geometry::same(Vec3(0.0f)), geometry::lanes(d[0], d[1], d[2], d[3]), geometry::same(kInfinity)}, wanted, blocked);
+    snapshot->occluded4(
+        {geometry::same(Vec3(0.0f)), geometry::lanes(d[0], d[1], d[2], d[3]), geometry::same(kInfinity)}, wanted,
+        blocked);
     for (int k = 0; k < 4; ++k) {
       geometry::Hit one;
       const bool hit = snapshot->intersect(rays[k], GRADUS_VISIBLE_CAMERA, &one);

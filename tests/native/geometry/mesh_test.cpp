@@ -83,7 +83,7 @@ TEST(Mesh, GeneratedCoordinatesFillTheTextureSpace) {
 }
 
 std::shared_ptr<const scene::Snapshot> commit_quad(scene::Scene* scene, const GradusMesh& mesh, const Mat4& matrix,
-                                            const Mat4& previous, const Mat4& next) {
+                                                   const Mat4& previous, const Mat4& next) {
   scene->set_mesh(1, mesh);
   const uint64_t key = 1;
   GradusInstances instances{};

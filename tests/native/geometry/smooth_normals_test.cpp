@@ -76,7 +76,8 @@ TEST(SmoothNormals, NormalsBelowStretchedFacets) {
     const geometry::SurfacePoint point = snapshot->surface_point(hit);
     std::array<Vec3, 3> n;
     ASSERT_TRUE(geometry::triangle_normals(*snapshot->instances[0].mesh, hit.triangle, &n));
-    const Vec3 smooth = glm::normalize(snapshot->instances[0].normal_to_world * geometry::interpolate(n, hit.barycentric));
+    const Vec3 smooth =
+        glm::normalize(snapshot->instances[0].normal_to_world * geometry::interpolate(n, hit.barycentric));
     below += glm::dot(smooth, point.geometric_normal) < 0.0f;
     EXPECT_GE(glm::dot(point.shading_normal, point.geometric_normal), 0.0f);
     // The expected normal is mirrored at the facet: its tangential component stays.

@@ -135,7 +135,8 @@ TEST(A4_LightDensity, TriangleMetByRay) {
     geometry::SurfacePoint from;
     from.position = receiver.position;
     from.geometric_normal = receiver.normal;
-    EXPECT_FALSE(snapshot->occluded(light::ray_to_light(geometry::offset_origin(from, view.direction), from, point, view)));
+    EXPECT_FALSE(
+        snapshot->occluded(light::ray_to_light(geometry::offset_origin(from, view.direction), from, point, view)));
     ++met;
   }
   EXPECT_GT(met, 500);
@@ -182,7 +183,8 @@ TEST(A4_LightChoice, MemoChangesNoBit) {
         ASSERT_EQ(point.kind, same_point.kind);
         ASSERT_EQ(point.index, same_point.index);
         ASSERT_EQ(view.pdf, same_view.pdf);
-        ASSERT_EQ(light::light_point_pdf(*snapshot, point, receiver), light::light_point_pdf(*snapshot, point, with_memo));
+        ASSERT_EQ(light::light_point_pdf(*snapshot, point, receiver),
+                  light::light_point_pdf(*snapshot, point, with_memo));
       }
     }
   }

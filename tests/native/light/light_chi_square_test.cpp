@@ -37,7 +37,8 @@ double density(const scene::Snapshot& snapshot, const light::Receiver& receiver,
   return sum;
 }
 
-void expect_matching(const scene::Snapshot& snapshot, const light::Receiver& receiver, const Vec3& axis, uint32_t seed) {
+void expect_matching(const scene::Snapshot& snapshot, const light::Receiver& receiver, const Vec3& axis,
+                     uint32_t seed) {
   const auto sample = [&](const Vec2& u, const Vec2& v, Vec3* direction) {
     light::LightPoint point;
     light::LightEvaluation sampled_view;
@@ -196,8 +197,10 @@ void expect_light(const scene::Snapshot& snapshot, float noise) {
     for (int x = 0; x < 2000; ++x) {
       const float z = (float(y) + 0.5f) / 500.0f, phi = 2.0f * kPi * (float(x) + 0.5f) / 2000.0f,
                   s = std::sqrt(1.0f - z * z);
-      grid += double(z * shading::shade_world(snapshot, Vec3(s * std::cos(phi), s * std::sin(phi), z), shading::RayState()).x) * 2.0 *
-              double(kPi) / 1e6;
+      grid +=
+          double(z *
+                 shading::shade_world(snapshot, Vec3(s * std::cos(phi), s * std::sin(phi), z), shading::RayState()).x) *
+          2.0 * double(kPi) / 1e6;
     }
   const double mean = sum / kCount, deviation = std::sqrt(squares / kCount - mean * mean);
   EXPECT_LT(deviation, double(noise) * mean);

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "reconstruct/box_mean.h"
-#include "reconstruct/feature_frame.h"
+#include "reconstruct/feature_film.h"
 #include "reconstruct/field_values.h"
 
 namespace gradus {
@@ -100,7 +100,7 @@ TEST(Partition, NoTermIsWrongByMoreThanItsSamples) {
   const reconstruct::PictureTerm term = reconstruct::regress_term(flat_features(), image, kNever);
   const reconstruct::Field noise = reconstruct::box_mean(
       reconstruct::make_field(kWidth, kHeight,
-                 [&](int x, int y) { return reconstruct::mean_of_squares(image.half_difference, x, y); }),
+                              [&](int x, int y) { return reconstruct::mean_of_squares(image.half_difference, x, y); }),
       1);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) ASSERT_LE(term.error.row(y)[x], 1.0001f * noise.row(y)[x]) << x << " " << y;

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "reconstruct/feature_frame.h"
+#include "reconstruct/feature_film.h"
 #include "reconstruct/reconstruct_film.h"
 
 namespace gradus {

@@ -8,7 +8,7 @@
 
 #include "animation/frame_window.h"
 #include "base/error.h"
-#include "reconstruct/feature_frame.h"
+#include "reconstruct/feature_film.h"
 #include "reconstruct/regularized.h"
 #include "reconstruct/space_time/sequences.h"
 #include "reconstruct/space_time/solve_tracks.h"

@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
+#include "reconstruct/feature_film.h"
 #include "reconstruct/feature_filter.h"
-#include "reconstruct/feature_frame.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/space_time/regress_change.h"
 
@@ -23,9 +23,9 @@ constexpr float kNoise = 0.5f;
 float light(float x, float y, int c) { return 2.0f + std::sin(0.4f * x + float(c)) * std::cos(0.3f * y); }
 
 // All pixels move by `shift` to the right and upwards; if `part`, those of the right half move twice as far.
-class Shift : public reconstruct::HalvedWindowSource {
+class ShiftedWindow : public reconstruct::HalvedWindowSource {
  public:
-  Shift(float shift, bool parts) : shift_(shift), parts_(parts) {}
+  ShiftedWindow(float shift, bool parts) : shift_(shift), parts_(parts) {}
   reconstruct::WindowSize size() const override { return {kWidth, kHeight, 3, 2}; }
   // The picture changes by its motion alone.
   void read_row(reconstruct::RowKind, int, int y, float* out) const override {
@@ -63,11 +63,11 @@ reconstruct::Field picture_at(float off) {
 
 TEST(B2_RoundedDisplacements, ChangeAPictureByItsSlope) {
   for (const float shift : {0.25f, 0.5f, 1.625f, 2.75f}) {
-    const Way way(shift, false);
+    const ShiftedWindow window(shift, false);
     const float off = shift - float(std::lround(shift));
     const reconstruct::Field here = picture_at(0.0f), moved = picture_at(off),
-                             change =
-                                 reconstruct::rounding_change(here, reconstruct::read_correspondence(way, 0), way, 0);
+                             change = reconstruct::rounding_change(here, reconstruct::read_correspondence(window, 0),
+                                                                   window, 0);
     double error = 0.0, squares = 0.0;
     for (int y = 3; y < kHeight - 6; ++y)
       for (int c = 0; c < 3; ++c)
@@ -82,9 +82,9 @@ TEST(B2_RoundedDisplacements, ChangeAPictureByItsSlope) {
 
 TEST(B2_RoundedDisplacements, ChangeNothingWhereTheyEndInPixelCentres) {
   for (const float shift : {0.0f, 2.0f}) {
-    const Way way(shift, false);
+    const ShiftedWindow window(shift, false);
     const reconstruct::Field change =
-        reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(way, 0), way, 0);
+        reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(window, 0), window, 0);
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) EXPECT_EQ(change.row(y, 1)[x], 0.0f);
   }
@@ -92,21 +92,21 @@ TEST(B2_RoundedDisplacements, ChangeNothingWhereTheyEndInPixelCentres) {
 
 // A neighbour with another displacement, or none, is not used: its light would leak across the edge.
 TEST(B2_RoundedDisplacements, UseNoNeighboursWithOtherDisplacements) {
-  const Way way(0.25f, true);
+  const ShiftedWindow window(0.25f, true);
   reconstruct::Field dark(kWidth, kHeight, 3);
   for (int y = 0; y < kHeight; ++y)
     for (int x = kWidth / 2; x < kWidth; ++x) dark.row(y, 0)[x] = 1000.0f;
   const reconstruct::Field change =
-      reconstruct::rounding_change(dark, reconstruct::read_correspondence(way, 0), way, 0);
+      reconstruct::rounding_change(dark, reconstruct::read_correspondence(window, 0), window, 0);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) EXPECT_EQ(change.row(y, 0)[x], 0.0f) << x << ' ' << y;
 }
 
 // A mirror moves and its reflection is static: the picture does not follow the surface.
 TEST(B2_RoundedDisplacements, CountOnlyWhereTheSamplesChangeSo) {
-  const Way way(0.375f, false);
+  const ShiftedWindow window(0.375f, false);
   const reconstruct::Field rounding =
-      reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(way, 0), way, 0);
+      reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(window, 0), window, 0);
   reconstruct::Field sampled = rounding, kept = rounding;
   for (int y = 0; y < kHeight; ++y)
     for (int c = 0; c < 3; ++c)
@@ -119,9 +119,9 @@ TEST(B2_RoundedDisplacements, CountOnlyWhereTheSamplesChangeSo) {
 }
 
 TEST(B2_RoundedDisplacements, AreNeverOverestimated) {
-  const Way way(0.375f, false);
+  const ShiftedWindow window(0.375f, false);
   const reconstruct::Field rounding =
-      reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(way, 0), way, 0);
+      reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(window, 0), window, 0);
   for (const float factor : {-3.0f, 0.5f, 1e6f}) {
     reconstruct::Field sampled = rounding, kept = rounding;
     for_values(&sampled, [&](float& value, int, int, int) { value *= factor; });
@@ -134,7 +134,7 @@ TEST(B2_RoundedDisplacements, AreNeverOverestimated) {
 // No feature describes the neighbourhood of pixels: by regression alone, the change would be noise.
 TEST(B2_RoundedDisplacements, AreInTheRegressedChange) {
   reconstruct::ComponentSources sources;
-  sources.push_back(std::make_unique<Way>(0.375f, false));
+  sources.push_back(std::make_unique<ShiftedWindow>(0.375f, false));
   const film::Features features =
       reconstruct::filter_features(film::read_features(make_feature_film(test::room(kWidth, kHeight), 3)));
   const reconstruct::Change change =
@@ -153,9 +153,9 @@ TEST(B2_RoundedDisplacements, AreInTheRegressedChange) {
 }
 
 // The same surface with a static reflection.
-class StaticLight : public Shift {
+class StaticLight : public ShiftedWindow {
  public:
-  using Way::Way;
+  using ShiftedWindow::ShiftedWindow;
   void read_row(reconstruct::RowKind, int, int, float* out) const override { std::fill_n(out, 3 * kWidth, 0.0f); }
 };
 

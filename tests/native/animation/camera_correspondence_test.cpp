@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "camera/camera_fixture.h"
 #include "motion/pixel_matching.h"
 #include "support/path_scene.h"
 
