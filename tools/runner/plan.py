@@ -28,10 +28,10 @@ SHARDS = {
     "gradus_regression_tests": 2,
 }
 # Tests that compare elapsed time with a limit. They run when nothing else does.
-ALONE = "K1_*:K2_Cancel.*:LiveView.*:Loop.ReadingDoesNotWaitForABatch:Loop.StopsByTime*:*TimeLimit*"
+ALONE = "K1_*:K2_Cancel.*:Preview.*:Loop.ReadingDoesNotWaitForABatch:Loop.StopsByTime*:*TimeLimit*"
 # The limits of these do not hold under ThreadSanitizer, which takes ten times the time. Their threads are in others, too.
 LIMITS = (
-    "*TimeLimit*:K2_Cancel.*:LiveView.TakesATwentiethOfTheTime:LiveView.ACancelEndsTheQuarter:Loop.StopsByTime*"
+    "*TimeLimit*:K2_Cancel.*:Preview.TakesATwentiethOfTheTime:Preview.ACancelEndsTheQuarterSizedPicture:Loop.StopsByTime*"
 )
 
 # L6: a picture of 160 x 120 pixels with all passes, and scenes, commits, renders, reconstruction and frames in the
