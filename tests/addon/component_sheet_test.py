@@ -25,7 +25,10 @@ def passes_of(name: str, color: tuple[float, float, float], tracked: float) -> d
     plane = np.ones((HEIGHT, WIDTH, 1), np.float32)
     motion = plane * np.array((-4.0, 0.0, -4.0, 0.0), np.float32)
     surface = {suffix: plane * np.array(color, np.float32) for suffix in ("", " Reflectance", " Irradiance", " Normal")}
-    return {f"Path {name}{suffix}": image for suffix, image in (surface | {" Motion": motion, " Tracked": plane * tracked}).items()}
+    return {
+        f"Path {name}{suffix}": image
+        for suffix, image in (surface | {" Motion": motion, " Tracked": plane * tracked}).items()
+    }
 
 
 def test_a_column_for_each_component_and_a_row_for_each_pass(tool: dict[str, Any]) -> None:

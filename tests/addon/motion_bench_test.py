@@ -371,8 +371,7 @@ def test_components_of_which_too_little_is_tracked_are_named() -> None:
     text = report.about_truth([truth_row("Reflection", 9499), truth_row("Transmission", 9500)]).markdown
     assert (
         "tracked in 1, and 95 % of those that can be followed in 2. "
-        "Fewer of all pixels: mirror_and_glass, Reflection (94.99 %)."
-        in text
+        "Fewer of all pixels: mirror_and_glass, Reflection (94.99 %)." in text
     )
 
 
@@ -412,8 +411,7 @@ def test_the_wheel_has_the_colours_of_the_maps() -> None:
 
 
 def strip_of(frames: int) -> metrics.Passes:
-    """A reflection that goes to the right by two pixels a frame, on a surface at rest, in the left half of a picture.
-    """
+    """Returns a reflection in the left half of a picture that moves right by two pixels a frame; the surface is static."""
     light = np.stack([waves(2.0 * k) for k in range(frames)])[..., None] * np.ones(3)
     light[:, :, WIDTH // 2 :] = 0.0
     return motion_of(forward(2.0, 0.0), frames) | {

@@ -10,6 +10,7 @@ import pytest
 from gradus import native, options, passes, renderer, settings
 from gradus.failure import Failure
 
+
 def test_properties_have_the_limits_of_the_table() -> None:
     described = bpy.context.scene.gradus.bl_rna.properties
     for setting in settings.SETTINGS:
@@ -30,7 +31,11 @@ def test_values_reach_the_library_and_options_win(scene: bpy.types.Scene) -> Non
     scene.view_layers[0].pass_alpha_threshold = 0.25
     overrides = options.parse(["--gradus-samples", "9", "--gradus-integrator", "gradient"])
     filled = renderer.native_settings(native.load(), scene, scene.view_layers[0], overrides)
-    assert (filled.samples, filled.reconstruction, filled.integrator) == (9, native.Reconstruction.L1, native.Integrator.GRADIENT)
+    assert (filled.samples, filled.reconstruction, filled.integrator) == (
+        9,
+        native.Reconstruction.L1,
+        native.Integrator.GRADIENT,
+    )
     assert (filled.filter_width, filled.alpha_threshold) == (2.0, 0.25)
     assert scene.gradus.samples == 5
 

@@ -131,8 +131,12 @@ def test_escape_ends_the_frames_ahead_in_a_window(tmp_path: Path) -> None:
 
 
 def test_simulations_that_are_not_baked_are_named_and_keep_frames_on_their_own(tmp_path: Path) -> None:
-    # Not locked, the interface draws the rigid body while the render steps to the next frame, and Blender 3.4 itself may crash.
-    falling = "bpy.context.view_layer.objects.active = cube; bpy.ops.rigidbody.object_add(); scene.render.use_lock_interface = True"
+    # Unless the interface is locked, it draws the rigid body while the render steps to the next frame, and Blender 3.4
+    # itself may crash.
+    falling = (
+        "bpy.context.view_layer.objects.active = cube; bpy.ops.rigidbody.object_add(); "
+        "scene.render.use_lock_interface = True"
+    )
     with window.blender(script(tmp_path, 2, falling + "; scene.frame_end = 3")) as blender:
         blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
     assert [line.get("spp_offset", 0) for line in lines(tmp_path)] == [0, 0, 0]

@@ -31,7 +31,8 @@ def test_shows_the_picture() -> None:
         assert "Error" not in blender.log
 
 
-# A room around the camera, lit by a lamp: noise everywhere, until it is reconstructed. What Escape leaves becomes a file.
+# A room around the camera, lit by a light: there is noise everywhere until the picture is reconstructed. The picture
+# that Escape leaves is saved to a file.
 ROOM = """
 import bpy
 

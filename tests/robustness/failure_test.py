@@ -1,6 +1,6 @@
-"""I1, I2: whatever fails, in whatever phase, ends with code 1, without a file for that frame, and with the frames before it whole.
+"""I1, I2: a failure in any phase ends with code 1, without a file for that frame; the frames before it are complete.
 
-Faults are put into the add-on by a script: each replaces one function by one that raises in frame FAULT.
+A script injects the faults into the add-on: each replaces a function by one that raises in frame FAULT.
 """
 
 from __future__ import annotations

@@ -74,7 +74,9 @@ def test_i4_frames_are_equal_however_a_job_is_split(blender: Callable[..., Outco
     require_equal(workers, whole, 4)
 
 
-def test_i4_workers_that_share_a_frame_store_make_the_bits_of_one(blender: Callable[..., Outcome], tmp_path: Path) -> None:
+def test_i4_workers_that_share_a_frame_store_make_the_bits_of_one(
+    blender: Callable[..., Outcome], tmp_path: Path
+) -> None:
     """Whoever comes last has them: what a worker reads of the other's frames depends on which of them are there."""
     whole, parts, again = (tmp_path / name for name in ("whole", "parts", "again"))
 
@@ -82,7 +84,10 @@ def test_i4_workers_that_share_a_frame_store_make_the_bits_of_one(blender: Calla
         return ["--", "--gradus-frame-store", str(tmp_path / name)]
 
     assert blender(*arguments(whole, True, "-s", "1", "-e", "6", "-a"), *store("one")).code == 0
-    at_once(tmp_path, *([*arguments(parts, True, "-s", first, "-e", last, "-a"), *store("shared")] for first, last in ("13", "46")))
+    at_once(
+        tmp_path,
+        *([*arguments(parts, True, "-s", first, "-e", last, "-a"), *store("shared")] for first, last in ("13", "46")),
+    )
     assert len(pictures(parts)) == 6
     assert blender(*arguments(again, True, "-s", "1", "-e", "6", "-a"), *store("shared")).code == 0
     require_equal(again, whole, 6)

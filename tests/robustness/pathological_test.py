@@ -33,7 +33,17 @@ def stage(scene: bpy.types.Scene) -> bpy.types.Scene:
     recording.add(recording.grid(4, size=1.5), "floor", (1.5, 0.0, 0.0))
     recording.add_camera().location = (0.0, 0.0, 6.0)
     layer = scene.view_layers[0]
-    for name in ("z", "normal", "uv", "position", "vector", "diffuse_direct", "diffuse_indirect", "diffuse_color", "object_index"):
+    for name in (
+        "z",
+        "normal",
+        "uv",
+        "position",
+        "vector",
+        "diffuse_direct",
+        "diffuse_indirect",
+        "diffuse_color",
+        "object_index",
+    ):
         setattr(layer, f"use_pass_{name}", True)
     return scene
 
@@ -63,7 +73,9 @@ def all_hidden(stage: bpy.types.Scene) -> None:
 
 
 @pytest.mark.parametrize("change", [empty, all_hidden])
-def test_e1_scenes_without_surfaces_show_the_world(stage: bpy.types.Scene, render: Render, change: Callable[..., None]) -> None:
+def test_e1_scenes_without_surfaces_show_the_world(
+    stage: bpy.types.Scene, render: Render, change: Callable[..., None]
+) -> None:
     change(stage)
     assert np.allclose(picture(stage, render)["Combined"][:, :, :3], WORLD, atol=1e-3)
     stage.world = None
@@ -152,7 +164,9 @@ def shows(place: str) -> bpy.types.Material:
 
 @pytest.mark.parametrize("value", [NAN, INF])
 @pytest.mark.parametrize("place", ["vertices", "normals", "UVs", "colours"])
-def test_e2_broken_meshes_cost_themselves_alone(stage: bpy.types.Scene, render: Render, place: str, value: float) -> None:
+def test_e2_broken_meshes_cost_themselves_alone(
+    stage: bpy.types.Scene, render: Render, place: str, value: float
+) -> None:
     whole = right_half(picture(stage, render))
     mesh = triangle(place, value)
     mesh.materials.append(shows(place))

@@ -1,4 +1,4 @@
-"""The test runner (tools/runner): a file that crashes or hangs costs itself, and its changes of the process are undone."""
+"""The test runner (tools/runner): a crash or a hang fails one file, and changes of the process are undone."""
 
 from __future__ import annotations
 

@@ -37,7 +37,9 @@ def start(folder: Path, size: str, samples: int, level: int, frames: int, *argum
     (folder / "home").mkdir(exist_ok=True)
     output = ["-o", f"{folder}/f_####", "-F", "PNG", "-s", "1", "-e", str(frames), "-a"]
     home = folder / "home" / str(time.monotonic_ns())
-    process = application.start("--addons", "gradus", "-E", "GRADUS", "--python-expr", script, *output, "--", *arguments, folder=home)
+    process = application.start(
+        "--addons", "gradus", "-E", "GRADUS", "--python-expr", script, *output, "--", *arguments, folder=home
+    )
     lines = []
     for line in process.stdout:
         lines.append(line)
@@ -115,7 +117,9 @@ def test_i3_with_a_frame_store_the_rerun_has_the_bits_of_an_undisturbed_render(t
     kill_again_and_again(disturbed, "--gradus-frame-store", disturbed / "store")
     complete(undisturbed, "--gradus-frame-store", undisturbed / "store")
     for path in sorted(undisturbed.glob("f_*")):
-        found, expected = (np.asarray(oiio.ImageInput.open(str(file)).read_image()) for file in (disturbed / path.name, path))
+        found, expected = (
+            np.asarray(oiio.ImageInput.open(str(file)).read_image()) for file in (disturbed / path.name, path)
+        )
         assert np.array_equal(found, expected), path.name
     assert not list(disturbed.glob("store/**/*.part")), "what killed processes have left is removed by the next"
 

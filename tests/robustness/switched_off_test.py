@@ -25,7 +25,9 @@ def unstated(source: str, today: datetime.date) -> list[str]:
 
 
 def test_m3_nothing_is_switched_off_without_reason_and_date() -> None:
-    sources = [path for path in TESTS.rglob("*_test.*") if path != Path(__file__).resolve() and path.suffix in (".py", ".cpp")]
+    sources = [
+        path for path in TESTS.rglob("*_test.*") if path != Path(__file__).resolve() and path.suffix in (".py", ".cpp")
+    ]
     assert len(sources) > 80
     found = {path.name: lines for path in sources if (lines := unstated(path.read_text(), datetime.date.today()))}
     assert not found

@@ -31,10 +31,15 @@ def new_tree(scene: bpy.types.Scene) -> tuple[bpy.types.NodeTree, bpy.types.Node
 
 
 def render_muted(
-    sample: Path, folder: Path, muted: Iterable[str], *, percentage: int, change: Callable[[bpy.types.Scene], None] | None = None,
+    sample: Path,
+    folder: Path,
+    muted: Iterable[str],
+    *,
+    percentage: int,
+    change: Callable[[bpy.types.Scene], None] | None = None,
     **settings: Any,
-) -> images.Passes:  # fmt: skip
-    """All passes of a sample that has a compositor, and its composite, with these nodes muted, after a change."""
+) -> images.Passes:
+    """Renders a sample with a compositor after `change`, with nodes muted; returns all passes and the composite."""
     bpy.ops.wm.open_mainfile(filepath=str(sample))
     scene = bpy.context.scene
     assert (scene.render.engine, scene.render.use_compositing) == ("GRADUS", True)

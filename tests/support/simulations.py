@@ -72,7 +72,13 @@ def simulation_zone() -> None:
     group = bpy.data.node_groups.new("Rising", "GeometryNodeTree")
     for kind in ("INPUT", "OUTPUT"):
         group.interface.new_socket("Geometry", in_out=kind, socket_type="NodeSocketGeometry")
-    names = ("NodeGroupInput", "GeometryNodeSimulationInput", "GeometryNodeSetPosition", "GeometryNodeSimulationOutput", "NodeGroupOutput")
+    names = (
+        "NodeGroupInput",
+        "GeometryNodeSimulationInput",
+        "GeometryNodeSetPosition",
+        "GeometryNodeSimulationOutput",
+        "NodeGroupOutput",
+    )
     nodes = [group.nodes.new(name) for name in names]
     nodes[1].pair_with_output(nodes[3])
     nodes[2].inputs["Offset"].default_value = (0.0, 0.0, 0.1)
@@ -120,7 +126,11 @@ KINDS: dict[str, Callable[[], None]] = {
 
 
 def exists(kind: str) -> bool:
-    return kind != "simulation zone" or bpy.app.version >= (4, 1, 0)  # the interface of node groups, of which we make one
+    return kind != "simulation zone" or bpy.app.version >= (
+        4,
+        1,
+        0,
+    )  # the interface of node groups, of which we make one
 
 
 def places(depsgraph: Any) -> Places:
