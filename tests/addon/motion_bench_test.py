@@ -411,7 +411,7 @@ def test_the_wheel_has_the_colours_of_the_maps() -> None:
 
 
 def strip_of(frames: int) -> metrics.Passes:
-    """Returns a reflection in the left half of a picture that moves right by two pixels a frame; the surface is static."""
+    """Returns a reflection that moves right by two pixels a frame, in the left half; its surface is static."""
     light = np.stack([waves(2.0 * k) for k in range(frames)])[..., None] * np.ones(3)
     light[:, :, WIDTH // 2 :] = 0.0
     return motion_of(forward(2.0, 0.0), frames) | {

@@ -142,7 +142,7 @@ TEST(NonFinite, SamplesAreDroppedAndCounted) {
 
 // A material whose emission is NaN is black. Regression: all paths that met it were dropped, two thirds of the picture.
 TEST(NonFinite, AMaterialThatEmitsNaNIsBlack) {
-  const auto shining = [](const std::string& name, float value) {
+  const auto emitting = [](const std::string& name, float value) {
     PathScene scene;
     build_box(&scene);
     Surface surface = test::matte(Rgb(0.2f));
@@ -150,9 +150,9 @@ TEST(NonFinite, AMaterialThatEmitsNaNIsBlack) {
     scene.quad(Vec3(-0.2f, -0.2f, 0.9f), Vec3(0.4f, 0, 0), Vec3(0, 0.4f, 0), scene.material(surface));
     return render(name, &scene, {});
   };
-  const Outcome black = shining("material that does not shine", 0.0f);
+  const Outcome black = emitting("material without emission", 0.0f);
   for (const float value : {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity}) {
-    const Outcome broken = shining("material that shines " + text_of(value), value);
+    const Outcome broken = emitting("material that emits " + text_of(value), value);
     EXPECT_NEAR(mean(broken.noisy), mean(black.noisy), 0.05 * mean(black.noisy));
   }
 }

@@ -32,7 +32,7 @@ std::vector<LightCase> without_extent() {
          {GRADUS_LIGHT_POINT, GRADUS_LIGHT_SPOT, GRADUS_LIGHT_SUN, GRADUS_LIGHT_RECTANGLE, GRADUS_LIGHT_ELLIPSE}) {
       GradusLight light = make_test_light(type, 1.0f);
       light.radius = light.angle = light.size[0] = light.size[1] = size;
-      cases.push_back({"lamp without extent", light});
+      cases.push_back({"light without extent", light});
     }
   }
   for (const float cone : {0.0f, 1e-6f, kPi}) {
@@ -73,7 +73,7 @@ TEST(AnalyticLights, Of1e38Watts) {
     PathScene scene;
     build_box(&scene);
     scene.light(make_test_light(type, 1e38f));
-    render("lamp of 1e38, type " + std::to_string(type), &scene, Bounds().dropping(all / 4).without_double());
+    render("light of 1e38, type " + std::to_string(type), &scene, Bounds().dropping(all / 4).without_double());
   }
 }
 
@@ -93,7 +93,7 @@ TEST(AnalyticLights, AHugeOneThatFacesAwayAddsNothing) {
   build_box(&scene);
   const Outcome alone = render("box without it", &scene, {});
   scene.light(make_light(GRADUS_LIGHT_RECTANGLE, translation(Vec3(0, 0, -50)), Rgb(1e30f)));
-  const Outcome outcome = render("lamp of 1e30 that shines away", &scene, {});
+  const Outcome outcome = render("light of 1e30 that faces away", &scene, {});
   EXPECT_NEAR(mean(outcome.noisy) / mean(alone.noisy), 1.0, 0.05);
 }
 

@@ -247,7 +247,7 @@ TEST_F(FiveFrames, CorrespondencesAreThoseThatTheNextFrameReplayed) {
   std::vector<int32_t> correspondence(20);
   window->read_correspondence(0, 0, correspondence.data());
   EXPECT_EQ(correspondence[3], 0);
-  EXPECT_EQ(correspondence[10], film::kNoCorrespondence) << "nobody has followed it";
+  EXPECT_EQ(correspondence[10], film::kNoCorrespondence) << "no frame replays it";
   window->read_correspondence(2, 0, correspondence.data());
   EXPECT_EQ(correspondence[10], 10) << "the same frame again";
   window->read_correspondence(3, 0, correspondence.data());

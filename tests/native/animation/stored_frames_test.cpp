@@ -212,7 +212,7 @@ TEST(K1_StoredFrames, ATimeLimitCountsTheSamplesOfItsOwnRun) {
   };
   const double before = sample_both(0.5f, 0.25f), after = sample_both(1.5f, 0.3f);
   const double offset = film::mean_samples(*files.load(2, animation::FrameSamples::kReplayed));
-  EXPECT_GT(after, before) << "it goes on";
+  EXPECT_GT(after, before) << "continues";
   EXPECT_LT(offset, 1.5 * 1.2 * (after - before));
 }
 

@@ -71,7 +71,7 @@ TEST(BlockCodec, DamagedBlocksAreRefused) {
   EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &longer));
   EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &shorter));
   packed.push_back(0);
-  EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &back)) << "it goes on";
+  EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &back)) << "continues";
   packed.pop_back();
   packed[packed.size() / 2] ^= 0x55;
   EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &back)) << "its sum is another";

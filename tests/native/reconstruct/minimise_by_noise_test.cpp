@@ -67,9 +67,9 @@ TEST(B2_ByNoise, IgnoresOutliersOfOneHalf) {
 TEST(B2_ByNoise, IsNotStoppedByAVisibleLight) {
   const int w = 96, h = 64;
   const auto lit = [&](size_t pixel) { return pixel % w >= 60 && pixel % w < 70 && pixel / w >= 20 && pixel / w < 30; };
-  const auto solve_beside = [&](float lamp) {
+  const auto solve_beside = [&](float light) {
     std::vector<float> truth = smooth_image(w, h, 3);
-    for (size_t i = 0; i < truth.size(); ++i) truth[i] += lit(i / 3) ? lamp : 0.0f;
+    for (size_t i = 0; i < truth.size(); ++i) truth[i] += lit(i / 3) ? light : 0.0f;
     film::GradientImages images = noisy_images(
         w, h, 3, truth, [](size_t) { return 0.3f; }, [](size_t i) { return i % 37 == 0 ? 10.0f : 0.01f; });
     reconstruct::SolveReport report;

@@ -203,7 +203,7 @@ TEST(L3_Merge, FilmsOfUnequalCountsAreAddedPixelByPixel) {
   }
   EXPECT_NE(merged.count[0][merged.index(3, 7)], merged.count[0][merged.index(kWidth - 5, 7)]);
   EXPECT_THROW(start(adaptive_settings(1024), quiet_at_the_left(), std::make_shared<const film::Film>(merged)), Error)
-      << "no one goes on from it";
+      << "it is not resumed";
 }
 
 // Samples that finished blocks leave are not distributed beyond what the other blocks take in the batch.

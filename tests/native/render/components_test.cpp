@@ -351,7 +351,7 @@ TEST(Components, HaveTheMapsIndicesAndEmissionOfTheSurfacesTheyShow) {
   expect_shown(shown_at(*render, "Emission", left), wall);  // the wall is emissive
   expect_shown(shown_at(*render, "Reflection", left), kNothingShown);
   expect_shown(shown_at(*render, "Transmission", left), kNothingShown);
-  EXPECT_TRUE(render->film()->components[0].non_specular[0].empty()) << "nobody asked for these";
+  EXPECT_TRUE(render->film()->components[0].non_specular[0].empty()) << "not requested";
 }
 
 // For directly visible emitters, the emission is the picture: a light before another one, and both before the world.
@@ -389,7 +389,7 @@ TEST(Components, EmittersHaveTheirOwnDistance) {
   const std::vector<float> seen = component(*render, "Emission", GRADUS_COMPONENT_DEPTH),
                            mirrored = component(*render, "Reflection", GRADUS_COMPONENT_DEPTH);
   const size_t left = 20 * kSide + 10, right = 20 * kSide + 21;
-  EXPECT_NEAR(seen[right], 4.0f, 0.1f) << "the lamp";
+  EXPECT_NEAR(seen[right], 4.0f, 0.1f) << "the light";
   EXPECT_EQ(seen[left], 1e10f) << "hidden by the mirror";
   EXPECT_EQ(mirrored[left], 1e10f) << "the sky";
   EXPECT_GT(sum_of(component(*render, "Reflection")), 1.0);

@@ -79,7 +79,7 @@ TEST_F(DenoisedRender, CombinedIsDenoisedAndOtherPassesAreNot) {
     const auto expected = denoised(read(*plain, GRADUS_PASS_COMBINED, kAll), *render->film());
     expect_near(read(*render, GRADUS_PASS_COMBINED, kAll), expected);
     EXPECT_EQ(read(*render, GRADUS_PASS_NOISY_IMAGE, kAll), read(*plain, GRADUS_PASS_NOISY_IMAGE, kAll));
-    EXPECT_TRUE(film::has_features(*render->film())) << "nobody asked for the passes";
+    EXPECT_TRUE(film::has_features(*render->film())) << "the passes were not requested";
     EXPECT_FALSE(film::has_features(*plain->film()));
   }
 }
@@ -257,7 +257,7 @@ TEST_F(DenoisedRender, ACancelDuringItLeavesTheReconstruction) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   render->cancel();
-  ASSERT_TRUE(render->wait(1.0)) << "it goes on";
+  ASSERT_TRUE(render->wait(1.0)) << "continues";
   EXPECT_EQ(render->outcome(nullptr), GRADUS_ERROR_CANCELLED);
   EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, kAll), plain);
 }

@@ -358,14 +358,14 @@ TEST(Loop, StopsBlocksByNoise) {
 TEST(Loop, FailuresOfTheIntegratorBecomeTheOutcome) {
   const auto failing = [](FakeIntegrator* fake) {
     fake->before = [](const integrator::WorkUnit& unit) {
-      if (unit.first_sample >= 4) throw std::runtime_error("the lamp is broken");
+      if (unit.first_sample >= 4) throw std::runtime_error("the light is broken");
     };
   };
   auto render = start(small_settings(64, 48, 16), fake_factory(failing));
   ASSERT_TRUE(render->wait(10.0));
   std::string text;
   EXPECT_EQ(render->outcome(&text), GRADUS_ERROR_UNKNOWN);
-  EXPECT_EQ(text, "the lamp is broken");
+  EXPECT_EQ(text, "the light is broken");
   EXPECT_EQ(render->progress().phase, uint32_t{GRADUS_PHASE_FAILED});
 }
 

@@ -25,7 +25,7 @@ TEST(RefreshRule, FollowsItsOwnCost) {
   rule.expect(1.0);
   EXPECT_FALSE(rule.is_due(1.0, 0.1)) << "the render will take 10 s: too short to give 1 s away at once";
   EXPECT_TRUE(rule.is_due(1.0, 0.05)) << "20 s: long enough, and it need not wait for them";
-  EXPECT_TRUE(rule.is_due(4.0, 0.4)) << "but nobody waits longer for the first one";
+  EXPECT_TRUE(rule.is_due(4.0, 0.4)) << "the first picture is not delayed";
   rule.done(4.0, 2.0);
   EXPECT_FALSE(rule.is_due(43.9, 1.0));
   EXPECT_TRUE(rule.is_due(44.0, 1.0));

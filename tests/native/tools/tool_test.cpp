@@ -332,7 +332,7 @@ TEST_F(Tool, WritesPassesOfComponents) {
        {"Path Diffuse UV.G", "Path Diffuse Object Index.V", "Path Diffuse Face Index.V", "Path Diffuse Emit.B"})
     EXPECT_NE(std::find(layers.begin(), layers.end(), layer), layers.end()) << layer;
   EXPECT_EQ(std::find(layers.begin(), layers.end(), "Path Diffuse Normal.R"), layers.end())
-      << "nobody asked for its sampling";
+      << "its sampling was not requested";
   ASSERT_EQ(run("render good.gradus -o whole.exr").code, 0);
   const Outcome whole = run("reconstruct whole.exr -o x.exr --component-passes color");
   EXPECT_EQ(whole.code, 1);
