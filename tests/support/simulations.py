@@ -1,4 +1,4 @@
-"""Small scenes with one simulation each that is not baked, and where things are in them."""
+"""Small scenes, each with one simulation that is not baked, and the positions of their objects."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def particles() -> None:
 
 
 def stream() -> None:
-    """Particles that come and go."""
+    """Adds particles that are emitted and die."""
     particles()
     settings = bpy.data.particles[0]
     settings.count, settings.frame_end, settings.lifetime = 16, 6.0, 20.0
@@ -88,7 +88,7 @@ def simulation_zone() -> None:
 
 
 def dynamic_paint() -> None:
-    """Its cache is on disk, beside the file: there is none before that is saved."""
+    """Adds a simulation with a cache on disk, next to the file: it has none until the file is saved."""
     bpy.ops.wm.save_as_mainfile(filepath=str(Path(tempfile.mkdtemp(dir=bpy.app.tempdir)) / "paint.blend"))
     canvas = _new("Canvas", _grid(8), (0.0, 0.0, 0.0)).modifiers.new("Dynamic Paint", "DYNAMIC_PAINT")
     bpy.ops.dpaint.type_toggle(type="CANVAS")
@@ -100,7 +100,7 @@ def dynamic_paint() -> None:
 
 
 def liquid() -> None:
-    """One drop, computed as it is played."""
+    """Adds one drop of fluid that is computed during playback."""
     domain = _new("Domain", _ball(2.0), (0.0, 0.0, 0.0)).modifiers.new("Fluid", "FLUID")
     domain.fluid_type = "DOMAIN"
     settings = domain.domain_settings
@@ -134,7 +134,7 @@ def exists(kind: str) -> bool:
 
 
 def places(depsgraph: Any) -> Places:
-    """Where every instance is, and where its vertices are on average."""
+    """Returns the position of every instance, and the mean position of its vertices."""
     found = {}
     for item in depsgraph.object_instances:
         if item.object.type == "MESH":
@@ -145,7 +145,7 @@ def places(depsgraph: Any) -> Places:
 
 
 def in_order(scene: bpy.types.Scene, first: int, last: int) -> dict[int, Places]:
-    """What the frames show when the scene is stepped through all of them."""
+    """Returns the positions in the frames when the scene is stepped through all of them."""
     found = {}
     for frame in range(first, last + 1):
         scene.frame_set(frame)

@@ -1,5 +1,5 @@
-/* A stand-in for Open Image Denoise: the functions of its C API that the library uses, with simple arithmetic instead of
- * the network. A guide that is filtered alone is halved; a picture becomes picture + 1 + albedo + 10 normal. The
+/* A stand-in for Open Image Denoise: the functions of its C API that the library uses, with simple arithmetic instead
+ * of the network. A guide that is filtered alone is halved; a picture becomes picture + 1 + albedo + 10 normal. The
  * environment variable FAKE_OIDN selects how it misbehaves: old, no_device, no_filter, refuses, fails, slow or nan.
  */
 #include <math.h>
