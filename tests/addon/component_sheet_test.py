@@ -52,7 +52,7 @@ def flow_of(name: str, x: float) -> dict[str, np.ndarray]:
 
 
 def test_motion_of_irradiance_was_taken_for_that_of_another_component(tool: dict[str, Any]) -> None:
-    """It ended in KeyError: 'Path Diffuse Irradiance Tracked', or by its length dimmed all others."""
+    """Regression: it ended in KeyError: 'Path Diffuse Irradiance Tracked', or its length dimmed all others."""
     passes = {"Combined": np.ones((HEIGHT, WIDTH, 4), np.float32)}
     for name in ("Diffuse", "Irradiance"):
         passes |= passes_of(name, (1.0, 0.0, 0.0), 1.0) | flow_of(name, -400.0)

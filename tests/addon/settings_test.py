@@ -22,7 +22,7 @@ def test_properties_have_the_limits_of_the_table() -> None:
 
 
 def test_seconds_are_shown_as_such() -> None:
-    """Time Limit had no unit."""
+    """Regression: Time Limit had no unit."""
     assert bpy.context.scene.gradus.bl_rna.properties["time_limit"].unit == "TIME_ABSOLUTE"
 
 
@@ -42,7 +42,7 @@ def test_values_reach_the_library_and_options_win(scene: bpy.types.Scene) -> Non
 
 @pytest.mark.parametrize("value", [99, 3], ids=["never used", "of the removed WEIGHTED"])
 def test_a_stored_value_of_another_version_names_its_setting(scene: bpy.types.Scene, value: int) -> None:
-    """It was a traceback that ended with KeyError: ''."""
+    """Regression: a traceback ended with KeyError: ''."""
     if "gradus" not in scene:
         scene["gradus"] = {}
     scene["gradus"]["reconstruction"] = value

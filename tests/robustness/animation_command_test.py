@@ -1,4 +1,4 @@
-"""Animations from the command line: which frames, what is left of a job with a fault, and how it ends by SIGINT."""
+"""Animations from the command line: their frames, the files left after a fault, and the end by SIGINT."""
 
 from __future__ import annotations
 

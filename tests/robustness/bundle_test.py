@@ -1,4 +1,4 @@
-"""Architecture, rule 10: what travels in lib/ is complete, and takes nothing from the host by accident."""
+"""The libraries in lib/ are complete and use no library of the host."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_file_names_are_sonames(bundle: list[Path]) -> None:
 
 
 def test_sonames_are_ours(bundle: list[Path]) -> None:
-    """Those of the host: what this process has mapped and what lies in Blender's folder."""
+    """Returns the libraries of the host: those that this process has mapped, and those in Blender's folder."""
     host = {path for path in mapped() if path.parent != bundle[0].parent}
     host |= set(Path(bpy.__file__).resolve().parent.rglob("*.so*")) if getattr(bpy.app, "module", False) else set()
     sonames = {name for path in host if path.is_file() for name in dynamic(path, "SONAME")}
@@ -67,7 +67,7 @@ def test_sonames_are_ours(bundle: list[Path]) -> None:
 
 
 def test_loading_maps_only_our_libraries(bundle: list[Path]) -> None:
-    """In a process of its own, where nothing was loaded before."""
+    """Runs in a process of its own, in which no library was loaded before."""
     folder = bundle[0].parent
     script = f"""
 import sys

@@ -1,4 +1,4 @@
-"""Every entry of the catalogue has a test, and every id in a test's name an entry."""
+"""Every entry of the catalogue has a test, and every id in the name of a test has an entry."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a user does first: F12 in a window, a look at the picture that grows there, and Escape."""
+"""F12 in a window: the picture while it is rendered, and Escape."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ bpy.app.timers.register(ready, first_interval=1.0)
 
 
 def roughness(path: Path, layer: str) -> float:
-    """Mean difference between neighbours, relative to the mean."""
+    """Returns the mean difference between neighbouring pixels, relative to the mean."""
     image = oiio.ImageInput.open(str(path))
     spec = image.spec()
     pixels = np.asarray(image.read_image("float")).reshape(spec.height, spec.width, spec.nchannels)

@@ -42,7 +42,7 @@ os._exit(0)
 
 
 def test_rays_hit_in_this_process() -> None:
-    """In Blender 3.4 this is the application itself."""
+    """Blender 3.4 is the application itself."""
     one_ray.check()
 
 

@@ -1,4 +1,4 @@
-"""The check of the direction of includes (tools/checks/includes.py) sees what it is to see."""
+"""The check of the direction of includes (tools/checks/includes.py) finds every kind of violation."""
 
 from __future__ import annotations
 

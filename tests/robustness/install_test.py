@@ -1,4 +1,4 @@
-"""The zip installs the user's way and renders in all hosts, on a Debian that has none of our development packages."""
+"""A user can install the zip and render in all hosts, on a Debian without development packages."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def prepare(work: Path, package: Path) -> None:
 
 
 def check_picture(path: Path) -> None:
-    """Blender's first cube: lit, in front of a dark grey world."""
+    """Expects Blender's default cube, lit, in front of a dark grey world."""
     assert path.exists(), "no picture"
     image = oiio.ImageInput.open(str(path))
     spec = image.spec()

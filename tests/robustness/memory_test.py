@@ -1,4 +1,4 @@
-"""J1: late frames need the memory of early ones. 400 frames with every change, 1000 in the full run."""
+"""J1: late frames need no more memory than early ones. 400 frames with every change, 1000 in the full run."""
 
 from __future__ import annotations
 

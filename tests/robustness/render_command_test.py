@@ -1,4 +1,4 @@
-"""`make render` tells mistakes in its variables before it sets up or builds anything."""
+"""`make render` reports mistakes in its variables before it sets up or builds anything."""
 
 from __future__ import annotations
 

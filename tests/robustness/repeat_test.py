@@ -57,7 +57,7 @@ def test_l2_runs_in_other_processes_and_folders_have_the_same_bits(
 
 
 def _still(scene: bpy.types.Scene, order: list[int]) -> None:
-    """Three glowing and three grey cubes in a row under a lamp, linked in the order given."""
+    """Adds three emissive and three grey cubes in a row under a light, linked in the given order."""
     for index in order:
         bpy.ops.mesh.primitive_cube_add(size=0.8, location=(index - 2.5, 0.0, 0.0))
         cube = bpy.context.object

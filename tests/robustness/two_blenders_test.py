@@ -1,4 +1,4 @@
-"""H7: two Blenders render at once, each with its own library."""
+"""H7: two Blender processes render at the same time, each with its own library."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ def display() -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def session(display: str) -> Iterator[tuple[Path, dict]]:
-    """One session at the window: its folder of pictures, and its answers."""
+    """Runs one session in the window; returns its folder of pictures and its answers."""
     with tempfile.TemporaryDirectory(prefix="gradus-window-") as name:
         folder = Path(name)
         arguments = ["--factory-startup", "-noaudio", "-p", "0", "0", "1024", "700"]
@@ -85,13 +85,13 @@ def session(display: str) -> Iterator[tuple[Path, dict]]:
 
 
 def picture(path: Path) -> np.ndarray:
-    """RGB, 0 to 1, top row first."""
+    """Returns RGB from 0 to 1, top row first."""
     file = oiio.ImageInput.open(str(path))
     return np.asarray(file.read_image("float"))[:, :, :3]
 
 
 def viewport(path: Path) -> np.ndarray:
-    """The middle of the 3D viewport in the factory layout."""
+    """Returns the middle of the 3D viewport in the factory layout."""
     return picture(path)[200:420, 150:620]
 
 
