@@ -7,7 +7,6 @@ in every host.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from .hosts import HOSTS, TestFile
@@ -66,16 +65,8 @@ def test_files(selection: str) -> list[Path]:
     return sorted({path for folder in folders for pattern in patterns for path in folder.rglob(pattern)})
 
 
-@dataclass
-class Plan:
-    """Jobs by lane. A lane is a host or "native"; the jobs in `alone` run after all others, one at a time."""
-
-    lanes: dict[str, list[TestFile | Program]]
-    alone: dict[str, list[TestFile | Program]]
-
-
 def smoke() -> dict[str, dict[Path, tuple[str, ...]]]:
-    """Host → file → names of tests; no names: the whole file."""
+    """Returns, by host and file, the names of tests in tests/smoke.txt; without names, the whole file runs."""
     found: dict[str, dict[Path, tuple[str, ...]]] = {host: {} for host in HOSTS}
     others = [host for host in HOSTS if host not in ("plain", COMPLETE)]
     for number, line in enumerate(SMOKE.read_text().splitlines(), 1):
