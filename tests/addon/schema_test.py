@@ -1,4 +1,4 @@
-"""What schema/ determines is written anew by tools/schema/generate.py and is not edited by hand."""
+"""The files that tools/schema/generate.py writes from schema/ are up to date and not edited by hand."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def generate(root: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
-    """A copy of the schema, its script and the user guide, with everything generated."""
+    """Returns a copy of the schema, its script and the user guide, with all generated files."""
     for folder in ("schema", "tools/schema"):
         shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
     (tmp_path / "docs").mkdir()

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "film/read_pixels.h"
 #include "film/features.h"
 #include "film/pass_planes.h"
+#include "film/read_pixels.h"
 #include "gradient/gradient_integrator.h"
 #include "reconstruct/solver.h"
 #include "render/block_noise.h"
@@ -195,7 +195,7 @@ double estimated_error(const film::Film& film, uint32_t reconstruction, const st
 // Regression: pixel blocks stopped by the error of L2 whatever the delivered reconstruction, so L1 took more samples
 // than its threshold required. An estimate with L1's own weights, which follow the noise, would have stopped it much
 // too early.
-TEST_P(A8_Delivered, ErrorThatStopsCellsIsThatOfTheReconstructionDelivered) {
+TEST_P(A8_Delivered, ErrorThatStopsBlocksIsThatOfTheDeliveredReconstruction) {
   test::PathScene scene;
   test::build(GetParam(), &scene);
   GradusSettings settings = sobol_settings(48);

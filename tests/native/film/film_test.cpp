@@ -35,7 +35,7 @@ TEST(B6_FiniteCheck, NonFiniteSamplesStayOutAndAreCounted) {
   }
 }
 
-// Samples of 3e38 are finite, sums of two were not, nor were the mean of both halves and the variance.
+// Regression: samples of 3e38 are finite, but their sum, the mean of both halves and the variance were not.
 TEST(B6_FiniteCheck, SumsThatWouldOverflowStayOutAndAreCounted) {
   film::Film film = small_film();
   film::PassPlane plane = film::make_pass_planes(uint64_t{1} << GRADUS_PASS_DIFFUSE_COLOR, 12)[0];
@@ -56,10 +56,10 @@ TEST(B6_FiniteCheck, SumsThatWouldOverflowStayOutAndAreCounted) {
   EXPECT_TRUE(is_finite(variances(film)[15]));
 }
 
-TEST(B6_FiniteCheck, NumbersOfObjectsAreThoseOfTheFirstSample) {
+TEST(B6_FiniteCheck, ObjectNumbersAreThoseOfTheFirstSample) {
   film::Counters counters;
   film::NonSpecularDetails sum;
-  film::add_details({Vec3(0.0f), Rgb(5.0f), 1.0f}, &sum, &counters);  // a light has none
+  film::add_details({Vec3(0.0f), Rgb(5.0f), 1.0f}, &sum, &counters);  // a light has no object number
   EXPECT_EQ(sum.face, -1.0f);
   for (const auto& [object, sample] : {std::pair{3.0f, 6u}, {4.0f, 2u}, {5.0f, 2u}, {6.0f, 7u}}) {
     film::add_details({Vec3(1.0f), Rgb(1.0f), 1.0f, object, 10.0f * object, sample}, &sum, &counters);
@@ -76,7 +76,7 @@ TEST(B6_FiniteCheck, NumbersOfObjectsAreThoseOfTheFirstSample) {
   EXPECT_EQ(counters.nonfinite_feature, 1u);
 }
 
-// Loading a frame left its counts out of what it asks of the memory.
+// Regression: the memory estimate for loading a film ignored the planes of counts.
 TEST(Film, BytesPerPixelAreThoseOfAllItsPlanes) {
   constexpr size_t kPixels = 12;
   for (const int components : {1, 3}) {
@@ -96,7 +96,7 @@ TEST(Film, BytesPerPixelAreThoseOfAllItsPlanes) {
   }
 }
 
-// Differences come from the pair's own samples and the way back, each over its count.
+// Differences combine the pair's own samples and the reverse shift, each divided by its count.
 TEST(Film, MergesPairsByTheirCounts) {
   film::Film film = small_film();
   const size_t p = film.index(1, 1);
@@ -109,7 +109,7 @@ TEST(Film, MergesPairsByTheirCounts) {
   EXPECT_FLOAT_EQ(images.dx[3 * p], 3.5f);
   EXPECT_TRUE(std::isnan(film::read_half_differences(film, 0).dx[3 * p])) << "absent in one half";
   EXPECT_TRUE(std::isnan(images.dx[3 * q]));
-  film.pair_count[0][film::kLeft][q] = 0.0f;  // seen from one end alone: absent
+  film.pair_count[0][film::kLeft][q] = 0.0f;  // a difference that was sampled from one pixel alone is absent
   EXPECT_TRUE(std::isnan(film::read_images(film, 0).dx[3 * p]));
 }
 

@@ -1,5 +1,5 @@
-// Contract 1.3: splats of units of work merge in a fixed order and are normalised globally. A small light tracer stands
-// in for a real one.
+// Splats of work units are merged in a fixed order and normalised by all paths. A small light tracer stands in for a
+// real one.
 #include "film/splat_plane.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,8 @@ constexpr uint64_t kPathsPerUnit = 512;
 
 float truth(int32_t x, int32_t y) { return 1.0f + 0.1f * float(x) + 0.3f * float(y); }
 
-// Light paths that meet the film everywhere around the region; a second splat, as of a longer path, half as bright.
+// Traces light paths that splat uniformly around the region, each with a second splat, as of a longer path, of half the
+// value.
 std::vector<film::Splat> trace(uint32_t unit) {
   constexpr int kSide = 16;
   std::mt19937 random(unit);
@@ -38,7 +39,7 @@ std::vector<Radiance> render(int threads) {
   std::atomic<uint32_t> next{0};
   const auto work = [&] {
     film::Counters counters;
-    // Pairs of units in the wrong order.
+    // Merges the two units of each pair in the wrong order.
     for (uint32_t i = next++; i < kUnits; i = next++) plane.merge(i ^ 1u, kPathsPerUnit, trace(i ^ 1u), &counters);
   };
   std::vector<std::thread> workers;
@@ -59,7 +60,7 @@ TEST(Splats, AreNormalisedByThePathsOfTheWholeFrame) {
   for (int32_t y = kRegion.y0; y < kRegion.y1; ++y) {
     for (int32_t x = kRegion.x0; x < kRegion.x1; ++x) {
       const size_t i = size_t(y - kRegion.y0) * size_t(kRegion.width()) + size_t(x - kRegion.x0);
-      // 256 splats per pixel, of two strengths: 6.6 % at one sigma.
+      // 256 splats per pixel with two values: a standard deviation of 6.6 %.
       EXPECT_NEAR(image[i].x, truth(x, y), 0.35f * truth(x, y));
       sum += image[i].x;
       expected += truth(x, y);

@@ -44,7 +44,7 @@ std::vector<bsdf::Closures> cases() {
           make({glass}, glm::normalize(Vec3(0.9f, 0, -0.4f)))};  // total internal reflection
 }
 
-TEST(ClassMatch, LooksAlikeFromBothEnds) {
+TEST(ClassMatch, IsSymmetric) {
   const std::vector<bsdf::Closures> all = cases();
   for (size_t i = 0; i < all.size(); ++i) {
     EXPECT_TRUE(gradient::same_classes(all[i], all[i])) << i;

@@ -25,7 +25,7 @@ film::Counters counters_of(uint32_t bounces_of_light) {
 // The bounds leave room for corners, where one of the four offsets is replayed and the others cannot be deferred.
 TEST(DeferredOffsets, TraceNoConnectionBehindWhichNothingEmits) {
   const film::Counters direct = counters_of(0), later = counters_of(2);
-  EXPECT_GT(direct.rays_bounce, direct.rays_primary);  // paths go on
+  EXPECT_GT(direct.rays_bounce, direct.rays_primary);  // paths are longer than one segment
   EXPECT_EQ(direct.shifts_attempted, later.shifts_attempted);
   EXPECT_GT(later.shifts_reconnected, later.shifts_attempted / 4);
   EXPECT_LT(direct.shifts_reconnected, direct.shifts_attempted / 20);

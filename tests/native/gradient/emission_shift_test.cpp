@@ -59,7 +59,7 @@ double solid_angle_of_area(const Seen& seen) {
 
 class B4_LightPointCopy : public ::testing::TestWithParam<Kind> {};
 
-TEST_P(B4_LightPointCopy, JacobianAndWayBack) {
+TEST_P(B4_LightPointCopy, JacobianAndInverse) {
   test::PathScene scene;
   add_emitting_object(GetParam(), &scene);
   scene.camera(Vec3(0, 0, 3), Vec3(0), 1.0f);

@@ -94,7 +94,7 @@ struct Case {
   Vec3 wi;
 };
 
-// A pair of neighbouring vertices, and a direction that the base could have sampled.
+// A pair of neighbouring vertices, and a direction that the base path could have sampled.
 bool make_case(Random* random, bool transmitted, Case* c) {
   c->base.normal = random->direction();
   c->offset.normal = random->near(c->base.normal, 0.2f);
@@ -131,7 +131,7 @@ void check_half_vector(bool transmitted) {
     const auto map = [&](const DVec3& wi, DVec3* out) {
       return copy_in_double(c.base, c.offset, transmitted, wi, out);
     };
-    const double numeric = numeric_jacobian(map, to_double(c.wi));  // negative where the copy is impossible
+    const double numeric = numeric_jacobian(map, to_double(c.wi));  // negative if the copy is impossible
     verdicts_ok += (there.failure == gradient::ShiftFailure::None) == (numeric > 0.0) ? 1 : 0;
     if (there.failure != gradient::ShiftFailure::None || !(numeric > 0.0)) {
       continue;
@@ -165,7 +165,7 @@ TEST(B4_Shift, RefractionAcrossDifferentGlass) {
   EXPECT_NEAR(shifted.jacobian / numeric_jacobian(map, to_double(wi)), 1.0, 1e-4);
 }
 
-TEST(B4_Shift, OppositeSidesAndNoStepAreRefusedBothWays) {
+TEST(B4_Shift, OppositeSidesAndNoStepAreRefusedInBothDirections) {
   const Vec3 wo = glm::normalize(Vec3(0.2f, 0.1f, 0.9f));
   const gradient::HalfVectorFrame glass{wo, Vec3(0, 0, 1), 1.5f};
   for (float eta : {1.0f / 1.5f, 1.0f}) {
@@ -204,7 +204,7 @@ TEST(B4_Shift, Reconnection) {
 
 // The base meets a specular surface at z behind a non-specular vertex. The offset shares z and copies the event there,
 // and the inverse shift returns to the base.
-TEST(B4_Shift, ThroughASharedSharpVertexAndBack) {
+TEST(B4_Shift, ThroughASharedSpecularVertexAndBack) {
   Random random(11);
   int shifted = 0, back_home = 0;
   for (int i = 0; i < kShifts; ++i) {
@@ -235,7 +235,7 @@ TEST(B4_Shift, ThroughASharedSharpVertexAndBack) {
   EXPECT_GE(back_home, 0.999 * shifted);
 }
 
-TEST(B4_Shift, BothEndsAgreeWhetherToShareASharpVertex) {
+TEST(B4_Shift, BothEndsAgreeWhetherToShareASpecularVertex) {
   Random random(13);
   int shared = 0;
   constexpr int kCases = 10000;
@@ -252,7 +252,7 @@ TEST(B4_Shift, BothEndsAgreeWhetherToShareASharpVertex) {
   EXPECT_LT(shared, kCases - kCases / 10);
 }
 
-TEST(B4_Shift, ASharpVertexIsSharedButOverShortEdgesAndThroughFlatPanes) {
+TEST(B4_Shift, ASpecularVertexIsSharedExceptOverShortEdgesAndThroughFlatPanes) {
   const Vec3 x(0, 0, 0), y(0.1f, 0, 0);
   const Vec3 far(0, 0, 1), close(0, 0, 0.05f);
   EXPECT_TRUE(gradient::shares_specular_vertex(x, y, far, 0.0f, false));
@@ -281,7 +281,7 @@ TEST(B4_Shift, BothEndsAgreeWhetherAnEdgeIsShortAndALobeWide) {
   EXPECT_LT(is_short + alike, kCases - kCases / 10);
 }
 
-TEST(B4_Shift, ALobeLooksAlikeOverAnglesBelowItsWidth) {
+TEST(B4_Shift, ALobeIsSimilarOverAnglesBelowItsWidth) {
   const Vec3 x(0, 0, 0), y(0.1f, 0, 0), z(0, 0, 2);
   EXPECT_TRUE(gradient::looks_similar(x, y, z, 0.06f));
   EXPECT_FALSE(gradient::looks_similar(x, y, z, 0.04f));
@@ -292,7 +292,7 @@ TEST(B4_Shift, ALobeLooksAlikeOverAnglesBelowItsWidth) {
 }
 
 // The sharpest lobe of the class decides, whatever other lobes the point has.
-TEST(B4_Shift, WidthOfAClassIsThatOfItsSharpestLobe) {
+TEST(B4_Shift, WidthOfAClassIsThatOfItsNarrowestLobe) {
   bsdf::Closures closures;
   const auto add = [&](bsdf::LobeType type, float alpha_x, float alpha_y) {
     bsdf::Lobe* lobe = closures.add();

@@ -103,7 +103,7 @@ TEST(B4_Replay, JacobianIsTheRatioOfDensities) {
 }
 
 // Diffuse, rough metal and specular lobes, whose shares differ between the vertices.
-TEST(B4_Replay, ThereAndBack) {
+TEST(B4_Replay, InverseUndoesTheShift) {
   Numbers random;
   int done = 0, home = 0, refused = 0;
   for (int i = 0; i < kReplays; ++i) {
@@ -144,7 +144,7 @@ TEST(B4_Replay, ThereAndBack) {
 }
 
 // If the random numbers choose a diffuse lobe at one vertex and metal at the other, the paths do not correspond.
-TEST(B4_Replay, AnotherKindOfBounceIsRefusedBothWays) {
+TEST(B4_Replay, AnotherKindOfBounceIsRefusedInBothDirections) {
   const Vec3 wo = glm::normalize(Vec3(0.3f, 0.1f, 0.9f));
   const path::Vertex matte = vertex({lobe(bsdf::LobeType::Diffuse, 0.0f, 0.8f)}, wo),
                      metal = vertex({lobe(bsdf::LobeType::GgxReflection, 0.3f, 0.8f)}, wo);

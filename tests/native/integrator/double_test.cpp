@@ -29,7 +29,7 @@ TEST_P(B8_Double, ImagesDifferByLessThanOnePercentOfTheirNoise) {
   std::printf("  worst: %.2g of the bound\n", result.worst());
 }
 
-// Vertices of neighbouring pixels that camera rays meet.
+// Returns whether camera rays of two neighbouring pixels meet vertices, and the vertices.
 bool camera_vertex(const path::PathContext& path, const path::Sampler& sampler, const Vec2& film,
                    path::Vertex* vertex) {
   path::PathRay ray;

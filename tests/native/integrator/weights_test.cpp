@@ -43,7 +43,7 @@ TEST(B8_Weights, TechniquesAndDirectionsSumToOne) {
     const float total_x = d.light_x + d.bsdf_x;
     const float total_y = d.light_y + d.bsdf_y;
     const float r = d.jacobian * total_y / total_x;
-    // Light and BSDF samples of x, in their shares of x's density.
+    // Light and BSDF samples of x, weighted by their shares of the density of x.
     const double bsdf_share = path::bsdf_weight(d.light_x, d.bsdf_x);
     const double there = weight(forward, r, bsdf_share) + weight(forward, r, 1.0 - bsdf_share);
     // The same coefficient from base paths y with the inverse shift: C(x)·(1/r) at the density of y.

@@ -1,4 +1,4 @@
-// An integrator whose samples are a pure function of pixel and sample number: tests of the loop need no scene.
+// An integrator whose samples are a pure function of pixel and sample number, so that tests of the loop need no scene.
 #pragma once
 
 #include <chrono>
@@ -21,12 +21,12 @@ inline uint32_t hash(uint32_t x) {
   return x ^ (x >> 16);
 }
 
-// In [0, 1).
+// Returns a value in [0, 1).
 inline float random_value(int32_t x, int32_t y, uint32_t sample) {
   return float(hash(hash(hash(uint32_t(x)) + uint32_t(y)) + sample) >> 8) / float(1 << 24);
 }
 
-// Expectation of a pixel of the fake scene.
+// Returns the expectation of a pixel of the fake scene.
 inline float fake_truth(int32_t x, int32_t y) {
   return 0.5f + 0.3f * std::sin(0.2f * float(x)) * std::cos(0.15f * float(y));
 }
@@ -35,15 +35,15 @@ struct FakeIntegrator final : integrator::Integrator {
   explicit FakeIntegrator(const integrator::IntegratorContext& context, bool with_gradients)
       : settings(context.settings), gradients(with_gradients) {}
 
-  // Runs before each tile; may wait or throw.
+  // Called before each tile; may wait or throw.
   std::function<void(const integrator::WorkUnit&)> before = [](const integrator::WorkUnit&) {};
   GradusSettings settings;
   bool gradients;
   float noise = 1.0f;
-  float light = 1.0f;               // that all radiance is multiplied by
-  int32_t quiet_until = 0;          // left of this column there is a tenth of the noise
-  int32_t rays_below = 0;           // below this row a sample costs five rays in place of one
-  uint32_t feature_seed = 0x10000;  // of the noise of features; 0: that of the image, which they explain then
+  float light = 1.0f;               // factor of all radiance
+  int32_t quiet_until = 0;          // left of this column, the noise is a tenth
+  int32_t rays_below = 0;           // below this row, a sample costs five rays instead of one
+  uint32_t feature_seed = 0x10000;  // of the noise of features; 0: the image's noise, which the features explain then
   int32_t pairs_until = INT32_MAX;  // right of this column there are no gradients
 
   uint32_t count_at(const integrator::WorkUnit& unit, const film::Film& film, int32_t x, int32_t y) const {
@@ -89,7 +89,7 @@ struct FakeIntegrator final : integrator::Integrator {
     if (plane->skips_transparent) plane->weight[i] += 1.0f;
   }
 
-  // Exact differences of the truth, each direction carrying half.
+  // Adds the exact differences of the truth, half for each direction.
   void add_gradients(const integrator::WorkUnit& unit, int32_t x, int32_t y, int half, film::Film* film) const {
     const size_t i = film->index(x, y);
     for (int o = 0; o < film::kOffsets; ++o) {

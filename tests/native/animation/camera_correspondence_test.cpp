@@ -1,13 +1,12 @@
-// φ of every type of camera: a link leads to the pixel whose ray passes nearest to the point that its own pixel shows.
-// Rays have closed forms (camera_test.cpp, panorama_test.cpp); the way back from points to the film, which φ goes, is
-// not asked.
+// Correspondences for every type of camera: a pixel corresponds to the pixel whose ray passes nearest to the point that
+// it shows. The expected pixel is found from the closed forms of rays (camera_test.cpp, panorama_test.cpp), not from
+// the projection of points to the film, which the tested code uses.
 #include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "camera/camera_fixture.h"
 #include "motion/pixel_matching.h"
 #include "support/path_scene.h"
 
@@ -16,7 +15,7 @@ namespace {
 
 constexpr int kWidth = 48, kHeight = 32;
 constexpr float kEye = 0.1f;
-constexpr float kRoom = 3.0f, kFarAway = 1e4f;  // radii of balls about the camera
+constexpr float kRoom = 3.0f, kFarAway = 1e4f;  // radii of spheres around the camera
 constexpr float kTurn = 6.2831853f;
 
 struct CameraType {
@@ -26,7 +25,7 @@ struct CameraType {
   uint32_t panorama = 0;
   float fov = 0.0f, eye = 0.0f, convergence = 0.0f;
 
-  // Its film comes back to its beginning.
+  // Returns whether the film closes on itself horizontally.
   bool is_all_around() const {
     return type == GRADUS_CAMERA_PANORAMA &&
            (panorama == GRADUS_PANORAMA_EQUIRECTANGULAR || panorama == GRADUS_PANORAMA_CYLINDER) &&
@@ -107,7 +106,7 @@ GradusCamera camera_of(const CameraType& type, const Mat4& pose, float zoom) {
   return camera;
 }
 
-// What pixel centres see of a camera at rest, in the world.
+// World-space rays of the pixel centres of a static camera.
 class TestFilm {
  public:
   TestFilm(const GradusCamera& desc, bool wraps) : wraps_(wraps) {
@@ -117,14 +116,14 @@ class TestFilm {
     }
   }
   bool sees(size_t pixel) const { return !is_none(rays_[pixel]); }
-  // On a ball about the origin of the world.
+  // Returns the point that a pixel shows on a sphere around the world's origin.
   Vec3 point(size_t pixel, float radius) const {
     const Ray& ray = rays_[pixel];
     const float middle = glm::dot(ray.origin, ray.direction);
     return ray.origin +
            ray.direction * (std::sqrt(middle * middle + radius * radius - glm::dot(ray.origin, ray.origin)) - middle);
   }
-  // The pixel whose ray passes nearest to a point, by the angle.
+  // Returns the pixel whose ray has the smallest angle to the point.
   int nearest(const Vec3& point) const {
     int best = -1;
     float minimum = kInfinity;
@@ -135,12 +134,12 @@ class TestFilm {
     }
     return best;
   }
-  // In x or in y, whichever is more.
+  // Returns the distance in x or in y, whichever is larger.
   int pixels_between(int a, int b) const {
     const int x = std::abs(a % kWidth - b % kWidth);
     return std::max(wraps_ ? std::min(x, kWidth - x) : x, std::abs(a / kWidth - b / kWidth));
   }
-  // Whether all pixels around see something: what is nearest to one at the rim may lie beyond it.
+  // Returns whether all neighbouring pixels have rays. At the rim, the nearest ray may lie outside of the film.
   bool is_inside(int pixel) const {
     const int y = pixel / kWidth;
     if (y == 0 || y == kHeight - 1) return false;
@@ -164,7 +163,8 @@ class CorrespondenceOfCameras : public testing::TestWithParam<Case> {
   CorrespondenceOfCameras() {
     if (GetParam().in_room) scene_.ball(Vec3(0.0f), kRoom, scene_.material(matte(Rgb(0.5f))), 24);
   }
-  // Blurred: the shutter opens at the pose and closes elsewhere; half way there is what is seen in the middle of it.
+  // Adds a frame. If it is blurred, the shutter opens at the pose and closes elsewhere; the middle of the exposure has
+  // the pose half way between.
   void add_frame(const Mat4& pose, float zoom, bool is_blurred) {
     const auto way = [](float x) { return translation(Vec3(x, 0.5f * x, 0.0f)); };
     films_.emplace_back(camera_of(GetParam().camera, is_blurred ? way(0.15f) * pose : pose, zoom),
@@ -189,7 +189,7 @@ class CorrespondenceOfCameras : public testing::TestWithParam<Case> {
   std::vector<TestFilm> films_;
 };
 
-TEST_P(CorrespondenceOfCameras, LeadWhereTheSamePointIsSeen) {
+TEST_P(CorrespondenceOfCameras, LeadToThePixelThatShowsTheSamePoint) {
   const auto& [type, change, in_room] = GetParam();
   const Mat4 pose = glm::rotate(translation(Vec3(0.2f, -0.1f, 0.3f)), 0.4f, glm::normalize(Vec3(0.2f, 1.0f, 0.1f)));
   const Mat4 step =
@@ -199,7 +199,7 @@ TEST_P(CorrespondenceOfCameras, LeadWhereTheSamePointIsSeen) {
   add_frame(moves ? step * pose : pose, change == Change::Zoom ? 1.12f : 1.0f, change == Change::Blur);
   const std::vector<int32_t> correspondence = motion::match_pixels(views_[0], views_[1]).pixel;
   const bool is_static_at_infinity = type.type == GRADUS_CAMERA_ORTHOGRAPHIC && !in_room;
-  std::set<int> wanted;  // pixels that others lead to
+  std::set<int> wanted;  // pixels that several others correspond to
   int linked = 0, astray = 0, reached = 0;
   for (size_t i = 0; i < correspondence.size(); ++i) {
     if (!films_[0].sees(i)) {

@@ -1,4 +1,4 @@
-// Frames that are written by hand, one sample in each half: an image, its noise and features of any kind.
+// Synthetic films with one sample in each half-buffer: an image, its noise and features of any kind.
 #pragma once
 
 #include <functional>
@@ -13,12 +13,12 @@ namespace gradus::test {
 struct FeatureFilm {
   int width, height;
   std::vector<float> truth;  // three channels
-  // Standard deviation of a half's pixel.
+  // Standard deviation of a pixel of a half-buffer.
   std::function<float(size_t)> sigma = [](size_t) { return 0.4f; };
-  // Features: normal, albedo and depth, seven values, by pixel and half.
+  // Features: normal, albedo and depth, seven values, by pixel and half-buffer.
   std::function<float(int x, int y, int channel, int half)> feature;
   bool gradients = false;
-  float difference_sigma = 0.0f;  // of what a half's pixel has of a difference
+  float difference_sigma = 0.0f;  // standard deviation of one half-buffer's share of a difference
   unsigned seed = 1;
 };
 
@@ -41,7 +41,7 @@ inline void fill_features(const FeatureFilm& description, film::Film* film) {
   }
 }
 
-// One sample of each pixel and half. Alpha's are an eighth of red's, as alpha is.
+// Adds one sample of each pixel and half-buffer. The differences of alpha are an eighth of those of red, as alpha is.
 inline void fill_differences(const FeatureFilm& description, film::Film* film) {
   const int w = description.width, h = description.height;
   std::mt19937 random(100 + description.seed);
@@ -56,7 +56,7 @@ inline void fill_differences(const FeatureFilm& description, film::Film* film) {
           film->pair_count[half][o][i] = 1.0f;
           Radiance& difference = film->components[0].gradient[half][o][i];
           for (int c = 0; c < 3; ++c) {
-            // Each end of a pair has half of it.
+            // Each end of a pair contributes half.
             const float truth = 0.5f * (description.truth[3 * n + size_t(c)] - description.truth[3 * i + size_t(c)]);
             difference[c] = truth + description.difference_sigma * normal(random);
           }
@@ -88,7 +88,7 @@ inline film::Film make_feature_film(const FeatureFilm& description, int channels
   return film;
 }
 
-// Three planes with normals, a chequered albedo, a depth of their own.
+// Three planes, each with a normal, a checkerboard albedo and a depth of its own.
 inline float room_feature(int x, int y, int channel, int /*half*/) {
   if (channel < 3) return channel == (x < 20 ? 0 : y < 15 ? 1 : 2) ? 1.0f : 0.0f;
   if (channel < 6) return (x / 6 + y / 5) % 2 ? 0.8f : 0.2f + 0.1f * float(channel - 3);

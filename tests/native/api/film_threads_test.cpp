@@ -1,4 +1,4 @@
-// gradus_film_reconstruct() and the threads that a frame's settings name.
+// gradus_film_reconstruct() uses the number of threads that the settings of the film name.
 #include "base/clock.h"
 #include "film_io/store.h"
 #include "render/fake_integrator.h"
@@ -7,7 +7,7 @@
 namespace gradus {
 namespace {
 
-// Stored frames were reconstructed by all processors, whatever the settings said.
+// Regression: stored films were reconstructed with all processors, whatever their settings said.
 TEST(FilmThreads, AreThoseOfItsSettings) {
   constexpr uint32_t size = 384;
   const GradusDevice device = test::make_device();
