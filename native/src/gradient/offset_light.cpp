@@ -1,7 +1,7 @@
 // Light samples of the base path, shifted to its offset paths. The comment of offset_emission.cpp explains the weights.
 #include "geometry/shadow_terminator.h"
 #include "gradient/offset_paths.h"
-#include "light/emitter_rays4.h"
+#include "light/light_rays4.h"
 
 namespace gradus::gradient {
 
