@@ -5,7 +5,7 @@
 #include "gradient/offset_rays.h"
 #include "gradient/random_replay.h"
 #include "gradient/reconnection.h"
-#include "light/emitter_rays4.h"
+#include "light/light_rays4.h"
 
 namespace gradus::gradient {
 

@@ -1,5 +1,5 @@
 #include "geometry/rays4.h"
-#include "light/emitter_rays4.h"
+#include "light/light_rays4.h"
 
 #include <random>
 

@@ -1,4 +1,4 @@
-#include "light/emitter_rays4.h"
+#include "light/light_rays4.h"
 
 namespace gradus::light {
 
