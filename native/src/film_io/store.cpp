@@ -39,13 +39,14 @@ class PartRows {
   std::vector<BlockRows> rows_;
 };
 
-struct PackedBlock {
-  PlacedBlock place;
-  Bytes bytes;
-};
-
+// Packs the blocks in parallel and writes them in order.
+//
+// The pipeline passes numbers of blocks. The packed bytes wait in slots of their own: oneTBB loses what its tokens own if
+// an exception, such as that of a cancel, ends a pipeline. No two blocks in flight share a slot, because they leave in
+// order.
 void write_blocks(const PartRows& rows, const CancelCheck& cancel, BlockFile* file) {
   tbb::enumerable_thread_specific<BlockCodec> codecs;
+  std::vector<Bytes> slots(2 * size_t(tbb::this_task_arena::max_concurrency()));
   int next = 0;
   const auto number = [&](tbb::flow_control& control) {
     if (next == rows.blocks()) control.stop();
@@ -56,15 +57,16 @@ void write_blocks(const PartRows& rows, const CancelCheck& cancel, BlockFile* fi
     const PlacedBlock place = rows.at(i);
     Bytes bytes(rows.of(place.part).bytes(place.block));
     rows.of(place.part).gather(place.block, &bytes);
-    return PackedBlock{place, codecs.local().pack(bytes)};
+    slots[size_t(i) % slots.size()] = codecs.local().pack(bytes);
+    return i;
   };
-  const auto write = [&](const PackedBlock& packed) {
-    file->write(packed.place.part, packed.place.block, packed.bytes);
+  const auto write = [&](int i) {
+    const PlacedBlock place = rows.at(i);
+    file->write(place.part, place.block, slots[size_t(i) % slots.size()]);
   };
-  const auto tokens = 2 * size_t(tbb::this_task_arena::max_concurrency());
-  tbb::parallel_pipeline(tokens, tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, number) &
-                                     tbb::make_filter<int, PackedBlock>(tbb::filter_mode::parallel, pack) &
-                                     tbb::make_filter<PackedBlock, void>(tbb::filter_mode::serial_in_order, write));
+  tbb::parallel_pipeline(slots.size(), tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, number) &
+                                           tbb::make_filter<int, int>(tbb::filter_mode::parallel, pack) &
+                                           tbb::make_filter<int, void>(tbb::filter_mode::serial_in_order, write));
 }
 
 // numbers: of the parts in the file.

@@ -166,9 +166,10 @@ class Tile {
   int first_inside(int dx) const { return std::max(0, ceil_divided(octave_.shift - dx, side_) - first_); }
   int end_inside(int dx) const { return ceil_divided(task_.weights->width() + octave_.shift - dx, side_) - first_; }
 
-  void pick(const float* row, int dx, float* to) const {
+  // Copies pixel dx of each block of a row; 0 outside of the image and in the first and last `margin` blocks.
+  void pick(const float* row, int dx, float* to, int margin = 0) const {
     if (row == nullptr) return static_cast<void>(std::fill_n(to, pixels_.width(), 0.0f));
-    const int begin = first_inside(dx), end = std::min(width_, end_inside(dx));
+    const int begin = std::max(margin, first_inside(dx)), end = std::min(width_ - margin, end_inside(dx));
     std::fill_n(to, begin, 0.0f);
     row += first_ * side_ + dx - octave_.shift;
     const ptrdiff_t side = side_;
@@ -369,7 +370,8 @@ class Tile {
     rows[C] = task_.totals->row(y);
     rows[C + 1] = Estimates ? task_.bias->row(y) : nullptr;
     const int dx = pixel_x(g, k), planes = Estimates ? C + 2 : C + 1;
-    for (int i = 0; i < planes; ++i) pick(first_lattice() ? nullptr : rows[size_t(i)], dx, boxes_[i]);
+    // The blocks within reach belong to other tiles, whose threads may be writing them.
+    for (int i = 0; i < planes; ++i) pick(first_lattice() ? nullptr : rows[size_t(i)], dx, boxes_[i], kReach);
     for (int x = 0; x < width_; x += kLanes) {
       for (int c = 0; c < C; ++c) {
         Lanes sum = load(boxes_[c] + x);
