@@ -41,9 +41,9 @@ class PartRows {
 
 // Packs the blocks in parallel and writes them in order.
 //
-// The pipeline passes numbers of blocks. The packed bytes wait in slots of their own: oneTBB loses what its tokens own if
-// an exception, such as that of a cancel, ends a pipeline. No two blocks in flight share a slot, because they leave in
-// order.
+// The pipeline passes numbers of blocks. The packed bytes wait in slots of their own: oneTBB loses what its tokens own
+// if an exception, such as that of a cancel, ends a pipeline. No two blocks in flight share a slot, because they leave
+// in order.
 void write_blocks(const PartRows& rows, const CancelCheck& cancel, BlockFile* file) {
   tbb::enumerable_thread_specific<BlockCodec> codecs;
   std::vector<Bytes> slots(2 * size_t(tbb::this_task_arena::max_concurrency()));

@@ -31,8 +31,7 @@ void CameraVertices::trace(int32_t x, int32_t y, Packet* packet) const {
 
 // Returns whether a ray may pass its nearest hit, which is a random decision of each path.
 bool CameraVertices::may_pass(const geometry::Hit& hit) const {
-  return hit.valid() &&
-         context_.scene.materials[context_.scene.material_of(hit)]->may_be_transparent;
+  return hit.valid() && context_.scene.materials[context_.scene.material_of(hit)]->may_be_transparent;
 }
 
 CameraVertex* CameraVertices::at(int32_t x, int32_t y) {

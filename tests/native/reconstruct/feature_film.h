@@ -30,7 +30,8 @@ inline void fill_features(const FeatureFilm& description, film::Film* film) {
       if (plane.pass != pass) continue;
       for (int half = 0; half < film::kHalves; ++half) {
         for (size_t i = 0; i < plane.values[half].size(); ++i) {
-          const int pixel = int(i / plane.info.values_per_pixel), channel = first + int(i % plane.info.values_per_pixel);
+          const int pixel = int(i / plane.info.values_per_pixel),
+                    channel = first + int(i % plane.info.values_per_pixel);
           plane.values[half][i] =
               description.feature(pixel % description.width, pixel / description.width, channel, half);
         }
