@@ -18,13 +18,15 @@ std::string stored_name(std::string_view name) {
   return stored;
 }
 
-// Returns whether planes of the film itself have this name, or one that begins with it and a dot (film/planes.cpp).
+// Returns whether planes of the film itself or the weight of another channel may have this name, or whether the name
+// holds control characters (film/planes.cpp).
 bool is_reserved(const std::string& name) {
-  constexpr std::string_view kReserved[] = {"A",     "B",       "right",   "up",     "left",  "down",
-                                            "count", "source",  "samples", "counts", "pairs", "gradients",
-                                            "rough", "details", "motion",  "passes"};
+  constexpr std::string_view kReserved[] = {
+      "A",     "B",         "right", "up",      "left",   "down",   "count",       "source", "samples",      "counts",
+      "pairs", "gradients", "rough", "details", "motion", "passes", "reflectance", "normal", "inverse_depth"};
   const std::string_view first = std::string_view(name).substr(0, name.find('.'));
-  return std::ranges::find(kReserved, first) != std::end(kReserved) || first.starts_with("component");
+  return std::ranges::find(kReserved, first) != std::end(kReserved) || first.starts_with("component") ||
+         name.ends_with(".weight") || std::ranges::any_of(name, [](char c) { return (c & ~0x1f) == 0; });
 }
 
 bool is_consistent(const ChannelInfo& info) {

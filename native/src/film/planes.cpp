@@ -4,6 +4,7 @@
 #include <numeric>
 #include <type_traits>
 
+#include "base/error.h"
 #include "film/finite_check.h"
 
 namespace gradus::film {
@@ -179,6 +180,8 @@ template <class T>
 void add_all(const std::vector<T>& from, std::vector<T>* to, Counters* counters) {
   if constexpr (requires { add_value(from[0], to->data(), counters); }) {
     for (size_t i = 0; i < to->size(); ++i) add_value(from[i], &(*to)[i], counters);
+  } else {
+    throw invalid_operation("a plane of values that cannot be added has the rule to add them");
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "film/finite_check.h"
 #include "film/planes.h"
 
@@ -97,6 +98,16 @@ TEST(Film, BytesPerPixelAreThoseOfAllItsPlanes) {
 }
 
 // Differences combine the pair's own samples and the reverse shift, each divided by its count.
+TEST(Film, ChannelsNeedNamesThatNoOtherPlaneHas) {
+  film::Film film = small_film();
+  film.channels.add({"fog", 1, film::ValueType::kData, film::Normalisation::kOwnWeight}, 12);
+  for (const char* name :
+       {"", "fog", "A", "normal", "reflectance.x", "inverse depth", "component2", "fog.weight", "a\nb"})
+    EXPECT_THROW(film.channels.add({name}, 12), Error) << name;
+  film.channels.add({"Größe"}, 12);
+  EXPECT_EQ(film.channels.size(), 2u);
+}
+
 TEST(Film, MergesPairsByTheirCounts) {
   film::Film film = small_film();
   const size_t p = film.index(1, 1);
