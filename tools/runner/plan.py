@@ -33,8 +33,6 @@ LIMITS = (
     "*TimeLimit*:K2_Cancel.*:Preview.TakesATwentiethOfTheTime:Preview.ACancelEndsTheQuarterSizedPicture"
     ":Preview.ACancelOfTheReconstructionLeavesTheSamples:Loop.StopsByTime*"
 )
-# These take minutes under ThreadSanitizer; only the full run has them.
-LONG = "WatchedScene.*:FilmThreads.*"
 # L6: a picture of 160 x 120 pixels with all passes, and scenes, commits, renders, reconstruction and frames in the
 # tests of the C API; nothing of them depends on the clock. J2: animations that change or are cancelled. Memory that is
 # lost is an error, too.
@@ -151,12 +149,14 @@ def native_plan(full: bool) -> tuple[list[Program], list[Program]]:
 def sanitized_plan(full: bool) -> tuple[list[Program], list[Program]]:
     """Returns the programs under sanitizers, and those of their tests that run alone.
 
-    Every change runs the tests for which a sanitizer is the best witness (tests/CMakeLists.txt), the full run all native
-    tests and stress tests, and some under valgrind. All counts are short.
+    Every change runs those tests under AddressSanitizer for which it is the best witness (tests/CMakeLists.txt). The
+    full run has all native tests under all sanitizers, stress tests, and some under valgrind. All counts are short.
     """
     limit = LIMIT["full" if full else "native"]
     programs, alone = [], []
     for folder, variables in SANITIZERS.items():
+        if folder == "build-thread" and not full:
+            continue
         environment = variables | {"GRADUS_TEST_FULL": "0"}
         # Renders of hard scenes have no threads that the others lack.
         of_full_run = ("gradus_native_tests", "gradus_stress_tests")[: 1 if folder == "build-thread" else 2]
@@ -164,8 +164,7 @@ def sanitized_plan(full: bool) -> tuple[list[Program], list[Program]]:
             path = ROOT / folder / "tests" / name
             shards = SHARDS.get(name, 1)
             for shard in range(shards):
-                choice = f"*-{ALONE}" if full or folder != "build-thread" else f"*-{ALONE}:{LONG}"
-                programs.append(Program(path, limit, choice, shard, shards, environment=environment))
+                programs.append(Program(path, limit, f"*-{ALONE}", shard, shards, environment=environment))
             # Time limits of tests do not hold in instrumented programs.
             alone.append(Program(path, limit, f"{ALONE}-{LIMITS}", environment=environment))
     if full:

@@ -35,7 +35,7 @@ bool is_consistent(const ChannelInfo& info) {
   if (pairs && (info.values_per_pixel % 2 != 0 || info.takes_splats)) return false;
   switch (info.normalisation) {
     case Normalisation::kSampleCount:
-      return true;
+      return !(pairs && info.in_halves);  // identifiers of two halves cannot be added
     case Normalisation::kOwnWeight:
       return !info.in_halves && !info.takes_splats && !pairs;
     case Normalisation::kAllPaths:

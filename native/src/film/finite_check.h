@@ -27,7 +27,7 @@ inline void add_radiance(const Radiance& value, Radiance* sum, Counters* counter
   }
 }
 
-// Adds the gradient sample of a pair, already weighted (gradient/pair.h).
+// Adds the gradient sample of a pair, already weighted (gradient/gradient_accumulator.h).
 inline void add_gradient(const Radiance& value, Radiance* sum, Counters* counters) {
   const Radiance next = *sum + value;
   if (fits(next)) {
@@ -91,7 +91,7 @@ inline void add_pair(float id, float weight, uint32_t count, float* pairs, Count
   float* least = pairs;
   for (float* pair = pairs; pair < pairs + 2 * count; pair += 2) {
     if (pair[1] == 0.0f || pair[0] == id) {
-      if (!fits(pair[1] + weight) || !fits(id)) {
+      if (!fits(pair[1] + weight) || !is_finite(id)) {
         ++counters->nonfinite_feature;
         return;
       }
@@ -102,7 +102,7 @@ inline void add_pair(float id, float weight, uint32_t count, float* pairs, Count
     if (pair[1] < least[1]) least = pair;
   }
   if (weight <= least[1]) return;
-  if (!fits(weight) || !fits(id)) {
+  if (!fits(weight) || !is_finite(id)) {
     ++counters->nonfinite_feature;
     return;
   }
