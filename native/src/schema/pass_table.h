@@ -11,32 +11,32 @@
 
 namespace gradus::schema {
 
-// How a pass comes out of a frame.
+// How samples of a film become the values of a pass.
 enum class PassKind : uint8_t {
-  Image,     // Combined, Noisy Image
-  Derived,   // gradients, variance, counts: from the frame's own planes
-  Solved,    // error: comes with Combined (output/combine.h)
-  Sequence,  // differences to the next frame: come with the delivery of a sequence (render/sequence), 0 elsewhere
-  Radiance,  // sum of radiance, by halves; the film's exposure applies
-  Light,     // the same, divided by its colour pass when read (contract 6.5)
-  Color,     // sum of albedos
-  Average,   // sum of a quantity over all samples, misses count as 0
-  Weighted,  // sum over those samples that have it, divided by their number
-  First,     // value of the first sample
-  Feature,   // as Average, but by halves: its noise is to be known
+  Image,     // The picture: Combined and Noisy Image.
+  Derived,   // Computed from the film's own planes: gradients, variance, sample counts.
+  Solved,    // Error, which the reconstruction of Combined computes.
+  Sequence,  // Differences to the next frame, which an animation delivers; 0 elsewhere.
+  Radiance,  // Mean of radiance, kept in half-buffers and multiplied by the film's exposure.
+  Light,     // As Radiance, but divided by its colour pass when it is read.
+  Color,     // Mean of albedos.
+  Average,   // Mean of a quantity over all samples; samples without it count as 0.
+  Weighted,  // Mean over the samples that have the quantity.
+  First,     // Value of the first sample.
+  Feature,   // As Average, but kept in half-buffers, from which the noise is estimated.
 };
 
 struct PassInfo {
   uint32_t pass;
   const char* name;
-  uint32_t channels;  // as delivered, and as stored
+  uint32_t channels;  // Number of values per pixel, delivered and stored.
   PassKind kind;
-  uint32_t color;  // Light: the colour pass it is divided by; GRADUS_PASS_COUNT otherwise
+  uint32_t color;  // The colour pass that divides a Light pass; GRADUS_PASS_COUNT for other kinds.
 };
 
-// Parts of the picture's light, which add up to it (contract 6.5).
+// Returns whether a pass of this kind is a part of the picture's light. These passes add up to the picture.
 constexpr bool is_of_light(PassKind kind) { return kind == PassKind::Radiance || kind == PassKind::Light; }
-// By halves, whose difference tells the noise.
+// Returns whether a pass of this kind is kept in half-buffers, whose difference estimates its noise.
 constexpr bool is_in_halves(PassKind kind) { return kind == PassKind::Feature || is_of_light(kind); }
 
 // Returns the passes in order of their numbers.
@@ -44,11 +44,11 @@ std::span<const PassInfo> all_passes();
 // Throws invalid_argument for a number that is no pass.
 const PassInfo& pass_info(uint32_t pass);
 
-// Depth and face where there is nothing.
+// Values of the depth and the face number in pixels where no surface is hit.
 inline constexpr float kFarDepth = 1e10f;
 inline constexpr float kNoFace = -1.0f;
 
-// Passes of a component.
+// A pass that each component has.
 struct ComponentPassInfo {
   uint32_t pass;
   const char* name;
@@ -56,17 +56,17 @@ struct ComponentPassInfo {
 };
 // Returns the passes of a component in order of their numbers.
 std::span<const ComponentPassInfo> all_component_passes();
-// Throws invalid_argument for a number that is none.
+// Throws invalid_argument for a number that is no pass of a component.
 const ComponentPassInfo& component_pass_info(uint32_t pass);
 
 inline bool has_bit(uint64_t passes, uint32_t pass) { return (passes >> pass & 1) != 0; }
 
-// Motion by optical flow, which is about that of what the component shows.
+// Returns whether the pass holds motion found by optical flow, which starts from the motion of the shown points.
 constexpr bool is_irradiance_motion(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_IRRADIANCE_MOTION || component_pass == GRADUS_COMPONENT_IRRADIANCE_TRACKED;
 }
-// Passes of a component that are made of its picture, of the first rough vertices of its paths, of more that is kept of
-// these, of its motion.
+// The following functions return from which data of the component a pass is computed: its picture, the first
+// non-specular vertices of its paths, further details of these vertices, or its motion.
 constexpr bool is_of_picture(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_COLOR || component_pass == GRADUS_COMPONENT_IRRADIANCE;
 }
@@ -83,9 +83,9 @@ constexpr bool is_motion(uint32_t component_pass) {
   return component_pass == GRADUS_COMPONENT_MOTION || component_pass == GRADUS_COMPONENT_TRACKED ||
          is_irradiance_motion(component_pass);
 }
-// Whether some pass of that kind is wanted.
+// Returns whether at least one of the passes (one bit each) is of the kind.
 bool any_wanted(uint32_t component_passes, bool (*is_of_kind)(uint32_t component_pass));
-// In sequences: Irradiance Motion, and Motion of Residual, are made of two frames.
+// Returns whether an animation computes passes by optical flow: Irradiance Motion, and Motion of Residual.
 inline bool needs_flow(const GradusSettings& settings) {
   return settings.use_decomposition != 0 && any_wanted(settings.component_passes, is_motion);
 }
@@ -93,15 +93,15 @@ inline bool needs_pictures(const GradusSettings& settings) {
   return settings.use_decomposition != 0 && any_wanted(settings.component_passes, is_of_picture);
 }
 
-// `passes` plus what they need: the colours that light passes are divided by.
+// Returns `passes` and the colour passes that divide the light passes among them.
 uint64_t needed_passes(uint64_t passes);
-// Those of needed_passes() that an integrator fills planes of, in order of pass number.
+// Returns those of needed_passes() for which an integrator fills channels, in order of pass number.
 std::vector<PassInfo> stored_passes(uint64_t passes);
-// Bytes of these planes per pixel.
+// Returns the bytes per pixel of the channels of these passes.
 uint64_t pass_bytes_per_pixel(uint64_t passes);
-// What reconstructions and denoisers are guided by.
+// Returns the passes that guide reconstructions and denoisers, one bit each.
 uint64_t feature_passes();
-// Parts of the picture's light.
+// Returns the passes that are parts of the picture's light, one bit each.
 uint64_t light_passes();
 
 }  // namespace gradus::schema
