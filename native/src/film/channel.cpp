@@ -11,13 +11,6 @@ namespace {
 constexpr size_t kMaxName = 200, kMaxChannels = 255;
 constexpr uint32_t kMaxValues = 4;
 
-// Stored films write spaces as underscores.
-std::string stored_name(std::string_view name) {
-  std::string stored(name);
-  std::replace(stored.begin(), stored.end(), ' ', '_');
-  return stored;
-}
-
 // Returns whether planes of the film itself or the weight of another channel may have this name, or whether the name
 // holds control characters (film/planes.cpp).
 bool is_reserved(const std::string& name) {
@@ -69,6 +62,12 @@ uint32_t pass_with_name(std::string_view name) {
 
 }  // namespace
 
+std::string stored_name(std::string_view name) {
+  std::string stored(name);
+  std::ranges::replace(stored, ' ', '_');
+  return stored;
+}
+
 void ChannelList::add(const ChannelInfo& info, size_t pixels) {
   const std::string name = stored_name(info.name);
   const auto has_name = [&](const Channel& channel) { return stored_name(channel.info.name) == name; };
@@ -115,15 +114,6 @@ std::vector<ChannelInfo> channels_of_passes(uint64_t passes) {
   std::vector<ChannelInfo> channels;
   for (const schema::PassInfo& pass : schema::stored_passes(passes)) channels.push_back(channel_of(pass));
   return channels;
-}
-
-uint64_t passes_of(std::span<const ChannelInfo> channels) {
-  uint64_t passes = 0;
-  for (const ChannelInfo& info : channels) {
-    const uint32_t pass = pass_with_name(info.name);
-    passes |= pass < GRADUS_PASS_COUNT ? uint64_t{1} << pass : 0;
-  }
-  return passes;
 }
 
 }  // namespace gradus::film

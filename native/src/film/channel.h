@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -66,7 +65,6 @@ class ChannelList {
   // the name: it is empty or too long, differs from another one only in spaces and underscores, or is a name of the
   // film's own planes.
   void add(const ChannelInfo& info, size_t pixels);
-  void clear() { *this = {}; }
 
   // Returns the channel, or nullptr. Inner loops call find() once and keep the pointer; of_pass() is a table look-up.
   const Channel* find(std::string_view name) const;
@@ -93,7 +91,7 @@ class ChannelList {
 // Returns the channels that an integrator fills for these passes (one bit each), in order of pass number. They include
 // the colours by which light passes are divided.
 std::vector<ChannelInfo> channels_of_passes(uint64_t passes);
-// Returns the passes with channels of these names, one bit each.
-uint64_t passes_of(std::span<const ChannelInfo> channels);
+// Returns the name of a channel in stored films, which have underscores in place of spaces.
+std::string stored_name(std::string_view name);
 
 }  // namespace gradus::film

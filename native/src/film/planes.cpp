@@ -70,12 +70,6 @@ std::string part_of(const std::string& name, size_t component) {
   return component == 0 ? name : name + "." + component_layer(component);
 }
 
-std::string stored_name(const Channel& channel) {
-  std::string name = channel.info.name;
-  std::replace(name.begin(), name.end(), ' ', '_');
-  return name;
-}
-
 // Collects planes. Vectors without values are left out.
 class PlaneList {
  public:
@@ -135,7 +129,7 @@ class PlaneList {
   // Each channel in half-buffers is a part of its own, because such channels are large and some readers need only one.
   void add_channel(Channel* channel) {
     const ChannelInfo& info = channel->info;
-    const std::string name = stored_name(*channel);
+    const std::string name = stored_name(info.name);
     const bool pairs = info.type == ValueType::kIdAndWeight;
     const MergeRule rule = channel->keeps_first_sample() ? MergeRule::kFirstSample : MergeRule::kAdd;
     for (int half = 0; half < kHalves; ++half) {

@@ -56,14 +56,6 @@ std::vector<PassInfo> stored_passes(uint64_t passes) {
   return stored;
 }
 
-uint64_t pass_bytes_per_pixel(uint64_t passes) {
-  uint64_t floats = 0;
-  for (const PassInfo& info : stored_passes(passes)) {
-    floats += info.channels * (is_in_halves(info.kind) ? 2 : 1) + (info.kind == PassKind::Weighted ? 1 : 0);
-  }
-  return floats * sizeof(float);
-}
-
 uint64_t feature_passes() {
   return passes_that([](PassKind kind) { return kind == PassKind::Feature; });
 }

@@ -97,8 +97,6 @@ inline bool needs_pictures(const GradusSettings& settings) {
 uint64_t needed_passes(uint64_t passes);
 // Returns those of needed_passes() for which an integrator fills channels, in order of pass number.
 std::vector<PassInfo> stored_passes(uint64_t passes);
-// Returns the bytes per pixel of the channels of these passes.
-uint64_t pass_bytes_per_pixel(uint64_t passes);
 // Returns the passes that guide reconstructions and denoisers, one bit each.
 uint64_t feature_passes();
 // Returns the passes that are parts of the picture's light, one bit each.

@@ -364,7 +364,7 @@ TEST(BadInput_Regularized, MissingFeatures) {
   description.feature = [](int, int, int channel, int) { return channel < 3 ? 0.5f : 0.0f; };
   expect_finite_and_bounded(make_feature_film(description), 10.0f);
   film::Film film = make_feature_film(description);
-  film.channels.clear();
+  film.channels = {};
   reconstruct::SolveReport report;
   EXPECT_THROW(reconstruct::regularize(film, false, never, &report), Error);
 }
