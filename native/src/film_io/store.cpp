@@ -129,7 +129,7 @@ film::Film read_film(const std::string& path, StoredContent content, const std::
                      const CancelCheck& cancel) {
   Imf::MultiPartInputFile file = open_file(path);
   film::Film film = make_frame(file.header(0), content, only);
-  const std::vector<StoredPart> parts = stored_parts(&film);
+  const std::vector<StoredPart> parts = stored_parts(film::planes_of(&film));
   const bool is_whole = content == StoredContent::kAll && only == nullptr;
   if (is_whole && size_t(file.parts()) != parts.size()) throw invalid_argument("it has parts of something else");
   std::vector<int> numbers;
@@ -161,8 +161,7 @@ auto load(const std::string& path, const Read& read) {
 }  // namespace
 
 void save_film(const film::Film& film, const std::string& path, const FilmWriteOptions& how) {
-  // The planes are only read here. The list is shared with load_film(), which writes to them.
-  const std::vector<StoredPart> parts = stored_parts(const_cast<film::Film*>(&film));
+  const std::vector<StoredPart> parts = stored_parts(film::planes_of(film));
   const auto write = [&](WriterStream* stream) {
     BlockFile file(make_headers(film, parts), stream);
     write_blocks(PartRows(parts, film), how.cancel, &file);

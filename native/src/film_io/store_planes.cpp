@@ -2,13 +2,11 @@
 
 #include <algorithm>
 
-#include "film/planes.h"
-
 namespace gradus::film_io {
 
-std::vector<StoredPart> stored_parts(film::Film* film) {
+std::vector<StoredPart> stored_parts(const std::vector<film::Plane>& planes) {
   std::vector<StoredPart> parts;
-  for (const film::Plane& plane : film::planes_of(film)) {
+  for (const film::Plane& plane : planes) {
     auto part = std::ranges::find(parts, plane.part, &StoredPart::name);
     if (part == parts.end()) part = parts.insert(parts.end(), {plane.part, {}});
     for (const film::PlaneField& field : plane.fields)

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "film/film.h"
+#include "film/planes.h"
 
 namespace gradus::film_io {
 
@@ -26,7 +26,7 @@ struct StoredPart {
   std::vector<StoredPlane> planes;
 };
 
-// Returns parts that point into the film, whose planes must not change while they are used.
-std::vector<StoredPart> stored_parts(film::Film* film);
+// Returns parts that point to the values of the planes, which must not move while the parts are used.
+std::vector<StoredPart> stored_parts(const std::vector<film::Plane>& planes);
 
 }  // namespace gradus::film_io
