@@ -299,6 +299,8 @@ film::Film make_frame(const Imf::Header& header, StoredContent content, const st
   film.samples = known.samples;
   film.shared = known.shared;
   for (const film::ChannelInfo& info : channels) film.channels.add(info, pixels);
+  if (const uint64_t passes = film.channels.passes(); schema::needed_passes(passes) != passes)
+    throw damaged("a light pass lacks the colour that divides it");
   if (is_whole && description.contains("channel_list")) {
     for (size_t i = 0; i < film.channels.size(); ++i)
       film.channels[i].paths = description.at("channel_list").at(i).at("paths");

@@ -183,8 +183,6 @@ bool has_pass(const film::Film& film, uint32_t pass) {
   if (info.kind == schema::PassKind::Image || info.kind == schema::PassKind::Derived ||
       info.kind == schema::PassKind::Sequence)
     return true;
-  // A damaged file may hold a light pass without the colour that divides it.
-  if (info.kind == schema::PassKind::Light && film.channels.of_pass(info.color) == nullptr) return false;
   return film.channels.of_pass(pass) != nullptr;
 }
 

@@ -124,6 +124,16 @@ void expect_same_bits(const film::Film& a, const film::Film& b) {
   }
 }
 
+TEST_F(F6_Store, LightPassesWithoutTheirColoursAreRefused) {
+  const auto film = with_other_channels(all_passes(16, 16, 2));
+  const film::ChannelList whole = std::exchange(film->channels, {});
+  for (const film::Channel& channel : whole) {
+    if (channel.pass != GRADUS_PASS_DIFFUSE_COLOR) film->channels.add(channel.info, size_t(film->region.area()));
+  }
+  film_io::save_film(*film, path());
+  EXPECT_THROW(film_io::load_film(path()), Error);
+}
+
 TEST_F(F6_Store, ChannelsThatAreNoPassesAreStoredMergedAndResumed) {
   GradusSettings early = all_passes(61, 37, 8), late = early;
   late.first_sample = 8;
