@@ -119,13 +119,19 @@ void GradientObserver::on_segment_passed(const path::Segment& segment) {
 
 // ---- Emission on the segment ----
 
+bool GradientObserver::add_base_emission(const path::Contribution& c, const Rgb& segment_weight) {
+  add_to_suffix(c, segment_weight);
+  if (open_ > 0) {
+    base_emission_ += Radiance(c.clamped, 0.0f);
+  }
+  return open_ > 0;
+}
+
 void GradientObserver::on_light_crossing(const path::RaySource& source, const path::Contribution& c,
                                          const path::LightCrossing& crossing) {
-  add_to_suffix(c, crossing.weight);
-  if (open_ == 0) {
+  if (!add_base_emission(c, crossing.weight)) {
     return;
   }
-  base_emission_ += Radiance(c.clamped, 0.0f);
   const bool is_needed = has_offset_at(OffsetStage::Pending) || has_offset_at(OffsetStage::Reconnected);
   const light::LightEvaluation base_view =
       source.vertex != nullptr && is_needed
@@ -152,11 +158,9 @@ void GradientObserver::on_light_crossing(const path::RaySource& source, const pa
 }
 
 void GradientObserver::on_world(const path::RaySource& source, const path::Contribution& c) {
-  add_to_suffix(c, Rgb(1.0f));
-  if (open_ == 0) {
+  if (!add_base_emission(c, Rgb(1.0f))) {
     return;
   }
-  base_emission_ += Radiance(c.clamped, 0.0f);
   light::LightEvaluation base_view;
   base_view.direction = base_.state.ray.ray.direction;
   base_view.visibility = context_.scene.world.visibility;
@@ -185,11 +189,9 @@ void GradientObserver::on_world(const path::RaySource& source, const path::Contr
 
 void GradientObserver::on_emission(const path::RaySource& source, const path::Contribution& c,
                                    const path::Vertex& vertex) {
-  add_to_suffix(c, Rgb(1.0f));
-  if (open_ == 0) {
+  if (!add_base_emission(c, Rgb(1.0f))) {
     return;
   }
-  base_emission_ += Radiance(c.clamped, 0.0f);
   connect_pending(base_, vertex, &offsets_, &counters_);
   const light::LightPoint point = has_offset_at(OffsetStage::Pending)
                                       ? light::light_point_of_surface(context_.scene, vertex.point)

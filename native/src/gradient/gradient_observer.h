@@ -68,6 +68,8 @@ class GradientObserver {
   void defer_reconnection(const path::Vertex& vertex, const path::ScatterEvent& event);
   void resume_reconnection();
 
+  // Adds emission that the base meets. Returns whether there are offsets to compare it with.
+  bool add_base_emission(const path::Contribution& c, const Rgb& segment_weight);
   // Adds a contribution of the base to the pairs of offsets in final stages.
   void add_to_suffix(const path::Contribution& c, const Rgb& segment_weight);
   bool has_offset_at(OffsetStage stage) const;
