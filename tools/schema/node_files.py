@@ -76,7 +76,7 @@ CONTEXT = "const ResourceArgs& args, const ShadeContext& context, Vec4* out"
 def functions(schema: Schema, note: str) -> str:
     """The text of op_functions.h, which declares the functions that evaluate operations."""
     lines = [
-        "// The functions that evaluate the operations of gradus_nodes.h. Each writes all outputs of its operation to `out`.",
+        "// The functions of the operations in gradus_nodes.h. Each writes all outputs of its operation to `out`.",
         f"// {note}",
         "#pragma once",
         "",

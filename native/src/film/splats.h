@@ -1,8 +1,7 @@
 // Adds splats to a channel: contributions of a light path or Markov chain to any pixel of the film.
 //
 // Workers submit all splats of a work unit at once. Units are added in the order of their numbers, so that the sums
-// have the same bits for any number of threads. Units that finish early wait in memory, at most as many as there are
-// workers.
+// have the same bits for any number of threads. Units that finish early wait in memory for those before them.
 #pragma once
 
 #include <cstdint>

@@ -104,7 +104,7 @@ void check_sources(const film::Film& film) {
     }
     for (const Vec2& off : correspondence.off_centre) {
       if (!(std::abs(off.x) <= 0.5f && std::abs(off.y) <= 0.5f))
-        throw invalid_argument("it replays ways that end in no pixel");
+        throw invalid_argument("it replays correspondences that end outside of their pixels");
     }
   };
   check(film.replayed.correspondence);

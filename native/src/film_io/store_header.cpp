@@ -71,7 +71,7 @@ film::AdaptiveState adaptive_state_from_json(const json& j, const Region& region
   film::AdaptiveState shared{j.at("mean"), j.value("uncounted", 0u), j.at("rays").get<std::vector<uint64_t>>(),
                              j.at("stopped").get<std::vector<uint8_t>>()};
   const size_t blocks = film::make_pixel_blocks(region).size();
-  if (shared.rays.size() != blocks || shared.stopped.size() != blocks) throw damaged("its cells are wrong");
+  if (shared.rays.size() != blocks || shared.stopped.size() != blocks) throw damaged("its pixel blocks are wrong");
   return shared;
 }
 

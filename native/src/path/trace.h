@@ -236,7 +236,7 @@ class PathTracer {
 
   // ---- Scattering ----
 
-  // Plays Russian roulette. Returns whether the path goes on, with the closures of its vertex.
+  // Plays Russian roulette. Returns whether the path continues, with the closures of its vertex.
   bool survives(const VertexSample& u, Vertex* vertex) {
     const float survival = survive(u, &state_);
     if (!(survival > 0.0f)) return false;

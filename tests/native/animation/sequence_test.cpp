@@ -549,7 +549,7 @@ TEST(Sequence, GradientTIsTheDifferenceOfTheStoredHalves) {
   EXPECT_GT(linked, size_t(border.area())) << "the test says something";
 }
 
-// The same random numbers under light of 1.5 times the strength: the difference is half of the earlier value.
+// Both frames use the same random numbers. Light of 1.5 times the strength then changes each pixel by half of its value.
 TEST(Sequence, GradientTOfGrowingLightIsItsIncrease) {
   PathScene scene;
   build(Scenario::World, &scene);

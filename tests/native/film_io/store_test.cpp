@@ -26,6 +26,7 @@
 #include <random>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "film/finite_check.h"
 #include "film/planes.h"

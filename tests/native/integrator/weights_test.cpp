@@ -46,7 +46,7 @@ TEST(B8_Weights, TechniquesAndDirectionsSumToOne) {
     // Light and BSDF samples of x, weighted by their shares of the density of x.
     const double bsdf_share = path::bsdf_weight(d.light_x, d.bsdf_x);
     const double there = weight(forward, r, bsdf_share) + weight(forward, r, 1.0 - bsdf_share);
-    // The same coefficient from base paths y with the inverse shift: C(x)·(1/r) at the density of y.
+    // Base paths y with the inverse shift add C(x)·(1/r) at the density of y to the same coefficient.
     const Radiance shifted = backward.paired(Radiance(0.0f), Radiance(1.0f), 1.0f / r);
     const double back = double(shifted.x) / backward.weight() * r;
     EXPECT_NEAR(there + back, 1.0, 1e-6);

@@ -116,7 +116,7 @@ TEST(Components, ThatNoSurfaceCanMakeAreNotSampled) {
   EXPECT_EQ(sampled_components(*mirror), "Emission, Diffuse, Reflection, Residual");
   EXPECT_EQ(sampled_components(*rendered(Scenario::Glass, settings_with(""))),
             "Emission, Diffuse, Reflection, Transmission, Residual");
-  // The same holds for a user's own set. No component that may get light is removed.
+  // Components of a user's own set are removed in the same way, but none that may get light.
   EXPECT_EQ(
       sampled_components(*rendered(Scenario::DiffuseArea, settings_with("Caustic=ED+(R|T).*L;Rare=EDDDDDDDDDDDDL"))),
       "Rare, Residual");

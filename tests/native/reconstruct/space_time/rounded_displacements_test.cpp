@@ -152,7 +152,7 @@ TEST(B2_RoundedDisplacements, AreInTheRegressedChange) {
   EXPECT_LT(error, 0.02 * squares);
 }
 
-// The same surface with a static reflection.
+// A window whose surface moves, but in which all sampled changes over time are 0.
 class StaticLight : public ShiftedWindow {
  public:
   using ShiftedWindow::ShiftedWindow;
