@@ -50,10 +50,18 @@ VALGRIND_TESTS = (
 )
 
 
-# Environment of each build with sanitizers, by its folder. The lists of suppressions name their reasons.
-SANITIZERS = {
-    "build-sanitize": {"LSAN_OPTIONS": f"suppressions={ROOT / 'tests/support/lsan.supp'} print_suppressions=0"},
-    "build-thread": {"TSAN_OPTIONS": f"suppressions={ROOT / 'tests/support/tsan.supp'} die_after_fork=0"},
+# Environments of the sanitizers. The lists of suppressions name their reasons.
+ADDRESS = {"LSAN_OPTIONS": f"suppressions={ROOT / 'tests/support/lsan.supp'} print_suppressions=0"}
+THREAD = {"TSAN_OPTIONS": f"suppressions={ROOT / 'tests/support/tsan.supp'} die_after_fork=0"}
+# Programs with sanitizers of every change (False) and of the full run (True). Renders of hard scenes have no threads
+# that other tests lack.
+SANITIZED = {
+    False: {ROOT / "build-sanitize/tests/gradus_sanitized_tests": ADDRESS},
+    True: {
+        ROOT / "build-sanitize/tests/gradus_native_tests": ADDRESS,
+        ROOT / "build-sanitize/tests/gradus_stress_tests": ADDRESS,
+        ROOT / "build-thread/tests/gradus_native_tests": THREAD,
+    },
 }
 
 
@@ -154,19 +162,13 @@ def sanitized_plan(full: bool) -> tuple[list[Program], list[Program]]:
     """
     limit = LIMIT["full" if full else "native"]
     programs, alone = [], []
-    for folder, variables in SANITIZERS.items():
-        if folder == "build-thread" and not full:
-            continue
+    for path, variables in SANITIZED[full].items():
         environment = variables | {"GRADUS_TEST_FULL": "0"}
-        # Renders of hard scenes have no threads that the others lack.
-        of_full_run = ("gradus_native_tests", "gradus_stress_tests")[: 1 if folder == "build-thread" else 2]
-        for name in of_full_run if full else ("gradus_sanitized_tests",):
-            path = ROOT / folder / "tests" / name
-            shards = SHARDS.get(name, 1)
-            for shard in range(shards):
-                programs.append(Program(path, limit, f"*-{ALONE}", shard, shards, environment=environment))
-            # Time limits of tests do not hold in instrumented programs.
-            alone.append(Program(path, limit, f"{ALONE}-{LIMITS}", environment=environment))
+        shards = SHARDS.get(path.name, 1)
+        for shard in range(shards):
+            programs.append(Program(path, limit, f"*-{ALONE}", shard, shards, environment=environment))
+        # Time limits of tests do not hold in instrumented programs.
+        alone.append(Program(path, limit, f"{ALONE}-{LIMITS}", environment=environment))
     if full:
         native = ROOT / "build" / "tests" / "gradus_native_tests"
         environment = {"GRADUS_TEST_FULL": "0"}
