@@ -549,7 +549,7 @@ TEST(Sequence, GradientTIsTheDifferenceOfTheStoredHalves) {
   EXPECT_GT(linked, size_t(border.area())) << "the test says something";
 }
 
-// Both frames use the same random numbers. Light of 1.5 times the strength then changes each pixel by half of its value.
+// Both frames use the same random numbers, so light of 1.5 times the strength changes each pixel by half of its value.
 TEST(Sequence, GradientTOfGrowingLightIsItsIncrease) {
   PathScene scene;
   build(Scenario::World, &scene);
