@@ -30,7 +30,7 @@ bool follows_another_frame(const FrameTraits& before, const FrameTraits& frame) 
 
 bool share_windows(const FrameTraits& before, const FrameTraits& frame, uint32_t reconstruction) {
   const bool features = before.features == frame.features || reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED;
-  return before.region == frame.region && before.channels == frame.channels && before.gradients == frame.gradients &&
+  return before.region == frame.region && before.channels == frame.color_channels && before.gradients == frame.gradients &&
          features && !follows_another_frame(before, frame);
 }
 

@@ -190,7 +190,7 @@ void Sequence::merge(int32_t number, film::Film* fresh, const film::Film& replay
     throw invalid_argument("stored frame " + folder_.path(number, FrameSamples::kFresh) +
                            " and its replayed samples do not belong together");
   }
-  render::add_sums(fresh, replayed);
+  film::add_sums(fresh, replayed);
   fresh->frame_number = number;
   fresh->settings.frame = number;
   fresh->settings.samples += replayed.settings.samples;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "film/read_pixels.h"
+#include "film/film.h"
 #include "motion/pixel_matching.h"
 
 namespace gradus::animation {

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/fpu.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "schema/pass_table.h"
 
 namespace gradus::film {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "film/film.h"
-#include "film/pass_planes.h"
 
 namespace gradus::film {
 

@@ -6,7 +6,6 @@
 
 #include "base/fpu.h"
 #include "film/film.h"
-#include "film/read_pixels.h"
 
 namespace gradus::film {
 

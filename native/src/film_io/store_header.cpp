@@ -10,7 +10,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "film/pixel_blocks.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
@@ -96,7 +96,7 @@ json describe_samples(const film::Film& film) {
   return {{"format", kFormat},
           {"version", gradus_version_text()},
           {"frame", film.frame_number},
-          {"channels", film.channels},
+          {"channels", film.color_channels},
           {"components", components_to_json(film)},
           {"rough", kept.non_specular},
           {"details", kept.details},
@@ -106,7 +106,7 @@ json describe_samples(const film::Film& film) {
           {"sampling_key", hex(schema::sampling_key(film.settings))},
           {"scene_key", hex(film.scene_key)},
           {"settings", schema::settings_to_json(film.settings)},
-          {"planes", film::film_passes(film)},
+          {"planes", film.channels.passes()},
           {"samples", ranges_to_json(film.samples)},
           {"counters", counters_to_json(film.counters)}};
 }
@@ -180,8 +180,8 @@ Region region_of(const Imf::Header& header) {
 film::FilmHeader read_header(const Imf::Header& header, const json& description) {
   film::FilmHeader film;
   film.region = region_of(header);
-  film.channels = description.at("channels");
-  if (film.channels != 3 && film.channels != 4) throw damaged("its planes are wrong");
+  film.color_channels = description.at("channels");
+  if (film.color_channels != 3 && film.color_channels != 4) throw damaged("its planes are wrong");
   film.gradients = description.at("gradients");
   film.planes = description.at("planes");
   film.of_components = component_content_from_json(description);
@@ -250,7 +250,7 @@ film::Film make_frame(const Imf::Header& header, StoredContent content, const st
   film.counters = counters_from_json(description.at("counters"));
   film.samples = known.samples;
   film.shared = known.shared;
-  film.passes = film::make_pass_planes(passes, pixels);
+  film::add_pass_channels(passes, &film);
   if (has_fallback) film.fallback.assign(pixels, 0.0f);
   if (description.contains("replayed_frame")) {
     const film::PixelCorrespondence correspondence{

@@ -84,7 +84,7 @@ std::string part_of(const std::string& name, size_t component) {
   return component == 0 ? name : name + "." + layer_of(component);
 }
 
-std::string layer_of(const film::PassPlane& plane) {
+std::string layer_of(const film::Channel& plane) {
   std::string name = schema::pass_info(plane.pass).name;
   for (char& c : name) c = c == ' ' ? '_' : c;
   return name;
@@ -93,7 +93,7 @@ std::string layer_of(const film::PassPlane& plane) {
 std::vector<StoredPlane> samples(film::Film* film, size_t component) {
   PlaneList list;
   for (int half = 0; half < film::kHalves; ++half) {
-    list.radiance(layer_of(component, half), film->channels, &film->components[component].primal[half]);
+    list.radiance(layer_of(component, half), film->color_channels, &film->components[component].primal[half]);
   }
   film::ReplayMap& replayed = film->replayed;
   if (replayed.has_component_map(int(component)))
@@ -115,7 +115,7 @@ std::vector<StoredPlane> gradients(film::Film* film, size_t component) {
   PlaneList list;
   for (int half = 0; half < film::kHalves; ++half) {
     for (int o = 0; o < film::kOffsets; ++o) {
-      list.radiance(layer_of(component, half) + "." + kOffsetNames[o], film->channels,
+      list.radiance(layer_of(component, half) + "." + kOffsetNames[o], film->color_channels,
                     &film->components[component].gradient[half][o]);
     }
   }
@@ -130,10 +130,10 @@ std::vector<StoredPlane> pairs(film::Film* film) {
   return list.take();
 }
 
-std::vector<StoredPlane> feature(film::PassPlane* plane) {
+std::vector<StoredPlane> feature(film::Channel* plane) {
   PlaneList list;
   for (int half = 0; half < film::kHalves; ++half) {
-    list.vectors(std::string(kHalfNames[half]) + "." + layer_of(*plane), plane->channels, &plane->values[half]);
+    list.vectors(std::string(kHalfNames[half]) + "." + layer_of(*plane), plane->info.values_per_pixel, &plane->values[half]);
   }
   return list.take();
 }
@@ -163,9 +163,9 @@ std::vector<StoredPlane> motion(film::Film* film, size_t component) {
 
 std::vector<StoredPlane> passes(film::Film* film) {
   PlaneList list;
-  for (film::PassPlane& plane : film->passes) {
-    if (plane.in_halves) continue;
-    list.vectors(layer_of(plane), plane.channels, &plane.values[0]);
+  for (film::Channel& plane : film->channels) {
+    if (plane.info.in_halves) continue;
+    list.vectors(layer_of(plane), plane.info.values_per_pixel, &plane.values[0]);
     list.vectors(layer_of(plane) + ".weight", 1, &plane.weight);
   }
   list.vectors("Fallback", 1, &film->fallback);
@@ -184,8 +184,8 @@ std::vector<StoredPart> stored_parts(film::Film* film) {
   for (size_t c = 0; c < components; ++c) parts.push_back({part_of("rough", c), non_specular(film, c)});
   for (size_t c = 0; c < components; ++c) parts.push_back({part_of("details", c), details(film, c)});
   for (size_t c = 0; c < components; ++c) parts.push_back({part_of("motion", c), motion(film, c)});
-  for (film::PassPlane& plane : film->passes) {
-    if (plane.in_halves) parts.push_back({layer_of(plane), feature(&plane)});
+  for (film::Channel& plane : film->channels) {
+    if (plane.info.in_halves) parts.push_back({layer_of(plane), feature(&plane)});
   }
   parts.push_back({"passes", passes(film)});
   std::erase_if(parts, [](const StoredPart& part) { return part.planes.empty(); });

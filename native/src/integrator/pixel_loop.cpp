@@ -108,7 +108,7 @@ void add_primal(const path::PathResult& result, const PixelSample& sample, const
   const uint32_t wanted = unit_components(unit, sample.pixel);
   for (size_t c = 0; c < film->components.size(); ++c) {
     Radiance value = result.radiance[c];
-    if (film->channels < 4) {
+    if (film->color_channels < 4) {
       value.w = 0.0f;
     }
     if (value != Radiance(0.0f) && (wanted >> c & 1) != 0) {

@@ -12,8 +12,7 @@
 
 #include "base/error.h"
 #include "base/fpu.h"
-#include "film/pass_planes.h"
-#include "film/read_pixels.h"
+#include "film/film.h"
 #include "schema/pass_table.h"
 
 namespace gradus::output {
@@ -68,7 +67,7 @@ void for_pixels(const film::Film& film, const Region& region, const Function& fu
 // function(pixel, out) for each pixel of the region, with its values and its index in the region.
 template <class Read, class Function>
 void for_rows_of_frame(const film::Film& film, const Region& region, const Read& read, const Function& function) {
-  const auto channels = size_t(film.channels), width = size_t(region.width());
+  const auto channels = size_t(film.color_channels), width = size_t(region.width());
   for_runs(region, [&](int32_t first, int32_t last) {
     std::vector<float> row(size_t(film.region.width()) * channels);
     for (int32_t y = first; y < last; ++y) {
@@ -94,7 +93,7 @@ void read_noisy(const film::Film& film, const Region& region, float* pixels) {
     const Radiance mean = sum * inverse_count(film, i);
     float* p = pixels + 4 * out;
     for (int c = 0; c < 3; ++c) p[c] = exposure * mean[c];
-    p[3] = film.channels == 4 ? std::clamp(mean.w, 0.0f, 1.0f) : (film::samples_at(film, i) > 0 ? 1.0f : 0.0f);
+    p[3] = film.color_channels == 4 ? std::clamp(mean.w, 0.0f, 1.0f) : (film::samples_at(film, i) > 0 ? 1.0f : 0.0f);
   });
 }
 
@@ -143,7 +142,7 @@ void read_derived(const film::Film& film, uint32_t pass, const Region& region, f
 
 // Writes the sum of radiance divided by the sum of colours. The product of the pass and its colour pass is the radiance
 // again, as compositing of Cycles' passes expects.
-void read_light(const film::Film& film, const film::PassPlane& light, const film::PassPlane& color,
+void read_light(const film::Film& film, const film::Channel& light, const film::Channel& color,
                 const Region& region, float* pixels) {
   for_pixels(film, region, [&](size_t i, size_t out) {
     for (int c = 0; c < 3; ++c) {
@@ -155,7 +154,7 @@ void read_light(const film::Film& film, const film::PassPlane& light, const film
   });
 }
 
-void read_stored(const film::Film& film, const schema::PassInfo& info, const film::PassPlane& plane,
+void read_stored(const film::Film& film, const schema::PassInfo& info, const film::Channel& plane,
                  const Region& region, float* pixels) {
   const float scale = info.kind == schema::PassKind::Radiance ? film.settings.film_exposure : 1.0f;
   for_pixels(film, region, [&](size_t i, size_t out) {
@@ -168,7 +167,7 @@ void read_stored(const film::Film& film, const schema::PassInfo& info, const fil
     for (uint32_t c = 0; c < info.channels; ++c) {
       const size_t value = info.channels * i + c;
       pixels[info.channels * out + c] =
-          factor * (plane.in_halves ? plane.values[0][value] + plane.values[1][value] : plane.values[0][value]);
+          factor * (plane.info.in_halves ? plane.values[0][value] + plane.values[1][value] : plane.values[0][value]);
     }
     if (info.pass == GRADUS_PASS_DEPTH && pixels[out] == 0.0f) pixels[out] = schema::kFarDepth;
   });
@@ -182,7 +181,7 @@ bool has_pass(const film::Film& film, uint32_t pass) {
   if (info.kind == schema::PassKind::Image || info.kind == schema::PassKind::Derived ||
       info.kind == schema::PassKind::Sequence)
     return true;
-  return film::find_plane(film, pass) != nullptr;
+  return film.channels.of_pass(pass) != nullptr;
 }
 
 void read_film_pass(const film::Film& film, uint32_t pass, const Region& region, float* pixels) {
@@ -195,9 +194,9 @@ void read_film_pass(const film::Film& film, uint32_t pass, const Region& region,
     std::fill_n(pixels, size_t(region.area()) * info.channels, 0.0f);
     return;
   }
-  const film::PassPlane* plane = film::find_plane(film, pass);
+  const film::Channel* plane = film.channels.of_pass(pass);
   if (info.kind == schema::PassKind::Light)
-    return read_light(film, *plane, *film::find_plane(film, info.color), region, pixels);
+    return read_light(film, *plane, *film.channels.of_pass(info.color), region, pixels);
   read_stored(film, info, *plane, region, pixels);
 }
 

@@ -87,7 +87,7 @@ std::vector<float> reconstruct(const film::Film& film, int component, uint32_t r
     const int w = film.region.width(), h = film.region.height();
     FilmRows rows(film, component);
     alpha = chosen_alpha(reconstruction, alpha);
-    if (auto image = solve_l2(w, h, film.channels, alpha, std::ref(rows))) return *std::move(image);
+    if (auto image = solve_l2(w, h, film.color_channels, alpha, std::ref(rows))) return *std::move(image);
     return solve_l2_with_gaps(film::read_images(film, component), alpha, cancel, report);
   }
   film::GradientImages images = film::read_images(film, component);

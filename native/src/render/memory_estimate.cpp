@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include "film/pass_planes.h"
-#include "film/pixel_correspondence.h"
+#include "film/film.h"
+#include "film/replay_map.h"
 
 namespace gradus::render {
 namespace {

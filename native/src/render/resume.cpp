@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/text_list.h"
 #include "film/finite_check.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "film/pixel_blocks.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
@@ -26,8 +26,8 @@ void add(std::vector<T>* to, const std::vector<T>& from) {
   for (size_t i = 0; i < to->size(); ++i) (*to)[i] += from[i];
 }
 
-void add_planes(film::PassPlane* to, const film::PassPlane& from) {
-  if (to->first_sample_only) return;  // merge_films() has already kept the plane of the film with the first sample
+void add_planes(film::Channel* to, const film::Channel& from) {
+  if (to->keeps_first_sample()) return;  // merge_films() has already kept the plane of the film with the first sample
   for (int half = 0; half < film::kHalves; ++half) add(&to->values[half], from.values[half]);
   add(&to->weight, from.weight);
 }
@@ -102,7 +102,7 @@ void check_resumable(const film::Film& film, const GradusSettings& settings, con
   const film::ComponentContent held = film::component_content(film);
   if ((plan.non_specular_vertices && !held.non_specular) || (plan.non_specular_details && !held.details))
     throw invalid_argument("the frame was sampled without the passes of components");
-  const uint64_t kept = film::film_passes(film);
+  const uint64_t kept = film.channels.passes();
   for (const schema::PassInfo& info : schema::stored_passes(plan.passes)) {
     if (!schema::has_bit(kept, info.pass))
       throw invalid_argument("the frame lacks " + std::string(info.name) + ", which the reconstruction reads");
@@ -130,7 +130,7 @@ void add_sums(film::Film* film, const film::Film& other) {
     add(&film->count[half], other.count[half]);
     for (int o = 0; o < film::kOffsets; ++o) add(&film->pair_count[half][o], other.pair_count[half][o]);
   }
-  for (size_t i = 0; i < film->passes.size(); ++i) add_planes(&film->passes[i], other.passes[i]);
+  for (size_t i = 0; i < film->channels.size(); ++i) add_planes(&film->channels[i], other.passes[i]);
   add(&film->fallback, other.fallback);
   film->counters.add(other.counters);
 }
@@ -139,7 +139,7 @@ void merge_films(film::Film* film, const film::Film& other) {
   if (film->scene_key != other.scene_key) throw invalid_argument("the frames show different scenes");
   if (schema::sampling_key(film->settings) != schema::sampling_key(other.settings))
     throw invalid_argument("the frames were sampled with different settings");
-  if (film->region != other.region || film->channels != other.channels || film->gradients != other.gradients ||
+  if (film->region != other.region || film->color_channels != other.channels || film->gradients != other.gradients ||
       !same_planes(*film, other)) {
     throw invalid_argument("the frames differ in size or planes");
   }
@@ -151,8 +151,8 @@ void merge_films(film::Film* film, const film::Film& other) {
     throw invalid_argument("the frames share samples: render one of them with first_sample " + std::to_string(end));
   }
   const bool other_is_first = other.settings.first_sample < film->settings.first_sample;
-  for (size_t i = 0; i < film->passes.size(); ++i) {
-    if (film->passes[i].first_sample_only && other_is_first) film->passes[i] = other.passes[i];
+  for (size_t i = 0; i < film->channels.size(); ++i) {
+    if (film->channels[i].first_sample_only && other_is_first) film->channels[i] = other.passes[i];
   }
   add_sums(film, other);
   film->shared = {};  // the adaptive states of two films with different samples cannot be combined

@@ -6,7 +6,7 @@
 
 #include "api/test_scene.h"
 #include "base/error.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "gradus/gradus.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"

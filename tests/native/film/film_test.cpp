@@ -5,8 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "film/finite_check.h"
-#include "film/pass_planes.h"
-#include "film/read_pixels.h"
 
 namespace gradus {
 namespace {
@@ -14,7 +12,7 @@ namespace {
 film::Film small_film() { return film::Film(4, 3, Region{0, 0, 4, 3}, 3, 1, true); }
 
 std::vector<float> variances(const film::Film& film) {
-  const size_t row = size_t(film.region.width()) * size_t(film.channels);
+  const size_t row = size_t(film.region.width()) * size_t(film.color_channels);
   std::vector<float> values(row * size_t(film.region.height()));
   for (int y = 0; y < film.region.height(); ++y) film::read_variance_row(film, y, values.data() + row * size_t(y));
   return values;
@@ -38,7 +36,7 @@ TEST(B6_FiniteCheck, NonFiniteSamplesStayOutAndAreCounted) {
 // Samples of 3e38 are finite, sums of two were not, nor were the mean of both halves and the variance.
 TEST(B6_FiniteCheck, SumsThatWouldOverflowStayOutAndAreCounted) {
   film::Film film = small_film();
-  film::PassPlane plane = film::make_pass_planes(uint64_t{1} << GRADUS_PASS_DIFFUSE_COLOR, 12)[0];
+  film::Channel plane = film::make_pass_planes(uint64_t{1} << GRADUS_PASS_DIFFUSE_COLOR, 12)[0];
   for (int half = 0; half < film::kHalves; ++half) {
     for (const float value : {3e38f, 6e36f, 6e36f}) {
       const float feature[3] = {value, value, value};
@@ -83,7 +81,7 @@ TEST(Film, BytesPerPixelAreThoseOfAllItsPlanes) {
     for (const bool gradients : {false, true}) {
       for (const uint64_t passes : {uint64_t{0}, (uint64_t{1} << GRADUS_PASS_COUNT) - 1}) {
         film::Film film(4, 3, Region{0, 0, 4, 3}, 4, components, gradients);
-        film.passes = film::make_pass_planes(passes, kPixels);
+        film::add_pass_channels(passes, &film);
         if (passes != 0) film.fallback.assign(kPixels, 0.0f);
         for (const film::ComponentContent& kept :
              {film::ComponentContent{}, {.non_specular = true}, {.details = true}, {.motion = true, .shown = true}}) {

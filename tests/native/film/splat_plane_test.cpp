@@ -1,6 +1,6 @@
 // Contract 1.3: splats of units of work merge in a fixed order and are normalised globally. A small light tracer stands
 // in for a real one.
-#include "film/splat_plane.h"
+#include "film/splats.h"
 
 #include <gtest/gtest.h>
 

@@ -68,11 +68,11 @@ struct FakeIntegrator final : integrator::Integrator {
       const int half = int(s % 2);
       const float value = value_of(x, y, s);
       film->components[0].primal[half][i] +=
-          Radiance(light * value, 0.5f * light * value, 2.0f * light * value, film->channels == 4 ? 0.75f : 0.0f);
+          Radiance(light * value, 0.5f * light * value, 2.0f * light * value, film->color_channels == 4 ? 0.75f : 0.0f);
       ++film->count[half][i];
       counters->rays_primary += y < rays_below ? 5 : 1;
-      for (film::PassPlane& plane : film->passes)
-        add_pass(&plane, i, plane.in_halves ? value_of(x, y, s + feature_seed) : value, s);
+      for (film::Channel& plane : film->channels)
+        add_pass(&plane, i, plane.info.in_halves ? value_of(x, y, s + feature_seed) : value, s);
       if (gradients && x < pairs_until) add_gradients(unit, x, y, half, film);
     }
   }
@@ -81,12 +81,12 @@ struct FakeIntegrator final : integrator::Integrator {
     return fake_truth(x, y) + (x < quiet_until ? 0.1f : 1.0f) * noise * (random_value(x, y, sample) - 0.5f);
   }
 
-  static void add_pass(film::PassPlane* plane, size_t i, float value, uint32_t sample) {
-    for (uint32_t c = 0; c < plane->channels; ++c) {
-      float& v = plane->of_half(int(sample % 2))[i * plane->channels + c];
-      v = plane->first_sample_only ? (sample == 0 ? value : v) : v + value;
+  static void add_pass(film::Channel* plane, size_t i, float value, uint32_t sample) {
+    for (uint32_t c = 0; c < plane->info.values_per_pixel; ++c) {
+      float& v = plane->of_half(int(sample % 2))[i * plane->info.values_per_pixel + c];
+      v = plane->keeps_first_sample() ? (sample == 0 ? value : v) : v + value;
     }
-    if (plane->skips_transparent) plane->weight[i] += 1.0f;
+    if (plane->has_weight()) plane->weight[i] += 1.0f;
   }
 
   // Exact differences of the truth, each direction carrying half.
