@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# Builds what is out of date. usage: build.sh [library | tests | checks [--full] | package]     default: library and tool
+# Builds what is out of date.
+#
+# usage: build.sh [library | tests | checks [--full] | package]     default: library and tool
 #
 # checks: builds that find faults that the tests do not see.
-#   build-odr/       objects for link-time optimisation; linking them (ninja -C build-odr gradus) is the test, which finds types and
-#                    variables that two sources define differently under one name
+#   build-odr/       objects for link-time optimisation; linking them (ninja -C build-odr gradus) is the test, which
+#                    finds types and variables that two sources define differently under one name
 #   build-sanitize/  with --full: native and stress tests with the sanitizers of addresses and undefined behaviour
 #   build-thread/    with --full: native tests with the sanitizer of threads, and an instrumented TBB
 set -euo pipefail
@@ -28,7 +30,8 @@ if [ "${1:-}" = checks ]; then
     configure build-thread "${debug[@]}" -DGRADUS_SANITIZE=thread -DTBB_DIR="$tbb"
     build build-thread gradus_native_tests
   fi
-  configure build-odr -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O0 -flto" -DGRADUS_TESTS=OFF -DGRADUS_FLOW=OFF \
+  configure build-odr -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O0 -flto" -DGRADUS_TESTS=OFF \
+    -DGRADUS_FLOW=OFF \
     -DCMAKE_SHARED_LINKER_FLAGS="-O0 -flto=2 -Wodr -Werror=odr -Wlto-type-mismatch -Werror=lto-type-mismatch"
   build build-odr gradus_core
   exit

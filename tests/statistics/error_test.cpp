@@ -104,7 +104,7 @@ class A8_Error : public testing::TestWithParam<Scenario> {};
 
 // A constant estimate would be right for the whole picture but wrong for each group of pixels. In the better half,
 // reconstruction windows extend over the edges of regions without noise.
-TEST_P(A8_Error, IsThatOfThePictureAndTellsItsPixelsApart) {
+TEST_P(A8_Error, IsThatOfThePictureAndOfGroupsOfPixels) {
   test::PathScene scene;
   test::build(GetParam(), &scene);
   GradusSettings settings = test::test_settings(kSize, kSize);

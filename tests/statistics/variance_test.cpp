@@ -194,7 +194,7 @@ double estimated_error(const film::Film& film, uint32_t reconstruction, const st
 // Regression: pixel blocks stopped by the error of L2 whatever the delivered reconstruction, so L1 took more samples
 // than its threshold required. An estimate with L1's own weights, which follow the noise, would have stopped it much
 // too early.
-TEST_P(A8_Delivered, ErrorThatStopsCellsIsThatOfTheReconstructionDelivered) {
+TEST_P(A8_Delivered, ErrorThatStopsBlocksIsThatOfTheDeliveredReconstruction) {
   test::PathScene scene;
   test::build(GetParam(), &scene);
   GradusSettings settings = sobol_settings(48);

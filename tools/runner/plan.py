@@ -7,7 +7,6 @@ in every host.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from .hosts import HOSTS, TestFile
@@ -27,13 +26,13 @@ SHARDS = {
     "gradus_stress_tests": 3,
     "gradus_regression_tests": 2,
 }
-# Tests that compare elapsed time with a limit. They run when nothing else does.
-ALONE = "K1_*:K2_Cancel.*:LiveView.*:Loop.ReadingDoesNotWaitForABatch:Loop.StopsByTime*:*TimeLimit*"
-# The limits of these do not hold under ThreadSanitizer, which takes ten times the time. Their threads are in others, too.
+# Tests that compare elapsed time with a limit run alone.
+ALONE = "K1_*:K2_Cancel.*:Preview.*:Loop.ReadingDoesNotWaitForABatch:Loop.StopsByTime*:*TimeLimit*"
+# The limits of these do not hold under ThreadSanitizer, which is ten times slower. Other tests cover their threads.
 LIMITS = (
-    "*TimeLimit*:K2_Cancel.*:LiveView.TakesATwentiethOfTheTime:LiveView.ACancelEndsTheQuarter:Loop.StopsByTime*"
+    "*TimeLimit*:K2_Cancel.*:Preview.TakesATwentiethOfTheTime:Preview.ACancelEndsTheQuarterSizedPicture"
+    ":Loop.StopsByTime*"
 )
-
 # L6: a picture of 160 x 120 pixels with all passes, and scenes, commits, renders, reconstruction and frames in the
 # tests of the C API; nothing of them depends on the clock. J2: animations that change or are cancelled. Memory that is
 # lost is an error, too.
@@ -66,16 +65,8 @@ def test_files(selection: str) -> list[Path]:
     return sorted({path for folder in folders for pattern in patterns for path in folder.rglob(pattern)})
 
 
-@dataclass
-class Plan:
-    """Jobs by lane. A lane is a host or "native"; the jobs in `alone` run after all others, one at a time."""
-
-    lanes: dict[str, list[TestFile | Program]]
-    alone: dict[str, list[TestFile | Program]]
-
-
 def smoke() -> dict[str, dict[Path, tuple[str, ...]]]:
-    """Host → file → names of tests; no names: the whole file."""
+    """Returns, by host and file, the names of tests in tests/smoke.txt; without names, the whole file runs."""
     found: dict[str, dict[Path, tuple[str, ...]]] = {host: {} for host in HOSTS}
     others = [host for host in HOSTS if host not in ("plain", COMPLETE)]
     for number, line in enumerate(SMOKE.read_text().splitlines(), 1):

@@ -20,9 +20,9 @@ std::string stored_name(std::string_view name) {
 
 // Returns whether planes of the film itself have this name, or one that begins with it and a dot (film/planes.cpp).
 bool is_reserved(const std::string& name) {
-  constexpr std::string_view kReserved[] = {"A",         "B",     "right", "up",      "left",   "down",  "count", "source",
-                                            "samples",   "counts", "pairs", "gradients", "rough", "details", "motion",
-                                            "passes"};
+  constexpr std::string_view kReserved[] = {"A",     "B",       "right",   "up",     "left",  "down",
+                                            "count", "source",  "samples", "counts", "pairs", "gradients",
+                                            "rough", "details", "motion",  "passes"};
   const std::string_view first = std::string_view(name).substr(0, name.find('.'));
   return std::ranges::find(kReserved, first) != std::end(kReserved) || first.starts_with("component");
 }

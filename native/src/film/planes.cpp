@@ -172,10 +172,8 @@ void add_value(const NonSpecularDetails& from, NonSpecularDetails* to, Counters*
   add_details(from, to, counters);
 }
 template <class T>
-  requires std::is_same_v<T, float> || std::is_same_v<T, uint32_t> || std::is_same_v<T, Vec4>
-void add_value(const T& from, T* to, Counters*) {
-  *to += from;
-}
+requires std::is_same_v<T, float> || std::is_same_v<T, uint32_t> || std::is_same_v<T, Vec4>
+void add_value(const T& from, T* to, Counters*) { *to += from; }
 
 template <class T>
 void add_all(const std::vector<T>& from, std::vector<T>* to, Counters* counters) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/cancel_check.h"
+#include "base/fault.h"
 #include "film/film.h"
 #include "output/light_pass_samples.h"
 #include "reconstruct/box_mean.h"
@@ -130,7 +131,8 @@ reconstruct::PictureTerm make_term(const film::Film& film, const Region& region,
                                    reconstruct::HalvedImage sampled, const CancelCheck& cancel) {
   throw_if_cancelled(cancel);
   reconstruct::PictureTerm term = reconstruct::regress_term(guides, std::move(sampled), cancel);
-  term.image = crop(term.image, film, region, film.settings.film_exposure);
+  term.image =
+      crop(term.image, film, region, GRADUS_FAULT(light_passes_lack_exposure) ? 1.0f : film.settings.film_exposure);
   term.error = crop(term.error, film, region);  // Only ratios of errors matter, so the exposure is left out.
   return term;
 }

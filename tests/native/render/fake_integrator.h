@@ -1,12 +1,14 @@
-// An integrator whose samples are a pure function of pixel and sample number: tests of the loop need no scene.
+// An integrator whose samples are a pure function of pixel and sample number, so that tests of the loop need no scene.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <functional>
 #include <thread>
 
 #include "base/error.h"
+#include "film/finite_check.h"
 #include "render/render.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
@@ -21,12 +23,12 @@ inline uint32_t hash(uint32_t x) {
   return x ^ (x >> 16);
 }
 
-// In [0, 1).
+// Returns a value in [0, 1).
 inline float random_value(int32_t x, int32_t y, uint32_t sample) {
   return float(hash(hash(hash(uint32_t(x)) + uint32_t(y)) + sample) >> 8) / float(1 << 24);
 }
 
-// Expectation of a pixel of the fake scene.
+// Returns the expectation of a pixel of the fake scene.
 inline float fake_truth(int32_t x, int32_t y) {
   return 0.5f + 0.3f * std::sin(0.2f * float(x)) * std::cos(0.15f * float(y));
 }
@@ -35,15 +37,15 @@ struct FakeIntegrator final : integrator::Integrator {
   explicit FakeIntegrator(const integrator::IntegratorContext& context, bool with_gradients)
       : settings(context.settings), gradients(with_gradients) {}
 
-  // Runs before each tile; may wait or throw.
+  // Called before each tile; may wait or throw.
   std::function<void(const integrator::WorkUnit&)> before = [](const integrator::WorkUnit&) {};
   GradusSettings settings;
   bool gradients;
   float noise = 1.0f;
-  float light = 1.0f;               // that all radiance is multiplied by
-  int32_t quiet_until = 0;          // left of this column there is a tenth of the noise
-  int32_t rays_below = 0;           // below this row a sample costs five rays in place of one
-  uint32_t feature_seed = 0x10000;  // of the noise of features; 0: that of the image, which they explain then
+  float light = 1.0f;               // factor of all radiance
+  int32_t quiet_until = 0;          // left of this column, the noise is a tenth
+  int32_t rays_below = 0;           // below this row, a sample costs five rays instead of one
+  uint32_t feature_seed = 0x10000;  // of the noise of features; 0: the image's noise, which the features explain then
   int32_t pairs_until = INT32_MAX;  // right of this column there are no gradients
 
   uint32_t count_at(const integrator::WorkUnit& unit, const film::Film& film, int32_t x, int32_t y) const {
@@ -82,6 +84,12 @@ struct FakeIntegrator final : integrator::Integrator {
   }
 
   static void add_pass(film::Channel* plane, size_t i, float value, uint32_t sample) {
+    if (plane->info.type == film::ValueType::kIdAndWeight) {
+      film::Counters counters;
+      const uint32_t values = plane->info.values_per_pixel;
+      return film::add_pair(float(sample % 3 + 1), value, values / 2,
+                            plane->of_half(int(sample % 2)).data() + i * values, &counters);
+    }
     for (uint32_t c = 0; c < plane->info.values_per_pixel; ++c) {
       float& v = plane->of_half(int(sample % 2))[i * plane->info.values_per_pixel + c];
       v = plane->keeps_first_sample() ? (sample == 0 ? value : v) : v + value;
@@ -89,7 +97,7 @@ struct FakeIntegrator final : integrator::Integrator {
     if (plane->has_weight()) plane->weight[i] += 1.0f;
   }
 
-  // Exact differences of the truth, each direction carrying half.
+  // Adds the exact differences of the truth, half for each direction.
   void add_gradients(const integrator::WorkUnit& unit, int32_t x, int32_t y, int half, film::Film* film) const {
     const size_t i = film->index(x, y);
     for (int o = 0; o < film::kOffsets; ++o) {
@@ -161,10 +169,10 @@ inline bool same_samples(const film::Film& a, const film::Film& b) {
     if (a.components[0].gradient[half] != b.components[0].gradient[half] || a.pair_count[half] != b.pair_count[half])
       return false;
   }
-  for (size_t i = 0; i < a.passes.size(); ++i) {
-    if (a.passes[i].values != b.passes[i].values || a.passes[i].weight != b.passes[i].weight) return false;
-  }
-  return a.passes.size() == b.passes.size();
+  const auto same = [](const film::Channel& p, const film::Channel& q) {
+    return p.info == q.info && p.values == q.values && p.weight == q.weight && p.paths == q.paths;
+  };
+  return std::ranges::equal(a.channels, b.channels, same);
 }
 
 }  // namespace gradus::test
