@@ -22,7 +22,7 @@ class FilmRows {
 
   void operator()(int y, const L2Use& use) {
     Rows& rows = rows_.local();
-    const size_t size = size_t(film_.region.width()) * size_t(film_.channels);
+    const size_t size = size_t(film_.region.width()) * size_t(film_.color_channels);
     for (auto* row : {&rows.primal, &rows.dx, &rows.dy, &rows.dy_below}) row->resize(size);
     std::swap(rows.dy, rows.dy_below);
     if (y > 0 && rows.y != y - 1)

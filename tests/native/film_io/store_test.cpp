@@ -155,8 +155,9 @@ TEST_F(F6_Store, ChannelsThatAreNoPassesAreStoredMergedAndResumed) {
   }
   EXPECT_EQ(back->channels.find("Caustics")->paths, (std::array<uint64_t, 2>{208, 210}));
 
-  film::Film fewer = *rendered(late);
-  EXPECT_THROW(render::merge_films(&merged, fewer), Error);
+  late.first_sample = 16;
+  const auto fewer = rendered(late);
+  EXPECT_EQ(refusal_of([&] { render::merge_films(&merged, *fewer); }), "the frames differ in size or planes");
 }
 
 TEST_F(F6_Store, RegionsAndPathFilmsToo) {
