@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "film/pixel_block.h"
+#include "film/pixel_blocks.h"
 #include "gradient/gradient_integrator.h"
 #include "gradus/gradus_nodes.h"
 #include "render/plan.h"

@@ -27,7 +27,7 @@ render::Plan plan_of(const film::Film& film) {
   plan.solves = true;
   plan.adaptive = film.settings.noise_threshold > 0.0f;
   plan.unbiased = !plan.adaptive && !(film.settings.clamp_direct > 0.0f) && !(film.settings.clamp_indirect > 0.0f);
-  plan.channels = film.channels;
+  plan.channels = film.color_channels;
   plan.passes = film.settings.passes;
   plan.sampled = film.region;
   return plan;
@@ -215,7 +215,7 @@ void FrameDeveloper::read_differences_over_time(const film::Film& film, Develope
   const FrameWindow window({std::make_shared<TemporalFrame>(make_fresh(film, kPixels)),
                             std::make_shared<TemporalFrame>(make_replay(
                                 *replay, folder.header(next, FrameSamples::kFresh).frame_number, kPixels))});
-  const int width = film.region.width(), channels = film.channels;
+  const int width = film.region.width(), channels = film.color_channels;
   std::vector<float> differences(size_t(width) * size_t(channels));
   std::vector<int32_t> correspondence(static_cast<size_t>(width));
   size_t out = 0;

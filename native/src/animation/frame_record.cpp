@@ -17,7 +17,7 @@ uint64_t key_without_frame(GradusSettings settings) {
 }  // namespace
 
 FrameTraits traits_of(const film::FilmHeader& fresh, const film::FilmHeader& replayed) {
-  return {fresh.region,          fresh.channels,        fresh.gradients,         film::has_features(fresh),
+  return {fresh.region,          fresh.color_channels,  fresh.gradients,         film::has_features(fresh),
           fresh.settings,        fresh.frame_number,    replayed.replayed_frame, fresh.scene_key,
           replayed.replayed_key, replayed.replayed_seed};
 }

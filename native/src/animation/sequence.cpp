@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/fault.h"
+#include "film/planes.h"
 #include "render/memory_estimate.h"
 #include "render/resume.h"
 #include "schema/options.h"
@@ -188,17 +189,12 @@ LoadSamples Sequence::load_samples(FrameSamples kind, const std::vector<std::str
 }
 
 void Sequence::merge(int32_t number, film::Film* fresh, const film::Film& replayed) const {
-  const film::ComponentContent of_fresh = film::component_content(*fresh),
-                               of_replayed = film::component_content(replayed);
-  if (of_fresh.non_specular != of_replayed.non_specular || of_fresh.details != of_replayed.details ||
-      fresh->count[0].size() != replayed.count[0].size() || fresh->channels != replayed.channels ||
-      fresh->gradients != replayed.gradients || fresh->passes.size() != replayed.passes.size() ||
-      !film::same_components(*fresh, replayed) ||
+  if (!film::can_add(*fresh, replayed) ||
       schema::sampling_key(fresh->settings) != schema::sampling_key(replayed.settings)) {
     throw invalid_argument("stored frame " + folder_.path(number, FrameSamples::kFresh) +
                            " and its replayed samples do not belong together");
   }
-  if (!GRADUS_FAULT(passes_read_fresh_samples_alone)) render::add_sums(fresh, replayed);
+  if (!GRADUS_FAULT(passes_read_fresh_samples_alone)) film::add_sums(fresh, replayed);
   fresh->frame_number = number;
   fresh->settings.frame = number;
   fresh->settings.samples += replayed.settings.samples;

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/fault.h"
-#include "film/read_pixels.h"
+#include "film/film.h"
 #include "motion/pixel_matching.h"
 
 namespace gradus::animation {

@@ -9,7 +9,7 @@
 #include "base/cancel_check.h"
 #include "base/fault.h"
 #include "film/film.h"
-#include "film/pixel_correspondence.h"
+#include "film/replay_map.h"
 
 namespace gradus::animation {
 

@@ -89,7 +89,7 @@ class GradientIntegrator final : public integrator::Integrator {
       worker->observer.finish();
       for (int c = 0; c < path_.components.count(); ++c) {
         if ((wanted >> c & 1) != 0)
-          add_gradients(worker->observer.gradient(c), s, film->channels, &film->components[size_t(c)], counters);
+          add_gradients(worker->observer.gradient(c), s, film->color_channels, &film->components[size_t(c)], counters);
       }
       if (unit.adds_components) return;
       for (int k = 0; k < film::kOffsets; ++k) film->pair_count[s.half][k][s.pixel] += pairs[k].weight();

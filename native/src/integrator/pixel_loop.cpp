@@ -121,7 +121,7 @@ void add_primal(const path::PathResult& result, const PixelSample& sample, const
     Radiance value = result.radiance[c];
     if (GRADUS_FAULT(samples_one_percent_darker)) value *= 0.99f;
     if (GRADUS_FAULT(one_sample_in_1000_is_nan) && (sample.pixel * 31 + sample.number) % 1000 == 0) value.x = NAN;
-    if (film->channels < 4) {
+    if (film->color_channels < 4) {
       value.w = 0.0f;
     }
     if (value != Radiance(0.0f) && (wanted >> c & 1) != 0) {
@@ -130,8 +130,9 @@ void add_primal(const path::PathResult& result, const PixelSample& sample, const
   }
   if (unit.adds_components) return;
   ++film->count[sample.half][sample.pixel];
-  if (!film->fallback.empty() && result.fallback) {
-    film->fallback[sample.pixel] += 1.0f;
+  if (!result.fallback) return;
+  if (film::Channel* fallback = film->channels.of_pass(GRADUS_PASS_FALLBACK); fallback != nullptr) {
+    fallback->values[0][sample.pixel] += 1.0f;
   }
 }
 

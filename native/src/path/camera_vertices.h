@@ -8,7 +8,7 @@
 
 #include <array>
 
-#include "film/pixel_block.h"
+#include "film/pixel_blocks.h"
 #include "path/context.h"
 #include "path/segment.h"
 

@@ -59,7 +59,9 @@ Vec3 shown_normal(const Vertex& vertex) {
 
 PassRecorder::PassRecorder(const PathContext& context, film::Film* film, film::Counters* counters)
     : context_(context), counters_(counters) {
-  for (film::PassPlane& plane : film->passes) {
+  for (film::Channel& plane : film->channels) {
+    // Integrators fill other channels, and pixel loops count the samples with replaced nodes.
+    if (plane.pass == GRADUS_PASS_COUNT || plane.pass == GRADUS_PASS_FALLBACK) continue;
     planes_[plane.pass] = &plane;
     active_ = true;
     has_light_passes_ |= plane.pass >= GRADUS_PASS_EMISSION && plane.pass <= GRADUS_PASS_TRANSMISSION_COLOR;
@@ -89,8 +91,8 @@ void PassRecorder::begin_sample(size_t pixel, int half, uint32_t number, bool ad
 }
 
 void PassRecorder::add(uint32_t pass, const Vec4& value) {
-  film::PassPlane* target = plane(pass);
-  if (target != nullptr && (first_sample_ || !target->first_sample_only)) {
+  film::Channel* target = plane(pass);
+  if (target != nullptr && (first_sample_ || !target->keeps_first_sample())) {
     film::add_feature(&value.x, 1.0f, pixel_, half_, target, counters_);
   }
 }

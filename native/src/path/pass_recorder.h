@@ -55,7 +55,7 @@ class PassRecorder {
   void scattered(int depth, const Vertex& vertex, const ScatterEvent& event);
 
  private:
-  film::PassPlane* plane(uint32_t pass) const { return planes_[pass]; }
+  film::Channel* plane(uint32_t pass) const { return planes_[pass]; }
   void add(uint32_t pass, const Vec4& value);
   void add(uint32_t pass, const Vec3& value) { add(pass, Vec4(value, 0.0f)); }
   void add(uint32_t pass, float value) { add(pass, Vec4(value, 0.0f, 0.0f, 0.0f)); }
@@ -79,7 +79,7 @@ class PassRecorder {
 
   const PathContext& context_;
   film::Counters* counters_;
-  std::array<film::PassPlane*, GRADUS_PASS_COUNT> planes_{};
+  std::array<film::Channel*, GRADUS_PASS_COUNT> planes_{};
   bool active_ = false;
   bool has_light_passes_ = false;
   bool has_features_ = false;

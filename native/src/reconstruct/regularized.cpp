@@ -6,7 +6,7 @@
 
 #include "base/fault.h"
 #include "base/types.h"
-#include "film/sum_components.h"
+#include "film/film.h"
 #include "reconstruct/feature_filter.h"
 #include "reconstruct/feature_regression.h"
 #include "reconstruct/field_values.h"
@@ -35,8 +35,8 @@ float typical_noise(const HalvedImage& image) {
 
 // Returns all channels of a component as sampled, colours in units of `scale`. Values that are not finite become 0.
 Field read_sampled(const film::Film& film, int component, float scale) {
-  const auto channels = size_t(film.channels);
-  Field sampled(film.region.width(), film.region.height(), film.channels);
+  const auto channels = size_t(film.color_channels);
+  Field sampled(film.region.width(), film.region.height(), film.color_channels);
   for_pieces(sampled.height(), [&](int begin, int end) {
     std::vector<float> row(size_t(sampled.width()) * channels);
     for (int y = begin; y < end; ++y) {
@@ -65,7 +65,7 @@ class Operator {
     normalise(scale_, &image);
     regression_.emplace(features, image, cancel);
     solution_ = regression_->image();
-    if (film.channels == 4) {
+    if (film.color_channels == 4) {
       const Field alpha = channels_of(read_sampled(film, 0, scale_), 3, 1);
       solution_ = join_channels(solution_, GRADUS_FAULT(alpha_stays_noisy) ? alpha : regression_->apply(alpha, cancel));
     }
@@ -83,7 +83,7 @@ class Operator {
   // Applies the operator to a component; `sampled` are its channels from read_sampled().
   Field apply(const film::Film& film, int component, const Field& sampled) {
     Field regressed = regression_->apply(channels_of(sampled, 0, 3), cancel_);
-    if (film.channels == 4) {
+    if (film.color_channels == 4) {
       const Field alpha = channels_of(sampled, 3, 1);
       regressed = join_channels(regressed, is_black(alpha) ? alpha : regression_->apply(alpha, cancel_));
     }

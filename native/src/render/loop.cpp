@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/fault.h"
 #include "base/threads.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "motion/component_motion.h"
 #include "output/combine.h"
 #include "output/component_read.h"
@@ -171,8 +171,7 @@ void RenderLoop::prepare() {
     const bool motion = plan_.component_motion && !input_.replay;
     film::allocate_component_content(
         {plan_.non_specular_vertices, plan_.non_specular_details, motion, motion && input_.samples_only}, film.get());
-    film->passes = film::make_pass_planes(plan_.passes, size_t(plan_.sampled.area()));
-    if (schema::has_bit(plan_.passes, GRADUS_PASS_FALLBACK)) film->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
+    film::add_pass_channels(plan_.passes, film.get());
   }
   if (film->settings.noise_threshold != settings.noise_threshold)
     film->shared.stopped.assign(film->shared.stopped.size(), 0);

@@ -6,7 +6,7 @@
 
 #include "api/test_scene.h"
 #include "base/error.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "gradus/gradus.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
@@ -150,8 +150,8 @@ TEST(Passes, HaveUniqueNames) {
 TEST(Passes, LightPassesBringTheirColorPasses) {
   const uint64_t direct = uint64_t{1} << GRADUS_PASS_GLOSSY_DIRECT;
   EXPECT_EQ(schema::needed_passes(direct), direct | uint64_t{1} << GRADUS_PASS_GLOSSY_COLOR);
-  EXPECT_EQ(film::make_pass_planes(direct, 10).size(), 2u);
-  EXPECT_EQ(film::make_pass_planes(uint64_t{1} << GRADUS_PASS_COMBINED, 10).size(), 0u);
+  EXPECT_EQ(film::channels_of_passes(direct).size(), 2u);
+  EXPECT_EQ(film::channels_of_passes(uint64_t{1} << GRADUS_PASS_COMBINED).size(), 0u);
 }
 
 TEST(G9_Options, ATextIsStoredUnchanged) {

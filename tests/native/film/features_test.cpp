@@ -10,7 +10,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "film_io/store.h"
 #include "output/pass_read.h"
 #include "render/fake_integrator.h"
@@ -134,7 +134,7 @@ TEST_F(StoredFeatures, ComeBackWithTheirHalves) {
   const film::Film film = with_unasked_features();
   film_io::save_film(film, path);
   const auto back = film_io::load_film(path);
-  EXPECT_EQ(film::film_passes(*back), schema::feature_passes());
+  EXPECT_EQ(back->channels.passes(), schema::feature_passes());
   EXPECT_TRUE(same_samples(film, *back));
   EXPECT_EQ(film::read_features(*back).depth.variance, film::read_features(film).depth.variance);
 }

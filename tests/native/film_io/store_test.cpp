@@ -27,10 +27,14 @@
 #include <set>
 #include <thread>
 
+#include "film/finite_check.h"
+#include "film/planes.h"
+#include "film/splats.h"
 #include "film_io/file_writer.h"
 #include "film_io/temporary_file.h"
 #include "output/combine.h"
 #include "render/fake_integrator.h"
+#include "render/resume.h"
 #include "support/file_calls.h"
 #include "support/refusal.h"
 
@@ -69,13 +73,91 @@ TEST_F(F6_Store, RoundTripIsExact) {
   EXPECT_EQ(files(), 1u);
   const auto back = film_io::load_film(path());
   EXPECT_TRUE(same_samples(*film, *back));
-  EXPECT_EQ(film->fallback, back->fallback);
+  EXPECT_NE(back->channels.of_pass(GRADUS_PASS_FALLBACK), nullptr);
   EXPECT_EQ(film->samples, back->samples);
   EXPECT_EQ(back->samples.list(), (std::vector<film::SampleRange>{{0, 8}}));
   EXPECT_EQ(back->scene_key, film->scene_key);
   EXPECT_EQ(back->frame_number, -7);
   EXPECT_EQ(back->counters.rays_primary, film->counters.rays_primary);
   EXPECT_EQ(std::memcmp(&back->settings, &film->settings, sizeof(GradusSettings)), 0);
+}
+
+const film::ChannelInfo kOtherChannels[] = {
+    {"Curvature of surfaces", 2, film::ValueType::kData, film::Normalisation::kSampleCount, true, false},
+    {"Crypto", 4, film::ValueType::kIdAndWeight, film::Normalisation::kSampleCount, false, false},
+    {"Caustics", 3, film::ValueType::kRadiance, film::Normalisation::kAllPaths, true, true},
+    {"Roughness", 1, film::ValueType::kData, film::Normalisation::kOwnWeight, false, false},
+};
+
+// Returns a rendered film with channels that the table of passes does not contain, and values in them.
+std::shared_ptr<film::Film> with_other_channels(const GradusSettings& settings) {
+  auto film = std::make_shared<film::Film>(*rendered(settings));
+  for (const film::ChannelInfo& info : kOtherChannels) film->channels.add(info, size_t(film->region.area()));
+  film::SplatQueue queue(film.get(), film->channels.find("Caustics"));
+  const uint32_t first = settings.first_sample;
+  for (const uint32_t unit : {1u, 0u}) {
+    std::vector<film::Splat> splats;
+    for (int32_t x = 0; x < film->region.x1; ++x) splats.push_back({x, x % 7, Vec4(float(x) + 0.1f * float(first))});
+    queue.merge(unit, int(unit), 100 + unit + first, std::move(splats), &film->counters);
+  }
+  film::Channel& curvature = *film->channels.find("Curvature of surfaces");
+  film::Channel& crypto = *film->channels.find("Crypto");
+  film::Channel& roughness = *film->channels.find("Roughness");
+  for (size_t i = 0; i < size_t(film->region.area()); ++i) {
+    const float values[2] = {0.1f * float(i % 13), 1.0f / float(i + first + 1)};
+    film::add_feature(values, 1.0f, i, int(i % 2), &curvature, &film->counters);
+    film::add_feature(values, 0.5f, i, 0, &roughness, &film->counters);
+    film::add_pair(float(i % 3 + first), 0.25f, 2, crypto.values[0].data() + 4 * i, &film->counters);
+  }
+  return film;
+}
+
+// Compares all planes and paths of two films.
+void expect_same_bits(const film::Film& a, const film::Film& b) {
+  EXPECT_TRUE(same_samples(a, b));
+  const std::vector<film::Plane> of_a = film::planes_of(a), of_b = film::planes_of(b);
+  ASSERT_EQ(of_a.size(), of_b.size());
+  for (size_t i = 0; i < of_a.size(); ++i) {
+    ASSERT_EQ(of_a[i].layer, of_b[i].layer);
+    ASSERT_EQ(of_a[i].bytes(), of_b[i].bytes());
+    EXPECT_EQ(std::memcmp(of_a[i].data(), of_b[i].data(), of_a[i].bytes()), 0) << of_a[i].layer;
+  }
+}
+
+TEST_F(F6_Store, ChannelsThatAreNoPassesAreStoredMergedAndResumed) {
+  GradusSettings early = all_passes(61, 37, 8), late = early;
+  late.first_sample = 8;
+  const auto film = with_other_channels(early), other = with_other_channels(late);
+  film_io::save_film(*film, path("early.exr"));
+  film_io::save_film(*other, path("late.exr"));
+  const auto back = film_io::load_film(path("early.exr")), other_back = film_io::load_film(path("late.exr"));
+  ASSERT_EQ(back->channels.size(), film->channels.size());
+  EXPECT_EQ(back->channels.find("Caustics")->paths, (std::array<uint64_t, 2>{100, 101}));
+  EXPECT_EQ(back->memory_bytes(), film->memory_bytes());
+  expect_same_bits(*film, *back);
+
+  early.samples = 16;
+  const auto resumed = rendered(early, film);
+  ASSERT_NE(resumed->channels.find("Crypto"), nullptr);
+  EXPECT_NE(resumed->channels.find("Crypto")->values, film->channels.find("Crypto")->values);
+  expect_same_bits(*resumed, *rendered(early, back));
+
+  film::Film merged = *film;
+  render::merge_films(&merged, *other);
+  render::merge_films(back.get(), *other_back);
+  expect_same_bits(merged, *back);
+  const auto sum_of = [](const film::Film& of, const char* name, size_t i) {
+    return of.channels.find(name)->values[0][i];
+  };
+  for (size_t i = 0; i < 50; ++i) {
+    EXPECT_EQ(sum_of(merged, "Roughness", i), sum_of(*film, "Roughness", i) + sum_of(*other, "Roughness", i));
+    EXPECT_EQ(sum_of(merged, "Crypto", 4 * i + 1) + sum_of(merged, "Crypto", 4 * i + 3), 0.5f);
+  }
+  EXPECT_EQ(back->channels.find("Caustics")->paths, (std::array<uint64_t, 2>{208, 210}));
+
+  late.first_sample = 16;
+  const auto fewer = rendered(late);
+  EXPECT_EQ(refusal_of([&] { render::merge_films(&merged, *fewer); }), "the frames differ in size or planes");
 }
 
 TEST_F(F6_Store, RegionsAndPathFilmsToo) {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "schema/pass_table.h"
 #include "support/path_scene.h"
 
@@ -27,7 +27,7 @@ struct View {
   film::Film render(bool gradient, uint32_t samples) {
     const integrator::IntegratorContext context = scene.context(settings);
     film::Film film = test::make_test_film(settings, gradient);
-    film.passes = film::make_pass_planes(schema::feature_passes(), film.count[0].size());
+    film::add_pass_channels(schema::feature_passes(), &film);
     test::sample_film(
         gradient ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context), 0,
         samples, &film);
@@ -127,7 +127,7 @@ TEST_P(SeenFeatures, GoToTheHalfBufferOfTheirSample) {
   view.wall(-1.0f, test::matte(Rgb(0.5f)));
   for (const uint32_t samples : {1u, 2u}) {
     const film::Film film = view.render(GetParam(), samples);
-    for (const film::PassPlane& plane : film.passes) {
+    for (const film::Channel& plane : film.channels) {
       const std::vector<float> none(plane.values[0].size());
       EXPECT_NE(plane.values[0], none) << schema::pass_info(plane.pass).name;
       EXPECT_EQ(plane.values[1] == none, samples == 1) << schema::pass_info(plane.pass).name;

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "gradient/gradient_integrator.h"
 #include "output/pass_read.h"
 #include "render/render.h"
@@ -31,7 +31,7 @@ film::Film render_passes(test::PathScene* scene, bool gradient) {
   const integrator::IntegratorContext context = scene->context(settings);
   film::Film film = test::make_test_film(settings, gradient);
   film.settings = settings;
-  film.passes = film::make_pass_planes(settings.passes, static_cast<size_t>(film.region.area()));
+  film::add_pass_channels(settings.passes, &film);
   test::sample_film(
       gradient ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context), 0, 8,
       &film);
@@ -65,8 +65,8 @@ TEST(LightPasses, LightBelowZeroAddsUpToo) {
 TEST_P(Passes, PlainAndGradientTracingGiveTheSame) {
   const film::Film plain = render_passes(GetParam(), false);
   const film::Film gradient = render_passes(GetParam(), true);
-  for (size_t i = 0; i < plain.passes.size(); ++i) {
-    EXPECT_EQ(plain.passes[i].values, gradient.passes[i].values) << schema::pass_info(plain.passes[i].pass).name;
+  for (size_t i = 0; i < plain.channels.size(); ++i) {
+    EXPECT_EQ(plain.channels[i].values, gradient.channels[i].values) << schema::pass_info(plain.channels[i].pass).name;
   }
 }
 

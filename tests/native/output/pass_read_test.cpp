@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "schema/pass_table.h"
 #include "support/threads.h"
 
@@ -23,9 +23,9 @@ uint64_t bit(uint32_t pass) { return uint64_t{1} << pass; }
 film::Film random_frame(int channels) {
   film::Film frame(400, 300, kSampled, channels, 2, true);
   frame.settings.film_exposure = 2.0f;  // exact products: no bit depends on the order of additions
-  frame.passes = film::make_pass_planes(
-      bit(GRADUS_PASS_DEPTH) | bit(GRADUS_PASS_NORMAL) | bit(GRADUS_PASS_DENOISING_ALBEDO), kSampled.area());
-  frame.fallback.assign(size_t(kSampled.area()), 0.0f);
+  film::add_pass_channels(
+      bit(GRADUS_PASS_DEPTH) | bit(GRADUS_PASS_NORMAL) | bit(GRADUS_PASS_DENOISING_ALBEDO) | bit(GRADUS_PASS_FALLBACK),
+      &frame);
   std::minstd_rand random(7);
   const auto value = [&] {
     const float scale = random() % 16 == 0 ? std::numeric_limits<float>::min() : 1.0f;
@@ -44,12 +44,11 @@ film::Film random_frame(int channels) {
       for (float& count : plane) count = float(random() % 3);
     }
   }
-  for (film::PassPlane& plane : frame.passes) {
+  for (film::Channel& plane : frame.channels) {
     for (std::vector<float>* values : {&plane.values[0], &plane.values[1], &plane.weight}) {
       for (float& sum : *values) sum = value();
     }
   }
-  for (float& sum : frame.fallback) sum = float(random() % 2);
   return frame;
 }
 
@@ -69,7 +68,7 @@ std::vector<float> gradient_of_images(const film::Film& frame, bool vertical) {
     for (int32_t y = kRead.y0; y < kRead.y1; ++y) {
       for (int32_t x = kRead.x0; x < kRead.x1; ++x, out += 3) {
         for (size_t c = 0; c < 3; ++c) {
-          const float difference = plane[frame.index(x, y) * size_t(frame.channels) + c];
+          const float difference = plane[frame.index(x, y) * size_t(frame.color_channels) + c];
           if (is_finite(difference)) pixels[out + c] += frame.settings.film_exposure * difference;
         }
       }

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "reconstruct/reconstruct_film.h"
 #include "schema/pass_table.h"
 #include "support/refusal.h"
@@ -152,7 +152,7 @@ TEST(ErrorEstimate, AndReconstructionRefuseFilmsWithoutNeededPlanes) {
   };
   EXPECT_NE(message(GRADUS_RECONSTRUCTION_L2).find("no gradients"), std::string::npos);
   EXPECT_NE(message(GRADUS_RECONSTRUCTION_REGULARIZED).find("no denoising features"), std::string::npos);
-  film.passes = film::make_pass_planes(schema::feature_passes(), 64);
+  film::add_pass_channels(schema::feature_passes(), &film);
   EXPECT_EQ(message(GRADUS_RECONSTRUCTION_REGULARIZED).find("no denoising features"), std::string::npos);
 }
 

@@ -4,7 +4,6 @@
 #include <functional>
 
 #include "film/film.h"
-#include "film/pass_planes.h"
 #include "reconstruct/test_images.h"
 #include "schema/pass_table.h"
 
@@ -23,20 +22,20 @@ struct FeatureFilm {
 };
 
 inline void fill_features(const FeatureFilm& description, film::Film* film) {
-  film->passes = film::make_pass_planes(schema::feature_passes(), size_t(film->region.area()));
+  film::add_pass_channels(schema::feature_passes(), film);
   int first = 0;
   for (const uint32_t pass :
        {GRADUS_PASS_DENOISING_NORMAL, GRADUS_PASS_DENOISING_ALBEDO, GRADUS_PASS_DENOISING_DEPTH}) {
-    for (film::PassPlane& plane : film->passes) {
+    for (film::Channel& plane : film->channels) {
       if (plane.pass != pass) continue;
       for (int half = 0; half < film::kHalves; ++half) {
         for (size_t i = 0; i < plane.values[half].size(); ++i) {
-          const int pixel = int(i / plane.channels), channel = first + int(i % plane.channels);
+          const int pixel = int(i / plane.info.values_per_pixel), channel = first + int(i % plane.info.values_per_pixel);
           plane.values[half][i] =
               description.feature(pixel % description.width, pixel / description.width, channel, half);
         }
       }
-      first += int(plane.channels);
+      first += int(plane.info.values_per_pixel);
     }
   }
 }
@@ -60,7 +59,7 @@ inline void fill_differences(const FeatureFilm& description, film::Film* film) {
             const float truth = 0.5f * (description.truth[3 * n + size_t(c)] - description.truth[3 * i + size_t(c)]);
             difference[c] = truth + description.difference_sigma * normal(random);
           }
-          if (film->channels == 4) difference[3] = difference[0] / 8.0f;
+          if (film->color_channels == 4) difference[3] = difference[0] / 8.0f;
         }
       }
     }

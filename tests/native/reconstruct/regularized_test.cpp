@@ -349,10 +349,10 @@ TEST(BadInput_Regularized, FeaturesOfNoiseAlone) {
 TEST(BadInput_Regularized, FeaturesThatAreNotFinite) {
   const FeatureFilm description = room(kWidth, kHeight);
   film::Film film = make_feature_film(description);
-  for (film::PassPlane& plane : film.passes) {
-    plane.values[0][17 * plane.channels] = std::numeric_limits<float>::quiet_NaN();
-    plane.values[1][400 * plane.channels] = std::numeric_limits<float>::infinity();
-    plane.values[1][401 * plane.channels] = 1e37f;
+  for (film::Channel& plane : film.channels) {
+    plane.values[0][17 * plane.info.values_per_pixel] = std::numeric_limits<float>::quiet_NaN();
+    plane.values[1][400 * plane.info.values_per_pixel] = std::numeric_limits<float>::infinity();
+    plane.values[1][401 * plane.info.values_per_pixel] = 1e37f;
   }
   expect_finite_and_bounded(film, 10.0f);
   EXPECT_LT(rms_difference(solve(film), description.truth), 0.5 * rms_difference(noisy(film), description.truth));
@@ -364,7 +364,7 @@ TEST(BadInput_Regularized, MissingFeatures) {
   description.feature = [](int, int, int channel, int) { return channel < 3 ? 0.5f : 0.0f; };
   expect_finite_and_bounded(make_feature_film(description), 10.0f);
   film::Film film = make_feature_film(description);
-  film.passes.clear();
+  film.channels.clear();
   reconstruct::SolveReport report;
   EXPECT_THROW(reconstruct::regularize(film, false, never, &report), Error);
 }
@@ -407,7 +407,7 @@ TEST(BadInput_Regularized, ASingleSample) {
   film::Film film = make_feature_film(room(kWidth, kHeight));
   std::fill(film.count[1].begin(), film.count[1].end(), 0u);
   std::fill(film.components[0].primal[1].begin(), film.components[0].primal[1].end(), Radiance(0.0f));
-  for (film::PassPlane& plane : film.passes) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
+  for (film::Channel& plane : film.channels) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
   const std::vector<float> truth = room(kWidth, kHeight).truth;
   expect_finite_and_bounded(film, 20.0f);
   EXPECT_LT(rms_difference(solve(film), truth), 0.7 * rms_difference(noisy(film), truth));
@@ -438,7 +438,7 @@ Spoiled spoiled(const char* name, const std::function<void(film::Film*)>& spoil)
 void empty_second_half(film::Film* film) {
   std::fill(film->count[1].begin(), film->count[1].end(), 0u);
   std::fill(film->components[0].primal[1].begin(), film->components[0].primal[1].end(), Radiance(0.0f));
-  for (film::PassPlane& plane : film->passes) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
+  for (film::Channel& plane : film->channels) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
   for (int o = 0; o < film::kOffsets; ++o) {
     std::fill(film->pair_count[1][o].begin(), film->pair_count[1][o].end(), 0.0f);
     std::fill(film->components[0].gradient[1][o].begin(), film->components[0].gradient[1][o].end(), Radiance(0.0f));
@@ -472,7 +472,7 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{"FeaturesOfNoise", [](int x, int y, int c, int half) { return 2.0f * hashed(x, y, c, half) - 1.0f; }},
         spoiled("FeaturesThatAreNotFinite",
                 [](film::Film* film) {
-                  for (film::PassPlane& plane : film->passes) {
+                  for (film::Channel& plane : film->channels) {
                     for (size_t i = 0; i < plane.values[0].size(); i += 11)
                       plane.values[0][i] = std::numeric_limits<float>::quiet_NaN();
                   }

@@ -1,12 +1,14 @@
 // An integrator whose samples are a pure function of pixel and sample number, so that tests of the loop need no scene.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <functional>
 #include <thread>
 
 #include "base/error.h"
+#include "film/finite_check.h"
 #include "render/render.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
@@ -68,11 +70,11 @@ struct FakeIntegrator final : integrator::Integrator {
       const int half = int(s % 2);
       const float value = value_of(x, y, s);
       film->components[0].primal[half][i] +=
-          Radiance(light * value, 0.5f * light * value, 2.0f * light * value, film->channels == 4 ? 0.75f : 0.0f);
+          Radiance(light * value, 0.5f * light * value, 2.0f * light * value, film->color_channels == 4 ? 0.75f : 0.0f);
       ++film->count[half][i];
       counters->rays_primary += y < rays_below ? 5 : 1;
-      for (film::PassPlane& plane : film->passes)
-        add_pass(&plane, i, plane.in_halves ? value_of(x, y, s + feature_seed) : value, s);
+      for (film::Channel& plane : film->channels)
+        add_pass(&plane, i, plane.info.in_halves ? value_of(x, y, s + feature_seed) : value, s);
       if (gradients && x < pairs_until) add_gradients(unit, x, y, half, film);
     }
   }
@@ -81,12 +83,18 @@ struct FakeIntegrator final : integrator::Integrator {
     return fake_truth(x, y) + (x < quiet_until ? 0.1f : 1.0f) * noise * (random_value(x, y, sample) - 0.5f);
   }
 
-  static void add_pass(film::PassPlane* plane, size_t i, float value, uint32_t sample) {
-    for (uint32_t c = 0; c < plane->channels; ++c) {
-      float& v = plane->of_half(int(sample % 2))[i * plane->channels + c];
-      v = plane->first_sample_only ? (sample == 0 ? value : v) : v + value;
+  static void add_pass(film::Channel* plane, size_t i, float value, uint32_t sample) {
+    if (plane->info.type == film::ValueType::kIdAndWeight) {
+      film::Counters counters;
+      const uint32_t values = plane->info.values_per_pixel;
+      return film::add_pair(float(sample % 3 + 1), value, values / 2,
+                            plane->of_half(int(sample % 2)).data() + i * values, &counters);
     }
-    if (plane->skips_transparent) plane->weight[i] += 1.0f;
+    for (uint32_t c = 0; c < plane->info.values_per_pixel; ++c) {
+      float& v = plane->of_half(int(sample % 2))[i * plane->info.values_per_pixel + c];
+      v = plane->keeps_first_sample() ? (sample == 0 ? value : v) : v + value;
+    }
+    if (plane->has_weight()) plane->weight[i] += 1.0f;
   }
 
   // Adds the exact differences of the truth, half for each direction.
@@ -161,10 +169,10 @@ inline bool same_samples(const film::Film& a, const film::Film& b) {
     if (a.components[0].gradient[half] != b.components[0].gradient[half] || a.pair_count[half] != b.pair_count[half])
       return false;
   }
-  for (size_t i = 0; i < a.passes.size(); ++i) {
-    if (a.passes[i].values != b.passes[i].values || a.passes[i].weight != b.passes[i].weight) return false;
-  }
-  return a.passes.size() == b.passes.size();
+  const auto same = [](const film::Channel& p, const film::Channel& q) {
+    return p.info == q.info && p.values == q.values && p.weight == q.weight && p.paths == q.paths;
+  };
+  return std::ranges::equal(a.channels, b.channels, same);
 }
 
 }  // namespace gradus::test

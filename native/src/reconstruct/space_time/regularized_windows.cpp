@@ -156,9 +156,9 @@ RegularizedWindows::Estimate RegularizedWindows::estimate_single_frame(const fil
   Estimate estimate;
   estimate.features = filter_features(film::read_features(samples));
   const Reconstructed picture = regularize(samples, estimate.features, samples.components.size() > 1, cancel, report);
-  if (picture.components.empty()) estimate.pictures.push_back(to_field(samples, picture.image, samples.channels));
+  if (picture.components.empty()) estimate.pictures.push_back(to_field(samples, picture.image, samples.color_channels));
   for (const std::vector<float>& image : picture.components)
-    estimate.pictures.push_back(to_field(samples, image, samples.channels));
+    estimate.pictures.push_back(to_field(samples, image, samples.color_channels));
   estimate.brightest = brightest(estimate.pictures);
   estimate.error = to_field(samples, picture.error, 1);
   const float scale = scale_of(estimate.pictures), minimum = kMinError * scale * scale;

@@ -62,7 +62,7 @@ struct Shot {
   static void remove(int half, film::Film* film) {
     std::fill(film->count[half].begin(), film->count[half].end(), 0);
     std::fill(film->components[0].primal[half].begin(), film->components[0].primal[half].end(), Radiance(0.0f));
-    for (film::PassPlane& pass : film->passes) std::fill(pass.values[half].begin(), pass.values[half].end(), 0.0f);
+    for (film::Channel& pass : film->channels) std::fill(pass.values[half].begin(), pass.values[half].end(), 0.0f);
   }
   std::shared_ptr<const film::Film> merged(int t) const {
     auto film = std::make_shared<film::Film>(sampled(t, t));
