@@ -39,7 +39,7 @@ test-addon:     ## only those of the add-on; with HOSTS=bpy45,bpy52 all of them 
 stress:         ## numerical stability: hard scenes, their dropped samples and failed shifts as a table
 	@tools/test.sh stress
 
-faults:         ## faults put into a copy of the sources, one at a time: do the tests catch them? docs/faults.md; half an hour
+faults:         ## faults switched on in a test build, one at a time: do the tests catch them? docs/faults.md; ten minutes, after a build
 	@tools/setup/setup test
 	@/usr/bin/python3 tests/faults/faults.py
 

@@ -1,6 +1,7 @@
-"""Which test realises which entry of the catalogue of tests; writes docs/tests.md.
+"""Lists the tests of each entry of the test catalogue and writes docs/tests.md.
 
-Tests carry the id of their entry in their name: A2_WhiteFurnace, test_h5_missing. Entries that are realised elsewhere name the place here.
+Tests carry the id of their entry in their name: A2_WhiteFurnace, test_h5_missing. For entries without such tests,
+ELSEWHERE names the place.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 
-# What the entries ask for, in short.
+# Short meanings of the entries.
 ENTRIES = {
     "A1": "furnace spheres: every integrator, sampler and camera sees 1",
     "A2": "white furnace of every BSDF",
@@ -104,15 +105,18 @@ ENTRIES = {
     "M3": "every fixed bug stays tested",
     "M4": "seeded faults",
 }
-# Realised outside of tests whose name says so: entry -> (where, how often).
+# Entries that are tested elsewhere, or by tests without the id in their name: entry -> (where, how often).
 ELSEWHERE = {
     "A9": [("docs/benchmark/README.md, Agreement (`make bench`)", "on demand")],
     "A10": [("L1: threads", "every change")],
     "B5": [("docs/benchmark/README.md (`make bench`)", "on demand")],
     "L5": [("`make compilers`: A1, A2, A4 to A6, B8 at -O0 and with clang", "on demand")],
-    "L6": [("tools/runner/plan.py: some native tests under sanitizers", "every change"), ("all of them, and L6, L3, G2 and passes under valgrind", "make test-full")],
+    "L6": [
+        ("tools/runner/plan.py: some native tests under sanitizers", "every change"),
+        ("all of them, and L6, L3, G2 and passes under valgrind", "make test-full"),
+    ],
     "M3": [("tests named after what went wrong, in all files", "every change")],
-    "M4": [("tests/faults (`make faults`), result in docs/faults.md", "on demand")],
+    "M4": [("tests/faults/faults.toml (`make faults`), result in docs/faults.md", "on demand")],
 }
 
 NATIVE = re.compile(r"^(?:INSTANTIATE_)?TEST(?:_[FP])?\((\w+),\s*(\w+)\)", re.M)
@@ -127,7 +131,7 @@ def how_often(source: str, before: str) -> str:
 
 
 def find_tests() -> dict[str, list[tuple[str, str]]]:
-    """Entry -> (file: names, how often)."""
+    """Returns, for each entry, pairs of "file: names of tests" and how often they run."""
     found: dict[str, dict[tuple[str, str], list[str]]] = defaultdict(lambda: defaultdict(list))
     for path in sorted((ROOT / "tests").rglob("*.cpp")):
         source = path.read_text()
@@ -138,15 +142,20 @@ def find_tests() -> dict[str, list[tuple[str, str]]]:
     for path in sorted((ROOT / "tests").rglob("*_test.py")):
         source = path.read_text()
         for match in PYTHON.finditer(source):
-            found[match[2].upper()][str(path.relative_to(ROOT)), how_often(source, source[: match.start()])].append(match[1])
-    lines = {entry: [(f"{file}: {', '.join(names)}", often) for (file, often), names in files.items()] for entry, files in found.items()}
+            found[match[2].upper()][str(path.relative_to(ROOT)), how_often(source, source[: match.start()])].append(
+                match[1]
+            )
+    lines = {
+        entry: [(f"{file}: {', '.join(names)}", often) for (file, often), names in files.items()]
+        for entry, files in found.items()
+    }
     for entry, places in ELSEWHERE.items():
         lines.setdefault(entry, []).extend(places)
     return lines
 
 
 def unknown_entries() -> list[str]:
-    """Ids in names of tests that the catalogue lacks: their tests would be in no table."""
+    """Returns ids in names of tests that have no entry: their tests would be missing in the table."""
     return [entry for entry in find_tests() if entry not in ENTRIES]
 
 
@@ -154,7 +163,9 @@ def table() -> str:
     tests = find_tests()
     rows = []
     for entry, meaning in ENTRIES.items():
-        rows += [f"| {entry} | {meaning} | {where} | {often} |" for where, often in tests.get(entry, [("**none**", "")])]
+        rows += [
+            f"| {entry} | {meaning} | {where} | {often} |" for where, often in tests.get(entry, [("**none**", "")])
+        ]
     title = "# Tests by the entries of the catalogue\n\nWritten by `python3 tests/catalogue.py`.\n\n"
     return title + "| | what | test | when |\n|---|---|---|---|\n" + "\n".join(rows) + "\n"
 

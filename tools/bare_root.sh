@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Prints the path of a Debian 12 root folder with the hosts' packages and none of our development packages; makes it once
-# (about a minute) in the cache folder. For tests of what is shipped. Needs root.
+# Prints the path of a Debian 12 root folder with the packages of the hosts, but without development packages, for tests
+# of the package. Creates the folder once (about a minute) in the cache folder. Needs root.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/setup"
 packages=$(sed -e 's/#.*//' debian-blender.txt debian-bpy.txt | awk 'NF {print $1}' | sort -u | paste -sd,)

@@ -18,7 +18,8 @@ set_up() {
   tools/build.sh
 }
 
-# Runs a script with an option for each named variable that is set: run script.py [--flag] scenes modes width=SPEED_WIDTH
+# Runs a script with an option for each named variable that is set, as in:
+# run script.py [--flag] scenes modes width=SPEED_WIDTH
 run() {
   local script=$1 arguments=() name variable
   shift
@@ -62,7 +63,10 @@ case $part in
   quick) set_up; errors --quick; report ;;
   host) set_up blender; run host.py; report ;;
   designs) set_up; OPENBLAS_NUM_THREADS=1 run compare_designs.py scenes width reference ;;
-  compare) .venv/bpy45/bin/python3 tools/bench/compare.py "${OLD:?which commit?}" "${NEW:?which commit?}" ${WIDTH:+--width "$WIDTH"} ;;
+  compare)
+    .venv/bpy45/bin/python3 tools/bench/compare.py "${OLD:?which commit?}" "${NEW:?which commit?}" \
+      ${WIDTH:+--width "$WIDTH"}
+    ;;
   report) tools/setup/setup bpy; report ;;
   *) echo "bench.sh: unknown part $part; see its head" >&2; exit 1 ;;
 esac

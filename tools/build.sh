@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
-# Builds what is out of date. usage: build.sh [library | tests | checks [--full] | package]     default: library and tool
+# Builds what is out of date.
+#
+# usage: build.sh [library | tests | checks [--full] | package]     default: library and tool
 #
 # checks: builds that find faults that the tests do not see.
-#   build-odr/       objects for link-time optimisation; linking them (ninja -C build-odr gradus) is the test, which finds types and
-#                    variables that two sources define differently under one name
-#   build-sanitize/  with --full: native and stress tests with the sanitizers of addresses and undefined behaviour
-#   build-thread/    with --full: native tests with the sanitizer of threads, and an instrumented TBB
+#   build-odr/       objects for link-time optimisation; linking them (ninja -C build-odr gradus) is the test, which
+#                    finds types and variables that two sources define differently under one name
+#   build-sanitize/  some native tests with the sanitizers of addresses and undefined behaviour
+#   build-thread/    some native tests with the sanitizer of threads, and an instrumented TBB
+# With --full, the sanitizers have all native tests, and the first one the stress tests.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 tools/setup/setup build
@@ -20,15 +23,16 @@ build() {  # FOLDER TARGET...
 
 if [ "${1:-}" = checks ]; then
   tbb=${XDG_CACHE_HOME:-$HOME/.cache}/gradus/tbb-2021.8.0-thread/lib/cmake/TBB
+  sanitized=(gradus_sanitized_tests)
+  [ -n "${2:-}" ] && sanitized=(gradus_native_tests gradus_stress_tests)
   debug=(-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1)
-  if [ -n "${2:-}" ]; then
-    tools/setup/setup checks
-    configure build-sanitize "${debug[@]}" -DGRADUS_SANITIZE=address
-    build build-sanitize gradus_native_tests gradus_stress_tests
-    configure build-thread "${debug[@]}" -DGRADUS_SANITIZE=thread -DTBB_DIR="$tbb"
-    build build-thread gradus_native_tests
-  fi
-  configure build-odr -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O0 -flto" -DGRADUS_TESTS=OFF -DGRADUS_FLOW=OFF \
+  tools/setup/setup checks
+  configure build-sanitize "${debug[@]}" -DGRADUS_SANITIZE=address
+  configure build-thread "${debug[@]}" -DGRADUS_SANITIZE=thread -DTBB_DIR="$tbb"
+  build build-sanitize "${sanitized[@]}"
+  build build-thread "${sanitized[0]}"
+  configure build-odr -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O0 -flto" -DGRADUS_TESTS=OFF \
+    -DGRADUS_FLOW=OFF \
     -DCMAKE_SHARED_LINKER_FLAGS="-O0 -flto=2 -Wodr -Werror=odr -Wlto-type-mismatch -Werror=lto-type-mismatch"
   build build-odr gradus_core
   exit

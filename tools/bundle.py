@@ -1,11 +1,11 @@
-"""Puts the library and every library it needs side by side, so that nothing of the host process is taken by accident.
+"""Copies the library and all libraries that it needs to one folder, so that it uses none of the host process.
 
     bundle.py LIBRARY FOLDER
 
-All that libgradus.so needs, beyond what every system has, is copied into FOLDER, finds its neighbours by $ORIGIN, and gets a soname
-that no library of Blender has: libOpenColorIO.so.2.1 becomes libgradus_OpenColorIO.so.2.1. TBB keeps its soname: two copies of TBB in
-one process would be two thread pools, and the one loaded first serves both. So it goes for libgradus_flow.so, if it was built, which
-libgradus.so loads when it needs it. Nothing is done when FOLDER is up to date.
+Libraries that every system has are left out. The others find each other by $ORIGIN and get a soname that no library
+of Blender has: libOpenColorIO.so.2.1 becomes libgradus_OpenColorIO.so.2.1. TBB keeps its soname, because two copies of
+TBB in one process would be two thread pools; the one loaded first serves both. The same is done for libgradus_flow.so,
+if it was built; libgradus.so loads it when it is needed. Nothing is done when FOLDER is up to date.
 """
 
 from __future__ import annotations
@@ -19,7 +19,17 @@ import tempfile
 from pathlib import Path
 
 # The C and C++ run-time libraries must be the process's own; they are there wherever Blender runs.
-BASE = ("linux-vdso", "ld-linux", "libc.so", "libm.so", "libdl.so", "libpthread.so", "librt.so", "libstdc++.so", "libgcc_s.so")
+BASE = (
+    "linux-vdso",
+    "ld-linux",
+    "libc.so",
+    "libm.so",
+    "libdl.so",
+    "libpthread.so",
+    "librt.so",
+    "libstdc++.so",
+    "libgcc_s.so",
+)
 SHARED_WITH_HOST = ("libtbb.so",)
 LOADED_LATER = ("libgradus_flow.so",)
 

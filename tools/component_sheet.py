@@ -1,4 +1,4 @@
-"""Pictures of a frame's components side by side: a column for each, a row for each of its passes, of which none is empty.
+"""Shows the components of a frame side by side: a column for each component, a row for each pass that is not empty.
 
     component_sheet.py FRAME.exr SHEET.webp
 
@@ -30,11 +30,17 @@ def read(path: Path) -> Passes:
             for name, channel in part.channels.items():
                 full, _, letter = name.rpartition(".")
                 planes.setdefault(full.partition(".")[2], {})[letter] = channel.pixels
-    return {name: np.stack([found[letter] for letter in sorted(found, key="RGBXYZWVA".find)], axis=2) for name, found in planes.items()}
+    return {
+        name: np.stack([found[letter] for letter in sorted(found, key="RGBXYZWVA".find)], axis=2)
+        for name, found in planes.items()
+    }
 
 
 def components(passes: Passes) -> list[str]:
-    """Names in the order of the file's first pass of each. They have no blanks, and each is followed: one may be called Irradiance."""
+    """Returns the names of components in the order of their first passes in the file.
+
+    A name has no blanks, and every component has the pass Tracked, which also identifies one called Irradiance.
+    """
     words = (name.split(" ") for name in passes if name.startswith("Path "))
     return [found[1] for found in words if found[2:] == ["Tracked"]]
 
@@ -75,7 +81,11 @@ ROWS: dict[str, Shower] = {
 
 def sheet(passes: Passes) -> Image.Image:
     names = components(passes)
-    rows = {suffix: show for suffix, show in ROWS.items() if any(passes[f"Path {name} {suffix}".strip()].any() for name in names)}
+    rows = {
+        suffix: show
+        for suffix, show in ROWS.items()
+        if any(passes[f"Path {name} {suffix}".strip()].any() for name in names)
+    }
     white = max(float(np.percentile(passes["Combined"][..., :3], BRIGHTEST)), 1e-6)
     height, width = passes["Combined"].shape[:2]
     made = Image.new("RGB", (len(names) * (width + GAP) - GAP, len(rows) * (height + HEADER) - GAP), "white")
@@ -84,7 +94,9 @@ def sheet(passes: Passes) -> Image.Image:
         for column, name in enumerate(names):
             left, top = column * (width + GAP), row * (height + HEADER)
             text.text((left + 2, top), f"{name} {suffix}", fill="black")
-            made.paste(Image.fromarray(np.uint8(np.rint(255.0 * show(passes, name, white)))), (left, top + HEADER - GAP))
+            made.paste(
+                Image.fromarray(np.uint8(np.rint(255.0 * show(passes, name, white)))), (left, top + HEADER - GAP)
+            )
     return made
 
 

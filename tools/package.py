@@ -1,6 +1,7 @@
-"""Makes dist/gradus-<version>.zip: the add-on's folder with the library and all it needs, for Blender 3.4 (add-on) to 5.2 (extension).
+"""Makes dist/gradus-<version>.zip: the folder of the add-on with the library and all libraries that it needs.
 
-The folder is the only thing at the top level of the zip, which both ways of installing accept. Same sources, same bytes.
+Blender 3.4 to 4.1 installs it as an add-on, later versions also as an extension: both accept a zip with a single folder
+at its top level. The same sources give the same bytes.
 """
 
 from __future__ import annotations
@@ -27,12 +28,18 @@ def version() -> str:
     header = (ROOT / "native" / "include" / "gradus" / "gradus.h").read_text()
     numbers = [re.search(rf"GRADUS_VERSION_{part} (\d+)", header).group(1) for part in ("MAJOR", "MINOR", "PATCH")]
     tree = ast.parse((ADDON / "__init__.py").read_text())
-    info = next(ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign) and node.targets[0].id == "bl_info")
+    info = next(
+        ast.literal_eval(node.value)
+        for node in tree.body
+        if isinstance(node, ast.Assign) and node.targets[0].id == "bl_info"
+    )
     found = {
         "gradus.h": ".".join(numbers),
         "bl_info": ".".join(map(str, info["version"])),
         "blender_manifest.toml": tomllib.loads((ADDON / "blender_manifest.toml").read_text())["version"],
-        "CMakeLists.txt": re.search(r"project\(gradus VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1),
+        "CMakeLists.txt": re.search(r"project\(gradus VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text()).group(
+            1
+        ),
     }
     if len(set(found.values())) != 1:
         raise SystemExit(f"package: versions differ: {found}")

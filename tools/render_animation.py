@@ -1,6 +1,7 @@
-"""`make render-animation`: renders a range of frames by `blender -b -a`, and puts small ones side by side on a film strip.
+"""`make render-animation`: renders a range of frames by `blender -b -a`, and joins small copies to a film strip.
 
-Reads SCENE, FRAMES (1-24), OUT, ARGS (options of the add-on, as after "--") and BLENDER from the environment, as render.py does.
+Reads SCENE, FRAMES (1-24), OUT, ARGS (options of the add-on, as after "--") and BLENDER from the environment, as
+render.py does.
 """
 
 from __future__ import annotations
@@ -42,12 +43,16 @@ def render(wanted: Request) -> None:
     }
     start = time.monotonic()
     try:
-        code = subprocess.run(command(wanted, prefix), env=environment, stdin=subprocess.DEVNULL, check=False).returncode
+        code = subprocess.run(
+            command(wanted, prefix), env=environment, stdin=subprocess.DEVNULL, check=False
+        ).returncode
     except OSError as error:
         raise RenderError(f"BLENDER={blender_path()}: {error.strerror}") from error
     missing = [file.name for file in (*frames, strip) if not file.exists()]
     if code != 0 or missing:
-        raise RenderError(f"Blender ended with code {code}" + (f"; not written: {', '.join(missing)}" if missing else ""))
+        raise RenderError(
+            f"Blender ended with code {code}" + (f"; not written: {', '.join(missing)}" if missing else "")
+        )
     print(f"render: {frames[0]} … {frames[-1].name} in {time.monotonic() - start:.1f} s; film strip: {strip}")
 
 

@@ -1,7 +1,7 @@
 """Runs inside Blender: renders the open file's frames, each to a multilayer EXR and a PNG from the one render.
 
-Started by render.py, which passes GRADUS_RENDER_OUT (path without frame number) and GRADUS_RENDER_FRAMES (JSON: [[first, last], …]).
-The operator is used rather than -f or -a because only it makes the image that the PNG is saved from.
+render.py starts it and passes GRADUS_RENDER_OUT (path without frame number) and GRADUS_RENDER_FRAMES (JSON: [[first,
+last], …]). It uses the operator instead of -f or -a, because only the operator makes the image that is saved as a PNG.
 """
 
 from __future__ import annotations

@@ -58,7 +58,7 @@ ordered_json film_info(const std::string& path) {
           {"samples_most", maximum},
           {"gradients", frame->gradients},
           {"components", frame->components.size()},
-          {"alpha", frame->channels == 4},
+          {"alpha", frame->color_channels == 4},
           {"memory_bytes", frame->memory_bytes()},
           {"scene_key", scene_key},
           {"settings", schema::settings_to_json(frame->settings)}};

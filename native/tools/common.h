@@ -65,8 +65,8 @@ std::string bad_passes(const std::string& text);
 // Returns the enum value of `reconstruction` or `denoiser`. Throws the library's error if the value is invalid.
 uint32_t parse_choice(const std::string& option, const std::string& value);
 
-// Both throw CLI::ValidationError, which counts as wrong usage: check_apart() if `written` and `kept` are the same file,
-// also through links; check_denoiser_path() if a path is given although no denoiser is used.
+// Both throw CLI::ValidationError, which counts as wrong usage: check_apart() if `written` and `kept` are the same
+// file, also through links; check_denoiser_path() if a path is given although no denoiser is used.
 void check_apart(const std::string& option, const std::string& written, const std::string& kept);
 void check_denoiser_path(const std::string& path, uint32_t denoiser);
 

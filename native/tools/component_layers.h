@@ -18,8 +18,8 @@ inline constexpr uint32_t kAllComponentPasses = (uint32_t{1} << GRADUS_COMPONENT
 uint32_t parse_component_passes(const std::string& text);
 std::string bad_component_passes(const std::string& text);
 
-// Returns the requested passes that the frame was sampled for. Throws Error with the missing ones, unless all passes are
-// requested.
+// Returns the requested passes that the frame was sampled for. Throws Error with the missing ones, unless all passes
+// are requested.
 uint32_t available_component_passes(const film::FilmHeader& frame, uint32_t requested);
 // Returns whether some passes are computed from two frames of an animation by optical flow.
 bool need_two_frames(uint32_t passes);

@@ -15,7 +15,9 @@ def test_h1_hash_is_the_library_s() -> None:
 
 def test_h1_hash_sees_a_moved_field() -> None:
     text = abi.layout_text()
-    assert abi.layout_hash(text.replace("DeviceSettings:24:0,4,8,16;", "DeviceSettings:24:0,4,16,8;")) != abi.layout_hash(text)
+    assert abi.layout_hash(
+        text.replace("DeviceSettings:24:0,4,8,16;", "DeviceSettings:24:0,4,16,8;")
+    ) != abi.layout_hash(text)
     assert abi.layout_hash("a") == 0xAF63DC4C8601EC8C  # published test value of FNV-1a
 
 

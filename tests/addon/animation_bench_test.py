@@ -24,7 +24,7 @@ import document  # noqa: E402
 
 
 def rows(mode: str, flicker: float, version: str = "new", **more: Any) -> list[dict]:
-    """Measures that fall as 1/t, of two seeds."""
+    """Returns measures of two seeds that fall as 1/t."""
     found = []
     for seed in range(2):
         for samples in (4, 16):
@@ -49,7 +49,7 @@ def stored(
 
 
 def test_every_temporal_mode_is_compared_with_itself_frame_by_frame() -> None:
-    """AUTO's choice for stills is the library's: its twin is what that takes."""
+    """The library makes AUTO's choice for stills; the twin of AUTO is the mode that it chooses."""
     temporal = [mode for mode in animation_modes.MODES if animation_modes.is_temporal(mode)]
     assert temporal
     for mode in temporal:
@@ -79,7 +79,7 @@ def test_the_newest_version_of_each_mode_counts(tmp_path: Path, monkeypatch: pyt
 
 
 def test_a_peer_gets_more_samples_in_a_later_version(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As long as there are as many seeds of the earlier ones; modes of ours are of one version."""
+    """Earlier results count while they have as many seeds; all modes of Gradus are of one version."""
     found = [
         rows(mode, 1.0, "old") + [row | {"samples": 64} for row in rows(mode, 1.0)[:4:2]]
         for mode in ("path", report.PEER)
@@ -98,7 +98,7 @@ VARIANTS = {
 
 
 def test_variants_are_never_compared_with_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nor does a newer one replace the usual one."""
+    """A newer result of another variant does not replace that of the usual one."""
     varied = [
         rows(mode, flicker, "newer", **more)
         for more in VARIANTS.values()
@@ -171,7 +171,7 @@ def test_peers_of_another_blender_are_not_mixed(tmp_path: Path, monkeypatch: pyt
 
 @pytest.mark.module
 def test_all_engines_have_the_bounce_limits_of_the_file(scene: bpy.types.Scene, tmp_path: Path) -> None:
-    """Gradus kept its own in animations."""
+    """Regression: Gradus kept its own denoiser in animations."""
     import animation_worker
 
     scene.cycles.max_bounces, scene.cycles.diffuse_bounces = 9, 7

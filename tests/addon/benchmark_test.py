@@ -127,7 +127,7 @@ def test_ratios_of_curves() -> None:
 
 
 def test_one_count_of_samples_tells_nothing_of_equal_time() -> None:
-    """Equal samples passed for equal time where it differed by less than a quarter."""
+    """Regression: results with equal samples counted as equal time if the time differed by less than a quarter."""
     assert metrics.equal_time_ratio([(1.2, 0.5)], [(1.0, 1.0)]) is None
     theirs = [(t, 1.0 / t) for t in (1.0, 4.0)]
     for time in (0.9, 1.2, 4.5):
@@ -144,7 +144,7 @@ def test_slope_is_that_of_the_last_decade() -> None:
 
 
 def test_a_setting_that_does_not_exist_refuses_the_mode(scene: bpy.types.Scene) -> None:
-    """Blender takes any attribute: a temporal mode was measured without being temporal."""
+    """Regression: Blender accepts any attribute, so that a temporal mode was measured without effect."""
     mode = modes.Mode("unknown", modes.GRADUS, {"use_more_light": True})
     with pytest.raises(ValueError, match="use_more_light"):
         modes.apply(scene, mode, 4, 0)
@@ -201,7 +201,7 @@ def test_both_forms_of_the_report_say_the_same() -> None:
 
 
 def test_sentences_in_a_table_wrap() -> None:
-    """They stayed on one line, and squeezed the first column to a word a line."""
+    """Regression: they stayed on one line, so that the first column had one word per line."""
     sentence = "3 of 13; median 0.98, most 2.42 (glass_and_chrome)"
     page = document.Table(["aim", "found"], [["R ≤ 1", sentence], ["R ≤ 2", "0.98 (0.97–1.01)"]]).as_html()
     assert f'<td class="long">{sentence}</td>' in page

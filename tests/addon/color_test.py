@@ -1,4 +1,4 @@
-"""Baking of colour spaces into curve and matrix (contract 8.1)."""
+"""Baking of colour spaces into a curve and a matrix."""
 
 from __future__ import annotations
 

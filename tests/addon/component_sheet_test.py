@@ -25,7 +25,10 @@ def passes_of(name: str, color: tuple[float, float, float], tracked: float) -> d
     plane = np.ones((HEIGHT, WIDTH, 1), np.float32)
     motion = plane * np.array((-4.0, 0.0, -4.0, 0.0), np.float32)
     surface = {suffix: plane * np.array(color, np.float32) for suffix in ("", " Reflectance", " Irradiance", " Normal")}
-    return {f"Path {name}{suffix}": image for suffix, image in (surface | {" Motion": motion, " Tracked": plane * tracked}).items()}
+    return {
+        f"Path {name}{suffix}": image
+        for suffix, image in (surface | {" Motion": motion, " Tracked": plane * tracked}).items()
+    }
 
 
 def test_a_column_for_each_component_and_a_row_for_each_pass(tool: dict[str, Any]) -> None:
@@ -49,7 +52,7 @@ def flow_of(name: str, x: float) -> dict[str, np.ndarray]:
 
 
 def test_motion_of_irradiance_was_taken_for_that_of_another_component(tool: dict[str, Any]) -> None:
-    """It ended in KeyError: 'Path Diffuse Irradiance Tracked', or by its length dimmed all others."""
+    """Regression: it ended in KeyError: 'Path Diffuse Irradiance Tracked', or its length dimmed all others."""
     passes = {"Combined": np.ones((HEIGHT, WIDTH, 4), np.float32)}
     for name in ("Diffuse", "Irradiance"):
         passes |= passes_of(name, (1.0, 0.0, 0.0), 1.0) | flow_of(name, -400.0)

@@ -29,7 +29,7 @@ def half_of(image: np.ndarray) -> Half:
 
 
 def noisy_half(seed: int) -> Half:
-    """Differences have half the deviation; a pixel of a hundred is an outlier, in its differences, too."""
+    """Adds noise: differences have half the deviation; one pixel in a hundred and its differences are outliers."""
     random = np.random.default_rng(seed)
 
     def noisy(image: np.ndarray, deviation: float) -> np.ndarray:
@@ -118,7 +118,7 @@ def test_features_that_are_noise_leave_the_basis() -> None:
 
 
 def test_the_normal_matrix_is_that_of_the_rows() -> None:
-    """Of an image by columns, against P_p and differences of every unit image."""
+    """Compares the matrices of an image, column by column, with P_p and with the differences of every unit image."""
     height, width, alpha, beta = 6, 7, 0.3, 2.0
     features = FEATURES[:height, :width]
     patches = patches_of(features)
@@ -185,7 +185,7 @@ def test_features_that_say_nothing(design: str, features: float) -> None:
 
 
 def stored_planes() -> dict[str, np.ndarray]:
-    """A frame of 4×5 pixels: 2 samples per half, 1 where pairs are counted but twice."""
+    """Returns a film of 4×5 pixels with 2 samples per half, and 1 where pairs are counted only twice."""
     planes = {}
     for half in "AB":
         planes[f"{half}.count.V"] = np.full((4, 5), 2.0)

@@ -10,7 +10,6 @@ import pytest
 from support import recording
 
 BEFORE_40 = bpy.app.version < (4, 0, 0)
-BEFORE_41 = bpy.app.version < (4, 1, 0)
 HAS_NORMALIZE = bpy.app.version >= (4, 5, 0)
 NO_SHADOW, SPOT_COSINE, DISK_FACING = 1, 2, 4
 

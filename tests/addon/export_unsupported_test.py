@@ -50,7 +50,7 @@ def test_a_shadow_catcher_is_named(scene: bpy.types.Scene, plane: bpy.types.Obje
 
 
 def test_a_camera_of_scale_0_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
-    """It gave a black picture without a word. (Cycles shows the world's colour all over.)"""
+    """Regression: the picture was black without a warning. Cycles fills it with the colour of the world."""
     scene.camera.scale = (1.0, 1.0, 0.0)
     assert warnings(scene) == ["Camera 'Camera' has scale 0, so that its direction is undefined"]
 

@@ -21,8 +21,6 @@ from support.animation import key, step
 
 CELLS = 364  # so many triangles that the library keeps them instead of rebuilding them
 
-Change = Callable[[bpy.types.Scene], None]
-
 
 @pytest.fixture
 def room(scene: bpy.types.Scene) -> bpy.types.Scene:

@@ -28,13 +28,13 @@ SHIFT = (3.25, -1.5)  # pixels to the right, and up
 
 
 def waves(right: float = 0.0, up: float = 0.0) -> np.ndarray:
-    """A smooth picture that has moved so far."""
+    """Returns a smooth picture shifted by this distance."""
     rows, columns = np.indices((HEIGHT, WIDTH)).astype(float)
     return 1.0 + 0.4 * np.sin(0.4 * (columns - right)) * np.cos(0.3 * (rows + up))
 
 
 def forward(right: float, up: float) -> np.ndarray:
-    """current − next, as passes have it."""
+    """Returns the motion as passes have it: current − next."""
     return np.broadcast_to(np.array((-right, -up)), (HEIGHT, WIDTH, 2))
 
 
@@ -54,7 +54,7 @@ def motion_of(own: np.ndarray, frames: int = 2) -> metrics.Passes:
 def renderings_of(
     now: np.ndarray, following: np.ndarray, deviation: float = 0.0, count: int = 4
 ) -> list[metrics.Passes]:
-    """Renderings of two frames of a reflection."""
+    """Returns renders of two frames of a reflection."""
     random = np.random.default_rng(1)
     both = np.stack([now, following])[..., None] * np.ones(3)
     passes = {"Path Reflection Reflectance": 0.5 * both, "Path Reflection Irradiance": np.ones_like(both)}
@@ -82,7 +82,7 @@ def test_vectors_of_the_wrong_sign_predict_nothing() -> None:
 
 
 def test_noise_of_independent_renderings_is_no_error_of_prediction() -> None:
-    """Each part is off by 4 %, their mean by 2 %."""
+    """Each component is wrong by 4 %, their mean by 2 %."""
     found = predicted(forward(*SHIFT), waves(*SHIFT), deviation=0.04)
     assert found["all"]["own"] > 0.9
     assert found["all"]["noise"] > 0.9
@@ -95,7 +95,7 @@ def test_light_that_changes_is_an_error_of_prediction() -> None:
 
 
 def test_light_that_changes_is_none_of_what_is_shown() -> None:
-    """Reflectance goes along while the light changes."""
+    """Reflectance moves with the surface while the light changes."""
     renderings = renderings_of(waves(), waves(*SHIFT))
     for rendering in renderings:
         rendering["Path Reflection"] = rendering["Path Reflection"] * np.array((1.0, 1.2))[:, None, None, None]
@@ -105,7 +105,7 @@ def test_light_that_changes_is_none_of_what_is_shown() -> None:
 
 
 def test_irradiance_is_predicted_by_its_own_motion_beside_that_of_what_it_falls_on() -> None:
-    """A shadow goes to the left over what is seen to go to the right."""
+    """A shadow moves to the left over a surface that moves to the right."""
     renderings, passes = renderings_of(waves(), waves(*SHIFT)), motion_of(forward(*SHIFT))
     for rendering in renderings:
         rendering["Path Reflection Irradiance"] = np.stack([waves(), waves(-4.0, 2.0)])[..., None] * np.ones(3)
@@ -127,7 +127,7 @@ def test_pixels_without_a_track_do_not_count() -> None:
 
 
 def test_pixels_count_where_both_motions_lead_into_the_picture() -> None:
-    """What the surface's vector had lead out of it was an error of 100 %, and spread about."""
+    """Regression: a surface vector that leaves the picture counted as an error of 100 % and spread to others."""
     passes = motion_of(forward(0.0, 0.0))
     passes["Vector"][0, :, WIDTH // 2 :, 2] = -WIDTH
     found = metrics.predict(metrics.of_frame(passes, 0), renderings_of(waves(), waves()), "Reflection")[""]
@@ -137,7 +137,7 @@ def test_pixels_count_where_both_motions_lead_into_the_picture() -> None:
 
 
 def test_components_are_those_that_tell_whether_they_are_tracked() -> None:
-    """Irradiance has a motion of its own, and is no component."""
+    """Irradiance has a motion of its own, but it is no component."""
     assert metrics.components(motion_of(forward(0.0, 0.0))) == ["Reflection"]
 
 
@@ -150,7 +150,7 @@ def test_component_vectors_are_those_of_what_a_pixel_mostly_shows() -> None:
 
 
 def test_an_error_that_goes_along_does_not_flicker() -> None:
-    """The reflection moves two pixels to the right, and its error with it; along the resting surface it flickers."""
+    """The reflection and its error move by two pixels to the right; along the static surface, the error flickers."""
     frames = [waves(2.0 * k) for k in range(3)]
     reference = np.ones((3, HEIGHT, WIDTH, 3))
     images = reference + 0.1 * (np.stack(frames)[..., None] - 1.0)
@@ -164,7 +164,7 @@ def test_an_error_that_goes_along_does_not_flicker() -> None:
 
 
 def test_pixels_that_are_not_finite_are_named() -> None:
-    """A mean over the others hid them."""
+    """Regression: a mean with the other values hid them."""
     images = np.ones((2, HEIGHT, WIDTH, 3))
     metrics.check_finite(images, "windows-l2")
     images[1, 3, 4] = np.nan
@@ -174,7 +174,7 @@ def test_pixels_that_are_not_finite_are_named() -> None:
 
 
 def test_flicker_of_a_picture_that_is_not_finite_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With its mode, scene and samples."""
+    """The message names mode, scene and samples."""
     import motion
 
     images = np.ones((2, HEIGHT, WIDTH, 3))
@@ -192,7 +192,7 @@ def test_flicker_of_a_picture_that_is_not_finite_is_refused(monkeypatch: pytest.
 
 @pytest.mark.parametrize("mode", motion_modes.FLICKER)
 def test_every_mode_is_compared_with_windows_along_surfaces(mode: str) -> None:
-    """Without components, and of components."""
+    """Returns rows without components, and rows of components."""
     settings = motion_modes.MODES[mode].settings
     combined, components = (
         motion_modes.MODES[of(mode)].settings for of in (motion_modes.compared_with, motion_modes.along_surfaces)
@@ -233,7 +233,7 @@ def tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *rows: dict) -> list
 
 
 def column(table: document.Table, name: str) -> dict[str, str]:
-    """By labels of modes, of which each has one row."""
+    """Returns the rows by the labels of their modes."""
     return {row[table.columns.index("mode")]: row[table.columns.index(name)] for row in table.rows}
 
 
@@ -273,7 +273,7 @@ def test_times_of_a_loaded_machine_are_not_reported(tmp_path: Path, monkeypatch:
 
 
 def test_flicker_at_equal_time_includes_the_time_of_components(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Half the flicker at the same samples, for a fifth more time. One count of samples cannot tell."""
+    """The flicker is halved at the same samples, in a fifth more time. A single sample count has no rate."""
     name = "F at equal time / windows"
     for counts, told in (((16,), "–"), ((4, 16), "0.600")):
         rows = [flicker_row("windows-l2", 1.0 / n, samples=n, cpu=float(n)) for n in counts]
@@ -298,7 +298,7 @@ def test_the_newest_version_of_a_part_replaces_the_one_before(tmp_path: Path, mo
 
 
 def test_versions_are_not_compared_with_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Other commits may measure other pixels."""
+    """Results of other commits may be of other pixels."""
     modes = ("windows-l2", "windows-components-l2")
     rows = [flicker_row(mode, 1.0 / n, version="old", samples=n, cpu=float(n)) for mode in modes for n in (4, 16)]
     newer = [flicker_row("windows-l2", 2.0 / n, samples=n, cpu=float(n)) for n in (4, 16)]
@@ -322,7 +322,7 @@ def test_another_size_of_truth_replaces_that_of_the_version_before(
 
 
 def test_a_quiet_run_replaces_a_loaded_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its times were never shown, and its jobs passed for done."""
+    """Regression: its times were never shown, and its jobs counted as done."""
     import motion
 
     loaded, quiet = flicker_row("windows-l2", 1.0, loaded=True, frame=0), flicker_row("windows-l2", 2.0, frame=0)
@@ -371,8 +371,7 @@ def test_components_of_which_too_little_is_tracked_are_named() -> None:
     text = report.about_truth([truth_row("Reflection", 9499), truth_row("Transmission", 9500)]).markdown
     assert (
         "tracked in 1, and 95 % of those that can be followed in 2. "
-        "Fewer of all pixels: mirror_and_glass, Reflection (94.99 %)."
-        in text
+        "Fewer of all pixels: mirror_and_glass, Reflection (94.99 %)." in text
     )
 
 
@@ -402,7 +401,7 @@ def test_predictions_are_summed_up(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_the_wheel_has_the_colours_of_the_maps() -> None:
-    """What moves to the right has the colour at the right of the wheel."""
+    """Motion to the right has the colour at the right of the wheel."""
     passes = metrics.of_frame(motion_of(forward(*SHIFT)), 0)
     passes["Path Reflection Motion"] = np.broadcast_to(np.array((-4.0, 0.0, -4.0, 0.0)), (HEIGHT, WIDTH, 4))
     shown = pictures.component_sheet.motion(passes, "Reflection")
@@ -412,8 +411,7 @@ def test_the_wheel_has_the_colours_of_the_maps() -> None:
 
 
 def strip_of(frames: int) -> metrics.Passes:
-    """A reflection that goes to the right by two pixels a frame, on a surface at rest, in the left half of a picture.
-    """
+    """Returns a reflection that moves right by two pixels a frame, in the left half; its surface is static."""
     light = np.stack([waves(2.0 * k) for k in range(frames)])[..., None] * np.ones(3)
     light[:, :, WIDTH // 2 :] = 0.0
     return motion_of(forward(2.0, 0.0), frames) | {
@@ -467,7 +465,7 @@ def test_flicker_is_of_small_pictures_and_the_others_of_large_ones(capsys: pytes
 
 
 def test_motion_blur_is_for_truth_and_cost_alone(capsys: pytest.CaptureFixture[str]) -> None:
-    """A pixel has more than one vector then."""
+    """Then a pixel has more than one vector."""
     import motion
 
     ((variant, measures),) = motion.measures_by_variant(arguments_of(blur=True)).items()
@@ -477,7 +475,7 @@ def test_motion_blur_is_for_truth_and_cost_alone(capsys: pytest.CaptureFixture[s
 
 
 def test_what_is_measured_of_cost_is_asked_for() -> None:
-    """Without a pass of theirs no component is made, and all were as cheap as none."""
+    """Regression: without their passes, no component is computed, so that the measured cost was zero."""
     import motion
 
     asked = {mode: set(passes) for mode, (_, passes) in motion.COST_MODES.items()}
@@ -513,7 +511,7 @@ def test_passes_that_are_not_wanted_are_off(scene: bpy.types.Scene) -> None:
 
 @pytest.mark.module
 def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of the sample with the mirror ball; what is done is not done again."""
+    """Measures the sample with the mirror ball; a second run does nothing."""
     import animation_references
     import motion
     import motion_renderer

@@ -144,7 +144,7 @@ def test_error_has_code_and_text() -> None:
 
 
 def test_waiting_for_a_running_render_raises_nothing() -> None:
-    """"Still running" was an error, thrown and caught 20 times a second, and a real one with its code was taken for it."""
+    """Regression: "still running" was reported as an error, and a real error with the same code was taken for it."""
     library = native.load()
     device, render = ctypes.c_uint64(), ctypes.c_uint64()
     library.device_create(byref(one_ray.struct(native.DeviceSettings, threads=1)), byref(device))

@@ -1,4 +1,4 @@
-"""What schema/ determines is written anew by tools/schema/generate.py and is not edited by hand."""
+"""The files that tools/schema/generate.py writes from schema/ are up to date and not edited by hand."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ GENERATED = (
     "native/include/gradus/gradus.h",
     "native/include/gradus/gradus_nodes.h",
     "native/src/schema/option_table.cpp",
+    "native/src/shading/op_functions.h",
+    "native/src/shading/op_table.cpp",
     "addon/gradus/abi.py",
     "addon/gradus/setting_table.py",
 )
@@ -26,7 +28,7 @@ def generate(root: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
-    """A copy of the schema, its script and the user guide, with everything generated."""
+    """Returns a copy of the schema, its script and the user guide, with all generated files."""
     for folder in ("schema", "tools/schema"):
         shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
     (tmp_path / "docs").mkdir()
@@ -64,6 +66,18 @@ def test_a_changed_option_reaches_library_and_add_on(copy: Path) -> None:
     assert {"native/src/schema/option_table.cpp", "addon/gradus/setting_table.py"} <= stale
 
 
+def test_a_new_operation_is_declared_and_dispatched(copy: Path) -> None:
+    row = '  ["MADE_UP", 127, "value, period -> value", "A test.", { last_mode = 1 }],\n'
+    change(copy / "schema" / "nodes.toml", '  ["MIX", 99', row + '  ["MIX", 99')
+    assert generate(copy).returncode == 0
+    shading = copy / "native" / "src" / "shading"
+    declaration = "void made_up_op(const OpArgs& args, Vec4* out);"
+    assert declaration in (shading / "op_functions.h").read_text(encoding="utf-8")
+    table = (shading / "op_table.cpp").read_text(encoding="utf-8")
+    assert '{"MADE_UP", OpKind::Pure, 2, 1, 0, 1}' in table
+    assert "case GRADUS_OP_MADE_UP:\n      made_up_op(args, out);" in table
+
+
 def test_the_guide_s_tables_are_filled_between_their_markers(copy: Path) -> None:
     guide = copy / "docs" / "user-guide.md"
     guide.write_text("before\n\n<!-- generated: passes -->\nold\n<!-- end -->\n\nafter\n", encoding="utf-8")
@@ -84,6 +98,10 @@ def test_the_guide_s_tables_are_filled_between_their_markers(copy: Path) -> None
         ("options.toml", 'label = "Seed"', 'lable = "Seed"', "seed: "),
         ("enums.toml", '["PATH", 1', '["AUTO", 1', "AUTO is there twice"),
         ("passes.toml", "number = 32", "number = 34", "passes are not numbered from 0 on without gaps"),
+        ("nodes.toml", '["MIX", 99', '["MIX", 98', "the number 98 of VECTOR_ROTATE is there twice"),
+        ("nodes.toml", '["MIX", 99', '["MIX", 31', "operation MIX has a number outside 32…127"),
+        ("nodes.toml", "{ floats = 4", "{ float = 4", "operation BRICK: "),
+        ("nodes.toml", 'kind = "program"', 'kind = "point"', "operation BUMP has the unknown kind point"),
         ("gradus.h.in", "@struct Camera\n", "", "gradus.h.in does not declare each struct of the schema once"),
     ],
 )

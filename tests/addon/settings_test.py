@@ -10,6 +10,7 @@ import pytest
 from gradus import native, options, passes, renderer, settings
 from gradus.failure import Failure
 
+
 def test_properties_have_the_limits_of_the_table() -> None:
     described = bpy.context.scene.gradus.bl_rna.properties
     for setting in settings.SETTINGS:
@@ -21,7 +22,7 @@ def test_properties_have_the_limits_of_the_table() -> None:
 
 
 def test_seconds_are_shown_as_such() -> None:
-    """Time Limit had no unit."""
+    """Regression: Time Limit had no unit."""
     assert bpy.context.scene.gradus.bl_rna.properties["time_limit"].unit == "TIME_ABSOLUTE"
 
 
@@ -30,14 +31,18 @@ def test_values_reach_the_library_and_options_win(scene: bpy.types.Scene) -> Non
     scene.view_layers[0].pass_alpha_threshold = 0.25
     overrides = options.parse(["--gradus-samples", "9", "--gradus-integrator", "gradient"])
     filled = renderer.native_settings(native.load(), scene, scene.view_layers[0], overrides)
-    assert (filled.samples, filled.reconstruction, filled.integrator) == (9, native.Reconstruction.L1, native.Integrator.GRADIENT)
+    assert (filled.samples, filled.reconstruction, filled.integrator) == (
+        9,
+        native.Reconstruction.L1,
+        native.Integrator.GRADIENT,
+    )
     assert (filled.filter_width, filled.alpha_threshold) == (2.0, 0.25)
     assert scene.gradus.samples == 5
 
 
 @pytest.mark.parametrize("value", [99, 3], ids=["never used", "of the removed WEIGHTED"])
 def test_a_stored_value_of_another_version_names_its_setting(scene: bpy.types.Scene, value: int) -> None:
-    """It was a traceback that ended with KeyError: ''."""
+    """Regression: a traceback ended with KeyError: ''."""
     if "gradus" not in scene:
         scene["gradus"] = {}
     scene["gradus"]["reconstruction"] = value

@@ -268,7 +268,7 @@ def test_the_files_of_frames_are_saved_as_the_scene_is_in_them(moving: bpy.types
     assert brightness[True][0] > 2.0 * brightness[True][5]
 
 
-# ------------------------------------------------------------------------------ frames that differ from their neighbours
+# ----------------------------------------------------------------------------- frames that differ from their neighbours
 
 
 def animate_with_store(scene: bpy.types.Scene, folder: Path) -> Path:

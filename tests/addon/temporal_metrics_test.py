@@ -18,7 +18,7 @@ NONE = np.zeros(SHAPE)
 
 
 def moving_picture() -> np.ndarray:
-    """A pattern that goes to the right by two pixels per frame."""
+    """Returns a pattern that moves right by two pixels per frame."""
     pattern = 0.5 + np.random.default_rng(1).random((HEIGHT, WIDTH + 2 * FRAMES, 3))
     return np.stack([pattern[:, 2 * (FRAMES - t) :][:, :WIDTH] for t in range(FRAMES)])
 
@@ -38,7 +38,7 @@ def steadiness(images: np.ndarray, reference: np.ndarray) -> float:
 
 
 def flicker_ratio(images: np.ndarray, reference: np.ndarray = REFERENCE) -> float:
-    """F / (2 relMSE)."""
+    """Returns F / (2 relMSE)."""
     return measures.flicker_map(images, reference, NONE).mean() / (
         2.0 * measures.error_map(images, reference, NONE).mean()
     )
@@ -74,8 +74,7 @@ def test_an_error_that_turns_its_sign_each_frame_is_all_above_a_quarter_of_the_f
 
 
 def test_noise_of_the_reference_is_subtracted() -> None:
-    """Converged frames against noisy references have neither error nor flicker, on average, along motion and at rest.
-    """
+    """Converged frames against noisy references have neither error nor flicker on average, moving or static."""
     variance = np.full(SHAPE, DEVIATION**2)
     vectors = vectors_of_motion()
     found = {name: [] for name in ("error", "flicker", "warped")}
@@ -117,7 +116,7 @@ def test_motion_upwards_is_a_row_less() -> None:
 
 
 def test_a_point_that_was_hidden_is_not_compared() -> None:
-    """Nothing moves at the pixel that a moving one claims to come from."""
+    """At the pixel that the moving point came from, nothing moves."""
     vectors = np.zeros((*SHAPE[:3], 4))
     vectors[1, 8, 8, :2] = (-4.0, 0.0)
     warped = measures.warped_flicker_map(REFERENCE, REFERENCE, NONE, vectors)
@@ -137,12 +136,12 @@ OFF = 6
 
 
 def lamp() -> np.ndarray:
-    """A light that goes off at frame OFF."""
+    """Returns a light that is switched off at frame OFF."""
     return RESTING + 2.0 * (np.arange(FRAMES) < OFF)[:, None, None, None]
 
 
 def test_a_light_that_goes_off_makes_independent_errors_no_less_steady() -> None:
-    """Noise of the bright frame before counts relative to the dark one: F is more than twice relMSE."""
+    """The noise of the bright frame before is divided by the dark one: F is more than twice relMSE."""
     images = lamp() * (1.0 + noise(6, *SHAPE))
     assert flicker_ratio(images, lamp()) > 1.2
     assert steadiness(images, lamp()) == pytest.approx(1.0, rel=0.03)

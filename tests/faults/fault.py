@@ -1,12 +1,18 @@
-"""Types for a seeded fault and the tests that must catch it.
-
-A fault is an edit of the sources that compiles and looks harmless. Its old text must occur exactly once in its file;
-otherwise the tool stops, because a fault that no longer applies proves nothing.
-"""
+"""Reads the seeded faults of faults.toml, and finds their switches in the sources of the library."""
 
 from __future__ import annotations
 
+import re
+import tomllib
 from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+TABLE = Path(__file__).with_name("faults.toml")
+LIST = ROOT / "native" / "src" / "base" / "fault.h"
+
+LISTED = re.compile(r"^  X\((\w+)\)", re.M)
+SWITCH = re.compile(r"\bGRADUS_FAULT\((\w+)\)")
 
 
 @dataclass(frozen=True)
@@ -26,21 +32,41 @@ class Test:
 
 
 @dataclass(frozen=True)
-class Fault:
-    """Replaces `old` by `new` in `file`."""
+class Edit:
+    """Replaces `old` by `new` in a file of the add-on."""
 
-    number: int  # of the kind of fault
-    name: str  # of the kind of fault
-    meaning: str  # what the edited code does wrong
     file: str
     old: str
     new: str
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A mistake that a switch in the library makes, or an edit of the add-on."""
+
+    name: str
+    kind: str
+    meaning: str
     tests: tuple[Test, ...]  # each of these selections must fail
+    edit: Edit | None
 
 
-def native(choice: str) -> Test:
-    return Test("native", choice)
+def read_faults() -> list[Fault]:
+    return [_read(name, **fields) for name, fields in tomllib.loads(TABLE.read_text()).items()]
 
 
-def statistics(choice: str) -> Test:
-    return Test("statistics", choice)
+def _read(name: str, kind: str, meaning: str, tests: list[str], **edit: str) -> Fault:
+    selections = tuple(Test(*test.split(": ", 1)) for test in tests)
+    return Fault(name, kind, meaning, selections, Edit(**edit) if edit else None)
+
+
+def listed_names() -> list[str]:
+    """Returns the names of base/fault.h."""
+    return LISTED.findall(LIST.read_text())
+
+
+def switches() -> list[tuple[str, str]]:
+    """Returns name and file of each switch in the sources of the library."""
+    sources = ROOT / "native" / "src"
+    files = (path for path in sorted(sources.rglob("*")) if path.suffix in {".h", ".cpp"} and path != LIST)
+    return [(name, str(path.relative_to(ROOT))) for path in files for name in SWITCH.findall(path.read_text())]

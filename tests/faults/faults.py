@@ -2,8 +2,10 @@
 
     faults.py [--only PART_OF_A_NAME_OR_FILE] [--new] [--table FILE]
 
-For each fault, the tool edits a copy of the sources in build-faults/, builds it, and runs the tests that the fault names: they
-must fail. Before that, the same tests must pass without a fault. The table of results goes to docs/faults.md.
+build-faults/ holds a build with the switches of all faults. For each fault of faults.toml, the tool runs the tests that
+the fault names, with the fault switched on: they must fail. Before that, the same tests must pass without a fault.
+Tests in Python run in a copy of the sources in build-faults/tree, where faults of the add-on are edits of a file. The
+table of results goes to docs/faults.md.
 """
 
 from __future__ import annotations
@@ -14,137 +16,143 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from fault import Fault, Test
-from light_faults import LIGHT
-from motion_faults import MOTION
-from reconstruction_faults import RECONSTRUCTION
-from renderer_faults import RENDERER
-from sequence_faults import SEQUENCES
+from fault import ROOT, Edit, Fault, Test, read_faults, switches
 
-ROOT = Path(__file__).resolve().parents[2]
-FAULTS = (*RENDERER, *RECONSTRUCTION, *MOTION, *SEQUENCES, *LIGHT)
-COPY = ROOT / "build-faults"
+BUILD = ROOT / "build-faults"
+COPY = BUILD / "tree"
 LIMIT = 200  # seconds for one selection of tests; a selection that does not end counts as failed
 
 
-def copy_sources() -> None:
-    """Copies all files that git would commit. Unchanged files keep their times, so that a second run builds little."""
-    command = ["git", "ls-files", "-co", "--exclude-standard"]
-    listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)
-    names = listed.stdout.splitlines()
-    for folder in {name.split("/")[0] for name in names if "/" in name}:
-        for path in (COPY / folder).rglob("*.*"):
-            if path.is_file() and not (ROOT / path.relative_to(COPY)).exists():
-                path.unlink()  # renamed or removed since the last run
-    for name in names:
-        source, target = ROOT / name, COPY / name
-        if not source.is_file() or (target.exists() and target.read_bytes() == source.read_bytes()):
-            continue
-        target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(source, target)
-        target.chmod(source.stat().st_mode)
-
-
-def build(tests: tuple[Test, ...]) -> None:
-    if not (COPY / "build" / "build.ninja").exists():
-        command = ["cmake", "-S", ".", "-B", "build", "-G", "Ninja"]
-        subprocess.run(command, cwd=COPY, check=True, stdout=subprocess.DEVNULL)
+def build(tests: Iterable[Test]) -> None:
+    """Builds the programs of these tests, and the library in the copy of the sources if tests in Python need it."""
+    if not (BUILD / "build.ninja").exists():
+        run(["cmake", "-S", ".", "-B", str(BUILD), "-G", "Ninja", "-DGRADUS_FAULTS=ON"], "cmake failed")
     targets = {f"gradus_{test.program}_tests" if test.is_native else "gradus" for test in tests}
-    run(["ninja", "-C", "build", *sorted(targets)], "the build failed")
+    run(["ninja", "-C", str(BUILD), *sorted(targets)], "the build failed")
     if "gradus" in targets:
-        run([sys.executable, "tools/bundle.py", "build/native/libgradus.so", "addon/gradus/lib"], "the bundle failed")
+        copy_sources()
+        library, folder = BUILD / "native" / "libgradus.so", COPY / "addon" / "gradus" / "lib"
+        run([sys.executable, "tools/bundle.py", str(library), str(folder)], "the bundle failed")
 
 
 def run(command: list[str], complaint: str) -> None:
-    done = subprocess.run(command, cwd=COPY, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode != 0:
         sys.exit(f"{done.stdout[-4000:]}\n{complaint}")
 
 
-def passes(test: Test) -> bool:
-    """Returns whether all of these tests pass. Exits if the selection is empty."""
+def copy_sources() -> None:
+    """Copies all files that git would commit. Removes what an earlier run has copied and git does not know any more."""
+    command = ["git", "ls-files", "-co", "--exclude-standard"]
+    listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout.splitlines()
+    names = [name for name in listed if (ROOT / name).is_file()]
+    for folder in {name.split("/")[0] for name in names if "/" in name}:
+        for path in (COPY / folder).rglob("*.*"):
+            if path.is_file() and not (ROOT / path.relative_to(COPY)).exists():
+                path.unlink()
+    for name in names:
+        source, target = ROOT / name, COPY / name
+        if target.exists() and target.read_bytes() == source.read_bytes():
+            continue
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(source, target)
+
+
+def passes(test: Test, switch: str = "") -> bool:
+    """Returns whether all of these tests pass with a switch, or without one. Exits if the selection is empty."""
+    folder = ROOT if test.is_native else COPY
     environment = {key: value for key, value in os.environ.items() if not key.startswith("BLENDER_")}
     # Blender takes relative paths from PWD, not from the folder that it runs in.
-    environment |= {"GRADUS_TEST_FULL": "0", "PWD": str(COPY), "PATH": "/usr/bin:/bin:" + environment.get("PATH", "")}
-    with tempfile.TemporaryDirectory() as folder:
+    environment |= {"GRADUS_TEST_FULL": "0", "PWD": str(folder), "PATH": "/usr/bin:/bin:" + environment.get("PATH", "")}
+    environment["GRADUS_FAULT"] = switch
+    with tempfile.TemporaryDirectory() as temporary:
         if test.is_native:
-            command = [f"build/tests/gradus_{test.program}_tests", f"--gtest_filter={test.choice}"]
+            command = [f"{BUILD}/tests/gradus_{test.program}_tests", f"--gtest_filter={test.choice}"]
         else:
             blender = ["blender", "-b", "--factory-startup", "-noaudio", "--python-exit-code", "3"]
-            options = ["-q", "-p", "no:cacheprovider", f"--basetemp={folder}/tmp", "-k", test.choice]
+            options = ["-q", "-p", "no:cacheprovider", f"--basetemp={temporary}/tmp", "-k", test.choice]
             command = [*blender, "--python", str(COPY / "tests" / "run_in_host.py"), "--", test.program, *options]
         try:
             done = subprocess.run(
                 command,
-                cwd=COPY,
+                cwd=folder,
                 env=environment,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 text=True,
+                errors="replace",
                 timeout=LIMIT,
             )
         except subprocess.TimeoutExpired:
             return False
-    if "Running 0 tests" in done.stdout or "GRADUS-TESTS-FINISHED 5" in done.stdout:
+    if "Running 0 tests" in done.stdout or (not test.is_native and done.returncode == 5):
         sys.exit(f"there are no tests {test.name}")
+    if "GRADUS_FAULT: there is no fault" in done.stdout:
+        sys.exit(done.stdout)
     return done.returncode == 0
 
 
-def require_places(faults: list[Fault]) -> None:
-    for fault in faults:
-        count = (COPY / fault.file).read_text().count(fault.old)
-        if count != 1:
-            sys.exit(f"{fault.name} ({fault.meaning}): its text occurs {count} times in {fault.file}, not once")
-
-
 @contextmanager
-def seeded(fault: Fault) -> Iterator[None]:
-    path = COPY / fault.file
+def edited(edit: Edit) -> Iterator[None]:
+    path = COPY / edit.file
     whole = path.read_text()
-    path.write_text(whole.replace(fault.old, fault.new))
+    path.write_text(whole.replace(edit.old, edit.new))
     try:
         yield
     finally:
         path.write_text(whole)
 
 
-def key(fault: Fault) -> str:
-    """Returns the start of the table row. It includes the file: a fault whose code has moved is tried again."""
-    return f"| {fault.number} | {fault.name} | {fault.meaning} | `{fault.file}` |"
-
-
-def row(fault: Fault, caught: dict[Test, bool]) -> str:
-    names = ", ".join(f"`{test.name}`" if found else f"**not by** `{test.name}`" for test, found in caught.items())
-    return f"{key(fault)} {names} |"
+def missed_tests(fault: Fault) -> list[Test]:
+    """Returns the tests that pass although they should catch the fault."""
+    if fault.edit is None:
+        return [test for test in fault.tests if passes(test, fault.name)]
+    with edited(fault.edit):
+        return [test for test in fault.tests if passes(test)]
 
 
 HEAD = """# Seeded faults
 
-Written by `make faults`. Each fault of tests/faults is put into a copy of the sources, one at a time. The tests in
-the last column pass without the fault and fail with it.
+Written by `make faults`. Each fault of tests/faults/faults.toml is switched on in a test build, one at a time. The
+tests in the last column pass without the fault and fail with it.
 
-| | fault | where | seeded in | caught by |
+| fault | kind | what goes wrong | where | caught by |
 |---|---|---|---|---|
 """
 
 
-def rows_of(table: Path) -> dict[str, str]:
-    """Returns the rows that earlier runs wrote for faults that still exist."""
-    lines = table.read_text().splitlines() if table.exists() else []
-    return {key(fault): line for fault in FAULTS for line in lines if line.startswith(key(fault))}
+class Table:
+    """The table of results. Rows of earlier runs stay until their fault is tried again, or changes or moves."""
 
+    def __init__(self, path: Path, faults: list[Fault]) -> None:
+        self._path, self._faults = path, faults
+        self._file = dict(switches()) | {fault.name: fault.edit.file for fault in faults if fault.edit}
+        lines = path.read_text().splitlines() if path.exists() else []
+        self._rows = {f.name: line for f in faults for line in lines if line.startswith(self._start(f))}
 
-def write(table: Path, rows: dict[str, str]) -> None:
-    tried = [fault for fault in FAULTS if key(fault) in rows]
-    kinds = len({fault.number for fault in tried})
-    missed = sum("**not by**" in row for row in rows.values())
-    lines = [rows[key(fault)] for fault in tried]
-    summary = f"{kinds} kinds of faults in {len(tried)} of {len(FAULTS)} places, {missed} of them missed."
-    table.write_text(HEAD + "\n".join([*lines, "", summary]) + "\n")
+    def has(self, fault: Fault) -> bool:
+        return fault.name in self._rows
+
+    def where(self, fault: Fault) -> str:
+        return self._file[fault.name]
+
+    def _start(self, fault: Fault) -> str:
+        return f"| {fault.name} | {fault.kind} | {fault.meaning} | `{self._file[fault.name]}` |"
+
+    def add(self, fault: Fault, missed: list[Test]) -> str:
+        """Adds a row, writes the table, and returns the row."""
+        names = ", ".join(f"**not by** `{test.name}`" if test in missed else f"`{test.name}`" for test in fault.tests)
+        self._rows[fault.name] = f"{self._start(fault)} {names} |"
+        tried = [fault for fault in self._faults if self.has(fault)]
+        lines = [self._rows[fault.name] for fault in tried]
+        kinds, missing = len({fault.kind for fault in tried}), sum("**not by**" in line for line in lines)
+        summary = f"{kinds} kinds of faults in {len(tried)} of {len(self._faults)} places, {missing} of them missed."
+        self._path.write_text(HEAD + "\n".join([*lines, "", summary]) + "\n")
+        return self._rows[fault.name]
 
 
 def main() -> int:
@@ -153,12 +161,11 @@ def main() -> int:
     parser.add_argument("--new", action="store_true", help="try only faults without a row in the table")
     parser.add_argument("--table", type=Path, default=ROOT / "docs" / "faults.md", help="path of the table")
     options = parser.parse_args()
-    faults = [fault for fault in FAULTS if options.only in fault.name or options.only in fault.file]
-    rows = rows_of(options.table)
+    every = read_faults()
+    table = Table(options.table, every)
+    faults = [f for f in every if options.only in f.name or options.only in table.where(f)]
     if options.new:
-        faults = [fault for fault in faults if key(fault) not in rows]
-    copy_sources()
-    require_places(faults)
+        faults = [fault for fault in faults if not table.has(fault)]
 
     tests = tuple(dict.fromkeys(test for fault in faults for test in fault.tests))
     build(tests)
@@ -167,16 +174,13 @@ def main() -> int:
         sys.exit("these tests fail without a fault: " + "; ".join(broken))
     print(f"{len(tests)} selections of tests pass without a fault", flush=True)
 
+    caught = 0
     for fault in faults:
-        with seeded(fault):
-            build(fault.tests)
-            rows[key(fault)] = row(fault, {test: not passes(test) for test in fault.tests})
-        print(rows[key(fault)], flush=True)
-        write(options.table, rows)
-    build(tests)  # of the sources without a fault
-    missed = sum("**not by**" in rows[key(fault)] for fault in faults)
-    print(f"{len(faults)} faults, {missed} of them missed")
-    return 1 if missed else 0
+        missed = missed_tests(fault)
+        caught += not missed
+        print(table.add(fault, missed), flush=True)
+    print(f"{len(faults)} faults, {len(faults) - caught} of them missed")
+    return 0 if caught == len(faults) else 1
 
 
 if __name__ == "__main__":

@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Integrators, G5_Allocations,
 // Creating a device without memory must report OUT_OF_MEMORY, and not that the processor lacks AVX2 or that another
 // Embree is loaded, as it did before. Embree recovers from a few failed allocations, and leaks a few objects after
 // others, so that leaks are not tested here.
-TEST(G5_Device, WithoutMemorySaysSo) {
+TEST(G5_Device, WithoutMemoryReportsIt) {
   ASSERT_OK(gradus_device_release(test::make_device()));
   int refusals = 0, told = 0;
   for (uint64_t k = 1;; ++k, ++refusals) {

@@ -68,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(All, MemoryEstimate,
                                                 "Once=EDL;Twice=EDDL"}),
                          [](const ::testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
 
-TEST(MemoryWarning, ComesWhereTheMachineHasLess) {
+TEST(MemoryWarning, IsIssuedWhereTheMachineHasLess) {
   constexpr uint64_t gib = uint64_t{1} << 30;
   EXPECT_EQ(render::memory_warning(5 * gib, 5 * gib), "");
   EXPECT_EQ(render::memory_warning(5 * gib, 0), "") << "the memory of the machine is unknown";

@@ -10,7 +10,7 @@ namespace {
 
 // Reading must take rows only. Before, Gradient X and Gradient Y were each cropped from three images of the whole
 // frame, which took 1.2 GB at 8K.
-TEST(PassRead, TakesRowsAndNoImages) {
+TEST(PassRead, UsesRowsAndNoImages) {
   constexpr Region kRegion{0, 0, 1000, 400};
   const film::Film frame(1000, 400, kRegion, 3, 1, true);
   std::vector<float> pixels(size_t{3} * kRegion.area());

@@ -7,7 +7,7 @@
 #include "animation/spooled_frames.h"
 #include "base/clock.h"
 #include "memory/allocations.h"
-#include "reconstruct/feature_frame.h"
+#include "reconstruct/feature_film.h"
 #include "reconstruct/space_time/sequence_pictures.h"
 #include "reconstruct/space_time/window.h"
 #include "reconstruct/space_time/window_solver.h"
@@ -109,7 +109,7 @@ double max_seconds(test::Motion motion) {
   return test::full_run() && (motion == test::Motion::kStatic || motion == test::Motion::kPan) ? 15.0 : 1e3;
 }
 
-TEST(J1_Window, HoldsFourFieldsAndTheirGrids) {
+TEST(J1_Window, UsesFourFieldsAndTheirGrids) {
   const reconstruct::WindowSize size = test::full_run() ? full_window() : small_window();
   const double pixels = double(size.width) * size.height * size.frames;
   for (const test::Motion motion :
@@ -134,7 +134,7 @@ TEST(J1_Window, HoldsFourFieldsAndTheirGrids) {
 }
 
 // The bytes include the film of the one frame that is open at a time; frames are opened when they are needed.
-TEST(J1_Window, RegressionOverTimeHoldsOneFrameAndAFewFields) {
+TEST(J1_Window, RegressionOverTimeUsesOneFrameAndAFewFields) {
   const reconstruct::WindowSize size = test::full_run() ? full_window() : small_window();
   test::FeatureFilm description = test::room(size.width, size.height);
   description.gradients = true;
@@ -174,7 +174,7 @@ std::shared_ptr<film::Film> flat_film(const reconstruct::WindowSize& size, int32
 }
 
 // While frames are read, at most two of them are in memory; afterwards none is.
-TEST(J1_Window, InputsAreNotHeld) {
+TEST(J1_Window, InputsAreReleased) {
   const reconstruct::WindowSize size = test::full_run() ? full_window() : small_window();
   const double pixels = double(size.width) * size.height * size.frames;
   const auto open = [&](int place, const CancelCheck&) { return flat_film(size, place); };

@@ -210,7 +210,7 @@ TEST_F(M1_Pictures, HaveTheStoredBits) {
   }
 }
 
-TEST(M1_Artefacts, TellWhatDiffersAndWhere) {
+TEST(M1_Artefacts, ReportWhatDiffersAndWhere) {
   const std::filesystem::path folder = GRADUS_BINARY_DIR "/pictures", stored = folder / "stored/a test.exr";
   std::vector<float> rgba(size_t(kWidth) * kHeight * 4, 0.5f);
   const std::vector<float> means = block_means(rgba);
@@ -227,7 +227,7 @@ TEST(M1_Artefacts, TellWhatDiffersAndWhere) {
     std::filesystem::remove(file);
 }
 
-TEST(M2_Pixels, SpikesAndWhatIsNotFiniteAreSeen) {
+TEST(M2_Pixels, SpikesAndValuesThatAreNotFiniteAreDetected) {
   std::vector<float> rgba(size_t(kWidth) * kHeight * 4, 0.5f);
   EXPECT_EQ(flaw(rgba), "");
   const size_t last = rgba.size() - 4;

@@ -1,4 +1,4 @@
-"""Animations from the command line: which frames, what is left of a job with a fault, and how it ends by SIGINT."""
+"""Animations from the command line: their frames, the files left after a fault, and the end by SIGINT."""
 
 from __future__ import annotations
 
@@ -36,7 +36,19 @@ store.Session.sync = fail
 
 def arguments(folder: Path, *more: str, samples: int = 2, script: str = "") -> list[str]:
     expression = SETUP.format(samples=samples) + script
-    return ["--addons", "gradus", "-E", "GRADUS", "--python-expr", expression, "-o", f"{folder}/f_####", "-F", "PNG", *more]
+    return [
+        "--addons",
+        "gradus",
+        "-E",
+        "GRADUS",
+        "--python-expr",
+        expression,
+        "-o",
+        f"{folder}/f_####",
+        "-F",
+        "PNG",
+        *more,
+    ]
 
 
 @pytest.mark.parametrize(
@@ -48,18 +60,26 @@ def arguments(folder: Path, *more: str, samples: int = 2, script: str = "") -> l
     ],
 )
 def test_c3_frames_of_the_command_line(
-    blender: Callable[..., application.Outcome], tmp_path: Path, asked: tuple[str, ...], frames: list[int], follows: bool
+    blender: Callable[..., application.Outcome],
+    tmp_path: Path,
+    asked: tuple[str, ...],
+    frames: list[int],
+    follows: bool,
 ) -> None:
     stats = tmp_path / "stats.jsonl"
     outcome = blender(*arguments(tmp_path, *asked), "--", "--gradus-stats", str(stats))
     assert outcome.code == 0, outcome.output
-    assert [path.name for path in sorted(tmp_path.glob("f_*.png"))] == [f"f_{frame:04d}.png" for frame in sorted(frames)]
+    assert [path.name for path in sorted(tmp_path.glob("f_*.png"))] == [
+        f"f_{frame:04d}.png" for frame in sorted(frames)
+    ]
     lines = [json.loads(line) for line in stats.read_text().splitlines()]
     assert [line["frame"] for line in lines] == frames
     assert all((line.get("spp_offset", 0) > 0) == follows for line in lines)
 
 
-def test_i2_a_fault_in_frame_5_ends_with_code_1_after_frame_4(blender: Callable[..., application.Outcome], tmp_path: Path) -> None:
+def test_i2_a_fault_in_frame_5_ends_with_code_1_after_frame_4(
+    blender: Callable[..., application.Outcome], tmp_path: Path
+) -> None:
     outcome = blender(*arguments(tmp_path, "-s", "1", "-e", "10", "-a", script=FAULT))
     assert outcome.code == 1, outcome.output
     assert "a fault" in outcome.output
@@ -72,7 +92,9 @@ def test_i2_a_fault_in_frame_5_ends_with_code_1_after_frame_4(blender: Callable[
 def test_k1_sigint_ends_the_frames_ahead_within_a_second(tmp_path: Path, seconds: float) -> None:
     temporary = tmp_path / "temporary"
     temporary.mkdir()
-    asked = arguments(tmp_path, "-s", "1", "-e", "20", "-a", samples=20000, script="scene.gradus.noise_threshold = 0.0\n")
+    asked = arguments(
+        tmp_path, "-s", "1", "-e", "20", "-a", samples=20000, script="scene.gradus.noise_threshold = 0.0\n"
+    )
     process = application.start(*asked, folder=tmp_path / "home", env={"TMPDIR": str(temporary)})
     for line in process.stdout:
         if b"SETUP DONE" in line:

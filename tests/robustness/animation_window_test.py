@@ -1,4 +1,4 @@
-"""Render Animation in a window: frames are sampled ahead on the render's own thread, while the interface lives."""
+"""Render Animation in a window: frames are sampled ahead on the render thread while the interface responds."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ scene.render.filepath = "FOLDER/f_####"
 
 
 def test_frames_ahead_are_seen_while_they_are_sampled(tmp_path: Path) -> None:
-    """The first frame comes only when those ahead of it are there: until then the window was black."""
+    """Regression: until the frames ahead of the first one were sampled, the window was black."""
     with window.blender(glow.SCENE.replace("SAMPLES", "1000000") + MOVES.replace("FOLDER", str(tmp_path))) as blender:
         blender.wait_for("WINDOW-READY")
         blender.press("ctrl+F12")
@@ -108,7 +108,7 @@ def test_frames_ahead_are_seen_while_they_are_sampled(tmp_path: Path) -> None:
 
 
 def test_escape_between_frames_keeps_what_was_seen(tmp_path: Path) -> None:
-    """The frames ahead of a later frame were cancelled, and the picture on the screen was empty."""
+    """Regression: the frames ahead of a later frame were cancelled, and the shown picture was empty."""
     moves = MOVES.replace("FOLDER", str(tmp_path)).replace("12", "40")
     with window.blender(glow.SCENE.replace("SAMPLES", "64") + moves) as blender:
         blender.wait_for("WINDOW-READY")
@@ -131,8 +131,12 @@ def test_escape_ends_the_frames_ahead_in_a_window(tmp_path: Path) -> None:
 
 
 def test_simulations_that_are_not_baked_are_named_and_keep_frames_on_their_own(tmp_path: Path) -> None:
-    # Not locked, the interface draws the rigid body while the render steps to the next frame, and Blender 3.4 itself may crash.
-    falling = "bpy.context.view_layer.objects.active = cube; bpy.ops.rigidbody.object_add(); scene.render.use_lock_interface = True"
+    # Unless the interface is locked, it draws the rigid body while the render steps to the next frame, and Blender 3.4
+    # itself may crash.
+    falling = (
+        "bpy.context.view_layer.objects.active = cube; bpy.ops.rigidbody.object_add(); "
+        "scene.render.use_lock_interface = True"
+    )
     with window.blender(script(tmp_path, 2, falling + "; scene.frame_end = 3")) as blender:
         blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
     assert [line.get("spp_offset", 0) for line in lines(tmp_path)] == [0, 0, 0]
@@ -142,7 +146,7 @@ def test_simulations_that_are_not_baked_are_named_and_keep_frames_on_their_own(t
 
 
 def test_simulations_that_no_picture_shows_leave_temporal_on(tmp_path: Path) -> None:
-    """An empty rigid-body world, or a cloth hidden for render, made stills of all frames."""
+    """Regression: with an empty rigid-body world or a cloth hidden for render, all frames were stills."""
     hidden = """
 bpy.ops.rigidbody.world_add()
 bpy.ops.mesh.primitive_grid_add()

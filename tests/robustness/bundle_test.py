@@ -1,4 +1,4 @@
-"""Architecture, rule 10: what travels in lib/ is complete, and takes nothing from the host by accident."""
+"""The libraries in lib/ are complete and use no library of the host."""
 
 from __future__ import annotations
 
@@ -15,7 +15,16 @@ import pytest
 from gradus import native
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-BASE = {"libc.so.6", "libm.so.6", "libdl.so.2", "libpthread.so.0", "librt.so.1", "libstdc++.so.6", "libgcc_s.so.1", "ld-linux-x86-64.so.2"}
+BASE = {
+    "libc.so.6",
+    "libm.so.6",
+    "libdl.so.2",
+    "libpthread.so.0",
+    "librt.so.1",
+    "libstdc++.so.6",
+    "libgcc_s.so.1",
+    "ld-linux-x86-64.so.2",
+}
 MAY_BE_SHARED = {"libtbb.so.12"}
 
 
@@ -49,7 +58,7 @@ def test_file_names_are_sonames(bundle: list[Path]) -> None:
 
 
 def test_sonames_are_ours(bundle: list[Path]) -> None:
-    """Those of the host: what this process has mapped and what lies in Blender's folder."""
+    """Returns the libraries of the host: those that this process has mapped, and those in Blender's folder."""
     host = {path for path in mapped() if path.parent != bundle[0].parent}
     host |= set(Path(bpy.__file__).resolve().parent.rglob("*.so*")) if getattr(bpy.app, "module", False) else set()
     sonames = {name for path in host if path.is_file() for name in dynamic(path, "SONAME")}
@@ -58,7 +67,7 @@ def test_sonames_are_ours(bundle: list[Path]) -> None:
 
 
 def test_loading_maps_only_our_libraries(bundle: list[Path]) -> None:
-    """In a process of its own, where nothing was loaded before."""
+    """Runs in a process of its own, in which no library was loaded before."""
     folder = bundle[0].parent
     script = f"""
 import sys
@@ -68,7 +77,9 @@ native.load()
 print(open("/proc/self/maps").read())
 """
     python = "/usr/bin/python3"
-    maps = subprocess.run([python, "-c", script], check=True, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": ""}).stdout
+    maps = subprocess.run(
+        [python, "-c", script], check=True, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": ""}
+    ).stdout
     libraries = {Path(line.split(maxsplit=5)[5]) for line in maps.splitlines() if "/" in line and ".so" in line}
     known = {path.name for path in bundle}
     loaded = {path.name for path in libraries if path.parent == folder}
@@ -81,7 +92,7 @@ print(open("/proc/self/maps").read())
 
 
 def test_flow_library_holds_opencv_and_shows_none_of_it(bundle: list[Path]) -> None:
-    """Blender 3.4 has another OpenCV in its global scope: nothing of ours may be bound to it, nor the other way round."""
+    """Blender 3.4 has another OpenCV in its global scope: neither may bind to symbols of the other."""
     flow = next(path for path in bundle if path.name == "libgradus_flow.so")
     symbols = subprocess.run(["nm", "-D", flow], check=True, capture_output=True, text=True).stdout.splitlines()
     defined = {line.split()[-1] for line in symbols if line.split()[-2] not in "Uwv"}
@@ -95,16 +106,27 @@ def test_flow_library_finds_a_shift_in_this_process(bundle: list[Path]) -> None:
     flow, width, height = (ctypes.c_float * (2 * 64 * 48))(), 64, 48
 
     class Images(ctypes.Structure):
-        _fields_ = [("width", ctypes.c_int32), ("height", ctypes.c_int32), ("start", ctypes.c_void_p), ("end", ctypes.c_void_p)]
+        _fields_ = [
+            ("width", ctypes.c_int32),
+            ("height", ctypes.c_int32),
+            ("start", ctypes.c_void_p),
+            ("end", ctypes.c_void_p),
+        ]
 
     def plane(shift: int) -> ctypes.Array[ctypes.c_float]:
-        levels = [128 + 60 * math.sin(0.4 * (x - shift) + 0.1 * y) + 60 * math.sin(0.35 * y) for y in range(height) for x in range(width)]
+        levels = [
+            128 + 60 * math.sin(0.4 * (x - shift) + 0.1 * y) + 60 * math.sin(0.35 * y)
+            for y in range(height)
+            for x in range(width)
+        ]
         return (ctypes.c_float * (width * height))(*levels)
 
     start, end, effort = plane(0), plane(2), (ctypes.c_int32 * 2)(2, 1)
     images = Images(width, height, ctypes.addressof(start), ctypes.addressof(end))
     error = ctypes.create_string_buffer(200)
-    assert library.gradus_flow_estimate(ctypes.byref(images), effort, flow, error, ctypes.c_size_t(200)) == 0, error.value
+    assert library.gradus_flow_estimate(ctypes.byref(images), effort, flow, error, ctypes.c_size_t(200)) == 0, (
+        error.value
+    )
     middle = 2 * (24 * width + 32)
     assert abs(flow[middle] - 2.0) < 0.1 and abs(flow[middle + 1]) < 0.1, flow[middle : middle + 2]
 

@@ -1,4 +1,4 @@
-"""Every entry of the catalogue has a test, and every id in a test's name an entry."""
+"""Every entry of the catalogue has a test, and every id in the name of a test has an entry."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_every_entry_has_a_test(catalogue: ModuleType) -> None:
 
 
 def test_every_test_of_an_id_is_in_the_table(catalogue: ModuleType) -> None:
-    """Those of ids that nobody had entered were left out of docs/tests.md without a word."""
+    """Regression: tests whose id has no entry were left out of docs/tests.md without a message."""
     assert not catalogue.unknown_entries()
 
 

@@ -45,7 +45,7 @@ def test_i5_environments(blender: Callable[..., Outcome], tmp_path: Path, name: 
 
 
 def test_i5_a_temporary_folder_that_takes_no_files(blender: Callable[..., Outcome], tmp_path: Path) -> None:
-    """Single frames need none; an animation says what is missing."""
+    """Single frames need no home; an animation names what is missing."""
     assert frame(blender, tmp_path, env={"TMPDIR": "/proc"}).code == 0
     outcome = frame(blender, tmp_path / "ahead", AHEAD, env={"TMPDIR": "/proc"})
     assert outcome.code == 1, outcome.output

@@ -1,4 +1,4 @@
-"""What a user does first: F12 in a window, a look at the picture that grows there, and Escape."""
+"""F12 in a window: the picture while it is rendered, and Escape."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ def test_shows_the_picture() -> None:
         assert "Error" not in blender.log
 
 
-# A room around the camera, lit by a lamp: noise everywhere, until it is reconstructed. What Escape leaves becomes a file.
+# A room around the camera, lit by a light: there is noise everywhere until the picture is reconstructed. The picture
+# that Escape leaves is saved to a file.
 ROOM = """
 import bpy
 
@@ -62,7 +63,7 @@ bpy.app.timers.register(ready, first_interval=1.0)
 
 
 def roughness(path: Path, layer: str) -> float:
-    """Mean difference between neighbours, relative to the mean."""
+    """Returns the mean difference between neighbouring pixels, relative to the mean."""
     image = oiio.ImageInput.open(str(path))
     spec = image.spec()
     pixels = np.asarray(image.read_image("float")).reshape(spec.height, spec.width, spec.nchannels)

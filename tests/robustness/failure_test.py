@@ -1,6 +1,6 @@
-"""I1, I2: whatever fails, in whatever phase, ends with code 1, without a file for that frame, and with the frames before it whole.
+"""I1, I2: a failure in any phase ends with code 1, without a file for that frame; the frames before it are complete.
 
-Faults are put into the add-on by a script: each replaces one function by one that raises in frame FAULT.
+A script injects the faults into the add-on: each replaces a function by one that raises in frame FAULT.
 """
 
 from __future__ import annotations
@@ -158,7 +158,7 @@ surface = tree.nodes["Principled BSDF"]
 def test_a_strict_render_of_what_gradus_would_replace_ends_with_code_1(
     blender: Callable[..., Outcome], tmp_path: Path, name: str, ahead: bool
 ) -> None:
-    """The option was read nowhere: farms delivered pictures with magenta textures."""
+    """Regression: the option had no effect: farms delivered pictures with magenta textures."""
     setup = "scene.gradus.integrator, scene.gradus.samples = 'AUTO', 2\n" * ahead + MATERIAL + UNSUPPORTED[name]
     lax, strict = tmp_path / "lax", tmp_path / "strict"
     outcome = animate(blender, lax, setup, range(1, 3))

@@ -1,4 +1,4 @@
-"""I4, I6: jobs as farms split them, and the output that they read."""
+"""I4, I6: jobs divided as by farms, and the output that farms read."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def finish(process: subprocess.Popen) -> None:
 
 
 def at_once(tmp_path: Path, *jobs: list[str]) -> None:
-    """Several workers at the same time."""
+    """Runs several workers at the same time."""
     processes = [application.start(*job, folder=tmp_path / f"home {index}") for index, job in enumerate(jobs)]
     for process in processes:
         finish(process)
@@ -74,15 +74,20 @@ def test_i4_frames_are_equal_however_a_job_is_split(blender: Callable[..., Outco
     require_equal(workers, whole, 4)
 
 
-def test_i4_workers_that_share_a_frame_store_make_the_bits_of_one(blender: Callable[..., Outcome], tmp_path: Path) -> None:
-    """Whoever comes last has them: what a worker reads of the other's frames depends on which of them are there."""
+def test_i4_workers_that_share_a_frame_store_make_the_bits_of_one(
+    blender: Callable[..., Outcome], tmp_path: Path
+) -> None:
+    """The last worker has them: which frames of the other one a worker reads depends on those that exist."""
     whole, parts, again = (tmp_path / name for name in ("whole", "parts", "again"))
 
     def store(name: str) -> list[str]:
         return ["--", "--gradus-frame-store", str(tmp_path / name)]
 
     assert blender(*arguments(whole, True, "-s", "1", "-e", "6", "-a"), *store("one")).code == 0
-    at_once(tmp_path, *([*arguments(parts, True, "-s", first, "-e", last, "-a"), *store("shared")] for first, last in ("13", "46")))
+    at_once(
+        tmp_path,
+        *([*arguments(parts, True, "-s", first, "-e", last, "-a"), *store("shared")] for first, last in ("13", "46")),
+    )
     assert len(pictures(parts)) == 6
     assert blender(*arguments(again, True, "-s", "1", "-e", "6", "-a"), *store("shared")).code == 0
     require_equal(again, whole, 6)

@@ -1,5 +1,8 @@
-"""In an application Blender's libraries are in the global symbol scope, where an Embree of ours could be hijacked: rays would miss
-silently. The bpy modules load theirs locally and hide that; so their process is made app-like here."""
+"""Rays hit although Blender's own Embree is in the global symbol scope.
+
+In the application, the library's calls of Embree could bind to Blender's copy, and rays would miss silently. The bpy
+modules load their libraries locally, so these tests load them globally, as the application does.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +42,7 @@ os._exit(0)
 
 
 def test_rays_hit_in_this_process() -> None:
-    """In Blender 3.4 this is the application itself."""
+    """Blender 3.4 is the application itself."""
     one_ray.check()
 
 
@@ -47,9 +50,11 @@ def test_rays_hit_in_this_process() -> None:
 @pytest.mark.parametrize("order", ["host first", "library first"])
 def test_rays_hit_in_global_scope(order: str) -> None:
     command = [sys.executable, "-c", APP_LIKE, order, str(TESTS), str(TESTS.parent / "addon")]
-    done = subprocess.run(command, env=os.environ, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(
+        command, env=os.environ, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=False
+    )
     if order == "library first" and "libopenvdb" in done.stderr and "undefined symbol: _ZN3tbb" in done.stderr:
-        # 2026-11-25: Blender 5.2 needs a newer TBB than the library brings, and a process has one TBB, the one loaded first. The add-on
-        # loads the library when a render starts, and so after bpy.
+        # 2026-11-25: Blender 5.2 needs a newer TBB than that of the library, and a process has one TBB, the one loaded
+        # first. The add-on loads the library when a render starts, and so after bpy.
         pytest.skip("bpy needs a newer TBB than the library brings, so bpy must be imported first")
     assert "RAYS-HIT" in done.stdout, done.stdout + done.stderr

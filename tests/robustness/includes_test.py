@@ -1,4 +1,4 @@
-"""The check of the direction of includes (tools/checks/includes.py) sees what it is to see."""
+"""The check of the direction of includes (tools/checks/includes.py) finds every kind of violation."""
 
 from __future__ import annotations
 
@@ -44,7 +44,11 @@ def test_includes_of_folders_above_and_of_the_own_folder_are_allowed(tmp_path: P
         ("scene/parts/part.h", '  #  include "film/film.h"\n' + SCENE, "scene/ may not include film/film.h"),
         ("scene/scene.h", '#include "elsewhere/x.h"\n' + SCENE, "in no folder of the list"),
         ("scene/scene.h", "namespace gradus {\nstruct Scene;\n}\n", "declares nothing in namespace gradus::scene"),
-        ("scene/scene.h", SCENE + "namespace gradus {\nstruct A;\n}\n", "opens namespace gradus, which is that of base/"),
+        (
+            "scene/scene.h",
+            SCENE + "namespace gradus {\nstruct A;\n}\n",
+            "opens namespace gradus, which is that of base/",
+        ),
         ("scene/scene.h", SCENE + "namespace gradus::api {\nstruct Device;\n}\n", "opens namespace gradus::api"),
         ("scene/scene.h", "// namespace gradus::scene {\nint a;\n", "declares nothing in namespace gradus::scene"),
         ("base/types.h", "namespace gradus::scene {\n}\n", "declares nothing in namespace gradus"),

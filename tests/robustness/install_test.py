@@ -1,4 +1,4 @@
-"""The zip installs the user's way and renders in all hosts, on a Debian that has none of our development packages."""
+"""A user can install the zip and render in all hosts, on a Debian without development packages."""
 
 from __future__ import annotations
 
@@ -23,7 +23,9 @@ for venv in bpy45 bpy50 bpy52; do
   if [ -d "$VENVS/$venv" ]; then mount --bind "$VENVS/$venv" "$ROOTFS/opt/$venv"; fi
 done
 if [ -n "$PYTHON" ]; then mount --bind "$PYTHON" "$ROOTFS/opt/python"; fi
-exec env -i PYTHONPATH="$MODULES" LD_LIBRARY_PATH="${PYTHON:+/opt/python/lib}" HOME=/work/home PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 TMPDIR=/work chroot "$ROOTFS" "$@"
+path=/usr/sbin:/usr/bin:/sbin:/bin
+set -- PATH=$path LC_ALL=C.UTF-8 TMPDIR=/work chroot "$ROOTFS" "$@"
+exec env -i PYTHONPATH="$MODULES" LD_LIBRARY_PATH="${PYTHON:+/opt/python/lib}" HOME=/work/home "$@"
 """
 
 
@@ -35,18 +37,30 @@ def package() -> Path:
 
 @pytest.fixture(scope="module")
 def bare_root() -> Path:
-    if os.geteuid() != 0 or not shutil.which("unshare") or subprocess.run(["unshare", "-m", "true"], check=False).returncode:
+    if (
+        os.geteuid() != 0
+        or not shutil.which("unshare")
+        or subprocess.run(["unshare", "-m", "true"], check=False).returncode
+    ):
         pytest.skip("needs root and mount namespaces")
-    return Path(subprocess.run([str(ROOT / "tools" / "bare_root.sh")], check=True, stdout=subprocess.PIPE, text=True).stdout.strip())
+    return Path(
+        subprocess.run(
+            [str(ROOT / "tools" / "bare_root.sh")], check=True, stdout=subprocess.PIPE, text=True
+        ).stdout.strip()
+    )
 
 
 def enter(bare_root: Path, work: Path, *command: str, python: str = "", modules: str = "") -> str:
-    """Runs a command in the root folder; `python`: prefix of an interpreter for /opt/python, `modules`: PYTHONPATH of the command."""
+    """Runs a command in the root folder and returns its output.
+
+    `python` is the prefix of an interpreter for /opt/python, `modules` the PYTHONPATH of the command.
+    """
     environment = os.environ | {"ROOTFS": str(bare_root), "WORK": str(work), "VENVS": str((ROOT / ".venv").resolve())}
     environment |= {"PYTHON": python, "MODULES": modules}
     done = subprocess.run(
         ["unshare", "-m", "sh", "-c", ENTER, "sh", *command],
-        env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120, check=False,
+        env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        timeout=120, check=False,
     )  # fmt: skip
     output = done.stdout.decode("utf-8", "replace")
     assert done.returncode == 0, output
@@ -60,7 +74,7 @@ def prepare(work: Path, package: Path) -> None:
 
 
 def check_picture(path: Path) -> None:
-    """Blender's first cube: lit, in front of a dark grey world."""
+    """Expects Blender's default cube, lit, in front of a dark grey world."""
     assert path.exists(), "no picture"
     image = oiio.ImageInput.open(str(path))
     spec = image.spec()
@@ -76,7 +90,9 @@ def test_application_3_4(package: Path, bare_root: Path, tmp_path: Path) -> None
     script = ["--python-exit-code", "3", "--python", "/work/in_bare_root.py", "--", "/work/gradus.zip", "/work/out.png"]
     output = enter(bare_root, tmp_path, "blender", "-b", *script, "install")
     assert "IN-BARE-ROOT-FINISHED install" in output, output
-    output = enter(bare_root, tmp_path, "blender", "-b", *script, "render")  # a new process: enabled by the saved settings
+    output = enter(
+        bare_root, tmp_path, "blender", "-b", *script, "render"
+    )  # a new process: enabled by the saved settings
     assert "IN-BARE-ROOT-FINISHED render" in output, output
     check_picture(tmp_path / "out.png")
 
@@ -90,11 +106,13 @@ def test_module(package: Path, bare_root: Path, tmp_path: Path, module: str) -> 
 
 
 def test_module_with_a_python_of_its_own(package: Path, bare_root: Path, tmp_path: Path) -> None:
-    """Blender 5.2 needs Python 3.13, which no package of Debian 12 has: the interpreter of the environment comes along."""
+    """Blender 5.2 needs Python 3.13, which Debian 12 does not have: the interpreter of the environment is used."""
     interpreter = ROOT / ".venv" / "bpy52" / "bin" / "python3"
     if not interpreter.exists():
         pytest.skip("needs .venv/bpy52, and so a Python 3.13")
-    prefix = subprocess.run([interpreter, "-c", "import sys; print(sys.base_prefix)"], check=True, stdout=subprocess.PIPE, text=True)
+    prefix = subprocess.run(
+        [interpreter, "-c", "import sys; print(sys.base_prefix)"], check=True, stdout=subprocess.PIPE, text=True
+    )
     prepare(tmp_path, package)
     command = ["/opt/python/bin/python3.13", "/work/in_bare_root.py", "/work/gradus.zip", "/work/out.png", "both"]
     modules = "/opt/bpy52/lib/python3.13/site-packages"

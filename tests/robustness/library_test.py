@@ -11,7 +11,10 @@ import pytest
 from support.application import Outcome
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-SMALL = "import bpy; r = bpy.context.scene.render; r.resolution_percentage = 5; print('REGISTERED', hasattr(bpy.types.Scene, 'gradus'))"
+SMALL = (
+    "import bpy; r = bpy.context.scene.render; r.resolution_percentage = 5; "
+    "print('REGISTERED', hasattr(bpy.types.Scene, 'gradus'))"
+)
 
 
 def missing(library: Path) -> None:
@@ -31,7 +34,9 @@ def truncated(library: Path) -> None:
 
 def old(library: Path) -> None:
     source = library.with_suffix(".c")
-    source.write_text("unsigned gradus_version(void) { return 1; }\nunsigned long gradus_abi_hash(void) { return 1; }\n")
+    source.write_text(
+        "unsigned gradus_version(void) { return 1; }\nunsigned long gradus_abi_hash(void) { return 1; }\n"
+    )
     subprocess.run(["cc", "-shared", "-fPIC", "-o", library, source], check=True)
 
 
@@ -41,7 +46,9 @@ def frame(blender: Callable[..., Outcome], out: Path, *arguments: str, **options
 
 
 @pytest.mark.parametrize("damage", [missing, wrong_architecture, truncated, old])
-def test_h5_bad_library_is_one_clear_error(blender: Callable[..., Outcome], tmp_path: Path, damage: Callable[[Path], None]) -> None:
+def test_h5_bad_library_is_one_clear_error(
+    blender: Callable[..., Outcome], tmp_path: Path, damage: Callable[[Path], None]
+) -> None:
     addon = tmp_path / "gradus"
     shutil.copytree(ROOT / "addon" / "gradus", addon, symlinks=True)
     damage(addon / "lib" / "libgradus.so")
@@ -69,7 +76,9 @@ def test_i7_good_options(blender: Callable[..., Outcome], tmp_path: Path) -> Non
         (("--gradus-samples", "0"), "samples"),
     ],
 )
-def test_i7_bad_options_are_named(blender: Callable[..., Outcome], tmp_path: Path, arguments: tuple[str, ...], named: str) -> None:
+def test_i7_bad_options_are_named(
+    blender: Callable[..., Outcome], tmp_path: Path, arguments: tuple[str, ...], named: str
+) -> None:
     outcome = frame(blender, tmp_path, *arguments)
     assert outcome.code == 1, outcome.output
     assert any(line.startswith("Error: ") and named in line for line in outcome.output.splitlines()), outcome.output

@@ -24,7 +24,7 @@ def sources() -> Iterator[tuple[Path, str]]:
 
 
 def anchors_of(text: str) -> set[str]:
-    """Anchors that GitHub gives to the headings of a Markdown text."""
+    """Returns the anchors that GitHub gives to the headings of a Markdown text."""
     headings = re.findall(r"^#+ (.+)$", re.sub(r"^```.*?^```", "", text, flags=re.MULTILINE | re.DOTALL), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
 

@@ -1,4 +1,4 @@
-"""J2: 200 frames whose meshes and objects change, and 200 animations that are cancelled, leave nothing behind."""
+"""J2: 200 frames whose meshes and objects change, and 200 cancelled animations, leak no memory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""J1: late frames need the memory of early ones. 400 frames with every change, 1000 in the full run."""
+"""J1: late frames need no more memory than early ones. 400 frames with every change, 1000 in the full run."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 from support.application import Outcome
 from support.memory import SAMPLES, check_memory
 
-# An animated scene: a cube that turns, so that every frame is exported anew; what a frame leaves behind is counted after it.
+# An animated scene: a cube rotates, so that every frame is exported again; memory is counted after each frame.
 TURNING = """
 cube = scene.objects["Cube"]
 cube.keyframe_insert("rotation_euler", frame=1)

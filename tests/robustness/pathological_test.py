@@ -23,7 +23,7 @@ Render = Callable[..., images.Passes]
 
 @pytest.fixture
 def stage(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A grey world over a floor, seen from above; the left half of the picture is the place for broken things."""
+    """A grey world over a floor, seen from above; broken objects are placed in the left half of the picture."""
     scene.render.resolution_x, scene.render.resolution_y = 160, 120
     scene.gradus.samples = 8
     scene.world = bpy.data.worlds.new("World")
@@ -33,7 +33,17 @@ def stage(scene: bpy.types.Scene) -> bpy.types.Scene:
     recording.add(recording.grid(4, size=1.5), "floor", (1.5, 0.0, 0.0))
     recording.add_camera().location = (0.0, 0.0, 6.0)
     layer = scene.view_layers[0]
-    for name in ("z", "normal", "uv", "position", "vector", "diffuse_direct", "diffuse_indirect", "diffuse_color", "object_index"):
+    for name in (
+        "z",
+        "normal",
+        "uv",
+        "position",
+        "vector",
+        "diffuse_direct",
+        "diffuse_indirect",
+        "diffuse_color",
+        "object_index",
+    ):
         setattr(layer, f"use_pass_{name}", True)
     return scene
 
@@ -63,7 +73,9 @@ def all_hidden(stage: bpy.types.Scene) -> None:
 
 
 @pytest.mark.parametrize("change", [empty, all_hidden])
-def test_e1_scenes_without_surfaces_show_the_world(stage: bpy.types.Scene, render: Render, change: Callable[..., None]) -> None:
+def test_e1_scenes_without_surfaces_show_the_world(
+    stage: bpy.types.Scene, render: Render, change: Callable[..., None]
+) -> None:
     change(stage)
     assert np.allclose(picture(stage, render)["Combined"][:, :, :3], WORLD, atol=1e-3)
     stage.world = None
@@ -108,7 +120,7 @@ ODD_SURFACES = {
 @pytest.mark.parametrize("name", list(ODD_SURFACES))
 @pytest.mark.parametrize("glass", [0.0, 1.0])
 def test_e5_odd_surfaces(stage: bpy.types.Scene, render: Render, name: str, glass: float) -> None:
-    """On an open sheet. Nothing shines but the world, so nothing is brighter."""
+    """Tests an open sheet. Only the world emits light, so that nothing is brighter."""
     material = nodes.new_material()
     surface = material.node_tree.nodes.new("ShaderNodeBsdfPrincipled")
     for key, value in {**ODD_SURFACES[name], "Transmission": glass, "Transmission Weight": glass}.items():
@@ -121,7 +133,7 @@ def test_e5_odd_surfaces(stage: bpy.types.Scene, render: Render, name: str, glas
 
 
 def triangle(place: str, value: float) -> bpy.types.Mesh:
-    """Two triangles, of which one has the value in its vertices, normals, UVs or colours."""
+    """Adds two triangles, one of which has the value in its vertices, normals, UVs or colours."""
     mesh = bpy.data.meshes.new("broken")
     mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [], [(0, 1, 2), (1, 3, 2)])
     if place == "vertices":
@@ -138,7 +150,7 @@ def triangle(place: str, value: float) -> bpy.types.Mesh:
 
 
 def shows(place: str) -> bpy.types.Material:
-    """A material that looks at the broken values."""
+    """Returns a material that uses the broken values."""
     material = nodes.new_material()
     tree = material.node_tree
     diffuse = tree.nodes.new("ShaderNodeBsdfDiffuse")
@@ -152,7 +164,9 @@ def shows(place: str) -> bpy.types.Material:
 
 @pytest.mark.parametrize("value", [NAN, INF])
 @pytest.mark.parametrize("place", ["vertices", "normals", "UVs", "colours"])
-def test_e2_broken_meshes_cost_themselves_alone(stage: bpy.types.Scene, render: Render, place: str, value: float) -> None:
+def test_e2_broken_meshes_cost_themselves_alone(
+    stage: bpy.types.Scene, render: Render, place: str, value: float
+) -> None:
     whole = right_half(picture(stage, render))
     mesh = triangle(place, value)
     mesh.materials.append(shows(place))
@@ -187,7 +201,7 @@ def test_e2_broken_objects_cost_themselves_alone(stage: bpy.types.Scene, render:
 
 @pytest.mark.parametrize("name", [*MATRICES, "parent"])
 def test_e2_broken_cameras_give_a_picture_or_a_message(stage: bpy.types.Scene, render: Render, name: str) -> None:
-    """A camera without a place is an error with a text; scale does not matter to a camera."""
+    """A camera whose position is not finite is an error with a message; the scale of a camera does not matter."""
     MATRICES.get(name, parent_of_scale_zero)(stage.camera)
     bpy.context.view_layer.update()
     if not np.isfinite(np.array(stage.camera.matrix_world)).all():  # Blender 5.0 does not let infinity through
@@ -213,7 +227,7 @@ CAMERAS: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("name", list(CAMERAS))
 def test_e3_odd_cameras_see_the_world(stage: bpy.types.Scene, render: Render, name: str) -> None:
-    """Under a world of one colour, whatever is seen is that colour, or a floor that it lights."""
+    """Under a world of one colour, every pixel shows that colour, or a floor that it lights."""
     for key, value in CAMERAS[name].items():
         setattr(stage.camera.data, key, value)
     image = picture(stage, render)["Combined"][:, :, :3]

@@ -1,4 +1,4 @@
-"""`make render` tells mistakes in its variables before it sets up or builds anything."""
+"""`make render` reports mistakes in its variables before it sets up or builds anything."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def test_a_mistake_is_told_before_anything_is_built(name: str) -> None:
 
 
 def test_negative_frames_are_refused() -> None:
-    """Blender counts them from the ends of the scene's range: -3 to -1 were rendered as -2 to 23, and then the strip failed."""
+    """Regression: Blender counts negative frames from the ends of the range: -3 to -1 were rendered as -2 to 23."""
     refused("FRAMES", "-3--1", "numbers from 0 on")
     refused("FRAMES", "-3--1", "numbers from 0 on", "--animation")
 

@@ -1,4 +1,7 @@
-"""L2: the same file gives the same bits again: in other processes, folders, orders of hashes. Orders of objects change the noise alone."""
+"""L2: a file gives the same bits in other processes and folders, and for other hash seeds.
+
+The order of objects changes the noise alone.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +36,19 @@ def test_l2_runs_in_other_processes_and_folders_have_the_same_bits(
         copy = folder / "scene.blend"
         copy.write_bytes(SAMPLE.read_bytes())
         head = ["--python-use-system-env", "--addons", "gradus", str(copy), "-E", "GRADUS", "--python-expr", SMALL]
-        tail = ["-o", f"{folder}/f_####", "-F", "OPEN_EXR", "-f", "1", "--", "--gradus-samples", "4", "--gradus-integrator", integrator]
+        tail = [
+            "-o",
+            f"{folder}/f_####",
+            "-F",
+            "OPEN_EXR",
+            "-f",
+            "1",
+            "--",
+            "--gradus-samples",
+            "4",
+            "--gradus-integrator",
+            integrator,
+        ]
         outcome = blender(*head, *tail, env={"PYTHONHASHSEED": seed})
         assert outcome.code == 0, outcome.output
         found.append(images.read(folder / "f_0001.exr"))
@@ -42,7 +57,7 @@ def test_l2_runs_in_other_processes_and_folders_have_the_same_bits(
 
 
 def _still(scene: bpy.types.Scene, order: list[int]) -> None:
-    """Three glowing and three grey cubes in a row under a lamp, linked in the order given."""
+    """Adds three emissive and three grey cubes in a row under a light, linked in the given order."""
     for index in order:
         bpy.ops.mesh.primitive_cube_add(size=0.8, location=(index - 2.5, 0.0, 0.0))
         cube = bpy.context.object

@@ -1,4 +1,4 @@
-"""The test runner (tools/runner): a file that crashes or hangs costs itself, and its changes of the process are undone."""
+"""The test runner (tools/runner): a crash or a hang fails one file, and changes of the process are undone."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from runner.results import Result  # noqa: E402
 
 @pytest.fixture
 def host(monkeypatch: pytest.MonkeyPatch) -> Iterator[HostProcess]:
-    """Plain Python, by the interpreter of this process."""
+    """Runs plain Python with the interpreter of this process."""
     monkeypatch.setitem(hosts.HOSTS, "plain", [sys.executable, *hosts.HOSTS["plain"][1:]])
     process = HostProcess("plain", dict(os.environ))
     yield process

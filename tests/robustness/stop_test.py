@@ -1,4 +1,4 @@
-"""K1, I3: SIGINT and SIGKILL at any moment: the end comes at once, and no file is left that is not whole."""
+"""K1, I3: SIGINT and SIGKILL at any moment end the process at once, and leave no incomplete file."""
 
 from __future__ import annotations
 
@@ -37,7 +37,9 @@ def start(folder: Path, size: str, samples: int, level: int, frames: int, *argum
     (folder / "home").mkdir(exist_ok=True)
     output = ["-o", f"{folder}/f_####", "-F", "PNG", "-s", "1", "-e", str(frames), "-a"]
     home = folder / "home" / str(time.monotonic_ns())
-    process = application.start("--addons", "gradus", "-E", "GRADUS", "--python-expr", script, *output, "--", *arguments, folder=home)
+    process = application.start(
+        "--addons", "gradus", "-E", "GRADUS", "--python-expr", script, *output, "--", *arguments, folder=home
+    )
     lines = []
     for line in process.stdout:
         lines.append(line)
@@ -70,7 +72,7 @@ def check_whole(folder: Path) -> int:
 
 @pytest.mark.alone
 def test_k1_sigint_ends_the_render_within_a_second(tmp_path: Path) -> None:
-    """Moments spread over export, build, sampling and reconstruction of a frame that would take minutes."""
+    """Stops at times spread over export, build, sampling and reconstruction of a frame that would take minutes."""
     seconds = []
     for index in range(20 if FULL else 4):
         process, _ = start(tmp_path, "1280, 720", 100000, 7 if index % 2 else 2, 1)
@@ -84,7 +86,7 @@ def test_k1_sigint_ends_the_render_within_a_second(tmp_path: Path) -> None:
 
 
 def kill_again_and_again(folder: Path, *arguments: str | Path) -> None:
-    """And let a last run end: six small frames, two samples of each."""
+    """Then a last run completes: six small frames with two samples each."""
     for index in range(20 if FULL else 4):
         process, _ = start(folder, "48, 27", 2, 2, 6, *arguments)
         time.sleep(0.05 + (0.1 if FULL else 0.3) * index)
@@ -115,7 +117,9 @@ def test_i3_with_a_frame_store_the_rerun_has_the_bits_of_an_undisturbed_render(t
     kill_again_and_again(disturbed, "--gradus-frame-store", disturbed / "store")
     complete(undisturbed, "--gradus-frame-store", undisturbed / "store")
     for path in sorted(undisturbed.glob("f_*")):
-        found, expected = (np.asarray(oiio.ImageInput.open(str(file)).read_image()) for file in (disturbed / path.name, path))
+        found, expected = (
+            np.asarray(oiio.ImageInput.open(str(file)).read_image()) for file in (disturbed / path.name, path)
+        )
         assert np.array_equal(found, expected), path.name
     assert not list(disturbed.glob("store/**/*.part")), "what killed processes have left is removed by the next"
 

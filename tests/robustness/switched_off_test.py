@@ -1,4 +1,4 @@
-"""M3: bugs that were fixed stay tested; what is switched off says why and since when, and comes back within 30 days."""
+"""M3: fixed bugs stay tested; a test that is switched off says why and since when, for 30 days at most."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MOST_DAYS = 30
 
 
 def unstated(source: str, today: datetime.date) -> list[str]:
-    """Lines that switch a test off without a date of the last 30 days and a reason."""
+    """Returns lines that switch a test off without a reason and a date of the last 30 days."""
     found = []
     for line in source.splitlines():
         if not SWITCHED_OFF.search(line):
@@ -25,7 +25,9 @@ def unstated(source: str, today: datetime.date) -> list[str]:
 
 
 def test_m3_nothing_is_switched_off_without_reason_and_date() -> None:
-    sources = [path for path in TESTS.rglob("*_test.*") if path != Path(__file__).resolve() and path.suffix in (".py", ".cpp")]
+    sources = [
+        path for path in TESTS.rglob("*_test.*") if path != Path(__file__).resolve() and path.suffix in (".py", ".cpp")
+    ]
     assert len(sources) > 80
     found = {path.name: lines for path in sources if (lines := unstated(path.read_text(), datetime.date.today()))}
     assert not found

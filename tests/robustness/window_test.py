@@ -1,4 +1,4 @@
-"""Blender's window under Xvfb: the Rendered viewport, F12, Escape, material previews, two viewports and a render at once."""
+"""Blender's window under Xvfb: Rendered viewport, F12, Escape, material previews, two viewports beside a render."""
 
 from __future__ import annotations
 
@@ -27,7 +27,18 @@ def display() -> Iterator[str]:
         if shutil.which(program) is None:
             pytest.skip(f"needs {program}")
     reading, writing = os.pipe()
-    command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1024x700x24", "+extension", "GLX", "-nolisten", "tcp"]
+    command = [
+        "Xvfb",
+        "-displayfd",
+        str(writing),
+        "-screen",
+        "0",
+        "1024x700x24",
+        "+extension",
+        "GLX",
+        "-nolisten",
+        "tcp",
+    ]
     server = subprocess.Popen(command, pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     os.close(writing)
     with os.fdopen(reading) as pipe:
@@ -39,11 +50,17 @@ def display() -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def session(display: str) -> Iterator[tuple[Path, dict]]:
-    """One session at the window: its folder of pictures, and its answers."""
+    """Runs one session in the window; returns its folder of pictures and its answers."""
     with tempfile.TemporaryDirectory(prefix="gradus-window-") as name:
         folder = Path(name)
         arguments = ["--factory-startup", "-noaudio", "-p", "0", "0", "1024", "700"]
-        script = ["--python", str(ROOT / "tests" / "support" / "window_script.py"), "--", str(ROOT / "addon"), str(folder)]
+        script = [
+            "--python",
+            str(ROOT / "tests" / "support" / "window_script.py"),
+            "--",
+            str(ROOT / "addon"),
+            str(folder),
+        ]
         process = subprocess.Popen(
             [os.environ.get("BLENDER") or "blender", *arguments, *script],
             env=environment(folder / "home", DISPLAY=display),
@@ -68,13 +85,13 @@ def session(display: str) -> Iterator[tuple[Path, dict]]:
 
 
 def picture(path: Path) -> np.ndarray:
-    """RGB, 0 to 1, top row first."""
+    """Returns RGB from 0 to 1, top row first."""
     file = oiio.ImageInput.open(str(path))
     return np.asarray(file.read_image("float"))[:, :, :3]
 
 
 def viewport(path: Path) -> np.ndarray:
-    """The middle of the 3D viewport in the factory layout."""
+    """Returns the middle of the 3D viewport in the factory layout."""
     return picture(path)[200:420, 150:620]
 
 
@@ -87,7 +104,9 @@ def test_viewport_shows_the_scene(session: tuple[Path, dict]) -> None:
 
 def test_viewport_follows_an_edit(session: tuple[Path, dict]) -> None:
     before, after = (viewport(session[0] / f"{name}.png").mean(axis=2) for name in ("rendered", "moved"))
-    bright_rows = [np.average(np.arange(image.shape[0]), weights=(image > 0.4).sum(axis=1) + 1e-9) for image in (before, after)]
+    bright_rows = [
+        np.average(np.arange(image.shape[0]), weights=(image > 0.4).sum(axis=1) + 1e-9) for image in (before, after)
+    ]
     assert bright_rows[1] < bright_rows[0] - 10, "the cube did not go up"
 
 
@@ -108,7 +127,9 @@ def test_a_render_while_two_viewports_sample(session: tuple[Path, dict]) -> None
 def test_k1_escape_ends_the_render_and_keeps_the_picture(session: tuple[Path, dict]) -> None:
     folder, answers = session
     assert answers["escape"] == ["cancel"]
-    assert answers["escape_seconds"] <= 2.0  # with what the window itself takes; the library's share is tested elsewhere
+    assert (
+        answers["escape_seconds"] <= 2.0
+    )  # with what the window itself takes; the library's share is tested elsewhere
     assert picture(folder / "escape.png")[45, 80].max() > 0.1
 
 

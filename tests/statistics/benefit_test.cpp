@@ -57,7 +57,7 @@ constexpr Scenario kScenarios[] = {Scenario::DiffuseArea, Scenario::PointAndSun,
 
 // Path tracing has an error that falls as 1/n. So its error after the time of the gradient integrator follows from its
 // own samples and time.
-TEST(B5_Benefit, MostScenesAreBetterInTheSameTimeAndNoneMuchWorse) {
+TEST(B5_Benefit, MostScenesAreBetterInTheSameTimeAndNoneIsMuchWorse) {
   int better = 0;
   for (const Scenario scenario : kScenarios) {
     test::PathScene scene;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "gradient/gradient_integrator.h"
 #include "reconstruct/reconstruct_film.h"
 #include "schema/options.h"
@@ -26,7 +26,7 @@ film::Film render(const integrator::IntegratorContext& scene, bool gradients, ui
   context.settings.seed = seed;
   film::Film film = test::make_test_film(context.settings, gradients);
   film.settings = context.settings;
-  film.passes = film::make_pass_planes(schema::feature_passes(), kPixels);
+  film::add_pass_channels(schema::feature_passes(), &film);
   test::sample_film(
       gradients ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context), 0, samples,
       &film);
@@ -104,7 +104,7 @@ class A8_Error : public testing::TestWithParam<Scenario> {};
 
 // A constant estimate would be right for the whole picture but wrong for each group of pixels. In the better half,
 // reconstruction windows extend over the edges of regions without noise.
-TEST_P(A8_Error, IsThatOfThePictureAndTellsItsPixelsApart) {
+TEST_P(A8_Error, IsThatOfThePictureAndOfGroupsOfPixels) {
   test::PathScene scene;
   test::build(GetParam(), &scene);
   GradusSettings settings = test::test_settings(kSize, kSize);

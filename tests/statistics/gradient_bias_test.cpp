@@ -35,7 +35,7 @@ void check_difference(PathScene* scene, GradusSettings settings, uint32_t sample
 
 // Regression: where the classes of base and offset differ, light samples behind the next shared vertex were paired by
 // themselves. But BSDF samples that met the same emitter were weighted by the density of both techniques.
-TEST(B7_EdgeOfAMirror, EmittersBehindTheNextVertexAreWeighedAlikeByBothTechniques) {
+TEST(B7_EdgeOfAMirror, EmittersBehindTheNextVertexHaveTheSameWeightInBothTechniques) {
   PathScene scene;
   Surface left = test::matte(Rgb(0.8f)), right = left, metal, light;
   right.glossy = Rgb(0.3f);
@@ -74,7 +74,7 @@ GradusSettings one_veil_only() {
 
 // Regression: a path that has passed the first veil gets no light through the second. Its gradient sample used the
 // light of its base.
-TEST(B7_LimitOfTransparentSurfaces, CountsForTheLightOfSharedVertices) {
+TEST(B7_LimitOfTransparentSurfaces, AppliesToTheLightOfSharedVertices) {
   PathScene scene;
   add_veiled_floor(&scene);
   Surface light;
@@ -83,7 +83,7 @@ TEST(B7_LimitOfTransparentSurfaces, CountsForTheLightOfSharedVertices) {
   check_difference(&scene, one_veil_only(), 512);
 }
 
-TEST(B7_LimitOfTransparentSurfaces, CountsForLampsThatSharedRaysMeet) {
+TEST(B7_LimitOfTransparentSurfaces, AppliesToLightsThatSharedRaysMeet) {
   PathScene scene;
   add_veiled_floor(&scene);
   GradusLight ball = test::make_light(GRADUS_LIGHT_POINT, test::translation(Vec3(0, 1.8f, 0)), Rgb(1.0f));

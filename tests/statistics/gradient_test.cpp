@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "film/pixel_block.h"
+#include "film/pixel_blocks.h"
 #include "gradient/gradient_integrator.h"
 #include "gradus/gradus_nodes.h"
 #include "render/plan.h"
@@ -135,7 +135,7 @@ TEST_P(Scenarios, B7_UnequalCounts) {
 }
 
 // Checks adaptive sampling: pixel blocks differ in their counts and in their sample numbers, even and odd.
-TEST_P(Scenarios, B7_CellsWithSampleNumbersOfTheirOwn) {
+TEST_P(Scenarios, B7_BlocksWithSampleNumbersOfTheirOwn) {
   check_differences(900, [](const integrator::Integrator& integrator, film::Film* film) {
     const std::atomic<bool> stop{false};
     std::vector<uint32_t> first(static_cast<size_t>(film->region.area())), count(first);
@@ -220,7 +220,7 @@ film::GradientImages light_over_metal(uint32_t seed, bool sampled_as_light) {
 // Regression: a reconnected offset scatters at the shared vertex with a density of its own, but a light that BSDF
 // sampling found next was weighted with the base's density. Without light sampling there are no such weights, so the
 // gradients with and without it must agree. They have much less noise than differences of images.
-TEST(B7_SharedVertex, LightFoundBehindItIsWeighedByEachPathsOwnDensity) {
+TEST(B7_SharedVertex, LightFoundBehindItIsWeightedByEachPathsOwnDensity) {
   DifferenceStatistics difference;
   for (uint32_t seed = 0; seed < 32; ++seed) {
     film::GradientImages images = light_over_metal(seed, true);
@@ -463,7 +463,7 @@ class Reflections : public testing::TestWithParam<Above> {
 
 // Regression: an offset that missed the ball where its base met it, or met another point of it, shared nothing of the
 // light that the ball reflects.
-TEST_P(Reflections, B7_WhatTheyCastOnTheFloorIsSharedByNeighbours) {
+TEST_P(Reflections, B7_LightThatTheyCastOnTheFloorIsSharedByNeighbours) {
   constexpr int renders = 400;
   double sum[3] = {}, squares[3] = {};
   for (uint32_t seed = 0; seed < renders; ++seed) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "gradient/gradient_integrator.h"
 #include "reconstruct/reconstruct_film.h"
 #include "schema/pass_table.h"
@@ -28,7 +28,7 @@ std::vector<Scenario> all_scenarios() {
 film::Film render(integrator::IntegratorContext context, bool gradient, uint32_t seed, int samples) {
   context.settings.seed = seed;
   film::Film film = test::make_test_film(context.settings, gradient);
-  film.passes = film::make_pass_planes(schema::feature_passes(), size_t(film.region.area()));
+  film::add_pass_channels(schema::feature_passes(), &film);
   test::sample_film(
       gradient ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context), 0,
       uint32_t(samples), &film);

@@ -271,7 +271,7 @@ INSTANTIATE_TEST_SUITE_P(All, Ghosts,
                          kNameOfParam);
 
 // A light is switched off. Its light is absent from that very frame (impulse lag 0).
-TEST_P(Ghosts, C5_ALampThatGoesOffLeavesNoLight) {
+TEST_P(Ghosts, C5_ALightThatIsSwitchedOffLeavesNoLight) {
   check(frames_of(6,
                   [](int t, PathScene* scene) {
                     add_box(scene, test::matte(Rgb(0.5f)));
@@ -318,7 +318,7 @@ TEST_P(Ghosts, C6_ObjectsThatComeAndGoLeaveNoGhost) {
 
 // The light changes a little, so that every frame is sampled. The sequence flickers less than half as much as separate
 // frames.
-TEST(C4_Sequence, FlickersLessThanFramesByThemselves) {
+TEST(C4_Sequence, FlickersLessThanSeparateFrames) {
   const Snapshots frames = frames_of(16, [](int t, PathScene* scene) {
     add_box(scene, test::matte(Rgb(0.5f)));
     add_ceiling_light(scene, 10.0f + 0.02f * float(t), 0.5f);

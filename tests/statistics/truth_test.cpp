@@ -7,7 +7,7 @@
 #include <tbb/parallel_for.h>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "film/pixel_block.h"
+#include "film/pixel_blocks.h"
 #include "gradient/gradient_integrator.h"
 #include "shading/program_builder.h"
 #include "support/bsdf_only.h"

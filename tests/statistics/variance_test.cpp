@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "film/read_pixels.h"
 #include "film/features.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "gradient/gradient_integrator.h"
 #include "reconstruct/solver.h"
 #include "render/block_noise.h"
@@ -21,7 +20,7 @@ namespace {
 // Returns the estimated variance of the mean of each pixel and channel.
 std::vector<float> read_variance(const film::Film& film) {
   const auto height = film.region.height();
-  const size_t row = size_t(film.region.width()) * size_t(film.channels);
+  const size_t row = size_t(film.region.width()) * size_t(film.color_channels);
   std::vector<float> variance(row * size_t(height));
   for (int y = 0; y < height; ++y) film::read_variance_row(film, y, variance.data() + size_t(y) * row);
   return variance;
@@ -95,7 +94,7 @@ TEST(A8_Features, HalvesAgreeWithTheSpreadOverSeeds) {
   for (int seed = 0; seed < seeds; ++seed) {
     context.settings.seed = static_cast<uint32_t>(seed);
     film::Film film = test::make_test_film(context.settings, false);
-    film.passes = film::make_pass_planes(schema::feature_passes(), film.count[0].size());
+    film::add_pass_channels(schema::feature_passes(), &film);
     test::sample_film(*integrator::make_path_integrator(context), 0, 16, &film);
     const film::Features features = film::read_features(film);
     const film::FeatureImage* all[3] = {&features.normal, &features.albedo, &features.depth};
@@ -195,7 +194,7 @@ double estimated_error(const film::Film& film, uint32_t reconstruction, const st
 // Regression: pixel blocks stopped by the error of L2 whatever the delivered reconstruction, so L1 took more samples
 // than its threshold required. An estimate with L1's own weights, which follow the noise, would have stopped it much
 // too early.
-TEST_P(A8_Delivered, ErrorThatStopsCellsIsThatOfTheReconstructionDelivered) {
+TEST_P(A8_Delivered, ErrorThatStopsBlocksIsThatOfTheDeliveredReconstruction) {
   test::PathScene scene;
   test::build(GetParam(), &scene);
   GradusSettings settings = sobol_settings(48);

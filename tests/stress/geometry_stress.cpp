@@ -1,4 +1,4 @@
-// D7: slivers, faces on top of each other, grazing views and lights.
+// D7: slivers, coincident faces, and grazing views and lights.
 #include <cmath>
 
 #include "stress/stress.h"
@@ -6,7 +6,7 @@
 namespace gradus::stress {
 namespace {
 
-// The back wall of the box in place of the one that is there, from other triangles.
+// Replaces the back wall of the box by one with other triangles.
 void add_wall(PathScene* scene, const test::Soup& soup, float forward) {
   const uint64_t key = 1000;
   scene->scene.mesh(key, soup);
@@ -21,7 +21,7 @@ test::Soup wall() {
   return soup;
 }
 
-// The same wall as a fan of n triangles from one corner: the outer ones are as thin as 1/n².
+// Returns the same wall as a fan of n triangles from one corner: the outer ones are as thin as 1/n².
 test::Soup fan(int n) {
   test::Soup soup;
   const Vec3 corner(-1, -1, -0.9f);
@@ -61,13 +61,13 @@ void expect_like_reference(const Outcome& outcome) {
   EXPECT_LT(difference(outcome.l2, reference().l2), 0.02);
 }
 
-TEST(Slivers, AWallOfThemIsAWall) {
+TEST(Slivers, AWallOfThemLooksLikeAWall) {
   const int n = full_run() ? 100000 : 10000;
   expect_like_reference(walled("wall of " + std::to_string(n) + " slivers", fan(n)));
 }
 
-// A triangle of 2 by 1e-7, whose normal is all rounding.
-TEST(Slivers, ThinnerThanFloatsTell) {
+// A triangle of 2 by 1e-7, whose normal is all rounding error.
+TEST(Slivers, ThinnerThanFloatPrecision) {
   test::Soup soup = wall();
   for (int i = 0; i < 1000; ++i) {
     const float y = -1.0f + 0.002f * float(i);
@@ -77,17 +77,17 @@ TEST(Slivers, ThinnerThanFloatsTell) {
   expect_like_reference(walled("triangles of 2 by 1e-7", soup));
 }
 
-TEST(Duplicates, ADoubledWallIsAWall) {
+TEST(Duplicates, ADoubledWallLooksLikeAWall) {
   expect_like_reference(walled("wall twice", repeated(wall(), 2)));
   expect_like_reference(walled("wall 1000 times", repeated(wall(), 1000)));
 }
 
 TEST(Duplicates, CoplanarWithTheWallBehind) { walled("wall in the plane of another", wall(), -0.1f); }
 
-// Light and view along a floor.
+// Parameter: the angle of the light and the view to the floor.
 class Grazing : public ::testing::TestWithParam<float> {};
 
-TEST_P(Grazing, AFloorMakesNoLight) {
+TEST_P(Grazing, AFloorAddsNoLight) {
   const float angle = GetParam();
   const Surface materials[] = {test::matte(Rgb(1.0f)), test::glossy(0.3f), test::glossy(0.0f), test::glass(0.0f),
                                test::glass(0.3f)};
@@ -108,7 +108,7 @@ TEST_P(Grazing, ALowSun) {
   PathScene scene;
   build_box(&scene);
   const float angle = GetParam();
-  Mat4 low(1.0f);  // shines along -z of the light: into the box, downwards by the angle
+  Mat4 low(1.0f);  // the light emits along its -z axis: into the box, downwards by the angle
   low[1] = Vec4(0, std::cos(angle), -std::sin(angle), 0);
   low[2] = Vec4(0, std::sin(angle), std::cos(angle), 0);
   scene.light(test::make_light(GRADUS_LIGHT_SUN, low, Rgb(5.0f)));

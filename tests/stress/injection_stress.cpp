@@ -1,4 +1,4 @@
-// B6 at large: what is not finite, and fireflies, put into samples on purpose.
+// B6 at scale: values that are not finite and fireflies are injected into samples.
 #include <cmath>
 #include <limits>
 
@@ -12,7 +12,7 @@ namespace {
 
 using test::FakeIntegrator;
 
-// The fake scene (a smooth picture with exact differences), into which further samples are put.
+// The fake scene (a smooth picture with exact differences), into which further samples are injected.
 class Injecting : public integrator::Integrator {
  public:
   using Value = std::function<Radiance(int32_t x, int32_t y, uint32_t sample)>;
@@ -30,7 +30,8 @@ class Injecting : public integrator::Integrator {
   }
 
  private:
-  // As the gradient integrator would: a firefly of a pixel whose shifts fail stands in all of its differences.
+  // Injects a sample as the gradient integrator would: a firefly of a pixel whose shifts fail appears in all of its
+  // differences.
   void inject(int32_t x, int32_t y, uint32_t s, film::Film* film, film::Counters* counters) const {
     const Radiance value = value_(x, y, s);
     if (value == Radiance(0.0f)) return;
@@ -53,7 +54,7 @@ struct Images {
 
 Images rendered(uint32_t size, uint32_t samples, const Injecting::Value& value) {
   GradusSettings settings = test::small_settings(size, size, samples);
-  settings.integrator = GRADUS_INTEGRATOR_GRADIENT;  // automatic, a pilot would take samples that are thrown away
+  settings.integrator = GRADUS_INTEGRATOR_GRADIENT;  // with AUTO, a pilot would take samples that are discarded
   render::Render render(nullptr, test::empty_snapshot(), settings, nullptr,
                         [&](const integrator::IntegratorContext& context, uint32_t) {
                           return std::make_unique<Injecting>(context, value);
@@ -73,10 +74,10 @@ Images rendered(uint32_t size, uint32_t samples, const Injecting::Value& value) 
 
 const Injecting::Value kNothing = [](int32_t, int32_t, uint32_t) { return Radiance(0.0f); };
 
-// A million fireflies of up to 1e6 times the picture, on its left half. L2 keeps their sum; its response falls by 0.67
-// per pixel (docs/method.md), so behind 64 pixels (1e-11) the right half does not feel them. L1 takes its scale from
-// the median of the picture, which fireflies have moved: it may do less there than without them, but no harm.
-TEST(Fireflies, AMillionOfThemStayWhereTheyAre) {
+// A million fireflies of up to 1e6 times the picture, on its left half. L2 keeps their sum; its response falls by a
+// factor of 0.67 per pixel, so that it is 1e-11 after 64 pixels, on the right half. L1 takes its scale from the median
+// of the picture, which fireflies have moved: it may remove less noise there than without them, but must not add error.
+TEST(Fireflies, AMillionOfThemDoNotSpread) {
   const uint32_t size = full_run() ? 1024 : 256, samples = full_run() ? 4 : 8;
   const uint64_t wanted = full_run() ? 1000000 : 100000;
   const double share = double(wanted) / (double(size) * size / 2 * samples);
@@ -101,12 +102,12 @@ TEST(Fireflies, AMillionOfThemStayWhereTheyAre) {
       noisy += std::pow(images.noisy[i] - truth, 2);
     }
   }
-  // 1e-7 of the largest firefly: the rounding of transforms that hold it.
+  // 1e-7 of the largest firefly: the rounding error of the transforms.
   EXPECT_LT(l2, 0.1);
   EXPECT_LT(l1, 1.1 * noisy);
 }
 
-// Few enough to be told from the picture: L1 leaves them out.
+// Few fireflies stand out from the picture: L1 leaves them out.
 TEST(Fireflies, ScatteredOnesDoNotSpread) {
   const auto scattered = [](int32_t x, int32_t y, uint32_t s) {
     return s == 1 && x % 37 == 5 && y % 37 == 7 ? Radiance(1e6f, 1e6f, 1e6f, 0.0f) : Radiance(0.0f);
@@ -120,7 +121,7 @@ TEST(Fireflies, ScatteredOnesDoNotSpread) {
   EXPECT_LE(share_off(images.l1, calm.l1), 0.01);
 }
 
-// Every tenth sample is no number; they are counted, and the rest of the pixel's samples make its value.
+// Every tenth sample is not finite; these are counted, and the other samples make the pixel's value.
 TEST(NonFinite, SamplesAreDroppedAndCounted) {
   constexpr uint32_t size = 64, samples = 16;
   std::atomic<uint64_t> injected{0};
@@ -139,9 +140,9 @@ TEST(NonFinite, SamplesAreDroppedAndCounted) {
   EXPECT_EQ(images.l1, calm.l1);
 }
 
-// A material that shines NaN is black. It took the samples of all paths that met it, two thirds of the picture.
-TEST(NonFinite, AMaterialThatShinesNaNIsBlack) {
-  const auto shining = [](const std::string& name, float value) {
+// A material whose emission is NaN is black. Regression: all paths that met it were dropped, two thirds of the picture.
+TEST(NonFinite, AMaterialThatEmitsNaNIsBlack) {
+  const auto emitting = [](const std::string& name, float value) {
     PathScene scene;
     build_box(&scene);
     Surface surface = test::matte(Rgb(0.2f));
@@ -149,14 +150,14 @@ TEST(NonFinite, AMaterialThatShinesNaNIsBlack) {
     scene.quad(Vec3(-0.2f, -0.2f, 0.9f), Vec3(0.4f, 0, 0), Vec3(0, 0.4f, 0), scene.material(surface));
     return render(name, &scene, {});
   };
-  const Outcome black = shining("material that does not shine", 0.0f);
+  const Outcome black = emitting("material without emission", 0.0f);
   for (const float value : {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity}) {
-    const Outcome broken = shining("material that shines " + text_of(value), value);
+    const Outcome broken = emitting("material that emits " + text_of(value), value);
     EXPECT_NEAR(mean(broken.noisy), mean(black.noisy), 0.05 * mean(black.noisy));
   }
 }
 
-// Each sample is finite, their sum is not: the picture had infinite pixels.
+// Each sample is finite, but their sum is not. Regression: the picture had infinite pixels.
 TEST(NonFinite, SumsDoNotOverflow) {
   const GradusSettings settings = small_picture();
   const uint64_t all = uint64_t(settings.width) * settings.height * settings.samples;
@@ -165,8 +166,8 @@ TEST(NonFinite, SumsDoNotOverflow) {
   Surface surface;
   surface.emission = Rgb(3e38f);
   scene.quad(Vec3(-0.2f, -0.2f, 0.9f), Vec3(0.4f, 0, 0), Vec3(0, 0.4f, 0), scene.material(surface));
-  // Nearly every path finds it, and carries more than may be summed: radiance, four gradients and a few passes.
-  render("material that shines 3e38", &scene, Bounds().dropping(10 * all).without_double());
+  // Nearly every path meets the emitter and exceeds what may be summed: radiance, four gradients and a few passes.
+  render("material that emits 3e38", &scene, Bounds().dropping(10 * all).without_double());
 }
 
 }  // namespace

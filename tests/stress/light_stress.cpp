@@ -1,4 +1,4 @@
-// E4 for the integrators: lights without extent, without power, and with more than floats can carry.
+// E4 for the integrators: lights without extent, without power, and with power near the range of floats.
 #include <cmath>
 
 #include "stress/stress.h"
@@ -15,7 +15,7 @@ struct LightCase {
 };
 
 GradusLight make_test_light(GradusLightType type, float strength) {
-  Mat4 down = translation(Vec3(0.2f, 0.6f, 0.2f));  // shines along -z of the light
+  Mat4 down = translation(Vec3(0.2f, 0.6f, 0.2f));  // the light emits along its -z axis
   down[1] = Vec4(0, 0, -1, 0);
   down[2] = Vec4(0, 1, 0, 0);
   GradusLight light = make_light(type, down, Rgb(strength));
@@ -32,7 +32,7 @@ std::vector<LightCase> without_extent() {
          {GRADUS_LIGHT_POINT, GRADUS_LIGHT_SPOT, GRADUS_LIGHT_SUN, GRADUS_LIGHT_RECTANGLE, GRADUS_LIGHT_ELLIPSE}) {
       GradusLight light = make_test_light(type, 1.0f);
       light.radius = light.angle = light.size[0] = light.size[1] = size;
-      cases.push_back({"lamp without extent", light});
+      cases.push_back({"light without extent", light});
     }
   }
   for (const float cone : {0.0f, 1e-6f, kPi}) {
@@ -62,9 +62,9 @@ TEST(AnalyticLights, WithoutExtent) {
   }
 }
 
-// 1e38 W are 8e36 W/sr: at a tenth of a metre 8e38 W/m², beyond float. What overflows is dropped, what would let a sum
-// overflow, too; the rest of the picture is there. The lights of areas are seen by one pixel in 40, whose samples are
-// dropped with four gradients and some passes.
+// 1e38 W are 8e36 W/sr: at a distance of 0.1 m 8e38 W/m², beyond the range of floats. Samples that overflow, or that
+// would make a sum overflow, are dropped; the rest of the picture remains. One pixel in 40 sees the area lights
+// directly; its samples are dropped with four gradients and some passes.
 TEST(AnalyticLights, Of1e38Watts) {
   const GradusSettings settings = small_picture();
   const uint64_t all = uint64_t(settings.width) * settings.height * settings.samples;
@@ -73,7 +73,7 @@ TEST(AnalyticLights, Of1e38Watts) {
     PathScene scene;
     build_box(&scene);
     scene.light(make_test_light(type, 1e38f));
-    render("lamp of 1e38, type " + std::to_string(type), &scene, Bounds().dropping(all / 4).without_double());
+    render("light of 1e38, type " + std::to_string(type), &scene, Bounds().dropping(all / 4).without_double());
   }
 }
 
@@ -87,13 +87,13 @@ TEST(AnalyticLights, DarkAndNegative) {
   }
 }
 
-// It faces away from the box, behind its back wall.
-TEST(AnalyticLights, AHugeOneThatShinesAwayAddsNothing) {
+// The light faces away from the box, behind its back wall.
+TEST(AnalyticLights, AHugeOneThatFacesAwayAddsNothing) {
   PathScene scene;
   build_box(&scene);
   const Outcome alone = render("box without it", &scene, {});
   scene.light(make_light(GRADUS_LIGHT_RECTANGLE, translation(Vec3(0, 0, -50)), Rgb(1e30f)));
-  const Outcome outcome = render("lamp of 1e30 that shines away", &scene, {});
+  const Outcome outcome = render("light of 1e30 that faces away", &scene, {});
   EXPECT_NEAR(mean(outcome.noisy) / mean(alone.noisy), 1.0, 0.05);
 }
 

@@ -1,4 +1,4 @@
-// Roughness from mirrors to 1, indices of refraction at and near 1, glass in glass.
+// Roughness from 0 (mirrors) to 1, indices of refraction near 1 and far from it, glass in glass.
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -8,8 +8,8 @@
 namespace gradus::stress {
 namespace {
 
-// What single scattering loses between facets is dark: up to 60 % at roughness 1 (docs/method.md). Nothing may be
-// brighter than the light.
+// Expects pixels between `darkest` and 1. Single scattering loses up to 60 % between facets at roughness 1; nothing may
+// be brighter than the light.
 void expect_furnace(const Outcome& outcome, double darkest) {
   EXPECT_LE(mean(outcome.noisy), 1.01);
   EXPECT_GE(mean(outcome.noisy), darkest);
@@ -34,7 +34,7 @@ std::string named(const char* what, float value) {
   return name.str();
 }
 
-// Blender's roughness; 0.01732 is where the microfacets begin (alpha 3e-4), 0.316 where class D does.
+// Blender's roughness; microfacets begin at 0.01732 (alpha 3e-4), class D at 0.316.
 std::vector<float> roughnesses() {
   if (!full_run()) return {1e-4f, 0.0174f, 0.1f, 1.0f};
   return {1e-4f, 1e-3f, 1e-2f, 0.0173f, 0.0174f, 0.03f, 0.1f, 0.3f, 0.33f, 0.5f, 1.0f};
@@ -42,19 +42,19 @@ std::vector<float> roughnesses() {
 
 class Roughness : public ::testing::TestWithParam<float> {};
 
-TEST_P(Roughness, MetalMakesNoLight) {
+TEST_P(Roughness, MetalAddsNoLight) {
   PathScene scene;
   build_furnace(&scene, white_metal(GetParam()));
   expect_furnace(render(named("metal, roughness", GetParam()), &scene, Bounds::alone()), 0.6);
 }
 
-TEST_P(Roughness, GlassMakesNoLight) {
+TEST_P(Roughness, GlassAddsNoLight) {
   PathScene scene;
   build_furnace(&scene, glass(GetParam(), 1.5f));
   expect_furnace(render(named("glass, roughness", GetParam()), &scene, Bounds::alone()), 0.6);
 }
 
-// Lit by a small light, lobes are as sharp as their light.
+// Under a small light, reflections show the shape of the lobe.
 TEST_P(Roughness, InTheBox) {
   PathScene scene;
   build_box(&scene);
@@ -65,7 +65,7 @@ TEST_P(Roughness, InTheBox) {
 
 INSTANTIATE_TEST_SUITE_P(FromMirrorToMatte, Roughness, ::testing::ValuesIn(roughnesses()));
 
-// Straight on below |ior - 1| = 1e-3, refraction from there; both sides of it, and what nobody should ask for.
+// Below |ior - 1| = 1e-3, light passes straight, above it is refracted: indices on both sides, and extreme values.
 std::vector<float> indices() {
   if (!full_run()) return {1.0f, 1.0000001f, 0.99899f, 1.00101f, 1.5f};
   return {1.0f,  1.0000001f, 0.9999999f, 1.0001f, 0.99901f, 0.99899f, 1.00099f, 1.00101f,
@@ -81,7 +81,7 @@ TEST_P(Ior, SmoothGlassInAFurnaceIsInvisible) {
   EXPECT_NEAR(mean(outcome.noisy), 1.0, 0.01);
 }
 
-TEST_P(Ior, RoughGlassMakesNoLight) {
+TEST_P(Ior, RoughGlassAddsNoLight) {
   PathScene scene;
   build_furnace(&scene, glass(0.3f, GetParam()));
   expect_furnace(render(named("rough glass, ior", GetParam()), &scene, Bounds::alone()), 0.5);
@@ -89,7 +89,7 @@ TEST_P(Ior, RoughGlassMakesNoLight) {
 
 INSTANTIATE_TEST_SUITE_P(NearOneAndFar, Ior, ::testing::ValuesIn(indices()));
 
-// Balls in balls, as thin as 1 % of the radius; the index between two of them is the quotient.
+// Adds nested balls, with shells of 1 % of the radius; the relative index between two of them is the quotient.
 void add_nested(PathScene* scene, int depth, float roughness) {
   for (int i = 0; i < depth; ++i) {
     const float ior = i % 3 == 0 ? 1.33f : i % 3 == 1 ? 1.5f / 1.33f : 1.0f / 1.5f;

@@ -64,7 +64,7 @@ Table& table() {
       static_cast<Table*>(::testing::AddGlobalTestEnvironment(new Table));  // GoogleTest deletes it
   return *instance;
 }
-// Environments must be there before the tests start.
+// Test environments must be registered before the tests start.
 [[maybe_unused]] const Table& kTable = table();
 
 void check(const film::Counters& c, const Bounds& bounds) {

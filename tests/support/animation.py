@@ -1,4 +1,4 @@
-"""Keys of animated properties, in every Blender version."""
+"""Keyframes of animated properties, in every Blender version."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from gradus import compat
 
 
 def key(owner: Any, path: str, frames: dict[int, Any]) -> None:
-    """Keys with linear interpolation: value by frame."""
+    """Inserts keyframes with linear interpolation; `value` by frame."""
     preferences = bpy.context.preferences.edit
     before = preferences.keyframe_new_interpolation_type
     preferences.keyframe_new_interpolation_type = "LINEAR"
@@ -21,7 +21,7 @@ def key(owner: Any, path: str, frames: dict[int, Any]) -> None:
 
 
 def step(block: bpy.types.ID, path: str, frames: dict[int, Any]) -> None:
-    """The same for values that jump; the path may lead into a group of the block's properties."""
+    """Inserts keyframes with constant interpolation; the path may lead into a property group of the datablock."""
     group, _, name = path.rpartition(".")
     for frame, value in frames.items():
         setattr(block.path_resolve(group) if group else block, name, value)
@@ -30,7 +30,7 @@ def step(block: bpy.types.ID, path: str, frames: dict[int, Any]) -> None:
 
 
 def make_linear(block: bpy.types.ID) -> None:
-    """All keys of a datablock, and of what shares its action."""
+    """Makes all keyframes of a datablock's action linear, including those of other users of the action."""
     _interpolate(block, "LINEAR")
 
 

@@ -29,9 +29,14 @@ def scripts(folder: Path, addon: Path = ROOT / "addon" / "gradus") -> Path:
 
 
 def environment(folder: Path, addon: Path = ROOT / "addon" / "gradus", **changes: str | None) -> dict[str, str]:
-    """The environment of the process: the add-on is found, the user's settings are not. A change to None removes a variable."""
+    """Returns the environment of a process that finds the add-on, but not the user's settings.
+
+    A change to None removes a variable.
+    """
     result = {key: value for key, value in os.environ.items() if not key.startswith("BLENDER_")}
-    result["PATH"] = "/usr/bin:/bin:" + result.get("PATH", "")  # its Python takes modules from beside the first python3.11 in PATH
+    result["PATH"] = "/usr/bin:/bin:" + result.get(
+        "PATH", ""
+    )  # its Python takes modules from beside the first python3.11 in PATH
     result["BLENDER_USER_SCRIPTS"] = str(scripts(folder / "scripts", addon))
     result["BLENDER_USER_CONFIG"] = str(folder / "config")
     for key, value in changes.items():

@@ -1,4 +1,4 @@
-"""A scene's compositor, in any version of Blender."""
+"""The compositor of a scene, in any version of Blender."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from support import images
 
 
 def tree_of(scene: bpy.types.Scene) -> bpy.types.NodeTree:
-    """Since 5.0 a group that scenes may share."""
+    """Returns the compositor's tree; since 5.0, it is a group that several scenes may share."""
     return getattr(scene, "compositing_node_group", None) or scene.node_tree
 
 
 def new_tree(scene: bpy.types.Scene) -> tuple[bpy.types.NodeTree, bpy.types.Node, bpy.types.NodeSocket]:
-    """An empty tree but for the scene's render and the input of its output; not linked yet."""
+    """Returns a tree with the scene's render and the input of its output, which are not linked yet."""
     if hasattr(scene, "compositing_node_group"):
         tree = scene.compositing_node_group = bpy.data.node_groups.new("Compositor", "CompositorNodeTree")
         tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
@@ -31,10 +31,15 @@ def new_tree(scene: bpy.types.Scene) -> tuple[bpy.types.NodeTree, bpy.types.Node
 
 
 def render_muted(
-    sample: Path, folder: Path, muted: Iterable[str], *, percentage: int, change: Callable[[bpy.types.Scene], None] | None = None,
+    sample: Path,
+    folder: Path,
+    muted: Iterable[str],
+    *,
+    percentage: int,
+    change: Callable[[bpy.types.Scene], None] | None = None,
     **settings: Any,
-) -> images.Passes:  # fmt: skip
-    """All passes of a sample that has a compositor, and its composite, with these nodes muted, after a change."""
+) -> images.Passes:
+    """Renders a sample with a compositor after `change`, with nodes muted; returns all passes and the composite."""
     bpy.ops.wm.open_mainfile(filepath=str(sample))
     scene = bpy.context.scene
     assert (scene.render.engine, scene.render.use_compositing) == ("GRADUS", True)

@@ -1,4 +1,4 @@
-"""What the add-on exports in a render, noted down in order."""
+"""Records the add-on's exports during a render, in order."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .simulations import Places, places
 
 
 class Exports:
-    """By view layer: the frame and where things were in it. `before` is asked at each export, and may raise."""
+    """Records the frame and the positions of objects by view layer. `before` is called at each export and may raise."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.of: dict[str, list[tuple[int, Places]]] = defaultdict(list)

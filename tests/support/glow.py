@@ -1,4 +1,4 @@
-"""A picture that is told from everything else on the screen, for tests that look at Blender's window."""
+"""A picture with colours that nothing else on the screen has, for tests that read Blender's window."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ bpy.app.timers.register(tell("WINDOW-READY"), first_interval=1.0)
 
 
 def shares(path: Path) -> tuple[float, float]:
-    """Shares of the screen that are pure red and pure green."""
+    """Returns the shares of the screen that are pure red and pure green."""
     image = oiio.ImageInput.open(str(path))
     spec = image.spec()
     pixels = np.asarray(image.read_image("float")).reshape(spec.height, spec.width, spec.nchannels)[..., :3]
@@ -60,7 +60,7 @@ def shares(path: Path) -> tuple[float, float]:
 
 
 def wait_for_picture(blender: window.Window) -> tuple[float, float]:
-    """The window shows the result soon after the render has ended, or while it goes on."""
+    """Waits until the window shows the result, during the render or soon after it."""
     for _ in range(40):
         red, green = shares(blender.screenshot())
         if red > 0.02 and green > 0.002:

@@ -18,7 +18,7 @@ _PLACE = {"R": 0, "X": 0, "U": 0, "G": 1, "Y": 1, "V": 1, "B": 2, "Z": 2, "A": 3
 
 
 def prepare(scene: bpy.types.Scene) -> None:
-    """Small, quick and without colour management surprises."""
+    """Sets up a small and fast render with the Standard view transform."""
     render = scene.render
     render.engine = "GRADUS"
     render.resolution_x, render.resolution_y, render.resolution_percentage = 64, 36, 100
@@ -57,7 +57,7 @@ def render(scene: bpy.types.Scene, folder: Path, frame: int | None = None, **set
 
 
 def read(path: Path) -> Passes:
-    """All passes of a multilayer EXR: one part with all channels (3.4, 4.5) or one part per pass (5.0)."""
+    """Returns all passes of a multilayer EXR: one part with all channels (3.4, 4.5) or one part per pass (5.0)."""
     channels: dict[str, list[tuple[int, np.ndarray]]] = {}
     file = oiio.ImageInput.open(str(path))
     if file is None:

@@ -1,4 +1,4 @@
-"""Runs in a bare Debian: installs the zip as a user does, then renders with it. argv: ZIP PICTURE [install | render]."""
+"""Runs in a bare Debian: installs the zip like a user and renders with it. argv: ZIP PICTURE [install | render]."""
 
 import sys
 

@@ -1,9 +1,10 @@
-"""Whether a job of many steps, in a Blender of its own, leaves something behind.
+"""Tests whether a job of many steps, in a Blender process of its own, leaks memory.
 
-What is allocated is counted, which Blender's allocator (jemalloc) tells: the same within 0.3 MB. Resident memory says less: every render
-has a thread of its own, these take turns in jemalloc's arenas, and it keeps pages of each for some seconds: 5 MB up and down on a quiet
-machine, 30 MB on a busy one, 0.4 MB with one arena. It still shows what is mapped past the allocator, so its least of the last quarter may
-be no more than that above its least of the second.
+Blender's allocator (jemalloc) counts the allocated bytes, which are the same within 0.3 MB. Resident memory is less
+precise: every render has a thread of its own, the threads use different arenas of jemalloc, and jemalloc keeps pages of
+each arena for some seconds. It varies by 5 MB on a quiet machine, by 30 MB on a busy one, and by 0.4 MB with one arena.
+It still shows memory that is mapped without the allocator. So its minimum in the last quarter of the steps may exceed
+that in the second quarter by this amount only.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import pytest
 
 from .application import Outcome
 
-# What is there after a step of a job: MEMORY step, bytes allocated, bytes resident, threads, descriptors, temporary files.
+# Prints a line after each step: MEMORY step, bytes allocated, bytes resident, threads, descriptors, temporary files.
 COUNT = """
 import bpy, ctypes, os
 from pathlib import Path
@@ -43,12 +44,27 @@ GROWTH, SWING = 1 * MEGABYTE, 48 * MEGABYTE
 SAMPLES = pytest.mark.parametrize("samples", [1, 2], ids=["frame by frame", "over windows"])
 
 
-def check_memory(blender: Callable[..., Outcome], folder: Path, script: str, steps: int, samples: int, *arguments: str) -> None:
+def check_memory(
+    blender: Callable[..., Outcome], folder: Path, script: str, steps: int, samples: int, *arguments: str
+) -> None:
     """Of a job of so many steps, after a quarter of them."""
     temporary = folder / "temporary"
     temporary.mkdir()
     script = (COUNT + script).replace("SAMPLES", str(samples)).replace("FRAMES", str(steps))
-    head = ["--addons", "gradus", "-E", "GRADUS", "--python-exit-code", "3", "--python-expr", script, "-o", f"{folder}/f_####", "-F", "PNG"]
+    head = [
+        "--addons",
+        "gradus",
+        "-E",
+        "GRADUS",
+        "--python-exit-code",
+        "3",
+        "--python-expr",
+        script,
+        "-o",
+        f"{folder}/f_####",
+        "-F",
+        "PNG",
+    ]
     outcome = blender(*head, *arguments, limit=1800, env={"TMPDIR": str(temporary)})
     assert outcome.code == 0, outcome.output
     lines = [line.split()[1:] for line in outcome.output.splitlines() if line.startswith("MEMORY ")]
@@ -60,6 +76,8 @@ def check_memory(blender: Callable[..., Outcome], folder: Path, script: str, ste
         after = min(found[step][what] for step in range(steps - warm_up, steps + 1))
         assert after - before <= limit, f"{(after - before) / MEGABYTE:.1f} MB in {steps // 2} steps"
     for what in (2, 3, 4):  # threads, descriptors, temporary files
-        late, early = ([found[step][what] for step in range(first, first + warm_up)] for first in (steps - warm_up, warm_up))
+        late, early = (
+            [found[step][what] for step in range(first, first + warm_up)] for first in (steps - warm_up, warm_up)
+        )
         assert max(late) <= max(early)
     assert not list(temporary.glob("gradus*")), "and none of ours in the end"

@@ -1,4 +1,4 @@
-"""Helpers of the node tests: materials from a few lines, resources that remember."""
+"""Helpers of the node tests: short definitions of materials, and resources that record requests."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import bpy
 
 
 class Resources:
-    """Keys of images in order of asking."""
+    """Records the keys of images in the order of requests."""
 
     def __init__(self) -> None:
         self.images: list[Any] = []
@@ -23,7 +23,7 @@ class Resources:
 
 
 def new_material(name: str = "Material") -> bpy.types.Material:
-    """A material whose tree holds an output alone."""
+    """Returns a material whose tree has only an output node."""
     material = bpy.data.materials.new(name)
     if bpy.app.version < (5, 0, 0):
         material.use_nodes = True
@@ -42,7 +42,7 @@ def socket(sockets: Any, identifier: str) -> bpy.types.NodeSocket:
 
 
 def show(material: bpy.types.Material, source: bpy.types.NodeSocket) -> None:
-    """Links an output to the surface, values through an emission."""
+    """Links a socket to the surface; values are linked through an emission."""
     tree = material.node_tree
     if source.type != "SHADER":
         emission = tree.nodes.new("ShaderNodeEmission")
@@ -58,7 +58,7 @@ def translate(block: Any, kind: str = "SURFACE", resources: Resources | None = N
 
 
 def op_names(program: Any) -> list[str]:
-    """Operations of a program in order."""
+    """Returns the operations of a program in order."""
     from gradus.nodes.ops import Op
 
     return [Op(node[0]).name for node in program.nodes]

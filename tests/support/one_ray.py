@@ -1,4 +1,4 @@
-"""Traces rays through the C API: one triangle at distance 2 before the camera, seen by the Depth pass of a 9×9 image."""
+"""Traces rays through the C API: the Depth pass of a 9×9 image of one triangle at a distance of 2."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def triangle_scene(library: native.Library, device: int) -> int:
     vertices, corners = array("i", (0, 1, 2)), array("I", (0, 1, 2))
     mesh = struct(
         native.Mesh, key_count=1, vertex_count=3, positions=native.pointer(positions), corner_count=3,
-        corner_vertices=native.pointer(vertices), triangle_count=1, triangle_corners=native.pointer(corners), face_count=1,
-        normal_domain=native.Domain.FACE, generated_size=(1.0, 1.0, 1.0),
+        corner_vertices=native.pointer(vertices), triangle_count=1, triangle_corners=native.pointer(corners),
+        face_count=1, normal_domain=native.Domain.FACE, generated_size=(1.0, 1.0, 1.0),
     )  # fmt: skip
     library.scene_set_mesh(scene.value, 1, byref(mesh))
     meshes, matrices = array("Q", (1,)), array("f", IDENTITY)
@@ -40,8 +40,9 @@ def triangle_scene(library: native.Library, device: int) -> int:
     library.scene_set_instances(scene.value, byref(instances))
     window = (-1.0, 1.0, -1.0, 1.0)
     camera = struct(
-        native.Camera, type=native.CameraType.PERSPECTIVE, matrix=IDENTITY, matrix_previous=IDENTITY, matrix_next=IDENTITY,
-        window=window, window_previous=window, window_next=window, clip_start=0.1, clip_end=100.0, aperture_ratio=1.0,
+        native.Camera, type=native.CameraType.PERSPECTIVE, matrix=IDENTITY, matrix_previous=IDENTITY,
+        matrix_next=IDENTITY, window=window, window_previous=window, window_next=window,
+        clip_start=0.1, clip_end=100.0, aperture_ratio=1.0,
     )  # fmt: skip
     library.scene_set_camera(scene.value, byref(camera))
     library.scene_commit(scene.value, None, None)

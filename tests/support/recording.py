@@ -1,4 +1,4 @@
-"""A library that only writes down what an export sets, copied out of the C structs: tests of the export need no rendering."""
+"""A library that only records what an export sets, copied from the C structs: tests of the export need no render."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Small scenes with one simulation each that is not baked, and where things are in them."""
+"""Small scenes, each with one simulation that is not baked, and the positions of their objects."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def particles() -> None:
 
 
 def stream() -> None:
-    """Particles that come and go."""
+    """Adds particles that are emitted and die."""
     particles()
     settings = bpy.data.particles[0]
     settings.count, settings.frame_end, settings.lifetime = 16, 6.0, 20.0
@@ -72,7 +72,13 @@ def simulation_zone() -> None:
     group = bpy.data.node_groups.new("Rising", "GeometryNodeTree")
     for kind in ("INPUT", "OUTPUT"):
         group.interface.new_socket("Geometry", in_out=kind, socket_type="NodeSocketGeometry")
-    names = ("NodeGroupInput", "GeometryNodeSimulationInput", "GeometryNodeSetPosition", "GeometryNodeSimulationOutput", "NodeGroupOutput")
+    names = (
+        "NodeGroupInput",
+        "GeometryNodeSimulationInput",
+        "GeometryNodeSetPosition",
+        "GeometryNodeSimulationOutput",
+        "NodeGroupOutput",
+    )
     nodes = [group.nodes.new(name) for name in names]
     nodes[1].pair_with_output(nodes[3])
     nodes[2].inputs["Offset"].default_value = (0.0, 0.0, 0.1)
@@ -82,7 +88,7 @@ def simulation_zone() -> None:
 
 
 def dynamic_paint() -> None:
-    """Its cache is on disk, beside the file: there is none before that is saved."""
+    """Adds a simulation with a cache on disk, next to the file: it has none until the file is saved."""
     bpy.ops.wm.save_as_mainfile(filepath=str(Path(tempfile.mkdtemp(dir=bpy.app.tempdir)) / "paint.blend"))
     canvas = _new("Canvas", _grid(8), (0.0, 0.0, 0.0)).modifiers.new("Dynamic Paint", "DYNAMIC_PAINT")
     bpy.ops.dpaint.type_toggle(type="CANVAS")
@@ -94,7 +100,7 @@ def dynamic_paint() -> None:
 
 
 def liquid() -> None:
-    """One drop, computed as it is played."""
+    """Adds one drop of fluid that is computed during playback."""
     domain = _new("Domain", _ball(2.0), (0.0, 0.0, 0.0)).modifiers.new("Fluid", "FLUID")
     domain.fluid_type = "DOMAIN"
     settings = domain.domain_settings
@@ -120,11 +126,15 @@ KINDS: dict[str, Callable[[], None]] = {
 
 
 def exists(kind: str) -> bool:
-    return kind != "simulation zone" or bpy.app.version >= (4, 1, 0)  # the interface of node groups, of which we make one
+    return kind != "simulation zone" or bpy.app.version >= (
+        4,
+        1,
+        0,
+    )  # the interface of node groups, of which we make one
 
 
 def places(depsgraph: Any) -> Places:
-    """Where every instance is, and where its vertices are on average."""
+    """Returns the position of every instance, and the mean position of its vertices."""
     found = {}
     for item in depsgraph.object_instances:
         if item.object.type == "MESH":
@@ -135,7 +145,7 @@ def places(depsgraph: Any) -> Places:
 
 
 def in_order(scene: bpy.types.Scene, first: int, last: int) -> dict[int, Places]:
-    """What the frames show when the scene is stepped through all of them."""
+    """Returns the positions in the frames when the scene is stepped through all of them."""
     found = {}
     for frame in range(first, last + 1):
         scene.frame_set(frame)

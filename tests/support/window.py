@@ -48,7 +48,18 @@ class Window:
 def screen() -> Iterator[str]:
     """An X server without a screen; gives its DISPLAY."""
     reader, writer = os.pipe()
-    command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{WIDTH}x{HEIGHT}x24", "+extension", "GLX", "-nolisten", "tcp"]
+    command = [
+        "Xvfb",
+        "-displayfd",
+        str(writer),
+        "-screen",
+        "0",
+        f"{WIDTH}x{HEIGHT}x24",
+        "+extension",
+        "GLX",
+        "-nolisten",
+        "tcp",
+    ]
     server = subprocess.Popen(command, pass_fds=[writer], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     os.close(writer)
     try:
@@ -72,8 +83,12 @@ def blender(script: str) -> Iterator[Window]:
         with (folder / "log").open("wb") as log:
             process = subprocess.Popen(
                 [*command, "--addons", "gradus", "--python", str(folder / "script.py")],
-                env=environment | {"PYTHONUNBUFFERED": "1"}, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
-            )  # fmt: skip
+                env=environment | {"PYTHONUNBUFFERED": "1"},
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                start_new_session=True,
+            )
         try:
             yield Window(process, display, folder)
         finally:

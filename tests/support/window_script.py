@@ -1,4 +1,6 @@
-"""Drives Blender's window from a timer, as a user would: viewport, F12, Escape, previews. Started by tests/robustness/window_test.py.
+"""Drives Blender's window from a timer, like a user: viewport, F12, Escape, previews.
+
+tests/robustness/window_test.py starts it.
 
 Arguments after "--": folder of the add-on, folder for screenshots and answers.json.
 """

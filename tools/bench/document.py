@@ -147,7 +147,8 @@ def to_html(title: str, blocks: list[Block], style: str, script: str) -> str:
     return (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
         f'<meta name="viewport" content="width=device-width">'
-        f"<title>{html.escape(title)}</title>\n<style>\n{style}</style></head>\n<body>\n{body}\n<script>\n{script}</script>\n</body></html>\n"
+        f"<title>{html.escape(title)}</title>\n<style>\n{style}</style></head>\n"
+        f"<body>\n{body}\n<script>\n{script}</script>\n</body></html>\n"
     )
 
 

@@ -16,15 +16,14 @@ import time
 from pathlib import Path
 from typing import Any
 
-import memory
 import numpy as np
-from answers import Answers
 
 PASS_SAMPLES = 64  # maximum of one pass, whose paths are all in memory at the same time
 
 for library in sorted(glob.glob("/usr/lib/*/libLLVM.so.19.1")):
     os.environ.setdefault("DRJIT_LIBLLVM_PATH", library)
 import mitsuba as mi  # noqa: E402
+from worker_process import Answers, peak_bytes, reset_peak  # noqa: E402
 
 
 def set_variant() -> str:
@@ -102,7 +101,7 @@ def bsdf(material: dict[str, Any]) -> dict[str, Any]:
 
 
 def render(job: dict[str, Any], path: str, width: int, height: int) -> dict[str, Any]:
-    memory.reset_peak()
+    reset_peak()
     wall, cpu = time.perf_counter(), time.process_time()
     scene = load(path, width, height)
     image = np.zeros((height, width, 3))
@@ -112,7 +111,7 @@ def render(job: dict[str, Any], path: str, width: int, height: int) -> dict[str,
     answer = {
         "cpu": time.process_time() - cpu,
         "wall": time.perf_counter() - wall,
-        "peak_memory_bytes": memory.peak_bytes(),
+        "peak_memory_bytes": peak_bytes(),
     }
     np.save(job["out"], image.astype(np.float32))
     return answer

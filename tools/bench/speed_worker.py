@@ -17,8 +17,8 @@ import bpy
 import modes
 import room
 import worker
-from answers import Answers
 from rooms import ROOMS
+from worker_process import Answers
 
 
 def render(job: dict[str, Any], bounces: int) -> dict[str, Any]:

@@ -26,16 +26,15 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-import memory
 import mitsuba_scene
 import modes
 import numpy as np
-from answers import Answers
 from paths import ROOT
 
 sys.path.insert(0, str(ROOT / "addon"))
 import gradus  # noqa: E402
 from gradus import store  # noqa: E402
+from worker_process import Answers, peak_bytes, reset_peak  # noqa: E402
 
 Job = dict[str, Any]
 Answer = dict[str, Any]
@@ -67,11 +66,11 @@ def choose_file(with_passes: bool) -> None:
 
 def timed(operator: Callable[[], object]) -> Answer:
     """Calls an operator and returns the CPU and wall seconds and the peak memory of the process meanwhile."""
-    memory.reset_peak()
+    reset_peak()
     wall, cpu = time.perf_counter(), time.process_time()
     operator()
     seconds = {"cpu": time.process_time() - cpu, "wall": time.perf_counter() - wall}
-    return seconds | {"peak_memory_bytes": memory.peak_bytes()}
+    return seconds | {"peak_memory_bytes": peak_bytes()}
 
 
 def render(job: Job, folder: Path, bounces: dict[str, int]) -> Answer:

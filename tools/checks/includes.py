@@ -14,8 +14,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 FOLDERS = (
-    "base", "schema", "image", "compare", "geometry", "camera", "bsdf", "medium", "shading", "light", "scene", "lpe", "film",
-    "film_io", "path", "integrator", "gradient", "reconstruct", "motion", "output", "render", "animation", "api",
+    "base", "schema", "image", "compare", "geometry", "camera", "bsdf", "medium", "shading", "light", "scene", "lpe",
+    "film", "film_io", "path", "integrator", "gradient", "reconstruct", "motion", "output", "render", "animation",
+    "api",
 )  # fmt: skip
 ENDINGS = {".h", ".hpp", ".cpp", ".c"}
 ROOT = Path(__file__).resolve().parents[2]

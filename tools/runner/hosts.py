@@ -1,4 +1,4 @@
-"""One process per host runs test files one after another. A file that crashes or hangs costs itself and a new process."""
+"""One process per host runs one test file after another. After a crash or a hang, a new process is started."""
 
 from __future__ import annotations
 
@@ -29,7 +29,15 @@ def module(name: str) -> list[str]:
 HOSTS = {
     "plain": [*module("bpy45"), "--plain"],
     "3.4": [
-        "blender", "-b", "--factory-startup", "-noaudio", "--python-exit-code", "3", "--python", str(RUNNER), "--"
+        "blender",
+        "-b",
+        "--factory-startup",
+        "-noaudio",
+        "--python-exit-code",
+        "3",
+        "--python",
+        str(RUNNER),
+        "--",
     ],  # fmt: skip
     "bpy45": module("bpy45"),
     "bpy50": module("bpy50"),
@@ -38,7 +46,7 @@ HOSTS = {
 
 
 def is_missing(host: str) -> bool:
-    """Whether a host cannot run here. Only bpy52 may be absent: it needs a Python 3.13, which Debian 12 does not have."""
+    """Returns whether a host cannot run here. Only bpy52 may be absent: Debian 12 does not have its Python 3.13."""
     return host == "bpy52" and not Path(HOSTS[host][0]).exists()
 
 
@@ -96,7 +104,7 @@ class HostProcess:
 
     def _start(self) -> None:
         ours, theirs = socket.socketpair()
-        self._output = tempfile.TemporaryFile("a+b")  # the host appends while this side seeks
+        self._output = tempfile.TemporaryFile("a+b")  # noqa: SIM115  (the host appends to it while this process seeks)
         self._process = subprocess.Popen(
             [*HOSTS[self.name], "--serve", str(theirs.fileno())],
             cwd=ROOT, env=self._environment, stdin=subprocess.DEVNULL, stdout=self._output, stderr=self._output,
@@ -106,7 +114,7 @@ class HostProcess:
         self._channel = ours
 
     def _ask(self, arguments: list[str], limit: float) -> int | str:
-        """Pytest's exit code for these arguments; a text if the process ended or exceeded the limit, and was stopped."""
+        """Returns pytest's exit code for these arguments, or a message if the process ended or exceeded the limit."""
         answer, end = b"", time.monotonic() + limit
         try:
             self._channel.sendall(json.dumps(arguments).encode() + b"\n")
@@ -153,5 +161,3 @@ def count_report(report: Path, result: Result) -> None:
             result.skipped += 1
         else:
             result.passed += 1
-
-

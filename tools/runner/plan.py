@@ -7,7 +7,6 @@ in every host.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from .hosts import HOSTS, TestFile
@@ -27,13 +26,15 @@ SHARDS = {
     "gradus_stress_tests": 3,
     "gradus_regression_tests": 2,
 }
-# Tests that compare elapsed time with a limit. They run when nothing else does.
-ALONE = "K1_*:K2_Cancel.*:LiveView.*:Loop.ReadingDoesNotWaitForABatch:Loop.StopsByTime*:*TimeLimit*"
-# The limits of these do not hold under ThreadSanitizer, which takes ten times the time. Their threads are in others, too.
+# Tests that compare elapsed time with a limit run alone.
+ALONE = "K1_*:K2_Cancel.*:Preview.*:Loop.ReadingDoesNotWaitForABatch:Loop.StopsByTime*:*TimeLimit*"
+# The limits of these do not hold under ThreadSanitizer, which is ten times slower. Other tests cover their threads.
 LIMITS = (
-    "*TimeLimit*:K2_Cancel.*:LiveView.TakesATwentiethOfTheTime:LiveView.ACancelEndsTheQuarter:Loop.StopsByTime*"
+    "*TimeLimit*:K2_Cancel.*:Preview.TakesATwentiethOfTheTime:Preview.ACancelEndsTheQuarterSizedPicture"
+    ":Preview.ACancelOfTheReconstructionLeavesTheSamples:Loop.StopsByTime*"
 )
-
+# These take minutes under ThreadSanitizer; only the full run has them.
+LONG = "WatchedScene.*:FilmThreads.*"
 # L6: a picture of 160 x 120 pixels with all passes, and scenes, commits, renders, reconstruction and frames in the
 # tests of the C API; nothing of them depends on the clock. J2: animations that change or are cancelled. Memory that is
 # lost is an error, too.
@@ -51,9 +52,9 @@ VALGRIND_TESTS = (
 )
 
 
-# Sanitizers: folder of the build → environment. ThreadSanitizer's suppressions name their reasons.
+# Environment of each build with sanitizers, by its folder. The lists of suppressions name their reasons.
 SANITIZERS = {
-    "build-sanitize": {},
+    "build-sanitize": {"LSAN_OPTIONS": f"suppressions={ROOT / 'tests/support/lsan.supp'} print_suppressions=0"},
     "build-thread": {"TSAN_OPTIONS": f"suppressions={ROOT / 'tests/support/tsan.supp'} die_after_fork=0"},
 }
 
@@ -66,16 +67,8 @@ def test_files(selection: str) -> list[Path]:
     return sorted({path for folder in folders for pattern in patterns for path in folder.rglob(pattern)})
 
 
-@dataclass
-class Plan:
-    """Jobs by lane. A lane is a host or "native"; the jobs in `alone` run after all others, one at a time."""
-
-    lanes: dict[str, list[TestFile | Program]]
-    alone: dict[str, list[TestFile | Program]]
-
-
 def smoke() -> dict[str, dict[Path, tuple[str, ...]]]:
-    """Host → file → names of tests; no names: the whole file."""
+    """Returns, by host and file, the names of tests in tests/smoke.txt; without names, the whole file runs."""
     found: dict[str, dict[Path, tuple[str, ...]]] = {host: {} for host in HOSTS}
     others = [host for host in HOSTS if host not in ("plain", COMPLETE)]
     for number, line in enumerate(SMOKE.read_text().splitlines(), 1):
@@ -156,22 +149,27 @@ def native_plan(full: bool) -> tuple[list[Program], list[Program]]:
 
 
 def sanitized_plan(full: bool) -> tuple[list[Program], list[Program]]:
-    """In the full run, programs under the sanitizers and valgrind; then those that run alone. All counts are short."""
-    if not full:
-        return [], []
+    """Returns the programs under sanitizers, and those of their tests that run alone.
+
+    Every change runs the tests for which a sanitizer is the best witness (tests/CMakeLists.txt), the full run all native
+    tests and stress tests, and some under valgrind. All counts are short.
+    """
+    limit = LIMIT["full" if full else "native"]
     programs, alone = [], []
     for folder, variables in SANITIZERS.items():
         environment = variables | {"GRADUS_TEST_FULL": "0"}
-        for name in ("gradus_native_tests", "gradus_stress_tests"):
+        # Renders of hard scenes have no threads that the others lack.
+        of_full_run = ("gradus_native_tests", "gradus_stress_tests")[: 1 if folder == "build-thread" else 2]
+        for name in of_full_run if full else ("gradus_sanitized_tests",):
             path = ROOT / folder / "tests" / name
-            shards = SHARDS.get(name, 2)
-            if name == "gradus_stress_tests" and folder == "build-thread":
-                continue  # renders of hard scenes have no threads that the others lack
+            shards = SHARDS.get(name, 1)
             for shard in range(shards):
-                programs.append(Program(path, LIMIT["full"], f"*-{ALONE}", shard, shards, environment=environment))
+                choice = f"*-{ALONE}" if full or folder != "build-thread" else f"*-{ALONE}:{LONG}"
+                programs.append(Program(path, limit, choice, shard, shards, environment=environment))
             # Time limits of tests do not hold in instrumented programs.
-            alone.append(Program(path, LIMIT["full"], f"{ALONE}-{LIMITS}", environment=environment))
-    native = ROOT / "build" / "tests" / "gradus_native_tests"
-    environment = {"GRADUS_TEST_FULL": "0"}
-    programs.append(Program(native, LIMIT["full"], VALGRIND_TESTS, under=VALGRIND, environment=environment))
+            alone.append(Program(path, limit, f"{ALONE}-{LIMITS}", environment=environment))
+    if full:
+        native = ROOT / "build" / "tests" / "gradus_native_tests"
+        environment = {"GRADUS_TEST_FULL": "0"}
+        programs.append(Program(native, limit, VALGRIND_TESTS, under=VALGRIND, environment=environment))
     return programs, alone

@@ -1,4 +1,4 @@
-"""Runs lanes of jobs, two at a time by default. A worker keeps the process of a host while it takes jobs of its lane."""
+"""Runs lanes of jobs, two at a time by default. A worker keeps the host process while it runs jobs of its lane."""
 
 from __future__ import annotations
 

@@ -40,6 +40,8 @@ def outputs(schema: model.Schema) -> Iterator[tuple[str, str]]:
     yield "native/src/api/archive_records.h", native_tables.archive(schema, NOTE.format("structs.toml"))
     yield native + "option_table.cpp", native_tables.options(schema, NOTE.format("options.toml"))
     yield native + "pass_rows.cpp", native_tables.passes(schema, NOTE.format("passes.toml"))
+    yield "native/src/shading/op_functions.h", node_files.functions(schema, NOTE.format("nodes.toml"))
+    yield "native/src/shading/op_table.cpp", node_files.op_table(schema, NOTE.format("nodes.toml"))
     yield "addon/gradus/nodes/ops.py", node_files.module(schema, NOTE.format("nodes.toml"))
     yield "addon/gradus/abi.py", python_abi.module(schema, NOTE.format("structs.toml"), version())
     yield "addon/gradus/setting_table.py", python_tables.settings(schema, NOTE.format("options.toml"))

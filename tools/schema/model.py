@@ -140,20 +140,35 @@ class Switch:
     default: bool = False
 
 
+FIRST_VALUE_OP = 32
+"""Number of the first operation that is no closure."""
+
+OP_LIMIT = 128
+"""Numbers of operations are below this."""
+
+
 @dataclass(frozen=True)
 class Op:
-    """An operation of the node program. `parameters`: what its mode, floats and resource are."""
+    """An operation of the node program; see nodes.toml for the meaning of its fields."""
 
     name: str
     number: int
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     doc: str
-    parameters: str
+    kind: str = "pure"  # or "context", "program", "closure"
+    last_mode: int | str = 0
+    floats: int = 0
+    text: str = ""
 
     @property
     def is_closure(self) -> bool:
-        return self.outputs == ("closure",)
+        return self.kind == "closure"
+
+    @property
+    def function(self) -> str:
+        """Name of the C++ function that evaluates an operation of the kinds "pure" and "context"."""
+        return f"{self.name.lower()}_op"
 
 
 @dataclass(frozen=True)
@@ -239,9 +254,16 @@ def _names(text: str) -> tuple[str, ...]:
     return tuple(plain(name) for name in text.split(",") if name.strip())
 
 
-def _op(name: str, number: int, shape: str, doc: str, parameters: str = "") -> Op:
-    inputs, _, outputs = shape.partition("->")
-    return Op(name, number, _names(inputs), _names(outputs), plain(doc), plain(parameters))
+def _op(name: str, number: int, shape: str, doc: str, details: dict[str, Any] | None = None) -> Op:
+    inputs, outputs = (_names(part) for part in shape.split("->"))
+    details = dict(details or {})
+    details["text"] = plain(details.get("text", ""))
+    if outputs == ("closure",):
+        details["kind"] = "closure"
+    try:
+        return Op(name, number, inputs, outputs, plain(doc), **details)
+    except TypeError as error:
+        raise SchemaError(f"operation {name}: {error}") from None
 
 
 def _enum(row: dict[str, Any], values: tuple[Value, ...]) -> Enum:
@@ -313,6 +335,7 @@ def check(schema: Schema) -> None:
             schema.enum(option.type).number_of(option.default)
         if not option.is_plain and option.moved in (None, option.default):
             raise SchemaError(f"option {option.name} names no other value than its default in `moved`")
+    _check_ops(schema)
     pictures = (schema.passes, schema.component_passes, schema.switches)
     tables = (schema.enums, schema.structs, schema.options, *pictures, schema.ops, schema.node_enums)
     tables += tuple(item.values for item in (*schema.enums, *schema.node_enums))
@@ -325,6 +348,18 @@ def check(schema: Schema) -> None:
     for item in (*schema.passes, *schema.component_passes):
         if item.switch.startswith("gradus.") and item.switch.removeprefix("gradus.") not in switches:
             raise SchemaError(f"pass {item.name}: there is no switch {item.switch}")
+
+
+def _check_ops(schema: Schema) -> None:
+    numbers = [op.number for op in schema.ops]
+    for op in schema.ops:
+        if op.kind not in ("pure", "context", "program", "closure"):
+            raise SchemaError(f"operation {op.name} has the unknown kind {op.kind}")
+        allowed = range(FIRST_VALUE_OP) if op.is_closure else range(FIRST_VALUE_OP, OP_LIMIT)
+        if op.number not in allowed:
+            raise SchemaError(f"operation {op.name} has a number outside {allowed.start}…{allowed.stop - 1}")
+        if numbers.count(op.number) > 1:
+            raise SchemaError(f"the number {op.number} of {op.name} is there twice")
 
 
 def _check_type(schema: Schema, item: Field) -> None:

@@ -1,4 +1,4 @@
-"""gradus_nodes.h and ops.py: the operations of the node program and their modes."""
+"""gradus_nodes.h, ops.py and the tables of native/src/shading: the operations of the node program and their modes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 import textwrap
 
 from c_header import WIDTH, enum
-from model import FOLDER, Op, Schema, SchemaError
+from model import FIRST_VALUE_OP, FOLDER, OP_LIMIT, Op, Schema, SchemaError
 from python_abi import enum_class
 
 NAMES = 18  # columns for the names of operations in the header's comment
@@ -15,7 +15,7 @@ NAMES = 18  # columns for the names of operations in the header's comment
 def describe(op: Op) -> list[str]:
     """An operation as lines of the header's comment."""
     shape = f"{', '.join(op.inputs) or '-'} -> {', '.join(op.outputs)}"
-    text = f"{shape}: {op.doc} {op.parameters}".strip()
+    text = f"{shape}: {op.doc} {op.text}".strip()
     start, indent = f" *   {op.name.ljust(NAMES)}", f" *   {' ' * NAMES}  "
     return textwrap.wrap(text, WIDTH, initial_indent=start, subsequent_indent=indent, break_on_hyphens=False)
 
@@ -66,4 +66,85 @@ def module(schema: Schema, note: str) -> str:
     lines += ["", "", "INPUTS = {", *(f"    Op.{op.name}: {len(op.inputs)}," for op in schema.ops), "}"]
     lines += ['"""Number of inputs."""', "", "OUTPUTS = {"]
     lines += [*(f"    Op.{op.name}: {len(op.outputs)}," for op in schema.ops), "}", '"""Number of outputs."""', ""]
+    return "\n".join(lines)
+
+
+PURE = "const OpArgs& args, Vec4* out"
+CONTEXT = "const ResourceArgs& args, const ShadeContext& context, Vec4* out"
+
+
+def functions(schema: Schema, note: str) -> str:
+    """The text of op_functions.h, which declares the functions that evaluate operations."""
+    lines = [
+        "// The functions that evaluate the operations of gradus_nodes.h. Each writes all outputs of its operation to `out`.",
+        f"// {note}",
+        "#pragma once",
+        "",
+        '#include "shading/ops.h"',
+        "",
+        "namespace gradus::shading {",
+        "",
+        "// Pure operations, whose result depends on their inputs alone.",
+        *(f"void {op.function}({PURE});" for op in schema.ops if op.kind == "pure"),
+        "",
+        "// Operations that depend on the point, the ray, the object or an image.",
+        *(f"void {op.function}({CONTEXT});" for op in schema.ops if op.kind == "context"),
+        "",
+        "}  // namespace gradus::shading",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def _row(op: Op) -> str:
+    values = (f'"{op.name}"', f"OpKind::{op.kind.title()}", len(op.inputs), len(op.outputs), op.floats, op.last_mode)
+    return f"  table[GRADUS_OP_{op.name}] = {{{', '.join(map(str, values))}}};"
+
+
+def _switch(schema: Schema, kind: str, arguments: str) -> list[str]:
+    """The body of a function that calls the function of operation `op` and returns whether there is one."""
+    lines = ["  switch (op) {"]
+    for op in schema.ops:
+        if op.kind == kind:
+            lines += [f"    case GRADUS_OP_{op.name}:", f"      {op.function}({arguments});", "      return true;"]
+    return [*lines, "    default:", "      return false;", "  }"]
+
+
+def op_table(schema: Schema, note: str) -> str:
+    """The text of op_table.cpp: shapes and modes of the operations, and the choice of their functions."""
+    inputs, outputs = max(len(op.inputs) for op in schema.ops), max(len(op.outputs) for op in schema.ops)
+    lines = [
+        "// The table of the operations of gradus_nodes.h, and the choice of the function that evaluates one.",
+        f"// {note}",
+        '#include "shading/op_functions.h"',
+        '#include "shading/op_info.h"',
+        '#include "shading/program.h"',
+        "",
+        "namespace gradus::shading {",
+        "namespace {",
+        "",
+        f"static_assert(kFirstValueOp == {FIRST_VALUE_OP} && GRADUS_OP_LIMIT == {OP_LIMIT});",
+        f"static_assert(kMaxInputs >= {inputs} && kMaxOutputs >= {outputs});",
+        "",
+        "constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {",
+        "  std::array<OpInfo, GRADUS_OP_LIMIT> table{};",
+        *(_row(op) for op in schema.ops),
+        "  return table;",
+        "}",
+        "",
+        "}  // namespace",
+        "",
+        "extern constexpr std::array<OpInfo, GRADUS_OP_LIMIT> kOpTable = make_table();",
+        "",
+        f"bool evaluate_pure(uint32_t op, {PURE}) {{",
+        *_switch(schema, "pure", "args, out"),
+        "}",
+        "",
+        f"bool evaluate_context(uint32_t op, {CONTEXT}) {{",
+        *_switch(schema, "context", "args, context, out"),
+        "}",
+        "",
+        "}  // namespace gradus::shading",
+        "",
+    ]
     return "\n".join(lines)

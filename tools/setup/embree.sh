@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Builds Embree 3.13.5 as a static, position-independent archive with hidden symbols and installs it in the cache folder.
+# Builds Embree 3.13.5 as a static, position-independent archive with hidden symbols and installs it in the cache.
 #
 # Why from source: Debian ships Embree only as a shared library, and inside Blender 4 and 5 its rtc* calls would bind to
 # Blender's own Embree 4, where every ray silently misses. Only a static archive with hidden symbols is safe there.
 #
-# usage: embree.sh PREFIX      PREFIX is complete when PREFIX/.complete exists; builds of several checkouts may share it.
+# usage: embree.sh PREFIX      PREFIX is complete when PREFIX/.complete exists; several checkouts may share it.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 prefix=${1:?usage: embree.sh PREFIX}

@@ -5,6 +5,7 @@
 #include "animation/frame_window.h"
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/fault.h"
 #include "base/threads.h"
 #include "film/features.h"
 #include "output/combine.h"
@@ -26,7 +27,7 @@ render::Plan plan_of(const film::Film& film) {
   plan.solves = true;
   plan.adaptive = film.settings.noise_threshold > 0.0f;
   plan.unbiased = !plan.adaptive && !(film.settings.clamp_direct > 0.0f) && !(film.settings.clamp_indirect > 0.0f);
-  plan.channels = film.channels;
+  plan.channels = film.color_channels;
   plan.passes = film.settings.passes;
   plan.sampled = film.region;
   return plan;
@@ -208,12 +209,13 @@ void FrameDeveloper::read_differences_over_time(const film::Film& film, Develope
                       schema::has_bit(film.settings.passes, GRADUS_PASS_GRADIENT_T_LINK);
   if (!wanted || !folder.holds(next) || !sequence_.shares_window_with_previous(place, reconstruction)) return;
   constexpr TemporalContent kPixels{.gradients = false, .halves = false};
-  const std::shared_ptr<const film::Film> replay =
-      folder.load(next, FrameSamples::kReplayed, film_io::StoredContent::kSamples, is_cancelled_);
+  const std::shared_ptr<const film::Film> replay = folder.load(
+      next, GRADUS_FAULT(temporal_difference_loads_fresh_frame) ? FrameSamples::kFresh : FrameSamples::kReplayed,
+      film_io::StoredContent::kSamples, is_cancelled_);
   const FrameWindow window({std::make_shared<TemporalFrame>(make_fresh(film, kPixels)),
                             std::make_shared<TemporalFrame>(make_replay(
                                 *replay, folder.header(next, FrameSamples::kFresh).frame_number, kPixels))});
-  const int width = film.region.width(), channels = film.channels;
+  const int width = film.region.width(), channels = film.color_channels;
   std::vector<float> differences(size_t(width) * size_t(channels));
   std::vector<int32_t> correspondence(static_cast<size_t>(width));
   size_t out = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/fault.h"
 #include "film/features.h"
 #include "schema/options.h"
 
@@ -16,7 +17,7 @@ uint64_t key_without_frame(GradusSettings settings) {
 }  // namespace
 
 FrameTraits traits_of(const film::FilmHeader& fresh, const film::FilmHeader& replayed) {
-  return {fresh.region,          fresh.channels,        fresh.gradients,         film::has_features(fresh),
+  return {fresh.region,          fresh.color_channels,  fresh.gradients,         film::has_features(fresh),
           fresh.settings,        fresh.frame_number,    replayed.replayed_frame, fresh.scene_key,
           replayed.replayed_key, replayed.replayed_seed};
 }
@@ -30,8 +31,9 @@ bool follows_another_frame(const FrameTraits& before, const FrameTraits& frame) 
 
 bool share_windows(const FrameTraits& before, const FrameTraits& frame, uint32_t reconstruction) {
   const bool features = before.features == frame.features || reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED;
-  return before.region == frame.region && before.channels == frame.channels && before.gradients == frame.gradients &&
-         features && !follows_another_frame(before, frame);
+  return before.region == frame.region &&
+         (GRADUS_FAULT(frames_with_and_without_alpha_share_windows) || before.channels == frame.channels) &&
+         before.gradients == frame.gradients && features && !follows_another_frame(before, frame);
 }
 
 std::unique_ptr<PreviousFrame> make_previous_frame(std::shared_ptr<const scene::Snapshot> snapshot,

@@ -8,6 +8,7 @@
 #include "animation/stored_samples.h"
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/fault.h"
 #include "base/threads.h"
 #include "schema/options.h"
 
@@ -182,7 +183,8 @@ void FrameSampling::resume_samples() {
 }
 
 void FrameSampling::sample_fresh_and_replayed() {
-  const bool continues = stored_fresh_ && !has_as_many(*stored_fresh_, FrameSamples::kFresh, input_.settings),
+  const bool continues = stored_fresh_ && !GRADUS_FAULT(stored_frame_with_few_samples_accepted) &&
+                         !has_as_many(*stored_fresh_, FrameSamples::kFresh, input_.settings),
              samples_fresh = !stored_fresh_ || continues;
   if (continues) resume_samples();
   if (samples_fresh) run(&fresh_);

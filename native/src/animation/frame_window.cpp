@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/fault.h"
+
 namespace gradus::animation {
 
 namespace {
@@ -17,7 +19,7 @@ const std::vector<float>& plane_of(const film::GradientImages& images, reconstru
 float mixed(float fresh, float replay, float share) {
   if (std::isnan(fresh)) return replay;
   if (std::isnan(replay)) return fresh;
-  return fresh + share * (replay - fresh);
+  return GRADUS_FAULT(windows_read_fresh_samples_alone) ? fresh : fresh + share * (replay - fresh);
 }
 
 }  // namespace
@@ -51,12 +53,16 @@ void FrameWindow::read(reconstruct::RowKind kind, int t, int y, Part part, float
     std::fill_n(out, width * channels, 0.0f);
     return;
   }
-  const float* next = plane_of(frames_[size_t(t) + 1]->replay.*part, kind).data();
+  const TemporalFrame& after = *frames_[size_t(t) + 1];
+  const auto& related = GRADUS_FAULT(temporal_difference_takes_fresh_samples) ? after.fresh : after.replay;
+  const float* next = plane_of(related.*part, kind).data();
+  const float sign = GRADUS_FAULT(temporal_difference_sign_flipped) ? -1.0f : 1.0f;
   for (size_t i = first; i < first + width; ++i) {
     const int32_t link = correspondence_[size_t(t)].pixel[i];
+    const size_t partner = GRADUS_FAULT(temporal_difference_of_same_pixel) ? i : size_t(link);
     for (size_t c = 0; c < channels; ++c) {
       *out++ = link == film::kNoCorrespondence ? film::kAbsentPair
-                                               : next[size_t(link) * channels + c] - fresh[i * channels + c];
+                                               : sign * (next[partner * channels + c] - fresh[i * channels + c]);
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/fault.h"
 #include "integrator/pixel_loop.h"
 #include "motion/component_tracking.h"
 #include "motion/pixel_matching.h"
@@ -13,7 +14,8 @@ namespace gradus::animation {
 
 bool follows(const PreviousFrame* before, const scene::Snapshot& now, const GradusSettings& settings) {
   return before && before->settings.width == settings.width && before->settings.height == settings.height &&
-         show_same_region(before->settings, settings) && !motion::is_shot_change(before->snapshot->camera, now.camera);
+         show_same_region(before->settings, settings) &&
+         (GRADUS_FAULT(shot_change_not_detected) || !motion::is_shot_change(before->snapshot->camera, now.camera));
 }
 
 namespace {
@@ -86,7 +88,8 @@ std::vector<uint32_t> replayed_counts(const film::ReplayMap& replay_map, const P
   if (!before || before->counts.empty()) return counts;
   for (size_t i = 0; i < counts.size(); ++i) {
     const int32_t source = replay_map.correspondence.pixel[i];
-    if (source != film::kNoCorrespondence) counts[i] = before->counts[size_t(source)];
+    if (source != film::kNoCorrespondence && !GRADUS_FAULT(replay_takes_mean_count))
+      counts[i] = before->counts[size_t(source)];
   }
   return counts;
 }

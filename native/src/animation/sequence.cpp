@@ -10,6 +10,8 @@
 #include "animation/streamed_frames.h"
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/fault.h"
+#include "film/planes.h"
 #include "render/memory_estimate.h"
 #include "render/resume.h"
 #include "schema/options.h"
@@ -40,11 +42,14 @@ bool is_frame_of(const film::FilmHeader& stored, const scene::Snapshot& snapshot
 bool sequence_applies(const GradusSettings& settings, std::string* why_not) {
   const uint32_t r = settings.reconstruction;
   const uint64_t pixels = uint64_t(settings.width) * settings.height;
-  *why_not = settings.integrator == GRADUS_INTEGRATOR_PATH ? "the integrator is path"
-             : r == GRADUS_RECONSTRUCTION_NONE             ? "reconstruction is none"
-             : settings.samples < 2                        ? "there is one sample per pixel"
-             : pixels > INT32_MAX                          ? "the film has more than 2^31 - 1 pixels"
-                                                           : "";
+  const bool has_gradients =
+      settings.integrator == GRADUS_INTEGRATOR_AUTO || settings.integrator == GRADUS_INTEGRATOR_GRADIENT;
+  const std::string integrator = schema::choice_name(*schema::find_option("integrator"), settings.integrator);
+  *why_not = !has_gradients                    ? "the integrator is " + integrator
+             : r == GRADUS_RECONSTRUCTION_NONE ? "reconstruction is none"
+             : settings.samples < 2            ? "there is one sample per pixel"
+             : pixels > INT32_MAX              ? "the film has more than 2^31 - 1 pixels"
+                                               : "";
   return why_not->empty();
 }
 
@@ -62,7 +67,7 @@ Sequence::Sequence(std::shared_ptr<scene::Device> device, const SequenceSettings
 int Sequence::place_of(int32_t frame) const {
   const int64_t from_first = int64_t(frame) - settings_.first, step = settings_.step;
   if (from_first % step != 0) throw invalid_argument("frame " + std::to_string(frame) + " is not part of the sequence");
-  const int64_t first = settings_.first;
+  const int64_t first = GRADUS_FAULT(window_grid_begins_at_job) ? 0 : settings_.first;
   return int(from_first / step + (first >= 0 ? first / step : -((step - 1 - first) / step)));
 }
 
@@ -115,7 +120,9 @@ bool Sequence::shares_window_with_previous(int place, uint32_t reconstruction) {
   const reconstruct::FrameRange own = job_places();
   // Settings may be animated within a job.
   const bool one_job = own.contains(place) && own.contains(place - 1);
-  return (one_job || are_equivalent(before.settings, here.settings)) && share_windows(before, here, reconstruction);
+  return (one_job || GRADUS_FAULT(stored_neighbour_of_other_job_accepted) ||
+          are_equivalent(before.settings, here.settings)) &&
+         share_windows(before, here, reconstruction);
 }
 
 reconstruct::FrameRange Sequence::needs(int32_t frame) const {
@@ -151,7 +158,9 @@ std::unique_ptr<render::RenderTask> Sequence::sample(std::shared_ptr<const scene
 void Sequence::pass_by(std::shared_ptr<const scene::Snapshot> snapshot, const GradusSettings& settings) {
   GradusSettings resolved = settings;
   resolved.integrator = integrator_of(settings);
-  if (settings.frame >= settings_.first && settings.frame <= settings_.last) passed_by_.insert(settings.frame);
+  if (settings.frame >= settings_.first && settings.frame <= settings_.last &&
+      !GRADUS_FAULT(windows_extend_over_skipped_frame))
+    passed_by_.insert(settings.frame);
   std::optional<film::FilmHeader> fresh;  // another process of the same job may have sampled the frame
   if (folder_.holds(settings.frame)) fresh = folder_.header(settings.frame, FrameSamples::kFresh);
   if (fresh && !is_frame_of(*fresh, *snapshot, resolved)) fresh.reset();
@@ -180,17 +189,12 @@ LoadSamples Sequence::load_samples(FrameSamples kind, const std::vector<std::str
 }
 
 void Sequence::merge(int32_t number, film::Film* fresh, const film::Film& replayed) const {
-  const film::ComponentContent of_fresh = film::component_content(*fresh),
-                               of_replayed = film::component_content(replayed);
-  if (of_fresh.non_specular != of_replayed.non_specular || of_fresh.details != of_replayed.details ||
-      fresh->count[0].size() != replayed.count[0].size() || fresh->channels != replayed.channels ||
-      fresh->gradients != replayed.gradients || fresh->passes.size() != replayed.passes.size() ||
-      !film::same_components(*fresh, replayed) ||
+  if (!film::can_add(*fresh, replayed) ||
       schema::sampling_key(fresh->settings) != schema::sampling_key(replayed.settings)) {
     throw invalid_argument("stored frame " + folder_.path(number, FrameSamples::kFresh) +
                            " and its replayed samples do not belong together");
   }
-  render::add_sums(fresh, replayed);
+  if (!GRADUS_FAULT(passes_read_fresh_samples_alone)) film::add_sums(fresh, replayed);
   fresh->frame_number = number;
   fresh->settings.frame = number;
   fresh->settings.samples += replayed.settings.samples;

@@ -7,6 +7,7 @@
 
 #include "animation/frame_window.h"
 #include "base/cancel_check.h"
+#include "base/fault.h"
 
 namespace gradus::animation {
 
@@ -30,7 +31,7 @@ void SpooledFrame::write(const reconstruct::HalvedWindowSource& rows, bool tempo
       rows.read_row(kind, 0, y, row.data());
       file_.write(place_of(kind, kValues, y), row.data(), row_bytes());
       if (!halves_) continue;
-      rows.read_half_differences(kind, 0, y, row.data());
+      if (!GRADUS_FAULT(spooled_half_differences_are_values)) rows.read_half_differences(kind, 0, y, row.data());
       file_.write(place_of(kind, kHalfDifferences, y), row.data(), row_bytes());
     }
     if (!temporal) return;

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "animation/frame_record.h"
+#include "base/fault.h"
 #include "base/text_list.h"
 #include "film/features.h"
 #include "schema/options.h"
@@ -39,7 +40,8 @@ bool lacks_surfaces(const film::ComponentContent& held, const GradusSettings& se
 std::string difference(const film::FilmHeader& stored, FrameSamples kind, const GradusSettings& settings,
                        uint64_t scene_key) {
   const GradusSettings& other = stored.settings;
-  if (schema::sampling_key(other) != schema::sampling_key(settings))
+  if (schema::sampling_key(other) != schema::sampling_key(settings) &&
+      !GRADUS_FAULT(stored_frame_of_other_settings_accepted))
     return "was sampled with other settings: " + schema::sampling_differences(other, settings);
   const std::string lacking = names_of_missing(settings.passes, other.passes),
                     beyond = names_of_missing(other.passes, settings.passes);
@@ -50,7 +52,8 @@ std::string difference(const film::FilmHeader& stored, FrameSamples kind, const 
   if (!beyond.empty()) return "was sampled with other passes: with " + beyond;
   if (!show_same_region(other, settings))
     return "shows " + region_text(other.region) + ", not " + region_text(settings.region);
-  if (stored.scene_key != scene_key) return "shows another scene";
+  if (stored.scene_key != scene_key && !GRADUS_FAULT(stored_frame_of_other_scene_accepted))
+    return "shows another scene";
   const bool adaptive = other.noise_threshold > 0.0f;
   return adaptive && !(settings.noise_threshold > 0.0f) ? "was sampled with a noise threshold, which is 0 now" : "";
 }

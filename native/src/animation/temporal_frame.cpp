@@ -5,7 +5,8 @@
 #include <utility>
 
 #include "base/error.h"
-#include "film/read_pixels.h"
+#include "base/fault.h"
+#include "film/film.h"
 #include "motion/pixel_matching.h"
 
 namespace gradus::animation {
@@ -83,6 +84,7 @@ TemporalFrame make_temporal_frame(const film::Film& fresh, const film::Film& rep
   for (size_t i = 0; i < frame.replay_share.size(); ++i) {
     const auto own = float(film::samples_at(fresh, i)), other = float(film::samples_at(replay, i));
     frame.replay_share[i] = own + other > 0.0f ? other / (own + other) : 0.0f;
+    if (GRADUS_FAULT(fresh_and_replayed_share_equally)) frame.replay_share[i] = 0.5f;
   }
   return frame;
 }
@@ -93,8 +95,9 @@ film::PixelCorrespondence correspondence_between(const TemporalFrame& frame, con
   if (is_repeated(frame, next)) std::iota(pixel.begin(), pixel.end(), 0);
   const film::ReplayMap& replayed = next.replayed;
   const bool follows = replayed.stream_frame == frame.stream && replayed.correspondence.pixel.size() == pixel.size();
-  return follows && !is_repeated(frame, next) ? motion::inverse_correspondence(replayed.correspondence)
-                                              : film::PixelCorrespondence{std::move(pixel)};
+  if (!follows || is_repeated(frame, next)) return film::PixelCorrespondence{std::move(pixel)};
+  return GRADUS_FAULT(correspondence_not_inverted) ? replayed.correspondence
+                                                   : motion::inverse_correspondence(replayed.correspondence);
 }
 
 }  // namespace gradus::animation

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "base/cancel_check.h"
+#include "base/fault.h"
 #include "film/film.h"
-#include "film/pixel_correspondence.h"
+#include "film/replay_map.h"
 
 namespace gradus::animation {
 
@@ -53,7 +54,8 @@ void check_same_layout(const film::GradientImages& images, const film::GradientI
 // Whether the next frame has the same samples as this one, because nothing has changed between them. Frames of
 // different scenes never share samples.
 inline bool is_repeated(const TemporalFrame& frame, const TemporalFrame& next) {
-  return next.stream == frame.stream && next.scene_key == frame.scene_key;
+  return next.stream == frame.stream && next.scene_key == frame.scene_key &&
+         !GRADUS_FAULT(unchanged_frame_not_repeated);
 }
 // Returns for each pixel of the frame the corresponding pixel of the next one, as y·width + x. It inverts the replay
 // map of the next frame.

@@ -6,6 +6,7 @@
 #include "api/arrays.h"
 #include "api/guard.h"
 #include "api/objects.h"
+#include "base/fault.h"
 #include "base/fpu.h"
 #include "base/threads.h"
 #include "film/features.h"
@@ -93,7 +94,8 @@ std::shared_ptr<DevelopedPicture> store_developed(FilmObject* object, const std:
                                                   DevelopedPicture developed) {
   auto kept = std::make_shared<DevelopedPicture>(std::move(developed));
   const std::lock_guard lock(object->mutex);
-  if (object->film == film && (output::has_light_passes(*film) || film->components.size() > 1))
+  const bool is_done = GRADUS_FAULT(light_passes_keep_first_reconstruction) && object->developed;
+  if (object->film == film && !is_done && (output::has_light_passes(*film) || film->components.size() > 1))
     object->developed = kept;
   return kept;
 }

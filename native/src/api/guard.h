@@ -6,6 +6,7 @@
 
 #include "api/error_slot.h"
 #include "base/error.h"
+#include "base/fault.h"
 
 namespace gradus::api {
 
@@ -21,7 +22,8 @@ GradusError guard(Function&& function) noexcept {
       return GRADUS_OK;
     }
   } catch (...) {
-    return record_current_exception();
+    const GradusError error = record_current_exception();
+    return GRADUS_FAULT(c_api_swallows_exception) ? GRADUS_OK : error;
   }
 }
 

@@ -2,6 +2,7 @@
 // positive, except for diffuse lobes with bumps.
 #pragma once
 
+#include "base/fault.h"
 #include "bsdf/closures.h"
 
 namespace gradus::bsdf {
@@ -22,7 +23,9 @@ inline bool is_lambert(const Lobe& lobe) {
 // Evaluates a Lambert lobe, for which the cosine of wi and the normal suffices.
 inline BsdfEval evaluate_lambert(const Lobe& lobe, float cos_i) {
   const float pdf = cos_i * kInvPi;
-  return cos_i > 0.0f ? BsdfEval{lobe.weight * pdf, pdf} : BsdfEval{};
+  const float value = GRADUS_FAULT(lambert_without_cosine) ? kInvPi : pdf,
+              density = GRADUS_FAULT(lambert_density_halved) ? 0.5f * pdf : pdf;
+  return cos_i > 0.0f ? BsdfEval{lobe.weight * value, density} : BsdfEval{};
 }
 
 BsdfEval evaluate_diffuse(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides);

@@ -5,6 +5,7 @@
 
 #include <glm/gtc/type_ptr.hpp>
 
+#include "base/fault.h"
 #include "camera/panorama.h"
 #include "camera/spherical_stereo.h"
 
@@ -74,11 +75,12 @@ void Camera::add_keys() {
 
 const Camera::Pose& Camera::pose_at(float time, Pose* room) const {
   if (!moves()) return pose(Moment::Now);
-  const Mat4 m = keys_.at(time);
+  const Mat4 m = keys_.at(GRADUS_FAULT(camera_does_not_move) ? 0.0f : time);
   room->axes = Mat3(m);
   room->inverse = glm::inverse(room->axes);
   room->position = Vec3(m[3]);
-  const geometry::KeyPlace place = geometry::key_place(time, windows_.size());
+  const geometry::KeyPlace place =
+      geometry::key_place(GRADUS_FAULT(camera_does_not_zoom) ? 0.0f : time, windows_.size());
   const std::array<float, 4>&a = windows_[place.before], &b = windows_[place.before + 1];
   for (size_t i = 0; i < 4; ++i) room->window[i] = a[i] * (1.0f - place.share) + b[i] * place.share;
   return *room;
@@ -145,7 +147,7 @@ Ray Camera::panorama_ray(const Pose& pose, const Vec2& point, const CameraSample
   if (!panorama_direction(desc_, point, &direction)) return kNoRay;
   if (has_lens()) {
     Vec3 u, v;
-    panorama_lens_axes(desc_, direction, &u, &v);
+    panorama_lens_axes(desc_, GRADUS_FAULT(panorama_lens_faces_camera_axis) ? Vec3(0, 0, -1) : direction, &u, &v);
     const Vec2 offset = lens_point(sample.lens);
     origin = u * offset.x + v * offset.y;
     direction = glm::normalize(direction * std::max(desc_.focus_distance, 1e-5f) - origin);

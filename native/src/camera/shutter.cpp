@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/fault.h"
 #include "base/types.h"
 
 namespace gradus::camera {
@@ -26,10 +27,13 @@ Shutter::Shutter(const GradusCamera& desc) {
   for (const double part : sums) cumulative_.push_back(sum > 0.0 ? float(part / sum) : 1.0f);
 }
 
-float Shutter::time_of_frame() const { return opens() ? std::clamp(-open_ / (close_ - open_), 0.0f, 1.0f) : 0.0f; }
+float Shutter::time_of_frame() const {
+  if (GRADUS_FAULT(frame_position_in_exposure_ignored)) return 0.5f;
+  return opens() ? std::clamp(-open_ / (close_ - open_), 0.0f, 1.0f) : 0.0f;
+}
 
 float Shutter::sample(float u) const {
-  if (cumulative_.empty()) return u;
+  if (cumulative_.empty() || GRADUS_FAULT(shutter_curve_ignored)) return u;
   const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, u);
   const auto i = size_t(found - cumulative_.begin());
   const float before = i > 0 ? cumulative_[i - 1] : 0.0f;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/fault.h"
+
 namespace gradus::camera {
 
 namespace {
@@ -31,7 +33,7 @@ Vec2 along_ray(const GradusCamera& c, float offset, float distance, bool at_infi
 }  // namespace
 
 void move_to_eye(const GradusCamera& c, const Vec3& up, Vec3* origin, Vec3* direction) {
-  const Vec3 side = glm::cross(*direction, up);
+  const Vec3 right = glm::cross(*direction, up), side = GRADUS_FAULT(stereo_eyes_exchanged) ? -right : right;
   const float length = glm::length(side);
   if (!(length > 1e-6f)) return;
   const Vec3 offset = side * (offset_at(c, glm::dot(*direction, up)) / length);

@@ -7,8 +7,9 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/fault.h"
 #include "base/fpu.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "schema/pass_table.h"
 
 namespace gradus::film {
@@ -25,13 +26,16 @@ void for_pixels(const Film& film, const Function& function) {
   });
 }
 
-void read_mean(const Film& film, const PassPlane& plane, HalfRange halves, size_t pixel, float* to) {
+void read_mean(const Film& film, const Channel& plane, HalfRange halves, size_t pixel, float* to) {
   uint32_t count = 0;
   for (int h = halves.first; h < halves.last; ++h) count += film.count[h][pixel];
   const float factor = count > 0 ? 1.0f / static_cast<float>(count) : 0.0f;
-  for (uint32_t c = 0; c < plane.channels; ++c) {
+  for (uint32_t c = 0; c < plane.info.values_per_pixel; ++c) {
     float sum = 0.0f;
-    for (int h = halves.first; h < halves.last; ++h) sum += plane.values[h][plane.channels * pixel + c];
+    for (int h = halves.first; h < halves.last; ++h)
+      sum +=
+          plane
+              .values[GRADUS_FAULT(feature_half_buffer_a_added_twice) ? 0 : h][plane.info.values_per_pixel * pixel + c];
     to[c] = factor * sum;
   }
 }
@@ -41,11 +45,17 @@ float variance_of(float half, bool is_known) {
   return is_known ? std::min(half * half, std::numeric_limits<float>::max()) : std::numeric_limits<float>::quiet_NaN();
 }
 
-void read_variance(const Film& film, const PassPlane& plane, size_t pixel, float* to) {
+void read_variance(const Film& film, const Channel& plane, size_t pixel, float* to) {
   const uint32_t a = film.count[0][pixel], b = film.count[1][pixel];
-  for (uint32_t c = 0; c < plane.channels; ++c) {
-    const size_t i = plane.channels * pixel + c;
-    const float half = 0.5f * (plane.values[0][i] / static_cast<float>(a) - plane.values[1][i] / static_cast<float>(b));
+  for (uint32_t c = 0; c < plane.info.values_per_pixel; ++c) {
+    const size_t i = plane.info.values_per_pixel * pixel + c;
+    const float mean_a = plane.values[0][i] / static_cast<float>(a),
+                mean_b = plane.values[1][i] /
+                         static_cast<float>(GRADUS_FAULT(feature_half_buffer_b_divided_by_count_of_a) ? a : b);
+    const float half = (GRADUS_FAULT(feature_variance_times_4)  ? 1.0f
+                        : GRADUS_FAULT(feature_variance_over_4) ? 0.25f
+                                                                : 0.5f) *
+                       (mean_a - mean_b);
     to[c] = variance_of(half, a > 0 && b > 0);
   }
 }
@@ -55,17 +65,20 @@ void read_variance(const Film& film, const PassPlane& plane, size_t pixel, float
 bool holds_features(uint64_t planes) { return (planes & schema::feature_passes()) == schema::feature_passes(); }
 
 bool has_features(const FilmHeader& header) { return holds_features(header.planes); }
-bool has_features(const Film& film) { return holds_features(film_passes(film)); }
+bool has_features(const Film& film) { return holds_features(film.channels.passes()); }
 
 FeatureImage read_feature(const Film& film, uint32_t pass, HalfRange halves) {
-  const PassPlane* plane = find_plane(film, pass);
-  if (plane == nullptr || !plane->in_halves) {
+  const Channel* plane = film.channels.of_pass(pass);
+  if (plane == nullptr || !plane->info.in_halves) {
     throw invalid_operation("the frame does not keep " + std::string(schema::pass_info(pass).name) + " in halves");
   }
   FeatureImage image;
-  image.channels = plane->channels;
+  image.channels = plane->info.values_per_pixel;
   image.values.resize(plane->values[0].size());
-  for_pixels(film, [&](size_t i) { read_mean(film, *plane, halves, i, image.values.data() + i * image.channels); });
+  for_pixels(film, [&](size_t i) {
+    const size_t from = GRADUS_FAULT(features_read_one_pixel_early) && i > 0 ? i - 1 : i;
+    read_mean(film, *plane, halves, from, image.values.data() + i * image.channels);
+  });
   if (halves.last - halves.first == kHalves) {
     image.variance.resize(image.values.size());
     for_pixels(film, [&](size_t i) { read_variance(film, *plane, i, image.variance.data() + i * image.channels); });

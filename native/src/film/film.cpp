@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include <tbb/parallel_for.h>
+
 #include "base/text_list.h"
 
 namespace gradus::film {
@@ -15,60 +17,55 @@ void Counters::add(const Counters& other) {
   }
 }
 
-Film::Film(uint32_t full_width_, uint32_t full_height_, const Region& region_, int channels_, int components_,
-           bool gradients_)
-    : full_width(full_width_), full_height(full_height_), region(region_), channels(channels_), gradients(gradients_) {
-  const auto pixels = static_cast<size_t>(region.area());
-  components.resize(static_cast<size_t>(components_));
-  for (ComponentPlanes& component : components) {
-    for (int half = 0; half < kHalves; ++half) {
-      component.primal[half].assign(pixels, Radiance(0.0f));
-      for (auto& plane : component.gradient[half]) {
-        plane.assign(gradients ? pixels : 0, Radiance(0.0f));
-      }
-    }
-  }
-  for (int half = 0; half < kHalves; ++half) {
-    count[half].assign(pixels, 0);
-    for (auto& plane : pair_count[half]) {
-      plane.assign(gradients ? pixels : 0, 0.0f);
-    }
-  }
-}
-
 namespace {
 
-uint64_t bytes_of(const PixelCorrespondence& correspondence) {
-  return correspondence.pixel.size() * sizeof(int32_t) + correspondence.off_centre.size() * sizeof(Vec2);
+// Returns zeroed planes of one component.
+ComponentPlanes make_component(size_t pixels, bool gradients) {
+  ComponentPlanes planes;
+  for (int half = 0; half < kHalves; ++half) {
+    planes.primal[half].assign(pixels, Radiance(0.0f));
+    for (auto& plane : planes.gradient[half]) plane.assign(gradients ? pixels : 0, Radiance(0.0f));
+  }
+  return planes;
+}
+
+void allocate(const ComponentContent& content, size_t pixels, ComponentPlanes* planes) {
+  for (auto& half : planes->non_specular) half.assign(content.non_specular ? pixels : 0, NonSpecularVertices{});
+  planes->details.assign(content.details ? pixels : 0, NonSpecularDetails{});
+  planes->motion.assign(content.motion ? pixels : 0, Vec4(0.0f));
+  planes->tracked.assign(content.motion ? pixels : 0, kNothingToTrack);
+  planes->shown.assign(content.shown ? pixels : 0, ShownPoint{});
 }
 
 }  // namespace
 
-uint64_t Film::memory_bytes() const {
-  uint64_t bytes = sizeof(*this) + fallback.size() * sizeof(float) + bytes_of(replayed.correspondence);
-  for (const PixelCorrespondence& own : replayed.of_component) bytes += bytes_of(own);
-  for (const ComponentPlanes& component : components) {
-    bytes += component.motion.size() * sizeof(Vec4) + component.tracked.size() * sizeof(float) +
-             component.shown.size() * sizeof(ShownPoint);
-    bytes += component.details.size() * sizeof(NonSpecularDetails);
-    for (int half = 0; half < kHalves; ++half) {
-      bytes += component.primal[half].size() * sizeof(Radiance) +
-               component.non_specular[half].size() * sizeof(NonSpecularVertices);
-      for (const auto& plane : component.gradient[half]) {
-        bytes += plane.size() * sizeof(Radiance);
-      }
-    }
-  }
+Film::Film(uint32_t full_width_, uint32_t full_height_, const Region& region_, int color_channels_, int components_,
+           bool gradients_)
+    : full_width(full_width_),
+      full_height(full_height_),
+      region(region_),
+      color_channels(color_channels_),
+      gradients(gradients_) {
+  const auto pixels = static_cast<size_t>(region.area());
+  components.reserve(size_t(components_));
+  for (int c = 0; c < components_; ++c) components.push_back(make_component(pixels, gradients));
   for (int half = 0; half < kHalves; ++half) {
-    bytes += count[half].size() * sizeof(uint32_t);
-    for (const auto& plane : pair_count[half]) {
-      bytes += plane.size() * sizeof(float);
-    }
+    count[half].assign(pixels, 0);
+    for (auto& plane : pair_count[half]) plane.assign(gradients ? pixels : 0, 0.0f);
   }
-  for (const PassPlane& plane : passes) {
-    bytes += (plane.values[0].size() + plane.values[1].size() + plane.weight.size()) * sizeof(float);
-  }
-  return bytes;
+}
+
+void add_pass_channels(uint64_t passes, Film* film) {
+  for (const ChannelInfo& info : channels_of_passes(passes)) film->channels.add(info, size_t(film->region.area()));
+}
+
+void allocate_component_content(const ComponentContent& content, Film* film) {
+  for (ComponentPlanes& planes : film->components) allocate(content, size_t(film->region.area()), &planes);
+}
+
+ComponentContent component_content(const Film& film) {
+  const ComponentPlanes& planes = film.components.front();
+  return {!planes.non_specular[0].empty(), !planes.details.empty(), !planes.motion.empty(), !planes.shown.empty()};
 }
 
 std::string component_names(const Film& film) {
@@ -91,25 +88,6 @@ int find_component(const Film& film, std::string_view name) {
   return found != list.end() ? int(found - list.begin()) : -1;
 }
 
-namespace {
-
-ComponentPlanes black_component(std::string_view name, const ComponentPlanes& like) {
-  ComponentPlanes black = like;
-  black.name = name;
-  std::fill(black.motion.begin(), black.motion.end(), Vec4(0.0f));
-  std::fill(black.tracked.begin(), black.tracked.end(), kNothingToTrack);
-  std::fill(black.shown.begin(), black.shown.end(), ShownPoint{});
-  std::fill(black.details.begin(), black.details.end(), NonSpecularDetails{});
-  for (int half = 0; half < kHalves; ++half) {
-    std::fill(black.primal[half].begin(), black.primal[half].end(), Radiance(0.0f));
-    for (auto& plane : black.gradient[half]) std::fill(plane.begin(), plane.end(), Radiance(0.0f));
-    std::fill(black.non_specular[half].begin(), black.non_specular[half].end(), NonSpecularVertices{});
-  }
-  return black;
-}
-
-}  // namespace
-
 void select_component(std::string_view name, Film* film) {
   select_components({std::string(name)}, film);
   ReplayMap& replayed = film->replayed;
@@ -118,12 +96,18 @@ void select_component(std::string_view name, Film* film) {
 }
 
 void select_components(const std::vector<std::string>& names, Film* film) {
+  const ComponentContent content = component_content(*film);
   std::vector<ComponentPlanes> kept;
   std::vector<PixelCorrespondence> sources;
   for (const std::string& name : names) {
     const int place = find_component(*film, name);
     const bool has_component_map = place >= 0 && film->replayed.has_component_map(place);
-    kept.push_back(place >= 0 ? ComponentPlanes{} : black_component(name, film->components[0]));
+    kept.emplace_back();
+    if (place < 0) {
+      kept.back() = make_component(size_t(film->region.area()), film->gradients);
+      allocate(content, size_t(film->region.area()), &kept.back());
+      kept.back().name = name;
+    }
     sources.push_back(has_component_map ? std::move(film->replayed.of_component[size_t(place)])
                                         : PixelCorrespondence{});
   }
@@ -133,6 +117,29 @@ void select_components(const std::vector<std::string>& names, Film* film) {
   }
   film->components = std::move(kept);
   film->replayed.of_component = std::move(sources);
+}
+
+namespace {
+
+void add(const std::vector<Radiance>& from, std::vector<Radiance>* to) {
+  tbb::parallel_for(size_t{0}, to->size(), [&](size_t i) { (*to)[i] += from[i]; });
+}
+
+}  // namespace
+
+Film sum_components(const Film& film) {
+  Film sum(film.full_width, film.full_height, film.region, film.color_channels, 1, film.gradients);
+  sum.count = film.count;
+  sum.pair_count = film.pair_count;
+  sum.settings = film.settings;
+  ComponentPlanes& to = sum.components[0];
+  for (const ComponentPlanes& from : film.components) {
+    for (size_t half = 0; half < kHalves; ++half) {
+      add(from.primal[half], &to.primal[half]);
+      for (size_t offset = 0; offset < kOffsets; ++offset) add(from.gradient[half][offset], &to.gradient[half][offset]);
+    }
+  }
+  return sum;
 }
 
 double mean_samples(const Film& film) {

@@ -18,6 +18,7 @@
 
 #include "base/region.h"
 #include "base/types.h"
+#include "film/channel.h"
 #include "film/replay_map.h"
 #include "film/sample_ranges.h"
 #include "gradus/gradus.h"
@@ -27,8 +28,6 @@ namespace gradus::film {
 enum Offset : int { kRight = 0, kUp = 1, kLeft = 2, kDown = 3, kOffsets = 4 };
 inline constexpr int kOffsetX[kOffsets] = {1, 0, -1, 0};
 inline constexpr int kOffsetY[kOffsets] = {0, 1, 0, -1};
-inline constexpr int kHalves = 2;
-
 // First non-specular vertices of a component's paths, as sums over the samples that reached such a vertex.
 struct NonSpecularVertices {
   Rgb reflectance = Rgb(0.0f);
@@ -77,17 +76,12 @@ struct ComponentPlanes {
 // Value of ComponentPlanes::tracked for a pixel in which a component shows nothing.
 inline constexpr float kNothingToTrack = -1.0f;
 
-// A data or light pass: sums over samples with `channels` values per pixel.
-struct PassPlane {
-  uint32_t pass = GRADUS_PASS_COUNT;
-  uint32_t channels = 0;
-  bool first_sample_only = false;                  // the value of the first sample instead of a sum (depth, ids)
-  bool skips_transparent = false;                  // averaged by `weight` instead of the sample count
-  bool in_halves = false;                          // kept in half-buffers, as features are to estimate their noise
-  std::array<std::vector<float>, kHalves> values;  // only the first is used unless in_halves
-  std::vector<float> weight;
-
-  std::vector<float>& of_half(int half) { return values[in_halves ? half : 0]; }
+// Data that a film keeps for its components beside their radiance.
+struct ComponentContent {
+  bool non_specular = false;  // NonSpecularVertices
+  bool details = false;       // NonSpecularDetails
+  bool motion = false;
+  bool shown = false;  // ShownPoint
 };
 
 // Event counters, reported in gradus stats. Each worker has its own; they are added at the end.
@@ -114,18 +108,20 @@ struct AdaptiveState {
 
 class Film {
  public:
-  // full: size of the full frame; region: pixels that are sampled, guard ring included; channels: 3, or 4 for a
+  // full: size of the full frame; region: pixels that are sampled, guard ring included; color_channels: 3, or 4 for a
   // transparent film.
-  Film(uint32_t full_width, uint32_t full_height, const Region& region, int channels, int components, bool gradients);
+  Film(uint32_t full_width, uint32_t full_height, const Region& region, int color_channels, int components,
+       bool gradients);
 
   size_t index(int32_t x, int32_t y) const {
     return size_t(y - region.y0) * size_t(region.width()) + size_t(x - region.x0);
   }
+  // Returns the size of all planes in bytes.
   uint64_t memory_bytes() const;
 
   uint32_t full_width, full_height;
   Region region;
-  int channels;
+  int color_channels;  // of the components' radiance
   bool gradients;
   std::vector<ComponentPlanes> components;
   std::array<std::vector<uint32_t>, kHalves> count;  // samples of each pixel and half
@@ -133,8 +129,7 @@ class Film {
   // are the sample counts of the batch. After whole batches this is the sum over batches of (m_p + m_q)/2, which is
   // equal at both ends of a pair.
   std::array<std::array<std::vector<float>, kOffsets>, kHalves> pair_count;
-  std::vector<PassPlane> passes;
-  std::vector<float> fallback;  // samples per pixel that met a replaced node; empty unless requested
+  ChannelList channels;  // everything else that is sampled, such as passes
   Counters counters;
 
   // Sample numbers that were taken. Some pixels have fewer if tiles stopped early or the render was cancelled.
@@ -147,6 +142,13 @@ class Film {
   int32_t frame_number = 0;
 };
 
+// Adds zeroed channels for the passes, one bit each.
+void add_pass_channels(uint64_t passes, Film* film);
+// Allocates the planes for `content` with initial values.
+void allocate_component_content(const ComponentContent& content, Film* film);
+// Returns the content that the film has planes for.
+ComponentContent component_content(const Film& film);
+
 // Returns the component names for messages, such as "Diffuse, Residual".
 std::string component_names(const Film& film);
 // Returns whether both films have the same component names and expressions in the same order.
@@ -157,6 +159,8 @@ int find_component(const Film& film, std::string_view name);
 void select_component(std::string_view name, Film* film);
 // Keeps only the named components, in this order; a component that the film does not have is black.
 void select_components(const std::vector<std::string>& names, Film* film);
+// Returns a film with one component, the sum of all components' samples and differences. It has no channels.
+Film sum_components(const Film& film);
 // Returns the sample count of the pixel with index i.
 inline uint32_t samples_at(const Film& film, size_t i) { return film.count[0][i] + film.count[1][i]; }
 // Returns the mean sample count per pixel over the region.
@@ -180,7 +184,7 @@ inline constexpr float kAbsentPair = std::numeric_limits<float>::quiet_NaN();
 void read_primal_row(const Film& film, int component, HalfRange halves, int y, float* row);
 void read_difference_row(const Film& film, int component, Offset offset, HalfRange halves, int y, float* row);
 
-// Images read from a film, over its region: row-major, Film::channels interleaved channels.
+// Images read from a film, over its region: row-major, Film::color_channels interleaved channels.
 struct GradientImages {
   int width = 0, height = 0, channels = 3;
   std::vector<float> primal;  // mean
@@ -194,12 +198,26 @@ struct GradientImages {
 
 // Reads a component's means and differences; merges half-buffers and both ends of each pair.
 GradientImages read_images(const Film& film, int component);
+// As above, without the differences dx and dy.
+GradientImages read_pixels(const Film& film, int component);
 // Reads half the difference of the half-buffers, (A − B)/2, in place of primal, dx and dy. Its square estimates the
 // variance, and any linear function of the images applies to it, too. A pixel with samples in only one half-buffer gets
 // its mean, whose expected square is no less than the variance. A difference without samples in one of the half-buffers
 // is kAbsentPair.
 GradientImages read_half_differences(const Film& film, int component);
+// As above, without the differences dx and dy.
+GradientImages read_half_differences_of_pixels(const Film& film, int component);
 // Fills primal_deviation, dx_deviation and dy_deviation of `images`.
 void read_deviations(const Film& film, int component, GradientImages* images);
+// Writes the estimated variances of the means in a row, ((A - B)/2)² per channel, where A and B are the sums of all
+// components. y counts from the region's first row. The variance is 0 where a half-buffer has no samples, because one
+// alone gives no estimate.
+void read_variance_row(const Film& film, int y, float* row);
+
+// Writes the normalised values of a channel in `count` pixels from index `first`. `scale` multiplies all values but
+// those of the first sample and identifiers. Pixels without samples, weight or paths are 0. A channel that is not in
+// halves has only both together.
+void read_channel(const Film& film, const Channel& channel, HalfRange halves, size_t first, size_t count, float scale,
+                  float* to);
 
 }  // namespace gradus::film

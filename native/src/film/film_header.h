@@ -2,13 +2,12 @@
 #pragma once
 
 #include "film/film.h"
-#include "film/pass_planes.h"
 
 namespace gradus::film {
 
 struct FilmHeader {
   Region region;
-  int channels = 3;
+  int color_channels = 3;
   bool gradients = false;
   uint64_t planes = 0;  // stored passes, one bit each
   ComponentContent of_components;
@@ -26,9 +25,9 @@ struct FilmHeader {
 inline FilmHeader header_of(const Film& film) {
   const ReplayMap& replayed = film.replayed;
   return {film.region,
-          film.channels,
+          film.color_channels,
           film.gradients,
-          film_passes(film),
+          film.channels.passes(),
           component_content(film),
           film.settings,
           film.samples,

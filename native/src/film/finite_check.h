@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/fault.h"
 #include "film/film.h"
 
 namespace gradus::film {
@@ -13,7 +14,7 @@ namespace gradus::film {
 inline constexpr float kLargestSum = 1e37f;
 
 // Returns whether a sum is within the limit; false for NaN.
-inline bool fits(float v) { return std::fabs(v) <= kLargestSum; }
+inline bool fits(float v) { return std::fabs(v) <= kLargestSum || GRADUS_FAULT(finite_check_accepts_all); }
 inline bool fits(const Radiance& v) { return fits(v.x) && fits(v.y) && fits(v.z) && fits(v.w); }
 
 // Adds one sample of a pixel. A dropped value counts as 0, because the sample count includes the sample.
@@ -60,22 +61,53 @@ inline void add_details(const NonSpecularDetails& more, NonSpecularDetails* sum,
   }
 }
 
-// Adds one sample's values of a pass to its sums, or stores them if the pass keeps only the first sample.
-inline void add_feature(const float* values, float weight, size_t pixel, int half, PassPlane* plane,
+// Adds one sample's values of a channel to its sums, or stores them if the channel keeps only the first sample.
+inline void add_feature(const float* values, float weight, size_t pixel, int half, Channel* channel,
                         Counters* counters) {
-  float* sum = plane->of_half(half).data() + pixel * plane->channels;
+  float* sum = channel->of_half(half).data() + pixel * channel->info.values_per_pixel;
+  const uint32_t count = channel->info.values_per_pixel;
+  const bool replaces = channel->keeps_first_sample();
   float next[4];
-  for (uint32_t i = 0; i < plane->channels; ++i) {
-    next[i] = plane->first_sample_only ? values[i] : sum[i] + values[i] * weight;
+  for (uint32_t i = 0; i < count; ++i) {
+    next[i] = replaces ? values[i] : sum[i] + values[i] * weight;
     if (!fits(next[i])) {
       ++counters->nonfinite_feature;
       return;
     }
   }
-  std::copy_n(next, plane->channels, sum);
-  if (plane->skips_transparent) {
-    plane->weight[pixel] += weight;
+  std::copy_n(next, count, sum);
+  if (channel->has_weight()) {
+    channel->weight[pixel] += weight;
   }
+}
+
+// Adds a weight to an identifier of one pixel, which has `count` pairs of identifier and weight. If all of them belong
+// to other identifiers, the pair with the least weight is lost.
+inline void add_pair(float id, float weight, uint32_t count, float* pairs, Counters* counters) {
+  if (!(weight > 0.0f)) {
+    if (weight != 0.0f) ++counters->nonfinite_feature;
+    return;
+  }
+  float* least = pairs;
+  for (float* pair = pairs; pair < pairs + 2 * count; pair += 2) {
+    if (pair[1] == 0.0f || pair[0] == id) {
+      if (!fits(pair[1] + weight) || !fits(id)) {
+        ++counters->nonfinite_feature;
+        return;
+      }
+      pair[0] = id;
+      pair[1] += weight;
+      return;
+    }
+    if (pair[1] < least[1]) least = pair;
+  }
+  if (weight <= least[1]) return;
+  if (!fits(weight) || !fits(id)) {
+    ++counters->nonfinite_feature;
+    return;
+  }
+  least[0] = id;
+  least[1] = weight;
 }
 
 }  // namespace gradus::film

@@ -1,18 +1,26 @@
-// Grids of pixel blocks aligned to the full frame: work tiles, and the blocks that share jitter and are
-// tested for noise.
+// Pixel blocks of 16×16 pixels, aligned to the full frame, and grids of such blocks. The pixels of a block share
+// sub-pixel jitter, and adaptive sampling estimates noise per block. Work tiles are larger blocks.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
-#include "film/film.h"
-#include "film/pixel_block.h"
+#include "base/region.h"
 
 namespace gradus::film {
 
+inline constexpr int32_t kPixelBlockSide = 16;
+
+// Returns the index of the block that contains coordinate x: x / side, rounded towards minus infinity.
+inline int32_t pixel_block_of(int32_t x, int32_t side = kPixelBlockSide) {
+  return x >= 0 ? x / side : -((-x + side - 1) / side);
+}
+
 // Returns the blocks of `side`×`side` pixels, aligned to multiples of `side` and clipped to the region, row-major.
 std::vector<Region> make_pixel_blocks(const Region& region, int side = kPixelBlockSide);
+// Returns the pixels that both regions contain.
 Region intersection(const Region& a, const Region& b);
 
 // The pixel blocks of a region, indexed by column and row.

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/fault.h"
 #include "base/fpu.h"
 #include "film/film.h"
-#include "film/read_pixels.h"
 
 namespace gradus::film {
 
@@ -55,7 +55,7 @@ void read_differences(const Film& film, const ComponentPlanes& planes, Offset of
 // Returns an image of all rows: read_row(y, row) writes one.
 template <class ReadRow>
 std::vector<float> read_rows(const Film& film, const ReadRow& read_row) {
-  const size_t row = size_t(film.region.width()) * size_t(film.channels);
+  const size_t row = size_t(film.region.width()) * size_t(film.color_channels);
   std::vector<float> image(row * size_t(film.region.height()));
   tbb::parallel_for(0, film.region.height(), [&](int y) {
     const FlushDenormals flush;
@@ -69,17 +69,17 @@ std::vector<float> read_rows(const Film& film, const ReadRow& read_row) {
 void read_primal_row(const Film& film, int component, HalfRange halves, int y, float* row) {
   const ComponentPlanes& planes = film.components.at(static_cast<size_t>(component));
   const size_t first = size_t(y) * size_t(film.region.width());
-  const auto read = film.channels == 3 ? read_primal<3> : read_primal<4>;
+  const auto read = film.color_channels == 3 ? read_primal<3> : read_primal<4>;
   read(film, planes, halves, first, row);
 }
 
 void read_difference_row(const Film& film, int component, Offset offset, HalfRange halves, int y, float* row) {
   const ComponentPlanes& planes = film.components.at(static_cast<size_t>(component));
   const auto width = static_cast<size_t>(film.region.width());
-  const size_t channels = size_t(film.channels), last = offset == kRight               ? width - 1
-                                                        : y + 1 < film.region.height() ? width
-                                                                                       : 0;
-  const auto read = film.channels == 3 ? read_differences<3> : read_differences<4>;
+  const size_t channels = size_t(film.color_channels), last = offset == kRight               ? width - 1
+                                                              : y + 1 < film.region.height() ? width
+                                                                                             : 0;
+  const auto read = film.color_channels == 3 ? read_differences<3> : read_differences<4>;
   read(film, planes, offset, halves, size_t(y) * width, offset == kRight ? 1 : width, int(last), row);
   std::fill(row + last * channels, row + width * channels, 0.0f);
 }
@@ -93,7 +93,7 @@ GradientImages read_all(const Film& film, bool differences, const ReadPrimal& re
   GradientImages images;
   images.width = film.region.width();
   images.height = film.region.height();
-  images.channels = film.channels;
+  images.channels = film.color_channels;
   images.primal = read_rows(film, read_primal);
   if (!film.gradients || !differences) return images;
   images.dx = read_rows(film, [&](int y, float* row) { read_difference(kRight, y, row); });
@@ -107,15 +107,17 @@ void read_half_difference(size_t size, const Read& read, float* row) {
   std::vector<float> other(size);
   read(HalfRange{0, 1}, row);
   read(HalfRange{1, 2}, other.data());
-  for (size_t i = 0; i < size; ++i) row[i] = 0.5f * (row[i] - other[i]);
+  for (size_t i = 0; i < size; ++i)
+    row[i] = (GRADUS_FAULT(half_difference_not_halved) ? 1.0f : 0.5f) *
+             (GRADUS_FAULT(sum_of_halves_read_for_difference) ? row[i] + other[i] : row[i] - other[i]);
 }
 
 // Doubles the value of pixels with samples in only one half-buffer, which gives the mean of that half-buffer.
 void fill_unknown(const Film& film, int y, float* row) {
   const auto width = static_cast<size_t>(film.region.width());
-  for (size_t i = size_t(y) * width; i < size_t(y + 1) * width; ++i, row += film.channels) {
+  for (size_t i = size_t(y) * width; i < size_t(y + 1) * width; ++i, row += film.color_channels) {
     if (film.count[0][i] > 0 && film.count[1][i] > 0) continue;
-    for (int c = 0; c < film.channels; ++c) row[c] *= 2.0f;
+    for (int c = 0; c < film.color_channels; ++c) row[c] *= 2.0f;
   }
 }
 
@@ -126,7 +128,7 @@ GradientImages read_images(const Film& film, int component, bool differences) {
 }
 
 GradientImages read_half_differences(const Film& film, int component, bool differences) {
-  const size_t size = size_t(film.region.width()) * size_t(film.channels);
+  const size_t size = size_t(film.region.width()) * size_t(film.color_channels);
   return read_all(
       film, differences,
       [&](int y, float* row) {
@@ -165,7 +167,8 @@ void deviations_of_row(const HalfRows& rows, int channels, float* to) {
     const float *a = rows.values[0].data() + x * channels, *b = rows.values[1].data() + x * channels;
     float sum = 0.0f;
     for (int c = 0; c < 3; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
-    to[x] = rows.sampled[x] ? 0.5f * std::sqrt(sum / 3.0f) : std::numeric_limits<float>::quiet_NaN();
+    to[x] = rows.sampled[x] ? (GRADUS_FAULT(sampled_difference_variance_over_4) ? 0.25f : 0.5f) * std::sqrt(sum / 3.0f)
+                            : std::numeric_limits<float>::quiet_NaN();
   }
 }
 
@@ -180,11 +183,11 @@ std::vector<float> deviations(const Film& film, const ReadHalf& read_half, const
     HalfRows rows;
     rows.sampled.assign(w, 1);
     for (int h = 0; h < kHalves; ++h) {
-      rows.values[h].resize(w * size_t(film.channels));
+      rows.values[h].resize(w * size_t(film.color_channels));
       read_half(h, y, rows.values[h].data());
       for (size_t x = 0; x < w; ++x) rows.sampled[x] &= uint8_t(is_sampled(h, size_t(y) * w + x));
     }
-    deviations_of_row(rows, film.channels, result.data() + size_t(y) * w);
+    deviations_of_row(rows, film.color_channels, result.data() + size_t(y) * w);
   });
   return result;
 }
@@ -212,17 +215,57 @@ void read_deviations(const Film& film, int component, GradientImages* images) {
 
 void read_variance_row(const Film& film, int y, float* row) {
   const auto width = static_cast<size_t>(film.region.width());
-  std::fill_n(row, width * size_t(film.channels), 0.0f);
-  for (size_t i = size_t(y) * width; i < size_t(y + 1) * width; ++i, row += film.channels) {
+  std::fill_n(row, width * size_t(film.color_channels), 0.0f);
+  for (size_t i = size_t(y) * width; i < size_t(y + 1) * width; ++i, row += film.color_channels) {
     if (film.count[0][i] == 0 || film.count[1][i] == 0) continue;
     Radiance difference(0.0f);
     for (const ComponentPlanes& planes : film.components) {
       difference += planes.primal[0][i] / static_cast<float>(film.count[0][i]) -
                     planes.primal[1][i] / static_cast<float>(film.count[1][i]);
     }
-    for (int c = 0; c < film.channels; ++c) {
+    for (int c = 0; c < film.color_channels; ++c) {
       const float half = 0.5f * difference[c];
       row[c] = std::min(half * half, std::numeric_limits<float>::max());
+    }
+  }
+}
+
+namespace {
+
+// Returns the factor that turns the sums of a pixel into its value.
+float factor_of(const Film& film, const Channel& channel, HalfRange halves, size_t pixel, float scale) {
+  switch (channel.info.normalisation) {
+    case Normalisation::kFirstSample:
+      return 1.0f;
+    case Normalisation::kOwnWeight:
+      return channel.weight[pixel] > 0.0f ? scale * (1.0f / channel.weight[pixel]) : 0.0f;
+    case Normalisation::kAllPaths: {
+      uint64_t paths = 0;
+      for (int h = halves.first; h < halves.last; ++h) paths += channel.paths[h];
+      return paths > 0 ? scale * (1.0f / static_cast<float>(paths)) : 0.0f;
+    }
+    case Normalisation::kSampleCount:
+      break;
+  }
+  uint32_t count = 0;
+  for (int h = halves.first; h < halves.last; ++h) count += film.count[h][pixel];
+  return count > 0 ? scale * (1.0f / static_cast<float>(count)) : 0.0f;
+}
+
+}  // namespace
+
+void read_channel(const Film& film, const Channel& channel, HalfRange halves, size_t first, size_t count, float scale,
+                  float* to) {
+  const uint32_t values = channel.info.values_per_pixel;
+  const bool pairs = channel.info.type == ValueType::kIdAndWeight;
+  const bool in_halves = channel.info.in_halves;
+  if (!in_halves) halves = {};
+  for (size_t pixel = first; pixel < first + count; ++pixel) {
+    const float factor = factor_of(film, channel, halves, pixel, scale);
+    for (size_t i = values * pixel; i < values * (pixel + 1); ++i) {
+      float sum = channel.values[in_halves ? halves.first : 0][i];
+      if (in_halves && halves.last - halves.first == kHalves) sum += channel.values[1][i];
+      *to++ = pairs && (i - values * pixel) % 2 == 0 ? sum : factor * sum;
     }
   }
 }

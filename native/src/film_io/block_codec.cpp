@@ -22,8 +22,8 @@ T* made(T* object) {
   return object;
 }
 
-// Even bytes [begin, end) and odd ones (high bytes of numbers are alike, low ones are not), each as its difference from
-// the one before.
+// Splits the pairs of bytes [begin, end) into even and odd bytes and writes each as its difference from the byte
+// before. High bytes of neighbouring numbers are alike, low bytes are not.
 void differentiate(const Bytes& block, size_t begin, size_t end, unsigned char* even, unsigned char* odd) {
   const size_t half = block.size() / 2;
   const unsigned char* const from = block.data();
@@ -47,7 +47,7 @@ void integrate(Bytes* bytes) {
   constexpr size_t kLanes = 16;
   unsigned char* const at = bytes->data();
   const __m128i middle = _mm_set1_epi8(static_cast<char>(kMiddle)), last = _mm_set1_epi8(kLanes - 1);
-  at[0] = static_cast<unsigned char>(at[0] + kMiddle);  // as all others
+  at[0] = static_cast<unsigned char>(at[0] + kMiddle);  // The first difference has the same offset as all others.
   __m128i before = _mm_setzero_si128();
   size_t i = 0;
   for (; i + kLanes <= bytes->size(); i += kLanes) {
@@ -76,7 +76,7 @@ void join(const Bytes& halves, Bytes* block) {
 
 // Returns the entropy of the bytes in bits.
 double bits_of(const unsigned char* bytes, size_t size) {
-  constexpr size_t kCounts = 4;  // one alone would wait for itself where bytes are the same
+  constexpr size_t kCounts = 4;  // several tables, because equal bytes in a row would wait for one counter
   std::array<std::array<uint32_t, 256>, kCounts> counts{};
   for (size_t i = 0; i < size; ++i) ++counts[i % kCounts][bytes[i]];
   double bits = double(size) * std::log2(double(size));
@@ -111,7 +111,7 @@ BlockCodec::BlockCodec()
       decompressor_(made(libdeflate_alloc_decompressor()), libdeflate_free_decompressor) {}
 
 Bytes BlockCodec::pack(const Bytes& block) {
-  if (!is_worth_packing(block)) return block;  // readers go by the size
+  if (!is_worth_packing(block)) return block;  // Readers recognise an unpacked block by its size.
   bytes_.resize(block.size());
   differentiate(block, 0, block.size() / 2, bytes_.data(), bytes_.data() + block.size() / 2);
   Bytes packed(block.size());

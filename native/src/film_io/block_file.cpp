@@ -36,7 +36,7 @@ BlockFile::BlockFile(std::vector<Imf::Header> headers, WriterStream* stream)
   put(int32_t{Imf::MAGIC});
   put(int32_t{Imf::EXR_VERSION | flags});
   for (const Imf::Header& header : headers) header.writeTo(*stream);
-  put('\0');  // no further header
+  put('\0');  // An empty header ends the list of headers.
   table_ = stream->tellp();
   put_places();
 }

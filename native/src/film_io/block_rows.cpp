@@ -8,7 +8,7 @@ namespace {
 
 constexpr size_t kValue = sizeof(uint32_t);
 
-// Steps in bytes.
+// Copies 32-bit values. The steps between neighbouring values are in bytes.
 void copy_values(const unsigned char* from, size_t from_step, unsigned char* to, size_t to_step, size_t count) {
   for (size_t i = 0; i < count; ++i) std::memcpy(to + to_step * i, from + from_step * i, kValue);
 }
@@ -26,7 +26,8 @@ unsigned char* BlockRows::row_of(const StoredPlane& plane, int row) const {
   return plane.data + size_t(height_ - 1 - row) * size_t(width_) * plane.stride;
 }
 
-// function(plane, its row in the frame, where the row lies in the block)
+// Calls function(plane, row, offset) for each row of the block: the start of the row in the plane, and its offset in
+// the bytes of the block.
 template <class Function>
 void BlockRows::for_each_row(int block, const Function& function) const {
   size_t place = 0;

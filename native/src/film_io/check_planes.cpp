@@ -9,7 +9,7 @@
 namespace gradus::film_io {
 namespace {
 
-constexpr size_t kPixels = 4096;  // that a task is worth
+constexpr size_t kPixels = 4096;  // pixels per task
 constexpr float kObjects = 16777216.0f;
 
 bool is_sound(float value) { return is_finite(value); }

@@ -4,7 +4,7 @@ namespace gradus::film_io {
 
 std::string exr_problem(const std::exception& exception) {
   const std::string text = exception.what(), after_name = "\". ";
-  // Rows that never came, or whose place the table at the file's beginning does not know.
+  // OpenEXR reports so that rows are missing, or that the table of offsets lacks them.
   for (const char* what : {"end of file", "is missing"}) {
     if (text.find(what) != std::string::npos) return "it is cut short";
   }

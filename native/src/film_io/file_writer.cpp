@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/fault.h"
 #include "film_io/temporary_file.h"
 
 namespace gradus::film_io {
@@ -34,6 +35,8 @@ FileWriter::FileWriter(const std::string& path, Durable durable) : path_(path), 
   const TemporaryFile part = make_temporary_file(path);
   if (part.descriptor < 0) fail("create");
   temporary_ = part.name;
+  if (GRADUS_FAULT(stored_frame_named_before_complete) && rename(part.name.c_str(), path.c_str()) == 0)
+    temporary_ = path;
   file_ = fdopen(part.descriptor, "wb");
   if (file_ == nullptr) {
     close(part.descriptor);
@@ -85,6 +88,7 @@ void FileWriter::commit() {
     errno = reason;
     fail("write");
   }
+  if (GRADUS_FAULT(temporary_file_remains) && link(path_.c_str(), temporary_.c_str()) != 0) fail("link");
   if (is_durable) sync_folder_of(path_);
 }
 

@@ -34,7 +34,7 @@ bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// What stands before "R" in the channel names of the layer.
+// Returns the prefix of the channel names of the layer, which precedes "R".
 std::string find_prefix(const Imf::ChannelList& channels, const std::string& layer) {
   if (layer.empty() && channels.findChannel("R")) return "";
   const std::string wanted = layer.empty() ? "Combined" : layer;

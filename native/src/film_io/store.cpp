@@ -20,12 +20,12 @@
 namespace gradus::film_io {
 namespace {
 
-// A part's block, of all parts in a row.
+// The number of a part and the number of one of its blocks.
 struct PlacedBlock {
   int part = 0, block = 0;
 };
 
-// The rows of all parts, as their blocks follow each other in the file.
+// The rows of all parts, in the order in which their blocks follow each other in the file.
 class PartRows {
  public:
   PartRows(const std::vector<StoredPart>& parts, const film::Film& film) {
@@ -39,13 +39,14 @@ class PartRows {
   std::vector<BlockRows> rows_;
 };
 
-struct PackedBlock {
-  PlacedBlock place;
-  Bytes bytes;
-};
-
+// Packs the blocks in parallel and writes them in order.
+//
+// The pipeline passes numbers of blocks. The packed bytes wait in slots of their own: oneTBB loses what its tokens own if
+// an exception, such as that of a cancel, ends a pipeline. No two blocks in flight share a slot, because they leave in
+// order.
 void write_blocks(const PartRows& rows, const CancelCheck& cancel, BlockFile* file) {
   tbb::enumerable_thread_specific<BlockCodec> codecs;
+  std::vector<Bytes> slots(2 * size_t(tbb::this_task_arena::max_concurrency()));
   int next = 0;
   const auto number = [&](tbb::flow_control& control) {
     if (next == rows.blocks()) control.stop();
@@ -56,18 +57,19 @@ void write_blocks(const PartRows& rows, const CancelCheck& cancel, BlockFile* fi
     const PlacedBlock place = rows.at(i);
     Bytes bytes(rows.of(place.part).bytes(place.block));
     rows.of(place.part).gather(place.block, &bytes);
-    return PackedBlock{place, codecs.local().pack(bytes)};
+    slots[size_t(i) % slots.size()] = codecs.local().pack(bytes);
+    return i;
   };
-  const auto write = [&](const PackedBlock& packed) {
-    file->write(packed.place.part, packed.place.block, packed.bytes);
+  const auto write = [&](int i) {
+    const PlacedBlock place = rows.at(i);
+    file->write(place.part, place.block, slots[size_t(i) % slots.size()]);
   };
-  const auto tokens = 2 * size_t(tbb::this_task_arena::max_concurrency());
-  tbb::parallel_pipeline(tokens, tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, number) &
-                                     tbb::make_filter<int, PackedBlock>(tbb::filter_mode::parallel, pack) &
-                                     tbb::make_filter<PackedBlock, void>(tbb::filter_mode::serial_in_order, write));
+  tbb::parallel_pipeline(slots.size(), tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, number) &
+                                           tbb::make_filter<int, int>(tbb::filter_mode::parallel, pack) &
+                                           tbb::make_filter<int, void>(tbb::filter_mode::serial_in_order, write));
 }
 
-// numbers: of the parts in the file.
+// Reads all blocks of some parts. numbers: the positions of these parts in the file.
 void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, const std::vector<int>& numbers,
                  const CancelCheck& cancel) {
   struct Reader {
@@ -84,7 +86,7 @@ void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, const std:
     const BlockRows& own = rows.of(part);
     Reader& reader = readers.local();
     reader.bytes.resize(own.bytes(block));
-    reader.packed.resize(own.max_bytes());  // OpenEXR reads as much, if the file says so
+    reader.packed.resize(own.max_bytes());  // A damaged file may make OpenEXR read that much.
     int size = int(reader.packed.size());
     inputs[size_t(part)].rawPixelDataToBuffer(top + kBlockRows * block, reinterpret_cast<char*>(reader.packed.data()),
                                               size);
@@ -110,7 +112,7 @@ void check_sources(const film::Film& film) {
 }
 
 Imf::MultiPartInputFile open_file(const std::string& path) {
-  constexpr int kNoThreads = 0;  // ours unpack
+  constexpr int kNoThreads = 0;  // The threads of the caller unpack.
   constexpr bool kRepair = false;
   return Imf::MultiPartInputFile(path.c_str(), kNoThreads, kRepair);
 }
@@ -122,7 +124,7 @@ int number_of(const Imf::MultiPartInputFile& file, const std::string& part) {
   throw invalid_argument("part " + part + " is missing");
 }
 
-// only: the component to be read; nullptr: all.
+// Reads a film. only: name of the only component to read; nullptr: all components.
 film::Film read_film(const std::string& path, StoredContent content, const std::string* only,
                      const CancelCheck& cancel) {
   Imf::MultiPartInputFile file = open_file(path);
@@ -141,7 +143,7 @@ film::Film read_film(const std::string& path, StoredContent content, const std::
   return film;
 }
 
-// read(): of the file at `path`. What it throws is told with that.
+// Returns read(), which reads the file at `path`. Errors get the path as a prefix.
 template <class Read>
 auto load(const std::string& path, const Read& read) {
   try {
@@ -159,7 +161,7 @@ auto load(const std::string& path, const Read& read) {
 }  // namespace
 
 void save_film(const film::Film& film, const std::string& path, const FilmWriteOptions& how) {
-  // The planes are only read here; the list is shared with reading, which writes them.
+  // The planes are only read here. The list is shared with load_film(), which writes to them.
   const std::vector<StoredPart> parts = stored_parts(const_cast<film::Film*>(&film));
   const auto write = [&](WriterStream* stream) {
     BlockFile file(make_headers(film, parts), stream);

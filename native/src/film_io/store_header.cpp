@@ -10,8 +10,9 @@
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "film/pixel_blocks.h"
+#include "film/planes.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
 
@@ -25,7 +26,7 @@ constexpr size_t kMaxStoredComponents = 64;
 constexpr int kMaxSide = 1 << 16;
 constexpr const char* kAttribute = "gradus";
 
-// What is wrong with a file, as the exception that load_film() throws.
+// Returns the exception that load_film() throws for a file with this problem.
 Error damaged(const std::string& why) { return invalid_argument(why); }
 
 std::string hex(uint64_t value) {
@@ -88,7 +89,53 @@ void name_components(const json& list, film::Film* film) {
 }
 
 film::ComponentContent component_content_from_json(const json& j) {
-  return {j.at("rough"), j.value("details", false), j.at("motion"), j.at("shown")};  // once there were no details
+  return {j.at("rough"), j.value("details", false), j.at("motion"), j.at("shown")};  // older films have no details
+}
+
+// Describes all channels in their order. The sums of splats are divided by the paths, which are stored with them.
+json channels_to_json(const film::ChannelList& channels) {
+  json list = json::array();
+  for (const film::Channel& channel : channels) {
+    const film::ChannelInfo& info = channel.info;
+    list.push_back({{"name", info.name},
+                    {"values", info.values_per_pixel},
+                    {"type", info.type},
+                    {"normalisation", info.normalisation},
+                    {"halves", info.in_halves},
+                    {"splats", info.takes_splats},
+                    {"paths", channel.paths}});
+  }
+  return list;
+}
+
+// Returns whether a film needs the full description: a list of passes does not describe its channels.
+bool has_other_channels(const film::Film& film) {
+  return std::ranges::any_of(film.channels,
+                             [](const film::Channel& channel) { return channel.pass == GRADUS_PASS_COUNT; });
+}
+
+template <class Enum>
+Enum enum_from_json(const json& j, Enum last) {
+  const int value = j;
+  if (value < 0 || value > int(last)) throw damaged("its channels are of an unknown type");
+  return Enum(value);
+}
+
+std::vector<film::ChannelInfo> channels_from_json(const json& list) {
+  std::vector<film::ChannelInfo> channels;
+  for (const json& j : list) {
+    channels.push_back({j.at("name"), j.at("values"), enum_from_json(j.at("type"), film::ValueType::kIdAndWeight),
+                        enum_from_json(j.at("normalisation"), film::Normalisation::kFirstSample), j.at("halves"),
+                        j.at("splats")});
+  }
+  return channels;
+}
+
+// Returns the channels of a stored film. A film that has none but passes lists these as bits. Bits of older films lack
+// the pass Fallback.
+std::vector<film::ChannelInfo> stored_channels(const json& description, const film::FilmHeader& known) {
+  if (const auto list = description.find("channel_list"); list != description.end()) return channels_from_json(*list);
+  return film::channels_of_passes(known.planes | (known.settings.passes & uint64_t{1} << GRADUS_PASS_FALLBACK));
 }
 
 json describe_samples(const film::Film& film) {
@@ -96,7 +143,7 @@ json describe_samples(const film::Film& film) {
   return {{"format", kFormat},
           {"version", gradus_version_text()},
           {"frame", film.frame_number},
-          {"channels", film.channels},
+          {"channels", film.color_channels},
           {"components", components_to_json(film)},
           {"rough", kept.non_specular},
           {"details", kept.details},
@@ -106,13 +153,14 @@ json describe_samples(const film::Film& film) {
           {"sampling_key", hex(schema::sampling_key(film.settings))},
           {"scene_key", hex(film.scene_key)},
           {"settings", schema::settings_to_json(film.settings)},
-          {"planes", film::film_passes(film)},
+          {"planes", film.channels.passes()},
           {"samples", ranges_to_json(film.samples)},
           {"counters", counters_to_json(film.counters)}};
 }
 
 json describe(const film::Film& film) {
   json j = describe_samples(film);
+  if (has_other_channels(film)) j["channel_list"] = channels_to_json(film.channels);
   if (!film.shared.rays.empty()) j["shared"] = adaptive_state_to_json(film.shared);
   if (film.replayed.correspondence.empty()) return j;
   j["replayed_frame"] = film.replayed.stream_frame;
@@ -180,8 +228,8 @@ Region region_of(const Imf::Header& header) {
 film::FilmHeader read_header(const Imf::Header& header, const json& description) {
   film::FilmHeader film;
   film.region = region_of(header);
-  film.channels = description.at("channels");
-  if (film.channels != 3 && film.channels != 4) throw damaged("its planes are wrong");
+  film.color_channels = description.at("channels");
+  if (film.color_channels != 3 && film.color_channels != 4) throw damaged("its planes are wrong");
   film.gradients = description.at("gradients");
   film.planes = description.at("planes");
   film.of_components = component_content_from_json(description);
@@ -191,20 +239,20 @@ film::FilmHeader read_header(const Imf::Header& header, const json& description)
   if (description.contains("replayed_scene_key"))
     film.replayed_key = key_from_json(description.at("replayed_scene_key"));
   film.replayed_seed =
-      description.value("replayed_seed", film.settings.seed);  // once replays took that of their own frame
+      description.value("replayed_seed", film.settings.seed);  // older films replay with the seed of their own frame
   if (description.contains("shared")) film.shared = adaptive_state_from_json(description.at("shared"), film.region);
   film.scene_key = key_from_json(description.at("scene_key"));
   film.frame_number = description.at("frame");
   return film;
 }
 
-// 0 where there is none: whoever asks for one that is not there gets planes all the same (select_component()).
+// Returns the number of a component, or 0 if there is none of that name: select_component() then makes it black.
 size_t place_of(const json& names, const std::string& name) {
   const auto found = std::find_if(names.begin(), names.end(), [&](const json& item) { return item.at(0) == name; });
   return found != names.end() ? size_t(found - names.begin()) : 0;
 }
 
-// The frame's one component takes a place among so many, of which the others have no planes.
+// Moves the only component of the film to `place` among `count` components. The others have no planes.
 void place_component(size_t place, size_t count, film::Film* film) {
   std::vector<film::ComponentPlanes> components(count);
   components[place] = std::move(film->components.front());
@@ -231,16 +279,16 @@ film::Film make_frame(const Imf::Header& header, StoredContent content, const st
   const int components = int(names.size());
   const bool is_whole = content == StoredContent::kAll, gradients = is_whole && known.gradients;
   const film::ComponentContent kept = is_whole ? known.of_components : film::ComponentContent{};
-  const uint64_t passes = is_whole ? known.planes : 0, pixels = uint64_t(known.region.area());
-  const bool has_fallback = is_whole && schema::has_bit(known.settings.passes, GRADUS_PASS_FALLBACK);
-  const uint64_t planes = passes | (has_fallback ? uint64_t{1} << GRADUS_PASS_FALLBACK : 0);
+  const auto pixels = uint64_t(known.region.area());
+  std::vector<film::ChannelInfo> channels;
+  if (is_whole) channels = stored_channels(description, known);
   const int held = only ? 1 : components;
-  const uint64_t bytes = film::film_bytes_per_pixel(held, gradients, planes, kept) * pixels,
+  const uint64_t bytes = film::film_bytes_per_pixel(held, gradients, channels, kept) * pixels,
                  available = machine_memory_bytes();
   if (available > 0 && bytes > available) throw Error(GRADUS_ERROR_OUT_OF_MEMORY, "it is larger than the memory");
 
   const Imath::V2i last = header.displayWindow().max;
-  film::Film film(uint32_t(last.x + 1), uint32_t(last.y + 1), known.region, known.channels, held, gradients);
+  film::Film film(uint32_t(last.x + 1), uint32_t(last.y + 1), known.region, known.color_channels, held, gradients);
   film::allocate_component_content(kept, &film);
   if (only) place_component(place_of(names, *only), names.size(), &film);
   name_components(names, &film);
@@ -250,15 +298,18 @@ film::Film make_frame(const Imf::Header& header, StoredContent content, const st
   film.counters = counters_from_json(description.at("counters"));
   film.samples = known.samples;
   film.shared = known.shared;
-  film.passes = film::make_pass_planes(passes, pixels);
-  if (has_fallback) film.fallback.assign(pixels, 0.0f);
+  for (const film::ChannelInfo& info : channels) film.channels.add(info, pixels);
+  if (is_whole && description.contains("channel_list")) {
+    for (size_t i = 0; i < film.channels.size(); ++i)
+      film.channels[i].paths = description.at("channel_list").at(i).at("paths");
+  }
   if (description.contains("replayed_frame")) {
     const film::PixelCorrespondence correspondence{
         std::vector<int32_t>(pixels), std::vector<Vec2>(description.value("off_centre", false) ? pixels : 0)};
     film.replayed = {known.replayed_frame, correspondence, known.replayed_key, known.replayed_seed};
     for (const int own : description.value("own_sources", std::vector<int>())) {
       if (own < 0 || own >= components) throw damaged("its planes are wrong");
-      if (film.components[size_t(own)].primal[0].empty()) continue;  // not read
+      if (film.components[size_t(own)].primal[0].empty()) continue;  // The component is not read.
       film.replayed.of_component.resize(size_t(components));
       film.replayed.of_component[size_t(own)] = correspondence;
     }

@@ -1,7 +1,7 @@
-// The parts of a stored film and their channels, in one list for writing and reading.
+// Groups the planes of a film into the parts of a stored film, in one list for writing and reading.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -9,19 +9,18 @@
 
 namespace gradus::film_io {
 
-// One channel: `data` holds 32-bit values of the pixel (0, 0) of the frame's region and so on, `stride` bytes apart,
-// row after row.
+// One channel of the OpenEXR file. `data` points to the 32-bit value of the pixel (0, 0) of the film's region. The
+// values of neighbouring pixels are `stride` bytes apart, row after row.
 struct StoredPlane {
-  std::string name;  // of the channel in the file; no other part has it, so that a reader may throw the parts together
+  std::string name;  // No other part has a channel of this name, so that a reader may put all parts together.
   bool integer = false;
   unsigned char* data = nullptr;
   size_t stride = 0;
 };
 
-// What belongs together and packs alike: samples and gradients, of each component by itself, so that one can be read
-// without the others; counts, pairs, each feature, passes. There is none without channels. All is in 32 bits: half
-// would do for the means of features (REGULARIZED's error changes by less than a thousandth), but a render that goes on
-// from rounded sums has other bits than one that was never stored (contract 2.1).
+// A part of the OpenEXR file contains planes that are read together and compress alike. Each component has its own
+// parts, so that one can be read without the others. All values have 32 bits: a render that continues from rounded
+// sums would not have the bits of one that was never stored.
 struct StoredPart {
   std::string name;
   std::vector<StoredPlane> planes;

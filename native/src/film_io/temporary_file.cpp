@@ -28,7 +28,8 @@ std::string host_name() {
 
 std::string ending() { return std::string(".") + host_name() + ".part"; }
 
-// Of this host's part file; 0: it is none. The threads of a process count theirs up, as 123-2.
+// Returns the number of the process that wrote this host's part file, or 0 if the name is none. A process numbers
+// further part files, such as 123-2.
 pid_t process_of(const std::string& name) {
   const std::string end = ending();
   if (name.size() <= end.size() || name.compare(name.size() - end.size(), end.size(), end) != 0) return 0;
@@ -41,7 +42,8 @@ pid_t process_of(const std::string& name) {
 
 bool is_alive(pid_t process) { return kill(process, 0) == 0 || errno != ESRCH; }
 
-// By the lock, too: a container on this host may have numbers of its own for its processes.
+// Deletes a part file unless a writer holds its lock. A dead process number is not enough: a container on this host may
+// number its processes by itself.
 void remove_unlocked(const fs::path& temporary) {
   const int descriptor = open(temporary.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -57,8 +59,8 @@ void remove_stale_files(const fs::path& folder) {
   }
 }
 
-// Once in a process: to look through a long animation's folder at each frame takes longer and longer. Of the last
-// folders, by a hash: temporary ones come and go.
+// Returns whether a process looks at this folder for the first time. Looking through the folder of a long animation at
+// each frame would take longer and longer. A table of hashes remembers only the last folders.
 bool is_first_use(const std::string& folder) {
   static std::mutex mutex;
   static std::array<size_t, 64> used{};
@@ -70,7 +72,7 @@ bool is_first_use(const std::string& folder) {
   return true;
 }
 
-// The first part file's name that `make` can give to something.
+// Returns the first name of a part file for which `make` succeeds.
 template <class Make>
 std::string first_free(const std::string& path, const Make& make) {
   const std::string process = std::to_string(getpid());
@@ -91,7 +93,7 @@ TemporaryFile make_temporary_file(const std::string& path) {
     return temporary.descriptor >= 0;
   });
   if (temporary.descriptor >= 0)
-    flock(temporary.descriptor, LOCK_EX | LOCK_NB);  // where it cannot be, the process's number is enough
+    flock(temporary.descriptor, LOCK_EX | LOCK_NB);  // On a file system without locks the process number is enough.
   return temporary;
 }
 
@@ -103,7 +105,7 @@ bool hard_link_file(const std::string& path, const std::string& name) {
   });
   if (!linked) return false;
   const bool named = rename(temporary.c_str(), name.c_str()) == 0;
-  unlink(temporary.c_str());  // it stays where both were names of one file already
+  unlink(temporary.c_str());  // rename() keeps it if both were names of one file.
   return named;
 }
 

@@ -72,6 +72,10 @@ class Geometry {
   SurfacePoint surface_point(const Hit& hit) const;
   // Prefetches the memory that place() will read. Call it some hundred nanoseconds before.
   void prefetch(const Hit& hit) const;
+  // Returns the position of a hit. It is that of its surface point but for rounding, and takes less time.
+  Vec3 position(const Hit& hit) const;
+  // Returns the derivatives of the position by the parameters on the primitive.
+  SurfaceDerivatives derivatives(const Hit& hit) const;
   // Returns the position of the hit surface point in the current, previous or next frame, for surface motion. The
   // shutter time of the hit has no effect.
   Vec3 position_at(const Hit& hit, Moment when) const;
@@ -81,8 +85,9 @@ class Geometry {
   // Returns the maximum change of the smooth normal along an edge of the triangle, per unit of length. It is 1 / radius
   // on a sphere, and 0 on flat faces.
   float curvature(const Hit& hit) const;
-  // Returns the material (index in Snapshot::materials) of a triangle of an instance.
-  uint32_t material_of(uint32_t instance, uint32_t triangle) const;
+  // Return the material (index in Snapshot::materials) of a primitive of an instance.
+  uint32_t material_of(uint32_t instance, uint32_t primitive) const;
+  uint32_t material_of(const Hit& hit) const { return material_of(hit.instance, hit.primitive); }
 
   std::vector<InstanceData> instances;
   std::shared_ptr<const Accelerator> accelerator;

@@ -1,7 +1,9 @@
 #include "geometry/mesh.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "base/fault.h"
 #include "base/minimal_rotation.h"
 #include "geometry/matrix_keys.h"
 
@@ -62,12 +64,13 @@ std::array<Vec3, 3> triangle_positions_at(const MeshData& mesh, uint32_t triangl
 std::array<Vec3, 3> triangle_positions_in_shutter(const MeshData& mesh, uint32_t triangle, float time) {
   if (mesh.shutter_keys == 0) return triangle_positions(mesh, triangle);
   const KeyPlace place = key_place(time, mesh.shutter_keys);
+  const float share = GRADUS_FAULT(deformed_mesh_shaded_at_nearest_key) ? std::round(place.share) : place.share;
   const Vec3* a = mesh.shutter_positions.data() + size_t(place.before) * mesh.vertex_count;
   const Vec3* b = a + mesh.vertex_count;
   std::array<Vec3, 3> p;
   for (size_t k = 0; k < 3; ++k) {
     const uint32_t v = mesh.triangle_vertices[size_t(triangle) * 3 + k];
-    p[k] = a[v] * (1.0f - place.share) + b[v] * place.share;
+    p[k] = a[v] * (1.0f - share) + b[v] * share;
   }
   return p;
 }
@@ -80,7 +83,7 @@ bool triangle_normals(const MeshData& mesh, uint32_t triangle, std::array<Vec3, 
 
 bool triangle_normals_in_shutter(const MeshData& mesh, uint32_t triangle, float time, std::array<Vec3, 3>* normals) {
   if (!triangle_normals(mesh, triangle, normals)) return false;
-  for (uint32_t k = 0; k < 3 && mesh.shutter_keys > 0; ++k)
+  for (uint32_t k = 0; k < 3 && mesh.shutter_keys > 0 && !GRADUS_FAULT(normals_ignore_deformation); ++k)
     (*normals)[k] = turned_with_vertex(mesh, mesh.triangle_vertices[size_t(triangle) * 3 + k], time, (*normals)[k]);
   return true;
 }

@@ -30,18 +30,18 @@ Vec3 shadow_origin(const Geometry& geometry, const SurfacePoint& point, const Ve
   if (share == 0.0f) return offset_origin(point, direction);
   const InstanceData& instance = geometry.instances[point.hit.instance];
   std::array<Vec3, 3> normals{};
-  triangle_normals_in_shutter(*instance.mesh, point.hit.triangle, point.hit.time,
+  triangle_normals_in_shutter(*instance.mesh, point.hit.primitive, point.hit.time,
                               &normals);  // the mesh has normals: flat faces have offset 0
   Placement room;
   const Placement& placement = instance.placement(point.hit.time, &room);
   // Geometric normal on the light's side of the smooth surface. For a light inside the object, the bulge points
   // inwards.
   const Vec3 outside = std::copysign(1.0f, glm::dot(point.shading_normal, direction)) * point.geometric_normal;
-  const Vec3 smooth = placement.normal_to_world * interpolate(normals, point.hit.barycentric);
+  const Vec3 smooth = placement.normal_to_world * interpolate(normals, point.hit.uv);
   const float side = std::copysign(1.0f, glm::dot(smooth, outside));
   for (Vec3& n : normals) n = side * safe_unit(n, Vec3(0.0f));
-  const Vec2 b = point.hit.barycentric;
-  const float height = share * bulge(triangle_positions_in_shutter(*instance.mesh, point.hit.triangle, point.hit.time),
+  const Vec2 b = point.hit.uv;
+  const float height = share * bulge(triangle_positions_in_shutter(*instance.mesh, point.hit.primitive, point.hit.time),
                                      normals, Vec3(1.0f - b.x - b.y, b.x, b.y));
   SurfacePoint lifted = point;
   if (height < kInfinity) lifted.position += Mat3(placement.to_world) * (height * interpolate(normals, b));

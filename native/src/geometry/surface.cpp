@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/fault.h"
 #include "geometry/flat_triangle.h"
 #include "geometry/geometry.h"
 #include "geometry/mesh.h"
@@ -23,10 +24,10 @@ Vec3 magnitudes(const Mat4& m, const Vec3& v) {
 // normals have no direction.
 void set_shading_normal(const InstanceData& instance, const Placement& placement, const Hit& hit, SurfacePoint* point) {
   std::array<Vec3, 3> n;
-  const bool smooth = triangle_normals_in_shutter(*instance.mesh, hit.triangle, hit.time, &n);
+  const bool smooth = triangle_normals_in_shutter(*instance.mesh, hit.primitive, hit.time, &n);
   const Vec3& geometric = point->geometric_normal;
   point->shading_normal =
-      smooth ? keep_above(safe_unit(placement.normal_to_world * interpolate(n, hit.barycentric), geometric), geometric)
+      smooth ? keep_above(safe_unit(placement.normal_to_world * interpolate(n, hit.uv), geometric), geometric)
              : geometric;
   point->shadow_terminator_offset = smooth ? instance.shadow_terminator_offset : 0.0f;
 }
@@ -38,23 +39,23 @@ uint32_t material_of_slot(const InstanceData& instance, uint32_t slot) {
 
 // Computes the surface point of a triangle in the top level, without the shading normal.
 void place_flat(const InstanceData& instance, const Hit& hit, SurfacePoint* point) {
-  const FlatTriangle& triangle = instance.flat_triangles[hit.triangle];
+  const FlatTriangle& triangle = instance.flat_triangles[hit.primitive];
   const std::array<Vec3, 3>& p = triangle.corners;
   const std::array<Vec3, 3> sizes = {glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])};
-  point->position = interpolate(p, hit.barycentric);
-  point->geometric_normal = instance.mirrored ? -triangle.plane.normal : triangle.plane.normal;
-  const Vec3 error = gamma_bound(7) * interpolate(sizes, hit.barycentric);
+  point->position = interpolate(p, hit.uv);
+  point->geometric_normal =
+      instance.mirrored != GRADUS_FAULT(flat_normals_flipped) ? -triangle.plane.normal : triangle.plane.normal;
+  const Vec3 error = gamma_bound(7) * interpolate(sizes, hit.uv);
   point->error = glm::dot(glm::abs(point->geometric_normal), error) + triangle.plane.error;
   point->material = material_of_slot(instance, triangle.slot);
 }
 
 // Computes the surface point of a triangle of an instanced mesh, without the shading normal.
 void place_instanced(const InstanceData& instance, const Placement& placement, const Hit& hit, SurfacePoint* point) {
-  const std::array<Vec3, 3> p = triangle_positions_in_shutter(*instance.mesh, hit.triangle, hit.time);
+  const std::array<Vec3, 3> p = triangle_positions_in_shutter(*instance.mesh, hit.primitive, hit.time);
   const Plane plane = plane_of(p);
-  const Vec3 local = interpolate(p, hit.barycentric);
-  const Vec3 local_size =
-      interpolate(std::array<Vec3, 3>{glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])}, hit.barycentric);
+  const Vec3 local = interpolate(p, hit.uv);
+  const Vec3 local_size = interpolate(std::array<Vec3, 3>{glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])}, hit.uv);
   point->position = Vec3(placement.to_world * Vec4(local, 1.0f));
   point->geometric_normal = safe_unit(placement.normal_to_world * plane.normal, Vec3(0, 0, 1));
   // Number of rounded operations: interpolation of the corners, sum, and transformation to internal space. Embree
@@ -65,7 +66,7 @@ void place_instanced(const InstanceData& instance, const Placement& placement, c
   const Vec3 error = magnitudes(placement.to_world, local_size) * gamma_bound(roundings) +
                      magnitudes(linear, back) * gamma_bound(roundings) + magnitudes(linear, Vec3(plane.error));
   point->error = glm::dot(glm::abs(point->geometric_normal), error);
-  point->material = material_of_slot(instance, instance.mesh->material_slot(hit.triangle));
+  point->material = material_of_slot(instance, instance.mesh->material_slot(hit.primitive));
 }
 
 void place_at(const InstanceData& instance, const Placement& placement, const Hit& hit, SurfacePoint* point) {
@@ -94,11 +95,11 @@ const Placement& InstanceData::placement(float time, Placement* room) const {
   return *room;
 }
 
-uint32_t Geometry::material_of(uint32_t index, uint32_t triangle) const {
+uint32_t Geometry::material_of(uint32_t index, uint32_t primitive) const {
   const InstanceData& instance = instances[index];
   const bool flat = instance.flat_triangles != nullptr;
   return material_of_slot(instance,
-                          flat ? instance.flat_triangles[triangle].slot : instance.mesh->material_slot(triangle));
+                          flat ? instance.flat_triangles[primitive].slot : instance.mesh->material_slot(primitive));
 }
 
 void Geometry::place(const Hit& hit, SurfacePoint* point) const {
@@ -111,7 +112,7 @@ void Geometry::place(const Hit& hit, SurfacePoint* point) const {
 
 void Geometry::prefetch(const Hit& hit) const {
   if (hit.valid() && instances[hit.instance].flat_triangles)
-    __builtin_prefetch(&instances[hit.instance].flat_triangles[hit.triangle]);
+    __builtin_prefetch(&instances[hit.instance].flat_triangles[hit.primitive]);
 }
 
 SurfacePoint Geometry::surface_point(const Hit& hit) const {
@@ -129,11 +130,20 @@ std::array<Vec3, 3> Geometry::corners(uint32_t index, uint32_t triangle, float t
   return p;
 }
 
+Vec3 Geometry::position(const Hit& hit) const {
+  return interpolate(corners(hit.instance, hit.primitive, hit.time), hit.uv);
+}
+
+SurfaceDerivatives Geometry::derivatives(const Hit& hit) const {
+  const std::array<Vec3, 3> p = corners(hit.instance, hit.primitive, hit.time);
+  return {p[1] - p[0], p[2] - p[0]};
+}
+
 float Geometry::curvature(const Hit& hit) const {
   const InstanceData& instance = instances[hit.instance];
   std::array<Vec3, 3> n;
-  if (!triangle_normals_in_shutter(*instance.mesh, hit.triangle, hit.time, &n)) return 0.0f;
-  const std::array<Vec3, 3> p = corners(hit.instance, hit.triangle, hit.time);
+  if (!triangle_normals_in_shutter(*instance.mesh, hit.primitive, hit.time, &n)) return 0.0f;
+  const std::array<Vec3, 3> p = corners(hit.instance, hit.primitive, hit.time);
   Placement room;
   const Placement& placement = instance.placement(hit.time, &room);
   for (Vec3& v : n) v = glm::normalize(placement.normal_to_world * v);
@@ -155,7 +165,7 @@ Vec3 Geometry::position_at(const Hit& hit, Moment when) const {
   if (instance.mesh->key_times.size() == 1 && to_world == instance.to_world && !instance.moves())
     return surface_point(hit).position;
   const float frames = when == Moment::Now ? 0.0f : when == Moment::Next ? 1.0f : -1.0f;
-  const Vec3 local = interpolate(triangle_positions_at(*instance.mesh, hit.triangle, frames), hit.barycentric);
+  const Vec3 local = interpolate(triangle_positions_at(*instance.mesh, hit.primitive, frames), hit.uv);
   return Vec3(to_world * Vec4(local, 1.0f));
 }
 

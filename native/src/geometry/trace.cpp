@@ -120,8 +120,8 @@ bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask
     if (!intersect(part, &query)) return;
     hit->t = query.ray.tfar;
     hit->instance = instance_of(part, query.hit.instID[0], query.hit.geomID);
-    hit->triangle = query.hit.primID;
-    hit->barycentric = Vec2(query.hit.u, query.hit.v);
+    hit->primitive = query.hit.primID;
+    hit->uv = Vec2(query.hit.u, query.hit.v);
     hit->time = ray.time;
   };
   take(accelerator.static_part);
@@ -164,8 +164,8 @@ void Geometry::intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) c
       if (!valid[i] || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
       hits[i].t = query.ray.tfar[i];
       hits[i].instance = instance_of(part, query.hit.instID[0][i], query.hit.geomID[i]);
-      hits[i].triangle = query.hit.primID[i];
-      hits[i].barycentric = Vec2(query.hit.u[i], query.hit.v[i]);
+      hits[i].primitive = query.hit.primID[i];
+      hits[i].uv = Vec2(query.hit.u[i], query.hit.v[i]);
       hits[i].time = rays[i].time;
     }
   };

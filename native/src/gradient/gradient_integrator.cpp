@@ -1,8 +1,8 @@
-// Gradient-domain path tracing (thesis, section 5.4). It traces each base path with four offset paths. The primal
-// equals that of plain path tracing bit for bit. Primal and gradients are unbiased.
+// Gradient-domain path tracing (Kettunen et al. 2015; Manzi 2016, section 5.4). It traces each base path with four
+// offset paths. The primal equals that of plain path tracing bit for bit. Primal and gradients are unbiased.
 #include "gradient/gradient_integrator.h"
 
-#include "gradient/offset_paths.h"
+#include "gradient/gradient_observer.h"
 #include "integrator/pixel_loop.h"
 #include "shading/closure_tape.h"
 
@@ -15,18 +15,18 @@ struct Worker {
   Worker(const path::PathContext& context, film::Film* film, film::Counters* counters)
       : recorder(context, film, counters),
         vertices(context),
-        offsets(context, counters, &vertices),
-        tracer(context, &scratch, &recorder, counters, &offsets),
+        observer(context, counters, &vertices),
+        tracer(context, &scratch, &recorder, counters, &observer),
         plain(context, &plain_scratch, &recorder, counters, &nobody) {
     for (size_t i = 0; i < std::size(tapes); ++i) scratch.vertices[i].shade.tape = &tapes[i];
   }
   path::PathScratch scratch;
-  shading::ClosureTape tapes[3];  // for the base vertices, which are shaded again as seen from the offsets
+  shading::ClosureTape tapes[3];  // of the base's vertices, which are shaded again as seen from the offsets
   path::PassRecorder recorder;
   path::CameraVertices vertices;
-  OffsetPaths offsets;
-  path::PathTracer<OffsetPaths> tracer;
-  // For pixels without gradients.
+  GradientObserver observer;
+  path::PathTracer<GradientObserver> tracer;
+  // Tracer of pixels without gradients.
   path::PathScratch plain_scratch;
   path::NoObserver nobody;
   path::PathTracer<path::NoObserver> plain;
@@ -38,9 +38,8 @@ bool has_gradients(const integrator::WorkUnit& unit, size_t pixel) {
 
 // Returns the sample counts of a pixel and of its neighbours in one half-buffer. A neighbour outside the sampled
 // region, or without gradients, keeps the count 0, so that its pair is absent.
-std::array<PairCount, film::kOffsets> pair_counts(const integrator::WorkUnit& unit, const film::Film& film, int32_t x,
-                                                  int32_t y, int half) {
-  std::array<PairCount, film::kOffsets> pairs{};
+PairCounts pair_counts(const integrator::WorkUnit& unit, const film::Film& film, int32_t x, int32_t y, int half) {
+  PairCounts pairs{};
   for (int k = 0; k < film::kOffsets; ++k) {
     const int32_t nx = x + film::kOffsetX[k];
     const int32_t ny = y + film::kOffsetY[k];
@@ -80,17 +79,17 @@ class GradientIntegrator final : public integrator::Integrator {
       const uint32_t wanted = integrator::unit_components(unit, s.pixel);
       if (!has_gradients(unit, s.pixel)) {
         worker->plain.want(wanted);
-        integrator::add_primal(worker->plain.trace(s.sampler, s.film, s.first), s, unit, film, counters);
+        integrator::add_primal(worker->plain.li(s.sampler, s.film, s.first), s, unit, film, counters);
         return;
       }
-      const std::array<PairCount, film::kOffsets> pairs = pair_counts(unit, *film, s.x, s.y, s.half);
-      worker->offsets.start(pairs, s, wanted);
+      const PairCounts pairs = pair_counts(unit, *film, s.x, s.y, s.half);
+      worker->observer.start(pairs, s, wanted);
       worker->tracer.want(wanted);
-      integrator::add_primal(worker->tracer.trace(s.sampler, s.film, s.first), s, unit, film, counters);
-      worker->offsets.finish();
+      integrator::add_primal(worker->tracer.li(s.sampler, s.film, s.first), s, unit, film, counters);
+      worker->observer.finish();
       for (int c = 0; c < path_.components.count(); ++c) {
         if ((wanted >> c & 1) != 0)
-          add_gradients(worker->offsets.gradient(c), s, film->channels, &film->components[size_t(c)], counters);
+          add_gradients(worker->observer.gradient(c), s, film->color_channels, &film->components[size_t(c)], counters);
       }
       if (unit.adds_components) return;
       for (int k = 0; k < film::kOffsets; ++k) film->pair_count[s.half][k][s.pixel] += pairs[k].weight();

@@ -82,6 +82,21 @@ ShiftedDirection copy_refraction(const HalfVectorFrame& base, const Vec3& wi, co
   return result;
 }
 
+// Copies an event of a Dirac lobe. Its choice is discrete, so the Jacobian is 1.
+ShiftedEvent copy_dirac_event(const path::ScatterEvent& event, const path::Vertex& y) {
+  const bsdf::Closures& closures = y.shade.closures;
+  const int lobe = bsdf::dirac_lobe(closures, event.scatter_class, event.dirac_rank);
+  bsdf::BsdfSample sample;
+  if (lobe < 0) {
+    return failed_event(ShiftFailure::Class);
+  }
+  if (!closures.evaluate_dirac(lobe, y.wo, event.sample.transmitted, &sample)) {
+    return failed_event(event.sample.transmitted ? ShiftFailure::TotalReflection : ShiftFailure::Class);
+  }
+  return weigh_event(event, sample.wi, sample.value, closures.class_probability(event.scatter_class) * sample.pdf,
+                     1.0f);
+}
+
 }  // namespace
 
 Vec3 rotate_between(const Vec3& from, const Vec3& to, const Vec3& v) {
@@ -125,6 +140,29 @@ HalfVectorFrame class_frame(const bsdf::Closures& closures, bsdf::ScatterClass c
     }
   }
   return {wo, Vec3(0, 0, 1), 1.0f};
+}
+
+ShiftedEvent copy_event(const path::Vertex& x, const path::ScatterEvent& event, const path::Vertex& y) {
+  if (!(y.shade.closures.class_probability(event.scatter_class) > 0.0f)) {
+    return failed_event(ShiftFailure::Class);
+  }
+  if (event.sample.dirac) {
+    return copy_dirac_event(event, y);
+  }
+  if (!y.shade.closures.has_smooth(event.scatter_class)) {
+    return failed_event(ShiftFailure::Class);
+  }
+  const bool transmitted = event.scatter_class == bsdf::ScatterClass::Transmission;
+  const ShiftedDirection direction =
+      copy_half_vector(class_frame(x.shade.closures, event.scatter_class, x.wo), event.sample.wi,
+                       class_frame(y.shade.closures, event.scatter_class, y.wo), transmitted);
+  if (direction.failure != ShiftFailure::None) {
+    return failed_event(direction.failure);
+  }
+  if (is_transmission(x, event.sample.wi) != is_transmission(y, direction.wi)) {
+    return failed_event(ShiftFailure::Side);
+  }
+  return event_towards(event, y, direction.wi, direction.jacobian);
 }
 
 }  // namespace gradus::gradient

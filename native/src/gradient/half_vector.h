@@ -1,28 +1,19 @@
-// Half-vector copy: the shift at sharp reflections and refractions (thesis, section 5.4.2).
+// Half-vector copy: the shift of specular reflections and refractions (Manzi 2016, section 5.4.2, step 2).
 //
-// The half-vector keeps its coordinates in the frame of the surface. The frame of the offset vertex is that of the base
-// vertex, turned by the smallest rotation between the two normals, because frames from UV maps are discontinuous at
-// seams. The base samples its direction in solid angle. So the Jacobian of the shift is the ratio of the derivatives of
-// the map half-vector -> direction at a fixed incident direction (Walter et al. 2007, equations 14 and 17):
+// Dirac events keep their lobe. Otherwise the half-vector keeps its coordinates in the frame of the surface. The frame
+// of the offset vertex is that of the base vertex, turned by the smallest rotation between the two normals, because
+// frames from UV maps are discontinuous at seams. The base samples its direction in solid angle. So the Jacobian of the
+// shift is the ratio of the derivatives of the map half-vector -> direction at a fixed incident direction (Walter et
+// al. 2007, equations 14 and 17):
 //   reflection  dω/dh = 4 |ω·h|
 //   refraction  dω/dh = |wo + η ω|² / (η² |ω·h|),  h ∝ wo + η ω,  η = index of the far side over that of wo
 // This gives J = (dω'/dh') / (dω/dh). If the two vertices separate different media, η' differs from η, and J contains
 // the factor (η/η')².
-//
-// The half-vector of the base keeps its coordinates in the frame of the surface, where the frame follows the normal by
-// the smallest rotation (frames from UV maps jump at seams). With the base's direction sampled in solid angle, the
-// shift's Jacobian is the ratio of the two maps half-vector -> direction, incident direction fixed (Walter et al. 2007,
-// equations 14 and 17):
-//   reflection  dω/dh = 4 |ω·h|
-//   refraction  dω/dh = |wo + η ω|² / (η² |ω·h|),  h ∝ wo + η ω,  η = index of the far side over that of wo
-// so that J = (dω'/dh') / (dω/dh). Between two media pairs η' differs from η: the factor (η/η')² is part of it.
 #pragma once
 
-#include "bsdf/closures.h"
+#include "gradient/shifted_event.h"
 
 namespace gradus::gradient {
-
-enum class ShiftFailure : uint8_t { None, Missed, Occluded, Class, TotalReflection, Side, Density, Jacobian };
 
 // Outgoing direction and surface at one vertex of a half-vector copy.
 struct HalfVectorFrame {
@@ -51,5 +42,8 @@ Vec3 rotate_between(const Vec3& from, const Vec3& to, const Vec3& v);
 float class_width(const bsdf::Closures& closures, bsdf::ScatterClass c);
 // Returns the frame for half-vectors of class c at a vertex, which is that of its first lobe that is not Dirac.
 HalfVectorFrame class_frame(const bsdf::Closures& closures, bsdf::ScatterClass c, const Vec3& wo);
+
+// Copies an event of class R or T at the base vertex x to the offset vertex y. Fails if y has no such event.
+ShiftedEvent copy_event(const path::Vertex& x, const path::ScatterEvent& event, const path::Vertex& y);
 
 }  // namespace gradus::gradient

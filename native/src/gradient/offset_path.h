@@ -1,143 +1,154 @@
-// The four offset paths that follow a base path (thesis, section 5.4).
+// State of an offset path: the path y = T(x) of a neighbouring pixel into which the shift maps a base path x
+// (Kettunen et al. 2015; Manzi 2016, section 5.4.2).
 //
-// The scattering classes of the path, which the shift copies, and predicates that are symmetric in base and offset
-// decide which shift applies:
-//   - Class D whose successor is of class D, emits, or is a light sample: the offset reconnects at the successor and
-//     shares the rest of the path.
-//   - Class D before class R or T: the offset shares the next vertex, and also the direction behind it where the lobe
-//     is wide (looks_similar()). Where the vertex is not shared (shares_sharp_vertex()), the offset copies the
-//     direction instead.
-//   - Class D before a short edge (is_short_edge()): random replay.
-//   - Class R or T: the offset copies the event (its half-vector or its Dirac lobe) and traces a ray of its own.
-// For a light sample at a vertex of its own, the offset copies the point on the light. Where the classes of the two
-// vertices differ, or only one of the two rays meets a surface, base and offset decouple (offset_decouple.cpp).
-//
-// An offset stores its throughput f(y)/p(y) and the ratio r = |T'|·p(y)/p(x), a product of one factor per vertex. The
-// base makes the decisions of Russian roulette and of transparent surfaces. Both contributions are divided by the
-// probability of these decisions, and r excludes it.
-//
-// Which shift a path takes is decided by its classes, which a shift copies, and by predicates that are symmetric in
-// base and offset:
-//   - a vertex of class D whose successor is of class D, or emits, or is a light sample: reconnection at the successor,
-//   the rest is shared;
-//   - class D before class R or T: the offset meets its base there, and shares the direction, too, where the lobe is
-//   wide (looks_similar()),
-//     or copies the direction (shares_sharp_vertex());
-//   - class D before a short edge (is_short_edge()): random replay;
-//   - class R or T: the event is copied (half-vector, or the Dirac lobe), the offset traces a ray of its own.
-// A light sample at a vertex of its own: the emitter point is copied.
-// Where the classes of two vertices differ, or one of two rays meets no surface, base and offset part
-// (offset_part.cpp).
-//
-// An offset carries throughput f(y)/p(y) and the ratio r = |T'|·p(y)/p(x), a product of one factor per vertex. Russian
-// roulette and the decisions at transparent surfaces are made by the base; both contributions are divided by their
-// probability and r leaves them out.
+// An offset path is built vertex by vertex while the base path is traced, because a shift only needs the base's last
+// two vertices. It stores its throughput f(y)/p(y) and the ratio r = |T'|·p(y)/p(x), a product of one factor per
+// vertex. The base makes the decisions of Russian roulette and of transparent surfaces on shared segments. Both
+// contributions are divided by the probability of these decisions, and r excludes it.
 #pragma once
 
-#include "gradient/event_shift.h"
-#include "gradient/reconnection.h"
-#include "path/trace.h"
+#include <array>
+#include <utility>
+
+#include "film/film.h"
+#include "path/camera_vertices.h"
+#include "path/contribution.h"
 
 namespace gradus::gradient {
 
+// Transitions between the stages of an offset path. Each of them may also end at Failed.
+//
+//   Absent
+//   Coupled  ──▶ Pending (class D), Decoupled
+//   Pending  ──▶ Coupled (replay, direction copy, shared specular vertex), Deferred, Reconnected, Deeper, Shared
+//   Deferred ──▶ Pending
+//   Reconnected ──▶ Deeper, Shared (after one segment)
+//
+// The vertices x_i and y_i below are the latest of the base and of the offset that correspond to each other.
 enum class OffsetStage : uint8_t {
-  Absent,  // the neighbour does not exist or takes no samples
-  Traced,  // is at a vertex of its own that corresponds to the base's vertex
-  // The base scattered in class D; the offset keeps its vertex until the use of the base's next vertex is known.
+  // The neighbouring pixel does not exist or takes no samples. No other member has a meaning.
+  Absent,
+  // `vertex` is y_i, a vertex of the offset's own or the end of its segment, beside the base's latest vertex x_i.
+  // throughput and ratio include everything up to the segment to y_i.
+  Coupled,
+  // The base has scattered at x_i in class D. `vertex` is y_i still, until it is known how the base uses x_{i+1}.
+  // throughput and ratio end before the event at y_i; `connection` has them after it, once it is known.
   Pending,
-  Reconnected,  // shares all further vertices of the base, but has a density of its own on the first shared segment
-  Deeper,    // shares the rest of the path, but has passed more transparent surfaces, so their limit may stop it alone
-  Deferred,  // will become Reconnected at a vertex behind which the base has found no emission yet (offset_defer.cpp)
-  // Final stages: one constant ratio pairs each further contribution of the base with the same contribution times a
-  // throughput (Suffix).
-  Shared,     // the first shared segment is complete
-  Decoupled,  // throughput 0: base and offset share no further vertices, and each path is traced separately
-  Failed,     // throughput and ratio 0: the shift failed, and contributions of the base are unpaired
+  // Both paths share the vertices from x_{i+1} on, and the base is on its first segment behind x_{i+1}. throughput and
+  // ratio include the event at x_{i+1}, which has the density `shared_pdf` for the offset.
+  Reconnected,
+  // The offset shares the rest of the path, but has passed more transparent surfaces than the base, so that their limit
+  // may stop it alone.
+  Deeper,
+  // The offset will become Reconnected at a vertex behind which the base has found no emission yet. Its members are
+  // those of Pending. See GradientObserver::defer_reconnection().
+  Deferred,
+  // Final stages: each further contribution of the base is paired with throughput times its tail, at the constant
+  // ratio (GradientAccumulator).
+  Shared,     // the two paths share all further vertices and densities
+  Decoupled,  // throughput is 0: both paths go on without each other (decoupling.h)
+  Failed,     // throughput and ratio are 0: there is no shift, and contributions of the base are unpaired
 };
 inline bool is_final(OffsetStage stage) { return stage >= OffsetStage::Shared; }
-// Returns whether the offset follows the base's segments while each contribution still needs a weight of its own.
-inline bool is_beside(OffsetStage stage) { return stage == OffsetStage::Reconnected || stage == OffsetStage::Deeper; }
+// Returns whether the offset shares the base's segments while each contribution needs a weight of its own.
+inline bool shares_segments(OffsetStage stage) {
+  return stage == OffsetStage::Reconnected || stage == OffsetStage::Deeper;
+}
 
-// Contributions of the base since the last flush_final(). All of them lie behind the vertices that offsets in final
-// stages share, so one gradient sample per offset covers their sum.
-struct Suffix {
-  bool empty = true;
-  int component = 0;       // component of the contributions
-  Rgb weight = Rgb(1.0f);  // factor by which the throughputs have changed
-  Rgb base = Rgb(0.0f);    // sum of the base's contributions
-  Rgb tail = Rgb(0.0f);    // sum of the contributions of a path with throughput 1
-};
-
-// Connection from an offset's vertex to the base's next vertex.
+// Connection from the offset's vertex y_i to the base's next vertex x_{i+1} (reconnection.h).
 struct OffsetConnection {
-  bool known = false;
-  bool open = false;
-  bool shaded = false;      // shade_reconnected() has shaded the shared vertex as seen from the offset
-  bool looks_same = false;  // the shared vertex scatters alike towards the offset and the base
-  Rgb throughput = Rgb(0.0f);
-  float ratio = 0.0f;
-  // Factor of r for light samples and scattering at the vertex; emission uses `ratio` alone (see ShiftedEvent).
-  float kind_ratio = 0.0f;
-  uint16_t transparent_depth = 0;
-  float pdf = 0.0f;  // density of the direction to the shared vertex
+  bool is_known = false;           // the connection was tried; the members below have a meaning if it is also open
+  bool is_open = false;            // the shift exists, and nothing blocks the segment
+  bool is_shaded = false;          // shade_shared_vertex() has set scatters_alike and OffsetPath::shared_vertex
+  bool scatters_alike = false;     // x_{i+1} scatters towards the offset as it does towards the base
+  Rgb throughput = Rgb(0.0f);      // throughput on arrival at x_{i+1}
+  float ratio = 0.0f;              // ratio on arrival at x_{i+1}
+  float kind_ratio = 0.0f;         // factor of the ratio for all but the emission of x_{i+1} (ShiftedEvent::kind_ratio)
+  uint16_t transparent_depth = 0;  // number of transparent surfaces that the offset has passed on arrival
+  float pdf = 0.0f;                // density of the direction to x_{i+1} at y_i
 };
 
-// A light sample as seen from an offset's own vertex.
+// The base's light sample as seen from the offset's own vertex.
 struct OffsetLightSample {
-  bool known = false;
+  bool is_known = false;
   light::LightEvaluation view;
-  bool traced = false;  // the shadow ray has been traced, for the first class that scatters the light
+  bool is_traced = false;  // the shadow ray was traced, for the first class that scatters the light
   Rgb transmittance = Rgb(0.0f);
-  path::LitClass lit;  // result for the class that is being evaluated
+  path::LitClass lit;  // scattered light of the class that is being evaluated
 };
 
 struct OffsetPath {
   OffsetStage stage = OffsetStage::Absent;
   float ratio = 1.0f;
-  // Factor of the last event (see ShiftedEvent). include_kind() moves it to `ratio` after the emission behind that
-  // event.
+  // Factor of the ratio for the kind of the last bounce (ShiftedEvent::kind_ratio). include_kind() applies it.
   float kind_ratio = 1.0f;
   path::PathState state;  // throughput, and the ray of the last segment that the offset traced
-  // Last segment: traced_segment, or one that is shared with the base path of the offset's pixel.
+  // Last segment: `own_segment`, or one that the offset shares with the base path of its own pixel.
   const path::Segment* segment = nullptr;
-  path::CameraVertex* camera = nullptr;  // storage of the shared segment; null if the segment is the offset's own
-  path::ScatterEvent event;              // density and kind of the event at which the last segment starts
-  bool from_camera = true;               // the last segment starts at the camera
-  bool fresh = false;                    // the offset traced a ray of its own for the base's current segment
-  bool mixed = false;       // the base's random number chooses the class at its vertex (gradient/class_match.h)
-  float shared_pdf = 0.0f;  // density of the offset's event at the vertex of reconnection
+  path::CameraVertex* camera_vertex = nullptr;  // storage of such a shared segment, null otherwise
+  path::ScatterEvent event;                     // density and kind of the event at which the last segment starts
+  bool is_from_camera = true;                   // the last segment starts at the camera
+  // The offset has a segment of its own beside the base's current one, so that the emission of the two is compared.
+  bool has_own_segment = false;
+  // The classes at `vertex` differ from those of the base, so the shift copies the random number that chooses the class
+  // instead of the class (decoupling.h).
+  bool copies_class_choice = false;
+  float shared_pdf = 0.0f;
   OffsetConnection connection;
   OffsetLightSample light;
-  // Vertices of the offset, the current one first, and the base's vertex as seen from the offset.
-  path::Vertex* here = nullptr;
+  // The offset's latest vertex, the one before, and x_{i+1} as seen from y_i. Usually these are elements of `storage`.
+  path::Vertex* vertex = nullptr;
   path::Vertex* previous = nullptr;
-  path::Vertex* reconnected = nullptr;
+  path::Vertex* shared_vertex = nullptr;
   path::Vertex storage[3];
-  path::Segment traced_segment;
+  path::Segment own_segment;
 
-  // Advances to the next vertex of the offset's own. The current vertex may belong to the base path of the offset's
-  // pixel.
+  OffsetPath() : vertex(&storage[0]), previous(&storage[1]), shared_vertex(&storage[2]) {}
+  OffsetPath(const OffsetPath&) = delete;
+  OffsetPath& operator=(const OffsetPath&) = delete;
+
+  // Prepares for a path; `is_present` says whether the neighbouring pixel takes samples.
+  void start(bool is_present) {
+    stage = is_present ? OffsetStage::Coupled : OffsetStage::Absent;
+    state = path::PathState{};
+    ratio = kind_ratio = 1.0f;
+    is_from_camera = true;
+  }
+  // Advances to the next vertex of the offset's own. The current vertex may belong to a CameraVertex.
   void advance() {
-    previous = here;
-    here = unused(previous, reconnected);
-    segment = &traced_segment;
-    camera = nullptr;
+    previous = vertex;
+    vertex = unused_vertex(previous, shared_vertex);
+    segment = &own_segment;
+    camera_vertex = nullptr;
   }
-  // Advances to the base's vertex as seen from the offset.
-  void advance_to_reconnected() {
-    previous = here;
-    here = reconnected;
-    reconnected = unused(previous, here);
+  // Advances to the base's vertex x_{i+1} as seen from the offset.
+  void advance_to_shared_vertex() {
+    previous = vertex;
+    vertex = shared_vertex;
+    shared_vertex = unused_vertex(previous, vertex);
   }
-  // Returns a vertex of `storage` that is neither a nor b.
-  path::Vertex* unused(const path::Vertex* a, const path::Vertex* b) {
+  // Multiplies the ratio by the factor for the kind of the last bounce, on which the path depends from here on. Returns
+  // whether the shift still exists.
+  bool include_kind() {
+    ratio *= std::exchange(kind_ratio, 1.0f);
+    return ratio > 0.0f;
+  }
+  // Returns whether the limit of transparent surfaces lets the offset pass `crossed` more of them.
+  bool can_cross(int crossed, uint32_t limit) const {
+    return crossed == 0 || uint32_t(state.ray.state.transparent_depth) + uint32_t(crossed) <= limit;
+  }
+  // Returns the vertex and event at which the last segment starts.
+  path::RaySource source() const { return is_from_camera ? path::RaySource{} : path::RaySource{previous, &event}; }
+
+ private:
+  path::Vertex* unused_vertex(const path::Vertex* a, const path::Vertex* b) {
     path::Vertex* v = storage;
     while (v == a || v == b) ++v;
     return v;
   }
-
-  // Returns the vertex and event at which the last segment starts.
-  path::RaySource source() const { return from_camera ? path::RaySource{} : path::RaySource{previous, &event}; }
 };
+
+// The offset paths of one base path, one for each neighbour.
+using OffsetPaths = std::array<OffsetPath, film::kOffsets>;
 
 }  // namespace gradus::gradient

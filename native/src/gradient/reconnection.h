@@ -1,8 +1,12 @@
-// Reconnection: an offset path joins its base path at the base's next vertex (thesis, section 5.4.2, step 3).
+// Reconnection: the offset path joins its base path at the base's next vertex (Manzi 2016, section 5.4.2, step 3).
+//
+// It is the shift of events of class D at x_i and y_i whose successor x_{i+1} scatters in class D, emits light, or has
+// a specular lobe that looks the same from both vertices. From x_{i+1} on both paths share all vertices.
 #pragma once
 
-#include "geometry/surface.h"
-#include "gradient/half_vector.h"
+#include "gradient/base_path.h"
+#include "gradient/offset_path.h"
+#include "gradient/shifted_event.h"
 
 namespace gradus::gradient {
 
@@ -18,30 +22,26 @@ struct Reconnection {
 // exchanges base and offset. Sets `failure` to Jacobian if J is 0 or not finite.
 Reconnection reconnect(const Vec3& base, const Vec3& offset, const Vec3& target, const Vec3& target_normal);
 
-// Returns whether the parallax of x and y at z is below `angle` in radians. The parallax is approximately the angle
-// between the edges from x and y to z: |x − y|, which is the footprint of a pixel's ray at the two vertices, divided by
-// the length of the shorter edge. This function and those below are symmetric in x and y.
-bool is_parallax_below(const Vec3& x, const Vec3& y, const Vec3& z, float angle);
+// Returns the Jacobian of copying a point on a surface or light, in solid angle at the two receivers.
+float area_jacobian(float cosine_base, float distance_base, float cosine_offset, float distance_offset);
 
-// Returns whether the shorter edge from x or y to z is shorter than the footprint |x − y|. Such edges are not
-// connected, because their Jacobians and cosines are unbounded.
-bool is_short_edge(const Vec3& x, const Vec3& y, const Vec3& z);
+// Connects all pending offsets that have no connection yet to `z`, the base's latest vertex. Counts shadow rays and
+// failures.
+void connect_pending(const BasePath& base, const path::Vertex& z, OffsetPaths* offsets, film::Counters* counters);
 
-// Decides how to shift an event of class D at x and y that is followed by a sharp event at z. If it returns true, both
-// paths share z; the sharp event is copied there, and their rays diverge. If it returns false, the offset copies the
-// direction, and the two paths meet the sharp surface at different points. Behind z the directions differ by about the
-// parallax in the first case, and by 2 |x − y| times the curvature in the second. So curved surfaces are shared. Flat
-// mirrors keep parallel rays parallel, so they are shared only at low parallax, because a shared vertex never misses
-// the mirror beyond its rim. Flat panes are not shared, because the surfaces behind them are usually distant. Vertices
-// over short edges are never shared.
-bool shares_sharp_vertex(const Vec3& x, const Vec3& y, const Vec3& z, float curvature, bool transmission);
+// Returns whether `z` faces the offset and the base with the same side, so that both can scatter there.
+bool sees_same_side(const OffsetPath& offset, const path::Vertex& z);
+// Returns the emission of the shared vertex `z` towards the offset. It does not evaluate closures, which may not be
+// needed.
+Rgb shared_emission(const BasePath& base, const OffsetPath& offset, const path::Vertex& z);
+// Shades the shared vertex `z`, whose closures are known, as seen from the offset.
+void shade_shared_vertex(const BasePath& base, const path::Vertex& z, OffsetPath* offset);
 
-// Returns whether a lobe of this width (alpha) at z looks about the same from x and y. If so, both paths share the
-// direction of the event as well, and the event need not be copied.
-bool looks_similar(const Vec3& x, const Vec3& y, const Vec3& z, float width);
-
-// Returns the Jacobian of copying a point on a light, in solid angle at the two receivers. Callers use 1 instead for
-// lights at infinity, whose direction is copied, and for Dirac lights, whose choice is discrete.
-float light_point_jacobian(float cosine_base, float distance_base, float cosine_offset, float distance_offset);
+// Makes the offset share the path behind `z`, at which the base has scattered by `event`. Sets throughput and ratio
+// behind the event, or returns why the shift fails.
+ShiftFailure reconnect_at(const BasePath& base, const path::Vertex& z, const path::ScatterEvent& event,
+                          OffsetPath* offset);
+// Makes `z`, as seen from the offset, the offset's vertex, at which the base's event will be copied.
+void share_vertex(const BasePath& base, const path::Vertex& z, OffsetPath* offset);
 
 }  // namespace gradus::gradient

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/fault.h"
 #include "image/color.h"
 #include "image/image.h"
 #include "image/image_store.h"
@@ -180,7 +181,8 @@ const ImageTile* find_tile(const Image& image, Vec2* uv) {
 
 Vec4 decode_texel(const ImageTile& tile, const Vec4& stored) {
   static const SrgbTable table;
-  return tile.srgb ? Vec4(table(stored.x), table(stored.y), table(stored.z), stored.w) : stored;
+  const auto decoded = [](float value) { return table(GRADUS_FAULT(srgb_decoded_twice) ? table(value) : value); };
+  return tile.srgb ? Vec4(decoded(stored.x), decoded(stored.y), decoded(stored.z), stored.w) : stored;
 }
 
 Vec4 ImageStore::lookup(uint32_t index, const Vec2& uv, Interpolation interpolation, Extension extension,

@@ -1,4 +1,5 @@
-// An integrator turns a unit of work into samples of a frame: a pure function of (scene, plan, unit).
+// Interface of integrators. An integrator samples pixels into a film, as a pure function of scene, settings and work
+// unit.
 #pragma once
 
 #include <atomic>
@@ -14,46 +15,49 @@
 
 namespace gradus::integrator {
 
-// A unit of work (contract 1.3): pixels of a tile, sample numbers [first, first + count) of each. count_map: samples
-// per pixel of the frame's region, 0 allowed, replaces `count`; the same map tells the counts of neighbours for the
-// pair weights (contract 1.5). first_map: each pixel's first sample number, the same within a cell of the lattice,
-// replaces `first_sample`. pixel_map: 0 for pixels of the frame's region that are passed over, though their counts are
-// those of the others. sources: whose random numbers the pixels take, where the unit replays another frame; nullptr:
-// their own. gradient_map: 0 for pixels of the region whose paths have no offsets; pairs with such a pixel are absent.
-// components: bits of those that are sampled, component_map: of each pixel; others keep what they have, and paths that
-// lead to them alone end. again: the unit adds components to samples that were counted before, and whose data passes
-// are there.
+// Pixels of a tile, and the samples to take of each. All maps have one element for each pixel of the film's region.
 struct WorkUnit {
   Region tile;
+  // Sample numbers [first_sample, first_sample + count) of each pixel.
   uint32_t first_sample = 0;
   uint32_t count = 0;
+  // Number of samples of each pixel, which may be 0; replaces `count`. The weights of gradient pairs take the counts of
+  // neighbours from it.
   const std::vector<uint32_t>* count_map = nullptr;
+  // First sample number of each pixel, equal within a pixel block; replaces `first_sample`.
   const std::vector<uint32_t>* first_map = nullptr;
+  // 0 for pixels that this unit skips, although another unit samples them.
   const std::vector<uint8_t>* pixel_map = nullptr;
+  // 0 for pixels whose paths have no offset paths. Pairs with such a pixel are absent.
   const std::vector<uint8_t>* gradient_map = nullptr;
+  // Pixels of another frame whose random numbers the pixels replay; null if they use their own.
   const film::ReplayMap* replay_map = nullptr;
+  // Components to sample, as bits, of all pixels and of each. The planes of others do not change, and paths that can
+  // reach only others end.
   uint32_t components = lpe::kEveryComponent;
   const std::vector<uint32_t>* component_map = nullptr;
+  // The unit adds components to samples that were taken before. Their counts and data passes are not added again.
   bool adds_components = false;
 };
 
 class Integrator {
  public:
   virtual ~Integrator() = default;
-  // Samples the unit into the frame: only pixels of the tile are written. `stop` is polled at least once per sample of
-  // a pixel; what is half done then is left out as a whole sample. Thread-safe for disjoint tiles.
+  // Samples the unit into the film and writes only pixels of the tile. Thread-safe for disjoint tiles. Polls `stop` at
+  // least once for each sample of a pixel; a sample that is stopped leaves no trace in the film.
   virtual void sample(const WorkUnit& unit, film::Film* film, film::Counters* counters,
                       const std::atomic<bool>& stop) const = 0;
 };
 
-// What an integrator is made for; all lives as long as it.
+// Arguments of all integrators, which copy them.
 struct IntegratorContext {
   std::shared_ptr<const scene::Snapshot> snapshot;
   camera::Camera camera;
   GradusSettings settings;
-  lpe::ComponentSet components = {};  // planes of the frames that are sampled
+  lpe::ComponentSet components = {};  // components of the films that are sampled
 };
 
+// Returns a new integrator for plain path tracing.
 std::unique_ptr<Integrator> make_path_integrator(const IntegratorContext& context);
 
 }  // namespace gradus::integrator

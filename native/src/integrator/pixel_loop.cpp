@@ -1,23 +1,25 @@
 #include "integrator/pixel_loop.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "base/fault.h"
 
 namespace gradus::integrator {
 
 namespace {
 
-// Whose random numbers a pixel takes.
-struct Source {
+// Stream of random numbers that a pixel uses.
+struct Stream {
   path::StreamKind kind = path::StreamKind::Pixel;
   int32_t x = 0, y = 0;
   int32_t frame = 0;
   uint32_t seed = 0;
-  bool shares_jitter = false;  // with its cell
+  bool shares_jitter = false;  // with its pixel block
 };
 
-// A pixel's of the frame itself, or of the one that it replays.
-Source numbers_of(const path::PathContext& context, const WorkUnit& unit, int32_t x, int32_t y) {
-  const film::ReplayMap* replayed = unit.replay_map;
+// Returns the stream of a pixel in its own frame, or in the frame that is replayed if `replayed` is given.
+Stream stream_of_pixel(const path::PathContext& context, const film::ReplayMap* replayed, int32_t x, int32_t y) {
   if (replayed != nullptr)
     return {path::StreamKind::Pixel, x, y, replayed->stream_frame, replayed->seed, replayed->shares_jitter};
   return {path::StreamKind::Pixel,
@@ -28,26 +30,33 @@ Source numbers_of(const path::PathContext& context, const WorkUnit& unit, int32_
           shares_jitter(context.camera, context.scene)};
 }
 
-Source source_of(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, int32_t x, int32_t y) {
-  if (unit.replay_map == nullptr) return numbers_of(context, unit, x, y);
+// Returns the stream that a pixel of the film uses: its own, that of its correspondence in the replayed frame, or one
+// for disocclusions.
+Stream find_stream(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, int32_t x,
+                   int32_t y) {
+  if (unit.replay_map == nullptr) return stream_of_pixel(context, nullptr, x, y);
   const int32_t pixel = unit.replay_map->correspondence.pixel[film.index(x, y)];
+  if (pixel == film::kNoCorrespondence && GRADUS_FAULT(disocclusion_takes_own_numbers_again))
+    return stream_of_pixel(context, nullptr, x, y);
   if (pixel == film::kNoCorrespondence)
     return {path::StreamKind::Disocclusion, x, y, context.settings.frame, context.settings.seed};
-  const int32_t width = film.region.width();
-  return numbers_of(context, unit, film.region.x0 + pixel % width, film.region.y0 + pixel / width);
+  if (GRADUS_FAULT(replay_takes_same_pixel)) return stream_of_pixel(context, unit.replay_map, x, y);
+  const film::ReplayMap* replayed = GRADUS_FAULT(replayed_pixels_take_own_seed) ? nullptr : unit.replay_map;
+  const int32_t width = film.region.width(), x0 = GRADUS_FAULT(replay_ignores_border_corner) ? 0 : film.region.x0;
+  return stream_of_pixel(context, replayed, x0 + pixel % width, film.region.y0 + pixel / width);
 }
 
-path::Sampler make_sampler(const path::PathContext& context, const Source& source, path::StreamKind kind,
-                           uint32_t stream, uint32_t number) {
-  return path::Sampler({source.seed, kind, stream, source.frame, number}, context.settings.independent_sampler != 0);
+path::Sampler make_sampler(const path::PathContext& context, const Stream& stream, path::StreamKind kind,
+                           uint32_t index, uint32_t number) {
+  return path::Sampler({stream.seed, kind, index, stream.frame, number}, context.settings.independent_sampler != 0);
 }
 
-// Jitter of the cell that holds a pixel.
-Vec2 jitter_of_block(const path::PathContext& context, const Source& source, uint32_t number) {
-  const uint32_t column = static_cast<uint32_t>(film::pixel_block_of(source.x)),
-                 row = static_cast<uint32_t>(film::pixel_block_of(source.y));
+// Returns the jitter of the pixel block that contains a pixel of the stream.
+Vec2 jitter_of_block(const path::PathContext& context, const Stream& stream, uint32_t number) {
+  const uint32_t column = static_cast<uint32_t>(film::pixel_block_of(stream.x)),
+                 row = static_cast<uint32_t>(film::pixel_block_of(stream.y));
   const path::Sampler sampler =
-      make_sampler(context, source, path::StreamKind::PixelBlock, (row << 16) ^ (column & 0xffffu), number);
+      make_sampler(context, stream, path::StreamKind::PixelBlock, (row << 16) ^ (column & 0xffffu), number);
   return context.filter.sample(sampler.get2(path::dimension::kFilm));
 }
 
@@ -79,27 +88,29 @@ bool shares_rays(const path::PathContext& context, const WorkUnit& unit, const f
 }
 
 Vec2 block_jitter(const path::PathContext& context, const WorkUnit& unit, const Region& block, uint32_t number) {
-  return jitter_of_block(context, numbers_of(context, unit, block.x0, block.y0), number);
+  const film::ReplayMap* replayed = GRADUS_FAULT(replayed_blocks_take_own_seed) ? nullptr : unit.replay_map;
+  return jitter_of_block(context, stream_of_pixel(context, replayed, block.x0, block.y0), number);
 }
 
 PixelSample make_pixel_sample(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, int32_t x,
                               int32_t y, uint32_t number) {
-  const Source source = source_of(context, unit, film, x, y);
+  const Stream stream = find_stream(context, unit, film, x, y);
   PixelSample sample;
   sample.x = x;
   sample.y = y;
   sample.pixel = film.index(x, y);
   sample.number = number;
   sample.half = static_cast<int>(number & 1u);
-  const uint32_t stream = static_cast<uint32_t>(source.y) * context.settings.width + static_cast<uint32_t>(source.x);
-  sample.sampler = make_sampler(context, source, source.kind, stream, number);
+  const uint32_t own = static_cast<uint32_t>(stream.y) * context.settings.width + static_cast<uint32_t>(stream.x),
+                 index = GRADUS_FAULT(random_stream_shared_by_pixels) ? 0u : own;
+  sample.sampler = make_sampler(context, stream, stream.kind, index, number);
   return sample;
 }
 
 Vec2 pixel_jitter(const path::PathContext& context, const WorkUnit& unit, const film::Film& film,
                   const PixelSample& sample) {
-  const Source source = source_of(context, unit, film, sample.x, sample.y);
-  if (source.shares_jitter) return jitter_of_block(context, source, sample.number);
+  const Stream stream = find_stream(context, unit, film, sample.x, sample.y);
+  if (stream.shares_jitter) return jitter_of_block(context, stream, sample.number);
   return context.filter.sample(sample.sampler.get2(path::dimension::kFilm));
 }
 
@@ -108,7 +119,9 @@ void add_primal(const path::PathResult& result, const PixelSample& sample, const
   const uint32_t wanted = unit_components(unit, sample.pixel);
   for (size_t c = 0; c < film->components.size(); ++c) {
     Radiance value = result.radiance[c];
-    if (film->channels < 4) {
+    if (GRADUS_FAULT(samples_one_percent_darker)) value *= 0.99f;
+    if (GRADUS_FAULT(one_sample_in_1000_is_nan) && (sample.pixel * 31 + sample.number) % 1000 == 0) value.x = NAN;
+    if (film->color_channels < 4) {
       value.w = 0.0f;
     }
     if (value != Radiance(0.0f) && (wanted >> c & 1) != 0) {
@@ -117,8 +130,9 @@ void add_primal(const path::PathResult& result, const PixelSample& sample, const
   }
   if (unit.adds_components) return;
   ++film->count[sample.half][sample.pixel];
-  if (!film->fallback.empty() && result.fallback) {
-    film->fallback[sample.pixel] += 1.0f;
+  if (!result.fallback) return;
+  if (film::Channel* fallback = film->channels.of_pass(GRADUS_PASS_FALLBACK); fallback != nullptr) {
+    fallback->values[0][sample.pixel] += 1.0f;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "base/fault.h"
 #include "light/light_table.h"
 #include "light/lit_scene.h"
 #include "light/spherical_triangle.h"
@@ -34,8 +35,8 @@ void set_triangle_point(uint32_t index, const geometry::SurfacePoint& surface, L
   point->kind = LightKind::Triangle;
   point->index = index;
   point->instance = surface.hit.instance;
-  point->triangle = surface.hit.triangle;
-  point->barycentric = surface.hit.barycentric;
+  point->triangle = surface.hit.primitive;
+  point->barycentric = surface.hit.uv;
   point->time = surface.hit.time;
   point->position = surface.position;
   point->normal = surface.geometric_normal;
@@ -57,10 +58,9 @@ void sample_triangle(const LitScene& scene, uint32_t index, const Receiver& rece
   const SphericalTriangle seen(corners, receiver.position);
   geometry::Hit hit;
   hit.instance = t.instance;
-  hit.triangle = t.triangle;
+  hit.primitive = t.triangle;
   hit.time = receiver.time;
-  hit.barycentric =
-      seen.usable() ? barycentric_towards(corners, receiver.position, seen.sample(u)) : sample_triangle_area(u);
+  hit.uv = seen.usable() ? barycentric_towards(corners, receiver.position, seen.sample(u)) : sample_triangle_area(u);
   set_triangle_point(index, scene.surface_point(hit), point);
   finding->solid_angle = seen.sampled_solid_angle();
 }
@@ -134,8 +134,8 @@ double choice_probability(const LightTable& table, const LightPoint& point, cons
 geometry::SurfacePoint surface_of(const LitScene& scene, const LightPoint& point) {
   geometry::Hit hit;
   hit.instance = point.instance;
-  hit.triangle = point.triangle;
-  hit.barycentric = point.barycentric;
+  hit.primitive = point.triangle;
+  hit.uv = point.barycentric;
   hit.time = point.time;
   return scene.surface_point(hit);
 }
@@ -292,7 +292,7 @@ float light_point_pdf(const LitScene& scene, const LightPoint& point, const Rece
 }
 
 LightPoint light_point_of_surface(const LitScene& scene, const geometry::SurfacePoint& surface) {
-  const uint32_t index = scene.light_table->find_triangle(surface.hit.instance, surface.hit.triangle);
+  const uint32_t index = scene.light_table->find_triangle(surface.hit.instance, surface.hit.primitive);
   LightPoint point;
   if (index != UINT32_MAX) set_triangle_point(index, surface, &point);
   return point;
@@ -309,7 +309,8 @@ LightPoint light_point_of_world(const LitScene& scene, const Vec3& direction) {
 
 Ray ray_to_light(const Vec3& start, const geometry::SurfacePoint& from, const LightPoint& to,
                  const LightEvaluation& view) {
-  if (to.at_infinity()) return Ray{start, 0.0f, view.direction, kInfinity, from.hit.time};
+  if (to.at_infinity())
+    return Ray{start, 0.0f, view.direction, kInfinity, GRADUS_FAULT(sun_rays_lose_time) ? 0.0f : from.hit.time};
   Vec3 target = from.position + view.direction * view.distance;
   if (to.kind == LightKind::Triangle) {
     geometry::SurfacePoint end;
@@ -318,7 +319,8 @@ Ray ray_to_light(const Vec3& start, const geometry::SurfacePoint& from, const Li
     end.error = to.error;
     target = geometry::offset_origin(end, -view.direction);
   }
-  return geometry::ray_between(start, target, view.direction, from.hit.time);
+  return geometry::ray_between(start, target, view.direction,
+                               GRADUS_FAULT(shadow_rays_lose_time) ? 0.0f : from.hit.time);
 }
 
 }  // namespace gradus::light

@@ -64,8 +64,8 @@ float measure_radiance(const LitScene& scene, const EmissiveTriangle& triangle) 
   for (const auto& b : kPoints) {
     geometry::Hit hit;
     hit.instance = triangle.instance;
-    hit.triangle = triangle.triangle;
-    hit.barycentric = Vec2(b[0], b[1]);
+    hit.primitive = triangle.triangle;
+    hit.uv = Vec2(b[0], b[1]);
     const geometry::SurfacePoint point = scene.surface_point(hit);
     for (const float side : {1.0f, -1.0f}) {
       const float value =

@@ -11,11 +11,11 @@ namespace gradus::lpe {
 
 namespace {
 
-constexpr size_t kLongestName = 24;
+constexpr size_t kMaxNameLength = 24;
 constexpr size_t kMaxStates = 4096;
 constexpr char kEventNames[] = {'D', 'R', 'T'};
 
-// What the expressions have come to by one word.
+// States of all expressions after the events of one path.
 using Sets = std::vector<LightPathExpression::States>;
 
 std::string_view trimmed(std::string_view text) {
@@ -40,13 +40,13 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-// Names become those of passes: letters of ASCII, digits, '_'.
+// Checks the name of a component. Passes are named after it, so it consists of ASCII letters, digits and '_'.
 void check_name(std::string_view name, const std::vector<Component>& before) {
   const auto fits = [](char c) {
     return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
   };
   const bool starts = !name.empty() && fits(name[0]) && name[0] != '_' && !(name[0] >= '0' && name[0] <= '9');
-  if (!starts || name.size() > kLongestName || !std::all_of(name.begin(), name.end(), fits)) {
+  if (!starts || name.size() > kMaxNameLength || !std::all_of(name.begin(), name.end(), fits)) {
     throw invalid_argument("component \"" + std::string(name) +
                            "\": a name is a letter and then up to 23 letters, digits or '_'");
   }
@@ -84,7 +84,7 @@ Sets step(const std::vector<LightPathExpression>& expressions, const Sets& from,
   return to;
 }
 
-// Bits of the expressions that a word matches where it ends at light.
+// Returns the bits of the expressions that match a path if it finds light in these states.
 uint32_t matches(const std::vector<LightPathExpression>& expressions, const Sets& sets) {
   const Sets lit = step(expressions, sets, LpeEvent::L);
   uint32_t bits = 0;
@@ -92,7 +92,8 @@ uint32_t matches(const std::vector<LightPathExpression>& expressions, const Sets
   return bits;
 }
 
-// Says what to add where L was left out, as in the paper.
+// Throws the error of an expression that matches no path. Zimmer et al. leave out the final L, so the message says how
+// to add it.
 [[noreturn]] void refuse_unmatched(const Component& c) {
   std::string text = "component " + c.name + ": " + c.expression +
                      " matches no path, which is E, then D, R or T for each scattering, then L";
@@ -112,12 +113,13 @@ ComponentSet ComponentSet::parse(std::string_view text) {
   const size_t residual = expressions.size();
   set.components_.push_back({std::string(kResidual), ""});
 
-  // Breadth first, so that the word kept for a state is a shortest one.
+  // Breadth-first search over the states of the deterministic automaton, so that `paths` has a shortest path for each
+  // state.
   Sets start;
   for (const LightPathExpression& e : expressions) start.push_back(e.step(e.start(), LpeEvent::E));
   std::map<Sets, LpeState> known{{start, 0}};
   std::vector<Sets> sets{start};
-  std::vector<std::string> words{"E"};
+  std::vector<std::string> paths{"E"};
   uint32_t matched = 0;
   set.states_.clear();
   for (size_t s = 0; s < sets.size(); ++s) {
@@ -125,7 +127,7 @@ ComponentSet ComponentSet::parse(std::string_view text) {
     if ((bits & (bits - 1)) != 0) {
       const int first = __builtin_ctz(bits), second = __builtin_ctz(bits & (bits - 1));
       throw invalid_argument("components " + set[first].name + " and " + set[second].name + " overlap: both match " +
-                             words[s] + "L");
+                             paths[s] + "L");
     }
     matched |= bits;
     State state;
@@ -138,7 +140,7 @@ ComponentSet ComponentSet::parse(std::string_view text) {
       if (sets.size() >= kMaxStates)
         throw invalid_argument("the path expressions are too complex: an automaton of more than 4096 states");
       sets.push_back(std::move(next));
-      words.push_back(words[s] + kEventNames[k]);
+      paths.push_back(paths[s] + kEventNames[k]);
     }
     set.states_.push_back(state);
   }
@@ -189,16 +191,16 @@ ComponentSet ComponentSet::without_empty(uint32_t kept) const {
 }
 
 uint32_t ComponentSet::reached(uint32_t events) const {
-  std::vector<LpeState> words{0};
+  std::vector<LpeState> states{0};
   std::vector<bool> known(states_.size());
   known[0] = true;
   uint32_t bits = 0;
-  for (size_t i = 0; i < words.size(); ++i) {
+  for (size_t i = 0; i < states.size(); ++i) {
     for (int k = 0; k < bsdf::kScatterClasses; ++k) {
       if ((events >> k & 1) == 0) continue;
-      const LpeState to = next(words[i], static_cast<bsdf::ScatterClass>(k));
+      const LpeState to = next(states[i], static_cast<bsdf::ScatterClass>(k));
       bits |= 1u << component(to);
-      if (!known[to]) words.push_back(to);
+      if (!known[to]) states.push_back(to);
       known[to] = true;
     }
   }
@@ -228,19 +230,19 @@ int ComponentSet::classify(std::string_view path) const {
 
 std::vector<std::string> ComponentSet::examples(int component, size_t maximum) const {
   std::vector<std::string> found;
-  std::vector<std::pair<LpeState, std::string>> words{{LpeState{0}, "E"}};
-  // As long as new states come, words lead to new components; a few letters more for words of the same kind.
-  const size_t longest = states_.size() + 3;
-  for (size_t length = 0; length <= longest && found.size() < maximum && !words.empty(); ++length) {
+  std::vector<std::pair<LpeState, std::string>> paths{{LpeState{0}, "E"}};
+  // A shortest path to any state has fewer events than there are states. A few more events give further examples.
+  const size_t maximum_length = states_.size() + 3;
+  for (size_t length = 0; length <= maximum_length && found.size() < maximum && !paths.empty(); ++length) {
     std::vector<std::pair<LpeState, std::string>> longer;
-    for (const auto& [at, path] : words) {
+    for (const auto& [at, path] : paths) {
       if (this->component(at) == component && found.size() < maximum) found.push_back(path + "L");
       for (int k = 0; k < bsdf::kScatterClasses; ++k) {
         const LpeState to = next(at, static_cast<bsdf::ScatterClass>(k));
         if ((ahead(to) >> component & 1) != 0 && longer.size() < 4096) longer.emplace_back(to, path + kEventNames[k]);
       }
     }
-    words = std::move(longer);
+    paths = std::move(longer);
   }
   return found;
 }

@@ -9,11 +9,11 @@ namespace gradus::lpe {
 
 namespace {
 
-constexpr size_t kDeepest = 64;  // parentheses in parentheses
+constexpr size_t kMaxDepth = 64;  // of nested parentheses
 
 constexpr uint8_t bit(LpeEvent event) { return uint8_t(1u << unsigned(event)); }
 
-// 0: no letter.
+// Returns the bits of the events that a character stands for, or 0.
 uint8_t events_of(char c) {
   switch (c) {
     case 'D':
@@ -35,14 +35,16 @@ uint8_t events_of(char c) {
 
 }  // namespace
 
-// expression = sequence { "|" sequence };  sequence = { factor };  factor = ( letter | "." | "(" expression ")" ) { "*"
-// | "+" | "?" }
+// Builds the automaton of an expression by recursive descent. The grammar is
+//   expression = sequence { "|" sequence }
+//   sequence = { factor }
+//   factor = ( event | "." | "(" expression ")" ) { "*" | "+" | "?" }
 class ExpressionParser {
  public:
   ExpressionParser(std::string_view text, LightPathExpression* to) : text_(text), to_(*to) {}
 
   void parse() {
-    const uint32_t first = state();  // number 0 is where it starts
+    const uint32_t first = add_state();  // state 0, the start
     const Fragment all = expression();
     if (at_ < text_.size()) fail("there is no '(' for this ')'");
     to_.states_[first].next[0] = all.begin;
@@ -50,18 +52,21 @@ class ExpressionParser {
   }
 
  private:
+  // A part of the automaton, entered at `begin` and left at `end`.
   struct Fragment {
     uint32_t begin, end;
   };
 
-  uint32_t state() {
+  uint32_t add_state() {
     to_.states_.emplace_back();
     return uint32_t(to_.states_.size() - 1);
   }
+  // Adds a transition without an event, or the one by the events of `from`.
   void link(uint32_t from, uint32_t to) {
     uint32_t* next = to_.states_[from].next;
     next[next[0] == LightPathExpression::kNone ? 0 : 1] = to;
   }
+  // Returns the next character that is not blank, or '\0' at the end.
   char peek() {
     while (at_ < text_.size() && text_[at_] == ' ') ++at_;
     return at_ < text_.size() ? text_[at_] : '\0';
@@ -76,7 +81,7 @@ class ExpressionParser {
     while (peek() == '|') {
       ++at_;
       const Fragment other = sequence();
-      const Fragment either{state(), state()};
+      const Fragment either{add_state(), add_state()};
       link(either.begin, all.begin);
       link(either.begin, other.begin);
       link(all.end, either.end);
@@ -87,7 +92,7 @@ class ExpressionParser {
   }
 
   Fragment sequence() {
-    const uint32_t begin = state();
+    const uint32_t begin = add_state();
     Fragment all{begin, begin};
     for (char c = peek(); c != '\0' && c != '|' && c != ')'; c = peek()) {
       const Fragment next = factor();
@@ -101,7 +106,7 @@ class ExpressionParser {
     Fragment fragment = atom();
     for (char c = peek(); c == '*' || c == '+' || c == '?'; c = peek()) {
       ++at_;
-      const Fragment repeated{state(), state()};
+      const Fragment repeated{add_state(), add_state()};
       link(repeated.begin, fragment.begin);
       if (c != '+') link(repeated.begin, repeated.end);
       if (c != '?') link(fragment.end, fragment.begin);
@@ -119,14 +124,14 @@ class ExpressionParser {
       fail(std::string("'") + c + "' is none of E D R T L . * + ? | ( )" +
            (c == '*' || c == '+' || c == '?' ? " that can stand here" : ""));
     ++at_;
-    const Fragment fragment{state(), state()};
+    const Fragment fragment{add_state(), add_state()};
     to_.states_[fragment.begin].events = events;
     link(fragment.begin, fragment.end);
     return fragment;
   }
 
   Fragment group() {
-    if (++depth_ > kDeepest) fail("parentheses are too deep");
+    if (++depth_ > kMaxDepth) fail("parentheses are too deep");
     ++at_;
     const Fragment fragment = expression();
     if (peek() != ')') fail("a ')' is missing");

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "film/pixel_correspondence.h"
+#include "film/replay_map.h"
 #include "motion/specular_motion.h"
 
 namespace gradus::motion {

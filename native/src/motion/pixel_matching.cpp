@@ -5,6 +5,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "base/fault.h"
 #include "motion/snapshot_motion.h"
 #include "path/context.h"
 
@@ -108,7 +109,8 @@ film::PixelCorrespondence match_pixels(const CentreView& from, const CentreView&
   for_each_pixel(correspondence.size(), [&](size_t i) {
     const Target t = forward.target(i);
     const int32_t next = t.found ? pixel_at(to.region, t.film) : film::kNoCorrespondence;
-    if (next == film::kNoCorrespondence || !returns(back, from, i, next)) return;
+    if (next == film::kNoCorrespondence) return;
+    if (!GRADUS_FAULT(match_need_not_lead_back) && !returns(back, from, i, next)) return;
     correspondence[i] = next;
     found.off_centre[i] = off_centre(to.region, size_t(next), t.film);
     distances[i] = t.distance;
@@ -118,10 +120,11 @@ film::PixelCorrespondence match_pixels(const CentreView& from, const CentreView&
   for (size_t i = 0; i < correspondence.size(); ++i) {
     if (correspondence[i] == film::kNoCorrespondence) continue;
     int32_t& other = owner[size_t(correspondence[i])];
-    const bool nearest = other == film::kNoCorrespondence || distances[i] < distances[size_t(other)];
+    const bool nearest = other == film::kNoCorrespondence ||
+                         (distances[i] < distances[size_t(other)]) != GRADUS_FAULT(farther_pixel_keeps_match);
     if (nearest && other != film::kNoCorrespondence) correspondence[size_t(other)] = film::kNoCorrespondence;
     if (nearest) other = int32_t(i);
-    if (!nearest) correspondence[i] = film::kNoCorrespondence;
+    if (!nearest && !GRADUS_FAULT(two_pixels_match_one)) correspondence[i] = film::kNoCorrespondence;
   }
   return found;
 }
@@ -133,7 +136,8 @@ film::PixelCorrespondence inverse_correspondence(const film::PixelCorrespondence
     if (correspondence.pixel[i] == film::kNoCorrespondence) continue;
     const auto end = size_t(correspondence.pixel[i]);
     inverse.pixel[end] = int32_t(i);
-    if (!correspondence.off_centre.empty()) inverse.off_centre[end] = correspondence.off_centre[i];
+    if (!correspondence.off_centre.empty() && !GRADUS_FAULT(inverse_ends_in_pixel_centres))
+      inverse.off_centre[end] = correspondence.off_centre[i];
   }
   return inverse;
 }
@@ -142,9 +146,9 @@ bool is_shot_change(const GradusCamera& from, const GradusCamera& to) {
   if (from.type != to.type) return true;
   const auto axis = [](const GradusCamera& c) { return glm::normalize(-Vec3(c.matrix[8], c.matrix[9], c.matrix[10])); };
   const float zoom = (to.window[1] - to.window[0]) / (from.window[1] - from.window[0]);
-  const bool near =
-      glm::dot(axis(from), axis(to)) >= kShotChangeCosine && zoom < kShotChangeZoom && zoom > 1.0f / kShotChangeZoom;
-  return !near;
+  const bool zooms =
+      !(zoom < kShotChangeZoom && zoom > 1.0f / kShotChangeZoom) && !GRADUS_FAULT(zoom_is_no_shot_change);
+  return zooms || !(glm::dot(axis(from), axis(to)) >= kShotChangeCosine);
 }
 
 }  // namespace gradus::motion

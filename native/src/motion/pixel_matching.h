@@ -8,7 +8,7 @@
 #include "base/cancel_check.h"
 #include "camera/camera.h"
 #include "film/film.h"
-#include "film/pixel_correspondence.h"
+#include "film/replay_map.h"
 #include "scene/snapshot.h"
 
 namespace gradus::motion {

@@ -2,6 +2,7 @@
 
 #include <unordered_map>
 
+#include "base/fault.h"
 #include "geometry/mesh.h"
 
 namespace gradus::motion {
@@ -14,6 +15,8 @@ std::vector<uint32_t> matching_instances(const scene::Snapshot& from, const scen
   for (const geometry::InstanceData& instance : from.instances) {
     const auto found = instance.id != geometry::kNobody ? by_id.find(instance.id) : by_id.end();
     matches.push_back(found != by_id.end() ? found->second : kNoInstance);
+    if (GRADUS_FAULT(objects_matched_by_index))
+      matches.back() = uint32_t(std::min(matches.size(), to.instances.size()) - 1);
   }
   return matches;
 }
@@ -22,7 +25,8 @@ SnapshotMotion::SnapshotMotion(const scene::Snapshot& from, const scene::Snapsho
     : to_(to), instance_(matching_instances(from, to)) {
   for (size_t i = 0; i < instance_.size(); ++i) {
     if (instance_[i] == kNoInstance) continue;
-    if (from.instances[i].mesh->topology_hash != to.instances[instance_[i]].mesh->topology_hash)
+    if (from.instances[i].mesh->topology_hash != to.instances[instance_[i]].mesh->topology_hash &&
+        !GRADUS_FAULT(changed_mesh_taken_for_same))
       instance_[i] = kNoInstance;
   }
 }
@@ -37,7 +41,7 @@ bool SnapshotMotion::hit(const geometry::Hit& hit, geometry::Hit* there) const {
 bool SnapshotMotion::position(const geometry::Hit& hit, Vec3* position) const {
   geometry::Hit there;
   if (!this->hit(hit, &there)) return false;
-  *position = geometry::interpolate(to_.corners(there.instance, there.triangle, there.time), there.barycentric);
+  *position = to_.position(there);
   return true;
 }
 

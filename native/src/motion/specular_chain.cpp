@@ -76,7 +76,7 @@ bool ChainTracer::advance(Shades shades, const geometry::Hit* known, path::PathR
     arrival->hit = hit;
     if (!hit.valid()) return false;
     ray->state.length = glm::length(part.origin + part.direction * hit.t - ray->ray.origin);
-    const shading::MaterialData& material = *snapshot_.materials[snapshot_.material_of(hit.instance, hit.triangle)];
+    const shading::MaterialData& material = *snapshot_.materials[snapshot_.material_of(hit)];
     if (shades == Shades::Transparency && !material.may_be_transparent) return true;
     snapshot_.place(hit, &vertex->point);
     const bool is_non_specular =

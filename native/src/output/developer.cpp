@@ -27,7 +27,7 @@ constexpr int kPixels = 4096;  // Number of pixels that one task handles.
 auto value_of(const film::Film& film, uint32_t reconstruction, const std::vector<float>& image) {
   const float exposure = film.settings.film_exposure,
               minimum = reconstruct::keeps_negative(reconstruction) ? -INFINITY : 0.0f;
-  const auto channels = size_t(film.channels);
+  const auto channels = size_t(film.color_channels);
   return [&image, exposure, minimum, channels](size_t i, size_t c) {
     return exposure * std::max(image[i * channels + c], minimum);
   };
@@ -37,7 +37,7 @@ auto value_of(const film::Film& film, uint32_t reconstruction, const std::vector
 std::vector<float> crop_picture(const film::Film& film, uint32_t reconstruction, const std::vector<float>& image,
                                 const Region& region) {
   std::vector<float> rgba(size_t(region.area()) * 4);
-  const auto channels = size_t(film.channels);
+  const auto channels = size_t(film.color_channels);
   const auto of_pixel = value_of(film, reconstruction, image);
   for_pixels(film, region, [&](size_t i, size_t out) {
     for (size_t c = 0; c < 3; ++c) rgba[4 * out + c] = of_pixel(i, c);
@@ -49,7 +49,7 @@ std::vector<float> crop_picture(const film::Film& film, uint32_t reconstruction,
 // Returns RGB of `region` for each component, clamped as the whole picture is. `images` are the reconstructed
 // components of the whole film region.
 Images crop_components(const film::Film& film, uint32_t reconstruction, Images images, const Region& region) {
-  reconstruct::clamp_components(reconstruction, film.channels, &images);
+  reconstruct::clamp_components(reconstruction, film.color_channels, &images);
   for (std::vector<float>& image : images) {
     std::vector<float> rgb(size_t(region.area()) * 3);
     const auto of_pixel = value_of(film, reconstruction, image);

@@ -3,7 +3,7 @@
 namespace gradus::output {
 namespace {
 
-reconstruct::HalfSums sums_of(const film::PassPlane& plane, size_t pixel) {
+reconstruct::HalfSums sums_of(const film::Channel& plane, size_t pixel) {
   reconstruct::HalfSums sums;
   for (int half = 0; half < film::kHalves; ++half) {
     const float* const v = plane.values[half].data() + 3 * pixel;
@@ -18,7 +18,7 @@ reconstruct::HalfSums remainder_of(const film::Film& film, const LightPassPlanes
     for (const film::ComponentPlanes& component : film.components)
       remainder[half] += Rgb(component.primal[half][pixel]);
   }
-  for (const film::PassPlane* plane : planes) {
+  for (const film::Channel* plane : planes) {
     const reconstruct::HalfSums sums = sums_of(*plane, pixel);
     for (int half = 0; half < film::kHalves; ++half) remainder[half] -= sums[half];
   }
@@ -27,7 +27,7 @@ reconstruct::HalfSums remainder_of(const film::Film& film, const LightPassPlanes
 
 }  // namespace
 
-reconstruct::HalvedImage read_light_pass(const film::Film& film, const film::PassPlane& plane) {
+reconstruct::HalvedImage read_light_pass(const film::Film& film, const film::Channel& plane) {
   return reconstruct::read_halves(film, [&](size_t i) { return sums_of(plane, i); });
 }
 
@@ -35,7 +35,7 @@ reconstruct::HalvedImage read_remainder(const film::Film& film, const LightPassP
   return reconstruct::read_halves(film, [&](size_t i) { return remainder_of(film, planes, i); });
 }
 
-film::FeatureImage read_color(const film::Film& film, const film::PassPlane& plane) {
+film::FeatureImage read_color(const film::Film& film, const film::Channel& plane) {
   film::FeatureImage color{3, std::vector<float>(3 * size_t(film.region.area())), {}};
   for (size_t i = 0; i < color.values.size(); ++i) {
     const uint32_t n = film::samples_at(film, i / 3);

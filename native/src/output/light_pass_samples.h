@@ -8,14 +8,14 @@
 
 namespace gradus::output {
 
-using LightPassPlanes = std::vector<const film::PassPlane*>;
+using LightPassPlanes = std::vector<const film::Channel*>;
 
 // Returns the half-buffers of a light pass with three channels. The plane must be stored in halves. Where a
 // half-buffer has no samples, the difference from the surrounding pixels serves as the estimate of the noise.
-reconstruct::HalvedImage read_light_pass(const film::Film& film, const film::PassPlane& plane);
+reconstruct::HalvedImage read_light_pass(const film::Film& film, const film::Channel& plane);
 // Returns the half-buffers of the light that none of the given planes contains.
 reconstruct::HalvedImage read_remainder(const film::Film& film, const LightPassPlanes& planes);
 // Returns the mean over the samples of each pixel of a colour pass, 0 where there are no samples.
-film::FeatureImage read_color(const film::Film& film, const film::PassPlane& plane);
+film::FeatureImage read_color(const film::Film& film, const film::Channel& plane);
 
 }  // namespace gradus::output

@@ -5,7 +5,8 @@
 #include <limits>
 
 #include "base/cancel_check.h"
-#include "film/pass_planes.h"
+#include "base/fault.h"
+#include "film/film.h"
 #include "output/light_pass_samples.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/feature_filter.h"
@@ -23,16 +24,16 @@ constexpr float kMinColor = 1e-6f;
 
 LightPassPlanes light_planes(const film::Film& film) {
   LightPassPlanes planes;
-  for (const film::PassPlane& plane : film.passes) {
+  for (const film::Channel& plane : film.channels) {
     if (schema::has_bit(schema::light_passes(), plane.pass)) planes.push_back(&plane);
   }
   return planes;
 }
 
 // Returns the colour plane by which the pass is divided, or nullptr if there is none.
-const film::PassPlane* color_plane(const film::Film& film, const film::PassPlane& plane) {
+const film::Channel* color_plane(const film::Film& film, const film::Channel& plane) {
   const schema::PassInfo& info = schema::pass_info(plane.pass);
-  return info.kind == schema::PassKind::Light ? film::find_plane(film, info.color) : nullptr;
+  return info.kind == schema::PassKind::Light ? film.channels.of_pass(info.color) : nullptr;
 }
 
 // Returns the first three of `channels` interleaved channels for the pixels of `whole` that lie in `region`.
@@ -88,9 +89,9 @@ class Guides {
   // Returns the features for one light pass. Diffuse light has the texture of its own colour pass. Reflections and
   // refractions have the texture of the surfaces that the mirror or the glass shows, which the albedo of the film's
   // features holds. The colour pass serves for them only if the film has no features.
-  film::Features of(const film::Film& film, const film::PassPlane& plane) const {
+  film::Features of(const film::Film& film, const film::Channel& plane) const {
     film::Features own = shared_;
-    const film::PassPlane* const color = color_plane(film, plane);
+    const film::Channel* const color = color_plane(film, plane);
     if (color != nullptr && (!has_features_ || color->pass == GRADUS_PASS_DIFFUSE_COLOR))
       own.albedo = read_color(film, *color);
     return own;
@@ -130,14 +131,15 @@ reconstruct::PictureTerm make_term(const film::Film& film, const Region& region,
                                    reconstruct::HalvedImage sampled, const CancelCheck& cancel) {
   throw_if_cancelled(cancel);
   reconstruct::PictureTerm term = reconstruct::regress_term(guides, std::move(sampled), cancel);
-  term.image = crop(term.image, film, region, film.settings.film_exposure);
+  term.image =
+      crop(term.image, film, region, GRADUS_FAULT(light_passes_lack_exposure) ? 1.0f : film.settings.film_exposure);
   term.error = crop(term.error, film, region);  // Only ratios of errors matter, so the exposure is left out.
   return term;
 }
 
 }  // namespace
 
-bool has_light_passes(const film::Film& film) { return (film::film_passes(film) & schema::light_passes()) != 0; }
+bool has_light_passes(const film::Film& film) { return (film.channels.passes() & schema::light_passes()) != 0; }
 
 std::map<uint32_t, std::vector<float>> split_light(const film::Film& film, const Region& region,
                                                    const std::vector<float>& rgba, const CancelCheck& cancel) {
@@ -146,14 +148,14 @@ std::map<uint32_t, std::vector<float>> split_light(const film::Film& film, const
   const Guides guides(film, region, whole);
   std::vector<reconstruct::PictureTerm> terms;
   std::vector<reconstruct::Field> colors;
-  for (const film::PassPlane* plane : planes) {
+  for (const film::Channel* plane : planes) {
     terms.push_back(make_term(film, region, guides.of(film, *plane), read_light_pass(film, *plane), cancel));
-    const film::PassPlane* const color = color_plane(film, *plane);
+    const film::Channel* const color = color_plane(film, *plane);
     colors.push_back(color != nullptr ? to_field(read_color(film, *color).values, 3, film.region, region)
                                       : reconstruct::Field());
     if (color != nullptr) terms.back().room = room_of(colors.back());
   }
-  const bool are_all = (film::film_passes(film) & schema::light_passes()) == schema::light_passes();
+  const bool are_all = (film.channels.passes() & schema::light_passes()) == schema::light_passes();
   if (!are_all) terms.push_back(make_term(film, region, guides.shared(), read_remainder(film, planes), cancel));
   throw_if_cancelled(cancel);
   reconstruct::add_up(whole, &terms);

@@ -11,9 +11,9 @@
 #include <tbb/parallel_for.h>
 
 #include "base/error.h"
+#include "base/fault.h"
 #include "base/fpu.h"
-#include "film/pass_planes.h"
-#include "film/read_pixels.h"
+#include "film/film.h"
 #include "schema/pass_table.h"
 
 namespace gradus::output {
@@ -53,14 +53,25 @@ void for_runs(const Region& region, const Function& function) {
                     });
 }
 
-// Calls function(i, out) for each pixel of the region: its index in the planes of the film and its index in the region.
+// Calls function(first, out) for each row of the region, with the indices of its first pixel: in the planes of the film
+// and in the region.
 template <class Function>
-void for_pixels(const film::Film& film, const Region& region, const Function& function) {
+void for_rows(const film::Film& film, const Region& region, const Function& function) {
   for_runs(region, [&](int32_t first, int32_t last) {
     size_t out = size_t(first - region.y0) * size_t(region.width());
     for (int32_t y = first; y < last; ++y) {
-      for (int32_t x = region.x0; x < region.x1; ++x) function(film.index(x, y), out++);
+      if (GRADUS_FAULT(last_row_of_passes_lost) && y == region.y1 - 1) continue;
+      function(film.index(region.x0, y), out);
+      out += size_t(region.width());
     }
+  });
+}
+
+// Calls function(i, out) for each pixel of the region: its index in the planes of the film and its index in the region.
+template <class Function>
+void for_pixels(const film::Film& film, const Region& region, const Function& function) {
+  for_rows(film, region, [&](size_t first, size_t out) {
+    for (size_t i = first; i < first + size_t(region.width()); ++i) function(i, out++);
   });
 }
 
@@ -68,7 +79,7 @@ void for_pixels(const film::Film& film, const Region& region, const Function& fu
 // function(pixel, out) for each pixel of the region, with its values and its index in the region.
 template <class Read, class Function>
 void for_rows_of_frame(const film::Film& film, const Region& region, const Read& read, const Function& function) {
-  const auto channels = size_t(film.channels), width = size_t(region.width());
+  const auto channels = size_t(film.color_channels), width = size_t(region.width());
   for_runs(region, [&](int32_t first, int32_t last) {
     std::vector<float> row(size_t(film.region.width()) * channels);
     for (int32_t y = first; y < last; ++y) {
@@ -94,7 +105,7 @@ void read_noisy(const film::Film& film, const Region& region, float* pixels) {
     const Radiance mean = sum * inverse_count(film, i);
     float* p = pixels + 4 * out;
     for (int c = 0; c < 3; ++c) p[c] = exposure * mean[c];
-    p[3] = film.channels == 4 ? std::clamp(mean.w, 0.0f, 1.0f) : (film::samples_at(film, i) > 0 ? 1.0f : 0.0f);
+    p[3] = film.color_channels == 4 ? std::clamp(mean.w, 0.0f, 1.0f) : (film::samples_at(film, i) > 0 ? 1.0f : 0.0f);
   });
 }
 
@@ -136,15 +147,14 @@ void read_derived(const film::Film& film, uint32_t pass, const Region& region, f
       return for_pixels(film, region,
                         [&](size_t i, size_t out) { pixels[out] = static_cast<float>(film::samples_at(film, i)); });
     default:
-      return for_pixels(film, region,
-                        [&](size_t i, size_t out) { pixels[out] = film.fallback[i] * inverse_count(film, i); });
+      return;
   }
 }
 
 // Writes the sum of radiance divided by the sum of colours. The product of the pass and its colour pass is the radiance
 // again, as compositing of Cycles' passes expects.
-void read_light(const film::Film& film, const film::PassPlane& light, const film::PassPlane& color,
-                const Region& region, float* pixels) {
+void read_light(const film::Film& film, const film::Channel& light, const film::Channel& color, const Region& region,
+                float* pixels) {
   for_pixels(film, region, [&](size_t i, size_t out) {
     for (int c = 0; c < 3; ++c) {
       const float divisor = color.values[0][3 * i + c];
@@ -155,22 +165,14 @@ void read_light(const film::Film& film, const film::PassPlane& light, const film
   });
 }
 
-void read_stored(const film::Film& film, const schema::PassInfo& info, const film::PassPlane& plane,
-                 const Region& region, float* pixels) {
-  const float scale = info.kind == schema::PassKind::Radiance ? film.settings.film_exposure : 1.0f;
-  for_pixels(film, region, [&](size_t i, size_t out) {
-    float factor = 1.0f;
-    if (info.kind == schema::PassKind::Weighted) {
-      factor = plane.weight[i] > 0.0f ? 1.0f / plane.weight[i] : 0.0f;
-    } else if (info.kind != schema::PassKind::First) {
-      factor = scale * inverse_count(film, i);
-    }
-    for (uint32_t c = 0; c < info.channels; ++c) {
-      const size_t value = info.channels * i + c;
-      pixels[info.channels * out + c] =
-          factor * (plane.in_halves ? plane.values[0][value] + plane.values[1][value] : plane.values[0][value]);
-    }
-    if (info.pass == GRADUS_PASS_DEPTH && pixels[out] == 0.0f) pixels[out] = schema::kFarDepth;
+void read_stored(const film::Film& film, const film::Channel& channel, const Region& region, float* pixels) {
+  const bool is_light = channel.info.type == film::ValueType::kRadiance;
+  const float scale = is_light ? film.settings.film_exposure : 1.0f;
+  const auto width = size_t(region.width());
+  for_rows(film, region, [&](size_t first, size_t out) {
+    float* row = pixels + channel.info.values_per_pixel * out;
+    film::read_channel(film, channel, {}, first, width, scale, row);
+    if (channel.pass == GRADUS_PASS_DEPTH) std::replace(row, row + width, 0.0f, schema::kFarDepth);
   });
 }
 
@@ -178,11 +180,10 @@ void read_stored(const film::Film& film, const schema::PassInfo& info, const fil
 
 bool has_pass(const film::Film& film, uint32_t pass) {
   const schema::PassInfo& info = schema::pass_info(pass);
-  if (pass == GRADUS_PASS_FALLBACK) return !film.fallback.empty();
   if (info.kind == schema::PassKind::Image || info.kind == schema::PassKind::Derived ||
       info.kind == schema::PassKind::Sequence)
     return true;
-  return film::find_plane(film, pass) != nullptr;
+  return film.channels.of_pass(pass) != nullptr;
 }
 
 void read_film_pass(const film::Film& film, uint32_t pass, const Region& region, float* pixels) {
@@ -195,10 +196,10 @@ void read_film_pass(const film::Film& film, uint32_t pass, const Region& region,
     std::fill_n(pixels, size_t(region.area()) * info.channels, 0.0f);
     return;
   }
-  const film::PassPlane* plane = film::find_plane(film, pass);
+  const film::Channel* plane = film.channels.of_pass(pass);
   if (info.kind == schema::PassKind::Light)
-    return read_light(film, *plane, *film::find_plane(film, info.color), region, pixels);
-  read_stored(film, info, *plane, region, pixels);
+    return read_light(film, *plane, *film.channels.of_pass(info.color), region, pixels);
+  read_stored(film, *plane, region, pixels);
 }
 
 }  // namespace gradus::output

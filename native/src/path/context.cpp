@@ -10,15 +10,15 @@ namespace gradus::path {
 
 namespace {
 
-// Blender's value bounds the mean of the channels; 0 is "no limit".
+// Returns the maximum sum of the channels for Blender's clamp, which is the maximum mean; 0 means no limit.
 float sum_limit(float clamp) { return clamp > 0.0f ? 3.0f * clamp : kInfinity; }
 
-// Hidden from some kinds of bounces and not from others.
+// Returns whether an object is visible to some kinds of bounces and hidden from others.
 bool distinguishes_kinds(uint32_t visibility) {
   return (visibility & kAllBounces) != 0 && (visibility & kAllBounces) != kAllBounces;
 }
 
-bool kinds_matter_in(const scene::Snapshot& scene) {
+bool finds_kinds_matter(const scene::Snapshot& scene) {
   const auto any = [](const auto& list, auto&& test) { return std::any_of(list.begin(), list.end(), test); };
   return distinguishes_kinds(scene.world.visibility) ||
          any(scene.materials, [](const auto& m) { return m->depends_on_kind; }) ||
@@ -28,7 +28,7 @@ bool kinds_matter_in(const scene::Snapshot& scene) {
           }));
 }
 
-bool is_uniform(const scene::Snapshot& scene) {
+bool has_uniform_visibility(const scene::Snapshot& scene) {
   constexpr uint32_t bounces = kAllBounces | GRADUS_VISIBLE_SHADOW;
   for (const geometry::InstanceData& instance : scene.instances) {
     const uint32_t bits = instance.visibility & bounces;
@@ -39,7 +39,7 @@ bool is_uniform(const scene::Snapshot& scene) {
   return true;
 }
 
-bool lets_through(const scene::Snapshot& scene) {
+bool finds_transparency(const scene::Snapshot& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(),
                      [](const auto& material) { return material->may_be_transparent; });
 }
@@ -55,9 +55,9 @@ PathContext::PathContext(const scene::Snapshot& snapshot, const camera::Camera& 
       filter(settings_.pixel_filter, settings_.filter_width),
       clamp_direct(sum_limit(settings_.clamp_direct)),
       clamp_indirect(sum_limit(settings_.clamp_indirect)),
-      has_transparency(lets_through(snapshot)),
-      uniform_visibility(is_uniform(snapshot)),
-      kinds_matter(kinds_matter_in(snapshot)) {}
+      has_transparency(finds_transparency(snapshot)),
+      uniform_visibility(has_uniform_visibility(snapshot)),
+      kinds_matter(finds_kinds_matter(snapshot)) {}
 
 camera::CameraSample camera_sample(const PathContext& context, const Sampler& sampler, const Vec2& film) {
   camera::CameraSample sample{film};

@@ -1,4 +1,4 @@
-// What all samples of a render share: the scene and the settings in the form in which paths need them.
+// The scene and the settings in the form that paths need, shared by all samples of a render.
 #pragma once
 
 #include "camera/camera.h"
@@ -23,28 +23,27 @@ struct PathContext {
   const GradusSettings& settings;
   const lpe::ComponentSet components;
   camera::FilmFilter filter;
-  // Bounds on the sum of the channels of one contribution (infinite: none), as Cycles clamps.
+  // Maximum sum of the channels of one contribution, as Cycles clamps; infinite without a limit.
   float clamp_direct = kInfinity;
   float clamp_indirect = kInfinity;
-  // Some surface may let rays go straight on.
+  // At least one material may let rays pass.
   bool has_transparency = true;
-  // All surfaces look the same to every kind of bounce and to shadow rays, so that a shadow ray answers for a path
-  // segment.
+  // Every surface is visible to all kinds of bounces and to shadow rays, or to none of them. Then a shadow ray can
+  // stand for a path segment.
   bool uniform_visibility = true;
-  // What a ray finds depends on the kind of bounce that it comes from: on visibility to kinds of rays, or on a Light
+  // What a ray finds depends on the kind of the bounce that it comes from, because of visibility flags, or of a Light
   // Path node in front of an emission or a transparency.
   bool kinds_matter = false;
 };
 
-// Lens and time of a sample, where the scene asks for them.
+// Returns the camera sample of a film position. Takes a lens point and a time only if the scene needs them.
 camera::CameraSample camera_sample(const PathContext& context, const Sampler& sampler, const Vec2& film);
 
 inline Vec2 pixel_centre(int32_t x, int32_t y) {
   return Vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
 }
 
-// A contribution, clamped by the rule of its kind; keeps the hue (Cycles' film_clamp_light; a user's value bounds the
-// channels' mean).
+// Returns a contribution scaled down to the clamp of direct or indirect light (as film_clamp_light in Cycles).
 inline Rgb clamp_contribution(const PathContext& context, const Rgb& value, bool indirect) {
   const float limit = indirect ? context.clamp_indirect : context.clamp_direct;
   const float sum = glm::abs(value.x) + glm::abs(value.y) + glm::abs(value.z);

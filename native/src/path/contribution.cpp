@@ -4,10 +4,10 @@ namespace gradus::path {
 
 namespace {
 
-// Light that a ray found after `depth` scatterings is indirect where one of them was not the last vertex's own (Cycles'
-// bounce − 1).
-Contribution found(const PathContext& context, const RaySource& source, const PathState& state, const Rgb& throughput,
-                   const Rgb& radiance, float pdf_light) {
+// Returns the contribution of an emitter that the path's ray has found. As in Cycles, it is indirect after at least two
+// scattering events.
+Contribution found_contribution(const PathContext& context, const RaySource& source, const PathState& state,
+                                const Rgb& throughput, const Rgb& radiance, float pdf_light) {
   Contribution c;
   c.pdf_light = pdf_light;
   c.pdf_bsdf = source.sampled_light() ? source.event->pdf : 0.0f;
@@ -24,16 +24,16 @@ Contribution found(const PathContext& context, const RaySource& source, const Pa
 void apply_segment(const Segment& segment, PathState* state) { state->throughput *= segment.weight; }
 
 Contribution light_hit_contribution(const PathContext& context, const RaySource& source, const PathState& state,
-                                    const LightCrossing& light_crossing) {
+                                    const LightCrossing& crossing) {
   const light::Receiver eye{state.ray.ray.origin, Vec3(0.0f), true};
   const light::Receiver receiver = source.vertex != nullptr ? receiver_of(*source.vertex) : eye;
-  const light::LightEvaluation view = light::evaluate_light(context.scene, light_crossing.point, receiver);
-  const Rgb radiance = light_hit_radiance(context, view, state.ray, state.depth);
+  const light::LightEvaluation view = light::evaluate_light(context.scene, crossing.point, receiver);
+  const Rgb radiance = light_hit_radiance(view, state.ray, state.depth);
   if (is_black(radiance)) {
     return {};
   }
-  return found(context, source, state, state.throughput * light_crossing.weight, radiance,
-               source.sampled_light() ? view.pdf : 0.0f);
+  return found_contribution(context, source, state, state.throughput * crossing.weight, radiance,
+                            source.sampled_light() ? view.pdf : 0.0f);
 }
 
 Contribution world_contribution(const PathContext& context, const RaySource& source, const PathState& state) {
@@ -44,7 +44,7 @@ Contribution world_contribution(const PathContext& context, const RaySource& sou
   const light::LightPoint point = source.sampled_light()
                                       ? light::light_point_of_world(context.scene, state.ray.ray.direction)
                                       : light::LightPoint{};
-  return found(context, source, state, state.throughput, radiance, light_pdf(context, source, point));
+  return found_contribution(context, source, state, state.throughput, radiance, light_pdf(context, source, point));
 }
 
 Contribution emission_contribution(const PathContext& context, const RaySource& source, const PathState& state,
@@ -54,7 +54,8 @@ Contribution emission_contribution(const PathContext& context, const RaySource& 
   }
   const light::LightPoint point =
       source.sampled_light() ? light::light_point_of_surface(context.scene, vertex.point) : light::LightPoint{};
-  return found(context, source, state, state.throughput, vertex.shade.emission, light_pdf(context, source, point));
+  return found_contribution(context, source, state, state.throughput, vertex.shade.emission,
+                            light_pdf(context, source, point));
 }
 
 bool light_classes(const PathContext& context, const Vertex& vertex, const LightSample& light,

@@ -1,41 +1,45 @@
-// What a path adds to its pixel, one emitter at a time.
+// Contributions of a path to its pixel, one for each emitter that it finds.
 #pragma once
 
 #include "path/light.h"
 
 namespace gradus::path {
 
-// throughput·tail, clamped. The tail holds all that lies behind the throughput (scattering in next-event estimation,
-// radiance, weight); a path that shares it only has another throughput.
+// The contribution is throughput·tail, clamped. The tail is everything behind the throughput: the BSDF in next-event
+// estimation, radiance, and the weight of multiple importance sampling. A path that shares the tail differs by its
+// throughput only.
 struct Contribution {
   Rgb clamped = Rgb(0.0f);
   Rgb tail = Rgb(0.0f);
-  Rgb light = Rgb(0.0f);   // of the tail: what a ray found; in next-event estimation the transmittance
-  float pdf_light = 0.0f;  // of the techniques that could have found the emitter, in solid angle
+  Rgb light = Rgb(0.0f);  // factor of the tail: radiance found by a ray, or transmittance in next-event estimation
+  // Densities of the two techniques that could have found the emitter, in solid angle.
+  float pdf_light = 0.0f;
   float pdf_bsdf = 0.0f;
   bool indirect = false;
   int component = 0;
 };
 
-// The path passes a segment.
+// Multiplies the throughput by the weight of a segment.
 void apply_segment(const Segment& segment, PathState* state);
 
-// Emitters that the path's ray found: state before apply_segment() for lights, after it for the others.
+// Return the contribution of an emitter that the path's ray has found, black if it is not visible. `state` is that
+// before apply_segment() for analytic lights, and that after it for the world and surfaces.
 Contribution light_hit_contribution(const PathContext& context, const RaySource& source, const PathState& state,
-                                    const LightCrossing& light_crossing);
+                                    const LightCrossing& crossing);
 Contribution world_contribution(const PathContext& context, const RaySource& source, const PathState& state);
 Contribution emission_contribution(const PathContext& context, const RaySource& source, const PathState& state,
                                    const Vertex& vertex);
 
-// Next-event estimation. False: no class scatters the light.
+// Evaluates a light sample in all classes, shadows excluded. Returns whether at least one class scatters its light.
 bool light_classes(const PathContext& context, const Vertex& vertex, const LightSample& light,
                    const shading::RayState& ray, LitClass lit[bsdf::kScatterClasses]);
+// Returns the contribution of a light sample in one class. `state` is that on arrival at the vertex.
 Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light,
                                 bsdf::ScatterClass scatter_class, const LitClass& lit, const Rgb& transmittance);
 
-// The surface is cut out of the film.
+// Returns whether the surface is a holdout object, which the film shows as transparent.
 bool is_holdout(const PathContext& context, const Vertex& vertex);
-// Part of the film that a surface with holdout leaves transparent.
+// Returns the part of the film that a surface with the given holdout closure leaves transparent.
 float holdout_alpha(const Rgb& throughput, const Rgb& holdout);
 
 }  // namespace gradus::path

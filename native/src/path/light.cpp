@@ -6,8 +6,8 @@ namespace gradus::path {
 
 namespace {
 
-// Which light passes an emitter with these visibility bits may be scattered by, for a direction on this side.
-bool sees(uint32_t visibility, bsdf::LightPass pass, bool transmitted) {
+// Returns whether a light with these visibility bits is visible to bounces of a light pass.
+bool is_visible_to(uint32_t visibility, bsdf::LightPass pass, bool transmitted) {
   return (visibility & bounce_visibility(pass, transmitted)) != 0;
 }
 
@@ -31,21 +31,21 @@ std::array<Rgb, 3> light_by_pass(const PathContext& context, const Vertex& verte
                                  const LightSample& light, const shading::RayState& ray) {
   const light::LightEvaluation& view = light.view;
   const bool transmitted = glm::dot(vertex.light_normal(), view.direction) < 0.0f;
-  std::array<Rgb, 3> parts = vertex.shade.closures.evaluate_by_pass(c, vertex.wo, view.direction, transmitted);
+  std::array<Rgb, 3> passes = vertex.shade.closures.evaluate_by_pass(c, vertex.wo, view.direction, transmitted);
   for (int i = 0; i < 3; ++i) {
     const auto pass = static_cast<bsdf::LightPass>(i);
-    if (is_black(parts[i])) continue;
-    if (!sees(view.visibility, pass, transmitted)) {
-      parts[i] = Rgb(0.0f);
+    if (is_black(passes[i])) continue;
+    if (!is_visible_to(view.visibility, pass, transmitted)) {
+      passes[i] = Rgb(0.0f);
     } else if (!view.by_kind) {
-      parts[i] *= view.radiance;
+      passes[i] *= view.radiance;
     } else {
       shading::RayState next = next_ray_state(ray, pass == bsdf::LightPass::Diffuse, transmitted, false);
       next.length = view.distance;
-      parts[i] *= light::evaluated_radiance(context.scene, light.point, view, next);
+      passes[i] *= light::evaluated_radiance(context.scene, light.point, view, next);
     }
   }
-  return parts;
+  return passes;
 }
 
 LitClass light_class(const PathContext& context, const Vertex& vertex, bsdf::ScatterClass c, const LightSample& light,
@@ -64,8 +64,8 @@ LitClass light_class(const PathContext& context, const Vertex& vertex, bsdf::Sca
   lit.value = eval.value * view.radiance;
   lit.pdf_bsdf = found_by_rays ? probability * eval.pdf : 0.0f;
   if (view.by_kind || (view.visibility & kAllBounces) != kAllBounces) {
-    const std::array<Rgb, 3> parts = light_by_pass(context, vertex, c, light, ray);
-    lit.value = parts[0] + parts[1] + parts[2];
+    const std::array<Rgb, 3> passes = light_by_pass(context, vertex, c, light, ray);
+    lit.value = passes[0] + passes[1] + passes[2];
   }
   return lit;
 }
@@ -90,7 +90,7 @@ float light_pdf(const PathContext& context, const RaySource& source, const light
   return light::light_point_pdf(context.scene, point, receiver_of(*source.vertex));
 }
 
-Rgb light_hit_radiance(const PathContext&, const light::LightEvaluation& view, const PathRay& ray, int depth) {
+Rgb light_hit_radiance(const light::LightEvaluation& view, const PathRay& ray, int depth) {
   const bool visible = (view.visibility & ray.visibility) != 0;
   const bool within = depth == 0 || static_cast<uint32_t>(depth - 1) <= view.max_bounces;
   return visible && within ? view.radiance : Rgb(0.0f);

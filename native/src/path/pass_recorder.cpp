@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "film/finite_check.h"
-#include "geometry/mesh.h"
+#include "geometry/surface_values.h"
 #include "schema/pass_table.h"
 #include "shading/material.h"
 
@@ -12,19 +12,19 @@ namespace gradus::path {
 
 namespace {
 
-PassShare whole(bsdf::LightPass pass) {
+PassShare full_share(bsdf::LightPass pass) {
   PassShare share{Rgb(0.0f), Rgb(0.0f), Rgb(0.0f)};
   share[static_cast<int>(pass)] = Rgb(1.0f);
   return share;
 }
 
-// Per channel; where a channel has no light at all it does not matter who gets it.
-PassShare share_of(const std::array<Rgb, 3>& parts) {
-  const Rgb sum = parts[0] + parts[1] + parts[2];
+// Returns the share of each light pass in their sum. A channel without light goes to the first pass.
+PassShare share_of(const std::array<Rgb, 3>& passes) {
+  const Rgb sum = passes[0] + passes[1] + passes[2];
   PassShare share;
   for (int pass = 0; pass < 3; ++pass) {
     for (int c = 0; c < 3; ++c) {
-      share[pass][c] = sum[c] != 0.0f ? parts[pass][c] / sum[c] : (pass == 0 ? 1.0f : 0.0f);
+      share[pass][c] = sum[c] != 0.0f ? passes[pass][c] / sum[c] : (pass == 0 ? 1.0f : 0.0f);
     }
   }
   return share;
@@ -34,18 +34,18 @@ constexpr uint32_t first_pass(int light_pass) {
   return GRADUS_PASS_DIFFUSE_DIRECT + 3u * static_cast<uint32_t>(light_pass);
 }
 
-// As Blender's pass has it: u, v, 1; 0 without a UV map.
-Vec3 uv_of(const geometry::MeshData& mesh, const geometry::Hit& hit) {
-  const geometry::MeshAttribute* map = geometry::default_uv_map(mesh);
+// Returns (u, v, 1) for Blender's UV pass, or 0 without a UV map.
+Vec3 uv_of(const geometry::InstanceData& instance, const geometry::Hit& hit) {
+  const geometry::MeshAttribute* map = geometry::default_uv_map(*instance.mesh);
   if (map == nullptr) {
     return Vec3(0.0f);
   }
-  const Vec4 uv = geometry::interpolate(geometry::corner_values(mesh, *map, hit.triangle), hit.barycentric);
+  const Vec4 uv = geometry::attribute_at(instance, *map, hit);
   return Vec3(uv.x, uv.y, 1.0f);
 }
 
-// Of a length.
-float inverse_of(float length) { return 1.0f / std::max(length, 1e-10f); }
+// Returns 1 / depth, bounded for a depth of 0.
+float inverse_depth(float depth) { return 1.0f / std::max(depth, 1e-10f); }
 
 Vec3 shown_normal(const Vertex& vertex) {
   if (!vertex.shade.closures.empty()) {
@@ -59,13 +59,15 @@ Vec3 shown_normal(const Vertex& vertex) {
 
 PassRecorder::PassRecorder(const PathContext& context, film::Film* film, film::Counters* counters)
     : context_(context), counters_(counters) {
-  for (film::PassPlane& plane : film->passes) {
+  for (film::Channel& plane : film->channels) {
+    // Integrators fill other channels, and pixel loops count the samples with replaced nodes.
+    if (plane.pass == GRADUS_PASS_COUNT || plane.pass == GRADUS_PASS_FALLBACK) continue;
     planes_[plane.pass] = &plane;
     active_ = true;
-    lights_ |= plane.pass >= GRADUS_PASS_EMISSION && plane.pass <= GRADUS_PASS_TRANSMISSION_COLOR;
+    has_light_passes_ |= plane.pass >= GRADUS_PASS_EMISSION && plane.pass <= GRADUS_PASS_TRANSMISSION_COLOR;
     const bool is_feature = schema::pass_info(plane.pass).kind == schema::PassKind::Feature;
-    features_ |= is_feature;
-    others_ |= !is_feature;
+    has_features_ |= is_feature;
+    has_data_ |= !is_feature;
   }
   records_non_specular_ = !film->components[0].non_specular[0].empty();
   records_details_ = !film->components[0].details.empty();
@@ -81,7 +83,7 @@ void PassRecorder::begin_sample(size_t pixel, int half, uint32_t number, bool ad
   number_ = number;
   first_sample_ = number == context_.settings.first_sample;
   adds_components_ = adds_components;
-  features_done_ = !features_ || adds_components;
+  features_done_ = !has_features_ || adds_components;
   seeks_non_specular_ = components_ != nullptr && !adds_components;
   detail_components_ = vertex_components_ = 0;
   path_length_ = 0.0f;
@@ -89,14 +91,14 @@ void PassRecorder::begin_sample(size_t pixel, int half, uint32_t number, bool ad
 }
 
 void PassRecorder::add(uint32_t pass, const Vec4& value) {
-  film::PassPlane* target = plane(pass);
-  if (target != nullptr && (first_sample_ || !target->first_sample_only)) {
+  film::Channel* target = plane(pass);
+  if (target != nullptr && (first_sample_ || !target->keeps_first_sample())) {
     film::add_feature(&value.x, 1.0f, pixel_, half_, target, counters_);
   }
 }
 
 void PassRecorder::add_light(int scatterings, const Rgb& value, const PassShare& share, uint32_t direct_pass) {
-  if (!lights_) {
+  if (!has_light_passes_) {
     return;
   }
   if (scatterings == 0) {
@@ -110,7 +112,7 @@ void PassRecorder::add_light(int scatterings, const Rgb& value, const PassShare&
 
 void PassRecorder::light(const PathState& state, const Vertex& vertex, bsdf::ScatterClass c, const LightSample& light,
                          const Rgb& value) {
-  if (!lights_) {
+  if (!has_light_passes_) {
     return;
   }
   const bool first = state.depth == 0;
@@ -122,27 +124,27 @@ void PassRecorder::light(const PathState& state, const Vertex& vertex, bsdf::Sca
 void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent& event) {
   seeks_non_specular_ = seeks_non_specular_ && event.scatter_class != bsdf::ScatterClass::Diffuse;
   detail_components_ = vertex_components_ = 0;
-  if (depth > 0 || !lights_) {
+  if (depth > 0 || !has_light_passes_) {
     return;
   }
   const bsdf::Closures& closures = vertex.shade.closures;
   if (event.sample.dirac) {
-    share_ = whole(closures.lobe(event.sample.lobe).pass);
+    share_ = full_share(closures.lobe(event.sample.lobe).pass);
     return;
   }
-  std::array<Rgb, 3> parts =
+  std::array<Rgb, 3> passes =
       closures.evaluate_by_pass(event.scatter_class, vertex.wo, event.sample.wi, event.sample.transmitted);
   for (int pass = 0; pass < 3 && event.by_kind; ++pass) {
     if ((static_cast<bsdf::LightPass>(pass) == bsdf::LightPass::Diffuse) != event.sample.diffuse)
-      parts[pass] = Rgb(0.0f);
+      passes[pass] = Rgb(0.0f);
   }
-  share_ = share_of(parts);
+  share_ = share_of(passes);
 }
 
 void PassRecorder::surface(const Sampler& sampler, const PathState& state, const Vertex& vertex,
                            const Segment& segment) {
   path_length_ += segment.length;
-  if (state.depth == 0 && others_ && !adds_components_) {
+  if (state.depth == 0 && has_data_ && !adds_components_) {
     camera_surface(sampler, state.throughput, vertex);
   }
   if (!features_done_) {
@@ -171,7 +173,7 @@ void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, con
   }
   mist(weight, vertex.point.position, vertex.point.hit.time);
   if (1.0f - mean_component(vertex.shade.transparency) < context_.settings.alpha_threshold) {
-    return;  // too thin for data passes
+    return;  // too transparent for data passes
   }
   const geometry::InstanceData& instance = context_.scene.instances[vertex.point.hit.instance];
   add(GRADUS_PASS_DEPTH, context_.camera.depth(vertex.point.position, vertex.point.hit.time));
@@ -180,7 +182,7 @@ void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, con
   add(GRADUS_PASS_MATERIAL_INDEX, static_cast<float>(context_.scene.materials[vertex.point.material]->pass_index));
   add(GRADUS_PASS_NORMAL, shown_normal(vertex));
   if (plane(GRADUS_PASS_UV) != nullptr) {
-    add(GRADUS_PASS_UV, uv_of(*instance.mesh, vertex.point.hit));
+    add(GRADUS_PASS_UV, uv_of(instance, vertex.point.hit));
   }
   if (plane(GRADUS_PASS_VECTOR) != nullptr) {
     motion(vertex);
@@ -188,7 +190,7 @@ void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, con
 }
 
 void PassRecorder::colors(const Rgb& weight, const Vertex& vertex) {
-  for (int pass = 0; pass < 3 && lights_; ++pass) {
+  for (int pass = 0; pass < 3 && has_light_passes_; ++pass) {
     if (plane(first_pass(pass) + 2) != nullptr) {
       add(first_pass(pass) + 2, weight * vertex.shade.closures.albedo(static_cast<bsdf::LightPass>(pass), vertex.wo));
     }
@@ -249,8 +251,8 @@ void PassRecorder::background_motion(const Vec3& direction) {
   add_motion([&](Moment moment, Vec2* film) { return context_.camera.project_direction(direction, moment, film); });
 }
 
-// Denoising features come from the first vertex that is not mostly a mirror or clear glass, as in Cycles, where what
-// shines counts as an albedo, too: lights and the sky, which have no closures, would else look like black.
+// Records the denoising features of the first vertex that is not mostly a mirror or clear glass, as in Cycles. Emission
+// counts as albedo, because lights and the sky have no closures and would be black.
 void PassRecorder::features(const PathState& state, const Vertex& vertex) {
   const bsdf::Closures& closures = vertex.shade.closures;
   add_albedo(state.throughput * vertex.shade.emission);
@@ -266,8 +268,8 @@ void PassRecorder::features(const PathState& state, const Vertex& vertex) {
   add(GRADUS_PASS_DENOISING_DEPTH, path_length_);
 }
 
-// The first rough vertex of all paths that scatter here in class D; some of them may have been seen in a mirror on the
-// way.
+// Returns the components, as bits, of paths whose first non-specular vertex this is: those that scatter here in class
+// D.
 uint32_t PassRecorder::components_of_non_specular(const PathState& state, const Vertex& vertex) const {
   if (!(vertex.shade.closures.class_probability(bsdf::ScatterClass::Diffuse) > 0.0f)) {
     return 0;
@@ -281,10 +283,10 @@ void PassRecorder::non_specular_vertex(const PathState& state, const Vertex& ver
     return;
   }
   record(ahead, film::NonSpecularVertices{vertex.shade.closures.albedo(vertex.wo), shown_normal(vertex),
-                                          inverse_of(path_length_), 1.0f});
+                                          inverse_depth(path_length_), 1.0f});
 }
 
-// Of a surface that is rough, or that shines.
+// Records details of a vertex that is non-specular or emits.
 void PassRecorder::details(const PathState& state, const Vertex& vertex) {
   uint32_t components = components_of_non_specular(state, vertex);
   if (!is_black(vertex.shade.emission)) components |= uint32_t{1} << context_.components.component(state.lpe_state);
@@ -294,11 +296,11 @@ void PassRecorder::details(const PathState& state, const Vertex& vertex) {
   const geometry::Hit& hit = vertex.point.hit;
   const geometry::InstanceData& instance = context_.scene.instances[hit.instance];
   const auto object = static_cast<float>(instance.pass_index),
-             face = static_cast<float>(instance.mesh->face(hit.triangle));
-  record(components, {uv_of(*instance.mesh, hit), vertex.shade.emission, 0.0f, object, face, number_});
+             face = static_cast<float>(instance.mesh->face(hit.primitive));
+  record(components, {uv_of(instance, hit), vertex.shade.emission, 0.0f, object, face, number_});
 }
 
-// What a segment shows counts once, be it several lights and the surface behind them.
+// Adds details to components. A segment counts once, even if it shows several lights and the surface behind them.
 void PassRecorder::record(uint32_t components, const film::NonSpecularDetails& here) {
   for (size_t c = 0; c < components_->size(); ++c) {
     if ((components >> c & 1) == 0) continue;
@@ -309,7 +311,8 @@ void PassRecorder::record(uint32_t components, const film::NonSpecularDetails& h
   detail_components_ |= components;
 }
 
-// Likewise: it is as far as the first of these, and reflects no more than all light.
+// Adds a vertex to components. A segment counts once, with the depth of the first emitter or surface on it, and the sum
+// of the reflectances is limited to 1.
 void PassRecorder::record(uint32_t components, const film::NonSpecularVertices& here) {
   for (size_t c = 0; c < components_->size(); ++c) {
     if ((components >> c & 1) == 0) continue;
@@ -329,10 +332,10 @@ void PassRecorder::record_emission(int component, const Rgb& light, float furthe
     return;
   }
   record(uint32_t{1} << component,
-         film::NonSpecularVertices{light, Vec3(0.0f), inverse_of(path_length_ + further), 1.0f});
+         film::NonSpecularVertices{light, Vec3(0.0f), inverse_depth(path_length_ + further), 1.0f});
 }
 
-// A sample's albedo stays in [0, 1], as denoisers expect it.
+// Adds to the denoising albedo. The sum of a sample stays in [0, 1], as denoisers expect.
 void PassRecorder::add_albedo(const Rgb& value) {
   const Rgb sum = glm::clamp(albedo_ + value, Rgb(0.0f), Rgb(1.0f));
   add(GRADUS_PASS_DENOISING_ALBEDO, sum - albedo_);

@@ -1,4 +1,5 @@
-// Data and light passes while sampling: what nobody asked for has no plane and costs a test of a pointer.
+// Records data passes, light passes and features while a path is traced. A pass that is not requested has no plane and
+// costs a test of a pointer.
 #pragma once
 
 #include <array>
@@ -7,53 +8,54 @@
 
 namespace gradus::path {
 
-// Share of each light pass (diffuse, glossy, transmission) in a contribution; sums to one per channel.
+// Share of each light pass (diffuse, glossy, transmission) in a contribution. The shares of a channel add up to 1.
 using PassShare = std::array<Rgb, 3>;
 
 class PassRecorder {
  public:
-  // Finds the planes of the frame. The frame must outlive the recorder.
+  // Finds the planes of the film, which must outlive the recorder.
   PassRecorder(const PathContext& context, film::Film* film, film::Counters* counters);
+  // Returns whether the film has anything to record.
   bool active() const { return active_; }
 
-  // again: all but the light was recorded before.
+  // Prepares for a sample. If `adds_components` is true, everything except light was recorded before.
   void begin_sample(size_t pixel, int half, uint32_t number, bool adds_components = false);
-  // surface() will look at the closures of the vertex with `depth` scatterings before it.
+  // Returns whether surface() needs the closures of the vertex with `depth` scattering events before it.
   bool needs_closures(int depth) const {
     return (depth == 0 && !adds_components_) || !features_done_ || seeks_non_specular_;
   }
-  // A vertex at which the path stops, before it scatters. throughput: the segment's weight included.
+  // Records a vertex at which the path stops, before it scatters. The state's throughput has the weight of the segment.
   void surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment);
-  // The ray left the scene.
+  // Records a ray that leaves the scene.
   void escaped(const PathState& state);
-  // The film sees nothing there: all is mist, as in Cycles.
+  // Records a film position without a camera ray, where mist is 1, as in Cycles.
   void no_ray() {
     if (!adds_components_) add(GRADUS_PASS_MIST, 1.0f);
   }
-  // A light or the world on the path's last segment, at a distance from where that begins, with the whole of the light
-  // that comes from there.
+  // Records an analytic light or the world on the last segment, at `distance` from its start. `light` is the radiance
+  // before any weight.
   void record_light(const Rgb& throughput, int component, const Rgb& light, float distance) {
     if (!features_done_) add_albedo(throughput * light);
     record_emission(component, light, distance);
     if (seeks_non_specular_ && records_details_ && !is_black(light))
       record(uint32_t{1} << component, {.emission = light});
   }
-  // Light that a ray found, before any weight. Seen in a mirror or behind glass it is a feature of its component, as
-  // the albedo is. further: than the path is long.
+  // Records radiance that a ray has found, before any weight, as a feature of its component. It stands for the albedo
+  // of what a mirror or glass shows. `further` is its distance from the end of the path so far.
   void record_emission(int component, const Rgb& light, float further = 0.0f);
-  // Light that was scattered `scatterings` times; 0: seen by the camera.
+  // Record the contribution of an emitter or the world after a number of scattering events, 0 if the camera sees it.
   void emission(int scatterings, const Rgb& value) { add_light(scatterings, value, share_, GRADUS_PASS_EMISSION); }
   void environment(int scatterings, const Rgb& value) {
     add_light(scatterings, value, share_, GRADUS_PASS_ENVIRONMENT);
   }
-  // Light that next-event estimation at a vertex, where the path arrived with `state`, found in one class.
+  // Records the contribution of next-event estimation in one class. `state` is that on arrival at the vertex.
   void light(const PathState& state, const Vertex& vertex, bsdf::ScatterClass c, const LightSample& light,
              const Rgb& value);
-  // The path scatters at a vertex with `depth` scatterings before it.
+  // Records that the path scatters at a vertex with `depth` scattering events before it.
   void scattered(int depth, const Vertex& vertex, const ScatterEvent& event);
 
  private:
-  film::PassPlane* plane(uint32_t pass) const { return planes_[pass]; }
+  film::Channel* plane(uint32_t pass) const { return planes_[pass]; }
   void add(uint32_t pass, const Vec4& value);
   void add(uint32_t pass, const Vec3& value) { add(pass, Vec4(value, 0.0f)); }
   void add(uint32_t pass, float value) { add(pass, Vec4(value, 0.0f, 0.0f, 0.0f)); }
@@ -62,7 +64,7 @@ class PassRecorder {
   void colors(const Rgb& weight, const Vertex& vertex);
   void ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex);
   void mist(const Rgb& weight, const Vec3& position, float time);
-  // project(moment, film): false where it is not on the film.
+  // Adds the motion vector of a point. project(moment, film) returns its film position, or false if it has none.
   template <class Project>
   void add_motion(const Project& project);
   void motion(const Vertex& vertex);
@@ -77,27 +79,30 @@ class PassRecorder {
 
   const PathContext& context_;
   film::Counters* counters_;
-  std::array<film::PassPlane*, GRADUS_PASS_COUNT> planes_{};
+  std::array<film::Channel*, GRADUS_PASS_COUNT> planes_{};
   bool active_ = false;
-  bool lights_ = false;
-  bool features_ = false;
-  bool others_ = false;                                       // planes that are no features
-  std::vector<film::ComponentPlanes>* components_ = nullptr;  // that keep rough vertices, or details of them
+  bool has_light_passes_ = false;
+  bool has_features_ = false;
+  bool has_data_ = false;  // the film has planes that are not features
+  // Components that record the first non-specular vertex, or details of it; null if there are none.
+  std::vector<film::ComponentPlanes>* components_ = nullptr;
   bool records_non_specular_ = false;
   bool records_details_ = false;
-  bool seeks_non_specular_ = false;  // the path has met none so far
-  uint32_t detail_components_ = 0;   // bits of components that know details of this segment
-  uint32_t vertex_components_ = 0;   // … its vertex, and of what reflectance
+  bool seeks_non_specular_ = false;  // the path has scattered in specular classes only
+  // Components, as bits, that have details of the current segment, and those that have its vertex, with its
+  // reflectance.
+  uint32_t detail_components_ = 0;
+  uint32_t vertex_components_ = 0;
   std::array<Rgb, lpe::kMaxComponents> recorded_reflectance_{};
-  uint32_t number_ = 0;  // of the sample
+  uint32_t number_ = 0;  // sample number
   bool first_sample_ = false;
   bool adds_components_ = false;
   bool features_done_ = false;
   float path_length_ = 0.0f;
-  Rgb albedo_ = Rgb(0.0f);  // feature of this sample, so far
+  Rgb albedo_ = Rgb(0.0f);  // denoising albedo of this sample so far
   size_t pixel_ = 0;
   int half_ = 0;
-  PassShare share_{};
+  PassShare share_{};  // shares of the light passes in all light behind the first vertex
 };
 
 }  // namespace gradus::path

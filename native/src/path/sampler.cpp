@@ -1,7 +1,5 @@
 #include "path/sampler.h"
 
-#include "path/hash.h"
-
 namespace gradus::path {
 
 namespace {
@@ -14,8 +12,8 @@ uint32_t reverse_bits(uint32_t x) {
   return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
 }
 
-// Owen scrambling by a hash in which bit i depends only on bits below it: Laine and Karras 2011, in the form of Burley
-// 2020 ("Practical Hash-based Owen Scrambling"), with Vegdahl's constants. Works on bit-reversed values.
+// Applies Owen scrambling to a bit-reversed value, by a hash in which bit i depends only on bits below it (Laine and
+// Karras 2011; Burley 2020, "Practical Hash-based Owen Scrambling", with Vegdahl's constants).
 uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -25,9 +23,9 @@ uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
   return x;
 }
 
-// Second Sobol dimension, bit-reversed: Pascal's matrix mod 2, which is a Kronecker power and so factors into log₂ 32
-// steps.
-uint32_t pascal(uint32_t x) {
+// Returns the second Sobol dimension of a bit-reversed index. Its matrix is Pascal's modulo 2, a Kronecker power, which
+// factors into log₂ 32 steps.
+uint32_t multiply_pascal(uint32_t x) {
   x ^= (x >> 1) & 0x55555555u;
   x ^= (x >> 2) & 0x33333333u;
   x ^= (x >> 4) & 0x0f0f0f0fu;
@@ -35,10 +33,10 @@ uint32_t pascal(uint32_t x) {
   return x ^ ((x >> 16) & 0x0000ffffu);
 }
 
-// The 24 high bits, so that the result stays below 1. Signed: what vector units convert.
+// Converts the 24 high bits, so that the result stays below 1. Vector units convert signed integers only.
 float to_unit(uint32_t bits) { return static_cast<float>(static_cast<int32_t>(bits >> 8)) * 0x1p-24f; }
 
-// Point of a block as 32-bit fractions. Padding: each block is the same 2-D net, its points in an order of its own.
+// Point of a block in 32-bit fractions. All blocks are the same 2D net with its points in different orders (padding).
 struct Bits {
   uint32_t x, y;
 };
@@ -46,7 +44,7 @@ struct Bits {
   const uint32_t seed = combine(stream_hash, block);
   const uint32_t index = reverse_bits(scramble_reversed(reversed_index, seed));
   return {reverse_bits(scramble_reversed(index, mix(seed ^ 0x68bc21ebu))),
-          reverse_bits(scramble_reversed(pascal(index), mix(seed ^ 0x02e5be93u)))};
+          reverse_bits(scramble_reversed(multiply_pascal(index), mix(seed ^ 0x02e5be93u)))};
 }
 
 }  // namespace
@@ -57,7 +55,7 @@ Sampler::Sampler(const SampleKey& key, bool independent)
   h = combine(h, static_cast<uint32_t>(key.kind));
   h = combine(h, key.stream);
   h = combine(h, static_cast<uint32_t>(key.stream_frame));
-  stream_hash_ = combine(h, key.index & 1u);  // the half: its own shuffle and scramble
+  stream_hash_ = combine(h, key.index & 1u);  // each half-buffer has its own shuffle and scramble
 }
 
 Vec2 Sampler::get2(uint32_t block) const {

@@ -1,42 +1,56 @@
-// Random values as a pure function of their key (contract 1.1): Owen-scrambled Sobol points, scrambled and shuffled by
-// hashes.
+// Random numbers as a function of a sample key: Owen-scrambled Sobol points, scrambled and shuffled by hashes.
 #pragma once
 
 #include "base/types.h"
 
 namespace gradus::path {
 
+// Returns a bijective mix of 32 bits ("lowbias32" of Wellons' search for low-bias multiply-xorshift hashes).
+inline uint32_t mix(uint32_t x) {
+  x ^= x >> 16;
+  x *= 0x7feb352du;
+  x ^= x >> 15;
+  x *= 0x846ca68bu;
+  x ^= x >> 16;
+  return x;
+}
+
+// Returns a hash of two values. It depends on their order.
+inline uint32_t combine(uint32_t seed, uint32_t value) {
+  return mix(seed ^ (mix(value + 0x9e3779b9u) + (seed << 6) + (seed >> 2)));
+}
+
 enum class StreamKind : uint32_t { Pixel = 0, Pilot = 1, LightPath = 2, Chain = 3, Disocclusion = 4, PixelBlock = 5 };
 
-// Film pixel and scene time are separate from the key on purpose: a temporal offset sample has another film pixel and
-// time but the stream of its base (contract 1.1).
+// A random number depends on its key and dimension alone. The film pixel and the time are not in the key: a replayed
+// sample has the pixel and time of its own frame, but the stream of the frame before.
 struct SampleKey {
   uint32_t seed = 0;
   StreamKind kind = StreamKind::Pixel;
-  uint32_t stream = 0;  // pixel streams: y·width + x of the full frame
+  uint32_t stream = 0;  // y·width + x of the full frame in streams of pixels
   int32_t stream_frame = 0;
-  uint32_t index =
-      0;  // sample number; halves A and B are the even and odd numbers, scrambled independently (contract 1.2)
+  // Sample number. Even numbers belong to half-buffer A and odd ones to B. The two are scrambled independently.
+  uint32_t index = 0;
 };
 
-// Dimensions come in blocks, so that an integrator can count events instead of numbers and a shift can replay one
+// Dimensions are counted in blocks, so that an integrator counts events instead of numbers, and a shift can replay one
 // event.
 namespace dimension {
-inline constexpr uint32_t kFilm = 0;  // 2-D
-inline constexpr uint32_t kLens = 1;  // 2-D
-inline constexpr uint32_t kTime = 2;  // 1-D
+inline constexpr uint32_t kFilm = 0;  // 2D
+inline constexpr uint32_t kLens = 1;  // 2D
+inline constexpr uint32_t kTime = 2;  // 1D
 inline constexpr uint32_t kFirstVertex = 4;
 // Blocks of one path vertex, added to kFirstVertex + vertex·kPerVertex.
-inline constexpr uint32_t kBsdf = 0;         // 2-D direction
+inline constexpr uint32_t kBsdf = 0;         // 2D direction
 inline constexpr uint32_t kLobe = 1;         // x: class, y: lobe in the class
-inline constexpr uint32_t kLight = 2;        // 2-D point on the emitter
-inline constexpr uint32_t kLightChoice = 3;  // x: which emitter, y: spare
-inline constexpr uint32_t kRoulette = 4;     // x: roulette, y: transparency
+inline constexpr uint32_t kLight = 2;        // 2D point on the light
+inline constexpr uint32_t kLightChoice = 3;  // x: which light, y: unused
+inline constexpr uint32_t kRoulette = 4;     // x: Russian roulette, y: transparency
 inline constexpr uint32_t kOcclusion = 5;    // ambient occlusion pass
 inline constexpr uint32_t kPerVertex = 6;
 }  // namespace dimension
 
-// What a path needs at one vertex: its blocks but for the occlusion's.
+// Blocks of one path vertex, without that of ambient occlusion.
 struct VertexSample {
   Vec2 bsdf, lobe, light, light_choice, roulette;
 };
@@ -44,13 +58,14 @@ struct VertexSample {
 class Sampler {
  public:
   Sampler() = default;
-  // independent: values of an independent-random generator in place of the net; for statistical tests only.
+  // `independent` selects independent random numbers instead of Sobol points, for statistical tests.
   explicit Sampler(const SampleKey& key, bool independent = false);
 
-  // Point of block `block` in [0, 1)²: any order, any number of times, always the same.
+  // Returns the point of a block in [0, 1)². It does not depend on earlier calls.
   Vec2 get2(uint32_t block) const;
   float get1(uint32_t block) const { return get2(block).x; }
-  // The blocks of the vertex with `depth` scatterings before it, the same values: eight lanes cost about what one does.
+  // Returns the blocks of the vertex with `depth` scattering events before it, with the values of get2(). They are
+  // computed in eight SIMD lanes at about the cost of one block.
   VertexSample vertex(int depth) const;
 
  private:

@@ -5,6 +5,45 @@
 
 namespace gradus::path {
 
+namespace {
+
+// Returns whether the path may not scatter again. A limit of n bounces still shows the emission that bounce n + 1
+// meets, as next-event estimation at that vertex would.
+bool reaches_limit(const GradusSettings& settings, const PathState& state) {
+  const shading::RayState& r = state.ray.state;
+  return static_cast<uint32_t>(state.depth) > settings.max_bounces || r.diffuse_depth > settings.diffuse_bounces ||
+         r.glossy_depth > settings.glossy_bounces || r.transmission_depth > settings.transmission_bounces;
+}
+
+// Counts a bounce.
+void advance(bool diffuse, bool transmitted, bool dirac, shading::RayState* state) {
+  state->flags = (transmitted ? shading::kRayTransmission : shading::kRayReflection) |
+                 (diffuse ? shading::kRayDiffuse : shading::kRayGlossy) | (dirac ? shading::kRaySingular : 0u);
+  state->length = 0.0f;
+  ++state->depth;
+  ++(transmitted ? state->transmission_depth : diffuse ? state->diffuse_depth : state->glossy_depth);
+}
+
+// Sets the ray of the new segment.
+void leave_surface(const geometry::SurfacePoint& from, const Vec3& direction, bsdf::LightPass pass, bool transmitted,
+                   bool dirac, PathRay* ray) {
+  ray->ray.origin = geometry::offset_origin(from, direction);
+  ray->ray.t_min = 0.0f;
+  ray->ray.direction = direction;
+  ray->ray.t_max = kInfinity;
+  ray->visibility = bounce_visibility(pass, transmitted);
+  advance(pass == bsdf::LightPass::Diffuse, transmitted, dirac, &ray->state);
+}
+
+}  // namespace
+
+uint32_t bounce_visibility(bsdf::LightPass pass, bool transmitted) {
+  if (transmitted) {
+    return GRADUS_VISIBLE_TRANSMISSION;
+  }
+  return pass == bsdf::LightPass::Diffuse ? GRADUS_VISIBLE_DIFFUSE : GRADUS_VISIBLE_GLOSSY;
+}
+
 bool choose_class(const bsdf::Closures& closures, float u, bsdf::ScatterClass* chosen) {
   float sum = 0.0f;
   bool found = false;
@@ -22,50 +61,10 @@ bool choose_class(const bsdf::Closures& closures, float u, bsdf::ScatterClass* c
   return found;
 }
 
-namespace {
-
-// A limit of n bounces lets a path see what its n + 1st bounce hits emit, as next-event estimation at that vertex does.
-bool reaches_limit(const GradusSettings& settings, const PathState& state) {
-  const shading::RayState& r = state.ray.state;
-  return static_cast<uint32_t>(state.depth) > settings.max_bounces || r.diffuse_depth > settings.diffuse_bounces ||
-         r.glossy_depth > settings.glossy_bounces || r.transmission_depth > settings.transmission_bounces;
-}
-
-}  // namespace
-
-uint32_t bounce_visibility(bsdf::LightPass pass, bool transmitted) {
-  if (transmitted) {
-    return GRADUS_VISIBLE_TRANSMISSION;
-  }
-  return pass == bsdf::LightPass::Diffuse ? GRADUS_VISIBLE_DIFFUSE : GRADUS_VISIBLE_GLOSSY;
-}
-
-namespace {
-
-void advance(bool diffuse, bool transmitted, bool dirac, shading::RayState* state) {
-  state->flags = (transmitted ? shading::kRayTransmission : shading::kRayReflection) |
-                 (diffuse ? shading::kRayDiffuse : shading::kRayGlossy) | (dirac ? shading::kRaySingular : 0u);
-  state->length = 0.0f;
-  ++state->depth;
-  ++(transmitted ? state->transmission_depth : diffuse ? state->diffuse_depth : state->glossy_depth);
-}
-
-}  // namespace
-
 shading::RayState next_ray_state(const shading::RayState& before, bool diffuse, bool transmitted, bool dirac) {
   shading::RayState state = before;
   advance(diffuse, transmitted, dirac, &state);
   return state;
-}
-
-void follow(const PathContext&, const geometry::SurfacePoint& from, const Vec3& direction, bsdf::LightPass pass,
-            bool transmitted, bool dirac, PathRay* ray) {
-  ray->ray.origin = geometry::offset_origin(from, direction);
-  ray->ray.t_min = 0.0f;
-  ray->ray.direction = direction;
-  ray->ray.t_max = kInfinity;
-  ray->visibility = bounce_visibility(pass, transmitted);
-  advance(pass == bsdf::LightPass::Diffuse, transmitted, dirac, &ray->state);
 }
 
 float survive(const VertexSample& u, PathState* state) {
@@ -101,8 +100,8 @@ bool scatter(const PathContext& context, const VertexSample& u, const Vertex& ve
   state->throughput *= event->factor;
   ++state->depth;
   state->lpe_state = context.components.next(state->lpe_state, event->scatter_class);
-  follow(context, vertex.point, sample.wi, closures.lobe(sample.lobe).pass, sample.transmitted, sample.dirac,
-         &state->ray);
+  leave_surface(vertex.point, sample.wi, closures.lobe(sample.lobe).pass, sample.transmitted, sample.dirac,
+                &state->ray);
   state->emission_only = reaches_limit(context.settings, *state);
   return true;
 }

@@ -1,56 +1,53 @@
-// Scattering of a base path: class first, then direction (contract 1.4); bounce limits and Russian roulette.
+// Scattering of a base path: BSDF sampling of a class and then of a direction, bounce limits, and Russian roulette.
 #pragma once
 
 #include "path/segment.h"
 
 namespace gradus::path {
 
-// What a path carries from vertex to vertex.
+// State that a path carries from vertex to vertex.
 struct PathState {
   PathRay ray;
   Rgb throughput = Rgb(1.0f);
-  int depth = 0;                // scatterings so far
-  bool emission_only = false;   // the bounce limits are reached: the next vertex shows its emission and no more
-  lpe::LpeState lpe_state = 0;  // of the scatterings so far
+  int depth = 0;                // number of scattering events so far
+  bool emission_only = false;   // the bounce limits are reached: the path ends with the emission of the next vertex
+  lpe::LpeState lpe_state = 0;  // light path expression state after these events
 };
 
-// All that the path's last ray may have to show are lights and the world.
+// Returns whether the path's next segment is its last and can show only analytic lights and the world.
 inline bool shows_only_lights(const PathContext& context, const PathState& state) {
   return state.emission_only && context.scene.features.only_lights_emit;
 }
 
-// A sampled scattering event, as a shift must know it.
+// A sampled scattering event, with everything that a shift needs to know.
 struct ScatterEvent {
   bsdf::ScatterClass scatter_class = bsdf::ScatterClass::Diffuse;
   bsdf::BsdfSample sample;
-  float pdf = 0.0f;        // P(class)·p(direction | class); for Dirac events of the choice alone
-  bool by_kind = false;    // the kind of bounce is part of what is sampled: factor is that of its lobes alone
-  int dirac_rank = 0;      // the sampled Dirac lobe's number among those of its class
-  Rgb factor = Rgb(0.0f);  // value / pdf: what the throughput was multiplied with
-  // P(kind | direction) within the class.
+  float pdf = 0.0f;        // P(class)·p(direction | class); for Dirac events the probability of the lobe
+  bool by_kind = false;    // the kind of the bounce is sampled, too, and `factor` is that of its lobes alone
+  int dirac_rank = 0;      // index of the sampled Dirac lobe among those of its class
+  Rgb factor = Rgb(0.0f);  // value / pdf, by which the throughput was multiplied
+  // Returns P(kind | direction) within the class.
   float kind_share() const { return sample.kind.pdf / sample.pdf; }
 };
 
-// GradusVisibility bit of the bounce.
+// Returns the GradusVisibility bit of a bounce.
 uint32_t bounce_visibility(bsdf::LightPass pass, bool transmitted);
 
-// Russian roulette at a vertex, after its emission was seen and before it is lit: what a ray finds does not suffer from
-// the roulette's variance. Cycles' rule: from the third vertex on, by the square root of the largest channel, which
-// matches a display's curve roughly. 0: the path ends; otherwise the probability, by which the throughput was divided.
+// Plays Russian roulette at a vertex, after its emission was added and before it is lit, so that emission does not
+// suffer from its variance. As in Cycles, it starts at the third vertex, and the probability is the square root of the
+// largest channel, which is roughly uniform on a display. Returns 0 if the path ends, otherwise the probability by
+// which it has divided the throughput.
 float survive(const VertexSample& u, PathState* state);
 
-// The class that a vertex scatters by for a random number; false: it scatters nothing.
+// Chooses the class by which a vertex scatters with a random number. Returns false if it does not scatter.
 bool choose_class(const bsdf::Closures& closures, float u, bsdf::ScatterClass* chosen);
 
-// Samples the next direction. False: absorbed. Otherwise state->ray, throughput and depth are those of the new
-// segment.
+// Samples the next direction. Returns false if the path is absorbed. Otherwise updates the state to the new segment.
 bool scatter(const PathContext& context, const VertexSample& u, const Vertex& vertex, PathState* state,
              ScatterEvent* event);
 
-// The state of the ray that leaves a vertex by such a bounce.
+// Returns the state of the ray that leaves a vertex by the given kind of bounce.
 shading::RayState next_ray_state(const shading::RayState& state, bool diffuse, bool transmitted, bool dirac);
-// The new segment's ray for a given direction; also for shifted paths, whose rays look like those of their base.
-void follow(const PathContext& context, const geometry::SurfacePoint& from, const Vec3& direction, bsdf::LightPass pass,
-            bool transmitted, bool dirac, PathRay* ray);
 
 }  // namespace gradus::path

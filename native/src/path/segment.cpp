@@ -2,23 +2,25 @@
 
 #include <algorithm>
 
+#include "base/fault.h"
+
 namespace gradus::path {
 
 namespace {
 
-// Blocks of the transparency decisions lie above those of path vertices.
-constexpr uint32_t kDecisions = 1u << 20;
+// Dimensions of the decisions at transparent surfaces. They lie above those of path vertices.
+constexpr uint32_t kFirstDecision = 1u << 20;
 constexpr uint32_t kDecisionsPerSegment = 1024;
 
-// Probability that the path goes straight on: by the transparency against what the surface itself has to show. An added
-// emission or scattering keeps a chance however transparent the surface.
+// Returns the probability that the path passes the surface, by its transparency against what it scatters and emits.
+// Emission and scattering that are added to a transparent surface keep a minimum probability.
 float pass_probability(const shading::ShadeResult& shade) {
   const float through = mean_component(shade.transparency);
   if (!(through > 0.0f)) {
     return 0.0f;
   }
-  const bool shows = !shade.closures.empty() || !is_black(shade.emission) || !is_black(shade.holdout);
-  if (!shows) {
+  const bool is_visible = !shade.closures.empty() || !is_black(shade.emission) || !is_black(shade.holdout);
+  if (!is_visible) {
     return 1.0f;
   }
   const float minimum = is_black(shade.emission) ? 0.05f : 0.5f;
@@ -34,25 +36,25 @@ void clear(Segment* segment) {
   segment->light_crossings.clear();
 }
 
-// Lights on a part of the segment. The ray is that of the whole segment: a light that faces its receiver faces the
-// segment's start, not the surface that the ray has just passed, as light sampling has it.
-void see_lights(const PathContext& context, const Ray& whole, float begin, float end, Segment* segment) {
+// Adds the analytic lights on a part of the segment. `whole` is the ray of the whole segment, because a light that
+// faces its receiver faces the segment's start, as in light sampling, and not the surface that the ray has just passed.
+void add_light_crossings(const PathContext& context, const Ray& whole, float begin, float end, Segment* segment) {
   if (!context.scene.features.has_lights_with_extent) {
     return;
   }
   const Ray part{whole.origin, std::max(whole.t_min, begin), whole.direction, end};
-  light::intersect_lights(context.scene, part, &segment->met);
-  for (const light::LightHit& hit : segment->met) {
+  light::intersect_lights(context.scene, part, &segment->hits);
+  for (const light::LightHit& hit : segment->hits) {
     segment->light_crossings.push_back(
         {hit.point, hit.distance, segment->weight, segment->probability, segment->crossed});
   }
 }
 
-// Decides at a surface; true: the path stops there.
-bool stops(const Sampler& sampler, int number, const Vertex& vertex, Segment* segment) {
+// Decides at random whether the path stops at a surface, and weights the segment by the decision.
+bool stops(const Sampler& sampler, int depth, const Vertex& vertex, Segment* segment) {
   const float pass = pass_probability(vertex.shade);
   const uint32_t block =
-      kDecisions + static_cast<uint32_t>(number) * kDecisionsPerSegment + static_cast<uint32_t>(segment->crossed);
+      kFirstDecision + static_cast<uint32_t>(depth) * kDecisionsPerSegment + static_cast<uint32_t>(segment->crossed);
   const bool continues = pass >= 1.0f || (pass > 0.0f && sampler.get1(block) < pass);
   const float probability = continues ? pass : 1.0f - pass;
   segment->weight =
@@ -76,7 +78,7 @@ bool trace_to_lights(const PathContext& context, const PathRay& ray, Segment* se
   if (is_none(ray.ray)) {
     return false;
   }
-  see_lights(context, ray.ray, ray.ray.t_min, ray.ray.t_max, segment);
+  add_light_crossings(context, ray.ray, ray.ray.t_min, ray.ray.t_max, segment);
   if (!segment->light_crossings.empty()) {
     geometry::Hit hit;
     segment->end = context.scene.intersect(ray.ray, ray.visibility, &hit) ? SegmentEnd::Exhausted : SegmentEnd::Escaped;
@@ -94,7 +96,7 @@ bool trace_to_lights(const PathContext& context, const PathRay& ray, Segment* se
   return true;
 }
 
-void trace_segment(const PathContext& context, const Sampler& sampler, int number, const geometry::Hit* first,
+void trace_segment(const PathContext& context, const Sampler& sampler, int depth, const geometry::Hit* first,
                    PathRay* ray, Vertex* vertex, Segment* segment, Shading shading) {
   clear(segment);
   Ray part = ray->ray;
@@ -112,7 +114,7 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
     } else {
       context.scene.intersect(part, ray->visibility, &hit);
     }
-    see_lights(context, ray->ray, passed, hit.valid() ? passed + hit.t : ray->ray.t_max, segment);
+    add_light_crossings(context, ray->ray, passed, hit.valid() ? passed + hit.t : ray->ray.t_max, segment);
     if (!hit.valid()) {
       return;
     }
@@ -120,7 +122,7 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
     context.scene.place(hit, &vertex->point);
     const auto shade = shading == Shading::Now ? shading::shade_surface : shading::shade_without_closures;
     shade(context.scene, vertex->point, vertex->wo, ray->state, context.settings.roughness_threshold, &vertex->shade);
-    if (stops(sampler, number, *vertex, segment)) {
+    if (stops(sampler, depth, *vertex, segment)) {
       segment->end = SegmentEnd::Surface;
       return;
     }
@@ -135,13 +137,14 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int numbe
 }
 
 Ray spawn_ray(const geometry::SurfacePoint& from, const Vec3& direction, float distance) {
-  return Ray{geometry::offset_origin(from, direction), 0.0f, direction, distance, from.hit.time};
+  return Ray{geometry::offset_origin(from, direction), 0.0f, direction, distance,
+             GRADUS_FAULT(spawned_rays_lose_time) ? 0.0f : from.hit.time};
 }
 
 Ray spawn_ray_to(const geometry::SurfacePoint& from, const geometry::SurfacePoint& to) {
   const Vec3 direction = glm::normalize(to.position - from.position);
   return geometry::ray_between(geometry::offset_origin(from, direction), geometry::offset_origin(to, -direction),
-                               direction, from.hit.time);
+                               direction, GRADUS_FAULT(reconnection_rays_lose_time) ? 0.0f : from.hit.time);
 }
 
 Rgb segment_transmittance(const PathContext& context, const Ray& ray, const PathRay& kind,

@@ -1,20 +1,22 @@
-// The path tracer: one base path, with an observer that may follow it by shifted paths.
+// The path tracer: traces one base path and notifies an observer, which may shift the path to neighbouring pixels.
 //
-// All arithmetic lies in functions that are compiled once (light, scatter, segment, contributions), so that the primal
-// image has the same bits whatever observer looks on.
+// PathTracer::li() is the algorithm from top to bottom. The steps are in functions that are compiled once, apart from
+// the observer (segment.h, contribution.h, scatter.h), so that the picture has the same bits with every observer. A new
+// kind of scattering event, as below a surface or in a medium, is a case of sample_bsdf() and of SegmentEnd; what the
+// path carries between two vertices, as media around it, belongs to PathRay.
 #pragma once
 
 #include <algorithm>
 #include <array>
 
-#include "path/camera_vertex.h"
+#include "path/camera_vertices.h"
 #include "path/contribution.h"
 #include "path/pass_recorder.h"
 
 namespace gradus::path {
 
-// Reused from sample to sample: closures are large. Of the vertices two are the ends of a segment, and one the observer
-// may keep.
+// Memory that is reused from sample to sample, because closures are large. Two of the vertices are the ends of a
+// segment, and the observer may retain the third.
 struct PathScratch {
   Vertex vertices[3];
   Segment segment;
@@ -23,231 +25,178 @@ struct PathScratch {
 };
 
 struct PathResult {
-  std::array<Radiance, lpe::kMaxComponents>
-      radiance;  // of each component of the context's set; w: alpha, if the film is transparent
-  bool fallback = false;
+  // Radiance of each component of the context's set. w is alpha, in the component of the empty path only.
+  std::array<Radiance, lpe::kMaxComponents> radiance;
+  bool fallback = false;  // a material of the path is a replacement for one that is not supported
 };
 
-// Looks on and does nothing: plain path tracing.
+// Observer of plain path tracing. Its functions are the notifications of PathTracer, in the order of the path.
 struct NoObserver {
-  void begin(const Sampler&, const camera::CameraSample&) {}
-  void arrive(const RaySource&, const PathState&, const Segment&, const Vertex&) {}
-  void light_crossing(const RaySource&, const Contribution&, const LightCrossing&) {}
-  void passed(const Segment&) {}
-  void world(const RaySource&, const Contribution&) {}
-  void emission(const RaySource&, const Contribution&, const Vertex&) {}
-  void seen() {}  // all that the segment shows has been told
-  void transparent(float) {}
-  void survived(float, const Vertex&) {}
-  void light(const Vertex&, const LightSample&, bsdf::ScatterClass, const Contribution&) {}
-  void scatter(const Vertex&, const VertexSample&, const ScatterEvent&) {}
-  void absorbed(const Vertex&, const VertexSample&) {}
-  const Vertex* retained() const { return nullptr; }  // that must not be overwritten yet
+  void on_path_start(const Sampler&, const camera::CameraSample&) {}
+  // A segment was traced. The source is its start, the state is that on entry, and the vertex is its end if it meets a
+  // surface.
+  void on_segment(const RaySource&, const PathState&, const Segment&, const Vertex&) {}
+  // Contributions of the segment and of its end, if they are not black.
+  void on_light_crossing(const RaySource&, const Contribution&, const LightCrossing&) {}
+  void on_segment_passed(const Segment&) {}  // the state's throughput has the weight of the segment from here on
+  void on_world(const RaySource&, const Contribution&) {}
+  void on_transparency(float) {}  // alpha decreases by this value
+  void on_emission(const RaySource&, const Contribution&, const Vertex&) {}
+  void on_emission_complete() {}
+  // The path has survived Russian roulette with this probability. The closures of the vertex are complete.
+  void on_survival(float, const Vertex&) {}
+  // Next-event estimation has found light that one class scatters.
+  void on_light_sample(const Vertex&, const LightSample&, bsdf::ScatterClass, const Contribution&) {}
+  // The path scatters, or ends, at the vertex.
+  void on_scattering(const Vertex&, const VertexSample&, const ScatterEvent&) {}
+  void on_absorption(const Vertex&, const VertexSample&) {}
+  // Returns a vertex that must keep its values for now, or null.
+  const Vertex* retained_vertex() const { return nullptr; }
 };
 
 template <class Observer>
 class PathTracer {
  public:
-  // recorder: nullptr where no pass looks on.
+  // `recorder` may be null. All arguments must outlive the tracer.
   PathTracer(const PathContext& context, PathScratch* scratch, PassRecorder* recorder, film::Counters* counters,
              Observer* observer)
       : context_(context),
-        s_(*scratch),
+        scratch_(*scratch),
         recorder_(recorder != nullptr && recorder->active() ? recorder : nullptr),
         counters_(*counters),
         observer_(*observer) {}
 
-  // Bits of the components that count: a path that leads to none of them ends. Until it is said again.
+  // Selects the components to sample, as bits, for all further paths. A path that can reach none of them ends.
   void want(uint32_t components) { wanted_ = components; }
 
-  // film: position on the full frame's film, filter offset included. first: what the ray through it meets, if that is
-  // known. The result stays until the next path.
-  const PathResult& trace(const Sampler& sampler, const Vec2& film, CameraVertex* first = nullptr) {
-    state_ = PathState{};
+  // Traces the path through a position on the full frame's film, pixel filter included. `known` is the vertex that the
+  // camera ray meets, if it is known. The result is valid until the next path.
+  const PathResult& li(const Sampler& sampler, const Vec2& film, CameraVertex* known = nullptr) {
     start_result();
     alpha() = 1.0f;
-    const camera::CameraSample sample = camera_sample(context_, sampler, film);
-    observer_.begin(sampler, sample);
-    ++counters_.rays_primary;
-    Vertex* vertex = &s_.vertices[0];
-    segment_ = &s_.segment;
-    if (first != nullptr && first->shared) {
-      vertex = &first->vertex;
-      segment_ = &first->segment;
-      state_.ray = first->ray;
-      if (records()) shade_vertex(context_, state_.ray.state, vertex);
-    } else {
-      state_.ray.ray = context_.camera.ray(sample);
-      extend(sampler, first != nullptr ? &first->hit : nullptr, vertex);
-    }
-    if (recorder_ != nullptr && is_none(state_.ray.ray)) recorder_->no_ray();
-    if (step(sampler, RaySource{}, vertex)) {
-      follow_rays(sampler, vertex);
-    }
+    Vertex* vertex = trace_camera_ray(sampler, film, known);
+    extend_path(sampler, vertex, Step::Emission);
     return result_;
   }
 
-  // What a path adds that stands at a vertex whose emission was seen. state: its segment's weight included. leaves: the
-  // vertex was lit, too.
-  const PathResult& continue_path(const Sampler& sampler, const PathState& state, Vertex* vertex, bool leaves) {
+  // Traces the rest of a path from a vertex whose emission was added, and returns what the rest contributes. `state` is
+  // that at the vertex. `is_lit` says that light was sampled at the vertex, too.
+  const PathResult& continue_path(const Sampler& sampler, const PathState& state, Vertex* vertex, bool is_lit) {
     start_result();
     state_ = state;
-    if (leaves ? leave(sampler.vertex(state_.depth), *vertex) : light_and_leave(sampler, vertex)) {
-      follow_rays(sampler, vertex);
-    }
+    extend_path(sampler, vertex, is_lit ? Step::Scattering : Step::Light);
     return result_;
   }
 
  private:
-  // From a vertex that the path has left to the path's end.
-  void follow_rays(const Sampler& sampler, const Vertex* from) {
-    segment_ = &s_.segment;
-    for (bool continues = true; continues;) {
-      if (sees_only_lights()) {
-        counters_.rays_bounce += trace_to_lights(context_, state_.ray, &s_.segment) ? 1 : 0;
-        show_end(sampler, RaySource{from, &s_.event});
-        return;
-      }
-      Vertex* vertex = unused(from);
-      ++counters_.rays_bounce;
-      extend(sampler, &next_hit_, vertex);
-      continues = step(sampler, RaySource{from, &s_.event}, vertex);
-      from = vertex;
+  // Step at which a path is taken up at its first vertex.
+  enum class Step : uint8_t { Emission, Light, Scattering };
+
+  // Extends the path from `vertex`, the end of its last segment, until it ends.
+  void extend_path(const Sampler& sampler, Vertex* vertex, Step step) {
+    RaySource source;  // vertex and event at which the last segment starts; the camera at first
+    for (;; step = Step::Emission) {
+      // Add the emission on the segment and at its end, weighted against light sampling.
+      if (step == Step::Emission && !add_emission(sampler, source, *vertex)) return;
+
+      // End the path by Russian roulette, or evaluate the closures of its vertex.
+      const VertexSample u = sampler.vertex(state_.depth);
+      if (step != Step::Scattering && !survives(u, vertex)) return;
+
+      // Sample the BSDF, and add light by next-event estimation. The next ray is intersected first, so that its hit is
+      // fetched from memory while the vertex is lit.
+      const PathState arrival = state_;
+      const bool scatters = sample_bsdf(u, *vertex);
+      if (step != Step::Scattering && is_light_wanted(arrival)) add_light(arrival, u, *vertex);
+      if (!scatters) return observer_.on_absorption(*vertex, u);
+      if (recorder_ != nullptr) recorder_->scattered(arrival.depth, *vertex, scratch_.event);
+      observer_.on_scattering(*vertex, u, scratch_.event);
+
+      // Trace the next segment.
+      source = RaySource{vertex, &scratch_.event};
+      vertex = unused_vertex(*vertex);
+      trace_next_segment(sampler, vertex);
     }
   }
 
-  Vertex* unused(const Vertex* from) const {
-    Vertex* v = s_.vertices;
-    while (v == from || v == observer_.retained()) ++v;
+  // ---- Segments ----
+
+  // Traces the camera ray. Returns the vertex at its end.
+  Vertex* trace_camera_ray(const Sampler& sampler, const Vec2& film, CameraVertex* known) {
+    state_ = PathState{};
+    const camera::CameraSample sample = camera_sample(context_, sampler, film);
+    observer_.on_path_start(sampler, sample);
+    ++counters_.rays_primary;
+    Vertex* vertex = &scratch_.vertices[0];
+    segment_ = &scratch_.segment;
+    if (known != nullptr && known->is_shared) {
+      vertex = &known->vertex;
+      segment_ = &known->segment;
+      state_.ray = known->ray;
+      if (records_closures()) shade_vertex(context_, state_.ray.state, vertex);
+    } else {
+      state_.ray.ray = context_.camera.ray(sample);
+      trace_to_vertex(sampler, known != nullptr ? &known->hit : nullptr, vertex);
+    }
+    if (recorder_ != nullptr && is_none(state_.ray.ray)) recorder_->no_ray();
+    return vertex;
+  }
+
+  // Traces the ray of state_, whose nearest hit is next_hit_. The vertex is set if the segment ends on a surface.
+  void trace_next_segment(const Sampler& sampler, Vertex* vertex) {
+    segment_ = &scratch_.segment;
+    if (needs_lights_only()) {
+      counters_.rays_bounce += trace_to_lights(context_, state_.ray, &scratch_.segment) ? 1 : 0;
+    } else {
+      ++counters_.rays_bounce;
+      trace_to_vertex(sampler, &next_hit_, vertex);
+    }
+  }
+
+  void trace_to_vertex(const Sampler& sampler, const geometry::Hit* first, Vertex* vertex) {
+    trace_segment(context_, sampler, state_.depth, first, &state_.ray, vertex, &scratch_.segment,
+                  records_closures() ? Shading::Now : Shading::Later);
+  }
+
+  Vertex* unused_vertex(const Vertex& current) const {
+    Vertex* v = scratch_.vertices;
+    while (v == &current || v == observer_.retained_vertex()) ++v;
     return v;
   }
 
-  // The path's last ray, of which nobody wants to know more than the light that it finds.
-  bool sees_only_lights() const { return !records() && shows_only_lights(context_, state_); }
+  // Returns whether the next segment is the last one and only lights and the world can be seen on it.
+  bool needs_lights_only() const { return !records_closures() && shows_only_lights(context_, state_); }
+  // Returns whether the recorder needs the closures of the next vertex.
+  bool records_closures() const { return recorder_ != nullptr && recorder_->needs_closures(state_.depth); }
 
-  // The path may still find something that counts.
-  bool is_wanted() const { return (context_.components.ahead(state_.lpe_state) & wanted_) != 0; }
+  // ---- Emission that the path finds ----
 
-  // Of light that is found from here, one scattering further.
-  bool is_light_wanted(const PathState& here) const {
-    if (wanted_ == lpe::kEveryComponent) return true;
-    const lpe::ComponentSet& set = context_.components;
-    for (int k = 0; k < bsdf::kScatterClasses; ++k) {
-      if ((wanted_ >> set.component(set.next(here.lpe_state, static_cast<bsdf::ScatterClass>(k))) & 1) != 0)
-        return true;
-    }
-    return false;
-  }
-
-  // The recorder looks at the closures of the next vertex.
-  bool records() const { return recorder_ != nullptr && recorder_->needs_closures(state_.depth); }
-
-  // The next segment. first: its nearest hit if it is known.
-  void extend(const Sampler& sampler, const geometry::Hit* first, Vertex* vertex) {
-    trace_segment(context_, sampler, state_.depth, first, &state_.ray, vertex, &s_.segment,
-                  records() ? Shading::Now : Shading::Later);
-  }
-
-  // What a segment shows, and scattering at its end. False: the path has ended.
-  bool step(const Sampler& sampler, const RaySource& source, Vertex* vertex) {
-    observer_.arrive(source, state_, *segment_, *vertex);
-    const bool continues = see(sampler, source, *vertex);
-    observer_.seen();
-    return continues && !state_.emission_only && is_wanted() && light_and_leave(sampler, vertex);
-  }
-
-  // What a segment shows whose surface nobody asks for.
-  void show_end(const Sampler& sampler, const RaySource& source) {
-    observer_.arrive(source, state_, *segment_, s_.vertices[0]);
-    see(sampler, source, s_.vertices[0]);
-    observer_.seen();
-  }
-
-  // False: the path has ended.
-  bool light_and_leave(const Sampler& sampler, Vertex* vertex) {
-    const VertexSample u = sampler.vertex(state_.depth);
-    const float survival = survive(u, &state_);
-    if (!(survival > 0.0f)) {
-      return false;
-    }
-    shade_vertex(context_, state_.ray.state, vertex);
-    observer_.survived(survival, *vertex);
-    const PathState here = state_;
-    const bool leaves = look_ahead(u, *vertex);
-    if (is_light_wanted(here)) add_light(here, u, *vertex);
-    return notify_scattering(leaves, here.depth, u, *vertex);
-  }
-
-  bool leave(const VertexSample& u, const Vertex& vertex) {
-    const int depth = state_.depth;
-    return notify_scattering(look_ahead(u, vertex), depth, u, vertex);
-  }
-
-  // Scatters, and traces the next ray already: while the vertex is lit, what the ray has met is on its way from memory.
-  bool look_ahead(const VertexSample& u, const Vertex& vertex) {
-    if (!scatter(context_, u, vertex, &state_, &s_.event)) {
-      return false;
-    }
-    if (!is_wanted() && !records()) {
-      return false;
-    }
-    if (!sees_only_lights()) {
-      context_.scene.intersect(state_.ray.ray, state_.ray.visibility, &next_hit_);
-      context_.scene.prefetch(next_hit_);
-    }
-    return true;
-  }
-
-  bool notify_scattering(bool leaves, int depth, const VertexSample& u, const Vertex& vertex) {
-    if (!leaves) {
-      observer_.absorbed(vertex, u);
-      return false;
-    }
-    if (recorder_ != nullptr) {
-      recorder_->scattered(depth, vertex, s_.event);
-    }
-    observer_.scatter(vertex, u, s_.event);
-    return true;
-  }
-
-  // Emitters along the segment and at its end. False: there is no surface to scatter from.
-  bool see(const Sampler& sampler, const RaySource& source, const Vertex& vertex) {
+  // Adds the emission on the last segment and at its end. Returns whether the path can scatter there.
+  bool add_emission(const Sampler& sampler, const RaySource& source, const Vertex& vertex) {
+    observer_.on_segment(source, state_, *segment_, vertex);
     add_analytic_lights(source);
     apply_segment(*segment_, &state_);
-    observer_.passed(*segment_);
+    observer_.on_segment_passed(*segment_);
+    bool is_surface = false;
     if (segment_->end == SegmentEnd::Escaped) {
       add_world(source);
+    } else if (segment_->end == SegmentEnd::Surface) {
+      result_.fallback |= vertex.shade.fallback;
+      is_surface = add_surface(sampler, source, vertex);
     }
-    if (segment_->end != SegmentEnd::Surface) {
-      return false;
-    }
-    result_.fallback |= vertex.shade.fallback;
-    return add_surface(sampler, source, vertex);
+    observer_.on_emission_complete();
+    return is_surface && !state_.emission_only && can_reach_wanted();
   }
-
-  void start_result() {
-    std::fill_n(result_.radiance.begin(), context_.components.count(), Radiance(0.0f));
-    result_.fallback = false;
-  }
-
-  // That of the film: no more than one component has it, so that they add up.
-  float& alpha() { return result_.radiance[size_t(context_.components.component(lpe::LpeState{0}))].w; }
-
-  // Its light goes to passes, too.
-  bool records(const Contribution& c) const { return recorder_ != nullptr && (wanted_ >> c.component & 1) != 0; }
-
-  void add(const Contribution& c) { result_.radiance[size_t(c.component)] += Radiance(c.clamped, 0.0f); }
 
   void add_analytic_lights(const RaySource& source) {
-    for (const LightCrossing& light_crossing : segment_->light_crossings) {
-      const Contribution c = light_hit_contribution(context_, source, state_, light_crossing);
+    for (const LightCrossing& crossing : segment_->light_crossings) {
+      const Contribution c = light_hit_contribution(context_, source, state_, crossing);
       if (recorder_ != nullptr)
-        recorder_->record_light(state_.throughput * light_crossing.weight, c.component, c.light,
-                                light_crossing.distance);
+        recorder_->record_light(state_.throughput * crossing.weight, c.component, c.light, crossing.distance);
       if (!is_black(c.clamped)) {
         add(c);
         if (records(c)) recorder_->emission(state_.depth, c.clamped);
-        observer_.light_crossing(source, c, light_crossing);
+        observer_.on_light_crossing(source, c, crossing);
       }
     }
   }
@@ -255,31 +204,24 @@ class PathTracer {
   void add_world(const RaySource& source) {
     if (recorder_ != nullptr) recorder_->escaped(state_);
     if (state_.depth == 0 && context_.settings.film_transparent != 0)
-      add_transparent(mean_component(state_.throughput));
+      add_transparency(mean_component(state_.throughput));
     const Contribution c = world_contribution(context_, source, state_);
     if (recorder_ != nullptr) recorder_->record_light(state_.throughput, c.component, c.light, kInfinity);
     if (!is_black(c.clamped)) {
       add(c);
       if (records(c)) recorder_->environment(state_.depth, c.clamped);
-      observer_.world(source, c);
+      observer_.on_world(source, c);
     }
   }
 
-  void add_transparent(float value) {
-    if (value != 0.0f) {
-      alpha() -= value;
-      observer_.transparent(value);
-    }
-  }
-
-  // False: the surface is a hole in the film.
+  // Returns whether the path can scatter at the surface. It cannot at a holdout, which cuts a hole into the film.
   bool add_surface(const Sampler& sampler, const RaySource& source, const Vertex& vertex) {
     if (state_.depth == 0) {
       if (is_holdout(context_, vertex)) {
-        add_transparent(mean_component(state_.throughput));
+        add_transparency(mean_component(state_.throughput));
         return false;
       }
-      add_transparent(holdout_alpha(state_.throughput, vertex.shade.holdout));
+      add_transparency(holdout_alpha(state_.throughput, vertex.shade.holdout));
     }
     if (recorder_ != nullptr) recorder_->surface(sampler, state_, vertex, *segment_);
     const Contribution c = emission_contribution(context_, source, state_, vertex);
@@ -287,42 +229,100 @@ class PathTracer {
     if (!is_black(c.clamped)) {
       add(c);
       if (records(c)) recorder_->emission(state_.depth, c.clamped);
-      observer_.emission(source, c, vertex);
+      observer_.on_emission(source, c, vertex);
     }
     return true;
   }
 
-  // here: the state with which the path arrived.
-  void add_light(const PathState& here, const VertexSample& u, const Vertex& vertex) {
+  // ---- Scattering ----
+
+  // Plays Russian roulette. Returns whether the path goes on, with the closures of its vertex.
+  bool survives(const VertexSample& u, Vertex* vertex) {
+    const float survival = survive(u, &state_);
+    if (!(survival > 0.0f)) return false;
+    shade_vertex(context_, state_.ray.state, vertex);
+    observer_.on_survival(survival, *vertex);
+    return true;
+  }
+
+  // Scatters the path and intersects the new ray with the scene. Returns false if the path ends.
+  bool sample_bsdf(const VertexSample& u, const Vertex& vertex) {
+    if (!scatter(context_, u, vertex, &state_, &scratch_.event)) return false;
+    if (!can_reach_wanted() && !records_closures()) return false;
+    if (!needs_lights_only()) {
+      context_.scene.intersect(state_.ray.ray, state_.ray.visibility, &next_hit_);
+      context_.scene.prefetch(next_hit_);
+    }
+    return true;
+  }
+
+  // Adds light by next-event estimation. `arrival` is the state with which the path arrived at the vertex.
+  void add_light(const PathState& arrival, const VertexSample& u, const Vertex& vertex) {
+    LightSample& light = scratch_.light;
     LitClass lit[bsdf::kScatterClasses];
-    if (!sample_light(context_, u, vertex, here.depth, &s_.light) ||
-        !light_classes(context_, vertex, s_.light, here.ray.state, lit)) {
+    if (!sample_light(context_, u, vertex, arrival.depth, &light) ||
+        !light_classes(context_, vertex, light, arrival.ray.state, lit)) {
       return;
     }
     ++counters_.rays_shadow;
-    const Rgb through =
-        light_transmittance(context_, vertex.point, s_.light.point, s_.light.view, here.ray.state.transparent_depth);
-    for (int k = 0; k < bsdf::kScatterClasses && !is_black(through); ++k) {
-      const Contribution c =
-          light_contribution(context_, here, s_.light, static_cast<bsdf::ScatterClass>(k), lit[k], through);
+    const Rgb transmittance =
+        light_transmittance(context_, vertex.point, light.point, light.view, arrival.ray.state.transparent_depth);
+    for (int k = 0; k < bsdf::kScatterClasses && !is_black(transmittance); ++k) {
+      const auto scatter_class = static_cast<bsdf::ScatterClass>(k);
+      const Contribution c = light_contribution(context_, arrival, light, scatter_class, lit[k], transmittance);
       if (!is_black(c.clamped)) {
         add(c);
-        const auto scatter_class = static_cast<bsdf::ScatterClass>(k);
-        if (records(c)) recorder_->light(here, vertex, scatter_class, s_.light, c.clamped);
-        observer_.light(vertex, s_.light, scatter_class, c);
+        if (records(c)) recorder_->light(arrival, vertex, scatter_class, light, c.clamped);
+        observer_.on_light_sample(vertex, light, scatter_class, c);
       }
     }
   }
 
+  // ---- Components and the result ----
+
+  // Returns whether the path can still reach a wanted component.
+  bool can_reach_wanted() const { return (context_.components.ahead(state_.lpe_state) & wanted_) != 0; }
+
+  // Returns whether light that is found by one more scattering belongs to a wanted component.
+  bool is_light_wanted(const PathState& arrival) const {
+    if (wanted_ == lpe::kEveryComponent) return true;
+    const lpe::ComponentSet& set = context_.components;
+    for (int k = 0; k < bsdf::kScatterClasses; ++k) {
+      if ((wanted_ >> set.component(set.next(arrival.lpe_state, static_cast<bsdf::ScatterClass>(k))) & 1) != 0)
+        return true;
+    }
+    return false;
+  }
+
+  void start_result() {
+    std::fill_n(result_.radiance.begin(), context_.components.count(), Radiance(0.0f));
+    result_.fallback = false;
+  }
+
+  // Returns the alpha of the film. Only the component of the empty path has it, so that components add up.
+  float& alpha() { return result_.radiance[size_t(context_.components.component(lpe::LpeState{0}))].w; }
+
+  void add_transparency(float value) {
+    if (value != 0.0f) {
+      alpha() -= value;
+      observer_.on_transparency(value);
+    }
+  }
+
+  // Returns whether the contribution goes to light passes, too.
+  bool records(const Contribution& c) const { return recorder_ != nullptr && (wanted_ >> c.component & 1) != 0; }
+
+  void add(const Contribution& c) { result_.radiance[size_t(c.component)] += Radiance(c.clamped, 0.0f); }
+
   const PathContext& context_;
-  PathScratch& s_;
+  PathScratch& scratch_;
   PassRecorder* recorder_;
   film::Counters& counters_;
   Observer& observer_;
   uint32_t wanted_ = lpe::kEveryComponent;
-  PathState state_;
-  geometry::Hit next_hit_;            // of the ray that leaves the vertex
-  const Segment* segment_ = nullptr;  // the path's last
+  PathState state_;                   // state at the end of the path
+  geometry::Hit next_hit_;            // nearest hit of the ray that leaves the latest vertex
+  const Segment* segment_ = nullptr;  // last segment of the path
   PathResult result_;
 };
 

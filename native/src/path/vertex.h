@@ -10,12 +10,14 @@ namespace gradus::path {
 struct Vertex {
   geometry::SurfacePoint point;
   shading::ShadeResult shade;
-  Vec3 wo = Vec3(0.0f);               // unit, towards the previous vertex
-  mutable light::LightChoice choice;  // a memo: whoever looks for lights from here leaves it to the next
+  Vec3 wo = Vec3(0.0f);  // unit vector towards the previous vertex
+  // Cache of the distribution over all lights. The first light sample or density at the vertex computes it.
+  mutable light::LightChoice choice;
 
-  // Geometric normal on the side of wo.
+  // Returns the geometric normal on the side of wo.
   Vec3 facing_normal() const { return facing(point.geometric_normal); }
-  // What divides the light samples that are reflected from those that are transmitted (shadow_terminator.h).
+  // Returns the normal of the plane that separates reflected from transmitted light samples
+  // (geometry/shadow_terminator.h).
   Vec3 light_normal() const {
     return facing(point.shadow_terminator_offset > 0.0f ? point.shading_normal : point.geometric_normal);
   }
@@ -24,7 +26,7 @@ struct Vertex {
   Vec3 facing(const Vec3& normal) const { return glm::dot(point.geometric_normal, wo) < 0.0f ? -normal : normal; }
 };
 
-// What light sampling may know about a vertex.
+// Returns what light sampling needs to know of a vertex whose closures are complete.
 inline light::Receiver receiver_of(const Vertex& vertex) {
   light::Receiver receiver{vertex.point.position, vertex.light_normal(), false, vertex.point.hit.time, &vertex.choice};
   const bsdf::Closures& closures = vertex.shade.closures;

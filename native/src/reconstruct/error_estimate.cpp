@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/fault.h"
 #include "base/rows.h"
 
 namespace gradus::reconstruct {
@@ -75,7 +76,9 @@ class Window {
 
 ErrorTerms error_terms(const film::Film& film, int component, uint32_t reconstruction, float alpha,
                        const std::vector<float>& image, const CancelCheck& cancel) {
-  film::GradientImages differences = film::read_half_differences(film, component);
+  film::GradientImages differences = GRADUS_FAULT(l2_error_computed_from_image)
+                                         ? film::read_images(film, component)
+                                         : film::read_half_differences(film, component);
   if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return {std::move(differences.primal), {}};
   SolveReport report;
   ErrorTerms terms{reconstruct(differences, GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report), {}};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/fault.h"
 #include "base/rows.h"
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
@@ -81,7 +82,10 @@ Field distances(const Field& values, const Field& variance, Neighbour offset, fl
       const float *a = values.row(y, c) + begin, *b = values.row(y + offset.y, c) + begin + offset.x;
       const float *of_a = variance.row(y, c) + begin, *of_b = variance.row(y + offset.y, c) + begin + offset.x;
       for (int x = 0; x < result.width(); ++x) {
-        const float difference = a[x] - b[x], noise = of_a[x] + of_b[x];
+        const float factor = GRADUS_FAULT(filter_variance_times_4)  ? 4.0f
+                             : GRADUS_FAULT(filter_variance_over_4) ? 0.25f
+                                                                    : 1.0f;
+        const float difference = a[x] - b[x], noise = factor * (of_a[x] + of_b[x]);
         to[x] += share * (difference * difference - noise) / (negligible + kVariances * noise);
       }
     }
@@ -104,7 +108,8 @@ void gather(const Field& values, const Field& distance, Neighbour offset, Field*
       if (other < 0 || other >= h) continue;
       const int step = sign * offset.x, begin = std::max(0, -step), end = std::min(w, w - step);
       const float* d =
-          sign > 0 ? distance.row(y) - first_column(offset) : distance.row(other) + step - first_column(offset);
+          sign > 0 ? distance.row(y) - first_column(offset)
+                   : distance.row(other) + (GRADUS_FAULT(filter_distances_shifted) ? 0 : step) - first_column(offset);
       for (int x = begin; x < end; ++x) {
         const float weight = weight_of(d[x]);
         weights->row(y)[x] += weight;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/fault.h"
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
@@ -83,7 +84,8 @@ Field expected_noise(const Surroundings& of) {
 // probable it is that both half-buffers met the same firefly; at 1 that is as likely as not.
 float weigh_pixel(float expected, float excess, float firefly) {
   const float doubt = excess * excess * (1.0f + firefly * firefly);
-  return kOwnTrust / (expected * expected * doubt * doubt + kMinVariance);
+  const float factor = GRADUS_FAULT(pixel_variance_times_4) ? 4.0f : GRADUS_FAULT(pixel_variance_over_4) ? 0.25f : 1.0f;
+  return kOwnTrust / (factor * expected * expected * doubt * doubt + kMinVariance);
 }
 
 // Returns the weights of all pixels' own values. Changes of light may be 0 by chance between larger ones, so a small
@@ -114,7 +116,8 @@ Field basis_of(const film::Features& features) {
   const float median = median_depth(features.depth.values);
   Field basis(features.width, features.height, 7);
   for_values(&basis, [&](float& value, int x, int y, int c) {
-    const size_t i = size_t(y) * size_t(features.width) + size_t(x);
+    const int column = GRADUS_FAULT(features_shifted_by_a_column) ? std::min(x + 1, features.width - 1) : x;
+    const size_t i = size_t(y) * size_t(features.width) + size_t(column);
     const float depth = features.depth.values[i];
     value = c < 3   ? bounded(features.normal.values[3 * i + size_t(c)])
             : c < 6 ? bounded(features.albedo.values[3 * i + size_t(c - 3)])
@@ -126,7 +129,8 @@ Field basis_of(const film::Features& features) {
 Field albedo_of(const film::Features& features) {
   Field albedo(features.width, features.height, 3);
   for_values(&albedo, [&](float& value, int x, int y, int c) {
-    value = bounded(features.albedo.values[3 * (size_t(y) * size_t(features.width) + size_t(x)) + size_t(c)]);
+    const int column = GRADUS_FAULT(second_step_albedo_shifted) ? std::max(x - 1, 0) : x;
+    value = bounded(features.albedo.values[3 * (size_t(y) * size_t(features.width) + size_t(column)) + size_t(c)]);
   });
   return albedo;
 }
@@ -239,7 +243,9 @@ FeatureRegression::FeatureRegression(const film::Features& features, const Halve
 void FeatureRegression::add_residual(const film::Features& features, const HalvedImage& image, const Field& by_noise,
                                      RegressionResult* first, const CancelCheck& cancel) {
   const Field by_light = weigh_by_light(first->mean, kLightRadius);
-  Field residual = difference(image.mean, first->mean), of_noise = difference(image.half_difference, first->noise);
+  Field residual = difference(image.mean, first->mean),
+        of_noise = difference(GRADUS_FAULT(second_step_takes_image_for_noise) ? image.mean : image.half_difference,
+                              first->noise);
   residual_share_ = limit_outliers(residual, by_light);
   scale_by(residual_share_, &residual);
   scale_by(residual_share_, &of_noise);
@@ -247,16 +253,16 @@ void FeatureRegression::add_residual(const film::Features& features, const Halve
       std::make_shared<const Predictors>(Predictors{albedo_of(features), weigh_residual(by_light, by_noise)}), {},
       kOfResidual);
   const RegressionResult second = of_residual_.estimate(residual, of_noise, cancel);
-  add(second.mean, &first->mean);
-  add(second.noise, &first->noise);
+  if (!GRADUS_FAULT(second_step_dropped)) add(second.mean, &first->mean);
+  if (!GRADUS_FAULT(error_omits_second_step)) add(second.noise, &first->noise);
 }
 
 Field FeatureRegression::apply(const Field& values, const CancelCheck& cancel) const {
   Field result = fine_.apply(values, cancel);
-  blend(share_, coarse_.apply(values, cancel), &result);
+  if (!GRADUS_FAULT(alpha_lacks_large_windows)) blend(share_, coarse_.apply(values, cancel), &result);
   Field residual = difference(values, result);
-  scale_by(residual_share_, &residual);
-  add(of_residual_.apply(residual, cancel), &result);
+  if (!GRADUS_FAULT(alpha_keeps_outliers)) scale_by(residual_share_, &residual);
+  if (!GRADUS_FAULT(second_step_of_other_channels_dropped)) add(of_residual_.apply(residual, cancel), &result);
   if (own_.channels() > 0) blend_sampled(own_, values, &result);
   return result;
 }

@@ -1,5 +1,6 @@
 #include "reconstruct/fused_differences.h"
 
+#include "base/fault.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/minimise_by_noise.h"
 #include "reconstruct/reweigh.h"
@@ -31,7 +32,9 @@ Field join_weights(const Field& error, Step step, Field* weights) {
   return make_field(error.width(), error.height(), [&](int x, int y) {
     if (!has_next(error, step, x, y)) return 0.0f;
     const float both = error.row(y)[x] + error.row(y + step.y)[x + step.x];
-    const float own = 1.0f / (0.5f * kSharedDifference * both + kMinError);
+    const float own =
+        1.0f /
+        ((GRADUS_FAULT(regressed_difference_variance_times_4) ? 2.0f : 0.5f) * kSharedDifference * both + kMinError);
     float& weight = weights->row(y)[x];
     weight += own;
     return own / weight;
@@ -69,6 +72,9 @@ FusedDifferences::FusedDifferences(const film::GradientImages& images, float sca
   for (int i = 0; i < kClampPasses && clamp_dark_pixels(planes.primal, solution_, &system_); ++i) solve();
   downweight_differences(planes.primal, solution_, error, kSharedError, &system_);
   solve();
+  if (GRADUS_FAULT(alpha_ignores_differences)) {
+    for_values(&solution_, [&](float& v, int x, int y, int c) { v = c < 3 ? v : regressed.row(y, c)[x]; });
+  }
 }
 
 Field FusedDifferences::apply(const film::GradientImages& images, const Field& regressed, const CancelCheck& cancel,

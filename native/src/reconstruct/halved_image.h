@@ -1,6 +1,7 @@
 // An image of sampled light and the difference of its half-buffers, as input of the regression.
 #pragma once
 
+#include "base/fault.h"
 #include "film/film.h"
 #include "reconstruct/field_values.h"
 
@@ -35,7 +36,11 @@ HalvedImage read_halves(const film::Film& film, const SumsAt& sums_at) {
       for (int c = 0; c < 3; ++c) {
         const float mean = (sums[0][c] + sums[1][c]) / (a + b);
         image.mean.row(y, c)[x] = is_finite(mean) ? mean : 0.0f;
-        image.half_difference.row(y, c)[x] = 0.5f * (sums[0][c] / a - sums[1][c] / b);
+        const float sign = GRADUS_FAULT(sum_of_halves_taken_for_difference) ? -1.0f : 1.0f,
+                    half = GRADUS_FAULT(image_variance_times_4)  ? 1.0f
+                           : GRADUS_FAULT(image_variance_over_4) ? 0.25f
+                                                                 : 0.5f;
+        image.half_difference.row(y, c)[x] = half * (sums[0][c] / a - sign * sums[1][c] / b);
       }
     }
   });

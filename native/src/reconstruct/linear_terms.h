@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/fault.h"
 #include "reconstruct/field_values.h"
 
 namespace gradus::reconstruct {
@@ -23,7 +24,7 @@ void apply_to_terms(const Field& whole, const Apply& apply, std::vector<Field>* 
   for (size_t k = 0; k < terms->size(); ++k) {
     if (k == remainder || is_black((*terms)[k])) continue;
     (*terms)[k] = apply(k, (*terms)[k]);
-    subtract((*terms)[k], &left);
+    if (!GRADUS_FAULT(remainder_not_subtracted)) subtract((*terms)[k], &left);
   }
   (*terms)[remainder] = std::move(left);
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/fault.h"
 #include "base/fpu.h"
 #include "reconstruct/regression_tile.h"
 
@@ -92,7 +93,7 @@ RegressionResult LocalRegression::estimate(const Field& mean, const Field& half_
   const RegressionTask task{&predictors_->features,
                             &predictors_->weights,
                             or_null(own_),
-                            {&mean, &half_difference},
+                            {&mean, GRADUS_FAULT(mean_regressed_as_difference) ? &mean : &half_difference},
                             {&result.mean, &result.noise},
                             &totals,
                             &result.bias,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/fault.h"
+#include "base/types.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/solver_planes.h"
@@ -25,7 +27,8 @@ void limit_by_noise(const Field& half_difference, Field* error) {
 // Converts a squared error to the picture's units. Squares of strong light exceed single precision, so they are limited
 // to the largest float.
 void scale_error(float scale, Field* error) {
-  for_values(error, [scale](float& value, int, int, int) { value = std::min(scale * (scale * value), kMaxFloat); });
+  const float limit = GRADUS_FAULT(squares_of_light_overflow) ? kInfinity : kMaxFloat;
+  for_values(error, [=](float& value, int, int, int) { value = std::min(scale * (scale * value), limit); });
 }
 
 // Value of one term in one pixel and channel. In double precision, because weights are squares.
@@ -45,7 +48,7 @@ double spread(double lack, std::vector<Share>& shares, double (*weight_of)(const
     for (Share& share : shares) {
       if (!is_open(share)) continue;
       const double wanted = share.value + lack * (weight_of(share) / total);
-      share.value = lack > 0.0 ? wanted : std::max(wanted, share.minimum);
+      share.value = lack > 0.0 || GRADUS_FAULT(light_passes_below_zero) ? wanted : std::max(wanted, share.minimum);
       left += wanted - share.value;
     }
     lack = left;
@@ -56,7 +59,10 @@ double spread(double lack, std::vector<Share>& shares, double (*weight_of)(const
 void distribute(double whole, std::vector<Share>& shares) {
   double lack = whole;
   for (const Share& share : shares) lack -= share.value;
-  lack = spread(lack, shares, [](const Share& share) { return share.weight; });
+  lack = spread(lack, shares, [](const Share& share) {
+    if (GRADUS_FAULT(light_pass_difference_distributed_equally)) return share.weight > 0.0 ? 1.0 : 0.0;
+    return share.weight;
+  });
   lack = spread(lack, shares, [](const Share& share) { return std::fabs(share.value); });
   if (!shares.empty()) shares.back().value += lack;
 }
@@ -76,7 +82,7 @@ PictureTerm regress_term(const film::Features& guides, HalvedImage sampled, cons
   const FeatureRegression regression(guides, sampled, cancel);
   term.image = regression.image();
   term.error = regression.error();
-  limit_by_noise(sampled.half_difference, &term.error);
+  if (!GRADUS_FAULT(light_passes_exceed_their_noise)) limit_by_noise(sampled.half_difference, &term.error);
   scale_light(scale, &term.image);
   scale_error(scale, &term.error);
   if (!term.may_be_negative)
@@ -95,14 +101,14 @@ void add_up(const Field& whole, std::vector<PictureTerm>* terms) {
         for (PictureTerm& term : *terms) {
           float* const value = term.image.row(y, c) + x;
           const double room = term.room.width() > 0 ? term.room.row(y, c)[x] : 1.0;
-          if (room == 0.0) {
+          if (room == 0.0 && !GRADUS_FAULT(light_without_colour_remains)) {
             *value = 0.0f;
           } else {
             shares.push_back({*value, room * room * term.error.row(y)[x], term.may_be_negative ? -INFINITY : 0.0});
             values.push_back(value);
           }
         }
-        distribute(whole.row(y, c)[x], shares);
+        if (!GRADUS_FAULT(light_pass_difference_not_distributed)) distribute(whole.row(y, c)[x], shares);
         for (size_t i = 0; i < values.size(); ++i)
           *values[i] = std::clamp(float(shares[i].value), -kMaxFloat, kMaxFloat);
       }

@@ -22,7 +22,7 @@ class FilmRows {
 
   void operator()(int y, const L2Use& use) {
     Rows& rows = rows_.local();
-    const size_t size = size_t(film_.region.width()) * size_t(film_.channels);
+    const size_t size = size_t(film_.region.width()) * size_t(film_.color_channels);
     for (auto* row : {&rows.primal, &rows.dx, &rows.dy, &rows.dy_below}) row->resize(size);
     std::swap(rows.dy, rows.dy_below);
     if (y > 0 && rows.y != y - 1)
@@ -87,7 +87,7 @@ std::vector<float> reconstruct(const film::Film& film, int component, uint32_t r
     const int w = film.region.width(), h = film.region.height();
     FilmRows rows(film, component);
     alpha = chosen_alpha(reconstruction, alpha);
-    if (auto image = solve_l2(w, h, film.channels, alpha, std::ref(rows))) return *std::move(image);
+    if (auto image = solve_l2(w, h, film.color_channels, alpha, std::ref(rows))) return *std::move(image);
     return solve_l2_with_gaps(film::read_images(film, component), alpha, cancel, report);
   }
   film::GradientImages images = film::read_images(film, component);

@@ -65,7 +65,7 @@ void add_image(std::vector<float> term, std::vector<float>* sum) {
 std::vector<float> reconstruct_component(const film::Film& film, int component, uint32_t reconstruction, float alpha,
                                          const CancelCheck& cancel, SolveReport* report) {
   if (is_black(film.components[size_t(component)]))
-    return std::vector<float>(size_t(film.region.area()) * size_t(film.channels));
+    return std::vector<float>(size_t(film.region.area()) * size_t(film.color_channels));
   if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return film::read_images(film, component).primal;
   return reconstruct(film, component, reconstruction, alpha, cancel, report);
 }
@@ -91,7 +91,7 @@ Reconstructed reconstruct_film(const film::Film& film, uint32_t reconstruction, 
     add_image(std::move(part), &sum.image);
   }
   if (!terms.noise.empty())
-    sum.error = error_of_pixels(terms, film.region.width(), film.region.height(), film.channels);
+    sum.error = error_of_pixels(terms, film.region.width(), film.region.height(), film.color_channels);
   return sum;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/fault.h"
+#include "base/types.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/local_light.h"
@@ -43,12 +45,16 @@ Field lost_share(const Smoothed& smoothed) {
 Field regression_error(const Smoothed& smoothed, const Field& bias) {
   const Field light = squared_light(smoothed.image, kLightRadius), lost = lost_share(smoothed);
   // Noise is averaged relative to the light: the noise of a light source says nothing about the wall beside it.
-  Field error =
-      box_mean(make_field(light.width(), light.height(),
-                          [&](int x, int y) { return mean_of_squares(smoothed.noise, x, y) / light.row(y)[x]; }),
-               kNoiseRadius);
+  const auto relative_noise = [&](int x, int y) {
+    const float by = GRADUS_FAULT(error_noise_not_relative_to_light) ? 1.0f : light.row(y)[x];
+    return mean_of_squares(smoothed.noise, x, y) / by;
+  };
+  Field error = box_mean(make_field(light.width(), light.height(), relative_noise), kNoiseRadius);
   for_values(&error, [&](float& value, int x, int y, int) {
-    value = light.row(y)[x] * (kHidden * value + kLost * lost.row(y)[x]) + std::max(bias.row(y)[x], 0.0f);
+    const float of_lost = GRADUS_FAULT(error_omits_lost_light) ? 0.0f : kLost,
+                minimum = GRADUS_FAULT(error_includes_negative_bias) ? -kInfinity : 0.0f,
+                of_bias = GRADUS_FAULT(error_omits_bias) ? 0.0f : std::max(bias.row(y)[x], minimum);
+    value = light.row(y)[x] * (kHidden * value + of_lost * lost.row(y)[x]) + of_bias;
   });
   return error;
 }

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/fault.h"
 #include "reconstruct/local_regression.h"
 #include "reconstruct/moments.h"
 
@@ -153,8 +154,9 @@ class Tile {
     for (int k = 0; k < kGroup; ++k) {
       const int y = pixel_row(j, g, k), dx = pixel_x(g, k);
       const bool inside = y >= 0 && y < task_.weights->height();
+      const int of_features = GRADUS_FAULT(window_features_shifted_by_a_row) ? std::max(y - 1, 0) : y;
       const int at = k * kPixel;
-      for (int c = 0; c + 1 < B; ++c) pick(inside ? task_.features->row(y, c) : nullptr, dx, pixels_[at + c]);
+      for (int c = 0; c + 1 < B; ++c) pick(inside ? task_.features->row(of_features, c) : nullptr, dx, pixels_[at + c]);
       pick(inside ? task_.weights->row(y) : nullptr, dx, pixels_[at + kWeight]);
       for (int c = 0; c < C; ++c) pick(inside ? value_row(y, c) : nullptr, dx, pixels_[at + kValues + c]);
     }
@@ -164,9 +166,10 @@ class Tile {
   int first_inside(int dx) const { return std::max(0, ceil_divided(octave_.shift - dx, side_) - first_); }
   int end_inside(int dx) const { return ceil_divided(task_.weights->width() + octave_.shift - dx, side_) - first_; }
 
-  void pick(const float* row, int dx, float* to) const {
+  // Copies pixel dx of each block of a row; 0 outside of the image and in the first and last `margin` blocks.
+  void pick(const float* row, int dx, float* to, int margin = 0) const {
     if (row == nullptr) return static_cast<void>(std::fill_n(to, pixels_.width(), 0.0f));
-    const int begin = first_inside(dx), end = std::min(width_, end_inside(dx));
+    const int begin = std::max(margin, first_inside(dx)), end = std::min(width_ - margin, end_inside(dx));
     std::fill_n(to, begin, 0.0f);
     row += first_ * side_ + dx - octave_.shift;
     const ptrdiff_t side = side_;
@@ -219,7 +222,8 @@ class Tile {
     for (int k = 0; k < kGroup; ++k) {
       weight[k] = load(pixels_[k * kPixel + kWeight] + x);
       for (int c = 0; c < C; ++c)
-        squared[k] += (!Estimates || c < kChannels ? 1.0f : -1.0f) * values[c][k] * values[c][k];
+        squared[k] += (!Estimates || c < kChannels || GRADUS_FAULT(residual_noise_counts_as_bias) ? 1.0f : -1.0f) *
+                      values[c][k] * values[c][k];
     }
     put(M::kSquares, weight, squared);
   }
@@ -280,7 +284,8 @@ class Tile {
         noise += noises[c];
       }
       const Lanes unit = weight > zero ? 1.0f / (float(kChannels) * weight) : zero;
-      bias = unit * residual;
+      bias = (GRADUS_FAULT(window_bias_times_4) ? 4.0f : 1.0f) * unit * residual;
+      noise *= GRADUS_FAULT(window_variance_times_4) ? 4.0f : GRADUS_FAULT(window_variance_over_4) ? 0.25f : 1.0f;
       const Lanes error = (bias > zero ? bias : zero) + (noise > zero ? unit * noise : zero) + task_.settings->floor;
       eta = weight > zero ? (size == kSmall ? 0.25f : 0.0625f) / (float(task_.settings->lattices) * error) : zero;
       store_confidence(m, size, x, eta);
@@ -365,7 +370,8 @@ class Tile {
     rows[C] = task_.totals->row(y);
     rows[C + 1] = Estimates ? task_.bias->row(y) : nullptr;
     const int dx = pixel_x(g, k), planes = Estimates ? C + 2 : C + 1;
-    for (int i = 0; i < planes; ++i) pick(first_lattice() ? nullptr : rows[size_t(i)], dx, boxes_[i]);
+    // The blocks within reach belong to other tiles, whose threads may be writing them.
+    for (int i = 0; i < planes; ++i) pick(first_lattice() ? nullptr : rows[size_t(i)], dx, boxes_[i], kReach);
     for (int x = 0; x < width_; x += kLanes) {
       for (int c = 0; c < C; ++c) {
         Lanes sum = load(boxes_[c] + x);
@@ -385,7 +391,9 @@ class Tile {
       const Lanes own = load(moments_[0] + x), total = load(boxes_[C] + x) + own, zero{},
                   factor = total > zero ? 1.0f / total : zero;
       for (int c = 0; c < C; ++c)
-        store(factor * (load(boxes_[c] + x) + own * load(pixels_[k * kPixel + kValues + c] + x)), boxes_[c] + x);
+        store(factor * (load(boxes_[c] + x) + (GRADUS_FAULT(alpha_lacks_own_values) && !Estimates ? zero : own) *
+                                                  load(pixels_[k * kPixel + kValues + c] + x)),
+              boxes_[c] + x);
       if constexpr (Estimates) store(factor * load(boxes_[C + 1] + x), boxes_[C + 1] + x);
     }
   }

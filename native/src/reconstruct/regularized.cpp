@@ -4,8 +4,9 @@
 #include <cmath>
 #include <optional>
 
+#include "base/fault.h"
 #include "base/types.h"
-#include "film/sum_components.h"
+#include "film/film.h"
 #include "reconstruct/feature_filter.h"
 #include "reconstruct/feature_regression.h"
 #include "reconstruct/field_values.h"
@@ -17,7 +18,8 @@ namespace gradus::reconstruct {
 namespace {
 
 HalfSums sums_of(const film::ComponentPlanes& component, size_t pixel) {
-  return {Rgb(component.primal[0][pixel]), Rgb(component.primal[1][pixel])};
+  return {Rgb(component.primal[0][pixel]),
+          Rgb(component.primal[GRADUS_FAULT(half_buffer_a_read_for_b) ? 0 : 1][pixel])};
 }
 
 // Returns the mean of the standard deviation over all pixels.
@@ -33,8 +35,8 @@ float typical_noise(const HalvedImage& image) {
 
 // Returns all channels of a component as sampled, colours in units of `scale`. Values that are not finite become 0.
 Field read_sampled(const film::Film& film, int component, float scale) {
-  const auto channels = size_t(film.channels);
-  Field sampled(film.region.width(), film.region.height(), film.channels);
+  const auto channels = size_t(film.color_channels);
+  Field sampled(film.region.width(), film.region.height(), film.color_channels);
   for_pieces(sampled.height(), [&](int begin, int end) {
     std::vector<float> row(size_t(sampled.width()) * channels);
     for (int y = begin; y < end; ++y) {
@@ -63,9 +65,9 @@ class Operator {
     normalise(scale_, &image);
     regression_.emplace(features, image, cancel);
     solution_ = regression_->image();
-    if (film.channels == 4) {
-      solution_ =
-          join_channels(solution_, regression_->apply(channels_of(read_sampled(film, 0, scale_), 3, 1), cancel));
+    if (film.color_channels == 4) {
+      const Field alpha = channels_of(read_sampled(film, 0, scale_), 3, 1);
+      solution_ = join_channels(solution_, GRADUS_FAULT(alpha_stays_noisy) ? alpha : regression_->apply(alpha, cancel));
     }
     if (!film.gradients) return;
     film::GradientImages images = film::read_images(film, 0);
@@ -81,11 +83,12 @@ class Operator {
   // Applies the operator to a component; `sampled` are its channels from read_sampled().
   Field apply(const film::Film& film, int component, const Field& sampled) {
     Field regressed = regression_->apply(channels_of(sampled, 0, 3), cancel_);
-    if (film.channels == 4) {
+    if (film.color_channels == 4) {
       const Field alpha = channels_of(sampled, 3, 1);
       regressed = join_channels(regressed, is_black(alpha) ? alpha : regression_->apply(alpha, cancel_));
     }
-    return fusion_ ? fusion_->apply(film::read_images(film, component), regressed, cancel_, report_) : regressed;
+    if (!fusion_ || GRADUS_FAULT(components_ignore_differences)) return regressed;
+    return fusion_->apply(film::read_images(film, component), regressed, cancel_, report_);
   }
 
  private:
@@ -118,7 +121,9 @@ Reconstructed regularize(const film::Film& film, const film::Features& features,
   sum.reset();
   const float scale = op.scale();
   Field error = op.error();
-  for_values(&error, [scale](float& value, int, int, int) { value *= scale * scale; });
+  for_values(&error, [scale](float& value, int, int, int) {
+    value *= scale * (GRADUS_FAULT(error_scale_not_squared) ? 1.0f : scale);
+  });
   Reconstructed result{to_image(op.solution(), scale), interleave(error)};
   if (!by_components) return result;
   std::vector<Field> terms;

@@ -94,7 +94,7 @@ BlockNoise noise_of_block(const film::Film& film, const FilmNoise& images, const
   double noise = 0.0, apart = 0.0, signal = 0.0, relative = 0.0;
   for (int32_t y = block.y0; y < block.y1; ++y) {
     for (int32_t x = block.x0; x < block.x1; ++x) {
-      const size_t i = film.index(x, y), v = i * size_t(film.channels);
+      const size_t i = film.index(x, y), v = i * size_t(film.color_channels);
       const PixelNoise pixel = noise_of_pixel(images, i, v);
       const double g = gray(&images.image[v]), s = exposure * g * g + kEpsilon;
       noise += exposure * pixel.noise;

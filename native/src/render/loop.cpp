@@ -4,8 +4,9 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/fault.h"
 #include "base/threads.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "motion/component_motion.h"
 #include "output/combine.h"
 #include "output/component_read.h"
@@ -153,9 +154,11 @@ lpe::ComponentSet RenderLoop::choose_components() {
 
 void RenderLoop::prepare() {
   const GradusSettings& settings = input_.settings;
+  if (GRADUS_FAULT(library_leaks_memory)) std::fill_n(new char[1 << 20], 1 << 20, char(1));
   gradients_ = choose_gradients();
   components_ = choose_components();
-  const uint32_t integrator = gradients_.none() ? uint32_t{GRADUS_INTEGRATOR_PATH} : plan_.integrator;
+  const bool has_lost_gradients = plan_.gradients && gradients_.none();
+  const uint32_t integrator = has_lost_gradients ? uint32_t{GRADUS_INTEGRATOR_PATH} : plan_.integrator;
   if (plan_.pilot) explain(gradients_, &stats_.chosen, &stats_.skipped);
   std::shared_ptr<film::Film> film;
   if (input_.resumed) {
@@ -168,8 +171,7 @@ void RenderLoop::prepare() {
     const bool motion = plan_.component_motion && !input_.replay;
     film::allocate_component_content(
         {plan_.non_specular_vertices, plan_.non_specular_details, motion, motion && input_.samples_only}, film.get());
-    film->passes = film::make_pass_planes(plan_.passes, size_t(plan_.sampled.area()));
-    if (schema::has_bit(plan_.passes, GRADUS_PASS_FALLBACK)) film->fallback.assign(size_t(plan_.sampled.area()), 0.0f);
+    film::add_pass_channels(plan_.passes, film.get());
   }
   if (film->settings.noise_threshold != settings.noise_threshold)
     film->shared.stopped.assign(film->shared.stopped.size(), 0);

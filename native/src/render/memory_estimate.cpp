@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include "film/pass_planes.h"
-#include "film/pixel_correspondence.h"
+#include "film/planes.h"
+#include "film/replay_map.h"
 
 namespace gradus::render {
 namespace {
@@ -19,7 +19,7 @@ constexpr uint64_t kWindowFrame = 100;            // a frame of a window, while 
 
 uint64_t frame_bytes(const Plan& plan) {
   return film::film_bytes_per_pixel(
-      plan.components.count(), plan.gradients, plan.passes,
+      plan.components.count(), plan.gradients, film::channels_of_passes(plan.passes),
       {plan.non_specular_vertices, plan.non_specular_details, plan.component_motion, plan.component_motion});
 }
 

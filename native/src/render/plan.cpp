@@ -63,19 +63,20 @@ void choose_integrator(const GradusSettings& settings, Plan* plan) {
       break;
   }
   plan->gradients = plan->integrator == GRADUS_INTEGRATOR_GRADIENT;
-  if (!plan->gradients) plan->skipped.emplace_back("gradients", "the integrator is path");
+  if (!plan->gradients)
+    plan->skipped.emplace_back("gradients", "the integrator is " + choice_of("integrator", plan->integrator));
 }
 
 void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
   const uint32_t requested = settings.reconstruction;
   if (needs_gradients(requested) && !plan->gradients) {
     throw invalid_argument("reconstruction " + choice_of("reconstruction", requested) +
-                           " needs gradients, but the integrator is path: use " +
-                           "integrator gradient or reconstruction none");
+                           " needs gradients, but the integrator is " + choice_of("integrator", plan->integrator) +
+                           ": use integrator gradient or reconstruction none");
   }
   plan->reconstruction = requested;
-  if (requested == GRADUS_RECONSTRUCTION_AUTO) {  // a user who chose plain paths expects the noisy image
-    const bool plain = settings.integrator == GRADUS_INTEGRATOR_PATH;
+  if (requested == GRADUS_RECONSTRUCTION_AUTO) {  // a user who chose plain samples expects the noisy image
+    const bool plain = settings.integrator != GRADUS_INTEGRATOR_AUTO && !plan->gradients;
     plan->reconstruction = plain ? GRADUS_RECONSTRUCTION_NONE : GRADUS_RECONSTRUCTION_REGULARIZED;
   }
   plan->solves = plan->reconstruction != GRADUS_RECONSTRUCTION_NONE;
@@ -85,9 +86,10 @@ void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
   if (plan->solves) {
     plan->chosen.emplace_back("reconstruction " + choice_of("reconstruction", plan->reconstruction), why);
   } else {
-    plan->skipped.emplace_back("reconstruction", requested == GRADUS_RECONSTRUCTION_AUTO
-                                                     ? "the integrator is path: the noisy image is delivered"
-                                                     : "reconstruction is none: the noisy image is delivered");
+    const std::string reason = requested == GRADUS_RECONSTRUCTION_AUTO
+                                   ? "the integrator is " + choice_of("integrator", plan->integrator)
+                                   : "reconstruction is none";
+    plan->skipped.emplace_back("reconstruction", reason + ": the noisy image is delivered");
   }
 }
 

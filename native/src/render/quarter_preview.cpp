@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 #include "base/fpu.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "film/pixel_blocks.h"
 #include "output/combine.h"
 #include "output/upsample.h"
@@ -47,7 +47,7 @@ QuarterPreview render_quarter_preview(const integrator::Integrator& integrator, 
   const output::ImageSize full_size = size_of(settings), size = size_of(small);
   film::Film film(small.width, small.height, output::covering(plan.delivered, full_size, size), plan.channels, 1,
                   false);
-  film.passes = film::make_pass_planes(schema::feature_passes(), size_t(film.region.area()));
+  film::add_pass_channels(schema::feature_passes(), &film);
   film.settings = small;
   sample(integrator, stop, &film);
   const WallClock clock;

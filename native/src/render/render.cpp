@@ -1,5 +1,4 @@
 #include "render/render.h"
-#include "gradient/gradient_integrator.h"
 
 #include <pthread.h>
 
@@ -7,6 +6,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "gradient/gradient_integrator.h"
 #include "render/loop.h"
 #include "scene/device.h"
 #include "schema/pass_table.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/fault.h"
 #include "base/fpu.h"
 
 namespace gradus::render {
@@ -17,7 +18,7 @@ void RenderTask::run() noexcept {
   } catch (const std::bad_alloc&) {
     end(GRADUS_ERROR_OUT_OF_MEMORY, "out of memory while rendering");
   } catch (const std::exception& e) {
-    end(GRADUS_ERROR_UNKNOWN, e.what());
+    end(GRADUS_FAULT(render_thread_swallows_exception) ? GRADUS_OK : GRADUS_ERROR_UNKNOWN, e.what());
   } catch (...) {
     end(GRADUS_ERROR_UNKNOWN, "unknown exception while rendering");
   }

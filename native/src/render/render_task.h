@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/fault.h"
 #include "film/film.h"
 #include "gradus/gradus.h"
 #include "render/progress_tracker.h"
@@ -25,7 +26,7 @@ class RenderTask {
   // Does the work. Called once, on the thread of the task. Never throws: an error becomes the outcome.
   void run() noexcept;
 
-  virtual void cancel() { stop_.store(true, std::memory_order_relaxed); }
+  virtual void cancel() { stop_.store(!GRADUS_FAULT(cancel_missed_by_render), std::memory_order_relaxed); }
   // Waits until the task has ended. Returns false if it is still running after `seconds` (negative: no limit).
   bool wait(double seconds) const;
   virtual GradusProgress progress() const;

@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "base/text_list.h"
-#include "film/finite_check.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "film/pixel_blocks.h"
+#include "film/planes.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
 #include "schema/sampling_differences.h"
@@ -19,27 +19,6 @@ namespace {
 uint64_t key_of(GradusSettings settings, uint32_t integrator) {
   settings.integrator = integrator;
   return schema::sampling_key(settings);
-}
-
-template <class T>
-void add(std::vector<T>* to, const std::vector<T>& from) {
-  for (size_t i = 0; i < to->size(); ++i) (*to)[i] += from[i];
-}
-
-void add_planes(film::PassPlane* to, const film::PassPlane& from) {
-  if (to->first_sample_only) return;  // merge_films() has already kept the plane of the film with the first sample
-  for (int half = 0; half < film::kHalves; ++half) add(&to->values[half], from.values[half]);
-  add(&to->weight, from.weight);
-}
-
-bool same_planes(const film::Film& a, const film::Film& b) {
-  const film::ComponentContent of_a = film::component_content(a), of_b = film::component_content(b);
-  if (of_a.non_specular != of_b.non_specular || of_a.details != of_b.details) return false;
-  if (a.passes.size() != b.passes.size() || a.fallback.size() != b.fallback.size()) return false;
-  for (size_t i = 0; i < a.passes.size(); ++i) {
-    if (a.passes[i].pass != b.passes[i].pass) return false;
-  }
-  return true;
 }
 
 // Returns whether a film of this plan may have this integrator. If a pilot found no benefit of gradients, it is PATH.
@@ -102,7 +81,7 @@ void check_resumable(const film::Film& film, const GradusSettings& settings, con
   const film::ComponentContent held = film::component_content(film);
   if ((plan.non_specular_vertices && !held.non_specular) || (plan.non_specular_details && !held.details))
     throw invalid_argument("the frame was sampled without the passes of components");
-  const uint64_t kept = film::film_passes(film);
+  const uint64_t kept = film.channels.passes();
   for (const schema::PassInfo& info : schema::stored_passes(plan.passes)) {
     if (!schema::has_bit(kept, info.pass))
       throw invalid_argument("the frame lacks " + std::string(info.name) + ", which the reconstruction reads");
@@ -111,50 +90,20 @@ void check_resumable(const film::Film& film, const GradusSettings& settings, con
     throw invalid_argument("the frame has more samples than are asked for");
 }
 
-void add_sums(film::Film* film, const film::Film& other) {
-  for (size_t c = 0; c < film->components.size(); ++c) {
-    std::vector<film::NonSpecularDetails>& details = film->components[c].details;
-    for (size_t i = 0; i < details.size(); ++i)
-      film::add_details(other.components[c].details[i], &details[i], &film->counters);
-  }
-  for (int half = 0; half < film::kHalves; ++half) {
-    for (size_t c = 0; c < film->components.size(); ++c) {
-      add(&film->components[c].primal[half], other.components[c].primal[half]);
-      for (size_t i = 0; i < film->components[c].non_specular[half].size(); ++i) {
-        film::add_non_specular(other.components[c].non_specular[half][i], &film->components[c].non_specular[half][i],
-                               &film->counters);
-      }
-      for (int o = 0; o < film::kOffsets; ++o)
-        add(&film->components[c].gradient[half][o], other.components[c].gradient[half][o]);
-    }
-    add(&film->count[half], other.count[half]);
-    for (int o = 0; o < film::kOffsets; ++o) add(&film->pair_count[half][o], other.pair_count[half][o]);
-  }
-  for (size_t i = 0; i < film->passes.size(); ++i) add_planes(&film->passes[i], other.passes[i]);
-  add(&film->fallback, other.fallback);
-  film->counters.add(other.counters);
-}
-
 void merge_films(film::Film* film, const film::Film& other) {
   if (film->scene_key != other.scene_key) throw invalid_argument("the frames show different scenes");
   if (schema::sampling_key(film->settings) != schema::sampling_key(other.settings))
     throw invalid_argument("the frames were sampled with different settings");
-  if (film->region != other.region || film->channels != other.channels || film->gradients != other.gradients ||
-      !same_planes(*film, other)) {
-    throw invalid_argument("the frames differ in size or planes");
-  }
   if (!film::same_components(*film, other))
     throw invalid_argument("the frames hold different components: " + film::component_names(*film) + ", and " +
                            film::component_names(other));
+  if (!film::can_add(*film, other)) throw invalid_argument("the frames differ in size or planes");
   if (film->samples.overlap(other.samples)) {
     const uint32_t end = std::max(film->samples.list().back().end, other.samples.list().back().end);
     throw invalid_argument("the frames share samples: render one of them with first_sample " + std::to_string(end));
   }
   const bool other_is_first = other.settings.first_sample < film->settings.first_sample;
-  for (size_t i = 0; i < film->passes.size(); ++i) {
-    if (film->passes[i].first_sample_only && other_is_first) film->passes[i] = other.passes[i];
-  }
-  add_sums(film, other);
+  film::add_sums(film, other);
   film->shared = {};  // the adaptive states of two films with different samples cannot be combined
   for (const film::SampleRange& range : other.samples.list()) film->samples.add(range);
   if (other_is_first) film->settings.first_sample = other.settings.first_sample;

@@ -21,8 +21,6 @@ void check_resumable(const film::Film& film, const GradusSettings& settings, con
 // Throws `invalid_argument` if the film has gradients and none are wanted, or has none and they are wanted.
 void check_gradients(const film::Film& film, bool wanted);
 
-// Adds the sums and counts of `other`, which has the same planes. Planes of the first sample only are not changed.
-void add_sums(film::Film* film, const film::Film& other);
 // Adds the samples of `other`, which has other sample numbers. Throws `invalid_argument` with the reason if the films
 // differ in scene, settings, planes or components, or share samples.
 void merge_films(film::Film* film, const film::Film& other);

@@ -10,7 +10,7 @@
 #include "base/fpu.h"
 #include "base/text_list.h"
 #include "film/pixel_blocks.h"
-#include "path/hash.h"
+#include "path/sampler.h"
 
 namespace gradus::render {
 namespace {

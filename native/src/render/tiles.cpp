@@ -1,6 +1,6 @@
 #include "render/tiles.h"
 
-#include "film/pixel_block.h"
+#include "film/pixel_blocks.h"
 
 namespace gradus::render {
 

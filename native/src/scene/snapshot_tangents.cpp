@@ -1,10 +1,11 @@
+#include "scene/snapshot_tangents.h"
+
 #include <algorithm>
 #include <map>
 
 #include "geometry/mesh.h"
 #include "geometry/tangent_field.h"
 #include "scene/snapshot.h"
-#include "scene/snapshot_tangents.h"
 #include "shading/material.h"
 
 namespace gradus::scene {

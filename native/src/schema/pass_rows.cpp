@@ -37,7 +37,7 @@ constexpr PassInfo kPasses[] = {
     {GRADUS_PASS_GRADIENT_X, "Gradient X", 3, PassKind::Derived, GRADUS_PASS_COUNT},
     {GRADUS_PASS_GRADIENT_Y, "Gradient Y", 3, PassKind::Derived, GRADUS_PASS_COUNT},
     {GRADUS_PASS_VARIANCE, "Variance", 3, PassKind::Derived, GRADUS_PASS_COUNT},
-    {GRADUS_PASS_FALLBACK, "Fallback", 1, PassKind::Derived, GRADUS_PASS_COUNT},
+    {GRADUS_PASS_FALLBACK, "Fallback", 1, PassKind::Average, GRADUS_PASS_COUNT},
     {GRADUS_PASS_ERROR, "Error", 1, PassKind::Solved, GRADUS_PASS_COUNT},
     {GRADUS_PASS_GRADIENT_T, "Gradient T", 3, PassKind::Sequence, GRADUS_PASS_COUNT},
     {GRADUS_PASS_GRADIENT_T_LINK, "Gradient T Link", 3, PassKind::Sequence, GRADUS_PASS_COUNT},

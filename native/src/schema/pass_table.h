@@ -1,5 +1,5 @@
 // The passes: names, channels, and which stored plane a pass is read from. The table is generated:
-// schema/pass_rows.cpp. The integrator fills the planes that film/pass_planes.h creates; frames are read through
+// schema/pass_rows.cpp. The integrator fills the planes that film/channel.h creates; frames are read through
 // output/pass_read.h.
 #pragma once
 

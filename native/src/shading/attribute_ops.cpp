@@ -1,12 +1,9 @@
 // Attribute, Color Attribute and Object Info nodes.
-#include "geometry/mesh.h"
+#include "geometry/surface_values.h"
 #include "shading/context_ops.h"
 
 namespace gradus::shading {
 
-// Returns an attribute of the mesh, interpolated at the hit. If `name` is null and `uv` is true it is the mesh's
-// default UV map. `channels` may be null; *channels receives the number of channels, or 0 if there is no such
-// attribute.
 Vec4 attribute_value(const ShadeContext& c, const std::string* name, bool uv, uint32_t* channels) {
   if (channels) *channels = 0;
   if (!c.instance) return Vec4(0.0f);
@@ -15,10 +12,10 @@ Vec4 attribute_value(const ShadeContext& c, const std::string* name, bool uv, ui
   if (!found && !name && uv) found = geometry::default_uv_map(mesh);
   if (!found) return Vec4(0.0f);
   if (channels) *channels = found->channels;
-  return geometry::interpolate(geometry::corner_values(mesh, *found, c.hit.triangle), c.hit.barycentric);
+  return geometry::attribute_at(*c.instance, *found, c.hit);
 }
 
-void attribute(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
+void attribute_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
   uint32_t channels = 0;
   Vec4 v = attribute_value(c, args.name, false, &channels);
   if (channels == 0) v.w = 1.0f;  // as in Cycles, a missing attribute is black and opaque
@@ -28,7 +25,7 @@ void attribute(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
   out[3] = splat(v.w);
 }
 
-void object_info(const ShadeContext& c, Vec4* out) {
+void object_info_op(const ResourceArgs&, const ShadeContext& c, Vec4* out) {
   if (!c.instance) {
     for (int i = 0; i < 5; i++) out[i] = Vec4(0.0f);
     return;

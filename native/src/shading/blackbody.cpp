@@ -1,15 +1,16 @@
-// The colour of a black body: Planck's law, seen by the CIE 1931 observer.
+// The Blackbody node: Planck's law, seen by the CIE 1931 observer.
 #include <algorithm>
 #include <cmath>
 
-#include "shading/ops.h"
+#include "shading/op_functions.h"
 #include "shading/sky/sky_color.h"
 #include "shading/sky/spectrum.h"
 
 namespace gradus::shading {
+namespace {
 
-// Temperatures are clamped to the range of Cycles, 800 to 12000 K. Components outside the gamut of Rec. 709 are clamped
-// at 0.
+// Returns the linear Rec. 709 colour of luminance 1 of a black body. Temperatures are clamped to the range of Cycles,
+// 800 to 12000 K. Components outside the gamut of Rec. 709 are clamped at 0.
 Rgb blackbody(float kelvin) {
   const double t = std::clamp(kelvin, 800.0f, 12000.0f);
   glm::dvec3 xyz(0.0);
@@ -21,5 +22,9 @@ Rgb blackbody(float kelvin) {
   }
   return glm::max(xyz_to_rgb(Vec3(xyz / xyz.y)), Rgb(0.0f));
 }
+
+}  // namespace
+
+void blackbody_op(const OpArgs& args, Vec4* out) { out[0] = value(blackbody(args.f(0))); }
 
 }  // namespace gradus::shading

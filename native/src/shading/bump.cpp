@@ -37,10 +37,10 @@ Vec3 bump(const Program& program, uint32_t block, const OpArgs& args, const Shad
   const Vec3 ng = c.geometric_normal;
   const Vec3 helper = std::fabs(ng.z) < 0.9f ? Vec3(0, 0, 1) : Vec3(1, 0, 0);
   const Vec3 dx = glm::normalize(glm::cross(helper, ng)), dy = glm::cross(ng, dx);
-  const std::array<Vec3, 3> corners = world_corners(c);
+  const geometry::SurfaceDerivatives derivatives = c.scene->derivatives(c.hit);
   const float h = run_block(program, block, c).x;
-  const float hx = run_block(program, block, moved_context(c, corners, dx * step)).x;
-  const float hy = run_block(program, block, moved_context(c, corners, dy * step)).x;
+  const float hx = run_block(program, block, moved_context(c, derivatives, dx * step)).x;
+  const float hy = run_block(program, block, moved_context(c, derivatives, dy * step)).x;
   const Vec3 rx = glm::cross(dy, normal), ry = glm::cross(normal, dx);
   const float det = glm::dot(dx, rx);
   const Vec3 gradient = (rx * (hx - h) + ry * (hy - h)) / step;

@@ -3,6 +3,7 @@
 #include "image/image_store.h"
 #include "shading/interpreter.h"
 #include "shading/material.h"
+#include "shading/op_info.h"
 #include "shading/program_emitter.h"
 #include "shading/scalar.h"
 #include "shading/sky/suns.h"
@@ -57,7 +58,7 @@ class Analysis {
 
   void run() {
     for (const Instruction& i : p_.code)
-      if (i.op < GRADUS_OP_LIMIT && is_closure_op(i.op)) closure(i);
+      if (is_closure_op(i.op)) closure(i);
   }
 
  private:

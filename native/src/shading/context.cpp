@@ -55,18 +55,11 @@ Vec3 world_position(const ShadeContext& c) {
   return c.is_background || !c.scene ? c.position : c.position + c.scene->origin;
 }
 
-std::array<Vec3, 3> world_corners(const ShadeContext& c) {
-  return c.scene->corners(c.hit.instance, c.hit.triangle, c.hit.time);
-}
-
-ShadeContext moved_context(const ShadeContext& context, const std::array<Vec3, 3>& p, const Vec3& step) {
+ShadeContext moved_context(const ShadeContext& context, const geometry::SurfaceDerivatives& derivatives,
+                           const Vec3& step) {
   ShadeContext c = context;
-  const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0], n = glm::cross(e1, e2);
-  const float square = glm::dot(n, n);
   c.position += step;
-  if (square > 0.0f) {
-    c.hit.barycentric += Vec2(glm::dot(glm::cross(step, e2), n), glm::dot(glm::cross(e1, step), n)) / square;
-  }
+  c.hit.uv += derivatives.duv(step);
   return c;
 }
 

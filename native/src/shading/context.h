@@ -1,8 +1,6 @@
 // The inputs of a node program: the point that is shaded and the ray that arrives there.
 #pragma once
 
-#include <array>
-
 #include "base/types.h"
 #include "geometry/surface.h"
 #include "shading/shade.h"
@@ -42,10 +40,10 @@ ShadeContext light_context(const ShadedScene& scene, const LightShadingPoint& po
 const geometry::Placement& placement_of(const ShadeContext& context, geometry::Placement* room);
 // Returns the position in world space, or the direction for the background.
 Vec3 world_position(const ShadeContext& context);
-// world_corners() returns the corners of the hit triangle in internal space. moved_context() returns the context moved
-// by `step` along that triangle; interpolated values are those of the new point.
-std::array<Vec3, 3> world_corners(const ShadeContext& context);
-ShadeContext moved_context(const ShadeContext& context, const std::array<Vec3, 3>& corners, const Vec3& step);
+// Returns the context moved by `step` along the primitive of its hit, of which the derivatives are given. Interpolated
+// values are those of the new point.
+ShadeContext moved_context(const ShadeContext& context, const geometry::SurfaceDerivatives& derivatives,
+                           const Vec3& step);
 // Transform normals between internal space and the object's space. Without an object they return the normal unchanged.
 Vec3 normal_to_local(const ShadeContext& context, const Vec3& normal);
 Vec3 normal_to_world(const ShadeContext& context, const Vec3& normal);

@@ -1,5 +1,5 @@
 // The Geometry node.
-#include "geometry/mesh.h"
+#include "geometry/surface_values.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 
@@ -7,10 +7,9 @@ namespace gradus::shading {
 
 Vec3 generated(const ShadeContext& c) {
   if (!c.instance) return world_position(c);
-  return geometry::generated_at(*c.instance->mesh, c.hit.triangle, c.hit.barycentric);
+  return geometry::generated_at(*c.instance, c.hit);
 }
 
-// Returns the tangent around the z axis of the object's generated coordinates, perpendicular to the normal.
 Vec3 default_tangent(const ShadeContext& c) {
   if (!c.instance) return Vec3(1, 0, 0);
   const Vec3 g = generated(c) - 0.5f;
@@ -18,7 +17,9 @@ Vec3 default_tangent(const ShadeContext& c) {
   return safe_normalize(glm::cross(c.normal, safe_normalize(glm::cross(around, c.normal))));
 }
 
-Vec3 geometry(uint32_t mode, const ShadeContext& c) {
+namespace {
+
+Vec3 quantity(uint32_t mode, const ShadeContext& c) {
   switch (mode) {
     case GRADUS_GEOMETRY_NORMAL:
       return c.normal;
@@ -29,13 +30,16 @@ Vec3 geometry(uint32_t mode, const ShadeContext& c) {
     case GRADUS_GEOMETRY_INCOMING:
       return c.wo;
     case GRADUS_GEOMETRY_PARAMETRIC:
-      if (c.light_axes) return Vec3(c.uv, 0.0f);
-      return Vec3(1.0f - c.hit.barycentric.x - c.hit.barycentric.y, c.hit.barycentric.x, 0.0f);
+      return c.light_axes ? Vec3(c.uv, 0.0f) : geometry::parametric_at(c.hit);
     case GRADUS_GEOMETRY_BACKFACING:
       return Vec3(c.backfacing ? 1.0f : 0.0f);
     default:
       return world_position(c);
   }
 }
+
+}  // namespace
+
+void geometry_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) { out[0] = value(quantity(args.mode, c)); }
 
 }  // namespace gradus::shading

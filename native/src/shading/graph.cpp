@@ -5,6 +5,7 @@
 #include "shading/graph_check.h"
 #include "shading/op_info.h"
 #include "shading/ops.h"
+#include "shading/program.h"
 #include "shading/sky/sky.h"
 
 namespace gradus::shading {
@@ -98,7 +99,7 @@ class Builder {
 
   // Evaluates a node whose inputs are all constant.
   void fold(GraphNode* n) const {
-    Vec4 in[16];
+    Vec4 in[kMaxInputs];
     for (size_t k = 0; k < n->inputs.size(); k++) {
       if (!n->inputs[k].is_constant()) return;
       in[k] = n->inputs[k].constant;
@@ -108,7 +109,7 @@ class Builder {
     args.in = in;
     args.floats = graph_.floats.data() + n->first_float;
     args.float_count = n->float_count;
-    Vec4 out[8];
+    Vec4 out[kMaxOutputs];
     if (!evaluate_pure(n->op, args, out)) return;
     for (size_t k = 0; k < n->outputs.size(); k++) n->outputs[k] = constant(out[k]);
   }

@@ -44,7 +44,6 @@ struct Graph {
 
 inline constexpr uint32_t kMaxNodes = 1u << 16;
 
-inline bool is_closure_op(uint32_t op) { return op <= GRADUS_OP_METALLIC; }
 inline bool is_shader_combination(uint32_t op) { return op == GRADUS_OP_MIX_SHADER || op == GRADUS_OP_ADD_SHADER; }
 
 // Checks and simplifies the node program of a material. Throws Error INVALID_ARGUMENT with the material's name.

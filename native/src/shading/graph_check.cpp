@@ -8,55 +8,8 @@
 namespace gradus::shading {
 namespace {
 
-struct ModeRange {
-  uint32_t op;
-  uint32_t last;
-};
-
-// The last mode of each operation that has modes. All other operations have mode 0 only.
-constexpr ModeRange kModes[] = {
-    {GRADUS_OP_DIFFUSE, 1},
-    {GRADUS_OP_GLOSSY, GRADUS_DISTRIBUTION_MULTIPLE},
-    {GRADUS_OP_GLASS, GRADUS_DISTRIBUTION_MULTIPLE + 2},
-    {GRADUS_OP_PRINCIPLED, GRADUS_DISTRIBUTION_MULTIPLE},
-    {GRADUS_OP_PRINCIPLED_3, GRADUS_DISTRIBUTION_MULTIPLE},
-    {GRADUS_OP_METALLIC, GRADUS_DISTRIBUTION_MULTIPLE},
-    {GRADUS_OP_GEOMETRY, GRADUS_GEOMETRY_BACKFACING},
-    {GRADUS_OP_TEX_COORD, GRADUS_TEX_COORD_INSTANCER_UV},
-    {GRADUS_OP_TANGENT, GRADUS_TANGENT_UV},
-    {GRADUS_OP_LIGHT_PATH, GRADUS_LIGHT_PATH_TRANSMISSION_DEPTH},
-    {GRADUS_OP_NORMAL_MAP, GRADUS_NORMAL_BLENDER_WORLD},
-    {GRADUS_OP_BUMP, 1},
-    {GRADUS_OP_IMAGE, 127},
-    {GRADUS_OP_ENVIRONMENT, 127},
-    {GRADUS_OP_NOISE, 255},
-    {GRADUS_OP_GRADIENT, GRADUS_GRADIENT_SPHERICAL},
-    {GRADUS_OP_WHITE_NOISE, 4},
-    {GRADUS_OP_WAVE, 31},
-    {GRADUS_OP_MAGIC, 10},
-    {GRADUS_OP_SKY, GRADUS_SKY_MULTIPLE_SCATTERING},
-    {GRADUS_OP_MAPPING, GRADUS_MAPPING_NORMAL},
-    {GRADUS_OP_VECTOR_TRANSFORM, 42},
-    {GRADUS_OP_VECTOR_ROTATE, 12},
-    {GRADUS_OP_MIX_COLOR, GRADUS_BLEND_VALUE + 32},
-    {GRADUS_OP_MATH, GRADUS_MATH_COUNT - 1 + 64},
-    {GRADUS_OP_VECTOR_MATH, GRADUS_VECTOR_COUNT - 1},
-    {GRADUS_OP_CLAMP, 1},
-    {GRADUS_OP_MAP_RANGE, GRADUS_MAP_RANGE_SMOOTHERSTEP + 24},
-    {GRADUS_OP_RAMP, 1},
-    {GRADUS_OP_CURVES, GRADUS_CURVES_FLOAT},
-    {GRADUS_OP_SEPARATE, GRADUS_COLOR_HSL},
-    {GRADUS_OP_COMBINE, GRADUS_COLOR_HSL},
-    {GRADUS_OP_LIGHT_FALLOFF, 2},
-};
-
-uint32_t last_mode(uint32_t op) {
-  for (const ModeRange& range : kModes)
-    if (range.op == op) return range.last;
-  return 0;
-}
-
-bool table_fits(const GradusNode& node) {
+// Returns whether a node has as many floats as the table of its operation needs.
+bool table_fits(const GradusNode& node, const OpInfo& info) {
   switch (node.op) {
     case GRADUS_OP_RAMP:
       return node.float_count >= 4 && node.float_count % 4 == 0;
@@ -64,17 +17,13 @@ bool table_fits(const GradusNode& node) {
       const uint32_t channels = node.mode == GRADUS_CURVES_FLOAT ? 1 : 3;
       return node.float_count >= 3 + 2 * channels && (node.float_count - 3) % channels == 0;
     }
-    case GRADUS_OP_BRICK:
-      return node.float_count >= 4;
     case GRADUS_OP_SKY:
       return node.float_count >= kSkySettings ||
              (node.mode <= GRADUS_SKY_HOSEK_WILKIE && node.float_count >= kAnalyticSkySettings);
-    case GRADUS_OP_NORMAL_DOT:
-      return node.float_count >= 3;
     case GRADUS_OP_TEX_COORD:
       return node.float_count == 0 || node.float_count >= 16;
     default:
-      return true;
+      return node.float_count >= info.min_floats;
   }
 }
 
@@ -111,11 +60,11 @@ class Checker {
     const GradusNode& n = desc_.nodes[i];
     const OpInfo* info = op_info(n.op);
     that(info != nullptr, "unknown operation", i);
-    that(n.mode <= last_mode(n.op), "unknown mode", i);
+    that(n.mode <= info->last_mode, "unknown mode", i);
     that(n.input_count <= info->inputs, "too many inputs", i);
     that(uint64_t(n.first_input) + n.input_count <= desc_.input_count, "inputs out of range", i);
     that(uint64_t(n.first_float) + n.float_count <= desc_.float_count, "floats out of range", i);
-    that(table_fits(n), "table of a wrong size", i);
+    that(table_fits(n, *info), "table of a wrong size", i);
     const bool is_image = n.op == GRADUS_OP_IMAGE || n.op == GRADUS_OP_ENVIRONMENT;
     that(is_image || n.resource <= desc_.name_count, "name out of range", i);
     for (uint32_t k = 0; k < n.input_count; k++) input(i, k, desc_.inputs[n.first_input + k]);

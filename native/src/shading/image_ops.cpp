@@ -96,7 +96,7 @@ bool unusable(const ResourceArgs& args, const ShadeContext& c) {
 
 }  // namespace
 
-void image(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
+void image_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
   Vec4 color = kMissing;
   if (!unusable(args, c)) {
     const Sampler sampler = sampler_of(args, c);
@@ -115,12 +115,16 @@ void image(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
   out[1] = splat(color.w);
 }
 
-Vec4 environment(const ResourceArgs& args, const ShadeContext& c) {
-  if (unusable(args, c)) return kMissing;
-  if (c.mean_textures) return Vec4(c.images->mean(args.resource), 1.0f);
+void environment_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
+  out[0] = kMissing;
+  if (unusable(args, c)) return;
+  if (c.mean_textures) {
+    out[0] = Vec4(c.images->mean(args.resource), 1.0f);
+    return;
+  }
   const Vec3 direction = safe_normalize(args.v(0));
   const Vec2 uv = args.mode & 3 ? mirror_ball(direction) : latitude_longitude(direction);
-  return Vec4(Vec3(sampler_of(args, c).at(uv)), 1.0f);
+  out[0] = Vec4(Vec3(sampler_of(args, c).at(uv)), 1.0f);
 }
 
 }  // namespace gradus::shading

@@ -5,6 +5,7 @@
 #include "shading/bump.h"
 #include "shading/closure_tape.h"
 #include "shading/context_ops.h"
+#include "shading/op_info.h"
 #include "shading/scalar.h"
 
 namespace gradus::shading {
@@ -28,7 +29,7 @@ class Machine {
   uint32_t step(const Instruction& i, uint32_t pc) {
     const Operand* operands = program_.operands.data() + i.first_operand;
     if (i.op == kOpJumpIfZero) return at(operands[0]).x == 0.0f && is_zero(at(operands[0])) ? i.first_float : pc + 1;
-    if (i.op <= GRADUS_OP_METALLIC) {
+    if (is_closure_op(i.op)) {
       if (result_) run_closure(i);
       return pc + 1;
     }
@@ -80,7 +81,7 @@ class Machine {
     args.resource = i.resource;
     if (i.op != GRADUS_OP_IMAGE && i.op != GRADUS_OP_ENVIRONMENT && i.resource > 0)
       args.name = &program_.names[i.resource - 1];
-    evaluate_context_op(i.op, args, context_, out);
+    evaluate_context(i.op, args, context_, out);
   }
 
   static void fill(OpArgs* args, const Instruction& i, const Vec4* in, const float* floats) {

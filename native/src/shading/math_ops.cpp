@@ -1,7 +1,7 @@
 // The Math, Clamp and Map Range nodes.
 #include <cfloat>
 
-#include "shading/ops.h"
+#include "shading/op_functions.h"
 #include "shading/scalar.h"
 
 namespace gradus::shading {
@@ -99,8 +99,6 @@ float map_one(uint32_t mode, const OpArgs& args, int i) {
   return to0 + t * (to1 - to0);
 }
 
-}  // namespace
-
 float math(uint32_t mode, float a, float b, float c) {
   switch (mode) {
     case GRADUS_MATH_ADD:
@@ -146,20 +144,25 @@ float math(uint32_t mode, float a, float b, float c) {
   }
 }
 
-Vec4 clamp_op(const OpArgs& args) {
-  Vec4 r;
-  for (int i = 0; i < 4; i++) r[i] = clamp_one(args.in[0][i], args.in[1][i], args.in[2][i], args.mode == 1);
-  return r;
+}  // namespace
+
+void math_op(const OpArgs& args, Vec4* out) {
+  const float r = math(args.mode & 63, args.f(0), args.f(1), args.f(2));
+  out[0] = splat(args.mode & 64 ? std::min(std::max(r, 0.0f), 1.0f) : r);
 }
 
-Vec4 map_range(const OpArgs& args) {
+void clamp_op(const OpArgs& args, Vec4* out) {
+  for (int i = 0; i < 4; i++) out[0][i] = clamp_one(args.in[0][i], args.in[1][i], args.in[2][i], args.mode == 1);
+}
+
+void map_range_op(const OpArgs& args, Vec4* out) {
   const uint32_t mode = args.mode & 7;
   Vec4 r;
   for (int i = 0; i < 4; i++) {
     r[i] = map_one(mode, args, i);
     if (args.mode & 8) r[i] = clamp_one(r[i], args.in[3][i], args.in[4][i], true);
   }
-  return r;
+  out[0] = r;
 }
 
 }  // namespace gradus::shading

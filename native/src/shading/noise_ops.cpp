@@ -1,7 +1,7 @@
 // The Noise Texture and White Noise Texture nodes.
 #include "shading/fractal.h"
 #include "shading/lattice_hash.h"
-#include "shading/ops.h"
+#include "shading/op_functions.h"
 #include "shading/scalar.h"
 
 namespace gradus::shading {
@@ -76,7 +76,7 @@ void noise_op(const OpArgs& args, Vec4* out) {
   }
 }
 
-void white_noise(const OpArgs& args, Vec4* out) {
+void white_noise_op(const OpArgs& args, Vec4* out) {
   const Vec3 v = args.v(0);
   const float w = args.f(1);
   switch (args.mode) {

@@ -1,6 +1,6 @@
 // The Checker, Gradient, Wave, Magic and Brick Texture nodes.
 #include "shading/fractal.h"
-#include "shading/ops.h"
+#include "shading/op_functions.h"
 #include "shading/scalar.h"
 
 namespace gradus::shading {
@@ -57,7 +57,7 @@ bool every(int row, int frequency) { return frequency != 0 && row % frequency ==
 
 }  // namespace
 
-void checker(const OpArgs& args, Vec4* out) {
+void checker_op(const OpArgs& args, Vec4* out) {
   const Vec3 p = glm::abs(glm::floor(off_border(args.v(0) * args.f(3))));
   const auto odd = [](float x) { return 0.5f * x != std::floor(0.5f * x); };  // for integers
   const bool first = (odd(p.x) == odd(p.y)) == odd(p.z);
@@ -65,9 +65,9 @@ void checker(const OpArgs& args, Vec4* out) {
   out[1] = splat(first ? 1.0f : 0.0f);
 }
 
-Vec4 gradient(const OpArgs& args) { return splat(saturate(gradient_value(args.mode, args.v(0)))); }
+void gradient_op(const OpArgs& args, Vec4* out) { out[0] = splat(saturate(gradient_value(args.mode, args.v(0)))); }
 
-Vec4 wave(const OpArgs& args) {
+void wave_op(const OpArgs& args, Vec4* out) {
   const Vec3 p = off_border(args.v(0) * args.f(1));
   float phase = wave_phase(args.mode & 1, (args.mode >> 1) & 3, p) + args.f(6);
   if (args.f(2) != 0.0f) {
@@ -76,10 +76,10 @@ Vec4 wave(const OpArgs& args) {
     octaves.roughness = saturate(args.f(5));
     phase += args.f(2) * (fbm(p * args.f(4), octaves) * 2.0f - 1.0f);
   }
-  return splat(wave_profile((args.mode >> 3) & 3, phase));
+  out[0] = splat(wave_profile((args.mode >> 3) & 3, phase));
 }
 
-void magic(const OpArgs& args, Vec4* out) {
+void magic_op(const OpArgs& args, Vec4* out) {
   const Vec3 p = args.v(0) * args.f(1);
   const int depth = static_cast<int>(std::min(args.mode, 10u));
   const float d = args.f(2);
@@ -107,7 +107,7 @@ void magic(const OpArgs& args, Vec4* out) {
   out[1] = splat(mean_component(color));
 }
 
-void brick(const OpArgs& args, Vec4* out) {
+void brick_op(const OpArgs& args, Vec4* out) {
   const Vec3 p = args.v(0) * args.f(4);
   const float mortar_size = args.f(5), mortar_smooth = args.f(6), bias = args.f(7), row_height = args.f(9);
   float width = args.f(8), shift = 0.0f;

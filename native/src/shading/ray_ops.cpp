@@ -11,9 +11,7 @@ Vec3 normal_or_own(const Vec3& n, const ShadeContext& c) { return n == Vec3(0.0f
 
 float flag(const ShadeContext& c, uint32_t bit) { return c.ray.flags & bit ? 1.0f : 0.0f; }
 
-}  // namespace
-
-float light_path(uint32_t mode, const ShadeContext& c) {
+float property(uint32_t mode, const ShadeContext& c) {
   switch (mode) {
     case GRADUS_LIGHT_PATH_CAMERA:
       return flag(c, kRayCamera);
@@ -44,7 +42,13 @@ float light_path(uint32_t mode, const ShadeContext& c) {
   }
 }
 
-void layer_weight(const OpArgs& args, const ShadeContext& c, Vec4* out) {
+}  // namespace
+
+void light_path_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
+  out[0] = splat(property(args.mode, c));
+}
+
+void layer_weight_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
   const float cosine = glm::dot(c.wo, normal_or_own(args.v(1), c));
   float blend = args.f(0);
   const float eta = std::max(1.0f - blend, 1e-5f);
@@ -57,21 +61,22 @@ void layer_weight(const OpArgs& args, const ShadeContext& c, Vec4* out) {
   out[1] = splat(1.0f - facing);
 }
 
-float fresnel(const OpArgs& args, const ShadeContext& c) {
+void fresnel_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
   const float eta = std::max(args.f(0), 1e-5f);
-  return dielectric_reflectance(glm::dot(c.wo, normal_or_own(args.v(1), c)), c.backfacing ? 1.0f / eta : eta);
+  const float cosine = glm::dot(c.wo, normal_or_own(args.v(1), c));
+  out[0] = splat(dielectric_reflectance(cosine, c.backfacing ? 1.0f / eta : eta));
 }
 
 // Changes the inverse square law of a light: the strength is multiplied by the ray's length for a linear falloff, or by
 // its square for none.
-float light_falloff(const OpArgs& args, const ShadeContext& c) {
+void light_falloff_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
   const float length = std::min(c.ray.length, 1e18f);
   float strength = args.f(0);
   if (args.mode == 1) strength *= length;
   if (args.mode == 2) strength *= length * length;
   const float smooth = args.f(1), square = length * length;
   if (smooth > 0.0f) strength *= square / (smooth + square);
-  return strength;
+  out[0] = splat(strength);
 }
 
 }  // namespace gradus::shading

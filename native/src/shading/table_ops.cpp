@@ -1,5 +1,5 @@
 // The Color Ramp and Curves nodes: look-ups in tables that the host has sampled.
-#include "shading/ops.h"
+#include "shading/op_functions.h"
 #include "shading/scalar.h"
 
 namespace gradus::shading {
@@ -20,7 +20,7 @@ float lookup(const float* table, int count, int stride, float x, bool extrapolat
 
 }  // namespace
 
-void ramp(const OpArgs& args, Vec4* out) {
+void ramp_op(const OpArgs& args, Vec4* out) {
   const int count = static_cast<int>(args.float_count / 4);
   const float position = saturate(args.f(0)) * static_cast<float>(count - 1);
   const int i = std::clamp(static_cast<int>(position), 0, count - 1);
@@ -30,7 +30,7 @@ void ramp(const OpArgs& args, Vec4* out) {
   out[1] = splat(out[0].w);
 }
 
-Vec4 curves(const OpArgs& args) {
+void curves_op(const OpArgs& args, Vec4* out) {
   const int channels = args.mode == GRADUS_CURVES_FLOAT ? 1 : 3;
   const int count = (static_cast<int>(args.float_count) - 3) / channels;
   const float lower = args.floats[0], range = args.floats[1] - lower;
@@ -40,7 +40,7 @@ Vec4 curves(const OpArgs& args) {
   for (int c = 0; c < channels; c++)
     mapped[c] = lookup(args.floats + 3 + c, count, channels, safe_divide(in[c] - lower, range), extrapolate);
   if (channels == 1) mapped = splat(mapped.x);
-  return in + (mapped - in) * args.f(0);
+  out[0] = in + (mapped - in) * args.f(0);
 }
 
 }  // namespace gradus::shading

@@ -1,7 +1,6 @@
 // The Tangent and Normal Map nodes.
 #include "base/minimal_rotation.h"
-#include "geometry/mesh.h"
-#include "geometry/tangent_field.h"
+#include "geometry/surface_values.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
 
@@ -10,24 +9,19 @@ namespace {
 
 // Rotates a tangent of the undeformed mesh as the smooth normal rotates from there to the time of the hit.
 Vec4 turned_with_surface(const ShadeContext& c, const Vec4& tangent) {
-  std::array<Vec3, 3> rest, then;
-  const geometry::MeshData& mesh = *c.instance->mesh;
-  if (mesh.shutter_keys == 0 || !geometry::triangle_normals(mesh, c.hit.triangle, &rest)) return tangent;
-  geometry::triangle_normals_in_shutter(mesh, c.hit.triangle, c.hit.time, &then);
-  const Vec3 from = safe_normalize(geometry::interpolate(rest, c.hit.barycentric)),
-             to = safe_normalize(geometry::interpolate(then, c.hit.barycentric));
-  return Vec4(turned(Vec3(tangent), from, to), tangent.w);
+  Vec3 rest, then;
+  if (!geometry::turned_normals_at(*c.instance, c.hit, &rest, &then)) return tangent;
+  return Vec4(turned(Vec3(tangent), safe_normalize(rest), safe_normalize(then)), tangent.w);
 }
 
-// Returns the tangent interpolated over the triangle, in the object's space, with its handedness in w. It is 0 if the
+// Returns the interpolated tangent of a UV map, in the object's space, with its handedness in w. It is 0 if the
 // mesh has no usable UV map.
 Vec4 uv_tangent(const ShadeContext& c, const std::string* name) {
   if (!c.instance) return Vec4(0.0f);
   const geometry::MeshData& mesh = *c.instance->mesh;
   const geometry::MeshAttribute* uv = name ? geometry::find_attribute(mesh, *name) : geometry::default_uv_map(mesh);
   for (const auto& field : c.instance->tangents)
-    if (field->uv == uv)
-      return turned_with_surface(c, geometry::interpolate(field->corners(c.hit.triangle), c.hit.barycentric));
+    if (field->uv == uv) return turned_with_surface(c, geometry::tangent_at(*field, c.hit));
   return Vec4(0.0f);
 }
 
@@ -36,10 +30,8 @@ Vec3 unflipped(const ShadeContext& c) { return c.backfacing ? -c.normal : c.norm
 // Returns the interpolated normal in the object's space. It is not normalised, because normal map bakers and Cycles
 // build the frame that way.
 Vec3 local_normal(const ShadeContext& c) {
-  std::array<Vec3, 3> normals;
-  if (geometry::triangle_normals_in_shutter(*c.instance->mesh, c.hit.triangle, c.hit.time, &normals))
-    return geometry::interpolate(normals, c.hit.barycentric);
-  return normal_to_local(c, unflipped(c));
+  Vec3 normal;
+  return geometry::smooth_normal_at(*c.instance, c.hit, &normal) ? normal : normal_to_local(c, unflipped(c));
 }
 
 Vec3 tangent_space_normal(const ResourceArgs& args, const ShadeContext& c, Vec3 color, float strength) {
@@ -56,9 +48,7 @@ Vec3 tangent_space_normal(const ResourceArgs& args, const ShadeContext& c, Vec3 
   return c.backfacing ? -world : world;
 }
 
-}  // namespace
-
-Vec3 tangent(const ResourceArgs& args, const ShadeContext& c) {
+Vec3 own_tangent(const ResourceArgs& args, const ShadeContext& c) {
   Vec3 direction;
   if (args.mode == GRADUS_TANGENT_UV) {
     // As in Cycles the matrix of normals transforms the tangent, which rotates it on an object of non-uniform scale.
@@ -71,7 +61,7 @@ Vec3 tangent(const ResourceArgs& args, const ShadeContext& c) {
   return safe_normalize(glm::cross(c.normal, safe_normalize(glm::cross(direction, c.normal))));
 }
 
-Vec3 normal_map(const ResourceArgs& args, const ShadeContext& c) {
+Vec3 mapped_normal(const ResourceArgs& args, const ShadeContext& c) {
   const float strength = args.f(0);
   Vec3 color = (args.v(1) - 0.5f) * 2.0f;
   if (args.mode == GRADUS_NORMAL_TANGENT) {
@@ -87,6 +77,14 @@ Vec3 normal_map(const ResourceArgs& args, const ShadeContext& c) {
   if (c.backfacing) n = -n;
   if (strength != 1.0f) n = safe_normalize(c.normal + (n - c.normal) * std::max(strength, 0.0f));
   return n == Vec3(0.0f) ? c.normal : n;
+}
+
+}  // namespace
+
+void tangent_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) { out[0] = value(own_tangent(args, c)); }
+
+void normal_map_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
+  out[0] = value(mapped_normal(args, c));
 }
 
 }  // namespace gradus::shading

@@ -29,6 +29,13 @@ Vec3 to_object(const ResourceArgs& args, const ShadeContext& c) {
   return c.instance ? Vec3(placement_of(c, &room).to_local * Vec4(c.position, 1.0f)) : p;
 }
 
+// Transforms a point of internal space, or a direction on the background, to camera space.
+Vec3 to_camera(const ShadeContext& c, const Vec3& p) {
+  if (!c.scene || !c.scene->has_camera) return p;
+  const Mat4 camera = matrix(c.scene->camera.matrix);
+  return direction_to_camera(camera, c.is_background ? p : p - Vec3(camera[3]));
+}
+
 // Returns the position in the picture, which spans 0…1 on both axes.
 Vec3 window(const ShadeContext& c) {
   if (!c.scene || !c.scene->has_camera) return Vec3(0.0f);
@@ -82,16 +89,7 @@ Vec3 from_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext
   return v;
 }
 
-}  // namespace
-
-// Transforms a point of internal space, or a direction on the background, to camera space.
-Vec3 to_camera(const ShadeContext& c, const Vec3& p) {
-  if (!c.scene || !c.scene->has_camera) return p;
-  const Mat4 camera = matrix(c.scene->camera.matrix);
-  return direction_to_camera(camera, c.is_background ? p : p - Vec3(camera[3]));
-}
-
-Vec3 texture_coordinate(const ResourceArgs& args, const ShadeContext& c) {
+Vec3 coordinates(const ResourceArgs& args, const ShadeContext& c) {
   switch (args.mode) {
     case GRADUS_TEX_COORD_NORMAL:
       return normal_to_local(c, c.normal);
@@ -114,17 +112,21 @@ Vec3 texture_coordinate(const ResourceArgs& args, const ShadeContext& c) {
   }
 }
 
-void camera_data(const ShadeContext& c, Vec4* out) {
+}  // namespace
+
+void tex_coord_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) { out[0] = value(coordinates(args, c)); }
+
+void camera_data_op(const ResourceArgs&, const ShadeContext& c, Vec4* out) {
   const Vec3 p = to_camera(c, c.position);
   out[0] = value(safe_normalize(p));
   out[1] = splat(p.z);
   out[2] = splat(glm::length(p));
 }
 
-Vec3 vector_transform(const OpArgs& args, const ShadeContext& c) {
+void vector_transform_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
   const uint32_t kind = args.mode & 3;
   const Vec3 moved = from_world(args.mode >> 4 & 3, kind, to_world(args.mode >> 2 & 3, kind, args.v(0), c), c);
-  return kind == GRADUS_TRANSFORM_NORMAL ? safe_normalize(moved) : moved;
+  out[0] = value(kind == GRADUS_TRANSFORM_NORMAL ? safe_normalize(moved) : moved);
 }
 
 }  // namespace gradus::shading

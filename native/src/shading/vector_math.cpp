@@ -1,5 +1,5 @@
 // The Vector Math node.
-#include "shading/ops.h"
+#include "shading/op_functions.h"
 #include "shading/scalar.h"
 
 namespace gradus::shading {
@@ -97,7 +97,7 @@ Vec3 vector_result(uint32_t mode, const Vec3& a, const Vec3& b, const Vec3& c, f
 
 }  // namespace
 
-void vector_math(const OpArgs& args, Vec4* out) {
+void vector_math_op(const OpArgs& args, Vec4* out) {
   const Vec3 a = args.v(0), b = args.v(1);
   out[0] = out[1] = Vec4(0.0f);
   switch (args.mode) {

@@ -1,4 +1,4 @@
-// Components of animations: each has windows of its own, and they add up.
+// Components of animations are reconstructed over windows of their own and add up to the picture.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -26,10 +26,10 @@ GradusSettings settings_for(int32_t frame, uint32_t reconstruction, const char* 
   return settings;
 }
 
-// Pictures of all frames, and beside each the sum of its components.
+// Pictures of all frames, and the sum of the components of each.
 struct Pictures {
   std::vector<std::vector<float>> combined, sums;
-  std::vector<double> light;  // of each component, in the last frame
+  std::vector<double> light;  // sum of each component over the last frame
 };
 
 std::shared_ptr<scene::Device> device_with_stand_in() {
@@ -69,15 +69,15 @@ Pictures rendered(uint32_t reconstruction, const char* components, Scenario scen
   return pictures;
 }
 
-// Half of a frame's samples replay those of the frame before; what their paths show is of this frame all the same.
-TEST(SequenceDetails, AreOfAllSamplesAndOfWhatIsStored) {
+// Half of a frame's samples replay the frame before, but the details of their paths belong to this frame.
+TEST(SequenceDetails, CoverAllSamplesOfTheirFrame) {
   const Folder folder;
   const auto settings_with = [](int32_t frame, uint32_t pass) {
     GradusSettings settings = settings_for(frame, GRADUS_RECONSTRUCTION_L2, "");
     settings.component_passes |= 1u << pass;
     return settings;
   };
-  for (const bool again : {false, true}) {  // from files alone
+  for (const bool again : {false, true}) {  // from stored films alone
     Pan pan(1.0f);
     const auto sequence = make_sequence(0, 2, folder.path());
     for (int32_t frame = 0; frame <= 2; ++frame)
@@ -99,8 +99,9 @@ TEST(SequenceDetails, AreOfAllSamplesAndOfWhatIsStored) {
                Error);
 }
 
-// Motion is kept with a frame's own half, and was asked of the other one, too: no store with it could be gone on with.
-TEST(SequenceDetails, AStoreWithMotionIsGoneOnWith) {
+// Regression: motion is stored with the fresh half of a frame, but was required of the replay, too; no store with
+// motion could be resumed.
+TEST(SequenceDetails, AStoreWithMotionIsResumed) {
   const Folder folder;
   const auto settings_with_motion = [](int32_t frame) {
     GradusSettings settings = settings_for(frame, GRADUS_RECONSTRUCTION_L2, "");
@@ -131,7 +132,7 @@ void expect_to_add_up(const Pictures& pictures) {
 
 TEST_P(SequenceComponents, AddUpToEveryFrame) { expect_to_add_up(rendered(GetParam(), "")); }
 
-// The stand-in adds light everywhere, also where no component has any.
+// The stand-in denoiser adds light everywhere, also where no component has any.
 TEST_P(SequenceComponents, AddUpBehindADenoiser) {
   const Pictures denoised = rendered(GetParam(), "", Scenario::Glass, GRADUS_DENOISER_OIDN);
   expect_to_add_up(denoised);
@@ -142,8 +143,8 @@ INSTANTIATE_TEST_SUITE_P(Reconstructions, SequenceComponents,
                          testing::Values(uint32_t{GRADUS_RECONSTRUCTION_L2}, uint32_t{GRADUS_RECONSTRUCTION_L1},
                                          uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
 
-// The weights of L2 over time are the same for all, where all go the surfaces' ways.
-TEST(ComponentsOfSequences, OfL2AddUpToThePicturesOfOne) {
+// The weights of L2 over time are the same for all components if all use the displacements of surfaces.
+TEST(ComponentsOfSequences, OfL2AddUpToThePicturesOfOneComponent) {
   const Pictures many = rendered(GRADUS_RECONSTRUCTION_L2, "Once=E.L;Twice=E..L", Scenario::DiffuseArea);
   const Pictures one = rendered(GRADUS_RECONSTRUCTION_L2, nullptr, Scenario::DiffuseArea);
   EXPECT_GE(std::count_if(many.light.begin(), many.light.end(), [](double light) { return light > 1.0; }), 2);
@@ -154,14 +155,15 @@ TEST(ComponentsOfSequences, OfL2AddUpToThePicturesOfOne) {
   }
 }
 
-// A path of glass goes one way or the other: what one component has too much of the other lacks.
-TEST(ComponentsOfSequences, ErrorsOfWhatMakesUpForEachOtherAreNotAddedUp) {
+// Light through glass is counted in one component or the other, so that their errors cancel in the sum.
+TEST(ComponentsOfSequences, ErrorsThatCancelAreNotAddedUp) {
   const auto errors = [](const char* components) {
     Pan pan(1.0f, Scenario::Glass);
     const auto sequence = make_sequence(0, kLast);
     for (int32_t frame = 0; frame <= kLast; ++frame) {
       GradusSettings settings = settings_for(frame, GRADUS_RECONSTRUCTION_L2, components);
-      settings.component_replays = 0;  // all go the surfaces' ways, and the sum is the picture without components
+      // all use the displacements of surfaces, and the sum is the picture without components
+      settings.component_replays = 0;
       settings.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
       sample(sequence.get(), pan.at(frame), settings);
     }
@@ -173,8 +175,8 @@ TEST(ComponentsOfSequences, ErrorsOfWhatMakesUpForEachOtherAreNotAddedUp) {
   for (size_t i = 0; i < one.size(); ++i) ASSERT_NEAR(many[i], one[i], 1e-3f * largest) << i;
 }
 
-// A camera that moves past balls of glass: what they show goes other ways than they do. The replay of such a component
-// is of where it was.
+// A camera passes glass balls. What they show moves otherwise than their surfaces; the replay of such a component
+// starts at the pixel that showed it.
 TEST(ComponentsOfSequences, ReplayWhereReflectionsAndRefractionsWere) {
   Pan pan(1.0f, Scenario::Glass);
   const Folder folder;
@@ -204,7 +206,7 @@ TEST(ComponentsOfSequences, ReplayWhereReflectionsAndRefractionsWere) {
             replay_map.of_component[size_t(film::find_component(*replayed, "Transmission"))]);
 }
 
-TEST(ComponentsOfSequences, ReplayAlongSurfacesWhereOwnWaysAreOff) {
+TEST(ComponentsOfSequences, ReplayAlongSurfacesWhereComponentReplaysAreOff) {
   Pan pan(1.0f, Scenario::Glass);
   const Folder folder;
   const auto sequence = make_sequence(0, 1, folder.path());
@@ -218,8 +220,8 @@ TEST(ComponentsOfSequences, ReplayAlongSurfacesWhereOwnWaysAreOff) {
                   ->replayed.of_component.empty());
 }
 
-// Whatever the links say, a replay is a sample of its pixel.
-TEST(ComponentsOfSequences, ReplaysAlongOwnWaysHaveTheLightOfPlainSamples) {
+// A replay is an unbiased sample of its pixel, whatever its replay map is.
+TEST(ComponentsOfSequences, ReplaysOfComponentsHaveTheMeanOfPlainSamples) {
   GradusSettings plain = settings_for(1, GRADUS_RECONSTRUCTION_L2, "");
   plain.samples = 512;
   Pan pan(1.0f, Scenario::Glass);
@@ -236,7 +238,7 @@ TEST(ComponentsOfSequences, ReplaysAlongOwnWaysHaveTheLightOfPlainSamples) {
     for (const float value : film::read_images(*frame, 0).primal) sum += value;
     return sum;
   };
-  // Reflections of the light come by few samples.
+  // Few samples reach the light by a reflection.
   const std::pair<const char*, double> bounds[] = {{"Reflection", 0.12}, {"Transmission", 0.03}, {"Diffuse", 0.03}};
   for (const auto& [name, bound] : bounds) {
     const double base = light(animation::FrameSamples::kFresh, name),

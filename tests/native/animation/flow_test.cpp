@@ -1,4 +1,4 @@
-// Passes by optical flow in animations: Irradiance Motion, and Motion of Residual (contract 6.6).
+// Passes from optical flow in animations: Irradiance Motion, and Motion of Residual components.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -18,10 +18,10 @@ using namespace test;
 constexpr uint32_t kWidth = 96, kHeight = 72, kFew = 8, kMany = 64;
 constexpr size_t kPixels = size_t(kWidth) * kHeight;
 constexpr float kDistance = 3.2f, kField = 0.9f;
-constexpr float kPixel = kDistance * kField / float(kWidth);  // its size on the floor
-const Vec2 kShift(1.4f, 0.9f);                                // pixels from frame to frame
+constexpr float kPixel = kDistance * kField / float(kWidth);  // width of a pixel on the floor
+const Vec2 kShift(1.4f, 0.9f);                                // in pixels, from frame to frame
 constexpr uint32_t kOfIrradiance = 1u << GRADUS_COMPONENT_IRRADIANCE_MOTION | 1u << GRADUS_COMPONENT_IRRADIANCE_TRACKED;
-constexpr const char* kAllResidual = "Once=ERRRL";  // a set that nothing here belongs to
+constexpr const char* kAllResidual = "Once=ERRRL";  // a set in which no path belongs to another component
 constexpr uint32_t kOfLight = 1u << GRADUS_COMPONENT_MOTION | 1u << GRADUS_COMPONENT_TRACKED;
 
 GradusSettings flow_settings(int32_t frame, uint32_t passes = kOfIrradiance, const char* components = "",
@@ -43,11 +43,12 @@ Mat4 shining_along(const Vec3& direction) {
   return Mat4(Vec4(x, 0), Vec4(y, 0), Vec4(z, 0), Vec4(0, 0, 0, 1));
 }
 
-// A floor that rests, seen from above, with the shadow of a ball beside the picture: it goes by kShift from frame to
-// frame.
+// A static floor seen from above, with the shadow of a ball that lies outside of the picture. The shadow moves by
+// kShift from frame to frame.
 class MovingShadow {
  public:
-  // angle: by which it is seen from the side. with_mirror: one that shows the floor stands in a corner of the picture.
+  // Returns the scene of a frame. angle: between the view and the vertical. with_mirror: a mirror in a corner of the
+  // picture shows the floor.
   std::shared_ptr<const scene::Snapshot> at(int32_t frame, float angle = 0.0f, bool with_mirror = false) {
     PathScene& scene = scenes_[frame];
     const uint64_t matte_floor = scene.material(matte(Rgb(0.6f)));
@@ -107,7 +108,7 @@ void sample_all(animation::Sequence* sequence, int32_t first, int32_t last, uint
   }
 }
 
-// What is known of the shadow's edge: along it nobody sees any motion.
+// Expected motion at the edge of the shadow. Motion along the edge cannot be observed.
 struct Edge {
   size_t pixels = 0, tracked = 0, right = 0;
 };
@@ -132,7 +133,7 @@ Edge measure_edge(const std::vector<float>& light, const Flow& flow) {
   return edge;
 }
 
-TEST(SequenceFlow, AShadowOnAFloorThatRestsHasVectors) {
+TEST(SequenceFlow, AShadowOnAStaticFloorHasVectors) {
   const auto sequence = flow_sequence(3);
   sample_all(sequence.get(), 0, 3, kOfIrradiance | 1u << GRADUS_COMPONENT_COLOR | kOfLight, "", kMany);
   delivered(sequence.get(), 0);
@@ -143,12 +144,12 @@ TEST(SequenceFlow, AShadowOnAFloorThatRestsHasVectors) {
     ASSERT_GT(edge.pixels, 100u);
     EXPECT_GT(edge.tracked, edge.pixels * 9 / 10);
     EXPECT_GT(edge.right, edge.pixels * 55 / 100);
-    // The floor itself rests.
+    // The floor itself is static.
     for (const float value : read(*task, "Diffuse", GRADUS_COMPONENT_MOTION, 4)) ASSERT_EQ(value, 0.0f);
   }
 }
 
-TEST(SequenceFlow, ResidualMovesAsItsLight) {
+TEST(SequenceFlow, ResidualMovesWithItsLight) {
   const auto sequence = flow_sequence(2);
   sample_all(sequence.get(), 0, 2, kOfLight | 1u << GRADUS_COMPONENT_COLOR, kAllResidual, kMany);
   delivered(sequence.get(), 0);
@@ -160,7 +161,7 @@ TEST(SequenceFlow, ResidualMovesAsItsLight) {
   EXPECT_GT(edge.right, edge.pixels * 55 / 100);
 }
 
-TEST(SequenceFlow, FirstAndLastFrameLackANeighbour) {
+TEST(SequenceFlow, TheFirstAndTheLastFrameLackANeighbour) {
   const auto sequence = flow_sequence(2);
   sample_all(sequence.get(), 0, 2);
   for (const int32_t frame : {0, 1, 2}) {
@@ -172,12 +173,12 @@ TEST(SequenceFlow, FirstAndLastFrameLackANeighbour) {
       farthest[0] = std::max(farthest[0], glm::length(Vec2(v)));
       farthest[1] = std::max(farthest[1], glm::length(Vec2(v.z, v.w)));
     }
-    EXPECT_EQ(farthest[0] > 0.5f, frame != 0) << frame;  // the side that is there has its vectors
+    EXPECT_EQ(farthest[0] > 0.5f, frame != 0) << frame;  // the side that exists has its vectors
     EXPECT_EQ(farthest[1] > 0.5f, frame != 2) << frame;
   }
 }
 
-TEST(SequenceFlow, AFrameNeedsTheNextOneWhereItIsAskedFor) {
+TEST(SequenceFlow, AFrameNeedsTheNextOneIfFlowIsRequested) {
   constexpr reconstruct::WindowShape kWindows{4, 2};
   const auto last_of = [&](bool with_flow, int32_t frame) {
     animation::SequenceSettings settings{0, 20, 1, kWindows, ""};
@@ -193,7 +194,7 @@ TEST(SequenceFlow, AFrameNeedsTheNextOneWhereItIsAskedFor) {
   EXPECT_TRUE(more);
 }
 
-TEST(SequenceFlow, WithoutTheLibraryNothingIsTrackedAndThatIsToldOnce) {
+TEST(SequenceFlow, WithoutTheLibraryNothingIsTrackedAndOneWarningIsGiven) {
   const auto sequence = flow_sequence(1, true, "/no/such/folder");
   sample_all(sequence.get(), 0, 1);
   size_t told = 0;
@@ -207,7 +208,7 @@ TEST(SequenceFlow, WithoutTheLibraryNothingIsTrackedAndThatIsToldOnce) {
   EXPECT_EQ(told, 1u);
 }
 
-TEST(SequenceFlow, AStillHasTheSurfacesMotionUntracked) {
+TEST(SequenceFlow, AStillHasTheMotionOfSurfacesAlone) {
   MovingShadow scene;
   auto moved = std::make_shared<scene::Snapshot>(*scene.at(1));
   moved->camera.matrix_previous[12] -= 2.0f * kPixel;
@@ -226,8 +227,8 @@ TEST(SequenceFlow, AStillHasTheSurfacesMotionUntracked) {
   }
 }
 
-// The surfaces' motion is known from frame to frame, not over several.
-TEST(SequenceFlow, FramesThatAreLeftOutAreNoNeighbours) {
+// The motion of surfaces is known from one frame to the next, not over several frames.
+TEST(SequenceFlow, FramesBeyondAGapAreNoNeighbours) {
   animation::SequenceSettings settings{0, 4, 2, {}, ""};
   settings.with_flow = true;
   settings.flow_folder = GRADUS_BINARY_DIR "/native";
@@ -237,7 +238,7 @@ TEST(SequenceFlow, FramesThatAreLeftOutAreNoNeighbours) {
   EXPECT_EQ(read_flow(*delivered(sequence.get(), 2), "Diffuse").count(motion::kNoNeighbour), kPixels);
 }
 
-TEST(SequenceFlow, UnderACutNothingIsTracked) {
+TEST(SequenceFlow, NothingIsTrackedAcrossAShotChange) {
   const auto sequence = flow_sequence(1);
   MovingShadow scene;
   test::run(sequence->sample(scene.at(0), flow_settings(0)).get());
@@ -247,7 +248,7 @@ TEST(SequenceFlow, UnderACutNothingIsTracked) {
   EXPECT_EQ(flow.count(float(motion::Tracking::ShotChange)), kPixels);
 }
 
-// Those that are on one side alone are not tracked there.
+// Pixels that exist on one side alone are not tracked there.
 TEST(SequenceFlow, AMirrorThatAppearsTakesNoFlowFromOthers) {
   const auto sequence = flow_sequence(3);
   MovingShadow scene;
@@ -265,7 +266,7 @@ TEST(SequenceFlow, AMirrorThatAppearsTakesNoFlowFromOthers) {
   }
 }
 
-// Frames come as they would without: what is made ahead is delivered in its turn.
+// Frames are delivered in the same order as without flow: pictures made ahead wait for their turn.
 TEST(SequenceFlow, PicturesAreThoseWithoutFlow) {
   const auto with = flow_sequence(3), without = flow_sequence(3, false);
   sample_all(with.get(), 0, 3);
@@ -277,8 +278,8 @@ TEST(SequenceFlow, PicturesAreThoseWithoutFlow) {
   }
 }
 
-// It is made once: with other settings than it was made ahead by, again.
-TEST(SequenceFlow, AFrameThatWasMadeAheadObeysItsOwnSettings) {
+// A picture is made once; if it was made ahead with other settings, it is made again.
+TEST(SequenceFlow, AFrameThatWasMadeAheadUsesItsOwnSettings) {
   const auto sequence = flow_sequence(2);
   sample_all(sequence.get(), 0, 2);
   delivered(sequence.get(), 0);
@@ -298,7 +299,7 @@ TEST(SequenceFlow, AFrameThatWasMadeAheadObeysItsOwnSettings) {
   EXPECT_GT(read_flow(*task, "Diffuse").count(motion::kTracked), kPixels / 2);
 }
 
-// Files that are loaded to deliver frames 0 to 2, each as it was sampled for, but for what `change` does.
+// Loads files to deliver frames 0 to 2, each with the settings that it was sampled for, modified by `change`.
 template <class Change>
 uint64_t loads_by(float alpha_by_frame, const Change& change, bool with_flow = true) {
   const auto sequence = flow_sequence(2, with_flow);
@@ -324,12 +325,12 @@ TEST(SequenceFlow, FramesOfAnotherExposureAreMadeOnce) {
   EXPECT_EQ(loads_by(0.0f, [](GradusSettings* settings) { settings->film_exposure = 2.0f; }), loads_by(0.0f, as_it_is));
 }
 
-// Its windows are those of each frame alone, with flow or without, and no frame is made twice.
-TEST(SequenceFlow, AKeyedAlphaIsThatOfTheFrameItself) {
+// The windows of a frame are the same with and without flow, and no frame is made twice.
+TEST(SequenceFlow, AnAnimatedAlphaIsThatOfTheFrameItself) {
   EXPECT_EQ(loads_by(0.2f, as_it_is, true), loads_by(0.2f, as_it_is, false));
 }
 
-TEST(SequenceFlow, NothingIsMadeAheadUnlessItIsAskedFor) {
+TEST(SequenceFlow, NothingIsMadeAheadUnlessRequested) {
   const Folder requested, not_asked;
   const auto with = flow_sequence(2, true, GRADUS_BINARY_DIR "/native", requested.path());
   const auto without = flow_sequence(2, true, GRADUS_BINARY_DIR "/native", not_asked.path());
@@ -346,7 +347,7 @@ TEST(SequenceFlow, NothingIsMadeAheadUnlessItIsAskedFor) {
   EXPECT_TRUE(frame->components[0].motion.empty());
 }
 
-TEST(SequenceFlow, AStoreWithoutWhatItIsMadeOfIsRefused) {
+TEST(SequenceFlow, AStoreWithoutTheNeededPlanesIsRefused) {
   const Folder folder;
   sample_all(flow_sequence(1, true, "", folder.path()).get(), 0, 1, 1u << GRADUS_COMPONENT_COLOR);
   MovingShadow scene;

@@ -1,4 +1,4 @@
-// Rows of a window made of two sampled frames and their links.
+// Rows of the system of a window, made of sampled frames and their correspondences.
 #include "animation/frame_window.h"
 
 #include <array>
@@ -17,8 +17,8 @@
 namespace gradus {
 namespace {
 
-// A row of three pixels, the same in all channels: values, differences to the right, and half the differences of halves
-// of both.
+// Returns a row of three pixels, equal in all channels: values, differences to the right, and half the differences
+// between the half-buffers of both.
 film::GradientImages row_of(const std::vector<float>& primal, const std::vector<float>& dx) {
   film::GradientImages images;
   images.width = 3;
@@ -34,7 +34,7 @@ class TwoFrames : public testing::Test {
   TwoFrames() {
     auto first = std::make_shared<animation::TemporalFrame>(), second = std::make_shared<animation::TemporalFrame>();
     first->fresh = {row_of({1, 2, 3}, {10, 20, 0}), row_of({0.1f, 0.2f, 0.3f}, {1, 2, 0})};
-    first->replay = first->fresh;  // of the first frame: a stream of its own
+    first->replay = first->fresh;  // a stream of its own for the first frame
     first->replay_share = {0.5f, 0.5f, 0.5f};
     second->fresh = {row_of({4, 5, 6}, {40, film::kAbsentPair, 0}), row_of({0.4f, 0.5f, 0.6f}, {4, 5, 0})};
     second->replay = {row_of({7, 8, 9}, {70, 80, 0}), row_of({0.7f, 0.8f, 0.9f}, {7, 8, 0})};
@@ -63,7 +63,7 @@ TEST_F(TwoFrames, RowsInSpaceAreMeansOverAllSamples) {
   EXPECT_EQ(row(reconstruct::RowKind::kDx, 1)[1], 80.0f) << "what one of the two lacks is the other's";
 }
 
-TEST_F(TwoFrames, RowsInTimeAreDifferencesAlongTheLinks) {
+TEST_F(TwoFrames, RowsInTimeAreDifferencesAlongCorrespondences) {
   const std::vector<float> dt = row(reconstruct::RowKind::kDt, 0), dxdt = row(reconstruct::RowKind::kDxDt, 0);
   EXPECT_EQ(dt[0], 8.0f - 1.0f);
   EXPECT_EQ(dt[1], 9.0f - 2.0f);
@@ -71,8 +71,8 @@ TEST_F(TwoFrames, RowsInTimeAreDifferencesAlongTheLinks) {
   EXPECT_EQ(dxdt[0], 80.0f - 10.0f);
 }
 
-// Base and replay take the same random numbers: their halves differ alike, and the difference over time is more certain
-// than either.
+// Fresh and replayed samples use the same random numbers: their half-buffers differ alike, and the difference over time
+// has less variance than either.
 TEST_F(TwoFrames, HalfDifferencesAreThoseOfTheRows) {
   EXPECT_NEAR(half_differences(reconstruct::RowKind::kDt, 0)[1], 0.9f - 0.2f, 1e-6f);
   EXPECT_TRUE(std::isnan(half_differences(reconstruct::RowKind::kDt, 0)[2]));
@@ -97,8 +97,8 @@ film::Film sampled(int32_t number, uint32_t seed, int width = 20) {
   return frame;
 }
 
-// Five frames: the last but one shows what the one before shows, and each has followed the one before, but for a pixel
-// without a source.
+// Five frames: the fourth shows the same as the third; each frame replays the one before, apart from one pixel without
+// a source.
 class FiveFrames : public testing::Test {
  protected:
   FiveFrames() {
@@ -115,7 +115,7 @@ class FiveFrames : public testing::Test {
   std::unique_ptr<reconstruct::HalvedWindowSource> spooled() const {
     return animation::SpooledFrames(load(fresh_), load(replay_), {}).window(0, 4);
   }
-  // The bits of all rows: absent differences are no numbers.
+  // Returns the bits of all rows; absent differences are NaN.
   static std::vector<unsigned char> bits(const reconstruct::HalvedWindowSource& source, int t, bool is_last) {
     const auto [width, height, channels, frames] = source.size();
     std::vector<unsigned char> all;
@@ -151,7 +151,7 @@ class FiveFrames : public testing::Test {
   std::vector<std::shared_ptr<film::Film>> fresh_, replay_;
 };
 
-// All samples of a pixel count alike, whichever half of the frame they are of.
+// All samples of a pixel have the same weight, fresh or replayed.
 TEST_F(FiveFrames, SharesAreThoseOfTheSamples) {
   const film::Film &fresh = *fresh_[1], &replay = *replay_[1];
   const animation::TemporalFrame frame = animation::make_temporal_frame(fresh, replay);
@@ -168,8 +168,8 @@ TEST_F(FiveFrames, SpooledRowsAreThoseOfTheFramesInMemory) {
   for (int t = 0; t < 5; ++t) EXPECT_EQ(bits(*spooled, t, t == 4), bits(whole, t, t == 4)) << t;
 }
 
-// What windows share was read for each of them.
-TEST_F(FiveFrames, WindowsThatOverlapReadEachPartOnce) {
+// Regression: data that overlapping windows share was read for each of them.
+TEST_F(FiveFrames, OverlappingWindowsReadEachFrameOnce) {
   const animation::FrameWindow whole = in_memory();
   std::array<int, 5> bases{}, replays{};
   const auto counted = [](const animation::LoadSamples& load, std::array<int, 5>* loads) {
@@ -216,9 +216,9 @@ TEST_F(FiveFrames, StreamedFramesAreReadOnceAndHaveTheSameRowsOverTime) {
   EXPECT_EQ(loads, 10);
 }
 
-// Between two frames alone a cancel was heard: the rows of each were put down, and those of all read again and again
-// for their weights.
-TEST_F(FiveFrames, K2_ACancelIsHeardAtEveryRow) {
+// Regression: a cancel was noticed only between two frames, although the rows of each are written and read several
+// times for their weights.
+TEST_F(FiveFrames, K2_ACancelIsNoticedAtEveryRow) {
   std::atomic<int> requested{0};
   std::atomic<bool> is_cancelled{false};
   const auto window = animation::SpooledFrames(load(fresh_), load(replay_), {}).window(0, 4, [&] {
@@ -235,26 +235,26 @@ TEST_F(FiveFrames, K2_ACancelIsHeardAtEveryRow) {
   EXPECT_THROW(window->read_correspondence(0, 0, correspondence.data()), Error);
 }
 
-TEST_F(FiveFrames, TheNoiseOfRowsIsThereWhereItIsAskedFor) {
+TEST_F(FiveFrames, TheNoiseOfRowsIsMadeWhereRequested) {
   const auto window = animation::SpooledFrames(load(fresh_), load(replay_), {.halves = false}).window(0, 4);
   std::vector<float> row(20 * 4);
   EXPECT_NO_THROW(window->read_row(reconstruct::RowKind::kDxDt, 0, 0, row.data()));
   EXPECT_THROW(window->read_half_differences(reconstruct::RowKind::kPrimal, 0, 0, row.data()), Error);
 }
 
-TEST_F(FiveFrames, LinksAreThoseThatTheNextFrameHasFollowed) {
+TEST_F(FiveFrames, CorrespondencesAreThoseThatTheNextFrameReplayed) {
   const auto window = spooled();
   std::vector<int32_t> correspondence(20);
   window->read_correspondence(0, 0, correspondence.data());
   EXPECT_EQ(correspondence[3], 0);
-  EXPECT_EQ(correspondence[10], film::kNoCorrespondence) << "nobody has followed it";
+  EXPECT_EQ(correspondence[10], film::kNoCorrespondence) << "no frame replays it";
   window->read_correspondence(2, 0, correspondence.data());
   EXPECT_EQ(correspondence[10], 10) << "the same frame again";
   window->read_correspondence(3, 0, correspondence.data());
   EXPECT_EQ(correspondence[3], 0);
 }
 
-TEST_F(FiveFrames, OneOfAnotherSizeOrWithoutGradientsIsNamed) {
+TEST_F(FiveFrames, AFrameOfAnotherSizeOrWithoutGradientsIsNamed) {
   const auto refusal = [&] { return test::refusal_of([&] { spooled(); }); };
   replay_[4] = std::make_shared<film::Film>(sampled(4, 1, 21));
   EXPECT_EQ(refusal(), "stored frame 4 has another size or other planes than those beside it");
@@ -264,7 +264,7 @@ TEST_F(FiveFrames, OneOfAnotherSizeOrWithoutGradientsIsNamed) {
   EXPECT_EQ(refusal().find("stored frame 0 has another size or other planes"), 0u);
 }
 
-// Plain paths: differences in space were read beyond the ends of what there is.
+// Regression: for plain paths, differences in space were read beyond the end of the data.
 TEST_F(FiveFrames, WithoutGradientsThereArePixelsAndTheirDifferencesOverTime) {
   for (const auto& frames : {fresh_, replay_}) {
     for (const auto& frame : frames) frame->gradients = false;

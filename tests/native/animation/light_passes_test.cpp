@@ -1,4 +1,4 @@
-// Light passes of animations add up to pictures that come of windows of frames (contract 6.5).
+// Light passes of animations add up to pictures that are reconstructed over windows of frames.
 #include "animation/sequence_fixture.h"
 #include "schema/pass_table.h"
 #include "support/light_sum.h"

@@ -1,4 +1,4 @@
-// Temporal offset frames: the random numbers of one frame, replayed in the next (contract 1.1, 4.2).
+// Replays: the random numbers of one frame are used again in the next.
 #include <cmath>
 #include <numeric>
 
@@ -13,7 +13,7 @@
 namespace gradus::test {
 namespace {
 
-constexpr uint32_t kSize = 40;  // more than one cell of the lattice
+constexpr uint32_t kSize = 40;  // more than one pixel block
 
 GradusSettings settings_of(int32_t frame, uint32_t seed = 0) {
   GradusSettings settings = test_settings(kSize, kSize);
@@ -65,8 +65,8 @@ INSTANTIATE_TEST_SUITE_P(All, Replays,
                                          Scenario::World),
                          [](const auto& info) { return std::string(name_of(info.param)); });
 
-// Moments of the shutter and points of the lens are random numbers like others.
-TEST(Replay, SeesWhatWasSeenAtItsMomentsThroughTheLens) {
+// Shutter times and lens positions are random numbers like others.
+TEST(Replay, SeesWhatWasSeenAtItsTimesThroughTheLens) {
   PathScene scene;
   build(Scenario::Moving, &scene);
   scene.camera_desc.aperture_radius = 0.1f;
@@ -78,8 +78,8 @@ TEST(Replay, SeesWhatWasSeenAtItsMomentsThroughTheLens) {
     EXPECT_TRUE(base.components[0].primal[half] == offset.components[0].primal[half]);
 }
 
-// Pixels of a region are counted from its corner, and their random numbers from that of the film.
-TEST(Replay, OfABorderTakesTheNumbersOfItsOwnPixels) {
+// Pixels of a region are counted from its corner, but their random numbers from that of the film.
+TEST(Replay, OfABorderUsesTheNumbersOfItsOwnPixels) {
   PathScene scene;
   build(Scenario::DiffuseArea, &scene);
   const integrator::IntegratorContext before = scene.context(settings_of(7)), now = scene.context(settings_of(8));
@@ -90,8 +90,9 @@ TEST(Replay, OfABorderTakesTheNumbersOfItsOwnPixels) {
     EXPECT_EQ(base.components[0].primal[half], offset.components[0].primal[half]);
 }
 
-// What has no partner is sampled by both halves of its frame: the same numbers twice would tell nothing new.
-TEST(Replay, HolesHaveNumbersOfTheirOwn) {
+// A disocclusion has no source. Both halves of its frame sample it with different random numbers, since repeated ones
+// would add no information.
+TEST(Replay, DisocclusionsHaveRandomNumbersOfTheirOwn) {
   PathScene scene;
   build(Scenario::DiffuseArea, &scene);
   const integrator::IntegratorContext now = scene.context(settings_of(8));
@@ -107,7 +108,7 @@ TEST(Replay, HolesHaveNumbersOfTheirOwn) {
   EXPECT_LT(alike, lit / 10);  // the light itself
 }
 
-// A camera that moves aside by 5.3 pixels.
+// A camera that moves sideways by 5.3 pixels.
 struct Pan {
   explicit Pan(Scenario scenario) {
     build(scenario, &scene);
@@ -129,7 +130,7 @@ float gray(const film::Film& frame, size_t pixel) {
   return (sum.x + sum.y + sum.z) / (3.0f * float(count));
 }
 
-// The replayed frame is a picture of its own frame, whatever was replayed: the means over seeds agree.
+// The replayed half is a picture of its own frame, whatever it replays: the means over seeds agree.
 TEST(Replay, IsAPictureOfItsOwnFrame) {
   Pan pan(Scenario::DiffuseArea);
   Moments replayed, fresh;
@@ -151,14 +152,15 @@ TEST(Replay, IsAPictureOfItsOwnFrame) {
     mean_b += fresh.mean(i);
     variance += replayed.variance_of_mean(i) + fresh.variance_of_mean(i);
   }
-  // Pixels of a cell share their jitter: neighbours are correlated, at most as a cell's 256 pixels are alike.
+  // The pixels of a block share their jitter: neighbours are correlated, at most as if the 256 pixels of a block were
+  // one.
   EXPECT_LT(std::fabs(mean_a - mean_b), 4.0 * std::sqrt(variance * 16.0));
   EXPECT_NEAR(mean_a / mean_b, 1.0, 0.02);
 }
 
-// That is what it is for: differences over time between linked pixels have less noise than those of independent
+// The purpose of replays: differences over time between corresponding pixels have less noise than those of independent
 // samples.
-TEST(Replay, MakesDifferencesOverTimeQuieter) {
+TEST(Replay, ReducesTheNoiseOfDifferencesOverTime) {
   for (const Scenario scenario : {Scenario::DiffuseArea, Scenario::World}) {
     Pan pan(scenario);
     double linked = 0.0, independent = 0.0;

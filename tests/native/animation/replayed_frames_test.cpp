@@ -1,5 +1,4 @@
-// What a frame repeats of the one before, whatever changes between them: random numbers and sub-pixel jitter
-// (contract 1.1, 4.2).
+// Random numbers and sub-pixel jitter that a frame replays from the one before, whatever changes between them.
 #include <gtest/gtest.h>
 
 #include "sequence_fixture.h"
@@ -17,16 +16,16 @@ double energy_of_difference(const Plane& a, const Plane& b) {
   return sum;
 }
 
-// As the driver `#frame` leaves it.
+// Returns settings with an animated seed, as the driver `#frame` sets it.
 GradusSettings with_seed(int32_t frame, uint32_t seed, uint32_t samples = 8) {
   GradusSettings settings = settings_of(frame, samples);
   settings.seed = seed;
   return settings;
 }
 
-// Replays took the seed of their own frame, so that differences over time were noise. Frames that differ in their seed
-// alone are sampled: both halves of them, and none is the file of another frame.
-TEST(C4_ReplayedFrames, ReplaysHaveTheSeedOfTheFrameBeforeWhereItIsKeyed) {
+// Regression: replays used the seed of their own frame, so that differences over time were noise. If frames differ in
+// their seed alone, both halves of each are sampled and no frame reuses the file of another.
+TEST(C4_ReplayedFrames, ReplaysUseTheSeedOfTheFrameBeforeWhereItIsAnimated) {
   Pan still(0.0f);
   const Folder folder;
   const auto sequence = make_sequence(1, 3, folder.path());
@@ -43,7 +42,7 @@ TEST(C4_ReplayedFrames, ReplaysHaveTheSeedOfTheFrameBeforeWhereItIsKeyed) {
   }
 }
 
-TEST(C7_ReplayedFrames, SamplesOfAKeyedSeedAreAddedUp) {
+TEST(C7_ReplayedFrames, SamplesOfAnAnimatedSeedAreAddedUp) {
   Pan pan(1.3f);
   const Folder folder, fresh;
   const auto sample_all = [&](const Folder& to, uint32_t samples) {
@@ -57,7 +56,7 @@ TEST(C7_ReplayedFrames, SamplesOfAKeyedSeedAreAddedUp) {
   EXPECT_EQ(more.combined, whole.combined);
 }
 
-// Frame 1 has another seed than it had: the replay of what was there is linked to none of its samples.
+// The seed of frame 1 has changed since: the replay of the old frame 1 corresponds to none of its samples.
 TEST(C7_ReplayedFrames, ReplaysOfAnotherSeedAreSampledAnew) {
   Pan pan(1.3f);
   const Folder folder, fresh;
@@ -70,16 +69,16 @@ TEST(C7_ReplayedFrames, ReplaysOfAnotherSeedAreSampledAnew) {
   sample_both(folder, 1);
   folder.remove(1);
   sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), with_seed(1, 9));
-  // All that is stored, as `gradus reconstruct` delivers it.
+  // Delivers what is stored, like `gradus reconstruct`.
   for (const float link : deliver(make_sequence(1, 2, folder.path()).get(), 1).link) ASSERT_EQ(link, 0.0f);
   const Delivered found = sample_both(folder, 9), expected = sample_both(fresh, 9);
   EXPECT_EQ(found.noisy, expected.noisy);
   EXPECT_EQ(found.combined, expected.combined);
 }
 
-// Cells of the frame before shared their jitter, or their pixels had their own: it was asked of the frame that replays
-// them. The lens is too small to blur anything.
-TEST(C4_ReplayedFrames, ReplaysHaveTheJitterOfTheFrameBeforeWhereBlurStartsOrStops) {
+// Regression: whether pixels of a block share their jitter was asked of the replaying frame instead of the replayed
+// one. The lens is too small to blur anything.
+TEST(C4_ReplayedFrames, ReplaysUseTheJitterOfTheFrameBeforeWhereBlurStartsOrStops) {
   for (const int32_t blurred : {1, 2}) {
     PathScene scene;
     build(Scenario::DiffuseArea, &scene);

@@ -1,4 +1,4 @@
-// Small animations for tests of sequences: a scene before which the camera pans, and what is delivered of it.
+// Small animations for tests of sequences: a scene before which the camera pans, and its delivered frames.
 #pragma once
 
 #include <filesystem>
@@ -24,11 +24,11 @@ inline GradusSettings settings_of(int32_t frame, uint32_t samples = 8) {
   settings.samples = samples;
   settings.independent_sampler = 0;
   settings.reconstruction = GRADUS_RECONSTRUCTION_L2;
-  settings.filter_width = 0.01f;  // edges would be wrong by their coverage, all of them alike
+  settings.filter_width = 0.01f;  // a wider filter would add an error of coverage at all edges
   return settings;
 }
 
-// A folder that goes with the test.
+// A folder that is removed at the end of the test.
 class Folder {
  public:
   Folder() : path_((fs::temp_directory_path() / "gradus-test-XXXXXX").string()) {
@@ -47,7 +47,7 @@ class Folder {
   std::string path_;
 };
 
-// A camera that goes aside by some pixels from frame to frame.
+// A camera that moves sideways by some pixels from frame to frame.
 class Pan {
  public:
   explicit Pan(float pixels, Scenario scenario = Scenario::DiffuseArea) : pixels_(pixels) { build(scenario, &scene_); }
@@ -84,7 +84,7 @@ inline std::vector<float> read(const render::RenderTask& task, uint32_t pass, si
   return pixels;
 }
 
-// The task that has delivered it.
+// Delivers a frame and returns its task.
 inline std::unique_ptr<render::RenderTask> delivered(animation::Sequence* sequence, int32_t frame) {
   auto task = sequence->deliver(frame, nullptr);
   run(task.get());

@@ -1,4 +1,4 @@
-// Frames of an animation, sampled in halves and reconstructed together (contract 4).
+// Frames of an animation, sampled in fresh and replayed halves and reconstructed together.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -12,11 +12,10 @@
 #include <tbb/global_control.h>
 
 #include "animation/frame_developer.h"
-#include "base/threads.h"
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/threads.h"
 #include "sequence_fixture.h"
-#include "support/failing_disk.h"
 #include "support/file_calls.h"
 #include "support/refusal.h"
 
@@ -43,12 +42,12 @@ TEST(C3_Sequence, DeliversEveryFrameFromFirstToLast) {
   }
 }
 
-// That is what it is for: from frame to frame the error changes less than that of what was sampled, and it is smaller.
+// The purpose of sequences: from frame to frame, the error changes less than that of the samples, and it is smaller.
 TEST(C4_Sequence, FlickersLessThanItsSamples) {
   Pan pan(0.35f, Scenario::World);
   const std::vector<Delivered> truth = render(&pan, make_sequence(0, 9).get(), 0, 9, 256);
   std::vector<Delivered> frames;
-  // Energy of errors, and of their changes, of one pass.
+  // Sums the squared errors of a pass, and the squares of their changes over time.
   const auto energies = [&](std::vector<float> Delivered::*pass) {
     double error = 0.0, flicker = 0.0;
     std::vector<float> before;
@@ -72,12 +71,12 @@ TEST(C4_Sequence, FlickersLessThanItsSamples) {
   }
 }
 
-// Frames that were sampled by one thread, to leave the others to something else, were delivered by all threads of the
-// device.
-TEST(C3_Sequence, FramesAreMadeByAsManyThreadsAsTheirSettingsSay) {
+// Regression: frames that were sampled by one thread, to leave the others to other work, were delivered by all threads
+// of the device.
+TEST(C3_Sequence, FramesUseTheNumberOfThreadsOfTheirSettings) {
   const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
   Pan pan(1.3f);
-  const auto sequence = make_sequence(1, 1);  // of a device with two threads
+  const auto sequence = make_sequence(1, 1);  // its device has two threads
   GradusSettings settings = settings_of(1);
   const auto threads_of_maker = [&](const std::optional<GradusSettings>& requested) {
     std::set<int> threads;
@@ -97,7 +96,7 @@ TEST(C3_Sequence, FramesAreMadeByAsManyThreadsAsTheirSettingsSay) {
   EXPECT_EQ(threads_of_maker(settings), std::set<int>{arena_size(2)});
 }
 
-TEST(I8_Sequence, WhatDoesNotChangeIsSampledOnce) {
+TEST(I8_Sequence, UnchangedFramesAreSampledOnce) {
   Pan pan(0.0f);
   const auto sequence = make_sequence(1, 6);
   const std::vector<Delivered> frames = render(&pan, sequence.get(), 1, 6);
@@ -110,7 +109,7 @@ TEST(I8_Sequence, WhatDoesNotChangeIsSampledOnce) {
   }
 }
 
-// Each frame is sampled by whoever comes first, or by both, and one of them has it.
+// Either job or both sample a frame; one result is kept.
 TEST(C7_Sequence, TwoJobsOnTheSameFramesMakeTheSameBits) {
   const Folder shared;
   std::vector<Delivered> frames[2];
@@ -133,8 +132,8 @@ TEST(C7_Sequence, TwoJobsOnTheSameFramesMakeTheSameBits) {
   EXPECT_EQ(std::distance(fs::directory_iterator(shared.path()), fs::directory_iterator()), 12);
 }
 
-// Half of a frame that a killed job had sampled with other settings was taken for one of those that are alike.
-TEST(C7_Sequence, HalfAFrameThatIsLeftIsReplaced) {
+// Regression: half a frame that a killed job had sampled with other settings was reused for unchanged frames.
+TEST(C7_Sequence, ALeftoverHalfFrameIsReplaced) {
   Pan pan(0.0f);
   const Folder folder;
   const auto settings = [](int32_t frame, uint32_t seed) {
@@ -152,7 +151,7 @@ TEST(C7_Sequence, HalfAFrameThatIsLeftIsReplaced) {
   EXPECT_EQ(first.noisy, second.noisy);
 }
 
-TEST(C7_Sequence, GoesOnWhereItEndedWithTheSameBits) {
+TEST(C7_Sequence, ResumesWithTheSameBits) {
   Pan pan(1.3f);
   const Folder folder;
   const std::vector<Delivered> whole = render(&pan, make_sequence(1, 8, folder.path()).get(), 1, 8);
@@ -165,8 +164,7 @@ TEST(C7_Sequence, GoesOnWhereItEndedWithTheSameBits) {
   }
 }
 
-// Parts of a job that share a folder: each passes the frame before its first one by, and the frames are those of one
-// job.
+// Jobs that share a folder: each skips the frame before its first one, and the frames are those of a single job.
 TEST(C7_Sequence, PartsOfAJobMakeTheFramesOfTheWhole) {
   Pan pan(1.3f);
   const Folder at_once, in_parts;
@@ -183,8 +181,8 @@ TEST(C7_Sequence, PartsOfAJobMakeTheFramesOfTheWhole) {
   }
 }
 
-// Windows lie on a grid of frame numbers, whatever frame a job begins with: with its neighbours in the store, its
-// pictures are those of the whole.
+// Windows lie on a grid of frame numbers, wherever a job begins: if the store has the neighbours, its pictures are
+// those of the whole.
 TEST(C7_Sequence, APartBesideStoredFramesHasThePicturesOfTheWhole) {
   Pan pan(1.3f);
   const Folder folder;
@@ -193,7 +191,8 @@ TEST(C7_Sequence, APartBesideStoredFramesHasThePicturesOfTheWhole) {
   for (size_t i = 0; i < part.size(); ++i) EXPECT_EQ(part[i].combined, whole[6 + i].combined) << 7 + i;
 }
 
-// Its first frame follows none, and its first windows are shorter: the raw frames that follow are those of the whole.
+// The first frame of a job follows none and its first windows are shorter, but the raw frames after it are those of the
+// whole.
 TEST(C7_Sequence, WithoutAStoreTheRawFramesOfAPartAreThoseOfTheWhole) {
   Pan pan(1.3f);
   const std::vector<Delivered> whole = render(&pan, make_sequence(1, 8).get(), 1, 8);
@@ -201,7 +200,7 @@ TEST(C7_Sequence, WithoutAStoreTheRawFramesOfAPartAreThoseOfTheWhole) {
   for (size_t i = 1; i < part.size(); ++i) EXPECT_EQ(part[i].noisy, whole[4 + i].noisy) << 5 + i;
 }
 
-// What AUTO came to is in the file, and it is AUTO that asks for it again.
+// The file stores what AUTO became. A later job that asks for AUTO finds it.
 TEST(C7_Sequence, FramesOfAutomaticSettingsAreFoundAgain) {
   Pan pan(1.3f);
   const Folder folder;
@@ -226,8 +225,8 @@ TEST(C7_Sequence, MoreSamplesAreAddedToStoredFrames) {
   }
 }
 
-// Frames like the first one have its files: they get its new ones.
-TEST(C7_Sequence, FramesThatDoNotChangeGetTheAddedSamplesToo) {
+// Unchanged frames share the files of the first one, and so its added samples.
+TEST(C7_Sequence, UnchangedFramesGetTheAddedSamplesToo) {
   Pan pan(0.0f);
   const Folder folder;
   render(&pan, make_sequence(1, 4, folder.path()).get(), 1, 4, 4);
@@ -244,7 +243,7 @@ GradusSettings adaptive(int32_t frame, uint32_t samples) {
   return settings;
 }
 
-TEST(C7_Sequence, AdaptiveFramesGetMoreSamplesWhereTheyAreAskedFor) {
+TEST(C7_Sequence, AdaptiveFramesGetMoreSamplesWhereRequested) {
   Pan pan(1.3f);
   const Folder folder;
   double before = 0.0;
@@ -261,7 +260,7 @@ TEST(C7_Sequence, AdaptiveFramesGetMoreSamplesWhereTheyAreAskedFor) {
   }
 }
 
-// A time limit leaves a frame as many samples as it could take: a rerun keeps them.
+// A time limit ends a frame with fewer samples: a rerun keeps them.
 TEST(C7_Sequence, FramesWithATimeLimitKeepTheirSamples) {
   Pan pan(1.3f);
   const Folder folder;
@@ -282,7 +281,7 @@ TEST(C7_Sequence, FramesWithATimeLimitKeepTheirSamples) {
   }
 }
 
-TEST(C7_Sequence, PartsOfAnAdaptiveJobAreLinked) {
+TEST(C7_Sequence, PartsOfAnAdaptiveJobHaveCorrespondences) {
   Pan pan(1.3f);
   const Folder folder;
   const auto sequence = make_sequence(5, 6, folder.path());
@@ -297,8 +296,8 @@ TEST(C7_Sequence, PartsOfAnAdaptiveJobAreLinked) {
       sources.size() / 2);
 }
 
-// Frames beside a job's own that another one has left in the folder.
-TEST(C7_Sequence, NeighboursOfAnotherJobAreLeftOut) {
+// Another job has left the frames next to the job's own in the folder.
+TEST(C7_Sequence, NeighboursOfAnotherJobAreIgnored) {
   Pan pan(1.3f);
   const Folder shared, alone;
   const auto of_seed = [&](animation::Sequence* sequence, int32_t first, int32_t last, uint32_t seed) {
@@ -338,9 +337,9 @@ TEST(C7_Sequence, FramesOfOtherSettingsOrScenesAreRefusedByName) {
   EXPECT_NE(text_of(pan.at(1), settings).find("shows the whole frame, not region 0,0,16,16"), std::string::npos);
 }
 
-// Links to the frame before, reading and writing were in no stats: a frame of few samples spent most of its time
-// unseen.
-TEST(Sequence, LinksAndFilesAreBilled) {
+// Regression: the stats left out the time of correspondences, reading and writing, which is most of the time of a frame
+// with few samples.
+TEST(Sequence, StatsTimeCorrespondencesAndFiles) {
   Pan pan(1.3f);
   const auto sequence = make_sequence(0, 1);
   for (int32_t t = 0; t <= 1; ++t) sample(sequence.get(), pan.at(t), settings_of(t, 2));
@@ -361,8 +360,8 @@ TEST(Sequence, LinksAndFilesAreBilled) {
   EXPECT_NEAR(cpu["total"].get<double>(), sum, 1e-9);
 }
 
-// Each took as long as a hundred of its samples, and was unpacked up to seven times: for checks, for its delivery, for
-// each window.
+// Regression: unpacking a frame takes as long as a hundred of its samples, and happened up to seven times: for checks,
+// for its delivery, for each window.
 TEST(C7_Sequence, FramesAreUnpackedForTheirWindowsAndForTheirDelivery) {
   for (const uint32_t reconstruction :
        {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_REGULARIZED}) {
@@ -373,7 +372,7 @@ TEST(C7_Sequence, FramesAreUnpackedForTheirWindowsAndForTheirDelivery) {
         const auto sequence = std::make_shared<animation::Sequence>(
             two_threads(), animation::SequenceSettings{0, 11, 1, {6, overlap}, folder.path()});
         render(&pan, sequence.get(), 0, 11, 4, reconstruction);
-        // Gradient T reads a part of the next frame, where that is there: of windows that share nothing the last frame
+        // Gradient T reads a part of the next frame if it is available. Of windows without overlap, the last frame
         // comes first.
         const uint64_t frames = 12, differences = overlap == 0 && !is_stored ? 10 : 11;
         EXPECT_EQ(sequence->folder().loads(), 2 * 2 * frames + differences)
@@ -383,8 +382,8 @@ TEST(C7_Sequence, FramesAreUnpackedForTheirWindowsAndForTheirDelivery) {
   }
 }
 
-// The samples of a stored frame were read by whoever asked for the render, before it began.
-TEST(C7_Sequence, WhoeverAsksForAStoredFrameWaitsForNoPixels) {
+// Regression: the samples of a stored frame were read before the render began, on the thread that asked for it.
+TEST(C7_Sequence, StartingTheRenderOfAStoredFrameReadsNoPixels) {
   Pan pan(1.3f);
   const Folder folder;
   sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), settings_of(1, 4));
@@ -395,8 +394,8 @@ TEST(C7_Sequence, WhoeverAsksForAStoredFrameWaitsForNoPixels) {
   EXPECT_EQ(again->folder().loads(), 2u);
 }
 
-// Links are numbers of pixels, which went beyond 31 bits.
-TEST(Sequence, FramesOfMorePixelsThanLinksCanNumberAreOnTheirOwn) {
+// Regression: correspondences are pixel numbers, which exceeded 31 bits.
+TEST(Sequence, FramesWithMorePixelsThanCorrespondencesCanNumberAreAlone) {
   GradusSettings settings = settings_of(1);
   std::string why_not;
   settings.width = settings.height = 46340;
@@ -406,7 +405,7 @@ TEST(Sequence, FramesOfMorePixelsThanLinksCanNumberAreOnTheirOwn) {
   EXPECT_EQ(why_not, "the film has more than 2^31 - 1 pixels");
 }
 
-TEST(C8_Sequence, ACutSeparatesWhatLiesBeforeAndAfter) {
+TEST(C8_Sequence, AShotChangeSeparatesTheFramesBeforeAndAfter) {
   Pan pan(0.0f);
   const auto sequence = make_sequence(0, 3);
   const float quarter = 0.25f * kPi;
@@ -426,7 +425,7 @@ TEST(C8_Sequence, ACutSeparatesWhatLiesBeforeAndAfter) {
 
 using SettingsOf = std::function<GradusSettings(int32_t frame)>;
 
-// Deliveries of all frames but one that is passed by, after the frame before the first one.
+// Delivers all frames but one that is skipped; the frame before the first one is sampled first.
 std::map<int32_t, Delivered> render_by(const SettingsOf& settings, animation::Sequence* sequence, int32_t first,
                                        int32_t last, int32_t alone = -1) {
   Pan pan(1.3f);
@@ -447,7 +446,7 @@ std::map<int32_t, Delivered> render_by(const SettingsOf& settings, animation::Se
   return frames;
 }
 
-// Frames first to last of a sequence are those of one of these frames.
+// Expects frames first to last of a sequence to be those of a job of these frames alone.
 void expect_alone(const SettingsOf& settings, const std::map<int32_t, Delivered>& whole, int32_t first, int32_t last) {
   for (const auto& [frame, alone] : render_by(settings, make_sequence(first, last).get(), first, last)) {
     EXPECT_EQ(whole.at(frame).noisy, alone.noisy) << frame;
@@ -456,7 +455,7 @@ void expect_alone(const SettingsOf& settings, const std::map<int32_t, Delivered>
   }
 }
 
-// Of ten frames, those before the fourth and those from it on.
+// Expects frames 1 to 3 and 4 to 10 to be those of two separate jobs.
 void expect_shot_change_at_4(const SettingsOf& settings) {
   const auto whole = render_by(settings, make_sequence(0, 9).get(), 0, 9);
   expect_alone(settings, whole, 0, 3);
@@ -469,12 +468,12 @@ GradusSettings with_film(int32_t frame, int32_t first_transparent) {
   return settings;
 }
 
-// They ended the animation: "has another size or other planes than those beside it".
-TEST(C8_Sequence, FramesWithAnotherNumberOfChannelsAreACut) {
+// Regression: such frames ended the animation with "has another size or other planes than those beside it".
+TEST(C8_Sequence, FramesWithAnotherNumberOfChannelsAreAShotChange) {
   expect_shot_change_at_4([](int32_t frame) { return with_film(frame, 4); });
 }
 
-TEST(C8_Sequence, FramesWithAndWithoutDifferencesAreACut) {
+TEST(C8_Sequence, FramesWithAndWithoutDifferencesAreAShotChange) {
   expect_shot_change_at_4([](int32_t frame) {
     GradusSettings s = settings_of(frame);
     s.integrator = GRADUS_INTEGRATOR_AUTO;
@@ -483,8 +482,8 @@ TEST(C8_Sequence, FramesWithAndWithoutDifferencesAreACut) {
   });
 }
 
-// Features were asked of frames that had none.
-TEST(C8_Sequence, FramesWithAndWithoutFeaturesAreACutWhereTheyAreRead) {
+// Regression: features were required of frames that have none.
+TEST(C8_Sequence, FramesWithAndWithoutFeaturesAreAShotChangeIfFeaturesAreRead) {
   const auto settings = [](int32_t frame) {
     GradusSettings s = settings_of(frame);
     s.integrator = GRADUS_INTEGRATOR_GRADIENT;
@@ -494,14 +493,14 @@ TEST(C8_Sequence, FramesWithAndWithoutFeaturesAreACutWhereTheyAreRead) {
   expect_alone(settings, render_by(settings, make_sequence(0, 9).get(), 0, 9), 4, 9);
 }
 
-TEST(C8_Sequence, WindowsEndBeforeAFrameThatIsPassedByAndBeginAnewAfterIt) {
+TEST(C8_Sequence, WindowsEndBeforeASkippedFrameAndBeginAnewAfterIt) {
   const auto settings = [](int32_t frame) { return settings_of(frame); };
   const auto whole = render_by(settings, make_sequence(0, 9).get(), 0, 9, 4);
   expect_alone(settings, whole, 0, 3);
   expect_alone(settings, whole, 5, 9);
 }
 
-TEST(C7_Sequence, PartsOfAJobWithACutMakeTheFramesOfTheWhole) {
+TEST(C7_Sequence, PartsOfAJobWithAShotChangeMakeTheFramesOfTheWhole) {
   const Folder folder;
   const auto settings = [](int32_t frame) { return with_film(frame, 8); };
   const auto part = [&](int32_t first, int32_t last) {
@@ -514,7 +513,7 @@ TEST(C7_Sequence, PartsOfAJobWithACutMakeTheFramesOfTheWhole) {
   }
 }
 
-// Of the replay and of what it replays, exposed and cropped. The test before held for a pass that is all 0.
+// The difference between replayed and fresh samples, with exposure and crop applied. A pass of zeros must not succeed.
 TEST(Sequence, GradientTIsTheDifferenceOfTheStoredHalves) {
   Pan pan(1.3f);
   const Folder folder;
@@ -550,8 +549,8 @@ TEST(Sequence, GradientTIsTheDifferenceOfTheStoredHalves) {
   EXPECT_GT(linked, size_t(border.area())) << "the test says something";
 }
 
-// The same random numbers in light that is half as strong again: half of what was there comes to it.
-TEST(Sequence, GradientTOfLightThatGrowsIsWhatItGrowsBy) {
+// The same random numbers under light of 1.5 times the strength: the difference is half of the earlier value.
+TEST(Sequence, GradientTOfGrowingLightIsItsIncrease) {
   PathScene scene;
   build(Scenario::World, &scene);
   const Folder folder;
@@ -572,7 +571,7 @@ TEST(Sequence, GradientTOfLightThatGrowsIsWhatItGrowsBy) {
   }
 }
 
-// Gradient T is I(φ(i), t + 1) − I(i, t), and 0 in the last frame (contract 4.3).
+// Gradient T is I(φ(i), t + 1) − I(i, t), where φ(i) is the corresponding pixel of i, and 0 in the last frame.
 TEST(Sequence, GradientTLeadsToTheNextFrame) {
   Pan pan(3.0f);
   const auto sequence = make_sequence(0, 2);
@@ -582,7 +581,7 @@ TEST(Sequence, GradientTLeadsToTheNextFrame) {
   for (size_t i = 0; i < size_t(kSide) * kSide; ++i) {
     if (frames[0].link[3 * i + 2] == 0.0f) continue;
     ++linked;
-    const auto aside = int(frames[0].link[3 * i]);  // what is nearer goes further
+    const auto aside = int(frames[0].link[3 * i]);  // nearer points move further
     EXPECT_LE(aside, -2);
     EXPECT_GE(aside, -7);
     EXPECT_EQ(frames[0].link[3 * i + 1], 0.0f);
@@ -595,7 +594,8 @@ TEST(Sequence, GradientTLeadsToTheNextFrame) {
   for (const float value : frames[2].link) EXPECT_EQ(value, 0.0f);
 }
 
-// What AUTO makes of an animation: plain paths, joined over time by features; with the error of what is delivered.
+// For animations, AUTO becomes plain paths with regression over time, and its Error pass is that of the delivered
+// picture.
 TEST(Sequence, AutomaticFramesAreRegularizedOverTime) {
   Pan pan(0.35f);
   const auto sequence = make_sequence(0, 5);
@@ -606,7 +606,7 @@ TEST(Sequence, AutomaticFramesAreRegularizedOverTime) {
     return settings;
   };
   for (int32_t t = 0; t <= 5; ++t) run(sequence->sample(pan.at(t), automatic(t)).get());
-  GradusSettings delivered = automatic(0);  // as a host passes them: windows had no solver for AUTO
+  GradusSettings delivered = automatic(0);  // as a host passes them; Regression: windows had no solver for AUTO
   delivered.denoiser = GRADUS_DENOISER_AUTO;
   const auto task = sequence->deliver(0, &delivered);
   run(task.get());
@@ -619,8 +619,8 @@ TEST(Sequence, AutomaticFramesAreRegularizedOverTime) {
   EXPECT_GT(read(*task, GRADUS_PASS_COMBINED, 4)[4 * (kSide * kSide / 2)], 0.0f);
 }
 
-// Where pixels take samples by their noise, a replay takes as many as what it replays (contract 4.2).
-TEST(A8_Sequence, ReplaysTakeTheCountsOfWhatTheyReplay) {
+// With adaptive sampling, a replay takes the sample counts of the frame that it replays.
+TEST(A8_Sequence, ReplaysTakeTheCountsOfTheReplayedFrame) {
   Pan pan(1.3f, Scenario::World);
   const Folder folder;
   const auto sequence = make_sequence(0, 1, folder.path());
@@ -662,7 +662,7 @@ TEST(K1_Sequence, ATimeLimitEndsBothHalves) {
   }
 }
 
-// It had been cancelled before it ran, and no test came as far as this.
+// Regression: the render had been cancelled before it ran, so that no test reached this state.
 TEST(K1_Sequence, ACancelBetweenTheHalvesLeavesNothingInTheFolder) {
   Pan pan(1.3f);
   const Folder folder;
@@ -683,8 +683,8 @@ TEST(K1_Sequence, ACancelBetweenTheHalvesLeavesNothingInTheFolder) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
-// When one half is in the folder already: the frame is whole, or it is none.
-TEST(K1_Sequence, ACancelWhileHalvesAreSavedIsMadeGoodByTheNextRender) {
+// One half is already in the folder: the frame is complete or absent.
+TEST(K1_Sequence, ACancelWhileHalvesAreSavedIsRepairedByTheNextRender) {
   Pan pan(1.3f);
   const Folder folder, fresh;
   const auto sequence = make_sequence(1, 1, folder.path());
@@ -703,7 +703,7 @@ TEST(K1_Sequence, ACancelWhileHalvesAreSavedIsMadeGoodByTheNextRender) {
   EXPECT_EQ(again[0].noisy, render(&pan, make_sequence(1, 1, fresh.path()).get(), 1, 1)[0].noisy);
 }
 
-// A cancel was heard before a whole file alone, and that of half a frame takes seconds to write.
+// Regression: a cancel was noticed only before a whole file; writing half a frame takes seconds.
 TEST(K1_Sequence, ACancelWhileHalfAFrameIsWrittenEndsTheWriting) {
   Pan pan(1.3f);
   const Folder folder;
@@ -722,7 +722,7 @@ TEST(K1_Sequence, ACancelWhileHalfAFrameIsWrittenEndsTheWriting) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
-// The same of reading: all of the frame that is delivered was read first.
+// Regression: the delivered frame was read completely before a cancel was noticed.
 TEST(K1_Sequence, ACancelledDeliveryReadsNoWholeFile) {
   Pan pan(1.3f);
   const Folder folder;
@@ -742,8 +742,8 @@ TEST(K1_Sequence, ACancelledDeliveryReadsNoWholeFile) {
   EXPECT_EQ(outcome(false), GRADUS_ERROR_INVALID_ARGUMENT) << "it is read otherwise";
 }
 
-// Gigabytes were pushed to the disk, to be removed when the next frames had come.
-TEST(F6_Sequence, WithoutAFrameStoreNothingIsForcedToADisk) {
+// Regression: gigabytes were synced to the disk, although they are removed when the next frames are there.
+TEST(F6_Sequence, WithoutAFrameStoreNothingIsSyncedToTheDisk) {
   Pan pan(1.3f);
   const Folder folder;
   const auto synced_in = [&](const std::string& path) {
@@ -755,7 +755,7 @@ TEST(F6_Sequence, WithoutAFrameStoreNothingIsForcedToADisk) {
   EXPECT_EQ(synced_in(folder.path()), 2 * 2 * 3) << "two halves and settings of two frames, each with its folder";
 }
 
-// All frames of a window were read first, and all of their samples put down for the solver.
+// Regression: all frames of a window were read and all of their samples spooled before a cancel was noticed.
 TEST(K1_Sequence, ACancelledDeliveryReadsNoMoreFrames) {
   Pan pan(1.3f);
   const Folder folder;
@@ -773,8 +773,8 @@ TEST(K1_Sequence, ACancelledDeliveryReadsNoMoreFrames) {
   EXPECT_EQ(outcome(false), GRADUS_ERROR_INVALID_ARGUMENT) << "it is read otherwise";
 }
 
-// Of the picture that is delivered; exposed as that is.
-TEST(E_Sequence, RegularizedDeliversItsErrorWhereItIsAskedFor) {
+// The error is that of the delivered picture, with the same exposure.
+TEST(E_Sequence, RegularizedDeliversItsErrorWhereRequested) {
   Pan pan(0.35f);
   const auto sequence = make_sequence(0, 2);
   GradusSettings settings = settings_of(0);
@@ -798,7 +798,7 @@ TEST(E_Sequence, RegularizedDeliversItsErrorWhereItIsAskedFor) {
   EXPECT_NEAR(second / first, 100.0, 50.0);
 }
 
-// A folder that went: the render ends, and its code is not that of one that goes on (I2).
+// I2: the folder disappears: the render ends with an error code that does not let the animation continue.
 TEST(I2_Sequence, AFolderThatCannotBeWrittenEndsTheRenderWithItsName) {
   Pan pan(1.3f);
   const Folder folder;
@@ -811,7 +811,7 @@ TEST(I2_Sequence, AFolderThatCannotBeWrittenEndsTheRenderWithItsName) {
   EXPECT_NE(text.find("f+0000001.offset.exr"), std::string::npos) << text;
 }
 
-// Renders that were cancelled at any moment, while they sample or deliver, leave no trace in those that follow.
+// Renders that are cancelled at any moment of sampling or delivery do not affect later ones.
 TEST(K3_Sequence, ManyCancelsThenARenderHasTheBitsOfAFreshOne) {
   Pan pan(1.3f);
   const std::vector<Delivered> fresh = render(&pan, make_sequence(1, 3).get(), 1, 3);
@@ -832,8 +832,8 @@ TEST(K3_Sequence, ManyCancelsThenARenderHasTheBitsOfAFreshOne) {
   }
 }
 
-// A frame that failed: those before it are delivered without it (I2).
-TEST(I2_Sequence, FramesBeforeAFaultAreDelivered) {
+// I2: a frame has failed: those before it are delivered without it.
+TEST(I2_Sequence, FramesBeforeAFailureAreDelivered) {
   Pan pan(1.3f);
   const auto sequence = make_sequence(1, 10);
   for (int32_t t = 1; t <= 4; ++t) sample(sequence.get(), pan.at(t), settings_of(t));
@@ -844,7 +844,7 @@ TEST(I2_Sequence, FramesBeforeAFaultAreDelivered) {
   for (int32_t t = 1; t <= 4; ++t) EXPECT_EQ(deliver(sequence.get(), t).combined, alone[size_t(t - 1)].combined) << t;
 }
 
-// What went wrong, and what is left in the folder.
+// Returns the error message, and the files that are left in the folder.
 std::string outcome_of(render::RenderTask* task, const std::string& folder) {
   task->run();
   std::string text;
@@ -854,7 +854,7 @@ std::string outcome_of(render::RenderTask* task, const std::string& folder) {
   return std::to_string(int(code)) + ": " + text;
 }
 
-// A disk that fills while the halves of a frame are saved: at the first, or at the second.
+// The disk becomes full while the halves of a frame are saved: at the first, or at the second.
 TEST(I2_Sequence, ADiskThatFillsWhileHalvesAreSavedIsNamed) {
   Pan pan(1.3f);
   const Folder folder, whole;
@@ -882,7 +882,7 @@ TEST(I2_Sequence, ADiskThatFillsWhileHalvesAreSavedIsNamed) {
   }
 }
 
-// A disk for temporary files that fills while the rows of a window are spooled.
+// The disk for temporary files becomes full while the rows of a window are spooled.
 TEST(I2_Sequence, ADiskThatFillsWhileRowsAreSpooledIsNamed) {
   Pan pan(1.3f);
   const Folder folder, temporary;

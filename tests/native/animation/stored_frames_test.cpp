@@ -1,5 +1,4 @@
-// What a sequence finds in its folder, and what it takes of that: its frames are those of a job that was never ended
-// (contract 7.2).
+// What a sequence finds in its folder and reuses: its frames are those of a job that was never interrupted.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -30,7 +29,7 @@ void expect_same(const std::vector<Delivered>& found, const std::vector<Delivere
   }
 }
 
-// Opens the writing end of a named pipe as soon as somebody reads from it; -1: nobody does within ten seconds.
+// Opens the writing end of a named pipe as soon as a reader opens it; -1 if none does within ten seconds.
 int open_for_reader(const std::string& pipe) {
   for (int ms = 0; ms < 10000; ++ms) {
     const int descriptor = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK);
@@ -40,7 +39,8 @@ int open_for_reader(const std::string& pipe) {
   return -1;
 }
 
-// The frame was read under the lock that progress() and cancel() take: with a slow disk the interface stood still.
+// Regression: a frame was read under the lock that progress() and cancel() take: with a slow disk, the user interface
+// froze.
 TEST(C7_StoredFrames, ProgressAndCancelDoNotWaitForAFileThatIsRead) {
   Pan pan(1.3f);
   const Folder folder;
@@ -64,8 +64,9 @@ TEST(C7_StoredFrames, ProgressAndCancelDoNotWaitForAFileThatIsRead) {
   EXPECT_NE(reading.get().find(path), std::string::npos);
 }
 
-// Frames 3 and 5 replayed those two before them: half of the pairs had no links.
-TEST(C7_StoredFrames, OffsetsOfAnotherStepAreSampledAnew) {
+// Regression: with frame step 2, frames 3 and 5 had replays of the frames two before: half of the pairs had no
+// correspondences.
+TEST(C7_StoredFrames, ReplaysOfAnotherStepAreSampledAnew) {
   Pan pan(1.3f);
   const Folder both, fresh;
   const auto second = make_steps(1, 5, 2, both.path());
@@ -74,8 +75,8 @@ TEST(C7_StoredFrames, OffsetsOfAnotherStepAreSampledAnew) {
   expect_same(found, render(&pan, make_sequence(1, 5, fresh.path()).get(), 1, 5));
 }
 
-// Still up to frame 6; rendered from 5 on before 1 to 4, whose frames those are.
-TEST(C7_StoredFrames, PartsOfAStillStretchAreTheWholeWhenTheyAreAllThere) {
+// Frames up to 6 are unchanged. Frames 5 on are rendered before 1 to 4, whose files they share.
+TEST(C7_StoredFrames, PartsOfAnUnchangedStretchAreTheWholeWhenAllAreThere) {
   Pan still(0.0f), moved(1.3f);
   const auto shown = [&](int32_t frame) { return frame <= 6 ? still.at(frame) : moved.at(frame); };
   const auto sample_all = [&](animation::Sequence* sequence, int32_t first, int32_t last) {
@@ -95,9 +96,9 @@ TEST(C7_StoredFrames, PartsOfAStillStretchAreTheWholeWhenTheyAreAllThere) {
   }
 }
 
-// The frame before has another scene than it had: samples that follow it were added to those that follow the old one,
-// as if all did.
-TEST(C7_StoredFrames, SamplesOfOtherSourcesAreNotAddedUp) {
+// Regression: the scene of the frame before has changed since: samples that replay the new one were added to samples
+// that replay the old one.
+TEST(C7_StoredFrames, SamplesOfDifferentSourcesAreNotAddedUp) {
   Pan pan(1.3f);
   const auto sample_both = [&](const std::string& folder, int32_t shown_first, uint32_t samples) {
     const auto sequence = make_sequence(1, 2, folder);
@@ -113,8 +114,8 @@ TEST(C7_StoredFrames, SamplesOfOtherSourcesAreNotAddedUp) {
   EXPECT_EQ(more.combined, whole.combined);
 }
 
-// An adaptive frame that repeats the one before took an offset of its own at a rerun: "do not belong together".
-TEST(C7_StoredFrames, StillAdaptiveFramesAreFoundAgain) {
+// Regression: at a rerun, an unchanged adaptive frame got a replay of its own: "do not belong together".
+TEST(C7_StoredFrames, UnchangedAdaptiveFramesAreFoundAgain) {
   Pan pan(0.0f);
   const Folder folder;
   std::vector<float> before;
@@ -133,7 +134,7 @@ TEST(C7_StoredFrames, StillAdaptiveFramesAreFoundAgain) {
   }
 }
 
-// Of frames 1 to 3, all alike, twice: all of what a folder has, or from a frame on.
+// Renders frames 1 to 3, all unchanged, twice: all of them, or from a frame on.
 struct StaticJob {
   uint32_t samples;
   float threshold = 0.0f;
@@ -153,9 +154,9 @@ std::vector<Delivered> run_static(const StaticJob& job, const std::string& folde
   return frames;
 }
 
-// Cells that were quiet early had fewer samples than were asked for: offsets were taken for unfinished and sampled anew
-// under the number of their own frame, beside the base of the first: "do not belong together".
-TEST(C7_StoredFrames, StillFramesWhoseCellsStopAreFoundAgain) {
+// Regression: pixel blocks that stopped early have fewer samples than requested: their replays were taken for
+// unfinished and sampled anew under the number of their own frame: "do not belong together".
+TEST(C7_StoredFrames, UnchangedFramesWhoseBlocksStopAreFoundAgain) {
   const Folder folder;
   const auto once = run_static({256, 0.1f}, folder.path());
   const film::Film offset = *animation::SequenceFolder(folder.path()).load(1, animation::FrameSamples::kReplayed);
@@ -166,8 +167,8 @@ TEST(C7_StoredFrames, StillFramesWhoseCellsStopAreFoundAgain) {
   expect_same(run_static({256, 0.1f, 2}, folder.path()), {once.begin() + 1, once.end()});
 }
 
-// One half of theirs had enough samples, the other had not.
-TEST(C7_StoredFrames, StillFramesGetASampleMoreInBothHalves) {
+// Regression: one half of them had enough samples, the other had not.
+TEST(C7_StoredFrames, UnchangedFramesGetASampleMoreInBothHalves) {
   for (const uint32_t samples : {4u, 5u}) {
     const Folder folder, fresh;
     run_static({samples}, folder.path());
@@ -175,7 +176,7 @@ TEST(C7_StoredFrames, StillFramesGetASampleMoreInBothHalves) {
   }
 }
 
-TEST(C7_StoredFrames, AJobThatBeginsInAStillStretchGetsASampleMoreInBothHalves) {
+TEST(C7_StoredFrames, AJobThatBeginsInAnUnchangedStretchGetsASampleMoreInBothHalves) {
   for (const uint32_t samples : {4u, 5u}) {
     const Folder folder;
     run_static({samples}, folder.path());
@@ -184,8 +185,8 @@ TEST(C7_StoredFrames, AJobThatBeginsInAStillStretchGetsASampleMoreInBothHalves) 
   }
 }
 
-// A farm could not tell what was sampled.
-TEST(C7_StoredFrames, FramesThatSampledTheirOffsetAnewAreNotSaidToBeStored) {
+// Regression: a farm could not see which frames were sampled.
+TEST(C7_StoredFrames, FramesWithANewReplayAreNotReportedAsStored) {
   Pan pan(1.3f);
   const Folder folder;
   const auto second = make_steps(1, 3, 2, folder.path());
@@ -195,8 +196,8 @@ TEST(C7_StoredFrames, FramesThatSampledTheirOffsetAnewAreNotSaidToBeStored) {
   EXPECT_EQ(frames[2].stats["stopped"], "samples") << "it follows frame 2 now";
 }
 
-// The pace of a base that went on was that of all its samples, in the time of those that this run took.
-TEST(K1_StoredFrames, ATimeLimitCountsTheSamplesThatItsRunTook) {
+// Regression: the sampling rate of a resumed half divided all of its samples by the time of this run alone.
+TEST(K1_StoredFrames, ATimeLimitCountsTheSamplesOfItsOwnRun) {
   Pan pan(1.3f);
   const Folder folder;
   const animation::SequenceFolder files(folder.path());
@@ -211,11 +212,11 @@ TEST(K1_StoredFrames, ATimeLimitCountsTheSamplesThatItsRunTook) {
   };
   const double before = sample_both(0.5f, 0.25f), after = sample_both(1.5f, 0.3f);
   const double offset = film::mean_samples(*files.load(2, animation::FrameSamples::kReplayed));
-  EXPECT_GT(after, before) << "it goes on";
+  EXPECT_GT(after, before) << "continues";
   EXPECT_LT(offset, 1.5 * 1.2 * (after - before));
 }
 
-// The samples that they were asked for were taken for those that the time had left them.
+// Regression: the requested samples were taken for those that the time limit had allowed.
 TEST(C7_StoredFrames, FramesOfATimeLimitGetTheSamplesOfAJobWithoutOne) {
   Pan pan(1.3f);
   const Folder folder;
@@ -232,7 +233,7 @@ TEST(C7_StoredFrames, FramesOfATimeLimitGetTheSamplesOfAJobWithoutOne) {
   EXPECT_EQ(frame.stats["spp_offset"], 50.0);
 }
 
-// As if a time limit had ended it: how many samples it was asked for does not tell how many it has.
+// Marks a frame as ended by a time limit: the requested samples do not say how many it has.
 void mark_ended_by_time(const animation::SequenceFolder& files, int32_t frame) {
   const auto base = files.load(frame, animation::FrameSamples::kFresh);
   base->settings.time_limit = 1.0f;
@@ -246,7 +247,7 @@ GradusSettings with_threshold(int32_t frame, uint32_t samples, float threshold) 
   return settings;
 }
 
-// The samples of the cell that has most, up to four times the mean, were taken for those of the frame.
+// Regression: the samples of the block with the maximum, up to four times the mean, were taken for those of the frame.
 TEST(C7_StoredFrames, AdaptiveFramesOfATimeLimitHaveTheSamplesOfTheirMean) {
   Pan pan(1.3f);
   const Folder folder;
@@ -263,9 +264,9 @@ TEST(C7_StoredFrames, AdaptiveFramesOfATimeLimitHaveTheSamplesOfTheirMean) {
   EXPECT_EQ(deliver(sequence.get(), 1).stats["stopped"], "samples");
 }
 
-// Its noise is as low as it is asked to be: that its samples are fewer than it may have is no reason to go on. A lower
-// threshold is one, whatever time the frame was given.
-TEST(C7_StoredFrames, AFrameOfATimeLimitIsDoneWhereItsNoiseIs) {
+// The noise has reached the threshold, so that a frame with fewer samples than its maximum is not resumed. A lower
+// threshold resumes it, whatever its time limit is.
+TEST(C7_StoredFrames, AFrameOfATimeLimitIsDoneWhereItsNoiseIsLowEnough) {
   Pan pan(1.3f);
   const Folder folder;
   const animation::SequenceFolder files(folder.path());
@@ -286,8 +287,8 @@ TEST(C7_StoredFrames, AFrameOfATimeLimitIsDoneWhereItsNoiseIs) {
   EXPECT_GT(film::mean_samples(*files.load(1, animation::FrameSamples::kFresh)), taken);
 }
 
-// The files of frames that do not change are those of the first, and so was their exposure.
-TEST(C7_StoredFrames, StillFramesHaveTheirOwnExposure) {
+// Regression: unchanged frames share the files of the first one, and were delivered with its exposure.
+TEST(C7_StoredFrames, UnchangedFramesHaveTheirOwnExposure) {
   Pan pan(0.0f);
   for (const bool keeps : {false, true}) {
     const Folder folder;
@@ -306,8 +307,8 @@ TEST(C7_StoredFrames, StillFramesHaveTheirOwnExposure) {
   }
 }
 
-// It was delivered as it had been sampled, by L2, while the stats' plan named the other.
-TEST(C7_StoredFrames, AutoIsWhatThePlanSaysNotWhatTheStoreWasSampledFor) {
+// Regression: the frame was delivered by L2, for which it had been sampled, while the stats' plan named another method.
+TEST(C7_StoredFrames, AutoIsThatOfThePlanNotOfTheStore) {
   Pan pan(1.3f);
   const Folder folder;
   const auto with_features = [](uint32_t reconstruction) {
@@ -326,7 +327,7 @@ TEST(C7_StoredFrames, AutoIsWhatThePlanSaysNotWhatTheStoreWasSampledFor) {
   EXPECT_EQ(nlohmann::json::parse(task->stats())["reconstruction"], "regularized");
 }
 
-// It was taken, and failed when it was to be delivered, with neither its name nor a way out.
+// Regression: such a frame was accepted and failed at its delivery, with a message that neither named it nor a remedy.
 TEST(C7_StoredFrames, FramesWithoutTheFeaturesOfTheReconstructionAreRefusedByName) {
   Pan pan(1.3f);
   const Folder folder;
@@ -339,8 +340,9 @@ TEST(C7_StoredFrames, FramesWithoutTheFeaturesOfTheReconstructionAreRefusedByNam
   EXPECT_NE(refusal.find("choose another frame store"), std::string::npos) << refusal;
 }
 
-// Whatever the store had for the frame before the range was repeated: other seeds, fewer samples, an older scene.
-TEST(C7_StoredFrames, TheFrameBeforeTheRangeIsRepeatedOnlyIfItIsOfTheJob) {
+// Regression: whatever the store had for the frame before the range was replayed: other seeds, fewer samples, an older
+// scene.
+TEST(C7_StoredFrames, TheFrameBeforeTheRangeIsReplayedOnlyIfItBelongsToTheJob) {
   Pan pan(0.0f), other(1.3f);
   const auto of_seed = [](int32_t frame, uint32_t seed, uint32_t samples) {
     GradusSettings settings = settings_of(frame, samples);
@@ -365,9 +367,9 @@ void sample_frames(animation::Sequence* sequence, Pan* pan, int32_t first, int32
   for (int32_t t = first; t <= last; ++t) sample(sequence, pan->at(t), settings_of(t));
 }
 
-// Frames 2 to 4 were the files of frame 1, and of those of another scene since then the new frames 1 and 2 were taken
-// for repetitions.
-TEST(C7_StoredFrames, AStillStretchOfAnOlderSceneIsNotMixedIn) {
+// Regression: frames 2 to 4 shared the files of frame 1. After a change of the scene, the new frames 1 and 2 were taken
+// for repetitions of them.
+TEST(C7_StoredFrames, AnUnchangedStretchOfAnOlderSceneIsNotMixedIn) {
   for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_REGULARIZED}) {
     Pan old(0.0f), edited(0.0f, Scenario::GlossyFloor);
     const Folder both, fresh;
@@ -388,14 +390,15 @@ TEST(C7_StoredFrames, AStillStretchOfAnOlderSceneIsNotMixedIn) {
       EXPECT_EQ(found.combined, expected.combined) << t << ", reconstruction " << reconstruction;
       EXPECT_EQ(found.link, expected.link) << t;
     }
-    // All that is stored, as `gradus reconstruct` delivers it.
+    // Delivers what is stored, like `gradus reconstruct`.
     const auto stored = make_sequence(1, 4, both.path());
     for (int32_t t = 1; t <= 2; ++t)
       EXPECT_EQ(deliver(stored.get(), t).combined, deliver(alone.get(), t).combined) << t;
   }
 }
 
-// Replays of what a frame was before its scene was changed: at the end of a part, and where one begins.
+// The store has replays of frames before their scene was changed: at the end of a part, and at the beginning of
+// another.
 TEST(C7_StoredFrames, MovingFramesOfAnOlderSceneAreNotMixedIn) {
   Pan old(1.3f), edited(1.3f, Scenario::GlossyFloor);
   const Folder both, fresh;
@@ -413,7 +416,7 @@ TEST(C7_StoredFrames, MovingFramesOfAnOlderSceneAreNotMixedIn) {
   }
 }
 
-// Frame 2 is as it was, frame 1 is not: the replay of the one that was there followed links that lead elsewhere now.
+// Frame 1 has changed, frame 2 has not: the replay of the old frame 1 used correspondences that lead elsewhere now.
 TEST(C7_StoredFrames, ReplaysOfAnOlderSceneAreSampledAnew) {
   Pan pan(1.3f);
   const auto sample_both = [&](const std::string& folder, int32_t shown_first) {

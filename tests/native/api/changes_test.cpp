@@ -1,5 +1,5 @@
-// J2: animations whose meshes and instances change, and renders that are cancelled. Under LeakSanitizer (make
-// test-full) nothing may be left; tests/memory counts what the library holds.
+// J2: frames of changing meshes and instances, and cancelled renders, release everything. LeakSanitizer (make
+// test-full) looks for leaks; tests/memory counts what the library holds.
 #include "api/changing_scene.h"
 
 namespace gradus::test {
@@ -15,7 +15,7 @@ TEST_F(J2_Changes, CancelledFramesAreReleased) {
   for (int32_t frame = 0; frame < 20; ++frame) cancel_changing(scene, frame);
 }
 
-TEST_F(J2_Changes, SequencesAreReleasedWhereverTheyEnd) {
+TEST_F(J2_Changes, SequencesAreReleasedAfterACancelInAnyFrame) {
   constexpr int32_t kLast = 5;
   animate_changing(device, scene, kLast);
   for (int number = 0; number < 2 * kLast; ++number) animate_changing(device, scene, kLast, number);

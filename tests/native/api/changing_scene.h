@@ -1,5 +1,5 @@
-// A scene that changes as animations do, through the C API: its mesh has other triangles in every frame, and it is
-// shown more or less often.
+// A scene that changes as animations do, through the C API: its mesh has other triangles in every frame, and the number
+// of its instances changes.
 #pragma once
 
 #include <chrono>
@@ -11,7 +11,7 @@
 
 namespace gradus::test {
 
-// A fan of 3 to 7 triangles under key 1, once to three times.
+// Sets a fan of 3 to 7 triangles under key 1, with one to three instances.
 inline void set_changing(GradusScene scene, int32_t frame) {
   const uint32_t triangles = 3 + uint32_t(frame) % 5, copies = 1 + uint32_t(frame) % 3;
   std::vector<float> positions{0, 0, 0};
@@ -40,7 +40,7 @@ inline void set_changing(GradusScene scene, int32_t frame) {
   std::vector<uint64_t> ids(copies);
   std::vector<float> matrices(size_t{16} * copies);
   for (uint32_t i = 0; i < copies; ++i) {
-    ids[i] = uint64_t(frame) % 3 + i;  // one comes, and one goes
+    ids[i] = uint64_t(frame) % 3 + i;  // one instance appears and one disappears
     set_identity(&matrices[size_t{16} * i]);
     matrices[size_t{16} * i + 14] = -0.3f * float(i);
   }
@@ -53,7 +53,7 @@ inline void set_changing(GradusScene scene, int32_t frame) {
   EXPECT_OK(gradus_scene_commit(scene, nullptr, nullptr));
 }
 
-// By L2: valgrind cannot translate the regression's code.
+// Returns settings with L2 as reconstruction: valgrind cannot translate the code of the regression.
 inline GradusSettings changing_settings(int32_t frame, uint32_t samples = 2,
                                         uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
   GradusSettings settings = small_render(8, 8, samples);
@@ -63,7 +63,7 @@ inline GradusSettings changing_settings(int32_t frame, uint32_t samples = 2,
   return settings;
 }
 
-// Ends it after so many microseconds, or lets it end by itself (negative), and releases it.
+// Cancels the render after `microseconds`, or lets it end by itself if that is negative; then releases it.
 inline void finish(GradusRender render, int microseconds) {
   if (microseconds >= 0) {
     std::this_thread::sleep_for(std::chrono::microseconds(microseconds));
@@ -82,7 +82,7 @@ inline void render_changing(GradusScene scene, int32_t frame) {
   finish(render, -1);
 }
 
-// One that would take minutes.
+// Cancels a render that would take minutes.
 inline void cancel_changing(GradusScene scene, int32_t frame) {
   set_changing(scene, frame);
   const GradusSettings settings = changing_settings(frame, 1u << 24);
@@ -91,8 +91,8 @@ inline void cancel_changing(GradusScene scene, int32_t frame) {
   finish(render, 37 * (frame % 20));
 }
 
-// Frames 1 to `last`, sampled and delivered over windows of four. Number `cancelled` of these renders is cancelled, and
-// the animation ends there.
+// Renders frames 1 to `last` over windows of four frames. Cancels the render number `cancelled`, which ends the
+// animation.
 inline void animate_changing(GradusDevice device, GradusScene scene, int32_t last, int cancelled = -1,
                              uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
   GradusSequenceSettings range = sized<GradusSequenceSettings>();

@@ -1,4 +1,4 @@
-// gradus_components_*: what the panel and scripts ask about path expressions.
+// gradus_components_*: functions by which the panel and scripts query light path expressions.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -9,7 +9,7 @@ namespace {
 
 class ComponentsApi : public testing::Test {
  protected:
-  // The error that a test before has left: the first one stays.
+  // Clears the error of an earlier test: the slot keeps the first error.
   ComponentsApi() { gradus_error(nullptr); }
 };
 
@@ -18,7 +18,7 @@ std::string refusal(GradusError code) {
   return gradus::test::error_text();
 }
 
-TEST_F(ComponentsApi, TellsNamesExpressionsAndExamples) {
+TEST_F(ComponentsApi, ReturnsNamesExpressionsAndExamples) {
   uint32_t count = 0;
   ASSERT_EQ(gradus_components_check("", &count), GRADUS_OK);
   ASSERT_EQ(count, 5u);
@@ -40,7 +40,7 @@ TEST_F(ComponentsApi, ClassifiesAPath) {
   EXPECT_EQ(index, 1u);
 }
 
-TEST_F(ComponentsApi, RefusesWithATextForTheUser) {
+TEST_F(ComponentsApi, RefusesWithAMessageForTheUser) {
   uint32_t count = 0;
   EXPECT_NE(refusal(gradus_components_check("A=ED.*L;B=EDDL", &count)).find("overlap"), std::string::npos);
   EXPECT_NE(refusal(gradus_components_check(nullptr, &count)).find("components is NULL"), std::string::npos);

@@ -1,4 +1,4 @@
-// L1, L3 with the real integrators, through the C API: the bits do not depend on threads, batches or borders.
+// L1 and L3 with the real integrators, through the C API: the bits do not depend on threads, batches or borders.
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <tbb/global_control.h>
@@ -18,7 +18,7 @@ class L1_Determinism : public WithScene<::testing::TestWithParam<uint32_t>> {
     s.passes |= uint64_t{1} << GRADUS_PASS_NORMAL | uint64_t{1} << GRADUS_PASS_DIFFUSE_DIRECT;
     return s;
   }
-  // Renders to the end, going on from `resumed` if it is not 0.
+  // Renders to the end; resumes the film `resumed` if it is not 0.
   GradusFilm render(const GradusSettings& s, GradusFilm resumed = 0) {
     GradusRender r = 0;
     GradusFilm film = 0;
@@ -61,7 +61,7 @@ TEST_P(L1_Determinism, SameBitsForAnyNumberOfThreads) {
   EXPECT_OK(gradus_film_release(first));
 }
 
-// Threads that share one processor meet in another order than those with processors of their own.
+// Threads that share one processor interleave in another order than threads with one processor each.
 TEST_P(L1_Determinism, SameBitsOnOneProcessor) {
   const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
   GradusSettings s = settings(8);
@@ -73,7 +73,8 @@ TEST_P(L1_Determinism, SameBitsOnOneProcessor) {
   int cpu = 0;
   while (!CPU_ISSET(cpu, &all)) ++cpu;
   CPU_SET(cpu, &one);
-  ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);  // threads begin with that of their maker
+  // threads inherit the affinity of the thread that creates them
+  ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);
   const GradusFilm other = render(s);
   EXPECT_EQ(sched_setaffinity(0, sizeof(all), &all), 0);
   expect_equal(first, other);
@@ -88,7 +89,7 @@ TEST_P(L1_Determinism, L3_ResumeHasTheBitsOfOneRender) {
 
 TEST_P(L1_Determinism, L3_BorderHasTheBitsOfTheFullFrame) {
   GradusSettings s = settings(8);
-  // Linear, with a known reach; automatic, a pilot tells where there are gradients, and must tell the same of both.
+  // L2 has a known reach. The automatic choice samples a pilot, which has to make the same decision for both renders.
   if (s.integrator != GRADUS_INTEGRATOR_PATH) s.reconstruction = GRADUS_RECONSTRUCTION_L2;
   const GradusFilm full = render(s);
   const uint32_t region[4] = {40, 20, 60, 45};

@@ -1,4 +1,4 @@
-// The pass Error through the C API: of a render, of its frame, and of the stored frame.
+// The pass Error through the C API: of a render, of its film, and of the stored film.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -21,7 +21,7 @@ class ErrorOfFrames : public WithScene<> {
     s.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
     return s;
   }
-  // The frame of a render, and the pass that the render itself gives.
+  // Returns the film of a render; writes the pass Error of the render itself to `error`.
   GradusFilm render(const GradusSettings& s, std::vector<float>* error) const {
     GradusRender r = 0;
     GradusFilm film = 0;
@@ -57,8 +57,7 @@ TEST_F(ErrorOfFrames, IsThatOfTheRenderAndSurvivesTheStore) {
   std::filesystem::remove(path);
 }
 
-// A frame that is reconstructed in another way has another error; and it need not be asked for when the frame was
-// rendered.
+// Another reconstruction of a film has another error. The settings of the render need not have requested the pass.
 TEST_F(ErrorOfFrames, ComesWithAnotherReconstruction) {
   std::vector<float> of_l2, of_none, rgba(size_t{4} * kWidth * kHeight), error(of_l2.size());
   const GradusFilm l2 = render(settings(GRADUS_RECONSTRUCTION_L2), &of_l2),

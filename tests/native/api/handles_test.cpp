@@ -1,4 +1,4 @@
-// G1, G3, G4, G6 and G10 of the C API: wrong handles, the error slot, calls out of order, handles that come and go.
+// G1, G3, G4, G6 and G10 of the C API: wrong handles, the error slot, calls in any order, many handles.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -23,7 +23,7 @@ namespace {
 
 using namespace test;
 
-// Every function that takes a handle, with all else right or NULL.
+// Returns every function that takes a handle; all other arguments are valid or NULL.
 std::vector<std::function<GradusError(uint64_t)>> handle_functions(uint32_t kind) {
   switch (kind) {
     case 0:
@@ -131,7 +131,7 @@ TEST(G1_Handles, WrongOnesAreRefusedEverywhere) {
   GradusScene freed = 0;
   ASSERT_OK(gradus_scene_create(device, &freed));
   ASSERT_OK(gradus_scene_release(freed));
-  GradusScene again = 0;  // takes the freed slot
+  GradusScene again = 0;  // takes the slot that was freed
   ASSERT_OK(gradus_scene_create(device, &again));
   EXPECT_NE(again, freed);
   std::mt19937_64 random(1);
@@ -154,7 +154,7 @@ TEST(G1_Handles, WrongOnesAreRefusedEverywhere) {
   EXPECT_OK(gradus_device_release(device));
 }
 
-// Any function with live, freed, foreign and invented handles, in any order, from two threads.
+// Calls random functions with live, freed, foreign and invented handles from two threads.
 TEST(G1_Handles, TenThousandRandomCalls) {
   std::vector<std::function<GradusError(uint64_t)>> functions;
   for (uint32_t kind = 0; kind < 4; ++kind) {
@@ -195,7 +195,7 @@ TEST(G1_Handles, TenThousandRandomCalls) {
       if (i % 16 == 0) make(random);
       const GradusError code = functions[random() % functions.size()](any(random));
       EXPECT_GE(code, GRADUS_OK);
-      EXPECT_LE(code, GRADUS_ERROR_CANCELLED);
+      EXPECT_LE(code, GRADUS_TIMEOUT);
       gradus_error(nullptr);
     }
   };
@@ -287,7 +287,8 @@ std::string text_of(const std::filesystem::path& path) {
   return text.str();
 }
 
-// Nothing can be made to throw in every entry point; but the whole of each is within the guard.
+// No test can make every entry point throw. Instead, the source is searched: the whole body of each is within the
+// guard.
 TEST(G4_Exceptions, EveryEntryPointIsGuarded) {
   const std::filesystem::path native = GRADUS_SOURCE_DIR "/native";
   std::set<std::string> declared, guarded;
@@ -303,7 +304,7 @@ TEST(G4_Exceptions, EveryEntryPointIsGuarded) {
   EXPECT_GT(declared.size(), 30u);
   EXPECT_TRUE(std::regex_search(text_of(native / "src/api/scene.cpp"),
                                 std::regex(R"(\nGradusError with_scene\([^{;]*\{\s*return guard\()")));
-  guarded.insert("gradus_error");  // reads what the guard has kept
+  guarded.insert("gradus_error");  // gradus_error() reads what the guard has stored
   EXPECT_EQ(declared, guarded);
 }
 
@@ -312,7 +313,7 @@ TEST(G6_Order, RendersOutliveTheirSceneAndDevice) {
   GradusScene scene = 0;
   ASSERT_OK(gradus_scene_create(device, &scene));
   GradusSettings settings = small_render();
-  settings.integrator = GRADUS_INTEGRATOR_GRADIENT;  // so that the frame holds what to reconstruct from
+  settings.integrator = GRADUS_INTEGRATOR_GRADIENT;  // so that the film holds data to reconstruct from
   GradusRender render = 0;
   EXPECT_EQ(gradus_render_start(scene, &settings, &render), GRADUS_ERROR_INVALID_OPERATION);
   EXPECT_EQ(error_text(), "the scene was not committed");
@@ -323,7 +324,7 @@ TEST(G6_Order, RendersOutliveTheirSceneAndDevice) {
   fill_scene(scene);
   EXPECT_OK(gradus_scene_commit(scene, nullptr, nullptr));
   ASSERT_OK(gradus_render_start(scene, &settings, &render));
-  EXPECT_OK(set_light(scene));  // edited while it renders
+  EXPECT_OK(set_light(scene));  // edits the scene while it is rendered
   EXPECT_OK(gradus_scene_commit(scene, nullptr, nullptr));
   EXPECT_OK(gradus_scene_release(scene));
   EXPECT_OK(gradus_device_release(device));
@@ -347,7 +348,7 @@ TEST(G6_Order, ReleaseWhileRenderingWaits) {
   GradusRender render = 0;
   ASSERT_OK(gradus_render_start(scene, &settings, &render));
   EXPECT_EQ(gradus_render_wait(render, 0.0), GRADUS_TIMEOUT);
-  EXPECT_EQ(gradus_error(nullptr), GRADUS_OK);  // it is none
+  EXPECT_EQ(gradus_error(nullptr), GRADUS_OK);  // a wait that released the handle is no error
   GradusFilm film = 0;
   EXPECT_EQ(gradus_render_film(render, &film), GRADUS_ERROR_INVALID_OPERATION);
   const char* json = nullptr;
@@ -359,7 +360,7 @@ TEST(G6_Order, ReleaseWhileRenderingWaits) {
   gradus_error(nullptr);
 }
 
-// The waiting thread kept the render alive, which went on for all of its samples.
+// Regression: the waiting thread kept the render alive until all of its samples were taken.
 TEST(G6_Order, ReleaseWhileAnotherThreadWaitsCancels) {
   const GradusDevice device = make_device();
   const GradusScene scene = make_scene(device);
@@ -378,14 +379,14 @@ TEST(G6_Order, ReleaseWhileAnotherThreadWaitsCancels) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10 * i));
     EXPECT_OK(gradus_render_release(render));
     waiter.join();
-    // Invalid if the handle was gone before the thread came to wait.
+    // INVALID_ARGUMENT if the handle was released before the thread began to wait.
     EXPECT_TRUE(outcome == GRADUS_ERROR_CANCELLED || outcome == GRADUS_ERROR_INVALID_ARGUMENT) << outcome;
   }
   EXPECT_OK(gradus_scene_release(scene));
   EXPECT_OK(gradus_device_release(device));
 }
 
-// They were the device's: what a viewport had to leave out was told to whichever render asked next.
+// Regression: warnings belonged to the device, so that another scene's render could receive those of a viewport.
 TEST(SceneWarnings, StayWithTheirScene) {
   const GradusDevice device = make_device();
   const GradusScene good = make_scene(device), broken = make_scene(device);
@@ -404,7 +405,7 @@ TEST(SceneWarnings, StayWithTheirScene) {
   EXPECT_OK(gradus_device_release(device));
 }
 
-// A render with `strict` starts only for scenes of which everything is rendered.
+// A render with `strict` starts only for scenes that are rendered completely.
 TEST(SceneWarnings, EndAStrictRender) {
   const GradusDevice device = make_device();
   const GradusScene good = make_scene(device), broken = make_scene(device);
@@ -431,7 +432,7 @@ TEST(SceneWarnings, EndAStrictRender) {
   EXPECT_OK(gradus_device_release(device));
 }
 
-TEST(G10_Registry, HandlesComeAndGo) {
+TEST(G10_Registry, ManyHandlesComeAndGo) {
   api::Registry registry;
   uint64_t last = 0;
   for (int i = 0; i < 100000; ++i) {

@@ -1,5 +1,5 @@
-// Light passes of a stored frame belong to the picture that was last made of it; until one is, to that of the frame's
-// own settings.
+// Light passes of a stored film belong to its last reconstruction; before the first one, to that of the film's own
+// settings.
 #include <algorithm>
 
 #include "api/test_scene.h"
@@ -57,7 +57,8 @@ TEST_F(FrameLightPasses, AreThoseOfTheRenderAtFirst) {
   EXPECT_EQ(read(GRADUS_PASS_DIFFUSE_DIRECT), of_render);
 }
 
-// `gradus reconstruct --reconstruction l2 --passes all` wrote L2's picture and the light passes of another.
+// Regression: `gradus reconstruct --reconstruction l2 --passes all` wrote the picture of L2 with light passes of
+// another.
 TEST_F(FrameLightPasses, FollowTheLastReconstruction) {
   for (const uint32_t reconstruction :
        {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_NONE}) {
@@ -67,14 +68,14 @@ TEST_F(FrameLightPasses, FollowTheLastReconstruction) {
   expect_to_add_up(read(GRADUS_PASS_COMBINED));
 }
 
-// The error is that of the frame's own picture, and no picture that anybody was given.
-TEST_F(FrameLightPasses, StayWhenTheErrorIsRead) {
+// Reading the error reconstructs with the film's own settings, but that picture is not delivered.
+TEST_F(FrameLightPasses, DoNotChangeWhenTheErrorIsRead) {
   const std::vector<float> rgba = reconstruct(GRADUS_RECONSTRUCTION_L2);
   read(GRADUS_PASS_ERROR);
   expect_to_add_up(rgba);
 }
 
-TEST_F(FrameLightPasses, AreMadeAnewOfAMergedFrame) {
+TEST_F(FrameLightPasses, AreMadeAnewForAMergedFilm) {
   const std::vector<float> before = read(GRADUS_PASS_DIFFUSE_DIRECT);
   GradusSettings settings = small_render(kSide, kSide, 4);
   settings.integrator = GRADUS_INTEGRATOR_GRADIENT;

@@ -1,4 +1,4 @@
-// G9: options, their defaults and the texts they are set by.
+// G9: options, their defaults and the strings they are parsed from.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "api/test_scene.h"
 #include "base/error.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "gradus/gradus.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
@@ -66,7 +66,7 @@ TEST(G9_Options, AreParsed) {
   }
 }
 
-TEST(G9_Options, RefusalsNameOptionValueAndWhatIsAllowed) {
+TEST(G9_Options, RefusalsNameTheOptionTheValueAndWhatIsAllowed) {
   EXPECT_NE(refused("samples", "0").find("samples = 0: expected 1 to"), std::string::npos);
   EXPECT_NE(refused("samples", "many").find("a number"), std::string::npos);
   EXPECT_NE(refused("samples", "1.5").find("a whole number"), std::string::npos);
@@ -99,8 +99,8 @@ TEST(G9_Options, SurviveJson) {
   EXPECT_EQ(std::memcmp(&s, &back, sizeof(s)), 0);
 }
 
-// Films of earlier versions may name a reconstruction that was removed. Their samples are as good as before.
-TEST(G9_Options, AStoredChoiceThatWasRemovedIsReadAsTheDefaultWithAWarning) {
+// Films of earlier versions may name a reconstruction that was removed. Their samples are still valid.
+TEST(G9_Options, AStoredChoiceThatWasRemovedBecomesTheDefaultWithAWarning) {
   nlohmann::json stored = schema::settings_to_json(schema::default_settings());
   stored["reconstruction"] = "weighted";
   std::vector<std::string> warnings;
@@ -111,7 +111,7 @@ TEST(G9_Options, AStoredChoiceThatWasRemovedIsReadAsTheDefaultWithAWarning) {
   EXPECT_THROW(schema::settings_from_json(stored, &warnings), Error) << "there never was such a choice";
 }
 
-TEST(G9_Options, ANumberThatNoChoiceHasIsRefused) {
+TEST(G9_Options, AnUndefinedEnumValueIsRefused) {
   EXPECT_NE(refused("reconstruction", "weighted").find("one of auto none l2 l1 regularized"), std::string::npos);
   EXPECT_NE(refused("reconstruction", "-").find("one of auto none l2 l1 regularized"), std::string::npos);
   GradusSettings s = schema::default_settings();
@@ -119,7 +119,7 @@ TEST(G9_Options, ANumberThatNoChoiceHasIsRefused) {
   EXPECT_THROW(schema::check_settings(s), Error);
 }
 
-TEST(G9_Options, SamplingKeyIgnoresHowManySamples) {
+TEST(G9_Options, SamplingKeyIgnoresTheNumberOfSamples) {
   GradusSettings a = schema::default_settings(), b = a;
   b.samples = 7;
   b.time_limit = 3.0f;
@@ -133,7 +133,7 @@ TEST(G9_Options, SamplingKeyIgnoresHowManySamples) {
   EXPECT_NE(schema::sampling_key(a), schema::sampling_key(b));
 }
 
-TEST(Passes, AreNamedOnce) {
+TEST(Passes, HaveUniqueNames) {
   std::vector<std::string> names;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
     const char* name = nullptr;
@@ -147,14 +147,14 @@ TEST(Passes, AreNamedOnce) {
   gradus_error(nullptr);
 }
 
-TEST(Passes, LightPassesBringTheirColours) {
+TEST(Passes, LightPassesBringTheirColorPasses) {
   const uint64_t direct = uint64_t{1} << GRADUS_PASS_GLOSSY_DIRECT;
   EXPECT_EQ(schema::needed_passes(direct), direct | uint64_t{1} << GRADUS_PASS_GLOSSY_COLOR);
-  EXPECT_EQ(film::make_pass_planes(direct, 10).size(), 2u);
-  EXPECT_EQ(film::make_pass_planes(uint64_t{1} << GRADUS_PASS_COMBINED, 10).size(), 0u);
+  EXPECT_EQ(film::channels_of_passes(direct).size(), 2u);
+  EXPECT_EQ(film::channels_of_passes(uint64_t{1} << GRADUS_PASS_COMBINED).size(), 0u);
 }
 
-TEST(G9_Options, ATextIsKeptAsItIsWritten) {
+TEST(G9_Options, ATextIsStoredUnchanged) {
   GradusSettings s = defaults();
   EXPECT_STREQ(s.components, "");
   ASSERT_EQ(gradus_settings_parse(&s, "components", "Vase=ETTTTD.*L;A-b=EL"), GRADUS_OK);
@@ -167,7 +167,7 @@ TEST(G9_Options, ATextIsKeptAsItIsWritten) {
             std::string::npos);
 }
 
-TEST(G9_Options, ATextThatIsNotEndedIsRefusedAndNotReadBeyond) {
+TEST(G9_Options, ATextWithoutATerminatorIsRefusedAndNotReadBeyondItsEnd) {
   GradusSettings s = defaults();
   std::fill(std::begin(s.components), std::end(s.components), 'D');
   EXPECT_THROW(schema::check_settings(s), Error);

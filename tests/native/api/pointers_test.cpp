@@ -1,4 +1,4 @@
-// G2: every pointer with its count: NULL, 0, 1, UINT32_MAX, SIZE_MAX, misaligned.
+// G2: every pointer with its count, which is NULL, 0, 1, UINT32_MAX or SIZE_MAX, or whose array is misaligned.
 #include <gtest/gtest.h>
 
 #include "api/test_scene.h"
@@ -122,7 +122,7 @@ TEST_F(G2_Pointers, MaterialsWithBrokenReferencesAreRefused) {
   node.first_input = UINT32_MAX;
   refused();
   node.first_input = 0;
-  input.node = 0;  // itself: a loop
+  input.node = 0;  // the node refers to itself: a loop
   refused();
   input.node = -2;
   refused();
@@ -167,7 +167,7 @@ TEST_F(G2_Pointers, ImagesWithWrongSizesAreRefused) {
   EXPECT_EQ(set(), GRADUS_ERROR_INVALID_ARGUMENT);
 }
 
-TEST_F(G2_Pointers, ReadPassWantsTheExactCount) {
+TEST_F(G2_Pointers, ReadPassRequiresTheExactCount) {
   fill_scene(scene);
   ASSERT_OK(gradus_scene_commit(scene, nullptr, nullptr));
   const GradusSettings settings = small_render(8, 8, 1);

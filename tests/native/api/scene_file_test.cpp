@@ -1,4 +1,4 @@
-// .gradus files: what is saved renders with the same bits; damaged files are refused.
+// .gradus files: a saved scene renders with the same bits; damaged files are refused.
 #include "api/scene_file.h"
 
 #include <gtest/gtest.h>
@@ -106,8 +106,9 @@ TEST(SceneFile, RemovedObjectsAreNotSaved) {
   std::filesystem::remove(path);
 }
 
-// Loading commits; what that left out was lost, and the tool rendered a scene without its objects and said nothing.
-TEST(SceneFile, ALoadedSceneTellsWhatWasLeftOut) {
+// Regression: warnings of the commit while a scene was loaded were lost. The tool rendered a scene without its objects
+// and did not warn.
+TEST(SceneFile, ALoadedSceneReportsWhatWasLeftOut) {
   const GradusDevice device = make_device();
   GradusScene scene = 0, loaded = 0;
   ASSERT_OK(gradus_scene_create(device, &scene));
@@ -127,7 +128,7 @@ TEST(SceneFile, ALoadedSceneTellsWhatWasLeftOut) {
   std::filesystem::remove(path);
 }
 
-// F2, light: with checksums repaired, so that damage reaches the readers behind them.
+// F2, a short form: checksums are repaired, so that damage reaches the readers behind them.
 TEST(F2_Fuzz, DamagedSceneFilesAreRefusedOrRead) {
   const GradusDevice device = make_device();
   GradusScene scene = 0;

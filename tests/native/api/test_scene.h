@@ -40,7 +40,7 @@ inline void set_identity(float* m) {
   for (int i = 0; i < 16; ++i) m[i] = i % 5 == 0 ? 1.0f : 0.0f;
 }
 
-// A quad of side 2 in the plane z = 0, under key 1.
+// Sets a quad of side 2 in the plane z = 0 under key 1.
 inline GradusError set_quad(GradusScene scene) {
   const float positions[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
   const int32_t corners[] = {0, 1, 2, 3};
@@ -83,7 +83,7 @@ inline GradusError set_light(GradusScene scene) {
   return gradus_scene_set_lights(scene, &light, 1);
 }
 
-// x: how far to the right of the quad's middle.
+// Sets the camera; x: its distance to the right of the quad's centre.
 inline GradusError set_camera_at(GradusScene scene, float x) {
   GradusCamera camera = sized<GradusCamera>();
   for (float* m : {camera.matrix, camera.matrix_previous, camera.matrix_next}) {
@@ -119,7 +119,7 @@ inline GradusScene make_scene(GradusDevice device) {
   return scene;
 }
 
-// A test, plain or with a parameter, that has a device and the scene.
+// Base class of tests, plain or with a parameter, that need a device and the scene.
 template <class Test = ::testing::Test>
 class WithScene : public Test {
  protected:

@@ -1,4 +1,4 @@
-// L5: no flag of any compiler may assume finite or reordered numbers, or belong to the machine that builds.
+// L5: no compiler flag may assume finite numbers, reorder sums or depend on the building machine.
 #include <fstream>
 #include <sstream>
 #include <string>

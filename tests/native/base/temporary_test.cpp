@@ -1,4 +1,4 @@
-// Temporary files: they go with who has made them, however that ends.
+// Temporary files are removed with the process that created them, even if it is killed.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// With a TMPDIR of its own.
+// Runs with a TMPDIR of its own.
 class J1_Temporary : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -38,7 +38,7 @@ class J1_Temporary : public ::testing::Test {
   bool was_set_ = false;
 };
 
-TEST_F(J1_Temporary, AFolderGoesWithItsOwner) {
+TEST_F(J1_Temporary, AFolderIsRemovedWithItsOwner) {
   {
     const TemporaryFolder first, second;
     EXPECT_NE(first.path(), second.path());
@@ -48,8 +48,8 @@ TEST_F(J1_Temporary, AFolderGoesWithItsOwner) {
   EXPECT_EQ(files(), 0u);
 }
 
-// Gigabytes of raw frames stayed behind.
-TEST_F(J1_Temporary, AFolderOfAKilledProcessGoesWhenTheNextIsMade) {
+// Regression: gigabytes of raw frames stayed on the disk.
+TEST_F(J1_Temporary, AFolderOfAKilledProcessIsRemovedWhenTheNextIsMade) {
   const TemporaryFolder living;
   const pid_t child = fork();
   if (child == 0) {
@@ -64,7 +64,7 @@ TEST_F(J1_Temporary, AFolderOfAKilledProcessGoesWhenTheNextIsMade) {
   EXPECT_TRUE(fs::exists(living.path())) << "those that live keep theirs";
 }
 
-TEST_F(J1_Temporary, ASpoolFileHasNoNameAndKeepsWhatIsWritten) {
+TEST_F(J1_Temporary, ASpoolFileHasNoNameAndKeepsItsContent) {
   SpoolFile file;
   EXPECT_EQ(files(), 0u);
   file.write(1000000, "far", 3);
@@ -77,7 +77,7 @@ TEST_F(J1_Temporary, ASpoolFileHasNoNameAndKeepsWhatIsWritten) {
   EXPECT_THROW(file.read(1000001, text, 3), Error) << "there is less";
 }
 
-// Where files can be opened no more: folders were made without end.
+// Regression: where no more files could be opened, folders were created without end.
 TEST_F(J1_Temporary, AFolderThatCannotBeOpenedIsRemovedAndNamed) {
   const int next = dup(0);
   close(next);
@@ -96,12 +96,12 @@ TEST_F(J1_Temporary, AFolderThatCannotBeOpenedIsRemovedAndNamed) {
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(J1_Temporary, APlaceThatIsNotThereIsReplacedByTheSystemsOwn) {
+TEST_F(J1_Temporary, AMissingPlaceIsReplacedByTheSystemsDefault) {
   setenv("TMPDIR", (place_ + "/missing").c_str(), 1);
   EXPECT_EQ(temporary_path(), "/tmp");
 }
 
-TEST_F(J1_Temporary, APlaceThatTakesNoFilesIsNamed) {
+TEST_F(J1_Temporary, APlaceThatCannotBeWrittenIsNamed) {
   setenv("TMPDIR", "/proc", 1);
   const auto refusal = [](auto&& make) {
     try {

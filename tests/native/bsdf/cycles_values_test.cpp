@@ -1,8 +1,7 @@
-// A9, for closures: values that Cycles (Blender 4.5.15) gives for the same closure and directions.
-//
-// Measured without noise: a unit sphere of 160,000 triangles under an orthographic camera along -Z, lit by one sun of 1
-// W/m2 without an angle, 64 x 64 pixels, 1 sample, 0 bounces; the pixel's normal is its place on the sphere, its value
-// f cos.
+// A9 for closures: values that Cycles (Blender 4.5.15) gives for the same closure and directions.
+// They are measured without noise: a unit sphere of 160,000 triangles under an orthographic camera along -Z, lit by one
+// sun of 1 W/m2 with angle 0, 64 x 64 pixels, 1 sample, 0 bounces. The position of a pixel on the sphere is its normal;
+// its value is f cos.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -176,7 +175,7 @@ bsdf::Lobe lobe_of(const std::string& name) {
   metal.f0 = Rgb(0.9f, 0.6f, 0.3f);
   metal.f90 = Rgb(0.7f, 0.8f, 0.9f);
   if (name == "metal05") return metal;
-  // The Glossy node with a colour, which acts on each bounce between facets.
+  // The Glossy node with a colour, which multiplies each bounce between microfacets.
   bsdf::Lobe glossy = multiscatter(bsdf::LobeType::GgxReflection, 0.7f, bsdf::FresnelType::None, 1.0f);
   glossy.weight = glossy.f0 = Rgb(0.8f, 0.5f, 0.2f);
   return glossy;
@@ -204,7 +203,7 @@ TEST(A9_CyclesClosures, ValuesAgree) {
   }
 }
 
-// White Lambert with the normal tilted by (0.4, 0.2, 0), light from the side.
+// A white Lambertian closure with its normal tilted by (0.4, 0.2, 0), lit from the side.
 TEST(A9_CyclesClosures, BumpsDarkenSoftly) {
   const struct {
     int x;

@@ -1,4 +1,4 @@
-// A2: no closure makes energy, and those that should lose none lose none.
+// A2: no closure adds energy, and lossless closures lose none.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,14 +10,14 @@
 namespace gradus::testing {
 namespace {
 
-// Mean of value/(pdf·P(class)) under uniform light: the directional albedo.
+// Returns the mean of value/(pdf·P(class)) under uniform light: the directional albedo.
 Rgb measured_albedo(const bsdf::Closures& closures, const Vec3& wo, int samples, uint64_t seed) {
   Random random(seed);
   Rgb sum(0.0f);
   for (int i = 0; i < samples; i++) {
     float choice = random.get();
     const float u_lobe = random.get();
-    // Stratified: the bound of 1 % needs less noise than 16,384 independent samples have.
+    // Samples are stratified: 16,384 independent samples would have too much noise for the bound of 1 %.
     const int side = static_cast<int>(std::sqrt(static_cast<double>(samples)));
     const Vec2 u((static_cast<float>(i % side) + random.get()) / static_cast<float>(side),
                  (static_cast<float>(i / side % side) + random.get()) / static_cast<float>(side));
@@ -77,7 +77,7 @@ TEST(A2_WhiteFurnace, DiracIsLossless) {
   check({"Mirror", make_lobe(bsdf::LobeType::DiracReflection), true}, 0.1f);
 }
 
-// The classes share one lobe's energy: the same albedo whether glass is one rough class or two specular ones.
+// One lobe has the same albedo whether glass is sampled as one rough class or as two specular classes.
 TEST(A2_WhiteFurnace, ClassesDoNotChangeEnergy) {
   const bsdf::Lobe glass = make_lobe(bsdf::LobeType::GgxGlass, 0.25f, bsdf::FresnelType::Dielectric, 1.5f);
   for (const float cosine : {1.0f, 0.5f, 0.1f}) {
@@ -88,7 +88,7 @@ TEST(A2_WhiteFurnace, ClassesDoNotChangeEnergy) {
   }
 }
 
-// Tables against sampling: they serve layering, colour passes and compensation.
+// Compares tabulated albedos with sampled ones. Layering, colour passes and compensation use the tables.
 TEST(A2_WhiteFurnace, TabulatedAlbedo) {
   std::vector<LobeCase> cases = diffuse_cases();
   for (const float roughness : {0.0f, 0.05f, 0.3f, 0.5f, 0.7f, 1.0f}) {
@@ -99,7 +99,7 @@ TEST(A2_WhiteFurnace, TabulatedAlbedo) {
   }
   for (const LobeCase& test : cases) {
     if (test.name == "OrenNayar" || !test.bounded || test.name.starts_with("Anisotropic")) {
-      continue;  // their albedo is an estimate
+      continue;  // the albedo of these lobes is an estimate
     }
     for (const float cosine : {1.0f, 0.7f, 0.4f, 0.2f, 0.1f, 0.03f}) {
       const Vec3 wo = tilted_direction(cosine, 2.0f);

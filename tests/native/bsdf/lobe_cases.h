@@ -11,8 +11,8 @@ namespace gradus::testing {
 struct LobeCase {
   std::string name;
   bsdf::Lobe lobe;
-  bool lossless = false;  // gives back all energy: albedo at least 0.99
-  bool bounded = true;    // no more than all; not so for Disney's diffuse, which is kept as old files have it
+  bool lossless = false;  // the albedo is at least 0.99
+  bool bounded = true;    // the albedo is at most 1; not for Disney's diffuse, which is kept for old files
 };
 
 inline bsdf::Lobe make_lobe(bsdf::LobeType type, float alpha = 0.0f,
@@ -41,7 +41,7 @@ inline std::vector<LobeCase> diffuse_cases() {
   return cases;
 }
 
-// One of each kind for a roughness (Blender's: alpha is its square).
+// Returns a lobe of each microfacet kind for a roughness (Blender's: alpha is its square).
 inline std::vector<LobeCase> microfacet_cases(float roughness) {
   const float alpha = roughness * roughness;
   std::vector<LobeCase> cases = {
@@ -73,7 +73,7 @@ inline std::vector<LobeCase> microfacet_cases(float roughness) {
   return cases;
 }
 
-// A frame that is not the world's.
+// Normal of a shading frame that differs from the world's axes.
 inline const Vec3 kTestNormal = glm::normalize(Vec3(0.3f, -0.5f, 0.8f));
 
 inline Vec3 tilted_direction(float cosine, float azimuth) {

@@ -75,8 +75,8 @@ TEST(A3_ChiSquare, MixedLobesOfOneClass) {
   check_class({"Mixed", diffuse, false}, closures, wo, bsdf::ScatterClass::Diffuse);
 }
 
-// The test can fail: a density that is 3 % off in one half is seen.
-TEST(A3_ChiSquare, SeesAWrongDensity) {
+// Shows that the test can fail: it detects a density that is 3 % off in one half.
+TEST(A3_ChiSquare, DetectsAWrongDensity) {
   const Vec3 wo = tilted_direction(0.6f, 1.0f);
   const bsdf::Closures closures = finished(make_lobe(bsdf::LobeType::Diffuse), wo);
   ChiSquareOptions options;
@@ -125,8 +125,8 @@ TEST(A4_Densities, SampleAgreesWithEvaluate) {
   EXPECT_GE(compared, 100000);
 }
 
-// f(wo, wi) = f(wi, wo) for reflection, but for what depends on the view alone: energy compensation, the fitted sheen
-// (docs/method.md).
+// f(wo, wi) = f(wi, wo) for reflection. Energy compensation and the fitted sheen are exempt: they depend on the view
+// alone.
 TEST(A4_Densities, Reciprocity) {
   Random random(9);
   std::vector<LobeCase> cases = diffuse_cases();
@@ -179,7 +179,7 @@ TEST(A4_Densities, ByPassSumsToValue) {
   EXPECT_GT(closures.evaluate_by_pass(bsdf::ScatterClass::Diffuse, wo, below, below.z < 0.0f)[2].x, 0.0f);
 }
 
-// Offsets take the base's view of such a vertex for their own.
+// Offset paths reuse the base path's evaluation of a vertex whose closures ignore wo.
 TEST(ClosuresThatIgnoreWo, AreTheSameFromEverywhereOnOneSide) {
   std::vector<LobeCase> cases = diffuse_cases();
   for (const LobeCase& c : microfacet_cases(0.5f)) cases.push_back(c);
@@ -191,7 +191,7 @@ TEST(ClosuresThatIgnoreWo, AreTheSameFromEverywhereOnOneSide) {
     for (int i = 0; i < 2; ++i) {
       *seen[i].add() = make_lobe(bsdf::LobeType::Diffuse);
       bsdf::Lobe lobe = c.lobe;
-      lobe.normal = glm::normalize(Vec3(0.2f, 0.0f, 1.0f));  // bumped
+      lobe.normal = glm::normalize(Vec3(0.2f, 0.0f, 1.0f));  // the normal of a bump map
       *seen[i].add() = lobe;
       seen[i].finish(views[i], Vec3(0, 0, 1), 0.1f, Vec3(0, 0, 1));
     }

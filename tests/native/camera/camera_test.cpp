@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "camera_fixture.h"
 #include "geometry/matrix_keys.h"
 #include "scene/scene_fixture.h"
 #include "support/chi_square.h"
@@ -19,7 +18,7 @@ struct BlenderCamera {
   float shift_x = 0.0f, shift_y = 0.0f, aspect_x = 1.0f, aspect_y = 1.0f;
 };
 
-// What calc_matrix_camera() gives in Blender 3.4 to 5.0: m00, m11 and where the axis appears in NDC.
+// Values of calc_matrix_camera() in Blender 3.4 to 5.0: m00, m11 and the position of the axis in NDC.
 struct Projection {
   double m00, m11, axis_x, axis_y;
 };
@@ -33,7 +32,7 @@ Projection blender_projection(const BlenderCamera& c, double w, double h) {
   return {2 / (w * pix), 2 / (h * a * pix), -2.0 * c.shift_x * view / w, -2.0 * c.shift_y * view / (h * a)};
 }
 
-// The window of gradus.h that this projection has: ndc = m·p + axis.
+// Returns a camera with the window (see gradus.h) of this projection: ndc = m·p + axis.
 GradusCamera make_camera(const BlenderCamera& c, double w, double h, const Mat4& pose) {
   const Projection p = blender_projection(c, w, h);
   GradusCamera camera{};
@@ -73,11 +72,11 @@ TEST(Camera, ProjectsAsBlenderAndRaysGoBackThere) {
         const Vec3 world = ray.origin + ray.direction * (ray.t_min * 20.0f + 1.0f);
         Vec2 back;
         ASSERT_TRUE(camera.project(world, Moment::Now, &back));
-        // A 5 m lens magnifies the rounding of the world position itself.
+        // A lens of 5 m magnifies the rounding of the world position.
         const double tolerance = blender.lens > 1000.0f ? 0.03 : 0.01;
         EXPECT_NEAR(back.x, film.x, tolerance);
         EXPECT_NEAR(back.y, film.y, tolerance);
-        // Blender's own projection, in double.
+        // Blender's projection, computed in double.
         const glm::dvec3 local = glm::dvec3(glm::inverse(glm::dmat4(kPose)) * glm::dvec4(glm::dvec3(world), 1.0));
         const double depth = blender.orthographic ? 1.0 : -local.z;
         EXPECT_NEAR((p.m00 * local.x / depth + p.axis_x + 1) * 0.5 * w, film.x, tolerance);
@@ -90,7 +89,7 @@ TEST(Camera, ProjectsAsBlenderAndRaysGoBackThere) {
     }
 }
 
-TEST(Camera, RaysOfAFilmPointMeetOnThePlaneOfFocus) {
+TEST(Camera, RaysOfAFilmPointMeetOnTheFocalPlane) {
   for (const bool orthographic : {false, true}) {
     BlenderCamera blender;
     blender.orthographic = orthographic;
@@ -112,7 +111,8 @@ TEST(Camera, RaysOfAFilmPointMeetOnThePlaneOfFocus) {
   }
 }
 
-// Uniform over the aperture: counts of lens positions on a grid against the area of each cell within the shape.
+// Expects a uniform density over the aperture: compares counts of lens positions on a grid with the area of each cell
+// inside of the shape.
 void expect_uniform_lens(uint32_t blades, float rotation, float ratio) {
   GradusCamera desc = make_camera({}, 100, 100, Mat4(1.0f));
   desc.aperture_radius = 1.0f;
@@ -154,7 +154,7 @@ void expect_uniform_lens(uint32_t blades, float rotation, float ratio) {
   EXPECT_TRUE(result.passed) << result.text;
 }
 
-// At each moment its rays are those of a camera that rests where it is then, with the window that it has then.
+// At each moment, its rays are those of a static camera with the pose and window of that moment.
 TEST(Camera, MovesAndZoomsWhileTheShutterIsOpen) {
   for (const bool orthographic : {false, true}) {
     BlenderCamera blender;
@@ -186,8 +186,8 @@ TEST(Camera, MovesAndZoomsWhileTheShutterIsOpen) {
   }
 }
 
-// A camera was made of the first 129 keys, as if the shutter closed there, where meshes and instances refuse more.
-TEST(Camera, RefusesMoreShutterKeysThanThereMayBe) {
+// Regression: a camera used the first 129 keys, as if the shutter closed there; meshes and instances refuse more.
+TEST(Camera, RefusesMoreThanTheMaximumNumberOfShutterKeys) {
   GradusCamera moving = make_camera(BlenderCamera{}, 640, 360, kPose);
   const std::vector<Mat4> matrices(geometry::kMaxShutterKeys + 1, kPose);
   moving.shutter_matrices = &matrices[0][0][0];

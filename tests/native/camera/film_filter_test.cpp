@@ -1,4 +1,4 @@
-// Pixel filters: as wide as those that Cycles has at the same setting.
+// Pixel filters are as wide as those of Cycles at the same setting.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,8 @@
 namespace gradus {
 namespace {
 
-// Share of the samples within half a cell of `place`, per pixel of width: what a thin line there gives to the pixel.
+// Returns the share of samples within half a cell of `place`, per pixel of width: the weight that a thin line there has
+// in the pixel.
 double density(const camera::FilmFilter& filter, double place) {
   constexpr int samples = 200000;
   constexpr double cell = 0.02;
@@ -24,11 +25,12 @@ double density(const camera::FilmFilter& filter, double place) {
 struct Measured {
   uint32_t type;
   float width;
-  double centre,
-      neighbour;  // of a line 0.02 pixels wide through the middle of a pixel, in Cycles 4.5; noise below 0.04
+  // Densities at the centre of the pixel and of its neighbour: the weight of a line 0.02 pixels wide in Cycles 4.5,
+  // with a noise below 0.04.
+  double centre, neighbour;
 };
 
-TEST(FilmFilterTest, IsAsWideAsThatOfCycles) {
+TEST(FilmFilter, IsAsWideAsThatOfCycles) {
   for (const Measured& m :
        {Measured{GRADUS_FILTER_BOX, 1.0f, 1.013, 0.0}, Measured{GRADUS_FILTER_BOX, 3.0f, 1.013, 0.0},
         Measured{GRADUS_FILTER_GAUSSIAN, 1.0f, 1.599, 0.0}, Measured{GRADUS_FILTER_GAUSSIAN, 1.5f, 1.062, 0.03},
@@ -44,7 +46,7 @@ TEST(FilmFilterTest, IsAsWideAsThatOfCycles) {
   }
 }
 
-TEST(FilmFilterTest, IsSymmetric) {
+TEST(FilmFilter, IsSymmetric) {
   const camera::FilmFilter filter(GRADUS_FILTER_BLACKMAN_HARRIS, 1.5f);
   for (float u : {0.001f, 0.1f, 0.25f, 0.4f, 0.5f}) {
     EXPECT_NEAR(filter.sample(Vec2(u, 0.5f)).x, -filter.sample(Vec2(1.0f - u, 0.5f)).x, 1e-4f);

@@ -1,10 +1,9 @@
-// Panoramic projections: against closed forms in double, there and back, at edges and poles; stereo.
+// Panoramic projections against closed forms in double, as inverses of each other, at edges and poles; stereo.
 #include "camera/panorama.h"
 
 #include <gtest/gtest.h>
 
 #include "camera/camera.h"
-#include "camera_fixture.h"
 #include "scene/scene_fixture.h"
 
 namespace gradus::test {
@@ -53,7 +52,7 @@ GradusCamera make_camera(const Projection& p, const Mat4& pose = Mat4(1.0f)) {
   return camera;
 }
 
-// Closed forms of the directions, in double; zero outside of the image circle.
+// Returns the closed form of the direction, in double; zero outside of the image circle.
 glm::dvec3 expected_direction(const GradusCamera& c, double x, double y) {
   const double r = std::sqrt(x * x + y * y);
   double angle = 0.0;
@@ -66,7 +65,7 @@ glm::dvec3 expected_direction(const GradusCamera& c, double x, double y) {
       return glm::normalize(glm::dvec3(std::tan(x), std::tan(y), -1.0));
     case GRADUS_PANORAMA_MIRROR_BALL: {
       if (r > 1.0) return glm::dvec3(0.0);
-      const glm::dvec3 normal(x, y, std::sqrt(1.0 - r * r));  // of the ball, seen along -z
+      const glm::dvec3 normal(x, y, std::sqrt(1.0 - r * r));  // normal of the ball, seen along -z
       return glm::reflect(glm::dvec3(0, 0, -1), normal) * glm::dvec3(1, 1, -1);
     }
     case GRADUS_PANORAMA_FISHEYE_EQUIDISTANT:
@@ -90,7 +89,7 @@ class Panorama : public ::testing::TestWithParam<Projection> {};
 TEST_P(Panorama, DirectionsAreThoseOfTheClosedForm) {
   const GradusCamera desc = make_camera(GetParam());
   std::mt19937 random(17);
-  std::uniform_real_distribution<double> u(-0.02, 1.02);  // filters reach beyond the frame
+  std::uniform_real_distribution<double> u(-0.02, 1.02);  // filters reach beyond the film
   int seen = 0;
   for (int i = 0; i < 20000; ++i) {
     const Vec2 p(desc.window[0] + (desc.window[1] - desc.window[0]) * float(u(random)),
@@ -105,7 +104,7 @@ TEST_P(Panorama, DirectionsAreThoseOfTheClosedForm) {
     }
     if (!sees) continue;
     ++seen;
-    // The rim of a ball is steep: it shows what lies behind, where z is 1.
+    // The mirror ball is steep at its rim, which shows what lies behind it, where z is 1.
     const bool ball = GetParam().type == GRADUS_PANORAMA_MIRROR_BALL;
     EXPECT_NEAR(glm::length(glm::dvec3(found) - expected), 0.0,
                 2e-6 + (ball ? 1e-7 / std::sqrt(0.5 - 0.5 * expected.z) : 0.0));
@@ -113,7 +112,7 @@ TEST_P(Panorama, DirectionsAreThoseOfTheClosedForm) {
   EXPECT_GT(seen, 3000);
 }
 
-TEST_P(Panorama, PointsOfRaysAppearWhereTheRaysLeft) {
+TEST_P(Panorama, PointsOnRaysProjectToTheOriginOfTheRay) {
   const GradusCamera desc = make_camera(GetParam(), kPose);
   const camera::Camera camera(desc, kWidth, kHeight);
   std::mt19937 random(18);
@@ -124,10 +123,10 @@ TEST_P(Panorama, PointsOfRaysAppearWhereTheRaysLeft) {
     const Ray ray = camera.ray({film, Vec2(0.0f)});
     if (is_none(ray)) continue;
     if (desc.fisheye_polynomial[0] > 0.0f && glm::length(film - Vec2(320.0f, 240.0f)) < 5.0f)
-      continue;  // the lens folds there
+      continue;  // the projection is not unique there
     const Vec3 relative = glm::transpose(Mat3(kPose)) * ray.direction;
     const bool at_pole =
-        std::fabs(relative.y) > 0.99f || relative.z > 0.99f;  // where a pixel is no larger than rounding
+        std::fabs(relative.y) > 0.99f || relative.z > 0.99f;  // where a pixel is no larger than the rounding error
     Vec2 back;
     ASSERT_TRUE(camera.project(ray.origin + 7.0f * ray.direction, Moment::Now, &back));
     EXPECT_LT(glm::length(camera.film_displacement(film, back)), at_pole ? 0.5f : 0.01f) << film.x << " " << film.y;
@@ -141,7 +140,7 @@ TEST_P(Panorama, PointsOfRaysAppearWhereTheRaysLeft) {
   EXPECT_GT(seen, 1000);
 }
 
-TEST_P(Panorama, RaysOfAFilmPointMeetAtTheDistanceOfFocus) {
+TEST_P(Panorama, RaysOfAFilmPointMeetAtTheFocalDistance) {
   GradusCamera desc = make_camera(GetParam(), kPose);
   const camera::Camera pinhole(desc, kWidth, kHeight);
   desc.aperture_radius = 0.3f;
@@ -176,7 +175,7 @@ Ray ray_at(const Projection& p, float x, float y) {
 
 void expect_direction(const Ray& ray, const Vec3& expected) { EXPECT_LT(glm::length(ray.direction - expected), 1e-5f); }
 
-TEST(PanoramaEdges, LookWhereTheyShould) {
+TEST(PanoramaEdges, LookInTheExpectedDirections) {
   const Projection& all_around = kProjections[0];
   expect_direction(ray_at(all_around, 0.5f, 0.5f), Vec3(0, 0, -1));
   expect_direction(ray_at(all_around, 0.75f, 0.5f), Vec3(1, 0, 0));
@@ -201,7 +200,7 @@ TEST(PanoramaEdges, BehindACubeFaceNothingAppears) {
   EXPECT_FALSE(camera.project(Vec3(0.2f, 0.1f, 1.0f), Moment::Now, &film));
 }
 
-TEST(PanoramaEdges, MotionTakesTheShortestWayAround) {
+TEST(PanoramaEdges, MotionTakesTheShorterDirectionAround) {
   const camera::Camera camera(make_camera(kProjections[0]), kWidth, kHeight);
   Vec2 from, to;
   ASSERT_TRUE(camera.project(Vec3(0.01f, 0, 1), Moment::Now, &from));
@@ -212,13 +211,13 @@ TEST(PanoramaEdges, MotionTakesTheShortestWayAround) {
 }
 
 TEST(PanoramaEdges, LongitudesAreThoseOfTheWindow) {
-  const camera::Camera camera(make_camera(kProjections[1]), kWidth, kHeight);  // 2 to 4.5: over the seam of atan2
+  const camera::Camera camera(make_camera(kProjections[1]), kWidth, kHeight);  // 2 to 4.5: across the seam of atan2
   Vec2 film;
   ASSERT_TRUE(camera.project(Vec3(std::sin(4.0f), 0.0f, -std::cos(4.0f)), Moment::Now, &film));
   EXPECT_NEAR(film.x, (4.0 - 2.0) / 2.5 * kWidth, 0.01);
 }
 
-// From the eye's own place and direction, by Cycles' formulae, in double.
+// From the position and direction of the eye, by the formulae of Cycles, in double.
 TEST(SphericalStereo, RaysLeaveTheEyesCircle) {
   GradusCamera desc = make_camera(kProjections[0]);
   desc.eye_offset = 0.5f;
@@ -242,7 +241,7 @@ TEST(SphericalStereo, RaysLeaveTheEyesCircle) {
   EXPECT_EQ(offset_at(1.45f), 0.0f);
 }
 
-TEST(SphericalStereo, PointsOfRaysAppearWhereTheRaysLeft) {
+TEST(SphericalStereo, PointsOnRaysProjectToTheOriginOfTheRay) {
   std::mt19937 random(20);
   std::uniform_real_distribution<float> u(0.0f, 1.0f);
   for (const float convergence : {0.0f, 2.0f})

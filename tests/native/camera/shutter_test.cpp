@@ -1,4 +1,4 @@
-// The shutter's curve as a density, and shutters that never open.
+// The shutter curve as a density of times, and shutters that never open.
 #include "camera/shutter.h"
 
 #include <cmath>
@@ -19,7 +19,7 @@ camera::Shutter make_shutter(float open, float close, const std::vector<float>& 
   return camera::Shutter(camera);
 }
 
-// Integral of the curve from 0 to x, in proportion to the whole.
+// Returns the integral of the curve from 0 to x relative to the whole.
 double share_before(const std::vector<float>& curve, double x) {
   const auto integral = [&](double end) {
     double sum = 0.0;
@@ -33,7 +33,7 @@ double share_before(const std::vector<float>& curve, double x) {
   return integral(x) / integral(1.0);
 }
 
-TEST(Shutter, MomentsAreDistributedAsTheCurveIs) {
+TEST(Shutter, TimesAreDistributedAsTheCurve) {
   for (const std::vector<float>& curve : {std::vector<float>{1, 1},
                                           {0, 1},
                                           {1, 0},
@@ -54,21 +54,21 @@ TEST(Shutter, MomentsAreDistributedAsTheCurveIs) {
   }
 }
 
-TEST(Shutter, WithoutACurveAllMomentsAreAlike) {
+TEST(Shutter, WithoutACurveAllTimesHaveTheSameDensity) {
   const camera::Shutter shutter = make_shutter(0.0f, 0.5f, {});
   EXPECT_EQ(shutter.sample(0.25f), 0.25f);
   EXPECT_FLOAT_EQ(shutter.frame_time(0.5f), 0.25f);
 }
 
-// Links and vectors are of the frame itself, wherever in the exposure it lies.
-TEST(Shutter, KnowsWhenTheFrameIs) {
+// Correspondences and vectors refer to the time of the frame, which may lie anywhere in the exposure.
+TEST(Shutter, KnowsTheTimeOfTheFrame) {
   EXPECT_FLOAT_EQ(make_shutter(-0.25f, 0.25f, {}).time_of_frame(), 0.5f);
   EXPECT_FLOAT_EQ(make_shutter(-0.5f, 0.0f, {}).time_of_frame(), 1.0f);
   EXPECT_FLOAT_EQ(make_shutter(-0.1f, 0.4f, {}).time_of_frame(), 0.2f);
   EXPECT_EQ(make_shutter(0.0f, 0.0f, {}).time_of_frame(), 0.0f);
 }
 
-TEST(Shutter, DoesNotOpenForWhatIsBroken) {
+TEST(Shutter, DoesNotOpenForAnInvalidCurve) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   EXPECT_FALSE(make_shutter(0.0f, 0.0f, {}).opens());
   EXPECT_FALSE(make_shutter(0.5f, -0.5f, {}).opens());

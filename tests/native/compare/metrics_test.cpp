@@ -1,4 +1,4 @@
-// The measures against values worked out by hand.
+// Error metrics against values computed by hand.
 #include "compare/metrics.h"
 
 #include <gtest/gtest.h>
@@ -34,12 +34,12 @@ TEST(Compare, ConstantsAgreeWithTheDefinitions) {
   EXPECT_NEAR(m.signed_ratio, 1.0, 1e-9);
 }
 
-TEST(Compare, RelativeErrorTakesTheGrayOfTheReference) {
+TEST(Compare, RelativeErrorUsesTheGrayOfTheReference) {
   compare::RgbImage image{1, 1, {1.0f, 0.0f, 0.0f}}, reference{1, 1, {0.0f, 0.0f, 3.0f}};
   EXPECT_NEAR(compare::compare_images(image, reference).rel_mse, (1.0 + 9.0) / 3.0 / (1e-3 + 1.0), 1e-9);
 }
 
-TEST(Compare, TrimmingTakesAwayTheWorstPixels) {
+TEST(Compare, TrimmingRemovesTheWorstPixels) {
   compare::RgbImage image = constant(100, 100, 0.5f);
   const compare::RgbImage reference = constant(100, 100, 0.5f);
   for (size_t pixel = 0; pixel < 10; ++pixel) image.pixels[3 * 997 * pixel] = 1000.0f;
@@ -48,7 +48,7 @@ TEST(Compare, TrimmingTakesAwayTheWorstPixels) {
   EXPECT_NEAR(m.rel_mse_trimmed, 0.0, 1e-9);
 }
 
-TEST(Compare, NoiseIsNoBias) {
+TEST(Compare, NoiseIsNotBias) {
   compare::RgbImage image = constant(200, 200, 0.5f);
   std::mt19937 random(1);
   std::normal_distribution<float> normal(0.0f, 0.1f);
@@ -59,7 +59,7 @@ TEST(Compare, NoiseIsNoBias) {
   EXPECT_NEAR(m.mse, 0.01, 3e-4);
 }
 
-TEST(Compare, CountsWhatIsNotFiniteAndGoesOn) {
+TEST(Compare, CountsAndSkipsValuesThatAreNotFinite) {
   compare::RgbImage image = constant(10, 10, 0.5f);
   image.pixels[7] = std::numeric_limits<float>::quiet_NaN();
   image.pixels[50] = std::numeric_limits<float>::infinity();

@@ -1,4 +1,4 @@
-// Features and their noise as a frame keeps them: by halves, through reading, the store, merging and going on.
+// Features and their variance in a film: by half-buffers, through reading, the store, merging and resuming.
 #include "film/features.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "film_io/store.h"
 #include "output/pass_read.h"
 #include "render/fake_integrator.h"
@@ -34,7 +34,7 @@ GradusSettings without_features(uint32_t samples) {
   return settings;
 }
 
-// A frame that keeps them though nobody asked for them, as the plan may have it.
+// Returns a film with features that the settings do not request, as the plan may decide.
 film::Film with_unasked_features() {
   film::Film film = *rendered(with_features(6));
   film.settings.passes = uint64_t{1} << GRADUS_PASS_COMBINED;
@@ -48,7 +48,7 @@ struct StoredFeatures : ::testing::Test {
 };
 
 TEST(Features, HalvesAverageToThePass) {
-  const auto film = rendered(with_features(5));  // three of the one half, two of the other
+  const auto film = rendered(with_features(5));  // three samples in one half-buffer, two in the other
   ASSERT_TRUE(film::has_features(*film));
   const film::Features both = film::read_features(*film), a = film::read_features(*film, {0, 1}),
                        b = film::read_features(*film, {1, 2});
@@ -78,14 +78,14 @@ TEST(Features, OneHalfAloneHasNoVariance) {
   for (const float v : features.albedo.variance) EXPECT_TRUE(std::isnan(v));
 }
 
-TEST(Features, FramesWithoutThemSaySo) {
+TEST(Features, FilmsWithoutThemSaySo) {
   const auto film = rendered(without_features(2));
   EXPECT_FALSE(film::has_features(*film));
   EXPECT_THROW(film::read_features(*film), Error);
   EXPECT_THROW(film::read_feature(*rendered(with_features(2)), GRADUS_PASS_NORMAL), Error) << "not kept in halves";
 }
 
-// Counts of pixels and halves differ where tiles stop early.
+// Counts of pixels and halves differ where pixel blocks stop early.
 TEST(Features, FollowTheCountsOfAdaptiveRenders) {
   GradusSettings settings = with_features(64);
   settings.noise_threshold = 1e-3f;
@@ -98,10 +98,10 @@ TEST(Features, FollowTheCountsOfAdaptiveRenders) {
   const auto [minimum, maximum] = std::minmax_element(film->count[0].begin(), film->count[0].end());
   ASSERT_LT(*minimum, *maximum);
   const std::vector<float> depth = film::read_features(*film).depth.values, primal = film::read_images(*film, 0).primal;
-  for (size_t i = 0; i < depth.size(); ++i) EXPECT_NEAR(depth[i], primal[3 * i], 1e-5f);  // made so above
+  for (size_t i = 0; i < depth.size(); ++i) EXPECT_NEAR(depth[i], primal[3 * i], 1e-5f);  // the scene is built so
 }
 
-TEST(Features, HalvesAreMergedApart) {
+TEST(Features, HalvesAreMergedSeparately) {
   GradusSettings late = with_features(25);
   late.first_sample = 7;
   film::Film merged = *rendered(with_features(7));
@@ -118,8 +118,8 @@ TEST(L3_Resume, FeaturesHaveTheSameBits) {
   EXPECT_TRUE(same_samples(*rendered(with_features(32), rendered(with_features(7))), *rendered(with_features(32))));
 }
 
-// A reconstruction that reads them would have met half of the samples, or none.
-TEST(L3_Resume, RefusesFramesThatLackWhatTheReconstructionReads) {
+// Regression: a reconstruction that reads features would have found half of the samples, or none.
+TEST(L3_Resume, RefusesFilmsWithoutTheFeaturesThatTheReconstructionReads) {
   const GradusSettings settings = without_features(16);
   render::Plan plan = render::make_plan(settings, *empty_snapshot());
   const uint64_t scene = empty_snapshot()->content_key;
@@ -134,12 +134,12 @@ TEST_F(StoredFeatures, ComeBackWithTheirHalves) {
   const film::Film film = with_unasked_features();
   film_io::save_film(film, path);
   const auto back = film_io::load_film(path);
-  EXPECT_EQ(film::film_passes(*back), schema::feature_passes());
+  EXPECT_EQ(back->channels.passes(), schema::feature_passes());
   EXPECT_TRUE(same_samples(film, *back));
   EXPECT_EQ(film::read_features(*back).depth.variance, film::read_features(film).depth.variance);
 }
 
-// Files from before features had halves have one plane of each.
+// Files of versions before features had halves have one plane of each feature.
 TEST_F(StoredFeatures, FilesOfAnotherFormatAreRefused) {
   film_io::save_film(*rendered(with_features(2)), path);
   std::stringstream content;

@@ -5,8 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "film/finite_check.h"
-#include "film/pass_planes.h"
-#include "film/read_pixels.h"
+#include "film/planes.h"
 
 namespace gradus {
 namespace {
@@ -14,7 +13,7 @@ namespace {
 film::Film small_film() { return film::Film(4, 3, Region{0, 0, 4, 3}, 3, 1, true); }
 
 std::vector<float> variances(const film::Film& film) {
-  const size_t row = size_t(film.region.width()) * size_t(film.channels);
+  const size_t row = size_t(film.region.width()) * size_t(film.color_channels);
   std::vector<float> values(row * size_t(film.region.height()));
   for (int y = 0; y < film.region.height(); ++y) film::read_variance_row(film, y, values.data() + row * size_t(y));
   return values;
@@ -35,16 +34,17 @@ TEST(B6_FiniteCheck, NonFiniteSamplesStayOutAndAreCounted) {
   }
 }
 
-// Samples of 3e38 are finite, sums of two were not, nor were the mean of both halves and the variance.
+// Regression: samples of 3e38 are finite, but their sum, the mean of both halves and the variance were not.
 TEST(B6_FiniteCheck, SumsThatWouldOverflowStayOutAndAreCounted) {
   film::Film film = small_film();
-  film::PassPlane plane = film::make_pass_planes(uint64_t{1} << GRADUS_PASS_DIFFUSE_COLOR, 12)[0];
+  film::add_pass_channels(uint64_t{1} << GRADUS_PASS_DIFFUSE_COLOR, &film);
+  film::Channel* const channel = film.channels.of_pass(GRADUS_PASS_DIFFUSE_COLOR);
   for (int half = 0; half < film::kHalves; ++half) {
     for (const float value : {3e38f, 6e36f, 6e36f}) {
       const float feature[3] = {value, value, value};
       film::add_radiance(Radiance(half == 0 ? value : -value), &film.components[0].primal[half][5], &film.counters);
       film::add_gradient(Radiance(value), &film.components[0].gradient[half][film::kRight][5], &film.counters);
-      film::add_feature(feature, 1.0f, 5, half, &plane, &film.counters);
+      film::add_feature(feature, 1.0f, 5, half, channel, &film.counters);
       ++film.count[half][5];
     }
   }
@@ -56,10 +56,10 @@ TEST(B6_FiniteCheck, SumsThatWouldOverflowStayOutAndAreCounted) {
   EXPECT_TRUE(is_finite(variances(film)[15]));
 }
 
-TEST(B6_FiniteCheck, NumbersOfObjectsAreThoseOfTheFirstSample) {
+TEST(B6_FiniteCheck, ObjectNumbersAreThoseOfTheFirstSample) {
   film::Counters counters;
   film::NonSpecularDetails sum;
-  film::add_details({Vec3(0.0f), Rgb(5.0f), 1.0f}, &sum, &counters);  // a light has none
+  film::add_details({Vec3(0.0f), Rgb(5.0f), 1.0f}, &sum, &counters);  // a light has no object number
   EXPECT_EQ(sum.face, -1.0f);
   for (const auto& [object, sample] : {std::pair{3.0f, 6u}, {4.0f, 2u}, {5.0f, 2u}, {6.0f, 7u}}) {
     film::add_details({Vec3(1.0f), Rgb(1.0f), 1.0f, object, 10.0f * object, sample}, &sum, &counters);
@@ -76,27 +76,27 @@ TEST(B6_FiniteCheck, NumbersOfObjectsAreThoseOfTheFirstSample) {
   EXPECT_EQ(counters.nonfinite_feature, 1u);
 }
 
-// Loading a frame left its counts out of what it asks of the memory.
+// Regression: the memory estimate for loading a film ignored the planes of counts.
 TEST(Film, BytesPerPixelAreThoseOfAllItsPlanes) {
   constexpr size_t kPixels = 12;
   for (const int components : {1, 3}) {
     for (const bool gradients : {false, true}) {
       for (const uint64_t passes : {uint64_t{0}, (uint64_t{1} << GRADUS_PASS_COUNT) - 1}) {
         film::Film film(4, 3, Region{0, 0, 4, 3}, 4, components, gradients);
-        film.passes = film::make_pass_planes(passes, kPixels);
-        if (passes != 0) film.fallback.assign(kPixels, 0.0f);
+        film::add_pass_channels(passes, &film);
         for (const film::ComponentContent& kept :
              {film::ComponentContent{}, {.non_specular = true}, {.details = true}, {.motion = true, .shown = true}}) {
           film::allocate_component_content(kept, &film);
-          EXPECT_EQ(film.memory_bytes() - sizeof(film::Film),
-                    kPixels * film::film_bytes_per_pixel(components, gradients, passes, kept));
+          EXPECT_EQ(
+              film.memory_bytes() - sizeof(film::Film),
+              kPixels * film::film_bytes_per_pixel(components, gradients, film::channels_of_passes(passes), kept));
         }
       }
     }
   }
 }
 
-// Differences come from the pair's own samples and the way back, each over its count.
+// Differences combine the pair's own samples and the reverse shift, each divided by its count.
 TEST(Film, MergesPairsByTheirCounts) {
   film::Film film = small_film();
   const size_t p = film.index(1, 1);
@@ -109,7 +109,7 @@ TEST(Film, MergesPairsByTheirCounts) {
   EXPECT_FLOAT_EQ(images.dx[3 * p], 3.5f);
   EXPECT_TRUE(std::isnan(film::read_half_differences(film, 0).dx[3 * p])) << "absent in one half";
   EXPECT_TRUE(std::isnan(images.dx[3 * q]));
-  film.pair_count[0][film::kLeft][q] = 0.0f;  // seen from one end alone: absent
+  film.pair_count[0][film::kLeft][q] = 0.0f;  // a difference that was sampled from one pixel alone is absent
   EXPECT_TRUE(std::isnan(film::read_images(film, 0).dx[3 * p]));
 }
 

@@ -1,4 +1,4 @@
-// Blocks of a stored frame's rows: what is packed comes back.
+// Packing and unpacking blocks of rows of a stored film.
 #include "film_io/block_codec.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ film_io::Bytes noise(size_t size) {
   return bytes;
 }
 
-// Floats near 1 with low bits that are noise, as sums of samples are.
+// Returns floats near 1 whose low bits are noise, like sums of samples.
 film_io::Bytes floats(size_t count) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uniform(1.0f, 2.0f);
@@ -28,9 +28,9 @@ film_io::Bytes floats(size_t count) {
   return bytes;
 }
 
-TEST(BlockCodec, WhatIsPackedComesBack) {
+TEST(BlockCodec, UnpackingReversesPacking) {
   film_io::BlockCodec codec;
-  film_io::Bytes mixed = noise(100000);  // mostly noise, in stretches
+  film_io::Bytes mixed = noise(100000);  // mostly noise, with compressible stretches
   std::fill(mixed.begin() + 20000, mixed.begin() + 30000, static_cast<unsigned char>(9));
   for (const film_io::Bytes& block :
        {film_io::Bytes(4, 7), film_io::Bytes(100000, 0), noise(4), noise(4000), noise(1 << 20), floats(50000), mixed}) {
@@ -42,11 +42,11 @@ TEST(BlockCodec, WhatIsPackedComesBack) {
   }
 }
 
-TEST(BlockCodec, SameValuesTakeNextToNothing) {
+TEST(BlockCodec, EqualValuesTakeAlmostNoSpace) {
   EXPECT_LT(film_io::BlockCodec().pack(film_io::Bytes(1 << 20, 0)).size(), size_t{4096});
 }
 
-TEST(BlockCodec, BetweenNoiseTheRestIsPacked) {
+TEST(BlockCodec, StretchesBetweenNoiseArePacked) {
   film_io::Bytes block = noise(400000);
   std::fill(block.begin(), block.begin() + 200000, static_cast<unsigned char>(0));
   const size_t size = film_io::BlockCodec().pack(block).size();
@@ -54,15 +54,15 @@ TEST(BlockCodec, BetweenNoiseTheRestIsPacked) {
   EXPECT_LT(size, size_t{203000});
 }
 
-// Sums of samples took nine tenths of the time that a frame took to be written, and lost a sixth of their size.
-TEST(BlockCodec, SumsOfNoisySamplesStayAsTheyAre) {
+// Packing sums of samples took nine tenths of the time of writing a film and saved a sixth of its size.
+TEST(BlockCodec, SumsOfNoisySamplesStayUnpacked) {
   EXPECT_EQ(film_io::BlockCodec().pack(floats(50000)).size(), size_t{200000});
 }
 
-// It would not get smaller, and readers know it by its size.
-TEST(BlockCodec, NoiseStaysAsItIs) { EXPECT_EQ(film_io::BlockCodec().pack(noise(1 << 16)), noise(1 << 16)); }
+// Noise would not get smaller. Readers recognise an unpacked block by its size.
+TEST(BlockCodec, NoiseStaysUnpacked) { EXPECT_EQ(film_io::BlockCodec().pack(noise(1 << 16)), noise(1 << 16)); }
 
-TEST(BlockCodec, WhatIsBrokenIsRefused) {
+TEST(BlockCodec, DamagedBlocksAreRefused) {
   film_io::BlockCodec codec;
   const film_io::Bytes block = floats(20000);
   film_io::Bytes packed = codec.pack(film_io::Bytes(80000, 1)), back(block.size());
@@ -71,7 +71,7 @@ TEST(BlockCodec, WhatIsBrokenIsRefused) {
   EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &longer));
   EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &shorter));
   packed.push_back(0);
-  EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &back)) << "it goes on";
+  EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &back)) << "continues";
   packed.pop_back();
   packed[packed.size() / 2] ^= 0x55;
   EXPECT_FALSE(codec.unpack(packed.data(), packed.size(), &back)) << "its sum is another";

@@ -1,5 +1,5 @@
-// F6: stored frames are exact, whole or absent; damaged ones are refused. And frames read back resume and reconstruct
-// alike.
+// F6: stored films are exact, complete or absent; damaged files are refused. Loaded films resume and reconstruct with
+// the same bits.
 #include "film_io/store.h"
 
 #include <ImfChannelList.h>
@@ -27,11 +27,14 @@
 #include <set>
 #include <thread>
 
+#include "film/finite_check.h"
+#include "film/planes.h"
+#include "film/splats.h"
 #include "film_io/file_writer.h"
 #include "film_io/temporary_file.h"
 #include "output/combine.h"
 #include "render/fake_integrator.h"
-#include "support/failing_disk.h"
+#include "render/resume.h"
 #include "support/file_calls.h"
 #include "support/refusal.h"
 
@@ -44,7 +47,7 @@ namespace fs = std::filesystem;
 class F6_Store : public ::testing::Test {
  protected:
   void SetUp() override {
-    // A name for each test: a process looks through a folder once.
+    // A folder for each test: a process cleans up a folder only once.
     const std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
     folder = fs::temp_directory_path() / ("gradus_store_" + std::to_string(getpid()) + "_" + test);
     fs::create_directories(folder);
@@ -70,7 +73,7 @@ TEST_F(F6_Store, RoundTripIsExact) {
   EXPECT_EQ(files(), 1u);
   const auto back = film_io::load_film(path());
   EXPECT_TRUE(same_samples(*film, *back));
-  EXPECT_EQ(film->fallback, back->fallback);
+  EXPECT_NE(back->channels.of_pass(GRADUS_PASS_FALLBACK), nullptr);
   EXPECT_EQ(film->samples, back->samples);
   EXPECT_EQ(back->samples.list(), (std::vector<film::SampleRange>{{0, 8}}));
   EXPECT_EQ(back->scene_key, film->scene_key);
@@ -79,14 +82,92 @@ TEST_F(F6_Store, RoundTripIsExact) {
   EXPECT_EQ(std::memcmp(&back->settings, &film->settings, sizeof(GradusSettings)), 0);
 }
 
-TEST_F(F6_Store, RegionsAndPathFramesToo) {
+const film::ChannelInfo kOtherChannels[] = {
+    {"Curvature of surfaces", 2, film::ValueType::kData, film::Normalisation::kSampleCount, true, false},
+    {"Crypto", 4, film::ValueType::kIdAndWeight, film::Normalisation::kSampleCount, false, false},
+    {"Caustics", 3, film::ValueType::kRadiance, film::Normalisation::kAllPaths, true, true},
+    {"Roughness", 1, film::ValueType::kData, film::Normalisation::kOwnWeight, false, false},
+};
+
+// Returns a rendered film with channels that the table of passes does not contain, and values in them.
+std::shared_ptr<film::Film> with_other_channels(const GradusSettings& settings) {
+  auto film = std::make_shared<film::Film>(*rendered(settings));
+  for (const film::ChannelInfo& info : kOtherChannels) film->channels.add(info, size_t(film->region.area()));
+  film::SplatQueue queue(film.get(), film->channels.find("Caustics"));
+  const uint32_t first = settings.first_sample;
+  for (const uint32_t unit : {1u, 0u}) {
+    std::vector<film::Splat> splats;
+    for (int32_t x = 0; x < film->region.x1; ++x) splats.push_back({x, x % 7, Vec4(float(x) + 0.1f * float(first))});
+    queue.merge(unit, int(unit), 100 + unit + first, std::move(splats), &film->counters);
+  }
+  film::Channel& curvature = *film->channels.find("Curvature of surfaces");
+  film::Channel& crypto = *film->channels.find("Crypto");
+  film::Channel& roughness = *film->channels.find("Roughness");
+  for (size_t i = 0; i < size_t(film->region.area()); ++i) {
+    const float values[2] = {0.1f * float(i % 13), 1.0f / float(i + first + 1)};
+    film::add_feature(values, 1.0f, i, int(i % 2), &curvature, &film->counters);
+    film::add_feature(values, 0.5f, i, 0, &roughness, &film->counters);
+    film::add_pair(float(i % 3 + first), 0.25f, 2, crypto.values[0].data() + 4 * i, &film->counters);
+  }
+  return film;
+}
+
+// Compares all planes and paths of two films.
+void expect_same_bits(const film::Film& a, const film::Film& b) {
+  EXPECT_TRUE(same_samples(a, b));
+  const std::vector<film::Plane> of_a = film::planes_of(a), of_b = film::planes_of(b);
+  ASSERT_EQ(of_a.size(), of_b.size());
+  for (size_t i = 0; i < of_a.size(); ++i) {
+    ASSERT_EQ(of_a[i].layer, of_b[i].layer);
+    ASSERT_EQ(of_a[i].bytes(), of_b[i].bytes());
+    EXPECT_EQ(std::memcmp(of_a[i].data(), of_b[i].data(), of_a[i].bytes()), 0) << of_a[i].layer;
+  }
+}
+
+TEST_F(F6_Store, ChannelsThatAreNoPassesAreStoredMergedAndResumed) {
+  GradusSettings early = all_passes(61, 37, 8), late = early;
+  late.first_sample = 8;
+  const auto film = with_other_channels(early), other = with_other_channels(late);
+  film_io::save_film(*film, path("early.exr"));
+  film_io::save_film(*other, path("late.exr"));
+  const auto back = film_io::load_film(path("early.exr")), other_back = film_io::load_film(path("late.exr"));
+  ASSERT_EQ(back->channels.size(), film->channels.size());
+  EXPECT_EQ(back->channels.find("Caustics")->paths, (std::array<uint64_t, 2>{100, 101}));
+  EXPECT_EQ(back->memory_bytes(), film->memory_bytes());
+  expect_same_bits(*film, *back);
+
+  early.samples = 16;
+  const auto resumed = rendered(early, film);
+  ASSERT_NE(resumed->channels.find("Crypto"), nullptr);
+  EXPECT_NE(resumed->channels.find("Crypto")->values, film->channels.find("Crypto")->values);
+  expect_same_bits(*resumed, *rendered(early, back));
+
+  film::Film merged = *film;
+  render::merge_films(&merged, *other);
+  render::merge_films(back.get(), *other_back);
+  expect_same_bits(merged, *back);
+  const auto sum_of = [](const film::Film& of, const char* name, size_t i) {
+    return of.channels.find(name)->values[0][i];
+  };
+  for (size_t i = 0; i < 50; ++i) {
+    EXPECT_EQ(sum_of(merged, "Roughness", i), sum_of(*film, "Roughness", i) + sum_of(*other, "Roughness", i));
+    EXPECT_EQ(sum_of(merged, "Crypto", 4 * i + 1) + sum_of(merged, "Crypto", 4 * i + 3), 0.5f);
+  }
+  EXPECT_EQ(back->channels.find("Caustics")->paths, (std::array<uint64_t, 2>{208, 210}));
+
+  late.first_sample = 16;
+  const auto fewer = rendered(late);
+  EXPECT_EQ(refusal_of([&] { render::merge_films(&merged, *fewer); }), "the frames differ in size or planes");
+}
+
+TEST_F(F6_Store, RegionsAndPathFilmsToo) {
   GradusSettings settings = small_settings(200, 100, 2);
   const uint32_t region[4] = {80, 60, 90, 67};
   std::copy(region, region + 4, settings.region);
   auto film = rendered(settings);
   film_io::save_film(*film, path());
   EXPECT_TRUE(same_samples(*film, *film_io::load_film(path())));
-  EXPECT_EQ(film_io::load_film(path())->region.y0, 16);  // 60 less the guard ring, where a square begins
+  EXPECT_EQ(film_io::load_film(path())->region.y0, 16);  // 60 less the guard ring, at the first row of a pixel block
   settings.integrator = GRADUS_INTEGRATOR_PATH;
   film = rendered(settings);
   film_io::save_film(*film, path());
@@ -111,7 +192,7 @@ TEST_F(F6_Store, ReconstructionFromAFileHasTheSameBits) {
   }
 }
 
-TEST_F(F6_Store, ReplaysKeepWhatTheyReplay) {
+TEST_F(F6_Store, ReplaysKeepTheirReplayMap) {
   film::Film film = *rendered(small_settings(20, 10, 2));
   film.replayed.stream_frame = -3;
   film.replayed.seed = 11;
@@ -126,7 +207,7 @@ TEST_F(F6_Store, ReplaysKeepWhatTheyReplay) {
   EXPECT_THROW(film_io::load_film(path()), Error);
 }
 
-TEST_F(F6_Store, ReplaysKeepWhereWaysEnd) {
+TEST_F(F6_Store, ReplaysKeepFilmDisplacements) {
   film::Film film = *rendered(small_settings(20, 10, 2));
   film.replayed.correspondence.pixel.assign(200, 3);
   film.replayed.correspondence.off_centre.assign(200, Vec2(0.25f, -0.5f));
@@ -135,8 +216,8 @@ TEST_F(F6_Store, ReplaysKeepWhereWaysEnd) {
   EXPECT_EQ(film_io::load_film(path())->replayed.correspondence, film.replayed.correspondence);
 }
 
-// They would take any pixel of the still picture for what is seen, or none.
-TEST_F(F6_Store, WaysThatEndOutsideTheirPixelAreRefused) {
+// Regression: such a displacement selects a wrong pixel of the still picture, or none.
+TEST_F(F6_Store, DisplacementsThatEndOutsideTheirPixelAreRefused) {
   for (const float wrong : {0.6f, -100.0f, NAN, INFINITY}) {
     film::Film film = *rendered(small_settings(20, 10, 2));
     film.replayed.correspondence.pixel.assign(200, 3);
@@ -149,7 +230,7 @@ TEST_F(F6_Store, WaysThatEndOutsideTheirPixelAreRefused) {
 
 class F6_StoredComponents : public F6_Store {
  protected:
-  // Three, each as bright as its number.
+  // Returns a film with three components; the value of each is its number.
   film::Film film() const {
     film::Film film = *rendered(small_settings(20, 10, 2));
     const film::ComponentPlanes planes = film.components.front();
@@ -176,7 +257,7 @@ TEST_F(F6_StoredComponents, ComeBackTogether) {
   EXPECT_EQ(back->replayed.of_component, stored.replayed.of_component);
 }
 
-TEST_F(F6_StoredComponents, AreReadOneByOneWithTheirOwnWays) {
+TEST_F(F6_StoredComponents, AreReadOneByOneWithTheirOwnDisplacements) {
   const film::Film stored = film();
   film_io::save_film(stored, path());
   for (int c = 0; c < 3; ++c) {
@@ -192,7 +273,7 @@ TEST_F(F6_StoredComponents, AreReadOneByOneWithTheirOwnWays) {
   }
 }
 
-TEST_F(F6_StoredComponents, OneThatIsNotThereIsBlack) {
+TEST_F(F6_StoredComponents, AMissingOneIsBlack) {
   film_io::save_film(film(), path());
   const auto one = load("Glass");
   ASSERT_EQ(one->components.size(), 1u);
@@ -200,7 +281,7 @@ TEST_F(F6_StoredComponents, OneThatIsNotThereIsBlack) {
   EXPECT_EQ(one->components[0].primal[0], std::vector<Radiance>(200, Radiance(0.0f)));
 }
 
-TEST_F(F6_StoredComponents, WaysToPixelsThatDoNotExistAreRefused) {
+TEST_F(F6_StoredComponents, CorrespondencesToPixelsThatDoNotExistAreRefused) {
   film::Film stored = film();
   stored.replayed.of_component[2].pixel[3] = 200;
   film_io::save_film(stored, path());
@@ -209,7 +290,8 @@ TEST_F(F6_StoredComponents, WaysToPixelsThatDoNotExistAreRefused) {
   EXPECT_NO_THROW(load("Seen"));
 }
 
-// A file by OpenEXR alone, with headers as `change` leaves them: every channel of every part is read and written again.
+// Rewrites a file with OpenEXR alone: reads and writes every channel of every part, with the headers as `change` leaves
+// them.
 template <class Change>
 void rewrite(const std::string& from, const std::string& to, const Change& change) {
   Imf::MultiPartInputFile file(from.c_str());
@@ -251,7 +333,7 @@ std::vector<std::string> names_of(const Imf::MultiPartInputFile& file) {
   return names;
 }
 
-TEST_F(F6_Store, PartsAreThereByPurpose) {
+TEST_F(F6_Store, PartsAreWrittenOnlyForTheirPurpose) {
   film_io::save_film(*rendered(all_passes(20, 10, 2)), path());
   EXPECT_EQ(names_of(Imf::MultiPartInputFile(path().c_str())),
             (std::vector<std::string>{"samples", "counts", "gradients", "pairs", "Emission", "Environment",
@@ -260,14 +342,14 @@ TEST_F(F6_Store, PartsAreThereByPurpose) {
                                       "Denoising_Albedo", "Denoising_Depth", "passes"}));
   GradusSettings settings = small_settings(20, 10, 2);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
-  settings.reconstruction = GRADUS_RECONSTRUCTION_NONE;  // reads no features
+  settings.reconstruction = GRADUS_RECONSTRUCTION_NONE;  // needs no features
   film_io::save_film(*rendered(settings), path());
   EXPECT_EQ(names_of(Imf::MultiPartInputFile(path().c_str())), (std::vector<std::string>{"samples", "counts"}));
   EXPECT_NO_THROW(film_io::load_film(path()));
 }
 
-// Readers that throw the parts together lose none.
-TEST_F(F6_Store, NoChannelIsThereTwice) {
+// Readers that join the channels of all parts lose none.
+TEST_F(F6_Store, ChannelNamesAreUnique) {
   film_io::save_film(*rendered(all_passes(20, 10, 2)), path());
   const Imf::MultiPartInputFile file(path().c_str());
   std::set<std::string> names;
@@ -277,7 +359,7 @@ TEST_F(F6_Store, NoChannelIsThereTwice) {
   }
 }
 
-// The first row of the file is the top of the picture (contract 7.2).
+// The first row of the file is the top row of the picture.
 TEST_F(F6_Store, RowsRunDownwards) {
   const auto film = rendered(small_settings(20, 10, 2));
   film_io::save_film(*film, path());
@@ -311,7 +393,7 @@ void set_format(int format, Imf::Header* header) {
   header->insert("gradus", Imf::StringAttribute(j.dump()));
 }
 
-// Replays took the seed of their own frame, and did not tell.
+// Replays of earlier versions used the seed of their own frame, and their files do not store it.
 TEST_F(F6_Store, ReplaysOfEarlierVersionsHaveTheSeedOfTheirFrame) {
   film::Film film = *rendered(small_settings(20, 10, 2));
   film.settings.seed = 5;
@@ -326,7 +408,7 @@ TEST_F(F6_Store, ReplaysOfEarlierVersionsHaveTheSeedOfTheirFrame) {
   EXPECT_EQ(film_io::load_header(path("earlier.exr")).replayed_seed, 5u);
 }
 
-// The samples of such a film are good: it is read with a warning, and its picture is that of the automatic choice.
+// The samples of such a film are valid: it is loaded with a warning and reconstructed by the automatic choice.
 TEST_F(F6_Store, AFilmWhoseReconstructionWasRemovedIsReadWithAWarning) {
   film_io::save_film(*rendered(small_settings(20, 10, 2)), path());
   EXPECT_TRUE(film_io::load_header(path()).warnings.empty());
@@ -341,8 +423,8 @@ TEST_F(F6_Store, AFilmWhoseReconstructionWasRemovedIsReadWithAWarning) {
   EXPECT_NE(warnings[0].find("reconstruction weighted was removed"), std::string::npos) << warnings[0];
 }
 
-// Nothing of what components show was kept but the first rough vertices.
-TEST_F(F6_Store, FramesOfEarlierVersionsHaveNoDetailsOfComponents) {
+// Earlier versions stored only the first non-specular vertices of components.
+TEST_F(F6_Store, FilmsOfEarlierVersionsHaveNoDetailsOfComponents) {
   film_io::save_film(*rendered(small_settings(20, 10, 2)), path());
   rewrite(path(), path("earlier.exr"), [](std::vector<Imf::Header>* headers) {
     nlohmann::json j = description_of(headers->front());
@@ -405,7 +487,7 @@ TEST_F(F6_Store, ForeignFilesAreRefusedByName) {
 }
 
 // Versions before multi-part files wrote one part without a name.
-TEST_F(F6_Store, FramesOfOnePartAreOfAnotherVersion) {
+TEST_F(F6_Store, FilmsOfOnePartAreOfAnotherVersion) {
   film_io::save_film(*rendered(small_settings(32, 32, 1)), path());
   Imf::Header header(32, 32);
   header.insert("gradus", Imf::MultiPartInputFile(path().c_str()).header(0)["gradus"]);
@@ -416,7 +498,7 @@ TEST_F(F6_Store, FramesOfOnePartAreOfAnotherVersion) {
   EXPECT_NE(refusal.find("it was written by another version of Gradus"), std::string::npos) << refusal;
 }
 
-TEST_F(F6_Store, AFrameLargerThanTheMemoryIsRefused) {
+TEST_F(F6_Store, AFilmLargerThanTheMemoryIsRefused) {
   film_io::save_film(*rendered(small_settings(32, 32, 1)), path());
   const Imf::MultiPartInputFile file(path().c_str());
   std::vector<Imf::Header> headers;
@@ -434,7 +516,7 @@ TEST_F(F6_Store, AFrameLargerThanTheMemoryIsRefused) {
   }
 }
 
-TEST_F(F6_Store, FailuresNameThePath) {
+TEST_F(F6_Store, ErrorsNameThePath) {
   const auto film = rendered(small_settings(8, 8, 1));
   const std::string refusal = refusal_of([&] { film_io::save_film(*film, path("missing/folder/frame.exr")); });
   EXPECT_NE(refusal.find("missing/folder/frame.exr"), std::string::npos) << refusal;
@@ -466,8 +548,8 @@ TEST_F(F6_Store, DamagedFilesAreRefusedOrRead) {
   EXPECT_GE(refused, 100);
 }
 
-// They were delivered as they were, and a number of an object that is none was cast to an integer.
-TEST_F(F6_Store, NumbersThatNoComponentHasAreRefused) {
+// Regression: such numbers were delivered unchanged, and an object number that is not finite was cast to an integer.
+TEST_F(F6_Store, InvalidObjectNumbersOfComponentsAreRefused) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const auto sound = std::make_shared<film::Film>(*rendered(small_settings(48, 40, 2)));
   film::allocate_component_content({true, true, true, true}, sound.get());
@@ -496,7 +578,7 @@ TEST_F(F6_Store, NumbersThatNoComponentHasAreRefused) {
   }
 }
 
-// OpenEXR allows a block of sixteen rows where the picture has three.
+// OpenEXR allows a block of sixteen rows where the picture has only three.
 TEST_F(F6_Store, ABlockThatClaimsMoreRowsThanThereAreIsRefused) {
   film_io::save_film(*rendered(small_settings(48, 3, 2)), path());
   std::ifstream file(path(), std::ios::binary);
@@ -506,7 +588,7 @@ TEST_F(F6_Store, ABlockThatClaimsMoreRowsThanThereAreIsRefused) {
     std::memcpy(&size, bytes.data() + i, sizeof(size));
     return size_t(size);
   };
-  size_t place = bytes.size() - 5;  // of the only block's size, which ends the file
+  size_t place = bytes.size() - 5;  // position of the size of the only block, which ends the file
   while (place > 0 && place + 4 + size_at(place) != bytes.size()) --place;
   ASSERT_GT(place, 0u);
   const auto claimed = static_cast<int32_t>(4 * size_at(place));
@@ -528,7 +610,8 @@ TEST_F(F6_Store, KilledAtAnyMomentLeavesAWholeFileOrNone) {
     if (child == 0) {
       for (;;) film_io::save_film(*film, target);
     }
-    // Every other time after the first whole file, so that both cases are met however slow the machine is.
+    // In every other round, the kill comes after the first complete file, so that both cases occur on machines of any
+    // speed.
     while (round % 2 == 0 && !fs::exists(target)) usleep(1000);
     usleep(useconds_t(random() % 60000));
     kill(child, SIGKILL);
@@ -540,8 +623,8 @@ TEST_F(F6_Store, KilledAtAnyMomentLeavesAWholeFileOrNone) {
   EXPECT_GE(whole, 10);
 }
 
-// One of them wins, whoever reads meanwhile sees a whole frame of one or the other.
-TEST_F(F6_Store, WritersOfOneFrameDoNotMeet) {
+// One of two writers wins; readers see a complete film of one of them at any time.
+TEST_F(F6_Store, WritersOfOneFilmDoNotInterfere) {
   const std::shared_ptr<const film::Film> frames[] = {rendered(all_passes(64, 48, 1)), rendered(all_passes(64, 48, 2))};
   const auto write = [&](int n) {
     for (int i = 0; i < 20; ++i) film_io::save_film(*frames[n], path());
@@ -582,7 +665,7 @@ bool limit_files_to(rlim_t bytes) {
   return setrlimit(RLIMIT_FSIZE, &limit) == 0;
 }
 
-TEST_F(F6_Store, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
+TEST_F(F6_Store, AFileThatMayNotGrowIsAnErrorAndIsRemoved) {
   const auto film = rendered(all_passes(96, 64, 2));
   film_io::save_film(*film, path("old.exr"));
   const auto what = failure_of([] { return limit_files_to(100000); }, [&] { film_io::save_film(*film, path()); });
@@ -593,12 +676,12 @@ TEST_F(F6_Store, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
   EXPECT_TRUE(same_samples(*film, *film_io::load_film(path("old.exr")))) << "the frame that was there remains";
 }
 
-// True when it has been asked that often. By several threads.
+// Returns a check that is true from its call number `times` on. Several threads may call it.
 CancelCheck after(int times) {
   return [left = std::make_shared<std::atomic<int>>(times)] { return --*left < 0; };
 }
 
-// How often work is cancelled before it comes to its end: asked once more each time.
+// Returns how often `work` is cancelled before it finishes, if the cancel comes one check later each time.
 template <class Work>
 int cancels_of(const Work& work) {
   for (int times = 0;; ++times) {
@@ -612,8 +695,8 @@ int cancels_of(const Work& work) {
   }
 }
 
-// Files took their whole time, whoever cancelled meanwhile.
-TEST_F(F6_Store, K2_ACancelledWriteLeavesWhatWasThere) {
+// Regression: a cancel was ignored until the file was written.
+TEST_F(F6_Store, K2_ACancelledWriteKeepsTheOldFile) {
   const auto film = rendered(all_passes(96, 64, 2)), other = rendered(all_passes(96, 64, 1));
   const auto left_by = [&](size_t kept) {
     return cancels_of([&](const CancelCheck& cancel) {
@@ -628,7 +711,7 @@ TEST_F(F6_Store, K2_ACancelledWriteLeavesWhatWasThere) {
   EXPECT_TRUE(same_samples(*film_io::load_film(path()), *film));
 }
 
-TEST_F(F6_Store, K2_ACancelIsHeardWhileAFileIsRead) {
+TEST_F(F6_Store, K2_ACancelIsNoticedWhileAFileIsRead) {
   const auto film = rendered(all_passes(96, 64, 2));
   film_io::save_film(*film, path());
   std::shared_ptr<const film::Film> read;
@@ -639,7 +722,7 @@ TEST_F(F6_Store, K2_ACancelIsHeardWhileAFileIsRead) {
   EXPECT_TRUE(same_samples(*read, *film));
 }
 
-// All of it was synced at the end of a file: half a frame of 4K for many seconds, in which no cancel is heard.
+// Regression: a file was synced at its end only: half a film of 4K for many seconds, in which no cancel is noticed.
 TEST_F(F6_Store, K2_ALongFileIsSyncedWhileItIsWritten) {
   const std::vector<char> bytes(33 << 20);
   for (const auto& [durable, syncs] : {std::pair(film_io::Durable::kYes, 1), {film_io::Durable::kNo, 0}}) {
@@ -650,8 +733,8 @@ TEST_F(F6_Store, K2_ALongFileIsSyncedWhileItIsWritten) {
   }
 }
 
-// A disk of 100 kB: for those who may mount one in a name space of their own.
-TEST_F(F6_Store, AFullDiskIsAnErrorAndLeavesNothing) {
+// Mounts a disk of 100 kB in a name space of its own, where that is permitted.
+TEST_F(F6_Store, AFullDiskIsAnErrorAndLeavesNoFile) {
   const auto film = rendered(all_passes(96, 64, 2));
   const auto what = failure_of([&] { return mount_disk(folder, "100k"); },
                                [&] {
@@ -670,14 +753,15 @@ TEST_F(F6_Store, AFolderThatIsReadOnlyIsNamed) {
   const auto film = rendered(small_settings(8, 8, 1));
   fs::permissions(folder,
                   fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
-  const auto become_nobody = [] { return geteuid() != 0 || setuid(65534) == 0; };  // permissions do not hold for root
+  // root may write to read-only folders
+  const auto become_nobody = [] { return geteuid() != 0 || setuid(65534) == 0; };
   const auto what = failure_of(become_nobody, [&] { film_io::save_film(*film, path()); });
   fs::permissions(folder, fs::perms::owner_all);
   ASSERT_TRUE(what);
   EXPECT_NE(what->find("cannot create " + path() + ": Permission denied"), std::string::npos) << *what;
 }
 
-TEST_F(F6_Store, AnAbandonedWriterLeavesNothing) {
+TEST_F(F6_Store, AnAbandonedWriterLeavesNoFile) {
   {
     film_io::FileWriter writer(path("half"));
     writer.write("abc", 3);
@@ -685,7 +769,7 @@ TEST_F(F6_Store, AnAbandonedWriterLeavesNothing) {
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(F6_Store, ASecondNameTakesThePlaceOfWhatHadIt) {
+TEST_F(F6_Store, ASecondNameReplacesAnExistingFile) {
   std::ofstream(path("a")) << "new";
   std::ofstream(path("b")) << "old";
   for (int time = 0; time < 2; ++time) {
@@ -697,8 +781,8 @@ TEST_F(F6_Store, ASecondNameTakesThePlaceOfWhatHadIt) {
   EXPECT_EQ(files(), 2u);
 }
 
-// Under the name of the process, which a killed one cannot remove.
-TEST_F(F6_Store, WhatDeadWritersHaveLeftIsRemoved) {
+// Temporary files carry the number of their process; a killed process cannot remove them.
+TEST_F(F6_Store, FilesOfDeadWritersAreRemoved) {
   const pid_t child = fork();
   if (child == 0) {
     film_io::FileWriter first(path("a.exr")), second(path("a.exr"));
@@ -709,13 +793,13 @@ TEST_F(F6_Store, WhatDeadWritersHaveLeftIsRemoved) {
   std::ofstream(path("notes." + std::to_string(child))) << "of someone else";
   ASSERT_EQ(files(), 4u);
   film_io::FileWriter writer(path("c.exr"));
-  EXPECT_EQ(files(), 3u);  // and the new one
+  EXPECT_EQ(files(), 3u);  // including the new one
   film_io::FileWriter other(path("c.exr"));
   EXPECT_EQ(files(), 4u) << "those that live keep theirs";
 }
 
-// Each frame of a long animation looked through the files of all those before it.
-TEST_F(F6_Store, AProcessLooksThroughAFolderOnce) {
+// Regression: each frame of a long animation searched the files of all earlier frames.
+TEST_F(F6_Store, AProcessCleansUpAFolderOnce) {
   film_io::FileWriter writer(path("a.exr"));
   const pid_t child = fork();
   if (child == 0) {

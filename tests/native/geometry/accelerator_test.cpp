@@ -1,5 +1,4 @@
-// What rests is built once and shared by the snapshots; what moves lies beside it, and rays meet both as if they were
-// one.
+// Static geometry is built once and shared by the snapshots; moving geometry is kept beside it, and rays meet both.
 #include <algorithm>
 #include <ostream>
 
@@ -13,7 +12,7 @@ namespace gradus::test {
 
 namespace {
 
-constexpr int kSoupSide = 400;  // 2 · 400² triangles: more than what is worth keeping
+constexpr int kSoupSide = 400;  // 2 · 400² triangles: more than the limit for keeping static geometry
 
 struct Queries {
   std::vector<Ray> rays;
@@ -44,13 +43,13 @@ std::vector<Answer> ask(const scene::Snapshot& snapshot, const Queries& queries)
     Answer& a = answers.emplace_back();
     a.hit = snapshot.intersect(ray, GRADUS_VISIBLE_CAMERA, &hit);
     a.blocked = snapshot.occluded(ray);
-    a.t = hit.t, a.instance = hit.instance, a.triangle = hit.triangle;
+    a.t = hit.t, a.instance = hit.instance, a.triangle = hit.primitive;
     if (a.hit) a.position = snapshot.surface_point(hit).position;
   }
   return answers;
 }
 
-// Packets of four give what single rays give.
+// Expects packets of four rays to give the same answers as single rays.
 void expect_packets_agree(const scene::Snapshot& snapshot, const Queries& queries, const std::vector<Answer>& answers) {
   for (size_t i = 0; i + 4 <= queries.rays.size(); i += 4) {
     geometry::Hit hits[4];
@@ -76,7 +75,7 @@ void expect_packets_agree(const scene::Snapshot& snapshot, const Queries& querie
   }
 }
 
-// A room with a ball in it.
+// Builds a room with a ball in it.
 void furnish(TestScene* scene, int side) {
   scene->mesh(1, sphere(Vec3(0.0f), 8.0f, side, side));
   scene->mesh(2, sphere(Vec3(0.0f), 1.0f, 20, 20));
@@ -88,7 +87,7 @@ bool holds(const geometry::Accelerator& accelerator, const geometry::GeometryGro
   return accelerator.static_part.group.get() == group || accelerator.moving.group.get() == group;
 }
 
-// Triangles in the top levels of `now` that those of `before` do not share.
+// Counts the triangles in the top levels of `now` that those of `before` do not share.
 uint64_t built_triangles(const geometry::Accelerator& now, const geometry::Accelerator& before) {
   uint64_t sum = 0;
   for (const auto* group : {now.static_part.group.get(), now.moving.group.get()}) {
@@ -98,7 +97,8 @@ uint64_t built_triangles(const geometry::Accelerator& now, const geometry::Accel
   return sum;
 }
 
-// Frames that tell nothing of motion: a room, a ball that is told to move and does, and what `show` adds.
+// Frames without motion data: a room, a ball that is marked as possibly moving and does move, and the objects that
+// `show` adds.
 constexpr uint32_t kMayMove = GRADUS_VISIBLE_ALL | GRADUS_MAY_MOVE;
 
 struct Hints {
@@ -121,7 +121,7 @@ class AcceleratorHints : public testing::TestWithParam<Hints> {};
 
 }  // namespace
 
-TEST(Accelerator, WhatRestsIsBuiltOnceAndSharedByTheFrames) {
+TEST(Accelerator, StaticGeometryIsBuiltOnceAndSharedByTheFrames) {
   TestScene scene;
   furnish(&scene, kSoupSide);
   std::weak_ptr<const geometry::GeometryGroup> static_part, moving;
@@ -147,12 +147,12 @@ TEST(Accelerator, WhatRestsIsBuiltOnceAndSharedByTheFrames) {
   }
 }
 
-TEST(Accelerator, RaysMeetRestingAndMovingAsIfTheyWereOne) {
+TEST(Accelerator, RaysMeetStaticAndMovingGeometry) {
   const Queries queries(20000);
   TestScene together, apart;
   for (TestScene* scene : {&together, &apart}) {
     furnish(scene, kSoupSide);
-    scene->instance(2, translation(Vec3(-3, 0, 2)), GRADUS_VISIBLE_CAMERA | GRADUS_VISIBLE_DIFFUSE);  // no shadow
+    scene->instance(2, translation(Vec3(-3, 0, 2)), GRADUS_VISIBLE_CAMERA | GRADUS_VISIBLE_DIFFUSE);  // casts no shadow
   }
   apart.matrices_before = {Mat4(1.0f), translation(Vec3(2, 2, 0)), translation(Vec3(-3, 0, 3))};
   const auto one = together.commit(), two = apart.commit();
@@ -175,7 +175,7 @@ TEST(Accelerator, BlurredInstancesLieBesideASmallScene) {
   const std::vector<Answer> found = ask(*snapshot, queries);
   EXPECT_GT(std::count_if(found.begin(), found.end(), [](const Answer& a) { return a.hit && a.instance == 2; }), 100);
   expect_packets_agree(*snapshot, queries, found);
-  // The ball at each moment: as an instance at rest where it is then.
+  // The ball at each time, as a static instance with the pose of that time.
   TestScene still;
   furnish(&still, 12);
   still.instance(2);
@@ -194,7 +194,7 @@ TEST(Accelerator, BlurredInstancesLieBesideASmallScene) {
   }
 }
 
-TEST(Accelerator, WhatMayMoveLiesBesideALargeSceneThatRests) {
+TEST(Accelerator, GeometryThatMayMoveIsKeptBesideALargeStaticScene) {
   for (const int side : {12, kSoupSide}) {
     TestScene scene;
     furnish(&scene, side);
@@ -209,7 +209,7 @@ TEST(Accelerator, WhatMayMoveLiesBesideALargeSceneThatRests) {
   }
 }
 
-TEST(Accelerator, FramesThatTellNothingOfMotionBuildWhatIsToldToMoveAlone) {
+TEST(Accelerator, FramesWithoutMotionDataBuildOnlyWhatIsMarkedAsMoving) {
   TestScene scene;
   scene.mesh(1, sphere(Vec3(0.0f), 8.0f, kSoupSide, kSoupSide));
   const Hints told{"", [](TestScene*, int) {}};
@@ -225,7 +225,7 @@ TEST(Accelerator, FramesThatTellNothingOfMotionBuildWhatIsToldToMoveAlone) {
   EXPECT_EQ(built_triangles(*scene.commit()->accelerator, *before->accelerator), ball);
 }
 
-TEST_P(AcceleratorHints, WhatIsWrongCostsTimeAlone) {
+TEST_P(AcceleratorHints, WrongHintsCostOnlyTime) {
   const Queries queries(3000);
   const Soup room = sphere(Vec3(0.0f), 8.0f, kSoupSide, kSoupSide);
   TestScene scene;
@@ -277,7 +277,7 @@ INSTANTIATE_TEST_SUITE_P(
                           }}),
     [](const testing::TestParamInfo<Hints>& info) { return std::string(info.param.name); });
 
-TEST(Accelerator, SnapshotsTraceRightAfterTheNextOnes) {
+TEST(Accelerator, SnapshotsStayValidAfterLaterOnes) {
   const Queries queries(5000);
   TestScene scene;
   furnish(&scene, 40);
@@ -293,7 +293,7 @@ TEST(Accelerator, SnapshotsTraceRightAfterTheNextOnes) {
   EXPECT_EQ(ask(*first, queries), before);
 }
 
-TEST(Accelerator, TheSameListIsSharedWhereItsPlacesChange) {
+TEST(Accelerator, TheSameListIsSharedWhenOnlyPosesChange) {
   const Queries queries(5000);
   TestScene scene;
   scene.mesh(1, sphere(Vec3(0.0f), 8.0f, 12, 12));
@@ -328,7 +328,7 @@ TEST(Accelerator, StillsAndScenesInWhichAllMovesAreOneGroup) {
   EXPECT_FALSE(scene.commit()->accelerator->moving.group) << "too little rests to be worth it";
 }
 
-TEST(Accelerator, AChangeOfWhatRestsIsSeen) {
+TEST(Accelerator, AChangeOfStaticGeometryIsNoticed) {
   TestScene scene;
   furnish(&scene, 12);
   scene.way = {translation(Vec3(-1, 0, 0)), translation(Vec3(1, 0, 0))};
@@ -343,7 +343,7 @@ TEST(Accelerator, AChangeOfWhatRestsIsSeen) {
   EXPECT_NEAR(hit.t, 6.0f, 1e-3f);
 }
 
-TEST(RayBox, NeverLosesARayThatMeetsIt) {
+TEST(RayBox, NeverMissesARayThatMeetsIt) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
   for (int i = 0; i < 200000; ++i) {
@@ -352,7 +352,7 @@ TEST(RayBox, NeverLosesARayThatMeetsIt) {
     geometry::RayBox box;
     box.add(centre - size, centre + size);
     box.widen();
-    // From anywhere to a point of the box, axes among the directions.
+    // A ray from anywhere to a point of the box; some directions are parallel to an axis.
     Vec3 origin = Vec3(unit(random), unit(random), unit(random)) * 10.0f * far;
     const Vec3 target = centre + Vec3(unit(random), unit(random), unit(random)) * size;
     if (i % 4 == 0) origin[i % 3] = target[i % 3];

@@ -1,4 +1,4 @@
-// D1, D2, D4 of the catalogue, and what a hit tells.
+// D1, D2 and D4: watertightness, self-hits and broken rays; the values of a hit.
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -38,20 +38,22 @@ Vec3 random_point(std::mt19937& random) {
   return {x, y, random_coordinate(random)};
 }
 
-// Spawns rays from points of a triangle, which must not meet it again. Returns how many do.
-int count_self_hits(const scene::Snapshot& snapshot, uint32_t instance, uint32_t triangle, int rays, std::mt19937& random) {
+// Spawns rays from points of a triangle, which must not meet it again. Returns the number of rays that do.
+int count_self_hits(const scene::Snapshot& snapshot, uint32_t instance, uint32_t triangle, int rays,
+                    std::mt19937& random) {
   std::uniform_real_distribution<float> uniform;
   int again = 0;
   for (int i = 0; i < rays; ++i) {
     geometry::Hit hit;
     hit.instance = instance;
-    hit.triangle = triangle;
+    hit.primitive = triangle;
     const float root = std::sqrt(uniform(random));
-    hit.barycentric = Vec2(1.0f - root, uniform(random) * root);
+    hit.uv = Vec2(1.0f - root, uniform(random) * root);
     const geometry::SurfacePoint point = snapshot.surface_point(hit);
     const Vec3 direction = random_direction(random);
     geometry::Hit next;
-    again += snapshot.intersect({geometry::offset_origin(point, direction), 0.0f, direction}, GRADUS_VISIBLE_CAMERA, &next);
+    again +=
+        snapshot.intersect({geometry::offset_origin(point, direction), 0.0f, direction}, GRADUS_VISIBLE_CAMERA, &next);
   }
   return again;
 }
@@ -97,23 +99,24 @@ TEST(D2_SelfHits, InstancesFarAwayAndScaled) {
   int again = 0;
   for (uint32_t i = 0; i < 20; ++i)
     for (int k = 0; k < 500; ++k) {
-      // Outwards from a convex body: nothing can be in the way but itself.
+      // Rays leave a convex body outwards: they could only meet the body itself.
       geometry::Hit hit;
       hit.instance = i;
-      hit.triangle = random() % uint32_t(big.vertices.size() / 3);
-      hit.barycentric = Vec2(0.3f, 0.3f);
+      hit.primitive = random() % uint32_t(big.vertices.size() / 3);
+      hit.uv = Vec2(0.3f, 0.3f);
       const geometry::SurfacePoint point = snapshot->surface_point(hit);
       Vec3 direction = random_direction(random);
       if (glm::dot(direction, point.geometric_normal) < 0.0f) direction = -direction;
       geometry::Hit next;
-      if (snapshot->intersect({geometry::offset_origin(point, direction), 0.0f, direction}, GRADUS_VISIBLE_CAMERA, &next))
+      if (snapshot->intersect({geometry::offset_origin(point, direction), 0.0f, direction}, GRADUS_VISIBLE_CAMERA,
+                              &next))
         again += next.instance == i;
     }
   EXPECT_EQ(again, 0);
 }
 
-// A shadow ray ends before the emitter that it goes to, whatever the size of both.
-TEST(D2_SelfHits, TheWayToALightOnTheFarSideIsFree) {
+// A shadow ray ends before the emitter that it is traced to, whatever the size of both.
+TEST(D2_SelfHits, ALightOnTheFarSideIsNotOccluded) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> exponent(-8.0f, 8.0f), uniform;
   int blocked = 0, requested = 0;
@@ -131,25 +134,26 @@ TEST(D2_SelfHits, TheWayToALightOnTheFarSideIsFree) {
     const auto snapshot = scene.commit();
     for (int k = 0; k < 100; ++k) {
       geometry::Hit hit;
-      hit.instance = hit.triangle = 0;
+      hit.instance = hit.primitive = 0;
       const float root = std::sqrt(uniform(random));
-      hit.barycentric = Vec2(1.0f - root, uniform(random) * root);
+      hit.uv = Vec2(1.0f - root, uniform(random) * root);
       const geometry::SurfacePoint point = snapshot->surface_point(hit);
       light::LightPoint light_point;
       light::LightEvaluation view;
       const float choice = uniform(random), u = uniform(random);
-      light::sample_light_point(*snapshot, {point.position, point.geometric_normal, false}, choice, Vec2(u, uniform(random)),
-                         &light_point, &view);
+      light::sample_light_point(*snapshot, {point.position, point.geometric_normal, false}, choice,
+                                Vec2(u, uniform(random)), &light_point, &view);
       if (light_point.kind == light::LightKind::None || !(view.pdf > 0.0f)) continue;
       ++requested;
-      blocked += snapshot->occluded(light::ray_to_light(geometry::offset_origin(point, view.direction), point, light_point, view));
+      blocked += snapshot->occluded(
+          light::ray_to_light(geometry::offset_origin(point, view.direction), point, light_point, view));
     }
   }
   EXPECT_GT(requested, 50000);
   EXPECT_EQ(blocked, 0);
 }
 
-// Random rays from within a ball; the fields of every `broken`-th one are spoilt in turn (0: of none).
+// Returns random rays from within a ball. In every ray of number `broken` another field is invalid; 0: all are valid.
 std::vector<Ray> make_rays(int count, int broken) {
   std::mt19937 random(4);
   const float bad[3] = {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity};
@@ -167,7 +171,7 @@ std::vector<Ray> make_rays(int count, int broken) {
   return rays;
 }
 
-// CPU seconds of tracing them, the least of some rounds; hits: of one round.
+// Returns the minimum CPU time in seconds over several rounds of tracing them; hits: those of one round.
 double time_of(const scene::Snapshot& snapshot, const std::vector<Ray>& rays, int* hits) {
   double minimum = kInfinity;
   for (int round = 0; round < 5; ++round) {
@@ -196,7 +200,7 @@ TEST(D4_BrokenRays, AreMissesAndCheap) {
   EXPECT_LT(broken, 2.5 * good);
 }
 
-// What a camera of numbers that are none asks for.
+// Rays of cameras whose parameters are not finite.
 TEST(D4_BrokenRays, OfBrokenCamerasAreMissesOrFinite) {
   TestScene scene;
   scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 50, 100));
@@ -232,7 +236,7 @@ TEST(D4_BrokenRays, OfBrokenCamerasAreMissesOrFinite) {
   }
 }
 
-TEST(Trace, FourAtOnceEqualsFourTimesOne) {
+TEST(Trace, PacketsOfFourEqualSingleRays) {
   TestScene scene;
   scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 50, 100));
   scene.instance(1, translation(Vec3(0, 0, 2)));
@@ -249,15 +253,17 @@ TEST(Trace, FourAtOnceEqualsFourTimesOne) {
     snapshot->intersect4(rays, GRADUS_VISIBLE_CAMERA, four);
     const Vec3 d[4] = {rays[0].direction, rays[1].direction, rays[2].direction, rays[3].direction};
     const bool wanted[4] = {true, true, true, rays[3].t_max > 0.0f};
-    snapshot->occluded4({geometry::same(Vec3(0.0f)), geometry::lanes(d[0], d[1], d[2], d[3]), geometry::same(kInfinity)}, wanted, blocked);
+    snapshot->occluded4(
+        {geometry::same(Vec3(0.0f)), geometry::lanes(d[0], d[1], d[2], d[3]), geometry::same(kInfinity)}, wanted,
+        blocked);
     for (int k = 0; k < 4; ++k) {
       geometry::Hit one;
       const bool hit = snapshot->intersect(rays[k], GRADUS_VISIBLE_CAMERA, &one);
       hits += hit;
       EXPECT_EQ(hit, four[k].valid());
       EXPECT_EQ(hit, blocked[k]);
-      if (!hit || one.triangle != four[k].triangle) continue;
-      EXPECT_NEAR(one.barycentric.x, four[k].barycentric.x, 2e-5f);
+      if (!hit || one.primitive != four[k].primitive) continue;
+      EXPECT_NEAR(one.uv.x, four[k].uv.x, 2e-5f);
       EXPECT_NEAR(one.t, four[k].t, 1e-5f);
     }
   }
@@ -278,7 +284,7 @@ TEST(Trace, MasksHideInstancesFromKindsOfRays) {
   EXPECT_FALSE(snapshot->occluded(ray));
 }
 
-TEST(SurfacePoint, NormalsOfMirroredInstancesStayOutside) {
+TEST(SurfacePoint, NormalsOfMirroredInstancesPointOutside) {
   TestScene scene;
   scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 20, 40));
   scene.instance(1, translation(Vec3(3, 0, 0)) * scaling(Vec3(-1, 1, 1)));
@@ -289,6 +295,27 @@ TEST(SurfacePoint, NormalsOfMirroredInstancesStayOutside) {
   EXPECT_LT(point.geometric_normal.x, -0.9f);
   EXPECT_LT(point.shading_normal.x, -0.9f);
   EXPECT_NEAR(point.position.x, 2.0f, 0.02f);
+}
+
+// Steps along a primitive, turned into its parameters and back into positions.
+TEST(SurfaceDerivatives, ParametersFollowSteps) {
+  Soup soup;
+  soup.triangle({-1, -1, 0.5f}, {2, -1, 0}, {0.5f, 3, 1});
+  TestScene scene;
+  scene.mesh(1, soup);
+  scene.instance(1, Mat4(1.0f));
+  const auto snapshot = scene.commit();
+  geometry::Hit hit;
+  hit.instance = hit.primitive = 0;
+  hit.uv = Vec2(0.3f, 0.2f);
+  const geometry::SurfaceDerivatives derivatives = snapshot->derivatives(hit);
+  const Vec3 from = snapshot->position(hit), step = 0.1f * derivatives.dpdu - 0.05f * derivatives.dpdv;
+  EXPECT_LT(glm::distance(from, snapshot->surface_point(hit).position), 1e-6f);
+  hit.uv += derivatives.duv(step);
+  EXPECT_NEAR(hit.uv.x, 0.4f, 1e-6f);
+  EXPECT_NEAR(hit.uv.y, 0.15f, 1e-6f);
+  EXPECT_LT(glm::distance(snapshot->position(hit), from + step), 1e-6f);
+  EXPECT_EQ((geometry::SurfaceDerivatives{Vec3(1, 0, 0), Vec3(2, 0, 0)}.duv(step)), Vec2(0.0f));
 }
 
 TEST(Origin, FarScenesAreMovedAndNearOnesAreNot) {

@@ -1,4 +1,4 @@
-// Motion between matrices: turns are turns, and what goes straight goes straight.
+// Interpolation between matrices: rotations stay rotations, and straight motion stays straight.
 #include "geometry/matrix_keys.h"
 
 #include <cmath>
@@ -47,8 +47,9 @@ TEST(MatrixKeys, StraightMotionNeedsNoMoreKeys) {
   for (int c = 0; c < 4; ++c) EXPECT_LT(glm::length(middle[c] - Vec4((a[c] + b[c]) * 0.5)), 1e-6f);
 }
 
-// A mirrored object turns like any other; one that is turned inside out on the way has no rotation between.
-TEST(MatrixKeys, MirroredObjectsTurn) {
+// A mirrored object rotates like any other. If its handedness changes between two keys, there is no rotation between
+// them.
+TEST(MatrixKeys, MirroredObjectsRotate) {
   const glm::dmat4 mirror = glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1));
   const geometry::MatrixKeys keys({mirror, turn(kQuarter) * mirror});
   const Vec3 middle = Vec3(keys.at(0.5f) * Vec4(1, 0, 0, 0));
@@ -58,7 +59,7 @@ TEST(MatrixKeys, MirroredObjectsTurn) {
   EXPECT_EQ(inside_out.at(0.5f)[0].x, 0.0f);
 }
 
-TEST(MatrixKeys, NeverMoreThanEmbreeTakes) {
+TEST(MatrixKeys, NeverExceedsTheMaximumOfEmbree) {
   std::vector<glm::dmat4> many;
   for (uint32_t i = 0; i < geometry::kMaxShutterKeys; ++i) many.push_back(turn(2.0 * i));
   EXPECT_EQ(geometry::MatrixKeys(many).keys().size(), geometry::kMaxShutterKeys);

@@ -83,7 +83,7 @@ TEST(Mesh, GeneratedCoordinatesFillTheTextureSpace) {
 }
 
 std::shared_ptr<const scene::Snapshot> commit_quad(scene::Scene* scene, const GradusMesh& mesh, const Mat4& matrix,
-                                            const Mat4& previous, const Mat4& next) {
+                                                   const Mat4& previous, const Mat4& next) {
   scene->set_mesh(1, mesh);
   const uint64_t key = 1;
   GradusInstances instances{};
@@ -101,8 +101,8 @@ std::shared_ptr<const scene::Snapshot> commit_quad(scene::Scene* scene, const Gr
 geometry::Hit hit_at(const Vec2& barycentric) {
   geometry::Hit hit;
   hit.instance = 0;
-  hit.triangle = 0;
-  hit.barycentric = barycentric;
+  hit.primitive = 0;
+  hit.uv = barycentric;
   return hit;
 }
 
@@ -128,7 +128,7 @@ TEST(C1_SurfaceMotion, DeformationAndMatrices) {
   EXPECT_LT(glm::length(after - Vec3(1.7f, 0.5f, 0.375f)), 1e-6f);
 }
 
-TEST(C1_SurfaceMotion, AtRestItIsExactlyTheSamePosition) {
+TEST(C1_SurfaceMotion, AStaticPointHasExactlyTheSamePosition) {
   Quad quad;
   scene::Scene scene(test_device());
   const Mat4 matrix = translation(Vec3(0.1f, 0.7f, -0.3f)) * scaling(Vec3(1.3f, 0.9f, 1.0f));
@@ -140,7 +140,7 @@ TEST(C1_SurfaceMotion, AtRestItIsExactlyTheSamePosition) {
   }
 }
 
-TEST(SurfacePoint, NormalsByCornerAreInterpolatedAndBrokenOnesReplaced) {
+TEST(SurfacePoint, NormalsByCornerAreInterpolatedAndInvalidOnesReplaced) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float smooth[12] = {0, -1, 1, 0, -1, 1, 0, 1, 1, 0, 1, 1},
               broken[12] = {nan, 0, 1, 0, 0, 0, 0, nan, nan, 0, 0, 0};
@@ -157,7 +157,7 @@ TEST(SurfacePoint, NormalsByCornerAreInterpolatedAndBrokenOnesReplaced) {
   EXPECT_TRUE(is_finite(snapshot->surface_point(hit_at(Vec2(0.9f, 0))).shading_normal));
 }
 
-TEST(SurfacePoint, CornersWithoutANormalHaveThatOfTheirVertex) {
+TEST(SurfacePoint, CornersWithoutANormalUseThatOfTheirVertex) {
   const float some[12] = {0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 1, 1};
   Quad quad;
   quad.desc.normal_domain = GRADUS_DOMAIN_CORNER;
@@ -168,14 +168,14 @@ TEST(SurfacePoint, CornersWithoutANormalHaveThatOfTheirVertex) {
   EXPECT_GT(snapshot->surface_point(hit_at(Vec2(0, 0.9f))).shading_normal.y, 0.5f);
 }
 
-TEST(Materials, SlotsBeyondTheLastShowTheLast) {
+TEST(Materials, SlotsBeyondTheLastUseTheLast) {
   Quad quad;
   quad.face_materials = {7};
   TestScene scene;
   scene.material(3, MaterialDesc(GRADUS_OP_DIFFUSE, Rgb(0.5f)));
   scene.scene.set_mesh(1, quad.make());
   scene.instance(1, Mat4(1.0f), GRADUS_VISIBLE_ALL, 3);
-  scene.instance(1, Mat4(1.0f), GRADUS_VISIBLE_ALL, 99);  // a key that was never set: default grey
+  scene.instance(1, Mat4(1.0f), GRADUS_VISIBLE_ALL, 99);  // a key that was never set: the default grey
   const auto snapshot = scene.commit();
   EXPECT_EQ(snapshot->material_of(0, 0), 1u);
   EXPECT_EQ(snapshot->material_of(1, 0), 0u);

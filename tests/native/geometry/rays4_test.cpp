@@ -1,5 +1,5 @@
 #include "geometry/rays4.h"
-#include "light/emitter_rays4.h"
+#include "light/light_rays4.h"
 
 #include <random>
 
@@ -32,7 +32,7 @@ class Rays4Test : public testing::Test {
   std::mt19937 random_{3};
 };
 
-TEST_F(Rays4Test, LeaveSurfacesAndArriveAsOneDoes) {
+TEST_F(Rays4Test, LeaveSurfacesAndArriveLikeSingleRays) {
   for (int n = 0; n < 1000; ++n) {
     const geometry::SurfacePoint from[4] = {point(vector()), point(Vec3(0.0f)), point(vector()), point(vector())};
     const geometry::SurfacePoint to = point(vector() + Vec3(2.0f, 0.0f, 0.0f));
@@ -44,7 +44,7 @@ TEST_F(Rays4Test, LeaveSurfacesAndArriveAsOneDoes) {
   }
 }
 
-TEST_F(Rays4Test, AreEmptyBetweenPointsThatRoundingCannotTellApart) {
+TEST_F(Rays4Test, AreEmptyBetweenPointsThatRoundingCannotSeparate) {
   geometry::SurfacePoint a, b;
   a.error = b.error = 1e-5f;
   b.geometric_normal = Vec3(0, 0, -1);
@@ -55,7 +55,7 @@ TEST_F(Rays4Test, AreEmptyBetweenPointsThatRoundingCannotTellApart) {
   for (int i = 0; i < 4; ++i) EXPECT_LT(rays.t_max[i], 0.0f);
 }
 
-TEST_F(Rays4Test, ReachEmittersOfAllKindsAsOneShadowRayDoes) {
+TEST_F(Rays4Test, ReachEmittersOfAllKindsLikeSingleShadowRays) {
   light::LightPoint light_points[3];
   light_points[0].kind = light::LightKind::AnalyticLight;
   light_points[0].normal = Vec3(0, 0, -1);

@@ -1,4 +1,4 @@
-// Shadow rays of faceted meshes with smooth normals: they begin on the surface that the mesh stands for.
+// Shadow rays of faceted meshes with smooth normals start on the smooth surface that the mesh approximates.
 #include "geometry/shadow_terminator.h"
 
 #include <cmath>
@@ -22,7 +22,7 @@ std::shared_ptr<const scene::Snapshot> ball(float offset, bool smooth, const Mat
   return scene.context(test_settings(4, 4)).snapshot;
 }
 
-// Where rays towards the middle meet the ball, from all around.
+// Returns the points where rays from all directions towards the centre meet the ball.
 std::vector<geometry::SurfacePoint> points(const scene::Snapshot& scene, const Vec3& centre = Vec3(0.0f)) {
   std::vector<geometry::SurfacePoint> found;
   for (int i = 0; i < 400; ++i) {
@@ -35,13 +35,13 @@ std::vector<geometry::SurfacePoint> points(const scene::Snapshot& scene, const V
   return found;
 }
 
-// Just above the smooth surface.
+// Returns a direction just above the tangent plane of the smooth surface.
 Vec3 grazing(const Vec3& normal, float side = 1.0f) {
   const Vec3 tangent = glm::normalize(glm::cross(normal, std::fabs(normal.x) < 0.7f ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
   return glm::normalize(side * tangent + 0.02f * normal);
 }
 
-TEST(ShadowTerminator, ALightBehindTheFacetIsSeenWhereTheSmoothSurfaceSeesIt) {
+TEST(ShadowTerminator, ALightBehindTheFacetIsVisibleAsFromTheSmoothSurface) {
   const auto scene = ball(kReplayed, true);
   int behind = 0;
   for (const geometry::SurfacePoint& p : points(*scene)) {
@@ -52,14 +52,14 @@ TEST(ShadowTerminator, ALightBehindTheFacetIsSeenWhereTheSmoothSurfaceSeesIt) {
       const Vec3 start = geometry::shadow_origin(*scene, p, along);
       EXPECT_FALSE(scene->occluded(Ray{start, 0.0f, along, kInfinity}));
       EXPECT_TRUE(scene->occluded(
-          Ray{geometry::offset_origin(p, along), 0.0f, along, kInfinity}));  // as it would be from the facet
+          Ray{geometry::offset_origin(p, along), 0.0f, along, kInfinity}));  // a shadow ray from the facet itself
     }
   }
   EXPECT_GT(behind, 100);
 }
 
-// The bulge is as high as the sphere over its facets, within a factor of two.
-TEST(ShadowTerminator, RaysBeginOnTheSphere) {
+// The offset equals the height of the sphere over its facets within a factor of two.
+TEST(ShadowTerminator, RaysStartOnTheSphere) {
   const auto scene = ball(kReplayed, true);
   for (const geometry::SurfacePoint& p : points(*scene)) {
     const float height =
@@ -70,7 +70,7 @@ TEST(ShadowTerminator, RaysBeginOnTheSphere) {
   }
 }
 
-TEST(ShadowTerminator, NothingChangesFarFromItOrOnFlatFacesOrWithoutOffset) {
+TEST(ShadowTerminator, NothingChangesFarFromTheTerminatorOrOnFlatFacesOrWithoutOffset) {
   const auto smooth = ball(kReplayed, true), flat = ball(kReplayed, false), off = ball(0.0f, true);
   for (const geometry::SurfacePoint& p : points(*smooth))
     EXPECT_EQ(geometry::shadow_origin(*smooth, p, p.shading_normal), geometry::offset_origin(p, p.shading_normal));
@@ -83,8 +83,8 @@ TEST(ShadowTerminator, NothingChangesFarFromItOrOnFlatFacesOrWithoutOffset) {
   }
 }
 
-// Stretched, turned, mirrored and far away: always off the surface, never towards its inside by more than rounding.
-TEST(ShadowTerminator, InstancesAreLiftedOutwards) {
+// Stretched, rotated, mirrored and far away: the offset points outwards, apart from rounding.
+TEST(ShadowTerminator, InstancesAreOffsetOutwards) {
   Mat4 place(1.0f);
   place[0] = Vec4(-2.0f, 0.3f, 0.0f, 0.0f);
   place[1] = Vec4(0.0f, 0.5f, 0.4f, 0.0f);
@@ -99,7 +99,7 @@ TEST(ShadowTerminator, InstancesAreLiftedOutwards) {
   }
 }
 
-// A coarse ball under a sun from the side is lit up to where a fine one is.
+// A coarse ball under a sun from the side is lit up to the terminator of a fine one.
 TEST(ShadowTerminator, BlackFacetsAtTheTerminatorOfACoarseBall) {
   const auto image = [](float offset, int rings) {
     PathScene scene;
@@ -123,7 +123,7 @@ TEST(ShadowTerminator, BlackFacetsAtTheTerminatorOfACoarseBall) {
     lit_behind += fine[i] == 0.0f && lifted[i] > 0.01f;
   }
   EXPECT_GT(black, 100);
-  EXPECT_LT(black_lifted, black / 3);  // half the height of the sphere does not see over every edge
+  EXPECT_LT(black_lifted, black / 3);  // points at half the height of the sphere do not see over every edge
   EXPECT_LT(lit_behind, 10);
 }
 

@@ -12,7 +12,7 @@
 namespace gradus {
 namespace {
 
-// An octahedron with shared vertices, stretched along z: by symmetry every normal is the direction of its vertex.
+// An octahedron with shared vertices, stretched along z: by symmetry, every normal is the direction of its vertex.
 TEST(SmoothNormals, SymmetricVertices) {
   const std::array<float, 18> positions{1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 2, 0, 0, -2};
   const std::array<int32_t, 24> corners{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
@@ -36,8 +36,8 @@ TEST(SmoothNormals, SymmetricVertices) {
   }
 }
 
-// Two faces meet at a vertex with angles 90 and 45 degrees: the normal is their mean with those weights, whatever their
-// areas.
+// Two faces meet at a vertex with angles of 90 and 45 degrees: the normal is their mean with those weights, whatever
+// their areas.
 TEST(SmoothNormals, WeightedByAngle) {
   const std::array<float, 12> positions{0, 0, 0, 5, 0, 0, 0, 1, 0, 0, 1, 1};
   const std::array<int32_t, 6> corners{0, 1, 2, 0, 2, 3};
@@ -57,8 +57,8 @@ TEST(SmoothNormals, WeightedByAngle) {
   EXPECT_NEAR(glm::dot(mesh->normals[0], expected), 1.0f, 1e-6f);
 }
 
-// Stretching turns facets and normals apart: where a normal came to lie below its facet it was turned round, so that
-// the facet took its light from the wrong side, and glass was left instead of entered.
+// Regression: stretching rotates facets and normals apart. A normal that came to lie below its facet was negated, so
+// that the facet was lit from the wrong side, and glass was left instead of entered.
 TEST(SmoothNormals, NormalsBelowStretchedFacets) {
   test::PathScene scene;
   const Vec3 axis = glm::normalize(Vec3(1, 2, 3));  // of a coarse ball that is pressed flat
@@ -75,18 +75,18 @@ TEST(SmoothNormals, NormalsBelowStretchedFacets) {
     ASSERT_TRUE(snapshot->intersect(Ray{3.0f * out, 0.0f, -glm::normalize(out), kInfinity}, GRADUS_VISIBLE_ALL, &hit));
     const geometry::SurfacePoint point = snapshot->surface_point(hit);
     std::array<Vec3, 3> n;
-    ASSERT_TRUE(geometry::triangle_normals(*snapshot->instances[0].mesh, hit.triangle, &n));
-    const Vec3 smooth = glm::normalize(snapshot->instances[0].normal_to_world * geometry::interpolate(n, hit.barycentric));
+    ASSERT_TRUE(geometry::triangle_normals(*snapshot->instances[0].mesh, hit.primitive, &n));
+    const Vec3 smooth = glm::normalize(snapshot->instances[0].normal_to_world * geometry::interpolate(n, hit.uv));
     below += glm::dot(smooth, point.geometric_normal) < 0.0f;
     EXPECT_GE(glm::dot(point.shading_normal, point.geometric_normal), 0.0f);
-    // Mirrored at the facet: what lies along it stays.
+    // The expected normal is mirrored at the facet: its tangential component stays.
     const Vec3 along = smooth - point.geometric_normal * glm::dot(smooth, point.geometric_normal);
     EXPECT_NEAR(glm::dot(point.shading_normal, along), glm::dot(along, along), 1e-5f);
   }
   EXPECT_GT(below, 0);
 }
 
-// A ball's curvature is one over its radius, whatever its scale; a quad has none.
+// The curvature of a ball is one over its radius, whatever its scale; that of a quad is 0.
 TEST(SmoothNormals, Curvature) {
   test::PathScene scene;
   const uint64_t material = scene.material(test::matte(Rgb(0.5f)));
@@ -99,7 +99,7 @@ TEST(SmoothNormals, Curvature) {
   for (uint32_t i = 0; i < 2; ++i) {
     geometry::Hit hit;
     hit.instance = i;
-    hit.triangle = snapshot.instances[i].mesh->triangle_count / 2;
+    hit.primitive = snapshot.instances[i].mesh->triangle_count / 2;
     EXPECT_NEAR(snapshot.curvature(hit), snapshot.instances[i].mesh->triangle_count == 2 ? 0.0f : 2.0f, 0.1f);
   }
 }

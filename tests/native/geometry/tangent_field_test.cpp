@@ -9,7 +9,7 @@
 namespace gradus {
 namespace {
 
-// Triangles of shared vertices, smooth, with a UV map by corner.
+// Returns smooth triangles with shared vertices, with a UV map by corner.
 std::shared_ptr<const geometry::MeshData> make(const std::vector<float>& positions, const std::vector<int32_t>& corners,
                                                const std::vector<float>& uv) {
   std::vector<uint32_t> triangles(corners.size());
@@ -51,21 +51,21 @@ TEST(TangentField, SharedAcrossAnEdge) {
   expect_tangent(right[2], Vec3(1, 0, 0), 1.0f);
   EXPECT_EQ(right[0], left[0]);
   EXPECT_EQ(right[2], left[1]);
-  expect_tangent(right[1], Vec3(1, 0, -1), 1.0f);  // the normals there are those of the one triangle
+  expect_tangent(right[1], Vec3(1, 0, -1), 1.0f);  // the normals there are those of one triangle
   expect_tangent(left[2], Vec3(1, 0, 1), 1.0f);
 }
 
-// Two flat triangles at a vertex, with angles of 90 and 45 degrees and maps turned against each other by 90: weighed by
-// the angles.
-TEST(TangentField, WeighedByAngle) {
+// Two flat triangles at a vertex, with angles of 90 and 45 degrees and maps rotated by 90 degrees against each other:
+// the tangents are weighted by the angles.
+TEST(TangentField, WeightedByAngle) {
   const auto mesh =
       make({0, 0, 0, 5, 0, 0, 0, 1, 0, -1, 1, 0}, {0, 1, 2, 0, 2, 3}, {0, 0, 5, 0, 0, 1, 0, 0, 1, 0, 1, 1});
   const auto field = geometry::make_tangents(mesh, *geometry::default_uv_map(*mesh));
   expect_tangent(field->corners(0)[0], 2.0f * Vec3(1, 0, 0) + Vec3(0, 1, 0), 1.0f);
 }
 
-// A map that is mirrored at a seam: the same direction of u, or its opposite, but never a mean of both.
-TEST(TangentField, MirroredMapsStayApart) {
+// At the seam of a mirrored map, tangents have the direction of u or its opposite, but are never a mean of both.
+TEST(TangentField, MirroredMapsStaySeparate) {
   const auto mesh =
       make({0, 0, 0, 0, 1, 0, 1, 0, 0, -1, 0, 0}, {0, 2, 1, 0, 1, 3}, {0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0});
   const auto field = geometry::make_tangents(mesh, *geometry::default_uv_map(*mesh));
@@ -73,7 +73,7 @@ TEST(TangentField, MirroredMapsStayApart) {
   expect_tangent(field->corners(1)[0], Vec3(-1, 0, 0), -1.0f);
 }
 
-TEST(TangentField, TrianglesWithoutAreaOnTheMapTakeTheirNeighbours) {
+TEST(TangentField, TrianglesWithoutAreaOnTheMapUseTheirNeighbours) {
   const auto mesh =
       make({0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0}, {0, 1, 2, 0, 2, 3}, {0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0.5f});
   const auto field = geometry::make_tangents(mesh, *geometry::default_uv_map(*mesh));

@@ -1,4 +1,4 @@
-// B4: every Jacobian against central differences of the map itself, written anew in double; there and back; J·J⁻¹ = 1.
+// B4: Jacobians equal central differences of an independent map in double. The inverse map returns, and J·J⁻¹ = 1.
 #include "gradient/half_vector.h"
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gradient/footprint.h"
 #include "gradient/reconnection.h"
 #include "support/statistics.h"
 
@@ -26,7 +27,7 @@ void make_basis(const DVec3& n, DVec3* s, DVec3* t) {
   *t = glm::cross(n, *s);
 }
 
-// |∂ω'/∂ω| in solid angle, by central differences along the tangents.
+// Returns |∂ω'/∂ω| in solid angle by central differences along the tangents.
 double numeric_jacobian(const DirectionMap& map, const DVec3& wi) {
   constexpr double h = 1e-5;
   DVec3 s;
@@ -53,7 +54,7 @@ DVec3 rotate(const DVec3& from, const DVec3& to, const DVec3& v) {
   return v * c + glm::cross(k, v) * s + k * (glm::dot(k, v) * (1.0 - c));
 }
 
-// The half-vector copy from its definition, in double. False: the offset cannot scatter so.
+// Copies the half-vector by its definition, in double. Returns false if the offset has no such direction.
 bool copy_in_double(const gradient::HalfVectorFrame& base, const gradient::HalfVectorFrame& offset, bool transmitted,
                     const DVec3& wi, DVec3* out) {
   const DVec3 wo = to_double(base.wo);
@@ -93,7 +94,7 @@ struct Case {
   Vec3 wi;
 };
 
-// A pair of neighbouring vertices, and a direction that the base could have sampled.
+// A pair of neighbouring vertices, and a direction that the base path could have sampled.
 bool make_case(Random* random, bool transmitted, Case* c) {
   c->base.normal = random->direction();
   c->offset.normal = random->near(c->base.normal, 0.2f);
@@ -116,7 +117,7 @@ bool make_case(Random* random, bool transmitted, Case* c) {
   return glm::length(c->wi) > 0.5f;
 }
 
-// Whether parts of a whole are all but a thousandth of it.
+// Expects that `part` is at least 99.9 % of the whole.
 void expect_nearly_all(int part, int whole, const char* what) { EXPECT_GE(part, 0.999 * whole) << what; }
 
 void check_half_vector(bool transmitted) {
@@ -130,7 +131,7 @@ void check_half_vector(bool transmitted) {
     const auto map = [&](const DVec3& wi, DVec3* out) {
       return copy_in_double(c.base, c.offset, transmitted, wi, out);
     };
-    const double numeric = numeric_jacobian(map, to_double(c.wi));  // negative where the copy is impossible
+    const double numeric = numeric_jacobian(map, to_double(c.wi));  // negative if the copy is impossible
     verdicts_ok += (there.failure == gradient::ShiftFailure::None) == (numeric > 0.0) ? 1 : 0;
     if (there.failure != gradient::ShiftFailure::None || !(numeric > 0.0)) {
       continue;
@@ -150,7 +151,7 @@ void check_half_vector(bool transmitted) {
 
 TEST(B4_Shift, ReflectionHalfVector) { check_half_vector(false); }
 
-// Indices differ between base and offset: without the factor (η/η')² none of these would pass.
+// The indices of base and offset differ. Without the factor (η/η')² none of these would pass.
 TEST(B4_Shift, RefractionHalfVector) { check_half_vector(true); }
 
 TEST(B4_Shift, RefractionAcrossDifferentGlass) {
@@ -164,7 +165,7 @@ TEST(B4_Shift, RefractionAcrossDifferentGlass) {
   EXPECT_NEAR(shifted.jacobian / numeric_jacobian(map, to_double(wi)), 1.0, 1e-4);
 }
 
-TEST(B4_Shift, OppositeSidesAndNoStepAreRefusedBothWays) {
+TEST(B4_Shift, OppositeSidesAndNoStepAreRefusedInBothDirections) {
   const Vec3 wo = glm::normalize(Vec3(0.2f, 0.1f, 0.9f));
   const gradient::HalfVectorFrame glass{wo, Vec3(0, 0, 1), 1.5f};
   for (float eta : {1.0f / 1.5f, 1.0f}) {
@@ -201,9 +202,9 @@ TEST(B4_Shift, Reconnection) {
   EXPECT_GE(inverse_ok, 0.999 * kShifts);
 }
 
-// A base that meets a sharp surface at z, behind a rough vertex: the offset reaches z, too, copies the event there, and
-// finds its way back.
-TEST(B4_Shift, ThroughASharedSharpVertexAndBack) {
+// The base meets a specular surface at z behind a non-specular vertex. The offset shares z and copies the event there,
+// and the inverse shift returns to the base.
+TEST(B4_Shift, ThroughASharedSpecularVertexAndBack) {
   Random random(11);
   int shifted = 0, back_home = 0;
   for (int i = 0; i < kShifts; ++i) {
@@ -234,7 +235,7 @@ TEST(B4_Shift, ThroughASharedSharpVertexAndBack) {
   EXPECT_GE(back_home, 0.999 * shifted);
 }
 
-TEST(B4_Shift, BothEndsAgreeWhetherToShareASharpVertex) {
+TEST(B4_Shift, BothEndsAgreeWhetherToShareASpecularVertex) {
   Random random(13);
   int shared = 0;
   constexpr int kCases = 10000;
@@ -243,22 +244,22 @@ TEST(B4_Shift, BothEndsAgreeWhetherToShareASharpVertex) {
                z = 2.0f * random.direction();
     const float curvature = std::exp2(float(i % 11) - 5.0f);
     const bool transmission = i % 3 == 0;
-    const bool shares = gradient::shares_sharp_vertex(x, y, z, curvature, transmission);
-    EXPECT_EQ(shares, gradient::shares_sharp_vertex(y, x, z, curvature, transmission));
+    const bool shares = gradient::shares_specular_vertex(x, y, z, curvature, transmission);
+    EXPECT_EQ(shares, gradient::shares_specular_vertex(y, x, z, curvature, transmission));
     shared += shares ? 1 : 0;
   }
   EXPECT_GT(shared, kCases / 10);
   EXPECT_LT(shared, kCases - kCases / 10);
 }
 
-TEST(B4_Shift, ASharpVertexIsSharedButOverShortEdgesAndThroughFlatPanes) {
+TEST(B4_Shift, ASpecularVertexIsSharedExceptOverShortEdgesAndThroughFlatPanes) {
   const Vec3 x(0, 0, 0), y(0.1f, 0, 0);
   const Vec3 far(0, 0, 1), close(0, 0, 0.05f);
-  EXPECT_TRUE(gradient::shares_sharp_vertex(x, y, far, 0.0f, false));
-  EXPECT_TRUE(gradient::shares_sharp_vertex(x, y, far, 5.0f, true));
-  EXPECT_FALSE(gradient::shares_sharp_vertex(x, y, far, 0.0f, true));
-  EXPECT_FALSE(gradient::shares_sharp_vertex(x, y, close, 0.0f, false));
-  EXPECT_FALSE(gradient::shares_sharp_vertex(x, y, close, 5.0f, true));
+  EXPECT_TRUE(gradient::shares_specular_vertex(x, y, far, 0.0f, false));
+  EXPECT_TRUE(gradient::shares_specular_vertex(x, y, far, 5.0f, true));
+  EXPECT_FALSE(gradient::shares_specular_vertex(x, y, far, 0.0f, true));
+  EXPECT_FALSE(gradient::shares_specular_vertex(x, y, close, 0.0f, false));
+  EXPECT_FALSE(gradient::shares_specular_vertex(x, y, close, 5.0f, true));
 }
 
 TEST(B4_Shift, BothEndsAgreeWhetherAnEdgeIsShortAndALobeWide) {
@@ -280,7 +281,7 @@ TEST(B4_Shift, BothEndsAgreeWhetherAnEdgeIsShortAndALobeWide) {
   EXPECT_LT(is_short + alike, kCases - kCases / 10);
 }
 
-TEST(B4_Shift, ALobeLooksAlikeOverAnglesBelowItsWidth) {
+TEST(B4_Shift, ALobeIsSimilarOverAnglesBelowItsWidth) {
   const Vec3 x(0, 0, 0), y(0.1f, 0, 0), z(0, 0, 2);
   EXPECT_TRUE(gradient::looks_similar(x, y, z, 0.06f));
   EXPECT_FALSE(gradient::looks_similar(x, y, z, 0.04f));
@@ -290,8 +291,8 @@ TEST(B4_Shift, ALobeLooksAlikeOverAnglesBelowItsWidth) {
   EXPECT_TRUE(gradient::is_short_edge(x, y, x));
 }
 
-// The sharpest lobe of the class decides, whatever else the point has.
-TEST(B4_Shift, WidthOfAClassIsThatOfItsSharpestLobe) {
+// The sharpest lobe of the class decides, whatever other lobes the point has.
+TEST(B4_Shift, WidthOfAClassIsThatOfItsNarrowestLobe) {
   bsdf::Closures closures;
   const auto add = [&](bsdf::LobeType type, float alpha_x, float alpha_y) {
     bsdf::Lobe* lobe = closures.add();

@@ -1,4 +1,4 @@
-// F5: colour management with good, bad and no configurations.
+// F5: colour management with valid, invalid and missing configurations.
 #include "image/color.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ class F5_ColorConfig : public ::testing::Test {
   std::unique_ptr<image::ColorManager> make(const std::string& path) {
     return std::make_unique<image::ColorManager>(path, [this](const std::string& text) { warnings_.push_back(text); });
   }
-  // A configuration in a temporary file.
+  // Writes a configuration to a temporary file and returns its path.
   std::string write(const std::string& text) {
     const fs::path path =
         fs::path(::testing::TempDir()) / ("gradus_color_" + std::to_string(fs::hash_value(text)) + ".ocio");
@@ -56,7 +56,7 @@ void expect_builtin(const image::ColorManager& color) {
   EXPECT_EQ(pixel[3], 0.25f);
 }
 
-TEST_F(F5_ColorConfig, NoneIsBuiltIn) {
+TEST_F(F5_ColorConfig, TheDefaultIsBuiltIn) {
   const auto color = make("");
   expect_builtin(*color);
   EXPECT_TRUE(warnings_.empty());
@@ -78,7 +78,7 @@ TEST_F(F5_ColorConfig, UnreadableFallsBack) {
   }
 }
 
-// OpenColorIO read a folder as an empty file and leaked memory, which the sanitizers reported.
+// Regression: OpenColorIO read a folder as an empty file and leaked memory.
 TEST_F(F5_ColorConfig, FolderFallsBackAndIsCalledOne) {
   const auto color = make(fs::temp_directory_path().string());
   expect_builtin(*color);
@@ -128,8 +128,8 @@ TEST_F(F5_ColorConfig, OverrideWins) {
   EXPECT_THROW(color->set_override(space), Error);
 }
 
-// Float images hold more than the curve's samples span, and NaN.
-TEST_F(F5_ColorConfig, BeyondTheSamplesACurveGoesOnAlongItsLastSlope) {
+// Float images exceed the range of the curve's samples, and contain NaN.
+TEST_F(F5_ColorConfig, BeyondItsSamplesACurveContinuesWithItsLastSlope) {
   const auto color = make("");
   const float curve[3] = {0.0f, 0.25f, 1.0f};
   color->set_override({sizeof(GradusColorSpace), 3, "sRGB", curve, {1, 0, 0, 0, 1, 0, 0, 0, 1}});
@@ -140,7 +140,7 @@ TEST_F(F5_ColorConfig, BeyondTheSamplesACurveGoesOnAlongItsLastSlope) {
   EXPECT_TRUE(std::isnan(pixel[3]));
 }
 
-// Blender's own configuration, where it is installed.
+// Blender's own configuration, if it is installed.
 TEST_F(F5_ColorConfig, BlendersConfiguration) {
   const std::string path = "/usr/share/blender/datafiles/colormanagement/config.ocio";
   if (!fs::exists(path)) {
@@ -150,7 +150,7 @@ TEST_F(F5_ColorConfig, BlendersConfiguration) {
   EXPECT_TRUE(warnings_.empty());
   expect_builtin(*color);
   EXPECT_EQ(color->transform("Filmic sRGB", true), image::ColorTransform::Other);
-  // ACEScg has a smaller red: pure ACEScg red lies outside Rec. 709.
+  // ACEScg has another red primary: pure ACEScg red lies outside of Rec. 709.
   float pixel[3] = {1.0f, 0.0f, 0.0f};
   color->to_scene_linear("Linear ACEScg", false, pixel, 1, 3);
   EXPECT_NEAR(pixel[0], 1.705f, 0.01f);

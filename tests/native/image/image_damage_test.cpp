@@ -1,4 +1,4 @@
-// F1: what cannot be read; F2: damaged files.
+// F1: missing and unreadable images; F2: damaged files.
 #include <gtest/gtest.h>
 
 #include <sys/stat.h>
@@ -46,7 +46,7 @@ TEST(F1_MissingImages, Truncated) {
   }
 }
 
-TEST(F1_MissingImages, NamesDoNotDecide) {
+TEST(F1_MissingImages, ContentDecidesNotTheFileName) {
   const StoredImage image = store_file(write_temporary("really_png.jpg", make_png(8, 8, four_colors)));
   EXPECT_TRUE(image.warnings.empty());
   EXPECT_EQ(image.at(0.2f, 0.2f), Vec4(1, 0, 0, 1));
@@ -69,7 +69,7 @@ TEST(F1_MissingImages, PipesDoNotBlock) {
   unlink(path.c_str());
 }
 
-// At most a tenth of the bytes, in a window that slides, or in the first 2,048.
+// Damages at most a tenth of the bytes, in a random window or in the first 2,048.
 FileBytes damage(const FileBytes& file, Random* random, bool header) {
   FileBytes out = file;
   const size_t window = header ? std::min<size_t>(2048, out.size()) : std::max<size_t>(1, out.size() / 10);

@@ -60,7 +60,7 @@ TEST(ImageLookup, Linear) {
   EXPECT_NEAR(at(0.0f, image::Extension::Mirror), 0.0f, 1e-6f);
 }
 
-// Clipped images ended at once where Cycles lets interpolation reach into the emptiness around them.
+// Regression: clipped images ended abruptly, where Cycles interpolates towards the empty surroundings.
 TEST(ImageLookup, BordersOfClippedImagesFade) {
   const StoredImage image = store_source(rgba_source({255, 255, 255, 255}, GRADUS_ALPHA_STRAIGHT, "Non-Color"));
   const auto at = [&](float u, image::Interpolation i) { return image.at(u, 0.5f, i, image::Extension::Clip); };
@@ -129,8 +129,8 @@ TEST(ImageLookup, AlphaModes) {
   EXPECT_EQ(at(GRADUS_ALPHA_NONE, false), Vec4(1, 0, 0, 1));
 }
 
-// Of a large image every seventh texel and so on was looked at: a small hole was missed, and the material taken for
-// opaque.
+// Regression: only some texels of a large image were checked (every seventh, for example): a small transparent area was
+// missed, and the material taken for opaque.
 TEST(ImageLookup, OneTransparentTexelOfALargeImageCounts) {
   constexpr uint32_t kSide = 2048;
   std::vector<uint8_t> pixels(size_t{kSide} * kSide * 4, 255);

@@ -1,4 +1,4 @@
-// F3: every layout is read right, with v up, and false headers are refused at once.
+// F3: every layout is read correctly, with v up, and wrong headers are refused at once.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -124,7 +124,7 @@ TEST(F3_ImageReaders, DeepIsRefusedByName) {
   EXPECT_NE(image.warnings[0].find("deep"), std::string::npos) << image.warnings[0];
 }
 
-// Peak of the process's memory, in bytes.
+// Returns the peak of the process's memory, in bytes.
 size_t peak_memory() {
   std::ifstream status("/proc/self/status");
   std::string word;
@@ -161,7 +161,7 @@ TEST(F3_ImageReaders, FalseSizesAreRefused) {
   put_big_endian(&png, 16, kHuge);
   put_big_endian(&png, 20, kHuge);
   expect_refused(png, "PNG");
-  // As large as PNG files may be here, but with hardly any data; the checksum of the header is then wrong, too.
+  // The maximum size of PNG files, but with hardly any data; the checksum of the header is wrong, too.
   put_big_endian(&png, 16, 30000);
   put_big_endian(&png, 20, 30000);
   expect_refused(png, "PNG of 30000");

@@ -14,7 +14,7 @@
 
 namespace gradus::testing {
 
-// A material that shines as an image does.
+// A material whose emission is an image.
 class ImageMaterial {
  public:
   explicit ImageMaterial(uint64_t image) {

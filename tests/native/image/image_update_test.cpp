@@ -1,4 +1,4 @@
-// Images from commit to commit.
+// Images over several commits.
 #include <gtest/gtest.h>
 
 #include "image/image_store.h"
@@ -30,9 +30,9 @@ float committed_value(scene::Scene::State* state) {
       .x;
 }
 
-// A commit that is cancelled while the last image is decoded leaves it loaded: the next one had nothing to load, and
-// kept the picture of before.
-TEST(ImageUpdate, WhatACancelledCommitHasLoadedIsShownByTheNext) {
+// Regression: a commit that was cancelled while it decoded the last image left it loaded: the next commit had nothing
+// to load, and kept the old picture.
+TEST(ImageUpdate, ImagesOfACancelledCommitAreShownByTheNext) {
   scene::Scene::State state;
   state.images[kKey] = {grey(0), nullptr};
   EXPECT_EQ(committed_value(&state), 0.0f);
@@ -49,8 +49,8 @@ TEST(ImageUpdate, UnchangedImagesKeepTheirStore) {
   EXPECT_EQ(state.image_store, store);
 }
 
-// A stroke on one image compiled all materials again, the tables of skies as well.
-TEST(ImageUpdate, OnlyMaterialsThatLookAtImagesAreCompiledAgain) {
+// Regression: a stroke on one image compiled all materials again, and computed the tables of skies.
+TEST(ImageUpdate, OnlyMaterialsThatUseTheImageAreCompiledAgain) {
   constexpr uint64_t kPlain = 1, kShown = 2;
   scene::Scene::State state;
   state.images[kKey] = {grey(0), nullptr};

@@ -1,4 +1,4 @@
-// K2: a long unit of work ends soon after the wish to stop, with whole samples.
+// K2: a long work unit ends soon after a cancel, with whole samples.
 #include <chrono>
 #include <thread>
 

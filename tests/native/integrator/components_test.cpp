@@ -1,4 +1,4 @@
-// Each path lands in its component, and the components add up to what one plane would hold (contract 3.3, 3.4).
+// Each path is counted in its component, and the components add up to the film of a single component.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -15,7 +15,7 @@ using test::PathScene;
 using test::Scenario;
 
 constexpr uint32_t kSide = 24;
-// By bounces, so that paths change their component at every vertex.
+// A set by the number of bounces, so that paths change their component at every vertex.
 const char* const kByBounces = "Seen=EL;Once=E.L;Twice=E..L;Thrice=E...L";
 
 film::Film sampled(const integrator::IntegratorContext& context, bool gradients, uint32_t samples = 6) {
@@ -41,7 +41,7 @@ Sums sums_at(const film::Film& film, size_t pixel, const PlaneOf& plane_of) {
   return s;
 }
 
-// Up to the order of additions. `scale`: of the largest terms.
+// Expects planes to be equal up to the order of additions. `scale`: of the largest terms.
 template <class PlaneOf>
 void expect_same_sums(const film::Film& one, const film::Film& many, float scale, const PlaneOf& plane_of) {
   size_t pixels = 0;
@@ -108,14 +108,14 @@ TEST_P(Scenarios, PlainPathsHaveTheSameComponents) {
   }
 }
 
-// What replays do where a component goes its own way.
-TEST_P(Scenarios, ComponentsSampledApartHaveTheBitsOfThoseSampledTogether) {
+// Replays sample a component separately if it has displacements of its own.
+TEST_P(Scenarios, ComponentsSampledSeparatelyHaveTheBitsOfThoseSampledTogether) {
   const integrator::IntegratorContext c = context("");
   const film::Film whole = sampled(c, true);
   film::Film apart = test::make_test_film(c.settings, true, c.components.count());
   const auto integrator = gradient::make_gradient_integrator(c);
   const uint32_t own = 1u << c.components.find("Diffuse") | 1u << c.components.find("Reflection");
-  // Own ways in every other pixel.
+  // A separate replay in every other pixel.
   const size_t pixels = size_t(apart.region.area());
   std::vector<uint32_t> shared(pixels, lpe::kEveryComponent);
   std::vector<uint8_t> map(pixels, 0);
@@ -141,7 +141,7 @@ TEST_P(Scenarios, ComponentsSampledApartHaveTheBitsOfThoseSampledTogether) {
   }
 }
 
-TEST_P(Scenarios, PathsThatLeadToNoWantedComponentEnd) {
+TEST_P(Scenarios, PathsThatCanReachNoWantedComponentEnd) {
   const integrator::IntegratorContext c = context("");
   film::Film whole = sampled(c, false), seen = test::make_test_film(c.settings, false, c.components.count());
   const auto integrator = integrator::make_path_integrator(c);

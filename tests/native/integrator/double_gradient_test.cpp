@@ -1,5 +1,5 @@
-// B8: gradients and what L2 makes of them, against the same sums and the same equations in double. (The factors that
-// shifts bring along are held against double one by one, to 1e-4: B4.)
+// B8: gradients and their reconstruction by L2, against the same sums and equations in double. (B4 tests the factors of
+// shifts against double one by one, to 1e-4.)
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ film::GradientImages sampled(const integrator::IntegratorContext& context, uint3
   return film::read_images(film, 0);
 }
 
-// Samples one by one, summed up in double.
+// Samples one sample at a time and sums up in double.
 DoubleImages summed(const integrator::IntegratorContext& context) {
   DoubleImages sums;
   const auto add = [](const std::vector<float>& image, Image* sum) {
@@ -44,7 +44,7 @@ DoubleImages summed(const integrator::IntegratorContext& context) {
   return sums;
 }
 
-// (α² + DᵀD) x, where D are the differences to the right and up, none across the border.
+// Returns (α² + DᵀD) x, where D are the differences to the right and up, without those across the border.
 Image normal_matrix(const Image& x, double alpha) {
   Image result(kValues);
   for (int i = 0; i < int(kValues); ++i) result[i] = alpha * alpha * x[i];
@@ -65,7 +65,7 @@ double dot(const Image& a, const Image& b) {
   return sum;
 }
 
-// The normal equations of L2 by conjugate gradients.
+// Solves the normal equations of L2 by conjugate gradients.
 Image solved(const DoubleImages& images, double alpha) {
   Image r(kValues), x(kValues, 0.0);
   for (int i = 0; i < int(kValues); ++i) r[i] = alpha * alpha * images.primal[i];
@@ -86,8 +86,8 @@ Image solved(const DoubleImages& images, double alpha) {
   return x;
 }
 
-// The largest difference in units of 1 % of the standard error (and a millionth of the brightest value, for rounding
-// what has no noise).
+// Returns the largest difference in units of 1 % of the standard error, plus a millionth of the brightest value for the
+// rounding of pixels without noise.
 double worst(const std::vector<float>& image, const Image& in_double, const test::Moments& moments) {
   double brightest = 0.0, result = 0.0;
   for (size_t i = 0; i < kValues; ++i) brightest = std::max(brightest, std::fabs(in_double[i]));

@@ -1,10 +1,10 @@
-// B8 on real paths: the sum of the weights of all strategies, and the image with weights, throughput and sums in
-// double.
+// B8 on rendered paths: the weights of all strategies add up to 1, and the image equals one with weights, throughput
+// and sums in double.
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "gradient/offset_paths.h"
+#include "gradient/emission_shift.h"
 #include "integrator/pixel_loop.h"
 #include "support/double_image.h"
 #include "support/path_scene.h"
@@ -15,7 +15,7 @@ namespace {
 
 using test::Scenario;
 
-// No emitter of these scenes tells kinds of rays apart.
+// No light of these scenes depends on the kind of ray.
 const shading::RayState kAnyRay;
 
 class B8_Double : public ::testing::TestWithParam<Scenario> {};
@@ -29,7 +29,7 @@ TEST_P(B8_Double, ImagesDifferByLessThanOnePercentOfTheirNoise) {
   std::printf("  worst: %.2g of the bound\n", result.worst());
 }
 
-// Vertices of neighbouring pixels that camera rays meet.
+// Returns whether camera rays of two neighbouring pixels meet vertices, and the vertices.
 bool camera_vertex(const path::PathContext& path, const path::Sampler& sampler, const Vec2& film,
                    path::Vertex* vertex) {
   path::PathRay ray;
@@ -39,14 +39,14 @@ bool camera_vertex(const path::PathContext& path, const path::Sampler& sampler, 
   return segment.end == path::SegmentEnd::Surface;
 }
 
-// Densities of light and BSDF sampling for the emitter point at one vertex.
+// Densities of light and BSDF sampling of a point on a light at one vertex.
 struct Strategies {
   double light, bsdf;
   double total() const { return light + bsdf; }
 };
 
-// The four strategies of a light sample, {light, BSDF} × {base, offset}, with densities as each of them asks for them:
-// light sampling knows its density when it draws, BSDF sampling asks for it when it has met an emitter.
+// The four strategies of a light sample, {light, BSDF} × {base, offset}, with their densities. Light sampling returns
+// its density with the sample, and BSDF sampling evaluates it when it has met a light.
 class B8_Strategies : public ::testing::TestWithParam<Scenario> {};
 
 TEST_P(B8_Strategies, WeightsSumToOne) {
@@ -78,7 +78,7 @@ TEST_P(B8_Strategies, WeightsSumToOne) {
         met_x{light::light_point_pdf(path.scene, light.point, path::receiver_of(x)), lit_x.pdf_bsdf};
     const Strategies drawn_y{view.pdf, lit_y.pdf_bsdf},
         met_y{light::light_point_pdf(path.scene, light.point, path::receiver_of(y)), lit_y.pdf_bsdf};
-    // Weight of a strategy: its density over that of all, in the measure of its own end.
+    // Returns the weight of a strategy: its density over the sum of all, in the measure of its own end.
     const auto weight = [](double density, const Strategies& own, double jacobian, const Strategies& other) {
       return density / (own.total() + jacobian * other.total());
     };

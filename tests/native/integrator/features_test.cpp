@@ -1,10 +1,10 @@
-// What features show: the first surface that is not a mirror or clear glass, or what shines there instead.
+// Features describe the first surface that is not a mirror or clear glass, or an emitter seen before it.
 #include "film/features.h"
 #include "gradient/gradient_integrator.h"
 
 #include <gtest/gtest.h>
 
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "schema/pass_table.h"
 #include "support/path_scene.h"
 
@@ -13,13 +13,13 @@ namespace {
 
 using test::PathScene;
 
-// At the origin, looking along -z at little more than a point.
+// A camera at the origin that looks along -z with a very small field of view.
 struct View {
   PathScene scene;
   GradusSettings settings = test::test_settings(4, 4);
   View() { scene.camera(Vec3(0.0f), Vec3(0, 0, -1), 0.01f); }
 
-  // A square of 4 m that faces the camera or looks the same way as it.
+  // Adds a square of 4 m that faces the camera or has its back to it.
   void wall(float z, const test::Surface& surface) {
     scene.quad(Vec3(-2, -2, z), Vec3(4, 0, 0), Vec3(0, 4, 0), scene.material(surface));
   }
@@ -27,7 +27,7 @@ struct View {
   film::Film render(bool gradient, uint32_t samples) {
     const integrator::IntegratorContext context = scene.context(settings);
     film::Film film = test::make_test_film(settings, gradient);
-    film.passes = film::make_pass_planes(schema::feature_passes(), film.count[0].size());
+    film::add_pass_channels(schema::feature_passes(), &film);
     test::sample_film(
         gradient ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context), 0,
         samples, &film);
@@ -41,9 +41,9 @@ void expect_near(const film::FeatureImage& image, size_t pixel, const std::vecto
   }
 }
 
-class SeenFeatures : public ::testing::TestWithParam<bool> {};  // by the gradient integrator
+class SeenFeatures : public ::testing::TestWithParam<bool> {};  // parameter: with the gradient integrator
 
-TEST_P(SeenFeatures, BehindAMirrorAreThoseOfWhatItShows) {
+TEST_P(SeenFeatures, BehindAMirrorAreThoseOfTheMirroredObject) {
   View view;
   view.wall(-1.0f, test::glossy(0.0f));  // its colour is 0.8, 0.7, 0.6
   view.wall(2.0f, test::matte(Rgb(0.2f, 0.5f, 0.3f)));
@@ -56,7 +56,7 @@ TEST_P(SeenFeatures, BehindAMirrorAreThoseOfWhatItShows) {
   }
 }
 
-// The sky, seen or in a mirror, was black like a gap.
+// Regression: the features of the sky, seen directly or in a mirror, were black.
 TEST_P(SeenFeatures, OfTheSkyAreItsLight) {
   View view;
   view.scene.world(Rgb(0.3f, 0.4f, 5.0f));
@@ -70,14 +70,14 @@ TEST_P(SeenFeatures, OfTheSkyAreItsLight) {
   expect_near(features.normal, 5, {0.0f, 0.0f, 0.0f}, 0.0f);
 }
 
-TEST_P(SeenFeatures, OfASkyThatTheFilmHidesAreNone) {
+TEST_P(SeenFeatures, OfASkyThatTheFilmHidesAreZero) {
   View view;
   view.scene.world(Rgb(0.3f, 0.4f, 5.0f));
   view.settings.film_transparent = 1;
   expect_near(film::read_features(view.render(GetParam(), 8)).albedo, 5, {0.0f, 0.0f, 0.0f}, 0.0f);
 }
 
-TEST_P(SeenFeatures, OfWhatShinesAreItsLightWithItsShape) {
+TEST_P(SeenFeatures, OfAnEmissiveSurfaceAreItsLightAndItsShape) {
   test::Surface light;
   light.emission = Rgb(0.5f, 0.2f, 7.0f);
   View view;
@@ -88,8 +88,8 @@ TEST_P(SeenFeatures, OfWhatShinesAreItsLightWithItsShape) {
   expect_near(features.depth, 5, {1.0f}, 1e-3f);
 }
 
-// Lights do not stop rays: what lies behind gives the shape.
-TEST_P(SeenFeatures, OfALampAreItsLightBeforeTheWall) {
+// Lights do not stop rays: the surface behind gives the shape.
+TEST_P(SeenFeatures, OfALightAreItsLightAndTheShapeOfTheWall) {
   View view;
   view.wall(-2.0f, test::matte(Rgb(0.25f)));
   GradusLight light = test::make_light(GRADUS_LIGHT_POINT, test::translation(Vec3(0, 0, -1)), Rgb(100.0f));
@@ -100,8 +100,8 @@ TEST_P(SeenFeatures, OfALampAreItsLightBeforeTheWall) {
   expect_near(features.depth, 5, {2.0f}, 1e-3f);
 }
 
-// Which surfaces a path passes is drawn by lot; the mean is that of the cover.
-TEST_P(SeenFeatures, OfTransparentSurfacesAreMixedByTheirCover) {
+// A path passes a surface at random; the mean is weighted by the surface's opacity.
+TEST_P(SeenFeatures, OfTransparentSurfacesAreMixedByTheirOpacity) {
   for (const float transparent : {0.5f, 0.9f}) {
     test::Surface veil = test::matte(Rgb(0.5f, 0.4f, 0.3f));
     veil.transparent = transparent;
@@ -122,12 +122,12 @@ TEST_P(SeenFeatures, OfTransparentSurfacesAreMixedByTheirCover) {
   }
 }
 
-TEST_P(SeenFeatures, GoToTheHalfOfTheirSample) {
+TEST_P(SeenFeatures, GoToTheHalfBufferOfTheirSample) {
   View view;
   view.wall(-1.0f, test::matte(Rgb(0.5f)));
   for (const uint32_t samples : {1u, 2u}) {
     const film::Film film = view.render(GetParam(), samples);
-    for (const film::PassPlane& plane : film.passes) {
+    for (const film::Channel& plane : film.channels) {
       const std::vector<float> none(plane.values[0].size());
       EXPECT_NE(plane.values[0], none) << schema::pass_info(plane.pass).name;
       EXPECT_EQ(plane.values[1] == none, samples == 1) << schema::pass_info(plane.pass).name;
@@ -135,7 +135,7 @@ TEST_P(SeenFeatures, GoToTheHalfOfTheirSample) {
   }
 }
 
-// The last ray of each path was traced to its end for features that were long known.
+// Regression: the last ray of each path was traced to its end, although the features were complete.
 TEST_P(SeenFeatures, CostNoRaysAndChangeNoBit) {
   View view;
   test::build(test::Scenario::World, &view.scene);

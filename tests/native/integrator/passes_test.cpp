@@ -1,9 +1,9 @@
-// Light passes add up to the noisy image (contract 6.5); data passes are in Blender's conventions.
+// Light passes add up to the noisy image; data passes follow Blender's conventions.
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "gradient/gradient_integrator.h"
 #include "output/pass_read.h"
 #include "render/render.h"
@@ -31,7 +31,7 @@ film::Film render_passes(test::PathScene* scene, bool gradient) {
   const integrator::IntegratorContext context = scene->context(settings);
   film::Film film = test::make_test_film(settings, gradient);
   film.settings = settings;
-  film.passes = film::make_pass_planes(settings.passes, static_cast<size_t>(film.region.area()));
+  film::add_pass_channels(settings.passes, &film);
   test::sample_film(
       gradient ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context), 0, 8,
       &film);
@@ -53,7 +53,7 @@ void expect_light_to_add_up(const film::Film& film) {
 
 TEST_P(Passes, LightAddsUpToTheNoisyImage) { expect_light_to_add_up(render_passes(GetParam(), true)); }
 
-// Shares of a negative sum went to Diffuse, which a metal does not have.
+// Regression: a share of a negative sum was written to Diffuse, which a metal does not have.
 TEST(LightPasses, LightBelowZeroAddsUpToo) {
   test::PathScene scene;
   test::add_box(&scene, test::matte(Rgb(0.6f)));
@@ -65,8 +65,8 @@ TEST(LightPasses, LightBelowZeroAddsUpToo) {
 TEST_P(Passes, PlainAndGradientTracingGiveTheSame) {
   const film::Film plain = render_passes(GetParam(), false);
   const film::Film gradient = render_passes(GetParam(), true);
-  for (size_t i = 0; i < plain.passes.size(); ++i) {
-    EXPECT_EQ(plain.passes[i].values, gradient.passes[i].values) << schema::pass_info(plain.passes[i].pass).name;
+  for (size_t i = 0; i < plain.channels.size(); ++i) {
+    EXPECT_EQ(plain.channels[i].values, gradient.channels[i].values) << schema::pass_info(plain.channels[i].pass).name;
   }
 }
 
@@ -78,13 +78,13 @@ INSTANTIATE_TEST_SUITE_P(All, Passes,
 TEST(DataPasses, DepthIsPlanarAndBackgroundFar) {
   const film::Film film = render_passes(Scenario::World, false);
   const std::vector<float> depth = read(film, GRADUS_PASS_DEPTH);
-  // The back wall, 4.2 m from the camera along its axis, is the same everywhere on it.
+  // The back wall is perpendicular to the camera's axis, at a distance of 4.2 m.
   EXPECT_NEAR(depth[film.index(12, 12)], 4.2f, 1e-4f);
   EXPECT_NEAR(depth[film.index(10, 13)], 4.2f, 1e-4f);
   EXPECT_EQ(depth[film.index(0, 0)], 1e10f);
 }
 
-TEST(DataPasses, NothingMovesAtRest) {
+TEST(DataPasses, NothingMovesInAStaticScene) {
   const film::Film film = render_passes(Scenario::World, false);
   for (float v : read(film, GRADUS_PASS_VECTOR)) EXPECT_EQ(v, 0.0f);
 }
@@ -98,9 +98,9 @@ TEST(DataPasses, NormalsFaceTheViewer) {
   EXPECT_NEAR(normal[i + 2], 1.0f, 1e-5f);
 }
 
-// Alpha of an opaque film was 1 everywhere. Cycles lets a hole through it, be it an object or a shader, and shows the
-// world behind all else.
-TEST(Holdout, IsAHoleInAnOpaqueFilmToo) {
+// Regression: the alpha of an opaque film was 1 everywhere. In Cycles, a holdout object or shader makes an opaque film
+// transparent, and the world is visible elsewhere.
+TEST(Holdout, IsTransparentInAnOpaqueFilmToo) {
   test::PathScene scene;
   test::ProgramBuilder program;
   const uint64_t shader = scene.material(program.desc(program.add(GRADUS_OP_HOLDOUT, {}))),
@@ -111,7 +111,7 @@ TEST(Holdout, IsAHoleInAnOpaqueFilmToo) {
   scene.camera(Vec3(0, 0, 3), Vec3(0, 0, 0), 2.0f / 3.0f);
   GradusSettings settings = test::test_settings(16, 4);
   settings.samples = 4;
-  settings.filter_width = 0.01f;  // no pixel has a part of two
+  settings.filter_width = 0.01f;  // no pixel covers both sides of an edge
   const std::shared_ptr<const scene::Snapshot> snapshot = scene.context(settings).snapshot;
   for (const uint32_t integrator : {GRADUS_INTEGRATOR_PATH, GRADUS_INTEGRATOR_GRADIENT}) {
     for (const uint32_t transparent : {0u, 1u}) {

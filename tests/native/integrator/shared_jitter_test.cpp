@@ -1,4 +1,4 @@
-// Sub-pixel jitter of a cell of the lattice (contract 1.6), and camera vertices that paths share by it.
+// Sub-pixel jitter of a pixel block, and camera vertices that paths share because of it.
 #include <cmath>
 #include <map>
 
@@ -20,7 +20,7 @@ struct Jitter {
   Vec2 offset;
 };
 
-// From the centres of all pixels, in a frame of more than one cell.
+// Returns the offsets from the pixel centres, in a film of more than one block.
 std::vector<Jitter> jitters(float aperture, uint32_t size, uint32_t samples) {
   PathScene scene;
   test::build(Scenario::DiffuseArea, &scene);
@@ -38,7 +38,7 @@ std::vector<Jitter> jitters(float aperture, uint32_t size, uint32_t samples) {
   return found;
 }
 
-TEST(SharedJitter, IsThatOfItsCellAndSampleNumber) {
+TEST(SharedJitter, IsThatOfItsBlockAndSampleNumber) {
   std::map<std::tuple<int, int, uint32_t>, Vec2> of_block;
   for (const Jitter& j : jitters(0.0f, 40, 3)) {
     const auto key = std::make_tuple(film::pixel_block_of(j.x), film::pixel_block_of(j.y), j.number);
@@ -51,7 +51,7 @@ TEST(SharedJitter, IsThatOfItsCellAndSampleNumber) {
   }
 }
 
-// A lens sets the rays of neighbours apart in any case.
+// With a lens, the camera rays of neighbours differ in any case.
 TEST(SharedJitter, PixelsBehindALensHaveTheirOwn) {
   const std::vector<Jitter> found = jitters(0.1f, 2, 1);
   EXPECT_GT(glm::length(found[0].offset - found[1].offset), 1e-4f);
@@ -81,12 +81,13 @@ uint64_t shift_rays(float aperture, uint32_t size) {
   return film.counters.rays_shift;
 }
 
-// An offset of an opaque, diffuse scene without emitters to meet, at which base and offset would part, needs no ray of
-// its own but where its pixel lies in another cell: 4·16 pairs of two cells side by side and two above, from both ends.
-TEST(SharedJitter, OffsetsTakeTheCameraRaysOfTheirPixels) {
+// In an opaque, diffuse scene without visible emitters, where base and offset paths would differ, an offset path traces
+// no ray of its own, unless its pixel lies in another block: 4·16 pairs of two blocks side by side and two above, from
+// both ends.
+TEST(SharedJitter, OffsetPathsUseTheCameraRaysOfTheirPixels) {
   EXPECT_EQ(shift_rays(0.0f, 16), 0u);
   EXPECT_EQ(shift_rays(0.0f, 32), 2u * 4u * 16u);
-  EXPECT_GE(shift_rays(0.1f, 16), 4u * 16u * 15u);  // each its own
+  EXPECT_GE(shift_rays(0.1f, 16), 4u * 16u * 15u);  // each pixel has its own
 }
 
 }  // namespace

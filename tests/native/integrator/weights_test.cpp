@@ -1,10 +1,10 @@
-// B8: the weights of all techniques and both directions of a pair sum to one.
+// B8: the weights of all techniques and both directions of a pair add up to 1.
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "gradient/pair.h"
+#include "gradient/gradient_accumulator.h"
 #include "path/light.h"
 #include "support/statistics.h"
 
@@ -22,13 +22,13 @@ Densities random_densities(std::mt19937* random) {
   Densities d{std::exp(exponent(*random)), std::exp(exponent(*random)), std::exp(exponent(*random)),
               std::exp(exponent(*random)), std::exp(0.25f * exponent(*random))};
   if (kind(*random) < 0.1f) {
-    d.light_x = d.light_y = 0.0f;  // an emitter that light sampling leaves out
+    d.light_x = d.light_y = 0.0f;  // a light that light sampling excludes
   }
   return d;
 }
 
-// What a sample of technique density `pdf` at x adds to the coefficient of f(x) in the estimate, times its density: its
-// weight. PairCount works on C = f/(sum of densities); `own` is the base's count.
+// Returns the weight of a sample of technique density `pdf` at x: its share in the coefficient of f(x) of the estimate,
+// times its density. PairCount works on C = f/(sum of densities); `own` is the base's count.
 double weight(const gradient::PairCount& pair, float r, double share) {
   const Radiance with_base = pair.paired(Radiance(1.0f), Radiance(0.0f), r);
   return -double(with_base.x) / pair.weight() * share;
@@ -43,17 +43,17 @@ TEST(B8_Weights, TechniquesAndDirectionsSumToOne) {
     const float total_x = d.light_x + d.bsdf_x;
     const float total_y = d.light_y + d.bsdf_y;
     const float r = d.jacobian * total_y / total_x;
-    // Light and BSDF samples of x, in their shares of x's density.
+    // Light and BSDF samples of x, weighted by their shares of the density of x.
     const double bsdf_share = path::bsdf_weight(d.light_x, d.bsdf_x);
     const double there = weight(forward, r, bsdf_share) + weight(forward, r, 1.0 - bsdf_share);
-    // The same coefficient from base paths y: the shifted-back contribution, C(x)·(1/r), at density y.
+    // The same coefficient from base paths y with the inverse shift: C(x)·(1/r) at the density of y.
     const Radiance shifted = backward.paired(Radiance(0.0f), Radiance(1.0f), 1.0f / r);
     const double back = double(shifted.x) / backward.weight() * r;
     EXPECT_NEAR(there + back, 1.0, 1e-6);
   }
 }
 
-// Against the same arithmetic in double: r spans what Jacobians and densities span.
+// Weights equal the same arithmetic in double over the range of Jacobians and densities.
 TEST(B8_Weights, FloatIsEnough) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> value(0.0f, 5.0f), exponent(-20.0f, 20.0f);
@@ -62,7 +62,7 @@ TEST(B8_Weights, FloatIsEnough) {
     const float r = std::exp(exponent(random)), base = value(random), offset = value(random);
     const double q = double(pair.other) / double(pair.own), weight = 0.5 * (1.0 + q) / (1.0 + q * double(r));
     const double exact = (double(r) * double(offset) - double(base)) * weight;
-    const double scale = (double(r) * double(offset) + double(base)) * weight;  // of what is subtracted
+    const double scale = (double(r) * double(offset) + double(base)) * weight;  // magnitude of the terms
     EXPECT_NEAR(pair.paired(Radiance(base), Radiance(offset), r).x, exact, 1e-6 * scale);
   }
 }
@@ -72,7 +72,7 @@ TEST(B8_Weights, FailedShiftCountsTheBaseAlone) {
   EXPECT_FLOAT_EQ(pair.unpaired(Radiance(1.0f)).x / pair.weight(), -1.0f);
 }
 
-// Swapping base and offset negates the gradient that is estimated: the samples of both ends are opposite.
+// Swapping base and offset negates the estimated gradient, so the samples of both ends are opposite.
 TEST(B4_Shift, SwapNegates) {
   std::mt19937 random(2);
   std::uniform_real_distribution<float> value(0.0f, 5.0f), exponent(-9.0f, 9.0f);

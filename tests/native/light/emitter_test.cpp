@@ -1,4 +1,4 @@
-// A4 for lights: densities of points, whichever way they were found; the choice among many.
+// A4 for lights: densities of points are the same however they were sampled; the choice among many lights.
 #include <gtest/gtest.h>
 
 #include "light/light_sampling.h"
@@ -32,7 +32,7 @@ std::vector<GradusLight> random_lights(std::mt19937& random, int count, bool dir
   return lights;
 }
 
-// Lights of all kinds, an emissive sphere, a world.
+// Returns a scene with lights of all kinds, an emissive sphere and a world.
 std::shared_ptr<const scene::Snapshot> mixed_scene(int analytic_lights) {
   std::mt19937 random(11);
   TestScene scene;
@@ -71,11 +71,11 @@ TEST(A4_LightDensity, SampledPointsHaveADensity) {
     EXPECT_GE(view.pdf, 0.0f);
   }
   EXPECT_GT(sampled, 50000);
-  // Only rounding at the rim of a sphere or at grazing angles.
+  // The exceptions are rounding at the rim of a sphere and at grazing angles.
   EXPECT_LE(without, sampled / 10000);
 }
 
-// What a ray meets in the sampled direction is the same point with the same density: else MIS weights would not sum to
+// A ray in the sampled direction meets the same point with the same density; otherwise MIS weights would not sum to
 // one.
 TEST(A4_LightDensity, PointsMetByRaysHaveTheSameDensity) {
   const auto snapshot = mixed_scene(40);
@@ -111,7 +111,7 @@ TEST(A4_LightDensity, PointsMetByRaysHaveTheSameDensity) {
       displaced += std::fabs(met->distance - view.distance) > 1e-3f * view.distance + 1e-4f;
   }
   EXPECT_GT(compared, 20000);
-  EXPECT_LE(missed, compared / 2000);  // rims
+  EXPECT_LE(missed, compared / 2000);  // at rims
   EXPECT_LE(displaced, compared / 2000);
   EXPECT_LE(different, compared / 1000);
 }
@@ -131,11 +131,12 @@ TEST(A4_LightDensity, TriangleMetByRay) {
     EXPECT_GT(view.pdf, 0.0f);
     EXPECT_NEAR(view.radiance.x, 5.0f, 1e-5f);
     EXPECT_NEAR(view.distance, hit.t, 1e-4f);
-    // Seen from there, nothing lies between but the emitter itself, which must not shadow itself.
+    // Seen from there, only the emitter itself lies between, and it must not shadow itself.
     geometry::SurfacePoint from;
     from.position = receiver.position;
     from.geometric_normal = receiver.normal;
-    EXPECT_FALSE(snapshot->occluded(light::ray_to_light(geometry::offset_origin(from, view.direction), from, point, view)));
+    EXPECT_FALSE(
+        snapshot->occluded(light::ray_to_light(geometry::offset_origin(from, view.direction), from, point, view)));
     ++met;
   }
   EXPECT_GT(met, 500);
@@ -158,7 +159,8 @@ TEST(A4_LightChoice, ProbabilitiesSumToOne) {
                 4.0 * std::numeric_limits<float>::epsilon());
 }
 
-// One memo in turn for receivers that differ in place, side or transmission: it must never answer for another.
+// One memo serves receivers that differ in position, side or transmission: it must not return the values of another
+// receiver.
 TEST(A4_LightChoice, MemoChangesNoBit) {
   const auto snapshot = mixed_scene(60);
   std::mt19937 random(16);
@@ -181,7 +183,8 @@ TEST(A4_LightChoice, MemoChangesNoBit) {
         ASSERT_EQ(point.kind, same_point.kind);
         ASSERT_EQ(point.index, same_point.index);
         ASSERT_EQ(view.pdf, same_view.pdf);
-        ASSERT_EQ(light::light_point_pdf(*snapshot, point, receiver), light::light_point_pdf(*snapshot, point, with_memo));
+        ASSERT_EQ(light::light_point_pdf(*snapshot, point, receiver),
+                  light::light_point_pdf(*snapshot, point, with_memo));
       }
     }
   }
@@ -210,12 +213,12 @@ TEST(A4_LightChoice, FrequenciesFollowProbabilities) {
       ++cells;
     }
     ASSERT_GT(cells, 10);
-    // Mean cells, variance 2·cells: five standard deviations.
+    // The statistic has the mean `cells` and the variance 2·cells: the bound is five standard deviations.
     EXPECT_LT(chi2, cells + 5.0 * std::sqrt(2.0 * cells));
   }
 }
 
-// E4: variance with 10,000 lights not above that of uniform choice.
+// E4: the variance with 10,000 lights is below that of uniform choice.
 TEST(E4_ManyLights, TreeBeatsUniformChoice) {
   std::mt19937 random(17);
   std::uniform_real_distribution<float> u(-50.0f, 50.0f), v(0.0f, 0.9999999f);
@@ -253,11 +256,11 @@ TEST(E4_ManyLights, TreeBeatsUniformChoice) {
     uniform += (squares * 10000 - exact * exact) / (exact * exact);
   }
   EXPECT_NEAR(mean_sum / exact_sum, 1.0, 0.02);
-  EXPECT_LT(tree, 0.02 * uniform);  // 0.14 without the cut
+  EXPECT_LT(tree, 0.02 * uniform);  // 0.14 without the bound of the tree
 }
 
-// A hundred thousand triangles: little balls that float in a room, their materials of three strengths.
-std::shared_ptr<const scene::Snapshot> shining_balls(std::mt19937* random) {
+// A hundred thousand triangles: small balls that float in a room, with materials of three strengths.
+std::shared_ptr<const scene::Snapshot> emissive_balls(std::mt19937* random) {
   std::uniform_real_distribution<float> x(-5.0f, 5.0f), z(0.5f, 3.0f), radius(0.02f, 0.1f);
   TestScene scene;
   for (uint64_t kind = 0; kind < 3; ++kind) {
@@ -295,7 +298,7 @@ struct Spread {
   double variance() const { return squares / count - mean() * mean(); }
 };
 
-// Irradiance without shadows, by one triangle among all alike and a point on it.
+// Returns the irradiance without shadows, by uniform choice of a triangle and of a point on it.
 double by_uniform_choice(const scene::Snapshot& snapshot, const light::Receiver& receiver, std::mt19937* random) {
   std::uniform_real_distribution<float> u(0.0f, 0.9999999f);
   const std::vector<light::EmissiveTriangle>& all = snapshot.light_table->triangles;
@@ -303,8 +306,8 @@ double by_uniform_choice(const scene::Snapshot& snapshot, const light::Receiver&
   const float root = std::sqrt(u(*random));
   geometry::Hit hit;
   hit.instance = triangle.instance;
-  hit.triangle = triangle.triangle;
-  hit.barycentric = Vec2(1.0f - root, u(*random) * root);
+  hit.primitive = triangle.triangle;
+  hit.uv = Vec2(1.0f - root, u(*random) * root);
   const light::LightPoint point = light::light_point_of_surface(snapshot, snapshot.surface_point(hit));
   const light::LightEvaluation view = light::evaluate_light(snapshot, point, receiver);
   const double cosine = std::max(double(glm::dot(receiver.normal, view.direction)), 0.0);
@@ -314,7 +317,7 @@ double by_uniform_choice(const scene::Snapshot& snapshot, const light::Receiver&
 
 TEST(E4_ManyLights, HundredThousandTrianglesAreBetterChosenThanUniformly) {
   std::mt19937 random(18);
-  const auto snapshot = shining_balls(&random);
+  const auto snapshot = emissive_balls(&random);
   ASSERT_GE(snapshot->light_table->triangles.size(), 100000u);
   std::uniform_real_distribution<float> x(-5.0f, 5.0f), u(0.0f, 0.9999999f);
   double tree = 0.0, uniform = 0.0, ratio = 0.0;

@@ -1,5 +1,5 @@
-// A3: directions of light sampling against its density, which is asked for by rays (everything that a ray in that
-// direction would meet).
+// A3: directions of light sampling against its density, which is evaluated by rays (for all emitters that a ray in that
+// direction meets).
 #include <gtest/gtest.h>
 
 #include <random>
@@ -37,7 +37,8 @@ double density(const scene::Snapshot& snapshot, const light::Receiver& receiver,
   return sum;
 }
 
-void expect_matching(const scene::Snapshot& snapshot, const light::Receiver& receiver, const Vec3& axis, uint32_t seed) {
+void expect_matching(const scene::Snapshot& snapshot, const light::Receiver& receiver, const Vec3& axis,
+                     uint32_t seed) {
   const auto sample = [&](const Vec2& u, const Vec2& v, Vec3* direction) {
     light::LightPoint point;
     light::LightEvaluation sampled_view;
@@ -57,7 +58,7 @@ void expect_matching(const scene::Snapshot& snapshot, const light::Receiver& rec
   EXPECT_LE(result.zero_density_samples, 10u);
 }
 
-// Five receivers around a light at the origin that shines down.
+// Five receivers around a light at the origin that emits downwards.
 const light::Receiver kReceivers[5] = {{Vec3(0, 0, -1), Vec3(0, 0, 1), false},
                                        {Vec3(0.5f, 0.2f, -0.8f), Vec3(0, 0, 1), false},
                                        {Vec3(-1, 0.4f, -0.5f), Vec3(0.6f, 0, 0.8f), false},
@@ -92,7 +93,7 @@ TEST(A3_LightSampling, Sphere) {
   GradusLight light = make_light(GRADUS_LIGHT_POINT, Mat4(1.0f), Rgb(1.0f));
   light.radius = 0.3f;
   expect_matching_light(light);
-  light.radius = 2.0f;  // all receivers inside
+  light.radius = 2.0f;  // all receivers are inside
   expect_matching_light(light);
 }
 
@@ -109,7 +110,7 @@ TEST(A3_LightSampling, Sun) {
   expect_matching_light(light);
 }
 
-// Few and large: the grid's 4×4 points cannot integrate the density of a triangle seen edge-on.
+// Few and large triangles: the grid's 4×4 points cannot integrate the density of a triangle seen edge-on.
 Soup folded_sheet(const Vec3& at, float size) {
   Soup soup;
   const Vec3 p[5] = {{-1, -1, 0.2f}, {1, -1, -0.2f}, {0.1f, 0, 0.4f}, {1, 1, 0.1f}, {-1, 1, 0}};
@@ -144,8 +145,8 @@ TEST(A3_EnvironmentSampling, ConstantMapAndManySizes) {
   expect_matching(*scene.commit(), kReceivers[0], Vec3(0, 0, 1), 1);
 }
 
-// A sky whose sun has this angle across; scale: of its coordinates' height, where that is not 1 the sun's place cannot
-// be told.
+// Sets a sky with a sun of this angular size. scale: of the height of the coordinates; unless it is 1, the position of
+// the sun is unknown.
 void set_sky(TestScene* scene, float size, float elevation, float scale = 1.0f) {
   ProgramBuilder b;
   const int place = b.add(GRADUS_OP_TEX_COORD, {}, GRADUS_TEX_COORD_GENERATED);
@@ -158,7 +159,7 @@ void set_sky(TestScene* scene, float size, float elevation, float scale = 1.0f) 
 }
 
 TEST(A3_EnvironmentSampling, SkyWithSun) {
-  // The rim of the sampled cone, which is a little wider than the disc, lies between rows of the test's grid.
+  // The rim of the sampled cone, which is slightly wider than the disc, lies between rows of the test's grid.
   const auto size_of = [](float rows) { return 2.0f * (rows * kPi / 80.0f - 1e-5f) / 1.001f; };
   const std::pair<float, float> suns[] = {{size_of(3.0f), 0.6f}, {size_of(14.0f), 0.05f}};  // size, elevation
   for (const auto& [size, elevation] : suns) {
@@ -174,8 +175,8 @@ TEST(A3_EnvironmentSampling, SkyWithSun) {
   }
 }
 
-// Too small for the cells of the chi-square test: what is estimated with the density must be the sky's light, with
-// little noise.
+// The sun is too small for the cells of the chi-square test: instead, the estimate that uses the density has to equal
+// the sky's light, with little noise.
 void expect_light(const scene::Snapshot& snapshot, float noise) {
   const light::Receiver receiver{Vec3(0.0f), Vec3(0, 0, 1), false};
   std::mt19937 random(1);
@@ -191,13 +192,15 @@ void expect_light(const scene::Snapshot& snapshot, float noise) {
     sum += x;
     squares += x * x;
   }
-  // By a dense grid over the hemisphere; 2000 × 500 points see the sun some eight times.
+  // Integrates over a dense grid over the hemisphere; about eight of the 2000 × 500 points lie in the sun.
   for (int y = 0; y < 500; ++y)
     for (int x = 0; x < 2000; ++x) {
       const float z = (float(y) + 0.5f) / 500.0f, phi = 2.0f * kPi * (float(x) + 0.5f) / 2000.0f,
                   s = std::sqrt(1.0f - z * z);
-      grid += double(z * shading::shade_world(snapshot, Vec3(s * std::cos(phi), s * std::sin(phi), z), shading::RayState()).x) * 2.0 *
-              double(kPi) / 1e6;
+      grid +=
+          double(z *
+                 shading::shade_world(snapshot, Vec3(s * std::cos(phi), s * std::sin(phi), z), shading::RayState()).x) *
+          2.0 * double(kPi) / 1e6;
     }
   const double mean = sum / kCount, deviation = std::sqrt(squares / kCount - mean * mean);
   EXPECT_LT(deviation, double(noise) * mean);

@@ -9,9 +9,9 @@
 namespace gradus::test {
 namespace {
 
-const Mat4 kDown(1.0f);  // shines along -Z
+const Mat4 kDown(1.0f);  // emits along -Z
 
-// Looking up from the origin. Mean of radiance·cos/pdf (Dirac: ·cos/choice).
+// Returns the irradiance at the origin, for a normal along +Z: the mean of radiance·cos/pdf (Dirac: ·cos/choice).
 double irradiance(const scene::Snapshot& snapshot, const light::Receiver& receiver, int count = 20000) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> uniform(0.0f, 0.9999999f);
@@ -44,7 +44,7 @@ TEST(LightUnits, Point) {
 TEST(LightUnits, SphereKeepsItsIntensity) {
   GradusLight light = make_light(GRADUS_LIGHT_POINT, translation(Vec3(1, 0, 2)), Rgb(3.0f));
   light.radius = 0.7f;
-  // A sphere that is wholly above the horizon gives the irradiance of the point at its centre.
+  // A sphere that lies completely above the horizon gives the irradiance of a point light at its centre.
   EXPECT_NEAR(irradiance_of(light), 3.0 * 2.0 / std::pow(5.0, 1.5), 2e-3);
 }
 
@@ -64,7 +64,7 @@ TEST(LightUnits, TinyRadiusIsAPoint) {
   }
 }
 
-TEST(LightUnits, BrokenAndDarkLightsGiveNothing) {
+TEST(LightUnits, InvalidAndDarkLightsGiveNothing) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (uint32_t type = 0; type < 5; ++type) {
     GradusLight light = make_light(GradusLightType(type), translation(Vec3(0, 0, 2)), Rgb(0.0f));
@@ -79,7 +79,7 @@ TEST(LightUnits, BrokenAndDarkLightsGiveNothing) {
 }
 
 // E4: huge and negative energies.
-TEST(LightUnits, NegativeLightsTakeAwayAndHugeOnesStayPositive) {
+TEST(LightUnits, NegativeLightsSubtractAndHugeOnesStayPositive) {
   GradusLight light = make_light(GRADUS_LIGHT_POINT, translation(Vec3(0, 0, 2)), Rgb(-3.0f));
   EXPECT_NEAR(irradiance_of(light), -0.75, 1e-5);
   light = make_light(GRADUS_LIGHT_POINT, translation(Vec3(0, 0, 2)), Rgb(1e38f));
@@ -111,8 +111,7 @@ TEST(LightUnits, SunWithAndWithoutAngle) {
   EXPECT_NEAR(irradiance_of(light), 2.0 * 3.0 * kPi * std::pow(std::sin(0.25), 2), 2e-3);
 }
 
-// Irradiance of a Lambertian rectangle at height h above a corner-to-corner view (form factor of a parallel rectangle
-// above the centre).
+// Returns the irradiance of a Lambertian rectangle at height h above its centre (form factor of a parallel rectangle).
 double rectangle_irradiance(double radiance, double width, double height, double h) {
   const double a = 0.5 * width / h, b = 0.5 * height / h;
   const double corner = a / std::sqrt(1 + a * a) * std::atan(b / std::sqrt(1 + a * a)) +
@@ -141,7 +140,7 @@ TEST(LightUnits, AreaIsDarkFromBehind) {
   EXPECT_EQ(irradiance_of(light, {Vec3(0.0f), Vec3(0, 0, -1), false}), 0.0);
 }
 
-// Flux through a hemisphere around a small light does not depend on the spread.
+// The flux through a hemisphere around a small light does not depend on the spread.
 TEST(LightUnits, SpreadKeepsTheFlux) {
   for (const float spread : {0.5f, 2.0f, kPi}) {
     GradusLight light = make_light(GRADUS_LIGHT_RECTANGLE, kDown, Rgb(1.0f));

@@ -9,7 +9,7 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-// ∫ω dω over a spherical polygon: half the sum over its edges of angle times normal (Lambert's formula for its
+// Returns ∫ω dω over a spherical polygon: half the sum over its edges of angle times normal (Lambert's formula for its
 // irradiance).
 glm::dvec3 first_moment(const Corners& corners, const Vec3& from) {
   glm::dvec3 v[3], sum(0.0);
@@ -51,7 +51,7 @@ TEST(A3_SphericalTriangle, SamplesAreUniformInSolidAngle) {
 }
 
 // The first coordinate is the share of the solid angle that lies before it.
-TEST(A3_SphericalTriangle, FirstCoordinateCutsOffItsShare) {
+TEST(A3_SphericalTriangle, FirstCoordinateIsAShareOfTheSolidAngle) {
   for (const Corners& corners : kTriangles) {
     const light::SphericalTriangle seen(corners, Vec3(0.0f));
     for (const float u : {0.1f, 0.5f, 0.8f}) {

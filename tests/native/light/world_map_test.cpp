@@ -1,4 +1,4 @@
-// Size of the world's importance map, what it costs, and when it is made anew.
+// The world's importance map: its size, its cost, and when it is updated.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -14,7 +14,7 @@ using namespace test;
 
 constexpr uint64_t kImage = 3, kWorld = 6;
 
-// The Environment Texture of an image along the direction.
+// A world whose emission is an image by direction.
 class ImageWorld {
  public:
   ImageWorld() {
@@ -43,7 +43,7 @@ class ImageWorld {
   GradusInput inputs_[3]{};
 };
 
-// Grey, but for one bright texel.
+// Sets an image that is grey apart from one bright texel.
 void set_image(TestScene* scene, uint32_t width, uint32_t sun) {
   std::vector<float> pixels(size_t(width) * (width / 2) * 4, 0.1f);
   for (int c = 0; c < 3; ++c) pixels[4 * size_t(sun) + c] = 5000.0f;
@@ -75,7 +75,7 @@ uint32_t image_map_width(uint32_t image_width) {
   return map_of(*snapshot) ? map_of(*snapshot)->width() : 0;
 }
 
-TEST(WorldMap, IsNoWiderThanTheImageItShows) {
+TEST(WorldMap, IsNoWiderThanItsImage) {
   EXPECT_EQ(image_map_width(64), 64u);
   EXPECT_EQ(image_map_width(512), 512u);
   EXPECT_EQ(image_map_width(2048), 1024u);
@@ -115,11 +115,11 @@ TEST(WorldMap, FindsASunOfOneTexelFromOnePointInEachCell) {
     const Vec3 d = snapshot->light_table->world.sample(light::Receiver(), {uniform(random), uniform(random)}, &place);
     hits += shading::shade_world(*snapshot, d, shading::RayState()).x > 1.0f;
   }
-  // The sun gives 5000 of about 5800 parts of the light.
+  // The sun emits about 5000/5800 of the light.
   EXPECT_GT(hits, 500);
 }
 
-TEST(WorldMap, MeasuresEachCellAsOftenAsAsked) {
+TEST(WorldMap, MeasuresEachCellAsOftenAsRequested) {
   std::atomic<uint32_t> calls{0};
   const auto radiance = [&](const Vec3& d) {
     ++calls;
@@ -131,7 +131,7 @@ TEST(WorldMap, MeasuresEachCellAsOftenAsAsked) {
   EXPECT_NEAR(world.mean(), 1.0f, 1e-3f);
 }
 
-TEST(WorldMap, IsKeptWhereTheWorldDidNotChange) {
+TEST(WorldMap, IsKeptWhileTheWorldIsUnchanged) {
   TestScene scene;
   set_image(&scene, 64, 100);
   scene.scene.set_material(kWorld, ImageWorld().desc());

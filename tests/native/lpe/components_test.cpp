@@ -1,4 +1,4 @@
-// Path expressions and components (contract 3.1, 3.2), against the standard library's regular expressions.
+// Light path expressions and components, against the regular expressions of the standard library.
 #include "lpe/components.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace gradus {
 namespace {
 
-// All words of up to `maximum` scatterings.
+// Returns all paths, as strings of events, of up to `maximum` scattering events.
 std::vector<std::string> paths(size_t maximum) {
   std::vector<std::string> all{"E"};
   for (size_t begin = 0, length = 0; length < maximum; ++length) {
@@ -62,7 +62,7 @@ TEST(Components, HaveAResidualOnceSomeAreMerged) {
   EXPECT_EQ(set.merged(set.all()).count(), 1);
 }
 
-TEST(Components, MatchesWordsAsRegularExpressionsDo) {
+TEST(Components, MatchPathsLikeRegularExpressions) {
   expect_like_regex(std::string(lpe::kDefaultComponents));
   expect_like_regex("A=ETTTTD.*L");
   expect_like_regex("A=E(D|R)L;B=E(DD|RR)+TL;C=ETT?T?DL");
@@ -71,7 +71,7 @@ TEST(Components, MatchesWordsAsRegularExpressionsDo) {
   expect_like_regex("All=E.*L");
 }
 
-TEST(Components, DefaultSetTellsTheFiveApart) {
+TEST(Components, DefaultSetSeparatesItsFive) {
   const lpe::ComponentSet set = lpe::ComponentSet::parse("");
   ASSERT_EQ(set.count(), 5);
   const auto name = [&](const char* path) { return set[set.classify(path)].name; };
@@ -92,13 +92,13 @@ TEST(Components, OneComponentWithoutDecomposition) {
   for (const std::string& path : paths(3)) EXPECT_EQ(set.classify(path), 0);
 }
 
-TEST(Components, RefusesOverlapWithAWordOfBoth) {
+TEST(Components, RefuseOverlapWithAPathOfBoth) {
   EXPECT_NE(refusal("A=ED.*L;B=ED*L").find("A and B overlap: both match EDL"), std::string::npos);
   EXPECT_NE(refusal("A=E.*DL;B=ER.*L").find("both match ERDL"), std::string::npos);
   EXPECT_NE(refusal("A=EL;B=E.*L").find("both match EL"), std::string::npos);
 }
 
-TEST(Components, RefusesWhatIsNoExpressionAndSaysWhere) {
+TEST(Components, RefuseInvalidExpressionsAndSayWhere) {
   EXPECT_NE(refusal("A=E(DL").find("character 5: a ')' is missing"), std::string::npos);
   EXPECT_NE(refusal("A=ED)L").find("character 3: there is no '('"), std::string::npos);
   EXPECT_NE(refusal("A=E*L*x").find("'x' is none of"), std::string::npos);
@@ -115,18 +115,18 @@ TEST(Components, RefusesWhatIsNoExpressionAndSaysWhere) {
   EXPECT_NE(refusal("Residual=EDL").find("it needs none"), std::string::npos);
 }
 
-TEST(Components, RefusesWhatMatchesNoPath) {
+TEST(Components, RefuseExpressionsThatMatchNoPath) {
   EXPECT_NE(refusal("A=ED").find("matches no path, which is E"), std::string::npos);
   EXPECT_NE(refusal("A=ED").find("write (ED)L"), std::string::npos);
   EXPECT_NE(refusal("A=DL").find("matches no path"), std::string::npos);
   EXPECT_NE(refusal("A=EDEL").find("matches no path"), std::string::npos);
 }
 
-TEST(Components, RefusesAnAutomatonThatExplodes) {
+TEST(Components, RefuseAnAutomatonThatExplodes) {
   EXPECT_NE(refusal("A=E.*D..............L").find("too complex"), std::string::npos);
 }
 
-TEST(Components, TakesAsManyAsThereIsRoomFor) {
+TEST(Components, AcceptTheMaximumNumber) {
   std::string text, longer = "D";
   for (int i = 1; i < lpe::kMaxComponents; ++i)
     text += "C" + std::to_string(i) + "=E" + longer.substr(0, size_t(i) - 1) + "L;", longer += 'D';
@@ -134,7 +134,7 @@ TEST(Components, TakesAsManyAsThereIsRoomFor) {
   EXPECT_NE(refusal(text + "X=ERL").find("more than 15"), std::string::npos);
 }
 
-TEST(Components, GiveTheirPathsToResidualWhereTheyAreMerged) {
+TEST(Components, GiveTheirPathsToResidualWhenMerged) {
   const lpe::ComponentSet all = lpe::ComponentSet::parse("");
   const uint32_t small = 1u << all.find("Emission") | 1u << all.find("Reflection");
   const lpe::ComponentSet some = all.merged(small);
@@ -148,7 +148,7 @@ TEST(Components, GiveTheirPathsToResidualWhereTheyAreMerged) {
   EXPECT_EQ(some.ahead(some.next(0, bsdf::ScatterClass::Reflection)), 1u << 2);
 }
 
-TEST(Components, KnowsWhatLiesAheadOfAWord) {
+TEST(Components, KnowWhichComponentsAPrefixCanReach) {
   const lpe::ComponentSet set = lpe::ComponentSet::parse("");
   const auto has = [&](lpe::LpeState at, const char* name) { return (set.ahead(at) >> set.find(name) & 1) != 0; };
   const lpe::LpeState r = set.next(0, bsdf::ScatterClass::Reflection), rr = set.next(r, bsdf::ScatterClass::Reflection);
@@ -159,14 +159,14 @@ TEST(Components, KnowsWhatLiesAheadOfAWord) {
   EXPECT_TRUE(has(rr, "Residual"));
 }
 
-TEST(Components, ExamplesAreShortestWordsOfTheirComponent) {
+TEST(Components, ExamplesAreShortestPathsOfTheirComponent) {
   const lpe::ComponentSet set = lpe::ComponentSet::parse("Vase=ETTTTD.*L");
   EXPECT_EQ(set.examples(0, 2), (std::vector<std::string>{"ETTTTDL", "ETTTTDDL"}));
   EXPECT_EQ(set.examples(1, 1), (std::vector<std::string>{"EL"}));
   EXPECT_TRUE(lpe::ComponentSet::parse("All=E.*L").examples(1, 3).empty());
 }
 
-TEST(Components, RefusesWordsThatAreNoPath) {
+TEST(Components, RefuseInvalidPaths) {
   const lpe::ComponentSet set = lpe::ComponentSet::parse("");
   for (const char* path : {"", "E", "L", "LE", "EXL", "DL", "ED", "EELL"})
     EXPECT_THROW(set.classify(path), Error) << path;

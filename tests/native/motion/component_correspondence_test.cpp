@@ -1,4 +1,4 @@
-// Links by component: chains of smooth surfaces go where what they show has gone.
+// Correspondences by component: specular chains lead to where the reflected or refracted object has moved.
 #include "motion/component_tracking.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace gradus {
 namespace {
 
-// A row of six pixels, of which some have a chain.
+// A row of six pixels, some of which have a chain.
 class ComponentCorrespondence : public testing::Test {
  protected:
   ComponentCorrespondence() {
@@ -33,16 +33,17 @@ using Row = std::vector<int32_t>;
 TEST_F(ComponentCorrespondence, FollowChainsWhereThereAreAnyAndSurfacesElsewhere) {
   chain(1, 2.4f);
   chain(2, 3.4f);
-  EXPECT_EQ(correspondence(static_), (Row{0, 2, 3, -1, 4, 5}));  // pixel 3 is the reflection's now
+  EXPECT_EQ(correspondence(static_), (Row{0, 2, 3, -1, 4, 5}));  // pixel 3 belongs to the reflection now
 }
 
-// What it showed is gone, and no other way is better than the surface's, by which the picture as a whole goes.
-TEST_F(ComponentCorrespondence, GoWithTheSurfaceWhereAChainWasLost) {
+// The object that the chain showed is gone. The displacement of the surface is the best choice then: that of the
+// picture as a whole.
+TEST_F(ComponentCorrespondence, FollowTheSurfaceWhereAChainWasLost) {
   chain(1, 1.5f, motion::Tracking::Occluded);
   EXPECT_EQ(correspondence(static_), static_);
 }
 
-TEST_F(ComponentCorrespondence, WhatHasNoChainGoesWithTheSurface) {
+TEST_F(ComponentCorrespondence, FollowTheSurfaceWhereThereIsNoChain) {
   EXPECT_FALSE(motion::is_seen_through_smooth(motion_));
   EXPECT_EQ(correspondence(static_), static_);
   chain(1, 4.5f, motion::Tracking::Gone);
@@ -50,7 +51,7 @@ TEST_F(ComponentCorrespondence, WhatHasNoChainGoesWithTheSurface) {
   EXPECT_EQ(correspondence(static_), static_);
 }
 
-TEST_F(ComponentCorrespondence, GoWithTheSurfaceWhereAChainLeavesTheFilm) {
+TEST_F(ComponentCorrespondence, FollowTheSurfaceWhereAChainLeavesTheFilm) {
   chain(0, -0.5f);
   chain(5, 6.5f);
   EXPECT_EQ(correspondence(static_), static_);
@@ -63,7 +64,7 @@ TEST_F(ComponentCorrespondence, OfTwoChainsTheNearerToTheCentreHasThePixel) {
   EXPECT_EQ(correspondence(static_), (Row{0, 1, 3, -1, 4, 5}));
 }
 
-TEST_F(ComponentCorrespondence, KeepWhereTheirWaysEnd) {
+TEST_F(ComponentCorrespondence, KeepTheEndsOfDisplacements) {
   chain(1, 2.375f);
   chain(4, 4.5f);
   const std::vector<Vec2> off =
@@ -73,12 +74,12 @@ TEST_F(ComponentCorrespondence, KeepWhereTheirWaysEnd) {
   EXPECT_EQ(off[5], Vec2(0.25f, 0.0f)) << "the surface's way";
 }
 
-TEST_F(ComponentCorrespondence, TakeNoPlaceThatIsNotANumber) {
+TEST_F(ComponentCorrespondence, IgnoreAPositionThatIsNotFinite) {
   chain(1, NAN);
   EXPECT_EQ(correspondence(static_), static_);
 }
 
-TEST(ComponentReplays, AreTakenWhereTheWaysPart) {
+TEST(ComponentReplays, AreMadeWhereDisplacementsDiffer) {
   film::ReplayMap replay_map;
   replay_map.correspondence.pixel = {0, 1, 2, film::kNoCorrespondence};
   replay_map.of_component = {{}, {Row{0, 3, film::kNoCorrespondence, 2}}};
@@ -91,8 +92,8 @@ TEST(ComponentReplays, AreTakenWhereTheWaysPart) {
   EXPECT_EQ(replays.pixels, 2u);
 }
 
-// As Residual goes with what is seen through glass: its paths are those of the same camera ray.
-TEST(ComponentReplays, TakeThoseTogetherThatGoTheSameWay) {
+// Residual has the chains of what is seen through glass: its paths start with the same camera ray.
+TEST(ComponentReplays, CombineComponentsWithTheSameDisplacements) {
   film::ReplayMap replay_map;
   replay_map.correspondence.pixel = {0, 1, 2, 3};
   replay_map.of_component = {{Row{1, 0, 2, 3}}, {}, {Row{1, 0, 3, 3}}, {Row{1, 1, 3, 3}}};
@@ -107,7 +108,7 @@ TEST(ComponentReplays, TakeThoseTogetherThatGoTheSameWay) {
   EXPECT_EQ(replays.pixels, 3u);
 }
 
-TEST(ComponentReplays, AreNoMoreThanOneForEachPixel) {
+TEST(ComponentReplays, AreAtMostOneForEachPixel) {
   film::ReplayMap replay_map;
   replay_map.correspondence.pixel = {0, 1, 2, 3};
   replay_map.of_component = {{Row{1, 0, 3, 3}}, {Row{2, 1, 2, 3}}, {Row{3, 1, 2, 3}}};
@@ -118,8 +119,8 @@ TEST(ComponentReplays, AreNoMoreThanOneForEachPixel) {
   EXPECT_LE(render::replays_of_components(limited).pixels, 4u);
 }
 
-// Whatever came after a component that was too much was left out with it.
-TEST(ComponentReplays, AComponentThatIsTooMuchTakesNoOtherOnesPlace) {
+// Regression: all components after one that exceeded the maximum were left out with it.
+TEST(ComponentReplays, AComponentBeyondTheMaximumDoesNotExcludeOthers) {
   film::ReplayMap replay_map;
   replay_map.correspondence.pixel = {0, 1, 2, 3};
   replay_map.of_component = {{Row{1, 0, 3, 3}}, {Row{2, 3, 2, 2}}, {Row{0, 3, 2, 3}}};
@@ -129,7 +130,7 @@ TEST(ComponentReplays, AComponentThatIsTooMuchTakesNoOtherOnesPlace) {
             (std::vector<film::PixelCorrespondence>{replay_map.of_component[0], {}, replay_map.of_component[2]}));
 }
 
-TEST(ComponentReplays, AreNoneWhereAllGoWithTheSurface) {
+TEST(ComponentReplays, AreNoneWhereAllFollowTheSurface) {
   film::ReplayMap replay_map;
   replay_map.correspondence.pixel = {0, 1};
   EXPECT_TRUE(render::replays_of_components(replay_map).own.empty());

@@ -1,4 +1,4 @@
-// The passes' vectors, from the keys of one snapshot: previous − now, now − next.
+// Vectors of the passes, from the keys of one snapshot: previous − now, now − next.
 #include "motion/component_motion.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -18,7 +18,7 @@ class ComponentMotionTest : public MotionTest {
                                     kRegion)
         .at(0);
   }
-  // Moves instance 3 of the scene.
+  // Sets the poses of instance 3 of the scene.
   void key(const Mat4& before, const Mat4& now, const Mat4& after) {
     const size_t count = scene_.scene.instance_count();
     scene_.scene.move(3, now);
@@ -28,7 +28,7 @@ class ComponentMotionTest : public MotionTest {
     scene_.scene.matrices_after[3] = after;
   }
 
-  // From a frame to those around it, each by itself.
+  // Motion from a frame to the frames before and after it, each found separately.
   struct Around {
     motion::ChainMotion before, after;
     bool tracks(size_t i) const {
@@ -39,7 +39,7 @@ class ComponentMotionTest : public MotionTest {
       return Vec4(before.film[i] - centre, centre - after.film[i]);
     }
   };
-  // go: to the frame before, or to the later one.
+  // go(false) moves the scene to the frame before, go(true) to the frame after.
   Around find_around(const MotionFrame* middle, const std::function<void(bool later)>& go) {
     const auto found_at = [&](bool later) {
       go(later);
@@ -49,8 +49,8 @@ class ComponentMotionTest : public MotionTest {
   }
 };
 
-// Whoever wanted all by all bits got 32, and wrote beyond the components that there are.
-TEST_F(ComponentMotionTest, IsThatOfTheComponentsThatThereAre) {
+// Regression: callers that set all bits to request all components got 32, and wrote beyond the existing ones.
+TEST_F(ComponentMotionTest, IsThatOfTheExistingComponents) {
   add_room();
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
   const MotionFrame* middle = frame("Diffuse");
@@ -59,7 +59,7 @@ TEST_F(ComponentMotionTest, IsThatOfTheComponentsThatThereAre) {
   EXPECT_EQ(all.size(), size_t(components_.count()));
 }
 
-// The keys of one snapshot say what three snapshots do.
+// The keys of one snapshot give the same motion as three snapshots.
 TEST_F(ComponentMotionTest, IsThatOfTheFramesAround) {
   add_ball(mirror());
   const Mat4 before = translation(Vec3(-0.05f, 0.01f, 0.02f)), now(1.0f),
@@ -103,8 +103,8 @@ TEST_F(ComponentMotionTest, OfAMeshThatDeforms) {
   EXPECT_LT(float(lost), 0.01f * float(tracked));
 }
 
-// What is seen directly: surface motion, in the signs of Blender's pass.
-TEST_F(ComponentMotionTest, OfWhatIsRoughIsSurfaceMotion) {
+// Directly visible surfaces have their surface motion, with the signs of Blender's Vector pass.
+TEST_F(ComponentMotionTest, OfRoughSurfacesIsSurfaceMotion) {
   add_room();
   scene_.quad(Vec3(-1, -0.5f, 0), Vec3(2, 0, 0), Vec3(0, 1, 0), grey());
   scene_.camera(Vec3(0, 0, 4), Vec3(0, 0, 0), 4.0f / 4.0f);
@@ -119,8 +119,8 @@ TEST_F(ComponentMotionTest, OfWhatIsRoughIsSurfaceMotion) {
   EXPECT_EQ(found.tracked[above], 1.0f);
 }
 
-// It was taken to rest, and to be known.
-TEST_F(ComponentMotionTest, OfWhatWasNotThereIsGone) {
+// Regression: an object that did not exist was taken to be static, and its motion to be known.
+TEST_F(ComponentMotionTest, OfAnObjectThatDidNotExistIsMarkedAsGone) {
   add_ball(grey());
   key(Mat4(NAN), Mat4(1.0f), Mat4(1.0f));
   const motion::ComponentMotion found = find(frame("Diffuse")->context, "Diffuse");
@@ -130,7 +130,7 @@ TEST_F(ComponentMotionTest, OfWhatWasNotThereIsGone) {
   EXPECT_EQ(found.tracked[0], float(motion::Tracking::Tracked));
 }
 
-TEST_F(ComponentMotionTest, OverACutIsNone) {
+TEST_F(ComponentMotionTest, AcrossAShotChangeIsNone) {
   add_ball(grey());
   std::fill_n(scene_.camera_desc.matrix_next, 16, NAN);
   const MotionFrame* middle = frame("Diffuse");
@@ -145,7 +145,7 @@ TEST_F(ComponentMotionTest, OverACutIsNone) {
   }
 }
 
-TEST_F(ComponentMotionTest, OnlyWhatIsAskedForIsFound) {
+TEST_F(ComponentMotionTest, OnlyRequestedComponentsAreFound) {
   add_room();
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
   const integrator::IntegratorContext context = scene_.context(test_settings(kSize, kSize));
@@ -156,7 +156,7 @@ TEST_F(ComponentMotionTest, OnlyWhatIsAskedForIsFound) {
   EXPECT_EQ(two[1].counts.pixels[1], 2u * kSize * kSize) << "nothing is reflected";
 }
 
-// A part of the film is the same as cut out of all of it.
+// The motion of a region is a crop of that of the film.
 TEST_F(ComponentMotionTest, OfARegionIsThatOfTheWholeFilm) {
   add_ball(mirror());
   key(translation(Vec3(-0.02f, 0, 0)), Mat4(1.0f), translation(Vec3(0.02f, 0.01f, 0)));
@@ -173,8 +173,8 @@ TEST_F(ComponentMotionTest, OfARegionIsThatOfTheWholeFilm) {
     }
 }
 
-// A ball that moves in a corner: what neither shows it nor may be hidden by it is not looked for.
-TEST_F(ComponentMotionTest, WhatNothingMovesInIsNotTraced) {
+// A ball moves in a corner: pixels that neither show it nor can be hidden by it are not searched.
+TEST_F(ComponentMotionTest, StaticPixelsAreNotTraced) {
   add_room();
   scene_.ball(Vec3(-1.2f, 0, 0), 0.3f, mirror(), 32, true);
   scene_.ball(Vec3(1.2f, 0, 0), 0.5f, clear(), 32, true);

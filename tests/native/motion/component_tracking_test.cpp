@@ -1,5 +1,5 @@
-// Ways of components between two frames of a job: in bands what they are over the whole film, and without a search
-// where all rests.
+// Displacements of components between two frames of a job: found in bands, they are those of the whole film, and
+// nothing is searched in a static scene.
 #include "motion/component_tracking.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace gradus::test {
 namespace {
 
-// Higher than a band.
+// The film is higher than a band.
 constexpr uint32_t kWidth = 48, kHeight = 140;
 
 class ComponentTracking : public MotionTest {
@@ -17,7 +17,7 @@ class ComponentTracking : public MotionTest {
   std::unique_ptr<MotionFrame> seen() {
     return motion_frame(scene_.context(test_settings(kWidth, kHeight)), components_, "Reflection");
   }
-  // Against chains of all pixels, each of which is looked for.
+  // Compares with the chains of all pixels, each of which is searched.
   void expect_tracked_components(const MotionFrame& from, const MotionFrame& to) {
     const motion::ChainTracer there = to.chains.tracer();
     const motion::ChainMotion found = motion::track_components(from.centres, there, components_,
@@ -41,7 +41,7 @@ class ComponentTracking : public MotionTest {
   size_t tracked_ = 0, moving_ = 0;
 };
 
-TEST_F(ComponentTracking, InBandsAreThoseOfTheWholeFilm) {
+TEST_F(ComponentTracking, InBandsIsThatOfTheWholeFilm) {
   add_ball(mirror());
   const auto from = seen();
   scene_.scene.move(3, translation(Vec3(0.02f, 0.03f, 0)));
@@ -50,8 +50,8 @@ TEST_F(ComponentTracking, InBandsAreThoseOfTheWholeFilm) {
   EXPECT_GT(moving_, 400u);
 }
 
-// Materials and instances of a job's frames are not the same objects, though nothing has changed.
-TEST_F(ComponentTracking, OfWhatRestsRest) {
+// Materials and instances of a job's frames are different objects even if nothing has changed.
+TEST_F(ComponentTracking, OfAStaticSceneIsZero) {
   add_ball(mirror());
   const auto from = seen();
   const auto to = seen();
@@ -67,8 +67,8 @@ TEST_F(ComponentTracking, OfWhatRestsRest) {
   EXPECT_EQ(moving_, 0u);
 }
 
-// The ball rests, and what it shows moves all the same.
-TEST_F(ComponentTracking, OfAMirrorThatIsBumpedAnewMove) {
+// The ball is static, but its reflection moves.
+TEST_F(ComponentTracking, OfAMirrorWhoseBumpChangesMoves) {
   const uint64_t smooth = mirror();
   add_ball(smooth);
   const auto from = seen();
@@ -78,8 +78,8 @@ TEST_F(ComponentTracking, OfAMirrorThatIsBumpedAnewMove) {
   EXPECT_GT(moving_, 100u);
 }
 
-// It comes into the mirror's sight.
-TEST_F(ComponentTracking, AreHiddenByWhatAppears) {
+// An object comes into view in the mirror.
+TEST_F(ComponentTracking, IsHiddenByAnObjectThatAppears) {
   add_ball(mirror());
   const auto from = seen();
   scene_.quad(Vec3(-1, -0.9f, 1.5f), Vec3(2, 0, 0), Vec3(0, 1, 0), grey());

@@ -1,4 +1,4 @@
-/* A stand-in for libgradus_flow.so. FAKE_FLOW in the environment: fails, nan, far. */
+/* A stand-in for libgradus_flow.so. The environment variable FAKE_FLOW selects how it misbehaves: fails, nan or far. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,7 +20,8 @@ uint32_t gradus_flow_interface(void) { return FAKE_FLOW_INTERFACE; }
 const char* gradus_flow_version(void) { return "fake"; }
 #endif
 
-int32_t gradus_flow_estimate(const GradusFlowImages* images, const GradusFlowEffort* effort, float* flow, char* error, size_t error_size) {
+int32_t gradus_flow_estimate(const GradusFlowImages* images, const GradusFlowEffort* effort, float* flow, char* error,
+                             size_t error_size) {
   (void)effort;
   if (is("fails")) {
     snprintf(error, error_size, "the fake fails");

@@ -1,4 +1,4 @@
-// The search itself: how it ends, and what it costs.
+// The search over the film: how it ends, and what it costs.
 #include "motion/film_search.h"
 
 #include "motion/chain_view.h"
@@ -9,7 +9,7 @@ namespace {
 
 class FilmSearchTest : public MotionTest {
  protected:
-  // From where the pixel is to where what it shows has gone; the mirror rests.
+  // Searches from a pixel to the new position of the object that it shows; the mirror is static.
   motion::SearchEnd leap(const MotionFrame& from, const MotionFrame& to, int32_t x, int32_t y,
                          motion::SearchCounts* counts) {
     const motion::SpecularChain* chain = from.chains.at(x, y);
@@ -25,8 +25,8 @@ class FilmSearchTest : public MotionTest {
   }
 };
 
-// A wall that slides sideways takes its image out of the mirror: that is seen at once, not by creeping up to the
-// mirror's edge.
+// A wall that slides sideways takes its image out of the mirror: the search notices that at once, not by small steps up
+// to the edge of the mirror.
 TEST_F(FilmSearchTest, EndsWhereTheImageLeavesItsMirror) {
   scene_.quad(Vec3(-1, -1, 2), Vec3(2, 0, 0), Vec3(0, 0, -4), mirror());
   scene_.quad(Vec3(-4, -1, -2), Vec3(8, 0, 0), Vec3(0, 3, 0), grey());

@@ -31,8 +31,8 @@ TEST(FlowLevels, EqualRatiosAreEqualDistancesInTheLogarithmicDomain) {
   EXPECT_NEAR(levels[2] - levels[1], levels[1] - levels[0], 2.0f);
 }
 
-// A firefly left one level for all the rest.
-TEST(FlowLevels, AFireflyDoesNotTakeTheScale) {
+// Regression: a firefly left one level for all other values.
+TEST(FlowLevels, AFireflyDoesNotSetTheScale) {
   std::vector<float> values(2000, 1.0f);
   for (size_t i = 0; i < values.size(); ++i) values[i] += float(i % 100) * 0.01f;
   std::vector<float> with = values;
@@ -45,7 +45,7 @@ TEST(FlowLevels, AFireflyDoesNotTakeTheScale) {
   EXPECT_GT(plain[99] - plain[0], 100.0f);
 }
 
-TEST(FlowLevels, NoiseAloneIsNotDrawnOutToTheWholeScale) {
+TEST(FlowLevels, NoiseAloneIsNotStretchedToTheWholeScale) {
   std::vector<float> values;
   for (int i = 0; i < 400; ++i) values.push_back(i % 2 == 0 ? 1.0f : 1.01f);
   for (const motion::FlowDomain domain : {motion::FlowDomain::Linear, motion::FlowDomain::Logarithmic}) {

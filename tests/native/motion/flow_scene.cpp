@@ -18,7 +18,7 @@ FlowFilm::FlowFilm(const FlowScene& scene, int frame) {
       const Vec2 place = {float(x), float(y)};
       const FlowSample middle = scene.sample(place, frame);
       light.emplace_back(sum / 16.0f * (1.0f + scene.noise * noise(random)));
-      // The way back of a motion that hardly changes over its own length.
+      // Inverts a motion that hardly changes over its own length.
       const Vec2 there = scene.surface(place, middle.object);
       surface.push_back(frame == 0 ? there : -scene.surface(place - there, middle.object));
       object.push_back(middle.object);

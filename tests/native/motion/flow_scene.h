@@ -1,5 +1,4 @@
-// Two frames of a film whose motion is known, made by formulas: light on surfaces, each of which moves, with shadows
-// that move otherwise.
+// Two frames of a film whose motion is known by formula: lit surfaces that move, and shadows that move otherwise.
 #pragma once
 
 #include <functional>
@@ -20,11 +19,11 @@ struct FlowScene {
   std::function<FlowSample(const Vec2& place, int frame)> sample;
   std::function<Vec2(const Vec2& place, int32_t object)> surface = [](const Vec2&, int32_t) {
     return Vec2(0.0f);
-  };                   // of frame 0; the other: back
+  };                   // of frame 0; with the other value: back
   float noise = 0.0f;  // standard deviation, as a share of the light
 };
 
-// The planes of a frame, each pixel the mean of 4 × 4 points.
+// The planes of a frame; each pixel is the mean of 4 × 4 points.
 class FlowFilm {
  public:
   FlowFilm(const FlowScene& scene, int frame);
@@ -36,18 +35,18 @@ class FlowFilm {
   std::vector<int32_t> object;
 };
 
-// Smooth, and different everywhere.
+// Returns a smooth pattern that differs everywhere.
 float flow_pattern(const Vec2& place);
-// 1 in the light, `dark` in the shadow of a disc, between them over about four times `softness` pixels.
+// Returns 1 in the light and `dark` in the shadow of a disc, with a transition of about four times `softness` pixels.
 float disc_shadow(const Vec2& place, const Vec2& centre, float radius, float softness, float dark = 0.12f);
-// Turned about `centre`, by degrees.
+// Rotates `place` around `centre`, by degrees.
 Vec2 turned(const Vec2& place, const Vec2& centre, float degrees);
 
 std::shared_ptr<const motion::FlowLibrary> flow_library_of_the_build();
 std::array<motion::PixelMotion, 2> motion_of(const FlowScene& scene,
                                              motion::FlowDomain domain = motion::FlowDomain::Logarithmic);
 
-// The share's smallest part of the values is no larger than this.
+// Returns the quantile: `share` of the values are no larger.
 float quantile(std::vector<float> values, float share);
 
 }  // namespace gradus

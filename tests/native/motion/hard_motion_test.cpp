@@ -1,5 +1,4 @@
-// Where specular motion ends: what cannot be followed is told by its cause, and nothing is ever made up (issue 7, "Bad
-// input and hard cases").
+// Limits of specular motion: chains that cannot be followed are reported with their cause, and no vector is invented.
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "motion/motion_scene.h"
@@ -12,11 +11,11 @@ class HardMotion : public MotionTest {
   static size_t count(const motion::ChainMotion& motion, motion::Tracking tracking) {
     return size_t(std::count(motion.tracking.begin(), motion.tracking.end(), tracking));
   }
-  // Of the pixels that show anything.
+  // Returns the tracked share of the pixels that have a chain.
   static float tracked_share(const motion::ChainMotion& motion, const MotionFrame* from) {
     return float(count(motion, motion::Tracking::Tracked)) / float(from->chains.chains.size());
   }
-  // Of what is tracked, how many pixels end where the way does not lead to what they show: must be none.
+  // Returns the number of tracked pixels whose vectors do not end where the object is visible; it must be 0.
   static size_t wrong_ends(const motion::ChainMotion& motion, const MotionFrame& from, const MotionFrame& to) {
     size_t wrong = 0;
     for (size_t i = 0; i < motion.film.size(); ++i) {
@@ -62,7 +61,7 @@ TEST_F(HardMotion, AMirrorSeenEdgeOn) {
   EXPECT_GT(count(m, motion::Tracking::Broken), 50u) << "its edge comes in between";
 }
 
-// A prism that turns until its back reflects all that it let through: beyond 41.8° within the glass.
+// A prism that rotates until its back reflects totally: beyond 41.8° within the glass.
 TEST_F(HardMotion, TotalReflectionBeginsAndEnds) {
   add_room();
   const uint64_t material = clear();
@@ -81,7 +80,7 @@ TEST_F(HardMotion, TotalReflectionBeginsAndEnds) {
   EXPECT_EQ(count(ends, motion::Tracking::NoPath), size_t(kSize * kSize) - beyond->chains.chains.size());
 }
 
-TEST_F(HardMotion, WhatAppearsStandsBefore) {
+TEST_F(HardMotion, WhatAppearsIsInFront) {
   add_ball(mirror());
   const MotionFrame* a = frame("Reflection");
   scene_.quad(Vec3(-1, -0.5f, 4.5f), Vec3(0, 3, 0), Vec3(2, 0, 0), grey());
@@ -90,7 +89,7 @@ TEST_F(HardMotion, WhatAppearsStandsBefore) {
   EXPECT_EQ(count(m, motion::Tracking::Occluded) + count(m, motion::Tracking::Tracked), a->chains.chains.size());
 }
 
-TEST_F(HardMotion, WhatVanishesOrBecomesAnotherMeshIsGone) {
+TEST_F(HardMotion, ObjectsThatVanishOrBecomeAnotherMeshAreGone) {
   add_ball(mirror());
   scene_.quad(Vec3(-1, -0.5f, 4.5f), Vec3(0, 3, 0), Vec3(2, 0, 0), grey());
   const MotionFrame* a = frame("Reflection");
@@ -106,7 +105,7 @@ TEST_F(HardMotion, WhatVanishesOrBecomesAnotherMeshIsGone) {
   }
 }
 
-TEST_F(HardMotion, AMirrorThatVanishesBreaksItsWays) {
+TEST_F(HardMotion, AMirrorThatVanishesEndsItsChains) {
   add_ball(mirror());
   const MotionFrame* a = frame("Reflection");
   scene_.scene.remove_last();
@@ -124,7 +123,7 @@ TEST_F(HardMotion, AMirrorThatBecomesAnotherMeshIsStillAMirror) {
   EXPECT_GT(count(m, motion::Tracking::Broken), 50u) << "where the sheet is not";
 }
 
-TEST_F(HardMotion, C8_ACutIsNoMotion) {
+TEST_F(HardMotion, C8_AShotChangeIsNoMotion) {
   add_ball(mirror());
   const MotionFrame* a = frame("Reflection");
   scene_.camera(Vec3(4, 0.5f, 0), Vec3(0, 0, 0), 0.5f);
@@ -132,7 +131,7 @@ TEST_F(HardMotion, C8_ACutIsNoMotion) {
   EXPECT_EQ(count(m, motion::Tracking::ShotChange), m.tracking.size());
 }
 
-TEST_F(HardMotion, WhatGoesFurtherThanTheFilmIsOutside) {
+TEST_F(HardMotion, MotionBeyondTheFilmIsOutside) {
   add_room();
   scene_.quad(Vec3(-3, -0.9f, 3), Vec3(6, 0, 0), Vec3(0, 0, -6), mirror());
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, -0.9f, 0), 0.1f);
@@ -142,7 +141,7 @@ TEST_F(HardMotion, WhatGoesFurtherThanTheFilmIsOutside) {
   EXPECT_GT(count(m, motion::Tracking::Outside), 100u);
 }
 
-TEST_F(HardMotion, BrokenGeometryIsNoTrap) {
+TEST_F(HardMotion, InvalidGeometryIsHandled) {
   add_ball(mirror());
   Soup soup;
   const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -166,10 +165,10 @@ TEST_F(HardMotion, ACancelledSearchFindsNothing) {
   expect_bounded(m);
 }
 
-// A full panorama with a mirror ball behind the camera, where the film's ends meet.
+// A full panorama with a mirror ball behind the camera, where the two ends of the film meet.
 class PanoramaMotion : public HardMotion {
  protected:
-  static constexpr int kWidth = 64, kSeam = 2;  // pixels; those at either end of the film
+  static constexpr int kWidth = 64, kSeam = 2;  // in pixels: width of the film, and of the columns at either end
 
   std::vector<const MotionFrame*> ball_goes(const Vec3& path, int steps) {
     scene_.world(Rgb(1.0f));
@@ -186,7 +185,7 @@ class PanoramaMotion : public HardMotion {
   }
 };
 
-// Of what goes from one end of the film to the other, too, the place is on the film, and the shortest way is told.
+// Motion from one end of the film to the other ends on the film, and takes the shorter direction.
 TEST_F(PanoramaMotion, ItsSeamIsNoEdge) {
   const std::vector<const MotionFrame*> frames = ball_goes(Vec3(0.2f, 0.08f, 0), 16);
   const MotionFrame &first = *frames.front(), &last = *frames.back();

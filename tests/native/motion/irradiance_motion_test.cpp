@@ -1,4 +1,4 @@
-// Motion of shadows and of other light that surfaces do not carry along: against known motion, and what is flagged.
+// Motion of shadows and other light that does not move with surfaces: against known motion, and its flags.
 #include "motion/irradiance_motion.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr int kBorder = 10;
 const Vec2 kSurface(3.2f, -1.4f), kShadow(1.3f, 2.1f);
 
-// Calls body(place, pixel) for those that are not at the border.
+// Calls body(place, pixel) for all pixels apart from those at the border.
 template <class Body>
 void each_inner(const FlowScene& scene, const Body& body) {
   for (int y = kBorder; y < scene.height - kBorder; ++y) {
@@ -40,7 +40,7 @@ std::vector<float> errors(const FlowScene& scene, const motion::PixelMotion& mot
   return result;
 }
 
-// Share of the tracked pixels whose light vectors predict to 2 %.
+// Returns the share of the tracked pixels whose light the vectors predict to 2 %.
 float predicted(const FlowScene& scene, const std::vector<float>& tracked, const std::vector<Vec2>& vectors) {
   FlowScene clean = scene;
   clean.noise = 0.0f;
@@ -79,12 +79,12 @@ FlowScene turning_light(float noise) {
 }
 Vec2 turn(const Vec2& place) { return turned(place, Vec2(80.0f, 60.0f), 2.0f) - place; }
 
-TEST(IrradianceMotion, ShadowsMoveOtherwiseThanWhatTheyFallOn) {
+TEST(IrradianceMotion, ShadowsMoveIndependentlyOfTheSurfaceBelow) {
   for (const float softness : {0.7f, 2.0f, 5.0f}) {
     const FlowScene scene = shadows(softness);
     const auto motion = motion_of(scene);
     const FlowFilm film(scene, 0);
-    std::vector<float> across;  // what is along an edge, nobody sees
+    std::vector<float> across;  // motion along an edge cannot be observed
     each_inner(scene, [&](const Vec2& place, size_t p) {
       const auto light = [&](int x, int y) {
         return film.light[size_t((int(place.y) + y) * scene.width + int(place.x) + x)].x;
@@ -103,7 +103,7 @@ TEST(IrradianceMotion, ShadowsMoveOtherwiseThanWhatTheyFallOn) {
   }
 }
 
-TEST(IrradianceMotion, BothWaysAreEachOthersReverse) {
+TEST(IrradianceMotion, VectorsInBothDirectionsAreInverse) {
   const auto motion = motion_of(turning_light(0.0f));
   const FlowScene scene = turning_light(0.0f);
   EXPECT_LT(quantile(errors(scene, motion[0], turn), 0.95f), 0.08f);
@@ -130,7 +130,7 @@ FlowScene flat_light() {
   return scene;
 }
 
-// Noise alone drew vectors of several pixels out of flat light.
+// Regression: noise alone led to vectors of several pixels in flat light.
 TEST(IrradianceMotion, NoiseAloneDoesNotMove) {
   FlowScene scene = flat_light();
   scene.noise = 0.04f;
@@ -139,13 +139,13 @@ TEST(IrradianceMotion, NoiseAloneDoesNotMove) {
   EXPECT_LT(quantile(errors(scene, motion[0], [](const Vec2&) { return kSurface; }), 0.95f), 0.15f);
 }
 
-// What a reconstruction leaves of noise is smooth, and fitted so well that it was believed: half of a floor in the sun
-// was flagged.
+// Regression: the smooth residual noise of a reconstruction matched so well that it was trusted: half of a sunlit floor
+// got vectors.
 TEST(IrradianceMotion, BlotchesOfAReconstructionDoNotMove) {
   FlowScene scene;
   scene.surface = [](const Vec2&, int32_t) { return kSurface; };
   scene.sample = [](const Vec2& place, int frame) {
-    const bool in_the_dark = place.y < 20.0f;  // so that the scale is long
+    const bool in_the_dark = place.y < 20.0f;  // so that the light covers a large range
     const Vec2 elsewhere = frame == 0 ? 0.8f * place : Vec2(0.7f * place.y + 300.0f, 0.9f * place.x);
     return FlowSample{(in_the_dark ? 0.05f : 1.0f) * (1.0f + 0.004f * flow_pattern(elsewhere))};
   };
@@ -157,14 +157,14 @@ TEST(IrradianceMotion, BlotchesOfAReconstructionDoNotMove) {
   EXPECT_GT(float(tracked), 0.9f * float(all));
 }
 
-TEST(IrradianceMotion, FlatLightGoesWithItsSurface) {
+TEST(IrradianceMotion, FlatLightMovesWithItsSurface) {
   const FlowScene scene = flat_light();
   const auto motion = motion_of(scene);
   EXPECT_EQ(tracked_share(scene, motion[0]), 1.0f);
   EXPECT_EQ(quantile(errors(scene, motion[0], [](const Vec2&) { return kSurface; }), 1.0f), 0.0f);
 }
 
-// On the left a twentieth of the light.
+// The left side has a twentieth of the light.
 TEST(IrradianceMotion, ShadowsInTheDarkAreFoundInTheLogarithmicDomainOnly) {
   FlowScene scene;
   scene.sample = [](const Vec2& place, int frame) {
@@ -183,7 +183,7 @@ TEST(IrradianceMotion, ShadowsInTheDarkAreFoundInTheLogarithmicDomainOnly) {
   EXPECT_GT(off_in_the_dark(motion::FlowDomain::Linear), 0.1f);
 }
 
-// A reconstruction may leave negative light; residual planes are taken as they are.
+// A reconstruction may leave negative light; residual planes are used unchanged.
 TEST(IrradianceMotion, NegativeLightMovesInTheLinearDomain) {
   FlowScene scene;
   scene.sample = [](const Vec2& place, int frame) {
@@ -208,7 +208,7 @@ FlowScene disc_before_a_wall() {
   return scene;
 }
 
-TEST(IrradianceMotion, EdgesAreFlaggedAndWhatTheyHide) {
+TEST(IrradianceMotion, EdgesAndDisocclusionsAreFlagged) {
   const FlowScene scene = disc_before_a_wall();
   const auto motion = motion_of(scene);
   size_t disc = 0, disc_tracked = 0;
@@ -232,8 +232,8 @@ TEST(IrradianceMotion, EdgesAreFlaggedAndWhatTheyHide) {
   EXPECT_GT(disc_tracked, disc * 95 / 100);
 }
 
-// Without knowledge of objects their depth tells.
-TEST(IrradianceMotion, EdgesAreSeenByDepthAlone) {
+// Without object numbers, edges are found by depth.
+TEST(IrradianceMotion, EdgesAreFoundByDepthAlone) {
   const FlowScene scene = disc_before_a_wall();
   const FlowFilm first(scene, 0), second(scene, 1);
   motion::ComponentFrame a = first.view(), b = second.view();
@@ -247,7 +247,7 @@ TEST(IrradianceMotion, EdgesAreSeenByDepthAlone) {
   });
 }
 
-TEST(IrradianceMotion, WhatHasNothingInCommonComesBackElsewhere) {
+TEST(IrradianceMotion, FramesWithoutCommonContentFailTheReverseCheck) {
   FlowScene scene;
   scene.sample = [](const Vec2& place, int frame) {
     return FlowSample{1.0f + 0.2f * flow_pattern(frame == 0 ? place : Vec2(1.7f * place.y + 300.0f, 0.6f * place.x))};
@@ -262,7 +262,7 @@ TEST(IrradianceMotion, WhatHasNothingInCommonComesBackElsewhere) {
   });
 }
 
-TEST(IrradianceMotion, WhatLeavesTheFilmIsFlagged) {
+TEST(IrradianceMotion, MotionBeyondTheFilmIsFlagged) {
   FlowScene scene;
   scene.surface = [](const Vec2&, int32_t) { return Vec2(12.0f, 0.0f); };
   scene.sample = [](const Vec2& place, int frame) {
@@ -275,7 +275,7 @@ TEST(IrradianceMotion, WhatLeavesTheFilmIsFlagged) {
   }
 }
 
-TEST(IrradianceMotion, CausesOfSurfacesGoOn) {
+TEST(IrradianceMotion, CausesOfSurfacesArePassedOn) {
   const FlowScene scene = turning_light(0.0f);
   FlowFilm first(scene, 0);
   const FlowFilm second(scene, 1);
@@ -339,9 +339,9 @@ TEST(IrradianceMotion, AnyInputGivesFiniteVectorsWithinTheFilm) {
   }
 }
 
-// The compiler made two variants of a loop over rows, which rounded differently; the first row of each piece of work
-// got one, the others the other.
-TEST(IrradianceMotion, NumberOfThreadsIsNotInTheBits) {
+// Regression: the compiler generated two variants of a loop over rows, which rounded differently; which one a row got
+// depended on the division of the work.
+TEST(IrradianceMotion, BitsDoNotDependOnTheNumberOfThreads) {
   const FlowScene scene = shadows(5.0f);
   const FlowFilm first(scene, 0), second(scene, 1);
   const auto library = flow_library_of_the_build();

@@ -20,7 +20,7 @@ std::vector<Vec3> positions_of(const Sheet& sheet) {
   return positions;
 }
 
-// Nodes whose inputs are constants and earlier nodes.
+// A graph of nodes whose inputs are constants and earlier nodes.
 class Nodes {
  public:
   static GradusInput value(float x, float y, float z) { return {-1, 0, {x, y, z, 0.0f}}; }

@@ -1,4 +1,4 @@
-// Two frames of a small scene, what a component shows in them, and the truth about where it went.
+// Two frames of a small scene, what a component shows in them, and the true motion of it.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace gradus::test {
 
-// A frame seen by a component.
+// A frame and the chains of a component in it.
 struct MotionFrame {
   integrator::IntegratorContext context;
   motion::CentreView centres;
@@ -35,10 +35,10 @@ inline std::unique_ptr<MotionFrame> motion_frame(const integrator::IntegratorCon
 }
 
 struct MotionErrors {
-  size_t pixels = 0;          // whose motion exists
-  size_t tracked = 0;         // of them
-  size_t invented = 0;        // tracked to where it is not to be seen
-  std::vector<float> errors;  // of those tracked, in pixels
+  size_t pixels = 0;          // with known motion
+  size_t tracked = 0;         // number of those that are tracked
+  size_t invented = 0;        // tracked to where the object is not visible
+  std::vector<float> errors;  // of the tracked pixels, in pixels
 
   float share() const { return pixels > 0 ? float(tracked) / float(pixels) : 0.0f; }
   float quantile(double q) const {
@@ -49,7 +49,7 @@ struct MotionErrors {
   }
 };
 
-// Whether a place of the film of `to` shows what a chain of `from` does.
+// Returns whether a position on the film of `to` shows what a chain of `from` shows.
 inline bool shows_in(const MotionFrame& to, const MotionFrame& from, const motion::SpecularChain& chain,
                      const Vec2& film) {
   const motion::ChainTracer here = from.chains.tracer(), there = to.chains.tracer();
@@ -58,7 +58,7 @@ inline bool shows_in(const MotionFrame& to, const MotionFrame& from, const motio
          motion::shows(there, chain.signature, target, glm::dvec2(film), 3e-4);
 }
 
-// Against the truth, at every `stride`th pixel with a chain.
+// Compares with the truth at every `stride`th pixel with a chain.
 inline MotionErrors errors_of(const motion::ChainMotion& motion, const std::vector<const MotionFrame*>& frames,
                               size_t stride) {
   MotionErrors errors;
@@ -94,14 +94,15 @@ struct Sheet {
   bool smooth = true;
   bool has_uv = true;
 };
-// later: how it is shaped one frame later, and as much the other way one frame before; nullptr: it keeps its shape.
+// later: the shape one frame later; the shape one frame before deviates by as much the other way; nullptr: a constant
+// shape.
 void set_sheet(PathScene* scene, uint64_t mesh_key, const Sheet& sheet, const Sheet* before = nullptr,
                const Sheet* later = nullptr);
-// A mirror whose normals wave by `tilt`, by a normal map over the default UV map, or by a bump.
+// A mirror whose normals vary by `tilt`, through a normal map over the default UV map, or through a bump map.
 uint64_t normal_mapped_mirror(PathScene* scene, float tilt, float waves);
 uint64_t bumped_mirror(PathScene* scene, float distance);
 
-// Frames one after the other, and the bars that their motion must pass.
+// Consecutive frames, and the error bounds for their motion.
 class MotionTest : public testing::Test {
  protected:
   static constexpr int kSize = 48;
@@ -109,19 +110,18 @@ class MotionTest : public testing::Test {
   uint64_t mirror() { return scene_.material(glossy(0.0f)); }
   uint64_t grey() { return scene_.material(matte(Rgb(0.5f))); }
   uint64_t clear() { return scene_.material(glass(0.0f)); }
-  // A floor at y = -1 and walls before and behind.
+  // Adds a floor at y = -1, and walls in front and behind.
   void add_room();
-  // The room with a ball in its middle, instance 3, and the camera before it.
+  // Adds the room with a ball in its middle, instance 3, and a camera in front of it.
   void add_ball(uint64_t material, int rings = 32, bool smooth = true);
-  // What was built up to now, as a frame.
+  // Returns the scene as built so far, as a frame.
   const MotionFrame* frame(const char* component);
   static motion::ChainMotion motion(const MotionFrame* from, const MotionFrame* to) {
     return motion::track_chains(from->chains, to->chains.tracer(), from->chains.region());
   }
-  // Moves the scene from 0 to 1; the motion of the component must pass the bars of issue 7 against the truth. Gives the
-  // motion.
+  // Moves the scene from 0 to 1 and compares the motion of the component with the truth. Returns the motion.
   motion::ChainMotion expect_motion(const char* component, const std::function<void(float)>& at);
-  // Whatever happens: every motion is finite and bounded by the film, and what is not tracked does not move.
+  // Expects every motion to be finite and bounded by the film, and that of untracked pixels to be 0.
   static void expect_bounded(const motion::ChainMotion& motion);
 
   lpe::ComponentSet components_ = lpe::ComponentSet::parse("");

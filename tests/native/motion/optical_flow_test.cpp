@@ -1,5 +1,4 @@
-// Optical flow: what is found and what is refused, by stand-ins for its library; and the library itself on known
-// motion.
+// Optical flow: loading and refusing its library, by stand-ins; and the real library on known motion.
 #include "motion/optical_flow.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +44,7 @@ std::shared_ptr<const motion::FlowLibrary> real() {
   return library;
 }
 
-// Waves of many directions and lengths: something to hold on to everywhere. Shifted by `shift`.
+// Returns waves of many directions and lengths, so that there is texture everywhere. Shifted by `shift`.
 motion::GreyImage waves(int width, int height, const Vec2& shift) {
   motion::GreyImage image{width, height, {}};
   for (int y = 0; y < height; ++y) {
@@ -89,7 +88,7 @@ TEST(OpticalFlow, OddAndTinySizesAreFiniteAndBounded) {
   EXPECT_TRUE(motion::optical_flow(*library, {}, {}).empty());
 }
 
-TEST(OpticalFlow, ConstantAndBrokenLevelsGiveFiniteVectors) {
+TEST(OpticalFlow, ConstantAndInvalidLevelsGiveFiniteVectors) {
   const auto library = real();
   const motion::GreyImage flat{48, 40, std::vector<float>(48 * 40, 77.0f)};
   for (const Vec2& v : motion::optical_flow(*library, flat, flat)) ASSERT_EQ(v, Vec2(0.0f));
@@ -99,7 +98,7 @@ TEST(OpticalFlow, ConstantAndBrokenLevelsGiveFiniteVectors) {
     ASSERT_TRUE(std::abs(v.x) <= 48.0f && std::abs(v.y) <= 40.0f);
 }
 
-// DIS alone has another result with every number of stripes, and those are its number of threads.
+// The result of DIS depends on the number of stripes, which is its number of threads by default.
 TEST(OpticalFlow, ManyThreadsAtOnceFindTheSame) {
   const auto library = real();
   const motion::GreyImage from = waves(200, 150, Vec2(0.0f)), to = waves(200, 150, Vec2(2.5f, 1.0f));
@@ -113,7 +112,7 @@ TEST(OpticalFlow, ManyThreadsAtOnceFindTheSame) {
 
 TEST(FlowLibrary, NamesTheVersionOfOpenCv) { EXPECT_TRUE(has(real()->version(), ".")); }
 
-TEST(FlowLibrary, LiesBesideTheCodeThatAsksForIt) {
+TEST(FlowLibrary, IsFoundBesideTheLibraryThatLoadsIt) {
   EXPECT_EQ(motion::flow_library_folder(), std::filesystem::canonical(kTests.substr(0, kTests.size() - 1)).string());
 }
 
@@ -125,7 +124,7 @@ TEST(FlowLibrary, IsRefusedWithAReason) {
   EXPECT_TRUE(has(refusal(StandIn(kTests + "libfake_flow_old.so").folder()), "it has interface 0 in place of 1"));
 }
 
-TEST(FlowLibrary, IsMissedOnceAndByName) {
+TEST(FlowLibrary, AMissingOneIsReportedOnceAndByName) {
   Warnings warnings;
   std::string text;
   EXPECT_NE(motion::flow_library_or_warning(kReal, &warnings), nullptr);
@@ -151,7 +150,7 @@ class FakeFlow : public ::testing::Test {
   }
 };
 
-TEST_F(FakeFlow, ItsErrorsAreSaid) {
+TEST_F(FakeFlow, ItsErrorsAreReported) {
   try {
     flow("fails");
     FAIL();

@@ -1,4 +1,4 @@
-// φ: known motions in pixels, one-to-one, and nothing where nothing is to be found again.
+// Pixel correspondences: known motions in pixels, one-to-one, and none for objects that are not found again.
 #include "motion/pixel_matching.h"
 
 #include <set>
@@ -23,7 +23,7 @@ class CorrespondingFrames : public testing::Test {
     look_from(Vec3(0, 0, 3));
   }
   void look_from(const Vec3& from) { scene_.camera(from, from - Vec3(0, 0, 1), 4.0f, GRADUS_CAMERA_ORTHOGRAPHIC); }
-  // What was built up to now, as a frame.
+  // Returns the scene as built so far, as a frame.
   motion::CentreView* view() {
     frames_.push_back(std::make_unique<integrator::IntegratorContext>(scene_.context(test_settings(kSize, kSize))));
     const integrator::IntegratorContext& c = *frames_.back();
@@ -61,7 +61,7 @@ TEST_F(CorrespondingFrames, ACancelledViewTracesNothing) {
   EXPECT_EQ(traced, 0);
 }
 
-TEST_F(CorrespondingFrames, WhatRestsIsLinkedToItself) {
+TEST_F(CorrespondingFrames, StaticPixelsCorrespondToThemselves) {
   const std::vector<int32_t> found = correspondence(view(), view());
   for (size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i], int32_t(i));
 }
@@ -79,7 +79,7 @@ TEST_F(CorrespondingFrames, APannedCameraShiftsAll) {
     }
 }
 
-TEST_F(CorrespondingFrames, KeepWhereTheirWaysEndInBothDirections) {
+TEST_F(CorrespondingFrames, KeepTheEndsOfDisplacementsInBothDirections) {
   const motion::CentreView* from = view();
   look_from(Vec3(3.25f * kPixel, -1.5f * kPixel, 3));
   const film::PixelCorrespondence correspondence = motion::match_pixels(*from, *view()),
@@ -95,7 +95,7 @@ TEST_F(CorrespondingFrames, KeepWhereTheirWaysEndInBothDirections) {
   EXPECT_GT(linked, kSize * kSize / 2);
 }
 
-TEST_F(CorrespondingFrames, AMovingObjectTakesItsPixelsAlong) {
+TEST_F(CorrespondingFrames, AMovingObjectMovesItsPixels) {
   const motion::CentreView* from = view();
   scene_.scene.move(1, translation(Vec3(4 * kPixel, 0, 0)));
   const motion::CentreView* to = view();
@@ -106,12 +106,12 @@ TEST_F(CorrespondingFrames, AMovingObjectTakesItsPixelsAlong) {
       const int32_t expected = in_square(x, y) ? pixel(x + 4, y) : covered ? film::kNoCorrespondence : pixel(x, y);
       EXPECT_EQ(found[size_t(pixel(x, y))], expected) << x << ' ' << y;
     }
-  // What comes into view has no partner.
+  // Disoccluded pixels have no correspondence.
   const std::vector<int32_t> inverse = motion::inverse_correspondence({found}).pixel;
   for (int x = 12; x < 16; ++x) EXPECT_EQ(inverse[size_t(pixel(x, 15))], film::kNoCorrespondence);
 }
 
-TEST_F(CorrespondingFrames, WhatVanishesOrBecomesAnotherMeshHasNoPartner) {
+TEST_F(CorrespondingFrames, AnObjectThatVanishesOrBecomesAnotherMeshHasNoPartner) {
   const motion::CentreView* from = view();
   scene_.scene.mesh(77, sphere(Vec3(0.0f), 0.5f, 8, 16));
   scene_.scene.replace_mesh(1, 77);
@@ -126,8 +126,8 @@ TEST_F(CorrespondingFrames, WhatVanishesOrBecomesAnotherMeshHasNoPartner) {
   }
 }
 
-// The wall behind it leads to where it is now, and nothing leads back.
-TEST_F(CorrespondingFrames, WhatAppearsHasNoPartner) {
+// The wall behind leads to its new pixels, and nothing leads back.
+TEST_F(CorrespondingFrames, AnObjectThatAppearsHasNoPartner) {
   const motion::CentreView* there = view();
   scene_.scene.remove_last();
   const std::vector<int32_t> found = correspondence(view(), there);
@@ -136,7 +136,7 @@ TEST_F(CorrespondingFrames, WhatAppearsHasNoPartner) {
       EXPECT_EQ(found[size_t(pixel(x, y))], in_square(x, y) ? film::kNoCorrespondence : pixel(x, y));
 }
 
-// Of several pixels that come to lie in one, the nearest: a square that shrinks to half its size.
+// If several pixels move to one, the nearest is kept: a square that shrinks to half its size.
 TEST_F(CorrespondingFrames, ShrinkingIsOneToOne) {
   const motion::CentreView* from = view();
   scene_.scene.move(1, scaling(Vec3(0.5f)));
@@ -147,7 +147,7 @@ TEST_F(CorrespondingFrames, ShrinkingIsOneToOne) {
   EXPECT_EQ(linked, 16);
 }
 
-// A step of one pixel: what it covers is within a pixel of where the square came from, and leads to the same pixels.
+// A step of one pixel: what the square covers lies within a pixel of its old position, and leads to the same pixels.
 TEST_F(CorrespondingFrames, OfTwoThatMeetInAPixelTheNearestHasIt) {
   const motion::CentreView* from = view();
   scene_.scene.move(1, translation(Vec3(kPixel, 0, 0)));
@@ -158,7 +158,7 @@ TEST_F(CorrespondingFrames, OfTwoThatMeetInAPixelTheNearestHasIt) {
   }
 }
 
-TEST_F(CorrespondingFrames, C8_ACutIsNoMotion) {
+TEST_F(CorrespondingFrames, C8_AShotChangeIsNoMotion) {
   const GradusCamera camera = view()->snapshot->camera;
   GradusCamera turned = camera, zoomed = camera, other = camera;
   turned.matrix[8] = 0.6f, turned.matrix[10] = 0.8f;

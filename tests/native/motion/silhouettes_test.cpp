@@ -33,18 +33,18 @@ TEST(Silhouettes, AreStepsOfDepth) {
   for (int x = 0; x < kSize; ++x) EXPECT_EQ(edges[size_t(5 * kSize + x)], x == 7 || x == 8) << x;
 }
 
-TEST(Silhouettes, AreEdgesBeforeNothing) {
+TEST(Silhouettes, AreEdgesBeforeTheBackground) {
   const auto depth = plane([](int x, int) { return x < 8 ? 3.0f : 0.0f; });
   EXPECT_EQ(count(motion::silhouettes(kSize, kSize, {}, depth)), 2 * kSize);
 }
 
-// 1/depth is linear over a plane; depth is not, and a plane seen at a grazing angle was all edge.
+// Regression: 1/depth is linear over a plane, but depth is not; a plane at a grazing angle was all edges.
 TEST(Silhouettes, APlaneSeenAtAGrazingAngleHasNone) {
   const auto depth = plane([](int, int y) { return 1.0f / (0.001f + 0.05f * float(kSize - y)); });
   EXPECT_EQ(count(motion::silhouettes(kSize, kSize, {}, depth)), 0);
 }
 
-TEST(Silhouettes, NothingKnownHasNone) {
+TEST(Silhouettes, AnEmptyFilmHasNone) {
   EXPECT_EQ(count(motion::silhouettes(kSize, kSize, {}, {})), 0);
   EXPECT_TRUE(motion::silhouettes(0, 0, {}, {}).empty());
   const std::vector<float> odd = {std::numeric_limits<float>::quiet_NaN()};

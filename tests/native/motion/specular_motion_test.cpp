@@ -1,4 +1,4 @@
-// Where reflections and refractions go from frame to frame, against brute force: a dense search of the film.
+// Motion of reflections and refractions from frame to frame, against brute force: a dense search of the film.
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "motion/flat_mirror.h"
@@ -9,7 +9,7 @@ namespace {
 
 using SpecularMotion = MotionTest;
 
-TEST_F(SpecularMotion, WhatRestsMovesByExactlyZero) {
+TEST_F(SpecularMotion, AStaticSceneHasExactlyZeroMotion) {
   add_room();
   scene_.quad(Vec3(-3, -0.99f, 3), Vec3(6, 0, 0), Vec3(0, 0, -6), mirror());
   scene_.ball(Vec3(0, 0, 0), 0.5f, mirror(), 32, true);
@@ -26,7 +26,7 @@ TEST_F(SpecularMotion, WhatRestsMovesByExactlyZero) {
   EXPECT_EQ(tracked, a->chains.chains.size());
 }
 
-// The image of a point in a plane mirror is where the point's mirror image is: without any search.
+// The image of a point in a plane mirror is the mirrored point, so that no search is needed.
 TEST_F(SpecularMotion, AMovingPlaneMirrorShowsMirrorImages) {
   scene_.quad(Vec3(-2, -1, 2), Vec3(4, 0, 0), Vec3(0, 0, -4), mirror());
   scene_.quad(Vec3(-2, -1, -2), Vec3(4, 0, 0), Vec3(0, 3, 0), grey());
@@ -47,8 +47,8 @@ TEST_F(SpecularMotion, AMovingPlaneMirrorShowsMirrorImages) {
   }
 }
 
-// The formula to compare with is right where mirrors are flat, and nowhere else.
-TEST_F(SpecularMotion, TheFlatMirrorIsRightOfFlatMirrors) {
+// The closed form that the test compares with is valid for flat mirrors only.
+TEST_F(SpecularMotion, TheClosedFormHoldsForFlatMirrorsOnly) {
   for (const bool flat : {true, false}) {
     add_room();
     const uint64_t material = mirror();
@@ -100,7 +100,7 @@ TEST_F(SpecularMotion, AMirrorBallSeenByAMovingCamera) {
 
 TEST_F(SpecularMotion, ATurningEllipsoidOfMetal) {
   add_room();
-  scene_.ball(Vec3(0, 0, 0), 0.8f, scene_.material(glossy(0.2f)), 48, true);  // sharp, but no mirror
+  scene_.ball(Vec3(0, 0, 0), 0.8f, scene_.material(glossy(0.2f)), 48, true);  // narrow, but no mirror
   const Mat4 shape = scaling(Vec3(1.0f, 0.5f, 0.7f));
   scene_.camera(Vec3(0, 0.5f, 4), Vec3(0, 0, 0), 0.5f);
   expect_motion("Reflection", [&](float s) {
@@ -146,7 +146,7 @@ TEST_F(SpecularMotion, ABumpedMirror) {
   });
 }
 
-// Light goes round a corner of mirrors.
+// Light is reflected around a corner by several mirrors.
 TEST_F(SpecularMotion, ThreeMirrorsOneAfterTheOther) {
   components_ = lpe::ComponentSet::parse("Three=ERRRD.*L");
   add_room();
@@ -194,7 +194,7 @@ TEST_F(SpecularMotion, FourGlassBallsInARow) {
   });
 }
 
-// What a blurred picture's vectors hold on to are the moments of the frames.
+// The vectors of a blurred picture refer to the times of the frames.
 TEST_F(SpecularMotion, MotionBlurDoesNotChangeIt) {
   std::array<motion::ChainMotion, 2> found;
   for (const bool blurred : {false, true}) {

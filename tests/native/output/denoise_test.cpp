@@ -1,5 +1,4 @@
-// The host's denoiser: what is found and what is refused, by stand-ins for the library; and the library itself where
-// there is one.
+// The host's denoiser: loading and refusing it, by stand-ins for the library; and the real library if there is one.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -59,7 +58,7 @@ TEST_F(FakeOidn, IsFoundByItsFileAndByItsFolder) {
   }
 }
 
-TEST_F(FakeOidn, IsFoundWhereTheProcessHasItAlready) {
+TEST_F(FakeOidn, IsFoundIfTheProcessHasLoadedIt) {
   const output::OidnPlaces nowhere{"", "libfake_oidn_mapped.so"},
       elsewhere{"/no/such/folder/lib.so", "libfake_oidn_mapped.so"};
   EXPECT_TRUE(has(refusal(nowhere), "libfake_oidn_mapped.so"));
@@ -81,15 +80,15 @@ TEST_F(FakeOidn, IsRefusedWithAReason) {
   EXPECT_TRUE(has(refusal({kFake, "libno_such_oidn.so"}), "it makes no device: the fake makes no device"));
 }
 
-// It named the path twice, and not what should lie there.
-TEST_F(FakeOidn, APathThatHoldsNothingIsNamedOnce) {
+// Regression: the message named the path twice, and did not say what should be there.
+TEST_F(FakeOidn, AnEmptyPathIsNamedOnce) {
   for (const std::string& path :
        {std::string("/no/such/lib.so"), kFolder, std::string(GRADUS_SOURCE_DIR "/README.md")}) {
     const std::string text = refusal({path, "libno_such_oidn.so"});
     const size_t first = text.find(path);
     ASSERT_NE(first, std::string::npos) << text;
     EXPECT_EQ(text.find(path, first + 1), std::string::npos) << text;
-    if (path.back() == 'd') continue;  // a file of something else
+    if (path.back() == 'd') continue;  // a file that is no library
     EXPECT_TRUE(has(text, "it should be libno_such_oidn.so or the folder that holds it")) << text;
   }
 }
@@ -111,7 +110,7 @@ std::vector<float> plus(float offset) {
   return result;
 }
 
-TEST_F(FakeOidn, PictureAloneGoesThroughTheNetworkOnce) {
+TEST_F(FakeOidn, ThePictureAlonePassesTheNetworkOnce) {
   const int before = value("runs");
   EXPECT_EQ(output::denoise(*fake(), picture(kColor), 3, never), plus(1.0f));
   EXPECT_EQ(value("runs"), before + 1);
@@ -121,13 +120,13 @@ TEST_F(FakeOidn, PictureAloneGoesThroughTheNetworkOnce) {
   EXPECT_EQ(value("quality"), output::kOidnQualityHigh);
 }
 
-TEST_F(FakeOidn, FourthChannelIsSteppedOver) {
+TEST_F(FakeOidn, TheFourthChannelIsSkipped) {
   std::vector<float> rgba;
   for (size_t i = 0; i < 4; ++i) rgba.insert(rgba.end(), {kColor[3 * i], kColor[3 * i + 1], kColor[3 * i + 2], kNaN});
   EXPECT_EQ(output::denoise(*fake(), picture(rgba, 4), 1, never), plus(1.0f));
 }
 
-TEST_F(FakeOidn, GuidesAreTakenAsTheyAre) {
+TEST_F(FakeOidn, GuidesAreUsedUnchanged) {
   const int before = value("runs");
   output::NoisyPicture p = picture(kColor);
   p.albedo = kAlbedo.data();
@@ -137,7 +136,7 @@ TEST_F(FakeOidn, GuidesAreTakenAsTheyAre) {
   EXPECT_EQ(value("runs"), before + 1);
 }
 
-TEST_F(FakeOidn, AlbedoAloneGuidesAsItIsAndNormalsAloneDoNot) {
+TEST_F(FakeOidn, AlbedoAloneGuidesUnchangedAndNormalsAloneDoNot) {
   output::NoisyPicture p = picture(kColor);
   p.albedo = kAlbedo.data();
   EXPECT_EQ(output::denoise(*fake(), p, 1, never), plus(1.5f));
@@ -146,7 +145,7 @@ TEST_F(FakeOidn, AlbedoAloneGuidesAsItIsAndNormalsAloneDoNot) {
   EXPECT_EQ(output::denoise(*fake(), p, 1, never), plus(1.0f));
 }
 
-TEST_F(FakeOidn, NumbersThatAreNoneCountAsZero) {
+TEST_F(FakeOidn, ValuesThatAreNotFiniteCountAsZero) {
   std::vector<float> color = kColor, albedo = kAlbedo, normal = kNormal;
   color[0] = kNaN, color[5] = kInfinity, color[11] = -kInfinity, albedo[1] = kNaN, normal[2] = kInfinity;
   output::NoisyPicture p = picture(color);
@@ -162,13 +161,13 @@ TEST_F(FakeOidn, HugeValuesStayFinite) {
   for (const float v : output::denoise(*fake(), picture(color), 1, never)) EXPECT_LE(v, 2e30f);
 }
 
-TEST_F(FakeOidn, WhatComesBackAsNoNumberIsThePicture) {
+TEST_F(FakeOidn, ResultsThatAreNotFiniteAreReplacedByThePicture) {
   behave("nan");
   const std::vector<float> result = output::denoise(*fake(), picture(kColor), 1, never);
   for (size_t i = 0; i < 12; ++i) EXPECT_EQ(result[i], kColor[i] + float(i % 2 == 0));
 }
 
-TEST_F(FakeOidn, FailuresCarryItsText) {
+TEST_F(FakeOidn, ErrorsCarryItsMessage) {
   const auto failure = [](const char* how) {
     const auto library = fake();
     behave(how);
@@ -210,8 +209,8 @@ double rms_error(const std::vector<float>& image, const std::vector<float>& trut
   return std::sqrt(sum / double(truth.size()));
 }
 
-// Two walls under noise, with and without guides; then a picture of values that are none, or too large. What went
-// wrong, or "".
+// Denoises two noisy walls with and without guides, and a picture of values that are not finite or too large. Returns
+// an error message or "".
 std::string check_real_library(const std::string& path) {
   std::string why_not;
   const auto library = output::find_oidn({path}, &why_not);
@@ -240,8 +239,8 @@ std::string check_real_library(const std::string& path) {
   return "";
 }
 
-// In a process of its own: in this one, tests could not tell the stand-ins from it.
-TEST(HostDenoiserDeathTest, TakesNoiseAway) {
+// Runs in a process of its own; in this one, the real library would stay loaded for tests of the stand-ins.
+TEST(HostDenoiserDeathTest, RemovesNoise) {
   const std::string path = GRADUS_SOURCE_DIR "/.venv/bpy45/lib/python3.11/site-packages/bpy/lib";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "there is no " << path;
   GTEST_FLAG_SET(death_test_style, "threadsafe");

@@ -1,5 +1,6 @@
-/* A stand-in for Open Image Denoise: the part of its C API that is used, with arithmetic in the place of the network. A guide by itself is
- * halved; a picture becomes picture + 1 + albedo + 10 normal. FAKE_OIDN in the environment: old, no_device, no_filter, refuses, fails, slow, nan.
+/* A stand-in for Open Image Denoise: the functions of its C API that the library uses, with simple arithmetic instead
+ * of the network. A guide that is filtered alone is halved; a picture becomes picture + 1 + albedo + 10 normal. The
+ * environment variable FAKE_OIDN selects how it misbehaves: old, no_device, no_filter, refuses, fails, slow or nan.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -78,8 +79,8 @@ void* oidnNewFilter(void* device, const char* type) {
   ++live;
   return &filter;
 }
-void oidnSetSharedFilterImage(void* f, const char* name, void* data, int format, size_t width, size_t height, size_t offset,
-                              size_t pixel_stride, size_t row_stride) {
+void oidnSetSharedFilterImage(void* f, const char* name, void* data, int format, size_t width, size_t height,
+                              size_t offset, size_t pixel_stride, size_t row_stride) {
   (void)f;
   if (format != 3 || offset != 0 || pixel_stride != 0 || row_stride != 0) fail(2, "the fake knows packed float3 only");
   filter.width = width;

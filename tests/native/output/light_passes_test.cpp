@@ -1,4 +1,4 @@
-// Light passes beside a reconstructed picture: they are as clean, and add up to it (contract 6.5).
+// Light passes beside a reconstructed picture: they have as little noise as the picture, and add up to it.
 #include "output/light_passes.h"
 
 #include <cmath>
@@ -64,7 +64,7 @@ TEST_P(LightPassesBy, AddUpOnATransparentFilm) {
   expect_to_add_up(*rendered(Scenario::World, settings));
 }
 
-// The stand-in adds light everywhere, also where nothing was met.
+// The stand-in adds light everywhere, also where there was none.
 TEST_P(LightPassesBy, AddUpBehindADenoiser) {
   GradusDeviceSettings of_device{};
   of_device.struct_size = sizeof(of_device);
@@ -79,7 +79,7 @@ TEST_P(LightPassesBy, AddUpBehindADenoiser) {
   EXPECT_GT(read(render, GRADUS_PASS_COMBINED)[0], read(render, GRADUS_PASS_NOISY_IMAGE)[0] + 0.5f);
 }
 
-// What was smoothed into a pixel without a colour was divided by 0 and lost.
+// Regression: light that was smoothed into a pixel without a colour was divided by 0 and lost.
 TEST_P(LightPassesBy, LightBesideBlackIsNotLost) {
   PathScene scene;
   test::add_box(&scene, test::matte(Rgb(0.0f)));
@@ -100,14 +100,14 @@ std::vector<float> light_of(const render::Render& render, uint32_t pass) {
   return light;
 }
 
-// Not of squares, which the few pixels at the edges of a light decide.
+// A mean of absolute values, since squares would be dominated by few pixels at the edges of lights.
 double distance(const std::vector<float>& a, const std::vector<float>& b) {
   double sum = 0.0;
   for (size_t i = 0; i < a.size(); ++i) sum += std::fabs(double(a[i]) - b[i]);
   return sum;
 }
 
-// By how much two renders with other random numbers differ.
+// Returns the difference between two renders with other random numbers.
 double noise_of(uint32_t pass, uint32_t reconstruction) {
   GradusSettings settings = settings_for(reconstruction);
   const auto a = light_of(*rendered(Scenario::GlossyFloor, settings), pass);
@@ -116,7 +116,7 @@ double noise_of(uint32_t pass, uint32_t reconstruction) {
   return distance(a, b);
 }
 
-TEST(LightPasses, AreCleanerThanSampled) {
+TEST(LightPasses, HaveLessNoiseThanTheSamples) {
   for (const uint32_t pass : {GRADUS_PASS_DIFFUSE_DIRECT, GRADUS_PASS_DIFFUSE_INDIRECT, GRADUS_PASS_GLOSSY_INDIRECT}) {
     const double noisy = noise_of(pass, GRADUS_RECONSTRUCTION_NONE);
     ASSERT_GT(noisy, 0.0);
@@ -125,7 +125,7 @@ TEST(LightPasses, AreCleanerThanSampled) {
   }
 }
 
-// What lacked of the brighter picture went to the noisy ones, and the sum was right.
+// Regression: the difference to the brighter picture was added to the noisy passes, so that only the sum was right.
 TEST(LightPasses, AreExposedAsThePictureIs) {
   GradusSettings settings = settings_for(GRADUS_RECONSTRUCTION_REGULARIZED);
   const auto once = rendered(Scenario::GlossyFloor, settings);
@@ -146,8 +146,8 @@ TEST(LightPasses, OfTheNoisyImageAreThoseSampled) {
   expect_to_add_up(*render);
 }
 
-// A pass is a part of the picture, whoever else is there: what nobody asked for is one part more.
-TEST(LightPasses, OneAloneIsCleanToo) {
+// A pass does not depend on the other requested passes: the light that is not requested counts as one more pass.
+TEST(LightPasses, OneAloneHasLittleNoiseToo) {
   const auto direct = uint64_t{1} << GRADUS_PASS_DIFFUSE_DIRECT;
   const auto alone = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED, direct));
   const auto all = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED));
@@ -158,7 +158,7 @@ TEST(LightPasses, OneAloneIsCleanToo) {
   EXPECT_THROW(read(*alone, GRADUS_PASS_DIFFUSE_INDIRECT), Error);
 }
 
-TEST(LightPasses, ThatNobodyAskedForTakeNoRoom) {
+TEST(LightPasses, UnrequestedOnesTakeNoMemory) {
   const auto none = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED, 0));
   EXPECT_FALSE(output::has_light_passes(*none->film()));
   const auto all = rendered(Scenario::GlossyFloor, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED));
@@ -168,7 +168,7 @@ TEST(LightPasses, ThatNobodyAskedForTakeNoRoom) {
   EXPECT_EQ(kept(*all) - kept(*none), 8 * 3 * sizeof(float) * kSide * kSide);
 }
 
-// With one sample nothing is known of the noise.
+// The noise of a single sample is unknown.
 TEST(LightPasses, OfOneSampleAddUp) {
   GradusSettings settings = settings_for(GRADUS_RECONSTRUCTION_REGULARIZED);
   settings.samples = 1;

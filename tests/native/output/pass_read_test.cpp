@@ -1,4 +1,4 @@
-// Passes read out of a frame: row by row on several threads, with the bits of whole images read on one.
+// Passes are read from a film row by row on several threads, with the bits of whole images read on one.
 #include "output/pass_read.h"
 
 #include <cmath>
@@ -7,24 +7,25 @@
 
 #include <gtest/gtest.h>
 
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "schema/pass_table.h"
 #include "support/threads.h"
 
 namespace gradus::test {
 namespace {
 
-constexpr Region kSampled{-20, -10, 310, 260}, kRead{5, 3, 295, 247};  // more rows than one task takes
+constexpr Region kSampled{-20, -10, 310, 260}, kRead{5, 3, 295, 247};  // more rows than one task reads
 
 uint64_t bit(uint32_t pass) { return uint64_t{1} << pass; }
 
-// Sums of random samples; some pixels have none in one half, some pairs none at one end, some values are denormal.
+// Returns sums of random samples; some pixels have none in one half-buffer, some pairs none at one end, some values are
+// denormal.
 film::Film random_frame(int channels) {
   film::Film frame(400, 300, kSampled, channels, 2, true);
-  frame.settings.film_exposure = 2.0f;  // exact products: no bit depends on how they are added
-  frame.passes = film::make_pass_planes(
-      bit(GRADUS_PASS_DEPTH) | bit(GRADUS_PASS_NORMAL) | bit(GRADUS_PASS_DENOISING_ALBEDO), kSampled.area());
-  frame.fallback.assign(size_t(kSampled.area()), 0.0f);
+  frame.settings.film_exposure = 2.0f;  // exact products: no bit depends on the order of additions
+  film::add_pass_channels(
+      bit(GRADUS_PASS_DEPTH) | bit(GRADUS_PASS_NORMAL) | bit(GRADUS_PASS_DENOISING_ALBEDO) | bit(GRADUS_PASS_FALLBACK),
+      &frame);
   std::minstd_rand random(7);
   const auto value = [&] {
     const float scale = random() % 16 == 0 ? std::numeric_limits<float>::min() : 1.0f;
@@ -43,12 +44,11 @@ film::Film random_frame(int channels) {
       for (float& count : plane) count = float(random() % 3);
     }
   }
-  for (film::PassPlane& plane : frame.passes) {
+  for (film::Channel& plane : frame.channels) {
     for (std::vector<float>* values : {&plane.values[0], &plane.values[1], &plane.weight}) {
       for (float& sum : *values) sum = value();
     }
   }
-  for (float& sum : frame.fallback) sum = float(random() % 2);
   return frame;
 }
 
@@ -58,7 +58,7 @@ std::vector<float> read(const film::Film& frame, uint32_t pass, const Region& re
   return pixels;
 }
 
-// As Gradient X and Y were read: each cropped from images of the whole frame.
+// The earlier implementation of Gradient X and Y: each is cropped from images of the whole film.
 std::vector<float> gradient_of_images(const film::Film& frame, bool vertical) {
   std::vector<float> pixels(3 * size_t(kRead.area()), 0.0f);
   for (int component = 0; component < int(frame.components.size()); ++component) {
@@ -68,7 +68,7 @@ std::vector<float> gradient_of_images(const film::Film& frame, bool vertical) {
     for (int32_t y = kRead.y0; y < kRead.y1; ++y) {
       for (int32_t x = kRead.x0; x < kRead.x1; ++x, out += 3) {
         for (size_t c = 0; c < 3; ++c) {
-          const float difference = plane[frame.index(x, y) * size_t(frame.channels) + c];
+          const float difference = plane[frame.index(x, y) * size_t(frame.color_channels) + c];
           if (is_finite(difference)) pixels[out + c] += frame.settings.film_exposure * difference;
         }
       }
@@ -113,7 +113,7 @@ TEST(PassRead, EveryPassHasTheSameBitsForAnyNumberOfThreads) {
                               GRADUS_PASS_VARIANCE, GRADUS_PASS_SAMPLE_COUNT, GRADUS_PASS_FALLBACK}) {
     SCOPED_TRACE(schema::pass_info(pass).name);
     expect_same_bits_for_any_number_of_threads([&] { return read(frame, pass, kRead); });
-    // A piece that is read by one thread alone has the bits of the whole.
+    // A region that one thread reads alone has the bits of the whole.
     const Region piece{40, 30, 50, 35};
     const std::vector<float> whole = read(frame, pass, kRead), part = read(frame, pass, piece);
     const size_t channels = schema::pass_info(pass).channels, row = channels * size_t(piece.width());

@@ -1,4 +1,4 @@
-// Small pictures brought to a frame's size: what lies where, at borders, in regions, and in frames of a few pixels.
+// Small pictures enlarged to the size of a film: positions, borders, regions, and films of a few pixels.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace gradus {
 namespace {
 
-// A picture of `small` that shows f at the film positions of `full` where its pixels' centres lie.
+// Returns a picture of size `small` whose pixels show f at the film positions of `full` where their centres lie.
 template <class Function>
 std::vector<float> picture(const Region& part, output::ImageSize full, output::ImageSize small, Function&& f) {
   std::vector<float> rgba;
@@ -25,13 +25,13 @@ double plane(double x, double y, int c) { return 1.0 + 0.25 * c + 0.03 * x - 0.0
 
 Region all_of(output::ImageSize size) { return {0, 0, int32_t(size.width), int32_t(size.height)}; }
 
-TEST(Enlarge, APlaneStaysWhereItIs) {
+TEST(Enlarge, APlaneKeepsItsPosition) {
   const output::ImageSize full{37, 22}, small{10, 6};  // sides that are no multiples
   const Region whole = all_of(full);
   const std::vector<float> large =
       output::enlarge(picture(output::covering(whole, full, small), full, small, plane), 4, whole, full, small);
   ASSERT_EQ(large.size(), size_t{4 * 37 * 22});
-  for (int32_t y = 2; y < 20; ++y) {  // beyond the outermost centres there is nothing to go by
+  for (int32_t y = 2; y < 20; ++y) {  // beyond the outermost centres, values are extrapolated
     for (int32_t x = 2; x < 35; ++x) {
       for (int c = 0; c < 4; ++c) {
         EXPECT_NEAR(large[4 * (size_t(y) * 37 + size_t(x)) + size_t(c)], plane(x + 0.5, y + 0.5, c), 1e-5)

@@ -47,21 +47,21 @@ TEST(L4_Sampler, VertexHoldsTheBlocksOfItsDepth) {
   }
 }
 
-TEST(L4_Sampler, EachPartOfTheKeyCounts) {
+TEST(L4_Sampler, EachFieldOfTheKeyMatters) {
   const path::SampleKey base = key_of(1, 2, 6);
   std::vector<path::SampleKey> others(6, base);
   others[0].seed = 2;
   others[1].kind = path::StreamKind::Pilot;
   others[2].stream = 3;
   others[3].stream_frame = 1;
-  others[4].index = 8;  // same half
-  others[5].index = 7;  // other half, same number within it
+  others[4].index = 8;  // same half-buffer
+  others[5].index = 7;  // other half-buffer, same number within it
   for (const path::SampleKey& other : others) {
     EXPECT_NE(path::Sampler(base).get2(4), path::Sampler(other).get2(4));
   }
 }
 
-// Each aligned block of 2^k points of one half is a (0, k, 2)-net: one point in every elementary interval.
+// Each aligned block of 2^k points of one half-buffer is a (0, k, 2)-net: one point in every elementary interval.
 TEST(L4_Sampler, HalvesAreNets) {
   for (uint32_t half = 0; half < 2; ++half) {
     for (int log_x = 0; log_x <= 6; ++log_x) {
@@ -100,7 +100,7 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return sab / std::sqrt(saa * sbb);
 }
 
-// Means of few samples of a smooth function, as pixels see them.
+// Returns errors of means of few samples of a smooth function, like those of pixels.
 std::vector<double> residuals(uint32_t seed, uint32_t stream_step, uint32_t block) {
   std::vector<double> means;
   for (uint32_t pixel = 0; pixel < 10000; ++pixel) {
@@ -122,7 +122,7 @@ TEST(A10_Seeds, SamplerResidualsAreUncorrelated) {
   EXPECT_LT(std::fabs(correlation(base, residuals(1, 0, 5))), 0.05) << "dimensions";
 }
 
-// (A − B)²/4 estimates the variance of the mean (contract 1.2): the halves are independent of each other.
+// (A − B)²/4 estimates the variance of the mean: the half-buffers are independent of each other.
 TEST(A8_Variance, HalvesOfTheSampler) {
   double estimated = 0.0;
   double mean = 0.0;

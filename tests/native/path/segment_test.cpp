@@ -1,4 +1,4 @@
-// What lies along one segment of a path.
+// Emitters and surfaces along one segment of a path.
 #include "path/segment.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ uint64_t pane(PathScene* scene) {
   return scene->material(clear);
 }
 
-// The segment along +x from the origin for one of the sampler's samples.
+// Traces the segment along +x from the origin, for one sample of the sampler.
 path::Segment trace(const path::PathContext& context, uint32_t sample, path::PathRay* ray) {
   *ray = path::PathRay{};
   ray->ray = Ray{Vec3(0.0f), 0.0f, Vec3(1, 0, 0), kInfinity};
@@ -36,8 +36,8 @@ path::Segment trace(const path::PathContext& context, uint32_t sample, path::Pat
   return segment;
 }
 
-// Segments held eight lights at most.
-TEST(Segment, TheNinthLampOnARayIsSeenToo) {
+// Regression: segments held at most eight lights.
+TEST(Segment, TheNinthLightOnARayIsSeenToo) {
   PathScene scene;
   for (int i = 0; i < 20; ++i) scene.light(light_at(Vec3(2.0f + 1.5f * float(i), 0.1f, 0.0f), 0.4f));
   scene.camera(Vec3(0, 0, 3), Vec3(0.0f), 1.0f);
@@ -50,9 +50,9 @@ TEST(Segment, TheNinthLampOnARayIsSeenToo) {
     EXPECT_GT(segment.light_crossings[i].distance, segment.light_crossings[i - 1].distance);
 }
 
-// Lights that turn towards their receiver were met as seen from the last transparent surface, and weighed as seen from
-// the vertex.
-TEST(Segment, ALampBehindATransparentSurfaceFacesTheVertex) {
+// Regression: lights that turn towards their receiver were met as seen from the last transparent surface, and weighted
+// as seen from the vertex.
+TEST(Segment, ALightBehindATransparentSurfaceFacesTheVertex) {
   PathScene scene;
   GradusLight light = light_at(Vec3(3.0f, 0.5f, 0.2f), 0.8f);
   light.flags |= GRADUS_LIGHT_DISK_FACING;
@@ -76,8 +76,8 @@ TEST(Segment, ALampBehindATransparentSurfaceFacesTheVertex) {
   EXPECT_GT(seen, 5);
 }
 
-// The last ray of a path asks for no surface where none shines, and must find the same: lights before and behind walls,
-// and the world.
+// The last ray of a path needs no surfaces unless they are emissive, but it must find the same light: before and behind
+// walls, and of the world.
 TEST(Segment, LastRaysFindTheSameLightsWithoutSurfaces) {
   PathScene scene;
   test::Surface grey;
@@ -113,8 +113,8 @@ TEST(Segment, LastRaysFindTheSameLightsWithoutSurfaces) {
   EXPECT_GT(escaped, 500);
 }
 
-// The surfaces that a path had passed before did not count.
-TEST(Segment, TransmittanceGoesOnCountingTransparentSurfaces) {
+// Regression: transparent surfaces that the path had passed before were not counted.
+TEST(Segment, TransmittanceCountsTransparentSurfacesOfEarlierSegments) {
   PathScene scene;
   const uint64_t material = pane(&scene);
   for (int i = 1; i <= 2; ++i) scene.quad(Vec3(float(i), -2, -2), Vec3(0, 4, 0), Vec3(0, 0, 4), material);
@@ -132,8 +132,8 @@ TEST(Segment, TransmittanceGoesOnCountingTransparentSurfaces) {
   }
 }
 
-// Base rays counted the whole segment, connections and shadow rays only what lay behind the last surface.
-TEST(Segment, AllRaysMeasureTheirLengthFromWhereTheyStart) {
+// Regression: base rays counted the whole segment, connections and shadow rays only the length behind the last surface.
+TEST(Segment, AllRaysMeasureTheirLengthFromTheirStart) {
   PathScene scene;
   test::ProgramBuilder program;
   const int length = program.add(GRADUS_OP_LIGHT_PATH, {}, GRADUS_LIGHT_PATH_LENGTH);
@@ -151,7 +151,7 @@ TEST(Segment, AllRaysMeasureTheirLengthFromWhereTheyStart) {
   EXPECT_NEAR(context.scene.transmittance(link, 8).x, 24.0f, 1e-4f) << "shadow ray";
 }
 
-// Connections ended 1e-4 of their length early.
+// Regression: connections ended 1e-4 of their length early.
 TEST(Segment, AWallJustBeforeTheOtherVertexBlocksTheConnection) {
   PathScene scene;
   const uint64_t material = scene.material(test::matte(Rgb(0.5f)));

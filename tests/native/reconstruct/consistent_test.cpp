@@ -17,7 +17,7 @@ class Consistent : public ::testing::Test {
     EXPECT_FALSE(report.hit_cap);
     return x;
   }
-  // Without any noise.
+  // Returns images without noise.
   static film::GradientImages exact(int w, int h, const std::vector<float>& image) {
     return noisy_images(
         w, h, 3, image, [](size_t) { return 0.0f; }, [](size_t) { return 0.0f; });
@@ -31,7 +31,7 @@ TEST_F(Consistent, B1_KeepsAnImageWithItsOwnGradients) {
   }
 }
 
-// The floors of weights are relative to the image, not absolute (algorithms 14.2).
+// The minimum weights are relative to the image, not absolute.
 TEST_F(Consistent, B2_ScalesWithTheImage) {
   film::GradientImages images = noisy_images(64, 48);
   std::vector<float> x = solve(images);
@@ -44,7 +44,7 @@ TEST_F(Consistent, B2_ScalesWithTheImage) {
   EXPECT_LT(max_difference(x, y), 1e-2 * 1024.0);
 }
 
-TEST_F(Consistent, B2_LeavesOutWhatIsNotFinite) {
+TEST_F(Consistent, B2_LeavesOutValuesThatAreNotFinite) {
   const std::vector<float> ones(33 * 17 * 3, 1.0f);
   film::GradientImages images = exact(33, 17, ones);
   for (auto* deviation : {&images.primal_deviation, &images.dx_deviation, &images.dy_deviation})
@@ -60,7 +60,7 @@ TEST_F(Consistent, B2_ABlackImageIsBlack) {
   EXPECT_EQ(solve(exact(16, 16, black)), black);
 }
 
-// Weights are frozen: a fourth channel goes through those of the first three, and parts add up (contract 3.4).
+// The weights are fixed: a fourth channel uses those of the first three, and components add up.
 TEST_F(Consistent, B2_WeightsAreALinearOperator) {
   const film::GradientImages images = noisy_images(48, 32, 4);
   reconstruct::SolveReport report;
@@ -75,7 +75,7 @@ TEST_F(Consistent, B2_WeightsAreALinearOperator) {
   solver->apply(reconstruct::planes_of(images, 1), b.data());
   solver->apply(reconstruct::planes_of(both, 0), sum.data());
   for (size_t i = 0; i < pixels; ++i) EXPECT_NEAR(a[4 * i] + b[4 * i], sum[4 * i], 1e-3) << i;
-  // And the solution that comes with the weights is theirs.
+  // The solution returned with the weights is the one that they give.
   const std::vector<float> whole = solve(images);
   for (size_t i = 0; i < pixels; ++i) EXPECT_NEAR(whole[4 * i], a[4 * i], 1e-2) << i;
 }

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "film/pass_planes.h"
+#include "film/film.h"
 #include "reconstruct/reconstruct_film.h"
 #include "schema/pass_table.h"
 #include "support/refusal.h"
@@ -21,7 +21,7 @@ using test::mean;
 
 const CancelCheck kNever = [] { return false; };
 
-// Values that do not differ between the halves, which are then moved apart by what a test likes.
+// Returns a film with equal values in both half-buffers; tests then add differences to them.
 film::Film make_frame(int width, int height, uint32_t samples_a, uint32_t samples_b, bool gradients) {
   film::Film film(uint32_t(width), uint32_t(height), {0, 0, width, height}, 3, 1, gradients);
   const size_t pixels = size_t(width) * size_t(height);
@@ -52,7 +52,7 @@ std::vector<float> error_of(const film::Film& film, uint32_t reconstruction) {
 
 constexpr uint32_t kAll[] = {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1};
 
-// One sample in each half, of variance σ²: the mean's is σ²/2.
+// Each half-buffer has one sample of variance σ²: the variance of the mean is σ²/2.
 TEST(ErrorEstimate, OfTheNoisyImageIsTheVarianceOfItsMean) {
   film::Film film = make_frame(64, 48, 1, 1, false);
   add_noise(0.3f, 5, &film);
@@ -65,7 +65,7 @@ TEST(ErrorEstimate, OfTheNoisyImageIsTheVarianceOfItsMean) {
   }
 }
 
-// Noise that no reconstruction takes away, in halves of different size.
+// Noise that no reconstruction removes, in half-buffers with different numbers of samples.
 TEST(ErrorEstimate, OfHalvesApartIsTheSquareOfHalfTheirDistance) {
   film::Film film = make_frame(40, 30, 3, 2, true);
   for (Radiance& sum : film.components[0].primal[0]) sum += Radiance(3.0f * 0.7f);
@@ -75,7 +75,7 @@ TEST(ErrorEstimate, OfHalvesApartIsTheSquareOfHalfTheirDistance) {
   }
 }
 
-TEST(ErrorEstimate, IsThereOnlyIfAskedFor) {
+TEST(ErrorEstimate, ExistsOnlyIfRequested) {
   const film::Film film = make_frame(8, 8, 2, 2, true);
   reconstruct::SolveReport report;
   for (const uint32_t reconstruction : kAll) {
@@ -83,7 +83,7 @@ TEST(ErrorEstimate, IsThereOnlyIfAskedFor) {
   }
 }
 
-// Windows that ran over the border took the darkness beyond for pixels without error.
+// Regression: windows across the border counted the black outside as pixels without error.
 TEST(ErrorEstimate, IsAsLargeAtTheBorder) {
   reconstruct::ErrorTerms terms;
   terms.noise.assign(size_t{3} * 20 * 15, 2.0f);
@@ -103,8 +103,9 @@ TEST(ErrorEstimate, FallsWithTheDistanceFromANoisyPixel) {
   EXPECT_EQ(error[0], 0.0f);
 }
 
-// Of what is known of L2's error the distance from L2's image is taken away, but no more than three quarters.
-TEST(ErrorEstimate, OfABetterImageIsLessThanThatOfL2ByTheirDistance) {
+// The squared distance from the image of L2 is subtracted from the estimated error of L2, but not more than three
+// quarters of it.
+TEST(ErrorEstimate, OfABetterImageIsThatOfL2LessTheirDistance) {
   EXPECT_EQ(reconstruct::squared_error(4.0, 1.0), 3.0);
   EXPECT_EQ(reconstruct::squared_error(4.0, 5.0), 1.0);
   reconstruct::ErrorTerms terms;
@@ -113,7 +114,8 @@ TEST(ErrorEstimate, OfABetterImageIsLessThanThatOfL2ByTheirDistance) {
   for (const float e : reconstruct::error_of_pixels(terms, 30, 30, 3)) EXPECT_FLOAT_EQ(e, 3.0f);
 }
 
-// Half of a lone sample counted as the difference of two: a picture of one sample looked twice as good as its square.
+// Regression: half of a single sample counted as the difference of two, so that a picture of one sample seemed to have
+// half the error.
 TEST(ErrorEstimate, WhereAHalfIsEmptyIsTheSquareOfThePicture) {
   for (const bool first : {true, false}) {
     const film::Film film = make_frame(24, 17, first ? 1 : 0, first ? 0 : 1, true);
@@ -142,15 +144,15 @@ TEST(ErrorEstimate, IsFiniteForAnySizeSampleCountAndValue) {
   }
 }
 
-// A frame of what may have been rendered with other settings.
-TEST(ErrorEstimate, AndReconstructionRefuseFramesWithoutWhatTheyRead) {
+// A film of methods that were rendered with other settings.
+TEST(ErrorEstimate, AndReconstructionRefuseFilmsWithoutNeededPlanes) {
   film::Film film = make_frame(8, 8, 2, 2, false);
   const auto message = [&](uint32_t reconstruction) {
     return test::refusal_of([&] { error_of(film, reconstruction); });
   };
   EXPECT_NE(message(GRADUS_RECONSTRUCTION_L2).find("no gradients"), std::string::npos);
   EXPECT_NE(message(GRADUS_RECONSTRUCTION_REGULARIZED).find("no denoising features"), std::string::npos);
-  film.passes = film::make_pass_planes(schema::feature_passes(), 64);
+  film::add_pass_channels(schema::feature_passes(), &film);
   EXPECT_EQ(message(GRADUS_RECONSTRUCTION_REGULARIZED).find("no denoising features"), std::string::npos);
 }
 

@@ -1,4 +1,4 @@
-// Features without their noise.
+// Filtering of the noise of features.
 #include "reconstruct/feature_filter.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 constexpr int kWidth = 60, kHeight = 40;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 
-// Half white, half dark, noise of a deviation in both means of halves.
+// An image that is half white and half dark, with noise of the given deviation in the means of both half-buffers.
 struct Noisy {
   explicit Noisy(float deviation, uint32_t channels = 3, int width = kWidth, int height = kHeight, float unit = 1.0f) {
     std::mt19937 random(7);
@@ -39,10 +39,10 @@ double mean_square(const std::vector<float>& a, const std::vector<float>& b) {
   return sum / double(a.size());
 }
 
-TEST(FeatureFilter, TakesNoiseAndKeepsTheEdge) {
+TEST(FeatureFilter, RemovesNoiseAndKeepsTheEdge) {
   const Noisy noisy(0.1f);
   const film::FeatureImage clean = reconstruct::filter_feature(noisy.image, kWidth, kHeight);
-  // Nine equal weights leave a ninth.
+  // The mean of nine pixels with equal weights has a ninth of the variance.
   EXPECT_LT(mean_square(clean.values, noisy.truth), mean_square(noisy.image.values, noisy.truth) / 5.0);
   for (int y = 0; y < kHeight; ++y) {
     for (int x : {kWidth / 2 - 1, kWidth / 2}) {
@@ -59,7 +59,7 @@ TEST(FeatureFilter, CleanFeaturesStay) {
   for (size_t i = 0; i < clean.truth.size(); ++i) ASSERT_NEAR(filtered.values[i], clean.truth[i], 1e-4f);
 }
 
-// Texture of a fiftieth of the feature, which no noise explains.
+// A texture of a fiftieth of the feature, which no noise explains.
 TEST(FeatureFilter, FineTextureWithoutNoiseStays) {
   Noisy clean(0.0f, 1);
   for (size_t i = 0; i < clean.truth.size(); ++i)
@@ -68,8 +68,8 @@ TEST(FeatureFilter, FineTextureWithoutNoiseStays) {
   EXPECT_LT(std::sqrt(mean_square(filtered.values, clean.truth)), 1e-4);
 }
 
-// Neighbours of a chequer that differ by twice their deviation count for something, but not for all: of what is
-// measured in a quarter of the true variance nothing would be taken, in four times that next to everything.
+// The pixels of a checkerboard, which differ by twice their deviation, are partly averaged. With an estimated variance
+// of a quarter of the true one they would hardly be averaged, with four times that almost completely.
 TEST(FeatureFilter, DifferencesCountByTheVariance) {
   Noisy noisy(0.0f, 1);
   const auto chequer = [](size_t i) { return (i % kWidth + i / kWidth) % 2 ? 0.1f : -0.1f; };
@@ -83,14 +83,15 @@ TEST(FeatureFilter, DifferencesCountByTheVariance) {
   EXPECT_LT(left, 0.95);
 }
 
-// Of pixels at the border less was known, as if beyond it there were neither noise nor differences.
-TEST(FeatureFilter, AtTheBorderNeighboursCountByTheSameDistances) {
+// Regression: pixels at the border had a smaller estimate of the noise, as if pixels outside had neither noise nor
+// differences.
+TEST(FeatureFilter, AtTheBorderNeighboursHaveTheSameWeights) {
   Noisy noisy(0.0f, 1);
   const auto chequer = [](int x, int y) { return (x + y) % 2 ? 0.1f : -0.1f; };
   for (int i = 0; i < kWidth * kHeight; ++i) noisy.image.values[size_t(i)] = 0.5f + chequer(i % kWidth, i / kWidth);
   std::fill(noisy.image.variance.begin(), noisy.image.variance.end(), 0.01f);
   const film::FeatureImage filtered = reconstruct::filter_feature(noisy.image, kWidth, kHeight);
-  // Neighbours at the sides are 0.2 apart, where noise explains √0.02: (0.04 − 0.02)/(k² 0.02) = 2 variances.
+  // Neighbours at the sides differ by 0.2, where noise explains √0.02: (0.04 − 0.02)/(k² 0.02) = 2 variances.
   const float side = 1.0f / std::pow(1.0f + 0.25f * 2.0f, 4.0f);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
@@ -102,7 +103,8 @@ TEST(FeatureFilter, AtTheBorderNeighboursCountByTheSameDistances) {
   }
 }
 
-// Each neighbour by its own distance: those to the left are read at another place than those to the right.
+// Each neighbour is weighted by its own distance; those to the left are read from another place than those to the
+// right.
 TEST(FeatureFilter, AMirroredPictureIsFilteredAlike) {
   const auto mirrored = [](std::vector<float> values) {
     std::reverse(values.begin(), values.end());
@@ -124,8 +126,8 @@ TEST(FeatureFilter, DoesNotDependOnTheUnit) {
   for (size_t i = 0; i < a.values.size(); ++i) ASSERT_NEAR(b.values[i], 1000.0f * a.values[i], 0.02f);
 }
 
-// Of a row or column that is cut off beyond the filter's reach, the rest is the same: tiles know enough of what is
-// around them.
+// If a row or column is removed beyond the reach of the filter, the rest is the same: tiles read enough of their
+// surroundings.
 TEST(FeatureFilter, TilesLeaveNoSeams) {
   constexpr int kWide = 600, kTall = 70, kCut = 5, kEdge = 3;
   const Noisy noisy(0.1f, 1, kWide, kTall);
@@ -146,14 +148,14 @@ TEST(FeatureFilter, TilesLeaveNoSeams) {
   }
 }
 
-TEST(FeatureFilter, NothingKnownOfTheNoiseCountsAsNone) {
+TEST(FeatureFilter, UnknownNoiseCountsAsNone) {
   Noisy noisy(0.1f);
   std::fill(noisy.image.variance.begin(), noisy.image.variance.end(), kNaN);
   const film::FeatureImage filtered = reconstruct::filter_feature(noisy.image, kWidth, kHeight);
   EXPECT_LT(mean_square(filtered.values, noisy.image.values), 0.1 * mean_square(noisy.image.values, noisy.truth));
 }
 
-TEST(FeatureFilter, NumbersThatAreNoneHarmNothingElse) {
+TEST(FeatureFilter, ValuesThatAreNotFiniteAffectNothingElse) {
   Noisy noisy(0.05f);
   noisy.image.values[3 * 500] = kNaN;
   noisy.image.values[3 * 900 + 1] = kInfinity;

@@ -14,7 +14,7 @@ std::vector<float> solve(const film::GradientImages& images, reconstruct::SolveR
   return reconstruct::reconstruct(images, GRADUS_RECONSTRUCTION_L1, alpha, never, report);
 }
 
-// The objective: Σ α‖x−I‖ + ‖Dx−g‖ over all rows, in double.
+// Returns the objective Σ α‖x−I‖ + ‖Dx−g‖ over all rows, in double.
 double energy(const film::GradientImages& images, const std::vector<float>& x, double alpha) {
   const int w = images.width, h = images.height, n = images.channels;
   double sum = 0.0;
@@ -63,7 +63,7 @@ TEST(B2_Solver, L1LowersItsObjective) {
                            l2 = reconstruct::reconstruct(images, GRADUS_RECONSTRUCTION_L2, 0.2f, never, &report);
   const double best = energy(images, l1, 0.2);
   EXPECT_LT(best, 0.95 * energy(images, l2, 0.2));
-  // Near a minimum: small random steps do not help.
+  // The solution is near a minimum: small random steps do not lower the objective.
   for (unsigned seed = 1; seed < 6; ++seed) {
     std::vector<float> other = l1;
     add_noise(&other, 0.005f, seed);
@@ -89,8 +89,8 @@ TEST(B2_Solver, L1IgnoresOutliersInGradientsAndPixels) {
   EXPECT_GT(l2, 10 * l1);
 }
 
-// Skewed noise: mean 1, median 0.1 of it. The minimiser alone estimates a median and loses 14 % here; so did the
-// result, up to the floor that its data rows had.
+// Skewed noise with mean 1 and median 0.1. A minimiser alone estimates a median and loses 14 % here; so did an earlier
+// version until its data rows got a minimum weight.
 TEST(B3_L1, KeepsTheMeanOfSkewedNoise) {
   film::GradientImages images = with_exact_gradients(128, 96, 3, std::vector<float>(128 * 96 * 3, 1.0f));
   add_noise(&images.dx, 0.3f, 2);
@@ -110,12 +110,12 @@ TEST(B2_Solver, OutlierBoundGrowsWithTheSquareRootOfTheCount) {
     std::vector<float> squares(n, 4.0f);
     const double expected = 4.0 * double(n) / std::log(double(n));
     EXPECT_NEAR(reconstruct::outlier_bound_squared(&squares) / expected, 1.0, 1e-4);
-    // ln n values of any size are outliers; they leave less of the sum to the others.
+    // ln n outliers of any size hardly reduce the sum of the others.
     std::vector<float> one(n, 4.0f);
     one[n / 2] = 1e30f;
     EXPECT_NEAR(reconstruct::outlier_bound_squared(&one) / (4.0 * double(n - 1) / (std::log(double(n)) - 1.0)), 1.0,
                 1e-4);
-    // Half of all values are no outliers.
+    // If half of the values are large, they are no outliers.
     std::vector<float> half(n, 4.0f);
     std::fill_n(half.begin(), n / 2, 400.0f);
     EXPECT_GT(reconstruct::outlier_bound_squared(&half), 400.0f);

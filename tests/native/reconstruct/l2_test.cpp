@@ -20,7 +20,7 @@ struct Size {
 
 constexpr Size kSizes[] = {{1, 1}, {1, 7}, {7, 1}, {2, 2}, {33, 17}, {64, 48}, {512, 512}};
 
-// ‖A x − b‖ / ‖b‖ with A = α² + DᵀD and b = α²I + Dᵀg, one channel.
+// Returns ‖A x − b‖ / ‖b‖ with A = α² + DᵀD and b = α²I + Dᵀg, for one channel.
 double residual(const film::GradientImages& images, const std::vector<float>& x, double alpha) {
   const int w = images.width, h = images.height;
   const auto at = [w](const std::vector<float>& v, int px, int py) { return double(v[size_t(py) * w + px]); };
@@ -69,7 +69,7 @@ TEST(B1_FixedPoint, L2KeepsAConstant) {
   EXPECT_LT(max_difference(solve(with_exact_gradients(33, 17, 3, image)), image), 1e-6);
 }
 
-// Without a weight of the user's: not the zero that it is written as, under which the image's brightness is undefined.
+// The weight 0 selects the automatic weight. A true weight of 0 would leave the brightness of the image undefined.
 TEST(B2_Solver, AutomaticWeightIsThatOfTheSolver) {
   film::GradientImages images = with_exact_gradients(33, 17, 3, smooth_image(33, 17, 3));
   add_noise(&images.dx, 0.05f, 2);
@@ -95,7 +95,7 @@ TEST(B2_Solver, L2SolvesTheNormalEquations) {
       add_noise(&images.primal, 0.3f, 1);
       add_noise(&images.dx, 0.05f, 2);
       add_noise(&images.dy, 0.05f, 3);
-      // The border rows exist in memory, but not in the system: whatever they hold must not matter.
+      // The rows at the border exist in memory, but not in the system: their values must not matter.
       const std::vector<float> x = solve(images, alpha);
       EXPECT_LT(residual(images, x, alpha), 1e-4) << s.width << "x" << s.height << " alpha " << alpha;
       EXPECT_NEAR(mean(x), mean(images.primal), 1e-5 * std::abs(mean(images.primal)) + 1e-7);
@@ -103,7 +103,7 @@ TEST(B2_Solver, L2SolvesTheNormalEquations) {
   }
 }
 
-// Sums over a row or column of large values left the range of a float.
+// Regression: sums over a row or column of large values overflowed.
 TEST(B2_Solver, L2OfHugeValuesIsFinite) {
   const std::vector<float> image = make_image(256, 256, 1, [](int x, int, int) { return x < 128 ? 2e37f : 1e37f; });
   const std::vector<float> x = solve(with_exact_gradients(256, 256, 1, image), 0.4f);
@@ -128,7 +128,7 @@ TEST(B2_Solver, L2OfAStepAndAPlane) {
   EXPECT_LT(max_difference(solve(with_exact_gradients(64, 48, 1, plane)), plane), 1e-4);
 }
 
-TEST(B2_Solver, L2LeavesOutWhatIsNotFinite) {
+TEST(B2_Solver, L2LeavesOutValuesThatAreNotFinite) {
   film::GradientImages images = with_exact_gradients(33, 17, 1, std::vector<float>(33 * 17, 1.0f));
   images.primal[40] = std::numeric_limits<float>::quiet_NaN();
   images.dx[90] = std::numeric_limits<float>::infinity();
@@ -141,7 +141,7 @@ TEST(L1_Threads, L2HasTheSameBitsForAnyNumberOfThreads) {
   test::expect_same_bits_for_any_number_of_threads([&] { return solve(images); });
 }
 
-// A linear operator: applied to a sum, it gives the sum (contract 3.4).
+// L2 is a linear operator: the solution of a sum is the sum of the solutions.
 TEST(B2_Solver, L2IsLinear) {
   film::GradientImages a = with_exact_gradients(33, 17, 1, smooth_image(33, 17, 1)), b = a;
   add_noise(&a.primal, 0.3f, 1);
@@ -158,8 +158,7 @@ TEST(B2_Solver, L2IsLinear) {
   EXPECT_LT(max_difference(x, solve(sum)), 1e-5);
 }
 
-// Pairs without samples are no rows: across a column of them, two pictures lie side by side that know nothing of each
-// other.
+// Pairs without samples give no rows: a column of them separates two independent pictures.
 TEST(B2_Solver, L2LeavesOutPairsWithoutSamples) {
   const int w = 40, h = 24, left = 17;
   film::GradientImages images = with_exact_gradients(w, h, 3, smooth_image(w, h, 3));
@@ -190,7 +189,7 @@ TEST(B2_Solver, L2LeavesOutPairsWithoutSamples) {
   }
 }
 
-// Sums of noise; some pixels without samples.
+// Returns sums of noise; some pixels have no samples.
 film::Film noisy_film(int width, int height, int channels) {
   film::Film film(uint32_t(width), uint32_t(height), {0, 0, width, height}, channels, 1, true);
   std::mt19937 random(1);
@@ -210,8 +209,8 @@ film::Film noisy_film(int width, int height, int channels) {
   return film;
 }
 
-// A frame's rows are read while they are needed, and its channels solved side by side.
-TEST(B2_Solver, L2OfAFrameHasTheBitsOfItsImagesChannelByChannel) {
+// The rows of a film are read when they are needed, and its channels are solved together.
+TEST(B2_Solver, L2OfAFilmHasTheBitsOfItsImagesChannelByChannel) {
   const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
   for (const Size s : kSizes) {
     for (const int channels : {3, 4}) {

@@ -57,23 +57,23 @@ double largest_difference(const reconstruct::Field& a, const reconstruct::Field&
   return worst;
 }
 
-// Sizes below a window, at the borders of tiles, and one row or column.
+// Sizes smaller than a window, at the borders of tiles, and one row or column.
 constexpr int kRegressionSizes[][2] = {{1, 1}, {1, 40}, {40, 1}, {3, 2}, {80, 128}, {81, 129}, {200, 150}};
 
-TEST(B1_Regression, KeepsWhatTheFeaturesExplain) {
+TEST(B1_Regression, KeepsImagesThatTheFeaturesExplain) {
   for (const auto& [w, h] : kRegressionSizes) {
     const reconstruct::Field image = make_field(w, h, 3, [](int x, int y, int c) {
       return 5.0f + 0.03f * float(x) - 0.02f * float(y) + 0.5f * feature(x, y, c) - 0.25f * feature(x, y, 6);
     });
     reconstruct::LocalRegression regression(predictors(features(w, h), ones(w, h)), {}, kSettings);
     const reconstruct::RegressionResult result = regression.estimate(image, reconstruct::Field(w, h, 3), never);
-    // The ridge takes a little of each coefficient, most of it where windows are small.
+    // The ridge reduces each coefficient slightly, most where windows are small.
     EXPECT_LT(largest_difference(result.mean, image), 0.01) << w << "x" << h;
     EXPECT_EQ(largest_difference(result.noise, reconstruct::Field(w, h, 3)), 0.0);
   }
 }
 
-TEST(B2_Regression, IsTheFrozenOperatorThatItApplies) {
+TEST(B2_Regression, IsItsOwnLinearOperator) {
   const int w = 170, h = 140;
   const reconstruct::Field image = noise(w, h, 1.0f, 1), half = noise(w, h, 0.5f, 2), other = noise(w, h, 2.0f, 3);
   reconstruct::LocalRegression regression(predictors(features(w, h), ones(w, h)), ones(w, h), kSettings);
@@ -107,9 +107,9 @@ TEST(B2_Regression, HasTheSameBitsForAnyNumberOfThreads) {
   });
 }
 
-// What the operator leaves of half the difference of the halves is the error of a picture that the features explain, no
-// more and no less.
-TEST(B2_Regression, KnowsItsNoise) {
+// If the features explain the picture, the error is what the operator leaves of half the difference of the
+// half-buffers, no more and no less.
+TEST(B2_Regression, EstimatesItsNoise) {
   const int w = 160, h = 120;
   double estimated = 0.0, actual = 0.0;
   for (unsigned seed = 1; seed <= 4; ++seed) {
@@ -134,9 +134,8 @@ TEST(B2_Regression, KnowsItsNoise) {
   EXPECT_LT(actual, 0.15 * 4.0 * 3.0 * w * h * 0.125);  // of the noise of the mean, 0.5²/2
 }
 
-// Windows count by the inverse of their squared error, which is known here: no feature but the coordinates tells
-// anything, so that of a chequered picture all is bias, of chequered noise next to nothing passes, and of noise that is
-// the same everywhere all does.
+// Windows are weighted by the inverse of their squared error, which is known here: only the coordinates are features,
+// so that a checkerboard is all bias, checkerboard noise is almost removed, and constant noise remains.
 struct KnownError {
   float picture, chequered_noise, common_noise;
   double error() const { return picture * picture - chequered_noise * chequered_noise + common_noise * common_noise; }
@@ -154,7 +153,7 @@ reconstruct::LocalRegression regress(const KnownError& known, float own, reconst
   return regression;
 }
 
-// Mean of function(x, y) over pixels that no window at the border holds.
+// Returns the mean of function(x, y) over pixels that no window at the border covers.
 template <class Function>
 double inner_mean(const reconstruct::Field& field, const Function& function) {
   double sum = 0.0;
@@ -165,10 +164,10 @@ double inner_mean(const reconstruct::Field& field, const Function& function) {
   return sum / count;
 }
 
-TEST(B2_Regression, PixelsAndWindowsCountByTheirErrors) {
+TEST(B2_Regression, PixelsAndWindowsAreWeightedByTheirErrors) {
   for (const KnownError known :
        {KnownError{2.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 2.0f}, {2.0f, 0.0f, 2.0f}, {3.0f, 2.0f, 1.0f}}) {
-    const auto own = static_cast<float>(kSizes / known.error());  // as much as all windows have
+    const auto own = static_cast<float>(kSizes / known.error());  // as much as all windows together
     reconstruct::RegressionResult result;
     const reconstruct::LocalRegression with = regress(known, own, &result), without = regress(known, 0.0f, &result);
     const reconstruct::Field probe =
@@ -183,8 +182,8 @@ TEST(B2_Regression, PixelsAndWindowsCountByTheirErrors) {
   }
 }
 
-// A shelf of five dark rows between bright ones, far from the tile's centre, was as bright as a tenth of them: slopes
-// of hundreds with a constant of thousands do not fit into floats.
+// Regression: a shelf of five dark rows between bright ones, far from the centre of the tile, got a tenth of their
+// brightness: slopes of hundreds with a constant of thousands exceed the precision of floats.
 TEST(B2_Regression, AShelfStaysDarkFarFromTheTilesCentre) {
   const int w = 160, h = 120;
   const reconstruct::Field image = make_field(w, h, 3, [](int, int y, int) { return y % 20 < 5 ? 0.3f : 30.0f; });
@@ -211,9 +210,8 @@ TEST(B2_Regression, LeavesOutPixelsWithoutWeight) {
   EXPECT_LT(largest_difference(regression.estimate(image, reconstruct::Field(w, h, 3), never).mean, truth), 0.03);
 }
 
-// Light in a corner alone: tiles that see none of it are passed over, with the result that their windows would have
-// had.
-TEST(B1_Regression, PassesOverWhatIsBlack) {
+// There is light in a corner only: tiles that contain none are skipped, with the same result as if they were computed.
+TEST(B1_Regression, SkipsBlackTiles) {
   constexpr int w = 700, h = 900, corner = 60;
   reconstruct::Field mean = noise(w, h, 1.0f, 1), half = noise(w, h, 0.3f, 2);
   for (reconstruct::Field* field : {&mean, &half}) {
@@ -238,7 +236,7 @@ TEST(B1_Regression, PassesOverWhatIsBlack) {
   EXPECT_LT(largest_difference(a.mean, b.mean), 1e-5);
   EXPECT_LT(largest_difference(a.noise, b.noise), 1e-5);
   EXPECT_LT(largest_difference(a.bias, b.bias), 1e-5);
-  // Weights are kept there, too.
+  // The weights are kept there, too.
   const reconstruct::Field other = reconstruct::channels_of(noise(w, h, 1.0f, 3), 0, 1);
   EXPECT_LT(largest_difference(passing.apply(other, never), working.apply(other, never)), 1e-4);
 }

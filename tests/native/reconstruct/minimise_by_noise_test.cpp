@@ -1,4 +1,4 @@
-// B2 for least squares that are weighted by the measured noise, by which the noise of L1 is estimated.
+// B2 for least squares weighted by the measured noise, from which the noise of L1 is estimated.
 #include <gtest/gtest.h>
 
 #include "reconstruct/minimise_by_noise.h"
@@ -14,8 +14,8 @@ std::vector<float> solve(const film::GradientImages& images, reconstruct::SolveR
   return make_image(images.width, images.height, 3, [&](int x, int y, int c) { return minimum.solution.row(y, c)[x]; });
 }
 
-// It stops where the worst row is within a hundredth of its noise, not at a residual, which counts what is bright
-// (CgGoal): here at up to 1.1e-3, where L1 goes on to 1e-4.
+// The solver stops when the worst row is within a hundredth of its noise, not at a residual, which is dominated by
+// bright values (CgGoal): here at 1.1e-3 at most, where L1 continues to 1e-4.
 TEST(B2_ByNoise, ReportsItsResidual) {
   for (const auto& [w, h] : kSizes) {
     reconstruct::SolveReport report;
@@ -25,8 +25,8 @@ TEST(B2_ByNoise, ReportsItsResidual) {
   }
 }
 
-// Half of the picture has useless differences, half has useless pixels: no single alpha serves both.
-TEST(B2_ByNoise, GoesByTheNoiseOfEachPlace) {
+// Half of the picture has useless differences, the other half useless pixels: no single alpha fits both.
+TEST(B2_ByNoise, UsesTheNoiseOfEachPlace) {
   const int w = 96, h = 64;
   const std::vector<float> truth = smooth_image(w, h, 3);
   const auto left = [&](size_t i) { return int(i) % w < w / 2; };
@@ -41,7 +41,7 @@ TEST(B2_ByNoise, GoesByTheNoiseOfEachPlace) {
   }
 }
 
-// A firefly in one half: its own deviation finds it out.
+// A firefly in one half-buffer is recognised by its own deviation.
 TEST(B2_ByNoise, IgnoresOutliersOfOneHalf) {
   const int w = 64, h = 48;
   const std::vector<float> truth = smooth_image(w, h, 3);
@@ -62,13 +62,14 @@ TEST(B2_ByNoise, IgnoresOutliersOfOneHalf) {
             20 * by_noise);
 }
 
-// Beside a light of 30,000 the residual was small at once, and the solver stopped with dark holes left of its start.
-TEST(B2_ByNoise, IsNotStoppedByALampInView) {
+// Regression: beside a light of 30,000, the relative residual was small at once, and the solver left dark areas of its
+// start.
+TEST(B2_ByNoise, IsNotStoppedByAVisibleLight) {
   const int w = 96, h = 64;
   const auto lit = [&](size_t pixel) { return pixel % w >= 60 && pixel % w < 70 && pixel / w >= 20 && pixel / w < 30; };
-  const auto solve_beside = [&](float lamp) {
+  const auto solve_beside = [&](float light) {
     std::vector<float> truth = smooth_image(w, h, 3);
-    for (size_t i = 0; i < truth.size(); ++i) truth[i] += lit(i / 3) ? lamp : 0.0f;
+    for (size_t i = 0; i < truth.size(); ++i) truth[i] += lit(i / 3) ? light : 0.0f;
     film::GradientImages images = noisy_images(
         w, h, 3, truth, [](size_t) { return 0.3f; }, [](size_t i) { return i % 37 == 0 ? 10.0f : 0.01f; });
     reconstruct::SolveReport report;
@@ -83,8 +84,8 @@ TEST(B2_ByNoise, IsNotStoppedByALampInView) {
   EXPECT_LT(rms_difference(solve_beside(3e4f), none), 1.2 * without);
 }
 
-// Noise over six decades, from one area to the next: the matrix was singular in single precision, and the picture of
-// the size of 10⁷.
+// Regression: with noise over six decades between neighbouring areas, the matrix was singular in single precision, and
+// the solution of the order of 10⁷.
 TEST(B2_ByNoise, DoesNotDivergeOverDecadesOfNoise) {
   const int w = 128, h = 96;
   const std::vector<float> truth = smooth_image(w, h, 3);
@@ -100,7 +101,7 @@ TEST(B2_ByNoise, DoesNotDivergeOverDecadesOfNoise) {
   EXPECT_LT(rms_difference(result, truth), 1.0);
 }
 
-// One sample per pixel: a half has none, and no noise is known.
+// With one sample per pixel, one half-buffer is empty and the noise is unknown.
 TEST(B2_ByNoise, WithoutKnownNoiseIsNearL2) {
   film::GradientImages images = noisy_images(64, 48);
   for (auto* deviation : {&images.primal_deviation, &images.dx_deviation, &images.dy_deviation}) {

@@ -1,4 +1,4 @@
-// The preconditioner of the L1 solver: what conjugate gradients ask of it, and how far it gets.
+// The preconditioner of the L1 solver: the properties that conjugate gradients require, and its convergence.
 #include <gtest/gtest.h>
 
 #include "reconstruct/conjugate_gradient.h"
@@ -25,7 +25,7 @@ reconstruct::Field random_field(int width, int height, int channels, unsigned se
   return field;
 }
 
-// Difference weights of three decades, without any order, as they are for a noisy image.
+// Fills in difference weights of three decades in random order, as for a noisy image.
 void fill(reconstruct::Stencil* a) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> exponent(-0.5f, 2.5f);
@@ -75,7 +75,7 @@ reconstruct::Field restricted(const reconstruct::Interpolation& p, const reconst
   return coarse;
 }
 
-// Two levels: the first one's matrix has no corners, the second one's has.
+// Two levels: the matrix of the first has no diagonal neighbours, that of the second has.
 TEST(B2_Multigrid, CoarseMatrixIsTheFineOneBetweenInterpolations) {
   for (const auto& [w, h] : kSizes) {
     reconstruct::Stencil fine(w, h, false);
@@ -100,7 +100,7 @@ TEST(B2_Multigrid, CoarseMatrixIsTheFineOneBetweenInterpolations) {
   }
 }
 
-// Of each row the pixels with x + y even, side by side.
+// Returns the pixels of a row with x + y even, next to each other.
 std::vector<float> red_of(const reconstruct::Field& field, int y) {
   std::vector<float> red;
   for (int x = y & 1; x < field.width() + (y & 1); x += 2)
@@ -165,16 +165,16 @@ reconstruct::CgReport solve_without_order(int max_steps) {
   return reconstruct::conjugate_gradient(&multigrid, b, &x, &fields, {.residual = 1e-4f}, max_steps, never);
 }
 
-// With cells of 2×2 whose weights are those of the fine differences in series, which is weaker than the fine matrix
-// where weights jump, it took 136 steps.
-TEST(B2_Multigrid, WeightsWithoutOrderTakeFewSteps) {
+// An aggregation of 2×2 pixels whose weights are those of the fine differences in series, which is weaker than the fine
+// matrix at jumps of the weights, took 136 steps.
+TEST(B2_Multigrid, RandomWeightsTakeFewSteps) {
   const reconstruct::CgReport report = solve_without_order(200);
   EXPECT_LE(report.steps, 40);
   EXPECT_TRUE(report.reached);
   EXPECT_LE(report.residual, 1e-4f);
 }
 
-// A solve that ends at its limit says so, and how far it came.
+// A solve that reaches its limit reports that, and its residual.
 TEST(B2_Multigrid, TheLimitOfStepsIsReported) {
   reconstruct::SolveReport total;
   reconstruct::add_solve(solve_without_order(2), &total);

@@ -1,4 +1,4 @@
-// Pixels without noise are left alone.
+// Pixels without noise are not changed.
 #include <gtest/gtest.h>
 
 #include "reconstruct/noise_free.h"
@@ -14,7 +14,7 @@ constexpr int kFirst = 30, kLast = 60;  // of the square that has noise
 
 bool has_noise(int x, int y) { return x >= kFirst && x <= kLast && y >= kFirst && y <= kLast; }
 
-// A bright object with noise, in a background whose samples are all alike.
+// Returns a bright object with noise, in a background whose samples are all equal.
 film::GradientImages object_in_background() {
   const auto truth = make_image(kSide, kSide, 3, [](int x, int y, int) { return has_noise(x, y) ? 1.0f : 0.25f; });
   film::GradientImages images = with_exact_gradients(kSide, kSide, 3, truth);
@@ -33,7 +33,7 @@ film::GradientImages object_in_background() {
   return images;
 }
 
-TEST(NoiseFree, PixelsWhoseNeighboursAreWithoutNoiseToo) {
+TEST(NoiseFree, ArePixelsWhoseNeighboursHaveNoNoiseEither) {
   const auto settled = reconstruct::find_noise_free(object_in_background());
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
@@ -49,7 +49,7 @@ TEST(NoiseFree, PixelsWhoseNeighboursAreWithoutNoiseToo) {
   EXPECT_LE(box.x1, kLast + 4);
 }
 
-// Twicing spread the noise of an object over five pixels of a background that was known exactly.
+// Regression: twicing spread the noise of an object over five pixels of a background that was known exactly.
 TEST(NoiseFree, BackgroundKeepsItsBitsAndTheObjectItsReconstruction) {
   const film::GradientImages images = object_in_background();
   const auto settled = reconstruct::find_noise_free(images);
@@ -82,7 +82,7 @@ TEST(NoiseFree, AnImageWithoutNoiseIsKept) {
   EXPECT_EQ(report.inner_steps, 0);
 }
 
-// Light may be too rare to have been found; where there is no surface there is none.
+// In a black pixel, light may be too rare to have been sampled. Where there is no surface, there is none.
 TEST(NoiseFree, BlackPixelsAreNotButTransparentOnesAre) {
   for (const float alpha : {0.0f, 1.0f}) {
     film::GradientImages images =
@@ -92,7 +92,7 @@ TEST(NoiseFree, BlackPixelsAreNotButTransparentOnesAre) {
   }
 }
 
-TEST(NoiseFree, WhatIsMissingIsNot) {
+TEST(NoiseFree, MissingPixelsAreNot) {
   film::GradientImages images = with_exact_gradients(9, 9, 3, smooth_image(9, 9, 3));
   for (auto* plane : {&images.primal_deviation, &images.dx_deviation, &images.dy_deviation}) plane->assign(81, 0.0f);
   images.dx_deviation[4 * 9 + 4] = film::kAbsentPair;

@@ -1,4 +1,4 @@
-// Parts of a picture add up to it, and those without noise stay what they are (contract 3.4).
+// Terms of a picture add up to it, and those without noise stay unchanged.
 #include "reconstruct/picture_terms.h"
 
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "reconstruct/box_mean.h"
-#include "reconstruct/feature_frame.h"
+#include "reconstruct/feature_film.h"
 #include "reconstruct/field_values.h"
 
 namespace gradus {
@@ -73,7 +73,7 @@ double squared_error(const reconstruct::Field& field, float truth) {
   return sum;
 }
 
-TEST(Partition, APartWithoutNoiseStaysAsSharpAsItIs) {
+TEST(Partition, ATermWithoutNoiseStaysSharp) {
   reconstruct::HalvedImage image{reconstruct::Field(kWidth, kHeight, 3), reconstruct::Field(kWidth, kHeight, 3)};
   for_values(&image.mean, [](float& value, int x, int y, int c) { value = float((x + y + c) % 2); });
   const reconstruct::Field before = image.mean;
@@ -86,28 +86,28 @@ TEST(Partition, APartWithoutNoiseStaysAsSharpAsItIs) {
   expect_flat(term.error, 0.0f);
 }
 
-TEST(Partition, APartLosesMostOfItsNoise) {
+TEST(Partition, ATermLosesMostOfItsNoise) {
   const reconstruct::HalvedImage image = noisy(1.0f, 0.5f, 1);
   const reconstruct::PictureTerm term = reconstruct::regress_term(flat_features(), image, kNever);
   EXPECT_LT(squared_error(term.image, 1.0f), 0.1 * squared_error(image.mean, 1.0f));
 }
 
-// Windows of little noise over edges are wrong by more than the samples are: light of lights' edges went to what is not
-// there.
-TEST(Partition, NoPartIsWrongByMoreThanItsSamples) {
+// Regression: windows with little noise across edges have more error than the samples: light of emitter edges was moved
+// to other terms.
+TEST(Partition, NoTermIsWrongByMoreThanItsSamples) {
   reconstruct::HalvedImage image = noisy(0.0f, 0.02f, 4);
   for_values(&image.mean, [](float& value, int x, int y, int) { value += (x / 3 + y / 3) % 2 == 0 ? 4.0f : 0.5f; });
   const reconstruct::PictureTerm term = reconstruct::regress_term(flat_features(), image, kNever);
   const reconstruct::Field noise = reconstruct::box_mean(
       reconstruct::make_field(kWidth, kHeight,
-                 [&](int x, int y) { return reconstruct::mean_of_squares(image.half_difference, x, y); }),
+                              [&](int x, int y) { return reconstruct::mean_of_squares(image.half_difference, x, y); }),
       1);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) ASSERT_LE(term.error.row(y)[x], 1.0001f * noise.row(y)[x]) << x << " " << y;
   }
 }
 
-TEST(Partition, WhatLacksGoesToTheUncertainParts) {
+TEST(Partition, TheDifferenceGoesToTheUncertainTerms) {
   std::vector<reconstruct::PictureTerm> terms{term_of(1.0f, 0.0f), term_of(2.0f, 1.0f), term_of(3.0f, 3.0f)};
   reconstruct::add_up(flat(7.0f), &terms);
   expect_flat(terms[0].image, 1.0f);
@@ -115,15 +115,15 @@ TEST(Partition, WhatLacksGoesToTheUncertainParts) {
   expect_flat(terms[2].image, 3.75f);
 }
 
-TEST(Partition, WhereNothingIsKnownItGoesByLight) {
+TEST(Partition, WithoutNoiseEstimatesItGoesByLight) {
   std::vector<reconstruct::PictureTerm> terms{term_of(1.0f, 0.0f), term_of(3.0f, 0.0f)};
   reconstruct::add_up(flat(8.0f), &terms);
   expect_flat(terms[0].image, 2.0f);
   expect_flat(terms[1].image, 6.0f);
 }
 
-// The uncertain part alone was to give what it did not have, and became black light.
-TEST(Partition, NoPartGoesBelowZeroWhileAnotherHasLight) {
+// Regression: an uncertain term alone had to give more light than it had, and became negative.
+TEST(Partition, NoTermGoesBelowZeroWhileAnotherHasLight) {
   std::vector<reconstruct::PictureTerm> terms{term_of(4.0f, 0.001f), term_of(1.0f, 5.0f), term_of(2.0f, 0.0f)};
   reconstruct::add_up(flat(2.5f), &terms);
   expect_flat(terms[0].image, 0.5f);
@@ -131,7 +131,7 @@ TEST(Partition, NoPartGoesBelowZeroWhileAnotherHasLight) {
   expect_flat(terms[2].image, 2.0f);
 }
 
-TEST(Partition, LightGoesWhereItCanBe) {
+TEST(Partition, LightGoesToTermsThatCanHaveIt) {
   std::vector<reconstruct::PictureTerm> terms{term_of(1.0f, 0.1f), term_of(1.0f, 1.0f)};
   terms[1].room = flat(0.0f);
   reconstruct::add_up(flat(3.0f), &terms);
@@ -139,14 +139,14 @@ TEST(Partition, LightGoesWhereItCanBe) {
   expect_flat(terms[1].image, 0.0f);
 }
 
-// L2 may be negative (contract 5.5), and its parts add up to that, too.
-TEST(Partition, APictureBelowZeroIsMetToo) {
+// The picture of L2 may be negative; its terms add up to it, too.
+TEST(Partition, ANegativePictureIsMatchedToo) {
   std::vector<reconstruct::PictureTerm> terms{term_of(1.0f, 1.0f), term_of(1.0f, 0.0f), term_of(0.0f, 0.0f)};
   reconstruct::add_up(flat(-2.0f), &terms);
   EXPECT_NEAR(sum_at(terms, 3, 4, 1), -2.0f, 1e-6f);
 }
 
-// Squared errors of strong light were infinite, and what they were to weigh no number.
+// Regression: squared errors of strong light were infinite, and the weights were not numbers.
 TEST(Partition, LightOfAnyStrengthStaysFinite) {
   for (const float strength : {1e-25f, 1e25f, 1e37f}) {
     std::vector<reconstruct::PictureTerm> terms;
@@ -165,7 +165,7 @@ TEST(Partition, LightOfAnyStrengthStaysFinite) {
   }
 }
 
-TEST(Partition, AddsUpWhateverThePartsAre) {
+TEST(Partition, AddsUpForAnyTerms) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
   std::vector<reconstruct::PictureTerm> terms;

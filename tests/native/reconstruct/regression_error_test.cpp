@@ -1,4 +1,4 @@
-// A8: what the error of the regression on features is made of.
+// A8: the terms of the estimated error of the regression on features.
 #include "reconstruct/regression_error.h"
 
 #include <gtest/gtest.h>
@@ -21,16 +21,16 @@ reconstruct::Field constant(float value, int channels = 3) {
 
 const reconstruct::Field kNone = constant(0.0f), kOne = constant(1.0f), kUnbiased = constant(0.0f, 1);
 
-// Whether the figures are right, statistics tell (A8_Error); here it is what they multiply.
-TEST(A8_RegressionError, NoiseCountsForMoreThanTheWeightsShow) {
+// Statistical tests (A8_Error) check the factors; this test checks what they multiply.
+TEST(A8_RegressionError, NoiseIsScaledByMoreThanTheWeightsShow) {
   const reconstruct::Field noise = constant(0.1f),
                            error = reconstruct::regression_error({kOne, kNone, kOne, noise}, kUnbiased);
   EXPECT_GT(error.row(20)[30], 0.01);
   EXPECT_NEAR(error.row(20)[30], reconstruct::kHidden * 0.01, 1e-6);
 }
 
-// In absolute squares the wall would have a thousand times its error within three pixels of the light.
-TEST(A8_RegressionError, NoiseOfALampIsNotThatOfTheWallBesideIt) {
+// With absolute squares, the wall would have a thousand times its error within three pixels of the light.
+TEST(A8_RegressionError, NoiseOfALightDoesNotAddToTheWallBesideIt) {
   const reconstruct::Field light = filled(3, [](int x) { return x < 30 ? 100.0f : 1.0f; });
   const reconstruct::Field noise = filled(3, [](int x) { return x < 30 ? 10.0f : 0.1f; });
   const reconstruct::Field error = reconstruct::regression_error({light, kNone, light, noise}, kUnbiased);
@@ -38,12 +38,12 @@ TEST(A8_RegressionError, NoiseOfALampIsNotThatOfTheWallBesideIt) {
   EXPECT_NEAR(error.row(20)[28], reconstruct::kHidden * 100.0, 0.1 * reconstruct::kHidden * 100.0);
 }
 
-TEST(A8_RegressionError, BiasIsAddedAndNeverTakesAway) {
+TEST(A8_RegressionError, BiasIsAddedAndNeverSubtracted) {
   EXPECT_NEAR(reconstruct::regression_error({kOne, kNone, kOne, kNone}, constant(0.5f, 1)).row(20)[30], 0.5, 1e-6);
   EXPECT_EQ(reconstruct::regression_error({kOne, kNone, kOne, kNone}, constant(-0.5f, 1)).row(20)[30], 0.0f);
 }
 
-TEST(A8_RegressionError, LightThatIsLostIsKnownUnlessNoiseHidesIt) {
+TEST(A8_RegressionError, LostLightIsEstimatedUnlessNoiseHidesIt) {
   const reconstruct::Field before = constant(1.2f);
   EXPECT_NEAR(reconstruct::regression_error({before, kNone, kOne, kNone}, kUnbiased).row(20)[30],
               reconstruct::kLost * 0.04, 1e-4);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "reconstruct/feature_frame.h"
+#include "reconstruct/feature_film.h"
 #include "reconstruct/regression_error.h"
 #include "support/threads.h"
 
@@ -23,8 +23,8 @@ reconstruct::Reconstructed solve_with_error(const film::Film& film) {
 std::vector<float> solve(const film::Film& film) { return solve_with_error(film).image; }
 std::vector<float> noisy(const film::Film& film) { return film::read_images(film, 0).primal; }
 
-// Halves that lie `apart` above and below the truth everywhere: of such noise no window takes anything away, so its
-// share in all that is estimated is known.
+// Adds noise of +`apart` and −`apart` to the two half-buffers everywhere: no window removes any of it, so that its
+// share in all estimates is known.
 film::Film with_common_noise(FeatureFilm description, float apart) {
   description.sigma = [](size_t) { return 0.0f; };
   film::Film film = make_feature_film(description);
@@ -34,20 +34,20 @@ film::Film with_common_noise(FeatureFilm description, float apart) {
   return film;
 }
 
-// In [0, 1), without any order.
+// Returns a pseudo-random value in [0, 1).
 float hashed(int x, int y, int channel, int half) {
   const double s = std::sin(12.9898 * x + 78.233 * y + 37.719 * channel + 91.17 * half) * 43758.5453;
   return float(s - std::floor(s));
 }
 
-// A chequer that no feature knows: for windows it is bias.
+// Returns a checkerboard that no feature describes: for windows, it is bias.
 FeatureFilm chequered(float level, float amplitude) {
   FeatureFilm film{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
   film.truth = make_image(kWidth, kHeight, 3, [&](int x, int y, int) { return level + amplitude * chequer(x, y); });
   return film;
 }
 
-// Of the chequer, how much there is left far from the border.
+// Returns the remaining amplitude of the checkerboard far from the border.
 double amplitude_of(const std::vector<float>& image) {
   double sum = 0.0;
   int count = 0;
@@ -63,7 +63,7 @@ void expect_finite_and_bounded(const film::Film& film, float bound) {
   for (const float v : result.error) ASSERT_TRUE(v >= 0.0f && v <= std::numeric_limits<float>::max()) << v;
 }
 
-TEST(B2_Regularized, TakesMostOfTheNoise) {
+TEST(B2_Regularized, RemovesMostOfTheNoise) {
   FeatureFilm description = room(kWidth, kHeight);
   for (const bool gradients : {false, true}) {
     description.gradients = gradients;
@@ -73,8 +73,8 @@ TEST(B2_Regularized, TakesMostOfTheNoise) {
   }
 }
 
-// Shadows, caustics and reflections are in no feature: there the differences have to tell.
-TEST(B2_Regularized, DifferencesTellWhatNoFeatureKnows) {
+// Shadows, caustics and reflections are in no feature: the differences have to describe them.
+TEST(B2_Regularized, DifferencesDescribeWhatFeaturesDoNot) {
   FeatureFilm description = room(96, 64);
   const std::vector<float> shadow = make_image(
       96, 64, 3, [](int x, int y, int) { return (x - 50) * (x - 50) + (y - 30) * (y - 30) < 150 ? 0.3f : 1.0f; });
@@ -84,10 +84,11 @@ TEST(B2_Regularized, DifferencesTellWhatNoFeatureKnows) {
   EXPECT_LT(rms_difference(solve(make_feature_film(description)), description.truth), 0.6 * without);
 }
 
-// Consistent: a hundred times the samples leave less than a fifth of the error, whatever the features say.
+// REGULARIZED is consistent: a hundred times the samples leave less than a fifth of the error, whatever the features
+// are.
 TEST(B2_Regularized, ErrorFallsWithTheNoise) {
   FeatureFilm description = room(kWidth, kHeight);
-  description.feature = [](int x, int, int, int) { return float(x % 3) / 3.0f; };  // nothing to do with the picture
+  description.feature = [](int x, int, int, int) { return float(x % 3) / 3.0f; };  // unrelated to the picture
   double before = std::numeric_limits<double>::infinity();
   for (const float sigma : {0.4f, 0.04f, 0.004f}) {
     description.sigma = [sigma](size_t) { return sigma; };
@@ -97,9 +98,8 @@ TEST(B2_Regularized, ErrorFallsWithTheNoise) {
   }
 }
 
-// Texture that is in no feature, hair, fine shadows: where there is no noise, nothing is changed; with a little, a
-// little.
-TEST(B2_Regularized, KeepsDetailThatHasNoNoise) {
+// Texture that is in no feature, hair, fine shadows: without noise, nothing is changed; with little noise, little.
+TEST(B2_Regularized, KeepsDetailWithoutNoise) {
   FeatureFilm description = room(kWidth, kHeight);
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uniform(0.0f, 2.0f);
@@ -127,9 +127,10 @@ TEST(B2_Regularized, ScalesWithTheImage) {
   }
 }
 
-// Alpha, which is an eighth of red in these frames, goes through the weights of the colours, those of outliers, too.
-// With differences it was the regression's alone: coverage and colour of an edge were smoothed in two ways.
-TEST(B2_Regularized, AlphaGoesThroughTheSameWeights) {
+// Alpha, which is an eighth of red in these films, uses the weights of the colours, including those of outliers.
+// Regression: with differences, alpha was that of the regression alone, so that coverage and colour of an edge were
+// smoothed differently.
+TEST(B2_Regularized, AlphaUsesTheWeightsOfTheColours) {
   FeatureFilm description = room(kWidth, kHeight);
   description.difference_sigma = 0.1f;
   for (const bool gradients : {false, true}) {
@@ -151,8 +152,8 @@ TEST(B2_Regularized, HasTheSameBitsForAnyNumberOfThreads) {
   expect_same_bits_for_any_number_of_threads([&] { return solve(film); });
 }
 
-// What weights hide of the noise is that of light, whose rare samples are far brighter than the others. That of these
-// frames has none such, and nothing to hide: the estimate is kHidden times too large.
+// The weights hide a part of the noise if rare samples are far brighter than the others. The noise of these films has
+// no such samples: the estimate is kHidden times too large.
 TEST(B2_Regularized, EstimatesItsError) {
   FeatureFilm description = room(160, 120);
   double estimated = 0.0, actual = 0.0;
@@ -165,7 +166,7 @@ TEST(B2_Regularized, EstimatesItsError) {
   EXPECT_LT(estimated / actual, 1.1 * reconstruct::kHidden);
 }
 
-// Noise that windows cannot take away is in it whole, and so is what no feature explains.
+// The estimate contains the noise that windows cannot remove, and the part of the picture that no feature explains.
 TEST(B2_Regularized, ErrorIsVarianceAndSquaredBias) {
   for (const float amplitude : {0.0f, 0.5f}) {
     for (const float apart : {1.0f, 2.0f}) {
@@ -176,8 +177,8 @@ TEST(B2_Regularized, ErrorIsVarianceAndSquaredBias) {
   }
 }
 
-// Normals, albedos and depths of these frames jump from pixel to pixel: those of any other pixel explain nothing.
-TEST(B2_Regularized, KeepsWhatTheFeaturesExplain) {
+// Normals, albedos and depths of these films are random: those of other pixels explain nothing.
+TEST(B2_Regularized, KeepsImagesThatTheFeaturesExplain) {
   FeatureFilm description{kWidth, kHeight, {}, {}, [](int x, int y, int channel, int) {
                             const float wave =
                                 std::sin(0.9f * float(x * (channel + 1)) + 0.37f * float(y * y * (channel + 2)));
@@ -190,16 +191,16 @@ TEST(B2_Regularized, KeepsWhatTheFeaturesExplain) {
   }
 }
 
-// Half the difference of the halves says how far a pixel's own value is to be believed. Where windows are off by five
+// Half the difference of the half-buffers is the uncertainty of a pixel's own value. Where windows are wrong by five
 // times its square, it has a third of all weight.
-TEST(B2_Regularized, BelievesPixelsByTheirVariance) {
+TEST(B2_Regularized, WeightsPixelsByTheirVariance) {
   const double share = amplitude_of(solve(with_common_noise(chequered(100.0f, 2.0f), 1.0f))) / 2.0;
   EXPECT_GT(share, 0.2);
   EXPECT_LT(share, 0.5);
 }
 
-// Gaps between small balls, darker than all around them and with less noise: they were taken to be as noisy as the
-// balls, and got their light, with 128 samples more than twice the error of the samples alone.
+// Regression: gaps between small balls, darker than their surroundings and with less noise, were assumed to be as noisy
+// as the balls and got their light: with 128 samples, more than twice the error of the samples alone.
 TEST(B2_Regularized, DarkGapsBetweenBrightNoisyPixelsStayDark) {
   const auto is_gap = [](int x, int y) { return x % 3 == 0 && y % 3 == 0; };
   FeatureFilm description{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
@@ -215,10 +216,10 @@ TEST(B2_Regularized, DarkGapsBetweenBrightNoisyPixelsStayDark) {
   EXPECT_LT(gaps / count, 0.3);
 }
 
-// One sample in sixteen carries all light: windows take it for outliers, and the first step loses nearly all of it. The
-// second gives most of it back, by the albedo. As one half alone has such samples, all of it may be chance, and the
-// error knows.
-TEST(B2_Regularized, GivesBackTheLightOfRareSamples) {
+// One sample in sixteen carries all the light: windows take it for an outlier, and the first step loses nearly all of
+// it. The second step restores most of it, by the albedo. Only one half-buffer has such samples, so that all of it may
+// be chance; the error reflects that.
+TEST(B2_Regularized, RestoresTheLightOfRareSamples) {
   const auto albedo = [](int x) { return (x / 6) % 2 ? 0.8f : 0.2f; };
   FeatureFilm description{kWidth,
                           kHeight,
@@ -250,7 +251,7 @@ TEST(B2_Regularized, GivesBackTheLightOfRareSamples) {
   EXPECT_LT(mean(error), 1.25 * reconstruct::kHidden * squares);
 }
 
-TEST(B2_Regularized, DifferencesThatWereNotSampledAreTheRegressions) {
+TEST(B2_Regularized, DifferencesThatWereNotSampledAreThoseOfTheRegression) {
   FeatureFilm description = room(kWidth, kHeight);
   const std::vector<float> without = solve(make_feature_film(description));
   description.gradients = true;
@@ -261,9 +262,9 @@ TEST(B2_Regularized, DifferencesThatWereNotSampledAreTheRegressions) {
   EXPECT_LT(rms_difference(solve(film), without), 2e-3);
 }
 
-// Sampled differences whose variance is that of the regression's own have as much to say: they bring half of the
-// chequer back.
-TEST(B2_Regularized, DifferencesCountByTheirVariance) {
+// Sampled differences whose variance is that of the regression have the same weight: they restore half of the
+// checkerboard.
+TEST(B2_Regularized, DifferencesAreWeightedByTheirVariance) {
   FeatureFilm description = chequered(1.0f, 0.5f);
   const double variance = reconstruct::kHidden + 0.25;
   EXPECT_LT(std::abs(amplitude_of(solve(with_common_noise(description, 1.0f)))), 0.05);
@@ -278,9 +279,9 @@ TEST(B2_Regularized, DifferencesCountByTheirVariance) {
   EXPECT_NEAR(amplitude_of(solve(film)), 0.25, 0.06);
 }
 
-// Beside highlights, of which windows had lost some light and differences had not, pixels became black, or coloured
-// where one channel did. More so where half of a difference is one sample's: by chance both halves agree to a tenth of
-// what they are off by.
+// Regression: beside highlights, of which windows had lost some light and differences had not, pixels became black, or
+// coloured where one channel did; more so where half of a difference is one sample: by chance, both half-buffers agree
+// to a tenth of their error.
 TEST(B2_Regularized, NoBlackHalosBesideHighlights) {
   const auto is_highlight = [](int x, int y) { return x >= 30 && x < 38 && y >= 20 && y < 26; };
   FeatureFilm description{kWidth, kHeight, {}, {}, [](int, int, int, int) { return 0.5f; }};
@@ -312,9 +313,9 @@ TEST(B2_Regularized, NoBlackHalosBesideHighlights) {
   }
 }
 
-// Without differences, too: the planes of windows with a light's reflection go below 0 beside it. On a mirror pixels
-// were black whose samples, and those around, were not.
-TEST(B2_Regularized, NoBlackPixelsBesideReflectionsOfLamps) {
+// Regression: without differences, the planes of windows that contain a light's reflection are negative beside it. On a
+// mirror, pixels became black although their samples, and those around, were not.
+TEST(B2_Regularized, NoBlackPixelsBesideReflectionsOfLights) {
   const auto is_analytic = [](int x, int y) { return (x / 4) % 4 == 0 && (y / 3) % 4 == 0; };
   FeatureFilm description{kWidth, kHeight, {}, {}, [](int x, int y, int c, int) { return hashed(x, y, c, 0); }};
   description.truth =
@@ -348,22 +349,22 @@ TEST(BadInput_Regularized, FeaturesOfNoiseAlone) {
 TEST(BadInput_Regularized, FeaturesThatAreNotFinite) {
   const FeatureFilm description = room(kWidth, kHeight);
   film::Film film = make_feature_film(description);
-  for (film::PassPlane& plane : film.passes) {
-    plane.values[0][17 * plane.channels] = std::numeric_limits<float>::quiet_NaN();
-    plane.values[1][400 * plane.channels] = std::numeric_limits<float>::infinity();
-    plane.values[1][401 * plane.channels] = 1e37f;
+  for (film::Channel& plane : film.channels) {
+    plane.values[0][17 * plane.info.values_per_pixel] = std::numeric_limits<float>::quiet_NaN();
+    plane.values[1][400 * plane.info.values_per_pixel] = std::numeric_limits<float>::infinity();
+    plane.values[1][401 * plane.info.values_per_pixel] = 1e37f;
   }
   expect_finite_and_bounded(film, 10.0f);
   EXPECT_LT(rms_difference(solve(film), description.truth), 0.5 * rms_difference(noisy(film), description.truth));
 }
 
-// No surface anywhere, as in a volume: no normal, no albedo, no depth.
+// There is no surface, as in a volume: no normal, no albedo, no depth.
 TEST(BadInput_Regularized, MissingFeatures) {
   FeatureFilm description = room(kWidth, kHeight);
   description.feature = [](int, int, int channel, int) { return channel < 3 ? 0.5f : 0.0f; };
   expect_finite_and_bounded(make_feature_film(description), 10.0f);
   film::Film film = make_feature_film(description);
-  film.passes.clear();
+  film.channels.clear();
   reconstruct::SolveReport report;
   EXPECT_THROW(reconstruct::regularize(film, false, never, &report), Error);
 }
@@ -383,7 +384,7 @@ TEST(BadInput_Regularized, ImagesSmallerThanAWindow) {
   }
 }
 
-// What is huge does not reach far.
+// A huge value affects only its surroundings.
 TEST(BadInput_Regularized, HugeValues) {
   const FeatureFilm description = room(kWidth, kHeight);
   for (const float value : {1e6f, 1e20f, 1e36f}) {
@@ -406,13 +407,13 @@ TEST(BadInput_Regularized, ASingleSample) {
   film::Film film = make_feature_film(room(kWidth, kHeight));
   std::fill(film.count[1].begin(), film.count[1].end(), 0u);
   std::fill(film.components[0].primal[1].begin(), film.components[0].primal[1].end(), Radiance(0.0f));
-  for (film::PassPlane& plane : film.passes) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
+  for (film::Channel& plane : film.channels) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
   const std::vector<float> truth = room(kWidth, kHeight).truth;
   expect_finite_and_bounded(film, 20.0f);
   EXPECT_LT(rms_difference(solve(film), truth), 0.7 * rms_difference(noisy(film), truth));
 }
 
-// Halves that say different things: half the picture is one of them alone.
+// The half-buffers disagree: half the picture is in one of them alone.
 TEST(BadInput_Regularized, ContradictoryHalves) {
   const FeatureFilm description = room(kWidth, kHeight);
   film::Film film = make_feature_film(description);
@@ -420,13 +421,13 @@ TEST(BadInput_Regularized, ContradictoryHalves) {
   expect_finite_and_bounded(film, 10.0f);
 }
 
-// What a frame with differences may suffer from, which L2 does not look at or suffers from as well.
+// A defect of a film with differences, which L2 ignores or suffers from as well.
 struct Spoiled {
   const char* name;
-  std::function<float(int x, int y, int channel, int half)> feature;  // in place of the room's
+  std::function<float(int x, int y, int channel, int half)> feature;  // replaces that of the room
   std::function<void(film::Film*)> spoil = [](film::Film*) {};
-  // Of L2's error, root mean square. Where features say nothing, and uniform differences as much as the pixels, L2 has
-  // the right weights without knowing, and windows are smaller than its reach: 1.09 and 1.10.
+  // Maximum error relative to that of L2, root mean square. Where features are useless and differences as uncertain as
+  // the pixels everywhere, L2 has the optimal weights by chance, and windows are smaller than its reach: 1.09 and 1.10.
   double maximum = 1.12;
 };
 
@@ -437,7 +438,7 @@ Spoiled spoiled(const char* name, const std::function<void(film::Film*)>& spoil)
 void empty_second_half(film::Film* film) {
   std::fill(film->count[1].begin(), film->count[1].end(), 0u);
   std::fill(film->components[0].primal[1].begin(), film->components[0].primal[1].end(), Radiance(0.0f));
-  for (film::PassPlane& plane : film->passes) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
+  for (film::Channel& plane : film->channels) std::fill(plane.values[1].begin(), plane.values[1].end(), 0.0f);
   for (int o = 0; o < film::kOffsets; ++o) {
     std::fill(film->pair_count[1][o].begin(), film->pair_count[1][o].end(), 0.0f);
     std::fill(film->components[0].gradient[1][o].begin(), film->components[0].gradient[1][o].end(), Radiance(0.0f));
@@ -446,7 +447,7 @@ void empty_second_half(film::Film* film) {
 
 class BadInput_BesideL2 : public ::testing::TestWithParam<Spoiled> {};
 
-TEST_P(BadInput_BesideL2, IsNoWorse) {
+TEST_P(BadInput_BesideL2, IsNotWorse) {
   FeatureFilm description = room(kWidth, kHeight);
   description.feature = GetParam().feature;
   description.gradients = true;
@@ -471,7 +472,7 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{"FeaturesOfNoise", [](int x, int y, int c, int half) { return 2.0f * hashed(x, y, c, half) - 1.0f; }},
         spoiled("FeaturesThatAreNotFinite",
                 [](film::Film* film) {
-                  for (film::PassPlane& plane : film->passes) {
+                  for (film::Channel& plane : film->channels) {
                     for (size_t i = 0; i < plane.values[0].size(); i += 11)
                       plane.values[0][i] = std::numeric_limits<float>::quiet_NaN();
                   }
@@ -492,8 +493,8 @@ TEST(BadInput_Regularized, ABlackImageIsBlack) {
   EXPECT_EQ(solve(make_feature_film(description)), description.truth);
 }
 
-// The frame's light in three components: shares of it that differ from pixel to pixel, none of the last one in half of
-// the picture, and of one of them more than there is in some pixels.
+// Splits the light of the film into three components: shares that differ from pixel to pixel, no light of the last
+// component in half of the picture, and in some pixels more of one component than there is.
 film::Film taken_apart(const film::Film& film) {
   const auto share_of = [](size_t component, int x) {
     if (component == 1) return x < kWidth / 2 ? 0.0f : 0.25f;
@@ -515,8 +516,8 @@ film::Film taken_apart(const film::Film& film) {
   return apart;
 }
 
-// Contract 3.4: however the light was found, and to the last digits of floats.
-TEST(B2_Regularized, ComponentsAreWhatThePictureWithoutThemIsMadeOf) {
+// Components add up to the picture, however the light was found, to the last digits of floats.
+TEST(B2_Regularized, ComponentsAddUpToThePictureWithoutThem) {
   for (const bool gradients : {false, true}) {
     for (const int channels : {3, 4}) {
       FeatureFilm description = room(kWidth, kHeight);
@@ -536,9 +537,9 @@ TEST(B2_Regularized, ComponentsAreWhatThePictureWithoutThemIsMadeOf) {
   }
 }
 
-// One operator for all: of twice the light it makes twice as much, of light that is the same share of the picture
-// everywhere that share.
-TEST(B2_Regularized, ComponentsGoThroughOneLinearOperator) {
+// All components use one linear operator: twice the light gives twice the result, and a constant share of the picture
+// stays that share.
+TEST(B2_Regularized, ComponentsUseOneLinearOperator) {
   for (const bool gradients : {false, true}) {
     FeatureFilm description = room(kWidth, kHeight);
     description.gradients = gradients;
@@ -561,7 +562,7 @@ TEST(B2_Regularized, ComponentsGoThroughOneLinearOperator) {
   }
 }
 
-// What no path has found anything of is black, and not what the others' light around it leaves there.
+// A component that no path has reached is black; it gets nothing of the light of others around.
 TEST(B2_Regularized, AComponentWithoutLightIsBlack) {
   film::Film film = make_feature_film(room(kWidth, kHeight));
   film.components.push_back(film.components[0]);

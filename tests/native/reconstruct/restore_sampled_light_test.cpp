@@ -1,4 +1,4 @@
-// What a pixel keeps of its own light where windows would make it black.
+// The share of its own sampled light that a pixel keeps where windows would make it black.
 #include "reconstruct/restore_sampled_light.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ reconstruct::Field constant(float value) {
   return reconstruct::make_field(kSize, kSize, [value](int, int) { return value; });
 }
 
-// The centre, after it took its share.
+// Returns the centre pixel after the correction.
 float kept(const reconstruct::Field& sampled, float regressed) {
   reconstruct::Field image = constant(1.0f);
   image.row(kCentre)[kCentre] = regressed;
@@ -22,12 +22,12 @@ float kept(const reconstruct::Field& sampled, float regressed) {
   return image.row(kCentre)[kCentre];
 }
 
-TEST(B2_RestoreSampledLight, NoLessThanAQuarterOfWhatWasSampled) {
+TEST(B2_RestoreSampledLight, KeepsAQuarterOfTheSampledLightAtLeast) {
   EXPECT_NEAR(kept(constant(1.0f), -3.0f), 0.25f, 1e-6f);
   EXPECT_NEAR(kept(constant(1.0f), 0.1f), 0.25f, 1e-6f);
 }
 
-TEST(B2_RestoreSampledLight, WhatIsBrighterStaysAsItIs) {
+TEST(B2_RestoreSampledLight, BrighterPixelsAreUnchanged) {
   for (const float regressed : {0.25f, 0.5f, 2.0f}) EXPECT_EQ(kept(constant(1.0f), regressed), regressed);
 }
 
@@ -44,7 +44,7 @@ TEST(B2_RestoreSampledLight, ADarkPixelStaysDark) {
   EXPECT_NEAR(kept(sampled, -1.0f), 0.0f, 1e-6f);
 }
 
-TEST(B2_RestoreSampledLight, AllChannelsTakeTheShareOfTheDarkest) {
+TEST(B2_RestoreSampledLight, AllChannelsUseTheShareOfTheDarkest) {
   reconstruct::Field sampled(kSize, kSize, 3), regressed(kSize, kSize, 3);
   for_values(&sampled, [](float& value, int, int, int) { value = 1.0f; });
   for_values(&regressed, [](float& value, int, int, int c) { value = c == 1 ? -1.0f : 0.5f; });

@@ -1,4 +1,4 @@
-// Images with known gradients for the solvers' tests.
+// Images with known gradients for the tests of solvers.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace gradus::test {
 
-// Forward differences of an image, as a frame would hold them: last column and row 0.
+// Returns the forward differences of an image as a film holds them: 0 in the last column and row.
 inline film::GradientImages with_exact_gradients(int width, int height, int channels,
                                                  const std::vector<float>& primal) {
   film::GradientImages images;
@@ -57,8 +57,8 @@ inline void add_noise(std::vector<float>* image, float sigma, unsigned seed) {
   for (float& v : *image) v += normal(random);
 }
 
-// The mean of two halves of an image, each with noise of its own, and the deviations that they show. sigma: of a half,
-// by pixel.
+// Returns the mean of two half-buffers of an image with independent noise, and the deviations that they show. sigma: of
+// a half-buffer, by pixel.
 template <class Sigma>
 void average_noisy_halves(std::vector<float>* mean, std::vector<float>* deviation, int channels, const Sigma& sigma,
                           unsigned seed) {

@@ -1,4 +1,4 @@
-// Where the samples of a batch go, by cells.
+// Distribution of the samples of a batch over pixel blocks.
 #include "render/adaptive_sampling.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 constexpr int kCells = 7, kMiddle = 3;
 constexpr uint32_t kMean = 16;
 
-// Counts of a row of cells, that of the middle noisy, in the batch after the first.
+// Sample counts of a row of blocks, of which the middle one is noisy, in the batch after the first.
 class RowOfBlocks : public testing::Test {
  protected:
   RowOfBlocks()
@@ -35,11 +35,11 @@ class RowOfBlocks : public testing::Test {
   render::AdaptiveSampling sampling_;
 };
 
-// Nothing is known yet of where the noise is.
+// Nothing is known yet about the noise.
 TEST_F(RowOfBlocks, TheFirstBatchIsUniform) { EXPECT_EQ(counts(), std::vector<uint32_t>(kCells, kMean)); }
 
-// Its noise is an estimate, and what makes it may lie a little further in the next frame, too.
-TEST_F(RowOfBlocks, NeighboursOfANoisyCellTakeMoreThanThoseFurtherOff) {
+// The noise is an estimate, and its cause may move to a neighbouring block in the next frame.
+TEST_F(RowOfBlocks, NeighboursOfANoisyBlockTakeMoreThanThoseFurtherAway) {
   counts();
   judge(1.0, 0.1);
   const std::vector<uint32_t> found = counts();

@@ -1,4 +1,4 @@
-// The loop with a noise threshold: samples go where the noise is.
+// The loop with a noise threshold: more samples are taken where the noise is high.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -11,9 +11,9 @@ namespace {
 
 using namespace test;
 
-constexpr int kWidth = 140, kHeight = 70, kQuiet = 64;  // cells are cut at two sides
+constexpr int kWidth = 140, kHeight = 70, kQuiet = 64;  // blocks are cropped at two sides
 
-// A threshold that nothing meets.
+// Returns settings with a threshold that is never reached.
 GradusSettings adaptive_settings(uint32_t samples, float threshold = 1e-6f) {
   GradusSettings settings = small_settings(kWidth, kHeight, samples);
   settings.noise_threshold = threshold;
@@ -53,7 +53,7 @@ double squared_error(const GradusSettings& settings) {
   return sum;
 }
 
-TEST(Adaptive, NoisyCellsTakeMoreOfTheSameNumberOfSamples) {
+TEST(Adaptive, NoisyBlocksTakeMoreOfTheSameNumberOfSamples) {
   GradusSettings settings = adaptive_settings(64);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
   const auto film = render_film(settings);
@@ -98,13 +98,13 @@ TEST(L1_Threads, AdaptiveSamplesHaveTheSameBitsForAnyNumberOfThreads) {
   EXPECT_NE(mean_count(*first, 0, kQuiet), mean_count(*first, kQuiet, kWidth));
 }
 
-// Cells were judged at the end of a batch, which a render that went on from 16 samples had not seen.
-TEST(L3_Resume, AdaptiveRendersGoOnWithTheSameBits) {
+// Regression: blocks were judged at the end of a batch, which a render that was resumed from 16 samples had not seen.
+TEST(L3_Resume, AdaptiveRendersResumeWithTheSameBits) {
   const auto whole = render_film(adaptive_settings(64));
   EXPECT_TRUE(same_samples(*whole, *render_film(adaptive_settings(64), render_film(adaptive_settings(16)))));
 }
 
-// Quiet cells cost more than others.
+// Samples of the quiet blocks cost more than others.
 std::shared_ptr<const film::Film> render_costly_below(const GradusSettings& settings,
                                                       std::shared_ptr<const film::Film> from) {
   const auto render = start(settings, fake_factory([](FakeIntegrator* fake) {
@@ -116,8 +116,8 @@ std::shared_ptr<const film::Film> render_costly_below(const GradusSettings& sett
   return render->film();
 }
 
-// The cost of cells, and which of them had stopped, was forgotten between the two renders.
-TEST(L3_Resume, CellsKeepTheirCostAndTheirStop) {
+// Regression: the cost of blocks, and which of them had stopped, was lost between the two renders.
+TEST(L3_Resume, BlocksKeepTheirCostAndTheirStop) {
   GradusSettings settings = adaptive_settings(80, 0.05f);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
   const auto part = [&](uint32_t samples, std::shared_ptr<const film::Film> from) {
@@ -139,7 +139,8 @@ TEST(L3_Resume, CellsKeepTheirCostAndTheirStop) {
   EXPECT_LT(mean_count(*whole, 0, 16), 80.0) << "stopped";
 }
 
-// What samples had cost that were not taken adaptively counted as nothing once the render had ended and gone on again.
+// Regression: the unknown cost of samples that were not taken adaptively counted as 0 after the render was resumed
+// twice.
 TEST(L3_Resume, SamplesOfUnknownCostStayUnknown) {
   GradusSettings settings = adaptive_settings(16, 0.0f);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
@@ -157,9 +158,9 @@ TEST(L3_Resume, SamplesOfUnknownCostStayUnknown) {
   EXPECT_TRUE(same_samples(*part(80, plain), *part(80, halfway)));
 }
 
-// A lower threshold starts cells again that had stopped at a higher one; without one their counts would differ for
-// nothing.
-TEST(L3_Resume, ALowerThresholdGoesOnWhereAHigherOneHadStopped) {
+// A lower threshold resumes blocks that had stopped at a higher one; with the same threshold, their counts must not
+// change.
+TEST(L3_Resume, ALowerThresholdResumesBlocksThatAHigherOneStopped) {
   const auto settings = [](uint32_t samples, float threshold) {
     GradusSettings s = adaptive_settings(samples, threshold);
     s.integrator = GRADUS_INTEGRATOR_PATH;
@@ -172,12 +173,12 @@ TEST(L3_Resume, ALowerThresholdGoesOnWhereAHigherOneHadStopped) {
   EXPECT_THROW(start(settings(96, 0.0f), quiet_at_the_left(), coarse), Error);
 }
 
-// Sums and counts are all that is needed: a cell with more samples counts for more.
-TEST(L3_Merge, FramesOfUnequalCountsAreAddedPixelByPixel) {
+// Sums and counts suffice: a block with more samples has a larger weight.
+TEST(L3_Merge, FilmsOfUnequalCountsAreAddedPixelByPixel) {
   GradusSettings settings = adaptive_settings(32);
   const auto first = render_film(settings);
   film::Film merged = *first;
-  settings.first_sample = 16;  // the noisy cells have taken these already
+  settings.first_sample = 16;  // the noisy blocks have taken these already
   const auto overlapping = render_film(settings);
   try {
     render::merge_films(&merged, *overlapping);
@@ -202,11 +203,11 @@ TEST(L3_Merge, FramesOfUnequalCountsAreAddedPixelByPixel) {
   }
   EXPECT_NE(merged.count[0][merged.index(3, 7)], merged.count[0][merged.index(kWidth - 5, 7)]);
   EXPECT_THROW(start(adaptive_settings(1024), quiet_at_the_left(), std::make_shared<const film::Film>(merged)), Error)
-      << "no one goes on from it";
+      << "it is not resumed";
 }
 
-// All cells share what is left where others are done: no more than the batch would take of them.
-TEST(Adaptive, SamplesThatCellsLeaveAreSaved) {
+// Samples that finished blocks leave are not distributed beyond what the other blocks take in the batch.
+TEST(Adaptive, SamplesThatBlocksLeaveAreSaved) {
   const auto film = render_film(adaptive_settings(256, 0.06f));
   EXPECT_EQ(mean_count(*film, 0, 16), 16.0);
   EXPECT_LT(mean_count(*film, 0, kWidth), 200.0);

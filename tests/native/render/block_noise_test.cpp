@@ -1,11 +1,11 @@
-// What stops cells is the same estimate that the pass Error shows.
+// The noise by which blocks stop is the estimate of the pass Error.
 #include "render/block_noise.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "reconstruct/feature_frame.h"
+#include "reconstruct/feature_film.h"
 #include "reconstruct/reconstruct_film.h"
 
 namespace gradus {
@@ -22,7 +22,7 @@ film::Film noisy_room(bool gradients) {
   return film;
 }
 
-// Root of mean squared error over mean squared gray, by the estimate's sum over the cell.
+// Returns the root of the mean squared error over the mean squared gray, from the sums of the estimate over the block.
 double relative_error(const film::Film& film, const reconstruct::Reconstructed& result, const Region& block,
                       double error) {
   double signal = 0.0;
@@ -44,8 +44,8 @@ double sum_over(const film::Film& film, const std::vector<float>& pixels, const 
   return sum;
 }
 
-// Noise of the halves, which a reconstruction by features hides, says nothing of its error: its own estimate has to be
-// taken.
+// A reconstruction by features removes the noise of the half-buffers, which says nothing about its error: its own
+// estimate is used.
 TEST(BlockNoise, OfAReconstructionThatEstimatesItsErrorIsThatEstimate) {
   for (const bool gradients : {false, true}) {
     const film::Film film = noisy_room(gradients);
@@ -65,8 +65,9 @@ TEST(BlockNoise, OfAReconstructionThatEstimatesItsErrorIsThatEstimate) {
   }
 }
 
-// The whole picture as one cell: what the windows of the pass spread stays in it, but for what the border cuts off.
-TEST(BlockNoise, OfAllIsTheSumOfThePass) {
+// With the whole picture as one block, the error that the windows of the pass spread stays in it, apart from losses at
+// the border.
+TEST(BlockNoise, OfThePictureIsTheSumOfThePass) {
   const film::Film film = noisy_room(true);
   for (const uint32_t how : {GRADUS_RECONSTRUCTION_NONE, GRADUS_RECONSTRUCTION_L2}) {
     reconstruct::SolveReport report;

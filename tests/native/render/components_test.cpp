@@ -1,5 +1,5 @@
-// Components of a render: planned by what the scene holds, reconstructed, and read by name; they add up to Combined
-// (contract 3.4).
+// Components of a render: planned by the content of the scene, reconstructed, and read by name; they add up to
+// Combined.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Components, Modes,
                                          uint32_t{GRADUS_RECONSTRUCTION_L1},
                                          uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
 
-// L2 has the same weights everywhere: what was taken apart comes together as if it had not been.
+// L2 has the same weights everywhere: separately reconstructed components add up to the picture of one component.
 TEST(Components, OfL2AddUpToThePictureOfOne) {
   GradusSettings settings = settings_with("Once=E.L;Twice=E..L");
   const auto many = rendered(Scenario::Glass, settings);
@@ -116,13 +116,13 @@ TEST(Components, ThatNoSurfaceCanMakeAreNotSampled) {
   EXPECT_EQ(sampled_components(*mirror), "Emission, Diffuse, Reflection, Residual");
   EXPECT_EQ(sampled_components(*rendered(Scenario::Glass, settings_with(""))),
             "Emission, Diffuse, Reflection, Transmission, Residual");
-  // A user's own set, too, and nothing is taken from it that may come.
+  // The same holds for a user's own set. No component that may get light is removed.
   EXPECT_EQ(
       sampled_components(*rendered(Scenario::DiffuseArea, settings_with("Caustic=ED+(R|T).*L;Rare=EDDDDDDDDDDDDL"))),
       "Rare, Residual");
 }
 
-// A room with a mirror that shows its ceiling, or lies behind a wall.
+// Builds a room with a mirror that shows its ceiling, or lies behind a wall.
 void build_room_with_mirror(PathScene* scene, float size, float z) {
   test::add_box(scene, test::matte(Rgb(0.6f)));
   test::add_ceiling_light(scene, 20.0f, 0.5f);
@@ -138,7 +138,7 @@ GradusSettings light_alone(const std::string& components) {
 
 TEST(Components, ThatAreSmallEverywhereBelongToResidual) {
   PathScene hidden;
-  build_room_with_mirror(&hidden, 0.5f, -1.5f);  // behind the box's wall
+  build_room_with_mirror(&hidden, 0.5f, -1.5f);  // behind the wall of the box
   const auto render = rendered(&hidden, light_alone(""));
   EXPECT_EQ(sampled_components(*render), "Emission, Diffuse, Residual");
   EXPECT_NE(render->stats_json().find("\"components Reflection\":\"automatic: "), std::string::npos)
@@ -152,7 +152,7 @@ TEST(Components, ThatAreSmallEverywhereBelongToResidual) {
   }
 }
 
-TEST(Components, ThatAreSmallAreKeptWhereSomebodyMayWantThem) {
+TEST(Components, ThatAreSmallAreKeptWhereTheyMayBeNeeded) {
   PathScene hidden, seen;
   build_room_with_mirror(&hidden, 0.5f, -1.5f);
   build_room_with_mirror(&seen, 0.1f, 0.0f);  // a few pixels
@@ -165,8 +165,9 @@ TEST(Components, ThatAreSmallAreKeptWhereSomebodyMayWantThem) {
   EXPECT_EQ(sampled_components(*rendered(&hidden, with_normals)), kAll);
 }
 
-// Frames of farms are merged, borders are compared with the whole, and renders go on.
-TEST(Components, ThatAreSmallAreSoForAnyPartOfTheWork) {
+// Films of farms are merged, borders are compared with the full frame, and renders are resumed: the decision must be
+// the same.
+TEST(Components, ThatAreSmallAreSoInEveryPartOfTheWork) {
   PathScene hidden;
   build_room_with_mirror(&hidden, 0.5f, -1.5f);
   GradusSettings settings = light_alone("");
@@ -189,7 +190,7 @@ TEST(Components, ThatAreSmallAreSoForAnyPartOfTheWork) {
   EXPECT_EQ(film::component_names(*rendered(&hidden, settings)->film()), sampled_components(*whole));
 }
 
-// All of it is small then, and what is left is Residual alone.
+// All components are small then; Residual alone remains.
 TEST(Components, OfADarkSceneAreResidual) {
   PathScene scene;
   scene.quad(Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0), scene.material(test::matte(Rgb(0.5f))));
@@ -199,7 +200,7 @@ TEST(Components, OfADarkSceneAreResidual) {
   for (const char* const name : kDefaultNames) EXPECT_EQ(sum_of(component(*render, name)), 0.0) << name;
 }
 
-TEST(Components, CostNothingWhereNobodyAsks) {
+TEST(Components, CostNothingUnlessRequested) {
   GradusSettings settings = settings_with("");
   settings.use_decomposition = 0;
   const auto render = rendered(Scenario::Glass, settings);
@@ -208,7 +209,7 @@ TEST(Components, CostNothingWhereNobodyAsks) {
   EXPECT_THROW(component(*render, "Diffuse"), Error);
 }
 
-TEST(Components, BadSetsEndTheRenderWithWhatIsWrong) {
+TEST(Components, InvalidSetsEndTheRenderWithTheReason) {
   PathScene scene;
   test::build(Scenario::DiffuseArea, &scene);
   for (const char* const set : {"Broken=E(DL", "A=EDL;B=E.L", "NotALetter=EXL"}) {
@@ -256,7 +257,7 @@ TEST(Components, HaveTheSurfacesThatTheirPathsMeetFirst) {
   EXPECT_NEAR(far[right / 3], 9.0f, 0.1f) << "to the mirror and back past the camera";
   EXPECT_EQ(near[right / 3], 1e10f);
   EXPECT_EQ(far[left / 3], 1e10f);
-  // Irradiance · reflectance is the colour again; of black surfaces it is the colour itself.
+  // Irradiance · reflectance is the colour; for black surfaces the irradiance is the colour itself.
   const std::vector<float> color = component(*render, "Diffuse"),
                            light = component(*render, "Diffuse", GRADUS_COMPONENT_IRRADIANCE);
   EXPECT_GT(color[left], 0.0f);
@@ -264,7 +265,7 @@ TEST(Components, HaveTheSurfacesThatTheirPathsMeetFirst) {
   EXPECT_EQ(light[right], color[right]);
 }
 
-// A quad with u along a and v along b, face 3 of its mesh.
+// Adds a quad with u along a and v along b, face 3 of its mesh.
 void add_mapped_quad(PathScene* scene, const Vec3& corner, const Vec3& a, const Vec3& b, const test::Surface& surface) {
   test::Soup soup;
   soup.triangle(corner, corner + a, corner + a + b);
@@ -298,7 +299,7 @@ GradusSettings details_settings() {
   return settings;
 }
 
-// What passes of a component have in a pixel.
+// Values of the passes of a component in a pixel.
 struct Shown {
   Vec3 uv, emit;
   float object, face;
@@ -322,9 +323,9 @@ void expect_shown(const Shown& found, const Shown& expected) {
 
 const Shown kNothingShown{Vec3(0.0f), Vec3(0.0f), 0.0f, -1.0f};
 
-// A dim wall and a mirror, each with a map and an index of its own; the mirror shows a wall behind the camera that is a
-// screen.
-TEST(Components, HaveTheMapsIndicesAndEmissionOfWhatTheyShow) {
+// A dim wall and a mirror, each with a map and an index of its own; the mirror shows an emissive wall behind the
+// camera.
+TEST(Components, HaveTheMapsIndicesAndEmissionOfTheSurfacesTheyShow) {
   PathScene scene;
   test::Surface dim = test::matte(Rgb(0.3f)), mirror = test::glossy(0.0f), screen = test::matte(Rgb(0.9f));
   dim.emission = Rgb(0.25f);
@@ -347,14 +348,14 @@ TEST(Components, HaveTheMapsIndicesAndEmissionOfWhatTheyShow) {
   const Vec3 map_of_left(1.0f - 0.9f * (0.5f - 10.5f / kSide), 0.5f + 0.45f * (20.5f / kSide - 0.5f), 1);
   const Shown wall{map_of_left, Vec3(0.375f), 4, 3};
   expect_shown(shown_at(*render, "Diffuse", left), wall);
-  expect_shown(shown_at(*render, "Emission", left), wall);  // it shines
+  expect_shown(shown_at(*render, "Emission", left), wall);  // the wall is emissive
   expect_shown(shown_at(*render, "Reflection", left), kNothingShown);
   expect_shown(shown_at(*render, "Transmission", left), kNothingShown);
-  EXPECT_TRUE(render->film()->components[0].non_specular[0].empty()) << "nobody asked for these";
+  EXPECT_TRUE(render->film()->components[0].non_specular[0].empty()) << "not requested";
 }
 
-// Of what is seen directly, the emission is the picture: a light before another one, and both before the world.
-TEST(Components, EmissionOfWhatIsSeenIsItsLight) {
+// For directly visible emitters, the emission is the picture: a light before another one, and both before the world.
+TEST(Components, EmissionOfADirectlyVisibleEmitterIsItsLight) {
   PathScene scene;
   scene.world(Rgb(0.25f, 0.5f, 0.1f));
   for (const float z : {0.0f, -1.0f}) {
@@ -374,8 +375,8 @@ TEST(Components, EmissionOfWhatIsSeenIsItsLight) {
   EXPECT_GT(lit, 2.0f * world);
 }
 
-// Lights and the sky were as near as the mirror that showed them, or the camera.
-TEST(Components, WhatShinesIsAsFarAsItIs) {
+// Regression: lights and the sky got the distance of the mirror that showed them, or of the camera.
+TEST(Components, EmittersHaveTheirOwnDistance) {
   PathScene scene;
   scene.world(Rgb(0.25f, 0.5f, 0.1f));
   scene.light(test::make_light(GRADUS_LIGHT_RECTANGLE,
@@ -388,15 +389,15 @@ TEST(Components, WhatShinesIsAsFarAsItIs) {
   const std::vector<float> seen = component(*render, "Emission", GRADUS_COMPONENT_DEPTH),
                            mirrored = component(*render, "Reflection", GRADUS_COMPONENT_DEPTH);
   const size_t left = 20 * kSide + 10, right = 20 * kSide + 21;
-  EXPECT_NEAR(seen[right], 4.0f, 0.1f) << "the lamp";
+  EXPECT_NEAR(seen[right], 4.0f, 0.1f) << "the light";
   EXPECT_EQ(seen[left], 1e10f) << "hidden by the mirror";
   EXPECT_EQ(mirrored[left], 1e10f) << "the sky";
   EXPECT_GT(sum_of(component(*render, "Reflection")), 1.0);
 }
 
-// A surface that is lit and shines was counted twice: its normal had half its length, its reflectance was a mean of
-// albedo and light.
-TEST(Components, ASurfaceThatShinesIsMetOnce) {
+// Regression: a lit and emissive surface was counted twice: its normal had half its length, and its reflectance was a
+// mean of albedo and light.
+TEST(Components, AnEmissiveSurfaceIsCountedOnce) {
   PathScene scene;
   test::Surface screen = test::matte(Rgb(0.3f));
   screen.emission = Rgb(0.25f, 0.5f, 8.0f);
@@ -412,7 +413,7 @@ TEST(Components, ASurfaceThatShinesIsMetOnce) {
   EXPECT_NEAR(component(*render, "All", GRADUS_COMPONENT_DEPTH)[middle], 3.0f, 0.05f);
 }
 
-// What lights below 0 take away is kept without a reconstruction, and components were cut off at 0.
+// Regression: without a reconstruction, negative light stays in the picture, but components were clamped at 0.
 TEST(Components, AddUpBelowZero) {
   PathScene scene;
   test::add_box(&scene, test::matte(Rgb(0.6f)));
@@ -431,8 +432,8 @@ TEST(Components, AddUpBelowZero) {
   }
 }
 
-// Glass reflects few of a pixel's samples, and the first of them is seldom the first of all.
-TEST(Components, IndicesAreThoseOfTheFirstSampleThatMetSomething) {
+// Glass reflects few of the samples of a pixel, and the first of them is rarely the pixel's first sample.
+TEST(Components, IndicesAreThoseOfTheFirstSampleThatMetAnObject) {
   PathScene scene;
   test::build(Scenario::Glass, &scene);
   GradusSettings settings = details_settings();
@@ -449,8 +450,8 @@ TEST(Components, IndicesAreThoseOfTheFirstSampleThatMetSomething) {
   EXPECT_GT(more, 20u);
 }
 
-// Whichever comes first.
-TEST(Components, IndicesOfMergedFramesAreThoseOfTheWhole) {
+// The order of merging does not matter.
+TEST(Components, IndicesOfMergedFilmsAreThoseOfTheWhole) {
   PathScene scene;
   test::build(Scenario::Glass, &scene);
   GradusSettings settings = details_settings();
@@ -478,7 +479,7 @@ TEST(Components, IndicesOfMergedFramesAreThoseOfTheWhole) {
   EXPECT_GT(others, 20u);
 }
 
-TEST(Components, AreKeptInFramesAndGoOnFromThere) {
+TEST(Components, AreKeptInFilmsAndResumed) {
   PathScene scene;
   test::build(Scenario::Glass, &scene);
   GradusSettings settings = settings_with("");
@@ -510,13 +511,13 @@ TEST(Components, AreKeptInFramesAndGoOnFromThere) {
        {GRADUS_COMPONENT_COLOR, GRADUS_COMPONENT_NORMAL, GRADUS_COMPONENT_FACE_INDEX, GRADUS_COMPONENT_EMIT}) {
     EXPECT_EQ(component(more, "Transmission", pass), component(*whole, "Transmission", pass));
   }
-  // Not as other components.
+  // A film with other components is refused.
   const GradusSettings others = settings_with("Direct=EDL");
   EXPECT_THROW(render::Render(test::test_device(), scene.context(others).snapshot, others, stored), Error);
 }
 
-// It would have passes of half of its samples.
-TEST(Components, DoNotGoOnFromFramesWithoutTheirSurfaces) {
+// Its passes would hold half of the samples.
+TEST(Components, DoNotResumeFilmsWithoutTheirSurfaces) {
   PathScene scene;
   test::build(Scenario::DiffuseArea, &scene);
   for (const uint32_t pass : {GRADUS_COMPONENT_NORMAL, GRADUS_COMPONENT_UV}) {
@@ -545,13 +546,13 @@ TEST(Components, OfDifferentSetsAreNotMerged) {
 
 constexpr uint32_t kMotionPasses = 1u << GRADUS_COMPONENT_MOTION | 1u << GRADUS_COMPONENT_TRACKED;
 
-// A camera that turns from frame to frame.
+// Rotates the camera from frame to frame.
 void turn_camera(scene::Snapshot* snapshot) {
   std::copy_n(snapshot->camera.matrix, 16, snapshot->camera.matrix_previous);
   snapshot->camera.matrix_previous[12] -= 0.05f;
 }
 
-TEST(Components, TellTheirMotion) {
+TEST(Components, ReportTheirMotion) {
   PathScene scene;
   test::build(Scenario::Glass, &scene);
   GradusSettings settings = settings_with("");
@@ -571,7 +572,7 @@ TEST(Components, TellTheirMotion) {
     const std::vector<float> tracked = component(render, set[c].name, GRADUS_COMPONENT_TRACKED);
     for (size_t i = 0; i < tracked.size(); ++i) {
       const float found = expected[size_t(c)].tracked[i];
-      const bool by_flow = set[c].name == lpe::kResidual && found == motion::kTracked;  // of two frames
+      const bool by_flow = set[c].name == lpe::kResidual && found == motion::kTracked;  // by flow between two frames
       ASSERT_EQ(tracked[i], by_flow ? motion::kNoNeighbour : found) << set[c].name;
       for (size_t k = 0; k < 4; ++k)
         ASSERT_EQ(vectors[4 * i + k], expected[size_t(c)].vectors[i][int(k)]) << set[c].name;
@@ -581,7 +582,7 @@ TEST(Components, TellTheirMotion) {
   EXPECT_GT(farthest, 0.2f);
 }
 
-// ThreadSanitizer sees the vectors move into the frame while progress() adds up their sizes, unless both take the lock.
+// ThreadSanitizer sees the vectors move into the film while progress() adds up their sizes, unless both take the lock.
 TEST(Components, ProgressCountsTheirMotionWhileItIsFound) {
   PathScene scene;
   test::build(Scenario::DiffuseArea, &scene);
@@ -596,9 +597,9 @@ TEST(Components, ProgressCountsTheirMotionWhileItIsFound) {
   EXPECT_GE(render->progress().memory_bytes, film->memory_bytes());
 }
 
-// The last component of a set was taken for Residual where no path is left for that: it had the motion of the mirror,
-// and as tracked.
-TEST(Components, OfSetsWithoutResidualTellTheMotionOfWhatTheyShow) {
+// Regression: the last component of a set was taken for Residual if no path is left for that: it got the motion of the
+// mirror, marked as tracked.
+TEST(Components, OfSetsWithoutResidualReportTheMotionOfTheReflectedObject) {
   PathScene scene;
   test::build(Scenario::Mirror, &scene);
   const auto motion_of = [&](const std::string& set, const std::string& name, uint32_t pass) {
@@ -628,7 +629,7 @@ TEST(Components, OfSetsWithoutResidualTellTheMotionOfWhatTheyShow) {
   EXPECT_GT(both, 100u);
 }
 
-TEST(Components, WhatIsNotThereIsNotTracked) {
+TEST(Components, AMissingOneIsNotTracked) {
   GradusSettings settings = settings_with("Nothing=ETTTTTTL");
   settings.component_passes = kMotionPasses;
   const auto render = rendered(Scenario::DiffuseArea, settings);
@@ -638,7 +639,7 @@ TEST(Components, WhatIsNotThereIsNotTracked) {
   for (const float value : component(*render, "Nothing", GRADUS_COMPONENT_MOTION)) ASSERT_EQ(value, 0.0f);
 }
 
-TEST(Components, MotionThatWasNotAskedForIsRefused) {
+TEST(Components, MotionThatWasNotRequestedIsRefused) {
   GradusSettings settings = settings_with("");
   settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
   const auto render = rendered(Scenario::Glass, settings);
@@ -646,7 +647,7 @@ TEST(Components, MotionThatWasNotAskedForIsRefused) {
   EXPECT_THROW(render->read_component("Diffuse", GRADUS_COMPONENT_TRACKED, values.data(), values.size()), Error);
 }
 
-TEST(Components, MotionIsStoredWithTheFrame) {
+TEST(Components, MotionIsStoredWithTheFilm) {
   GradusSettings settings = settings_with("");
   settings.component_passes = kMotionPasses;
   const auto film = rendered(Scenario::Glass, settings)->film();
@@ -663,7 +664,7 @@ TEST(Components, MotionIsStoredWithTheFrame) {
   }
 }
 
-// What only passes show is sampled for them alone.
+// Data for passes are sampled only if the passes are requested.
 TEST(Components, KeepNoSurfacesUnlessPassesShowThem) {
   GradusSettings settings = settings_with("", GRADUS_RECONSTRUCTION_REGULARIZED);
   settings.component_passes = 1u << GRADUS_COMPONENT_COLOR;
@@ -677,8 +678,8 @@ TEST(Components, KeepNoSurfacesUnlessPassesShowThem) {
   EXPECT_THROW(component(*render, "Diffuse", GRADUS_COMPONENT_UV), Error);
 }
 
-// The picture is clamped, and so are its parts: by what there is too much of, nothing is added.
-TEST(Components, ThatAreClampedAddUpToThePictureAsClamped) {
+// The picture and its components are clamped so that the components still add up to the clamped picture.
+TEST(Components, ThatAreClampedAddUpToTheClampedPicture) {
   std::vector<std::vector<float>> images = {{2.0f, -1.0f, 1.0f, 0.5f}, {-1.0f, -1.0f, 3.0f, 0.25f}};
   reconstruct::clamp_components(GRADUS_RECONSTRUCTION_L1, 4, &images);
   EXPECT_EQ(images[0], (std::vector<float>{1.0f, 0.0f, 1.0f, 0.5f}));

@@ -1,5 +1,4 @@
-// A denoiser behind the reconstruction, by the stand-in of tests/native/denoise: what it changes, what it leaves, what
-// is said of it.
+// A denoiser after the reconstruction, by a stand-in: what it changes, what it leaves, and what is reported.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -58,7 +57,7 @@ class DenoisedRender : public ::testing::Test {
   const std::shared_ptr<scene::Device> device = device_with(kFake);
 };
 
-// What the stand-in makes of a picture and the features without their noise.
+// Returns the result of the stand-in for a picture and its features without noise.
 std::vector<float> denoised(std::vector<float> rgba, const film::Film& film) {
   const film::Features features = reconstruct::filter_features(film::read_features(film));
   for (size_t i = 0; i < rgba.size(); ++i) {
@@ -73,19 +72,19 @@ void expect_near(const std::vector<float>& a, const std::vector<float>& b) {
   for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 1e-4) << i;
 }
 
-TEST_F(DenoisedRender, CombinedGoesThroughItAndTheRestStays) {
+TEST_F(DenoisedRender, CombinedIsDenoisedAndOtherPassesAreNot) {
   for (const float noise : {0.0f, 1.0f}) {
     const auto plain = finished(settings_with(GRADUS_DENOISER_NONE), noise),
                render = finished(settings_with(GRADUS_DENOISER_OIDN), noise);
     const auto expected = denoised(read(*plain, GRADUS_PASS_COMBINED, kAll), *render->film());
     expect_near(read(*render, GRADUS_PASS_COMBINED, kAll), expected);
     EXPECT_EQ(read(*render, GRADUS_PASS_NOISY_IMAGE, kAll), read(*plain, GRADUS_PASS_NOISY_IMAGE, kAll));
-    EXPECT_TRUE(film::has_features(*render->film())) << "nobody asked for the passes";
+    EXPECT_TRUE(film::has_features(*render->film())) << "the passes were not requested";
     EXPECT_FALSE(film::has_features(*plain->film()));
   }
 }
 
-TEST_F(DenoisedRender, IsSaidInStatsPlanAndFrame) {
+TEST_F(DenoisedRender, IsReportedInStatsPlanAndFilm) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_AUTO);
   settings.samples = 8;
   settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
@@ -106,7 +105,7 @@ TEST_F(DenoisedRender, IsSaidInStatsPlanAndFrame) {
   EXPECT_EQ(plain["seconds"]["denoise"], 0.0);
 }
 
-TEST_F(DenoisedRender, AutomaticOneIsLeftOutWhereItsTimeBuysMoreAsSamples) {
+TEST_F(DenoisedRender, TheAutomaticOneIsLeftOutWhereMoreSamplesAreWorthMore) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_AUTO);
   settings.samples = 7;
   const json stats = json::parse(finished(settings)->stats_json());
@@ -116,8 +115,8 @@ TEST_F(DenoisedRender, AutomaticOneIsLeftOutWhereItsTimeBuysMoreAsSamples) {
   EXPECT_EQ(json::parse(finished(settings)->stats_json())["denoiser"], "Open Image Denoise 2.7.5");
 }
 
-// The time limit, not `samples`, said how many there were.
-TEST_F(DenoisedRender, AutomaticOneIsLeftOutWhereTheTimeLimitLeavesFewSamples) {
+// Regression: `samples` was used although the time limit determined the number of samples.
+TEST_F(DenoisedRender, TheAutomaticOneIsLeftOutWhereTheTimeLimitLeavesFewSamples) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_AUTO);
   settings.samples = 1000;
   settings.reconstruction = GRADUS_RECONSTRUCTION_L2;
@@ -144,7 +143,7 @@ TEST_F(DenoisedRender, AutomaticOneIsLeftOutWhereTheTimeLimitLeavesFewSamples) {
   EXPECT_EQ(quick["unbiased"], false);
 }
 
-TEST_F(DenoisedRender, RegionIsDenoisedAlone) {
+TEST_F(DenoisedRender, ARegionIsDenoisedAlone) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_OIDN);
   settings.integrator = GRADUS_INTEGRATOR_PATH;
   settings.reconstruction = GRADUS_RECONSTRUCTION_NONE;
@@ -163,9 +162,8 @@ TEST_F(DenoisedRender, RegionIsDenoisedAlone) {
 
 double luminance(const float* pixel) { return (double(pixel[0]) + double(pixel[1]) + double(pixel[2])) / 3.0; }
 
-// A network makes nothing more of what is smooth: it looks at the noisy image, and the geometric mean of both is
-// delivered.
-TEST_F(DenoisedRender, RegularizedIsTheMeanWithTheNoisyImageDenoised) {
+// A network cannot improve a smooth picture: it denoises the noisy image, and the geometric mean of both is delivered.
+TEST_F(DenoisedRender, RegularizedIsTheMeanWithTheDenoisedNoisyImage) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_NONE);
   settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
   const auto plain = finished(settings, 1.0f);
@@ -184,7 +182,7 @@ TEST_F(DenoisedRender, RegularizedIsTheMeanWithTheNoisyImageDenoised) {
   expect_near(read(*render, GRADUS_PASS_COMBINED, kAll), expected);
 }
 
-// Its error is known as a share of REGULARIZED's.
+// The error is known as a share of that of REGULARIZED.
 TEST_F(DenoisedRender, ErrorIsThatOfTheDenoisedPicture) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_NONE);
   settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
@@ -212,7 +210,7 @@ TEST_F(DenoisedRender, ABorderIsThatOfTheFullFrame) {
   expect_near(read(*finished(settings), GRADUS_PASS_COMBINED, part), expected);
 }
 
-// A black picture has no median, and nothing to take a logarithm of.
+// A black picture has no median, and its logarithm is not finite.
 TEST_F(DenoisedRender, ABlackPictureStaysFinite) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_OIDN);
   settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
@@ -220,8 +218,8 @@ TEST_F(DenoisedRender, ABlackPictureStaysFinite) {
     ASSERT_TRUE(std::isfinite(value)) << value;
 }
 
-// The picture was there.
-TEST_F(DenoisedRender, FailureIsAWarningAndThePictureStays) {
+// Regression: the render failed although the picture was complete.
+TEST_F(DenoisedRender, AFailureIsAWarningAndThePictureStays) {
   const auto plain = read(*finished(settings_with(GRADUS_DENOISER_NONE)), GRADUS_PASS_COMBINED, kAll);
   auto render = start(settings_with(GRADUS_DENOISER_OIDN));
   setenv("FAKE_OIDN", "fails", 1);
@@ -235,8 +233,8 @@ TEST_F(DenoisedRender, FailureIsAWarningAndThePictureStays) {
   EXPECT_TRUE(stats["denoiser"].is_null());
 }
 
-// Only what Open Image Denoise itself reported was caught, and the render failed.
-TEST_F(DenoisedRender, NoMemoryForItIsAWarningToo) {
+// Regression: only errors that Open Image Denoise itself reported were caught; others made the render fail.
+TEST_F(DenoisedRender, MissingMemoryIsAWarningToo) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_NONE);
   settings.passes |= schema::feature_passes();
   const auto film = finished(settings)->film();
@@ -251,7 +249,7 @@ TEST_F(DenoisedRender, NoMemoryForItIsAWarningToo) {
   EXPECT_EQ(failure, "the picture was not denoised: out of memory");
 }
 
-TEST_F(DenoisedRender, CancelledMeanwhileItLeavesTheReconstruction) {
+TEST_F(DenoisedRender, ACancelDuringItLeavesTheReconstruction) {
   const auto plain = read(*finished(settings_with(GRADUS_DENOISER_NONE)), GRADUS_PASS_COMBINED, kAll);
   setenv("FAKE_OIDN", "slow", 1);
   const auto render = start(settings_with(GRADUS_DENOISER_OIDN));
@@ -259,12 +257,12 @@ TEST_F(DenoisedRender, CancelledMeanwhileItLeavesTheReconstruction) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   render->cancel();
-  ASSERT_TRUE(render->wait(1.0)) << "it goes on";
+  ASSERT_TRUE(render->wait(1.0)) << "continues";
   EXPECT_EQ(render->outcome(nullptr), GRADUS_ERROR_CANCELLED);
   EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, kAll), plain);
 }
 
-TEST_F(DenoisedRender, IsRefusedBeforeTheFirstSampleWhereThereIsNone) {
+TEST_F(DenoisedRender, IsRefusedBeforeTheFirstSampleIfMissing) {
   setenv("FAKE_OIDN", "old", 1);
   std::string why_not;
   if (output::find_oidn({}, &why_not)) GTEST_SKIP() << "this machine has the library";

@@ -1,4 +1,4 @@
-// The pass Error of renders, and of their frames.
+// The pass Error of renders and of their films.
 #include <gtest/gtest.h>
 
 #include "output/combine.h"
@@ -22,7 +22,7 @@ GradusSettings error_settings(uint32_t integrator, uint32_t reconstruction, uint
   return settings;
 }
 
-// Mean squared error of a pass against the fake scene's truth, mean over RGB.
+// Returns the mean squared error of a pass against the fake scene's truth, mean over RGB.
 double true_error(const std::vector<float>& rgba) {
   double sum = 0.0;
   for (int i = 0; i < int(kSide * kSide); ++i) {
@@ -45,8 +45,8 @@ TEST(ErrorPass, IsThatOfCombined) {
   }
 }
 
-// The fake scene's features are as noisy as its picture. What their noise makes of the regression is in no estimate,
-// and shows with more samples.
+// The features of the fake scene are as noisy as its picture. The error that their noise causes in the regression is
+// not estimated; more samples would show it.
 TEST(ErrorPass, OfRegularizedIsThatOfCombined) {
   for (const uint32_t samples : {2u, 4u, 8u}) {
     const auto render =
@@ -58,12 +58,12 @@ TEST(ErrorPass, OfRegularizedIsThatOfCombined) {
   }
 }
 
-TEST(ErrorPass, IsRefusedWhereItWasNotAskedFor) {
+TEST(ErrorPass, IsRefusedIfItWasNotRequested) {
   EXPECT_THROW(read(*start_and_wait(small_settings(kSide, kSide, 4)), GRADUS_PASS_ERROR, kAll), Error);
 }
 
-// By the exposure's square, as the error of what is delivered.
-TEST(ErrorPass, GoesWithTheExposure) {
+// The error of the delivered picture scales with the square of the exposure.
+TEST(ErrorPass, ScalesWithTheExposure) {
   GradusSettings settings = error_settings(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2);
   const std::vector<float> plain = read(*start_and_wait(settings), GRADUS_PASS_ERROR, kAll);
   settings.film_exposure = 3.0f;
@@ -71,7 +71,7 @@ TEST(ErrorPass, GoesWithTheExposure) {
   for (size_t i = 0; i < plain.size(); ++i) EXPECT_FLOAT_EQ(exposed[i], 9.0f * plain[i]);
 }
 
-TEST(ErrorPass, OfAPartHasItsPixels) {
+TEST(ErrorPass, OfARegionHasItsPixels) {
   GradusSettings settings = error_settings(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_NONE);
   const auto film = rendered(settings);
   reconstruct::SolveReport report;
@@ -83,7 +83,7 @@ TEST(ErrorPass, OfAPartHasItsPixels) {
   for (size_t i = 0; i < part.size(); ++i) EXPECT_EQ(part[i], whole[(11 + i / 23) * kSide + 7 + i % 23]);
 }
 
-// What is delivered then is the noisy image.
+// The delivered picture is the noisy image then.
 TEST(ErrorPass, AfterACancelIsThatOfTheNoisyImage) {
   auto render = start(error_settings(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1, 1000000));
   while (render->progress().samples_done < 8) std::this_thread::yield();
@@ -94,7 +94,7 @@ TEST(ErrorPass, AfterACancelIsThatOfTheNoisyImage) {
   EXPECT_NEAR(mean(error) / true_error(read(*render, GRADUS_PASS_COMBINED, kAll)), 1.0, 0.2);
 }
 
-TEST(ErrorPass, IsSaidToBeSkippedWhereItIs) {
+TEST(ErrorPass, IsReportedWhenItIsSkipped) {
   const auto skips_error = [](const GradusSettings& settings) {
     for (const auto& [what, why] : render::make_plan(settings, *empty_snapshot()).skipped) {
       if (what.find("passes ") == 0 && (what + ",").find(" Error,") != std::string::npos) return true;

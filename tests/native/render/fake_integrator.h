@@ -1,12 +1,14 @@
-// An integrator whose samples are a pure function of pixel and sample number: tests of the loop need no scene.
+// An integrator whose samples are a pure function of pixel and sample number, so that tests of the loop need no scene.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <functional>
 #include <thread>
 
 #include "base/error.h"
+#include "film/finite_check.h"
 #include "render/render.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
@@ -21,12 +23,12 @@ inline uint32_t hash(uint32_t x) {
   return x ^ (x >> 16);
 }
 
-// In [0, 1).
+// Returns a value in [0, 1).
 inline float random_value(int32_t x, int32_t y, uint32_t sample) {
   return float(hash(hash(hash(uint32_t(x)) + uint32_t(y)) + sample) >> 8) / float(1 << 24);
 }
 
-// Expectation of a pixel of the fake scene.
+// Returns the expectation of a pixel of the fake scene.
 inline float fake_truth(int32_t x, int32_t y) {
   return 0.5f + 0.3f * std::sin(0.2f * float(x)) * std::cos(0.15f * float(y));
 }
@@ -35,15 +37,15 @@ struct FakeIntegrator final : integrator::Integrator {
   explicit FakeIntegrator(const integrator::IntegratorContext& context, bool with_gradients)
       : settings(context.settings), gradients(with_gradients) {}
 
-  // Runs before each tile; may wait or throw.
+  // Called before each tile; may wait or throw.
   std::function<void(const integrator::WorkUnit&)> before = [](const integrator::WorkUnit&) {};
   GradusSettings settings;
   bool gradients;
   float noise = 1.0f;
-  float light = 1.0f;               // that all radiance is multiplied by
-  int32_t quiet_until = 0;          // left of this column there is a tenth of the noise
-  int32_t rays_below = 0;           // below this row a sample costs five rays in place of one
-  uint32_t feature_seed = 0x10000;  // of the noise of features; 0: that of the image, which they explain then
+  float light = 1.0f;               // factor of all radiance
+  int32_t quiet_until = 0;          // left of this column, the noise is a tenth
+  int32_t rays_below = 0;           // below this row, a sample costs five rays instead of one
+  uint32_t feature_seed = 0x10000;  // of the noise of features; 0: the image's noise, which the features explain then
   int32_t pairs_until = INT32_MAX;  // right of this column there are no gradients
 
   uint32_t count_at(const integrator::WorkUnit& unit, const film::Film& film, int32_t x, int32_t y) const {
@@ -68,11 +70,11 @@ struct FakeIntegrator final : integrator::Integrator {
       const int half = int(s % 2);
       const float value = value_of(x, y, s);
       film->components[0].primal[half][i] +=
-          Radiance(light * value, 0.5f * light * value, 2.0f * light * value, film->channels == 4 ? 0.75f : 0.0f);
+          Radiance(light * value, 0.5f * light * value, 2.0f * light * value, film->color_channels == 4 ? 0.75f : 0.0f);
       ++film->count[half][i];
       counters->rays_primary += y < rays_below ? 5 : 1;
-      for (film::PassPlane& plane : film->passes)
-        add_pass(&plane, i, plane.in_halves ? value_of(x, y, s + feature_seed) : value, s);
+      for (film::Channel& plane : film->channels)
+        add_pass(&plane, i, plane.info.in_halves ? value_of(x, y, s + feature_seed) : value, s);
       if (gradients && x < pairs_until) add_gradients(unit, x, y, half, film);
     }
   }
@@ -81,15 +83,21 @@ struct FakeIntegrator final : integrator::Integrator {
     return fake_truth(x, y) + (x < quiet_until ? 0.1f : 1.0f) * noise * (random_value(x, y, sample) - 0.5f);
   }
 
-  static void add_pass(film::PassPlane* plane, size_t i, float value, uint32_t sample) {
-    for (uint32_t c = 0; c < plane->channels; ++c) {
-      float& v = plane->of_half(int(sample % 2))[i * plane->channels + c];
-      v = plane->first_sample_only ? (sample == 0 ? value : v) : v + value;
+  static void add_pass(film::Channel* plane, size_t i, float value, uint32_t sample) {
+    if (plane->info.type == film::ValueType::kIdAndWeight) {
+      film::Counters counters;
+      const uint32_t values = plane->info.values_per_pixel;
+      return film::add_pair(float(sample % 3 + 1), value, values / 2,
+                            plane->of_half(int(sample % 2)).data() + i * values, &counters);
     }
-    if (plane->skips_transparent) plane->weight[i] += 1.0f;
+    for (uint32_t c = 0; c < plane->info.values_per_pixel; ++c) {
+      float& v = plane->of_half(int(sample % 2))[i * plane->info.values_per_pixel + c];
+      v = plane->keeps_first_sample() ? (sample == 0 ? value : v) : v + value;
+    }
+    if (plane->has_weight()) plane->weight[i] += 1.0f;
   }
 
-  // Exact differences of the truth, each direction carrying half.
+  // Adds the exact differences of the truth, half for each direction.
   void add_gradients(const integrator::WorkUnit& unit, int32_t x, int32_t y, int half, film::Film* film) const {
     const size_t i = film->index(x, y);
     for (int o = 0; o < film::kOffsets; ++o) {
@@ -161,10 +169,10 @@ inline bool same_samples(const film::Film& a, const film::Film& b) {
     if (a.components[0].gradient[half] != b.components[0].gradient[half] || a.pair_count[half] != b.pair_count[half])
       return false;
   }
-  for (size_t i = 0; i < a.passes.size(); ++i) {
-    if (a.passes[i].values != b.passes[i].values || a.passes[i].weight != b.passes[i].weight) return false;
-  }
-  return a.passes.size() == b.passes.size();
+  const auto same = [](const film::Channel& p, const film::Channel& q) {
+    return p.info == q.info && p.values == q.values && p.weight == q.weight && p.paths == q.paths;
+  };
+  return std::ranges::equal(a.channels, b.channels, same);
 }
 
 }  // namespace gradus::test

@@ -1,4 +1,4 @@
-// The loop: determinism, resume, regions, stops, cancel, progress, what can be read meanwhile.
+// The loop: determinism, resume, regions, time limit, cancel, progress, and reading during the render.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -20,7 +20,7 @@ std::string failure_of(const GradusSettings& settings, const std::shared_ptr<con
   return refusal_of([&] { start(settings, fake_factory(), resumed); });
 }
 
-TEST(Batches, GrowThenStayAndMeetAgainAfterResume) {
+TEST(Batches, GrowThenStayAndAlignAgainAfterResume) {
   EXPECT_EQ(render::batch_end(0, 64), 1u);
   EXPECT_EQ(render::batch_end(1, 64), 2u);
   EXPECT_EQ(render::batch_end(2, 64), 4u);
@@ -31,7 +31,7 @@ TEST(Batches, GrowThenStayAndMeetAgainAfterResume) {
   EXPECT_EQ(render::batch_end(3, 64), 4u);
 }
 
-// So that shares by noise are corrected at least three times: the paper of T-GPT has four to eight batches.
+// Adaptive sample counts are corrected at least three times; the T-GPT paper uses four to eight batches.
 TEST(Batches, AreAQuarterOfARenderAtMost) {
   for (const uint32_t samples : {64u, 100u, 1024u}) {
     for (uint32_t begin = 0, end = 0; begin < samples; begin = end) {
@@ -65,11 +65,11 @@ TEST(L3_Resume, SixteenAndFortyEightSamplesHaveTheBitsOfSixtyFour) {
   const auto whole = rendered(small_settings(70, 50, 64));
   const auto resumed = rendered(small_settings(70, 50, 64), rendered(small_settings(70, 50, 16)));
   EXPECT_TRUE(same_samples(*whole, *resumed));
-  // At any number, not only where batches end.
+  // A film can be resumed at any sample number, not only where batches end.
   EXPECT_TRUE(same_samples(*whole, *rendered(small_settings(70, 50, 64), rendered(small_settings(70, 50, 21)))));
 }
 
-TEST(L3_Resume, RefusesWhatDoesNotFit) {
+TEST(L3_Resume, RefusesOtherFilms) {
   const auto film = rendered(small_settings(40, 30, 8));
   GradusSettings other = small_settings(40, 30, 16);
   other.seed = 1;
@@ -107,8 +107,8 @@ std::shared_ptr<const film::Film> rendered_range(uint32_t first, uint32_t count)
   return rendered(settings);
 }
 
-// Only the sum of the sample counts was kept: samples 32 to 47 went in twice.
-TEST(L3_Merge, RangesWithAHoleStayApart) {
+// Regression: only the sum of the sample counts was stored, so that samples 32 to 47 were added twice.
+TEST(L3_Merge, RangesWithAGapStaySeparate) {
   film::Film merged = *rendered_range(0, 16);
   render::merge_films(&merged, *rendered_range(32, 16));
   EXPECT_EQ(merged.samples.list(), (std::vector<film::SampleRange>{{0, 16}, {32, 48}}));
@@ -122,8 +122,8 @@ TEST(L3_Merge, RangesWithAHoleStayApart) {
   EXPECT_EQ(resumed->samples.list(), (std::vector<film::SampleRange>{{0, 64}}));
 }
 
-// A time limit ends a frame before the samples that were asked for: what counts is what it has.
-TEST(L3_Merge, AFrameThatEndedEarlyLeavesItsOtherSamplesFree) {
+// A time limit ends a film before the requested samples: the taken samples count.
+TEST(L3_Merge, AFilmThatEndedEarlyLeavesItsOtherSamplesFree) {
   GradusSettings settings = small_settings(40, 30, 1u << 20);
   settings.time_limit = 0.02f;
   film::Film early = *rendered(settings);
@@ -162,7 +162,7 @@ TEST(L3_Border, SamplesOfARegionAreThoseOfTheFullFrame) {
   EXPECT_EQ(a.components[0].primal[0][a.index(70, 60)], b.components[0].primal[0][b.index(70, 60)]);
 }
 
-TEST(G8_Progress, LiesInTheUnitIntervalNeverFallsEndsAtOne) {
+TEST(G8_Progress, IsInTheUnitIntervalNeverFallsAndEndsAtOne) {
   auto render = start(small_settings(96, 64, 64), fake_factory([](FakeIntegrator* fake) {
                         fake->before = [](const integrator::WorkUnit&) {
                           std::this_thread::sleep_for(std::chrono::microseconds(200));
@@ -234,8 +234,8 @@ TEST(Loop, CanBeReadWhileSampling) {
   EXPECT_THROW(read(*render, GRADUS_PASS_MIST, all), Error);
 }
 
-// The reader went from tile to tile behind a sampler and waited for each one's whole batch: the interface stood still
-// for seconds.
+// Regression: the reader followed a sampling thread from tile to tile and waited for the whole batch of each: the user
+// interface froze for seconds.
 TEST(Loop, ReadingDoesNotWaitForABatch) {
   GradusSettings settings = small_settings(70, 50, 32);
   settings.passes |= bit(GRADUS_PASS_VARIANCE);
@@ -264,8 +264,8 @@ TEST(Loop, ReadingDoesNotWaitForABatch) {
   }
 }
 
-// Only part of the frame is delivered, and a tile in the middle of a batch has its samples so far.
-TEST(Loop, AfterACancelThePictureHasTheSamplesOfTheFrame) {
+// Only a part of the film is delivered, and a tile in the middle of a batch has the samples taken so far.
+TEST(Loop, AfterACancelThePictureHasTheSamplesOfTheFilm) {
   GradusSettings settings = small_settings(160, 120, 100000);
   const uint32_t region[4] = {60, 50, 97, 83};
   std::copy(region, region + 4, settings.region);
@@ -289,7 +289,7 @@ TEST(Loop, StopsByTimeAndDeliversTheReconstruction) {
   EXPECT_EQ(render->progress().phase, uint32_t{GRADUS_PHASE_DONE});
 }
 
-// Seconds of sampling with a limit, where each sample of the one tile takes this long.
+// Returns the seconds of sampling with a time limit, where each sample of the single tile takes `sample` seconds.
 double limited_seconds(double limit, double sample, const std::shared_ptr<const film::Film>& resumed = nullptr) {
   GradusSettings settings = small_settings(8, 8, 100000);
   settings.time_limit = float(limit);
@@ -303,19 +303,19 @@ double limited_seconds(double limit, double sample, const std::shared_ptr<const 
   return nlohmann::json::parse(render->stats_json())["seconds"]["sample"];
 }
 
-// The sample that reached the limit was taken however far beyond it ended.
+// Regression: the sample that crosses the limit was taken, however far beyond the limit it ends.
 TEST(Loop, ATimeLimitIsMetWithinHalfASample) {
   EXPECT_LT(limited_seconds(0.65, 0.2), 0.75);  // three samples
   EXPECT_GT(limited_seconds(0.75, 0.2), 0.75);  // four
 }
 
-// The pace was taken from all samples, those of the frame that it went on from included.
+// Regression: the sampling rate was computed from all samples, including those of the resumed film.
 TEST(Loop, ATimeLimitHoldsForAResumedRender) {
   EXPECT_LT(limited_seconds(0.3, 0.05, rendered(small_settings(8, 8, 64))), 0.45);
 }
 
-// Statistics went by the reconstruction that was planned.
-TEST(Loop, NoisyImageThatThePilotLeavesIsUnbiased) {
+// Regression: the stats reported the bias of the planned reconstruction.
+TEST(Loop, TheNoisyImageThatThePilotChoosesIsUnbiased) {
   GradusSettings settings = small_settings(64, 64, 8);
   settings.integrator = GRADUS_INTEGRATOR_AUTO;
   settings.reconstruction = GRADUS_RECONSTRUCTION_L1;
@@ -326,7 +326,7 @@ TEST(Loop, NoisyImageThatThePilotLeavesIsUnbiased) {
   EXPECT_TRUE(stats["unbiased"]);
 }
 
-TEST(Loop, StopsTilesByNoise) {
+TEST(Loop, StopsBlocksByNoise) {
   GradusSettings settings = small_settings(128, 64, 256);
   settings.noise_threshold = 0.05f;
   auto render = start(settings, fake_factory([](FakeIntegrator* fake) { fake->noise = 0.5f; }));
@@ -342,7 +342,7 @@ TEST(Loop, StopsTilesByNoise) {
   }
   EXPECT_GE(minimum, 16u);
   EXPECT_LT(maximum, 256u);
-  // And the error is what was asked for: the picture's relative error is near the threshold or below.
+  // The relative error of the picture is near the threshold or below.
   const std::vector<float> image = read(*render, GRADUS_PASS_COMBINED, {0, 0, 128, 64});
   double error = 0.0, signal = 0.0;
   for (int y = 0; y < 64; ++y) {
@@ -358,18 +358,18 @@ TEST(Loop, StopsTilesByNoise) {
 TEST(Loop, FailuresOfTheIntegratorBecomeTheOutcome) {
   const auto failing = [](FakeIntegrator* fake) {
     fake->before = [](const integrator::WorkUnit& unit) {
-      if (unit.first_sample >= 4) throw std::runtime_error("the lamp is broken");
+      if (unit.first_sample >= 4) throw std::runtime_error("the light is broken");
     };
   };
   auto render = start(small_settings(64, 48, 16), fake_factory(failing));
   ASSERT_TRUE(render->wait(10.0));
   std::string text;
   EXPECT_EQ(render->outcome(&text), GRADUS_ERROR_UNKNOWN);
-  EXPECT_EQ(text, "the lamp is broken");
+  EXPECT_EQ(text, "the light is broken");
   EXPECT_EQ(render->progress().phase, uint32_t{GRADUS_PHASE_FAILED});
 }
 
-// The code also meant "still running", so that it was reported as UNKNOWN.
+// Regression: the code also meant "still running", so that it was reported as UNKNOWN.
 TEST(Loop, AnInvalidOperationIsReportedAsSuch) {
   const auto failing = [](FakeIntegrator* fake) {
     fake->before = [](const integrator::WorkUnit&) { throw invalid_operation("the film is shut"); };
@@ -381,7 +381,7 @@ TEST(Loop, AnInvalidOperationIsReportedAsSuch) {
   EXPECT_EQ(text, "the film is shut");
 }
 
-TEST(Loop, AnswersOutOfOrderCalls) {
+TEST(Loop, RefusesCallsOutOfOrder) {
   auto render = start(small_settings(256, 256, 1000));
   EXPECT_FALSE(render->wait(0.0));
   EXPECT_THROW(render->outcome(nullptr), Error);

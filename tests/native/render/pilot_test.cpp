@@ -1,4 +1,4 @@
-// Where gradients pay: the model, the pilot's map, and what a render does with it.
+// Where gradients pay: the model, the pilot's map, and how a render uses it.
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
@@ -29,7 +29,7 @@ TEST(Benefit, IsTheMeanOverAllFrequencies) {
   }
 }
 
-render::PilotSums quiet_sums() {  // differences a quarter as noisy as pixels, for twice the rays
+render::PilotSums quiet_sums() {  // differences have a quarter of the noise of pixels, at twice the rays
   render::PilotSums sums;
   sums.pixels = sums.brightness = sums.pixel_deviation = sums.pixel_root = 100.0;
   sums.differences = 400.0;
@@ -50,23 +50,23 @@ TEST(Benefit, ComparesErrorWithCost) {
   EXPECT_FALSE(render::estimate_benefit(sums).pays()) << "no noise, nothing to gain";
 }
 
-// In a thicket of leaves smaller than pixels all shifts fail. A difference is then that of the pixels' own samples, as
-// noisy as they are; the pilot took its noise for one of its own, expected half of the error, and had 2.5 times that of
-// path tracing in the same time.
-TEST(Benefit, DifferencesOfThePixelsOwnSamplesAreWorthNothing) {
+// Regression: in foliage smaller than pixels all shifts fail. A difference is then that of the pixels' own samples,
+// with their noise. The pilot took this noise for an independent one, expected half of the error, and the result was
+// 2.5 times that of path tracing in the same time.
+TEST(Benefit, DifferencesOfThePixelsOwnSamplesHaveNoBenefit) {
   render::PilotSums sums = quiet_sums();
   sums.difference_deviation = 400.0 * std::sqrt(2.0);
   sums.l2_roots = {150.0, 120.0, 98.0};
   EXPECT_GT(render::estimate_benefit(sums).error, 0.9);
   EXPECT_FALSE(render::estimate_benefit(sums).pays());
-  sums.l2_roots = {150.0, 60.0, 98.0};  // at its best weight L2 gains
+  sums.l2_roots = {150.0, 60.0, 98.0};  // at its best weight, L2 gains
   EXPECT_TRUE(render::estimate_benefit(sums).pays());
 }
 
-// Unpaired paths stand in the differences as they stand in the pixel, and L2 gives back what they were. The pilot
-// judged differences by their deviations alone, and expected a third of the noise behind a glass teapot where all of it
-// was left.
-TEST(L2Noise, GivesBackWhatStandsAlone) {
+// Regression: unpaired paths appear in the differences as in the pixel, and L2 reproduces them. The pilot judged
+// differences by their deviations alone, and expected a third of the noise behind a glass teapot, where all of it
+// remained.
+TEST(L2Noise, KeepsUnpairedPaths) {
   const render::L2Noise l2(0.4);
   const Radiance c(3.0f, 1.0f, 2.0f, 0.0f);
   EXPECT_NEAR(l2.of(c, {-c, -c, -c, -c}), (9.0 + 1.0 + 4.0) / 3.0, 1e-9);
@@ -74,7 +74,7 @@ TEST(L2Noise, GivesBackWhatStandsAlone) {
 }
 
 // The sum of squares over a picture that one sample changes.
-TEST(L2Noise, IsWhatTheSolverMakesOfASample) {
+TEST(L2Noise, IsTheResponseOfTheSolverToASample) {
   constexpr int kSize = 64, kAt = 32;
   film::GradientImages images;
   images.width = images.height = kSize;
@@ -95,9 +95,8 @@ TEST(L2Noise, IsWhatTheSolverMakesOfASample) {
   EXPECT_NEAR(render::L2Noise(0.4).of(Radiance(2.0f), differences) / sum, 1.0, 1e-3);
 }
 
-// One part that is dark for gradients, and has all the noise: what the others gain is not worth the time that it does
-// without.
-TEST(Benefit, PartsAreChosenForThePicture) {
+// One part is dark for gradients and has all the noise: the gain elsewhere is not worth the time.
+TEST(Benefit, TheChoiceConsidersTheWholePicture) {
   const auto part = [](double noise, double error, double cost) {
     render::Benefit b;
     b.noisy = true;
@@ -164,7 +163,7 @@ render::GradientMap pilot(const GradusSettings& settings, const Region& region, 
   return render::run_pilot(HalfNoisy(noisy_from), render::pilot_settings(settings), reconstruction, region, 3, stop);
 }
 
-TEST(Pilot, LeavesGradientsWhereTheyPay) {
+TEST(Pilot, KeepsGradientsWhereTheyPay) {
   const render::GradientMap map = pilot(small_settings(256, 96, 4), {0, 0, 256, 96}, 128);
   EXPECT_EQ(map.pixels[10 * 256 + 20], 1);
   EXPECT_EQ(map.pixels[10 * 256 + 200], 0);
@@ -173,7 +172,7 @@ TEST(Pilot, LeavesGradientsWhereTheyPay) {
   EXPECT_TRUE(pilot(small_settings(256, 96, 4), {0, 0, 256, 96}, 0).none());
 }
 
-// Planes of a border, of another seed, of 16 and then 48 samples must fit together (contract 2.1).
+// The films of a border, of another seed, and of 16 and then 48 samples must have the same planes.
 TEST(Pilot, MapDependsOnThePictureAlone) {
   GradusSettings s = small_settings(300, 200, 4);
   for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L1, GRADUS_RECONSTRUCTION_L2}) {
@@ -198,8 +197,9 @@ TEST(Pilot, MapDependsOnThePictureAlone) {
   }
 }
 
-// A user could choose its seed, and had the samples that chose the map in the picture: L2 was biased.
-TEST(Pilot, ItsSeedIsNoUsers) {
+// Regression: a user could choose the pilot's seed, so that the samples that chose the map were in the picture: L2 was
+// biased.
+TEST(Pilot, ItsSeedIsNoUsersSeed) {
   EXPECT_GT(render::pilot_settings(small_settings(8, 8, 1)).seed, schema::find_option("seed")->maximum);
 }
 
@@ -218,9 +218,9 @@ nlohmann::json stats_of(int32_t noisy_from, uint32_t integrator, std::shared_ptr
   return nlohmann::json::parse(render->stats_json());
 }
 
-// Nothing that it had seen made the pilot leave gradients out, and the frame it was to go on from did not fit: a wrong
-// argument.
-TEST(Pilot, ACancelMeanwhileIsACancel) {
+// Regression: a cancelled pilot had no reason to leave gradients out, so that the film to resume did not match: an
+// error of a wrong argument.
+TEST(Pilot, ACancelDuringItIsACancel) {
   GradusSettings s = small_settings(64, 48, 4);
   s.integrator = GRADUS_INTEGRATOR_AUTO;
   s.reconstruction = GRADUS_RECONSTRUCTION_L1;
@@ -243,7 +243,7 @@ TEST(Pilot, ACancelMeanwhileIsACancel) {
   EXPECT_EQ(read(*second, GRADUS_PASS_COMBINED, {0, 0, 64, 48})[0], 0.0f);
 }
 
-TEST(Pilot, AutoDecidesAndSaysWhy) {
+TEST(Pilot, AutoDecidesAndReportsWhy) {
   std::shared_ptr<const film::Film> film;
   const nlohmann::json some = stats_of(128, GRADUS_INTEGRATOR_AUTO, &film);
   EXPECT_EQ(some["integrator"], "gradient");
@@ -255,7 +255,7 @@ TEST(Pilot, AutoDecidesAndSaysWhy) {
   EXPECT_EQ(none["reconstruction"], "none");
   EXPECT_FALSE(film->gradients);
   EXPECT_NE(none["plan"]["skipped"]["gradients"].get<std::string>().find("pilot"), std::string::npos);
-  // What the user says is obeyed.
+  // An explicit choice of the user is respected.
   EXPECT_EQ(stats_of(0, GRADUS_INTEGRATOR_GRADIENT, &film)["integrator"], "gradient");
   const film::GradientImages images = film::read_images(*film, 0);
   for (const auto* differences : {&images.dx, &images.dy}) {

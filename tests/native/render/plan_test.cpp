@@ -1,4 +1,4 @@
-// What is chosen, what is refused, and that the reasons are said.
+// Choices of the plan, refusals, and their reported reasons.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ TEST(Plan, AutoIsPathWithFeatures) {
   EXPECT_FALSE(render::delivers_unbiased(plan, plan.reconstruction, plan.denoises));
 }
 
-TEST(Plan, AutoIsGradientForWhatNeedsDifferences) {
+TEST(Plan, AutoIsGradientForMethodsThatNeedDifferences) {
   for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
     const render::Plan plan = plan_for(GRADUS_INTEGRATOR_AUTO, reconstruction);
     EXPECT_EQ(plan.integrator, uint32_t{GRADUS_INTEGRATOR_GRADIENT});
@@ -52,7 +52,7 @@ TEST(Plan, AutoIsGradientForWhatNeedsDifferences) {
   EXPECT_FALSE(plan.pilot) << "its passes are asked for";
 }
 
-TEST(Plan, PathHasNoGradientsAndSaysSo) {
+TEST(Plan, PathHasNoGradientsAndReportsIt) {
   const render::Plan plan = plan_for(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_AUTO);
   EXPECT_EQ(plan.reconstruction, uint32_t{GRADUS_RECONSTRUCTION_NONE});
   EXPECT_FALSE(plan.gradients);
@@ -65,7 +65,7 @@ TEST(Plan, PathHasNoGradientsAndSaysSo) {
   EXPECT_TRUE(has("lens samples"));
 }
 
-TEST(Plan, KeepsThePassesThatAreAskedForAndWhatTheReconstructionReads) {
+TEST(Plan, KeepsRequestedPassesAndThoseThatTheReconstructionReads) {
   GradusSettings settings = small_settings(64, 64, 4);
   settings.reconstruction = GRADUS_RECONSTRUCTION_NONE;
   settings.passes |= uint64_t{1} << GRADUS_PASS_MIST;
@@ -80,7 +80,7 @@ TEST(Plan, KeepsThePassesThatAreAskedForAndWhatTheReconstructionReads) {
   EXPECT_TRUE(render::features_wanted(plan));
 }
 
-// Where the pilot found that gradients do not pay, any reconstruction became none.
+// Regression: where the pilot found that gradients do not pay, any reconstruction was dropped.
 TEST(Plan, WithoutGradientsAReconstructionByFeaturesIsKept) {
   render::Plan plan;
   for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
@@ -93,8 +93,8 @@ TEST(Plan, WithoutGradientsAReconstructionByFeaturesIsKept) {
   }
 }
 
-// The threshold was taken for 0.1, whatever the setting.
-TEST(Plan, HalfVectorShiftsAreJudgedByTheSettingOfTheThreshold) {
+// Regression: the threshold was taken for 0.1, whatever the setting.
+TEST(Plan, HalfVectorShiftsUseTheThresholdOfTheSettings) {
   auto snapshot = std::make_shared<scene::Snapshot>(*empty_snapshot());
   const auto skips = [&](float sharpest, float threshold) {
     snapshot->features.min_alpha = sharpest;
@@ -110,7 +110,7 @@ TEST(Plan, HalfVectorShiftsAreJudgedByTheSettingOfTheThreshold) {
   EXPECT_FALSE(skips(0.0f, 0.0f)) << "mirrors";
 }
 
-TEST(Plan, ObeysOrRefuses) {
+TEST(Plan, UsesTheSettingsOrRefuses) {
   EXPECT_EQ(refusal(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_L2), GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(refusal(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_L1), GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(refusal(GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1), GRADUS_OK);
@@ -131,7 +131,7 @@ TEST(Plan, RefusesRegionsOutsideTheFrame) {
   }
 }
 
-TEST(E8_Sizes, ZeroSamplesGiveAText) {
+TEST(E8_Sizes, ZeroSamplesGiveAMessage) {
   GradusSettings s = small_settings(64, 64, 0);
   try {
     render::make_plan(s, *empty_snapshot());
@@ -141,8 +141,9 @@ TEST(E8_Sizes, ZeroSamplesGiveAText) {
   }
 }
 
-// Along a straight edge both halves agree on the same wrong coverage; a low threshold stopped such tiles at 16 samples.
-TEST(Plan, LowThresholdsAskForMoreSamplesBeforeTilesStop) {
+// Regression: along a straight edge, both half-buffers agree on the same wrong coverage; a low threshold stopped such
+// blocks at 16 samples.
+TEST(Plan, LowThresholdsRequireMoreSamplesBeforeBlocksStop) {
   GradusSettings s = small_settings(64, 64, 1024);
   const auto first_check = [&](float threshold, uint32_t minimum) {
     s.noise_threshold = threshold;
@@ -156,7 +157,7 @@ TEST(Plan, LowThresholdsAskForMoreSamplesBeforeTilesStop) {
   EXPECT_EQ(first_check(0.01f, 4), 16u);
 }
 
-TEST(Plan, DenoiserIsBiasedAndAsksForFeatures) {
+TEST(Plan, DenoiserIsBiasedAndRequestsFeatures) {
   GradusSettings s = small_settings(64, 64, 4);
   s.reconstruction = GRADUS_RECONSTRUCTION_L2;
   const render::Plan plain = render::make_plan(s, *empty_snapshot()),
@@ -167,7 +168,7 @@ TEST(Plan, DenoiserIsBiasedAndAsksForFeatures) {
   EXPECT_EQ(denoised.passes & schema::feature_passes(), schema::feature_passes());
 }
 
-TEST(Plan, AutomaticDenoiserGoesByTheSamplesThatAreTaken) {
+TEST(Plan, AutomaticDenoiserDependsOnTheSamplesTaken) {
   struct Case {
     uint32_t samples;
     float time_limit, noise_threshold;

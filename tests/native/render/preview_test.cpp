@@ -1,4 +1,4 @@
-// What a watcher sees while a render takes its samples; and that the result is the same without one.
+// Previews while a render takes its samples; the result is the same without them.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -18,14 +18,14 @@ namespace {
 
 using namespace test;
 
-constexpr uint32_t kForever = 1u << 24;  // samples that no test waits for
+constexpr uint32_t kForever = 1u << 24;  // samples that no test completes
 
 TEST(RefreshRule, FollowsItsOwnCost) {
   render::RefreshRule rule;
   rule.expect(1.0);
   EXPECT_FALSE(rule.is_due(1.0, 0.1)) << "the render will take 10 s: too short to give 1 s away at once";
   EXPECT_TRUE(rule.is_due(1.0, 0.05)) << "20 s: long enough, and it need not wait for them";
-  EXPECT_TRUE(rule.is_due(4.0, 0.4)) << "but nobody waits longer for the first one";
+  EXPECT_TRUE(rule.is_due(4.0, 0.4)) << "the first picture is not delayed";
   rule.done(4.0, 2.0);
   EXPECT_FALSE(rule.is_due(43.9, 1.0));
   EXPECT_TRUE(rule.is_due(44.0, 1.0));
@@ -42,7 +42,7 @@ Region region_of(const GradusSettings& s) {
   return {int32_t(s.region[0]), int32_t(s.region[1]), int32_t(s.region[2]), int32_t(s.region[3])};
 }
 
-// Reads as a window does, until the render ends.
+// Reads previews like a window, until the render ends.
 void watch(render::Render* render, const Region& region) {
   do {
     for (const uint32_t pass : {GRADUS_PASS_COMBINED, GRADUS_PASS_NOISY_IMAGE}) {
@@ -59,7 +59,7 @@ void wait_for(Condition&& condition) {
 
 nlohmann::json stats_of(const render::Render& render) { return nlohmann::json::parse(render.stats_json()); }
 
-// Slow enough to be watched.
+// Returns an integrator that is slow enough to be watched.
 render::IntegratorFactory slow_factory(std::chrono::microseconds per_tile = std::chrono::microseconds(300)) {
   return fake_factory([per_tile](FakeIntegrator* fake) {
     fake->before = [per_tile](const integrator::WorkUnit&) { std::this_thread::sleep_for(per_tile); };
@@ -75,7 +75,7 @@ GradusSettings settings_of(uint32_t width, uint32_t height, uint32_t samples, ui
   return settings;
 }
 
-TEST(Preview, WithoutAWatcherNothingIsMade) {
+TEST(Preview, WithoutAReaderNoneIsMade) {
   const GradusSettings settings = settings_of(96, 64, 32, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2);
   std::atomic<int> quarters{0};
   const auto render =
@@ -93,7 +93,7 @@ struct Kind {
   uint32_t integrator, reconstruction;
   float noise_threshold = 0.0f;
 };
-void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }  // not its padding, which valgrind minds
+void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }  // valgrind reports the padding of the struct
 
 class WatchedRender : public ::testing::TestWithParam<Kind> {
  protected:
@@ -125,7 +125,7 @@ TEST_P(WatchedRender, HasTheBitsOfAnUnwatchedOne) {
   }
 }
 
-TEST_P(WatchedRender, MayBeOfAnySize) {
+TEST_P(WatchedRender, MayHaveAnySize) {
   for (const auto& [width, height] :
        {std::pair{1u, 1u}, {2u, 1u}, {1u, 3u}, {3u, 3u}, {1u, 200u}, {200u, 1u}, {17u, 5u}}) {
     const GradusSettings settings = this->settings(width, height, 24);
@@ -148,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Kind{"AdaptiveRegularized", GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED, 0.03f}),
     [](const ::testing::TestParamInfo<Kind>& info) { return info.param.name; });
 
-TEST(Preview, AResumedRenderIsWatchedFromItsSamples) {
+TEST(Preview, AResumedRenderIsShownFromItsSamples) {
   const GradusSettings settings = settings_of(96, 64, 48, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2);
   GradusSettings first = settings;
   first.samples = 16;
@@ -165,8 +165,8 @@ TEST(Preview, AResumedRenderIsWatchedFromItsSamples) {
             read(*start_and_wait(settings), GRADUS_PASS_COMBINED, region_of(settings)));
 }
 
-// A batch of 16 samples may take minutes. Here its tiles take long, and pictures do not, with sanitizers neither.
-TEST(Preview, ALongBatchDoesNotKeepTheWatcherWaiting) {
+// A batch of 16 samples may take minutes. Here, tiles are slow and pictures are fast, also with sanitizers.
+TEST(Preview, ALongBatchDoesNotDelayThePictures) {
   const GradusSettings settings = settings_of(64, 64, kForever, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2);
   const auto render = start(settings, fake_factory([](FakeIntegrator* fake) {
                               fake->before = [](const integrator::WorkUnit& unit) {
@@ -183,7 +183,7 @@ TEST(Preview, ALongBatchDoesNotKeepTheWatcherWaiting) {
   });
 }
 
-// Seconds of sampling are given; those of pictures are what is billed, however long that takes here.
+// The seconds of sampling are given; those of pictures are measured, so that the speed of the machine does not matter.
 TEST(Preview, TakesATwentiethOfTheTime) {
   render::LoopInput input;
   input.settings = settings_of(96, 64, 2, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1);
@@ -210,8 +210,8 @@ TEST(Preview, TakesATwentiethOfTheTime) {
   }
 }
 
-// A picture of this size takes tens of milliseconds: once there is one, the next would come too late.
-TEST(Preview, IsAskedForNoMoreOftenThanItPays) {
+// A picture of this size takes tens of milliseconds: after the first one, the next would come too late.
+TEST(Preview, IsMadeNoMoreOftenThanItPays) {
   GradusSettings settings = settings_of(256, 192, kForever, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1);
   settings.time_limit = 0.25f;
   std::atomic<bool> is_watched{false};
@@ -228,9 +228,9 @@ TEST(Preview, IsAskedForNoMoreOftenThanItPays) {
   EXPECT_LE(render->progress().version, 3u) << "the quarter, one of the frame, and what is delivered";
 }
 
-// The limit is one of sampling (contract 4.6). A render ends within half a sample of it, so not before two thirds; and
-// the picture takes so long that no busy machine makes sampling as long.
-TEST(Preview, TakesNothingFromTheTimeLimit) {
+// The time limit applies to sampling. A render ends within half a sample of it, so not before two thirds; and a picture
+// takes so long that sampling is shorter on any busy machine.
+TEST(Preview, DoesNotCountAgainstTheTimeLimit) {
   GradusSettings settings = settings_of(16, 16, kForever, GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED);
   settings.time_limit = 0.1f;
   std::atomic<bool> is_watched{false};
@@ -250,7 +250,7 @@ TEST(Preview, TakesNothingFromTheTimeLimit) {
   EXPECT_LT(seconds["sample"], 2.0);
 }
 
-TEST(Preview, ACancelEndsTheQuarter) {
+TEST(Preview, ACancelEndsTheQuarterSizedPicture) {
   const GradusSettings settings =
       settings_of(256, 256, kForever, GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED);
   std::atomic<int> tiles{0};
@@ -273,8 +273,8 @@ TEST(Preview, ACancelEndsTheQuarter) {
             read(*render, GRADUS_PASS_NOISY_IMAGE, region_of(settings)));
 }
 
-// It left raw noise, and holes where no sample had been taken, in place of the picture that was on the screen.
-TEST(Preview, ACancelBeforeTheFirstFullPictureLeavesTheQuarter) {
+// Regression: a cancel left raw noise, and black where no sample was taken, instead of the picture shown before.
+TEST(Preview, ACancelBeforeTheFirstFullPictureKeepsTheQuarterSizedOne) {
   const GradusSettings settings =
       settings_of(256, 192, kForever, GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_REGULARIZED);
   const Region all = region_of(settings);
@@ -311,8 +311,8 @@ TEST(Preview, ACancelBeforeTheFirstFullPictureLeavesTheQuarter) {
   EXPECT_GT(holes, 0) << "nothing to fill";
 }
 
-// What the frame's own samples have made is newer than the quarter, and stays.
-TEST(Preview, ACancelLeavesTheReconstructionThatWasSeen) {
+// A picture from the render's own samples is newer than the quarter-sized one, and stays.
+TEST(Preview, ACancelKeepsTheReconstructionThatWasShown) {
   GradusSettings settings = settings_of(96, 64, kForever, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L2);
   const auto render = start(settings, slow_factory());
   const Region all = region_of(settings);
@@ -336,7 +336,7 @@ TEST(Preview, ACancelLeavesTheReconstructionThatWasSeen) {
   EXPECT_LT(estimated, of_noisy) << "the error is that of the reconstruction";
 }
 
-// It delivered what was there of the solution.
+// Regression: the unfinished solution was delivered.
 TEST(Preview, ACancelOfTheReconstructionLeavesTheSamples) {
   GradusSettings settings = settings_of(1200, 900, 2, GRADUS_INTEGRATOR_GRADIENT, GRADUS_RECONSTRUCTION_L1);
   const auto render = start(settings, fake_factory());
@@ -348,8 +348,8 @@ TEST(Preview, ACancelOfTheReconstructionLeavesTheSamples) {
             read(*render, GRADUS_PASS_NOISY_IMAGE, region_of(settings)));
 }
 
-// The network takes too long to be run again and again; but there are features.
-TEST(Preview, WhatIsToBeDenoisedIsReconstructedByItsFeatures) {
+// Running the network for each preview takes too long, but features are available.
+TEST(Preview, ARenderToBeDenoisedIsReconstructedByItsFeatures) {
   GradusDeviceSettings with_denoiser{};
   with_denoiser.struct_size = sizeof(with_denoiser);
   with_denoiser.denoiser_path = GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
@@ -367,7 +367,7 @@ TEST(Preview, WhatIsToBeDenoisedIsReconstructedByItsFeatures) {
   EXPECT_NEAR(mean, 0.5, 0.1) << "the stand-in makes pictures brighter by more than 1";
 }
 
-TEST(Preview, ManyCancelsOfWatchedRendersLeaveNothingBehind) {
+TEST(Preview, ManyCancelsLeaveNothingBehind) {
   const GradusSettings settings =
       settings_of(64, 48, kForever, GRADUS_INTEGRATOR_AUTO, GRADUS_RECONSTRUCTION_REGULARIZED);
   for (int i = 0; i < 100; ++i) {
@@ -384,7 +384,7 @@ TEST(Preview, ManyCancelsOfWatchedRendersLeaveNothingBehind) {
   }
 }
 
-// A scene, for what the fake integrator shows at a quarter of the size is another picture.
+// A real scene: the fake integrator shows another picture at a quarter of the size.
 class WatchedScene : public ::testing::Test {
  protected:
   WatchedScene() {
@@ -405,7 +405,7 @@ class WatchedScene : public ::testing::Test {
     return read(render, GRADUS_PASS_COMBINED, region);
   }
 
-  // Waits before a sample of the frame, number `at`, until let go.
+  // Waits before sample number `at` of the film until it is released.
   struct Held final : integrator::Integrator {
     std::unique_ptr<integrator::Integrator> inner;
     uint32_t at = 0;
@@ -421,7 +421,7 @@ class WatchedScene : public ::testing::Test {
     }
   };
 
-  // Combined and Noisy Image when sample `at` is about to be taken.
+  // Returns Combined and Noisy Image when sample `at` is about to be taken.
   std::pair<std::vector<float>, std::vector<float>> seen(GradusSettings watched, uint32_t at,
                                                          const Region& region) const {
     watched.samples = kForever;
@@ -446,7 +446,7 @@ class WatchedScene : public ::testing::Test {
     return images;
   }
 
-  // Of what a screen shows: white is white.
+  // Returns the error of what a screen shows: values above white are white.
   static double error(const std::vector<float>& image, const std::vector<float>& truth) {
     double sum = 0.0;
     for (size_t i = 0; i < image.size(); ++i) sum += std::pow(std::min(image[i], 1.0f) - std::min(truth[i], 1.0f), 2);
@@ -460,7 +460,7 @@ class WatchedScene : public ::testing::Test {
   std::shared_ptr<const scene::Snapshot> snapshot_;
 };
 
-// The best that a quarter of the size can show.
+// Returns the best picture that a quarter of the size can represent.
 std::vector<float> coarse(const std::vector<float>& image, const GradusSettings& settings, const Region& region) {
   const output::ImageSize full{settings.width, settings.height}, small{full.width / 4, full.height / 4};
   std::vector<float> means(4 * size_t{small.width} * small.height);
@@ -479,7 +479,7 @@ std::vector<float> coarse(const std::vector<float>& image, const GradusSettings&
   return output::enlarge(rows, 4, region, full, small);
 }
 
-TEST_F(WatchedScene, TheFirstPictureIsWhatAQuarterOfTheSizeCanShow) {
+TEST_F(WatchedScene, TheFirstPictureIsTheBestThatAQuarterOfTheSizeCanShow) {
   const Region all = region_of(settings);
   const std::vector<float> truth = converged(all);
   const auto [combined, noisy] = seen(settings, 1, all);
@@ -493,7 +493,7 @@ TEST_F(WatchedScene, TheFirstPictureIsWhatAQuarterOfTheSizeCanShow) {
   EXPECT_LT(left, 0.25 * of_one_sample);
 }
 
-TEST_F(WatchedScene, ARegionsFirstPictureLiesWhereItBelongs) {
+TEST_F(WatchedScene, TheFirstPictureOfARegionIsAtItsPlace) {
   const std::vector<float> truth = converged(region_of(settings));
   const uint32_t region[] = {13, 5, 73, 58};  // below the light
   std::copy(region, region + 4, settings.region);

@@ -1,4 +1,4 @@
-// How samples are shared by noise.
+// Distribution of samples by noise.
 #include <cmath>
 #include <limits>
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr int64_t kPixels = 256;
 
-// Cells of the same number of samples.
+// Returns blocks with the same number of samples.
 std::vector<render::BlockShare> blocks_with(const std::vector<double>& spreads, uint32_t taken) {
   std::vector<render::BlockShare> blocks;
   for (const double spread : spreads) blocks.push_back({kPixels, taken, spread, true});
@@ -24,7 +24,7 @@ double given(const std::vector<render::BlockShare>& blocks, const std::vector<ui
   return sum;
 }
 
-TEST(SampleShares, EqualNoiseSharesEqually) {
+TEST(SampleShares, EqualNoiseGivesEqualShares) {
   EXPECT_EQ(render::allocate_samples(blocks_with({0.3, 0.3, 0.3}, 16), 16), (std::vector<uint32_t>{16, 16, 16}));
   EXPECT_EQ(render::allocate_samples(blocks_with({0.0, 0.0}, 16), 16), (std::vector<uint32_t>{16, 16}));
   EXPECT_EQ(render::allocate_samples(blocks_with({0.3, 0.3}, 0), 1), (std::vector<uint32_t>{1, 1}));
@@ -35,7 +35,7 @@ TEST(SampleShares, AllSamplesTogetherAreInProportionToTheNoise) {
   EXPECT_EQ(counts, (std::vector<uint32_t>{16, 48, 32, 32}));
 }
 
-TEST(SampleShares, WhoHasMoreThanItsShareTakesTheLeast) {
+TEST(SampleShares, ABlockAboveItsShareTakesTheMinimum) {
   auto blocks = blocks_with({1.0, 1.0}, 16);
   blocks[0].taken = 100;
   const auto counts = render::allocate_samples(blocks, 16);
@@ -64,16 +64,16 @@ TEST(SampleShares, ABatchHasItsMeanAndItsCountsAreEven) {
   }
 }
 
-TEST(SampleShares, NoCellStarvesAndNoneTakesAll) {
+TEST(SampleShares, NoBlockStarvesAndNoneTakesAll) {
   std::vector<double> spreads(100, 1.0);
   spreads[0] = 1e3;
   spreads[1] = 0.0;
   const auto counts = render::allocate_samples(blocks_with(spreads, 32), 32);
   EXPECT_EQ(32 + counts[0], uint32_t(render::kMaxShare * 64));
-  EXPECT_EQ(counts[1], 2u);  // it has half of the mean already
+  EXPECT_EQ(counts[1], 2u);  // the block has half of the mean already
 }
 
-TEST(SampleShares, WhatIsNotFiniteCountsAsTheLargest) {
+TEST(SampleShares, ANoiseThatIsNotFiniteCountsAsTheMaximum) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(render::allocate_samples(blocks_with({1.0, nan, 2.0, infinity}, 16), 16),
             render::allocate_samples(blocks_with({1.0, 2.0, 2.0, 2.0}, 16), 16));
@@ -89,7 +89,7 @@ TEST(SampleShares, TheErrorIsBelowThatOfEqualShares) {
     equal += spreads[i] * spreads[i] / 64.0;
     minimum += spreads[i] / 64.0;
   }
-  minimum *= minimum;  // Cauchy-Schwarz: (mean s)² / n, of 64 cells with 64 samples
+  minimum *= minimum;  // Cauchy-Schwarz: (mean s)² / n, of 64 blocks with 64 samples
   EXPECT_LT(shared, 0.95 * equal);
   EXPECT_NEAR(shared, minimum, 0.01 * minimum);
 }

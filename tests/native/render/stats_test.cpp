@@ -1,4 +1,4 @@
-// The stats object of a frame.
+// The stats object of a film.
 #include "render/stats.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ nlohmann::json warnings_of(const render::RenderStats& stats) {
       render::stats_json(stats, render::Plan{}, make_test_film(test_settings(4, 4), true)))["warnings"];
 }
 
-// Of stills alone it was a warning: frames of animations that are reconstructed together were delivered without a word.
+// Regression: only stills had this warning; frames that are reconstructed together did not.
 TEST(Stats, ASolverThatStoppedAtItsLimitIsAWarning) {
   render::RenderStats stats;
   stats.warnings = {"another"};

@@ -1,4 +1,4 @@
-// L6: one picture that passes through all of the library, at the size that valgrind is asked to see (tools/test.py).
+// L6: one picture that uses all of the library, at a size that valgrind can render (tools/test.py).
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -22,7 +22,8 @@ uint64_t checkered(test::PathScene* scene) {
   return scene->material(p.desc(p.add(GRADUS_OP_DIFFUSE, {test::In::from(color)})));
 }
 
-// Smooth and rough glass, rough metal, a texture, a world, lights and a mesh that shine, behind a lens.
+// Builds smooth and rough glass, rough metal, a texture, an emissive world, lights and an emissive mesh, before a
+// camera with a lens.
 void build_room(test::PathScene* scene) {
   test::build(test::Scenario::GlossyFloor, scene);
   scene->world(Rgb(0.3f, 0.4f, 0.5f));

@@ -1,4 +1,4 @@
-// D3, D7, and what happens to broken instances and meshes: broken data costs the broken object, not the frame.
+// D3, D7, and broken instances and meshes: only the broken object is lost, not the frame.
 #include <chrono>
 #include <cstring>
 #include <limits>
@@ -42,7 +42,7 @@ TEST(D3_Garbage, ThousandMeshesOfRandomBits) {
       soup.positions.push_back({x, y, random_bits(random)});
       soup.vertices.push_back(v);
     }
-    // Half of the meshes: one index in 32 is random.
+    // In half of the meshes, one index in 32 is random.
     for (int32_t& v : soup.vertices)
       if (i % 2 && random() % 32 == 0) v = int32_t(random());
     std::vector<float> normals(soup.positions.size() * 3);
@@ -86,9 +86,9 @@ TEST(D7_Degenerate, TrianglesWhoseSquaredEdgesAreFlushedHaveAnError) {
   EXPECT_GT(plane.normal.y, 0.99f);
 }
 
-TEST(D7_Degenerate, OnlyWholeTrianglesAreHit) {
+TEST(D7_Degenerate, OnlyValidTrianglesAreHit) {
   Soup soup;
-  soup.triangle({-1, -1, 3}, {1, -1, 3}, {0, 1, 3});       // good
+  soup.triangle({-1, -1, 3}, {1, -1, 3}, {0, 1, 3});       // valid
   soup.triangle({0, 0, 1}, {0, 0, 1}, {0, 0, 1});          // a point
   soup.triangle({-1, 0, 1}, {0, 0, 1}, {1, 0, 1});         // a line
   soup.triangle({kNan, 0, 2}, {0, 1, 2}, {1, 0, 2});       // NaN
@@ -102,7 +102,7 @@ TEST(D7_Degenerate, OnlyWholeTrianglesAreHit) {
   EXPECT_EQ(snapshot->instances[0].mesh->dropped_triangles, 3u);
   geometry::Hit hit;
   ASSERT_TRUE(snapshot->intersect({Vec3(0.0f), 0.0f, Vec3(0, 0, 1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
-  EXPECT_EQ(hit.triangle, 0u);
+  EXPECT_EQ(hit.primitive, 0u);
   std::mt19937 random(22);
   for (int i = 0; i < 100000; ++i) {
     if (snapshot->intersect({Vec3(0.0f), 0.0f, random_direction(random), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit)) {
@@ -168,8 +168,8 @@ TEST(BadMatrix, OneWarningNamesTheFirstAndCounts) {
             "3 objects were left out, the first is 'number 1': its matrix is singular or not finite");
 }
 
-// Triangles without a place vanished, and whole objects of them, and nobody was told.
-TEST(BadMesh, TrianglesThatAreNotFiniteAreNamedOnce) {
+// Regression: triangles without finite positions, and whole objects of them, disappeared without a warning.
+TEST(BadMesh, TrianglesThatAreNotFiniteAreReportedOnce) {
   Soup torn;
   torn.triangle({-1, -1, 3}, {1, -1, 3}, {0, 1, 3});
   torn.triangle({kNan, 0, 2}, {0, 1, 2}, {1, 0, 2});
@@ -186,8 +186,9 @@ TEST(BadMesh, TrianglesThatAreNotFiniteAreNamedOnce) {
   EXPECT_EQ(snapshot->warnings[1], "2 objects lost triangles, the first is 'number 0': some vertices are not finite");
 }
 
-// What is beyond the limit of light sampling was left to chance in silence.
-TEST(ManyLights, AnObjectWithTooManyTrianglesIsNamed) {
+// Regression: emissive triangles beyond the maximum of light sampling are found by chance only, and there was no
+// warning.
+TEST(ManyLights, AnObjectWithTooManyTrianglesIsReported) {
   Soup soup;
   soup.triangle({-1, -1, 3}, {1, -1, 3}, {0, 1, 3});
   soup.positions.push_back({kNan, 0, 0});
@@ -239,7 +240,7 @@ TEST(Commit, UnchangedGeometryIsShared) {
   const auto second = scene.commit();
   EXPECT_EQ(first->accelerator, second->accelerator);
   EXPECT_EQ(first->content_key, second->content_key);
-  // The same content set again is no change; a moved instance keeps the mesh's own structure.
+  // Setting the same content again is no change; a moved instance keeps its mesh's acceleration structure.
   scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 100, 200));
   EXPECT_EQ(scene.commit()->accelerator, first->accelerator);
   scene.instance(2, translation(Vec3(0, 5, 0)));
@@ -251,7 +252,7 @@ TEST(Commit, UnchangedGeometryIsShared) {
   EXPECT_TRUE(second->intersect({Vec3(0, 0, 5), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
 }
 
-TEST(Cancel, StopsABuildAndKeepsTheSnapshotBefore) {
+TEST(Cancel, StopsABuildAndKeepsTheLastSnapshot) {
   TestScene scene;
   scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 4, 8));
   scene.instance(1);

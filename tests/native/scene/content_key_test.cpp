@@ -1,4 +1,4 @@
-// The scene key of a frame: that of what is seen, whatever its parts are called (contract 7.2).
+// The content key of a scene depends on its content, not on the keys of its objects.
 #include <cstdio>
 
 #include <gtest/gtest.h>
@@ -29,10 +29,11 @@ std::string picture_path(uint64_t which) {
 }
 
 struct Names {
-  uint64_t small, large, plain, first, second;  // two meshes, and materials: of one colour, and of two images
+  // keys of two meshes, and of materials: of one colour, and of two images
+  uint64_t small, large, plain, first, second;
 };
 
-// Two balls, a light and a world, whose parts the caller calls by these names.
+// Returns the content key of a scene with two balls, a light and a world under the given keys.
 uint64_t key_of(const Names& names) {
   TestScene scene;
   scene.mesh(names.small, sphere(Vec3(0.0f), 1.0f, 4, 8));
@@ -51,13 +52,13 @@ uint64_t key_of(const Names& names) {
   return scene.commit()->content_key;
 }
 
-// Keys count up by first appearance: a job that goes on at a later frame has other ones than the job that began at the
-// first, and its frames were refused as those of another scene.
+// Regression: keys count up by first appearance. A job that resumes at a later frame has other keys than the job that
+// began at the first, and its frames were refused as those of another scene.
 TEST(C7_ContentKey, ASessionWithOtherKeysHasTheSame) {
   EXPECT_EQ(key_of({1, 2, 3, 4, 5}), key_of({19, 7, 50, 40, 30}));
 }
 
-TEST(C7_ContentKey, AnExchangeOfMeshesOrMaterialsShows) {
+TEST(C7_ContentKey, AnExchangeOfMeshesOrMaterialsChangesIt) {
   const uint64_t key = key_of({1, 2, 3, 4, 5});
   TestScene scene;
   const auto changed = [&](bool meshes, bool materials) {
@@ -77,8 +78,8 @@ TEST(C7_ContentKey, AnExchangeOfMeshesOrMaterialsShows) {
   EXPECT_NE(key, changed(false, false));
 }
 
-// Its path alone was looked at: the frame counted as unchanged.
-TEST(C7_ContentKey, AnImageThatIsRewrittenUnderItsNameShows) {
+// Regression: only the path of an image counted, so that the frame was taken for unchanged.
+TEST(C7_ContentKey, AnImageThatIsRewrittenUnderItsNameChangesIt) {
   TestScene scene;
   scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 4, 8));
   scene.instance(1, Mat4(1.0f), GRADUS_VISIBLE_ALL, 2);

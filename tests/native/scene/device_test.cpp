@@ -26,7 +26,7 @@ TEST(Device, TasksFlushDenormalsAndTheCallerKeepsItsState) {
   EXPECT_FALSE(FlushDenormals::active());
 }
 
-TEST(Warnings, ComeOnceAndInOrder) {
+TEST(Warnings, AreIssuedOnceAndInOrder) {
   Warnings warnings;
   warnings.add("a");
   warnings.add("b");

@@ -1,4 +1,4 @@
-// Embree builds on many threads and keeps one error per thread: what goes wrong on a worker must reach the caller.
+// Embree builds on many threads and stores one error per thread: an error of a worker thread must reach the caller.
 #include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ bool allow(void* data, ssize_t bytes, bool) {
   return false;
 }
 
-// Commits with every limit on memory; the number of refusals that other threads than the caller's met.
+// Commits with every limit on memory; returns the number of refusals on threads other than the caller's.
 int commit_with_limits(TestScene* test, RTCDevice embree) {
   int elsewhere = 0;
   for (int64_t limit = 1 << 12; limit <= 1 << 23; limit += limit / 4) {
@@ -45,11 +45,11 @@ int commit_with_limits(TestScene* test, RTCDevice embree) {
   return elsewhere;
 }
 
-TEST(G5_Memory, WhatEmbreeIsRefusedOnAWorkerReachesTheCaller) {
+TEST(G5_Memory, AnErrorOfEmbreeOnAWorkerReachesTheCaller) {
   TestScene test;
   test.mesh(1, sphere(Vec3(0.0f), 1.0f, 200, 400));
   test.instance(1);
-  int elsewhere = 0;  // which thread asks for memory at the limit is chance
+  int elsewhere = 0;  // the thread that allocates memory at the limit is random
   for (int round = 0; round < 50 && elsewhere == 0; ++round)
     elsewhere = commit_with_limits(&test, test_device()->embree().get());
   geometry::Hit hit;

@@ -1,4 +1,4 @@
-// What moves while the shutter is open: rays meet it where it is at their time, and leave it without meeting it again.
+// Motion while the shutter is open: rays meet objects at the position of their time, and leave them without self-hits.
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -14,7 +14,7 @@ namespace {
 
 Mat4 turn(float angle, const Vec3& axis) { return glm::rotate(Mat4(1.0f), angle, axis); }
 
-// A sphere that flies, turns and grows, a sphere that deforms and flies, and one at rest.
+// Returns a sphere that moves, rotates and grows, a sphere that deforms and moves, and a static one.
 std::shared_ptr<const scene::Snapshot> moving_spheres() {
   TestScene scene;
   const Soup ball = sphere(Vec3(0.0f), 1.0f, 20, 40);
@@ -37,7 +37,7 @@ std::shared_ptr<const scene::Snapshot> moving_spheres() {
   return scene.commit();
 }
 
-// Towards one of the three.
+// Returns a ray towards one of the three.
 Ray random_ray(std::mt19937& random) {
   std::uniform_real_distribution<float> u(0.0f, 1.0f);
   const Vec3 target = Vec3(-3.0f + 3.0f * float(random() % 3), 0, 0) + random_direction(random) * 0.7f;
@@ -61,7 +61,7 @@ TEST(Motion, HitsLieOnTheRayAtItsTime) {
     const geometry::SurfacePoint point = snapshot->surface_point(hit);
     const Vec3 along = ray.origin + ray.direction * hit.t;
     ASSERT_LT(glm::length(point.position - along), 2e-4f) << hit.instance << ' ' << ray.time;
-    const auto p = snapshot->corners(hit.instance, hit.triangle, ray.time);
+    const auto p = snapshot->corners(hit.instance, hit.primitive, ray.time);
     const Vec3 normal = glm::normalize(glm::cross(p[1] - p[0], p[2] - p[0]));
     ASSERT_GT(std::fabs(glm::dot(normal, point.geometric_normal)), 0.9999f);
     ASSERT_GT(glm::dot(point.shading_normal, point.geometric_normal), 0.9f);
@@ -121,8 +121,8 @@ TEST(Motion, PacketsHaveTheTimesOfTheirRays) {
   }
 }
 
-// The smooth normals of a sphere that becomes an ellipsoid are the ellipsoid's.
-TEST(Motion, NormalsTurnWithADeformation) {
+// The smooth normals of a sphere that becomes an ellipsoid are those of the ellipsoid.
+TEST(Motion, NormalsFollowADeformation) {
   TestScene scene;
   const Soup ball = sphere(Vec3(0.0f), 1.0f, 64, 128);
   MeshDesc mesh(ball);
@@ -150,7 +150,7 @@ TEST(Motion, NormalsTurnWithADeformation) {
   }
 }
 
-TEST(Motion, RefusesMoreShutterKeysThanThereMayBe) {
+TEST(Motion, RefusesMoreThanTheMaximumNumberOfShutterKeys) {
   TestScene scene;
   MeshDesc mesh(sphere(Vec3(0.0f), 1.0f, 4, 8));
   const std::vector<Vec3> positions(mesh.desc.vertex_count * (geometry::kMaxShutterKeys + 1), Vec3(1.0f));
@@ -165,7 +165,7 @@ TEST(Motion, RefusesMoreShutterKeysThanThereMayBe) {
   EXPECT_EQ(refusal_of([&] { scene.commit(); }), "instance 0" + too_many);
 }
 
-TEST(Motion, BrokenKeysCostTheMotionOrTheTriangle) {
+TEST(Motion, InvalidKeysRemoveTheMotionOrTheTriangle) {
   TestScene scene;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const Soup ball = sphere(Vec3(0.0f), 1.0f, 8, 16);
@@ -191,7 +191,7 @@ TEST(Motion, BrokenKeysCostTheMotionOrTheTriangle) {
   ASSERT_EQ(snapshot->warnings.size(), 1u);
 }
 
-// The time of a shutter that never opens makes no difference, and costs nothing.
+// If the shutter never opens, the time has no effect and no cost.
 TEST(Motion, WithoutAShutterNothingMoves) { EXPECT_FALSE(moving_spheres()->features.has_motion); }
 
 }  // namespace

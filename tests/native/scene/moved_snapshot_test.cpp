@@ -1,4 +1,4 @@
-// A scene moved to its vector keys is the scene that is set up there.
+// A scene that is moved to its vector keys equals the scene that is built there.
 #include "scene/moved_snapshot.h"
 
 #include <random>
@@ -13,7 +13,7 @@
 namespace gradus::test {
 namespace {
 
-// Three balls, the first at rest.
+// Three balls, the first of them static.
 class MovedSnapshot : public testing::Test {
  protected:
   MovedSnapshot() {
@@ -44,7 +44,7 @@ class MovedSnapshot : public testing::Test {
   TestScene scene_;
 };
 
-TEST_F(MovedSnapshot, ObjectsAreWhereTheirMatricesSay) {
+TEST_F(MovedSnapshot, ObjectsAreWhereTheirMatricesPlaceThem) {
   const auto now = scene_.commit();
   const std::array<std::vector<Mat4>, 2> matrices{scene_.matrices_before, scene_.matrices_after};
   const std::array<Moment, 2> moments{Moment::Previous, Moment::Next};
@@ -56,19 +56,19 @@ TEST_F(MovedSnapshot, ObjectsAreWhereTheirMatricesSay) {
   }
 }
 
-// Surface points of one are found in the other where the vectors say.
-TEST_F(MovedSnapshot, SurfacePointsAreWhereVectorsSay) {
+// Surface points of one scene are found in the other at the ends of their vectors.
+TEST_F(MovedSnapshot, SurfacePointsAreAtTheEndsOfTheirVectors) {
   const auto now = scene_.commit();
   const auto next = scene::moved_snapshot(*now, Moment::Next);
   for (uint32_t instance = 0; instance < 3; ++instance) {
     geometry::Hit hit;
-    hit.instance = instance, hit.triangle = 40, hit.barycentric = Vec2(0.3f, 0.2f);
+    hit.instance = instance, hit.primitive = 40, hit.uv = Vec2(0.3f, 0.2f);
     EXPECT_LT(glm::length(now->position_at(hit, Moment::Next) - next->surface_point(hit).position), 1e-5f);
   }
 }
 
-// Objects that shift go straight: half-way they are in the middle.
-TEST_F(MovedSnapshot, GoesAPartOfTheWay) {
+// Objects that are translated move straight: at half the time they are in the middle.
+TEST_F(MovedSnapshot, MovesByAFraction) {
   scene_.matrices_before.clear();
   scene_.matrices_after = {translation(Vec3(1, 0, 0)), translation(Vec3(0, 2, 0)), translation(Vec3(0, 0, 4))};
   for (size_t i = 0; i < 3; ++i) scene_.move(i, Mat4(1.0f));
@@ -77,14 +77,14 @@ TEST_F(MovedSnapshot, GoesAPartOfTheWay) {
       *now, Moment::Next, [] { return false; }, 0.5f);
   for (uint32_t instance = 0; instance < 3; ++instance) {
     geometry::Hit hit;
-    hit.instance = instance, hit.triangle = 40, hit.barycentric = Vec2(0.3f, 0.2f);
+    hit.instance = instance, hit.primitive = 40, hit.uv = Vec2(0.3f, 0.2f);
     const Vec3 middle = 0.5f * (now->position_at(hit, Moment::Now) + now->position_at(hit, Moment::Next));
     EXPECT_LT(glm::length(middle - half->surface_point(hit).position), 1e-5f);
     EXPECT_GT(glm::length(middle - now->position_at(hit, Moment::Now)), 0.4f);
   }
 }
 
-TEST_F(MovedSnapshot, WhatRestsIsShared) {
+TEST_F(MovedSnapshot, StaticObjectsAreShared) {
   scene_.matrices_before.clear();
   scene_.matrices_after.clear();
   const auto now = scene_.commit();

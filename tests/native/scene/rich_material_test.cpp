@@ -1,4 +1,4 @@
-// Materials beyond what a program may hold.
+// Materials that exceed the limits of a program.
 #include <gtest/gtest.h>
 
 #include "scene_fixture.h"
@@ -11,8 +11,8 @@ int mixed_with(ProgramBuilder* b, int surface, int layer) {
   return b->add(GRADUS_OP_MIX_SHADER, {In(0.5f), In::from(surface), In::from(layer)});
 }
 
-// One too rich material ended the frame.
-TEST(RichMaterial, WhatDoesNotCompileIsGreyAndNamedOnce) {
+// Regression: one material that exceeds the limits ended the frame.
+TEST(RichMaterial, MaterialsThatDoNotCompileAreGreyAndReportedOnce) {
   ProgramBuilder b;
   int surface = b.add(GRADUS_OP_DIFFUSE, {In(0.5f)});
   for (int i = 0; i < 2000; i++)
@@ -37,7 +37,7 @@ TEST(RichMaterial, WhatDoesNotCompileIsGreyAndNamedOnce) {
   }
 }
 
-// The 64th Bump was refused.
+// Regression: the 64th Bump node was refused.
 TEST(RichMaterial, SeventyBumpsCompile) {
   ProgramBuilder b;
   int surface = b.add(GRADUS_OP_DIFFUSE, {In(0.5f)});

@@ -31,7 +31,7 @@ GradusCamera look_down(const Mat4& to_world, float scale) {
   return camera;
 }
 
-// Blocks of 8×8 pixels of the irradiance seen from above, with shadows.
+// Returns the irradiance seen from above, with shadows, by blocks of 8×8 pixels.
 std::vector<double> render(float scale, const Vec3& shift, bool instanced) {
   const Mat4 place = translation(shift);
   TestScene scene;
@@ -94,7 +94,7 @@ TEST(D5_Scale, DirectLightIsTheSame) {
 TEST(D6_FarAway, DirectLightIsTheSame) {
   for (const bool instanced : {false, true}) {
     const std::vector<double> reference = render(1.0f, Vec3(0.0f), instanced);
-    // The matrices come in float: at 1e5 objects and lights stand on a grid of 8 mm, which moves shadow edges.
+    // Matrices are floats: at 1e5, objects and lights lie on a grid of 8 mm, which moves the edges of shadows.
     expect_same(reference, render(1.0f, Vec3(1e5f, -1e5f, 1e5f), instanced), 6);
     for (const double block : render(1.0f, Vec3(1e7f, 1e7f, -1e7f), instanced)) EXPECT_TRUE(std::isfinite(block));
   }

@@ -1,6 +1,7 @@
-// Small scenes for tests, built through gradus::Scene as the C API would.
+// Small scenes for tests, built through gradus::Scene like the C API does.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -25,11 +26,11 @@ inline std::shared_ptr<scene::Device> test_device() {
   return device;
 }
 
-// Triangle soup: positions 3 per vertex, triangles of vertices.
+// Triangles: 3 position values per vertex, 3 vertex indices per triangle.
 struct Soup {
   std::string name = "mesh";
   std::vector<Vec3> positions;
-  std::vector<int32_t> vertices;  // of corners; triangle i has corners 3i..3i+2
+  std::vector<int32_t> vertices;  // by corner; triangle i has the corners 3i to 3i+2
 
   void triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
     for (const Vec3& p : {a, b, c}) {
@@ -77,7 +78,7 @@ inline Mat4 scaling(const Vec3& s) {
   return m;
 }
 
-// Its program lives as long as it.
+// Returns a material with a program that refers to the arguments.
 inline GradusMaterial material_of(const std::vector<GradusNode>& nodes, const std::vector<GradusInput>& inputs,
                                   int32_t surface, const char* name) {
   GradusMaterial d{};
@@ -102,7 +103,7 @@ class MaterialDesc {
     inputs_.push_back({-1, 0, {strength, strength, strength, strength}});
     if (closure == GRADUS_OP_DIFFUSE) complete_diffuse();
   }
-  // Emission of the coordinates Generated: of a world the direction.
+  // An emission with the coordinates Generated as colour: for a world, the direction.
   static MaterialDesc colored_by_generated() {
     MaterialDesc m(GRADUS_OP_EMISSION, Rgb(1.0f));
     m.nodes_.insert(m.nodes_.begin(), {GRADUS_OP_TEX_COORD, GRADUS_TEX_COORD_GENERATED, 0, 0, 0, 0, 0});
@@ -112,7 +113,7 @@ class MaterialDesc {
   GradusMaterial desc() const { return material_of(nodes_, inputs_, int32_t(nodes_.size()) - 1, "material"); }
 
  private:
-  // DIFFUSE has color, roughness, normal; a normal of 0 is the shading normal.
+  // DIFFUSE has color, roughness and normal; a normal of 0 is the shading normal.
   void complete_diffuse() {
     inputs_[1] = {-1, 0, {0, 0, 0, 0}};
     inputs_.push_back({-1, 0, {0, 0, 0, 0}});
@@ -167,7 +168,7 @@ class TestScene {
     shutter_count_.push_back(uint32_t(way.size()));
     for (const Mat4& m : way) shutter_matrices_.push_back(m * matrix);
   }
-  // Of the instance added as number i: where it is in the next commit.
+  // Sets the pose of the instance that was added as number i for the next commit.
   void move(size_t i, const Mat4& matrix) { matrices_[i] = matrix; }
   void dress(size_t i, uint64_t material) { materials_[i] = material; }
   void replace_mesh(size_t i, uint64_t mesh_key) { meshes_[i] = mesh_key; }
@@ -204,11 +205,12 @@ class TestScene {
   }
 
   scene::Scene scene;
-  std::vector<Mat4> matrices_before;      // one frame earlier, of all instances; of another number: at rest
-  std::vector<Mat4> matrices_after;       // one frame later, likewise
-  float shadow_terminator_offset = 0.0f;  // of the instances that follow
-  int32_t pass_index = 0;                 // likewise
-  std::vector<Mat4> way;                  // theirs while the shutter is open, times their matrix; empty: at rest
+  std::vector<Mat4> matrices_before;      // of all instances one frame earlier; if the number differs: static
+  std::vector<Mat4> matrices_after;       // of all instances one frame later; if the number differs: static
+  float shadow_terminator_offset = 0.0f;  // of instances added later
+  int32_t pass_index = 0;                 // of instances added later
+  // poses of instances added later while the shutter is open, multiplied by their matrix; empty: static
+  std::vector<Mat4> way;
 
  private:
   std::vector<float> terminators_;
@@ -220,7 +222,7 @@ class TestScene {
   std::vector<uint32_t> visibility_, first_, count_;
 };
 
-// Closed sphere of 2·rings·segments - 2·segments triangles.
+// Returns a closed sphere of 2·rings·segments - 2·segments triangles.
 inline Soup sphere(const Vec3& centre, float radius, int rings, int segments) {
   Soup soup;
   const auto vertex = [&](int r, int s) -> Vec3 {
@@ -247,6 +249,17 @@ inline Vec3 random_direction(std::mt19937& random) {
   do v = Vec3(normal(random), normal(random), normal(random));
   while (glm::dot(v, v) < 1e-6f);
   return glm::normalize(v);
+}
+
+// Gives all three frames of a camera the same pose and window, a clip range, and a focus at 4 m. window: 4 values.
+inline void set_static(GradusCamera* camera, const float* window, const Mat4& pose) {
+  for (float* to : {camera->window, camera->window_previous, camera->window_next}) std::copy(window, window + 4, to);
+  for (float* to : {camera->matrix, camera->matrix_previous, camera->matrix_next})
+    std::copy(&pose[0][0], &pose[0][0] + 16, to);
+  camera->clip_start = 0.1f;
+  camera->clip_end = 1000.0f;
+  camera->aperture_ratio = 1.0f;
+  camera->focus_distance = 4.0f;
 }
 
 }  // namespace gradus::test

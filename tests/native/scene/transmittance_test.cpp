@@ -1,4 +1,4 @@
-// Shadow rays through transparent surfaces, with materials as nodes compile them.
+// Shadow rays through transparent surfaces, with materials compiled from nodes.
 #include <gtest/gtest.h>
 
 #include "light/light_sampling.h"
@@ -43,7 +43,7 @@ TEST_F(Walls, TransparentOnesMultiply) {
   EXPECT_EQ(snapshot->transmittance(kUp, 1), Rgb(0.0f));
 }
 
-TEST_F(Walls, OpaqueOnesBlockAndUnseenOnesDoNot) {
+TEST_F(Walls, OpaqueOnesBlockAndInvisibleOnesDoNot) {
   add(1.0f, 1);
   add(2.0f, 2, GRADUS_VISIBLE_ALL & ~GRADUS_VISIBLE_SHADOW);
   EXPECT_NEAR(scene.commit()->transmittance(kUp, 8).x, 0.5f, 1e-6f);

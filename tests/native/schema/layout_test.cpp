@@ -1,4 +1,4 @@
-// H1: layouts are told through the API. H3: older and newer callers.
+// H1: the API reports the layout of structs. H3: older and newer callers.
 #include "schema/layout.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace gradus::schema {
 namespace {
 
-TEST(H1_StructLayout, IsToldThroughTheApi) {
+TEST(H1_StructLayout, IsReportedByTheApi) {
   size_t size = 0, count = 0, offsets[2] = {};
   ASSERT_EQ(gradus_struct_layout("Mesh", &size, offsets, 2, &count), GRADUS_OK);
   EXPECT_EQ(size, sizeof(GradusMesh));
@@ -44,7 +44,7 @@ TEST(H1_StructLayout, HashIsThatOfTheDocumentedText) {
 
 TEST(H3_StructSize, OlderCallersGetDefaultsNewerAreRefused) {
   GradusSettings settings{};
-  settings.struct_size = offsetof(GradusSettings, passes);  // a caller from before passes
+  settings.struct_size = offsetof(GradusSettings, passes);  // a caller from before the field `passes`
   settings.passes = 77;
   ASSERT_EQ(gradus_settings_default(&settings), GRADUS_OK);
   EXPECT_EQ(settings.samples, 64u);

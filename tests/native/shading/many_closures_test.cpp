@@ -1,4 +1,4 @@
-// Surfaces with more closures than there is room for: none may vanish.
+// Surfaces with more closures than the maximum: none may be lost.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 const Vec3 kWo = glm::normalize(Vec3(0.5f, 0.2f, 1.0f));
 
-// Equal parts of `layers`.
+// Returns an equal mix of `layers`.
 int mixed(ProgramBuilder* b, const std::vector<int>& layers) {
   int mix = layers[0];
   for (size_t i = 1; i < layers.size(); i++)
@@ -19,7 +19,7 @@ int mixed(ProgramBuilder* b, const std::vector<int>& layers) {
   return mix;
 }
 
-// Sheen, coat, metal, glass, specular and diffuse; roughness differs from material to material.
+// Returns sheen, coat, metal, glass, specular and diffuse; roughness differs from material to material.
 int rich_principled(ProgramBuilder* b, float roughness) {
   std::vector<In> in(21, In(0.0f));
   in[0] = In(Vec3(0.8f, 0.4f, 0.2f));
@@ -54,7 +54,7 @@ bsdf::Closures equal_principled(int count) {
   return closures_of(&b, layers);
 }
 
-TEST(ManyClosures, EqualPrincipledMixedWentDarkFromTheThirdOn) {
+TEST(ManyClosures, EqualPrincipledMixedKeepTheirAlbedo) {
   const bsdf::Closures one = equal_principled(1);
   for (const int count : {2, 3, 4, 16}) {
     const bsdf::Closures many = equal_principled(count);
@@ -98,7 +98,7 @@ TEST(ManyClosures, ThirtyDiffuseLayersWithTheirOwnNormalsAreAsBrightAsOne) {
   }
 }
 
-// What is strong keeps its shape: a mirror in a crowd of weak rough lobes stays a mirror.
+// Strong lobes keep their shape: a mirror among many weak rough lobes stays a mirror.
 TEST(ManyClosures, AMirrorStaysOneAmongManyWeakLobes) {
   bsdf::Closures closures;
   for (int i = 0; i < 40; i++) {
@@ -112,7 +112,7 @@ TEST(ManyClosures, AMirrorStaysOneAmongManyWeakLobes) {
   EXPECT_NEAR(closures.lobe(0).weight.x, 0.5f, 1e-6f);
 }
 
-// Lobes of one type that no one formula fits: their albedo goes to the stronger.
+// Lobes of one type that no single formula fits: their albedo is added to the stronger.
 TEST(ManyClosures, CurvesOfFresnelThatDoNotMixKeepTheirAlbedo) {
   const Rgb before(0.04f + 0.2f);
   bsdf::Lobe coat, metal;

@@ -91,7 +91,7 @@ TEST(NodeMapping, PointAndTextureAreInverse) {
   expect_near(evaluate(GRADUS_OP_MAPPING, {there, location, rotation, scale}, GRADUS_MAPPING_TEXTURE), v);
 }
 
-TEST(NodeMapping, EulerTurnsAboutXThenYThenZ) {
+TEST(NodeMapping, EulerRotatesAboutXThenYThenZ) {
   const Mat3 quarter_x = shading::euler_matrix(Vec3(kPi / 2, 0, 0)),
              quarter_z = shading::euler_matrix(Vec3(0, 0, kPi / 2));
   expect_near(quarter_x * Vec3(0, 1, 0), Vec3(0, 0, 1));
@@ -111,7 +111,8 @@ TEST(NodeMapRange, LinearSteppedAndClamped) {
   EXPECT_NEAR(of(2.0f, GRADUS_MAP_RANGE_STEPPED), 15.0f, 1e-5f);
 }
 
-// An empty range: the smooth forms gave a step, or 0 in spite of the clamp. Values by Cycles.
+// Regression: for an empty range, the smooth forms gave a step, or 0 in spite of the clamp. The values are those of
+// Cycles.
 TEST(NodeMapRange, EmptyRangesAreThoseOfCycles) {
   for (const uint32_t mode : {GRADUS_MAP_RANGE_LINEAR, GRADUS_MAP_RANGE_STEPPED, GRADUS_MAP_RANGE_SMOOTHSTEP,
                               GRADUS_MAP_RANGE_SMOOTHERSTEP}) {
@@ -156,8 +157,8 @@ TEST(NodeColor, BlendModes) {
   expect_near(evaluate(GRADUS_OP_MIX_COLOR, {1.0f, Vec3(2.0f), Vec3(3.0f)}, GRADUS_BLEND_ADD | 32), Vec3(1.0f));
 }
 
-// Candles were a tenth too pale and shone less than no blue light; beyond 12,000 K, where Cycles' colours end, ours
-// went on.
+// Regression: candles were a tenth too pale and had negative blue light; beyond 12,000 K, the maximum of Cycles' table,
+// the colours still changed.
 TEST(NodeColor, BlackBodiesHaveTheColoursOfCycles) {
   const auto of = [](float kelvin) { return evaluate(GRADUS_OP_BLACKBODY, {kelvin}); };
   expect_near(of(700.0f), Rgb(5.4133f, 0.0f, 0.0f), 0.01f);
@@ -186,7 +187,7 @@ TEST(NodeTables, CurvesExtrapolateOrNot) {
   EXPECT_NEAR(of(-2.0f, 1.0f), -1.0f, 1e-5f);
 }
 
-// Gradient noise vanishes on the lattice, is continuous across it, and has mean 0.
+// Gradient noise is 0 at lattice points, continuous, and has mean 0.
 TEST(NodeNoise, Properties) {
   for (int i = -3; i <= 3; i++) {
     const auto x = static_cast<float>(i);
@@ -202,7 +203,7 @@ TEST(NodeNoise, Properties) {
   EXPECT_NEAR(sum / 20000.0, 0.0, 0.01);
 }
 
-// Eight lanes against the definition, corner by corner.
+// Compares eight SIMD lanes with the definition, corner by corner.
 TEST(NodeNoise, LanesEqualTheDefinition) {
   const auto fade = [](float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); };
   const auto corner = [](const Vec3& cell, const Vec3& d) {
@@ -265,7 +266,7 @@ TEST(NodeClosures, GlassNormalsPointOutwards) {
   expect_near(r.closures.lobe(0).normal, Vec3(0, 0, -1));
 }
 
-TEST(NodeClosures, MetalLeavesNothingForDiffuse) {
+TEST(NodeClosures, MetalHasNoDiffuse) {
   ProgramBuilder b;
   std::vector<In> inputs(21, In(0.0f));
   inputs[0] = In(Vec3(0.8f, 0.4f, 0.2f));

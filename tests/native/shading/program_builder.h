@@ -10,7 +10,7 @@
 
 namespace gradus::test {
 
-// What an input is: a constant or an output of a node.
+// An input: a constant or an output of a node.
 struct In {
   GradusInput input;
   In(float x) : input{-1, 0, {x, x, x, x}} {}
@@ -24,7 +24,7 @@ struct In {
 
 class ProgramBuilder {
  public:
-  // Index of the new node.
+  // Adds a node and returns its index.
   int add(uint32_t op, std::vector<In> inputs, uint32_t mode = 0, std::vector<float> floats = {},
           uint64_t resource = 0) {
     GradusNode node{};
@@ -73,7 +73,7 @@ inline shading::ShadeResult run(const shading::Program& program,
   return result;
 }
 
-// Result of one operation as a colour, through an emission closure.
+// Returns the result of one operation as a colour, through an emission closure.
 inline Rgb evaluate(uint32_t op, std::vector<In> inputs, uint32_t mode = 0, std::vector<float> floats = {},
                     uint32_t output = 0, const shading::ShadeContext& context = shading::ShadeContext()) {
   ProgramBuilder b;

@@ -1,4 +1,4 @@
-// Compilation: folding, skipping, registers, and refusal of what is no program.
+// Compilation: folding, skipping, registers, and refusal of invalid programs.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -31,7 +31,7 @@ TEST(NodeProgram, ConstantsAreFolded) {
   expect_near(run(m->surface).emission, Rgb(5, 10, 15));
 }
 
-// A value that only the point decides gives the same through registers as through folding.
+// A value that depends on the point is the same through registers as through folding.
 TEST(NodeProgram, EvaluationEqualsFolding) {
   shading::ShadeContext c;
   c.position = Vec3(0.3f, -1.2f, 2.5f);
@@ -75,7 +75,7 @@ TEST(NodeProgram, MixWeightsAndClampsTheFactor) {
   }
 }
 
-// A value used by a branch that is skipped, and after it.
+// A value that a skipped branch uses, and an operation after it.
 TEST(NodeProgram, SharedValuesSurviveSkippedBranches) {
   ProgramBuilder b;
   const int p = b.add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
@@ -108,7 +108,7 @@ TEST(NodeProgram, UnusedNodesAreDropped) {
   EXPECT_EQ(b.compile(emission(&b, In::from(p)))->surface.code.size(), 2u);
 }
 
-TEST(NodeProgram, PartsHoldWhatTheyNeed) {
+TEST(NodeProgram, SubprogramsHoldWhatTheyNeed) {
   ProgramBuilder b;
   const int p = b.add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
   const int noise = b.add(GRADUS_OP_NOISE, {In::from(p), In(0.0f), In(5.0f)}, GRADUS_NOISE_MODE(3, 0, 1, 0));
@@ -124,7 +124,7 @@ TEST(NodeProgram, PartsHoldWhatTheyNeed) {
   EXPECT_EQ(m->transparency.code.size(), 1u);
 }
 
-// Textured, coated and with a sheen: layers that depend on the direction, over values that do not.
+// Textured, with coat and sheen: layers that depend on the direction, over values that do not.
 int coated_checker(ProgramBuilder* b) {
   const int p = b->add(GRADUS_OP_GEOMETRY, {}, GRADUS_GEOMETRY_POSITION);
   const int checker =
@@ -208,7 +208,7 @@ TEST(NodeProgram, ATapeWithoutRoomGivesNothing) {
   EXPECT_FALSE(tape.replay(seen_from(Vec3(0, 0, 1)), &replayed));
 }
 
-TEST(NodeProgram, ValuesThatLookAtTheRayAreKnown) {
+TEST(NodeProgram, DependenceOnTheRayIsKnown) {
   const auto looks = [](uint32_t op, std::vector<In> inputs, uint32_t mode) {
     ProgramBuilder b;
     const int node = b.add(op, std::move(inputs), mode);
@@ -229,9 +229,9 @@ TEST(NodeProgram, RoughnessIsKnownWhereConstant) {
   EXPECT_TRUE(smooth.compile(smooth.add(GRADUS_OP_GLOSSY, {In(1.0f), In(0.1f)}))->min_alpha < 0.1f);
 }
 
-// What anisotropy makes of a rough lobe was bounded by Principled's, where Glossy's goes further; and roughness below 0
-// is none.
-TEST(NodeProgram, NoLobeIsSharperThanItsMaterialSays) {
+// Regression: the effect of anisotropy on a rough lobe was bounded by the range of Principled, which Glossy exceeds;
+// and roughness below 0 counts as 0.
+TEST(NodeProgram, NoLobeIsNarrowerThanItsMaterialReports) {
   const struct {
     uint32_t op;
     std::vector<In> inputs;
@@ -257,8 +257,8 @@ TEST(NodeProgram, NoSurfaceIsBlack) {
   EXPECT_TRUE(m->surface.empty() && !m->emits && !m->has_bsdf);
 }
 
-// NaN in an emission made every path that met it drop, and with it the light of all others.
-TEST(NodeProgram, WhatShinesNoFiniteLightIsBlack) {
+// Regression: a NaN in an emission discarded every path that met it, and with it the light of all other emitters.
+TEST(NodeProgram, EmissionThatIsNotFiniteIsBlack) {
   for (const float value : {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity}) {
     ProgramBuilder b;
     const int glow = emission(&b, In(value));
@@ -335,7 +335,7 @@ TEST(NodeProgram, RandomProgramsDoNotCrash) {
       uint32_t op = below(128);
       if (n == 11) op = GRADUS_OP_EMISSION;
       const shading::OpInfo* info = shading::op_info(op);
-      if (!info || (info->closure && n < 11)) continue;
+      if (!info || (info->kind == shading::OpKind::Closure && n < 11)) continue;
       std::vector<In> inputs;
       for (uint32_t k = 0; k < info->inputs; k++) {
         In in(odd[below(11)]);

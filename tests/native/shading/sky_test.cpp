@@ -1,4 +1,4 @@
-// Sky Texture: values of Cycles, the suns that are found in a world, and settings beyond all reason.
+// Sky Texture: values of Cycles, the suns that are found in a world, and extreme settings.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ constexpr uint32_t kModes = GRADUS_SKY_MULTIPLE_SCATTERING + 1;
 
 float radians(float degrees) { return degrees * kPi / 180.0f; }
 
-// Sun at 30° of elevation, 25° from +y towards +x.
+// Returns settings with the sun at 30° of elevation, 25° from +y towards +x.
 std::vector<float> settings(uint32_t mode) {
   const float e = radians(30), r = radians(25);
   if (mode <= GRADUS_SKY_HOSEK_WILKIE)
@@ -23,7 +23,7 @@ std::vector<float> settings(uint32_t mode) {
   return {e, r, -1.0f, 1.0f, 500.0f, 1.2f, 0.8f, 1.5f};
 }
 
-// Blender 5.0 (NISHITA: 4.5), without noise.
+// Values of Blender 5.0 (NISHITA: 4.5), without noise.
 struct Known {
   Vec3 direction;
   Rgb radiance[kModes];
@@ -55,7 +55,7 @@ const Known kKnown[] = {
       {1.7983f, 2.442f, 3.6072f}}},
 };
 
-TEST(A9_Sky, ShinesAsInCycles) {
+TEST(A9_Sky, HasTheValuesOfCycles) {
   for (uint32_t mode = 0; mode < kModes; ++mode) {
     SCOPED_TRACE(mode);
     const std::vector<float> prepared = shading::prepare_sky(mode, settings(mode).data());
@@ -66,7 +66,7 @@ TEST(A9_Sky, ShinesAsInCycles) {
   }
 }
 
-// Irradiance of the disc alone on a plane that faces it.
+// Returns the irradiance of the disc alone on a plane that faces it.
 Rgb sun_irradiance(uint32_t mode, std::vector<float> given) {
   const std::vector<float> with = shading::prepare_sky(mode, given.data());
   given[2] = -1.0f;
@@ -83,7 +83,7 @@ Rgb sun_irradiance(uint32_t mode, std::vector<float> given) {
   return Rgb(sum * double(cone.solid_angle()) / double(kSide * kSide));
 }
 
-TEST(A9_Sky, SunIsAsBrightWhateverItsSize) {
+TEST(A9_Sky, TheSunHasTheSameIrradianceAtAnySize) {
   for (uint32_t mode = GRADUS_SKY_NISHITA; mode < kModes; ++mode) {
     SCOPED_TRACE(mode);
     std::vector<float> given = settings(mode);
@@ -98,7 +98,7 @@ TEST(A9_Sky, SunIsAsBrightWhateverItsSize) {
   }
 }
 
-TEST(A9_Sky, BeyondTheZenithTheSunComesDownOnTheOtherSide) {
+TEST(A9_Sky, BeyondTheZenithTheSunSetsOnTheOtherSide) {
   std::vector<float> over = settings(GRADUS_SKY_NISHITA), same = over;
   over[0] = radians(150);
   over[1] = radians(25 + 180 - 360);
@@ -128,10 +128,10 @@ void expect_finite(uint32_t mode, const std::vector<float>& given) {
   }
 }
 
-TEST(L_Sky, StaysFiniteWhateverItsSettings) {
+TEST(Sky, StaysFiniteForAnySettings) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   const std::vector<float> domes[] = {
-      {0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 1.0f, 1.0f, 1.0f},             // a sun without size on the horizon
+      {0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 1.0f, 1.0f, 1.0f},             // a sun of size 0 on the horizon
       {-0.001f, 0.0f, 0.0095f, 1.0f, 1e9f, 0.0f, 0.0f, 0.0f},       // in space, without air
       {-1.5f, 0.0f, 0.0095f, 1.0f, -5.0f, 1000.0f, 1000.0f, 1e3f},  // midnight in the thickest smoke, below ground
       {1.5707963f, 9.0f, 3.2f, 1e30f, 100.0f, 1e30f, 1e-30f, -1.0f},
@@ -149,7 +149,7 @@ TEST(L_Sky, StaysFiniteWhateverItsSettings) {
   }
 }
 
-// A world whose sky looks at what `mapping` makes of the direction.
+// Returns a world whose sky uses the direction transformed by `mapping`.
 std::shared_ptr<const shading::MaterialData> world(const Vec3& rotation, const Vec3& scale) {
   ProgramBuilder b;
   const int place = b.add(GRADUS_OP_TEX_COORD, {}, GRADUS_TEX_COORD_GENERATED);

@@ -15,7 +15,7 @@ Rgb lights_between(const scene::Snapshot& scene, const Ray& ray) {
   return sum;
 }
 
-// A direction by all classes; false: absorbed. factor: f·|cos| over its density.
+// Samples a direction from all classes; false: absorbed. factor: f·|cos| over its density.
 bool scatter(const bsdf::Closures& closures, const Vec3& wo, testing::Random* random, Vec3* wi, Rgb* factor,
              std::string* path) {
   float u = random->get();

@@ -7,7 +7,7 @@
 namespace gradus::testing {
 namespace {
 
-// Q(a, x) = Γ(a, x)/Γ(a): series below a + 1, continued fraction (Lentz) above.
+// Returns Q(a, x) = Γ(a, x)/Γ(a): by a series below a + 1, by a continued fraction (Lentz) above.
 double upper_gamma(double a, double x) {
   if (x <= 0.0) {
     return 1.0;
@@ -71,14 +71,14 @@ Grid make_grid(const ChiSquareOptions& options) {
   return {x, glm::cross(z, x), z, options.rows, options.columns};
 }
 
-// Midpoints on 4×4 points, halved again where the four quarters disagree with the whole.
+// Integrates a cell by 4×4 midpoints, and subdivides it where the four quarters disagree with the whole.
 class CellIntegral {
  public:
   CellIntegral(const Grid& grid, const std::function<double(const Vec3&)>& pdf) : grid_(grid), pdf_(pdf) {}
   double integrate(double t0, double t1, double p0, double p1) const {
     return refine(t0, t1, p0, p1, points(t0, t1, p0, p1), 0);
   }
-  // 64×64 points, whatever they say.
+  // Integrates by 64×64 points without subdivision.
   double integrate_fine(double t0, double t1, double p0, double p1) const {
     double sum = 0.0;
     for (int i = 0; i < 16; i++) {
@@ -204,8 +204,8 @@ ChiSquareResult chi_square_sphere(const std::function<bool(const Vec2&, const Ve
       expected[at(row, column)] = integral.integrate(dt * row, dt * (row + 1), dp * column, dp * (column + 1));
     }
   }
-  // The edge of a density's support may touch a cell beyond all the points: look closer beside cells that are not
-  // empty.
+  // The edge of a density's support may cut a cell between all of its points: cells next to those that are not empty
+  // are integrated more finely.
   const std::vector<double> first = expected;
   for (int row = 0; row < options.rows; row++) {
     for (int column = 0; column < options.columns; column++) {

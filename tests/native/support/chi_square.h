@@ -1,5 +1,5 @@
-// Chi-square test of a sampler against its density as pbrt has it (bsdfs_test.cpp): its 80×160 grid over the sphere and
-// its tolerance.
+// Chi-square test of a sampler against its density, like that of pbrt (bsdfs_test.cpp): the same 80×160 grid over the
+// sphere and the same tolerance.
 #pragma once
 
 #include <cmath>
@@ -19,15 +19,15 @@ struct ChiSquareResult {
   double mass = 0.0;                // integral of the density
   size_t zero_density_samples = 0;  // samples in cells where the density is 0
   bool passed = false;
-  std::string text;  // why it failed, or the numbers
+  std::string text;  // reason of a failure, or the numbers
 };
 
-// How many tests one run of the suite makes: Šidák's correction of the 1 % level.
+// Number of tests in a run of the suite: Šidák's correction of the 1 % level.
 inline constexpr int kTestsPerRun = 200;
 
 // observed: counts per cell; expected: sample count times the density's integral. Cells with an expectation under 5 are
-// pooled. invalid: samples out of the domain. A lost sample (sampler returned false) is simply not in `observed`; the
-// density then has a mass below 1.
+// pooled. invalid: samples outside of the domain. A lost sample (the sampler returned false) is missing in `observed`;
+// the density then has a mass below 1.
 ChiSquareResult chi_square_counts(const std::vector<double>& observed, const std::vector<double>& expected,
                                   size_t sample_count, size_t invalid, int tests = kTestsPerRun);
 
@@ -39,7 +39,7 @@ struct ChiSquareOptions {
   uint32_t seed = 1;
   int tests = kTestsPerRun;
 };
-// sample: two 2-D random values in [0,1)⁴ to a unit direction; false = lost. pdf: density in solid angle.
+// sample: maps two 2-D random values in [0,1)⁴ to a unit direction; false: lost. pdf: density in solid angle.
 ChiSquareResult chi_square_sphere(const std::function<bool(const Vec2& u, const Vec2& v, Vec3* direction)>& sample,
                                   const std::function<double(const Vec3&)>& pdf, const ChiSquareOptions& options = {});
 

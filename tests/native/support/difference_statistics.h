@@ -1,4 +1,4 @@
-// Whether sampled differences are those of the image: in the mean over renders with different seeds.
+// Tests whether sampled differences are those of the image, on average over renders with different seeds.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace gradus::test {
 
-// Seeds of independent renders; D = sampled difference − difference of the primal images has mean 0 if both are
+// Collects independent renders; D = sampled difference − difference of the primal images has mean 0 if both are
 // unbiased.
 class DifferenceStatistics {
  public:
@@ -38,8 +38,8 @@ class DifferenceStatistics {
     total_squares_ += total * total;
     ++count_;
   }
-  // Mean of t² over all differences (1 without bias, but for the few degrees of freedom), t of each (A5's rule), and of
-  // all of them together.
+  // Expects the mean of t² over all differences (1 without bias, apart from the few degrees of freedom), the t of each
+  // (A5's rule), and that of their sum to be small.
   void check(const char* what, int minimum = 50) const {
     double sum_t2 = 0.0;
     int used = 0;
@@ -47,7 +47,7 @@ class DifferenceStatistics {
     for (size_t i = 0; i < sum_.size(); ++i) {
       const double mean = sum_[i] / count_;
       const double variance = (squares_[i] - count_ * mean * mean) / (count_ - 1) / count_;
-      if (variance > 1e-12) {  // else certain, but for rounding
+      if (variance > 1e-12) {  // otherwise certain, apart from rounding
         sum_t2 += mean * mean / variance;
         p_values.push_back(student_p(mean / std::sqrt(variance), count_ - 1));
         ++used;
@@ -59,7 +59,7 @@ class DifferenceStatistics {
     const auto off =
         std::count_if(p_values.begin(), p_values.end(), [&](double p) { return p < sidak(p_values.size()); });
     EXPECT_LE(double(off), 0.0025 * used) << what;
-    // Differences share pixels and jitter, so the total's variance is that of whole renders.
+    // Differences share pixels and jitter, so that the variance of the total is that of whole renders.
     const double total = total_ / count_;
     const double total_variance = (total_squares_ - count_ * total * total) / (count_ - 1) / count_;
     EXPECT_LT(std::fabs(total), 5.0 * std::sqrt(total_variance)) << what;

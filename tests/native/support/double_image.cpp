@@ -12,34 +12,34 @@ namespace {
 
 using DVec3 = glm::dvec3;
 
-// No emitter of these scenes tells kinds of rays apart.
+// No light of these scenes depends on the kind of ray.
 const shading::RayState kAnyRay;
 
 DVec3 to_double(const Vec3& v) { return DVec3(v.x, v.y, v.z); }
 
-// Follows a path and adds up its light.
+// Sums the contributions of a path in double.
 class DoubleObserver : public path::NoObserver {
  public:
   explicit DoubleObserver(const path::PathContext& context) : context_(context) {}
   DVec3 radiance = DVec3(0.0);
 
-  void begin(const path::Sampler&, const camera::CameraSample&) {
+  void on_path_start(const path::Sampler&, const camera::CameraSample&) {
     radiance = DVec3(0.0);
     throughput_ = DVec3(1.0);
   }
-  void light_crossing(const path::RaySource&, const path::Contribution& c, const path::LightCrossing& light_crossing) {
-    add(to_double(light_crossing.weight) * found(c));
+  void on_light_crossing(const path::RaySource&, const path::Contribution& c, const path::LightCrossing& crossing) {
+    add(to_double(crossing.weight) * found(c));
   }
-  void passed(const path::Segment& segment) { throughput_ *= to_double(segment.weight); }
-  void world(const path::RaySource&, const path::Contribution& c) { add(found(c)); }
-  void emission(const path::RaySource&, const path::Contribution& c, const path::Vertex&) { add(found(c)); }
-  void survived(float probability, const path::Vertex&) { throughput_ /= double(probability); }
-  void light(const path::Vertex& vertex, const path::LightSample& sample, bsdf::ScatterClass scatter_class,
-             const path::Contribution& c) {
+  void on_segment_passed(const path::Segment& segment) { throughput_ *= to_double(segment.weight); }
+  void on_world(const path::RaySource&, const path::Contribution& c) { add(found(c)); }
+  void on_emission(const path::RaySource&, const path::Contribution& c, const path::Vertex&) { add(found(c)); }
+  void on_survival(float probability, const path::Vertex&) { throughput_ /= double(probability); }
+  void on_light_sample(const path::Vertex& vertex, const path::LightSample& sample, bsdf::ScatterClass scatter_class,
+                       const path::Contribution& c) {
     const path::LitClass lit = path::light_class(context_, vertex, scatter_class, sample, kAnyRay);
     add(to_double(lit.value) * to_double(c.light) / (double(c.pdf_light) + double(lit.pdf_bsdf)));
   }
-  void scatter(const path::Vertex& vertex, const path::VertexSample&, const path::ScatterEvent& event) {
+  void on_scattering(const path::Vertex& vertex, const path::VertexSample&, const path::ScatterEvent& event) {
     const double pdf = double(vertex.shade.closures.class_probability(event.scatter_class)) * double(event.sample.pdf);
     throughput_ *= to_double(event.sample.value) / pdf;
   }
@@ -80,7 +80,7 @@ DoubleImage render_in_double(const integrator::IntegratorContext& context, uint3
   const integrator::WorkUnit unit{film.region, 0, samples, nullptr};
   const auto vertices = std::make_unique<path::CameraVertices>(path);
   for_each_sample(path, unit, film, vertices.get(), std::atomic<bool>{false}, [&](const integrator::PixelSample& s) {
-    const path::PathResult& result = tracer.trace(s.sampler, s.film, s.first);
+    const path::PathResult& result = tracer.li(s.sampler, s.film, s.first);
     integrator::add_primal(result, s, unit, &film, &film.counters);
     if (!film::fits(result.radiance[0])) return;
     sums[s.pixel].sum += observer.radiance;

@@ -1,4 +1,4 @@
-// The image in double precision: throughputs, weights and sums are made anew from the values and densities that
+// The image in double precision: throughputs, weights and sums are recomputed from the values and densities that
 // sampling found in float.
 #pragma once
 
@@ -11,9 +11,9 @@ namespace gradus::test {
 struct DoubleImage {
   std::vector<float> image;   // of the plain path tracer, RGB
   std::vector<double> mean;   // the same in double
-  std::vector<double> error;  // its standard error
-  // Largest difference of a value of the image, in units of its bound: 1 % of the standard error, and 1e-6 of the value
-  // for rounding it.
+  std::vector<double> error;  // standard error of the mean
+  // Returns the largest difference of a value of the image, in units of its bound: 1 % of the standard error, plus 1e-6
+  // of the value for rounding.
   double worst() const;
 };
 

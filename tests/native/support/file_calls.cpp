@@ -13,7 +13,7 @@ std::function<void()> on_open_file;
 
 }  // namespace gradus::test
 
-// In the place of the C library's.
+// Replaces the function of the C library.
 extern "C" int fsync(int descriptor) {
   ++gradus::test::synced_files;
   return int(syscall(SYS_fsync, descriptor));

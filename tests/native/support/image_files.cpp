@@ -36,7 +36,7 @@ Vec4 at(const Pattern& pattern, uint32_t width, uint32_t height, uint32_t x, uin
                  1.0f - (static_cast<float>(row_from_top) + 0.5f) / static_cast<float>(height));
 }
 
-// Channels of a colour in the order of files with 1 to 4 of them.
+// Returns a channel of a colour in the order of files with 1 to 4 channels.
 float channel(const Vec4& c, int channels, int index) {
   if (channels <= 2) {
     return index == 0 ? c.x : c.w;
@@ -48,7 +48,7 @@ uint32_t quantise(float x, uint32_t largest) {
   return static_cast<uint32_t>(std::lround(std::clamp(x, 0.0f, 1.0f) * static_cast<float>(largest)));
 }
 
-// Top row first, integers in the machine's order.
+// Returns the pixels, top row first, integers in the machine's byte order.
 FileBytes raster(uint32_t width, uint32_t height, const Pattern& pattern, int channels, int bits) {
   FileBytes bytes;
   for (uint32_t y = 0; y < height; y++) {
@@ -270,7 +270,7 @@ FileBytes make_exr(uint32_t width, uint32_t height, const Pattern& pattern, cons
     Imf::TiledOutputFile file(stream, header);
     file.setFrameBuffer(buffer);
     file.writeTiles(0, file.numXTiles(0) - 1, 0, file.numYTiles(0) - 1, 0);
-    // Smaller levels hold rubbish on purpose: only the full one is to be read.
+    // Smaller levels hold garbage on purpose: only the full one is read.
     for (int level = 1; level < file.numLevels(); level++) {
       file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
     }

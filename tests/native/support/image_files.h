@@ -1,4 +1,4 @@
-// Image files in memory, for the tests of our readers: four colours, or any pattern.
+// Image files in memory, for the tests of readers: four colours, or any pattern.
 #pragma once
 
 #include <cstdint>
@@ -52,7 +52,7 @@ struct ExrOptions {
 FileBytes make_exr(uint32_t width, uint32_t height, const Pattern& pattern, const ExrOptions& options = {});
 FileBytes make_deep_exr();
 
-// runs: with the newer run-length code, which needs a width of at least 8.
+// runs: with the newer run-length code, which requires a width of at least 8.
 FileBytes make_hdr(uint32_t width, uint32_t height, const Pattern& pattern, bool runs = true);
 
 }  // namespace gradus::testing

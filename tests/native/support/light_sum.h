@@ -1,4 +1,4 @@
-// The sum of light passes, as a compositor makes it.
+// The sum of light passes, as a compositor computes it.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace gradus::test {
 
-// Σ Color · (Direct + Indirect) + Emission + Environment (contract 6.5), RGB. read: a pass, three values for each
+// Returns Σ Color · (Direct + Indirect) + Emission + Environment, RGB. read: returns a pass, three values for each
 // pixel.
 template <class Read>
 std::vector<float> sum_of_light(const Read& read) {

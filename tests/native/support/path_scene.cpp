@@ -74,7 +74,7 @@ int32_t build_surface(const Surface& s, Program* p) {
   return surface;
 }
 
-// For messages.
+// Describes a surface in messages.
 std::string text_of(const Surface& s) {
   std::ostringstream text;
   const auto color = [&text](const char* what, const Rgb& c) -> std::ostringstream& {
@@ -284,7 +284,7 @@ GradusLight point_light(const Vec3& position, float radius, float intensity) {
   return light;
 }
 
-// A ball and a rectangle over a glossy ball.
+// Adds a ball light and a rectangle light over a glossy ball.
 void add_lights_with_extent(PathScene* scene, uint32_t flags, float roughness) {
   GradusLight ball = point_light(Vec3(0.3f, 0.2f, 0.2f), 0.15f, 0.5f);
   ball.flags |= flags;
@@ -315,7 +315,7 @@ void build(Scenario scenario, PathScene* scene) {
   if (scenario == Scenario::GlossyFloor) {
     floor = matte(Rgb(0.4f));
     floor.glossy = Rgb(0.4f);
-    floor.glossy_roughness = 0.25f;  // class R that light sampling reaches
+    floor.glossy_roughness = 0.25f;  // class R, which light sampling reaches
   }
   add_box(scene, floor);
   switch (scenario) {
@@ -334,15 +334,14 @@ void build(Scenario scenario, PathScene* scene) {
     }
     case Scenario::World:
       scene->world(Rgb(0.8f, 1.0f, 1.2f));
-      scene->camera(Vec3(0, 0, 3.2f), Vec3(0, 0, 0), 1.4f);  // sees past the box
+      scene->camera(Vec3(0, 0, 3.2f), Vec3(0, 0, 0), 1.4f);  // the camera sees past the box
       scene->ball(Vec3(0.3f, -0.6f, 0.1f), 0.4f, scene->material(matte(Rgb(0.5f))), 6);
       break;
     case Scenario::GlossyFloor:
       add_ceiling_light(scene, 8.0f, 0.6f);
       scene->light(point_light(Vec3(-0.4f, 0.3f, 0.3f), 0.0f, 0.2f));
       break;
-    case Scenario::Facets: {  // many directions near the terminator, for lights that both techniques find, one, or the
-                              // other
+    case Scenario::Facets: {  // directions near the terminator, for lights found by both techniques or one of them
       scene->scene.shadow_terminator_offset = 0.4f;
       add_lights_with_extent(scene, 0, 0.6f);
       scene->ball(Vec3(0.5f, -0.6f, 0.4f), 0.35f, scene->material(matte(Rgb(0.6f))), 4, true);
@@ -381,17 +380,16 @@ void build(Scenario scenario, PathScene* scene) {
       add_lights_with_extent(scene, 0, 0.2f);
       break;
     case Scenario::LightsUnseen:
-      add_lights_with_extent(scene, GRADUS_LIGHT_NO_MIS, 0.6f);  // light sampling alone is noisy on sharper surfaces
+      add_lights_with_extent(scene, GRADUS_LIGHT_NO_MIS, 0.6f);  // light sampling alone is noisy on narrower lobes
       break;
-    case Scenario::Fisheye:  // from within the box; the image circle ends inside of the frame
+    case Scenario::Fisheye:  // from within the box; the image circle ends inside of the film
       add_ceiling_light(scene, 8.0f, 0.6f);
       scene->ball(Vec3(0.3f, -0.6f, -0.3f), 0.35f, scene->material(glossy(0.3f)), 10, true);
       scene->camera(Vec3(0, 0, 0.7f), Vec3(0, -0.1f, 0), 3.6f, GRADUS_CAMERA_PANORAMA);
       scene->camera_desc.panorama = GRADUS_PANORAMA_FISHEYE_EQUIDISTANT;
       scene->camera_desc.fisheye_fov = 3.0f;
       break;
-    case Scenario::Moving: {  // a light that turns, a ball that swells, a mirror and a glass ball that fly, seen by a
-                              // moving eye
+    case Scenario::Moving: {  // a light that rotates, a ball that grows, a mirror and glass that move, a moving camera
       Surface light;
       light.emission = Rgb(4.0f, 3.2f, 2.4f);
       scene->scene.way = {translation(Vec3(-0.3f, 0, 0)),

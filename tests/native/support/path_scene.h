@@ -9,7 +9,7 @@
 
 namespace gradus::test {
 
-// A surface: lobes that are added up, emission, and a share that lets light straight through.
+// A surface: a sum of lobes, emission, and a transparent share.
 struct Surface {
   Rgb diffuse = Rgb(0.0f);
   Rgb glossy = Rgb(0.0f);
@@ -25,28 +25,28 @@ struct Surface {
 
 class PathScene {
  public:
-  // Key of a material to give to instances.
+  // Adds a material and returns its key, for instances.
   uint64_t material(const Surface& surface);
   uint64_t material(const GradusMaterial& desc);
-  // A parallelogram: corner and two edges; its normal is along a × b.
+  // Adds a parallelogram from a corner and two edges; its normal is along a × b.
   void quad(const Vec3& corner, const Vec3& a, const Vec3& b, uint64_t material,
             uint32_t visibility = GRADUS_VISIBLE_ALL);
-  // smooth: with normals of the true sphere.
+  // smooth: with the normals of the true sphere.
   void ball(const Vec3& centre, float radius, uint64_t material, int rings = 12, bool smooth = false);
   void light(const GradusLight& light) { lights_.push_back(light); }
   void world(const Rgb& radiance);
-  // map_size: width of the map that its light is sampled by.
+  // map_size: width of the world's importance map.
   void world(uint64_t material, uint32_t map_size) { scene.world(material, map_size); }
-  // The shutter is open from half a frame before the frame to half a frame after it; curve: empty, all the time.
+  // The shutter is open from half a frame before the frame to half a frame after it; curve: if empty, constant.
   void open_shutter(std::vector<float> curve = {}, std::vector<Mat4> camera_motion = {});
-  // At `from`, looking at `at`, y up; field: width of the frame at distance 1 (orthographic: in metres; panorama: as
-  // GradusPanorama says).
+  // Places a camera at `from`, looking at `at`, y up; field: width of the film at distance 1 (orthographic: in metres;
+  // panorama: see GradusPanorama).
   void camera(const Vec3& from, const Vec3& at, float field, GradusCameraType type = GRADUS_CAMERA_PERSPECTIVE);
 
   GradusCamera camera_desc{};
-  // Where quads, balls and the camera are put that follow: a translation and a scale.
+  // Transforms quads, balls and the camera that are added later: a translation and a scale.
   Mat4 place = Mat4(1.0f);
-  // Balls that follow swell by this factor while the shutter is open.
+  // Balls that are added later grow by this factor while the shutter is open.
   float swelling = 1.0f;
   // Commits. settings.width and height give the camera's aspect.
   integrator::IntegratorContext context(const GradusSettings& settings);
@@ -57,29 +57,29 @@ class PathScene {
   std::vector<GradusLight> lights_;
   uint64_t next_key_ = 1;
   std::vector<float> curve_;
-  std::vector<Mat4> camera_motion_;  // times its matrix
+  std::vector<Mat4> camera_motion_;  // multiplied by its matrix
   std::vector<Mat4> camera_keys_;
   Vec3 camera_from_ = Vec3(0.0f);
   float field_ = 1.0f;
 };
 
-// Small, independent random numbers, bounces without limit.
+// Returns settings with a small film, independent random numbers, and unlimited bounces.
 GradusSettings test_settings(uint32_t width, uint32_t height);
-// Pixels of a cell share their sub-pixel jitter (contract 1.6); without any, their errors are independent.
+// Samples pixel centres: pixels of a block share their sub-pixel jitter; without any, their errors are independent.
 void sample_at_pixel_centres(GradusSettings* settings);
 
-// All pixels with samples [first, first + count).
+// Adds the samples [first, first + count) of all pixels.
 void sample_film(const integrator::Integrator& integrator, uint32_t first, uint32_t count, film::Film* film);
 film::Film make_test_film(const GradusSettings& settings, bool gradients, int components = 1);
 
-// An open box with two coloured walls, seen from its open side, and a square light below its ceiling.
+// Adds an open box with two coloured walls, seen from its open side, and a square light below its ceiling.
 void add_box(PathScene* scene, const Surface& floor);
 void add_ceiling_light(PathScene* scene, float strength, float size);
 Surface matte(const Rgb& color);
 Surface glossy(float roughness);
 Surface glass(float roughness);
 
-// Cornell-like scenes, each for one part of the shift.
+// Cornell-like scenes, each for one case of the shift.
 enum class Scenario {
   DiffuseArea,
   PointAndSun,

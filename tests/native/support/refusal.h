@@ -1,4 +1,4 @@
-// What calls say that are refused.
+// Error messages of calls that are refused.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace gradus::test {
 
-// Text of the Error that a call throws; empty: it throws none.
+// Returns the message of the Error that a call throws; empty if it throws none.
 template <class Call>
 std::string refusal_of(const Call& call) {
   try {

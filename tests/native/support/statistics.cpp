@@ -29,7 +29,7 @@ double Moments::variance_of_mean(size_t i) const {
   return std::max(0.0, squares_[i] - count_ * m * m) / (count_ - 1) / count_;
 }
 
-// T = √ν tan θ makes the density a power of the cosine: integrated by Simpson's rule.
+// T = √ν tan θ makes the density a power of the cosine, which Simpson's rule integrates.
 double student_p(double t, double degrees_of_freedom) {
   const double start = std::atan(std::fabs(t) / std::sqrt(degrees_of_freedom)), end = std::acos(0.0);
   const auto integral = [&](double from) {

@@ -7,10 +7,10 @@
 
 namespace gradus::test {
 
-// Whether the long counts are asked for (make test-full); otherwise a tenth.
+// Returns whether full sample counts are requested (make test-full); otherwise tests take a tenth.
 bool full_run();
 
-// 0 of none.
+// Returns the mean; 0 if there are no values.
 inline double mean(const std::vector<float>& values) {
   return values.empty() ? 0.0 : std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
 }
@@ -29,15 +29,16 @@ class Moments {
   std::vector<double> sum_, squares_;
 };
 
-// Two-sided p-value of Welch's test that value i has the same mean in both (Welch-Satterthwaite degrees of freedom).
+// Returns the two-sided p-value of Welch's test that value i has the same mean in both (Welch-Satterthwaite degrees of
+// freedom).
 double welch_p(const Moments& a, const Moments& b, size_t i);
-// P(|T| > |t|) of Student's distribution.
+// Returns P(|T| > |t|) of Student's distribution.
 double student_p(double t, double degrees_of_freedom);
-// P(|Z| > |z|) of the normal distribution.
+// Returns P(|Z| > |z|) of the normal distribution.
 double normal_p(double z);
-// p-value of chi² that these p-values are uniform, on 20 bins.
+// Returns the p-value of a chi² test that these p-values are uniform, on 20 bins.
 double uniformity_p(const std::vector<double>& p_values);
-// Level of one of k tests for a level of 1 % of them all (Šidák).
+// Returns the level of one of k tests for a level of 1 % of all of them (Šidák).
 double sidak(size_t k);
 
 // |Σ d| / Σ|d| of signed differences averaged over 5×5 pixels (OSPRay's test): near 0 for noise, near 1 for bias. d:

@@ -1,4 +1,4 @@
-// The command-line tool, as the user guide shows it: what it writes, prints, and ends with.
+// The command-line tool, as the user guide describes it: its files, messages and exit codes.
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
@@ -34,7 +34,7 @@ class Tool : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder); }
 
-  // A lit quad; or nothing, where the instance's mesh is gone.
+  // Saves a lit quad; if it is broken, the mesh of the instance is missing.
   void save_scene(const std::string& name, bool broken) const {
     const GradusDevice device = make_device();
     GradusScene scene = 0;
@@ -61,7 +61,7 @@ class Tool : public ::testing::Test {
     content << file.rdbuf();
     return content.str();
   }
-  // Of two images; negative if they could not be compared.
+  // Returns the error between two images; negative if they cannot be compared.
   double relative_error(const std::string& a, const std::string& b) const {
     const Outcome compared = run("compare " + a + " " + b);
     double error = -1.0;
@@ -103,8 +103,8 @@ TEST_F(Tool, RendersReconstructsAndCompares) {
   EXPECT_EQ(run("compare none.exr l2.exr --fail-above 1e-12").code, 1);
 }
 
-// Of the reconstruction that is written, whatever the frame was rendered for.
-TEST_F(Tool, WritesTheErrorOfWhatItReconstructs) {
+// The error belongs to the reconstruction that is written, whatever the film was rendered for.
+TEST_F(Tool, WritesTheErrorOfItsReconstruction) {
   ASSERT_EQ(run("render good.gradus -o f.exr --samples 16 --integrator gradient --reconstruction l2 --passes error "
                 "--image l2.exr")
                 .code,
@@ -128,7 +128,7 @@ TEST_F(Tool, ResumeHasTheBitsOfOneRender) {
   }
 }
 
-// By a stand-in for Open Image Denoise.
+// With a stand-in for Open Image Denoise.
 constexpr const char* kFakeDenoiser = " --denoiser oidn --denoiser-path " GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
 
 TEST_F(Tool, Denoises) {
@@ -146,14 +146,14 @@ TEST_F(Tool, Denoises) {
   EXPECT_EQ(relative_error("failed.exr", "plain.exr"), 0.0);
 }
 
-TEST_F(Tool, SaysThatTheDenoiserHasNoGuides) {
+TEST_F(Tool, WarnsThatTheDenoiserHasNoGuides) {
   ASSERT_EQ(run("render good.gradus -o frame.exr --reconstruction l1").code, 0);
   const Outcome made = run(std::string("reconstruct frame.exr -o image.exr") + kFakeDenoiser);
   EXPECT_EQ(made.code, 0);
   EXPECT_NE(made.err.find("warning: the frame holds no features"), std::string::npos) << made.err;
 }
 
-TEST_F(Tool, TellsWhatFilesHold) {
+TEST_F(Tool, ReportsTheContentOfFiles) {
   const Outcome scene = run("info good.gradus");
   EXPECT_EQ(scene.code, 0);
   EXPECT_NE(scene.out.find("triangles                  2"), std::string::npos) << scene.out;
@@ -171,8 +171,8 @@ TEST_F(Tool, MeasuresMotion) {
   EXPECT_NE(run("motion good.gradus --components 'Sky=EL;Light=EL'").err.find("overlap"), std::string::npos);
 }
 
-// They were lost on the way from the file: a picture without its objects, and not a word.
-TEST_F(Tool, NamesWhatASceneHasLost) {
+// Regression: warnings of loading were lost: the picture lacked objects, without a message.
+TEST_F(Tool, ReportsObjectsThatASceneHasLost) {
   save_scene("broken.gradus", true);
   const Outcome rendered = run("render broken.gradus -o store");
   EXPECT_EQ(rendered.code, 0);
@@ -200,8 +200,8 @@ TEST_F(Tool, EndsWithACodeAndACause) {
   }
 }
 
-// The samples of the stored frame were lost: the picture took their place.
-TEST_F(Tool, WritesNoPictureOverTheFrameThatItIsMadeOf) {
+// Regression: the picture replaced the samples of the stored film.
+TEST_F(Tool, WritesNoPictureOverItsFilm) {
   ASSERT_EQ(run("render good.gradus -o f.exr").code, 0);
   ASSERT_EQ(run("render good.gradus -o other.exr --first-sample 100").code, 0);
   fs::create_symlink("f.exr", folder / "symbolic.exr");
@@ -223,7 +223,7 @@ TEST_F(Tool, WritesNoPictureOverTheFrameThatItIsMadeOf) {
   EXPECT_EQ(run("reconstruct f.exr --merge other.exr -o picture.exr").code, 0);
 }
 
-// They ended with the code of a failed render, some after the scene had been read.
+// Regression: bad values ended with the code of a failed render, some after the scene had been read.
 TEST_F(Tool, BadValuesAreWrongUsage) {
   ASSERT_EQ(run("render good.gradus -o f.exr --reconstruction none").code, 0);
   for (const char* arguments :
@@ -242,7 +242,7 @@ TEST_F(Tool, BadValuesAreWrongUsage) {
   EXPECT_FALSE(fs::exists(folder / "x.exr"));
 }
 
-// Without a word.
+// Regression: such options were ignored without a message.
 TEST_F(Tool, NoOptionIsIgnored) {
   ASSERT_EQ(run("render good.gradus -o f.exr --integrator gradient").code, 0);
   for (const char* how : {"auto", "none", "regularized"}) {
@@ -258,8 +258,8 @@ TEST_F(Tool, NoOptionIsIgnored) {
   }
 }
 
-// "all" failed at the first pass that the frame was rendered without.
-TEST_F(Tool, AllPassesAreThoseThatTheFrameHolds) {
+// Regression: "all" failed at the first pass that the film does not have.
+TEST_F(Tool, AllPassesAreThoseOfTheFilm) {
   ASSERT_EQ(run("render good.gradus -o f.exr --integrator path --reconstruction regularized --passes 'depth, uv'").code,
             0);
   ASSERT_EQ(run("reconstruct f.exr -o all.exr --passes all").code, 0);
@@ -281,7 +281,7 @@ int occurrences(const std::string& text, const std::string& part) {
   return n;
 }
 
-// "cannot load frame f.exr: Cannot read image file "f.exr". Unexpected end of file."
+// Returns the sum of the given layers of a file.
 std::vector<float> sum_of_layers(const std::string& path, const std::vector<std::string>& layers) {
   std::vector<float> sum;
   for (const std::string& layer : layers) {
@@ -332,7 +332,7 @@ TEST_F(Tool, WritesPassesOfComponents) {
        {"Path Diffuse UV.G", "Path Diffuse Object Index.V", "Path Diffuse Face Index.V", "Path Diffuse Emit.B"})
     EXPECT_NE(std::find(layers.begin(), layers.end(), layer), layers.end()) << layer;
   EXPECT_EQ(std::find(layers.begin(), layers.end(), "Path Diffuse Normal.R"), layers.end())
-      << "nobody asked for its sampling";
+      << "its sampling was not requested";
   ASSERT_EQ(run("render good.gradus -o whole.exr").code, 0);
   const Outcome whole = run("reconstruct whole.exr -o x.exr --component-passes color");
   EXPECT_EQ(whole.code, 1);
@@ -340,7 +340,8 @@ TEST_F(Tool, WritesPassesOfComponents) {
   EXPECT_FALSE(fs::exists(folder / "x.exr"));
 }
 
-TEST_F(Tool, FilesThatAreCutShortAreNamedOnce) {
+// Regression: "cannot load frame f.exr: Cannot read image file "f.exr". Unexpected end of file."
+TEST_F(Tool, TruncatedFilesAreNamedOnce) {
   ASSERT_EQ(run("render good.gradus -o f.exr").code, 0);
   const auto whole = fs::file_size(folder / "f.exr");
   for (const auto& [size, cause] : {std::pair{uintmax_t{0}, ""},
@@ -360,7 +361,7 @@ TEST_F(Tool, FilesThatAreCutShortAreNamedOnce) {
   EXPECT_NE(scene.err.find("cannot load frame good.gradus: it is no OpenEXR file"), std::string::npos) << scene.err;
 }
 
-// EXR was written under the name of a PNG, with exit code 0.
+// Regression: an EXR was written under the name of a PNG, with exit code 0.
 TEST_F(Tool, RefusesImagesThatAreNotExr) {
   ASSERT_EQ(run("render good.gradus -o frame.exr --reconstruction l1").code, 0);
   std::ofstream(folder / "x.png") << "PNG";
@@ -375,21 +376,21 @@ TEST_F(Tool, RefusesImagesThatAreNotExr) {
   EXPECT_EQ(run("reconstruct frame.exr -o L1.EXR").code, 0);
 }
 
-// "A subcommand is required" was all that a wrong word brought.
-TEST_F(Tool, NamesACommandThatThereIsNot) {
+// Regression: a wrong command only led to "A subcommand is required".
+TEST_F(Tool, NamesAnUnknownCommand) {
   const Outcome outcome = run("frobnicate");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("there is no command or option frobnicate"), std::string::npos) << outcome.err;
 }
 
-// A camera that goes aside over frames 1 to 6, in store/anim/layer.
+// A camera that moves sideways over frames 1 to 6, stored in store/anim/layer.
 class ToolSequence : public Tool {
  protected:
   void SetUp() override {
     Tool::SetUp();
     render(GRADUS_RECONSTRUCTION_L2);
   }
-  // Both files of a frame.
+  // Removes both files of a frame.
   void remove(int frame) const {
     for (const char* part : {".base.exr", ".offset.exr"})
       fs::remove(folder / kFolder / ("f+000000" + std::to_string(frame) + part));
@@ -455,7 +456,7 @@ class ToolSequence : public Tool {
   std::vector<std::vector<float>> delivered;
 };
 
-TEST_F(ToolSequence, WritesThePicturesThatWereDelivered) {
+TEST_F(ToolSequence, WritesTheDeliveredPictures) {
   const std::string before = stored();
   const Outcome made = run("reconstruct store/anim/layer -o pictures --passes gradient_x");
   ASSERT_EQ(made.code, 0) << made.err;
@@ -493,7 +494,7 @@ TEST_F(ToolSequence, WritesPassesOfComponents) {
   }
 }
 
-// The frames beside those that are asked for have their share, whatever the job is split into.
+// The neighbours of the requested frames contribute, however a job is divided.
 TEST_F(ToolSequence, PartsHaveTheBitsOfTheWhole) {
   ASSERT_EQ(run("reconstruct store/anim/layer -o part --frames 3-4").code, 0);
   EXPECT_FALSE(fs::exists(folder / "part/0002.exr"));
@@ -518,8 +519,8 @@ TEST_F(ToolSequence, ChangesHowFramesAreReconstructed) {
   }
 }
 
-// The overlap was always half of the window: what an animation had otherwise could not be made again.
-TEST_F(ToolSequence, WindowsHaveTheOverlapThatIsAskedFor) {
+// Regression: the overlap was always half of the window, so that animations with another one could not be reproduced.
+TEST_F(ToolSequence, WindowsHaveTheRequestedOverlap) {
   const auto picture_with = [&](const std::string& windows) {
     const Outcome made = run("reconstruct store/anim/layer -o other --frames 2 " + windows);
     EXPECT_EQ(made.code, 0) << made.err;
@@ -532,8 +533,8 @@ TEST_F(ToolSequence, WindowsHaveTheOverlapThatIsAskedFor) {
   EXPECT_NE(wrong.err.find("at most half"), std::string::npos) << wrong.err;
 }
 
-// Of frames 1, 4 and 6 the step was 2: frame 4 was none of them.
-TEST_F(ToolSequence, FramesAtUnevenDistancesAreAllOfThem) {
+// Regression: the step of frames 1, 4 and 6 was taken for 2, so that frame 4 was left out.
+TEST_F(ToolSequence, FramesAtUnevenDistancesAreAllIncluded) {
   for (const int frame : {2, 3, 5}) remove(frame);
   const Outcome outcome = run("reconstruct store/anim/layer -o pictures");
   EXPECT_EQ(outcome.code, 1);
@@ -541,16 +542,18 @@ TEST_F(ToolSequence, FramesAtUnevenDistancesAreAllOfThem) {
   EXPECT_EQ(run("reconstruct store/anim/layer -o pictures --frames 4").code, 0);
 }
 
-// Of frames 1, 3 and 5 the step was 2, whatever they replay: 2 and 4 were not missing.
-TEST_F(ToolSequence, FramesThatReplayThoseBetweenMissThem) {
+// Regression: the step of frames 1, 3 and 5 was taken for 2, whatever they replay: the missing frames 2 and 4 were not
+// reported.
+TEST_F(ToolSequence, MissingReplayedFramesAreReported) {
   for (const int frame : {2, 4, 6}) remove(frame);
   const Outcome outcome = run("reconstruct store/anim/layer -o pictures");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.err.find("lacks frames 2, 4:"), std::string::npos) << outcome.err;
 }
 
-// Two workers with a step of 2: their step was 1, no frame had links to the next, and nothing said so.
-TEST_F(ToolSequence, JobsOfAStepThatShareAFolderHaveThePicturesThatTheyDelivered) {
+// Regression: the step of two workers with a step of 2 was taken for 1, no frame had correspondences to the next, and
+// there was no message.
+TEST_F(ToolSequence, JobsWithAStepThatShareAFolderHaveTheDeliveredPictures) {
   fs::remove_all(folder / kFolder);
   for (const int32_t first : {1, 2}) {
     Job job;
@@ -570,7 +573,7 @@ TEST_F(ToolSequence, JobsOfAStepThatShareAFolderHaveThePicturesThatTheyDelivered
   EXPECT_NE(info.out.find("\"step\":2,"), std::string::npos) << info.out;
 }
 
-TEST_F(ToolSequence, FramesThatReplayOthersThanThoseBeforeThemAreNamed) {
+TEST_F(ToolSequence, FramesThatReplayOthersThanTheirPredecessorsAreNamed) {
   remove(3);
   Job changed;
   changed.speed = 0.03f;
@@ -581,7 +584,7 @@ TEST_F(ToolSequence, FramesThatReplayOthersThanThoseBeforeThemAreNamed) {
   EXPECT_NE(made.err.find("warning: frames 4 replay others than those before them"), std::string::npos) << made.err;
 }
 
-// It did nothing for frames that were sampled without one.
+// Regression: it had no effect on frames that were sampled without one.
 TEST_F(ToolSequence, AnAutomaticDenoiserRunsWhereItPays) {
   render(GRADUS_RECONSTRUCTION_REGULARIZED, 32);
   const std::string denoiser = " --denoiser auto --denoiser-path " GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
@@ -593,8 +596,8 @@ TEST_F(ToolSequence, AnAutomaticDenoiserRunsWhereItPays) {
   EXPECT_NE(picture_with(denoiser), picture_with(""));
 }
 
-// Frames that are alike share their files: they had the exposure of the first.
-TEST_F(ToolSequence, StillFramesKeepTheirExposure) {
+// Regression: unchanged frames share their files, and had the exposure of the first.
+TEST_F(ToolSequence, UnchangedFramesKeepTheirExposure) {
   render(GRADUS_RECONSTRUCTION_L2, 4, true);
   ASSERT_EQ(run("reconstruct store/anim/layer -o pictures").code, 0);
   const auto value_of = [&](int frame) {
@@ -604,8 +607,8 @@ TEST_F(ToolSequence, StillFramesKeepTheirExposure) {
   EXPECT_NEAR(value_of(4), 4.0f * value_of(1), 1e-3f * value_of(1));
 }
 
-// A still had the name of an animation's own half: it took its place.
-TEST_F(ToolSequence, AStillBesideAnAnimationLeavesItAsItIs) {
+// Regression: a still had the file name of the fresh half of an animation's frame, and replaced it.
+TEST_F(ToolSequence, AStillBesideAnAnimationDoesNotChangeIt) {
   for (const char* part : {".base.exr", ".offset.exr"}) {
     fs::copy_file(folder / kFolder / (std::string("f+0000001") + part),
                   folder / kFolder / (std::string("f+0000000") + part));
@@ -619,7 +622,7 @@ TEST_F(ToolSequence, AStillBesideAnAnimationLeavesItAsItIs) {
   EXPECT_EQ(stored(), before);
 }
 
-// Plain paths with features.
+// AUTO means plain paths with features.
 TEST_F(ToolSequence, WritesWhatAutoDelivered) {
   render(GRADUS_RECONSTRUCTION_AUTO);
   const Outcome made = run("reconstruct store/anim/layer -o pictures --passes all");
@@ -631,7 +634,7 @@ TEST_F(ToolSequence, WritesWhatAutoDelivered) {
   EXPECT_NE(l2.err.find("hold no gradients"), std::string::npos) << l2.err;
 }
 
-TEST_F(ToolSequence, NamesFramesThatAreNotThere) {
+TEST_F(ToolSequence, NamesMissingFrames) {
   fs::remove(folder / kFolder / "f+0000003.base.exr");
   fs::remove(folder / kFolder / "f+0000005.offset.exr");
   const Outcome outcome = run("reconstruct store/anim/layer -o pictures");
@@ -652,7 +655,7 @@ TEST_F(ToolSequence, NamesFramesThatAreNotThere) {
   EXPECT_EQ(run("info store/anim/layer").code, 0) << "a gap is no damage: there may be more jobs to come";
 }
 
-// It told how many files there were, and that some were broken came out when all was reconstructed.
+// Regression: `info` counted the files only; damaged ones were reported after all had been reconstructed.
 TEST_F(ToolSequence, InfoNamesDamagedFiles) {
   using Json = nlohmann::json;
   const auto info = [&](int code) {
@@ -683,7 +686,7 @@ TEST_F(ToolSequence, InfoNamesDamagedFiles) {
   EXPECT_EQ(info(1).at("frames"), 0);
 }
 
-// A frame of another layer under the name of one of this.
+// A frame of another view layer has the name of one of this layer.
 TEST_F(ToolSequence, RefusesFramesThatDoNotFit) {
   ASSERT_EQ(run("render good.gradus -o f.exr --width 20 --integrator gradient").code, 0);
   for (const char* part : {"base", "offset"}) {

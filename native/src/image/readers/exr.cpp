@@ -86,8 +86,7 @@ bool subsampled(const Imf::ChannelList& list, const std::vector<std::string>& na
 }
 
 // Reads the chosen channels of one part of the file, as halves if all of them are halves, else as floats.
-bool read_light_pass(Imf::MultiPartInputFile* file, int part, size_t file_bytes, DecodedImage* image,
-                     std::string* problem) {
+bool read_part(Imf::MultiPartInputFile* file, int part, size_t file_bytes, DecodedImage* image, std::string* problem) {
   const Imf::Header& header = file->header(part);
   const std::vector<std::string> names = choose_channels(header.channels());
   if (names.empty() || subsampled(header.channels(), names)) {
@@ -130,7 +129,7 @@ bool read_exr(Bytes file, DecodedImage* image, std::string* problem) {
     for (int part = 0; part < input.parts(); part++) {
       const Imf::Header& header = input.header(part);
       if (!header.hasType() || Imf::isImage(header.type())) {
-        return read_light_pass(&input, part, file.size(), image, problem);
+        return read_part(&input, part, file.size(), image, problem);
       }
     }
     *problem = "it is a deep image, which is not supported";

@@ -21,7 +21,7 @@ class PathIntegrator final : public Integrator {
     for_each_sample(path_, unit, *film, vertices.get(), stop, [&](const PixelSample& s) {
       recorder.begin_sample(s.pixel, s.half, s.number, unit.adds_components);
       tracer.want(unit_components(unit, s.pixel));
-      add_primal(tracer.trace(s.sampler, s.film, s.first), s, unit, film, counters);
+      add_primal(tracer.li(s.sampler, s.film, s.first), s, unit, film, counters);
     });
   }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/fault.h"
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/feature_regression.h"
@@ -13,13 +14,15 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Errors are alike in neighbours, and differ from one frame to the next: docs/method.md.
+// Factor of the regression's squared error. Errors are similar in neighbouring pixels, but differ from one frame to the
+// next: docs/method.md.
 constexpr float kTimesError = 2.0f;
-// Squared error of what shows none, in median luminances.
+// Minimum of the squared error, in units of the squared median luminance.
 constexpr float kMinError = 1e-8f;
+// Radius of the window from which pixels without a correspondence are filled.
 constexpr int kDisocclusionRadius = 7;
 
-// Channels [first, first + channels) of frame t's rows in time; 0 where there are none.
+// Reads the channels [first, first + channels) of an image by rows. Values that are not finite become 0.
 template <class ReadRow>
 Field read_channels(const WindowSize& size, int first, int channels, const ReadRow& read_row) {
   Field field(size.width, size.height, channels);
@@ -43,14 +46,15 @@ Field square(Field field) {
   return field;
 }
 
-// Pixels without a link are taken to be like those around them: 0 would tell their neighbours that nothing changes.
+// Fills pixels without a correspondence from the pixels around them. A change of 0 would tell the regression that
+// nothing changes there.
 class DisocclusionFiller {
  public:
-  // linked: 0 or 1.
+  // `linked` is 1 for pixels with a correspondence and 0 for others.
   explicit DisocclusionFiller(Field linked)
       : linked_(std::move(linked)), around_(box_mean(linked_, kDisocclusionRadius)) {}
 
-  // Of fields that are 0 in holes.
+  // The filled field must be 0 in pixels without a correspondence.
   void fill_with_mean(Field* field) const { fill(field, box_mean(*field, kDisocclusionRadius), identity); }
   void fill_with_rms(Field* field) const { fill(field, box_mean(square(*field), kDisocclusionRadius), root); }
 
@@ -73,20 +77,20 @@ Field corresponding_pixels(const CorrespondenceMap& correspondence) {
                     [&](int x, int y) { return correspondence.row(y)[x] == CorrespondenceMap::kNone ? 0.0f : 1.0f; });
 }
 
-// Of a component, in the scale of 1 for the median luminance.
+// The sampled change of one component. Colours are in units of the median luminance.
 struct ComponentChange {
   HalvedImage image;
-  Field alpha;  // in four channels
+  Field alpha;  // empty if the component has three channels
 };
 
-// Without what the links' rounding makes of it.
+// Reads the change of a component and subtracts the part that comes from rounding its correspondence to whole pixels.
 ComponentChange read_change(const HalvedWindowSource& source, int t, const CorrespondenceMap& correspondence,
                             Field* rounding, float scale) {
   const WindowSize size = source.size();
   const auto values = [&](int y, float* row) { source.read_row(RowKind::kDt, t, y, row); };
   const auto halves = [&](int y, float* row) { source.read_half_differences(RowKind::kDt, t, y, row); };
   ComponentChange change{{read_channels(size, 0, 3, values), read_channels(size, 0, 3, halves), false}, {}};
-  keep_sampled_share(change.image.mean, rounding);
+  if (!GRADUS_FAULT(rounding_included_without_samples)) keep_sampled_share(change.image.mean, rounding);
   for_values(&change.image.mean, [&](float& value, int x, int y, int c) { value -= rounding->row(y, c)[x]; });
   normalise(scale, &change.image);
   const DisocclusionFiller holes(corresponding_pixels(correspondence));
@@ -100,11 +104,12 @@ ComponentChange read_change(const HalvedWindowSource& source, int t, const Corre
   return change;
 }
 
-// In units of the picture, and with what the rounding makes.
+// Joins colours and alpha in the units of the picture, and adds the change that comes from rounding.
 Field join(const Field& colours, const Field& alpha, const Field& rounding, float scale) {
   Field joined(colours.width(), colours.height(), alpha.width() > 0 ? 4 : 3);
   for_values(&joined, [&](float& value, int x, int y, int c) {
-    value = (c < 3 ? scale * colours.row(y, c)[x] : alpha.row(y)[x]) + rounding.row(y, c)[x];
+    value = (c < 3 ? scale * colours.row(y, c)[x] : alpha.row(y)[x]) +
+            (GRADUS_FAULT(rounding_left_out_of_change) ? 0.0f : rounding.row(y, c)[x]);
   });
   return joined;
 }
@@ -126,7 +131,7 @@ Change regress_change(const ComponentSources& components, int t, const std::vect
       sum = std::move(component.image);
     } else {
       add(component.image.mean, &sum.mean);
-      add(component.image.half_difference, &sum.half_difference);
+      if (!GRADUS_FAULT(component_changes_not_added)) add(component.image.half_difference, &sum.half_difference);
     }
   }
   const FeatureRegression regression(features, sum, cancel);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/fault.h"
 #include "reconstruct/feature_filter.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/linear_terms.h"
@@ -14,9 +15,9 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Squared error of what shows none, in median luminances.
+// Minimum of the squared error, in units of the squared median luminance.
 constexpr float kMinError = 1e-6f;
-// Squared distance that errors explain, in these: eight deviations.
+// Squared distance of two pictures that their errors explain, in units of the squared error: eight standard deviations.
 constexpr float kExplained = 64.0f;
 constexpr int kColors = 3;
 
@@ -28,7 +29,7 @@ Field to_field(const film::Film& frame, const std::vector<float>& image, int cha
   return field;
 }
 
-// Median luminance.
+// Returns the median luminance of the sum of the pictures.
 float scale_of(const std::vector<Field>& pictures) {
   Field colours(pictures[0].width(), pictures[0].height(), kColors);
   for (const Field& picture : pictures) {
@@ -37,8 +38,8 @@ float scale_of(const std::vector<Field>& pictures) {
   return robust_scale(colours);
 }
 
-// By how much the pictures change otherwise than the changes say, all components together, and the errors at the ends
-// of their ways.
+// The difference between the pictures' change and the estimated change, summed over the components, and the squared
+// error of the pictures at both ends of the correspondence: the maximum over the components.
 struct Apart {
   Field colours, error;
 };
@@ -65,13 +66,14 @@ Apart measure(const Change& change, const std::vector<Field>& here, const std::v
   return apart;
 }
 
-// Weights of a change. Where both pictures say otherwise, by more than their errors explain, it is known no better than
-// it meets them.
+// Returns the weights of a change. Where the pictures contradict the change by more than their errors explain, the
+// excess is added to its squared error.
 Field weigh_change(const Change& change, const Apart& apart) {
   return make_field(apart.error.width(), apart.error.height(), [&](int x, int y) {
     const float weight = change.weight.row(y)[x];
     const float excess = mean_of_squares(apart.colours, x, y) - kExplained * (apart.error.row(y)[x] + 1.0f / weight);
-    return excess > 0.0f ? track_weight(1.0f / weight + excess) : weight;
+    return excess > 0.0f && !GRADUS_FAULT(contradicting_change_keeps_weight) ? track_weight(1.0f / weight + excess)
+                                                                             : weight;
   });
 }
 
@@ -85,7 +87,7 @@ void check_size(const std::vector<Field>& pictures, const ComponentSources& sour
   }
 }
 
-// Of components, each with the error in one more channel.
+// Makes the picture from its components, each of which has the error in an additional last channel.
 Reconstructed to_picture(std::vector<Field> components, size_t brightest) {
   const int channels = components[0].channels() - 1;
   Reconstructed picture;
@@ -119,7 +121,8 @@ void RegularizedWindows::reconstruct(const FrameRange& frames, const CancelCheck
   for (size_t k = 0; k < window[0]->pictures.size(); ++k) {
     std::vector<TrackStep> steps;
     for (size_t t = 0; t + 1 < window.size(); ++t) {
-      steps.push_back({window[t]->change->correspondence[k], window[t]->change->difference[k], couplings[t]});
+      steps.push_back({window[t]->change->correspondence[GRADUS_FAULT(components_follow_the_first) ? 0 : k],
+                       window[t]->change->difference[k], couplings[t]});
     }
     std::vector<Field> pictures, weights;
     for (const Estimate* estimate : window) {
@@ -140,7 +143,8 @@ const RegularizedWindows::Estimate& RegularizedWindows::estimated(int frame, boo
     known = estimates_.emplace(frame, estimate_single_frame(*open_(frame, cancel), cancel, report)).first;
   Estimate& estimate = known->second;
   if (!changes || estimate.change) return estimate;
-  const ComponentSources sources = differences_(frame, cancel);
+  const bool is_late = GRADUS_FAULT(change_is_that_of_frame_before) && frame > 0;
+  const ComponentSources sources = differences_(is_late ? frame - 1 : frame, cancel);
   check_size(estimate.pictures, sources);
   estimate.change = regress_change(sources, 0, estimate.pictures, std::exchange(estimate.features, {}),
                                    scale_of(estimate.pictures), cancel);
@@ -152,9 +156,9 @@ RegularizedWindows::Estimate RegularizedWindows::estimate_single_frame(const fil
   Estimate estimate;
   estimate.features = filter_features(film::read_features(samples));
   const Reconstructed picture = regularize(samples, estimate.features, samples.components.size() > 1, cancel, report);
-  if (picture.components.empty()) estimate.pictures.push_back(to_field(samples, picture.image, samples.channels));
+  if (picture.components.empty()) estimate.pictures.push_back(to_field(samples, picture.image, samples.color_channels));
   for (const std::vector<float>& image : picture.components)
-    estimate.pictures.push_back(to_field(samples, image, samples.channels));
+    estimate.pictures.push_back(to_field(samples, image, samples.color_channels));
   estimate.brightest = brightest(estimate.pictures);
   estimate.error = to_field(samples, picture.error, 1);
   const float scale = scale_of(estimate.pictures), minimum = kMinError * scale * scale;

@@ -1,16 +1,18 @@
 #include "reconstruct/space_time/solve_tracks.h"
 
+#include "base/fault.h"
 #include "base/rows.h"
 
 namespace gradus::reconstruct {
 namespace {
 
-// d of a channel in row y; zeros of one that the step lacks.
+// Returns row y of the difference d in a channel, or zeros for a channel that the difference lacks.
 const float* differences(const TrackStep& step, int y, int channel, const std::vector<float>& zeros) {
+  if (GRADUS_FAULT(change_is_zero)) return zeros.data();
   return channel < step.difference.channels() ? step.difference.row(y, channel) : zeros.data();
 }
 
-// What a frame and those before it know of the next one: v + d, of weight w in series with c.
+// Eliminates a frame: adds its value v + d to the next frame, with the weight w·c/(w + c).
 void carry_forth(const TrackStep& step, const Field& values, const Field& weights, Field* next_values,
                  Field* next_weights) {
   const std::vector<float> zeros(size_t(values.width()), 0.0f);
@@ -29,7 +31,7 @@ void carry_forth(const TrackStep& step, const Field& values, const Field& weight
   });
 }
 
-// What the next frame, which is solved, knows besides.
+// Substitutes the solution of the next frame into a frame.
 void carry_back(const TrackStep& step, const Field& next, const Field& weights, Field* values) {
   const std::vector<float> zeros(size_t(values->width()), 0.0f);
   for_rows(values->height(), [&](int y) {

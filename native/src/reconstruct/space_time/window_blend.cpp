@@ -1,5 +1,7 @@
 #include "reconstruct/space_time/window_blend.h"
 
+#include "base/fault.h"
+
 namespace gradus::reconstruct {
 namespace {
 
@@ -33,7 +35,11 @@ void WindowBlend::add(int window, int frame, Reconstructed picture) {
   const float share = grid_.share(window, frame);
   if (share < 1.0f) scale(&picture, share);
   if (const auto begun = begun_.find(frame); begun != begun_.end()) {
-    reconstruct::add(begun->second, &picture);
+    if (GRADUS_FAULT(last_window_replaces_others)) {
+      scale(&picture, 1.0f / share);
+    } else {
+      reconstruct::add(begun->second, &picture);
+    }
     begun_.erase(begun);
   }
   if (window < grid_.last_with(frame)) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/fault.h"
 #include "base/types.h"
 
 namespace gradus::reconstruct {
@@ -13,7 +14,7 @@ WindowGrid::WindowGrid(const FrameRange& range, const WindowShape& shape) : rang
   if (shape.frames < 1 || shape.overlap < 0 || shape.overlap > shape.frames / 2)
     throw invalid_argument("windows overlap by half of their frames at most");
   first_ = window_that_begins_before(range.first);
-  // One that holds no more than those that the window before shares with it is left out.
+  // A last window is left out if the window before it contains all of its frames.
   last_ = std::max(first_, window_that_begins_before(int64_t{range.last} - shape.overlap));
 }
 
@@ -39,7 +40,7 @@ float WindowGrid::share(int window, int frame) const {
   if (!begins && !ends) return 1.0f;
   const int64_t along = begins ? place : place - shape_.step();
   const float s = std::sin(0.5f * kPi * (float(along) + 0.5f) / float(shape_.overlap));
-  return begins ? s * s : 1.0f - s * s;
+  return begins ? s * s : 1.0f - (GRADUS_FAULT(window_shares_do_not_sum_to_1) ? s : s * s);
 }
 
 }  // namespace gradus::reconstruct

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "film/pixel_correspondence.h"
+#include "film/replay_map.h"
 
 namespace gradus::reconstruct {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "shading/op_functions.h"
 #include "shading/sky/analytic.h"
 #include "shading/sky/dome.h"
 
@@ -72,6 +73,8 @@ Rgb sky(uint32_t mode, const float* prepared, const Vec3& direction) {
   std::memcpy(&analytic, prepared, sizeof(analytic));
   return mode == GRADUS_SKY_PREETHAM ? preetham(analytic, direction) : hosek_wilkie(analytic, direction);
 }
+
+void sky_op(const OpArgs& args, Vec4* out) { out[0] = value(sky(args.mode, args.floats, args.v(0))); }
 
 std::optional<SunDisc> sun_disc(uint32_t mode, const float* prepared) {
   if (is_analytic(mode)) return std::nullopt;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "shading/op_info.h"
 #include "shading/ops.h"
 #include "shading/program.h"
 

@@ -8,7 +8,7 @@
 
 #include "animation/frame_window.h"
 #include "base/error.h"
-#include "reconstruct/feature_frame.h"
+#include "reconstruct/feature_film.h"
 #include "reconstruct/regularized.h"
 #include "reconstruct/space_time/sequences.h"
 #include "reconstruct/space_time/solve_tracks.h"
@@ -22,21 +22,21 @@ using namespace test;
 
 constexpr int kWidth = 72, kHeight = 50;
 
-// Of one component.
+// Returns the sources of a single component.
 reconstruct::ComponentSources alone(std::unique_ptr<reconstruct::HalvedWindowSource> source) {
   reconstruct::ComponentSources sources;
   sources.push_back(std::move(source));
   return sources;
 }
 
-// A room that is sampled as temporal frames are: a frame's own random numbers, and those of the frame before. The
-// camera rests; the light is light(t) times as bright.
+// A room that is sampled like the frames of an animation: with fresh random numbers, and with those of the frame
+// before. The camera is static; the light has the strength light(t).
 struct Shot {
   int frames = 6, channels = 3, halves = film::kHalves;
   std::function<float(int t)> light = [](int) { return 1.0f; };
   std::function<bool(int pixel)> linked = [](int) { return true; };
   bool gradients = false;
-  float replay_sigma = 0.02f;  // how far replays are from having the noise of what they replay
+  float replay_sigma = 0.02f;  // deviation between the noise of a replay and that of the replayed samples
 
   FeatureFilm description(int t) const {
     FeatureFilm room = test::room(kWidth, kHeight);
@@ -45,7 +45,7 @@ struct Shot {
     room.sigma = [](size_t) { return 0.0f; };
     return room;
   }
-  // The samples of frame t whose random numbers are those of frame `stream`.
+  // Returns the samples of frame t with the random numbers of frame `stream`.
   film::Film sampled(int t, int stream) const {
     film::Film film = make_feature_film(description(t), channels);
     std::mt19937 random(unsigned(stream) + 11), other(unsigned(1000 + t));
@@ -62,7 +62,7 @@ struct Shot {
   static void remove(int half, film::Film* film) {
     std::fill(film->count[half].begin(), film->count[half].end(), 0);
     std::fill(film->components[0].primal[half].begin(), film->components[0].primal[half].end(), Radiance(0.0f));
-    for (film::PassPlane& pass : film->passes) std::fill(pass.values[half].begin(), pass.values[half].end(), 0.0f);
+    for (film::Channel& pass : film->channels) std::fill(pass.values[half].begin(), pass.values[half].end(), 0.0f);
   }
   std::shared_ptr<const film::Film> merged(int t) const {
     auto film = std::make_shared<film::Film>(sampled(t, t));
@@ -148,7 +148,7 @@ TEST(B2_Tracks, EqualTheDenseSolution) {
                                           couplings = random_fields(frames - 1, 1);
     std::vector<reconstruct::CorrespondenceMap> correspondence;
     for (int t = 0; t + 1 < frames; ++t) correspondence.push_back(reconstruct::read_correspondence(window, t));
-    for (const int channel : {0, 1}) {  // of the second one there are no differences: they are 0
+    for (const int channel : {0, 1}) {  // the second channel has no differences: they are 0
       Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(unknowns, unknowns);
       Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
       for (int i = 0; i < unknowns; ++i) {
@@ -190,15 +190,15 @@ TEST(B2_RegularizedWindow, HasLessErrorAndFarLessFlickerThanItsFrames) {
   }
 }
 
-// A still scene whose replays have the same noise is the same picture in all frames.
-TEST(B2_RegularizedWindow, OfAStillSceneDoesNotFlicker) {
+// A static scene whose replays have the same noise is the same picture in all frames.
+TEST(B2_RegularizedWindow, OfAStaticSceneDoesNotFlicker) {
   Shot shot;
   shot.replay_sigma = 0.0f;
   const std::vector<reconstruct::Reconstructed> pictures = solve(shot);
   EXPECT_LT(std::sqrt(flicker_of(pictures)), 2e-3);
 }
 
-TEST(B2_RegularizedWindow, WithoutLinksPixelsKeepTheirStillPicture) {
+TEST(B2_RegularizedWindow, WithoutCorrespondencesPixelsKeepTheirStillPicture) {
   Shot shot;
   shot.frames = 3;
   shot.linked = [](int pixel) { return pixel % kWidth >= kWidth / 2; };
@@ -218,8 +218,8 @@ TEST(B2_RegularizedWindow, WithoutLinksPixelsKeepTheirStillPicture) {
   }
 }
 
-// No lag and no ghost: what the light does was sampled.
-TEST(C5_RegularizedWindow, ALampThatIsSwitchedShowsAtOnce) {
+// There is no lag and no ghost: the change of the light was sampled.
+TEST(C5_RegularizedWindow, ALightThatIsSwitchedOnShowsAtOnce) {
   for (const auto& [before, after] : {std::pair(1.0f, 0.1f), std::pair(0.1f, 1.0f)}) {
     Shot shot;
     shot.light = [before = before, after = after](int t) { return t < 3 ? before : after; };
@@ -233,7 +233,7 @@ TEST(C5_RegularizedWindow, ALampThatIsSwitchedShowsAtOnce) {
   }
 }
 
-// A window that is told that nothing changes, and for sure.
+// A source that claims, with certainty, that nothing changes.
 class Blind final : public reconstruct::HalvedWindowSource {
  public:
   explicit Blind(std::unique_ptr<reconstruct::HalvedWindowSource> window) : window_(std::move(window)) {}
@@ -247,8 +247,8 @@ class Blind final : public reconstruct::HalvedWindowSource {
   std::unique_ptr<reconstruct::HalvedWindowSource> window_;
 };
 
-// Samples of both frames outweigh a change that seems to be known and is wrong.
-TEST(C5_RegularizedWindow, AChangeThatNobodySampledLeavesNoGhost) {
+// Samples of both frames outweigh a wrong change that claims to be certain.
+TEST(C5_RegularizedWindow, AWrongChangeLeavesNoGhost) {
   Shot shot;
   shot.light = [](int t) { return t < 3 ? 1.0f : 0.1f; };
   reconstruct::SolveReport report;
@@ -259,8 +259,8 @@ TEST(C5_RegularizedWindow, AChangeThatNobodySampledLeavesNoGhost) {
   });
 }
 
-// Alpha, which is an eighth of red in these frames, goes through the weights of the colours.
-TEST(B2_RegularizedWindow, AlphaGoesThroughTheSameWeights) {
+// Alpha, which is an eighth of red in these films, uses the weights of the colours.
+TEST(B2_RegularizedWindow, AlphaUsesTheWeightsOfTheColours) {
   Shot shot;
   shot.channels = 4;
   shot.frames = 3;
@@ -271,8 +271,8 @@ TEST(B2_RegularizedWindow, AlphaGoesThroughTheSameWeights) {
   }
 }
 
-// Holes of the colours were filled, those of alpha were 0: nothing changed beside them.
-TEST(B2_RegularizedWindow, AlphaBesideHolesGoesThroughTheSameWeights) {
+// Regression: disocclusions of the colours were filled, those of alpha were 0, so that the rest did not change.
+TEST(B2_RegularizedWindow, AlphaBesideDisocclusionsUsesTheWeightsOfTheColours) {
   Shot shot;
   shot.channels = 4;
   shot.frames = 3;
@@ -296,15 +296,15 @@ TEST(B2_RegularizedWindow, ScalesWithTheLight) {
     for (size_t t = 0; t < pictures.size(); ++t) {
       for (size_t i = 0; i < pictures[t].image.size(); ++i) {
         const float value = scaled[t].image[i] / strength;
-        // Squares beyond the range of floats say no more which errors are larger.
+        // Beyond the range of floats, squares no longer order the errors.
         ASSERT_NEAR(value, pictures[t].image[i], strength < 1e-15f || strength > 1e15f ? 0.5f : 0.01f) << strength;
       }
     }
   }
 }
 
-// Of two samples one is a replay: nobody knows any noise.
-TEST(B2_RegularizedWindow, TakesFramesWithoutASecondHalf) {
+// One of two samples is a replay: the noise is unknown.
+TEST(B2_RegularizedWindow, AcceptsFramesWithoutASecondHalf) {
   Shot shot;
   shot.halves = 1;
   const std::vector<reconstruct::Reconstructed> pictures = solve(shot), each = solve_each(shot);
@@ -314,7 +314,7 @@ TEST(B2_RegularizedWindow, TakesFramesWithoutASecondHalf) {
   EXPECT_LT(error_of(shot, pictures), error_of(shot, each));
 }
 
-// Frames that two windows share are read and reconstructed once. What comes of it is what a window by itself has.
+// Frames that two windows share are read and reconstructed once. The result is that of a window by itself.
 TEST(B2_RegularizedWindow, SharesFramesWithTheWindowBefore) {
   Shot shot;
   shot.frames = 8;
@@ -348,7 +348,7 @@ TEST(B2_RegularizedWindow, HasTheSameBitsForAnyNumberOfThreads) {
   expect_same_bits_for_any_number_of_threads([&] { return solve(shot).back().image; });
 }
 
-TEST(B2_RegularizedWindow, TakesNothingWhenCancelled) {
+TEST(B2_RegularizedWindow, ReturnsNothingWhenCancelled) {
   Shot shot;
   shot.frames = 2;
   reconstruct::SolveReport report;
@@ -413,7 +413,7 @@ struct TakenApart {
 };
 
 // Decomposition alone changes nothing.
-TEST(B2_RegularizedWindow, ComponentsThatGoTheSameWayAreWhatTheirSumBecomes) {
+TEST(B2_RegularizedWindow, ComponentsWithTheSameDisplacementsAddUpToTheirSum) {
   TakenApart apart;
   apart.shot.frames = 4;
   apart.shot.light = [](int t) { return 1.0f + 0.1f * float(t); };
@@ -429,8 +429,8 @@ TEST(B2_RegularizedWindow, ComponentsThatGoTheSameWayAreWhatTheirSumBecomes) {
   }
 }
 
-// A component that goes nowhere is what it is in each frame by itself; the other goes on along its own tracks.
-TEST(B2_RegularizedWindow, EveryComponentGoesItsOwnWay) {
+// A component without correspondences has its still pictures; the other follows its own tracks.
+TEST(B2_RegularizedWindow, EveryComponentFollowsItsOwnDisplacements) {
   TakenApart apart;
   apart.shot.frames = 5;
   apart.second_has_correspondence = false;

@@ -1,4 +1,4 @@
-// What the rounding of links to whole pixels makes of a picture's change.
+// The change of a picture that is caused by rounding correspondences to whole pixels.
 #include "reconstruct/space_time/rounded_displacements.h"
 
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
+#include "reconstruct/feature_film.h"
 #include "reconstruct/feature_filter.h"
-#include "reconstruct/feature_frame.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/space_time/regress_change.h"
 
@@ -22,12 +22,12 @@ constexpr float kNoise = 0.5f;
 
 float light(float x, float y, int c) { return 2.0f + std::sin(0.4f * x + float(c)) * std::cos(0.3f * y); }
 
-// All pixels go `shift` to the right and as far upwards; those of the right half twice as far, if they part.
-class Way : public reconstruct::HalvedWindowSource {
+// All pixels move by `shift` to the right and upwards; if `part`, those of the right half move twice as far.
+class ShiftedWindow : public reconstruct::HalvedWindowSource {
  public:
-  Way(float shift, bool parts) : shift_(shift), parts_(parts) {}
+  ShiftedWindow(float shift, bool parts) : shift_(shift), parts_(parts) {}
   reconstruct::WindowSize size() const override { return {kWidth, kHeight, 3, 2}; }
-  // Nothing but the picture's way changes it.
+  // The picture changes by its motion alone.
   void read_row(reconstruct::RowKind, int, int y, float* out) const override {
     for (int x = 0; x < kWidth; ++x) {
       const float off = shift(x) - float(std::lround(shift(x)));
@@ -61,13 +61,13 @@ reconstruct::Field picture_at(float off) {
   return field;
 }
 
-TEST(B2_RoundedDisplacements, ChangeAPictureByWhatLiesBesideThePixels) {
+TEST(B2_RoundedDisplacements, ChangeAPictureByItsSlope) {
   for (const float shift : {0.25f, 0.5f, 1.625f, 2.75f}) {
-    const Way way(shift, false);
+    const ShiftedWindow window(shift, false);
     const float off = shift - float(std::lround(shift));
     const reconstruct::Field here = picture_at(0.0f), moved = picture_at(off),
-                             change =
-                                 reconstruct::rounding_change(here, reconstruct::read_correspondence(way, 0), way, 0);
+                             change = reconstruct::rounding_change(here, reconstruct::read_correspondence(window, 0),
+                                                                   window, 0);
     double error = 0.0, squares = 0.0;
     for (int y = 3; y < kHeight - 6; ++y)
       for (int c = 0; c < 3; ++c)
@@ -80,33 +80,33 @@ TEST(B2_RoundedDisplacements, ChangeAPictureByWhatLiesBesideThePixels) {
   }
 }
 
-TEST(B2_RoundedDisplacements, ChangeNothingWhereTheyEndInTheMiddle) {
+TEST(B2_RoundedDisplacements, ChangeNothingWhereTheyEndInPixelCentres) {
   for (const float shift : {0.0f, 2.0f}) {
-    const Way way(shift, false);
+    const ShiftedWindow window(shift, false);
     const reconstruct::Field change =
-        reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(way, 0), way, 0);
+        reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(window, 0), window, 0);
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) EXPECT_EQ(change.row(y, 1)[x], 0.0f);
   }
 }
 
-// What goes elsewhere, or nowhere, is not looked up: its light would come over the edge.
-TEST(B2_RoundedDisplacements, TakeNothingFromNeighboursThatPart) {
-  const Way way(0.25f, true);
+// A neighbour with another displacement, or none, is not used: its light would leak across the edge.
+TEST(B2_RoundedDisplacements, UseNoNeighboursWithOtherDisplacements) {
+  const ShiftedWindow window(0.25f, true);
   reconstruct::Field dark(kWidth, kHeight, 3);
   for (int y = 0; y < kHeight; ++y)
     for (int x = kWidth / 2; x < kWidth; ++x) dark.row(y, 0)[x] = 1000.0f;
   const reconstruct::Field change =
-      reconstruct::rounding_change(dark, reconstruct::read_correspondence(way, 0), way, 0);
+      reconstruct::rounding_change(dark, reconstruct::read_correspondence(window, 0), window, 0);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) EXPECT_EQ(change.row(y, 0)[x], 0.0f) << x << ' ' << y;
 }
 
-// A mirror moves and what it shows rests: the picture does not go with the surface, however this goes.
+// A mirror moves and its reflection is static: the picture does not follow the surface.
 TEST(B2_RoundedDisplacements, CountOnlyWhereTheSamplesChangeSo) {
-  const Way way(0.375f, false);
+  const ShiftedWindow window(0.375f, false);
   const reconstruct::Field rounding =
-      reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(way, 0), way, 0);
+      reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(window, 0), window, 0);
   reconstruct::Field sampled = rounding, kept = rounding;
   for (int y = 0; y < kHeight; ++y)
     for (int c = 0; c < 3; ++c)
@@ -118,10 +118,10 @@ TEST(B2_RoundedDisplacements, CountOnlyWhereTheSamplesChangeSo) {
   }
 }
 
-TEST(B2_RoundedDisplacements, AreNeverTakenForMoreThanTheyMake) {
-  const Way way(0.375f, false);
+TEST(B2_RoundedDisplacements, AreNeverOverestimated) {
+  const ShiftedWindow window(0.375f, false);
   const reconstruct::Field rounding =
-      reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(way, 0), way, 0);
+      reconstruct::rounding_change(picture_at(0.0f), reconstruct::read_correspondence(window, 0), window, 0);
   for (const float factor : {-3.0f, 0.5f, 1e6f}) {
     reconstruct::Field sampled = rounding, kept = rounding;
     for_values(&sampled, [&](float& value, int, int, int) { value *= factor; });
@@ -131,10 +131,10 @@ TEST(B2_RoundedDisplacements, AreNeverTakenForMoreThanTheyMake) {
   }
 }
 
-// No feature tells what lies beside the pixels: by regression alone it would be noise.
+// No feature describes the neighbourhood of pixels: by regression alone, the change would be noise.
 TEST(B2_RoundedDisplacements, AreInTheRegressedChange) {
   reconstruct::ComponentSources sources;
-  sources.push_back(std::make_unique<Way>(0.375f, false));
+  sources.push_back(std::make_unique<ShiftedWindow>(0.375f, false));
   const film::Features features =
       reconstruct::filter_features(film::read_features(make_feature_film(test::room(kWidth, kHeight), 3)));
   const reconstruct::Change change =
@@ -152,10 +152,10 @@ TEST(B2_RoundedDisplacements, AreInTheRegressedChange) {
   EXPECT_LT(error, 0.02 * squares);
 }
 
-// The same surface, and what it shows rests.
-class StaticLight : public Way {
+// The same surface with a static reflection.
+class StaticLight : public ShiftedWindow {
  public:
-  using Way::Way;
+  using ShiftedWindow::ShiftedWindow;
   void read_row(reconstruct::RowKind, int, int, float* out) const override { std::fill_n(out, 3 * kWidth, 0.0f); }
 };
 

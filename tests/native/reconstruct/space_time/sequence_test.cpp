@@ -33,7 +33,7 @@ TEST(B2_Windows, SharesOfAFrameAddUpToOne) {
   }
 }
 
-// A range that is rendered in parts has the windows of the whole, where their frames are there.
+// A range that is rendered in parts has the windows of the whole, where the frames exist.
 TEST(B2_Windows, LieOnAFixedGrid) {
   EXPECT_EQ(reconstruct::WindowGrid({0, 30}).frames(2).first, 10);
   EXPECT_EQ(reconstruct::WindowGrid({7, 30}).frames(2).last, 19);
@@ -56,7 +56,7 @@ TEST(B2_Windows, NoWindowLiesWithinAnother) {
   }
 }
 
-// The frame t of a sequence without end: a ramp that drifts.
+// Returns a pixel of frame t of an endless sequence: a ramp that drifts.
 float value_of(int frame, int x, int y) { return 1.0f + 0.01f * float(frame) + 0.1f * std::sin(0.3f * float(x + y)); }
 
 std::unique_ptr<Window> open_static(const reconstruct::FrameRange& frames) {
@@ -94,7 +94,7 @@ TEST(B2_Windows, EveryFrameIsDeliveredOnceAndInOrder) {
   }
 }
 
-// A job that begins in the middle of a sequence, and one whose end comes early.
+// A job that begins in the middle of a sequence, and one that ends early.
 TEST(B2_Windows, PicturesDoNotDependOnWhereAJobBegins) {
   reconstruct::SolveReport report;
   reconstruct::SequencePictures whole = static_sequence({0, 24}), part = static_sequence({0, 24});
@@ -103,7 +103,7 @@ TEST(B2_Windows, PicturesDoNotDependOnWhereAJobBegins) {
     EXPECT_EQ(whole.take(frame, never, &report).image, part.take(frame, never, &report).image);
 }
 
-TEST(B2_Windows, ASequenceThatEndsEarlyIsWholeUpToThere) {
+TEST(B2_Windows, ASequenceThatEndsEarlyIsCompleteUpToThere) {
   reconstruct::SolveReport report;
   reconstruct::SequencePictures pictures = static_sequence({0, 24});
   pictures.take(0, never, &report);
@@ -130,8 +130,8 @@ TEST(B2_Windows, HaveTheGridOfTheirSettings) {
   EXPECT_THROW(reconstruct::WindowGrid({0, 9}, {4, 3}), Error);
 }
 
-// Twice the overlap was beyond the integers, and so was the end of the last window.
-TEST(B2_Windows, OfAnySizeAreRefusedOrRight) {
+// Regression: twice the overlap exceeded the range of integers, and so did the end of the last window.
+TEST(B2_Windows, OfAnySizeAreRefusedOrCorrect) {
   constexpr int maximum = std::numeric_limits<int>::max();
   EXPECT_THROW(reconstruct::WindowGrid({0, 9}, {10, 1 << 30}), Error);
   EXPECT_THROW(reconstruct::WindowGrid({0, 9}, {maximum, 1 << 30}), Error);
@@ -141,7 +141,7 @@ TEST(B2_Windows, OfAnySizeAreRefusedOrRight) {
   EXPECT_EQ(late.frames(late.last()).last, maximum);
 }
 
-// A frame in the middle of its window and of the next: half of each.
+// A frame in the middle of the overlap of two windows: half of each.
 TEST(B2_Windows, OverlapsAreBlended) {
   reconstruct::SolveReport report;
   const auto solve = [&](const reconstruct::FrameRange& frames) {
@@ -165,7 +165,7 @@ TEST(B2_Windows, OverlapsAreBlended) {
   EXPECT_NEAR(grid.share(1, 7), 0.5f, 1e-6f);
 }
 
-TEST(K2_Cancel, SequencesDeliverNothingHalfDone) {
+TEST(K2_Cancel, SequencesDeliverNothingIncomplete) {
   reconstruct::SolveReport report;
   EXPECT_TRUE(static_sequence({0, 14})
                   .take(
@@ -173,8 +173,8 @@ TEST(K2_Cancel, SequencesDeliverNothingHalfDone) {
                   .image.empty());
 }
 
-// The error that is told is that of the pictures, on average over noise.
-TEST(B2_Windows, TellTheErrorOfTheirPictures) {
+// The reported error is that of the pictures, on average over noise.
+TEST(B2_Windows, ReportTheErrorOfTheirPictures) {
   double told = 0.0, found = 0.0;
   for (unsigned seed = 0; seed < 24; ++seed) {
     const auto noisy = [&](const reconstruct::FrameRange& frames, const CancelCheck&) {
@@ -192,7 +192,7 @@ TEST(B2_Windows, TellTheErrorOfTheirPictures) {
     for (int frame = 0; frame <= 5; ++frame) {
       const reconstruct::Reconstructed picture = pictures.take(frame, never, &report);
       for (const float error : reconstruct::error_of_pixels(picture.terms, 16, 12, 3)) told += error;
-      for (const float value : picture.image) found += std::pow(value, 2.0) / 3.0;  // it is black
+      for (const float value : picture.image) found += std::pow(value, 2.0) / 3.0;  // the true picture is black
     }
   }
   EXPECT_NEAR(told / found, 1.0, 0.15);

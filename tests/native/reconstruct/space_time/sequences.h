@@ -21,7 +21,7 @@ inline Images changing_images(const reconstruct::WindowSize& size) {
   return images;
 }
 
-// Rows without noise.
+// Returns rows without noise.
 inline Window measured(int width, int height, int channels, int frames, Motion motion) {
   Window window(width, height, channels, frames);
   link(&window, motion);
@@ -29,7 +29,8 @@ inline Window measured(int width, int height, int channels, int frames, Motion m
   return window;
 }
 
-// Two halves with noise of their own in every row; deviations are what these show. sigma(kind, pixel): of a half.
+// Returns two half-buffers with independent noise in every row, and the deviations that they show. sigma(kind, pixel):
+// of a half-buffer.
 template <class Sigma>
 void add_noise_of_halves(Window* window, const Sigma& sigma, unsigned seed) {
   for (const reconstruct::RowKind kind : reconstruct::kRowKinds) {
@@ -41,7 +42,7 @@ void add_noise_of_halves(Window* window, const Sigma& sigma, unsigned seed) {
   }
 }
 
-// A single frame's images, with deviations.
+// Returns the images of a single frame, with deviations.
 inline film::GradientImages frame_of(const Window& window, int t) {
   const auto deviation = [&](reconstruct::RowKind kind) { return window.deviations[size_t(kind)][size_t(t)]; };
   film::GradientImages images;
@@ -57,7 +58,7 @@ inline film::GradientImages frame_of(const Window& window, int t) {
   return images;
 }
 
-// All frames, one after another.
+// Returns all frames, one after another.
 inline std::vector<float> joined(const reconstruct::Frames& frames) {
   std::vector<float> all;
   for (const reconstruct::Field& field : frames) {

@@ -39,7 +39,7 @@ Window noisy_window(int width, int height, int channels, int frames, Motion moti
   return window;
 }
 
-TEST(B1_SpaceTime, ASequenceWithItsOwnDifferencesStays) {
+TEST(B1_SpaceTime, ASequenceWithItsOwnDifferencesIsKept) {
   for (const Motion motion : kMotions) {
     for (const uint32_t reconstruction : kAll) {
       const Window window = measured(33, 17, 3, 6, motion);
@@ -62,8 +62,8 @@ TEST(B2_SpaceTime, AnySizeIsSolved) {
   }
 }
 
-// Frames that nothing links are single frames.
-TEST(B2_SpaceTime, WithoutLinksL2IsThatOfSingleFrames) {
+// Frames without correspondences are single frames.
+TEST(B2_SpaceTime, WithoutCorrespondencesL2IsThatOfSingleFrames) {
   const Window window = noisy_window(96, 64, 3, 3, Motion::kNone);
   const reconstruct::Frames x = solver_of(window, kL2).take_solution();
   for (int t = 0; t < 3; ++t) {
@@ -74,8 +74,8 @@ TEST(B2_SpaceTime, WithoutLinksL2IsThatOfSingleFrames) {
   }
 }
 
-// But for the 16 bits that a weight has.
-TEST(B2_SpaceTime, WithoutLinksWeightsAreThoseOfSingleFrames) {
+// Weights have 16 bits, which is the only difference.
+TEST(B2_SpaceTime, WithoutCorrespondencesWeightsAreThoseOfSingleFrames) {
   const Window window = noisy_window(96, 64, 3, 3, Motion::kNone);
   const reconstruct::Frames x = solver_of(window, kL1).take_solution();
   for (int t = 0; t < 3; ++t) {
@@ -96,8 +96,8 @@ TEST(B2_SpaceTime, L2KeepsTheMean) {
   }
 }
 
-// Mean squared error that L2 leaves, by the modes of the static window's system (T-GPT eq. 4, with free ends): noise of
-// deviation σ_I in pixels, σ_g in differences in space, none along the links.
+// Returns the mean squared error of L2, by the modes of the system of a static window (T-GPT eq. 4, with free ends):
+// noise of deviation σ_I in pixels, σ_g in differences in space, none along correspondences.
 double noise_left(int w, int h, int frames, double alpha, double sigma_i, double sigma_g) {
   const auto eigenvalue = [](int k, int n) { return 2.0 - 2.0 * std::cos(std::numbers::pi * k / n); };
   double sum = 0.0;
@@ -113,8 +113,8 @@ double noise_left(int w, int h, int frames, double alpha, double sigma_i, double
   return sum / (double(frames) * w * h);
 }
 
-// A shot where nothing moves: the same random numbers give the same picture, so differences in time are known to be 0.
-TEST(B3_SpaceTime, AStaticShotKeepsTheNoiseThatTheoryLeaves) {
+// A static shot: the same random numbers give the same picture, so that differences in time are known to be 0.
+TEST(B3_SpaceTime, AStaticShotHasTheNoiseThatTheoryPredicts) {
   constexpr int w = 24, h = 18, runs = 24;
   for (const int frames : {1, 2, 5, 10}) {
     double squares = 0.0;
@@ -164,13 +164,13 @@ TEST(B3_SpaceTime, L2IsUnbiased) {
     mean_square += z * z / double(sum.size());
     worst = std::max(worst, std::abs(z));
   }
-  // Neighbours' errors are alike: some 30 are independent of 252.
+  // Errors of neighbours are correlated: about 30 of 252 are independent.
   EXPECT_LT(mean_square, 1.8);
   EXPECT_GT(mean_square, 0.4);
   EXPECT_LT(worst, 4.2);
 }
 
-// What the first three channels hold, in a source of its own: parts of an image, or its alpha.
+// A source with a part or an affine function of the first three channels: a component of an image, or its alpha.
 Window share_of(const Window& window, float share, float offset) {
   Window part = window;
   for (const reconstruct::RowKind kind : reconstruct::kRowKinds) {
@@ -218,7 +218,7 @@ double error_of(const Window& window, uint32_t reconstruction, const Images& tru
   return rms_difference(solve(window, reconstruction), joined(truth));
 }
 
-TEST(B2_SpaceTime, L1IgnoresOutliersAlongTheLinks) {
+TEST(B2_SpaceTime, L1IgnoresOutliersAlongCorrespondences) {
   Window window = measured(64, 48, 3, 5, Motion::kStatic);
   const Images truth = changing_images(window.size_);
   add_noise_of_halves(
@@ -233,8 +233,8 @@ TEST(B2_SpaceTime, L1IgnoresOutliersAlongTheLinks) {
   EXPECT_GT(error_of(window, kL2, truth), 0.15);
 }
 
-// Bright values are the noisy ones where light is rare, so weights by noise lose them; twicing gives them back, and
-// lets no frame flicker more than its noise.
+// If light is rare, bright values have more noise, so that weights by noise lose them. Twicing restores them, and no
+// frame flickers more than its noise.
 TEST(B3_SpaceTime, WeightsKeepTheMeanOfSkewedNoise) {
   Window window(96, 64, 3, 5);
   link(&window, Motion::kStatic);
@@ -259,8 +259,8 @@ TEST(B3_SpaceTime, WeightsKeepTheMeanOfSkewedNoise) {
   EXPECT_NEAR(mean(solve(window, kL1)) / mean(joined(primal)), 1.0, 1e-3);
 }
 
-// A missing row is none: its value may be anything.
-TEST(B2_SpaceTime, RowsThatAreMissingAreLeftOut) {
+// A missing row does not exist: its values do not matter.
+TEST(B2_SpaceTime, MissingRowsAreLeftOut) {
   Window window = measured(33, 17, 3, 4, Motion::kTurn);
   for (const reconstruct::RowKind kind : reconstruct::kRowKinds) {
     for (size_t i = 3; i < 33 * 17 * 3; i += 37) window.plane(kind, 1)[i] = std::numeric_limits<float>::quiet_NaN();
@@ -271,8 +271,8 @@ TEST(B2_SpaceTime, RowsThatAreMissingAreLeftOut) {
   }
 }
 
-// Values that are random, of light that is: their sums along the tracks stay, and values that are everywhere the same
-// share of the light.
+// Smoothing random values that are shares of light keeps their sums along tracks, and shares that are the same
+// everywhere.
 TEST(B2_SpaceTime, SmoothingOfSharesKeepsSumsAndShares) {
   constexpr int w = 13, h = 9, frames = 5;
   const reconstruct::SpaceTimeSystem system(measured(w, h, 1, frames, Motion::kTurn));
@@ -308,7 +308,7 @@ TEST(B2_SpaceTime, SmoothingOfSharesKeepsSumsAndShares) {
   EXPECT_GT(moved, 0.5f) << "the test says something";
 }
 
-TEST(B2_SpaceTime, LinksThatAreNotOneToOneAreRefused) {
+TEST(B2_SpaceTime, CorrespondencesThatAreNotOneToOneAreRefused) {
   Window window = measured(8, 8, 1, 2, Motion::kStatic);
   window.correspondence[0][3] = 4;
   EXPECT_THROW(reconstruct::SpaceTimeSystem{window}, Error);

@@ -1,4 +1,4 @@
-// The window's system and its solver against matrices that are written down row by row.
+// The system of a window and its solver against matrices that are written down row by row.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-// Weights of four decades without any order.
+// Sets random weights of four decades.
 void weigh_at_random(reconstruct::SpaceTimeSystem* system) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> exponent(-2.0f, 2.0f);
@@ -151,7 +151,7 @@ Solved solve(const Window& window, reconstruct::SpaceTimeSystem* system, float r
   return solved;
 }
 
-TEST(B2_SpaceTime, SolverMeetsTheDenseSolution) {
+TEST(B2_SpaceTime, SolverFindsTheDenseSolution) {
   for (const Motion motion : kMotions) {
     for (const bool alike : {true, false}) {
       const Window window = random_window(11, 8, 3, 4, motion);
@@ -168,8 +168,8 @@ TEST(B2_SpaceTime, SolverMeetsTheDenseSolution) {
   }
 }
 
-// By conjugate gradients on diagonals, these take 60 to 200 steps.
-TEST(B2_SpaceTime, FewStepsWhateverTheMotion) {
+// Conjugate gradients with a diagonal preconditioner take 60 to 200 steps for these systems.
+TEST(B2_SpaceTime, TakesFewStepsForAnyMotion) {
   for (const Motion motion : kMotions) {
     const Window window = random_window(320, 180, 1, 10, motion);
     reconstruct::SpaceTimeSystem system(window);

@@ -1,4 +1,4 @@
-// Windows with known links and values.
+// Windows with known correspondences and values.
 #pragma once
 
 #include <cmath>
@@ -36,11 +36,11 @@ struct Window final : reconstruct::HalvedWindowSource {
   std::vector<float>& plane(reconstruct::RowKind kind, int t) { return planes[size_t(kind)][size_t(t)]; }
   const std::vector<float>& plane(reconstruct::RowKind kind, int t) const { return planes[size_t(kind)][size_t(t)]; }
 
-  // One row of the system: Σ sign · pixel. Pixels are t·width·height + y·width + x. Empty where the system has no such
+  // One row of the system: Σ sign · pixel. Pixels are t·width·height + y·width + x. Empty if the system has no such
   // row.
   using Terms = std::vector<std::pair<int, float>>;
   Terms row(reconstruct::RowKind kind, int t, int x, int y) const;
-  // Fills all rows' values from a sequence of images.
+  // Fills the values of all rows from a sequence of images.
   void measure(const std::vector<std::vector<float>>& images);
   template <class Function>
   void for_rows(const Function& function) const {
@@ -87,8 +87,8 @@ inline void Window::measure(const std::vector<std::vector<float>>& images) {
   });
 }
 
-// Links pixels by target(x, y, t) → (x', y') in float, rounded; what lies outside or is taken has none, nor has what
-// `hole` says.
+// Sets correspondences by target(x, y, t) → (x', y') in float, rounded. A pixel whose target lies outside or is taken
+// has none, nor has one that `hole` selects.
 inline void link(Window* window, const std::function<std::pair<float, float>(int, int, int)>& target,
                  const std::function<bool(int, int, int)>& hole) {
   const auto [w, h, channels, frames] = window->size_;

@@ -1,0 +1,283 @@
+#include "film/planes.h"
+
+#include <algorithm>
+#include <numeric>
+#include <type_traits>
+
+#include "film/finite_check.h"
+
+namespace gradus::film {
+namespace {
+
+constexpr const char* kHalfNames[kHalves] = {"A", "B"};
+constexpr const char* kOffsetNames[kOffsets] = {"right", "up", "left", "down"};
+constexpr const char* kColorNames[4] = {"R", "G", "B", "A"};
+constexpr const char* kVectorNames[4] = {"X", "Y", "Z", "W"};
+
+std::vector<PlaneField> color_fields(int color_channels) {
+  std::vector<PlaneField> fields;
+  for (int c = 0; c < color_channels; ++c) fields.push_back({kColorNames[c], size_t(c) * sizeof(float)});
+  return fields;
+}
+
+std::vector<PlaneField> vector_fields(uint32_t values) {
+  std::vector<PlaneField> fields;
+  for (uint32_t c = 0; c < values; ++c) fields.push_back({values == 1 ? "V" : kVectorNames[c], c * sizeof(float)});
+  return fields;
+}
+
+std::vector<PlaneField> pair_fields(uint32_t values) {
+  std::vector<PlaneField> fields;
+  for (uint32_t c = 0; c < values; ++c)
+    fields.push_back({(c % 2 == 0 ? "id" : "weight") + std::to_string(c / 2), c * sizeof(float)});
+  return fields;
+}
+
+// Appends the fields of a member that is a vector of three floats.
+void add_three(const std::string& name, const char* const* letters, size_t offset, std::vector<PlaneField>* fields) {
+  for (size_t c = 0; c < 3; ++c) fields->push_back({name + "." + letters[c], offset + c * sizeof(float)});
+}
+
+std::vector<PlaneField> non_specular_fields() {
+  std::vector<PlaneField> fields;
+  add_three("reflectance", kColorNames, offsetof(NonSpecularVertices, reflectance), &fields);
+  add_three("normal", kVectorNames, offsetof(NonSpecularVertices, normal), &fields);
+  fields.push_back({"inverse_depth.V", offsetof(NonSpecularVertices, inverse_depth)});
+  fields.push_back({"samples.V", offsetof(NonSpecularVertices, samples)});
+  return fields;
+}
+
+std::vector<PlaneField> detail_fields() {
+  std::vector<PlaneField> fields;
+  add_three("uv", kVectorNames, offsetof(NonSpecularDetails, uv), &fields);
+  add_three("emission", kColorNames, offsetof(NonSpecularDetails, emission), &fields);
+  fields.push_back({"segments.V", offsetof(NonSpecularDetails, segments)});
+  fields.push_back({"object.V", offsetof(NonSpecularDetails, object)});
+  fields.push_back({"face.V", offsetof(NonSpecularDetails, face)});
+  fields.push_back({"sample.V", offsetof(NonSpecularDetails, sample), true});
+  return fields;
+}
+
+std::string component_layer(size_t component) { return "component" + std::to_string(component); }
+
+// Returns the layer of a half-buffer. Component 0 has no prefix, so that programs show its layer as the main one.
+std::string half_layer(size_t component, int half) {
+  return (component == 0 ? "" : component_layer(component) + ".") + kHalfNames[half];
+}
+
+std::string part_of(const std::string& name, size_t component) {
+  return component == 0 ? name : name + "." + component_layer(component);
+}
+
+std::string stored_name(const Channel& channel) {
+  std::string name = channel.info.name;
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+}
+
+// Collects planes. Vectors without values are left out.
+class PlaneList {
+ public:
+  explicit PlaneList(Film* film) : film_(film) {}
+
+  void add_samples(size_t component) {
+    const std::string part = part_of("samples", component);
+    for (int half = 0; half < kHalves; ++half)
+      add(part, half_layer(component, half), MergeRule::kAdd, color_fields(film_->color_channels),
+          &film_->components[component].primal[half]);
+    if (film_->replayed.has_component_map(int(component)))
+      add_correspondence(part, component_layer(component) + ".source", &film_->replayed.of_component[component]);
+  }
+
+  void add_counts() {
+    for (int half = 0; half < kHalves; ++half)
+      add("counts", std::string(kHalfNames[half]) + ".count", MergeRule::kAdd, {{"V", 0, true}}, &film_->count[half]);
+    add_correspondence("counts", "source", &film_->replayed.correspondence);
+  }
+
+  void add_gradients(size_t component) {
+    for (int half = 0; half < kHalves; ++half) {
+      for (int o = 0; o < kOffsets; ++o)
+        add(part_of("gradients", component), half_layer(component, half) + "." + kOffsetNames[o], MergeRule::kAdd,
+            color_fields(film_->color_channels), &film_->components[component].gradient[half][o]);
+    }
+  }
+
+  void add_pair_counts() {
+    for (int half = 0; half < kHalves; ++half) {
+      for (int o = 0; o < kOffsets; ++o)
+        add("pairs", std::string(kHalfNames[half]) + "." + kOffsetNames[o] + ".pairs", MergeRule::kAdd,
+            vector_fields(1), &film_->pair_count[half][o]);
+    }
+  }
+
+  void add_non_specular(size_t component) {
+    for (int half = 0; half < kHalves; ++half)
+      add(part_of("rough", component), half_layer(component, half), MergeRule::kAdd, non_specular_fields(),
+          &film_->components[component].non_specular[half]);
+  }
+
+  void add_details(size_t component) {
+    add(part_of("details", component), component_layer(component), MergeRule::kAdd, detail_fields(),
+        &film_->components[component].details);
+  }
+
+  void add_motion(size_t component) {
+    ComponentPlanes& planes = film_->components[component];
+    const std::string part = part_of("motion", component), layer = component_layer(component);
+    add(part, layer + ".motion", MergeRule::kKeep, vector_fields(4), &planes.motion);
+    add(part, layer + ".tracked", MergeRule::kKeep, vector_fields(1), &planes.tracked);
+    add(part, layer + ".shown", MergeRule::kKeep,
+        {{"object.V", offsetof(ShownPoint, object)}, {"depth.V", offsetof(ShownPoint, depth)}}, &planes.shown);
+  }
+
+  // Each channel in half-buffers is a part of its own, because such channels are large and some readers need only one.
+  void add_channel(Channel* channel) {
+    const ChannelInfo& info = channel->info;
+    const std::string name = stored_name(*channel);
+    const bool pairs = info.type == ValueType::kIdAndWeight;
+    const MergeRule rule = channel->keeps_first_sample() ? MergeRule::kFirstSample : MergeRule::kAdd;
+    for (int half = 0; half < kHalves; ++half) {
+      if (channel->values[half].empty()) continue;
+      add(info.in_halves ? name : "passes", info.in_halves ? std::string(kHalfNames[half]) + "." + name : name, rule,
+          pairs ? pair_fields(info.values_per_pixel) : vector_fields(info.values_per_pixel), &channel->values[half]);
+      list_.back().pixel_bytes = info.values_per_pixel * sizeof(float);
+      if (pairs) list_.back().pairs = channel;
+    }
+    add("passes", name + ".weight", rule, vector_fields(1), &channel->weight);
+  }
+
+  std::vector<Plane> take() { return std::move(list_); }
+
+ private:
+  void add_correspondence(const std::string& part, const std::string& layer, PixelCorrespondence* correspondence) {
+    add(part, layer, MergeRule::kKeep, {{"V", 0, true}}, &correspondence->pixel);
+    add(part, layer + ".off_centre", MergeRule::kKeep, vector_fields(2), &correspondence->off_centre);
+  }
+
+  template <class T>
+  void add(const std::string& part, const std::string& layer, MergeRule merge, std::vector<PlaneField> fields,
+           std::vector<T>* values) {
+    if (!values->empty()) list_.push_back({part, layer, merge, std::move(fields), sizeof(T), values});
+  }
+
+  Film* const film_;
+  std::vector<Plane> list_;
+};
+
+void add_value(const NonSpecularVertices& from, NonSpecularVertices* to, Counters* counters) {
+  add_non_specular(from, to, counters);
+}
+void add_value(const NonSpecularDetails& from, NonSpecularDetails* to, Counters* counters) {
+  add_details(from, to, counters);
+}
+template <class T>
+requires std::is_same_v<T, float> || std::is_same_v<T, uint32_t> || std::is_same_v<T, Vec4>
+void add_value(const T& from, T* to, Counters*) { *to += from; }
+
+template <class T>
+void add_all(const std::vector<T>& from, std::vector<T>* to, Counters* counters) {
+  if constexpr (requires { add_value(from[0], to->data(), counters); }) {
+    for (size_t i = 0; i < to->size(); ++i) add_value(from[i], &(*to)[i], counters);
+  }
+}
+
+void add_pairs(const std::vector<float>& from, uint32_t values_per_pixel, std::vector<float>* to, Counters* counters) {
+  for (size_t first = 0; first < to->size(); first += values_per_pixel) {
+    for (size_t i = first; i < first + values_per_pixel; i += 2)
+      add_pair(from[i], from[i + 1], values_per_pixel / 2, to->data() + first, counters);
+  }
+}
+
+void add_plane(const Plane& from, bool is_first, const Plane& to, Counters* counters) {
+  std::visit(
+      [&](auto* values) {
+        const auto& others = *std::get<decltype(values)>(from.values);
+        if (to.merge == MergeRule::kAdd) {
+          add_all(others, values, counters);
+        } else if (to.merge == MergeRule::kFirstSample && is_first) {
+          *values = others;
+        }
+      },
+      to.values);
+}
+
+// Returns the planes that change when films are merged.
+std::vector<Plane> merged_planes(const Film& film) {
+  std::vector<Plane> planes = planes_of(film);
+  std::erase_if(planes, [](const Plane& plane) { return plane.merge == MergeRule::kKeep; });
+  return planes;
+}
+
+bool same_kind(const Plane& a, const Plane& b) {
+  return a.layer == b.layer && a.values.index() == b.values.index() && a.bytes() == b.bytes();
+}
+
+bool same_channels(const Film& a, const Film& b) {
+  return std::ranges::equal(a.channels, b.channels,
+                            [](const Channel& p, const Channel& q) { return p.info == q.info; });
+}
+
+}  // namespace
+
+unsigned char* Plane::data() const {
+  return std::visit([](auto* values) { return reinterpret_cast<unsigned char*>(values->data()); }, values);
+}
+
+size_t Plane::bytes() const {
+  return std::visit([](auto* values) { return values->size() * sizeof((*values)[0]); }, values);
+}
+
+std::vector<Plane> planes_of(Film* film) {
+  PlaneList list(film);
+  const size_t components = film->components.size();
+  for (size_t c = 0; c < components; ++c) list.add_samples(c);
+  list.add_counts();
+  for (size_t c = 0; c < components; ++c) list.add_gradients(c);
+  list.add_pair_counts();
+  for (size_t c = 0; c < components; ++c) list.add_non_specular(c);
+  for (size_t c = 0; c < components; ++c) list.add_details(c);
+  for (size_t c = 0; c < components; ++c) list.add_motion(c);
+  for (Channel& channel : film->channels) list.add_channel(&channel);
+  return list.take();
+}
+
+std::vector<Plane> planes_of(const Film& film) { return planes_of(const_cast<Film*>(&film)); }
+
+uint64_t Film::memory_bytes() const {
+  const std::vector<Plane> planes = planes_of(*this);
+  const auto add = [](uint64_t sum, const Plane& plane) { return sum + plane.bytes(); };
+  return std::accumulate(planes.begin(), planes.end(), uint64_t{sizeof(*this)}, add);
+}
+
+uint64_t film_bytes_per_pixel(int components, bool gradients, const std::vector<ChannelInfo>& channels,
+                              const ComponentContent& content) {
+  Film pixel(1, 1, Region{0, 0, 1, 1}, 3, components, gradients);
+  allocate_component_content(content, &pixel);
+  for (const ChannelInfo& info : channels) pixel.channels.add(info, 1);
+  return pixel.memory_bytes() - sizeof(Film);
+}
+
+bool can_add(const Film& film, const Film& other) {
+  return film.region == other.region && film.color_channels == other.color_channels && same_components(film, other) &&
+         same_channels(film, other) && std::ranges::equal(merged_planes(film), merged_planes(other), same_kind);
+}
+
+void add_sums(Film* film, const Film& other) {
+  const bool other_is_first = other.settings.first_sample < film->settings.first_sample;
+  const std::vector<Plane> planes = merged_planes(*film), others = merged_planes(other);
+  for (size_t i = 0; i < planes.size(); ++i) {
+    if (planes[i].pairs != nullptr) {
+      add_pairs(*std::get<std::vector<float>*>(others[i].values), planes[i].pairs->info.values_per_pixel,
+                std::get<std::vector<float>*>(planes[i].values), &film->counters);
+    } else {
+      add_plane(others[i], other_is_first, planes[i], &film->counters);
+    }
+  }
+  for (size_t i = 0; i < film->channels.size(); ++i) {
+    for (int half = 0; half < kHalves; ++half) film->channels[i].paths[half] += other.channels[i].paths[half];
+  }
+  film->counters.add(other.counters);
+}
+
+}  // namespace gradus::film

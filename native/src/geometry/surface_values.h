@@ -1,0 +1,47 @@
+// What the shape of an instance has at a hit: attributes, texture coordinates, normals and tangents, in the shape's own
+// space. Callers need not know the kind of its primitives.
+#pragma once
+
+#include "geometry/geometry.h"
+#include "geometry/mesh.h"
+#include "geometry/tangent_field.h"
+
+namespace gradus::geometry {
+
+// Returns an attribute of the shape, interpolated at the hit. Missing channels are 0, a missing fourth channel is 1.
+inline Vec4 attribute_at(const InstanceData& instance, const MeshAttribute& attribute, const Hit& hit) {
+  return interpolate(corner_values(*instance.mesh, attribute, hit.primitive), hit.uv);
+}
+
+// Returns the generated texture coordinates: 0 to 1 over the shape's texture space.
+inline Vec3 generated_at(const InstanceData& instance, const Hit& hit) {
+  return generated_at(*instance.mesh, hit.primitive, hit.uv);
+}
+
+// Returns what Blender's Parametric output shows: the weights of the first two corners of a triangle.
+inline Vec3 parametric_at(const Hit& hit) { return Vec3(1.0f - hit.uv.x - hit.uv.y, hit.uv.x, 0.0f); }
+
+// Finds the interpolated shading normal at the shutter time of the hit, not normalised. Returns false if the shape is
+// shaded flat.
+inline bool smooth_normal_at(const InstanceData& instance, const Hit& hit, Vec3* normal) {
+  std::array<Vec3, 3> normals;
+  if (!triangle_normals_in_shutter(*instance.mesh, hit.primitive, hit.time, &normals)) return false;
+  *normal = interpolate(normals, hit.uv);
+  return true;
+}
+
+// Finds the normals of smooth_normal_at() in the rendered frame (`rest`) and at the shutter time of the hit (`then`).
+// Returns false if they are equal: the shape does not deform, or is shaded flat.
+inline bool turned_normals_at(const InstanceData& instance, const Hit& hit, Vec3* rest, Vec3* then) {
+  std::array<Vec3, 3> normals;
+  if (instance.mesh->shutter_keys == 0 || !triangle_normals(*instance.mesh, hit.primitive, &normals)) return false;
+  *rest = interpolate(normals, hit.uv);
+  return smooth_normal_at(instance, hit, then);
+}
+
+// Returns a tangent of the rendered frame, with its handedness in w.
+inline Vec4 tangent_at(const TangentField& field, const Hit& hit) {
+  return interpolate(field.corners(hit.primitive), hit.uv);
+}
+
+}  // namespace gradus::geometry
