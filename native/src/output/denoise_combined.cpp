@@ -67,6 +67,7 @@ void replace(const std::vector<float>& image, std::vector<float>* combined) {
 
 std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const scene::Device* device,
                                                    std::string* why_not) {
+  if (denoiser > GRADUS_DENOISER_OIDN) throw invalid_argument("there is no denoiser " + std::to_string(denoiser));
   *why_not = "denoiser is none";
   if (denoiser == GRADUS_DENOISER_NONE) return nullptr;
   auto library = find_oidn({device ? device->denoiser_path() : ""}, why_not);

@@ -136,7 +136,9 @@ void DevelopedFilm::read_pass(uint32_t pass, float* pixels) const {
   if (!film) {
     std::fill_n(pixels, size_t(region.area()) * schema::pass_info(pass).channels, 0.0f);
   } else if (pass == GRADUS_PASS_ERROR && schema::has_bit(film->settings.passes, pass)) {
-    copy(*Developer(threads).reconstruct(film, {}, region, {.error = true}).find(pass), pixels);
+    DevelopedFilm noisy{film, region, threads};
+    Developer(threads).reconstruct(&noisy, {.error = true});
+    copy(*noisy.find(pass), pixels);
   } else {
     tbb::task_arena(arena_size(threads)).execute([&] { read_film_pass(*film, pass, region, pixels); });
   }
@@ -162,10 +164,11 @@ Image DevelopedFilm::component_color(int component) const {
   if (found != component_passes.end()) return found->second;
   const Image combined = find(GRADUS_PASS_COMBINED);
   if (combined && film->components.size() == 1) return rgb_of(*combined);
-  if (!schema::needs_pictures(film->settings))
-    throw not_asked_for(schema::component_pass_info(GRADUS_COMPONENT_COLOR));
+  if (!schema::needs_pictures(film->settings)) throw not_asked_for(schema::component_pass_info(GRADUS_COMPONENT_COLOR));
   // The render was cancelled before there was a picture, so what it delivers is the noisy image.
-  return Developer(threads).reconstruct(film, {}, region, {.components = true}).component_color(component);
+  DevelopedFilm noisy{film, region, threads};
+  Developer(threads).reconstruct(&noisy, {.components = true});
+  return noisy.component_color(component);
 }
 
 }  // namespace gradus::output

@@ -25,13 +25,13 @@ struct DevelopedFilm {
   std::shared_ptr<const film::Film> film;  // nullptr: nobody may read it, because it is still being sampled
   Region region;                           // delivered pixels
   uint32_t threads = 1;                    // threads that read passes of the film
-  Options options;                         // options with which the picture was made
-  reconstruct::SolveReport solve;          // how its reconstruction converged
+  Options options{};                       // options with which the picture was made
+  reconstruct::SolveReport solve{};        // how its reconstruction converged
   // Passes that are computed from the film: Combined, Error, light passes, and those that need several frames.
-  std::map<uint32_t, Image> passes;
+  std::map<uint32_t, Image> passes{};
   // Passes of components, by index in film::Film::components and GradusComponentPass: Color, unless there is one
   // component only, which Combined shows; and motion by optical flow.
-  std::map<std::pair<int, uint32_t>, Image> component_passes;
+  std::map<std::pair<int, uint32_t>, Image> component_passes{};
 
   // Returns an image of `passes`, or nullptr if there is none.
   Image find(uint32_t pass) const;

@@ -136,29 +136,29 @@ void Developer::run(const Function& function) {
   arena_.execute(function);
 }
 
-DevelopedFilm Developer::reconstruct(std::shared_ptr<const film::Film> film, const Options& options,
-                                     const Region& region, const reconstruct::ReconstructionOutputs& wanted,
-                                     const Source& source) {
-  DevelopedFilm developed{std::move(film), region, threads_, options};
-  const film::Film& samples = *developed.film;
+void Developer::reconstruct(DevelopedFilm* developed, const reconstruct::ReconstructionOutputs& wanted,
+                            const Source& source) {
+  const film::Film& film = *developed->film;
+  const Options& options = developed->options;
   const uint32_t how = options.reconstruction;
   const bool is_noisy = how == GRADUS_RECONSTRUCTION_NONE,
-             with_components = wanted.components && samples.components.size() > 1;
+             with_components = wanted.components && film.components.size() > 1;
   run([&] {
     reconstruct::Reconstructed images;
     if (source) {
-      images = source(&developed.solve);
+      images = source(&developed->solve);
     } else if (!is_noisy || wanted.error || with_components) {
-      images = reconstruct::reconstruct_film(samples, how, options.alpha, {wanted.error, with_components}, cancel_,
-                                             &developed.solve);
+      images = reconstruct::reconstruct_film(film, how, options.alpha, {wanted.error, with_components}, cancel_,
+                                             &developed->solve);
     }
     throw_if_cancelled(cancel_);
-    if (with_components) store_components(crop_components(samples, how, std::move(images.components), region), &developed);
-    if (wanted.error) developed.passes[GRADUS_PASS_ERROR] = make_image(crop_error(samples, images.error, region));
-    developed.passes[GRADUS_PASS_COMBINED] =
-        make_image(is_noisy ? noisy_picture(samples, region) : crop_picture(samples, how, images.image, region));
+    if (with_components)
+      store_components(crop_components(film, how, std::move(images.components), developed->region), developed);
+    if (wanted.error)
+      developed->passes[GRADUS_PASS_ERROR] = make_image(crop_error(film, images.error, developed->region));
+    developed->passes[GRADUS_PASS_COMBINED] = make_image(
+        is_noisy ? noisy_picture(film, developed->region) : crop_picture(film, how, images.image, developed->region));
   });
-  return developed;
 }
 
 bool Developer::denoise(DevelopedFilm* developed, std::vector<std::string>* warnings) {
@@ -169,8 +169,8 @@ bool Developer::denoise(DevelopedFilm* developed, std::vector<std::string>* warn
   const uint32_t reconstruction = developed->options.reconstruction;
   const Image before = developed->find(GRADUS_PASS_COMBINED);
   std::string failure;
-  std::vector<float> rgba = denoise_combined(*denoiser_, film, reconstruction, developed->region, threads_, cancel_,
-                                             *before, &failure);
+  std::vector<float> rgba =
+      denoise_combined(*denoiser_, film, reconstruction, developed->region, threads_, cancel_, *before, &failure);
   if (rgba.empty()) {
     warnings->push_back(failure);
     return false;

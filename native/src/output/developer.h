@@ -33,13 +33,13 @@ class Developer {
       uint32_t threads, CancelCheck cancel = [] { return false; },
       std::shared_ptr<const OidnLibrary> denoiser = nullptr);
 
-  // Reconstructs Combined and what is wanted of its error and its components, for `region` of the film. `options` are
-  // not AUTO. The images come from `source`, or from the film alone if there is none. The colours of L2 may be
+  // Reconstructs Combined, and what is wanted of its error and its components, with the options of `developed`, which
+  // are not AUTO. The images come from `source`, or from the film alone if there is none. The colours of L2 may be
   // negative, those of the other reconstructions are at least 0; alpha lies in [0, 1]. The error is the estimated
   // squared error of each pixel, as the mean over RGB. Throws invalid_operation if the film lacks the data that the
   // reconstruction reads.
-  DevelopedFilm reconstruct(std::shared_ptr<const film::Film> film, const Options& options, const Region& region,
-                            const reconstruct::ReconstructionOutputs& wanted = {}, const Source& source = nullptr);
+  void reconstruct(DevelopedFilm* developed, const reconstruct::ReconstructionOutputs& wanted = {},
+                   const Source& source = nullptr);
   // Denoises Combined if the options say so. Components are adapted so that they still add up to it, and the error is
   // scaled. Returns false if the picture is as before; if the denoiser fails, the cause is added to `warnings`. It must
   // be called from outside of TBB arenas.
@@ -47,6 +47,9 @@ class Developer {
   // Splits Combined into the light passes that the film has, unless they are there. Nothing is done for the noisy
   // image, because the light passes of the film itself belong to it.
   void split(DevelopedFilm* developed);
+
+  // Returns name and version of the denoiser. There must be one.
+  std::string denoiser_name() const { return denoiser_->name(); }
 
  private:
   // Calls the function in the arena. All of its threads flush denormals.

@@ -1,5 +1,6 @@
 #include "output/film_reader.h"
 
+#include "base/fault.h"
 #include "output/denoise_combined.h"
 #include "output/light_passes.h"
 #include "output/pass_read.h"
@@ -18,9 +19,10 @@ DevelopedFilm FilmReader::make_picture(const Options& options, bool with_error) 
   std::string why_not;
   const auto library = choose_denoiser(options.denoiser, device_.get(), &why_not);
   const Options resolved = resolve_auto(options, facts_of(*film_, library != nullptr));
-  Developer developer(threads_, [] { return false; }, library);
-  DevelopedFilm developed =
-      developer.reconstruct(film_, resolved, region_, {.error = with_error, .components = true});
+  Developer developer(
+      threads_, [] { return false; }, library);
+  DevelopedFilm developed{film_, region_, threads_, resolved};
+  developer.reconstruct(&developed, {.error = with_error, .components = true});
   std::vector<std::string> warnings;
   developer.denoise(&developed, &warnings);
   for (const std::string& warning : warnings) device_->warnings().add(warning);
@@ -31,6 +33,7 @@ DevelopedFilm FilmReader::develop(const Options& options, bool with_error) {
   const DevelopedFilm developed = make_picture(options, with_error);
   if (!has_light_passes(*film_) && film_->components.size() == 1) return developed;
   const std::lock_guard lock(mutex_);
+  if (GRADUS_FAULT(light_passes_keep_first_reconstruction) && last_.film) return developed;
   last_ = developed;
   last_.passes.erase(GRADUS_PASS_ERROR);
   return developed;

@@ -24,7 +24,6 @@ uint32_t resolve_reconstruction(uint32_t reconstruction, const FilmFacts& facts)
 }
 
 uint32_t resolve_denoiser(uint32_t denoiser, const FilmFacts& facts) {
-  if (denoiser > GRADUS_DENOISER_OIDN) throw invalid_argument("there is no denoiser " + std::to_string(denoiser));
   if (denoiser != GRADUS_DENOISER_AUTO) return denoiser;
   return facts.has_denoiser && facts.samples >= kDenoiserPays ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
 }

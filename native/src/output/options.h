@@ -41,7 +41,7 @@ inline constexpr uint32_t kDenoiserPays = 8;
 
 // Replaces AUTO; this is the only place that does. The reconstruction becomes the one for which the film was sampled.
 // If that is not known, it becomes the best one for which the film holds the data. The denoiser runs if there is one
-// and it pays. Throws invalid_argument for values that are no reconstruction or no denoiser.
+// and it pays. Throws invalid_argument for a value that is no reconstruction.
 Options resolve_auto(Options options, const FilmFacts& facts);
 
 // Returns the number of threads that sample and develop a film with these settings. `device` may be nullptr if

@@ -15,7 +15,7 @@ namespace gradus::schema {
 enum class PassKind : uint8_t {
   Image,     // Combined, Noisy Image
   Derived,   // gradients, variance, counts: from the frame's own planes
-  Solved,    // error: comes with Combined (output/combine.h)
+  Solved,    // error: comes with Combined (output/developer.h)
   Sequence,  // differences to the next frame: come with the delivery of a sequence (render/sequence), 0 elsewhere
   Radiance,  // sum of radiance, by halves; the film's exposure applies
   Light,     // the same, divided by its colour pass when read (contract 6.5)
