@@ -45,7 +45,7 @@ TEST_P(G5_Allocations, EachMayBeRefused) {
   for (uint64_t k = 1;; k += step, ++refusals) {
     const Attempt a = attempt(k, [&] { return render_once(device, GetParam(), &image); });
     EXPECT_EQ(a.code, a.hit ? GRADUS_ERROR_OUT_OF_MEMORY : GRADUS_OK) << "allocation " << k << ": " << a.text;
-    EXPECT_EQ(a.kept, 0) << "allocation " << k;
+    EXPECT_LE(a.kept, 0) << "allocation " << k;  // may fall: see expect_no_growth()
     if (!a.hit) break;
   }
   ASSERT_OK(render_once(device, GetParam(), &image));

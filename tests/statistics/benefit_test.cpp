@@ -6,9 +6,9 @@
 
 #include "base/clock.h"
 #include "gradient/gradient_integrator.h"
-#include "output/combine.h"
 #include "render/render.h"
 #include "schema/options.h"
+#include "support/developed.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
@@ -33,17 +33,15 @@ Measured measure(const integrator::IntegratorContext& base, bool gradient, uint3
   for (int seed = 0; seed < seeds(); ++seed) {
     integrator::IntegratorContext context = base;
     context.settings.seed = uint32_t(seed);
-    film::Film film = test::make_test_film(context.settings, gradient);
-    film.settings = context.settings;
+    const auto film = std::make_shared<film::Film>(test::make_test_film(context.settings, gradient));
+    film->settings = context.settings;
     const uint64_t began = thread_cpu_nanoseconds();
     test::sample_film(
         gradient ? *gradient::make_gradient_integrator(context) : *integrator::make_path_integrator(context), 0, count,
-        &film);
+        film.get());
     result.seconds += 1e-9 * double(thread_cpu_nanoseconds() - began);
-    reconstruct::SolveReport report;
-    moments.add(output::combine(
-        film, gradient ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_NONE, 0.0f, film.region, [] { return false; },
-        &report));
+    moments.add(
+        test::reconstructed(film, gradient ? GRADUS_RECONSTRUCTION_L2 : GRADUS_RECONSTRUCTION_NONE, film->region));
   }
   for (size_t i = 0; i < moments.size(); i += 4) {
     const double gray = (moments.mean(i) + moments.mean(i + 1) + moments.mean(i + 2)) / 3.0;

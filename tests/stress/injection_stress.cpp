@@ -3,9 +3,9 @@
 #include <limits>
 
 #include "film/finite_check.h"
-#include "output/combine.h"
 #include "render/fake_integrator.h"
 #include "stress/stress.h"
+#include "support/developed.h"
 
 namespace gradus::stress {
 namespace {
@@ -61,11 +61,7 @@ Images rendered(uint32_t size, uint32_t samples, const Injecting::Value& value) 
                         });
   EXPECT_TRUE(render.wait(-1.0));
   const auto film = render.film();
-  reconstruct::SolveReport report;
-  const auto image = [&](uint32_t how) {
-    return output::combine(
-        *film, how, 0.0f, film->region, [] { return false; }, &report);
-  };
+  const auto image = [&](uint32_t how) { return test::reconstructed(film, how, film->region); };
   Images images{image(GRADUS_RECONSTRUCTION_NONE), image(GRADUS_RECONSTRUCTION_L2), image(GRADUS_RECONSTRUCTION_L1),
                 film->counters};
   for (const auto* i : {&images.noisy, &images.l2, &images.l1}) expect_finite(*i, "image");

@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <sstream>
 
-#include "output/combine.h"
 #include "render/render.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
+#include "support/developed.h"
 #include "support/double_image.h"
 
 namespace gradus::stress {
@@ -157,9 +157,7 @@ Outcome render(const std::string& name, PathScene* scene, const Bounds& bounds, 
   outcome.noisy = read(render, GRADUS_PASS_NOISY_IMAGE, settings);
   outcome.l2 = read(render, GRADUS_PASS_COMBINED, settings);
   const auto film = render.film();
-  reconstruct::SolveReport report;
-  const std::vector<float> l1 = output::combine(
-      *film, GRADUS_RECONSTRUCTION_L1, 0.0f, film->region, [] { return false; }, &report);
+  const std::vector<float> l1 = test::reconstructed(film, GRADUS_RECONSTRUCTION_L1, film->region);
   expect_finite(l1, "L1");
   outcome.counters = film->counters;
   check(outcome.counters, bounds);

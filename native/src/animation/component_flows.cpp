@@ -4,7 +4,6 @@
 
 #include "film/region_pixels.h"
 #include "lpe/components.h"
-#include "output/component_read.h"
 #include "schema/pass_table.h"
 
 namespace gradus::animation {
@@ -16,11 +15,11 @@ struct KnownMotion {
   std::vector<float> tracked;  // kTracked or a negative cause (motion/tracking.h)
 };
 
-KnownMotion known_motion(const DevelopedFrame& developed, size_t component, Side side) {
+KnownMotion known_motion(const output::DevelopedFilm& developed, size_t component, Side side) {
   const film::ComponentPlanes& planes = developed.film->components[component];
-  const auto pixels = size_t(developed.delivered().area());
+  const auto pixels = size_t(developed.region.area());
   KnownMotion known{std::vector<Vec2>(pixels), std::vector<float>(pixels)};
-  for_pixels(*developed.film, developed.delivered(), [&](size_t i, size_t out) {
+  for_pixels(*developed.film, developed.region, [&](size_t i, size_t out) {
     const Vec4& motion = planes.motion[i];
     known.vectors[out] = side == Side::Previous ? Vec2(motion) : -Vec2(motion.z, motion.w);
     known.tracked[out] = planes.tracked[i];
@@ -30,13 +29,12 @@ KnownMotion known_motion(const DevelopedFrame& developed, size_t component, Side
 
 // Returns the radiance or irradiance on which the flow is estimated. The film's exposure is divided out, because it may
 // change from frame to frame.
-std::vector<Rgb> light_of(const DevelopedFrame& developed, const FlowKind& kind) {
-  const Region& region = developed.delivered();
+std::vector<Rgb> light_of(const output::DevelopedFilm& developed, const FlowKind& kind) {
+  const Region& region = developed.region;
   const uint32_t pass =
       kind.domain == motion::FlowDomain::Logarithmic ? GRADUS_COMPONENT_IRRADIANCE : GRADUS_COMPONENT_COLOR;
   std::vector<float> values(3 * size_t(region.area()));
-  output::read_component_pass(*developed.film, int(kind.component), pass, region, developed.components[kind.component],
-                              values.data());
+  developed.read_component(developed.film->components[kind.component].name, pass, values.data());
   const float exposure = developed.film->settings.film_exposure, factor = exposure > 0.0f ? 1.0f / exposure : 1.0f;
   std::vector<Rgb> light(values.size() / 3);
   for_pixels(*developed.film, region, [&](size_t, size_t out) {
@@ -49,13 +47,13 @@ std::vector<Rgb> light_of(const DevelopedFrame& developed, const FlowKind& kind)
 // Owns what optical flow reads of one component of one frame.
 class FlowInput {
  public:
-  FlowInput(const DevelopedFrame& developed, const FlowKind& kind, Side side)
+  FlowInput(const output::DevelopedFilm& developed, const FlowKind& kind, Side side)
       : light_(light_of(developed, kind)),
         known_(known_motion(developed, kind.component, side)),
         object_(light_.size()),
         depth_(light_.size()) {
     const std::vector<film::ShownPoint>& shown = developed.film->components[kind.component].shown;
-    for_pixels(*developed.film, developed.delivered(), [&](size_t i, size_t out) {
+    for_pixels(*developed.film, developed.region, [&](size_t i, size_t out) {
       object_[out] = int32_t(shown[i].object);
       depth_[out] = shown[i].depth;
     });
@@ -70,8 +68,8 @@ class FlowInput {
 };
 
 // Returns the index in @p kinds of the flow of a component in a domain, or the size of @p kinds if there is none.
-size_t place_of(const std::vector<FlowKind>& kinds, const DevelopedFrame& developed, const std::string& component,
-                motion::FlowDomain domain) {
+size_t place_of(const std::vector<FlowKind>& kinds, const output::DevelopedFilm& developed,
+                const std::string& component, motion::FlowDomain domain) {
   const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const FlowKind& kind) {
     return kind.domain == domain && developed.film->components[kind.component].name == component;
   });
@@ -93,11 +91,11 @@ std::vector<FlowKind> wanted_flows(const film::Film& frame) {
   return kinds;
 }
 
-std::array<FrameFlows, 2> flows_between(const motion::FlowLibrary& library, const DevelopedFrame& first,
-                                        const DevelopedFrame& second) {
+std::array<FrameFlows, 2> flows_between(const motion::FlowLibrary& library, const output::DevelopedFilm& first,
+                                        const output::DevelopedFilm& second) {
   const std::vector<FlowKind> kinds = wanted_flows(*first.film), others = wanted_flows(*second.film);
   std::array<FrameFlows, 2> flows{FrameFlows(kinds.size()), FrameFlows(others.size())};
-  const Region& region = first.delivered();
+  const Region& region = first.region;
   for (size_t k = 0; k < kinds.size(); ++k) {
     const std::string& name = first.film->components[kinds[k].component].name;
     const size_t other = place_of(others, second, name, kinds[k].domain);
@@ -111,7 +109,7 @@ std::array<FrameFlows, 2> flows_between(const motion::FlowLibrary& library, cons
   return flows;
 }
 
-void complete_flows(const DevelopedFrame& frame, Side side, motion::Tracking cause, FrameFlows* flows) {
+void complete_flows(const output::DevelopedFilm& frame, Side side, motion::Tracking cause, FrameFlows* flows) {
   const std::vector<FlowKind> kinds = wanted_flows(*frame.film);
   flows->resize(kinds.size());
   for (size_t k = 0; k < kinds.size(); ++k) {
@@ -122,19 +120,23 @@ void complete_flows(const DevelopedFrame& frame, Side side, motion::Tracking cau
   }
 }
 
-std::vector<FlowPass> join_flows(const DevelopedFrame& frame, const FrameFlows& previous, const FrameFlows& next) {
-  std::vector<FlowPass> passes;
-  const std::vector<FlowKind> kinds = wanted_flows(*frame.film);
+void store_flows(const FrameFlows& previous, const FrameFlows& next, output::DevelopedFilm* frame) {
+  const std::vector<FlowKind> kinds = wanted_flows(*frame->film);
   for (size_t k = 0; k < kinds.size(); ++k) {
     const motion::PixelMotion &before = previous[k], &after = next[k];
-    FlowPass pass{kinds[k], std::vector<Vec4>(before.vectors.size()), before.tracked};
-    for_pixels(*frame.film, frame.delivered(), [&](size_t, size_t out) {
-      pass.vectors[out] = Vec4(before.vectors[out], -after.vectors[out]);
-      if (pass.tracked[out] == motion::kTracked) pass.tracked[out] = after.tracked[out];
+    std::vector<float> vectors(4 * before.vectors.size()), tracked = before.tracked;
+    for_pixels(*frame->film, frame->region, [&](size_t, size_t out) {
+      const Vec4 vector(before.vectors[out], -after.vectors[out]);
+      std::copy_n(&vector[0], 4, &vectors[4 * out]);
+      if (tracked[out] == motion::kTracked) tracked[out] = after.tracked[out];
     });
-    passes.push_back(std::move(pass));
+    const bool of_irradiance = kinds[k].domain == motion::FlowDomain::Logarithmic;
+    const uint32_t vector_pass = of_irradiance ? GRADUS_COMPONENT_IRRADIANCE_MOTION : GRADUS_COMPONENT_MOTION,
+                   tracked_pass = of_irradiance ? GRADUS_COMPONENT_IRRADIANCE_TRACKED : GRADUS_COMPONENT_TRACKED;
+    const int component = int(kinds[k].component);
+    frame->component_passes[{component, vector_pass}] = output::make_image(std::move(vectors));
+    frame->component_passes[{component, tracked_pass}] = output::make_image(std::move(tracked));
   }
-  return passes;
 }
 
 }  // namespace gradus::animation

@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "animation/developed_frame.h"
 #include "motion/irradiance_motion.h"
+#include "output/developed_film.h"
 
 namespace gradus::animation {
 
@@ -29,18 +29,13 @@ enum class Side { Previous, Next };
 
 // Estimates the flows from `first` to the frame `second` after it, and from `second` back to `first`, of the components
 // that both frames have. Both frames must show the same region.
-std::array<FrameFlows, 2> flows_between(const motion::FlowLibrary& library, const DevelopedFrame& first,
-                                        const DevelopedFrame& second);
+std::array<FrameFlows, 2> flows_between(const motion::FlowLibrary& library, const output::DevelopedFilm& first,
+                                        const output::DevelopedFilm& second);
 // Fills in the flows that are not known with the motion of the surfaces. Their pixels are not tracked, for `cause`.
-void complete_flows(const DevelopedFrame& frame, Side side, motion::Tracking cause, FrameFlows* flows);
+void complete_flows(const output::DevelopedFilm& frame, Side side, motion::Tracking cause, FrameFlows* flows);
 
-// A flow as passes have it: (previous − now, now − next) in pixels, y up.
-struct FlowPass {
-  FlowKind kind;
-  std::vector<Vec4> vectors;
-  std::vector<float> tracked;  // 1 where both flows are tracked, otherwise the first cause why not
-};
-// Joins the flows to the previous and to the next frame into passes.
-std::vector<FlowPass> join_flows(const DevelopedFrame& frame, const FrameFlows& previous, const FrameFlows& next);
+// Joins the flows to the previous and to the next frame into the motion passes of the frame's components: vectors
+// (previous − now, now − next) in pixels, y up, and 1 where both flows are tracked, otherwise the first cause why not.
+void store_flows(const FrameFlows& previous, const FrameFlows& next, output::DevelopedFilm* frame);
 
 }  // namespace gradus::animation

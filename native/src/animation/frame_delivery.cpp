@@ -6,8 +6,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/threads.h"
-#include "output/component_read.h"
-#include "output/pass_read.h"
+#include "output/options.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
 
@@ -17,12 +16,12 @@ namespace {
 constexpr const char* kNotDelivered = "the frame was not delivered: ";
 
 // Whether some pass of the frame needs optical flow, and its film knows which points its components show.
-bool has_flow(const DevelopedFrame& developed) {
+bool has_flow(const output::DevelopedFilm& developed) {
   return schema::needs_flow(developed.film->settings) && !developed.film->components[0].shown.empty();
 }
 
-bool can_flow(const DevelopedFrame& from, const DevelopedFrame& to) {
-  return has_flow(from) && has_flow(to) && from.delivered() == to.delivered();
+bool can_flow(const output::DevelopedFilm& from, const output::DevelopedFilm& to) {
+  return has_flow(from) && has_flow(to) && from.region == to.region;
 }
 
 // Applies to the settings of `frame` the changes that `changed` makes to the settings of another frame, `other`.
@@ -53,7 +52,8 @@ void FrameDelivery::render() {
   }
   const std::shared_ptr<const DevelopedFrame> previous = make();
   double seconds_ahead = 0.0, cpu_ahead = 0.0;
-  if (sequence_->settings_.with_flow && has_flow(*developed_)) find_flow(previous.get(), &seconds_ahead, &cpu_ahead);
+  if (sequence_->settings_.with_flow && has_flow(developed_->pictures))
+    find_flow(previous.get(), &seconds_ahead, &cpu_ahead);
   check_cancelled();
   sequence_->forget_before(sequence_->needs(number_).first);
   const std::lock_guard lock(mutex_);
@@ -98,9 +98,10 @@ motion::Tracking FrameDelivery::leads_to(int place) {
   if (!sequence_->settings_.with_flow) return motion::Tracking::NoNeighbour;
   const GradusSettings settings = sequence_->traits_at(sequence_->place_of(number_)).settings;
   if (!schema::needs_flow(settings)) return motion::Tracking::NoNeighbour;
-  const bool is_other = changed_ && changed_->reconstruction != GRADUS_RECONSTRUCTION_AUTO;
-  const motion::Tracking found =
-      sequence_->flows_to(place, is_other ? changed_->reconstruction : settings.reconstruction);
+  output::Options options;
+  options.reconstruction = changed_ ? changed_->reconstruction : uint32_t{GRADUS_RECONSTRUCTION_AUTO};
+  options = output::resolve_auto(options, sequence_->facts_of(number_));
+  const motion::Tracking found = sequence_->flows_to(place, options.reconstruction);
   const bool has_library = sequence_->flow_library(&warnings_) != nullptr;
   return found == motion::Tracking::Tracked && !has_library ? motion::Tracking::NoFlowLibrary : found;
 }
@@ -120,7 +121,7 @@ void FrameDelivery::find_flow(const DevelopedFrame* previous, double* seconds_ah
   render::RenderStats& stats = developed_->record.stats;
   const ScopedTimer timer(&stats.seconds.correspondence, &stats.cpu_seconds.correspondence);
   const uint32_t threads =
-      render::threads_of(changed_ ? *changed_ : sampled_settings(number_), sequence_->device_.get());
+      output::threads_of(changed_ ? *changed_ : sampled_settings(number_), sequence_->device_.get());
   tbb::task_arena(arena_size(threads)).execute([&] { join(previous, leads_here, std::move(next), leads_on); });
   stats.warnings.insert(stats.warnings.end(), warnings_.begin(), warnings_.end());
 }
@@ -128,89 +129,50 @@ void FrameDelivery::find_flow(const DevelopedFrame* previous, double* seconds_ah
 void FrameDelivery::join(const DevelopedFrame* previous, motion::Tracking leads_here,
                          std::shared_ptr<DevelopedFrame> next, motion::Tracking leads_on) {
   const motion::FlowLibrary* library = sequence_->flow_library(&warnings_);
+  output::DevelopedFilm& pictures = developed_->pictures;
   FrameFlows back = std::exchange(sequence_->back_, {});
-  if (back.empty() && previous && can_flow(*previous, *developed_))
-    back = flows_between(*library, *previous, *developed_)[1];
-  complete_flows(*developed_, Side::Previous, or_no_neighbour(leads_here), &back);
+  if (back.empty() && previous && can_flow(previous->pictures, pictures))
+    back = flows_between(*library, previous->pictures, pictures)[1];
+  complete_flows(pictures, Side::Previous, or_no_neighbour(leads_here), &back);
   check_cancelled();
   FrameFlows forth;
-  if (next && can_flow(*developed_, *next)) {
-    std::array<FrameFlows, 2> both = flows_between(*library, *developed_, *next);
+  if (next && can_flow(pictures, next->pictures)) {
+    std::array<FrameFlows, 2> both = flows_between(*library, pictures, next->pictures);
     forth = std::move(both[0]);
     sequence_->back_ = std::move(both[1]);
   }
-  complete_flows(*developed_, Side::Next, or_no_neighbour(leads_on), &forth);
+  complete_flows(pictures, Side::Next, or_no_neighbour(leads_on), &forth);
   sequence_->ahead_ = std::move(next);
-  flows_ = join_flows(*developed_, back, forth);
+  store_flows(back, forth, &pictures);
 }
 
 std::shared_ptr<const DevelopedFrame> FrameDelivery::developed(const char* what) const {
   const std::lock_guard lock(mutex_);
-  require_film(developed_ ? developed_->film : nullptr, what, kNotDelivered);
+  require_film(developed_ ? developed_->pictures.film : nullptr, what, kNotDelivered);
   return developed_;
 }
 
-const Region& FrameDelivery::delivered() const { return developed("its passes come")->delivered(); }
+const Region& FrameDelivery::delivered() const { return developed("its passes come")->pictures.region; }
 
 void FrameDelivery::read_pass(uint32_t pass, float* pixels) const {
-  const std::shared_ptr<const DevelopedFrame> own = developed("its passes come");
-  const DevelopedFrame& frame = *own;
-  const std::vector<float>* plane = pass == GRADUS_PASS_COMBINED          ? &frame.combined
-                                    : pass == GRADUS_PASS_ERROR           ? &frame.error
-                                    : pass == GRADUS_PASS_GRADIENT_T      ? &frame.difference
-                                    : pass == GRADUS_PASS_GRADIENT_T_LINK ? &frame.link
-                                                                          : nullptr;
-  if (plane != nullptr && !plane->empty()) {
-    std::copy(plane->begin(), plane->end(), pixels);
-    return;
-  }
-  if (frame.light.read(pass, pixels)) return;
-  const Region& region = frame.delivered();
-  if (pass == GRADUS_PASS_ERROR) {  // empty after a cancelled delivery: the error is not known
-    std::fill_n(pixels, size_t(region.area()), 0.0f);
-    return;
-  }
-  const uint32_t threads = render::threads_of(frame.film->settings, sequence_->device_.get());
-  tbb::task_arena(arena_size(threads)).execute([&] { output::read_film_pass(*frame.film, pass, region, pixels); });
+  developed("its passes come")->pictures.read_pass(pass, pixels);
 }
 
 void FrameDelivery::read_component(const std::string& name, uint32_t pass, float* pixels) const {
-  const std::shared_ptr<const DevelopedFrame> own = developed("its passes come");
-  const DevelopedFrame& frame = *own;
-  output::check_component(frame.film->settings, name);
-  const Region& region = frame.delivered();
-  const int place = film::find_component(*frame.film, name);
-  const bool has_picture = place >= 0 && size_t(place) < frame.components.size();
-  if (place < 0 || (schema::is_of_picture(pass) && !has_picture))
-    return output::read_absent_component(pass, region, pixels);
-  if (output::is_by_flow(name, pass) && read_flow(size_t(place), pass, pixels)) return;
-  output::read_component_pass(*frame.film, place, pass, region,
-                              has_picture ? frame.components[size_t(place)] : std::vector<float>(), pixels);
-}
-
-bool FrameDelivery::read_flow(size_t component, uint32_t pass, float* pixels) const {
-  const FlowKind kind{
-      component, schema::is_irradiance_motion(pass) ? motion::FlowDomain::Logarithmic : motion::FlowDomain::Linear};
-  const auto flow = std::find_if(flows_.begin(), flows_.end(), [&](const FlowPass& f) { return f.kind == kind; });
-  if (flow == flows_.end()) return false;
-  if (schema::component_pass_info(pass).channels == 1) {
-    std::copy(flow->tracked.begin(), flow->tracked.end(), pixels);
-  } else {
-    for (const Vec4& vector : flow->vectors) pixels = std::copy_n(&vector[0], 4, pixels);
-  }
-  return true;
+  developed("its passes come")->pictures.read_component(name, pass, pixels);
 }
 
 std::string FrameDelivery::stats() const {
   const std::shared_ptr<const DevelopedFrame> own = developed("its stats come");
-  return render::stats_json(own->record.stats, own->record.plan, *own->film);
+  return render::stats_json(own->record.stats, own->record.plan, *own->pictures.film);
 }
 
-std::shared_ptr<const film::Film> FrameDelivery::film() const { return developed("its frame comes")->film; }
+std::shared_ptr<const film::Film> FrameDelivery::film() const { return developed("its frame comes")->pictures.film; }
 
 uint64_t FrameDelivery::memory_bytes() const {
-  return developed_ ? developed_->film->memory_bytes() + 4 * uint64_t(developed_->delivered().area()) * sizeof(float)
-                    : 0;
+  if (!developed_) return 0;
+  const output::DevelopedFilm& pictures = developed_->pictures;
+  return pictures.film->memory_bytes() + 4 * uint64_t(pictures.region.area()) * sizeof(float);
 }
 
 }  // namespace gradus::animation

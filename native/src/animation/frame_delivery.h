@@ -37,8 +37,6 @@ class FrameDelivery final : public render::RenderTask {
   void find_flow(const DevelopedFrame* previous, double* seconds_ahead, double* cpu_ahead);
   void join(const DevelopedFrame* previous, motion::Tracking leads_here, std::shared_ptr<DevelopedFrame> next,
             motion::Tracking leads_on);
-  // Reads a component pass from flow. Returns false if the component has no such flow.
-  bool read_flow(size_t component, uint32_t pass, float* pixels) const;
   // Returns the frame, which does not change after the end of the task. Readers do not keep the lock, because
   // progress() takes it.
   std::shared_ptr<const DevelopedFrame> developed(const char* what) const;
@@ -48,7 +46,6 @@ class FrameDelivery final : public render::RenderTask {
   const std::optional<GradusSettings> changed_;
   const CancelCheck cancel_ = [this] { return is_stopped(); };
   std::shared_ptr<DevelopedFrame> developed_;
-  std::vector<FlowPass> flows_;
   std::vector<std::string> warnings_;  // from loading the flow library
 };
 

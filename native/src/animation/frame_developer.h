@@ -6,9 +6,9 @@
 
 #include <tbb/task_arena.h>
 
-#include "animation/developed_frame.h"
 #include "animation/sequence.h"
 #include "base/cancel_check.h"
+#include "output/developer.h"
 
 namespace gradus::animation {
 
@@ -30,13 +30,14 @@ class FrameDeveloper {
  private:
   std::shared_ptr<DevelopedFrame> read();
   void check_cancelled() const;
-  Delivery delivery(const FrameRecord& record, bool is_planned, const film::Film& film) const;
-  void reconstruct(DevelopedFrame* developed);
-  void denoise(DevelopedFrame* developed);
-  // Scales the light passes so that they add up to the reconstructed and denoised picture.
-  void split_light(DevelopedFrame* developed);
+  // Returns the options for which the frame is developed, AUTO included. `own` are the settings of its film.
+  output::Options requested_options(const GradusSettings& own) const;
+  // Returns the reconstruction of the frame and, if `with_error`, its error. Components are reconstructed by windows of
+  // their own, except by REGULARIZED.
+  reconstruct::Reconstructed take_from_windows(const output::DevelopedFilm& developed, bool with_error,
+                                               reconstruct::SolveReport* report);
   // Computes the passes Gradient T and Gradient T Link from the fresh samples of the frame.
-  void read_differences_over_time(const film::Film& fresh, DevelopedFrame* developed);
+  void read_differences_over_time(const film::Film& fresh, output::DevelopedFilm* developed);
 
   Sequence& sequence_;
   const int32_t number_;
@@ -44,6 +45,7 @@ class FrameDeveloper {
   const CancelCheck& is_cancelled_;
   const uint32_t threads_;
   tbb::task_arena arena_;
+  std::shared_ptr<const output::OidnLibrary> denoiser_;  // nullptr until load(), or if there is none
 };
 
 }  // namespace gradus::animation

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "film/film_header.h"
+#include "output/developed_film.h"
 #include "render/plan.h"
 #include "render/stats.h"
 #include "scene/snapshot.h"
@@ -48,6 +49,13 @@ std::unique_ptr<PreviousFrame> make_previous_frame(std::shared_ptr<const scene::
 struct FrameRecord {
   render::Plan plan;
   render::RenderStats stats;
+};
+
+// A frame with its pictures.
+struct DevelopedFrame {
+  FrameRecord record;
+  std::optional<output::Options> requested;  // options for which it was developed; without a value the stored ones
+  output::DevelopedFilm pictures;            // of the fresh and the replayed samples, merged
 };
 
 // Whether pixels may have different numbers of samples. A replay then repeats the number of each pixel.

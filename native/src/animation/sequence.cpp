@@ -149,7 +149,7 @@ std::unique_ptr<render::RenderTask> Sequence::sample(std::shared_ptr<const scene
   input.snapshot = std::move(snapshot);
   input.settings = settings;
   input.settings.integrator = integrator_of(settings);
-  input.threads = render::threads_of(settings, device_.get());
+  input.threads = output::threads_of(settings, device_.get());
   input.factory = factory_;
   input.samples_only = true;
   return std::make_unique<FrameSampling>(shared_from_this(), std::move(input));
@@ -243,6 +243,16 @@ void Sequence::retain_pictures(const std::vector<std::vector<std::string>>& grou
   std::erase_if(pictures_, [&](const auto& entry) {
     return std::find(groups.begin(), groups.end(), entry.first) == groups.end();
   });
+}
+
+output::FilmFacts Sequence::facts_of(int32_t frame) {
+  const FrameTraits& traits = traits_at(place_of(frame));
+  const auto record = records_.find(frame);
+  output::FilmFacts facts;
+  facts.sampled_for = record != records_.end() ? record->second.plan.reconstruction : traits.settings.reconstruction;
+  facts.has_features = traits.features;
+  facts.has_gradients = traits.gradients;
+  return facts;
 }
 
 motion::Tracking Sequence::flows_to(int place, uint32_t reconstruction) {

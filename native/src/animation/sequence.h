@@ -93,6 +93,9 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   // Returns Tracked if flow can be estimated between the frame at `place` and the previous one, otherwise the cause.
   // reconstruction: method of both pictures.
   motion::Tracking flows_to(int place, uint32_t reconstruction);
+  // Returns what is known of a frame that was sampled: how it was planned, or what its files hold. The number of its
+  // samples is not among it.
+  output::FilmFacts facts_of(int32_t frame);
   // Returns the flow library, or nullptr if there is none. The first call then adds a warning.
   const motion::FlowLibrary* flow_library(std::vector<std::string>* warnings);
   // Forgets frames before this one, which no later picture needs.

@@ -3,13 +3,12 @@
 
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 
 #include "animation/sequence.h"
 #include "api/registry.h"
 #include "film/film.h"
-#include "output/light_passes.h"
+#include "output/film_reader.h"
 #include "render/render.h"
 #include "scene/device.h"
 #include "scene/scene.h"
@@ -57,27 +56,26 @@ struct SequenceObject {
   std::weak_ptr<RenderObject> running;  // The render that was started last.
 };
 
-// The picture that was last reconstructed from a film. Its light passes are computed when they are first read. The
-// noisy image needs none, because the light passes of the film belong to it.
-struct DevelopedPicture {
-  std::vector<float> rgba;
-  std::vector<std::vector<float>> components;  // RGB of each
-  bool is_noisy = false;
-  std::optional<output::LightPasses> light;
-};
-
-// Frames of renders are shared and immutable; merging replaces the frame by a new one.
+// Films of renders are shared and immutable; merging replaces the film by a new one.
 struct FilmObject {
-  explicit FilmObject(std::shared_ptr<scene::Device> shared_device) : device(std::move(shared_device)) {}
-  std::mutex mutex;
-  std::shared_ptr<scene::Device> device;
-  std::shared_ptr<const film::Film> film;
-  std::shared_ptr<DevelopedPicture>
-      developed;  // nullptr if there is no picture yet or it has no light passes or components. `mutex` guards `light`.
-  std::shared_ptr<const film::Film> get() {
-    const std::lock_guard lock(mutex);
-    return film;
+  FilmObject(std::shared_ptr<scene::Device> shared_device, std::shared_ptr<const film::Film> film)
+      : device(std::move(shared_device)), reader_(make_reader(std::move(film))) {}
+  const std::shared_ptr<scene::Device> device;
+
+  std::shared_ptr<output::FilmReader> reader() const {
+    const std::lock_guard lock(mutex_);
+    return reader_;
   }
+  std::shared_ptr<const film::Film> get() const { return reader()->film(); }
+  // Adds the samples of another film.
+  void merge(const film::Film& other);
+
+ private:
+  std::shared_ptr<output::FilmReader> make_reader(std::shared_ptr<const film::Film> film) const {
+    return std::make_shared<output::FilmReader>(std::move(film), device);
+  }
+  mutable std::mutex mutex_;  // guards the pointer
+  std::shared_ptr<output::FilmReader> reader_;
 };
 
 template <>

@@ -100,8 +100,6 @@ GradusError gradus_render_film(GradusRender render, GradusFilm* film) {
   return api::guard([&] {
     api::require(film, "frame") = 0;
     const auto from = api::find_handle<api::RenderObject>(render);
-    auto object = std::make_shared<api::FilmObject>(from->device);
-    object->film = from->render.film();
-    *film = api::add_handle(std::move(object));
+    *film = api::add_handle(std::make_shared<api::FilmObject>(from->device, from->render.film()));
   });
 }

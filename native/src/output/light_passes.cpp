@@ -141,8 +141,8 @@ reconstruct::PictureTerm make_term(const film::Film& film, const Region& region,
 
 bool has_light_passes(const film::Film& film) { return (film.channels.passes() & schema::light_passes()) != 0; }
 
-LightPasses::LightPasses(const film::Film& film, const Region& region, const std::vector<float>& rgba,
-                         const CancelCheck& cancel) {
+std::map<uint32_t, std::vector<float>> split_light(const film::Film& film, const Region& region,
+                                                   const std::vector<float>& rgba, const CancelCheck& cancel) {
   const LightPassPlanes planes = light_planes(film);
   const reconstruct::Field whole = to_field(rgba, 4, region, region);
   const Guides guides(film, region, whole);
@@ -159,23 +159,12 @@ LightPasses::LightPasses(const film::Film& film, const Region& region, const std
   if (!are_all) terms.push_back(make_term(film, region, guides.shared(), read_remainder(film, planes), cancel));
   throw_if_cancelled(cancel);
   reconstruct::add_up(whole, &terms);
+  std::map<uint32_t, std::vector<float>> passes;
   for (size_t k = 0; k < planes.size(); ++k) {
     if (colors[k].width() > 0) divide(colors[k], &terms[k].image);
-    passes_[planes[k]->pass] = reconstruct::interleave(terms[k].image);
+    passes[planes[k]->pass] = reconstruct::interleave(terms[k].image);
   }
-}
-
-bool LightPasses::read(uint32_t pass, float* pixels) const {
-  const auto known = passes_.find(pass);
-  if (known == passes_.end()) return false;
-  std::copy(known->second.begin(), known->second.end(), pixels);
-  return true;
-}
-
-size_t LightPasses::memory_bytes() const {
-  size_t values = 0;
-  for (const auto& [pass, pixels] : passes_) values += pixels.size();
-  return values * sizeof(float);
+  return passes;
 }
 
 }  // namespace gradus::output

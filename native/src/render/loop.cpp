@@ -8,14 +8,12 @@
 #include "base/threads.h"
 #include "film/film.h"
 #include "motion/component_motion.h"
-#include "output/combine.h"
-#include "output/component_read.h"
-#include "output/pass_read.h"
+#include "output/denoise_combined.h"
+#include "output/developer.h"
 #include "render/batches.h"
-#include "render/denoise_timed.h"
+#include "render/develop.h"
 #include "render/memory_estimate.h"
 #include "render/resume.h"
-#include "render/show_combined.h"
 #include "render/small_components.h"
 #include "render/tiles.h"
 #include "scene/device.h"
@@ -26,15 +24,6 @@ namespace {
 
 // Minimum time between two notifications of a new image during a long batch.
 constexpr int64_t kImageIntervalMs = 300;
-
-// Writes pass Error of the noisy image, which is delivered after a cancelled render.
-void read_error_of_noisy(const film::Film& film, const Region& region, float* pixels) {
-  reconstruct::SolveReport report;
-  std::vector<float> error;
-  output::combine(
-      film, GRADUS_RECONSTRUCTION_NONE, 0.0f, region, [] { return false; }, &report, &error);
-  std::copy(error.begin(), error.end(), pixels);
-}
 
 // Copies the names and expressions of the components into the film.
 void name_planes(const lpe::ComponentSet& set, film::Film* film) {
@@ -85,7 +74,7 @@ RenderLoop::RenderLoop(LoopInput input)
       denoiser_(output::choose_denoiser(input_.settings.denoiser, input_.device.get(), &why_no_denoiser_)),
       plan_(planned(input_, {denoiser_ ? denoiser_->name() : "", why_no_denoiser_})),
       arena_(arena_size(input_.threads)),
-      picture_(plan_.delivered),
+      picture_(plan_.delivered, input_.threads),
       live_view_(input_, plan_, stop_, &arena_, &picture_, &tracker_) {
   if (!input_.snapshot->has_camera) throw invalid_operation("the scene has no camera");
   refuse_warnings(input_);
@@ -108,12 +97,7 @@ void RenderLoop::render() {
   const bool denoises = denoises_after(plan_, film::mean_samples(*film_), &stats_.chosen, &stats_.skipped);
   if (!denoises) film_->settings.denoiser = GRADUS_DENOISER_NONE;
   set_phase(GRADUS_PHASE_RECONSTRUCTING);
-  reconstruct_film();
-  if (denoises && !is_stopped()) denoise_film();
-  check_cancelled();
-  if (output::has_light_passes(*film_) && (denoises || film_->settings.reconstruction != GRADUS_RECONSTRUCTION_NONE))
-    split_light();
-  check_cancelled();
+  develop_film(denoises);
 }
 
 GradientMap RenderLoop::choose_gradients() {
@@ -293,7 +277,7 @@ void RenderLoop::show(uint32_t begin) {
   if (begin < kBothHalves) {
     live_view_.show_quarter();
   } else {
-    live_view_.refresh(*film_, sampling_.seconds());
+    live_view_.refresh(film_, sampling_.seconds());
   }
   sampling_.start();
 }
@@ -312,9 +296,13 @@ void RenderLoop::tile_done(const Region& tile, uint64_t pixel_samples) {
   if (ms - last >= kImageIntervalMs && last_image_ms_.compare_exchange_strong(last, ms)) tracker_.new_image();
 }
 
-void RenderLoop::reconstruct_film() {
-  const ScopedTimer timer(&stats_.seconds.reconstruct, &stats_.cpu_seconds.reconstruct);
-  show_combined(*film_, film_->settings.reconstruction, plan_, stop_, &arena_, &picture_, &stats_.solve);
+void RenderLoop::develop_film(bool denoises) {
+  output::Developer developer(
+      input_.threads, [this] { return is_stopped(); }, denoises ? denoiser_ : nullptr);
+  output::DevelopedFilm developed{film_, plan_.delivered, input_.threads, output::options_of(film_->settings)};
+  const auto show = [&] { picture_.show(developed); };
+  develop(&developer, output::wanted_images(film_->settings), nullptr, show, &developed, &stats_);
+  check_cancelled();
 }
 
 void RenderLoop::find_motion() {
@@ -335,41 +323,20 @@ void RenderLoop::find_motion() {
   }
 }
 
-void RenderLoop::denoise_film() {
-  const CancelCheck cancel = [this] { return is_stopped(); };
-  std::vector<float> rgba =
-      denoise_timed(*denoiser_, *film_, plan_.delivered, input_.threads, cancel, picture_.combined(), &stats_);
-  if (rgba.empty()) return;
-  arena_.execute(
-      [&] { picture_.show_denoised(std::move(rgba), output::denoised_error(film_->settings.reconstruction)); });
-}
-
-void RenderLoop::split_light() {
-  const ScopedTimer timer(&stats_.seconds.reconstruct, &stats_.cpu_seconds.reconstruct);
-  const CancelCheck cancel = [this] { return is_stopped(); };
-  std::shared_ptr<const output::LightPasses> light;
-  arena_.execute(
-      [&] { light = std::make_shared<output::LightPasses>(*film_, plan_.delivered, picture_.combined(), cancel); });
-  const std::lock_guard lock(mutex_);
-  light_ = std::move(light);
-}
-
 void RenderLoop::set_phase(GradusPhase phase) {
   const std::lock_guard lock(mutex_);
   phase_ = phase;
-  if (!is_sampling()) picture_.end_tiles();
+  if (!is_sampling()) picture_.end_tiles(film_);
 }
 
 void RenderLoop::ending(GradusError) {
   integrator_.reset();
   stats_.total_seconds = seconds();
   stats_.process_cpu = process_cpu_seconds();
-  picture_.end_tiles();
+  picture_.end_tiles(film_);
 }
 
-uint64_t RenderLoop::memory_bytes() const {
-  return (film_ ? film_->memory_bytes() : 0) + picture_.memory_bytes() + (light_ ? light_->memory_bytes() : 0);
-}
+uint64_t RenderLoop::memory_bytes() const { return (film_ ? film_->memory_bytes() : 0) + picture_.memory_bytes(); }
 
 void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
   if (pass == GRADUS_PASS_COMBINED) live_view_.watch();
@@ -379,48 +346,22 @@ void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
       throw invalid_operation("pass " + std::string(schema::pass_info(pass).name) + " comes when sampling has ended");
     }
   }
-  if (picture_.read(pass, pixels)) return;
-  std::shared_ptr<const film::Film> film;
-  std::shared_ptr<const output::LightPasses> light;
-  {
-    const std::lock_guard lock(mutex_);
-    light = light_;
-    if (!is_sampling()) film = film_;
-  }
-  if (light && light->read(pass, pixels)) return;
-  if (film && pass == GRADUS_PASS_ERROR && schema::has_bit(plan_.passes, pass))
-    return read_error_of_noisy(*film, plan_.delivered, pixels);
-  if (film) {
-    // Uses a second arena, because the threads of the render's arena may still be reconstructing.
-    tbb::task_arena(arena_size(input_.threads)).execute([&] {
-      output::read_film_pass(*film, pass, plan_.delivered, pixels);
-    });
-    return;
-  }
-  std::fill_n(pixels, size_t(plan_.delivered.area()) * schema::pass_info(pass).channels, 0.0f);
+  picture_.read(pass, pixels);
 }
 
 void RenderLoop::read_component(const std::string& name, uint32_t pass, float* pixels) const {
   const GradusSettings& settings = input_.settings;
   output::check_component(settings, name);
-  std::shared_ptr<const film::Film> film;
   {
     const std::lock_guard lock(mutex_);
     if (is_sampling()) throw invalid_operation("component " + name + " comes when sampling has ended");
-    film = film_;
   }
-  const int component = components_.find(name);
-  if (!film || component < 0) return output::read_absent_component(pass, plan_.delivered, pixels);
-  if (!schema::has_bit(settings.component_passes, pass))
+  const output::DevelopedFilm shown = picture_.shown();
+  const bool is_sampled = shown.film && film::find_component(*shown.film, name) >= 0;
+  if (is_sampled && !schema::has_bit(settings.component_passes, pass))
     throw invalid_operation("pass " + std::string(schema::component_pass_info(pass).name) +
                             " of components was not asked for");
-  std::vector<float> color = picture_.component(component);
-  if (color.empty() && schema::is_of_picture(pass)) {  // the render was cancelled
-    color = output::crop_components(*film, GRADUS_RECONSTRUCTION_NONE, {film::read_images(*film, component).primal},
-                                    plan_.delivered)
-                .front();
-  }
-  output::read_component_pass(*film, component, pass, plan_.delivered, color, pixels);
+  shown.read_component(name, pass, pixels);
 }
 
 std::string RenderLoop::stats() const {

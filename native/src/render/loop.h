@@ -10,7 +10,6 @@
 
 #include "base/clock.h"
 #include "film/film.h"
-#include "output/light_passes.h"
 #include "output/oidn_library.h"
 #include "render/adaptive_sampling.h"
 #include "render/loop_input.h"
@@ -51,12 +50,10 @@ class RenderLoop final : public RenderTask {
   // Returns the components of the plan, with the small ones merged into the remainder.
   lpe::ComponentSet choose_components();
   void sample();
-  void reconstruct_film();
+  // Makes the delivered picture and its passes from the film.
+  void develop_film(bool denoises);
   // Computes the motion of components from the snapshot, which knows the frames before and after.
   void find_motion();
-  void denoise_film();
-  // Splits the final image into light passes.
-  void split_light();
   // Sets the end of the batch that begins at `begin`. Returns false if there is no further batch.
   bool next_batch(uint32_t begin, uint32_t* end) const;
   // Returns how many more samples per pixel the time limit allows.
@@ -96,7 +93,6 @@ class RenderLoop final : public RenderTask {
   Stopwatch sampling_;        // time of sampling, without previews
   uint32_t first_begin_ = 0;  // samples per pixel of the resumed film
   RenderStats stats_;
-  std::shared_ptr<const output::LightPasses> light_;  // light passes of the final image; nullptr if it has none
 };
 
 }  // namespace gradus::render

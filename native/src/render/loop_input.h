@@ -18,11 +18,6 @@ struct Replay {
   ComponentReplays components;   // replays of single components, by replay_map.of_component
 };
 
-// Returns the number of threads of a render with these settings. `device` may be nullptr if settings.threads is set.
-inline uint32_t threads_of(const GradusSettings& settings, const scene::Device* device) {
-  return settings.threads > 0 ? settings.threads : device != nullptr ? device->threads() : 1;
-}
-
 struct LoopInput {
   std::shared_ptr<scene::Device> device;
   std::shared_ptr<const scene::Snapshot> snapshot;

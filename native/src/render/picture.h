@@ -1,48 +1,45 @@
-// The images of a running render that can be read at any time and from any thread: the noisy image, updated tile by
-// tile, and the reconstruction that is shown as Combined.
+// The pictures of a running render that can be read at any time and from any thread: the noisy image, updated tile by
+// tile, and the developed film or its preview.
 //
 // Readers do not wait for samplers, whose batch may take long, and never see a partially written image.
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <mutex>
 #include <vector>
 
-#include "film/film.h"
+#include "output/developed_film.h"
 
 namespace gradus::render {
 
 class Picture {
  public:
-  explicit Picture(const Region& region) : region_(region) {}
+  // `threads` is the number of threads that read passes of the film.
+  Picture(const Region& region, uint32_t threads);
 
   // Allocates the noisy image, black until tiles are shown.
   void expect_tiles();
   // Copies the current mean of the samples of `tile` into the noisy image.
   void show_tile(const film::Film& film, const Region& tile);
-  // Sets Combined: RGBA of the region, pass Error (empty if it is not wanted), and RGB of each component (empty: none).
-  void show(std::vector<float> rgba, std::vector<float> error, std::vector<std::vector<float>> components = {});
-  // Replaces Combined by the denoised image. Must be called by the thread that called show(). `error` is the factor by
-  // which the squared error changes.
-  void show_denoised(std::vector<float> rgba, float error);
-  // Releases the noisy image. From now on it is read from the film.
-  void end_tiles();
+  // Releases the noisy image. From now on all that is not yet developed is read from the film, which no longer changes.
+  // It is nullptr if the render ended before it had one.
+  void end_tiles(std::shared_ptr<const film::Film> film);
+  // Shows a developed film. While samples are taken, it is a preview without a film.
+  void show(output::DevelopedFilm developed);
 
   bool is_reconstructed() const;
-  // Returns Combined. Only for the thread that calls show(), because it takes no lock.
-  const std::vector<float>& combined() const { return combined_; }
-  // Copies the image of a pass. Returns false if there is none.
-  bool read(uint32_t pass, float* pixels) const;
-  // Returns RGB of a component; empty if there is none.
-  std::vector<float> component(int number) const;
-  size_t memory_bytes() const;
+  // Returns what is shown. It has no film until end_tiles().
+  output::DevelopedFilm shown() const;
+  // Writes a pass. Until end_tiles(), the noisy image serves as Combined if no preview is shown, and passes that are
+  // not known are 0.
+  void read(uint32_t pass, float* pixels) const;
+  size_t memory_bytes() const;  // of the images
 
  private:
-  const Region region_;
   mutable std::mutex mutex_;
-  std::vector<float> noisy_, combined_;  // RGBA; empty if there is no such image
-  std::vector<float> error_;
-  std::vector<std::vector<float>> components_;
+  std::vector<float> tiles_;  // RGBA of the noisy image; empty if it is read from the film
+  output::DevelopedFilm shown_;
 };
 
 }  // namespace gradus::render

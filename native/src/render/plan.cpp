@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/text_list.h"
 #include "bsdf/ggx.h"
+#include "output/options.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
 
@@ -25,13 +26,10 @@ bool needs_gradients(uint32_t reconstruction) {
   return reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_L1;
 }
 
-// Number of samples per pixel from which the host's denoiser reduces the error more than further samples in the same
-// time would.
-constexpr uint32_t kDenoiserPays = 8;
-static_assert(kDenoiserPays <= kFirstCheck);  // blocks that stop by their noise have enough samples to denoise
+static_assert(output::kDenoiserPays <= kFirstCheck);  // blocks that stop by their noise have enough samples to denoise
 
 std::string too_few_to_denoise() {
-  return "with fewer than " + std::to_string(kDenoiserPays) + " samples its time buys more as samples";
+  return "with fewer than " + std::to_string(output::kDenoiserPays) + " samples its time buys more as samples";
 }
 
 void choose_automatically(const GradusSettings& settings, Plan* plan) {
@@ -67,18 +65,25 @@ void choose_integrator(const GradusSettings& settings, Plan* plan) {
     plan->skipped.emplace_back("gradients", "the integrator is " + choice_of("integrator", plan->integrator));
 }
 
-void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
+// Returns the options with which the film will be developed. A film of the integrators AUTO and GRADIENT is sampled
+// with features if its reconstruction reads them; a user who chose plain samples expects the noisy image.
+output::Options planned_options(const GradusSettings& settings, const HostDenoiser& denoiser) {
+  output::FilmFacts facts;
+  facts.has_features =
+      settings.integrator == GRADUS_INTEGRATOR_AUTO || settings.integrator == GRADUS_INTEGRATOR_GRADIENT;
+  facts.samples = settings.samples;
+  facts.has_denoiser = !denoiser.name.empty();
+  return output::resolve_auto(output::options_of(settings), facts);
+}
+
+void choose_reconstruction(const GradusSettings& settings, const output::Options& options, Plan* plan) {
   const uint32_t requested = settings.reconstruction;
   if (needs_gradients(requested) && !plan->gradients) {
     throw invalid_argument("reconstruction " + choice_of("reconstruction", requested) +
                            " needs gradients, but the integrator is " + choice_of("integrator", plan->integrator) +
                            ": use integrator gradient or reconstruction none");
   }
-  plan->reconstruction = requested;
-  if (requested == GRADUS_RECONSTRUCTION_AUTO) {  // a user who chose plain samples expects the noisy image
-    const bool plain = settings.integrator != GRADUS_INTEGRATOR_AUTO && !plan->gradients;
-    plan->reconstruction = plain ? GRADUS_RECONSTRUCTION_NONE : GRADUS_RECONSTRUCTION_REGULARIZED;
-  }
+  plan->reconstruction = options.reconstruction;
   plan->solves = plan->reconstruction != GRADUS_RECONSTRUCTION_NONE;
   const char* why = requested != GRADUS_RECONSTRUCTION_AUTO
                         ? "set by the user"
@@ -93,11 +98,12 @@ void choose_reconstruction(const GradusSettings& settings, Plan* plan) {
   }
 }
 
-void choose_denoiser(const GradusSettings& settings, const HostDenoiser& denoiser, Plan* plan) {
+void choose_denoiser(const GradusSettings& settings, const output::Options& options, const HostDenoiser& denoiser,
+                     Plan* plan) {
   const bool automatic = settings.denoiser == GRADUS_DENOISER_AUTO;
   if (denoiser.name.empty()) {
     plan->skipped.emplace_back("denoiser", denoiser.why_not);
-  } else if (automatic && !denoiser_pays(settings.samples)) {
+  } else if (automatic && options.denoiser == GRADUS_DENOISER_NONE) {
     plan->skipped.emplace_back("denoiser", "automatic: " + too_few_to_denoise());
   } else {
     plan->denoises = true;
@@ -212,9 +218,10 @@ uint32_t first_check(const GradusSettings& settings) {
 Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot, const HostDenoiser& denoiser) {
   schema::check_settings(settings);
   Plan plan;
-  choose_denoiser(settings, denoiser, &plan);
+  const output::Options options = planned_options(settings, denoiser);
+  choose_denoiser(settings, options, denoiser, &plan);
   choose_integrator(settings, &plan);
-  choose_reconstruction(settings, &plan);
+  choose_reconstruction(settings, options, &plan);
   choose_region(settings, &plan);
   plan.channels = settings.film_transparent || snapshot.features.has_holdouts ? 4 : 3;
   plan.first_check = first_check(settings);
@@ -243,13 +250,11 @@ uint32_t without_gradients(const Plan& plan) {
   return needs_gradients(plan.reconstruction) ? uint32_t{GRADUS_RECONSTRUCTION_NONE} : plan.reconstruction;
 }
 
-bool denoiser_pays(double samples) { return samples >= kDenoiserPays; }
-
 bool denoises_after(const Plan& plan, double samples, Reasons* chosen, Reasons* skipped) {
   if (!plan.denoises_if_it_pays) return plan.denoises;
   char taken[80];
   std::snprintf(taken, sizeof(taken), "automatic: %.1f samples were taken within the time limit", samples);
-  if (!denoiser_pays(samples)) {
+  if (samples < output::kDenoiserPays) {
     skipped->emplace_back("denoiser", taken + std::string(": ") + too_few_to_denoise());
     return false;
   }

@@ -62,10 +62,6 @@ constexpr int kMaxRegressionBlock = 16;
 // benefit.
 uint32_t without_gradients(const Plan& plan);
 
-// Returns whether the denoiser reduces the error of `samples` samples per pixel more than further samples in the same
-// time would.
-bool denoiser_pays(double samples);
-
 // Returns whether the denoiser runs after `samples` samples per pixel. Where the plan left that open, adds the decision
 // and its reason to `chosen` or `skipped`.
 bool denoises_after(const Plan& plan, double samples, Reasons* chosen, Reasons* skipped);

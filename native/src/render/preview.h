@@ -3,9 +3,12 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
+#include <optional>
 
 #include <tbb/task_arena.h>
 
+#include "output/developer.h"
 #include "render/loop_input.h"
 #include "render/picture.h"
 #include "render/plan.h"
@@ -32,7 +35,7 @@ class Preview {
   void show_quarter();
   // Reconstructs the film and shows the result. All pixels have samples in both half-buffers. `sampled` is the time of
   // sampling so far, in seconds.
-  void refresh(const film::Film& film, double sampled);
+  void refresh(const std::shared_ptr<const film::Film>& film, double sampled);
 
   double seconds() const { return seconds_; }
   double cpu_seconds() const { return cpu_seconds_; }
@@ -43,6 +46,14 @@ class Preview {
   // shown.
   uint32_t shown(uint32_t reconstruction) const;
   bool is_stopped() const { return stop_.load(std::memory_order_relaxed); }
+  // Samples the film of the quarter preview: plain paths, an eighth of a sample for each pixel of the full size.
+  std::shared_ptr<const film::Film> sample_quarter() const;
+  // Reconstructs a film. Returns nothing if the render was cancelled.
+  std::optional<output::DevelopedFilm> develop(std::shared_ptr<const film::Film> film, uint32_t reconstruction,
+                                               const Region& region,
+                                               const reconstruct::ReconstructionOutputs& wanted) const;
+  // Enlarges the images of the quarter preview to the delivered region.
+  output::DevelopedFilm enlarge_quarter(const output::DevelopedFilm& quarter) const;
 
   const LoopInput& input_;
   const Plan& plan_;

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "gradient/gradient_integrator.h"
+#include "output/options.h"
 #include "render/loop.h"
 #include "scene/device.h"
 #include "schema/pass_table.h"
@@ -45,7 +46,7 @@ LoopInput make_input(std::shared_ptr<scene::Device> device, std::shared_ptr<cons
                      const GradusSettings& settings, std::shared_ptr<const film::Film> resumed,
                      const IntegratorFactory& factory) {
   LoopInput input;
-  input.threads = threads_of(settings, device.get());
+  input.threads = output::threads_of(settings, device.get());
   input.device = std::move(device);
   input.snapshot = std::move(snapshot);
   input.settings = settings;

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "output/combine.h"
 #include "render/plan.h"
 #include "render/render.h"
 #include "schema/options.h"
+#include "support/developed.h"
 #include "support/path_scene.h"
 
 namespace gradus {
@@ -42,9 +42,7 @@ FilmPointer sampled(const std::shared_ptr<const scene::Snapshot>& snapshot, cons
 }
 
 std::vector<float> border_of(const FilmPointer& film, uint32_t reconstruction) {
-  reconstruct::SolveReport report;
-  return output::combine(
-      *film, reconstruction, 0.0f, kBorder, [] { return false; }, &report);
+  return test::reconstructed(film, reconstruction, kBorder);
 }
 
 double squared_distance(const std::vector<float>& a, const std::vector<float>& b) {

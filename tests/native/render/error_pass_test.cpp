@@ -1,7 +1,7 @@
 // The pass Error of renders and of their films.
 #include <gtest/gtest.h>
 
-#include "output/combine.h"
+#include "output/developer.h"
 #include "render/fake_integrator.h"
 #include "render/plan.h"
 #include "support/statistics.h"
@@ -74,11 +74,12 @@ TEST(ErrorPass, ScalesWithTheExposure) {
 TEST(ErrorPass, OfARegionHasItsPixels) {
   GradusSettings settings = error_settings(GRADUS_INTEGRATOR_PATH, GRADUS_RECONSTRUCTION_NONE);
   const auto film = rendered(settings);
-  reconstruct::SolveReport report;
-  std::vector<float> whole, part;
-  const auto never = [] { return false; };
-  output::combine(*film, GRADUS_RECONSTRUCTION_NONE, 0.0f, kAll, never, &report, &whole);
-  output::combine(*film, GRADUS_RECONSTRUCTION_NONE, 0.0f, {7, 11, 30, 29}, never, &report, &part);
+  const auto error_of = [&](const Region& region) {
+    output::DevelopedFilm developed{film, region, 2};
+    output::Developer(2).reconstruct(&developed, {.error = true});
+    return *developed.find(GRADUS_PASS_ERROR);
+  };
+  const std::vector<float> whole = error_of(kAll), part = error_of({7, 11, 30, 29});
   ASSERT_EQ(part.size(), 23u * 18u);
   for (size_t i = 0; i < part.size(); ++i) EXPECT_EQ(part[i], whole[(11 + i / 23) * kSide + 7 + i % 23]);
 }

@@ -190,7 +190,7 @@ TEST(Preview, TakesATwentiethOfTheTime) {
   const render::Plan plan = render::make_plan(input.settings, *empty_snapshot());
   const std::atomic<bool> stop{false};
   tbb::task_arena arena(2);
-  render::Picture picture(plan.delivered);
+  render::Picture picture(plan.delivered, 2);
   render::ProgressTracker tracker;
   render::Preview view(input, plan, stop, &arena, &picture, &tracker);
   view.watch();
@@ -200,7 +200,7 @@ TEST(Preview, TakesATwentiethOfTheTime) {
   double sampled = 0.0;
   for (uint32_t i = 1; i <= 5; ++i) {
     const double before = view.seconds();
-    view.refresh(*film, sampled);
+    view.refresh(film, sampled);
     const double cost = view.seconds() - before;
     EXPECT_GT(cost, 0.0);
     EXPECT_EQ(tracker.version(), i);

@@ -1,0 +1,51 @@
+// The options with which a film is developed, and what AUTO stands for in them.
+#pragma once
+
+#include <cstdint>
+
+#include "film/film.h"
+#include "gradus/gradus.h"
+
+namespace gradus::scene {
+class Device;
+}  // namespace gradus::scene
+
+namespace gradus::output {
+
+struct Options {
+  uint32_t reconstruction = GRADUS_RECONSTRUCTION_NONE;
+  float alpha = 0.0f;  // weight of the noisy image against the gradients; 0: reconstruct::chosen_alpha()
+  uint32_t denoiser = GRADUS_DENOISER_NONE;
+  float exposure = 1.0f;  // factor on all radiance; readers of the film take it from the film's settings
+  bool operator==(const Options&) const = default;
+};
+
+// Returns the options that the settings hold. They may be AUTO.
+Options options_of(const GradusSettings& settings);
+// Writes the options into the settings of a film, so that its later readers do not choose again.
+void store_options(const Options& options, GradusSettings* settings);
+
+// What is known of a film before or after it is sampled. AUTO is resolved by it.
+struct FilmFacts {
+  uint32_t sampled_for = GRADUS_RECONSTRUCTION_AUTO;  // reconstruction for which it was sampled; AUTO: not known
+  bool has_features = false, has_gradients = false;
+  double samples = 0.0;       // per pixel
+  bool has_denoiser = false;  // whether the machine has a denoiser
+};
+// Returns the facts that the content of a film shows.
+FilmFacts facts_of(const film::Film& film, bool has_denoiser);
+
+// Number of samples per pixel from which the denoiser reduces the error more than further samples in the same time
+// would.
+inline constexpr uint32_t kDenoiserPays = 8;
+
+// Replaces AUTO; this is the only place that does. The reconstruction becomes the one for which the film was sampled.
+// If that is not known, it becomes the best one for which the film holds the data. The denoiser runs if there is one
+// and it pays. Throws invalid_argument for a value that is no reconstruction.
+Options resolve_auto(Options options, const FilmFacts& facts);
+
+// Returns the number of threads that sample and develop a film with these settings. `device` may be nullptr if
+// settings.threads is set.
+uint32_t threads_of(const GradusSettings& settings, const scene::Device* device);
+
+}  // namespace gradus::output
