@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "api/arrays.h"
 #include "api/guard.h"
 #include "api/objects.h"
+#include "api/structs.h"
 #include "base/fault.h"
 #include "base/fpu.h"
 #include "base/threads.h"

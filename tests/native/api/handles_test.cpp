@@ -13,7 +13,6 @@
 #include <sstream>
 #include <thread>
 
-#include "api/error_slot.h"
 #include "api/guard.h"
 #include "api/registry.h"
 #include "api/test_scene.h"
