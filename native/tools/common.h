@@ -13,7 +13,7 @@ namespace gradus::tool {
 
 inline constexpr int kExitFailure = 1;
 inline constexpr int kExitUsage = 2;
-inline constexpr int kExitInterrupted = 130;  // as shells report SIGINT
+inline constexpr int kExitInterrupted = 130;  // exit code of shells for SIGINT
 
 // Each function adds its subcommand to `app`. The subcommand sets *exit_code to the exit code of the program.
 void add_render(CLI::App* app, int* exit_code);
