@@ -121,14 +121,14 @@ void build_lights(const geometry::EmbreeDevice& device, std::vector<light::Analy
 }
 
 void find_sharpest(Snapshot* snapshot) {
-  const auto look_at = [&](uint32_t m) {
+  const auto add_features_of = [&](uint32_t m) {
     SceneFeatures& features = snapshot->features;
     features.min_alpha = std::min(features.min_alpha, snapshot->materials[m]->min_alpha);
     features.min_refracting_alpha =
         std::min(features.min_refracting_alpha, snapshot->materials[m]->min_refracting_alpha);
   };
   for (const geometry::InstanceData& instance : snapshot->instances)
-    std::for_each(instance.materials.begin(), instance.materials.end(), look_at);
+    std::for_each(instance.materials.begin(), instance.materials.end(), add_features_of);
 }
 
 // Sets has_holdouts, which says whether an object or a shader makes holdouts, which have alpha 0 in the film.

@@ -21,7 +21,7 @@ class MaterialSource {
   // Returns the content hash with the hashes of the images instead of their keys.
   uint64_t hash_with(const std::function<uint64_t(uint64_t key)>& image) const;
   // Returns whether the compiled material depends on images.
-  bool looks_at_images() const;
+  bool depends_on_images() const;
   const std::string& name() const { return name_; }
 
  private:

@@ -21,7 +21,8 @@ struct SceneFeatures {
   float min_alpha = 1.0f;                  // lower bound on the roughness of all lobes
   float min_refracting_alpha = kInfinity;  // that of refracting lobes; infinite without any
   bool has_lights = false;
-  bool only_lights_emit = false;  // no surface adds anything to a ray that ends a path; only lights and the world do
+  bool only_lights_emit =
+      false;  // no surface adds any radiance to a ray that ends a path; only the lights and the world do that
   bool world_emits = true;
   bool has_motion = false;    // something moves while the shutter is open
   bool has_holdouts = false;  // objects or shaders that make alpha 0 in the film

@@ -53,7 +53,7 @@ void load_images(Device& device, const CommitMonitor& monitor, Scene::State* sta
     state->stored_images = std::move(images);
     // Programs that use images are compiled again, because constants from an image may be folded into them. Others are
     // reused, because the table of a sky takes a third of a second.
-    std::erase_if(state->compiled, [](const auto& entry) { return entry.second.source->looks_at_images(); });
+    std::erase_if(state->compiled, [](const auto& entry) { return entry.second.source->depends_on_images(); });
   }
   snapshot->images = state->image_store;
   const std::vector<std::string> warnings = state->image_store->warnings();
