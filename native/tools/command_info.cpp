@@ -1,6 +1,7 @@
 // gradus info FILE
 #include <cstdio>
 #include <filesystem>
+
 #include <nlohmann/json.hpp>
 
 #include "api/recorder.h"

@@ -1,5 +1,6 @@
 // gradus motion SCENE.gradus, which measures the accuracy and the time of the components' motion to the next frame.
 #include <cstdio>
+
 #include <nlohmann/json.hpp>
 
 #include "api/recorder.h"

@@ -1,10 +1,11 @@
 // Helper functions that the subcommands of the tool share.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 #include "gradus/gradus.hpp"
 #include "pass_names.h"

@@ -1,18 +1,18 @@
 // gradus reconstruct FOLDER -o FOLDER
-#include "reconstruct.h"
-
 #include <array>
 #include <cstdio>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+
+#include <nlohmann/json.hpp>
 
 #include "animation/sequence_folder.h"
 #include "component_layers.h"
 #include "film_io/image_exr.h"
 #include "film_io/store.h"
+#include "reconstruct.h"
 #include "reconstruct/space_time/window_grid.h"
 #include "schema/pass_table.h"
 #include "stored_sequence.h"

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <memory>
 #include <new>
+
 #include <nlohmann/json.hpp>
 
 #include "api/recorder.h"

@@ -1,6 +1,4 @@
 // G1, G3, G4, G6 and G10 of the C API: wrong handles, the error slot, calls in any order, many handles.
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -12,6 +10,8 @@
 #include <set>
 #include <sstream>
 #include <thread>
+
+#include <gtest/gtest.h>
 
 #include "api/guard.h"
 #include "api/registry.h"
