@@ -114,7 +114,7 @@ class Baker:
             found = self.bake(name)
             if found is not None:
                 curve, matrix = found
-                space = native.ColorSpace(name=native.text(name), curve_count=len(curve), curve=native.pointer(curve))
+                space = native.ColorSpace(name=native.name(name), curve_count=len(curve), curve=native.pointer(curve))
                 space.matrix[:] = matrix
                 library.device_set_color_space(device, ctypes.byref(space))
 

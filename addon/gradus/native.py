@@ -259,9 +259,14 @@ def text(value: str | None) -> bytes | None:
     return None if value is None else value.encode("utf-8", "surrogateescape")
 
 
-def text_array(values: Sequence[str]) -> Any:
+def name(value: str | None) -> bytes | None:
+    """Encodes a name for a const char* field, which must be valid UTF-8. Surrogates of undecodable bytes become '?'."""
+    return None if value is None else value.encode("utf-8", "replace")
+
+
+def name_array(values: Sequence[str]) -> Any:
     """Returns a const char* const*, or NULL (None) if there are no values."""
-    return (ctypes.c_char_p * len(values))(*(text(value) for value in values)) if values else None
+    return (ctypes.c_char_p * len(values))(*(name(value) for value in values)) if values else None
 
 
 def struct_array(kind: type[StructT], items: Iterable[StructT]) -> Any:

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+
 #include <nlohmann/json.hpp>
 
 #include "common.h"
@@ -17,7 +18,7 @@ struct CompareArguments {
   double fail_above = std::numeric_limits<double>::infinity();
 };
 
-// An image, or a stored frame as its settings reconstruct it.
+// Returns an image, or a stored frame, reconstructed by its settings.
 compare::RgbImage load(const std::string& path, const std::string& layer) {
   if (!film_io::is_film_file(path)) {
     film_io::LoadedImage image = film_io::load_rgb(path, layer);
@@ -65,7 +66,7 @@ void add_compare(CLI::App* app, int* exit_code) {
       ->required()
       ->check(CLI::ExistingFile)
       ->check(exr_only);
-  command->add_option("reference", args->reference, "What it is compared with, EXR")
+  command->add_option("reference", args->reference, "Image or stored frame that it is compared with, EXR")
       ->required()
       ->check(CLI::ExistingFile)
       ->check(exr_only);

@@ -1,6 +1,7 @@
 // gradus info FILE
 #include <cstdio>
 #include <filesystem>
+
 #include <nlohmann/json.hpp>
 
 #include "api/recorder.h"
@@ -16,8 +17,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Names of files of a sequence that are missing or cannot be read, and why. Where there are any, the exit code is that
-// of a failure.
+// Key of the files of a sequence that are missing or cannot be read, with the reasons. If there are any, the exit code
+// is that of a failure.
 constexpr const char* kDamaged = "damaged";
 
 ordered_json scene_info(const std::string& path) {
@@ -110,8 +111,8 @@ void add_info(CLI::App* app, int* exit_code) {
     bool json = false;
   };
   auto args = std::make_shared<Arguments>();
-  CLI::App* command =
-      app->add_subcommand("info", "Say what a scene file, a stored frame, a folder of frames or an image holds");
+  CLI::App* command = app->add_subcommand(
+      "info", "Describe the contents of a scene file, a stored frame, a folder of frames or an image");
   command->add_option("file", args->path, "FILE.gradus, FILE.exr, or a folder of a frame store")
       ->required()
       ->check(CLI::ExistingPath);

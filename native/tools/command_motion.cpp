@@ -1,5 +1,6 @@
-// gradus motion SCENE.gradus: how well the components' motion to the next frame is found, and at what price.
+// gradus motion SCENE.gradus, which measures the accuracy and the time of the components' motion to the next frame.
 #include <cstdio>
+
 #include <nlohmann/json.hpp>
 
 #include "api/recorder.h"
@@ -64,7 +65,7 @@ ordered_json measure(const scene::Snapshot& snapshot, const GradusSettings& sett
   change.add(*moved);
   if (!change.any())
     std::fprintf(stderr, "warning: nothing moves to the next frame; was the scene saved with passes of motion?\n");
-  const int followed = components.count() - 1;  // no path stands for all that is left over
+  const int followed = components.count() - 1;  // without the remainder, which has no common path
   const std::vector<motion::ChainView> views = billed([&] {
     return motion::view_chains(
         centres, settings, components, (1u << followed) - 1, [] { return false; }, &change);
@@ -101,7 +102,7 @@ void add_motion(CLI::App* app, int* exit_code) {
   command->add_option("scene", args->path, "FILE.gradus, saved with vectors")->required()->check(CLI::ExistingFile);
   command->add_option("--components", args->components, "Name=EXPRESSION;Name=EXPRESSION; default: the default set");
   command->add_option("--check", args->checked,
-                      "Pixels of each component to be held against a dense search of the film");
+                      "Pixels of each component that are compared with a dense search of the film");
   command->add_option("--threads", args->threads, "Threads; 0: all");
   command->callback([args, exit_code] {
     GradusDeviceSettings device_settings{};

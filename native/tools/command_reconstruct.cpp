@@ -13,7 +13,7 @@ namespace {
 
 bool is_sequence(const ReconstructArguments& args) { return std::filesystem::is_directory(args.input); }
 
-// What would be ignored, or lost, is refused before anything is read.
+// Refuses arguments that would be ignored, and outputs that would overwrite an input, before any file is read.
 void check_usage(const ReconstructArguments& args, uint32_t reconstruction, uint32_t denoiser) {
   check_apart("--output", args.output, args.input);
   for (const std::string& path : args.merged) check_apart("--output", args.output, path);
@@ -40,7 +40,7 @@ void check_usage(const ReconstructArguments& args, uint32_t reconstruction, uint
 bool holds(const film::Film& film, uint32_t pass) {
   if (schema::pass_info(pass).kind == schema::PassKind::Sequence) return schema::has_bit(film.settings.passes, pass);
   if (pass == GRADUS_PASS_GRADIENT_X || pass == GRADUS_PASS_GRADIENT_Y) return film.gradients;
-  return pass == GRADUS_PASS_ERROR || output::has_pass(film, pass);  // that of the reconstruction
+  return pass == GRADUS_PASS_ERROR || output::has_pass(film, pass);  // the error is estimated by the reconstruction
 }
 
 int run(const ReconstructArguments& args) {
@@ -56,7 +56,7 @@ int run(const ReconstructArguments& args) {
                                               : available_passes(*api::find_handle<api::FilmObject>(film.id())->get(),
                                                                  parse_passes(args.passes));
   const auto wanted = [passes](uint32_t pass) { return (passes >> pass & 1) != 0; };
-  std::vector<float> error;  // of this reconstruction, not of the one that the frame was rendered for
+  std::vector<float> error;  // that of this reconstruction, which may differ from the stored setting
   std::vector<film_io::ImageLayer> layers = {
       {"", 4, film.reconstruct(reconstruction, args.alpha, denoiser, wanted(GRADUS_PASS_ERROR) ? &error : nullptr)}};
   for (uint32_t pass = 1; pass < GRADUS_PASS_COUNT; ++pass) {

@@ -96,7 +96,7 @@ void add_render(CLI::App* app, int* exit_code) {
   command->add_option("--image", args->image, "Also write the reconstruction and the passes as an image, FILE.exr")
       ->check(exr_only);
   command->add_option("--stats", args->stats, "Append one JSON object about the render to this file");
-  command->add_flag("--resume", args->resume, "Go on from the samples of the frame that is already in the store");
+  command->add_flag("--resume", args->resume, "Continue from the samples of the frame that is already in the store");
   add_denoiser_path(command, &args->denoiser_path);
   args->options.add_to(command);
   command->footer("Options not given are those the scene was saved with.");

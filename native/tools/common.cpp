@@ -28,7 +28,7 @@ std::string describe(const GradusOptionInfo& info) {
 bool is_same_file(const fs::path& a, const fs::path& b) {
   std::error_code none;
   if (fs::equivalent(a, b, none)) return true;
-  const fs::path name = fs::weakly_canonical(fs::absolute(a), none);  // neither may be there yet
+  const fs::path name = fs::weakly_canonical(fs::absolute(a), none);  // either file may not exist yet
   return !name.empty() && name == fs::weakly_canonical(fs::absolute(b), none);
 }
 

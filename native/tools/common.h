@@ -1,10 +1,11 @@
 // Helper functions that the subcommands of the tool share.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 #include "gradus/gradus.hpp"
 #include "pass_names.h"
@@ -13,7 +14,7 @@ namespace gradus::tool {
 
 inline constexpr int kExitFailure = 1;
 inline constexpr int kExitUsage = 2;
-inline constexpr int kExitInterrupted = 130;  // as shells report SIGINT
+inline constexpr int kExitInterrupted = 130;  // exit code of shells for SIGINT
 
 // Each function adds its subcommand to `app`. The subcommand sets *exit_code to the exit code of the program.
 void add_render(CLI::App* app, int* exit_code);

@@ -14,7 +14,7 @@
 namespace gradus::tool {
 
 inline constexpr uint32_t kAllComponentPasses = (uint32_t{1} << GRADUS_COMPONENT_PASS_COUNT) - 1;
-// Do the same for names of component passes as parse_passes() and bad_passes() do for names of passes.
+// parse_passes() and bad_passes() for names of component passes.
 uint32_t parse_component_passes(const std::string& text);
 std::string bad_component_passes(const std::string& text);
 

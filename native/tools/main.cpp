@@ -7,14 +7,14 @@
 
 int main(int argc, char** argv) {
   using namespace gradus::tool;
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error with a name
+  std::signal(SIGXFSZ, SIG_IGN);  // so that a write beyond the limit of file sizes fails, and the error names the file
   CLI::App app(
       "Gradus, a gradient-domain path tracer: renders saved scenes, reconstructs stored frames, compares images.",
       "gradus");
   app.set_version_flag("--version", gradus_version_text());
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
-  app.footer("Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted. gradus COMMAND --help tells more.");
+  app.footer("Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted. gradus COMMAND --help shows more.");
   int exit_code = 0;
   add_render(&app, &exit_code);
   add_reconstruct(&app, &exit_code);

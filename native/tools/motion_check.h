@@ -11,7 +11,7 @@
 
 namespace gradus::tool {
 
-// Distances in pixels between two answers.
+// Statistics of the distances, in pixels, between two results.
 class Distances {
  public:
   void add(double pixels) { pixels_.push_back(pixels); }
@@ -46,7 +46,7 @@ class StepsBetween {
   // `farthest` is a high quantile of all motions in pixels. It sets the number of steps.
   StepsBetween(const scene::Snapshot& snapshot, const GradusSettings& settings, double farthest);
 
-  // Of about `pixels` pixels spread evenly over those of the view in which something changes.
+  // Checks about `pixels` pixels, spread evenly over those of the view in which something changes.
   nlohmann::ordered_json check(const motion::ChainView& view, const motion::ChainMotion& found, size_t pixels) const;
 
  private:

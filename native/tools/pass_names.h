@@ -10,11 +10,12 @@ namespace gradus::tool {
 struct PassNames {
   uint32_t count;
   std::function<std::string(uint32_t pass)> of;  // Returns the name as users type it.
-  std::string unknown, known;                    // "there is no pass ", "; there are ": of a refusal
+  std::string unknown, known;                    // Texts of an error: "there is no pass ", "; there are ".
 };
 
-// Bit mask from names separated by commas ("depth, diffuse_direct", any case, '_', '-' and ' ' alike; "all"). Throws
-// Error with the names there are.
+// Returns the bit mask of names that are separated by commas ("depth, diffuse_direct"), or of "all". Case is ignored,
+// and
+// '_', '-' and ' ' are equal. Throws Error, with the available names, for an unknown name.
 uint64_t parse_names(const PassNames& names, const std::string& text);
 
 struct AvailablePasses {

@@ -1,4 +1,4 @@
-// One line on a terminal that says how far a render is; nothing where standard error is no terminal.
+// One line that shows the progress of a render. Nothing is printed unless standard error is a terminal.
 #pragma once
 
 #include <unistd.h>

@@ -1,18 +1,18 @@
 // gradus reconstruct FOLDER -o FOLDER
-#include "reconstruct.h"
-
 #include <array>
 #include <cstdio>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+
+#include <nlohmann/json.hpp>
 
 #include "animation/sequence_folder.h"
 #include "component_layers.h"
 #include "film_io/image_exr.h"
 #include "film_io/store.h"
+#include "reconstruct.h"
 #include "reconstruct/space_time/window_grid.h"
 #include "schema/pass_table.h"
 #include "stored_sequence.h"
@@ -26,7 +26,7 @@ struct Range {
   int32_t first, last;
 };
 
-// "" for all.
+// Parses the option --frames. The text "" stands for all stored frames.
 Range range_of(const std::string& text, const StoredSequence& stored) {
   if (text.empty()) return {stored.frames().front(), stored.frames().back()};
   std::smatch match;
@@ -38,7 +38,7 @@ Range range_of(const std::string& text, const StoredSequence& stored) {
   return range;
 }
 
-// As Blender names them.
+// Returns the file name of a picture, as Blender names it.
 std::string picture_path(const std::string& folder, int32_t frame) {
   std::array<char, 24> name{};
   std::snprintf(name.data(), name.size(), frame < 0 ? "%05d.exr" : "%04d.exr", frame);
@@ -61,11 +61,11 @@ void check_usage(const ReconstructArguments& args) {
     throw CLI::ValidationError("--window-overlap", "windows share at most half of their frames");
   if (fs::exists(args.output) && !fs::is_directory(args.output)) {
     throw CLI::ValidationError("--output",
-                               args.output + " is no folder, which the pictures of " + args.input + " need");
+                               args.output + " is not a folder, which the pictures of " + args.input + " need");
   }
 }
 
-// What the pictures are made of otherwise than they were sampled for.
+// Returns the settings for the pictures: the stored settings of a frame, changed by the arguments.
 GradusSettings settings_of(const ReconstructArguments& args, const GradusSettings& stored) {
   GradusSettings settings = stored;
   const bool changed = args.reconstruction != "auto";
@@ -96,11 +96,12 @@ uint64_t passes_of(const ReconstructArguments& args, const std::string& path) {
   const film::Film& frame = *first;
   const uint64_t requested = parse_passes(args.passes), held = available_passes(frame, requested);
   const bool has_error = schema::has_bit(frame.settings.passes,
-                                         GRADUS_PASS_ERROR);  // windows estimate it where frames were sampled for it
+                                         GRADUS_PASS_ERROR);  // the error is estimated only if the render requested it
   return requested == kAllPasses && !has_error ? held & ~(uint64_t{1} << GRADUS_PASS_ERROR) : held;
 }
 
-// Of their files. Those of another size are of another animation.
+// Returns the settings in the files of all frames. Throws Error if the frames differ in size, because they then belong
+// to different animations.
 std::map<int32_t, GradusSettings> settings_of_files(const StoredSequence& stored,
                                                     const std::vector<std::vector<int32_t>>& chains) {
   const int32_t first = chains.front().front();
@@ -137,7 +138,7 @@ void write_picture(const client::Render& render, const PassesToWrite& wanted, co
   film_io::save_image(path, int(width), int(height), layers);
 }
 
-// What all frames of a folder have in common.
+// The arguments of a run that are the same for all frames of a folder.
 struct Job {
   const ReconstructArguments& args;
   const StoredSequence& stored;
@@ -146,13 +147,13 @@ struct Job {
   PassesToWrite wanted;
 };
 
-// Pictures of frames that follow one another.
+// Writes the pictures of one chain of frames.
 void write_chain(const Job& job, const std::vector<int32_t>& frames, std::set<std::string>* warnings) {
   const client::Sequence sequence = open(job.device, job.args, job.stored, {frames.front(), frames.back()},
                                          need_two_frames(job.wanted.of_components));
   const animation::SequenceFolder folder(job.args.input);
   for (const int32_t frame : frames) {
-    // Exposure and the like may change from frame to frame, of frames that share their files, too.
+    // Settings of the picture, such as the exposure, may differ between frames, also if the frames share their files.
     GradusSettings settings = settings_of(job.args, folder.settings(frame).value_or(job.of_files.at(frame)));
     settings.component_passes = job.wanted.of_components;
     const client::Render render = sequence.deliver(frame, settings);

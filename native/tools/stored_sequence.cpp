@@ -47,23 +47,26 @@ std::string advice(const std::string& folder) {
   return list.empty() ? "" : ": try " + list;
 }
 
-// Gaps between frames and those that they replay, or repeat; 0: none does.
+// Returns the step of the animation: the greatest common divisor of the distances between frames and those that they
+// replay or repeat. It is 0 if no frame replays or repeats another.
 int32_t step_of_replays(const std::map<int32_t, animation::FrameTraits>& forms) {
   int32_t step = 0;
-  std::map<int32_t, int32_t> last_with;  // frames by their stream: it may be that of an earlier one
+  std::map<int32_t, int32_t>
+      last_with;  // the last frame of each stream of random numbers; repeated frames share a stream
   for (const auto& [frame, form] : forms) {
     const bool repeats = form.stream != frame, replays = !repeats && form.replayed_stream != frame;
     const auto before = last_with.find(repeats ? form.stream : form.replayed_stream);
     if ((repeats || replays) && before != last_with.end()) {
       step = std::gcd(step, frame - before->second);
     } else if (replays) {
-      step = std::gcd(step, frame - form.replayed_stream);  // which is missing
+      step = std::gcd(step, frame - form.replayed_stream);  // the replayed frame is not stored
     }
     last_with[form.stream] = frame;
   }
   return step;
 }
 
+// Returns the greatest common divisor of the distances between the frames, or 0 for a single frame.
 int32_t step_of_gaps(const std::vector<int32_t>& frames) {
   int32_t step = 0;
   for (size_t i = 1; i < frames.size(); ++i) step = std::gcd(step, frames[i] - frames[i - 1]);
@@ -74,19 +77,19 @@ std::string text_of(int32_t first, int32_t last) {
   return first == last ? std::to_string(first) : std::to_string(first) + " to " + std::to_string(last);
 }
 
-// Returns the frames of a list for which is_meant(frame) is true as a text, for example "4, 7 to 9".
-template <class IsMeant>
-std::string name_runs(const std::vector<int32_t>& frames, const IsMeant& is_meant) {
+// Returns the frames of a list for which is_wanted(frame) is true as a text, for example "4, 7 to 9".
+template <class IsWanted>
+std::string name_runs(const std::vector<int32_t>& frames, const IsWanted& is_wanted) {
   std::string text;
   const auto add = [&](int32_t from, int32_t to) { add_item(&text, text_of(from, to)); };
   int32_t from = 0, to = 0;
   bool open = false;
   for (const int32_t frame : frames) {
-    const bool meant = is_meant(frame);
-    if (!meant && open) add(from, to);
-    if (meant && !open) from = frame;
-    if (meant) to = frame;
-    open = meant;
+    const bool wanted = is_wanted(frame);
+    if (!wanted && open) add(from, to);
+    if (wanted && !open) from = frame;
+    if (wanted) to = frame;
+    open = wanted;
   }
   if (open) add(from, to);
   return text;

@@ -22,12 +22,12 @@ class StoredSequence {
   const std::vector<int32_t>& frames() const { return frames_; }
   // Returns the number of frames from a frame to the one that replays it.
   int32_t step() const { return step_; }
-  // Those of [first, last] that the steps meet, in as many lists as jobs have shared the folder: two of a step of 2,
-  // say.
+  // Returns the expected frames of [first, last]. Each list is a chain of frames that are step() apart. If several jobs
+  // have rendered interleaved frames into the folder, each job gives a list.
   std::vector<std::vector<int32_t>> chains(int32_t first, int32_t last) const;
   // Returns the expected frames that are not stored, for example "4, 7 to 9".
   std::string missing(int32_t first, int32_t last) const;
-  // Those that replay another frame than is stored before them: nothing links the two.
+  // Returns the frames whose replayed samples do not belong to the frame that is stored before them, as a text.
   std::string unlinked(int32_t first, int32_t last) const;
 
  private:
@@ -39,10 +39,10 @@ class StoredSequence {
   int32_t step_ = 1;
 };
 
-// What is wrong with the files of a sequence, which are read as a whole.
+// Errors in the files of a sequence. find_faults() reads all files completely.
 struct FolderFaults {
-  std::map<std::string, std::string> files;  // names of files that are missing or cannot be read, and why
-  std::set<int32_t> frames;                  // frames that lack samples for that
+  std::map<std::string, std::string> files;  // the reason for each file that is missing or cannot be read
+  std::set<int32_t> frames;                  // frames whose samples are therefore incomplete
   size_t whole_frames = 0;
 };
 FolderFaults find_faults(const std::string& folder);

@@ -134,6 +134,11 @@ def test_text_keeps_undecodable_bytes() -> None:
     assert native.text(None) is None
 
 
+def test_name_is_valid_utf8() -> None:
+    assert native.name(b"\xff/\xc3\xa4".decode("utf-8", "surrogateescape")) == "?/\u00e4".encode()
+    assert native.name(None) is None
+
+
 def test_error_has_code_and_text() -> None:
     library = native.load()
     with pytest.raises(native.GradusError) as caught:

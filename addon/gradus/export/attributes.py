@@ -110,7 +110,7 @@ def fill_attributes(arrays: list[AttributeArrays]) -> Any:
                 domain=values.domain,
                 channels=values.channels,
                 is_uv=values.is_uv,
-                name=native.text(values.name),
+                name=native.name(values.name),
                 data=native.pointer(values.data),
             )
             for values in arrays

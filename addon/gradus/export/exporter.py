@@ -283,7 +283,7 @@ class _Sync:
         record.sun_radiance_per_irradiance = state.sun_radiance_per_irradiance
         record.max_bounces = state.max_bounces
         record.pass_index = entry.pass_index
-        record.name = native.text(entry.name)
+        record.name = native.name(entry.name)
         return record
 
     def _set_world(self) -> None:

@@ -230,6 +230,6 @@ def fill_image(state: ImageState) -> tuple[native.Image, list[Any]]:
     struct.is_float = state.is_float
     struct.tile_count = len(state.tiles)
     struct.tiles = records
-    struct.color_space = native.text(state.color_space)
-    struct.name = native.text(state.name)
+    struct.color_space = native.name(state.color_space)
+    struct.name = native.name(state.name)
     return struct, [records, state]

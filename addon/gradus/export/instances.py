@@ -95,7 +95,7 @@ def fill_instances(arrays: InstanceArrays) -> tuple[native.Instances, list[Any]]
     for name, values in columns.items():
         setattr(struct, name, native.pointer(values))
     struct.materials_size = len(arrays.materials)
-    texts = native.text_array(list(names))
+    texts = native.name_array(list(names))
     struct.names = texts
     struct.name_count = len(names)
     return struct, [columns, texts, arrays]

@@ -191,11 +191,11 @@ def fill_mesh(arrays: MeshArrays) -> tuple[native.Mesh, list[Any]]:
     records = attributes.fill_attributes(arrays.attributes)
     struct.attribute_count = len(arrays.attributes)
     struct.attributes = records
-    struct.default_uv = native.text(arrays.default_uv) if arrays.default_uv else None
+    struct.default_uv = native.name(arrays.default_uv) if arrays.default_uv else None
     struct.generated_location[:] = arrays.texture_space[:3]
     struct.generated_size[:] = arrays.texture_space[3:]
     struct.generated_points = native.pointer(arrays.generated_points)
     struct.shutter_positions = native.pointer(arrays.blur)
     struct.shutter_key_count = len(arrays.blur) // len(arrays.positions) if arrays.blur else 0
-    struct.name = native.text(arrays.name)
+    struct.name = native.name(arrays.name)
     return struct, [positions, times, records, arrays]

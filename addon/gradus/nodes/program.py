@@ -117,7 +117,7 @@ class Program:
             record.output = output
             record.value[:] = constant
         floats = (ctypes.c_float * max(len(self.floats), 1)).from_buffer_copy(self.floats or array("f", [0.0]))
-        names = native.text_array(self.names)
+        names = native.name_array(self.names)
         material = native.Material()
         material.node_count = len(self.nodes)
         material.nodes = ctypes.cast(nodes, ctypes.POINTER(native.Node))
@@ -132,5 +132,5 @@ class Program:
         material.sample_as_light = self.sample_as_light
         material.transparent_shadow = self.transparent_shadow
         material.uses_fallback = self.uses_fallback
-        material.name = native.text(self.name)
+        material.name = native.name(self.name)
         return material, [nodes, inputs, floats, names]

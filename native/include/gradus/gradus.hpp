@@ -25,7 +25,7 @@ class Error : public std::runtime_error {
   GradusError code_;
 };
 
-// Throws what the thread's error slot holds unless the call went well.
+// Throws the error of the thread's error slot if `code` is not GRADUS_OK.
 inline void check(GradusError code) {
   if (code == GRADUS_OK) return;
   const char* text = "";
@@ -33,7 +33,7 @@ inline void check(GradusError code) {
   throw Error(code, text);
 }
 
-// A struct of the API, zeroed, that knows its size.
+// Returns a struct of the API whose struct_size is set and whose other members are 0.
 template <class T>
 T make() {
   T value{};
@@ -41,7 +41,7 @@ T make() {
   return value;
 }
 
-// Owns a handle; moved, not copied.
+// Owns a handle and releases it. Handles can be moved, but not copied.
 template <class Id, GradusError (*Release)(Id)>
 class Handle {
  public:
@@ -70,7 +70,7 @@ class Device : public Handle<GradusDevice, gradus_device_release> {
     settings.denoiser_path = denoiser_path;
     check(gradus_device_create(&settings, &id_));
   }
-  // Empty when there is none.
+  // Removes and returns the oldest warning, or "" if there is none.
   std::string warning() const {
     const char* text = nullptr;
     check(gradus_device_warning(id_, &text));
@@ -105,7 +105,7 @@ class Scene : public Handle<GradusScene, gradus_scene_release> {
   void set_world(const GradusWorld& world) { check(gradus_scene_set_world(id_, &world)); }
   void remove(GradusObjectKind kind, uint64_t key) { check(gradus_scene_remove(id_, kind, key)); }
   void commit() { check(gradus_scene_commit(id_, nullptr, nullptr)); }
-  // Empty when there is none.
+  // Removes and returns the oldest warning, or "" if there is none.
   std::string warning() const {
     const char* text = nullptr;
     check(gradus_scene_warning(id_, &text));
@@ -147,7 +147,7 @@ class Film : public Handle<GradusFilm, gradus_film_release> {
     check(gradus_film_size(id_, &width, &height));
     return {width, height};
   }
-  // error: filled with the pass, if given.
+  // Returns the reconstructed picture. If `error` is given, it receives the Error pass.
   std::vector<float> reconstruct(uint32_t reconstruction, float alpha, uint32_t denoiser = GRADUS_DENOISER_NONE,
                                  std::vector<float>* error = nullptr) const {
     std::vector<float> rgba(pixels() * 4);
@@ -182,7 +182,7 @@ class Render : public Handle<GradusRender, gradus_render_release> {
     check(gradus_render_poll(id_, &progress));
     return progress;
   }
-  // Of those that are there once the render has ended.
+  // Reads a pass of the finished render.
   std::vector<float> read_pass(uint32_t pass, size_t pixels) const {
     std::vector<float> values(pixels * pass_channels(pass));
     check(gradus_render_read_pass(id_, pass, values.data(), values.size()));
@@ -190,7 +190,7 @@ class Render : public Handle<GradusRender, gradus_render_release> {
   }
   void cancel() { check(gradus_render_cancel(id_)); }
   void wait() const { check(gradus_render_wait(id_, -1.0)); }
-  // Returns false where the render is still running after this time.
+  // Waits for the end of the render. Returns false if it is still running after this time.
   bool wait(double seconds) const {
     const GradusError code = gradus_render_wait(id_, seconds);
     if (code == GRADUS_TIMEOUT) return false;

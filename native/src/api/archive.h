@@ -1,6 +1,6 @@
-// Scene calls as bytes. One visit() per struct serves writing and reading: values first, then texts and arrays, whose
-// lengths follow from the values. Little-endian; arrays start at multiples of 16 bytes, so that a reader can point into
-// the file.
+// Serialisation of scene calls. One visit() per struct serves writing and reading: values first, then texts and arrays,
+// whose lengths follow from the values. Numbers are little-endian. Arrays start at multiples of 16 bytes, so that a
+// reader can point into the file.
 #pragma once
 
 #include <cstring>
@@ -36,9 +36,9 @@ class ArchiveWriter {
     const std::string copy = t ? t : "";
     value(uint32_t(copy.size()));
     bytes(copy.data(), copy.size());
-    bytes("", 1);  // readers point at it
+    bytes("", 1);  // The reader returns a pointer to the text, which needs its terminator.
   }
-  // NULL stays NULL.
+  // Adds an array. The reader returns NULL for an array that is NULL.
   template <class T>
   void array(const T* const& data, uint64_t count) {
     value(uint32_t(data != nullptr));

@@ -1,7 +1,6 @@
 // gradus_device_*
 #include "scene/device.h"
 
-#include "api/arrays.h"
 #include "api/guard.h"
 #include "api/objects.h"
 #include "api/structs.h"
@@ -32,7 +31,7 @@ GradusError gradus_device_set_color_space(GradusDevice device, const GradusColor
   return api::guard([&] {
     const auto object = api::find_handle<scene::Device>(device);
     const GradusColorSpace copy = api::read_struct(space, "space");
-    if (!copy.name) throw invalid_argument("space.name is NULL");
+    api::checked_name(&api::require(copy.name, "space.name"), "space.name");
     api::check_array(copy.curve, copy.curve_count, "space.curve");
     object->color().set_override(copy);
   });

@@ -1,9 +1,9 @@
 // gradus_film_*
 #include "film/film.h"
 
-#include "api/arrays.h"
 #include "api/guard.h"
 #include "api/objects.h"
+#include "api/structs.h"
 #include "film_io/store.h"
 #include "render/resume.h"
 #include "schema/options.h"

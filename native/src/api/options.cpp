@@ -20,7 +20,7 @@ GradusOptionInfo describe(const schema::Option& option) {
   info.default_value = option.default_value;
   info.minimum = option.minimum;
   info.maximum = option.maximum;
-  // The caller may keep the text for as long as the library is loaded.
+  // Static, because the text stays valid for as long as the library is loaded.
   static const std::map<std::string_view, std::string> names = [] {
     std::map<std::string_view, std::string> made;
     for (const schema::Option& item : schema::options()) made[item.name] = schema::choice_names(item);

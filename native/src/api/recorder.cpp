@@ -2,10 +2,10 @@
 
 #include <fstream>
 #include <iterator>
+
 #include <nlohmann/json.hpp>
 
 #include "api/archive.h"
-#include "api/archive_structs.h"
 #include "api/scene_file.h"
 #include "film_io/file_writer.h"
 #include "schema/options.h"
@@ -13,7 +13,8 @@
 namespace gradus::api {
 namespace {
 
-// Empty where the file cannot be read: then the record names the path, and its reader warns as the renderer would.
+// Returns the contents of a file, or nothing if it cannot be read. The record then holds the path, and a warning is
+// given when the scene is loaded.
 std::vector<char> read_bytes(const char* path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -30,22 +31,22 @@ void write_record(film_io::FileWriter* file, RecordKind kind, uint64_t key, cons
 }  // namespace
 
 template <class T>
-void SceneRecorder::keep(RecordKind kind, uint64_t key, T value) {
+void SceneRecorder::store(RecordKind kind, uint64_t key, T value) {
   ArchiveWriter writer;
   visit(writer, value);
   records_[{kind, key}] = writer.take();
 }
 
-void SceneRecorder::set_mesh(uint64_t key, const GradusMesh& mesh) { keep(RecordKind::Mesh, key, mesh); }
+void SceneRecorder::set_mesh(uint64_t key, const GradusMesh& mesh) { store(RecordKind::Mesh, key, mesh); }
 void SceneRecorder::set_material(uint64_t key, const GradusMaterial& material) {
-  keep(RecordKind::Material, key, material);
+  store(RecordKind::Material, key, material);
 }
-void SceneRecorder::set_instances(const GradusInstances& instances) { keep(RecordKind::Instances, 0, instances); }
+void SceneRecorder::set_instances(const GradusInstances& instances) { store(RecordKind::Instances, 0, instances); }
 void SceneRecorder::set_lights(const std::vector<GradusLight>& lights) {
-  keep(RecordKind::Lights, 0, LightList{lights.data(), lights.size()});
+  store(RecordKind::Lights, 0, LightList{lights.data(), lights.size()});
 }
-void SceneRecorder::set_camera(const GradusCamera& camera) { keep(RecordKind::Camera, 0, camera); }
-void SceneRecorder::set_world(const GradusWorld& world) { keep(RecordKind::World, 0, world); }
+void SceneRecorder::set_camera(const GradusCamera& camera) { store(RecordKind::Camera, 0, camera); }
+void SceneRecorder::set_world(const GradusWorld& world) { store(RecordKind::World, 0, world); }
 
 void SceneRecorder::set_image(uint64_t key, const GradusImage& image) {
   std::vector<GradusImageTile> tiles(image.tiles, image.tiles + image.tile_count);
@@ -60,7 +61,7 @@ void SceneRecorder::set_image(uint64_t key, const GradusImage& image) {
   }
   GradusImage copy = image;
   copy.tiles = tiles.data();
-  keep(RecordKind::Image, key, copy);
+  store(RecordKind::Image, key, copy);
 }
 
 void SceneRecorder::remove(GradusObjectKind kind, uint64_t key) {

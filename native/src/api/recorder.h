@@ -1,4 +1,4 @@
-// Keeps the last value of each scene call as bytes, so that a scene can be saved.
+// Recording of scene calls. The last value of each call is stored as bytes, so that a scene can be saved.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ class Scene;
 
 namespace gradus::api {
 
-// Kinds of records, in the order in which a file holds and a reader sets them.
+// Kinds of records, in the order of a file. A reader sets them in this order, too.
 enum class RecordKind : uint32_t {
   Settings = 1,
   Image = 2,
@@ -30,7 +30,8 @@ enum class RecordKind : uint32_t {
 
 class SceneRecorder {
  public:
-  // Structs must be complete and checked (scene_args.h). Image files are packed: the record holds their bytes.
+  // Record a call. Structs must be complete and checked, as the functions of scene_args.h return them. The record of an
+  // image holds the bytes of its files.
   void set_mesh(uint64_t key, const GradusMesh& mesh);
   void set_image(uint64_t key, const GradusImage& image);
   void set_material(uint64_t key, const GradusMaterial& material);
@@ -39,20 +40,21 @@ class SceneRecorder {
   void set_camera(const GradusCamera& camera);
   void set_world(const GradusWorld& world);
   void remove(GradusObjectKind kind, uint64_t key);
-  // Throws Error with path and reason.
+  // Writes the scene file. Throws Error with path and reason.
   void save(const std::string& path, const GradusSettings& settings) const;
 
  private:
   template <class T>
-  void keep(RecordKind kind, uint64_t key, T value);
+  void store(RecordKind kind, uint64_t key, T value);
   std::map<std::pair<RecordKind, uint64_t>, std::vector<char>> records_;
 };
 
-// Sets everything that the file holds; returns its settings. Throws invalid_argument with path and reason for a file
-// that is missing, damaged or of another version.
+// Sets all objects of a file in `scene`, and returns its settings. Throws invalid_argument, with path and reason, for a
+// file that is missing, damaged or of another version.
 GradusSettings load_scene(const std::string& path, scene::Scene* scene);
 
-// What a scene file holds, without building it.
+// The contents of a scene file in numbers. summarize_scene() reads them without building a scene, and throws as
+// load_scene() does.
 struct SceneSummary {
   GradusSettings settings{};
   size_t meshes = 0, vertices = 0, triangles = 0, instances = 0, lights = 0, materials = 0, nodes = 0, images = 0;

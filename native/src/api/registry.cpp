@@ -22,7 +22,7 @@ const char* name_of(HandleType type) {
     case HandleType::Render:
       return "render";
     case HandleType::Film:
-      return "frame";
+      return "film";
     case HandleType::Sequence:
       return "sequence";
   }
@@ -34,7 +34,7 @@ const char* name_of(HandleType type) {
 uint64_t Registry::add(HandleType type, std::shared_ptr<void> object) {
   const std::lock_guard lock(mutex_);
   if (free_.empty()) {
-    // Room for all slots, so that neither this nor remove() can fail once there is one more.
+    // The list of free slots gets the capacity for all slots, so that remove() never allocates memory.
     if (free_.capacity() == slots_.size()) free_.reserve(2 * slots_.size() + 1);
     slots_.emplace_back();
     free_.push_back(static_cast<uint32_t>(slots_.size() - 1));
@@ -57,7 +57,7 @@ size_t Registry::locate(HandleType type, uint64_t handle) const {
     throw invalid_argument("a handle of kind " + std::string(name_of(given)) + " where a " + name + " is expected");
   }
   if (!s.object || pack(s.type, s.generation, static_cast<uint32_t>(slot)) != handle) {
-    throw invalid_argument("the " + name + " was released before");
+    throw invalid_argument("the " + name + " was already released");
   }
   return slot;
 }
@@ -74,7 +74,7 @@ std::shared_ptr<void> Registry::remove(HandleType type, uint64_t handle) {
   slots_[slot].object = nullptr;
   slots_[slot].generation = (slots_[slot].generation + 1) & kGenerationMask;
   free_.push_back(static_cast<uint32_t>(slot));
-  return object;  // destroyed by the caller, outside the lock: a render waits for its thread
+  return object;  // The caller destroys it without the lock, because the destructor of a render waits for its thread.
 }
 
 size_t Registry::size() const {
@@ -83,7 +83,7 @@ size_t Registry::size() const {
 }
 
 Registry& registry() {
-  // Never destroyed: threads of the host may still call while the process ends.
+  // It is never destroyed, because threads of the host may still call functions while the process ends.
   static Registry* const instance = new Registry;
   return *instance;
 }

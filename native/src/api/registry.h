@@ -1,4 +1,4 @@
-// Handles: a freed, foreign or invented number is refused, never followed.
+// Handles of the C API. Numbers that are not handles of living objects are refused, and never used as an address.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ enum class HandleType : uint8_t { Device = 1, Scene = 2, Render = 3, Film = 4, S
 class Registry {
  public:
   uint64_t add(HandleType type, std::shared_ptr<void> object);
-  // Throw invalid_argument with a text that says what is wrong with the handle.
+  // find() and remove() return the object of a handle. They throw invalid_argument, with the reason, for other numbers.
   std::shared_ptr<void> find(HandleType type, uint64_t handle) const;
   std::shared_ptr<void> remove(HandleType type, uint64_t handle);
   size_t size() const;
@@ -26,7 +26,7 @@ class Registry {
     uint32_t generation = 1;
     HandleType type = HandleType::Device;
   };
-  // Index of the slot that the handle names. Call with the lock held.
+  // Returns the index of a handle's slot. The caller holds the lock.
   size_t locate(HandleType type, uint64_t handle) const;
 
   mutable std::mutex mutex_;
@@ -37,7 +37,7 @@ class Registry {
 // Returns the registry of the process. It is global because a handle is all that a C function receives.
 Registry& registry();
 
-// Which type of handle stands for which class.
+// HandleOf<T>::type is the type of the handles to objects of class T.
 template <class T>
 struct HandleOf;
 

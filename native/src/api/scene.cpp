@@ -1,4 +1,4 @@
-// gradus_scene_*: forwards to Scene and, where asked, to the recorder.
+// gradus_scene_*: the calls of a scene. They are also recorded if gradus_scene_record() has enabled it.
 #include "scene/scene.h"
 
 #include "api/guard.h"
@@ -22,7 +22,7 @@ GradusError with_scene(GradusScene scene, Function&& function) noexcept {
   });
 }
 
-// Commits the scene and keeps its warnings until gradus_scene_warning() reads them.
+// Commits the scene and stores its warnings for gradus_scene_warning().
 void commit(SceneObject* object, const volatile int32_t* cancel, float* progress) {
   object->scene.commit(cancel, progress);
   for (const std::string& text : object->scene.snapshot()->warnings) object->warnings.add(text);

@@ -1,6 +1,7 @@
 #include "api/scene_args.h"
 
-#include "api/arrays.h"
+#include "api/guard.h"
+#include "api/structs.h"
 #include "geometry/mesh.h"
 
 namespace gradus::api {
@@ -12,14 +13,17 @@ void check_enum(uint32_t value, uint32_t count, const char* name) {
                            std::to_string(count));
 }
 
-void check_texts(const char* const* texts, size_t count, const char* name) {
-  check_array(texts, count, name);
+// Checks an array of names, none of which may be NULL.
+void check_names(const char* const* names, size_t count, const char* array) {
+  check_array(names, count, array);
   for (size_t i = 0; i < count; ++i) {
-    if (!texts[i]) throw invalid_argument(std::string(name) + "[" + std::to_string(i) + "] is NULL");
+    const std::string name = std::string(array) + "[" + std::to_string(i) + "]";
+    if (!names[i]) throw invalid_argument(name + " is NULL");
+    checked_name(names[i], name.c_str());
   }
 }
 
-// [first, first + count) lies in an array of `size`, whatever overflows.
+// Checks that [first, first + count) lies in an array of `size` elements. Sums that overflow are handled.
 void check_range(uint64_t first, uint64_t count, uint64_t size, const std::string& name) {
   if (first > size || count > size - first)
     throw invalid_argument(name + " reaches beyond its array of " + std::to_string(size));
@@ -28,7 +32,7 @@ void check_range(uint64_t first, uint64_t count, uint64_t size, const std::strin
 void check_tile(const GradusImageTile& tile) {
   constexpr uint32_t kMaxSide = 1 << 16;
   check_enum(tile.source, 4, "tile.source");
-  if (tile.source == GRADUS_IMAGE_FILE) return;  // an empty or missing path is broken data, not a broken call
+  if (tile.source == GRADUS_IMAGE_FILE) return;  // An empty or missing path is damaged data, which gives a warning.
   if (tile.data_size > 0 && !tile.data) throw invalid_argument("tile.data is NULL");
   if (tile.source == GRADUS_IMAGE_ENCODED) return;
   if (tile.width > kMaxSide || tile.height > kMaxSide) throw invalid_argument("tile: more than 65536 pixels on a side");
@@ -45,7 +49,8 @@ void check_tile(const GradusImageTile& tile) {
 }  // namespace
 
 MeshArgs::MeshArgs(const GradusMesh* from) : mesh(read_struct(from, "mesh")) {
-  mesh.name = text_or_empty(mesh.name);
+  mesh.name = checked_name(mesh.name, "mesh.name");
+  checked_name(mesh.default_uv, "mesh.default_uv");
   if (mesh.key_count == 0 || mesh.key_count > 1024)
     throw invalid_argument("mesh.key_count is " + std::to_string(mesh.key_count));
   if (mesh.key_count > 1) check_array(mesh.key_times, mesh.key_count, "mesh.key_times");
@@ -55,13 +60,14 @@ MeshArgs::MeshArgs(const GradusMesh* from) : mesh(read_struct(from, "mesh")) {
   check_array(mesh.triangle_faces, mesh.triangle_count, "mesh.triangle_faces", 1, Presence::Optional);
   check_array(mesh.face_materials, mesh.face_count, "mesh.face_materials", 1, Presence::Optional);
   check_enum(mesh.normal_domain, 3, "mesh.normal_domain");
-  const bool optional = mesh.normal_domain != GRADUS_DOMAIN_CORNER;  // FACE: flat; POINT: made here
+  const bool optional =
+      mesh.normal_domain != GRADUS_DOMAIN_CORNER;  // FACE: the mesh is flat; POINT: Gradus computes them
   check_array(mesh.normals, geometry::domain_size(mesh, mesh.normal_domain), "mesh.normals", 3,
               optional ? Presence::Optional : Presence::Required);
   check_array(mesh.generated_points, mesh.vertex_count, "mesh.generated_points", 3, Presence::Optional);
   attributes = read_struct_array(mesh.attributes, mesh.attribute_count, "mesh.attributes");
   for (GradusAttribute& attribute : attributes) {
-    attribute.name = text_or_empty(attribute.name);
+    attribute.name = checked_name(attribute.name, "attribute.name");
     check_enum(attribute.domain, 3, "attribute.domain");
     if (attribute.channels < 1 || attribute.channels > 4) throw invalid_argument("attribute.channels is not 1 to 4");
     check_array(attribute.data, geometry::domain_size(mesh, attribute.domain), "attribute.data", attribute.channels);
@@ -70,12 +76,12 @@ MeshArgs::MeshArgs(const GradusMesh* from) : mesh(read_struct(from, "mesh")) {
 }
 
 ImageArgs::ImageArgs(const GradusImage* from) : image(read_struct(from, "image")) {
-  image.name = text_or_empty(image.name);
-  image.color_space = text_or_empty(image.color_space);
+  image.name = checked_name(image.name, "image.name");
+  image.color_space = checked_name(image.color_space, "image.color_space");
   check_enum(image.alpha_mode, 4, "image.alpha_mode");
   tiles = read_struct_array(image.tiles, image.tile_count, "image.tiles");
   for (GradusImageTile& tile : tiles) {
-    tile.path = text_or_empty(tile.path);
+    if (!tile.path) tile.path = "";  // A path need not be UTF-8.
     check_tile(tile);
   }
   image.tiles = tiles.data();
@@ -83,11 +89,11 @@ ImageArgs::ImageArgs(const GradusImage* from) : image(read_struct(from, "image")
 
 GradusMaterial read_material(const GradusMaterial* from) {
   GradusMaterial m = read_struct(from, "material");
-  m.name = text_or_empty(m.name);
+  m.name = checked_name(m.name, "material.name");
   check_array(m.nodes, m.node_count, "material.nodes");
   check_array(m.inputs, m.input_count, "material.inputs");
   check_array(m.floats, m.float_count, "material.floats");
-  check_texts(m.names, m.name_count, "material.names");
+  check_names(m.names, m.name_count, "material.names");
   if (m.surface >= 0 && uint32_t(m.surface) >= m.node_count) throw invalid_argument("material.surface is not a node");
   for (uint32_t i = 0; i < m.node_count; ++i) {
     const GradusNode& node = m.nodes[i];
@@ -123,7 +129,7 @@ GradusInstances read_instances(const GradusInstances* from) {
   optional(in.material_first, "instances.material_first");
   optional(in.name_index, "instances.name_index");
   check_array(in.materials, in.materials_size, "instances.materials");
-  check_texts(in.names, in.name_count, "instances.names");
+  check_names(in.names, in.name_count, "instances.names");
   if (in.material_first) check_array(in.material_count, in.count, "instances.material_count");
   for (size_t i = 0; i < in.count; ++i) {
     if (in.material_first)
@@ -137,7 +143,7 @@ GradusInstances read_instances(const GradusInstances* from) {
 std::vector<GradusLight> read_lights(const GradusLight* from, size_t count) {
   std::vector<GradusLight> lights = read_struct_array(from, count, "lights");
   for (GradusLight& light : lights) {
-    light.name = text_or_empty(light.name);
+    light.name = checked_name(light.name, "light.name");
     check_enum(light.type, 5, "light.type");
   }
   return lights;

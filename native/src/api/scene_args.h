@@ -1,5 +1,5 @@
-// Arguments of gradus_scene_set_*: complete structs (older callers), checked pointers, counts and enums; texts that may
-// be NULL become "". The scene itself checks the contents of the arrays.
+// Arguments of gradus_scene_set_*. Structs of older callers are completed, pointers, counts, enums and the encoding of
+// names are checked, and texts that may be NULL become "". The scene itself checks the contents of the arrays.
 #pragma once
 
 #include <vector>

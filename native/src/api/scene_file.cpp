@@ -3,9 +3,9 @@
 #include <fstream>
 #include <memory>
 #include <new>
+
 #include <nlohmann/json.hpp>
 
-#include "api/archive_structs.h"
 #include "api/recorder.h"
 #include "api/scene_args.h"
 #include "scene/scene.h"
@@ -14,7 +14,7 @@
 namespace gradus::api {
 namespace {
 
-// The whole file, aligned for its arrays.
+// The contents of a file, aligned so that a reader can point to the arrays in it.
 class FileBytes {
  public:
   explicit FileBytes(const std::string& path) {
@@ -85,17 +85,17 @@ bool has_key(RecordKind kind) {
   return kind == RecordKind::Image || kind == RecordKind::Material || kind == RecordKind::Mesh;
 }
 
-// Calls record(kind, key, data, size) for all but settings, which are returned.
+// Calls record_function(kind, key, data, size) for all records except the settings, which are returned.
 template <class Function>
 GradusSettings read_records(const FileBytes& file, Function&& record_function) {
   FileHeader header;
   const FileHeader expected;
-  if (file.size() < sizeof(header)) throw invalid_argument("it is no scene of Gradus");
+  if (file.size() < sizeof(header)) throw invalid_argument("it is not a Gradus scene");
   std::memcpy(&header, file.data(), sizeof(header));
   if (std::memcmp(header.magic, expected.magic, sizeof(header.magic)) != 0)
-    throw invalid_argument("it is no scene of Gradus");
+    throw invalid_argument("it is not a Gradus scene");
   if (header.format != kSceneFormat || header.byte_order != expected.byte_order) {
-    throw invalid_argument("it has format " + std::to_string(header.format) + ", this library reads " +
+    throw invalid_argument("it has format " + std::to_string(header.format) + ", this library reads format " +
                            std::to_string(kSceneFormat));
   }
   GradusSettings settings = schema::default_settings();
@@ -120,10 +120,6 @@ GradusSettings read_records(const FileBytes& file, Function&& record_function) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 void summarize(RecordKind kind, const char* data, size_t size, SceneSummary* summary) {
   ArchiveReader reader(data, size);
   if (kind == RecordKind::Mesh) {
@@ -146,7 +142,7 @@ void summarize(RecordKind kind, const char* data, size_t size, SceneSummary* sum
   }
 }
 
-// Runs the function; what it throws becomes an Error with the path.
+// Calls function(contents of the file). An exception becomes an Error whose message has the path.
 template <class Function>
 auto loading(const std::string& path, Function&& function) {
   try {

@@ -1,10 +1,12 @@
-// The frame of a .gradus file: a header, then records of padded length, the last of kind End.
+// The format of a .gradus file: a header, then records of padded length, the last of kind End. The contents of the
+// records are the public structs, whose generated descriptions are in api/archive_records.h, and the list of lights.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
 #include "api/archive.h"
+#include "api/archive_records.h"
 #include "base/hash.h"
 
 namespace gradus::api {
@@ -34,6 +36,18 @@ inline uint64_t checksum(const char* data, size_t size) {
   ContentHash hash;
   hash.bytes(data, size);
   return hash.result();
+}
+
+// The lights that one call sets.
+struct LightList {
+  const GradusLight* lights = nullptr;
+  size_t count = 0;
+};
+
+template <class Archive>
+void visit(Archive& a, LightList& list) {
+  a.value(list.count);
+  a.structs(list.lights, list.count);
 }
 
 }  // namespace gradus::api

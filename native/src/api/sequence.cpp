@@ -1,7 +1,6 @@
 // gradus_sequence_*
 #include "animation/sequence.h"
 
-#include "api/arrays.h"
 #include "api/guard.h"
 #include "api/objects.h"
 #include "api/structs.h"

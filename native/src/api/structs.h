@@ -1,7 +1,9 @@
-// struct_size: an older (smaller) struct is completed by defaults, a newer (larger) one is refused.
+// Checks of structs and arrays that a caller passes. A struct of an older caller, with a smaller struct_size, is
+// completed by defaults; that of a newer caller is refused.
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -10,10 +12,10 @@
 
 namespace gradus::api {
 
-// Longest array that is accepted anywhere, in elements: indices of the API are 32 bit.
+// Maximum number of elements of any array. Indices of the API have 32 bits.
 inline constexpr size_t kMaxCount = 0x7fffffff;
 
-// Reads and checks struct_size without touching anything else; works for misaligned pointers.
+// Reads and checks struct_size. It accesses no other member, and works for misaligned pointers.
 template <class T>
 uint32_t struct_size_of(const void* from, const char* name) {
   if (!from) throw invalid_argument(std::string(name) + " is NULL");
@@ -23,7 +25,7 @@ uint32_t struct_size_of(const void* from, const char* name) {
     throw invalid_argument(std::string(name) + ".struct_size is " + std::to_string(size) + ", this library knows " +
                            std::to_string(sizeof(T)) + " bytes: the caller is newer than the library");
   }
-  // A multiple of the alignment never cuts a pointer or number in two.
+  // A size that is a multiple of the alignment ends between two members.
   if (size < 2 * sizeof(uint32_t) || size % alignof(T) != 0) {
     throw invalid_argument(std::string(name) + ".struct_size is " + std::to_string(size) + ", expected " +
                            std::to_string(sizeof(T)));
@@ -31,6 +33,7 @@ uint32_t struct_size_of(const void* from, const char* name) {
   return size;
 }
 
+// Returns a copy of a caller's struct, completed by `defaults`.
 template <class T>
 T read_struct(const T* from, const char* name, const T& defaults = T{}) {
   const uint32_t size = struct_size_of<T>(from, name);
@@ -57,11 +60,30 @@ std::vector<T> read_struct_array(const T* from, size_t count, const char* name) 
   return result;
 }
 
-// Writes as much as the caller's struct holds; its struct_size stays.
+// Writes the members that the caller's struct has, and keeps its struct_size.
 template <class T>
 void write_struct(T* to, T value, const char* name) {
   value.struct_size = struct_size_of<T>(to, name);
   std::memcpy(static_cast<void*>(to), &value, value.struct_size);
+}
+
+// Whether an array may be NULL.
+enum class Presence { Required, Optional };
+
+// Checks an array of `count` elements of `width` values each. Throws invalid_argument, with the array's name, if it is
+// missing, misaligned or has too many elements.
+template <class T>
+void check_array(const T* data, size_t count, const char* name, size_t width = 1,
+                 Presence presence = Presence::Required) {
+  if (count > kMaxCount || count * width > kMaxCount * size_t{16}) {
+    throw invalid_argument(std::string(name) + ": " + std::to_string(count) + " elements are too many");
+  }
+  if (count == 0) return;
+  if (!data) {
+    if (presence == Presence::Optional) return;
+    throw invalid_argument(std::string(name) + " is NULL");
+  }
+  if (reinterpret_cast<uintptr_t>(data) % alignof(T) != 0) throw invalid_argument(std::string(name) + " is misaligned");
 }
 
 }  // namespace gradus::api

@@ -1,7 +1,6 @@
-// Versions, the error slot and layouts: what works before anything else exists.
+// Functions that need no handle: versions, gradus_error() and the layouts of structs.
 #include <string_view>
 
-#include "api/error_slot.h"
 #include "api/guard.h"
 #include "schema/layout.h"
 

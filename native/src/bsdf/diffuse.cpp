@@ -1,5 +1,5 @@
-// Diffuse lobes: Lambert, Oren-Nayar in Fujii's improved form, its energy-conserving extension EON, and Disney's
-// diffuse lobe with retro-reflection.
+// Diffuse lobes: Lambert, Oren-Nayar in Fujii's improved form, its energy-conserving extension EON, Disney's diffuse
+// lobe with retro-reflection, and the translucent lobe, which is a Lambert lobe on the far side of the surface.
 //
 // Fujii, "A tiny improvement of Oren-Nayar reflectance model" (2012); Portsmouth, Kutz, Hill, "EON: A practical
 // energy-preserving rough diffuse BRDF" (2024), whose equation numbers are given below. Cycles uses Fujii's model up to
@@ -79,6 +79,20 @@ BsdfEval evaluate_diffuse(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint
 
 bool sample_diffuse(const Lobe&, const Vec3&, float, const Vec2& u, uint8_t, Vec3* wi) {
   *wi = sample_cosine_hemisphere(u);
+  return true;
+}
+
+BsdfEval evaluate_translucent(const Lobe& lobe, const Vec3&, const Vec3& wi, uint8_t) {
+  if (!(wi.z < 0.0f)) {
+    return {};
+  }
+  const float pdf = -wi.z * kInvPi;
+  return {lobe.weight * pdf, pdf};
+}
+
+bool sample_translucent(const Lobe&, const Vec3&, float, const Vec2& u, uint8_t, Vec3* wi) {
+  *wi = sample_cosine_hemisphere(u);
+  wi->z = -wi->z;
   return true;
 }
 

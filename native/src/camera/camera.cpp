@@ -73,17 +73,17 @@ void Camera::add_keys() {
   keys_ = geometry::MatrixKeys(keys);
 }
 
-const Camera::Pose& Camera::pose_at(float time, Pose* room) const {
+const Camera::Pose& Camera::pose_at(float time, Pose* storage) const {
   if (!moves()) return pose(Moment::Now);
   const Mat4 m = keys_.at(GRADUS_FAULT(camera_does_not_move) ? 0.0f : time);
-  room->axes = Mat3(m);
-  room->inverse = glm::inverse(room->axes);
-  room->position = Vec3(m[3]);
+  storage->axes = Mat3(m);
+  storage->inverse = glm::inverse(storage->axes);
+  storage->position = Vec3(m[3]);
   const geometry::KeyPlace place =
       geometry::key_place(GRADUS_FAULT(camera_does_not_zoom) ? 0.0f : time, windows_.size());
   const std::array<float, 4>&a = windows_[place.before], &b = windows_[place.before + 1];
-  for (size_t i = 0; i < 4; ++i) room->window[i] = a[i] * (1.0f - place.share) + b[i] * place.share;
-  return *room;
+  for (size_t i = 0; i < 4; ++i) storage->window[i] = a[i] * (1.0f - place.share) + b[i] * place.share;
+  return *storage;
 }
 
 Camera Camera::without_lens() const {
@@ -112,8 +112,8 @@ Vec2 Camera::lens_point(const Vec2& u) const {
 
 Ray Camera::ray(const CameraSample& sample) const {
   const Vec2& film = sample.film;
-  Pose room;
-  const Pose& now = pose_at(sample.time, &room);
+  Pose storage;
+  const Pose& now = pose_at(sample.time, &storage);
   const float x = now.window[0] + (now.window[1] - now.window[0]) * (film.x / float(width_));
   const float y = now.window[2] + (now.window[3] - now.window[2]) * (film.y / float(height_));
   if (is_panorama()) return panorama_ray(now, Vec2(x, y), sample);
@@ -220,14 +220,14 @@ bool Camera::project_direction(const Vec3& direction, Moment when, Vec2* film) c
 }
 
 float Camera::depth(const Vec3& world, float time) const {
-  Pose room;
-  const Pose& now = pose_at(time, &room);
+  Pose storage;
+  const Pose& now = pose_at(time, &storage);
   return is_panorama() ? glm::length(world - now.position) : -(now.inverse * (world - now.position)).z;
 }
 
 Vec3 Camera::position(float time) const {
-  Pose room;
-  return pose_at(time, &room).position;
+  Pose storage;
+  return pose_at(time, &storage).position;
 }
 
 }  // namespace gradus::camera

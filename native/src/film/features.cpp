@@ -1,10 +1,10 @@
 #include "film/features.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <limits>
 #include <string>
+
+#include <tbb/parallel_for.h>
 
 #include "base/error.h"
 #include "base/fault.h"

@@ -1,8 +1,8 @@
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include <tbb/parallel_for.h>
 
 #include "base/fault.h"
 #include "base/fpu.h"

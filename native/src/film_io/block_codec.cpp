@@ -1,13 +1,14 @@
 #include "film_io/block_codec.h"
 
 #include <immintrin.h>
-#include <libdeflate.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <new>
+
+#include <libdeflate.h>
 
 namespace gradus::film_io {
 namespace {

@@ -1,9 +1,9 @@
 // Writes an OpenEXR file with scan-line parts from packed blocks. OpenEXR's own writer packs one block after the other.
 #pragma once
 
-#include <ImfHeader.h>
-
 #include <vector>
+
+#include <ImfHeader.h>
 
 #include "film_io/block_codec.h"
 #include "film_io/exr_stream.h"

@@ -1,8 +1,8 @@
 #include "film_io/check_planes.h"
 
-#include <tbb/parallel_for.h>
-
 #include <atomic>
+
+#include <tbb/parallel_for.h>
 
 #include "base/error.h"
 

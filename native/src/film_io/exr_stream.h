@@ -1,10 +1,10 @@
 // Output of OpenEXR to an atomic FileWriter.
 #pragma once
 
-#include <ImfIO.h>
-
 #include <exception>
 #include <string>
+
+#include <ImfIO.h>
 
 #include "base/error.h"
 #include "film_io/file_writer.h"

@@ -2,7 +2,6 @@
 
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
-
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>

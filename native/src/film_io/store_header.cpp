@@ -1,11 +1,11 @@
 #include "film_io/store_header.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include <ImfChannelList.h>
 #include <ImfPartType.h>
 #include <ImfStringAttribute.h>
-
-#include <algorithm>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "base/clock.h"

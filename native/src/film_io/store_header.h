@@ -2,9 +2,9 @@
 // version.
 #pragma once
 
-#include <ImfHeader.h>
-
 #include <vector>
+
+#include <ImfHeader.h>
 
 #include "film/film.h"
 #include "film_io/store.h"

@@ -8,18 +8,38 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <string_view>
 
 #include <OpenColorIO/OpenColorIO.h>
 
 #include "base/error.h"
 #include "base/types.h"
 #include "image/baked_space.h"
-#include "image/builtin_spaces.h"
 
 namespace OCIO = OCIO_NAMESPACE;
 
 namespace gradus::image {
 namespace {
+
+// Names of spaces whose values need no conversion, because they are data or already scene-linear.
+constexpr std::array<std::string_view, 10> kUnchanged = {
+    "",       "Non-Color",      "Non-Colour Data", "Generic Data",    "Raw", "Utility - Raw",
+    "Linear", "Linear Rec.709", "scene_linear",    "lin_rec709_scene"};
+// Names of sRGB, as Blender's own and common OpenColorIO configurations spell it.
+constexpr std::array<std::string_view, 5> kSrgb = {"sRGB", "sRGB - Texture", "Utility - sRGB - Texture", "srgb_tx",
+                                                   "srgb_rec709_scene"};
+
+// Returns the transform of a built-in space by any name that Blender has used for it, or nothing for other names.
+// Built-in spaces are known without a configuration.
+std::optional<ColorTransform> builtin_transform(const std::string& space) {
+  if (std::find(kUnchanged.begin(), kUnchanged.end(), space) != kUnchanged.end()) {
+    return ColorTransform::Data;
+  }
+  if (std::find(kSrgb.begin(), kSrgb.end(), space) != kSrgb.end()) {
+    return ColorTransform::Srgb;
+  }
+  return std::nullopt;
+}
 
 // A colour space whose name has been looked up. `kind` selects its conversion; if it is Other, either `baked` or
 // `processor` converts the values.
@@ -175,6 +195,20 @@ ColorTransform ColorManager::transform(const std::string& space, bool is_byte) c
 void ColorManager::to_scene_linear(const std::string& space, bool is_byte, float* pixels, size_t pixel_count,
                                    int channels) const {
   state_->find(space, is_byte).apply(pixels, pixel_count, channels);
+}
+
+float srgb_to_linear(float encoded) {
+  if (encoded <= 0.04045f) {
+    return encoded * (1.0f / 12.92f);
+  }
+  return std::pow((encoded + 0.055f) * (1.0f / 1.055f), 2.4f);
+}
+
+float linear_to_srgb(float linear) {
+  if (linear <= 0.0031308f) {
+    return linear * 12.92f;
+  }
+  return 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
 }  // namespace gradus::image

@@ -18,10 +18,10 @@ bool hit_sphere(const AnalyticLight& light, const Ray& ray, LightPoint* point, f
   const Vec3 to_centre = light.position - ray.origin;
   const float middle = glm::dot(to_centre, ray.direction);
   const Vec3 closest = to_centre - ray.direction * middle;
-  const float rest = light.radius * light.radius - glm::dot(closest, closest);
-  if (!(rest >= 0.0f)) return false;
+  const float squared_half_chord = light.radius * light.radius - glm::dot(closest, closest);
+  if (!(squared_half_chord >= 0.0f)) return false;
   const bool inside = glm::dot(to_centre, to_centre) < light.radius * light.radius;
-  *distance = inside ? middle + std::sqrt(rest) : middle - std::sqrt(rest);
+  *distance = inside ? middle + std::sqrt(squared_half_chord) : middle - std::sqrt(squared_half_chord);
   if (!within(ray, *distance)) return false;
   point->normal = glm::normalize(ray.direction * *distance - to_centre);
   point->position = light.position + point->normal * light.radius;

@@ -1,8 +1,8 @@
 #include "light/light_scene.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
+
+#include <embree3/rtcore.h>
 
 #include "base/error.h"
 

@@ -160,10 +160,10 @@ double LightTree::probability(uint32_t light, const Receiver& receiver, const Cu
   if (cut_node == end) return 0.0;
   double product = double(cut_node->weight) / cut.total();
   const Node* node = &nodes_[cut_node->node];
-  for (uint64_t rest = trail >> cut_node->depth; !(node->child & kLeaf); rest >>= 1) {
+  for (uint64_t turns = trail >> cut_node->depth; !(node->child & kLeaf); turns >>= 1) {
     const double p = first_probability(*node, receiver);
-    product *= rest & 1 ? 1.0 - p : p;
-    node = &nodes_[node->child + (rest & 1)];
+    product *= turns & 1 ? 1.0 - p : p;
+    node = &nodes_[node->child + (turns & 1)];
   }
   return product;
 }

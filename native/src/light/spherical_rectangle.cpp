@@ -71,8 +71,8 @@ Vec3 SphericalRectangle::sample(const Vec2& u) const {
   const float d2 = xu * xu + z0_ * z0_;
   const float h0 = y0_ / std::sqrt(d2 + y0_ * y0_), h1 = y1_ / std::sqrt(d2 + y1_ * y1_);
   const float hv = h0 + u.y * (h1 - h0);
-  const float rest = 1.0f - hv * hv;
-  const float yv = rest > 1e-6f ? std::clamp(hv * std::sqrt(d2) / std::sqrt(rest), y0_, y1_) : y1_;
+  const float squared_cosine = 1.0f - hv * hv;
+  const float yv = squared_cosine > 1e-6f ? std::clamp(hv * std::sqrt(d2) / std::sqrt(squared_cosine), y0_, y1_) : y1_;
   return from_ + x_ * xu + y_ * yv + z_ * z0_;
 }
 

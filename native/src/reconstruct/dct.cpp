@@ -1,11 +1,11 @@
 #include "reconstruct/dct.h"
 
-#include <fftw3.h>
-
 #include <cmath>
 #include <mutex>
 #include <new>
 #include <numbers>
+
+#include <fftw3.h>
 
 namespace gradus::reconstruct {
 namespace {

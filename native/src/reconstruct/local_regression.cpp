@@ -1,10 +1,10 @@
 #include "reconstruct/local_regression.h"
 
-#include <tbb/blocked_range2d.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <utility>
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
 
 #include "base/error.h"
 #include "base/fault.h"

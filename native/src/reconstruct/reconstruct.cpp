@@ -1,6 +1,6 @@
-#include <tbb/enumerable_thread_specific.h>
-
 #include <functional>
+
+#include <tbb/enumerable_thread_specific.h>
 
 #include "base/error.h"
 #include "reconstruct/l2.h"

@@ -1,4 +1,4 @@
-// Scene::commit(): makes an immutable snapshot of the scene that the caller set.
+// Scene::commit(), which makes an immutable snapshot of the scene that the caller has set.
 #include <algorithm>
 #include <atomic>
 
@@ -6,11 +6,9 @@
 #include "base/fpu.h"
 #include "light/light_scene.h"
 #include "light/light_table.h"
-#include "scene/affected_objects.h"
 #include "scene/device.h"
 #include "scene/scene_state.h"
 #include "scene/snapshot_geometry.h"
-#include "scene/snapshot_tangents.h"
 #include "shading/material.h"
 
 namespace gradus::scene {
@@ -60,7 +58,7 @@ void place_camera(const Scene::State& state, Snapshot* snapshot) {
   snapshot->shutter = camera::Shutter(snapshot->camera);
 }
 
-// Sets has_motion: whether anything moves while the shutter is open.
+// Sets has_motion, which says whether anything moves while the shutter is open.
 void find_motion(Snapshot* snapshot) {
   const bool moves =
       snapshot->camera.shutter_key_count > 0 || std::any_of(snapshot->instances.begin(), snapshot->instances.end(),
@@ -123,17 +121,17 @@ void build_lights(const geometry::EmbreeDevice& device, std::vector<light::Analy
 }
 
 void find_sharpest(Snapshot* snapshot) {
-  const auto look_at = [&](uint32_t m) {
+  const auto add_features_of = [&](uint32_t m) {
     SceneFeatures& features = snapshot->features;
     features.min_alpha = std::min(features.min_alpha, snapshot->materials[m]->min_alpha);
     features.min_refracting_alpha =
         std::min(features.min_refracting_alpha, snapshot->materials[m]->min_refracting_alpha);
   };
   for (const geometry::InstanceData& instance : snapshot->instances)
-    std::for_each(instance.materials.begin(), instance.materials.end(), look_at);
+    std::for_each(instance.materials.begin(), instance.materials.end(), add_features_of);
 }
 
-// Sets has_holdouts: whether an object or a shader makes holdouts, which have alpha 0 in the film.
+// Sets has_holdouts, which says whether an object or a shader makes holdouts, which have alpha 0 in the film.
 void find_holdouts(Snapshot* snapshot) {
   const auto holds_out = [&](uint32_t m) { return snapshot->materials[m]->has_holdout; };
   snapshot->features.has_holdouts =

@@ -25,7 +25,7 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   const geometry::EmbreeDevice& embree() const { return embree_; }
-  // Tasks that run in it flush denormals; threads of our own that compute outside of it take FlushDenormals
+  // Tasks in the arena flush denormals. Threads of Gradus that compute outside of it do so by FlushDenormals
   // (base/fpu.h).
   tbb::task_arena& arena() { return arena_; }
   uint32_t threads() const { return threads_; }

@@ -83,7 +83,7 @@ uint64_t MaterialSource::hash_with(const std::function<uint64_t(uint64_t key)>& 
   return hash.result();
 }
 
-bool MaterialSource::looks_at_images() const { return std::any_of(nodes_.begin(), nodes_.end(), names_image); }
+bool MaterialSource::depends_on_images() const { return std::any_of(nodes_.begin(), nodes_.end(), names_image); }
 
 GradusMaterial MaterialSource::view() const {
   GradusMaterial d = desc_;

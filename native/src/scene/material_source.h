@@ -1,4 +1,4 @@
-// Owning copy of a GradusMaterial, so that it can be compiled at commit, when the images it names are known.
+// Owning copy of a GradusMaterial. The commit compiles it, because only then its images are known.
 #pragma once
 
 #include <functional>
@@ -11,17 +11,17 @@ namespace gradus::scene {
 
 class MaterialSource {
  public:
-  // Throws Error INVALID_ARGUMENT, with the material's name, where arrays are missing or a node's ranges exceed them.
+  // Throws Error INVALID_ARGUMENT, with the material's name, if arrays are missing or the ranges of a node exceed them.
   explicit MaterialSource(const GradusMaterial& desc);
   MaterialSource(const MaterialSource&) = delete;
   MaterialSource& operator=(const MaterialSource&) = delete;
-  // Pointers into this object; valid as long as it.
+  // Returns a description with pointers to this object, which must outlive their use.
   GradusMaterial view() const;
   uint64_t content_hash() const { return content_hash_; }
   // Returns the content hash with the hashes of the images instead of their keys.
   uint64_t hash_with(const std::function<uint64_t(uint64_t key)>& image) const;
   // Returns whether the compiled material depends on images.
-  bool looks_at_images() const;
+  bool depends_on_images() const;
   const std::string& name() const { return name_; }
 
  private:

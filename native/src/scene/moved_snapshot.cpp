@@ -8,7 +8,6 @@
 #include "geometry/matrix_keys.h"
 #include "geometry/mesh_at.h"
 #include "scene/snapshot_geometry.h"
-#include "scene/snapshot_tangents.h"
 
 namespace gradus::scene {
 
@@ -16,7 +15,7 @@ namespace {
 
 using Meshes = std::map<const geometry::MeshData*, std::shared_ptr<const geometry::MeshData>>;
 
-// A step to the next or the previous frame, or a share of it.
+// A step to the next or the previous frame, or a fraction of it.
 struct Step {
   Moment when;
   float share;
@@ -53,7 +52,7 @@ bool move_instance(const Step& step, Meshes* meshes, geometry::InstanceData* ins
   instance->mirrored = glm::determinant(glm::dmat3(matrix)) < 0.0;
   instance->keys = nullptr;
   instance->deforms = false;
-  instance->visibility |= GRADUS_MAY_MOVE;  // keeps it out of the shared static group
+  instance->visibility |= GRADUS_MAY_MOVE;  // excludes it from the shared static group
   if (mesh != instance->mesh) instance->tangents.clear();
   instance->mesh = mesh;
   return true;

@@ -1,9 +1,8 @@
-// Makes the instances of a snapshot from those that the caller set. Broken instances are left out. A scene that is far
-// from the origin is moved to its centre, for float precision.
+// Makes the instances of a snapshot from those that the caller has set. Broken instances are left out. A scene that is
+// far from the origin is moved to its centre, for float precision.
 #include <cmath>
 
 #include "base/hash.h"
-#include "scene/affected_objects.h"
 #include "scene/scene_state.h"
 
 namespace gradus::scene {

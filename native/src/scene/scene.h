@@ -18,9 +18,9 @@ class Scene {
  public:
   explicit Scene(std::shared_ptr<Device> device);
   ~Scene();
-  // Copies the arrays. Throws Error INVALID_ARGUMENT with a text that names the mesh where the arrays contradict each
-  // other; broken values (NaN, zero areas) are kept out later, with one warning: broken data costs the broken object,
-  // not the frame.
+  // Copies the arrays of a mesh. Throws Error INVALID_ARGUMENT, with the name of the mesh, if the arrays contradict
+  // each other. Values that are not finite and triangles without area are allowed here. The commit leaves them out,
+  // with one warning, so that damaged data does not prevent the render.
   void set_mesh(uint64_t key, const GradusMesh& mesh);
   void set_image(uint64_t key, const GradusImage& image);
   void set_material(uint64_t key, const GradusMaterial& material);
@@ -29,10 +29,10 @@ class Scene {
   void set_camera(const GradusCamera& camera);
   void set_world(const GradusWorld& world);
   void remove(GradusObjectKind kind, uint64_t key);
-  // Throws Error CANCELLED when *cancel becomes non-zero (the snapshot before stays); progress runs from 0 to 1 and
-  // never falls.
+  // Makes a new snapshot. *progress rises from 0 to 1. Throws Error CANCELLED if *cancel becomes non-zero; the previous
+  // snapshot then remains.
   void commit(const volatile int32_t* cancel, float* progress);
-  std::shared_ptr<const Snapshot> snapshot() const;  // of the last commit; nullptr if there was none
+  std::shared_ptr<const Snapshot> snapshot() const;  // That of the last commit; nullptr if there was none.
   const std::shared_ptr<Device>& device() const { return device_; }
 
   struct State;  // scene/scene_state.h

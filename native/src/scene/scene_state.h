@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -24,7 +25,7 @@ struct MaterialData;
 
 namespace gradus::scene {
 
-// A light as set; the pointers of `desc` are null.
+// A light as the caller has set it. The pointers of `desc` are null, and `name` holds a copy of its name.
 struct LightSource {
   GradusLight desc{};
   std::string name;
@@ -32,10 +33,10 @@ struct LightSource {
 
 struct LoadedImage {
   image::ImageSource source;
-  std::shared_ptr<const image::Image> image;  // nullptr: the next commit loads it
+  std::shared_ptr<const image::Image> image;  // nullptr if the next commit has to load it
 };
 
-// Image key -> pixels.
+// Maps the keys of images to their pixels.
 using StoredImages = std::map<uint64_t, std::shared_ptr<const image::Image>>;
 
 struct CompiledMaterial {
@@ -44,7 +45,7 @@ struct CompiledMaterial {
   std::string warning;  // reason for a fallback in `data`; else empty
 };
 
-// Material key -> index in Snapshot::materials.
+// Maps the keys of materials to indices in Snapshot::materials.
 using MaterialIndex = std::unordered_map<uint64_t, uint32_t>;
 
 struct Scene::State {
@@ -54,7 +55,7 @@ struct Scene::State {
   std::map<uint64_t, std::shared_ptr<const MaterialSource>> materials;
   geometry::InstanceArrays instances;
   std::vector<LightSource> lights;
-  GradusCamera camera{};  // its arrays are camera_keys'
+  GradusCamera camera{};  // its arrays belong to `camera_keys`
   camera::CameraKeys camera_keys;
   bool has_camera = false;
   GradusWorld world{};
@@ -63,21 +64,41 @@ struct Scene::State {
   // Results of the last commit that the next commit may reuse.
   std::shared_ptr<const Snapshot> current;
   std::shared_ptr<const image::ImageStore> image_store;
-  StoredImages stored_images;  // in image_store
+  StoredImages stored_images;  // those in `image_store`
   std::map<uint64_t, CompiledMaterial> compiled;
   std::shared_ptr<const geometry::Accelerator> accelerator;
   light::WorldMap world_map;
 };
 
-// Exact matrix of an instance in internal space.
+// The objects that have the same problem, for one warning with the name of the first.
+struct AffectedObjects {
+  size_t count = 0;
+  std::string first;
+
+  void add(const std::string& name) {
+    if (count++ == 0) first = name;
+  }
+  // Appends the warning, if there are objects. `what` is the predicate for one object, `of_several` that for more, and
+  // `why` is the reason.
+  void warn(const std::string& what, const std::string& of_several, const std::string& why,
+            std::vector<std::string>* warnings) const {
+    if (count == 0) return;
+    warnings->push_back(count == 1 ? "object '" + first + "' " + what + ": " + why
+                                   : std::to_string(count) + " objects " + of_several + ", the first is '" + first +
+                                         "': " + why);
+  }
+};
+
+// Returns the exact matrix of an instance in internal space.
 glm::dmat4 internal_matrix(const Mat4& matrix, const Vec3& origin);
 
-// Fills instances (without materials), origin, radius and warnings; returns the index in InstanceArrays of each.
+// Sets the instances, without materials, the origin, the radius and warnings of a snapshot. Returns the index in
+// InstanceArrays of each instance.
 std::vector<size_t> place_instances(const Scene::State& state, Snapshot* snapshot);
 
-// Fills images and warnings.
+// Loads new images and sets the images and warnings of a snapshot.
 void load_images(Device& device, const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot);
-// Fills materials, the default one first, and warnings. Needs load_images().
+// Sets the materials of a snapshot, the default material first, and warnings. load_images() must have been called.
 MaterialIndex compile_materials(const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot);
 // Returns a hash of everything that the caller set.
 uint64_t content_key(const Scene::State& state);

@@ -1,4 +1,4 @@
-// The immutable scene that integrators see. Made by Scene::commit(); shares unchanged buffers with the snapshot before.
+// The immutable scene that integrators read. Scene::commit() makes it; unchanged buffers are shared with the last one.
 #pragma once
 
 #include <memory>
@@ -14,35 +14,35 @@
 
 namespace gradus::scene {
 
-// What a scene contains, so that what it does not need can be left out.
+// Properties of a scene. They let a render skip the computations that the scene does not need.
 struct SceneFeatures {
   bool has_transparent_shadows = false;
   bool has_lights_with_extent = false;
-  float min_alpha = 1.0f;                  // roughness: surely no lobe is sharper
-  float min_refracting_alpha = kInfinity;  // minimum of refracting lobes; infinite: there are none
+  float min_alpha = 1.0f;                  // lower bound on the roughness of all lobes
+  float min_refracting_alpha = kInfinity;  // that of refracting lobes; infinite without any
   bool has_lights = false;
   bool only_lights_emit =
-      false;  // no surface has anything to show to a ray that ends a path: it sees lights and the world alone
+      false;  // no surface adds any radiance to a ray that ends a path; only the lights and the world do that
   bool world_emits = true;
   bool has_motion = false;    // something moves while the shutter is open
   bool has_holdouts = false;  // objects or shaders that make alpha 0 in the film
 };
 
-// All positions that go in and come out are in internal space: world = internal + origin. The camera and the lights are
-// moved alike, so that an integrator never notices; what shows world coordinates (Position pass, Geometry node) adds
-// the origin.
+// All positions are in internal space, where world = internal + origin. The camera and the lights are in the same
+// space, so that integrators need not know the origin. Only users of world coordinates (the Position pass, the Geometry
+// node) add it.
 class Snapshot : public light::LitScene {
  public:
-  // Transmittance of the segment through transparent surfaces, at most max_transparent of them; 0 if blocked.
+  // Returns the transmittance of a segment through at most max_transparent transparent surfaces, or 0 if it is blocked.
   Rgb transmittance(const Ray& ray, uint32_t max_transparent) const;
 
   std::shared_ptr<const camera::CameraKeys> camera_keys;
-  bool shot_change_before = false, shot_change_after = false;  // another shot in the adjacent frame
-  bool is_other_shot = false;                                  // moved_snapshot() across a shot change
+  bool shot_change_before = false, shot_change_after = false;  // the adjacent frame belongs to another shot
+  bool is_other_shot = false;                                  // made by moved_snapshot() across a shot change
   camera::Shutter shutter;
   SceneFeatures features;
   uint64_t content_key = 0;
-  std::vector<std::string> warnings;  // made by commit
+  std::vector<std::string> warnings;  // those of the commit
 };
 
 }  // namespace gradus::scene

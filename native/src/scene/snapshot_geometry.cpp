@@ -1,13 +1,17 @@
 #include "scene/snapshot_geometry.h"
 
 #include <algorithm>
+#include <map>
 
+#include "geometry/mesh.h"
+#include "geometry/tangent_field.h"
 #include "shading/material.h"
 
 namespace gradus::scene {
 
 namespace {
 
+// Returns whether a material of the instance passes a test.
 template <class Test>
 bool any_material(const Snapshot& snapshot, const geometry::InstanceData& instance, Test&& test) {
   if (instance.materials.empty()) return test(*snapshot.materials[0]);
@@ -15,11 +19,13 @@ bool any_material(const Snapshot& snapshot, const geometry::InstanceData& instan
                      [&](uint32_t m) { return test(*snapshot.materials[m]); });
 }
 
+// Returns whether shadow rays have to evaluate materials of the instance.
 bool lets_shadows_through(const Snapshot& snapshot, const geometry::InstanceData& instance) {
   return any_material(snapshot, instance,
                       [](const shading::MaterialData& m) { return m.may_be_transparent && m.transparent_shadow; });
 }
 
+// Returns the mask of an instance for Embree, which selects it for rays of some types.
 uint32_t embree_mask(const geometry::InstanceData& instance, bool transparent) {
   uint32_t mask = instance.visibility & geometry::kMaskVisibility;
   if (mask & GRADUS_VISIBLE_SHADOW)
@@ -27,11 +33,26 @@ uint32_t embree_mask(const geometry::InstanceData& instance, bool transparent) {
   return mask;
 }
 
+// Sets the pointers of the instances to the triangles of one part of the acceleration structure.
 void refer_to_triangles(const geometry::Accelerator::Part& part, Snapshot* snapshot) {
   for (size_t k = 0; k < part.instances.size(); ++k) {
     const geometry::FlatTriangles& flat = part.group->flat_triangles[k];
     snapshot->instances[part.instances[k]].flat_triangles = flat.empty() ? nullptr : flat.data();
   }
+}
+
+// Calls visit(uv) for every UV map of an instance whose tangents its materials read.
+template <class Visit>
+void for_each_tangent_map(const Snapshot& snapshot, const geometry::InstanceData& instance, const Visit& visit) {
+  const auto of_material = [&](uint32_t material) {
+    for (const std::string& name : snapshot.materials[material]->tangent_maps) {
+      const geometry::MeshAttribute* uv =
+          name.empty() ? geometry::default_uv_map(*instance.mesh) : geometry::find_attribute(*instance.mesh, name);
+      if (uv) visit(*uv);
+    }
+  };
+  if (instance.materials.empty()) of_material(0);
+  for (const uint32_t material : instance.materials) of_material(material);
 }
 
 }  // namespace
@@ -49,6 +70,22 @@ void build_geometry(const geometry::EmbreeDevice& device, const geometry::ExactM
       geometry::build_accelerator(device, {&snapshot->instances, &masks, to_internal}, progress, before);
   refer_to_triangles(snapshot->accelerator->static_part, snapshot);
   refer_to_triangles(snapshot->accelerator->moving, snapshot);
+}
+
+void add_tangents(const Snapshot* before, Snapshot* snapshot) {
+  std::map<const geometry::MeshAttribute*, std::shared_ptr<const geometry::TangentField>> fields;
+  if (before) {
+    for (const geometry::InstanceData& instance : before->instances)
+      for (const auto& field : instance.tangents) fields[field->uv] = field;
+  }
+  for (geometry::InstanceData& instance : snapshot->instances) {
+    for_each_tangent_map(*snapshot, instance, [&](const geometry::MeshAttribute& uv) {
+      auto& field = fields[&uv];
+      if (!field) field = geometry::make_tangents(instance.mesh, uv);
+      if (std::find(instance.tangents.begin(), instance.tangents.end(), field) == instance.tangents.end())
+        instance.tangents.push_back(field);
+    });
+  }
 }
 
 }  // namespace gradus::scene

@@ -1,4 +1,5 @@
-// Builds the acceleration structure of a snapshot from its instances and their materials.
+// Builds the parts of a snapshot that depend on both its instances and their materials: the acceleration structure and
+// the tangents.
 #pragma once
 
 #include <memory>
@@ -8,10 +9,14 @@
 
 namespace gradus::scene {
 
-// Fills accelerator, the instances' flat triangles and has_transparent_shadows. before: of another snapshot, or
-// nullptr. Throws Error CANCELLED or OUT_OF_MEMORY.
+// Builds the acceleration structure, and sets the instances' flat triangles and has_transparent_shadows. `before` is
+// the structure of another snapshot, whose parts are reused if they are equal, or nullptr. Throws Error CANCELLED or
+// OUT_OF_MEMORY.
 void build_geometry(const geometry::EmbreeDevice& device, const geometry::ExactMatrices& to_internal,
                     const BuildProgress& progress, const std::shared_ptr<const geometry::Accelerator>& before,
                     Snapshot* snapshot);
+
+// Computes the tangents that the materials of the instances read. Those that `before` already has are shared.
+void add_tangents(const Snapshot* before, Snapshot* snapshot);
 
 }  // namespace gradus::scene

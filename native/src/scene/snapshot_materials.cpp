@@ -23,7 +23,7 @@ void load_new_images(Device& device, Scene::State* state, const CommitMonitor& m
   monitor.check();
 }
 
-// Compiles a material. One that does not compile gets a fallback and a warning, and the frame is rendered.
+// Compiles a material. If that fails, a fallback replaces it, with a warning.
 CompiledMaterial compile(const std::shared_ptr<const MaterialSource>& source, const image::ImageStore& images) {
   const GradusMaterial desc = source->view();
   try {
@@ -45,15 +45,15 @@ StoredImages loaded_images(const Scene::State& state) {
 void load_images(Device& device, const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot) {
   load_new_images(device, state, monitor);
   StoredImages images = loaded_images(*state);
-  // Not by what was loaded just now: a commit that was cancelled may have loaded it.
+  // They are compared with the last complete commit, because a commit that was cancelled may have loaded images, too.
   if (!state->image_store || images != state->stored_images) {
     auto store = std::make_shared<image::ImageStore>();
     for (const auto& [key, image] : images) store->add(key, image);
     state->image_store = std::move(store);
     state->stored_images = std::move(images);
-    // A program may have been folded with what an image holds. Others are kept: the table of a sky takes a third of a
-    // second.
-    std::erase_if(state->compiled, [](const auto& entry) { return entry.second.source->looks_at_images(); });
+    // Programs that use images are compiled again, because constants from an image may be folded into them. Others are
+    // reused, because the table of a sky takes a third of a second.
+    std::erase_if(state->compiled, [](const auto& entry) { return entry.second.source->depends_on_images(); });
   }
   snapshot->images = state->image_store;
   const std::vector<std::string> warnings = state->image_store->warnings();

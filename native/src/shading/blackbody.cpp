@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "shading/op_functions.h"
-#include "shading/sky/sky_color.h"
 #include "shading/sky/spectrum.h"
 
 namespace gradus::shading {

@@ -1,5 +1,3 @@
-#include "shading/bump.h"
-
 #include "shading/interpreter.h"
 #include "shading/scalar.h"
 

@@ -11,18 +11,18 @@
 
 namespace gradus::shading {
 
-// Records closure operations with their inputs, at most kRoom of them. Usage: clear(), add()…, finish(), replay().
+// Records closure operations with their inputs, at most kCapacity of them. Usage: clear(), add()…, finish(), replay().
 class ClosureTape {
  public:
   void clear() {
     count_ = 0;
     complete_ = false;
   }
-  void finish() { complete_ = count_ <= kRoom; }
+  void finish() { complete_ = count_ <= kCapacity; }
   // Records an operation. `inputs` is the number of inputs to copy; 0 means that args.in points to the program's
   // constants, which outlive the record.
   void add(const ClosureArgs& args, int inputs) {
-    if (count_ < kRoom) {
+    if (count_ < kCapacity) {
       Entry& entry = entries_[static_cast<size_t>(count_)];
       entry.args = args;
       if (inputs > 0) {
@@ -32,7 +32,7 @@ class ClosureTape {
     }
     ++count_;
   }
-  // Runs the recorded operations for another context. Returns false if nothing was recorded or kRoom was exceeded.
+  // Runs the recorded operations for another context. Returns false if nothing was recorded or kCapacity was exceeded.
   bool replay(const ShadeContext& context, ShadeResult* result) const {
     if (!complete_) return false;
     for (int i = 0; i < count_; i++) add_closure(entries_[static_cast<size_t>(i)].args, context, result);
@@ -40,12 +40,12 @@ class ClosureTape {
   }
 
  private:
-  static constexpr int kRoom = 8;
+  static constexpr int kCapacity = 8;
   struct Entry {
     ClosureArgs args;
     Vec4 in[kMaxInputs];
   };
-  std::array<Entry, kRoom> entries_;
+  std::array<Entry, kCapacity> entries_;
   int count_ = 0;
   bool complete_ = false;
 };

@@ -119,7 +119,7 @@ bool is_constant(const Program& p, uint32_t op) {
 }
 
 // Returns whether a value of the program depends on the ray. The dependence of closures themselves does not count.
-bool values_look_at_ray(const Program& p) {
+bool values_depend_on_ray(const Program& p) {
   for (const Instruction& i : p.code) {
     const bool geometry =
         i.op == GRADUS_OP_GEOMETRY && (i.mode == GRADUS_GEOMETRY_INCOMING || i.mode == GRADUS_GEOMETRY_BACKFACING);
@@ -133,7 +133,7 @@ bool values_look_at_ray(const Program& p) {
 
 // Returns whether the emission depends on the ray, which includes the coat of Principled, as it dims the emission.
 bool emission_looks_at_ray(const Program& p) {
-  return values_look_at_ray(p) ||
+  return values_depend_on_ray(p) ||
          std::any_of(p.code.begin(), p.code.end(), [](const Instruction& i) { return i.op == GRADUS_OP_PRINCIPLED; });
 }
 
@@ -240,7 +240,7 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
   describe_emission(m.get(), images);
   describe_transparency(m.get());
   describe_surface(m.get());
-  m->values_look_at_ray = values_look_at_ray(m->surface);
+  m->values_depend_on_ray = values_depend_on_ray(m->surface);
   m->depends_on_kind = looks_at_kind(m->emission) || looks_at_kind(m->transparency);
   return m;
 }

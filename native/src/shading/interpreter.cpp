@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "shading/bump.h"
 #include "shading/closure_tape.h"
 #include "shading/context_ops.h"
 #include "shading/op_info.h"

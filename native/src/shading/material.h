@@ -31,9 +31,9 @@ struct MaterialData {
   bool may_transmit = false;       // some lobe scatters light to the other side
   bool transparent_shadow = true;  // false if shadow rays treat the material as opaque
   bool sample_as_light = true;
-  bool uses_fallback = false;       // some node was replaced, or the material did not compile
-  bool depends_on_ray = false;      // the emission reads Light Path, or the direction of the viewer
-  bool values_look_at_ray = false;  // some value of `surface` depends on the ray; closures themselves do not count
+  bool uses_fallback = false;         // some node was replaced, or the material did not compile
+  bool depends_on_ray = false;        // the emission reads Light Path, or the direction of the viewer
+  bool values_depend_on_ray = false;  // some value of `surface` depends on the ray; closures themselves do not count
   bool depends_on_kind =
       false;               // emission or transparency read the ray's depth, or its kind other than camera or shadow
   float min_alpha = 1.0f;  // smallest alpha of all lobes; 0 if a texture decides
@@ -42,10 +42,9 @@ struct MaterialData {
   Rgb constant_emission = Rgb(0.0f);
   bool transparency_is_constant = false;  // the transparency is constant_transparency at all points and directions
   Rgb constant_transparency = Rgb(0.0f);
-  float emission_estimate =
-      0.0f;                 // luminance for light selection: exact if constant, else with textures at their mean
-  bool is_lambert = false;  // the surface is the single lobe `lambert` with the surface's normal
-  bsdf::Lobe lambert;       // the Lambert lobe of constant colour, without its normal
+  float emission_estimate = 0.0f;  // luminance for light selection: exact if constant, else with textures at their mean
+  bool is_lambert = false;         // the surface is the single lobe `lambert` with the surface's normal
+  bsdf::Lobe lambert;              // the Lambert lobe of constant colour, without its normal
   int32_t pass_index = 0;
   std::vector<SunDisc> suns;              // sun discs of the material's Sky Textures
   float smallest_hidden_sun = 0.0f;       // half angle of the smallest sun at an unknown position; 0 if there is none

@@ -9,8 +9,8 @@ namespace {
 Vec3 lerp(const Vec3& a, const Vec3& b, float t) { return a + (b - a) * t; }
 
 float overlay(float a, float b, float t) {
-  const float rest = 1.0f - t;
-  return a < 0.5f ? a * (rest + 2.0f * t * b) : 1.0f - (rest + 2.0f * t * (1.0f - b)) * (1.0f - a);
+  const float complement = 1.0f - t;
+  return a < 0.5f ? a * (complement + 2.0f * t * b) : 1.0f - (complement + 2.0f * t * (1.0f - b)) * (1.0f - a);
 }
 
 float divide(float a, float b, float t) { return b != 0.0f ? (1.0f - t) * a + t * a / b : a; }

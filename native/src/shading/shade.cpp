@@ -23,7 +23,7 @@ void clear(ShadeResult* result) {
 void complete(const MaterialData& material, const Vec3& geometric_normal, const Vec3& normal, const Vec3& wo,
               float roughness_threshold, ShadeResult* result) {
   result->closures.finish(wo, geometric_normal, roughness_threshold, normal);
-  result->ignores_wo = !material.values_look_at_ray && result->closures.ignores_wo();
+  result->ignores_wo = !material.values_depend_on_ray && result->closures.ignores_wo();
   result->complete = true;
 }
 
@@ -76,7 +76,7 @@ void shade_from_tape(const ShadedScene& scene, const geometry::SurfacePoint& poi
   const ShadeContext context = surface_context(scene, point, wo, ray);
   const bool same_side = context.backfacing == (glm::dot(point.geometric_normal, known_wo) < 0.0f);
   clear(result);
-  if (material.values_look_at_ray || !same_side || !tape.replay(context, result)) {
+  if (material.values_depend_on_ray || !same_side || !tape.replay(context, result)) {
     shade_surface(scene, point, wo, ray, roughness_threshold, result);
     return;
   }

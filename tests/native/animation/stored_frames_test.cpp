@@ -1,12 +1,13 @@
 // What a sequence finds in its folder and reuses: its frames are those of a job that was never interrupted.
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <future>
 #include <thread>
+
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "schema/pass_table.h"

@@ -1,7 +1,7 @@
 // gradus_components_*: functions by which the panel and scripts query light path expressions.
-#include <gtest/gtest.h>
-
 #include <string>
+
+#include <gtest/gtest.h>
 
 #include "api/test_scene.h"
 

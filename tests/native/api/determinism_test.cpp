@@ -1,6 +1,7 @@
 // L1 and L3 with the real integrators, through the C API: the bits do not depend on threads, batches or borders.
-#include <gtest/gtest.h>
 #include <sched.h>
+
+#include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include "api/test_scene.h"

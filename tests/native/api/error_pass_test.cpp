@@ -1,7 +1,7 @@
 // The pass Error through the C API: of a render, of its film, and of the stored film.
-#include <gtest/gtest.h>
-
 #include <filesystem>
+
+#include <gtest/gtest.h>
 
 #include "api/test_scene.h"
 

@@ -1,6 +1,4 @@
 // G1, G3, G4, G6 and G10 of the C API: wrong handles, the error slot, calls in any order, many handles.
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -13,7 +11,8 @@
 #include <sstream>
 #include <thread>
 
-#include "api/error_slot.h"
+#include <gtest/gtest.h>
+
 #include "api/guard.h"
 #include "api/registry.h"
 #include "api/test_scene.h"

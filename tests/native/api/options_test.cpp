@@ -1,7 +1,7 @@
 // G9: options, their defaults and the strings they are parsed from.
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "api/test_scene.h"

@@ -1,11 +1,11 @@
 // .gradus files: a saved scene renders with the same bits; damaged files are refused.
 #include "api/scene_file.h"
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "api/test_scene.h"
 

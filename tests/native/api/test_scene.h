@@ -1,11 +1,11 @@
 // A small scene through the C API: a lit quad seen from the front.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstring>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "gradus/gradus.h"
 

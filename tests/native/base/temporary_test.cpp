@@ -1,5 +1,4 @@
 // Temporary files are removed with the process that created them, even if it is killed.
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -8,6 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "base/spool_file.h"

@@ -2,10 +2,10 @@
 // They are measured without noise: a unit sphere of 160,000 triangles under an orthographic camera along -Z, lit by one
 // sun of 1 W/m2 with angle 0, 64 x 64 pixels, 1 sample, 0 bounces. The position of a pixel on the sphere is its normal;
 // its value is f cos.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <string>
+
+#include <gtest/gtest.h>
 
 #include "bsdf/closures.h"
 #include "bsdf/lobe_cases.h"

@@ -1,7 +1,7 @@
 // A2: no closure adds energy, and lossless closures lose none.
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "bsdf/closures.h"
 #include "bsdf/lobe_cases.h"

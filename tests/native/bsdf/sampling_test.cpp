@@ -1,7 +1,7 @@
 // A3: samples follow the density; A4: densities and values agree with each other.
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "bsdf/closures.h"
 #include "bsdf/lobe_cases.h"

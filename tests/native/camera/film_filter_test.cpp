@@ -1,7 +1,7 @@
 // Pixel filters are as wide as those of Cycles at the same setting.
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "camera/film_filter.h"
 #include "gradus/gradus.h"

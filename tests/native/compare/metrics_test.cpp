@@ -1,11 +1,11 @@
 // Error metrics against values computed by hand.
 #include "compare/metrics.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 

@@ -1,7 +1,6 @@
 // Features and their variance in a film: by half-buffers, through reading, the store, merging and resuming.
 #include "film/features.h"
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+
+#include <gtest/gtest.h>
 
 #include "film/film.h"
 #include "film_io/store.h"

@@ -2,12 +2,12 @@
 // real one.
 #include "film/splats.h"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <limits>
 #include <random>
 #include <thread>
+
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 

@@ -1,10 +1,10 @@
 // Packing and unpacking blocks of rows of a stored film.
 #include "film_io/block_codec.h"
 
-#include <gtest/gtest.h>
-
 #include <cstring>
 #include <random>
+
+#include <gtest/gtest.h>
 
 namespace gradus {
 namespace {

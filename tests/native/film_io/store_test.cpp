@@ -2,6 +2,21 @@
 // the same bits.
 #include "film_io/store.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <random>
+#include <set>
+#include <thread>
+#include <utility>
+
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -12,21 +27,7 @@
 #include <ImfOutputPart.h>
 #include <ImfStringAttribute.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <unistd.h>
-
-#include <atomic>
-#include <csignal>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <random>
-#include <set>
-#include <thread>
-#include <utility>
 
 #include "film/finite_check.h"
 #include "film/planes.h"

@@ -1,10 +1,10 @@
 #include "geometry/rays4.h"
-#include "light/light_rays4.h"
 
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "light/light_rays4.h"
 #include "path/segment.h"
 
 namespace gradus::test {

@@ -1,9 +1,9 @@
 #include "geometry/smooth_normals.h"
 
-#include <gtest/gtest.h>
-
 #include <array>
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "geometry/mesh.h"
 #include "gradus/gradus.h"

@@ -1,8 +1,8 @@
 #include "geometry/tangent_field.h"
 
-#include <gtest/gtest.h>
-
 #include <array>
+
+#include <gtest/gtest.h>
 
 #include "gradus/gradus.h"
 

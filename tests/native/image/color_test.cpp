@@ -1,14 +1,14 @@
 // F5: colour management with valid, invalid and missing configurations.
 #include "image/color.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 

@@ -1,10 +1,10 @@
 // F1: missing and unreadable images; F2: damaged files.
-#include <gtest/gtest.h>
-
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
+
+#include <gtest/gtest.h>
 
 #include "image/image_test_support.h"
 #include "support/chi_square.h"

@@ -1,8 +1,8 @@
 // Look-ups: extension, interpolation, alpha, colour, tiles.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
+
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "image/image_test_support.h"

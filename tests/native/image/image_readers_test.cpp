@@ -1,9 +1,9 @@
 // F3: every layout is read correctly, with v up, and wrong headers are refused at once.
-#include <gtest/gtest.h>
-
 #include <chrono>
 #include <cmath>
 #include <cstring>
+
+#include <gtest/gtest.h>
 
 #include "image/image_test_support.h"
 

@@ -1,10 +1,10 @@
 // Features describe the first surface that is not a mirror or clear glass, or an emitter seen before it.
 #include "film/features.h"
-#include "gradient/gradient_integrator.h"
 
 #include <gtest/gtest.h>
 
 #include "film/film.h"
+#include "gradient/gradient_integrator.h"
 #include "schema/pass_table.h"
 #include "support/path_scene.h"
 

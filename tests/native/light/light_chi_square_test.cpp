@@ -1,8 +1,8 @@
 // A3: directions of light sampling against its density, which is evaluated by rays (for all emitters that a ray in that
 // direction meets).
-#include <gtest/gtest.h>
-
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "light/light_sampling.h"
 #include "light/light_table.h"

@@ -1,7 +1,7 @@
 // The world's importance map: its size, its cost, and when it is updated.
-#include <gtest/gtest.h>
-
 #include <atomic>
+
+#include <gtest/gtest.h>
 
 #include "light/light_table.h"
 #include "scene/scene_fixture.h"

@@ -1,9 +1,9 @@
 // Light path expressions and components, against the regular expressions of the standard library.
 #include "lpe/components.h"
 
-#include <gtest/gtest.h>
-
 #include <regex>
+
+#include <gtest/gtest.h>
 
 #include "support/refusal.h"
 

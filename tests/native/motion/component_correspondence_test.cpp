@@ -1,8 +1,7 @@
 // Correspondences by component: specular chains lead to where the reflected or refracted object has moved.
-#include "motion/component_tracking.h"
-
 #include <gtest/gtest.h>
 
+#include "motion/component_tracking.h"
 #include "render/component_replay.h"
 
 namespace gradus {

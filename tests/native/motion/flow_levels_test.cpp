@@ -1,10 +1,10 @@
 // Frames of a component as grey images.
 #include "motion/flow_levels.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
+
+#include <gtest/gtest.h>
 
 namespace gradus {
 namespace {

@@ -1,10 +1,10 @@
 // Motion of shadows and other light that does not move with surfaces: against known motion, and its flags.
 #include "motion/irradiance_motion.h"
 
-#include <gtest/gtest.h>
-
 #include <limits>
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "motion/film_plane.h"
 #include "motion/flow_scene.h"

@@ -1,12 +1,12 @@
 // Optical flow: loading and refusing its library, by stand-ins; and the real library on known motion.
 #include "motion/optical_flow.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <thread>
+
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "base/temporary_folder.h"

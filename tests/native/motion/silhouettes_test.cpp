@@ -1,10 +1,10 @@
 // Pixels that show an edge.
 #include "motion/silhouettes.h"
 
-#include <gtest/gtest.h>
-
 #include <limits>
 #include <numeric>
+
+#include <gtest/gtest.h>
 
 namespace gradus {
 namespace {

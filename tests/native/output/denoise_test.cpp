@@ -1,6 +1,5 @@
 // The host's denoiser: loading and refusing it, by stand-ins for the library; and the real library if there is one.
 #include <dlfcn.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -8,6 +7,8 @@
 #include <iostream>
 #include <limits>
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "output/denoise.h"

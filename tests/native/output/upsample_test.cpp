@@ -1,7 +1,7 @@
 // Small pictures enlarged to the size of a film: positions, borders, regions, and films of a few pixels.
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "output/upsample.h"
 

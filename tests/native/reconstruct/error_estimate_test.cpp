@@ -1,11 +1,11 @@
 // The estimate of a reconstruction's squared error by pixels.
 #include "reconstruct/error_estimate.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numeric>
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "film/film.h"

@@ -1,12 +1,12 @@
 // Filtering of the noise of features.
 #include "reconstruct/feature_filter.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include <gtest/gtest.h>
 
 namespace gradus {
 namespace {

@@ -1,6 +1,5 @@
 // B1, B2: the exact L2 solver against its definition, in double.
 #include <gtest/gtest.h>
-
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 

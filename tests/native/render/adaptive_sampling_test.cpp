@@ -1,9 +1,9 @@
 // Distribution of the samples of a batch over pixel blocks.
 #include "render/adaptive_sampling.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
+
+#include <gtest/gtest.h>
 
 namespace gradus {
 namespace {

@@ -1,9 +1,9 @@
 // The noise by which blocks stop is the estimate of the pass Error.
 #include "render/block_noise.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "reconstruct/feature_film.h"
 #include "reconstruct/reconstruct_film.h"

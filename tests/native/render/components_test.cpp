@@ -1,5 +1,7 @@
 // Components of a render: planned by the content of the scene, reconstructed, and read by name; they add up to
 // Combined.
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -7,7 +9,6 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "base/error.h"
 #include "film/features.h"

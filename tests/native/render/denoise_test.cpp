@@ -1,10 +1,10 @@
 // A denoiser after the reconstruction, by a stand-in: what it changes, what it leaves, and what is reported.
-#include <gtest/gtest.h>
-
 #include <chrono>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <thread>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "film/features.h"
 #include "output/denoise_combined.h"

@@ -1,7 +1,6 @@
 // The loop: determinism, resume, regions, time limit, cancel, progress, and reading during the render.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
-
 #include <nlohmann/json.hpp>
 
 #include "render/batches.h"

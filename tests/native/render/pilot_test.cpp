@@ -1,7 +1,6 @@
 // Where gradients pay: the model, the pilot's map, and how a render uses it.
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
-
 #include <nlohmann/json.hpp>
 
 #include "reconstruct/solver.h"

@@ -1,7 +1,7 @@
 // Choices of the plan, refusals, and their reported reasons.
-#include <gtest/gtest.h>
-
 #include <algorithm>
+
+#include <gtest/gtest.h>
 
 #include "render/fake_integrator.h"
 #include "render/plan.h"

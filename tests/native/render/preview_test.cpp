@@ -1,9 +1,9 @@
 // Previews while a render takes its samples; the result is the same without them.
-#include <gtest/gtest.h>
-
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "output/upsample.h"
 #include "render/fake_integrator.h"

@@ -2,7 +2,6 @@
 #include "render/stats.h"
 
 #include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
 #include "support/path_scene.h"

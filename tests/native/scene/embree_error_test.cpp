@@ -1,9 +1,9 @@
 // Embree builds on many threads and stores one error per thread: an error of a worker thread must reach the caller.
-#include <embree3/rtcore.h>
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <thread>
+
+#include <embree3/rtcore.h>
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "scene/device.h"

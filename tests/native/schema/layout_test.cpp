@@ -1,9 +1,9 @@
 // H1: the API reports the layout of structs. H3: older and newer callers.
 #include "schema/layout.h"
 
-#include <gtest/gtest.h>
-
 #include <sstream>
+
+#include <gtest/gtest.h>
 
 #include "gradus/gradus.h"
 

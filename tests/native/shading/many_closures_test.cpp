@@ -1,7 +1,7 @@
 // Surfaces with more closures than the maximum: none may be lost.
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "bsdf/lobe.h"
 #include "shading/program_builder.h"

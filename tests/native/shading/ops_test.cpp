@@ -1,7 +1,7 @@
 // Operations against their definitions.
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "shading/lattice_hash.h"
 #include "shading/perlin.h"

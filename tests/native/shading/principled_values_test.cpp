@@ -1,9 +1,9 @@
 // A9, for the Principled BSDF of Blender 4 and 5: values that Cycles (Blender 4.5.15) gives for the same sockets and
 // directions, measured as in bsdf/cycles_values_test.cpp.
-#include <gtest/gtest.h>
-
 #include <array>
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "shading/closure_ops.h"
 

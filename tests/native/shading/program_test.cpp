@@ -1,8 +1,8 @@
 // Compilation: folding, skipping, registers, and refusal of invalid programs.
-#include <gtest/gtest.h>
-
 #include <limits>
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "shading/closure_tape.h"
@@ -152,7 +152,7 @@ shading::ShadeContext seen_from(const Vec3& wo) {
 TEST(NodeProgram, ClosuresFromATapeAreThoseOfTheProgram) {
   ProgramBuilder b;
   const auto m = b.compile(coated_checker(&b));
-  ASSERT_FALSE(m->values_look_at_ray);
+  ASSERT_FALSE(m->values_depend_on_ray);
   shading::ClosureTape tape;
   shading::ShadeResult first;
   first.tape = &tape;
@@ -212,7 +212,7 @@ TEST(NodeProgram, DependenceOnTheRayIsKnown) {
   const auto looks = [](uint32_t op, std::vector<In> inputs, uint32_t mode) {
     ProgramBuilder b;
     const int node = b.add(op, std::move(inputs), mode);
-    return b.compile(b.add(GRADUS_OP_DIFFUSE, {In::from(node)}))->values_look_at_ray;
+    return b.compile(b.add(GRADUS_OP_DIFFUSE, {In::from(node)}))->values_depend_on_ray;
   };
   EXPECT_TRUE(looks(GRADUS_OP_FRESNEL, {In(1.5f), In(0.0f)}, 0));
   EXPECT_TRUE(looks(GRADUS_OP_LAYER_WEIGHT, {In(0.5f), In(0.0f)}, 0));

@@ -1,8 +1,8 @@
 // Sky Texture: values of Cycles, the suns that are found in a world, and extreme settings.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
+
+#include <gtest/gtest.h>
 
 #include "base/cone.h"
 #include "shading/program_builder.h"

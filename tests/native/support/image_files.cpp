@@ -1,5 +1,7 @@
 #include "support/image_files.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,11 +11,6 @@
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
-
-#include <jpeglib.h>
-#include <png.h>
-#include <tiffio.h>
-#include <unistd.h>
 
 #include <ImfChannelList.h>
 #include <ImfDeepFrameBuffer.h>
@@ -27,6 +24,9 @@
 #include <ImfStdIO.h>
 #include <ImfTiledOutputFile.h>
 #include <half.h>
+#include <jpeglib.h>
+#include <png.h>
+#include <tiffio.h>
 
 namespace gradus::testing {
 namespace {

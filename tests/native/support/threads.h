@@ -1,11 +1,11 @@
 // L1: the same bits for any number of threads.
 #pragma once
 
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
-
-#include <vector>
 
 namespace gradus::test {
 

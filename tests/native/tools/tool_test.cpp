@@ -1,15 +1,16 @@
 // The command-line tool, as the user guide describes it: its files, messages and exit codes.
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfInputFile.h>
 #include <sys/wait.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <tuple>
+
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <nlohmann/json.hpp>
 
 #include "api/test_scene.h"
 #include "film_io/image_exr.h"
@@ -704,7 +705,7 @@ TEST_F(ToolSequence, WrongUsageIsNamed) {
   const std::string before = stored();
   const std::tuple<const char*, int, const char*> wrong[] = {
       {"store/anim/layer -o store/anim/../anim/layer", 2, "which it would replace"},
-      {"store/anim/layer -o file", 2, "is no folder"},
+      {"store/anim/layer -o file", 2, "is not a folder"},
       {"store/anim/layer -o p --frames 3-1", 2, "ends before it begins"},
       {"store/anim/layer -o p --frames all", 2, "expected FIRST-LAST"},
       {"store/anim/layer -o p --merge file", 2, "is for single frames"},

@@ -88,13 +88,13 @@ bool read_planes(Reader* reader, std::vector<uint8_t>* row, size_t width) {
       if (count == 0 || count > width - x) {
         return false;
       }
-      std::array<uint8_t, 128> rest;
-      rest[0] = head[1];
-      if (!reader->take(rest.data() + 1, count - 1)) {
+      std::array<uint8_t, 128> literals;
+      literals[0] = head[1];
+      if (!reader->take(literals.data() + 1, count - 1)) {
         return false;
       }
       for (size_t i = 0; i < count; i++) {
-        (*row)[4 * (x++) + component] = rest[i];
+        (*row)[4 * (x++) + component] = literals[i];
       }
     }
   }

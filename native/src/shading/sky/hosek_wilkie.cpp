@@ -4,7 +4,7 @@
 
 #include "shading/sky/analytic.h"
 #include "shading/sky/hosek_wilkie_data.h"
-#include "shading/sky/sky_color.h"
+#include "shading/sky/spectrum.h"
 
 namespace gradus::shading {
 namespace {

@@ -11,7 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "shading/sky/dome.h"
-#include "shading/sky/sky_color.h"
+#include "shading/sky/spectrum.h"
 
 namespace gradus::shading {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "shading/scalar.h"
 #include "shading/sky/analytic.h"
-#include "shading/sky/sky_color.h"
+#include "shading/sky/spectrum.h"
 
 namespace gradus::shading {
 namespace {

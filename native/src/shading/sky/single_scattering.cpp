@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "shading/sky/dome.h"
-#include "shading/sky/sky_color.h"
 #include "shading/sky/spectrum.h"
 
 namespace gradus::shading {

@@ -1,10 +1,10 @@
 // REGULARIZED over time: still pictures joined along the tracks of their pixels.
 #include "reconstruct/space_time/regularized_windows.h"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Dense>
 #include <numeric>
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
 
 #include "animation/frame_window.h"
 #include "base/error.h"

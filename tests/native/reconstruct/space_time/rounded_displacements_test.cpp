@@ -1,12 +1,12 @@
 // The change of a picture that is caused by rounding correspondences to whole pixels.
 #include "reconstruct/space_time/rounded_displacements.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "reconstruct/feature_film.h"
 #include "reconstruct/feature_filter.h"

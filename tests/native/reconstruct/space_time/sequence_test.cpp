@@ -1,7 +1,7 @@
 // Sequences of any length, window by window.
-#include <gtest/gtest.h>
-
 #include <limits>
+
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "reconstruct/error_estimate.h"

@@ -1,9 +1,9 @@
 // B1, B2, B3 for windows.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
 #include <numeric>
+
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "reconstruct/field_values.h"

@@ -1,6 +1,5 @@
 // The system of a window and its solver against matrices that are written down row by row.
 #include <gtest/gtest.h>
-
 #include <Eigen/Dense>
 
 #include "reconstruct/space_time/sequences.h"
