@@ -274,4 +274,4 @@ def test_without_a_library_writing_out_was_a_traceback(
 
 def test_components_have_a_panel_among_the_passes() -> None:
     switches = {part.switch.removeprefix("gradus.") for part in passes.COMPONENT_TABLE}
-    assert set(ui.view_layer_panels.OF_COMPONENTS) == switches
+    assert set(ui.view_layer_panels.COMPONENT_SWITCHES) == switches

@@ -77,14 +77,14 @@ def test_stats_name_it(
 
 
 @pytest.mark.module
-@pytest.mark.parametrize("samples", [settings.DENOISER_PAYS - 1, settings.DENOISER_PAYS])
+@pytest.mark.parametrize("samples", [settings.DENOISER_MINIMUM_SAMPLES - 1, settings.DENOISER_MINIMUM_SAMPLES])
 def test_auto_denoises_from_the_samples_that_the_panel_goes_by(
     corner: bpy.types.Scene, render: Render, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, samples: int
 ) -> None:
     path = tmp_path / "stats.jsonl"
     monkeypatch.setattr("sys.argv", ["blender", "--", "--gradus-stats", str(path)])
     render(corner, samples=samples, denoiser="AUTO")
-    assert (json.loads(path.read_text())["denoiser"] is not None) == (samples >= settings.DENOISER_PAYS)
+    assert (json.loads(path.read_text())["denoiser"] is not None) == (samples >= settings.DENOISER_MINIMUM_SAMPLES)
 
 
 @pytest.mark.module

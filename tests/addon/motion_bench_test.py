@@ -498,7 +498,7 @@ def test_passes_that_are_not_wanted_are_off(scene: bpy.types.Scene) -> None:
         for switch in layer.gradus.bl_rna.properties
         if switch.identifier.startswith("use_pass_component")
     }
-    assert {f"use_pass_{name}" for name in motion_worker.OF_COMPONENTS} == known
+    assert {f"use_pass_{name}" for name in motion_worker.COMPONENT_SWITCHES} == known
     motion_worker.set_passes(layer, motion_worker.SWITCHES)
     assert layer.use_pass_vector
     assert all(getattr(layer.gradus, name) for name in known)
