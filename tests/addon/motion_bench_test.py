@@ -336,7 +336,7 @@ def test_a_quiet_run_replaces_a_loaded_one(tmp_path: Path, monkeypatch: pytest.M
 
 
 def cost_row(mode: str, **seconds: float) -> dict:
-    times = {"sample": 1.0, "reconstruct": 0.5, "links": 0.0} | seconds
+    times = {"sample": 1.0, "reconstruct": 0.5, "correspondence": 0.0} | seconds
     return flicker_row(mode, 0.0) | {"measure": "cost", "seconds": times, "frame": 12}
 
 
@@ -535,7 +535,7 @@ def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyP
     counts = {part: sum(row["measure"] == part for row in rows) for part in motion.MEASURES}
     assert (counts["flicker"], counts["cost"]) == (3, 4)
     seconds = {row["mode"]: row["seconds"] for row in rows if row["measure"] == "cost"}
-    assert [mode for mode, found in seconds.items() if found["links"] > 0.0] == ["components-motion"]
+    assert [mode for mode, found in seconds.items() if found["correspondence"] > 0.0] == ["components-motion"]
     assert counts["truth"] >= 3 and counts["prediction"] >= 3  # noqa: PT018
     reflected = next(row for row in rows if (row["measure"], row["component"]) == ("truth", "Reflection"))
     assert reflected["check"]["error"]["quantile_95"] < 0.5

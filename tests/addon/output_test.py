@@ -91,7 +91,7 @@ def test_stats_are_one_line_with_all_phases(tmp_path: Path) -> None:
         pass
     with clock.phase("export"):
         pass
-    native = json.dumps({"schema": 1, "seconds": {"sample": 2.0}, "warnings": ["a"], "samples": 4})
+    native = json.dumps({"schema": 2, "seconds": {"sample": 2.0}, "warnings": ["a"], "samples": 4})
     full = stats.complete(native, {"frame": 3, "layer": "L", "scene": "S", "view": ""}, clock, ["a", "b"])
     assert full["warnings"] == ["a", "b"]
     assert {"sample", "export", "total"} <= full["seconds"].keys()

@@ -154,7 +154,7 @@ def test_phases_of_the_last_render_come_in_their_order() -> None:
     seconds = {
         "denoise": 1.0,
         "filter": 0.0,
-        "links": 8.0,
+        "correspondence": 8.0,
         "preview": 2.0,
         "reconstruct": 3.0,
         "sample": 4.0,
@@ -162,7 +162,7 @@ def test_phases_of_the_last_render_come_in_their_order() -> None:
         "total": 40.0,
     }
     lines = render_panels.plan_lines({"frame": 1, "seconds": {**seconds, "export": 5.0, "build": 6.0, "upload": 7.0}})
-    order = ["Export", "Build", "Links", "Sample", "Preview", "Store", "Reconstruct", "Denoise", "Upload"]
+    order = ["Export", "Build", "Correspondence", "Sample", "Preview", "Store", "Reconstruct", "Denoise", "Upload"]
     assert [line.split(":")[0] for line in lines[1:]] == order
 
 

@@ -197,8 +197,8 @@ def test_stats_line(cube: bpy.types.Scene, render: Render, tmp_path: Path, argum
     lines = [json.loads(line) for line in path.read_text().splitlines()]
     assert [(line["frame"], line["layer"]) for line in lines] == [(7, cube.view_layers[0].name), (7, "Second")]
     keys = (
-        "schema version scene view seed integrator reconstruction spp_base spp_offset unbiased resolution samples plan "
-        "seconds cpu_seconds"
+        "schema version scene view seed integrator reconstruction samples samples_fresh samples_replayed unbiased "
+        "resolution plan seconds cpu_seconds"
     )
     keys += " denoiser rays shifts nonfinite_dropped peak_memory_bytes process_cpu warnings"
     assert set(keys.split()) <= lines[0].keys()

@@ -92,7 +92,7 @@ def test_c3_any_range_and_step(
     moving.frame_start, moving.frame_end, moving.frame_step = first, last, step
     animate(moving, tmp_path)
     assert frames_in(tmp_path) == exports.frames() == list(range(first, last + 1, step))
-    assert all(line["spp_offset"] == 2 for line in lines())
+    assert all(line["samples_replayed"] == 2 for line in lines())
 
 
 def test_c2_a_job_of_one_frame_is_a_still(
@@ -344,7 +344,7 @@ def test_c8_an_independent_frame_is_a_still_and_a_shot_change(
         "it is shown to the next one, and in its turn"
     )
     assert [line["frame"] for line in lines() if line["plan"].get("frame_by_frame") == why] == [5]
-    assert [line["frame"] for line in lines() if not line.get("spp_offset")] == [5]
+    assert [line["frame"] for line in lines() if not line.get("samples_replayed")] == [5]
     assert np.array_equal(combined(whole, 5), render(moving, frame=5)["Combined"])
     expect_ranges_alone(moving, whole, [(1, 4), (6, 10)])
     require_nothing_kept()
@@ -372,7 +372,7 @@ def test_files_that_are_there_split_the_animation(
         (tmp_path / f"f_{frame:04d}.exr").write_bytes(b"mine")
     animate(moving, tmp_path)
     assert exports.frames() == [1, 2, 3, 5, 6, 9, 10]
-    assert all(line["spp_offset"] == 2 for line in lines())
+    assert all(line["samples_replayed"] == 2 for line in lines())
     assert (tmp_path / "f_0004.exr").read_bytes() == b"mine"
 
 
@@ -399,7 +399,7 @@ def test_frames_that_processes_share_by_placeholders_are_on_their_own(
     moving.render.use_overwrite, moving.render.use_placeholder = False, True
     moving.frame_end = 3
     animate(moving, tmp_path)
-    assert [line.get("spp_offset", 0) for line in lines()] == [0, 0, 0]
+    assert [line.get("samples_replayed", 0) for line in lines()] == [0, 0, 0]
 
 
 def test_c7_parts_that_share_a_frame_store_are_the_whole(

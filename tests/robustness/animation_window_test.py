@@ -82,7 +82,7 @@ def test_c3_an_animation_in_a_window_has_every_frame(tmp_path: Path) -> None:
         blender.wait_for("TICK 0", limit=5)
         assert "TICK 1" in blender.log, "the interface lives meanwhile"
     assert [line["frame"] for line in lines(tmp_path)] == list(range(1, 13))
-    assert all(line["spp_offset"] == 8 for line in lines(tmp_path))
+    assert all(line["samples_replayed"] == 8 for line in lines(tmp_path))
     assert len(list(tmp_path.glob("f_*.png"))) == 12
 
 
@@ -139,7 +139,7 @@ def test_simulations_that_are_not_baked_are_named_and_keep_frames_on_their_own(t
     )
     with window.blender(script(tmp_path, 2, falling + "; scene.frame_end = 3")) as blender:
         blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
-    assert [line.get("spp_offset", 0) for line in lines(tmp_path)] == [0, 0, 0]
+    assert [line.get("samples_replayed", 0) for line in lines(tmp_path)] == [0, 0, 0]
     warnings = [text for line in lines(tmp_path) for text in line["warnings"] if "not baked" in text]
     assert len(warnings) == 1
     assert "Rigid Body World" in warnings[0]
@@ -157,5 +157,5 @@ scene.frame_end = 3
 """
     with window.blender(script(tmp_path, 2, hidden)) as blender:
         blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
-    assert [line["spp_offset"] for line in lines(tmp_path)] == [1, 1, 1]
+    assert [line["samples_replayed"] for line in lines(tmp_path)] == [1, 1, 1]
     assert not [text for line in lines(tmp_path) for text in line["warnings"] if "not baked" in text]

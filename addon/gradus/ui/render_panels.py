@@ -194,7 +194,18 @@ def characters(context: Any) -> int:
     return max(20, int(context.region.width / per_character) - 6)
 
 
-PHASES = ("export", "build", "links", "sample", "preview", "store", "reconstruct", "denoise", "filter", "upload")
+PHASES = (
+    "export",
+    "build",
+    "correspondence",
+    "sample",
+    "preview",
+    "store",
+    "reconstruct",
+    "denoise",
+    "filter",
+    "upload",
+)
 """Phases of a stats object in the order of the render."""
 
 

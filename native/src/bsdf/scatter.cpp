@@ -147,9 +147,9 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
   }
   // u_lobe chooses the entry; its remainder, scaled to [0, 1), chooses the side.
   int chosen = 0;
-  float rest = u_lobe;
-  while (chosen < entry_count_[k] - 1 && rest >= entries_[k][static_cast<size_t>(chosen)].probability) {
-    rest -= entries_[k][static_cast<size_t>(chosen++)].probability;
+  float remainder = u_lobe;
+  while (chosen < entry_count_[k] - 1 && remainder >= entries_[k][static_cast<size_t>(chosen)].probability) {
+    remainder -= entries_[k][static_cast<size_t>(chosen++)].probability;
   }
   const Entry& entry = entries_[k][static_cast<size_t>(chosen)];
   if (entry.dirac) {
@@ -158,8 +158,8 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
   const Lobe& source = lobes_[entry.lobe];
   const Frame3 frame = make_frame(source.normal, source.tangent);
   Vec3 local;
-  if (!functions_of(source).sample(source, frame.to_local(wo), stay_below_one(rest / entry.probability), u, entry.sides,
-                                   &local)) {
+  if (!functions_of(source).sample(source, frame.to_local(wo), stay_below_one(remainder / entry.probability), u,
+                                   entry.sides, &local)) {
     return false;
   }
   out->wi = renormalise(frame.to_world(local));

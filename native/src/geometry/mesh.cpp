@@ -31,10 +31,10 @@ std::array<Vec3, 3> positions_of_key(const MeshData& mesh, uint32_t triangle, ui
 Vec3 turned_with_vertex(const MeshData& mesh, uint32_t vertex, float time, const Vec3& normal) {
   const KeyPlace place = key_place(time, mesh.shutter_keys);
   const Vec3* key = mesh.shutter_normals.data() + size_t(place.before + 1) * mesh.vertex_count;
-  const Vec3 then = key[vertex] * (1.0f - place.share) + key[mesh.vertex_count + vertex] * place.share;
-  const Vec3& rest = mesh.shutter_normals[vertex];
-  const float length = glm::length(then);
-  return length > 1e-6f && rest != Vec3(0.0f) ? turned(normal, rest, then / length) : normal;
+  const Vec3 shutter_normal = key[vertex] * (1.0f - place.share) + key[mesh.vertex_count + vertex] * place.share;
+  const Vec3& frame_normal = mesh.shutter_normals[vertex];
+  const float length = glm::length(shutter_normal);
+  return length > 1e-6f && frame_normal != Vec3(0.0f) ? turned(normal, frame_normal, shutter_normal / length) : normal;
 }
 
 }  // namespace

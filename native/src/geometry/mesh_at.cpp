@@ -22,7 +22,7 @@ std::vector<Vec3> positions_at(const MeshData& mesh, float frames) {
 // of `mesh`.
 void turn_normals(const MeshData& from, MeshData* mesh) {
   if (mesh->normals.empty() || mesh->normal_domain == GRADUS_DOMAIN_FACE) return;
-  const std::vector<Vec3> rest = smooth_normals(from, from.frame_positions()),
+  const std::vector<Vec3> in_frame = smooth_normals(from, from.frame_positions()),
                           now = smooth_normals(*mesh, mesh->positions.data());
   const bool by_vertex = mesh->normal_domain == GRADUS_DOMAIN_POINT;
   std::vector<bool> done(mesh->normals.size());
@@ -31,8 +31,8 @@ void turn_normals(const MeshData& from, MeshData* mesh) {
     const uint32_t element = by_vertex ? vertex : mesh->triangle_corners[i];
     if (vertex == kDroppedVertex || done[element]) continue;
     done[element] = true;
-    if (rest[vertex] != Vec3(0.0f) && now[vertex] != Vec3(0.0f))
-      mesh->normals[element] = turned(mesh->normals[element], rest[vertex], now[vertex]);
+    if (in_frame[vertex] != Vec3(0.0f) && now[vertex] != Vec3(0.0f))
+      mesh->normals[element] = turned(mesh->normals[element], in_frame[vertex], now[vertex]);
   }
 }
 

@@ -32,8 +32,8 @@ Vec3 shadow_origin(const Geometry& geometry, const SurfacePoint& point, const Ve
   std::array<Vec3, 3> normals{};
   triangle_normals_in_shutter(*instance.mesh, point.hit.primitive, point.hit.time,
                               &normals);  // the mesh has normals: flat faces have offset 0
-  Placement room;
-  const Placement& placement = instance.placement(point.hit.time, &room);
+  Placement storage;
+  const Placement& placement = instance.placement(point.hit.time, &storage);
   // Geometric normal on the light's side of the smooth surface. For a light inside the object, the bulge points
   // inwards.
   const Vec3 outside = std::copysign(1.0f, glm::dot(point.shading_normal, direction)) * point.geometric_normal;

@@ -89,10 +89,10 @@ float step_away(float v, float up) {
 
 }  // namespace
 
-const Placement& InstanceData::placement(float time, Placement* room) const {
+const Placement& InstanceData::placement(float time, Placement* storage) const {
   if (!keys) return *this;
-  *room = make_placement(glm::dmat4(keys->at(time)));
-  return *room;
+  *storage = make_placement(glm::dmat4(keys->at(time)));
+  return *storage;
 }
 
 uint32_t Geometry::material_of(uint32_t index, uint32_t primitive) const {
@@ -106,8 +106,8 @@ void Geometry::place(const Hit& hit, SurfacePoint* point) const {
   const InstanceData& instance = instances[hit.instance];
   point->hit = hit;
   if (!instance.keys) return place_at(instance, instance, hit, point);
-  Placement room;
-  place_at(instance, instance.placement(hit.time, &room), hit, point);
+  Placement storage;
+  place_at(instance, instance.placement(hit.time, &storage), hit, point);
 }
 
 void Geometry::prefetch(const Hit& hit) const {
@@ -144,8 +144,8 @@ float Geometry::curvature(const Hit& hit) const {
   std::array<Vec3, 3> n;
   if (!triangle_normals_in_shutter(*instance.mesh, hit.primitive, hit.time, &n)) return 0.0f;
   const std::array<Vec3, 3> p = corners(hit.instance, hit.primitive, hit.time);
-  Placement room;
-  const Placement& placement = instance.placement(hit.time, &room);
+  Placement storage;
+  const Placement& placement = instance.placement(hit.time, &storage);
   for (Vec3& v : n) v = glm::normalize(placement.normal_to_world * v);
   float largest = 0.0f;
   for (size_t i = 0; i < 3; ++i) {

@@ -30,13 +30,13 @@ inline bool smooth_normal_at(const InstanceData& instance, const Hit& hit, Vec3*
   return true;
 }
 
-// Finds the normals of smooth_normal_at() in the rendered frame (`rest`) and at the shutter time of the hit (`then`).
-// Returns false if they are equal: the shape does not deform, or is shaded flat.
-inline bool turned_normals_at(const InstanceData& instance, const Hit& hit, Vec3* rest, Vec3* then) {
+// Finds the normals of smooth_normal_at() in the rendered frame (`frame_normal`) and at the shutter time of the hit
+// (`shutter_normal`). Returns false if they are equal: the shape does not deform, or is shaded flat.
+inline bool turned_normals_at(const InstanceData& instance, const Hit& hit, Vec3* frame_normal, Vec3* shutter_normal) {
   std::array<Vec3, 3> normals;
   if (instance.mesh->shutter_keys == 0 || !triangle_normals(*instance.mesh, hit.primitive, &normals)) return false;
-  *rest = interpolate(normals, hit.uv);
-  return smooth_normal_at(instance, hit, then);
+  *frame_normal = interpolate(normals, hit.uv);
+  return smooth_normal_at(instance, hit, shutter_normal);
 }
 
 // Returns a tangent of the rendered frame, with its handedness in w.

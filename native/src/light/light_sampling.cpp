@@ -97,8 +97,8 @@ void sample_any(const LitScene& scene, const Receiver& receiver, double choice, 
                 Finding* finding) {
   const LightTable& table = *scene.light_table;
   if (table.is_single_light()) return sample_light_of_tree(scene, 0, receiver, u, point, finding);
-  LightChoice room;
-  const LightChoice& known = table.choose(receiver, &room);
+  LightChoice storage;
+  const LightChoice& known = table.choose(receiver, &storage);
   const GroupChoice& group = known.group;
   const double rest = choice - group.tree;
   if (group.tree > 0.0 && (rest < 0.0 || group.suns + group.world <= 0.0)) {
@@ -118,8 +118,8 @@ void sample_any(const LitScene& scene, const Receiver& receiver, double choice, 
 // Returns the probability with which the emitter of the light sample is chosen.
 double choice_probability(const LightTable& table, const LightPoint& point, const Receiver& receiver) {
   if (table.is_single_light()) return 1.0;
-  LightChoice room;
-  const LightChoice& known = table.choose(receiver, &room);
+  LightChoice storage;
+  const LightChoice& known = table.choose(receiver, &storage);
   const LightTree::Cut& cut = known.cut;
   const GroupChoice& group = known.group;
   if (point.kind == LightKind::World) return group.world;

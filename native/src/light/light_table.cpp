@@ -26,8 +26,8 @@ double defended(double weight, double sum, int groups) {
 
 }  // namespace
 
-const LightChoice& LightTable::choose(const Receiver& receiver, LightChoice* room) const {
-  LightChoice* choice = receiver.memo != nullptr ? receiver.memo : room;
+const LightChoice& LightTable::choose(const Receiver& receiver, LightChoice* storage) const {
+  LightChoice* choice = receiver.memo != nullptr ? receiver.memo : storage;
   if (!choice->known || !(choice->receiver == receiver)) {
     tree.cut(receiver, &choice->cut);
     choice->group = choose_group(receiver, choice->cut);

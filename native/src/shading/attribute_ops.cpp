@@ -31,8 +31,8 @@ void object_info_op(const ResourceArgs&, const ShadeContext& c, Vec4* out) {
     return;
   }
   const Vec3 origin = c.scene ? c.scene->origin : Vec3(0.0f);
-  geometry::Placement room;
-  out[0] = value(Vec3(placement_of(c, &room).to_world[3]) + origin);
+  geometry::Placement storage;
+  out[0] = value(Vec3(placement_of(c, &storage).to_world[3]) + origin);
   out[1] = Vec4(Vec3(c.instance->color), 1.0f);
   out[2] = splat(static_cast<float>(c.instance->pass_index));
   out[3] = splat(static_cast<float>(c.instance->random_id) * (1.0f / 4294967296.0f));

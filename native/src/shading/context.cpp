@@ -47,8 +47,8 @@ ShadeContext light_context(const ShadedScene& scene, const LightShadingPoint& po
   return c;
 }
 
-const geometry::Placement& placement_of(const ShadeContext& c, geometry::Placement* room) {
-  return c.instance->placement(c.hit.time, room);
+const geometry::Placement& placement_of(const ShadeContext& c, geometry::Placement* storage) {
+  return c.instance->placement(c.hit.time, storage);
 }
 
 Vec3 world_position(const ShadeContext& c) {
@@ -66,13 +66,13 @@ ShadeContext moved_context(const ShadeContext& context, const geometry::SurfaceD
 Vec3 normal_to_local(const ShadeContext& c, const Vec3& normal) {
   if (c.light_axes) return glm::transpose(*c.light_axes) * normal;
   // Normals map to local space by the transpose of the object's matrix, the inverse of the matrix of normals.
-  geometry::Placement room;
-  return c.instance ? safe_normalize(glm::transpose(Mat3(placement_of(c, &room).to_world)) * normal) : normal;
+  geometry::Placement storage;
+  return c.instance ? safe_normalize(glm::transpose(Mat3(placement_of(c, &storage).to_world)) * normal) : normal;
 }
 
 Vec3 normal_to_world(const ShadeContext& c, const Vec3& normal) {
-  geometry::Placement room;
-  return c.instance ? safe_normalize(placement_of(c, &room).normal_to_world * normal) : normal;
+  geometry::Placement storage;
+  return c.instance ? safe_normalize(placement_of(c, &storage).normal_to_world * normal) : normal;
 }
 
 }  // namespace gradus::shading

@@ -36,8 +36,8 @@ ShadeContext surface_context(const ShadedScene& scene, const geometry::SurfacePo
 ShadeContext background_context(const ShadedScene& scene, const Vec3& direction, const RayState& ray);
 ShadeContext light_context(const ShadedScene& scene, const LightShadingPoint& point, const RayState& ray);
 
-// Returns the placement of the instance at the time of the hit. `room` stores it if it has to be interpolated.
-const geometry::Placement& placement_of(const ShadeContext& context, geometry::Placement* room);
+// Returns the placement of the instance at the time of the hit. `storage` stores it if it has to be interpolated.
+const geometry::Placement& placement_of(const ShadeContext& context, geometry::Placement* storage);
 // Returns the position in world space, or the direction for the background.
 Vec3 world_position(const ShadeContext& context);
 // Returns the context moved by `step` along the primitive of its hit, of which the derivatives are given. Interpolated

@@ -9,9 +9,9 @@ namespace {
 
 // Rotates a tangent of the undeformed mesh as the smooth normal rotates from there to the time of the hit.
 Vec4 turned_with_surface(const ShadeContext& c, const Vec4& tangent) {
-  Vec3 rest, then;
-  if (!geometry::turned_normals_at(*c.instance, c.hit, &rest, &then)) return tangent;
-  return Vec4(turned(Vec3(tangent), safe_normalize(rest), safe_normalize(then)), tangent.w);
+  Vec3 frame_normal, shutter_normal;
+  if (!geometry::turned_normals_at(*c.instance, c.hit, &frame_normal, &shutter_normal)) return tangent;
+  return Vec4(turned(Vec3(tangent), safe_normalize(frame_normal), safe_normalize(shutter_normal)), tangent.w);
 }
 
 // Returns the interpolated tangent of a UV map, in the object's space, with its handedness in w. It is 0 if the

@@ -25,8 +25,8 @@ Vec3 direction_from_camera(const Mat4& camera, const Vec3& v) {
 Vec3 to_object(const ResourceArgs& args, const ShadeContext& c) {
   const Vec3 p = world_position(c);
   if (args.float_count >= 16) return Vec3(matrix(args.floats) * Vec4(p, 1.0f));
-  geometry::Placement room;
-  return c.instance ? Vec3(placement_of(c, &room).to_local * Vec4(c.position, 1.0f)) : p;
+  geometry::Placement storage;
+  return c.instance ? Vec3(placement_of(c, &storage).to_local * Vec4(c.position, 1.0f)) : p;
 }
 
 // Transforms a point of internal space, or a direction on the background, to camera space.
@@ -61,8 +61,8 @@ Vec3 to_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext& 
   const float w = kind == GRADUS_TRANSFORM_POINT ? 1.0f : 0.0f;
   const Vec3 origin = c.scene ? c.scene->origin : Vec3(0.0f);
   if (space == kObject && c.instance) {
-    geometry::Placement room;
-    const geometry::Placement& placement = placement_of(c, &room);
+    geometry::Placement storage;
+    const geometry::Placement& placement = placement_of(c, &storage);
     if (kind == GRADUS_TRANSFORM_NORMAL) return placement.normal_to_world * v;
     return Vec3(placement.to_world * Vec4(v, w)) + origin * w;
   }
@@ -77,8 +77,8 @@ Vec3 from_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext
   const float w = kind == GRADUS_TRANSFORM_POINT ? 1.0f : 0.0f;
   const Vec3 origin = c.scene ? c.scene->origin : Vec3(0.0f);
   if (space == kObject && c.instance) {
-    geometry::Placement room;
-    const geometry::Placement& placement = placement_of(c, &room);
+    geometry::Placement storage;
+    const geometry::Placement& placement = placement_of(c, &storage);
     if (kind == GRADUS_TRANSFORM_NORMAL) return glm::transpose(Mat3(placement.to_world)) * v;
     return Vec3(placement.to_local * Vec4(v - origin * w, w));
   }

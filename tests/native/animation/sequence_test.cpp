@@ -35,8 +35,8 @@ TEST(C3_Sequence, DeliversEveryFrameFromFirstToLast) {
   ASSERT_EQ(frames.size(), 13u);
   for (size_t i = 0; i < frames.size(); ++i) {
     EXPECT_EQ(frames[i].stats["frame"], 3 + int(i));
-    EXPECT_EQ(frames[i].stats["spp_base"], 4.0);
-    EXPECT_EQ(frames[i].stats["spp_offset"], 4.0);
+    EXPECT_EQ(frames[i].stats["samples_fresh"], 4.0);
+    EXPECT_EQ(frames[i].stats["samples_replayed"], 4.0);
     EXPECT_EQ(frames[i].stats["samples"], 8.0);
     EXPECT_GT(frames[i].combined[4 * (kSide * kSide / 2)], 0.0f);
   }
@@ -348,14 +348,14 @@ TEST(Sequence, StatsTimeCorrespondencesAndFiles) {
   const nlohmann::json stats = deliver(sequence.get(), 1).stats;
   const double since = 1e-9 * double(process_cpu_nanoseconds() - start);
   for (const char* time : {"seconds", "cpu_seconds"}) {
-    EXPECT_GT(stats[time]["links"], 0.0);
+    EXPECT_GT(stats[time]["correspondence"], 0.0);
     EXPECT_GT(stats[time]["store"], 0.0);
   }
   const nlohmann::json& cpu = stats["cpu_seconds"];
-  EXPECT_GE(stats["process_cpu"].get<double>(), cpu["links"].get<double>() + cpu["store"].get<double>());
+  EXPECT_GE(stats["process_cpu"].get<double>(), cpu["correspondence"].get<double>() + cpu["store"].get<double>());
   EXPECT_LE(cpu["reconstruct"].get<double>(), since);
   double sum = 0.0;
-  for (const char* phase : {"sample", "preview", "links", "store", "reconstruct", "denoise"})
+  for (const char* phase : {"sample", "preview", "correspondence", "store", "reconstruct", "denoise"})
     sum += cpu[phase].get<double>();
   EXPECT_NEAR(cpu["total"].get<double>(), sum, 1e-9);
 }
@@ -613,7 +613,7 @@ TEST(Sequence, AutomaticFramesAreRegularizedOverTime) {
   const nlohmann::json stats = nlohmann::json::parse(task->stats());
   EXPECT_EQ(stats["integrator"], "path");
   EXPECT_EQ(stats["reconstruction"], "regularized");
-  EXPECT_EQ(stats["spp_offset"], 4.0);
+  EXPECT_EQ(stats["samples_replayed"], 4.0);
   const std::vector<float> error = read(*task, GRADUS_PASS_ERROR, 1);
   EXPECT_GT(*std::max_element(error.begin(), error.end()), 0.0f);
   EXPECT_GT(read(*task, GRADUS_PASS_COMBINED, 4)[4 * (kSide * kSide / 2)], 0.0f);
@@ -642,7 +642,7 @@ TEST(A8_Sequence, ReplaysTakeTheCountsOfTheReplayedFrame) {
     maximum = std::max(maximum, film::samples_at(*offset, q));
   }
   EXPECT_LT(minimum, maximum) << "the test says something";
-  EXPECT_GT(deliver(sequence.get(), 0).stats["spp_offset"], 1.0);
+  EXPECT_GT(deliver(sequence.get(), 0).stats["samples_replayed"], 1.0);
 }
 
 TEST(K1_Sequence, ATimeLimitEndsBothHalves) {
@@ -656,8 +656,8 @@ TEST(K1_Sequence, ATimeLimitEndsBothHalves) {
   for (int32_t t = 0; t <= 1; ++t) {
     const Delivered frame = deliver(sequence.get(), t);
     EXPECT_EQ(frame.stats["stopped"], "time");
-    EXPECT_GT(frame.stats["spp_base"], 1.0);
-    EXPECT_GT(frame.stats["spp_offset"], 1.0);
+    EXPECT_GT(frame.stats["samples_fresh"], 1.0);
+    EXPECT_GT(frame.stats["samples_replayed"], 1.0);
     EXPECT_LT(frame.stats["samples"], 1e5);
   }
 }

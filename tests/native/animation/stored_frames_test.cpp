@@ -229,8 +229,8 @@ TEST(C7_StoredFrames, FramesOfATimeLimitGetTheSamplesOfAJobWithoutOne) {
   const auto sequence = make_sequence(1, 2, folder.path());
   for (int32_t t = 1; t <= 2; ++t) sample(sequence.get(), pan.at(t), settings_of(t, 100));
   const Delivered frame = deliver(sequence.get(), 2);
-  EXPECT_EQ(frame.stats["spp_base"], 50.0);
-  EXPECT_EQ(frame.stats["spp_offset"], 50.0);
+  EXPECT_EQ(frame.stats["samples_fresh"], 50.0);
+  EXPECT_EQ(frame.stats["samples_replayed"], 50.0);
 }
 
 // Marks a frame as ended by a time limit: the requested samples do not say how many it has.

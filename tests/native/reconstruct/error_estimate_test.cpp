@@ -110,7 +110,7 @@ TEST(ErrorEstimate, OfABetterImageIsThatOfL2LessTheirDistance) {
   EXPECT_EQ(reconstruct::squared_error(4.0, 5.0), 1.0);
   reconstruct::ErrorTerms terms;
   terms.noise.assign(size_t{3} * 30 * 30, 2.0f);
-  terms.apart.assign(terms.noise.size(), 1.0f);
+  terms.l2_difference.assign(terms.noise.size(), 1.0f);
   for (const float e : reconstruct::error_of_pixels(terms, 30, 30, 3)) EXPECT_FLOAT_EQ(e, 3.0f);
 }
 

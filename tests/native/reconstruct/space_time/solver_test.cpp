@@ -98,7 +98,7 @@ TEST(B2_SpaceTime, L2KeepsTheMean) {
 
 // Returns the mean squared error of L2, by the modes of the system of a static window (T-GPT eq. 4, with free ends):
 // noise of deviation σ_I in pixels, σ_g in differences in space, none along correspondences.
-double noise_left(int w, int h, int frames, double alpha, double sigma_i, double sigma_g) {
+double remaining_noise(int w, int h, int frames, double alpha, double sigma_i, double sigma_g) {
   const auto eigenvalue = [](int k, int n) { return 2.0 - 2.0 * std::cos(std::numbers::pi * k / n); };
   double sum = 0.0;
   for (int k = 0; k < frames; ++k) {
@@ -129,7 +129,7 @@ TEST(B3_SpaceTime, AStaticShotHasTheNoiseThatTheoryPredicts) {
       const std::vector<float> x = solve(window, kL2, 0.4f);
       squares += std::pow(rms_difference(x, std::vector<float>(x.size(), 0.0f)), 2) / runs;
     }
-    const double expected = noise_left(w, h, frames, 0.4, 1.0, 0.2);
+    const double expected = remaining_noise(w, h, frames, 0.4, 1.0, 0.2);
     std::printf("  %d frames: %.5f, expected %.5f\n", frames, squares, expected);
     EXPECT_NEAR(squares / expected, 1.0, 0.06) << frames;
   }
