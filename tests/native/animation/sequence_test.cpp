@@ -109,7 +109,7 @@ TEST(I8_Sequence, UnchangedFramesAreSampledOnce) {
   }
 }
 
-// Either job or both sample a frame; one result is kept.
+// A frame may be sampled by one of the jobs or by both. One result is kept.
 TEST(C7_Sequence, TwoJobsOnTheSameFramesMakeTheSameBits) {
   const Folder shared;
   std::vector<Delivered> frames[2];
@@ -413,12 +413,12 @@ TEST(C8_Sequence, AShotChangeSeparatesTheFramesBeforeAndAfter) {
     sample(sequence.get(), pan.turned((t < 2 ? 0.0f : quarter) + 0.01f * float(t)), settings_of(t));
   for (int32_t t = 0; t < 3; ++t) {
     const Delivered frame = deliver(sequence.get(), t);
-    size_t linked = 0;
-    for (size_t i = 2; i < frame.link.size(); i += 3) linked += frame.link[i] > 0.0f;
+    size_t corresponding = 0;
+    for (size_t i = 2; i < frame.link.size(); i += 3) corresponding += frame.link[i] > 0.0f;
     if (t == 1) {
-      EXPECT_EQ(linked, 0u);
+      EXPECT_EQ(corresponding, 0u);
     } else {
-      EXPECT_GT(linked, frame.link.size() / 3 / 2);
+      EXPECT_GT(corresponding, frame.link.size() / 3 / 2);
     }
   }
 }
@@ -532,7 +532,7 @@ TEST(Sequence, GradientTIsTheDifferenceOfTheStoredHalves) {
   const auto base = animation::SequenceFolder(folder.path()).load(0, animation::FrameSamples::kFresh),
              next = animation::SequenceFolder(folder.path()).load(1, animation::FrameSamples::kReplayed);
   const film::GradientImages from = film::read_images(*base, 0), to = film::read_images(*next, 0);
-  size_t linked = 0, k = 0;
+  size_t corresponding = 0, k = 0;
   for (int32_t y = border.y0; y < border.y1; ++y) {
     for (int32_t x = border.x0; x < border.x1; ++x, k += 3) {
       if (link[k + 2] == 0.0f) continue;
@@ -542,11 +542,11 @@ TEST(Sequence, GradientTIsTheDifferenceOfTheStoredHalves) {
         const float expected =
             2.0f * (to.primal[size_t(q * from.channels) + c] - from.primal[size_t(i * from.channels) + c]);
         EXPECT_EQ(difference[k + c], expected);
-        linked += expected != 0.0f;
+        corresponding += expected != 0.0f;
       }
     }
   }
-  EXPECT_GT(linked, size_t(border.area())) << "the test says something";
+  EXPECT_GT(corresponding, size_t(border.area())) << "the test says something";
 }
 
 // Both frames use the same random numbers, so light of 1.5 times the strength changes each pixel by half of its value.
@@ -576,11 +576,11 @@ TEST(Sequence, GradientTLeadsToTheNextFrame) {
   Pan pan(3.0f);
   const auto sequence = make_sequence(0, 2);
   const std::vector<Delivered> frames = render(&pan, sequence.get(), 0, 2, 64);
-  size_t linked = 0;
+  size_t corresponding = 0;
   double error = 0.0, change = 0.0;
   for (size_t i = 0; i < size_t(kSide) * kSide; ++i) {
     if (frames[0].link[3 * i + 2] == 0.0f) continue;
-    ++linked;
+    ++corresponding;
     const auto aside = int(frames[0].link[3 * i]);  // nearer points move further
     EXPECT_LE(aside, -2);
     EXPECT_GE(aside, -7);
@@ -589,7 +589,7 @@ TEST(Sequence, GradientTLeadsToTheNextFrame) {
     error += std::pow(seen - frames[0].difference[3 * i], 2);
     change += std::pow(seen, 2);
   }
-  EXPECT_GT(linked, size_t(kSide) * kSide / 2);
+  EXPECT_GT(corresponding, size_t(kSide) * kSide / 2);
   EXPECT_LT(error, change) << "as it is where the pass is 0";
   for (const float value : frames[2].link) EXPECT_EQ(value, 0.0f);
 }
