@@ -109,4 +109,4 @@ def test_k1_sigint_ends_the_frames_ahead_within_a_second(tmp_path: Path, seconds
     assert process.returncode == 1, output
     assert time.monotonic() - begin < 1.0
     assert list(tmp_path.glob("f_*.png")) == []
-    assert os.listdir(temporary) == [], "frames that were kept for their neighbours are gone"
+    assert os.listdir(temporary) == [], "frames that were kept for their neighbours are released"
