@@ -39,7 +39,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.fixture(scope="session", autouse=True)
 def addon() -> Iterator[object]:
-    """The add-on, registered once for each test file; in plain Python, where it cannot be, only imported."""
+    """Registers the add-on once for each test file. In plain Python it is only imported."""
     import gradus
 
     if bpy is None:
@@ -62,7 +62,7 @@ def library_path() -> Path:
 
 @pytest.fixture(scope="session")
 def library(library_path: Path) -> ctypes.CDLL:
-    """The library as ctypes sees it without the add-on's declarations."""
+    """Returns the library loaded by ctypes without the add-on's declarations."""
     library = ctypes.CDLL(str(library_path))
     library.gradus_version.restype = ctypes.c_uint32
     library.gradus_version_text.restype = ctypes.c_char_p
@@ -71,7 +71,7 @@ def library(library_path: Path) -> ctypes.CDLL:
 
 @pytest.fixture
 def scene() -> object:
-    """An empty scene in an empty file: 64×36 pixels, 4 samples, view transform Standard, engine Gradus."""
+    """Returns an empty scene in an empty file: 64×36 pixels, 4 samples, view transform Standard, engine Gradus."""
     from support import images
 
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
@@ -82,7 +82,10 @@ def scene() -> object:
 
 @pytest.fixture
 def render(tmp_path: Path) -> Callable[..., dict]:
-    """render(scene, frame=1, **settings): the passes of a frame, see support/images.py."""
+    """Returns a function that renders the passes of a frame: render(scene, frame=1, **settings).
+
+    See support/images.py.
+    """
     from support import images
 
     return lambda scene, **settings: images.render(scene, tmp_path, **settings)
@@ -90,13 +93,16 @@ def render(tmp_path: Path) -> Callable[..., dict]:
 
 @pytest.fixture
 def blender() -> Callable[..., application.Outcome]:
-    """blender(*arguments, limit=120, env={}): runs Blender as an application of its own; see support/application.py."""
+    """Returns a function that runs the Blender application: blender(*arguments, limit=120, env={}).
+
+    See support/application.py.
+    """
     return application.run
 
 
 @pytest.fixture(scope="session")
 def shared_scenes() -> Path:
-    """The folder of real scenes that lies beside some checkouts."""
+    """Returns the folder of real scenes, which exists beside some checkouts only."""
     for folder in (ROOT.parent / "shared" / "scenes", Path(os.environ.get("GRADUS_SHARED", "/nonexistent")) / "scenes"):
         if folder.is_dir():
             return folder

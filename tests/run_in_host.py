@@ -38,7 +38,7 @@ def run(arguments: list[str]) -> int:
 
 
 class Surroundings:
-    """What a test file may change in the process. restore() takes it back to the state before the first file."""
+    """The state of the process that a test file may change. restore() returns to the state before the first file."""
 
     def __init__(self) -> None:
         self.path, self.environment, self.folder = list(sys.path), dict(os.environ), os.getcwd()
@@ -57,7 +57,10 @@ class Surroundings:
 
     @staticmethod
     def is_of_tests(module: object) -> bool:
-        """Whether a module belongs to the tests or tools of this checkout. The add-on stays loaded, as in Blender."""
+        """Returns whether a module belongs to the tests or tools of this checkout.
+
+        The add-on stays loaded, as in Blender.
+        """
         file = getattr(module, "__file__", None)
         return bool(file) and any(Path(file).is_relative_to(folder) for folder in (TESTS, ROOT / "tools"))
 

@@ -1,11 +1,11 @@
-"""Copies the library and all libraries that it needs to one folder, so that it uses none of the host process.
+"""Copies the library and all libraries that it needs to one folder, so that it uses none of the host process's.
 
     bundle.py LIBRARY FOLDER
 
 Libraries that every system has are left out. The others find each other by $ORIGIN and get a soname that no library
 of Blender has: libOpenColorIO.so.2.1 becomes libgradus_OpenColorIO.so.2.1. TBB keeps its soname, because two copies of
 TBB in one process would be two thread pools; the one loaded first serves both. The same is done for libgradus_flow.so,
-if it was built; libgradus.so loads it when it is needed. Nothing is done when FOLDER is up to date.
+if it was built; libgradus.so loads it on demand. Nothing is done if FOLDER is up to date.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-# The C and C++ run-time libraries must be the process's own; they are there wherever Blender runs.
+# The C and C++ run-time libraries must be those of the process. They exist wherever Blender runs.
 BASE = (
     "linux-vdso",
     "ld-linux",
@@ -39,39 +39,41 @@ def run(*command: str | Path) -> str:
 
 
 def needed(library: Path) -> list[str]:
-    """The sonames that a library asks for, without the base ones."""
+    """Returns the sonames that a library needs, without those of BASE."""
     return [name for name in run("patchelf", "--print-needed", library).split() if not name.startswith(BASE)]
 
 
 def resolved(library: Path) -> dict[str, Path]:
-    """Where the loader finds each soname of the closure."""
+    """Returns the files of all libraries that a library needs, directly or indirectly, by their sonames."""
     found = {}
     for line in run("ldd", library).splitlines():
-        name, arrow, rest = line.strip().partition(" => ")
+        name, arrow, location = line.strip().partition(" => ")
         if not arrow or name.startswith(BASE):
             continue
-        if rest.startswith("not found"):
-            raise SystemExit(f"bundle: {library.name} needs {name}, which is not there")
-        found[name] = Path(rest.rsplit(" (", 1)[0])
+        if location.startswith("not found"):
+            raise SystemExit(f"bundle: {library.name} needs {name}, which was not found")
+        found[name] = Path(location.rsplit(" (", 1)[0])
     return found
 
 
 def loaded_later(library: Path) -> list[Path]:
-    """What lies beside a library for it to load when it needs it."""
+    """Returns the libraries in a library's folder that it loads on demand."""
     return [path for name in LOADED_LATER if (path := library.parent / name).exists()]
 
 
 def private_name(soname: str) -> str:
+    """Returns the soname that a library gets in the bundle."""
     return soname if soname.startswith(SHARED_WITH_HOST) else "libgradus_" + soname.removeprefix("lib")
 
 
 def place(source: Path, target: Path, soname: str | None) -> None:
+    """Copies a library without symbols, and renames it and the libraries that it needs."""
     shutil.copyfile(source, target)
     target.chmod(0o755)
     run("strip", "--strip-unneeded", target)
     foreign = [name for name in needed(target) if private_name(name) != name]
     renames = [argument for name in foreign for argument in ("--replace-needed", name, private_name(name))]
-    # One change per call: patchelf 0.14 loses some of them when they come together.
+    # One change in each call, because patchelf 0.14 loses some changes that are made together.
     run("patchelf", "--set-rpath", "$ORIGIN", target)
     if soname:
         run("patchelf", "--set-soname", soname, target)
@@ -80,7 +82,7 @@ def place(source: Path, target: Path, soname: str | None) -> None:
 
 
 def bundle(library: Path, folder: Path) -> None:
-    """Fills a new folder and moves its files into place: a process that has the old ones mapped keeps them."""
+    """Fills a new folder and moves its files into `folder`, so that running processes keep their mapped old files."""
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".new-", dir=folder) as name:
         new = Path(name)

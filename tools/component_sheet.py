@@ -2,7 +2,7 @@
 
     component_sheet.py FRAME.exr SHEET.webp
 
-Motion is shown by its direction as hue and its length as brightness; grey is not tracked.
+Motion is shown by its direction as hue and its length as brightness; pixels that are not tracked are grey.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ GAP, HEADER = 2, 14  # pixels between pictures, and for the line of text above e
 BRIGHTEST = 98.0  # percentile that is shown as white
 
 Passes = dict[str, np.ndarray]
-Shower = Callable[[Passes, str, float], np.ndarray]
+DrawRow = Callable[[Passes, str, float], np.ndarray]
 
 
 def read(path: Path) -> Passes:
-    """Pass → (height, width, channels), top row first, without the name of the layer."""
+    """Returns the passes of a file by name without layer, each (height, width, channels) with the top row first."""
     planes: dict[str, dict[str, np.ndarray]] = {}
     with OpenEXR.File(str(path), separate_channels=True) as file:
         for part in file.parts:
@@ -50,12 +50,15 @@ def light(image: np.ndarray, white: float) -> np.ndarray:
 
 
 def longest_motion(passes: Passes) -> float:
-    """Of any component, in pixels."""
+    """Returns the longest motion of any component in pixels."""
     return max(float(np.abs(passes[f"Path {name} Motion"][..., :2]).max()) for name in components(passes))
 
 
 def wheel(vectors: np.ndarray, longest: float) -> np.ndarray:
-    """Direction as hue, length as brightness. vectors: previous − current, pixels, y upwards."""
+    """Returns colours that show the direction of vectors as hue and their length as brightness.
+
+    vectors: previous − current in pixels, y upwards. `longest` is the length that is shown with full brightness.
+    """
     length = np.clip(np.hypot(vectors[..., 0], vectors[..., 1]) / max(longest, 1e-6), 0.0, 1.0)
     hue = np.arctan2(-vectors[..., 1], -vectors[..., 0]) / (2.0 * np.pi)
     colors = np.clip(np.abs((hue[..., None] * 6.0 + np.array((0.0, 4.0, 2.0))) % 6.0 - 3.0) - 1.0, 0.0, 1.0)
@@ -63,23 +66,24 @@ def wheel(vectors: np.ndarray, longest: float) -> np.ndarray:
 
 
 def motion(passes: Passes, component: str, longest: float | None = None) -> np.ndarray:
-    """From the frame before to this one, for all components on one scale."""
+    """Returns a picture of a component's motion from the frame before to this one, on one scale for all components."""
     tracked = passes[f"Path {component} Tracked"][..., 0] > 0.0
     longest = longest_motion(passes) if longest is None else longest
     return np.where(tracked[..., None], wheel(passes[f"Path {component} Motion"], longest), 0.25)
 
 
-ROWS: dict[str, Shower] = {
+ROWS: dict[str, DrawRow] = {
     "": lambda passes, name, white: light(passes[f"Path {name}"], white),
     "Reflectance": lambda passes, name, _: light(passes[f"Path {name} Reflectance"], 1.0),
     "Irradiance": lambda passes, name, white: light(passes[f"Path {name} Irradiance"], 2.0 * white),
     "Normal": lambda passes, name, _: 0.5 + 0.5 * np.clip(passes[f"Path {name} Normal"], -1.0, 1.0),
     "Motion": lambda passes, name, _: motion(passes, name),
 }
-"""Row → what it shows of a component; light by one exposure for all."""
+"""Functions that draw the rows of the sheet. The last argument is the radiance that is shown as white."""
 
 
 def sheet(passes: Passes) -> Image.Image:
+    """Returns the picture of all components."""
     names = components(passes)
     rows = {
         suffix: show

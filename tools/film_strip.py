@@ -1,6 +1,6 @@
-"""Runs inside Blender: small copies of pictures side by side, in rows.
+"""Runs inside Blender and joins small copies of pictures in rows.
 
-GRADUS_STRIP_FRAMES: JSON, the files; GRADUS_STRIP: the file to write.
+The environment variable GRADUS_STRIP_FRAMES has the files as JSON, and GRADUS_STRIP is the file to write.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ WIDTH, COLUMNS, GAP = 160, 6, 2  # pixels of a small picture, pictures in a row,
 
 
 def small(file: str) -> np.ndarray:
-    """RGBA (height, width, 4), lowest row first."""
+    """Returns a small copy of a picture as RGBA (height, width, 4), lowest row first."""
     image = bpy.data.images.load(file)
     width, height = image.size
     image.scale(WIDTH, max(1, round(WIDTH * height / width)))
@@ -28,16 +28,17 @@ def small(file: str) -> np.ndarray:
 
 
 def strip(pictures: list[np.ndarray]) -> np.ndarray:
+    """Joins pictures of equal size in rows from the top left, on black."""
     height, width, _ = pictures[0].shape
     rows = -(-len(pictures) // COLUMNS)
     columns = min(COLUMNS, len(pictures))
-    made = np.zeros((rows * (height + GAP) - GAP, columns * (width + GAP) - GAP, 4), dtype=np.float32)
-    made[..., 3] = 1.0
+    joined = np.zeros((rows * (height + GAP) - GAP, columns * (width + GAP) - GAP, 4), dtype=np.float32)
+    joined[..., 3] = 1.0
     for i, picture in enumerate(pictures):
         row, column = divmod(i, COLUMNS)
-        bottom, left = made.shape[0] - row * (height + GAP) - height, column * (width + GAP)
-        made[bottom : bottom + height, left : left + width] = picture
-    return made
+        bottom, left = joined.shape[0] - row * (height + GAP) - height, column * (width + GAP)
+        joined[bottom : bottom + height, left : left + width] = picture
+    return joined
 
 
 def save(pixels: np.ndarray, file: str) -> None:

@@ -24,7 +24,7 @@ OPENCV_PACKAGE = "libopencv-video-dev"
 
 
 def version() -> str:
-    """The version, which manifest, bl_info, header and build must agree on."""
+    """Returns the version, on which the manifest, bl_info, the header and the build must agree."""
     header = (ROOT / "native" / "include" / "gradus" / "gradus.h").read_text()
     numbers = [re.search(rf"GRADUS_VERSION_{part} (\d+)", header).group(1) for part in ("MAJOR", "MINOR", "PATCH")]
     tree = ast.parse((ADDON / "__init__.py").read_text())
@@ -47,7 +47,7 @@ def version() -> str:
 
 
 def owner(library: Path) -> str | None:
-    """Debian's package of a file."""
+    """Returns Debian's package of a file."""
     for path in (
         library,
         Path("/usr") / library.relative_to("/"),
@@ -61,11 +61,11 @@ def owner(library: Path) -> str | None:
 
 
 def licenses() -> dict[str, bytes]:
-    """Licence texts of what lies in lib/, by name in the zip."""
+    """Returns the licence texts of the libraries in lib/ by their file names in the zip."""
     texts = {"LICENSE": (ROOT / "LICENSE").read_bytes()}
     library = ROOT / "build" / "native" / "libgradus.so"
     later = bundle.loaded_later(library)
-    if later:  # OpenCV is linked into it
+    if later:  # OpenCV is linked into this library
         texts["lib/licenses/opencv.txt"] = Path(f"/usr/share/doc/{OPENCV_PACKAGE}/copyright").read_bytes()
     for path in {soname: path for part in (library, *later) for soname, path in bundle.resolved(part).items()}.values():
         package = owner(path.resolve())

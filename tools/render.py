@@ -1,4 +1,4 @@
-"""`make render`: renders frames of a .blend with Gradus in Blender, and says where the pictures are and what they took.
+"""`make render`: renders frames of a .blend with Gradus in Blender, and prints the files and the times.
 
 Reads SCENE, FRAMES (1, 1-24 or 1,5,9-12), OUT, ARGS (options of the add-on, as after "--"), COMPONENTS (default, or
 Name=EXPRESSION;…, with all passes of each) and BLENDER from the environment. With --check it only checks these.
@@ -27,7 +27,7 @@ from gradus import components, options  # noqa: E402  (neither needs Blender or 
 
 
 class RenderError(Exception):
-    """What the user is told."""
+    """The render cannot start or has failed; the text is for the user."""
 
 
 def frame_ranges(text: str) -> list[tuple[int, int]]:
@@ -44,12 +44,12 @@ def frame_ranges(text: str) -> list[tuple[int, int]]:
 
 
 def frame_name(frame: int) -> str:
-    """As Blender writes it."""
+    """Returns the number of a frame as Blender writes it in file names."""
     return f"{frame:04d}"
 
 
 def scripts_folder() -> Path:
-    """A scripts folder with our add-on and nothing else: the user's settings are neither used nor changed."""
+    """Returns a scripts folder with this add-on alone, so that the user's settings are neither used nor changed."""
     folder = ROOT / "build" / "scripts"
     link = folder / "addons"
     if not link.exists():
@@ -64,8 +64,8 @@ def blender_path() -> str:
 
 
 def opened(blender: str, scene: Path) -> list[str]:
-    """Blender with a file, to be rendered by Gradus."""
-    # The add-on comes before the file, or Blender complains of an unknown engine when it reads a file that names ours.
+    """Returns the command that opens a file in Blender and sets the engine to Gradus."""
+    # The add-on precedes the file: otherwise Blender warns of an unknown engine when it reads a file that uses Gradus.
     head = [blender, "-b", "--factory-startup", "-noaudio", "--addons", "gradus", str(scene), "-E", "GRADUS"]
     return [*head, "--python-exit-code", "1"]
 
@@ -90,7 +90,7 @@ def timing(frames: int, wall: float, stats: list[dict]) -> str:
 
 
 def component_options(text: str) -> list[str]:
-    """Of the add-on, for COMPONENTS; ARGS come after them and win."""
+    """Returns the add-on's options for COMPONENTS. Options of ARGS come after them and replace them."""
     if not text:
         return []
     own = "" if text.lower() == "default" else text
@@ -98,7 +98,10 @@ def component_options(text: str) -> list[str]:
 
 
 def check_options(arguments: list[str]) -> None:
-    """Refuses options that the add-on would refuse after the build, except values of native settings."""
+    """Raises RenderError for options that the add-on would refuse, except for values of native settings.
+
+    `make render` runs this check before the build.
+    """
     try:
         overrides = options.parse(arguments)
     except options.OptionError as error:
@@ -110,7 +113,7 @@ def check_options(arguments: list[str]) -> None:
 
 @dataclass(frozen=True)
 class Request:
-    """What the user asks for."""
+    """The scene, frames, output and options that the environment variables ask for."""
 
     scene: Path
     ranges: list[tuple[int, int]]
@@ -143,7 +146,7 @@ def render(wanted: Request) -> None:
     names = [f"{prefix}{frame_name(frame)}" for first, last in wanted.ranges for frame in range(first, last + 1)]
     files = [Path(name + suffix) for name in names for suffix in (".png", ".exr")]
     for file in files:
-        file.unlink(missing_ok=True)  # an old picture must not pass for a new one
+        file.unlink(missing_ok=True)  # an old picture must not be taken for a new one
 
     with tempfile.TemporaryDirectory(prefix="gradus-render-") as folder:
         stats = Path(folder) / "stats.jsonl"

@@ -17,7 +17,7 @@ from render import ROOT, RenderError, Request, blender_path, frame_name, main, o
 
 
 def command(wanted: Request, prefix: str) -> list[str]:
-    """Blender works through its options in their order: the strip is made of what -a has written."""
+    """Returns Blender's command. Blender runs its options in order, so that the strip follows the frames of -a."""
     first, last = wanted.ranges[0]
     frames = ["-o", f"{prefix}####", "-F", "PNG", "-x", "1", "-s", str(first), "-e", str(last), "-j", "1", "-a"]
     strip = ["--python", str(ROOT / "tools" / "film_strip.py")]
@@ -35,7 +35,7 @@ def render(wanted: Request) -> None:
     frames = [Path(f"{prefix}{frame_name(frame)}.png") for frame in range(first, last + 1)]
     strip = Path(f"{prefix}strip.png")
     for file in (*frames, strip):
-        file.unlink(missing_ok=True)  # an old picture must not pass for a new one
+        file.unlink(missing_ok=True)  # an old picture must not be taken for a new one
     environment = os.environ | {
         "BLENDER_USER_SCRIPTS": str(scripts_folder()),
         "GRADUS_STRIP": str(strip),

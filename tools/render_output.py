@@ -1,4 +1,4 @@
-"""Runs inside Blender: renders the open file's frames, each to a multilayer EXR and a PNG from the one render.
+"""Runs inside Blender: renders frames of the open file, each once to both a multilayer EXR file and a PNG file.
 
 render.py starts it and passes GRADUS_RENDER_OUT (path without frame number) and GRADUS_RENDER_FRAMES (JSON: [[first,
 last], …]). It uses the operator instead of -f or -a, because only the operator makes the image that is saved as a PNG.
@@ -31,13 +31,13 @@ def use_png(settings: bpy.types.ImageFormatSettings, transparent: bool) -> None:
 
 
 def save_png(scene: bpy.types.Scene, *_: object) -> None:
-    """Saves the frame just written once more, through the scene's display transform."""
+    """Saves the frame that was just written as a PNG file, too, with the scene's display transform."""
     path = os.path.splitext(scene.render.frame_path(frame=scene.frame_current))[0] + ".png"
     settings = scene.render.image_settings
     use_png(settings, scene.render.film_transparent)
     try:
         bpy.data.images["Render Result"].save_render(path, scene=scene)
-    except Exception:  # an exception in a handler is lost; render.py misses the file and says so
+    except Exception:  # Blender drops exceptions of handlers; render.py reports the missing file
         traceback.print_exc()
     finally:
         use_exr(settings)
@@ -59,6 +59,6 @@ def main() -> None:
 
 try:
     main()
-except RuntimeError as error:  # what the engine reported; the message is in the log already
+except RuntimeError as error:  # the engine reported an error, whose message is in the log already
     print(f"render: {str(error).strip()}", flush=True)
     sys.exit(1)

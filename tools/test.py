@@ -25,10 +25,10 @@ ROOT = plan.ROOT
 def environment_of_tests(full: bool) -> dict[str, str]:
     foreign = ("BLENDER_", "PYTEST_", "MAKE", "MFLAGS")
     environment = {key: value for key, value in os.environ.items() if not key.startswith(foreign)}
-    # Blender's Python takes its modules from beside the first python3.11 in PATH: that must be the system's.
+    # Blender's Python takes its modules from the folder of the first python3.11 in PATH, which must be the system's.
     environment["PATH"] = "/usr/bin:/bin:" + environment.get("PATH", "")
     environment |= {"PYTHONDONTWRITEBYTECODE": "1", "GRADUS_TEST_FULL": "1" if full else "0"}
-    # NumPy's threads wait for each other in loops, for longer than small matrices take.
+    # NumPy's threads wait in busy loops that take longer than small matrices.
     environment["OPENBLAS_NUM_THREADS"] = "1"
     return environment
 

@@ -46,7 +46,10 @@ def bundled_libraries() -> str:
 
 
 def image_color_spaces() -> set[str]:
-    """Names of the colour spaces of all images but Blender's own viewers, which have none: 5.2 warns when theirs is read."""
+    """Returns the names of the colour spaces of all images.
+
+    Blender's own viewer images are left out: they have no colour space, and reading it causes a warning in 5.2.
+    """
     return {image.colorspace_settings.name for image in bpy.data.images if image.source != "VIEWER"}
 
 

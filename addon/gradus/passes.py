@@ -1,5 +1,8 @@
-"""The passes: Blender's names, channels and switches, and the native plane. Registration, the settings mask and the upload are
-all made from list_passes(). The rows are generated: pass_table.py. This module does not use Blender."""
+"""The passes: Blender's names, channels and switches, and the native plane.
+
+Registration, the settings mask and the upload are all made from list_passes(). The rows are generated in pass_table.py.
+This module does not use Blender.
+"""
 
 from __future__ import annotations
 

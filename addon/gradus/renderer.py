@@ -93,7 +93,7 @@ def native_settings(
     """
     result = native.Settings()
     library.settings_default(byref(result))
-    settings.fill(result, scene.gradus, () if is_final else settings.OF_COMPONENTS)
+    settings.fill(result, scene.gradus, () if is_final else settings.COMPONENT_SETTINGS)
     if view_layer.samples > 0:
         result.samples = view_layer.samples
     result.frame = scene.frame_current

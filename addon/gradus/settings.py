@@ -1,5 +1,7 @@
-"""The settings of a scene: Blender properties, command-line options and native settings are made from them. The rows are
-generated: setting_table.py. This module does not use Blender."""
+"""The settings of a scene, from which Blender properties, command-line options and native settings are made.
+
+The rows are generated in setting_table.py. This module does not use Blender.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,7 @@ BOOL, INT, FLOAT, ENUM, TEXT, FOLDER = "BOOL", "INT", "FLOAT", "ENUM", "TEXT", "
 
 @dataclass(frozen=True)
 class Setting:
-    """One setting of a scene. `native`: the field of GradusSettings with the same name takes it."""
+    """One setting of a scene. `native` says whether GradusSettings has a field of the same name."""
 
     name: str
     kind: str
@@ -31,27 +33,31 @@ class Setting:
     unit: str = "NONE"  # of Blender
 
     def value_of(self, identifier: str) -> int:
-        """Native value of an enum identifier. Blender reads a stored number that it does not know as ""."""
+        """Returns the native value of an enum identifier.
+
+        Raises Failure for unknown ones, such as "", as which Blender reads unknown stored numbers.
+        """
         known = {choice[0]: choice[3] for choice in self.choices}
         if identifier not in known:
-            raise Failure(f"{self.label} ({self.name}) has a value that this version does not know: choose one of {', '.join(known)}")
+            choices = ", ".join(known)
+            raise Failure(f"{self.label} ({self.name}) has an unknown value: choose one of {choices}")
         return known[identifier]
 
 
-DENOISER_PAYS = 8
-"""Samples from which denoiser AUTO runs; the library decides, and a test compares."""
+DENOISER_MINIMUM_SAMPLES = 8
+"""Samples from which the denoiser AUTO runs. The library decides; a test compares the numbers."""
 
 SETTINGS = tuple(Setting(**row) for row in setting_table.ROWS)
 BY_NAME = {setting.name: setting for setting in SETTINGS}
 TEST_SWITCHES = setting_table.TEST_SWITCHES
 FROM_BLENDER = setting_table.FROM_BLENDER
 
-OF_COMPONENTS = frozenset(("use_decomposition", "components", "component_replays"))
-"""Of final renders alone: previews and the viewport show the picture as one."""
+COMPONENT_SETTINGS = frozenset(("use_decomposition", "components", "component_replays"))
+"""Settings of final renders only. Previews and the viewport do not decompose the image."""
 
 
 def fill(settings: Any, properties: Any, left_out: Collection[str] = ()) -> None:
-    """Copies the scene's values (attributes of `properties`) into a native.Settings; those left out are not even looked at."""
+    """Copies the scene's values (attributes of `properties`) into a native.Settings, except those in `left_out`."""
     for setting in native_settings():
         if setting.name not in left_out:
             setattr(settings, setting.name, native_value(setting, getattr(properties, setting.name)))

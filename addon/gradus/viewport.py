@@ -311,7 +311,7 @@ def _signature(depsgraph: Any) -> object:
     over them, and instances are not read at all.
     """
     scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
-    values = tuple(getattr(scene.gradus, name) for name in settings.BY_NAME if name not in settings.OF_COMPONENTS)
+    values = tuple(getattr(scene.gradus, name) for name in settings.BY_NAME if name not in settings.COMPONENT_SETTINGS)
     replaced = (scene.world, layer.material_override, getattr(layer, "world_override", None))
     blocks = tuple(block.original.as_pointer() if block else 0 for block in replaced)
     flags = (scene.render.film_transparent, layer.use_sky, layer.use_solid)

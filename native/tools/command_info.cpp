@@ -50,13 +50,13 @@ ordered_json film_info(const std::string& path) {
   const Region& r = frame->region;
   char scene_key[20];
   std::snprintf(scene_key, sizeof(scene_key), "%016llx", static_cast<unsigned long long>(frame->scene_key));
-  return {{"kind", "frame"},
+  return {{"kind", "film"},
           {"resolution", {frame->full_width, frame->full_height}},
           {"sampled_region", {r.x0, r.y0, r.x1, r.y1}},
           {"frame", frame->frame_number},
           {"samples", double(samples) / double(r.area())},
-          {"samples_least", minimum},
-          {"samples_most", maximum},
+          {"samples_minimum", minimum},
+          {"samples_maximum", maximum},
           {"gradients", frame->gradients},
           {"components", frame->components.size()},
           {"alpha", frame->color_channels == 4},

@@ -1,6 +1,5 @@
-// gradus motion SCENE.gradus, which measures the accuracy and the time of the components' motion to the next frame.
+// gradus motion SCENE.gradus: how well the components' motion to the next frame is found, and at what price.
 #include <cstdio>
-
 #include <nlohmann/json.hpp>
 
 #include "api/recorder.h"
@@ -19,7 +18,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::array<const char*, motion::kTrackingCauses + 1> kCauses = {
-    "tracked", "no path", "gone", "not converged", "occluded", "broken", "outside", "elsewhere", "cut"};
+    "tracked", "no path", "gone", "not converged", "occluded", "broken", "outside", "elsewhere", "shot change"};
 
 // Measures how far simpler estimates differ from the tracked motion, for specular chains that are not static.
 ordered_json compare(const motion::ChainView& view, const motion::ChainTracer& next, const motion::ChainMotion& found) {
@@ -41,23 +40,23 @@ ordered_json count(const motion::TrackingCounts& counts) {
           {"searched", counts.searched},
           {"steps_in_space", double(counts.search.space) / pixels},
           {"steps_in_time", double(counts.search.time) / pixels},
-          {"ways_traced", double(counts.search.traced) / pixels}};
+          {"chains_traced", double(counts.search.traced) / pixels}};
 }
 
 // Measures tracking. `checked` is the number of pixels per component that are compared with a brute-force search.
 ordered_json measure(const scene::Snapshot& snapshot, const GradusSettings& settings,
                      const lpe::ComponentSet& components, size_t checked) {
   double wall = 0.0, cpu = 0.0;
-  const auto billed = [&](const auto& work) {
+  const auto timed = [&](const auto& work) {
     wall = cpu = 0.0;
     const ScopedTimer timer(&wall, &cpu);
     return work();
   };
   const Region region{0, 0, int32_t(settings.width), int32_t(settings.height)};
   const motion::CentreView centres =
-      billed([&] { return motion::view_centres(snapshot, settings.width, settings.height, region); });
+      timed([&] { return motion::view_centres(snapshot, settings.width, settings.height, region); });
   ordered_json report{{"pixels", region.area()}, {"centres_cpu", cpu}};
-  const auto moved = billed([&] { return scene::moved_snapshot(snapshot, Moment::Next); });
+  const auto moved = timed([&] { return scene::moved_snapshot(snapshot, Moment::Next); });
   report["moved_snapshot_cpu"] = cpu;
   const camera::Camera camera = camera::Camera(moved->camera, settings.width, settings.height).without_lens();
   const motion::ChainTracer next(*moved, camera, settings);
@@ -65,8 +64,8 @@ ordered_json measure(const scene::Snapshot& snapshot, const GradusSettings& sett
   change.add(*moved);
   if (!change.any())
     std::fprintf(stderr, "warning: nothing moves to the next frame; was the scene saved with passes of motion?\n");
-  const int followed = components.count() - 1;  // without the remainder, which has no common path
-  const std::vector<motion::ChainView> views = billed([&] {
+  const int followed = components.count() - 1;  // Residual has no light paths of its own to track
+  const std::vector<motion::ChainView> views = timed([&] {
     return motion::view_chains(
         centres, settings, components, (1u << followed) - 1, [] { return false; }, &change);
   });
@@ -75,7 +74,7 @@ ordered_json measure(const scene::Snapshot& snapshot, const GradusSettings& sett
   for (int c = 0; c < followed; ++c) {
     const motion::ChainView& view = views[size_t(c)];
     ordered_json part{{"chains", view.chains.size()}};
-    found.push_back(billed([&] { return motion::track_chains(view, next, region); }));
+    found.push_back(timed([&] { return motion::track_chains(view, next, region); }));
     part["tracking_cpu"] = cpu;
     part.update(count(found.back().counts));
     part.update(compare(view, next, found.back()));

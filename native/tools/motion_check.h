@@ -11,7 +11,7 @@
 
 namespace gradus::tool {
 
-// Statistics of the distances, in pixels, between two results.
+// Distances in pixels between two answers.
 class Distances {
  public:
   void add(double pixels) { pixels_.push_back(pixels); }
@@ -30,7 +30,7 @@ class SimplerMotion {
   void add(const motion::SpecularChain& chain, const Vec2& place);
   nlohmann::ordered_json json() {
     return {{"motion_of_first_surface", first_.json()},
-            {"flat_resting_mirror", static_mirror_.json()},
+            {"flat_static_mirror", static_mirror_.json()},
             {"flat_moving_mirror", along_.json()}};
   }
 
@@ -46,7 +46,7 @@ class StepsBetween {
   // `farthest` is a high quantile of all motions in pixels. It sets the number of steps.
   StepsBetween(const scene::Snapshot& snapshot, const GradusSettings& settings, double farthest);
 
-  // Checks about `pixels` pixels, spread evenly over those of the view in which something changes.
+  // Compares the motion of about `pixels` pixels, which are spread evenly over those of the view that are not static.
   nlohmann::ordered_json check(const motion::ChainView& view, const motion::ChainMotion& found, size_t pixels) const;
 
  private:

@@ -1,4 +1,4 @@
-"""H1, H2, H3: the ctypes declarations against the library."""
+"""H1, H2, H3: the ctypes declarations agree with the library."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_h2_bound_functions_carry_their_types() -> None:
 
 
 def test_h3_older_and_newer_callers() -> None:
-    """struct_size first: a newer caller's larger struct is refused with a code, not read."""
+    """The library reads struct_size first, so that it refuses a newer caller's larger struct with a code."""
     library = native.load()
     settings = native.Settings()
     library.settings_default(byref(settings))

@@ -49,7 +49,7 @@ def stored(
 
 
 def test_every_temporal_mode_is_compared_with_itself_frame_by_frame() -> None:
-    """The library makes AUTO's choice for stills; the twin of AUTO is the mode that it chooses."""
+    """The mode that AUTO is compared with is the one that the library chooses for stills."""
     temporal = [mode for mode in animation_modes.MODES if animation_modes.is_temporal(mode)]
     assert temporal
     for mode in temporal:
@@ -126,16 +126,18 @@ def test_figures_of_variants_follow_those_of_the_usual_one(tmp_path: Path, monke
     assert headings[-1] == "### Animations: motion blur, shutter 0.5"
     table = next(block for block in reversed(found) if isinstance(block, document.Table))
     assert table.rows[0][:4] == ["light-off", "Gradus PT", "4, 16", "2"]
-    assert table.rows[0][4:] == ["1.00", "–", "–", "10.00", "1", "0"], "a mode frame by frame has no other twin"
+    assert table.rows[0][4:] == ["1.00", "–", "–", "10.00", "1", "0"], (
+        "a mode frame by frame is compared with no other mode"
+    )
     assert table.rows[2][4:] == ["0.05", "0.25", "0.25", "0.50", "1", "0"]
 
 
 def test_more_frames_end_where_the_motion_does() -> None:
     animated = next(animation for animation in animation_scenes.ANIMATIONS if animation.name == "animated")
     assert [animated.lasting(length).frames for length in (4, 15, 20, 24)] == [(10, 13), (10, 24), (5, 24), (1, 24)]
-    lamp = next(animation for animation in animation_scenes.ANIMATIONS if animation.goes_off)
-    assert (lamp.lasting(30).frames, lamp.lasting(30).goes_off) == ((1, 30), 6)
-    assert lamp.lasting(3).goes_off is None, "the lamp is never seen to go off"
+    animation = next(animation for animation in animation_scenes.ANIMATIONS if animation.goes_off)
+    assert (animation.lasting(30).frames, animation.lasting(30).goes_off) == ((1, 30), 6)
+    assert animation.lasting(3).goes_off is None, "no frame shows the light going off"
 
 
 def test_an_animation_that_is_too_short_is_left_out(capsys: pytest.CaptureFixture[str]) -> None:
@@ -171,7 +173,7 @@ def test_peers_of_another_blender_are_not_mixed(tmp_path: Path, monkeypatch: pyt
 
 @pytest.mark.module
 def test_all_engines_have_the_bounce_limits_of_the_file(scene: bpy.types.Scene, tmp_path: Path) -> None:
-    """Regression: Gradus kept its own denoiser in animations."""
+    """Regression: Gradus kept its own bounce limits and denoiser in animations."""
     import animation_worker
 
     scene.cycles.max_bounces, scene.cycles.diffuse_bounces = 9, 7

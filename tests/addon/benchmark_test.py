@@ -60,7 +60,7 @@ def test_similarity_falls_with_noise() -> None:
     assert values[0] > values[1] > values[2]
 
 
-def test_bias_and_variance_are_told_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_bias_and_variance_are_separated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(seeds, "CACHE", tmp_path)
     count, deviation, bias = 16, 0.2, 0.1
     none = np.zeros_like(REFERENCE)
@@ -79,7 +79,7 @@ def test_bias_and_variance_are_told_apart(tmp_path: Path, monkeypatch: pytest.Mo
     assert variance == pytest.approx(deviation**2 * weight, rel=0.1)
 
 
-def test_seeds_tell_bias_from_variance() -> None:
+def test_seeds_separate_bias_from_variance() -> None:
     none = np.zeros_like(REFERENCE)
     images = np.stack([noisy(0.2, seed) + 0.1 for seed in range(16)])
     spread = behind.Spread(images, (REFERENCE, none))
@@ -126,7 +126,7 @@ def test_ratios_of_curves() -> None:
     assert metrics.equal_time_ratio([(1.0, 1.0), (2.0, 0.5)], [(10.0, 1.0), (20.0, 0.5)]) is None
 
 
-def test_one_count_of_samples_tells_nothing_of_equal_time() -> None:
+def test_a_single_sample_count_gives_no_ratio_at_equal_time() -> None:
     """Regression: results with equal samples counted as equal time if the time differed by less than a quarter."""
     assert metrics.equal_time_ratio([(1.2, 0.5)], [(1.0, 1.0)]) is None
     theirs = [(t, 1.0 / t) for t in (1.0, 4.0)]

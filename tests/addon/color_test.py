@@ -51,7 +51,7 @@ def test_curve_and_matrix_are_found() -> None:
 
 
 @pytest.mark.parametrize("other", [mix_channels, lift, blacken])
-def test_what_has_another_form_is_refused(other: color.Convert) -> None:
+def test_spaces_of_another_form_are_refused(other: color.Convert) -> None:
     assert color.curve_and_matrix(other) is None
 
 
@@ -82,7 +82,7 @@ def test_f5_missing_configuration(tmp_path: Path) -> None:
     assert color.baker_for(str(tmp_path / "none.ocio"), compat.bundled_python_packages()) is None
 
 
-def test_the_device_has_no_complaint_about_blender_s_configuration() -> None:
+def test_the_device_has_no_warnings_about_blender_s_configuration() -> None:
     library = native.load()
     store.clear()
     assert library.take_device_warnings(store.device(library)) == []

@@ -1,4 +1,4 @@
-"""`make picture-components` puts a frame's components side by side."""
+"""`make picture-components` shows the components of a frame side by side."""
 
 from __future__ import annotations
 
@@ -51,8 +51,11 @@ def flow_of(name: str, x: float) -> dict[str, np.ndarray]:
     return {f"Path {name} Irradiance Motion": motion, f"Path {name} Irradiance Tracked": motion[..., :1] * 0.0 - 9.0}
 
 
-def test_motion_of_irradiance_was_taken_for_that_of_another_component(tool: dict[str, Any]) -> None:
-    """Regression: it ended in KeyError: 'Path Diffuse Irradiance Tracked', or its length dimmed all others."""
+def test_motion_of_irradiance_is_not_that_of_a_component(tool: dict[str, Any]) -> None:
+    """Motion of irradiance must not count as motion of a component.
+
+    Regression: it ended in KeyError: 'Path Diffuse Irradiance Tracked', or its length dimmed all other motion.
+    """
     passes = {"Combined": np.ones((HEIGHT, WIDTH, 4), np.float32)}
     for name in ("Diffuse", "Irradiance"):
         passes |= passes_of(name, (1.0, 0.0, 0.0), 1.0) | flow_of(name, -400.0)
@@ -61,13 +64,13 @@ def test_motion_of_irradiance_was_taken_for_that_of_another_component(tool: dict
     assert tool["sheet"](passes).size[0] == 2 * (WIDTH + tool["GAP"]) - tool["GAP"]
 
 
-def test_passes_that_are_empty_have_no_row(tool: dict[str, Any]) -> None:
+def test_empty_passes_have_no_row(tool: dict[str, Any]) -> None:
     passes = {"Combined": np.ones((HEIGHT, WIDTH, 4), np.float32)} | passes_of("Diffuse", (1.0, 0.0, 0.0), 0.0)
     passes["Path Diffuse Motion"] = np.zeros((HEIGHT, WIDTH, 4), np.float32)
     assert tool["sheet"](passes).size[1] == 4 * (HEIGHT + tool["HEADER"]) - tool["GAP"]
 
 
-def test_it_reads_what_blender_writes(tool: dict[str, Any], tmp_path: Path) -> None:
+def test_files_of_blender_are_read(tool: dict[str, Any], tmp_path: Path) -> None:
     bpy.ops.wm.open_mainfile(filepath=str(ROOT / "sample_blends" / "mirror_and_glass.blend"))
     scene = bpy.context.scene
     images.prepare(scene)

@@ -1,4 +1,4 @@
-"""The sample whose compositor grades the reflection, blurs each component by its motion and adds them up."""
+"""The sample file whose compositor grades the reflection, blurs each component by its motion and adds them up."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ WARM = np.array((1.6, 0.9, 0.5), np.float32)
 
 @pytest.fixture(scope="module")
 def render(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., images.Passes]:
-    """render("Grade"): all passes of the sample and its composite, with the named nodes muted."""
+    """Returns a function that renders the sample with the named nodes muted: render("Grade").
+
+    It returns all passes and the composite.
+    """
 
     @cache
     def passes(*muted: str) -> images.Passes:
@@ -48,8 +51,11 @@ def test_the_grade_changes_the_reflection_alone(render: Callable[..., images.Pas
     assert np.abs(change[reflection.max(axis=-1) == 0.0]).max() < 1e-5
 
 
-def test_what_a_mirror_shows_was_blurred_by_the_depth_of_the_mirror() -> None:
-    """Objects in a mirror and behind glass need depths of their own to cover each other in the Vector Blur node."""
+def test_reflections_are_blurred_by_their_own_depth() -> None:
+    """The Vector Blur node orders objects in a mirror and behind glass by their own depths.
+
+    Regression: they had the depth of the mirror.
+    """
     bpy.ops.wm.open_mainfile(filepath=str(SAMPLE))
     for name, blur in zip(NAMES, BLURS, strict=True):
         sources = {
@@ -77,7 +83,7 @@ def show_the_world(scene: bpy.types.Scene) -> None:
     tree.links.new(alpha.outputs["Image"], output)
 
 
-def test_the_sum_before_a_transparent_film_takes_its_alpha_from_the_render(tmp_path: Path) -> None:
+def test_the_sum_over_a_transparent_film_has_the_alpha_of_the_render(tmp_path: Path) -> None:
     """The compositor tree follows the user guide."""
     settings = {"percentage": 25, "frame": 12, "samples": 4, "change": show_the_world}
     passes = compositing.render_muted(SAMPLE, tmp_path, ("Grade", *BLURS), **settings)

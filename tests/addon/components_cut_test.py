@@ -8,12 +8,12 @@ import bpy
 import numpy as np
 import pytest
 
-TRACKED, NOTHING, GONE, CUT = 1.0, -1.0, -2.0, -8.0
+TRACKED, NOTHING, GONE, SHOT_CHANGE = 1.0, -1.0, -2.0, -8.0
 
 
 @pytest.fixture
 def room(scene: Any) -> Any:
-    """A wall in front of a camera, and a second static camera beside it."""
+    """Returns a scene with a wall in front of a camera, and a second static camera beside it."""
     bpy.ops.mesh.primitive_plane_add(size=20.0, location=(0, 5, 0), rotation=(np.pi / 2, 0, 0))
     sun = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
     scene.collection.objects.link(sun)
@@ -32,15 +32,15 @@ def tracked(render: Any, scene: Any, frame: int) -> np.ndarray:
     return render(scene, frame=frame)["ViewLayer.Path Diffuse Tracked"][..., 0]
 
 
-def test_a_marker_that_binds_another_camera_is_a_cut(room: Any, render: Any) -> None:
+def test_a_marker_that_binds_another_camera_is_a_shot_change(room: Any, render: Any) -> None:
     for name, frame in (("First", 1), ("Second", 3)):
         marker = room.timeline_markers.new(name, frame=frame)
         marker.camera = bpy.data.objects[name]
     found = {frame: np.unique(tracked(render, room, frame)) for frame in (1, 2, 3, 4)}
-    assert found == {1: [TRACKED], 2: [CUT], 3: [CUT], 4: [TRACKED]}
+    assert found == {1: [TRACKED], 2: [SHOT_CHANGE], 3: [SHOT_CHANGE], 4: [TRACKED]}
 
 
-def test_an_object_that_appears_was_not_there(room: Any, render: Any) -> None:
+def test_an_object_that_appears_is_not_tracked(room: Any, render: Any) -> None:
     bpy.ops.mesh.primitive_plane_add(size=2.0, location=(0, 0, 0), rotation=(np.pi / 2, 0, 0))
     board = bpy.context.object
     for frame, hidden in ((1, True), (2, False), (3, False)):
@@ -53,7 +53,7 @@ def test_an_object_that_appears_was_not_there(room: Any, render: Any) -> None:
         assert found[1, 1] == TRACKED, "the wall"
 
 
-def test_a_mesh_of_another_topology_is_another(room: Any, render: Any) -> None:
+def test_a_mesh_of_another_topology_is_another_object(room: Any, render: Any) -> None:
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=20, y_subdivisions=20, size=2.0, rotation=(np.pi / 2, 0, 0))
     build = bpy.context.object.modifiers.new("Build", "BUILD")
     build.frame_start, build.frame_duration = -20, 100

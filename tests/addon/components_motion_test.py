@@ -1,4 +1,4 @@
-"""The passes `Path NAME Motion` and `Tracked` in Blender: of reflections, with motion blur, and in the compositor."""
+"""The passes `Path NAME Motion` and `Tracked` in Blender, also with motion blur and in the compositor."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ NO_NEIGHBOUR = -12.0
 
 @pytest.fixture
 def sample() -> bpy.types.Scene:
-    """A rolling mirror ball, a box that moves behind a slab of glass, and a moving light in a static room."""
+    """Returns a static room with a rolling mirror ball, a box that moves behind a slab of glass, and a moving light."""
     bpy.ops.wm.open_mainfile(filepath=str(SAMPLES / "mirror_and_glass.blend"))
     scene = bpy.context.scene
     images.prepare(scene)
@@ -39,7 +39,7 @@ def lit(rendered: images.Passes, name: str) -> np.ndarray:
     return rendered[f"ViewLayer.Path {name}"].sum(axis=-1) > 0.7 * combined
 
 
-def test_what_is_seen_directly_moves_as_its_surface(
+def test_directly_visible_objects_move_as_their_surface(
     sample: bpy.types.Scene, render: Callable[..., images.Passes]
 ) -> None:
     bpy.data.objects.remove(bpy.data.objects["Slab"])
@@ -53,7 +53,7 @@ def test_what_is_seen_directly_moves_as_its_surface(
     assert (np.abs(vectors[inside]).max(axis=-1) > 0.3).sum() > 100, "the box moves"
 
 
-def test_a_reflection_moves_otherwise_than_its_mirror(
+def test_a_reflection_moves_differently_from_its_mirror(
     sample: bpy.types.Scene, render: Callable[..., images.Passes]
 ) -> None:
     rendered = render(sample, frame=12)
@@ -65,7 +65,7 @@ def test_a_reflection_moves_otherwise_than_its_mirror(
     assert np.median(np.abs(vectors)[mirror].max(axis=-1)) > 0.2
 
 
-def test_what_glass_shows_moves_behind_glass_that_stands(
+def test_refracted_objects_move_behind_static_glass(
     sample: bpy.types.Scene, render: Callable[..., images.Passes]
 ) -> None:
     rendered = render(sample, frame=12)
@@ -75,7 +75,7 @@ def test_what_glass_shows_moves_behind_glass_that_stands(
     assert (np.abs(vectors[glass]).max(axis=-1) > 0.3).sum() > 100
 
 
-def test_what_is_not_tracked_is_0_with_a_cause(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+def test_untracked_motion_is_0_with_a_cause(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
     rendered = render(sample, frame=12)
     causes = set()
     for name in NAMES:
@@ -91,7 +91,7 @@ def test_what_is_not_tracked_is_0_with_a_cause(sample: bpy.types.Scene, render: 
     assert not known.any(), "of Residual, the last"
 
 
-def test_components_tell_their_motion_under_motion_blur(
+def test_components_have_motion_under_motion_blur(
     sample: bpy.types.Scene, render: Callable[..., images.Passes]
 ) -> None:
     """Components have the same motion with and without motion blur.
@@ -116,7 +116,7 @@ def test_components_tell_their_motion_under_motion_blur(
 
 
 def composite(folder: Path, blurred: str) -> images.Passes:
-    """The compositor's sample with one component blurred and none graded."""
+    """Renders the compositor's sample with one component blurred and none graded."""
     muted = ("Grade", *(f"Blur {name}" for name in NAMES if name != blurred))
     return compositing.render_muted(SAMPLES / "components.blend", folder, muted, percentage=50, frame=18, samples=4)
 

@@ -17,7 +17,7 @@ DEFAULT = ("Emission", "Diffuse", "Reflection", "Transmission", "Residual")
 
 @pytest.fixture
 def sample() -> bpy.types.Scene:
-    """A small image of a mirror ball, glass, a lantern and a textured floor, with all passes of all components."""
+    """Returns a scene with a mirror ball, glass, a lantern and a textured floor, and all passes of all components."""
     bpy.ops.wm.open_mainfile(filepath=str(SAMPLE))
     scene = bpy.context.scene
     images.prepare(scene)
@@ -61,10 +61,10 @@ def test_components_add_up_to_combined(
 
 
 @pytest.mark.parametrize("case", ["film", "holdout", "clamped", "denoised", "exposed"])
-def test_they_add_up_whatever_is_done_to_the_picture(
+def test_components_add_up_after_each_kind_of_processing(
     sample: bpy.types.Scene, render: Callable[..., images.Passes], case: str
 ) -> None:
-    """The denoiser, where this Blender has one, denoises their sum."""
+    """Components add up with each reconstruction, clamping and exposure, and with the denoiser if there is one."""
     bpy.data.objects.remove(bpy.data.objects["Back"])
     sample.render.film_transparent = case == "film"
     bpy.data.objects["Glass"].is_holdout = case == "holdout"
@@ -83,7 +83,7 @@ PLACES = {"Diffuse": (2, 3), "Reflection": (33, 15), "Transmission": (21, 15), "
 
 
 @pytest.mark.parametrize("name", list(PLACES))
-def test_a_component_is_what_its_name_says(
+def test_each_component_has_the_light_that_its_name_describes(
     sample: bpy.types.Scene, render: Callable[..., images.Passes], name: str
 ) -> None:
     rendered = render(sample, frame=12, reconstruction="NONE", samples=16)
@@ -94,7 +94,7 @@ def test_a_component_is_what_its_name_says(
     assert shares[name] > 0.8, shares
 
 
-def test_own_components_add_up_and_are_what_their_expressions_say(
+def test_custom_components_add_up_and_match_their_expressions(
     sample: bpy.types.Scene, render: Callable[..., images.Passes]
 ) -> None:
     rendered = render(sample, components="Direct=EDL;Indirect=ED.+L;Seen=EL")
@@ -108,7 +108,7 @@ def test_own_components_add_up_and_are_what_their_expressions_say(
     assert part(rendered, "Indirect").sum() > 0.0
 
 
-def test_what_a_scene_does_not_have_is_black(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+def test_components_without_paths_are_black(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
     """Components without paths are not computed, but their passes exist."""
     bpy.data.objects.remove(bpy.data.objects["Glass"])
     bpy.data.objects.remove(bpy.data.objects["Slab"])
@@ -183,7 +183,7 @@ def shade(material: bpy.types.Material, *kinds: str) -> list[bpy.types.Node]:
 
 @pytest.fixture
 def mirror(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A camera at height 3 that looks down at a mirror, and through it at an emissive wall above itself."""
+    """Returns a scene whose camera, at height 3, looks down at a mirror, which shows an emissive wall above it."""
     gloss = shade(add_plane("Mirror", 0.0, 1, 20.0, 7), "BsdfGlossy")[0]
     gloss.inputs["Roughness"].default_value = 0.0
     gloss.inputs["Color"].default_value = (0.5, 0.5, 0.5, 1.0)
@@ -205,7 +205,7 @@ def on_the_wall() -> tuple[np.ndarray, np.ndarray]:
     return STEPS / 2 + width * ((x + 0.5) / 64 - 0.5), STEPS / 2 + width * (y + 0.5 - 18) / 64
 
 
-def test_a_mirror_has_the_map_the_indices_and_the_light_of_what_it_shows(
+def test_a_mirror_has_the_map_indices_and_light_of_the_reflected_object(
     mirror: bpy.types.Scene, render: Callable[..., images.Passes]
 ) -> None:
     rendered = render(mirror, film_exposure=2.0)
@@ -227,7 +227,7 @@ def test_a_mirror_has_the_map_the_indices_and_the_light_of_what_it_shows(
         assert not any(part(rendered, name, suffix).any() for suffix in (" UV", " Object Index", " Emit"))
 
 
-def test_a_surface_that_is_seen_has_what_blender_s_own_passes_have(
+def test_directly_visible_surfaces_have_the_values_of_blender_s_passes(
     mirror: bpy.types.Scene, render: Callable[..., images.Passes]
 ) -> None:
     bpy.data.objects["Mirror"].location.z = 100.0
@@ -263,7 +263,7 @@ def test_names_registered_are_names_in_the_file(sample: bpy.types.Scene, render:
     require_sum(rendered, (*names, "Residual"))
 
 
-def test_the_longest_name_that_is_not_cut_is_64_bytes(
+def test_the_longest_name_that_is_not_truncated_is_64_bytes(
     scene: bpy.types.Scene, render: Callable[..., images.Passes]
 ) -> None:
     """Blender's limit leaves 20 letters for the name of the view layer, if the name of the component has the maximum
@@ -336,7 +336,7 @@ def test_frames_of_an_animation_have_them(sample: bpy.types.Scene, tmp_path: Pat
 def test_k5_a_cancelled_render_keeps_its_picture(
     sample: bpy.types.Scene, render: Callable[..., images.Passes], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Components are computed after sampling, but a cancelled render must keep its image without them."""
+    """A cancelled render keeps its image without components, because they are computed after sampling."""
     calls: list[int] = []
     monkeypatch.setattr(renderer, "stop_requested", lambda engine: calls.append(1) or len(calls) > 4)
     rendered = render(sample, samples=100000)
@@ -344,7 +344,9 @@ def test_k5_a_cancelled_render_keeps_its_picture(
     assert all(np.isfinite(image).all() for image in rendered.values())
 
 
-def test_decomposition_off_leaves_nothing_behind(sample: bpy.types.Scene, render: Callable[..., images.Passes]) -> None:
+def test_without_decomposition_there_are_no_component_passes(
+    sample: bpy.types.Scene, render: Callable[..., images.Passes]
+) -> None:
     assert path_passes(render(sample, use_decomposition=False)) == set()
 
 
@@ -386,10 +388,10 @@ def test_a_malformed_set_on_the_command_line_is_exit_code_1(
 @pytest.mark.parametrize(
     "option", [("--gradus-components", "A=ED("), ("--gradus-passes", "components")], ids=lambda option: option[0]
 )
-def test_what_needs_components_is_exit_code_1_without_them(
+def test_options_of_components_without_decomposition_are_exit_code_1(
     blender: Callable[..., application.Outcome], tmp_path: Path, option: tuple[str, str]
 ) -> None:
-    """The options were ignored, and the image had no components."""
+    """Regression: the options were ignored, and the image had no components."""
     sample = SAMPLE.with_name("cornell.blend")
     outcome = blender(
         "--addons", "gradus", sample, "-o", tmp_path / "f_", "-f", "1", "--", *option, "--gradus-samples", "1"
@@ -401,7 +403,7 @@ def test_what_needs_components_is_exit_code_1_without_them(
 
 
 @pytest.mark.application
-def test_the_command_line_takes_a_picture_apart(blender: Callable[..., application.Outcome], tmp_path: Path) -> None:
+def test_the_command_line_decomposes_an_image(blender: Callable[..., application.Outcome], tmp_path: Path) -> None:
     sample = SAMPLE.with_name("cornell.blend")
     outcome = blender(
         "--addons", "gradus", sample, "-o", tmp_path / "f_", "-F", "OPEN_EXR_MULTILAYER", "-f", "1", "--",

@@ -110,10 +110,8 @@ NEED_PARTS = ([f"{PREFIX}components", "A=ED("], [f"{PREFIX}components="], [f"{PR
 
 
 @pytest.mark.parametrize("arguments", NEED_PARTS, ids=lambda arguments: arguments[0])
-def test_options_of_components_were_passed_over_in_a_picture_that_is_one(
-    scene: bpy.types.Scene, arguments: list[str]
-) -> None:
-    """A malformed set was not reported, and passes were missing without an error."""
+def test_options_of_components_without_decomposition_are_refused(scene: bpy.types.Scene, arguments: list[str]) -> None:
+    """Regression: a malformed set was not reported, and passes were missing without an error."""
     layer = scene.view_layers[0]
     off, on = ([f"{PREFIX}use-decomposition", value] for value in "01")
     for given in (arguments, arguments + off):
@@ -125,7 +123,7 @@ def test_options_of_components_were_passed_over_in_a_picture_that_is_one(
     assert renderer.native_settings(native.load(), scene, layer, parse(well)).use_decomposition == 1
 
 
-def test_too_long_a_set_is_named(scene: bpy.types.Scene) -> None:
+def test_a_set_that_is_too_long_is_refused_by_name(scene: bpy.types.Scene) -> None:
     scene.gradus.use_decomposition, scene.gradus.components = True, "A=" + "E" * 600
     with pytest.raises(Failure, match="Components .components. is longer than 511 bytes"):
         renderer.native_settings(native.load(), scene, scene.view_layers[0], parse([]))
@@ -142,7 +140,7 @@ def registered(scene: bpy.types.Scene, arguments: tuple[str, ...] = ()) -> list[
     ]
 
 
-def test_path_passes_are_there_whenever_the_picture_is_decomposed(scene: bpy.types.Scene) -> None:
+def test_path_passes_exist_whenever_the_image_is_decomposed(scene: bpy.types.Scene) -> None:
     assert registered(scene) == []
     scene.gradus.use_decomposition = True
     default = ["Path Emission", "Path Diffuse", "Path Reflection", "Path Transmission", "Path Residual"]
@@ -162,7 +160,7 @@ def sockets(scene: bpy.types.Scene) -> list[str]:
 
 
 def test_sockets_come_and_go_with_the_settings(scene: bpy.types.Scene) -> None:
-    """In Blender 3.4 the compositor showed no sockets until another event updated the passes."""
+    """Regression: in Blender 3.4 the compositor showed no sockets until another event updated the passes."""
     compositing.new_tree(scene)
     assert not any(name.startswith("Path") for name in sockets(scene))
     scene.gradus.use_decomposition = True
@@ -232,7 +230,7 @@ def test_the_panel_has_a_row_for_each_component_with_paths(scene: bpy.types.Scen
 
 
 @pytest.mark.parametrize("text", ["A=EDL;B=ED.*L", "A=" + "E" * 600])
-def test_the_panel_says_why_a_set_is_refused(scene: bpy.types.Scene, text: str) -> None:
+def test_the_panel_shows_why_a_set_is_refused(scene: bpy.types.Scene, text: str) -> None:
     scene.gradus.components = text
     labels = drawn(scene)
     assert labels.found[0][1] == "ERROR"
@@ -241,14 +239,12 @@ def test_the_panel_says_why_a_set_is_refused(scene: bpy.types.Scene, text: str) 
 
 
 @pytest.mark.parametrize(("text", "shown"), [("", ["components", "path"]), ("A=ED(", ["components"])])
-def test_a_set_that_is_none_hid_a_switch_that_has_nothing_to_do_with_it(
-    scene: bpy.types.Scene, text: str, shown: list[str]
-) -> None:
+def test_an_invalid_set_hides_no_unrelated_switch(scene: bpy.types.Scene, text: str, shown: list[str]) -> None:
     scene.gradus.components = text
     assert drawn(scene).properties == [*shown, "component_replays"]
 
 
-def test_the_panel_says_that_a_path_is_none(scene: bpy.types.Scene) -> None:
+def test_the_panel_reports_an_invalid_path(scene: bpy.types.Scene) -> None:
     bpy.context.window_manager.gradus.path = "EXL"
     labels = drawn(scene)
     assert [text for text, icon in labels.found if icon == "ERROR"]
@@ -262,7 +258,7 @@ def test_the_automatic_set_can_be_written_out(scene: bpy.types.Scene) -> None:
     assert not bpy.ops.gradus.write_out_components.poll()
 
 
-def test_without_a_library_writing_out_was_a_traceback(
+def test_writing_out_without_a_library_is_an_error_message(
     scene: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setenv(native.ENVIRONMENT_VARIABLE, str(tmp_path / "libgradus.so"))
@@ -274,4 +270,4 @@ def test_without_a_library_writing_out_was_a_traceback(
 
 def test_components_have_a_panel_among_the_passes() -> None:
     switches = {part.switch.removeprefix("gradus.") for part in passes.COMPONENT_TABLE}
-    assert set(ui.view_layer_panels.OF_COMPONENTS) == switches
+    assert set(ui.view_layer_panels.COMPONENT_SWITCHES) == switches

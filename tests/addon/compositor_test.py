@@ -17,7 +17,10 @@ COMPOSITE, COMBINED = "Composite.Combined", "ViewLayer.Combined"
 
 @pytest.fixture(scope="module")
 def render(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., images.Passes]:
-    """render("Vector Blur"): all passes of the sample and its composite, with the named nodes muted."""
+    """Returns a function that renders the sample with the named nodes muted: render("Vector Blur").
+
+    It returns all passes and the composite.
+    """
 
     @cache
     def passes(*muted: str) -> images.Passes:
@@ -28,7 +31,7 @@ def render(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., images.Pas
 
 
 def rim(mask: np.ndarray, axis: int) -> np.ndarray:
-    """The outermost two pixels of a mask along an axis."""
+    """Returns a mask of the outermost two pixels of a mask along an axis."""
     return mask & ~(np.roll(mask, 2, axis) & np.roll(mask, -2, axis))
 
 
@@ -44,7 +47,7 @@ def test_the_mix_puts_the_background_where_the_mist_is(render: Callable[..., ima
     np.testing.assert_allclose(whole[COMPOSITE][..., :3], blurred + mist * (background - blurred), atol=2e-3)
 
 
-def test_the_vector_blur_smears_what_moves_along_its_motion(render: Callable[..., images.Passes]) -> None:
+def test_the_vector_blur_blurs_moving_objects_along_their_motion(render: Callable[..., images.Passes]) -> None:
     """The ball rolls to the right: its left and right rims are blurred, but not its top and bottom, nor the static
     room."""
     changed = np.abs(render()[COMPOSITE] - render("Vector Blur")[COMPOSITE])[..., :3].max(axis=2)

@@ -22,10 +22,12 @@ def test_differences_from_cycles_are_reported(cycles: bpy.types.Scene) -> None:
     cycles.cycles.diffuse_bounces, cycles.cycles.film_exposure = 1, 2.5
     [text] = cycles_settings.warnings(cycles, set())
     assert "diffuse_bounces 4 (Cycles: 1)" in text and "film_exposure 1 (Cycles: 2.5)" in text
-    assert "diffuse_bounces" not in cycles_settings.warnings(cycles, {"diffuse_bounces"})[0]  # the command line sets it
+    assert (
+        "diffuse_bounces" not in cycles_settings.warnings(cycles, {"diffuse_bounces"})[0]
+    )  # because the command line sets it
 
 
-def test_what_the_user_has_set_is_no_oversight(cycles: bpy.types.Scene) -> None:
+def test_settings_that_the_user_has_set_are_not_reported(cycles: bpy.types.Scene) -> None:
     cycles.cycles.glossy_bounces = 7
     cycles.gradus.glossy_bounces = 3
     assert cycles_settings.warnings(cycles, set()) == []

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support import recording
 
-# Outlines. Holes are joined to them by two coinciding edges, as in Blender's tools.
+# Outlines of faces. Holes are connected to them by two coinciding edges, as Blender's tools do.
 SHAPES = {
     "L": ([(-1, -1), (1, -1), (1, 0), (0, 0), (0, 1), (-1, 1)], 3.0),
     "frame": (

@@ -18,7 +18,7 @@ Render = Callable[..., images.Passes]
 
 @pytest.fixture
 def corner(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A cube on a floor under a large light with noisy penumbrae, and a transparent background."""
+    """Returns a scene with a cube on a floor, noisy penumbrae of a large light, and a transparent background."""
     bpy.ops.mesh.primitive_cube_add(size=1.5, location=(0.0, 0.0, 0.75))
     bpy.ops.mesh.primitive_plane_add(size=5.0)
     light = bpy.data.objects.new("Light", bpy.data.lights.new("Light", "AREA"))
@@ -77,14 +77,14 @@ def test_stats_name_it(
 
 
 @pytest.mark.module
-@pytest.mark.parametrize("samples", [settings.DENOISER_PAYS - 1, settings.DENOISER_PAYS])
-def test_auto_denoises_from_the_samples_that_the_panel_goes_by(
+@pytest.mark.parametrize("samples", [settings.DENOISER_MINIMUM_SAMPLES - 1, settings.DENOISER_MINIMUM_SAMPLES])
+def test_auto_denoises_from_the_sample_count_of_the_panel(
     corner: bpy.types.Scene, render: Render, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, samples: int
 ) -> None:
     path = tmp_path / "stats.jsonl"
     monkeypatch.setattr("sys.argv", ["blender", "--", "--gradus-stats", str(path)])
     render(corner, samples=samples, denoiser="AUTO")
-    assert (json.loads(path.read_text())["denoiser"] is not None) == (samples >= settings.DENOISER_PAYS)
+    assert (json.loads(path.read_text())["denoiser"] is not None) == (samples >= settings.DENOISER_MINIMUM_SAMPLES)
 
 
 @pytest.mark.module
@@ -94,7 +94,7 @@ def test_denoised_frames_are_the_same_again(corner: bpy.types.Scene, render: Ren
 
 
 @pytest.mark.application
-def test_where_there_is_none_it_is_refused_by_name(corner: bpy.types.Scene, render: Render) -> None:
+def test_a_missing_denoiser_is_refused_by_name(corner: bpy.types.Scene, render: Render) -> None:
     with pytest.raises(
         RuntimeError, match="denoiser oidn: no Open Image Denoise in this process.*use denoiser auto or none"
     ):
@@ -102,7 +102,7 @@ def test_where_there_is_none_it_is_refused_by_name(corner: bpy.types.Scene, rend
 
 
 @pytest.mark.application
-def test_where_there_is_none_auto_goes_on_without(corner: bpy.types.Scene, render: Render) -> None:
+def test_auto_renders_without_a_missing_denoiser(corner: bpy.types.Scene, render: Render) -> None:
     plain = render(corner, samples=8)["Combined"]
     assert np.array_equal(render(corner, samples=8, denoiser="AUTO")["Combined"], plain)
 
@@ -117,7 +117,7 @@ def test_previews_are_not_denoised(corner: bpy.types.Scene) -> None:
     assert filled.denoiser == native.Denoiser.NONE
 
 
-def test_bundled_libraries_hold_it_where_blender_brings_it_along() -> None:
+def test_bundled_libraries_contain_the_denoiser_of_blender() -> None:
     folder = compat.bundled_libraries()
     assert (folder != "") == getattr(bpy.app, "module", False)
     if folder:

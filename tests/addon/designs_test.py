@@ -104,7 +104,7 @@ def test_linear_functions_of_features_satisfy_the_patches() -> None:
     assert solved == pytest.approx(image, abs=1e-8)
 
 
-def test_what_no_feature_shows_violates_the_patches() -> None:
+def test_shapes_that_no_feature_describes_violate_the_patches() -> None:
     image = half_of(TRUTH).image
     image = image + (X > 0.4) * (Y > 0.3)  # a shadow
     assert np.abs(patches_of(FEATURES).residuals(image)).max() > 0.1
@@ -179,7 +179,7 @@ def test_bad_pixels_stay_finite(design: str) -> None:
 
 @pytest.mark.parametrize("features", [0.0, 0.5])
 @pytest.mark.parametrize("design", ROBUST)
-def test_features_that_say_nothing(design: str, features: float) -> None:
+def test_uninformative_features(design: str, features: float) -> None:
     frame = tuple(replace(half, features=np.full_like(half.features, features)) for half in SMALL)
     assert np.isfinite(compare_designs.PUBLISHED[design][1](frame)).all()
 

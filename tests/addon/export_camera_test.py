@@ -76,8 +76,8 @@ def test_scale_of_a_camera_does_not_count(scene: bpy.types.Scene) -> None:
 
 
 @pytest.mark.parametrize("kind", ["SPOT", "EMPTY"])
-def test_what_is_no_camera_looks_as_blender_s_viewport_does(scene: bpy.types.Scene, kind: str) -> None:
-    """The sensor was 32 mm wide instead of 36 mm, so that everything was 12 % too large."""
+def test_other_objects_as_cameras_have_the_view_of_blender_s_viewport(scene: bpy.types.Scene, kind: str) -> None:
+    """Regression: the sensor was 32 mm wide instead of 36 mm, so that everything was 12 % too large."""
     data = None if kind == "EMPTY" else bpy.data.lights.new("Eye", kind)
     scene.camera = recording.add(data, "Eye")
     left, right, _, _ = recording.export(scene)[0].camera.window

@@ -34,7 +34,7 @@ _on_update: Callable[[Any, Any], None] = lambda engine, depsgraph: None  # noqa:
 
 @pytest.fixture
 def exported(tmp_path: Path) -> Iterator[Callable[[], SimpleNamespace]]:
-    """exported(): renders the current scene with the recording engine."""
+    """Returns a function that renders the current scene with the recording engine."""
 
     def run(exporter: Any = None, recorded: recording.Recording | None = None) -> SimpleNamespace:
         from gradus.export import Exporter
@@ -83,8 +83,10 @@ def test_sample_scenes(exported: Callable[[], SimpleNamespace], name: str) -> No
 
 
 def test_vectors_of_the_animated_scene(exported: Callable[[], SimpleNamespace]) -> None:
-    """Moving, rotating and deforming objects and the camera have vectors, static walls do not, and the frame is
-    restored."""
+    """Moving, rotating and deforming objects and the camera have vectors, static walls do not.
+
+    Afterwards the scene is at its frame again.
+    """
     scene = _open("animated")
     scene.view_layers[0].use_pass_vector = True
     scene.frame_set(6)

@@ -78,7 +78,7 @@ def test_float_pixels_are_linear_already(scene: bpy.types.Scene) -> None:
         lambda path: path.write_text("no image"),
     ],
 )
-def test_f1_what_cannot_be_read_keeps_its_path(scene: bpy.types.Scene, tmp_path: Path, make: object) -> None:
+def test_f1_unreadable_images_keep_their_path(scene: bpy.types.Scene, tmp_path: Path, make: object) -> None:
     """The library warns with this path."""
     path = tmp_path / "broken.png"
     make(path)
@@ -103,7 +103,7 @@ def test_tiles(scene: bpy.types.Scene, tmp_path: Path) -> None:
 
 
 def test_packed_tiles_are_identified_by_their_number(scene: bpy.types.Scene, tmp_path: Path) -> None:
-    """Tiles were identified by the first packed file whose name contains their number."""
+    """Regression: tiles were identified by the first packed file whose name contains their number."""
     files = {
         1001: _save(tmp_path / "v1002_1001.png", color=(1, 0, 0)),
         1002: _save(tmp_path / "v1002_1002.png", color=(0, 1, 0)),
@@ -173,4 +173,6 @@ def test_changed_file_is_another_content(scene: bpy.types.Scene, tmp_path: Path)
     block.colorspace_settings.name = "Non-Color"
     assert all(now != then for now, then in zip(identities(), packed, strict=True))
     block.pixels[0] = 0.5
-    assert images.signature(block, None, 1, bpy.path.abspath) is None, "painted: only the pixels say what it is"
+    assert images.signature(block, None, 1, bpy.path.abspath) is None, (
+        "only the pixels of a painted image identify its content"
+    )

@@ -181,7 +181,7 @@ def test_motion_of_instances_and_camera(scene: bpy.types.Scene) -> None:
         for frame in (1, 11):
             obj.location.x += 10.0 * (frame == 11)
             obj.keyframe_insert("location", frame=frame)
-        obj.animation_data.action = obj.animation_data.action  # as evaluated in one depsgraph
+        obj.animation_data.action = obj.animation_data.action  # forces an evaluation in the same depsgraph
     bpy.context.preferences.edit.keyframe_new_interpolation_type = "BEZIER"
     scene.frame_set(6)
     recorded, _ = recording.export(scene)

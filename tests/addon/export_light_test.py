@@ -1,4 +1,4 @@
-"""Lights in the units of the running Blender, against closed forms. light_render_test.py tests their images."""
+"""Lights have the units of the running Blender, compared with closed forms. light_render_test.py tests images."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def test_constant_emission_is_folded(scene: bpy.types.Scene) -> None:
 
 
 def test_a_light_with_a_muted_link_to_its_output_emits_nothing(scene: bpy.types.Scene) -> None:
-    """The emission of the node behind the muted link was used."""
+    """Regression: the emission of the node behind the muted link was used."""
     from gradus.export import light
 
     data = bpy.data.lights.new("Light", "POINT")

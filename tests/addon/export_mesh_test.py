@@ -61,7 +61,7 @@ def test_byte_colours_are_linear(scene: bpy.types.Scene, domain: str, count: int
     assert np.allclose(np.array(found.data).reshape(count, 4), (linear, 1.0, 0.0, 1.0), atol=5e-3)
 
 
-def test_only_what_is_asked_for(scene: bpy.types.Scene) -> None:
+def test_only_requested_attributes_are_read(scene: bpy.types.Scene) -> None:
     mesh = recording.grid(2)
     mesh.uv_layers.new(name="Second")
     mesh.attributes.new("Other", "FLOAT", "POINT")
@@ -103,7 +103,10 @@ def test_normal_domains(scene: bpy.types.Scene) -> None:
 
 @pytest.mark.skipif(bpy.app.version >= (4, 1, 0), reason="normals have the same bits in every process")
 def test_normals_that_blender_sums_in_any_order_are_computed_by_the_library(scene: bpy.types.Scene) -> None:
-    """The last bits of normals of smooth and flat faces differed between processes: stores were refused."""
+    """The library computes these normals, so that all processes have the same bits.
+
+    Regression: their last bits differed between processes, so that frame stores were refused.
+    """
     recording.add_camera()
     mesh = recording.grid(2)
     mesh.vertices[4].co.z = 1.0
@@ -177,7 +180,7 @@ def test_second_sync_sets_only_what_changed(scene: bpy.types.Scene) -> None:
 
 
 @pytest.mark.parametrize("kind", ["CURVE", "FONT", "SURFACE", "META"])
-def test_what_becomes_a_mesh(scene: bpy.types.Scene, kind: str) -> None:
+def test_objects_that_become_meshes(scene: bpy.types.Scene, kind: str) -> None:
     operators = {
         "CURVE": bpy.ops.curve.primitive_bezier_circle_add,
         "FONT": bpy.ops.object.text_add,
@@ -290,7 +293,7 @@ def _lines_run(scene: bpy.types.Scene, cells: int) -> int:
 
 
 def test_large_meshes_take_no_more_lines_of_python(scene: bpy.types.Scene) -> None:
-    """There is no loop over vertices, faces or corners, which would take many seconds for a million triangles."""
+    """The export has no loop over vertices, faces or corners, which would take seconds for a million triangles."""
     recording.add_camera()
-    _lines_run(scene, 2)  # imports what is imported late
+    _lines_run(scene, 2)  # makes late imports, whose lines are not counted
     assert _lines_run(scene, 4) == _lines_run(scene, 64)

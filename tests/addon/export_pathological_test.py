@@ -141,7 +141,7 @@ def test_e7_names(scene: bpy.types.Scene) -> None:
     assert set(recording.export(scene)[0].instances["names"]) == set(names)
 
 
-def test_what_failed_is_set_again(scene: bpy.types.Scene) -> None:
+def test_objects_whose_export_failed_are_set_again(scene: bpy.types.Scene) -> None:
     from gradus.export import Exporter
 
     class Failing(recording.Recording):

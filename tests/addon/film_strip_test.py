@@ -1,4 +1,4 @@
-"""`make render-animation` puts its frames on a strip."""
+"""`make render-animation` joins its frames to a film strip."""
 
 from __future__ import annotations
 

@@ -13,7 +13,10 @@ from support.nodes import new_material, show, socket
 
 @pytest.fixture(scope="module")
 def edge() -> bpy.types.Scene:
-    """An emissive plane that covers the left half of an orthographic view, up to the centre of a column of pixels."""
+    """Returns a scene whose emissive plane covers the left half of an orthographic view.
+
+    Its edge is at the centre of a column of pixels.
+    """
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     images.prepare(scene)

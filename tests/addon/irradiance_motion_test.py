@@ -19,7 +19,7 @@ NO_NEIGHBOUR = -12.0
 
 @pytest.fixture
 def shadow(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A ball above the camera whose shadow moves through the image."""
+    """Returns a scene with a ball above the camera whose shadow moves through the image."""
     recording.add_camera(type="ORTHO", ortho_scale=4.0).location = (0.0, 0.0, 5.0)
     recording.add(recording.grid(1, 20.0), "Floor")
     bpy.ops.mesh.primitive_uv_sphere_add(radius=0.5, segments=48, ring_count=24)
@@ -42,7 +42,7 @@ def animate(scene: bpy.types.Scene, folder: Path) -> list[images.Passes]:
     return [images.read(folder / f"f_{frame:04d}.exr") for frame in range(scene.frame_start, scene.frame_end + 1)]
 
 
-def test_a_shadow_has_vectors_where_the_floor_rests(shadow: bpy.types.Scene, tmp_path: Path) -> None:
+def test_a_shadow_has_vectors_where_the_floor_is_static(shadow: bpy.types.Scene, tmp_path: Path) -> None:
     frames = animate(shadow, tmp_path)
     for place, rendered in enumerate(frames):
         vectors, known = rendered["Path Diffuse Irradiance Motion"], rendered["Path Diffuse Irradiance Tracked"][..., 0]

@@ -24,10 +24,17 @@ CELLS = 364  # so many triangles that the library keeps them instead of rebuildi
 
 @pytest.fixture
 def room(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A large floor, and a square that is predicted to move above a corner of it, without motion blur and vectors."""
+    """Returns a scene with a large floor and a square above it that is predicted to move.
+
+    It has neither motion blur nor vectors.
+    """
     recording.add_camera(type="ORTHO", ortho_scale=6.0)
     recording.add(_floor(), "Room", (0, 0, -3))
-    key(recording.add(recording.grid(1, size=0.5), "Told"), "location", {0: (-2.0, -1.0, 0.0), 10: (0.0, -1.0, 0.0)})
+    key(
+        recording.add(recording.grid(1, size=0.5), "Predicted"),
+        "location",
+        {0: (-2.0, -1.0, 0.0), 10: (0.0, -1.0, 0.0)},
+    )
     sun = recording.add(bpy.data.lights.new("Sun", "SUN"), "Sun")
     sun.rotation_euler = (0.6, 0.4, 0.0)
     scene.render.resolution_x, scene.render.resolution_y = 48, 32
@@ -38,7 +45,7 @@ def room(scene: bpy.types.Scene) -> bpy.types.Scene:
 
 @pytest.fixture
 def each_frame() -> Iterator[Callable[[Callable[[int], None]], None]]:
-    """each_frame(change): adds a frame change handler that changes the scene."""
+    """Returns a function that adds a frame change handler, which changes the scene."""
     handlers = bpy.app.handlers.frame_change_pre
     before = list(handlers)
     yield lambda change: handlers.append(lambda scene, *_: change(scene.frame_current))
@@ -196,7 +203,7 @@ TOLD = [_shown_by_keys, _shaped_by_keys, _bent_by_an_armature, _falling, _strewn
 
 
 @pytest.mark.parametrize("change", UNTOLD + TOLD)
-def test_pictures_are_those_of_frames_built_from_nothing(
+def test_pictures_equal_those_of_frames_built_from_scratch(
     room: bpy.types.Scene,
     each_frame: Any,
     tmp_path: Path,
@@ -204,8 +211,8 @@ def test_pictures_are_those_of_frames_built_from_nothing(
     change: Callable[[Any], None],
 ) -> None:
     change(each_frame)
-    bpy.data.objects["Told"].animation_data_clear()
-    step(bpy.data.objects["Told"], "location", {1: (-2.0, -1.0, 0.0)})  # predicted to move, but static
+    bpy.data.objects["Predicted"].animation_data_clear()
+    step(bpy.data.objects["Predicted"], "location", {1: (-2.0, -1.0, 0.0)})  # predicted to move, but static
     kept = _animate(room, tmp_path / "kept")
 
     def sync(session: store.Session, *arguments: Any, original: Any = store.Session.sync) -> Any:

@@ -40,7 +40,10 @@ def _receiver(scene: bpy.types.Scene, node: str = "ShaderNodeBsdfDiffuse", **inp
 
 @pytest.fixture
 def irradiance(scene: bpy.types.Scene, render: Callable[..., Any]) -> Callable[..., np.ndarray]:
-    """irradiance(type, place=…, scale=…, **light settings): the mean RGB of the image."""
+    """Returns a function that renders a light: irradiance(type, place=…, scale=…, **settings).
+
+    It returns the mean RGB of the image.
+    """
 
     def measure(
         kind: str,
@@ -117,7 +120,7 @@ def test_area_with_spread(irradiance: Callable[..., np.ndarray], spread: float, 
     assert found[0] == pytest.approx(factor * (1.0 if BEFORE_40 else 4 / math.pi), rel=0.02)
 
 
-def test_area_shines_on_one_side(irradiance: Callable[..., np.ndarray]) -> None:
+def test_area_lights_emit_on_one_side(irradiance: Callable[..., np.ndarray]) -> None:
     assert irradiance("AREA", place=(0, 0, -0.5), energy=100.0)[0] == 0.0
 
 

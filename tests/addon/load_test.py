@@ -35,7 +35,7 @@ def test_an_engine_that_outlives_blenders_types_does_not_look_for_them(
     assert freed == [True]
 
 
-def test_version_answers(library: ctypes.CDLL) -> None:
+def test_version_is_reported(library: ctypes.CDLL) -> None:
     version = library.gradus_version()
     text = library.gradus_version_text().decode()
     assert text.startswith(f"{version // 10000}.{version // 100 % 100}.{version % 100} ")
@@ -53,7 +53,7 @@ def test_h4_exports_are_those_of_the_header(library_path: Path) -> None:
 
 
 def test_h4_soname_changes_with_the_layout(library: ctypes.CDLL, library_path: Path) -> None:
-    """abi_golden.json holds the layout of the last release, which must not change without its number.
+    """The layout of the last release, which is in abi_golden.json, must not change unless the soname does.
 
     After raising SOVERSION in native/CMakeLists.txt (or before the first release), run this file with
     GRADUS_UPDATE_GOLDEN=1 make test-addon TESTS=tests/addon/load_test.py.

@@ -108,7 +108,7 @@ MOVING = [_keyed, _driven, _constrained, _child, _waving, _shaped, _on_a_bone, _
 
 
 @pytest.mark.parametrize("change", MOVING)
-def test_what_could_move_an_object_is_told(scene: bpy.types.Scene, change: Callable[[bpy.types.Object], None]) -> None:
+def test_causes_of_motion_are_predicted(scene: bpy.types.Scene, change: Callable[[bpy.types.Object], None]) -> None:
     recording.add_camera()
     recording.add(recording.grid(1), "Room")
     change(recording.add(recording.grid(2), "Ball"))
@@ -116,13 +116,15 @@ def test_what_could_move_an_object_is_told(scene: bpy.types.Scene, change: Calla
 
 
 @pytest.mark.parametrize("change", [_refined, _hung, _lying, _smooth])
-def test_what_could_not_is_not(scene: bpy.types.Scene, change: Callable[[bpy.types.Object], None]) -> None:
+def test_objects_without_causes_of_motion_are_predicted_as_static(
+    scene: bpy.types.Scene, change: Callable[[bpy.types.Object], None]
+) -> None:
     recording.add_camera()
     change(recording.add(recording.grid(1), "Room"))
     assert _moving(scene) == set()
 
 
-def test_frames_that_tell_of_motion_need_no_hint(scene: bpy.types.Scene) -> None:
+def test_exports_with_motion_need_no_prediction(scene: bpy.types.Scene) -> None:
     recording.add_camera()
     _keyed(recording.add(recording.grid(2), "Ball"))
     assert _moving(scene, vectors=True) == set()
@@ -137,7 +139,7 @@ def test_lights_have_no_prediction(scene: bpy.types.Scene) -> None:
     assert [light.visibility & MAY_MOVE for light in recorded.lights] == [0]
 
 
-def test_copies_move_with_what_makes_them(scene: bpy.types.Scene) -> None:
+def test_instances_move_with_their_instancer(scene: bpy.types.Scene) -> None:
     recording.add_camera()
     source = bpy.data.collections.new("Source")
     source.objects.link(bpy.data.objects.new("Inner", recording.grid(1)))
@@ -150,7 +152,7 @@ def test_copies_move_with_what_makes_them(scene: bpy.types.Scene) -> None:
     assert sorted(bits & MAY_MOVE for bits in recorded.instances["visibility"]) == [0, MAY_MOVE]
 
 
-def test_the_hint_is_the_same_in_every_frame(scene: bpy.types.Scene) -> None:
+def test_the_prediction_is_the_same_in_every_frame(scene: bpy.types.Scene) -> None:
     recording.add_camera()
     _keyed(recording.add(recording.grid(2), "Ball"))
     for frame in (1, 2, 50):

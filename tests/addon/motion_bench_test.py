@@ -39,9 +39,9 @@ def forward(right: float, up: float) -> np.ndarray:
 
 
 def motion_of(own: np.ndarray, frames: int = 2) -> metrics.Passes:
-    """A reflection that goes its own way while surfaces rest, and light on what it shows that rests with them.
+    """Returns passes that are the same in all frames: a reflection moves by `own`, and surfaces are static.
 
-    Of all frames the same.
+    The light on the reflected surfaces is static, too.
     """
     motion = np.broadcast_to(np.concatenate([own, own], axis=-1), (frames, HEIGHT, WIDTH, 4)).copy()
     passes = {"Vector": np.zeros_like(motion), "Path Reflection Motion": motion}
@@ -94,7 +94,7 @@ def test_light_that_changes_is_an_error_of_prediction() -> None:
     assert predicted(forward(*SHIFT), 1.05 * waves(*SHIFT), deviation=0.02)["all"]["own"] < 0.1
 
 
-def test_light_that_changes_is_none_of_what_is_shown() -> None:
+def test_changing_light_is_no_error_of_reflectance() -> None:
     """Reflectance moves with the surface while the light changes."""
     renderings = renderings_of(waves(), waves(*SHIFT))
     for rendering in renderings:
@@ -104,7 +104,7 @@ def test_light_that_changes_is_none_of_what_is_shown() -> None:
     assert found["reflectance"].row()["all"]["own"] > 0.99
 
 
-def test_irradiance_is_predicted_by_its_own_motion_beside_that_of_what_it_falls_on() -> None:
+def test_irradiance_is_predicted_by_its_own_motion() -> None:
     """A shadow moves to the left over a surface that moves to the right."""
     renderings, passes = renderings_of(waves(), waves(*SHIFT)), motion_of(forward(*SHIFT))
     for rendering in renderings:
@@ -136,7 +136,7 @@ def test_pixels_count_where_both_motions_lead_into_the_picture() -> None:
     assert found.row()["all"]["pixels"] == HEIGHT * WIDTH // 2
 
 
-def test_components_are_those_that_tell_whether_they_are_tracked() -> None:
+def test_components_are_those_with_a_pass_tracked() -> None:
     """Irradiance has a motion of its own, but it is no component."""
     assert metrics.components(motion_of(forward(0.0, 0.0))) == ["Reflection"]
 
@@ -149,7 +149,7 @@ def test_component_vectors_are_those_of_what_a_pixel_mostly_shows() -> None:
     np.testing.assert_array_equal(vectors[:, :, 20:], passes["Path Reflection Motion"][:, :, 20:])
 
 
-def test_an_error_that_goes_along_does_not_flicker() -> None:
+def test_an_error_that_moves_with_the_image_does_not_flicker() -> None:
     """The reflection and its error move by two pixels to the right; along the static surface, the error flickers."""
     frames = [waves(2.0 * k) for k in range(3)]
     reference = np.ones((3, HEIGHT, WIDTH, 3))
@@ -174,7 +174,7 @@ def test_pixels_that_are_not_finite_are_named() -> None:
 
 
 def test_flicker_of_a_picture_that_is_not_finite_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The message names mode, scene and samples."""
+    """The error message names mode, scene and samples."""
     import motion
 
     images = np.ones((2, HEIGHT, WIDTH, 3))
@@ -241,7 +241,7 @@ LABELS = {name: mode.label for name, mode in motion_modes.MODES.items()}
 TIMES = ("CPU-s a frame", "F at equal time / windows", "F at equal time / components along surfaces")
 
 
-def test_what_an_animation_is_delivered_by_is_among_the_usual_modes() -> None:
+def test_the_default_of_animations_is_among_the_usual_modes() -> None:
     assert motion_modes.DELIVERED in motion_modes.USUAL
     assert set(motion_modes.USUAL) < set(motion_modes.FLICKER)
 
@@ -273,7 +273,7 @@ def test_times_of_a_loaded_machine_are_not_reported(tmp_path: Path, monkeypatch:
 
 
 def test_flicker_at_equal_time_includes_the_time_of_components(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The flicker is halved at the same samples, in a fifth more time. A single sample count has no rate."""
+    """Flicker is halved at equal samples and takes a fifth more time. A single sample count gives no ratio."""
     name = "F at equal time / windows"
     for counts, told in (((16,), "–"), ((4, 16), "0.600")):
         rows = [flicker_row("windows-l2", 1.0 / n, samples=n, cpu=float(n)) for n in counts]
@@ -322,7 +322,7 @@ def test_another_size_of_truth_replaces_that_of_the_version_before(
 
 
 def test_a_quiet_run_replaces_a_loaded_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Regression: its times were never shown, and its jobs counted as done."""
+    """Regression: times of the quiet run were never shown, and its jobs counted as done."""
     import motion
 
     loaded, quiet = flicker_row("windows-l2", 1.0, loaded=True, frame=0), flicker_row("windows-l2", 2.0, frame=0)
@@ -336,7 +336,7 @@ def test_a_quiet_run_replaces_a_loaded_one(tmp_path: Path, monkeypatch: pytest.M
 
 
 def cost_row(mode: str, **seconds: float) -> dict:
-    times = {"sample": 1.0, "reconstruct": 0.5, "links": 0.0} | seconds
+    times = {"sample": 1.0, "reconstruct": 0.5, "correspondence": 0.0} | seconds
     return flicker_row(mode, 0.0) | {"measure": "cost", "seconds": times, "frame": 12}
 
 
@@ -393,7 +393,7 @@ def test_predictions_are_summed_up(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     extremes = (
         "lowest 0.75 (mirror_and_glass, Transmission), highest 2.00 (mirror_and_glass, Reflection); fewer in 1 of 2; "
     )
-    assert [extremes in text for text in texts] == [False, True, True], "ten pixels of Residual tell nothing"
+    assert [extremes in text for text in texts] == [False, True, True], "ten pixels of Residual are too few"
     more = report.about_prediction([*rows, prediction_row("Transmission", 0.1, 0.0) | {"scene": "moving-box"}])
     assert "fewer in 1 of 3; no ratio in 1, where" in more[1].markdown
     made = tables(tmp_path, monkeypatch, *rows)[-3:]
@@ -421,7 +421,7 @@ def strip_of(frames: int) -> metrics.Passes:
     }
 
 
-def test_strips_show_what_the_next_frame_differs_by_either_motion() -> None:
+def test_strips_show_the_difference_from_the_next_frame_by_both_motions() -> None:
     passes = strip_of(3)
     own, surface, counts = pictures.differences(passes, "Reflection", 1)
     assert not counts[:, WIDTH // 2 :].any(), "there is no light"
@@ -437,7 +437,7 @@ def test_strips_show_what_the_next_frame_differs_by_either_motion() -> None:
     )
 
 
-def test_strips_are_of_the_brightest_of_what_mirrors_and_glass_show() -> None:
+def test_strips_show_the_brightest_reflection_or_refraction() -> None:
     passes = strip_of(2)
     assert pictures.brightest(passes) == "Reflection"
     assert pictures.brightest(passes | {"Path Transmission": 3.0 * passes["Path Reflection"]}) == "Transmission"
@@ -465,7 +465,7 @@ def test_flicker_is_of_small_pictures_and_the_others_of_large_ones(capsys: pytes
 
 
 def test_motion_blur_is_for_truth_and_cost_alone(capsys: pytest.CaptureFixture[str]) -> None:
-    """Then a pixel has more than one vector."""
+    """With motion blur a pixel has more than one vector, so that the other measures have no meaning."""
     import motion
 
     ((variant, measures),) = motion.measures_by_variant(arguments_of(blur=True)).items()
@@ -474,7 +474,7 @@ def test_motion_blur_is_for_truth_and_cost_alone(capsys: pytest.CaptureFixture[s
     assert [line.split(":")[0] for line in capsys.readouterr().out.splitlines()] == ["SKIP prediction", "SKIP flicker"]
 
 
-def test_what_is_measured_of_cost_is_asked_for() -> None:
+def test_passes_whose_cost_is_measured_are_requested() -> None:
     """Regression: without their passes, no component is computed, so that the measured cost was zero."""
     import motion
 
@@ -498,7 +498,7 @@ def test_passes_that_are_not_wanted_are_off(scene: bpy.types.Scene) -> None:
         for switch in layer.gradus.bl_rna.properties
         if switch.identifier.startswith("use_pass_component")
     }
-    assert {f"use_pass_{name}" for name in motion_worker.OF_COMPONENTS} == known
+    assert {f"use_pass_{name}" for name in motion_worker.COMPONENT_SWITCHES} == known
     motion_worker.set_passes(layer, motion_worker.SWITCHES)
     assert layer.use_pass_vector
     assert all(getattr(layer.gradus, name) for name in known)
@@ -535,12 +535,12 @@ def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyP
     counts = {part: sum(row["measure"] == part for row in rows) for part in motion.MEASURES}
     assert (counts["flicker"], counts["cost"]) == (3, 4)
     seconds = {row["mode"]: row["seconds"] for row in rows if row["measure"] == "cost"}
-    assert [mode for mode, found in seconds.items() if found["links"] > 0.0] == ["components-motion"]
+    assert [mode for mode, found in seconds.items() if found["correspondence"] > 0.0] == ["components-motion"]
     assert counts["truth"] >= 3 and counts["prediction"] >= 3  # noqa: PT018
     reflected = next(row for row in rows if (row["measure"], row["component"]) == ("truth", "Reflection"))
     assert reflected["check"]["error"]["quantile_95"] < 0.5
     predictions = {row["component"]: row for row in rows if row["measure"] == "prediction"}
-    assert predictions["Residual"]["all"]["pixels"] > 0, "its motion is by flow, which needs the frames beside"
+    assert predictions["Residual"]["all"]["pixels"] > 0, "its motion is found by flow, which needs neighbouring frames"
     assert predictions["Diffuse"]["irradiance_all"]["pixels"] > 0
     assert all((tmp_path / of(animation.name)).exists() for of in (pictures.file_name, pictures.strip_name))
     files = [block.file for block in report.blocks() if isinstance(block, document.Figure)]

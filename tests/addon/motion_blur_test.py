@@ -61,7 +61,7 @@ def test_the_exposure_begins_ends_or_is_centred_at_the_frame(
     assert recorded.instances["matrices"][0][3][0] == pytest.approx(5.0, abs=1e-5)
 
 
-def test_only_what_moves_has_keys(blurred: bpy.types.Scene) -> None:
+def test_only_moving_objects_have_keys(blurred: bpy.types.Scene) -> None:
     recording.add(recording.grid(1), "Still")
     key(recording.add(recording.grid(1, name="Other"), "Moving"), "location", {0: (0, 0, 0), 10: (10, 0, 0)})
     recorded = export(blurred)
@@ -91,13 +91,13 @@ def bind_another_camera(scene: bpy.types.Scene, frame: int) -> None:
 
 
 def test_a_shot_change_by_markers_does_not_mix_two_cameras(blurred: bpy.types.Scene) -> None:
-    """The first frame after a shot change was blurred between both cameras."""
+    """Regression: the first frame after a shot change was blurred between both cameras."""
     recording.add(recording.grid(1))
     bind_another_camera(blurred, 5)
     blurred.view_layers[0].use_pass_vector = True
     recorded = export(blurred, 5)
     assert recorded.shutter["matrices"] is None, "each camera rests"
-    assert np.isnan(recorded.camera.matrix_previous).all(), "over the cut it is nowhere"
+    assert np.isnan(recorded.camera.matrix_previous).all(), "across the shot change the camera has no position"
     assert list(recorded.camera.matrix_next) == list(recorded.camera.matrix)
     for name in ("previous", "next"):
         assert list(getattr(recorded.camera, f"window_{name}")) == list(recorded.camera.window)
@@ -112,7 +112,7 @@ def test_a_deforming_mesh_has_positions(blurred: bpy.types.Scene) -> None:
 
 
 def test_a_mesh_that_its_parent_deforms_is_blurred(blurred: bpy.types.Scene) -> None:
-    """Such a mesh has no modifier and was exported as rigid, for motion blur and pass Vector."""
+    """Regression: such a mesh has no modifier and was exported as rigid, for motion blur and pass Vector."""
     bpy.ops.object.armature_add()
     armature, obj = bpy.context.object, recording.add(recording.grid(1))
     obj.parent, obj.parent_type = armature, "ARMATURE"
@@ -144,7 +144,7 @@ def deforming_part() -> bpy.types.Collection:
 def test_instances_are_blurred_though_the_first_is_not_there_all_the_time(
     blurred: bpy.types.Scene, deforming_part: bpy.types.Collection
 ) -> None:
-    """All instances were sharp if the first one did not exist at one of the times of the shutter."""
+    """Regression: all instances were sharp if the first one did not exist at one of the times of the shutter."""
     copy = instances_of(deforming_part, 3)[0]
     animation.step(copy, "hide_render", {1: True, 5: False})
     animation.step(copy, "hide_viewport", {1: True, 5: False})
@@ -194,7 +194,7 @@ def of_topology(warnings: list[str]) -> list[str]:
     return [text for text in warnings if "topology" in text.lower()]
 
 
-def test_meshes_that_change_their_topology_stand_still_with_a_warning_each(blurred: bpy.types.Scene) -> None:
+def test_meshes_that_change_their_topology_are_static_with_a_warning_each(blurred: bpy.types.Scene) -> None:
     for name in ("First", "Second"):
         add_growing(name, {1: 1, 5: 4})
     recorded = export(blurred)
@@ -206,7 +206,7 @@ def test_meshes_that_change_their_topology_stand_still_with_a_warning_each(blurr
 
 
 def test_a_warning_of_topology_is_the_same_in_all_frames(blurred: bpy.types.Scene) -> None:
-    """The warning counted objects, so that an animation had many different warnings."""
+    """Regression: the warning counted objects, so that an animation had many different warnings."""
     add_growing("First", {1: 1, 5: 4, 6: 9})
     add_growing("Second", {1: 1, 6: 2})
     first, second = (of_topology(export(blurred, frame).warnings) for frame in (5, 6))
@@ -214,9 +214,9 @@ def test_a_warning_of_topology_is_the_same_in_all_frames(blurred: bpy.types.Scen
 
 
 def test_topology_outside_the_exposure_gives_no_warning(blurred: bpy.types.Scene) -> None:
-    """Pass Vector reads the next frame, whose topology differs.
+    """A mesh that is static during the exposure gives no warning.
 
-    The mesh is static during the exposure, but there was a warning.
+    Regression: it did if pass Vector read the next frame, whose topology differs.
     """
     add_growing("Growing", {1: 1, 6: 4})
     blurred.view_layers[0].use_pass_vector = True
@@ -233,7 +233,7 @@ def test_velocities_blur_meshes_whose_topology_changes(blurred: bpy.types.Scene)
     assert np.allclose(found.shutter[:, :, 0] - found.positions[0][:, 0], [[-0.25] * 4, [0.25] * 4], atol=1e-6)
 
 
-def test_the_curve_of_the_shutter_is_handed_over(blurred: bpy.types.Scene) -> None:
+def test_the_curve_of_the_shutter_is_exported(blurred: bpy.types.Scene) -> None:
     recording.add(recording.grid(1))
     assert export(blurred).shutter["curve"] is None, "open all the time"
     mapping = blurred.render.motion_blur_shutter_curve
@@ -245,7 +245,7 @@ def test_the_curve_of_the_shutter_is_handed_over(blurred: bpy.types.Scene) -> No
     assert np.allclose(found, np.linspace(0.0, 1.0, len(found)), atol=0.01)
 
 
-def test_the_view_layer_may_leave_it_out(blurred: bpy.types.Scene) -> None:
+def test_the_view_layer_may_disable_motion_blur(blurred: bpy.types.Scene) -> None:
     key(recording.add(recording.grid(1)), "location", {0: (0, 0, 0), 10: (10, 0, 0)})
     blurred.view_layers[0].use_motion_blur = False
     recorded = export(blurred)
@@ -285,7 +285,7 @@ def glowing(obj: bpy.types.Object) -> None:
     obj.data.materials.append(material)
 
 
-def test_a_square_that_flies_by_leaves_a_trapezium_of_light(
+def test_a_moving_square_has_the_coverage_of_a_tent_function(
     blurred: bpy.types.Scene, render: Callable[..., Any]
 ) -> None:
     """The square is 2 m wide and moves 2 m while the shutter is open, so that its coverage is a tent function."""
@@ -300,7 +300,7 @@ def test_a_square_that_flies_by_leaves_a_trapezium_of_light(
 
 
 @pytest.mark.parametrize("frame", [4, 5])
-def test_pictures_beside_a_cut_by_markers_show_one_camera(
+def test_pictures_beside_a_shot_change_by_markers_show_one_camera(
     frame: int, blurred: bpy.types.Scene, render: Callable[..., Any]
 ) -> None:
     glowing(recording.add(recording.grid(1)))
@@ -314,9 +314,7 @@ def test_pictures_beside_a_cut_by_markers_show_one_camera(
     assert not found["Vector"].any() and not still["Vector"].any()
 
 
-def test_vectors_are_0_under_blur_unless_they_are_asked_for(
-    blurred: bpy.types.Scene, render: Callable[..., Any]
-) -> None:
+def test_vectors_are_0_under_blur_unless_requested(blurred: bpy.types.Scene, render: Callable[..., Any]) -> None:
     obj = recording.add(recording.grid(1, 6.0))
     key(obj, "location", {0: (0, 0, 0), 10: (1, 0, 0)})
     blurred.view_layers[0].use_pass_vector = True

@@ -68,9 +68,9 @@ def test_h5_other_layout_names_both(tmp_path: Path) -> None:
 def test_an_older_processor_gets_a_message(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, flags: str | None, missing: str
 ) -> None:
-    """Loading the library ended Blender with an illegal instruction.
+    """A processor without the needed features gives an error. If the system does not list features, none is missing.
 
-    If the system does not list features, none is missing.
+    Regression: loading the library ended Blender with an illegal instruction.
     """
     info = tmp_path / "cpuinfo"
     info.write_text(

@@ -1,4 +1,7 @@
-"""Nodes against Cycles of the same Blender. Values are rendered as emission, so that there is noise at edges only."""
+"""Nodes have the values of Cycles in the same Blender.
+
+Values are rendered as emission, so that there is noise at edges only.
+"""
 
 from __future__ import annotations
 
@@ -41,8 +44,10 @@ class Graph:
 
 
 def checker_image() -> bpy.types.Image:
-    """An image of 32×32 pixels: red increases to the right, green upwards; with blue checks and half-transparent
-    stripes."""
+    """Returns an image of 32×32 pixels with blue checks and half-transparent stripes.
+
+    Red increases to the right and green upwards.
+    """
     image = bpy.data.images.new("pattern", 32, 32, alpha=True)
     y, x = np.mgrid[0:32, 0:32].astype(np.float32)
     pixels = np.stack([x / 31, y / 31, (x // 4 + y // 4) % 2, np.where((x // 8) % 2 == 0, 1.0, 0.5)], axis=2).astype(
@@ -145,7 +150,7 @@ CASES: dict[str, Callable[[Graph], bpy.types.NodeSocket]] = {
 
 @pytest.fixture(scope="module")
 def stage() -> bpy.types.Scene:
-    """A smooth sphere and a rotated, non-uniformly scaled cube in a grey world."""
+    """Returns a scene with a smooth sphere and a rotated, non-uniformly scaled cube in a grey world."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     images.prepare(scene)
@@ -197,7 +202,10 @@ def test_a9_node(name: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
 
 
 def test_a9_surfaces_without_a_material(stage: bpy.types.Scene, tmp_path: Path) -> None:
-    """From Blender 5.0 on they are slightly glossy: with a diffuse grey they were 15 % too dark."""
+    """From Blender 5.0 on, such surfaces are slightly glossy.
+
+    Regression: they were diffuse grey and 15 % too dark.
+    """
     for item in stage.objects:
         if item.type == "MESH":
             item.data.materials.clear()
@@ -209,7 +217,7 @@ def test_a9_surfaces_without_a_material(stage: bpy.types.Scene, tmp_path: Path) 
 
 @pytest.fixture
 def coarse(stage: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
-    """The stage with a smooth, coarse sphere instead of the other objects."""
+    """Returns the stage with a smooth, coarse sphere instead of the other objects."""
     others = [item for item in stage.objects if item.type == "MESH"]
     for item in others:
         item.hide_render = True
@@ -238,7 +246,7 @@ def test_a9_tangents_run_smoothly_over_coarse_meshes(name: str, coarse: bpy.type
 def test_a9_lights_have_coordinates_of_their_own(
     node: str, output: str, kind: str, scene: bpy.types.Scene, tmp_path: Path
 ) -> None:
-    """Textures of lights used the coordinates of the world, or none."""
+    """Regression: textures of lights used the coordinates of the world, or none."""
     if kind != "AREA" and output == "Parametric" and VERSION < (4, 0, 0):
         pytest.skip("Cycles had another order of them")
     bpy.ops.mesh.primitive_plane_add(size=4.0)
@@ -269,7 +277,7 @@ def test_a9_lights_have_coordinates_of_their_own(
 def test_the_mean_that_replaces_a_texture_is_that_of_cycles(
     node: str, output: str, scene: bpy.types.Scene, tmp_path: Path
 ) -> None:
-    """The mean is measured over a large, slanted plane."""
+    """The mean of Cycles is measured over a large, slanted plane."""
     if not hasattr(bpy.types, node):
         pytest.skip("not in this Blender")
     material = new_material()

@@ -170,7 +170,7 @@ def test_e5_unknown_texture_is_grey() -> None:
     [("Voronoi", "Distance", 0.52, "its mean"), ("IES", "Fac", 0.5, "grey")],
 )
 def test_e5_a_texture_is_replaced_as_its_warning_says(kind: str, output: str, expected: float, words: str) -> None:
-    """Textures were replaced by 0.5, while the warning said "by its mean"."""
+    """Regression: textures were replaced by 0.5, while the warning said "by its mean"."""
     material = new_material()
     node = add(material, f"Tex{kind}")
     show(material, next(socket for socket in node.outputs if socket.identifier == output))
@@ -269,7 +269,7 @@ def test_group_without_output_or_tree_is_not_linked() -> None:
     assert translate(material).surface == -1
 
 
-def test_muted_node_hands_on_its_input() -> None:
+def test_muted_node_passes_its_input_through() -> None:
     material = new_material()
     nodes, links = material.node_tree.nodes, material.node_tree.links
     color, gamma = nodes.new("ShaderNodeRGB"), nodes.new("ShaderNodeGamma")
@@ -282,7 +282,7 @@ def test_muted_node_hands_on_its_input() -> None:
     assert program.inputs[0][2][:3] == pytest.approx((0.3, 0.6, 0.9))
 
 
-def test_muted_link_counts_for_nothing() -> None:
+def test_muted_links_are_ignored() -> None:
     material = new_material()
     node = material.node_tree.nodes.new("ShaderNodeEmission")
     show(material, node.outputs[0])
@@ -292,7 +292,7 @@ def test_muted_link_counts_for_nothing() -> None:
     assert translate(material).surface == -1
 
 
-def test_output_for_cycles_wins() -> None:
+def test_output_for_cycles_is_preferred() -> None:
     material = new_material()
     nodes, links = material.node_tree.nodes, material.node_tree.links
     output_of(material).target = "EEVEE"
@@ -318,7 +318,7 @@ def test_color_to_float_is_luminance_and_vector_to_float_the_mean() -> None:
     assert program.inputs[4][2][0] == pytest.approx(0.7152)
 
 
-def test_value_as_surface_shines() -> None:
+def test_value_as_surface_is_emission() -> None:
     material = new_material()
     color = material.node_tree.nodes.new("ShaderNodeRGB")
     material.node_tree.links.new(color.outputs[0], output_of(material).inputs["Surface"])
@@ -353,7 +353,7 @@ def test_principled_of_this_version() -> None:
     assert op_names(translate(material)) == [expected, "TRANSPARENT", "MIX_SHADER"]
 
 
-def test_attribute_names_are_asked_for() -> None:
+def test_attribute_names_are_requested() -> None:
     material = new_material()
     nodes, links = material.node_tree.nodes, material.node_tree.links
     color, uv = nodes.new("ShaderNodeVertexColor"), nodes.new("ShaderNodeUVMap")
@@ -392,7 +392,7 @@ def test_world_and_light() -> None:
     assert op_names(translate(light, "LIGHT")) == ["EMISSION"]
 
 
-def test_without_nodes_the_viewport_color_counts() -> None:
+def test_without_nodes_the_viewport_color_is_used() -> None:
     if bpy.app.version >= (5, 0, 0):
         pytest.skip("materials always have nodes from 5.0 on")
     material = bpy.data.materials.new("Plain")

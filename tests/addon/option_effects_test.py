@@ -1,5 +1,7 @@
-"""Every option of schema/options.toml has an effect on a tiny scene: moved from its default it changes the picture, the
-stats or the files, or it is an error. An option without an effect fails here."""
+"""Every option of schema/options.toml has an effect on a tiny scene.
+
+A value other than the default changes the picture, the stats or the files, or is an error.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +44,7 @@ def material(name: str, shader: str, **inputs: Any) -> bpy.types.Material:
 
 
 def see_through() -> bpy.types.Material:
-    """Seven tenths transparent."""
+    """Returns a material that is transparent by seven tenths."""
     made = nodes.new_material("Gauze")
     tree = made.node_tree
     mix = tree.nodes.new("ShaderNodeMixShader")
@@ -72,7 +74,7 @@ def ball(radius: float) -> bpy.types.Mesh:
 
 @pytest.fixture
 def room(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A floor with a wall, a polished ball, two panes of glass, gauze, a point light and a grey world."""
+    """Returns a scene: floor, wall, polished ball, two panes of glass, gauze, a point light and a grey world."""
     recording.add_camera(type="ORTHO", ortho_scale=5.0)
     add(recording.grid(1, 4.0), material("Floor", "ShaderNodeBsdfDiffuse"), (0.0, 0.0, 0.0))
     red = material("Wall", "ShaderNodeBsdfDiffuse", Color=(0.8, 0.2, 0.1, 1.0))
@@ -103,7 +105,7 @@ def add_missing_image() -> None:
 
 
 def let_move(scene: bpy.types.Scene) -> None:
-    """The ball passes over the floor, and the wall that it shows turns."""
+    """Animates the scene: the ball passes over the floor, and the wall that it reflects rotates."""
     key(bpy.data.objects["Polish"], "location", {1: (-0.6, 0.6, 0.6), FRAMES: (0.2, 0.2, 0.6)})
     scene.frame_start, scene.frame_end = 1, FRAMES
 
@@ -116,7 +118,7 @@ def stored(option: dict[str, Any], value: Any, folder: Path) -> Any:
 
 
 def set_option(scene: bpy.types.Scene, option: dict[str, Any], value: Any, arguments: list[str]) -> None:
-    """Where an artist sets it: in the engine's settings, in Blender's own, or on the command line."""
+    """Sets an option as an artist does: in the engine's settings, in Blender's own, or on the command line."""
     if option["from"] == "scene":
         setattr(scene.gradus, option["name"], value)
     elif option["from"] == "command":
@@ -146,7 +148,7 @@ def render_animation(scene: bpy.types.Scene, folder: Path) -> Outcome:
 
 
 class Engine:
-    """As much of a render engine as the export of a viewport takes."""
+    """The parts of a render engine that the export of a viewport uses."""
 
     resolution_x = resolution_y = 0
 
@@ -185,13 +187,16 @@ def is_same(one: Outcome, other: Outcome) -> bool:
 
 
 def differences(one: Outcome, other: Outcome) -> list[str]:
-    """Which of the stats differ, without times."""
+    """Returns the names of the stats that differ, without times."""
     return [name for name in one if name not in TIMES and one[name] != other.get(name)]
 
 
 @pytest.fixture
 def outcome(room: bpy.types.Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, Any]]:
-    """outcome(option, moved): picture, stats, files and error of a render, with the option moved or not."""
+    """Returns a function outcome(option, moved) that renders with an option at its default or at another value.
+
+    It returns the picture, the stats, the files and the error.
+    """
     runs = itertools.count()
 
     def make(option: dict[str, Any], moved: bool) -> dict[str, Any]:
@@ -251,7 +256,7 @@ def test_every_option_has_an_effect(room: bpy.types.Scene, outcome: Run, option:
 
 
 def test_a_picture_and_its_stats_do_not_differ_by_themselves(outcome: Run) -> None:
-    """Otherwise any option would seem to have an effect."""
+    """Two equal renders have equal results. Otherwise any option would seem to have an effect."""
     still = {"name": "none", "moved": None}
     first, second = outcome(still, False), outcome(still, False)
     assert is_same(first["picture"], second["picture"])

@@ -1,4 +1,4 @@
-"""Orientation of textures and environments, by images with four colours."""
+"""Textures and environments have the right orientation, shown by images with four colours."""
 
 from __future__ import annotations
 

@@ -19,8 +19,8 @@ def test_f7_space(tmp_path: Path) -> None:
         output.require_space(str(tmp_path / "a.exr"), 1 << 60)
 
 
-def test_f7_a_folder_that_cannot_be_created_is_called_so() -> None:
-    """The free space of the nearest existing folder was reported: "not enough space in /proc"."""
+def test_f7_a_folder_that_cannot_be_created_is_reported_as_such() -> None:
+    """Regression: the free space of the nearest existing folder was reported: "not enough space in /proc"."""
     with pytest.raises(Failure, match="output folder /proc/nope cannot be created"):
         output.require_space("/proc/nope/c_0001.exr", 1)
 
@@ -53,7 +53,7 @@ def test_f7_the_frame_before(tmp_path: Path) -> None:
 
 
 def test_f7_a_truncated_frame_is_found(tmp_path: Path, scene: bpy.types.Scene) -> None:
-    """Only empty files were found, but a full disk may truncate files anywhere."""
+    """Regression: only empty files were found, but a full disk may truncate files anywhere."""
     image = bpy.data.images.new("noise", 61, 47, float_buffer=True)
     image.pixels.foreach_set([(7 * i % 101) / 100 for i in range(61 * 47 * 4)])
     codecs = ("ZIP", "ZIPS", "PIZ", "RLE", "NONE", "DWAA")
@@ -74,7 +74,7 @@ def test_f7_a_truncated_frame_is_found(tmp_path: Path, scene: bpy.types.Scene) -
             assert not file_check.is_complete(path), (name, codec)
 
 
-def test_f7_a_multilayer_file_is_whole(tmp_path: Path, scene: bpy.types.Scene) -> None:
+def test_f7_a_multilayer_file_is_complete(tmp_path: Path, scene: bpy.types.Scene) -> None:
     scene.collection.objects.link(camera := bpy.data.objects.new("camera", bpy.data.cameras.new("camera")))
     scene.camera = camera
     path = tmp_path / "frame.exr"
@@ -91,7 +91,7 @@ def test_stats_are_one_line_with_all_phases(tmp_path: Path) -> None:
         pass
     with clock.phase("export"):
         pass
-    native = json.dumps({"schema": 1, "seconds": {"sample": 2.0}, "warnings": ["a"], "samples": 4})
+    native = json.dumps({"schema": 2, "seconds": {"sample": 2.0}, "warnings": ["a"], "samples": 4})
     full = stats.complete(native, {"frame": 3, "layer": "L", "scene": "S", "view": ""}, clock, ["a", "b"])
     assert full["warnings"] == ["a", "b"]
     assert {"sample", "export", "total"} <= full["seconds"].keys()
@@ -131,7 +131,7 @@ def test_texts_for_people_are_one_line_and_never_empty() -> None:
 def test_names_that_blender_truncates_are_reported(
     layer: int, views: tuple[str, ...], version: tuple[int, ...], lost: int
 ) -> None:
-    """Channels were lost without a warning if both a view layer and a component had long names."""
+    """Regression: channels were lost without a warning if both a view layer and a component had long names."""
     parts = [part.of("Abcdefghijklmnopqrstuvwx") for part in passes.COMPONENT_TABLE]
     settings = SimpleNamespace(file_format="OPEN_EXR_MULTILAYER", views_format="MULTIVIEW")
     longest = [info for info in parts if info.name.endswith("Reflectance")] if lost < 2 else parts

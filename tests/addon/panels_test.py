@@ -65,7 +65,7 @@ def test_panel_draws(scene: bpy.types.Scene, panel: Any, light: str) -> None:
     panel.draw(instance, shown)
 
 
-def test_panels_show_for_our_engine_only(scene: bpy.types.Scene) -> None:
+def test_panels_show_for_gradus_only(scene: bpy.types.Scene) -> None:
     shown = context(scene, "POINT")
     for panel in PANELS:
         assert panel.poll(shown)
@@ -86,7 +86,7 @@ class Names(Layout):
         return lambda *_, **__: self
 
 
-def test_what_the_export_reads_can_be_set_somewhere(scene: bpy.types.Scene) -> None:
+def test_properties_that_the_export_reads_have_panels(scene: bpy.types.Scene) -> None:
     """Blender leaves these properties to the panels of engines. Without a panel, only scripts could change them."""
     names = Names()
     for panel in PANELS:
@@ -150,11 +150,11 @@ def test_the_plan_is_shown_as_text(scene: bpy.types.Scene) -> None:
 
 
 def test_phases_of_the_last_render_come_in_their_order() -> None:
-    """Phases were listed alphabetically, with those of the add-on at the end."""
+    """Regression: phases were listed alphabetically, with those of the add-on at the end."""
     seconds = {
         "denoise": 1.0,
         "filter": 0.0,
-        "links": 8.0,
+        "correspondence": 8.0,
         "preview": 2.0,
         "reconstruct": 3.0,
         "sample": 4.0,
@@ -162,7 +162,7 @@ def test_phases_of_the_last_render_come_in_their_order() -> None:
         "total": 40.0,
     }
     lines = render_panels.plan_lines({"frame": 1, "seconds": {**seconds, "export": 5.0, "build": 6.0, "upload": 7.0}})
-    order = ["Export", "Build", "Links", "Sample", "Preview", "Store", "Reconstruct", "Denoise", "Upload"]
+    order = ["Export", "Build", "Correspondence", "Sample", "Preview", "Store", "Reconstruct", "Denoise", "Upload"]
     assert [line.split(":")[0] for line in lines[1:]] == order
 
 

@@ -69,7 +69,7 @@ CASES: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
 
 
 def _prepare(scene: bpy.types.Scene) -> None:
-    """A ball around the camera."""
+    """Adds a ball around the camera."""
     bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=RADIUS)
     images.prepare(scene)
     scene.world = bpy.data.worlds.new("World")

@@ -161,7 +161,7 @@ def test_color_of_a_component_is_not_taken_for_combined() -> None:
     assert (passes.mask([combined]), passes.component_mask([combined])) == (1, 0)
 
 
-def test_motion_is_what_needs_the_moments_around_the_frame() -> None:
+def test_motion_passes_need_the_times_around_the_frame() -> None:
     parts = [part.of("A") for part in passes.COMPONENT_TABLE]
     assert [info.name for info in (*passes.TABLE, *parts) if info.is_motion] == [
         "Vector", "Path A Motion", "Path A Tracked", "Path A Irradiance Motion", "Path A Irradiance Tracked"

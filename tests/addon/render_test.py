@@ -18,7 +18,7 @@ Render = Callable[..., images.Passes]
 
 @pytest.fixture
 def cube(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A cube, a sun, a grey world and a camera; 40x24 pixels, plain paths."""
+    """Returns a scene with a cube, a sun, a grey world and a camera: 40x24 pixels, plain paths."""
     bpy.ops.mesh.primitive_cube_add(size=2.0)
     sun = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
     sun.data.energy, sun.rotation_euler = 3.0, (0.6, 0.3, 0.0)
@@ -36,7 +36,7 @@ def cube(scene: bpy.types.Scene) -> bpy.types.Scene:
 
 @pytest.fixture
 def arguments(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., None]]:
-    """arguments("--gradus-x", "1"): the command line of the process, as the add-on sees it."""
+    """Returns a function that sets the command line that the add-on reads: arguments("--gradus-x", "1")."""
     yield lambda *given: monkeypatch.setattr(sys, "argv", ["blender", "--", *map(str, given)])
 
 
@@ -76,7 +76,7 @@ def test_e8_a_cropped_border_is_the_crop_of_the_whole(
     assert np.array_equal(part, whole[y0 : y0 + part.shape[0], x0 : x0 + part.shape[1]])
 
 
-def test_e8_a_border_leaves_the_rest_black(cube: bpy.types.Scene, render: Render) -> None:
+def test_e8_pixels_outside_a_border_are_black(cube: bpy.types.Scene, render: Render) -> None:
     whole = render(cube)["Combined"]
     cube.render.use_border = True
     cube.render.border_min_x, cube.render.border_max_x, cube.render.border_min_y, cube.render.border_max_y = (
@@ -146,7 +146,7 @@ def test_noisy_image_beside_a_reconstruction(cube: bpy.types.Scene, render: Rend
     assert passes["Noisy Image"].any()
 
 
-def test_error_is_the_square_of_what_halves_differ_by(
+def test_error_is_the_squared_difference_of_the_halves(
     cube: bpy.types.Scene, render: Render, arguments: Callable[..., None]
 ) -> None:
     """Renders a cube by path tracing in a grey world, which has no noise."""
@@ -197,8 +197,8 @@ def test_stats_line(cube: bpy.types.Scene, render: Render, tmp_path: Path, argum
     lines = [json.loads(line) for line in path.read_text().splitlines()]
     assert [(line["frame"], line["layer"]) for line in lines] == [(7, cube.view_layers[0].name), (7, "Second")]
     keys = (
-        "schema version scene view seed integrator reconstruction spp_base spp_offset unbiased resolution samples plan "
-        "seconds cpu_seconds"
+        "schema version scene view seed integrator reconstruction samples samples_fresh samples_replayed unbiased "
+        "resolution plan seconds cpu_seconds"
     )
     keys += " denoiser rays shifts nonfinite_dropped peak_memory_bytes process_cpu warnings"
     assert set(keys.split()) <= lines[0].keys()
@@ -292,7 +292,7 @@ def test_strict_holds_with_persistent_data(cube: bpy.types.Scene, render: Render
 def test_strict_covers_warnings_about_colours(
     cube: bpy.types.Scene, render: Render, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """They belong to the device, which several scenes share."""
+    """Warnings about colours belong to the device, which several scenes share."""
     from gradus import store
 
     monkeypatch.setattr(store.Session, "device_warnings", lambda _session: ["colour: the space X is not known"])
@@ -301,8 +301,8 @@ def test_strict_covers_warnings_about_colours(
         render(cube, strict=True)
 
 
-def test_strict_does_not_refuse_what_changes_no_picture(cube: bpy.types.Scene, render: Render) -> None:
-    """Limits that differ from Cycles' are reported, and are what the scene asks Gradus for."""
+def test_strict_accepts_warnings_that_change_no_picture(cube: bpy.types.Scene, render: Render) -> None:
+    """Limits that differ from those of Cycles are reported, but they are the settings of the scene for Gradus."""
     cube.cycles.max_bounces = 3
     render(cube, strict=True)
 
@@ -313,7 +313,7 @@ def test_no_camera(cube: bpy.types.Scene, render: Render) -> None:
         render(cube)
 
 
-def test_k5_a_cancelled_render_keeps_what_it_has(cube: Any, render: Render, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_k5_a_cancelled_render_keeps_its_image(cube: Any, render: Render, monkeypatch: pytest.MonkeyPatch) -> None:
     from gradus import renderer
 
     calls = []
@@ -323,7 +323,7 @@ def test_k5_a_cancelled_render_keeps_what_it_has(cube: Any, render: Render, monk
     assert np.isfinite(image).all()
 
 
-def test_k2_test_break_is_asked_often(cube: Any, render: Render, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_k2_test_break_is_polled_often(cube: Any, render: Render, monkeypatch: pytest.MonkeyPatch) -> None:
     import time
 
     from gradus import renderer

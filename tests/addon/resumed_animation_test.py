@@ -20,7 +20,7 @@ Scene = bpy.types.Scene
 
 @pytest.fixture
 def square(scene: Scene) -> Scene:
-    """A square in a grey world, with twenty frames."""
+    """Returns a scene with a square in a grey world, and twenty frames."""
     recording.add_camera(type="ORTHO", ortho_scale=4.0)
     recording.add(recording.grid(2), "Square")
     scene.world = bpy.data.worlds.new("World")
@@ -33,7 +33,7 @@ def square(scene: Scene) -> Scene:
 
 @pytest.fixture
 def lines(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callable[[], list[dict[str, Any]]]]:
-    """lines(): the stats of all delivered frames in order."""
+    """Returns a function that returns the stats of all delivered frames in order."""
     path = tmp_path / "stats.jsonl"
     monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-stats", str(path)])
     yield lambda: [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
@@ -103,7 +103,7 @@ def let_objects_appear(_scene: Scene, _folder: Path) -> None:
             found.keyframe_insert("hide_render", frame=frame)
 
 
-def cut_between_cameras(scene: Scene, _folder: Path) -> None:
+def bind_other_cameras(scene: Scene, _folder: Path) -> None:
     """Binds cameras to markers at the frames 4 and 15."""
     first = scene.camera
     key(first, "location", {0: (-0.5, 0.0, 5.0), 21: (0.5, 0.0, 5.0)})
@@ -115,12 +115,14 @@ def cut_between_cameras(scene: Scene, _folder: Path) -> None:
 
 
 @pytest.mark.parametrize("persistent", [False, True])
-@pytest.mark.parametrize("change", [deform, show_a_film, let_objects_appear, cut_between_cameras])
+@pytest.mark.parametrize("change", [deform, show_a_film, let_objects_appear, bind_other_cameras])
 def test_c7_an_animation_goes_on_where_it_ended(
     square: Scene, tmp_path: Path, change: Callable[[Scene, Path], None], persistent: bool
 ) -> None:
-    """Keys depend on the order in which meshes, images and objects appear: frames were refused as those of another
-    scene."""
+    """Regression: keys depend on the order in which meshes, images and objects appear.
+
+    Stored frames were refused as those of another scene.
+    """
     whole, rest = tmp_path / "whole", tmp_path / "rest"
     for folder in (whole, rest):
         folder.mkdir()
@@ -137,8 +139,8 @@ def test_c7_an_animation_goes_on_where_it_ended(
     require_equal(pictures(rest), expected, range(1, 21))
 
 
-def test_c8_cameras_of_markers_cut_the_animation(square: Scene, tmp_path: Path) -> None:
-    cut_between_cameras(square, tmp_path)
+def test_c8_markers_with_other_cameras_are_shot_changes(square: Scene, tmp_path: Path) -> None:
+    bind_other_cameras(square, tmp_path)
     square.view_layers[0].gradus.use_pass_gradients = True
     animate(square, tmp_path, 1, 6)
     linked = {
@@ -153,7 +155,7 @@ def test_c8_cameras_of_markers_cut_the_animation(square: Scene, tmp_path: Path) 
 def test_c7_a_still_beside_an_animation_leaves_its_frames(
     square: Scene, render: Callable[..., images.Passes], tmp_path: Path
 ) -> None:
-    """The file of the still replaced a half of a frame of the animation, which was then mixed with the still."""
+    """Regression: the file of the still replaced a half of a frame, which was then mixed with the still."""
     deform(square, tmp_path)
     square.gradus.frame_store = str(tmp_path / "store")
     before, after = tmp_path / "before", tmp_path / "after"
@@ -163,10 +165,13 @@ def test_c7_a_still_beside_an_animation_leaves_its_frames(
     require_equal(pictures(after), pictures(before), range(1, 7))
 
 
-def test_c7_two_steps_in_one_store_are_linked(
+def test_c7_two_steps_in_one_store_have_correspondences(
     square: Scene, lines: Callable[[], list[dict[str, Any]]], tmp_path: Path
 ) -> None:
-    """With a frame step of two, frames replay the frame two before. Half of the pairs had no correspondences."""
+    """With a frame step of two, frames replay the frame two before.
+
+    Regression: half of the pairs had no correspondences.
+    """
     deform(square, tmp_path)
     square.view_layers[0].gradus.use_pass_gradients = True
     square.gradus.frame_store = str(tmp_path / "store")
@@ -180,7 +185,7 @@ def test_c7_two_steps_in_one_store_are_linked(
     require_equal(pictures(both), pictures(whole), range(1, 8))
 
 
-def test_c7_parts_of_a_still_stretch_are_the_whole(square: Scene, tmp_path: Path) -> None:
+def test_c7_parts_of_an_unchanged_range_equal_the_whole(square: Scene, tmp_path: Path) -> None:
     """The later range is rendered first, when it is not yet known that its frames equal those of the earlier range."""
     key(bpy.data.objects["Square"], "location", {6: (0.0, 0.0, 0.0), 9: (1.0, 0.0, 0.0)})
     parts, again, whole = (tmp_path / name for name in ("parts", "again", "whole"))
@@ -193,8 +198,8 @@ def test_c7_parts_of_a_still_stretch_are_the_whole(square: Scene, tmp_path: Path
     require_equal(pictures(again), pictures(whole), range(1, 9))
 
 
-def test_c7_another_seed_samples_a_still_stretch_anew(square: Scene, tmp_path: Path) -> None:
-    """The stored frame before the range was used, although its seed was another one."""
+def test_c7_another_seed_samples_an_unchanged_range_again(square: Scene, tmp_path: Path) -> None:
+    """Regression: the stored frame before the range was used, although its seed was another one."""
     square.gradus.frame_store = str(tmp_path / "store")
     animate(square, tmp_path / "old", 1, 4)
     found, expected = tmp_path / "found", tmp_path / "expected"
@@ -206,10 +211,10 @@ def test_c7_another_seed_samples_a_still_stretch_anew(square: Scene, tmp_path: P
     assert not np.array_equal(pictures(found)[5], pictures(tmp_path / "old")[4])
 
 
-def test_c7_a_still_stretch_that_noise_ended_is_found_again(
+def test_c7_an_unchanged_range_that_noise_ended_is_found_again(
     square: Scene, lines: Callable[[], list[dict[str, Any]]], tmp_path: Path
 ) -> None:
-    """Pixel blocks with little noise had fewer samples than requested, and the rerun was refused."""
+    """Regression: pixel blocks with little noise had fewer samples than requested, and the rerun was refused."""
     square.gradus.samples, square.gradus.noise_threshold = 256, 0.1
     square.gradus.frame_store = str(tmp_path / "store")
     for run in ("once", "again"):
@@ -218,8 +223,8 @@ def test_c7_a_still_stretch_that_noise_ended_is_found_again(
     assert [stats["stopped"] for stats in lines()] == ["noise", *["unchanged"] * 3, *["stored"] * 4]
 
 
-def test_c7_a_still_stretch_of_an_older_scene_is_not_mixed_in(square: Scene, tmp_path: Path) -> None:
-    """New frames were considered equal to neighbouring old ones of the store."""
+def test_c7_an_unchanged_range_of_an_older_scene_is_not_mixed_in(square: Scene, tmp_path: Path) -> None:
+    """Regression: new frames were considered equal to neighbouring old ones of the store."""
     store = tmp_path / "store"
     square.gradus.frame_store = str(store)
     animate(square, tmp_path / "old", 1, 6)
@@ -237,7 +242,7 @@ def test_c7_a_still_stretch_of_an_older_scene_is_not_mixed_in(square: Scene, tmp
 def test_c7_a_store_without_the_features_of_the_reconstruction_is_refused_by_name(
     square: Scene, tmp_path: Path
 ) -> None:
-    """The store was accepted, and the delivery of its frames failed with an unclear error."""
+    """Regression: the store was accepted, and the delivery of its frames failed with an unclear error."""
     square.gradus.frame_store = str(tmp_path / "store")
     animate(square, tmp_path / "sampled", 1, 2)
     square.gradus.reconstruction = "REGULARIZED"

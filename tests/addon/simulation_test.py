@@ -91,7 +91,7 @@ def test_c6_a_simulation_is_that_of_the_scene_stepped_in_order(
 
 @pytest.mark.application
 def test_c6_a_liquid_that_is_computed_during_playback(temporal: bool, exports: Exports, tmp_path: Path) -> None:
-    """In the bpy modules, Mantaflow does not find its Python code."""
+    """A liquid is exported as the scene computes it. In the bpy modules, Mantaflow does not find its Python code."""
     render(new_scene("liquid", temporal=temporal), tmp_path)
     check("liquid", exports.of["ViewLayer"], range(1, LAST + 1))
 
@@ -119,10 +119,8 @@ def test_c6_layers_and_frames_around_for_vectors_change_nothing(
         check(kind, found[name], range(1, LAST + 1))
 
 
-def test_c6_windows_that_are_looked_for_one_after_the_other_show_it(
-    kind: str, exports: Exports, tmp_path: Path
-) -> None:
-    """Particles were missing in all frames of the second window except the last."""
+def test_c6_consecutive_windows_show_all_simulations(kind: str, exports: Exports, tmp_path: Path) -> None:
+    """Regression: particles were missing in all frames of the second window except the last."""
     scene = new_scene(kind, temporal=True)
     scene.gradus.window_size, scene.gradus.window_overlap = 4, 2
     render(scene, tmp_path)
@@ -198,12 +196,12 @@ def put_into_the_background(scene: bpy.types.Scene) -> None:
     scene.background_set = background
 
 
-@pytest.mark.parametrize("put_away", [put_into_an_instanced_collection, put_into_the_background])
-def test_c6_a_simulation_that_the_scene_shows_from_elsewhere(
-    put_away: Callable, temporal: bool, exports: Exports, tmp_path: Path
+@pytest.mark.parametrize("hide_object", [put_into_an_instanced_collection, put_into_the_background])
+def test_c6_simulations_in_instances_and_backgrounds(
+    hide_object: Callable, temporal: bool, exports: Exports, tmp_path: Path
 ) -> None:
-    """Such simulations were not found: they were static, without a warning."""
-    check_changed(put_away, temporal, exports, tmp_path)
+    """Regression: such simulations were not found and were static, without a warning."""
+    check_changed(hide_object, temporal, exports, tmp_path)
 
 
 def test_a_rigid_body_in_the_background_is_found() -> None:
@@ -213,8 +211,8 @@ def test_a_rigid_body_in_the_background_is_found() -> None:
     assert simulation.Simulations(other).names == ["Rigid Body World"]
 
 
-def test_a_cancel_on_the_way_leaves_the_scene_at_its_frame() -> None:
-    """After a cancel, the scene stayed at the last stepped frame."""
+def test_a_cancel_between_steps_leaves_the_scene_at_its_frame() -> None:
+    """Regression: after a cancel, the scene stayed at the last stepped frame."""
     scene = new_scene("cloth", first=4)
     scene.frame_set(4)
     with pytest.raises(Cancelled):
@@ -245,16 +243,16 @@ def exclude(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
     collect(scene, obj, "Excluded")[0].exclude = True
 
 
-def hide_the_collection_around(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+def hide_its_collection(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
     collect(scene, obj, "Outer", "Inner")[0].collection.hide_render = True
 
 
-def leave_to_a_layer_that_is_off(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+def put_into_a_disabled_layer(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
     scene.view_layers.new("Off").use = False
     exclude(scene, obj)
 
 
-WAYS_TO_HIDE = [hide, exclude, hide_the_collection_around, leave_to_a_layer_that_is_off]
+HIDING_CHANGES = [hide, exclude, hide_its_collection, put_into_a_disabled_layer]
 
 
 def simulated_object(kind: str) -> bpy.types.Object:
@@ -264,17 +262,17 @@ def simulated_object(kind: str) -> bpy.types.Object:
 
 
 @pytest.mark.parametrize("kind", ["rigid body", "cloth", "soft body", "particles"])
-@pytest.mark.parametrize("put_away", WAYS_TO_HIDE)
-def test_a_simulation_that_no_picture_shows_is_none(put_away: Callable, kind: str) -> None:
-    """Simulations that are not visible must not make frames independent, nor have the scene stepped."""
+@pytest.mark.parametrize("hide_object", HIDING_CHANGES)
+def test_invisible_simulations_are_ignored(hide_object: Callable, kind: str) -> None:
+    """Simulations that are not visible must neither make frames independent nor require stepping the scene."""
     scene = new_scene(kind)
     assert len(simulation.Simulations(scene).names) == 1
-    put_away(scene, simulated_object(kind))
+    hide_object(scene, simulated_object(kind))
     assert simulation.Simulations(scene).names == []
 
 
-def test_a_rigid_body_world_without_bodies_is_none(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Blender keeps a rigid body world after its bodies were deleted, and the scene was stepped for it."""
+def test_a_rigid_body_world_without_bodies_is_ignored(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Regression: Blender keeps a rigid body world after its bodies were deleted, and the scene was stepped for it."""
     scene = new_scene("rigid body", temporal=True)
     bpy.data.objects.remove(bpy.data.objects["Falling"])
     assert scene.rigidbody_world is not None
@@ -291,7 +289,7 @@ def show_in_another_layer(scene: bpy.types.Scene, obj: bpy.types.Object) -> None
     exclude(scene, obj)
 
 
-def show_inside_what_is_excluded(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+def show_inside_an_excluded_collection(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
     outer, inner = collect(scene, obj, "Outer", "Inner")
     outer.exclude, inner.exclude = True, False
 
@@ -326,13 +324,13 @@ def show_by_nodes(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
     obj.hide_render = True
 
 
-def carry(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+def parent_a_child(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
     child = add_mesh(scene)
     child.parent, child.parent_type = obj, "VERTEX"
     obj.hide_render = True
 
 
-def cut(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+def be_a_boolean_operand(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
     add_mesh(scene).modifiers.new("Boolean", "BOOLEAN").object = obj
     obj.hide_render = True
 
@@ -344,29 +342,29 @@ def be_instanced_by_particles(scene: bpy.types.Scene, obj: bpy.types.Object) -> 
     obj.hide_render = True
 
 
-def be_hit(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+def be_a_collider(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
     obj.modifiers.new("Collision", "COLLISION")
     obj.hide_render = True
 
 
-def pull(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+def be_a_force_field(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
     bpy.ops.object.forcefield_toggle()
     assert obj.field.type != "NONE"
     obj.hide_render = True
 
 
-def paint(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+def be_a_brush(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
     obj.modifiers.new("Dynamic Paint", "DYNAMIC_PAINT").ui_type = "BRUSH"
     bpy.ops.dpaint.type_toggle(type="BRUSH")
     obj.hide_render = True
 
 
-def flow(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+def be_a_fluid_source(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
     obj.modifiers.new("Fluid", "FLUID").fluid_type = "FLOW"
     obj.hide_render = True
 
 
-def push_other_bodies(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
+def be_a_passive_body(scene: bpy.types.Scene, obj: bpy.types.Object) -> None:
     bpy.ops.rigidbody.object_add(type="PASSIVE")
     obj.hide_render = True
 
@@ -379,27 +377,27 @@ def add_mesh(scene: bpy.types.Scene) -> bpy.types.Object:
     return obj
 
 
-WAYS_TO_BE_SEEN = [
+SHOWING_CHANGES = [
     show_in_another_layer,
-    show_inside_what_is_excluded,
+    show_inside_an_excluded_collection,
     show_in_another_collection,
     show_at_times,
     show_by_a_driver,
     show_by_an_instance,
     show_by_nodes,
-    carry,
-    cut,
+    parent_a_child,
+    be_a_boolean_operand,
     be_instanced_by_particles,
-    be_hit,
-    pull,
-    paint,
-    flow,
-    push_other_bodies,
+    be_a_collider,
+    be_a_force_field,
+    be_a_brush,
+    be_a_fluid_source,
+    be_a_passive_body,
 ]
 
 
-@pytest.mark.parametrize("use", WAYS_TO_BE_SEEN)
-def test_a_hidden_simulation_that_pictures_may_show_is_one(use: Callable) -> None:
+@pytest.mark.parametrize("use", SHOWING_CHANGES)
+def test_hidden_simulations_that_pictures_may_show_are_found(use: Callable) -> None:
     scene = new_scene("cloth")
     use(scene, bpy.data.objects["Cloth"])
     assert "Cloth, Cloth" in simulation.Simulations(scene).names
@@ -424,20 +422,20 @@ def test_a_hidden_body_counts_where_another_of_its_world_is_shown() -> None:
 
 def test_a_layer_that_is_off_counts_where_it_is_rendered_alone() -> None:
     scene = new_scene("cloth")
-    leave_to_a_layer_that_is_off(scene, bpy.data.objects["Cloth"])
+    put_into_a_disabled_layer(scene, bpy.data.objects["Cloth"])
     assert simulation.Simulations(scene, "Off").names == ["Cloth, Cloth"]
 
 
 def test_a_layer_that_is_keyed_counts_while_it_is_off() -> None:
     scene = new_scene("cloth")
-    leave_to_a_layer_that_is_off(scene, bpy.data.objects["Cloth"])
+    put_into_a_disabled_layer(scene, bpy.data.objects["Cloth"])
     animation.step(scene, 'view_layers["Off"].use', {1: False, LAST: True})
     scene.view_layers["Off"].use = False
     assert simulation.Simulations(scene).names == ["Cloth, Cloth"]
 
 
 def test_a_modifier_that_is_keyed_counts_while_it_is_off() -> None:
-    """The simulation was static from the frame at which the modifier was enabled."""
+    """Regression: the simulation was static from the frame at which the modifier was enabled."""
     scene = new_scene("cloth")
     cloth = bpy.data.objects["Cloth"]
     animation.step(cloth, 'modifiers["Cloth"].show_render', {1: False, LAST: True})
@@ -445,16 +443,18 @@ def test_a_modifier_that_is_keyed_counts_while_it_is_off() -> None:
     assert simulation.Simulations(scene).names == ["Cloth, Cloth"]
 
 
-def carry_something_unseen(scene: bpy.types.Scene) -> None:
+def parent_an_invisible_object(scene: bpy.types.Scene) -> None:
     """Adds an invisible simulated object, which is also hidden in the viewport, whose depsgraph is stepped."""
     cloth = bpy.data.objects["Cloth"]
-    carry(scene, cloth)
+    parent_a_child(scene, cloth)
     bpy.data.objects["Shown"].parent_vertices = [48, 48, 48]
     cloth.hide_viewport = True
 
 
-def test_c6_what_hangs_on_a_hidden_simulation_moves_with_it(temporal: bool, exports: Exports, tmp_path: Path) -> None:
-    check_changed(carry_something_unseen, temporal, exports, tmp_path)
+def test_c6_objects_that_depend_on_a_hidden_simulation_move_with_it(
+    temporal: bool, exports: Exports, tmp_path: Path
+) -> None:
+    check_changed(parent_an_invisible_object, temporal, exports, tmp_path)
 
 
 # -------------------------------------------------------------------------------- what is left behind

@@ -20,7 +20,7 @@ SIZE = 64
 
 @pytest.fixture
 def stage() -> bpy.types.Scene:
-    """A camera in a world with nodes.
+    """Returns a scene with a camera in a world with nodes.
 
     Pixels are sampled at their centres, so that engines can be compared pixel by pixel.
     """
@@ -106,7 +106,7 @@ def all_directions(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
 
 @pytest.fixture
 def chart(stage: bpy.types.Scene) -> bpy.types.Scene:
-    """A plane that fills the image and emits the radiance of the sky in all directions."""
+    """Returns a scene whose plane fills the image and emits the radiance of the sky in all directions."""
     bpy.ops.mesh.primitive_plane_add(size=1.0)
     stage.camera.data.type, stage.camera.data.ortho_scale = "ORTHO", 1.0
     stage.camera.location = (0.0, 0.0, 1.0)
@@ -206,7 +206,7 @@ def test_a9_sun_disc(kind: str, elevation: float, stage: bpy.types.Scene, tmp_pa
 
 @pytest.mark.parametrize("kind", ATMOSPHERES)
 def test_a9_sun_lights_a_plane(kind: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
-    """The sun has its real size, so that light sampling must find it."""
+    """A sun of real size lights a plane as in Cycles. Only light sampling finds such a small sun."""
     light_world(stage, new_sky(stage.world.node_tree, kind, 35.0, sun_disc=True))
     bpy.ops.mesh.primitive_plane_add(size=10.0)
     stage.camera.location = (0.0, 0.0, 2.0)

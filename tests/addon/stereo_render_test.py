@@ -21,7 +21,7 @@ EYES = {"left": "_L", "right": "_R"}
 
 
 def _prepare(scene: bpy.types.Scene, **camera_settings: object) -> bpy.types.Object:
-    """A ball around the camera and one in front of it. Both engines take one sample in the centre of the pixel."""
+    """Adds a ball around the camera and one in front of it. Both engines take one sample at the centre of the pixel."""
     bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=20.0)
     bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=0.8, location=(0.3, 0.2, 0.0))
     cycles = scene.cycles

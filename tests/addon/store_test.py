@@ -14,7 +14,10 @@ def session(library: SimpleNamespace, scene: int) -> store.Session:
 
 
 def test_warnings_belong_to_their_session() -> None:
-    """A final render reported warnings of a viewport, and only the first session reported warnings about colour."""
+    """Each session reports its own warnings and those of the device.
+
+    Regression: a final render reported warnings of a viewport, and only the first session those about colour.
+    """
     about_device, about_scene = [["colour"], []], {1: [["a missing image"], []], 2: [[], []]}
     library = SimpleNamespace(
         take_device_warnings=lambda _device: about_device.pop(0) if about_device else [],

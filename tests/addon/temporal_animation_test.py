@@ -24,7 +24,7 @@ WIDTH, HEIGHT = 32, 18
 
 @pytest.fixture
 def moving(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A square that moves in a grey world, with ten frames."""
+    """Returns a scene with a square that moves in a grey world, and ten frames."""
     recording.add_camera(type="ORTHO", ortho_scale=4.0)
     key(recording.add(recording.grid(2), "Moving"), "location", {0: (-1.0, 0.0, 0.0), 20: (1.0, 0.0, 0.0)})
     scene.world = bpy.data.worlds.new("World")
@@ -43,7 +43,7 @@ def exports(monkeypatch: pytest.MonkeyPatch) -> Exports:
 
 @pytest.fixture
 def lines(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callable[[], list[dict[str, Any]]]]:
-    """lines(): the stats of all delivered frames in order."""
+    """Returns a function that returns the stats of all delivered frames in order."""
     path = tmp_path / "stats.jsonl"
     monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-stats", str(path)])
     yield lambda: [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
@@ -92,7 +92,7 @@ def test_c3_any_range_and_step(
     moving.frame_start, moving.frame_end, moving.frame_step = first, last, step
     animate(moving, tmp_path)
     assert frames_in(tmp_path) == exports.frames() == list(range(first, last + 1, step))
-    assert all(line["spp_offset"] == 2 for line in lines())
+    assert all(line["samples_replayed"] == 2 for line in lines())
 
 
 def test_c2_a_job_of_one_frame_is_a_still(
@@ -152,12 +152,12 @@ def test_c6_correspondences_remain_when_other_objects_appear_and_are_renamed(
     on_square, on_guest = (HEIGHT // 2, WIDTH // 4), (HEIGHT // 2, 28)
     assert all(links[frame][on_square][2] == 1.0 for frame in (1, 2, 3)), "it stays"
     assert links[1][on_guest][2] == 0.0, "it goes"
-    assert links[2][on_guest][2] == 0.0, "it comes: what it hides has no partner"
+    assert links[2][on_guest][2] == 0.0, "hidden pixels have no correspondence where the row appears"
     assert links[3][on_guest][2] == 1.0, "it stays"
     rows, columns = np.mgrid[0:HEIGHT, 0:WIDTH]
     for link in links.values():
         x, y = columns + link[..., 0], rows - link[..., 1]
-        assert ((x >= 0) & (x < WIDTH) & (y >= 0) & (y < HEIGHT)).all(), "no link leads out of the picture"
+        assert ((x >= 0) & (x < WIDTH) & (y >= 0) & (y < HEIGHT)).all(), "no correspondence leads out of the picture"
 
 
 def test_i9_the_files_of_an_animation_say_how_they_were_made(moving: bpy.types.Scene, tmp_path: Path) -> None:
@@ -182,7 +182,7 @@ def test_samples_are_those_of_the_frames_own_settings(moving: bpy.types.Scene, l
     assert [line["samples"] for line in lines()] == [4, 4, 4, 4, 8, 8]
 
 
-def test_i8_what_stands_still_is_sampled_once(moving: bpy.types.Scene, lines: Any, tmp_path: Path) -> None:
+def test_i8_unchanged_frames_are_sampled_once(moving: bpy.types.Scene, lines: Any, tmp_path: Path) -> None:
     bpy.data.objects["Moving"].animation_data_clear()
     animate(moving, tmp_path)
     assert [line["stopped"] for line in lines()] == ["samples", *["unchanged"] * 9]
@@ -304,12 +304,12 @@ def key_reconstruction(scene: bpy.types.Scene) -> None:
 def test_c8_frames_with_other_channels_or_planes_are_a_shot_change(
     moving: bpy.types.Scene, exports: Exports, tmp_path: Path, change: Callable[..., None]
 ) -> None:
-    """Such frames ended the animation."""
+    """Regression: such frames ended the animation."""
     moving.view_layers[0].gradus.use_pass_gradients = False
     change(moving)
     whole = animate_with_store(moving, tmp_path / "whole")
     assert frames_in(whole) == list(range(1, 11))
-    assert exports.frames() == list(range(11)), "the frame before the first one is looked at"
+    assert exports.frames() == list(range(11)), "the frame before the first one is exported"
     expect_ranges_alone(moving, whole, [(1, 4), (5, 10)])
 
 
@@ -333,7 +333,7 @@ def test_c8_an_independent_frame_is_a_still_and_a_shot_change(
     alone: Any,
     why: str,
 ) -> None:
-    """Such a frame ended the animation with an error."""
+    """Regression: such a frame ended the animation with an error."""
     moving.view_layers[0].gradus.use_pass_gradients = False
     if path == "gradus.integrator":
         moving.gradus.reconstruction = "REGULARIZED"  # L2 needs gradients
@@ -341,16 +341,16 @@ def test_c8_an_independent_frame_is_a_still_and_a_shot_change(
     whole = animate_with_store(moving, tmp_path / "whole")
     assert frames_in(whole) == list(range(1, 11))
     assert sorted(exports.frames()) == [0, 1, 2, 3, 4, 5, 5, 6, 7, 8, 9, 10], (
-        "it is shown to the next one, and in its turn"
+        "the frame is exported for the next one and when it is rendered"
     )
     assert [line["frame"] for line in lines() if line["plan"].get("frame_by_frame") == why] == [5]
-    assert [line["frame"] for line in lines() if not line.get("spp_offset")] == [5]
+    assert [line["frame"] for line in lines() if not line.get("samples_replayed")] == [5]
     assert np.array_equal(combined(whole, 5), render(moving, frame=5)["Combined"])
     expect_ranges_alone(moving, whole, [(1, 4), (6, 10)])
     require_nothing_kept()
 
 
-def test_c7_a_frame_of_its_own_does_not_disturb_a_frame_store(moving: bpy.types.Scene, tmp_path: Path) -> None:
+def test_c7_an_independent_frame_does_not_disturb_a_frame_store(moving: bpy.types.Scene, tmp_path: Path) -> None:
     moving.gradus.frame_store = str(tmp_path / "store")
     step(moving, "gradus.samples", {0: 1, 2: 4, 5: 1, 6: 4})
     whole, again = tmp_path / "whole", tmp_path / "again"
@@ -364,7 +364,7 @@ def test_c7_a_frame_of_its_own_does_not_disturb_a_frame_store(moving: bpy.types.
 # -------------------------------------------------------------------------------- parts of an animation
 
 
-def test_files_that_are_there_split_the_animation(
+def test_existing_files_split_the_animation(
     moving: bpy.types.Scene, exports: Exports, lines: Any, tmp_path: Path
 ) -> None:
     moving.render.use_overwrite = False
@@ -372,14 +372,14 @@ def test_files_that_are_there_split_the_animation(
         (tmp_path / f"f_{frame:04d}.exr").write_bytes(b"mine")
     animate(moving, tmp_path)
     assert exports.frames() == [1, 2, 3, 5, 6, 9, 10]
-    assert all(line["spp_offset"] == 2 for line in lines())
+    assert all(line["samples_replayed"] == 2 for line in lines())
     assert (tmp_path / "f_0004.exr").read_bytes() == b"mine"
 
 
 def test_files_of_several_views_split_the_animation(moving: bpy.types.Scene, exports: Exports, tmp_path: Path) -> None:
-    """The suffix of the view was ignored, and frames with files were sampled.
+    """Blender skips a frame if one view has a file.
 
-    Blender skips a frame if one view has a file.
+    Regression: the suffix of the view was ignored, and frames with files were sampled.
     """
     moving.render.use_multiview, moving.render.use_overwrite = True, False
     images.use_exr(moving, tmp_path / "f_####")
@@ -393,13 +393,13 @@ def test_files_of_several_views_split_the_animation(moving: bpy.types.Scene, exp
     ]
 
 
-def test_frames_that_processes_share_by_placeholders_are_on_their_own(
+def test_frames_that_processes_share_by_placeholders_are_independent(
     moving: bpy.types.Scene, lines: Any, tmp_path: Path
 ) -> None:
     moving.render.use_overwrite, moving.render.use_placeholder = False, True
     moving.frame_end = 3
     animate(moving, tmp_path)
-    assert [line.get("spp_offset", 0) for line in lines()] == [0, 0, 0]
+    assert [line.get("samples_replayed", 0) for line in lines()] == [0, 0, 0]
 
 
 def test_c7_parts_that_share_a_frame_store_are_the_whole(
@@ -410,7 +410,7 @@ def test_c7_parts_that_share_a_frame_store_are_the_whole(
         folder.mkdir()
     moving.gradus.frame_store = str(tmp_path / "store of the whole")
     animate(moving, whole)
-    assert exports.frames() == list(range(11)), "the frame before the first one is looked at"
+    assert exports.frames() == list(range(11)), "the frame before the first one is exported"
     moving.gradus.frame_store = str(tmp_path / "store")
     for first, last in ((1, 5), (6, 10)):
         moving.frame_start, moving.frame_end = first, last
@@ -448,7 +448,7 @@ def raise_in_library(frame: int, _exports: Exports, monkeypatch: pytest.MonkeyPa
 
 
 @pytest.mark.parametrize("fault", [raise_in_export, raise_in_library])
-def test_i2_a_fault_waits_for_its_frame(
+def test_i2_an_error_is_raised_at_its_frame(
     moving: bpy.types.Scene,
     exports: Exports,
     monkeypatch: pytest.MonkeyPatch,
@@ -502,11 +502,11 @@ def test_escape_ends_the_frames_ahead(
     begin = time.monotonic()
     animate(moving, tmp_path)
     assert time.monotonic() - begin < 30.0
-    assert 1 not in delivered, "it was in the frames ahead of the first one"
+    assert 1 not in delivered, "the cancel came while frames ahead of the first one were sampled"
     require_nothing_kept()
 
 
-# Its files were read to their end before the cancel was noticed.
+# Regression: the files of a frame were read to their end before a cancel was noticed.
 def test_k5_a_frame_that_is_cancelled_while_it_is_read_ends_well(
     moving: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -529,7 +529,7 @@ def test_k5_a_frame_that_is_cancelled_while_it_is_read_ends_well(
 # -------------------------------------------------------------------------------- the command line
 
 
-def test_single_frames_are_told_from_the_command_line() -> None:
+def test_single_frames_are_detected_on_the_command_line() -> None:
     assert animation._asks_for_single_frames(["blender", "-b", "a.blend", "-f", "1"])
     assert animation._asks_for_single_frames(["blender", "--render-frame", "1..5"])
     assert not animation._asks_for_single_frames(["blender", "-s", "1", "-a"])

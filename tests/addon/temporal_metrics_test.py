@@ -24,7 +24,7 @@ def moving_picture() -> np.ndarray:
 
 
 REFERENCE = moving_picture()
-RESTING = np.broadcast_to(REFERENCE[0], SHAPE)
+STATIC = np.broadcast_to(REFERENCE[0], SHAPE)
 
 
 def noise(seed: int, *shape: int) -> np.ndarray:
@@ -60,17 +60,17 @@ def test_noise_that_stays_does_not_flicker() -> None:
     assert measures.fast_share(images, REFERENCE, NONE) < 1e-12
 
 
-def test_what_moves_in_the_reference_is_no_flicker() -> None:
+def test_motion_in_the_reference_is_no_flicker() -> None:
     assert measures.flicker_map(REFERENCE, REFERENCE, NONE).max() == 0.0
     assert measures.flicker_map(np.broadcast_to(REFERENCE[0], SHAPE), REFERENCE, NONE).mean() > 0.05, (
-        "a picture that stays does flicker"
+        "a static picture flickers against a moving reference"
     )
 
 
 def test_an_error_that_turns_its_sign_each_frame_is_all_above_a_quarter_of_the_frame_rate() -> None:
     sign = np.array([1.0, -1.0] * (FRAMES // 2))[:, None, None, None]
-    assert measures.fast_share(RESTING + 0.1 * sign, RESTING, NONE) == pytest.approx(1.0)
-    assert flicker_ratio(RESTING + 0.1 * sign, RESTING) == pytest.approx(2.0)
+    assert measures.fast_share(STATIC + 0.1 * sign, STATIC, NONE) == pytest.approx(1.0)
+    assert flicker_ratio(STATIC + 0.1 * sign, STATIC) == pytest.approx(2.0)
 
 
 def test_noise_of_the_reference_is_subtracted() -> None:
@@ -91,16 +91,16 @@ def test_noise_of_the_reference_is_subtracted() -> None:
 
 
 def vectors_of_motion() -> np.ndarray:
-    """(previous - current, current - next) of moving_picture()."""
+    """Returns pass Vector of moving_picture(): (previous - current, current - next)."""
     return np.broadcast_to(np.array((-2.0, 0.0, -2.0, 0.0)), (*SHAPE[:3], 4))
 
 
-def test_noise_that_goes_with_the_surface_flickers_but_not_along_its_motion() -> None:
+def test_noise_that_moves_with_the_surface_flickers_but_not_along_its_motion() -> None:
     wide = noise(3, HEIGHT, WIDTH + 2 * FRAMES, 3)
     images = REFERENCE + np.stack([wide[:, 2 * (FRAMES - t) :][:, :WIDTH] for t in range(FRAMES)])
     warped = measures.warped_flicker_map(images, REFERENCE, NONE, vectors_of_motion())
     assert flicker_ratio(images) == pytest.approx(1.0, rel=0.1)
-    assert np.isnan(warped[:, :, :2]).all(), "what comes into the picture was nowhere before"
+    assert np.isnan(warped[:, :, :2]).all(), "points that enter the picture have no previous position"
     assert warped[:, :, 2:].max() < 1e-20
     assert measures.moving(vectors_of_motion()).all()
     assert not measures.moving(np.zeros((*SHAPE[:3], 4))).any()
@@ -116,7 +116,7 @@ def test_motion_upwards_is_a_row_less() -> None:
 
 
 def test_a_point_that_was_hidden_is_not_compared() -> None:
-    """At the pixel that the moving point came from, nothing moves."""
+    """The point was hidden in the previous frame: the pixel there shows another, static point."""
     vectors = np.zeros((*SHAPE[:3], 4))
     vectors[1, 8, 8, :2] = (-4.0, 0.0)
     warped = measures.warped_flicker_map(REFERENCE, REFERENCE, NONE, vectors)
@@ -135,25 +135,25 @@ def test_fireflies_are_trimmed() -> None:
 OFF = 6
 
 
-def lamp() -> np.ndarray:
+def switched_light() -> np.ndarray:
     """Returns a light that is switched off at frame OFF."""
-    return RESTING + 2.0 * (np.arange(FRAMES) < OFF)[:, None, None, None]
+    return STATIC + 2.0 * (np.arange(FRAMES) < OFF)[:, None, None, None]
 
 
 def test_a_light_that_goes_off_makes_independent_errors_no_less_steady() -> None:
     """The noise of the bright frame before is divided by the dark one: F is more than twice relMSE."""
-    images = lamp() * (1.0 + noise(6, *SHAPE))
-    assert flicker_ratio(images, lamp()) > 1.2
-    assert steadiness(images, lamp()) == pytest.approx(1.0, rel=0.03)
+    images = switched_light() * (1.0 + noise(6, *SHAPE))
+    assert flicker_ratio(images, switched_light()) > 1.2
+    assert steadiness(images, switched_light()) == pytest.approx(1.0, rel=0.03)
 
 
-def test_frames_for_themselves_have_no_lag() -> None:
-    shares = measures.shares_of_a_light(lamp() + noise(4, *SHAPE), lamp(), OFF)
+def test_independent_frames_have_no_lag() -> None:
+    shares = measures.shares_of_a_light(switched_light() + noise(4, *SHAPE), switched_light(), OFF)
     assert measures.lag(shares, OFF) == measures.lead(shares, OFF) == 0
 
 
 def test_a_mean_over_past_frames_lags() -> None:
-    reference = lamp()
+    reference = switched_light()
     images = np.stack([reference[max(0, t - 2) : t + 1].mean(axis=0) for t in range(FRAMES)])
     shares = measures.shares_of_a_light(images, reference, OFF)
     assert shares[OFF : OFF + 3] == pytest.approx([2 / 3, 1 / 3, 0.0])
@@ -161,7 +161,7 @@ def test_a_mean_over_past_frames_lags() -> None:
 
 
 def test_a_mean_over_coming_frames_leads() -> None:
-    reference = lamp()
+    reference = switched_light()
     images = np.stack([reference[t : t + 3].mean(axis=0) for t in range(FRAMES)])
     shares = measures.shares_of_a_light(images, reference, OFF)
     assert shares[OFF - 2 : OFF + 1] == pytest.approx([-1 / 3, -2 / 3, 0.0])
@@ -169,8 +169,8 @@ def test_a_mean_over_coming_frames_leads() -> None:
 
 
 def test_a_light_that_never_leaves_lags_to_the_end() -> None:
-    images = np.broadcast_to(lamp()[0], SHAPE)
-    assert measures.lag(measures.shares_of_a_light(images, lamp(), OFF), OFF) == FRAMES - OFF
+    images = np.broadcast_to(switched_light()[0], SHAPE)
+    assert measures.lag(measures.shares_of_a_light(images, switched_light(), OFF), OFF) == FRAMES - OFF
 
 
 def test_all_measures_have_names() -> None:
@@ -178,7 +178,7 @@ def test_all_measures_have_names() -> None:
     assert found["flicker"] == pytest.approx(2.0 * found["relmse"], rel=0.1)
     assert found["flicker_warped_moving"] == pytest.approx(found["flicker_warped"], rel=0.1)
     assert len(found["relmse_by_frame"]) == FRAMES
-    assert "flicker_warped_moving" not in measures.all_measures(RESTING, RESTING, NONE, np.zeros((*SHAPE[:3], 4)))
+    assert "flicker_warped_moving" not in measures.all_measures(STATIC, STATIC, NONE, np.zeros((*SHAPE[:3], 4)))
 
 
 def test_along_motion_nothing_is_measured_without_vectors() -> None:

@@ -1,4 +1,7 @@
-"""Pass Vector of known motions within 0.01 px: XY = previous - current, ZW = current - next, in pixels, y upwards."""
+"""Pass Vector of known motions is exact to 0.01 px.
+
+XY is previous - current and ZW is current - next, in pixels, y upwards.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ PIXELS_PER_METRE = 16.0  # px/m: 64 px cover 4 m
 
 @pytest.fixture
 def vectors(scene: bpy.types.Scene, render: Callable[..., Any]) -> Callable[[], np.ndarray]:
-    """vectors(): the Vector pass at frame 2."""
+    """Returns a function that renders the Vector pass at frame 2."""
     recording.add_camera(type="ORTHO", ortho_scale=4.0)
 
     def run() -> np.ndarray:
@@ -36,7 +39,7 @@ def _covered(vector: np.ndarray) -> np.ndarray:
     return vector[height // 2 - 4 : height // 2 + 4, width // 2 - 4 : width // 2 + 4]
 
 
-def test_c1_moving_object_over_a_resting_background(vectors: Callable[[], np.ndarray]) -> None:
+def test_c1_moving_object_over_a_static_background(vectors: Callable[[], np.ndarray]) -> None:
     obj = recording.add(recording.grid(1, 1.5))
     animation.key(obj, "location", {1: (-0.25, -0.125, 0), 2: (0, 0, 0), 3: (0.5, 0.125, 0)})
     found = vectors()
@@ -45,7 +48,7 @@ def test_c1_moving_object_over_a_resting_background(vectors: Callable[[], np.nda
     assert np.array_equal(found[0, 0], np.zeros(4)), "the background rests"
 
 
-def test_c1_resting_object_is_exactly_zero(vectors: Callable[[], np.ndarray]) -> None:
+def test_c1_static_object_is_exactly_zero(vectors: Callable[[], np.ndarray]) -> None:
     recording.add(recording.grid(1, 1.5)).rotation_euler = (0.3, 0.2, 0.1)
     moving = recording.add(recording.grid(1, 0.2), "Moving", (0, 1.05, 0))
     animation.key(moving, "location", {1: (-1, 1.05, 0), 3: (1, 1.05, 0)})
@@ -210,7 +213,7 @@ def test_c1_topology_change_does_not_crash(vectors: Callable[[], np.ndarray]) ->
 
 
 def test_c1_velocities_are_motion(vectors: Callable[[], np.ndarray]) -> None:
-    """Fluids and caches, whose topology changes, had the motion of their matrices only."""
+    """Regression: fluids and caches, whose topology changes, had the motion of their matrices only."""
     mesh = recording.grid(1, 1.5)
     velocity = mesh.attributes.new("velocity", "FLOAT_VECTOR", "POINT")
     for item in velocity.data:
@@ -226,10 +229,10 @@ def test_c1_without_motion_blur_or_vector_the_pass_is_absent(
     assert "Vector" not in render(scene, **SETTINGS)
 
 
-def test_c1_vectors_asked_for_on_the_command_line_move_too(
+def test_c1_vectors_requested_on_the_command_line_contain_motion(
     scene: bpy.types.Scene, render: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Neighbouring frames were read only if the view layer had the pass, so that everything was static."""
+    """Regression: neighbouring frames were read only if the view layer had the pass, so that everything was static."""
     recording.add_camera(type="ORTHO", ortho_scale=4.0)
     animation.key(recording.add(recording.grid(1, 1.5)), "location", {1: (-0.25, 0, 0), 2: (0, 0, 0), 3: (0.25, 0, 0)})
     monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-passes", "vector"])

@@ -56,7 +56,7 @@ def view(scene: bpy.types.Scene) -> Iterator[viewport.View]:
 def test_a_malformed_set_of_components_does_not_stop_the_viewport(
     scene: bpy.types.Scene, view: viewport.View, text: str
 ) -> None:
-    """The viewport refused malformed sets, although it has no components."""
+    """Regression: the viewport refused malformed sets, although it has no components."""
     scene.gradus.use_decomposition, scene.gradus.components, scene.gradus.preview_samples = True, text, 1
     depsgraph = bpy.context.evaluated_depsgraph_get()
     view.start(depsgraph.scene_eval, depsgraph.view_layer_eval, (0, 0, WIDTH, HEIGHT))
@@ -68,7 +68,7 @@ def test_a_malformed_set_of_components_does_not_stop_the_viewport(
 
 
 def test_components_are_edited_without_a_new_picture(scene: bpy.types.Scene) -> None:
-    """Each change of the set restarted the viewport, which has no components."""
+    """Regression: each change of the set restarted the viewport, which has no components."""
     before = signature()
     settings = scene.gradus
     settings.use_decomposition, settings.components, settings.component_replays = True, "A=EDL", False
@@ -96,8 +96,10 @@ def has_edits(change: Callable[[], None]) -> bool:
 
 
 def test_an_update_of_the_compositor_is_not_an_edit(scene: bpy.types.Scene) -> None:
-    """Before Blender 5.0, the compositor is tagged with the scene, and every change of a setting restarted the
-    viewport."""
+    """Before Blender 5.0, the compositor is tagged along with the scene.
+
+    Regression: every change of a setting restarted the viewport.
+    """
     compositing.new_tree(scene)
     obj = recording.add(recording.grid(1))
     assert not has_edits(lambda: setattr(scene.gradus, "components", "A=EDL"))
@@ -201,7 +203,7 @@ def calls_of(action: Callable[[], object]) -> int:
 
 
 def test_an_update_does_not_visit_the_instances(scene: bpy.types.Scene) -> None:
-    """Each selection took a second in a scene of a million instances."""
+    """Regression: each selection took a second in a scene of a million instances."""
     mesh = recording.grid(1)
     counts = []
     for total in (2, 500):

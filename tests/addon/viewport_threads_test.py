@@ -51,7 +51,7 @@ def interrupted_during(name: str) -> FakeLibrary:
 
 @pytest.mark.parametrize(("name", "calls"), [("commit", ["commit"]), ("start", ["commit", "start", "cancel"])])
 def test_k4_a_cancel_before_the_render_has_a_handle_is_not_lost(name: str, calls: list[str]) -> None:
-    """The render continued after the edit that had cancelled it."""
+    """Regression: the render continued after the edit that had cancelled it."""
     assert interrupted_during(name).calls == calls
 
 

@@ -17,12 +17,12 @@ namespace fs = std::filesystem;
 constexpr uint32_t kWidth = 320, kHeight = 180;
 constexpr int kFrames = 12;
 
+// A combination of integrator and reconstruction.
 struct Job {
   const char* name;
   uint32_t integrator, reconstruction;
 };
 
-// A combination of integrator and reconstruction.
 class AnimationEstimate : public ::testing::TestWithParam<Job> {};
 
 GradusSettings settings_of(const Job& job, int32_t frame) {

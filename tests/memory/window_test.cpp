@@ -48,7 +48,7 @@ class NoisySource final : public reconstruct::HalvedWindowSource {
   NoisySource(const reconstruct::WindowSize& size, test::Motion motion)
       : size_(size), row_(size_t(size.width) * size_t(size.channels)) {
     test::Window window(size.width, size.height, 0, size.frames);
-    test::link(&window, motion);
+    test::set_correspondences(&window, motion);
     correspondence_ = std::move(window.correspondence);
     for (const reconstruct::RowKind kind : reconstruct::kRowKinds) {
       values_.emplace_back(row_ * size_t(size.height) * size_t(size.frames));

@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 
 const fs::path kFolder = fs::path(GRADUS_BINARY_DIR) / "pictures";
 
-// Returns the file in which remember() saves the picture with these bits.
-fs::path remembered(const std::string& bits) { return kFolder / "stored" / (bits + ".exr"); }
+// Returns the file in which save_reference() saves the picture with these bits.
+fs::path reference_file(const std::string& bits) { return kFolder / "stored" / (bits + ".exr"); }
 
 void save(const fs::path& path, const std::vector<float>& rgba) {
   fs::create_directories(path.parent_path());
@@ -36,7 +36,7 @@ std::vector<float> without_alpha(const std::vector<float>& rgba) {
 }
 
 // Returns an RGB picture that shows the mean of its block in each pixel.
-std::vector<float> squares(const std::vector<float>& means) {
+std::vector<float> block_picture(const std::vector<float>& means) {
   std::vector<float> rgb(size_t(kWidth) * kHeight * 3);
   for (uint32_t i = 0; i < rgb.size(); ++i) {
     const uint32_t x = i / 3 % kWidth, y = i / 3 / kWidth;
@@ -77,15 +77,17 @@ void save_beside_each_other(const fs::path& path, const std::vector<std::vector<
 
 }  // namespace
 
-void remember(const std::string& bits, const std::vector<float>& rgba) {
-  if (!fs::exists(remembered(bits))) save(remembered(bits), rgba);
+void save_reference(const std::string& bits, const std::vector<float>& rgba) {
+  if (!fs::exists(reference_file(bits))) save(reference_file(bits), rgba);
 }
 
 std::string keep(const std::string& name, const std::string& bits, const std::vector<float>& means,
                  const std::vector<float>& rgba) {
-  const bool by_pixels = fs::exists(remembered(bits));
-  const std::vector<float> picture = without_alpha(rgba), compared = by_pixels ? picture : squares(block_means(rgba));
-  const std::vector<float> reference = by_pixels ? film_io::load_rgb(remembered(bits), "").rgb : squares(means);
+  const bool by_pixels = fs::exists(reference_file(bits));
+  const std::vector<float> picture = without_alpha(rgba),
+                           compared = by_pixels ? picture : block_picture(block_means(rgba));
+  const std::vector<float> reference =
+      by_pixels ? film_io::load_rgb(reference_file(bits), "").rgb : block_picture(means);
   fs::path path = kFolder / name;
   save(path.replace_extension(".exr"), rgba);
   save_beside_each_other(path.replace_extension(".png"), {reference, picture, difference(compared, reference)});

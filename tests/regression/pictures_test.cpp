@@ -206,7 +206,7 @@ TEST_F(M1_Pictures, HaveTheStoredBits) {
     const std::vector<float> rgba = render_stored(picture);
     EXPECT_EQ(flaw(rgba), "") << picture.name;
     EXPECT_EQ(bits(rgba), entry["bits"]) << keep(picture.name, entry["bits"], means_of(entry), rgba);
-    if (bits(rgba) == entry["bits"]) remember(entry["bits"], rgba);
+    if (bits(rgba) == entry["bits"]) save_reference(entry["bits"], rgba);
   }
 }
 
@@ -215,7 +215,7 @@ TEST(M1_Artefacts, ReportWhatDiffersAndWhere) {
   std::vector<float> rgba(size_t(kWidth) * kHeight * 4, 0.5f);
   const std::vector<float> means = block_means(rgba);
   EXPECT_NE(keep("a test", "a test", means, rgba).find("relMSE of blocks 0;"), std::string::npos);
-  remember("a test", rgba);
+  save_reference("a test", rgba);
   rgba[0] = 2.0f;
   const std::string text = keep("a test", "a test", means, rgba);
   EXPECT_NE(text.find("relMSE of pixels 0.0003"), std::string::npos)

@@ -74,7 +74,7 @@ def test_c3_frames_of_the_command_line(
     ]
     lines = [json.loads(line) for line in stats.read_text().splitlines()]
     assert [line["frame"] for line in lines] == frames
-    assert all((line.get("spp_offset", 0) > 0) == follows for line in lines)
+    assert all((line.get("samples_replayed", 0) > 0) == follows for line in lines)
 
 
 def test_i2_a_fault_in_frame_5_ends_with_code_1_after_frame_4(
@@ -109,4 +109,4 @@ def test_k1_sigint_ends_the_frames_ahead_within_a_second(tmp_path: Path, seconds
     assert process.returncode == 1, output
     assert time.monotonic() - begin < 1.0
     assert list(tmp_path.glob("f_*.png")) == []
-    assert os.listdir(temporary) == [], "frames that were kept for their neighbours are gone"
+    assert os.listdir(temporary) == [], "frames that were kept for their neighbours are released"

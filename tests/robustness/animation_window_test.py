@@ -80,9 +80,9 @@ def test_c3_an_animation_in_a_window_has_every_frame(tmp_path: Path) -> None:
     with window.blender(script(tmp_path, 16)) as blender:
         blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
         blender.wait_for("TICK 0", limit=5)
-        assert "TICK 1" in blender.log, "the interface lives meanwhile"
+        assert "TICK 1" in blender.log, "the interface responds meanwhile"
     assert [line["frame"] for line in lines(tmp_path)] == list(range(1, 13))
-    assert all(line["spp_offset"] == 8 for line in lines(tmp_path))
+    assert all(line["samples_replayed"] == 8 for line in lines(tmp_path))
     assert len(list(tmp_path.glob("f_*.png"))) == 12
 
 
@@ -95,7 +95,7 @@ scene.render.filepath = "FOLDER/f_####"
 """
 
 
-def test_frames_ahead_are_seen_while_they_are_sampled(tmp_path: Path) -> None:
+def test_frames_ahead_are_shown_while_they_are_sampled(tmp_path: Path) -> None:
     """Regression: until the frames ahead of the first one were sampled, the window was black."""
     with window.blender(glow.SCENE.replace("SAMPLES", "1000000") + MOVES.replace("FOLDER", str(tmp_path))) as blender:
         blender.wait_for("WINDOW-READY")
@@ -107,7 +107,7 @@ def test_frames_ahead_are_seen_while_they_are_sampled(tmp_path: Path) -> None:
     assert list(tmp_path.glob("f_*.png")) == []
 
 
-def test_escape_between_frames_keeps_what_was_seen(tmp_path: Path) -> None:
+def test_escape_between_frames_keeps_the_shown_picture(tmp_path: Path) -> None:
     """Regression: the frames ahead of a later frame were cancelled, and the shown picture was empty."""
     moves = MOVES.replace("FOLDER", str(tmp_path)).replace("12", "40")
     with window.blender(glow.SCENE.replace("SAMPLES", "64") + moves) as blender:
@@ -130,7 +130,7 @@ def test_escape_ends_the_frames_ahead_in_a_window(tmp_path: Path) -> None:
     assert list(tmp_path.glob("f_*.png")) == []
 
 
-def test_simulations_that_are_not_baked_are_named_and_keep_frames_on_their_own(tmp_path: Path) -> None:
+def test_simulations_that_are_not_baked_are_named_and_make_frames_independent(tmp_path: Path) -> None:
     # Unless the interface is locked, it draws the rigid body while the render steps to the next frame, and Blender 3.4
     # itself may crash.
     falling = (
@@ -139,13 +139,13 @@ def test_simulations_that_are_not_baked_are_named_and_keep_frames_on_their_own(t
     )
     with window.blender(script(tmp_path, 2, falling + "; scene.frame_end = 3")) as blender:
         blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
-    assert [line.get("spp_offset", 0) for line in lines(tmp_path)] == [0, 0, 0]
+    assert [line.get("samples_replayed", 0) for line in lines(tmp_path)] == [0, 0, 0]
     warnings = [text for line in lines(tmp_path) for text in line["warnings"] if "not baked" in text]
     assert len(warnings) == 1
     assert "Rigid Body World" in warnings[0]
 
 
-def test_simulations_that_no_picture_shows_leave_temporal_on(tmp_path: Path) -> None:
+def test_invisible_simulations_leave_temporal_on(tmp_path: Path) -> None:
     """Regression: with an empty rigid-body world or a cloth hidden for render, all frames were stills."""
     hidden = """
 bpy.ops.rigidbody.world_add()
@@ -157,5 +157,5 @@ scene.frame_end = 3
 """
     with window.blender(script(tmp_path, 2, hidden)) as blender:
         blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
-    assert [line["spp_offset"] for line in lines(tmp_path)] == [1, 1, 1]
+    assert [line["samples_replayed"] for line in lines(tmp_path)] == [1, 1, 1]
     assert not [text for line in lines(tmp_path) for text in line["warnings"] if "not baked" in text]

@@ -58,7 +58,7 @@ def test_file_names_are_sonames(bundle: list[Path]) -> None:
 
 
 def test_sonames_are_ours(bundle: list[Path]) -> None:
-    """Returns the libraries of the host: those that this process has mapped, and those in Blender's folder."""
+    """No soname of the bundle is that of a library of the host: mapped by this process or in Blender's folder."""
     host = {path for path in mapped() if path.parent != bundle[0].parent}
     host |= set(Path(bpy.__file__).resolve().parent.rglob("*.so*")) if getattr(bpy.app, "module", False) else set()
     sonames = {name for path in host if path.is_file() for name in dynamic(path, "SONAME")}
@@ -84,7 +84,7 @@ print(open("/proc/self/maps").read())
     known = {path.name for path in bundle}
     loaded = {path.name for path in libraries if path.parent == folder}
     assert "libgradus.so" in loaded
-    # A library of which we carry a copy came from the copy.
+    # Libraries that are in the bundle were loaded from the bundle.
     plain = {name.replace("libgradus_", "lib") for name in known}
     python_own = {"libz.so.1", "libexpat.so.1"}  # the interpreter's
     strangers = {path for path in libraries if path.parent != folder and path.name in plain - python_own}
@@ -92,7 +92,7 @@ print(open("/proc/self/maps").read())
 
 
 def test_flow_library_holds_opencv_and_shows_none_of_it(bundle: list[Path]) -> None:
-    """Blender 3.4 has another OpenCV in its global scope: neither may bind to symbols of the other."""
+    """Neither copy of OpenCV may bind to symbols of the other: Blender 3.4 has another one in its global scope."""
     flow = next(path for path in bundle if path.name == "libgradus_flow.so")
     symbols = subprocess.run(["nm", "-D", flow], check=True, capture_output=True, text=True).stdout.splitlines()
     defined = {line.split()[-1] for line in symbols if line.split()[-2] not in "Uwv"}

@@ -94,4 +94,4 @@ def test_grows_on_screen_and_escape_ends_it() -> None:
         assert "RENDER-COMPLETE" not in blender.log
         blender.press("Escape")
         blender.wait_for("RENDER-CANCELLED", limit=3)
-        glow.wait_for_picture(blender)  # what there was stays
+        glow.wait_for_picture(blender)  # the shown picture stays

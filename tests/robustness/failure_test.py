@@ -208,7 +208,7 @@ def test_i2_a_rerun_completes_the_job(blender: Callable[..., Outcome], tmp_path:
 
 
 @pytest.mark.parametrize("kind", ["PNG", "OPEN_EXR_MULTILAYER"])
-def test_f7_a_frame_cut_short_by_a_full_disk_ends_the_job(
+def test_f7_a_frame_truncated_by_a_full_disk_ends_the_job(
     blender: Callable[..., Outcome], tmp_path: Path, kind: str
 ) -> None:
     cut = """

@@ -77,7 +77,7 @@ def test_i4_frames_are_equal_however_a_job_is_split(blender: Callable[..., Outco
 def test_i4_workers_that_share_a_frame_store_make_the_bits_of_one(
     blender: Callable[..., Outcome], tmp_path: Path
 ) -> None:
-    """The last worker has them: which frames of the other one a worker reads depends on those that exist."""
+    """The last worker has the pictures of a single worker. Others use the neighbouring frames that exist so far."""
     whole, parts, again = (tmp_path / name for name in ("whole", "parts", "again"))
 
     def store(name: str) -> list[str]:
@@ -106,5 +106,5 @@ def test_i6_the_lines_that_farms_parse(blender: Callable[..., Outcome], tmp_path
     ours = [line for line in lines if "Gradus" in line]
     assert all(re.match(r"Fra:\d+ Mem:.* \| Gradus: |Warning: Gradus: ", line) for line in ours), ours
     missing = [place for place, line in enumerate(lines) if "/nonexistent/lost.png" in line]
-    assert len(missing) == 1 and missing[0] < saved[0], "once, before there is a frame"
+    assert len(missing) == 1 and missing[0] < saved[0], "one warning before the first frame"
     assert len(ours) - 1 <= 2 * len(frames) + outcome.seconds, ours

@@ -56,7 +56,7 @@ def test_includes_of_folders_above_and_of_the_own_folder_are_allowed(tmp_path: P
         ("loose.h", "", "its folder is not in the list"),
     ],
 )
-def test_an_arrow_that_points_down_is_named(tmp_path: Path, file: str, text: str, expected: str) -> None:
+def test_a_dependency_in_the_wrong_direction_is_named(tmp_path: Path, file: str, text: str, expected: str) -> None:
     found = problems(tmp_path, {file: text})
     assert found
     assert any(line.startswith(f"{file}: ") and expected in line for line in found)

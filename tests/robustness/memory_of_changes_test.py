@@ -8,7 +8,7 @@ from pathlib import Path
 from support.application import Outcome
 from support.memory import SAMPLES, check_memory
 
-# Other triangles in every frame, one or two objects, and names that change.
+# The triangles change in every frame, as do the number of objects, which is one or two, and their names.
 CHANGING = """
 cube = scene.objects["Cube"]
 cube.modifiers.new("Copies", "ARRAY")
@@ -27,7 +27,7 @@ def rename(scene, *_):
 
 bpy.app.handlers.render_post.append(rename)
 """
-# Animations of three frames that end after so many questions whether they should.
+# Animations of three frames that are cancelled at different polls.
 CANCELLED = """
 from gradus import renderer
 scene.frame_start, scene.frame_end = 1, 3

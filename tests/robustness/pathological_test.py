@@ -82,16 +82,16 @@ def test_e1_scenes_without_surfaces_show_the_world(
     assert picture(stage, render)["Combined"][:, :, :3].max() == 0.0
 
 
-def test_e1_without_lights_only_an_emissive_mesh_shines(stage: bpy.types.Scene, render: Render) -> None:
+def test_e1_without_lights_only_an_emissive_mesh_emits_light(stage: bpy.types.Scene, render: Render) -> None:
     stage.world = None
     assert picture(stage, render)["Combined"][:, :, :3].max() == 0.0
     material = nodes.new_material()
     emission = material.node_tree.nodes.new("ShaderNodeEmission")
     emission.inputs["Strength"].default_value = 2.0
     nodes.show(material, emission.outputs[0])
-    lamp = recording.grid(1, size=1.0)
-    lamp.materials.append(material)
-    recording.add(lamp, "lamp", (0.0, 0.0, 2.0)).rotation_euler = (0.0, 1.0, 0.0)
+    light = recording.grid(1, size=1.0)
+    light.materials.append(material)
+    recording.add(light, "light", (0.0, 0.0, 2.0)).rotation_euler = (0.0, 1.0, 0.0)
     passes = picture(stage, render)
     assert right_half(passes).max() > 0.01
 
@@ -99,9 +99,9 @@ def test_e1_without_lights_only_an_emissive_mesh_shines(stage: bpy.types.Scene, 
 @pytest.mark.parametrize("energy", [0.0, -10.0, 1e38])
 @pytest.mark.parametrize("kind", ["POINT", "SUN", "SPOT", "AREA"])
 def test_e4_extreme_energies(stage: bpy.types.Scene, render: Render, kind: str, energy: float) -> None:
-    lamp = bpy.data.lights.new("lamp", kind)
-    lamp.energy = energy
-    recording.add(lamp, "lamp", (1.5, 0.0, 3.0))
+    light = bpy.data.lights.new("light", kind)
+    light.energy = energy
+    recording.add(light, "light", (1.5, 0.0, 3.0))
     image = right_half(picture(stage, render))
     assert image.max() > 0.0
     if energy == 0.0:
@@ -164,7 +164,7 @@ def shows(place: str) -> bpy.types.Material:
 
 @pytest.mark.parametrize("value", [NAN, INF])
 @pytest.mark.parametrize("place", ["vertices", "normals", "UVs", "colours"])
-def test_e2_broken_meshes_cost_themselves_alone(
+def test_e2_broken_meshes_affect_only_themselves(
     stage: bpy.types.Scene, render: Render, place: str, value: float
 ) -> None:
     whole = right_half(picture(stage, render))
@@ -189,7 +189,7 @@ def parent_of_scale_zero(obj: bpy.types.Object) -> None:
 
 
 @pytest.mark.parametrize("name", [*MATRICES, "parent"])
-def test_e2_broken_objects_cost_themselves_alone(stage: bpy.types.Scene, render: Render, name: str) -> None:
+def test_e2_broken_objects_affect_only_themselves(stage: bpy.types.Scene, render: Render, name: str) -> None:
     whole = right_half(picture(stage, render))
     obj = recording.add(recording.grid(1, size=1.0), "broken", (-2.0, 0.0, 0.0))
     MATRICES.get(name, parent_of_scale_zero)(obj)

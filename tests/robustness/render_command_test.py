@@ -19,7 +19,7 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize("name", list(MISTAKES))
-def test_a_mistake_is_told_before_anything_is_built(name: str) -> None:
+def test_a_mistake_is_reported_before_anything_is_built(name: str) -> None:
     value, message = MISTAKES[name]
     refused(name, value, message)
     refused(name, value, message, "--animation")
@@ -65,7 +65,7 @@ def refused(name: str, value: str, message: str, *options: str) -> None:
         ),
     ],
 )
-def test_components_are_asked_for_with_all_of_their_passes(
+def test_components_are_requested_with_all_of_their_passes(
     monkeypatch: pytest.MonkeyPatch, text: str, options: list[str]
 ) -> None:
     monkeypatch.setenv("COMPONENTS", text)

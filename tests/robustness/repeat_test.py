@@ -72,9 +72,9 @@ def _still(scene: bpy.types.Scene, order: list[int]) -> None:
     camera.location, camera.rotation_euler = (0.0, -7.0, 2.0), (1.3, 0.0, 0.0)
     scene.collection.objects.link(camera)
     scene.camera = camera
-    lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
-    lamp.location, lamp.data.energy, lamp.data.shadow_soft_size = (0.0, -3.0, 3.0), 100.0, 0.3
-    scene.collection.objects.link(lamp)
+    light = bpy.data.objects.new("Light", bpy.data.lights.new("Light", "POINT"))
+    light.location, light.data.energy, light.data.shadow_soft_size = (0.0, -3.0, 3.0), 100.0, 0.3
+    scene.collection.objects.link(light)
 
 
 def test_l2_the_order_of_objects_changes_the_noise_alone(tmp_path: Path) -> None:

@@ -337,7 +337,7 @@ class Edges : public testing::TestWithParam<Halves> {
     PathScene scene;
     Surface light;
     light.emission = Rgb(6.0f);
-    const bool hole = GetParam().left_holdout != Halves::NoHoldout;
+    const bool has_holdout = GetParam().left_holdout != Halves::NoHoldout;
     const uint64_t left = GetParam().left_holdout == Halves::Shader ? holdout(&scene) : scene.material(GetParam().left);
     scene.quad(Vec3(-1, -1, 0), Vec3(1, 0, 0), Vec3(0, 2, 0), left,
                GetParam().left_holdout == Halves::Object ? GRADUS_VISIBLE_ALL | GRADUS_HOLDOUT : GRADUS_VISIBLE_ALL);
@@ -351,7 +351,7 @@ class Edges : public testing::TestWithParam<Halves> {
     GradusSettings settings = test::test_settings(2, 1);
     settings.seed = seed;
     settings.max_bounces = 4;
-    settings.film_transparent = hole ? 1 : 0;
+    settings.film_transparent = has_holdout ? 1 : 0;
     const integrator::IntegratorContext c = scene.context(settings);
     film::Film film = test::make_test_film(c.settings, true);
     test::sample_film(*gradient::make_gradient_integrator(c), 0, 64, &film);

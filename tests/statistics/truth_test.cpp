@@ -66,10 +66,10 @@ void add_many_lights(PathScene* scene) {
 
 // Adds a large light that swings, a ball that swells while it moves, and a camera that moves sideways.
 void add_motion(PathScene* scene) {
-  scene->scene.way = {test::translation(Vec3(-0.2f, 0, 0)),
-                      test::translation(Vec3(0.3f, -0.4f, 0)) * glm::rotate(Mat4(1.0f), 0.5f, Vec3(0, 0, 1))};
+  scene->scene.shutter_poses = {test::translation(Vec3(-0.2f, 0, 0)),
+                                test::translation(Vec3(0.3f, -0.4f, 0)) * glm::rotate(Mat4(1.0f), 0.5f, Vec3(0, 0, 1))};
   test::add_ceiling_light(scene, 1.5f, 1.4f);
-  scene->scene.way = {Mat4(1.0f), test::translation(Vec3(-0.3f, 0.3f, 0))};
+  scene->scene.shutter_poses = {Mat4(1.0f), test::translation(Vec3(-0.3f, 0.3f, 0))};
   scene->swelling = 1.5f;
   scene->ball(Vec3(0.3f, -0.6f, 0.1f), 0.3f, scene->material(test::matte(Rgb(0.5f))), 6, true);
   scene->open_shutter({1.0f, 0.2f, 1.0f}, {Mat4(1.0f), test::translation(Vec3(0.1f, 0, 0))});

@@ -35,7 +35,8 @@ struct Bounds {
   std::array<double, kCauses> failed = {0.06, 0.15, 0.45, 0.05, 0.03, 0.1, 0.1};
   // Number of radiance values, gradients and features that were not finite.
   uint64_t dropped = 0;
-  // Difference to the image in double, in units of B8's bound (support/double_image.h). Negative: not compared.
+  // Maximum difference from the image in double, in units of B8's bound (support/double_image.h). Negative: not
+  // compared.
   double from_double = 1.0;
 
   // Bounds of a single object without corners.

@@ -16,13 +16,13 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 @dataclass
 class Outcome:
-    code: int  # 124: over the limit
+    code: int  # 124 if the time limit was exceeded
     output: str  # stdout and stderr
     seconds: float
 
 
 def scripts(folder: Path, addon: Path = ROOT / "addon" / "gradus") -> Path:
-    """A scripts folder for BLENDER_USER_SCRIPTS that holds the add-on and nothing of the user's."""
+    """Creates a scripts folder for BLENDER_USER_SCRIPTS that contains the add-on only. Returns its path."""
     (folder / "addons").mkdir(parents=True)
     (folder / "addons" / "gradus").symlink_to(addon, target_is_directory=True)
     return folder
@@ -36,7 +36,7 @@ def environment(folder: Path, addon: Path = ROOT / "addon" / "gradus", **changes
     result = {key: value for key, value in os.environ.items() if not key.startswith("BLENDER_")}
     result["PATH"] = "/usr/bin:/bin:" + result.get(
         "PATH", ""
-    )  # its Python takes modules from beside the first python3.11 in PATH
+    )  # Blender's Python takes its modules from the folder of the first python3.11 in PATH
     result["BLENDER_USER_SCRIPTS"] = str(scripts(folder / "scripts", addon))
     result["BLENDER_USER_CONFIG"] = str(folder / "config")
     for key, value in changes.items():
@@ -48,7 +48,7 @@ def environment(folder: Path, addon: Path = ROOT / "addon" / "gradus", **changes
 
 def start(*arguments: str | Path, env: Mapping[str, str | None] | None = None, addon: Path = ROOT / "addon" / "gradus",
           folder: Path | None = None) -> subprocess.Popen:  # fmt: skip
-    """Starts `blender -b --factory-startup -noaudio ARGUMENTS` and returns at once; read its stdout."""
+    """Starts `blender -b --factory-startup -noaudio ARGUMENTS` and returns the process, whose stdout must be read."""
     folder = folder or Path(tempfile.mkdtemp(prefix="gradus-test-"))
     return subprocess.Popen(
         [os.environ.get("BLENDER") or "blender", "-b", "--factory-startup", "-noaudio", *map(str, arguments)],
@@ -59,7 +59,7 @@ def start(*arguments: str | Path, env: Mapping[str, str | None] | None = None, a
 
 def run(*arguments: str | Path, limit: float = 120, env: Mapping[str, str | None] | None = None,
         addon: Path = ROOT / "addon" / "gradus") -> Outcome:  # fmt: skip
-    """Runs Blender to its end. The add-on is there, but enabled only by "--addons", "gradus" among the arguments."""
+    """Runs Blender to its end. The add-on is available, but enabled only by the arguments "--addons", "gradus"."""
     with tempfile.TemporaryDirectory(prefix="gradus-test-") as folder:
         begin = time.monotonic()
         process = start(*arguments, env=env, addon=addon, folder=Path(folder))

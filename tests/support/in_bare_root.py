@@ -17,7 +17,7 @@ def install() -> None:
 
 
 def render() -> None:
-    """Blender's default scene: a cube, a light and a camera."""
+    """Renders Blender's default scene: a cube, a light and a camera."""
     scene = bpy.context.scene
     scene.render.engine = "GRADUS"
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 96, 54, 100

@@ -47,7 +47,7 @@ SAMPLES = pytest.mark.parametrize("samples", [1, 2], ids=["frame by frame", "ove
 def check_memory(
     blender: Callable[..., Outcome], folder: Path, script: str, steps: int, samples: int, *arguments: str
 ) -> None:
-    """Of a job of so many steps, after a quarter of them."""
+    """Requires that memory does not grow in a job of so many steps, after the first quarter of them."""
     temporary = folder / "temporary"
     temporary.mkdir()
     script = (COUNT + script).replace("SAMPLES", str(samples)).replace("FRAMES", str(steps))

@@ -50,7 +50,7 @@ def triangle_scene(library: native.Library, device: int) -> int:
 
 
 def depths(library: native.Library) -> array:
-    """Depth pass, row 0 at the bottom."""
+    """Returns the Depth pass, row 0 at the bottom."""
     device = c_uint64()
     library.device_create(byref(struct(native.DeviceSettings, threads=1)), byref(device))
     scene = triangle_scene(library, device.value)
@@ -74,7 +74,7 @@ def depths(library: native.Library) -> array:
 
 
 def check() -> None:
-    """The centre sees the triangle at distance 2; the upper left corner sees nothing."""
+    """Requires that the centre shows the triangle at distance 2 and the upper left corner nothing."""
     pixels = depths(native.load())
     centre, corner = pixels[SIZE * (SIZE // 2) + SIZE // 2], pixels[SIZE * (SIZE - 1)]
     assert abs(centre - 2.0) < 1e-3, f"depth {centre} where 2 was expected"

@@ -1,4 +1,4 @@
-"""A library that only records what an export sets, copied from the C structs: tests of the export need no render."""
+"""A library that only records copies of the C structs of an export, so that tests of the export need no render."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 
 def values(pointer: Any, *shape: int) -> np.ndarray | None:
-    """A copy of the array behind a typed pointer; None for NULL."""
+    """Returns a copy of the array at a typed pointer; None for NULL."""
     if not pointer or 0 in shape:
         return None
     return np.ctypeslib.as_array(pointer, shape=shape).copy()
@@ -33,7 +33,7 @@ class RecordedMesh:
 
 
 def _shutter_matrices(record: Any, count: int) -> list[np.ndarray | None]:
-    """By instance; None where it is at rest."""
+    """Returns the matrices of each instance while the shutter is open; None for static instances."""
     first, counts = values(record.shutter_first, count), values(record.shutter_count, count)
     if first is None:
         return [None] * count
@@ -160,7 +160,7 @@ class Recording:
 
 
 def export(scene: bpy.types.Scene, **arguments: Any) -> tuple[Recording, Any]:
-    """One export of the scene as the viewport evaluates it: the recording and the report."""
+    """Exports the scene as the viewport evaluates it. Returns the recording and the report."""
     from gradus.export import Exporter
 
     recording = Recording()
@@ -170,7 +170,7 @@ def export(scene: bpy.types.Scene, **arguments: Any) -> tuple[Recording, Any]:
 
 
 def add(data: Any, name: str = "Object", location: tuple[float, float, float] = (0, 0, 0)) -> bpy.types.Object:
-    """An object of `data` in the current scene."""
+    """Adds an object of `data` to the current scene and returns it."""
     obj = bpy.data.objects.new(name, data)
     bpy.context.scene.collection.objects.link(obj)
     obj.location = location
@@ -178,7 +178,7 @@ def add(data: Any, name: str = "Object", location: tuple[float, float, float] = 
 
 
 def add_camera(**settings: Any) -> bpy.types.Object:
-    """The scene's camera, 5 m above the origin, looking down."""
+    """Adds the scene's camera, 5 m above the origin, looking down."""
     data = bpy.data.cameras.new("Camera")
     for name, value in settings.items():
         setattr(data, name, value)
@@ -188,7 +188,7 @@ def add_camera(**settings: Any) -> bpy.types.Object:
 
 
 def grid(cells: int = 1, size: float = 2.0, name: str = "Grid") -> bpy.types.Mesh:
-    """A square in the XY plane of cells x cells faces with a UV map."""
+    """Returns a square in the XY plane of cells x cells faces with a UV map."""
     step = size / cells
     side = range(cells + 1)
     vertices = [(step * x - size / 2, step * y - size / 2, 0.0) for y in side for x in side]

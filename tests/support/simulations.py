@@ -130,7 +130,7 @@ def exists(kind: str) -> bool:
         4,
         1,
         0,
-    )  # the interface of node groups, of which we make one
+    )  # the interface of node groups, which the simulation zone needs
 
 
 def places(depsgraph: Any) -> Places:

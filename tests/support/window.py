@@ -1,4 +1,4 @@
-"""Blender with a window on a screen of its own (Xvfb), driven from outside by xdotool and looked at by screenshots."""
+"""Blender with a window on a screen of its own (Xvfb). xdotool controls it, and screenshots show it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ WIDTH, HEIGHT = 1280, 800
 
 
 class Window:
-    """A running Blender. `log` is what it printed so far."""
+    """A running Blender. `log` is its output so far."""
 
     def __init__(self, process: subprocess.Popen, display: str, folder: Path) -> None:
         self.process, self.display, self.folder = process, display, folder
@@ -34,7 +34,7 @@ class Window:
             time.sleep(0.1)
 
     def press(self, key: str) -> None:
-        """A key, with the mouse in the middle of the window."""
+        """Presses a key while the mouse is in the middle of the window."""
         command = ["xdotool", "mousemove", str(WIDTH // 2), str(HEIGHT // 2), "key", key]
         subprocess.run(command, env=os.environ | {"DISPLAY": self.display}, check=True, timeout=20)
 
@@ -46,7 +46,7 @@ class Window:
 
 @contextmanager
 def screen() -> Iterator[str]:
-    """An X server without a screen; gives its DISPLAY."""
+    """Runs an X server without a screen and yields its DISPLAY."""
     reader, writer = os.pipe()
     command = [
         "Xvfb",
@@ -74,7 +74,7 @@ def screen() -> Iterator[str]:
 
 @contextmanager
 def blender(script: str) -> Iterator[Window]:
-    """Blender 3.4 in a full-screen window with the add-on enabled, running `script` once its window is there."""
+    """Runs Blender 3.4 in a full-screen window with the add-on, and runs `script` as soon as the window exists."""
     with screen() as display, tempfile.TemporaryDirectory(prefix="gradus-window-") as name:
         folder = Path(name)
         (folder / "script.py").write_text(script)
@@ -98,7 +98,7 @@ def blender(script: str) -> Iterator[Window]:
 
 
 def cache() -> Path:
-    """Compiled shaders are kept between runs: they take ten seconds."""
+    """Returns the folder of compiled shaders, which are kept between runs because they take ten seconds."""
     folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "gradus" / "mesa"
     folder.mkdir(parents=True, exist_ok=True)
     return folder

@@ -43,7 +43,7 @@ def wait(condition: Any) -> Iterator[float]:
 
 
 def views() -> list[Any]:
-    """The engine's viewports. Blender does not list its engines, Python's collector does."""
+    """Returns the engine's viewports. Blender does not list its engines, so that the garbage collector is asked."""
     import gc
 
     from gradus.viewport import View
@@ -84,7 +84,7 @@ def steps() -> Iterator[float]:
     yield 1.0
     shoot("moved")
 
-    # A second viewport, and F12 while both sample.
+    # Opens a second viewport, and presses F12 while both sample.
     with bpy.context.temp_override(window=window, area=area):
         bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
     yield 0.5

@@ -137,7 +137,7 @@ def truth_cells(row: Row) -> list[str]:
     check, error, tracked = row["check"], row["check"]["error"], row["pixels"]["tracked"]
     there = check["exist"] + check["reappear"]
     simpler = check["simpler"]
-    static, moving = simpler["flat_resting_mirror"], simpler["flat_moving_mirror"]
+    static, moving = simpler["flat_static_mirror"], simpler["flat_moving_mirror"]
     return [
         share(tracked, row["chains"]),
         share(check["tracked"], check["exist"]),
@@ -281,7 +281,7 @@ COSTS = (
     CostRatio("sampling of components / without", "components", "sample", "combined", "sample", 1.05),
     CostRatio("with surfaces, too", "components-surfaces", "sample", "combined", "sample"),
     CostRatio("reconstruction of components / without", "components", "reconstruct", "combined", "reconstruct", 1.5),
-    CostRatio("motion / sampling", "components-motion", "links", "components-motion", "sample", 0.03),
+    CostRatio("motion / sampling", "components-motion", "correspondence", "components-motion", "sample", 0.03),
 )
 
 

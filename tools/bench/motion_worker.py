@@ -31,7 +31,7 @@ sys.path.insert(0, str(HERE.parent))
 import component_sheet  # noqa: E402
 
 VECTOR = "vector"
-OF_COMPONENTS = (
+COMPONENT_SWITCHES = (
     "components",
     "component_reflectance",
     "component_irradiance",
@@ -43,7 +43,7 @@ OF_COMPONENTS = (
     "component_motion",
     "component_irradiance_motion",
 )
-SWITCHES = (VECTOR, *OF_COMPONENTS)
+SWITCHES = (VECTOR, *COMPONENT_SWITCHES)
 FOLLOWED = (
     "vector",
     "components",
@@ -69,7 +69,7 @@ def set_passes(layer: bpy.types.ViewLayer, wanted: Collection[str]) -> None:
     if unknown := set(wanted) - set(SWITCHES):
         raise ValueError(f"no passes: {', '.join(sorted(unknown))}")
     layer.use_pass_vector = VECTOR in wanted
-    for name in OF_COMPONENTS:
+    for name in COMPONENT_SWITCHES:
         setattr(layer.gradus, f"use_pass_{name}", name in wanted)
     worker.choose_file(with_passes=bool(wanted))
 

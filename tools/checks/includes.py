@@ -27,7 +27,7 @@ COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\
 
 
 def problems(source: Path) -> Iterator[str]:
-    """One line for each include or namespace that breaks the order; `source` is native/src."""
+    """Yields a line for each include or namespace that violates the order. `source` is native/src."""
     for path in sorted(source.rglob("*")):
         if path.suffix in ENDINGS:
             yield from problems_of(path, source)
@@ -65,7 +65,7 @@ def without_comments(text: str) -> str:
 def main() -> int:
     source = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "native" / "src"
     found = list(problems(source))
-    print("\n".join(found) or "includes: every arrow points up")
+    print("\n".join(found) or "includes: all folders depend on folders above them only")
     return 1 if found else 0
 
 

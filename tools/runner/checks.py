@@ -1,4 +1,4 @@
-"""Checks of the sources and builds that are no tests: each is a command that must succeed, and counts as one test."""
+"""Checks of sources and builds. Each is a command that must succeed, and counts as one test."""
 
 from __future__ import annotations
 
@@ -13,16 +13,18 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 @dataclass
 class Check:
+    """A command that must succeed."""
+
     name: str
     command: tuple[str, ...]
-    without: Path | None = None  # the check is skipped, visibly, where this is missing
+    needs: Path | None = None  # the check is skipped, with a note, if this file or folder is missing
     limit: float = 600  # seconds
 
     def run(self, environment: dict[str, str]) -> Result:
         result = Result(f"check {self.name}")
-        if self.without and not self.without.exists():
+        if self.needs and not self.needs.exists():
             result.skipped = 1
-            result.notes.append(f"check {self.name} is skipped: there is no {self.without.relative_to(ROOT)}")
+            result.notes.append(f"check {self.name} is skipped: there is no {self.needs.relative_to(ROOT)}")
             return result
         code, output = run(list(self.command), self.limit, environment)
         result.passed, result.failed = int(code == 0), int(code != 0)
@@ -33,7 +35,6 @@ class Check:
 
 PYTHON = "/usr/bin/python3"
 CHECKS = [
-    # native/src/film is a folder of the layout that the check describes.
     Check("includes", (PYTHON, "tools/checks/includes.py"), ROOT / "native/src/film"),
     Check("schema", (PYTHON, "tools/schema/generate.py", "--check"), ROOT / "tools/schema/generate.py"),
     Check("one definition", ("ninja", "-C", "build-odr", "gradus"), ROOT / "build-odr/build.ninja"),

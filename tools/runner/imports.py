@@ -1,4 +1,4 @@
-"""Tells which test files need Blender: those that import bpy, directly or through modules of this project."""
+"""Determines which test files need Blender: those that import bpy, directly or through modules of this project."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 SEARCHED = tuple(ROOT / folder for folder in ("tests", "addon", "tools/bench", "tests/faults", "tools"))
-OF_BLENDER = {"bpy", "mathutils", "bmesh", "bl_math", "gpu", "freestyle", "idprop", "imbuf", "aud", "bpy_extras"}
+BLENDER_MODULES = {"bpy", "mathutils", "bmesh", "bl_math", "gpu", "freestyle", "idprop", "imbuf", "aud", "bpy_extras"}
 
 
 @cache
 def needs_blender(path: Path) -> bool:
-    """Whether importing the file imports a module of Blender. Imports inside functions do not count."""
+    """Returns whether importing a file imports a module of Blender. Imports inside functions do not count."""
     return _needs(path, set())
 
 
@@ -23,14 +23,14 @@ def _needs(path: Path, seen: set[Path]) -> bool:
         return False
     seen.add(path)
     names = list(imported(path))
-    if any(name.split(".")[0] in OF_BLENDER for name in names):
+    if any(name.split(".")[0] in BLENDER_MODULES for name in names):
         return True
     return any(_needs(module, seen) for name in names for module in files_of(name))
 
 
 def imported(path: Path) -> Iterator[str]:
-    """Dotted names that a file imports while it is itself imported; for `from a import b`, both a and a.b."""
-    for node in at_import(ast.parse(path.read_text())):
+    """Yields the dotted names that a file imports when it is imported: for `from a import b`, both a and a.b."""
+    for node in import_time_statements(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
             yield from (name.name for name in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -39,14 +39,14 @@ def imported(path: Path) -> Iterator[str]:
             yield from (f"{module}.{name.name}" for name in node.names)
 
 
-def at_import(node: ast.AST) -> Iterator[ast.stmt]:
-    """The statements that run when a module is imported."""
+def import_time_statements(node: ast.AST) -> Iterator[ast.stmt]:
+    """Yields the statements that run when a module is imported."""
     for child in ast.iter_child_nodes(node):
         is_typing = isinstance(child, ast.If) and ast.unparse(child.test).endswith("TYPE_CHECKING")
         is_function = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef)
         if isinstance(child, ast.stmt) and not is_function and not is_typing:
             yield child
-            yield from at_import(child)
+            yield from import_time_statements(child)
 
 
 def absolute(path: Path, node: ast.ImportFrom) -> str:
@@ -58,7 +58,7 @@ def absolute(path: Path, node: ast.ImportFrom) -> str:
 
 
 def files_of(name: str) -> Iterator[Path]:
-    """The files of this project that importing a dotted name runs: of the module and of the packages around it."""
+    """Yields the files of this project that an import runs: of the module and of the packages that contain it."""
     parts = name.split(".")
     for folder in SEARCHED:
         for length in range(1, len(parts) + 1):

@@ -1,4 +1,4 @@
-"""Says which tests run where.
+"""Determines which tests run where.
 
 Every test of the add-on runs once: in plain Python where it does not need Blender, else in bpy45. The other hosts run
 the tests of tests/smoke.txt, and Blender 3.4 also every test that needs the application. The full run has every file
@@ -19,7 +19,7 @@ COMPLETE = "bpy45"
 
 LIMIT = {"native": 900, "host": 300, "full": 3600}  # seconds for one program or file
 
-# Programs by how many processes share their tests: a long one must not be the last job beside an idle core.
+# Programs by the number of processes that share their tests, so that no long program ends beside an idle core.
 SHARDS = {
     "gradus_native_tests": 6,
     "gradus_statistics_tests": 4,
@@ -28,7 +28,7 @@ SHARDS = {
 }
 # Tests that compare elapsed time with a limit run alone.
 ALONE = "K1_*:K2_Cancel.*:Preview.*:Loop.ReadingDoesNotWaitForABatch:Loop.StopsByTime*:*TimeLimit*"
-# The limits of these do not hold under ThreadSanitizer, which is ten times slower. Other tests cover their threads.
+# Time limits of these tests are exceeded under ThreadSanitizer, which is ten times slower. Other tests cover threads.
 LIMITS = (
     "*TimeLimit*:K2_Cancel.*:Preview.TakesATwentiethOfTheTime:Preview.ACancelEndsTheQuarterSizedPicture"
     ":Preview.ACancelOfTheReconstructionLeavesTheSamples:Loop.StopsByTime*"
@@ -85,7 +85,7 @@ def smoke() -> dict[str, dict[Path, tuple[str, ...]]]:
         file, _, test = name.partition("::")
         path = ROOT / file
         if not reason.strip() or not path.is_file() or not set(hosts.split(",")) <= {"all", *HOSTS}:
-            raise SystemExit(f"{SMOKE}:{number}: wants hosts, a test file that exists, and a reason: {line}")
+            raise SystemExit(f"{SMOKE}:{number}: expected hosts, an existing test file and a reason: {line}")
         for host in others if hosts == "all" else hosts.split(","):
             tests = found[host].get(path, ())
             found[host][path] = (*tests, test) if test else ()
@@ -93,7 +93,7 @@ def smoke() -> dict[str, dict[Path, tuple[str, ...]]]:
 
 
 def hosts_plan(hosts: list[str] | None, files: list[Path], full: bool) -> dict[str, list[TestFile]]:
-    """Host → its files. Named hosts run all of the files that they can."""
+    """Returns the files of each host. Hosts that are named run all files that they can run."""
     limit = LIMIT["full" if full else "host"]
     chosen = smoke()
     result: dict[str, list[TestFile]] = {}
@@ -114,14 +114,14 @@ def hosts_plan(hosts: list[str] | None, files: list[Path], full: bool) -> dict[s
 def in_other_host(
     host: str, path: Path, limit: float, chosen: dict[str, dict[Path, tuple[str, ...]]]
 ) -> TestFile | None:
-    """What a host that does not run everything runs of a file."""
+    """Returns the tests of a file for a host that does not run everything, or None."""
     if path in chosen[host]:
         return TestFile(path, limit, tests=chosen[host][path])
     return TestFile(path, limit, "application") if host == "3.4" and has_application_tests(path) else None
 
 
 def has_application_tests(path: Path) -> bool:
-    """A quick look before a host collects the file: the mark or the fixture of tests/conftest.py."""
+    """Returns whether a file has the mark or the fixture for tests of the application (tests/conftest.py)."""
     text = path.read_text()
     return "mark.application" in text or "blender" in text
 
@@ -144,7 +144,7 @@ def split_alone(
 
 
 def native_plan(full: bool) -> tuple[list[Program], list[Program]]:
-    """The native programs in parts, and their tests that must run alone."""
+    """Returns the native programs in shards, and their tests that must run alone."""
     limit = LIMIT["full" if full else "native"]
     together, alone = [], []
     for path in sorted((ROOT / "build" / "tests").glob("gradus_*_tests")):
@@ -167,7 +167,7 @@ def sanitized_plan(full: bool) -> tuple[list[Program], list[Program]]:
         shards = SHARDS.get(path.name, 1)
         for shard in range(shards):
             programs.append(Program(path, limit, f"*-{ALONE}", shard, shards, environment=environment))
-        # Time limits of tests do not hold in instrumented programs.
+        # Tests with time limits would exceed them in instrumented programs.
         alone.append(Program(path, limit, f"{ALONE}-{LIMITS}", environment=environment))
     if full:
         native = ROOT / "build" / "tests" / "gradus_native_tests"

@@ -1,4 +1,7 @@
-"""Runs lanes of jobs, two at a time by default. A worker keeps the host process while it runs jobs of its lane."""
+"""Runs queues of jobs (lanes), two jobs at a time by default.
+
+A worker keeps the process of a host while it runs the jobs of the host's lane.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +44,7 @@ class Pool:
                 self._taken[lane] -= 1
 
     def _choose(self) -> str | None:
-        """The first lane that nobody works on; if there is none, the one with the most jobs left."""
+        """Returns the first lane without a worker, else the lane with most jobs, or None if no jobs are left."""
         with self._lock:
             left = [name for name, jobs in self._lanes.items() if jobs]
             if not left:
@@ -59,7 +62,7 @@ class Pool:
         start = time.monotonic()
         try:
             result = process.run(job) if process else job.run(self._environment)
-        except Exception as error:  # a fault of the runner itself must not pass for a success
+        except Exception as error:  # an error of the runner itself counts as a failure
             result = Result(job.name, failed=1, notes=[f"{job.name}: {error!r}"])
         result.seconds = time.monotonic() - start
         return result

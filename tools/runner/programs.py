@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 @dataclass
 class Program:
-    """Some tests of a GoogleTest program: those that `choice` (GoogleTest's filter) names, or one shard of them."""
+    """Tests of a GoogleTest program: those that the filter `choice` selects, or one shard of them."""
 
     path: Path
     limit: float  # seconds
@@ -43,7 +43,7 @@ class Program:
 
 
 def run(command: list[str], limit: float, environment: dict[str, str]) -> tuple[int, str]:
-    """Exit code (124: over the limit) and output. Every process that the command started ends with it."""
+    """Returns exit code (124 if the time limit was exceeded) and output. Ends all processes of the command."""
     with tempfile.TemporaryFile() as out:
         process = subprocess.Popen(
             command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, stdout=out, stderr=out, start_new_session=True
@@ -65,7 +65,7 @@ def kill_group(process: subprocess.Popen) -> None:
 
 
 def read_log(result: Result, code: int, output: str) -> Result:
-    """Counts tests from the log rather than from a report file, which a crash would take with it."""
+    """Counts tests in the log, because a report file would be missing after a crash."""
     result.passed = len(re.findall(r"^\[       OK \] ", output, re.M))
     skipped = set(re.findall(r"^\[  SKIPPED \] ([^\s,]+)", output, re.M))
     failed = set(re.findall(r"^\[  FAILED  \] ([^\s,]+\.[^\s,]+)", output, re.M))
@@ -81,7 +81,7 @@ def read_log(result: Result, code: int, output: str) -> Result:
 
 
 def failures(output: str, failed: set[str]) -> str:
-    """The part of the log that belongs to the tests that failed."""
+    """Returns the parts of the log that belong to failed tests."""
     parts = []
     for name in sorted(failed):
         match = re.search(rf"^\[ RUN      \] {re.escape(name)}\n(.*?)^\[  FAILED  \] ", output, re.M | re.S)

@@ -60,5 +60,5 @@ def counts(result: Result) -> str:
 
 
 def tail(text: str, lines: int) -> str:
-    """The last lines of a log, indented."""
+    """Returns the last lines of a log, indented."""
     return "\n".join("    " + line for line in text.rstrip().splitlines()[-lines:])

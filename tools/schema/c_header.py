@@ -24,7 +24,7 @@ C_TYPES = {
 
 
 def comment(text: str) -> list[str]:
-    """`text` as a comment of its own."""
+    """Returns `text` as the lines of a C comment."""
     lines = textwrap.wrap(text, WIDTH - 6, break_long_words=False, break_on_hyphens=False)
     lines = ["/* " + lines[0], *(" * " + line for line in lines[1:])]
     lines[-1] += " */"
@@ -32,7 +32,7 @@ def comment(text: str) -> list[str]:
 
 
 def rows(items: list[tuple[str, str]]) -> list[str]:
-    """Declarations with their comments beside them, aligned."""
+    """Returns the lines of declarations with aligned comments beside them."""
     column = max(len(declaration) for declaration, _ in items) + 1
     result = []
     for declaration, text in items:
@@ -68,7 +68,7 @@ def struct(schema: Schema, item: Struct) -> list[str]:
 
 
 def value_name(item: Enum, name: str) -> str:
-    """Name of a value in C."""
+    """Returns the name of a value in C."""
     return f"GRADUS_{name}" if name in item.bare else f"GRADUS_{item.prefix}{name}"
 
 
@@ -80,7 +80,10 @@ def enum(item: Enum) -> list[str]:
 
 
 def header(schema: Schema, note: str) -> str:
-    """The text of gradus.h. Each struct and enum has to be declared once, in the order of the schema."""
+    """Returns the text of gradus.h.
+
+    Raises SchemaError unless the template declares each struct and enum once and in the order of the schema.
+    """
     lines: list[str] = []
     declared: dict[str, list[str]] = {"struct": [], "enum": []}
     for line in (FOLDER / "gradus.h.in").read_text(encoding="utf-8").splitlines():
@@ -97,7 +100,7 @@ def header(schema: Schema, note: str) -> str:
 
 
 def functions() -> list[tuple[str, str, list[str]]]:
-    """Result, name and arguments of each function that the template declares."""
+    """Returns result, name and arguments of each function that the template declares."""
     text = re.sub(r"/\*.*?\*/", "", (FOLDER / "gradus.h.in").read_text(encoding="utf-8"), flags=re.S)
     result = []
     for kind, name, arguments in re.findall(r"GRADUS_API\s+([\w\s*]+?)\s*\b(gradus_\w+)\((.*?)\);", text, re.S):

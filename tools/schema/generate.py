@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes what the schema determines: headers, tables of the library and of the add-on, tables of the user guide.
+"""Writes the generated files: headers, tables of the library and of the add-on, tables of the user guide.
 
-usage: generate.py           writes what differs
-       generate.py --check   writes nothing; names what is stale and exits with 1 if something is
+usage: generate.py           writes the files that are stale
+       generate.py --check   writes nothing; names stale files and exits with 1 if there are any
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ GUIDE = "docs/user-guide.md"
 
 
 def version() -> tuple[int, int, int]:
-    """The version that the header's template declares."""
+    """Returns the version that the header's template declares."""
     text = (model.FOLDER / "gradus.h.in").read_text(encoding="utf-8")
     major, minor, patch = re.findall(r"#define GRADUS_VERSION_\w+ (\d+)", text)
     return int(major), int(minor), int(patch)
 
 
 def outputs(schema: model.Schema) -> Iterator[tuple[str, str]]:
-    """Path from the root and text of every generated file."""
+    """Returns the text of every generated file by its path relative to the root."""
     yield "native/include/gradus/gradus.h", c_header.header(schema, NOTE.format("gradus.h.in"))
     yield "native/include/gradus/gradus_nodes.h", node_files.header(schema, NOTE.format("nodes.toml"))
     native = "native/src/schema/"

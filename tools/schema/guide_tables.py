@@ -24,8 +24,9 @@ def _default(option: Option) -> str:
 def _range(option: Option) -> str:
     if option.type not in ("int", "float"):
         return "on, off" if option.type == "bool" else ""
-    most = option.maximum
-    text = f"from {option.minimum:g}" if most is None or most >= MAX_FLOAT else f"{option.minimum:g} to {most:.10g}"
+    maximum = option.maximum
+    is_bounded = maximum is not None and maximum < MAX_FLOAT
+    text = f"{option.minimum:g} to {maximum:.10g}" if is_bounded else f"from {option.minimum:g}"
     return f"{text} {option.unit}".strip()
 
 
@@ -37,7 +38,7 @@ def _meaning(schema: Schema, option: Option) -> str:
 
 
 def options(schema: Schema) -> str:
-    """A row per option of a scene or of the command line."""
+    """Returns a table with a row for each option of a scene or of the command line."""
     lines = ["| option | default | range | what it does |", "|---|---|---|---|"]
     for option in schema.options:
         if option.source in ("scene", "command"):
@@ -53,7 +54,7 @@ def _where(item: Pass) -> str:
 
 
 def passes(schema: Schema) -> str:
-    """A row per pass."""
+    """Returns a table with a row for each pass."""
     lines = ["| pass | on the command line | there | content |", "|---|---|---|---|"]
     for item in schema.passes:
         name = f"`{item.label}`" + (f", before Blender 5.0 `{item.old_label}`" if item.old_label else "")
@@ -62,7 +63,7 @@ def passes(schema: Schema) -> str:
 
 
 def component_passes(schema: Schema) -> str:
-    """A row per pass of a component."""
+    """Returns a table with a row for each pass of a component."""
     lines = ["| pass | on the command line | content |", "|---|---|---|"]
     for item in schema.component_passes:
         suffix = f" {item.label}" if item.suffix is None else item.suffix
@@ -78,7 +79,7 @@ TABLES: dict[str, Callable[[Schema], str]] = {
 
 
 def fill(schema: Schema, text: str) -> str:
-    """The guide with its tables; what has no markers stays as it is."""
+    """Returns the guide with new tables. Text outside their markers is unchanged."""
 
     def table(match: re.Match[str]) -> str:
         make = TABLES.get(match[1])

@@ -1,11 +1,12 @@
-"""Reads schema/*.toml into plain objects and checks what one can get wrong in them."""
+"""Reads schema/*.toml into plain objects and checks them for mistakes."""
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+
+import tomllib
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 FOLDER = ROOT / "schema"
@@ -21,11 +22,11 @@ MAX_FLOAT = 3.4e38
 
 
 class SchemaError(Exception):
-    """A mistake in the schema; the text names the item."""
+    """The schema has a mistake. The text names the item."""
 
 
 def plain(text: str) -> str:
-    """A sentence of the schema on one line."""
+    """Returns a text of the schema on one line."""
     return " ".join(text.split())
 
 
@@ -58,7 +59,7 @@ class Enum:
 
 @dataclass(frozen=True)
 class Field:
-    """A field of a struct. `base`: its type without [n] or *."""
+    """A field of a struct. `base` is its type without [n] or *."""
 
     name: str
     base: str
@@ -80,7 +81,7 @@ class Struct:
 
     @property
     def all_fields(self) -> tuple[Field, ...]:
-        """The fields with struct_size, where there is one."""
+        """All fields, including struct_size if the struct has it."""
         return (Field("struct_size", "uint32", "sizeof this struct."), *self.fields) if self.sized else self.fields
 
 
@@ -167,13 +168,13 @@ class Op:
 
     @property
     def function(self) -> str:
-        """Name of the C++ function that evaluates an operation of the kinds "pure" and "context"."""
+        """The name of the C++ function that evaluates an operation of the kinds "pure" and "context"."""
         return f"{self.name.lower()}_op"
 
 
 @dataclass(frozen=True)
 class Section:
-    """Operations that belong together."""
+    """A group of operations that gradus_nodes.h lists under one title."""
 
     title: str
     ops: tuple[Op, ...]
@@ -220,7 +221,7 @@ def _find(items: tuple[Any, ...], name: str, kind: str) -> Any:
 
 
 def parse_field(name: str, kind: str, doc: str, extra: dict[str, Any] | None = None) -> Field:
-    """A field of type `kind`: T, T[n] or T*."""
+    """Returns a field of type `kind`, which is T, T[n] or T*."""
     extra = extra or {}
     base, count, pointer = kind, 0, False
     if kind.endswith("*"):
@@ -255,7 +256,10 @@ def _names(text: str) -> tuple[str, ...]:
 
 
 def _op(name: str, number: int, shape: str, doc: str, details: dict[str, Any] | None = None) -> Op:
-    inputs, outputs = (_names(part) for part in shape.split("->"))
+    sides = shape.split("->")
+    if len(sides) != 2:
+        raise SchemaError(f"operation {name}: expected 'inputs -> outputs', got '{shape}'")
+    inputs, outputs = map(_names, sides)
     details = dict(details or {})
     details["text"] = plain(details.get("text", ""))
     if outputs == ("closure",):
@@ -277,7 +281,7 @@ def _read(name: str) -> dict[str, Any]:
 
 
 def _make(kind: type, row: dict[str, Any], names: dict[str, str] | None = None) -> Any:
-    """An object of a row of a table; `names`: keys whose field has another name."""
+    """Returns the object of a table's row. `names` has the fields of keys whose names differ."""
     fields = {(names or {}).get(key, key): value for key, value in row.items()}
     fields["doc"] = plain(fields["doc"])
     try:
@@ -287,7 +291,7 @@ def _make(kind: type, row: dict[str, Any], names: dict[str, str] | None = None) 
 
 
 def load() -> Schema:
-    """The whole schema. Raises SchemaError."""
+    """Reads and checks the whole schema. Raises SchemaError."""
     tables = _read("passes.toml")
     passes = tuple(_make(Pass, row) for row in tables["pass"])
     component_passes = tuple(_make(Pass, row) for row in tables["component_pass"])
@@ -313,7 +317,7 @@ def load() -> Schema:
 
 
 def settings_fields(options: tuple[Option, ...]) -> tuple[Field, ...]:
-    """The fields of GradusSettings."""
+    """Returns the fields of GradusSettings."""
     fields = []
     for option in options:
         extra = {"unit": option.unit} if option.unit else {}
@@ -326,7 +330,7 @@ def settings_fields(options: tuple[Option, ...]) -> tuple[Field, ...]:
 
 
 def check(schema: Schema) -> None:
-    """Raises SchemaError for what is unknown or there twice."""
+    """Raises SchemaError for items that are unknown, duplicate or have invalid numbers."""
     for struct in schema.structs:
         for item in struct.fields:
             _check_type(schema, item)
@@ -343,7 +347,7 @@ def check(schema: Schema) -> None:
         names = [item.name for item in items]
         for name in names:
             if names.count(name) > 1:
-                raise SchemaError(f"{name} is there twice")
+                raise SchemaError(f"{name} is defined twice")
     switches = {switch.name for switch in schema.switches}
     for item in (*schema.passes, *schema.component_passes):
         if item.switch.startswith("gradus.") and item.switch.removeprefix("gradus.") not in switches:
@@ -359,7 +363,7 @@ def _check_ops(schema: Schema) -> None:
         if op.number not in allowed:
             raise SchemaError(f"operation {op.name} has a number outside {allowed.start}…{allowed.stop - 1}")
         if numbers.count(op.number) > 1:
-            raise SchemaError(f"the number {op.number} of {op.name} is there twice")
+            raise SchemaError(f"the number {op.number} of {op.name} is used twice")
 
 
 def _check_type(schema: Schema, item: Field) -> None:

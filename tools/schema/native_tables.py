@@ -11,14 +11,14 @@ from model import MAX_FLOAT, MAX_INT, Enum, Field, Option, Pass, Schema, SchemaE
 
 
 def _file(note: str, purpose: str, includes: list[str], namespace: str, body: list[str], guard: bool = False) -> str:
-    """A C++ file. Tables are not formatted by clang-format."""
+    """Returns a C++ file. Its tables are not formatted by clang-format."""
     lines = [f"// {purpose}", f"// {note}", *(["#pragma once"] if guard else []), "", *includes, ""]
     lines += ["// clang-format off", f"namespace {namespace} {{", *body, f"}}  // namespace {namespace}"]
     return "\n".join([*lines, "// clang-format on", ""])
 
 
 def layout(schema: Schema, note: str) -> str:
-    """layout_table.cpp: what gradus_struct_layout and gradus_abi_hash answer from."""
+    """Returns layout_table.cpp, the data of gradus_struct_layout and gradus_abi_hash."""
     body = ["namespace {", "", "#define FIELD(type, field) {#field, offsetof(type, field), sizeof(type::field)}", ""]
     for item in schema.structs:
         body.append(f"constexpr FieldLayout k{item.name}Fields[] = {{")
@@ -34,11 +34,16 @@ def layout(schema: Schema, note: str) -> str:
     body += ["std::span<const StructLayout> struct_layouts() { return kStructs; }"]
     body += ["std::span<const EnumLayout> enum_layouts() { return kEnums; }", ""]
     includes = ['#include "schema/layout.h"', "", '#include "gradus/gradus.h"']
-    return _file(note, "Layouts of the public structs and values of the public enums.", includes, "gradus::schema", body)
+    return _file(
+        note, "Layouts of the public structs and values of the public enums.", includes, "gradus::schema", body
+    )
 
 
 def _factor(text: str, struct: str, owner: str) -> str:
-    """A factor of a length: a number, a field, or elements(domain); `owner.` stands for the struct around."""
+    """Returns a factor of a length in C++.
+
+    It is a number, a field or elements(domain); `owner.` stands for the struct that contains `struct`.
+    """
     holder = owner if text.startswith("owner.") else struct
     name = text.removeprefix("owner.")
     elements = re.fullmatch(r"elements\((\w+)\)", name)
@@ -48,7 +53,7 @@ def _factor(text: str, struct: str, owner: str) -> str:
 
 
 def length(item: Field, struct: str = "s", owner: str = "") -> str:
-    """Number of elements of an array in C++, in 64 bits."""
+    """Returns the number of elements of an array as a 64-bit expression in C++."""
     if not item.length:
         raise SchemaError(f"the array {item.name} of an archived struct has no length")
     factors = [_factor(text.strip(), struct, owner) for text in item.length.split("*")]
@@ -62,7 +67,7 @@ def _is_struct(schema: Schema, item: Field) -> bool:
 
 
 def _values(item: Struct) -> list[str]:
-    """The numbers of a struct."""
+    """Returns the statements that visit the numbers of a struct."""
     parts = [f for f in item.fields if not f.pointer and f.base not in ("text", "bytes") and f.name != "reserved"]
     return [f"  a.{'values' if part.count else 'value'}(s.{part.name});" for part in parts]
 
@@ -110,7 +115,7 @@ def _arrays(schema: Schema, item: Struct) -> list[str]:
 
 
 def archive(schema: Schema, note: str) -> str:
-    """archive_records.h: one visit() per struct of the scene calls."""
+    """Returns archive_records.h, which has one visit() for each struct of the scene calls."""
     body = [""]
     for item in schema.structs:
         if item.archive:
@@ -151,13 +156,13 @@ def _option(schema: Schema, option: Option) -> str:
 
 
 def _literal(text: str, indent: str) -> list[str]:
-    """`text` as string literals, one a line."""
+    """Returns `text` as string literals, one on each line."""
     lines = textwrap.wrap(text, 105, drop_whitespace=False, break_long_words=False, break_on_hyphens=False)
     return [indent + json.dumps(line, ensure_ascii=False) for line in lines]
 
 
 def _doc(schema: Schema, option: Option) -> str:
-    """What is said of an option at run time: with its values where it is an enum."""
+    """Returns the description of an option at run time, with the values of an enum."""
     if option.type in OPTION_TYPES:
         return option.doc
     values = [f"{value.name.lower()}: {value.doc}" for value in schema.enum(option.type).values]
@@ -170,7 +175,7 @@ def _choices(item: Enum) -> list[str]:
 
 
 def options(schema: Schema, note: str) -> str:
-    """option_table.cpp: the options of GradusSettings."""
+    """Returns option_table.cpp, the options of GradusSettings."""
     kinds = [option.type for option in schema.native_options if option.type not in OPTION_TYPES]
     body = ["namespace {", ""]
     for name in dict.fromkeys(kinds):
@@ -193,7 +198,7 @@ def _component_pass(item: Pass) -> str:
 
 
 def passes(schema: Schema, note: str) -> str:
-    """pass_rows.cpp: the passes, in order of their numbers."""
+    """Returns pass_rows.cpp, the passes in the order of their numbers."""
     body = ["namespace {", "", "constexpr PassInfo kPasses[] = {"]
     body += [_pass(item) for item in sorted(schema.passes, key=lambda item: item.number)]
     body += ["};", "", "constexpr ComponentPassInfo kComponentPasses[] = {"]
@@ -202,4 +207,3 @@ def passes(schema: Schema, note: str) -> str:
     body += ["std::span<const ComponentPassInfo> all_component_passes() { return kComponentPasses; }", ""]
     purpose = "The passes of a picture and of its components."
     return _file(note, purpose, ['#include "schema/pass_table.h"'], "gradus::schema", body)
-

@@ -13,7 +13,7 @@ NAMES = 18  # columns for the names of operations in the header's comment
 
 
 def describe(op: Op) -> list[str]:
-    """An operation as lines of the header's comment."""
+    """Returns an operation as lines of the header's comment."""
     shape = f"{', '.join(op.inputs) or '-'} -> {', '.join(op.outputs)}"
     text = f"{shape}: {op.doc} {op.text}".strip()
     start, indent = f" *   {op.name.ljust(NAMES)}", f" *   {' ' * NAMES}  "
@@ -21,7 +21,7 @@ def describe(op: Op) -> list[str]:
 
 
 def prose(schema: Schema) -> list[str]:
-    """All operations as lines of a comment."""
+    """Returns all operations as lines of a comment."""
     lines: list[str] = []
     for section in schema.sections:
         lines += [*([" *"] if lines else []), f" * {section.title}"]
@@ -38,7 +38,7 @@ def table(schema: Schema) -> list[str]:
 
 
 def header(schema: Schema, note: str) -> str:
-    """The text of gradus_nodes.h. Each enum has to be declared once."""
+    """Returns the text of gradus_nodes.h. Raises SchemaError unless the template declares each enum once."""
     lines: list[str] = []
     enums = {item.name: item for item in schema.node_enums}
     for line in (FOLDER / "gradus_nodes.h.in").read_text(encoding="utf-8").splitlines():
@@ -57,7 +57,7 @@ def header(schema: Schema, note: str) -> str:
 
 
 def module(schema: Schema, note: str) -> str:
-    """The text of ops.py."""
+    """Returns the text of ops.py."""
     lines = ['"""Operations of the node program and their modes, as in gradus_nodes.h.', "", note, '"""', ""]
     lines += ["from __future__ import annotations", "", "from enum import IntEnum", "", "", "class Op(IntEnum):"]
     lines += ['    """Operation of a node."""', "", *(f"    {op.name} = {op.number}" for op in schema.ops)]
@@ -74,7 +74,7 @@ CONTEXT = "const ResourceArgs& args, const ShadeContext& context, Vec4* out"
 
 
 def functions(schema: Schema, note: str) -> str:
-    """The text of op_functions.h, which declares the functions that evaluate operations."""
+    """Returns the text of op_functions.h, which declares the functions that evaluate operations."""
     lines = [
         "// The functions of the operations in gradus_nodes.h. Each writes all outputs of its operation to `out`.",
         f"// {note}",
@@ -102,7 +102,7 @@ def _row(op: Op) -> str:
 
 
 def _switch(schema: Schema, kind: str, arguments: str) -> list[str]:
-    """The body of a function that calls the function of operation `op` and returns whether there is one."""
+    """Returns the body of a function that calls the function of operation `op` and returns whether it exists."""
     lines = ["  switch (op) {"]
     for op in schema.ops:
         if op.kind == kind:
@@ -111,7 +111,7 @@ def _switch(schema: Schema, kind: str, arguments: str) -> list[str]:
 
 
 def op_table(schema: Schema, note: str) -> str:
-    """The text of op_table.cpp: shapes and modes of the operations, and the choice of their functions."""
+    """Returns the text of op_table.cpp: the table of operations, and the functions that dispatch to them."""
     inputs, outputs = max(len(op.inputs) for op in schema.ops), max(len(op.outputs) for op in schema.ops)
     lines = [
         "// The table of the operations of gradus_nodes.h, and the choice of the function that evaluates one.",

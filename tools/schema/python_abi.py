@@ -88,7 +88,7 @@ def layout_hash(text: str | None = None) -> int:
 
 
 def docstring(text: str, indent: str) -> list[str]:
-    """`text` as a docstring, on one line where it fits."""
+    """Returns `text` as a docstring, on one line if it fits."""
     one = f'{indent}"""{text}"""'
     if len(one) <= 120:
         return [one]
@@ -119,7 +119,7 @@ def struct_class(schema: Schema, item: Struct) -> list[str]:
 
 
 def argument_type(schema: Schema, text: str) -> str:
-    """The ctypes type of a declaration such as `const char* const* names`."""
+    """Returns the ctypes type of a declaration such as `const char* const* names`."""
     match = re.fullmatch(r"(\w+)([* ]*)(\w*)", re.sub(r"\b(const|volatile) ?", "", text).strip())
     if not match:
         raise SchemaError(f"gradus.h.in: no type is known for '{text}'")
@@ -150,7 +150,7 @@ def function_rows(schema: Schema) -> list[str]:
 
 
 def module(schema: Schema, note: str, version: tuple[int, int, int]) -> str:
-    """The text of abi.py."""
+    """Returns the text of abi.py."""
     lines = HEAD.format(note=note, version=version).splitlines()
     for item in schema.enums:
         lines += enum_class(item)

@@ -15,7 +15,7 @@ BLENDER_UNITS = {"s": "TIME_ABSOLUTE"}
 
 
 def literal(value: Any) -> str:
-    """A value as ruff format writes it."""
+    """Returns a value as ruff format writes it."""
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
@@ -24,12 +24,12 @@ def literal(value: Any) -> str:
 
 
 def tooltip(text: str) -> str:
-    """A sentence without its period, which Blender adds."""
+    """Returns a sentence without its period, which Blender adds."""
     return text.removesuffix(".")
 
 
 def text_lines(text: str, indent: str, start: str, end: str) -> list[str]:
-    """`start` `text` `end`, with the text in several literals where one line does not hold it."""
+    """Returns the lines of `start`, `text` and `end`, with a long text in several literals."""
     one = f"{indent}{start}{literal(text)}{end}"
     if len(one) <= 120:
         return [one]
@@ -75,7 +75,7 @@ def _names(name: str, options: list[Option], doc: str) -> list[str]:
 
 
 def settings(schema: Schema, note: str) -> str:
-    """The text of setting_table.py."""
+    """Returns the text of setting_table.py."""
     lines = ['"""The settings of the engine as rows of settings.Setting.', "", note, '"""', ""]
     lines += ["from __future__ import annotations", "", "from typing import Any", ""]
     lines.append("ROWS: tuple[dict[str, Any], ...] = (")
@@ -92,7 +92,7 @@ def settings(schema: Schema, note: str) -> str:
 
 
 def kind_of(channels: str) -> str:
-    """Blender's kind of a pass."""
+    """Returns Blender's kind of a pass."""
     if channels in ("RGB", "RGBA"):
         return "COLOR"
     return "VALUE" if len(channels) == 1 else "VECTOR"
@@ -128,8 +128,14 @@ def _groups(schema: Schema) -> list[str]:
 
 
 def passes(schema: Schema, note: str) -> str:
-    """The text of pass_table.py."""
-    lines = ['"""The passes of the engine as rows of passes.PassInfo and passes.ComponentPassInfo.', "", note, '"""', ""]
+    """Returns the text of pass_table.py."""
+    lines = [
+        '"""The passes of the engine as rows of passes.PassInfo and passes.ComponentPassInfo.',
+        "",
+        note,
+        '"""',
+        "",
+    ]
     lines += ["from __future__ import annotations", "", "from typing import Any", ""]
     lines += ["from .abi import ComponentPass, Pass", "", "PASSES: tuple[tuple[Any, ...], ...] = ("]
     for item in schema.passes:

@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 
 from .. import cycles_settings, store
-from ..settings import DENOISER_PAYS
+from ..settings import DENOISER_MINIMUM_SAMPLES
 from .base import RenderPanel
 from .presets import GRADUS_PT_presets
 
@@ -41,7 +41,7 @@ def bias(settings: Any, samples: int) -> tuple[str, str]:
         return "Path tracing has no gradients for this reconstruction", "ERROR"
     if settings.denoiser == "OIDN":
         return "Biased by the denoiser", "INFO"
-    if settings.denoiser == "AUTO" and samples >= DENOISER_PAYS:
+    if settings.denoiser == "AUTO" and samples >= DENOISER_MINIMUM_SAMPLES:
         return "Biased if a denoiser is found", "INFO"
     if settings.clamp_direct > 0.0 or settings.clamp_indirect > 0.0:
         return "Biased by clamping", "INFO"
@@ -194,7 +194,18 @@ def characters(context: Any) -> int:
     return max(20, int(context.region.width / per_character) - 6)
 
 
-PHASES = ("export", "build", "links", "sample", "preview", "store", "reconstruct", "denoise", "filter", "upload")
+PHASES = (
+    "export",
+    "build",
+    "correspondence",
+    "sample",
+    "preview",
+    "store",
+    "reconstruct",
+    "denoise",
+    "filter",
+    "upload",
+)
 """Phases of a stats object in the order of the render."""
 
 

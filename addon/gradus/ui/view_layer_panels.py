@@ -18,7 +18,7 @@ LIGHT = tuple(
     for kind in ("diffuse", "glossy", "transmission")
 )
 OTHER_LIGHT = ("use_pass_emit", "use_pass_environment", "use_pass_ambient_occlusion")
-OF_COMPONENTS = (
+COMPONENT_SWITCHES = (
     "use_pass_components",
     "use_pass_component_reflectance",
     "use_pass_component_irradiance",
@@ -98,7 +98,7 @@ class GRADUS_VIEWLAYER_PT_passes_components(ViewLayerPanel, bpy.types.Panel):
         layout = self.columns()
         column = layout.column(heading="Include", align=True)
         column.active = context.scene.gradus.use_decomposition
-        for name in OF_COMPONENTS:
+        for name in COMPONENT_SWITCHES:
             column.prop(context.view_layer.gradus, name)
         if not context.scene.gradus.use_decomposition:
             layout.label(text="Render Properties > Decomposition is off", icon="INFO")

@@ -150,7 +150,7 @@ reconstruct::Reconstructed FrameDeveloper::take_from_windows(const output::Devel
       reconstruct::add_image(std::move(part.image), &picture.image);
       reconstruct::add_image(std::move(part.error), &picture.error);
       reconstruct::add_image(std::move(part.terms.noise), &picture.terms.noise);
-      reconstruct::add_image(std::move(part.terms.apart), &picture.terms.apart);
+      reconstruct::add_image(std::move(part.terms.l2_difference), &picture.terms.l2_difference);
     }
   } catch (...) {
     sequence_.pictures_.clear();  // its frames lack the share of the window that was not solved

@@ -82,13 +82,13 @@ inline void add_feature(const float* values, float weight, size_t pixel, int hal
 }
 
 // Adds a weight to an identifier of one pixel, which has `count` pairs of identifier and weight. If all of them belong
-// to other identifiers, the pair with the least weight is lost.
+// to other identifiers, the pair with the smallest weight is lost.
 inline void add_pair(float id, float weight, uint32_t count, float* pairs, Counters* counters) {
   if (!(weight > 0.0f)) {
     if (weight != 0.0f) ++counters->nonfinite_feature;
     return;
   }
-  float* least = pairs;
+  float* smallest = pairs;
   for (float* pair = pairs; pair < pairs + 2 * count; pair += 2) {
     if (pair[1] == 0.0f || pair[0] == id) {
       if (!fits(pair[1] + weight) || !is_finite(id)) {
@@ -99,15 +99,15 @@ inline void add_pair(float id, float weight, uint32_t count, float* pairs, Count
       pair[1] += weight;
       return;
     }
-    if (pair[1] < least[1]) least = pair;
+    if (pair[1] < smallest[1]) smallest = pair;
   }
-  if (weight <= least[1]) return;
+  if (weight <= smallest[1]) return;
   if (!fits(weight) || !is_finite(id)) {
     ++counters->nonfinite_feature;
     return;
   }
-  least[0] = id;
-  least[1] = weight;
+  smallest[0] = id;
+  smallest[1] = weight;
 }
 
 }  // namespace gradus::film

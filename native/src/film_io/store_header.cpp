@@ -89,7 +89,9 @@ void name_components(const json& list, film::Film* film) {
 }
 
 film::ComponentContent component_content_from_json(const json& j) {
-  return {j.at("rough"), j.value("details", false), j.at("motion"), j.at("shown")};  // older films have no details
+  // Older films have no details, and the key "rough" in place of "non_specular".
+  return {j.at(j.contains("rough") ? "rough" : "non_specular"), j.value("details", false), j.at("motion"),
+          j.at("shown")};
 }
 
 // Describes all channels in their order. The sums of splats are divided by the paths, which are stored with them.
@@ -145,7 +147,7 @@ json describe_samples(const film::Film& film) {
           {"frame", film.frame_number},
           {"channels", film.color_channels},
           {"components", components_to_json(film)},
-          {"rough", kept.non_specular},
+          {"non_specular", kept.non_specular},
           {"details", kept.details},
           {"motion", kept.motion},
           {"shown", kept.shown},
@@ -168,7 +170,7 @@ json describe(const film::Film& film) {
   j["replayed_seed"] = film.replayed.seed;
   j["off_centre"] = !film.replayed.correspondence.off_centre.empty();
   for (int c = 0; c < int(film.components.size()); ++c) {
-    if (film.replayed.has_component_map(c)) j["own_sources"].push_back(c);
+    if (film.replayed.has_component_map(c)) j["component_maps"].push_back(c);
   }
   return j;
 }
@@ -309,7 +311,9 @@ film::Film make_frame(const Imf::Header& header, StoredContent content, const st
     const film::PixelCorrespondence correspondence{
         std::vector<int32_t>(pixels), std::vector<Vec2>(description.value("off_centre", false) ? pixels : 0)};
     film.replayed = {known.replayed_frame, correspondence, known.replayed_key, known.replayed_seed};
-    for (const int own : description.value("own_sources", std::vector<int>())) {
+    // Older films have the key "own_sources".
+    const char* const key = description.contains("own_sources") ? "own_sources" : "component_maps";
+    for (const int own : description.value(key, std::vector<int>())) {
       if (own < 0 || own >= components) throw damaged("its planes are wrong");
       if (film.components[size_t(own)].primal[0].empty()) continue;  // The component is not read.
       film.replayed.of_component.resize(size_t(components));

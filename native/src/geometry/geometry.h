@@ -46,8 +46,9 @@ struct InstanceData : Placement {
 
   // Whether the instance moves or deforms while the shutter is open.
   bool moves() const { return keys != nullptr || deforms; }
-  // Returns the placement at a shutter time from 0 to 1. `room` is storage for the result, used if the matrix changes.
-  const Placement& placement(float time, Placement* room) const;
+  // Returns the placement at a shutter time from 0 to 1. `storage` is storage for the result, used if the matrix
+  // changes.
+  const Placement& placement(float time, Placement* storage) const;
 };
 
 // Placed meshes with their acceleration structure. Answers ray queries, and computes surface points from hits.

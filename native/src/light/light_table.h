@@ -50,10 +50,10 @@ struct LightTable {
 
   // Returns whether there is exactly one emitter, so that no choice is needed.
   bool is_single_light() const { return tree.size() == 1 && suns.empty() && world.black(); }
-  // Returns the choice for a receiver. The receiver's memo caches it; without a memo it is computed in `room`. A path
-  // vertex needs the choice several times: for its light sample, for the weight of the emitter that its BSDF sample
-  // hits, and for the offset paths of neighbouring pixels.
-  const LightChoice& choose(const Receiver& receiver, LightChoice* room) const;
+  // Returns the choice for a receiver. The receiver's memo caches it; without a memo it is computed in `storage`. A
+  // path vertex needs the choice several times: for its light sample, for the weight of the emitter that its BSDF
+  // sample hits, and for the offset paths of neighbouring pixels.
+  const LightChoice& choose(const Receiver& receiver, LightChoice* storage) const;
   // Returns the probability with which sample_sun() chooses the sun at index `sun` of `suns`.
   double sun_probability(size_t sun, const Receiver& receiver) const;
   // Returns the index in `analytic_lights` of the sun chosen by u in [0, 1), and writes the probability of that choice.

@@ -153,7 +153,7 @@ std::map<uint32_t, std::vector<float>> split_light(const film::Film& film, const
     const film::Channel* const color = color_plane(film, *plane);
     colors.push_back(color != nullptr ? to_field(read_color(film, *color).values, 3, film.region, region)
                                       : reconstruct::Field());
-    if (color != nullptr) terms.back().room = room_of(colors.back());
+    if (color != nullptr) terms.back().capacity = room_of(colors.back());
   }
   const bool are_all = (film.channels.passes() & schema::light_passes()) == schema::light_passes();
   if (!are_all) terms.push_back(make_term(film, region, guides.shared(), read_remainder(film, planes), cancel));

@@ -84,21 +84,23 @@ ErrorTerms error_terms(const film::Film& film, int component, uint32_t reconstru
   ErrorTerms terms{reconstruct(differences, GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report), {}};
   if (reconstruction == GRADUS_RECONSTRUCTION_L2) return terms;
   differences = {};
-  terms.apart = reconstruct(film, component, GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report);
-  for (size_t i = 0; i < terms.apart.size(); ++i) terms.apart[i] = image[i] - terms.apart[i];
+  terms.l2_difference = reconstruct(film, component, GRADUS_RECONSTRUCTION_L2, alpha, cancel, &report);
+  for (size_t i = 0; i < terms.l2_difference.size(); ++i) terms.l2_difference[i] = image[i] - terms.l2_difference[i];
   return terms;
 }
 
-double squared_error(double noise, double apart) { return std::max(noise - apart, kMinErrorShare * noise); }
+double squared_error(double noise, double l2_difference) {
+  return std::max(noise - l2_difference, kMinErrorShare * noise);
+}
 
 std::vector<float> error_of_pixels(const ErrorTerms& terms, int width, int height, int channels) {
-  const Window window(terms.apart.empty() ? kSigma : kSigmaOfDifference);
+  const Window window(terms.l2_difference.empty() ? kSigma : kSigmaOfDifference);
   Plane error = squares_of(terms.noise, width, height, channels);
   window.blur(&error, width, height);
-  if (terms.apart.empty()) return error;
-  Plane apart = squares_of(terms.apart, width, height, channels);
-  window.blur(&apart, width, height);
-  for (size_t i = 0; i < error.size(); ++i) error[i] = static_cast<float>(squared_error(error[i], apart[i]));
+  if (terms.l2_difference.empty()) return error;
+  Plane l2_difference = squares_of(terms.l2_difference, width, height, channels);
+  window.blur(&l2_difference, width, height);
+  for (size_t i = 0; i < error.size(); ++i) error[i] = static_cast<float>(squared_error(error[i], l2_difference[i]));
   return error;
 }
 

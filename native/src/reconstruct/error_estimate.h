@@ -24,7 +24,7 @@ ErrorTerms error_terms(const film::Film& film, int component, uint32_t reconstru
 // Returns the squared error from means or sums, over the same pixels, of the squared noise and the squared distance
 // from L2. The result is at least a quarter of L2's: the difference of two estimates can be any value, and smaller ones
 // were more often chance than true when measured.
-double squared_error(double noise, double apart);
+double squared_error(double noise, double l2_difference);
 
 // Returns the estimated squared error of every pixel, mean over RGB, from the squares in a Gaussian window around it.
 // All values are finite.

@@ -174,15 +174,15 @@ Field limit_outliers(const Field& residual, const Field& weights) {
 Field share_of_fine(const RegressionResult& fine, const RegressionResult& coarse) {
   const int w = fine.mean.width(), h = fine.mean.height();
   const Field by_light = weigh_by_light(fine.mean, kShareLightRadius);
-  Field apart(w, h, 2);
-  for_values(&apart, [&](float& value, int x, int y, int c) {
+  Field differences(w, h, 2);
+  for_values(&differences, [&](float& value, int x, int y, int c) {
     const Field &a = c == 0 ? fine.mean : fine.noise, &b = c == 0 ? coarse.mean : coarse.noise;
     for (int i = 0; i < 3; ++i) value += (a.row(y, i)[x] - b.row(y, i)[x]) * (a.row(y, i)[x] - b.row(y, i)[x]);
     value *= by_light.row(y)[x];
   });
-  apart = box_mean(apart, kShareRadius);
+  differences = box_mean(differences, kShareRadius);
   return make_field(w, h, [&](int x, int y) {
-    const float of_mean = apart.row(y, 0)[x], of_noise = apart.row(y, 1)[x];
+    const float of_mean = differences.row(y, 0)[x], of_noise = differences.row(y, 1)[x];
     return of_noise > 0.0f ? std::max(1.0f - of_noise / of_mean, 0.0f) : 1.0f;
   });
 }

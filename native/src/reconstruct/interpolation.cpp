@@ -56,17 +56,17 @@ void Interpolation::update(const Stencil& fine) {
     const Row even(fine, 2 * y);
     float *left = from_left_.row(y), *right = from_right_.row(y);
     for (int x = 1; x < w; x += 2) {
-      const float rest = even.diagonal[x] - even.up[x] - even.down[x];
-      left[x / 2] = quotient(even.to_left(x), rest);
-      right[x / 2] = quotient(even.to_right(x), rest);
+      const float remaining = even.diagonal[x] - even.up[x] - even.down[x];
+      left[x / 2] = quotient(even.to_left(x), remaining);
+      right[x / 2] = quotient(even.to_right(x), remaining);
     }
     if (2 * y + 1 == h) return;
     const Row odd(fine, 2 * y + 1);
     float *below = from_below_.row(y), *above = from_above_.row(y);
     for (int x = 0; x < w; x += 2) {
-      const float rest = odd.diagonal[x] - odd.right[x] - odd.right[x - 1];
-      below[x / 2] = quotient(odd.to_below(x), rest);
-      above[x / 2] = quotient(odd.to_above(x), rest);
+      const float remaining = odd.diagonal[x] - odd.right[x] - odd.right[x - 1];
+      below[x / 2] = quotient(odd.to_below(x), remaining);
+      above[x / 2] = quotient(odd.to_above(x), remaining);
     }
   });
   for_rows(h / 2, [&](int y) {

@@ -100,11 +100,12 @@ void add_up(const Field& whole, std::vector<PictureTerm>* terms) {
         values.clear();
         for (PictureTerm& term : *terms) {
           float* const value = term.image.row(y, c) + x;
-          const double room = term.room.width() > 0 ? term.room.row(y, c)[x] : 1.0;
-          if (room == 0.0 && !GRADUS_FAULT(light_without_colour_remains)) {
+          const double capacity = term.capacity.width() > 0 ? term.capacity.row(y, c)[x] : 1.0;
+          if (capacity == 0.0 && !GRADUS_FAULT(light_without_colour_remains)) {
             *value = 0.0f;
           } else {
-            shares.push_back({*value, room * room * term.error.row(y)[x], term.may_be_negative ? -INFINITY : 0.0});
+            shares.push_back(
+                {*value, capacity * capacity * term.error.row(y)[x], term.may_be_negative ? -INFINITY : 0.0});
             values.push_back(value);
           }
         }

@@ -16,9 +16,10 @@ namespace gradus::reconstruct {
 struct PictureTerm {
   Field image;
   Field error;  // estimated squared error, mean over the channels; one channel
-  // Per pixel and channel: the term's possible light, such as an albedo, over its mean in the pixels around, at most 1.
+  // Weight with which the term takes up missing light, for each pixel and channel: the term's possible light, such as
+  // an albedo, over its mean in the surrounding pixels, at most 1.
   // Where it is 0, the term is 0. An empty field stands for 1 everywhere.
-  Field room;
+  Field capacity;
   bool may_be_negative = false;  // whether negative values were sampled
 };
 
@@ -27,9 +28,9 @@ struct PictureTerm {
 PictureTerm regress_term(const film::Features& guides, HalvedImage sampled, const CancelCheck& cancel);
 
 // Changes the terms so that they add up to `whole`, an image of three channels and the same size. The missing light of
-// each pixel and channel goes to the terms whose `room` is not 0, in proportion to room² · error; where these are 0, in
-// proportion to the terms' absolute values; where these are 0 too, to the last such term. Terms that may not be
-// negative stay at or above 0 unless the sum cannot be reached otherwise.
+// each pixel and channel goes to the terms whose `capacity` is not 0, in proportion to capacity² · error; where these
+// are 0, in proportion to the terms' absolute values; where these are 0 too, to the last such term. Terms that may not
+// be negative stay at or above 0 unless the sum cannot be reached otherwise.
 void add_up(const Field& whole, std::vector<PictureTerm>* terms);
 
 }  // namespace gradus::reconstruct

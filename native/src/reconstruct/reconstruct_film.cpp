@@ -85,7 +85,7 @@ Reconstructed reconstruct_film(const film::Film& film, uint32_t reconstruction, 
     if (wanted.error) {
       ErrorTerms of_part = error_terms(film, component, reconstruction, alpha, part, cancel);
       add_image(std::move(of_part.noise), &terms.noise);
-      add_image(std::move(of_part.apart), &terms.apart);
+      add_image(std::move(of_part.l2_difference), &terms.l2_difference);
     }
     if (wanted.components) sum.components.push_back(part);
     add_image(std::move(part), &sum.image);

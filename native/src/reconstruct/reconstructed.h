@@ -10,7 +10,7 @@ namespace gradus::reconstruct {
 struct ErrorTerms {
   // The reconstruction, or L2 in its place, of half the difference of the two half-buffers.
   std::vector<float> noise;
-  std::vector<float> apart;  // the image minus the one by L2; empty if the reconstruction is linear
+  std::vector<float> l2_difference;  // the image minus the one by L2; empty if the reconstruction is linear
 };
 
 // Result of the reconstruction of a film or of one of its components.

@@ -38,11 +38,11 @@ float outlier_bound_squared(std::vector<float>* squares) {
   std::partial_sort(squares->begin(), squares->begin() + ptrdiff_t(maximum), squares->end(), std::greater<>());
   // If the k largest squares lie beyond the bound, its square is the sum of the others over ln n − k. The minimum of
   // such k is the solution; the squares are summed from the smallest up.
-  double rest = 0.0, bound = 0.0;
-  for (size_t i = maximum; i < squares->size(); ++i) rest += (*squares)[i];
+  double remaining = 0.0, bound = 0.0;
+  for (size_t i = maximum; i < squares->size(); ++i) remaining += (*squares)[i];
   for (size_t k = maximum; k-- > 0;) {
-    rest += (*squares)[k];
-    const double candidate = rest / (share - static_cast<float>(k));
+    remaining += (*squares)[k];
+    const double candidate = remaining / (share - static_cast<float>(k));
     if ((*squares)[k] <= candidate) bound = candidate;
   }
   return static_cast<float>(bound);

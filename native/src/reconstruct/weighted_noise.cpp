@@ -12,8 +12,8 @@ constexpr int kMaxSteps = 10;
 
 }  // namespace
 
-NoiseLeft noise_left(const film::GradientImages& images, const film::GradientImages& half_differences, float alpha,
-                     const CancelCheck& cancel) {
+RemainingNoise remaining_noise(const film::GradientImages& images, const film::GradientImages& half_differences,
+                               float alpha, const CancelCheck& cancel) {
   alpha = chosen_alpha(GRADUS_RECONSTRUCTION_L1, alpha);
   SolveReport report;
   Minimum minimum = minimise_by_noise(images, cancel, &report);
@@ -23,14 +23,14 @@ NoiseLeft noise_left(const film::GradientImages& images, const film::GradientIma
                        kMaxSteps, cancel, &noise);
   const Twicing twicing(images, minimum.solution, alpha);
   const size_t stride = size_t(images.channels);
-  NoiseLeft left{std::vector<float>(images.primal.size()), std::vector<float>(images.primal.size())};
+  RemainingNoise result{std::vector<float>(images.primal.size()), std::vector<float>(images.primal.size())};
   for (int c = 0; c < channels; ++c) {
-    store_channel(minimum.solution, c, stride, left.image.data() + c);
-    twicing.apply(planes_of(images, c), left.image.data() + c);
-    store_channel(noise, c, stride, left.noise.data() + c);
-    twicing.apply(planes_of(half_differences, c), left.noise.data() + c);
+    store_channel(minimum.solution, c, stride, result.image.data() + c);
+    twicing.apply(planes_of(images, c), result.image.data() + c);
+    store_channel(noise, c, stride, result.noise.data() + c);
+    twicing.apply(planes_of(half_differences, c), result.noise.data() + c);
   }
-  return left;
+  return result;
 }
 
 }  // namespace gradus::reconstruct

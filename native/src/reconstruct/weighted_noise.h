@@ -11,13 +11,13 @@ namespace gradus::reconstruct {
 // `image` is W(p_A/2 + p_B/2) and `noise` is W(p_A/2 − p_B/2), where p are the planes of each half-buffer; both have
 // the layout of GradientImages. W depends on the noise and so hides a part of it from `noise`: the squares of `noise`
 // compare pixels well, but are too small (error_estimate.h).
-struct NoiseLeft {
+struct RemainingNoise {
   std::vector<float> image, noise;
 };
 
 // `images` must have deviations; `half_differences` belong to the same film (film::read_half_differences()). Channels
 // beyond the third do not take part in the weights and stay 0.
-NoiseLeft noise_left(const film::GradientImages& images, const film::GradientImages& half_differences, float alpha,
-                     const CancelCheck& cancel);
+RemainingNoise remaining_noise(const film::GradientImages& images, const film::GradientImages& half_differences,
+                               float alpha, const CancelCheck& cancel);
 
 }  // namespace gradus::reconstruct

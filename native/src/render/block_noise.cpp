@@ -28,7 +28,7 @@ void add_terms(const film::Film& film, int component, uint32_t reconstruction, f
                const std::vector<float>& image, const CancelCheck& cancel, FilmNoise* sum) {
   reconstruct::ErrorTerms terms = reconstruct::error_terms(film, component, reconstruction, alpha, image, cancel);
   reconstruct::add_image(std::move(terms.noise), &sum->terms.noise);
-  reconstruct::add_image(std::move(terms.apart), &sum->terms.apart);
+  reconstruct::add_image(std::move(terms.l2_difference), &sum->terms.l2_difference);
 }
 
 // Adds a component whose reconstruction is L1. Estimates its noise by weights of the measured noise, which are close to
@@ -37,8 +37,8 @@ void add_l1(const film::Film& film, int component, uint32_t reconstruction, floa
             FilmNoise* sum) {
   film::GradientImages images = film::read_images(film, component);
   film::read_deviations(film, component, &images);
-  reconstruct::NoiseLeft left =
-      reconstruct::noise_left(images, film::read_half_differences(film, component), alpha, cancel);
+  reconstruct::RemainingNoise left =
+      reconstruct::remaining_noise(images, film::read_half_differences(film, component), alpha, cancel);
   images = {};
   add_terms(film, component, reconstruction, alpha, left.image, cancel, sum);
   reconstruct::add_image(std::move(left.image), &sum->image);
@@ -84,7 +84,7 @@ struct PixelNoise {
 PixelNoise noise_of_pixel(const FilmNoise& images, size_t i, size_t v) {
   PixelNoise pixel;
   pixel.noise = images.error.empty() ? reconstruct::mean_square(&images.terms.noise[v]) : double(images.error[i]);
-  if (!images.terms.apart.empty()) pixel.apart = reconstruct::mean_square(&images.terms.apart[v]);
+  if (!images.terms.l2_difference.empty()) pixel.apart = reconstruct::mean_square(&images.terms.l2_difference[v]);
   pixel.own = images.by_its_weights.empty() ? pixel.noise : reconstruct::mean_square(&images.by_its_weights[v]);
   return pixel;
 }

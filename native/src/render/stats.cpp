@@ -45,7 +45,7 @@ json shifts(const film::Counters& c) {
 
 json phases(const PhaseTimes& t) {
   return {{"sample", t.sample},   {"preview", t.preview}, {"reconstruct", t.reconstruct},
-          {"denoise", t.denoise}, {"filter", 0.0},        {"links", t.correspondence},
+          {"denoise", t.denoise}, {"filter", 0.0},        {"correspondence", t.correspondence},
           {"store", t.store}};
 }
 
@@ -65,7 +65,7 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const film::F
   const GradusSettings& settings = film.settings;
   const Region& d = plan.delivered;
   json j;
-  j["schema"] = 1;
+  j["schema"] = 2;
   j["version"] = gradus_version_text();
   j["frame"] = film.frame_number;
   j["resolution"] = {settings.width, settings.height};
@@ -77,8 +77,8 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const film::F
   j["unbiased"] = delivers_unbiased(plan, settings.reconstruction, settings.denoiser != GRADUS_DENOISER_NONE);
   for (const film::ComponentPlanes& planes : film.components) j["components"].push_back(planes.name);
   j["samples"] = film::mean_samples(film);
-  j["spp_base"] = film::mean_samples(film) - stats.replayed_samples;
-  j["spp_offset"] = stats.replayed_samples;
+  j["samples_fresh"] = film::mean_samples(film) - stats.replayed_samples;
+  j["samples_replayed"] = stats.replayed_samples;
   j["stopped"] = stats.stopped;
   j["plan"] = {{"chosen", reasons(plan.chosen, stats.chosen)}, {"skipped", reasons(plan.skipped, stats.skipped)}};
   j["seconds"] = phases(stats.seconds);

@@ -166,11 +166,11 @@ class CorrespondenceOfCameras : public testing::TestWithParam<Case> {
   // Adds a frame. If it is blurred, the shutter opens at the pose and closes elsewhere; the middle of the exposure has
   // the pose half way between.
   void add_frame(const Mat4& pose, float zoom, bool is_blurred) {
-    const auto way = [](float x) { return translation(Vec3(x, 0.5f * x, 0.0f)); };
-    films_.emplace_back(camera_of(GetParam().camera, is_blurred ? way(0.15f) * pose : pose, zoom),
+    const auto shifted = [](float x) { return translation(Vec3(x, 0.5f * x, 0.0f)); };
+    films_.emplace_back(camera_of(GetParam().camera, is_blurred ? shifted(0.15f) * pose : pose, zoom),
                         GetParam().camera.is_all_around());
     GradusCamera camera = camera_of(GetParam().camera, pose, zoom);
-    const Mat4 keys[2] = {pose, way(0.3f) * pose};
+    const Mat4 keys[2] = {pose, shifted(0.3f) * pose};
     if (is_blurred) {
       camera.aperture_radius = 0.2f;
       camera.shutter_open = -0.25f;

@@ -1,4 +1,4 @@
-// Components of animations are reconstructed over windows of their own and add up to the picture.
+// Components of animations are reconstructed over separate windows and add up to the picture.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -99,8 +99,8 @@ TEST(SequenceDetails, CoverAllSamplesOfTheirFrame) {
                Error);
 }
 
-// Regression: motion is stored with the fresh half of a frame, but was required of the replay, too; no store with
-// motion could be resumed.
+// Regression: motion is stored with the fresh half of a frame, but the replay was required to have it, too, so that no
+// store with motion could be resumed.
 TEST(SequenceDetails, AStoreWithMotionIsResumed) {
   const Folder folder;
   const auto settings_with_motion = [](int32_t frame) {
@@ -175,8 +175,8 @@ TEST(ComponentsOfSequences, ErrorsThatCancelAreNotAddedUp) {
   for (size_t i = 0; i < one.size(); ++i) ASSERT_NEAR(many[i], one[i], 1e-3f * largest) << i;
 }
 
-// A camera passes glass balls. What they show moves otherwise than their surfaces; the replay of such a component
-// starts at the pixel that showed it.
+// A camera passes glass balls. Objects seen through them move differently from their surfaces. The replay of such a
+// component starts at the pixel that showed the object.
 TEST(ComponentsOfSequences, ReplayWhereReflectionsAndRefractionsWere) {
   Pan pan(1.0f, Scenario::Glass);
   const Folder folder;

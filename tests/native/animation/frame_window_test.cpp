@@ -1,4 +1,4 @@
-// Rows of the system of a window, made of sampled frames and their correspondences.
+// Rows of the system of a window, which are computed from sampled frames and their correspondences.
 #include "animation/frame_window.h"
 
 #include <array>
@@ -67,7 +67,7 @@ TEST_F(TwoFrames, RowsInTimeAreDifferencesAlongCorrespondences) {
   const std::vector<float> dt = row(reconstruct::RowKind::kDt, 0), dxdt = row(reconstruct::RowKind::kDxDt, 0);
   EXPECT_EQ(dt[0], 8.0f - 1.0f);
   EXPECT_EQ(dt[1], 9.0f - 2.0f);
-  EXPECT_TRUE(std::isnan(dt[2])) << "without a link there is nothing to compare";
+  EXPECT_TRUE(std::isnan(dt[2])) << "a pixel without a correspondence has no difference";
   EXPECT_EQ(dxdt[0], 80.0f - 10.0f);
 }
 
@@ -97,8 +97,8 @@ film::Film sampled(int32_t number, uint32_t seed, int width = 20) {
   return frame;
 }
 
-// Five frames: the fourth shows the same as the third; each frame replays the one before, apart from one pixel without
-// a source.
+// Five frames, of which the fourth equals the third. Each frame replays the one before, except for one pixel without a
+// correspondence.
 class FiveFrames : public testing::Test {
  protected:
   FiveFrames() {

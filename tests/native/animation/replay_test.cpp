@@ -90,8 +90,8 @@ TEST(Replay, OfABorderUsesTheNumbersOfItsOwnPixels) {
     EXPECT_EQ(base.components[0].primal[half], offset.components[0].primal[half]);
 }
 
-// A disocclusion has no source. Both halves of its frame sample it with different random numbers, since repeated ones
-// would add no information.
+// Disoccluded pixels have no correspondence. Both halves of their frame sample them with different random numbers,
+// because repeated ones would add no information.
 TEST(Replay, DisocclusionsHaveRandomNumbersOfTheirOwn) {
   PathScene scene;
   build(Scenario::DiffuseArea, &scene);

@@ -76,8 +76,8 @@ TEST(C7_ReplayedFrames, ReplaysOfAnotherSeedAreSampledAnew) {
   EXPECT_EQ(found.combined, expected.combined);
 }
 
-// Regression: whether pixels of a block share their jitter was asked of the replaying frame instead of the replayed
-// one. The lens is too small to blur anything.
+// Regression: the replaying frame determined whether pixels of a block share their jitter. It must be the replayed
+// frame. The lens is too small to blur anything.
 TEST(C4_ReplayedFrames, ReplaysUseTheJitterOfTheFrameBeforeWhereBlurStartsOrStops) {
   for (const int32_t blurred : {1, 2}) {
     PathScene scene;

@@ -35,8 +35,8 @@ TEST(C3_Sequence, DeliversEveryFrameFromFirstToLast) {
   ASSERT_EQ(frames.size(), 13u);
   for (size_t i = 0; i < frames.size(); ++i) {
     EXPECT_EQ(frames[i].stats["frame"], 3 + int(i));
-    EXPECT_EQ(frames[i].stats["spp_base"], 4.0);
-    EXPECT_EQ(frames[i].stats["spp_offset"], 4.0);
+    EXPECT_EQ(frames[i].stats["samples_fresh"], 4.0);
+    EXPECT_EQ(frames[i].stats["samples_replayed"], 4.0);
     EXPECT_EQ(frames[i].stats["samples"], 8.0);
     EXPECT_GT(frames[i].combined[4 * (kSide * kSide / 2)], 0.0f);
   }
@@ -109,7 +109,7 @@ TEST(I8_Sequence, UnchangedFramesAreSampledOnce) {
   }
 }
 
-// Either job or both sample a frame; one result is kept.
+// A frame may be sampled by one of the jobs or by both. One result is kept.
 TEST(C7_Sequence, TwoJobsOnTheSameFramesMakeTheSameBits) {
   const Folder shared;
   std::vector<Delivered> frames[2];
@@ -348,14 +348,14 @@ TEST(Sequence, StatsTimeCorrespondencesAndFiles) {
   const nlohmann::json stats = deliver(sequence.get(), 1).stats;
   const double since = 1e-9 * double(process_cpu_nanoseconds() - start);
   for (const char* time : {"seconds", "cpu_seconds"}) {
-    EXPECT_GT(stats[time]["links"], 0.0);
+    EXPECT_GT(stats[time]["correspondence"], 0.0);
     EXPECT_GT(stats[time]["store"], 0.0);
   }
   const nlohmann::json& cpu = stats["cpu_seconds"];
-  EXPECT_GE(stats["process_cpu"].get<double>(), cpu["links"].get<double>() + cpu["store"].get<double>());
+  EXPECT_GE(stats["process_cpu"].get<double>(), cpu["correspondence"].get<double>() + cpu["store"].get<double>());
   EXPECT_LE(cpu["reconstruct"].get<double>(), since);
   double sum = 0.0;
-  for (const char* phase : {"sample", "preview", "links", "store", "reconstruct", "denoise"})
+  for (const char* phase : {"sample", "preview", "correspondence", "store", "reconstruct", "denoise"})
     sum += cpu[phase].get<double>();
   EXPECT_NEAR(cpu["total"].get<double>(), sum, 1e-9);
 }
@@ -413,12 +413,12 @@ TEST(C8_Sequence, AShotChangeSeparatesTheFramesBeforeAndAfter) {
     sample(sequence.get(), pan.turned((t < 2 ? 0.0f : quarter) + 0.01f * float(t)), settings_of(t));
   for (int32_t t = 0; t < 3; ++t) {
     const Delivered frame = deliver(sequence.get(), t);
-    size_t linked = 0;
-    for (size_t i = 2; i < frame.link.size(); i += 3) linked += frame.link[i] > 0.0f;
+    size_t corresponding = 0;
+    for (size_t i = 2; i < frame.link.size(); i += 3) corresponding += frame.link[i] > 0.0f;
     if (t == 1) {
-      EXPECT_EQ(linked, 0u);
+      EXPECT_EQ(corresponding, 0u);
     } else {
-      EXPECT_GT(linked, frame.link.size() / 3 / 2);
+      EXPECT_GT(corresponding, frame.link.size() / 3 / 2);
     }
   }
 }
@@ -532,7 +532,7 @@ TEST(Sequence, GradientTIsTheDifferenceOfTheStoredHalves) {
   const auto base = animation::SequenceFolder(folder.path()).load(0, animation::FrameSamples::kFresh),
              next = animation::SequenceFolder(folder.path()).load(1, animation::FrameSamples::kReplayed);
   const film::GradientImages from = film::read_images(*base, 0), to = film::read_images(*next, 0);
-  size_t linked = 0, k = 0;
+  size_t corresponding = 0, k = 0;
   for (int32_t y = border.y0; y < border.y1; ++y) {
     for (int32_t x = border.x0; x < border.x1; ++x, k += 3) {
       if (link[k + 2] == 0.0f) continue;
@@ -542,11 +542,11 @@ TEST(Sequence, GradientTIsTheDifferenceOfTheStoredHalves) {
         const float expected =
             2.0f * (to.primal[size_t(q * from.channels) + c] - from.primal[size_t(i * from.channels) + c]);
         EXPECT_EQ(difference[k + c], expected);
-        linked += expected != 0.0f;
+        corresponding += expected != 0.0f;
       }
     }
   }
-  EXPECT_GT(linked, size_t(border.area())) << "the test says something";
+  EXPECT_GT(corresponding, size_t(border.area())) << "the test says something";
 }
 
 // Both frames use the same random numbers, so light of 1.5 times the strength changes each pixel by half of its value.
@@ -576,11 +576,11 @@ TEST(Sequence, GradientTLeadsToTheNextFrame) {
   Pan pan(3.0f);
   const auto sequence = make_sequence(0, 2);
   const std::vector<Delivered> frames = render(&pan, sequence.get(), 0, 2, 64);
-  size_t linked = 0;
+  size_t corresponding = 0;
   double error = 0.0, change = 0.0;
   for (size_t i = 0; i < size_t(kSide) * kSide; ++i) {
     if (frames[0].link[3 * i + 2] == 0.0f) continue;
-    ++linked;
+    ++corresponding;
     const auto aside = int(frames[0].link[3 * i]);  // nearer points move further
     EXPECT_LE(aside, -2);
     EXPECT_GE(aside, -7);
@@ -589,7 +589,7 @@ TEST(Sequence, GradientTLeadsToTheNextFrame) {
     error += std::pow(seen - frames[0].difference[3 * i], 2);
     change += std::pow(seen, 2);
   }
-  EXPECT_GT(linked, size_t(kSide) * kSide / 2);
+  EXPECT_GT(corresponding, size_t(kSide) * kSide / 2);
   EXPECT_LT(error, change) << "as it is where the pass is 0";
   for (const float value : frames[2].link) EXPECT_EQ(value, 0.0f);
 }
@@ -613,7 +613,7 @@ TEST(Sequence, AutomaticFramesAreRegularizedOverTime) {
   const nlohmann::json stats = nlohmann::json::parse(task->stats());
   EXPECT_EQ(stats["integrator"], "path");
   EXPECT_EQ(stats["reconstruction"], "regularized");
-  EXPECT_EQ(stats["spp_offset"], 4.0);
+  EXPECT_EQ(stats["samples_replayed"], 4.0);
   const std::vector<float> error = read(*task, GRADUS_PASS_ERROR, 1);
   EXPECT_GT(*std::max_element(error.begin(), error.end()), 0.0f);
   EXPECT_GT(read(*task, GRADUS_PASS_COMBINED, 4)[4 * (kSide * kSide / 2)], 0.0f);
@@ -642,7 +642,7 @@ TEST(A8_Sequence, ReplaysTakeTheCountsOfTheReplayedFrame) {
     maximum = std::max(maximum, film::samples_at(*offset, q));
   }
   EXPECT_LT(minimum, maximum) << "the test says something";
-  EXPECT_GT(deliver(sequence.get(), 0).stats["spp_offset"], 1.0);
+  EXPECT_GT(deliver(sequence.get(), 0).stats["samples_replayed"], 1.0);
 }
 
 TEST(K1_Sequence, ATimeLimitEndsBothHalves) {
@@ -656,8 +656,8 @@ TEST(K1_Sequence, ATimeLimitEndsBothHalves) {
   for (int32_t t = 0; t <= 1; ++t) {
     const Delivered frame = deliver(sequence.get(), t);
     EXPECT_EQ(frame.stats["stopped"], "time");
-    EXPECT_GT(frame.stats["spp_base"], 1.0);
-    EXPECT_GT(frame.stats["spp_offset"], 1.0);
+    EXPECT_GT(frame.stats["samples_fresh"], 1.0);
+    EXPECT_GT(frame.stats["samples_replayed"], 1.0);
     EXPECT_LT(frame.stats["samples"], 1e5);
   }
 }

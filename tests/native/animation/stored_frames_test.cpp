@@ -1,4 +1,4 @@
-// What a sequence finds in its folder and reuses: its frames are those of a job that was never interrupted.
+// Stored frames that a sequence finds in its folder and reuses: the result equals that of a job without interruption.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -115,7 +115,8 @@ TEST(C7_StoredFrames, SamplesOfDifferentSourcesAreNotAddedUp) {
   EXPECT_EQ(more.combined, whole.combined);
 }
 
-// Regression: at a rerun, an unchanged adaptive frame got a replay of its own: "do not belong together".
+// Regression: at a rerun, an unchanged adaptive frame got a replay of its own, which ended with the error "do not
+// belong together".
 TEST(C7_StoredFrames, UnchangedAdaptiveFramesAreFoundAgain) {
   Pan pan(0.0f);
   const Folder folder;
@@ -155,8 +156,8 @@ std::vector<Delivered> run_static(const StaticJob& job, const std::string& folde
   return frames;
 }
 
-// Regression: pixel blocks that stopped early have fewer samples than requested: their replays were taken for
-// unfinished and sampled anew under the number of their own frame: "do not belong together".
+// Regression: pixel blocks that stopped early have fewer samples than requested. Their replays counted as unfinished
+// and were sampled again under the number of their own frame, which ended with the error "do not belong together".
 TEST(C7_StoredFrames, UnchangedFramesWhoseBlocksStopAreFoundAgain) {
   const Folder folder;
   const auto once = run_static({256, 0.1f}, folder.path());
@@ -168,7 +169,7 @@ TEST(C7_StoredFrames, UnchangedFramesWhoseBlocksStopAreFoundAgain) {
   expect_same(run_static({256, 0.1f, 2}, folder.path()), {once.begin() + 1, once.end()});
 }
 
-// Regression: one half of them had enough samples, the other had not.
+// Regression: one half of the frames had enough samples, the other half did not.
 TEST(C7_StoredFrames, UnchangedFramesGetASampleMoreInBothHalves) {
   for (const uint32_t samples : {4u, 5u}) {
     const Folder folder, fresh;
@@ -186,7 +187,7 @@ TEST(C7_StoredFrames, AJobThatBeginsInAnUnchangedStretchGetsASampleMoreInBothHal
   }
 }
 
-// Regression: a farm could not see which frames were sampled.
+// Regression: frames whose replay was sampled again were reported as stored, so that farms misjudged their progress.
 TEST(C7_StoredFrames, FramesWithANewReplayAreNotReportedAsStored) {
   Pan pan(1.3f);
   const Folder folder;
@@ -230,8 +231,8 @@ TEST(C7_StoredFrames, FramesOfATimeLimitGetTheSamplesOfAJobWithoutOne) {
   const auto sequence = make_sequence(1, 2, folder.path());
   for (int32_t t = 1; t <= 2; ++t) sample(sequence.get(), pan.at(t), settings_of(t, 100));
   const Delivered frame = deliver(sequence.get(), 2);
-  EXPECT_EQ(frame.stats["spp_base"], 50.0);
-  EXPECT_EQ(frame.stats["spp_offset"], 50.0);
+  EXPECT_EQ(frame.stats["samples_fresh"], 50.0);
+  EXPECT_EQ(frame.stats["samples_replayed"], 50.0);
 }
 
 // Marks a frame as ended by a time limit: the requested samples do not say how many it has.
@@ -248,7 +249,8 @@ GradusSettings with_threshold(int32_t frame, uint32_t samples, float threshold) 
   return settings;
 }
 
-// Regression: the samples of the block with the maximum, up to four times the mean, were taken for those of the frame.
+// Regression: the sample count of the block with most samples, up to four times the mean, counted as that of the
+// frame.
 TEST(C7_StoredFrames, AdaptiveFramesOfATimeLimitHaveTheSamplesOfTheirMean) {
   Pan pan(1.3f);
   const Folder folder;
@@ -341,8 +343,7 @@ TEST(C7_StoredFrames, FramesWithoutTheFeaturesOfTheReconstructionAreRefusedByNam
   EXPECT_NE(refusal.find("choose another frame store"), std::string::npos) << refusal;
 }
 
-// Regression: whatever the store had for the frame before the range was replayed: other seeds, fewer samples, an older
-// scene.
+// Regression: any stored frame before the range was replayed, even with another seed, fewer samples or an older scene.
 TEST(C7_StoredFrames, TheFrameBeforeTheRangeIsReplayedOnlyIfItBelongsToTheJob) {
   Pan pan(0.0f), other(1.3f);
   const auto of_seed = [](int32_t frame, uint32_t seed, uint32_t samples) {
@@ -398,7 +399,7 @@ TEST(C7_StoredFrames, AnUnchangedStretchOfAnOlderSceneIsNotMixedIn) {
   }
 }
 
-// The store has replays of frames before their scene was changed: at the end of a part, and at the beginning of
+// The store has replays of frames whose scene was changed later: at the end of one part and at the beginning of
 // another.
 TEST(C7_StoredFrames, MovingFramesOfAnOlderSceneAreNotMixedIn) {
   Pan old(1.3f), edited(1.3f, Scenario::GlossyFloor);
@@ -417,7 +418,7 @@ TEST(C7_StoredFrames, MovingFramesOfAnOlderSceneAreNotMixedIn) {
   }
 }
 
-// Frame 1 has changed, frame 2 has not: the replay of the old frame 1 used correspondences that lead elsewhere now.
+// Frame 1 has changed and frame 2 has not. The correspondences of the replay of the old frame 1 are no longer valid.
 TEST(C7_StoredFrames, ReplaysOfAnOlderSceneAreSampledAnew) {
   Pan pan(1.3f);
   const auto sample_both = [&](const std::string& folder, int32_t shown_first) {

@@ -1,5 +1,5 @@
 // J2: frames of changing meshes and instances, and cancelled renders, release everything. LeakSanitizer (make
-// test-full) looks for leaks; tests/memory counts what the library holds.
+// test-full) looks for leaks; tests/memory counts allocations, files and threads.
 #include "api/changing_scene.h"
 
 namespace gradus::test {

@@ -7,7 +7,7 @@
 namespace gradus {
 namespace {
 
-// Regression: stored films were reconstructed with all processors, whatever their settings said.
+// Regression: stored films were reconstructed with all processors, whatever number of threads their settings had.
 TEST(FilmThreads, AreThoseOfItsSettings) {
   constexpr uint32_t size = 384;
   const GradusDevice device = test::make_device();

@@ -83,8 +83,8 @@ TEST(A2_WhiteFurnace, ClassesDoNotChangeEnergy) {
   for (const float cosine : {1.0f, 0.5f, 0.1f}) {
     const Vec3 wo = tilted_direction(cosine, 1.0f);
     const float together = measured_albedo(finished(glass, wo, 0.1f), wo, kSamples, 5).x;
-    const float apart = measured_albedo(finished(glass, wo, 0.5f), wo, kSamples, 6).x;
-    EXPECT_NEAR(together, apart, 0.01f);
+    const float separate = measured_albedo(finished(glass, wo, 0.5f), wo, kSamples, 6).x;
+    EXPECT_NEAR(together, separate, 0.01f);
   }
 }
 

@@ -97,7 +97,6 @@ TEST(Film, BytesPerPixelAreThoseOfAllItsPlanes) {
   }
 }
 
-// Differences combine the pair's own samples and the reverse shift, each divided by its count.
 TEST(Film, ChannelsNeedNamesThatNoOtherPlaneHas) {
   film::Film film = small_film();
   film.channels.add({"fog", 1, film::ValueType::kData, film::Normalisation::kOwnWeight}, 12);
@@ -108,6 +107,7 @@ TEST(Film, ChannelsNeedNamesThatNoOtherPlaneHas) {
   EXPECT_EQ(film.channels.size(), 2u);
 }
 
+// Differences combine the pair's own samples and the reverse shift, each divided by its count.
 TEST(Film, MergesPairsByTheirCounts) {
   film::Film film = small_film();
   const size_t p = film.index(1, 1);
@@ -120,7 +120,7 @@ TEST(Film, MergesPairsByTheirCounts) {
   EXPECT_FLOAT_EQ(images.dx[3 * p], 3.5f);
   EXPECT_TRUE(std::isnan(film::read_half_differences(film, 0).dx[3 * p])) << "absent in one half";
   EXPECT_TRUE(std::isnan(images.dx[3 * q]));
-  film.pair_count[0][film::kLeft][q] = 0.0f;  // a difference that was sampled from one pixel alone is absent
+  film.pair_count[0][film::kLeft][q] = 0.0f;  // a difference that only one pixel has sampled is absent
   EXPECT_TRUE(std::isnan(film::read_images(film, 0).dx[3 * p]));
 }
 

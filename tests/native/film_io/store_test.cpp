@@ -732,7 +732,8 @@ TEST_F(F6_Store, K2_ACancelIsNoticedWhileAFileIsRead) {
   EXPECT_TRUE(same_samples(*read, *film));
 }
 
-// Regression: a file was synced at its end only: half a film of 4K for many seconds, in which no cancel is noticed.
+// Regression: a file was synced only at its end. For half a film at 4K this took many seconds in which no cancel was
+// noticed.
 TEST_F(F6_Store, K2_ALongFileIsSyncedWhileItIsWritten) {
   const std::vector<char> bytes(33 << 20);
   for (const auto& [durable, syncs] : {std::pair(film_io::Durable::kYes, 1), {film_io::Durable::kNo, 0}}) {

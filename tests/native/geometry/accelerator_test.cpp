@@ -76,7 +76,7 @@ void expect_packets_agree(const scene::Snapshot& snapshot, const Queries& querie
 }
 
 // Builds a room with a ball in it.
-void furnish(TestScene* scene, int side) {
+void build_room(TestScene* scene, int side) {
   scene->mesh(1, sphere(Vec3(0.0f), 8.0f, side, side));
   scene->mesh(2, sphere(Vec3(0.0f), 1.0f, 20, 20));
   scene->instance(1);
@@ -123,7 +123,7 @@ class AcceleratorHints : public testing::TestWithParam<Hints> {};
 
 TEST(Accelerator, StaticGeometryIsBuiltOnceAndSharedByTheFrames) {
   TestScene scene;
-  furnish(&scene, kSoupSide);
+  build_room(&scene, kSoupSide);
   std::weak_ptr<const geometry::GeometryGroup> static_part, moving;
   for (int frame = 1; frame < 5; ++frame) {
     scene.matrices_before = {Mat4(1.0f), translation(Vec3(float(frame - 1), 2, 0))};
@@ -151,7 +151,7 @@ TEST(Accelerator, RaysMeetStaticAndMovingGeometry) {
   const Queries queries(20000);
   TestScene together, apart;
   for (TestScene* scene : {&together, &apart}) {
-    furnish(scene, kSoupSide);
+    build_room(scene, kSoupSide);
     scene->instance(2, translation(Vec3(-3, 0, 2)), GRADUS_VISIBLE_CAMERA | GRADUS_VISIBLE_DIFFUSE);  // casts no shadow
   }
   apart.matrices_before = {Mat4(1.0f), translation(Vec3(2, 2, 0)), translation(Vec3(-3, 0, 3))};
@@ -167,8 +167,8 @@ TEST(Accelerator, RaysMeetStaticAndMovingGeometry) {
 TEST(Accelerator, BlurredInstancesLieBesideASmallScene) {
   const Queries queries(20000);
   TestScene scene;
-  furnish(&scene, 12);
-  scene.way = {translation(Vec3(-1, 0, 0)), translation(Vec3(1, 0, 0))};
+  build_room(&scene, 12);
+  scene.shutter_poses = {translation(Vec3(-1, 0, 0)), translation(Vec3(1, 0, 0))};
   scene.instance(2, translation(Vec3(0, -3, 0)));
   const auto snapshot = scene.commit();
   EXPECT_EQ(snapshot->accelerator->moving.instances, std::vector<uint32_t>{2});
@@ -177,7 +177,7 @@ TEST(Accelerator, BlurredInstancesLieBesideASmallScene) {
   expect_packets_agree(*snapshot, queries, found);
   // The ball at each time, as a static instance with the pose of that time.
   TestScene still;
-  furnish(&still, 12);
+  build_room(&still, 12);
   still.instance(2);
   for (const float time : {0.0f, 0.25f, 0.5f, 1.0f}) {
     still.move(2, translation(Vec3(2.0f * time - 1.0f, -3, 0)));
@@ -197,7 +197,7 @@ TEST(Accelerator, BlurredInstancesLieBesideASmallScene) {
 TEST(Accelerator, GeometryThatMayMoveIsKeptBesideALargeStaticScene) {
   for (const int side : {12, kSoupSide}) {
     TestScene scene;
-    furnish(&scene, side);
+    build_room(&scene, side);
     scene.instance(2, translation(Vec3(0, -3, 0)), GRADUS_VISIBLE_ALL | GRADUS_MAY_MOVE);
     const auto snapshot = scene.commit();
     const std::vector<uint32_t> moving = side == kSoupSide ? std::vector<uint32_t>{2} : std::vector<uint32_t>{};
@@ -280,8 +280,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Accelerator, SnapshotsStayValidAfterLaterOnes) {
   const Queries queries(5000);
   TestScene scene;
-  furnish(&scene, 40);
-  scene.way = {translation(Vec3(-1, 0, 0)), translation(Vec3(1, 0, 0))};
+  build_room(&scene, 40);
+  scene.shutter_poses = {translation(Vec3(-1, 0, 0)), translation(Vec3(1, 0, 0))};
   scene.instance(2, translation(Vec3(0, -3, 0)));
   const auto first = scene.commit();
   const std::vector<Answer> before = ask(*first, queries);
@@ -300,9 +300,9 @@ TEST(Accelerator, TheSameListIsSharedWhenOnlyPosesChange) {
   scene.mesh(2, sphere(Vec3(0.0f), 1.0f, 20, 20));
   const auto show = [&](int movers) {
     while (scene.instance_count() > 0) scene.remove_last();
-    scene.way = {translation(Vec3(-1, 0, 0)), translation(Vec3(1, 0, 0))};
+    scene.shutter_poses = {translation(Vec3(-1, 0, 0)), translation(Vec3(1, 0, 0))};
     for (int i = 0; i < movers; ++i) scene.instance(2, translation(Vec3(float(2 * i), -3, 0)));
-    scene.way.clear();
+    scene.shutter_poses.clear();
     scene.instance(1);
     return scene.commit();
   };
@@ -320,7 +320,7 @@ TEST(Accelerator, TheSameListIsSharedWhenOnlyPosesChange) {
 
 TEST(Accelerator, StillsAndScenesInWhichAllMovesAreOneGroup) {
   TestScene scene;
-  furnish(&scene, 12);
+  build_room(&scene, 12);
   EXPECT_FALSE(scene.commit()->accelerator->moving.group);
   scene.matrices_before = {translation(Vec3(1, 0, 0)), translation(Vec3(1, 0, 0))};
   EXPECT_FALSE(scene.commit()->accelerator->moving.group);
@@ -330,8 +330,8 @@ TEST(Accelerator, StillsAndScenesInWhichAllMovesAreOneGroup) {
 
 TEST(Accelerator, AChangeOfStaticGeometryIsNoticed) {
   TestScene scene;
-  furnish(&scene, 12);
-  scene.way = {translation(Vec3(-1, 0, 0)), translation(Vec3(1, 0, 0))};
+  build_room(&scene, 12);
+  scene.shutter_poses = {translation(Vec3(-1, 0, 0)), translation(Vec3(1, 0, 0))};
   scene.instance(2, translation(Vec3(0, -3, 0)));
   const auto first = scene.commit();
   scene.mesh(1, sphere(Vec3(0.0f), 6.0f, 12, 12));

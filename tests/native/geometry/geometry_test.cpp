@@ -297,7 +297,7 @@ TEST(SurfacePoint, NormalsOfMirroredInstancesPointOutside) {
   EXPECT_NEAR(point.position.x, 2.0f, 0.02f);
 }
 
-// Steps along a primitive, turned into its parameters and back into positions.
+// Converts steps along a primitive to its parameters and back to positions.
 TEST(SurfaceDerivatives, ParametersFollowSteps) {
   Soup soup;
   soup.triangle({-1, -1, 0.5f}, {2, -1, 0}, {0.5f, 3, 1});

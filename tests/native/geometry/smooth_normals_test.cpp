@@ -57,8 +57,8 @@ TEST(SmoothNormals, WeightedByAngle) {
   EXPECT_NEAR(glm::dot(mesh->normals[0], expected), 1.0f, 1e-6f);
 }
 
-// Regression: stretching rotates facets and normals apart. A normal that came to lie below its facet was negated, so
-// that the facet was lit from the wrong side, and glass was left instead of entered.
+// Regression: stretching rotates facets and normals differently. A normal that was then below its facet was negated, so
+// that the facet was lit from the wrong side, and rays left glass instead of entering it.
 TEST(SmoothNormals, NormalsBelowStretchedFacets) {
   test::PathScene scene;
   const Vec3 axis = glm::normalize(Vec3(1, 2, 3));  // of a coarse ball that is pressed flat

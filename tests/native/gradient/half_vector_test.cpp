@@ -122,7 +122,7 @@ void expect_nearly_all(int part, int whole, const char* what) { EXPECT_GE(part, 
 
 void check_half_vector(bool transmitted) {
   Random random(11);
-  int shifted = 0, verdicts_ok = 0, jacobians_ok = 0, ways_back = 0, products_ok = 0;
+  int shifted = 0, verdicts_ok = 0, jacobians_ok = 0, returned = 0, products_ok = 0;
   for (int i = 0; i < kShifts; ++i) {
     Case c;
     while (!make_case(&random, transmitted, &c)) {
@@ -139,13 +139,13 @@ void check_half_vector(bool transmitted) {
     ++shifted;
     jacobians_ok += std::fabs(there.jacobian - numeric) <= 1e-4 * numeric ? 1 : 0;
     const gradient::ShiftedDirection back = gradient::copy_half_vector(c.offset, there.wi, c.base, transmitted);
-    ways_back += back.failure == gradient::ShiftFailure::None && glm::length(back.wi - c.wi) < 1e-4f ? 1 : 0;
+    returned += back.failure == gradient::ShiftFailure::None && glm::length(back.wi - c.wi) < 1e-4f ? 1 : 0;
     products_ok += std::fabs(there.jacobian * back.jacobian - 1.0f) < 1e-4f ? 1 : 0;
   }
   EXPECT_GE(shifted, 0.9 * kShifts);
   expect_nearly_all(verdicts_ok, kShifts, "whether there is a copy");
   expect_nearly_all(jacobians_ok, shifted, "Jacobians");
-  expect_nearly_all(ways_back, shifted, "the way back");
+  expect_nearly_all(returned, shifted, "the inverse shift");
   expect_nearly_all(products_ok, shifted, "Jacobians there and back");
 }
 

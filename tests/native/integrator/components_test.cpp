@@ -112,31 +112,31 @@ TEST_P(Scenarios, PlainPathsHaveTheSameComponents) {
 TEST_P(Scenarios, ComponentsSampledSeparatelyHaveTheBitsOfThoseSampledTogether) {
   const integrator::IntegratorContext c = context("");
   const film::Film whole = sampled(c, true);
-  film::Film apart = test::make_test_film(c.settings, true, c.components.count());
+  film::Film separate = test::make_test_film(c.settings, true, c.components.count());
   const auto integrator = gradient::make_gradient_integrator(c);
   const uint32_t own = 1u << c.components.find("Diffuse") | 1u << c.components.find("Reflection");
   // A separate replay in every other pixel.
-  const size_t pixels = size_t(apart.region.area());
+  const size_t pixels = size_t(separate.region.area());
   std::vector<uint32_t> shared(pixels, lpe::kEveryComponent);
   std::vector<uint8_t> map(pixels, 0);
   for (size_t i = 0; i < pixels; i += 2) shared[i] &= ~own, map[i] = 1;
-  integrator::WorkUnit unit{apart.region, 0, 6};
+  integrator::WorkUnit unit{separate.region, 0, 6};
   unit.component_map = &shared;
-  integrator->sample(unit, &apart, &apart.counters, std::atomic<bool>{false});
+  integrator->sample(unit, &separate, &separate.counters, std::atomic<bool>{false});
   unit.component_map = nullptr;
   unit.adds_components = true;
   unit.pixel_map = &map;
   for (const char* name : {"Diffuse", "Reflection"}) {
     unit.components = 1u << c.components.find(name);
-    integrator->sample(unit, &apart, &apart.counters, std::atomic<bool>{false});
+    integrator->sample(unit, &separate, &separate.counters, std::atomic<bool>{false});
   }
-  EXPECT_EQ(whole.count, apart.count);
-  EXPECT_EQ(whole.pair_count, apart.pair_count);
+  EXPECT_EQ(whole.count, separate.count);
+  EXPECT_EQ(whole.pair_count, separate.pair_count);
   for (size_t i = 0; i < whole.components.size(); ++i) {
     for (int half = 0; half < film::kHalves; ++half) {
-      EXPECT_EQ(whole.components[i].primal[half], apart.components[i].primal[half]) << c.components[int(i)].name;
+      EXPECT_EQ(whole.components[i].primal[half], separate.components[i].primal[half]) << c.components[int(i)].name;
       for (int k = 0; k < film::kOffsets; ++k)
-        EXPECT_EQ(whole.components[i].gradient[half][k], apart.components[i].gradient[half][k]);
+        EXPECT_EQ(whole.components[i].gradient[half][k], separate.components[i].gradient[half][k]);
     }
   }
 }

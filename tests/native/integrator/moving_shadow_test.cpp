@@ -16,9 +16,9 @@ constexpr float kMetres = 2.88f;  // width of the picture
 integrator::IntegratorContext passing_bar(PathScene* scene, const GradusLight& light) {
   const uint64_t grey = scene->material(matte(Rgb(0.5f)));
   scene->quad(Vec3(-3, -3, 0), Vec3(6, 0, 0), Vec3(0, 6, 0), grey);
-  scene->scene.way = {Mat4(1.0f), translation(Vec3(1, 0, 0))};
+  scene->scene.shutter_poses = {Mat4(1.0f), translation(Vec3(1, 0, 0))};
   scene->quad(Vec3(-1, -3, 1), Vec3(1, 0, 0), Vec3(0, 6, 0), grey, GRADUS_VISIBLE_SHADOW);
-  scene->scene.way.clear();
+  scene->scene.shutter_poses.clear();
   scene->light(light);
   scene->camera(Vec3(0, 0, 3.2f), Vec3(0), kMetres / 3.2f);
   scene->open_shutter();

@@ -25,7 +25,7 @@ double density(const scene::Snapshot& snapshot, const light::Receiver& receiver,
   light::intersect_lights(snapshot, ray, &hits);
   for (const light::LightHit& met : hits) sum += light::light_point_pdf(snapshot, met.point, receiver);
   sum += light::light_point_pdf(snapshot, light::light_point_of_world(snapshot, direction), receiver);
-  // All surfaces on the ray: light sampling does not know which is in front.
+  // Adds the densities of all surfaces on the ray, because light sampling does not determine which is in front.
   Ray rest = ray;
   geometry::Hit hit;
   for (int i = 0; i < 16 && snapshot.intersect(rest, GRADUS_VISIBLE_CAMERA, &hit); ++i) {

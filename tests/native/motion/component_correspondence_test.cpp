@@ -35,8 +35,8 @@ TEST_F(ComponentCorrespondence, FollowChainsWhereThereAreAnyAndSurfacesElsewhere
   EXPECT_EQ(correspondence(static_), (Row{0, 2, 3, -1, 4, 5}));  // pixel 3 belongs to the reflection now
 }
 
-// The object that the chain showed is gone. The displacement of the surface is the best choice then: that of the
-// picture as a whole.
+// The object that the chain showed does not exist any more. The displacement of the surface is then the best choice,
+// because it is that of the picture as a whole.
 TEST_F(ComponentCorrespondence, FollowTheSurfaceWhereAChainWasLost) {
   chain(1, 1.5f, motion::Tracking::Occluded);
   EXPECT_EQ(correspondence(static_), static_);
@@ -70,7 +70,7 @@ TEST_F(ComponentCorrespondence, KeepTheEndsOfDisplacements) {
       motion::match_component({static_, std::vector<Vec2>(6, Vec2(0.25f, 0.0f))}, kRow, motion_).off_centre;
   EXPECT_EQ(off[1], Vec2(-0.125f, 0.0f));
   EXPECT_EQ(off[4], Vec2(0.0f)) << "a chain that rests does so exactly";
-  EXPECT_EQ(off[5], Vec2(0.25f, 0.0f)) << "the surface's way";
+  EXPECT_EQ(off[5], Vec2(0.25f, 0.0f)) << "the displacement of the surface";
 }
 
 TEST_F(ComponentCorrespondence, IgnoreAPositionThatIsNotFinite) {

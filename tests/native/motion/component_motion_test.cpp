@@ -119,7 +119,7 @@ TEST_F(ComponentMotionTest, OfRoughSurfacesIsSurfaceMotion) {
   EXPECT_EQ(found.tracked[above], 1.0f);
 }
 
-// Regression: an object that did not exist was taken to be static, and its motion to be known.
+// Regression: an object that did not exist in the other frame counted as static, with a known motion.
 TEST_F(ComponentMotionTest, OfAnObjectThatDidNotExistIsMarkedAsGone) {
   add_ball(grey());
   key(Mat4(NAN), Mat4(1.0f), Mat4(1.0f));

@@ -10,8 +10,8 @@ namespace {
 class FilmSearchTest : public MotionTest {
  protected:
   // Searches from a pixel to the new position of the object that it shows; the mirror is static.
-  motion::SearchEnd leap(const MotionFrame& from, const MotionFrame& to, int32_t x, int32_t y,
-                         motion::SearchCounts* counts) {
+  motion::SearchEnd search_from(const MotionFrame& from, const MotionFrame& to, int32_t x, int32_t y,
+                                motion::SearchCounts* counts) {
     const motion::SpecularChain* chain = from.chains.at(x, y);
     EXPECT_NE(chain, nullptr);
     const motion::ChainTracer before = from.chains.tracer(), after = to.chains.tracer();
@@ -21,7 +21,7 @@ class FilmSearchTest : public MotionTest {
     const motion::FilmSearch::Problem problem{before, after, chain->signature, own, target, Vec2(0.0f)};
     motion::FilmPlace place,
         start{Vec2(float(x) + 0.5f, float(y) + 0.5f), *chain, motion::chain_jacobian(from.chains, own, x, y)};
-    return motion::FilmSearch(problem, counts).leap(start, start.film, &place);
+    return motion::FilmSearch(problem, counts).search_from(start, start.film, &place);
   }
 };
 
@@ -39,8 +39,8 @@ TEST_F(FilmSearchTest, EndsWhereTheImageLeavesItsMirror) {
   while (last > 0 && a->chains.at(last, kRow) == nullptr) --last;
   ASSERT_GT(last, kSize / 2);
   motion::SearchCounts inside, leaving;
-  EXPECT_EQ(leap(*a, *b, kSize / 2, kRow, &inside), motion::SearchEnd::Found);
-  EXPECT_EQ(leap(*a, *b, last - 1, kRow, &leaving), motion::SearchEnd::Ended);
+  EXPECT_EQ(search_from(*a, *b, kSize / 2, kRow, &inside), motion::SearchEnd::Found);
+  EXPECT_EQ(search_from(*a, *b, last - 1, kRow, &leaving), motion::SearchEnd::Ended);
   EXPECT_LT(leaving.traced, 20u);
 }
 

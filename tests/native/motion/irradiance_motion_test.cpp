@@ -139,7 +139,7 @@ TEST(IrradianceMotion, NoiseAloneDoesNotMove) {
   EXPECT_LT(quantile(errors(scene, motion[0], [](const Vec2&) { return kSurface; }), 0.95f), 0.15f);
 }
 
-// Regression: the smooth residual noise of a reconstruction matched so well that it was trusted: half of a sunlit floor
+// Regression: the smooth residual noise of a reconstruction matched so well between frames that half of a sunlit floor
 // got vectors.
 TEST(IrradianceMotion, BlotchesOfAReconstructionDoNotMove) {
   FlowScene scene;
@@ -349,8 +349,8 @@ TEST(IrradianceMotion, BitsDoNotDependOnTheNumberOfThreads) {
     const auto motion = motion::irradiance_motion(library.get(), scene.width, scene.height, first.view(), second.view(),
                                                   motion::FlowDomain::Logarithmic);
     std::vector<float> bits = motion[0].tracked;
-    for (const motion::PixelMotion& way : motion) {
-      for (const Vec2& v : way.vectors) bits.insert(bits.end(), {v.x, v.y});
+    for (const motion::PixelMotion& direction : motion) {
+      for (const Vec2& v : direction.vectors) bits.insert(bits.end(), {v.x, v.y});
     }
     return bits;
   });

@@ -35,8 +35,8 @@ class CorrespondingFrames : public testing::Test {
     const film::PixelCorrespondence correspondence = motion::match_pixels(*from, *to);
     const std::vector<int32_t>& found = correspondence.pixel;
     std::set<int32_t> taken;
-    for (const int32_t link : found) {
-      EXPECT_TRUE(link == film::kNoCorrespondence || taken.insert(link).second) << "two pixels lead to " << link;
+    for (const int32_t target : found) {
+      EXPECT_TRUE(target == film::kNoCorrespondence || taken.insert(target).second) << "two pixels lead to " << link;
     }
     const std::vector<int32_t> inverse = motion::inverse_correspondence(correspondence).pixel;
     for (size_t i = 0; i < found.size(); ++i) {

@@ -201,11 +201,12 @@ TEST_F(SpecularMotion, MotionBlurDoesNotChangeIt) {
     PathScene scene;
     const uint64_t material = scene.material(glossy(0.0f));
     const auto ball_at = [&](const Vec3& at) {
-      if (blurred) scene.scene.way = {translation(Vec3(-0.05f, 0, 0)), Mat4(1.0f), translation(Vec3(0.05f, 0.02f, 0))};
+      if (blurred)
+        scene.scene.shutter_poses = {translation(Vec3(-0.05f, 0, 0)), Mat4(1.0f), translation(Vec3(0.05f, 0.02f, 0))};
       scene.place = translation(at);
       scene.ball(Vec3(0.0f), 0.6f, material, 32, true);
       scene.place = Mat4(1.0f);
-      scene.scene.way.clear();
+      scene.scene.shutter_poses.clear();
     };
     scene.world(Rgb(1.0f));
     scene.quad(Vec3(-6, -1, 6), Vec3(12, 0, 0), Vec3(0, 0, -10), scene.material(matte(Rgb(0.5f))));

@@ -146,9 +146,10 @@ TEST(Segment, AllRaysMeasureTheirLengthFromTheirStart) {
   const path::Segment base = trace(context, 0, &ray);
   EXPECT_NEAR(base.weight.x * base.probability, 2.0f * 3.0f * 4.0f, 1e-4f);
   uint16_t depth = 0;
-  const Ray link{Vec3(0.0f), 0.0f, Vec3(1, 0, 0), 5.0f};
-  EXPECT_NEAR(path::segment_transmittance(context, link, path::PathRay{}, &depth).x, 24.0f, 1e-4f) << "connection";
-  EXPECT_NEAR(context.scene.transmittance(link, 8).x, 24.0f, 1e-4f) << "shadow ray";
+  const Ray connection{Vec3(0.0f), 0.0f, Vec3(1, 0, 0), 5.0f};
+  EXPECT_NEAR(path::segment_transmittance(context, connection, path::PathRay{}, &depth).x, 24.0f, 1e-4f)
+      << "connection";
+  EXPECT_NEAR(context.scene.transmittance(connection, 8).x, 24.0f, 1e-4f) << "shadow ray";
 }
 
 // Regression: connections ended 1e-4 of their length early.

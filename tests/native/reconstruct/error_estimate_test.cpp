@@ -66,7 +66,7 @@ TEST(ErrorEstimate, OfTheNoisyImageIsTheVarianceOfItsMean) {
 }
 
 // Noise that no reconstruction removes, in half-buffers with different numbers of samples.
-TEST(ErrorEstimate, OfHalvesApartIsTheSquareOfHalfTheirDistance) {
+TEST(ErrorEstimate, OfDifferentHalvesIsTheSquareOfHalfTheirDistance) {
   film::Film film = make_frame(40, 30, 3, 2, true);
   for (Radiance& sum : film.components[0].primal[0]) sum += Radiance(3.0f * 0.7f);
   for (Radiance& sum : film.components[0].primal[1]) sum += Radiance(2.0f * -0.7f);
@@ -110,7 +110,7 @@ TEST(ErrorEstimate, OfABetterImageIsThatOfL2LessTheirDistance) {
   EXPECT_EQ(reconstruct::squared_error(4.0, 5.0), 1.0);
   reconstruct::ErrorTerms terms;
   terms.noise.assign(size_t{3} * 30 * 30, 2.0f);
-  terms.apart.assign(terms.noise.size(), 1.0f);
+  terms.l2_difference.assign(terms.noise.size(), 1.0f);
   for (const float e : reconstruct::error_of_pixels(terms, 30, 30, 3)) EXPECT_FLOAT_EQ(e, 3.0f);
 }
 
@@ -144,7 +144,7 @@ TEST(ErrorEstimate, IsFiniteForAnySizeSampleCountAndValue) {
   }
 }
 
-// A film of methods that were rendered with other settings.
+// The film was rendered with settings that do not sample the planes of the reconstruction.
 TEST(ErrorEstimate, AndReconstructionRefuseFilmsWithoutNeededPlanes) {
   film::Film film = make_frame(8, 8, 2, 2, false);
   const auto message = [&](uint32_t reconstruction) {

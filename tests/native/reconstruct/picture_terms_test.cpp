@@ -133,7 +133,7 @@ TEST(Partition, NoTermGoesBelowZeroWhileAnotherHasLight) {
 
 TEST(Partition, LightGoesToTermsThatCanHaveIt) {
   std::vector<reconstruct::PictureTerm> terms{term_of(1.0f, 0.1f), term_of(1.0f, 1.0f)};
-  terms[1].room = flat(0.0f);
+  terms[1].capacity = flat(0.0f);
   reconstruct::add_up(flat(3.0f), &terms);
   expect_flat(terms[0].image, 3.0f);
   expect_flat(terms[1].image, 0.0f);

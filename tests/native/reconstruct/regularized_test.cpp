@@ -23,13 +23,13 @@ reconstruct::Reconstructed solve_with_error(const film::Film& film) {
 std::vector<float> solve(const film::Film& film) { return solve_with_error(film).image; }
 std::vector<float> noisy(const film::Film& film) { return film::read_images(film, 0).primal; }
 
-// Adds noise of +`apart` and −`apart` to the two half-buffers everywhere: no window removes any of it, so that its
+// Adds noise of +`offset` and −`offset` to the two half-buffers everywhere: no window removes any of it, so that its
 // share in all estimates is known.
-film::Film with_common_noise(FeatureFilm description, float apart) {
+film::Film with_common_noise(FeatureFilm description, float offset) {
   description.sigma = [](size_t) { return 0.0f; };
   film::Film film = make_feature_film(description);
   for (int half = 0; half < film::kHalves; ++half) {
-    for (Radiance& pixel : film.components[0].primal[half]) pixel += Radiance(half == 0 ? apart : -apart);
+    for (Radiance& pixel : film.components[0].primal[half]) pixel += Radiance(half == 0 ? offset : -offset);
   }
   return film;
 }
@@ -169,10 +169,10 @@ TEST(B2_Regularized, EstimatesItsError) {
 // The estimate contains the noise that windows cannot remove, and the part of the picture that no feature explains.
 TEST(B2_Regularized, ErrorIsVarianceAndSquaredBias) {
   for (const float amplitude : {0.0f, 0.5f}) {
-    for (const float apart : {1.0f, 2.0f}) {
-      const reconstruct::Reconstructed result = solve_with_error(with_common_noise(chequered(1.0f, amplitude), apart));
-      const double expected = reconstruct::kHidden * apart * apart + amplitude * amplitude;
-      EXPECT_NEAR(mean(result.error), expected, 0.03 * expected) << amplitude << ", " << apart;
+    for (const float offset : {1.0f, 2.0f}) {
+      const reconstruct::Reconstructed result = solve_with_error(with_common_noise(chequered(1.0f, amplitude), offset));
+      const double expected = reconstruct::kHidden * offset * offset + amplitude * amplitude;
+      EXPECT_NEAR(mean(result.error), expected, 0.03 * expected) << amplitude << ", " << offset;
     }
   }
 }
@@ -421,8 +421,8 @@ TEST(BadInput_Regularized, ContradictoryHalves) {
   expect_finite_and_bounded(film, 10.0f);
 }
 
-// A defect of a film with differences, which L2 ignores or suffers from as well.
-struct Spoiled {
+// A film with differences that has a defect, and the maximum error of its reconstruction.
+struct DefectiveFilm {
   const char* name;
   std::function<float(int x, int y, int channel, int half)> feature;  // replaces that of the room
   std::function<void(film::Film*)> spoil = [](film::Film*) {};
@@ -431,7 +431,7 @@ struct Spoiled {
   double maximum = 1.12;
 };
 
-Spoiled spoiled(const char* name, const std::function<void(film::Film*)>& spoil) {
+DefectiveFilm spoiled(const char* name, const std::function<void(film::Film*)>& spoil) {
   return {name, test::room_feature, spoil, 1.01};
 }
 
@@ -445,7 +445,7 @@ void empty_second_half(film::Film* film) {
   }
 }
 
-class BadInput_BesideL2 : public ::testing::TestWithParam<Spoiled> {};
+class BadInput_BesideL2 : public ::testing::TestWithParam<DefectiveFilm> {};
 
 TEST_P(BadInput_BesideL2, IsNotWorse) {
   FeatureFilm description = room(kWidth, kHeight);
@@ -463,28 +463,33 @@ TEST_P(BadInput_BesideL2, IsNotWorse) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, BadInput_BesideL2,
-    ::testing::Values(
-        Spoiled{"ConstantFeatures", [](int, int, int, int) { return 1.0f; }},
-        Spoiled{"HugeFeatures", [](int, int, int, int) { return -5e3f; }},
-        Spoiled{"MissingFeatures", [](int, int, int, int) { return 0.0f; }},
-        Spoiled{"FeaturesOfNoise", [](int x, int y, int c, int half) { return 2.0f * hashed(x, y, c, half) - 1.0f; }},
-        spoiled("FeaturesThatAreNotFinite",
-                [](film::Film* film) {
-                  for (film::Channel& plane : film->channels) {
-                    for (size_t i = 0; i < plane.values[0].size(); i += 11)
-                      plane.values[0][i] = std::numeric_limits<float>::quiet_NaN();
-                  }
-                }),
-        spoiled("ContradictoryHalves",
-                [](film::Film* film) {
-                  for (size_t i = 0; i < size_t(kWidth) * 25; ++i) film->components[0].primal[1][i] = Radiance(0.0f);
-                }),
-        spoiled("HugeValues",
-                [](film::Film* film) { film->components[0].primal[0][size_t(20 * kWidth + 30)] = Radiance(1e20f); }),
-        spoiled("ASingleSample", empty_second_half)),
-    [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, BadInput_BesideL2,
+                         ::testing::Values(DefectiveFilm{"ConstantFeatures", [](int, int, int, int) { return 1.0f; }},
+                                           DefectiveFilm{"HugeFeatures", [](int, int, int, int) { return -5e3f; }},
+                                           DefectiveFilm{"MissingFeatures", [](int, int, int, int) { return 0.0f; }},
+                                           DefectiveFilm{"FeaturesOfNoise",
+                                                         [](int x, int y, int c, int half) {
+                                                           return 2.0f * hashed(x, y, c, half) - 1.0f;
+                                                         }},
+                                           spoiled("FeaturesThatAreNotFinite",
+                                                   [](film::Film* film) {
+                                                     for (film::Channel& plane : film->channels) {
+                                                       for (size_t i = 0; i < plane.values[0].size(); i += 11)
+                                                         plane.values[0][i] = std::numeric_limits<float>::quiet_NaN();
+                                                     }
+                                                   }),
+                                           spoiled("ContradictoryHalves",
+                                                   [](film::Film* film) {
+                                                     for (size_t i = 0; i < size_t(kWidth) * 25; ++i)
+                                                       film->components[0].primal[1][i] = Radiance(0.0f);
+                                                   }),
+                                           spoiled("HugeValues",
+                                                   [](film::Film* film) {
+                                                     film->components[0].primal[0][size_t(20 * kWidth + 30)] =
+                                                         Radiance(1e20f);
+                                                   }),
+                                           spoiled("ASingleSample", empty_second_half)),
+                         [](const auto& info) { return info.param.name; });
 
 TEST(BadInput_Regularized, ABlackImageIsBlack) {
   FeatureFilm description = room(kWidth, kHeight);
@@ -495,25 +500,25 @@ TEST(BadInput_Regularized, ABlackImageIsBlack) {
 
 // Splits the light of the film into three components: shares that differ from pixel to pixel, no light of the last
 // component in half of the picture, and in some pixels more of one component than there is.
-film::Film taken_apart(const film::Film& film) {
+film::Film split_into_three(const film::Film& film) {
   const auto share_of = [](size_t component, int x) {
     if (component == 1) return x < kWidth / 2 ? 0.0f : 0.25f;
     return component == 2 ? -0.5f * float(x % 2) : 1.0f - (x < kWidth / 2 ? 0.0f : 0.25f) + 0.5f * float(x % 2);
   };
-  film::Film apart = film;
-  apart.components.assign(3, film.components[0]);
-  for (size_t k = 0; k < apart.components.size(); ++k) {
+  film::Film split = film;
+  split.components.assign(3, film.components[0]);
+  for (size_t k = 0; k < split.components.size(); ++k) {
     for (int half = 0; half < film::kHalves; ++half) {
-      for (size_t i = 0; i < apart.components[k].primal[half].size(); ++i) {
+      for (size_t i = 0; i < split.components[k].primal[half].size(); ++i) {
         const float share = share_of(k, int(i) % kWidth);
-        apart.components[k].primal[half][i] *= share;
-        for (auto& gradient : apart.components[k].gradient[half]) {
+        split.components[k].primal[half][i] *= share;
+        for (auto& gradient : split.components[k].gradient[half]) {
           if (!gradient.empty()) gradient[i] *= share;
         }
       }
     }
   }
-  return apart;
+  return split;
 }
 
 // Components add up to the picture, however the light was found, to the last digits of floats.
@@ -525,7 +530,7 @@ TEST(B2_Regularized, ComponentsAddUpToThePictureWithoutThem) {
       const film::Film film = make_feature_film(description, channels);
       reconstruct::SolveReport report;
       const reconstruct::Reconstructed whole = reconstruct::regularize(film, false, never, &report),
-                                       parts = reconstruct::regularize(taken_apart(film), true, never, &report);
+                                       parts = reconstruct::regularize(split_into_three(film), true, never, &report);
       ASSERT_EQ(parts.components.size(), 3u);
       for (size_t i = 0; i < whole.image.size(); ++i) {
         const float sum = parts.components[0][i] + parts.components[1][i] + parts.components[2][i];

@@ -1,4 +1,4 @@
-// Components of a render: planned by the content of the scene, reconstructed, and read by name; they add up to
+// Components of a render are planned by the content of the scene, reconstructed and read by name. They add up to
 // Combined.
 #include <unistd.h>
 
@@ -598,8 +598,8 @@ TEST(Components, ProgressCountsTheirMotionWhileItIsFound) {
   EXPECT_GE(render->progress().memory_bytes, film->memory_bytes());
 }
 
-// Regression: the last component of a set was taken for Residual if no path is left for that: it got the motion of the
-// mirror, marked as tracked.
+// Regression: if no paths remained for Residual, the last component of the set was treated as Residual: it got the
+// motion of the mirror, marked as tracked.
 TEST(Components, OfSetsWithoutResidualReportTheMotionOfTheReflectedObject) {
   PathScene scene;
   test::build(Scenario::Mirror, &scene);

@@ -1,4 +1,4 @@
-// Where gradients pay: the model, the pilot's map, and how a render uses it.
+// The benefit of gradients: its model, the pilot's map, and how a render uses the map.
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 #include <nlohmann/json.hpp>
@@ -49,9 +49,9 @@ TEST(Benefit, ComparesErrorWithCost) {
   EXPECT_FALSE(render::estimate_benefit(sums).pays()) << "no noise, nothing to gain";
 }
 
-// Regression: in foliage smaller than pixels all shifts fail. A difference is then that of the pixels' own samples,
-// with their noise. The pilot took this noise for an independent one, expected half of the error, and the result was
-// 2.5 times that of path tracing in the same time.
+// Regression: in foliage smaller than pixels all shifts fail, and a difference is then that of the pixels' own samples
+// with their noise. The pilot treated this noise as independent and expected half of the error, but the error was 2.5
+// times that of path tracing in the same time.
 TEST(Benefit, DifferencesOfThePixelsOwnSamplesHaveNoBenefit) {
   render::PilotSums sums = quiet_sums();
   sums.difference_deviation = 400.0 * std::sqrt(2.0);

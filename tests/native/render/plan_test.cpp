@@ -93,7 +93,7 @@ TEST(Plan, WithoutGradientsAReconstructionByFeaturesIsKept) {
   }
 }
 
-// Regression: the threshold was taken for 0.1, whatever the setting.
+// Regression: the threshold was 0.1 for every value of the setting.
 TEST(Plan, HalfVectorShiftsUseTheThresholdOfTheSettings) {
   auto snapshot = std::make_shared<scene::Snapshot>(*empty_snapshot());
   const auto skips = [&](float sharpest, float threshold) {

@@ -406,7 +406,7 @@ class WatchedScene : public ::testing::Test {
   }
 
   // Waits before sample number `at` of the film until it is released.
-  struct Held final : integrator::Integrator {
+  struct Paused final : integrator::Integrator {
     std::unique_ptr<integrator::Integrator> inner;
     uint32_t at = 0;
     std::atomic<int>* holds = nullptr;
@@ -430,12 +430,12 @@ class WatchedScene : public ::testing::Test {
     std::atomic<int> holds{0};
     std::atomic<bool> released{false};
     const auto factory = [&](const integrator::IntegratorContext& context, uint32_t integrator) {
-      auto held = std::make_unique<Held>();
-      held->inner = render::make_integrator(context, integrator);
-      held->at = at;
-      held->holds = &holds;
-      held->released = &released;
-      return held;
+      auto paused = std::make_unique<Paused>();
+      paused->inner = render::make_integrator(context, integrator);
+      paused->at = at;
+      paused->holds = &holds;
+      paused->released = &released;
+      return paused;
     };
     render::Render render(test_device(), snapshot_, watched, nullptr, factory);
     read(render, GRADUS_PASS_COMBINED, region);

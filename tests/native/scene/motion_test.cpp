@@ -27,12 +27,13 @@ std::shared_ptr<const scene::Snapshot> moving_spheres() {
   deforming.desc.shutter_positions = &keys[0].x;
   deforming.desc.normal_domain = GRADUS_DOMAIN_POINT;
   scene.scene.set_mesh(2, deforming.desc);
-  scene.way = {translation(Vec3(-0.5f, 0, 0)),
-               translation(Vec3(1, 0.5f, 0)) * turn(2.0f, glm::normalize(Vec3(1, 1, 0))) * scaling(Vec3(1.3f))};
+  scene.shutter_poses = {
+      translation(Vec3(-0.5f, 0, 0)),
+      translation(Vec3(1, 0.5f, 0)) * turn(2.0f, glm::normalize(Vec3(1, 1, 0))) * scaling(Vec3(1.3f))};
   scene.instance(1, translation(Vec3(-3, 0, 0)));
-  scene.way = {Mat4(1.0f), translation(Vec3(0, 0, 1)), translation(Vec3(0, 0, 1.5f))};
+  scene.shutter_poses = {Mat4(1.0f), translation(Vec3(0, 0, 1)), translation(Vec3(0, 0, 1.5f))};
   scene.instance(2, scaling(Vec3(-1, 1, 1)));
-  scene.way.clear();
+  scene.shutter_poses.clear();
   scene.instance(1, translation(Vec3(3, 0, 0)));
   return scene.commit();
 }
@@ -160,7 +161,7 @@ TEST(Motion, RefusesMoreThanTheMaximumNumberOfShutterKeys) {
   EXPECT_EQ(refusal_of([&] { scene.scene.set_mesh(1, mesh.desc); }), "mesh 'mesh'" + too_many);
   mesh.desc.shutter_key_count = 0;
   scene.scene.set_mesh(1, mesh.desc);
-  scene.way.assign(geometry::kMaxShutterKeys + 1, Mat4(1.0f));
+  scene.shutter_poses.assign(geometry::kMaxShutterKeys + 1, Mat4(1.0f));
   scene.instance(1);
   EXPECT_EQ(refusal_of([&] { scene.commit(); }), "instance 0" + too_many);
 }
@@ -170,11 +171,11 @@ TEST(Motion, InvalidKeysRemoveTheMotionOrTheTriangle) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const Soup ball = sphere(Vec3(0.0f), 1.0f, 8, 16);
   scene.mesh(1, ball);
-  scene.way = {Mat4(1.0f), Mat4(nan)};
+  scene.shutter_poses = {Mat4(1.0f), Mat4(nan)};
   scene.instance(1);
-  scene.way = {Mat4(1.0f), scaling(Vec3(0.0f))};
+  scene.shutter_poses = {Mat4(1.0f), scaling(Vec3(0.0f))};
   scene.instance(1, translation(Vec3(5, 0, 0)));
-  scene.way.clear();
+  scene.shutter_poses.clear();
   MeshDesc torn(ball);
   std::vector<Vec3> keys = ball.positions;
   keys.insert(keys.end(), ball.positions.begin(), ball.positions.end());

@@ -165,8 +165,8 @@ class TestScene {
     terminators_.push_back(shadow_terminator_offset);
     pass_indices_.push_back(pass_index);
     shutter_first_.push_back(uint32_t(shutter_matrices_.size()));
-    shutter_count_.push_back(uint32_t(way.size()));
-    for (const Mat4& m : way) shutter_matrices_.push_back(m * matrix);
+    shutter_count_.push_back(uint32_t(shutter_poses.size()));
+    for (const Mat4& m : shutter_poses) shutter_matrices_.push_back(m * matrix);
   }
   // Sets the pose of the instance that was added as number i for the next commit.
   void move(size_t i, const Mat4& matrix) { matrices_[i] = matrix; }
@@ -209,8 +209,8 @@ class TestScene {
   std::vector<Mat4> matrices_after;       // of all instances one frame later; if the number differs: static
   float shadow_terminator_offset = 0.0f;  // of instances added later
   int32_t pass_index = 0;                 // of instances added later
-  // poses of instances added later while the shutter is open, multiplied by their matrix; empty: static
-  std::vector<Mat4> way;
+  // Poses, while the shutter is open, of instances that are added later, multiplied by their matrix; empty: static.
+  std::vector<Mat4> shutter_poses;
 
  private:
   std::vector<float> terminators_;

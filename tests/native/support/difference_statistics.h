@@ -13,8 +13,8 @@
 
 namespace gradus::test {
 
-// Collects independent renders; D = sampled difference − difference of the primal images has mean 0 if both are
-// unbiased.
+// Collects independent renders. The quantity D = sampled difference − difference of the primal images has mean 0 if
+// both are unbiased.
 class DifferenceStatistics {
  public:
   void add(const film::GradientImages& images, bool x) {

@@ -14,7 +14,7 @@ using FileBytes = std::vector<uint8_t>;
 
 // Colour of a texel, x to the right, y up, both in 0…1.
 using Pattern = std::function<Vec4(float x, float y)>;
-// Red below left, green below right, blue above left, white above right; opaque.
+// Returns red at the lower left, green at the lower right, blue at the upper left, white at the upper right; opaque.
 Vec4 four_colors(float x, float y);
 
 struct PngOptions {
@@ -23,7 +23,7 @@ struct PngOptions {
   bool interlaced = false;
 };
 FileBytes make_png(uint32_t width, uint32_t height, const Pattern& pattern, const PngOptions& options = {});
-// Two bits per pixel, with a palette.
+// Returns a file with two bits per pixel and a palette.
 FileBytes make_palette_png(uint32_t width, uint32_t height);
 
 FileBytes make_jpeg(uint32_t width, uint32_t height, const Pattern& pattern, bool grey = false,
@@ -52,7 +52,7 @@ struct ExrOptions {
 FileBytes make_exr(uint32_t width, uint32_t height, const Pattern& pattern, const ExrOptions& options = {});
 FileBytes make_deep_exr();
 
-// runs: with the newer run-length code, which requires a width of at least 8.
+// Returns an HDR file. runs: uses the newer run-length code, which requires a width of at least 8.
 FileBytes make_hdr(uint32_t width, uint32_t height, const Pattern& pattern, bool runs = true);
 
 }  // namespace gradus::testing

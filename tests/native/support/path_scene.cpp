@@ -392,14 +392,14 @@ void build(Scenario scenario, PathScene* scene) {
     case Scenario::Moving: {  // a light that rotates, a ball that grows, a mirror and glass that move, a moving camera
       Surface light;
       light.emission = Rgb(4.0f, 3.2f, 2.4f);
-      scene->scene.way = {translation(Vec3(-0.3f, 0, 0)),
-                          glm::rotate(translation(Vec3(0.3f, 0, 0)), 1.2f, Vec3(0, 0, 1))};
+      scene->scene.shutter_poses = {translation(Vec3(-0.3f, 0, 0)),
+                                    glm::rotate(translation(Vec3(0.3f, 0, 0)), 1.2f, Vec3(0, 0, 1))};
       scene->quad(Vec3(-0.4f, 0.5f, -0.4f), Vec3(0.8f, 0, 0), Vec3(0, 0, 0.8f), scene->material(light));
-      scene->scene.way = {translation(Vec3(0, -0.15f, 0)), Mat4(1.0f), translation(Vec3(0.1f, 0.2f, 0))};
+      scene->scene.shutter_poses = {translation(Vec3(0, -0.15f, 0)), Mat4(1.0f), translation(Vec3(0.1f, 0.2f, 0))};
       scene->ball(Vec3(-0.5f, -0.6f, 0.3f), 0.3f, scene->material(glossy(0.0f)), 8, true);
-      scene->scene.way = {Mat4(1.0f), translation(Vec3(0, 0.2f, 0.1f))};
+      scene->scene.shutter_poses = {Mat4(1.0f), translation(Vec3(0, 0.2f, 0.1f))};
       scene->ball(Vec3(0.1f, -0.6f, 0.5f), 0.25f, scene->material(glass(0.0f)), 8, true);
-      scene->scene.way.clear();
+      scene->scene.shutter_poses.clear();
       scene->swelling = 1.4f;
       scene->ball(Vec3(0.55f, -0.6f, 0.0f), 0.3f, scene->material(matte(Rgb(0.5f))), 6, true);
       scene->open_shutter({0.0f, 1.0f, 1.0f}, {Mat4(1.0f), translation(Vec3(0.05f, 0.02f, 0))});

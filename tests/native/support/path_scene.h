@@ -35,16 +35,16 @@ class PathScene {
   void ball(const Vec3& centre, float radius, uint64_t material, int rings = 12, bool smooth = false);
   void light(const GradusLight& light) { lights_.push_back(light); }
   void world(const Rgb& radiance);
-  // map_size: width of the world's importance map.
+  // Sets the world. map_size: width of its importance map.
   void world(uint64_t material, uint32_t map_size) { scene.world(material, map_size); }
-  // The shutter is open from half a frame before the frame to half a frame after it; curve: if empty, constant.
+  // Opens the shutter from half a frame before the frame to half a frame after it. An empty curve is constant.
   void open_shutter(std::vector<float> curve = {}, std::vector<Mat4> camera_motion = {});
   // Places a camera at `from`, looking at `at`, y up; field: width of the film at distance 1 (orthographic: in metres;
   // panorama: see GradusPanorama).
   void camera(const Vec3& from, const Vec3& at, float field, GradusCameraType type = GRADUS_CAMERA_PERSPECTIVE);
 
   GradusCamera camera_desc{};
-  // Transforms quads, balls and the camera that are added later: a translation and a scale.
+  // Transforms quads, balls and the camera that are added later by a translation and a scale.
   Mat4 place = Mat4(1.0f);
   // Balls that are added later grow by this factor while the shutter is open.
   float swelling = 1.0f;

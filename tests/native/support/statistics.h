@@ -41,8 +41,8 @@ double uniformity_p(const std::vector<double>& p_values);
 // Returns the level of one of k tests for a level of 1 % of all of them (Šidák).
 double sidak(size_t k);
 
-// |Σ d| / Σ|d| of signed differences averaged over 5×5 pixels (OSPRay's test): near 0 for noise, near 1 for bias. d:
-// one value per pixel.
+// The ratio |Σ d| / Σ|d| of signed differences d, one per pixel, averaged over 5×5 pixels (OSPRay's test). It is near 0
+// for noise and near 1 for bias.
 struct SignRatio {
   void add(const std::vector<double>& d, int width, int height);
   double value() const;

@@ -534,7 +534,7 @@ TEST_F(ToolSequence, WindowsHaveTheRequestedOverlap) {
   EXPECT_NE(wrong.err.find("at most half"), std::string::npos) << wrong.err;
 }
 
-// Regression: the step of frames 1, 4 and 6 was taken for 2, so that frame 4 was left out.
+// Regression: the step of frames 1, 4 and 6 was assumed to be 2, so that frame 4 was left out.
 TEST_F(ToolSequence, FramesAtUnevenDistancesAreAllIncluded) {
   for (const int frame : {2, 3, 5}) remove(frame);
   const Outcome outcome = run("reconstruct store/anim/layer -o pictures");
@@ -543,8 +543,8 @@ TEST_F(ToolSequence, FramesAtUnevenDistancesAreAllIncluded) {
   EXPECT_EQ(run("reconstruct store/anim/layer -o pictures --frames 4").code, 0);
 }
 
-// Regression: the step of frames 1, 3 and 5 was taken for 2, whatever they replay: the missing frames 2 and 4 were not
-// reported.
+// Regression: the step of frames 1, 3 and 5 was assumed to be 2, whichever frames they replay, so that the missing
+// frames 2 and 4 were not reported.
 TEST_F(ToolSequence, MissingReplayedFramesAreReported) {
   for (const int frame : {2, 4, 6}) remove(frame);
   const Outcome outcome = run("reconstruct store/anim/layer -o pictures");
@@ -552,8 +552,8 @@ TEST_F(ToolSequence, MissingReplayedFramesAreReported) {
   EXPECT_NE(outcome.err.find("lacks frames 2, 4:"), std::string::npos) << outcome.err;
 }
 
-// Regression: the step of two workers with a step of 2 was taken for 1, no frame had correspondences to the next, and
-// there was no message.
+// Regression: for two workers with a step of 2, the step was assumed to be 1, so that no frame had correspondences to
+// the next, and there was no message.
 TEST_F(ToolSequence, JobsWithAStepThatShareAFolderHaveTheDeliveredPictures) {
   fs::remove_all(folder / kFolder);
   for (const int32_t first : {1, 2}) {
@@ -585,7 +585,7 @@ TEST_F(ToolSequence, FramesThatReplayOthersThanTheirPredecessorsAreNamed) {
   EXPECT_NE(made.err.find("warning: frames 4 replay others than those before them"), std::string::npos) << made.err;
 }
 
-// Regression: it had no effect on frames that were sampled without one.
+// Regression: an automatic denoiser had no effect on frames that were sampled without a denoiser.
 TEST_F(ToolSequence, AnAutomaticDenoiserRunsWhereItPays) {
   render(GRADUS_RECONSTRUCTION_REGULARIZED, 32);
   const std::string denoiser = " --denoiser auto --denoiser-path " GRADUS_BINARY_DIR "/tests/libfake_oidn.so";

@@ -16,8 +16,9 @@ void CorrespondenceMap::set_row(int y, const int32_t* targets, std::vector<bool>
       shift[x] = kNone;
       continue;
     }
-    if (target < 0 || target >= int64_t(width_) * height_) throw invalid_argument("a link leads out of the frame");
-    if ((*taken)[size_t(target)]) throw invalid_argument("two pixels are linked to the same one");
+    if (target < 0 || target >= int64_t(width_) * height_)
+      throw invalid_argument("a correspondence leads out of the frame");
+    if ((*taken)[size_t(target)]) throw invalid_argument("two pixels correspond to the same one");
     (*taken)[size_t(target)] = true;
     const int aside = target % width_ - x, up = target / width_ - y;
     const bool fits = std::abs(aside) <= INT16_MAX && std::abs(up) < INT16_MAX;

@@ -35,9 +35,9 @@ class WindowErrors {
   ErrorTerms take(int t, const Field& picture) {
     ErrorTerms terms{interleave(std::exchange(noise_[size_t(t)], {})), {}};
     if (l2_) {
-      terms.apart = interleave(picture);
+      terms.l2_difference = interleave(picture);
       const std::vector<float> other = interleave(std::exchange((*l2_)[size_t(t)], {}));
-      for (size_t i = 0; i < other.size(); ++i) terms.apart[i] -= other[i];
+      for (size_t i = 0; i < other.size(); ++i) terms.l2_difference[i] -= other[i];
     }
     return terms;
   }

@@ -46,13 +46,12 @@ Field square(Field field) {
   return field;
 }
 
-// Fills pixels without a correspondence from the pixels around them. A change of 0 would tell the regression that
-// nothing changes there.
+// Fills pixels without a correspondence from the pixels around them. The regression would take a change of 0 for a
+// static pixel.
 class DisocclusionFiller {
  public:
-  // `linked` is 1 for pixels with a correspondence and 0 for others.
-  explicit DisocclusionFiller(Field linked)
-      : linked_(std::move(linked)), around_(box_mean(linked_, kDisocclusionRadius)) {}
+  // `mask` is 1 for pixels with a correspondence and 0 for others.
+  explicit DisocclusionFiller(Field mask) : mask_(std::move(mask)), around_(box_mean(mask_, kDisocclusionRadius)) {}
 
   // The filled field must be 0 in pixels without a correspondence.
   void fill_with_mean(Field* field) const { fill(field, box_mean(*field, kDisocclusionRadius), identity); }
@@ -65,11 +64,11 @@ class DisocclusionFiller {
   void fill(Field* field, const Field& means, float (*function)(float)) const {
     for_values(field, [&](float& value, int x, int y, int c) {
       const float around = around_.row(y)[x];
-      if (linked_.row(y)[x] == 0.0f) value = around > 0.0f ? function(means.row(y, c)[x] / around) : 0.0f;
+      if (mask_.row(y)[x] == 0.0f) value = around > 0.0f ? function(means.row(y, c)[x] / around) : 0.0f;
     });
   }
 
-  Field linked_, around_;
+  Field mask_, around_;
 };
 
 Field corresponding_pixels(const CorrespondenceMap& correspondence) {
@@ -93,13 +92,13 @@ ComponentChange read_change(const HalvedWindowSource& source, int t, const Corre
   if (!GRADUS_FAULT(rounding_included_without_samples)) keep_sampled_share(change.image.mean, rounding);
   for_values(&change.image.mean, [&](float& value, int x, int y, int c) { value -= rounding->row(y, c)[x]; });
   normalise(scale, &change.image);
-  const DisocclusionFiller holes(corresponding_pixels(correspondence));
-  holes.fill_with_mean(&change.image.mean);
-  holes.fill_with_rms(&change.image.half_difference);
+  const DisocclusionFiller filler(corresponding_pixels(correspondence));
+  filler.fill_with_mean(&change.image.mean);
+  filler.fill_with_rms(&change.image.half_difference);
   if (size.channels > 3) {
     change.alpha = read_channels(size, 3, 1, values);
     for_values(&change.alpha, [&](float& value, int x, int y, int) { value -= rounding->row(y, 3)[x]; });
-    holes.fill_with_mean(&change.alpha);
+    filler.fill_with_mean(&change.alpha);
   }
   return change;
 }

@@ -40,38 +40,39 @@ float scale_of(const std::vector<Field>& pictures) {
 
 // The difference between the pictures' change and the estimated change, summed over the components, and the squared
 // error of the pictures at both ends of the correspondence: the maximum over the components.
-struct Apart {
+struct Contradiction {
   Field colours, error;
 };
 
-Apart measure(const Change& change, const std::vector<Field>& here, const std::vector<Field>& next, const Field& error,
-              const Field& next_error) {
+Contradiction measure(const Change& change, const std::vector<Field>& here, const std::vector<Field>& next,
+                      const Field& error, const Field& next_error) {
   const int w = error.width(), h = error.height();
-  Apart apart{Field(w, h, kColors), Field(w, h, 1)};
+  Contradiction contradiction{Field(w, h, kColors), Field(w, h, 1)};
   for (size_t k = 0; k < here.size(); ++k) {
     for_rows(h, [&](int y) {
       change.correspondence[k].for_runs(y, [&](int begin, int end, int dx, int dy) {
         for (int c = 0; c < kColors; ++c) {
           const float *from = here[k].row(y, c), *to = next[k].row(y + dy, c) + dx,
                       *difference = change.difference[k].row(y, c);
-          float* sum = apart.colours.row(y, c);
+          float* sum = contradiction.colours.row(y, c);
           for (int i = begin; i < end; ++i) sum[i] += to[i] - from[i] - difference[i];
         }
         const float *e = error.row(y), *e_next = next_error.row(y + dy) + dx;
-        float* maximum = apart.error.row(y);
+        float* maximum = contradiction.error.row(y);
         for (int i = begin; i < end; ++i) maximum[i] = std::max(maximum[i], e[i] + e_next[i]);
       });
     });
   }
-  return apart;
+  return contradiction;
 }
 
 // Returns the weights of a change. Where the pictures contradict the change by more than their errors explain, the
 // excess is added to its squared error.
-Field weigh_change(const Change& change, const Apart& apart) {
-  return make_field(apart.error.width(), apart.error.height(), [&](int x, int y) {
+Field weigh_change(const Change& change, const Contradiction& contradiction) {
+  return make_field(contradiction.error.width(), contradiction.error.height(), [&](int x, int y) {
     const float weight = change.weight.row(y)[x];
-    const float excess = mean_of_squares(apart.colours, x, y) - kExplained * (apart.error.row(y)[x] + 1.0f / weight);
+    const float excess =
+        mean_of_squares(contradiction.colours, x, y) - kExplained * (contradiction.error.row(y)[x] + 1.0f / weight);
     return excess > 0.0f && !GRADUS_FAULT(contradicting_change_keeps_weight) ? track_weight(1.0f / weight + excess)
                                                                              : weight;
   });

@@ -13,52 +13,55 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Neighbours whose ways differ by more, in pixels, belong to something else, which goes elsewhere.
-constexpr float kTogether = 0.5f;
+// Neighbours whose displacements differ by more, in pixels, belong to another object.
+constexpr float kMaxDifference = 0.5f;
 constexpr int kTaps = 4;
 constexpr int kShareRadius = 7;
 constexpr int kColors = 3;
 
+// Displacements of all pixels to the next frame, in pixels.
 struct Displacements {
-  std::vector<Vec2> off_centre, whole;
-  std::vector<bool> linked;
+  std::vector<Vec2> off_centre;  // the part that rounding to whole pixels has removed
+  std::vector<Vec2> complete;    // the unrounded displacement
+  std::vector<bool> is_known;    // whether the pixel has a correspondence
 };
 
 Displacements read_displacements(const CorrespondenceMap& correspondence, const HalvedWindowSource& source, int t) {
   const auto width = size_t(correspondence.width()), pixels = width * size_t(correspondence.height());
-  Displacements ways{std::vector<Vec2>(pixels), std::vector<Vec2>(pixels), std::vector<bool>(pixels, false)};
+  Displacements displacements{std::vector<Vec2>(pixels), std::vector<Vec2>(pixels), std::vector<bool>(pixels, false)};
   for (int y = 0; y < correspondence.height(); ++y) {
     const size_t first = size_t(y) * width;
-    source.read_off_centre(t, y, ways.off_centre.data() + first);
+    source.read_off_centre(t, y, displacements.off_centre.data() + first);
     correspondence.for_runs(y, [&](int begin, int end, int dx, int dy) {
       for (size_t i = first + size_t(begin); i < first + size_t(end); ++i) {
-        ways.whole[i] = Vec2(float(dx), float(dy)) + ways.off_centre[i];
-        ways.linked[i] = true;
+        displacements.complete[i] = Vec2(float(dx), float(dy)) + displacements.off_centre[i];
+        displacements.is_known[i] = true;
       }
     });
   }
-  return ways;
+  return displacements;
 }
 
-// Weights of the pixels around one, by which the picture there is that of a place beside its middle.
+// Positions and weights of the pixels that interpolate the picture at a place beside the centre of a pixel.
 struct Lookup {
   std::array<size_t, kTaps * kTaps> x{}, y{};
   std::array<float, kTaps * kTaps> weight{};
 };
 
-Lookup look_up(const Displacements& ways, int x, int y, int width, int height) {
+Lookup look_up(const Displacements& displacements, int x, int y, int width, int height) {
   const size_t here = size_t(y) * size_t(width) + size_t(x);
-  const Vec2 from = -ways.off_centre[here], before = glm::floor(from);
+  const Vec2 from = -displacements.off_centre[here], before = glm::floor(from);
   const std::array<float, kTaps> wx = cubic_weights(from.x - before.x), wy = cubic_weights(from.y - before.y);
   Lookup lookup;
   for (size_t k = 0; k < size_t(kTaps * kTaps); ++k) {
     const int column = std::clamp(x + int(before.x) + int(k % kTaps) - 1, 0, width - 1),
               row = std::clamp(y + int(before.y) + int(k / kTaps) - 1, 0, height - 1);
     const size_t there = size_t(row) * size_t(width) + size_t(column);
-    const Vec2 apart = glm::abs(ways.whole[there] - ways.whole[here]);
-    const bool together = ways.linked[there] && apart.x <= kTogether && apart.y <= kTogether;
-    lookup.x[k] = size_t(together ? column : x);
-    lookup.y[k] = size_t(together ? row : y);
+    const Vec2 difference = glm::abs(displacements.complete[there] - displacements.complete[here]);
+    const bool is_same_object =
+        displacements.is_known[there] && difference.x <= kMaxDifference && difference.y <= kMaxDifference;
+    lookup.x[k] = size_t(is_same_object ? column : x);
+    lookup.y[k] = size_t(is_same_object ? row : y);
     lookup.weight[k] = wx[k % kTaps] * wy[k / kTaps];
   }
   return lookup;
@@ -69,13 +72,13 @@ Lookup look_up(const Displacements& ways, int x, int y, int width, int height) {
 Field rounding_change(const Field& picture, const CorrespondenceMap& correspondence, const HalvedWindowSource& source,
                       int t) {
   const int width = picture.width(), height = picture.height();
-  const Displacements ways = read_displacements(correspondence, source, t);
+  const Displacements displacements = read_displacements(correspondence, source, t);
   Field change(width, height, picture.channels());
   for_rows(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const size_t here = size_t(y) * size_t(width) + size_t(x);
-      if (!ways.linked[here] || ways.off_centre[here] == Vec2(0.0f)) continue;
-      const Lookup lookup = look_up(ways, x, y, width, height);
+      if (!displacements.is_known[here] || displacements.off_centre[here] == Vec2(0.0f)) continue;
+      const Lookup lookup = look_up(displacements, x, y, width, height);
       for (int c = 0; c < picture.channels(); ++c) {
         float sum = 0.0f;
         for (size_t k = 0; k < lookup.weight.size(); ++k)

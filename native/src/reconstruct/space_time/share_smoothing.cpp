@@ -8,7 +8,7 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Black has room for quotients and their squares.
+// Minimum of light, so that quotients of black pixels and their squares are finite.
 constexpr float kMinLight = 1e-15f;
 
 Frames to_fields(const std::vector<WeightPlane>& planes) {
@@ -20,7 +20,7 @@ Frames to_fields(const std::vector<WeightPlane>& planes) {
   return fields;
 }
 
-// Of the channel that changes most.
+// Writes the ratio of the smaller to the larger light in the channel that changes most.
 void min_ratios(const Field& light, const Field& next, int y, int begin, int end, int dx, int dy, float* ratio) {
   std::fill(ratio + begin, ratio + end, 1.0f);
   for (int c = 0; c < light.channels(); ++c) {
@@ -29,7 +29,7 @@ void min_ratios(const Field& light, const Field& next, int y, int begin, int end
   }
 }
 
-// c, 0 where nothing is linked.
+// Returns the weights c (share_smoothing.h); 0 for pixels without a correspondence.
 Field weigh_correspondence(const CorrespondenceMap& correspondence, const Field& light, const Field& next) {
   Field weights(light.width(), light.height(), 1);
   for_rows(light.height(), [&](int y) {

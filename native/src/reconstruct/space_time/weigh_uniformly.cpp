@@ -6,9 +6,9 @@ namespace gradus::reconstruct {
 
 namespace {
 
-// Weight of a difference over time between pixels that lie apart, over that of one at rest: what is seen through
-// another pixel differs by the part of a pixel that φ was rounded by, and repeats less of the noise (docs/method.md).
-// Links come from the scene alone, so that L2 stays without bias.
+// Weight of a difference over time between two pixels at different positions, relative to that of a static pixel. Such
+// pixels differ because φ was rounded to whole pixels, and they repeat less of the noise (docs/method.md). The
+// correspondences depend on the scene only, so that L2 remains unbiased.
 constexpr float kMovingWeight = 0.1f;
 
 float correspondence_weight(int32_t target, int32_t pixel) { return target == pixel ? 1.0f : kMovingWeight; }

@@ -13,7 +13,7 @@ void scale(Reconstructed* picture, float factor) {
   scale(&picture->image, factor);
   scale(&picture->error, factor);
   scale(&picture->terms.noise, factor);
-  scale(&picture->terms.apart, factor);
+  scale(&picture->terms.l2_difference, factor);
   for (std::vector<float>& component : picture->components) scale(&component, factor);
 }
 
@@ -25,7 +25,7 @@ void add(const Reconstructed& from, Reconstructed* to) {
   add(from.image, &to->image);
   add(from.error, &to->error);
   add(from.terms.noise, &to->terms.noise);
-  add(from.terms.apart, &to->terms.apart);
+  add(from.terms.l2_difference, &to->terms.l2_difference);
   for (size_t k = 0; k < to->components.size(); ++k) add(from.components[k], &to->components[k]);
 }
 

@@ -1,4 +1,4 @@
-// REGULARIZED over time: still pictures joined along the tracks of their pixels.
+// REGULARIZED over time: reconstructions of single frames are combined along the tracks of their pixels.
 #include "reconstruct/space_time/regularized_windows.h"
 
 #include <numeric>
@@ -49,10 +49,10 @@ struct Shot {
   film::Film sampled(int t, int stream) const {
     film::Film film = make_feature_film(description(t), channels);
     std::mt19937 random(unsigned(stream) + 11), other(unsigned(1000 + t));
-    std::normal_distribution<float> noise(0.0f, 0.4f), apart(0.0f, replay_sigma);
+    std::normal_distribution<float> noise(0.0f, 0.4f), replay_noise(0.0f, replay_sigma);
     for (auto& half : film.components[0].primal) {
       for (Radiance& pixel : half) {
-        for (int c = 0; c < 3; ++c) pixel[c] += light(t) * noise(random) + (t != stream ? apart(other) : 0.0f);
+        for (int c = 0; c < 3; ++c) pixel[c] += light(t) * noise(random) + (t != stream ? replay_noise(other) : 0.0f);
         if (channels == 4) pixel[3] = pixel[0] / 8.0f;
       }
     }
@@ -131,7 +131,7 @@ TEST(B2_Tracks, EqualTheDenseSolution) {
   constexpr int w = 7, h = 5, frames = 4, pixels = w * h, unknowns = pixels * frames;
   for (const Motion motion : kMotions) {
     Window window(w, h, 2, frames);
-    link(&window, motion);
+    set_correspondences(&window, motion);
     std::mt19937 random(5);
     std::uniform_real_distribution<float> uniform(0.01f, 2.0f);
     const auto random_fields = [&](int count, int channels) {
@@ -234,9 +234,9 @@ TEST(C5_RegularizedWindow, ALightThatIsSwitchedOnShowsAtOnce) {
 }
 
 // A source that claims, with certainty, that nothing changes.
-class Blind final : public reconstruct::HalvedWindowSource {
+class ClaimsNoChange final : public reconstruct::HalvedWindowSource {
  public:
-  explicit Blind(std::unique_ptr<reconstruct::HalvedWindowSource> window) : window_(std::move(window)) {}
+  explicit ClaimsNoChange(std::unique_ptr<reconstruct::HalvedWindowSource> window) : window_(std::move(window)) {}
   reconstruct::WindowSize size() const override { return window_->size(); }
   void read_row(reconstruct::RowKind, int, int, float* out) const override { read(out); }
   void read_half_differences(reconstruct::RowKind, int, int, float* out) const override { read(out); }
@@ -253,7 +253,7 @@ TEST(C5_RegularizedWindow, AWrongChangeLeavesNoGhost) {
   shot.light = [](int t) { return t < 3 ? 1.0f : 0.1f; };
   reconstruct::SolveReport report;
   reconstruct::RegularizedWindows windows(
-      shot.open(), [&](int t, const CancelCheck&) { return alone(std::make_unique<Blind>(shot.pair(t))); });
+      shot.open(), [&](int t, const CancelCheck&) { return alone(std::make_unique<ClaimsNoChange>(shot.pair(t))); });
   windows.reconstruct(shot.all(), never, &report, [&](int t, const reconstruct::Reconstructed& picture) {
     EXPECT_NEAR(mean(picture.image) / mean(shot.description(t).truth), 1.0, 0.05) << t;
   });
@@ -368,11 +368,11 @@ TEST(B2_RegularizedWindow, RefusesFramesOfAnotherSize) {
 }
 
 // The light of a shot in two components, the second brighter to the right.
-struct TakenApart {
+struct TwoComponents {
   Shot shot;
   bool second_has_correspondence = true;
 
-  static void take_apart(film::Film* film) {
+  static void split_by_position(film::Film* film) {
     film->components.push_back(film->components[0]);
     for (size_t k = 0; k < 2; ++k) {
       for (auto& half : film->components[k].primal) {
@@ -385,13 +385,13 @@ struct TakenApart {
   }
   std::shared_ptr<const film::Film> merged(int t) const {
     auto film = std::make_shared<film::Film>(*shot.merged(t));
-    take_apart(film.get());
+    split_by_position(film.get());
     return film;
   }
   std::shared_ptr<const animation::TemporalFrame> temporal(int t, int component) const {
     film::Film base = shot.sampled(t, t), replay = shot.sampled(t, t - 1);
-    take_apart(&base);
-    take_apart(&replay);
+    split_by_position(&base);
+    split_by_position(&replay);
     auto film = std::make_shared<animation::TemporalFrame>(animation::make_temporal_frame(base, replay, {}, component));
     film->stream = t;
     film->replayed = shot.temporal(t)->replayed;
@@ -414,11 +414,11 @@ struct TakenApart {
 
 // Decomposition alone changes nothing.
 TEST(B2_RegularizedWindow, ComponentsWithTheSameDisplacementsAddUpToTheirSum) {
-  TakenApart apart;
-  apart.shot.frames = 4;
-  apart.shot.light = [](int t) { return 1.0f + 0.1f * float(t); };
-  reconstruct::RegularizedWindows windows = apart.windows();
-  const std::vector<reconstruct::Reconstructed> parts = solve(&windows, apart.shot.all()), whole = solve(apart.shot);
+  TwoComponents two;
+  two.shot.frames = 4;
+  two.shot.light = [](int t) { return 1.0f + 0.1f * float(t); };
+  reconstruct::RegularizedWindows windows = two.windows();
+  const std::vector<reconstruct::Reconstructed> parts = solve(&windows, two.shot.all()), whole = solve(two.shot);
   for (size_t t = 0; t < whole.size(); ++t) {
     ASSERT_EQ(parts[t].components.size(), 2u);
     EXPECT_LT(rms_difference(parts[t].image, whole[t].image), 1e-4) << t;
@@ -429,22 +429,22 @@ TEST(B2_RegularizedWindow, ComponentsWithTheSameDisplacementsAddUpToTheirSum) {
   }
 }
 
-// A component without correspondences has its still pictures; the other follows its own tracks.
+// A component without correspondences has the pictures of single frames; the other one follows its own tracks.
 TEST(B2_RegularizedWindow, EveryComponentFollowsItsOwnDisplacements) {
-  TakenApart apart;
-  apart.shot.frames = 5;
-  apart.second_has_correspondence = false;
-  reconstruct::RegularizedWindows windows = apart.windows();
-  const std::vector<reconstruct::Reconstructed> parts = solve(&windows, apart.shot.all());
+  TwoComponents two;
+  two.shot.frames = 5;
+  two.second_has_correspondence = false;
+  reconstruct::RegularizedWindows windows = two.windows();
+  const std::vector<reconstruct::Reconstructed> parts = solve(&windows, two.shot.all());
   double linked = 0.0, still = 0.0;
-  for (int t = 0; t < apart.shot.frames; ++t) {
+  for (int t = 0; t < two.shot.frames; ++t) {
     reconstruct::SolveReport report;
-    const reconstruct::Reconstructed each = reconstruct::regularize(*apart.merged(t), true, never, &report);
+    const reconstruct::Reconstructed each = reconstruct::regularize(*two.merged(t), true, never, &report);
     EXPECT_EQ(parts[size_t(t)].components[1], each.components[1]) << t;
     if (t == 0) continue;
     linked += rms_difference(parts[size_t(t)].components[0], parts[size_t(t) - 1].components[0]);
     still += rms_difference(each.components[0],
-                            reconstruct::regularize(*apart.merged(t - 1), true, never, &report).components[0]);
+                            reconstruct::regularize(*two.merged(t - 1), true, never, &report).components[0]);
   }
   EXPECT_LT(linked, 0.5 * still);
 }

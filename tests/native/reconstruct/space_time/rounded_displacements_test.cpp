@@ -102,7 +102,7 @@ TEST(B2_RoundedDisplacements, UseNoNeighboursWithOtherDisplacements) {
     for (int x = 0; x < kWidth; ++x) EXPECT_EQ(change.row(y, 0)[x], 0.0f) << x << ' ' << y;
 }
 
-// A mirror moves and its reflection is static: the picture does not follow the surface.
+// A mirror moves and its reflection is static, so that the picture does not follow the surface.
 TEST(B2_RoundedDisplacements, CountOnlyWhereTheSamplesChangeSo) {
   const ShiftedWindow window(0.375f, false);
   const reconstruct::Field rounding =

@@ -61,7 +61,7 @@ float value_of(int frame, int x, int y) { return 1.0f + 0.01f * float(frame) + 0
 
 std::unique_ptr<Window> open_static(const reconstruct::FrameRange& frames) {
   auto window = std::make_unique<Window>(16, 12, 1, frames.count());
-  link(window.get(), Motion::kStatic);
+  set_correspondences(window.get(), Motion::kStatic);
   Images images;
   for (int t = frames.first; t <= frames.last; ++t) {
     images.push_back(make_image(16, 12, 1, [t](int x, int y, int) { return value_of(t, x, y); }));
@@ -179,7 +179,7 @@ TEST(B2_Windows, ReportTheErrorOfTheirPictures) {
   for (unsigned seed = 0; seed < 24; ++seed) {
     const auto noisy = [&](const reconstruct::FrameRange& frames, const CancelCheck&) {
       auto window = std::make_unique<Window>(16, 12, 3, frames.count());
-      link(window.get(), Motion::kStatic);
+      set_correspondences(window.get(), Motion::kStatic);
       for (int t = 0; t < frames.count(); ++t) {
         add_noise(&window->plane(reconstruct::RowKind::kPrimal, t), 0.2f, 9000 + 20 * seed + unsigned(t));
         add_noise(&window->halves[size_t(reconstruct::RowKind::kPrimal)][size_t(t)], 0.2f,

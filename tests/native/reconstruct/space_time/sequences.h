@@ -24,7 +24,7 @@ inline Images changing_images(const reconstruct::WindowSize& size) {
 // Returns rows without noise.
 inline Window measured(int width, int height, int channels, int frames, Motion motion) {
   Window window(width, height, channels, frames);
-  link(&window, motion);
+  set_correspondences(&window, motion);
   window.measure(changing_images(window.size_));
   return window;
 }

@@ -82,8 +82,8 @@ TEST(B2_SpaceTime, WithoutCorrespondencesWeightsAreThoseOfSingleFrames) {
     reconstruct::SolveReport report;
     const std::vector<float> still = reconstruct::reconstruct(frame_of(window, t), kL1, 0.0f, never, &report);
     const std::vector<float> l2 = reconstruct::reconstruct(frame_of(window, t), kL2, 0.0f, never, &report);
-    const double apart = rms_difference(reconstruct::interleave(x[size_t(t)]), still);
-    EXPECT_LT(apart, 0.02 * rms_difference(l2, still));
+    const double difference = rms_difference(reconstruct::interleave(x[size_t(t)]), still);
+    EXPECT_LT(difference, 0.02 * rms_difference(l2, still));
   }
 }
 
@@ -98,7 +98,7 @@ TEST(B2_SpaceTime, L2KeepsTheMean) {
 
 // Returns the mean squared error of L2, by the modes of the system of a static window (T-GPT eq. 4, with free ends):
 // noise of deviation σ_I in pixels, σ_g in differences in space, none along correspondences.
-double noise_left(int w, int h, int frames, double alpha, double sigma_i, double sigma_g) {
+double remaining_noise(int w, int h, int frames, double alpha, double sigma_i, double sigma_g) {
   const auto eigenvalue = [](int k, int n) { return 2.0 - 2.0 * std::cos(std::numbers::pi * k / n); };
   double sum = 0.0;
   for (int k = 0; k < frames; ++k) {
@@ -120,7 +120,7 @@ TEST(B3_SpaceTime, AStaticShotHasTheNoiseThatTheoryPredicts) {
     double squares = 0.0;
     for (unsigned run = 0; run < runs; ++run) {
       Window window(w, h, 3, frames);
-      link(&window, Motion::kStatic);
+      set_correspondences(&window, Motion::kStatic);
       for (int t = 0; t < frames; ++t) {
         add_noise(&window.plane(reconstruct::RowKind::kPrimal, t), 1.0f, 100 * run + unsigned(t));
         add_noise(&window.plane(reconstruct::RowKind::kDx, t), 0.2f, 100 * run + 20 + unsigned(t));
@@ -129,7 +129,7 @@ TEST(B3_SpaceTime, AStaticShotHasTheNoiseThatTheoryPredicts) {
       const std::vector<float> x = solve(window, kL2, 0.4f);
       squares += std::pow(rms_difference(x, std::vector<float>(x.size(), 0.0f)), 2) / runs;
     }
-    const double expected = noise_left(w, h, frames, 0.4, 1.0, 0.2);
+    const double expected = remaining_noise(w, h, frames, 0.4, 1.0, 0.2);
     std::printf("  %d frames: %.5f, expected %.5f\n", frames, squares, expected);
     EXPECT_NEAR(squares / expected, 1.0, 0.06) << frames;
   }
@@ -237,7 +237,7 @@ TEST(B2_SpaceTime, L1IgnoresOutliersAlongCorrespondences) {
 // frame flickers more than its noise.
 TEST(B3_SpaceTime, WeightsKeepTheMeanOfSkewedNoise) {
   Window window(96, 64, 3, 5);
-  link(&window, Motion::kStatic);
+  set_correspondences(&window, Motion::kStatic);
   window.measure(Images(5, std::vector<float>(96 * 64 * 3, 1.0f)));
   add_noise_of_halves(
       &window,

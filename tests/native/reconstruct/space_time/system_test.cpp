@@ -80,7 +80,7 @@ reconstruct::Frames random_frames(const reconstruct::SpaceTimeSystem& system, in
 
 Window random_window(int w, int h, int channels, int frames, Motion motion) {
   Window window(w, h, channels, frames);
-  link(&window, motion);
+  set_correspondences(&window, motion);
   unsigned seed = 1;
   for (auto& kind : window.planes) {
     for (auto& plane : kind) add_noise(&plane, 1.0f, seed++);

@@ -11,7 +11,7 @@
 
 namespace gradus::test {
 
-// All planes in memory: [kind][t], interleaved; links[t] by pixel.
+// A window with all planes in memory: [kind][t], interleaved channels. correspondence[t] has a target for each pixel.
 struct Window final : reconstruct::HalvedWindowSource {
   Window(int width, int height, int channels, int frames) : size_{width, height, channels, frames} {
     const size_t pixels = size_t(width) * size_t(height);
@@ -36,8 +36,8 @@ struct Window final : reconstruct::HalvedWindowSource {
   std::vector<float>& plane(reconstruct::RowKind kind, int t) { return planes[size_t(kind)][size_t(t)]; }
   const std::vector<float>& plane(reconstruct::RowKind kind, int t) const { return planes[size_t(kind)][size_t(t)]; }
 
-  // One row of the system: Σ sign · pixel. Pixels are t·width·height + y·width + x. Empty if the system has no such
-  // row.
+  // One row of the system, Σ sign · pixel, where a pixel is t·width·height + y·width + x. Empty if the system has no
+  // such row.
   using Terms = std::vector<std::pair<int, float>>;
   Terms row(reconstruct::RowKind kind, int t, int x, int y) const;
   // Fills the values of all rows from a sequence of images.
@@ -87,10 +87,10 @@ inline void Window::measure(const std::vector<std::vector<float>>& images) {
   });
 }
 
-// Sets correspondences by target(x, y, t) → (x', y') in float, rounded. A pixel whose target lies outside or is taken
-// has none, nor has one that `hole` selects.
-inline void link(Window* window, const std::function<std::pair<float, float>(int, int, int)>& target,
-                 const std::function<bool(int, int, int)>& hole) {
+// Sets correspondences to the rounded positions target(x, y, t). A pixel has none if its target is outside of the
+// picture, if another pixel has the same target, or if has_none(x, y, t) is true.
+inline void set_correspondences(Window* window, const std::function<std::pair<float, float>(int, int, int)>& target,
+                                const std::function<bool(int, int, int)>& has_none) {
   const auto [w, h, channels, frames] = window->size_;
   for (int t = 0; t + 1 < frames; ++t) {
     std::vector<bool> taken(size_t(w) * size_t(h), false);
@@ -98,7 +98,7 @@ inline void link(Window* window, const std::function<std::pair<float, float>(int
       for (int x = 0; x < w; ++x) {
         const auto [fx, fy] = target(x, y, t);
         const int tx = int(std::lround(fx)), ty = int(std::lround(fy));
-        if (tx < 0 || ty < 0 || tx >= w || ty >= h || hole(x, y, t) || taken[size_t(ty * w + tx)]) continue;
+        if (tx < 0 || ty < 0 || tx >= w || ty >= h || has_none(x, y, t) || taken[size_t(ty * w + tx)]) continue;
         taken[size_t(ty * w + tx)] = true;
         window->correspondence[size_t(t)][size_t(y * w + x)] = ty * w + tx;
       }
@@ -108,10 +108,10 @@ inline void link(Window* window, const std::function<std::pair<float, float>(int
 
 enum class Motion { kNone, kStatic, kPan, kTurn, kRandom };
 
-inline void link(Window* window, Motion motion) {
+inline void set_correspondences(Window* window, Motion motion) {
   const float w = float(window->size_.width), h = float(window->size_.height);
-  const auto no_hole = [](int, int, int) { return false; };
-  // A fifth of the pixels, in blobs.
+  const auto all_have_one = [](int, int, int) { return false; };
+  // Selects a fifth of the pixels, in blobs.
   const auto blobs = [](int x, int y, int t) {
     return std::sin(0.31f * float(x) + float(t)) + std::sin(0.37f * float(y) + 2.0f * float(t)) > 0.83f;
   };
@@ -120,13 +120,13 @@ inline void link(Window* window, Motion motion) {
     case Motion::kNone:
       return;
     case Motion::kStatic:
-      return link(
-          window, [](int x, int y, int) { return std::pair(float(x), float(y)); }, no_hole);
+      return set_correspondences(
+          window, [](int x, int y, int) { return std::pair(float(x), float(y)); }, all_have_one);
     case Motion::kPan:
-      return link(
-          window, [](int x, int y, int) { return std::pair(float(x) + 5.0f, float(y) - 3.0f); }, no_hole);
+      return set_correspondences(
+          window, [](int x, int y, int) { return std::pair(float(x) + 5.0f, float(y) - 3.0f); }, all_have_one);
     case Motion::kTurn:
-      return link(
+      return set_correspondences(
           window,
           [=](int x, int y, int) {
             const float dx = 1.03f * (float(x) - 0.5f * w), dy = 1.03f * (float(y) - 0.5f * h), c = std::cos(0.035f),
@@ -135,14 +135,14 @@ inline void link(Window* window, Motion motion) {
           },
           blobs);
     case Motion::kRandom:
-      return link(
+      return set_correspondences(
           window,
           [&](int x, int y, int) {
             std::uniform_int_distribution<int> step(-8, 8);
             const int dx = step(random), dy = step(random);
             return std::pair(float(x + dx), float(y + dy));
           },
-          no_hole);
+          all_have_one);
   }
 }
 
