@@ -21,7 +21,7 @@ class FilmSearchTest : public MotionTest {
     const motion::FilmSearch::Problem problem{before, after, chain->signature, own, target, Vec2(0.0f)};
     motion::FilmPlace place,
         start{Vec2(float(x) + 0.5f, float(y) + 0.5f), *chain, motion::chain_jacobian(from.chains, own, x, y)};
-    return motion::FilmSearch(problem, counts).search_from(start, start.film, &place);
+    return motion::FilmSearch(problem, counts).leap(start, start.film, &place);
   }
 };
 
