@@ -25,7 +25,7 @@ def is_watched() -> bool:
 def wait(job: Any, handle: int, display: Display, result: Any = None) -> None:
     """Waits until a render of the library ends. After a cancel, its samples so far can be read.
 
-    result: Blender's result in which the image so far is shown, if somebody watches.
+    result: Blender's result in which the current image is shown if Blender has a window.
     """
     library = job.session.library
     picture = LivePicture(job, handle, result) if result is not None and is_watched() else None
@@ -78,7 +78,7 @@ class Display:
 
 
 class LivePicture:
-    """Shows the image so far of a render in Blender's window."""
+    """Shows the current image of a render in Blender's window."""
 
     FIRST_REFRESH, LONGEST_REFRESH = 0.5, 16.0  # s between images; the interval grows
 
@@ -88,7 +88,7 @@ class LivePicture:
         self.refresh = self.FIRST_REFRESH
         self.next_refresh = self.start + self.refresh
         self.version = 0
-        job.read(handle, frozenset((passes.Pass.COMBINED,)))  # tells the library to prepare a first image at once
+        job.read(handle, frozenset((passes.Pass.COMBINED,)))  # requests a first image from the library at once
 
     def show(self, progress: native.Progress) -> None:
         now = time.monotonic()

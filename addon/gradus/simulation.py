@@ -52,7 +52,7 @@ class Simulations:
                 self._add("Rigid Body World", world.point_cache.frame_start)
         for obj in _with_instances(obj for scene in _with_backgrounds(self.scene) for obj in scene.objects):
             found = [(modifier, *each) for modifier in obj.modifiers for each in self._not_baked(obj, modifier)]
-            # A rigid body that is not seen may push others.
+            # An invisible rigid body may push others.
             if found and (obj.rigid_body is not None or self._may_be_seen(obj)):
                 for each in found:
                     self._add_modifier(obj, *each)
@@ -71,7 +71,7 @@ class Simulations:
         is_domain = modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN"
         if is_domain and modifier.domain_settings.cache_type == "REPLAY":
             yield modifier.domain_settings.cache_frame_start, None
-        # The Python API does not tell which zones are baked. Stepping baked ones only costs time.
+        # The Python API does not expose which zones are baked. Stepping baked ones only costs time.
         if modifier.type == "NODES" and _has_zone(modifier.node_group, set()):
             yield self.scene.frame_start, None
 

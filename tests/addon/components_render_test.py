@@ -483,7 +483,7 @@ def test_a_file_output_node_writes_them(
 def test_the_fourth_number_of_a_motion_in_a_file_output(
     sample: bpy.types.Scene, render: Callable[..., images.Passes], tmp_path: Path
 ) -> None:
-    """Only some versions of Blender write it, as the user guide says."""
+    """Only some versions of Blender write the fourth number, as the user guide describes."""
     keeps, asked = ((4, 0) <= bpy.app.version < (5, 0)), bpy.app.version >= (5, 0)
     name = "Path Diffuse Motion"
     for index, (dimensions, expected) in enumerate(

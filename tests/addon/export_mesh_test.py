@@ -145,7 +145,7 @@ def test_materials_by_face(scene: bpy.types.Scene) -> None:
 
 
 def test_equal_meshes_are_stored_once(scene: bpy.types.Scene) -> None:
-    """This includes linked duplicates, and copies that Blender evaluates to separate meshes because of a modifier."""
+    """Equal meshes share one native mesh, including copies that a modifier makes separate evaluated meshes."""
     recording.add_camera()
     mesh = recording.grid(3)
     for index in range(3):

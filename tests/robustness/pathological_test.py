@@ -1,6 +1,6 @@
 """E1 to E5: scenes with little in them, broken data and odd cameras; all in the host's own process.
 
-Broken data costs the broken object alone.
+Broken data affects the broken object only.
 
 Each picture is 160×120 at 8 samples, is there in under 10 s, and has no value that is not finite in any pass.
 """
@@ -23,7 +23,7 @@ Render = Callable[..., images.Passes]
 
 @pytest.fixture
 def stage(scene: bpy.types.Scene) -> bpy.types.Scene:
-    """A grey world over a floor, seen from above; broken objects are placed in the left half of the picture."""
+    """Returns a scene with a floor in a grey world, seen from above. Broken objects are in the left half."""
     scene.render.resolution_x, scene.render.resolution_y = 160, 120
     scene.gradus.samples = 8
     scene.world = bpy.data.worlds.new("World")

@@ -1,6 +1,6 @@
 """L2: a file gives the same bits in other processes and folders, and for other hash seeds.
 
-The order of objects changes the noise alone.
+The order of objects changes only the noise.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def test_l2_runs_in_other_processes_and_folders_have_the_same_bits(
 
 
 def _still(scene: bpy.types.Scene, order: list[int]) -> None:
-    """Adds three emissive and three grey cubes in a row under a light, linked in the given order."""
+    """Adds three emissive and three grey cubes in a row under a light, in the given order."""
     for index in order:
         bpy.ops.mesh.primitive_cube_add(size=0.8, location=(index - 2.5, 0.0, 0.0))
         cube = bpy.context.object

@@ -1,4 +1,4 @@
-"""M3: fixed bugs stay tested; a test that is switched off says why and since when, for 30 days at most."""
+"""M3: fixed bugs stay tested. A test may be switched off for 30 days, with a reason and a date."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ QUALITY = 95
 
 
 def wanted(animation: Animation, variant: Variant, mode: str, samples: int, seed: int) -> bool:
-    """Says whether strips of a run are stored."""
+    """Returns whether strips of a run are stored."""
     return animation.scene.own and mode in SHOWN and (variant, samples, seed) == (USUAL, SAMPLES, SEED)
 
 

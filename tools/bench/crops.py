@@ -1,4 +1,4 @@
-"""Crops of pictures that the report shows magnified. A rule chooses them."""
+"""Crops of pictures that the report shows magnified, chosen by the differences between error maps."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def choose_crops(errors: list[np.ndarray]) -> list[tuple[int, int]]:
     height, width = errors[0].shape
     limited = [np.minimum(error, 1.0) for error in errors]
 
-    def apart(corner: tuple[int, int]) -> float:
+    def difference(corner: tuple[int, int]) -> float:
         means = [error[window(*corner)].mean() for error in limited]
         return float(max(means) - min(means))
 
@@ -29,6 +29,6 @@ def choose_crops(errors: list[np.ndarray]) -> list[tuple[int, int]]:
         for y in range(0, height - CROP[1] + 1, CROP[1] // 3)
         for x in range(0, width - CROP[0] + 1, CROP[0] // 4)
     ]
-    first = max(corners, key=apart)
+    first = max(corners, key=difference)
     others = [(x, y) for x, y in corners if abs(x - first[0]) >= CROP[0] or abs(y - first[1]) >= CROP[1]]
-    return [first, max(others, key=apart)]
+    return [first, max(others, key=difference)]

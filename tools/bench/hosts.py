@@ -19,13 +19,13 @@ MODULES = {"4.5": "bpy45", "5.0": "bpy50", "5.2": "bpy52"}  # Blender -> environ
 
 
 def is_installed(blender: str) -> bool:
-    """Says whether the environment of a Blender module is complete; set-up writes the stamp last."""
+    """Returns whether the environment of a Blender module is complete: set-up writes the stamp last."""
     return (ROOT / ".venv" / MODULES[blender] / ".stamp").exists()
 
 
 @cache
 def peer() -> str:
-    """Returns the Blender whose Cycles and denoiser are the peers; says so once if it is not the newest one."""
+    """Returns the Blender whose Cycles and denoiser are the peers. Prints once if it is not the newest one."""
     if is_installed(NEWEST):
         return NEWEST
     print(

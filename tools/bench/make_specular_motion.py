@@ -1,4 +1,4 @@
-"""Makes a room in which reflections and refractions move otherwise than the surfaces that show them.
+"""Makes a room in which reflections and refractions move differently from the surfaces that show them.
 
     make_specular_motion.py FILE
 

@@ -45,8 +45,8 @@ PICTURES = ("components", "component_reflectance", "component_irradiance")
 MOTION_PASSES = ("vector", "components", "component_motion", "component_irradiance_motion")
 VECTOR_PASSES = ("components", "component_motion")
 
-# Modes of which the cost is measured, and the passes that each asks for. No pictures of components are made without
-# a pass that needs them.
+# Modes whose cost is measured, and the passes that each requests. Pictures of components are made only for passes
+# that need them.
 COST_MODES: dict[str, tuple[str, tuple[str, ...]]] = {
     "combined": ("combined", ()),
     "components": ("components", ("components",)),
@@ -183,7 +183,7 @@ class MotionBench:
         yield {"cpu": answer["cpu"], "seconds": answer["seconds"][0]}
 
     def _component_vectors(self) -> np.ndarray:
-        """Returns motion_metrics.component_vectors(), which is cached. A few samples tell what a pixel mostly shows."""
+        """Returns motion_metrics.component_vectors(), which is cached. A few samples suffice."""
         if self._vectors is None:
             file = file_of(self.renderer, f"component-vectors-{self.version}")
             if not file.exists():

@@ -31,7 +31,7 @@ Rows = list[Row]
 
 
 def is_timed(rows: Rows) -> bool:
-    """Says whether all runs were made on an idle machine."""
+    """Returns whether all runs were made on an idle machine."""
     return not any(row.get(LOADED, False) for row in rows)
 
 
@@ -47,7 +47,7 @@ class Flicker(SceneResults):
         return f"{self.variant.size[0]}×{self.variant.size[1]}"
 
     def comparable(self, mode: str, other: str) -> bool:
-        """Says whether both modes were run, and with the same commit."""
+        """Returns whether both modes were run, and with the same commit."""
         rows = [[row for point in self.points.get(name, []) for row in point.rows] for name in (mode, other)]
         return all(rows) and len({row["version"] for found in rows for row in found}) == 1
 

@@ -27,7 +27,7 @@ MOVES = 0.5  # pixels from which a pixel counts as moving
 MAIN = 0.5  # share of a pixel's light above which it mostly shows a component
 REFLECTANCE, IRRADIANCE, MOTION, TRACKED = " Reflectance", " Irradiance", " Motion", " Tracked"
 SPECULAR = ("Reflection", "Transmission")
-UNTRACKED = 1e6  # pixels: stands for unknown motion, since it leaves every picture
+UNTRACKED = 1e6  # pixels: marks unknown motion, because it leads out of every picture
 
 
 def gray(images: np.ndarray) -> np.ndarray:

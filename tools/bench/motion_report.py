@@ -154,7 +154,7 @@ def truth_cells(row: Row) -> list[str]:
 
 
 def about_truth(rows: Rows) -> Text:
-    """Says in how many reflections and refractions the targets are met, and where not."""
+    """Returns a text: in how many reflections and refractions the targets are met, and where they are missed."""
     specular = [row for row in rows if row["component"] in SPECULAR and row["check"]["searched"]]
     errors = [row["check"]["error"] for row in specular]
     quantiles = [error.get("quantile_95", np.inf) for error in errors]
@@ -208,7 +208,7 @@ def predicted(rows: Rows, kinds: dict[str, str]) -> Table:
 
 
 def about_prediction(rows: Rows) -> list[Text]:
-    """Says in how many components the target is met, and how often own motion predicts more than the compared one."""
+    """Returns a text: in how many components the target is met, with own motion and with the compared motion."""
     texts = []
     for what, name in ((what, name) for kinds in PREDICTED for what, name in kinds.items() if name.endswith("all")):
         found = [(row[name]["own"], row[name]["noise"]) for row in rows if "own" in row.get(name, {})]
@@ -237,7 +237,7 @@ MINIMUM_PIXELS = 100  # for a ratio of shares
 
 
 def times_as_many(rows: Rows, comparison: Comparison) -> str:
-    """Says how many times as many pixels own motion predicts as the compared one, or "" without enough pixels."""
+    """Returns a text: the ratio of pixels that own and compared motion predict; "" without enough pixels."""
     column = comparison.column
     chosen = [row for row in rows if row["component"] in comparison.components or not comparison.components]
     chosen = [row for row in chosen if row.get(column, {}).get("pixels", 0) >= MINIMUM_PIXELS]

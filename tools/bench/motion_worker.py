@@ -111,7 +111,7 @@ def has_two_vectors(name: str) -> bool:
 
 
 def save_scene(job: Job, folder: Path) -> Answer:
-    """Renders one sample, which saves the scene for the tool on the way."""
+    """Renders one sample, which also saves the scene for the tool."""
     set_up({"mode": "components", "samples": 1, "seed": 0, "shutter": job["shutter"], "passes": FOLLOWED})
     with options(save_scene=job["scene"]):
         answer, files = animation_worker.render_range((job["frame"], job["frame"]), folder)

@@ -1,7 +1,7 @@
 """Converged images of stills: each engine's own by plain path tracing, with the variance of their mean, cached in the
 user's cache folder.
 
-Parts are stored as they come, so that an interrupted reference goes on. The runs of the benchmark never use seeds from
+Parts are stored one by one, so that a reference can be continued. The runs of the benchmark never use seeds from
 1000 on.
 """
 

@@ -72,7 +72,7 @@ class SceneBench:
         return not why
 
     def is_comparable(self, mode: str) -> bool:
-        """Says whether the engine of a mode renders the same picture.
+        """Returns whether the engine of a mode renders the same picture.
 
         Mitsuba gets a translation of the scene, which may differ.
         """

@@ -54,7 +54,7 @@ def warped_flicker_map(
 
 
 def moving(vectors: np.ndarray) -> np.ndarray:
-    """Says which pixels have moved since the frame before, from the second frame on."""
+    """Returns a mask of the pixels that have moved since the frame before, from the second frame on."""
     return np.hypot(vectors[1:, ..., 0], vectors[1:, ..., 1]) > MOVES
 
 

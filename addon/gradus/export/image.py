@@ -1,6 +1,6 @@
 """Images for the native library.
 
-The library decodes files and packed files itself. Blender's pixels are read only where no file has them, because
+The library decodes files and packed files itself. Blender's pixels are read only if no file contains them, because
 Blender would then load the whole image into memory: an 8192 x 8192 byte image becomes 1.07 GB of floats.
 """
 

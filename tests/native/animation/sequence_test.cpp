@@ -546,7 +546,7 @@ TEST(Sequence, GradientTIsTheDifferenceOfTheStoredHalves) {
       }
     }
   }
-  EXPECT_GT(corresponding, size_t(border.area())) << "the test says something";
+  EXPECT_GT(corresponding, size_t(border.area())) << "too few pixels have a correspondence";
 }
 
 // Both frames use the same random numbers, so light of 1.5 times the strength changes each pixel by half of its value.
@@ -641,7 +641,7 @@ TEST(A8_Sequence, ReplaysTakeTheCountsOfTheReplayedFrame) {
     minimum = std::min(minimum, film::samples_at(*offset, q));
     maximum = std::max(maximum, film::samples_at(*offset, q));
   }
-  EXPECT_LT(minimum, maximum) << "the test says something";
+  EXPECT_LT(minimum, maximum) << "too few pixels have a correspondence";
   EXPECT_GT(deliver(sequence.get(), 0).stats["samples_replayed"], 1.0);
 }
 

@@ -36,7 +36,7 @@ class CorrespondingFrames : public testing::Test {
     const std::vector<int32_t>& found = correspondence.pixel;
     std::set<int32_t> taken;
     for (const int32_t target : found) {
-      EXPECT_TRUE(target == film::kNoCorrespondence || taken.insert(target).second) << "two pixels lead to " << link;
+      EXPECT_TRUE(target == film::kNoCorrespondence || taken.insert(target).second) << "two pixels lead to " << target;
     }
     const std::vector<int32_t> inverse = motion::inverse_correspondence(correspondence).pixel;
     for (size_t i = 0; i < found.size(); ++i) {

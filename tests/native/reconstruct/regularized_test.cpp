@@ -422,17 +422,17 @@ TEST(BadInput_Regularized, ContradictoryHalves) {
 }
 
 // A film with differences that has a defect, and the maximum error of its reconstruction.
-struct DefectiveFilm {
+struct Defect {
   const char* name;
   std::function<float(int x, int y, int channel, int half)> feature;  // replaces that of the room
-  std::function<void(film::Film*)> spoil = [](film::Film*) {};
+  std::function<void(film::Film*)> add_defect = [](film::Film*) {};
   // Maximum error relative to that of L2, root mean square. Where features are useless and differences as uncertain as
   // the pixels everywhere, L2 has the optimal weights by chance, and windows are smaller than its reach: 1.09 and 1.10.
   double maximum = 1.12;
 };
 
-DefectiveFilm spoiled(const char* name, const std::function<void(film::Film*)>& spoil) {
-  return {name, test::room_feature, spoil, 1.01};
+Defect with_defect(const char* name, const std::function<void(film::Film*)>& add_defect) {
+  return {name, test::room_feature, add_defect, 1.01};
 }
 
 void empty_second_half(film::Film* film) {
@@ -445,7 +445,7 @@ void empty_second_half(film::Film* film) {
   }
 }
 
-class BadInput_BesideL2 : public ::testing::TestWithParam<DefectiveFilm> {};
+class BadInput_BesideL2 : public ::testing::TestWithParam<Defect> {};
 
 TEST_P(BadInput_BesideL2, IsNotWorse) {
   FeatureFilm description = room(kWidth, kHeight);
@@ -454,7 +454,7 @@ TEST_P(BadInput_BesideL2, IsNotWorse) {
   for (const float difference_sigma : {0.0f, 0.1f, 0.5f}) {
     description.difference_sigma = difference_sigma;
     film::Film film = make_feature_film(description);
-    GetParam().spoil(&film);
+    GetParam().add_defect(&film);
     reconstruct::SolveReport report;
     const std::vector<float> l2 = reconstruct::reconstruct(film, 0, GRADUS_RECONSTRUCTION_L2, 0.0f, never, &report);
     const double error = rms_difference(solve(film), description.truth), of_l2 = rms_difference(l2, description.truth);
@@ -463,33 +463,31 @@ TEST_P(BadInput_BesideL2, IsNotWorse) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BadInput_BesideL2,
-                         ::testing::Values(DefectiveFilm{"ConstantFeatures", [](int, int, int, int) { return 1.0f; }},
-                                           DefectiveFilm{"HugeFeatures", [](int, int, int, int) { return -5e3f; }},
-                                           DefectiveFilm{"MissingFeatures", [](int, int, int, int) { return 0.0f; }},
-                                           DefectiveFilm{"FeaturesOfNoise",
-                                                         [](int x, int y, int c, int half) {
-                                                           return 2.0f * hashed(x, y, c, half) - 1.0f;
-                                                         }},
-                                           spoiled("FeaturesThatAreNotFinite",
-                                                   [](film::Film* film) {
-                                                     for (film::Channel& plane : film->channels) {
-                                                       for (size_t i = 0; i < plane.values[0].size(); i += 11)
-                                                         plane.values[0][i] = std::numeric_limits<float>::quiet_NaN();
-                                                     }
-                                                   }),
-                                           spoiled("ContradictoryHalves",
-                                                   [](film::Film* film) {
-                                                     for (size_t i = 0; i < size_t(kWidth) * 25; ++i)
-                                                       film->components[0].primal[1][i] = Radiance(0.0f);
-                                                   }),
-                                           spoiled("HugeValues",
-                                                   [](film::Film* film) {
-                                                     film->components[0].primal[0][size_t(20 * kWidth + 30)] =
-                                                         Radiance(1e20f);
-                                                   }),
-                                           spoiled("ASingleSample", empty_second_half)),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    All, BadInput_BesideL2,
+    ::testing::Values(Defect{"ConstantFeatures", [](int, int, int, int) { return 1.0f; }},
+                      Defect{"HugeFeatures", [](int, int, int, int) { return -5e3f; }},
+                      Defect{"MissingFeatures", [](int, int, int, int) { return 0.0f; }},
+                      Defect{"FeaturesOfNoise",
+                             [](int x, int y, int c, int half) { return 2.0f * hashed(x, y, c, half) - 1.0f; }},
+                      with_defect("FeaturesThatAreNotFinite",
+                                  [](film::Film* film) {
+                                    for (film::Channel& plane : film->channels) {
+                                      for (size_t i = 0; i < plane.values[0].size(); i += 11)
+                                        plane.values[0][i] = std::numeric_limits<float>::quiet_NaN();
+                                    }
+                                  }),
+                      with_defect("ContradictoryHalves",
+                                  [](film::Film* film) {
+                                    for (size_t i = 0; i < size_t(kWidth) * 25; ++i)
+                                      film->components[0].primal[1][i] = Radiance(0.0f);
+                                  }),
+                      with_defect("HugeValues",
+                                  [](film::Film* film) {
+                                    film->components[0].primal[0][size_t(20 * kWidth + 30)] = Radiance(1e20f);
+                                  }),
+                      with_defect("ASingleSample", empty_second_half)),
+    [](const auto& info) { return info.param.name; });
 
 TEST(BadInput_Regularized, ABlackImageIsBlack) {
   FeatureFilm description = room(kWidth, kHeight);

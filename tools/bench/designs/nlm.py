@@ -36,7 +36,7 @@ def inside(shape: tuple[int, ...], dy: int, dx: int) -> np.ndarray:
 
 
 def reached(shape: tuple[int, ...], dy: int, dx: int) -> bool:
-    """Says whether p + (dy, dx) is in the image for any p."""
+    """Returns whether p + (dy, dx) is in the image for any p."""
     return abs(dy) < shape[0] and abs(dx) < shape[1]
 
 

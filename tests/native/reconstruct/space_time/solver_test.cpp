@@ -305,7 +305,7 @@ TEST(B2_SpaceTime, SmoothingOfSharesKeepsSumsAndShares) {
     });
   }
   EXPECT_NEAR(kept, sum, 1e-3);
-  EXPECT_GT(moved, 0.5f) << "the test says something";
+  EXPECT_GT(moved, 0.5f) << "nothing moves, so that the test shows nothing";
 }
 
 TEST(B2_SpaceTime, CorrespondencesThatAreNotOneToOneAreRefused) {
