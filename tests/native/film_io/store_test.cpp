@@ -90,17 +90,22 @@ const film::ChannelInfo kOtherChannels[] = {
     {"Roughness", 1, film::ValueType::kData, film::Normalisation::kOwnWeight, false, false},
 };
 
+nlohmann::json description_of(const Imf::Header& header) {
+  return nlohmann::json::parse(header.typedAttribute<Imf::StringAttribute>("gradus").value());
+}
+
 // Returns a rendered film with channels that the table of passes does not contain, and values in them.
 std::shared_ptr<film::Film> with_other_channels(const GradusSettings& settings) {
   auto film = std::make_shared<film::Film>(*rendered(settings));
   for (const film::ChannelInfo& info : kOtherChannels) film->channels.add(info, size_t(film->region.area()));
-  film::SplatQueue queue(film.get(), film->channels.find("Caustics"));
   const uint32_t first = settings.first_sample;
-  for (const uint32_t unit : {1u, 0u}) {
-    std::vector<film::Splat> splats;
-    for (int32_t x = 0; x < film->region.x1; ++x) splats.push_back({x, x % 7, Vec4(float(x) + 0.1f * float(first))});
-    queue.merge(unit, int(unit), 100 + unit + first, std::move(splats), &film->counters);
-  }
+  const auto trace = [&](uint32_t unit) {
+    film::SplatUnit traced{int(unit), 100 + unit + first, {}};
+    for (int32_t x = 0; x < film->region.x1; ++x)
+      traced.splats.push_back({x, x % 7, Vec4(float(x) + 0.1f * float(first))});
+    return traced;
+  };
+  film::add_splats(2, trace, film.get(), film->channels.find("Caustics"), &film->counters);
   film::Channel& curvature = *film->channels.find("Curvature of surfaces");
   film::Channel& crypto = *film->channels.find("Crypto");
   film::Channel& roughness = *film->channels.find("Roughness");
@@ -393,10 +398,6 @@ struct Refusal {
   uint32_t code;
   std::function<void(std::vector<Imf::Header>*)> change;
 };
-
-nlohmann::json description_of(const Imf::Header& header) {
-  return nlohmann::json::parse(header.typedAttribute<Imf::StringAttribute>("gradus").value());
-}
 
 void set_format(int format, Imf::Header* header) {
   nlohmann::json j = description_of(*header);
