@@ -7,8 +7,8 @@
 
 #include "common.h"
 #include "component_layers.h"
-#include "film_io/frame_file_name.h"
 #include "film_io/image_exr.h"
+#include "film_io/store.h"
 #include "progress_line.h"
 
 namespace gradus::tool {

@@ -5,7 +5,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include "motion/flat_mirror.h"
 #include "motion/true_motion.h"
 #include "scene/moved_snapshot.h"
 

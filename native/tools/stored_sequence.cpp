@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "base/text_list.h"
 #include "common.h"
-#include "film_io/frame_file_name.h"
 #include "film_io/store.h"
 
 namespace gradus::tool {

@@ -13,6 +13,7 @@
 #include "base/fault.h"
 #include "film/planes.h"
 #include "render/memory_estimate.h"
+#include "render/plan.h"
 #include "render/resume.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
@@ -42,8 +43,7 @@ bool is_frame_of(const film::FilmHeader& stored, const scene::Snapshot& snapshot
 bool sequence_applies(const GradusSettings& settings, std::string* why_not) {
   const uint32_t r = settings.reconstruction;
   const uint64_t pixels = uint64_t(settings.width) * settings.height;
-  const bool has_gradients =
-      settings.integrator == GRADUS_INTEGRATOR_AUTO || settings.integrator == GRADUS_INTEGRATOR_GRADIENT;
+  const bool has_gradients = render::can_sample_gradients(settings.integrator);
   const std::string integrator = schema::choice_name(*schema::find_option("integrator"), settings.integrator);
   *why_not = !has_gradients                    ? "the integrator is " + integrator
              : r == GRADUS_RECONSTRUCTION_NONE ? "reconstruction is none"

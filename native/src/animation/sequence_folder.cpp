@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "film_io/file_writer.h"
-#include "film_io/frame_file_name.h"
 #include "film_io/temporary_file.h"
 #include "schema/options.h"
 

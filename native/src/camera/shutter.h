@@ -19,8 +19,6 @@ class Shutter {
   bool opens() const { return close_ > open_; }
   // Returns the shutter time for u in [0, 1). Its density is the curve, interpolated linearly between its values.
   float sample(float u) const;
-  // Converts a shutter time to frames relative to the rendered frame.
-  float frame_time(float time) const { return open_ + (close_ - open_) * time; }
   // Returns the shutter time that is nearest to the rendered frame.
   float time_of_frame() const;
 

@@ -2,7 +2,6 @@
 // large, is dropped and counted by cause.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/fault.h"
@@ -61,28 +60,28 @@ inline void add_details(const NonSpecularDetails& more, NonSpecularDetails* sum,
   }
 }
 
-// Adds one sample's values of a channel to its sums, or stores them if the channel keeps only the first sample.
+// Adds one sample's values of a channel to its sums, or stores them if the channel keeps only the first sample. The
+// sample is dropped as a whole, with its weight, if one of the values does not fit.
 inline void add_feature(const float* values, float weight, size_t pixel, int half, Channel* channel,
                         Counters* counters) {
   float* sum = channel->of_half(half).data() + pixel * channel->info.values_per_pixel;
   const uint32_t count = channel->info.values_per_pixel;
   const bool replaces = channel->keeps_first_sample();
-  float next[4];
+  const auto next = [&](uint32_t i) { return replaces ? values[i] : sum[i] + values[i] * weight; };
   for (uint32_t i = 0; i < count; ++i) {
-    next[i] = replaces ? values[i] : sum[i] + values[i] * weight;
-    if (!fits(next[i])) {
+    if (!fits(next(i))) {
       ++counters->nonfinite_feature;
       return;
     }
   }
-  std::copy_n(next, count, sum);
+  for (uint32_t i = 0; i < count; ++i) sum[i] = next(i);
   if (channel->has_weight()) {
     channel->weight[pixel] += weight;
   }
 }
 
 // Adds a weight to an identifier of one pixel, which has `count` pairs of identifier and weight. If all of them belong
-// to other identifiers, the pair with the smallest weight is lost.
+// to other identifiers, the pair with the smallest weight is dropped, which may be the new one.
 inline void add_pair(float id, float weight, uint32_t count, float* pairs, Counters* counters) {
   if (!(weight > 0.0f)) {
     if (weight != 0.0f) ++counters->nonfinite_feature;

@@ -79,7 +79,7 @@ class PlaneList {
     const std::string part = part_of("samples", component);
     for (int half = 0; half < kHalves; ++half)
       add(part, half_layer(component, half), MergeRule::kAdd, color_fields(film_->color_channels),
-          &film_->components[component].primal[half]);
+          &film_->components[component].primal[half], &Counters::nonfinite_radiance);
     if (film_->replayed.has_component_map(int(component)))
       add_correspondence(part, component_layer(component) + ".source", &film_->replayed.of_component[component]);
   }
@@ -94,7 +94,8 @@ class PlaneList {
     for (int half = 0; half < kHalves; ++half) {
       for (int o = 0; o < kOffsets; ++o)
         add(part_of("gradients", component), half_layer(component, half) + "." + kOffsetNames[o], MergeRule::kAdd,
-            color_fields(film_->color_channels), &film_->components[component].gradient[half][o]);
+            color_fields(film_->color_channels), &film_->components[component].gradient[half][o],
+            &Counters::nonfinite_gradient);
     }
   }
 
@@ -152,31 +153,47 @@ class PlaneList {
 
   template <class T>
   void add(const std::string& part, const std::string& layer, MergeRule merge, std::vector<PlaneField> fields,
-           std::vector<T>* values) {
-    if (!values->empty()) list_.push_back({part, layer, merge, std::move(fields), sizeof(T), values});
+           std::vector<T>* values, uint64_t Counters::*dropped = &Counters::nonfinite_feature) {
+    if (values->empty()) return;
+    list_.push_back({part, layer, merge, std::move(fields), sizeof(T), values});
+    list_.back().dropped = dropped;
   }
 
   Film* const film_;
   std::vector<Plane> list_;
 };
 
-void add_value(const NonSpecularVertices& from, NonSpecularVertices* to, Counters* counters) {
-  add_non_specular(from, to, counters);
+// The functions add_all() add the values of all pixels to a plane of any type that consists of sums.
+void add_all(const std::vector<NonSpecularVertices>& from, const Plane&, std::vector<NonSpecularVertices>* to,
+             Counters* counters) {
+  for (size_t i = 0; i < to->size(); ++i) add_non_specular(from[i], &(*to)[i], counters);
 }
-void add_value(const NonSpecularDetails& from, NonSpecularDetails* to, Counters* counters) {
-  add_details(from, to, counters);
+
+void add_all(const std::vector<NonSpecularDetails>& from, const Plane&, std::vector<NonSpecularDetails>* to,
+             Counters* counters) {
+  for (size_t i = 0; i < to->size(); ++i) add_details(from[i], &(*to)[i], counters);
 }
-template <class T>
-requires std::is_same_v<T, float> || std::is_same_v<T, uint32_t> || std::is_same_v<T, Vec4>
-void add_value(const T& from, T* to, Counters*) { *to += from; }
+
+void add_all(const std::vector<uint32_t>& from, const Plane&, std::vector<uint32_t>* to, Counters*) {
+  for (size_t i = 0; i < to->size(); ++i) (*to)[i] += from[i];
+}
 
 template <class T>
-void add_all(const std::vector<T>& from, std::vector<T>* to, Counters* counters) {
-  if constexpr (requires { add_value(from[0], to->data(), counters); }) {
-    for (size_t i = 0; i < to->size(); ++i) add_value(from[i], &(*to)[i], counters);
-  } else {
-    throw invalid_operation("a plane of values that cannot be added has the rule to add them");
+requires std::is_same_v<T, float> || std::is_same_v<T, Vec4>
+void add_all(const std::vector<T>& from, const Plane& plane, std::vector<T>* to, Counters* counters) {
+  uint64_t dropped = 0;
+  for (size_t i = 0; i < to->size(); ++i) {
+    const T sum = (*to)[i] + from[i];
+    const bool fit = fits(sum);
+    (*to)[i] = fit ? sum : (*to)[i];
+    dropped += fit ? 0 : 1;
   }
+  counters->*plane.dropped += dropped;
+}
+
+template <class T>
+void add_all(const std::vector<T>&, const Plane&, std::vector<T>*, Counters*) {
+  throw invalid_operation("a plane of values that cannot be added has the rule to add them");
 }
 
 void add_pairs(const std::vector<float>& from, uint32_t values_per_pixel, std::vector<float>* to, Counters* counters) {
@@ -191,7 +208,7 @@ void add_plane(const Plane& from, bool is_first, const Plane& to, Counters* coun
       [&](auto* values) {
         const auto& others = *std::get<decltype(values)>(from.values);
         if (to.merge == MergeRule::kAdd) {
-          add_all(others, values, counters);
+          add_all(others, to, values, counters);
         } else if (to.merge == MergeRule::kFirstSample && is_first) {
           *values = others;
         }
@@ -256,8 +273,9 @@ uint64_t film_bytes_per_pixel(int components, bool gradients, const std::vector<
 }
 
 bool can_add(const Film& film, const Film& other) {
-  return film.region == other.region && film.color_channels == other.color_channels && same_components(film, other) &&
-         same_channels(film, other) && std::ranges::equal(merged_planes(film), merged_planes(other), same_kind);
+  return film.full_width == other.full_width && film.full_height == other.full_height && film.region == other.region &&
+         film.color_channels == other.color_channels && same_components(film, other) && same_channels(film, other) &&
+         std::ranges::equal(merged_planes(film), merged_planes(other), same_kind);
 }
 
 void add_sums(Film* film, const Film& other) {

@@ -38,6 +38,8 @@ struct Plane {
   size_t pixel_bytes = 0;  // distance between the values of neighbouring pixels
   Values values;
   const Channel* pairs = nullptr;  // channel with pairs of identifier and weight; nullptr if the plane holds none
+  // Counter of the values that the finite check drops when films are merged.
+  uint64_t Counters::*dropped = &Counters::nonfinite_feature;
 
   unsigned char* data() const;
   size_t bytes() const;
@@ -53,10 +55,11 @@ std::vector<Plane> planes_of(const Film& film);
 uint64_t film_bytes_per_pixel(int components, bool gradients, const std::vector<ChannelInfo>& channels,
                               const ComponentContent& content = {});
 
-// Returns whether the films have the same size, components and channels, so that add_sums() can add them.
+// Returns whether the films have the same full size, region, components and channels, so that add_sums() can add them.
 bool can_add(const Film& film, const Film& other);
 // Adds the sums and counts of `other`. Channels that keep the first sample come from the film with the lower first
-// sample number, which is this one if the numbers are equal.
+// sample number, which is this one if the numbers are equal. A value of `other` with which a sum would be too large is
+// dropped and counted (film/finite_check.h).
 void add_sums(Film* film, const Film& other);
 
 }  // namespace gradus::film

@@ -7,7 +7,6 @@
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 
-#include "film_io/exr_problem.h"
 #include "film_io/exr_stream.h"
 
 namespace gradus::film_io {

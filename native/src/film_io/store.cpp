@@ -7,11 +7,14 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
+#include <array>
+#include <atomic>
+#include <cstdio>
+
 #include "base/cancel_check.h"
+#include "base/error.h"
 #include "film_io/block_file.h"
 #include "film_io/block_rows.h"
-#include "film_io/check_planes.h"
-#include "film_io/exr_problem.h"
 #include "film_io/exr_stream.h"
 #include "film_io/store_header.h"
 #include "film_io/store_planes.h"
@@ -110,6 +113,53 @@ void check_sources(const film::Film& film) {
   for (const film::PixelCorrespondence& own : film.replayed.of_component) check(own);
 }
 
+// Maximum object number, up to which float represents every integer (film::ShownPoint).
+constexpr float kObjects = 16777216.0f;
+
+// Return whether a film can have this value.
+bool is_sound(float value) { return is_finite(value); }
+bool is_sound(const Vec4& value) { return is_finite(Vec3(value)) && is_finite(value.w); }
+bool is_sound(const film::ShownPoint& shown) {
+  return shown.object >= 0.0f && shown.object <= kObjects && is_finite(shown.depth);
+}
+bool is_sound(const film::NonSpecularVertices& non_specular) {
+  return is_finite(non_specular.reflectance) && is_finite(non_specular.normal) &&
+         is_finite(non_specular.inverse_depth) && is_finite(non_specular.samples);
+}
+bool is_sound(const film::NonSpecularDetails& details) {
+  return is_finite(details.uv) && is_finite(details.emission) && is_finite(details.segments) &&
+         is_finite(details.object) && is_finite(details.face);
+}
+
+// Throws `invalid_argument`, which names the plane as `what`, for a value that is not finite or out of range.
+template <class Value>
+void check_plane(const std::vector<Value>& plane, const std::string& what) {
+  constexpr size_t kPixels = 4096;  // pixels per task
+  std::atomic<bool> sound{true};
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, plane.size(), kPixels), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      if (!is_sound(plane[i])) sound = false;
+    }
+  });
+  if (!sound) throw invalid_argument("it holds " + what + " that no pixel has");
+}
+
+// Checks the values that the library does not check again when it uses them: the planes for passes of components, and
+// all channels.
+void check_planes(const film::Film& film) {
+  for (const film::ComponentPlanes& planes : film.components) {
+    for (const auto& half : planes.non_specular) check_plane(half, "first rough vertices");
+    check_plane(planes.details, "details of vertices");
+    check_plane(planes.motion, "motion");
+    check_plane(planes.tracked, "causes of lost motion");
+    check_plane(planes.shown, "shown points");
+  }
+  for (const film::Channel& channel : film.channels) {
+    for (const std::vector<float>& half : channel.values) check_plane(half, "values of " + channel.info.name);
+    check_plane(channel.weight, "weights of " + channel.info.name);
+  }
+}
+
 Imf::MultiPartInputFile open_file(const std::string& path) {
   constexpr int kNoThreads = 0;  // The threads of the caller unpack.
   constexpr bool kRepair = false;
@@ -182,6 +232,12 @@ std::shared_ptr<film::Film> load_component(const std::string& path, const std::s
 
 film::FilmHeader load_header(const std::string& path) {
   return load(path, [&] { return read_header(open_file(path).header(0)); });
+}
+
+std::string frame_name(int32_t frame, const char* ending) {
+  std::array<char, 40> name{};
+  std::snprintf(name.data(), name.size(), "f%+08d.%s", frame, ending);
+  return name.data();
 }
 
 }  // namespace gradus::film_io

@@ -21,7 +21,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFormat = 9;
+// Format versions. Films whose channels are all passes keep the first one, which earlier versions of Gradus read, too.
+constexpr int kFormat = 9, kFormatWithChannels = 10;
 constexpr size_t kMaxStoredComponents = 64;
 constexpr int kMaxSide = 1 << 16;
 constexpr const char* kAttribute = "gradus";
@@ -142,7 +143,7 @@ std::vector<film::ChannelInfo> stored_channels(const json& description, const fi
 
 json describe_samples(const film::Film& film) {
   const film::ComponentContent kept = film::component_content(film);
-  return {{"format", kFormat},
+  return {{"format", has_other_channels(film) ? kFormatWithChannels : kFormat},
           {"version", gradus_version_text()},
           {"frame", film.frame_number},
           {"channels", film.color_channels},
@@ -194,7 +195,8 @@ json description_of(const Imf::Header& header) {
   const auto* attribute = header.findTypedAttribute<Imf::StringAttribute>(kAttribute);
   if (!attribute) throw damaged("it is no frame of Gradus");
   json description = json::parse(attribute->value());
-  if (description.at("format") != kFormat) throw damaged("it was written by another version of Gradus");
+  const json& format = description.at("format");
+  if (format != kFormat && format != kFormatWithChannels) throw damaged("it was written by another version of Gradus");
   return description;
 }
 

@@ -81,6 +81,4 @@ std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorMa
   return image;
 }
 
-const std::vector<std::string>& warnings_of(const Image& image) { return image.warnings; }
-
 }  // namespace gradus::image

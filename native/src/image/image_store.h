@@ -43,11 +43,9 @@ struct ImageSource {
 // Copies an image. Throws Error(INVALID_ARGUMENT), with the image's name, if sizes and data contradict each other.
 ImageSource copy_image_source(const GradusImage& desc);
 
-// Decodes all tiles. A tile that cannot be read is magenta, and warnings_of() has the reason. Throws only
+// Decodes all tiles. A tile that cannot be read is magenta, and ImageStore::warnings() has the reason. Throws only
 // std::bad_alloc.
 std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorManager& color);
-// Returns one text, with the path, for each tile that could not be read completely.
-const std::vector<std::string>& warnings_of(const Image& image);
 
 class ImageStore {
  public:
@@ -73,7 +71,8 @@ class ImageStore {
   // Return the size of the image's first tile, or 0 if it could not be read.
   uint32_t width(uint32_t index) const;
   uint32_t height(uint32_t index) const;
-  // Returns the warnings of all images, which the option `strict` turns into an error.
+  // Returns the warnings of all images: a text with the path for each tile that could not be read completely. The
+  // option `strict` turns them into an error.
   std::vector<std::string> warnings() const;
   size_t memory_bytes() const;
 

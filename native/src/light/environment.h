@@ -40,7 +40,6 @@ class Environment {
   float mean() const { return mean_; }
   // Returns the map, which copies share; null if directions are sampled uniformly.
   const Distribution2D* map() const { return map_.get(); }
-  size_t sun_count() const { return suns_.size(); }
 
   // Returns an estimate of the irradiance at the receiver, which weighs the world against other emitters.
   float irradiance(const Receiver& receiver) const;

@@ -1,5 +1,5 @@
-// Interpolation of values on a plane of pixels. Positions are in pixels, with 0 at the centre of the first pixel.
-// Beyond the outermost pixel centres the plane continues with the values at its border.
+// Interpolation of values on a plane of pixels, and loops over its pixels. Positions are in pixels, with 0 at the
+// centre of the first pixel. Beyond the outermost pixel centres the plane continues with the values at its border.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <span>
 
 #include "base/cubic_weights.h"
+#include "base/rows.h"
 #include "base/types.h"
 
 namespace gradus::motion {
@@ -54,6 +55,20 @@ T cubic_at(const FilmPlane<T>& plane, const Vec2& position) {
     result += down[size_t(j)] * row;
   }
   return result;
+}
+
+// Loops over one row. It must not be inlined: a compiler that made two variants of the loop would round differently in
+// each, and which one a row gets would depend on the threads.
+template <class Body>
+[[gnu::noinline]] void pixels_of_row(int width, int y, const Body& body) {
+  size_t p = size_t(y) * size_t(width);
+  for (int x = 0; x < width; ++x, ++p) body(x, y, p);
+}
+
+// Calls body(x, y, p) for every pixel, where p = y·width + x is its index in planes.
+template <class Body>
+void each_pixel(int width, int height, const Body& body) {
+  for_rows(height, [&](int y) { pixels_of_row(width, y, body); });
 }
 
 }  // namespace gradus::motion

@@ -2,10 +2,20 @@
 // of its surfaces.
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <vector>
+
 #include "motion/film_plane.h"
 #include "motion/irradiance_motion.h"
 
 namespace gradus::motion {
+
+// Finds pixels that show an edge of an object: they show more than one surface, and the surfaces may move differently.
+// Returns for each pixel of the film 1 if one of its eight neighbours shows another object, or if the depth has a step
+// between it and a neighbour in its row or column; otherwise 0. `object` and `depth` hold one value for each pixel, row
+// by row, or are empty if not known. A depth of 0, or one that is not finite, means that there is no surface.
+std::vector<uint8_t> silhouettes(int width, int height, std::span<const int32_t> object, std::span<const float> depth);
 
 class FlowFrame {
  public:
@@ -30,7 +40,7 @@ class FlowFrame {
   }
   // Returns the pixel whose centre is nearest to a position.
   size_t nearest(const Vec2& place) const;
-  // Whether a position lies on the film.
+  // Returns whether a position lies on the film.
   bool holds(const Vec2& place) const;
 
   template <class T>

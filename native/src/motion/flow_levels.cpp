@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motion/for_each_pixel.h"
+#include "motion/film_plane.h"
 
 namespace gradus::motion {
 namespace {

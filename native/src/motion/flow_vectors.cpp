@@ -1,7 +1,6 @@
 #include "motion/flow_vectors.h"
 
 #include "base/fpu.h"
-#include "motion/for_each_pixel.h"
 #include "motion/refine_flow.h"
 
 namespace gradus::motion {

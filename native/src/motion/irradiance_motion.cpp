@@ -2,8 +2,8 @@
 
 #include <tbb/parallel_invoke.h>
 
+#include "motion/film_plane.h"
 #include "motion/flow_vectors.h"
-#include "motion/for_each_pixel.h"
 
 namespace gradus::motion {
 namespace {

@@ -2,8 +2,6 @@
 
 #include <numeric>
 
-#include "motion/for_each_pixel.h"
-
 namespace gradus::motion {
 namespace {
 
@@ -143,7 +141,7 @@ class Refinement {
   }
 
   // Relaxes every other pixel of a row: pixels of one colour of a chessboard do not depend on each other. It must not
-  // be inlined, for the reason that motion/for_each_pixel.h gives for its rows.
+  // be inlined, for the reason that motion/film_plane.h gives for its rows.
   [[gnu::noinline]] void relax(int y, int colour) {
     for (int x = (y + colour) & 1; x < width_; x += 2) {
       const size_t p = index(x, y), row = size_t(width_);

@@ -1,4 +1,5 @@
-// Mean over a square around each pixel, as far as that lies in the image.
+// Mean over a square around each pixel, as far as that lies in the image, and the mean light around each pixel,
+// relative to which errors and residuals are measured.
 #pragma once
 
 #include "reconstruct/field.h"
@@ -8,5 +9,13 @@ namespace gradus::reconstruct {
 // Returns the mean over (2·radius + 1)² pixels, for each channel. Every sum is computed anew: a sliding sum would carry
 // the rounding errors of bright pixels into the dark ones beside them. `radius` is at most 8, the rim of a field.
 Field box_mean(const Field& image, int radius);
+
+// Added to the light of every pixel, in units of the median luminance, so that dark pixels do not get an unbounded
+// weight.
+inline constexpr float kDark = 0.02f;
+
+// Returns (mean + kDark)², one channel. The mean is that of the luminance over (2·radius + 1)² pixels of an image in
+// units of its median luminance.
+Field squared_light(const Field& image, int radius);
 
 }  // namespace gradus::reconstruct

@@ -5,6 +5,8 @@
 
 #include "base/fault.h"
 #include "base/rows.h"
+#include "reconstruct/minimise_by_noise.h"
+#include "reconstruct/twicing.h"
 
 namespace gradus::reconstruct {
 namespace {
@@ -15,6 +17,10 @@ constexpr double kMinErrorShare = 0.25;
 constexpr double kSigma = 1.5, kSigmaOfDifference = 2.0;
 // Limit of a square, so that sums of several remain finite.
 constexpr double kLargest = 1e37;
+
+// Goal and maximum number of steps of remaining_noise(): an error estimate needs no higher accuracy.
+constexpr CgGoal kGoal{.residual = 1e-2f, .row_error = 0.1f};
+constexpr int kMaxSteps = 10;
 
 // One value for each pixel.
 using Plane = std::vector<float>;
@@ -106,6 +112,27 @@ std::vector<float> error_of_pixels(const ErrorTerms& terms, int width, int heigh
 
 double mean_square(const float* pixel) {
   return (double(pixel[0]) * pixel[0] + double(pixel[1]) * pixel[1] + double(pixel[2]) * pixel[2]) / 3.0;
+}
+
+RemainingNoise remaining_noise(const film::GradientImages& images, const film::GradientImages& half_differences,
+                               float alpha, const CancelCheck& cancel) {
+  alpha = chosen_alpha(GRADUS_RECONSTRUCTION_L1, alpha);
+  SolveReport report;
+  Minimum minimum = minimise_by_noise(images, cancel, &report);
+  const int channels = minimum.solution.channels();
+  Field noise(images.width, images.height, channels);
+  minimum.system.solve(load_planes(planes_of(half_differences, 0), images.width, images.height, channels), kGoal,
+                       kMaxSteps, cancel, &noise);
+  const Twicing twicing(images, minimum.solution, alpha);
+  const size_t stride = size_t(images.channels);
+  RemainingNoise left{std::vector<float>(images.primal.size()), std::vector<float>(images.primal.size())};
+  for (int c = 0; c < channels; ++c) {
+    store_channel(minimum.solution, c, stride, left.image.data() + c);
+    twicing.apply(planes_of(images, c), left.image.data() + c);
+    store_channel(noise, c, stride, left.noise.data() + c);
+    twicing.apply(planes_of(half_differences, c), left.noise.data() + c);
+  }
+  return left;
 }
 
 }  // namespace gradus::reconstruct

@@ -7,7 +7,6 @@
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
-#include "reconstruct/local_light.h"
 #include "reconstruct/regression_error.h"
 #include "reconstruct/restore_sampled_light.h"
 #include "reconstruct/solver_planes.h"

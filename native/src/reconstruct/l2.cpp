@@ -1,14 +1,13 @@
-// L2 minimises α²‖x−I‖² + ‖Dx−g‖² (thesis eq. 5.13 with k = 2). It is linear in its input, hence unbiased if the
-// gradients are.
 #include "reconstruct/l2.h"
 
 #include <algorithm>
 #include <array>
-#include <memory>
 
 #include "base/error.h"
+#include "base/rows.h"
 #include "base/types.h"
 #include "reconstruct/poisson_dct.h"
+#include "reconstruct/weighted_least_squares.h"
 
 namespace gradus::reconstruct {
 namespace {
@@ -90,25 +89,6 @@ class L2 {
   float data_weight_;
 };
 
-class L2Operator final : public LinearOperator {
- public:
-  L2Operator(int width, int height, float alpha)
-      : l2_(width, height, 1, alpha), width_(size_t(width)), height_(size_t(height)) {}
-
-  void apply(const PoissonPlanes& planes, float* out) const override {
-    const auto take = [&](int y, const float* row) {
-      float* to = out + size_t(y) * width_ * planes.stride;
-      for (size_t x = 0; x < width_; ++x, to += planes.stride) *to = row[x];
-    };
-    const std::unique_ptr<float[]> work(new float[width_ * height_]);
-    l2_.solve(rows_of(planes, int(width_), 1), take, work.get());
-  }
-
- private:
-  L2 l2_;
-  size_t width_, height_;
-};
-
 // Copies row y of the first `channels` channels of a plane.
 std::vector<float> compact_row(const float* plane, size_t stride, int width, int channels, int y) {
   std::vector<float> row;
@@ -116,6 +96,16 @@ std::vector<float> compact_row(const float* plane, size_t stride, int width, int
   const float* from = plane + size_t(y) * size_t(width) * stride;
   for (int x = 0; x < width; ++x, from += stride) row.insert(row.end(), from, from + channels);
   return row;
+}
+
+// Goal and maximum number of steps of the iteration for images with gaps.
+constexpr CgGoal kGoal{.residual = 1e-6f};
+constexpr int kMaxSteps = 100;
+
+// Writes `weight` for each pixel whose value is known in all channels, and 0 for the others.
+void weigh(const std::vector<float>& values, int channels, int width, int y, float weight, float* weights) {
+  const float* value = values.data() + size_t(y) * size_t(width) * size_t(channels);
+  for (int x = 0; x < width; ++x, value += channels) weights[x] = is_complete(value, channels) ? weight : 0.0f;
 }
 
 }  // namespace
@@ -136,10 +126,6 @@ L2Rows rows_of(const PoissonPlanes& planes, int width, int channels) {
   };
 }
 
-std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha) {
-  return std::make_unique<L2Operator>(width, height, alpha);
-}
-
 bool solve_l2(int width, int height, int channels, float alpha, const L2Rows& rows, const L2Take& take, float* work) {
   if (channels < 1 || channels > kMaxChannels) throw unsupported("an image has 1 to 4 channels");
   return L2(width, height, channels, alpha).solve(rows, take, work);
@@ -156,6 +142,23 @@ std::optional<std::vector<float>> solve_l2(int width, int height, int channels, 
   };
   if (!solve_l2(width, height, channels, alpha, rows, interleave, image.data())) return std::nullopt;
   return image;
+}
+
+std::vector<float> solve_l2_with_gaps(const film::GradientImages& images, float alpha, const CancelCheck& cancel,
+                                      SolveReport* report) {
+  const int w = images.width, h = images.height, channels = images.channels;
+  WeightedLeastSquares system(w, h, channels);
+  for_rows(h, [&](int y) {
+    weigh(images.primal, channels, w, y, alpha * alpha, system.data_weights().row(y));
+    weigh(images.dx, channels, w, y, 1.0f, system.matrix().right.row(y));
+    weigh(images.dy, channels, w, y, 1.0f, system.matrix().up.row(y));
+  });
+  system.update();
+  const PoissonPlanes interleaved = planes_of(images, 0);
+  Field x = start_from_l2(interleaved, w, h, channels, alpha);
+  const CgReport solve = system.solve(load_planes(interleaved, w, h, channels), kGoal, kMaxSteps, cancel, &x);
+  add_solve(solve, report);
+  return interleave(x);
 }
 
 }  // namespace gradus::reconstruct

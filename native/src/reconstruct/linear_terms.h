@@ -1,18 +1,40 @@
 // Application of one linear operator to all terms of a sum, so that the results add up exactly.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
 #include "base/fault.h"
+#include "base/rows.h"
 #include "reconstruct/field_values.h"
 
 namespace gradus::reconstruct {
 
 // Subtracts `term` from `from`, which has the same size.
-void subtract(const Field& term, Field* from);
+inline void subtract(const Field& term, Field* from) {
+  for_values(from, [&](float& value, int x, int y, int c) { value -= term.row(y, c)[x]; });
+}
+
+// Returns the sum of absolute RGB values.
+inline double sum_of_magnitudes(const Field& field) {
+  const Sums sums = sum_rows(field.height(), 1, [&](int y, int) {
+    double sum = 0.0;
+    for (int c = 0; c < std::min(field.channels(), 3); ++c) {
+      for (int x = 0; x < field.width(); ++x) sum += std::fabs(double(field.row(y, c)[x]));
+    }
+    return sum;
+  });
+  return sums[0];
+}
+
 // Returns the index of the term with the largest sum of absolute RGB values; the first of several equal ones.
-size_t brightest(const std::vector<Field>& terms);
+inline size_t brightest(const std::vector<Field>& terms) {
+  std::vector<double> light;
+  for (const Field& term : terms) light.push_back(sum_of_magnitudes(term));
+  return size_t(std::max_element(light.begin(), light.end()) - light.begin());
+}
 
 // Replaces each term k by apply(k, term). `whole` is what the operator makes of the sum of the terms. Black terms are
 // skipped. The brightest term becomes `whole` minus all others: the terms then add up in spite of rounding, and the

@@ -4,11 +4,11 @@
 
 #include "base/error.h"
 #include "reconstruct/l2.h"
-#include "reconstruct/l2_with_gaps.h"
 #include "reconstruct/minimise_l1.h"
 #include "reconstruct/noise_free.h"
 #include "reconstruct/solver.h"
-#include "reconstruct/twiced_solver.h"
+#include "reconstruct/twicing.h"
+#include "reconstruct/weighted_least_squares.h"
 
 namespace gradus::reconstruct {
 namespace {
@@ -44,22 +44,34 @@ class FilmRows {
   tbb::enumerable_thread_specific<Rows> rows_;
 };
 
-std::unique_ptr<TwicedSolver> make_solver(const film::GradientImages& images, uint32_t reconstruction, float alpha,
-                                          const CancelCheck& cancel, SolveReport* report) {
-  switch (reconstruction) {
-    case GRADUS_RECONSTRUCTION_L1:
-      return std::make_unique<TwicedSolver>(images, minimise_l1(images, alpha, cancel, report), alpha);
-    default:
-      throw unsupported("no solver for reconstruction " + std::to_string(reconstruction));
+// Reconstruction whose differences come from a minimum and whose local means come from the noisy image (twicing.h).
+class TwicedSolver {
+ public:
+  // Freezes the weights of `minimum` and those of the twicing, which come from the first three channels of `images`.
+  TwicedSolver(const film::GradientImages& images, Minimum minimum, float alpha)
+      : minimum_(std::move(minimum)), twicing_(images, minimum_.solution, alpha), alpha_(alpha) {}
+
+  int solved_channels() const { return minimum_.solution.channels(); }
+  // Applies the frozen operator to one channel.
+  void apply(const PoissonPlanes& planes, float* out) const {
+    const Field& x = minimum_.solution;
+    minimum_.system.apply(planes, start_from_l2(planes, x.width(), x.height(), 1, alpha_), out);
+    twicing_.apply(planes, out);
   }
-}
+  // Writes what apply() gives for one of the solved channels of the images that the weights come from, almost without
+  // cost.
+  void read_solution(const PoissonPlanes& planes, int channel, float* out) const {
+    store_channel(minimum_.solution, channel, planes.stride, out);
+    twicing_.apply(planes, out);
+  }
+
+ private:
+  Minimum minimum_;
+  Twicing twicing_;
+  float alpha_;  // weight α of the L2 solution that starts an iteration
+};
 
 }  // namespace
-
-std::unique_ptr<LinearOperator> make_twiced(const film::GradientImages& images, uint32_t reconstruction, float alpha,
-                                            const CancelCheck& cancel, SolveReport* report) {
-  return make_solver(images, reconstruction, chosen_alpha(reconstruction, alpha), cancel, report);
-}
 
 std::vector<float> reconstruct(const film::GradientImages& images, uint32_t reconstruction, float alpha,
                                const CancelCheck& cancel, SolveReport* report) {
@@ -69,13 +81,15 @@ std::vector<float> reconstruct(const film::GradientImages& images, uint32_t reco
     if (auto image = solve_l2(images.width, images.height, images.channels, alpha, rows)) return *std::move(image);
     return solve_l2_with_gaps(images, alpha, cancel, report);
   }
+  if (reconstruction != GRADUS_RECONSTRUCTION_L1)
+    throw unsupported("no solver for reconstruction " + std::to_string(reconstruction));
   std::vector<float> result(images.primal.size());
-  const auto solver = make_solver(images, reconstruction, alpha, cancel, report);
+  const TwicedSolver solver(images, minimise_l1(images, alpha, cancel, report), alpha);
   for (int c = 0; c < images.channels && !cancel(); ++c) {
-    if (c < solver->solved_channels()) {
-      solver->read_solution(planes_of(images, c), c, result.data() + c);
+    if (c < solver.solved_channels()) {
+      solver.read_solution(planes_of(images, c), c, result.data() + c);
     } else {
-      solver->apply(planes_of(images, c), result.data() + c);  // alpha uses the weights of the colours
+      solver.apply(planes_of(images, c), result.data() + c);  // alpha uses the weights of the colours
     }
   }
   return result;

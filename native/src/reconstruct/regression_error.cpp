@@ -6,7 +6,6 @@
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
-#include "reconstruct/local_light.h"
 
 namespace gradus::reconstruct {
 namespace {

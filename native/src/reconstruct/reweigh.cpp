@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
-#include "reconstruct/local_light.h"
 
 namespace gradus::reconstruct {
 namespace {

@@ -1,10 +1,9 @@
 // Reconstruction of one image from a noisy primal image and its sampled gradients.
 //
 // A solver first estimates weights from the images, W = estimate(images), then applies x = W(planes). W is a frozen
-// linear operator, so that alpha, light passes and components can go through the same weights and add up exactly.
+// linear operator, so that alpha can go through the same weights. Results do not depend on the number of threads.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "base/cancel_check.h"
@@ -25,29 +24,12 @@ inline PoissonPlanes planes_of(const film::GradientImages& images, int channel) 
           size_t(images.channels)};
 }
 
-// A frozen linear operator on (primal, dx, dy). Deterministic for any number of threads.
-class LinearOperator {
- public:
-  virtual ~LinearOperator() = default;
-  // Writes width·height values to `out`, one at every `stride`-th float.
-  virtual void apply(const PoissonPlanes& planes, float* out) const = 0;
-};
-
 struct SolveReport {
   int outer_steps = 0;
   int inner_steps = 0;
   float residual = 0.0f;  // norm of the residual over that of the right side; maximum over all solves
-  bool hit_cap = false;  // whether a solve ended at its maximum number of steps before it converged
+  bool hit_cap = false;   // whether a solve ended at its maximum number of steps before it converged
 };
-
-// Returns the L2 solver, which minimises α²‖x−I‖² + ‖Dx−g‖² exactly by DCT. It is unbiased. (Thesis eq. 5.13 with k =
-// 2; Bhat et al. 2008 for the DCT.)
-std::unique_ptr<LinearOperator> make_l2(int width, int height, float alpha);
-// Returns the solver of `reconstruction`, which is L1, followed by twicing (twicing.h). Its weights are estimated from
-// the images (all channels together) and then frozen. It is consistent, not unbiased. Throws `unsupported` for other
-// reconstructions.
-std::unique_ptr<LinearOperator> make_twiced(const film::GradientImages& images, uint32_t reconstruction, float alpha,
-                                            const CancelCheck& cancel, SolveReport* report);
 
 // Returns α, the weight of the primal image against the gradients; `alpha` 0 selects the value with the smallest
 // measured error. Offset paths that meet other surfaces than their base paths give noisy differences, so L2 needs a
@@ -57,7 +39,9 @@ inline float chosen_alpha(uint32_t reconstruction, float alpha) {
 }
 
 // Reconstructs all channels of `images` and returns width·height·channels values. `reconstruction` is
-// GRADUS_RECONSTRUCTION_L2 or GRADUS_RECONSTRUCTION_L1.
+// GRADUS_RECONSTRUCTION_L2 or GRADUS_RECONSTRUCTION_L1. L2 is unbiased. L1 is followed by twicing (twicing.h); its
+// weights are estimated from the first three channels together, and a fourth one uses them, too. It is consistent, not
+// unbiased. Throws `unsupported` for other reconstructions.
 std::vector<float> reconstruct(const film::GradientImages& images, uint32_t reconstruction, float alpha,
                                const CancelCheck& cancel, SolveReport* report);
 

@@ -7,7 +7,6 @@
 #include "reconstruct/error_estimate.h"
 #include "reconstruct/reconstruct_film.h"
 #include "reconstruct/regularized.h"
-#include "reconstruct/weighted_noise.h"
 
 namespace gradus::render {
 namespace {

@@ -60,7 +60,7 @@ void choose_integrator(const GradusSettings& settings, Plan* plan) {
       plan->chosen.emplace_back("integrator " + choice_of("integrator", plan->integrator), "set by the user");
       break;
   }
-  plan->gradients = plan->integrator == GRADUS_INTEGRATOR_GRADIENT;
+  plan->gradients = can_sample_gradients(plan->integrator);
   if (!plan->gradients)
     plan->skipped.emplace_back("gradients", "the integrator is " + choice_of("integrator", plan->integrator));
 }
@@ -244,6 +244,10 @@ Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot, 
 
 bool features_wanted(const Plan& plan) {
   return plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED || plan.denoises;
+}
+
+bool can_sample_gradients(uint32_t integrator) {
+  return integrator == GRADUS_INTEGRATOR_AUTO || integrator == GRADUS_INTEGRATOR_GRADIENT;
 }
 
 uint32_t without_gradients(const Plan& plan) {

@@ -55,6 +55,10 @@ inline constexpr int kGuardRing = 35;
 Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot,
                const HostDenoiser& denoiser = {"", "denoiser is none"});
 
+// Returns whether a setting of the option `integrator` can sample differences between pixels. AUTO chooses an
+// integrator that does where they are needed.
+bool can_sample_gradients(uint32_t integrator);
+
 // Maximum block size of REGULARIZED in pixels; all smaller block sizes divide it (reconstruct/feature_regression.cpp).
 constexpr int kMaxRegressionBlock = 16;
 

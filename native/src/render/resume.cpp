@@ -81,6 +81,10 @@ void check_resumable(const film::Film& film, const GradusSettings& settings, con
   const film::ComponentContent held = film::component_content(film);
   if ((plan.non_specular_vertices && !held.non_specular) || (plan.non_specular_details && !held.details))
     throw invalid_argument("the frame was sampled without the passes of components");
+  for (const film::Channel& channel : film.channels) {
+    if (channel.pass == GRADUS_PASS_COUNT)
+      throw invalid_argument("the frame holds the channel " + channel.info.name + ", which the render does not sample");
+  }
   const uint64_t kept = film.channels.passes();
   for (const schema::PassInfo& info : schema::stored_passes(plan.passes)) {
     if (!schema::has_bit(kept, info.pass))

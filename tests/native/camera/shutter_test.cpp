@@ -57,7 +57,6 @@ TEST(Shutter, TimesAreDistributedAsTheCurve) {
 TEST(Shutter, WithoutACurveAllTimesHaveTheSameDensity) {
   const camera::Shutter shutter = make_shutter(0.0f, 0.5f, {});
   EXPECT_EQ(shutter.sample(0.25f), 0.25f);
-  EXPECT_FLOAT_EQ(shutter.frame_time(0.5f), 0.25f);
 }
 
 // Correspondences and vectors refer to the time of the frame, which may lie anywhere in the exposure.

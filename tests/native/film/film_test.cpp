@@ -1,6 +1,8 @@
 #include "film/film.h"
 
 #include <limits>
+#include <numeric>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -75,6 +77,51 @@ TEST(B6_FiniteCheck, ObjectNumbersAreThoseOfTheFirstSample) {
   EXPECT_EQ(sum.emission, Rgb(9.0f));
   EXPECT_EQ(sum.segments, 5.0f);
   EXPECT_EQ(counters.nonfinite_feature, 1u);
+}
+
+// Regression: the sums of two films were added without a check.
+TEST(B6_FiniteCheck, MergedSumsThatWouldOverflowStayOutAndAreCounted) {
+  film::Film film = small_film();
+  film.channels.add({"fog", 1, film::ValueType::kData, film::Normalisation::kOwnWeight}, 12);
+  film.components[0].primal[1][5].y = 6e36f;
+  film.components[0].gradient[0][film::kUp][5].x = -6e36f;
+  film.pair_count[0][film::kUp][5] = 6e36f;
+  film.channels.find("fog")->values[0][5] = 6e36f;
+  film.channels.find("fog")->weight[5] = 2.0f;
+  const film::Film other = film;
+  film::add_sums(&film, other);
+  EXPECT_EQ(film.counters.nonfinite_radiance, 1u);
+  EXPECT_EQ(film.counters.nonfinite_gradient, 1u);
+  EXPECT_EQ(film.counters.nonfinite_feature, 2u);
+  EXPECT_EQ(film.components[0].primal[1][5].y, 6e36f);
+  EXPECT_EQ(film.components[0].gradient[0][film::kUp][5].x, -6e36f);
+  EXPECT_EQ(film.pair_count[0][film::kUp][5], 6e36f);
+  EXPECT_EQ(film.channels.find("fog")->values[0][5], 6e36f);
+  EXPECT_EQ(film.channels.find("fog")->weight[5], 4.0f);
+}
+
+// Pictures of two sizes may have the same border.
+TEST(Film, FilmsOfDifferentFullSizesCannotBeAdded) {
+  const Region region{0, 0, 4, 3};
+  const film::Film film = small_film();
+  EXPECT_TRUE(film::can_add(film, film::Film(4, 3, region, 3, 1, true)));
+  EXPECT_FALSE(film::can_add(film, film::Film(5, 3, region, 3, 1, true)));
+  EXPECT_FALSE(film::can_add(film, film::Film(4, 4, region, 3, 1, true)));
+}
+
+// Regression: channels with more than four values overran an array.
+TEST(B6_FiniteCheck, ASampleMayHaveAsManyValuesAsAnyChannel) {
+  film::Film film = small_film();
+  film.channels.add({"Crypto", film::kMaxPairValues, film::ValueType::kIdAndWeight}, 12);
+  film::Channel* const channel = film.channels.find("Crypto");
+  std::vector<float> values(film::kMaxPairValues);
+  std::iota(values.begin(), values.end(), 1.0f);
+  film::add_feature(values.data(), 2.0f, 5, 0, channel, &film.counters);
+  for (size_t i = 0; i < channel->values[0].size(); ++i) {
+    const size_t first = 5 * size_t{film::kMaxPairValues};
+    EXPECT_EQ(channel->values[0][i], i >= first && i < first + values.size() ? 2.0f * values[i - first] : 0.0f) << i;
+  }
+  EXPECT_EQ(film.counters.nonfinite_feature, 0u);
 }
 
 // Regression: the memory estimate for loading a film ignored the planes of counts.

@@ -1,15 +1,18 @@
-// Splats of work units are merged in a fixed order and normalised by all paths. A small light tracer stands in for a
+// Splats of work units are added in a fixed order and normalised by all paths. A small light tracer stands in for a
 // real one.
 #include "film/splats.h"
 
 #include <atomic>
-#include <limits>
+#include <chrono>
 #include <random>
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include "base/error.h"
+#include "support/refusal.h"
 
 namespace gradus {
 namespace {
@@ -51,26 +54,58 @@ std::vector<Rgb> mean(const film::Film& film, film::HalfRange halves = {}) {
   return image;
 }
 
+// Traces and adds units in an arena of so many threads.
+void add_splats(int threads, uint32_t units, const film::TraceSplats& traced, film::Film* film) {
+  const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
+  tbb::task_arena(threads).execute(
+      [&] { film::add_splats(units, traced, film, film->channels.find("Light"), &film->counters); });
+}
+
 std::vector<Rgb> render(int threads) {
   film::Film film = make_film();
-  film::Channel* const light = film.channels.find("Light");
-  film::SplatQueue queue(&film, light);
-  std::atomic<uint32_t> next{0};
-  const auto work = [&] {
-    film::Counters counters;
-    // Merges the two units of each pair in the wrong order.
-    for (uint32_t i = next++; i < kUnits; i = next++) queue.merge(i ^ 1u, 0, kPathsPerUnit, trace(i ^ 1u), &counters);
+  const auto traced = [&](uint32_t unit) {
+    if (unit % 2 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the next unit ends before this one
+    return film::SplatUnit{0, kPathsPerUnit, trace(unit)};
   };
-  std::vector<std::thread> workers;
-  for (int i = 0; i < threads; ++i) workers.emplace_back(work);
-  for (std::thread& worker : workers) worker.join();
-  EXPECT_EQ(light->paths[0], kUnits * kPathsPerUnit);
+  add_splats(threads, kUnits, traced, &film);
+  EXPECT_EQ(film.channels.find("Light")->paths[0], kUnits * kPathsPerUnit);
   return mean(film);
 }
 
 TEST(Splats, HaveTheSameBitsForAnyNumberOfThreads) {
   const std::vector<Rgb> one = render(1);
   for (const int threads : {2, 3, 7}) EXPECT_EQ(render(threads), one) << threads;
+}
+
+TEST(Splats, NoFurtherUnitsBeginWhileTheFirstIsSlow) {
+  constexpr int kThreads = 3;
+  constexpr uint32_t kBound = kThreads * film::kSplatUnitsPerThread;
+  std::atomic<uint32_t> begun{0};
+  uint32_t begun_meanwhile = 0;
+  const auto traced = [&](uint32_t unit) {
+    ++begun;
+    if (unit == 0) {
+      for (int i = 0; i < 10000 && begun < kBound; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      begun_meanwhile = begun;
+    }
+    return film::SplatUnit{0, 1, {}};
+  };
+  film::Film film = make_film();
+  add_splats(kThreads, kUnits, traced, &film);
+  EXPECT_EQ(begun_meanwhile, kBound);
+  EXPECT_EQ(begun, kUnits);
+  EXPECT_EQ(film.channels.find("Light")->paths[0], kUnits);
+}
+
+TEST(Splats, AUnitThatFailsEndsTheOthers) {
+  film::Film film = make_film();
+  const auto traced = [&](uint32_t unit) {
+    if (unit == 5) throw invalid_argument("no light");
+    return film::SplatUnit{0, 1, trace(unit)};
+  };
+  EXPECT_EQ(test::refusal_of([&] { add_splats(3, kUnits, traced, &film); }), "no light");
+  EXPECT_LE(film.channels.find("Light")->paths[0], 5u);
 }
 
 TEST(Splats, AreNormalisedByThePathsOfTheWholeFrame) {
@@ -88,25 +123,22 @@ TEST(Splats, AreNormalisedByThePathsOfTheWholeFrame) {
   EXPECT_NEAR(sum, expected, 0.05 * expected);
 }
 
-TEST(Splats, WaitForTheUnitsBeforeThem) {
+TEST(Splats, OutsideOfTheRegionOrNotFiniteAreLeftOut) {
   film::Film film = make_film();
-  film::Channel* const light = film.channels.find("Light");
-  film::SplatQueue queue(&film, light);
-  film::Counters counters;
-  queue.merge(1, 0, 10, {{3, 2, Vec4(4.0f)}}, &counters);
-  EXPECT_EQ(light->paths[0], 0u);
-  EXPECT_EQ(mean(film)[0], Rgb(0.0f));
-  queue.merge(0, 0, 6, {{3, 2, Vec4(std::numeric_limits<float>::infinity())}, {2, 2, Vec4(1.0f)}}, &counters);
-  EXPECT_EQ(light->paths[0], 16u);
+  const std::vector<film::SplatUnit> units{{0, 6, {{3, 2, Vec4(kInfinity)}, {2, 2, Vec4(1.0f)}}},
+                                           {0, 10, {{3, 2, Vec4(4.0f)}}}};
+  add_splats(
+      2, 2, [&](uint32_t unit) { return units[unit]; }, &film);
+  EXPECT_EQ(film.channels.find("Light")->paths[0], 16u);
   EXPECT_EQ(mean(film)[0], Rgb(0.25f));
-  EXPECT_EQ(counters.nonfinite_feature, 1u);
+  EXPECT_EQ(film.counters.nonfinite_feature, 1u);
 }
 
 TEST(Splats, OfHalfBuffersAreDividedByTheirOwnPaths) {
   film::Film film = make_film(true);
-  film::SplatQueue queue(&film, film.channels.find("Light"));
-  queue.merge(0, 0, 4, {{3, 2, Vec4(4.0f)}}, &film.counters);
-  queue.merge(1, 1, 12, {{3, 2, Vec4(24.0f)}}, &film.counters);
+  const std::vector<film::SplatUnit> units{{0, 4, {{3, 2, Vec4(4.0f)}}}, {1, 12, {{3, 2, Vec4(24.0f)}}}};
+  add_splats(
+      2, 2, [&](uint32_t unit) { return units[unit]; }, &film);
   EXPECT_EQ(mean(film, {0, 1})[0], Rgb(1.0f));
   EXPECT_NEAR(mean(film, {1, 2})[0].x, 2.0f, 1e-6f);
   EXPECT_EQ(mean(film)[0], Rgb(1.75f));
@@ -115,7 +147,8 @@ TEST(Splats, OfHalfBuffersAreDividedByTheirOwnPaths) {
 TEST(Splats, OnlyEnterChannelsThatTakeThem) {
   film::Film film = make_film();
   film.channels.add({"Data", 1}, size_t(kRegion.area()));
-  EXPECT_THROW(film::SplatQueue(&film, film.channels.find("Data")), Error);
+  const auto traced = [](uint32_t) { return film::SplatUnit{}; };
+  EXPECT_THROW(film::add_splats(1, traced, &film, film.channels.find("Data"), &film.counters), Error);
 }
 
 }  // namespace

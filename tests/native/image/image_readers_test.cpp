@@ -19,7 +19,7 @@ void expect_color(const StoredImage& image, float u, float v, const Vec4& expect
 
 void expect_four_colors(const FileBytes& file, float tolerance = 1e-3f) {
   const StoredImage image = store_encoded(file, "Linear");
-  EXPECT_TRUE(image.warnings.empty()) << image.warnings[0];
+  EXPECT_TRUE(image.store.warnings().empty()) << image.store.warnings()[0];
   for (const float x : {0.1f, 0.4f, 0.6f, 0.9f}) {
     for (const float y : {0.1f, 0.4f, 0.6f, 0.9f}) {
       expect_color(image, x, y, four_colors(x, y), tolerance);
@@ -29,7 +29,7 @@ void expect_four_colors(const FileBytes& file, float tolerance = 1e-3f) {
 
 void expect_grey(const FileBytes& file, float tolerance = 1e-3f) {
   const StoredImage image = store_encoded(file, "Linear");
-  EXPECT_TRUE(image.warnings.empty()) << image.warnings[0];
+  EXPECT_TRUE(image.store.warnings().empty()) << image.store.warnings()[0];
   for (const float x : {0.1f, 0.9f}) {
     for (const float y : {0.1f, 0.9f}) {
       const float g = four_colors(x, y).x;
@@ -120,8 +120,8 @@ TEST(F3_ImageReaders, Hdr) {
 
 TEST(F3_ImageReaders, DeepIsRefusedByName) {
   const StoredImage image = store_encoded(make_deep_exr());
-  ASSERT_EQ(image.warnings.size(), 1u);
-  EXPECT_NE(image.warnings[0].find("deep"), std::string::npos) << image.warnings[0];
+  ASSERT_EQ(image.store.warnings().size(), 1u);
+  EXPECT_NE(image.store.warnings()[0].find("deep"), std::string::npos) << image.store.warnings()[0];
 }
 
 // Returns the peak of the process's memory, in bytes.
@@ -149,7 +149,7 @@ void expect_refused(const FileBytes& file, const std::string& what) {
   const auto start = std::chrono::steady_clock::now();
   const StoredImage image = store_encoded(file);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  ASSERT_EQ(image.warnings.size(), 1u) << what;
+  ASSERT_EQ(image.store.warnings().size(), 1u) << what;
   EXPECT_EQ(image.at(0.3f, 0.3f), Vec4(1, 0, 1, 1)) << what;
   EXPECT_LT(seconds, 0.1) << what;
   EXPECT_LT(peak_memory() - before, 64u << 20) << what;

@@ -39,7 +39,6 @@ class ImageMaterial {
 struct StoredImage {
   image::ImageStore store;
   uint32_t index = 0;
-  std::vector<std::string> warnings;
 
   Vec4 at(float u, float v, image::Interpolation interpolation = image::Interpolation::Closest,
           image::Extension extension = image::Extension::Repeat) const {
@@ -50,9 +49,7 @@ struct StoredImage {
 inline StoredImage store_source(const image::ImageSource& source) {
   const image::ColorManager color("", nullptr);
   StoredImage result;
-  const auto image = image::load_image(source, color);
-  result.warnings = image::warnings_of(*image);
-  result.index = result.store.add(7, image);
+  result.index = result.store.add(7, image::load_image(source, color));
   return result;
 }
 

@@ -1,5 +1,5 @@
 // Pixels that show an edge.
-#include "motion/silhouettes.h"
+#include "motion/flow_frame.h"
 
 #include <limits>
 #include <numeric>

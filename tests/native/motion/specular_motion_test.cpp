@@ -1,7 +1,6 @@
 // Motion of reflections and refractions from frame to frame, against brute force: a dense search of the film.
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "motion/flat_mirror.h"
 #include "motion/motion_scene.h"
 
 namespace gradus::test {

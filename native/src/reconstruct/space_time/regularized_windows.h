@@ -1,6 +1,6 @@
-// REGULARIZED over several frames. The data are the images of each frame by itself. The regressed change of
-// corresponding pixels from frame to frame joins them along their tracks. Both are weighted by their estimated errors.
-// Changes are sampled, so they show without delay.
+// REGULARIZED over several frames. The data are the images that each frame gives by itself, and the regressed changes
+// of corresponding pixels from frame to frame, which join the images along the tracks of pixels. Both are weighted by
+// their estimated errors. The changes come from samples, so that the picture follows a change without delay.
 //
 // Components may have different correspondences, and each has its own images and changes. They share all weights, so
 // that where their correspondences agree they add up to the reconstruction of their sum.

@@ -10,9 +10,10 @@ namespace gradus::reconstruct {
 
 class ShareSmoothing {
  public:
-  // Adds the light of the next frame, by channels, and the pixel correspondences that lead to it. Those of the first
-  // frame are not read.
+  // Adds a frame: its light, by channels, and the pixel correspondences from the frame before it, which are not read
+  // for the first frame.
   void add_frame(Field light, const CorrespondenceMap* correspondence);
+  // Replaces the values v of all frames that were added by l s. `data_weight` is α².
   void apply(const SpaceTimeSystem& system, float data_weight, Frames* values) const;
 
  private:

@@ -1,6 +1,6 @@
 // Normal equations of a window. Temporal and mixed rows contain only differences d of corresponding pixels, and their
-// weights form a screened Laplacian K on the first frame's grid. So the matrix A of the normal equations is block
-// tridiagonal:
+// weights form a screened Laplacian K on the grid of the earlier frame. The matrix A of the normal equations is
+// therefore block tridiagonal:
 //   xᵀA x = Σ_t x_tᵀ B_t x_t + Σ_t d_tᵀ K_t d_t,   d_t = F_t x_{t+1} − x_t,
 // where F_t reads frame t + 1 at the corresponding pixels.
 #pragma once

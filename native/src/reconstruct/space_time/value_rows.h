@@ -1,4 +1,4 @@
-// Reads the values of one kind of rows: some of the channels, one after another.
+// A row of the values of a window, for some of its channels. The channels are stored one after another.
 #pragma once
 
 #include <algorithm>

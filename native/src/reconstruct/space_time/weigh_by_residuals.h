@@ -5,7 +5,8 @@
 
 namespace gradus::reconstruct {
 
-// Sets the weights from the residuals at x, whose channels share them. See reweight() for the arguments.
+// Sets the weights from the residuals at x. All channels of a pixel have the same weight. For alpha, scale and floor
+// see reweight() in l1_weights.h.
 void weigh_by_residuals(const WindowSource& source, const Frames& x, float alpha, float scale, float floor,
                         SpaceTimeSystem* system);
 

@@ -16,8 +16,8 @@ class WindowBlend {
   using Take = std::function<void(int frame, Reconstructed picture)>;
   WindowBlend(const WindowGrid& grid, Take take) : grid_(grid), take_(std::move(take)) {}
 
-  // Adds the image of a frame by one window. Windows come in order, and so do their frames. The blended error of two
-  // images stands for the error of their blend, which is at most that large.
+  // Adds the image of a frame by one window. Windows come in order, and so do their frames. Errors are blended as
+  // images are: the result is an upper bound of the error of the blend.
   void add(int window, int frame, Reconstructed picture);
 
   // Returns whether some, but not all, windows have contributed to the frame.

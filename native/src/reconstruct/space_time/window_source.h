@@ -1,5 +1,5 @@
-// Input of a space-time reconstruction: rows of a window's frames, read as often as needed, so that inputs need not be
-// in memory.
+// Input of a space-time reconstruction: rows of a window's frames. They are read anew whenever they are needed, so that
+// the frames need not be in memory.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ class WindowSource {
   // except the last. Called from several threads.
   virtual void read_row(RowKind kind, int t, int y, float* out) const = 0;
   // Reads the pixels of frame t + 1 that correspond to those of row y of frame t, as y·width + x, or kNoCorrespondence.
-  // One-to-one.
+  // No two pixels of frame t correspond to the same pixel.
   virtual void read_correspondence(int t, int y, int32_t* out) const = 0;
 };
 
@@ -42,7 +42,7 @@ class HalvedWindowSource : public WindowSource {
   // Reads (A − B)/2 of the two half-buffers of read_row()'s values.
   virtual void read_half_differences(RowKind kind, int t, int y, float* out) const = 0;
   // Reads where film displacements end, relative to the centres of the corresponding pixels
-  // (PixelCorrespondence::off_centre). By default at the centres.
+  // (PixelCorrespondence::off_centre). The default implementation returns 0: they end at the centres.
   virtual void read_off_centre(int t, int y, Vec2* out) const;
 };
 
