@@ -1,7 +1,7 @@
 // Compares the estimated memory and disk space of an animation with what it uses.
-#include <gtest/gtest.h>
-
 #include <filesystem>
+
+#include <gtest/gtest.h>
 
 #include "animation/sequence.h"
 #include "memory/allocations.h"

@@ -1,7 +1,5 @@
 // Tests that objects of the C API, renders and changes of a scene that are repeated many times leak no memory, files or
 // threads.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -9,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+
+#include <gtest/gtest.h>
 
 #include "api/changing_scene.h"
 #include "memory/allocations.h"

@@ -1,7 +1,7 @@
 // Compares the estimated memory of a render with its peak, and tests the warnings that depend on the estimate.
-#include <gtest/gtest.h>
-
 #include <filesystem>
+
+#include <gtest/gtest.h>
 
 #include "memory/allocations.h"
 #include "render/fake_integrator.h"

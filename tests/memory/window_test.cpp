@@ -1,8 +1,8 @@
 // Measures the memory and the CPU time of reconstructing windows of frames.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "animation/spooled_frames.h"
 #include "base/clock.h"

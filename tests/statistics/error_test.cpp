@@ -1,10 +1,10 @@
 // Compares the pass Error with the squared error that pictures have.
-#include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
 #include "film/film.h"
 #include "gradient/gradient_integrator.h"

@@ -1,9 +1,9 @@
 // B3: compares reconstructed images with plain path tracing.
-#include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <numeric>
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
 #include "film/film.h"
 #include "gradient/gradient_integrator.h"

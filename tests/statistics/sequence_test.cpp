@@ -1,13 +1,13 @@
 // B3, C4 to C6: compares pictures of sequences with plain path tracing of the same frames, or with the same
 // reconstruction of each frame as a still.
-#include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>
 #include <string>
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
 #include "animation/sequence.h"
 #include "render/render.h"

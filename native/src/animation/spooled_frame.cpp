@@ -1,9 +1,9 @@
 #include "animation/spooled_frame.h"
 
-#include <tbb/parallel_for.h>
-
 #include <iterator>
 #include <vector>
+
+#include <tbb/parallel_for.h>
 
 #include "animation/frame_window.h"
 #include "base/cancel_check.h"

@@ -1,15 +1,15 @@
 #include "film_io/store.h"
 
+#include <array>
+#include <atomic>
+#include <cstdio>
+
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
-
-#include <array>
-#include <atomic>
-#include <cstdio>
 
 #include "base/cancel_check.h"
 #include "base/error.h"

@@ -1,9 +1,9 @@
 #include "output/upsample.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <tbb/parallel_for.h>
 
 namespace gradus::output {
 namespace {

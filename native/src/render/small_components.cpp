@@ -1,11 +1,11 @@
 #include "render/small_components.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
+
+#include <tbb/parallel_for.h>
 
 #include "base/fpu.h"
 #include "base/text_list.h"
