@@ -66,6 +66,15 @@ TEST_F(Names, OfMeshesAndAttributesAreChecked) {
 }
 
 TEST_F(Names, OfMaterialsImagesAndLightsAreChecked) {
+  const float pixel[4] = {};
+  GradusImageTile tile = sized<GradusImageTile>();
+  tile.source = GRADUS_IMAGE_FLOAT;
+  tile.width = tile.height = 1;
+  tile.data = pixel;
+  tile.data_size = sizeof(pixel);
+  GradusImage one_tile = sized<GradusImage>();
+  one_tile.tiles = &tile;
+  one_tile.tile_count = 1;
   GradusMaterial material = sized<GradusMaterial>();
   material.surface = -1;
   expect_checked("material.name", [&](const char* name) {
@@ -81,12 +90,12 @@ TEST_F(Names, OfMaterialsImagesAndLightsAreChecked) {
     return gradus_scene_set_material(scene, 1, &named);
   });
   expect_checked("image.name", [&](const char* name) {
-    GradusImage image = sized<GradusImage>();
+    GradusImage image = one_tile;
     image.name = name;
     return gradus_scene_set_image(scene, 1, &image);
   });
   expect_checked("image.color_space", [&](const char* name) {
-    GradusImage image = sized<GradusImage>();
+    GradusImage image = one_tile;
     image.color_space = name;
     return gradus_scene_set_image(scene, 1, &image);
   });
