@@ -80,15 +80,20 @@ TEST_F(Names, OfMaterialsImagesAndLightsAreChecked) {
     named.name_count = 2;
     return gradus_scene_set_material(scene, 1, &named);
   });
+  GradusImageTile tile = sized<GradusImageTile>();
+  tile.source = GRADUS_IMAGE_FILE;
+  GradusImage image = sized<GradusImage>();
+  image.tiles = &tile;
+  image.tile_count = 1;
   expect_checked("image.name", [&](const char* name) {
-    GradusImage image = sized<GradusImage>();
-    image.name = name;
-    return gradus_scene_set_image(scene, 1, &image);
+    GradusImage named = image;
+    named.name = name;
+    return gradus_scene_set_image(scene, 1, &named);
   });
   expect_checked("image.color_space", [&](const char* name) {
-    GradusImage image = sized<GradusImage>();
-    image.color_space = name;
-    return gradus_scene_set_image(scene, 1, &image);
+    GradusImage named = image;
+    named.color_space = name;
+    return gradus_scene_set_image(scene, 1, &named);
   });
   expect_checked("light.name", [&](const char* name) {
     GradusLight light = sized<GradusLight>();
