@@ -66,15 +66,6 @@ TEST_F(Names, OfMeshesAndAttributesAreChecked) {
 }
 
 TEST_F(Names, OfMaterialsImagesAndLightsAreChecked) {
-  const float pixel[4] = {};
-  GradusImageTile tile = sized<GradusImageTile>();
-  tile.source = GRADUS_IMAGE_FLOAT;
-  tile.width = tile.height = 1;
-  tile.data = pixel;
-  tile.data_size = sizeof(pixel);
-  GradusImage one_tile = sized<GradusImage>();
-  one_tile.tiles = &tile;
-  one_tile.tile_count = 1;
   GradusMaterial material = sized<GradusMaterial>();
   material.surface = -1;
   expect_checked("material.name", [&](const char* name) {
@@ -89,15 +80,20 @@ TEST_F(Names, OfMaterialsImagesAndLightsAreChecked) {
     named.name_count = 2;
     return gradus_scene_set_material(scene, 1, &named);
   });
+  GradusImageTile tile = sized<GradusImageTile>();
+  tile.source = GRADUS_IMAGE_FILE;
+  GradusImage image = sized<GradusImage>();
+  image.tiles = &tile;
+  image.tile_count = 1;
   expect_checked("image.name", [&](const char* name) {
-    GradusImage image = one_tile;
-    image.name = name;
-    return gradus_scene_set_image(scene, 1, &image);
+    GradusImage named = image;
+    named.name = name;
+    return gradus_scene_set_image(scene, 1, &named);
   });
   expect_checked("image.color_space", [&](const char* name) {
-    GradusImage image = one_tile;
-    image.color_space = name;
-    return gradus_scene_set_image(scene, 1, &image);
+    GradusImage named = image;
+    named.color_space = name;
+    return gradus_scene_set_image(scene, 1, &named);
   });
   expect_checked("light.name", [&](const char* name) {
     GradusLight light = sized<GradusLight>();
