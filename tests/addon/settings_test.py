@@ -48,7 +48,7 @@ def test_a_stored_value_of_another_version_names_its_setting(scene: bpy.types.Sc
     scene["gradus"]["reconstruction"] = value
     if scene.gradus.reconstruction:
         pytest.skip("this Blender keeps the values of properties apart from what scripts store")
-    with pytest.raises(Failure, match="Reconstruction .reconstruction. has a value that this version does not know"):
+    with pytest.raises(Failure, match="Reconstruction .reconstruction. has an unknown value"):
         renderer.native_settings(native.load(), scene, scene.view_layers[0], options.Overrides())
 
 
