@@ -346,7 +346,7 @@ def test_costs_are_ratios(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         cost_row("components", sample=1.04, reconstruct=0.7),
         cost_row("components-surfaces", sample=1.1),
     ]
-    rows += [cost_row("components-motion", sample=2.0, links=0.062)]
+    rows += [cost_row("components-motion", sample=2.0, correspondence=0.062)]
     table = tables(tmp_path, monkeypatch, *rows)[-1]
     assert table.rows == [["mirror_and_glass", "1.040", "1.100", "1.400", "0.031", "1"]]
     text = next(block.markdown for block in report.blocks() if "### Cost" in block.as_markdown())
