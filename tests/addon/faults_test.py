@@ -6,6 +6,7 @@ import fnmatch
 import re
 import sys
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -34,6 +35,7 @@ def test_m4_edits_of_the_addon_have_their_place(fault: Fault) -> None:
     assert fault.edit.old != fault.edit.new
 
 
+@cache
 def native_tests(program: str) -> set[str]:
     """Returns the names of a program's GoogleTest tests, without the prefix and the number of parameterised ones."""
     sources = "".join(path.read_text() for path in sorted((ROOT / "tests" / program).rglob("*.cpp")))
