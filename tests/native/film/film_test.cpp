@@ -44,10 +44,10 @@ TEST(B6_FiniteCheck, SumsThatWouldOverflowStayOutAndAreCounted) {
   film::Channel* const channel = film.channels.of_pass(GRADUS_PASS_DIFFUSE_COLOR);
   for (int half = 0; half < film::kHalves; ++half) {
     for (const float value : {3e38f, 6e36f, 6e36f}) {
-      const float feature[3] = {value, value, value};
+      const std::vector<float> feature(3, value);
       film::add_radiance(Radiance(half == 0 ? value : -value), &film.components[0].primal[half][5], &film.counters);
       film::add_gradient(Radiance(value), &film.components[0].gradient[half][film::kRight][5], &film.counters);
-      film::add_feature(feature, 1.0f, 5, half, channel, &film.counters);
+      film::add_feature(feature.data(), 1.0f, 5, half, channel, &film.counters);
       ++film.count[half][5];
     }
   }

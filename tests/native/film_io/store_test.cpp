@@ -110,9 +110,9 @@ std::shared_ptr<film::Film> with_other_channels(const GradusSettings& settings) 
   film::Channel& crypto = *film->channels.find("Crypto");
   film::Channel& roughness = *film->channels.find("Roughness");
   for (size_t i = 0; i < size_t(film->region.area()); ++i) {
-    const float values[2] = {0.1f * float(i % 13), 1.0f / float(i + first + 1)};
-    film::add_feature(values, 1.0f, i, int(i % 2), &curvature, &film->counters);
-    film::add_feature(values, 0.5f, i, 0, &roughness, &film->counters);
+    const std::vector<float> values{0.1f * float(i % 13), 1.0f / float(i + first + 1)};
+    film::add_feature(values.data(), 1.0f, i, int(i % 2), &curvature, &film->counters);
+    film::add_feature(values.data(), 0.5f, i, 0, &roughness, &film->counters);
     film::add_pair(float(i % 3 + first), 0.25f, 2, crypto.values[0].data() + 4 * i, &film->counters);
   }
   return film;
