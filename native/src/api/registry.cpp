@@ -57,7 +57,7 @@ size_t Registry::locate(HandleType type, uint64_t handle) const {
     throw invalid_argument("a handle of kind " + std::string(name_of(given)) + " where a " + name + " is expected");
   }
   if (!s.object || pack(s.type, s.generation, static_cast<uint32_t>(slot)) != handle) {
-    throw invalid_argument("the " + name + " was already released");
+    throw invalid_argument("the " + name + " was released before");
   }
   return slot;
 }
