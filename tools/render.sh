@@ -7,6 +7,6 @@ script=tools/render.py
 [ "${1:-}" != --animation ] || script=tools/render_animation.py
 # Reports wrong variables before anything is built.
 [ ! -x /usr/bin/python3 ] || /usr/bin/python3 "$script" --check
-[ -n "${BLENDER:-}" ] || tools/setup/setup blender
+[ -n "${BLENDER:-}" ] || tools/setup/setup render
 tools/build.sh library
 exec /usr/bin/python3 "$script"
