@@ -12,7 +12,7 @@ std::vector<float> denoise_timed(const output::OidnLibrary& library, const film:
   std::vector<float> rgba = output::denoise_combined(library, film, film.settings.reconstruction, region, threads,
                                                      cancel, combined, &failure);
   if (rgba.empty()) {
-    stats->warnings.push_back(failure);
+    stats->leave_out(failure, film.settings.strict != 0);
   } else {
     stats->denoiser = library.name();
   }
