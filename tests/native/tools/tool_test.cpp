@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "api/test_scene.h"
+#include "base/error.h"
 #include "film_io/image_exr.h"
 #include "schema/pass_table.h"
 
