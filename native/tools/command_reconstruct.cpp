@@ -58,11 +58,11 @@ int run(const ReconstructArguments& args) {
   const auto wanted = [passes](uint32_t pass) { return (passes >> pass & 1) != 0; };
   std::vector<float> error;  // that of this reconstruction, which may differ from the stored setting
   std::vector<film_io::ImageLayer> layers = {
-      {"", 4, film.reconstruct(reconstruction, args.alpha, denoiser, wanted(GRADUS_PASS_ERROR) ? &error : nullptr)}};
+      {"", "RGBA", film.reconstruct(reconstruction, args.alpha, denoiser, wanted(GRADUS_PASS_ERROR) ? &error : nullptr)}};
   for (uint32_t pass = 1; pass < GRADUS_PASS_COUNT; ++pass) {
     if (!wanted(pass)) continue;
-    layers.push_back({client::pass_name(pass), int(client::pass_channels(pass)),
-                      pass == GRADUS_PASS_ERROR ? error : film.read_pass(pass)});
+    const schema::PassInfo& info = schema::pass_info(pass);
+    layers.push_back({info.name, info.letters, pass == GRADUS_PASS_ERROR ? error : film.read_pass(pass)});
   }
   const uint32_t of_components = parse_component_passes(args.component_passes);
   if (of_components != 0) {

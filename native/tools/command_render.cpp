@@ -10,6 +10,7 @@
 #include "film_io/image_exr.h"
 #include "film_io/store.h"
 #include "progress_line.h"
+#include "schema/pass_table.h"
 
 namespace gradus::tool {
 namespace {
@@ -58,8 +59,8 @@ void write_image(const client::Film& frame, const GradusSettings& settings, cons
   std::vector<film_io::ImageLayer> layers;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
     if (pass != GRADUS_PASS_COMBINED && (settings.passes >> pass & 1) == 0) continue;
-    layers.push_back(
-        {pass == 0 ? "" : client::pass_name(pass), int(client::pass_channels(pass)), frame.read_pass(pass)});
+    const schema::PassInfo& info = schema::pass_info(pass);
+    layers.push_back({pass == GRADUS_PASS_COMBINED ? "" : info.name, info.letters, frame.read_pass(pass)});
   }
   if (settings.use_decomposition != 0) {
     add_component_layers(settings, settings.component_passes, size_t(width) * height, reader_of(frame), &layers);

@@ -61,8 +61,9 @@ void add_component_layers(const GradusSettings& settings, uint32_t passes, size_
   for (int c = 0; c < set.count(); ++c) {
     for (uint32_t pass = 0; pass < GRADUS_COMPONENT_PASS_COUNT; ++pass) {
       if (!schema::has_bit(passes, pass)) continue;
-      const uint32_t channels = schema::component_pass_info(pass).channels;
-      layers->push_back({layer_name(set[c].name, pass), int(channels), std::vector<float>(pixels * channels)});
+      const schema::ComponentPassInfo& info = schema::component_pass_info(pass);
+      layers->push_back(
+          {layer_name(set[c].name, pass), info.letters, std::vector<float>(pixels * size_t(info.channels))});
       read(set[c].name.c_str(), pass, &layers->back().pixels);
     }
   }

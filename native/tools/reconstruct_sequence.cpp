@@ -128,8 +128,9 @@ void write_picture(const client::Render& render, const PassesToWrite& wanted, co
   std::vector<film_io::ImageLayer> layers;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
     if ((wanted.passes >> pass & 1) == 0) continue;
-    const std::string name = pass == GRADUS_PASS_COMBINED ? "" : client::pass_name(pass);
-    layers.push_back({name, int(client::pass_channels(pass)), render.read_pass(pass, size_t(width) * height)});
+    const schema::PassInfo& info = schema::pass_info(pass);
+    layers.push_back({pass == GRADUS_PASS_COMBINED ? "" : info.name, info.letters,
+                      render.read_pass(pass, size_t(width) * height)});
   }
   const auto read = [&](const char* component, uint32_t pass, std::vector<float>* pixels) {
     client::check(gradus_render_read_component(render.id(), component, pass, pixels->data(), pixels->size()));

@@ -148,13 +148,17 @@ def test_sequence_of_the_frame(scene: bpy.types.Scene, tmp_path: Path) -> None:
     assert Path(_state(block, user, 2).tiles[0].path).name == "s_002.png"
 
 
-@pytest.mark.parametrize("mode, code", [("STRAIGHT", 0), ("PREMUL", 1), ("CHANNEL_PACKED", 2), ("NONE", 3)])
-def test_alpha_and_data(scene: bpy.types.Scene, tmp_path: Path, mode: str, code: int) -> None:
+@pytest.mark.parametrize(
+    "mode, of_colors, of_data", [("STRAIGHT", 0, 2), ("PREMUL", 1, 2), ("CHANNEL_PACKED", 2, 2), ("NONE", 3, 3)]
+)
+def test_alpha_and_data(scene: bpy.types.Scene, tmp_path: Path, mode: str, of_colors: int, of_data: int) -> None:
+    """Regression: data were multiplied by alpha, which Cycles never does."""
     block = bpy.data.images.load(str(_save(tmp_path / "picture.png")))
     block.alpha_mode = mode
+    assert _state(block).alpha_mode == of_colors
     block.colorspace_settings.name = "Non-Color"
     state = _state(block)
-    assert state.alpha_mode == code and state.color_space == ""
+    assert state.alpha_mode == of_data and state.color_space == ""
 
 
 def test_changed_file_is_another_content(scene: bpy.types.Scene, tmp_path: Path) -> None:

@@ -241,6 +241,37 @@ def test_a9_tangents_run_smoothly_over_coarse_meshes(name: str, coarse: bpy.type
     assert np.quantile(difference, 0.95) / np.abs(expected).mean() < 0.02
 
 
+@pytest.mark.skipif("convention" not in bpy.types.ShaderNodeNormalMap.bl_rna.properties, reason="came with 5.2")
+def test_a9_normal_maps_of_directx(coarse: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: the convention was ignored."""
+    material = new_material()
+    graph = Graph(material)
+    show(material, graph("NormalMap", "Normal", {"Color": normal_colors(graph)}, convention="DIRECTX"))
+    bpy.context.object.data.materials.append(material)
+    expected, found = (picture(coarse, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    assert np.quantile(np.abs(expected - found), 0.95) / np.abs(expected).mean() < 0.02
+
+
+@pytest.mark.parametrize("alpha", ["STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"])
+@pytest.mark.parametrize("kind", ["float", "data"])
+def test_a9_alpha_of_images(kind: str, alpha: str, scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """Since 5.2 Cycles multiplies float images by their alpha. Regression: data were multiplied by it, too."""
+    image = bpy.data.images.new("pattern", 4, 4, alpha=True, float_buffer=kind == "float", is_data=kind == "data")
+    image.pixels.foreach_set(np.tile(np.array([0.8, 0.4, 0.2, 0.5], np.float32), 16))
+    image.update()
+    image.alpha_mode = alpha
+    material = new_material()
+    show(material, Graph(material)("TexImage", "Color", image=image))
+    bpy.ops.mesh.primitive_plane_add(size=10.0)
+    bpy.context.object.data.materials.append(material)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location = (0.0, 0.0, 3.0)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    np.testing.assert_allclose(found, expected, atol=0.01)
+
+
 @pytest.mark.parametrize("kind", ["AREA", "POINT", "SPOT"])
 @pytest.mark.parametrize(("node", "output"), [("NewGeometry", "Parametric"), ("TexCoord", "Normal")])
 def test_a9_lights_have_coordinates_of_their_own(

@@ -165,6 +165,30 @@ def test_error_is_the_squared_difference_of_the_halves(
     assert "Error" in render(cube)
 
 
+def test_files_have_the_letters_of_the_table(
+    cube: bpy.types.Scene, arguments: Callable[..., None], tmp_path: Path
+) -> None:
+    """Images of the command-line tool have them, too: compositors address channels by their letters."""
+    import OpenImageIO as oiio
+    from gradus import compat, passes
+
+    arguments("--gradus-passes", "all,components", "--gradus-use-decomposition", 1)
+    path = tmp_path / "all.exr"
+    images.use_exr(cube, path)
+    bpy.ops.render.render(write_still=True)
+    file, names, part = oiio.ImageInput.open(str(path)), set(), 0
+    while file.seek_subimage(part, 0):
+        names |= set(file.spec().channelnames)
+        part += 1
+    file.close()
+    layer = cube.view_layers[0].name
+    of_component = [info.of("Diffuse") for info in passes.COMPONENT_TABLE]
+    for info in (*passes.TABLE, *of_component):
+        prefix = f"{layer}.{info.blender_name(compat.VERSION)}."
+        found = {name.removeprefix(prefix) for name in names if name.startswith(prefix)}
+        assert found == set(info.ids) or (not found and info.switch == "reconstructed"), prefix
+
+
 def frames_of(cube: bpy.types.Scene, folder: Path) -> list[np.ndarray]:
     images.use_exr(cube, folder / "f")
     cube.render.use_file_extension = True

@@ -24,7 +24,7 @@ fs::path reference_file(const std::string& bits) { return kFolder / "stored" / (
 
 void save(const fs::path& path, const std::vector<float>& rgba) {
   fs::create_directories(path.parent_path());
-  film_io::save_image(path, int(kWidth), int(kHeight), {{"", 4, rgba}});
+  film_io::save_image(path, int(kWidth), int(kHeight), {{"", "RGBA", rgba}});
 }
 
 std::vector<float> without_alpha(const std::vector<float>& rgba) {

@@ -13,12 +13,15 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from .. import native
+from .. import compat, native
 from .arrays import zeros
 
 FILE, ENCODED, FLOAT, BYTE = range(4)
 STRAIGHT, PREMULTIPLIED, CHANNEL_PACKED, ALPHA_NONE = range(4)
 _ALPHA = {"STRAIGHT": STRAIGHT, "PREMUL": PREMULTIPLIED, "CHANNEL_PACKED": CHANNEL_PACKED, "NONE": ALPHA_NONE}
+
+# The version from which Cycles multiplies the colours of float images whose alpha mode is STRAIGHT by their alpha.
+_STRAIGHT_FLOATS_SINCE = (5, 2, 0)
 
 # First bytes of the formats that the library reads itself: PNG, JPEG, TIFF (both byte orders, and BigTIFF), OpenEXR,
 # Radiance.
@@ -192,8 +195,10 @@ def image_state(image: Any, user: Any, frame: int, abspath: Any) -> ImageState:
     if is_float and tiles[0].source == FLOAT:
         # Blender's float buffers are scene-linear with associated alpha.
         space = ""
-        if alpha == STRAIGHT:
+        if alpha == STRAIGHT and compat.VERSION < _STRAIGHT_FLOATS_SINCE:
             alpha = PREMULTIPLIED
+    if settings.is_data and alpha != ALPHA_NONE:
+        alpha = CHANNEL_PACKED  # Cycles never multiplies data by alpha
     return ImageState(image.name, alpha, space, is_float, tiles)
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from .node import NodeView, translator
-from .ops import NormalSpace, Op
-from .program import FLOAT, VECTOR, Value, constant_float
+from .ops import NormalSpace, Op, VectorMath
+from .program import FLOAT, VECTOR, Value, constant_float, constant_vector
 
 _SPACES = {
     "TANGENT": NormalSpace.TANGENT,
@@ -14,13 +14,23 @@ _SPACES = {
     "BLENDER_WORLD": NormalSpace.BLENDER_WORLD,
 }
 
+# The version from which Cycles scales the interpolated normal to length 1 before it builds the tangent space.
+_UNIT_NORMALS_SINCE = (5, 2, 0)
+
 
 @translator("ShaderNodeNormalMap")
 def normal_map(view: NodeView) -> Value:
-    name = view.node.uv_map if view.node.space == "TANGENT" else ""
+    in_tangent_space = view.node.space == "TANGENT"
+    name = view.node.uv_map if in_tangent_space else ""
     resource = view.name_resource(name) if name else 0
-    inputs = (view.value("Strength"), view.value("Color"))
-    return view.add_vector(Op.NORMAL_MAP, inputs, _SPACES[view.node.space], resource=resource)
+    space = _SPACES[view.node.space]
+    if in_tangent_space and view.version >= _UNIT_NORMALS_SINCE:
+        space = NormalSpace.UNIT_TANGENT
+    color = view.value("Color")
+    if getattr(view.node, "convention", "OPENGL") == "DIRECTX":  # since Blender 5.2
+        terms = (color, constant_vector((1.0, -1.0, 1.0)), constant_vector((0.0, 1.0, 0.0)), constant_float(1.0))
+        color = view.add_vector(Op.VECTOR_MATH, terms, VectorMath.MULTIPLY_ADD)
+    return view.add_vector(Op.NORMAL_MAP, (view.value("Strength"), color), space, resource=resource)
 
 
 @translator("ShaderNodeBump")

@@ -138,6 +138,7 @@ class NormalSpace(IntEnum):
     WORLD = 2
     BLENDER_OBJECT = 3
     BLENDER_WORLD = 4
+    UNIT_TANGENT = 5
 
 
 class Projection(IntEnum):

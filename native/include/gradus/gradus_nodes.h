@@ -240,11 +240,14 @@ typedef enum GradusLightPathMode {
 
 /* Space of a normal map. */
 typedef enum GradusNormalSpace {
-  GRADUS_NORMAL_TANGENT = 0,        /* Tangent space. */
+  GRADUS_NORMAL_TANGENT = 0,        /* Tangent space of the interpolated normal as it is, as in Cycles before Blender
+                                       5.2. */
   GRADUS_NORMAL_OBJECT = 1,         /* Object space. */
   GRADUS_NORMAL_WORLD = 2,          /* World space. */
   GRADUS_NORMAL_BLENDER_OBJECT = 3, /* Object space with y and z inverted. */
-  GRADUS_NORMAL_BLENDER_WORLD = 4   /* World space with y and z inverted. */
+  GRADUS_NORMAL_BLENDER_WORLD = 4,  /* World space with y and z inverted. */
+  GRADUS_NORMAL_UNIT_TANGENT = 5    /* Tangent space of the interpolated normal scaled to length 1, as in Cycles
+                                       since Blender 5.2. */
 } GradusNormalSpace;
 
 /* Projection of an image. */

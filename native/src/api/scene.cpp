@@ -25,7 +25,9 @@ GradusError with_scene(GradusScene scene, Function&& function) noexcept {
 // Commits the scene and stores its warnings for gradus_scene_warning().
 void commit(SceneObject* object, const volatile int32_t* cancel, float* progress) {
   object->scene.commit(cancel, progress);
-  for (const std::string& text : object->scene.snapshot()->warnings) object->warnings.add(text);
+  const auto snapshot = object->scene.snapshot();
+  for (const std::string& text : snapshot->warnings) object->warnings.add(text);
+  for (const std::string& text : snapshot->noise_warnings) object->warnings.add(text);
 }
 
 void check_key(uint64_t key) {

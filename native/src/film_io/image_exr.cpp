@@ -1,5 +1,7 @@
 #include "film_io/image_exr.h"
 
+#include <array>
+
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -14,9 +16,8 @@ namespace {
 
 constexpr int kMaxSide = 1 << 16;
 
-std::string channel_name(const ImageLayer& layer, int channel) {
-  const char* const names = layer.channels == 1 ? "V" : "RGBA";
-  const std::string letter(1, layer.name.empty() && layer.channels == 1 ? 'Y' : names[channel]);
+std::string channel_name(const ImageLayer& layer, size_t channel) {
+  const std::string letter(1, layer.letters[channel]);
   return layer.name.empty() ? letter : layer.name + "." + letter;
 }
 
@@ -33,17 +34,26 @@ bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// Returns the prefix of the channel names of the layer, which precedes "R".
-std::string find_prefix(const Imf::ChannelList& channels, const std::string& layer) {
-  if (layer.empty() && channels.findChannel("R")) return "";
+// Sets of letters that name the first three channels of a layer. The single letters come last, because a layer may have
+// several of them; V is that of files from earlier versions.
+constexpr const char* kLetters[] = {"RGB", "XYZ", "UVA", "VVV", "XXX", "YYY", "ZZZ"};
+
+// Returns the names of the first three channels of the layer whose name ends with `layer`.
+std::array<std::string, 3> find_layer(const Imf::ChannelList& channels, const std::string& layer) {
+  if (layer.empty() && channels.findChannel("R")) return {"R", "G", "B"};
   const std::string wanted = layer.empty() ? "Combined" : layer;
   std::string all;
-  for (auto it = channels.begin(); it != channels.end(); ++it) {
-    const std::string name = it.name();
-    if (name == wanted + ".R" || ends_with(name, "." + wanted + ".R")) return name.substr(0, name.size() - 1);
-    all += " " + name;
+  for (auto it = channels.begin(); it != channels.end(); ++it) all += std::string(" ") + it.name();
+  for (const char* letters : kLetters) {
+    for (auto it = channels.begin(); it != channels.end(); ++it) {
+      const std::string name = it.name(), end = wanted + "." + letters[0];
+      if (name != end && !ends_with(name, "." + end)) continue;
+      const std::string prefix = name.substr(0, name.size() - 1);
+      const std::array<std::string, 3> names = {name, prefix + letters[1], prefix + letters[2]};
+      if (channels.findChannel(names[1]) && channels.findChannel(names[2])) return names;
+    }
   }
-  throw invalid_argument("it has no RGB layer " + wanted + "; its channels are" + all);
+  throw invalid_argument("it has no layer " + wanted + " of one, three or four channels; its channels are" + all);
 }
 
 LoadedImage read_rgb(const std::string& path, const std::string& layer) {
@@ -54,17 +64,20 @@ LoadedImage read_rgb(const std::string& path, const std::string& layer) {
   image.height = window.max.y - window.min.y + 1;
   if (image.width < 1 || image.height < 1 || image.width > kMaxSide || image.height > kMaxSide)
     throw invalid_argument("its size is wrong");
-  const std::string prefix = find_prefix(file.header().channels(), layer);
+  const std::array<std::string, 3> names = find_layer(file.header().channels(), layer);
+  const bool is_single = names[1] == names[0];
   std::vector<float> pixels(size_t(image.width) * size_t(image.height) * 3);
   Imf::FrameBuffer buffer;
-  for (int c = 0; c < 3; ++c) {
-    const std::string name = prefix + "RGB"[c];
-    if (!file.header().channels().findChannel(name)) throw invalid_argument("it has no channel " + name);
+  for (size_t c = 0; c < (is_single ? 1 : names.size()); ++c) {
     const size_t pixel = 3 * sizeof(float);
-    buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, pixels.data() + c, window, pixel, pixel * size_t(image.width)));
+    buffer.insert(names[c],
+                  Imf::Slice::Make(Imf::FLOAT, pixels.data() + c, window, pixel, pixel * size_t(image.width)));
   }
   file.setFrameBuffer(buffer);
   file.readPixels(window.min.y, window.max.y);
+  if (is_single) {
+    for (size_t i = 0; i < pixels.size(); i += 3) pixels[i + 1] = pixels[i + 2] = pixels[i];
+  }
   image.rgb = flipped(pixels, image.height);
   return image;
 }
@@ -91,9 +104,9 @@ void save_image(const std::string& path, int width, int height, const std::vecto
   std::vector<std::vector<float>> rows;
   for (const ImageLayer& layer : layers) rows.push_back(flipped(layer.pixels, height));
   for (size_t i = 0; i < layers.size(); ++i) {
-    for (int c = 0; c < layers[i].channels; ++c) {
+    for (size_t c = 0; c < layers[i].letters.size(); ++c) {
       const std::string name = channel_name(layers[i], c);
-      const size_t pixel = size_t(layers[i].channels) * sizeof(float);
+      const size_t pixel = layers[i].letters.size() * sizeof(float);
       header.channels().insert(name, Imf::Channel(Imf::FLOAT));
       buffer.insert(name,
                     Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(rows[i].data() + c), pixel, pixel * size_t(width)));

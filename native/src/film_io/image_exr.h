@@ -8,8 +8,8 @@ namespace gradus::film_io {
 
 // Interleaved channels, bottom row first.
 struct ImageLayer {
-  std::string name;  // "" for the main image; else channels are called NAME.R …
-  int channels = 0;  // 1 (V), 3 (RGB) or 4 (RGBA)
+  std::string name;     // "" for the main image, whose channels are the letters alone; the others are NAME.LETTER
+  std::string letters;  // one for each channel
   std::vector<float> pixels;
 };
 
@@ -20,8 +20,9 @@ struct LoadedImage {
   int width = 0, height = 0;
   std::vector<float> rgb;  // bottom row first
 };
-// Reads R, G, B of the layer whose channel names end with `layer` (".R" and so on); "": the plain RGB, else a layer
-// Combined. Throws invalid_argument with path and cause, naming the layers there are.
+// Reads the first three channels of the layer whose channel names end with `layer` and one of the letters RGB, XYZ or
+// UVA; a layer with the one letter V, X, Y or Z gets three equal channels. "": the plain RGB, else a layer Combined.
+// Throws invalid_argument with path and cause, naming the channels there are.
 LoadedImage load_rgb(const std::string& path, const std::string& layer);
 // Returns the names of all channels.
 std::vector<std::string> image_channels(const std::string& path);

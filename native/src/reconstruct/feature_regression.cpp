@@ -213,7 +213,7 @@ Field weigh_residual(const Field& by_light, const Field& by_noise) {
 }  // namespace
 
 FeatureRegression::FeatureRegression(const film::Features& features, const HalvedImage& image,
-                                     const CancelCheck& cancel) {
+                                     const CancelCheck& cancel, Field* delivered_error) {
   std::shared_ptr<const Predictors> predictors;
   {
     const Surroundings surroundings = look_around(image);
@@ -235,7 +235,9 @@ FeatureRegression::FeatureRegression(const film::Features& features, const Halve
     blend_sampled(own_, image.mean, &first.mean);
     blend_sampled(own_, image.half_difference, &first.noise);
   }
-  error_ = regression_error({image.mean, image.half_difference, first.mean, first.noise}, first.bias);
+  const Smoothed smoothed{image.mean, image.half_difference, first.mean, first.noise};
+  error_ = regression_error(smoothed, first.bias, ErrorUse::Weights);
+  if (delivered_error != nullptr) *delivered_error = regression_error(smoothed, first.bias, ErrorUse::Delivered);
   image_ = std::move(first.mean);
 }
 

@@ -11,11 +11,13 @@ namespace gradus::reconstruct {
 
 class FeatureRegression {
  public:
-  // Regresses `image` on `features` and freezes the weights of all steps.
-  FeatureRegression(const film::Features& features, const HalvedImage& image, const CancelCheck& cancel);
+  // Regresses `image` on `features` and freezes the weights of all steps. `delivered_error`, unless it is nullptr,
+  // receives the error of the pass Error.
+  FeatureRegression(const film::Features& features, const HalvedImage& image, const CancelCheck& cancel,
+                    Field* delivered_error = nullptr);
 
   const Field& image() const { return image_; }
-  // Returns the estimated squared error of the image, mean over its channels, bias included.
+  // Returns the estimated squared error of the image, mean over its channels, bias included, which weighs pixels.
   const Field& error() const { return error_; }
   // Applies the frozen operator to one or three channels.
   Field apply(const Field& values, const CancelCheck& cancel) const;

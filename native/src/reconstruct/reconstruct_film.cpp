@@ -74,7 +74,8 @@ Reconstructed reconstruct_film(const film::Film& film, uint32_t reconstruction, 
                                ReconstructionOutputs wanted, const CancelCheck& cancel, SolveReport* report) {
   check_readable(film, reconstruction);
   if (reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
-    Reconstructed result = regularize(film, wanted.components, cancel, report);
+    const ErrorUse use = wanted.error ? ErrorUse::Delivered : ErrorUse::Weights;
+    Reconstructed result = regularize(film, wanted.components, cancel, report, use);
     if (!wanted.error) result.error = {};
     return result;
   }

@@ -41,7 +41,9 @@ Field lost_share(const Smoothed& smoothed) {
 
 }  // namespace
 
-Field regression_error(const Smoothed& smoothed, const Field& bias) {
+Field regression_error(const Smoothed& smoothed, const Field& bias, ErrorUse use) {
+  const bool is_delivered = use == ErrorUse::Delivered;
+  const float hidden = is_delivered ? kHiddenDelivered : kHidden;
   const Field light = squared_light(smoothed.image, kLightRadius), lost = lost_share(smoothed);
   // Noise is averaged relative to the light: the noise of a light source says nothing about the wall beside it.
   const auto relative_noise = [&](int x, int y) {
@@ -50,10 +52,13 @@ Field regression_error(const Smoothed& smoothed, const Field& bias) {
   };
   Field error = box_mean(make_field(light.width(), light.height(), relative_noise), kNoiseRadius);
   for_values(&error, [&](float& value, int x, int y, int) {
-    const float of_lost = GRADUS_FAULT(error_omits_lost_light) ? 0.0f : kLost,
+    const float own = std::max(mean_of(smoothed.image, x, y), 0.0f) + kDark,
+                of_lost = GRADUS_FAULT(error_omits_lost_light) ? 0.0f
+                          : is_delivered                       ? kLostDelivered * own * own / light.row(y)[x]
+                                                               : kLost,
                 minimum = GRADUS_FAULT(error_includes_negative_bias) ? -kInfinity : 0.0f,
                 of_bias = GRADUS_FAULT(error_omits_bias) ? 0.0f : std::max(bias.row(y)[x], minimum);
-    value = light.row(y)[x] * (kHidden * value + of_lost * lost.row(y)[x]) + of_bias;
+    value = light.row(y)[x] * (hidden * value + of_lost * lost.row(y)[x]) + of_bias;
   });
   return error;
 }

@@ -1,17 +1,22 @@
-// Estimated squared error of the regression on features. It is the sum of the remaining noise, the bias of the windows,
-// and the lost light.
+// Estimated squared errors of the regression on features. Each is the sum of the remaining noise, the bias of the
+// windows, and the lost light.
 #pragma once
 
 #include "reconstruct/field.h"
 
 namespace gradus::reconstruct {
 
+// Factors of the error that weighs pixels and stops pixel blocks, on which pictures depend.
+//
 // Factor on the remaining noise. The weights follow the noise and hide about a third of its variance from the regressed
 // half difference.
 inline constexpr float kHidden = 1.7f;
 // Factor on the squared light that is lost where the means of the sampled and the regressed image differ: rare bright
 // samples lie in few of those pixels.
 inline constexpr float kLost = 0.3f;
+// The same factors of the error that is delivered. Lost light there is a share of the pixel's own light: relative to the
+// mean of 3×3 pixels, dark pixels beside a highlight had up to eight times the true error of the picture.
+inline constexpr float kHiddenDelivered = 2.2f, kLostDelivered = 0.1f;
 
 // Input and output of the regression, three channels each.
 struct Smoothed {
@@ -19,8 +24,12 @@ struct Smoothed {
   const Field &image, &noise;           // the regression of `mean` and of `half_difference`
 };
 
+// Which error regression_error() returns.
+enum class ErrorUse { Weights, Delivered };
+
 // Returns the squared error, mean over the channels, as one channel. `bias` is the squared bias of the windows as
 // estimated from their residuals; single values may be negative.
-Field regression_error(const Smoothed& smoothed, const Field& bias);
+Field regression_error(const Smoothed& smoothed, const Field& bias,
+                       ErrorUse use = ErrorUse::Weights);
 
 }  // namespace gradus::reconstruct

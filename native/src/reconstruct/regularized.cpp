@@ -58,12 +58,13 @@ Field read_sampled(const film::Film& film, int component, float scale) {
 class Operator {
  public:
   // `film` must have one component.
-  Operator(const film::Film& film, const film::Features& features, const CancelCheck& cancel, SolveReport* report)
+  Operator(const film::Film& film, const film::Features& features, const CancelCheck& cancel, SolveReport* report,
+           ErrorUse use)
       : cancel_(cancel), report_(report) {
     HalvedImage image = read_halves(film, [&](size_t i) { return sums_of(film.components[0], i); });
     scale_ = robust_scale(image.mean);
     normalise(scale_, &image);
-    regression_.emplace(features, image, cancel);
+    regression_.emplace(features, image, cancel, use == ErrorUse::Delivered ? &delivered_error_ : nullptr);
     solution_ = regression_->image();
     if (film.color_channels == 4) {
       const Field alpha = channels_of(read_sampled(film, 0, scale_), 3, 1);
@@ -78,7 +79,7 @@ class Operator {
 
   float scale() const { return scale_; }
   const Field& solution() const { return solution_; }
-  const Field& error() const { return regression_->error(); }
+  const Field& error() const { return delivered_error_.channels() > 0 ? delivered_error_ : regression_->error(); }
 
   // Applies the operator to a component; `sampled` are its channels from read_sampled().
   Field apply(const film::Film& film, int component, const Field& sampled) {
@@ -97,7 +98,7 @@ class Operator {
   float scale_ = 1.0f;
   std::optional<FeatureRegression> regression_;
   std::optional<FusedDifferences> fusion_;
-  Field solution_;
+  Field solution_, delivered_error_;
 };
 
 // Returns the field as an interleaved image in the units of the film.
@@ -108,16 +109,17 @@ std::vector<float> to_image(Field field, float scale) {
 
 }  // namespace
 
-Reconstructed regularize(const film::Film& film, bool by_components, const CancelCheck& cancel, SolveReport* report) {
-  return regularize(film, filter_features(film::read_features(film)), by_components, cancel, report);
+Reconstructed regularize(const film::Film& film, bool by_components, const CancelCheck& cancel, SolveReport* report,
+                         ErrorUse use) {
+  return regularize(film, filter_features(film::read_features(film)), by_components, cancel, report, use);
 }
 
 Reconstructed regularize(const film::Film& film, const film::Features& features, bool by_components,
-                         const CancelCheck& cancel, SolveReport* report) {
+                         const CancelCheck& cancel, SolveReport* report, ErrorUse use) {
   const size_t components = film.components.size();
   std::optional<film::Film> sum;
   if (components > 1) sum = film::sum_components(film);
-  Operator op(sum ? *sum : film, features, cancel, report);
+  Operator op(sum ? *sum : film, features, cancel, report, use);
   sum.reset();
   const float scale = op.scale();
   Field error = op.error();

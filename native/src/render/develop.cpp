@@ -15,7 +15,14 @@ void develop(output::Developer* developer, const reconstruct::ReconstructionOutp
   show();
   if (developed->options.denoiser != GRADUS_DENOISER_NONE) {
     const ScopedTimer timer(&stats->seconds.denoise, &stats->cpu_seconds.denoise);
-    if (developer->denoise(developed, &stats->warnings)) stats->denoiser = developer->denoiser_name();
+    std::vector<std::string> warnings;
+    if (developer->denoise(developed, &warnings)) {
+      stats->denoiser = developer->denoiser_name();
+    } else if (!warnings.empty()) {
+      stats->leave_out(warnings.back(), developed->film->settings.strict != 0);
+      warnings.pop_back();
+    }
+    stats->warnings.insert(stats->warnings.end(), warnings.begin(), warnings.end());
     show();
   }
   const ScopedTimer timer(&stats->seconds.reconstruct, &stats->cpu_seconds.reconstruct);

@@ -44,7 +44,7 @@ Plan planned(const LoopInput& input, const HostDenoiser& denoiser) {
   return plan;
 }
 
-// Throws `unsupported` if the setting `strict` is on and the scene has warnings.
+// Throws `unsupported` if the setting `strict` is on and something of the scene was left out or replaced.
 void refuse_warnings(const LoopInput& input) {
   const std::vector<std::string>& warnings = input.snapshot->warnings;
   if (!input.settings.strict || warnings.empty()) return;
@@ -169,6 +169,7 @@ void RenderLoop::prepare() {
   film->frame_number = settings.frame;
   if (input_.replay) film->replayed = input_.replay->replay_map;
   stats_.warnings = input_.snapshot->warnings;
+  for (const std::string& text : input_.snapshot->noise_warnings) stats_.warnings.push_back(text);
   const std::string warning = memory_warning(estimated_memory(plan_), machine_memory_bytes());
   // an animation checks the memory of all its frames itself
   if (!warning.empty() && !input_.samples_only) stats_.warnings.push_back(warning);

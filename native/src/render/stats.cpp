@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/clock.h"
+#include "base/error.h"
 #include "schema/options.h"
 
 namespace gradus::render {
@@ -59,6 +60,11 @@ void RenderStats::add(const RenderStats& part) {
   for (const std::string& warning : part.warnings) {
     if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(warning);
   }
+}
+
+void RenderStats::leave_out(const std::string& warning, bool strict) {
+  if (strict) throw unsupported("strict: " + warning);
+  warnings.push_back(warning);
 }
 
 std::string stats_json(const RenderStats& stats, const Plan& plan, const film::Film& film) {

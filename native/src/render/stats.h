@@ -45,6 +45,8 @@ struct RenderStats {
 
   // Adds the times and warnings of another render of the same frame.
   void add(const RenderStats& part);
+  // Adds the warning that the render leaves something out. Throws `unsupported` if the setting `strict` is on.
+  void leave_out(const std::string& warning, bool strict);
 };
 
 std::string stats_json(const RenderStats& stats, const Plan& plan, const film::Film& film);

@@ -98,11 +98,12 @@ std::vector<light::AnalyticLight> place_lights(const Scene::State& state, const 
   return analytic_lights;
 }
 
+// Warns of emissive objects that light sampling omits. Their light is complete, because paths that hit them see it.
 void warn_beyond_limit(const geometry::InstanceArrays& arrays, const std::vector<size_t>& chosen, Snapshot* snapshot) {
   AffectedObjects objects;
   for (const uint32_t i : snapshot->light_table->beyond_limit) objects.add(arrays.name(chosen[i]));
   objects.warn("is not sampled as a light", "are not sampled as lights", "too many triangles emit light",
-               &snapshot->warnings);
+               &snapshot->noise_warnings);
 }
 
 void build_lights(const geometry::EmbreeDevice& device, std::vector<light::AnalyticLight> analytic_lights,

@@ -42,7 +42,9 @@ class Snapshot : public light::LitScene {
   camera::Shutter shutter;
   SceneFeatures features;
   uint64_t content_key = 0;
-  std::vector<std::string> warnings;  // those of the commit
+  // Warnings of commit: what it left out or replaced, which the setting `strict` refuses, and what renders completely
+  // but with more noise.
+  std::vector<std::string> warnings, noise_warnings;
 };
 
 }  // namespace gradus::scene

@@ -29,7 +29,8 @@ enum class PassKind : uint8_t {
 struct PassInfo {
   uint32_t pass;
   const char* name;
-  uint32_t channels;  // Number of values per pixel, delivered and stored.
+  const char* letters;  // One for each channel, as Blender names the channels in a multilayer file.
+  uint32_t channels;    // Number of values per pixel, delivered and stored.
   PassKind kind;
   uint32_t color;  // The colour pass that divides a Light pass; GRADUS_PASS_COUNT for other kinds.
 };
@@ -52,6 +53,7 @@ inline constexpr float kNoFace = -1.0f;
 struct ComponentPassInfo {
   uint32_t pass;
   const char* name;
+  const char* letters;
   uint32_t channels;
 };
 // Returns the passes of a component in order of their numbers.

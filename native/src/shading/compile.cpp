@@ -147,7 +147,7 @@ bool looks_at_kind(const Program& p) {
 }
 
 bool asks_for_tangents(const Instruction& i) {
-  return (i.op == GRADUS_OP_NORMAL_MAP && i.mode == GRADUS_NORMAL_TANGENT) ||
+  return (i.op == GRADUS_OP_NORMAL_MAP && (i.mode == GRADUS_NORMAL_TANGENT || i.mode == GRADUS_NORMAL_UNIT_TANGENT)) ||
          (i.op == GRADUS_OP_TANGENT && i.mode == GRADUS_TANGENT_UV);
 }
 

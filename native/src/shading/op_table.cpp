@@ -35,7 +35,7 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_LAYER_WEIGHT] = {"LAYER_WEIGHT", OpKind::Context, 2, 2, 0, 0};
   table[GRADUS_OP_FRESNEL] = {"FRESNEL", OpKind::Context, 2, 1, 0, 0};
   table[GRADUS_OP_CAMERA_DATA] = {"CAMERA_DATA", OpKind::Context, 0, 3, 0, 0};
-  table[GRADUS_OP_NORMAL_MAP] = {"NORMAL_MAP", OpKind::Context, 2, 1, 0, GRADUS_NORMAL_BLENDER_WORLD};
+  table[GRADUS_OP_NORMAL_MAP] = {"NORMAL_MAP", OpKind::Context, 2, 1, 0, GRADUS_NORMAL_UNIT_TANGENT};
   table[GRADUS_OP_BUMP] = {"BUMP", OpKind::Program, 5, 1, 0, 1};
   table[GRADUS_OP_IMAGE] = {"IMAGE", OpKind::Context, 1, 2, 0, 127};
   table[GRADUS_OP_ENVIRONMENT] = {"ENVIRONMENT", OpKind::Context, 1, 1, 0, 127};

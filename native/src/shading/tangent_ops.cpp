@@ -27,8 +27,8 @@ Vec4 uv_tangent(const ShadeContext& c, const std::string* name) {
 
 Vec3 unflipped(const ShadeContext& c) { return c.backfacing ? -c.normal : c.normal; }
 
-// Returns the interpolated normal in the object's space. It is not normalised, because normal map bakers and Cycles
-// build the frame that way.
+// Returns the interpolated normal in the object's space. A smooth normal is not normalised, because normal map bakers,
+// and Cycles before Blender 5.2, build the frame that way.
 Vec3 local_normal(const ShadeContext& c) {
   Vec3 normal;
   return geometry::smooth_normal_at(*c.instance, c.hit, &normal) ? normal : normal_to_local(c, unflipped(c));
@@ -38,7 +38,8 @@ Vec3 tangent_space_normal(const ResourceArgs& args, const ShadeContext& c, Vec3 
   const Vec4 frame = uv_tangent(c, args.name);
   const Vec3 tangent(frame);
   if (tangent == Vec3(0.0f)) return c.normal;
-  const Vec3 n = local_normal(c);
+  const Vec3 interpolated = local_normal(c);
+  const Vec3 n = args.mode == GRADUS_NORMAL_UNIT_TANGENT ? safe_normalize(interpolated) : interpolated;
   color.x *= strength;
   color.y *= strength;
   color.z = 1.0f + (color.z - 1.0f) * saturate(strength);
@@ -64,7 +65,7 @@ Vec3 own_tangent(const ResourceArgs& args, const ShadeContext& c) {
 Vec3 mapped_normal(const ResourceArgs& args, const ShadeContext& c) {
   const float strength = args.f(0);
   Vec3 color = (args.v(1) - 0.5f) * 2.0f;
-  if (args.mode == GRADUS_NORMAL_TANGENT) {
+  if (args.mode == GRADUS_NORMAL_TANGENT || args.mode == GRADUS_NORMAL_UNIT_TANGENT) {
     const Vec3 n = tangent_space_normal(args, c, color, std::max(strength, 0.0f));
     return n == Vec3(0.0f) ? c.normal : n;
   }

@@ -208,6 +208,21 @@ TEST(SequenceFlow, WithoutTheLibraryNothingIsTrackedAndOneWarningIsGiven) {
   EXPECT_EQ(told, 1u);
 }
 
+TEST(SequenceFlow, AStrictFrameIsRefusedWithoutTheLibrary) {
+  const auto sequence = flow_sequence(1, true, "/no/such/folder");
+  MovingShadow scene;
+  for (const int32_t frame : {0, 1}) {
+    GradusSettings settings = flow_settings(frame, kOfIrradiance, "", kFew);
+    settings.strict = 1;
+    test::run(sequence->sample(scene.at(frame), settings).get());
+  }
+  const auto task = sequence->deliver(0, nullptr);
+  task->run();
+  std::string text;
+  EXPECT_EQ(task->outcome(&text), GRADUS_ERROR_UNSUPPORTED);
+  EXPECT_NE(text.find("strict: no motion of shadows"), std::string::npos) << text;
+}
+
 TEST(SequenceFlow, AStillHasTheMotionOfSurfacesAlone) {
   MovingShadow scene;
   auto moved = std::make_shared<scene::Snapshot>(*scene.at(1));

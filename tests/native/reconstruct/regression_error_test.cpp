@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "reconstruct/field_values.h"
+#include "reconstruct/local_light.h"
 
 namespace gradus {
 namespace {
@@ -48,6 +49,21 @@ TEST(A8_RegressionError, LostLightIsEstimatedUnlessNoiseHidesIt) {
   EXPECT_NEAR(reconstruct::regression_error({before, kNone, kOne, kNone}, kUnbiased).row(20)[30],
               reconstruct::kLost * 0.04, 1e-4);
   EXPECT_EQ(reconstruct::regression_error({before, constant(4.0f), kOne, kNone}, kUnbiased).row(20)[30], 0.0f);
+}
+
+// Regression: relative to the mean of 3×3 pixels, the pixel beside the highlight had a thousand times this error, and
+// with it a picture without noise up to eight times its true one.
+TEST(A8_RegressionError, LostLightOfAHighlightDoesNotAddToTheDeliveredErrorOfThePixelBesideIt) {
+  const auto light = [](float by) { return filled(3, [=](int x) { return x == 30 ? 100.0f * by : 1.0f; }); };
+  const reconstruct::Field before = light(1.2f), after = light(1.0f);
+  const auto error_at = [&](int x, reconstruct::ErrorUse use) {
+    return reconstruct::regression_error({before, kNone, after, kNone}, kUnbiased, use).row(20)[x];
+  };
+  const float own = 1.0f + reconstruct::kDark, lost = 20.0f / (17.0f * (116.0f / 17.0f + reconstruct::kDark));
+  EXPECT_NEAR(error_at(31, reconstruct::ErrorUse::Delivered), reconstruct::kLostDelivered * own * own * lost * lost,
+              1e-4);
+  EXPECT_GT(error_at(31, reconstruct::ErrorUse::Weights), 100.0f * error_at(31, reconstruct::ErrorUse::Delivered));
+  EXPECT_GT(error_at(30, reconstruct::ErrorUse::Delivered), 1000.0f * error_at(31, reconstruct::ErrorUse::Delivered));
 }
 
 }  // namespace

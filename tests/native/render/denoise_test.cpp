@@ -233,6 +233,20 @@ TEST_F(DenoisedRender, AFailureIsAWarningAndThePictureStays) {
   EXPECT_TRUE(stats["denoiser"].is_null());
 }
 
+// Regression: `strict` refused only what commit had warned of.
+TEST_F(DenoisedRender, AFailureEndsAStrictRender) {
+  GradusSettings settings = settings_with(GRADUS_DENOISER_OIDN);
+  settings.strict = 1;
+  auto render = start(settings);
+  setenv("FAKE_OIDN", "fails", 1);
+  render->wait(-1.0);
+  std::string text;
+  EXPECT_EQ(render->outcome(&text), GRADUS_ERROR_UNSUPPORTED);
+  EXPECT_NE(text.find("strict: the picture was not denoised: Open Image Denoise: the fake has no memory"),
+            std::string::npos)
+      << text;
+}
+
 // Regression: only errors that Open Image Denoise itself reported were caught; others made the render fail.
 TEST_F(DenoisedRender, MissingMemoryIsAWarningToo) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_NONE);

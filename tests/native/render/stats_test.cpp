@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "render/fake_integrator.h"
 #include "support/path_scene.h"
 
 namespace gradus::test {
@@ -21,6 +22,26 @@ TEST(Stats, ASolverThatStoppedAtItsLimitIsAWarning) {
   EXPECT_EQ(warnings_of(stats), nlohmann::json({"another"}));
   stats.solve.hit_cap = true;
   EXPECT_EQ(warnings_of(stats), nlohmann::json({"another", "the reconstruction stopped at its limit of steps"}));
+}
+
+// Regression: a strict render was refused because of a warning about noise.
+TEST(Stats, AStrictRenderRefusesWhatIsLeftOutAndNotWhatIsNoisy) {
+  auto noisy = std::make_shared<scene::Snapshot>(*empty_snapshot());
+  noisy->noise_warnings = {"noisy"};
+  auto incomplete = std::make_shared<scene::Snapshot>(*noisy);
+  incomplete->warnings = {"incomplete"};
+  GradusSettings settings = small_settings(8, 8, 1);
+  const auto warnings = [&](const auto& snapshot) {
+    render::Render render(nullptr, snapshot, settings, nullptr, fake_factory());
+    render.wait(-1.0);
+    std::string text;
+    EXPECT_EQ(render.outcome(&text), GRADUS_OK) << text;
+    return nlohmann::json::parse(render.stats_json())["warnings"];
+  };
+  EXPECT_EQ(warnings(incomplete), nlohmann::json({"incomplete", "noisy"}));
+  settings.strict = 1;
+  EXPECT_EQ(warnings(noisy), nlohmann::json({"noisy"}));
+  EXPECT_THROW(render::Render(nullptr, incomplete, settings, nullptr, fake_factory()), Error);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <set>
 #include <sstream>
 #include <tuple>
 
@@ -13,7 +15,9 @@
 #include <nlohmann/json.hpp>
 
 #include "api/test_scene.h"
+#include "base/error.h"
 #include "film_io/image_exr.h"
+#include "schema/pass_table.h"
 
 namespace gradus {
 namespace {
@@ -112,7 +116,7 @@ TEST_F(Tool, WritesTheErrorOfItsReconstruction) {
             0);
   ASSERT_EQ(run("reconstruct f.exr -o again.exr --passes error --reconstruction l2").code, 0);
   ASSERT_EQ(run("reconstruct f.exr -o none.exr --passes error --reconstruction none").code, 0);
-  const auto error = [&](const char* image) { return channel_of(folder / image, "Error.V"); };
+  const auto error = [&](const char* image) { return channel_of(folder / image, "Error.X"); };
   EXPECT_EQ(error("l2.exr"), error("again.exr"));
   EXPECT_NE(error("l2.exr"), error("none.exr"));
 }
@@ -259,6 +263,64 @@ TEST_F(Tool, NoOptionIsIgnored) {
   }
 }
 
+// Returns the letters of each pass's channels in a file; the main image is the pass "".
+std::map<std::string, std::set<std::string>> letters_of(const std::string& path) {
+  std::map<std::string, std::set<std::string>> letters;
+  for (const std::string& name : film_io::image_channels(path)) {
+    const size_t dot = name.rfind('.');
+    const bool is_main = dot == std::string::npos;
+    letters[is_main ? "" : name.substr(0, dot)].insert(is_main ? name : name.substr(dot + 1));
+  }
+  return letters;
+}
+
+// Compositors address channels by their letters, so that images of the tool need those of Blender's files, which
+// tests/addon/render_test.py compares with the schema. Regression: values were called V, and vectors RGB.
+TEST_F(Tool, ChannelsHaveTheLettersOfTheSchema) {
+  ASSERT_EQ(
+      run("render good.gradus -o f.exr --image i.exr --passes all --use-decomposition 1 --component-passes all").code,
+      0);
+  ASSERT_EQ(run("reconstruct f.exr -o again.exr --passes all --component-passes all").code, 0);
+  for (const char* image : {"i.exr", "again.exr"}) {
+    std::map<std::string, std::set<std::string>> found = letters_of((folder / image).string());
+    const auto expect_letters = [&](const std::string& layer, const std::string& letters) {
+      std::set<std::string> expected;
+      for (const char letter : letters) expected.insert(std::string(1, letter));
+      EXPECT_EQ(found[layer], expected) << image << " " << layer;
+    };
+    expect_letters("", "RGBA");
+    for (const schema::PassInfo& info : schema::all_passes()) {
+      if (found.contains(info.name)) expect_letters(info.name, info.letters);
+    }
+    for (const schema::ComponentPassInfo& info : schema::all_component_passes()) {
+      const std::string layer = std::string("Path Diffuse ") + info.name;
+      if (found.contains(layer)) expect_letters(layer, info.letters);
+    }
+    for (const char* layer : {"Depth", "Normal", "UV", "Vector", "Error", "Path Diffuse Normal", "Path Diffuse UV"})
+      EXPECT_TRUE(found.contains(layer)) << image << " " << layer;
+  }
+}
+
+// Images of earlier versions have RGB for vectors and V for single values.
+TEST_F(Tool, ReadsLayersOfAnyLetters) {
+  const std::string path = (folder / "layers.exr").string();
+  const std::vector<float> three = {1.0f, 2.0f, 3.0f}, one = {5.0f}, grey = {5.0f, 5.0f, 5.0f};
+  film_io::save_image(path, 1, 1,
+                      {{"Normal", "XYZ", three},
+                       {"Old Normal", "RGB", three},
+                       {"UV", "UVA", three},
+                       {"Vector", "XYZW", {1.0f, 2.0f, 3.0f, 4.0f}},
+                       {"Depth", "Z", one},
+                       {"Old Depth", "V", one},
+                       {"Layer.Error", "X", one},
+                       {"Pair", "XY", {1.0f, 2.0f}}});
+  for (const char* layer : {"Normal", "Old Normal", "UV", "Vector"})
+    EXPECT_EQ(film_io::load_rgb(path, layer).rgb, three) << layer;
+  for (const char* layer : {"Depth", "Old Depth", "Error"})
+    EXPECT_EQ(film_io::load_rgb(path, layer).rgb, grey) << layer;
+  EXPECT_THROW(film_io::load_rgb(path, "Mist"), Error);
+}
+
 // Regression: "all" failed at the first pass that the film does not have.
 TEST_F(Tool, AllPassesAreThoseOfTheFilm) {
   ASSERT_EQ(run("render good.gradus -o f.exr --integrator path --reconstruction regularized --passes 'depth, uv'").code,
@@ -266,9 +328,9 @@ TEST_F(Tool, AllPassesAreThoseOfTheFilm) {
   ASSERT_EQ(run("reconstruct f.exr -o all.exr --passes all").code, 0);
   std::vector<std::string> names = film_io::image_channels((folder / "all.exr").string());
   const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
-  for (const char* name : {"R", "Noisy Image.R", "Depth.V", "UV.R", "Denoising Normal.R", "Error.V"})
+  for (const char* name : {"R", "Noisy Image.R", "Depth.Z", "UV.U", "Denoising Normal.X", "Error.X"})
     EXPECT_TRUE(has(name)) << name;
-  for (const char* name : {"Mist.V", "Gradient X.R"}) EXPECT_FALSE(has(name)) << name;
+  for (const char* name : {"Mist.Z", "Gradient X.R"}) EXPECT_FALSE(has(name)) << name;
   const Outcome outcome = run("reconstruct f.exr -o x.exr --passes depth,mist,gradient_x");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.err.find("the frame was rendered without mist, gradient_x; it holds combined, noisy_image, depth"),
@@ -330,9 +392,9 @@ TEST_F(Tool, WritesPassesOfComponents) {
   ASSERT_EQ(run("reconstruct d.exr -o details.exr --component-passes all").code, 0);
   const std::vector<std::string> layers = film_io::image_channels((folder / "details.exr").string());
   for (const char* layer :
-       {"Path Diffuse UV.G", "Path Diffuse Object Index.V", "Path Diffuse Face Index.V", "Path Diffuse Emit.B"})
+       {"Path Diffuse UV.V", "Path Diffuse Object Index.X", "Path Diffuse Face Index.X", "Path Diffuse Emit.B"})
     EXPECT_NE(std::find(layers.begin(), layers.end(), layer), layers.end()) << layer;
-  EXPECT_EQ(std::find(layers.begin(), layers.end(), "Path Diffuse Normal.R"), layers.end())
+  EXPECT_EQ(std::find(layers.begin(), layers.end(), "Path Diffuse Normal.X"), layers.end())
       << "its sampling was not requested";
   ASSERT_EQ(run("render good.gradus -o whole.exr").code, 0);
   const Outcome whole = run("reconstruct whole.exr -o x.exr --component-passes color");
@@ -487,8 +549,8 @@ TEST_F(ToolSequence, WritesPassesOfComponents) {
       for (size_t i = 0; i < 24 * 16; ++i)
         ASSERT_NEAR(combined[3 * i], delivered[size_t(frame) - 1][4 * i], 1e-5f) << frame;
       const std::vector<std::string> names = film_io::image_channels(path);
-      for (const char* name : {"Path Diffuse Motion.R", "Path Diffuse Tracked.V", "Path Diffuse Irradiance Tracked.V",
-                               "Path Diffuse UV.R", "Path Diffuse Face Index.V"}) {
+      for (const char* name : {"Path Diffuse Motion.W", "Path Diffuse Tracked.X", "Path Diffuse Irradiance Tracked.X",
+                               "Path Diffuse UV.A", "Path Diffuse Face Index.X"}) {
         EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
       }
     }
