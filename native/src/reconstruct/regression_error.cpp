@@ -43,7 +43,6 @@ Field lost_share(const Smoothed& smoothed) {
 
 Field regression_error(const Smoothed& smoothed, const Field& bias, ErrorUse use) {
   const bool is_delivered = use == ErrorUse::Delivered;
-  const float hidden = is_delivered ? kHiddenDelivered : kHidden;
   const Field light = squared_light(smoothed.image, kLightRadius), lost = lost_share(smoothed);
   // Noise is averaged relative to the light: the noise of a light source says nothing about the wall beside it.
   const auto relative_noise = [&](int x, int y) {
@@ -58,7 +57,7 @@ Field regression_error(const Smoothed& smoothed, const Field& bias, ErrorUse use
                                                                : kLost,
                 minimum = GRADUS_FAULT(error_includes_negative_bias) ? -kInfinity : 0.0f,
                 of_bias = GRADUS_FAULT(error_omits_bias) ? 0.0f : std::max(bias.row(y)[x], minimum);
-    value = light.row(y)[x] * (hidden * value + of_lost * lost.row(y)[x]) + of_bias;
+    value = light.row(y)[x] * (kHidden * value + of_lost * lost.row(y)[x]) + of_bias;
   });
   return error;
 }

@@ -6,17 +6,16 @@
 
 namespace gradus::reconstruct {
 
-// Factors of the error that weighs pixels and stops pixel blocks, on which pictures depend.
-//
 // Factor on the remaining noise. The weights follow the noise and hide about a third of its variance from the regressed
 // half difference.
 inline constexpr float kHidden = 1.7f;
 // Factor on the squared light that is lost where the means of the sampled and the regressed image differ: rare bright
 // samples lie in few of those pixels.
 inline constexpr float kLost = 0.3f;
-// The same factors of the error that is delivered. Lost light there is a share of the pixel's own light: relative to the
-// mean of 3×3 pixels, dark pixels beside a highlight had up to eight times the true error of the picture.
-inline constexpr float kHiddenDelivered = 2.2f, kLostDelivered = 0.1f;
+// The same factor in the error that is delivered, where lost light is a share of the pixel's own light: relative to the
+// mean of 3×3 pixels, dark pixels beside a highlight raised the error of a picture to eight times the true one. The
+// error that weighs pixels and stops pixel blocks keeps kLost, because pictures depend on it.
+inline constexpr float kLostDelivered = 0.1f;
 
 // Input and output of the regression, three channels each.
 struct Smoothed {
@@ -29,7 +28,6 @@ enum class ErrorUse { Weights, Delivered };
 
 // Returns the squared error, mean over the channels, as one channel. `bias` is the squared bias of the windows as
 // estimated from their residuals; single values may be negative.
-Field regression_error(const Smoothed& smoothed, const Field& bias,
-                       ErrorUse use = ErrorUse::Weights);
+Field regression_error(const Smoothed& smoothed, const Field& bias, ErrorUse use = ErrorUse::Weights);
 
 }  // namespace gradus::reconstruct
