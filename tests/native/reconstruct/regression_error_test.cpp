@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
-#include "reconstruct/local_light.h"
 
 namespace gradus {
 namespace {
