@@ -123,7 +123,8 @@ void FrameDelivery::find_flow(const DevelopedFrame* previous, double* seconds_ah
   const uint32_t threads =
       output::threads_of(changed_ ? *changed_ : sampled_settings(number_), sequence_->device_.get());
   tbb::task_arena(arena_size(threads)).execute([&] { join(previous, leads_here, std::move(next), leads_on); });
-  for (const std::string& warning : warnings_) stats.leave_out(warning, developed_->pictures.film->settings.strict != 0);
+  for (const std::string& warning : warnings_)
+    stats.leave_out(warning, developed_->pictures.film->settings.strict != 0);
 }
 
 void FrameDelivery::join(const DevelopedFrame* previous, motion::Tracking leads_here,

@@ -45,7 +45,7 @@ double sum_over(const film::Film& film, const std::vector<float>& pixels, const 
 }
 
 // A reconstruction by features removes the noise of the half-buffers, which says nothing about its error: its own
-// estimate is used.
+// estimate is used. The pass Error counts lost light by another factor, and this film has hardly any.
 TEST(BlockNoise, OfAReconstructionThatEstimatesItsErrorIsThatEstimate) {
   for (const bool gradients : {false, true}) {
     const film::Film film = noisy_room(gradients);
@@ -59,7 +59,7 @@ TEST(BlockNoise, OfAReconstructionThatEstimatesItsErrorIsThatEstimate) {
     for (size_t k = 0; k < blocks.size(); ++k) {
       const double error = sum_over(film, result.error, blocks[k]);
       ASSERT_GT(error, 0.0);
-      EXPECT_NEAR(noise[k].relative_error / relative_error(film, result, blocks[k], error), 1.0, 1e-5);
+      EXPECT_NEAR(noise[k].relative_error / relative_error(film, result, blocks[k], error), 1.0, 1e-3);
       EXPECT_GT(noise[k].spread, 0.0);
     }
   }

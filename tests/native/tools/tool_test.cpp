@@ -163,7 +163,7 @@ TEST_F(Tool, ReportsTheContentOfFiles) {
   EXPECT_EQ(scene.code, 0);
   EXPECT_NE(scene.out.find("triangles                  2"), std::string::npos) << scene.out;
   ASSERT_EQ(run("render good.gradus -o store").code, 0);
-  EXPECT_NE(run(std::string("info --json ") + kStored).out.find("\"kind\":\"frame\""), std::string::npos);
+  EXPECT_NE(run(std::string("info --json ") + kStored).out.find("\"kind\":\"film\""), std::string::npos);
 }
 
 TEST_F(Tool, MeasuresMotion) {
