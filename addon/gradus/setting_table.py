@@ -393,6 +393,7 @@ ROWS: tuple[dict[str, Any], ...] = (
         maximum=1024,
         soft_maximum=1024,
         native=False,
+        command_line=False,
     ),
     dict(
         name="vector_with_motion_blur",
