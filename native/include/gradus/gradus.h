@@ -165,7 +165,8 @@ typedef enum GradusVisibility {
   GRADUS_VISIBLE_DIFFUSE = 2,      /* Diffusely scattered rays see it. */
   GRADUS_VISIBLE_GLOSSY = 4,       /* Reflected rays see it. */
   GRADUS_VISIBLE_TRANSMISSION = 8, /* Transmitted rays see it. */
-  GRADUS_VISIBLE_VOLUME = 16,      /* Rays that a volume scattered see it. */
+  GRADUS_VISIBLE_VOLUME = 16,      /* Reserved for rays that volumes scatter; there are no volumes yet. VISIBLE_ALL
+                                      and the keys of stored frames contain it. */
   GRADUS_VISIBLE_SHADOW = 32,      /* It casts shadows. */
   GRADUS_VISIBLE_ALL = 63,         /* All rays see it. */
   GRADUS_HOLDOUT = 64,             /* It cuts a transparent hole into the picture where the camera sees it. */
