@@ -7,7 +7,7 @@ COMPONENTS ?=
 BLENDER ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help build render render-animation test test-full test-native test-addon stress faults compilers package schema format lint clean
+.PHONY: help build render render-animation test test-full test-native test-regression test-addon stress faults compilers package schema format lint clean
 BENCH := $(addprefix bench-,errors quick agreement pictures speed reconstruct animation motion host designs compare report)
 .PHONY: bench $(BENCH) picture picture-components
 
@@ -32,6 +32,9 @@ test-full:      ## and those that take longer, and everything in all hosts
 
 test-native:    ## only the tests of the library
 	@tools/test.sh native
+
+test-regression: ## only the stored pictures: a render of each must have their bits, or look like them on other machines
+	@tools/test.sh regression
 
 test-addon:     ## only those of the add-on; with HOSTS=bpy45,bpy52 all of them in these hosts: TESTS=tests/addon/x_test.py
 	@tools/test.sh addon

@@ -23,7 +23,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "addon"))
 
-from gradus import components, options  # noqa: E402  (neither needs Blender or the library)
+from gradus import components, native, options  # noqa: E402  (none needs Blender)
 
 
 class RenderError(Exception):
@@ -106,9 +106,23 @@ def check_options(arguments: list[str]) -> None:
         overrides = options.parse(arguments)
     except options.OptionError as error:
         raise RenderError(str(error)) from error
-    problem = components.syntax_error(overrides.text("components") or "")
+    text = overrides.text("components") or ""
+    problem = components.syntax_error(text) or library_error(text)
     if problem:
         raise RenderError(f"COMPONENTS: {problem}")
+
+
+def library_error(text: str) -> str:
+    """Returns what the library of an earlier build says against a set of components, such as two that overlap."""
+    try:
+        library = native.load()
+    except native.GradusError:  # nothing is built, or something else
+        return ""
+    try:
+        components.describe(library, text.encode())
+    except native.GradusError as error:
+        return str(error)
+    return ""
 
 
 @dataclass(frozen=True)

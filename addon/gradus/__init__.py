@@ -1,4 +1,4 @@
-"""Gradus, a gradient-domain path tracer for Blender 3.4 to 5.2.
+"""Gradus, a render engine for Blender 3.4 to 5.2.
 
 This module imports without Blender; register() needs it.
 """
@@ -11,7 +11,7 @@ bl_info = {
     "version": (0, 1, 0),
     "blender": (3, 4, 0),
     "location": "Properties > Render > Render Engine > Gradus",
-    "description": "Gradient-domain path tracing",
+    "description": "Path tracing with reconstruction from measured noise, on the CPU",
     "doc_url": "",
     "category": "Render",
 }

@@ -1,13 +1,16 @@
 """Animations: frames are sampled ahead, because neighbouring frames are reconstructed together.
 
-Facts about Blender 3.4, 4.5 and 5.0 on which this module relies: - Blender calls an engine for one frame and one view
-layer, with a depsgraph of that layer, and continues from `scene.frame_current`. `engine.frame_set` moves that counter,
-runs frame change handlers and evaluates the engine's depsgraph only. After a return to the frame, everything else (file
-names, the compositor, the next frame) is unchanged. - Each view layer looks ahead over its own depsgraph, in render():
-update() would lock the interface all the time. - The frame range is that of the scene, which -s, -e and -j change.
-`render.render(frame_start=…)` of Blender 5.0 does not change it and cannot be detected: frames outside the scene's
-range are rendered one by one. -f is an animation of one frame with the scene's range, and can be detected from the
-command line only. - If Overwrite is off, Blender skips frames whose files exist.
+Facts about Blender 3.4, 4.5 and 5.0 on which this module relies:
+
+- Blender calls an engine for one frame and one view layer, with a depsgraph of that layer, and continues from
+  `scene.frame_current`. `engine.frame_set` moves that counter, runs frame change handlers and evaluates the engine's
+  depsgraph only. After a return to the frame, everything else (file names, the compositor, the next frame) is
+  unchanged.
+- Each view layer looks ahead over its own depsgraph, in render(): update() would lock the interface all the time.
+- The frame range is that of the scene, which -s, -e and -j change. `render.render(frame_start=…)` of Blender 5.0 does
+  not change it and cannot be detected: frames outside the scene's range are rendered one by one. -f is an animation of
+  one frame with the scene's range, and can be detected from the command line only.
+- If Overwrite is off, Blender skips frames whose files exist.
 """
 
 from __future__ import annotations

@@ -73,7 +73,7 @@ def parse(arguments: Sequence[str]) -> Overrides:
             special["passes"] = _passes(text)
         elif name in settings.TEST_SWITCHES or (name in settings.BY_NAME and settings.BY_NAME[name].native):
             native.append((name, text))
-        elif name in settings.BY_NAME:
+        elif name in settings.BY_NAME and settings.BY_NAME[name].command_line:
             host[name] = _host_value(settings.BY_NAME[name], text)
         else:
             raise OptionError(f"unknown option {PREFIX}{name.replace('_', '-')}")

@@ -200,7 +200,7 @@ class Job:
         infos = self.requested_passes()
         settings.passes, settings.component_passes = passes.mask(infos), passes.component_mask(infos)
         if self.is_preview:
-            limit_preview(settings, self.host_value("preview_samples"))
+            limit_preview(settings, self.scene.gradus.preview_samples)
         return settings
 
     def export(self, view: str) -> None:

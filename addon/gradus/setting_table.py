@@ -28,8 +28,9 @@ ROWS: tuple[dict[str, Any], ...] = (
         default=0,
         label="Min Samples",
         doc=(
-            "Minimum samples per pixel before a pixel block may stop at the noise threshold. 0 = automatic: 16, or "
-            "0.16 / noise threshold if that is more"
+            "Minimum samples per pixel before a pixel block may stop at the noise threshold. Values from 1 to 15 "
+            "count as 16, which the estimate of the error needs. 0 = automatic: 16, or 0.16 / noise threshold if "
+            "that is more"
         ),
         minimum=0,
         maximum=16777216,
@@ -43,7 +44,8 @@ ROWS: tuple[dict[str, Any], ...] = (
         doc=(
             "A block of 16×16 pixels stops when the estimated relative error of its picture falls below this; the "
             "others share the remaining samples by their noise. Lower values leave less noise and take longer. 0 = "
-            "off: every pixel takes the same number. The same value leaves less noise than in Cycles"
+            "off: every pixel takes the same number. It has no effect at 16 samples or fewer. The same value leaves"
+            " less noise than in Cycles"
         ),
         minimum=0,
         maximum=3.4e38,
@@ -322,8 +324,8 @@ ROWS: tuple[dict[str, Any], ...] = (
         label="Denoiser",
         doc=(
             "Removes remaining noise with Open Image Denoise, guided by the albedo and normals of surfaces. It adds"
-            " about 20 µs per pixel. It is biased: fine detail can vanish or be invented, and animations can "
-            "flicker"
+            " about 7.5 CPU-µs per pixel, 15 CPU seconds at 1920×1080. It is biased: fine detail can vanish or be "
+            "invented, and animations can flicker"
         ),
         choices=(
             (
@@ -377,7 +379,7 @@ ROWS: tuple[dict[str, Any], ...] = (
         doc=(
             "In animations with components, compares what mirrors and glass show with the place where it was a "
             "frame before. Off: with the place where the mirror or the glass was. On leaves less flicker where the "
-            "two move differently"
+            "two move differently, and takes about a third more time where cameras or mirrors move"
         ),
     ),
     dict(
@@ -393,6 +395,7 @@ ROWS: tuple[dict[str, Any], ...] = (
         maximum=1024,
         soft_maximum=1024,
         native=False,
+        command_line=False,
     ),
     dict(
         name="vector_with_motion_blur",
@@ -409,8 +412,9 @@ ROWS: tuple[dict[str, Any], ...] = (
         label="Temporal",
         doc=(
             "In animations half of the samples follow those of the frame before, and neighbouring frames are "
-            "reconstructed together: less flicker at the same cost. It has no effect with the integrator Path or "
-            "the reconstruction None"
+            "reconstructed together. This leaves less flicker at the same number of samples, takes about 1.6 times "
+            "as long to reconstruct and about 122 bytes of memory per pixel and frame of a window, and delays the "
+            "first frame by up to nine. It has no effect with the integrator Path or the reconstruction None"
         ),
         native=False,
     ),

@@ -17,7 +17,10 @@ BOOL, INT, FLOAT, ENUM, TEXT, FOLDER = "BOOL", "INT", "FLOAT", "ENUM", "TEXT", "
 
 @dataclass(frozen=True)
 class Setting:
-    """One setting of a scene. `native` says whether GradusSettings has a field of the same name."""
+    """One setting of a scene.
+
+    `native` says whether GradusSettings has a field of the same name, `command_line` whether there is an option.
+    """
 
     name: str
     kind: str
@@ -30,6 +33,7 @@ class Setting:
     precision: int = 3
     choices: tuple[tuple[str, str, str, int], ...] = ()  # identifier, label, meaning, native value
     native: bool = True
+    command_line: bool = True
     unit: str = "NONE"  # of Blender
 
     def value_of(self, identifier: str) -> int:

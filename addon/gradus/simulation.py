@@ -1,17 +1,22 @@
 """Simulations that are not baked. A frame is correct only after the scene has visited all frames before it, one by one.
 
-Facts about Blender 3.4, 4.5 and 5.0 on which this module relies: - Rigid bodies and simulation zones are computed only
-by the scene's own depsgraph (`scene.frame_set`), from the previous frame. The engine's depsgraph (`engine.frame_set`)
-reads their caches. An animated render never moves the scene's own depsgraph. - Cloth, soft bodies, particles and
-dynamic paint are computed by both depsgraphs, into one cache. After a visit to their first frame Blender considers the
-cache outdated and drops its later frames at the next read, unless it is marked as baked. Therefore caches are marked as
-baked, except while this module steps through the frames. Dynamic paint always caches on disk, beside the saved file. -
-The engine's depsgraph keeps the state of a cache from its last evaluation at Blender's own frame, and shows no
-particles, or dead ones, that are computed later. Therefore the particles of all frames are computed before the first
-frame is shown. Liquids that are computed during playback are correct only if the scene has not been far beyond the
-frame. - In a render that begins at a later frame, the engine's depsgraph has already written an estimate into the cache
-of a cloth. Tagging the object drops it. - After the render, Blender reads values that are not evaluated (exposure of
-saved images, the file name) from the scene, which therefore must return to the frame.
+Facts about Blender 3.4, 4.5 and 5.0 on which this module relies:
+
+- Rigid bodies and simulation zones are computed only by the scene's own depsgraph (`scene.frame_set`), from the
+  previous frame. The engine's depsgraph (`engine.frame_set`) reads their caches. An animated render never moves the
+  scene's own depsgraph.
+- Cloth, soft bodies, particles and dynamic paint are computed by both depsgraphs, into one cache. After a visit to
+  their first frame Blender considers the cache outdated and drops its later frames at the next read, unless it is
+  marked as baked. Therefore caches are marked as baked, except while this module steps through the frames. Dynamic
+  paint always caches on disk, beside the saved file.
+- The engine's depsgraph keeps the state of a cache from its last evaluation at Blender's own frame, and shows no
+  particles, or dead ones, that are computed later. Therefore the particles of all frames are computed before the first
+  frame is shown. Liquids that are computed during playback are correct only if the scene has not been far beyond the
+  frame.
+- In a render that begins at a later frame, the engine's depsgraph has already written an estimate into the cache of a
+  cloth. Tagging the object drops it.
+- After the render, Blender reads values that are not evaluated (exposure of saved images, the file name) from the
+  scene, which therefore must return to the frame.
 """
 
 from __future__ import annotations

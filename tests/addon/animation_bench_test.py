@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools" / "bench"))
-pytest.importorskip("PIL")
+pytest.importorskip("PIL", reason="Pillow is in the environments of Blender modules only")
 import animation_modes  # noqa: E402
 import animation_references as references  # noqa: E402
 import animation_report as report  # noqa: E402

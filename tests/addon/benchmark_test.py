@@ -218,7 +218,7 @@ def stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def stills_module() -> Any:
-    pytest.importorskip("PIL")
+    pytest.importorskip("PIL", reason="Pillow is in the environments of Blender modules only")
     import stills
 
     return stills

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy", reason="SciPy is in the benchmark's environment only")
+pytest.importorskip("scipy", reason="SciPy is in the environment of bpy45 only")
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools" / "bench"))
 import compare_designs  # noqa: E402
 from designs import chapter8, frames, nfor, nlm, poisson  # noqa: E402

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import bpy
 import pytest
+from gradus import passes
 from gradus.export import shadow_terminator
 from support import recording
+
+COMBINED_OR_OF_BLENDER = {"use_pass_combined", "use_pass_cryptomatte_accurate", "use_pass_grease_pencil"}
+"""Switches of view layers that need no pass of Gradus' table."""
 
 
 def warnings(scene: bpy.types.Scene) -> list[str]:
@@ -55,11 +59,29 @@ def test_a_camera_of_scale_0_is_named(scene: bpy.types.Scene, plane: bpy.types.O
     assert warnings(scene) == ["Camera 'Camera' has scale 0, so that its direction is undefined"]
 
 
-@pytest.mark.parametrize("kind", ["object", "material", "asset"])
-def test_cryptomatte_is_named(scene: bpy.types.Scene, plane: bpy.types.Object, kind: str) -> None:
+def switch_on_all_passes(owner: bpy.types.bpy_struct) -> set[str]:
+    """Switches all passes of a view layer, or of Cycles' settings of it, on and returns the names of the switches."""
+    names = {item.identifier for item in owner.bl_rna.properties}
+    names = {name for name in names if name.startswith(("use_pass_", "pass_render"))}
+    for name in names:
+        setattr(owner, name, True)
+    return names
+
+
+def test_passes_that_are_not_made_are_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
+    """Regression: all but Cryptomatte were left out without a warning."""
     layer = scene.view_layers[0]
-    setattr(layer, f"use_pass_cryptomatte_{kind}", True)
-    assert warnings(scene) == [f"View layer '{layer.name}': Cryptomatte passes are not supported"]
+    known = {info.switch for info in passes.TABLE} | COMBINED_OR_OF_BLENDER
+    missing = {layer.bl_rna.properties[name].name for name in switch_on_all_passes(layer) - known}
+    missing |= {"AOV 'Rust'", "light group 'Key'"}
+    layer.aovs.add().name = "Rust"
+    bpy.ops.scene.view_layer_add_lightgroup(name="Key")
+    if hasattr(layer, "cycles"):  # Cycles' add-on is on
+        missing |= {layer.cycles.bl_rna.properties[name].name for name in switch_on_all_passes(layer.cycles)}
+    (warning,) = warnings(scene)
+    start = f"View layer '{layer.name}': not supported are the passes "
+    assert warning.startswith(start)
+    assert sorted(warning.removeprefix(start).split(", ")) == sorted(missing)
 
 
 def test_light_linking_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:

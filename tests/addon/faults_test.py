@@ -14,6 +14,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "tests" / "faults"))
 from fault import Fault, Test, listed_names, read_faults, switches  # noqa: E402
+from faults import Table  # noqa: E402
 
 FAULTS = read_faults()
 SWITCHED = [fault.name for fault in FAULTS if fault.edit is None]
@@ -61,3 +62,11 @@ def test_m4_each_fault_names_tests(fault: Fault) -> None:
         assert (ROOT / "tests" / test.program).is_dir() or (ROOT / test.program).is_file()
         assert test.choice
         assert unknown_parts(test) == []
+
+
+def test_m4_the_page_has_results_of_current_faults_only() -> None:
+    """Regression: a row named tests that the fault no longer named."""
+    page = ROOT / "docs" / "faults.md"
+    table = Table(page, FAULTS)
+    rows = [line for line in page.read_text(encoding="utf-8").splitlines() if line.startswith("| ")][1:]
+    assert len(rows) == sum(table.has(fault) for fault in FAULTS)

@@ -14,8 +14,8 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "tools" / "bench"))
-pytest.importorskip("PIL")
-pytest.importorskip("scipy")
+pytest.importorskip("PIL", reason="Pillow is in the environments of Blender modules only")
+pytest.importorskip("scipy", reason="SciPy is in the environment of bpy45 only")
 import animation_variants as variants  # noqa: E402
 import document  # noqa: E402
 import motion_metrics as metrics  # noqa: E402

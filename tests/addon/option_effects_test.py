@@ -1,6 +1,7 @@
 """Every option of schema/options.toml has an effect on a tiny scene.
 
-A value other than the default changes the picture, the stats or the files, or is an error.
+A value other than the default changes the picture, the stats or the files, or is an error. Options of the scene are
+also moved on the command line.
 """
 
 from __future__ import annotations
@@ -117,12 +118,13 @@ def stored(option: dict[str, Any], value: Any, folder: Path) -> Any:
     return str(folder / value) if option["type"] == "folder" and value else value
 
 
-def set_option(scene: bpy.types.Scene, option: dict[str, Any], value: Any, arguments: list[str]) -> None:
+def set_option(scene: bpy.types.Scene, option: dict[str, Any], value: Any, source: str, arguments: list[str]) -> None:
     """Sets an option as an artist does: in the engine's settings, in Blender's own, or on the command line."""
-    if option["from"] == "scene":
+    if source in ("scene", "panel"):
         setattr(scene.gradus, option["name"], value)
-    elif option["from"] == "command":
-        arguments += [f"--gradus-{option['name']}", str(int(value))]
+    elif source == "command":
+        text = str(int(value)) if isinstance(value, bool) else str(value)
+        arguments += [f"--gradus-{option['name'].replace('_', '-')}", text]
     elif option["name"] == "frame":
         scene.frame_set(value)
     else:
@@ -193,20 +195,20 @@ def differences(one: Outcome, other: Outcome) -> list[str]:
 
 @pytest.fixture
 def outcome(room: bpy.types.Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, Any]]:
-    """Returns a function outcome(option, moved) that renders with an option at its default or at another value.
+    """Returns a function outcome(option, source) that renders with an option at its default or, set in `source`, moved.
 
     It returns the picture, the stats, the files and the error.
     """
     runs = itertools.count()
 
-    def make(option: dict[str, Any], moved: bool) -> dict[str, Any]:
+    def make(option: dict[str, Any], source: str = "") -> dict[str, Any]:
         folder = tmp_path / f"run{next(runs)}"
         folder.mkdir()
         arguments = ["blender", "--", "--gradus-stats", str(folder / "stats.jsonl")]
         for name, value in option.get("given", {}).items():
             setattr(room.gradus, name, value)
-        if moved:
-            set_option(room, option, stored(option, option["moved"], folder), arguments)
+        if source:
+            set_option(room, option, stored(option, option["moved"], folder), source, arguments)
         monkeypatch.setattr(sys, "argv", arguments)
         shown = option.get("shown", "still")
         result: dict[str, Any] = {"picture": {}, "error": ""}
@@ -247,18 +249,20 @@ Run = Callable[..., dict[str, Any]]
 @pytest.mark.parametrize("option", OPTIONS, ids=lambda option: option["name"])
 def test_every_option_has_an_effect(room: bpy.types.Scene, outcome: Run, option: dict[str, Any]) -> None:
     prepare(room, option)
-    before = outcome(option, False)
+    before = outcome(option)
     assert not before["error"]
-    after = outcome(option, True)
     kinds = option.get("effect", "picture").split(" or ")
-    changed = [kind for kind in kinds if has_effect(kind, before, after)]
-    assert changed, f"{option['moved']} changes no {' and no '.join(kinds)}"
+    sources = ("command", "scene") if option["from"] == "scene" else (option["from"],)
+    for source in sources:  # the command line first, since it leaves the scene as it is
+        after = outcome(option, source)
+        changed = [kind for kind in kinds if has_effect(kind, before, after)]
+        assert changed, f"{option['moved']} in {source} changes no {' and no '.join(kinds)}"
 
 
 def test_a_picture_and_its_stats_do_not_differ_by_themselves(outcome: Run) -> None:
     """Two equal renders have equal results. Otherwise any option would seem to have an effect."""
     still = {"name": "none", "moved": None}
-    first, second = outcome(still, False), outcome(still, False)
+    first, second = outcome(still), outcome(still)
     assert is_same(first["picture"], second["picture"])
     assert differences(first["stats"], second["stats"]) == []
     assert first["files"] == second["files"] == []

@@ -23,12 +23,12 @@ def test_host_options() -> None:
             "--gradus-save-scene=x.gradus",
             "--gradus-threads",
             "2",
-            "--gradus-preview-samples",
+            "--gradus-window-size",
             "7",
         ]
     )
     assert (parsed.stats, parsed.save_scene, parsed.threads) == ("a.jsonl", "x.gradus", 2)
-    assert parsed.host == {"preview_samples": 7}
+    assert parsed.host == {"window_size": 7}
     assert parsed.native == ()
 
 
@@ -55,6 +55,7 @@ def test_options_of_others_are_ignored() -> None:
         (["--gradus-passes", "depth,deph"], "deph"),
         (["--gradus-passes", "count"], "count"),
         (["--gradus-width", "5"], "--gradus-width"),
+        (["--gradus-preview-samples", "5"], "unknown option --gradus-preview-samples"),
     ],
 )
 def test_unknown_ones_are_named(arguments: list[str], part: str) -> None:

@@ -117,22 +117,30 @@ def missed_tests(fault: Fault) -> list[Test]:
 
 HEAD = """# Seeded faults
 
-Written by `make faults`. Each fault of tests/faults/faults.toml is switched on in a test build, one at a time. The
-tests in the last column pass without the fault and fail with it.
+Written by `make faults`. Each fault of tests/faults/faults.toml is switched on in a test build of the library, or
+edited into a copy of the add-on, one at a time. The tests in the last column pass without the fault and fail with it.
 
 | fault | kind | what goes wrong | where | caught by |
 |---|---|---|---|---|
 """
 
+MISSED = "**not by** "
+"""Mark in front of a test that passed with a fault."""
+
 
 class Table:
-    """The table of results. Rows of earlier runs stay until their fault is tried again, or changes or moves."""
+    """The table of results.
+
+    Rows of earlier runs stay until their fault is tried again, moves to another file, or is described otherwise or
+    caught by other tests in faults.toml.
+    """
 
     def __init__(self, path: Path, faults: list[Fault]) -> None:
         self._path, self._faults = path, faults
         self._file = dict(switches()) | {fault.name: fault.edit.file for fault in faults if fault.edit}
         lines = path.read_text().splitlines() if path.exists() else []
-        self._rows = {f.name: line for f in faults for line in lines if line.startswith(self._start(f))}
+        rows = {line.replace(MISSED, ""): line for line in lines}
+        self._rows = {f.name: rows[self._row(f, [])] for f in faults if self._row(f, []) in rows}
 
     def has(self, fault: Fault) -> bool:
         return fault.name in self._rows
@@ -140,16 +148,16 @@ class Table:
     def where(self, fault: Fault) -> str:
         return self._file[fault.name]
 
-    def _start(self, fault: Fault) -> str:
-        return f"| {fault.name} | {fault.kind} | {fault.meaning} | `{self._file[fault.name]}` |"
+    def _row(self, fault: Fault, missed: list[Test]) -> str:
+        names = ", ".join(f"{MISSED if test in missed else ''}`{test.name}`" for test in fault.tests)
+        return f"| {fault.name} | {fault.kind} | {fault.meaning} | `{self._file[fault.name]}` | {names} |"
 
     def add(self, fault: Fault, missed: list[Test]) -> str:
         """Adds a row, writes the table, and returns the row."""
-        names = ", ".join(f"**not by** `{test.name}`" if test in missed else f"`{test.name}`" for test in fault.tests)
-        self._rows[fault.name] = f"{self._start(fault)} {names} |"
+        self._rows[fault.name] = self._row(fault, missed)
         tried = [fault for fault in self._faults if self.has(fault)]
         lines = [self._rows[fault.name] for fault in tried]
-        kinds, missing = len({fault.kind for fault in tried}), sum("**not by**" in line for line in lines)
+        kinds, missing = len({fault.kind for fault in tried}), sum(MISSED in line for line in lines)
         summary = f"{kinds} kinds of faults in {len(tried)} of {len(self._faults)} places, {missing} of them missed."
         self._path.write_text(HEAD + "\n".join([*lines, "", summary]) + "\n")
         return self._rows[fault.name]

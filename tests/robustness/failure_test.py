@@ -146,6 +146,7 @@ voronoi = tree.nodes.new("ShaderNodeTexVoronoi")
 tree.links.new(voronoi.outputs["Color"], surface.inputs["Base Color"])
 """,
     "object": "scene.collection.objects.link(bpy.data.objects.new('Fog', bpy.data.volumes.new('Fog')))",
+    "pass": "scene.view_layers[0].aovs.add().name = 'Rust'",
 }
 MATERIAL = """
 tree = scene.objects["Cube"].active_material.node_tree

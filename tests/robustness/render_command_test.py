@@ -39,6 +39,11 @@ def test_unknown_options_are_refused_before_the_build() -> None:
     refused("ARGS", "--gradus-sampels 4", "unknown option --gradus-sampels")
 
 
+def test_components_that_overlap_are_refused_before_a_further_build() -> None:
+    """The library that the tests use finds the overlap. Without one, the render itself refuses it after the build."""
+    refused("COMPONENTS", "A=EL;B=EL", "COMPONENTS: components A and B overlap: both match EL")
+
+
 def refused(name: str, value: str, message: str, *options: str) -> None:
     environment = {k: v for k, v in os.environ.items() if k not in MISTAKES} | {name: value, "BLENDER": "/nope"}
     command = ["bash", str(ROOT / "tools" / "render.sh"), *options]

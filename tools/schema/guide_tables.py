@@ -38,11 +38,12 @@ def _meaning(schema: Schema, option: Option) -> str:
 
 
 def options(schema: Schema) -> str:
-    """Returns a table with a row for each option of a scene or of the command line."""
+    """Returns a table with a row for each option of a scene, of the command line or of the panels."""
     lines = ["| option | default | range | what it does |", "|---|---|---|---|"]
     for option in schema.options:
-        if option.source in ("scene", "command"):
-            cells = [f"`{option.name}`", _default(option), _range(option), _cell(_meaning(schema, option))]
+        if option.source in ("scene", "command", "panel"):
+            name = f"`{option.name}`" + (" (panel only)" if option.source == "panel" else "")
+            cells = [name, _default(option), _range(option), _cell(_meaning(schema, option))]
             lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)
 

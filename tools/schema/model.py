@@ -339,6 +339,8 @@ def check(schema: Schema) -> None:
             schema.enum(option.type).number_of(option.default)
         if not option.is_plain and option.moved in (None, option.default):
             raise SchemaError(f"option {option.name} names no other value than its default in `moved`")
+        if option.source == "panel" and not option.host:
+            raise SchemaError(f"option {option.name} is one of GradusSettings and thus of the command line")
     _check_ops(schema)
     pictures = (schema.passes, schema.component_passes, schema.switches)
     tables = (schema.enums, schema.structs, schema.options, *pictures, schema.ops, schema.node_enums)

@@ -65,6 +65,8 @@ def _setting(schema: Schema, option: Option) -> list[str]:
         lines += _choices(schema.enum(option.type))
     if option.host:
         lines.append(f"{INDENT}native=False,")
+    if option.source == "panel":
+        lines.append(f"{INDENT}command_line=False,")
     if option.unit in BLENDER_UNITS:
         lines.append(f'{INDENT}unit="{BLENDER_UNITS[option.unit]}",')
     return [*lines, "    ),"]
@@ -81,7 +83,7 @@ def settings(schema: Schema, note: str) -> str:
     lines.append("ROWS: tuple[dict[str, Any], ...] = (")
     options = [option for option in schema.options if not option.is_plain]
     for option in options:
-        if option.source == "scene":
+        if option.source in ("scene", "panel"):
             lines += _setting(schema, option)
     lines += [")"]
     command = [option for option in options if option.source == "command"]

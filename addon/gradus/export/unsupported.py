@@ -11,6 +11,28 @@ _KINDS = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volu
 KINDS = frozenset(_KINDS)
 """Types of objects that are not rendered."""
 
+_PASSES = (
+    "use_pass_shadow",
+    "use_pass_subsurface_direct",
+    "use_pass_subsurface_indirect",
+    "use_pass_subsurface_color",
+    "use_pass_cryptomatte_object",
+    "use_pass_cryptomatte_material",
+    "use_pass_cryptomatte_asset",
+)
+"""Switches of view layers for passes that Gradus does not make."""
+
+_CYCLES_PASSES = (
+    "pass_render_time",
+    "use_pass_volume_direct",
+    "use_pass_volume_indirect",
+    "use_pass_volume_scatter",
+    "use_pass_volume_transmit",
+    "use_pass_volume_majorant",
+    "use_pass_shadow_catcher",
+)
+"""Switches of view_layer.cycles for such passes. It exists while Cycles' add-on is on, and versions differ in it."""
+
 
 def of_kind(name: str, kind: str) -> str:
     return f"Object '{name}' is left out: {_KINDS[kind]} are not supported"
@@ -42,5 +64,17 @@ def of_scene(scene: Any, view_layer: Any) -> Iterator[str]:
     camera = scene.camera
     if camera is not None and any(column.to_3d().length_squared == 0.0 for column in camera.matrix_world.col[:3]):
         yield f"Camera '{camera.name}' has scale 0, so that its direction is undefined"
-    if any(getattr(view_layer, f"use_pass_cryptomatte_{kind}") for kind in ("object", "material", "asset")):
-        yield f"View layer '{view_layer.name}': Cryptomatte passes are not supported"
+    passes = list(_unsupported_passes(view_layer))
+    if passes:
+        yield f"View layer '{view_layer.name}': not supported are the passes {', '.join(passes)}"
+
+
+def _unsupported_passes(view_layer: Any) -> Iterator[str]:
+    """Yields the names of the passes that a view layer asks for and Gradus does not make."""
+    for owner, switches in ((view_layer, _PASSES), (getattr(view_layer, "cycles", None), _CYCLES_PASSES)):
+        for switch in switches:
+            if getattr(owner, switch, False):
+                yield owner.bl_rna.properties[switch].name
+    for kind, items in (("AOV", view_layer.aovs), ("light group", view_layer.lightgroups)):
+        for item in items:
+            yield f"{kind} '{item.name}'"

@@ -11,7 +11,7 @@ from bl_ui.utils import PresetPanel
 FOLDER = "gradus/sampling"
 
 BUILT_IN: dict[str, tuple[str, dict[str, Any]]] = {
-    "DRAFT": ("Draft", {"samples": 16, "noise_threshold": 0.1, "reconstruction": "AUTO"}),
+    "DRAFT": ("Draft", {"samples": 16, "noise_threshold": 0.0, "reconstruction": "AUTO"}),
     "FINAL": ("Final", {"samples": 256, "noise_threshold": 0.01, "reconstruction": "AUTO"}),
     "REFERENCE": (
         "Reference",
