@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from . import settings
+
 SAME_NAME = (
     "max_bounces",
     "diffuse_bounces",
@@ -48,7 +50,7 @@ def untouched(scene: Any) -> dict[str, Any]:
 def warnings(scene: Any, given: set[str]) -> list[str]:
     """Returns a warning about settings that differ from Cycles. given: settings that the command line sets."""
     listed = ", ".join(
-        f"{name} {_text(getattr(scene.gradus, name))} (Cycles: {_text(value)})"
+        f"{settings.BY_NAME[name].label} ({name}) {_text(getattr(scene.gradus, name))} instead of {_text(value)}"
         for name, value in untouched(scene).items()
         if name not in given
     )

@@ -56,7 +56,7 @@ def _room() -> None:
 
 
 def _window() -> None:
-    """A lamp of the size of a window in the left wall, behind white bars."""
+    """An area light of the size of a window in the left wall, behind white bars."""
     common.area_lamp("Window", (-HALF + 0.02, 0.1, 1.55), (0.4, 0.1, 1.2), (1.1, 1.3), 150.0, (1.0, 0.95, 0.86))
     white = common.principled("Frame", (0.8, 0.8, 0.78), 0.35)
     x = -HALF + 0.06

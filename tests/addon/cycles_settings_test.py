@@ -21,7 +21,7 @@ def test_the_defaults_are_those_of_cycles(cycles: bpy.types.Scene) -> None:
 def test_differences_from_cycles_are_reported(cycles: bpy.types.Scene) -> None:
     cycles.cycles.diffuse_bounces, cycles.cycles.film_exposure = 1, 2.5
     [text] = cycles_settings.warnings(cycles, set())
-    assert "diffuse_bounces 4 (Cycles: 1)" in text and "film_exposure 1 (Cycles: 2.5)" in text
+    assert "Diffuse (diffuse_bounces) 4 instead of 1" in text and "Exposure (film_exposure) 1 instead of 2.5" in text
     assert (
         "diffuse_bounces" not in cycles_settings.warnings(cycles, {"diffuse_bounces"})[0]
     )  # because the command line sets it

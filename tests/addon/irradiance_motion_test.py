@@ -48,7 +48,7 @@ def test_a_shadow_has_vectors_where_the_floor_is_static(shadow: bpy.types.Scene,
         vectors, known = rendered["Path Diffuse Irradiance Motion"], rendered["Path Diffuse Irradiance Tracked"][..., 0]
         assert vectors.shape == (HEIGHT, WIDTH, 4)
         assert np.isfinite(vectors).all()
-        assert np.abs(rendered["Path Diffuse Motion"]).max() < 1e-3, "the floor rests"
+        assert np.abs(rendered["Path Diffuse Motion"]).max() < 1e-3, "the floor does not move"
         if place in (0, LAST - 1):
             assert (known == NO_NEIGHBOUR).any() and not (known == 1.0).any()
             continue

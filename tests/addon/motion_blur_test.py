@@ -96,7 +96,7 @@ def test_a_shot_change_by_markers_does_not_mix_two_cameras(blurred: bpy.types.Sc
     bind_another_camera(blurred, 5)
     blurred.view_layers[0].use_pass_vector = True
     recorded = export(blurred, 5)
-    assert recorded.shutter["matrices"] is None, "each camera rests"
+    assert recorded.shutter["matrices"] is None, "each camera is static"
     assert np.isnan(recorded.camera.matrix_previous).all(), "across the shot change the camera has no position"
     assert list(recorded.camera.matrix_next) == list(recorded.camera.matrix)
     for name in ("previous", "next"):

@@ -45,7 +45,7 @@ def test_c1_moving_object_over_a_static_background(vectors: Callable[[], np.ndar
     found = vectors()
     expected = (-0.25 * PIXELS_PER_METRE, -0.125 * PIXELS_PER_METRE, -0.5 * PIXELS_PER_METRE, -0.125 * PIXELS_PER_METRE)
     assert np.allclose(_covered(found), expected, atol=0.01)
-    assert np.array_equal(found[0, 0], np.zeros(4)), "the background rests"
+    assert np.array_equal(found[0, 0], np.zeros(4)), "the background does not move"
 
 
 def test_c1_static_object_is_exactly_zero(vectors: Callable[[], np.ndarray]) -> None:
@@ -98,7 +98,7 @@ def test_c1_each_view_has_vectors_of_its_own_camera(scene: bpy.types.Scene, tmp_
     scene.render.image_settings.views_format = "INDIVIDUAL"
     bpy.ops.render.render(write_still=True, scene=scene.name)
     left, right = (images.read(tmp_path / f"f{suffix}.exr")["Vector"] for suffix in ("_L", "_R"))
-    assert not left.any(), "it rests"
+    assert not left.any(), "it does not move"
     assert np.allclose(_covered(right), (4.0, 0.0, 4.0, 0.0), atol=0.01)
 
 

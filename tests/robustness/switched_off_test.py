@@ -9,7 +9,7 @@ from pathlib import Path
 TESTS = Path(__file__).resolve().parents[1]
 SWITCHED_OFF = re.compile(r"\bDISABLED_\w+|pytest\.mark\.(?:xfail|skip)\b")
 STATED = re.compile(r"(\d{4}-\d\d-\d\d): \S+")
-MOST_DAYS = 30
+MAXIMUM_DAYS = 30
 
 
 def unstated(source: str, today: datetime.date) -> list[str]:
@@ -19,7 +19,7 @@ def unstated(source: str, today: datetime.date) -> list[str]:
         if not SWITCHED_OFF.search(line):
             continue
         stated = STATED.search(line)
-        if stated is None or (today - datetime.date.fromisoformat(stated[1])).days > MOST_DAYS:
+        if stated is None or (today - datetime.date.fromisoformat(stated[1])).days > MAXIMUM_DAYS:
             found.append(line.strip())
     return found
 

@@ -83,7 +83,7 @@ TEST(AnalyticLights, DarkAndNegative) {
     build_box(&scene);
     scene.light(make_test_light(GRADUS_LIGHT_POINT, strength));
     scene.light(make_test_light(GRADUS_LIGHT_RECTANGLE, strength));
-    render("lamps of " + text_of(strength), &scene, {});
+    render("lights of " + text_of(strength), &scene, {});
   }
 }
 

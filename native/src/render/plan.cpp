@@ -228,10 +228,10 @@ Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot, 
   plan.adaptive = settings.noise_threshold > 0.0f && settings.samples > kFirstCheck;
   if (plan.adaptive) {
     plan.chosen.emplace_back("samples where the noise is",
-                             "noise_threshold is set: tiles below it stop, others share samples by their noise");
+                             "Noise Threshold is set: pixel blocks below it stop, others share samples by noise");
   } else {
     plan.skipped.emplace_back("samples where the noise is",
-                              settings.noise_threshold > 0.0f ? "too few samples to judge by" : "noise_threshold is 0");
+                              settings.noise_threshold > 0.0f ? "16 samples or fewer" : "Noise Threshold is 0");
   }
   const bool clamps = settings.clamp_direct > 0.0f || settings.clamp_indirect > 0.0f;
   plan.unbiased = !plan.adaptive && !clamps;

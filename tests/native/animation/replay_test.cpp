@@ -96,15 +96,15 @@ TEST(Replay, DisocclusionsHaveRandomNumbersOfTheirOwn) {
   PathScene scene;
   build(Scenario::DiffuseArea, &scene);
   const integrator::IntegratorContext now = scene.context(settings_of(8));
-  const film::ReplayMap holes{7, {std::vector<int32_t>(size_t(kSize) * kSize, film::kNoCorrespondence)}};
-  const film::Film own = sampled(now, 4), offset = sampled(now, 4, &holes);
+  const film::ReplayMap no_correspondence{7, {std::vector<int32_t>(size_t(kSize) * kSize, film::kNoCorrespondence)}};
+  const film::Film own = sampled(now, 4), offset = sampled(now, 4, &no_correspondence);
   size_t lit = 0, alike = 0;
-  for (size_t i = 0; i < holes.correspondence.pixel.size(); ++i) {
+  for (size_t i = 0; i < no_correspondence.correspondence.pixel.size(); ++i) {
     const Radiance &a = own.components[0].primal[0][i], &b = offset.components[0].primal[0][i];
     lit += a.x > 0.0f;
     alike += a.x > 0.0f && a == b;
   }
-  EXPECT_GT(lit, holes.correspondence.pixel.size() / 2);
+  EXPECT_GT(lit, no_correspondence.correspondence.pixel.size() / 2);
   EXPECT_LT(alike, lit / 10);  // the light itself
 }
 
@@ -134,7 +134,7 @@ float gray(const film::Film& frame, size_t pixel) {
 TEST(Replay, IsAPictureOfItsOwnFrame) {
   Pan pan(Scenario::DiffuseArea);
   Moments replayed, fresh;
-  int holes = 0;
+  int uncorresponded = 0;
   for (uint32_t seed = 0; seed < 48; ++seed) {
     const integrator::IntegratorContext before = pan.context(false, seed), now = pan.context(true, seed);
     const film::ReplayMap replay_map = sources_of(before, now);
@@ -143,9 +143,9 @@ TEST(Replay, IsAPictureOfItsOwnFrame) {
     for (size_t i = 0; i < a.size(); ++i) a[i] = gray(offset, i), b[i] = gray(other, i);
     replayed.add(a);
     fresh.add(b);
-    for (const int32_t source : replay_map.correspondence.pixel) holes += source == film::kNoCorrespondence;
+    for (const int32_t source : replay_map.correspondence.pixel) uncorresponded += source == film::kNoCorrespondence;
   }
-  EXPECT_GT(holes, 48 * 2 * int(kSize)) << "the strip that comes into view";
+  EXPECT_GT(uncorresponded, 48 * 2 * int(kSize)) << "the strip that comes into view";
   double mean_a = 0.0, mean_b = 0.0, variance = 0.0;
   for (size_t i = 0; i < replayed.size(); ++i) {
     mean_a += replayed.mean(i);

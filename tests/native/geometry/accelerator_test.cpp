@@ -325,7 +325,7 @@ TEST(Accelerator, StillsAndScenesInWhichAllMovesAreOneGroup) {
   scene.matrices_before = {translation(Vec3(1, 0, 0)), translation(Vec3(1, 0, 0))};
   EXPECT_FALSE(scene.commit()->accelerator->moving.group);
   scene.matrices_before = {Mat4(1.0f), translation(Vec3(1, 0, 0))};
-  EXPECT_FALSE(scene.commit()->accelerator->moving.group) << "too little rests to be worth it";
+  EXPECT_FALSE(scene.commit()->accelerator->moving.group) << "too little is static to be worth it";
 }
 
 TEST(Accelerator, AChangeOfStaticGeometryIsNoticed) {

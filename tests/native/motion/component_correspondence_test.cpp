@@ -69,7 +69,7 @@ TEST_F(ComponentCorrespondence, KeepTheEndsOfDisplacements) {
   const std::vector<Vec2> off =
       motion::match_component({static_, std::vector<Vec2>(6, Vec2(0.25f, 0.0f))}, kRow, motion_).off_centre;
   EXPECT_EQ(off[1], Vec2(-0.125f, 0.0f));
-  EXPECT_EQ(off[4], Vec2(0.0f)) << "a chain that rests does so exactly";
+  EXPECT_EQ(off[4], Vec2(0.0f)) << "a static chain does not move at all";
   EXPECT_EQ(off[5], Vec2(0.25f, 0.0f)) << "the displacement of the surface";
 }
 

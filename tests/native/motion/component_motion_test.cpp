@@ -115,7 +115,7 @@ TEST_F(ComponentMotionTest, OfRoughSurfacesIsSurfaceMotion) {
   const size_t middle = size_t(kSize) * (kSize / 2) + kSize / 2, above = size_t(kSize) * (kSize - 4) + kSize / 2;
   EXPECT_LT(glm::length(found.vectors[middle] - Vec4(-2, 0, 0, -3)), 1e-3f);
   EXPECT_EQ(found.tracked[middle], 1.0f);
-  EXPECT_EQ(found.vectors[above], Vec4(0.0f)) << "the wall rests";
+  EXPECT_EQ(found.vectors[above], Vec4(0.0f)) << "the wall does not move";
   EXPECT_EQ(found.tracked[above], 1.0f);
 }
 

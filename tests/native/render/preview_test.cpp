@@ -298,17 +298,17 @@ TEST(Preview, ACancelBeforeTheFirstFullPictureKeepsTheQuarterSizedOne) {
   EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, all), seen);
   const std::vector<float> noisy = read(*render, GRADUS_PASS_NOISY_IMAGE, all),
                            error = read(*render, GRADUS_PASS_ERROR, all);
-  int holes = 0;
+  int unsampled = 0;
   double estimated = 0.0;
   for (size_t i = 0; i < error.size(); ++i) {
-    holes += noisy[4 * i + 3] == 0.0f ? 1 : 0;
+    unsampled += noisy[4 * i + 3] == 0.0f ? 1 : 0;
     ASSERT_GT(seen[4 * i], 0.0f);
     ASSERT_EQ(seen[4 * i + 3], 1.0f);
     ASSERT_GE(error[i], 0.0f);
     estimated += error[i];
   }
   EXPECT_GT(estimated, 0.0) << "that of the quarter";
-  EXPECT_GT(holes, 0) << "nothing to fill";
+  EXPECT_GT(unsampled, 0) << "nothing to fill";
 }
 
 // A picture from the render's own samples is newer than the quarter-sized one, and stays.
