@@ -58,7 +58,8 @@ int run(const ReconstructArguments& args) {
   const auto wanted = [passes](uint32_t pass) { return (passes >> pass & 1) != 0; };
   std::vector<float> error;  // that of this reconstruction, which may differ from the stored setting
   std::vector<film_io::ImageLayer> layers = {
-      {"", "RGBA", film.reconstruct(reconstruction, args.alpha, denoiser, wanted(GRADUS_PASS_ERROR) ? &error : nullptr)}};
+      {"", "RGBA",
+       film.reconstruct(reconstruction, args.alpha, denoiser, wanted(GRADUS_PASS_ERROR) ? &error : nullptr)}};
   for (uint32_t pass = 1; pass < GRADUS_PASS_COUNT; ++pass) {
     if (!wanted(pass)) continue;
     const schema::PassInfo& info = schema::pass_info(pass);
@@ -129,11 +130,11 @@ void add_reconstruct(CLI::App* app, int* exit_code) {
       ->check(CLI::ExistingFile);
   command
       ->add_option("--passes", args->passes,
-                   "Passes to write as layers, separated by commas, or all that the frame holds")
+                   "Passes to write as layers, separated by commas, or all that the film holds")
       ->check(bad_passes);
   command
       ->add_option("--component-passes", args->component_passes,
-                   "Passes of components to write as layers, separated by commas, or all that the frame holds: color, "
+                   "Passes of components to write as layers, separated by commas, or all that the film holds: color, "
                    "reflectance and so on")
       ->check(bad_component_passes);
   command->callback([args, exit_code] { *exit_code = run(*args); });

@@ -42,7 +42,7 @@ uint32_t available_component_passes(const film::FilmHeader& frame, uint32_t requ
   }
   if (requested == kAllComponentPasses || held.missing.empty()) return requested & uint32_t(held.mask);
   throw client::Error(GRADUS_ERROR_INVALID_OPERATION,
-                      "the frame's components were rendered without " + held.missing + "; there are " + held.names);
+                      "the film's components were rendered without " + held.missing + "; there are " + held.names);
 }
 
 bool need_two_frames(uint32_t passes) { return schema::any_wanted(passes, schema::is_motion); }

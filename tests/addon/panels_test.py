@@ -126,7 +126,7 @@ def test_the_plan_is_shown_as_text(scene: bpy.types.Scene) -> None:
     summary = {
         "frame": 3,
         "samples": 16.0,
-        "seconds": {"sample": 2.5, "total": 3.0, "filter": 0.0},
+        "seconds": {"sample": 2.5, "total": 3.0, "store": 0.0},
         "plan": {
             "chosen": {"integrator gradient": "the default"},
             "skipped": {"lens samples": "the camera is a pinhole"},
@@ -153,7 +153,7 @@ def test_phases_of_the_last_render_come_in_their_order() -> None:
     """Regression: phases were listed alphabetically, with those of the add-on at the end."""
     seconds = {
         "denoise": 1.0,
-        "filter": 0.0,
+        "store": 0.0,
         "correspondence": 8.0,
         "preview": 2.0,
         "reconstruct": 3.0,

@@ -208,7 +208,7 @@ def work(scene: SceneResults) -> Table:
     made = Table(["mode", "spp", *columns, "frame, B/pixel", "peak, MB"])
     for mode, point in points_of(scene):
         stages, rays, frame, peak = (
-            point.first(n) for n in ("cpu_seconds", "rays", "frame_memory_bytes", "peak_memory_bytes")
+            point.first(n) for n in ("cpu_seconds", "rays", "film_memory_bytes", "peak_memory_bytes")
         )
         if peak is None:
             continue

@@ -41,7 +41,7 @@ Answer = dict[str, Any]
 AnswerJob = Callable[[Job, Path], Answer]
 
 BOUNCES = ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "transparent_max_bounces")
-STATS = ("cpu_seconds", "rays", "frame_memory_bytes", "shifts", "unbiased", "reconstruction")
+STATS = ("cpu_seconds", "rays", "film_memory_bytes", "shifts", "unbiased", "reconstruction")
 
 
 def prepare(path: str, width: int, height: int) -> dict[str, int]:

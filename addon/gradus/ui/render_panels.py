@@ -203,7 +203,6 @@ PHASES = (
     "store",
     "reconstruct",
     "denoise",
-    "filter",
     "upload",
 )
 """Phases of a stats object in the order of the render."""

@@ -54,6 +54,7 @@ void FrameDelivery::render() {
   double seconds_ahead = 0.0, cpu_ahead = 0.0;
   if (sequence_->settings_.with_flow && has_flow(developed_->pictures))
     find_flow(previous.get(), &seconds_ahead, &cpu_ahead);
+  image_bytes_ = developed_->pictures.memory_bytes();
   check_cancelled();
   sequence_->forget_before(sequence_->needs(number_).first);
   const std::lock_guard lock(mutex_);
@@ -77,6 +78,7 @@ std::shared_ptr<const DevelopedFrame> FrameDelivery::make() {
     developed_ = own;
   }
   if (!is_developed) developer.develop_picture(own.get());
+  image_bytes_ = own->pictures.memory_bytes();
   return previous;
 }
 
@@ -168,12 +170,11 @@ std::string FrameDelivery::stats() const {
   return render::stats_json(own->record.stats, own->record.plan, *own->pictures.film);
 }
 
-std::shared_ptr<const film::Film> FrameDelivery::film() const { return developed("its frame comes")->pictures.film; }
+std::shared_ptr<const film::Film> FrameDelivery::film() const { return developed("its film comes")->pictures.film; }
 
 uint64_t FrameDelivery::memory_bytes() const {
   if (!developed_) return 0;
-  const output::DevelopedFilm& pictures = developed_->pictures;
-  return pictures.film->memory_bytes() + 4 * uint64_t(pictures.region.area()) * sizeof(float);
+  return developed_->pictures.film->memory_bytes() + image_bytes_;
 }
 
 }  // namespace gradus::animation

@@ -2,6 +2,7 @@
 // neighbouring frames where a pass needs it.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -46,6 +47,8 @@ class FrameDelivery final : public render::RenderTask {
   const std::optional<GradusSettings> changed_;
   const CancelCheck cancel_ = [this] { return is_stopped(); };
   std::shared_ptr<DevelopedFrame> developed_;
+  // Bytes of the images of `developed_`. progress() reads them while the render thread adds images.
+  std::atomic<uint64_t> image_bytes_{0};
   std::vector<std::string> warnings_;  // from loading the flow library
 };
 

@@ -25,8 +25,8 @@ render::Plan plan_of(const film::Film& film) {
   plan.reconstruction = film.settings.reconstruction;
   plan.gradients = film.gradients;
   plan.solves = true;
-  plan.adaptive = film.settings.noise_threshold > 0.0f;
-  plan.unbiased = !plan.adaptive && !(film.settings.clamp_direct > 0.0f) && !(film.settings.clamp_indirect > 0.0f);
+  plan.adaptive = render::is_adaptive(film.settings);
+  plan.unbiased = render::takes_unbiased_samples(film.settings);
   plan.channels = film.color_channels;
   plan.passes = film.settings.passes;
   plan.sampled = film.region;
@@ -80,6 +80,7 @@ std::shared_ptr<DevelopedFrame> FrameDeveloper::read() {
   const SequenceFolder& folder = sequence_.folder_;
   const std::shared_ptr<film::Film> film =
       folder.load(number_, FrameSamples::kFresh, film_io::StoredContent::kAll, is_cancelled_);
+  if (requested_) film->settings.film_exposure = requested_->film_exposure;
   output::DevelopedFilm& pictures = frame->pictures;
   pictures.region = film::delivered_region(*film);
   pictures.threads = threads_;
@@ -107,11 +108,8 @@ std::shared_ptr<DevelopedFrame> FrameDeveloper::read() {
   facts.samples = film::mean_samples(*film);
   facts.has_denoiser = denoiser_ != nullptr;
   pictures.options = output::resolve_auto(requested, facts);
-  const bool denoises = pictures.options.denoiser != GRADUS_DENOISER_NONE;
-  if (denoises && plan.denoises_if_it_pays &&
-      !render::denoises_after(plan, facts.samples, &stats.chosen, &stats.skipped)) {
-    pictures.options.denoiser = GRADUS_DENOISER_NONE;
-  }
+  if (plan.denoises_if_it_pays && requested.denoiser == GRADUS_DENOISER_AUTO)
+    render::denoises_after(plan, facts.samples, &stats.chosen, &stats.skipped);
   output::store_options(pictures.options, &film->settings);
   pictures.film = film;
   return frame;
@@ -119,7 +117,9 @@ std::shared_ptr<DevelopedFrame> FrameDeveloper::read() {
 
 bool FrameDeveloper::would_develop(const DevelopedFrame& developed) const {
   if (developed.pictures.film->frame_number != number_) return false;
-  return requested_ ? developed.requested == output::options_of(*requested_) : !developed.requested;
+  if (!requested_) return !developed.requested;
+  return developed.requested == output::options_of(*requested_) &&
+         developed.pictures.film->settings.film_exposure == requested_->film_exposure;
 }
 
 void FrameDeveloper::develop_picture(DevelopedFrame* frame) {
@@ -164,6 +164,7 @@ reconstruct::Reconstructed FrameDeveloper::take_from_windows(const output::Devel
 
 void FrameDeveloper::read_differences_over_time(const film::Film& film, output::DevelopedFilm* developed) {
   const output::Options options = output::resolve_auto(requested_options(film.settings), sequence_.facts_of(number_));
+  const float exposure = film.settings.film_exposure;
   const Region& region = developed->region;
   const SequenceFolder& folder = sequence_.folder_;
   const int place = sequence_.place_of(number_) + 1;
@@ -191,7 +192,7 @@ void FrameDeveloper::read_differences_over_time(const film::Film& film, output::
     for (int32_t x = region.x0; x < region.x1; ++x, out += 3) {
       const auto i = size_t(x - film.region.x0);
       if (correspondence[i] == film::kNoCorrespondence || !is_finite(differences[i * size_t(channels)])) continue;
-      for (size_t c = 0; c < 3; ++c) difference[out + c] = options.exposure * differences[i * size_t(channels) + c];
+      for (size_t c = 0; c < 3; ++c) difference[out + c] = exposure * differences[i * size_t(channels) + c];
       link[out] = float(correspondence[i] % width - int32_t(i));
       link[out + 1] = float(correspondence[i] / width - row);
       link[out + 2] = 1.0f;

@@ -63,7 +63,7 @@ std::string FrameSampling::stats() const {
   return render::stats_json(record_.stats, record_.plan, *half);  // the record does not change after the end
 }
 
-std::shared_ptr<const film::Film> FrameSampling::film() const { return fresh_film("its frame comes"); }
+std::shared_ptr<const film::Film> FrameSampling::film() const { return fresh_film("its film comes"); }
 
 std::shared_ptr<const film::Film> FrameSampling::fresh_film(const char* what) const {
   const std::lock_guard one_reader(reading_);

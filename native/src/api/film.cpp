@@ -42,7 +42,7 @@ GradusError gradus_film_save(GradusFilm film, const char* path) {
 
 GradusError gradus_film_load(GradusDevice device, const char* path, GradusFilm* film) {
   return api::guard([&] {
-    api::require(film, "frame") = 0;
+    api::require(film, "film") = 0;
     const auto shared_device = api::find_handle<scene::Device>(device);
     const std::string file = &api::require(path, "path");
     std::shared_ptr<const film::Film> loaded;

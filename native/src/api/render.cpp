@@ -97,7 +97,7 @@ GradusError gradus_render_stats(GradusRender render, const char** json) {
 
 GradusError gradus_render_film(GradusRender render, GradusFilm* film) {
   return api::guard([&] {
-    api::require(film, "frame") = 0;
+    api::require(film, "film") = 0;
     const auto from = api::find_handle<api::RenderObject>(render);
     *film = api::add_handle(std::make_shared<api::FilmObject>(from->device, from->render.film()));
   });

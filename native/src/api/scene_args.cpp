@@ -2,6 +2,7 @@
 
 #include "api/guard.h"
 #include "api/structs.h"
+#include "geometry/matrix_keys.h"
 #include "geometry/mesh.h"
 
 namespace gradus::api {
@@ -51,8 +52,9 @@ void check_tile(const GradusImageTile& tile) {
 MeshArgs::MeshArgs(const GradusMesh* from) : mesh(read_struct(from, "mesh")) {
   mesh.name = checked_name(mesh.name, "mesh.name");
   checked_name(mesh.default_uv, "mesh.default_uv");
-  if (mesh.key_count == 0 || mesh.key_count > 1024)
-    throw invalid_argument("mesh.key_count is " + std::to_string(mesh.key_count));
+  if (mesh.key_count == 0 || mesh.key_count > geometry::kMaxShutterKeys)
+    throw invalid_argument("mesh.key_count is " + std::to_string(mesh.key_count) + ", not 1 to " +
+                           std::to_string(geometry::kMaxShutterKeys));
   if (mesh.key_count > 1) check_array(mesh.key_times, mesh.key_count, "mesh.key_times");
   check_array(mesh.positions, mesh.vertex_count, "mesh.positions", size_t{3} * mesh.key_count);
   check_array(mesh.corner_vertices, mesh.corner_count, "mesh.corner_vertices");

@@ -70,7 +70,7 @@ bool has_features(const Film& film) { return holds_features(film.channels.passes
 FeatureImage read_feature(const Film& film, uint32_t pass, HalfRange halves) {
   const Channel* plane = film.channels.of_pass(pass);
   if (plane == nullptr || !plane->info.in_halves) {
-    throw invalid_operation("the frame does not keep " + std::string(schema::pass_info(pass).name) + " in halves");
+    throw invalid_operation("the film does not keep " + std::string(schema::pass_info(pass).name) + " in halves");
   }
   FeatureImage image;
   image.channels = plane->info.values_per_pixel;

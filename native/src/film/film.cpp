@@ -5,16 +5,12 @@
 #include <tbb/parallel_for.h>
 
 #include "base/text_list.h"
+#include "film/counter_fields.h"
 
 namespace gradus::film {
 
 void Counters::add(const Counters& other) {
-  static_assert(sizeof(Counters) % sizeof(uint64_t) == 0);
-  auto* sum = reinterpret_cast<uint64_t*>(this);
-  const auto* term = reinterpret_cast<const uint64_t*>(&other);
-  for (size_t i = 0; i < sizeof(Counters) / sizeof(uint64_t); ++i) {
-    sum[i] += term[i];
-  }
+  for (const CounterField& field : kCounterFields) this->*field.value += other.*field.value;
 }
 
 namespace {

@@ -193,7 +193,7 @@ void add_all(const std::vector<T>& from, const Plane& plane, std::vector<T>* to,
 
 template <class T>
 void add_all(const std::vector<T>&, const Plane&, std::vector<T>*, Counters*) {
-  throw invalid_operation("a plane of values that cannot be added has the rule to add them");
+  throw invalid_operation("a plane of values that cannot be added has the merge rule kAdd");
 }
 
 void add_pairs(const std::vector<float>& from, uint32_t values_per_pixel, std::vector<float>* to, Counters* counters) {

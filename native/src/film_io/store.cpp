@@ -148,7 +148,7 @@ void check_plane(const std::vector<Value>& plane, const std::string& what) {
 // all channels.
 void check_planes(const film::Film& film) {
   for (const film::ComponentPlanes& planes : film.components) {
-    for (const auto& half : planes.non_specular) check_plane(half, "first rough vertices");
+    for (const auto& half : planes.non_specular) check_plane(half, "first non-specular vertices");
     check_plane(planes.details, "details of vertices");
     check_plane(planes.motion, "motion");
     check_plane(planes.tracked, "causes of lost motion");
@@ -177,7 +177,7 @@ int number_of(const Imf::MultiPartInputFile& file, const std::string& part) {
 film::Film read_film(const std::string& path, StoredContent content, const std::string* only,
                      const CancelCheck& cancel) {
   Imf::MultiPartInputFile file = open_file(path);
-  film::Film film = make_frame(file.header(0), content, only);
+  film::Film film = make_film(file.header(0), content, only);
   const std::vector<StoredPart> parts = stored_parts(film::planes_of(&film));
   const bool is_whole = content == StoredContent::kAll && only == nullptr;
   if (is_whole && size_t(file.parts()) != parts.size()) throw invalid_argument("it has parts of something else");
@@ -199,11 +199,11 @@ auto load(const std::string& path, const Read& read) {
     return read();
   } catch (const Error& e) {
     if (e.code() == GRADUS_ERROR_CANCELLED) throw;
-    throw Error(e.code(), "cannot load frame " + path + ": " + e.what());
+    throw Error(e.code(), "cannot load film " + path + ": " + e.what());
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& e) {
-    throw invalid_argument("cannot load frame " + path + ": " + exr_problem(e));
+    throw invalid_argument("cannot load film " + path + ": " + exr_problem(e));
   }
 }
 

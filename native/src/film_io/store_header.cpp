@@ -1,7 +1,6 @@
 #include "film_io/store_header.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include <ImfChannelList.h>
 #include <ImfPartType.h>
@@ -10,6 +9,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "film/counter_fields.h"
 #include "film/film.h"
 #include "film/pixel_blocks.h"
 #include "film/planes.h"
@@ -21,8 +21,8 @@ namespace {
 
 using nlohmann::json;
 
-// Format versions. Films whose channels are all passes keep the first one, which earlier versions of Gradus read, too.
-constexpr int kFormat = 9, kFormatWithChannels = 10;
+// Format that is written, and the oldest one that is read. Films of the formats 9 and 10 hold their counters as a list.
+constexpr int kFormat = 11, kOldestFormat = 9;
 constexpr size_t kMaxStoredComponents = 64;
 constexpr int kMaxSide = 1 << 16;
 constexpr const char* kAttribute = "gradus";
@@ -37,18 +37,22 @@ std::string hex(uint64_t value) {
 }
 
 json counters_to_json(const film::Counters& counters) {
-  std::vector<uint64_t> values(sizeof(film::Counters) / sizeof(uint64_t));
-  std::memcpy(values.data(), &counters, sizeof(film::Counters));
-  return values;
+  json j = json::object();
+  for (const film::CounterField& field : film::kCounterFields)
+    j[json::json_pointer(field.path)] = counters.*field.value;
+  return j;
 }
 
 uint64_t key_from_json(const json& j) { return std::stoull(j.get<std::string>(), nullptr, 16); }
 
 film::Counters counters_from_json(const json& j) {
-  const auto values = j.get<std::vector<uint64_t>>();
   film::Counters counters;
-  std::memcpy(static_cast<void*>(&counters), values.data(),
-              std::min(values.size() * sizeof(uint64_t), sizeof(film::Counters)));
+  const std::vector<uint64_t> listed = j.is_array() ? j.get<std::vector<uint64_t>>() : std::vector<uint64_t>();
+  for (size_t i = 0; i < std::size(film::kCounterFields); ++i) {
+    const film::CounterField& field = film::kCounterFields[i];
+    if (i < listed.size()) counters.*field.value = listed[i];  // of an older film
+    if (j.is_object()) counters.*field.value = j.value(json::json_pointer(field.path), uint64_t{0});
+  }
   return counters;
 }
 
@@ -143,7 +147,7 @@ std::vector<film::ChannelInfo> stored_channels(const json& description, const fi
 
 json describe_samples(const film::Film& film) {
   const film::ComponentContent kept = film::component_content(film);
-  return {{"format", has_other_channels(film) ? kFormatWithChannels : kFormat},
+  return {{"format", kFormat},
           {"version", gradus_version_text()},
           {"frame", film.frame_number},
           {"channels", film.color_channels},
@@ -193,10 +197,10 @@ Imf::Header make_header(const film::Film& film, const StoredPart& part) {
 
 json description_of(const Imf::Header& header) {
   const auto* attribute = header.findTypedAttribute<Imf::StringAttribute>(kAttribute);
-  if (!attribute) throw damaged("it is no frame of Gradus");
+  if (!attribute) throw damaged("it is not a film of Gradus");
   json description = json::parse(attribute->value());
-  const json& format = description.at("format");
-  if (format != kFormat && format != kFormatWithChannels) throw damaged("it was written by another version of Gradus");
+  const int format = description.at("format");
+  if (format < kOldestFormat || format > kFormat) throw damaged("it was written by another version of Gradus");
   return description;
 }
 
@@ -233,7 +237,7 @@ film::FilmHeader read_header(const Imf::Header& header, const json& description)
   film::FilmHeader film;
   film.region = region_of(header);
   film.color_channels = description.at("channels");
-  if (film.color_channels != 3 && film.color_channels != 4) throw damaged("its planes are wrong");
+  if (film.color_channels != 3 && film.color_channels != 4) throw damaged("its number of colour channels is wrong");
   film.gradients = description.at("gradients");
   film.planes = description.at("planes");
   film.of_components = component_content_from_json(description);
@@ -275,11 +279,12 @@ std::vector<Imf::Header> make_headers(const film::Film& film, const std::vector<
 
 film::FilmHeader read_header(const Imf::Header& header) { return read_header(header, description_of(header)); }
 
-film::Film make_frame(const Imf::Header& header, StoredContent content, const std::string* only) {
+film::Film make_film(const Imf::Header& header, StoredContent content, const std::string* only) {
   const json description = description_of(header);
   const film::FilmHeader known = read_header(header, description);
   const json& names = description.at("components");
-  if (!names.is_array() || names.empty() || names.size() > kMaxStoredComponents) throw damaged("its planes are wrong");
+  if (!names.is_array() || names.empty() || names.size() > kMaxStoredComponents)
+    throw damaged("its list of components is wrong");
   const int components = int(names.size());
   const bool is_whole = content == StoredContent::kAll, gradients = is_whole && known.gradients;
   const film::ComponentContent kept = is_whole ? known.of_components : film::ComponentContent{};
@@ -316,7 +321,7 @@ film::Film make_frame(const Imf::Header& header, StoredContent content, const st
     // Older films have the key "own_sources".
     const char* const key = description.contains("own_sources") ? "own_sources" : "component_maps";
     for (const int own : description.value(key, std::vector<int>())) {
-      if (own < 0 || own >= components) throw damaged("its planes are wrong");
+      if (own < 0 || own >= components) throw damaged("a replay map belongs to no component");
       if (film.components[size_t(own)].primal[0].empty()) continue;  // The component is not read.
       film.replayed.of_component.resize(size_t(components));
       film.replayed.of_component[size_t(own)] = correspondence;

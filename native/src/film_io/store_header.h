@@ -19,7 +19,7 @@ std::vector<Imf::Header> make_headers(const film::Film& film, const std::vector<
 // larger than the memory.
 film::FilmHeader read_header(const Imf::Header& header);
 // Returns a film with zeroed planes. `only` is the single component with planes; nullptr: all have planes.
-film::Film make_frame(const Imf::Header& header, StoredContent content, const std::string* only = nullptr);
+film::Film make_film(const Imf::Header& header, StoredContent content, const std::string* only = nullptr);
 // Throws Error unless the header is one that make_headers() makes for the part.
 void check_part(const Imf::Header& header, const Imf::Header& first, const StoredPart& part);
 

@@ -16,7 +16,6 @@ namespace {
 // Maximum number of elements. Indices have 32 bits, and Embree takes at most 2^32 - 2^5 primitives. A larger number is
 // an error of the caller.
 constexpr size_t kMaxElements = size_t(1) << 31;
-constexpr uint32_t kMaxKeys = kMaxShutterKeys;
 // Maximum magnitude of a coordinate. Embree leaves out triangles beyond about 1.8e18, and other code squares lengths in
 // float.
 constexpr float kMaxCoordinate = 1e18f;
@@ -40,9 +39,10 @@ bool usable(const Vec3& p) {
   return std::fabs(p.x) < kMaxCoordinate && std::fabs(p.y) < kMaxCoordinate && std::fabs(p.z) < kMaxCoordinate;
 }
 
-// Throws Error INVALID_ARGUMENT if a count is out of range or an array is missing.
+// Throws Error INVALID_ARGUMENT if a count is out of range or an array is missing. Embree's limit for keys holds for
+// time keys, too.
 void check_counts(const GradusMesh& m, const Check& check) {
-  check.that(m.key_count >= 1 && m.key_count <= kMaxKeys, "number of time keys out of range");
+  check.that(m.key_count >= 1 && m.key_count <= kMaxShutterKeys, "number of time keys out of range");
   check.that(m.vertex_count < kMaxElements && m.corner_count < kMaxElements && m.triangle_count < kMaxElements &&
                  m.face_count < kMaxElements,
              "too many elements");

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include "base/error.h"
 #include "base/threads.h"
 #include "base/types.h"
@@ -41,7 +45,8 @@ std::vector<float> read_guide(const film::Film& film, uint32_t pass, const Regio
       film.region, region);
 }
 
-// Replaces the colours of `combined`, RGBA, by their weighted geometric mean with `image`, RGB.
+// Replaces the colours of `combined`, RGBA, by their weighted geometric mean with `image`, RGB. The threads of the
+// caller's TBB arena share the work.
 void blend(const std::vector<float>& image, std::vector<float>* combined) {
   std::vector<float> light;
   light.reserve(image.size() / 3);
@@ -50,12 +55,15 @@ void blend(const std::vector<float>& image, std::vector<float>* combined) {
     if (sum > 0.0f && is_finite(sum)) light.push_back(sum / 3.0f);
   }
   const float dark = kDark * reconstruct::median_or_one(&light), minimum = 1e-3f * dark;
-  for (size_t i = 0; i < image.size(); ++i) {
-    float& value = (*combined)[i / 3 * 4 + i % 3];
-    if (!is_finite(value)) continue;
-    const float regressed = std::max(value + dark, minimum), denoised = std::max(image[i] + dark, minimum);
-    value = std::max(regressed * std::pow(denoised / regressed, kShareOfNetwork) - dark, 0.0f);
-  }
+  constexpr size_t kValuesPerTask = 4096;
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, image.size(), kValuesPerTask), [&](const auto& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      float& value = (*combined)[i / 3 * 4 + i % 3];
+      if (!is_finite(value)) continue;
+      const float regressed = std::max(value + dark, minimum), denoised = std::max(image[i] + dark, minimum);
+      value = std::max(regressed * std::pow(denoised / regressed, kShareOfNetwork) - dark, 0.0f);
+    }
+  });
 }
 
 // Replaces the colours of `combined`, RGBA, by those of `image`, RGB.
@@ -86,24 +94,28 @@ std::vector<float> denoise_or_throw(const OidnLibrary& library, const film::Film
   const bool blends = reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED,
              sampled = blends || reconstruction == GRADUS_RECONSTRUCTION_NONE;
   const Region& seen = sampled ? film.region : region;
-  std::vector<float> albedo, normal;
-  if (film::has_features(film)) {
-    tbb::task_arena(arena_size(threads)).execute([&] {
+  std::vector<float> albedo, normal, noisy;
+  tbb::task_arena arena(arena_size(threads));
+  arena.execute([&] {
+    if (film::has_features(film)) {
       albedo = read_guide(film, GRADUS_PASS_DENOISING_ALBEDO, seen);
       normal = read_guide(film, GRADUS_PASS_DENOISING_NORMAL, seen);
-    });
-  }
-  std::vector<float> noisy;
-  if (sampled) {
-    noisy.resize(4 * size_t(seen.area()));
-    read_film_pass(film, GRADUS_PASS_NOISY_IMAGE, seen, noisy.data());
-  }
+    }
+    if (sampled) {
+      noisy.resize(4 * size_t(seen.area()));
+      read_film_pass(film, GRADUS_PASS_NOISY_IMAGE, seen, noisy.data());
+    }
+  });
   NoisyPicture picture{seen.width(), seen.height(), sampled ? noisy.data() : combined.data(), 4};
   if (!albedo.empty()) picture.albedo = albedo.data();
   if (!normal.empty()) picture.normal = normal.data();
   const std::vector<float> image = crop(denoise(library, picture, threads, cancel), seen, region);
   std::vector<float> result = combined;
-  blends ? blend(image, &result) : replace(image, &result);
+  if (blends) {
+    arena.execute([&] { blend(image, &result); });
+  } else {
+    replace(image, &result);
+  }
   return result;
 }
 

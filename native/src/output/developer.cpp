@@ -167,7 +167,7 @@ bool Developer::denoise(DevelopedFilm* developed, std::vector<std::string>* warn
   if (denoiser_ == nullptr) throw invalid_operation("there is no denoiser");
   const FlushDenormals flush;
   const film::Film& film = *developed->film;
-  if (!film::has_features(film)) warnings->emplace_back("the frame holds no features to guide the denoiser");
+  if (!film::has_features(film)) warnings->emplace_back("the film holds no features to guide the denoiser");
   const uint32_t reconstruction = developed->options.reconstruction;
   const Image before = developed->find(GRADUS_PASS_COMBINED);
   std::string failure;

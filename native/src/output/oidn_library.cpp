@@ -47,7 +47,7 @@ std::string check_version(const OidnApi& api) {
   if (!device) {
     const char* text = nullptr;
     api.get_device_error(nullptr, &text);
-    throw Unusable(std::string("it makes no device: ") + (text ? text : "it says not why"));
+    throw Unusable(std::string("it cannot create a device: ") + (text ? text : "it gives no reason"));
   }
   const std::array numbers = {api.get_device_int(device, "versionMajor"), api.get_device_int(device, "versionMinor"),
                               api.get_device_int(device, "versionPatch")};

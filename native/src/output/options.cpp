@@ -31,14 +31,13 @@ uint32_t resolve_denoiser(uint32_t denoiser, const FilmFacts& facts) {
 }  // namespace
 
 Options options_of(const GradusSettings& settings) {
-  return {settings.reconstruction, settings.reconstruction_alpha, settings.denoiser, settings.film_exposure};
+  return {settings.reconstruction, settings.reconstruction_alpha, settings.denoiser};
 }
 
 void store_options(const Options& options, GradusSettings* settings) {
   settings->reconstruction = options.reconstruction;
   settings->reconstruction_alpha = options.alpha;
   settings->denoiser = options.denoiser;
-  settings->film_exposure = options.exposure;
 }
 
 FilmFacts facts_of(const film::Film& film, bool has_denoiser) {

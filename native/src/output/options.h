@@ -16,7 +16,6 @@ struct Options {
   uint32_t reconstruction = GRADUS_RECONSTRUCTION_NONE;
   float alpha = 0.0f;  // weight of the noisy image against the gradients; 0: reconstruct::chosen_alpha()
   uint32_t denoiser = GRADUS_DENOISER_NONE;
-  float exposure = 1.0f;  // factor on all radiance; readers of the film take it from the film's settings
   bool operator==(const Options&) const = default;
 };
 
@@ -39,9 +38,11 @@ FilmFacts facts_of(const film::Film& film, bool has_denoiser);
 // would.
 inline constexpr uint32_t kDenoiserPays = 8;
 
-// Replaces AUTO; this is the only place that does. The reconstruction becomes the one for which the film was sampled.
-// If that is not known, it becomes the best one for which the film holds the data. The denoiser runs if there is one
-// and it pays. Throws invalid_argument for a value that is no reconstruction.
+// Replaces AUTO of the reconstruction and of the denoiser; nothing else does. The integrator is chosen by the plan
+// (render/plan.h), and a weight alpha of 0 stands for reconstruct::chosen_alpha(). The reconstruction becomes the one
+// for which the film was sampled. If that is not known, it becomes the best one for which the film holds the data. The
+// denoiser runs if there is one and the film has enough samples. Throws invalid_argument for a value that is no
+// reconstruction.
 Options resolve_auto(Options options, const FilmFacts& facts);
 
 // Returns the number of threads that sample and develop a film with these settings. `device` may be nullptr if

@@ -78,7 +78,7 @@ void for_pixels(const film::Film& film, const Region& region, const Function& fu
 // Reads whole rows of the film with read(y, values), where y is counted from the film's first row. Then calls
 // function(pixel, out) for each pixel of the region, with its values and its index in the region.
 template <class Read, class Function>
-void for_rows_of_frame(const film::Film& film, const Region& region, const Read& read, const Function& function) {
+void for_rows_of_film(const film::Film& film, const Region& region, const Read& read, const Function& function) {
   const auto channels = size_t(film.color_channels), width = size_t(region.width());
   for_runs(region, [&](int32_t first, int32_t last) {
     std::vector<float> row(size_t(film.region.width()) * channels);
@@ -119,7 +119,7 @@ void read_gradient(const film::Film& film, const Region& region, bool vertical, 
       const FlushDenormals flush;  // The solvers read the differences in this state.
       film::read_difference_row(film, component, vertical ? film::kUp : film::kRight, {}, y, row);
     };
-    for_rows_of_frame(film, region, read, [&](const float* pixel, size_t out) {
+    for_rows_of_film(film, region, read, [&](const float* pixel, size_t out) {
       for (int c = 0; c < 3; ++c) {
         if (is_finite(pixel[c])) pixels[3 * out + c] += exposure * pixel[c];
       }
@@ -130,7 +130,7 @@ void read_gradient(const film::Film& film, const Region& region, bool vertical, 
 void read_variance_pass(const film::Film& film, const Region& region, float* pixels) {
   const float scale = film.settings.film_exposure * film.settings.film_exposure;
   const auto read = [&](int y, float* row) { film::read_variance_row(film, y, row); };
-  for_rows_of_frame(film, region, read, [&](const float* pixel, size_t out) {
+  for_rows_of_film(film, region, read, [&](const float* pixel, size_t out) {
     for (int c = 0; c < 3; ++c) pixels[3 * out + c] = scale * pixel[c];
   });
 }

@@ -16,11 +16,19 @@ namespace gradus::reconstruct {
 namespace {
 
 // The values below were chosen by measurement: docs/method.md, "Regression on features".
-const RegressionSettings kFine{
-    .octaves = {{.side = 2, .small = true}}, .lattices = 2, .coordinates = true, .ridge = 3e-4f, .floor = 1e-6f};
+constexpr int kFineSide = 2, kMiddleSide = 4, kCoarseSide = 8;  // blocks in pixels
+static_assert(kRegressionGrid % kFineSide == 0 && kRegressionGrid % kMiddleSide == 0 &&
+              kRegressionGrid % kCoarseSide == 0);
+
+const RegressionSettings kFine{.octaves = {{.side = kFineSide, .small = true}},
+                               .lattices = 2,
+                               .coordinates = true,
+                               .ridge = 3e-4f,
+                               .floor = 1e-6f};
 const RegressionSettings kCoarse{
-    .octaves = {{.side = 4}, {.side = 8}}, .coordinates = true, .ridge = 3e-4f, .floor = 1e-6f};
-const RegressionSettings kOfResidual{.octaves = {{.side = 8}}, .coordinates = false, .ridge = 1e-3f, .floor = 1e-6f};
+    .octaves = {{.side = kMiddleSide}, {.side = kCoarseSide}}, .coordinates = true, .ridge = 3e-4f, .floor = 1e-6f};
+const RegressionSettings kOfResidual{
+    .octaves = {{.side = kCoarseSide}}, .coordinates = false, .ridge = 1e-3f, .floor = 1e-6f};
 // The noise of a pixel is the mean of a window of this radius, unless kOwnShare times the pixel's own noise is larger,
 // as for a firefly.
 constexpr int kNoiseRadius = 7;

@@ -9,6 +9,10 @@
 
 namespace gradus::reconstruct {
 
+// Side in pixels of a grid at whose lines blocks of all windows begin: a multiple of every Octave::side. A region that
+// begins on the grid has the windows of the full frame.
+inline constexpr int kRegressionGrid = 16;
+
 class FeatureRegression {
  public:
   // Regresses `image` on `features` and freezes the weights of all steps. `delivered_error`, unless it is nullptr,

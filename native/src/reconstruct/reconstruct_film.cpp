@@ -15,10 +15,10 @@ void check_readable(const film::Film& film, uint32_t reconstruction) {
   if (reconstruction == GRADUS_RECONSTRUCTION_NONE) return;
   if (reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
     if (!film::has_features(film))
-      throw invalid_operation("the frame holds no denoising features to reconstruct with: render it with them");
+      throw invalid_operation("the film holds no denoising features to reconstruct with: render it with them");
     return;
   }
-  if (!film.gradients) throw invalid_operation("the frame holds no gradients to reconstruct from");
+  if (!film.gradients) throw invalid_operation("the film holds no gradients to reconstruct from");
 }
 
 bool is_zero(const std::vector<Radiance>& plane) {

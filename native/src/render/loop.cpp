@@ -40,7 +40,7 @@ Plan planned(const LoopInput& input, const HostDenoiser& denoiser) {
   if (!plan.merges_components || !input.samples_only) return plan;
   plan.merges_components = false;
   plan.skipped.emplace_back("merging of small components",
-                            "what is small in one frame of an animation may not be in the next");
+                            "a component that is small in one frame of an animation may not be small in the next");
   return plan;
 }
 
@@ -110,12 +110,11 @@ GradientMap RenderLoop::choose_gradients() {
   Interruption quarter;
   quarter.is_due = [this] { return !input_.resumed && live_view_.quarter_is_due(without_gradients(plan_)); };
   quarter.run = [this] { live_view_.show_quarter(); };
-  const uint64_t cpu = process_cpu_nanoseconds();
   const auto integrator = input_.make_integrator(settings, plan_.integrator);
   arena_.execute([&] {
     map = run_pilot(*integrator, settings, plan_.reconstruction, plan_.sampled, plan_.channels, stop_, quarter);
   });
-  stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu) - live_view_.cpu_seconds();
+  stats_.cpu_seconds.sample += map.cpu_seconds;
   // The result of a cancelled pilot is not usable.
   check_cancelled();
   return map;
@@ -124,13 +123,12 @@ GradientMap RenderLoop::choose_gradients() {
 lpe::ComponentSet RenderLoop::choose_components() {
   if (!plan_.merges_components) return plan_.components;
   if (input_.resumed) return resumed_components(*input_.resumed, plan_);
-  const uint64_t cpu = process_cpu_nanoseconds();
   const GradusSettings settings = pilot_settings(input_.settings);
   const auto integrator = input_.make_integrator(settings, GRADUS_INTEGRATOR_PATH, plan_.components);
   SmallComponents small;
   arena_.execute(
       [&] { small = find_small_components(*integrator, settings, plan_.components, plan_.channels, stop_); });
-  stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu);
+  stats_.cpu_seconds.sample += small.cpu_seconds;
   check_cancelled();
   explain(small, plan_.components, &stats_.skipped);
   return plan_.components.merged(small.bits);
@@ -376,7 +374,7 @@ std::string RenderLoop::stats() const {
 
 std::shared_ptr<const film::Film> RenderLoop::film() const {
   const std::lock_guard lock(mutex_);
-  require_film(film_, "its frame comes", "the render failed before it began: ");
+  require_film(film_, "its film comes", "the render failed before it began: ");
   return film_;
 }
 

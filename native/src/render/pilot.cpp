@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "base/clock.h"
 #include "base/fpu.h"
 #include "film/pixel_blocks.h"
 #include "path/sampler.h"
@@ -151,9 +152,11 @@ GradientMap run_pilot(const integrator::Integrator& integrator, const GradusSett
   const L2Noises l2 = l2_noises(settings, reconstruction);
   std::vector<PilotSums> sums(blocks.blocks.size());
   std::vector<uint8_t> done(sums.size(), 0);
+  std::atomic<uint64_t> cpu{0};  // nanoseconds
   const auto look_at = [&](size_t i) {
     if (is_stopped()) return true;
     const FlushDenormals flush;
+    const uint64_t begin = thread_cpu_nanoseconds();
     film::Counters counters;
     film::Film film(settings.width, settings.height, grown(blocks.blocks[i], 1, full), channels, 1, true);
     const std::vector<size_t> pixels = pixels_of(blocks.blocks[i], film, settings.seed);
@@ -170,6 +173,7 @@ GradientMap run_pilot(const integrator::Integrator& integrator, const GradusSett
     sums[i].shift_rays = double(counters.rays_shift);
     sums[i].shift_shadow_rays = double(counters.rays_shift_shadow);
     done[i] = 1;
+    cpu += thread_cpu_nanoseconds() - begin;
     return interruption.is_due();
   };
   while (!run_until_pause(&done, look_at)) {
@@ -178,6 +182,7 @@ GradientMap run_pilot(const integrator::Integrator& integrator, const GradusSett
   }
   const std::vector<bool> chosen = choose(blocks, sums, reconstruction);
   GradientMap map;
+  map.cpu_seconds = 1e-9 * double(cpu.load());
   map.pixels.assign(size_t(region.area()), 0);
   PilotSums total;
   int64_t kept = 0;
@@ -198,11 +203,12 @@ GradientMap run_pilot(const integrator::Integrator& integrator, const GradusSett
 void explain(const GradientMap& map, Reasons* chosen, Reasons* skipped) {
   char text[200];
   std::snprintf(text, sizeof(text),
-                "a pilot of %llu discarded samples expects that they leave %.2f of the noise for %.1f times the CPU "
-                "time (over the whole image)",
+                "a pilot of %llu discarded samples estimates %.2f times the noise at %.1f times the CPU time with them "
+                "(mean of the whole image)",
                 static_cast<unsigned long long>(map.samples), map.benefit.error, map.benefit.cost);
   if (map.none()) {
-    skipped->emplace_back("gradients", "they do not reduce the error at equal time anywhere: " + std::string(text));
+    skipped->emplace_back("gradients",
+                          "they reduce the error at equal time in no part of the image: " + std::string(text));
     return;
   }
   chosen->emplace_back("gradients in " + std::to_string(std::lround(100.0 * map.share)) + " % of the image", text);

@@ -22,6 +22,7 @@ struct GradientMap {
   double share = 0.0;           // share of the pixels with gradients
   Benefit benefit;              // benefit over the whole region
   uint64_t samples = 0;         // number of samples of the pilot, which are discarded
+  double cpu_seconds = 0.0;     // CPU time of the threads that took them
   bool all() const { return share == 1.0; }
   bool none() const { return share == 0.0; }
 };

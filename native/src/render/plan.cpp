@@ -8,6 +8,7 @@
 #include "base/text_list.h"
 #include "bsdf/ggx.h"
 #include "output/options.h"
+#include "reconstruct/feature_regression.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
 
@@ -29,7 +30,8 @@ bool needs_gradients(uint32_t reconstruction) {
 static_assert(output::kDenoiserPays <= kFirstCheck);  // blocks that stop by their noise have enough samples to denoise
 
 std::string too_few_to_denoise() {
-  return "with fewer than " + std::to_string(output::kDenoiserPays) + " samples its time buys more as samples";
+  return "below " + std::to_string(output::kDenoiserPays) +
+         " samples, more samples reduce the error more than the denoiser";
 }
 
 void choose_automatically(const GradusSettings& settings, Plan* plan) {
@@ -40,14 +42,16 @@ void choose_automatically(const GradusSettings& settings, Plan* plan) {
     plan->integrator = GRADUS_INTEGRATOR_PATH;
     const bool none = settings.reconstruction == GRADUS_RECONSTRUCTION_NONE;
     plan->chosen.emplace_back("integrator path",
-                              none ? "automatic: nothing is reconstructed from differences"
-                                   : "automatic: features make more of more paths than of differences");
+                              none ? "automatic: no reconstruction reads gradients"
+                                   : "automatic: plain path tracing with feature-guided reconstruction "
+                                     "has the smaller error at equal time");
     return;
   }
   plan->integrator = GRADUS_INTEGRATOR_GRADIENT;
   plan->pilot = !wants_differences;
-  plan->chosen.emplace_back("integrator gradient",
-                            plan->pilot ? "automatic: wherever it pays" : "automatic: its passes are asked for");
+  plan->chosen.emplace_back("integrator gradient", plan->pilot
+                                                       ? "automatic: where gradients reduce the error at equal time"
+                                                       : "automatic: passes of gradients are requested");
 }
 
 void choose_integrator(const GradusSettings& settings, Plan* plan) {
@@ -87,7 +91,7 @@ void choose_reconstruction(const GradusSettings& settings, const output::Options
   plan->solves = plan->reconstruction != GRADUS_RECONSTRUCTION_NONE;
   const char* why = requested != GRADUS_RECONSTRUCTION_AUTO
                         ? "set by the user"
-                        : "automatic: features of the surfaces and all samples, by their measured noise";
+                        : "automatic: reads the features of surfaces and all samples, weighted by their noise";
   if (plan->solves) {
     plan->chosen.emplace_back("reconstruction " + choice_of("reconstruction", plan->reconstruction), why);
   } else {
@@ -110,7 +114,8 @@ void choose_denoiser(const GradusSettings& settings, const output::Options& opti
     plan->denoiser = denoiser.name;
     plan->denoises_if_it_pays = automatic && settings.time_limit > 0.0f;
     if (plan->denoises_if_it_pays) return;
-    plan->chosen.emplace_back("denoiser " + denoiser.name, automatic ? "automatic: it is there" : "set by the user");
+    plan->chosen.emplace_back("denoiser " + denoiser.name,
+                              automatic ? "automatic: a denoiser is available" : "set by the user");
   }
 }
 
@@ -128,14 +133,14 @@ void choose_region(const GradusSettings& settings, Plan* plan) {
     plan->sampled.y0 = std::max(full.y0, plan->delivered.y0 - kGuardRing);
     // The windows and blocks of REGULARIZED begin at the same pixels as those of the full frame.
     if (plan->reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
-      plan->sampled.x0 -= plan->sampled.x0 % kMaxRegressionBlock;
-      plan->sampled.y0 -= plan->sampled.y0 % kMaxRegressionBlock;
+      plan->sampled.x0 -= plan->sampled.x0 % reconstruct::kRegressionGrid;
+      plan->sampled.y0 -= plan->sampled.y0 % reconstruct::kRegressionGrid;
     }
     plan->sampled.x1 = std::min(full.x1, plan->delivered.x1 + kGuardRing);
     plan->sampled.y1 = std::min(full.y1, plan->delivered.y1 + kGuardRing);
   }
   if (plan->sampled.area() > plan->delivered.area()) {
-    plan->chosen.emplace_back("guard ring of 35 pixels",
+    plan->chosen.emplace_back("guard ring of " + std::to_string(kGuardRing) + " pixels",
                               "the region is smaller than the frame, and its border should hardly change the image");
   }
 }
@@ -148,7 +153,7 @@ void list_scene(const GradusSettings& settings, const scene::Snapshot& snapshot,
     plan->skipped.emplace_back("half-vector shifts", "no material is sharper than the roughness threshold");
   if (!snapshot.features.has_lights) plan->skipped.emplace_back("light sampling", "the scene has no emitters");
   if (snapshot.features.only_lights_emit)
-    plan->skipped.emplace_back("surfaces at the ends of paths", "no material emits light or lets it through");
+    plan->skipped.emplace_back("emission of surfaces", "no material emits light or is transparent");
   if (plan->channels == 3)
     plan->skipped.emplace_back("alpha channel", "the film is opaque, and no surface is held out");
 }
@@ -185,7 +190,7 @@ void choose_components(const GradusSettings& settings, const scene::SceneFeature
     add_item(plan->components.find(all[i].name) >= 0 ? &names : &absent, all[i].name);
   plan->chosen.emplace_back("components " + names, text.empty() ? "automatic: the default set" : "set by the user");
   if (!absent.empty())
-    plan->skipped.emplace_back("components " + absent, "by the scene's surfaces and lights no path is of their kind");
+    plan->skipped.emplace_back("components " + absent, "no path of this scene can match their expressions");
 }
 
 void choose_passes(const GradusSettings& settings, Plan* plan) {
@@ -201,7 +206,7 @@ void list_passes(Plan* plan) {
   for (uint32_t pass = GRADUS_PASS_NOISY_IMAGE; pass < GRADUS_PASS_COUNT; ++pass) {
     if (!schema::has_bit(plan->passes, pass)) add_item(&names, schema::pass_info(pass).name);
   }
-  if (!names.empty()) plan->skipped.emplace_back("passes " + names, "not asked for");
+  if (!names.empty()) plan->skipped.emplace_back("passes " + names, "not requested");
 }
 
 // Returns the number of samples before a block may stop. If `min_samples` is 0, it follows from the threshold. Along a
@@ -225,21 +230,30 @@ Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot, 
   choose_region(settings, &plan);
   plan.channels = settings.film_transparent || snapshot.features.has_holdouts ? 4 : 3;
   plan.first_check = first_check(settings);
-  plan.adaptive = settings.noise_threshold > 0.0f && settings.samples > kFirstCheck;
+  plan.adaptive = is_adaptive(settings);
   if (plan.adaptive) {
-    plan.chosen.emplace_back("samples where the noise is",
-                             "Noise Threshold is set: pixel blocks below it stop, others share samples by noise");
+    plan.chosen.emplace_back(
+        "adaptive sampling",
+        "Noise Threshold is set: pixel blocks below it stop, the others share samples by their noise");
   } else {
-    plan.skipped.emplace_back("samples where the noise is",
+    plan.skipped.emplace_back("adaptive sampling",
                               settings.noise_threshold > 0.0f ? "16 samples or fewer" : "Noise Threshold is 0");
   }
-  const bool clamps = settings.clamp_direct > 0.0f || settings.clamp_indirect > 0.0f;
-  plan.unbiased = !plan.adaptive && !clamps;
+  plan.unbiased = takes_unbiased_samples(settings);
   list_scene(settings, snapshot, &plan);
   choose_components(settings, snapshot.features, &plan);
   choose_passes(settings, &plan);
   list_passes(&plan);
   return plan;
+}
+
+bool is_adaptive(const GradusSettings& settings) {
+  return settings.noise_threshold > 0.0f && settings.samples > kFirstCheck;
+}
+
+bool takes_unbiased_samples(const GradusSettings& settings) {
+  const bool clamps = settings.clamp_direct > 0.0f || settings.clamp_indirect > 0.0f;
+  return !is_adaptive(settings) && !clamps;
 }
 
 bool features_wanted(const Plan& plan) {
@@ -258,7 +272,12 @@ bool denoises_after(const Plan& plan, double samples, Reasons* chosen, Reasons* 
   if (!plan.denoises_if_it_pays) return plan.denoises;
   char taken[80];
   std::snprintf(taken, sizeof(taken), "automatic: %.1f samples were taken within the time limit", samples);
-  if (samples < output::kDenoiserPays) {
+  output::FilmFacts facts;
+  facts.samples = samples;
+  facts.has_denoiser = true;
+  output::Options automatic;
+  automatic.denoiser = GRADUS_DENOISER_AUTO;
+  if (output::resolve_auto(automatic, facts).denoiser == GRADUS_DENOISER_NONE) {
     skipped->emplace_back("denoiser", taken + std::string(": ") + too_few_to_denoise());
     return false;
   }

@@ -59,8 +59,12 @@ Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot,
 // integrator that does where they are needed.
 bool can_sample_gradients(uint32_t integrator);
 
-// Maximum block size of REGULARIZED in pixels; all smaller block sizes divide it (reconstruct/feature_regression.cpp).
-constexpr int kMaxRegressionBlock = 16;
+// Returns whether a render with these settings, which hold the samples of the whole frame, distributes its samples by
+// noise.
+bool is_adaptive(const GradusSettings& settings);
+
+// Returns whether the samples of a render with these settings are unbiased: not clamped and not distributed by noise.
+bool takes_unbiased_samples(const GradusSettings& settings);
 
 // Returns the reconstruction if no gradients are sampled, because the integrator has none or the pilot found no
 // benefit.

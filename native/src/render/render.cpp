@@ -36,8 +36,14 @@ class BlockSignals {
 
 std::unique_ptr<integrator::Integrator> make_integrator(const integrator::IntegratorContext& context,
                                                         uint32_t integrator) {
-  return integrator == GRADUS_INTEGRATOR_GRADIENT ? gradient::make_gradient_integrator(context)
-                                                  : integrator::make_path_integrator(context);
+  switch (integrator) {
+    case GRADUS_INTEGRATOR_PATH:
+      return integrator::make_path_integrator(context);
+    case GRADUS_INTEGRATOR_GRADIENT:
+      return gradient::make_gradient_integrator(context);
+    default:
+      throw unsupported("no integrator is implemented for the value " + std::to_string(integrator));
+  }
 }
 
 namespace {

@@ -19,7 +19,7 @@ namespace gradus::render {
 
 class RenderTask;
 
-// Makes the integrator of a plan. `integrator` is a GradusIntegrator, never AUTO. Tests pass their own factory.
+// Makes the integrator of a plan. Throws `unsupported` for AUTO and unknown values. Tests pass their own factory.
 using IntegratorFactory = std::function<std::unique_ptr<integrator::Integrator>(
     const integrator::IntegratorContext& context, uint32_t integrator)>;
 std::unique_ptr<integrator::Integrator> make_integrator(const integrator::IntegratorContext& context,

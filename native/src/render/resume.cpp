@@ -30,7 +30,7 @@ bool may_contain(const Plan& plan, uint32_t integrator) {
 
 void check_gradients(const film::Film& film, bool wanted) {
   if (film.gradients != wanted)
-    throw invalid_argument(wanted ? "the frame holds no gradients" : "the frame holds gradients");
+    throw invalid_argument(wanted ? "the film holds no gradients" : "the film holds gradients");
 }
 
 uint32_t resumed_samples(const film::Film& film, bool adaptively) {
@@ -40,7 +40,7 @@ uint32_t resumed_samples(const film::Film& film, bool adaptively) {
     for (int32_t y = part.y0; y < part.y1; ++y) {
       for (int32_t x = part.x0; x < part.x1; ++x) {
         if (film::samples_at(film, film.index(x, y)) == first) continue;
-        throw invalid_argument("the frame's pixels differ in their sample counts: a render cannot continue from it");
+        throw invalid_argument(\"the film's pixels differ in their sample counts: a render cannot continue from it");
       }
     }
   }
@@ -57,54 +57,54 @@ lpe::ComponentSet resumed_components(const film::Film& film, const Plan& plan) {
 }
 
 void check_resumable(const film::Film& film, const GradusSettings& settings, const Plan& plan, uint64_t scene_key) {
-  if (film.scene_key != scene_key) throw invalid_argument("the frame shows another scene");
+  if (film.scene_key != scene_key) throw invalid_argument("the film shows another scene");
   if (key_of(film.settings, plan.integrator) != key_of(settings, plan.integrator) ||
       !may_contain(plan, film.settings.integrator)) {
     GradusSettings wanted = settings;
     wanted.integrator = film.settings.integrator;
     const std::string which = schema::sampling_differences(film.settings, wanted);
-    throw invalid_argument("the frame was sampled with other settings: " +
+    throw invalid_argument("the film was sampled with other settings: " +
                            (which.empty() ? "another integrator" : which));
   }
   if (film.region != plan.sampled || film.settings.first_sample != settings.first_sample) {
-    throw invalid_argument("the frame has another region or first sample");
+    throw invalid_argument("the film has another region or first sample");
   }
   const lpe::ComponentSet set = resumed_components(film, plan);
   std::string wanted;
   for (int c = 0; c < set.count(); ++c) add_item(&wanted, set[c].name);
   if (film::component_names(film) != wanted)
-    throw invalid_argument("the frame holds the components " + film::component_names(film) + ", and the render has " +
+    throw invalid_argument("the film holds the components " + film::component_names(film) + ", and the render has " +
                            wanted);
   const std::string gap = film.samples.first_gap(settings.first_sample);
-  if (!gap.empty()) throw invalid_argument("the frame lacks " + gap + ": render and merge these first");
-  if (film.settings.passes != settings.passes) throw invalid_argument("the frame was sampled with other passes");
+  if (!gap.empty()) throw invalid_argument("the film lacks " + gap + ": render and merge these first");
+  if (film.settings.passes != settings.passes) throw invalid_argument("the film was sampled with other passes");
   const film::ComponentContent held = film::component_content(film);
   if ((plan.non_specular_vertices && !held.non_specular) || (plan.non_specular_details && !held.details))
-    throw invalid_argument("the frame was sampled without the passes of components");
+    throw invalid_argument("the film was sampled without the passes of components");
   for (const film::Channel& channel : film.channels) {
     if (channel.pass == GRADUS_PASS_COUNT)
-      throw invalid_argument("the frame holds the channel " + channel.info.name + ", which the render does not sample");
+      throw invalid_argument("the film holds the channel " + channel.info.name + ", which the render does not sample");
   }
   const uint64_t kept = film.channels.passes();
   for (const schema::PassInfo& info : schema::stored_passes(plan.passes)) {
     if (!schema::has_bit(kept, info.pass))
-      throw invalid_argument("the frame lacks " + std::string(info.name) + ", which the reconstruction reads");
+      throw invalid_argument("the film lacks " + std::string(info.name) + ", which the reconstruction reads");
   }
   if (resumed_samples(film, settings.noise_threshold > 0.0f) > settings.samples)
-    throw invalid_argument("the frame has more samples than are asked for");
+    throw invalid_argument("the film has more samples than are asked for");
 }
 
 void merge_films(film::Film* film, const film::Film& other) {
-  if (film->scene_key != other.scene_key) throw invalid_argument("the frames show different scenes");
+  if (film->scene_key != other.scene_key) throw invalid_argument("the films show different scenes");
   if (schema::sampling_key(film->settings) != schema::sampling_key(other.settings))
-    throw invalid_argument("the frames were sampled with different settings");
+    throw invalid_argument("the films were sampled with different settings");
   if (!film::same_components(*film, other))
-    throw invalid_argument("the frames hold different components: " + film::component_names(*film) + ", and " +
+    throw invalid_argument("the films hold different components: " + film::component_names(*film) + ", and " +
                            film::component_names(other));
-  if (!film::can_add(*film, other)) throw invalid_argument("the frames differ in size or planes");
+  if (!film::can_add(*film, other)) throw invalid_argument("the films differ in size or planes");
   if (film->samples.overlap(other.samples)) {
     const uint32_t end = std::max(film->samples.list().back().end, other.samples.list().back().end);
-    throw invalid_argument("the frames share samples: render one of them with first_sample " + std::to_string(end));
+    throw invalid_argument("the films share samples: render one of them with first_sample " + std::to_string(end));
   }
   const bool other_is_first = other.settings.first_sample < film->settings.first_sample;
   film::add_sums(film, other);

@@ -7,6 +7,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "base/clock.h"
 #include "base/fpu.h"
 #include "base/text_list.h"
 #include "film/pixel_blocks.h"
@@ -77,14 +78,17 @@ bool is_small(const std::vector<Light>& groups, size_t component, double light) 
   return maximum <= kSmallInGroup * light && sum <= kSmallInAll * light * double(groups.size());
 }
 
-// Returns the mean light of a test pixel, for each group of the film.
+// Returns the mean light of a test pixel, for each group of the film. Adds the CPU time of the threads to `cpu`, in
+// nanoseconds.
 std::vector<Light> measure_groups(const integrator::Integrator& integrator, const GradusSettings& settings,
-                                  const Region& film, int components, int channels, const std::atomic<bool>& stop) {
+                                  const Region& film, int components, int channels, const std::atomic<bool>& stop,
+                                  std::atomic<uint64_t>* cpu) {
   const int32_t side = block_side(film);
   const std::vector<Region> groups = film::make_pixel_blocks(film, kBlocksPerGroupSide * side);
   std::vector<Light> light(groups.size());
   tbb::parallel_for(size_t{0}, light.size(), [&](size_t i) {
     const FlushDenormals flush;
+    const uint64_t begin = thread_cpu_nanoseconds();
     film::Counters counters;
     const std::vector<Region> blocks = film::make_pixel_blocks(groups[i], side);
     for (const Region& block : blocks) {
@@ -97,6 +101,7 @@ std::vector<Light> measure_groups(const integrator::Integrator& integrator, cons
       add(light_of(frame), &light[i]);
     }
     for (double& part : light[i]) part /= double(blocks.size());
+    *cpu += thread_cpu_nanoseconds() - begin;
   });
   return light;
 }
@@ -106,8 +111,10 @@ std::vector<Light> measure_groups(const integrator::Integrator& integrator, cons
 SmallComponents find_small_components(const integrator::Integrator& integrator, const GradusSettings& settings,
                                       const lpe::ComponentSet& set, int channels, const std::atomic<bool>& stop) {
   const Region film{0, 0, int32_t(settings.width), int32_t(settings.height)};
-  const std::vector<Light> groups = measure_groups(integrator, settings, film, set.count(), channels, stop);
+  std::atomic<uint64_t> cpu{0};
+  const std::vector<Light> groups = measure_groups(integrator, settings, film, set.count(), channels, stop, &cpu);
   SmallComponents small;
+  small.cpu_seconds = 1e-9 * double(cpu.load());
   if (stop.load(std::memory_order_relaxed)) return small;  // cancelled: the result is not complete
   small.samples = kSamples * uint64_t(film::make_pixel_blocks(film, block_side(film)).size());
   const double light = typical(groups);
@@ -126,8 +133,7 @@ void explain(const SmallComponents& small, const lpe::ComponentSet& set, Reasons
   if (names.empty()) return;
   skipped->emplace_back("components " + names,
                         "automatic: " + std::to_string(small.samples) +
-                            " discarded samples found hardly any light of their kind anywhere; it is added to "
-                            "Residual");
+                            " discarded samples found almost no light of them; it is added to Residual");
 }
 
 }  // namespace gradus::render

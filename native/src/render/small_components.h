@@ -15,8 +15,9 @@
 namespace gradus::render {
 
 struct SmallComponents {
-  uint32_t bits = 0;     // bits of the small components of the set
-  uint64_t samples = 0;  // number of samples taken, which are discarded
+  uint32_t bits = 0;         // bits of the small components of the set
+  uint64_t samples = 0;      // number of samples taken, which are discarded
+  double cpu_seconds = 0.0;  // CPU time of the threads that took them
 };
 
 // Takes the samples in the caller's task arena. `integrator` has no offset paths and was made for pilot_settings() and

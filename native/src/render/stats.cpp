@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "film/counter_fields.h"
 #include "schema/options.h"
 
 namespace gradus::render {
@@ -20,33 +21,12 @@ json reasons(const Reasons& planned, const Reasons& later) {
   return result;
 }
 
-json rays(const film::Counters& c) {
-  return {{"primary", c.rays_primary},
-          {"bounce", c.rays_bounce},
-          {"shadow", c.rays_shadow},
-          {"shift", c.rays_shift},
-          {"shift_shadow", c.rays_shift_shadow}};
-}
-
-json shifts(const film::Counters& c) {
-  return {{"attempted", c.shifts_attempted},
-          {"reconnected", c.shifts_reconnected},
-          {"half_vector", c.shifts_half_vector},
-          {"replayed", c.shifts_replayed},
-          {"failed",
-           {{"missed", c.fail_missed},
-            {"occluded", c.fail_occluded},
-            {"class", c.fail_class},
-            {"total_reflection", c.fail_total_reflection},
-            {"side", c.fail_side},
-            {"density", c.fail_density},
-            {"jacobian", c.fail_jacobian},
-            {"border", c.fail_border}}}};
-}
-
 json phases(const PhaseTimes& t) {
-  return {{"sample", t.sample},   {"preview", t.preview}, {"reconstruct", t.reconstruct},
-          {"denoise", t.denoise}, {"filter", 0.0},        {"correspondence", t.correspondence},
+  return {{"sample", t.sample},
+          {"preview", t.preview},
+          {"reconstruct", t.reconstruct},
+          {"denoise", t.denoise},
+          {"correspondence", t.correspondence},
           {"store", t.store}};
 }
 
@@ -93,18 +73,15 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const film::F
   j["cpu_seconds"]["total"] = stats.cpu_seconds.total();
   j["process_cpu"] = stats.process_cpu;
   if (stats.threads > 0) j["threads"] = stats.threads;
-  j["rays"] = rays(film.counters);
-  j["shifts"] = shifts(film.counters);
-  j["nonfinite_dropped"] = {{"radiance", film.counters.nonfinite_radiance},
-                            {"gradient", film.counters.nonfinite_gradient},
-                            {"feature", film.counters.nonfinite_feature}};
+  for (const film::CounterField& field : film::kCounterFields)
+    j[json::json_pointer(field.path)] = film.counters.*field.value;
   if (settings.reconstruction != GRADUS_RECONSTRUCTION_NONE) {
     j["solver"] = {{"outer_steps", stats.solve.outer_steps},
                    {"inner_steps", stats.solve.inner_steps},
                    {"residual", stats.solve.residual},
                    {"hit_cap", stats.solve.hit_cap}};
   }
-  j["frame_memory_bytes"] = film.memory_bytes();
+  j["film_memory_bytes"] = film.memory_bytes();
   j["peak_memory_bytes"] = peak_memory_bytes();
   j["warnings"] = stats.warnings;
   if (stats.solve.hit_cap) j["warnings"].push_back("the reconstruction stopped at its limit of steps");

@@ -29,8 +29,8 @@ struct PhaseTimes {
 };
 
 struct RenderStats {
-  // CPU time of sampling is that of the library's threads, measured by tile. CPU time of everything else (the pilot,
-  // previews, noise estimates, solvers, the denoiser, correspondences, files) is that of the whole process in the
+  // CPU time of sampling, pilots included, is that of the library's threads, measured by tile. CPU time of everything
+  // else (previews, noise estimates, solvers, the denoiser, correspondences, files) is that of the whole process in the
   // meantime, including work of the host.
   PhaseTimes seconds, cpu_seconds;
   double total_seconds = 0.0;

@@ -42,6 +42,14 @@ struct MeshData {
 
 constexpr size_t kAbsurd[] = {UINT32_MAX, SIZE_MAX, SIZE_MAX / 2, SIZE_MAX / 12 + 1};
 
+// Regression: the argument `film` was reported as "frame".
+TEST_F(G2_Pointers, AMissingFilmIsNamed) {
+  EXPECT_EQ(gradus_film_load(device, "film.exr", nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(error_text().find("film is NULL"), std::string::npos) << error_text();
+  EXPECT_EQ(gradus_render_film(0, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(error_text().find("film is NULL"), std::string::npos) << error_text();
+}
+
 TEST_F(G2_Pointers, AbsurdCountsAreRefused) {
   for (const size_t count : kAbsurd) {
     for (size_t GradusMesh::*field :

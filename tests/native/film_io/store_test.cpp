@@ -29,6 +29,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "film/counter_fields.h"
 #include "film/finite_check.h"
 #include "film/planes.h"
 #include "film/splats.h"
@@ -168,7 +169,7 @@ TEST_F(F6_Store, ChannelsThatAreNoPassesAreStoredAndMerged) {
 
   late.first_sample = 16;
   const auto fewer = rendered(late);
-  EXPECT_EQ(refusal_of([&] { render::merge_films(&merged, *fewer); }), "the frames differ in size or planes");
+  EXPECT_EQ(refusal_of([&] { render::merge_films(&merged, *fewer); }), "the films differ in size or planes");
 }
 
 // The values of such channels would be divided by samples that do not have them.
@@ -177,18 +178,49 @@ TEST_F(F6_Store, FilmsWithChannelsThatARenderDoesNotSampleAreNotResumed) {
   const auto film = with_other_channels(settings);
   settings.samples = 4;
   EXPECT_EQ(refusal_of([&] { rendered(settings, film); }),
-            "the frame holds the channel Curvature of surfaces, which the render does not sample");
+            "the film holds the channel Curvature of surfaces, which the render does not sample");
 }
 
-// Earlier versions read format 9 and would take a film with channels of its own for a damaged one.
-TEST_F(F6_Store, FilmsHaveTheLowestFormatThatDescribesTheirChannels) {
-  const auto format = [&](const film::Film& film) {
-    film_io::save_film(film, path());
-    EXPECT_TRUE(same_samples(*film_io::load_film(path()), film));
-    return description_of(Imf::MultiPartInputFile(path().c_str()).header(0))["format"].get<int>();
-  };
-  EXPECT_EQ(format(*rendered(all_passes(16, 16, 2))), 9);
-  EXPECT_EQ(format(*with_other_channels(all_passes(16, 16, 2))), 10);
+// Films that earlier versions wrote without channels of their own, and with such channels.
+TEST_F(F6_Store, FilmsOfTheFormats9And10AreRead) {
+  for (const bool has_channels : {false, true}) {
+    const std::shared_ptr<const film::Film> film =
+        has_channels ? with_other_channels(all_passes(16, 16, 2)) : rendered(all_passes(16, 16, 2));
+    film_io::save_film(*film, path());
+    rewrite(path(), path("earlier.exr"), [&](std::vector<Imf::Header>* headers) {
+      nlohmann::json j = description_of(headers->front());
+      EXPECT_EQ(j["format"], 11);
+      j["format"] = has_channels ? 10 : 9;
+      j["counters"] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
+      headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
+    });
+    const std::shared_ptr<film::Film> earlier = film_io::load_film(path("earlier.exr"));
+    EXPECT_TRUE(same_samples(*earlier, *film));
+    EXPECT_EQ(earlier->counters.rays_primary, 1u);
+    EXPECT_EQ(earlier->counters.shifts_attempted, 6u);
+    EXPECT_EQ(earlier->counters.fail_missed, 10u);
+    EXPECT_EQ(earlier->counters.nonfinite_feature, 20u);
+  }
+}
+
+// Counters are stored by name, so that one that a later version adds or removes does not change the others.
+TEST_F(F6_Store, CountersAreStoredByName) {
+  film::Film film = *rendered(small_settings(16, 16, 2));
+  uint64_t number = 0;
+  for (const film::CounterField& field : film::kCounterFields) film.counters.*field.value = ++number;
+  film_io::save_film(film, path());
+  rewrite(path(), path("changed.exr"), [](std::vector<Imf::Header>* headers) {
+    nlohmann::json j = description_of(headers->front());
+    EXPECT_EQ(j["counters"]["rays"]["shadow"], 3);
+    j["counters"]["rays"].erase("primary");
+    j["counters"]["rays"]["another"] = 100;
+    headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
+  });
+  const std::shared_ptr<film::Film> changed = film_io::load_film(path("changed.exr"));
+  for (const film::CounterField& field : film::kCounterFields) {
+    const bool is_erased = field.value == &film::Counters::rays_primary;
+    EXPECT_EQ(changed->counters.*field.value, is_erased ? 0 : film.counters.*field.value) << field.path;
+  }
 }
 
 TEST_F(F6_Store, RegionsAndPathFilmsToo) {
@@ -491,8 +523,8 @@ TEST_F(F6_Store, ForeignFilesAreRefusedByName) {
       {"it was written by another version of Gradus", GRADUS_ERROR_INVALID_ARGUMENT,
        [](auto* h) { set_format(3, &h->front()); }},
       {"it was written by another version of Gradus", GRADUS_ERROR_INVALID_ARGUMENT,
-       [](auto* h) { set_format(11, &h->front()); }},
-      {"it is no frame of Gradus", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { h->front().erase("gradus"); }},
+       [](auto* h) { set_format(12, &h->front()); }},
+      {"it is not a film of Gradus", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { h->front().erase("gradus"); }},
       {"it was packed by another program", GRADUS_ERROR_INVALID_ARGUMENT,
        [](auto* h) { (*h)[1].compression() = Imf::PIZ_COMPRESSION; }},
       {"it has parts of something else", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { h->pop_back(); }},
@@ -592,7 +624,7 @@ TEST_F(F6_Store, InvalidObjectNumbersOfComponentsAreRefused) {
   const std::pair<const char*, std::function<void(film::ComponentPlanes*)>> damages[] = {
       {"motion", [&](film::ComponentPlanes* planes) { planes->motion[7].z = nan; }},
       {"lost motion", [&](film::ComponentPlanes* planes) { planes->tracked[1900] = nan; }},
-      {"rough vertices", [&](film::ComponentPlanes* planes) { planes->non_specular[1][3].normal.y = nan; }},
+      {"non-specular vertices", [&](film::ComponentPlanes* planes) { planes->non_specular[1][3].normal.y = nan; }},
       {"details", [&](film::ComponentPlanes* planes) { planes->details[9].uv.x = nan; }},
       {"shown points", [&](film::ComponentPlanes* planes) { planes->shown[11].object = nan; }},
       {"shown points", [&](film::ComponentPlanes* planes) { planes->shown[11].object = 1e20f; }},

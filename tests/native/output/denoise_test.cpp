@@ -78,7 +78,7 @@ TEST_F(FakeOidn, IsRefusedWithAReason) {
   behave("old");
   EXPECT_TRUE(has(refusal({kFake, "libno_such_oidn.so"}), "it has version 1.7.5 in place of 2"));
   behave("no_device");
-  EXPECT_TRUE(has(refusal({kFake, "libno_such_oidn.so"}), "it makes no device: the fake makes no device"));
+  EXPECT_TRUE(has(refusal({kFake, "libno_such_oidn.so"}), "it cannot create a device: the fake makes no device"));
 }
 
 // Regression: the message named the path twice, and did not say what should be there.

@@ -20,7 +20,7 @@ uint64_t bit(uint32_t pass) { return uint64_t{1} << pass; }
 
 // Returns sums of random samples; some pixels have none in one half-buffer, some pairs none at one end, some values are
 // denormal.
-film::Film random_frame(int channels) {
+film::Film random_film(int channels) {
   film::Film frame(400, 300, kSampled, channels, 2, true);
   frame.settings.film_exposure = 2.0f;  // exact products: no bit depends on the order of additions
   film::add_pass_channels(
@@ -79,14 +79,14 @@ std::vector<float> gradient_of_images(const film::Film& frame, bool vertical) {
 
 TEST(PassRead, GradientsHaveTheBitsOfWholeImages) {
   for (const int channels : {3, 4}) {
-    const film::Film frame = random_frame(channels);
+    const film::Film frame = random_film(channels);
     EXPECT_EQ(read(frame, GRADUS_PASS_GRADIENT_X, kRead), gradient_of_images(frame, false)) << channels;
     EXPECT_EQ(read(frame, GRADUS_PASS_GRADIENT_Y, kRead), gradient_of_images(frame, true)) << channels;
   }
 }
 
 TEST(PassRead, VarianceIsThatOfTheHalvesMeans) {
-  const film::Film frame = random_frame(3);
+  const film::Film frame = random_film(3);
   const std::vector<float> variance = read(frame, GRADUS_PASS_VARIANCE, kRead);
   size_t out = 0, unknown = 0;
   for (int32_t y = kRead.y0; y < kRead.y1; ++y) {
@@ -107,7 +107,7 @@ TEST(PassRead, VarianceIsThatOfTheHalvesMeans) {
 }
 
 TEST(PassRead, EveryPassHasTheSameBitsForAnyNumberOfThreads) {
-  const film::Film frame = random_frame(4);
+  const film::Film frame = random_film(4);
   for (const uint32_t pass : {GRADUS_PASS_NOISY_IMAGE, GRADUS_PASS_DEPTH, GRADUS_PASS_NORMAL,
                               GRADUS_PASS_DENOISING_ALBEDO, GRADUS_PASS_GRADIENT_X, GRADUS_PASS_GRADIENT_Y,
                               GRADUS_PASS_VARIANCE, GRADUS_PASS_SAMPLE_COUNT, GRADUS_PASS_FALLBACK}) {

@@ -186,7 +186,7 @@ TEST(L3_Merge, FilmsOfUnequalCountsAreAddedPixelByPixel) {
   } catch (const Error& e) {
     const uint32_t end = std::max(first->samples.list().back().end, overlapping->samples.list().back().end);
     EXPECT_EQ(std::string(e.what()),
-              "the frames share samples: render one of them with first_sample " + std::to_string(end));
+              "the films share samples: render one of them with first_sample " + std::to_string(end));
   }
   settings.first_sample = 256;
   const auto second = render_film(settings);

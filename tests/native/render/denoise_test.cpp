@@ -92,7 +92,7 @@ TEST_F(DenoisedRender, IsReportedInStatsPlanAndFilm) {
   const auto render = finished(settings);
   const json stats = json::parse(render->stats_json());
   EXPECT_EQ(stats["denoiser"], "Open Image Denoise 2.7.5");
-  EXPECT_EQ(stats["plan"]["chosen"]["denoiser Open Image Denoise 2.7.5"], "automatic: it is there");
+  EXPECT_EQ(stats["plan"]["chosen"]["denoiser Open Image Denoise 2.7.5"], "automatic: a denoiser is available");
   EXPECT_EQ(stats["unbiased"], false);
   EXPECT_GT(stats["seconds"]["denoise"], 0.0);
   EXPECT_GE(stats["cpu_seconds"]["denoise"], 0.0);
@@ -130,8 +130,9 @@ TEST_F(DenoisedRender, TheAutomaticOneIsLeftOutWhereTheTimeLimitLeavesFewSamples
   EXPECT_EQ(stats["samples"], 1.0);
   EXPECT_TRUE(stats["denoiser"].is_null());
   EXPECT_EQ(stats["plan"]["skipped"]["denoiser"],
-            "automatic: 1.0 samples were taken within the time limit: with fewer than 8 samples its time buys more as "
-            "samples");
+            "automatic: 1.0 samples were taken within the time limit: below 8 samples, more samples reduce the error "
+            "more than "
+            "the denoiser");
   EXPECT_EQ(stats["unbiased"], true);
   EXPECT_EQ(render.film()->settings.denoiser, uint32_t{GRADUS_DENOISER_NONE});
   settings.samples = 8;

@@ -113,7 +113,7 @@ TEST(L3_Merge, RangesWithAGapStaySeparate) {
   EXPECT_EQ(merged.samples.list(), (std::vector<film::SampleRange>{{0, 16}, {32, 48}}));
   EXPECT_THROW(render::merge_films(&merged, *rendered_range(40, 8)), Error);
   EXPECT_EQ(failure_of(small_settings(40, 30, 64), std::make_shared<const film::Film>(merged)),
-            "the frame lacks samples 16 to 31: render and merge these first");
+            "the film lacks samples 16 to 31: render and merge these first");
   render::merge_films(&merged, *rendered_range(16, 16));
   EXPECT_EQ(merged.samples.list(), (std::vector<film::SampleRange>{{0, 48}}));
   const auto resumed = rendered(small_settings(40, 30, 64), std::make_shared<const film::Film>(merged));

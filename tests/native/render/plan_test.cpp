@@ -5,7 +5,10 @@
 
 #include "render/fake_integrator.h"
 #include "render/plan.h"
+#include "render/render.h"
+#include "schema/options.h"
 #include "schema/pass_table.h"
+#include "support/path_scene.h"
 
 namespace gradus {
 namespace {
@@ -41,7 +44,7 @@ TEST(Plan, AutoIsGradientForMethodsThatNeedDifferences) {
   for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_L1}) {
     const render::Plan plan = plan_for(GRADUS_INTEGRATOR_AUTO, reconstruction);
     EXPECT_EQ(plan.integrator, uint32_t{GRADUS_INTEGRATOR_GRADIENT});
-    EXPECT_TRUE(plan.pilot) << "wherever it pays";
+    EXPECT_TRUE(plan.pilot) << "where gradients reduce the error";
   }
   GradusSettings settings = small_settings(64, 64, 4);
   settings.passes |= uint64_t{1} << GRADUS_PASS_GRADIENT_X;
@@ -49,7 +52,20 @@ TEST(Plan, AutoIsGradientForMethodsThatNeedDifferences) {
   settings.reconstruction = GRADUS_RECONSTRUCTION_AUTO;
   const render::Plan plan = render::make_plan(settings, *empty_snapshot());
   EXPECT_TRUE(plan.gradients);
-  EXPECT_FALSE(plan.pilot) << "its passes are asked for";
+  EXPECT_FALSE(plan.pilot) << "its passes are requested";
+}
+
+// Regression: an integrator without an implementation rendered plain paths.
+TEST(Plan, EveryIntegratorOfTheSchemaButAutoIsImplemented) {
+  PathScene scene;
+  build(Scenario::DiffuseArea, &scene);
+  const integrator::IntegratorContext context = scene.context(test_settings(4, 4));
+  for (const schema::Choice& choice : schema::find_option("integrator")->choices) {
+    if (choice.value == GRADUS_INTEGRATOR_AUTO) continue;
+    EXPECT_NE(render::make_integrator(context, choice.value), nullptr) << choice.name;
+  }
+  EXPECT_THROW(render::make_integrator(context, GRADUS_INTEGRATOR_AUTO), Error);
+  EXPECT_THROW(render::make_integrator(context, 1000), Error);
 }
 
 TEST(Plan, PathHasNoGradientsAndReportsIt) {

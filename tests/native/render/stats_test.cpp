@@ -24,6 +24,20 @@ TEST(Stats, ASolverThatStoppedAtItsLimitIsAWarning) {
   EXPECT_EQ(warnings_of(stats), nlohmann::json({"another", "the reconstruction stopped at its limit of steps"}));
 }
 
+TEST(Stats, TimesAddUpToTheirTotal) {
+  render::RenderStats stats;
+  stats.cpu_seconds = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
+  const nlohmann::json found = nlohmann::json::parse(
+      render::stats_json(stats, render::Plan{}, make_test_film(test_settings(4, 4), true)))["cpu_seconds"];
+  EXPECT_EQ(found, nlohmann::json({{"sample", 1.0},
+                                   {"preview", 2.0},
+                                   {"reconstruct", 4.0},
+                                   {"denoise", 8.0},
+                                   {"correspondence", 16.0},
+                                   {"store", 32.0},
+                                   {"total", 63.0}}));
+}
+
 // Regression: a strict render was refused because of a warning about noise.
 TEST(Stats, AStrictRenderRefusesWhatIsLeftOutAndNotWhatIsNoisy) {
   auto noisy = std::make_shared<scene::Snapshot>(*empty_snapshot());

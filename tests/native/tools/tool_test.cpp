@@ -155,7 +155,7 @@ TEST_F(Tool, WarnsThatTheDenoiserHasNoGuides) {
   ASSERT_EQ(run("render good.gradus -o frame.exr --reconstruction l1").code, 0);
   const Outcome made = run(std::string("reconstruct frame.exr -o image.exr") + kFakeDenoiser);
   EXPECT_EQ(made.code, 0);
-  EXPECT_NE(made.err.find("warning: the frame holds no features"), std::string::npos) << made.err;
+  EXPECT_NE(made.err.find("warning: the film holds no features"), std::string::npos) << made.err;
 }
 
 TEST_F(Tool, ReportsTheContentOfFiles) {
@@ -403,7 +403,7 @@ TEST_F(Tool, WritesPassesOfComponents) {
   EXPECT_FALSE(fs::exists(folder / "x.exr"));
 }
 
-// Regression: "cannot load frame f.exr: Cannot read image file "f.exr". Unexpected end of file."
+// Regression: "cannot load film f.exr: Cannot read image file "f.exr". Unexpected end of file."
 TEST_F(Tool, TruncatedFilesAreNamedOnce) {
   ASSERT_EQ(run("render good.gradus -o f.exr").code, 0);
   const auto whole = fs::file_size(folder / "f.exr");
@@ -416,12 +416,12 @@ TEST_F(Tool, TruncatedFilesAreNamedOnce) {
     fs::resize_file(folder / "short.exr", size);
     const Outcome outcome = run("reconstruct short.exr -o x.exr");
     EXPECT_EQ(outcome.code, 1) << size;
-    EXPECT_NE(outcome.err.find("cannot load frame short.exr: "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("cannot load film short.exr: "), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find(cause), std::string::npos) << size << ": " << outcome.err;
     EXPECT_EQ(occurrences(outcome.err, "short.exr"), 1) << outcome.err;
   }
   const Outcome scene = run("reconstruct good.gradus -o x.exr");
-  EXPECT_NE(scene.err.find("cannot load frame good.gradus: it is no OpenEXR file"), std::string::npos) << scene.err;
+  EXPECT_NE(scene.err.find("cannot load film good.gradus: it is no OpenEXR file"), std::string::npos) << scene.err;
 }
 
 // Regression: an EXR was written under the name of a PNG, with exit code 0.
