@@ -140,7 +140,9 @@ void choose_region(const GradusSettings& settings, Plan* plan) {
     plan->sampled.y1 = std::min(full.y1, plan->delivered.y1 + kGuardRing);
   }
   if (plan->sampled.area() > plan->delivered.area()) {
-    plan->chosen.emplace_back("guard ring of " + std::to_string(kGuardRing) + " pixels",
+    std::string ring = "guard ring of ";
+    ring.append(std::to_string(kGuardRing)).append(" pixels");
+    plan->chosen.emplace_back(ring,
                               "the region is smaller than the frame, and its border should hardly change the image");
   }
 }

@@ -40,7 +40,7 @@ uint32_t resumed_samples(const film::Film& film, bool adaptively) {
     for (int32_t y = part.y0; y < part.y1; ++y) {
       for (int32_t x = part.x0; x < part.x1; ++x) {
         if (film::samples_at(film, film.index(x, y)) == first) continue;
-        throw invalid_argument(\"the film's pixels differ in their sample counts: a render cannot continue from it");
+        throw invalid_argument("the film's pixels differ in their sample counts: a render cannot continue from it");
       }
     }
   }

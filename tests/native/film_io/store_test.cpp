@@ -181,48 +181,6 @@ TEST_F(F6_Store, FilmsWithChannelsThatARenderDoesNotSampleAreNotResumed) {
             "the film holds the channel Curvature of surfaces, which the render does not sample");
 }
 
-// Films that earlier versions wrote without channels of their own, and with such channels.
-TEST_F(F6_Store, FilmsOfTheFormats9And10AreRead) {
-  for (const bool has_channels : {false, true}) {
-    const std::shared_ptr<const film::Film> film =
-        has_channels ? with_other_channels(all_passes(16, 16, 2)) : rendered(all_passes(16, 16, 2));
-    film_io::save_film(*film, path());
-    rewrite(path(), path("earlier.exr"), [&](std::vector<Imf::Header>* headers) {
-      nlohmann::json j = description_of(headers->front());
-      EXPECT_EQ(j["format"], 11);
-      j["format"] = has_channels ? 10 : 9;
-      j["counters"] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
-      headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
-    });
-    const std::shared_ptr<film::Film> earlier = film_io::load_film(path("earlier.exr"));
-    EXPECT_TRUE(same_samples(*earlier, *film));
-    EXPECT_EQ(earlier->counters.rays_primary, 1u);
-    EXPECT_EQ(earlier->counters.shifts_attempted, 6u);
-    EXPECT_EQ(earlier->counters.fail_missed, 10u);
-    EXPECT_EQ(earlier->counters.nonfinite_feature, 20u);
-  }
-}
-
-// Counters are stored by name, so that one that a later version adds or removes does not change the others.
-TEST_F(F6_Store, CountersAreStoredByName) {
-  film::Film film = *rendered(small_settings(16, 16, 2));
-  uint64_t number = 0;
-  for (const film::CounterField& field : film::kCounterFields) film.counters.*field.value = ++number;
-  film_io::save_film(film, path());
-  rewrite(path(), path("changed.exr"), [](std::vector<Imf::Header>* headers) {
-    nlohmann::json j = description_of(headers->front());
-    EXPECT_EQ(j["counters"]["rays"]["shadow"], 3);
-    j["counters"]["rays"].erase("primary");
-    j["counters"]["rays"]["another"] = 100;
-    headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
-  });
-  const std::shared_ptr<film::Film> changed = film_io::load_film(path("changed.exr"));
-  for (const film::CounterField& field : film::kCounterFields) {
-    const bool is_erased = field.value == &film::Counters::rays_primary;
-    EXPECT_EQ(changed->counters.*field.value, is_erased ? 0 : film.counters.*field.value) << field.path;
-  }
-}
-
 TEST_F(F6_Store, RegionsAndPathFilmsToo) {
   GradusSettings settings = small_settings(200, 100, 2);
   const uint32_t region[4] = {80, 60, 90, 67};
@@ -448,6 +406,48 @@ void set_format(int format, Imf::Header* header) {
   nlohmann::json j = description_of(*header);
   j["format"] = format;
   header->insert("gradus", Imf::StringAttribute(j.dump()));
+}
+
+// Films that earlier versions wrote without channels of their own, and with such channels.
+TEST_F(F6_Store, FilmsOfTheFormats9And10AreRead) {
+  for (const bool has_channels : {false, true}) {
+    const std::shared_ptr<const film::Film> film =
+        has_channels ? with_other_channels(all_passes(16, 16, 2)) : rendered(all_passes(16, 16, 2));
+    film_io::save_film(*film, path());
+    rewrite(path(), path("earlier.exr"), [&](std::vector<Imf::Header>* headers) {
+      nlohmann::json j = description_of(headers->front());
+      EXPECT_EQ(j["format"], 11);
+      j["format"] = has_channels ? 10 : 9;
+      j["counters"] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
+      headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
+    });
+    const std::shared_ptr<film::Film> earlier = film_io::load_film(path("earlier.exr"));
+    EXPECT_TRUE(same_samples(*earlier, *film));
+    EXPECT_EQ(earlier->counters.rays_primary, 1u);
+    EXPECT_EQ(earlier->counters.shifts_attempted, 6u);
+    EXPECT_EQ(earlier->counters.fail_missed, 10u);
+    EXPECT_EQ(earlier->counters.nonfinite_feature, 20u);
+  }
+}
+
+// Counters are stored by name, so that one that a later version adds or removes does not change the others.
+TEST_F(F6_Store, CountersAreStoredByName) {
+  film::Film film = *rendered(small_settings(16, 16, 2));
+  uint64_t number = 0;
+  for (const film::CounterField& field : film::kCounterFields) film.counters.*field.value = ++number;
+  film_io::save_film(film, path());
+  rewrite(path(), path("changed.exr"), [](std::vector<Imf::Header>* headers) {
+    nlohmann::json j = description_of(headers->front());
+    EXPECT_EQ(j["counters"]["rays"]["shadow"], 3);
+    j["counters"]["rays"].erase("primary");
+    j["counters"]["rays"]["another"] = 100;
+    headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
+  });
+  const std::shared_ptr<film::Film> changed = film_io::load_film(path("changed.exr"));
+  for (const film::CounterField& field : film::kCounterFields) {
+    const bool is_erased = field.value == &film::Counters::rays_primary;
+    EXPECT_EQ(changed->counters.*field.value, is_erased ? 0 : film.counters.*field.value) << field.path;
+  }
 }
 
 // Replays of earlier versions used the seed of their own frame, and their files do not store it.
