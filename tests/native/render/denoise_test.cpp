@@ -110,7 +110,7 @@ TEST_F(DenoisedRender, TheAutomaticOneIsLeftOutWhereMoreSamplesAreWorthMore) {
   settings.samples = 7;
   const json stats = json::parse(finished(settings)->stats_json());
   EXPECT_TRUE(stats["denoiser"].is_null());
-  EXPECT_NE(stats["plan"]["skipped"]["denoiser"].get<std::string>().find("fewer than 8 samples"), std::string::npos);
+  EXPECT_NE(stats["plan"]["skipped"]["denoiser"].get<std::string>().find("below 8 samples"), std::string::npos);
   settings.denoiser = GRADUS_DENOISER_OIDN;
   EXPECT_EQ(json::parse(finished(settings)->stats_json())["denoiser"], "Open Image Denoise 2.7.5");
 }
