@@ -7,7 +7,8 @@
 #   build-odr/       objects for link-time optimisation; linking them (ninja -C build-odr gradus) is the test, which
 #                    finds types and variables that two sources define differently under one name
 #   build-sanitize/  some native tests with the sanitizers of addresses and undefined behaviour
-# With --full, that build has all native tests and the stress tests, and there is one more:
+# With --full, two others take the place of the second:
+#   build-address/   all native tests and the stress tests with the same sanitizers
 #   build-thread/    native tests with the sanitizer of threads, and an instrumented TBB
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -23,20 +24,17 @@ build() {  # FOLDER TARGET...
 
 if [ "${1:-}" = checks ]; then
   tbb=${XDG_CACHE_HOME:-$HOME/.cache}/gradus/tbb-2021.8.0-thread/lib/cmake/TBB
-  # Without optimisation, instrumented sources compile three times as fast. The full run has more tests, which would take
-  # too long then.
-  sanitized=(gradus_sanitized_tests)
-  debug=(-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0)
+  debug=(-DCMAKE_BUILD_TYPE=Debug)
   if [ -n "${2:-}" ]; then
-    sanitized=(gradus_native_tests gradus_stress_tests)
-    debug=(-DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1)
-  fi
-  configure build-sanitize "${debug[@]}" -DGRADUS_SANITIZE=address
-  build build-sanitize "${sanitized[@]}"
-  if [ -n "${2:-}" ]; then
+    configure build-address "${debug[@]}" -DCMAKE_CXX_FLAGS_DEBUG=-O1 -DGRADUS_SANITIZE=address
+    build build-address gradus_native_tests gradus_stress_tests
     tools/setup/setup checks
-    configure build-thread "${debug[@]}" -DGRADUS_SANITIZE=thread -DTBB_DIR="$tbb"
+    configure build-thread "${debug[@]}" -DCMAKE_CXX_FLAGS_DEBUG=-O1 -DGRADUS_SANITIZE=thread -DTBB_DIR="$tbb"
     build build-thread gradus_native_tests
+  else
+    # Without optimisation, instrumented sources compile three times as fast, and a few tests run twice as long.
+    configure build-sanitize "${debug[@]}" -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DGRADUS_SANITIZE=address
+    build build-sanitize gradus_sanitized_tests
   fi
   configure build-odr -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O0 -flto" -DGRADUS_TESTS=OFF \
     -DGRADUS_FLOW=OFF \

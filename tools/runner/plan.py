@@ -58,8 +58,8 @@ THREAD = {"TSAN_OPTIONS": f"suppressions={ROOT / 'tests/support/tsan.supp'} die_
 SANITIZED = {
     False: {ROOT / "build-sanitize/tests/gradus_sanitized_tests": ADDRESS},
     True: {
-        ROOT / "build-sanitize/tests/gradus_native_tests": ADDRESS,
-        ROOT / "build-sanitize/tests/gradus_stress_tests": ADDRESS,
+        ROOT / "build-address/tests/gradus_native_tests": ADDRESS,
+        ROOT / "build-address/tests/gradus_stress_tests": ADDRESS,
         ROOT / "build-thread/tests/gradus_native_tests": THREAD,
     },
 }

@@ -190,11 +190,11 @@ def options(schema: Schema, note: str) -> str:
 def _pass(item: Pass) -> str:
     color = f"GRADUS_PASS_{item.color}" if item.color else "GRADUS_PASS_COUNT"
     kind = f"PassKind::{item.kind.title()}"
-    return f'    {{GRADUS_PASS_{item.name}, "{item.label}", "{item.channels}", {len(item.channels)}, {kind}, {color}}},'
+    return f'    {{GRADUS_PASS_{item.name}, "{item.label}", "{item.channels}", {kind}, {color}}},'
 
 
 def _component_pass(item: Pass) -> str:
-    return f'    {{GRADUS_COMPONENT_{item.name}, "{item.label}", "{item.channels}", {len(item.channels)}}},'
+    return f'    {{GRADUS_COMPONENT_{item.name}, "{item.label}", "{item.channels}"}},'
 
 
 def passes(schema: Schema, note: str) -> str:

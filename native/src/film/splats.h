@@ -32,8 +32,9 @@ inline constexpr uint32_t kSplatUnitsPerThread = 2;
 
 // Traces the work units [0, units) with the threads of the caller's task arena, and adds their splats and numbers of
 // paths to a channel. All units are added when the function returns. If `trace` throws, the function throws the same,
-// and the channel has the first units only. Values that are not finite count in `counters`, which nobody else may use
-// meanwhile; neither may the film's list of channels change. Throws invalid_argument unless the channel takes splats.
+// and the channel has the first units only. Values that are not finite count in `counters`. Until the function returns,
+// no other code may use `counters` or change the film's list of channels. Throws invalid_argument unless the channel
+// takes splats.
 //
 // Units that finish early are kept in memory until those before them are added. If kSplatUnitsPerThread units per
 // thread are begun and not yet added, no further one begins. This cannot deadlock, because no thread waits for a unit:

@@ -14,7 +14,8 @@ constexpr float kStep = 0.05f;
 
 float nearness(float depth) { return is_finite(depth) && depth > 0.0f ? 1.0f / depth : 0.0f; }
 
-// Returns whether there is a step between three pixels in a line. At a mere bend, the differences on both sides are similar.
+// Returns whether there is a step between three pixels in a line. At a mere bend, the differences on both sides are
+// similar.
 bool steps(float before, float here, float after) {
   const float one = std::abs(here - before), other = std::abs(after - here);
   return std::abs(before - 2.0f * here + after) > kStep * std::max(here, std::max(before, after)) &&

@@ -60,13 +60,13 @@ reconstruct::Field crop(const reconstruct::Field& field, const film::Film& film,
 
 // Returns the weight, 0 to 1, with which a pass may take up light that is missing in the sum of all passes. It is small
 // at silhouettes, where a surface covers little of a pixel and missing light would become a large quotient.
-reconstruct::Field room_of(const reconstruct::Field& color) {
-  reconstruct::Field room = reconstruct::box_mean(color, 1);
-  for_values(&room, [&](float& value, int x, int y, int c) {
+reconstruct::Field capacity_of(const reconstruct::Field& color) {
+  reconstruct::Field capacity = reconstruct::box_mean(color, 1);
+  for_values(&capacity, [&](float& value, int x, int y, int c) {
     const float own = color.row(y, c)[x];
     value = own >= kMinColor ? std::min(own / value, 1.0f) : 0.0f;
   });
-  return room;
+  return capacity;
 }
 
 void divide(const reconstruct::Field& color, reconstruct::Field* light) {
@@ -153,7 +153,7 @@ std::map<uint32_t, std::vector<float>> split_light(const film::Film& film, const
     const film::Channel* const color = color_plane(film, *plane);
     colors.push_back(color != nullptr ? to_field(read_color(film, *color).values, 3, film.region, region)
                                       : reconstruct::Field());
-    if (color != nullptr) terms.back().capacity = room_of(colors.back());
+    if (color != nullptr) terms.back().capacity = capacity_of(colors.back());
   }
   const bool are_all = (film.channels.passes() & schema::light_passes()) == schema::light_passes();
   if (!are_all) terms.push_back(make_term(film, region, guides.shared(), read_remainder(film, planes), cancel));

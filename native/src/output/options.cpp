@@ -25,7 +25,7 @@ uint32_t resolve_reconstruction(uint32_t reconstruction, const FilmFacts& facts)
 
 uint32_t resolve_denoiser(uint32_t denoiser, const FilmFacts& facts) {
   if (denoiser != GRADUS_DENOISER_AUTO) return denoiser;
-  return facts.has_denoiser && facts.samples >= kDenoiserPays ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
+  return facts.has_denoiser && denoiser_pays(facts.samples) ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
 }
 
 }  // namespace

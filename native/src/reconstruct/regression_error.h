@@ -12,9 +12,9 @@ inline constexpr float kHidden = 1.7f;
 // Factor on the squared light that is lost where the means of the sampled and the regressed image differ: rare bright
 // samples lie in few of those pixels.
 inline constexpr float kLost = 0.3f;
-// The same factor in the error that is delivered, where lost light is a share of the pixel's own light: relative to the
-// mean of 3×3 pixels, dark pixels beside a highlight raised the error of a picture to eight times the true one. The
-// error that weighs pixels and stops pixel blocks keeps kLost, because pictures depend on it.
+// Factor on the squared lost light in the error that is delivered. There, lost light is a share of the pixel's own
+// light: relative to the mean of 3×3 pixels, dark pixels beside a highlight raised the error of a picture to eight
+// times the true one. The error that weighs pixels and stops pixel blocks keeps kLost, because pictures depend on it.
 inline constexpr float kLostDelivered = 0.1f;
 
 // Input and output of the regression, three channels each.

@@ -75,34 +75,36 @@ double gray(const float* pixel) { return (double(pixel[0]) + pixel[1] + pixel[2]
 
 // Squared noise of a pixel.
 struct PixelNoise {
-  double noise = 0.0, apart = 0.0;  // the two arguments of squared_error()
-  double own = 0.0;                 // by the weights of the reconstruction
+  double noise = 0.0, l2_difference = 0.0;  // the two arguments of squared_error()
+  double own = 0.0;                         // by the weights of the reconstruction
 };
 
 // Returns the squared noise of pixel `i`, whose first channel value has the index `v`.
 PixelNoise noise_of_pixel(const FilmNoise& images, size_t i, size_t v) {
   PixelNoise pixel;
   pixel.noise = images.error.empty() ? reconstruct::mean_square(&images.terms.noise[v]) : double(images.error[i]);
-  if (!images.terms.l2_difference.empty()) pixel.apart = reconstruct::mean_square(&images.terms.l2_difference[v]);
+  if (!images.terms.l2_difference.empty())
+    pixel.l2_difference = reconstruct::mean_square(&images.terms.l2_difference[v]);
   pixel.own = images.by_its_weights.empty() ? pixel.noise : reconstruct::mean_square(&images.by_its_weights[v]);
   return pixel;
 }
 
 BlockNoise noise_of_block(const film::Film& film, const FilmNoise& images, const Region& block) {
   const double exposure = double(film.settings.film_exposure) * film.settings.film_exposure;
-  double noise = 0.0, apart = 0.0, signal = 0.0, relative = 0.0;
+  double noise = 0.0, l2_difference = 0.0, signal = 0.0, relative = 0.0;
   for (int32_t y = block.y0; y < block.y1; ++y) {
     for (int32_t x = block.x0; x < block.x1; ++x) {
       const size_t i = film.index(x, y), v = i * size_t(film.color_channels);
       const PixelNoise pixel = noise_of_pixel(images, i, v);
       const double g = gray(&images.image[v]), s = exposure * g * g + kEpsilon;
       noise += exposure * pixel.noise;
-      apart += exposure * pixel.apart;
+      l2_difference += exposure * pixel.l2_difference;
       signal += s;
       relative += exposure * pixel.own / s;
     }
   }
-  return {std::sqrt(reconstruct::squared_error(noise, apart) / signal), std::sqrt(relative / double(block.area()))};
+  return {std::sqrt(reconstruct::squared_error(noise, l2_difference) / signal),
+          std::sqrt(relative / double(block.area()))};
 }
 
 }  // namespace

@@ -274,12 +274,7 @@ bool denoises_after(const Plan& plan, double samples, Reasons* chosen, Reasons* 
   if (!plan.denoises_if_it_pays) return plan.denoises;
   char taken[80];
   std::snprintf(taken, sizeof(taken), "automatic: %.1f samples were taken within the time limit", samples);
-  output::FilmFacts facts;
-  facts.samples = samples;
-  facts.has_denoiser = true;
-  output::Options automatic;
-  automatic.denoiser = GRADUS_DENOISER_AUTO;
-  if (output::resolve_auto(automatic, facts).denoiser == GRADUS_DENOISER_NONE) {
+  if (!output::denoiser_pays(samples)) {
     skipped->emplace_back("denoiser", taken + std::string(": ") + too_few_to_denoise());
     return false;
   }

@@ -32,7 +32,8 @@ class Scene {
   // Makes a new snapshot. *progress rises from 0 to 1. Throws Error CANCELLED if *cancel becomes non-zero; the previous
   // snapshot then remains.
   void commit(const volatile int32_t* cancel, float* progress);
-  std::shared_ptr<const Snapshot> snapshot() const;  // That of the last commit; nullptr if there was none.
+  // Returns the snapshot of the last commit, or nullptr if there was none.
+  std::shared_ptr<const Snapshot> snapshot() const;
   const std::shared_ptr<Device>& device() const { return device_; }
 
   struct State;  // scene/scene_state.h

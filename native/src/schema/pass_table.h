@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "gradus/gradus.h"
@@ -30,9 +31,9 @@ struct PassInfo {
   uint32_t pass;
   const char* name;
   const char* letters;  // One for each channel, as Blender names the channels in a multilayer file.
-  uint32_t channels;    // Number of values per pixel, delivered and stored.
   PassKind kind;
   uint32_t color;  // The colour pass that divides a Light pass; GRADUS_PASS_COUNT for other kinds.
+  uint32_t channels = uint32_t(std::string_view(letters).size());  // Number of values per pixel, delivered and stored.
 };
 
 // Returns whether a pass of this kind is a part of the picture's light. These passes add up to the picture.
@@ -53,8 +54,8 @@ inline constexpr float kNoFace = -1.0f;
 struct ComponentPassInfo {
   uint32_t pass;
   const char* name;
-  const char* letters;
-  uint32_t channels;
+  const char* letters;                                             // As in PassInfo.
+  uint32_t channels = uint32_t(std::string_view(letters).size());  // Number of values per pixel.
 };
 // Returns the passes of a component in order of their numbers.
 std::span<const ComponentPassInfo> all_component_passes();

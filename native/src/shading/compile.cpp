@@ -132,14 +132,14 @@ bool values_depend_on_ray(const Program& p) {
 }
 
 // Returns whether the emission depends on the ray, which includes the coat of Principled, as it dims the emission.
-bool emission_looks_at_ray(const Program& p) {
+bool emission_depends_on_ray(const Program& p) {
   return values_depend_on_ray(p) ||
          std::any_of(p.code.begin(), p.code.end(), [](const Instruction& i) { return i.op == GRADUS_OP_PRINCIPLED; });
 }
 
 // Returns whether the program reads a Light Path output that can differ between light sampling and BSDF sampling. The
 // excluded outputs have equal values in both.
-bool looks_at_kind(const Program& p) {
+bool depends_on_kind(const Program& p) {
   return std::any_of(p.code.begin(), p.code.end(), [](const Instruction& i) {
     return i.op == GRADUS_OP_LIGHT_PATH && i.mode != GRADUS_LIGHT_PATH_CAMERA && i.mode != GRADUS_LIGHT_PATH_SHADOW &&
            i.mode != GRADUS_LIGHT_PATH_LENGTH;
@@ -186,7 +186,7 @@ float estimate(const Program& p, const image::ImageStore& images) {
 void describe_emission(MaterialData* m, const image::ImageStore& images) {
   m->emits = !m->emission.empty();
   if (!m->emits) return;
-  m->depends_on_ray = emission_looks_at_ray(m->emission);
+  m->depends_on_ray = emission_depends_on_ray(m->emission);
   m->emission_estimate = estimate(m->emission, images);
   if (!is_constant(m->emission, GRADUS_OP_EMISSION)) return;
   ShadeResult r;
@@ -241,7 +241,7 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
   describe_transparency(m.get());
   describe_surface(m.get());
   m->values_depend_on_ray = values_depend_on_ray(m->surface);
-  m->depends_on_kind = looks_at_kind(m->emission) || looks_at_kind(m->transparency);
+  m->depends_on_kind = depends_on_kind(m->emission) || depends_on_kind(m->transparency);
   return m;
 }
 

@@ -13,19 +13,7 @@ using namespace test;
 // A byte that does not occur in UTF-8, a sequence that ends early, an overlong form and a surrogate.
 constexpr const char* kBroken[] = {"a\xff", "a\xc3", "\xc0\xaf", "\xed\xa0\x80"};
 
-class Names : public ::testing::Test {
- protected:
-  void SetUp() override {
-    device = make_device();
-    ASSERT_OK(gradus_scene_create(device, &scene));
-  }
-  void TearDown() override {
-    EXPECT_OK(gradus_scene_release(scene));
-    EXPECT_OK(gradus_device_release(device));
-  }
-  GradusDevice device = 0;
-  GradusScene scene = 0;
-};
+class Names : public WithScene<> {};
 
 // Checks that set(name) refuses broken names, with a message that begins with the argument and ends with the name, and
 // accepts other names.
