@@ -6,7 +6,7 @@
 #include "film/features.h"
 #include "film/film.h"
 #include "gradient/gradient_integrator.h"
-#include "reconstruct/solver.h"
+#include "reconstruct/poisson/solver.h"
 #include "render/block_noise.h"
 #include "render/render.h"
 #include "schema/options.h"

@@ -13,7 +13,7 @@
 #include "film/features.h"
 #include "output/denoise.h"
 #include "output/pass_read.h"
-#include "reconstruct/feature_filter.h"
+#include "reconstruct/regression/feature_filter.h"
 #include "reconstruct/solver_planes.h"
 #include "scene/device.h"
 

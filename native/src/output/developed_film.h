@@ -9,7 +9,7 @@
 
 #include "film/film.h"
 #include "output/options.h"
-#include "reconstruct/solver.h"
+#include "reconstruct/poisson/solver.h"
 
 namespace gradus::output {
 

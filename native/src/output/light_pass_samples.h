@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "film/features.h"
-#include "reconstruct/halved_image.h"
+#include "reconstruct/regression/halved_image.h"
 
 namespace gradus::output {
 

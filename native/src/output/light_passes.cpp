@@ -9,9 +9,9 @@
 #include "film/film.h"
 #include "output/light_pass_samples.h"
 #include "reconstruct/box_mean.h"
-#include "reconstruct/feature_filter.h"
 #include "reconstruct/field_values.h"
-#include "reconstruct/picture_terms.h"
+#include "reconstruct/regression/feature_filter.h"
+#include "reconstruct/regression/picture_terms.h"
 #include "reconstruct/solver_planes.h"
 #include "schema/pass_table.h"
 

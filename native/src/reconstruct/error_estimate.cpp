@@ -5,8 +5,8 @@
 
 #include "base/fault.h"
 #include "base/rows.h"
-#include "reconstruct/minimise_by_noise.h"
-#include "reconstruct/twicing.h"
+#include "reconstruct/poisson/minimise_by_noise.h"
+#include "reconstruct/poisson/twicing.h"
 
 namespace gradus::reconstruct {
 namespace {

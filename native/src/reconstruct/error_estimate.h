@@ -10,8 +10,8 @@
 
 #include <vector>
 
+#include "reconstruct/poisson/solver.h"
 #include "reconstruct/reconstructed.h"
-#include "reconstruct/solver.h"
 
 namespace gradus::reconstruct {
 

@@ -1,8 +1,8 @@
 // Reconstruction of a whole film: its image and, on request, its estimated error and its components.
 #pragma once
 
+#include "reconstruct/poisson/solver.h"
 #include "reconstruct/reconstructed.h"
-#include "reconstruct/solver.h"
 
 namespace gradus::reconstruct {
 

@@ -7,11 +7,11 @@
 #include "base/fault.h"
 #include "base/types.h"
 #include "film/film.h"
-#include "reconstruct/feature_filter.h"
-#include "reconstruct/feature_regression.h"
 #include "reconstruct/field_values.h"
-#include "reconstruct/fused_differences.h"
 #include "reconstruct/linear_terms.h"
+#include "reconstruct/poisson/fused_differences.h"
+#include "reconstruct/regression/feature_filter.h"
+#include "reconstruct/regression/feature_regression.h"
 #include "reconstruct/solver_planes.h"
 
 namespace gradus::reconstruct {

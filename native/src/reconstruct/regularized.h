@@ -3,9 +3,9 @@
 #pragma once
 
 #include "film/features.h"
+#include "reconstruct/poisson/solver.h"
 #include "reconstruct/reconstructed.h"
-#include "reconstruct/regression_error.h"
-#include "reconstruct/solver.h"
+#include "reconstruct/regression/regression_error.h"
 
 namespace gradus::reconstruct {
 

@@ -3,7 +3,7 @@
 
 #include "base/types.h"
 #include "reconstruct/field.h"
-#include "reconstruct/solver.h"
+#include "reconstruct/poisson/solver.h"
 
 namespace gradus::reconstruct {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "film/film.h"
-#include "reconstruct/solver.h"
+#include "reconstruct/poisson/solver.h"
 
 namespace gradus::render {
 

@@ -8,7 +8,7 @@
 #include "base/text_list.h"
 #include "bsdf/ggx.h"
 #include "output/options.h"
-#include "reconstruct/feature_regression.h"
+#include "reconstruct/regression/feature_regression.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "film/film.h"
-#include "reconstruct/solver.h"
+#include "reconstruct/poisson/solver.h"
 #include "render/plan.h"
 
 namespace gradus::render {

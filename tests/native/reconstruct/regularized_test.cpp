@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "reconstruct/feature_film.h"
-#include "reconstruct/regression_error.h"
+#include "reconstruct/regression/regression_error.h"
 #include "support/threads.h"
 
 namespace gradus {

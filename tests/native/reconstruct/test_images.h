@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "reconstruct/solver.h"
+#include "reconstruct/poisson/solver.h"
 #include "support/statistics.h"
 
 namespace gradus::test {

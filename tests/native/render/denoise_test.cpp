@@ -9,7 +9,7 @@
 #include "film/features.h"
 #include "output/denoise_combined.h"
 #include "output/oidn_library.h"
-#include "reconstruct/feature_filter.h"
+#include "reconstruct/regression/feature_filter.h"
 #include "render/fake_integrator.h"
 #include "scene/device.h"
 

@@ -3,7 +3,7 @@
 #include <tbb/task_arena.h>
 #include <nlohmann/json.hpp>
 
-#include "reconstruct/solver.h"
+#include "reconstruct/poisson/solver.h"
 #include "render/fake_integrator.h"
 #include "render/l2_noise.h"
 #include "render/pilot.h"

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "reconstruct/solver.h"
+#include "reconstruct/poisson/solver.h"
 #include "support/statistics.h"
 
 namespace gradus::test {

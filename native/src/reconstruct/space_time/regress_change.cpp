@@ -5,9 +5,9 @@
 #include "base/fault.h"
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
-#include "reconstruct/feature_regression.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/linear_terms.h"
+#include "reconstruct/regression/feature_regression.h"
 #include "reconstruct/space_time/rounded_displacements.h"
 #include "reconstruct/space_time/solve_tracks.h"
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "film/features.h"
-#include "reconstruct/solver.h"
+#include "reconstruct/poisson/solver.h"
 #include "reconstruct/space_time/correspondence_map.h"
 #include "reconstruct/space_time/window_source.h"
 

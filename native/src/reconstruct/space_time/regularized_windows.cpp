@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "base/fault.h"
-#include "reconstruct/feature_filter.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/linear_terms.h"
+#include "reconstruct/regression/feature_filter.h"
 #include "reconstruct/regularized.h"
 #include "reconstruct/solver_planes.h"
 #include "reconstruct/space_time/solve_tracks.h"

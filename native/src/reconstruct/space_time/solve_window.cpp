@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "reconstruct/cg_loop.h"
+#include "reconstruct/poisson/cg_loop.h"
 
 namespace gradus::reconstruct {
 namespace {

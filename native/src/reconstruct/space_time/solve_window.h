@@ -1,7 +1,7 @@
 // Conjugate gradients over a window. All channels are solved side by side, each with its own step sizes.
 #pragma once
 
-#include "reconstruct/conjugate_gradient.h"
+#include "reconstruct/poisson/conjugate_gradient.h"
 #include "reconstruct/space_time/time_ladder.h"
 
 namespace gradus::reconstruct {

@@ -14,7 +14,7 @@
 
 #include <memory>
 
-#include "reconstruct/multigrid.h"
+#include "reconstruct/poisson/multigrid.h"
 #include "reconstruct/space_time/system.h"
 
 namespace gradus::reconstruct {

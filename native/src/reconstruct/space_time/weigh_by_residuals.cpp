@@ -1,6 +1,6 @@
 #include "reconstruct/space_time/weigh_by_residuals.h"
 
-#include "reconstruct/l1_weights.h"
+#include "reconstruct/poisson/l1_weights.h"
 #include "reconstruct/space_time/correspondence_rows.h"
 #include "reconstruct/space_time/value_rows.h"
 

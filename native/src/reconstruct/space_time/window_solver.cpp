@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "reconstruct/poisson/weighted_least_squares.h"
 #include "reconstruct/solver_planes.h"
 #include "reconstruct/space_time/value_rows.h"
 #include "reconstruct/space_time/weigh_by_residuals.h"
 #include "reconstruct/space_time/weigh_uniformly.h"
-#include "reconstruct/weighted_least_squares.h"
 
 namespace gradus::reconstruct {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "reconstruct/solver.h"
+#include "reconstruct/poisson/solver.h"
 #include "reconstruct/space_time/solve_window.h"
 #include "reconstruct/space_time/window_twicing.h"
 

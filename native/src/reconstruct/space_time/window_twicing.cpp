@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "reconstruct/field_values.h"
+#include "reconstruct/poisson/twicing.h"
 #include "reconstruct/space_time/value_rows.h"
-#include "reconstruct/twicing.h"
 
 namespace gradus::reconstruct {
 namespace {

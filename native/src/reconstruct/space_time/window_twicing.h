@@ -4,7 +4,7 @@
 // the residual in blocks.
 #pragma once
 
-#include "reconstruct/poisson_dct.h"
+#include "reconstruct/poisson/poisson_dct.h"
 #include "reconstruct/space_time/share_smoothing.h"
 
 namespace gradus::reconstruct {

@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "reconstruct/feature_film.h"
-#include "reconstruct/feature_filter.h"
 #include "reconstruct/field_values.h"
+#include "reconstruct/regression/feature_filter.h"
 #include "reconstruct/space_time/regress_change.h"
 
 namespace gradus {
