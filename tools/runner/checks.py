@@ -37,5 +37,4 @@ PYTHON = "/usr/bin/python3"
 CHECKS = [
     Check("includes", (PYTHON, "tools/checks/includes.py"), ROOT / "native/src/film"),
     Check("schema", (PYTHON, "tools/schema/generate.py", "--check"), ROOT / "tools/schema/generate.py"),
-    Check("one definition", ("ninja", "-C", "build-odr", "gradus"), ROOT / "build-odr/build.ninja"),
 ]

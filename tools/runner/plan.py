@@ -11,7 +11,7 @@ from pathlib import Path
 
 from .hosts import HOSTS, TestFile
 from .imports import needs_blender
-from .programs import Program
+from .programs import Program, parts
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 SMOKE = ROOT / "tests" / "smoke.txt"
@@ -20,8 +20,8 @@ COMPLETE = "bpy45"
 LIMIT = {"native": 900, "host": 300, "full": 3600}  # seconds for one program or file
 
 # Programs by the number of processes that share their tests, so that no long program ends beside an idle core.
-SHARDS = {
-    "gradus_native_tests": 6,
+PARTS = {
+    "gradus_native_tests": 8,
     "gradus_statistics_tests": 4,
     "gradus_stress_tests": 3,
     "gradus_regression_tests": 2,
@@ -33,6 +33,8 @@ LIMITS = (
     "*TimeLimit*:K2_Cancel.*:Preview.TakesATwentiethOfTheTime:Preview.ACancelEndsTheQuarterSizedPicture"
     ":Preview.ACancelOfTheReconstructionLeavesTheSamples:Loop.StopsByTime*"
 )
+# These compare pictures with converged ones, which takes minutes under ThreadSanitizer: a part of the full run.
+CONVERGED = "WatchedScene.*"
 # L6: a picture of 160 x 120 pixels with all passes, and scenes, commits, renders, reconstruction and frames in the
 # tests of the C API; nothing of them depends on the clock. J2: animations that change or are cancelled. Memory that is
 # lost is an error, too.
@@ -56,7 +58,10 @@ THREAD = {"TSAN_OPTIONS": f"suppressions={ROOT / 'tests/support/tsan.supp'} die_
 # Programs with sanitizers of every change (False) and of the full run (True). Renders of hard scenes have no threads
 # that other tests lack.
 SANITIZED = {
-    False: {ROOT / "build-sanitize/tests/gradus_sanitized_tests": ADDRESS},
+    False: {
+        ROOT / "build-sanitize/tests/gradus_sanitized_tests": ADDRESS,
+        ROOT / "build-thread/tests/gradus_thread_tests": THREAD,
+    },
     True: {
         ROOT / "build-address/tests/gradus_native_tests": ADDRESS,
         ROOT / "build-address/tests/gradus_stress_tests": ADDRESS,
@@ -144,12 +149,11 @@ def split_alone(
 
 
 def native_plan(full: bool) -> tuple[list[Program], list[Program]]:
-    """Returns the native programs in shards, and their tests that must run alone."""
+    """Returns the native programs in parts, and their tests that must run alone."""
     limit = LIMIT["full" if full else "native"]
     together, alone = [], []
     for path in sorted((ROOT / "build" / "tests").glob("gradus_*_tests")):
-        shards = SHARDS.get(path.name, 1)
-        together += [Program(path, limit, f"*-{ALONE}", shard, shards) for shard in range(shards)]
+        together += parts(path, limit, ALONE, PARTS.get(path.name, 1), {})
         alone.append(Program(path, limit, ALONE))
     return together, alone
 
@@ -157,16 +161,15 @@ def native_plan(full: bool) -> tuple[list[Program], list[Program]]:
 def sanitized_plan(full: bool) -> tuple[list[Program], list[Program]]:
     """Returns the programs under sanitizers, and those of their tests that run alone.
 
-    Every change runs those tests under AddressSanitizer for which it is the best witness (tests/CMakeLists.txt). The
+    Every change runs those tests under a sanitizer for which it is the best witness (tests/CMakeLists.txt). The
     full run has all native tests under all sanitizers, stress tests, and some under valgrind. All counts are short.
     """
     limit = LIMIT["full" if full else "native"]
     programs, alone = [], []
     for path, variables in SANITIZED[full].items():
         environment = variables | {"GRADUS_TEST_FULL": "0"}
-        shards = SHARDS.get(path.name, 1)
-        for shard in range(shards):
-            programs.append(Program(path, limit, f"*-{ALONE}", shard, shards, environment=environment))
+        without = ALONE if full or variables is ADDRESS else f"{ALONE}:{CONVERGED}"
+        programs += parts(path, limit, without, PARTS.get(path.name, 1), environment)
         # Tests with time limits would exceed them in instrumented programs.
         alone.append(Program(path, limit, f"{ALONE}-{LIMITS}", environment=environment))
     if full:

@@ -18,28 +18,52 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 @dataclass
 class Program:
-    """Tests of a GoogleTest program: those that the filter `choice` selects, or one shard of them."""
+    """Tests of a GoogleTest program: those that the filter `choice` selects. `part` names one of several parts."""
 
     path: Path
     limit: float  # seconds
     choice: str = "*"
-    shard: int = 0
-    shards: int = 1
+    part: str = ""
     under: tuple[str, ...] = ()  # a command that runs the program, for example valgrind
     environment: dict[str, str] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
-        part = f" {self.shard + 1}/{self.shards}" if self.shards > 1 else ""
-        return " ".join(["native", str(self.path.relative_to(ROOT)), *self.under[:1]]) + part
+        return " ".join(["native", str(self.path.relative_to(ROOT)), *self.under[:1]]) + self.part
 
     def run(self, environment: dict[str, str]) -> Result:
         environment = environment | self.environment
-        if self.shards > 1:
-            environment |= {"GTEST_TOTAL_SHARDS": str(self.shards), "GTEST_SHARD_INDEX": str(self.shard)}
         options = ["--gtest_brief=0", "--gtest_color=no", f"--gtest_filter={self.choice}"]
         code, output = run([*self.under, str(self.path), *options], self.limit, environment)
         return read_log(Result(self.name), code, output)
+
+
+def parts(path: Path, limit: float, without: str, count: int, environment: dict[str, str]) -> list[Program]:
+    """Returns `count` programs that share the tests of a program, except those that the filter `without` selects.
+
+    A test suite stays in one part, because its tests share what they compute first.
+    """
+    if count == 1:
+        return [Program(path, limit, f"*-{without}", environment=environment)]
+    listed = subprocess.run([path, "--gtest_list_tests"], check=True, stdout=subprocess.PIPE, text=True).stdout
+    suites: dict[str, int] = {}
+    for line in listed.splitlines():
+        if not line.startswith(" ") and line.split("#")[0].strip().endswith("."):
+            suite = line.split("#")[0].strip()
+            suites[suite] = 0
+        elif line.startswith("  "):
+            suites[suite] += 1
+    chosen: list[list[str]] = [[] for _ in range(count)]
+    sizes = [0] * count
+    for suite, tests in sorted(suites.items(), key=lambda item: -item[1]):
+        smallest = sizes.index(min(sizes))
+        chosen[smallest].append(f"{suite}*")
+        sizes[smallest] += tests
+    return [
+        Program(path, limit, f"{':'.join(names)}-{without}", f" {number}/{count}", environment=environment)
+        for number, names in enumerate(chosen, 1)
+        if names
+    ]
 
 
 def run(command: list[str], limit: float, environment: dict[str, str]) -> tuple[int, str]:
