@@ -84,6 +84,15 @@ class ComponentPassInfo:
 COMPONENT_TABLE = tuple(ComponentPassInfo(*row) for row in pass_table.COMPONENT_PASSES)
 """Passes of a component: Path NAME, Path NAME Reflectance …."""
 
+_ALL_SWITCHES = tuple(row[0] for row in pass_table.SWITCHES)
+_OF_COMPONENTS = frozenset(info.switch.removeprefix("gradus.") for info in COMPONENT_TABLE)
+
+COMPONENT_SWITCHES = tuple(name for name in _ALL_SWITCHES if name in _OF_COMPONENTS)
+"""Properties of view_layer.gradus that switch passes of components, in the order of the schema."""
+
+SAMPLING_SWITCHES = tuple(name for name in _ALL_SWITCHES if name not in _OF_COMPONENTS)
+"""The other properties of view_layer.gradus, which switch passes of the whole picture."""
+
 GROUPS = {**pass_table.GROUPS, "ALL": tuple(info.plane for info in TABLE)}
 """Names that `--gradus-passes` takes besides those of single planes."""
 
