@@ -518,7 +518,7 @@ def test_a_tiny_run_fills_all_tables(tmp_path: Path, monkeypatch: pytest.MonkeyP
     import motion_renderer
 
     if not motion_renderer.TOOL.exists():
-        pytest.skip("the tool is not built")
+        pytest.skip("needs build/native/gradus (tools/build.sh)")
     results = tmp_path / "motion.jsonl"
     for module in (motion, report):
         monkeypatch.setattr(module, "RESULTS", results)
