@@ -83,7 +83,7 @@ def test_only_what_is_enabled() -> None:
         Pass.GRADIENT_X,
         Pass.GRADIENT_Y,
         Pass.GRADIENT_T,
-        Pass.GRADIENT_T_LINK,
+        Pass.GRADIENT_T_CORRESPONDENCE,
     ]
     assert listed(layer(), extra=(Pass.VARIANCE,)) == [Pass.COMBINED, Pass.VARIANCE]
 

@@ -208,9 +208,9 @@ RAYS = ("primary", "bounce", "shadow", "shift", "shift_shadow")
 def work(scene: SceneResults) -> Table:
     """Table of CPU seconds by stage, rays per pixel and sample, and memory, of the first seed."""
     columns = [*(f"{stage}, CPU-s" for stage in STAGES), *(f"{kind.replace('_', ' ')} rays" for kind in RAYS)]
-    made = Table(["mode", "spp", *columns, "frame, B/pixel", "peak, MB"])
+    made = Table(["mode", "spp", *columns, "film, B/pixel", "peak, MB"])
     for mode, point in points_of(scene):
-        stages, rays, frame, peak = (
+        stages, rays, film, peak = (
             point.first(n) for n in ("cpu_seconds", "rays", "film_memory_bytes", "peak_memory_bytes")
         )
         if peak is None:
@@ -218,7 +218,7 @@ def work(scene: SceneResults) -> Table:
         pixels = point.rows[0]["width"] * point.rows[0]["height"]
         cells = [number((stages or {}).get(stage), ".3f") for stage in STAGES]
         cells += [number(rays[kind] / pixels / point.samples if rays else None) for kind in RAYS]
-        cells += [number(frame / pixels if frame else None, ".0f"), f"{peak / 1e6:.0f}"]
+        cells += [number(film / pixels if film else None, ".0f"), f"{peak / 1e6:.0f}"]
         made.rows.append([MODES[mode].label, str(point.samples), *cells])
     return made
 

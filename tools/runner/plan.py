@@ -1,8 +1,8 @@
 """Determines which tests run where.
 
-Every test of the add-on and of the tools runs once: in plain Python where it does not need Blender, else in bpy45. The other hosts run
-the tests of tests/smoke.txt, and Blender 3.4 also every test that needs the application. The full run has every file
-in every host.
+Every test of the add-on and of the tools runs once: in plain Python where it does not need Blender, else in bpy45. The
+other hosts run the tests of tests/smoke.txt, and Blender 3.4 also every test that needs the application. The full run
+has every file in every host.
 """
 
 from __future__ import annotations

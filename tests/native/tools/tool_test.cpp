@@ -333,7 +333,7 @@ TEST_F(Tool, AllPassesAreThoseOfTheFilm) {
   for (const char* name : {"Mist.Z", "Gradient X.R"}) EXPECT_FALSE(has(name)) << name;
   const Outcome outcome = run("reconstruct f.exr -o x.exr --passes depth,mist,gradient_x");
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.err.find("the frame was rendered without mist, gradient_x; it holds combined, noisy_image, depth"),
+  EXPECT_NE(outcome.err.find("the film was sampled without mist, gradient_x; it holds combined, noisy_image, depth"),
             std::string::npos)
       << outcome.err;
 }
