@@ -144,7 +144,7 @@ TEST(C7_Sequence, ALeftoverHalfFrameIsReplaced) {
   const auto old = make_sequence(1, 2, folder.path());
   for (const int32_t frame : {1, 2}) sample(old.get(), pan.at(frame), settings(frame, 7));
   folder.remove(1);
-  folder.remove(2, "base");
+  folder.remove(2, "fresh");
   const auto sequence = make_sequence(1, 2, folder.path());
   for (const int32_t frame : {1, 2}) sample(sequence.get(), pan.at(frame), settings(frame, 8));
   const Delivered first = deliver(sequence.get(), 1), second = deliver(sequence.get(), 2);
@@ -326,7 +326,7 @@ TEST(C7_Sequence, FramesOfOtherSettingsOrScenesAreRefusedByName) {
   EXPECT_NE(text_of(pan.at(2), settings).find("shows another scene"), std::string::npos);
   settings.max_bounces = 1;
   EXPECT_NE(text_of(pan.at(1), settings)
-                .find("f+0000001.base.exr was sampled with other settings: max_bounces is 64, not 1:"),
+                .find("f+0000001.fresh.exr was sampled with other settings: max_bounces is 64, not 1:"),
             std::string::npos)
       << text_of(pan.at(1), settings);
   settings = with_passes(settings_of(1));
@@ -808,7 +808,7 @@ TEST(I2_Sequence, AFolderThatCannotBeWrittenEndsTheRenderWithItsName) {
   task->run();
   std::string text;
   EXPECT_EQ(task->outcome(&text), GRADUS_ERROR_INVALID_OPERATION);
-  EXPECT_NE(text.find("f+0000001.offset.exr"), std::string::npos) << text;
+  EXPECT_NE(text.find("f+0000001.replayed.exr"), std::string::npos) << text;
 }
 
 // Renders that are cancelled at any moment of sampling or delivery do not affect later ones.
@@ -875,7 +875,7 @@ TEST(I2_Sequence, ADiskThatFillsWhileHalvesAreSavedIsNamed) {
     if (!what) GTEST_SKIP() << "no disk can be mounted here";
     const std::string name = animation::SequenceFolder(folder.path()).path(1, part);
     EXPECT_NE(what->find("cannot write " + name + ": No space left on device"), std::string::npos) << *what;
-    EXPECT_EQ(what->find("base.exr, left"), std::string::npos) << *what;
+    EXPECT_EQ(what->find("fresh.exr, left"), std::string::npos) << *what;
     EXPECT_EQ(what->find(".part"), std::string::npos) << *what << ": half a file";
     EXPECT_EQ(what->find("left: ") != std::string::npos, part == animation::FrameSamples::kFresh)
         << *what << ": a whole offset alone";
