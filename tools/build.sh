@@ -5,7 +5,8 @@
 #
 # checks: builds that find faults that the tests do not see.
 #   build-odr/       objects for link-time optimisation; linking them (ninja -C build-odr gradus) is the test, which
-#                    finds types and variables that two sources define differently under one name
+#                    finds types and variables that two sources define differently under one name; each source is
+#                    compiled by itself, which shows that it includes what it uses
 #   build-sanitize/  some native tests with the sanitizers of addresses and undefined behaviour
 # With --full, two others take the place of the second:
 #   build-address/   all native tests and the stress tests with the same sanitizers
@@ -37,7 +38,7 @@ if [ "${1:-}" = checks ]; then
     build build-sanitize gradus_sanitized_tests
   fi
   configure build-odr -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O0 -flto" -DGRADUS_TESTS=OFF \
-    -DGRADUS_FLOW=OFF \
+    -DGRADUS_FLOW=OFF -DGRADUS_UNITY=OFF \
     -DCMAKE_SHARED_LINKER_FLAGS="-O0 -flto=2 -Wodr -Werror=odr -Wlto-type-mismatch -Werror=lto-type-mismatch"
   build build-odr gradus_core
   exit

@@ -16,6 +16,7 @@ using Mat4 = glm::mat4;
 using Rgb = glm::vec3;
 
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+inline constexpr float kMaxFloat = std::numeric_limits<float>::max();
 inline constexpr float kPi = 3.14159265358979323846f;
 inline constexpr float kInvPi = 1.0f / kPi;
 

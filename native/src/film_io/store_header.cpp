@@ -25,7 +25,7 @@ using nlohmann::json;
 // Those up to 11 have other names of planes (use_older_names()).
 constexpr int kFormat = kFormatOfStandardNames, kOldestFormat = 9;
 constexpr size_t kMaxStoredComponents = 64;
-constexpr int kMaxSide = 1 << 16;
+constexpr int kMaxFilmSide = 1 << 16;
 constexpr const char* kAttribute = "gradus";
 
 // Returns the exception that load_film() throws for a file with this problem.
@@ -207,8 +207,8 @@ json description_of(const Imf::Header& header) {
 
 void check_size(const Imath::Box2i& display, const Imath::Box2i& data) {
   const auto inside = [](int low, int high, int end) { return low >= 0 && low <= high && high < end; };
-  if (display.min.x != 0 || display.min.y != 0 || display.max.x < 0 || display.max.x >= kMaxSide || display.max.y < 0 ||
-      display.max.y >= kMaxSide || !inside(data.min.x, data.max.x, display.max.x + 1) ||
+  if (display.min.x != 0 || display.min.y != 0 || display.max.x < 0 || display.max.x >= kMaxFilmSide ||
+      display.max.y < 0 || display.max.y >= kMaxFilmSide || !inside(data.min.x, data.max.x, display.max.x + 1) ||
       !inside(data.min.y, data.max.y, display.max.y + 1)) {
     throw damaged("its size is wrong");
   }

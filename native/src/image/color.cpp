@@ -41,6 +41,8 @@ std::optional<ColorTransform> builtin_transform(const std::string& space) {
   return std::nullopt;
 }
 
+}  // namespace
+
 // A colour space whose name has been looked up. `kind` selects its conversion; if it is Other, either `baked` or
 // `processor` converts the values.
 struct Space {
@@ -76,6 +78,8 @@ struct Space {
     }
   }
 };
+
+namespace {
 
 // Values by which recognise() compares a transform with the identity and with the sRGB curve. They are four RGB pixels
 // between 0 and 1.

@@ -9,7 +9,7 @@ namespace {
 
 // Fraction of the samples that is divided equally among the nodes of a cut, because the node with the maximum weight
 // may be occluded.
-constexpr double kDefensive = 0.2;
+constexpr double kDefensiveInCut = 0.2;
 
 float sine(float cosine) { return std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)); }
 
@@ -107,10 +107,10 @@ bool LightTree::weigh(const Receiver& receiver, Cut* cut) const {
   }
   cut->count_ = count;
   if (count == 0 || !std::isfinite(sum)) return false;
-  const auto share = float(kDefensive * sum / count);
+  const auto share = float(kDefensiveInCut * sum / count);
   for (int i = 0; i < count; ++i) {
     float& weight = cut->cut_nodes_[size_t(i)].weight;
-    weight = (1.0f - float(kDefensive)) * weight + share;
+    weight = (1.0f - float(kDefensiveInCut)) * weight + share;
     cut->sum_ += double(weight);
   }
   return true;

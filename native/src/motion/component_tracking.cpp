@@ -10,7 +10,7 @@ namespace gradus::motion {
 namespace {
 
 // Number of film rows that are tracked together. The chains of all pixels would take more memory than a frame.
-constexpr int32_t kBand = 64;
+constexpr int32_t kTrackingBand = 64;
 
 // Returns a copy of rows [y0, y1) of a view.
 CentreView rows_of(const CentreView& view, int32_t y0, int32_t y1) {
@@ -43,8 +43,8 @@ std::vector<ChainMotion> track_components(const CentreView& from, const ChainTra
   change.add(to.snapshot());
   const Region& film = from.region;
   std::vector<ChainMotion> motion(size_t(std::popcount(wanted)));
-  for (int32_t y = film.y0; y < film.y1; y += kBand) {
-    const Region band{film.x0, y, film.x1, std::min(y + kBand, film.y1)};
+  for (int32_t y = film.y0; y < film.y1; y += kTrackingBand) {
+    const Region band{film.x0, y, film.x1, std::min(y + kTrackingBand, film.y1)};
     // The rows above and below are included, since chain_jacobian() needs the chains of neighbouring pixels.
     const CentreView rows = rows_of(from, std::max(y - 1, film.y0), std::min(band.y1 + 1, film.y1));
     std::vector<ChainView> views = view_chains(rows, to.settings(), components, wanted, is_cancelled, &change);

@@ -19,19 +19,20 @@ constexpr float kShotChangeZoom = 1.5f;
 constexpr float kStepsOfPixel = 256.0f;
 
 // Position of what a pixel shows in the other frame, and its distance from the camera.
-struct Target {
+struct Landing {
   Vec2 film{0.0f};
   float distance = kInfinity;
   bool found = false;
 };
 
 // Follows what pixels of one view show to the film of another.
-class Tracker {
+class PixelTracker {
  public:
-  Tracker(const CentreView& from, const CentreView& to) : from_(from), to_(to), motion_(*from.snapshot, *to.snapshot) {}
+  PixelTracker(const CentreView& from, const CentreView& to)
+      : from_(from), to_(to), motion_(*from.snapshot, *to.snapshot) {}
 
-  Target target(size_t pixel) const {
-    Target t;
+  Landing target(size_t pixel) const {
+    Landing t;
     const geometry::Hit& hit = from_.hits[pixel];
     if (!hit.valid()) {
       t.film = centre_of(from_.region, pixel);
@@ -54,8 +55,8 @@ class Tracker {
 };
 
 // Whether the motion of pixel `next` of the other frame leads back to within kLargestReturn of a pixel.
-bool returns(const Tracker& back, const CentreView& from, size_t pixel, int32_t next) {
-  const Target t = back.target(size_t(next));
+bool returns(const PixelTracker& back, const CentreView& from, size_t pixel, int32_t next) {
+  const Landing t = back.target(size_t(next));
   const Vec2 away = glm::abs(from.camera.film_displacement(centre_of(from.region, pixel), t.film));
   return t.found && away.x <= kLargestReturn && away.y <= kLargestReturn;
 }
@@ -101,13 +102,13 @@ CentreView view_centres(const scene::Snapshot& snapshot, uint32_t width, uint32_
 }
 
 film::PixelCorrespondence match_pixels(const CentreView& from, const CentreView& to) {
-  const Tracker forward(from, to), back(to, from);
+  const PixelTracker forward(from, to), back(to, from);
   film::PixelCorrespondence found{std::vector<int32_t>(from.hits.size(), film::kNoCorrespondence),
                                   std::vector<Vec2>(from.hits.size(), Vec2(0.0f))};
   std::vector<int32_t>& correspondence = found.pixel;
   std::vector<float> distances(from.hits.size(), kInfinity);
   for_each_pixel(correspondence.size(), [&](size_t i) {
-    const Target t = forward.target(i);
+    const Landing t = forward.target(i);
     const int32_t next = t.found ? pixel_at(to.region, t.film) : film::kNoCorrespondence;
     if (next == film::kNoCorrespondence) return;
     if (!GRADUS_FAULT(match_need_not_lead_back) && !returns(back, from, i, next)) return;

@@ -12,7 +12,7 @@ constexpr float kAlike = 0.1f;         // pixels: smaller differences are penali
 constexpr float kOutlier = 3.0f;       // standard deviations: larger data is penalised by its magnitude
 constexpr float kPriorWeight = 1e-4f;  // weight of a zero residual, which decides where there is no other data
 constexpr float kOverRelaxation = 1.7f;  // factor of Gauss-Seidel steps
-constexpr float kLongestStep = 1.0f;     // pixels: range over which a gradient is valid
+constexpr float kMaxRefinement = 1.0f;   // pixels: range over which a gradient is valid
 
 // Normal equations of a vector: (xx xy; xy yy) vector = right.
 struct Normal {
@@ -74,7 +74,7 @@ class Refinement {
       for (int k = 0; k < 2 * kSweeps; ++k) {
         for_rows(height_, [this, k](int y) { relax(y, k & 1); });
       }
-      each_pixel([this](int, int, size_t p) { residual_[p] += glm::clamp(step_[p], -kLongestStep, kLongestStep); });
+      each_pixel([this](int, int, size_t p) { residual_[p] += glm::clamp(step_[p], -kMaxRefinement, kMaxRefinement); });
     }
   }
 

@@ -40,10 +40,10 @@ struct Neighbours {
 };
 
 // Tracks the chains of single pixels.
-class Tracker {
+class ChainTracker {
  public:
   // known: motion of another view over the same part, or nullptr.
-  Tracker(const ChainView& from, const ChainTracer& to, const Region& part, const KnownMotion* known)
+  ChainTracker(const ChainView& from, const ChainTracer& to, const Region& part, const KnownMotion* known)
       : from_(from),
         here_(from.tracer()),
         to_(to),
@@ -217,7 +217,7 @@ namespace {
 // Tracks the rows of a tile in order.
 class Tile {
  public:
-  Tile(const Tracker& tracker, const Region& part, int32_t x0, ChainMotion* motion, TrackingCounts* counts)
+  Tile(const ChainTracker& tracker, const Region& part, int32_t x0, ChainMotion* motion, TrackingCounts* counts)
       : tracker_(tracker),
         part_(part),
         x0_(x0),
@@ -244,7 +244,7 @@ class Tile {
     return {first ? nullptr : &row_[i - 1], &below_[i], first ? nullptr : &below_[i - 1]};
   }
 
-  const Tracker& tracker_;
+  const ChainTracker& tracker_;
   const Region& part_;
   int32_t x0_, x1_;
   ChainMotion& motion_;
@@ -266,7 +266,7 @@ ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Reg
     motion.counts.pixels[size_t(-int(Tracking::ShotChange))] = pixels;
     return motion;
   }
-  const Tracker tracker(from, to, part, known);
+  const ChainTracker tracker(from, to, part, known);
   tbb::enumerable_thread_specific<TrackingCounts> counts;
   const auto tiles = [](int32_t length) { return (length + kTile - 1) / kTile; };
   tbb::parallel_for(tbb::blocked_range2d<int32_t>(0, tiles(part.height()), 1, 0, tiles(part.width()), 1),

@@ -8,15 +8,15 @@
 namespace gradus::output {
 namespace {
 
-using Image = std::vector<float>;  // 3 floats per pixel.
+using RgbValues = std::vector<float>;  // 3 floats per pixel.
 
 // Largest absolute value that the network receives, so that sums over blocks of pixels stay finite, too.
 constexpr float kBrightest = 1e30f;
 
 float tamed(float value) { return std::isfinite(value) ? std::clamp(value, -kBrightest, kBrightest) : 0.0f; }
 
-Image packed(const float* pixels, size_t stride, size_t count) {
-  Image result(3 * count);
+RgbValues packed(const float* pixels, size_t stride, size_t count) {
+  RgbValues result(3 * count);
   for (size_t i = 0; i < count; ++i) {
     for (size_t c = 0; c < 3; ++c) result[3 * i + c] = tamed(pixels[i * stride + c]);
   }
@@ -40,7 +40,7 @@ class Network {
   }
 
   // Denoises `color` in place. An empty guide is not used.
-  void denoise(Image* color, Image* albedo, Image* normal) {
+  void denoise(RgbValues* color, RgbValues* albedo, RgbValues* normal) {
     std::vector<Parameter> images = {{"color", color}, {"output", color}};
     if (!albedo->empty()) images.emplace_back("albedo", albedo);
     if (!normal->empty()) images.emplace_back("normal", normal);
@@ -48,7 +48,7 @@ class Network {
   }
 
  private:
-  using Parameter = std::pair<const char*, Image*>;
+  using Parameter = std::pair<const char*, RgbValues*>;
 
   void run(const std::vector<Parameter>& images) {
     const std::unique_ptr<OidnApi::Filter, void (*)(OidnApi::Filter*)> filter(api_.new_filter(device_.get(), "RT"),
@@ -95,9 +95,9 @@ class Network {
 std::vector<float> denoise(const OidnLibrary& library, const NoisyPicture& picture, uint32_t threads,
                            const CancelCheck& cancel) {
   const size_t count = size_t(picture.width) * size_t(picture.height);
-  Image color = packed(picture.color, picture.stride, count);
-  Image albedo = picture.albedo ? packed(picture.albedo, 3, count) : Image();
-  Image normal = picture.albedo && picture.normal ? packed(picture.normal, 3, count) : Image();
+  RgbValues color = packed(picture.color, picture.stride, count);
+  RgbValues albedo = picture.albedo ? packed(picture.albedo, 3, count) : RgbValues();
+  RgbValues normal = picture.albedo && picture.normal ? packed(picture.normal, 3, count) : RgbValues();
   Network network(library.api, picture.width, picture.height, threads, cancel);
   network.denoise(&color, &albedo, &normal);
   for (size_t i = 0; i < color.size(); ++i) {

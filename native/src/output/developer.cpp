@@ -20,7 +20,6 @@ namespace {
 
 using Images = std::vector<std::vector<float>>;
 
-constexpr double kMaxFloat = std::numeric_limits<float>::max();
 constexpr int kPixels = 4096;  // Number of pixels that one task handles.
 
 // Returns a function of (pixel, channel) that gives a value of a reconstructed image as it is delivered: multiplied by
@@ -66,7 +65,8 @@ Images crop_components(const film::Film& film, uint32_t reconstruction, Images i
 std::vector<float> crop_error(const film::Film& film, const std::vector<float>& error, const Region& region) {
   const double scale = double(film.settings.film_exposure) * film.settings.film_exposure;
   std::vector<float> result(size_t(region.area()));
-  for_pixels(film, region, [&](size_t i, size_t out) { result[out] = float(std::min(kMaxFloat, scale * error[i])); });
+  for_pixels(film, region,
+             [&](size_t i, size_t out) { result[out] = float(std::min(double(kMaxFloat), scale * error[i])); });
   return result;
 }
 

@@ -18,7 +18,6 @@
 namespace gradus::output {
 namespace {
 
-constexpr float kMaxFloat = std::numeric_limits<float>::max();
 // Smallest colour by which light is divided. Below it, quotient times colour does not give back the light.
 constexpr float kMinColor = 1e-6f;
 

@@ -19,9 +19,6 @@
 namespace gradus::output {
 namespace {
 
-// Largest finite float, to which quotients of light passes are clamped.
-constexpr float kMaxFloat = std::numeric_limits<float>::max();
-
 // Number of pixels that one task reads. Tiles that are shown during sampling are smaller, so that a sampling thread
 // reads its tile alone and does not take up other tasks meanwhile.
 constexpr int32_t kPixelsOfTask = 1 << 15;

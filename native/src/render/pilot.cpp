@@ -17,12 +17,12 @@
 namespace gradus::render {
 namespace {
 
-// Each block of kBlockSide² pixels has kColumns·kRows test pixels with kSamples samples, 1/16 of a sample per pixel. It
-// is judged by its own test pixels and those of the blocks around. Test pixels are spread out, because neighbouring
-// pixels see nearly the same.
+// Each block of kBlockSide² pixels has kColumns·kRows test pixels with kPilotSamples samples, 1/16 of a sample per
+// pixel. It is judged by its own test pixels and those of the blocks around. Test pixels are spread out, because
+// neighbouring pixels see nearly the same.
 constexpr int kBlockSide = 32;
 constexpr int kColumns = 8, kRows = 4;
-constexpr uint32_t kSamples = 2;
+constexpr uint32_t kPilotSamples = 2;
 // The seed of the pilot. Seeds of users are below 2³¹; with one of them the pilot's samples could be those of frame 0
 // that are kept.
 constexpr uint32_t kSeed = 0xf0696c6fu;
@@ -164,7 +164,7 @@ GradientMap run_pilot(const integrator::Integrator& integrator, const GradusSett
     for (const size_t pixel : pixels) map[pixel] = 1;
     integrator::WorkUnit unit;
     unit.tile = blocks.blocks[i];
-    unit.count = kSamples;
+    unit.count = kPilotSamples;
     unit.pixel_map = &map;
     integrator.sample(unit, &film, &counters, stop);
     if (is_stopped()) return true;
@@ -187,7 +187,7 @@ GradientMap run_pilot(const integrator::Integrator& integrator, const GradusSett
   PilotSums total;
   int64_t kept = 0;
   for (size_t i = 0; i < sums.size(); ++i) {
-    map.samples += kSamples * uint64_t(sums[i].pixels);
+    map.samples += kPilotSamples * uint64_t(sums[i].pixels);
     const Region part = film::intersection(blocks.blocks[i], region);
     if (part.width() <= 0 || part.height() <= 0) continue;
     total.add(sums[i], 1.0);

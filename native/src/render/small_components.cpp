@@ -20,7 +20,7 @@ namespace {
 // about kMinPixels test pixels.
 constexpr int32_t kMaxBlockSide = 16;
 constexpr int64_t kMinPixels = 1024;
-constexpr uint32_t kSamples = 4;
+constexpr uint32_t kTestSamples = 4;
 // Side of a group, in blocks. The light of a component in a group is compared with the light of a typical group.
 constexpr int32_t kBlocksPerGroupSide = 4;
 // A component is small if it has at most these shares of the typical light, in every group and on average.
@@ -95,7 +95,7 @@ std::vector<Light> measure_groups(const integrator::Integrator& integrator, cons
       if (stop.load(std::memory_order_relaxed)) return;
       integrator::WorkUnit unit;
       unit.tile = pixel_of(block, settings.seed);
-      unit.count = kSamples;
+      unit.count = kTestSamples;
       film::Film frame(settings.width, settings.height, unit.tile, channels, components, false);
       integrator.sample(unit, &frame, &counters, stop);
       add(light_of(frame), &light[i]);
@@ -116,7 +116,7 @@ SmallComponents find_small_components(const integrator::Integrator& integrator, 
   SmallComponents small;
   small.cpu_seconds = 1e-9 * double(cpu.load());
   if (stop.load(std::memory_order_relaxed)) return small;  // cancelled: the result is not complete
-  small.samples = kSamples * uint64_t(film::make_pixel_blocks(film, block_side(film)).size());
+  small.samples = kTestSamples * uint64_t(film::make_pixel_blocks(film, block_side(film)).size());
   const double light = typical(groups);
   for (int c = 0; c < set.count(); ++c) {
     if (is_small(groups, size_t(c), light)) small.bits |= 1u << c;

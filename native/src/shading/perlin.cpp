@@ -7,7 +7,7 @@
 namespace gradus::shading {
 namespace {
 
-float fade(float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); }
+float smootherstep(float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); }
 float mix(float a, float b, float t) { return a + (b - a) * t; }
 float flip(float x, uint32_t condition) { return condition ? -x : x; }
 
@@ -77,14 +77,14 @@ float perlin3(const Cell& x, const Cell& y, const Cell& z) {
   const FloatLanes t = (h == 12u) | (h == 14u) ? dx : dz;
   const FloatLanes v = h < 4u ? dy : t;
   const FloatLanes g = flip_lanes(u, h & 1u) + flip_lanes(v, (h >> 1) & 1u);
-  const float fx = fade(x.offset), fy = fade(y.offset);
+  const float fx = smootherstep(x.offset), fy = smootherstep(y.offset);
   const float low = mix(mix(g[0], g[1], fx), mix(g[2], g[3], fx), fy);
   const float high = mix(mix(g[4], g[5], fx), mix(g[6], g[7], fx), fy);
-  return mix(low, high, fade(z.offset));
+  return mix(low, high, smootherstep(z.offset));
 }
 
 float perlin4(const Cell& x, const Cell& y, const Cell& z, const Cell& w) {
-  const float u = fade(x.offset), v = fade(y.offset), s = fade(z.offset);
+  const float u = smootherstep(x.offset), v = smootherstep(y.offset), s = smootherstep(z.offset);
   float volumes[2];
   for (uint32_t l = 0; l < 2; l++) {
     float planes[2];
@@ -102,7 +102,7 @@ float perlin4(const Cell& x, const Cell& y, const Cell& z, const Cell& w) {
     }
     volumes[l] = mix(planes[0], planes[1], s);
   }
-  return mix(volumes[0], volumes[1], fade(w.offset));
+  return mix(volumes[0], volumes[1], smootherstep(w.offset));
 }
 
 }  // namespace
@@ -111,19 +111,19 @@ float perlin4(const Cell& x, const Cell& y, const Cell& z, const Cell& w) {
 float signed_noise(float p) {
   const Cell x = cell(wrapped(p));
   return 0.25f * mix(gradient(lattice_hash(x.index), x.offset), gradient(lattice_hash(x.index + 1), x.offset - 1.0f),
-                     fade(x.offset));
+                     smootherstep(x.offset));
 }
 
 float signed_noise(const Vec2& p) {
   const Cell x = cell(wrapped(p.x)), y = cell(wrapped(p.y));
-  const float u = fade(x.offset);
+  const float u = smootherstep(x.offset);
   float rows[2];
   for (uint32_t j = 0; j < 2; j++) {
     const float dy = y.offset - static_cast<float>(j);
     rows[j] = mix(gradient(lattice_hash(x.index, y.index + j), x.offset, dy),
                   gradient(lattice_hash(x.index + 1, y.index + j), x.offset - 1.0f, dy), u);
   }
-  return 0.6616f * mix(rows[0], rows[1], fade(y.offset));
+  return 0.6616f * mix(rows[0], rows[1], smootherstep(y.offset));
 }
 
 float signed_noise(const Vec3& p) {

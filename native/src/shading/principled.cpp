@@ -9,30 +9,6 @@
 namespace gradus::shading {
 namespace {
 
-enum Input {
-  kBaseColor,
-  kMetallic,
-  kRoughness,
-  kIor,
-  kDiffuseRoughness,
-  kSpecularLevel,
-  kSpecularTint,
-  kAnisotropic,
-  kAnisotropicRotation,
-  kTransmission,
-  kCoatWeight,
-  kCoatRoughness,
-  kCoatIor,
-  kCoatTint,
-  kSheenWeight,
-  kSheenRoughness,
-  kSheenTint,
-  kEmission,
-  kNormal,
-  kCoatNormal,
-  kTangent,
-};
-
 float f0_of_ior(float ior) {
   const float root = (ior - 1.0f) / (ior + 1.0f);
   return root * root;
@@ -45,6 +21,31 @@ float ior_of_f0(float f0) {
 
 // Adds the layers from top to bottom. weight_ is the weight of the layers that are still to come.
 class Layers {
+  // Inputs of the node in their order.
+  enum Input {
+    kBaseColor,
+    kMetallic,
+    kRoughness,
+    kIor,
+    kDiffuseRoughness,
+    kSpecularLevel,
+    kSpecularTint,
+    kAnisotropic,
+    kAnisotropicRotation,
+    kTransmission,
+    kCoatWeight,
+    kCoatRoughness,
+    kCoatIor,
+    kCoatTint,
+    kSheenWeight,
+    kSheenRoughness,
+    kSheenTint,
+    kEmission,
+    kNormal,
+    kCoatNormal,
+    kTangent,
+  };
+
  public:
   Layers(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result)
       : args_(args),

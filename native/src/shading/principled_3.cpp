@@ -6,29 +6,30 @@
 namespace gradus::shading {
 namespace {
 
-enum Input {
-  kBaseColor,
-  kDiffuseColor,
-  kMetallic,
-  kSpecular,
-  kSpecularTint,
-  kRoughness,
-  kAnisotropic,
-  kAnisotropicRotation,
-  kSheen,
-  kSheenTint,
-  kClearcoat,
-  kClearcoatRoughness,
-  kIor,
-  kTransmission,
-  kTransmissionRoughness,
-  kNormal,
-  kClearcoatNormal,
-  kTangent,
-};
-
 // Adds the lobes of the BSDF.
 class Lobes {
+  // Inputs of the node in their order.
+  enum Input {
+    kBaseColor,
+    kDiffuseColor,
+    kMetallic,
+    kSpecular,
+    kSpecularTint,
+    kRoughness,
+    kAnisotropic,
+    kAnisotropicRotation,
+    kSheen,
+    kSheenTint,
+    kClearcoat,
+    kClearcoatRoughness,
+    kIor,
+    kTransmission,
+    kTransmissionRoughness,
+    kNormal,
+    kClearcoatNormal,
+    kTangent,
+  };
+
  public:
   Lobes(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result)
       : args_(args), c_(context), result_(result), normal_(facing_normal(context, args.v(kNormal))) {

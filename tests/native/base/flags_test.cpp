@@ -20,7 +20,7 @@ TEST(L5_Flags, NumbersMayBeInfiniteAndSumsKeepTheirOrder) {
   FAIL() << "these tests were built with -ffast-math or -ffinite-math-only";
 #endif
   const std::string commands = text_of(GRADUS_BINARY_DIR "/compile_commands.json");
-  ASSERT_NE(commands.find("native/src/film/film.cpp"), std::string::npos);
+  ASSERT_NE(commands.find("gradus_core.dir/"), std::string::npos);
   ASSERT_NE(commands.find("-Werror"), std::string::npos);
   for (const char* flag : {"-ffast-math", "-Ofast", "-ffinite-math", "-funsafe-math", "-fassociative-math",
                            "-freciprocal-math", "-fno-signed-zeros", "-march=native", "-mtune=native"}) {

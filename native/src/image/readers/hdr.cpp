@@ -13,9 +13,9 @@ namespace gradus::image {
 namespace {
 
 // Reads lines and bytes from a file in memory.
-class Reader {
+class HdrReader {
  public:
-  explicit Reader(Bytes file) : file_(file) {}
+  explicit HdrReader(Bytes file) : file_(file) {}
   // Reads up to the next line feed, which is skipped. Returns false if none follows.
   bool line(std::string_view* text) {
     const size_t start = position_;
@@ -67,7 +67,7 @@ bool parse_resolution(std::string_view text, Resolution* resolution) {
 
 // Reads a row of the new run-length code, which stores all values of each of the four components in turn. A count above
 // 128 marks a run of count - 128 equal values. Returns false if the row is damaged.
-bool read_planes(Reader* reader, std::vector<uint8_t>* row, size_t width) {
+bool read_planes(HdrReader* reader, std::vector<uint8_t>* row, size_t width) {
   for (size_t component = 0; component < 4; component++) {
     for (size_t x = 0; x < width;) {
       uint8_t head[2];
@@ -104,7 +104,7 @@ bool read_planes(Reader* reader, std::vector<uint8_t>* row, size_t width) {
 // Reads a row of whole pixels, the first of which is `first`, in the old run-length code. A pixel (1, 1, 1, n) repeats
 // the pixel before it n times; in a sequence of them each n counts 256 times as much as the one before. Returns false
 // if the row is damaged.
-bool read_pixels(Reader* reader, std::vector<uint8_t>* row, size_t width, const uint8_t first[4]) {
+bool read_pixels(HdrReader* reader, std::vector<uint8_t>* row, size_t width, const uint8_t first[4]) {
   uint8_t pixel[4] = {first[0], first[1], first[2], first[3]};
   unsigned shift = 0;
   for (size_t x = 0; x < width;) {
@@ -130,7 +130,7 @@ bool read_pixels(Reader* reader, std::vector<uint8_t>* row, size_t width, const 
 }
 
 // Reads one row. The bytes 2 2 and the width mark the new run-length code, which is used for widths of 8 to 32767.
-bool read_row(Reader* reader, std::vector<uint8_t>* row, size_t width) {
+bool read_hdr_row(HdrReader* reader, std::vector<uint8_t>* row, size_t width) {
   uint8_t head[4];
   if (!reader->take(head, 4)) {
     return false;
@@ -154,7 +154,7 @@ void to_float(const std::vector<uint8_t>& row, float* out, size_t width, bool fl
 }  // namespace
 
 bool read_hdr(Bytes file, DecodedImage* image, std::string* problem) {
-  Reader reader(file);
+  HdrReader reader(file);
   std::string_view text;
   bool in_header = true;
   while (in_header) {
@@ -179,7 +179,7 @@ bool read_hdr(Bytes file, DecodedImage* image, std::string* problem) {
   }
   std::vector<uint8_t> row(static_cast<size_t>(image->width) * 4);
   for (uint32_t y = 0; y < image->height; y++) {
-    if (!read_row(&reader, &row, image->width)) {
+    if (!read_hdr_row(&reader, &row, image->width)) {
       *problem = "it is truncated or damaged";
       return false;
     }

@@ -20,13 +20,13 @@ struct Jpeg {
   char message[JMSG_LENGTH_MAX];
   bool ended_early;          // the data ended before the end marker
   uint32_t rows_before_end;  // rows that were complete when the data ended
-  uint32_t rows;  // rows that are complete so far
+  uint32_t rows;             // rows that are complete so far
 };
 
 Jpeg* jpeg_of(j_common_ptr info) { return static_cast<Jpeg*>(info->client_data); }
 
 // Stores the error text and returns to the last setjmp.
-void on_error(j_common_ptr info) {
+void on_jpeg_error(j_common_ptr info) {
   Jpeg* jpeg = jpeg_of(info);
   info->err->format_message(info, jpeg->message);
   std::longjmp(jpeg->jump, 1);
@@ -44,7 +44,7 @@ void on_message(j_common_ptr info, int level) {
 void no_output(j_common_ptr) {}
 
 // Reads the header and selects the colour space of the output: CMYK, grey or RGB.
-bool read_header(Jpeg* jpeg, Bytes file) {
+bool read_jpeg_header(Jpeg* jpeg, Bytes file) {
   if (setjmp(jpeg->jump)) {
     return false;
   }
@@ -66,7 +66,7 @@ bool start(Jpeg* jpeg) {
   return jpeg_start_decompress(&jpeg->decoder) != 0;
 }
 
-bool read_row(Jpeg* jpeg, uint8_t* row) {
+bool read_jpeg_row(Jpeg* jpeg, uint8_t* row) {
   if (setjmp(jpeg->jump)) {
     return false;
   }
@@ -85,8 +85,8 @@ void cmyk_to_rgb(const uint8_t* cmyk, uint8_t* rgb, uint32_t width) {
 }
 
 // Decodes the file into `image`. A file that ends early by at most 32 rows gives a warning, else an error.
-bool decode(Jpeg* jpeg, Bytes file, DecodedImage* image, std::string* problem) {
-  if (!read_header(jpeg, file)) {
+bool decode_jpeg(Jpeg* jpeg, Bytes file, DecodedImage* image, std::string* problem) {
+  if (!read_jpeg_header(jpeg, file)) {
     *problem = jpeg->message;
     return false;
   }
@@ -102,7 +102,7 @@ bool decode(Jpeg* jpeg, Bytes file, DecodedImage* image, std::string* problem) {
   for (uint32_t y = 0; good && y < image->height; y++) {
     uint8_t* row = image->row_from_top(y);
     jpeg->rows = y;
-    good = read_row(jpeg, four ? line.get() : row);
+    good = read_jpeg_row(jpeg, four ? line.get() : row);
     if (good && four) {
       cmyk_to_rgb(line.get(), row, image->width);
     }
@@ -125,7 +125,7 @@ bool decode(Jpeg* jpeg, Bytes file, DecodedImage* image, std::string* problem) {
 bool read_jpeg(Bytes file, DecodedImage* image, std::string* problem) {
   const std::unique_ptr<Jpeg> jpeg = std::make_unique<Jpeg>();
   jpeg->decoder.err = jpeg_std_error(&jpeg->errors);
-  jpeg->errors.error_exit = on_error;
+  jpeg->errors.error_exit = on_jpeg_error;
   jpeg->errors.emit_message = on_message;
   jpeg->errors.output_message = no_output;
   jpeg->decoder.client_data = jpeg.get();
@@ -135,7 +135,7 @@ bool read_jpeg(Bytes file, DecodedImage* image, std::string* problem) {
   }
   jpeg_create_decompress(&jpeg->decoder);
   jpeg->decoder.client_data = jpeg.get();
-  const bool ok = decode(jpeg.get(), file, image, problem);
+  const bool ok = decode_jpeg(jpeg.get(), file, image, problem);
   jpeg_destroy_decompress(&jpeg->decoder);
   return ok;
 }

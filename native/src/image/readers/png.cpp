@@ -12,7 +12,7 @@ namespace gradus::image {
 namespace {
 
 // A file in memory, the position in it, and the text of the error that ended the decoding.
-struct Source {
+struct PngSource {
   const uint8_t* data;
   size_t size;
   size_t position;
@@ -20,8 +20,8 @@ struct Source {
 };
 
 // Reads bytes from memory for libpng.
-void read_bytes(png_structp png, png_bytep out, png_size_t length) {
-  Source* source = static_cast<Source*>(png_get_io_ptr(png));
+void read_png_bytes(png_structp png, png_bytep out, png_size_t length) {
+  PngSource* source = static_cast<PngSource*>(png_get_io_ptr(png));
   if (length > source->size - source->position) {
     png_error(png, "it is truncated");
   }
@@ -30,20 +30,20 @@ void read_bytes(png_structp png, png_bytep out, png_size_t length) {
 }
 
 // Stores the error text and returns to the last setjmp.
-void on_error(png_structp png, png_const_charp text) {
-  Source* source = static_cast<Source*>(png_get_error_ptr(png));
+void on_png_error(png_structp png, png_const_charp text) {
+  PngSource* source = static_cast<PngSource*>(png_get_error_ptr(png));
   std::strncpy(source->message, text, sizeof(source->message) - 1);
   longjmp(png_jmpbuf(png), 1);
 }
 
-void on_warning(png_structp, png_const_charp) {}
+void on_png_warning(png_structp, png_const_charp) {}
 
 // Reads the header and selects 8 or 16 bit grey or RGB for the output, with alpha if the file has any.
-bool read_header(png_structp png, png_infop info, Source* source) {
+bool read_png_header(png_structp png, png_infop info, PngSource* source) {
   if (setjmp(png_jmpbuf(png))) {
     return false;
   }
-  png_set_read_fn(png, source, read_bytes);
+  png_set_read_fn(png, source, read_png_bytes);
   // libpng itself refuses images that are larger than the limit.
   png_set_user_limits(png, static_cast<png_uint_32>(kMaxSide), static_cast<png_uint_32>(kMaxSide));
   png_set_chunk_malloc_max(png, 16u << 20);
@@ -65,8 +65,8 @@ bool read_rows(png_structp png, png_bytepp rows) {
   return true;
 }
 
-bool decode(png_structp png, png_infop info, Source* source, DecodedImage* image, std::string* problem) {
-  if (!read_header(png, info, source)) {
+bool decode_png(png_structp png, png_infop info, PngSource* source, DecodedImage* image, std::string* problem) {
+  if (!read_png_header(png, info, source)) {
     *problem = source->message;
     return false;
   }
@@ -94,12 +94,12 @@ bool decode(png_structp png, png_infop info, Source* source, DecodedImage* image
 }  // namespace
 
 bool read_png(Bytes file, DecodedImage* image, std::string* problem) {
-  Source source{file.data(), file.size(), 0, {}};
-  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, on_error, on_warning);
+  PngSource source{file.data(), file.size(), 0, {}};
+  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, on_png_error, on_png_warning);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   bool ok = false;
   if (info) {
-    ok = decode(png, info, &source, image, problem);
+    ok = decode_png(png, info, &source, image, problem);
   } else {
     *problem = "libpng could not be initialised";
   }

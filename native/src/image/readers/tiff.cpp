@@ -15,15 +15,15 @@ namespace gradus::image {
 namespace {
 
 // A file in memory, the position in it, and the text of its first error.
-struct Source {
+struct TiffSource {
   Bytes file;
   uint64_t position = 0;
   std::string message;
 };
 
 // The following functions let libtiff read from memory. Reading stops at the end of the file, as with a real file.
-tmsize_t read_bytes(thandle_t handle, void* out, tmsize_t count) {
-  Source* source = static_cast<Source*>(handle);
+tmsize_t read_tiff_bytes(thandle_t handle, void* out, tmsize_t count) {
+  TiffSource* source = static_cast<TiffSource*>(handle);
   const uint64_t left = source->position < source->file.size() ? source->file.size() - source->position : 0;
   const size_t n = std::min<uint64_t>(left, static_cast<uint64_t>(std::max<tmsize_t>(count, 0)));
   if (n > 0) {
@@ -34,20 +34,20 @@ tmsize_t read_bytes(thandle_t handle, void* out, tmsize_t count) {
 }
 tmsize_t no_write(thandle_t, void*, tmsize_t) { return 0; }
 toff_t seek(thandle_t handle, toff_t offset, int whence) {
-  Source* source = static_cast<Source*>(handle);
+  TiffSource* source = static_cast<TiffSource*>(handle);
   const uint64_t base = whence == SEEK_SET ? 0 : whence == SEEK_CUR ? source->position : source->file.size();
   source->position = base + offset;
   return source->position;
 }
 int close_nothing(thandle_t) { return 0; }
-toff_t size_of(thandle_t handle) { return static_cast<Source*>(handle)->file.size(); }
+toff_t size_of(thandle_t handle) { return static_cast<TiffSource*>(handle)->file.size(); }
 int no_map(thandle_t, void**, toff_t*) { return 0; }
 void no_unmap(thandle_t, void*, toff_t) {}
 
 // Keeps the first error of this file. The handler is set for this file only, because the process-wide ones belong to
 // the host.
-int on_error(TIFF*, void* user, const char*, const char* format, va_list arguments) {
-  Source* source = static_cast<Source*>(user);
+int on_tiff_error(TIFF*, void* user, const char*, const char* format, va_list arguments) {
+  TiffSource* source = static_cast<TiffSource*>(user);
   if (source->message.empty()) {
     char text[200];
     std::vsnprintf(text, sizeof(text), format, arguments);
@@ -55,17 +55,17 @@ int on_error(TIFF*, void* user, const char*, const char* format, va_list argumen
   }
   return 1;
 }
-int on_warning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
+int on_tiff_warning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
 
 // An open TIFF file; get() is nullptr if it could not be opened.
 class Tiff {
  public:
-  explicit Tiff(Source* source) {
+  explicit Tiff(TiffSource* source) {
     TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
-    TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, source);
-    TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, source);
+    TIFFOpenOptionsSetErrorHandlerExtR(options, on_tiff_error, source);
+    TIFFOpenOptionsSetWarningHandlerExtR(options, on_tiff_warning, source);
     TIFFOpenOptionsSetMaxSingleMemAlloc(options, tmsize_t{1} << 32);
-    handle_ = TIFFClientOpenExt("image", "rm", source, read_bytes, no_write, seek, close_nothing, size_of, no_map,
+    handle_ = TIFFClientOpenExt("image", "rm", source, read_tiff_bytes, no_write, seek, close_nothing, size_of, no_map,
                                 no_unmap, options);
     TIFFOpenOptionsFree(options);
   }
@@ -137,8 +137,8 @@ bool read_layout(TIFF* tiff, Layout* layout) {
 
 // A decoded block, which is a strip or a tile, of one plane or of all interleaved samples.
 struct Block {
-  uint32_t x0;  // left column in the image
-  uint32_t y0;  // top row in the image
+  uint32_t x0;     // left column in the image
+  uint32_t y0;     // top row in the image
   uint32_t width;  // width in the buffer, which may reach beyond the image
   uint32_t height;
   uint32_t samples;  // interleaved samples per pixel in the buffer
@@ -217,7 +217,7 @@ bool read_converted(TIFF* tiff, const Layout& layout, size_t file_bytes, Decoded
 }  // namespace
 
 bool read_tiff(Bytes file, DecodedImage* image, std::string* problem) {
-  Source source{file, 0, {}};
+  TiffSource source{file, 0, {}};
   const Tiff tiff(&source);
   Layout layout;
   bool ok = tiff.get() && read_layout(tiff.get(), &layout);

@@ -12,8 +12,8 @@ namespace {
 // Stops when the root mean square error of every row of the image is below a hundredth of its noise, after 5 to 12
 // steps. The residual is no criterion: beside a bright light it is small at once, and where weights span six decades
 // the rows with little noise dominate it.
-constexpr CgGoal kGoal{.row_error = 1e-2f};
-constexpr int kMaxSteps = 60;
+constexpr CgGoal kNoiseGoal{.row_error = 1e-2f};
+constexpr int kMaxNoiseSteps = 60;
 
 void weigh_rows(const std::vector<float>& deviations, const std::vector<float>& values,
                 const film::GradientImages& images, float scale, float unknown, Field* weights) {
@@ -48,7 +48,7 @@ void limit_differences(const Field& data, Stencil* matrix) {
 
 void solve_by_noise(const SolverPlanes& planes, const CancelCheck& cancel, WeightedLeastSquares* system, Field* x,
                     SolveReport* report) {
-  const CgReport solve = system->solve(planes, kGoal, kMaxSteps, cancel, x);
+  const CgReport solve = system->solve(planes, kNoiseGoal, kMaxNoiseSteps, cancel, x);
   ++report->outer_steps;
   add_solve(solve, report);
 }

@@ -7,7 +7,7 @@ namespace gradus::reconstruct {
 namespace {
 
 // Number of rows in a piece of work. The passes compute two or three rows around each piece twice.
-constexpr int kGrain = 64;
+constexpr int kCheckeredGrain = 64;
 
 enum class Color { kRed, kBlack };
 
@@ -156,7 +156,7 @@ void restrict_after_sweep(const Stencil& a, const Interpolation& p, const Field&
           }
         }
       },
-      kGrain / 2);
+      kCheckeredGrain / 2);
 }
 
 RowSums sweep_interpolated(const Stencil& a, const Interpolation& p, const Field& b, const Field& coarse, Field* z) {
@@ -179,7 +179,7 @@ RowSums sweep_interpolated(const Stencil& a, const Interpolation& p, const Field
           }
         }
       },
-      kGrain);
+      kCheckeredGrain);
   return sums;
 }
 

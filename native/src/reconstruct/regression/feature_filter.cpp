@@ -16,7 +16,7 @@ namespace {
 // Radius of a patch, 3×3 pixels, and of the window over which variances are averaged.
 constexpr int kPatch = 1;
 // Distance up to which pixels affect a pixel: its neighbours, their patches, and the window of the patches' variances.
-constexpr int kReach = 1 + 2 * kPatch;
+constexpr int kFilterReach = 1 + 2 * kPatch;
 // Size of a tile, so that it fits in the second-level cache. With its margin it is as tall as the rows of one thread
 // (base/rows.h).
 constexpr int kTileWidth = 250, kTileHeight = 26;
@@ -119,11 +119,11 @@ void gather(const Field& values, const Field& distance, Neighbour offset, Field*
   });
 }
 
-// Filters one tile: reads it with a margin of kReach pixels and writes its own pixels.
+// Filters one tile: reads it with a margin of kFilterReach pixels and writes its own pixels.
 void filter_tile(const film::FeatureImage& image, int width, int height, const Part& tile, float negligible,
                  std::vector<float>* result) {
-  const Part all{std::max(0, tile.x0 - kReach), std::max(0, tile.y0 - kReach), std::min(width, tile.x1 + kReach),
-                 std::min(height, tile.y1 + kReach)};
+  const Part all{std::max(0, tile.x0 - kFilterReach), std::max(0, tile.y0 - kFilterReach),
+                 std::min(width, tile.x1 + kFilterReach), std::min(height, tile.y1 + kFilterReach)};
   const int channels = int(image.channels);
   const Field values = load(image.values, width, all, channels, -kLargest, kLargest);
   const Field variance = box_mean(load(image.variance, width, all, channels, 0.0f, kLargestVariance), kPatch);

@@ -13,8 +13,6 @@
 namespace gradus::reconstruct {
 namespace {
 
-constexpr float kMaxFloat = std::numeric_limits<float>::max();
-
 // Limits the estimated error to the noise of the samples around each pixel: the sampled values themselves have no
 // larger error. Where no path of the term was found, its error is therefore 0.
 void limit_by_noise(const Field& half_difference, Field* error) {

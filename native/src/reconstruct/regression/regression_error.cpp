@@ -14,9 +14,9 @@ namespace {
 //
 // The light of a pixel is the mean over 3×3 pixels. With its own light alone, the estimated error of a dark pixel
 // beside a bright one would fall as its true error rises.
-constexpr int kLightRadius = 1;
+constexpr int kErrorLightRadius = 1;
 // Squared noise is averaged over this radius, because a single square is a poor estimate.
-constexpr int kNoiseRadius = 3;
+constexpr int kErrorNoiseRadius = 3;
 // Radius of the window in which the sampled and the regressed image should have the same mean.
 constexpr int kLostRadius = 8;
 
@@ -43,13 +43,13 @@ Field lost_share(const Smoothed& smoothed) {
 
 Field regression_error(const Smoothed& smoothed, const Field& bias, ErrorUse use) {
   const bool is_delivered = use == ErrorUse::Delivered;
-  const Field light = squared_light(smoothed.image, kLightRadius), lost = lost_share(smoothed);
+  const Field light = squared_light(smoothed.image, kErrorLightRadius), lost = lost_share(smoothed);
   // Noise is averaged relative to the light: the noise of a light source says nothing about the wall beside it.
   const auto relative_noise = [&](int x, int y) {
     const float by = GRADUS_FAULT(error_noise_not_relative_to_light) ? 1.0f : light.row(y)[x];
     return mean_of_squares(smoothed.noise, x, y) / by;
   };
-  Field error = box_mean(make_field(light.width(), light.height(), relative_noise), kNoiseRadius);
+  Field error = box_mean(make_field(light.width(), light.height(), relative_noise), kErrorNoiseRadius);
   for_values(&error, [&](float& value, int x, int y, int) {
     const float own = std::max(mean_of(smoothed.image, x, y), 0.0f) + kDark,
                 of_lost = GRADUS_FAULT(error_omits_lost_light) ? 0.0f

@@ -18,7 +18,7 @@ namespace {
 // next: docs/method.md.
 constexpr float kTimesError = 2.0f;
 // Minimum of the squared error, in units of the squared median luminance.
-constexpr float kMinError = 1e-8f;
+constexpr float kMinChangeError = 1e-8f;
 // Radius of the window from which pixels without a correspondence are filled.
 constexpr int kDisocclusionRadius = 7;
 
@@ -141,7 +141,7 @@ Change regress_change(const ComponentSources& components, int t, const std::vect
     change.difference.push_back(join(colours[k], alphas[k], roundings[k], scale));
   }
   change.weight = make_field(sum.mean.width(), sum.mean.height(), [&](int x, int y) {
-    return track_weight(scale * scale * (kTimesError * regression.error().row(y)[x] + kMinError));
+    return track_weight(scale * scale * (kTimesError * regression.error().row(y)[x] + kMinChangeError));
   });
   return change;
 }

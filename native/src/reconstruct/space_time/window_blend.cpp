@@ -17,16 +17,16 @@ void scale(Reconstructed* picture, float factor) {
   for (std::vector<float>& component : picture->components) scale(&component, factor);
 }
 
-void add(const std::vector<float>& from, std::vector<float>* to) {
+void add_image(const std::vector<float>& from, std::vector<float>* to) {
   for (size_t i = 0; i < to->size(); ++i) (*to)[i] += from[i];
 }
 
-void add(const Reconstructed& from, Reconstructed* to) {
-  add(from.image, &to->image);
-  add(from.error, &to->error);
-  add(from.terms.noise, &to->terms.noise);
-  add(from.terms.l2_difference, &to->terms.l2_difference);
-  for (size_t k = 0; k < to->components.size(); ++k) add(from.components[k], &to->components[k]);
+void add_picture(const Reconstructed& from, Reconstructed* to) {
+  add_image(from.image, &to->image);
+  add_image(from.error, &to->error);
+  add_image(from.terms.noise, &to->terms.noise);
+  add_image(from.terms.l2_difference, &to->terms.l2_difference);
+  for (size_t k = 0; k < to->components.size(); ++k) add_image(from.components[k], &to->components[k]);
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ void WindowBlend::add(int window, int frame, Reconstructed picture) {
     if (GRADUS_FAULT(last_window_replaces_others)) {
       scale(&picture, 1.0f / share);
     } else {
-      reconstruct::add(begun->second, &picture);
+      add_picture(begun->second, &picture);
     }
     begun_.erase(begun);
   }

@@ -27,7 +27,7 @@ const Vec4 kAbsorbed(2.8722e-24f, 4.6168e-24f, 7.9706e-24f, 1.3578e-23f);  // cr
 const Vec4 kScattered(1.5908e-22f, 1.7711e-22f, 2.0942e-22f, 2.4033e-22f);
 constexpr float kOzoneColumn = 334.5f;  // annual mean in Dobson units
 constexpr float kAerosolDensity = 1.3681e20f, kAerosolBackground = 2e6f, kAerosolHeight = 0.73f;
-constexpr float kAnisotropy = 0.8f;  // asymmetry of the aerosols' phase function
+constexpr float kHenyeyGreensteinG = 0.8f;  // asymmetry of the aerosols' phase function
 constexpr float kGroundAlbedo = 0.3f;
 // The XYZ colours of the four wavelengths.
 constexpr float kToXyz[4][3] = {{53.386918f, 22.981338f, 0.0f},
@@ -66,16 +66,14 @@ Coefficients coefficients(const Densities& density, float height) {
   return c;
 }
 
-float rayleigh_phase(float mu) { return 3.0f / 16.0f * kInvPi * (1.0f + mu * mu); }
-
 // The phase function of Henyey and Greenstein.
-float aerosol_phase(float mu) {
-  const float d = 1.0f + kAnisotropy * kAnisotropy - 2.0f * kAnisotropy * mu;
-  return 0.25f * kInvPi * (1.0f - kAnisotropy * kAnisotropy) / (d * std::sqrt(d));
+float henyey_greenstein(float mu) {
+  const float d = 1.0f + kHenyeyGreensteinG * kHenyeyGreensteinG - 2.0f * kHenyeyGreensteinG * mu;
+  return 0.25f * kInvPi * (1.0f - kHenyeyGreensteinG * kHenyeyGreensteinG) / (d * std::sqrt(d));
 }
 
 // A ray, given by the distance of its origin from the Earth's centre and the cosine to the zenith there.
-struct PolarRay {
+struct MultipleRay {
   double radius, cosine;
   double to_sphere(double r, double sign) const {
     const double along = radius * cosine, root = along * along - radius * radius + r * r;
@@ -92,7 +90,7 @@ struct PolarRay {
 float height_of(double radius) { return std::max(float(radius - double(kGround)), 0.0f); }
 
 // Returns the transmittance to space. It also passes through the ground, where it becomes nearly 0.
-Vec4 transmittance_to_space(const Densities& density, const PolarRay& ray) {
+Vec4 transmittance_to_space(const Densities& density, const MultipleRay& ray) {
   const double step = ray.to_sphere(double(kSpace), 1.0) / kSteps;
   Vec4 depth(0.0f);
   for (int i = 0; i < kSteps; ++i)
@@ -146,15 +144,15 @@ Vec4 from_atmosphere(float sun_cosine) {
 }
 
 // The rays of one row of the table, with the factor by which each step scatters the light that arrives there.
-class View {
+class MultipleView {
  public:
-  View(const SunTable& table, const Densities& density, float altitude, float elevation, float sun_elevation)
+  MultipleView(const SunTable& table, const Densities& density, float altitude, float elevation, float sun_elevation)
       : table_(table),
         start_(double(kGround) + double(altitude)),
         sine_(std::sin(elevation)),
         cosine_(std::cos(elevation)),
         sun_(std::cos(sun_elevation), std::sin(sun_elevation)) {
-    const PolarRay ray{start_, double(sine_)};
+    const MultipleRay ray{start_, double(sine_)};
     const double step = ray.length() / kSteps;
     Vec4 transmittance(1.0f);
     for (int i = 0; i < kSteps; ++i)
@@ -165,7 +163,7 @@ class View {
   Rgb radiance(float azimuth) const {
     const Vec3 direction(cosine_ * std::cos(azimuth), cosine_ * std::sin(azimuth), sine_);
     const float mu = direction.x * sun_.x + direction.z * sun_.y;
-    const float rayleigh = rayleigh_phase(mu), aerosol = aerosol_phase(mu);
+    const float rayleigh = rayleigh_phase(mu), aerosol = henyey_greenstein(mu);
     Vec4 sum(0.0f);
     for (const Point& p : points_) {
       const float sun_cosine =
@@ -186,7 +184,7 @@ class View {
   };
 
   // Integrates a step in which everything except the transmittance is constant (Hillaire 2015, Frostbite).
-  Point make_point(const Densities& density, const PolarRay& ray, double distance, float step,
+  Point make_point(const Densities& density, const MultipleRay& ray, double distance, float step,
                    Vec4* transmittance) const {
     const double radius = ray.radius_at(distance);
     const float height = height_of(radius);
@@ -218,7 +216,7 @@ SunColor sun_color(const DomeSettings& settings, const Densities& density, float
   sun.horizon = dome_horizon(settings.altitude);
   if (!(settings.sun_size > 0.0f)) return sun;
   const auto color = [&](float elevation) {
-    const PolarRay ray{double(kGround) + double(altitude), std::sin(double(elevation))};
+    const MultipleRay ray{double(kGround) + double(altitude), std::sin(double(elevation))};
     return to_rgb(kSun * transmittance_to_space(density, ray) / disc_solid_angle(settings.sun_size));
   };
   sun.low = color(sun.low_elevation);
@@ -234,7 +232,7 @@ std::vector<float> prepare_multiple_scattering(const DomeSettings& settings) {
   const SunTable table(density);
   const auto row = [&](int y, Rgb* half) {
     const float l = 2.0f * (float(y) + 0.5f) / float(kDomeHeight) - 1.0f;
-    const View view(table, density, altitude, std::copysign(0.5f * kPi * l * l, l), settings.sun_elevation);
+    const MultipleView view(table, density, altitude, std::copysign(0.5f * kPi * l * l, l), settings.sun_elevation);
     for (int x = 0; x < kDomeWidth / 2; ++x)
       half[x] = view.radiance(2.0f * kPi * (float(x) + 0.5f) / float(kDomeWidth) - kPi);
   };

@@ -14,10 +14,10 @@ namespace gradus::shading {
 namespace {
 
 constexpr double kGroundRadius = 6360e3, kAtmosphereRadius = 6420e3;  // m
-constexpr float kAirHeight = 8e3f, kAerosolHeight = 1.2e3f;           // scale heights in m
+constexpr float kAirHeight = 8e3f, kAerosolScaleHeight = 1.2e3f;      // scale heights in m
 constexpr float kAerosolScattering = 2e-5f;                           // 1/m
 constexpr float kAerosolExtinction = 1.11f * kAerosolScattering;
-constexpr float kAnisotropy = 0.76f;  // asymmetry of the aerosols' phase function
+constexpr float kCornetteShanksG = 0.76f;  // asymmetry of the aerosols' phase function
 constexpr int kViewSteps = 32;
 
 using Spectrum = std::array<float, kWavelengths>;
@@ -25,20 +25,18 @@ using Spectrum = std::array<float, kWavelengths>;
 // Returns the densities of air, aerosols and ozone relative to those of the tabulated coefficients.
 Vec3 density(float height) {
   const float ozone = std::max(0.0f, 1.0f - std::fabs(height - 25e3f) / 15e3f);
-  return {std::exp(-height / kAirHeight), std::exp(-height / kAerosolHeight), ozone};
+  return {std::exp(-height / kAirHeight), std::exp(-height / kAerosolScaleHeight), ozone};
 }
 
-float rayleigh_phase(float mu) { return 3.0f / 16.0f * kInvPi * (1.0f + mu * mu); }
-
 // The phase function of Cornette and Shanks 1992.
-float aerosol_phase(float mu) {
-  const float g2 = kAnisotropy * kAnisotropy;
+float cornette_shanks(float mu) {
+  const float g2 = kCornetteShanksG * kCornetteShanksG;
   return 3.0f / 8.0f * kInvPi * (1.0f - g2) * (1.0f + mu * mu) /
-         ((2.0f + g2) * std::pow(1.0f + g2 - 2.0f * kAnisotropy * mu, 1.5f));
+         ((2.0f + g2) * std::pow(1.0f + g2 - 2.0f * kCornetteShanksG * mu, 1.5f));
 }
 
 // A ray, given by the distance of its origin from the Earth's centre and the cosine to the zenith there.
-struct PolarRay {
+struct SingleRay {
   double radius, cosine;
   double to_space() const {
     const double along = radius * cosine;
@@ -57,7 +55,7 @@ constexpr float kSunWeights[kSunSteps] = {0.01750893642f, 0.04135477391f, 0.0667
                                           0.1283416365f,  0.1707430204f,  0.2327233347f,  0.3562490486f};
 
 // Returns the densities integrated along a ray to space, in m.
-Vec3 optical_depth(const PolarRay& ray) {
+Vec3 optical_depth(const SingleRay& ray) {
   const double length = ray.to_space();
   Vec3 sum(0.0f);
   for (int i = 0; i < kSunSteps; ++i) sum += density(ray.height_at(double(kSunPoints[i]) * length)) * kSunWeights[i];
@@ -78,15 +76,15 @@ Rgb to_rgb(const Spectrum& spectrum) {
 
 // The rays of one row of the table, which have the same elevation. They share the points along the ray, with their
 // densities and optical depths.
-class View {
+class SingleView {
  public:
-  View(const DomeSettings& settings, float altitude, float elevation)
+  SingleView(const DomeSettings& settings, float altitude, float elevation)
       : scale_(settings.air, settings.aerosols, settings.ozone),
         start_(kGroundRadius + double(altitude)),
         sun_(std::cos(settings.sun_elevation), std::sin(settings.sun_elevation)),
         sine_(std::sin(elevation)),
         cosine_(std::cos(elevation)) {
-    const PolarRay ray{start_, double(sine_)};
+    const SingleRay ray{start_, double(sine_)};
     step_ = ray.to_space() / kViewSteps;
     Vec3 depth(0.0f);
     for (int i = 0; i < kViewSteps; ++i) {
@@ -102,7 +100,7 @@ class View {
   Rgb radiance(float azimuth) const {
     const Vec3 direction(cosine_ * std::cos(azimuth), cosine_ * std::sin(azimuth), sine_);
     const float mu = direction.x * sun_.x + direction.z * sun_.y;
-    const float rayleigh = rayleigh_phase(mu), aerosol = aerosol_phase(mu);
+    const float rayleigh = rayleigh_phase(mu), aerosol = cornette_shanks(mu);
     Spectrum spectrum{};
     for (const Point& p : points_) {
       const double along_sun = (p.distance * direction.x) * sun_.x + (start_ + p.distance * direction.z) * sun_.y;
@@ -148,7 +146,7 @@ Rgb sun_radiance(const DomeSettings& settings, float altitude, float elevation) 
   return to_rgb(spectrum);
 }
 
-SunColor sun_color(const DomeSettings& settings, float altitude, bool newer) {
+SunColor single_sun_color(const DomeSettings& settings, float altitude, bool newer) {
   SunColor sun;
   const float half = 0.5f * settings.sun_size;
   const float low = std::max(settings.sun_elevation - half, 0.0f), high = settings.sun_elevation + half;
@@ -186,7 +184,7 @@ std::vector<float> prepare_single_scattering(const DomeSettings& settings, bool 
   // The atmosphere ends at 60 km.
   const float altitude = std::clamp(settings.altitude, 1.0f, 59999.0f);
   const auto fill = [&](float elevation, Rgb* half) {
-    const View view(settings, altitude, elevation);
+    const SingleView view(settings, altitude, elevation);
     for (int x = 0; x < kDomeWidth / 2; ++x) half[x] = view.radiance(2.0f * kPi * float(x) / float(kDomeWidth) - kPi);
   };
   std::array<Rgb, kDomeWidth / 2> horizon;
@@ -196,7 +194,7 @@ std::vector<float> prepare_single_scattering(const DomeSettings& settings, bool 
     if (elevation >= 0.0f) return fill(elevation, half);
     for (int x = 0; x < kDomeWidth / 2; ++x) half[x] = fade(elevation) * horizon[size_t(x)];
   };
-  return make_dome(settings, sun_color(settings, altitude, newer), row);
+  return make_dome(settings, single_sun_color(settings, altitude, newer), row);
 }
 
 }  // namespace gradus::shading
