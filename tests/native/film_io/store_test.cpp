@@ -309,9 +309,10 @@ TEST_F(F6_StoredComponents, CorrespondencesToPixelsThatDoNotExistAreRefused) {
   EXPECT_NO_THROW(load("Seen"));
 }
 
+using Rename = std::function<std::string(const std::string&)>;
+
 // Rewrites a file with OpenEXR alone: reads and writes every channel of every part, with the headers as `change` leaves
 // them. `name_before` returns the name that a channel has in the first file.
-using Rename = std::function<std::string(const std::string&)>;
 template <class Change>
 void rewrite(
     const std::string& from, const std::string& to, const Change& change,
