@@ -411,7 +411,7 @@ TEST(C7_StoredFrames, AnUnchangedStretchOfAnOlderSceneIsNotMixedIn) {
     for (int32_t t = 1; t <= 2; ++t) {
       const Delivered found = deliver(beside.get(), t), expected = deliver(alone.get(), t);
       EXPECT_EQ(found.combined, expected.combined) << t << ", reconstruction " << reconstruction;
-      EXPECT_EQ(found.link, expected.link) << t;
+      EXPECT_EQ(found.correspondence, expected.correspondence) << t;
     }
     // Delivers what is stored, like `gradus reconstruct`.
     const auto stored = make_sequence(1, 4, both.path());
@@ -435,7 +435,7 @@ TEST(C7_StoredFrames, MovingFramesOfAnOlderSceneAreNotMixedIn) {
   for (int32_t t = 2; t <= 3; ++t) {
     const Delivered found = deliver(beside.get(), t), expected = deliver(alone.get(), t);
     EXPECT_EQ(found.combined, expected.combined) << t;
-    EXPECT_EQ(found.link, expected.link) << t;
+    EXPECT_EQ(found.correspondence, expected.correspondence) << t;
   }
 }
 
