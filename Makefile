@@ -36,7 +36,7 @@ test-native:    ## only the tests of the library
 test-regression: ## only the stored pictures: a render of each must have their bits, or look like them on other machines
 	@tools/test.sh regression
 
-test-addon:     ## only those of the add-on; with HOSTS=bpy45,bpy52 all of them in these hosts: TESTS=tests/addon/x_test.py
+test-addon:     ## only those of the add-on and the tools; with HOSTS=bpy45,bpy52 all of them in these hosts: TESTS=tests/addon/x_test.py
 	@tools/test.sh addon
 
 stress:         ## numerical stability: hard scenes, their dropped samples and failed shifts as a table

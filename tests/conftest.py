@@ -1,6 +1,6 @@
 """Fixtures and marks of all tests. They run in Blender 3.4, in the bpy modules, and in plain Python (tools/test.py).
 
-Fixtures: `host_version`, `library`, `scene`, `render`, `blender`, `shared_scenes`; the add-on is registered throughout.
+Fixtures: `host_version`, `library`, `scene`, `render`, `blender`; the add-on is registered throughout.
 Temporary folders are pytest's `tmp_path`.
 """
 
@@ -98,12 +98,3 @@ def blender() -> Callable[..., application.Outcome]:
     See support/application.py.
     """
     return application.run
-
-
-@pytest.fixture(scope="session")
-def shared_scenes() -> Path:
-    """Returns the folder of real scenes, which exists beside some checkouts only."""
-    for folder in (ROOT.parent / "shared" / "scenes", Path(os.environ.get("GRADUS_SHARED", "/nonexistent")) / "scenes"):
-        if folder.is_dir():
-            return folder
-    pytest.skip("needs ../shared/scenes")

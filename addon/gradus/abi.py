@@ -192,7 +192,7 @@ class Pass(IntEnum):
     FALLBACK = 29
     ERROR = 30
     GRADIENT_T = 31
-    GRADIENT_T_LINK = 32
+    GRADIENT_T_CORRESPONDENCE = 32
     COUNT = 33
 
 

@@ -1,7 +1,7 @@
 """Paths of raw frames: STORE/<scene>/<layer>[.<view>]/f<frame>.exr for a frame that is rendered independently.
 
-The frames of an animation are stored in the same folder as f<frame>.base.exr and f<frame>.offset.exr, which the library
-writes.
+The frames of an animation are stored in the same folder as f<frame>.fresh.exr and f<frame>.replayed.exr, which the
+library writes.
 """
 
 from __future__ import annotations

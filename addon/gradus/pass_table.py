@@ -39,7 +39,14 @@ PASSES: tuple[tuple[Any, ...], ...] = (
     (Pass.GRADIENT_X, "Gradient X", "Gradient X", "RGB", "COLOR", "gradus.use_pass_gradients"),
     (Pass.GRADIENT_Y, "Gradient Y", "Gradient Y", "RGB", "COLOR", "gradus.use_pass_gradients"),
     (Pass.GRADIENT_T, "Gradient T", "Gradient T", "RGB", "COLOR", "gradus.use_pass_gradients"),
-    (Pass.GRADIENT_T_LINK, "Gradient T Link", "Gradient T Link", "XYZ", "VECTOR", "gradus.use_pass_gradients"),
+    (
+        Pass.GRADIENT_T_CORRESPONDENCE,
+        "Gradient T Correspondence",
+        "Gradient T Correspondence",
+        "XYZ",
+        "VECTOR",
+        "gradus.use_pass_gradients",
+    ),
     (Pass.VARIANCE, "Variance", "Variance", "RGB", "COLOR", "gradus.use_pass_variance"),
     (Pass.ERROR, "Error", "Error", "X", "VALUE", "gradus.use_pass_error"),
     (Pass.FALLBACK, "Fallback", "Fallback", "X", "VALUE", "option"),
@@ -77,7 +84,7 @@ COMPONENT_PASSES: tuple[tuple[Any, ...], ...] = (
 
 GROUPS: dict[str, tuple[Pass, ...]] = {
     "DENOISING": (Pass.DENOISING_NORMAL, Pass.DENOISING_ALBEDO, Pass.DENOISING_DEPTH),
-    "GRADIENTS": (Pass.GRADIENT_X, Pass.GRADIENT_Y, Pass.GRADIENT_T, Pass.GRADIENT_T_LINK),
+    "GRADIENTS": (Pass.GRADIENT_X, Pass.GRADIENT_Y, Pass.GRADIENT_T, Pass.GRADIENT_T_CORRESPONDENCE),
 }
 """Names that --gradus-passes takes for several passes."""
 
@@ -87,9 +94,9 @@ SWITCHES: tuple[tuple[str, str, str, bool], ...] = (
         "Gradients",
         (
             "Adds the passes Gradient X and Gradient Y, the sampled differences to the right and upper neighbour. "
-            "In animations, adds Gradient T, the difference to the next frame, and Gradient T Link, the position of"
-            " the surface there. The integrator Automatic then samples gradients, which takes 1.5 to 2 times as "
-            "long"
+            "In animations, adds Gradient T, the difference to the next frame, and Gradient T Correspondence, the "
+            "position of the surface there. The integrator Automatic then samples gradients, which takes 1.5 to 2 "
+            "times as long"
         ),
         False,
     ),

@@ -42,7 +42,7 @@ class PassInfo:
     long_name: str  # from Blender 5.0 on
     ids: str  # one letter per channel
     kind: str  # VALUE, VECTOR or COLOR
-    switch: str  # "": always on; "reconstructed": on if Combined is a reconstruction
+    switch: str  # "": always on; "reconstructed": on if automatic.Method.is_reconstructed
 
     @property
     def channels(self) -> int:
@@ -84,17 +84,17 @@ class ComponentPassInfo:
 COMPONENT_TABLE = tuple(ComponentPassInfo(*row) for row in pass_table.COMPONENT_PASSES)
 """Passes of a component: Path NAME, Path NAME Reflectance …."""
 
+_ALL_SWITCHES = tuple(row[0] for row in pass_table.SWITCHES)
+_OF_COMPONENTS = frozenset(info.switch.removeprefix("gradus.") for info in COMPONENT_TABLE)
+
+COMPONENT_SWITCHES = tuple(name for name in _ALL_SWITCHES if name in _OF_COMPONENTS)
+"""Properties of view_layer.gradus that switch passes of components, in the order of the schema."""
+
+SAMPLING_SWITCHES = tuple(name for name in _ALL_SWITCHES if name not in _OF_COMPONENTS)
+"""The other properties of view_layer.gradus, which switch passes of the whole picture."""
+
 GROUPS = {**pass_table.GROUPS, "ALL": tuple(info.plane for info in TABLE)}
 """Names that `--gradus-passes` takes besides those of single planes."""
-
-
-def is_reconstructed(integrator: str, reconstruction: str, denoiser: str) -> bool:
-    """Returns whether Combined may be a reconstruction, so that the sampled image gets a pass of its own.
-
-    The arguments are identifiers of settings.py. AUTO may choose plain samples during the render: then both passes are
-    equal.
-    """
-    return reconstruction == "REGULARIZED" or (integrator != "PATH" and reconstruction != "NONE") or denoiser != "NONE"
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ import bpy
 
 from . import (
     animation,
+    automatic,
     compat,
     components,
     cycles_settings,
@@ -52,8 +53,9 @@ def active_passes(scene: Any, view_layer: Any, overrides: options.Overrides) -> 
     """Returns the passes of a view layer, with those of the command line."""
     names = ("integrator", "reconstruction", "denoiser")
     choices = ((overrides.value(name) or getattr(scene.gradus, name)).upper() for name in names)
-    reconstructed = passes.is_reconstructed(*choices)
-    return list(passes.list_passes(view_layer, reconstructed, _component_names(scene, overrides), overrides.passes))
+    method = automatic.method_of(*choices)
+    names = _component_names(scene, overrides)
+    return list(passes.list_passes(view_layer, method.is_reconstructed, names, overrides.passes))
 
 
 def _component_names(scene: Any, overrides: options.Overrides) -> list[str]:

@@ -476,3 +476,6 @@ FROM_BLENDER = (
     "use_sky",
 )
 """Native settings that Blender's own properties give."""
+
+DENOISER_MINIMUM_SAMPLES = 8
+"""Samples per pixel from which AUTO of the setting denoiser does something."""

@@ -48,9 +48,6 @@ class Setting:
         return known[identifier]
 
 
-DENOISER_MINIMUM_SAMPLES = 8
-"""Samples from which the denoiser AUTO runs. The library decides; a test compares the numbers."""
-
 SETTINGS = tuple(Setting(**row) for row in setting_table.ROWS)
 BY_NAME = {setting.name: setting for setting in SETTINGS}
 TEST_SWITCHES = setting_table.TEST_SWITCHES

@@ -19,7 +19,7 @@ import bpy
 import gpu
 from gpu_extras.presets import draw_texture_2d
 
-from . import native, options, passes, renderer, settings, store, view_border
+from . import automatic, native, options, renderer, settings, store, view_border
 from .export import ViewOverride, panorama
 from .native import Denoiser, Error, GradusError, Integrator, Pass, Phase, Reconstruction
 from .store import VIEWPORT, Key, Session
@@ -180,8 +180,8 @@ class View:
 
 def _reconstruction(settings: Any) -> Reconstruction:
     """Returns NONE if the final render shows plain samples, else REGULARIZED."""
-    wanted = passes.is_reconstructed(settings.integrator, settings.reconstruction, settings.denoiser)
-    return Reconstruction.REGULARIZED if wanted else Reconstruction.NONE
+    method = automatic.method_of(settings.integrator, settings.reconstruction, settings.denoiser)
+    return Reconstruction.REGULARIZED if method.is_reconstructed else Reconstruction.NONE
 
 
 def _redraw_while_running(view: View) -> None:

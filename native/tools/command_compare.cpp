@@ -18,7 +18,7 @@ struct CompareArguments {
   double fail_above = std::numeric_limits<double>::infinity();
 };
 
-// Returns an image, or a stored frame, reconstructed by its settings.
+// Returns an image, or a stored film, reconstructed by its settings.
 compare::RgbImage load(const std::string& path, const std::string& layer) {
   if (!film_io::is_film_file(path)) {
     film_io::LoadedImage image = film_io::load_rgb(path, layer);
@@ -62,11 +62,11 @@ int run(const CompareArguments& args) {
 void add_compare(CLI::App* app, int* exit_code) {
   auto args = std::make_shared<CompareArguments>();
   CLI::App* command = app->add_subcommand("compare", "Measure how far an image is from a reference");
-  command->add_option("image", args->image, "Image or stored frame, EXR")
+  command->add_option("image", args->image, "Image or stored film, EXR")
       ->required()
       ->check(CLI::ExistingFile)
       ->check(exr_only);
-  command->add_option("reference", args->reference, "Image or stored frame that it is compared with, EXR")
+  command->add_option("reference", args->reference, "Image or stored film that it is compared with, EXR")
       ->required()
       ->check(CLI::ExistingFile)
       ->check(exr_only);

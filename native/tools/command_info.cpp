@@ -39,30 +39,30 @@ ordered_json scene_info(const std::string& path) {
 }
 
 ordered_json film_info(const std::string& path) {
-  const auto frame = film_io::load_film(path);
+  const auto film = film_io::load_film(path);
   uint64_t samples = 0, minimum = UINT64_MAX, maximum = 0;
-  for (size_t i = 0; i < frame->count[0].size(); ++i) {
-    const uint64_t n = uint64_t(frame->count[0][i]) + frame->count[1][i];
+  for (size_t i = 0; i < film->count[0].size(); ++i) {
+    const uint64_t n = uint64_t(film->count[0][i]) + film->count[1][i];
     samples += n;
     minimum = std::min(minimum, n);
     maximum = std::max(maximum, n);
   }
-  const Region& r = frame->region;
+  const Region& r = film->region;
   char scene_key[20];
-  std::snprintf(scene_key, sizeof(scene_key), "%016llx", static_cast<unsigned long long>(frame->scene_key));
+  std::snprintf(scene_key, sizeof(scene_key), "%016llx", static_cast<unsigned long long>(film->scene_key));
   return {{"kind", "film"},
-          {"resolution", {frame->full_width, frame->full_height}},
+          {"resolution", {film->full_width, film->full_height}},
           {"sampled_region", {r.x0, r.y0, r.x1, r.y1}},
-          {"frame", frame->frame_number},
+          {"frame", film->frame_number},
           {"samples", double(samples) / double(r.area())},
           {"samples_minimum", minimum},
           {"samples_maximum", maximum},
-          {"gradients", frame->gradients},
-          {"components", frame->components.size()},
-          {"alpha", frame->color_channels == 4},
-          {"memory_bytes", frame->memory_bytes()},
+          {"gradients", film->gradients},
+          {"components", film->components.size()},
+          {"alpha", film->color_channels == 4},
+          {"memory_bytes", film->memory_bytes()},
           {"scene_key", scene_key},
-          {"settings", schema::settings_to_json(frame->settings)}};
+          {"settings", schema::settings_to_json(film->settings)}};
 }
 
 ordered_json sequence_info(const std::string& folder) {
@@ -112,7 +112,7 @@ void add_info(CLI::App* app, int* exit_code) {
   };
   auto args = std::make_shared<Arguments>();
   CLI::App* command = app->add_subcommand(
-      "info", "Describe the contents of a scene file, a stored frame, a folder of frames or an image");
+      "info", "Describe the contents of a scene file, a stored film, a folder of films or an image");
   command->add_option("file", args->path, "FILE.gradus, FILE.exr, or a folder of a frame store")
       ->required()
       ->check(CLI::ExistingPath);

@@ -83,16 +83,16 @@ uint64_t available_passes(const film::Film& film, uint64_t requested) {
       find_available(pass_names(), requested, [&](uint32_t pass) { return holds(film, pass); });
   if (requested == kAllPasses || held.missing.empty()) return requested & held.mask;
   throw client::Error(GRADUS_ERROR_INVALID_OPERATION,
-                      "the frame was rendered without " + held.missing + "; it holds " + held.names);
+                      "the film was sampled without " + held.missing + "; it holds " + held.names);
 }
 
 void add_reconstruct(CLI::App* app, int* exit_code) {
   auto args = std::make_shared<ReconstructArguments>();
   CLI::App* command =
-      app->add_subcommand("reconstruct", "Reconstruct a stored frame, or those of an animation, into images");
+      app->add_subcommand("reconstruct", "Reconstruct a stored film, or those of an animation, into images");
   command
       ->add_option("frame", args->input,
-                   "Stored frame, as gradus render writes it, or a folder of a frame store with those of an animation")
+                   "Stored film, as gradus render writes it, or a folder of a frame store with those of an animation")
       ->required()
       ->check(CLI::ExistingPath);
   command

@@ -54,16 +54,16 @@ client::Film render_film(const client::Device& device, const client::Scene& scen
   return render.film();
 }
 
-void write_image(const client::Film& frame, const GradusSettings& settings, const std::string& path) {
-  const auto [width, height] = frame.size();
+void write_image(const client::Film& film, const GradusSettings& settings, const std::string& path) {
+  const auto [width, height] = film.size();
   std::vector<film_io::ImageLayer> layers;
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
     if (pass != GRADUS_PASS_COMBINED && (settings.passes >> pass & 1) == 0) continue;
     const schema::PassInfo& info = schema::pass_info(pass);
-    layers.push_back({pass == GRADUS_PASS_COMBINED ? "" : info.name, info.letters, frame.read_pass(pass)});
+    layers.push_back({pass == GRADUS_PASS_COMBINED ? "" : info.name, info.letters, film.read_pass(pass)});
   }
   if (settings.use_decomposition != 0) {
-    add_component_layers(settings, settings.component_passes, size_t(width) * height, reader_of(frame), &layers);
+    add_component_layers(settings, settings.component_passes, size_t(width) * height, reader_of(film), &layers);
   }
   film_io::save_image(path, int(width), int(height), layers);
 }
@@ -79,9 +79,9 @@ int run(const RenderArguments& args) {
   if (!args.image.empty()) check_apart("--image", args.image, target.string());
   if (target.has_parent_path()) fs::create_directories(target.parent_path());
   std::signal(SIGINT, [](int) { interrupted = true; });
-  const client::Film frame = render_film(device, scene, settings, target, args);
-  frame.save(target.string());
-  if (!args.image.empty()) write_image(frame, settings, args.image);
+  const client::Film film = render_film(device, scene, settings, target, args);
+  film.save(target.string());
+  if (!args.image.empty()) write_image(film, settings, args.image);
   print_warnings(device, scene);
   std::printf("%s\n", target.c_str());
   return 0;
@@ -97,7 +97,7 @@ void add_render(CLI::App* app, int* exit_code) {
   command->add_option("--image", args->image, "Also write the reconstruction and the passes as an image, FILE.exr")
       ->check(exr_only);
   command->add_option("--stats", args->stats, "Append one JSON object about the render to this file");
-  command->add_flag("--resume", args->resume, "Continue from the samples of the frame that is already in the store");
+  command->add_flag("--resume", args->resume, "Continue from the samples of the film that is already in the store");
   add_denoiser_path(command, &args->denoiser_path);
   args->options.add_to(command);
   command->footer("Options not given are those the scene was saved with.");

@@ -13,9 +13,9 @@ PassNames component_pass_names() {
           "components have no pass ", "; they have "};
 }
 
-bool is_available(const film::FilmHeader& frame, uint32_t pass) {
-  if (frame.settings.use_decomposition == 0) return false;
-  const film::ComponentContent& held = frame.of_components;
+bool is_available(const film::FilmHeader& film, uint32_t pass) {
+  if (film.settings.use_decomposition == 0) return false;
+  const film::ComponentContent& held = film.of_components;
   return (held.non_specular || !schema::is_of_non_specular_vertices(pass)) &&
          (held.details || !schema::is_of_non_specular_details(pass)) && (held.motion || !schema::is_motion(pass));
 }
@@ -33,12 +33,12 @@ std::string bad_component_passes(const std::string& text) {
   return refusal([&] { parse_component_passes(text); });
 }
 
-uint32_t available_component_passes(const film::FilmHeader& frame, uint32_t requested) {
+uint32_t available_component_passes(const film::FilmHeader& film, uint32_t requested) {
   const AvailablePasses held =
-      find_available(component_pass_names(), requested, [&](uint32_t pass) { return is_available(frame, pass); });
+      find_available(component_pass_names(), requested, [&](uint32_t pass) { return is_available(film, pass); });
   if (held.mask == 0 && requested != 0) {
     throw client::Error(GRADUS_ERROR_INVALID_OPERATION,
-                        "the frame was rendered without components: --use-decomposition 1 samples them");
+                        "the film was sampled without components: --use-decomposition 1 samples them");
   }
   if (requested == kAllComponentPasses || held.missing.empty()) return requested & uint32_t(held.mask);
   throw client::Error(GRADUS_ERROR_INVALID_OPERATION,
@@ -47,8 +47,8 @@ uint32_t available_component_passes(const film::FilmHeader& frame, uint32_t requ
 
 bool need_two_frames(uint32_t passes) { return schema::any_wanted(passes, schema::is_motion); }
 
-ReadComponent reader_of(const client::Film& frame) {
-  return [id = frame.id()](const char* component, uint32_t pass, std::vector<float>* pixels) {
+ReadComponent reader_of(const client::Film& film) {
+  return [id = film.id()](const char* component, uint32_t pass, std::vector<float>* pixels) {
     client::check(gradus_film_read_component(id, component, pass, pixels->data(), pixels->size()));
   };
 }

@@ -18,14 +18,14 @@ inline constexpr uint32_t kAllComponentPasses = (uint32_t{1} << GRADUS_COMPONENT
 uint32_t parse_component_passes(const std::string& text);
 std::string bad_component_passes(const std::string& text);
 
-// Returns the requested passes that the frame was sampled for. Throws Error with the missing ones, unless all passes
+// Returns the requested passes that the film was sampled for. Throws Error with the missing ones, unless all passes
 // are requested.
-uint32_t available_component_passes(const film::FilmHeader& frame, uint32_t requested);
+uint32_t available_component_passes(const film::FilmHeader& film, uint32_t requested);
 // Returns whether some passes are computed from two frames of an animation by optical flow.
 bool need_two_frames(uint32_t passes);
 
 using ReadComponent = std::function<void(const char* component, uint32_t pass, std::vector<float>* pixels)>;
-ReadComponent reader_of(const client::Film& frame);
+ReadComponent reader_of(const client::Film& film);
 // Adds the passes of every component in the settings' set as layers. `pixels` is the number of pixels of the image.
 void add_component_layers(const GradusSettings& settings, uint32_t passes, size_t pixels, const ReadComponent& read,
                           std::vector<film_io::ImageLayer>* layers);

@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   using namespace gradus::tool;
   std::signal(SIGXFSZ, SIG_IGN);  // so that a write beyond the limit of file sizes fails, and the error names the file
   CLI::App app(
-      "Gradus, a gradient-domain path tracer: renders saved scenes, reconstructs stored frames, compares images.",
+      "Gradus, a gradient-domain path tracer: renders saved scenes, reconstructs stored films, compares images.",
       "gradus");
   app.set_version_flag("--version", gradus_version_text());
   app.require_subcommand(1);

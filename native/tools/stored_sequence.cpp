@@ -17,13 +17,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the pattern of file names of one kind, with the frame number as group 1. The kind "" stands for still frames.
-std::regex name_of(const std::string& kind) {
-  return std::regex("f([+-][0-9]{7,8})" + (kind.empty() ? "" : "\\." + kind) + "\\.exr");
+using animation::FrameSamples;
+
+// Returns the pattern of file names with this text between the frame number, which is group 1, and ".exr".
+std::regex pattern_with(const std::string& text) { return std::regex("f([+-][0-9]{7,8})" + text + "\\.exr"); }
+
+// Returns the pattern of the names of files with these samples.
+std::regex pattern_of(FrameSamples kind) {
+  std::string names = animation::name_of(kind);
+  names.append("|").append(animation::older_name_of(kind));
+  return pattern_with("\\.(?:" + names + ")");
 }
 
-std::set<int32_t> numbers_in(const std::string& folder, const std::string& kind) {
-  const std::regex name = name_of(kind);
+std::set<int32_t> numbers_in(const std::string& folder, const std::regex& name) {
   std::set<int32_t> numbers;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     std::smatch match;
@@ -36,7 +42,7 @@ std::set<int32_t> numbers_in(const std::string& folder, const std::string& kind)
 // Returns ": try a, b" with the folders below that hold sequences, or "". A frame store has a folder for each scene,
 // view layer and view.
 std::string advice(const std::string& folder) {
-  const std::regex name = name_of("base");
+  const std::regex name = pattern_of(FrameSamples::kFresh);
   std::set<std::string> places;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     if (std::regex_match(entry.path().filename().string(), name)) places.insert(entry.path().parent_path().string());
@@ -111,18 +117,19 @@ std::vector<int32_t> joined(const std::vector<std::vector<int32_t>>& chains) {
 }  // namespace
 
 StoredSequence::StoredSequence(const std::string& folder, const std::set<int32_t>& left_out) : folder_(folder) {
-  const std::set<int32_t> fresh = numbers_in(folder, "base"), replayed = numbers_in(folder, "offset");
+  const std::set<int32_t> fresh = numbers_in(folder, pattern_of(FrameSamples::kFresh)),
+                          replayed = numbers_in(folder, pattern_of(FrameSamples::kReplayed));
   std::set_intersection(fresh.begin(), fresh.end(), replayed.begin(), replayed.end(), std::back_inserter(frames_));
   std::erase_if(frames_, [&](int32_t frame) { return left_out.count(frame) > 0; });
   if (frames_.empty()) {
-    const bool has_none = fresh.empty() && numbers_in(folder, "").empty();
+    const bool has_none = fresh.empty() && numbers_in(folder, pattern_with("")).empty();
     throw invalid_argument(folder +
                            (has_none ? " holds no stored frames" + advice(folder)
                                      : " holds stored frames, but none of a sequence: reconstruct them one by one"));
   }
   for (const int32_t frame : frames_) {
     const film::FilmHeader header =
-        film_io::load_header((fs::path(folder_) / film_io::frame_name(frame, "offset.exr")).string());
+        film_io::load_header(animation::stored_path(folder_, frame, FrameSamples::kReplayed));
     traits_[frame] = animation::traits_of(header, header);
   }
   const int32_t of_replays = step_of_replays(traits_), step = of_replays > 0 ? of_replays : step_of_gaps(frames_);
@@ -130,7 +137,7 @@ StoredSequence::StoredSequence(const std::string& folder, const std::set<int32_t
 }
 
 std::string StoredSequence::path(int32_t frame) const {
-  return (fs::path(folder_) / film_io::frame_name(frame, "base.exr")).string();
+  return animation::stored_path(folder_, frame, FrameSamples::kFresh);
 }
 
 std::vector<std::vector<int32_t>> StoredSequence::chains(int32_t first, int32_t last) const {
@@ -164,14 +171,15 @@ std::string StoredSequence::unlinked(int32_t first, int32_t last) const {
 }
 
 FolderFaults find_faults(const std::string& folder) {
-  const std::set<int32_t> fresh = numbers_in(folder, "base"), replayed = numbers_in(folder, "offset");
+  const std::set<int32_t> fresh = numbers_in(folder, pattern_of(FrameSamples::kFresh)),
+                          replayed = numbers_in(folder, pattern_of(FrameSamples::kReplayed));
   std::set<int32_t> frames = fresh;
   frames.insert(replayed.begin(), replayed.end());
   const animation::SequenceFolder files(folder);
   FolderFaults faults;
   for (const int32_t frame : frames) {
-    for (const char* kind : {"base.exr", "offset.exr"}) {
-      const std::string name = film_io::frame_name(frame, kind), path = (fs::path(folder) / name).string();
+    for (const FrameSamples kind : animation::kFrameSamples) {
+      const std::string path = animation::stored_path(folder, frame, kind), name = fs::path(path).filename().string();
       const std::string error = fs::exists(path) ? refusal([&] { film_io::load_film(path); }) : "it is missing";
       if (error.empty()) continue;
       faults.files[name] = cause_of(error, path);

@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 import pytest
-from gradus import components, native, passes, renderer, ui
+from gradus import components, native, pass_table, passes, renderer
 from gradus.failure import Failure
 from gradus.options import PREFIX, OptionError, parse
 from gradus.ui import decomposition_panels
@@ -268,6 +268,7 @@ def test_writing_out_without_a_library_is_an_error_message(
     assert bpy.context.scene.gradus.components == ""
 
 
-def test_components_have_a_panel_among_the_passes() -> None:
-    switches = {part.switch.removeprefix("gradus.") for part in passes.COMPONENT_TABLE}
-    assert set(ui.view_layer_panels.COMPONENT_SWITCHES) == switches
+def test_every_switch_of_a_pass_is_in_one_panel() -> None:
+    assert all(name.startswith("use_pass_component") for name in passes.COMPONENT_SWITCHES)
+    assert not set(passes.SAMPLING_SWITCHES) & set(passes.COMPONENT_SWITCHES)
+    assert {*passes.SAMPLING_SWITCHES, *passes.COMPONENT_SWITCHES} == {row[0] for row in pass_table.SWITCHES}

@@ -10,7 +10,8 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from gradus import compat, native, settings
+from gradus import compat, native
+from gradus.setting_table import DENOISER_MINIMUM_SAMPLES
 from support import images
 
 Render = Callable[..., images.Passes]
@@ -77,14 +78,14 @@ def test_stats_name_it(
 
 
 @pytest.mark.module
-@pytest.mark.parametrize("samples", [settings.DENOISER_MINIMUM_SAMPLES - 1, settings.DENOISER_MINIMUM_SAMPLES])
+@pytest.mark.parametrize("samples", [DENOISER_MINIMUM_SAMPLES - 1, DENOISER_MINIMUM_SAMPLES])
 def test_auto_denoises_from_the_sample_count_of_the_panel(
     corner: bpy.types.Scene, render: Render, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, samples: int
 ) -> None:
     path = tmp_path / "stats.jsonl"
     monkeypatch.setattr("sys.argv", ["blender", "--", "--gradus-stats", str(path)])
     render(corner, samples=samples, denoiser="AUTO")
-    assert (json.loads(path.read_text())["denoiser"] is not None) == (samples >= settings.DENOISER_MINIMUM_SAMPLES)
+    assert (json.loads(path.read_text())["denoiser"] is not None) == (samples >= DENOISER_MINIMUM_SAMPLES)
 
 
 @pytest.mark.module

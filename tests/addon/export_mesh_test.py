@@ -101,7 +101,7 @@ def test_normal_domains(scene: bpy.types.Scene) -> None:
     assert mixed.normal_domain == CORNER and np.allclose(mixed.normals[~is_none], (0, 0, 1))
 
 
-@pytest.mark.skipif(bpy.app.version >= (4, 1, 0), reason="normals have the same bits in every process")
+@pytest.mark.skipif(bpy.app.version >= (4, 1, 0), reason="from 4.1 on normals have the same bits in every process")
 def test_normals_that_blender_sums_in_any_order_are_computed_by_the_library(scene: bpy.types.Scene) -> None:
     """The library computes these normals, so that all processes have the same bits.
 

@@ -279,7 +279,7 @@ def test_a9_lights_have_coordinates_of_their_own(
 ) -> None:
     """Regression: textures of lights used the coordinates of the world, or none."""
     if kind != "AREA" and output == "Parametric" and VERSION < (4, 0, 0):
-        pytest.skip("Cycles had another order of them")
+        pytest.skip("before 4.0 Cycles had another order of parametric coordinates")
     bpy.ops.mesh.primitive_plane_add(size=4.0)
     data = bpy.data.lights.new("Light", kind)
     data.energy, data.use_nodes = 200.0, True
@@ -310,7 +310,7 @@ def test_the_mean_that_replaces_a_texture_is_that_of_cycles(
 ) -> None:
     """The mean of Cycles is measured over a large, slanted plane."""
     if not hasattr(bpy.types, node):
-        pytest.skip("not in this Blender")
+        pytest.skip(f"Blender {bpy.app.version_string} has no {node}")
     material = new_material()
     graph = Graph(material)
     place = graph("Mapping", "Vector", {"Vector": graph.place(), "Rotation": (0.5, 0.6, 0.7)})

@@ -91,7 +91,7 @@ def add(material: bpy.types.Material, kind: str) -> bpy.types.Node:
     try:
         return material.node_tree.nodes.new(f"ShaderNode{kind}")
     except RuntimeError:
-        pytest.skip(f"no {kind} in this Blender")
+        pytest.skip(f"Blender {bpy.app.version_string} has no ShaderNode{kind}")
 
 
 def native_check(library: object, program: object) -> None:

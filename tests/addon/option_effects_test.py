@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import json
 import sys
+import tomllib
 from collections.abc import Callable
 from ctypes import byref
 from pathlib import Path
@@ -23,8 +24,6 @@ from gradus.native import Pass, Phase, Progress
 from mathutils import Matrix
 from support import images, nodes, recording
 from support.animation import key
-
-tomllib = pytest.importorskip("tomllib")
 
 SCHEMA = Path(__file__).resolve().parents[2] / "schema" / "options.toml"
 ROWS = tomllib.loads(SCHEMA.read_text(encoding="utf-8"))["option"]

@@ -70,7 +70,7 @@ def test_passes() -> None:
         Pass.GRADIENT_X,
         Pass.GRADIENT_Y,
         Pass.GRADIENT_T,
-        Pass.GRADIENT_T_LINK,
+        Pass.GRADIENT_T_CORRESPONDENCE,
     }
 
 

@@ -89,7 +89,7 @@ def _camera(scene: bpy.types.Scene, kind: str, settings: dict[str, Any], frame: 
     camera.data.shift_x, camera.data.shift_y = frame.get("shift", (0.0, 0.0))
     panorama = camera.data if hasattr(camera.data, "panorama_type") else camera.data.cycles
     if kind not in panorama.bl_rna.properties["panorama_type"].enum_items:
-        pytest.skip(f"this Blender has no {kind}")
+        pytest.skip(f"Blender {bpy.app.version_string} has no {kind}")
     panorama.panorama_type = kind
     for name, value in settings.items():
         setattr(panorama, name, value)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import bpy
-import pytest
 from gradus import passes
 from gradus.abi import ComponentPass, Pass
 
@@ -84,30 +83,9 @@ def test_only_what_is_enabled() -> None:
         Pass.GRADIENT_X,
         Pass.GRADIENT_Y,
         Pass.GRADIENT_T,
-        Pass.GRADIENT_T_LINK,
+        Pass.GRADIENT_T_CORRESPONDENCE,
     ]
     assert listed(layer(), extra=(Pass.VARIANCE,)) == [Pass.COMBINED, Pass.VARIANCE]
-
-
-@pytest.mark.parametrize(
-    ("integrator", "reconstruction", "denoiser", "expected"),
-    [
-        ("AUTO", "AUTO", "NONE", True),
-        ("GRADIENT", "L1", "NONE", True),
-        ("GRADIENT", "NONE", "NONE", False),
-        ("PATH", "AUTO", "NONE", False),
-        ("PATH", "NONE", "NONE", False),
-        ("PATH", "NONE", "OIDN", True),
-        ("PATH", "REGULARIZED", "NONE", True),
-        ("GRADIENT", "NONE", "AUTO", True),
-    ],
-)
-def test_noisy_image_exists_whenever_combined_is_reconstructed(
-    integrator: str, reconstruction: str, denoiser: str, expected: bool
-) -> None:
-    assert (
-        Pass.NOISY_IMAGE in listed(layer(), passes.is_reconstructed(integrator, reconstruction, denoiser))
-    ) == expected
 
 
 def test_switches_exist_in_this_blender() -> None:

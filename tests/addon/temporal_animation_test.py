@@ -120,12 +120,12 @@ def test_differences_over_time_follow_the_surface(moving: bpy.types.Scene, tmp_p
     moving.frame_end = 3
     animate(moving, tmp_path)
     passes = [images.read(tmp_path / f"f_{frame:04d}.exr") for frame in (1, 3)]
-    links = passes[0]["Gradient T Link"]
-    found = links[..., 2] == 1.0
+    correspondences = passes[0]["Gradient T Correspondence"]
+    found = correspondences[..., 2] == 1.0
     moves = 0.1 * WIDTH / 4.0  # pixels per frame, so that correspondences are exact
     assert found.mean() > 0.8
-    assert set(np.unique(links[found][:, 0])) <= {0.0, np.round(moves)}
-    assert (links[found][:, 0] == np.round(moves)).any()
+    assert set(np.unique(correspondences[found][:, 0])) <= {0.0, np.round(moves)}
+    assert (correspondences[found][:, 0] == np.round(moves)).any()
     assert not passes[1]["Gradient T"].any(), "the last frame has none after it"
 
 
@@ -148,15 +148,16 @@ def test_c6_correspondences_remain_when_other_objects_appear_and_are_renamed(
     exports.before = lambda frame: setattr(square, "name", f"Name {frame}")
     moving.frame_end = 4
     animate(moving, tmp_path)
-    links = {frame: images.read(tmp_path / f"f_{frame:04d}.exr")["Gradient T Link"] for frame in range(1, 5)}
+    files = {frame: tmp_path / f"f_{frame:04d}.exr" for frame in range(1, 5)}
+    correspondences = {frame: images.read(file)["Gradient T Correspondence"] for frame, file in files.items()}
     on_square, on_guest = (HEIGHT // 2, WIDTH // 4), (HEIGHT // 2, 28)
-    assert all(links[frame][on_square][2] == 1.0 for frame in (1, 2, 3)), "it stays"
-    assert links[1][on_guest][2] == 0.0, "it goes"
-    assert links[2][on_guest][2] == 0.0, "hidden pixels have no correspondence where the row appears"
-    assert links[3][on_guest][2] == 1.0, "it stays"
+    assert all(correspondences[frame][on_square][2] == 1.0 for frame in (1, 2, 3)), "it stays"
+    assert correspondences[1][on_guest][2] == 0.0, "it goes"
+    assert correspondences[2][on_guest][2] == 0.0, "hidden pixels have no correspondence where the row appears"
+    assert correspondences[3][on_guest][2] == 1.0, "it stays"
     rows, columns = np.mgrid[0:HEIGHT, 0:WIDTH]
-    for link in links.values():
-        x, y = columns + link[..., 0], rows - link[..., 1]
+    for found in correspondences.values():
+        x, y = columns + found[..., 0], rows - found[..., 1]
         assert ((x >= 0) & (x < WIDTH) & (y >= 0) & (y < HEIGHT)).all(), "no correspondence leads out of the picture"
 
 

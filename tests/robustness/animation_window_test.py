@@ -50,8 +50,8 @@ def tick():
     print("TICK", len(animation._running), flush=True)
     return 0.2
 
-bpy.app.timers.register(start, first_interval=1.0)
-bpy.app.timers.register(tick, first_interval=1.0)
+bpy.app.timers.register(start, first_interval=0.1)
+bpy.app.timers.register(tick, first_interval=0.1)
 """
 
 
@@ -77,7 +77,7 @@ def lines(folder: Path) -> list[dict]:
 
 
 def test_c3_an_animation_in_a_window_has_every_frame(tmp_path: Path) -> None:
-    with window.blender(script(tmp_path, 16)) as blender:
+    with window.blender(script(tmp_path, 16), window.SMALL) as blender:
         blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
         blender.wait_for("TICK 0", limit=5)
         assert "TICK 1" in blender.log, "the interface responds meanwhile"
@@ -97,7 +97,8 @@ scene.render.filepath = "FOLDER/f_####"
 
 def test_frames_ahead_are_shown_while_they_are_sampled(tmp_path: Path) -> None:
     """Regression: until the frames ahead of the first one were sampled, the window was black."""
-    with window.blender(glow.SCENE.replace("SAMPLES", "1000000") + MOVES.replace("FOLDER", str(tmp_path))) as blender:
+    moves = MOVES.replace("FOLDER", str(tmp_path))
+    with window.blender(glow.SCENE.replace("SAMPLES", "1000000") + moves, window.SMALL) as blender:
         blender.wait_for("WINDOW-READY")
         blender.press("ctrl+F12")
         blender.wait_for("RENDER-STARTED")
@@ -109,8 +110,8 @@ def test_frames_ahead_are_shown_while_they_are_sampled(tmp_path: Path) -> None:
 
 def test_escape_between_frames_keeps_the_shown_picture(tmp_path: Path) -> None:
     """Regression: the frames ahead of a later frame were cancelled, and the shown picture was empty."""
-    moves = MOVES.replace("FOLDER", str(tmp_path)).replace("12", "40")
-    with window.blender(glow.SCENE.replace("SAMPLES", "64") + moves) as blender:
+    moves = MOVES.replace("FOLDER", str(tmp_path)).replace("12", "90")
+    with window.blender(glow.SCENE.replace("SAMPLES", "16") + moves, window.SMALL) as blender:
         blender.wait_for("WINDOW-READY")
         blender.press("ctrl+F12")
         wait_for_file(tmp_path / "f_0005.png")
@@ -118,11 +119,11 @@ def test_escape_between_frames_keeps_the_shown_picture(tmp_path: Path) -> None:
         blender.press("Escape")
         blender.wait_for("RENDER-CANCELLED", limit=3)
         glow.wait_for_picture(blender)
-    assert not (tmp_path / "f_0040.png").exists()
+    assert not (tmp_path / "f_0090.png").exists()
 
 
 def test_escape_ends_the_frames_ahead_in_a_window(tmp_path: Path) -> None:
-    with window.blender(script(tmp_path, 100000)) as blender:
+    with window.blender(script(tmp_path, 100000), window.SMALL) as blender:
         blender.wait_for("TICK 1", limit=60)
         blender.press("Escape")
         blender.wait_for("RENDER-CANCELLED", limit=3)
@@ -137,7 +138,7 @@ def test_simulations_that_are_not_baked_are_named_and_make_frames_independent(tm
         "bpy.context.view_layer.objects.active = cube; bpy.ops.rigidbody.object_add(); "
         "scene.render.use_lock_interface = True"
     )
-    with window.blender(script(tmp_path, 2, falling + "; scene.frame_end = 3")) as blender:
+    with window.blender(script(tmp_path, 2, falling + "; scene.frame_end = 3"), window.SMALL) as blender:
         blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
     assert [line.get("samples_replayed", 0) for line in lines(tmp_path)] == [0, 0, 0]
     warnings = [text for line in lines(tmp_path) for text in line["warnings"] if "not baked" in text]
@@ -155,7 +156,7 @@ cloth.modifiers.new("Cloth", "CLOTH")
 cloth.hide_render = True
 scene.frame_end = 3
 """
-    with window.blender(script(tmp_path, 2, hidden)) as blender:
+    with window.blender(script(tmp_path, 2, hidden), window.SMALL) as blender:
         blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
     assert [line["samples_replayed"] for line in lines(tmp_path)] == [1, 1, 1]
     assert not [text for line in lines(tmp_path) for text in line["warnings"] if "not baked" in text]

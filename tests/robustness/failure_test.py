@@ -83,10 +83,14 @@ def files(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.glob("f_*"))
 
 
-@pytest.mark.parametrize("ahead", [False, True], ids=["frame by frame", "ahead"])
+MODES = pytest.mark.parametrize("ahead", [False, True], ids=["frame by frame", "ahead"])
+AHEAD = "scene.gradus.integrator, scene.gradus.samples = 'AUTO', 2\n"
+
+
+@MODES
 @pytest.mark.parametrize("name", list(FAULTS))
 def test_i1_injected_failures(blender: Callable[..., Outcome], tmp_path: Path, name: str, ahead: bool) -> None:
-    fault = "scene.gradus.integrator, scene.gradus.samples = 'AUTO', 2\n" * ahead + FAULTS[name]
+    fault = AHEAD * ahead + FAULTS[name]
     outcome = animate(blender, tmp_path, fault, range(1, 4))
     assert outcome.code == 1, outcome.output
     assert "Error: Gradus: " in outcome.output
@@ -143,7 +147,7 @@ tree.links.new(image.outputs["Color"], surface.inputs["Base Color"])
 """,
     "node": """
 voronoi = tree.nodes.new("ShaderNodeTexVoronoi")
-tree.links.new(voronoi.outputs["Color"], surface.inputs["Base Color"])
+tree.links.new(voronoi.outputs["Distance"], surface.inputs["Roughness"])
 """,
     "object": "scene.collection.objects.link(bpy.data.objects.new('Fog', bpy.data.volumes.new('Fog')))",
     "pass": "scene.view_layers[0].aovs.add().name = 'Rust'",
@@ -154,22 +158,46 @@ surface = tree.nodes["Principled BSDF"]
 """
 
 
-@pytest.mark.parametrize("ahead", [False, True], ids=["frame by frame", "ahead"])
-@pytest.mark.parametrize("name", list(UNSUPPORTED))
+NAMED = {"missing image": "lost.png", "node": "Voronoi", "object": "Fog", "pass": "Rust"}
+"""What warnings and errors call them."""
+
+
+@MODES
+def test_what_gradus_replaces_is_named_in_warnings(
+    blender: Callable[..., Outcome], tmp_path: Path, ahead: bool
+) -> None:
+    setup = AHEAD * ahead + MATERIAL + "\n".join(UNSUPPORTED.values())
+    outcome = animate(blender, tmp_path, setup, range(1, 3))
+    assert outcome.code == 0, outcome.output
+    warnings = [line for line in outcome.output.splitlines() if line.startswith("Warning: Gradus: ")]
+    assert all(any(text in line for line in warnings) for text in NAMED.values()), outcome.output
+    assert files(tmp_path) == ["f_0001.png", "f_0002.png"]
+
+
+@MODES
 def test_a_strict_render_of_what_gradus_would_replace_ends_with_code_1(
-    blender: Callable[..., Outcome], tmp_path: Path, name: str, ahead: bool
+    blender: Callable[..., Outcome], tmp_path: Path, ahead: bool
 ) -> None:
     """Regression: the option had no effect: farms delivered pictures with magenta textures."""
-    setup = "scene.gradus.integrator, scene.gradus.samples = 'AUTO', 2\n" * ahead + MATERIAL + UNSUPPORTED[name]
-    lax, strict = tmp_path / "lax", tmp_path / "strict"
-    outcome = animate(blender, lax, setup, range(1, 3))
-    assert outcome.code == 0, outcome.output
-    assert "Warning: Gradus: " in outcome.output
-    assert files(lax) == ["f_0001.png", "f_0002.png"]
-    outcome = animate(blender, strict, setup + "\nscene.gradus.strict = True", range(1, 3))
+    setup = AHEAD * ahead + MATERIAL + UNSUPPORTED["missing image"] + "scene.gradus.strict = True"
+    outcome = animate(blender, tmp_path, setup, range(1, 3))
     assert outcome.code == 1, outcome.output
     assert "Error: Gradus: strict: " in outcome.output
-    assert files(strict) == []
+    assert files(tmp_path) == []
+
+
+@MODES
+@pytest.mark.parametrize("name", list(UNSUPPORTED))
+def test_a_strict_render_names_what_gradus_would_replace(tmp_path: Path, name: str, ahead: bool) -> None:
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    scene = bpy.context.scene
+    images.prepare(scene)
+    scene.gradus.integrator, scene.gradus.samples = ("AUTO", 2) if ahead else ("PATH", 1)
+    exec(MATERIAL + UNSUPPORTED[name], {"bpy": bpy, "scene": scene})
+    scene.frame_end, scene.gradus.strict, scene.render.filepath = 2, True, f"{tmp_path}/f_####"
+    with pytest.raises(RuntimeError, match=f"strict: .*{NAMED[name]}"):
+        bpy.ops.render.render(animation=True)
+    assert files(tmp_path) == []
 
 
 @pytest.mark.application

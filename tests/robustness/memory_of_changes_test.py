@@ -27,9 +27,11 @@ def rename(scene, *_):
 
 bpy.app.handlers.render_post.append(rename)
 """
-# Animations of three frames that are cancelled at different polls.
+# Animations of three frames that are cancelled at different polls, which follow each other sooner than usual, so that
+# they fall into builds and into sampling.
 CANCELLED = """
-from gradus import renderer
+from gradus import progress, renderer, store
+progress.POLL_SECONDS = store.POLL_SECONDS = 0.005
 scene.frame_start, scene.frame_end = 1, 3
 scene.gradus.noise_threshold = 0.0
 cube = scene.objects["Cube"]

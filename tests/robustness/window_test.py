@@ -25,7 +25,7 @@ LIMIT = 240
 def display() -> Iterator[str]:
     for program in ("Xvfb", "xdotool", "import"):
         if shutil.which(program) is None:
-            pytest.skip(f"needs {program}")
+            pytest.skip(f"needs {program}, a package of tools/setup/debian-window.txt")
     reading, writing = os.pipe()
     command = [
         "Xvfb",

@@ -82,7 +82,7 @@ TARGETS = (
 def load() -> dict[Variant, list[AnimationResults]]:
     """Returns the newest runs of each mode by variant."""
     by_mode: dict[tuple[Variant, str, str], list[Row]] = defaultdict(list)
-    for row in records.read(RESULTS):
+    for row in of_last_blender(records.read(RESULTS)):
         by_mode[of_row(row), row["scene"], row["mode"]].append(row)
     found: dict[Variant, dict[str, list[Row]]] = defaultdict(lambda: defaultdict(list))
     for (variant, scene, mode), rows in by_mode.items():
@@ -91,13 +91,18 @@ def load() -> dict[Variant, list[AnimationResults]]:
     return {variant: _animations(variant, found[variant]) for variant in sorted(found)}
 
 
+def of_last_blender(rows: list[Row]) -> list[Row]:
+    """Returns the rows of the Blender in which each scene and variant was measured last; others have other peers."""
+    last = {(of_row(row), row["scene"]): row["blender"] for row in rows}
+    return [row for row in rows if row["blender"] == last[of_row(row), row["scene"]]]
+
+
 def newest(rows: list[Row]) -> list[Row]:
-    """Returns the rows of the newest commit and Blender of one mode.
+    """Returns the rows of the newest commit of one mode.
 
     Commits of Gradus do not change peers. Their sample counts that the newest commit lacks are taken from earlier ones
     with as many seeds, so that a curve can be extended.
     """
-    rows = [row for row in rows if row["blender"] == rows[-1]["blender"]]
     last = [row for row in rows if row["version"] == rows[-1]["version"]]
     if MODES[rows[-1]["mode"]].engine == GRADUS:
         return last

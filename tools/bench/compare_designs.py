@@ -1,4 +1,4 @@
-"""Compares Gradus' reconstructions with published ones, reimplemented in designs/, on the same stored frames.
+"""Compares Gradus' reconstructions with published ones, reimplemented in designs/, on the same stored films.
 
     compare_designs.py [--scenes a,b] [--width 160] [--samples 16] [--reference 1024]
 
@@ -20,7 +20,7 @@ import numpy as np
 import reconstruction_time
 import records
 from designs import chapter8, nfor, poisson
-from designs.frames import Frame, frame_of, mean_of, planes_of
+from designs.films import Film, film_of, mean_of, planes_of
 from designs.poisson import Reweighting
 from metrics import rel_mse
 from paths import OUT, TOOL
@@ -34,21 +34,21 @@ RESULTS = records.file_of("designs")
 DOCUMENT = OUT / "designs.md"
 SEED = 1
 
-Reconstruct = Callable[[Frame], np.ndarray]
+Reconstruct = Callable[[Film], np.ndarray]
 PRODUCT = {"none": "noisy image", "l1": "Gradus L1", "regularized": "**Gradus REGULARIZED**"}
 
 
 def _l1(reweighting: Reweighting) -> Reconstruct:
-    return lambda frame: poisson.l1(mean_of(frame), chapter8.ALPHA_L1, reweighting)
+    return lambda film: poisson.l1(mean_of(film), chapter8.ALPHA_L1, reweighting)
 
 
 def _chapter8(scales: tuple[chapter8.Scale, ...], reweighting: Reweighting) -> Reconstruct:
-    return lambda frame: chapter8.reconstruct(frame, scales, reweighting)
+    return lambda film: chapter8.reconstruct(film, scales, reweighting)
 
 
-def _nfor_with_l1(frame: Frame) -> np.ndarray:
-    a, b = (poisson.l1(half, chapter8.ALPHA_L1, Reweighting.L1) for half in frame)
-    return nfor.reconstruct(frame, (a, b))
+def _nfor_with_l1(film: Film) -> np.ndarray:
+    a, b = (poisson.l1(half, chapter8.ALPHA_L1, Reweighting.L1) for half in film)
+    return nfor.reconstruct(film, (a, b))
 
 
 PUBLISHED: dict[str, tuple[str, Reconstruct]] = {
@@ -65,7 +65,7 @@ LABELS = PRODUCT | {name: label for name, (label, _) in PUBLISHED.items()}
 
 
 def by_product(path: Path, mode: str) -> np.ndarray:
-    """Returns the reconstruction of a stored frame by the tool."""
+    """Returns the reconstruction of a stored film by the tool."""
     target = path.with_name(f"{mode}.exr")
     subprocess.run(
         [TOOL, "reconstruct", path, "-o", target, "--reconstruction", mode], check=True, stdout=subprocess.DEVNULL
@@ -78,10 +78,10 @@ def images_of(path: Path) -> Iterator[tuple[str, np.ndarray, float | None]]:
     """Yields design, image and CPU seconds. The product's seconds come from reconstruction_time.py, at full-HD size."""
     for mode in PRODUCT:
         yield mode, by_product(path, mode), None
-    frame = frame_of(planes_of(path))
+    film = film_of(planes_of(path))
     for name, (_, reconstruct) in PUBLISHED.items():
         start = time.process_time()
-        image = reconstruct(frame)
+        image = reconstruct(film)
         yield name, image, time.process_time() - start
 
 
@@ -90,8 +90,8 @@ def compare(scene: Scene, arguments: argparse.Namespace) -> None:
     renderers = Renderers(scene, size)
     try:
         with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "frame.exr"
-            renderers.store_frame("gradient-regularized", arguments.samples, SEED, path)
+            path = Path(folder) / "film.exr"
+            renderers.store_film("gradient-regularized", arguments.samples, SEED, path)
             mean, variance = reference(renderers, scene, "path", size, arguments.reference, version_of_build())
             for design, image, seconds in images_of(path):
                 row = {"scene": scene.name, "design": design, "relmse": rel_mse(image, mean, variance), "cpu": seconds}

@@ -1,6 +1,7 @@
 """The part of the report about flicker along the motion of components.
 
-Only runs of the same commit are compared, because another commit may measure other pixels.
+Only runs of the same commit and Blender are compared: another commit may measure other pixels, and another Blender has
+other peers.
 """
 
 from __future__ import annotations
@@ -47,9 +48,9 @@ class Flicker(SceneResults):
         return f"{self.variant.size[0]}×{self.variant.size[1]}"
 
     def comparable(self, mode: str, other: str) -> bool:
-        """Returns whether both modes were run, and with the same commit."""
+        """Returns whether both modes were run, and with the same commit and Blender."""
         rows = [[row for point in self.points.get(name, []) for row in point.rows] for name in (mode, other)]
-        return all(rows) and len({row["version"] for found in rows for row in found}) == 1
+        return all(rows) and len({(row["version"], row["blender"]) for found in rows for row in found}) == 1
 
     def at_equal_samples(self, mode: str, other: str, measure: str, samples: int) -> float | None:
         """Returns the median of the ratios over the seeds that both modes have."""

@@ -23,7 +23,8 @@ import bpy
 import modes
 import motion_modes
 import numpy as np
-import worker
+import worker  # makes the add-on importable
+from gradus import passes
 from paths import HERE
 from worker import Answer, AnswerJob, Job
 
@@ -31,18 +32,8 @@ sys.path.insert(0, str(HERE.parent))
 import component_sheet  # noqa: E402
 
 VECTOR = "vector"
-COMPONENT_SWITCHES = (
-    "components",
-    "component_reflectance",
-    "component_irradiance",
-    "component_normal",
-    "component_depth",
-    "component_uv",
-    "component_index",
-    "component_emit",
-    "component_motion",
-    "component_irradiance_motion",
-)
+PREFIX = "use_pass_"
+COMPONENT_SWITCHES = tuple(name.removeprefix(PREFIX) for name in passes.COMPONENT_SWITCHES)
 SWITCHES = (VECTOR, *COMPONENT_SWITCHES)
 FOLLOWED = (
     "vector",
@@ -70,7 +61,7 @@ def set_passes(layer: bpy.types.ViewLayer, wanted: Collection[str]) -> None:
         raise ValueError(f"no passes: {', '.join(sorted(unknown))}")
     layer.use_pass_vector = VECTOR in wanted
     for name in COMPONENT_SWITCHES:
-        setattr(layer.gradus, f"use_pass_{name}", name in wanted)
+        setattr(layer.gradus, PREFIX + name, name in wanted)
     worker.choose_file(with_passes=bool(wanted))
 
 
@@ -102,8 +93,8 @@ def passes_of(files: list[Path]) -> dict[str, np.ndarray]:
     """Returns the picture, Vector, and all passes of components."""
     frames = [component_sheet.read(file) for file in files]
     names = [name for name in frames[0] if name in ("Combined", "Vector") or name.startswith("Path ")]
-    stacked = {name: np.stack([passes[name] for passes in frames]) for name in names}
-    return {name: passes[..., : 4 if has_two_vectors(name) else 3] for name, passes in stacked.items()}
+    stacked = {name: np.stack([frame[name] for frame in frames]) for name in names}
+    return {name: pixels[..., : 4 if has_two_vectors(name) else 3] for name, pixels in stacked.items()}
 
 
 def has_two_vectors(name: str) -> bool:

@@ -30,7 +30,7 @@ from records import shortened
 from references import reference
 from renderers import Renderers
 from scenes import Scene, select
-from version import version_of_build
+from version import conditions, version_of_build
 
 FACTS = OUT / paths.PICTURES / "pictures.json"
 SIZE, REFERENCE = (320, 180), 512  # samples of the converged image
@@ -130,8 +130,10 @@ def slider(scene: str) -> Slider | None:
     if labels["path"] not in groups["pictures"]:
         return None
     crops = [Crop(x / SIZE[0], y / SIZE[1], SIZE[0] / CROP[0]) for x, y in known.get("crops", [])]
+    host = f" Blender {known['blender']}." if "blender" in known else ""
     caption = (
-        f"{SAMPLES} samples per pixel; the reference has {REFERENCE}. In the crops the errors of the modes differ most."
+        f"{SAMPLES} samples per pixel; the reference has {REFERENCE}.{host} In the crops the errors of the modes "
+        "differ most."
     )
     groups = {heading: files for heading, files in groups.items() if files}
     shown = labels["path-regularized"] if labels["path-regularized"] in groups["pictures"] else "Reference"
@@ -160,7 +162,7 @@ def main() -> None:
         renderers = Renderers(scene, SIZE)
         try:
             studio = Studio(scene, renderers)
-            found = {"version": version_of_build()} | studio.take_pictures()
+            found = conditions(version_of_build()) | studio.take_pictures()
             if late := modes_behind.get(scene.name):
                 found["parts"] = studio.separate_bias([*late, behind.THEIRS])
             remember(scene.name, found)

@@ -22,9 +22,9 @@ SAMPLES = 2
 
 
 def newest() -> list[records.Row]:
-    """Returns the runs of the commit that was measured last."""
+    """Returns the runs of the commit and Blender that were measured last."""
     rows = records.read(RESULTS)
-    return [row for row in rows if row["version"] == rows[-1]["version"]]
+    return [row for row in rows if all(row[name] == rows[-1][name] for name in ("version", "blender"))]
 
 
 def main() -> None:

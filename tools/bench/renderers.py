@@ -87,9 +87,9 @@ class Renderers:
         """
         return self._ask({"mode": mode, "samples": samples, "seed": seed, "error": True})[0][:, :, 3]
 
-    def store_frame(self, mode: str, samples: int, seed: int, path: Path) -> None:
-        """Renders a raw frame into a file."""
-        self._ask({"mode": mode, "samples": samples, "seed": seed, "frame": str(path)})
+    def store_film(self, mode: str, samples: int, seed: int, path: Path) -> None:
+        """Renders an image and stores its film in a file."""
+        self._ask({"mode": mode, "samples": samples, "seed": seed, "film": str(path)})
 
     def _ask(self, job: dict[str, Any]) -> tuple[np.ndarray, dict[str, Any]]:
         out = Path(self._folder.name) / "image.npy"

@@ -95,8 +95,9 @@ def rooms() -> list[Block]:
             counts.rows.append([triangles, MODES[mode].label, *rays, f"{cost.peak_memory_bytes / 1e6:.0f}"])
     if not times.rows:
         return []
-    size = f"{rows[-1]['width']}×{rows[-1]['height']}"
-    about = f"Diffuse box room with nine bumpy spheres, one area light, four bounces, {size} pixels"
+    last = rows[-1]
+    size, host = f"{last['width']}×{last['height']}", f"commit {last['version']}, Blender {last['blender']}"
+    about = f"Diffuse box room with nine bumpy spheres, one area light, four bounces, {size} pixels; {host}"
     made = [
         Text(f"## Rooms\n\n{about}; slope between 4 and 16 samples; ratios by repeat."),
         times,
@@ -120,8 +121,10 @@ def pilot(costs: dict[str, dict[str, speed.Cost]]) -> list[Block]:
 def agreements() -> list[Block]:
     """Table of the newest comparison of each scene's converged images."""
     newest = {row["name"]: row for row in records.read(agreement.RESULTS)}
-    made = Table(["scene", "blocks that agree", "ratio of means", "known reason"])
-    made.rows = [[name, f"{100 * r['share']:.1f} %", f"{r['ratio']:.4f}", r["reason"]] for name, r in newest.items()]
+    made = Table(["scene", "blocks that agree", "ratio of means", "known reason", "Blender"])
+    for name, row in newest.items():
+        share, ratio = f"{100 * row['share']:.1f} %", f"{row['ratio']:.4f}"
+        made.rows.append([name, share, ratio, row["reason"], row["blender"]])
     text = (
         "## Agreement of converged images (A9)\n\nPlain path tracing against Cycles or Mitsuba, blocks of 8×8 pixels."
     )
@@ -205,9 +208,9 @@ RAYS = ("primary", "bounce", "shadow", "shift", "shift_shadow")
 def work(scene: SceneResults) -> Table:
     """Table of CPU seconds by stage, rays per pixel and sample, and memory, of the first seed."""
     columns = [*(f"{stage}, CPU-s" for stage in STAGES), *(f"{kind.replace('_', ' ')} rays" for kind in RAYS)]
-    made = Table(["mode", "spp", *columns, "frame, B/pixel", "peak, MB"])
+    made = Table(["mode", "spp", *columns, "film, B/pixel", "peak, MB"])
     for mode, point in points_of(scene):
-        stages, rays, frame, peak = (
+        stages, rays, film, peak = (
             point.first(n) for n in ("cpu_seconds", "rays", "film_memory_bytes", "peak_memory_bytes")
         )
         if peak is None:
@@ -215,7 +218,7 @@ def work(scene: SceneResults) -> Table:
         pixels = point.rows[0]["width"] * point.rows[0]["height"]
         cells = [number((stages or {}).get(stage), ".3f") for stage in STAGES]
         cells += [number(rays[kind] / pixels / point.samples if rays else None) for kind in RAYS]
-        cells += [number(frame / pixels if frame else None, ".0f"), f"{peak / 1e6:.0f}"]
+        cells += [number(film / pixels if film else None, ".0f"), f"{peak / 1e6:.0f}"]
         made.rows.append([MODES[mode].label, str(point.samples), *cells])
     return made
 

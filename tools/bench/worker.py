@@ -8,7 +8,7 @@ The image is stored as float32 (height, width, 3), top row first. CPU seconds ar
 operator: export, build, sampling, reconstruction or denoising, and writing a small file. A job may also have
   "bounces": a number that replaces all bounce limits of the file;
   "error": true, which stores the pass Error as a fourth channel (the time of such a job is not used);
-  "frame": a file that gets the raw frame: samples, differences and features in half-buffers.
+  "film": a file that gets the film: samples, differences and features in half-buffers.
 A job that cannot be done is answered by {"error": "why"}.
 """
 
@@ -84,14 +84,14 @@ def render(job: Job, folder: Path, bounces: dict[str, int]) -> Answer:
     choose_file(with_passes=wants_error)
     target = folder / "image.exr"
     scene.render.filepath = str(target.with_suffix(""))
-    scene.gradus.frame_store = str(folder / "frames") if "frame" in job else ""
+    scene.gradus.frame_store = str(folder / "films") if "film" in job else ""
     answer = timed(lambda: bpy.ops.render.render(write_still=True))
     layer = bpy.context.view_layer.name
     if is_gradus:
         stats = store.summaries[(scene.name, layer)]
         answer["stats"] = {name: stats[name] for name in STATS}
-    if "frame" in job:
-        shutil.move(next((folder / "frames").rglob("*.exr")), job["frame"])
+    if "film" in job:
+        shutil.move(next((folder / "films").rglob("*.exr")), job["film"])
     channels = [f"{layer}.Combined.{c}" for c in "RGB"] + [f"{layer}.Error.X"] if wants_error else list("RGB")
     np.save(job["out"], read_exr(target, channels))
     return answer

@@ -1,8 +1,8 @@
 """Determines which tests run where.
 
-Every test of the add-on runs once: in plain Python where it does not need Blender, else in bpy45. The other hosts run
-the tests of tests/smoke.txt, and Blender 3.4 also every test that needs the application. The full run has every file
-in every host.
+Every test of the add-on and of the tools runs once: in plain Python where it does not need Blender, else in bpy45. The
+other hosts run the tests of tests/smoke.txt, and Blender 3.4 also every test that needs the application. The full run
+has every file in every host.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ SANITIZED = {
 def test_files(selection: str) -> list[Path]:
     if selection:
         return [ROOT / name for name in selection.split(",")]
-    folders = (ROOT / "tests" / "addon", ROOT / "tests" / "robustness")
+    folders = (ROOT / "tests" / name for name in ("addon", "robustness", "tools"))
     patterns = ("*_test.py", "test_*.py")
     return sorted({path for folder in folders for pattern in patterns for path in folder.rglob(pattern)})
 

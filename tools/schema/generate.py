@@ -39,6 +39,7 @@ def outputs(schema: model.Schema) -> Iterator[tuple[str, str]]:
     yield native + "layout_table.cpp", native_tables.layout(schema, NOTE.format("structs.toml"))
     yield "native/src/api/archive_records.h", native_tables.archive(schema, NOTE.format("structs.toml"))
     yield native + "option_table.cpp", native_tables.options(schema, NOTE.format("options.toml"))
+    yield native + "automatic.h", native_tables.automatic(schema, NOTE.format("options.toml"))
     yield native + "pass_rows.cpp", native_tables.passes(schema, NOTE.format("passes.toml"))
     yield "native/src/shading/op_functions.h", node_files.functions(schema, NOTE.format("nodes.toml"))
     yield "native/src/shading/op_table.cpp", node_files.op_table(schema, NOTE.format("nodes.toml"))

@@ -103,6 +103,7 @@ class Option:
     blender: str = ""
     host: bool = False
     sampling: bool = False
+    minimum_samples: int = 0
     c_type: str = ""
     effect: str = "picture"
     shown: str = "still"

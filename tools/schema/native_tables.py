@@ -1,4 +1,4 @@
-"""The generated tables of native/src/schema: layouts, archive records, options, passes."""
+"""The generated tables of native/src/schema: layouts, archive records, options, numbers of AUTO, passes."""
 
 from __future__ import annotations
 
@@ -185,6 +185,18 @@ def options(schema: Schema, note: str) -> str:
     body += ["constexpr Option kOptions[] = {", *(_option(schema, item) for item in schema.native_options), "};"]
     body += ["", "}  // namespace", "", "std::span<const Option> options() { return kOptions; }", ""]
     return _file(note, "The options of GradusSettings.", ['#include "schema/options.h"'], "gradus::schema", body)
+
+
+def automatic(schema: Schema, note: str) -> str:
+    """Returns automatic.h, the numbers by which AUTO is decided."""
+    body = [""]
+    for option in schema.options:
+        if option.minimum_samples:
+            body.append(f"// Samples per pixel from which AUTO of the option {option.name} does something.")
+            name = option.name.title().replace("_", "")
+            body.append(f"inline constexpr uint32_t k{name}MinimumSamples = {option.minimum_samples};")
+    purpose = "The numbers by which AUTO is decided; see output/options.h."
+    return _file(note, purpose, ["#include <cstdint>"], "gradus::schema", [*body, ""], guard=True)
 
 
 def _pass(item: Pass) -> str:

@@ -76,6 +76,15 @@ def _names(name: str, options: list[Option], doc: str) -> list[str]:
     return ["", f"{name} = (", *(f'    "{option.name}",' for option in options), ")", f'"""{doc}"""']
 
 
+def _minimum_samples(options: list[Option]) -> list[str]:
+    lines = []
+    for option in options:
+        if option.minimum_samples:
+            lines += ["", f"{option.name.upper()}_MINIMUM_SAMPLES = {option.minimum_samples}"]
+            lines.append(f'"""Samples per pixel from which AUTO of the setting {option.name} does something."""')
+    return lines
+
+
 def settings(schema: Schema, note: str) -> str:
     """Returns the text of setting_table.py."""
     lines = ['"""The settings of the engine as rows of settings.Setting.', "", note, '"""', ""]
@@ -90,6 +99,7 @@ def settings(schema: Schema, note: str) -> str:
     lines += _names("TEST_SWITCHES", command, "Native settings that exist on the command line only.")
     blender = [option for option in options if option.source == "blender"]
     lines += _names("FROM_BLENDER", blender, "Native settings that Blender's own properties give.")
+    lines += _minimum_samples(options)
     return "\n".join([*lines, ""])
 
 

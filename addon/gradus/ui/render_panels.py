@@ -7,8 +7,7 @@ from typing import Any
 
 import bpy
 
-from .. import cycles_settings, store
-from ..settings import DENOISER_MINIMUM_SAMPLES
+from .. import automatic, cycles_settings, store
 from .base import RenderPanel
 from .presets import GRADUS_PT_presets
 
@@ -28,26 +27,21 @@ class GRADUS_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         layout.prop(settings, "preview_samples")
 
 
-FROM_GRADIENTS = ("L2", "L1")
-"""Reconstructions that need gradients, and weigh the image against them."""
-
-
 def bias(settings: Any, samples: int) -> tuple[str, str]:
     """Returns a text about the bias of the settings, and its icon.
 
     Only the render finds out whether there is a denoiser.
     """
-    if settings.integrator == "PATH" and settings.reconstruction in FROM_GRADIENTS:
+    method = automatic.method_of(settings.integrator, settings.reconstruction, settings.denoiser)
+    if method.is_refused:
         return "Path tracing has no gradients for this reconstruction", "ERROR"
     if settings.denoiser == "OIDN":
         return "Biased by the denoiser", "INFO"
-    if settings.denoiser == "AUTO" and samples >= DENOISER_MINIMUM_SAMPLES:
+    if samples >= method.denoised_from:
         return "Biased if a denoiser is found", "INFO"
     if settings.clamp_direct > 0.0 or settings.clamp_indirect > 0.0:
         return "Biased by clamping", "INFO"
-    if settings.reconstruction in ("L1", "REGULARIZED") or (
-        settings.reconstruction == "AUTO" and settings.integrator != "PATH"
-    ):
+    if method.reconstruction in ("L1", "REGULARIZED"):
         return "Consistent", "INFO"
     if settings.noise_threshold > 0.0:
         return "Unbiased if the noise threshold is 0", "INFO"
@@ -63,7 +57,7 @@ class GRADUS_RENDER_PT_method(RenderPanel, bpy.types.Panel):
         layout.prop(settings, "integrator")
         column = layout.column()
         column.prop(settings, "reconstruction")
-        if settings.reconstruction in FROM_GRADIENTS:
+        if settings.reconstruction in automatic.FROM_GRADIENTS:
             column.prop(settings, "reconstruction_alpha")
         text, icon = bias(settings, context.view_layer.samples or settings.samples)
         layout.label(text=text, icon=icon)

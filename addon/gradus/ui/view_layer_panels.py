@@ -9,6 +9,7 @@ from typing import Any
 
 import bpy
 
+from .. import passes
 from .base import EnginePanel
 
 DATA = ("use_pass_z", "use_pass_mist", "use_pass_position", "use_pass_normal", "use_pass_vector", "use_pass_uv")
@@ -18,25 +19,6 @@ LIGHT = tuple(
     for kind in ("diffuse", "glossy", "transmission")
 )
 OTHER_LIGHT = ("use_pass_emit", "use_pass_environment", "use_pass_ambient_occlusion")
-COMPONENT_SWITCHES = (
-    "use_pass_components",
-    "use_pass_component_reflectance",
-    "use_pass_component_irradiance",
-    "use_pass_component_normal",
-    "use_pass_component_depth",
-    "use_pass_component_uv",
-    "use_pass_component_index",
-    "use_pass_component_emit",
-    "use_pass_component_motion",
-    "use_pass_component_irradiance_motion",
-)
-GRADUS_PASSES = (
-    "use_pass_gradients",
-    "use_pass_variance",
-    "use_pass_error",
-    "use_pass_sample_count",
-    "use_pass_denoising",
-)
 
 
 class ViewLayerPanel(EnginePanel):
@@ -86,7 +68,7 @@ class GRADUS_VIEWLAYER_PT_passes_gradus(ViewLayerPanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         column = self.columns().column(heading="Include", align=True)
-        for name in GRADUS_PASSES:
+        for name in passes.SAMPLING_SWITCHES:
             column.prop(context.view_layer.gradus, name)
 
 
@@ -98,7 +80,7 @@ class GRADUS_VIEWLAYER_PT_passes_components(ViewLayerPanel, bpy.types.Panel):
         layout = self.columns()
         column = layout.column(heading="Include", align=True)
         column.active = context.scene.gradus.use_decomposition
-        for name in COMPONENT_SWITCHES:
+        for name in passes.COMPONENT_SWITCHES:
             column.prop(context.view_layer.gradus, name)
         if not context.scene.gradus.use_decomposition:
             layout.label(text="Render Properties > Decomposition is off", icon="INFO")

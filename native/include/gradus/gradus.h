@@ -562,49 +562,51 @@ typedef struct GradusSettings {
 
 /* Passes of a picture: bit i of GradusSettings.passes asks for pass i. */
 typedef enum GradusPass {
-  GRADUS_PASS_COMBINED = 0,               /* The reconstructed picture. */
-  GRADUS_PASS_NOISY_IMAGE = 1,            /* The sampled picture without reconstruction. */
-  GRADUS_PASS_DEPTH = 2,                  /* Distance along the view axis in metres; of a panorama, along the ray.
-                                             1e10 where there is nothing. */
-  GRADUS_PASS_MIST = 3,                   /* Mist of the world, from 0 (near) to 1 (far). */
-  GRADUS_PASS_NORMAL = 4,                 /* Shading normal of the surface in the world. */
-  GRADUS_PASS_POSITION = 5,               /* Position of the surface in the world, in metres. */
-  GRADUS_PASS_UV = 6,                     /* Texture coordinates by the UV map that is active for rendering: u, v,
-                                             and 1 where there is a surface. */
-  GRADUS_PASS_VECTOR = 7,                 /* Motion of the surface on the film in pixels, y up: previous minus
-                                             present position, then present minus next. 0 with motion blur, unless
-                                             Vector Pass is on. */
-  GRADUS_PASS_OBJECT_INDEX = 8,           /* Pass index of the object, by the first sample of the pixel. */
-  GRADUS_PASS_MATERIAL_INDEX = 9,         /* Pass index of the material, by the first sample of the pixel. */
-  GRADUS_PASS_EMISSION = 10,              /* Light that visible surfaces emit. */
-  GRADUS_PASS_ENVIRONMENT = 11,           /* The world where it is visible. */
-  GRADUS_PASS_DIFFUSE_DIRECT = 12,        /* Direct light on diffuse surfaces, divided by their colour. */
-  GRADUS_PASS_DIFFUSE_INDIRECT = 13,      /* Indirect light on diffuse surfaces, divided by their colour. */
-  GRADUS_PASS_DIFFUSE_COLOR = 14,         /* Colour of diffuse surfaces. */
-  GRADUS_PASS_GLOSSY_DIRECT = 15,         /* Direct light that glossy surfaces reflect, divided by their colour. */
-  GRADUS_PASS_GLOSSY_INDIRECT = 16,       /* Indirect light that glossy surfaces reflect, divided by their colour. */
-  GRADUS_PASS_GLOSSY_COLOR = 17,          /* Colour of glossy surfaces. */
-  GRADUS_PASS_TRANSMISSION_DIRECT = 18,   /* Direct light that surfaces transmit, divided by their colour. */
-  GRADUS_PASS_TRANSMISSION_INDIRECT = 19, /* Indirect light that surfaces transmit, divided by their colour. */
-  GRADUS_PASS_TRANSMISSION_COLOR = 20,    /* Colour of transmission. */
-  GRADUS_PASS_AMBIENT_OCCLUSION = 21,     /* Share of the hemisphere over the surface that nothing within the world's
-                                             distance occludes. */
-  GRADUS_PASS_DENOISING_NORMAL = 22,      /* Normal at the first non-specular vertex, for the compositor's Denoise
-                                             node. */
-  GRADUS_PASS_DENOISING_ALBEDO = 23,      /* Albedo at the first non-specular vertex, for the compositor's Denoise
-                                             node. */
-  GRADUS_PASS_DENOISING_DEPTH = 24,       /* Length of the path to the first non-specular vertex. */
-  GRADUS_PASS_SAMPLE_COUNT = 25,          /* Samples of each pixel. */
-  GRADUS_PASS_GRADIENT_X = 26,            /* Sampled difference to the pixel on the right. */
-  GRADUS_PASS_GRADIENT_Y = 27,            /* Sampled difference to the pixel above. */
-  GRADUS_PASS_VARIANCE = 28,              /* Estimated variance of Noisy Image. */
-  GRADUS_PASS_FALLBACK = 29,              /* Share of samples that met a material of which a node was replaced. */
-  GRADUS_PASS_ERROR = 30,                 /* Estimated squared error of Combined, mean over red, green and blue. */
-  GRADUS_PASS_GRADIENT_T = 31,            /* In animations, the sampled difference to the pixel of the next frame
-                                             that shows the same surface; 0 elsewhere. */
-  GRADUS_PASS_GRADIENT_T_LINK = 32,       /* Pixel correspondence that Gradient T follows: pixels to the right and up
-                                             to where the next frame shows the same surface, and 1 where it does. */
-  GRADUS_PASS_COUNT = 33                  /* Number of passes. */
+  GRADUS_PASS_COMBINED = 0,                   /* The reconstructed picture. */
+  GRADUS_PASS_NOISY_IMAGE = 1,                /* The sampled picture without reconstruction. */
+  GRADUS_PASS_DEPTH = 2,                      /* Distance along the view axis in metres; of a panorama, along the
+                                                 ray. 1e10 where there is nothing. */
+  GRADUS_PASS_MIST = 3,                       /* Mist of the world, from 0 (near) to 1 (far). */
+  GRADUS_PASS_NORMAL = 4,                     /* Shading normal of the surface in the world. */
+  GRADUS_PASS_POSITION = 5,                   /* Position of the surface in the world, in metres. */
+  GRADUS_PASS_UV = 6,                         /* Texture coordinates by the UV map that is active for rendering: u,
+                                                 v, and 1 where there is a surface. */
+  GRADUS_PASS_VECTOR = 7,                     /* Motion of the surface on the film in pixels, y up: previous minus
+                                                 present position, then present minus next. 0 with motion blur,
+                                                 unless Vector Pass is on. */
+  GRADUS_PASS_OBJECT_INDEX = 8,               /* Pass index of the object, by the first sample of the pixel. */
+  GRADUS_PASS_MATERIAL_INDEX = 9,             /* Pass index of the material, by the first sample of the pixel. */
+  GRADUS_PASS_EMISSION = 10,                  /* Light that visible surfaces emit. */
+  GRADUS_PASS_ENVIRONMENT = 11,               /* The world where it is visible. */
+  GRADUS_PASS_DIFFUSE_DIRECT = 12,            /* Direct light on diffuse surfaces, divided by their colour. */
+  GRADUS_PASS_DIFFUSE_INDIRECT = 13,          /* Indirect light on diffuse surfaces, divided by their colour. */
+  GRADUS_PASS_DIFFUSE_COLOR = 14,             /* Colour of diffuse surfaces. */
+  GRADUS_PASS_GLOSSY_DIRECT = 15,             /* Direct light that glossy surfaces reflect, divided by their colour. */
+  GRADUS_PASS_GLOSSY_INDIRECT = 16,           /* Indirect light that glossy surfaces reflect, divided by their
+                                                 colour. */
+  GRADUS_PASS_GLOSSY_COLOR = 17,              /* Colour of glossy surfaces. */
+  GRADUS_PASS_TRANSMISSION_DIRECT = 18,       /* Direct light that surfaces transmit, divided by their colour. */
+  GRADUS_PASS_TRANSMISSION_INDIRECT = 19,     /* Indirect light that surfaces transmit, divided by their colour. */
+  GRADUS_PASS_TRANSMISSION_COLOR = 20,        /* Colour of transmission. */
+  GRADUS_PASS_AMBIENT_OCCLUSION = 21,         /* Share of the hemisphere over the surface that nothing within the
+                                                 world's distance occludes. */
+  GRADUS_PASS_DENOISING_NORMAL = 22,          /* Normal at the first non-specular vertex, for the compositor's
+                                                 Denoise node. */
+  GRADUS_PASS_DENOISING_ALBEDO = 23,          /* Albedo at the first non-specular vertex, for the compositor's
+                                                 Denoise node. */
+  GRADUS_PASS_DENOISING_DEPTH = 24,           /* Length of the path to the first non-specular vertex. */
+  GRADUS_PASS_SAMPLE_COUNT = 25,              /* Samples of each pixel. */
+  GRADUS_PASS_GRADIENT_X = 26,                /* Sampled difference to the pixel on the right. */
+  GRADUS_PASS_GRADIENT_Y = 27,                /* Sampled difference to the pixel above. */
+  GRADUS_PASS_VARIANCE = 28,                  /* Estimated variance of Noisy Image. */
+  GRADUS_PASS_FALLBACK = 29,                  /* Share of samples that met a material of which a node was replaced. */
+  GRADUS_PASS_ERROR = 30,                     /* Estimated squared error of Combined, mean over red, green and blue. */
+  GRADUS_PASS_GRADIENT_T = 31,                /* In animations, the sampled difference to the pixel of the next frame
+                                                 that shows the same surface; 0 elsewhere. */
+  GRADUS_PASS_GRADIENT_T_CORRESPONDENCE = 32, /* Pixel correspondence that Gradient T follows: pixels to the right
+                                                 and up to where the next frame shows the same surface, and 1 where
+                                                 it does. */
+  GRADUS_PASS_COUNT = 33                      /* Number of passes. */
 } GradusPass;
 
 /* Passes of a component: bit i of GradusSettings.component_passes asks for pass i of every component. */

@@ -170,7 +170,7 @@ void FrameDeveloper::read_differences_over_time(const film::Film& film, output::
   const int place = sequence_.place_of(number_) + 1;
   const int32_t next = sequence_.frame_at(place);
   const bool wanted = schema::has_bit(film.settings.passes, GRADUS_PASS_GRADIENT_T) ||
-                      schema::has_bit(film.settings.passes, GRADUS_PASS_GRADIENT_T_LINK);
+                      schema::has_bit(film.settings.passes, GRADUS_PASS_GRADIENT_T_CORRESPONDENCE);
   if (!wanted || !folder.holds(next) || !sequence_.shares_window_with_previous(place, options.reconstruction)) return;
   constexpr TemporalContent kPixels{.gradients = false, .halves = false};
   const std::shared_ptr<const film::Film> replay = folder.load(
@@ -182,7 +182,7 @@ void FrameDeveloper::read_differences_over_time(const film::Film& film, output::
   const int width = film.region.width(), channels = film.color_channels;
   std::vector<float> differences(size_t(width) * size_t(channels));
   std::vector<int32_t> correspondence(static_cast<size_t>(width));
-  std::vector<float> difference(3 * size_t(region.area()), 0.0f), link = difference;
+  std::vector<float> difference(3 * size_t(region.area()), 0.0f), displacement = difference;
   size_t out = 0;
   for (int32_t y = region.y0; y < region.y1; ++y) {
     check_cancelled();
@@ -193,13 +193,13 @@ void FrameDeveloper::read_differences_over_time(const film::Film& film, output::
       const auto i = size_t(x - film.region.x0);
       if (correspondence[i] == film::kNoCorrespondence || !is_finite(differences[i * size_t(channels)])) continue;
       for (size_t c = 0; c < 3; ++c) difference[out + c] = exposure * differences[i * size_t(channels) + c];
-      link[out] = float(correspondence[i] % width - int32_t(i));
-      link[out + 1] = float(correspondence[i] / width - row);
-      link[out + 2] = 1.0f;
+      displacement[out] = float(correspondence[i] % width - int32_t(i));
+      displacement[out + 1] = float(correspondence[i] / width - row);
+      displacement[out + 2] = 1.0f;
     }
   }
   developed->passes[GRADUS_PASS_GRADIENT_T] = output::make_image(std::move(difference));
-  developed->passes[GRADUS_PASS_GRADIENT_T_LINK] = output::make_image(std::move(link));
+  developed->passes[GRADUS_PASS_GRADIENT_T_CORRESPONDENCE] = output::make_image(std::move(displacement));
 }
 
 }  // namespace gradus::animation

@@ -36,7 +36,7 @@ class FrameDeveloper {
   // their own, except by REGULARIZED.
   reconstruct::Reconstructed take_from_windows(const output::DevelopedFilm& developed, bool with_error,
                                                reconstruct::SolveReport* report);
-  // Computes the passes Gradient T and Gradient T Link from the fresh samples of the frame.
+  // Computes the passes Gradient T and Gradient T Correspondence from the fresh samples of the frame.
   void read_differences_over_time(const film::Film& fresh, output::DevelopedFilm* developed);
 
   Sequence& sequence_;

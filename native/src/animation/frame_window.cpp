@@ -58,11 +58,12 @@ void FrameWindow::read(reconstruct::RowKind kind, int t, int y, Part part, float
   const float* next = plane_of(related.*part, kind).data();
   const float sign = GRADUS_FAULT(temporal_difference_sign_flipped) ? -1.0f : 1.0f;
   for (size_t i = first; i < first + width; ++i) {
-    const int32_t link = correspondence_[size_t(t)].pixel[i];
-    const size_t partner = GRADUS_FAULT(temporal_difference_of_same_pixel) ? i : size_t(link);
+    const int32_t correspondence = correspondence_[size_t(t)].pixel[i];
+    const size_t partner = GRADUS_FAULT(temporal_difference_of_same_pixel) ? i : size_t(correspondence);
     for (size_t c = 0; c < channels; ++c) {
-      *out++ = link == film::kNoCorrespondence ? film::kAbsentPair
-                                               : sign * (next[partner * channels + c] - fresh[i * channels + c]);
+      *out++ = correspondence == film::kNoCorrespondence
+                   ? film::kAbsentPair
+                   : sign * (next[partner * channels + c] - fresh[i * channels + c]);
     }
   }
 }

@@ -19,7 +19,26 @@ namespace {
 
 constexpr const char* kSettings = "json";
 
+std::string path_of(const std::string& folder, int32_t frame, const char* name) {
+  return (fs::path(folder) / film_io::frame_name(frame, (std::string(name) + ".exr").c_str())).string();
+}
+
+void remove_older(const std::string& folder, int32_t frame, FrameSamples kind) {
+  std::error_code ignored;
+  fs::remove(path_of(folder, frame, older_name_of(kind)), ignored);
+}
+
 }  // namespace
+
+const char* name_of(FrameSamples kind) { return kind == FrameSamples::kFresh ? "fresh" : "replayed"; }
+
+const char* older_name_of(FrameSamples kind) { return kind == FrameSamples::kFresh ? "base" : "offset"; }
+
+std::string stored_path(const std::string& folder, int32_t frame, FrameSamples kind) {
+  const std::string path = path_of(folder, frame, name_of(kind)), older = path_of(folder, frame, older_name_of(kind));
+  std::error_code error;
+  return !fs::exists(path, error) && fs::exists(older, error) ? older : path;
+}
 
 SequenceFolder::SequenceFolder(const std::string& path)
     : temporary_(path.empty() ? std::make_unique<TemporaryFolder>() : nullptr),
@@ -36,8 +55,10 @@ std::string SequenceFolder::path(int32_t frame, const char* ending) const {
   return path_ + "/" + film_io::frame_name(frame, ending);
 }
 
-std::string SequenceFolder::path(int32_t frame, FrameSamples kind) const {
-  return path(frame, kind == FrameSamples::kFresh ? "base.exr" : "offset.exr");
+std::string SequenceFolder::path(int32_t frame, FrameSamples kind) const { return stored_path(path_, frame, kind); }
+
+std::string SequenceFolder::new_path(int32_t frame, FrameSamples kind) const {
+  return path_of(path_, frame, name_of(kind));
 }
 
 bool SequenceFolder::holds(int32_t frame) const {
@@ -65,7 +86,8 @@ std::shared_ptr<film::Film> SequenceFolder::load_component(int32_t frame, FrameS
 
 void SequenceFolder::save(const film::Film& content, int32_t frame, FrameSamples kind,
                           const CancelCheck& cancel) const {
-  film_io::save_film(content, path(frame, kind), {durable(), cancel});
+  film_io::save_film(content, new_path(frame, kind), {durable(), cancel});
+  remove_older(path_, frame, kind);
 }
 
 std::optional<GradusSettings> SequenceFolder::settings(int32_t frame) const {
@@ -88,16 +110,16 @@ void SequenceFolder::save_settings(const GradusSettings& settings, int32_t frame
 
 void SequenceFolder::repeat(int32_t from, int32_t to) const {
   for (const FrameSamples kind : {FrameSamples::kReplayed, FrameSamples::kFresh}) {
-    const std::string source = path(from, kind), target = path(to, kind);
+    const std::string source = path(from, kind), target = new_path(to, kind);
     if (!film_io::hard_link_file(source, target)) film_io::copy_file(source, target, durable());
+    remove_older(path_, to, kind);
   }
 }
 
 void SequenceFolder::forget(int32_t frame) const {
   std::error_code ignored;
   if (!temporary_) return;
-  for (const FrameSamples kind : {FrameSamples::kFresh, FrameSamples::kReplayed})
-    fs::remove(path(frame, kind), ignored);
+  for (const FrameSamples kind : kFrameSamples) fs::remove(path(frame, kind), ignored);
   fs::remove(path(frame, kSettings), ignored);
 }
 

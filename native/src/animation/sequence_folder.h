@@ -1,4 +1,4 @@
-// The files of a sequence, all in one folder: f<number>.base.exr with the fresh and f<number>.offset.exr with the
+// The files of a sequence, all in one folder: f<number>.fresh.exr and f<number>.replayed.exr with the fresh and the
 // replayed samples of a frame, and f<number>.json with the settings that were requested for the frame.
 #pragma once
 
@@ -15,6 +15,14 @@ namespace gradus::animation {
 // The two kinds of samples of a frame: those with random numbers of its own, and those that replay the random numbers
 // of the previous frame.
 enum class FrameSamples { kFresh, kReplayed };
+inline constexpr FrameSamples kFrameSamples[] = {FrameSamples::kFresh, FrameSamples::kReplayed};
+
+// Returns the part of a file's name between the frame number and ".exr".
+const char* name_of(FrameSamples kind);
+// Returns the name that earlier versions gave the same files. Such files are read where no newer ones are.
+const char* older_name_of(FrameSamples kind);
+// Returns the path of the file in a folder that holds these samples of a frame, or that would hold them.
+std::string stored_path(const std::string& folder, int32_t frame, FrameSamples kind);
 
 class SequenceFolder {
  public:
@@ -24,6 +32,7 @@ class SequenceFolder {
 
   bool is_temporary() const { return temporary_ != nullptr; }
   const std::string& path() const { return path_; }
+  // Returns the path of the file that holds these samples, or that would hold them.
   std::string path(int32_t frame, FrameSamples kind) const;
   // Whether both the fresh and the replayed samples of a frame exist.
   bool holds(int32_t frame) const;
@@ -36,6 +45,7 @@ class SequenceFolder {
   // Loads the planes of one component alone (film_io/store.h).
   std::shared_ptr<film::Film> load_component(int32_t frame, FrameSamples kind, const std::string& component,
                                              const CancelCheck& cancel) const;
+  // Replaces a file of an earlier version, too.
   void save(const film::Film& content, int32_t frame, FrameSamples kind, const CancelCheck& cancel) const;
   // Returns the settings for delivery, such as the exposure: identical frames share their files, but may differ in
   // these. Without a value there is no file, and the settings in the headers hold. Throws invalid_argument with the
@@ -51,6 +61,8 @@ class SequenceFolder {
 
  private:
   std::string path(int32_t frame, const char* ending) const;
+  // Returns the path of the file that is written for these samples.
+  std::string new_path(int32_t frame, FrameSamples kind) const;
 
   film_io::Durable durable() const { return is_temporary() ? film_io::Durable::kNo : film_io::Durable::kYes; }
 

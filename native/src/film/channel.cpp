@@ -12,11 +12,12 @@ constexpr size_t kMaxName = 200, kMaxChannels = 255;
 constexpr uint32_t kMaxValues = 4;
 
 // Returns whether planes of the film itself or the weight of another channel may have this name, or whether the name
-// holds control characters (film/planes.cpp).
+// holds control characters (film/planes.cpp). "rough" and "source" are names of older films (film_io/store_planes.h).
 bool is_reserved(const std::string& name) {
   constexpr std::string_view kReserved[] = {
-      "A",     "B",         "right", "up",      "left",   "down",   "count",       "source", "samples",      "counts",
-      "pairs", "gradients", "rough", "details", "motion", "passes", "reflectance", "normal", "inverse_depth"};
+      "A",      "B",      "right",   "up",          "left",         "down",   "count",     "correspondence",
+      "source", "rough",  "samples", "counts",      "pairs",        "passes", "gradients", "non_specular",
+      "motion", "normal", "details", "reflectance", "inverse_depth"};
   const std::string_view first = std::string_view(name).substr(0, name.find('.'));
   return std::ranges::find(kReserved, first) != std::end(kReserved) || first.starts_with("component") ||
          name.ends_with(".weight") || std::ranges::any_of(name, [](char c) { return (c & ~0x1f) == 0; });

@@ -81,13 +81,13 @@ class PlaneList {
       add(part, half_layer(component, half), MergeRule::kAdd, color_fields(film_->color_channels),
           &film_->components[component].primal[half], &Counters::nonfinite_radiance);
     if (film_->replayed.has_component_map(int(component)))
-      add_correspondence(part, component_layer(component) + ".source", &film_->replayed.of_component[component]);
+      add_correspondence(part, component_layer(component) + ".correspondence", &film_->replayed.of_component[component]);
   }
 
   void add_counts() {
     for (int half = 0; half < kHalves; ++half)
       add("counts", std::string(kHalfNames[half]) + ".count", MergeRule::kAdd, {{"V", 0, true}}, &film_->count[half]);
-    add_correspondence("counts", "source", &film_->replayed.correspondence);
+    add_correspondence("counts", "correspondence", &film_->replayed.correspondence);
   }
 
   void add_gradients(size_t component) {
@@ -109,7 +109,7 @@ class PlaneList {
 
   void add_non_specular(size_t component) {
     for (int half = 0; half < kHalves; ++half)
-      add(part_of("rough", component), half_layer(component, half), MergeRule::kAdd, non_specular_fields(),
+      add(part_of("non_specular", component), half_layer(component, half), MergeRule::kAdd, non_specular_fields(),
           &film_->components[component].non_specular[half]);
   }
 

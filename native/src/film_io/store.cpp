@@ -178,7 +178,8 @@ film::Film read_film(const std::string& path, StoredContent content, const std::
                      const CancelCheck& cancel) {
   Imf::MultiPartInputFile file = open_file(path);
   film::Film film = make_film(file.header(0), content, only);
-  const std::vector<StoredPart> parts = stored_parts(film::planes_of(&film));
+  std::vector<StoredPart> parts = stored_parts(film::planes_of(&film));
+  if (format_of(file.header(0)) < kFormatOfStandardNames) use_older_names(&parts);
   const bool is_whole = content == StoredContent::kAll && only == nullptr;
   if (is_whole && size_t(file.parts()) != parts.size()) throw invalid_argument("it has parts of something else");
   std::vector<int> numbers;

@@ -34,7 +34,7 @@ std::shared_ptr<film::Film> load_component(const std::string& path, const std::s
                                            const CancelCheck& cancel);
 film::FilmHeader load_header(const std::string& path);
 
-// Returns the file name of a frame in a folder of stored films, such as "f+0000017.base.exr". `ending` follows the
+// Returns the file name of a frame in a folder of stored films, such as "f+0000017.fresh.exr". `ending` follows the
 // number.
 std::string frame_name(int32_t frame, const char* ending);
 

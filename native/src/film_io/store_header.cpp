@@ -22,7 +22,8 @@ namespace {
 using nlohmann::json;
 
 // Format that is written, and the oldest one that is read. Films of the formats 9 and 10 hold their counters as a list.
-constexpr int kFormat = 11, kOldestFormat = 9;
+// Those up to 11 have other names of planes (use_older_names()).
+constexpr int kFormat = kFormatOfStandardNames, kOldestFormat = 9;
 constexpr size_t kMaxStoredComponents = 64;
 constexpr int kMaxFilmSide = 1 << 16;
 constexpr const char* kAttribute = "gradus";
@@ -278,6 +279,8 @@ std::vector<Imf::Header> make_headers(const film::Film& film, const std::vector<
 }
 
 film::FilmHeader read_header(const Imf::Header& header) { return read_header(header, description_of(header)); }
+
+int format_of(const Imf::Header& header) { return description_of(header).at("format"); }
 
 film::Film make_film(const Imf::Header& header, StoredContent content, const std::string* only) {
   const json description = description_of(header);

@@ -5,6 +5,7 @@
 
 #include "film/film.h"
 #include "gradus/gradus.h"
+#include "schema/automatic.h"
 
 namespace gradus::scene {
 class Device;
@@ -36,7 +37,7 @@ FilmFacts facts_of(const film::Film& film, bool has_denoiser);
 
 // Number of samples per pixel from which the denoiser reduces the error more than further samples in the same time
 // would.
-inline constexpr uint32_t kDenoiserPays = 8;
+inline constexpr uint32_t kDenoiserPays = schema::kDenoiserMinimumSamples;
 // Returns whether the denoiser reduces the error of a film with `samples` samples per pixel in that sense.
 inline bool denoiser_pays(double samples) { return samples >= kDenoiserPays; }
 

@@ -70,7 +70,8 @@ TEST(C7_ReplayedFrames, ReplaysOfAnotherSeedAreSampledAnew) {
   folder.remove(1);
   sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), with_seed(1, 9));
   // Delivers what is stored, like `gradus reconstruct`.
-  for (const float link : deliver(make_sequence(1, 2, folder.path()).get(), 1).link) ASSERT_EQ(link, 0.0f);
+  for (const float correspondence : deliver(make_sequence(1, 2, folder.path()).get(), 1).correspondence)
+    ASSERT_EQ(correspondence, 0.0f);
   const Delivered found = sample_both(folder, 9), expected = sample_both(fresh, 9);
   EXPECT_EQ(found.noisy, expected.noisy);
   EXPECT_EQ(found.combined, expected.combined);

@@ -68,7 +68,7 @@ class Pan {
 };
 
 struct Delivered {
-  std::vector<float> combined, noisy, difference, link;
+  std::vector<float> combined, noisy, difference, correspondence;
   nlohmann::json stats;
 };
 
@@ -94,7 +94,7 @@ inline std::unique_ptr<render::RenderTask> delivered(animation::Sequence* sequen
 inline Delivered deliver(animation::Sequence* sequence, int32_t frame) {
   const auto task = delivered(sequence, frame);
   return {read(*task, GRADUS_PASS_COMBINED, 4), read(*task, GRADUS_PASS_NOISY_IMAGE, 4),
-          read(*task, GRADUS_PASS_GRADIENT_T, 3), read(*task, GRADUS_PASS_GRADIENT_T_LINK, 3),
+          read(*task, GRADUS_PASS_GRADIENT_T, 3), read(*task, GRADUS_PASS_GRADIENT_T_CORRESPONDENCE, 3),
           nlohmann::json::parse(task->stats())};
 }
 
@@ -110,7 +110,7 @@ inline std::shared_ptr<animation::Sequence> make_sequence(int32_t first, int32_t
 }
 
 inline GradusSettings with_passes(GradusSettings settings) {
-  settings.passes |= uint64_t{1} << GRADUS_PASS_GRADIENT_T | uint64_t{1} << GRADUS_PASS_GRADIENT_T_LINK;
+  settings.passes |= uint64_t{1} << GRADUS_PASS_GRADIENT_T | uint64_t{1} << GRADUS_PASS_GRADIENT_T_CORRESPONDENCE;
   return settings;
 }
 

@@ -144,7 +144,7 @@ TEST(C7_Sequence, ALeftoverHalfFrameIsReplaced) {
   const auto old = make_sequence(1, 2, folder.path());
   for (const int32_t frame : {1, 2}) sample(old.get(), pan.at(frame), settings(frame, 7));
   folder.remove(1);
-  folder.remove(2, "base");
+  folder.remove(2, "fresh");
   const auto sequence = make_sequence(1, 2, folder.path());
   for (const int32_t frame : {1, 2}) sample(sequence.get(), pan.at(frame), settings(frame, 8));
   const Delivered first = deliver(sequence.get(), 1), second = deliver(sequence.get(), 2);
@@ -326,7 +326,7 @@ TEST(C7_Sequence, FramesOfOtherSettingsOrScenesAreRefusedByName) {
   EXPECT_NE(text_of(pan.at(2), settings).find("shows another scene"), std::string::npos);
   settings.max_bounces = 1;
   EXPECT_NE(text_of(pan.at(1), settings)
-                .find("f+0000001.base.exr was sampled with other settings: max_bounces is 64, not 1:"),
+                .find("f+0000001.fresh.exr was sampled with other settings: max_bounces is 64, not 1:"),
             std::string::npos)
       << text_of(pan.at(1), settings);
   settings = with_passes(settings_of(1));
@@ -414,11 +414,11 @@ TEST(C8_Sequence, AShotChangeSeparatesTheFramesBeforeAndAfter) {
   for (int32_t t = 0; t < 3; ++t) {
     const Delivered frame = deliver(sequence.get(), t);
     size_t corresponding = 0;
-    for (size_t i = 2; i < frame.link.size(); i += 3) corresponding += frame.link[i] > 0.0f;
+    for (size_t i = 2; i < frame.correspondence.size(); i += 3) corresponding += frame.correspondence[i] > 0.0f;
     if (t == 1) {
       EXPECT_EQ(corresponding, 0u);
     } else {
-      EXPECT_GT(corresponding, frame.link.size() / 3 / 2);
+      EXPECT_GT(corresponding, frame.correspondence.size() / 3 / 2);
     }
   }
 }
@@ -451,7 +451,7 @@ void expect_alone(const SettingsOf& settings, const std::map<int32_t, Delivered>
   for (const auto& [frame, alone] : render_by(settings, make_sequence(first, last).get(), first, last)) {
     EXPECT_EQ(whole.at(frame).noisy, alone.noisy) << frame;
     EXPECT_EQ(whole.at(frame).combined, alone.combined) << frame;
-    EXPECT_EQ(whole.at(frame).link, alone.link) << frame;
+    EXPECT_EQ(whole.at(frame).correspondence, alone.correspondence) << frame;
   }
 }
 
@@ -528,16 +528,16 @@ TEST(Sequence, GradientTIsTheDifferenceOfTheStoredHalves) {
   const auto task = sequence->deliver(0, &settings);
   run(task.get());
   const std::vector<float> difference = read(*task, GRADUS_PASS_GRADIENT_T, 3),
-                           link = read(*task, GRADUS_PASS_GRADIENT_T_LINK, 3);
+                           correspondence = read(*task, GRADUS_PASS_GRADIENT_T_CORRESPONDENCE, 3);
   const auto base = animation::SequenceFolder(folder.path()).load(0, animation::FrameSamples::kFresh),
              next = animation::SequenceFolder(folder.path()).load(1, animation::FrameSamples::kReplayed);
   const film::GradientImages from = film::read_images(*base, 0), to = film::read_images(*next, 0);
   size_t corresponding = 0, k = 0;
   for (int32_t y = border.y0; y < border.y1; ++y) {
     for (int32_t x = border.x0; x < border.x1; ++x, k += 3) {
-      if (link[k + 2] == 0.0f) continue;
+      if (correspondence[k + 2] == 0.0f) continue;
       const int32_t i = (y - base->region.y0) * from.width + x - base->region.x0;
-      const int32_t q = i + int32_t(link[k + 1]) * from.width + int32_t(link[k]);
+      const int32_t q = i + int32_t(correspondence[k + 1]) * from.width + int32_t(correspondence[k]);
       for (size_t c = 0; c < 3; ++c) {
         const float expected =
             2.0f * (to.primal[size_t(q * from.channels) + c] - from.primal[size_t(i * from.channels) + c]);
@@ -563,7 +563,7 @@ TEST(Sequence, GradientTOfGrowingLightIsItsIncrease) {
   const film::GradientImages before =
       film::read_images(*animation::SequenceFolder(folder.path()).load(0, animation::FrameSamples::kFresh), 0);
   for (size_t i = 0; i < size_t(kSide) * kSide; ++i) {
-    ASSERT_EQ(frame.link[3 * i + 2], 1.0f);
+    ASSERT_EQ(frame.correspondence[3 * i + 2], 1.0f);
     for (size_t c = 0; c < 3; ++c) {
       const float was = before.primal[i * size_t(before.channels) + c];
       EXPECT_NEAR(frame.difference[3 * i + c], 0.5f * was, 1e-5f * was);
@@ -579,19 +579,19 @@ TEST(Sequence, GradientTLeadsToTheNextFrame) {
   size_t corresponding = 0;
   double error = 0.0, change = 0.0;
   for (size_t i = 0; i < size_t(kSide) * kSide; ++i) {
-    if (frames[0].link[3 * i + 2] == 0.0f) continue;
+    if (frames[0].correspondence[3 * i + 2] == 0.0f) continue;
     ++corresponding;
-    const auto aside = int(frames[0].link[3 * i]);  // nearer points move further
+    const auto aside = int(frames[0].correspondence[3 * i]);  // nearer points move further
     EXPECT_LE(aside, -2);
     EXPECT_GE(aside, -7);
-    EXPECT_EQ(frames[0].link[3 * i + 1], 0.0f);
+    EXPECT_EQ(frames[0].correspondence[3 * i + 1], 0.0f);
     const double seen = double(frames[1].noisy[4 * size_t(int(i) + aside)]) - frames[0].noisy[4 * i];
     error += std::pow(seen - frames[0].difference[3 * i], 2);
     change += std::pow(seen, 2);
   }
   EXPECT_GT(corresponding, size_t(kSide) * kSide / 2);
   EXPECT_LT(error, change) << "as it is where the pass is 0";
-  for (const float value : frames[2].link) EXPECT_EQ(value, 0.0f);
+  for (const float value : frames[2].correspondence) EXPECT_EQ(value, 0.0f);
 }
 
 // For animations, AUTO becomes plain paths with regression over time, and its Error pass is that of the delivered
@@ -808,7 +808,7 @@ TEST(I2_Sequence, AFolderThatCannotBeWrittenEndsTheRenderWithItsName) {
   task->run();
   std::string text;
   EXPECT_EQ(task->outcome(&text), GRADUS_ERROR_INVALID_OPERATION);
-  EXPECT_NE(text.find("f+0000001.offset.exr"), std::string::npos) << text;
+  EXPECT_NE(text.find("f+0000001.replayed.exr"), std::string::npos) << text;
 }
 
 // Renders that are cancelled at any moment of sampling or delivery do not affect later ones.
@@ -875,7 +875,7 @@ TEST(I2_Sequence, ADiskThatFillsWhileHalvesAreSavedIsNamed) {
     if (!what) GTEST_SKIP() << "no disk can be mounted here";
     const std::string name = animation::SequenceFolder(folder.path()).path(1, part);
     EXPECT_NE(what->find("cannot write " + name + ": No space left on device"), std::string::npos) << *what;
-    EXPECT_EQ(what->find("base.exr, left"), std::string::npos) << *what;
+    EXPECT_EQ(what->find("fresh.exr, left"), std::string::npos) << *what;
     EXPECT_EQ(what->find(".part"), std::string::npos) << *what << ": half a file";
     EXPECT_EQ(what->find("left: ") != std::string::npos, part == animation::FrameSamples::kFresh)
         << *what << ": a whole offset alone";

@@ -65,6 +65,27 @@ TEST(C7_StoredFrames, ProgressAndCancelDoNotWaitForAFileThatIsRead) {
   EXPECT_NE(reading.get().find(path), std::string::npos);
 }
 
+// Files of an earlier version, which have other names, are used like others, and replaced where a frame is sampled
+// anew.
+TEST(C7_StoredFrames, FilesOfEarlierVersionsAreReadAndReplaced) {
+  Pan pan(1.3f);
+  const Folder folder;
+  const auto whole = render(&pan, make_sequence(1, 3, folder.path()).get(), 1, 3);
+  const auto path_of = [&](int32_t frame, const char* kind) {
+    return folder.path() + "/f+000000" + std::to_string(frame) + "." + kind + ".exr";
+  };
+  for (int32_t frame = 1; frame <= 3; ++frame) {
+    fs::rename(path_of(frame, "fresh"), path_of(frame, "base"));
+    fs::rename(path_of(frame, "replayed"), path_of(frame, "offset"));
+  }
+  expect_same(render(&pan, make_sequence(1, 3, folder.path()).get(), 1, 3), whole);
+  EXPECT_FALSE(fs::exists(path_of(2, "fresh"))) << "nothing was sampled";
+  const animation::SequenceFolder files(folder.path());
+  files.save(*files.load(2, animation::FrameSamples::kFresh), 2, animation::FrameSamples::kFresh, [] { return false; });
+  EXPECT_TRUE(fs::exists(path_of(2, "fresh")));
+  EXPECT_FALSE(fs::exists(path_of(2, "base")));
+}
+
 // Regression: with frame step 2, frames 3 and 5 had replays of the frames two before: half of the pairs had no
 // correspondences.
 TEST(C7_StoredFrames, ReplaysOfAnotherStepAreSampledAnew) {
@@ -339,7 +360,7 @@ TEST(C7_StoredFrames, FramesWithoutTheFeaturesOfTheReconstructionAreRefusedByNam
   regularized.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
   regularized.integrator = GRADUS_INTEGRATOR_GRADIENT;
   const std::string refusal = refusal_of([&] { make_sequence(1, 1, folder.path())->sample(pan.at(1), regularized); });
-  EXPECT_NE(refusal.find("f+0000001.base.exr lacks the features"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("f+0000001.fresh.exr lacks the features"), std::string::npos) << refusal;
   EXPECT_NE(refusal.find("choose another frame store"), std::string::npos) << refusal;
 }
 
@@ -390,7 +411,7 @@ TEST(C7_StoredFrames, AnUnchangedStretchOfAnOlderSceneIsNotMixedIn) {
     for (int32_t t = 1; t <= 2; ++t) {
       const Delivered found = deliver(beside.get(), t), expected = deliver(alone.get(), t);
       EXPECT_EQ(found.combined, expected.combined) << t << ", reconstruction " << reconstruction;
-      EXPECT_EQ(found.link, expected.link) << t;
+      EXPECT_EQ(found.correspondence, expected.correspondence) << t;
     }
     // Delivers what is stored, like `gradus reconstruct`.
     const auto stored = make_sequence(1, 4, both.path());
@@ -414,7 +435,7 @@ TEST(C7_StoredFrames, MovingFramesOfAnOlderSceneAreNotMixedIn) {
   for (int32_t t = 2; t <= 3; ++t) {
     const Delivered found = deliver(beside.get(), t), expected = deliver(alone.get(), t);
     EXPECT_EQ(found.combined, expected.combined) << t;
-    EXPECT_EQ(found.link, expected.link) << t;
+    EXPECT_EQ(found.correspondence, expected.correspondence) << t;
   }
 }
 

@@ -309,10 +309,14 @@ TEST_F(F6_StoredComponents, CorrespondencesToPixelsThatDoNotExistAreRefused) {
   EXPECT_NO_THROW(load("Seen"));
 }
 
+using Rename = std::function<std::string(const std::string&)>;
+
 // Rewrites a file with OpenEXR alone: reads and writes every channel of every part, with the headers as `change` leaves
-// them.
+// them. `name_before` returns the name that a channel has in the first file.
 template <class Change>
-void rewrite(const std::string& from, const std::string& to, const Change& change) {
+void rewrite(
+    const std::string& from, const std::string& to, const Change& change,
+    const Rename& name_before = [](const std::string& name) { return name; }) {
   Imf::MultiPartInputFile file(from.c_str());
   std::vector<Imf::Header> headers;
   for (int i = 0; i < file.parts(); ++i) headers.push_back(file.header(i));
@@ -322,17 +326,19 @@ void rewrite(const std::string& from, const std::string& to, const Change& chang
     const Imath::Box2i window = headers[size_t(i)].dataWindow();
     const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
     std::vector<std::vector<uint32_t>> planes;
-    Imf::FrameBuffer buffer;
+    Imf::FrameBuffer before, after;
     const Imf::ChannelList& channels = headers[size_t(i)].channels();
     for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
       planes.emplace_back(size_t(width) * size_t(height));
-      buffer.insert(channel.name(), Imf::Slice::Make(channel.channel().type, planes.back().data(), window));
+      const Imf::Slice slice = Imf::Slice::Make(channel.channel().type, planes.back().data(), window);
+      before.insert(name_before(channel.name()), slice);
+      after.insert(channel.name(), slice);
     }
     Imf::InputPart input(file, i);
-    input.setFrameBuffer(buffer);
+    input.setFrameBuffer(before);
     input.readPixels(window.min.y, window.max.y);
     Imf::OutputPart output(written, i);
-    output.setFrameBuffer(buffer);
+    output.setFrameBuffer(after);
     output.writePixels(height);
   }
 }
@@ -416,7 +422,7 @@ TEST_F(F6_Store, FilmsOfTheFormats9And10AreRead) {
     film_io::save_film(*film, path());
     rewrite(path(), path("earlier.exr"), [&](std::vector<Imf::Header>* headers) {
       nlohmann::json j = description_of(headers->front());
-      EXPECT_EQ(j["format"], 11);
+      EXPECT_EQ(j["format"], 12);
       j["format"] = has_channels ? 10 : 9;
       j["counters"] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
       headers->front().insert("gradus", Imf::StringAttribute(j.dump()));
@@ -428,6 +434,39 @@ TEST_F(F6_Store, FilmsOfTheFormats9And10AreRead) {
     EXPECT_EQ(earlier->counters.fail_missed, 10u);
     EXPECT_EQ(earlier->counters.nonfinite_feature, 20u);
   }
+}
+
+std::string replaced(const std::string& text, const std::string& part, const std::string& other) {
+  const size_t begin = text.find(part);
+  return begin == std::string::npos ? text : std::string(text).replace(begin, part.size(), other);
+}
+
+// Gives parts and channels the names that they had up to format 11.
+void name_as_before(std::vector<Imf::Header>* headers) {
+  set_format(11, &headers->front());
+  for (Imf::Header& header : *headers) {
+    header.setName(replaced(header.name(), "non_specular", "rough"));
+    Imf::ChannelList renamed;
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+      renamed.insert(replaced(c.name(), "correspondence", "source"), c.channel());
+    header.channels() = renamed;
+  }
+}
+
+TEST_F(F6_StoredComponents, PlanesOfFormat11AreReadByTheirNames) {
+  film::Film stored = film();
+  film::allocate_component_content({.non_specular = true}, &stored);
+  stored.components[1].non_specular[0][3].samples = 5.0f;
+  film_io::save_film(stored, path("now.exr"));
+  const std::vector<std::string> names = names_of(Imf::MultiPartInputFile(path("now.exr").c_str()));
+  EXPECT_TRUE(std::ranges::count(names, "non_specular") == 1 && std::ranges::count(names, "rough") == 0);
+  rewrite(path("now.exr"), path(), name_as_before,
+          [](const std::string& name) { return replaced(name, "source", "correspondence"); });
+  const auto earlier = film_io::load_film(path());
+  expect_same_bits(*earlier, stored);
+  EXPECT_EQ(earlier->replayed.of_component, stored.replayed.of_component);
+  EXPECT_EQ(load("Diffuse")->components[0].non_specular[0][3].samples, 5.0f);
+  EXPECT_EQ(load("Reflection")->replayed.correspondence.pixel, stored.replayed.of_component[2].pixel);
 }
 
 // Counters are stored by name, so that one that a later version adds or removes does not change the others.
@@ -523,7 +562,7 @@ TEST_F(F6_Store, ForeignFilesAreRefusedByName) {
       {"it was written by another version of Gradus", GRADUS_ERROR_INVALID_ARGUMENT,
        [](auto* h) { set_format(3, &h->front()); }},
       {"it was written by another version of Gradus", GRADUS_ERROR_INVALID_ARGUMENT,
-       [](auto* h) { set_format(12, &h->front()); }},
+       [](auto* h) { set_format(13, &h->front()); }},
       {"it is not a film of Gradus", GRADUS_ERROR_INVALID_ARGUMENT, [](auto* h) { h->front().erase("gradus"); }},
       {"it was packed by another program", GRADUS_ERROR_INVALID_ARGUMENT,
        [](auto* h) { (*h)[1].compression() = Imf::PIZ_COMPRESSION; }},

@@ -333,7 +333,7 @@ TEST_F(Tool, AllPassesAreThoseOfTheFilm) {
   for (const char* name : {"Mist.Z", "Gradient X.R"}) EXPECT_FALSE(has(name)) << name;
   const Outcome outcome = run("reconstruct f.exr -o x.exr --passes depth,mist,gradient_x");
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.err.find("the frame was rendered without mist, gradient_x; it holds combined, noisy_image, depth"),
+  EXPECT_NE(outcome.err.find("the film was sampled without mist, gradient_x; it holds combined, noisy_image, depth"),
             std::string::npos)
       << outcome.err;
 }
@@ -455,7 +455,7 @@ class ToolSequence : public Tool {
   }
   // Removes both files of a frame.
   void remove(int frame) const {
-    for (const char* part : {".base.exr", ".offset.exr"})
+    for (const char* part : {".fresh.exr", ".replayed.exr"})
       fs::remove(folder / kFolder / ("f+000000" + std::to_string(frame) + part));
   }
   void render(uint32_t reconstruction, uint32_t samples = 4, bool is_static_scene = false) {
@@ -672,7 +672,7 @@ TEST_F(ToolSequence, UnchangedFramesKeepTheirExposure) {
 
 // Regression: a still had the file name of the fresh half of an animation's frame, and replaced it.
 TEST_F(ToolSequence, AStillBesideAnAnimationDoesNotChangeIt) {
-  for (const char* part : {".base.exr", ".offset.exr"}) {
+  for (const char* part : {".fresh.exr", ".replayed.exr"}) {
     fs::copy_file(folder / kFolder / (std::string("f+0000001") + part),
                   folder / kFolder / (std::string("f+0000000") + part));
   }
@@ -697,9 +697,26 @@ TEST_F(ToolSequence, WritesWhatAutoDelivered) {
   EXPECT_NE(l2.err.find("hold no gradients"), std::string::npos) << l2.err;
 }
 
+// Earlier versions had other names for the two files of a frame.
+TEST_F(ToolSequence, ReadsFilesOfEarlierVersions) {
+  ASSERT_EQ(run("reconstruct store/anim/layer -o now").code, 0);
+  for (int frame = 1; frame <= 6; ++frame) {
+    const std::string name = (folder / kFolder / ("f+000000" + std::to_string(frame))).string();
+    fs::rename(name + ".fresh.exr", name + ".base.exr");
+    fs::rename(name + ".replayed.exr", name + ".offset.exr");
+  }
+  ASSERT_EQ(run("info store/anim/layer").code, 0);
+  const Outcome made = run("reconstruct store/anim/layer -o earlier");
+  ASSERT_EQ(made.code, 0) << made.err;
+  for (int frame = 1; frame <= 6; ++frame) {
+    const std::string name = "/000" + std::to_string(frame) + ".exr";
+    EXPECT_EQ(text("earlier" + name), text("now" + name));
+  }
+}
+
 TEST_F(ToolSequence, NamesMissingFrames) {
-  fs::remove(folder / kFolder / "f+0000003.base.exr");
-  fs::remove(folder / kFolder / "f+0000005.offset.exr");
+  fs::remove(folder / kFolder / "f+0000003.fresh.exr");
+  fs::remove(folder / kFolder / "f+0000005.replayed.exr");
   const Outcome outcome = run("reconstruct store/anim/layer -o pictures");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.err.find("store/anim/layer lacks frames 3, 5"), std::string::npos) << outcome.err;
@@ -711,7 +728,7 @@ TEST_F(ToolSequence, NamesMissingFrames) {
   EXPECT_EQ(info.code, 1) << info.err;
   EXPECT_NE(info.out.find("\"sequence\""), std::string::npos) << info.out;
   EXPECT_NE(info.out.find("\"3, 5\""), std::string::npos) << info.out;
-  for (const char* file : {"f+0000003.base.exr", "f+0000005.offset.exr"})
+  for (const char* file : {"f+0000003.fresh.exr", "f+0000005.replayed.exr"})
     EXPECT_NE(info.out.find(std::string(file) + " "), std::string::npos) << info.out;
   EXPECT_EQ(occurrences(info.out, "\"it is missing\""), 2) << info.out;
   for (const int frame : {3, 5}) remove(frame);
@@ -728,31 +745,32 @@ TEST_F(ToolSequence, InfoNamesDamagedFiles) {
   };
   EXPECT_EQ(info(0).at("damaged"), Json::object());
   const fs::path store = folder / kFolder;
-  fs::resize_file(store / "f+0000002.base.exr", fs::file_size(store / "f+0000002.base.exr") / 2);
-  fs::resize_file(store / "f+0000004.offset.exr", 0);
+  fs::resize_file(store / "f+0000002.fresh.exr", fs::file_size(store / "f+0000002.fresh.exr") / 2);
+  fs::resize_file(store / "f+0000004.replayed.exr", 0);
   std::ofstream(store / "f+0000006.json") << "{";
   {
-    std::fstream file(store / "f+0000005.base.exr", std::ios::in | std::ios::out | std::ios::binary);
+    std::fstream file(store / "f+0000005.fresh.exr", std::ios::in | std::ios::out | std::ios::binary);
     file.seekp(-200, std::ios::end);
     file << std::string(100, 'x');  // the size is right
   }
   const Json found = info(1), &damaged = found.at("damaged");
   EXPECT_EQ(damaged.size(), 4u) << damaged;
-  EXPECT_EQ(damaged.at("f+0000002.base.exr"), "it is cut short");
-  EXPECT_NE(damaged.at("f+0000005.base.exr"), "");
+  EXPECT_EQ(damaged.at("f+0000002.fresh.exr"), "it is cut short");
+  EXPECT_NE(damaged.at("f+0000005.fresh.exr"), "");
   EXPECT_NE(damaged.at("f+0000006.json"), "");
-  EXPECT_EQ(damaged.at("f+0000004.offset.exr").get<std::string>().find("f+0000004"), std::string::npos) << "named once";
+  EXPECT_EQ(damaged.at("f+0000004.replayed.exr").get<std::string>().find("f+0000004"), std::string::npos)
+      << "named once";
   EXPECT_EQ(found.at("frames"), 3);
   EXPECT_EQ(found.at("missing"), "2, 4 to 5");
   for (int frame = 1; frame <= 6; ++frame)
-    fs::resize_file(store / ("f+000000" + std::to_string(frame) + ".base.exr"), 100);
+    fs::resize_file(store / ("f+000000" + std::to_string(frame) + ".fresh.exr"), 100);
   EXPECT_EQ(info(1).at("frames"), 0);
 }
 
 // A frame of another view layer has the name of one of this layer.
 TEST_F(ToolSequence, RefusesFramesThatDoNotFit) {
   ASSERT_EQ(run("render good.gradus -o f.exr --width 20 --integrator gradient").code, 0);
-  for (const char* part : {"base", "offset"}) {
+  for (const char* part : {"fresh", "replayed"}) {
     fs::copy_file(folder / "f.exr", folder / kFolder / (std::string("f+0000004.") + part + ".exr"),
                   fs::copy_options::overwrite_existing);
   }

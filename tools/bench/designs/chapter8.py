@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from . import nlm, poisson
-from .frames import Frame, Half, mean_of
+from .films import Film, Half, mean_of
 from .patches import OFFSETS, Patches
 from .poisson import Reweighting
 
@@ -53,31 +53,31 @@ class Guide:
         return np.maximum(np.maximum(1e-3, self.variance), slopes)
 
 
-def reconstruct(frame: Frame, scales: tuple[Scale, ...], reweighting: Reweighting) -> np.ndarray:
+def reconstruct(film: Film, scales: tuple[Scale, ...], reweighting: Reweighting) -> np.ndarray:
     """Returns the reconstruction of both half-buffers (RECONSTRUCT of figure 8)."""
-    frame = with_features(frame, filtered_features(frame))
-    features = Guide.of_halves(frame[0].features, frame[1].features)
-    colour = Guide.of_halves(*(poisson.l1(half, ALPHA_L1, reweighting) for half in frame))
+    film = with_features(film, filtered_features(film))
+    features = Guide.of_halves(film[0].features, film[1].features)
+    colour = Guide.of_halves(*(poisson.l1(half, ALPHA_L1, reweighting) for half in film))
     images, spreads = [], []
     for scale in scales:
         patches = Patches(features.values, np.sqrt(features.variance), patch_weights(colour, scale.k_c))
-        halves = post_filtered(poisson.regularized(frame, scale.alpha, scale.beta, patches, reweighting), features)
+        halves = post_filtered(poisson.regularized(film, scale.alpha, scale.beta, patches, reweighting), features)
         images.append(0.5 * (halves[0] + halves[1]))
         spreads.append(0.25 * (halves[0] - halves[1]) ** 2)
-    return combined(images, estimated_errors(images, spreads, mean_of(frame).image, colour))
+    return combined(images, estimated_errors(images, spreads, mean_of(film).image, colour))
 
 
-def with_features(frame: Frame, features: list[np.ndarray]) -> Frame:
-    a, b = (Half(half.image, half.dx, half.dy, channels) for half, channels in zip(frame, features, strict=True))
+def with_features(film: Film, features: list[np.ndarray]) -> Film:
+    a, b = (Half(half.image, half.dx, half.dy, channels) for half, channels in zip(film, features, strict=True))
     return a, b
 
 
-def filtered_features(frame: Frame) -> list[np.ndarray]:
+def filtered_features(film: Film) -> list[np.ndarray]:
     """Returns the features of both halves, filtered channel by channel (line 2; k_f = 1, t_f = 3)."""
-    guide = Guide.of_halves(frame[0].features, frame[1].features)
+    guide = Guide.of_halves(film[0].features, film[1].features)
     return [
         nlm.average(half.features, FILTER_RADIUS, lambda offset: nlm.weight(feature_distance(guide, offset, 3)))
-        for half in frame
+        for half in film
     ]
 
 

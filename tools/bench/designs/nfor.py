@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import nlm
-from .frames import Frame, mean_of
+from .films import Film, mean_of
 
 RADIUS = 9  # 19×19 pixels per regression
 STRICTNESS = (0.5, 1.0)
@@ -16,21 +16,21 @@ DAMPING = 1e-3  # share of the window's weight that damps slopes; the authors' s
 ROWS = 6  # rows of the image that are fitted at once, which limits memory
 
 
-def reconstruct(frame: Frame, more_features: tuple[np.ndarray, np.ndarray] | None = None) -> np.ndarray:
+def reconstruct(film: Film, more_features: tuple[np.ndarray, np.ndarray] | None = None) -> np.ndarray:
     """Returns the reconstruction of both half-buffers.
 
     `more_features` are further channels of each half that guide the other half, such as what gradients alone
     reconstruct.
     """
-    colours = [half.image for half in frame]
+    colours = [half.image for half in film]
     variance = nlm.variance_of_mean(*colours)
-    own = filtered([half.features for half in frame])
+    own = filtered([half.features for half in film])
     features = np.repeat(0.5 * (own[0] + own[1])[None], 2, axis=0)  # one image per half
     if more_features is not None:
         features = np.concatenate([features, np.stack([scaled(image) for image in more_features[::-1]])], axis=3)
     candidates = [regressed_halves(colours, variance, features, k) for k in STRICTNESS]
     errors = [estimated_error(candidate, colours, variance) for candidate in candidates]
-    share = selection(errors, mean_of(frame).image, variance)
+    share = selection(errors, mean_of(film).image, variance)
     chosen = [share * a + (1.0 - share) * b for a, b in zip(*candidates, strict=True)]
     left = nlm.variance_of_mean(*chosen)
     return 0.5 * sum(regressed_halves(chosen, left, features, 1.0))

@@ -15,7 +15,7 @@ from enum import Enum
 import numpy as np
 from scipy.linalg import cho_solve_banded, cholesky_banded
 
-from .frames import Frame, Half, differences, mean_of
+from .films import Film, Half, differences, mean_of
 from .patches import OFFSETS, Patches
 
 REWEIGHTINGS = 5
@@ -148,12 +148,12 @@ def l1(half: Half, alpha: float, reweighting: Reweighting) -> np.ndarray:
 
 
 def regularized(
-    frame: Frame, alpha: float, beta: float, patches: Patches, reweighting: Reweighting
+    film: Film, alpha: float, beta: float, patches: Patches, reweighting: Reweighting
 ) -> list[np.ndarray]:
     """Returns both halves, reweighted by their mean (POISSONREGULARIZED of figure 4)."""
-    weights = equal_weights(frame[0], patches)
-    mean = mean_of(frame)
+    weights = equal_weights(film[0], patches)
+    mean = mean_of(film)
     for step in range(REWEIGHTINGS):
-        first, second = solve(frame, weights, alpha, beta, patches)
+        first, second = solve(film, weights, alpha, beta, patches)
         weights = reweighted(mean, 0.5 * (first + second), step, alpha, beta, patches, reweighting)
     return [first, second]

@@ -1,4 +1,4 @@
-"""A stored frame as two half-buffers of images, differences and features. The first row is the top."""
+"""A stored film as two half-buffers of images, differences and features. The first row is the top."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Half:
     )  # each channel in [0, 1]: normal, albedo, d/(d + median) of the depth d, x, y, as REGULARIZED has them
 
 
-Frame = tuple[Half, Half]
+Film = tuple[Half, Half]
 
 
 def planes_of(path: Path) -> dict[str, np.ndarray]:
@@ -33,8 +33,8 @@ def planes_of(path: Path) -> dict[str, np.ndarray]:
         return {name: np.asarray(channel.pixels, dtype=np.float64) for name, channel in channels}
 
 
-def frame_of(planes: dict[str, np.ndarray]) -> Frame:
-    """Returns the two half-buffers of a stored frame, from its channels by name."""
+def film_of(planes: dict[str, np.ndarray]) -> Film:
+    """Returns the two half-buffers of a stored film, from its channels by name."""
     depths = [_mean_of_samples(planes, half, f"{half}.Denoising_Depth", "V") for half in "AB"]
     median = _median_of_positive(np.concatenate(depths))
     a, b = (_half_of(planes, half, depth / (depth + median)) for half, depth in zip("AB", depths, strict=True))
@@ -54,8 +54,8 @@ def tidied(half: Half) -> Half:
     return Half(image, dx, dy, np.clip(np.nan_to_num(half.features, nan=0.0), 0.0, 1.0))
 
 
-def mean_of(frame: Frame) -> Half:
-    a, b = frame
+def mean_of(film: Film) -> Half:
+    a, b = film
     return Half(*(0.5 * (getattr(a, field.name) + getattr(b, field.name)) for field in fields(Half)))
 
 

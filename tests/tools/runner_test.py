@@ -36,7 +36,7 @@ def outcome(result: Result) -> tuple[int, int, int]:
 
 
 GOOD = "def test_good(): pass\n"
-MIXED = GOOD + "import pytest\ndef test_bad(): assert 1 == 2\ndef test_skipped(): pytest.skip()\n"
+MIXED = GOOD + "import pytest\ndef test_bad(): assert 1 == 2\ndef test_skipped(): pytest.skip('why')\n"
 
 
 def test_outcomes_are_counted(host: HostProcess, tmp_path: Path) -> None:

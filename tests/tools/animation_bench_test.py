@@ -171,6 +171,13 @@ def test_peers_of_another_blender_are_not_mixed(tmp_path: Path, monkeypatch: pyt
     assert [point.samples for point in scene.points[report.PEER]] == [4, 16]
 
 
+def test_a_peer_of_another_blender_is_not_compared_with(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Regression: the newest rows of each mode counted, even if they were of different Blenders."""
+    peer = [row | {"blender": "4.5"} for row in rows(report.PEER, 1.0)]
+    ((scene,),) = stored(tmp_path, monkeypatch, peer, rows("path", 1.0)).values()
+    assert scene.modes() == ["path"]
+
+
 @pytest.mark.module
 def test_all_engines_have_the_bounce_limits_of_the_file(scene: bpy.types.Scene, tmp_path: Path) -> None:
     """Regression: Gradus kept its own bounce limits and denoiser in animations."""

@@ -12,8 +12,8 @@ import pytest
 pytest.importorskip("scipy", reason="SciPy is in the environment of bpy45 only")
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools" / "bench"))
 import compare_designs  # noqa: E402
-from designs import chapter8, frames, nfor, nlm, poisson  # noqa: E402
-from designs.frames import Half  # noqa: E402
+from designs import chapter8, films, nfor, nlm, poisson  # noqa: E402
+from designs.films import Half  # noqa: E402
 from designs.patches import OFFSETS, Patches  # noqa: E402
 from designs.poisson import Reweighting  # noqa: E402
 
@@ -25,7 +25,7 @@ TRUTH = (0.3 + TILES + 0.5 * X) * np.array([1.0, 0.8, 0.6])
 
 
 def half_of(image: np.ndarray) -> Half:
-    return Half(image, *frames.differences(image), FEATURES[: image.shape[0], : image.shape[1]])
+    return Half(image, *films.differences(image), FEATURES[: image.shape[0], : image.shape[1]])
 
 
 def noisy_half(seed: int) -> Half:
@@ -46,8 +46,8 @@ def cropped(half: Half, height: int, width: int) -> Half:
     return Half(*(getattr(half, field.name)[:height, :width].copy() for field in fields(Half)))
 
 
-FRAME = noisy_half(1), noisy_half(2)
-SMALL = tuple(cropped(half, 10, 12) for half in FRAME)
+FILM = noisy_half(1), noisy_half(2)
+SMALL = tuple(cropped(half, 10, 12) for half in FILM)
 ROBUST = [name for name in compare_designs.PUBLISHED if "tuned" not in name]  # what else is tuned is numbers
 
 
@@ -62,15 +62,15 @@ def patches_of(features: np.ndarray, deviation: float = 0.0) -> Patches:
 
 @pytest.mark.parametrize(("scales", "gain"), [(chapter8.PRINTED, 1.3), (chapter8.TUNED, 2.0)])
 def test_chapter_8_has_less_error_than_l1(scales: tuple[chapter8.Scale, ...], gain: float) -> None:
-    l1 = squared_error(poisson.l1(frames.mean_of(FRAME), chapter8.ALPHA_L1, Reweighting.L1))
-    assert squared_error(chapter8.reconstruct(FRAME, scales, Reweighting.L1)) < l1 / gain
+    l1 = squared_error(poisson.l1(films.mean_of(FILM), chapter8.ALPHA_L1, Reweighting.L1))
+    assert squared_error(chapter8.reconstruct(FILM, scales, Reweighting.L1)) < l1 / gain
 
 
 def test_nfor_has_less_error_than_the_noisy_image() -> None:
-    l1 = tuple(poisson.l1(half, chapter8.ALPHA_L1, Reweighting.L1) for half in FRAME)
-    noisy = squared_error(frames.mean_of(FRAME).image)
-    assert squared_error(nfor.reconstruct(FRAME)) < noisy / 4.0
-    assert squared_error(nfor.reconstruct(FRAME, l1)) < noisy / 4.0
+    l1 = tuple(poisson.l1(half, chapter8.ALPHA_L1, Reweighting.L1) for half in FILM)
+    noisy = squared_error(films.mean_of(FILM).image)
+    assert squared_error(nfor.reconstruct(FILM)) < noisy / 4.0
+    assert squared_error(nfor.reconstruct(FILM, l1)) < noisy / 4.0
 
 
 @pytest.mark.parametrize(("reweighting", "power"), [(Reweighting.L1, 1), (Reweighting.PRINTED, 0)])
@@ -78,14 +78,14 @@ def test_weighted_squares_of_residuals_are_the_norm_or_as_printed_a_constant(
     reweighting: Reweighting, power: int
 ) -> None:
     late = 40  # what is added to the residuals is next to nothing
-    weights = poisson.reweighted(FRAME[0], TRUTH, late, 0.2, 0.0, None, reweighting)
-    residual = np.linalg.norm(0.2 * (TRUTH - FRAME[0].image), axis=2)
+    weights = poisson.reweighted(FILM[0], TRUTH, late, 0.2, 0.0, None, reweighting)
+    residual = np.linalg.norm(0.2 * (TRUTH - FILM[0].image), axis=2)
     assert weights.pixel * residual**2 == pytest.approx(residual**power, rel=1e-6)
 
 
 def test_frozen_weights_are_a_linear_operator() -> None:
     patches = patches_of(FEATURES)
-    a, b = FRAME
+    a, b = FILM
     weights = poisson.reweighted(a, b.image, 0, 0.2, 3.0, patches, Reweighting.L1)
     mixed = Half(*(2.0 * x - 3.0 * y for x, y in ((a.image, b.image), (a.dx, b.dx), (a.dy, b.dy))), FEATURES)
     of_a, of_b, of_mixed = poisson.solve((a, b, mixed), weights, 0.2, 3.0, patches)
@@ -129,7 +129,7 @@ def test_the_normal_matrix_is_that_of_the_rows() -> None:
     rows = []
     for unit in np.eye(height * width):
         image = unit.reshape(width, height).T[:, :, None]
-        dx, dy = frames.differences(image)
+        dx, dy = films.differences(image)
         parts = [
             alpha * image[:, :, 0] * np.sqrt(weights.pixel),
             dx[:, :, 0] * np.sqrt(weights.dx),
@@ -161,18 +161,18 @@ def test_halves_may_be_swapped(design: str) -> None:
 @pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1), (2, 3)])
 @pytest.mark.parametrize("design", ROBUST)
 def test_images_smaller_than_a_patch(design: str, shape: tuple[int, int]) -> None:
-    frame = tuple(cropped(half, *shape) for half in FRAME)
-    assert np.isfinite(compare_designs.PUBLISHED[design][1](frame)).all()
+    film = tuple(cropped(half, *shape) for half in FILM)
+    assert np.isfinite(compare_designs.PUBLISHED[design][1](film)).all()
 
 
 @pytest.mark.parametrize("design", ROBUST)
 def test_bad_pixels_stay_finite(design: str) -> None:
-    bad = cropped(FRAME[0], HEIGHT, WIDTH)
+    bad = cropped(FILM[0], HEIGHT, WIDTH)
     for plane in (bad.image, bad.dx, bad.dy, bad.features):
         plane[3, 4:7] = np.array([[np.nan], [-np.inf], [1e30]])
-    image = compare_designs.PUBLISHED[design][1]((frames.tidied(bad), FRAME[1]))
+    image = compare_designs.PUBLISHED[design][1]((films.tidied(bad), FILM[1]))
     assert np.isfinite(image).all()
-    assert np.abs(image).max() < 2.0 * frames.LARGEST
+    assert np.abs(image).max() < 2.0 * films.LARGEST
     if "nfor" not in design:  # which spreads an outlier over its window
         assert np.median(np.abs(image - TRUTH)) < 0.5
 
@@ -180,8 +180,8 @@ def test_bad_pixels_stay_finite(design: str) -> None:
 @pytest.mark.parametrize("features", [0.0, 0.5])
 @pytest.mark.parametrize("design", ROBUST)
 def test_uninformative_features(design: str, features: float) -> None:
-    frame = tuple(replace(half, features=np.full_like(half.features, features)) for half in SMALL)
-    assert np.isfinite(compare_designs.PUBLISHED[design][1](frame)).all()
+    film = tuple(replace(half, features=np.full_like(half.features, features)) for half in SMALL)
+    assert np.isfinite(compare_designs.PUBLISHED[design][1](film)).all()
 
 
 def stored_planes() -> dict[str, np.ndarray]:
@@ -198,8 +198,8 @@ def stored_planes() -> dict[str, np.ndarray]:
     return planes
 
 
-def test_stored_frames_are_means_and_differences_of_both_ends() -> None:
-    half = frames.frame_of(stored_planes())[0]
+def test_stored_films_are_means_and_differences_of_both_ends() -> None:
+    half = films.film_of(stored_planes())[0]
     assert half.image == pytest.approx(3.0)
     assert half.dx[:, :-1] == pytest.approx(0.0 - 2.0) and half.dx[:, -1] == pytest.approx(0.0)
     assert half.dy[:-1] == pytest.approx(3.0 - 1.0) and half.dy[-1] == pytest.approx(0.0)
@@ -210,7 +210,7 @@ def test_pairs_without_samples_take_the_images_difference() -> None:
     planes = stored_planes()
     planes["A.left.pairs.V"][1, 2] = 0.0
     planes["A.R"][1, 2] = 10.0
-    half = frames.frame_of(planes)[0]
+    half = films.film_of(planes)[0]
     assert half.dx[1, 1] == pytest.approx([2.0, 0.0, 0.0])
 
 

@@ -19,6 +19,7 @@ import metrics  # noqa: E402
 import modes  # noqa: E402
 import records  # noqa: E402
 import results  # noqa: E402
+import rooms  # noqa: E402
 import scenes  # noqa: E402
 import seeds  # noqa: E402
 import speed  # noqa: E402
@@ -250,6 +251,37 @@ def test_only_runs_of_one_commit_and_blender_are_compared(stored: Path) -> None:
     assert [(row["mode"], row["version"], row["blender"], row["width"]) for row in scene.rows] == [
         ("path", "b", "5.2", 160),
         ("cycles", "b", "5.2", 160),
+    ]
+
+
+def test_every_part_of_the_report_names_its_blender(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Regression: the tables of agreement and of the rooms did not say which Blender's Cycles they compare with."""
+    report = report_module()
+    agreements, costs = tmp_path / "agreement.jsonl", tmp_path / "speed.jsonl"
+    records.append({"name": "hero", "share": 1.0, "ratio": 1.0, "reason": "", "blender": "4.5"}, agreements)
+    for row in rows_of_room():
+        records.append(row, costs)
+    monkeypatch.setattr(report.agreement, "RESULTS", agreements)
+    monkeypatch.setattr(speed, "RESULTS", costs)
+    assert [row[-1] for row in report.agreements()[1].rows] == ["4.5"]
+    assert "commit a, Blender 5.2" in report.rooms()[0].markdown
+
+
+def report_module() -> Any:
+    pytest.importorskip("PIL", reason="Pillow is in the environments of Blender modules only")
+    pytest.importorskip("scipy", reason="SciPy is in the environment of bpy45 only")
+    import report
+
+    return report
+
+
+def rows_of_room() -> list[dict]:
+    """Returns one repeat of the smallest room by all engines."""
+    size = {"room": "room-1k", "triangles": 1164, "width": 10, "height": 10, "version": "a", "blender": "5.2"}
+    modes = [(mode, samples) for mode in rooms.ENGINES for samples in speed.SAMPLES]
+    return [
+        size | {"mode": mode, "samples": samples, "repeat": 0, "cpu": 5.0 + samples, "peak_memory_bytes": 1}
+        for mode, samples in modes
     ]
 
 
