@@ -1,10 +1,15 @@
 #include "film/planes.h"
 
 #include <algorithm>
+#include <iterator>
+#include <mutex>
 #include <numeric>
-#include <type_traits>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include "base/error.h"
+#include "base/fpu.h"
 #include "film/finite_check.h"
 
 namespace gradus::film {
@@ -163,54 +168,66 @@ class PlaneList {
   std::vector<Plane> list_;
 };
 
-// The functions add_all() add the values of all pixels to a plane of any type that consists of sums.
-void add_all(const std::vector<NonSpecularVertices>& from, const Plane&, std::vector<NonSpecularVertices>* to,
-             Counters* counters) {
-  for (size_t i = 0; i < to->size(); ++i) add_non_specular(from[i], &(*to)[i], counters);
+// The functions add_values() add `count` values to a plane of any type that consists of sums.
+void add_values(const NonSpecularVertices* from, const Plane&, size_t count, NonSpecularVertices* to,
+                Counters* counters) {
+  for (size_t i = 0; i < count; ++i) add_non_specular(from[i], &to[i], counters);
 }
 
-void add_all(const std::vector<NonSpecularDetails>& from, const Plane&, std::vector<NonSpecularDetails>* to,
-             Counters* counters) {
-  for (size_t i = 0; i < to->size(); ++i) add_details(from[i], &(*to)[i], counters);
+void add_values(const NonSpecularDetails* from, const Plane&, size_t count, NonSpecularDetails* to,
+                Counters* counters) {
+  for (size_t i = 0; i < count; ++i) add_details(from[i], &to[i], counters);
 }
 
-void add_all(const std::vector<uint32_t>& from, const Plane&, std::vector<uint32_t>* to, Counters*) {
-  for (size_t i = 0; i < to->size(); ++i) (*to)[i] += from[i];
+void add_values(const uint32_t* from, const Plane&, size_t count, uint32_t* to, Counters*) {
+  for (size_t i = 0; i < count; ++i) to[i] += from[i];
+}
+
+void add_pairs(const float* from, uint32_t values_per_pixel, size_t count, float* to, Counters* counters) {
+  for (size_t first = 0; first < count; first += values_per_pixel) {
+    for (size_t i = first; i < first + values_per_pixel; i += 2)
+      add_pair(from[i], from[i + 1], values_per_pixel / 2, to + first, counters);
+  }
 }
 
 template <class T>
-requires std::is_same_v<T, float> || std::is_same_v<T, Vec4>
-void add_all(const std::vector<T>& from, const Plane& plane, std::vector<T>* to, Counters* counters) {
+uint64_t add_sums_that_fit(const T* from, size_t count, T* to) {
   uint64_t dropped = 0;
-  for (size_t i = 0; i < to->size(); ++i) {
-    const T sum = (*to)[i] + from[i];
+  for (size_t i = 0; i < count; ++i) {
+    const T sum = to[i] + from[i];
     const bool fit = fits(sum);
-    (*to)[i] = fit ? sum : (*to)[i];
+    to[i] = fit ? sum : to[i];
     dropped += fit ? 0 : 1;
   }
-  counters->*plane.dropped += dropped;
+  return dropped;
+}
+
+void add_values(const float* from, const Plane& plane, size_t count, float* to, Counters* counters) {
+  if (plane.pairs != nullptr) return add_pairs(from, plane.pairs->info.values_per_pixel, count, to, counters);
+  counters->*plane.dropped += add_sums_that_fit(from, count, to);
+}
+
+void add_values(const Vec4* from, const Plane& plane, size_t count, Vec4* to, Counters* counters) {
+  counters->*plane.dropped += add_sums_that_fit(from, count, to);
 }
 
 template <class T>
-void add_all(const std::vector<T>&, const Plane&, std::vector<T>*, Counters*) {
+void add_values(const T*, const Plane&, size_t, T*, Counters*) {
   throw invalid_operation("a plane of values that cannot be added has the merge rule kAdd");
 }
 
-void add_pairs(const std::vector<float>& from, uint32_t values_per_pixel, std::vector<float>* to, Counters* counters) {
-  for (size_t first = 0; first < to->size(); first += values_per_pixel) {
-    for (size_t i = first; i < first + values_per_pixel; i += 2)
-      add_pair(from[i], from[i + 1], values_per_pixel / 2, to->data() + first, counters);
-  }
-}
+using PixelRange = tbb::blocked_range<size_t>;
 
-void add_plane(const Plane& from, bool is_first, const Plane& to, Counters* counters) {
+void add_pixels(const Plane& from, bool is_first, const PixelRange& pixels, const Plane& to, Counters* counters) {
   std::visit(
       [&](auto* values) {
-        const auto& others = *std::get<decltype(values)>(from.values);
+        const size_t per_pixel = to.pixel_bytes / sizeof(values->front());
+        const size_t first = pixels.begin() * per_pixel, count = pixels.size() * per_pixel;
+        const auto* others = std::get<decltype(values)>(from.values)->data() + first;
         if (to.merge == MergeRule::kAdd) {
-          add_all(others, to, values, counters);
+          add_values(others, to, count, values->data() + first, counters);
         } else if (to.merge == MergeRule::kFirstSample && is_first) {
-          *values = others;
+          std::copy_n(others, count, values->data() + first);
         }
       },
       to.values);
@@ -281,14 +298,15 @@ bool can_add(const Film& film, const Film& other) {
 void add_sums(Film* film, const Film& other) {
   const bool other_is_first = other.settings.first_sample < film->settings.first_sample;
   const std::vector<Plane> planes = merged_planes(*film), others = merged_planes(other);
-  for (size_t i = 0; i < planes.size(); ++i) {
-    if (planes[i].pairs != nullptr) {
-      add_pairs(*std::get<std::vector<float>*>(others[i].values), planes[i].pairs->info.values_per_pixel,
-                std::get<std::vector<float>*>(planes[i].values), &film->counters);
-    } else {
-      add_plane(others[i], other_is_first, planes[i], &film->counters);
-    }
-  }
+  constexpr size_t kPixels = 4096;  // pixels per task
+  std::mutex counters_mutex;
+  tbb::parallel_for(PixelRange(0, size_t(film->region.area()), kPixels), [&](const PixelRange& pixels) {
+    const FlushDenormals flush;
+    Counters dropped;
+    for (size_t i = 0; i < planes.size(); ++i) add_pixels(others[i], other_is_first, pixels, planes[i], &dropped);
+    const std::lock_guard lock(counters_mutex);
+    film->counters.add(dropped);
+  });
   for (size_t i = 0; i < film->channels.size(); ++i) {
     for (int half = 0; half < kHalves; ++half) film->channels[i].paths[half] += other.channels[i].paths[half];
   }
