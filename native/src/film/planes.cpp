@@ -11,12 +11,12 @@
 #include "base/error.h"
 #include "base/fpu.h"
 #include "film/finite_check.h"
+#include "film/plane_names.h"
 
 namespace gradus::film {
 namespace {
 
-constexpr const char* kHalfNames[kHalves] = {"A", "B"};
-constexpr const char* kOffsetNames[kOffsets] = {"right", "up", "left", "down"};
+static_assert(std::size(plane_names::kHalves) == kHalves && std::size(plane_names::kOffsets) == kOffsets);
 constexpr const char* kColorNames[4] = {"R", "G", "B", "A"};
 constexpr const char* kVectorNames[4] = {"X", "Y", "Z", "W"};
 
@@ -44,12 +44,17 @@ void add_three(const std::string& name, const char* const* letters, size_t offse
   for (size_t c = 0; c < 3; ++c) fields->push_back({name + "." + letters[c], offset + c * sizeof(float)});
 }
 
+// Appends the field of a member that is a float.
+void add_one(const std::string& name, size_t offset, std::vector<PlaneField>* fields) {
+  fields->push_back({name + ".V", offset});
+}
+
 std::vector<PlaneField> non_specular_fields() {
   std::vector<PlaneField> fields;
-  add_three("reflectance", kColorNames, offsetof(NonSpecularVertices, reflectance), &fields);
-  add_three("normal", kVectorNames, offsetof(NonSpecularVertices, normal), &fields);
-  fields.push_back({"inverse_depth.V", offsetof(NonSpecularVertices, inverse_depth)});
-  fields.push_back({"samples.V", offsetof(NonSpecularVertices, samples)});
+  add_three(plane_names::kReflectance, kColorNames, offsetof(NonSpecularVertices, reflectance), &fields);
+  add_three(plane_names::kNormal, kVectorNames, offsetof(NonSpecularVertices, normal), &fields);
+  add_one(plane_names::kInverseDepth, offsetof(NonSpecularVertices, inverse_depth), &fields);
+  add_one(plane_names::kSamples, offsetof(NonSpecularVertices, samples), &fields);
   return fields;
 }
 
@@ -57,18 +62,18 @@ std::vector<PlaneField> detail_fields() {
   std::vector<PlaneField> fields;
   add_three("uv", kVectorNames, offsetof(NonSpecularDetails, uv), &fields);
   add_three("emission", kColorNames, offsetof(NonSpecularDetails, emission), &fields);
-  fields.push_back({"segments.V", offsetof(NonSpecularDetails, segments)});
-  fields.push_back({"object.V", offsetof(NonSpecularDetails, object)});
-  fields.push_back({"face.V", offsetof(NonSpecularDetails, face)});
+  add_one("segments", offsetof(NonSpecularDetails, segments), &fields);
+  add_one("object", offsetof(NonSpecularDetails, object), &fields);
+  add_one("face", offsetof(NonSpecularDetails, face), &fields);
   fields.push_back({"sample.V", offsetof(NonSpecularDetails, sample), true});
   return fields;
 }
 
-std::string component_layer(size_t component) { return "component" + std::to_string(component); }
+std::string component_layer(size_t component) { return plane_names::kComponent + std::to_string(component); }
 
 // Returns the layer of a half-buffer. Component 0 has no prefix, so that programs show its layer as the main one.
 std::string half_layer(size_t component, int half) {
-  return (component == 0 ? "" : component_layer(component) + ".") + kHalfNames[half];
+  return (component == 0 ? "" : component_layer(component) + ".") + plane_names::kHalves[half];
 }
 
 std::string part_of(const std::string& name, size_t component) {
@@ -81,25 +86,27 @@ class PlaneList {
   explicit PlaneList(Film* film) : film_(film) {}
 
   void add_samples(size_t component) {
-    const std::string part = part_of("samples", component);
+    const std::string part = part_of(plane_names::kSamples, component);
     for (int half = 0; half < kHalves; ++half)
       add(part, half_layer(component, half), MergeRule::kAdd, color_fields(film_->color_channels),
           &film_->components[component].primal[half], &Counters::nonfinite_radiance);
     if (film_->replayed.has_component_map(int(component)))
-      add_correspondence(part, component_layer(component) + ".source", &film_->replayed.of_component[component]);
+      add_correspondence(part, component_layer(component) + "." + plane_names::kSource,
+                         &film_->replayed.of_component[component]);
   }
 
   void add_counts() {
     for (int half = 0; half < kHalves; ++half)
-      add("counts", std::string(kHalfNames[half]) + ".count", MergeRule::kAdd, {{"V", 0, true}}, &film_->count[half]);
-    add_correspondence("counts", "source", &film_->replayed.correspondence);
+      add(plane_names::kCounts, half_layer(0, half) + "." + plane_names::kCount, MergeRule::kAdd, {{"V", 0, true}},
+          &film_->count[half]);
+    add_correspondence(plane_names::kCounts, plane_names::kSource, &film_->replayed.correspondence);
   }
 
   void add_gradients(size_t component) {
     for (int half = 0; half < kHalves; ++half) {
       for (int o = 0; o < kOffsets; ++o)
-        add(part_of("gradients", component), half_layer(component, half) + "." + kOffsetNames[o], MergeRule::kAdd,
-            color_fields(film_->color_channels), &film_->components[component].gradient[half][o],
+        add(part_of(plane_names::kGradients, component), half_layer(component, half) + "." + plane_names::kOffsets[o],
+            MergeRule::kAdd, color_fields(film_->color_channels), &film_->components[component].gradient[half][o],
             &Counters::nonfinite_gradient);
     }
   }
@@ -107,26 +114,26 @@ class PlaneList {
   void add_pair_counts() {
     for (int half = 0; half < kHalves; ++half) {
       for (int o = 0; o < kOffsets; ++o)
-        add("pairs", std::string(kHalfNames[half]) + "." + kOffsetNames[o] + ".pairs", MergeRule::kAdd,
-            vector_fields(1), &film_->pair_count[half][o]);
+        add(plane_names::kPairs, half_layer(0, half) + "." + plane_names::kOffsets[o] + "." + plane_names::kPairs,
+            MergeRule::kAdd, vector_fields(1), &film_->pair_count[half][o]);
     }
   }
 
   void add_non_specular(size_t component) {
     for (int half = 0; half < kHalves; ++half)
-      add(part_of("rough", component), half_layer(component, half), MergeRule::kAdd, non_specular_fields(),
-          &film_->components[component].non_specular[half]);
+      add(part_of(plane_names::kNonSpecular, component), half_layer(component, half), MergeRule::kAdd,
+          non_specular_fields(), &film_->components[component].non_specular[half]);
   }
 
   void add_details(size_t component) {
-    add(part_of("details", component), component_layer(component), MergeRule::kAdd, detail_fields(),
+    add(part_of(plane_names::kDetails, component), component_layer(component), MergeRule::kAdd, detail_fields(),
         &film_->components[component].details);
   }
 
   void add_motion(size_t component) {
     ComponentPlanes& planes = film_->components[component];
-    const std::string part = part_of("motion", component), layer = component_layer(component);
-    add(part, layer + ".motion", MergeRule::kKeep, vector_fields(4), &planes.motion);
+    const std::string part = part_of(plane_names::kMotion, component), layer = component_layer(component);
+    add(part, layer + "." + plane_names::kMotion, MergeRule::kKeep, vector_fields(4), &planes.motion);
     add(part, layer + ".tracked", MergeRule::kKeep, vector_fields(1), &planes.tracked);
     add(part, layer + ".shown", MergeRule::kKeep,
         {{"object.V", offsetof(ShownPoint, object)}, {"depth.V", offsetof(ShownPoint, depth)}}, &planes.shown);
@@ -140,12 +147,12 @@ class PlaneList {
     const MergeRule rule = channel->keeps_first_sample() ? MergeRule::kFirstSample : MergeRule::kAdd;
     for (int half = 0; half < kHalves; ++half) {
       if (channel->values[half].empty()) continue;
-      add(info.in_halves ? name : "passes", info.in_halves ? std::string(kHalfNames[half]) + "." + name : name, rule,
+      add(info.in_halves ? name : plane_names::kPasses, info.in_halves ? half_layer(0, half) + "." + name : name, rule,
           pairs ? pair_fields(info.values_per_pixel) : vector_fields(info.values_per_pixel), &channel->values[half]);
       list_.back().pixel_bytes = info.values_per_pixel * sizeof(float);
       if (pairs) list_.back().pairs = channel;
     }
-    add("passes", name + ".weight", rule, vector_fields(1), &channel->weight);
+    add(plane_names::kPasses, name + plane_names::kWeight, rule, vector_fields(1), &channel->weight);
   }
 
   std::vector<Plane> take() { return std::move(list_); }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "film/plane_names.h"
+
 namespace gradus::film_io {
 
 std::vector<StoredPart> stored_parts(const std::vector<film::Plane>& planes) {
@@ -14,7 +16,7 @@ std::vector<StoredPart> stored_parts(const std::vector<film::Plane>& planes) {
           {plane.layer + "." + field.name, field.is_integer, plane.data() + field.offset, plane.pixel_bytes});
   }
   // Parts of single channels come before the part of all others.
-  std::ranges::stable_partition(parts, [](const StoredPart& part) { return part.name != "passes"; });
+  std::ranges::stable_partition(parts, [](const StoredPart& part) { return part.name != film::plane_names::kPasses; });
   return parts;
 }
 

@@ -208,6 +208,27 @@ TEST(Film, EachValueOfAPixelIsMergedOnce) {
   }
 }
 
+// Returns the name of a plane's value without the half-buffer, in which channels stand, too.
+std::string without_half(const std::string& name) {
+  return name.starts_with("A.") || name.starts_with("B.") ? name.substr(2) : name;
+}
+
+TEST(Film, ChannelsCannotHaveTheNamesOfItsPlanes) {
+  film::Film film = full_film();
+  film.channels = {};
+  const auto expect_refusal = [&](const std::string& name) {
+    EXPECT_THROW(film.channels.add({name}, size_t(film.region.area())), Error) << name;
+  };
+  for (const film::Plane& plane : film::planes_of(film)) {
+    expect_refusal(plane.part);
+    expect_refusal(plane.layer);
+    for (const film::PlaneField& field : plane.fields) {
+      const std::string name = without_half(plane.layer + "." + field.name);
+      if (name.find('.') != std::string::npos) expect_refusal(name.substr(0, name.rfind('.')));
+    }
+  }
+}
+
 // Pictures of two sizes may have the same border.
 TEST(Film, FilmsOfDifferentFullSizesCannotBeAdded) {
   const Region region{0, 0, 4, 3};
