@@ -162,6 +162,8 @@ class Op:
     last_mode: int | str = 0
     floats: int = 0
     text: str = ""
+    reads_ray: bool | list[str] = False
+    reads_history: bool | list[str] = False
 
     @property
     def is_closure(self) -> bool:
@@ -367,6 +369,10 @@ def _check_ops(schema: Schema) -> None:
             raise SchemaError(f"operation {op.name} has a number outside {allowed.start}…{allowed.stop - 1}")
         if numbers.count(op.number) > 1:
             raise SchemaError(f"the number {op.number} of {op.name} is used twice")
+        if op.reads_ray and op.kind in ("pure", "closure"):
+            raise SchemaError(f"operation {op.name} is not of the kind that can read the ray")
+        if op.reads_history and not op.reads_ray:
+            raise SchemaError(f"operation {op.name} reads the history of a ray, but not the ray")
 
 
 def _check_type(schema: Schema, item: Field) -> None:

@@ -96,9 +96,22 @@ def functions(schema: Schema, note: str) -> str:
     return "\n".join(lines)
 
 
-def _row(op: Op) -> str:
-    values = (f'"{op.name}"', f"OpKind::{op.kind.title()}", len(op.inputs), len(op.outputs), op.floats, op.last_mode)
-    return f"  table[GRADUS_OP_{op.name}] = {{{', '.join(map(str, values))}}};"
+def _modes(member: str, modes: bool | list[str]) -> list[str]:
+    """Returns the assignment of a set of modes; a member that no line assigns is empty."""
+    if isinstance(modes, bool):
+        return [f"  {member} = kAllModes;"] if modes else []
+    line = f"  {member} = modes({{{', '.join(modes)}}});"
+    if len(line) <= WIDTH:
+        return [line]
+    start, values = line.split("{")
+    return [start, *textwrap.wrap("{" + values, WIDTH, initial_indent=" " * 6, subsequent_indent=" " * 7)]
+
+
+def _row(op: Op) -> list[str]:
+    values = [f'"{op.name}"', f"OpKind::{op.kind.title()}", len(op.inputs), len(op.outputs), op.floats, op.last_mode]
+    entry = f"table[GRADUS_OP_{op.name}]"
+    row = f"  {entry} = {{{', '.join(map(str, values))}}};"
+    return [row, *_modes(f"{entry}.ray_modes", op.reads_ray), *_modes(f"{entry}.history_modes", op.reads_history)]
 
 
 def _switch(schema: Schema, kind: str, arguments: str) -> list[str]:
@@ -116,6 +129,8 @@ def op_table(schema: Schema, note: str) -> str:
     lines = [
         "// The table of the operations of gradus_nodes.h, and the choice of the function that evaluates one.",
         f"// {note}",
+        "#include <initializer_list>",
+        "",
         '#include "shading/op_functions.h"',
         '#include "shading/op_info.h"',
         '#include "shading/program.h"',
@@ -126,9 +141,15 @@ def op_table(schema: Schema, note: str) -> str:
         f"static_assert(kFirstValueOp == {FIRST_VALUE_OP} && GRADUS_OP_LIMIT == {OP_LIMIT});",
         f"static_assert(kMaxInputs >= {inputs} && kMaxOutputs >= {outputs});",
         "",
+        "constexpr ModeSet modes(std::initializer_list<uint32_t> list) {",
+        "  ModeSet set = 0;",
+        "  for (const uint32_t mode : list) set |= ModeSet{1} << mode;",
+        "  return set;",
+        "}",
+        "",
         "constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {",
         "  std::array<OpInfo, GRADUS_OP_LIMIT> table{};",
-        *(_row(op) for op in schema.ops),
+        *(line for op in schema.ops for line in _row(op)),
         "  return table;",
         "}",
         "",

@@ -24,10 +24,12 @@ void check_count(size_t count, const Region& region, uint32_t channels) {
 }  // namespace
 
 void FilmObject::merge(const film::Film& other) {
+  const std::lock_guard merge_lock(merge_mutex_);
+  auto merged = std::make_shared<film::Film>(*get());
+  device->arena().execute([&] { render::merge_films(merged.get(), other); });
+  std::shared_ptr<output::FilmReader> reader = make_reader(std::move(merged));
   const std::lock_guard lock(mutex_);
-  auto merged = std::make_shared<film::Film>(*reader_->film());
-  render::merge_films(merged.get(), other);
-  reader_ = make_reader(std::move(merged));
+  reader_.swap(reader);  // the reader of before ends after the lock
 }
 
 }  // namespace gradus::api

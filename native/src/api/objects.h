@@ -67,13 +67,14 @@ struct FilmObject {
     return reader_;
   }
   std::shared_ptr<const film::Film> get() const { return reader()->film(); }
-  // Adds the samples of another film.
+  // Adds the samples of another film. Readers get the film of before meanwhile; other merges wait.
   void merge(const film::Film& other);
 
  private:
   std::shared_ptr<output::FilmReader> make_reader(std::shared_ptr<const film::Film> film) const {
     return std::make_shared<output::FilmReader>(std::move(film), device);
   }
+  std::mutex merge_mutex_;    // held for the whole of a merge
   mutable std::mutex mutex_;  // guards the pointer
   std::shared_ptr<output::FilmReader> reader_;
 };

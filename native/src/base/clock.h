@@ -1,6 +1,7 @@
 // Clocks for wall time and CPU time, timers built on them, and the memory of the process and the machine.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <ctime>
@@ -41,6 +42,20 @@ class ScopedTimer {
   double *const seconds_, *const cpu_seconds_;
   const WallClock clock_;
   const uint64_t cpu_ = process_cpu_nanoseconds();
+};
+
+// Adds the CPU time that its thread takes during its lifetime to a counter, in nanoseconds. Other threads may add to
+// the same counter.
+class ScopedThreadTimer {
+ public:
+  explicit ScopedThreadTimer(std::atomic<uint64_t>* nanoseconds) : nanoseconds_(nanoseconds) {}
+  ~ScopedThreadTimer() { *nanoseconds_ += thread_cpu_nanoseconds() - start_; }
+  ScopedThreadTimer(const ScopedThreadTimer&) = delete;
+  ScopedThreadTimer& operator=(const ScopedThreadTimer&) = delete;
+
+ private:
+  std::atomic<uint64_t>* const nanoseconds_;
+  const uint64_t start_ = thread_cpu_nanoseconds();
 };
 
 // Measures wall time with pauses. It does not run until start() is called.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "film/plane_names.h"
 #include "schema/pass_table.h"
 
 namespace gradus::film {
@@ -12,15 +13,12 @@ constexpr size_t kMaxName = 200, kMaxChannels = 255;
 constexpr uint32_t kMaxValues = 4;
 
 // Returns whether planes of the film itself or the weight of another channel may have this name, or whether the name
-// holds control characters (film/planes.cpp). "rough" and "source" are names of older films (film_io/store_planes.h).
+// holds control characters.
 bool is_reserved(const std::string& name) {
-  constexpr std::string_view kReserved[] = {
-      "A",      "B",      "right",   "up",          "left",         "down",   "count",     "correspondence",
-      "source", "rough",  "samples", "counts",      "pairs",        "passes", "gradients", "non_specular",
-      "motion", "normal", "details", "reflectance", "inverse_depth"};
   const std::string_view first = std::string_view(name).substr(0, name.find('.'));
-  return std::ranges::find(kReserved, first) != std::end(kReserved) || first.starts_with("component") ||
-         name.ends_with(".weight") || std::ranges::any_of(name, [](char c) { return (c & ~0x1f) == 0; });
+  return std::ranges::find(plane_names::kReserved, first) != std::end(plane_names::kReserved) ||
+         first.starts_with(plane_names::kComponent) || name.ends_with(plane_names::kWeight) ||
+         std::ranges::any_of(name, [](char c) { return (c & ~0x1f) == 0; });
 }
 
 bool is_consistent(const ChannelInfo& info) {

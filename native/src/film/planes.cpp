@@ -1,17 +1,22 @@
 #include "film/planes.h"
 
 #include <algorithm>
+#include <iterator>
+#include <mutex>
 #include <numeric>
-#include <type_traits>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include "base/error.h"
+#include "base/fpu.h"
 #include "film/finite_check.h"
+#include "film/plane_names.h"
 
 namespace gradus::film {
 namespace {
 
-constexpr const char* kHalfNames[kHalves] = {"A", "B"};
-constexpr const char* kOffsetNames[kOffsets] = {"right", "up", "left", "down"};
+static_assert(std::size(plane_names::kHalves) == kHalves && std::size(plane_names::kOffsets) == kOffsets);
 constexpr const char* kColorNames[4] = {"R", "G", "B", "A"};
 constexpr const char* kVectorNames[4] = {"X", "Y", "Z", "W"};
 
@@ -39,12 +44,17 @@ void add_three(const std::string& name, const char* const* letters, size_t offse
   for (size_t c = 0; c < 3; ++c) fields->push_back({name + "." + letters[c], offset + c * sizeof(float)});
 }
 
+// Appends the field of a member that is a float.
+void add_one(const std::string& name, size_t offset, std::vector<PlaneField>* fields) {
+  fields->push_back({name + ".V", offset});
+}
+
 std::vector<PlaneField> non_specular_fields() {
   std::vector<PlaneField> fields;
-  add_three("reflectance", kColorNames, offsetof(NonSpecularVertices, reflectance), &fields);
-  add_three("normal", kVectorNames, offsetof(NonSpecularVertices, normal), &fields);
-  fields.push_back({"inverse_depth.V", offsetof(NonSpecularVertices, inverse_depth)});
-  fields.push_back({"samples.V", offsetof(NonSpecularVertices, samples)});
+  add_three(plane_names::kReflectance, kColorNames, offsetof(NonSpecularVertices, reflectance), &fields);
+  add_three(plane_names::kNormal, kVectorNames, offsetof(NonSpecularVertices, normal), &fields);
+  add_one(plane_names::kInverseDepth, offsetof(NonSpecularVertices, inverse_depth), &fields);
+  add_one(plane_names::kSamples, offsetof(NonSpecularVertices, samples), &fields);
   return fields;
 }
 
@@ -52,18 +62,18 @@ std::vector<PlaneField> detail_fields() {
   std::vector<PlaneField> fields;
   add_three("uv", kVectorNames, offsetof(NonSpecularDetails, uv), &fields);
   add_three("emission", kColorNames, offsetof(NonSpecularDetails, emission), &fields);
-  fields.push_back({"segments.V", offsetof(NonSpecularDetails, segments)});
-  fields.push_back({"object.V", offsetof(NonSpecularDetails, object)});
-  fields.push_back({"face.V", offsetof(NonSpecularDetails, face)});
+  add_one("segments", offsetof(NonSpecularDetails, segments), &fields);
+  add_one("object", offsetof(NonSpecularDetails, object), &fields);
+  add_one("face", offsetof(NonSpecularDetails, face), &fields);
   fields.push_back({"sample.V", offsetof(NonSpecularDetails, sample), true});
   return fields;
 }
 
-std::string component_layer(size_t component) { return "component" + std::to_string(component); }
+std::string component_layer(size_t component) { return plane_names::kComponent + std::to_string(component); }
 
 // Returns the layer of a half-buffer. Component 0 has no prefix, so that programs show its layer as the main one.
 std::string half_layer(size_t component, int half) {
-  return (component == 0 ? "" : component_layer(component) + ".") + kHalfNames[half];
+  return (component == 0 ? "" : component_layer(component) + ".") + plane_names::kHalves[half];
 }
 
 std::string part_of(const std::string& name, size_t component) {
@@ -76,25 +86,27 @@ class PlaneList {
   explicit PlaneList(Film* film) : film_(film) {}
 
   void add_samples(size_t component) {
-    const std::string part = part_of("samples", component);
+    const std::string part = part_of(plane_names::kSamples, component);
     for (int half = 0; half < kHalves; ++half)
       add(part, half_layer(component, half), MergeRule::kAdd, color_fields(film_->color_channels),
           &film_->components[component].primal[half], &Counters::nonfinite_radiance);
     if (film_->replayed.has_component_map(int(component)))
-      add_correspondence(part, component_layer(component) + ".correspondence", &film_->replayed.of_component[component]);
+      add_correspondence(part, component_layer(component) + "." + plane_names::kCorrespondence,
+                         &film_->replayed.of_component[component]);
   }
 
   void add_counts() {
     for (int half = 0; half < kHalves; ++half)
-      add("counts", std::string(kHalfNames[half]) + ".count", MergeRule::kAdd, {{"V", 0, true}}, &film_->count[half]);
-    add_correspondence("counts", "correspondence", &film_->replayed.correspondence);
+      add(plane_names::kCounts, half_layer(0, half) + "." + plane_names::kCount, MergeRule::kAdd, {{"V", 0, true}},
+          &film_->count[half]);
+    add_correspondence(plane_names::kCounts, plane_names::kCorrespondence, &film_->replayed.correspondence);
   }
 
   void add_gradients(size_t component) {
     for (int half = 0; half < kHalves; ++half) {
       for (int o = 0; o < kOffsets; ++o)
-        add(part_of("gradients", component), half_layer(component, half) + "." + kOffsetNames[o], MergeRule::kAdd,
-            color_fields(film_->color_channels), &film_->components[component].gradient[half][o],
+        add(part_of(plane_names::kGradients, component), half_layer(component, half) + "." + plane_names::kOffsets[o],
+            MergeRule::kAdd, color_fields(film_->color_channels), &film_->components[component].gradient[half][o],
             &Counters::nonfinite_gradient);
     }
   }
@@ -102,26 +114,26 @@ class PlaneList {
   void add_pair_counts() {
     for (int half = 0; half < kHalves; ++half) {
       for (int o = 0; o < kOffsets; ++o)
-        add("pairs", std::string(kHalfNames[half]) + "." + kOffsetNames[o] + ".pairs", MergeRule::kAdd,
-            vector_fields(1), &film_->pair_count[half][o]);
+        add(plane_names::kPairs, half_layer(0, half) + "." + plane_names::kOffsets[o] + "." + plane_names::kPairs,
+            MergeRule::kAdd, vector_fields(1), &film_->pair_count[half][o]);
     }
   }
 
   void add_non_specular(size_t component) {
     for (int half = 0; half < kHalves; ++half)
-      add(part_of("non_specular", component), half_layer(component, half), MergeRule::kAdd, non_specular_fields(),
-          &film_->components[component].non_specular[half]);
+      add(part_of(plane_names::kNonSpecular, component), half_layer(component, half), MergeRule::kAdd,
+          non_specular_fields(), &film_->components[component].non_specular[half]);
   }
 
   void add_details(size_t component) {
-    add(part_of("details", component), component_layer(component), MergeRule::kAdd, detail_fields(),
+    add(part_of(plane_names::kDetails, component), component_layer(component), MergeRule::kAdd, detail_fields(),
         &film_->components[component].details);
   }
 
   void add_motion(size_t component) {
     ComponentPlanes& planes = film_->components[component];
-    const std::string part = part_of("motion", component), layer = component_layer(component);
-    add(part, layer + ".motion", MergeRule::kKeep, vector_fields(4), &planes.motion);
+    const std::string part = part_of(plane_names::kMotion, component), layer = component_layer(component);
+    add(part, layer + "." + plane_names::kMotion, MergeRule::kKeep, vector_fields(4), &planes.motion);
     add(part, layer + ".tracked", MergeRule::kKeep, vector_fields(1), &planes.tracked);
     add(part, layer + ".shown", MergeRule::kKeep,
         {{"object.V", offsetof(ShownPoint, object)}, {"depth.V", offsetof(ShownPoint, depth)}}, &planes.shown);
@@ -135,12 +147,12 @@ class PlaneList {
     const MergeRule rule = channel->keeps_first_sample() ? MergeRule::kFirstSample : MergeRule::kAdd;
     for (int half = 0; half < kHalves; ++half) {
       if (channel->values[half].empty()) continue;
-      add(info.in_halves ? name : "passes", info.in_halves ? std::string(kHalfNames[half]) + "." + name : name, rule,
+      add(info.in_halves ? name : plane_names::kPasses, info.in_halves ? half_layer(0, half) + "." + name : name, rule,
           pairs ? pair_fields(info.values_per_pixel) : vector_fields(info.values_per_pixel), &channel->values[half]);
       list_.back().pixel_bytes = info.values_per_pixel * sizeof(float);
       if (pairs) list_.back().pairs = channel;
     }
-    add("passes", name + ".weight", rule, vector_fields(1), &channel->weight);
+    add(plane_names::kPasses, name + plane_names::kWeight, rule, vector_fields(1), &channel->weight);
   }
 
   std::vector<Plane> take() { return std::move(list_); }
@@ -163,54 +175,66 @@ class PlaneList {
   std::vector<Plane> list_;
 };
 
-// The functions add_all() add the values of all pixels to a plane of any type that consists of sums.
-void add_all(const std::vector<NonSpecularVertices>& from, const Plane&, std::vector<NonSpecularVertices>* to,
-             Counters* counters) {
-  for (size_t i = 0; i < to->size(); ++i) add_non_specular(from[i], &(*to)[i], counters);
+// The functions add_values() add `count` values to a plane of any type that consists of sums.
+void add_values(const NonSpecularVertices* from, const Plane&, size_t count, NonSpecularVertices* to,
+                Counters* counters) {
+  for (size_t i = 0; i < count; ++i) add_non_specular(from[i], &to[i], counters);
 }
 
-void add_all(const std::vector<NonSpecularDetails>& from, const Plane&, std::vector<NonSpecularDetails>* to,
-             Counters* counters) {
-  for (size_t i = 0; i < to->size(); ++i) add_details(from[i], &(*to)[i], counters);
+void add_values(const NonSpecularDetails* from, const Plane&, size_t count, NonSpecularDetails* to,
+                Counters* counters) {
+  for (size_t i = 0; i < count; ++i) add_details(from[i], &to[i], counters);
 }
 
-void add_all(const std::vector<uint32_t>& from, const Plane&, std::vector<uint32_t>* to, Counters*) {
-  for (size_t i = 0; i < to->size(); ++i) (*to)[i] += from[i];
+void add_values(const uint32_t* from, const Plane&, size_t count, uint32_t* to, Counters*) {
+  for (size_t i = 0; i < count; ++i) to[i] += from[i];
+}
+
+void add_pairs(const float* from, uint32_t values_per_pixel, size_t count, float* to, Counters* counters) {
+  for (size_t first = 0; first < count; first += values_per_pixel) {
+    for (size_t i = first; i < first + values_per_pixel; i += 2)
+      add_pair(from[i], from[i + 1], values_per_pixel / 2, to + first, counters);
+  }
 }
 
 template <class T>
-requires std::is_same_v<T, float> || std::is_same_v<T, Vec4>
-void add_all(const std::vector<T>& from, const Plane& plane, std::vector<T>* to, Counters* counters) {
+uint64_t add_sums_that_fit(const T* from, size_t count, T* to) {
   uint64_t dropped = 0;
-  for (size_t i = 0; i < to->size(); ++i) {
-    const T sum = (*to)[i] + from[i];
+  for (size_t i = 0; i < count; ++i) {
+    const T sum = to[i] + from[i];
     const bool fit = fits(sum);
-    (*to)[i] = fit ? sum : (*to)[i];
+    to[i] = fit ? sum : to[i];
     dropped += fit ? 0 : 1;
   }
-  counters->*plane.dropped += dropped;
+  return dropped;
+}
+
+void add_values(const float* from, const Plane& plane, size_t count, float* to, Counters* counters) {
+  if (plane.pairs != nullptr) return add_pairs(from, plane.pairs->info.values_per_pixel, count, to, counters);
+  counters->*plane.dropped += add_sums_that_fit(from, count, to);
+}
+
+void add_values(const Vec4* from, const Plane& plane, size_t count, Vec4* to, Counters* counters) {
+  counters->*plane.dropped += add_sums_that_fit(from, count, to);
 }
 
 template <class T>
-void add_all(const std::vector<T>&, const Plane&, std::vector<T>*, Counters*) {
+void add_values(const T*, const Plane&, size_t, T*, Counters*) {
   throw invalid_operation("a plane of values that cannot be added has the merge rule kAdd");
 }
 
-void add_pairs(const std::vector<float>& from, uint32_t values_per_pixel, std::vector<float>* to, Counters* counters) {
-  for (size_t first = 0; first < to->size(); first += values_per_pixel) {
-    for (size_t i = first; i < first + values_per_pixel; i += 2)
-      add_pair(from[i], from[i + 1], values_per_pixel / 2, to->data() + first, counters);
-  }
-}
+using PixelRange = tbb::blocked_range<size_t>;
 
-void add_plane(const Plane& from, bool is_first, const Plane& to, Counters* counters) {
+void add_pixels(const Plane& from, bool is_first, const PixelRange& pixels, const Plane& to, Counters* counters) {
   std::visit(
       [&](auto* values) {
-        const auto& others = *std::get<decltype(values)>(from.values);
+        const size_t per_pixel = to.pixel_bytes / sizeof(values->front());
+        const size_t first = pixels.begin() * per_pixel, count = pixels.size() * per_pixel;
+        const auto* others = std::get<decltype(values)>(from.values)->data() + first;
         if (to.merge == MergeRule::kAdd) {
-          add_all(others, to, values, counters);
+          add_values(others, to, count, values->data() + first, counters);
         } else if (to.merge == MergeRule::kFirstSample && is_first) {
-          *values = others;
+          std::copy_n(others, count, values->data() + first);
         }
       },
       to.values);
@@ -281,14 +305,15 @@ bool can_add(const Film& film, const Film& other) {
 void add_sums(Film* film, const Film& other) {
   const bool other_is_first = other.settings.first_sample < film->settings.first_sample;
   const std::vector<Plane> planes = merged_planes(*film), others = merged_planes(other);
-  for (size_t i = 0; i < planes.size(); ++i) {
-    if (planes[i].pairs != nullptr) {
-      add_pairs(*std::get<std::vector<float>*>(others[i].values), planes[i].pairs->info.values_per_pixel,
-                std::get<std::vector<float>*>(planes[i].values), &film->counters);
-    } else {
-      add_plane(others[i], other_is_first, planes[i], &film->counters);
-    }
-  }
+  constexpr size_t kPixels = 4096;  // pixels per task
+  std::mutex counters_mutex;
+  tbb::parallel_for(PixelRange(0, size_t(film->region.area()), kPixels), [&](const PixelRange& pixels) {
+    const FlushDenormals flush;
+    Counters dropped;
+    for (size_t i = 0; i < planes.size(); ++i) add_pixels(others[i], other_is_first, pixels, planes[i], &dropped);
+    const std::lock_guard lock(counters_mutex);
+    film->counters.add(dropped);
+  });
   for (size_t i = 0; i < film->channels.size(); ++i) {
     for (int half = 0; half < kHalves; ++half) film->channels[i].paths[half] += other.channels[i].paths[half];
   }

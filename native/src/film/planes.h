@@ -59,7 +59,7 @@ uint64_t film_bytes_per_pixel(int components, bool gradients, const std::vector<
 bool can_add(const Film& film, const Film& other);
 // Adds the sums and counts of `other`. Channels that keep the first sample come from the film with the lower first
 // sample number, which is this one if the numbers are equal. A value of `other` with which a sum would be too large is
-// dropped and counted (film/finite_check.h).
+// dropped and counted (film/finite_check.h). Pixels are added in parallel; the result does not depend on threads.
 void add_sums(Film* film, const Film& other);
 
 }  // namespace gradus::film

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <string_view>
 
+#include "film/plane_names.h"
+
 namespace gradus::film_io {
 namespace {
 
-constexpr std::string_view kOlderNames[][2] = {{"non_specular", "rough"}, {"correspondence", "source"}};
+constexpr std::string_view kOlderNames[][2] = {
+    {film::plane_names::kNonSpecular, film::plane_names::kOldNonSpecular},
+    {film::plane_names::kCorrespondence, film::plane_names::kOldCorrespondence}};
 
 // Replaces elements of a name, such as "correspondence" in "component1.correspondence.V".
 void use_older_names(std::string* name) {
@@ -29,7 +33,7 @@ std::vector<StoredPart> stored_parts(const std::vector<film::Plane>& planes) {
           {plane.layer + "." + field.name, field.is_integer, plane.data() + field.offset, plane.pixel_bytes});
   }
   // Parts of single channels come before the part of all others.
-  std::ranges::stable_partition(parts, [](const StoredPart& part) { return part.name != "passes"; });
+  std::ranges::stable_partition(parts, [](const StoredPart& part) { return part.name != film::plane_names::kPasses; });
   return parts;
 }
 

@@ -8,6 +8,14 @@
 #include "schema/pass_table.h"
 
 namespace gradus::output {
+namespace {
+
+// Returns whether the film has been developed with these options, which are not AUTO.
+bool shows(const DevelopedFilm& developed, const Options& options, bool with_error) {
+  return developed.film && developed.options == options && (!with_error || developed.find(GRADUS_PASS_ERROR));
+}
+
+}  // namespace
 
 FilmReader::FilmReader(std::shared_ptr<const film::Film> film, std::shared_ptr<scene::Device> device)
     : film_(std::move(film)),
@@ -19,6 +27,7 @@ DevelopedFilm FilmReader::make_picture(const Options& options, bool with_error) 
   std::string why_not;
   const auto library = choose_denoiser(options.denoiser, device_.get(), &why_not);
   const Options resolved = resolve_auto(options, facts_of(*film_, library != nullptr));
+  if (shows(last_, resolved, with_error)) return last_;
   Developer developer(
       threads_, [] { return false; }, library);
   DevelopedFilm developed{film_, region_, threads_, resolved};
@@ -30,46 +39,50 @@ DevelopedFilm FilmReader::make_picture(const Options& options, bool with_error) 
 }
 
 DevelopedFilm FilmReader::develop(const Options& options, bool with_error) {
+  const std::lock_guard lock(mutex_);
   const DevelopedFilm developed = make_picture(options, with_error);
-  if (!has_light_passes(*film_) && film_->components.size() == 1) return developed;
-  const std::lock_guard lock(mutex_);
   if (GRADUS_FAULT(light_passes_keep_first_reconstruction) && last_.film) return developed;
-  last_ = developed;
-  last_.passes.erase(GRADUS_PASS_ERROR);
-  return developed;
+  return last_ = developed;
 }
 
-DevelopedFilm FilmReader::last_picture() {
-  {
-    const std::lock_guard lock(mutex_);
-    if (last_.film) return last_;
-  }
-  return develop(options_of(film_->settings), false);
-}
-
-DevelopedFilm FilmReader::last_picture_with_light() {
-  last_picture();
+Image FilmReader::error() {
   const std::lock_guard lock(mutex_);
+  Options own = options_of(film_->settings);
+  own.denoiser = GRADUS_DENOISER_NONE;
+  if (!error_) error_ = make_picture(own, true).find(GRADUS_PASS_ERROR);
+  return error_;
+}
+
+const DevelopedFilm& FilmReader::last_picture() {
+  if (!last_.film) last_ = make_picture(options_of(film_->settings), false);
+  return last_;
+}
+
+DevelopedFilm FilmReader::copy_last_picture() {
+  const std::lock_guard lock(mutex_);
+  return last_picture();
+}
+
+DevelopedFilm FilmReader::copy_last_picture_with_light() {
+  const std::lock_guard lock(mutex_);
+  last_picture();
   Developer(threads_).split(&last_);
   return last_;
 }
 
 void FilmReader::read_pass(uint32_t pass, float* pixels) {
-  Options own = options_of(film_->settings);
-  if (pass == GRADUS_PASS_COMBINED) return develop(own, false).read_pass(pass, pixels);
-  if (pass == GRADUS_PASS_ERROR) {
-    own.denoiser = GRADUS_DENOISER_NONE;
-    return make_picture(own, true).read_pass(pass, pixels);
-  }
+  if (pass == GRADUS_PASS_COMBINED) return develop(options_of(film_->settings), false).read_pass(pass, pixels);
+  DevelopedFilm developed{film_, region_, threads_};
+  if (pass == GRADUS_PASS_ERROR) developed.passes[pass] = error();
   if (schema::has_bit(schema::light_passes(), pass) && has_pass(*film_, pass))
-    return last_picture_with_light().read_pass(pass, pixels);
-  DevelopedFilm{film_, region_, threads_}.read_pass(pass, pixels);
+    developed = copy_last_picture_with_light();
+  developed.read_pass(pass, pixels);
 }
 
 void FilmReader::read_component(const std::string& name, uint32_t pass, float* pixels) {
   const bool is_of_picture = schema::is_of_picture(pass) && film::find_component(*film_, name) >= 0;
   if (is_of_picture) check_component(film_->settings, name);
-  const DevelopedFilm developed = is_of_picture ? last_picture() : DevelopedFilm{film_, region_, threads_};
+  const DevelopedFilm developed = is_of_picture ? copy_last_picture() : DevelopedFilm{film_, region_, threads_};
   developed.read_component(name, pass, pixels);
 }
 

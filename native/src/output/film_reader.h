@@ -13,8 +13,9 @@ class Device;
 
 namespace gradus::output {
 
-// Thread-safe. Light passes and components belong to the picture that was developed last. Until there is one, the film
-// is developed with its own options.
+// Thread-safe; a reader that needs a picture waits for the one that is being developed. The picture that was developed
+// last is kept, so that readers of its passes do not develop it again. Light passes and components belong to it. Until
+// there is one, the film is developed with its own options.
 class FilmReader {
  public:
   FilmReader(std::shared_ptr<const film::Film> film, std::shared_ptr<scene::Device> device);
@@ -22,25 +23,30 @@ class FilmReader {
   const std::shared_ptr<const film::Film>& film() const { return film_; }
   const Region& region() const { return region_; }
 
-  // Develops the film. The options may be AUTO. Warnings go to the device.
+  // Develops the film, unless the last picture has these options. The options may be AUTO. Warnings go to the device.
   DevelopedFilm develop(const Options& options, bool with_error);
+  // Returns the error that the picture with the film's own options has before the denoiser.
+  Image error();
   // Write the pixels of the region, as DevelopedFilm does. Combined is developed with the film's own options, and Error
-  // is that of this reconstruction before the denoiser.
+  // is error().
   void read_pass(uint32_t pass, float* pixels);
   void read_component(const std::string& name, uint32_t pass, float* pixels);
 
  private:
+  // The caller of these functions has locked mutex_.
   DevelopedFilm make_picture(const Options& options, bool with_error);
-  // Returns the picture that was developed last, or develops one.
-  DevelopedFilm last_picture();
-  DevelopedFilm last_picture_with_light();
+  const DevelopedFilm& last_picture();
+
+  DevelopedFilm copy_last_picture();
+  DevelopedFilm copy_last_picture_with_light();
 
   const std::shared_ptr<const film::Film> film_;
   const std::shared_ptr<scene::Device> device_;
   const Region region_;
   const uint32_t threads_;
   std::mutex mutex_;
-  DevelopedFilm last_;  // has no film until a picture is kept; only pictures with light passes or components are
+  DevelopedFilm last_;  // has no film until there is a picture
+  Image error_;         // nullptr until it is read
 };
 
 }  // namespace gradus::output

@@ -156,7 +156,7 @@ GradientMap run_pilot(const integrator::Integrator& integrator, const GradusSett
   const auto look_at = [&](size_t i) {
     if (is_stopped()) return true;
     const FlushDenormals flush;
-    const uint64_t begin = thread_cpu_nanoseconds();
+    const ScopedThreadTimer timer(&cpu);
     film::Counters counters;
     film::Film film(settings.width, settings.height, grown(blocks.blocks[i], 1, full), channels, 1, true);
     const std::vector<size_t> pixels = pixels_of(blocks.blocks[i], film, settings.seed);
@@ -173,7 +173,6 @@ GradientMap run_pilot(const integrator::Integrator& integrator, const GradusSett
     sums[i].shift_rays = double(counters.rays_shift);
     sums[i].shift_shadow_rays = double(counters.rays_shift_shadow);
     done[i] = 1;
-    cpu += thread_cpu_nanoseconds() - begin;
     return interruption.is_due();
   };
   while (!run_until_pause(&done, look_at)) {

@@ -88,7 +88,7 @@ std::vector<Light> measure_groups(const integrator::Integrator& integrator, cons
   std::vector<Light> light(groups.size());
   tbb::parallel_for(size_t{0}, light.size(), [&](size_t i) {
     const FlushDenormals flush;
-    const uint64_t begin = thread_cpu_nanoseconds();
+    const ScopedThreadTimer timer(cpu);
     film::Counters counters;
     const std::vector<Region> blocks = film::make_pixel_blocks(groups[i], side);
     for (const Region& block : blocks) {
@@ -101,7 +101,6 @@ std::vector<Light> measure_groups(const integrator::Integrator& integrator, cons
       add(light_of(frame), &light[i]);
     }
     for (double& part : light[i]) part /= double(blocks.size());
-    *cpu += thread_cpu_nanoseconds() - begin;
   });
   return light;
 }

@@ -49,6 +49,7 @@ bool TileSampler::run(const AfterTile& after_tile) {
 bool TileSampler::sample_tile(size_t tile, const AfterTile& after_tile) {
   if (stop_.load(std::memory_order_relaxed)) return true;
   const FlushDenormals flush;
+  const ScopedThreadTimer timer(&cpu_);
   integrator::WorkUnit unit;
   unit.tile = tiles_[tile];
   unit.first_sample = first_sample_ + begin_;
@@ -56,13 +57,11 @@ bool TileSampler::sample_tile(size_t tile, const AfterTile& after_tile) {
   if (!gradients_.all() && !gradients_.none()) unit.gradient_map = &gradients_.pixels;
   if (replay_ != nullptr) unit.replay_map = &replay_->replay_map;
   if (replay_ != nullptr && !replay_->counts.empty()) unit.count_map = &replay_->counts;
-  const uint64_t cpu = thread_cpu_nanoseconds();
   const film::Counters counters = adaptive_            ? sample_blocks(unit)
                                   : replay_ != nullptr ? sample_replay(unit)
                                                        : sample(unit);
   done_[tile] = 1;
   const bool pause = after_tile(unit.tile, uint64_t(unit.tile.area()) * unit.count);
-  cpu_ += thread_cpu_nanoseconds() - cpu;
   const std::lock_guard lock(counters_mutex_);
   film_->counters.add(counters);
   return pause;

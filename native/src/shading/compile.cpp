@@ -1,4 +1,6 @@
 // Compiles a GradusMaterial to node programs and derives properties of the material from them.
+#include <algorithm>
+
 #include "bsdf/lobe.h"
 #include "image/image_store.h"
 #include "shading/interpreter.h"
@@ -120,30 +122,12 @@ bool is_constant(const Program& p, uint32_t op) {
 
 // Returns whether a value of the program depends on the ray. The dependence of closures themselves does not count.
 bool values_depend_on_ray(const Program& p) {
-  for (const Instruction& i : p.code) {
-    const bool geometry =
-        i.op == GRADUS_OP_GEOMETRY && (i.mode == GRADUS_GEOMETRY_INCOMING || i.mode == GRADUS_GEOMETRY_BACKFACING);
-    const bool reflection = i.op == GRADUS_OP_TEX_COORD && i.mode == GRADUS_TEX_COORD_REFLECTION;
-    if (geometry || reflection || i.op == GRADUS_OP_LIGHT_PATH || i.op == GRADUS_OP_LAYER_WEIGHT ||
-        i.op == GRADUS_OP_FRESNEL || i.op == GRADUS_OP_LIGHT_FALLOFF)
-      return true;
-  }
-  return false;
+  return std::ranges::any_of(p.code, [](const Instruction& i) { return reads_ray(i.op, i.mode); });
 }
 
-// Returns whether the emission depends on the ray, which includes the coat of Principled, as it dims the emission.
-bool emission_depends_on_ray(const Program& p) {
-  return values_depend_on_ray(p) ||
-         std::any_of(p.code.begin(), p.code.end(), [](const Instruction& i) { return i.op == GRADUS_OP_PRINCIPLED; });
-}
-
-// Returns whether the program reads a Light Path output that can differ between light sampling and BSDF sampling. The
-// excluded outputs have equal values in both.
+// Returns whether a value of the program can differ between light sampling and BSDF sampling.
 bool depends_on_kind(const Program& p) {
-  return std::any_of(p.code.begin(), p.code.end(), [](const Instruction& i) {
-    return i.op == GRADUS_OP_LIGHT_PATH && i.mode != GRADUS_LIGHT_PATH_CAMERA && i.mode != GRADUS_LIGHT_PATH_SHADOW &&
-           i.mode != GRADUS_LIGHT_PATH_LENGTH;
-  });
+  return std::ranges::any_of(p.code, [](const Instruction& i) { return reads_history(i.op, i.mode); });
 }
 
 bool asks_for_tangents(const Instruction& i) {
@@ -186,7 +170,6 @@ float estimate(const Program& p, const image::ImageStore& images) {
 void describe_emission(MaterialData* m, const image::ImageStore& images) {
   m->emits = !m->emission.empty();
   if (!m->emits) return;
-  m->depends_on_ray = emission_depends_on_ray(m->emission);
   m->emission_estimate = estimate(m->emission, images);
   if (!is_constant(m->emission, GRADUS_OP_EMISSION)) return;
   ShadeResult r;

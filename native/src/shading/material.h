@@ -32,7 +32,6 @@ struct MaterialData {
   bool transparent_shadow = true;  // false if shadow rays treat the material as opaque
   bool sample_as_light = true;
   bool uses_fallback = false;         // some node was replaced, or the material did not compile
-  bool depends_on_ray = false;        // the emission reads Light Path, or the direction of the viewer
   bool values_depend_on_ray = false;  // some value of `surface` depends on the ray; closures themselves do not count
   bool depends_on_kind =
       false;               // emission or transparency read the ray's depth, or its kind other than camera or shadow

@@ -11,6 +11,12 @@ namespace gradus::shading {
 // What evaluates an operation: add_closure(), evaluate_pure(), evaluate_context(), or the interpreter itself.
 enum class OpKind : uint8_t { Closure, Pure, Context, Program };
 
+// A set of modes of an operation, one bit each. Of the modes from 64 on it has either all or none.
+using ModeSet = uint64_t;
+inline constexpr ModeSet kAllModes = ~ModeSet{0};
+
+inline bool has_mode(ModeSet set, uint32_t mode) { return mode < 64 ? (set >> mode & 1) != 0 : set == kAllModes; }
+
 struct OpInfo {
   const char* name = nullptr;  // null if the number stands for no operation
   OpKind kind = OpKind::Pure;
@@ -18,6 +24,8 @@ struct OpInfo {
   uint8_t outputs = 0;
   uint32_t min_floats = 0;
   uint32_t last_mode = 0;
+  ModeSet ray_modes = 0;      // `reads_ray` of schema/nodes.toml
+  ModeSet history_modes = 0;  // `reads_history`
 };
 
 // The operations by their numbers, generated from schema/nodes.toml.
@@ -36,6 +44,20 @@ inline bool is_closure_op(uint32_t op) { return op < kFirstValueOp; }
 inline bool is_pure(uint32_t op) {
   const OpInfo* info = op_info(op);
   return info && info->kind == OpKind::Pure;
+}
+
+// Returns whether a value of the operation depends on the ray that arrives, and not on the point alone. That normals
+// face the ray does not count.
+inline bool reads_ray(uint32_t op, uint32_t mode) {
+  const OpInfo* info = op_info(op);
+  return info && has_mode(info->ray_modes, mode);
+}
+
+// Returns whether a value of the operation can differ between light sampling and BSDF sampling, because it depends on
+// the ray's depths, or on its kind other than camera and shadow.
+inline bool reads_history(uint32_t op, uint32_t mode) {
+  const OpInfo* info = op_info(op);
+  return info && has_mode(info->history_modes, mode);
 }
 
 }  // namespace gradus::shading

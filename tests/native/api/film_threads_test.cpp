@@ -1,7 +1,15 @@
-// gradus_film_reconstruct() uses the number of threads that the settings of the film name.
+// The threads of stored films: gradus_film_reconstruct() uses as many as the settings of the film name, and readers do
+// not wait for merges.
+#include <chrono>
+#include <future>
+#include <latch>
+#include <thread>
+
+#include "api/objects.h"
 #include "base/clock.h"
 #include "film_io/store.h"
 #include "render/fake_integrator.h"
+#include "scene/scene_fixture.h"
 #include "test_scene.h"
 
 namespace gradus {
@@ -27,6 +35,41 @@ TEST(FilmThreads, AreThoseOfItsSettings) {
   EXPECT_OK(gradus_film_release(film));
   EXPECT_OK(gradus_device_release(device));
   std::remove(path.c_str());
+}
+
+// Regression: a merge kept readers from the film until all of its pixels were added.
+TEST(FilmThreads, ReadersDoNotWaitForAMerge) {
+  GradusSettings settings = test::small_settings(16, 16, 2);
+  const std::shared_ptr<const film::Film> before = test::rendered(settings);
+  settings.first_sample = 2;
+  const std::shared_ptr<const film::Film> other = test::rendered(settings);
+  const auto device = test::test_device();
+  api::FilmObject film(device, before);
+
+  // A merge cannot end while other threads have all places in the arena.
+  std::latch entered(2);
+  std::promise<void> leave;
+  const std::shared_future<void> left = leave.get_future().share();
+  const auto occupy = [&] {
+    device->arena().execute([&] {
+      entered.count_down();
+      left.wait();
+    });
+  };
+  std::thread first(occupy), second(occupy);
+  entered.wait();
+  std::thread merger([&] { film.merge(*other); });
+  std::future<std::shared_ptr<const film::Film>> read = std::async(std::launch::async, [&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // The merge has begun.
+    return film.get();
+  });
+  EXPECT_EQ(read.wait_for(std::chrono::seconds(10)), std::future_status::ready) << "the reader waits";
+  leave.set_value();
+  first.join();
+  second.join();
+  merger.join();
+  EXPECT_TRUE(read.get() == before) << "the merge has ended before it was read";
+  EXPECT_EQ(film::mean_samples(*film.get()), 4.0);
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 #include "film/film.h"
 
+#include <cstring>
 #include <limits>
 #include <numeric>
+#include <random>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -9,6 +12,7 @@
 #include "base/error.h"
 #include "film/finite_check.h"
 #include "film/planes.h"
+#include "support/threads.h"
 
 namespace gradus {
 namespace {
@@ -98,6 +102,131 @@ TEST(B6_FiniteCheck, MergedSumsThatWouldOverflowStayOutAndAreCounted) {
   EXPECT_EQ(film.pair_count[0][film::kUp][5], 6e36f);
   EXPECT_EQ(film.channels.find("fog")->values[0][5], 6e36f);
   EXPECT_EQ(film.channels.find("fog")->weight[5], 4.0f);
+}
+
+// Returns a film with planes of all kinds, of more pixels than one task merges.
+film::Film full_film() {
+  const Region region{0, 0, 97, 61};
+  const auto pixels = size_t(region.area());
+  film::Film film(97, 61, region, 4, 2, true);
+  film::allocate_component_content({.non_specular = true, .details = true, .motion = true, .shown = true}, &film);
+  film::add_pass_channels((uint64_t{1} << GRADUS_PASS_COUNT) - 1, &film);
+  film.channels.add({"fog", 3, film::ValueType::kData, film::Normalisation::kOwnWeight}, pixels);
+  film.channels.add({"crypto", 6, film::ValueType::kIdAndWeight}, pixels);
+  film.replayed.correspondence = {std::vector<int32_t>(pixels), std::vector<Vec2>(pixels)};
+  film.replayed.of_component.resize(2, film.replayed.correspondence);
+  return film;
+}
+
+// Calls visit(value, field, plane) for all 32-bit values of a plane.
+template <class Visit>
+void for_each_value(const film::Plane& plane, const Visit& visit) {
+  for (size_t pixel = 0; pixel < plane.bytes(); pixel += plane.pixel_bytes) {
+    for (const film::PlaneField& field : plane.fields) visit(plane.data() + pixel + field.offset, field);
+  }
+}
+
+template <class T>
+void set(T value, unsigned char* to) {
+  std::memcpy(to, &value, sizeof(value));
+}
+
+// Fills all planes with values of all magnitudes, among them denormal ones and those whose sums are too large.
+film::Film random_film(uint32_t seed) {
+  film::Film film = full_film();
+  std::mt19937 random(seed);
+  const float magnitudes[] = {1.0f, 1.0f, 1e4f, 1e-4f, std::numeric_limits<float>::min(), 7e36f};
+  for (const film::Plane& plane : film::planes_of(&film)) {
+    for_each_value(plane, [&](unsigned char* to, const film::PlaneField& field) {
+      if (field.is_integer) {
+        set(uint32_t(random() % 4096), to);
+      } else if (plane.pairs != nullptr && field.name.starts_with("id")) {
+        set(float(random() % 5), to);
+      } else {
+        set(magnitudes[random() % std::size(magnitudes)] * (float(random() % 4096) / 2048.0f - 1.0f), to);
+      }
+    });
+  }
+  film.settings.first_sample = seed;
+  return film;
+}
+
+// Returns all values of a film as numbers that are equal only for equal bits.
+std::vector<float> bits_of(const film::Film& film) {
+  std::vector<float> bits;
+  for (const film::Plane& plane : film::planes_of(film)) {
+    for_each_value(plane, [&](const unsigned char* from, const film::PlaneField&) {
+      uint32_t word = 0;
+      std::memcpy(&word, from, sizeof(word));
+      bits.push_back(float(word >> 16));
+      bits.push_back(float(word & 0xffff));
+    });
+  }
+  return bits;
+}
+
+TEST(Film, MergedSumsDoNotDependOnThreads) {
+  const film::Film first = random_film(2), second = random_film(1);
+  test::expect_same_bits_for_any_number_of_threads([&] {
+    film::Film film = first;
+    film::add_sums(&film, second);
+    std::vector<float> bits = bits_of(film);
+    for (const uint64_t dropped :
+         {film.counters.nonfinite_radiance, film.counters.nonfinite_gradient, film.counters.nonfinite_feature}) {
+      EXPECT_GT(dropped, 100u);
+      bits.push_back(float(dropped));
+    }
+    return bits;
+  });
+}
+
+TEST(Film, EachValueOfAPixelIsMergedOnce) {
+  film::Film film = full_film();
+  for (const film::Plane& plane : film::planes_of(&film)) {
+    for_each_value(plane, [&](unsigned char* to, const film::PlaneField& field) {
+      field.is_integer ? set(uint32_t{1}, to) : set(1.0f, to);
+    });
+  }
+  const film::Film other = film;
+  film::add_sums(&film, other);
+  for (const film::Plane& plane : film::planes_of(&film)) {
+    const bool adds = plane.merge == film::MergeRule::kAdd;
+    size_t wrong = 0;
+    for_each_value(plane, [&](const unsigned char* from, const film::PlaneField& field) {
+      const bool is_name = field.name.starts_with("id") || field.name == "object.V" || field.name == "face.V" ||
+                           field.name == "sample.V";
+      unsigned char expected[4];
+      field.is_integer ? set(uint32_t(adds && !is_name ? 2 : 1), expected)
+                       : set(adds && !is_name && plane.pairs == nullptr ? 2.0f : 1.0f, expected);
+      wrong += plane.pairs == nullptr && std::memcmp(from, expected, 4) != 0 ? 1 : 0;
+    });
+    EXPECT_EQ(wrong, 0u) << plane.layer;
+  }
+  const std::vector<float>& pairs = film.channels.find("crypto")->values[0];
+  for (size_t i = 0; i < pairs.size(); i += 6) {
+    ASSERT_EQ(std::vector<float>(&pairs[i], &pairs[i] + 2), (std::vector<float>{1.0f, 4.0f})) << i;
+  }
+}
+
+// Returns the name of a plane's value without the half-buffer, in which channels stand, too.
+std::string without_half(const std::string& name) {
+  return name.starts_with("A.") || name.starts_with("B.") ? name.substr(2) : name;
+}
+
+TEST(Film, ChannelsCannotHaveTheNamesOfItsPlanes) {
+  film::Film film = full_film();
+  film.channels = {};
+  const auto expect_refusal = [&](const std::string& name) {
+    EXPECT_THROW(film.channels.add({name}, size_t(film.region.area())), Error) << name;
+  };
+  for (const film::Plane& plane : film::planes_of(film)) {
+    expect_refusal(plane.part);
+    expect_refusal(plane.layer);
+    for (const film::PlaneField& field : plane.fields) {
+      const std::string name = without_half(plane.layer + "." + field.name);
+      if (name.find('.') != std::string::npos) expect_refusal(name.substr(0, name.rfind('.')));
+    }
+  }
 }
 
 // Pictures of two sizes may have the same border.
