@@ -11,6 +11,8 @@ import sys
 from collections import defaultdict
 from pathlib import Path
 
+from support import shortened
+
 ROOT = Path(__file__).resolve().parents[1]
 
 # Short meanings of the entries.
@@ -124,27 +126,28 @@ PYTHON = re.compile(r"^def (test_([a-m]\d+)_\w+)", re.M)
 ID = re.compile(r"([A-M]\d+)_")
 
 
-def how_often(source: str, before: str) -> str:
-    if "full_run()" in source or "GRADUS_TEST_FULL" in source:
-        return "a part with every change, all with make test-full"
-    return "make test-full" if before.rstrip().endswith("pytest.mark.full") else "every change"
+def how_often(is_shortened: bool, is_full: bool = False) -> str:
+    if is_full:
+        return "make test-full"
+    return "a part with every change, all with make test-full" if is_shortened else "every change"
 
 
 def find_tests() -> dict[str, list[tuple[str, str]]]:
     """Returns, for each entry, pairs of "file: names of tests" and how often they run."""
     found: dict[str, dict[tuple[str, str], list[str]]] = defaultdict(lambda: defaultdict(list))
     for path in sorted((ROOT / "tests").rglob("*.cpp")):
-        source = path.read_text()
-        for match in NATIVE.finditer(source):
+        short = shortened.cpp_tests(path)
+        for match in NATIVE.finditer(path.read_text()):
+            name = f"{match[1]}.{match[2]}"
             entries = [id[1] for id in (ID.match(match[1]), ID.match(match[2])) if id]
             for entry in dict.fromkeys(entries):
-                found[entry][str(path.relative_to(ROOT)), how_often(source, "")].append(f"{match[1]}.{match[2]}")
+                found[entry][str(path.relative_to(ROOT)), how_often(name in short)].append(name)
     for path in sorted((ROOT / "tests").rglob("*_test.py")):
-        source = path.read_text()
+        source, short = path.read_text(), shortened.python_tests(path)
         for match in PYTHON.finditer(source):
-            found[match[2].upper()][str(path.relative_to(ROOT)), how_often(source, source[: match.start()])].append(
-                match[1]
-            )
+            is_full = source[: match.start()].rstrip().endswith("pytest.mark.full")
+            often = how_often(match[1] in short, is_full)
+            found[match[2].upper()][str(path.relative_to(ROOT)), often].append(match[1])
     lines = {
         entry: [(f"{file}: {', '.join(names)}", often) for (file, often), names in files.items()]
         for entry, files in found.items()
