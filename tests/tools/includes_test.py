@@ -62,5 +62,31 @@ def test_a_dependency_in_the_wrong_direction_is_named(tmp_path: Path, file: str,
     assert any(line.startswith(f"{file}: ") and expected in line for line in found)
 
 
+RECONSTRUCT = "namespace gradus::reconstruct {\n}\n"
+
+
+@pytest.mark.parametrize(
+    ("folder", "allowed", "refused"),
+    [
+        ("poisson", ["poisson", "."], ["regression", "space_time"]),
+        ("regression", ["poisson", "regression", "."], ["space_time"]),
+        ("space_time", ["poisson", "regression", "space_time", "."], []),
+    ],
+)
+def test_subfolders_depend_on_each_other_in_one_direction(
+    tmp_path: Path, folder: str, allowed: list[str], refused: list[str]
+) -> None:
+    header = {other: str(Path("reconstruct", other, "field.h")) for other in (*allowed, *refused)}
+    includes_all = "".join(f'#include "{name}"\n' for name in header.values())
+    found = problems(tmp_path, {f"reconstruct/{folder}/solver.cpp": includes_all + RECONSTRUCT})
+    expected = [f"{folder}/ may not include {header[other]}: {other}/ is below it" for other in refused]
+    assert found == [f"reconstruct/{folder}/solver.cpp: {text}" for text in expected]
+
+
+def test_a_folder_may_include_all_of_its_subfolders(tmp_path: Path) -> None:
+    text = '#include "reconstruct/space_time/system.h"\n#include "reconstruct/poisson/l2.h"\n' + RECONSTRUCT
+    assert problems(tmp_path, {"reconstruct/reconstruct_film.cpp": text}) == []
+
+
 def test_forward_declarations_of_folders_above_are_allowed(tmp_path: Path) -> None:
     assert problems(tmp_path, {"scene/scene.h": "namespace gradus::light {\nclass Tree;\n}\n" + SCENE}) == []

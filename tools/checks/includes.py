@@ -4,6 +4,9 @@
 
 A folder may include itself and the folders above it in FOLDERS. Its files declare things in gradus::<folder>; those of
 base/ in gradus. A file may open the namespace of a folder above its own, for forward declarations.
+
+A subfolder that SUBFOLDERS lists may include itself, those before it in the list, and the files of its folder that are
+in no listed subfolder: in reconstruct/, poisson/ includes neither of the others, and regression/ not space_time/.
 """
 
 from __future__ import annotations
@@ -18,6 +21,7 @@ FOLDERS = (
     "film", "film_io", "path", "integrator", "gradient", "reconstruct", "motion", "output", "render", "animation",
     "api",
 )  # fmt: skip
+SUBFOLDERS = {"reconstruct": ("poisson", "regression", "space_time")}
 ENDINGS = {".h", ".hpp", ".cpp", ".c"}
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -41,6 +45,7 @@ def problems_of(path: Path, source: Path) -> Iterator[str]:
         return
     allowed = FOLDERS[: FOLDERS.index(folder) + 1]
     text = path.read_text()
+    yield from problems_of_subfolder(name, INCLUDE.findall(text))
     for included in INCLUDE.findall(text):
         target = included.split("/")[0] if "/" in included else folder
         if target not in FOLDERS:
@@ -56,6 +61,17 @@ def problems_of(path: Path, source: Path) -> Iterator[str]:
         yield f"{name}: opens namespace gradus::{other}, which is not above {folder}/"
     if folder != "base" and "base" in opened:
         yield f"{name}: opens namespace gradus, which is that of base/"
+
+
+def problems_of_subfolder(name: Path, includes: list[str]) -> Iterator[str]:
+    order = SUBFOLDERS.get(name.parts[0], ())
+    if name.parts[1] not in order:
+        return
+    below = order[order.index(name.parts[1]) + 1 :]
+    for included in includes:
+        target = Path(included) if "/" in included else name.parent / included
+        if target.parts[0] == name.parts[0] and target.parts[1] in below:
+            yield f"{name}: {name.parts[1]}/ may not include {included}: {target.parts[1]}/ is below it"
 
 
 def without_comments(text: str) -> str:
