@@ -242,7 +242,7 @@ def test_e3_a_panoramic_camera_sees_the_world(stage: bpy.types.Scene, render: Re
 
 def test_e3_a_custom_camera_is_named(stage: bpy.types.Scene, render: Render) -> None:
     if "CUSTOM" not in stage.camera.data.bl_rna.properties["type"].enum_items:
-        pytest.skip("this Blender has none")
+        pytest.skip("this Blender has no camera shaders")
     stage.camera.data.type = "CUSTOM"
     with pytest.raises(RuntimeError, match="camera shaders"):
         picture(stage, render)
