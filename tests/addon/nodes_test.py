@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import bpy
@@ -12,77 +13,9 @@ pytestmark = pytest.mark.usefixtures("scene")
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
-# Nodes of the first release. Nodes that do not exist in a version of Blender are skipped there.
-PROMISED = [
-    "BsdfPrincipled",
-    "BsdfDiffuse",
-    "BsdfGlossy",
-    "BsdfAnisotropic",
-    "BsdfGlass",
-    "BsdfRefraction",
-    "BsdfTransparent",
-    "BsdfTranslucent",
-    "Emission",
-    "MixShader",
-    "AddShader",
-    "Holdout",
-    "Background",
-    "TexImage",
-    "TexEnvironment",
-    "TexCoord",
-    "UVMap",
-    "Mapping",
-    "NormalMap",
-    "Bump",
-    "Mix",
-    "MixRGB",
-    "Math",
-    "VectorMath",
-    "Clamp",
-    "MapRange",
-    "ValToRGB",
-    "RGBCurve",
-    "VectorCurve",
-    "FloatCurve",
-    "SeparateColor",
-    "CombineColor",
-    "SeparateRGB",
-    "CombineRGB",
-    "SeparateHSV",
-    "CombineHSV",
-    "SeparateXYZ",
-    "CombineXYZ",
-    "Value",
-    "RGB",
-    "HueSaturation",
-    "Gamma",
-    "Invert",
-    "BrightContrast",
-    "Attribute",
-    "VertexColor",
-    "ObjectInfo",
-    "LayerWeight",
-    "Fresnel",
-    "LightPath",
-    "NewGeometry",
-    "TexNoise",
-    "TexChecker",
-    "TexGradient",
-    "TexWhiteNoise",
-    "TexWave",
-    "TexMagic",
-    "TexBrick",
-    "RGBToBW",
-    "Blackbody",
-    "VectorRotate",
-    "VectorTransform",
-    "Tangent",
-    "CameraData",
-    "LightFalloff",
-    "Normal",
-    "BsdfSheen",
-    "BsdfMetallic",
-]
+# The nodes that the guide lists. Those that do not exist in a version of Blender are skipped there.
+FAMILIES = tomllib.loads((ROOT / "schema" / "nodes.toml").read_text(encoding="utf-8"))["family"]
+PROMISED = [kind for family in FAMILIES for _, kind in family["nodes"]]
 # Outputs without translation of nodes that are translated.
 NOT_YET = {("ShaderNodeNewGeometry", "Pointiness"), ("ShaderNodeNewGeometry", "Random Per Island")}
 
@@ -125,6 +58,13 @@ def test_e5_promised_nodes_do_not_fall_back(kind: str) -> None:
         assert not program.uses_fallback, program.warnings
         assert not program.warnings
         assert program.surface >= 0 or kind in {"MixShader", "AddShader"}
+
+
+def test_every_translated_node_is_in_the_list_of_the_guide() -> None:
+    from gradus.nodes import node
+
+    simplified = {"ShaderNodeBsdfVelvet"}  # the guide names it among those that are
+    assert set(node._translators) - simplified == {f"ShaderNode{kind}" for kind in PROMISED}
 
 
 def test_programs_of_promised_nodes_compile(library: object) -> None:

@@ -78,6 +78,20 @@ def test_a_new_operation_is_declared_and_dispatched(copy: Path) -> None:
     assert "case GRADUS_OP_MADE_UP:\n      made_up_op(args, out);" in table
 
 
+def test_a_new_node_is_in_the_list_of_the_guide(copy: Path) -> None:
+    change(copy / "schema" / "nodes.toml", '["Clamp", "Clamp"],', '["Clamp", "Clamp"], ["Made Up", "MadeUp"],')
+    assert generate(copy).returncode == 0
+    assert "Clamp, Made Up, Map Range" in (copy / "docs" / "user-guide.md").read_text(encoding="utf-8")
+
+
+def test_the_number_of_samples_from_which_the_denoiser_runs_is_given_once(copy: Path) -> None:
+    change(copy / "schema" / "options.toml", "minimum_samples = 8", "minimum_samples = 9")
+    assert generate(copy).returncode == 0
+    for path in ("docs/user-guide.md", "addon/gradus/setting_table.py", "native/include/gradus/gradus.h"):
+        text = " ".join((copy / path).read_text(encoding="utf-8").replace("*", " ").split())
+        assert "at least 9 samples" in text
+
+
 def test_the_guide_s_tables_are_filled_between_their_markers(copy: Path) -> None:
     guide = copy / "docs" / "user-guide.md"
     guide.write_text("before\n\n<!-- generated: passes -->\nold\n<!-- end -->\n\nafter\n", encoding="utf-8")

@@ -1,10 +1,12 @@
-"""The tables of the user guide, which stand between `<!-- generated: NAME -->` and `<!-- end -->`."""
+"""The tables and lists of the user guide, which stand between `<!-- generated: NAME -->` and `<!-- end -->`."""
 
 from __future__ import annotations
 
 import re
+import textwrap
 from collections.abc import Callable
 
+from c_header import WIDTH
 from model import MAX_FLOAT, Option, Pass, Schema
 from python_tables import KINDS
 
@@ -72,10 +74,20 @@ def component_passes(schema: Schema) -> str:
     return "\n".join(lines)
 
 
+def nodes(schema: Schema) -> str:
+    """Returns a list of Blender's nodes by family."""
+    lines: list[str] = []
+    for family in schema.families:
+        text = f"- {family.title}: {', '.join(name for name, _ in family.nodes)}."
+        lines += textwrap.wrap(text, WIDTH, subsequent_indent="  ", break_on_hyphens=False)
+    return "\n".join(lines)
+
+
 TABLES: dict[str, Callable[[Schema], str]] = {
     "options": options,
     "passes": passes,
     "component passes": component_passes,
+    "nodes": nodes,
 }
 
 

@@ -184,6 +184,14 @@ class Section:
 
 
 @dataclass(frozen=True)
+class Family:
+    """Nodes of Blender that are rendered: pairs of the shown name and the type."""
+
+    title: str
+    nodes: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
 class Schema:
     enums: tuple[Enum, ...]
     structs: tuple[Struct, ...]
@@ -193,6 +201,7 @@ class Schema:
     switches: tuple[Switch, ...]
     sections: tuple[Section, ...]
     node_enums: tuple[Enum, ...]
+    families: tuple[Family, ...]
 
     def enum(self, name: str) -> Enum:
         return _find(self.enums, name, "enum")
@@ -242,8 +251,9 @@ def _value(name: str, number: int, doc: str, label: str = "") -> Value:
     return Value(name, number, plain(doc), label or name.replace("_", " ").title())
 
 
-def _values(rows: list[list[Any]]) -> tuple[Value, ...]:
-    return tuple(_value(*row) for row in rows)
+def _values(rows: list[list[Any]], minimum_samples: int = 0) -> tuple[Value, ...]:
+    number = str(minimum_samples)
+    return tuple(_value(name, key, doc.replace("@minimum_samples", number), *label) for name, key, doc, *label in rows)
 
 
 def _pass_values(passes: tuple[Pass, ...], count: str) -> tuple[Value, ...]:
@@ -300,11 +310,12 @@ def load() -> Schema:
     component_passes = tuple(_make(Pass, row) for row in tables["component_pass"])
     switches = tuple(_make(Switch, row) for row in tables["switch"])
     made = {"Pass": _pass_values(passes, "COUNT"), "ComponentPass": _pass_values(component_passes, "PASS_COUNT")}
+    options = tuple(_make(Option, row, {"from": "source"}) for row in _read("options.toml")["option"])
+    minimum_samples = {option.type: option.minimum_samples for option in options}
     enums = []
     for row in _read("enums.toml")["enum"]:
-        values = made[row["name"]] if "from" in row else _values(row["values"])
+        values = made[row["name"]] if "from" in row else _values(row["values"], minimum_samples.get(row["name"], 0))
         enums.append(_enum(row, values))
-    options = tuple(_make(Option, row, {"from": "source"}) for row in _read("options.toml")["option"])
     structs = []
     for row in _read("structs.toml")["struct"]:
         fields = settings_fields(options) if "from" in row else tuple(parse_field(*item) for item in row["fields"])
@@ -313,8 +324,9 @@ def load() -> Schema:
     nodes = _read("nodes.toml")
     sections = tuple(Section(plain(row["title"]), tuple(_op(*op) for op in row["ops"])) for row in nodes["section"])
     node_enums = tuple(_enum(row, _values(row["values"])) for row in nodes["enum"])
+    families = tuple(Family(row["title"], tuple((name, kind) for name, kind in row["nodes"])) for row in nodes["family"])
     pictures = (passes, component_passes, switches)
-    schema = Schema(tuple(enums), tuple(structs), options, *pictures, sections, node_enums)
+    schema = Schema(tuple(enums), tuple(structs), options, *pictures, sections, node_enums, families)
     check(schema)
     return schema
 
