@@ -54,8 +54,8 @@ def active_passes(scene: Any, view_layer: Any, overrides: options.Overrides) -> 
     names = ("integrator", "reconstruction", "denoiser")
     choices = ((overrides.value(name) or getattr(scene.gradus, name)).upper() for name in names)
     method = automatic.method_of(*choices)
-    names = _component_names(scene, overrides)
-    return list(passes.list_passes(view_layer, method.is_reconstructed, names, overrides.passes))
+    component_names = _component_names(scene, overrides)
+    return list(passes.list_passes(view_layer, method.is_reconstructed, component_names, overrides.passes))
 
 
 def _component_names(scene: Any, overrides: options.Overrides) -> list[str]:

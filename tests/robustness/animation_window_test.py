@@ -62,7 +62,7 @@ def tools() -> None:
 
 
 def script(folder: Path, samples: int, extra: str = "") -> str:
-    return SCENE.replace("FOLDER", str(folder)).replace("SAMPLES", str(samples)).replace("EXTRA", extra)
+    return SCENE.replace("SAMPLES", str(samples)).replace("EXTRA", extra).replace("FOLDER", str(folder))
 
 
 def wait_for_file(path: Path, limit: float = 120) -> None:
@@ -89,16 +89,21 @@ def test_c3_an_animation_in_a_window_has_every_frame(tmp_path: Path) -> None:
 MOVES = """
 bpy.data.objects["Cube"].keyframe_insert("location", frame=1)
 bpy.data.objects["Cube"].location.x += 1
-bpy.data.objects["Cube"].keyframe_insert("location", frame=12)
-scene.frame_end = 12
+bpy.data.objects["Cube"].keyframe_insert("location", frame=LAST)
+scene.frame_end = LAST
 scene.render.filepath = "FOLDER/f_####"
 """
 
 
+def moves(folder: Path, last: int) -> str:
+    """Returns a script that moves the cube up to frame `last` and writes pictures into `folder`."""
+    return MOVES.replace("LAST", str(last)).replace("FOLDER", str(folder))
+
+
 def test_frames_ahead_are_shown_while_they_are_sampled(tmp_path: Path) -> None:
     """Regression: until the frames ahead of the first one were sampled, the window was black."""
-    moves = MOVES.replace("FOLDER", str(tmp_path))
-    with window.blender(glow.SCENE.replace("SAMPLES", "1000000") + moves, window.SMALL) as blender:
+    script = glow.SCENE.replace("SAMPLES", "1000000") + moves(tmp_path, 12)
+    with window.blender(script, window.SMALL) as blender:
         blender.wait_for("WINDOW-READY")
         blender.press("ctrl+F12")
         blender.wait_for("RENDER-STARTED")
@@ -110,8 +115,8 @@ def test_frames_ahead_are_shown_while_they_are_sampled(tmp_path: Path) -> None:
 
 def test_escape_between_frames_keeps_the_shown_picture(tmp_path: Path) -> None:
     """Regression: the frames ahead of a later frame were cancelled, and the shown picture was empty."""
-    moves = MOVES.replace("FOLDER", str(tmp_path)).replace("12", "90")
-    with window.blender(glow.SCENE.replace("SAMPLES", "16") + moves, window.SMALL) as blender:
+    script = glow.SCENE.replace("SAMPLES", "16") + moves(tmp_path, 90)
+    with window.blender(script, window.SMALL) as blender:
         blender.wait_for("WINDOW-READY")
         blender.press("ctrl+F12")
         wait_for_file(tmp_path / "f_0005.png")

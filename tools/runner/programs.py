@@ -29,7 +29,7 @@ class Program:
 
     @property
     def name(self) -> str:
-        return " ".join(["native", str(self.path.relative_to(ROOT)), *self.under[:1]]) + self.part
+        return " ".join(filter(None, ["native", str(self.path.relative_to(ROOT)), *self.under[:1], self.part]))
 
     def run(self, environment: dict[str, str]) -> Result:
         environment = environment | self.environment
@@ -60,7 +60,7 @@ def parts(path: Path, limit: float, without: str, count: int, environment: dict[
         chosen[smallest].append(f"{suite}*")
         sizes[smallest] += tests
     return [
-        Program(path, limit, f"{':'.join(names)}-{without}", f" {number}/{count}", environment=environment)
+        Program(path, limit, f"{':'.join(names)}-{without}", f"{number}/{count}", environment=environment)
         for number, names in enumerate(chosen, 1)
         if names
     ]
