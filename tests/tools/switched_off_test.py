@@ -61,7 +61,7 @@ def test_m3_the_rule_itself() -> None:
     assert not unstated('@pytest.mark.skipif(OLD, reason="came with 4.1")', today)
     for line in ("pytest.skip()", "GTEST_SKIP();", 'pytest.importorskip("scipy")', "@pytest.mark.skipif(OLD)"):
         assert WITHOUT_REASON.search(line)
-        assert WITHOUT_REASON.search(f'{line}\npytest.importorskip("scipy", reason="why")'), "the reason of another test"
+        assert WITHOUT_REASON.search(f'{line}\npytest.importorskip("scipy", reason="why")'), "a reason of another"
     for line in ('pytest.skip("why")', 'GTEST_SKIP() << "why";', 'pytest.importorskip("scipy", reason="why")'):
         assert not WITHOUT_REASON.search(line)
 

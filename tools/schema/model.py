@@ -324,7 +324,7 @@ def load() -> Schema:
     nodes = _read("nodes.toml")
     sections = tuple(Section(plain(row["title"]), tuple(_op(*op) for op in row["ops"])) for row in nodes["section"])
     node_enums = tuple(_enum(row, _values(row["values"])) for row in nodes["enum"])
-    families = tuple(Family(row["title"], tuple((name, kind) for name, kind in row["nodes"])) for row in nodes["family"])
+    families = tuple(Family(row["title"], tuple(map(tuple, row["nodes"]))) for row in nodes["family"])
     pictures = (passes, component_passes, switches)
     schema = Schema(tuple(enums), tuple(structs), options, *pictures, sections, node_enums, families)
     check(schema)
