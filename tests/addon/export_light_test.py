@@ -102,8 +102,6 @@ def test_a_light_with_a_muted_link_to_its_output_emits_nothing(scene: bpy.types.
     data = bpy.data.lights.new("Light", "POINT")
     data.use_nodes = True
     data.node_tree.links[0].is_muted = True
-    if not data.node_tree.links[0].is_muted:
-        pytest.skip("links cannot be muted by script here")
     assert light.constant_emission(data) in (None, (0.0, 0.0, 0.0))
 
 

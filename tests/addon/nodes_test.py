@@ -227,8 +227,6 @@ def test_muted_links_are_ignored() -> None:
     node = material.node_tree.nodes.new("ShaderNodeEmission")
     show(material, node.outputs[0])
     material.node_tree.links[0].is_muted = True
-    if not material.node_tree.links[0].is_muted:
-        pytest.skip("links cannot be muted by script here")
     assert translate(material).surface == -1
 
 
