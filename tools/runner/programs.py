@@ -29,7 +29,7 @@ class Program:
 
     @property
     def name(self) -> str:
-        return " ".join(["native", str(self.path.relative_to(ROOT)), *self.under[:1]]) + self.part
+        return " ".join(filter(None, ["native", str(self.path.relative_to(ROOT)), *self.under[:1], self.part]))
 
     def run(self, environment: dict[str, str]) -> Result:
         environment = environment | self.environment
@@ -45,7 +45,9 @@ def parts(path: Path, limit: float, without: str, count: int, environment: dict[
     """
     if count == 1:
         return [Program(path, limit, f"*-{without}", environment=environment)]
-    listed = subprocess.run([path, "--gtest_list_tests"], check=True, stdout=subprocess.PIPE, text=True).stdout
+    code, listed = run([str(path), "--gtest_list_tests"], limit, os.environ | environment)
+    if code:  # the whole program fails in the same way, and is reported
+        return [Program(path, limit, environment=environment)]
     suites: dict[str, int] = {}
     for line in listed.splitlines():
         if not line.startswith(" ") and line.split("#")[0].strip().endswith("."):
@@ -60,7 +62,7 @@ def parts(path: Path, limit: float, without: str, count: int, environment: dict[
         chosen[smallest].append(f"{suite}*")
         sizes[smallest] += tests
     return [
-        Program(path, limit, f"{':'.join(names)}-{without}", f" {number}/{count}", environment=environment)
+        Program(path, limit, f"{':'.join(names)}-{without}", f"{number}/{count}", environment=environment)
         for number, names in enumerate(chosen, 1)
         if names
     ]
