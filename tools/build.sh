@@ -6,7 +6,7 @@
 # checks: builds that find faults that the tests do not see.
 #   build-thread/    some native tests with the sanitizer of threads, and an instrumented TBB. Objects for link-time
 #                    optimisation, so that linking them finds types and variables that two sources define differently
-#                    under one name. Each source is compiled by itself, which shows that it includes what it uses.
+#                    under one name. Each source is compiled by itself.
 #   build-sanitize/  some native tests with the sanitizers of addresses and undefined behaviour
 # With --full, all native tests in the first, and another one takes the place of the second:
 #   build-address/   all native tests and the stress tests with the same sanitizers
@@ -14,9 +14,15 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 tools/setup/setup build
 
+# Configures a folder that has other options or none. build/ keeps those that a developer gave it.
 configure() {  # FOLDER OPTION...
-  [ -e "$1/build.ninja" ] || cmake -S . -B "$1" -G Ninja "${@:2}" >build.log 2>&1 || { cat build.log >&2; exit 1; }
+  if [ -e "$1/build.ninja" ]; then
+    if [ "$1" = build ] || [ "$(cat "$1/options" 2>/dev/null)" = "${*:2}" ]; then return; fi
+    rm -rf "${1:?}"
+  fi
+  cmake -S . -B "$1" -G Ninja "${@:2}" >build.log 2>&1 || { cat build.log >&2; exit 1; }
   rm -f build.log
+  printf '%s' "${*:2}" >"$1/options"
 }
 build() {  # FOLDER TARGET...
   ninja -C "$@" | sed -u -e '/Entering directory/d' -e '/Re-checking globbed/d' -e '/no work to do/d' >&2

@@ -246,5 +246,5 @@ def test_c7_a_store_without_the_features_of_the_reconstruction_is_refused_by_nam
     animate(square, tmp_path / "sampled", 1, 2)
     square.gradus.reconstruction = "REGULARIZED"
     square.gradus.integrator = "GRADIENT"
-    with pytest.raises(RuntimeError, match=r"f\+0000001\.base\.exr lacks the features .* choose another frame store"):
+    with pytest.raises(RuntimeError, match=r"f\+0000001\.fresh\.exr lacks the features .* choose another frame store"):
         animate(square, tmp_path / "again", 1, 2)

@@ -4,7 +4,7 @@
 #include "memory/sequence.h"
 #include "support/statistics.h"
 
-namespace gradus::memory {
+namespace gradus::memory::allocation_test {
 namespace {
 
 using test::error_text;
@@ -104,4 +104,4 @@ TEST(G5_Registry, ARefusedHandleLosesNoSlot) {
 }
 
 }  // namespace
-}  // namespace gradus::memory
+}  // namespace gradus::memory::allocation_test

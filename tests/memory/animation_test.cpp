@@ -9,7 +9,7 @@
 #include "render/memory_estimate.h"
 #include "scene/device.h"
 
-namespace gradus::memory {
+namespace gradus::memory::animation_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,4 +87,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const ::testing::TestParamInfo<Job>& info) { return std::string(info.param.name); });
 
 }  // namespace
-}  // namespace gradus::memory
+}  // namespace gradus::memory::animation_test

@@ -15,7 +15,7 @@
 #include "memory/sequence.h"
 #include "support/statistics.h"
 
-namespace gradus::memory {
+namespace gradus::memory::growth_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -134,4 +134,4 @@ TEST_F(J2_Growth, CancelledSequences) {
 }
 
 }  // namespace
-}  // namespace gradus::memory
+}  // namespace gradus::memory::growth_test

@@ -8,7 +8,7 @@
 #include "render/memory_estimate.h"
 #include "schema/options.h"
 
-namespace gradus::memory {
+namespace gradus::memory::memory_estimate_test {
 namespace {
 
 constexpr uint32_t kWidth = 400, kHeight = 300;  // memory of rows and threads is small beside it
@@ -91,4 +91,4 @@ TEST(DiskWarning, NamesTheFolderThatIsTooSmall) {
 }
 
 }  // namespace
-}  // namespace gradus::memory
+}  // namespace gradus::memory::memory_estimate_test

@@ -5,7 +5,7 @@
 #include "memory/allocations.h"
 #include "output/pass_read.h"
 
-namespace gradus::memory {
+namespace gradus::memory::pass_read_test {
 namespace {
 
 // Reading must take rows only. Before, Gradient X and Gradient Y were each cropped from three images of the whole
@@ -26,4 +26,4 @@ TEST(PassRead, UsesRowsAndNoImages) {
 }
 
 }  // namespace
-}  // namespace gradus::memory
+}  // namespace gradus::memory::pass_read_test

@@ -13,7 +13,7 @@
 #include "reconstruct/space_time/window_solver.h"
 #include "support/statistics.h"
 
-namespace gradus::memory {
+namespace gradus::memory::window_test {
 namespace {
 
 // A cancel check that never cancels.
@@ -217,4 +217,4 @@ TEST(J1_Window, SequencesOfAnyLengthNeedTheMemoryOfOneWindow) {
 }
 
 }  // namespace
-}  // namespace gradus::memory
+}  // namespace gradus::memory::window_test

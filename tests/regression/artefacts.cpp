@@ -71,7 +71,7 @@ void save_beside_each_other(const fs::path& path, const std::vector<std::vector<
     const auto encoded = [](float linear) { return image::linear_to_srgb(std::max(0.0f, linear)); };
     return Vec4(encoded(rgb[0]), encoded(rgb[1]), encoded(rgb[2]), 1.0f);
   };
-  const testing::FileBytes png = testing::make_png(width, kHeight, color);
+  const test::FileBytes png = test::make_png(width, kHeight, color);
   std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
 }
 

@@ -20,7 +20,7 @@
 #include "regression/pictures.h"
 #include "support/statistics.h"
 
-namespace gradus::regression {
+namespace gradus::regression::pictures_test {
 namespace {
 
 using nlohmann::json;
@@ -240,4 +240,4 @@ TEST(M2_Pixels, SpikesAndValuesThatAreNotFiniteAreDetected) {
 }
 
 }  // namespace
-}  // namespace gradus::regression
+}  // namespace gradus::regression::pictures_test

@@ -12,7 +12,7 @@
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::benefit_test {
 namespace {
 
 using test::Scenario;
@@ -156,4 +156,4 @@ TEST(B5_Benefit, DefaultIsBetterInTheSameTime) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::benefit_test

@@ -10,7 +10,7 @@
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::components_test {
 namespace {
 
 using test::PathScene;
@@ -55,7 +55,7 @@ TEST(Components, HaveTheMeansThatAnIndependentTracerFinds) {
       film::Film film = test::make_test_film(settings, true, set.count());
       test::sample_film(*gradient::make_gradient_integrator(context), 0, 16, &film);
       ours.add(means(film));
-      testing::Random random(seed + 1);
+      test::Random random(seed + 1);
       std::vector<double> sums(size_t(set.count()), 0.0);
       constexpr int kSamples = 64;
       for (int i = 0; i < kSamples * int(kSide * kSide); ++i) {
@@ -119,4 +119,4 @@ TEST(Components, HaveGradientsThatAreDifferencesOfTheirImages) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::components_test

@@ -14,7 +14,7 @@
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::error_test {
 namespace {
 
 using test::Scenario;
@@ -139,4 +139,4 @@ INSTANTIATE_TEST_SUITE_P(All, A8_Error, testing::Values(Scenario::DiffuseArea, S
                          [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::error_test

@@ -7,7 +7,7 @@
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::furnace_test {
 namespace {
 
 enum class Lighting { Point, FourPoints, Emission };
@@ -62,4 +62,4 @@ INSTANTIATE_TEST_SUITE_P(All, A1_Furnace,
                                           testing::Bool(), testing::Bool()));
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::furnace_test

@@ -6,7 +6,7 @@
 #include "gradient/gradient_integrator.h"
 #include "support/path_scene.h"
 
-namespace gradus {
+namespace gradus::gradient_bias_test {
 namespace {
 
 using test::PathScene;
@@ -93,4 +93,4 @@ TEST(B7_LimitOfTransparentSurfaces, AppliesToLightsThatSharedRaysMeet) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::gradient_bias_test

@@ -13,7 +13,7 @@
 #include "support/difference_statistics.h"
 #include "support/path_scene.h"
 
-namespace gradus {
+namespace gradus::gradient_test {
 namespace {
 
 using test::BothDirections;
@@ -505,4 +505,4 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Scenarios, testing::ValuesIn(all_scenarios
                          [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::gradient_test

@@ -12,7 +12,7 @@
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::reconstruction_test {
 namespace {
 
 using test::Moments;
@@ -259,4 +259,4 @@ INSTANTIATE_TEST_SUITE_P(All, B3_Consistent, testing::ValuesIn(all_scenarios()),
                          [](const testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::reconstruction_test

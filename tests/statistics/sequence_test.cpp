@@ -15,7 +15,7 @@
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::sequence_test {
 namespace {
 
 using test::Moments;
@@ -378,4 +378,4 @@ TEST(C4_Sequence, TheMeanOverTimeHasNoBias) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::sequence_test

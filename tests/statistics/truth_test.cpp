@@ -14,7 +14,7 @@
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::truth_test {
 namespace {
 
 using test::PathScene;
@@ -142,7 +142,7 @@ Statistics sample_images(int count, const SampleRow& sample_row) {
 Statistics estimate(const integrator::IntegratorContext& context, Estimator estimator) {
   if (estimator == Estimator::BsdfOnly) {
     return sample_images(reference_samples(), [&](int i, int y, float* row) {
-      testing::Random random(uint64_t(i) * kHeight + uint64_t(y) + 1);
+      test::Random random(uint64_t(i) * kHeight + uint64_t(y) + 1);
       for (int x = 0; x < int(kWidth); ++x) {
         const Rgb value = test::bsdf_only_sample(context, x, y, &random);
         for (int c = 0; c < 3; ++c) row[3 * x + c] = value[c];
@@ -323,4 +323,4 @@ TEST(A7_Convergence, FourTimesTheSamplesQuarterTheError) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::truth_test

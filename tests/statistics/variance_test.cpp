@@ -14,7 +14,7 @@
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::variance_test {
 namespace {
 
 // Returns the estimated variance of the mean of each pixel and channel.
@@ -277,4 +277,4 @@ TEST(A10_Seeds, ResidualsAreUncorrelated) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::variance_test

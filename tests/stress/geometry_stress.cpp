@@ -3,7 +3,7 @@
 
 #include "stress/stress.h"
 
-namespace gradus::stress {
+namespace gradus::stress::geometry_stress {
 namespace {
 
 // Replaces the back wall of the box by one with other triangles.
@@ -120,4 +120,4 @@ INSTANTIATE_TEST_SUITE_P(Angles, Grazing,
                                     : ::testing::Values(1e-2f, 1e-4f));
 
 }  // namespace
-}  // namespace gradus::stress
+}  // namespace gradus::stress::geometry_stress

@@ -7,7 +7,7 @@
 #include "stress/stress.h"
 #include "support/developed.h"
 
-namespace gradus::stress {
+namespace gradus::stress::injection_stress {
 namespace {
 
 using test::FakeIntegrator;
@@ -167,4 +167,4 @@ TEST(NonFinite, SumsDoNotOverflow) {
 }
 
 }  // namespace
-}  // namespace gradus::stress
+}  // namespace gradus::stress::injection_stress

@@ -3,7 +3,7 @@
 
 #include "stress/stress.h"
 
-namespace gradus::stress {
+namespace gradus::stress::light_stress {
 namespace {
 
 using test::make_light;
@@ -109,4 +109,4 @@ TEST(AnalyticLights, EmissiveTrianglesOfAnySize) {
 }
 
 }  // namespace
-}  // namespace gradus::stress
+}  // namespace gradus::stress::light_stress

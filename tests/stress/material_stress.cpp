@@ -5,7 +5,7 @@
 
 #include "stress/stress.h"
 
-namespace gradus::stress {
+namespace gradus::stress::material_stress {
 namespace {
 
 // Expects pixels between `darkest` and 1. Single scattering loses up to 60 % between facets at roughness 1; nothing may
@@ -121,4 +121,4 @@ TEST(NestedDielectrics, InTheBox) {
 }
 
 }  // namespace
-}  // namespace gradus::stress
+}  // namespace gradus::stress::material_stress

@@ -3,7 +3,7 @@
 
 #include "stress/stress.h"
 
-namespace gradus::stress {
+namespace gradus::stress::size_stress {
 namespace {
 
 Outcome boxed(const std::string& name, const Mat4& place, const Bounds& bounds = {}) {
@@ -121,4 +121,4 @@ INSTANTIATE_TEST_SUITE_P(Odd, Sizes,
                                            Size{17, 33, 4}, Size{16384, 16, 1}, Size{1, 4096, 1}, Size{16, 16384, 1}));
 
 }  // namespace
-}  // namespace gradus::stress
+}  // namespace gradus::stress::size_stress

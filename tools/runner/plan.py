@@ -21,7 +21,7 @@ LIMIT = {"native": 900, "host": 300, "full": 3600}  # seconds for one program or
 
 # Programs by the number of processes that share their tests, so that no long program ends beside an idle core.
 PARTS = {
-    "gradus_native_tests": 8,
+    "gradus_native_tests": 12,
     "gradus_statistics_tests": 4,
     "gradus_stress_tests": 3,
     "gradus_regression_tests": 2,
@@ -55,18 +55,18 @@ VALGRIND_TESTS = (
 # Environments of the sanitizers. The lists of suppressions name their reasons.
 ADDRESS = {"LSAN_OPTIONS": f"suppressions={ROOT / 'tests/support/lsan.supp'} print_suppressions=0"}
 THREAD = {"TSAN_OPTIONS": f"suppressions={ROOT / 'tests/support/tsan.supp'} die_after_fork=0"}
-# Programs with sanitizers of every change (False) and of the full run (True). Renders of hard scenes have no threads
-# that other tests lack.
+# Programs with sanitizers of every change (False) and of the full run (True), and the tests that they leave out here.
+# Renders of hard scenes have no threads that other tests lack.
 SANITIZED = {
-    False: {
-        ROOT / "build-sanitize/tests/gradus_sanitized_tests": ADDRESS,
-        ROOT / "build-thread/tests/gradus_thread_tests": THREAD,
-    },
-    True: {
-        ROOT / "build-address/tests/gradus_native_tests": ADDRESS,
-        ROOT / "build-address/tests/gradus_stress_tests": ADDRESS,
-        ROOT / "build-thread/tests/gradus_native_tests": THREAD,
-    },
+    False: (
+        (ROOT / "build-sanitize/tests/gradus_sanitized_tests", ADDRESS, ALONE),
+        (ROOT / "build-thread/tests/gradus_thread_tests", THREAD, f"{ALONE}:{CONVERGED}"),
+    ),
+    True: (
+        (ROOT / "build-address/tests/gradus_native_tests", ADDRESS, ALONE),
+        (ROOT / "build-address/tests/gradus_stress_tests", ADDRESS, ALONE),
+        (ROOT / "build-thread/tests/gradus_native_tests", THREAD, ALONE),
+    ),
 }
 
 
@@ -166,9 +166,8 @@ def sanitized_plan(full: bool) -> tuple[list[Program], list[Program]]:
     """
     limit = LIMIT["full" if full else "native"]
     programs, alone = [], []
-    for path, variables in SANITIZED[full].items():
+    for path, variables, without in SANITIZED[full]:
         environment = variables | {"GRADUS_TEST_FULL": "0"}
-        without = ALONE if full or variables is ADDRESS else f"{ALONE}:{CONVERGED}"
         programs += parts(path, limit, without, PARTS.get(path.name, 1), environment)
         # Tests with time limits would exceed them in instrumented programs.
         alone.append(Program(path, limit, f"{ALONE}-{LIMITS}", environment=environment))

@@ -45,7 +45,9 @@ def parts(path: Path, limit: float, without: str, count: int, environment: dict[
     """
     if count == 1:
         return [Program(path, limit, f"*-{without}", environment=environment)]
-    listed = subprocess.run([path, "--gtest_list_tests"], check=True, stdout=subprocess.PIPE, text=True).stdout
+    code, listed = run([str(path), "--gtest_list_tests"], limit, os.environ | environment)
+    if code:  # the whole program fails in the same way, and is reported
+        return [Program(path, limit, environment=environment)]
     suites: dict[str, int] = {}
     for line in listed.splitlines():
         if not line.startswith(" ") and line.split("#")[0].strip().endswith("."):

@@ -10,7 +10,7 @@
 #include "motion/pixel_matching.h"
 #include "support/path_scene.h"
 
-namespace gradus::test {
+namespace gradus::test::camera_correspondence_test {
 namespace {
 
 constexpr int kWidth = 48, kHeight = 32;
@@ -232,4 +232,4 @@ INSTANTIATE_TEST_SUITE_P(All, CorrespondenceOfCameras, testing::ValuesIn(all_cas
 });
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::camera_correspondence_test

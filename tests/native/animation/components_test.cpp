@@ -8,7 +8,7 @@
 #include "film_io/store.h"
 #include "schema/options.h"
 
-namespace gradus {
+namespace gradus::components_test {
 namespace {
 
 using namespace test;
@@ -249,4 +249,4 @@ TEST(ComponentsOfSequences, ReplaysOfComponentsHaveTheMeanOfPlainSamples) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::components_test

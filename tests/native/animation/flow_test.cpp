@@ -10,7 +10,7 @@
 #include "render/render.h"
 #include "schema/options.h"
 
-namespace gradus {
+namespace gradus::flow_test {
 namespace {
 
 using namespace test;
@@ -371,4 +371,4 @@ TEST(SequenceFlow, AStoreWithoutTheNeededPlanesIsRefused) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::flow_test

@@ -14,7 +14,7 @@
 #include "base/error.h"
 #include "support/refusal.h"
 
-namespace gradus {
+namespace gradus::frame_window_test {
 namespace {
 
 // Returns a row of three pixels, equal in all channels: values, differences to the right, and half the differences
@@ -280,4 +280,4 @@ TEST_F(FiveFrames, WithoutGradientsThereArePixelsAndTheirDifferencesOverTime) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::frame_window_test

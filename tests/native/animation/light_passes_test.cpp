@@ -3,7 +3,7 @@
 #include "schema/pass_table.h"
 #include "support/light_sum.h"
 
-namespace gradus {
+namespace gradus::light_passes_test {
 namespace {
 
 using namespace test;
@@ -35,4 +35,4 @@ INSTANTIATE_TEST_SUITE_P(Reconstructions, SequenceLightPasses,
                                          uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::light_passes_test

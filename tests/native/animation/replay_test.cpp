@@ -10,7 +10,7 @@
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
-namespace gradus::test {
+namespace gradus::test::replay_test {
 namespace {
 
 constexpr uint32_t kSize = 40;  // more than one pixel block
@@ -182,4 +182,4 @@ TEST(Replay, ReducesTheNoiseOfDifferencesOverTime) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::replay_test

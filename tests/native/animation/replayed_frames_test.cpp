@@ -3,7 +3,7 @@
 
 #include "sequence_fixture.h"
 
-namespace gradus::test {
+namespace gradus::test::replayed_frames_test {
 namespace {
 
 using Plane = std::vector<Radiance>;
@@ -103,4 +103,4 @@ TEST(C4_ReplayedFrames, ReplaysUseTheJitterOfTheFrameBeforeWhereBlurStartsOrStop
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::replayed_frames_test

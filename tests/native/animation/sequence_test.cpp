@@ -19,7 +19,7 @@
 #include "support/file_calls.h"
 #include "support/refusal.h"
 
-namespace gradus::test {
+namespace gradus::test::sequence_test {
 namespace {
 
 double distance(const std::vector<float>& a, const std::vector<float>& b) {
@@ -900,4 +900,4 @@ TEST(I2_Sequence, ADiskThatFillsWhileRowsAreSpooledIsNamed) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::sequence_test

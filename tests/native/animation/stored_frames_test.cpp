@@ -14,7 +14,7 @@
 #include "sequence_fixture.h"
 #include "support/refusal.h"
 
-namespace gradus::test {
+namespace gradus::test::stored_frames_test {
 namespace {
 
 std::shared_ptr<animation::Sequence> make_steps(int32_t first, int32_t last, uint32_t step, const std::string& folder) {
@@ -457,4 +457,4 @@ TEST(C7_StoredFrames, ReplaysOfAnOlderSceneAreSampledAnew) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::stored_frames_test

@@ -2,7 +2,7 @@
 // test-full) looks for leaks; tests/memory counts allocations, files and threads.
 #include "api/changing_scene.h"
 
-namespace gradus::test {
+namespace gradus::test::changes_test {
 namespace {
 
 class J2_Changes : public WithScene<> {};
@@ -22,4 +22,4 @@ TEST_F(J2_Changes, SequencesAreReleasedAfterACancelInAnyFrame) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::changes_test

@@ -5,20 +5,15 @@
 
 #include "api/test_scene.h"
 
+namespace gradus::components_test {
 namespace {
-
-class ComponentsApi : public testing::Test {
- protected:
-  // Clears the error of an earlier test: the slot keeps the first error.
-  ComponentsApi() { gradus_error(nullptr); }
-};
 
 std::string refusal(GradusError code) {
   EXPECT_EQ(code, GRADUS_ERROR_INVALID_ARGUMENT);
   return gradus::test::error_text();
 }
 
-TEST_F(ComponentsApi, ReturnsNamesExpressionsAndExamples) {
+TEST(ComponentsApi, ReturnsNamesExpressionsAndExamples) {
   uint32_t count = 0;
   ASSERT_EQ(gradus_components_check("", &count), GRADUS_OK);
   ASSERT_EQ(count, 5u);
@@ -32,7 +27,7 @@ TEST_F(ComponentsApi, ReturnsNamesExpressionsAndExamples) {
   EXPECT_STREQ(expression, "");
 }
 
-TEST_F(ComponentsApi, ClassifiesAPath) {
+TEST(ComponentsApi, ClassifiesAPath) {
   uint32_t index = 9;
   ASSERT_EQ(gradus_components_classify("Vase=ETTTTD.*L", "ETTTTDRL", &index), GRADUS_OK);
   EXPECT_EQ(index, 0u);
@@ -40,7 +35,7 @@ TEST_F(ComponentsApi, ClassifiesAPath) {
   EXPECT_EQ(index, 1u);
 }
 
-TEST_F(ComponentsApi, RefusesWithAMessageForTheUser) {
+TEST(ComponentsApi, RefusesWithAMessageForTheUser) {
   uint32_t count = 0;
   EXPECT_NE(refusal(gradus_components_check("A=ED.*L;B=EDDL", &count)).find("overlap"), std::string::npos);
   EXPECT_NE(refusal(gradus_components_check(nullptr, &count)).find("components is NULL"), std::string::npos);
@@ -50,7 +45,7 @@ TEST_F(ComponentsApi, RefusesWithAMessageForTheUser) {
   EXPECT_NE(refusal(gradus_components_classify("", "EX", &count)).find("no path"), std::string::npos);
 }
 
-TEST_F(ComponentsApi, NamesThePassesOfComponents) {
+TEST(ComponentsApi, NamesThePassesOfComponents) {
   const char* name = nullptr;
   uint32_t channels = 0;
   ASSERT_EQ(gradus_component_pass_info(GRADUS_COMPONENT_MOTION, &name, &channels), GRADUS_OK);
@@ -61,3 +56,4 @@ TEST_F(ComponentsApi, NamesThePassesOfComponents) {
 }
 
 }  // namespace
+}  // namespace gradus::components_test

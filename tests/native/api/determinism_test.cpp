@@ -6,7 +6,7 @@
 
 #include "api/test_scene.h"
 
-namespace gradus {
+namespace gradus::determinism_test {
 namespace {
 
 using namespace test;
@@ -115,4 +115,4 @@ INSTANTIATE_TEST_SUITE_P(Integrators, L1_Determinism,
                          ::testing::Values(GRADUS_INTEGRATOR_AUTO, GRADUS_INTEGRATOR_PATH, GRADUS_INTEGRATOR_GRADIENT));
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::determinism_test

@@ -5,7 +5,7 @@
 
 #include "api/test_scene.h"
 
-namespace gradus {
+namespace gradus::error_pass_test {
 namespace {
 
 using namespace test;
@@ -80,4 +80,4 @@ TEST_F(ErrorOfFrames, ComesWithAnotherReconstruction) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::error_pass_test

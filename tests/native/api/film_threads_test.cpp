@@ -12,7 +12,7 @@
 #include "scene/scene_fixture.h"
 #include "test_scene.h"
 
-namespace gradus {
+namespace gradus::film_threads_test {
 namespace {
 
 // Regression: stored films were reconstructed with all processors, whatever number of threads their settings had.
@@ -73,4 +73,4 @@ TEST(FilmThreads, ReadersDoNotWaitForAMerge) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::film_threads_test

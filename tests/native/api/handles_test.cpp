@@ -17,7 +17,7 @@
 #include "api/registry.h"
 #include "api/test_scene.h"
 
-namespace gradus {
+namespace gradus::handles_test {
 namespace {
 
 using namespace test;
@@ -444,4 +444,4 @@ TEST(G10_Registry, ManyHandlesComeAndGo) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::handles_test

@@ -6,7 +6,7 @@
 #include "schema/pass_table.h"
 #include "support/light_sum.h"
 
-namespace gradus {
+namespace gradus::light_passes_test {
 namespace {
 
 using namespace test;
@@ -95,4 +95,4 @@ TEST_F(FrameLightPasses, AreMadeAnewForAMergedFilm) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::light_passes_test

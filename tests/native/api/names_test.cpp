@@ -5,7 +5,7 @@
 
 #include "api/test_scene.h"
 
-namespace gradus {
+namespace gradus::names_test {
 namespace {
 
 using namespace test;
@@ -116,4 +116,4 @@ TEST_F(Names, PathsAreNotChecked) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::names_test

@@ -11,7 +11,7 @@
 #include "schema/options.h"
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::options_test {
 namespace {
 
 TEST(G9_Options, AreListed) {
@@ -174,4 +174,4 @@ TEST(G9_Options, ATextWithoutATerminatorIsRefusedAndNotReadBeyondItsEnd) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::options_test

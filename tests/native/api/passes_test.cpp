@@ -7,7 +7,7 @@
 #include "render/scene_render.h"
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::passes_test {
 namespace {
 
 using namespace test;
@@ -188,4 +188,4 @@ TEST(PassesOfACancelledRender, AreThoseOfTheNoisyImage) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::passes_test

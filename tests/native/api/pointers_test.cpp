@@ -3,7 +3,7 @@
 
 #include "api/test_scene.h"
 
-namespace gradus {
+namespace gradus::pointers_test {
 namespace {
 
 using namespace test;
@@ -196,4 +196,4 @@ TEST_F(G2_Pointers, ReadPassRequiresTheExactCount) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::pointers_test

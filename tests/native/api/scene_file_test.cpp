@@ -9,7 +9,7 @@
 
 #include "api/test_scene.h"
 
-namespace gradus {
+namespace gradus::scene_file_test {
 namespace {
 
 using namespace test;
@@ -174,4 +174,4 @@ TEST(F2_Fuzz, DamagedSceneFilesAreRefusedOrRead) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::scene_file_test

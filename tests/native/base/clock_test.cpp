@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gradus {
+namespace gradus::clock_test {
 namespace {
 
 constexpr uint64_t kMillisecond = 1000000;
@@ -36,4 +36,4 @@ TEST(ScopedThreadTimer, LeavesOutOtherThreads) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::clock_test

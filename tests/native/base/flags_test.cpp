@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gradus {
+namespace gradus::flags_test {
 namespace {
 
 std::string text_of(const std::string& path) {
@@ -29,4 +29,4 @@ TEST(L5_Flags, NumbersMayBeInfiniteAndSumsKeepTheirOrder) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::flags_test

@@ -14,7 +14,7 @@
 #include "base/spool_file.h"
 #include "base/temporary_folder.h"
 
-namespace gradus {
+namespace gradus::temporary_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -117,4 +117,4 @@ TEST_F(J1_Temporary, APlaceThatCannotBeWrittenIsNamed) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::temporary_test

@@ -10,7 +10,7 @@
 #include "bsdf/closures.h"
 #include "bsdf/lobe_cases.h"
 
-namespace gradus::testing {
+namespace gradus::test::cycles_values_test {
 namespace {
 
 struct Measured {
@@ -225,4 +225,4 @@ TEST(A9_CyclesClosures, BumpsDarkenSoftly) {
 }
 
 }  // namespace
-}  // namespace gradus::testing
+}  // namespace gradus::test::cycles_values_test

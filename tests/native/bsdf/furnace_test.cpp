@@ -7,7 +7,7 @@
 #include "bsdf/lobe_cases.h"
 #include "support/chi_square.h"
 
-namespace gradus::testing {
+namespace gradus::test::furnace_test {
 namespace {
 
 // Returns the mean of value/(pdf·P(class)) under uniform light: the directional albedo.
@@ -113,4 +113,4 @@ TEST(A2_WhiteFurnace, TabulatedAlbedo) {
 }
 
 }  // namespace
-}  // namespace gradus::testing
+}  // namespace gradus::test::furnace_test

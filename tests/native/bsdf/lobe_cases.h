@@ -6,7 +6,7 @@
 
 #include "bsdf/closures.h"
 
-namespace gradus::testing {
+namespace gradus::test {
 
 struct LobeCase {
   std::string name;
@@ -92,4 +92,4 @@ inline bsdf::Closures finished(bsdf::Lobe lobe, const Vec3& wo, float threshold 
   return closures;
 }
 
-}  // namespace gradus::testing
+}  // namespace gradus::test

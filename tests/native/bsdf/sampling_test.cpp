@@ -8,7 +8,7 @@
 #include "support/chi_square.h"
 #include "support/statistics.h"
 
-namespace gradus::testing {
+namespace gradus::test::sampling_test {
 namespace {
 
 constexpr float kCosines[] = {1.0f, 0.8f, 0.5f, 0.2f, 0.05f};
@@ -202,4 +202,4 @@ TEST(ClosuresThatIgnoreWo, AreTheSameFromEverywhereOnOneSide) {
 }
 
 }  // namespace
-}  // namespace gradus::testing
+}  // namespace gradus::test::sampling_test

@@ -8,7 +8,7 @@
 #include "support/chi_square.h"
 #include "support/refusal.h"
 
-namespace gradus::test {
+namespace gradus::test::camera_test {
 namespace {
 
 struct BlenderCamera {
@@ -101,7 +101,7 @@ TEST(Camera, RaysOfAFilmPointMeetOnTheFocalPlane) {
     const Vec2 film(500, 70);
     const Ray sharp = pinhole.ray({film});
     const Vec3 focus = sharp.origin + sharp.direction * (4.0f * sharp.t_min / 0.1f);
-    gradus::testing::Random random(5);
+    gradus::test::Random random(5);
     for (int i = 0; i < 100; ++i) {
       const Ray ray = camera.ray({film, random.get2()});
       const Vec3 to_focus = focus - ray.origin;
@@ -124,7 +124,7 @@ void expect_uniform_lens(uint32_t blades, float rotation, float ratio) {
   constexpr size_t kSamples = 200000;
   std::vector<double> observed(kGrid * kGrid), expected(kGrid * kGrid);
   const auto cell = [](float v, float extent) { return int((v / extent + 1.0f) * 0.5f * kGrid); };
-  gradus::testing::Random random(7);
+  gradus::test::Random random(7);
   size_t outside = 0;
   for (size_t i = 0; i < kSamples; ++i) {
     const Vec3 p = camera.ray({Vec2(50.0f), random.get2()}).origin;
@@ -150,7 +150,7 @@ void expect_uniform_lens(uint32_t blades, float rotation, float ratio) {
       sum += 1.0;
     }
   for (double& e : expected) e *= double(kSamples) / sum;
-  const auto result = gradus::testing::chi_square_counts(observed, expected, kSamples, outside);
+  const auto result = gradus::test::chi_square_counts(observed, expected, kSamples, outside);
   EXPECT_TRUE(result.passed) << result.text;
 }
 
@@ -213,4 +213,4 @@ TEST(A3_LensSampling, RoundAndPolygonal) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::camera_test

@@ -6,7 +6,7 @@
 #include "camera/film_filter.h"
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::film_filter_test {
 namespace {
 
 // Returns the share of samples within half a cell of `place`, per pixel of width: the weight that a thin line there has
@@ -54,4 +54,4 @@ TEST(FilmFilter, IsSymmetric) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::film_filter_test

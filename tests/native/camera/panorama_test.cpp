@@ -6,7 +6,7 @@
 #include "camera/camera.h"
 #include "scene/scene_fixture.h"
 
-namespace gradus::test {
+namespace gradus::test::panorama_test {
 namespace {
 
 constexpr uint32_t kWidth = 640, kHeight = 480;
@@ -274,4 +274,4 @@ TEST(SphericalStereo, PointsOnRaysProjectToTheOriginOfTheRay) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::panorama_test

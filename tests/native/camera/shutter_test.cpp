@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gradus {
+namespace gradus::shutter_test {
 namespace {
 
 camera::Shutter make_shutter(float open, float close, const std::vector<float>& curve) {
@@ -79,4 +79,4 @@ TEST(Shutter, DoesNotOpenForAnInvalidCurve) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::shutter_test

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 
-namespace gradus {
+namespace gradus::metrics_test {
 namespace {
 
 compare::RgbImage constant(int width, int height, float value) {
@@ -74,4 +74,4 @@ TEST(Compare, RefusesOtherSizes) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::metrics_test

@@ -18,7 +18,7 @@
 #include "render/resume.h"
 #include "support/refusal.h"
 
-namespace gradus {
+namespace gradus::features_test {
 namespace {
 
 using namespace test;
@@ -156,4 +156,4 @@ TEST_F(StoredFeatures, FilesOfAnotherFormatAreRefused) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::features_test

@@ -14,7 +14,7 @@
 #include "film/planes.h"
 #include "support/threads.h"
 
-namespace gradus {
+namespace gradus::film_test {
 namespace {
 
 film::Film small_film() { return film::Film(4, 3, Region{0, 0, 4, 3}, 3, 1, true); }
@@ -326,4 +326,4 @@ TEST(Film, VarianceIsThatOfTheMean) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::film_test

@@ -14,7 +14,7 @@
 #include "base/error.h"
 #include "support/refusal.h"
 
-namespace gradus {
+namespace gradus::splats_test {
 namespace {
 
 constexpr Region kRegion{3, 2, 11, 7};
@@ -152,4 +152,4 @@ TEST(Splats, OnlyEnterChannelsThatTakeThem) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::splats_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gradus {
+namespace gradus::block_codec_test {
 namespace {
 
 film_io::Bytes noise(size_t size) {
@@ -79,4 +79,4 @@ TEST(BlockCodec, DamagedBlocksAreRefused) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::block_codec_test

@@ -41,7 +41,7 @@
 #include "support/file_calls.h"
 #include "support/refusal.h"
 
-namespace gradus {
+namespace gradus::store_test {
 namespace {
 
 using namespace test;
@@ -933,4 +933,4 @@ TEST_F(F6_Store, AProcessCleansUpAFolderOnce) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::store_test

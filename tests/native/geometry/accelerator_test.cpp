@@ -8,7 +8,7 @@
 #include "geometry/rays4.h"
 #include "scene/scene_fixture.h"
 
-namespace gradus::test {
+namespace gradus::test::accelerator_test {
 
 namespace {
 
@@ -118,8 +118,6 @@ std::shared_ptr<const scene::Snapshot> show_frame(TestScene* scene, int frame, c
 void PrintTo(const Hints& hints, std::ostream* out) { *out << hints.name; }
 
 class AcceleratorHints : public testing::TestWithParam<Hints> {};
-
-}  // namespace
 
 TEST(Accelerator, StaticGeometryIsBuiltOnceAndSharedByTheFrames) {
   TestScene scene;
@@ -371,4 +369,5 @@ TEST(RayBox, NeverMissesARayThatMeetsIt) {
   EXPECT_FALSE(box.may_meet(Vec3(0, 0, 5), Vec3(0, 0, -1), 0.0f, -kInfinity)) << "an occluded ray";
 }
 
-}  // namespace gradus::test
+}  // namespace
+}  // namespace gradus::test::accelerator_test

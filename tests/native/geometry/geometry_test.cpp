@@ -9,7 +9,7 @@
 #include "light/light_sampling.h"
 #include "scene/scene_fixture.h"
 
-namespace gradus::test {
+namespace gradus::test::geometry_test {
 namespace {
 
 TEST(D1_Watertight, SphereFarFromTheOriginSeenFromInside) {
@@ -342,4 +342,4 @@ TEST(Commit, EmptySceneIsEmpty) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::geometry_test

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace gradus {
+namespace gradus::matrix_keys_test {
 namespace {
 
 constexpr double kQuarter = 1.5707963267948966;
@@ -76,4 +76,4 @@ TEST(MatrixKeys, KeyPlaceHoldsAtBothEnds) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::matrix_keys_test

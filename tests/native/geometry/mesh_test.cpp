@@ -5,7 +5,7 @@
 
 #include "scene/scene_fixture.h"
 
-namespace gradus::test {
+namespace gradus::test::mesh_test {
 namespace {
 
 // A quad of two triangles over four vertices, one face, in the layout of Blender.
@@ -182,4 +182,4 @@ TEST(Materials, SlotsBeyondTheLastUseTheLast) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::mesh_test

@@ -7,7 +7,7 @@
 #include "light/light_rays4.h"
 #include "path/segment.h"
 
-namespace gradus::test {
+namespace gradus::test::rays4_test {
 namespace {
 
 Vec3 lane(const geometry::Lanes3& v, int i) { return Vec3(v.x[i], v.y[i], v.z[i]); }
@@ -94,4 +94,4 @@ TEST_F(Rays4Test, ReachEmittersOfAllKindsLikeSingleShadowRays) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::rays4_test

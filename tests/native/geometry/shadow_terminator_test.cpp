@@ -8,7 +8,7 @@
 
 #include "support/path_scene.h"
 
-namespace gradus::test {
+namespace gradus::test::shadow_terminator_test {
 namespace {
 
 constexpr float kReplayed = 0.3f;
@@ -128,4 +128,4 @@ TEST(ShadowTerminator, BlackFacetsAtTheTerminatorOfACoarseBall) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::shadow_terminator_test

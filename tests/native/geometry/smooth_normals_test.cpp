@@ -9,7 +9,7 @@
 #include "gradus/gradus.h"
 #include "support/path_scene.h"
 
-namespace gradus {
+namespace gradus::smooth_normals_test {
 namespace {
 
 // An octahedron with shared vertices, stretched along z: by symmetry, every normal is the direction of its vertex.
@@ -105,4 +105,4 @@ TEST(SmoothNormals, Curvature) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::smooth_normals_test

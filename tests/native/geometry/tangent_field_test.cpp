@@ -6,7 +6,7 @@
 
 #include "gradus/gradus.h"
 
-namespace gradus {
+namespace gradus::tangent_field_test {
 namespace {
 
 // Returns smooth triangles with shared vertices, with a UV map by corner.
@@ -82,4 +82,4 @@ TEST(TangentField, TrianglesWithoutAreaOnTheMapUseTheirNeighbours) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::tangent_field_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gradus {
+namespace gradus::decoupling_test {
 namespace {
 
 struct Part {
@@ -73,4 +73,4 @@ TEST(ClassMatch, SharesTheOverlapOfTheIntervals) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::decoupling_test

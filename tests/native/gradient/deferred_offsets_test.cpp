@@ -4,7 +4,7 @@
 #include "gradient/gradient_integrator.h"
 #include "support/path_scene.h"
 
-namespace gradus {
+namespace gradus::deferred_offsets_test {
 namespace {
 
 // Renders a box with a point light that lights paths of at most this many bounces, and returns the counters.
@@ -33,4 +33,4 @@ TEST(DeferredOffsets, TraceNoConnectionBehindWhichNothingEmits) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::deferred_offsets_test

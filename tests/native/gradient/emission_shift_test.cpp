@@ -9,7 +9,7 @@
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::emission_shift_test {
 namespace {
 
 using DVec3 = glm::dvec3;
@@ -65,7 +65,7 @@ TEST_P(B4_LightPointCopy, JacobianAndInverse) {
   scene.camera(Vec3(0, 0, 3), Vec3(0), 1.0f);
   const integrator::IntegratorContext context = scene.context(test::test_settings(4, 4));
   const scene::Snapshot& snapshot = *context.snapshot;
-  testing::Random random(7);
+  test::Random random(7);
   const auto direction = [&] {
     const float z = 2.0f * random.get() - 1.0f, angle = 2.0f * kPi * random.get(),
                 radius = std::sqrt(std::max(0.0f, 1.0f - z * z));
@@ -105,4 +105,4 @@ INSTANTIATE_TEST_SUITE_P(All, B4_LightPointCopy,
                                            Kind::Mesh));
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::emission_shift_test

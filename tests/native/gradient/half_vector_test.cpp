@@ -12,7 +12,7 @@
 #include "gradient/reconnection.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::half_vector_test {
 namespace {
 
 using DVec3 = glm::dvec3;
@@ -323,4 +323,4 @@ TEST(B4_Shift, SmallestRotationIsUndoneByItsInverse) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::half_vector_test

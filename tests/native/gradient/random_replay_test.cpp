@@ -9,7 +9,7 @@
 #include "gradient/random_replay.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::random_replay_test {
 namespace {
 
 bsdf::Lobe lobe(bsdf::LobeType type, float alpha, float weight) {
@@ -157,4 +157,4 @@ TEST(B4_Replay, AnotherKindOfBounceIsRefusedInBothDirections) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::random_replay_test

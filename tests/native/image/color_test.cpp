@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 
-namespace gradus::testing {
+namespace gradus::test::color_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -158,4 +158,4 @@ TEST_F(F5_ColorConfig, BlendersConfiguration) {
 }
 
 }  // namespace
-}  // namespace gradus::testing
+}  // namespace gradus::test::color_test

@@ -9,7 +9,7 @@
 #include "image/image_test_support.h"
 #include "support/chi_square.h"
 
-namespace gradus::testing {
+namespace gradus::test::image_damage_test {
 namespace {
 
 void expect_fallback(const StoredImage& image, const std::string& path) {
@@ -112,4 +112,4 @@ TEST(F2_ImageFuzz, DamageNeverCrashes) {
 }
 
 }  // namespace
-}  // namespace gradus::testing
+}  // namespace gradus::test::image_damage_test

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "image/image_test_support.h"
 
-namespace gradus::testing {
+namespace gradus::test::image_lookup_test {
 namespace {
 
 // Two texels: black on the left, white on the right.
@@ -218,4 +218,4 @@ TEST(ImageLookup, KeysReplaceAndKeepTheirIndex) {
 }
 
 }  // namespace
-}  // namespace gradus::testing
+}  // namespace gradus::test::image_lookup_test

@@ -7,7 +7,7 @@
 
 #include "image/image_test_support.h"
 
-namespace gradus::testing {
+namespace gradus::test::image_readers_test {
 namespace {
 
 void expect_color(const StoredImage& image, float u, float v, const Vec4& expected, float tolerance) {
@@ -210,4 +210,4 @@ TEST(F3_ImageReaders, FalseSizesAreRefused) {
 }
 
 }  // namespace
-}  // namespace gradus::testing
+}  // namespace gradus::test::image_readers_test

@@ -12,7 +12,7 @@
 #include "image/image_store.h"
 #include "support/image_files.h"
 
-namespace gradus::testing {
+namespace gradus::test {
 
 // A material whose emission is an image.
 class ImageMaterial {
@@ -83,4 +83,4 @@ inline std::string write_temporary(const std::string& name, const FileBytes& byt
   return path;
 }
 
-}  // namespace gradus::testing
+}  // namespace gradus::test

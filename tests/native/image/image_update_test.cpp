@@ -6,7 +6,7 @@
 #include "scene/scene_fixture.h"
 #include "scene/scene_state.h"
 
-namespace gradus::test {
+namespace gradus::test::image_update_test {
 namespace {
 
 constexpr uint64_t kKey = 7;
@@ -56,7 +56,7 @@ TEST(ImageUpdate, OnlyMaterialsThatUseTheImageAreCompiledAgain) {
   state.images[kKey] = {grey(0), nullptr};
   state.materials[kPlain] =
       std::make_shared<const scene::MaterialSource>(MaterialDesc(GRADUS_OP_DIFFUSE, Rgb(0.5f)).desc());
-  state.materials[kShown] = std::make_shared<const scene::MaterialSource>(testing::ImageMaterial(kKey).desc());
+  state.materials[kShown] = std::make_shared<const scene::MaterialSource>(test::ImageMaterial(kKey).desc());
   const auto compiled = [&] {
     committed_value(&state);
     const CommitMonitor monitor(nullptr, nullptr);
@@ -73,4 +73,4 @@ TEST(ImageUpdate, OnlyMaterialsThatUseTheImageAreCompiledAgain) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::image_update_test

@@ -7,7 +7,7 @@
 #include "gradient/gradient_integrator.h"
 #include "support/path_scene.h"
 
-namespace gradus {
+namespace gradus::cancel_test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -37,4 +37,4 @@ TEST(K2_Cancel, IntegratorsStopBetweenSamples) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::cancel_test

@@ -8,7 +8,7 @@
 #include "gradient/gradient_integrator.h"
 #include "support/path_scene.h"
 
-namespace gradus {
+namespace gradus::components_test {
 namespace {
 
 using test::PathScene;
@@ -204,4 +204,4 @@ TEST(Components, AMirrorShowsReflectionsAndNoEmission) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::components_test

@@ -9,7 +9,7 @@
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::double_gradient_test {
 namespace {
 
 using Image = std::vector<double>;
@@ -140,4 +140,4 @@ INSTANTIATE_TEST_SUITE_P(All, B8_DoubleGradients,
                          });
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::double_gradient_test

@@ -10,7 +10,7 @@
 #include "support/path_scene.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::double_test {
 namespace {
 
 using test::Scenario;
@@ -104,4 +104,4 @@ INSTANTIATE_TEST_SUITE_P(All, B8_Strategies,
                          kName);
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::double_test

@@ -8,7 +8,7 @@
 #include "schema/pass_table.h"
 #include "support/path_scene.h"
 
-namespace gradus {
+namespace gradus::features_test {
 namespace {
 
 using test::PathScene;
@@ -157,4 +157,4 @@ INSTANTIATE_TEST_SUITE_P(By, SeenFeatures, ::testing::Bool(),
                          [](const ::testing::TestParamInfo<bool>& info) { return info.param ? "Gradients" : "Paths"; });
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::features_test

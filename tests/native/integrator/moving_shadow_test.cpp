@@ -6,7 +6,7 @@
 #include "gradient/gradient_integrator.h"
 #include "support/path_scene.h"
 
-namespace gradus::test {
+namespace gradus::test::moving_shadow_test {
 namespace {
 
 constexpr uint32_t kWidth = 24, kHeight = 4;
@@ -53,4 +53,4 @@ TEST(MovingShadow, LightsAreSampledAtTheTimeOfThePath) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::moving_shadow_test

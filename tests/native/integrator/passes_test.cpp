@@ -12,7 +12,7 @@
 #include "support/light_sum.h"
 #include "support/path_scene.h"
 
-namespace gradus {
+namespace gradus::passes_test {
 namespace {
 
 using test::Scenario;
@@ -133,4 +133,4 @@ TEST(Holdout, IsTransparentInAnOpaqueFilmToo) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::passes_test

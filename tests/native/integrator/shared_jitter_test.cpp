@@ -8,7 +8,7 @@
 #include "integrator/pixel_loop.h"
 #include "support/path_scene.h"
 
-namespace gradus {
+namespace gradus::shared_jitter_test {
 namespace {
 
 using test::PathScene;
@@ -91,4 +91,4 @@ TEST(SharedJitter, OffsetPathsUseTheCameraRaysOfTheirPixels) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::shared_jitter_test

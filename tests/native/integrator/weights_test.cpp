@@ -8,7 +8,7 @@
 #include "path/light.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::weights_test {
 namespace {
 
 // A path x and its shift y, with the densities of light and BSDF sampling at both and the Jacobian.
@@ -90,4 +90,4 @@ TEST(B4_Shift, SwapNegates) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::weights_test

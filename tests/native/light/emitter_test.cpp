@@ -5,7 +5,7 @@
 #include "light/light_table.h"
 #include "scene/scene_fixture.h"
 
-namespace gradus::test {
+namespace gradus::test::emitter_test {
 namespace {
 
 Mat4 random_pose(std::mt19937& random, float extent) {
@@ -344,4 +344,4 @@ TEST(E4_ManyLights, HundredThousandTrianglesAreBetterChosenThanUniformly) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::emitter_test

@@ -11,12 +11,12 @@
 #include "shading/shade.h"
 #include "support/chi_square.h"
 
-namespace gradus::test {
+namespace gradus::test::light_chi_square_test {
 namespace {
 
-using gradus::testing::chi_square_sphere;
-using gradus::testing::ChiSquareOptions;
-using gradus::testing::ChiSquareResult;
+using gradus::test::chi_square_sphere;
+using gradus::test::ChiSquareOptions;
+using gradus::test::ChiSquareResult;
 
 double density(const scene::Snapshot& snapshot, const light::Receiver& receiver, const Vec3& direction) {
   double sum = 0.0;
@@ -243,4 +243,4 @@ TEST(A3_LightSampling, AllKindsTogether) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::light_chi_square_test

@@ -6,7 +6,7 @@
 #include "light/light_sampling.h"
 #include "scene/scene_fixture.h"
 
-namespace gradus::test {
+namespace gradus::test::light_units_test {
 namespace {
 
 const Mat4 kDown(1.0f);  // emits along -Z
@@ -181,4 +181,4 @@ TEST(LightUnits, ConstantWorld) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::light_units_test

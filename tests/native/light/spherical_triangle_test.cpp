@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gradus {
+namespace gradus::spherical_triangle_test {
 namespace {
 
 using Corners = std::array<Vec3, 3>;
@@ -72,4 +72,4 @@ TEST(SphericalTriangle, DirectionsFindTheirBarycentricCoordinates) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::spherical_triangle_test

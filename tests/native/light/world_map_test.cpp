@@ -7,7 +7,7 @@
 #include "scene/scene_fixture.h"
 #include "shading/shade.h"
 
-namespace gradus {
+namespace gradus::world_map_test {
 namespace {
 
 using namespace test;
@@ -151,4 +151,4 @@ TEST(WorldMap, IsKeptWhileTheWorldIsUnchanged) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::world_map_test

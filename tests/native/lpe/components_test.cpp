@@ -7,7 +7,7 @@
 
 #include "support/refusal.h"
 
-namespace gradus {
+namespace gradus::components_test {
 namespace {
 
 // Returns all paths, as strings of events, of up to `maximum` scattering events.
@@ -173,4 +173,4 @@ TEST(Components, RefuseInvalidPaths) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::components_test

@@ -4,7 +4,7 @@
 #include "motion/component_tracking.h"
 #include "render/component_replay.h"
 
-namespace gradus {
+namespace gradus::component_correspondence_test {
 namespace {
 
 // A row of six pixels, some of which have a chain.
@@ -137,4 +137,4 @@ TEST(ComponentReplays, AreNoneWhereAllFollowTheSurface) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::component_correspondence_test

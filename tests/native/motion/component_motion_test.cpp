@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "motion/motion_scene.h"
 
-namespace gradus::test {
+namespace gradus::test::component_motion_test {
 namespace {
 
 class ComponentMotionTest : public MotionTest {
@@ -198,4 +198,4 @@ TEST_F(ComponentMotionTest, CanBeCancelled) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::component_motion_test

@@ -6,7 +6,7 @@
 
 #include "motion/motion_scene.h"
 
-namespace gradus::test {
+namespace gradus::test::component_tracking_test {
 namespace {
 
 // The film is higher than a band.
@@ -91,4 +91,4 @@ TEST_F(ComponentTracking, IsHiddenByAnObjectThatAppears) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::component_tracking_test

@@ -4,7 +4,7 @@
 #include "motion/chain_view.h"
 #include "motion/motion_scene.h"
 
-namespace gradus::test {
+namespace gradus::test::film_search_test {
 namespace {
 
 class FilmSearchTest : public MotionTest {
@@ -45,4 +45,4 @@ TEST_F(FilmSearchTest, EndsWhereTheImageLeavesItsMirror) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::film_search_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gradus {
+namespace gradus::flow_levels_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -68,4 +68,4 @@ TEST(FlowLevels, AnyNumbersGiveLevels) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::flow_levels_test

@@ -3,7 +3,7 @@
 
 #include "motion/motion_scene.h"
 
-namespace gradus::test {
+namespace gradus::test::hard_motion_test {
 namespace {
 
 class HardMotion : public MotionTest {
@@ -213,4 +213,4 @@ TEST_F(PanoramaMotion, ItsSeamIsNoEdge) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::hard_motion_test

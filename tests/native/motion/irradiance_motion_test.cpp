@@ -10,7 +10,7 @@
 #include "motion/flow_scene.h"
 #include "support/threads.h"
 
-namespace gradus {
+namespace gradus::irradiance_motion_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -357,4 +357,4 @@ TEST(IrradianceMotion, BitsDoNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::irradiance_motion_test

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/temporary_folder.h"
 
-namespace gradus {
+namespace gradus::optical_flow_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -165,4 +165,4 @@ TEST_F(FakeFlow, VectorsAreNoLongerThanTheImage) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::optical_flow_test

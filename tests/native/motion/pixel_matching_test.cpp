@@ -7,7 +7,7 @@
 
 #include "support/path_scene.h"
 
-namespace gradus::test {
+namespace gradus::test::pixel_matching_test {
 namespace {
 
 constexpr int kSize = 32;  // pixels of a side, over 4 m
@@ -171,4 +171,4 @@ TEST_F(CorrespondingFrames, C8_AShotChangeIsNoMotion) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::pixel_matching_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gradus {
+namespace gradus::silhouettes_test {
 namespace {
 
 constexpr int kSize = 20;
@@ -52,4 +52,4 @@ TEST(Silhouettes, AnEmptyFilmHasNone) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::silhouettes_test

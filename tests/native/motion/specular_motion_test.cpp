@@ -3,7 +3,7 @@
 
 #include "motion/motion_scene.h"
 
-namespace gradus::test {
+namespace gradus::test::specular_motion_test {
 namespace {
 
 using SpecularMotion = MotionTest;
@@ -229,4 +229,4 @@ TEST_F(SpecularMotion, MotionBlurDoesNotChangeIt) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::specular_motion_test

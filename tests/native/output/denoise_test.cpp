@@ -13,7 +13,7 @@
 #include "base/error.h"
 #include "output/denoise.h"
 
-namespace gradus {
+namespace gradus::denoise_test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -254,4 +254,4 @@ TEST(HostDenoiserDeathTest, RemovesNoise) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::denoise_test

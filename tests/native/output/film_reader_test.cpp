@@ -6,7 +6,7 @@
 #include "render/fake_integrator.h"
 #include "scene/scene_fixture.h"
 
-namespace gradus::test {
+namespace gradus::test::film_reader_test {
 namespace {
 
 constexpr uint32_t kSide = 16;
@@ -68,4 +68,4 @@ TEST_F(DevelopedOnce, OtherOptionsReplaceThePicture) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::film_reader_test

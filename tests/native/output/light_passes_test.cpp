@@ -11,7 +11,7 @@
 #include "schema/pass_table.h"
 #include "support/light_sum.h"
 
-namespace gradus {
+namespace gradus::light_passes_test {
 namespace {
 
 using test::PathScene;
@@ -183,4 +183,4 @@ TEST(LightPasses, OfACancelledRenderAreThoseSampled) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::light_passes_test

@@ -11,7 +11,7 @@
 #include "schema/pass_table.h"
 #include "support/threads.h"
 
-namespace gradus::test {
+namespace gradus::test::pass_read_test {
 namespace {
 
 constexpr Region kSampled{-20, -10, 310, 260}, kRead{5, 3, 295, 247};  // more rows than one task reads
@@ -126,4 +126,4 @@ TEST(PassRead, EveryPassHasTheSameBitsForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::pass_read_test

@@ -5,7 +5,7 @@
 
 #include "output/upsample.h"
 
-namespace gradus {
+namespace gradus::upsample_test {
 namespace {
 
 // Returns a picture of size `small` whose pixels show f at the film positions of `full` where their centres lie.
@@ -72,4 +72,4 @@ TEST(Enlarge, ConstantsStayInImagesOfAnySize) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::upsample_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gradus {
+namespace gradus::sampler_test {
 namespace {
 
 path::SampleKey key_of(uint32_t seed, uint32_t stream, uint32_t index) {
@@ -160,4 +160,4 @@ TEST(Sampler, IndependentValuesHaveTheVarianceOfRandomNumbers) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::sampler_test

@@ -6,7 +6,7 @@
 #include "shading/program_builder.h"
 #include "support/path_scene.h"
 
-namespace gradus {
+namespace gradus::segment_test {
 namespace {
 
 using test::PathScene;
@@ -170,4 +170,4 @@ TEST(Segment, AWallJustBeforeTheOtherVertexBlocksTheConnection) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::segment_test

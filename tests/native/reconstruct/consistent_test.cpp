@@ -4,7 +4,7 @@
 #include "reconstruct/test_images.h"
 #include "support/threads.h"
 
-namespace gradus {
+namespace gradus::consistent_test {
 namespace {
 
 using namespace test;
@@ -86,4 +86,4 @@ TEST_F(Consistent, L1_SameBitsForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::consistent_test

@@ -14,7 +14,7 @@
 #include "support/refusal.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::error_estimate_test {
 namespace {
 
 using test::mean;
@@ -157,4 +157,4 @@ TEST(ErrorEstimate, AndReconstructionRefuseFilmsWithoutNeededPlanes) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::error_estimate_test

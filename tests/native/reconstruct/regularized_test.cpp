@@ -8,7 +8,7 @@
 #include "reconstruct/regression/regression_error.h"
 #include "support/threads.h"
 
-namespace gradus {
+namespace gradus::regularized_test {
 namespace {
 
 using namespace test;
@@ -577,4 +577,4 @@ TEST(B2_Regularized, AComponentWithoutLightIsBlack) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::regularized_test

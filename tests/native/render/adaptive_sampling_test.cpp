@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gradus {
+namespace gradus::adaptive_sampling_test {
 namespace {
 
 constexpr int kCells = 7, kMiddle = 3;
@@ -50,4 +50,4 @@ TEST_F(RowOfBlocks, NeighboursOfANoisyBlockTakeMoreThanThoseFurtherAway) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::adaptive_sampling_test

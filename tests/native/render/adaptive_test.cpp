@@ -6,7 +6,7 @@
 #include "render/fake_integrator.h"
 #include "render/resume.h"
 
-namespace gradus {
+namespace gradus::adaptive_test {
 namespace {
 
 using namespace test;
@@ -214,4 +214,4 @@ TEST(Adaptive, SamplesThatBlocksLeaveAreSaved) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::adaptive_test

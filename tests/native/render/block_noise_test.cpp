@@ -8,7 +8,7 @@
 #include "reconstruct/feature_film.h"
 #include "reconstruct/reconstruct_film.h"
 
-namespace gradus {
+namespace gradus::block_noise_test {
 namespace {
 
 const CancelCheck kNever = [] { return false; };
@@ -80,4 +80,4 @@ TEST(BlockNoise, OfThePictureIsTheSumOfThePass) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::block_noise_test

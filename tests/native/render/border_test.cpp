@@ -10,7 +10,7 @@
 #include "support/developed.h"
 #include "support/path_scene.h"
 
-namespace gradus {
+namespace gradus::border_test {
 namespace {
 
 using test::Scenario;
@@ -110,4 +110,4 @@ INSTANTIATE_TEST_SUITE_P(All, L3_Border,
                          [](const ::testing::TestParamInfo<Scenario>& info) { return test::name_of(info.param); });
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::border_test

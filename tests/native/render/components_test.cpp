@@ -21,7 +21,7 @@
 #include "schema/pass_table.h"
 #include "support/refusal.h"
 
-namespace gradus {
+namespace gradus::components_test {
 namespace {
 
 using test::PathScene;
@@ -691,4 +691,4 @@ TEST(Components, ThatAreClampedAddUpToTheClampedPicture) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::components_test

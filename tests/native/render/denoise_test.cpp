@@ -13,7 +13,7 @@
 #include "render/fake_integrator.h"
 #include "scene/device.h"
 
-namespace gradus {
+namespace gradus::denoise_test {
 namespace {
 
 using namespace test;
@@ -299,4 +299,4 @@ TEST_F(DenoisedRender, IsRefusedBeforeTheFirstSampleIfMissing) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::denoise_test

@@ -6,7 +6,7 @@
 #include "render/plan.h"
 #include "support/statistics.h"
 
-namespace gradus {
+namespace gradus::error_pass_test {
 namespace {
 
 using namespace test;
@@ -107,4 +107,4 @@ TEST(ErrorPass, IsReportedWhenItIsSkipped) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::error_pass_test

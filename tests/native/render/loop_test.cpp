@@ -8,7 +8,7 @@
 #include "render/resume.h"
 #include "support/refusal.h"
 
-namespace gradus {
+namespace gradus::loop_test {
 namespace {
 
 using namespace test;
@@ -423,4 +423,4 @@ TEST(Loop, AlphaAndExposureReachTheImage) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::loop_test

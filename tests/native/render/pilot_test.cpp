@@ -9,7 +9,7 @@
 #include "render/pilot.h"
 #include "schema/options.h"
 
-namespace gradus {
+namespace gradus::pilot_test {
 namespace {
 
 using namespace test;
@@ -263,4 +263,4 @@ TEST(Pilot, AutoDecidesAndReportsWhy) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::pilot_test

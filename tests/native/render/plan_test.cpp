@@ -10,7 +10,7 @@
 #include "schema/pass_table.h"
 #include "support/path_scene.h"
 
-namespace gradus {
+namespace gradus::plan_test {
 namespace {
 
 using namespace test;
@@ -226,4 +226,4 @@ TEST(Plan, NoCameraIsAnError) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::plan_test

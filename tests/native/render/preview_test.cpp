@@ -13,7 +13,7 @@
 #include "scene/device.h"
 #include "support/path_scene.h"
 
-namespace gradus {
+namespace gradus::preview_test {
 namespace {
 
 using namespace test;
@@ -519,4 +519,4 @@ TEST_F(WatchedScene, TheReconstructionIsCloserToTheTruthThanTheSamplesSoFar) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::preview_test

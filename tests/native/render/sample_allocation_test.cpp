@@ -6,7 +6,7 @@
 
 #include "render/sample_allocation.h"
 
-namespace gradus {
+namespace gradus::sample_allocation_test {
 namespace {
 
 constexpr int64_t kPixels = 256;
@@ -95,4 +95,4 @@ TEST(SampleShares, TheErrorIsBelowThatOfEqualShares) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::sample_allocation_test

@@ -7,7 +7,7 @@
 #include "render/fake_integrator.h"
 #include "support/path_scene.h"
 
-namespace gradus::test {
+namespace gradus::test::stats_test {
 namespace {
 
 nlohmann::json warnings_of(const render::RenderStats& stats) {
@@ -59,4 +59,4 @@ TEST(Stats, AStrictRenderRefusesWhatIsLeftOutAndNotWhatIsNoisy) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::stats_test

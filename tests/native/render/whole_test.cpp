@@ -10,7 +10,7 @@
 #include "shading/program_builder.h"
 #include "support/path_scene.h"
 
-namespace gradus {
+namespace gradus::whole_test {
 namespace {
 
 constexpr uint32_t kWidth = 160, kHeight = 120;
@@ -67,4 +67,4 @@ TEST(L6_Whole, APictureWithAllPassesIsFinite) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::whole_test

@@ -13,7 +13,7 @@
 #include "light/light_table.h"
 #include "scene_fixture.h"
 
-namespace gradus::test {
+namespace gradus::test::bad_data_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -274,4 +274,4 @@ TEST(Cancel, StopsABuildAndKeepsTheLastSnapshot) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::bad_data_test

@@ -7,7 +7,7 @@
 #include "scene/scene_fixture.h"
 #include "support/image_files.h"
 
-namespace gradus::test {
+namespace gradus::test::content_key_test {
 namespace {
 
 void set_image_file(uint64_t key, const std::string& path, scene::Scene* scene) {
@@ -25,7 +25,7 @@ void set_image_file(uint64_t key, const std::string& path, scene::Scene* scene) 
 constexpr uint64_t kFirstPicture = 1, kSecondPicture = 2;
 
 std::string picture_path(uint64_t which) {
-  return gradus::testing::write_temporary("content_key_" + std::to_string(which) + ".exr", {uint8_t(which)});
+  return gradus::test::write_temporary("content_key_" + std::to_string(which) + ".exr", {uint8_t(which)});
 }
 
 struct Names {
@@ -41,7 +41,7 @@ uint64_t key_of(const Names& names) {
   scene.material(names.plain, MaterialDesc(GRADUS_OP_DIFFUSE, Rgb(0.5f)));
   for (const auto& [name, picture] : {std::pair(names.first, kFirstPicture), std::pair(names.second, kSecondPicture)}) {
     set_image_file(name, picture_path(picture), &scene.scene);
-    scene.scene.set_material(name, testing::ImageMaterial(name).desc());
+    scene.scene.set_material(name, test::ImageMaterial(name).desc());
   }
   scene.instance(names.small, Mat4(1.0f), GRADUS_VISIBLE_ALL, names.plain);
   scene.instance(names.large, translation(Vec3(5, 0, 0)), GRADUS_VISIBLE_ALL, names.first);
@@ -83,10 +83,10 @@ TEST(C7_ContentKey, AnImageThatIsRewrittenUnderItsNameChangesIt) {
   TestScene scene;
   scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 4, 8));
   scene.instance(1, Mat4(1.0f), GRADUS_VISIBLE_ALL, 2);
-  const auto key_with = [&](const gradus::testing::FileBytes& bytes) {
-    const std::string path = gradus::testing::write_temporary("content_key_rewritten.exr", bytes);
+  const auto key_with = [&](const gradus::test::FileBytes& bytes) {
+    const std::string path = gradus::test::write_temporary("content_key_rewritten.exr", bytes);
     set_image_file(3, path, &scene.scene);
-    scene.scene.set_material(2, testing::ImageMaterial(3).desc());
+    scene.scene.set_material(2, test::ImageMaterial(3).desc());
     const uint64_t key = scene.commit()->content_key;
     std::remove(path.c_str());
     return key;
@@ -97,4 +97,4 @@ TEST(C7_ContentKey, AnImageThatIsRewrittenUnderItsNameChangesIt) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::content_key_test

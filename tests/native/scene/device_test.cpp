@@ -7,7 +7,7 @@
 
 #include "base/fpu.h"
 
-namespace gradus {
+namespace gradus::device_test {
 namespace {
 
 TEST(Device, TasksFlushDenormalsAndTheCallerKeepsItsState) {
@@ -40,4 +40,4 @@ TEST(Warnings, AreIssuedOnceAndInOrder) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::device_test

@@ -9,7 +9,7 @@
 #include "scene/device.h"
 #include "scene/scene_fixture.h"
 
-namespace gradus {
+namespace gradus::embree_error_test {
 namespace {
 
 using namespace test;
@@ -58,4 +58,4 @@ TEST(G5_Memory, AnErrorOfEmbreeOnAWorkerReachesTheCaller) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::embree_error_test

@@ -9,7 +9,7 @@
 #include "scene_fixture.h"
 #include "support/refusal.h"
 
-namespace gradus::test {
+namespace gradus::test::motion_test {
 namespace {
 
 Mat4 turn(float angle, const Vec3& axis) { return glm::rotate(Mat4(1.0f), angle, axis); }
@@ -196,4 +196,4 @@ TEST(Motion, InvalidKeysRemoveTheMotionOrTheTriangle) {
 TEST(Motion, WithoutAShutterNothingMoves) { EXPECT_FALSE(moving_spheres()->features.has_motion); }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::motion_test

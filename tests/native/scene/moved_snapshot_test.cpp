@@ -10,11 +10,11 @@
 #include "geometry/mesh.h"
 #include "scene/scene_fixture.h"
 
-namespace gradus::test {
+namespace gradus::test::moved_snapshot_test {
 namespace {
 
 // Three balls, the first of them static.
-class MovedSnapshot : public testing::Test {
+class MovedSnapshot : public ::testing::Test {
  protected:
   MovedSnapshot() {
     for (uint64_t i = 0; i < 3; ++i) {
@@ -121,4 +121,4 @@ TEST_F(MovedSnapshot, CanBeCancelled) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::moved_snapshot_test

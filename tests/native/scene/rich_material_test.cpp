@@ -4,7 +4,7 @@
 #include "scene_fixture.h"
 #include "shading/program_builder.h"
 
-namespace gradus::test {
+namespace gradus::test::rich_material_test {
 namespace {
 
 int mixed_with(ProgramBuilder* b, int surface, int layer) {
@@ -52,4 +52,4 @@ TEST(RichMaterial, SeventyBumpsCompile) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::rich_material_test

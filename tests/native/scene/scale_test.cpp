@@ -6,7 +6,7 @@
 #include "scene_fixture.h"
 #include "support/chi_square.h"
 
-namespace gradus::test {
+namespace gradus::test::scale_test {
 namespace {
 
 Soup floor_soup() {
@@ -47,7 +47,7 @@ std::vector<double> render(float scale, const Vec3& shift, bool instanced) {
   scene.scene.set_camera(look_down(place, scale));
   const auto snapshot = scene.commit();
   const camera::Camera camera(snapshot->camera, 64, 64);
-  gradus::testing::Random random(3);
+  gradus::test::Random random(3);
   std::vector<double> blocks(64);
   for (int i = 0; i < 64 * 64 * 16; ++i) {
     const int x = i % 64, y = i / 64 % 64;
@@ -101,4 +101,4 @@ TEST(D6_FarAway, DirectLightIsTheSame) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::scale_test

@@ -4,7 +4,7 @@
 #include "light/light_sampling.h"
 #include "scene_fixture.h"
 
-namespace gradus::test {
+namespace gradus::test::transmittance_test {
 namespace {
 
 Soup wall(float z) {
@@ -73,4 +73,4 @@ TEST(AnalyticLights, AProgramMultipliesTheStrength) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::transmittance_test

@@ -7,7 +7,7 @@
 
 #include "gradus/gradus.h"
 
-namespace gradus::schema {
+namespace gradus::schema::layout_test {
 namespace {
 
 TEST(H1_StructLayout, IsReportedByTheApi) {
@@ -67,4 +67,4 @@ TEST(H3_StructSize, OlderCallersGetDefaultsNewerAreRefused) {
 }
 
 }  // namespace
-}  // namespace gradus::schema
+}  // namespace gradus::schema::layout_test

@@ -6,7 +6,7 @@
 #include "bsdf/lobe.h"
 #include "shading/program_builder.h"
 
-namespace gradus::test {
+namespace gradus::test::many_closures_test {
 namespace {
 
 const Vec3 kWo = glm::normalize(Vec3(0.5f, 0.2f, 1.0f));
@@ -130,4 +130,4 @@ TEST(ManyClosures, CurvesOfFresnelThatDoNotMixKeepTheirAlbedo) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::many_closures_test

@@ -8,7 +8,7 @@
 #include "shading/program_builder.h"
 #include "shading/rotation.h"
 
-namespace gradus::test {
+namespace gradus::test::ops_test {
 namespace {
 
 void expect_near(const Rgb& a, const Rgb& b, float tolerance = 1e-5f) {
@@ -297,4 +297,4 @@ TEST(NodeClosures, EmissionUnderCoatIsTheSameAlone) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::ops_test

@@ -7,7 +7,7 @@
 
 #include "shading/closure_ops.h"
 
-namespace gradus::testing {
+namespace gradus::test::principled_values_test {
 namespace {
 
 // Sockets that the cases change, in the order of GRADUS_OP_PRINCIPLED.
@@ -252,4 +252,4 @@ TEST(A9_CyclesClosures, PrincipledAgrees) {
 }
 
 }  // namespace
-}  // namespace gradus::testing
+}  // namespace gradus::test::principled_values_test

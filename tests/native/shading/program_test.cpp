@@ -10,7 +10,7 @@
 #include "shading/program_builder.h"
 #include "shading/scalar.h"
 
-namespace gradus::test {
+namespace gradus::test::program_test {
 namespace {
 
 void expect_near(const Rgb& a, const Rgb& b, float tolerance = 1e-5f) {
@@ -361,4 +361,4 @@ TEST(NodeProgram, RandomProgramsDoNotCrash) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::program_test

@@ -13,7 +13,7 @@
 #include "shading/op_info.h"
 #include "shading/program_builder.h"
 
-namespace gradus::test {
+namespace gradus::test::reads_ray_test {
 namespace {
 
 constexpr uint64_t kMesh = 1, kMaterial = 2, kImage = 3;
@@ -262,4 +262,4 @@ TEST_F(OpsAtAPoint, ClosuresOfEqualLobesAreEqual) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::reads_ray_test

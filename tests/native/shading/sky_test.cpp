@@ -8,7 +8,7 @@
 #include "shading/program_builder.h"
 #include "shading/sky/sky.h"
 
-namespace gradus::test {
+namespace gradus::test::sky_test {
 namespace {
 
 constexpr uint32_t kModes = GRADUS_SKY_MULTIPLE_SCATTERING + 1;
@@ -190,4 +190,4 @@ TEST(Sky, TooManyAreRefused) {
 }
 
 }  // namespace
-}  // namespace gradus::test
+}  // namespace gradus::test::sky_test

@@ -16,7 +16,7 @@ Rgb lights_between(const scene::Snapshot& scene, const Ray& ray) {
 }
 
 // Samples a direction from all classes; false: absorbed. factor: f·|cos| over its density.
-bool scatter(const bsdf::Closures& closures, const Vec3& wo, testing::Random* random, Vec3* wi, Rgb* factor,
+bool scatter(const bsdf::Closures& closures, const Vec3& wo, test::Random* random, Vec3* wi, Rgb* factor,
              std::string* path) {
   float u = random->get();
   for (int k = 0; k < bsdf::kScatterClasses; ++k) {
@@ -38,7 +38,7 @@ bool scatter(const bsdf::Closures& closures, const Vec3& wo, testing::Random* ra
 
 }  // namespace
 
-void bsdf_only_path(const integrator::IntegratorContext& context, int x, int y, testing::Random* random,
+void bsdf_only_path(const integrator::IntegratorContext& context, int x, int y, test::Random* random,
                     const FoundLight& found_light) {
   const scene::Snapshot& scene = *context.snapshot;
   const Vec2 film = Vec2(float(x), float(y)) + random->get2();
@@ -68,7 +68,7 @@ void bsdf_only_path(const integrator::IntegratorContext& context, int x, int y, 
   }
 }
 
-Rgb bsdf_only_sample(const integrator::IntegratorContext& context, int x, int y, testing::Random* random) {
+Rgb bsdf_only_sample(const integrator::IntegratorContext& context, int x, int y, test::Random* random) {
   Rgb radiance(0.0f);
   bsdf_only_path(context, x, y, random, [&](const std::string&, const Rgb& light) { radiance += light; });
   return radiance;

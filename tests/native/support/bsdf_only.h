@@ -12,11 +12,11 @@
 namespace gradus::test {
 
 // Samples a pixel once with a box filter. Bounces are limited by max_bounces alone; surfaces must be opaque.
-Rgb bsdf_only_sample(const integrator::IntegratorContext& context, int x, int y, testing::Random* random);
+Rgb bsdf_only_sample(const integrator::IntegratorContext& context, int x, int y, test::Random* random);
 
 // Called for each contribution: the path as a string of events, and the light that it adds.
 using FoundLight = std::function<void(const std::string& path, const Rgb& light)>;
-void bsdf_only_path(const integrator::IntegratorContext& context, int x, int y, testing::Random* random,
+void bsdf_only_path(const integrator::IntegratorContext& context, int x, int y, test::Random* random,
                     const FoundLight& found_light);
 
 }  // namespace gradus::test

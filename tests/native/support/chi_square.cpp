@@ -4,7 +4,7 @@
 #include <numeric>
 #include <sstream>
 
-namespace gradus::testing {
+namespace gradus::test {
 namespace {
 
 // Returns Q(a, x) = Γ(a, x)/Γ(a): by a series below a + 1, by a continued fraction (Lentz) above.
@@ -224,4 +224,4 @@ ChiSquareResult chi_square_sphere(const std::function<bool(const Vec2&, const Ve
   return chi_square_counts(observed, expected, options.samples, invalid, options.tests);
 }
 
-}  // namespace gradus::testing
+}  // namespace gradus::test

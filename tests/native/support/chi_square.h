@@ -10,7 +10,7 @@
 
 #include "base/types.h"
 
-namespace gradus::testing {
+namespace gradus::test {
 
 struct ChiSquareResult {
   double statistic = 0.0;
@@ -64,4 +64,4 @@ class Random {
   uint64_t state_;
 };
 
-}  // namespace gradus::testing
+}  // namespace gradus::test

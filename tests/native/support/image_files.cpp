@@ -28,7 +28,7 @@
 #include <png.h>
 #include <tiffio.h>
 
-namespace gradus::testing {
+namespace gradus::test {
 namespace {
 
 Vec4 at(const Pattern& pattern, uint32_t width, uint32_t height, uint32_t x, uint32_t row_from_top) {
@@ -357,4 +357,4 @@ FileBytes make_hdr(uint32_t width, uint32_t height, const Pattern& pattern, bool
   return out;
 }
 
-}  // namespace gradus::testing
+}  // namespace gradus::test

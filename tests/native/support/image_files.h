@@ -8,7 +8,7 @@
 
 #include "base/types.h"
 
-namespace gradus::testing {
+namespace gradus::test {
 
 using FileBytes = std::vector<uint8_t>;
 
@@ -55,4 +55,4 @@ FileBytes make_deep_exr();
 // Returns an HDR file. runs: uses the newer run-length code, which requires a width of at least 8.
 FileBytes make_hdr(uint32_t width, uint32_t height, const Pattern& pattern, bool runs = true);
 
-}  // namespace gradus::testing
+}  // namespace gradus::test

@@ -59,7 +59,7 @@ double uniformity_p(const std::vector<double>& p_values) {
   constexpr int bins = 20;
   std::vector<double> observed(bins, 0.0), expected(bins, double(p_values.size()) / bins);
   for (const double p : p_values) observed[std::min(bins - 1, int(p * bins))] += 1.0;
-  return testing::chi_square_counts(observed, expected, p_values.size(), 0, 1).p_value;
+  return test::chi_square_counts(observed, expected, p_values.size(), 0, 1).p_value;
 }
 
 double sidak(size_t k) { return 1.0 - std::pow(1.0 - 0.01, 1.0 / double(k)); }

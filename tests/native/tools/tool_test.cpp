@@ -19,7 +19,7 @@
 #include "film_io/image_exr.h"
 #include "schema/pass_table.h"
 
-namespace gradus {
+namespace gradus::tool_test {
 namespace {
 
 using namespace test;
@@ -807,4 +807,4 @@ TEST_F(ToolSequence, WrongUsageIsNamed) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::tool_test

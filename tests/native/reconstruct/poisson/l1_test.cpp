@@ -5,7 +5,7 @@
 #include "reconstruct/poisson/twicing.h"
 #include "reconstruct/test_images.h"
 
-namespace gradus {
+namespace gradus::l1_test {
 namespace {
 
 using namespace test;
@@ -135,4 +135,4 @@ TEST(K2_Cancel, L1EndsAtOnce) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::l1_test

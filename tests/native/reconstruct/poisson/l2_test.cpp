@@ -9,7 +9,7 @@
 #include "schema/options.h"
 #include "support/threads.h"
 
-namespace gradus {
+namespace gradus::l2_test {
 namespace {
 
 using namespace test;
@@ -236,4 +236,4 @@ TEST(B2_Solver, L2OfAFilmHasTheBitsOfItsImagesChannelByChannel) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::l2_test

@@ -4,7 +4,7 @@
 #include "reconstruct/poisson/minimise_by_noise.h"
 #include "reconstruct/test_images.h"
 
-namespace gradus {
+namespace gradus::minimise_by_noise_test {
 namespace {
 
 using namespace test;
@@ -116,4 +116,4 @@ TEST(B2_ByNoise, WithoutKnownNoiseIsNearL2) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::minimise_by_noise_test

@@ -6,7 +6,7 @@
 #include "reconstruct/poisson/weighted_least_squares.h"
 #include "reconstruct/test_images.h"
 
-namespace gradus {
+namespace gradus::multigrid_test {
 namespace {
 
 using test::never;
@@ -184,4 +184,4 @@ TEST(B2_Multigrid, TheLimitOfStepsIsReported) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::multigrid_test

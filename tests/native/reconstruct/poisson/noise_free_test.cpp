@@ -4,7 +4,7 @@
 #include "reconstruct/poisson/noise_free.h"
 #include "reconstruct/test_images.h"
 
-namespace gradus {
+namespace gradus::noise_free_test {
 namespace {
 
 using namespace test;
@@ -103,4 +103,4 @@ TEST(NoiseFree, MissingPixelsAreNot) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::noise_free_test

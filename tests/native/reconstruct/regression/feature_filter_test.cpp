@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gradus {
+namespace gradus::feature_filter_test {
 namespace {
 
 constexpr int kWidth = 60, kHeight = 40;
@@ -184,4 +184,4 @@ TEST(FeatureFilter, ImagesOfOnePixelRowAndColumn) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::feature_filter_test

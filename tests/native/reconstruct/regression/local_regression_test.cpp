@@ -7,7 +7,7 @@
 #include "reconstruct/test_images.h"
 #include "support/threads.h"
 
-namespace gradus {
+namespace gradus::local_regression_test {
 namespace {
 
 using namespace test;
@@ -242,4 +242,4 @@ TEST(B1_Regression, SkipsBlackTiles) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::local_regression_test

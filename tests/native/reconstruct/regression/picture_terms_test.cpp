@@ -10,7 +10,7 @@
 #include "reconstruct/feature_film.h"
 #include "reconstruct/field_values.h"
 
-namespace gradus {
+namespace gradus::picture_terms_test {
 namespace {
 
 constexpr int kWidth = 40, kHeight = 30;
@@ -199,4 +199,4 @@ TEST(Partition, AddsUpForAnyTerms) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::picture_terms_test

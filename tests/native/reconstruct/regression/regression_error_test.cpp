@@ -6,7 +6,7 @@
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
 
-namespace gradus {
+namespace gradus::regression_error_test {
 namespace {
 
 constexpr int kWidth = 60, kHeight = 40;
@@ -67,4 +67,4 @@ TEST(A8_RegressionError, LostLightOfAHighlightDoesNotAddToTheDeliveredErrorOfThe
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::regression_error_test

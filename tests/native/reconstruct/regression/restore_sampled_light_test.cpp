@@ -5,7 +5,7 @@
 
 #include "reconstruct/field_values.h"
 
-namespace gradus {
+namespace gradus::restore_sampled_light_test {
 namespace {
 
 constexpr int kSize = 5, kCentre = 2;
@@ -56,4 +56,4 @@ TEST(B2_RestoreSampledLight, AllChannelsUseTheShareOfTheDarkest) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::restore_sampled_light_test

@@ -15,7 +15,7 @@
 #include "render/resume.h"
 #include "support/threads.h"
 
-namespace gradus {
+namespace gradus::regularized_windows_test {
 namespace {
 
 using namespace test;
@@ -450,4 +450,4 @@ TEST(B2_RegularizedWindow, EveryComponentFollowsItsOwnDisplacements) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::regularized_windows_test

@@ -13,7 +13,7 @@
 #include "reconstruct/regression/feature_filter.h"
 #include "reconstruct/space_time/regress_change.h"
 
-namespace gradus {
+namespace gradus::rounded_displacements_test {
 namespace {
 
 constexpr int kWidth = 40, kHeight = 30;
@@ -171,4 +171,4 @@ TEST(B2_RoundedDisplacements, AreNotInAChangeThatWasNotSampled) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::rounded_displacements_test

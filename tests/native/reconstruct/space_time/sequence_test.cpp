@@ -9,7 +9,7 @@
 #include "reconstruct/space_time/sequences.h"
 #include "reconstruct/space_time/window_solver.h"
 
-namespace gradus {
+namespace gradus::sequence_test {
 namespace {
 
 using namespace test;
@@ -199,4 +199,4 @@ TEST(B2_Windows, ReportTheErrorOfTheirPictures) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::sequence_test

@@ -12,7 +12,7 @@
 #include "reconstruct/space_time/window_solver.h"
 #include "support/threads.h"
 
-namespace gradus {
+namespace gradus::solver_test {
 namespace {
 
 using namespace test;
@@ -329,4 +329,4 @@ TEST(K2_Cancel, WindowsEndAtOnce) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::solver_test

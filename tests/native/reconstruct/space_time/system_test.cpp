@@ -6,7 +6,7 @@
 #include "reconstruct/space_time/solve_window.h"
 #include "reconstruct/space_time/weigh_uniformly.h"
 
-namespace gradus {
+namespace gradus::system_test {
 namespace {
 
 using namespace test;
@@ -180,4 +180,4 @@ TEST(B2_SpaceTime, TakesFewStepsForAnyMotion) {
 }
 
 }  // namespace
-}  // namespace gradus
+}  // namespace gradus::system_test
