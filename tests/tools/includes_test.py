@@ -42,6 +42,11 @@ def test_includes_of_folders_above_and_of_the_own_folder_are_allowed(tmp_path: P
     [
         ("scene/scene.h", '#include "api/device.h"\n' + SCENE, "scene/ may not include api/device.h"),
         ("scene/parts/part.h", '  #  include "film/film.h"\n' + SCENE, "scene/ may not include film/film.h"),
+        (
+            "reconstruct/poisson/l2.h",
+            '#include "reconstruct/regression/moments.h"\nnamespace gradus::reconstruct {\n}\n',
+            "reconstruct/poisson/ may not include reconstruct/regression/moments.h",
+        ),
         ("scene/scene.h", '#include "elsewhere/x.h"\n' + SCENE, "in no folder of the list"),
         ("scene/scene.h", "namespace gradus {\nstruct Scene;\n}\n", "declares nothing in namespace gradus::scene"),
         (

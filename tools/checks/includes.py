@@ -2,8 +2,9 @@
 
     includes.py [FOLDER]      default: native/src
 
-A folder may include itself and the folders above it in FOLDERS. Its files declare things in gradus::<folder>; those of
-base/ in gradus. A file may open the namespace of a folder above its own, for forward declarations.
+A folder may include itself and the folders above it in FOLDERS, and the folders of reconstruct/ those above them in
+RECONSTRUCTIONS. Its files declare things in gradus::<folder>; those of base/ in gradus. A file may open the namespace
+of a folder above its own, for forward declarations.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ FOLDERS = (
     "film", "film_io", "path", "integrator", "gradient", "reconstruct", "motion", "output", "render", "animation",
     "api",
 )  # fmt: skip
+RECONSTRUCTIONS = ("reconstruct/poisson", "reconstruct/regression", "reconstruct/space_time")
 ENDINGS = {".h", ".hpp", ".cpp", ".c"}
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -48,6 +50,8 @@ def problems_of(path: Path, source: Path) -> Iterator[str]:
                 yield f"{name}: includes {included}, which is in no folder of the list"
         elif target not in allowed:
             yield f"{name}: {folder}/ may not include {included}: {target}/ is below it"
+        elif is_below(str(Path(included).parent), str(name.parent)):
+            yield f"{name}: {name.parent}/ may not include {included}"
     opened = {match or "base" for match in NAMESPACE.findall(without_comments(text))}
     defines_c_api = path.suffix == ".c" or folder == "api" or 'extern "C"' in text
     if folder not in opened and not defines_c_api:
@@ -56,6 +60,12 @@ def problems_of(path: Path, source: Path) -> Iterator[str]:
         yield f"{name}: opens namespace gradus::{other}, which is not above {folder}/"
     if folder != "base" and "base" in opened:
         yield f"{name}: opens namespace gradus, which is that of base/"
+
+
+def is_below(included: str, folder: str) -> bool:
+    """Returns whether a folder of a reconstruction stands below another one."""
+    both_listed = included in RECONSTRUCTIONS and folder in RECONSTRUCTIONS
+    return both_listed and RECONSTRUCTIONS.index(included) > RECONSTRUCTIONS.index(folder)
 
 
 def without_comments(text: str) -> str:
