@@ -337,7 +337,10 @@ ROWS: tuple[dict[str, Any], ...] = (
             (
                 "AUTO",
                 "Automatic",
-                "Open Image Denoise where this Blender has it and a pixel takes at least 8 samples, nothing otherwise",
+                (
+                    "Open Image Denoise where this Blender has it and more samples would not reduce the error more,"
+                    " nothing otherwise"
+                ),
                 1,
             ),
             (
