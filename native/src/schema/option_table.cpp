@@ -124,8 +124,8 @@ constexpr Option kOptions[] = {
            "Removes remaining noise with Open Image Denoise, guided by the albedo and normals of surfaces. It adds "
            "about 7.5 CPU-µs per pixel, 15 CPU seconds at 1920×1080. It is biased: fine detail can vanish or be "
            "invented, and animations can flicker. none: Delivers the reconstruction as it is. auto: Open Image "
-           "Denoise where this Blender has it and a pixel takes at least 8 samples, nothing otherwise. oidn: Open "
-           "Image Denoise of this Blender, on the CPU. A Blender without it reports an error."),
+           "Denoise where this Blender has it and more samples would not reduce the error more, nothing otherwise. "
+           "oidn: Open Image Denoise of this Blender, on the CPU. A Blender without it reports an error."),
     OPTION(use_decomposition, GRADUS_OPTION_BOOL, 0, 0, 1, {}, true,
            "Splits the picture into components by the paths of light. Each is reconstructed by itself and has its own"
            " passes; they add up to Combined. Memory and reconstruction time grow with the number of components."),
