@@ -93,9 +93,9 @@ client::Sequence open(const client::Device& device, const ReconstructArguments& 
 uint64_t passes_of(const ReconstructArguments& args, const std::string& path) {
   if (args.passes.empty()) return 1;
   const std::shared_ptr<const film::Film> first = film_io::load_film(path);
-  const film::Film& frame = *first;
-  const uint64_t requested = parse_passes(args.passes), held = available_passes(frame, requested);
-  const bool has_error = schema::has_bit(frame.settings.passes,
+  const film::Film& film = *first;
+  const uint64_t requested = parse_passes(args.passes), held = available_passes(film, requested);
+  const bool has_error = schema::has_bit(film.settings.passes,
                                          GRADUS_PASS_ERROR);  // the error is estimated only if the render requested it
   return requested == kAllPasses && !has_error ? held & ~(uint64_t{1} << GRADUS_PASS_ERROR) : held;
 }
@@ -129,8 +129,8 @@ void write_picture(const client::Render& render, const PassesToWrite& wanted, co
   for (uint32_t pass = 0; pass < GRADUS_PASS_COUNT; ++pass) {
     if ((wanted.passes >> pass & 1) == 0) continue;
     const schema::PassInfo& info = schema::pass_info(pass);
-    layers.push_back({pass == GRADUS_PASS_COMBINED ? "" : info.name, info.letters,
-                      render.read_pass(pass, size_t(width) * height)});
+    layers.push_back(
+        {pass == GRADUS_PASS_COMBINED ? "" : info.name, info.letters, render.read_pass(pass, size_t(width) * height)});
   }
   const auto read = [&](const char* component, uint32_t pass, std::vector<float>* pixels) {
     client::check(gradus_render_read_component(render.id(), component, pass, pixels->data(), pixels->size()));
@@ -176,7 +176,7 @@ int reconstruct_sequence(const ReconstructArguments& args) {
   const Range requested = range_of(args.frames, stored);
   const std::vector<std::vector<int32_t>> chains = stored.chains(requested.first, requested.last);
   const std::string missing = stored.missing(requested.first, requested.last),
-                    unlinked = stored.unlinked(requested.first, requested.last);
+                    unrelated = stored.unrelated(requested.first, requested.last);
   if (chains.empty())
     throw client::Error(GRADUS_ERROR_INVALID_ARGUMENT, args.input + " holds none of the frames " + args.frames);
   if (!missing.empty()) {
@@ -191,8 +191,9 @@ int reconstruct_sequence(const ReconstructArguments& args) {
   const client::Device device(0, nullptr, args.denoiser_path.c_str());
   fs::create_directories(args.output);
   std::set<std::string> warnings;
-  if (!unlinked.empty())
-    warnings.insert("frames " + unlinked + " replay others than those before them, to which nothing links them");
+  if (!unrelated.empty())
+    warnings.insert("frames " + unrelated +
+                    " replay others than those before them: there is no pixel correspondence between them");
   for (const std::vector<int32_t>& chain : chains)
     write_chain({args, stored, device, of_files, wanted}, chain, &warnings);
   for (const std::string& text : warnings) std::fprintf(stderr, "warning: %s\n", text.c_str());

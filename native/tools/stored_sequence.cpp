@@ -123,9 +123,9 @@ StoredSequence::StoredSequence(const std::string& folder, const std::set<int32_t
   std::erase_if(frames_, [&](int32_t frame) { return left_out.count(frame) > 0; });
   if (frames_.empty()) {
     const bool has_none = fresh.empty() && numbers_in(folder, pattern_with("")).empty();
-    throw invalid_argument(folder +
-                           (has_none ? " holds no stored frames" + advice(folder)
-                                     : " holds stored frames, but none of a sequence: reconstruct them one by one"));
+    throw invalid_argument(folder + (has_none
+                                         ? " holds no stored films" + advice(folder)
+                                         : " holds stored films, but none of a sequence: reconstruct them one by one"));
   }
   for (const int32_t frame : frames_) {
     const film::FilmHeader header =
@@ -157,7 +157,7 @@ std::string StoredSequence::missing(int32_t first, int32_t last) const {
   return name_runs(joined(chains(first, last)), [&](int32_t frame) { return traits_.count(frame) == 0; });
 }
 
-bool StoredSequence::is_unlinked(int32_t frame) const {
+bool StoredSequence::is_unrelated(int32_t frame) const {
   const auto here = traits_.find(frame), before = traits_.find(frame - step_);
   if (here == traits_.end() || before == traits_.end()) return false;
   const animation::FrameTraits& form = here->second;
@@ -166,8 +166,8 @@ bool StoredSequence::is_unlinked(int32_t frame) const {
   return !follows || animation::follows_another_frame(before->second, form);
 }
 
-std::string StoredSequence::unlinked(int32_t first, int32_t last) const {
-  return name_runs(joined(chains(first, last)), [&](int32_t frame) { return frame > first && is_unlinked(frame); });
+std::string StoredSequence::unrelated(int32_t first, int32_t last) const {
+  return name_runs(joined(chains(first, last)), [&](int32_t frame) { return frame > first && is_unrelated(frame); });
 }
 
 FolderFaults find_faults(const std::string& folder) {

@@ -28,10 +28,10 @@ class StoredSequence {
   // Returns the expected frames that are not stored, for example "4, 7 to 9".
   std::string missing(int32_t first, int32_t last) const;
   // Returns the frames whose replayed samples do not belong to the frame that is stored before them, as a text.
-  std::string unlinked(int32_t first, int32_t last) const;
+  std::string unrelated(int32_t first, int32_t last) const;
 
  private:
-  bool is_unlinked(int32_t frame) const;
+  bool is_unrelated(int32_t frame) const;
 
   std::string folder_;
   std::vector<int32_t> frames_;

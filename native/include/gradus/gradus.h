@@ -795,7 +795,7 @@ GRADUS_API GradusError gradus_sequence_release(GradusSequence sequence);
 
 GRADUS_API GradusError gradus_film_save(GradusFilm film, const char* path);
 GRADUS_API GradusError gradus_film_load(GradusDevice device, const char* path, GradusFilm* film);
-/* Adds the samples of `other` to `frame`. Both have the same size, scene and sampling settings, and different sample
+/* Adds the samples of `other` to `film`. Both have the same size, scene and sampling settings, and different sample
  * numbers. The result equals rendering them together up to float rounding of the sums; equal bits need
  * gradus_render_resume. Sample numbers in between may be missing and be added later, but a render does not go on from
  * such a film. */
@@ -803,8 +803,9 @@ GRADUS_API GradusError gradus_film_merge(GradusFilm film, GradusFilm other);
 /* Returns the size of the delivered region, which read_pass and reconstruct return. */
 GRADUS_API GradusError gradus_film_size(GradusFilm film, uint32_t* width, uint32_t* height);
 /* Reconstructs Combined as RGBA. `alpha` is the weight of the primal against the gradients (0 = automatic) and
- * `denoiser` a GradusDenoiser; AUTO leaves out the denoiser if the film has fewer than 8 samples per pixel. `error`
- * receives pass Error as count / 4 floats and may be NULL. */
+ * `denoiser` a GradusDenoiser; AUTO leaves out the denoiser where more samples would reduce the error more. `error`
+ * receives pass Error as count / 4 floats and may be NULL. The handle keeps its last picture and its own Error for later
+ * readers. Readers with other options wait for each other and replace the picture; a merge blocks none of them. */
 GRADUS_API GradusError gradus_film_reconstruct(GradusFilm film, uint32_t reconstruction, float alpha,
                                                 uint32_t denoiser, float* rgba, size_t count, float* error);
 GRADUS_API GradusError gradus_film_read_pass(GradusFilm film, uint32_t pass, float* pixels, size_t count);

@@ -78,14 +78,14 @@ size_t place_of(const std::vector<FlowKind>& kinds, const output::DevelopedFilm&
 
 }  // namespace
 
-std::vector<FlowKind> wanted_flows(const film::Film& frame) {
+std::vector<FlowKind> wanted_flows(const film::Film& film) {
   std::vector<FlowKind> kinds;
-  const uint32_t passes = frame.settings.component_passes;
+  const uint32_t passes = film.settings.component_passes;
   const bool of_irradiance = schema::any_wanted(passes, schema::is_irradiance_motion);
   const bool of_residual =
       schema::has_bit(passes, GRADUS_COMPONENT_MOTION) || schema::has_bit(passes, GRADUS_COMPONENT_TRACKED);
-  for (size_t c = 0; c < frame.components.size(); ++c) {
-    if (of_residual && frame.components[c].name == lpe::kResidual) kinds.push_back({c, motion::FlowDomain::Linear});
+  for (size_t c = 0; c < film.components.size(); ++c) {
+    if (of_residual && film.components[c].name == lpe::kResidual) kinds.push_back({c, motion::FlowDomain::Linear});
     if (of_irradiance) kinds.push_back({c, motion::FlowDomain::Logarithmic});
   }
   return kinds;

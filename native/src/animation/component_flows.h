@@ -18,7 +18,7 @@ struct FlowKind {
   bool operator==(const FlowKind&) const = default;
 };
 // Returns the flows that the requested component passes of the film need, in the order of its components.
-std::vector<FlowKind> wanted_flows(const film::Film& frame);
+std::vector<FlowKind> wanted_flows(const film::Film& film);
 
 // Flows of a frame to the frame before or after it: one for each of its wanted_flows(), with one entry for each
 // delivered pixel. A flow without pixels is not known.

@@ -118,18 +118,18 @@ std::optional<film::FilmHeader> FrameSampling::stored(FrameSamples kind) const {
   GradusSettings settings = input_.settings;
   settings.frame = frame->frame_number;  // number of the first one of a series of identical frames
   if (settings.integrator == GRADUS_INTEGRATOR_AUTO)
-    settings.integrator = frame->settings.integrator;  // the stored frame holds what AUTO was resolved to
+    settings.integrator = frame->settings.integrator;  // the stored film holds what AUTO was resolved to
   require_same(*frame, kind, folder.path(number, kind), settings, input_.snapshot->content_key);
   return frame;
 }
 
 std::shared_ptr<film::Film> FrameSampling::read(FrameSamples kind, film_io::StoredContent content,
                                                 const CancelCheck& cancel) const {
-  std::shared_ptr<film::Film> frame;
+  std::shared_ptr<film::Film> film;
   tbb::task_arena(arena_size(input_.threads)).execute([&] {
-    frame = read_with_advice([&] { return sequence_->folder_.load(input_.settings.frame, kind, content, cancel); });
+    film = read_with_advice([&] { return sequence_->folder_.load(input_.settings.frame, kind, content, cancel); });
   });
-  return frame;
+  return film;
 }
 
 std::shared_ptr<film::Film> FrameSampling::load(FrameSamples kind, film_io::StoredContent content) {
@@ -161,11 +161,11 @@ void FrameSampling::run(render::RenderLoop* loop) {
   record_.stats.stopped = stopped.empty() ? loop->what_it_took().stopped : stopped;
 }
 
-void FrameSampling::save(const film::Film& frame, FrameSamples kind) {
+void FrameSampling::save(const film::Film& film, FrameSamples kind) {
   const ScopedTimer timer(&record_.stats.seconds.store, &record_.stats.cpu_seconds.store);
   const CancelCheck cancel = [this] { return is_stopped(); };
   tbb::task_arena(arena_size(input_.threads)).execute([&] {
-    sequence_->folder_.save(frame, input_.settings.frame, kind, cancel);
+    sequence_->folder_.save(film, input_.settings.frame, kind, cancel);
   });
 }
 

@@ -50,7 +50,7 @@ class FrameSampling final : public render::RenderTask {
   // taken, rather than read.
   void sample_replayed(const film::FilmHeader& fresh, const std::vector<uint32_t>& counts, bool samples_fresh);
   void run(render::RenderLoop* loop);
-  void save(const film::Film& frame, FrameSamples kind);
+  void save(const film::Film& film, FrameSamples kind);
   bool follows_before() const;
   // Whether stored replayed samples replay the frame that is the previous one now: a job with another step, range or
   // scene has another previous frame. True if the previous frame is not known.
@@ -67,7 +67,7 @@ class FrameSampling final : public render::RenderTask {
   render::RenderLoop fresh_;
   std::unique_ptr<render::RenderLoop> replayed_;
   double resumed_mean_ = 0.0;                       // stored fresh samples per pixel, to which new ones are added
-  mutable std::mutex reading_;                      // is held while a stored frame is read, so that it is read once
+  mutable std::mutex reading_;                      // is held while a stored film is read, so that it is read once
   mutable std::shared_ptr<const film::Film> film_;  // fresh samples; if stored, they are read on first use
   FrameRecord record_;
 };

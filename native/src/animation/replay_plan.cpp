@@ -20,43 +20,44 @@ bool follows(const PreviousFrame* before, const scene::Snapshot& now, const Grad
 
 namespace {
 
-using Sources = std::vector<film::PixelCorrespondence>;
+using Correspondences = std::vector<film::PixelCorrespondence>;
 
-// Returns the replay map of Residual. Its light is mostly seen in mirrors of mirrors, so it follows a component whose
-// motion differs from that of the surface, where there is one.
-film::PixelCorrespondence sources_of_residual(const film::PixelCorrespondence& surface, const Sources& others) {
-  film::PixelCorrespondence replay_map = surface;
+// Returns the pixel correspondence of Residual. Its light is mostly seen in mirrors of mirrors, so it follows a
+// component whose motion differs from that of the surface, where there is one.
+film::PixelCorrespondence correspondence_of_residual(const film::PixelCorrespondence& surface,
+                                                     const Correspondences& others) {
+  film::PixelCorrespondence residual = surface;
   for (const film::PixelCorrespondence& own : others) {
     for (size_t i = 0; i < own.pixel.size(); ++i) {
       if (own.pixel[i] == film::kNoCorrespondence || own.pixel[i] == surface.pixel[i] ||
-          replay_map.pixel[i] != surface.pixel[i])
+          residual.pixel[i] != surface.pixel[i])
         continue;
-      replay_map.pixel[i] = own.pixel[i];
-      replay_map.off_centre[i] = own.off_centre[i];
+      residual.pixel[i] = own.pixel[i];
+      residual.off_centre[i] = own.off_centre[i];
     }
   }
-  return replay_map;
+  return residual;
 }
 
-// Returns a replay map for each component that is seen through smooth surfaces; empty if there is none.
-Sources sources_of_components(const motion::CentreView& from, const motion::CentreView& to,
-                              const GradusSettings& settings, const lpe::ComponentSet& components,
-                              const film::PixelCorrespondence& correspondence, const film::PixelCorrespondence& surface,
-                              const CancelCheck& cancel) {
+// Returns the pixel correspondence of each component that is seen through smooth surfaces; empty if there is none.
+Correspondences correspondences_of_components(const motion::CentreView& from, const motion::CentreView& to,
+                                              const GradusSettings& settings, const lpe::ComponentSet& components,
+                                              const film::PixelCorrespondence& correspondence,
+                                              const film::PixelCorrespondence& surface, const CancelCheck& cancel) {
   if (components.count() == 1 || settings.component_replays == 0) return {};
-  Sources replay_map(static_cast<size_t>(components.count()));
+  Correspondences of_component(static_cast<size_t>(components.count()));
   const motion::ChainTracer tracer{*to.snapshot, to.camera, settings};
   const std::vector<motion::ChainMotion> motion =
       motion::track_components(from, tracer, components, components.all() & ~components.residual(), cancel);
   bool any = false;
   for (size_t c = 0; c < motion.size(); ++c) {
     if (!motion::is_seen_through_smooth(motion[c])) continue;
-    replay_map[c] = motion::inverse_correspondence(motion::match_component(correspondence, from.region, motion[c]));
+    of_component[c] = motion::inverse_correspondence(motion::match_component(correspondence, from.region, motion[c]));
     any = true;
   }
   if (!any) return {};
-  if (components.residual() != 0) replay_map.back() = sources_of_residual(surface, replay_map);
-  return replay_map;
+  if (components.residual() != 0) of_component.back() = correspondence_of_residual(surface, of_component);
+  return of_component;
 }
 
 }  // namespace
@@ -74,7 +75,7 @@ film::ReplayMap make_replay_map(const PreviousFrame& before, const scene::Snapsh
   film::ReplayMap replay_map{before.stream_frame, motion::inverse_correspondence(correspondence), scene.content_key,
                              before.settings.seed, shares};
   replay_map.of_component =
-      sources_of_components(from, to, settings, components, correspondence, replay_map.correspondence, cancel);
+      correspondences_of_components(from, to, settings, components, correspondence, replay_map.correspondence, cancel);
   render::limit_component_replays(&replay_map);
   return replay_map;
 }
@@ -87,9 +88,9 @@ std::vector<uint32_t> replayed_counts(const film::ReplayMap& replay_map, const P
   std::vector<uint32_t> counts(replay_map.correspondence.pixel.size(), uint32_t(std::max(1L, std::lround(mean))));
   if (!before || before->counts.empty()) return counts;
   for (size_t i = 0; i < counts.size(); ++i) {
-    const int32_t source = replay_map.correspondence.pixel[i];
-    if (source != film::kNoCorrespondence && !GRADUS_FAULT(replay_takes_mean_count))
-      counts[i] = before->counts[size_t(source)];
+    const int32_t replayed = replay_map.correspondence.pixel[i];
+    if (replayed != film::kNoCorrespondence && !GRADUS_FAULT(replay_takes_mean_count))
+      counts[i] = before->counts[size_t(replayed)];
   }
   return counts;
 }

@@ -30,10 +30,10 @@ uint32_t integrator_of(const GradusSettings& settings) {
   return by_features ? settings.integrator : uint32_t{GRADUS_INTEGRATOR_GRADIENT};
 }
 
-// Whether a stored frame has the samples that the sequence would take of the snapshot.
+// Whether a stored film has the samples that the sequence would take of the snapshot.
 bool is_frame_of(const film::FilmHeader& stored, const scene::Snapshot& snapshot, GradusSettings settings) {
   if (settings.integrator == GRADUS_INTEGRATOR_AUTO)
-    settings.integrator = stored.settings.integrator;  // the stored frame holds what AUTO was resolved to
+    settings.integrator = stored.settings.integrator;  // the stored film holds what AUTO was resolved to
   return stored.scene_key == snapshot.content_key && are_equivalent(stored.settings, settings) &&
          has_as_many(stored, FrameSamples::kFresh, settings);
 }
@@ -180,10 +180,10 @@ LoadSamples Sequence::load_samples(FrameSamples kind, const std::vector<std::str
   return [this, kind, components](int place, const CancelCheck& cancel) {
     return read_with_advice([&] {
       if (components.size() == 1) return folder_.load_component(frame_at(place), kind, components[0], cancel);
-      const std::shared_ptr<film::Film> frame =
+      const std::shared_ptr<film::Film> film =
           folder_.load(frame_at(place), kind, film_io::StoredContent::kAll, cancel);
-      film::select_components(components, frame.get());
-      return frame;
+      film::select_components(components, film.get());
+      return film;
     });
   };
 }
@@ -191,7 +191,7 @@ LoadSamples Sequence::load_samples(FrameSamples kind, const std::vector<std::str
 void Sequence::merge(int32_t number, film::Film* fresh, const film::Film& replayed) const {
   if (!film::can_add(*fresh, replayed) ||
       schema::sampling_key(fresh->settings) != schema::sampling_key(replayed.settings)) {
-    throw invalid_argument("stored frame " + folder_.path(number, FrameSamples::kFresh) +
+    throw invalid_argument("stored film " + folder_.path(number, FrameSamples::kFresh) +
                            " and its replayed samples do not belong together");
   }
   if (!GRADUS_FAULT(passes_read_fresh_samples_alone)) film::add_sums(fresh, replayed);
@@ -205,16 +205,16 @@ reconstruct::SequenceSource Sequence::source(const reconstruct::SequenceMethod& 
                                              const std::vector<std::string>& components) const {
   const LoadSamples fresh = load_samples(FrameSamples::kFresh, components),
                     replayed = load_samples(FrameSamples::kReplayed, components);
-  const auto merged = [this](int place, std::shared_ptr<film::Film> frame, const film::Film& replay) {
-    merge(frame_at(place), frame.get(), replay);
-    return frame;
+  const auto merged = [this](int place, std::shared_ptr<film::Film> fresh_film, const film::Film& replayed_film) {
+    merge(frame_at(place), fresh_film.get(), replayed_film);
+    return fresh_film;
   };
   const auto spooled = std::make_shared<SpooledFrames>(fresh, replayed, TemporalContent{.halves = method.with_error});
   const auto streamed = std::make_shared<StreamedFrames>(fresh, replayed, merged);
   return {[spooled](const reconstruct::FrameRange& window, const CancelCheck& cancel) {
             return spooled->window(window.first, window.last, cancel);
           },
-          [streamed](int place, const CancelCheck& cancel) { return streamed->frame(place, cancel); },
+          [streamed](int place, const CancelCheck& cancel) { return streamed->merged_film(place, cancel); },
           [streamed](int place, const CancelCheck& cancel) { return streamed->differences(place, cancel); }};
 }
 

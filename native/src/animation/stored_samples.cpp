@@ -29,14 +29,14 @@ std::string region_text(const uint32_t* r) {
   return text;
 }
 
-// Whether a requested component pass needs features of surfaces that the stored frame lacks.
+// Whether a requested component pass needs features of surfaces that the stored film lacks.
 bool lacks_surfaces(const film::ComponentContent& held, const GradusSettings& settings) {
   if (settings.use_decomposition == 0) return false;
   return (!held.non_specular && schema::any_wanted(settings.component_passes, schema::is_of_non_specular_vertices)) ||
          (!held.details && schema::any_wanted(settings.component_passes, schema::is_of_non_specular_details));
 }
 
-// Returns how a stored frame differs from the requested one, or "" if it fits. The text follows "stored frame <path> ".
+// Returns how a stored film differs from the requested one, or "" if it fits. The text follows "stored film <path> ".
 std::string difference(const film::FilmHeader& stored, FrameSamples kind, const GradusSettings& settings,
                        uint64_t scene_key) {
   const GradusSettings& other = stored.settings;
@@ -63,13 +63,12 @@ std::string difference(const film::FilmHeader& stored, FrameSamples kind, const 
 void require_same(const film::FilmHeader& stored, FrameSamples kind, const std::string& path,
                   const GradusSettings& settings, uint64_t scene_key) {
   const std::string why = difference(stored, kind, settings, scene_key);
-  if (!why.empty()) throw invalid_argument("stored frame " + path + " " + why + kAdvice);
+  if (!why.empty()) throw invalid_argument("stored film " + path + " " + why + kAdvice);
 }
 
 void require_features(const film::FilmHeader& stored, const std::string& path) {
   if (film::has_features(stored)) return;
-  throw invalid_argument("stored frame " + path + " lacks the features that reconstruction regularized reads" +
-                         kAdvice);
+  throw invalid_argument("stored film " + path + " lacks the features that reconstruction regularized reads" + kAdvice);
 }
 
 }  // namespace gradus::animation

@@ -10,7 +10,7 @@ namespace gradus::animation {
 StreamedFrames::StreamedFrames(LoadSamples fresh, LoadSamples replay, Merge merge)
     : fresh_(std::move(fresh)), replay_(std::move(replay)), merge_(std::move(merge)) {}
 
-std::shared_ptr<const film::Film> StreamedFrames::frame(int place, const CancelCheck& cancel) {
+std::shared_ptr<const film::Film> StreamedFrames::merged_film(int place, const CancelCheck& cancel) {
   if (merged_.count(place) == 0) load(place, cancel);
   return std::move(merged_.extract(place).mapped());
 }

@@ -20,9 +20,9 @@ class StreamedFrames {
   // fresh, replay: load samples of frames, all with the same components.
   StreamedFrames(LoadSamples fresh, LoadSamples replay, Merge merge);
 
-  // Returns all samples of a frame. To read each file once, call frame() and then differences() for each place in
+  // Returns all samples of a frame. To read each file once, call merged_film() and then differences() for each place in
   // order. Uses the threads of the caller's arena. Throws Error CANCELLED.
-  std::shared_ptr<const film::Film> frame(int place, const CancelCheck& cancel);
+  std::shared_ptr<const film::Film> merged_film(int place, const CancelCheck& cancel);
   // Returns for each component a window of this frame and the next one. It has pixels and their temporal differences
   // only. Throws Error CANCELLED, and invalid_argument if the two frames have different components.
   std::vector<std::unique_ptr<reconstruct::HalvedWindowSource>> differences(int place, const CancelCheck& cancel);

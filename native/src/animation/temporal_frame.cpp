@@ -22,21 +22,21 @@ void add(film::GradientImages term, film::GradientImages* sum) {
 }
 
 // Reads the images of one component, or the sum of the images of all components.
-HalvedImages read_halved(const film::Film& frame, TemporalContent content, int component = kAllComponents) {
+HalvedImages read_halved(const film::Film& film, TemporalContent content, int component = kAllComponents) {
   HalvedImages images;
   const bool is_one = component != kAllComponents;
-  const int first = is_one ? component : 0, end = is_one ? component + 1 : int(frame.components.size());
+  const int first = is_one ? component : 0, end = is_one ? component + 1 : int(film.components.size());
   for (int c = first; c < end; ++c) {
-    add(content.gradients ? film::read_images(frame, c) : film::read_pixels(frame, c), &images.values);
+    add(content.gradients ? film::read_images(film, c) : film::read_pixels(film, c), &images.values);
     if (!content.halves) continue;
-    add(content.gradients ? film::read_half_differences(frame, c) : film::read_half_differences_of_pixels(frame, c),
+    add(content.gradients ? film::read_half_differences(film, c) : film::read_half_differences_of_pixels(film, c),
         &images.half_differences);
   }
   return images;
 }
 
 // Returns the replay map of a component: its own if it has one, otherwise that of the surfaces.
-film::ReplayMap sources_of(const film::ReplayMap& replayed, int component) {
+film::ReplayMap replay_map_of(const film::ReplayMap& replayed, int component) {
   film::ReplayMap replay_map = replayed;
   if (component != kAllComponents && replayed.has_component_map(component))
     replay_map.correspondence = replayed.of_component[size_t(component)];
@@ -78,7 +78,7 @@ TemporalFrame make_temporal_frame(const film::Film& fresh, const film::Film& rep
   frame.fresh = read_halved(fresh, content, component);
   frame.stream = fresh.frame_number;
   frame.scene_key = replay.scene_key;
-  frame.replayed = sources_of(replay.replayed, component);
+  frame.replayed = replay_map_of(replay.replayed, component);
   check_same_layout(frame.replay.values, frame.fresh.values, fresh.frame_number);
   frame.replay_share.resize(fresh.count[0].size());
   for (size_t i = 0; i < frame.replay_share.size(); ++i) {

@@ -13,6 +13,9 @@
 
 namespace gradus {
 
+// Grain of passes that compute a few rows around each piece twice.
+inline constexpr int kGrainOfStencils = 64;
+
 // Calls function(begin, end) for ranges that together cover [0, height), in parallel. Ranges of at most `grain` rows
 // are not split.
 template <class Function>

@@ -17,7 +17,7 @@ constexpr uint32_t kMaxValues = 4;
 bool is_reserved(const std::string& name) {
   const std::string_view first = std::string_view(name).substr(0, name.find('.'));
   return std::ranges::find(plane_names::kReserved, first) != std::end(plane_names::kReserved) ||
-         first.starts_with(plane_names::kComponent) || name.ends_with(plane_names::kWeight) ||
+         first.starts_with(plane_names::kComponentPrefix) || name.ends_with(plane_names::kWeightSuffix) ||
          std::ranges::any_of(name, [](char c) { return (c & ~0x1f) == 0; });
 }
 

@@ -42,7 +42,7 @@ void read_mean(const Film& film, const Channel& plane, HalfRange halves, size_t 
 
 // Returns the estimated variance of a mean. half: half the difference between the means of half-buffers A and B.
 float variance_of(float half, bool is_known) {
-  return is_known ? std::min(half * half, std::numeric_limits<float>::max()) : std::numeric_limits<float>::quiet_NaN();
+  return is_known ? std::min(half * half, kMaxFloat) : std::numeric_limits<float>::quiet_NaN();
 }
 
 void read_variance(const Film& film, const Channel& plane, size_t pixel, float* to) {

@@ -94,7 +94,7 @@ void select_component(std::string_view name, Film* film) {
 void select_components(const std::vector<std::string>& names, Film* film) {
   const ComponentContent content = component_content(*film);
   std::vector<ComponentPlanes> kept;
-  std::vector<PixelCorrespondence> sources;
+  std::vector<PixelCorrespondence> correspondences;
   for (const std::string& name : names) {
     const int place = find_component(*film, name);
     const bool has_component_map = place >= 0 && film->replayed.has_component_map(place);
@@ -104,15 +104,15 @@ void select_components(const std::vector<std::string>& names, Film* film) {
       allocate(content, size_t(film->region.area()), &kept.back());
       kept.back().name = name;
     }
-    sources.push_back(has_component_map ? std::move(film->replayed.of_component[size_t(place)])
-                                        : PixelCorrespondence{});
+    correspondences.push_back(has_component_map ? std::move(film->replayed.of_component[size_t(place)])
+                                                : PixelCorrespondence{});
   }
   for (size_t k = 0; k < names.size(); ++k) {
     const int place = find_component(*film, names[k]);
     if (place >= 0) kept[k] = std::move(film->components[size_t(place)]);
   }
   film->components = std::move(kept);
-  film->replayed.of_component = std::move(sources);
+  film->replayed.of_component = std::move(correspondences);
 }
 
 namespace {

@@ -1,18 +1,18 @@
-// The names of a film's own planes in stored films (film/planes.cpp), with those of their parts and fields. Channels
-// cannot have these names (film/channel.cpp).
+// The names of a film's own planes in stored films (film/planes.cpp), with those of their parts and fields: names that
+// channels cannot have (film/channel.cpp).
 #pragma once
 
 #include <string_view>
 
 namespace gradus::film::plane_names {
 
-inline constexpr const char* kHalves[] = {"A", "B"};
-inline constexpr const char* kOffsets[] = {"right", "up", "left", "down"};
+inline constexpr const char* kHalfNames[] = {"A", "B"};
+inline constexpr const char* kOffsetNames[] = {"right", "up", "left", "down"};
 inline constexpr const char* kCount = "count";
 inline constexpr const char* kCorrespondence = "correspondence";
 
-inline constexpr const char* kComponent = "component";  // the beginning; a number follows
-inline constexpr const char* kWeight = ".weight";       // the end, after the name of a channel
+inline constexpr const char* kComponentPrefix = "component";  // a number follows
+inline constexpr const char* kWeightSuffix = ".weight";       // follows the name of a channel
 
 // Parts.
 inline constexpr const char* kSamples = "samples";
@@ -29,14 +29,15 @@ inline constexpr const char* kReflectance = "reflectance";
 inline constexpr const char* kNormal = "normal";
 inline constexpr const char* kInverseDepth = "inverse_depth";
 
-// Names in films of earlier versions (film_io/store_planes.h).
+// Names in stored films of the formats up to 11 (PlaneNames::kOlder).
 inline constexpr const char* kOldCorrespondence = "source";
 inline constexpr const char* kOldNonSpecular = "rough";
 
 // Names that a channel would share with a plane or a part, before the first dot.
 inline constexpr std::string_view kReserved[] = {
-    kHalves[0],      kHalves[1], kOffsets[0],  kOffsets[1], kOffsets[2],   kOffsets[3],        kCount,
-    kCorrespondence, kSamples,   kCounts,      kPairs,      kGradients,    kNonSpecular,       kDetails,
-    kMotion,         kPasses,    kReflectance, kNormal,     kInverseDepth, kOldCorrespondence, kOldNonSpecular};
+    kHalfNames[0], kHalfNames[1],      kOffsetNames[0], kOffsetNames[1], kOffsetNames[2], kOffsetNames[3],
+    kCount,        kCorrespondence,    kSamples,        kCounts,         kPairs,          kGradients,
+    kNonSpecular,  kDetails,           kMotion,         kPasses,         kReflectance,    kNormal,
+    kInverseDepth, kOldCorrespondence, kOldNonSpecular};
 
 }  // namespace gradus::film::plane_names

@@ -16,7 +16,7 @@
 namespace gradus::film {
 namespace {
 
-static_assert(std::size(plane_names::kHalves) == kHalves && std::size(plane_names::kOffsets) == kOffsets);
+static_assert(std::size(plane_names::kHalfNames) == kHalves && std::size(plane_names::kOffsetNames) == kOffsets);
 constexpr const char* kColorNames[4] = {"R", "G", "B", "A"};
 constexpr const char* kVectorNames[4] = {"X", "Y", "Z", "W"};
 
@@ -69,11 +69,14 @@ std::vector<PlaneField> detail_fields() {
   return fields;
 }
 
-std::string component_layer(size_t component) { return plane_names::kComponent + std::to_string(component); }
+std::string component_layer(size_t component) { return plane_names::kComponentPrefix + std::to_string(component); }
 
-// Returns the layer of a half-buffer. Component 0 has no prefix, so that programs show its layer as the main one.
+std::string half_name(int half) { return plane_names::kHalfNames[half]; }
+
+// Returns the layer of a component's half-buffer. Component 0 has no prefix, so that programs show its layer as the
+// main one.
 std::string half_layer(size_t component, int half) {
-  return (component == 0 ? "" : component_layer(component) + ".") + plane_names::kHalves[half];
+  return (component == 0 ? "" : component_layer(component) + ".") + half_name(half);
 }
 
 std::string part_of(const std::string& name, size_t component) {
@@ -83,7 +86,10 @@ std::string part_of(const std::string& name, size_t component) {
 // Collects planes. Vectors without values are left out.
 class PlaneList {
  public:
-  explicit PlaneList(Film* film) : film_(film) {}
+  PlaneList(Film* film, PlaneNames names)
+      : film_(film),
+        correspondence_(names == PlaneNames::kOlder ? plane_names::kOldCorrespondence : plane_names::kCorrespondence),
+        non_specular_(names == PlaneNames::kOlder ? plane_names::kOldNonSpecular : plane_names::kNonSpecular) {}
 
   void add_samples(size_t component) {
     const std::string part = part_of(plane_names::kSamples, component);
@@ -91,22 +97,23 @@ class PlaneList {
       add(part, half_layer(component, half), MergeRule::kAdd, color_fields(film_->color_channels),
           &film_->components[component].primal[half], &Counters::nonfinite_radiance);
     if (film_->replayed.has_component_map(int(component)))
-      add_correspondence(part, component_layer(component) + "." + plane_names::kCorrespondence,
+      add_correspondence(part, component_layer(component) + "." + correspondence_,
                          &film_->replayed.of_component[component]);
   }
 
   void add_counts() {
     for (int half = 0; half < kHalves; ++half)
-      add(plane_names::kCounts, half_layer(0, half) + "." + plane_names::kCount, MergeRule::kAdd, {{"V", 0, true}},
+      add(plane_names::kCounts, half_name(half) + "." + plane_names::kCount, MergeRule::kAdd, {{"V", 0, true}},
           &film_->count[half]);
-    add_correspondence(plane_names::kCounts, plane_names::kCorrespondence, &film_->replayed.correspondence);
+    add_correspondence(plane_names::kCounts, correspondence_, &film_->replayed.correspondence);
   }
 
   void add_gradients(size_t component) {
     for (int half = 0; half < kHalves; ++half) {
       for (int o = 0; o < kOffsets; ++o)
-        add(part_of(plane_names::kGradients, component), half_layer(component, half) + "." + plane_names::kOffsets[o],
-            MergeRule::kAdd, color_fields(film_->color_channels), &film_->components[component].gradient[half][o],
+        add(part_of(plane_names::kGradients, component),
+            half_layer(component, half) + "." + plane_names::kOffsetNames[o], MergeRule::kAdd,
+            color_fields(film_->color_channels), &film_->components[component].gradient[half][o],
             &Counters::nonfinite_gradient);
     }
   }
@@ -114,15 +121,15 @@ class PlaneList {
   void add_pair_counts() {
     for (int half = 0; half < kHalves; ++half) {
       for (int o = 0; o < kOffsets; ++o)
-        add(plane_names::kPairs, half_layer(0, half) + "." + plane_names::kOffsets[o] + "." + plane_names::kPairs,
+        add(plane_names::kPairs, half_name(half) + "." + plane_names::kOffsetNames[o] + "." + plane_names::kPairs,
             MergeRule::kAdd, vector_fields(1), &film_->pair_count[half][o]);
     }
   }
 
   void add_non_specular(size_t component) {
     for (int half = 0; half < kHalves; ++half)
-      add(part_of(plane_names::kNonSpecular, component), half_layer(component, half), MergeRule::kAdd,
-          non_specular_fields(), &film_->components[component].non_specular[half]);
+      add(part_of(non_specular_, component), half_layer(component, half), MergeRule::kAdd, non_specular_fields(),
+          &film_->components[component].non_specular[half]);
   }
 
   void add_details(size_t component) {
@@ -147,12 +154,12 @@ class PlaneList {
     const MergeRule rule = channel->keeps_first_sample() ? MergeRule::kFirstSample : MergeRule::kAdd;
     for (int half = 0; half < kHalves; ++half) {
       if (channel->values[half].empty()) continue;
-      add(info.in_halves ? name : plane_names::kPasses, info.in_halves ? half_layer(0, half) + "." + name : name, rule,
+      add(info.in_halves ? name : plane_names::kPasses, info.in_halves ? half_name(half) + "." + name : name, rule,
           pairs ? pair_fields(info.values_per_pixel) : vector_fields(info.values_per_pixel), &channel->values[half]);
       list_.back().pixel_bytes = info.values_per_pixel * sizeof(float);
       if (pairs) list_.back().pairs = channel;
     }
-    add(plane_names::kPasses, name + plane_names::kWeight, rule, vector_fields(1), &channel->weight);
+    add(plane_names::kPasses, name + plane_names::kWeightSuffix, rule, vector_fields(1), &channel->weight);
   }
 
   std::vector<Plane> take() { return std::move(list_); }
@@ -172,6 +179,7 @@ class PlaneList {
   }
 
   Film* const film_;
+  const std::string correspondence_, non_specular_;  // names of planes and parts
   std::vector<Plane> list_;
 };
 
@@ -266,8 +274,8 @@ size_t Plane::bytes() const {
   return std::visit([](auto* values) { return values->size() * sizeof((*values)[0]); }, values);
 }
 
-std::vector<Plane> planes_of(Film* film) {
-  PlaneList list(film);
+std::vector<Plane> planes_of(Film* film, PlaneNames names) {
+  PlaneList list(film, names);
   const size_t components = film->components.size();
   for (size_t c = 0; c < components; ++c) list.add_samples(c);
   list.add_counts();

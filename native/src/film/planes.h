@@ -45,9 +45,13 @@ struct Plane {
   size_t bytes() const;
 };
 
+// The names of planes and parts: those of today, or those of stored films of the formats up to 11, which have "rough"
+// in place of "non_specular" and "source" in place of "correspondence".
+enum class PlaneNames { kCurrent, kOlder };
+
 // Returns the planes that the film has, in the order of the stored file. They point into the film, which must not gain
-// or lose planes meanwhile.
-std::vector<Plane> planes_of(Film* film);
+// or lose planes meanwhile. Names of channels are always those of the film.
+std::vector<Plane> planes_of(Film* film, PlaneNames names = PlaneNames::kCurrent);
 // As above, for callers that only read: they must not write to the planes.
 std::vector<Plane> planes_of(const Film& film);
 

@@ -225,7 +225,7 @@ void read_variance_row(const Film& film, int y, float* row) {
     }
     for (int c = 0; c < film.color_channels; ++c) {
       const float half = 0.5f * difference[c];
-      row[c] = std::min(half * half, std::numeric_limits<float>::max());
+      row[c] = std::min(half * half, kMaxFloat);
     }
   }
 }

@@ -1,4 +1,4 @@
-// Output of OpenEXR to an atomic FileWriter, and texts for the errors of OpenEXR.
+// Output of OpenEXR to an atomic FileWriter, the largest size of its images, and texts for the errors of OpenEXR.
 #pragma once
 
 #include <exception>
@@ -10,6 +10,9 @@
 #include "film_io/file_writer.h"
 
 namespace gradus::film_io {
+
+// Largest width and height of a stored film or image, in pixels.
+inline constexpr int kMaxImageSide = 1 << 16;
 
 // A stream that keeps errors which OpenEXR ignores (its destructors also write) for rethrow().
 class WriterStream final : public Imf::OStream {

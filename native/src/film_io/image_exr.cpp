@@ -14,8 +14,6 @@
 namespace gradus::film_io {
 namespace {
 
-constexpr int kMaxSide = 1 << 16;
-
 std::string channel_name(const ImageLayer& layer, size_t channel) {
   const std::string letter(1, layer.letters[channel]);
   return layer.name.empty() ? letter : layer.name + "." + letter;
@@ -62,7 +60,7 @@ LoadedImage read_rgb(const std::string& path, const std::string& layer) {
   LoadedImage image;
   image.width = window.max.x - window.min.x + 1;
   image.height = window.max.y - window.min.y + 1;
-  if (image.width < 1 || image.height < 1 || image.width > kMaxSide || image.height > kMaxSide)
+  if (image.width < 1 || image.height < 1 || image.width > kMaxImageSide || image.height > kMaxImageSide)
     throw invalid_argument("its size is wrong");
   const std::array<std::string, 3> names = find_layer(file.header().channels(), layer);
   const bool is_single = names[1] == names[0];

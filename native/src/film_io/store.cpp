@@ -98,7 +98,7 @@ void read_blocks(Imf::MultiPartInputFile* file, const PartRows& rows, const std:
   });
 }
 
-void check_sources(const film::Film& film) {
+void check_correspondences(const film::Film& film) {
   const auto check = [&](const film::PixelCorrespondence& correspondence) {
     for (const int32_t pixel : correspondence.pixel) {
       if (pixel < film::kNoCorrespondence || pixel >= film.region.area())
@@ -178,8 +178,7 @@ film::Film read_film(const std::string& path, StoredContent content, const std::
                      const CancelCheck& cancel) {
   Imf::MultiPartInputFile file = open_file(path);
   film::Film film = make_film(file.header(0), content, only);
-  std::vector<StoredPart> parts = stored_parts(film::planes_of(&film));
-  if (format_of(file.header(0)) < kFormatOfStandardNames) use_older_names(&parts);
+  const std::vector<StoredPart> parts = stored_parts(film::planes_of(&film, plane_names_of(file.header(0))));
   const bool is_whole = content == StoredContent::kAll && only == nullptr;
   if (is_whole && size_t(file.parts()) != parts.size()) throw invalid_argument("it has parts of something else");
   std::vector<int> numbers;
@@ -188,7 +187,7 @@ film::Film read_film(const std::string& path, StoredContent content, const std::
     check_part(file.header(numbers.back()), file.header(0), part);
   }
   read_blocks(&file, PartRows(parts, film), numbers, cancel);
-  check_sources(film);
+  check_correspondences(film);
   check_planes(film);
   return film;
 }

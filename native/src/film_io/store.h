@@ -24,12 +24,12 @@ void save_film(const film::Film& film, const std::string& path, const FilmWriteO
 
 // The content to read: everything, or only samples, which gives a film without gradients and passes.
 enum class StoredContent { kAll, kSamples };
-// All throw invalid_argument with path and cause for a file that is missing, damaged or no frame.
+// All throw invalid_argument with path and cause for a file that is missing, damaged or no film.
 std::shared_ptr<film::Film> load_film(
     const std::string& path, StoredContent content = StoredContent::kAll,
     const CancelCheck& cancel = [] { return false; });
-// Loads one component only, black if the film has none of that name. It replays from its own source pixels. Other
-// components are not unpacked.
+// Loads one component only, black if the film has none of that name. It replays by its own pixel
+// correspondence. Other components are not unpacked.
 std::shared_ptr<film::Film> load_component(const std::string& path, const std::string& name, StoredContent content,
                                            const CancelCheck& cancel);
 film::FilmHeader load_header(const std::string& path);

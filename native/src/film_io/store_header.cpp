@@ -13,6 +13,7 @@
 #include "film/film.h"
 #include "film/pixel_blocks.h"
 #include "film/planes.h"
+#include "film_io/exr_stream.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
 
@@ -22,10 +23,9 @@ namespace {
 using nlohmann::json;
 
 // Format that is written, and the oldest one that is read. Films of the formats 9 and 10 hold their counters as a list.
-// Those up to 11 have other names of planes (use_older_names()).
-constexpr int kFormat = kFormatOfStandardNames, kOldestFormat = 9;
+// Those before kFormatOfCurrentNames have the older names of planes.
+constexpr int kFormat = 12, kOldestFormat = 9, kFormatOfCurrentNames = 12;
 constexpr size_t kMaxStoredComponents = 64;
-constexpr int kMaxFilmSide = 1 << 16;
 constexpr const char* kAttribute = "gradus";
 
 // Returns the exception that load_film() throws for a file with this problem.
@@ -207,8 +207,8 @@ json description_of(const Imf::Header& header) {
 
 void check_size(const Imath::Box2i& display, const Imath::Box2i& data) {
   const auto inside = [](int low, int high, int end) { return low >= 0 && low <= high && high < end; };
-  if (display.min.x != 0 || display.min.y != 0 || display.max.x < 0 || display.max.x >= kMaxFilmSide ||
-      display.max.y < 0 || display.max.y >= kMaxFilmSide || !inside(data.min.x, data.max.x, display.max.x + 1) ||
+  if (display.min.x != 0 || display.min.y != 0 || display.max.x < 0 || display.max.x >= kMaxImageSide ||
+      display.max.y < 0 || display.max.y >= kMaxImageSide || !inside(data.min.x, data.max.x, display.max.x + 1) ||
       !inside(data.min.y, data.max.y, display.max.y + 1)) {
     throw damaged("its size is wrong");
   }
@@ -280,7 +280,10 @@ std::vector<Imf::Header> make_headers(const film::Film& film, const std::vector<
 
 film::FilmHeader read_header(const Imf::Header& header) { return read_header(header, description_of(header)); }
 
-int format_of(const Imf::Header& header) { return description_of(header).at("format"); }
+film::PlaneNames plane_names_of(const Imf::Header& header) {
+  const int format = description_of(header).at("format");
+  return format < kFormatOfCurrentNames ? film::PlaneNames::kOlder : film::PlaneNames::kCurrent;
+}
 
 film::Film make_film(const Imf::Header& header, StoredContent content, const std::string* only) {
   const json description = description_of(header);

@@ -7,6 +7,7 @@
 #include <ImfHeader.h>
 
 #include "film/film.h"
+#include "film/planes.h"
 #include "film_io/store.h"
 #include "film_io/store_planes.h"
 
@@ -18,8 +19,8 @@ std::vector<Imf::Header> make_headers(const film::Film& film, const std::vector<
 // Reads the description from the first header. All functions throw Error with the problem: not a film, another version,
 // larger than the memory.
 film::FilmHeader read_header(const Imf::Header& header);
-// Returns the number of the format in which the film is stored.
-int format_of(const Imf::Header& header);
+// Returns which names the planes have in the format in which the film is stored.
+film::PlaneNames plane_names_of(const Imf::Header& header);
 // Returns a film with zeroed planes. `only` is the single component with planes; nullptr: all have planes.
 film::Film make_film(const Imf::Header& header, StoredContent content, const std::string* only = nullptr);
 // Throws Error unless the header is one that make_headers() makes for the part.

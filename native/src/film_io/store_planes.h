@@ -29,9 +29,4 @@ struct StoredPart {
 // Returns parts that point to the values of the planes, which must not move while the parts are used.
 std::vector<StoredPart> stored_parts(const std::vector<film::Plane>& planes);
 
-// Gives parts and channels the names that they have in films of the formats before kFormatOfStandardNames: "rough" in
-// place of "non_specular", and "source" in place of "correspondence".
-inline constexpr int kFormatOfStandardNames = 12;
-void use_older_names(std::vector<StoredPart>* parts);
-
 }  // namespace gradus::film_io

@@ -44,7 +44,8 @@ std::optional<ColorTransform> builtin_transform(const std::string& space) {
 }  // namespace
 
 // A colour space whose name has been looked up. `kind` selects its conversion; if it is Other, either `baked` or
-// `processor` converts the values.
+// `processor` converts the values. It is not local to this file, because ColorManager::State, which the header
+// declares, has it as a member.
 struct Space {
   ColorTransform kind = ColorTransform::Data;
   OCIO::ConstCPUProcessorRcPtr processor;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/sine.h"
+
 namespace gradus::light {
 
 namespace {
@@ -10,8 +12,6 @@ namespace {
 // Fraction of the samples that is divided equally among the nodes of a cut, because the node with the maximum weight
 // may be occluded.
 constexpr double kDefensiveInCut = 0.2;
-
-float sine(float cosine) { return std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)); }
 
 // These functions return the cosine and the sine of max(0, a - b).
 float cos_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
@@ -26,7 +26,7 @@ float receiver_cosine(const Receiver& receiver, const Vec3& to_light, float sin_
   if (receiver.normal == Vec3(0.0f)) return 1.0f;
   float c = std::clamp(glm::dot(receiver.normal, to_light), -1.0f, 1.0f);
   if (receiver.transmits) c = std::fabs(c);
-  return cos_difference(sine(c), c, sin_b, cos_b);
+  return cos_difference(sine_of(c), c, sin_b, cos_b);
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ float LightTree::importance(const Node& node, const Receiver& receiver) {
 
   float cos_w = std::clamp(-glm::dot(node.axis, direction), -1.0f, 1.0f);
   if (node.two_sided) cos_w = std::fabs(cos_w);
-  const float sin_w = sine(cos_w), sin_o = sine(node.cos_normals);
+  const float sin_w = sine_of(cos_w), sin_o = sine_of(node.cos_normals);
   const float cos_x = cos_difference(sin_w, cos_w, sin_o, node.cos_normals);
   const float sin_x = sin_difference(sin_w, cos_w, sin_o, node.cos_normals);
   const float cos_light = cos_difference(sin_x, cos_x, sin_b, cos_b);

@@ -5,12 +5,11 @@
 #include <complex>
 
 #include "base/trigonometry.h"
+#include "light/sine.h"
 
 namespace gradus::light {
 
 namespace {
-
-float sine_of(float cosine) { return std::sqrt(std::max(0.0f, (1.0f - cosine) * (1.0f + cosine))); }
 
 // Returns a complex number whose argument is the solid angle of the rectangle that extends from the foot of the
 // perpendicular, which has length z, to (x, y).
@@ -61,7 +60,7 @@ Vec3 SphericalRectangle::sample(const Vec2& u) const {
   // The paper's angle is a fraction of the solid angle minus two corner angles, whose cosines are known. The addition
   // theorems avoid inverse functions.
   const float cos_a = -n2 * n3, cos_b = -n3 * n0;
-  const float sin_a = sine_of(cos_a), sin_b = sine_of(cos_b);
+  const float sin_a = precise_sine_of(cos_a), sin_b = precise_sine_of(cos_b);
   const float cos_ab = cos_a * cos_b - sin_a * sin_b, sin_ab = sin_a * cos_b + cos_a * sin_b;
   const SineCosine part = sine_cosine(u.x * solid_angle_);
   const float cos_u = part.cosine * cos_ab + part.sine * sin_ab, sin_u = part.sine * cos_ab - part.cosine * sin_ab;

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/sine.h"
+
 namespace gradus::light {
 
 namespace {
-
-float sine_between(float cosine) { return std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)); }
 
 // Returns 1 − a·b of unit vectors, without cancellation.
 float one_minus_dot(const Vec3& a, const Vec3& b) { return 0.5f * glm::dot(a - b, a - b); }
@@ -41,7 +41,7 @@ Vec3 SphericalTriangle::sample(const Vec2& u) const {
   const float y = sin_part * cos_alpha + sin_alpha * (one_minus_cos_part - one_minus_dot(a_, b_));
   const float below = (y * s + x * t) * sin_alpha;
   const float q = below != 0.0f ? std::clamp(((y * t - x * s) * cos_alpha - y) / below, -1.0f, 1.0f) : 1.0f;
-  const Vec3 end = q * a_ + sine_between(q) * side_towards(c_, a_);
+  const Vec3 end = q * a_ + sine_of(q) * side_towards(c_, a_);
   const float h = u.y * one_minus_dot(end, b_);  // 1 − cos of the angle from b
   return (1.0f - h) * b_ + std::sqrt(std::max(0.0f, h * (2.0f - h))) * side_towards(end, b_);
 }

@@ -19,7 +19,7 @@ constexpr float kShotChangeZoom = 1.5f;
 constexpr float kStepsOfPixel = 256.0f;
 
 // Position of what a pixel shows in the other frame, and its distance from the camera.
-struct Landing {
+struct TrackedPixel {
   Vec2 film{0.0f};
   float distance = kInfinity;
   bool found = false;
@@ -31,19 +31,20 @@ class PixelTracker {
   PixelTracker(const CentreView& from, const CentreView& to)
       : from_(from), to_(to), motion_(*from.snapshot, *to.snapshot) {}
 
-  Landing target(size_t pixel) const {
-    Landing t;
+  TrackedPixel track(size_t pixel) const {
+    TrackedPixel tracked;
     const geometry::Hit& hit = from_.hits[pixel];
     if (!hit.valid()) {
-      t.film = centre_of(from_.region, pixel);
-      t.found = shows_one_direction() || to_.camera.project_direction(from_.directions[pixel], Moment::Now, &t.film);
-      return t;
+      tracked.film = centre_of(from_.region, pixel);
+      tracked.found =
+          shows_one_direction() || to_.camera.project_direction(from_.directions[pixel], Moment::Now, &tracked.film);
+      return tracked;
     }
     Vec3 position;
-    if (!motion_.position(hit, &position)) return t;
-    t.found = to_.camera.project(position, Moment::Now, &t.film);
-    t.distance = glm::length(position - to_.camera.position(0.0f));
-    return t;
+    if (!motion_.position(hit, &position)) return tracked;
+    tracked.found = to_.camera.project(position, Moment::Now, &tracked.film);
+    tracked.distance = glm::length(position - to_.camera.position(0.0f));
+    return tracked;
   }
 
  private:
@@ -56,9 +57,9 @@ class PixelTracker {
 
 // Whether the motion of pixel `next` of the other frame leads back to within kLargestReturn of a pixel.
 bool returns(const PixelTracker& back, const CentreView& from, size_t pixel, int32_t next) {
-  const Landing t = back.target(size_t(next));
-  const Vec2 away = glm::abs(from.camera.film_displacement(centre_of(from.region, pixel), t.film));
-  return t.found && away.x <= kLargestReturn && away.y <= kLargestReturn;
+  const TrackedPixel tracked = back.track(size_t(next));
+  const Vec2 away = glm::abs(from.camera.film_displacement(centre_of(from.region, pixel), tracked.film));
+  return tracked.found && away.x <= kLargestReturn && away.y <= kLargestReturn;
 }
 
 template <class Body>
@@ -108,13 +109,13 @@ film::PixelCorrespondence match_pixels(const CentreView& from, const CentreView&
   std::vector<int32_t>& correspondence = found.pixel;
   std::vector<float> distances(from.hits.size(), kInfinity);
   for_each_pixel(correspondence.size(), [&](size_t i) {
-    const Landing t = forward.target(i);
-    const int32_t next = t.found ? pixel_at(to.region, t.film) : film::kNoCorrespondence;
+    const TrackedPixel tracked = forward.track(i);
+    const int32_t next = tracked.found ? pixel_at(to.region, tracked.film) : film::kNoCorrespondence;
     if (next == film::kNoCorrespondence) return;
     if (!GRADUS_FAULT(match_need_not_lead_back) && !returns(back, from, i, next)) return;
     correspondence[i] = next;
-    found.off_centre[i] = off_centre(to.region, size_t(next), t.film);
-    distances[i] = t.distance;
+    found.off_centre[i] = off_centre(to.region, size_t(next), tracked.film);
+    distances[i] = tracked.distance;
   });
   // Serial and in the order of pixels, so that ties are decided alike for any number of threads.
   std::vector<int32_t> owner(to.hits.size(), film::kNoCorrespondence);

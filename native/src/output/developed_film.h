@@ -9,7 +9,7 @@
 
 #include "film/film.h"
 #include "output/options.h"
-#include "reconstruct/poisson/solver.h"
+#include "reconstruct/solve_report.h"
 
 namespace gradus::output {
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/error.h"
 #include "base/fpu.h"
@@ -174,6 +173,7 @@ bool Developer::denoise(DevelopedFilm* developed, std::vector<std::string>* warn
   std::vector<float> rgba =
       denoise_combined(*denoiser_, film, reconstruction, developed->region, threads_, cancel_, *before, &failure);
   if (rgba.empty()) {
+    developed->options.denoiser = GRADUS_DENOISER_NONE;
     warnings->push_back(failure);
     return false;
   }

@@ -41,8 +41,8 @@ class Developer {
   void reconstruct(DevelopedFilm* developed, const reconstruct::ReconstructionOutputs& wanted = {},
                    const Source& source = nullptr);
   // Denoises Combined if the options say so. Components are adapted so that they still add up to it, and the error is
-  // scaled. Returns false if the picture is as before; if the denoiser fails, the cause is added to `warnings`. It must
-  // be called from outside of TBB arenas.
+  // scaled. Returns false if the picture is as before; if the denoiser fails, the cause is added to `warnings`, and the
+  // denoiser of `developed` becomes NONE. It must be called from outside of TBB arenas.
   bool denoise(DevelopedFilm* developed, std::vector<std::string>* warnings);
   // Splits Combined into the light passes that the film has, unless they are there. Nothing is done for the noisy
   // image, because the light passes of the film itself belong to it.

@@ -23,17 +23,32 @@ FilmReader::FilmReader(std::shared_ptr<const film::Film> film, std::shared_ptr<s
       region_(film::delivered_region(*film_)),
       threads_(threads_of(film_->settings, device_.get())) {}
 
+Options FilmReader::own_options() const {
+  Options own = options_of(film_->settings);
+  own.denoiser = GRADUS_DENOISER_NONE;
+  return resolve_auto(own, facts_of(*film_, false));
+}
+
+DevelopedFilm FilmReader::reconstruct(const Options& options, bool with_error) {
+  Options without_denoiser = options;
+  without_denoiser.denoiser = GRADUS_DENOISER_NONE;
+  if (shows(reconstructed_, without_denoiser, with_error)) return reconstructed_;
+  const bool reads_error_later = without_denoiser == own_options() && wanted_images(film_->settings).error;
+  DevelopedFilm developed{film_, region_, threads_, without_denoiser};
+  Developer(threads_).reconstruct(&developed, {.error = with_error || reads_error_later, .components = true});
+  return reconstructed_ = developed;
+}
+
 DevelopedFilm FilmReader::make_picture(const Options& options, bool with_error) {
   std::string why_not;
   const auto library = choose_denoiser(options.denoiser, device_.get(), &why_not);
   const Options resolved = resolve_auto(options, facts_of(*film_, library != nullptr));
   if (shows(last_, resolved, with_error)) return last_;
-  Developer developer(
-      threads_, [] { return false; }, library);
-  DevelopedFilm developed{film_, region_, threads_, resolved};
-  developer.reconstruct(&developed, {.error = with_error, .components = true});
+  DevelopedFilm developed = reconstruct(resolved, with_error);
+  developed.options = resolved;
+  const auto never = [] { return false; };
   std::vector<std::string> warnings;
-  developer.denoise(&developed, &warnings);
+  Developer(threads_, never, library).denoise(&developed, &warnings);
   for (const std::string& warning : warnings) device_->warnings().add(warning);
   return developed;
 }
@@ -47,9 +62,7 @@ DevelopedFilm FilmReader::develop(const Options& options, bool with_error) {
 
 Image FilmReader::error() {
   const std::lock_guard lock(mutex_);
-  Options own = options_of(film_->settings);
-  own.denoiser = GRADUS_DENOISER_NONE;
-  if (!error_) error_ = make_picture(own, true).find(GRADUS_PASS_ERROR);
+  if (!error_) error_ = reconstruct(own_options(), true).find(GRADUS_PASS_ERROR);
   return error_;
 }
 

@@ -35,11 +35,9 @@ struct FilmFacts {
 // Returns the facts that the content of a film shows.
 FilmFacts facts_of(const film::Film& film, bool has_denoiser);
 
-// Number of samples per pixel from which the denoiser reduces the error more than further samples in the same time
-// would.
-inline constexpr uint32_t kDenoiserPays = schema::kDenoiserMinimumSamples;
-// Returns whether the denoiser reduces the error of a film with `samples` samples per pixel in that sense.
-inline bool denoiser_pays(double samples) { return samples >= kDenoiserPays; }
+// Returns whether the denoiser reduces the error of a film with `samples` samples per pixel more than further samples
+// in the same time would.
+inline bool denoiser_pays(double samples) { return samples >= schema::kDenoiserMinimumSamples; }
 
 // Replaces AUTO of the reconstruction and of the denoiser; nothing else does. The integrator is chosen by the plan
 // (render/plan.h), and a weight alpha of 0 stands for reconstruct::chosen_alpha(). The reconstruction becomes the one

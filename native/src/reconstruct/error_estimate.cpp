@@ -5,7 +5,9 @@
 
 #include "base/fault.h"
 #include "base/rows.h"
+#include "reconstruct/chosen_alpha.h"
 #include "reconstruct/poisson/minimise_by_noise.h"
+#include "reconstruct/poisson/solver.h"
 #include "reconstruct/poisson/twicing.h"
 
 namespace gradus::reconstruct {

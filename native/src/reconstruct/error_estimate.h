@@ -10,7 +10,8 @@
 
 #include <vector>
 
-#include "reconstruct/poisson/solver.h"
+#include "base/cancel_check.h"
+#include "film/film.h"
 #include "reconstruct/reconstructed.h"
 
 namespace gradus::reconstruct {

@@ -8,6 +8,9 @@
 
 namespace gradus::reconstruct {
 
+// Number of colours of a picture, which may have alpha as a further channel.
+inline constexpr int kColors = 3;
+
 class Field {
  public:
   Field() = default;

@@ -6,6 +6,7 @@
 #include "base/rows.h"
 #include "film/features.h"
 #include "reconstruct/error_estimate.h"
+#include "reconstruct/poisson/solver.h"
 #include "reconstruct/regularized.h"
 
 namespace gradus::reconstruct {

@@ -1,8 +1,10 @@
 // Reconstruction of a whole film: its image and, on request, its estimated error and its components.
 #pragma once
 
-#include "reconstruct/poisson/solver.h"
+#include "base/cancel_check.h"
+#include "film/film.h"
 #include "reconstruct/reconstructed.h"
+#include "reconstruct/solve_report.h"
 
 namespace gradus::reconstruct {
 

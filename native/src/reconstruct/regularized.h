@@ -2,10 +2,12 @@
 // has gradients.
 #pragma once
 
+#include "base/cancel_check.h"
 #include "film/features.h"
-#include "reconstruct/poisson/solver.h"
+#include "film/film.h"
 #include "reconstruct/reconstructed.h"
 #include "reconstruct/regression/regression_error.h"
+#include "reconstruct/solve_report.h"
 
 namespace gradus::reconstruct {
 

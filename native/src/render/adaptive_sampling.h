@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "film/pixel_blocks.h"
-#include "reconstruct/poisson/solver.h"
 #include "render/block_noise.h"
 
 namespace gradus::render {

@@ -7,6 +7,7 @@
 #include "reconstruct/error_estimate.h"
 #include "reconstruct/reconstruct_film.h"
 #include "reconstruct/regularized.h"
+#include "reconstruct/solve_report.h"
 
 namespace gradus::render {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "base/cancel_check.h"
 #include "film/film.h"
-#include "reconstruct/poisson/solver.h"
 
 namespace gradus::render {
 

@@ -10,7 +10,7 @@
 #include "base/fpu.h"
 #include "film/pixel_blocks.h"
 #include "path/sampler.h"
-#include "reconstruct/poisson/solver.h"
+#include "reconstruct/chosen_alpha.h"
 #include "render/l2_noise.h"
 #include "render/pausable_loop.h"
 

@@ -9,6 +9,7 @@
 #include "bsdf/ggx.h"
 #include "output/options.h"
 #include "reconstruct/regression/feature_regression.h"
+#include "schema/automatic.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
 
@@ -27,10 +28,11 @@ bool needs_gradients(uint32_t reconstruction) {
   return reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_L1;
 }
 
-static_assert(output::kDenoiserPays <= kFirstCheck);  // blocks that stop by their noise have enough samples to denoise
+// Blocks that stop by their noise have enough samples to denoise.
+static_assert(schema::kDenoiserMinimumSamples <= kFirstCheck);
 
 std::string too_few_to_denoise() {
-  return "below " + std::to_string(output::kDenoiserPays) +
+  return "below " + std::to_string(schema::kDenoiserMinimumSamples) +
          " samples, more samples reduce the error more than the denoiser";
 }
 

@@ -41,10 +41,10 @@ Region pixel_of(const Region& block, uint32_t seed) {
 }
 
 // Returns the light of each component in a film of one pixel: mean of the channels, summed over samples.
-Light light_of(const film::Film& frame) {
+Light light_of(const film::Film& film) {
   Light light{};
-  for (size_t c = 0; c < frame.components.size(); ++c) {
-    const Radiance sum = frame.components[c].primal[0][0] + frame.components[c].primal[1][0];
+  for (size_t c = 0; c < film.components.size(); ++c) {
+    const Radiance sum = film.components[c].primal[0][0] + film.components[c].primal[1][0];
     light[c] = std::fabs(double(sum.x) + sum.y + sum.z) / 3.0;
   }
   return light;
@@ -96,9 +96,9 @@ std::vector<Light> measure_groups(const integrator::Integrator& integrator, cons
       integrator::WorkUnit unit;
       unit.tile = pixel_of(block, settings.seed);
       unit.count = kTestSamples;
-      film::Film frame(settings.width, settings.height, unit.tile, channels, components, false);
-      integrator.sample(unit, &frame, &counters, stop);
-      add(light_of(frame), &light[i]);
+      film::Film pixel(settings.width, settings.height, unit.tile, channels, components, false);
+      integrator.sample(unit, &pixel, &counters, stop);
+      add(light_of(pixel), &light[i]);
     }
     for (double& part : light[i]) part /= double(blocks.size());
   });

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "film/film.h"
-#include "reconstruct/poisson/solver.h"
+#include "reconstruct/solve_report.h"
 #include "render/plan.h"
 
 namespace gradus::render {

@@ -204,7 +204,8 @@ TEST_F(FiveFrames, StreamedFramesAreReadOnceAndHaveTheSameRowsOverTime) {
                                    [](int, std::shared_ptr<film::Film> fresh, const film::Film&) { return fresh; });
   std::vector<float> row(20 * 4), expected(row);
   for (int t = 0; t < 4; ++t) {
-    EXPECT_EQ(frames.frame(t, never)->components[0].primal[0][0].x, fresh_[size_t(t)]->components[0].primal[0][0].x);
+    EXPECT_EQ(frames.merged_film(t, never)->components[0].primal[0][0].x,
+              fresh_[size_t(t)]->components[0].primal[0][0].x);
     const auto pair = frames.differences(t, never);
     for (int y = 0; y < 8; ++y) {
       pair[0]->read_half_differences(reconstruct::RowKind::kDt, 0, y, row.data());
@@ -212,7 +213,7 @@ TEST_F(FiveFrames, StreamedFramesAreReadOnceAndHaveTheSameRowsOverTime) {
       EXPECT_EQ(std::memcmp(row.data(), expected.data(), row.size() * sizeof(float)), 0) << t;
     }
   }
-  frames.frame(4, never);
+  frames.merged_film(4, never);
   EXPECT_EQ(loads, 10);
 }
 

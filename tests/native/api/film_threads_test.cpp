@@ -5,6 +5,8 @@
 #include <latch>
 #include <thread>
 
+#include <tbb/task_scheduler_observer.h>
+
 #include "api/objects.h"
 #include "base/clock.h"
 #include "film_io/store.h"
@@ -37,6 +39,24 @@ TEST(FilmThreads, AreThoseOfItsSettings) {
   std::remove(path.c_str());
 }
 
+// Stops the thread that enters an arena until resume() is called. Workers of the arena pass.
+class ArenaGate : public tbb::task_scheduler_observer {
+ public:
+  explicit ArenaGate(tbb::task_arena& arena) : tbb::task_scheduler_observer(arena) { observe(true); }
+  ~ArenaGate() override { observe(false); }
+  void on_scheduler_entry(bool is_worker) override {
+    if (is_worker) return;
+    entered_.count_down();
+    opened_.wait();
+  }
+  // Returns when a thread has entered.
+  void wait_for_entry() const { entered_.wait(); }
+  void resume() { opened_.count_down(); }
+
+ private:
+  std::latch entered_{1}, opened_{1};
+};
+
 // Regression: a merge kept readers from the film until all of its pixels were added.
 TEST(FilmThreads, ReadersDoNotWaitForAMerge) {
   GradusSettings settings = test::small_settings(16, 16, 2);
@@ -46,27 +66,12 @@ TEST(FilmThreads, ReadersDoNotWaitForAMerge) {
   const auto device = test::test_device();
   api::FilmObject film(device, before);
 
-  // A merge cannot end while other threads have all places in the arena.
-  std::latch entered(2);
-  std::promise<void> leave;
-  const std::shared_future<void> left = leave.get_future().share();
-  const auto occupy = [&] {
-    device->arena().execute([&] {
-      entered.count_down();
-      left.wait();
-    });
-  };
-  std::thread first(occupy), second(occupy);
-  entered.wait();
+  ArenaGate gate(device->arena());
   std::thread merger([&] { film.merge(*other); });
-  std::future<std::shared_ptr<const film::Film>> read = std::async(std::launch::async, [&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // The merge has begun.
-    return film.get();
-  });
+  gate.wait_for_entry();  // The merge has begun, and adds no pixel before the gate is opened.
+  auto read = std::async(std::launch::async, [&] { return film.get(); });
   EXPECT_EQ(read.wait_for(std::chrono::seconds(10)), std::future_status::ready) << "the reader waits";
-  leave.set_value();
-  first.join();
-  second.join();
+  gate.resume();
   merger.join();
   EXPECT_TRUE(read.get() == before) << "the merge has ended before it was read";
   EXPECT_EQ(film::mean_samples(*film.get()), 4.0);

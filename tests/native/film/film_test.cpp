@@ -131,6 +131,15 @@ void set(T value, unsigned char* to) {
   std::memcpy(to, &value, sizeof(value));
 }
 
+// Writes a value of a plane as the type that the field has.
+void set(const film::PlaneField& field, uint32_t value, unsigned char* to) {
+  if (field.is_integer) {
+    set(value, to);
+  } else {
+    set(float(value), to);
+  }
+}
+
 // Fills all planes with values of all magnitudes, among them denormal ones and those whose sums are too large.
 film::Film random_film(uint32_t seed) {
   film::Film film = full_film();
@@ -151,15 +160,14 @@ film::Film random_film(uint32_t seed) {
   return film;
 }
 
-// Returns all values of a film as numbers that are equal only for equal bits.
-std::vector<float> bits_of(const film::Film& film) {
-  std::vector<float> bits;
+// Returns the bits of all values of a film.
+std::vector<uint32_t> bits_of(const film::Film& film) {
+  std::vector<uint32_t> bits;
   for (const film::Plane& plane : film::planes_of(film)) {
     for_each_value(plane, [&](const unsigned char* from, const film::PlaneField&) {
       uint32_t word = 0;
       std::memcpy(&word, from, sizeof(word));
-      bits.push_back(float(word >> 16));
-      bits.push_back(float(word & 0xffff));
+      bits.push_back(word);
     });
   }
   return bits;
@@ -170,11 +178,11 @@ TEST(Film, MergedSumsDoNotDependOnThreads) {
   test::expect_same_bits_for_any_number_of_threads([&] {
     film::Film film = first;
     film::add_sums(&film, second);
-    std::vector<float> bits = bits_of(film);
+    std::vector<uint32_t> bits = bits_of(film);
     for (const uint64_t dropped :
          {film.counters.nonfinite_radiance, film.counters.nonfinite_gradient, film.counters.nonfinite_feature}) {
       EXPECT_GT(dropped, 100u);
-      bits.push_back(float(dropped));
+      bits.push_back(uint32_t(dropped));
     }
     return bits;
   });
@@ -183,9 +191,7 @@ TEST(Film, MergedSumsDoNotDependOnThreads) {
 TEST(Film, EachValueOfAPixelIsMergedOnce) {
   film::Film film = full_film();
   for (const film::Plane& plane : film::planes_of(&film)) {
-    for_each_value(plane, [&](unsigned char* to, const film::PlaneField& field) {
-      field.is_integer ? set(uint32_t{1}, to) : set(1.0f, to);
-    });
+    for_each_value(plane, [&](unsigned char* to, const film::PlaneField& field) { set(field, 1, to); });
   }
   const film::Film other = film;
   film::add_sums(&film, other);
@@ -196,8 +202,7 @@ TEST(Film, EachValueOfAPixelIsMergedOnce) {
       const bool is_name = field.name.starts_with("id") || field.name == "object.V" || field.name == "face.V" ||
                            field.name == "sample.V";
       unsigned char expected[4];
-      field.is_integer ? set(uint32_t(adds && !is_name ? 2 : 1), expected)
-                       : set(adds && !is_name && plane.pairs == nullptr ? 2.0f : 1.0f, expected);
+      set(field, adds && !is_name ? 2 : 1, expected);
       wrong += plane.pairs == nullptr && std::memcmp(from, expected, 4) != 0 ? 1 : 0;
     });
     EXPECT_EQ(wrong, 0u) << plane.layer;

@@ -441,14 +441,18 @@ std::string replaced(const std::string& text, const std::string& part, const std
   return begin == std::string::npos ? text : std::string(text).replace(begin, part.size(), other);
 }
 
-// Gives parts and channels the names that they had up to format 11.
+// Gives planes and parts the names that they had up to format 11. Channels of the film, "own.…", keep theirs.
 void name_as_before(std::vector<Imf::Header>* headers) {
   set_format(11, &headers->front());
   for (Imf::Header& header : *headers) {
-    header.setName(replaced(header.name(), "non_specular", "rough"));
+    if (header.name().find("own.") == std::string::npos)
+      header.setName(replaced(header.name(), "non_specular", "rough"));
     Imf::ChannelList renamed;
-    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
-      renamed.insert(replaced(c.name(), "correspondence", "source"), c.channel());
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+      const std::string name = c.name();
+      const bool is_own = name.find("own.") != std::string::npos;
+      renamed.insert(is_own ? name : replaced(name, "correspondence", "source"), c.channel());
+    }
     header.channels() = renamed;
   }
 }
@@ -467,6 +471,23 @@ TEST_F(F6_StoredComponents, PlanesOfFormat11AreReadByTheirNames) {
   EXPECT_EQ(earlier->replayed.of_component, stored.replayed.of_component);
   EXPECT_EQ(load("Diffuse")->components[0].non_specular[0][3].samples, 5.0f);
   EXPECT_EQ(load("Reflection")->replayed.correspondence.pixel, stored.replayed.of_component[2].pixel);
+}
+
+// Regression: elements of channel names were looked up under the older names of planes.
+TEST_F(F6_StoredComponents, ChannelsOfFormat11KeepTheirNames) {
+  film::Film stored = film();
+  const auto pixels = size_t(stored.region.area());
+  stored.channels.add({"own.correspondence", 1}, pixels);
+  stored.channels.add({"own.non_specular", 1, film::ValueType::kData, film::Normalisation::kSampleCount, true}, pixels);
+  stored.channels.find("own.correspondence")->values[0][3] = 4.0f;
+  stored.channels.find("own.non_specular")->values[1][5] = 6.0f;
+  film_io::save_film(stored, path("now.exr"));
+  rewrite(path("now.exr"), path(), name_as_before,
+          [](const std::string& name) { return replaced(name, "source", "correspondence"); });
+  const auto earlier = film_io::load_film(path());
+  expect_same_bits(*earlier, stored);
+  EXPECT_EQ(earlier->channels.find("own.correspondence")->values[0][3], 4.0f);
+  EXPECT_EQ(earlier->channels.find("own.non_specular")->values[1][5], 6.0f);
 }
 
 // Counters are stored by name, so that one that a later version adds or removes does not change the others.

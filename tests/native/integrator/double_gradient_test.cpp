@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "gradient/gradient_integrator.h"
+#include "reconstruct/chosen_alpha.h"
 #include "reconstruct/poisson/solver.h"
 #include "support/path_scene.h"
 #include "support/statistics.h"

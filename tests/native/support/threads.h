@@ -12,9 +12,9 @@ namespace gradus::test {
 template <class Compute>
 void expect_same_bits_for_any_number_of_threads(Compute&& compute) {
   const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
-  std::vector<float> first;
+  decltype(compute()) first;
   for (const int threads : {1, 2, 3, 7}) {
-    std::vector<float> x;
+    decltype(compute()) x;
     tbb::task_arena(threads).execute([&] { x = compute(); });
     if (first.empty()) first = x;
     EXPECT_EQ(x, first) << threads << " threads";

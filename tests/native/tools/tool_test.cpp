@@ -792,7 +792,7 @@ TEST_F(ToolSequence, WrongUsageIsNamed) {
       {"store/anim/layer -o p --alpha 0.1 --reconstruction regularized", 2, "is for --reconstruction"},
       {"store/anim/layer -o p --reconstruction none", 2, "--passes noisy_image"},
       {"still/good/ViewLayer -o p", 1, "none of a sequence"},
-      {"store -o p", 1, "holds no stored frames: try "},
+      {"store -o p", 1, "holds no stored films: try "},
       {"store -o p", 1, "store/anim/layer\n"},
       {"still/good/ViewLayer/f+0000000.exr -o p.exr --frames 1-2", 2, "is for folders"},
       {"still/good/ViewLayer/f+0000000.exr -o p.exr --window-size 4", 2, "is for folders"},

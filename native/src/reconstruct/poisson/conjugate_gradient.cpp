@@ -5,8 +5,6 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Number of rows in a piece of work. direct() computes two rows around each piece twice.
-constexpr int kGridGrain = 64;
 constexpr float kDivergence = 3.0f;
 
 Sums dot(const Field& a, const Field& b) {
@@ -54,7 +52,7 @@ Sums direct(const Stencil& a, const Field& z, const Sums& factor, const Field& b
           }
         }
       },
-      kGridGrain);
+      kGrainOfStencils);
   return sums.total();
 }
 

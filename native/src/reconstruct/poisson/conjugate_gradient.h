@@ -2,8 +2,8 @@
 // sizes.
 #pragma once
 
+#include "base/cancel_check.h"
 #include "reconstruct/poisson/multigrid.h"
-#include "reconstruct/poisson/solver.h"
 
 namespace gradus::reconstruct {
 

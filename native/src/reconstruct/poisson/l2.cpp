@@ -99,8 +99,8 @@ std::vector<float> compact_row(const float* plane, size_t stride, int width, int
 }
 
 // Goal and maximum number of steps of the iteration for images with gaps.
-constexpr CgGoal kGapGoal{.residual = 1e-6f};
-constexpr int kMaxGapSteps = 100;
+constexpr CgGoal kGoalWithGaps{.residual = 1e-6f};
+constexpr int kMaxStepsWithGaps = 100;
 
 // Writes `weight` for each pixel whose value is known in all channels, and 0 for the others.
 void weigh(const std::vector<float>& values, int channels, int width, int y, float weight, float* weights) {
@@ -156,7 +156,8 @@ std::vector<float> solve_l2_with_gaps(const film::GradientImages& images, float 
   system.update();
   const PoissonPlanes interleaved = planes_of(images, 0);
   Field x = start_from_l2(interleaved, w, h, channels, alpha);
-  const CgReport solve = system.solve(load_planes(interleaved, w, h, channels), kGapGoal, kMaxGapSteps, cancel, &x);
+  const CgReport solve =
+      system.solve(load_planes(interleaved, w, h, channels), kGoalWithGaps, kMaxStepsWithGaps, cancel, &x);
   add_solve(solve, report);
   return interleave(x);
 }

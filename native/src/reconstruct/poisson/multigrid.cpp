@@ -11,8 +11,6 @@ namespace {
 // the cycle remains symmetric.
 constexpr int kCoarsestSide = 2;
 constexpr int kCoarsestSweeps = 8;
-// Number of rows in a piece of work. The passes below compute some rows around each piece twice.
-constexpr int kLevelGrain = 64;
 
 // Computes to = x + S(b - A x). make(y, scratch, &rows) makes row y of x; `scratch` has one float more than a row.
 template <class Make>
@@ -40,7 +38,7 @@ void sweep(const Stencil& a, const Field& b, const Make& make, Field* to) {
           }
         }
       },
-      kLevelGrain);
+      kGrainOfStencils);
 }
 
 // Writes the result of two Jacobi sweeps from 0.
@@ -103,7 +101,7 @@ void restrict_residual(const Stencil& a, const Interpolation& p, const Field& b,
           }
         }
       },
-      kLevelGrain / 2);
+      kGrainOfStencils / 2);
 }
 
 // Solves the coarsest grid by Jacobi sweeps from 0 and returns b·z of each row.

@@ -6,9 +6,6 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Number of rows in a piece of work. The passes compute two or three rows around each piece twice.
-constexpr int kCheckeredGrain = 64;
-
 enum class Color { kRed, kBlack };
 
 // A window of rows of x that a pass moves up the grid. Each row is split into the pixels of even and of odd x, so that
@@ -156,7 +153,7 @@ void restrict_after_sweep(const Stencil& a, const Interpolation& p, const Field&
           }
         }
       },
-      kCheckeredGrain / 2);
+      kGrainOfStencils / 2);
 }
 
 RowSums sweep_interpolated(const Stencil& a, const Interpolation& p, const Field& b, const Field& coarse, Field* z) {
@@ -179,7 +176,7 @@ RowSums sweep_interpolated(const Stencil& a, const Interpolation& p, const Field
           }
         }
       },
-      kCheckeredGrain);
+      kGrainOfStencils);
   return sums;
 }
 

@@ -9,7 +9,6 @@
 namespace gradus::reconstruct {
 namespace {
 
-constexpr int kColors = 3;
 // A pixel keeps at least the share kLeft of its regressed light. If it has less, its deviation becomes the share
 // kClampShare of that light. With kLeft at one half, single scenes have up to 13 % more error (measured).
 constexpr float kLeft = 0.25f, kClampShare = 0.5f;

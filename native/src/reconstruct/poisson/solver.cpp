@@ -3,6 +3,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "base/error.h"
+#include "reconstruct/chosen_alpha.h"
 #include "reconstruct/poisson/l2.h"
 #include "reconstruct/poisson/minimise_l1.h"
 #include "reconstruct/poisson/noise_free.h"

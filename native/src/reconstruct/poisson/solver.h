@@ -8,6 +8,7 @@
 
 #include "base/cancel_check.h"
 #include "film/film.h"
+#include "reconstruct/solve_report.h"
 
 namespace gradus::reconstruct {
 
@@ -22,20 +23,6 @@ struct PoissonPlanes {
 inline PoissonPlanes planes_of(const film::GradientImages& images, int channel) {
   return {images.primal.data() + channel, images.dx.data() + channel, images.dy.data() + channel,
           size_t(images.channels)};
-}
-
-struct SolveReport {
-  int outer_steps = 0;
-  int inner_steps = 0;
-  float residual = 0.0f;  // norm of the residual over that of the right side; maximum over all solves
-  bool hit_cap = false;   // whether a solve ended at its maximum number of steps before it converged
-};
-
-// Returns α, the weight of the primal image against the gradients; `alpha` 0 selects the value with the smallest
-// measured error. Offset paths that meet other surfaces than their base paths give noisy differences, so L2 needs a
-// larger α than the thesis's 0.2. L1's weights adapt to that noise by themselves.
-inline float chosen_alpha(uint32_t reconstruction, float alpha) {
-  return alpha > 0.0f ? alpha : reconstruction == GRADUS_RECONSTRUCTION_L2 ? 0.4f : 0.2f;
 }
 
 // Reconstructs all channels of `images` and returns width·height·channels values. `reconstruction` is

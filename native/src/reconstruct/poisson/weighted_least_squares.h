@@ -4,6 +4,7 @@
 
 #include "reconstruct/poisson/conjugate_gradient.h"
 #include "reconstruct/poisson/multigrid.h"
+#include "reconstruct/solve_report.h"
 #include "reconstruct/solver_planes.h"
 
 namespace gradus::reconstruct {

@@ -22,8 +22,8 @@
 #include <memory>
 #include <vector>
 
+#include "base/cancel_check.h"
 #include "reconstruct/field.h"
-#include "reconstruct/poisson/solver.h"
 
 namespace gradus::reconstruct {
 

@@ -48,7 +48,6 @@ inline void scatter_row(const CorrespondenceMap& correspondence, int y, const fl
 // of the piece, also beyond the border, and use(y) once the rows y − 1 to y + 1 are made.
 template <class MakePass>
 void roll_over_rows(int height, const MakePass& make_pass) {
-  constexpr int kGrain = 64;  // rows in a piece; the row on each side of it is made twice
   for_pieces(
       height,
       [&](int begin, int end) {
@@ -60,7 +59,7 @@ void roll_over_rows(int height, const MakePass& make_pass) {
           pass.use(y);
         }
       },
-      kGrain);
+      kGrainOfStencils);
 }
 
 // Computes K v row by row. fill(y, &rows) makes row y of v from zeros; use(y, &rows, products) receives row y of v and

@@ -4,8 +4,8 @@
 
 #include <memory>
 
+#include "base/cancel_check.h"
 #include "film/features.h"
-#include "reconstruct/poisson/solver.h"
 #include "reconstruct/space_time/correspondence_map.h"
 #include "reconstruct/space_time/window_source.h"
 

@@ -19,11 +19,10 @@ namespace {
 constexpr float kMinError = 1e-6f;
 // Squared distance of two pictures that their errors explain, in units of the squared error: eight standard deviations.
 constexpr float kExplained = 64.0f;
-constexpr int kColors = 3;
 
-Field to_field(const film::Film& frame, const std::vector<float>& image, int channels) {
-  const auto w = size_t(frame.region.width()), n = size_t(channels);
-  Field field(frame.region.width(), frame.region.height(), channels);
+Field to_field(const film::Film& film, const std::vector<float>& image, int channels) {
+  const auto w = size_t(film.region.width()), n = size_t(channels);
+  Field field(film.region.width(), film.region.height(), channels);
   for_values(&field,
              [&](float& value, int x, int y, int c) { value = image[(size_t(y) * w + size_t(x)) * n + size_t(c)]; });
   return field;

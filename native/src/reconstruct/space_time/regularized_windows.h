@@ -12,9 +12,11 @@
 #include <optional>
 #include <vector>
 
+#include "base/cancel_check.h"
 #include "film/features.h"
 #include "film/film.h"
 #include "reconstruct/reconstructed.h"
+#include "reconstruct/solve_report.h"
 #include "reconstruct/space_time/regress_change.h"
 #include "reconstruct/space_time/window_grid.h"
 

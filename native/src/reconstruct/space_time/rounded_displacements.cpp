@@ -17,7 +17,6 @@ namespace {
 constexpr float kMaxDifference = 0.5f;
 constexpr int kTaps = 4;
 constexpr int kShareRadius = 7;
-constexpr int kRoundedColors = 3;
 
 // Displacements of all pixels to the next frame, in pixels.
 struct Displacements {
@@ -95,8 +94,7 @@ void keep_sampled_share(const Field& sampled, Field* rounding) {
     return box_mean(make_field(rounding->width(), rounding->height(),
                                [&](int x, int y) {
                                  float sum = 0.0f;
-                                 for (int c = 0; c < kRoundedColors; ++c)
-                                   sum += rounding->row(y, c)[x] * other.row(y, c)[x];
+                                 for (int c = 0; c < kColors; ++c) sum += rounding->row(y, c)[x] * other.row(y, c)[x];
                                  return sum;
                                }),
                     kShareRadius);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "reconstruct/chosen_alpha.h"
 #include "reconstruct/poisson/weighted_least_squares.h"
 #include "reconstruct/solver_planes.h"
 #include "reconstruct/space_time/value_rows.h"

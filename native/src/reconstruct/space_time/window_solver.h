@@ -5,7 +5,8 @@
 
 #include <memory>
 
-#include "reconstruct/poisson/solver.h"
+#include "base/cancel_check.h"
+#include "reconstruct/solve_report.h"
 #include "reconstruct/space_time/solve_window.h"
 #include "reconstruct/space_time/window_twicing.h"
 

@@ -10,6 +10,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "shading/sky/atmosphere.h"
 #include "shading/sky/dome.h"
 #include "shading/sky/spectrum.h"
 
@@ -72,26 +73,24 @@ float henyey_greenstein(float mu) {
   return 0.25f * kInvPi * (1.0f - kHenyeyGreensteinG * kHenyeyGreensteinG) / (d * std::sqrt(d));
 }
 
-// A ray, given by the distance of its origin from the Earth's centre and the cosine to the zenith there.
-struct MultipleRay {
-  double radius, cosine;
-  double to_sphere(double r, double sign) const {
-    const double along = radius * cosine, root = along * along - radius * radius + r * r;
-    return root < 0.0 ? -1.0 : -along + sign * std::sqrt(root);
-  }
-  // Returns the distance to the ground or to space.
-  double length() const {
-    const double ground = cosine < 0.0 ? to_sphere(double(kGround), -1.0) : -1.0;
-    return ground >= 0.0 ? ground : to_sphere(double(kSpace), 1.0);
-  }
-  double radius_at(double t) const { return std::sqrt(radius * radius + 2.0 * radius * cosine * t + t * t); }
-};
+// Returns the distance from the origin of a ray to the sphere of radius `r` around the Earth's centre, or -1 if the ray
+// misses it. `sign` is -1 for the nearer intersection and 1 for the farther one.
+double to_sphere(const PolarRay& ray, double r, double sign) {
+  const double along = ray.radius * ray.cosine, root = along * along - ray.radius * ray.radius + r * r;
+  return root < 0.0 ? -1.0 : -along + sign * std::sqrt(root);
+}
+
+// Returns the distance from the origin of a ray to the ground or to space.
+double length_of(const PolarRay& ray) {
+  const double ground = ray.cosine < 0.0 ? to_sphere(ray, double(kGround), -1.0) : -1.0;
+  return ground >= 0.0 ? ground : to_sphere(ray, double(kSpace), 1.0);
+}
 
 float height_of(double radius) { return std::max(float(radius - double(kGround)), 0.0f); }
 
 // Returns the transmittance to space. It also passes through the ground, where it becomes nearly 0.
-Vec4 transmittance_to_space(const Densities& density, const MultipleRay& ray) {
-  const double step = ray.to_sphere(double(kSpace), 1.0) / kSteps;
+Vec4 transmittance_to_space(const Densities& density, const PolarRay& ray) {
+  const double step = to_sphere(ray, double(kSpace), 1.0) / kSteps;
   Vec4 depth(0.0f);
   for (int i = 0; i < kSteps; ++i)
     depth += coefficients(density, height_of(ray.radius_at((i + 0.5) * step))).extinction;
@@ -144,16 +143,17 @@ Vec4 from_atmosphere(float sun_cosine) {
 }
 
 // The rays of one row of the table, with the factor by which each step scatters the light that arrives there.
-class MultipleView {
+class MultipleScatteringRow {
  public:
-  MultipleView(const SunTable& table, const Densities& density, float altitude, float elevation, float sun_elevation)
+  MultipleScatteringRow(const SunTable& table, const Densities& density, float altitude, float elevation,
+                        float sun_elevation)
       : table_(table),
         start_(double(kGround) + double(altitude)),
         sine_(std::sin(elevation)),
         cosine_(std::cos(elevation)),
         sun_(std::cos(sun_elevation), std::sin(sun_elevation)) {
-    const MultipleRay ray{start_, double(sine_)};
-    const double step = ray.length() / kSteps;
+    const PolarRay ray{start_, double(sine_)};
+    const double step = length_of(ray) / kSteps;
     Vec4 transmittance(1.0f);
     for (int i = 0; i < kSteps; ++i)
       points_.push_back(make_point(density, ray, (i + 0.5) * step, float(step), &transmittance));
@@ -184,7 +184,7 @@ class MultipleView {
   };
 
   // Integrates a step in which everything except the transmittance is constant (Hillaire 2015, Frostbite).
-  Point make_point(const Densities& density, const MultipleRay& ray, double distance, float step,
+  Point make_point(const Densities& density, const PolarRay& ray, double distance, float step,
                    Vec4* transmittance) const {
     const double radius = ray.radius_at(distance);
     const float height = height_of(radius);
@@ -216,7 +216,7 @@ SunColor sun_color(const DomeSettings& settings, const Densities& density, float
   sun.horizon = dome_horizon(settings.altitude);
   if (!(settings.sun_size > 0.0f)) return sun;
   const auto color = [&](float elevation) {
-    const MultipleRay ray{double(kGround) + double(altitude), std::sin(double(elevation))};
+    const PolarRay ray{double(kGround) + double(altitude), std::sin(double(elevation))};
     return to_rgb(kSun * transmittance_to_space(density, ray) / disc_solid_angle(settings.sun_size));
   };
   sun.low = color(sun.low_elevation);
@@ -232,7 +232,8 @@ std::vector<float> prepare_multiple_scattering(const DomeSettings& settings) {
   const SunTable table(density);
   const auto row = [&](int y, Rgb* half) {
     const float l = 2.0f * (float(y) + 0.5f) / float(kDomeHeight) - 1.0f;
-    const MultipleView view(table, density, altitude, std::copysign(0.5f * kPi * l * l, l), settings.sun_elevation);
+    const MultipleScatteringRow view(table, density, altitude, std::copysign(0.5f * kPi * l * l, l),
+                                     settings.sun_elevation);
     for (int x = 0; x < kDomeWidth / 2; ++x)
       half[x] = view.radiance(2.0f * kPi * (float(x) + 0.5f) / float(kDomeWidth) - kPi);
   };

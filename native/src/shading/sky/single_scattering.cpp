@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "shading/sky/atmosphere.h"
 #include "shading/sky/dome.h"
 #include "shading/sky/spectrum.h"
 
@@ -35,16 +36,13 @@ float cornette_shanks(float mu) {
          ((2.0f + g2) * std::pow(1.0f + g2 - 2.0f * kCornetteShanksG * mu, 1.5f));
 }
 
-// A ray, given by the distance of its origin from the Earth's centre and the cosine to the zenith there.
-struct SingleRay {
-  double radius, cosine;
-  double to_space() const {
-    const double along = radius * cosine;
-    return -along + std::sqrt(std::max(0.0, along * along - radius * radius + kAtmosphereRadius * kAtmosphereRadius));
-  }
-  double radius_at(double t) const { return std::sqrt(radius * radius + 2.0 * radius * cosine * t + t * t); }
-  float height_at(double t) const { return float(radius_at(t) - kGroundRadius); }
-};
+// Returns the distance from the origin of a ray to the end of the atmosphere.
+double to_space(const PolarRay& ray) {
+  const double radius = ray.radius, along = radius * ray.cosine;
+  return -along + std::sqrt(std::max(0.0, along * along - radius * radius + kAtmosphereRadius * kAtmosphereRadius));
+}
+
+float height_at(const PolarRay& ray, double t) { return float(ray.radius_at(t) - kGroundRadius); }
 
 // Gauss-Laguerre quadrature of order 8 towards the sun, because the densities fall exponentially. It is scaled to a ray
 // of length 1, with the points x/25 and the weights w·exp(x)/25, so that the last point is still in the atmosphere.
@@ -55,10 +53,10 @@ constexpr float kSunWeights[kSunSteps] = {0.01750893642f, 0.04135477391f, 0.0667
                                           0.1283416365f,  0.1707430204f,  0.2327233347f,  0.3562490486f};
 
 // Returns the densities integrated along a ray to space, in m.
-Vec3 optical_depth(const SingleRay& ray) {
-  const double length = ray.to_space();
+Vec3 optical_depth(const PolarRay& ray) {
+  const double length = to_space(ray);
   Vec3 sum(0.0f);
-  for (int i = 0; i < kSunSteps; ++i) sum += density(ray.height_at(double(kSunPoints[i]) * length)) * kSunWeights[i];
+  for (int i = 0; i < kSunSteps; ++i) sum += density(height_at(ray, double(kSunPoints[i]) * length)) * kSunWeights[i];
   return sum * float(length);
 }
 
@@ -76,22 +74,22 @@ Rgb to_rgb(const Spectrum& spectrum) {
 
 // The rays of one row of the table, which have the same elevation. They share the points along the ray, with their
 // densities and optical depths.
-class SingleView {
+class SingleScatteringRow {
  public:
-  SingleView(const DomeSettings& settings, float altitude, float elevation)
+  SingleScatteringRow(const DomeSettings& settings, float altitude, float elevation)
       : scale_(settings.air, settings.aerosols, settings.ozone),
         start_(kGroundRadius + double(altitude)),
         sun_(std::cos(settings.sun_elevation), std::sin(settings.sun_elevation)),
         sine_(std::sin(elevation)),
         cosine_(std::cos(elevation)) {
-    const SingleRay ray{start_, double(sine_)};
-    step_ = ray.to_space() / kViewSteps;
+    const PolarRay ray{start_, double(sine_)};
+    step_ = to_space(ray) / kViewSteps;
     Vec3 depth(0.0f);
     for (int i = 0; i < kViewSteps; ++i) {
       Point& p = points_[size_t(i)];
       p.distance = (i + 0.5) * step_;
       p.radius = ray.radius_at(p.distance);
-      p.density = scale_ * density(ray.height_at(p.distance));
+      p.density = scale_ * density(height_at(ray, p.distance));
       p.depth = depth += float(step_) * p.density;
     }
   }
@@ -184,7 +182,7 @@ std::vector<float> prepare_single_scattering(const DomeSettings& settings, bool 
   // The atmosphere ends at 60 km.
   const float altitude = std::clamp(settings.altitude, 1.0f, 59999.0f);
   const auto fill = [&](float elevation, Rgb* half) {
-    const SingleView view(settings, altitude, elevation);
+    const SingleScatteringRow view(settings, altitude, elevation);
     for (int x = 0; x < kDomeWidth / 2; ++x) half[x] = view.radiance(2.0f * kPi * float(x) / float(kDomeWidth) - kPi);
   };
   std::array<Rgb, kDomeWidth / 2> horizon;

@@ -7,9 +7,6 @@
 
 namespace gradus::shading {
 
-// The phase function of air, for the cosine between both directions.
-inline float rayleigh_phase(float mu) { return 3.0f / 16.0f * kInvPi * (1.0f + mu * mu); }
-
 inline constexpr int kWavelengths = 21;
 inline constexpr float kFirstWavelength = 380.0f, kWavelengthStep = 20.0f;  // nm
 
