@@ -5,6 +5,10 @@ OUT ?= out
 ARGS ?=
 COMPONENTS ?=
 BLENDER ?=
+# Recipes read these from the environment, because the shell would interpret quotes in their text.
+ifneq ($(filter render render-animation picture picture-components,$(MAKECMDGOALS)),)
+export SCENE FRAMES OUT ARGS COMPONENTS BLENDER
+endif
 
 .DEFAULT_GOAL := help
 .PHONY: help build render render-animation test test-full test-native test-regression test-addon stress faults compilers package schema format lint clean
@@ -18,11 +22,11 @@ build:          ## the library (into addon/gradus/lib) and the tool
 	@tools/build.sh
 
 render:         ## a picture: SCENE=sample_blends/hero.blend FRAMES=1-24 OUT=dir ARGS="--gradus-samples 32" COMPONENTS=default BLENDER=/path/to/blender
-	@SCENE='$(SCENE)' FRAMES='$(FRAMES)' OUT='$(OUT)' ARGS='$(ARGS)' COMPONENTS='$(COMPONENTS)' BLENDER='$(BLENDER)' tools/render.sh
+	@tools/render.sh
 
 render-animation: ## frames by blender -b -a, and a film strip: SCENE=sample_blends/animated.blend FRAMES=1-24 OUT=dir ARGS="--gradus-samples 16"
-	@SCENE='$(or $(SCENE),sample_blends/animated.blend)' FRAMES='$(or $(FRAMES),1-24)' OUT='$(OUT)' ARGS='$(or $(ARGS),--gradus-samples 16)' \
-	 BLENDER='$(BLENDER)' tools/render.sh --animation
+	@SCENE="$${SCENE:-sample_blends/animated.blend}" FRAMES="$${FRAMES:-1-24}" ARGS="$${ARGS:---gradus-samples 16}" \
+	 tools/render.sh --animation
 
 test:           ## all tests that every change must pass; last line: N passed, N failed
 	@tools/test.sh all
@@ -69,12 +73,12 @@ $(BENCH): bench-%:
 	@tools/bench.sh $*
 
 picture:        ## docs/images/hero.png, the picture of the README
-	@SCENE=sample_blends/hero.blend FRAMES=1 OUT=out/picture ARGS='--gradus-samples 64' BLENDER='$(BLENDER)' tools/render.sh
+	@SCENE=sample_blends/hero.blend FRAMES=1 OUT=out/picture ARGS='--gradus-samples 64' tools/render.sh
 	@install -D -m 644 out/picture/hero_0001.png docs/images/hero.png
 
 picture-components: ## docs/images/components.webp, a frame taken apart, of the user guide
 	@tools/setup/setup bpy
-	@SCENE=sample_blends/components.blend FRAMES=12 OUT=out/picture ARGS='--gradus-samples 128' COMPONENTS=default BLENDER='$(BLENDER)' tools/render.sh
+	@SCENE=sample_blends/components.blend FRAMES=12 OUT=out/picture ARGS='--gradus-samples 128' COMPONENTS=default tools/render.sh
 	@.venv/bpy45/bin/python3 tools/component_sheet.py out/picture/components_0012.exr docs/images/components.webp
 
 package:        ## dist/gradus-<version>.zip, for Blender 3.4 to 5.2

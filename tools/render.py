@@ -12,6 +12,7 @@ import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -61,6 +62,13 @@ def scripts_folder() -> Path:
 
 def blender_path() -> str:
     return os.environ.get("BLENDER") or "/usr/bin/blender"
+
+
+def check_blender() -> None:
+    """Raises RenderError if BLENDER names something that is no program. Debian's Blender is installed by set-up."""
+    path = os.environ.get("BLENDER")
+    if path and shutil.which(path) is None:
+        raise RenderError(f"BLENDER={path}: no such program")
 
 
 def opened(blender: str, scene: Path) -> list[str]:
@@ -138,7 +146,7 @@ class Request:
 def request() -> Request:
     scene = Path(os.environ.get("SCENE") or "sample_blends/hero.blend")
     if not scene.is_file():
-        raise RenderError(f"SCENE={scene}: no such file")
+        raise RenderError(f"SCENE={scene}: {'this is a folder' if scene.is_dir() else 'no such file'}")
     ranges = frame_ranges(os.environ.get("FRAMES") or "1")
     text = os.environ.get("ARGS") or ""
     try:
@@ -196,6 +204,7 @@ def main(work: Callable[[Request], None] = render, check: Callable[[Request], No
     try:
         wanted = request()
         check(wanted)
+        check_blender()
         if "--check" not in sys.argv:
             work(wanted)
     except RenderError as error:

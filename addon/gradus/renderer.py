@@ -179,6 +179,8 @@ class Job:
     def prepare(self) -> None:
         """Exports the frame. Blender holds its draw lock during this call, so that no user edits the scene."""
         self.begin_view()
+        if self.overrides.stats:
+            stats.check(self.overrides.stats)
         self.session = store.acquire(self.key, self.overrides.threads, bool(self.overrides.save_scene))
         self.current.settings = self.new_settings()
         given = {name for name, _ in self.overrides.native}

@@ -12,6 +12,8 @@ import time
 from contextlib import contextmanager
 from typing import Any
 
+from .failure import Failure
+
 
 class Clock:
     """Measures wall and CPU seconds by phase. A phase may be entered repeatedly."""
@@ -61,6 +63,14 @@ def complete(native_json: str, host: dict[str, Any], clock: Clock, warnings: lis
     native_warnings = stats.get("warnings", [])
     stats["warnings"] = [*native_warnings, *(text for text in warnings if text not in native_warnings)]
     return stats
+
+
+def check(path: str) -> None:
+    """Raises Failure if append() cannot write to the file, before a render takes its time."""
+    try:
+        os.close(os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666))
+    except OSError as error:
+        raise Failure(f"cannot write the statistics to {path}: {error.strerror}") from error
 
 
 def append(path: str, stats: dict[str, Any]) -> None:

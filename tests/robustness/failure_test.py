@@ -136,6 +136,8 @@ def test_i1_unwritable_statistics(blender: Callable[..., Outcome], tmp_path: Pat
     outcome = blender(*head, "--", "--gradus-stats", "/proc/nowhere/stats.jsonl")
     assert outcome.code == 1, outcome.output
     assert files(tmp_path) == []
+    assert "Error: Gradus: cannot write the statistics to /proc/nowhere/stats.jsonl" in outcome.output
+    assert "Traceback" not in outcome.output and "sample " not in outcome.output
 
 
 UNSUPPORTED = {

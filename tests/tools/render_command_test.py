@@ -44,8 +44,25 @@ def test_components_that_overlap_are_refused_before_a_further_build() -> None:
     refused("COMPONENTS", "A=EL;B=EL", "COMPONENTS: components A and B overlap: both match EL")
 
 
+def test_a_folder_is_no_scene() -> None:
+    refused("SCENE", str(ROOT / "docs"), "this is a folder")
+
+
+def test_a_blender_that_is_no_program_is_refused() -> None:
+    refused("BLENDER", "/nope", "BLENDER=/nope: no such program")
+    refused("BLENDER", str(ROOT / "docs"), "no such program", "--animation")
+
+
+def test_make_passes_quotes_of_names_on() -> None:
+    """Regression: an apostrophe in the name of a scene ended a quotation in the shell of make."""
+    command = ["make", "--no-print-directory", "-C", str(ROOT), "render", "SCENE=/nope/it's \"new\".blend"]
+    result = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert result.returncode != 0
+    assert "SCENE=/nope/it's \"new\".blend: no such file" in result.stderr
+
+
 def refused(name: str, value: str, message: str, *options: str) -> None:
-    environment = {k: v for k, v in os.environ.items() if k not in MISTAKES} | {name: value, "BLENDER": "/nope"}
+    environment = {k: v for k, v in os.environ.items() if k not in MISTAKES} | {"BLENDER": "/nope"} | {name: value}
     command = ["bash", str(ROOT / "tools" / "render.sh"), *options]
     result = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
     assert result.returncode == 1

@@ -54,7 +54,9 @@ uint64_t SpooledFrame::place_of_correspondence(int y) const {
 }
 
 void SpooledFrame::read(reconstruct::RowKind kind, Part part, int y, float* out) const {
-  if (!holds(kind)) throw invalid_operation("the stored frames hold no gradients");
+  if (!holds(kind)) {
+    throw invalid_operation("the stored frames hold no gradients, which the integrator GRADIENT samples");
+  }
   if (part == kHalfDifferences && !halves_) throw invalid_operation("the noise of these rows was not requested");
   file_.read(place_of(kind, part, y), out, row_bytes());
 }
