@@ -66,11 +66,10 @@ def complete(native_json: str, host: dict[str, Any], clock: Clock, warnings: lis
 
 
 def check(path: str) -> None:
-    """Raises Failure if append() cannot write to the file, before a render takes its time."""
-    try:
-        os.close(os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666))
-    except OSError as error:
-        raise Failure(f"cannot write the statistics to {path}: {error.strerror}") from error
+    """Raises Failure if append() cannot write to the file, before a render takes its time. Makes no file."""
+    target = path if os.path.exists(path) else os.path.dirname(os.path.abspath(path))
+    if os.path.isdir(path) or not os.access(target, os.W_OK):
+        raise Failure(f"cannot write the statistics to {path}")
 
 
 def append(path: str, stats: dict[str, Any]) -> None:
