@@ -278,7 +278,7 @@ def test_flicker_at_equal_time_includes_the_time_of_components(tmp_path: Path, m
     for counts, told in (((16,), "–"), ((4, 16), "0.600")):
         rows = [flicker_row("windows-l2", 1.0 / n, samples=n, cpu=float(n)) for n in counts]
         rows += [flicker_row("windows-components-l2", 0.5 / n, samples=n, cpu=1.2 * n) for n in counts]
-        assert column(tables(tmp_path, monkeypatch, *rows)[-1], name)[LABELS["windows-components-l2"]] == told
+        assert column(tables(tmp_path, monkeypatch, *rows)[-1], name)[LABELS["windows-components-l2"]] == expected
 
 
 def test_bars_of_flicker_name_scenes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -303,10 +303,10 @@ def test_versions_are_not_compared_with_each_other(tmp_path: Path, monkeypatch: 
     rows = [flicker_row(mode, 1.0 / n, version="old", samples=n, cpu=float(n)) for mode in modes for n in (4, 16)]
     newer = [flicker_row("windows-l2", 2.0 / n, samples=n, cpu=float(n)) for n in (4, 16)]
     elsewhere = [row | {"version": "old", "blender": "4.5"} for row in newer]
-    for more, told in (([], "1.000"), (newer, "–"), (elsewhere, "–")):
+    for more, expected in (([], "1.000"), (newer, "–"), (elsewhere, "–")):
         made = tables(tmp_path, monkeypatch, *rows, *more)[-1]
         for name in ("F / windows", "relMSE / windows", "F at equal time / windows"):
-            assert column(made, name)[LABELS["windows-components-l2"]] == told
+            assert column(made, name)[LABELS["windows-components-l2"]] == expected
 
 
 def test_another_size_of_truth_replaces_that_of_the_version_before(

@@ -45,8 +45,9 @@ def problems_of(path: Path, source: Path) -> Iterator[str]:
         return
     allowed = FOLDERS[: FOLDERS.index(folder) + 1]
     text = path.read_text()
-    yield from problems_of_subfolder(name, INCLUDE.findall(text))
-    for included in INCLUDE.findall(text):
+    includes = INCLUDE.findall(text)
+    yield from problems_of_subfolder(name, includes)
+    for included in includes:
         target = included.split("/")[0] if "/" in included else folder
         if target not in FOLDERS:
             if not (source.parent / "include" / included).is_file():
@@ -64,6 +65,7 @@ def problems_of(path: Path, source: Path) -> Iterator[str]:
 
 
 def problems_of_subfolder(name: Path, includes: list[str]) -> Iterator[str]:
+    """Yields a line for each include that violates the order of SUBFOLDERS. `name` is relative to native/src."""
     order = SUBFOLDERS.get(name.parts[0], ())
     if name.parts[1] not in order:
         return

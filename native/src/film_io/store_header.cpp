@@ -23,7 +23,7 @@ namespace {
 using nlohmann::json;
 
 // Format that is written, and the oldest one that is read. Films of the formats 9 and 10 hold their counters as a list.
-// Those before kFormatOfCurrentNames have the older names of planes.
+// Films of the formats before kFormatOfCurrentNames have the older names of planes.
 constexpr int kFormat = 12, kOldestFormat = 9, kFormatOfCurrentNames = 12;
 constexpr size_t kMaxStoredComponents = 64;
 constexpr const char* kAttribute = "gradus";

@@ -205,7 +205,6 @@ TEST(G1_Handles, TenThousandRandomCalls) {
     for (const auto release : {gradus_render_release, gradus_film_release, gradus_scene_release, gradus_device_release})
       release(handle);
   }
-  gradus_error(nullptr);
 }
 
 TEST(G1_Handles, NullPointersAreRefusedEverywhere) {
@@ -276,7 +275,6 @@ TEST(G4_Exceptions, EveryKindBecomesACode) {
   EXPECT_EQ(api::guard([] { throw unsupported("x"); }), GRADUS_ERROR_UNSUPPORTED);
   EXPECT_EQ(api::guard([] { throw cancelled(); }), GRADUS_ERROR_CANCELLED);
   EXPECT_EQ(api::guard([] { throw 7; }), GRADUS_ERROR_UNKNOWN);
-  gradus_error(nullptr);
 }
 
 std::string text_of(const std::filesystem::path& path) {
@@ -356,7 +354,6 @@ TEST(G6_Order, ReleaseWhileRenderingWaits) {
   EXPECT_OK(gradus_render_release(render));
   EXPECT_OK(gradus_scene_release(scene));
   EXPECT_OK(gradus_device_release(device));
-  gradus_error(nullptr);
 }
 
 // Regression: the waiting thread kept the render alive until all of its samples were taken.

@@ -13,16 +13,17 @@ namespace {
 
 constexpr uint32_t kSide = 16;
 
+// Settings of L2 with pass Error and without a denoiser.
+GradusSettings settings() {
+  GradusSettings s = small_settings(kSide, kSide, 4);
+  s.reconstruction = GRADUS_RECONSTRUCTION_L2;
+  s.denoiser = GRADUS_DENOISER_NONE;
+  s.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
+  return s;
+}
+
 class DevelopedOnce : public testing::Test {
  protected:
-  static GradusSettings settings() {
-    GradusSettings s = small_settings(kSide, kSide, 4);
-    s.reconstruction = GRADUS_RECONSTRUCTION_L2;
-    s.denoiser = GRADUS_DENOISER_NONE;
-    s.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
-    return s;
-  }
-
   std::vector<float> read(uint32_t pass) {
     std::vector<float> pixels(size_t{kSide} * kSide * schema::pass_info(pass).channels);
     reader.read_pass(pass, pixels.data());
@@ -73,13 +74,6 @@ class DenoisedOnce : public testing::Test {
  protected:
   void TearDown() override { unsetenv("FAKE_OIDN"); }
 
-  static GradusSettings settings() {
-    GradusSettings s = small_settings(kSide, kSide, 4);
-    s.reconstruction = GRADUS_RECONSTRUCTION_L2;
-    s.denoiser = GRADUS_DENOISER_NONE;
-    s.passes |= uint64_t{1} << GRADUS_PASS_ERROR;
-    return s;
-  }
   static std::shared_ptr<scene::Device> make_device() {
     GradusDeviceSettings of_device{};
     of_device.struct_size = sizeof(of_device);
