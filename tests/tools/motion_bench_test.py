@@ -259,14 +259,14 @@ def test_flicker_is_relative_to_windows_of_the_same_seed(tmp_path: Path, monkeyp
 
 def test_times_of_a_loaded_machine_are_not_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rows = {"windows-l2": 1.0, "windows-components-surfaces-l2": 1.0, "windows-components-l2": 0.5}
-    for more, told in (({}, True), ({"loaded": True}, False)):
+    for more, expected in (({}, True), ({"loaded": True}, False)):
         runs = [
             flicker_row(mode, flicker / n, samples=n, cpu=0.5 * n, **more)
             for mode, flicker in rows.items()
             for n in (4, 16)
         ]
         table = tables(tmp_path, monkeypatch, *runs)[-1]
-        assert all((cell != "–") == told for name in TIMES for cell in column(table, name).values())
+        assert all((cell != "–") == expected for name in TIMES for cell in column(table, name).values())
     assert column(table, "F / windows")[LABELS["windows-components-l2"]] == "0.500", (
         "samples are the same on any machine"
     )
@@ -275,7 +275,7 @@ def test_times_of_a_loaded_machine_are_not_reported(tmp_path: Path, monkeypatch:
 def test_flicker_at_equal_time_includes_the_time_of_components(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Flicker is halved at equal samples and takes a fifth more time. A single sample count gives no ratio."""
     name = "F at equal time / windows"
-    for counts, told in (((16,), "–"), ((4, 16), "0.600")):
+    for counts, expected in (((16,), "–"), ((4, 16), "0.600")):
         rows = [flicker_row("windows-l2", 1.0 / n, samples=n, cpu=float(n)) for n in counts]
         rows += [flicker_row("windows-components-l2", 0.5 / n, samples=n, cpu=1.2 * n) for n in counts]
         assert column(tables(tmp_path, monkeypatch, *rows)[-1], name)[LABELS["windows-components-l2"]] == expected
