@@ -15,7 +15,7 @@ inline constexpr float kFreshShareOfThreshold = 1.41421356f;
 
 // Returns how many of a frame's `samples` are of this kind.
 inline uint32_t samples_of(FrameSamples kind, uint32_t samples) {
-  return kind == FrameSamples::kFresh ? samples - samples / 2 : samples / 2;
+  return kind == FrameSamples::kFresh ? samples : 1;
 }
 
 // Returns the number of samples per pixel. With adaptive sampling the ranges of sample numbers are those of the pixels

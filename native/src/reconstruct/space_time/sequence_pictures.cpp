@@ -1,5 +1,7 @@
 #include "reconstruct/space_time/sequence_pictures.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <string>
 
 #include "base/error.h"
@@ -13,6 +15,7 @@ SequencePictures::SequencePictures(const FrameRange& range, const WindowShape& s
       source_(std::move(source)),
       method_(method),
       regularized_(source_.frame, source_.differences),
+      joint_(source_.frame, source_.correspondence),
       blend_(grid_, [this](int frame, Reconstructed picture) { ready_[frame] = std::move(picture); }) {}
 
 bool SequencePictures::has(int frame) const {
@@ -23,6 +26,11 @@ bool SequencePictures::has(int frame) const {
 
 Reconstructed SequencePictures::take(int frame, const CancelCheck& cancel, SolveReport* report) {
   if (!has(frame)) throw invalid_operation("frame " + std::to_string(frame) + " was delivered before");
+  if (const char* k = std::getenv("JOINT"); k && method_.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
+    const FrameRange around = grid_.around(frame);
+    const int reach = std::atoi(k);
+    return joint_.reconstruct(frame, {std::max(around.first, frame - reach), std::min(around.last, frame + reach)}, cancel, report);
+  }
   if (!next_window_) next_window_ = grid_.first_with(frame);
   while (ready_.count(frame) == 0) {
     solve_next(cancel, report);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "reconstruct/reconstructed.h"
+#include "reconstruct/space_time/joint_regression.h"
 #include "reconstruct/space_time/regularized_windows.h"
 #include "reconstruct/space_time/window_blend.h"
 
@@ -29,6 +30,7 @@ struct SequenceSource {
   // Callbacks for REGULARIZED.
   RegularizedWindows::OpenFilm frame;
   RegularizedWindows::OpenDifferences differences;
+  JointRegression::OpenCorrespondence correspondence;
 };
 
 class SequencePictures {
@@ -55,6 +57,7 @@ class SequencePictures {
   SequenceSource source_;
   SequenceMethod method_;
   RegularizedWindows regularized_;
+  JointRegression joint_;
   WindowBlend blend_;
   std::optional<int> next_window_;
   std::map<int, Reconstructed> ready_;
