@@ -208,12 +208,6 @@ Field weigh_moved(const Field& deviation, const Field& kept) {
   });
 }
 
-Images pointers_to(const std::vector<Field>& fields) {
-  Images images;
-  for (const Field& field : fields) images.push_back(&field);
-  return images;
-}
-
 }  // namespace
 
 float median_depth(const film::Features& features) {
@@ -238,10 +232,12 @@ Field regression_features(const film::Features& features, float unit) {
 }
 
 Field deviation_in_windows(const HalvedImage& image) { return deviation_in_windows(look_around(image)); }
+Field own_weights(const HalvedImage& image) { return weigh_pixel(look_around(image), image.is_light); }
 
 FeatureRegression::FeatureRegression(const film::Features& features, const HalvedImage& image,
                                      const CancelCheck& cancel, Field* delivered_error,
-                                     const std::vector<MovedFrame>& others) {
+                                     const std::vector<MovedFrame>& others,
+                                     std::shared_ptr<const Field> estimated) {
   Layers layers;
   Images means{&image.mean}, half_differences{&image.half_difference};
   {
@@ -254,9 +250,12 @@ FeatureRegression::FeatureRegression(const film::Features& features, const Halve
       means.push_back(&other.image.mean);
       half_differences.push_back(&other.image.half_difference);
     }
-    fine_ = LocalRegression(layers, weigh_pixel(surroundings, image.is_light), kFine);
+    std::vector<Field> own;
+    own.push_back(weigh_pixel(surroundings, image.is_light));
+    for (const MovedFrame& other : others) own.push_back(other.own);
+    fine_ = LocalRegression(layers, std::move(own), kFine, estimated);
   }
-  coarse_ = LocalRegression(layers, {}, kCoarse);
+  coarse_ = LocalRegression(layers, {}, kCoarse, estimated);
   RegressionResult first = fine_.estimate(means, half_differences, cancel);
   {
     const RegressionResult coarse = coarse_.estimate(means, half_differences, cancel);

@@ -19,6 +19,7 @@ struct MovedFrame {
   Field features;      // as regression_features() returns them
   HalvedImage image;   // in the units of the image that is regressed
   Field deviation;     // standard deviation around each pixel, from deviation_in_windows()
+  Field own;           // weight of each pixel's own value
   Field kept;          // share of the weight of each pixel, 0 to 1
   Field displacement;  // of the samples from the centre of their pixel, x and y in pixels
 };
@@ -29,13 +30,16 @@ Field regression_features(const film::Features& features, float unit);
 float median_depth(const film::Features& features);
 // Returns the standard deviation by which pixels count in windows, from `image` in units of its median luminance.
 Field deviation_in_windows(const HalvedImage& image);
+// Returns the weight 1/variance of each pixel's own value.
+Field own_weights(const HalvedImage& image);
 
 class FeatureRegression {
  public:
   // Regresses `image` on `features` and freezes the weights of all steps. `delivered_error`, unless it is nullptr,
   // receives the error of the pass Error. The samples of `others` contribute to the same windows.
   FeatureRegression(const film::Features& features, const HalvedImage& image, const CancelCheck& cancel,
-                    Field* delivered_error = nullptr, const std::vector<MovedFrame>& others = {});
+                    Field* delivered_error = nullptr, const std::vector<MovedFrame>& others = {},
+                    std::shared_ptr<const Field> estimated = {});
 
   const Field& image() const { return image_; }
   // Returns the estimated squared error of the image, mean over its channels, bias included, which weighs pixels.

@@ -75,8 +75,12 @@ void run_features(const RegressionTask& task, const Confidence& confidence, cons
 
 }  // namespace
 
-LocalRegression::LocalRegression(Layers layers, Field own, RegressionSettings settings)
-    : layers_(std::move(layers)), own_(std::move(own)), settings_(std::move(settings)) {
+LocalRegression::LocalRegression(Layers layers, std::vector<Field> own, RegressionSettings settings,
+                                 std::shared_ptr<const Field> estimated)
+    : layers_(std::move(layers)),
+      own_(std::move(own)),
+      estimated_(std::move(estimated)),
+      settings_(std::move(settings)) {
   const int w = layers_.front()->weights.width(), h = layers_.front()->weights.height();
   for (int shift = 0; shift < settings_.lattices; ++shift) {
     for (const Octave& octave : settings_.octaves) {
@@ -90,13 +94,17 @@ RegressionResult LocalRegression::estimate(const Images& means, const Images& ha
                                            const CancelCheck& cancel) {
   const int w = means[0]->width(), h = means[0]->height();
   RegressionResult result{Field(w, h, 3), Field(w, h, 3), Field(w, h, 1)};
-  Field totals(w, h, 1);
+  Field totals(w, h, 1), own_estimates;
+  const bool joint = layers_.size() > 1 || estimated_;
+  if (joint) own_estimates = Field(w, h, 6);
   const RegressionTask task{&layers_,
-                            or_null(own_),
+                            pointers_to(own_),
+                            estimated_.get(),
                             {means, GRADUS_FAULT(mean_regressed_as_difference) ? means : half_differences},
                             {&result.mean, &result.noise},
                             &totals,
                             &result.bias,
+                            joint ? &own_estimates : nullptr,
                             &settings_};
   run_features<6, true>(
       task, [&](size_t i) { return &confidence_[i]; }, cancel);
@@ -106,7 +114,18 @@ RegressionResult LocalRegression::estimate(const Images& means, const Images& ha
 Field LocalRegression::apply(const Images& values, const CancelCheck& cancel) const {
   const Field& first = *values[0];
   Field result(first.width(), first.height(), first.channels()), totals(first.width(), first.height(), 1);
-  const RegressionTask task{&layers_, or_null(own_), {values}, {&result}, &totals, nullptr, &settings_};
+  const bool joint = layers_.size() > 1 || estimated_;
+  Field own_estimates;
+  if (joint) own_estimates = Field(first.width(), first.height(), first.channels());
+  const RegressionTask task{&layers_,
+                            pointers_to(own_),
+                            estimated_.get(),
+                            {values},
+                            {&result},
+                            &totals,
+                            nullptr,
+                            joint ? &own_estimates : nullptr,
+                            &settings_};
   const auto confidence = [&](size_t i) { return &confidence_[i]; };
   first.channels() == 1 ? run_features<1, false>(task, confidence, cancel)
                         : run_features<3, false>(task, confidence, cancel);

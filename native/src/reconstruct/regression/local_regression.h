@@ -63,12 +63,19 @@ struct Predictors {
 using Layers = std::vector<std::shared_ptr<const Predictors>>;
 // One image for each layer.
 using Images = std::vector<const Field*>;
+inline Images pointers_to(const std::vector<Field>& fields) {
+  Images images;
+  for (const Field& field : fields) images.push_back(&field);
+  return images;
+}
 
 class LocalRegression {
  public:
   LocalRegression() = default;
-  // `own` is 1/v, one channel. If it is empty, pixels are no windows of their own.
-  LocalRegression(Layers layers, Field own, RegressionSettings settings);
+  // `own` is 1/v, one channel, for each layer. If it is empty, pixels are no windows of their own. `estimated`: features
+  // of the pixels to estimate, if they are not those of the first layer.
+  LocalRegression(Layers layers, std::vector<Field> own, RegressionSettings settings,
+                  std::shared_ptr<const Field> estimated = {});
 
   // Regresses three channels, estimates η from half the difference of the half-buffers, and freezes it. Deterministic
   // for any number of threads.
@@ -78,7 +85,8 @@ class LocalRegression {
 
  private:
   Layers layers_;
-  Field own_;
+  std::vector<Field> own_;
+  std::shared_ptr<const Field> estimated_;
   RegressionSettings settings_;
   std::vector<Field> confidence_;  // η of the windows of each octave, for one lattice after another
 };

@@ -24,10 +24,16 @@ inline constexpr int kGroup = 4;
 // Input and output of the regression of one image.
 struct RegressionTask {
   const Layers* layers;
-  const Field* own;            // 1/variance of each pixel's own value; null if it does not count
+  // 1/variance of each pixel's own value, for each layer; empty if it does not count.
+  Images own;
+  // Features of the pixels to estimate; null: those of the first layer.
+  const Field* estimated;
   std::vector<Images> values;  // the mean and half the difference if η is estimated, else one image
   std::vector<Field*> results;       // sums over windows until the last lattice is done, then the results
   Field *totals, *bias;              // sums of η and of η · bias
+  // Sums over the layers of own · the estimates of their pixels; null if there is one layer, whose own features are those
+  // of the pixels to estimate.
+  Field* own_estimates;
   const RegressionSettings* settings;
 
   int width() const { return layers->front()->weights.width(); }
@@ -158,8 +164,9 @@ class Tile {
   }
 
   // Reads the k-th pixel of a group of a layer for every block of row j, so that the blocks lie next to each other.
-  void read_pixels(size_t layer, int j, int g) {
+  void read_pixels(size_t layer, int j, int g, const Field* other_features = nullptr) {
     const Predictors& predictors = *(*task_.layers)[layer];
+    const Field& features = other_features != nullptr ? *other_features : predictors.features;
     const bool displaced = Coordinates && predictors.displacement.channels() > 0;
     for (int k = 0; k < kGroup; ++k) {
       const int y = pixel_row(j, g, k), dx = pixel_x(g, k);
@@ -167,7 +174,7 @@ class Tile {
       const int of_features = GRADUS_FAULT(window_features_shifted_by_a_row) ? std::max(y - 1, 0) : y;
       const int at = k * kPixel;
       for (int c = 0; c + 1 < B; ++c)
-        pick(inside ? predictors.features.row(of_features, c) : nullptr, dx, pixels_[at + c]);
+        pick(inside ? features.row(of_features, c) : nullptr, dx, pixels_[at + c]);
       pick(inside ? predictors.weights.row(y) : nullptr, dx, pixels_[at + kWeight]);
       for (int c = 0; c < C; ++c) pick(inside ? value_row(layer, y, c) : nullptr, dx, pixels_[at + kValues + c]);
       for (int c = 0; c < kPixel - kDisplacement; ++c) {
@@ -370,14 +377,46 @@ class Tile {
   bool first_lattice() const { return octave_.shift == 0; }
   bool last_lattice() const { return octave_.shift == task_.settings->lattices - 1; }
 
+  bool is_joint() const { return task_.own_estimates != nullptr; }
+
   void write_pixels(int m) {
     for (int g = 0; g < groups(); ++g) {
-      read_pixels(0, m, g);
+      if (is_joint()) add_own_estimates(m, g);
+      read_pixels(0, m, g, task_.estimated);
       for (int k = 0; k < kGroup; ++k) {
         const int y = pixel_row(m, g, k);
         if (y >= 0 && y < task_.height()) write_pixels(y, g, k);
       }
     }
+  }
+
+  // Adds own · the estimates of the pixels of all layers to the sums over lattices.
+  void add_own_estimates(int m, int g) {
+    if (task_.own.empty()) return;
+    for (size_t layer = 0; layer < task_.layers->size(); ++layer) {
+      read_pixels(layer, m, g);
+      for (int k = 0; k < kGroup; ++k) {
+        const int y = pixel_row(m, g, k), dx = pixel_x(g, k);
+        if (y < 0 || y >= task_.height()) continue;
+        pick(task_.own[layer]->row(y), dx, moments_[0]);
+        for (int c = 0; c < C; ++c) {
+          const bool first = first_lattice() && layer == 0;
+          pick(first ? nullptr : task_.own_estimates->row(y, c), dx, boxes_[c], kReach);
+        }
+        for (int x = 0; x < width_; x += kLanes) {
+          const Lanes own = load(moments_[0] + x);
+          for (int c = 0; c < C; ++c)
+            store(load(boxes_[c] + x) + own * estimate_of(g, k, c, x), boxes_[c] + x);
+        }
+        for (int c = 0; c < C; ++c) put(boxes_[c], dx, task_.own_estimates->row(y, c));
+      }
+    }
+  }
+
+  Lanes estimate_of(int g, int k, int c, int x) const {
+    Lanes sum{};
+    for (int i = 0; i < P; ++i) sum += load(estimate_[C * i + c] + x) * feature(i, g, k, x);
+    return sum;
   }
 
   // Adds this lattice's estimates to pixel row y. After the last lattice, divides the sums by their total weight.
@@ -403,7 +442,8 @@ class Tile {
   }
 
   void add_sampled(int y, int k, int dx) {
-    pick(task_.own != nullptr ? task_.own->row(y) : nullptr, dx, moments_[0]);
+    if (is_joint()) return add_samples_of_layers(y, dx);
+    pick(!task_.own.empty() ? task_.own[0]->row(y) : nullptr, dx, moments_[0]);
     for (int x = 0; x < width_; x += kLanes) {
       const Lanes own = load(moments_[0] + x), total = load(boxes_[C] + x) + own, zero{},
                   factor = total > zero ? 1.0f / total : zero;
@@ -412,6 +452,40 @@ class Tile {
                                                   load(pixels_[k * kPixel + kValues + c] + x)),
               boxes_[c] + x);
       if constexpr (Estimates) store(factor * load(boxes_[C + 1] + x), boxes_[C + 1] + x);
+    }
+  }
+
+  // x = E/T + Σ own (I − E/T)/(T + Σ own), where T is the sum of η and E of η times the estimates: the windows' estimate
+  // of the pixel, and the mean of what the samples of its track have more than the estimates of their own features.
+  void add_samples_of_layers(int y, int dx) {
+    const int kOwn = 0, kSampled = 1;
+    for (int i = 0; i <= C; ++i) std::fill_n(moments_[i], moments_.width(), 0.0f);
+    for (size_t layer = 0; layer < task_.own.size(); ++layer) {
+      pick(task_.own[layer]->row(y), dx, pixels_[0]);
+      for (int x = 0; x < width_; x += kLanes) store(load(moments_[kOwn] + x) + load(pixels_[0] + x), moments_[kOwn] + x);
+      for (int c = 0; c < C; ++c) {
+        pick(value_row(layer, y, c), dx, pixels_[1]);
+        float* sum = moments_[kSampled + c];
+        for (int x = 0; x < width_; x += kLanes)
+          store(load(sum + x) + load(pixels_[0] + x) * load(pixels_[1] + x), sum + x);
+      }
+    }
+    const Lanes zero{};
+    for (int c = 0; c < C; ++c) {
+      pick(!task_.own.empty() ? task_.own_estimates->row(y, c) : nullptr, dx, pixels_[0]);
+      for (int x = 0; x < width_; x += kLanes) {
+        const Lanes total = load(boxes_[C] + x), all = total + load(moments_[kOwn] + x);
+        const Lanes of_windows = total > zero ? 1.0f / total : zero, of_all = all > zero ? 1.0f / all : zero;
+        store(of_windows * load(boxes_[c] + x) +
+                  of_all * (load(moments_[kSampled + c] + x) - of_windows * load(pixels_[0] + x)),
+              boxes_[c] + x);
+      }
+    }
+    if constexpr (Estimates) {
+      for (int x = 0; x < width_; x += kLanes) {
+        const Lanes all = load(boxes_[C] + x) + load(moments_[kOwn] + x);
+        store(all > zero ? load(boxes_[C + 1] + x) / all : zero, boxes_[C + 1] + x);
+      }
     }
   }
 

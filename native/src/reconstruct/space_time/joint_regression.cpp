@@ -50,6 +50,11 @@ float look_up(const Field& image, int c, float x, float y) {
   return (1 - v) * ((1 - u) * a[i] + u * a[i1]) + v * ((1 - u) * b[i] + u * b[i1]);
 }
 
+float closeness(const MovedFrame& moved, int x, int y, float sigma) {
+  const float dx = moved.displacement.row(y, 0)[x], dy = moved.displacement.row(y, 1)[x];
+  return std::exp(-0.5f * (dx * dx + dy * dy) / (sigma * sigma));
+}
+
 }  // namespace
 
 const JointRegression::Frame& JointRegression::frame(int number, const CancelCheck& cancel) {
@@ -65,8 +70,11 @@ const JointRegression::Frame& JointRegression::frame(int number, const CancelChe
     return HalfSums{Rgb(sum->components[0].primal[0][i]), Rgb(sum->components[0].primal[1][i])};
   });
   const float scale = robust_scale(frame.image.mean);
-  frame.deviation = deviation_in_windows(in_units_of(scale, frame.image));
+  const HalvedImage relative = in_units_of(scale, frame.image);
+  frame.deviation = deviation_in_windows(relative);
   for_values(&frame.deviation, [&](float& value, int, int, int) { value *= scale; });
+  frame.own = own_weights(relative);
+  for_values(&frame.own, [&](float& value, int, int, int) { value /= scale * scale; });
   frame.to_previous = correspondence_(number, cancel);
   return frames_.emplace(number, std::move(frame)).first->second;
 }
@@ -120,6 +128,9 @@ MovedFrame JointRegression::moved(const Frame& frame, const PixelTrack& track, c
     variance.row(y, c)[x] = a * a + b * b;
   });
   moved.kept = env("LT_OFF", 0) > 0 ? make_field(w, h, [](int, int) { return 1.0f; }) : same_light(difference, variance, weights);
+  moved.own = move(track, frame.own);
+  const float own_s = env("OWN_S", 0.25f);
+  for_values(&moved.own, [&](float& value, int x, int y, int) { value *= scale * scale * moved.kept.row(y)[x] * closeness(moved, x, y, own_s); });
   if (env("LT_PRINT", 0) > 0) {
     double kept = 0, there = 0;
     for (int y = 0; y < h; ++y) for (int x = 0; x < w; ++x) { there += weights.row(y)[x] > 0; kept += weights.row(y)[x] > 0 ? moved.kept.row(y)[x] : 0; }
@@ -149,7 +160,20 @@ Reconstructed JointRegression::reconstruct(int number, const FrameRange& around,
   Field picture, error;
   if (others.empty()) { picture = alone.image(); error = alone.error(); }
   else {
-    const FeatureRegression joint(here.features, image, cancel, nullptr, others);
+    std::shared_ptr<Field> estimated;
+    if (const float sigma = env("FEAT_S", 0.3f); sigma > 0) {
+      estimated = std::make_shared<Field>(regression_features(here.features, median_depth(here.features)));
+      Field total = make_field(w, h, [](int, int) { return 1.0f; });
+      for (const MovedFrame& other : others) {
+        const Field weight = make_field(w, h, [&](int x, int y) {
+          return other.deviation.row(y)[x] > 0.0f ? other.kept.row(y)[x] * closeness(other, x, y, sigma) : 0.0f;
+        });
+        for_values(estimated.get(), [&](float& value, int x, int y, int c) { value += weight.row(y)[x] * other.features.row(y, c)[x]; });
+        add(weight, &total);
+      }
+      for_values(estimated.get(), [&](float& value, int x, int y, int) { value /= total.row(y)[x]; });
+    }
+    const FeatureRegression joint(here.features, image, cancel, nullptr, others, estimated);
     picture = joint.image();
     error = joint.error();
   }

@@ -36,7 +36,7 @@ class JointRegression {
   struct Frame {
     film::Features features;
     HalvedImage image;
-    Field deviation;
+    Field deviation, own;
     film::PixelCorrespondence to_previous;
   };
   const Frame& frame(int number, const CancelCheck& cancel);
