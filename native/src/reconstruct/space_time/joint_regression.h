@@ -36,11 +36,17 @@ class JointRegression {
   struct Frame {
     film::Features features;
     HalvedImage image;
-    Field deviation, own;
+    Field weights;
     film::PixelCorrespondence to_previous;
   };
   const Frame& frame(int number, const CancelCheck& cancel);
-  MovedFrame moved(const Frame& frame, const PixelTrack& track, const Frame& here, const Field& still, float scale);
+  struct Joined {
+    ImageFeatures features;
+    HalvedImage image;
+    Field weight, centre_weight;
+  };
+  static void join(const Frame& frame, const PixelTrack& track, const Frame& here, const Field& still, float scale,
+                   Joined* joined);
 
   OpenFilm open_;
   OpenCorrespondence correspondence_;
