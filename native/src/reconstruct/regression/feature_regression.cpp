@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "base/fault.h"
 #include "base/types.h"
@@ -63,11 +62,17 @@ Surroundings look_around(const HalvedImage& image) {
   return {noise, light, box_mean(noise, kNoiseRadius), box_mean(light, kNoiseRadius)};
 }
 
-Field weigh_in_windows(const Surroundings& of) {
+Field deviation_in_windows(const Surroundings& of) {
   return make_field(of.noise.width(), of.noise.height(), [&](int x, int y) {
     const float around = of.noise.row(y)[x] + kShareOfLight * of.light.row(y)[x];
-    const float deviation = std::max(around, kOwnShare * of.own_noise.row(y)[x]) + kShareOfMedian;
-    return 1.0f / (deviation * deviation);
+    return std::max(around, kOwnShare * of.own_noise.row(y)[x]) + kShareOfMedian;
+  });
+}
+
+Field weigh_in_windows(const Field& deviation) {
+  return make_field(deviation.width(), deviation.height(), [&](int x, int y) {
+    const float d = deviation.row(y)[x];
+    return 1.0f / (d * d);
   });
 }
 
@@ -93,8 +98,7 @@ Field expected_noise(const Surroundings& of) {
 float weigh_pixel(float expected, float excess, float firefly) {
   const float doubt = excess * excess * (1.0f + firefly * firefly);
   const float factor = GRADUS_FAULT(pixel_variance_times_4) ? 4.0f : GRADUS_FAULT(pixel_variance_over_4) ? 0.25f : 1.0f;
-  static const float trust = std::getenv("OWN_TRUST") ? float(std::atof(std::getenv("OWN_TRUST"))) : kOwnTrust;
-  return trust / (factor * expected * expected * doubt * doubt + kMinVariance);
+  return kOwnTrust / (factor * expected * expected * doubt * doubt + kMinVariance);
 }
 
 // Returns the weights of all pixels' own values. Changes of light may be 0 by chance between larger ones, so a small
@@ -111,14 +115,11 @@ Field weigh_pixel(const Surroundings& of, bool is_light) {
 
 float bounded(float value) { return is_finite(value) ? std::clamp(value, -1.0f, 1.0f) : 0.0f; }
 
-// The channels of the albedo within the features.
-constexpr int kAlbedo = 3;
-
-Field albedo_of(const Field& features) {
-  if (features.channels() == 0) return {};
-  Field albedo(features.width(), features.height(), 3);
+Field albedo_of(const film::Features& features) {
+  Field albedo(features.width, features.height, 3);
   for_values(&albedo, [&](float& value, int x, int y, int c) {
-    value = features.row(y, kAlbedo + c)[GRADUS_FAULT(second_step_albedo_shifted) ? std::max(x - 1, 0) : x];
+    const int column = GRADUS_FAULT(second_step_albedo_shifted) ? std::max(x - 1, 0) : x;
+    value = bounded(features.albedo.values[3 * (size_t(y) * size_t(features.width) + size_t(column)) + size_t(c)]);
   });
   return albedo;
 }
@@ -199,11 +200,20 @@ Field weigh_residual(const Field& by_light, const Field& by_noise) {
   });
 }
 
+// Returns the weights of the pixels of another frame.
+Field weigh_moved(const Field& deviation, const Field& kept) {
+  return make_field(deviation.width(), deviation.height(), [&](int x, int y) {
+    const float d = deviation.row(y)[x];
+    return d > 0.0f ? kept.row(y)[x] / (d * d) : 0.0f;
+  });
+}
+
 }  // namespace
 
 float median_depth(const film::Features& features) {
   std::vector<float> there;
-  std::copy_if(features.depth.values.begin(), features.depth.values.end(), std::back_inserter(there),
+  const std::vector<float>& depths = features.depth.values;
+  std::copy_if(depths.begin(), depths.end(), std::back_inserter(there),
                [](float d) { return is_finite(d) && d > 0.0f; });
   return median_or_one(&there);
 }
@@ -215,40 +225,46 @@ Field regression_features(const film::Features& features, float unit) {
     const size_t i = size_t(y) * size_t(features.width) + size_t(column);
     const float depth = features.depth.values[i];
     value = c < 3   ? bounded(features.normal.values[3 * i + size_t(c)])
-            : c < 6 ? bounded(features.albedo.values[3 * i + size_t(c - kAlbedo)])
+            : c < 6 ? bounded(features.albedo.values[3 * i + size_t(c - 3)])
                     : (depth > 0.0f ? bounded(depth / (depth + unit)) : 0.0f);
   });
   return basis;
 }
 
-Field weights_in_windows(const HalvedImage& image) { return weigh_in_windows(look_around(image)); }
+Field deviation_in_windows(const HalvedImage& image) { return deviation_in_windows(look_around(image)); }
+Field own_weights(const HalvedImage& image) { return weigh_pixel(look_around(image), image.is_light); }
 
 FeatureRegression::FeatureRegression(const film::Features& features, const HalvedImage& image,
-                                     const CancelCheck& cancel, Field* delivered_error)
-    : FeatureRegression(ImageFeatures{regression_features(features, median_depth(features))}, image, cancel,
-                        delivered_error) {}
-
-FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& image, const CancelCheck& cancel,
-                                     Field* delivered_error) {
-  std::shared_ptr<const Predictors> predictors;
+                                     const CancelCheck& cancel, Field* delivered_error,
+                                     const std::vector<MovedFrame>& others,
+                                     std::shared_ptr<const Field> estimated) {
+  Layers layers;
+  Images means{&image.mean}, half_differences{&image.half_difference};
   {
     const Surroundings surroundings = look_around(image);
-    predictors = std::make_shared<const Predictors>(Predictors{std::move(features.sampled),
-                                                               weigh_in_windows(surroundings),
-                                                               std::move(features.displacement),
-                                                               std::move(features.centre)});
-    fine_ = LocalRegression(predictors, weigh_pixel(surroundings, image.is_light), kFine);
+    layers.push_back(std::make_shared<const Predictors>(Predictors{
+        regression_features(features, median_depth(features)), weigh_in_windows(deviation_in_windows(surroundings))}));
+    for (const MovedFrame& other : others) {
+      layers.push_back(std::make_shared<const Predictors>(
+          Predictors{other.features, weigh_moved(other.deviation, other.kept), other.displacement}));
+      means.push_back(&other.image.mean);
+      half_differences.push_back(&other.image.half_difference);
+    }
+    std::vector<Field> own;
+    own.push_back(weigh_pixel(surroundings, image.is_light));
+    for (const MovedFrame& other : others) own.push_back(other.own);
+    fine_ = LocalRegression(layers, std::move(own), kFine, estimated);
   }
-  coarse_ = LocalRegression(predictors, {}, kCoarse);
-  RegressionResult first = fine_.estimate(image.mean, image.half_difference, cancel);
+  coarse_ = LocalRegression(layers, {}, kCoarse, estimated);
+  RegressionResult first = fine_.estimate(means, half_differences, cancel);
   {
-    const RegressionResult coarse = coarse_.estimate(image.mean, image.half_difference, cancel);
+    const RegressionResult coarse = coarse_.estimate(means, half_differences, cancel);
     share_ = share_of_fine(first, coarse);
     blend(share_, coarse.mean, &first.mean);
     blend(share_, coarse.noise, &first.noise);
     blend_bias(share_, coarse.bias, &first.bias);
   }
-  add_residual(image, *predictors, &first, cancel);
+  add_residual(features, image, others, layers, &first, cancel);
   if (image.is_light) {
     own_ = restore_sampled_light(image.mean, first.mean);
     blend_sampled(own_, image.mean, &first.mean);
@@ -260,31 +276,47 @@ FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& 
   image_ = std::move(first.mean);
 }
 
-void FeatureRegression::add_residual(const HalvedImage& image, const Predictors& of_image, RegressionResult* first,
-                                     const CancelCheck& cancel) {
+void FeatureRegression::add_residual(const film::Features& features, const HalvedImage& image,
+                                     const std::vector<MovedFrame>& others, const Layers& layers,
+                                     RegressionResult* first, const CancelCheck& cancel) {
   const Field by_light = weigh_by_light(first->mean, kLightRadius);
-  Field residual = difference(image.mean, first->mean),
-        of_noise = difference(GRADUS_FAULT(second_step_takes_image_for_noise) ? image.mean : image.half_difference,
-                              first->noise);
-  residual_share_ = limit_outliers(residual, by_light);
-  scale_by(residual_share_, &residual);
-  scale_by(residual_share_, &of_noise);
-  of_residual_ = LocalRegression(
-      std::make_shared<const Predictors>(Predictors{
-          albedo_of(of_image.features), weigh_residual(by_light, of_image.weights), {}, albedo_of(of_image.estimated)}),
-      {}, kOfResidual);
-  const RegressionResult second = of_residual_.estimate(residual, of_noise, cancel);
+  Layers predictors;
+  std::vector<Field> residuals, noises;
+  for (size_t i = 0; i <= others.size(); ++i) {
+    const HalvedImage& sampled = i == 0 ? image : others[i - 1].image;
+    residuals.push_back(difference(sampled.mean, first->mean));
+    noises.push_back(difference(GRADUS_FAULT(second_step_takes_image_for_noise) ? sampled.mean : sampled.half_difference,
+                                first->noise));
+    residual_share_.push_back(limit_outliers(residuals[i], by_light));
+    Field weights = weigh_residual(by_light, layers[i]->weights);
+    if (i > 0) {
+      for_values(&weights, [&](float& value, int x, int y, int) {
+        if (layers[i]->weights.row(y)[x] == 0.0f) residual_share_[i].row(y)[x] = value = 0.0f;
+        value *= others[i - 1].kept.row(y)[x];
+      });
+    }
+    predictors.push_back(std::make_shared<const Predictors>(
+        Predictors{i == 0 ? albedo_of(features) : channels_of(layers[i]->features, 3, 3), std::move(weights)}));
+    scale_by(residual_share_[i], &residuals[i]);
+    scale_by(residual_share_[i], &noises[i]);
+  }
+  of_residual_ = LocalRegression(std::move(predictors), {}, kOfResidual);
+  const RegressionResult second = of_residual_.estimate(pointers_to(residuals), pointers_to(noises), cancel);
   if (!GRADUS_FAULT(second_step_dropped)) add(second.mean, &first->mean);
   if (!GRADUS_FAULT(error_omits_second_step)) add(second.noise, &first->noise);
 }
 
-Field FeatureRegression::apply(const Field& values, const CancelCheck& cancel) const {
+Field FeatureRegression::apply(const Images& values, const CancelCheck& cancel) const {
   Field result = fine_.apply(values, cancel);
   if (!GRADUS_FAULT(alpha_lacks_large_windows)) blend(share_, coarse_.apply(values, cancel), &result);
-  Field residual = difference(values, result);
-  if (!GRADUS_FAULT(alpha_keeps_outliers)) scale_by(residual_share_, &residual);
-  if (!GRADUS_FAULT(second_step_of_other_channels_dropped)) add(of_residual_.apply(residual, cancel), &result);
-  if (own_.channels() > 0) blend_sampled(own_, values, &result);
+  std::vector<Field> residuals;
+  for (size_t i = 0; i < values.size(); ++i) {
+    residuals.push_back(difference(*values[i], result));
+    if (!GRADUS_FAULT(alpha_keeps_outliers)) scale_by(residual_share_[i], &residuals[i]);
+  }
+  if (!GRADUS_FAULT(second_step_of_other_channels_dropped))
+    add(of_residual_.apply(pointers_to(residuals), cancel), &result);
+  if (own_.channels() > 0) blend_sampled(own_, *values[0], &result);
   return result;
 }
 

@@ -23,13 +23,6 @@ struct TileSize {
 constexpr TileSize kOfEstimate{72 - 2 * kReach, 96}, kOfApply{40 - 2 * kReach, 32};
 
 const Field* or_null(const Field& field) { return field.width() > 0 ? &field : nullptr; }
-Field* or_null(Field& field) { return field.width() > 0 ? &field : nullptr; }
-
-// Returns a field for the estimates of the features of the sampled light; empty if pixels are estimated for these.
-Field sums_for_sampled(const Predictors& predictors, int channels) {
-  if (predictors.estimated.channels() == 0) return {};
-  return Field(predictors.weights.width(), predictors.weights.height(), channels);
-}
 
 template <int P, int C, bool Coordinates, bool Estimates>
 void run_tiles(const RegressionTask& task, const OctaveTask<Estimates>& octave, const CancelCheck& cancel) {
@@ -73,7 +66,7 @@ void run_octaves(const RegressionTask& task, const Confidence& confidence, const
 
 template <int C, bool Estimates, class Confidence>
 void run_features(const RegressionTask& task, const Confidence& confidence, const CancelCheck& cancel) {
-  const int features = task.predictors->features.channels();
+  const int features = task.layers->front()->features.channels();
   const bool coordinates = task.settings->coordinates;
   if (features == 7 && coordinates) return run_octaves<10, C, true, Estimates>(task, confidence, cancel);
   if (features == 3 && !coordinates) return run_octaves<4, C, false, Estimates>(task, confidence, cancel);
@@ -82,9 +75,13 @@ void run_features(const RegressionTask& task, const Confidence& confidence, cons
 
 }  // namespace
 
-LocalRegression::LocalRegression(std::shared_ptr<const Predictors> predictors, Field own, RegressionSettings settings)
-    : predictors_(std::move(predictors)), own_(std::move(own)), settings_(std::move(settings)) {
-  const int w = predictors_->weights.width(), h = predictors_->weights.height();
+LocalRegression::LocalRegression(Layers layers, std::vector<Field> own, RegressionSettings settings,
+                                 std::shared_ptr<const Field> estimated)
+    : layers_(std::move(layers)),
+      own_(std::move(own)),
+      estimated_(std::move(estimated)),
+      settings_(std::move(settings)) {
+  const int w = layers_.front()->weights.width(), h = layers_.front()->weights.height();
   for (int shift = 0; shift < settings_.lattices; ++shift) {
     for (const Octave& octave : settings_.octaves) {
       confidence_.emplace_back(ceil_divided(w + shift, octave.side) + kReach,
@@ -93,31 +90,45 @@ LocalRegression::LocalRegression(std::shared_ptr<const Predictors> predictors, F
   }
 }
 
-RegressionResult LocalRegression::estimate(const Field& mean, const Field& half_difference, const CancelCheck& cancel) {
-  const int w = mean.width(), h = mean.height();
+RegressionResult LocalRegression::estimate(const Images& means, const Images& half_differences,
+                                           const CancelCheck& cancel) {
+  const int w = means[0]->width(), h = means[0]->height();
   RegressionResult result{Field(w, h, 3), Field(w, h, 3), Field(w, h, 1)};
-  Field totals(w, h, 1), sampled = sums_for_sampled(*predictors_, 6);
-  const RegressionTask task{predictors_.get(),
-                            or_null(own_),
-                            {&mean, GRADUS_FAULT(mean_regressed_as_difference) ? &mean : &half_difference},
+  Field totals(w, h, 1), own_estimates;
+  const bool joint = layers_.size() > 1 || estimated_;
+  if (joint) own_estimates = Field(w, h, 6);
+  const RegressionTask task{&layers_,
+                            pointers_to(own_),
+                            estimated_.get(),
+                            {means, GRADUS_FAULT(mean_regressed_as_difference) ? means : half_differences},
                             {&result.mean, &result.noise},
                             &totals,
                             &result.bias,
-                            or_null(sampled),
+                            joint ? &own_estimates : nullptr,
                             &settings_};
   run_features<6, true>(
       task, [&](size_t i) { return &confidence_[i]; }, cancel);
   return result;
 }
 
-Field LocalRegression::apply(const Field& values, const CancelCheck& cancel) const {
-  Field result(values.width(), values.height(), values.channels()), totals(values.width(), values.height(), 1);
-  Field sampled = sums_for_sampled(*predictors_, values.channels());
-  const RegressionTask task{
-      predictors_.get(), or_null(own_), {&values}, {&result}, &totals, nullptr, or_null(sampled), &settings_};
+Field LocalRegression::apply(const Images& values, const CancelCheck& cancel) const {
+  const Field& first = *values[0];
+  Field result(first.width(), first.height(), first.channels()), totals(first.width(), first.height(), 1);
+  const bool joint = layers_.size() > 1 || estimated_;
+  Field own_estimates;
+  if (joint) own_estimates = Field(first.width(), first.height(), first.channels());
+  const RegressionTask task{&layers_,
+                            pointers_to(own_),
+                            estimated_.get(),
+                            {values},
+                            {&result},
+                            &totals,
+                            nullptr,
+                            joint ? &own_estimates : nullptr,
+                            &settings_};
   const auto confidence = [&](size_t i) { return &confidence_[i]; };
-  values.channels() == 1 ? run_features<1, false>(task, confidence, cancel)
-                         : run_features<3, false>(task, confidence, cancel);
+  first.channels() == 1 ? run_features<1, false>(task, confidence, cancel)
+                        : run_features<3, false>(task, confidence, cancel);
   return result;
 }
 

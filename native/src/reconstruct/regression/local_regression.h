@@ -4,9 +4,6 @@
 // A pixel's value is the mean of the predictions of all windows that contain it, weighted by their confidence η:
 //   x_p = (Σ_q η_q a_q·φ_p + I_p/v_p) / (Σ_q η_q + 1/v_p),
 //   η = 1/(number of windows of that size that contain a pixel · estimated squared error).
-// If the pixel is estimated for other features ψ_p than those of its sampled light, its own value counts by what it has
-// more than the windows predict for φ_p:
-//   x_p = Σ_q η_q a_q·ψ_p / Σ_q η_q + (I_p − Σ_q η_q a_q·φ_p / Σ_q η_q) / (v_p Σ_q η_q + 1).
 // The pixel itself, of variance v_p, is the smallest window: as noise vanishes, the image tends to the sampled one,
 // whatever the features. Moon, Carr, Yoon 2014 and Bitterli et al. 2016 (NFOR) regress on features. Here, weights
 // belong to pixels and not to pairs of pixels, so that windows are sums (as in the guided filter: He, Sun, Tang 2010),
@@ -57,27 +54,39 @@ struct RegressionResult {
 struct Predictors {
   Field features;  // 7 channels with coordinates, or 3 without, in about [−1, 1]
   Field weights;   // one channel, 0 where a pixel does not count
-  // Where the light of each pixel was sampled, relative to its centre, in pixels: x and y. Empty: at the centre.
+  // Where the samples of a pixel lie, relative to its centre, in pixels: x and y. Empty: at the centre.
   Field displacement{};
-  // Features for which pixels are estimated, at their centres. Empty: `features`, where the light was sampled.
-  Field estimated{};
 };
+
+// Predictors of the image to estimate, then those of further frames whose pixels were moved to where the image shows
+// the same surfaces.
+using Layers = std::vector<std::shared_ptr<const Predictors>>;
+// One image for each layer.
+using Images = std::vector<const Field*>;
+inline Images pointers_to(const std::vector<Field>& fields) {
+  Images images;
+  for (const Field& field : fields) images.push_back(&field);
+  return images;
+}
 
 class LocalRegression {
  public:
   LocalRegression() = default;
-  // `own` is 1/v, one channel. If it is empty, pixels are no windows of their own.
-  LocalRegression(std::shared_ptr<const Predictors> predictors, Field own, RegressionSettings settings);
+  // `own` is 1/v, one channel, for each layer. If it is empty, pixels are no windows of their own. `estimated`: features
+  // of the pixels to estimate, if they are not those of the first layer.
+  LocalRegression(Layers layers, std::vector<Field> own, RegressionSettings settings,
+                  std::shared_ptr<const Field> estimated = {});
 
   // Regresses three channels, estimates η from half the difference of the half-buffers, and freezes it. Deterministic
   // for any number of threads.
-  RegressionResult estimate(const Field& mean, const Field& half_difference, const CancelCheck& cancel);
+  RegressionResult estimate(const Images& means, const Images& half_differences, const CancelCheck& cancel);
   // Applies the frozen operator to one or three channels.
-  Field apply(const Field& values, const CancelCheck& cancel) const;
+  Field apply(const Images& values, const CancelCheck& cancel) const;
 
  private:
-  std::shared_ptr<const Predictors> predictors_;
-  Field own_;
+  Layers layers_;
+  std::vector<Field> own_;
+  std::shared_ptr<const Field> estimated_;
   RegressionSettings settings_;
   std::vector<Field> confidence_;  // η of the windows of each octave, for one lattice after another
 };

@@ -50,6 +50,11 @@ float look_up(const Field& image, int c, float x, float y) {
   return (1 - v) * ((1 - u) * a[i] + u * a[i1]) + v * ((1 - u) * b[i] + u * b[i1]);
 }
 
+float closeness(const MovedFrame& moved, int x, int y, float sigma) {
+  const float dx = moved.displacement.row(y, 0)[x], dy = moved.displacement.row(y, 1)[x];
+  return std::exp(-0.5f * (dx * dx + dy * dy) / (sigma * sigma));
+}
+
 }  // namespace
 
 const JointRegression::Frame& JointRegression::frame(int number, const CancelCheck& cancel) {
@@ -64,84 +69,74 @@ const JointRegression::Frame& JointRegression::frame(int number, const CancelChe
   frame.image = read_halves(*sum, [&](size_t i) {
     return HalfSums{Rgb(sum->components[0].primal[0][i]), Rgb(sum->components[0].primal[1][i])};
   });
-  {
-    const float scale = robust_scale(frame.image.mean);
-    frame.weights = weights_in_windows(in_units_of(scale, frame.image));
-    for_values(&frame.weights, [&](float& value, int, int, int) { value /= scale * scale; });
-  }
+  const float scale = robust_scale(frame.image.mean);
+  const HalvedImage relative = in_units_of(scale, frame.image);
+  frame.deviation = deviation_in_windows(relative);
+  for_values(&frame.deviation, [&](float& value, int, int, int) { value *= scale; });
+  frame.own = own_weights(relative);
+  for_values(&frame.own, [&](float& value, int, int, int) { value /= scale * scale; });
   frame.to_previous = correspondence_(number, cancel);
   return frames_.emplace(number, std::move(frame)).first->second;
 }
 
-void JointRegression::join(const Frame& frame, const PixelTrack& track, const Frame& here, const Field& still,
-                           float scale, Joined* joined) {
+MovedFrame JointRegression::moved(const Frame& frame, const PixelTrack& track, const Frame& here, const Field& still,
+                                  float scale) {
   const int w = track.width, h = track.height;
   const float unit = median_depth(here.features);
-  HalvedImage image{move(track, frame.image.mean), move(track, frame.image.half_difference)};
-  normalise(scale, &image);
-  const auto there = [&](int x, int y) { return track.source[size_t(y) * size_t(w) + size_t(x)] != film::kNoCorrespondence; };
-  const auto displaced = [&](int x, int y) { return track.displacement[size_t(y) * size_t(w) + size_t(x)]; };
+  MovedFrame moved;
+  moved.image = {move(track, frame.image.mean), move(track, frame.image.half_difference)};
+  normalise(scale, &moved.image);
+  moved.deviation = move(track, frame.deviation);
+  for_values(&moved.deviation, [&](float& value, int, int, int) { value /= scale; });
+  moved.displacement = Field(w, h, 2);
+  for_values(&moved.displacement, [&](float& value, int x, int y, int c) {
+    const Vec2& d = track.displacement[size_t(y) * size_t(w) + size_t(x)];
+    value = c == 0 ? d.x : d.y;
+  });
   // Depths as the picture sees them.
-  const auto depth_of = [&](const film::Features& f) { return make_field(w, h, [&](int x, int y) { return f.depth.values[size_t(y) * size_t(w) + size_t(x)]; }); };
-  Field depths = move(track, depth_of(frame.features));
+  film::Features features = frame.features;
+  Field depths(w, h, 1);
+  for_values(&depths, [&](float& value, int x, int y, int) { value = frame.features.depth.values[size_t(y) * size_t(w) + size_t(x)]; });
+  depths = move(track, depths);
   Field both(w, h, 2);
   for_values(&both, [&](float& value, int x, int y, int c) {
-    if (there(x, y)) value = c == 0 ? depths.row(y)[x] : here.features.depth.values[size_t(y) * size_t(w) + size_t(x)];
+    if (track.source[size_t(y) * size_t(w) + size_t(x)] == film::kNoCorrespondence) return;
+    value = c == 0 ? depths.row(y)[x] : here.features.depth.values[size_t(y) * size_t(w) + size_t(x)];
   });
   both = box_mean(both, kDepthRadius);
-  Field features = move(track, regression_features(frame.features, unit));
+  moved.features = move(track, regression_features(frame.features, unit));
   for_values(&depths, [&](float& value, int x, int y, int) {
     const float from = both.row(y, 0)[x];
     if (from > 0.0f) value *= both.row(y, 1)[x] / from;
-    features.row(y, 6)[x] = value > 0.0f ? value / (value + unit) : 0.0f;
+    moved.features.row(y, 6)[x] = value > 0.0f ? value / (value + unit) : 0.0f;
   });
   // Test of the light.
   const HalvedImage own = in_units_of(scale, here.image);
   Field difference(w, h, 3), variance(w, h, 3);
   const Field weights = make_field(w, h, [&](int x, int y) {
-    if (!there(x, y)) return 0.0f;
-    float square = 1e-4f;
-    for (int c = 0; c < 3; ++c) square += still.row(y, c)[x] * still.row(y, c)[x];
-    return 1.0f / square;
+    const float a = moved.deviation.row(y)[x], b = here.deviation.row(y)[x] / scale;
+    return a > 0.0f ? 1.0f / (a * a + b * b) : 0.0f;
   });
   const bool texture = env("LT_TEXTURE", 1) > 0;
   for_values(&difference, [&](float& value, int x, int y, int c) {
-    if (!there(x, y)) return;
-    value = image.mean.row(y, c)[x] - own.mean.row(y, c)[x];
-    const Vec2 d = displaced(x, y);
-    if (texture) value -= look_up(still, c, float(x) + d.x, float(y) + d.y) - still.row(y, c)[x];
-    const float a = image.half_difference.row(y, c)[x], b = own.half_difference.row(y, c)[x];
+    if (weights.row(y)[x] == 0.0f) return;
+    value = moved.image.mean.row(y, c)[x] - own.mean.row(y, c)[x];
+    if (texture)
+      value -= look_up(still, c, float(x) + moved.displacement.row(y, 0)[x], float(y) + moved.displacement.row(y, 1)[x]) -
+               still.row(y, c)[x];
+    const float a = moved.image.half_difference.row(y, c)[x], b = own.half_difference.row(y, c)[x];
     variance.row(y, c)[x] = a * a + b * b;
   });
-  const Field kept = env("LT_OFF", 0) > 0 ? make_field(w, h, [](int, int) { return 1.0f; }) : same_light(difference, variance, weights);
-  const auto add_weighted = [&](const Field& values, const Field& by, Field* sum) {
-    for_values(sum, [&](float& value, int x, int y, int c) { value += by.row(y)[x] * values.row(y, c)[x]; });
-  };
-  const float s_mean = env("MEAN_S", 1.0f), s_feat = env("FEAT_S", 0.3f);
-  const bool by_noise = env("MERGE_DEV", 1) > 0;
-  const auto weight_by = [&](float sigma) {
-    return make_field(w, h, [&](int x, int y) {
-      if (!there(x, y)) return 0.0f;
-      const Vec2 d = displaced(x, y);
-      const int32_t from = track.source[size_t(y) * size_t(w) + size_t(x)];
-      return (by_noise ? scale * scale * frame.weights.row(from / w)[from % w] : 1.0f) * kept.row(y)[x] * std::exp(-0.5f * (d.x * d.x + d.y * d.y) / (sigma * sigma));
-    });
-  };
-  const Field weight = weight_by(s_mean), of_centre = weight_by(s_feat);
-  add(weight, &joined->weight);
-  add(of_centre, &joined->centre_weight);
-  add_weighted(image.mean, weight, &joined->image.mean);
-  add_weighted(image.half_difference, weight, &joined->image.half_difference);
-  add_weighted(features, weight, &joined->features.sampled);
-  add_weighted(features, of_centre, &joined->features.centre);
-  for_values(&joined->features.displacement, [&](float& value, int x, int y, int c) {
-    if (there(x, y)) value += weight.row(y)[x] * (c == 0 ? displaced(x, y).x : displaced(x, y).y);
-  });
+  moved.kept = env("LT_OFF", 0) > 0 ? make_field(w, h, [](int, int) { return 1.0f; }) : same_light(difference, variance, weights);
+  moved.own = move(track, frame.own);
+  const float own_s = env("OWN_S", 0.25f);
+  for_values(&moved.own, [&](float& value, int x, int y, int) { value *= scale * scale * moved.kept.row(y)[x] * closeness(moved, x, y, own_s); });
   if (env("LT_PRINT", 0) > 0) {
-    double k = 0, n = 0;
-    for (int y = 0; y < h; ++y) for (int x = 0; x < w; ++x) { n += there(x, y); k += there(x, y) ? kept.row(y)[x] : 0; }
-    std::fprintf(stderr, "  matched %.3f kept %.3f\n", n / (double(w) * h), k / n);
+    double kept = 0, there = 0;
+    for (int y = 0; y < h; ++y) for (int x = 0; x < w; ++x) { there += weights.row(y)[x] > 0; kept += weights.row(y)[x] > 0 ? moved.kept.row(y)[x] : 0; }
+    std::fprintf(stderr, "  matched %.3f kept %.3f\n", there / (double(w) * h), kept / there);
   }
+  return moved;
 }
 
 Reconstructed JointRegression::reconstruct(int number, const FrameRange& around, const CancelCheck& cancel,
@@ -154,32 +149,31 @@ Reconstructed JointRegression::reconstruct(int number, const FrameRange& around,
   const float scale = robust_scale(here.image.mean);
   const HalvedImage image = in_units_of(scale, here.image);
   const FeatureRegression alone(here.features, image, cancel);
-  const Field of_here = regression_features(here.features, median_depth(here.features));
-  const auto ones = [&] { return make_field(w, h, [](int, int) { return 1.0f; }); };
-  Joined joined{{of_here, Field(w, h, 2), of_here}, image, ones(), ones()};
-  if (env("MERGE_DEV", 1) > 0) {
-    joined.weight = joined.centre_weight = make_field(w, h, [&](int x, int y) { return scale * scale * here.weights.row(y)[x]; });
-    const auto times = [&](Field* field) { for_values(field, [&](float& value, int x, int y, int) { value *= joined.weight.row(y)[x]; }); };
-    times(&joined.image.mean); times(&joined.image.half_difference); times(&joined.features.sampled); times(&joined.features.centre);
-  }
+  std::vector<MovedFrame> others;
   for (int other = around.first; other <= around.last; ++other) {
     if (other == number) continue;
     PixelTrack track = own_pixels(w, h);
     for (int t = other + 1; t <= number; ++t) track = moved_on(track, frames_.at(t).to_previous);
     for (int t = other; t > number; --t) track = moved_back(track, frames_.at(t).to_previous);
-    join(frames_.at(other), track, here, alone.image(), scale, &joined);
+    others.push_back(moved(frames_.at(other), track, here, alone.image(), scale));
   }
   Field picture, error;
-  if (around.first == around.last) { picture = alone.image(); error = alone.error(); }
+  if (others.empty()) { picture = alone.image(); error = alone.error(); }
   else {
-    const auto divide = [](const Field& by, Field* field) { for_values(field, [&](float& value, int x, int y, int) { value /= by.row(y)[x]; }); };
-    divide(joined.weight, &joined.image.mean);
-    divide(joined.weight, &joined.image.half_difference);
-    divide(joined.weight, &joined.features.sampled);
-    divide(joined.weight, &joined.features.displacement);
-    divide(joined.centre_weight, &joined.features.centre);
-    if (env("FEAT_S", 0.3f) <= 0.0f) joined.features.centre = {};
-    const FeatureRegression joint(std::move(joined.features), joined.image, cancel);
+    std::shared_ptr<Field> estimated;
+    if (const float sigma = env("FEAT_S", 0.3f); sigma > 0) {
+      estimated = std::make_shared<Field>(regression_features(here.features, median_depth(here.features)));
+      Field total = make_field(w, h, [](int, int) { return 1.0f; });
+      for (const MovedFrame& other : others) {
+        const Field weight = make_field(w, h, [&](int x, int y) {
+          return other.deviation.row(y)[x] > 0.0f ? other.kept.row(y)[x] * closeness(other, x, y, sigma) : 0.0f;
+        });
+        for_values(estimated.get(), [&](float& value, int x, int y, int c) { value += weight.row(y)[x] * other.features.row(y, c)[x]; });
+        add(weight, &total);
+      }
+      for_values(estimated.get(), [&](float& value, int x, int y, int) { value /= total.row(y)[x]; });
+    }
+    const FeatureRegression joint(here.features, image, cancel, nullptr, others, estimated);
     picture = joint.image();
     error = joint.error();
   }

@@ -36,17 +36,11 @@ class JointRegression {
   struct Frame {
     film::Features features;
     HalvedImage image;
-    Field weights;
+    Field deviation, own;
     film::PixelCorrespondence to_previous;
   };
   const Frame& frame(int number, const CancelCheck& cancel);
-  struct Joined {
-    ImageFeatures features;
-    HalvedImage image;
-    Field weight, centre_weight;
-  };
-  static void join(const Frame& frame, const PixelTrack& track, const Frame& here, const Field& still, float scale,
-                   Joined* joined);
+  MovedFrame moved(const Frame& frame, const PixelTrack& track, const Frame& here, const Field& still, float scale);
 
   OpenFilm open_;
   OpenCorrespondence correspondence_;
