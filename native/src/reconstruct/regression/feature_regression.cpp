@@ -62,17 +62,11 @@ Surroundings look_around(const HalvedImage& image) {
   return {noise, light, box_mean(noise, kNoiseRadius), box_mean(light, kNoiseRadius)};
 }
 
-Field deviation_in_windows(const Surroundings& of) {
+Field weigh_in_windows(const Surroundings& of) {
   return make_field(of.noise.width(), of.noise.height(), [&](int x, int y) {
     const float around = of.noise.row(y)[x] + kShareOfLight * of.light.row(y)[x];
-    return std::max(around, kOwnShare * of.own_noise.row(y)[x]) + kShareOfMedian;
-  });
-}
-
-Field weigh_in_windows(const Field& deviation) {
-  return make_field(deviation.width(), deviation.height(), [&](int x, int y) {
-    const float d = deviation.row(y)[x];
-    return 1.0f / (d * d);
+    const float deviation = std::max(around, kOwnShare * of.own_noise.row(y)[x]) + kShareOfMedian;
+    return 1.0f / (deviation * deviation);
   });
 }
 
@@ -101,25 +95,26 @@ float weigh_pixel(float expected, float excess, float firefly) {
   return kOwnTrust / (factor * expected * expected * doubt * doubt + kMinVariance);
 }
 
-// Returns the weights of all pixels' own values. Changes of light may be 0 by chance between larger ones, so a small
-// change does not count as dark.
-Field weigh_pixel(const Surroundings& of, bool is_light) {
-  const Field expected = is_light ? expected_noise(of) : of.noise;
+// Returns the weights of all pixels' own values.
+Field weigh_pixel(const Surroundings& of) {
+  const Field expected = expected_noise(of);
   return make_field(of.noise.width(), of.noise.height(), [&](int x, int y) {
     const float noise = of.noise.row(y)[x], unit = 1.0f / (of.light.row(y)[x] + kMinVariance);
     const float excess = noise > 0.0f ? std::max(1.0f, of.own_noise.row(y)[x] / noise) : 1.0f;
-    const float brightness = is_light ? std::min(1.0f, of.own_light.row(y)[x] * unit) : 1.0f;
+    const float brightness = std::min(1.0f, of.own_light.row(y)[x] * unit);
     return weigh_pixel(expected.row(y)[x], excess, brightness * noise * unit / kVisible);
   });
 }
 
 float bounded(float value) { return is_finite(value) ? std::clamp(value, -1.0f, 1.0f) : 0.0f; }
 
-Field albedo_of(const film::Features& features) {
-  Field albedo(features.width, features.height, 3);
+// First channel of the albedo among the features.
+constexpr int kAlbedo = 3;
+
+Field albedo_of(const Field& features) {
+  Field albedo(features.width(), features.height(), 3);
   for_values(&albedo, [&](float& value, int x, int y, int c) {
-    const int column = GRADUS_FAULT(second_step_albedo_shifted) ? std::max(x - 1, 0) : x;
-    value = bounded(features.albedo.values[3 * (size_t(y) * size_t(features.width) + size_t(column)) + size_t(c)]);
+    value = features.row(y, kAlbedo + c)[GRADUS_FAULT(second_step_albedo_shifted) ? std::max(x - 1, 0) : x];
   });
   return albedo;
 }
@@ -191,6 +186,12 @@ void blend_bias(const Field& share, const Field& coarse, Field* fine) {
   });
 }
 
+// Returns 1 where there are samples, whose weights are not 0, and 0 elsewhere.
+Field where_there_are(const Field& weights) {
+  return make_field(weights.width(), weights.height(),
+                    [&](int x, int y) { return weights.row(y)[x] > 0.0f ? 1.0f : 0.0f; });
+}
+
 // Returns the weights of the residual's regression: weights by light, which preserve the mean, with some influence of
 // the weights by noise, which suppress outliers.
 Field weigh_residual(const Field& by_light, const Field& by_noise) {
@@ -200,19 +201,11 @@ Field weigh_residual(const Field& by_light, const Field& by_noise) {
   });
 }
 
-// Returns the weights of the pixels of another frame.
-Field weigh_moved(const Field& deviation, const Field& kept) {
-  return make_field(deviation.width(), deviation.height(), [&](int x, int y) {
-    const float d = deviation.row(y)[x];
-    return d > 0.0f ? kept.row(y)[x] / (d * d) : 0.0f;
-  });
-}
-
 }  // namespace
 
-float median_depth(const film::Features& features) {
-  std::vector<float> there;
+float typical_depth(const film::Features& features) {
   const std::vector<float>& depths = features.depth.values;
+  std::vector<float> there;
   std::copy_if(depths.begin(), depths.end(), std::back_inserter(there),
                [](float d) { return is_finite(d) && d > 0.0f; });
   return median_or_one(&there);
@@ -223,39 +216,37 @@ Field regression_features(const film::Features& features, float unit) {
   for_values(&basis, [&](float& value, int x, int y, int c) {
     const int column = GRADUS_FAULT(features_shifted_by_a_column) ? std::min(x + 1, features.width - 1) : x;
     const size_t i = size_t(y) * size_t(features.width) + size_t(column);
-    const float depth = features.depth.values[i];
-    value = c < 3   ? bounded(features.normal.values[3 * i + size_t(c)])
-            : c < 6 ? bounded(features.albedo.values[3 * i + size_t(c - 3)])
-                    : (depth > 0.0f ? bounded(depth / (depth + unit)) : 0.0f);
+    value = c < kAlbedo ? bounded(features.normal.values[3 * i + size_t(c)])
+            : c < 6     ? bounded(features.albedo.values[3 * i + size_t(c - kAlbedo)])
+                        : relative_depth(features.depth.values[i], unit);
+    if (!is_finite(value)) value = 0.0f;
   });
   return basis;
 }
 
-Field deviation_in_windows(const HalvedImage& image) { return deviation_in_windows(look_around(image)); }
-Field own_weights(const HalvedImage& image) { return weigh_pixel(look_around(image), image.is_light); }
+PixelWeights weigh_pixels(const HalvedImage& image) {
+  const Surroundings surroundings = look_around(image);
+  return {weigh_in_windows(surroundings), weigh_pixel(surroundings)};
+}
 
-FeatureRegression::FeatureRegression(const film::Features& features, const HalvedImage& image,
-                                     const CancelCheck& cancel, Field* delivered_error,
-                                     const std::vector<MovedFrame>& others,
-                                     std::shared_ptr<const Field> estimated) {
-  Layers layers;
+FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& image,
+                                     const std::vector<MovedFrame>& others, const CancelCheck& cancel,
+                                     Field* delivered_error) {
+  PixelWeights weights = weigh_pixels(image);
+  Layers layers{
+      std::make_shared<const Predictors>(Predictors{std::move(features.sampled), std::move(weights.in_windows)})};
+  std::vector<Field> own;
+  own.push_back(std::move(weights.own));
   Images means{&image.mean}, half_differences{&image.half_difference};
-  {
-    const Surroundings surroundings = look_around(image);
-    layers.push_back(std::make_shared<const Predictors>(Predictors{
-        regression_features(features, median_depth(features)), weigh_in_windows(deviation_in_windows(surroundings))}));
-    for (const MovedFrame& other : others) {
-      layers.push_back(std::make_shared<const Predictors>(
-          Predictors{other.features, weigh_moved(other.deviation, other.kept), other.displacement}));
-      means.push_back(&other.image.mean);
-      half_differences.push_back(&other.image.half_difference);
-    }
-    std::vector<Field> own;
-    own.push_back(weigh_pixel(surroundings, image.is_light));
-    for (const MovedFrame& other : others) own.push_back(other.own);
-    fine_ = LocalRegression(layers, std::move(own), kFine, estimated);
+  for (const MovedFrame& other : others) {
+    layers.push_back(other.predictors);
+    own.push_back(other.own);
+    means.push_back(&other.image.mean);
+    half_differences.push_back(GRADUS_FAULT(moved_halves_dropped) ? &image.half_difference
+                                                                   : &other.image.half_difference);
   }
-  coarse_ = LocalRegression(layers, {}, kCoarse, estimated);
+  fine_ = LocalRegression(layers, std::move(own), kFine, features.estimated);
+  coarse_ = LocalRegression(layers, {}, kCoarse, features.estimated);
   RegressionResult first = fine_.estimate(means, half_differences, cancel);
   {
     const RegressionResult coarse = coarse_.estimate(means, half_differences, cancel);
@@ -264,21 +255,18 @@ FeatureRegression::FeatureRegression(const film::Features& features, const Halve
     blend(share_, coarse.noise, &first.noise);
     blend_bias(share_, coarse.bias, &first.bias);
   }
-  add_residual(features, image, others, layers, &first, cancel);
-  if (image.is_light) {
-    own_ = restore_sampled_light(image.mean, first.mean);
-    blend_sampled(own_, image.mean, &first.mean);
-    blend_sampled(own_, image.half_difference, &first.noise);
-  }
+  add_residual(image, others, layers, &first, cancel);
+  own_ = restore_sampled_light(image.mean, first.mean);
+  blend_sampled(own_, image.mean, &first.mean);
+  blend_sampled(own_, image.half_difference, &first.noise);
   const Smoothed smoothed{image.mean, image.half_difference, first.mean, first.noise};
   error_ = regression_error(smoothed, first.bias, ErrorUse::Weights);
   if (delivered_error != nullptr) *delivered_error = regression_error(smoothed, first.bias, ErrorUse::Delivered);
   image_ = std::move(first.mean);
 }
 
-void FeatureRegression::add_residual(const film::Features& features, const HalvedImage& image,
-                                     const std::vector<MovedFrame>& others, const Layers& layers,
-                                     RegressionResult* first, const CancelCheck& cancel) {
+void FeatureRegression::add_residual(const HalvedImage& image, const std::vector<MovedFrame>& others,
+                                     const Layers& layers, RegressionResult* first, const CancelCheck& cancel) {
   const Field by_light = weigh_by_light(first->mean, kLightRadius);
   Layers predictors;
   std::vector<Field> residuals, noises;
@@ -289,14 +277,9 @@ void FeatureRegression::add_residual(const film::Features& features, const Halve
                                 first->noise));
     residual_share_.push_back(limit_outliers(residuals[i], by_light));
     Field weights = weigh_residual(by_light, layers[i]->weights);
-    if (i > 0) {
-      for_values(&weights, [&](float& value, int x, int y, int) {
-        if (layers[i]->weights.row(y)[x] == 0.0f) residual_share_[i].row(y)[x] = value = 0.0f;
-        value *= others[i - 1].kept.row(y)[x];
-      });
-    }
-    predictors.push_back(std::make_shared<const Predictors>(
-        Predictors{i == 0 ? albedo_of(features) : channels_of(layers[i]->features, 3, 3), std::move(weights)}));
+    if (i > 0) scale_by(where_there_are(layers[i]->weights), &residual_share_[i]);
+    predictors.push_back(
+        std::make_shared<const Predictors>(Predictors{albedo_of(layers[i]->features), std::move(weights)}));
     scale_by(residual_share_[i], &residuals[i]);
     scale_by(residual_share_[i], &noises[i]);
   }
@@ -316,7 +299,7 @@ Field FeatureRegression::apply(const Images& values, const CancelCheck& cancel) 
   }
   if (!GRADUS_FAULT(second_step_of_other_channels_dropped))
     add(of_residual_.apply(pointers_to(residuals), cancel), &result);
-  if (own_.channels() > 0) blend_sampled(own_, *values[0], &result);
+  blend_sampled(own_, *values[0], &result);
   return result;
 }
 

@@ -3,6 +3,10 @@
 // weights are known, so other planes can go through them.
 #pragma once
 
+#include <algorithm>
+#include <memory>
+#include <vector>
+
 #include "film/features.h"
 #include "reconstruct/regression/halved_image.h"
 #include "reconstruct/regression/local_regression.h"
@@ -16,30 +20,41 @@ inline constexpr int kRegressionGrid = 16;
 // Samples of another frame, whose pixels were moved to where the image shows the same surfaces. All values are 0 in
 // pixels to which none was moved.
 struct MovedFrame {
-  Field features;      // as regression_features() returns them
-  HalvedImage image;   // in the units of the image that is regressed
-  Field deviation;     // standard deviation around each pixel, from deviation_in_windows()
-  Field own;           // weight of each pixel's own value
-  Field kept;          // share of the weight of each pixel, 0 to 1
-  Field displacement;  // of the samples from the centre of their pixel, x and y in pixels
+  std::shared_ptr<const Predictors> predictors;
+  HalvedImage image;  // in the units of the image that is regressed
+  Field own;          // weight of each pixel's own value
 };
 
-// Returns the features of the regression: normal, albedo, and d/(d + unit) of the depth d.
+// What an image is modelled by.
+struct ImageFeatures {
+  Field sampled;  // features of the light that was sampled in each pixel, from regression_features()
+  // Features for which pixels are estimated. Empty: those of the sampled light.
+  std::shared_ptr<const Field> estimated{};
+};
+
+// Returns normal, albedo, and d/(d + unit) of the depth d: seven channels.
 Field regression_features(const film::Features& features, float unit);
-// Returns the median of the finite, positive depths; 1 if there are none.
-float median_depth(const film::Features& features);
-// Returns the standard deviation by which pixels count in windows, from `image` in units of its median luminance.
-Field deviation_in_windows(const HalvedImage& image);
-// Returns the weight 1/variance of each pixel's own value.
-Field own_weights(const HalvedImage& image);
+// Returns the typical depth: the median of the finite, positive ones; 1 if there are none.
+float typical_depth(const film::Features& features);
+inline float relative_depth(float depth, float unit) {
+  return depth > 0.0f ? std::clamp(depth / (depth + unit), -1.0f, 1.0f) : 0.0f;
+}
+
+// Weights of the pixels of an image in windows, and of their own values.
+struct PixelWeights {
+  Field in_windows, own;
+};
+// `image` is in units of its median luminance.
+PixelWeights weigh_pixels(const HalvedImage& image);
 
 class FeatureRegression {
  public:
-  // Regresses `image` on `features` and freezes the weights of all steps. `delivered_error`, unless it is nullptr,
-  // receives the error of the pass Error. The samples of `others` contribute to the same windows.
-  FeatureRegression(const film::Features& features, const HalvedImage& image, const CancelCheck& cancel,
-                    Field* delivered_error = nullptr, const std::vector<MovedFrame>& others = {},
-                    std::shared_ptr<const Field> estimated = {});
+  // Regresses `image` on `features` and freezes the weights of all steps. The samples of `others` contribute to the same
+  // windows. `delivered_error`, unless it is nullptr, receives the error of the pass Error.
+  FeatureRegression(ImageFeatures features, const HalvedImage& image, const std::vector<MovedFrame>& others,
+                    const CancelCheck& cancel, Field* delivered_error = nullptr);
+  FeatureRegression(const film::Features& features, const HalvedImage& image, const CancelCheck& cancel)
+      : FeatureRegression({regression_features(features, typical_depth(features))}, image, {}, cancel) {}
 
   const Field& image() const { return image_; }
   // Returns the estimated squared error of the image, mean over its channels, bias included, which weighs pixels.
@@ -50,15 +65,15 @@ class FeatureRegression {
 
  private:
   // Adds the regression of the residual to the mean and the noise of `first`.
-  void add_residual(const film::Features& features, const HalvedImage& image, const std::vector<MovedFrame>& others,
-                    const Layers& layers, RegressionResult* first, const CancelCheck& cancel);
+  void add_residual(const HalvedImage& image, const std::vector<MovedFrame>& others, const Layers& layers,
+                    RegressionResult* first, const CancelCheck& cancel);
 
   LocalRegression fine_, coarse_, of_residual_;
   Field share_;           // share of the small windows in each pixel
   // Share of each pixel's residual that is restored, for each layer: outliers are limited, and pixels that hold no
   // samples have no residual.
   std::vector<Field> residual_share_;
-  // Share of each pixel's own sampled value in the result (restore_sampled_light.h). Empty for changes of light.
+  // Share of each pixel's own sampled value in the result (restore_sampled_light.h).
   Field own_;
   Field image_, error_;
 };

@@ -1,34 +1,34 @@
 #include "reconstruct/space_time/light_test.h"
 
 #include <algorithm>
-#include <cstdlib>
 
+#include "base/fault.h"
 #include "reconstruct/box_mean.h"
+#include "reconstruct/field_values.h"
 
 namespace gradus::reconstruct {
 namespace {
 
-float envl(const char* name, float standard) {
-  const char* text = std::getenv(name);
-  return text ? float(std::atof(text)) : standard;
-}
-
-// Side in pixels of the cells that large squares consist of.
+// Radii of the squares around each pixel, in pixels, and of larger ones around cells of kCell × kCell pixels, in cells.
+constexpr int kRadii[] = {2, 4}, kRadiiOfCells[] = {2, 4, 8};
 constexpr int kCell = 4;
+// The samples of a square count in full if the squared mean difference is at most kSame times its variance, and not at
+// all from kOther times on.
+constexpr float kSame = 6.0f, kOther = 12.0f;
+constexpr int kVariance = 3;  // channel of the variance among the sums
 
-// Sums for the test, of pixels or of cells: w e for three channels, and the sum of w² v over them.
-Field weighted(const Field& difference, const Field& variance, const Field& weights) {
-  Field sums(difference.width(), difference.height(), 4);
-  for_values(&sums, [&](float& value, int x, int y, int c) {
-    const float w = weights.row(y)[x];
-    if (w == 0.0f) return;
-    value = c < 3 ? w * difference.row(y, c)[x]
-                  : w * w * (variance.row(y, 0)[x] + variance.row(y, 1)[x] + variance.row(y, 2)[x]);
+// Returns the terms of a square's mean difference and of its variance: w d for each channel, and Σ w² v over them.
+Field terms_of(const LightChange& change) {
+  Field terms(change.weight.width(), change.weight.height(), kVariance + 1);
+  for_values(&terms, [&](float& value, int x, int y, int c) {
+    const float w = change.weight.row(y)[x];
+    value = c < kVariance ? w * change.difference.row(y, c)[x]
+                          : 3.0f * w * w * mean_of(change.variance, x, y);
   });
-  return sums;
+  return terms;
 }
 
-Field cells_of(const Field& image) {
+Field sum_cells(const Field& image) {
   Field cells((image.width() + kCell - 1) / kCell, (image.height() + kCell - 1) / kCell, image.channels());
   for_values(&cells, [&](float& value, int x, int y, int c) {
     for (int j = y * kCell; j < std::min(image.height(), (y + 1) * kCell); ++j) {
@@ -38,32 +38,36 @@ Field cells_of(const Field& image) {
   return cells;
 }
 
-// Multiplies `kept` by what the test in squares of this radius says.
-void test(const Field& sums, int radius, Field* kept) {
-  static const float lo = envl("LT_LO", 6), hi = envl("LT_HI", 12);
-  const Field means = box_mean(sums, radius);
-  for_values(kept, [&](float& value, int x, int y, int) {
-    // box_mean() averages over the part of the square that lies in the image.
-    const int w = sums.width(), h = sums.height();
-    const float n = float((std::min(x + radius, w - 1) - std::max(x - radius, 0) + 1) *
-                          (std::min(y + radius, h - 1) - std::max(y - radius, 0) + 1));
+// Number of pixels from `at - radius` to `at + radius` that lie within [0, size).
+int count_inside(int at, int radius, int size) { return std::min(at + radius, size - 1) - std::max(at - radius, 0) + 1; }
+
+// Returns the share of the weight that is kept by the test in squares of this radius.
+Field test(const Field& terms, int radius) {
+  const Field means = box_mean(terms, radius);
+  return make_field(terms.width(), terms.height(), [&](int x, int y) {
+    const int count = count_inside(x, radius, terms.width()) * count_inside(y, radius, terms.height());
     float square = 0.0f;
-    for (int c = 0; c < 3; ++c) square += means.row(y, c)[x] * means.row(y, c)[x];
-    const float noise = means.row(y, 3)[x];
-    const float z = noise > 0.0f ? n * square / noise : square > 0.0f ? hi : 0.0f;
-    value *= std::clamp((hi - z) / (hi - lo), 0.0f, 1.0f);
+    for (int c = 0; c < kVariance; ++c) square += means.row(y, c)[x] * means.row(y, c)[x];
+    square *= float(count);
+    const float variance = means.row(y, kVariance)[x];
+    if (square <= kSame * variance) return 1.0f;
+    return variance > 0.0f ? std::max((kOther - square / variance) / (kOther - kSame), 0.0f) : 0.0f;
   });
 }
 
 }  // namespace
 
-Field same_light(const Field& difference, const Field& variance, const Field& weights) {
-  const int w = weights.width(), h = weights.height();
-  const Field sums = weighted(difference, variance, weights), cells = cells_of(sums);
-  const auto ones = [](int width, int height) { return make_field(width, height, [](int, int) { return 1.0f; }); };
-  Field kept = ones(w, h), of_cells = ones(cells.width(), cells.height());
-  for (const int radius : {2, 4}) test(sums, radius, &kept);
-  for (const int radius : {2, 4, 8}) test(cells, radius, &of_cells);
+Field same_light(const LightChange& change) {
+  const int w = change.weight.width(), h = change.weight.height();
+  Field kept = make_field(w, h, [](int, int) { return 1.0f; });
+  if (GRADUS_FAULT(light_test_off)) return kept;
+  const Field terms = terms_of(change), cells = sum_cells(terms);
+  Field of_cells = make_field(cells.width(), cells.height(), [](int, int) { return 1.0f; });
+  const auto multiply = [](const Field& by, Field* field) {
+    for_values(field, [&](float& value, int x, int y, int) { value *= by.row(y)[x]; });
+  };
+  for (const int radius : kRadii) multiply(test(terms, radius), &kept);
+  for (const int radius : kRadiiOfCells) multiply(test(cells, radius), &of_cells);
   for_values(&kept, [&](float& value, int x, int y, int) { value *= of_cells.row(y / kCell)[x / kCell]; });
   return kept;
 }

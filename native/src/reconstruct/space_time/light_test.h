@@ -1,14 +1,20 @@
-// Test whether a frame shows the same light as another one, from the noise of both.
+// Test whether the samples of another frame show the same light as a picture, from the noise of both.
 #pragma once
 
-#include "reconstruct/regression/halved_image.h"
+#include "reconstruct/field.h"
 
 namespace gradus::reconstruct {
 
-// Returns the share of each pixel's weight that it keeps, 0 to 1. `difference` is that of the two frames' samples, less
-// what comes from their fractions of a pixel; `variance` is the variance of that difference, and `weights` are 0 where
-// there is none. Around each pixel, in squares of several sizes, the mean difference is compared with its standard
-// deviation (Welch 1947).
-Field same_light(const Field& difference, const Field& variance, const Field& weights);
+// What may have changed between the samples of two frames.
+struct LightChange {
+  Field difference;  // of the samples, less what comes from their fractions of a pixel; three channels
+  Field variance;    // of that difference, three channels
+  Field weight;      // of the pixel in means, 0 where there is no sample
+};
+
+// Returns the share of each pixel's weight that is kept, 0 to 1. In squares of several sizes around each pixel, the mean
+// difference is compared with its standard deviation (Welch 1947, "The generalization of Student's problem when several
+// different population variances are involved").
+Field same_light(const LightChange& change);
 
 }  // namespace gradus::reconstruct
