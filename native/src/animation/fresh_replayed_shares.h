@@ -48,7 +48,7 @@ inline bool has_as_many(const film::FilmHeader& half, FrameSamples kind, const G
   if (is_limited && requested.time_limit > 0.0f &&
       requested.time_limit <= half.settings.time_limit / fresh_share_of_time(requested))
     return true;
-  const uint64_t samples = is_limited ? samples_taken(half) : half.settings.samples;
+  const uint64_t samples = is_limited || kind == FrameSamples::kReplayed ? samples_taken(half) : half.settings.samples;
   return samples >= samples_of(kind, requested) && is_quiet;
 }
 

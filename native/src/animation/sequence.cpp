@@ -196,7 +196,7 @@ void Sequence::merge(int32_t number, film::Film* fresh, const film::Film& replay
   if (!GRADUS_FAULT(passes_read_fresh_samples_alone)) film::add_sums(fresh, replayed);
   fresh->frame_number = number;
   fresh->settings.frame = number;
-  fresh->settings.samples += replayed.settings.samples;
+  fresh->settings.samples += uint32_t(replayed.samples.total());
   fresh->shared = {};
 }
 
