@@ -209,8 +209,10 @@ reconstruct::SequenceSource Sequence::source(const reconstruct::SequenceMethod& 
             return spooled->window(window.first, window.last, cancel);
           },
           [=, this](int place, const CancelCheck& cancel) {
-            const std::shared_ptr<film::Film> film = fresh(place, cancel);
-            merge(frame_at(place), film.get(), *replayed(place, cancel));
+            const int32_t frame = frame_at(place);
+            std::shared_ptr<film::Film> film = fresh(place, cancel);
+            if (folder_.header(frame, FrameSamples::kReplayed).samples.total() > 0)
+              merge(frame, film.get(), *replayed(place, cancel));
             return film;
           },
           [=, this](int place, const CancelCheck& cancel) {
