@@ -47,6 +47,9 @@ constexpr float kDarkByChance = 0.5f;
 constexpr int kLightRadius = 3;
 // Radius within which small and large windows are compared, and radius of the light relative to which they are.
 constexpr int kShareRadius = 4, kShareLightRadius = 2;
+// Light that is lost is restored in proportion to the light within squares of (2 · kLossRadius + 1)² cells of this
+// side. Smaller ones bring light of bright places to the dark ones beside them.
+constexpr int kLossCell = 32, kLossRadius = 4;
 // Side of the blocks that share a bound on outliers.
 constexpr int kBlockSide = 16;
 
@@ -262,6 +265,12 @@ FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& 
     blend_bias(share_, coarse.bias, &first.bias);
   }
   add_residual(image, others, layers, &first, cancel);
+  if (!others.empty()) {
+    light_ = first.mean;
+    const Field lost = lost_light(means, first.mean), lost_noise = lost_light(half_differences, first.noise);
+    add(lost, &first.mean);
+    add(lost_noise, &first.noise);
+  }
   own_ = restore_sampled_light(image.mean, first.mean);
   blend_sampled(own_, image.mean, &first.mean);
   blend_sampled(own_, image.half_difference, &first.noise);
@@ -295,6 +304,39 @@ void FeatureRegression::add_residual(const HalvedImage& image, const std::vector
   if (!GRADUS_FAULT(error_omits_second_step)) add(second.noise, &first->noise);
 }
 
+Field FeatureRegression::lost_light(const Images& sampled, const Field& regressed) const {
+  const int w = regressed.width(), h = regressed.height();
+  if (GRADUS_FAULT(lost_light_not_restored)) return Field(w, h, kColors);
+  constexpr int kLost = 0, kLight = kColors;  // first channels of the sums
+  Field sums((w + kLossCell - 1) / kLossCell, (h + kLossCell - 1) / kLossCell, 2 * kColors);
+  for_rows(
+      sums.height(),
+      [&](int y) {
+        for (size_t i = 0; i < sampled.size(); ++i) {
+          for (int v = y * kLossCell; v < std::min(h, (y + 1) * kLossCell); ++v) {
+            const float* share = residual_share_[i].row(v);
+            for (int c = 0; c < kColors; ++c) {
+              float *lost = sums.row(y, kLost + c), *light = sums.row(y, kLight + c);
+              const float *from = sampled[i]->row(v, c), *to = regressed.row(v, c), *of_image = light_.row(v, c);
+              for (int u = 0; u < w; ++u) {
+                if (share[u] == 0.0f) continue;  // no samples
+                lost[u / kLossCell] += from[u] - to[u];
+                light[u / kLossCell] += of_image[u];
+              }
+            }
+          }
+        }
+      },
+      1);
+  sums = box_mean(sums, kLossRadius);
+  Field lost(w, h, kColors);
+  for_values(&lost, [&](float& value, int x, int y, int c) {
+    const float light = sums.row(y / kLossCell, kLight + c)[x / kLossCell];
+    if (light > 0.0f) value = light_.row(y, c)[x] * sums.row(y / kLossCell, kLost + c)[x / kLossCell] / light;
+  });
+  return lost;
+}
+
 Field FeatureRegression::apply(const Images& values, const CancelCheck& cancel) const {
   Field result = fine_.apply(values, cancel);
   if (!GRADUS_FAULT(alpha_lacks_large_windows)) blend(share_, coarse_.apply(values, cancel), &result);
@@ -305,6 +347,7 @@ Field FeatureRegression::apply(const Images& values, const CancelCheck& cancel) 
   }
   if (!GRADUS_FAULT(second_step_of_other_channels_dropped))
     add(of_residual_.apply(pointers_to(residuals), cancel), &result);
+  if (light_.channels() == result.channels()) add(lost_light(values, result), &result);
   blend_sampled(own_, *values[0], &result);
   return result;
 }

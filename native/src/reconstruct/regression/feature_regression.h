@@ -71,11 +71,16 @@ class FeatureRegression {
   void add_residual(const HalvedImage& image, const std::vector<MovedFrame>& others, const Layers& layers,
                     RegressionResult* first, const CancelCheck& cancel);
 
+  // Returns the light that `regressed` has lost of the sampled light around each pixel: weights by noise give rare
+  // bright samples too little weight.
+  Field lost_light(const Images& sampled, const Field& regressed) const;
+
   LocalRegression fine_, coarse_, of_residual_;
   Field share_;  // share of the small windows in each pixel
   // Share of each pixel's residual that is restored, for each layer: outliers are limited, and pixels that hold no
   // samples have no residual.
   std::vector<Field> residual_share_;
+  Field light_;  // the image before lost light is restored; empty if no other frames contribute
   // Share of each pixel's own sampled value in the result (restore_sampled_light.h).
   Field own_;
   Field image_, error_;
