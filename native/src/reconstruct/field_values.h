@@ -79,4 +79,15 @@ Field make_field(int width, int height, const Function& function) {
   return field;
 }
 
+// Returns the bilinear interpolation of a channel between pixel centres.
+inline float interpolate(const Field& image, int channel, float x, float y) {
+  x = std::clamp(x, 0.0f, float(image.width() - 1));
+  y = std::clamp(y, 0.0f, float(image.height() - 1));
+  const int i = int(x), j = int(y), right = std::min(i + 1, image.width() - 1),
+            above = std::min(j + 1, image.height() - 1);
+  const float u = x - float(i), v = y - float(j);
+  const float *a = image.row(j, channel), *b = image.row(above, channel);
+  return (1.0f - v) * ((1.0f - u) * a[i] + u * a[right]) + v * ((1.0f - u) * b[i] + u * b[right]);
+}
+
 }  // namespace gradus::reconstruct

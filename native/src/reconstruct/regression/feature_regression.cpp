@@ -242,20 +242,20 @@ FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& 
                                      const std::vector<MovedFrame>& others, const CancelCheck& cancel,
                                      Field* delivered_error) {
   PixelWeights weights = weigh_pixels(image);
-  Layers layers{
+  layers_ = {
       std::make_shared<const Predictors>(Predictors{std::move(features.sampled), std::move(weights.in_windows)})};
   std::vector<Field> own;
   own.push_back(std::move(weights.own));
   Images means{&image.mean}, half_differences{&image.half_difference};
   for (const MovedFrame& other : others) {
-    layers.push_back(other.predictors);
+    layers_.push_back(other.predictors);
     own.push_back(other.own);
     means.push_back(&other.image.mean);
     half_differences.push_back(GRADUS_FAULT(moved_halves_dropped) ? &image.half_difference
                                                                   : &other.image.half_difference);
   }
-  fine_ = LocalRegression(layers, std::move(own), kFine, features.estimated);
-  coarse_ = LocalRegression(layers, {}, kCoarse, features.estimated);
+  fine_ = LocalRegression(layers_, std::move(own), kFine, features.estimated);
+  coarse_ = LocalRegression(layers_, {}, kCoarse, features.estimated);
   RegressionResult first = fine_.estimate(means, half_differences, cancel);
   {
     const RegressionResult coarse = coarse_.estimate(means, half_differences, cancel);
@@ -264,7 +264,7 @@ FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& 
     blend(share_, coarse.noise, &first.noise);
     blend_bias(share_, coarse.bias, &first.bias);
   }
-  add_residual(image, others, layers, &first, cancel);
+  add_residual(image, others, &first, cancel);
   if (!others.empty()) {
     light_ = first.mean;
     const Field lost = lost_light(means, first.mean), lost_noise = lost_light(half_differences, first.noise);
@@ -281,20 +281,20 @@ FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& 
 }
 
 void FeatureRegression::add_residual(const HalvedImage& image, const std::vector<MovedFrame>& others,
-                                     const Layers& layers, RegressionResult* first, const CancelCheck& cancel) {
+                                     RegressionResult* first, const CancelCheck& cancel) {
   const Field by_light = weigh_by_light(first->mean, kLightRadius);
   Layers predictors;
   std::vector<Field> residuals, noises;
   for (size_t i = 0; i <= others.size(); ++i) {
     const HalvedImage& sampled = i == 0 ? image : others[i - 1].image;
-    residuals.push_back(difference(sampled.mean, first->mean));
+    residuals.push_back(residual(i, sampled.mean, first->mean));
     noises.push_back(difference(
         GRADUS_FAULT(second_step_takes_image_for_noise) ? sampled.mean : sampled.half_difference, first->noise));
     residual_share_.push_back(limit_outliers(residuals[i], by_light));
-    Field weights = weigh_residual(by_light, layers[i]->weights);
-    if (i > 0) scale_by(where_there_are(layers[i]->weights), &residual_share_[i]);
+    Field weights = weigh_residual(by_light, layers_[i]->weights);
+    if (i > 0) scale_by(where_there_are(layers_[i]->weights), &residual_share_[i]);
     predictors.push_back(
-        std::make_shared<const Predictors>(Predictors{albedo_of(layers[i]->features), std::move(weights)}));
+        std::make_shared<const Predictors>(Predictors{albedo_of(layers_[i]->features), std::move(weights)}));
     scale_by(residual_share_[i], &residuals[i]);
     scale_by(residual_share_[i], &noises[i]);
   }
@@ -304,35 +304,42 @@ void FeatureRegression::add_residual(const HalvedImage& image, const std::vector
   if (!GRADUS_FAULT(error_omits_second_step)) add(second.noise, &first->noise);
 }
 
+Field FeatureRegression::residual(size_t layer, const Field& sampled, const Field& regressed) const {
+  const Field& displacement = layers_[layer]->displacement;
+  if (displacement.channels() == 0) return difference(sampled, regressed);
+  Field result = sampled;
+  for_values(&result, [&](float& value, int x, int y, int c) {
+    value -= interpolate(regressed, c, float(x) + displacement.row(y, 0)[x], float(y) + displacement.row(y, 1)[x]);
+  });
+  return result;
+}
+
 Field FeatureRegression::lost_light(const Images& sampled, const Field& regressed) const {
   const int w = regressed.width(), h = regressed.height();
-  if (GRADUS_FAULT(lost_light_not_restored)) return Field(w, h, kColors);
-  constexpr int kLost = 0, kLight = kColors;  // first channels of the sums
+  Field lost(w, h, kColors);
+  if (GRADUS_FAULT(lost_light_not_restored)) return lost;
   Field sums((w + kLossCell - 1) / kLossCell, (h + kLossCell - 1) / kLossCell, 2 * kColors);
-  for_rows(
-      sums.height(),
-      [&](int y) {
-        for (size_t i = 0; i < sampled.size(); ++i) {
+  for (size_t i = 0; i < sampled.size(); ++i) {
+    const Field residuals = residual(i, *sampled[i], regressed);
+    for_rows(
+        sums.height(),
+        [&](int y) {
           for (int v = y * kLossCell; v < std::min(h, (y + 1) * kLossCell); ++v) {
-            const float* share = residual_share_[i].row(v);
-            for (int c = 0; c < kColors; ++c) {
-              float *lost = sums.row(y, kLost + c), *light = sums.row(y, kLight + c);
-              const float *from = sampled[i]->row(v, c), *to = regressed.row(v, c), *of_image = light_.row(v, c);
-              for (int u = 0; u < w; ++u) {
-                if (share[u] == 0.0f) continue;  // no samples
-                lost[u / kLossCell] += from[u] - to[u];
-                light[u / kLossCell] += of_image[u];
+            for (int x = 0; x < w; ++x) {
+              if (residual_share_[i].row(v)[x] == 0.0f) continue;  // no samples
+              for (int c = 0; c < kColors; ++c) {
+                sums.row(y, c)[x / kLossCell] += residuals.row(v, c)[x];
+                sums.row(y, kColors + c)[x / kLossCell] += light_.row(v, c)[x];
               }
             }
           }
-        }
-      },
-      1);
+        },
+        1);
+  }
   sums = box_mean(sums, kLossRadius);
-  Field lost(w, h, kColors);
   for_values(&lost, [&](float& value, int x, int y, int c) {
-    const float light = sums.row(y / kLossCell, kLight + c)[x / kLossCell];
-    if (light > 0.0f) value = light_.row(y, c)[x] * sums.row(y / kLossCell, kLost + c)[x / kLossCell] / light;
+    const float light = sums.row(y / kLossCell, kColors + c)[x / kLossCell];
+    if (light > 0.0f) value = light_.row(y, c)[x] * sums.row(y / kLossCell, c)[x / kLossCell] / light;
   });
   return lost;
 }
@@ -342,7 +349,7 @@ Field FeatureRegression::apply(const Images& values, const CancelCheck& cancel) 
   if (!GRADUS_FAULT(alpha_lacks_large_windows)) blend(share_, coarse_.apply(values, cancel), &result);
   std::vector<Field> residuals;
   for (size_t i = 0; i < values.size(); ++i) {
-    residuals.push_back(difference(*values[i], result));
+    residuals.push_back(residual(i, *values[i], result));
     if (!GRADUS_FAULT(alpha_keeps_outliers)) scale_by(residual_share_[i], &residuals[i]);
   }
   if (!GRADUS_FAULT(second_step_of_other_channels_dropped))

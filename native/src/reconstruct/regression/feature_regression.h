@@ -71,10 +71,13 @@ class FeatureRegression {
   void add_residual(const HalvedImage& image, const std::vector<MovedFrame>& others, const Layers& layers,
                     RegressionResult* first, const CancelCheck& cancel);
 
+  // Returns what the samples of a layer have more than the regressed image where they lie.
+  Field residual(size_t layer, const Field& sampled, const Field& regressed) const;
   // Returns the light that `regressed` has lost of the sampled light around each pixel: weights by noise give rare
   // bright samples too little weight.
   Field lost_light(const Images& sampled, const Field& regressed) const;
 
+  Layers layers_;
   LocalRegression fine_, coarse_, of_residual_;
   Field share_;  // share of the small windows in each pixel
   // Share of each pixel's residual that is restored, for each layer: outliers are limited, and pixels that hold no

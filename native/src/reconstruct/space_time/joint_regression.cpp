@@ -83,17 +83,6 @@ void move_depths(const PixelTrack& track, const Field& depths_here, float unit, 
   });
 }
 
-// Returns the bilinear interpolation of a channel between pixel centres.
-float interpolate(const Field& image, int channel, float x, float y) {
-  x = std::clamp(x, 0.0f, float(image.width() - 1));
-  y = std::clamp(y, 0.0f, float(image.height() - 1));
-  const int i = int(x), j = int(y), right = std::min(i + 1, image.width() - 1),
-            above = std::min(j + 1, image.height() - 1);
-  const float u = x - float(i), v = y - float(j);
-  const float *a = image.row(j, channel), *b = image.row(above, channel);
-  return (1.0f - v) * ((1.0f - u) * a[i] + u * a[right]) + v * ((1.0f - u) * b[i] + u * b[right]);
-}
-
 // Returns the change of the light between the picture and the samples of another frame: their difference, less that of
 // the picture between the places of the samples and the centres of their pixels.
 template <class Picture>
