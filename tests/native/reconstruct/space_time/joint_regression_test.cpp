@@ -35,6 +35,7 @@ struct Shot {
   float sigma = 0.4f;
   unsigned seed = 1;
   std::optional<float> pan{};  // pixels per frame of a moving picture; none: a static room
+  float ramp = 0.0f;           // increase of the light per pixel of a moving picture that no feature describes
   std::function<float(int t)> light = [](int) { return 1.0f; };
   std::function<int(int t)> stream = [](int t) { return t; };
   std::function<bool(int pixel)> linked = [](int) { return true; };
@@ -43,9 +44,13 @@ struct Shot {
     FeatureFilm picture = test::room(kWidth, kHeight);
     if (pan) {
       const float moved = *pan * float(t);
-      picture.truth = make_image(kWidth, kHeight, 3,
-                                 [=](int x, int y, int c) { return moving_light(float(x) - moved, y, c); });
-      picture.feature = [=](int x, int y, int channel, int) { return moving_feature(float(x) - moved, y, channel); };
+      const float slope = ramp;
+      picture.truth = make_image(kWidth, kHeight, 3, [=](int x, int y, int c) {
+        return slope > 0.0f ? 1.0f + slope * (float(x) - moved) : moving_light(float(x) - moved, y, c);
+      });
+      picture.feature = [=](int x, int y, int channel, int) {
+        return moving_feature(slope > 0.0f ? 0.0f : float(x) - moved, slope > 0.0f ? 0 : y, channel);
+      };
     }
     for (float& v : picture.truth) v *= light(t);
     picture.gradients = gradients;
@@ -200,6 +205,21 @@ TEST(B2_JointRegression, APanByAFractionOfAPixelHasNoBias) {
                  variance = variance_of(shot, [](const Shot& s) { return joint(s, kMiddle).image; });
     std::printf("  pan %g: squared bias %.3e, variance %.3e\n", double(pan), bias, variance);
     EXPECT_LT(bias, 0.25 * variance) << pan;
+  }
+}
+
+// All samples of the other frame lie on one side of the centres of their pixels.
+TEST(B2_JointRegression, DisplacementsCountInWindows) {
+  Shot shot;
+  shot.frames = 2;
+  shot.pan = 0.45f;
+  shot.ramp = 0.05f;
+  shot.sigma = 0.02f;
+  for (const int frame : {0, 1}) {
+    const std::vector<float> truth = shot.description(frame).truth, picture = joint(shot, frame).image;
+    const double shift = (mean(picture) - mean(truth)) / shot.ramp;
+    std::printf("  frame %d: shifted by %.4f pixels\n", frame, shift);
+    EXPECT_NEAR(shift, 0.0, 0.02) << frame;
   }
 }
 
