@@ -209,7 +209,7 @@ void FrameSampling::sample_replayed(const film::FilmHeader& fresh, const std::ve
                                     bool samples_fresh) {
   render::LoopInput input = input_;
   input.whole_samples = input.settings.samples;
-  input.settings.samples = samples_of(FrameSamples::kReplayed, input_.settings);
+  if (takes_replays(input_.settings)) input.settings.samples = samples_of(FrameSamples::kReplayed, input_.settings);
   std::optional<film::FilmHeader> found = stored(FrameSamples::kReplayed);
   if (found && found->frame_number != fresh.frame_number) found.reset();
   if (found && fresh.frame_number != input_.settings.frame) return;  // both files are those of the earlier frame
@@ -272,11 +272,8 @@ std::shared_ptr<const render::Replay> FrameSampling::follow(const film::FilmHead
                                      "in " + std::to_string(std::lround(share)) +
                                          " % of the pixels, reflections or refractions move differently from surfaces");
   }
-  if (!takes_replays(now)) {
-    replay->counts.assign(size_t(fresh.region.area()), 0);
-    return replay;
-  }
-  if (!has_counts(now)) return replay;
+  replay->takes_samples = takes_replays(now);
+  if (!replay->takes_samples || !has_counts(now)) return replay;
   const double mean = mean_of(counts);
   const bool is_counted = before && before->sampled && *before->sampled == fresh.region;
   replay->counts = replayed_counts(replay->replay_map, is_counted ? before : nullptr, mean);

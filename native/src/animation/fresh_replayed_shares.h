@@ -41,14 +41,15 @@ inline uint64_t samples_taken(const film::FilmHeader& half) {
 // Whether the stored samples of one kind suffice for the requested settings: they are as many as requested, or they
 // reached the noise threshold or the time limit.
 inline bool has_as_many(const film::FilmHeader& half, FrameSamples kind, const GradusSettings& requested) {
-  const bool is_quiet = half.settings.noise_threshold <= fresh_share_of_threshold(requested) * requested.noise_threshold;
+  const bool is_quiet =
+      half.settings.noise_threshold <= fresh_share_of_threshold(requested) * requested.noise_threshold;
   if (half.shared.is_done()) return is_quiet;
   // Frames with a time limit have as many samples as the time allowed, which may be fewer than in their settings.
   const bool is_limited = half.settings.time_limit > 0.0f;
   if (is_limited && requested.time_limit > 0.0f &&
       requested.time_limit <= half.settings.time_limit / fresh_share_of_time(requested))
     return true;
-  const uint64_t samples = is_limited ? samples_taken(half) : half.settings.samples;
+  const uint64_t samples = is_limited || kind == FrameSamples::kReplayed ? samples_taken(half) : half.settings.samples;
   return samples >= samples_of(kind, requested) && is_quiet;
 }
 

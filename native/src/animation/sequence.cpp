@@ -196,7 +196,7 @@ void Sequence::merge(int32_t number, film::Film* fresh, const film::Film& replay
   if (!GRADUS_FAULT(passes_read_fresh_samples_alone)) film::add_sums(fresh, replayed);
   fresh->frame_number = number;
   fresh->settings.frame = number;
-  fresh->settings.samples += replayed.settings.samples;
+  fresh->settings.samples += uint32_t(replayed.samples.total());
   fresh->shared = {};
 }
 
@@ -209,8 +209,10 @@ reconstruct::SequenceSource Sequence::source(const reconstruct::SequenceMethod& 
             return spooled->window(window.first, window.last, cancel);
           },
           [=, this](int place, const CancelCheck& cancel) {
-            const std::shared_ptr<film::Film> film = fresh(place, cancel);
-            merge(frame_at(place), film.get(), *replayed(place, cancel));
+            const int32_t frame = frame_at(place);
+            std::shared_ptr<film::Film> film = fresh(place, cancel);
+            if (folder_.header(frame, FrameSamples::kReplayed).samples.total() > 0)
+              merge(frame, film.get(), *replayed(place, cancel));
             return film;
           },
           [=, this](int place, const CancelCheck& cancel) {

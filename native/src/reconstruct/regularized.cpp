@@ -37,14 +37,14 @@ float typical_noise(const HalvedImage& image) {
 class Operator {
  public:
   // `film` must have one component.
-  Operator(const film::Film& film, const film::Features& features, const OtherFrames& others,
-           const CancelCheck& cancel, SolveReport* report, ErrorUse use)
+  Operator(const film::Film& film, Field features, const OtherFrames& others, const CancelCheck& cancel,
+           SolveReport* report, ErrorUse use)
       : others_(others), cancel_(cancel), report_(report) {
     HalvedImage image = read_sum(film);
     scale_ = robust_scale(image.mean);
     normalise(scale_, &image);
-    regression_.emplace(ImageFeatures{regression_features(features, typical_depth(features)), others.features}, image,
-                        others.frames, cancel, use == ErrorUse::Delivered ? &delivered_error_ : nullptr);
+    regression_.emplace(ImageFeatures{std::move(features), others.features}, image, others.frames, cancel,
+                        use == ErrorUse::Delivered ? &delivered_error_ : nullptr);
     solution_ = regression_->image();
     if (film.color_channels == 4) {
       const Field alpha = channels_of(read_sampled(film, 0, scale_), 3, 1);
@@ -75,8 +75,8 @@ class Operator {
  private:
   static constexpr int kAllComponents = -1;
 
-  // Applies the regression to channels of a component, or of the sum of all: those of the film, and the same ones of the
-  // other frames, of which `first` is the first one.
+  // Applies the regression to channels of a component, or of the sum of all: those of the film, and the same ones of
+  // the other frames, of which `first` is the first one.
   Field regress(int component, int first, const Field& own) const {
     std::vector<Field> of_others;
     for (const std::vector<Field>& sampled : others_.sampled) {
@@ -135,15 +135,17 @@ Field read_sampled(const film::Film& film, int component, float scale) {
 
 Reconstructed regularize(const film::Film& film, bool by_components, const CancelCheck& cancel, SolveReport* report,
                          ErrorUse use) {
-  return regularize(film, filter_features(film::read_features(film)), {}, by_components, cancel, report, use);
+  const film::Features features = filter_features(film::read_features(film));
+  return regularize(film, regression_features(features, typical_depth(features)), {}, by_components, cancel, report,
+                    use);
 }
 
-Reconstructed regularize(const film::Film& film, const film::Features& features, const OtherFrames& others,
-                         bool by_components, const CancelCheck& cancel, SolveReport* report, ErrorUse use) {
+Reconstructed regularize(const film::Film& film, Field features, const OtherFrames& others, bool by_components,
+                         const CancelCheck& cancel, SolveReport* report, ErrorUse use) {
   const size_t components = film.components.size();
   std::optional<film::Film> sum;
   if (components > 1) sum = film::sum_components(film);
-  Operator op(sum ? *sum : film, features, others, cancel, report, use);
+  Operator op(sum ? *sum : film, std::move(features), others, cancel, report, use);
   sum.reset();
   const float scale = op.scale();
   Field error = op.error();

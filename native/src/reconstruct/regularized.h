@@ -29,10 +29,9 @@ struct OtherFrames {
 // to the image whatever their light. `use` says which error the result has.
 Reconstructed regularize(const film::Film& film, bool by_components, const CancelCheck& cancel, SolveReport* report,
                          ErrorUse use = ErrorUse::Weights);
-// Reconstructs a film by its features, which the caller has already filtered (feature_filter.h), and other frames.
-Reconstructed regularize(const film::Film& film, const film::Features& features, const OtherFrames& others,
-                         bool by_components, const CancelCheck& cancel, SolveReport* report,
-                         ErrorUse use = ErrorUse::Weights);
+// Reconstructs a film by its features, from regression_features(), and other frames.
+Reconstructed regularize(const film::Film& film, Field features, const OtherFrames& others, bool by_components,
+                         const CancelCheck& cancel, SolveReport* report, ErrorUse use = ErrorUse::Weights);
 
 // Reads the sum of all components of a film.
 HalvedImage read_sum(const film::Film& film);

@@ -224,6 +224,12 @@ Field regression_features(const film::Features& features, float unit) {
   return basis;
 }
 
+Field regress_coarsely(const Predictors& predictors, const HalvedImage& image, const CancelCheck& cancel) {
+  return LocalRegression({std::make_shared<const Predictors>(predictors)}, {}, kCoarse)
+      .estimate({&image.mean}, {&image.half_difference}, cancel)
+      .mean;
+}
+
 PixelWeights weigh_pixels(const HalvedImage& image) {
   const Surroundings surroundings = look_around(image);
   return {weigh_in_windows(surroundings), weigh_pixel(surroundings)};
@@ -243,7 +249,7 @@ FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& 
     own.push_back(other.own);
     means.push_back(&other.image.mean);
     half_differences.push_back(GRADUS_FAULT(moved_halves_dropped) ? &image.half_difference
-                                                                   : &other.image.half_difference);
+                                                                  : &other.image.half_difference);
   }
   fine_ = LocalRegression(layers, std::move(own), kFine, features.estimated);
   coarse_ = LocalRegression(layers, {}, kCoarse, features.estimated);
@@ -273,8 +279,8 @@ void FeatureRegression::add_residual(const HalvedImage& image, const std::vector
   for (size_t i = 0; i <= others.size(); ++i) {
     const HalvedImage& sampled = i == 0 ? image : others[i - 1].image;
     residuals.push_back(difference(sampled.mean, first->mean));
-    noises.push_back(difference(GRADUS_FAULT(second_step_takes_image_for_noise) ? sampled.mean : sampled.half_difference,
-                                first->noise));
+    noises.push_back(difference(
+        GRADUS_FAULT(second_step_takes_image_for_noise) ? sampled.mean : sampled.half_difference, first->noise));
     residual_share_.push_back(limit_outliers(residuals[i], by_light));
     Field weights = weigh_residual(by_light, layers[i]->weights);
     if (i > 0) scale_by(where_there_are(layers[i]->weights), &residual_share_[i]);

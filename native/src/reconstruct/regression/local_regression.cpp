@@ -28,8 +28,7 @@ template <int P, int C, bool Coordinates, bool Estimates>
 void run_tiles(const RegressionTask& task, const OctaveTask<Estimates>& octave, const CancelCheck& cancel) {
   constexpr TileSize kTile = Estimates ? kOfEstimate : kOfApply;
   const int side = octave.octave.side;
-  const int w = ceil_divided(task.width() + octave.shift, side),
-            h = ceil_divided(task.height() + octave.shift, side);
+  const int w = ceil_divided(task.width() + octave.shift, side), h = ceil_divided(task.height() + octave.shift, side);
   tbb::parallel_for(tbb::blocked_range2d<int>(0, ceil_divided(h, kTile.height), 1, 0, ceil_divided(w, kTile.width), 1),
                     [&](const tbb::blocked_range2d<int>& range) {
                       const FlushDenormals flush;
@@ -52,10 +51,10 @@ void run_octaves(const RegressionTask& task, const Confidence& confidence, const
     Field coarse;
     for (size_t k = octaves.size(); k-- > 0;) {
       const int side = octaves[k].side;
-      const Field above = std::exchange(coarse, k > 0 ? Field(ceil_divided(task.width() + shift, side),
-                                                              ceil_divided(task.height() + shift, side),
-                                                              WindowEstimates<P, C, Coordinates>::kCount)
-                                                      : Field());
+      const Field above = std::exchange(
+          coarse, k > 0 ? Field(ceil_divided(task.width() + shift, side), ceil_divided(task.height() + shift, side),
+                                WindowEstimates<P, C, Coordinates>::kCount)
+                        : Field());
       run_tiles<P, C, Coordinates, Estimates>(task,
                                               {octaves[k], shift, confidence(octaves.size() * size_t(shift) + k),
                                                or_null(above), k > 0 ? &coarse : nullptr},
@@ -117,14 +116,8 @@ Field LocalRegression::apply(const Images& values, const CancelCheck& cancel) co
   const bool joint = layers_.size() > 1 || estimated_;
   Field own_estimates;
   if (joint) own_estimates = Field(first.width(), first.height(), first.channels());
-  const RegressionTask task{&layers_,
-                            pointers_to(own_),
-                            estimated_.get(),
-                            {values},
-                            {&result},
-                            &totals,
-                            nullptr,
-                            joint ? &own_estimates : nullptr,
+  const RegressionTask task{&layers_,  pointers_to(own_), estimated_.get(), {values},
+                            {&result}, &totals,           nullptr,          joint ? &own_estimates : nullptr,
                             &settings_};
   const auto confidence = [&](size_t i) { return &confidence_[i]; };
   first.channels() == 1 ? run_features<1, false>(task, confidence, cancel)

@@ -72,8 +72,8 @@ inline Images pointers_to(const std::vector<Field>& fields) {
 class LocalRegression {
  public:
   LocalRegression() = default;
-  // `own` is 1/v, one channel, for each layer. If it is empty, pixels are no windows of their own. `estimated`: features
-  // of the pixels to estimate, if they are not those of the first layer.
+  // `own` is 1/v, one channel, for each layer. If it is empty, pixels are no windows of their own. `estimated`:
+  // features of the pixels to estimate, if they are not those of the first layer.
   LocalRegression(Layers layers, std::vector<Field> own, RegressionSettings settings,
                   std::shared_ptr<const Field> estimated = {});
 

@@ -28,11 +28,11 @@ struct RegressionTask {
   Images own;
   // Features of the pixels to estimate; null: those of the first layer.
   const Field* estimated;
-  std::vector<Images> values;  // the mean and half the difference if η is estimated, else one image
-  std::vector<Field*> results;       // sums over windows until the last lattice is done, then the results
-  Field *totals, *bias;              // sums of η and of η · bias
-  // Sums over the layers of own · the estimates of their pixels; null if there is one layer, whose own features are those
-  // of the pixels to estimate.
+  std::vector<Images> values;   // the mean and half the difference if η is estimated, else one image
+  std::vector<Field*> results;  // sums over windows until the last lattice is done, then the results
+  Field *totals, *bias;         // sums of η and of η · bias
+  // Sums over the layers of own · the estimates of their pixels; null if there is one layer, whose own features are
+  // those of the pixels to estimate.
   Field* own_estimates;
   const RegressionSettings* settings;
 
@@ -159,9 +159,7 @@ class Tile {
   int groups() const { return side_ * side_ / kGroup; }
   float coordinate(int i) const { return (float(i) - 0.5f * float(side_ - 1)) / kCoordinateUnit; }
 
-  const float* value_row(size_t layer, int y, int c) const {
-    return task_.values[size_t(c) / 3][layer]->row(y, c % 3);
-  }
+  const float* value_row(size_t layer, int y, int c) const { return task_.values[size_t(c) / 3][layer]->row(y, c % 3); }
 
   // Reads the k-th pixel of a group of a layer for every block of row j, so that the blocks lie next to each other.
   void read_pixels(size_t layer, int j, int g, const Field* other_features = nullptr) {
@@ -173,8 +171,7 @@ class Tile {
       const bool inside = y >= 0 && y < task_.height();
       const int of_features = GRADUS_FAULT(window_features_shifted_by_a_row) ? std::max(y - 1, 0) : y;
       const int at = k * kPixel;
-      for (int c = 0; c + 1 < B; ++c)
-        pick(inside ? features.row(of_features, c) : nullptr, dx, pixels_[at + c]);
+      for (int c = 0; c + 1 < B; ++c) pick(inside ? features.row(of_features, c) : nullptr, dx, pixels_[at + c]);
       pick(inside ? predictors.weights.row(y) : nullptr, dx, pixels_[at + kWeight]);
       for (int c = 0; c < C; ++c) pick(inside ? value_row(layer, y, c) : nullptr, dx, pixels_[at + kValues + c]);
       for (int c = 0; c < kPixel - kDisplacement; ++c) {
@@ -220,7 +217,8 @@ class Tile {
     if (i == 0) return Lanes{} + 1.0f;
     if (i < B) return load(pixels_[k * kPixel + i - 1] + x);
     const Lanes displacement = load(pixels_[k * kPixel + kDisplacement + (i == M::kX ? 0 : 1)] + x);
-    return (i == M::kX ? coordinate(pixel_x(g, k)) : coordinate(pixel_y(g, k))) + (1.0f / kCoordinateUnit) * displacement;
+    return (i == M::kX ? coordinate(pixel_x(g, k)) : coordinate(pixel_y(g, k))) +
+           (1.0f / kCoordinateUnit) * displacement;
   }
 
   template <bool First>
@@ -405,8 +403,7 @@ class Tile {
         }
         for (int x = 0; x < width_; x += kLanes) {
           const Lanes own = load(moments_[0] + x);
-          for (int c = 0; c < C; ++c)
-            store(load(boxes_[c] + x) + own * estimate_of(g, k, c, x), boxes_[c] + x);
+          for (int c = 0; c < C; ++c) store(load(boxes_[c] + x) + own * estimate_of(g, k, c, x), boxes_[c] + x);
         }
         for (int c = 0; c < C; ++c) put(boxes_[c], dx, task_.own_estimates->row(y, c));
       }
@@ -455,14 +452,16 @@ class Tile {
     }
   }
 
-  // x = E/T + Σ own (I − E/T)/(T + Σ own), where T is the sum of η and E of η times the estimates: the windows' estimate
-  // of the pixel, and the mean of what the samples of its track have more than the estimates of their own features.
+  // x = E/T + Σ own (I − E/T)/(T + Σ own), where T is the sum of η and E of η times the estimates: the windows'
+  // estimate of the pixel, and the mean of what the samples of its track have more than the estimates of their own
+  // features.
   void add_samples_of_layers(int y, int dx) {
     const int kOwn = 0, kSampled = 1;
     for (int i = 0; i <= C; ++i) std::fill_n(moments_[i], moments_.width(), 0.0f);
     for (size_t layer = 0; layer < task_.own.size(); ++layer) {
       pick(task_.own[layer]->row(y), dx, pixels_[0]);
-      for (int x = 0; x < width_; x += kLanes) store(load(moments_[kOwn] + x) + load(pixels_[0] + x), moments_[kOwn] + x);
+      for (int x = 0; x < width_; x += kLanes)
+        store(load(moments_[kOwn] + x) + load(pixels_[0] + x), moments_[kOwn] + x);
       for (int c = 0; c < C; ++c) {
         pick(value_row(layer, y, c), dx, pixels_[1]);
         float* sum = moments_[kSampled + c];

@@ -87,7 +87,8 @@ void move_depths(const PixelTrack& track, const Field& depths_here, float unit, 
 float interpolate(const Field& image, int channel, float x, float y) {
   x = std::clamp(x, 0.0f, float(image.width() - 1));
   y = std::clamp(y, 0.0f, float(image.height() - 1));
-  const int i = int(x), j = int(y), right = std::min(i + 1, image.width() - 1), above = std::min(j + 1, image.height() - 1);
+  const int i = int(x), j = int(y), right = std::min(i + 1, image.width() - 1),
+            above = std::min(j + 1, image.height() - 1);
   const float u = x - float(i), v = y - float(j);
   const float *a = image.row(j, channel), *b = image.row(above, channel);
   return (1.0f - v) * ((1.0f - u) * a[i] + u * a[right]) + v * ((1.0f - u) * b[i] + u * b[right]);
@@ -124,6 +125,7 @@ const JointRegression::Frame& JointRegression::frame(int number, const CancelChe
   Frame frame;
   frame.step = open_step_(number, cancel);
   const film::Features features = filter_features(film::read_features(*film));
+  frame.typical_depth = typical_depth(features);
   frame.features = regression_features(features, 1.0f);
   for_values(&frame.features, [&](float& value, int x, int y, int c) {
     if (c == kDepth) value = features.depth.values[size_t(y) * size_t(features.width) + size_t(x)];
@@ -158,17 +160,16 @@ PixelTrack JointRegression::track(int other, int frame) const {
   return track;
 }
 
-JointRegression::Picture JointRegression::make_picture(const Frame& here, const film::Features& features,
-                                                       const CancelCheck& cancel) {
+JointRegression::Picture JointRegression::make_picture(const Frame& here, const CancelCheck& cancel) {
   Picture picture;
   picture.scale = robust_scale(here.image.mean);
-  picture.unit = typical_depth(features);
+  picture.unit = here.typical_depth;
   picture.image = here.image;
   normalise(picture.scale, &picture.image);
   picture.weights = here.weights.in_windows;
   scale_values(picture.scale * picture.scale, &picture.weights);
   picture.depths = channels_of(here.features, kDepth, 1);
-  picture.alone = FeatureRegression(features, picture.image, cancel).image();
+  picture.alone = regress_coarsely({features_of(here), picture.weights}, picture.image, cancel);
   return picture;
 }
 
@@ -197,14 +198,22 @@ Field JointRegression::move_frame(const Frame& frame, const PixelTrack& track, c
   return kept;
 }
 
-OtherFrames JointRegression::join(int number, const std::vector<int>& numbers, const film::Features& features,
-                                  const CancelCheck& cancel) const {
+Field JointRegression::features_of(const Frame& frame) {
+  Field features = frame.features;
+  for_rows(features.height(), [&](int y) {
+    float* depths = features.row(y, kDepth);
+    for (int x = 0; x < features.width(); ++x) depths[x] = relative_depth(depths[x], frame.typical_depth);
+  });
+  return features;
+}
+
+OtherFrames JointRegression::join(int number, const std::vector<int>& numbers, const CancelCheck& cancel) const {
   if (numbers.empty()) return {};
   const Frame& here = frames_.at(number);
-  const Picture picture = make_picture(here, features, cancel);
+  const Picture picture = make_picture(here, cancel);
   const int w = here.features.width(), h = here.features.height();
   OtherFrames others;
-  auto mean = std::make_shared<Field>(regression_features(features, picture.unit));
+  auto mean = std::make_shared<Field>(features_of(here));
   Field total = make_field(w, h, [](int, int) { return 1.0f; });
   for (const int other : numbers) {
     if (cancel()) return {};
@@ -234,10 +243,10 @@ Reconstructed JointRegression::reconstruct(int number, const FrameRange& around,
     }
   }
   const std::shared_ptr<const film::Film> film = open_film_(number, cancel);
-  const film::Features features = filter_features(film::read_features(*film));
-  const OtherFrames others = join(number, numbers, features, cancel);
+  const OtherFrames others = join(number, numbers, cancel);
   if (cancel()) return {};
-  return regularize(*film, features, others, film->components.size() > 1, cancel, report, ErrorUse::Delivered);
+  return regularize(*film, features_of(frames_.at(number)), others, film->components.size() > 1, cancel, report,
+                    ErrorUse::Delivered);
 }
 
 }  // namespace gradus::reconstruct

@@ -1,7 +1,7 @@
 // REGULARIZED over several frames. The windows of a picture's regression also hold the samples of the frames around it,
 // at the places to which motion leads, with their fractions of a pixel. Samples whose light is not that of the picture
-// do not count (light_test.h). Every picture is a linear function of the samples of its frame and of the others, so that
-// components and alpha go through the same operator.
+// do not count (light_test.h). Every picture is a linear function of the samples of its frame and of the others, so
+// that components and alpha go through the same operator.
 #pragma once
 
 #include <functional>
@@ -42,6 +42,7 @@ class JointRegression {
   struct Frame {
     FrameStep step;
     Field features;  // normal, albedo, depth
+    float typical_depth = 1.0f;
     HalvedImage image;
     PixelWeights weights;
     std::vector<Field> sampled;  // by component; empty if the picture has neither alpha nor several components
@@ -52,17 +53,18 @@ class JointRegression {
     HalvedImage image;
     Field weights;  // of its pixels in windows
     Field depths;
-    Field alone;  // the picture by its own samples
+    Field alone;  // the picture by its own samples, in large windows
   };
   const Frame& frame(int number, const CancelCheck& cancel);
   // Returns where the pixels of another frame lie in a frame.
   PixelTrack track(int other, int frame) const;
-  static Picture make_picture(const Frame& here, const film::Features& features, const CancelCheck& cancel);
+  static Picture make_picture(const Frame& here, const CancelCheck& cancel);
+  // Returns the features of a frame's own regression.
+  static Field features_of(const Frame& frame);
   // Adds a frame to those that contribute to a picture. Returns the shares of the pixels' weights that are kept.
   static Field move_frame(const Frame& frame, const PixelTrack& track, const Picture& picture, OtherFrames* others);
   // Returns the frames `numbers`, moved to frame `number`.
-  OtherFrames join(int number, const std::vector<int>& numbers, const film::Features& features,
-                   const CancelCheck& cancel) const;
+  OtherFrames join(int number, const std::vector<int>& numbers, const CancelCheck& cancel) const;
 
   OpenFilm open_film_;
   OpenStep open_step_;

@@ -22,8 +22,7 @@ Field terms_of(const LightChange& change) {
   Field terms(change.weight.width(), change.weight.height(), kVariance + 1);
   for_values(&terms, [&](float& value, int x, int y, int c) {
     const float w = change.weight.row(y)[x];
-    value = c < kVariance ? w * change.difference.row(y, c)[x]
-                          : 3.0f * w * w * mean_of(change.variance, x, y);
+    value = c < kVariance ? w * change.difference.row(y, c)[x] : 3.0f * w * w * mean_of(change.variance, x, y);
   });
   return terms;
 }
@@ -39,7 +38,9 @@ Field sum_cells(const Field& image) {
 }
 
 // Number of pixels from `at - radius` to `at + radius` that lie within [0, size).
-int count_inside(int at, int radius, int size) { return std::min(at + radius, size - 1) - std::max(at - radius, 0) + 1; }
+int count_inside(int at, int radius, int size) {
+  return std::min(at + radius, size - 1) - std::max(at - radius, 0) + 1;
+}
 
 // Returns the share of the weight that is kept by the test in squares of this radius.
 Field test(const Field& terms, int radius) {

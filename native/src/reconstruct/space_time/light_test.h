@@ -12,9 +12,9 @@ struct LightChange {
   Field weight;      // of the pixel in means, 0 where there is no sample
 };
 
-// Returns the share of each pixel's weight that is kept, 0 to 1. In squares of several sizes around each pixel, the mean
-// difference is compared with its standard deviation (Welch 1947, "The generalization of Student's problem when several
-// different population variances are involved").
+// Returns the share of each pixel's weight that is kept, 0 to 1. In squares of several sizes around each pixel, the
+// mean difference is compared with its standard deviation (Welch 1947, "The generalization of Student's problem when
+// several different population variances are involved").
 Field same_light(const LightChange& change);
 
 }  // namespace gradus::reconstruct
