@@ -138,7 +138,8 @@ TEST(J1_Window, RegressionOverTimeUsesOneFilmAndAFewFieldsOfEachFrame) {
         return film;
       },
       [&](int frame, const CancelCheck&) {
-        return reconstruct::FrameStep{frame, {window.correspondence[size_t(frame + size.frames - 1) % size_t(size.frames)]}};
+        return reconstruct::FrameStep{frame,
+                                      {window.correspondence[size_t(frame + size.frames - 1) % size_t(size.frames)]}};
       });
   for (int frame = 0; frame < size.frames; ++frame) {
     const reconstruct::FrameRange around{std::max(frame - kReach, 0), std::min(frame + kReach, size.frames - 1)};

@@ -156,7 +156,8 @@ reconstruct::LocalRegression regress(const KnownError& known, float own, reconst
   const reconstruct::Field half = make_field(
       w, h, 3, [&](int x, int y, int) { return known.common_noise + known.chequered_noise * chequer(x, y); });
   const reconstruct::Field own_weights = make_field(w, h, 1, [&](int, int, int) { return own; });
-  reconstruct::LocalRegression regression(predictors(reconstruct::Field(w, h, 7), ones(w, h)), {own_weights}, kSettings);
+  reconstruct::LocalRegression regression(predictors(reconstruct::Field(w, h, 7), ones(w, h)), {own_weights},
+                                          kSettings);
   *result = estimate(&regression, image, half);
   return regression;
 }

@@ -38,9 +38,7 @@ double mean_of(const reconstruct::Field& field, int first_x, int last_x, int fir
   }
   return sum / (double(last_x - first_x + 1) * (last_y - first_y + 1));
 }
-double mean_of(const reconstruct::Field& field) {
-  return mean_of(field, 0, field.width() - 1, 0, field.height() - 1);
-}
+double mean_of(const reconstruct::Field& field) { return mean_of(field, 0, field.width() - 1, 0, field.height() - 1); }
 
 TEST(B2_LightTest, NoiseOfTheSameLightIsKept) {
   double kept = 0.0;
