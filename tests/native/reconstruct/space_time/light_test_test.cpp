@@ -45,7 +45,7 @@ TEST(B2_LightTest, NoiseOfTheSameLightIsKept) {
   constexpr int kSeeds = 8;
   for (unsigned seed = 1; seed <= kSeeds; ++seed) kept += mean_of(same_light(noise(0.4f, seed))) / kSeeds;
   std::printf("  share that is kept: %.4f\n", kept);
-  EXPECT_GT(kept, 0.9);
+  EXPECT_GT(kept, 0.99);
 }
 
 // A step in a square of 16 × 16 pixels is dropped if its mean is `deviations` standard deviations of the mean of a
@@ -66,6 +66,10 @@ TEST(C5_LightTest, AStepInASquareIsDropped) {
       outside += mean_of(kept, 0, kWidth - 1, 0, 10) / kSeeds;
     }
     std::printf("  %g deviations: %.4f kept inside, %.4f far away\n", double(deviations), inside, outside);
+    EXPECT_GT(outside, 0.99);
+    EXPECT_TRUE(deviations < 6.0f || inside < 0.001) << deviations;
+    EXPECT_TRUE(deviations > 0.0f || inside > 0.99);
+    EXPECT_LT(inside, deviations < 3.0f ? 1.1 : 0.85) << deviations;
   }
 }
 
