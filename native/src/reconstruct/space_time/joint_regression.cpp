@@ -231,6 +231,8 @@ Reconstructed JointRegression::reconstruct(int number, const FrameRange& around,
       if (around.contains(other) && streams.insert(frames_.at(other).step.stream).second) numbers.push_back(other);
     }
   }
+  // Repeated frames sum the others in one order.
+  std::sort(numbers.begin(), numbers.end());
   const std::shared_ptr<const film::Film> film = open_film_(number, cancel);
   const OtherFrames others = join(number, numbers, cancel);
   if (cancel()) return {};
