@@ -68,8 +68,8 @@ class FeatureRegression {
 
  private:
   // Adds the regression of the residual to the mean and the noise of `first`.
-  void add_residual(const HalvedImage& image, const std::vector<MovedFrame>& others, const Layers& layers,
-                    RegressionResult* first, const CancelCheck& cancel);
+  void add_residual(const HalvedImage& image, const std::vector<MovedFrame>& others, RegressionResult* first,
+                    const CancelCheck& cancel);
 
   // Returns what the samples of a layer have more than the regressed image where they lie.
   Field residual(size_t layer, const Field& sampled, const Field& regressed) const;
