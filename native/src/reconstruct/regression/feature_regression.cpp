@@ -47,9 +47,6 @@ constexpr float kDarkByChance = 0.5f;
 constexpr int kLightRadius = 3;
 // Radius within which small and large windows are compared, and radius of the light relative to which they are.
 constexpr int kShareRadius = 4, kShareLightRadius = 2;
-// Light that is lost is restored in proportion to the light within squares of (2 · kLossRadius + 1)² cells of this
-// side. Smaller ones bring light of bright places to the dark ones beside them.
-constexpr int kLossCell = 32, kLossRadius = 4;
 // Side of the blocks that share a bound on outliers.
 constexpr int kBlockSide = 16;
 
@@ -265,12 +262,6 @@ FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& 
     blend_bias(share_, coarse.bias, &first.bias);
   }
   add_residual(image, others, &first, cancel);
-  if (!others.empty()) {
-    light_ = first.mean;
-    const Field lost = lost_light(means, first.mean), lost_noise = lost_light(half_differences, first.noise);
-    add(lost, &first.mean);
-    add(lost_noise, &first.noise);
-  }
   own_ = restore_sampled_light(image.mean, first.mean);
   blend_sampled(own_, image.mean, &first.mean);
   blend_sampled(own_, image.half_difference, &first.noise);
@@ -314,36 +305,6 @@ Field FeatureRegression::residual(size_t layer, const Field& sampled, const Fiel
   return result;
 }
 
-Field FeatureRegression::lost_light(const Images& sampled, const Field& regressed) const {
-  const int w = regressed.width(), h = regressed.height();
-  Field lost(w, h, kColors);
-  if (GRADUS_FAULT(lost_light_not_restored)) return lost;
-  Field sums((w + kLossCell - 1) / kLossCell, (h + kLossCell - 1) / kLossCell, 2 * kColors);
-  for (size_t i = 0; i < sampled.size(); ++i) {
-    const Field residuals = residual(i, *sampled[i], regressed);
-    for_rows(
-        sums.height(),
-        [&](int y) {
-          for (int v = y * kLossCell; v < std::min(h, (y + 1) * kLossCell); ++v) {
-            for (int x = 0; x < w; ++x) {
-              if (residual_share_[i].row(v)[x] == 0.0f) continue;  // no samples
-              for (int c = 0; c < kColors; ++c) {
-                sums.row(y, c)[x / kLossCell] += residuals.row(v, c)[x];
-                sums.row(y, kColors + c)[x / kLossCell] += light_.row(v, c)[x];
-              }
-            }
-          }
-        },
-        1);
-  }
-  sums = box_mean(sums, kLossRadius);
-  for_values(&lost, [&](float& value, int x, int y, int c) {
-    const float light = sums.row(y / kLossCell, kColors + c)[x / kLossCell];
-    if (light > 0.0f) value = light_.row(y, c)[x] * sums.row(y / kLossCell, c)[x / kLossCell] / light;
-  });
-  return lost;
-}
-
 Field FeatureRegression::apply(const Images& values, const CancelCheck& cancel) const {
   Field result = fine_.apply(values, cancel);
   if (!GRADUS_FAULT(alpha_lacks_large_windows)) blend(share_, coarse_.apply(values, cancel), &result);
@@ -354,7 +315,6 @@ Field FeatureRegression::apply(const Images& values, const CancelCheck& cancel) 
   }
   if (!GRADUS_FAULT(second_step_of_other_channels_dropped))
     add(of_residual_.apply(pointers_to(residuals), cancel), &result);
-  if (light_.channels() == result.channels()) add(lost_light(values, result), &result);
   blend_sampled(own_, *values[0], &result);
   return result;
 }

@@ -73,9 +73,6 @@ class FeatureRegression {
 
   // Returns what the samples of a layer have more than the regressed image where they lie.
   Field residual(size_t layer, const Field& sampled, const Field& regressed) const;
-  // Returns the light that `regressed` has lost of the sampled light around each pixel: weights by noise give rare
-  // bright samples too little weight.
-  Field lost_light(const Images& sampled, const Field& regressed) const;
 
   Layers layers_;
   LocalRegression fine_, coarse_, of_residual_;
@@ -83,7 +80,6 @@ class FeatureRegression {
   // Share of each pixel's residual that is restored, for each layer: outliers are limited, and pixels that hold no
   // samples have no residual.
   std::vector<Field> residual_share_;
-  Field light_;  // the image before lost light is restored; empty if no other frames contribute
   // Share of each pixel's own sampled value in the result (restore_sampled_light.h).
   Field own_;
   Field image_, error_;
