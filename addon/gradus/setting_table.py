@@ -377,9 +377,10 @@ ROWS: tuple[dict[str, Any], ...] = (
         default=True,
         label="Follow Reflections",
         doc=(
-            "In animations with components, compares what mirrors and glass show with the place where it was a "
-            "frame before. Off: with the place where the mirror or the glass was. On leaves less flicker where the "
-            "two move differently, and takes about a third more time where cameras or mirrors move"
+            "In animations with components and the reconstruction L2 or L1, compares what mirrors and glass show "
+            "with the place where it was a frame before. Off: with the place where the mirror or the glass was. On "
+            "leaves less flicker where the two move differently, and takes about a third more time where cameras or"
+            " mirrors move. Regularized follows surfaces alone"
         ),
     ),
     dict(
@@ -411,10 +412,11 @@ ROWS: tuple[dict[str, Any], ...] = (
         default=True,
         label="Temporal",
         doc=(
-            "In animations half of the samples follow those of the frame before, and neighbouring frames are "
-            "reconstructed together. This leaves less flicker at the same number of samples, takes about 1.6 times "
-            "as long to reconstruct and about 122 bytes of memory per pixel and frame of a window, and delays the "
-            "first frame by up to nine. It has no effect with the integrator Path or the reconstruction None"
+            "In animations, makes each frame from its own samples and those of the frames around it, along the "
+            "motion of surfaces. This leaves less noise and far less flicker at the same number of samples. It "
+            "takes several times as long to reconstruct and about 180 bytes of memory per pixel and frame, and "
+            "delays the first frame by up to nine. With L2 and L1 half of the samples follow those of the frame "
+            "before. It has no effect with the integrator Path or the reconstruction None"
         ),
         native=False,
     ),
@@ -424,8 +426,9 @@ ROWS: tuple[dict[str, Any], ...] = (
         default=10,
         label="Window",
         doc=(
-            "Frames of an animation that are reconstructed together. More leave less flicker, take more memory and "
-            "delay the first frame: as many are sampled before it is delivered"
+            "Frames of an animation that are reconstructed together. Regularized makes a frame from itself and up "
+            "to half of the others on each side: 4 of 10, none of 2. More leave less noise and flicker, take longer"
+            " and more memory, and delay the first frame: as many are sampled before it is delivered"
         ),
         minimum=2,
         maximum=100,
@@ -439,7 +442,8 @@ ROWS: tuple[dict[str, Any], ...] = (
         label="Overlap",
         doc=(
             "Frames that a window shares with the next one, at most half of it. More make the change from window to"
-            " window smoother and cost as many reconstructions more"
+            " window smoother. With L2 and L1 they cost as many reconstructions more; with Regularized, frames near"
+            " the end of a window are made from more frames"
         ),
         minimum=1,
         maximum=50,
@@ -452,9 +456,9 @@ ROWS: tuple[dict[str, Any], ...] = (
         default="",
         label="Frame Store",
         doc=(
-            "Folder that keeps the films of all frames: samples, gradients and half-buffers. An animation goes on "
-            "from there, and the command-line tool reconstructs from it. Empty: none is kept. Films take more space"
-            " than pictures"
+            "Folder that keeps the films of all frames: samples, gradients where they were sampled, and "
+            "half-buffers. An animation goes on from there, and the command-line tool reconstructs from it. Empty: "
+            "none is kept. Films take more space than pictures"
         ),
         native=False,
     ),

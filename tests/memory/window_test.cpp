@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "memory/allocations.h"
 #include "reconstruct/feature_film.h"
+#include "reconstruct/space_time/joint_regression.h"
 #include "reconstruct/space_time/sequence_pictures.h"
 #include "reconstruct/space_time/window.h"
 #include "reconstruct/space_time/window_solver.h"
@@ -19,27 +20,8 @@ namespace {
 // A cancel check that never cancels.
 constexpr auto kNever = [] { return false; };
 
-// Two consecutive frames of another source, from `first` on.
-class PairOf final : public reconstruct::HalvedWindowSource {
- public:
-  PairOf(const reconstruct::HalvedWindowSource& source, int first) : source_(source), first_(first) {}
-  reconstruct::WindowSize size() const override {
-    return {source_.size().width, source_.size().height, source_.size().channels, 2};
-  }
-  void read_row(reconstruct::RowKind kind, int t, int y, float* out) const override {
-    source_.read_row(kind, first_ + t, y, out);
-  }
-  void read_half_differences(reconstruct::RowKind kind, int t, int y, float* out) const override {
-    source_.read_half_differences(kind, first_ + t, y, out);
-  }
-  void read_correspondence(int t, int y, int32_t* out) const override {
-    source_.read_correspondence(first_ + t, y, out);
-  }
-
- private:
-  const reconstruct::HalvedWindowSource& source_;
-  int first_;
-};
+// Number of frames to each side that contribute to a picture, and of all of them.
+constexpr int kReach = 4, kFrames = 2 * kReach + 1;
 
 // A flat picture with the noise of few samples: few bright pixels, and differences with heavy tails. The values are
 // kept in memory, so that reading them takes no time; the operating system likewise caches the file of a window.
@@ -133,35 +115,41 @@ TEST(J1_Window, UsesFourFieldsAndTheirGrids) {
   }
 }
 
-// The bytes include the film of the one frame that is open at a time; frames are opened when they are needed.
-TEST(J1_Window, RegressionOverTimeUsesOneFrameAndAFewFields) {
+// The bytes are those of all frames that contribute to a picture, per pixel and frame. They include the film of the one
+// frame that is open at a time. Every frame is opened once for its own picture, and once for those of the others.
+TEST(J1_Window, RegressionOverTimeUsesOneFilmAndAFewFieldsOfEachFrame) {
   const reconstruct::WindowSize size = test::full_run() ? full_window() : small_window();
   test::FeatureFilm description = test::room(size.width, size.height);
   description.gradients = true;
-  const auto open = [&](int) { return std::make_shared<film::Film>(test::make_feature_film(description)); };
-  const NoisySource source(size, test::Motion::kPan);
+  test::Window window(size.width, size.height, 0, size.frames);
+  test::set_correspondences(&window, test::Motion::kPan);
   const int64_t before = live_bytes();
   forget_peak();
   const uint64_t start = process_cpu_nanoseconds();
   uint64_t opening = 0;
+  int opened = 0;
   reconstruct::SolveReport report;
-  reconstruct::RegularizedWindows windows(
-      [&](int frame, const CancelCheck&) {
+  reconstruct::JointRegression joint(
+      [&](int, const CancelCheck&) {
         const uint64_t begin = process_cpu_nanoseconds();
-        auto opened = open(frame);
+        auto film = std::make_shared<film::Film>(test::make_feature_film(description));
         opening += process_cpu_nanoseconds() - begin;
-        return opened;
+        ++opened;
+        return film;
       },
       [&](int frame, const CancelCheck&) {
-        reconstruct::ComponentSources sources;
-        sources.push_back(std::make_unique<PairOf>(source, frame));
-        return sources;
+        return reconstruct::FrameStep{frame,
+                                      {window.correspondence[size_t(frame + size.frames - 1) % size_t(size.frames)]}};
       });
-  windows.reconstruct({0, size.frames - 1}, kNever, &report, [](int, const reconstruct::Reconstructed&) {});
-  const double pixels = double(size.width) * size.height * size.frames, bytes = double(peak_bytes() - before) / pixels;
-  std::printf("  %.1f bytes, %.2f µs per pixel and frame\n", bytes,
-              1e-3 * double(process_cpu_nanoseconds() - start - opening) / pixels);
-  EXPECT_LE(bytes, 160.0);
+  for (int frame = 0; frame < size.frames; ++frame) {
+    const reconstruct::FrameRange around{std::max(frame - kReach, 0), std::min(frame + kReach, size.frames - 1)};
+    EXPECT_FALSE(joint.reconstruct(frame, around, kNever, &report).image.empty());
+  }
+  const double pixels = double(size.width) * size.height, bytes = double(peak_bytes() - before) / (pixels * kFrames);
+  std::printf("  %.1f bytes per pixel and contributing frame, %.2f µs per pixel and frame\n", bytes,
+              1e-3 * double(process_cpu_nanoseconds() - start - opening) / (pixels * size.frames));
+  EXPECT_LE(bytes, 400.0);
+  EXPECT_EQ(opened, 2 * size.frames);
 }
 
 // Returns a film without light in which each pixel has one sample in each half-buffer.

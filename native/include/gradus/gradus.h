@@ -554,10 +554,11 @@ typedef struct GradusSettings {
                                        L: light; . for any of D R T; * + ? | ( ) as in regular expressions. Paths
                                        that none matches form Residual. Empty: Emission, Diffuse, Reflection,
                                        Transmission and Residual. */
-  uint32_t component_replays;       /* In animations with components, compares what mirrors and glass show with the
-                                       place where it was a frame before. Off: with the place where the mirror or the
-                                       glass was. On leaves less flicker where the two move differently, and takes
-                                       about a third more time where cameras or mirrors move. */
+  uint32_t component_replays;       /* In animations with components and the reconstruction L2 or L1, compares what
+                                       mirrors and glass show with the place where it was a frame before. Off: with
+                                       the place where the mirror or the glass was. On leaves less flicker where the
+                                       two move differently, and takes about a third more time where cameras or
+                                       mirrors move. Regularized follows surfaces alone. */
 } GradusSettings;
 
 /* Passes of a picture: bit i of GradusSettings.passes asks for pass i. */
@@ -746,7 +747,8 @@ GRADUS_API GradusError gradus_render_film(GradusRender render, GradusFilm* film)
 /* -------------------------------------------------------------------------------------------------------- sequence */
 
 /* Frames of an animation that are sampled one after the other and reconstructed together, so that they do not flicker.
- * Half of a frame's samples are replayed: they repeat the random numbers of the frame before. */
+ * With L2 and L1, or if GRADIENT_T is requested, half of a frame's samples are replayed: they repeat the random numbers
+ * of the frame before. */
 typedef uint64_t GradusSequence;
 
 /* Settings of a sequence: frames of an animation that are reconstructed together. */
@@ -764,8 +766,8 @@ typedef struct GradusSequenceSettings {
   uint32_t reserved;       /* 0. */
 } GradusSequenceSettings;
 
-/* Returns whether frames of an animation with these settings have gradients over time. *why_not says what is against it
- * ("" = nothing) and stays valid until the thread's next call. */
+/* Returns whether frames of an animation with these settings can be reconstructed together. *why_not says what is
+ * against it ("" = nothing) and stays valid until the thread's next call. */
 GRADUS_API GradusError gradus_sequence_applies(const GradusSettings* settings, uint32_t* applies, const char** why_not);
 GRADUS_API GradusError gradus_sequence_create(GradusDevice device, const GradusSequenceSettings* settings,
                                               GradusSequence* sequence);
@@ -778,15 +780,16 @@ GRADUS_API GradusError gradus_sequence_needs(GradusSequence sequence, int32_t fr
  * that equals the one before is not sampled either. */
 GRADUS_API GradusError gradus_sequence_sample(GradusSequence sequence, GradusScene scene,
                                               const GradusSettings* settings, GradusRender* render);
-/* Tells the sequence that the scene shows settings->frame, which is not sampled here; the next frame replays it. This
- * is for parts of a job and for frames that are rendered on their own, at which windows end. */
+/* Tells the sequence that the scene shows settings->frame, which is not sampled here; the next frame follows its
+ * surfaces. This is for parts of a job and for frames that are rendered on their own; frames before and after are
+ * reconstructed without each other. */
 GRADUS_API GradusError gradus_sequence_pass_by(GradusSequence sequence, GradusScene scene,
                                                const GradusSettings* settings);
 /* Tells the sequence that no frame beyond `last` will come; earlier frames are delivered without them. */
 GRADUS_API GradusError gradus_sequence_end_at(GradusSequence sequence, int32_t last);
-/* Reconstructs what the windows of `frame` need. Passes, statistics and film of the ended render are those of `frame`.
- * Frames come in order. `settings` may change reconstruction, reconstruction_alpha, denoiser and film_exposure from
- * what the frames were sampled for (AUTO = no change) and may be NULL. */
+/* Reconstructs `frame`, with what it needs of others. Passes, statistics and film of the ended render are those of
+ * `frame`. Frames come in order. `settings` may change reconstruction, reconstruction_alpha, denoiser and film_exposure
+ * from what the frames were sampled for (AUTO = no change) and may be NULL. */
 GRADUS_API GradusError gradus_sequence_deliver(GradusSequence sequence, int32_t frame, const GradusSettings* settings,
                                                GradusRender* render);
 GRADUS_API GradusError gradus_sequence_release(GradusSequence sequence);

@@ -21,15 +21,18 @@ FrameSampling::FrameSampling(std::shared_ptr<Sequence> sequence, render::LoopInp
     require_features(*stored_fresh_, sequence_->folder_.path(input_.settings.frame, FrameSamples::kFresh));
   }
   sequence_->warn_of_needs(record_.plan, &record_.stats.warnings);
-  record_.plan.chosen.emplace_back("temporal gradients",
-                                   "frame of an animation: half of its samples replay those of the previous frame");
+  const bool replays = takes_replays(input_.settings);
+  record_.plan.chosen.emplace_back(
+      replays ? "temporal gradients" : "regression over time",
+      replays ? "frame of an animation: half of its samples replay those of the previous frame"
+              : "frame of an animation: the frames around it contribute where they show the same light");
 }
 
 render::LoopInput FrameSampling::fresh_input() const {
   render::LoopInput input = input_;
-  input.settings.samples = samples_of(FrameSamples::kFresh, input.settings.samples);
-  input.settings.time_limit *= kFreshShareOfTime;
-  input.settings.noise_threshold *= kFreshShareOfThreshold;
+  input.settings.samples = samples_of(FrameSamples::kFresh, input_.settings);
+  input.settings.time_limit *= fresh_share_of_time(input_.settings);
+  input.settings.noise_threshold *= fresh_share_of_threshold(input_.settings);
   input.whole_samples = input_.settings.samples;
   return input;
 }
@@ -206,12 +209,12 @@ void FrameSampling::sample_replayed(const film::FilmHeader& fresh, const std::ve
                                     bool samples_fresh) {
   render::LoopInput input = input_;
   input.whole_samples = input.settings.samples;
-  input.settings.samples = samples_of(FrameSamples::kReplayed, input.settings.samples);
+  if (takes_replays(input_.settings)) input.settings.samples = samples_of(FrameSamples::kReplayed, input_.settings);
   std::optional<film::FilmHeader> found = stored(FrameSamples::kReplayed);
   if (found && found->frame_number != fresh.frame_number) found.reset();
   if (found && fresh.frame_number != input_.settings.frame) return;  // both files are those of the earlier frame
   if (found && !replays_before(*found)) found.reset();
-  const bool counted = has_counts(input_.settings);
+  const bool counted = has_counts(input_.settings) && takes_replays(input_.settings);
   if (found && !counted && has_as_many(*found, FrameSamples::kReplayed, input_.settings)) return;
   // With a time limit, the stored replay has as many samples as the time of the fresh samples allowed.
   if (found && !samples_fresh && input.settings.time_limit > 0.0f) return;
@@ -263,19 +266,20 @@ std::shared_ptr<const render::Replay> FrameSampling::follow(const film::FilmHead
     });
   }
   replay->components = render::replays_of_components(replay->replay_map);
-  if (const uint64_t apart = replay->components.pixels; apart > 0) {
+  if (const uint64_t apart = replay->components.pixels; apart > 0 && takes_replays(now)) {
     const double share = 100.0 * double(apart) / double(fresh.region.area());
     record_.plan.chosen.emplace_back("separate replays of components",
                                      "in " + std::to_string(std::lround(share)) +
                                          " % of the pixels, reflections or refractions move differently from surfaces");
   }
-  if (!has_counts(input_.settings)) return replay;
+  replay->takes_samples = takes_replays(now);
+  if (!replay->takes_samples || !has_counts(now)) return replay;
   const double mean = mean_of(counts);
   const bool is_counted = before && before->sampled && *before->sampled == fresh.region;
   replay->counts = replayed_counts(replay->replay_map, is_counted ? before : nullptr, mean);
   const double seconds = fresh_.what_it_took().seconds.sample;
   if (input_.settings.time_limit > 0.0f && seconds > 0.0) {
-    limit_mean((1.0 - kFreshShareOfTime) * input_.settings.time_limit / seconds * (mean - resumed_mean_),
+    limit_mean((1.0 - fresh_share_of_time(now)) * input_.settings.time_limit / seconds * (mean - resumed_mean_),
                &replay->counts);
   }
   return replay;

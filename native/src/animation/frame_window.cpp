@@ -81,11 +81,4 @@ void FrameWindow::read_correspondence(int t, int y, int32_t* out) const {
   std::copy(first, first + size().width, out);
 }
 
-void FrameWindow::read_off_centre(int t, int y, Vec2* out) const {
-  const std::vector<Vec2>& off_centre = correspondence_[size_t(t)].off_centre;
-  if (off_centre.empty()) return reconstruct::HalvedWindowSource::read_off_centre(t, y, out);
-  const auto first = off_centre.begin() + ptrdiff_t(y) * size().width;
-  std::copy(first, first + size().width, out);
-}
-
 }  // namespace gradus::animation

@@ -20,7 +20,6 @@ class FrameWindow final : public reconstruct::HalvedWindowSource {
   void read_row(reconstruct::RowKind kind, int t, int y, float* out) const override;
   void read_half_differences(reconstruct::RowKind kind, int t, int y, float* out) const override;
   void read_correspondence(int t, int y, int32_t* out) const override;
-  void read_off_centre(int t, int y, Vec2* out) const override;
 
  private:
   using Part = film::GradientImages HalvedImages::*;

@@ -1,21 +1,35 @@
-// How the fresh and the replayed samples of a frame share its sample number, its time limit and its noise threshold. Of
-// n samples of a frame, ⌈n/2⌉ are fresh and ⌊n/2⌋ replay the random numbers of the previous frame.
+// How the fresh and the replayed samples of a frame share its sample number, its time limit and its noise threshold.
+//
+// L2 and L1 compare samples that replay the random numbers of the previous frame: of n samples of a frame, ⌈n/2⌉ are
+// fresh and ⌊n/2⌋ are replayed. REGULARIZED joins frames whose samples are independent, so all of them are fresh.
 #pragma once
 
 #include "animation/sequence_folder.h"
 #include "film/film_header.h"
+#include "schema/options.h"
 
 namespace gradus::animation {
 
-// Share of the time limit that fresh samples take. The replayed samples are as many, and take at least as long.
-inline constexpr float kFreshShareOfTime = 0.4f;
+// Returns whether half of the samples replay those of the previous frame.
+inline bool takes_replays(const GradusSettings& settings) {
+  const uint32_t r = settings.reconstruction;
+  return (r != GRADUS_RECONSTRUCTION_AUTO && r != GRADUS_RECONSTRUCTION_REGULARIZED) ||
+         schema::has_bit(settings.passes, GRADUS_PASS_GRADIENT_T);
+}
 
-// Factor of the noise threshold for fresh samples: half of the samples have twice the squared error of all samples.
-inline constexpr float kFreshShareOfThreshold = 1.41421356f;
+// Returns the share of the time limit that fresh samples take. Replayed samples are as many, and take at least as long.
+inline float fresh_share_of_time(const GradusSettings& settings) { return takes_replays(settings) ? 0.4f : 1.0f; }
 
-// Returns how many of a frame's `samples` are of this kind.
-inline uint32_t samples_of(FrameSamples kind, uint32_t samples) {
-  return kind == FrameSamples::kFresh ? samples - samples / 2 : samples / 2;
+// Returns the factor of the noise threshold for fresh samples: half of the samples have twice the squared error of all
+// samples.
+inline float fresh_share_of_threshold(const GradusSettings& settings) {
+  return takes_replays(settings) ? 1.41421356f : 1.0f;
+}
+
+// Returns how many samples of a frame with these settings are of this kind.
+inline uint32_t samples_of(FrameSamples kind, const GradusSettings& settings) {
+  const uint32_t replayed = takes_replays(settings) ? settings.samples / 2 : 0;
+  return kind == FrameSamples::kFresh ? settings.samples - replayed : replayed;
 }
 
 // Returns the number of samples per pixel. With adaptive sampling the ranges of sample numbers are those of the pixels
@@ -27,14 +41,16 @@ inline uint64_t samples_taken(const film::FilmHeader& half) {
 // Whether the stored samples of one kind suffice for the requested settings: they are as many as requested, or they
 // reached the noise threshold or the time limit.
 inline bool has_as_many(const film::FilmHeader& half, FrameSamples kind, const GradusSettings& requested) {
-  const bool is_quiet = half.settings.noise_threshold <= kFreshShareOfThreshold * requested.noise_threshold;
+  const bool is_quiet =
+      half.settings.noise_threshold <= fresh_share_of_threshold(requested) * requested.noise_threshold;
   if (half.shared.is_done()) return is_quiet;
   // Frames with a time limit have as many samples as the time allowed, which may be fewer than in their settings.
   const bool is_limited = half.settings.time_limit > 0.0f;
-  if (is_limited && requested.time_limit > 0.0f && requested.time_limit <= half.settings.time_limit / kFreshShareOfTime)
+  if (is_limited && requested.time_limit > 0.0f &&
+      requested.time_limit <= half.settings.time_limit / fresh_share_of_time(requested))
     return true;
-  const uint64_t samples = is_limited ? samples_taken(half) : half.settings.samples;
-  return samples >= samples_of(kind, requested.samples) && is_quiet;
+  const uint64_t samples = is_limited || kind == FrameSamples::kReplayed ? samples_taken(half) : half.settings.samples;
+  return samples >= samples_of(kind, requested) && is_quiet;
 }
 
 }  // namespace gradus::animation

@@ -7,7 +7,6 @@
 #include "animation/fresh_replayed_shares.h"
 #include "animation/spooled_frames.h"
 #include "animation/stored_samples.h"
-#include "animation/streamed_frames.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/fault.h"
@@ -197,7 +196,7 @@ void Sequence::merge(int32_t number, film::Film* fresh, const film::Film& replay
   if (!GRADUS_FAULT(passes_read_fresh_samples_alone)) film::add_sums(fresh, replayed);
   fresh->frame_number = number;
   fresh->settings.frame = number;
-  fresh->settings.samples += replayed.settings.samples;
+  fresh->settings.samples += uint32_t(replayed.samples.total());
   fresh->shared = {};
 }
 
@@ -205,17 +204,21 @@ reconstruct::SequenceSource Sequence::source(const reconstruct::SequenceMethod& 
                                              const std::vector<std::string>& components) const {
   const LoadSamples fresh = load_samples(FrameSamples::kFresh, components),
                     replayed = load_samples(FrameSamples::kReplayed, components);
-  const auto merged = [this](int place, std::shared_ptr<film::Film> fresh_film, const film::Film& replayed_film) {
-    merge(frame_at(place), fresh_film.get(), replayed_film);
-    return fresh_film;
-  };
   const auto spooled = std::make_shared<SpooledFrames>(fresh, replayed, TemporalContent{.halves = method.with_error});
-  const auto streamed = std::make_shared<StreamedFrames>(fresh, replayed, merged);
   return {[spooled](const reconstruct::FrameRange& window, const CancelCheck& cancel) {
             return spooled->window(window.first, window.last, cancel);
           },
-          [streamed](int place, const CancelCheck& cancel) { return streamed->merged_film(place, cancel); },
-          [streamed](int place, const CancelCheck& cancel) { return streamed->differences(place, cancel); }};
+          [=, this](int place, const CancelCheck& cancel) {
+            const int32_t frame = frame_at(place);
+            std::shared_ptr<film::Film> film = fresh(place, cancel);
+            if (folder_.header(frame, FrameSamples::kReplayed).samples.total() > 0)
+              merge(frame, film.get(), *replayed(place, cancel));
+            return film;
+          },
+          [=, this](int place, const CancelCheck& cancel) {
+            return reconstruct::FrameStep{folder_.header(frame_at(place), FrameSamples::kFresh).frame_number,
+                                          replayed(place, cancel)->replayed.correspondence};
+          }};
 }
 
 reconstruct::SequencePictures* Sequence::pictures(const std::vector<std::string>& components,

@@ -35,6 +35,10 @@
   X(window_features_shifted_by_a_row)            \
   X(features_read_one_pixel_early)               \
   X(filter_distances_shifted)                    \
+  X(samples_of_another_frame)                    \
+  X(displacements_dropped)                       \
+  X(light_test_off)                              \
+  X(moved_halves_dropped)                        \
   X(image_variance_times_4)                      \
   X(image_variance_over_4)                       \
   X(pixel_variance_times_4)                      \
@@ -64,8 +68,6 @@
   X(alpha_lacks_own_values)                      \
   X(remainder_not_subtracted)                    \
   X(components_ignore_differences)               \
-  X(components_follow_the_first)                 \
-  X(component_changes_not_added)                 \
   X(offset_rays_lose_time)                       \
   X(offset_rays_lose_lens)                       \
   X(spawned_rays_lose_time)                      \
@@ -93,8 +95,6 @@
   X(objects_matched_by_index)                    \
   X(correspondence_not_inverted)                 \
   X(inverse_ends_in_pixel_centres)               \
-  X(rounding_left_out_of_change)                 \
-  X(rounding_included_without_samples)           \
   X(shot_change_not_detected)                    \
   X(zoom_is_no_shot_change)                      \
   X(frames_with_and_without_alpha_share_windows) \
@@ -117,9 +117,7 @@
   X(stored_frame_with_few_samples_accepted)      \
   X(temporary_file_remains)                      \
   X(stored_frame_named_before_complete)          \
-  X(change_is_that_of_frame_before)              \
   X(change_is_zero)                              \
-  X(contradicting_change_keeps_weight)           \
   X(light_pass_difference_not_distributed)       \
   X(light_pass_difference_distributed_equally)   \
   X(light_passes_below_zero)                     \

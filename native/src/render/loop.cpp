@@ -180,7 +180,8 @@ void RenderLoop::prepare() {
 }
 
 bool RenderLoop::next_batch(uint32_t begin, uint32_t* end) const {
-  if (is_stopped() || begin >= input_.settings.samples) return false;
+  if (is_stopped() || begin >= input_.settings.samples || (input_.replay && !input_.replay->takes_samples))
+    return false;
   *end = std::min(batch_end(begin, input_.settings.samples), begin + affordable_samples(begin));
   if (input_.replay && !input_.replay->counts.empty())
     *end = input_.settings.samples;  // the number of replayed samples differs between pixels

@@ -15,6 +15,7 @@ namespace gradus::render {
 struct Replay {
   film::ReplayMap replay_map;
   std::vector<uint32_t> counts;  // samples of each pixel; empty: the number in the settings
+  bool takes_samples = true;     // false: the film only holds the correspondence
   ComponentReplays components;   // replays of single components, by replay_map.of_component
 };
 

@@ -135,9 +135,10 @@ constexpr Option kOptions[] = {
            "regular expressions. Paths that none matches form Residual. Empty: Emission, Diffuse, Reflection, "
            "Transmission and Residual."),
     OPTION(component_replays, GRADUS_OPTION_BOOL, 1, 0, 1, {}, true,
-           "In animations with components, compares what mirrors and glass show with the place where it was a frame "
-           "before. Off: with the place where the mirror or the glass was. On leaves less flicker where the two move "
-           "differently, and takes about a third more time where cameras or mirrors move."),
+           "In animations with components and the reconstruction L2 or L1, compares what mirrors and glass show with "
+           "the place where it was a frame before. Off: with the place where the mirror or the glass was. On leaves "
+           "less flicker where the two move differently, and takes about a third more time where cameras or mirrors "
+           "move. Regularized follows surfaces alone."),
 };
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "animation/spooled_frames.h"
-#include "animation/streamed_frames.h"
 #include "base/error.h"
 #include "support/refusal.h"
 
@@ -188,33 +187,6 @@ TEST_F(FiveFrames, OverlappingWindowsReadEachFrameOnce) {
     EXPECT_EQ(bases[t], 1) << t;
     EXPECT_EQ(replays[t], 1) << t;
   }
-}
-
-TEST_F(FiveFrames, StreamedFramesAreReadOnceAndHaveTheSameRowsOverTime) {
-  const animation::FrameWindow whole = in_memory();
-  int loads = 0;
-  const auto counted = [&](const animation::LoadSamples& load) {
-    return [&loads, load](int place, const CancelCheck& cancel) {
-      ++loads;
-      return load(place, cancel);
-    };
-  };
-  const auto never = [] { return false; };
-  animation::StreamedFrames frames(counted(load(fresh_)), counted(load(replay_)),
-                                   [](int, std::shared_ptr<film::Film> fresh, const film::Film&) { return fresh; });
-  std::vector<float> row(20 * 4), expected(row);
-  for (int t = 0; t < 4; ++t) {
-    EXPECT_EQ(frames.merged_film(t, never)->components[0].primal[0][0].x,
-              fresh_[size_t(t)]->components[0].primal[0][0].x);
-    const auto pair = frames.differences(t, never);
-    for (int y = 0; y < 8; ++y) {
-      pair[0]->read_half_differences(reconstruct::RowKind::kDt, 0, y, row.data());
-      whole.read_half_differences(reconstruct::RowKind::kDt, t, y, expected.data());
-      EXPECT_EQ(std::memcmp(row.data(), expected.data(), row.size() * sizeof(float)), 0) << t;
-    }
-  }
-  frames.merged_film(4, never);
-  EXPECT_EQ(loads, 10);
 }
 
 // Regression: a cancel was noticed only between two frames, although the rows of each are written and read several

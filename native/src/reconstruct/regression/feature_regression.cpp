@@ -95,49 +95,26 @@ float weigh_pixel(float expected, float excess, float firefly) {
   return kOwnTrust / (factor * expected * expected * doubt * doubt + kMinVariance);
 }
 
-// Returns the weights of all pixels' own values. Changes of light may be 0 by chance between larger ones, so a small
-// change does not count as dark.
-Field weigh_pixel(const Surroundings& of, bool is_light) {
-  const Field expected = is_light ? expected_noise(of) : of.noise;
+// Returns the weights of all pixels' own values.
+Field weigh_pixel(const Surroundings& of) {
+  const Field expected = expected_noise(of);
   return make_field(of.noise.width(), of.noise.height(), [&](int x, int y) {
     const float noise = of.noise.row(y)[x], unit = 1.0f / (of.light.row(y)[x] + kMinVariance);
     const float excess = noise > 0.0f ? std::max(1.0f, of.own_noise.row(y)[x] / noise) : 1.0f;
-    const float brightness = is_light ? std::min(1.0f, of.own_light.row(y)[x] * unit) : 1.0f;
+    const float brightness = std::min(1.0f, of.own_light.row(y)[x] * unit);
     return weigh_pixel(expected.row(y)[x], excess, brightness * noise * unit / kVisible);
   });
 }
 
-// Returns the median of the finite, positive depths; 1 if there are none.
-float median_depth(const std::vector<float>& depths) {
-  std::vector<float> there;
-  std::copy_if(depths.begin(), depths.end(), std::back_inserter(there),
-               [](float d) { return is_finite(d) && d > 0.0f; });
-  return median_or_one(&there);
-}
-
 float bounded(float value) { return is_finite(value) ? std::clamp(value, -1.0f, 1.0f) : 0.0f; }
 
-// Returns the features of the regression: normal, albedo, and d/(d + median) of the depth d, which does not depend on
-// the scene's unit.
-Field basis_of(const film::Features& features) {
-  const float median = median_depth(features.depth.values);
-  Field basis(features.width, features.height, 7);
-  for_values(&basis, [&](float& value, int x, int y, int c) {
-    const int column = GRADUS_FAULT(features_shifted_by_a_column) ? std::min(x + 1, features.width - 1) : x;
-    const size_t i = size_t(y) * size_t(features.width) + size_t(column);
-    const float depth = features.depth.values[i];
-    value = c < 3   ? bounded(features.normal.values[3 * i + size_t(c)])
-            : c < 6 ? bounded(features.albedo.values[3 * i + size_t(c - 3)])
-                    : (depth > 0.0f ? bounded(depth / (depth + median)) : 0.0f);
-  });
-  return basis;
-}
+// First channel of the albedo among the features.
+constexpr int kAlbedo = 3;
 
-Field albedo_of(const film::Features& features) {
-  Field albedo(features.width, features.height, 3);
+Field albedo_of(const Field& features) {
+  Field albedo(features.width(), features.height(), 3);
   for_values(&albedo, [&](float& value, int x, int y, int c) {
-    const int column = GRADUS_FAULT(second_step_albedo_shifted) ? std::max(x - 1, 0) : x;
-    value = bounded(features.albedo.values[3 * (size_t(y) * size_t(features.width) + size_t(column)) + size_t(c)]);
+    value = features.row(y, kAlbedo + c)[GRADUS_FAULT(second_step_albedo_shifted) ? std::max(x - 1, 0) : x];
   });
   return albedo;
 }
@@ -209,6 +186,12 @@ void blend_bias(const Field& share, const Field& coarse, Field* fine) {
   });
 }
 
+// Returns 1 where there are samples, whose weights are not 0, and 0 elsewhere.
+Field where_there_are(const Field& weights) {
+  return make_field(weights.width(), weights.height(),
+                    [&](int x, int y) { return weights.row(y)[x] > 0.0f ? 1.0f : 0.0f; });
+}
+
 // Returns the weights of the residual's regression: weights by light, which preserve the mean, with some influence of
 // the weights by noise, which suppress outliers.
 Field weigh_residual(const Field& by_light, const Field& by_noise) {
@@ -220,59 +203,119 @@ Field weigh_residual(const Field& by_light, const Field& by_noise) {
 
 }  // namespace
 
-FeatureRegression::FeatureRegression(const film::Features& features, const HalvedImage& image,
-                                     const CancelCheck& cancel, Field* delivered_error) {
-  std::shared_ptr<const Predictors> predictors;
-  {
-    const Surroundings surroundings = look_around(image);
-    predictors = std::make_shared<const Predictors>(Predictors{basis_of(features), weigh_in_windows(surroundings)});
-    fine_ = LocalRegression(predictors, weigh_pixel(surroundings, image.is_light), kFine);
+float typical_depth(const film::Features& features) {
+  const std::vector<float>& depths = features.depth.values;
+  std::vector<float> there;
+  std::copy_if(depths.begin(), depths.end(), std::back_inserter(there),
+               [](float d) { return is_finite(d) && d > 0.0f; });
+  return median_or_one(&there);
+}
+
+Field regression_features(const film::Features& features, float unit) {
+  Field basis(features.width, features.height, 7);
+  for_values(&basis, [&](float& value, int x, int y, int c) {
+    const int column = GRADUS_FAULT(features_shifted_by_a_column) ? std::min(x + 1, features.width - 1) : x;
+    const size_t i = size_t(y) * size_t(features.width) + size_t(column);
+    value = c < kAlbedo ? bounded(features.normal.values[3 * i + size_t(c)])
+            : c < 6     ? bounded(features.albedo.values[3 * i + size_t(c - kAlbedo)])
+                        : relative_depth(features.depth.values[i], unit);
+    if (!is_finite(value)) value = 0.0f;
+  });
+  return basis;
+}
+
+Field regress_coarsely(const Predictors& predictors, const HalvedImage& image, const CancelCheck& cancel) {
+  return LocalRegression({std::make_shared<const Predictors>(predictors)}, {}, kCoarse)
+      .estimate({&image.mean}, {&image.half_difference}, cancel)
+      .mean;
+}
+
+PixelWeights weigh_pixels(const HalvedImage& image) {
+  const Surroundings surroundings = look_around(image);
+  return {weigh_in_windows(surroundings), weigh_pixel(surroundings)};
+}
+
+FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& image,
+                                     const std::vector<MovedFrame>& others, const CancelCheck& cancel,
+                                     Field* delivered_error) {
+  PixelWeights weights = weigh_pixels(image);
+  layers_ = {
+      std::make_shared<const Predictors>(Predictors{std::move(features.sampled), std::move(weights.in_windows)})};
+  std::vector<Field> own;
+  own.push_back(std::move(weights.own));
+  Images means{&image.mean}, half_differences{&image.half_difference};
+  for (const MovedFrame& other : others) {
+    layers_.push_back(other.predictors);
+    own.push_back(other.own);
+    means.push_back(&other.image.mean);
+    half_differences.push_back(GRADUS_FAULT(moved_halves_dropped) ? &image.half_difference
+                                                                  : &other.image.half_difference);
   }
-  coarse_ = LocalRegression(predictors, {}, kCoarse);
-  RegressionResult first = fine_.estimate(image.mean, image.half_difference, cancel);
+  fine_ = LocalRegression(layers_, std::move(own), kFine, features.estimated);
+  coarse_ = LocalRegression(layers_, {}, kCoarse, features.estimated);
+  RegressionResult first = fine_.estimate(means, half_differences, cancel);
   {
-    const RegressionResult coarse = coarse_.estimate(image.mean, image.half_difference, cancel);
+    const RegressionResult coarse = coarse_.estimate(means, half_differences, cancel);
     share_ = share_of_fine(first, coarse);
     blend(share_, coarse.mean, &first.mean);
     blend(share_, coarse.noise, &first.noise);
     blend_bias(share_, coarse.bias, &first.bias);
   }
-  add_residual(features, image, predictors->weights, &first, cancel);
-  if (image.is_light) {
-    own_ = restore_sampled_light(image.mean, first.mean);
-    blend_sampled(own_, image.mean, &first.mean);
-    blend_sampled(own_, image.half_difference, &first.noise);
-  }
+  add_residual(image, others, &first, cancel);
+  own_ = restore_sampled_light(image.mean, first.mean);
+  blend_sampled(own_, image.mean, &first.mean);
+  blend_sampled(own_, image.half_difference, &first.noise);
   const Smoothed smoothed{image.mean, image.half_difference, first.mean, first.noise};
   error_ = regression_error(smoothed, first.bias, ErrorUse::Weights);
   if (delivered_error != nullptr) *delivered_error = regression_error(smoothed, first.bias, ErrorUse::Delivered);
   image_ = std::move(first.mean);
 }
 
-void FeatureRegression::add_residual(const film::Features& features, const HalvedImage& image, const Field& by_noise,
+void FeatureRegression::add_residual(const HalvedImage& image, const std::vector<MovedFrame>& others,
                                      RegressionResult* first, const CancelCheck& cancel) {
   const Field by_light = weigh_by_light(first->mean, kLightRadius);
-  Field residual = difference(image.mean, first->mean),
-        of_noise = difference(GRADUS_FAULT(second_step_takes_image_for_noise) ? image.mean : image.half_difference,
-                              first->noise);
-  residual_share_ = limit_outliers(residual, by_light);
-  scale_by(residual_share_, &residual);
-  scale_by(residual_share_, &of_noise);
-  of_residual_ = LocalRegression(
-      std::make_shared<const Predictors>(Predictors{albedo_of(features), weigh_residual(by_light, by_noise)}), {},
-      kOfResidual);
-  const RegressionResult second = of_residual_.estimate(residual, of_noise, cancel);
+  Layers predictors;
+  std::vector<Field> residuals, noises;
+  for (size_t i = 0; i <= others.size(); ++i) {
+    const HalvedImage& sampled = i == 0 ? image : others[i - 1].image;
+    residuals.push_back(residual(i, sampled.mean, first->mean));
+    noises.push_back(difference(
+        GRADUS_FAULT(second_step_takes_image_for_noise) ? sampled.mean : sampled.half_difference, first->noise));
+    residual_share_.push_back(limit_outliers(residuals[i], by_light));
+    Field weights = weigh_residual(by_light, layers_[i]->weights);
+    if (i > 0) scale_by(where_there_are(layers_[i]->weights), &residual_share_[i]);
+    predictors.push_back(
+        std::make_shared<const Predictors>(Predictors{albedo_of(layers_[i]->features), std::move(weights)}));
+    scale_by(residual_share_[i], &residuals[i]);
+    scale_by(residual_share_[i], &noises[i]);
+  }
+  of_residual_ = LocalRegression(std::move(predictors), {}, kOfResidual);
+  const RegressionResult second = of_residual_.estimate(pointers_to(residuals), pointers_to(noises), cancel);
   if (!GRADUS_FAULT(second_step_dropped)) add(second.mean, &first->mean);
   if (!GRADUS_FAULT(error_omits_second_step)) add(second.noise, &first->noise);
 }
 
-Field FeatureRegression::apply(const Field& values, const CancelCheck& cancel) const {
+Field FeatureRegression::residual(size_t layer, const Field& sampled, const Field& regressed) const {
+  const Field& displacement = layers_[layer]->displacement;
+  if (displacement.channels() == 0) return difference(sampled, regressed);
+  Field result = sampled;
+  for_values(&result, [&](float& value, int x, int y, int c) {
+    value -= interpolate(regressed, c, float(x) + displacement.row(y, 0)[x], float(y) + displacement.row(y, 1)[x]);
+  });
+  return result;
+}
+
+Field FeatureRegression::apply(const Images& values, const CancelCheck& cancel) const {
   Field result = fine_.apply(values, cancel);
   if (!GRADUS_FAULT(alpha_lacks_large_windows)) blend(share_, coarse_.apply(values, cancel), &result);
-  Field residual = difference(values, result);
-  if (!GRADUS_FAULT(alpha_keeps_outliers)) scale_by(residual_share_, &residual);
-  if (!GRADUS_FAULT(second_step_of_other_channels_dropped)) add(of_residual_.apply(residual, cancel), &result);
-  if (own_.channels() > 0) blend_sampled(own_, values, &result);
+  std::vector<Field> residuals;
+  for (size_t i = 0; i < values.size(); ++i) {
+    residuals.push_back(residual(i, *values[i], result));
+    if (!GRADUS_FAULT(alpha_keeps_outliers)) scale_by(residual_share_[i], &residuals[i]);
+  }
+  if (!GRADUS_FAULT(second_step_of_other_channels_dropped))
+    add(of_residual_.apply(pointers_to(residuals), cancel), &result);
+  blend_sampled(own_, *values[0], &result);
   return result;
 }
 

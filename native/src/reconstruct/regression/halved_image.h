@@ -11,7 +11,6 @@ namespace gradus::reconstruct {
 struct HalvedImage {
   Field mean;
   Field half_difference;  // (A − B)/2; an estimate where a half-buffer has no samples
-  bool is_light = true;   // true: light, not negative; false: changes of light, of either sign
 };
 
 // Sums of the samples of one pixel in both half-buffers.

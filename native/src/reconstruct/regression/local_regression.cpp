@@ -28,8 +28,7 @@ template <int P, int C, bool Coordinates, bool Estimates>
 void run_tiles(const RegressionTask& task, const OctaveTask<Estimates>& octave, const CancelCheck& cancel) {
   constexpr TileSize kTile = Estimates ? kOfEstimate : kOfApply;
   const int side = octave.octave.side;
-  const int w = ceil_divided(task.weights->width() + octave.shift, side),
-            h = ceil_divided(task.weights->height() + octave.shift, side);
+  const int w = ceil_divided(task.width() + octave.shift, side), h = ceil_divided(task.height() + octave.shift, side);
   tbb::parallel_for(tbb::blocked_range2d<int>(0, ceil_divided(h, kTile.height), 1, 0, ceil_divided(w, kTile.width), 1),
                     [&](const tbb::blocked_range2d<int>& range) {
                       const FlushDenormals flush;
@@ -52,10 +51,10 @@ void run_octaves(const RegressionTask& task, const Confidence& confidence, const
     Field coarse;
     for (size_t k = octaves.size(); k-- > 0;) {
       const int side = octaves[k].side;
-      const Field above = std::exchange(coarse, k > 0 ? Field(ceil_divided(task.weights->width() + shift, side),
-                                                              ceil_divided(task.weights->height() + shift, side),
-                                                              WindowEstimates<P, C, Coordinates>::kCount)
-                                                      : Field());
+      const Field above = std::exchange(
+          coarse, k > 0 ? Field(ceil_divided(task.width() + shift, side), ceil_divided(task.height() + shift, side),
+                                WindowEstimates<P, C, Coordinates>::kCount)
+                        : Field());
       run_tiles<P, C, Coordinates, Estimates>(task,
                                               {octaves[k], shift, confidence(octaves.size() * size_t(shift) + k),
                                                or_null(above), k > 0 ? &coarse : nullptr},
@@ -66,7 +65,7 @@ void run_octaves(const RegressionTask& task, const Confidence& confidence, const
 
 template <int C, bool Estimates, class Confidence>
 void run_features(const RegressionTask& task, const Confidence& confidence, const CancelCheck& cancel) {
-  const int features = task.features->channels();
+  const int features = task.layers->front()->features.channels();
   const bool coordinates = task.settings->coordinates;
   if (features == 7 && coordinates) return run_octaves<10, C, true, Estimates>(task, confidence, cancel);
   if (features == 3 && !coordinates) return run_octaves<4, C, false, Estimates>(task, confidence, cancel);
@@ -75,9 +74,13 @@ void run_features(const RegressionTask& task, const Confidence& confidence, cons
 
 }  // namespace
 
-LocalRegression::LocalRegression(std::shared_ptr<const Predictors> predictors, Field own, RegressionSettings settings)
-    : predictors_(std::move(predictors)), own_(std::move(own)), settings_(std::move(settings)) {
-  const int w = predictors_->weights.width(), h = predictors_->weights.height();
+LocalRegression::LocalRegression(Layers layers, std::vector<Field> own, RegressionSettings settings,
+                                 std::shared_ptr<const Field> estimated)
+    : layers_(std::move(layers)),
+      own_(std::move(own)),
+      estimated_(std::move(estimated)),
+      settings_(std::move(settings)) {
+  const int w = layers_.front()->weights.width(), h = layers_.front()->weights.height();
   for (int shift = 0; shift < settings_.lattices; ++shift) {
     for (const Octave& octave : settings_.octaves) {
       confidence_.emplace_back(ceil_divided(w + shift, octave.side) + kReach,
@@ -86,30 +89,39 @@ LocalRegression::LocalRegression(std::shared_ptr<const Predictors> predictors, F
   }
 }
 
-RegressionResult LocalRegression::estimate(const Field& mean, const Field& half_difference, const CancelCheck& cancel) {
-  const int w = mean.width(), h = mean.height();
+RegressionResult LocalRegression::estimate(const Images& means, const Images& half_differences,
+                                           const CancelCheck& cancel) {
+  const int w = means[0]->width(), h = means[0]->height();
   RegressionResult result{Field(w, h, 3), Field(w, h, 3), Field(w, h, 1)};
-  Field totals(w, h, 1);
-  const RegressionTask task{&predictors_->features,
-                            &predictors_->weights,
-                            or_null(own_),
-                            {&mean, GRADUS_FAULT(mean_regressed_as_difference) ? &mean : &half_difference},
+  Field totals(w, h, 1), own_estimates;
+  const bool joint = layers_.size() > 1 || estimated_;
+  if (joint) own_estimates = Field(w, h, 6);
+  const RegressionTask task{&layers_,
+                            pointers_to(own_),
+                            estimated_.get(),
+                            {means, GRADUS_FAULT(mean_regressed_as_difference) ? means : half_differences},
                             {&result.mean, &result.noise},
                             &totals,
                             &result.bias,
+                            joint ? &own_estimates : nullptr,
                             &settings_};
   run_features<6, true>(
       task, [&](size_t i) { return &confidence_[i]; }, cancel);
   return result;
 }
 
-Field LocalRegression::apply(const Field& values, const CancelCheck& cancel) const {
-  Field result(values.width(), values.height(), values.channels()), totals(values.width(), values.height(), 1);
-  const RegressionTask task{
-      &predictors_->features, &predictors_->weights, or_null(own_), {&values}, {&result}, &totals, nullptr, &settings_};
+Field LocalRegression::apply(const Images& values, const CancelCheck& cancel) const {
+  const Field& first = *values[0];
+  Field result(first.width(), first.height(), first.channels()), totals(first.width(), first.height(), 1);
+  const bool joint = layers_.size() > 1 || estimated_;
+  Field own_estimates;
+  if (joint) own_estimates = Field(first.width(), first.height(), first.channels());
+  const RegressionTask task{&layers_,  pointers_to(own_), estimated_.get(), {values},
+                            {&result}, &totals,           nullptr,          joint ? &own_estimates : nullptr,
+                            &settings_};
   const auto confidence = [&](size_t i) { return &confidence_[i]; };
-  values.channels() == 1 ? run_features<1, false>(task, confidence, cancel)
-                         : run_features<3, false>(task, confidence, cancel);
+  first.channels() == 1 ? run_features<1, false>(task, confidence, cancel)
+                        : run_features<3, false>(task, confidence, cancel);
   return result;
 }
 

@@ -54,23 +54,39 @@ struct RegressionResult {
 struct Predictors {
   Field features;  // 7 channels with coordinates, or 3 without, in about [−1, 1]
   Field weights;   // one channel, 0 where a pixel does not count
+  // Where the samples of a pixel lie, relative to its centre, in pixels: x and y. Empty: at the centre.
+  Field displacement{};
 };
+
+// Predictors of the image to estimate, then those of further frames whose pixels were moved to where the image shows
+// the same surfaces.
+using Layers = std::vector<std::shared_ptr<const Predictors>>;
+// One image for each layer.
+using Images = std::vector<const Field*>;
+inline Images pointers_to(const std::vector<Field>& fields) {
+  Images images;
+  for (const Field& field : fields) images.push_back(&field);
+  return images;
+}
 
 class LocalRegression {
  public:
   LocalRegression() = default;
-  // `own` is 1/v, one channel. If it is empty, pixels are no windows of their own.
-  LocalRegression(std::shared_ptr<const Predictors> predictors, Field own, RegressionSettings settings);
+  // `own` is 1/v, one channel, for each layer. If it is empty, pixels are no windows of their own. `estimated`:
+  // features of the pixels to estimate, if they are not those of the first layer.
+  LocalRegression(Layers layers, std::vector<Field> own, RegressionSettings settings,
+                  std::shared_ptr<const Field> estimated = {});
 
   // Regresses three channels, estimates η from half the difference of the half-buffers, and freezes it. Deterministic
   // for any number of threads.
-  RegressionResult estimate(const Field& mean, const Field& half_difference, const CancelCheck& cancel);
+  RegressionResult estimate(const Images& means, const Images& half_differences, const CancelCheck& cancel);
   // Applies the frozen operator to one or three channels.
-  Field apply(const Field& values, const CancelCheck& cancel) const;
+  Field apply(const Images& values, const CancelCheck& cancel) const;
 
  private:
-  std::shared_ptr<const Predictors> predictors_;
-  Field own_;
+  Layers layers_;
+  std::vector<Field> own_;
+  std::shared_ptr<const Field> estimated_;
   RegressionSettings settings_;
   std::vector<Field> confidence_;  // η of the windows of each octave, for one lattice after another
 };

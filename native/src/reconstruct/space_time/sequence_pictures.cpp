@@ -1,5 +1,6 @@
 #include "reconstruct/space_time/sequence_pictures.h"
 
+#include <algorithm>
 #include <string>
 
 #include "base/error.h"
@@ -12,17 +13,29 @@ SequencePictures::SequencePictures(const FrameRange& range, const WindowShape& s
     : grid_(range, shape),
       source_(std::move(source)),
       method_(method),
-      regularized_(source_.frame, source_.differences),
+      joint_(source_.frame, source_.step),
       blend_(grid_, [this](int frame, Reconstructed picture) { ready_[frame] = std::move(picture); }) {}
+
+FrameRange SequencePictures::around(int frame) const {
+  const FrameRange shared = grid_.around(frame);
+  if (!is_joint()) return shared;
+  const int reach = (grid_.shape().frames - 1) / 2;
+  return {std::max(shared.first, frame - reach), std::min(shared.last, frame + reach)};
+}
 
 bool SequencePictures::has(int frame) const {
   if (!grid_.contains(frame)) return false;
+  if (is_joint()) return !last_joint_ || frame > *last_joint_;
   return !next_window_ || ready_.count(frame) > 0 || *next_window_ <= grid_.first_with(frame) ||
          (*next_window_ <= grid_.last_with(frame) && blend_.has_begun(frame));
 }
 
 Reconstructed SequencePictures::take(int frame, const CancelCheck& cancel, SolveReport* report) {
   if (!has(frame)) throw invalid_operation("frame " + std::to_string(frame) + " was delivered before");
+  if (is_joint()) {
+    last_joint_ = frame;
+    return joint_.reconstruct(frame, around(frame), cancel, report);
+  }
   if (!next_window_) next_window_ = grid_.first_with(frame);
   while (ready_.count(frame) == 0) {
     solve_next(cancel, report);
@@ -37,12 +50,8 @@ void SequencePictures::solve_next(const CancelCheck& cancel, SolveReport* report
   const int window = (*next_window_)++;
   const FrameRange frames = grid_.frames(window);
   const auto take = [&](int t, Reconstructed picture) { blend_.add(window, frames.first + t, std::move(picture)); };
-  if (method_.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
-    regularized_.reconstruct(frames, cancel, report, take);
-  } else {
-    reconstruct_window(*source_.window(frames, cancel), method_.reconstruction, method_.alpha, method_.with_error,
-                       cancel, report, take);
-  }
+  reconstruct_window(*source_.window(frames, cancel), method_.reconstruction, method_.alpha, method_.with_error, cancel,
+                     report, take);
 }
 
 }  // namespace gradus::reconstruct

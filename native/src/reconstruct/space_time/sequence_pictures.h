@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "reconstruct/reconstructed.h"
-#include "reconstruct/space_time/regularized_windows.h"
+#include "reconstruct/space_time/joint_regression.h"
 #include "reconstruct/space_time/window_blend.h"
+#include "reconstruct/space_time/window_source.h"
 
 namespace gradus::reconstruct {
 
@@ -27,8 +28,8 @@ struct SequenceSource {
   // CANCELLED.
   std::function<std::unique_ptr<HalvedWindowSource>(const FrameRange& frames, const CancelCheck& cancel)> window;
   // Callbacks for REGULARIZED.
-  RegularizedWindows::OpenFilm frame;
-  RegularizedWindows::OpenDifferences differences;
+  JointRegression::OpenFilm frame;
+  JointRegression::OpenStep step;
 };
 
 class SequencePictures {
@@ -40,7 +41,7 @@ class SequencePictures {
   // Ends the sequence after `frame`.
   void end_at(int frame) { grid_.end_at(frame); }
   // Returns the frames that contribute to the image of `frame`.
-  FrameRange around(int frame) const { return grid_.around(frame); }
+  FrameRange around(int frame) const;
   // Returns whether take(frame) is possible: neither this image nor a later one was taken.
   bool has(int frame) const;
   // Returns the image of a frame, with interleaved channels. Each image is taken once, in ascending order; frames may
@@ -49,12 +50,14 @@ class SequencePictures {
   Reconstructed take(int frame, const CancelCheck& cancel, SolveReport* report);
 
  private:
+  bool is_joint() const { return method_.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED; }
   void solve_next(const CancelCheck& cancel, SolveReport* report);
 
   WindowGrid grid_;
   SequenceSource source_;
   SequenceMethod method_;
-  RegularizedWindows regularized_;
+  JointRegression joint_;
+  std::optional<int> last_joint_;  // last frame that REGULARIZED has reconstructed
   WindowBlend blend_;
   std::optional<int> next_window_;
   std::map<int, Reconstructed> ready_;

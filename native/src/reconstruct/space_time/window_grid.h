@@ -27,6 +27,7 @@ class WindowGrid {
  public:
   // Throws `invalid_argument` if the range ends before it begins or windows share more than half of their frames.
   explicit WindowGrid(const FrameRange& range, const WindowShape& shape = {});
+  const WindowShape& shape() const { return shape_; }
   int first() const { return first_; }
   int last() const { return last_; }
   FrameRange frames(int window) const;

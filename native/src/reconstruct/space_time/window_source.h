@@ -41,9 +41,6 @@ class HalvedWindowSource : public WindowSource {
  public:
   // Reads (A − B)/2 of the two half-buffers of read_row()'s values.
   virtual void read_half_differences(RowKind kind, int t, int y, float* out) const = 0;
-  // Reads where film displacements end, relative to the centres of the corresponding pixels
-  // (PixelCorrespondence::off_centre). The default implementation returns 0: they end at the centres.
-  virtual void read_off_centre(int t, int y, Vec2* out) const;
 };
 
 }  // namespace gradus::reconstruct

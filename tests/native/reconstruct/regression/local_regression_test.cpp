@@ -34,9 +34,17 @@ float feature(int x, int y, int c) {
   return std::sin(0.9f * float(x) * float(c + 1) + 0.37f * float(y * y) * float(c + 2));
 }
 reconstruct::Field features(int w, int h) { return make_field(w, h, 7, feature); }
-std::shared_ptr<const reconstruct::Predictors> predictors(reconstruct::Field features, reconstruct::Field weights) {
-  return std::make_shared<const reconstruct::Predictors>(
-      reconstruct::Predictors{std::move(features), std::move(weights)});
+// Returns the predictors of a single picture.
+reconstruct::Layers predictors(reconstruct::Field features, reconstruct::Field weights) {
+  return {std::make_shared<const reconstruct::Predictors>(
+      reconstruct::Predictors{std::move(features), std::move(weights)})};
+}
+reconstruct::RegressionResult estimate(reconstruct::LocalRegression* regression, const reconstruct::Field& mean,
+                                       const reconstruct::Field& half_difference) {
+  return regression->estimate({&mean}, {&half_difference}, never);
+}
+reconstruct::Field apply(const reconstruct::LocalRegression& regression, const reconstruct::Field& values) {
+  return regression.apply({&values}, never);
 }
 reconstruct::Field ones(int w, int h) {
   return make_field(w, h, 1, [](int, int, int) { return 1.0f; });
@@ -66,7 +74,7 @@ TEST(B1_Regression, KeepsImagesThatTheFeaturesExplain) {
       return 5.0f + 0.03f * float(x) - 0.02f * float(y) + 0.5f * feature(x, y, c) - 0.25f * feature(x, y, 6);
     });
     reconstruct::LocalRegression regression(predictors(features(w, h), ones(w, h)), {}, kSettings);
-    const reconstruct::RegressionResult result = regression.estimate(image, reconstruct::Field(w, h, 3), never);
+    const reconstruct::RegressionResult result = estimate(&regression, image, reconstruct::Field(w, h, 3));
     // The ridge reduces each coefficient slightly, most where windows are small.
     EXPECT_LT(largest_difference(result.mean, image), 0.01) << w << "x" << h;
     EXPECT_EQ(largest_difference(result.noise, reconstruct::Field(w, h, 3)), 0.0);
@@ -76,23 +84,23 @@ TEST(B1_Regression, KeepsImagesThatTheFeaturesExplain) {
 TEST(B2_Regression, IsItsOwnLinearOperator) {
   const int w = 170, h = 140;
   const reconstruct::Field image = noise(w, h, 1.0f, 1), half = noise(w, h, 0.5f, 2), other = noise(w, h, 2.0f, 3);
-  reconstruct::LocalRegression regression(predictors(features(w, h), ones(w, h)), ones(w, h), kSettings);
-  const reconstruct::RegressionResult result = regression.estimate(image, half, never);
+  reconstruct::LocalRegression regression(predictors(features(w, h), ones(w, h)), {ones(w, h)}, kSettings);
+  const reconstruct::RegressionResult result = estimate(&regression, image, half);
   for (int c = 0; c < 3; ++c) {
-    EXPECT_LT(largest_difference(regression.apply(reconstruct::channels_of(image, c, 1), never),
+    EXPECT_LT(largest_difference(apply(regression, reconstruct::channels_of(image, c, 1)),
                                  reconstruct::channels_of(result.mean, c, 1)),
               1e-4);
-    EXPECT_LT(largest_difference(regression.apply(reconstruct::channels_of(half, c, 1), never),
+    EXPECT_LT(largest_difference(apply(regression, reconstruct::channels_of(half, c, 1)),
                                  reconstruct::channels_of(result.noise, c, 1)),
               1e-4);
   }
   const reconstruct::Field sum =
       make_field(w, h, 1, [&](int x, int y, int) { return image.row(y, 0)[x] - 3.0f * other.row(y, 0)[x]; });
-  const reconstruct::Field a = regression.apply(reconstruct::channels_of(image, 0, 1), never),
-                           b = regression.apply(reconstruct::channels_of(other, 0, 1), never);
+  const reconstruct::Field a = apply(regression, reconstruct::channels_of(image, 0, 1)),
+                           b = apply(regression, reconstruct::channels_of(other, 0, 1));
   const reconstruct::Field expected =
       make_field(w, h, 1, [&](int x, int y, int) { return a.row(y)[x] - 3.0f * b.row(y)[x]; });
-  EXPECT_LT(largest_difference(regression.apply(sum, never), expected), 1e-4);
+  EXPECT_LT(largest_difference(apply(regression, sum), expected), 1e-4);
 }
 
 TEST(B2_Regression, HasTheSameBitsForAnyNumberOfThreads) {
@@ -100,7 +108,7 @@ TEST(B2_Regression, HasTheSameBitsForAnyNumberOfThreads) {
   const reconstruct::Field image = noise(w, h, 1.0f, 1), half = noise(w, h, 0.5f, 2);
   expect_same_bits_for_any_number_of_threads([&] {
     reconstruct::LocalRegression regression(predictors(features(w, h), ones(w, h)), {}, kSettings);
-    const reconstruct::Field mean = regression.estimate(image, half, never).mean;
+    const reconstruct::Field mean = estimate(&regression, image, half).mean;
     std::vector<float> values;
     for (int y = 0; y < h; ++y) values.insert(values.end(), mean.row(y, 1), mean.row(y, 1) + w);
     return values;
@@ -120,7 +128,7 @@ TEST(B2_Regression, EstimatesItsNoise) {
     const reconstruct::Field half =
         make_field(w, h, 3, [&](int x, int y, int c) { return 0.5f * (a.row(y, c)[x] - b.row(y, c)[x]); });
     reconstruct::LocalRegression regression(predictors(features(w, h), ones(w, h)), {}, kSettings);
-    const reconstruct::RegressionResult result = regression.estimate(image, half, never);
+    const reconstruct::RegressionResult result = estimate(&regression, image, half);
     for (int y = 0; y < h; ++y) {
       for (int c = 0; c < 3; ++c) {
         for (int x = 0; x < w; ++x) {
@@ -148,8 +156,9 @@ reconstruct::LocalRegression regress(const KnownError& known, float own, reconst
   const reconstruct::Field half = make_field(
       w, h, 3, [&](int x, int y, int) { return known.common_noise + known.chequered_noise * chequer(x, y); });
   const reconstruct::Field own_weights = make_field(w, h, 1, [&](int, int, int) { return own; });
-  reconstruct::LocalRegression regression(predictors(reconstruct::Field(w, h, 7), ones(w, h)), own_weights, kSettings);
-  *result = regression.estimate(image, half, never);
+  reconstruct::LocalRegression regression(predictors(reconstruct::Field(w, h, 7), ones(w, h)), {own_weights},
+                                          kSettings);
+  *result = estimate(&regression, image, half);
   return regression;
 }
 
@@ -172,7 +181,7 @@ TEST(B2_Regression, PixelsAndWindowsAreWeightedByTheirErrors) {
     const reconstruct::LocalRegression with = regress(known, own, &result), without = regress(known, 0.0f, &result);
     const reconstruct::Field probe =
         make_field(result.bias.width(), result.bias.height(), 1, [](int x, int y, int) { return chequer(x, y); });
-    const reconstruct::Field blended = with.apply(probe, never), of_windows = without.apply(probe, never);
+    const reconstruct::Field blended = apply(with, probe), of_windows = apply(without, probe);
     const double share = inner_mean(probe, [&](int x, int y) {
       return (blended.row(y)[x] - of_windows.row(y)[x]) / (probe.row(y)[x] - of_windows.row(y)[x]);
     });
@@ -189,7 +198,7 @@ TEST(B2_Regression, AShelfStaysDarkFarFromTheTilesCentre) {
   const reconstruct::Field image = make_field(w, h, 3, [](int, int y, int) { return y % 20 < 5 ? 0.3f : 30.0f; });
   const reconstruct::Field none = make_field(w, h, 7, [](int, int, int c) { return c == 1 ? 1.0f : 0.0f; });
   reconstruct::LocalRegression regression(predictors(none, ones(w, h)), {}, kSettings);
-  const reconstruct::RegressionResult result = regression.estimate(image, reconstruct::Field(w, h, 3), never);
+  const reconstruct::RegressionResult result = estimate(&regression, image, reconstruct::Field(w, h, 3));
   for (int x = 8; x < w - 8; ++x) {
     for (const int y : {22, 42, 62, 82, 102}) EXPECT_NEAR(result.mean.row(y)[x], 0.3f, 0.1f) << x << " " << y;
   }
@@ -207,7 +216,7 @@ TEST(B2_Regression, LeavesOutPixelsWithoutWeight) {
     }
   }
   reconstruct::LocalRegression regression(predictors(features(w, h), weights), {}, kSettings);
-  EXPECT_LT(largest_difference(regression.estimate(image, reconstruct::Field(w, h, 3), never).mean, truth), 0.03);
+  EXPECT_LT(largest_difference(estimate(&regression, image, reconstruct::Field(w, h, 3)).mean, truth), 0.03);
 }
 
 // There is light in a corner only: tiles that contain none are skipped, with the same result as if they were computed.
@@ -229,16 +238,15 @@ TEST(B1_Regression, SkipsBlackTiles) {
       for (int x = 0; x < w; ++x) seen.row(y, c)[x] += hardly_anything.row(y, c)[x];
     }
   }
-  const auto never = [] { return false; };
   const auto shared = predictors(features(w, h), ones(w, h));
-  reconstruct::LocalRegression passing(shared, ones(w, h), kSettings), working(shared, ones(w, h), kSettings);
-  const reconstruct::RegressionResult a = passing.estimate(mean, half, never), b = working.estimate(seen, half, never);
+  reconstruct::LocalRegression passing(shared, {ones(w, h)}, kSettings), working(shared, {ones(w, h)}, kSettings);
+  const reconstruct::RegressionResult a = estimate(&passing, mean, half), b = estimate(&working, seen, half);
   EXPECT_LT(largest_difference(a.mean, b.mean), 1e-5);
   EXPECT_LT(largest_difference(a.noise, b.noise), 1e-5);
   EXPECT_LT(largest_difference(a.bias, b.bias), 1e-5);
   // The weights are kept there, too.
   const reconstruct::Field other = reconstruct::channels_of(noise(w, h, 1.0f, 3), 0, 1);
-  EXPECT_LT(largest_difference(passing.apply(other, never), working.apply(other, never)), 1e-4);
+  EXPECT_LT(largest_difference(apply(passing, other), apply(working, other)), 1e-4);
 }
 
 }  // namespace

@@ -1,0 +1,396 @@
+// REGULARIZED over several frames: the windows of a picture also hold the samples of the frames around it.
+#include "reconstruct/space_time/joint_regression.h"
+
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "reconstruct/feature_film.h"
+#include "reconstruct/regularized.h"
+#include "reconstruct/space_time/sequences.h"
+#include "support/threads.h"
+
+namespace gradus::joint_regression_test {
+namespace {
+
+using namespace test;
+
+constexpr int kWidth = 72, kHeight = 50, kFrames = 9, kMiddle = kFrames / 2;
+
+// A picture whose light and features are smooth along x, so that they can move by fractions of a pixel. The light is
+// linear in the features, which repeat so often that no window explains them by its coordinates.
+float moving_feature(float x, int y, int channel) {
+  if (channel < 3) return channel == 2 ? 1.0f : 0.0f;
+  if (channel == 6) return 3.0f;
+  return 0.5f + 0.25f * std::sin(0.8f * x + float(channel)) + 0.1f * std::cos(0.37f * float(y) - float(channel));
+}
+float moving_light(float x, int y, int channel) { return 0.3f + 2.0f * moving_feature(x, y, 3 + channel); }
+
+// An animation. Each frame has noise of its own, and frames of the same stream have the same samples.
+struct Shot {
+  int frames = kFrames, channels = 3, halves = film::kHalves;
+  bool gradients = false;
+  float sigma = 0.4f;
+  unsigned seed = 1;
+  std::optional<float> pan{};  // pixels per frame of a moving picture; none: a static room
+  float ramp = 0.0f;           // increase of the light per pixel of a moving picture that no feature describes
+  std::function<float(int t)> light = [](int) { return 1.0f; };
+  std::function<int(int t)> stream = [](int t) { return t; };
+  std::function<bool(int pixel)> linked = [](int) { return true; };
+
+  FeatureFilm description(int t) const {
+    FeatureFilm picture = test::room(kWidth, kHeight);
+    if (pan) {
+      const float moved = *pan * float(t);
+      const float slope = ramp;
+      picture.truth = make_image(kWidth, kHeight, 3, [=](int x, int y, int c) {
+        return slope > 0.0f ? 1.0f + slope * (float(x) - moved) : moving_light(float(x) - moved, y, c);
+      });
+      picture.feature = [=](int x, int y, int channel, int) {
+        return moving_feature(slope > 0.0f ? 0.0f : float(x) - moved, slope > 0.0f ? 0 : y, channel);
+      };
+    }
+    for (float& v : picture.truth) v *= light(t);
+    picture.gradients = gradients;
+    picture.sigma = [deviation = sigma * light(t)](size_t) { return deviation; };
+    picture.seed = 1000 * seed + unsigned(stream(t));
+    return picture;
+  }
+  std::shared_ptr<film::Film> film(int t) const {
+    auto film = std::make_shared<film::Film>(make_feature_film(description(t), channels));
+    for (int half = halves; half < film::kHalves; ++half) {
+      std::fill(film->count[half].begin(), film->count[half].end(), 0);
+      std::fill(film->components[0].primal[half].begin(), film->components[0].primal[half].end(), Radiance(0.0f));
+      for (film::Channel& pass : film->channels) std::fill(pass.values[half].begin(), pass.values[half].end(), 0.0f);
+    }
+    return film;
+  }
+  reconstruct::FrameStep step(int t) const {
+    reconstruct::FrameStep step{stream(t),
+                                {std::vector<int32_t>(size_t(kWidth) * kHeight, film::kNoCorrespondence),
+                                 std::vector<Vec2>(size_t(kWidth) * kHeight)}};
+    const float moved = pan.value_or(0.0f), whole = std::round(moved);
+    for (int i = 0; i < kWidth * kHeight; ++i) {
+      const int before = i % kWidth - int(whole);
+      if (before < 0 || before >= kWidth || !linked(i)) continue;
+      step.to_previous.pixel[size_t(i)] = i - int(whole);
+      step.to_previous.off_centre[size_t(i)] = {moved - whole, 0.0f};
+    }
+    return step;
+  }
+  reconstruct::JointRegression regression() const {
+    return {[this](int t, const CancelCheck&) { return film(t); },
+            [this](int t, const CancelCheck&) { return step(t); }};
+  }
+  reconstruct::FrameRange all() const { return {0, frames - 1}; }
+};
+
+reconstruct::Reconstructed joint(const Shot& shot, int frame) {
+  reconstruct::SolveReport report;
+  reconstruct::JointRegression regression = shot.regression();
+  return regression.reconstruct(frame, shot.all(), never, &report);
+}
+reconstruct::Reconstructed alone(const Shot& shot, int frame) {
+  reconstruct::SolveReport report;
+  return reconstruct::regularize(*shot.film(frame), false, never, &report, reconstruct::ErrorUse::Delivered);
+}
+
+// Returns the mean variance of a picture over its noise.
+template <class Picture>
+double variance_of(Shot shot, const Picture& picture) {
+  constexpr unsigned kSeeds = 4;
+  double variance = 0.0;
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+    shot.seed = 2 * seed + 1;
+    const std::vector<float> a = picture(shot);
+    shot.seed = 2 * seed + 2;
+    variance += 0.5 * std::pow(rms_difference(a, picture(shot)), 2) / kSeeds;
+  }
+  return variance;
+}
+
+TEST(B2_JointRegression, NineFramesLeaveASmallPartOfTheVarianceOfOne) {
+  for (const bool gradients : {false, true}) {
+    Shot shot;
+    shot.gradients = gradients;
+    const double of_all = variance_of(shot, [](const Shot&s) { return joint(s, kMiddle).image; }),
+                 of_one = variance_of(shot, [](const Shot&s) { return alone(s, kMiddle).image; });
+    std::printf("  gradients %d: %.4f of the variance of one frame\n", gradients, of_all / of_one);
+    // With gradients, the differences of one frame are as exact as its samples are noisy.
+    EXPECT_LT(of_all / of_one, gradients ? 0.4 : 1.9 / kFrames);
+    EXPECT_GT(of_all / of_one, 0.7 / kFrames);
+  }
+}
+
+// The noise of the picture is estimated from the half-buffers of all frames.
+TEST(B2_JointRegression, EstimatesItsError) {
+  double estimated = 0.0, actual = 0.0;
+  Shot shot;
+  for (shot.seed = 1; shot.seed <= 4; ++shot.seed) {
+    const reconstruct::Reconstructed picture = joint(shot, kMiddle);
+    estimated += mean(picture.error);
+    actual += std::pow(rms_difference(picture.image, shot.description(kMiddle).truth), 2);
+  }
+  std::printf("  estimated error: %.3f of the actual one\n", estimated / actual);
+  EXPECT_GT(estimated / actual, 0.5);
+  EXPECT_LT(estimated / actual, 3.0);
+}
+
+// A static scene flickers less than its frames by themselves.
+TEST(B2_JointRegression, SuccessivePicturesDifferLittle) {
+  const Shot shot;
+  const double joined = rms_difference(joint(shot, 3).image, joint(shot, 4).image),
+               each = rms_difference(alone(shot, 3).image, alone(shot, 4).image);
+  std::printf("  flicker: %.4f of that of single frames\n", joined * joined / (each * each));
+  EXPECT_LT(joined * joined, 0.12 * each * each);
+}
+
+// There is no lag and no ghost.
+TEST(C5_JointRegression, ALightThatGoesOffIsDarkAtOnce) {
+  constexpr int kFirstDark = 5;
+  Shot shot;
+  shot.light = [](int t) { return t < kFirstDark ? 1.0f : 0.0f; };
+  const double bright = mean(shot.description(0).truth);
+  for (int t = 2; t < kFrames - 1; ++t) {
+    const double share = mean(joint(shot, t).image) / bright, own = mean(alone(shot, t).image) / bright;
+    std::printf("  frame %d: %.5f of the light, %.5f by itself\n", t, share, own);
+    EXPECT_NEAR(share, t < kFirstDark ? 1.0 : 0.0, t < kFirstDark ? 0.01 : 1e-3) << t;
+  }
+}
+
+TEST(C5_JointRegression, AChangeOfTheLightShowsAtOnce) {
+  for (const auto& [before, after] : {std::pair(1.0f, 0.1f), std::pair(0.1f, 1.0f), std::pair(1.0f, 0.7f)}) {
+    Shot shot;
+    shot.light = [before = before, after = after](int t) { return t < kMiddle ? before : after; };
+    for (const int t : {kMiddle - 1, kMiddle}) {
+      const std::vector<float> truth = shot.description(t).truth, picture = joint(shot, t).image;
+      EXPECT_NEAR(mean(picture) / mean(truth), 1.0, 0.02) << t;
+      EXPECT_LT(rms_difference(picture, truth), rms_difference(alone(shot, t).image, truth)) << t;
+    }
+  }
+}
+
+// Returns the squared bias of a picture, from the errors of two sets of pictures with other noise. Pixels that the pan
+// moves out of some frames are left out.
+double squared_bias(Shot shot, int frame) {
+  constexpr int kBorder = 8;
+  constexpr unsigned kSeeds = 8;
+  const std::vector<float> truth = shot.description(frame).truth;
+  std::vector<double> errors[2];
+  for (unsigned set = 0; set < 2; ++set) {
+    errors[set].assign(truth.size(), 0.0);
+    for (unsigned seed = 0; seed < kSeeds; ++seed) {
+      shot.seed = 100 * set + seed;
+      const std::vector<float> picture = joint(shot, frame).image;
+      for (size_t i = 0; i < truth.size(); ++i) errors[set][i] += double(picture[i] - truth[i]) / kSeeds;
+    }
+  }
+  double sum = 0.0;
+  int count = 0;
+  for (size_t i = 0; i < truth.size(); ++i) {
+    const int x = int(i / 3) % kWidth;
+    if (x < kBorder || x >= kWidth - kBorder) continue;
+    sum += errors[0][i] * errors[1][i];
+    ++count;
+  }
+  return sum / count;
+}
+
+// Samples count at their places, with the features that they have there.
+TEST(B2_JointRegression, APanByAFractionOfAPixelHasNoBias) {
+  Shot shot;
+  shot.sigma = 0.2f;
+  for (const float pan : {0.0f, 0.375f, -0.5f, 1.25f}) {
+    shot.pan = pan;
+    const double bias = squared_bias(shot, kMiddle),
+                 variance = variance_of(shot, [](const Shot&s) { return joint(s, kMiddle).image; });
+    std::printf("  pan %g: squared bias %.3e, variance %.3e\n", double(pan), bias, variance);
+    EXPECT_LT(bias, 0.25 * variance) << pan;
+  }
+}
+
+// All samples of the other frame lie on one side of the centres of their pixels.
+TEST(B2_JointRegression, DisplacementsCountInWindows) {
+  Shot shot;
+  shot.frames = 2;
+  shot.pan = 0.45f;
+  shot.ramp = 0.05f;
+  shot.sigma = 0.02f;
+  for (const int frame : {0, 1}) {
+    const std::vector<float> truth = shot.description(frame).truth, picture = joint(shot, frame).image;
+    const double shift = (mean(picture) - mean(truth)) / shot.ramp;
+    std::printf("  frame %d: shifted by %.4f pixels\n", frame, shift);
+    EXPECT_NEAR(shift, 0.0, 0.02) << frame;
+  }
+}
+
+// Returns the film of a frame with its light in two components, the second brighter to the right.
+std::shared_ptr<film::Film> in_two_components(const Shot& shot, int t) {
+  std::shared_ptr<film::Film> film = shot.film(t);
+  film->components.push_back(film->components[0]);
+  for (size_t k = 0; k < 2; ++k) {
+    for (auto& half : film->components[k].primal) {
+      for (size_t i = 0; i < half.size(); ++i) {
+        const float second = 0.1f + 0.3f * float(i % kWidth) / kWidth;
+        half[i] *= k == 1 ? second : 1.0f - second;
+      }
+    }
+  }
+  return film;
+}
+
+reconstruct::Reconstructed joint_components(const Shot& shot, int frame) {
+  reconstruct::SolveReport report;
+  reconstruct::JointRegression regression([&](int t, const CancelCheck&) { return in_two_components(shot, t); },
+                                          [&](int t, const CancelCheck&) { return shot.step(t); });
+  return regression.reconstruct(frame, shot.all(), never, &report);
+}
+
+// All components go through the operator of their sum.
+TEST(B2_JointRegression, ComponentsAddUpToThePicture) {
+  for (const std::optional<float> pan : {std::optional<float>{}, std::optional<float>{0.375f}}) {
+    Shot shot;
+    shot.pan = pan;
+    shot.frames = 5;
+    shot.light = [](int t) { return 1.0f + 0.02f * float(t); };
+    const reconstruct::Reconstructed whole = joint(shot, 2), parts = joint_components(shot, 2);
+    ASSERT_EQ(parts.components.size(), 2u);
+    EXPECT_LT(rms_difference(parts.image, whole.image), 1e-4);
+    EXPECT_LT(rms_difference(parts.error, whole.error), 1e-4);
+    for (size_t i = 0; i < whole.image.size(); ++i)
+      ASSERT_NEAR(parts.components[0][i] + parts.components[1][i], parts.image[i], 1e-5f) << i;
+  }
+}
+
+// The second component is taken from the samples of all frames, too.
+TEST(B2_JointRegression, ComponentsHaveTheSamplesOfAllFrames) {
+  const Shot shot;
+  const double of_all = variance_of(shot, [](const Shot& s) { return joint_components(s, kMiddle).components[1]; });
+  const double of_one = variance_of(shot, [](const Shot& s) {
+    reconstruct::SolveReport report;
+    return reconstruct::regularize(*in_two_components(s, kMiddle), true, never, &report).components[1];
+  });
+  std::printf("  second component: %.4f of the variance of one frame\n", of_all / of_one);
+  EXPECT_LT(of_all / of_one, 0.3);
+}
+
+// Alpha, which is an eighth of red in these films, uses the weights of the colours.
+TEST(B2_JointRegression, AlphaUsesTheWeightsOfTheColours) {
+  for (const int every : {1, 4}) {
+    Shot shot;
+    shot.channels = 4;
+    shot.frames = 5;
+    shot.light = [](int t) { return 1.0f + 0.05f * float(t); };
+    shot.linked = [every](int pixel) { return pixel % kWidth % every == 0; };
+    const std::vector<float> picture = joint(shot, 2).image;
+    for (size_t i = 0; i < picture.size(); i += 4) ASSERT_NEAR(8.0f * picture[i + 3], picture[i], 4e-3f) << i / 4;
+  }
+}
+
+TEST(B2_JointRegression, WithoutCorrespondencesItIsThePictureOfOneFrame) {
+  Shot shot;
+  shot.frames = 5;
+  shot.linked = [](int) { return false; };
+  const reconstruct::Reconstructed joined = joint(shot, 2), single = alone(shot, 2);
+  EXPECT_LT(rms_difference(joined.image, single.image), 1e-5);
+  EXPECT_LT(rms_difference(joined.error, single.error), 1e-5);
+}
+
+// Frames that are repeated have the same samples, which count once.
+TEST(B2_JointRegression, RepeatedFramesCountOnce) {
+  Shot shot;
+  shot.stream = [](int) { return 0; };
+  EXPECT_EQ(joint(shot, kMiddle).image, alone(shot, kMiddle).image);
+  Shot repeated, once;
+  once.stream = [](int t) { return 2 * t; };
+  once.frames = 3;
+  repeated.stream = [](int t) { return t / 2 * 2; };
+  repeated.frames = 6;
+  const std::vector<float> expected = joint(once, 1).image;
+  for (const int frame : {2, 3}) EXPECT_EQ(joint(repeated, frame).image, expected) << frame;
+}
+
+// Lights of any strength.
+TEST(B2_JointRegression, ScalesWithTheLight) {
+  Shot shot;
+  shot.frames = 3;
+  const std::vector<float> picture = joint(shot, 1).image;
+  for (const float strength : {1e-18f, 1e-10f, 1e10f, 1e18f}) {
+    shot.light = [strength](int) { return strength; };
+    const std::vector<float> scaled = joint(shot, 1).image;
+    for (size_t i = 0; i < picture.size(); ++i) {
+      // Beyond the range of floats, squares no longer order the errors.
+      ASSERT_NEAR(scaled[i] / strength, picture[i], strength < 1e-15f || strength > 1e15f ? 0.5f : 0.01f) << strength;
+    }
+  }
+}
+
+// With one sample per pixel the noise is unknown.
+TEST(B2_JointRegression, AcceptsFramesWithoutASecondHalf) {
+  Shot shot;
+  shot.halves = 1;
+  const std::vector<float> picture = joint(shot, kMiddle).image, truth = shot.description(kMiddle).truth;
+  for (const float value : picture) ASSERT_TRUE(std::isfinite(value));
+  EXPECT_LT(rms_difference(picture, truth), rms_difference(alone(shot, kMiddle).image, truth));
+}
+
+// A job that begins in the middle of a sequence has the pictures of the whole, if it has the same neighbours. Every
+// frame is opened once for its own picture, and once for those of all others.
+TEST(B2_JointRegression, APartHasThePicturesOfTheWhole) {
+  Shot shot;
+  shot.frames = 8;
+  shot.pan = 0.375f;
+  const auto around = [&](int t) {
+    return reconstruct::FrameRange{std::max(t - 2, 0), std::min(t + 2, shot.frames - 1)};
+  };
+  reconstruct::SolveReport report;
+  std::map<int, int> opened;
+  reconstruct::JointRegression whole(
+      [&](int t, const CancelCheck&) {
+        ++opened[t];
+        return shot.film(t);
+      },
+      [&](int t, const CancelCheck&) { return shot.step(t); });
+  std::vector<reconstruct::Reconstructed> pictures;
+  for (int t = 0; t < shot.frames; ++t) pictures.push_back(whole.reconstruct(t, around(t), never, &report));
+  for (int t = 0; t < shot.frames; ++t) EXPECT_EQ(opened[t], 2) << t;
+  for (const int first : {3, 6}) {
+    reconstruct::JointRegression part = shot.regression();
+    for (int t = first; t < shot.frames; ++t) {
+      const reconstruct::Reconstructed picture = part.reconstruct(t, around(t), never, &report);
+      EXPECT_EQ(picture.image, pictures[size_t(t)].image) << t;
+      EXPECT_EQ(picture.error, pictures[size_t(t)].error) << t;
+    }
+  }
+}
+
+TEST(B2_JointRegression, HasTheSameBitsForAnyNumberOfThreads) {
+  Shot shot;
+  shot.frames = 3;
+  shot.pan = 0.375f;
+  shot.channels = 4;
+  expect_same_bits_for_any_number_of_threads([&] { return joint(shot, 1).image; });
+}
+
+TEST(K1_JointRegression, ReturnsNothingWhenCancelled) {
+  Shot shot;
+  shot.frames = 3;
+  reconstruct::SolveReport report;
+  std::atomic<int> checks{0};
+  reconstruct::JointRegression counted = shot.regression();
+  counted.reconstruct(
+      1, shot.all(), [&] { return ++checks < 0; }, &report);
+  EXPECT_GT(checks, 2 * shot.frames);
+  for (const int last : {0, 1, shot.frames, checks / 2, checks - 1}) {
+    std::atomic<int> left{last};
+    reconstruct::JointRegression regression = shot.regression();
+    const reconstruct::Reconstructed picture = regression.reconstruct(
+        1, shot.all(), [&] { return --left < 0; }, &report);
+    EXPECT_TRUE(last > shot.frames || picture.image.empty()) << last;
+  }
+}
+
+}  // namespace
+}  // namespace gradus::joint_regression_test
