@@ -26,10 +26,13 @@ class PassBuffer:
     def __init__(self) -> None:
         self._values = array("f")
         self._layout: list[tuple[PassInfo | None, int, int]] = []  # pass, first float, floats
+        self.size = (0, 0)
+        """Width and height in pixels."""
 
     def prepare(self, passes: Iterable[Any], infos: dict[str, PassInfo], width: int, height: int) -> None:
         """Lays out the buffer for `passes`, whose order Blender keeps. Passes that are not in `infos` stay 0."""
         self._layout = []
+        self.size = (width, height)
         total = 0
         for render_pass in passes:
             count = width * height * render_pass.channels

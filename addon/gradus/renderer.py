@@ -32,7 +32,7 @@ from .export import Cancelled as ExportCancelled
 from .export.shutter import shutter_of
 from .failure import Failure
 from .native import Error, GradusError
-from .progress import Display, open_result, wait
+from .progress import Display, is_watched, open_result, wait
 from .store import FINAL, PREVIEW, Cancelled, Key, Session
 
 _files = output.FrameFiles()
@@ -370,7 +370,7 @@ def render(engine: Any, depsgraph: Any) -> None:
     except (Cancelled, ExportCancelled):
         job.cancelled = True
         if not job.has_result:
-            _empty_result(job)
+            _deliver_last_pictures(job)
     finally:
         engine.job = None  # frees the buffers at once: engine and job refer to each other
         job.free()
@@ -382,10 +382,20 @@ def frame_finished(engine: Any) -> None:
     engine.job = None
 
 
-def _empty_result(job: Job) -> None:
-    """Delivers an empty result. A cancelled render without any result would crash Blender's multilayer writer."""
-    result = job.engine.begin_result(0, 0, job.engine.resolution_x, job.engine.resolution_y, layer=job.layer.name)
-    if result is not None:
+def _deliver_last_pictures(job: Job) -> None:
+    """Delivers the pictures of the frame before, or empty ones, after a cancel that came before the first sample.
+
+    Without any result, Blender's multilayer writer would crash. Blender begins each frame with an empty result, and the
+    window would lose the picture that the user saw.
+    """
+    size = job.engine.resolution_x, job.engine.resolution_y
+    pictures = job.session.pictures if job.session is not None else {}
+    for view in job.views:
+        result = job.engine.begin_result(0, 0, *size, layer=job.layer.name, view=view)
+        if result is None:
+            return
+        if view in pictures and pictures[view].size == (result.resolution_x, result.resolution_y):
+            pictures[view].upload(result.layers[0])
         job.engine.end_result(result)
 
 
@@ -441,6 +451,8 @@ def _deliver(job: Job, view: str, handle: int, result: Any) -> None:
         job.buffer.upload(result.layers[0])
     if job.is_preview or job.cancelled:
         return
+    if job.engine.is_animation and is_watched():
+        job.session.pictures[view], job.buffer = job.buffer, pixels.PassBuffer()
     library = job.session.library
     job.warn([])
     folder = job.host_value("frame_store")

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import bpy
 
-from . import color, compat, native, simulation
+from . import color, compat, native, pixels, simulation
 from .export import Exporter
 
 FINAL, PREVIEW, VIEWPORT = "FINAL", "PREVIEW", "VIEWPORT"
@@ -46,6 +46,8 @@ class Session:
             library.scene_record(self.scene, 1)
         self.exporter = Exporter(library, self.scene)
         self.reported: set[str] = set()
+        self.pictures: dict[str, pixels.PassBuffer] = {}
+        """The last picture of each view, which stays in the window if the user cancels before the next one."""
 
     def sync(self, *arguments: Any) -> Any:
         """Defines the colour spaces of all images on the device, then calls Exporter.sync()."""

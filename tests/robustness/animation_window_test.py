@@ -76,13 +76,19 @@ def lines(folder: Path) -> list[dict]:
     return [json.loads(line) for line in (folder / "stats.jsonl").read_text().splitlines()]
 
 
+def frame_by_frame(line: dict) -> str:
+    """Returns why a frame was rendered independently, or ""."""
+    return line.get("plan", {}).get("frame_by_frame", "")
+
+
 def test_c3_an_animation_in_a_window_has_every_frame(tmp_path: Path) -> None:
     with window.blender(script(tmp_path, 16), window.SMALL) as blender:
         blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
         blender.wait_for("TICK 0", limit=5)
         assert "TICK 1" in blender.log, "the interface responds meanwhile"
     assert [line["frame"] for line in lines(tmp_path)] == list(range(1, 13))
-    assert all(line["samples_replayed"] == 8 for line in lines(tmp_path))
+    assert [line["samples"] for line in lines(tmp_path)] == [16] * 12
+    assert not any(map(frame_by_frame, lines(tmp_path)))
     assert len(list(tmp_path.glob("f_*.png"))) == 12
 
 
@@ -127,6 +133,21 @@ def test_escape_between_frames_keeps_the_shown_picture(tmp_path: Path) -> None:
     assert not (tmp_path / "f_0040.png").exists()
 
 
+def test_escape_while_a_frame_is_set_keeps_the_shown_picture(tmp_path: Path) -> None:
+    """Regression: the window lost its picture if Escape was pressed before the first sample of a frame."""
+    slow = "\nimport time\nbpy.app.handlers.frame_change_post.append(lambda *_: time.sleep(0.5))\n"
+    script = glow.SCENE.replace("SAMPLES", "1") + moves(tmp_path, 40) + slow
+    with window.blender(script, window.SMALL) as blender:
+        blender.wait_for("WINDOW-READY")
+        blender.press("ctrl+F12")
+        wait_for_file(tmp_path / "f_0003.png")
+        glow.wait_for_picture(blender)
+        blender.press("Escape")
+        blender.wait_for("RENDER-CANCELLED", limit=5)
+        glow.wait_for_picture(blender)
+    assert not (tmp_path / "f_0040.png").exists()
+
+
 def test_escape_ends_the_frames_ahead_in_a_window(tmp_path: Path) -> None:
     with window.blender(script(tmp_path, 100000), window.SMALL) as blender:
         blender.wait_for("TICK 1", limit=60)
@@ -145,7 +166,7 @@ def test_simulations_that_are_not_baked_are_named_and_make_frames_independent(tm
     )
     with window.blender(script(tmp_path, 2, falling + "; scene.frame_end = 3"), window.SMALL) as blender:
         blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
-    assert [line.get("samples_replayed", 0) for line in lines(tmp_path)] == [0, 0, 0]
+    assert all(map(frame_by_frame, lines(tmp_path)))
     warnings = [text for line in lines(tmp_path) for text in line["warnings"] if "not baked" in text]
     assert len(warnings) == 1
     assert "Rigid Body World" in warnings[0]
@@ -163,5 +184,5 @@ scene.frame_end = 3
 """
     with window.blender(script(tmp_path, 2, hidden), window.SMALL) as blender:
         blender.wait_for("RENDER-COMPLETE 1\n", limit=90)
-    assert [line["samples_replayed"] for line in lines(tmp_path)] == [1, 1, 1]
+    assert not any(map(frame_by_frame, lines(tmp_path)))
     assert not [text for line in lines(tmp_path) for text in line["warnings"] if "not baked" in text]

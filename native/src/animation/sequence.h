@@ -1,10 +1,10 @@
 // Frames of an animation, sampled one after the other and reconstructed together.
 //
 // REGULARIZED joins the independent samples of several frames (reconstruct/space_time/joint_regression.h). L2 and L1
-// compare samples (Manzi et al. 2016, "Temporal gradient-domain path tracing"): each frame is then sampled twice, with
-// half of its samples each time: with its own random numbers (fresh), and with those of the previous frame, moved to the
-// pixels that show the same surfaces now (replayed). Differences between replayed samples and those that they replay
-// have little noise. In both cases a frame has two films, of which the second holds its pixel correspondence.
+// compare samples (Manzi et al. 2016, "Temporal gradient-domain path tracing"): half of the samples of a frame have its
+// own random numbers (fresh), the other half those of the previous frame, moved to the pixels that show the same
+// surfaces now (replayed). Differences between replayed samples and those that they replay have little noise. In both
+// cases a frame has two films, of which the second holds its pixel correspondence.
 #pragma once
 
 #include <map>
