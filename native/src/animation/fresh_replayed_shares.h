@@ -7,6 +7,7 @@
 #include "animation/sequence_folder.h"
 #include "film/film_header.h"
 #include "schema/options.h"
+#include "schema/pass_table.h"
 
 namespace gradus::animation {
 
