@@ -8,6 +8,7 @@
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/poisson/twicing.h"
+#include "reconstruct/regression/lost_light.h"
 #include "reconstruct/regression/regression_error.h"
 #include "reconstruct/regression/restore_sampled_light.h"
 #include "reconstruct/solver_planes.h"
@@ -136,6 +137,10 @@ void scale_by(const Field& factors, Field* to) {
   for_values(to, [&](float& value, int x, int y, int) { value *= factors.row(y)[x]; });
 }
 
+void multiply(const Field& factors, Field* by_channel) {
+  for_values(by_channel, [&](float& value, int x, int y, int c) { value *= factors.row(y, c)[x]; });
+}
+
 // Returns the share of each residual that lies within the bound on outliers (twicing.h), relative to the light around
 // it.
 Field limit_outliers(const Field& residual, const Field& weights) {
@@ -243,10 +248,12 @@ FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& 
       std::make_shared<const Predictors>(Predictors{std::move(features.sampled), std::move(weights.in_windows)})};
   std::vector<Field> own;
   own.push_back(std::move(weights.own));
+  std::vector<Field> kept(1);
   Images means{&image.mean}, half_differences{&image.half_difference};
   for (const MovedFrame& other : others) {
     layers_.push_back(other.predictors);
     own.push_back(other.own);
+    kept.push_back(other.kept);
     means.push_back(&other.image.mean);
     half_differences.push_back(GRADUS_FAULT(moved_halves_dropped) ? &image.half_difference
                                                                   : &other.image.half_difference);
@@ -262,6 +269,9 @@ FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& 
     blend_bias(share_, coarse.bias, &first.bias);
   }
   add_residual(image, others, &first, cancel);
+  restored_ = restore_lost_light(first.mean, look_around(image).noise, kept, means, half_differences);
+  multiply(restored_, &first.mean);
+  multiply(restored_, &first.noise);
   own_ = restore_sampled_light(image.mean, first.mean);
   blend_sampled(own_, image.mean, &first.mean);
   blend_sampled(own_, image.half_difference, &first.noise);
@@ -315,6 +325,7 @@ Field FeatureRegression::apply(const Images& values, const CancelCheck& cancel) 
   }
   if (!GRADUS_FAULT(second_step_of_other_channels_dropped))
     add(of_residual_.apply(pointers_to(residuals), cancel), &result);
+  if (result.channels() == 3) multiply(restored_, &result);
   blend_sampled(own_, *values[0], &result);
   return result;
 }

@@ -23,6 +23,7 @@ struct MovedFrame {
   std::shared_ptr<const Predictors> predictors;
   HalvedImage image;  // in the units of the image that is regressed
   Field own;          // weight of each pixel's own value
+  Field kept;         // share of each pixel's weight that the test of light has left
 };
 
 // What an image is modelled by.
@@ -80,6 +81,7 @@ class FeatureRegression {
   // Share of each pixel's residual that is restored, for each layer: outliers are limited, and pixels that hold no
   // samples have no residual.
   std::vector<Field> residual_share_;
+  Field restored_;  // factors that restore lost light, three channels (lost_light.h)
   // Share of each pixel's own sampled value in the result (restore_sampled_light.h).
   Field own_;
   Field image_, error_;

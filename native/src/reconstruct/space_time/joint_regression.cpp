@@ -171,9 +171,12 @@ Field JointRegression::move_frame(const Frame& frame, const PixelTrack& track, c
   Predictors predictors{move(track, frame.features), move(track, frame.weights.in_windows), displacement_of(track)};
   move_depths(track, picture.depths, picture.unit, &predictors.features);
   scale_values(squared, &predictors.weights);
-  const Field kept = same_light(change_of_light(picture, track, moved.image, predictors.weights));
-  predictors.weights = times(std::move(predictors.weights), kept);
-  moved.own = times(times(move(track, frame.weights.own), kept), weigh_displacement(track, kOwnReach));
+  moved.kept = same_light(change_of_light(picture, track, moved.image, predictors.weights));
+  for_values(&moved.kept, [&](float& share, int x, int y, int) {
+    if (predictors.weights.row(y)[x] == 0.0f) share = 0.0f;
+  });
+  predictors.weights = times(std::move(predictors.weights), moved.kept);
+  moved.own = times(times(move(track, frame.weights.own), moved.kept), weigh_displacement(track, kOwnReach));
   scale_values(squared, &moved.own);
   moved.predictors = std::make_shared<const Predictors>(std::move(predictors));
   others->frames.push_back(std::move(moved));
@@ -184,7 +187,7 @@ Field JointRegression::move_frame(const Frame& frame, const PixelTrack& track, c
       scale_light(1.0f / picture.scale, &sampled.back());
     }
   }
-  return kept;
+  return others->frames.back().kept;
 }
 
 Field JointRegression::features_of(const Frame& frame) {

@@ -226,6 +226,32 @@ TEST(B2_JointRegression, DisplacementsCountInWindows) {
   }
 }
 
+// Weights by noise give rare bright samples too little weight; all samples together know how much light that is.
+TEST(B2_JointRegression, KeepsTheLightOfRareBrightSamples) {
+  Shot shot;
+  double sampled = 0.0;
+  const auto with_bright_samples = [&](int t) {
+    std::shared_ptr<film::Film> film = shot.film(t);
+    auto& half = film->components[0].primal[t % film::kHalves];
+    for (size_t i = size_t(13 * t) % 101; i < half.size(); i += 101) half[i] += Radiance(60.0f);
+    return film;
+  };
+  for (int t = 0; t < shot.frames; ++t) {
+    const film::Film film = *with_bright_samples(t);
+    for (size_t i = 0; i < film.count[0].size(); ++i) {
+      const float samples = float(film.count[0][i]) + float(film.count[1][i]);
+      for (int c = 0; c < 3; ++c)
+        sampled += (Rgb(film.components[0].primal[0][i])[c] + Rgb(film.components[0].primal[1][i])[c]) / samples;
+    }
+  }
+  sampled /= double(shot.frames) * kWidth * kHeight * 3;
+  reconstruct::SolveReport report;
+  reconstruct::JointRegression regression([&](int t, const CancelCheck&) { return with_bright_samples(t); },
+                                          [&](int t, const CancelCheck&) { return shot.step(t); });
+  const std::vector<float> picture = regression.reconstruct(kMiddle, shot.all(), never, &report).image;
+  EXPECT_NEAR(mean(picture) / sampled, 1.0, 0.02);
+}
+
 // Returns the film of a frame with its light in two components, the second brighter to the right.
 std::shared_ptr<film::Film> in_two_components(const Shot& shot, int t) {
   std::shared_ptr<film::Film> film = shot.film(t);
@@ -277,6 +303,7 @@ TEST(B2_JointRegression, ComponentsHaveTheSamplesOfAllFrames) {
 }
 
 // Alpha, which is an eighth of red in these films, uses the weights of the colours.
+// But for the light that weights by noise lose, which is restored in the colours alone.
 TEST(B2_JointRegression, AlphaUsesTheWeightsOfTheColours) {
   for (const int every : {1, 4}) {
     Shot shot;
@@ -285,7 +312,7 @@ TEST(B2_JointRegression, AlphaUsesTheWeightsOfTheColours) {
     shot.light = [](int t) { return 1.0f + 0.05f * float(t); };
     shot.linked = [every](int pixel) { return pixel % kWidth % every == 0; };
     const std::vector<float> picture = joint(shot, 2).image;
-    for (size_t i = 0; i < picture.size(); i += 4) ASSERT_NEAR(8.0f * picture[i + 3], picture[i], 4e-3f) << i / 4;
+    for (size_t i = 0; i < picture.size(); i += 4) ASSERT_NEAR(8.0f * picture[i + 3], picture[i], 1e-2f) << i / 4;
   }
 }
 

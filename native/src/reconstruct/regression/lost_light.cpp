@@ -1,0 +1,114 @@
+#include "reconstruct/regression/lost_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/fault.h"
+#include "reconstruct/box_mean.h"
+#include "reconstruct/field_values.h"
+
+namespace gradus::reconstruct {
+namespace {
+
+// Light is summed over squares of (2 · kLossRadius + 1)² cells of kLossCell × kLossCell pixels. Smaller squares bring
+// light of bright places to the dark ones beside them.
+constexpr int kLossCell = 32, kLossRadius = 4;
+// Maximum of the noise relative to the light of a pixel. It bounds the factors of dark pixels in noisy places.
+constexpr float kMaxNoise = 16.0f;
+// Order of the sums: light that is lost, √(light · noise), d².
+constexpr int kLostSum = 0, kPlaceSum = 3, kSquareSum = 6;
+
+float place_of_loss(float light, float noise) {
+  return light > 0.0f ? std::sqrt(light * std::min(std::max(noise, 0.0f), kMaxNoise * light)) : 0.0f;
+}
+
+// Returns the sums over cells.
+Field sum_loss(const Field& regressed, const Field& noise, const std::vector<Field>& kept, const Images& sampled,
+               const Images& half_differences) {
+  const int w = regressed.width(), h = regressed.height();
+  Field sums((w + kLossCell - 1) / kLossCell, (h + kLossCell - 1) / kLossCell, kSquareSum + 1);
+  const auto add_row = [&](size_t layer, int y) {
+    const int j = y / kLossCell;
+    for (int x = 0; x < w; ++x) {
+      const float share = kept[layer].channels() > 0 ? kept[layer].row(y)[x] : 1.0f;
+      if (share == 0.0f) continue;
+      const int i = x / kLossCell;
+      for (int c = 0; c < 3; ++c) {
+        const float light = regressed.row(y, c)[x];
+        sums.row(j, kLostSum + c)[i] += share * (sampled[layer]->row(y, c)[x] - light);
+        sums.row(j, kPlaceSum + c)[i] += share * place_of_loss(light, noise.row(y)[x]);
+      }
+      sums.row(j, kSquareSum)[i] += share * share * mean_of_squares(*half_differences[layer], x, y);
+    }
+  };
+  for_rows(
+      sums.height(),
+      [&](int j) {
+        for (size_t layer = 0; layer < sampled.size(); ++layer) {
+          for (int y = j * kLossCell; y < std::min(h, (j + 1) * kLossCell); ++y) add_row(layer, y);
+        }
+      },
+      1);
+  return sums;
+}
+
+// Returns the light to restore over √(light · noise) for each cell.
+Field restored_shares(const Field& sums) {
+  const Field means = box_mean(sums, kLossRadius);
+  Field shares(sums.width(), sums.height(), 3);
+  const auto count = [](int at, int size) {
+    return float(std::min(at + kLossRadius, size - 1) - std::max(at - kLossRadius, 0) + 1);
+  };
+  for_values(&shares, [&](float& value, int x, int y, int c) {
+    float squared = 0.0f;
+    for (int i = 0; i < 3; ++i) squared += means.row(y, kLostSum + i)[x] * means.row(y, kLostSum + i)[x] / 3.0f;
+    // These are means over n cells: the square of a sum is n² times that of the mean, a sum of squares n times theirs.
+    squared *= count(x, sums.width()) * count(y, sums.height());
+    const float variance = means.row(y, kSquareSum)[x], places = means.row(y, kPlaceSum + c)[x];
+    if (squared > variance && places > 0.0f)
+      value = (1.0f - variance / squared) * means.row(y, kLostSum + c)[x] / places;
+  });
+  return shares;
+}
+
+// A pixel between the centres of two cells, along one axis.
+struct BetweenCells {
+  int first, second;
+  float part;
+  BetweenCells(int pixel, int cells) {
+    const float at = (float(pixel) + 0.5f) / float(kLossCell) - 0.5f;
+    first = std::clamp(int(std::floor(at)), 0, cells - 1);
+    second = std::min(first + 1, cells - 1);
+    part = std::clamp(at - float(first), 0.0f, 1.0f);
+  }
+};
+
+float interpolate_cells(const Field& cells, int channel, const BetweenCells& x, const BetweenCells& y) {
+  const float *above = cells.row(y.first, channel), *below = cells.row(y.second, channel);
+  const float a = above[x.first] + x.part * (above[x.second] - above[x.first]),
+              b = below[x.first] + x.part * (below[x.second] - below[x.first]);
+  return a + y.part * (b - a);
+}
+
+}  // namespace
+
+Field restore_lost_light(const Field& regressed, const Field& noise, const std::vector<Field>& kept,
+                         const Images& sampled, const Images& half_differences) {
+  const Field shares = restored_shares(sum_loss(regressed, noise, kept, sampled, half_differences));
+  Field factors(regressed.width(), regressed.height(), 3);
+  for_rows(factors.height(), [&](int y) {
+    const BetweenCells of_y(y, shares.height());
+    for (int x = 0; x < factors.width(); ++x) {
+      const BetweenCells of_x(x, shares.width());
+      for (int c = 0; c < 3; ++c) {
+        const float light = regressed.row(y, c)[x], place = place_of_loss(light, noise.row(y)[x]);
+        factors.row(y, c)[x] = 1.0f;
+        if (place > 0.0f && !GRADUS_FAULT(lost_light_not_restored))
+          factors.row(y, c)[x] += place / light * interpolate_cells(shares, c, of_x, of_y);
+      }
+    }
+  });
+  return factors;
+}
+
+}  // namespace gradus::reconstruct
