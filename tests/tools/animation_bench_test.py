@@ -268,6 +268,13 @@ def test_peers_of_another_blender_are_not_mixed(tmp_path: Path, monkeypatch: pyt
     assert [point.samples for point in scene.points[report.PEER]] == [4, 16]
 
 
+def test_earlier_measures_and_other_references_are_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    earlier = [{key: value for key, value in row.items() if key != "checked"} for row in rows("cycles", 1.0)]
+    fewer = rows("path", 1.0, checked=[12, 14])
+    ((scene,),) = stored(tmp_path, monkeypatch, earlier, fewer, rows(report.DELIVERED, 1.0)).values()
+    assert scene.modes() == [report.DELIVERED]
+
+
 def test_a_peer_of_another_blender_is_not_compared_with(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Regression: the newest rows of each mode counted, even if they were of different Blenders."""
     peer = [row | {"blender": "4.5"} for row in rows(report.PEER, 1.0)]

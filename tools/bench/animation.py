@@ -60,10 +60,12 @@ def variant_of(arguments: argparse.Namespace) -> Variant:
     return Variant(arguments.size, arguments.frames, SHUTTER if arguments.blur else 0.0)
 
 
-def done_jobs(animation: Animation, variant: Variant, version: str) -> set[Job]:
-    wanted = (animation.name, list(animation.frames), variant, version, hosts.peer())
-    rows = records.read(RESULTS)
-    rows = [r for r in rows if (r["scene"], r["frames"], of_row(r), r["version"], r["blender"]) == wanted]
+def done_jobs(animation: Animation, arguments: argparse.Namespace, version: str) -> set[Job]:
+    checked = list(animation.middle(arguments.checked))
+    wanted = (animation.name, list(animation.frames), checked, variant_of(arguments), version, hosts.peer())
+    rows = [row for row in records.read(RESULTS) if "checked" in row]  # earlier ones have other measures
+    columns = ("scene", "frames", "checked")
+    rows = [r for r in rows if (*(r[name] for name in columns), of_row(r), r["version"], r["blender"]) == wanted]
     return {Job(r["seed"], r["samples"], r["mode"]) for r in rows}
 
 
@@ -161,7 +163,7 @@ class AnimationBench:
 
 
 def bench_animation(animation: Animation, arguments: argparse.Namespace, version: str, deadline: float) -> None:
-    done = done_jobs(animation, variant_of(arguments), version)
+    done = done_jobs(animation, arguments, version)
     jobs = [job for job in jobs_of(arguments) if job not in done]
     if not jobs:
         return

@@ -105,7 +105,8 @@ TARGETS = (
 def load() -> dict[Variant, list[AnimationResults]]:
     """Returns the newest runs of each mode by variant."""
     by_mode: dict[tuple[Variant, str, str], list[Row]] = defaultdict(list)
-    for row in of_last_blender(records.read(RESULTS)):
+    rows = [row for row in records.read(RESULTS) if "checked" in row]  # earlier ones have other measures
+    for row in of_last_blender(rows):
         by_mode[of_row(row), row["scene"], row["mode"]].append(row)
     found: dict[Variant, dict[str, list[Row]]] = defaultdict(lambda: defaultdict(list))
     for (variant, scene, mode), rows in by_mode.items():
@@ -138,11 +139,14 @@ def newest(rows: list[Row]) -> list[Row]:
 
 
 def _animations(variant: Variant, by_scene: dict[str, list[Row]]) -> list[AnimationResults]:
-    """Returns the results of each animation, from runs over the frames that it has in a variant."""
+    """Returns the results of each animation, from runs over the frames that it has in a variant.
+
+    Runs whose reference has other frames than that of the last one are left out.
+    """
     made = []
     for animation in (animation.lasting(variant.length) for animation in ANIMATIONS):
         if rows := [row for row in by_scene[animation.name] if tuple(row["frames"]) == animation.frames]:
-            made.append(AnimationResults(animation, rows))
+            made.append(AnimationResults(animation, [row for row in rows if row["checked"] == rows[-1]["checked"]]))
     return made
 
 

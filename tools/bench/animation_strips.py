@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import paths
-from animation_modes import DELIVERED, MODES, ONE_BY_ONE, PEER
+from animation_modes import DELIVERED, MODES, ONE_BY_ONE, PEER, STILL_SEED
 from animation_scenes import Animation
 from animation_variants import USUAL, Variant
 from document import Figure, Table
@@ -19,9 +19,9 @@ from paths import OUT
 from PIL import Image
 
 SAMPLES, SEED = 4, 0
-SHOWN = (ONE_BY_ONE, DELIVERED, PEER, "path", "temporal-l2", "temporal-l1")
+SHOWN = (ONE_BY_ONE, DELIVERED, PEER, STILL_SEED, "path", "temporal-l2", "temporal-l1")
 REFERENCE = "reference"
-SIDE_BY_SIDE = ((ONE_BY_ONE, DELIVERED), (PEER, DELIVERED), ("path", DELIVERED))  # left and right of each film
+SIDE_BY_SIDE = ((ONE_BY_ONE, DELIVERED), (PEER, DELIVERED), (STILL_SEED, DELIVERED))  # left and right of each film
 MAXIMUM_BYTES = 300_000  # of a film
 FRAME_MILLISECONDS = 1000 // 12  # slower than real time, so that flicker is seen
 CROP = (0.3, 0.35, 0.4, 0.5)  # x, y, width and height as shares of the picture
