@@ -163,8 +163,7 @@ def page(variant: Variant, scenes: list[AnimationResults]) -> list[Block]:
     """Everything about one variant."""
     made: list[Block] = [Text(f"### Animations: {variant.title or USUAL_TITLE}"), about(scenes)]
     made += [Text("Ratios at equal CPU time. A dash stands where the curves share no range of time."), ratios(scenes)]
-    made += [Text("Modes frame by frame and peers: F over that of Gradus PT and of Cycles + denoiser:")]
-    made += [frame_by_frame(scenes), *changes(scenes), *light(scenes), *static_shots(scenes)]
+    made += [*frame_by_frame(scenes), *changes(scenes), *light(scenes), *static_shots(scenes)]
     for scene in scenes:
         made += details(variant, scene)
     return made
@@ -199,7 +198,7 @@ def ratios(scenes: list[AnimationResults]) -> Table:
     return made
 
 
-def frame_by_frame(scenes: list[AnimationResults]) -> Table:
+def frame_by_frame(scenes: list[AnimationResults]) -> list[Block]:
     """Table of F of the other modes, over that of path tracing and over that of Cycles with its denoiser."""
     columns = [f"{scene.name}: / {other}" for other in ("PT", "Cycles + denoiser") for scene in scenes]
     made = Table(["mode", *columns])
@@ -207,7 +206,8 @@ def frame_by_frame(scenes: list[AnimationResults]) -> Table:
         found = [scene.ratio(mode, other, "flicker") for other in ("path", PEER) for scene in scenes]
         if any(ratio is not None for ratio in found):
             made.rows.append([MODES[mode].label, *map(number, found)])
-    return made
+    text = "Modes frame by frame and peers: F over that of Gradus PT and of Cycles + denoiser:"
+    return [Text(text), made] if made.rows else []
 
 
 def changes(scenes: list[AnimationResults]) -> list[Block]:
