@@ -63,7 +63,7 @@ bench-agreement: ## stills: converged images against those of Cycles and Mitsuba
 bench-pictures: ## stills: pictures and error maps of the project's own scenes: SCENES=hero
 bench-speed:    ## CPU time of a sample in rooms of 1 k to 2 M triangles next to Cycles: ROOMS=room-1k REPEATS=3
 bench-reconstruct: ## CPU time of the reconstructions at 1920x1080: REPEATS=3
-bench-animation: ## animations: flicker against CPU time: SCENES=a,b SIZE=320x180 FRAMES=24 BLUR=1
+bench-animation: ## animations: error and flicker against CPU time: SCENES=a,b BLUR=1 QUICK=1 (two, 30 minutes)
 bench-motion:   ## motion of components: MEASURES=truth,prediction,flicker,cost SCENES=a,b BLUR=1 LOADED=1
 bench-host:     ## export and upload in each Blender, half a minute
 bench-designs:  ## the reconstructions next to published ones: SCENES=hero,kitchen WIDTH=160 REFERENCE=1024

@@ -6,7 +6,8 @@
 #
 # Variables of the environment limit a part; `make help` says which part reads which:
 #   SCENES=a,b  MODES=path,auto  REFERENCE=1024  SEEDS=5  SAMPLES=4,16,64  MINUTES=60  WIDTH=160
-#   SIZE=320x180  FRAMES=24  BLUR=1  MEASURES=truth,flicker  REPEATS=3  LOADED=1 (the machine has other work)
+#   SIZE=320x180  FRAMES=24  BLUR=1  CHECKED=8 (frames that have a reference)  QUICK=1 (two animations)
+#   MEASURES=truth,flicker  REPEATS=3  LOADED=1 (the machine has other work)
 #   ROOMS=room-1k  SPEED_WIDTH=640  OLD=commit  NEW=commit
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -41,7 +42,7 @@ agreement() { run agreement.py scenes width samples=REFERENCE; }
 pictures() { run pictures.py scenes; }
 speed() { run speed.py rooms width=SPEED_WIDTH repeats minutes; }
 reconstruct() { run reconstruction_time.py repeats; }
-animation() { run animation.py "${limits[@]}" size frames ${BLUR:+--blur}; }
+animation() { run animation.py "${limits[@]}" size frames checked ${BLUR:+--blur} ${QUICK:+--quick}; }
 motion() { run motion.py "${limits[@]}" size frames measures repeats ${BLUR:+--blur} ${LOADED:+--loaded}; }
 report() { run report.py; }
 

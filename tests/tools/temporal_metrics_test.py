@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -31,63 +32,128 @@ def noise(seed: int, *shape: int) -> np.ndarray:
     return np.random.default_rng(seed).normal(scale=DEVIATION, size=shape)
 
 
-def steadiness(images: np.ndarray, reference: np.ndarray) -> float:
-    return (
-        measures.flicker_map(images, reference, NONE).mean() / measures.independent_map(images, reference, NONE).mean()
-    )
+SEEDS = (REFERENCE + noise(1, *SHAPE), REFERENCE + noise(2, *SHAPE))
+EXACT = (REFERENCE, REFERENCE)
+LEVEL = REFERENCE.mean(axis=3)
+ALL = slice(0, FRAMES)
+EXPECTED = DEVIATION**2 * (1.0 / (1e-3 + LEVEL**2)).mean()  # relMSE of noise
 
 
-def flicker_ratio(images: np.ndarray, reference: np.ndarray = REFERENCE) -> float:
-    """Returns F / (2 relMSE)."""
-    return measures.flicker_map(images, reference, NONE).mean() / (
-        2.0 * measures.error_map(images, reference, NONE).mean()
-    )
+def found(first: np.ndarray, second: np.ndarray, halves: measures.Halves = EXACT, **more: Any) -> dict[str, float]:
+    return measures.error_measures((first, second), halves, **{"level": LEVEL, "checked": ALL} | more)
 
 
-def test_errors_of_frames_that_are_independent_flicker_by_twice_their_energy() -> None:
-    images = REFERENCE + noise(2, *SHAPE)
-    expected = DEVIATION**2 * (1.0 / (1e-3 + REFERENCE.mean(axis=3) ** 2)).mean()
-    assert measures.error_map(images, REFERENCE, NONE).mean() == pytest.approx(expected, rel=0.03)
-    assert flicker_ratio(images) == pytest.approx(1.0, rel=0.03)
-    assert steadiness(images, REFERENCE) == pytest.approx(1.0, rel=0.03)
-    assert measures.fast_share(images, REFERENCE, NONE) == pytest.approx(0.5, rel=0.03)
+def test_independent_noise_flickers_by_twice_its_energy_and_is_no_bias() -> None:
+    measured = found(*SEEDS)
+    assert measured["relmse_noise"] == pytest.approx(EXPECTED, rel=0.03)
+    assert measured["flicker_noise"] == pytest.approx(2.0 * EXPECTED, rel=0.05)
+    assert measured["relmse"] == pytest.approx(EXPECTED, rel=0.05)
+    for name in ("relmse", "flicker"):
+        assert abs(measured[f"{name}_bias"]) < 4.0 * measured[f"{name}_bias_error"]
+        assert measured[f"{name}_bias_error"] < 0.02 * EXPECTED
 
 
 def test_noise_that_stays_does_not_flicker() -> None:
-    images = REFERENCE + noise(2, *SHAPE[1:])
-    assert measures.error_map(images, REFERENCE, NONE).mean() > 0.5 * DEVIATION**2
-    assert measures.flicker_map(images, REFERENCE, NONE).max() < 1e-20
-    assert measures.fast_share(images, REFERENCE, NONE) < 1e-12
+    measured = found(*(REFERENCE + noise(seed, *SHAPE[1:]) for seed in (1, 2)))
+    assert measured["relmse_noise"] == pytest.approx(EXPECTED, rel=0.1)
+    assert measured["flicker"] < 1e-20
+
+
+def test_an_error_that_all_seeds_share_is_bias() -> None:
+    """The noise of seeds and of the reference does not count as bias, however large it is."""
+    halves = (REFERENCE + noise(3, *SHAPE), REFERENCE + noise(4, *SHAPE))
+    measured = found(*(seed + 0.2 for seed in SEEDS), halves)
+    assert measured["relmse_bias"] == pytest.approx(4.0 * EXPECTED, rel=0.05)
+    assert measured["relmse_noise"] == pytest.approx(EXPECTED, rel=0.03)
+    assert measured["relmse"] == pytest.approx(5.0 * EXPECTED, rel=0.05)
+    assert abs(measured["flicker_bias"]) < 0.1 * EXPECTED, "it is the same in all frames"
+
+
+def test_bias_that_turns_its_sign_each_frame_flickers_by_four_times_its_energy() -> None:
+    sign = np.array([1.0, -1.0] * (FRAMES // 2))[:, None, None, None]
+    measured = found(*(seed + DEVIATION * sign for seed in SEEDS))
+    assert measured["relmse_bias"] == pytest.approx(EXPECTED, rel=0.1)
+    assert measured["flicker_bias"] == pytest.approx(4.0 * EXPECTED, rel=0.1)
+    assert measured["flicker_noise"] == pytest.approx(2.0 * EXPECTED, rel=0.05)
 
 
 def test_motion_in_the_reference_is_no_flicker() -> None:
-    assert measures.flicker_map(REFERENCE, REFERENCE, NONE).max() == 0.0
-    assert measures.flicker_map(np.broadcast_to(REFERENCE[0], SHAPE), REFERENCE, NONE).mean() > 0.05, (
-        "a static picture flickers against a moving reference"
-    )
+    assert found(REFERENCE, REFERENCE)["flicker"] == 0.0
+    assert found(STATIC, STATIC)["flicker_bias"] > 0.05, "a static picture flickers against a moving reference"
 
 
-def test_an_error_that_turns_its_sign_each_frame_is_all_above_a_quarter_of_the_frame_rate() -> None:
-    sign = np.array([1.0, -1.0] * (FRAMES // 2))[:, None, None, None]
-    assert measures.fast_share(STATIC + 0.1 * sign, STATIC, NONE) == pytest.approx(1.0)
-    assert flicker_ratio(STATIC + 0.1 * sign, STATIC) == pytest.approx(2.0)
+def test_noise_is_that_of_all_frames_and_bias_that_of_the_checked_ones() -> None:
+    checked = slice(3, 7)
+    halves = (REFERENCE[checked], REFERENCE[checked])
+    seeds, shifted = [seed.copy() for seed in SEEDS], [REFERENCE.copy(), REFERENCE.copy()]
+    for seed, clean in zip(seeds, shifted, strict=True):
+        seed[checked] = REFERENCE[checked]
+        clean[0] += 0.2
+        clean[checked] += 0.1
+    level = np.ones_like(LEVEL)
+    measured = found(*seeds, halves, level=level, checked=checked)
+    assert measured["relmse_noise"] == pytest.approx(0.6 * DEVIATION**2 / 1.001, rel=0.03)
+    assert measured["flicker_noise"] == pytest.approx((2 * 4 + 2) / 9 * DEVIATION**2 / 1.001, rel=0.05)
+    assert measured["relmse_bias"] == measured["flicker_bias"] == 0.0
+    measured = found(*shifted, halves, level=level, checked=checked)
+    assert measured["relmse_bias"] == pytest.approx(0.01 / 1.001)
+    assert measured["flicker_bias"] == pytest.approx(0.0, abs=1e-20)
 
 
-def test_noise_of_the_reference_is_subtracted() -> None:
-    """Converged frames against noisy references have neither error nor flicker on average, moving or static."""
+def test_changes_are_relative_to_the_frame_that_they_lead_to() -> None:
+    level = np.where(np.arange(FRAMES) % 2, 1.0, 10.0)[:, None, None] + np.zeros(SHAPE[:3])
+    seeds = (REFERENCE[:2], REFERENCE[:2] + noise(1, *SHAPE)[:2])
+    measured = found(*seeds, (REFERENCE[:2], REFERENCE[:2]), level=level[:2], checked=slice(0, 2))
+    assert measured["flicker_noise"] == pytest.approx(DEVIATION**2 / 1.001, rel=0.15)
+
+
+def test_bias_below_zero_is_not_subtracted_from_the_noise() -> None:
+    """Errors of opposite sign have a negative product."""
+    measured = found(REFERENCE + 0.1, REFERENCE - 0.1)
+    assert measured["relmse_bias"] < 0.0
+    assert measured["relmse"] == measured["relmse_noise"] > 0.0
+
+
+def test_fireflies_are_trimmed() -> None:
+    """A firefly of a seed or of a half of the reference leaves the trimmed means."""
+    bright, half = REFERENCE.copy(), REFERENCE.copy()
+    bright[4, 3, 5] += 1e4
+    half[6, 7, 9] -= 1e4
+    measured = found(bright, REFERENCE + 0.1, (REFERENCE, half))
+    assert measured["relmse_noise"] > 1e3
+    assert measured["relmse_noise_trimmed"] == pytest.approx(0.5 * EXPECTED, rel=0.02)
+    assert measured["relmse_bias_trimmed"] == 0.0 != measured["relmse_bias"]
+    assert measures.trimmed_mean(measures.error_map(bright, REFERENCE, NONE)) == 0.0
+
+
+def test_the_wake_is_what_the_shadow_left_in_the_last_frames() -> None:
+    level = np.ones((12, 4, 100))
+    for frame in range(12):
+        level[frame, :, 5 * frame : 5 * frame + 10] = 0.3
+    wake = measures.wake(level)
+    assert not wake[0].any()
+    assert [np.flatnonzero(wake[frame, 0]).tolist() for frame in (2, 6)] == [list(range(10)), list(range(10, 30))]
+    errors = np.zeros((12, 4, 100, 3)) + 0.5 * wake[..., None]
+    zero = np.zeros_like(errors)
+    assert measures.error_in(wake, (errors, errors), (zero, zero), level) == pytest.approx(0.25 / 1.001)
+    assert measures.error_in(~wake, (errors, errors), (zero, zero), level) == 0.0
+
+
+def test_lost_light_darkens_the_mean() -> None:
+    halves = (1.1 * REFERENCE, 0.9 * REFERENCE)
+    assert measures.mean_light(0.97 * REFERENCE, halves) == pytest.approx(0.97)
+
+
+def test_noise_of_the_reference_is_subtracted_from_errors_of_one_seed() -> None:
     variance = np.full(SHAPE, DEVIATION**2)
     vectors = vectors_of_motion()
-    found = {name: [] for name in ("error", "flicker", "warped")}
+    error, warped = [], []
     for seed in range(32):
         reference = REFERENCE + noise(seed, *SHAPE)
-        found["error"].append(measures.error_map(REFERENCE, reference, variance).mean())
-        found["flicker"].append(measures.flicker_map(REFERENCE, reference, variance).mean())
-        found["warped"].append(np.nanmean(measures.warped_flicker_map(REFERENCE, reference, variance, vectors)))
-    noisy = measures.flicker_map(REFERENCE, REFERENCE + noise(0, *SHAPE), NONE).mean()
-    assert all(abs(np.mean(values)) < 0.02 * noisy for values in found.values())
-    images = REFERENCE + noise(99, *SHAPE)
-    share = measures.fast_share(images, REFERENCE + noise(98, *SHAPE), variance)
-    assert share == pytest.approx(0.5, rel=0.05)
+        error.append(measures.error_map(REFERENCE, reference, variance).mean())
+        warped.append(np.nanmean(measures.warped_flicker_map(REFERENCE, reference, variance, vectors)))
+    assert max(abs(np.mean(error)), abs(np.mean(warped))) < 0.04 * EXPECTED
+    assert measures.error_map(SEEDS[0], REFERENCE, NONE).mean() == pytest.approx(EXPECTED, rel=0.03)
 
 
 def vectors_of_motion() -> np.ndarray:
@@ -99,7 +165,7 @@ def test_noise_that_moves_with_the_surface_flickers_but_not_along_its_motion() -
     wide = noise(3, HEIGHT, WIDTH + 2 * FRAMES, 3)
     images = REFERENCE + np.stack([wide[:, 2 * (FRAMES - t) :][:, :WIDTH] for t in range(FRAMES)])
     warped = measures.warped_flicker_map(images, REFERENCE, NONE, vectors_of_motion())
-    assert flicker_ratio(images) == pytest.approx(1.0, rel=0.1)
+    assert found(images, REFERENCE)["flicker_noise"] == pytest.approx(EXPECTED, rel=0.1)
     assert np.isnan(warped[:, :, :2]).all(), "points that enter the picture have no previous position"
     assert warped[:, :, 2:].max() < 1e-20
     assert measures.moving(vectors_of_motion()).all()
@@ -124,14 +190,6 @@ def test_a_point_that_was_hidden_is_not_compared() -> None:
     assert np.isfinite(warped).sum() == warped.size - 1
 
 
-def test_fireflies_are_trimmed() -> None:
-    images = REFERENCE.copy()
-    images[4, 3, 5] += 1e4
-    squares = measures.error_map(images, REFERENCE, NONE)
-    assert squares.mean() > 1.0
-    assert measures.trimmed_mean(squares) == 0.0
-
-
 OFF = 6
 
 
@@ -140,52 +198,47 @@ def switched_light() -> np.ndarray:
     return STATIC + 2.0 * (np.arange(FRAMES) < OFF)[:, None, None, None]
 
 
-def test_a_light_that_goes_off_makes_independent_errors_no_less_steady() -> None:
-    """The noise of the bright frame before is divided by the dark one: F is more than twice relMSE."""
-    images = switched_light() * (1.0 + noise(6, *SHAPE))
-    assert flicker_ratio(images, switched_light()) > 1.2
-    assert steadiness(images, switched_light()) == pytest.approx(1.0, rel=0.03)
+def shares_of(images: np.ndarray, reference: np.ndarray | None = None) -> list[float]:
+    reference = switched_light() if reference is None else reference
+    return measures.shares_of_old_light(images, (reference, reference), OFF)
 
 
 def test_independent_frames_have_no_lag() -> None:
-    shares = measures.shares_of_a_light(switched_light() + noise(4, *SHAPE), switched_light(), OFF)
+    shares = shares_of(switched_light() + noise(4, *SHAPE))
     assert measures.lag(shares, OFF) == measures.lead(shares, OFF) == 0
+
+
+def test_noise_of_the_reference_leaves_the_shares() -> None:
+    """Regression: the noise of a single reference is in the light as well as in the error."""
+    halves = tuple(switched_light() + 10.0 * noise(seed, *SHAPE) for seed in (7, 8))
+    images = switched_light()
+    images[OFF] = 0.7 * images[OFF] + 0.3 * images[OFF - 1]
+    assert measures.shares_of_old_light(images, halves, OFF)[OFF] == pytest.approx(0.3, abs=0.05)
 
 
 def test_a_mean_over_past_frames_lags() -> None:
     reference = switched_light()
     images = np.stack([reference[max(0, t - 2) : t + 1].mean(axis=0) for t in range(FRAMES)])
-    shares = measures.shares_of_a_light(images, reference, OFF)
+    shares = shares_of(images)
     assert shares[OFF : OFF + 3] == pytest.approx([2 / 3, 1 / 3, 0.0])
     assert (measures.lag(shares, OFF), measures.lead(shares, OFF)) == (2, 0)
+
+
+def test_light_that_goes_on_is_missing_as_light_that_goes_off_is_left() -> None:
+    """The share of the old state counts, which is darkness here."""
+    reference = 3.0 - switched_light()
+    images = reference.copy()
+    images[OFF] = 0.75 * reference[OFF] + 0.25 * reference[OFF - 1]
+    assert shares_of(images, reference)[OFF : OFF + 2] == pytest.approx([0.25, 0.0])
 
 
 def test_a_mean_over_coming_frames_leads() -> None:
     reference = switched_light()
     images = np.stack([reference[t : t + 3].mean(axis=0) for t in range(FRAMES)])
-    shares = measures.shares_of_a_light(images, reference, OFF)
+    shares = shares_of(images)
     assert shares[OFF - 2 : OFF + 1] == pytest.approx([-1 / 3, -2 / 3, 0.0])
     assert (measures.lag(shares, OFF), measures.lead(shares, OFF)) == (0, 2)
 
 
 def test_a_light_that_never_leaves_lags_to_the_end() -> None:
-    images = np.broadcast_to(switched_light()[0], SHAPE)
-    assert measures.lag(measures.shares_of_a_light(images, switched_light(), OFF), OFF) == FRAMES - OFF
-
-
-def test_all_measures_have_names() -> None:
-    found = measures.all_measures(REFERENCE + noise(5, *SHAPE), REFERENCE, NONE, vectors_of_motion())
-    assert found["flicker"] == pytest.approx(2.0 * found["relmse"], rel=0.1)
-    assert found["flicker_warped_moving"] == pytest.approx(found["flicker_warped"], rel=0.1)
-    assert len(found["relmse_by_frame"]) == FRAMES
-    assert "flicker_warped_moving" not in measures.all_measures(STATIC, STATIC, NONE, np.zeros((*SHAPE[:3], 4)))
-
-
-def test_along_motion_nothing_is_measured_without_vectors() -> None:
-    """With motion blur a pixel shows points of different motion."""
-    images = REFERENCE + noise(5, *SHAPE)
-    every, blurred = (
-        measures.all_measures(images, REFERENCE, NONE, vectors) for vectors in (vectors_of_motion(), None)
-    )
-    assert blurred == {name: value for name, value in every.items() if "warped" not in name}
-    assert {"flicker_warped", "flicker_warped_trimmed", "flicker_warped_moving"} == every.keys() - blurred.keys()
+    assert measures.lag(shares_of(np.broadcast_to(switched_light()[0], SHAPE)), OFF) == FRAMES - OFF

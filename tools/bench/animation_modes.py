@@ -1,4 +1,4 @@
-"""Modes of the animation benchmark: modes of stills frame by frame, the same over windows of frames, and peers."""
+"""Modes of the animation benchmark: modes of stills frame by frame, the same over several frames, and peers."""
 
 from __future__ import annotations
 
@@ -8,30 +8,38 @@ import modes
 from modes import CYCLES, GRADUS, Mode
 
 TEMPORAL = {"use_temporal": True}
-PER_FRAME = ("path", "path-regularized", "gradient-l2", "gradient-l1", "gradient-regularized", "auto-denoised")
-PEERS = ("cycles", "cycles-denoised")
+PEER, STILL_SEED = "cycles-denoised", "cycles-denoised-still-seed"
+ONE_BY_ONE, DELIVERED = "path-regularized", "temporal-auto"
 
 
 def _temporal(label: str, name: str) -> Mode:
-    """Returns a mode of stills over windows of frames."""
+    """Returns a mode of stills over several frames."""
     return replace(modes.MODES[name], label=label, settings=modes.MODES[name].settings | TEMPORAL)
 
 
+# AUTO joins nine frames of plain paths by REGULARIZED. L2 and L1 have windows of ten frames, half of whose samples
+# replay those of the frame before.
 MODES = {
-    **{name: modes.MODES[name] for name in PER_FRAME},
-    "temporal-l2": _temporal("Gradus T-GPT + L2", "gradient-l2"),
-    "temporal-l1": _temporal("Gradus T-GPT + L1", "gradient-l1"),
-    "temporal-regularized": _temporal("Gradus T-GPT + REGULARIZED", "gradient-regularized"),
-    "temporal-auto": _temporal("Gradus AUTO over windows", "auto"),
-    "temporal-auto-denoised": _temporal("Gradus AUTO over windows + AUTO denoiser", "auto-denoised"),
-    **{name: modes.MODES[name] for name in PEERS},
+    ONE_BY_ONE: modes.MODES[ONE_BY_ONE],
+    DELIVERED: _temporal("Gradus AUTO, nine frames joined", "auto"),
+    PEER: modes.MODES[PEER],
     # As in a new file: all frames have the same noise, which does not flicker where nothing moves.
-    "cycles-denoised-still-seed": replace(
-        modes.MODES["cycles-denoised"],
+    STILL_SEED: replace(
+        modes.MODES[PEER],
         label="Cycles + denoiser, one seed",
-        settings=modes.MODES["cycles-denoised"].settings | {"use_animated_seed": False},
+        settings=modes.MODES[PEER].settings | {"use_animated_seed": False},
     ),
+    "path": modes.MODES["path"],
+    "auto-denoised": modes.MODES["auto-denoised"],
+    "temporal-auto-denoised": _temporal("Gradus AUTO, nine frames joined + AUTO denoiser", "auto-denoised"),
+    "gradient-l2": modes.MODES["gradient-l2"],
+    "temporal-l2": _temporal("Gradus T-GPT + L2", "gradient-l2"),
+    "gradient-l1": modes.MODES["gradient-l1"],
+    "temporal-l1": _temporal("Gradus T-GPT + L1", "gradient-l1"),
+    "cycles": modes.MODES["cycles"],
 }
+# Sample counts of a quick run. Each mode that is compared with AUTO takes a time within that of its counts.
+QUICK = {ONE_BY_ONE: (4,), DELIVERED: (4, 16), PEER: (4,), STILL_SEED: (4,)}
 
 # Each engine is compared with its own converged frames by this mode.
 REFERENCES = {GRADUS: "path", CYCLES: "cycles"}
@@ -46,5 +54,5 @@ def per_frame(name: str) -> str:
 
     For stills, AUTO chooses path-regularized.
     """
-    stills = {"temporal-auto": "path-regularized", "temporal-auto-denoised": "auto-denoised"}
+    stills = {DELIVERED: ONE_BY_ONE, "temporal-auto-denoised": "auto-denoised"}
     return stills.get(name) or name.replace("temporal", "gradient")

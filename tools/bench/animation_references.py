@@ -1,87 +1,94 @@
-"""Converged frames: each engine's own by plain path tracing, with the variance of their mean, cached in the user's
-cache folder.
+"""What runs are compared with, cached in the user's cache folder: converged frames of each engine, and the level.
 
-Each part renders the whole range of frames with another seed. Sums are stored after each part, so that an interrupted
-reference goes on, and one of more samples reuses what is there. The runs of the benchmark never use seeds from 1000 on.
-The cache does not depend on the commit, because tests check what path tracing converges to; after a change that is
-meant to change pictures, remove its files.
+Converged frames are two halves by plain path tracing, each of as many parts with seeds of their own: products of errors
+against both halves need no estimate of the reference's noise. Sums are stored after each part, so that an interrupted
+reference goes on, and one of more samples reuses what is there. The level is what squared errors are divided by: a
+smooth picture of every frame, the same for all engines. The runs of the benchmark never use seeds from 1000 on. The
+cache does not depend on the commit, because tests check what path tracing converges to; after a change that is meant
+to change pictures, remove its files.
 """
 
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from animation_renderer import AnimationRenderer
 from references import CACHE, engine_key
 
-PART = 64  # samples per pixel
-MINIMUM_PARTS = 4  # from which a variance is estimated
-VECTOR_SAMPLES = 16
+PART = 32  # samples per pixel
+LEVEL, LEVEL_SAMPLES, LEVEL_SEED = "path-regularized", 8, 3000
 
 
 @dataclass
 class Reference:
-    """Converged frames and the variance of their mean (frames, height, width, 3)."""
+    """Converged frames (frames, height, width, 3) from two independent halves."""
 
-    mean: np.ndarray
-    variance: np.ndarray
+    halves: tuple[np.ndarray, np.ndarray]
     samples: int
+
+    @property
+    def mean(self) -> np.ndarray:
+        return 0.5 * (self.halves[0] + self.halves[1])
+
+    @property
+    def variance(self) -> np.ndarray:
+        """Returns an unbiased estimate of the variance of the mean, from two halves alone."""
+        return 0.25 * (self.halves[0] - self.halves[1]) ** 2
 
 
 @dataclass
 class _Sums:
-    """Sums of the parts that were rendered so far, and the file that stores them."""
+    """Sums of the parts of both halves that were rendered so far, and the file that stores them."""
 
     file: Path
     parts: int = 0
-    sum: np.ndarray | float = 0.0
-    squares: np.ndarray | float = 0.0
+    sums: list[np.ndarray] = field(default_factory=lambda: [np.zeros(1), np.zeros(1)])
 
     def load(self) -> None:
         if self.file.exists():
             stored = np.load(self.file)
-            self.parts, self.sum, self.squares = int(stored["parts"]), stored["sum"], stored["squares"]
+            self.parts, self.sums = int(stored["parts"]), [stored["first"], stored["second"]]
 
     def add(self, images: np.ndarray) -> None:
-        self.parts, self.sum, self.squares = self.parts + 1, self.sum + images, self.squares + images**2
-        _store(self.file, parts=self.parts, sum=self.sum, squares=self.squares)
+        half = self.parts % 2
+        self.sums[half] = self.sums[half] + images
+        self.parts += 1
+        _store(self.file, parts=self.parts, first=self.sums[0], second=self.sums[1])
 
     def reference(self) -> Reference:
-        mean = np.asarray(self.sum) / self.parts
-        variance = (np.asarray(self.squares) / self.parts - mean**2) / (self.parts - 1)
-        return Reference(mean, np.maximum(variance, 0.0), self.parts * PART)
+        return Reference((2 * self.sums[0] / self.parts, 2 * self.sums[1] / self.parts), self.parts * PART)
 
 
-def reference(renderer: AnimationRenderer, engine: str, samples: int) -> Reference:
+def reference(
+    renderer: AnimationRenderer, engine: str, samples: int, frames: tuple[int, int] | None = None
+) -> Reference:
     """Returns converged frames of at least so many samples; `engine` is a mode of plain path tracing."""
-    sums = _Sums(file_of(renderer, engine_key(engine)))
+    frames = frames or renderer.animation.frames
+    sums = _Sums(file_of(renderer, f"halves-{engine_key(engine)}", frames))
     sums.load()
-    while sums.parts < max(samples // PART, MINIMUM_PARTS):
-        sums.add(renderer.render(engine, PART, 1000 + sums.parts)[0])
+    while sums.parts % 2 or sums.parts * PART < max(samples, 2 * PART):
+        sums.add(renderer.render(engine, PART, 1000 + sums.parts, frames=frames)[0])
         print(f"{renderer.animation.name:18} reference {engine}: {sums.parts * PART} spp", flush=True)
     return sums.reference()
 
 
-def vectors(renderer: AnimationRenderer) -> np.ndarray | None:
-    """Returns the pass Vector (frames, height, width, 4), or None with motion blur, where a pixel shows points of
-    different motion.
-    """
-    if renderer.variant.shutter > 0.0:
-        return None
-    file = file_of(renderer, "vectors")
+def level(renderer: AnimationRenderer) -> np.ndarray:
+    """Returns the gray of all frames (frames, height, width), smooth and nearly right."""
+    file = file_of(renderer, "level")
     if not file.exists():
-        _store(file, vectors=renderer.vectors(VECTOR_SAMPLES).astype(np.float32))
-    return np.load(file)["vectors"].astype(np.float64)
+        images = renderer.render(LEVEL, LEVEL_SAMPLES, LEVEL_SEED)[0]
+        _store(file, level=images.mean(axis=-1).astype(np.float32))
+    return np.load(file)["level"].astype(np.float64)
 
 
-def file_of(renderer: AnimationRenderer, what: str) -> Path:
+def file_of(renderer: AnimationRenderer, what: str, frames: tuple[int, int] | None = None) -> Path:
     """Returns the file that caches something, named by all that it depends on except the commit."""
     animation, variant = renderer.animation, renderer.variant
     content = hashlib.sha256(animation.scene.path.read_bytes()).hexdigest()[:12]
-    first, last = animation.frames
+    first, last = frames or animation.frames
     blur = f"-shutter-{variant.shutter:g}" if variant.shutter > 0.0 else ""
     width, height = variant.size
     return CACHE / f"animation-{animation.name}-{content}-{first}-{last}-{width}x{height}{blur}-{what}.npz"

@@ -38,10 +38,6 @@ class AnimationRenderer:
     def ask(self, job: dict[str, Any]) -> dict[str, Any]:
         return self._worker.ask(job)
 
-    def vectors(self, samples: int) -> np.ndarray:
-        """Returns the pass Vector (frames, height, width, 4)."""
-        return self.render("path", samples, 1000, vectors=True)[0]
-
     def refusal(self, mode: str) -> str:
         """Returns why a mode does not work here, or "".
 

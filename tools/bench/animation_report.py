@@ -2,32 +2,33 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import animation_strips
+import figures
 import numpy as np
 import records
 import temporal_metrics
-from animation_modes import MODES, is_temporal, per_frame
-from animation_scenes import ANIMATIONS, Animation
+from animation_modes import DELIVERED, MODES, ONE_BY_ONE, PEER, STILL_SEED, is_temporal, per_frame
+from animation_scenes import ANIMATIONS, STATIC, Animation
 from animation_variants import USUAL, Variant, of_row
-from document import Block, HtmlOnly, Table, Text, number
+from document import Block, Figure, Table, Text, number
 from modes import GRADUS
 from records import Row
 from results import Point, SceneResults
 
 RESULTS = records.file_of("animations")
-PEER = "cycles-denoised"
-PREFACE = """## Animations: flicker against CPU time
+PREFACE = """## Animations: error and flicker against CPU time
 
-Every run renders all frames in one job, 160×90 pixels, without motion blur. F is the flicker energy; -t leaves out
-the worst 0.1 % of the pixels. F/(2 relMSE) is 1 if errors of frames are independent, and 0 for an error that stays. F
-warped is F along the motion of surfaces. "fast" is the share of the error's energy above a quarter of the frame rate,
-0.5 if errors of frames are independent. T-GPT and "over windows" mean that frames are reconstructed together with
-their neighbors in time. Other sizes, numbers of frames and motion blur have tables of their own below; nothing is
-compared across them."""
+Every run renders all frames in one job. relMSE and F, the flicker energy, are noise (variance over seeds, all frames)
+plus bias² (frames with a reference); -t leaves out the worst 0.1 % of the pixels. `docs/benchmark/README.md` defines
+them. Other sizes, numbers of frames and motion blur have a part of their own; nothing is compared across them."""
+USUAL_TITLE = f"{USUAL.size[0]}×{USUAL.size[1]} pixels, {USUAL.length} frames"
+PARTS = ("", "_noise", "_bias", "_bias_error", "_trimmed")
+MAXIMUM_SAMPLING = 1.3  # of a frame, which a static shot may take
 
 
 class AnimationResults(SceneResults):
@@ -40,19 +41,39 @@ class AnimationResults(SceneResults):
     def modes(self) -> list[str]:
         return [mode for mode in MODES if mode in self.points]
 
-    def steadiness(self, point: Point) -> float | None:
-        """Returns F / (2 relMSE), which is 1 if errors of frames are independent."""
-        flicker, independent = point.median("flicker"), point.median("flicker_if_independent")
-        return flicker / independent if flicker is not None and independent and independent > 0.0 else None
+    def mean_share(self, point: Point) -> float | None:
+        """Returns the share of the old light in the first frame after a light has changed, mean over the seeds."""
+        shares = self._shares(point)
+        return None if shares is None else shares[self._change()]
 
     def lag_and_lead(self, point: Point) -> tuple[int, int] | None:
-        """Returns lag and lead of the mean over the seeds, in frames, if a light goes off."""
-        found = [row["shares_of_light"] for row in point.rows if "shares_of_light" in row]
-        if self.animation.goes_off is None or not found:
+        """Returns lag and lead of the mean over the seeds, in frames, if a light changes."""
+        shares = self._shares(point)
+        if shares is None:
             return None
-        off = self.animation.goes_off - self.animation.frames[0]
-        shares = [float(share) for share in np.mean(found, axis=0)]
-        return temporal_metrics.lag(shares, off), temporal_metrics.lead(shares, off)
+        return temporal_metrics.lag(shares, self._change()), temporal_metrics.lead(shares, self._change())
+
+    def light_off_by(self, mode: str, samples: int) -> float | None:
+        """Returns by what share the mean of the pictures deviates from that of the reference, mean over the seeds."""
+        found = self._values("mean_light", mode, samples)
+        return float(np.mean(found)) - 1.0 if found else None
+
+    def frames_of_sampling(self, samples: int) -> float | None:
+        """Returns the sampling time of all joined frames over that of one frame by itself."""
+        joined, alone = (self._values("sampling", mode, samples) for mode in (DELIVERED, ONE_BY_ONE))
+        return float(np.median(joined) / np.median(alone)) * self.animation.length if joined and alone else None
+
+    def _values(self, name: str, mode: str, samples: int) -> list[float]:
+        return [row[name] for row in self.rows if (row["mode"], row["samples"]) == (mode, samples)]
+
+    def _change(self) -> int:
+        """Returns the index of the first frame after the change among the frames that have a reference."""
+        assert self.animation.changes is not None
+        return self.animation.changes - self.rows[-1]["checked"][0]
+
+    def _shares(self, point: Point) -> list[float] | None:
+        found = [row["shares_of_light"] for row in point.rows if "shares_of_light" in row]
+        return [float(share) for share in np.mean(found, axis=0)] if found else None
 
 
 @dataclass(frozen=True)
@@ -69,20 +90,23 @@ class Target:
 
 
 TARGETS = (
-    Target("flicker", lambda _: "path", "F / PT", 0.1),
-    Target("flicker_warped", lambda _: "path", "F warped / PT", 0.1),
+    Target("flicker_trimmed", per_frame, "F-t / the same frame by frame", 0.4),
     Target("flicker", per_frame, "F / the same frame by frame", 0.4),
-    Target("flicker_warped", per_frame, "F warped / the same frame by frame", 0.4),
+    Target("relmse_trimmed", per_frame, "relMSE-t / the same frame by frame", 0.8),
     Target("relmse", per_frame, "relMSE / the same frame by frame", 0.8),
+    Target("relmse_wake", per_frame, "relMSE in the wake of a shadow / the same frame by frame", 1.0),
     Target("flicker", lambda _: PEER, "F / Cycles + denoiser", 0.6),
-    Target("flicker_warped", lambda _: PEER, "F warped / Cycles + denoiser", 0.6),
+    Target("flicker", lambda _: STILL_SEED, "F / Cycles + denoiser, one seed", 0.6),
+    Target("relmse", lambda _: PEER, "relMSE / Cycles + denoiser", 1.0),
+    Target("flip", lambda _: PEER, "HDR-FLIP / Cycles + denoiser", 1.0),
 )
 
 
 def load() -> dict[Variant, list[AnimationResults]]:
     """Returns the newest runs of each mode by variant."""
     by_mode: dict[tuple[Variant, str, str], list[Row]] = defaultdict(list)
-    for row in of_last_blender(records.read(RESULTS)):
+    rows = [row for row in records.read(RESULTS) if "checked" in row]  # earlier ones have other measures
+    for row in of_last_blender(rows):
         by_mode[of_row(row), row["scene"], row["mode"]].append(row)
     found: dict[Variant, dict[str, list[Row]]] = defaultdict(lambda: defaultdict(list))
     for (variant, scene, mode), rows in by_mode.items():
@@ -115,35 +139,33 @@ def newest(rows: list[Row]) -> list[Row]:
 
 
 def _animations(variant: Variant, by_scene: dict[str, list[Row]]) -> list[AnimationResults]:
-    """Returns the results of each animation, from runs over the frames that it has in a variant."""
+    """Returns the results of each animation, from runs over the frames that it has in a variant.
+
+    Runs whose reference has other frames than that of the last one are left out.
+    """
     made = []
     for animation in (animation.lasting(variant.length) for animation in ANIMATIONS):
         if rows := [row for row in by_scene[animation.name] if tuple(row["frames"]) == animation.frames]:
-            made.append(AnimationResults(animation, rows))
+            made.append(AnimationResults(animation, [row for row in rows if row["checked"] == rows[-1]["checked"]]))
     return made
 
 
 def blocks() -> list[Block]:
     found = load()
-    made = usual(found.pop(USUAL)) if USUAL in found else []
-    for variant, scenes in found.items():
-        made += varied(variant, scenes)
+    first = [USUAL] if USUAL in found else []
+    made: list[Block] = [Text(PREFACE)] if found else []
+    for variant in [*first, *(variant for variant in found if variant != USUAL)]:
+        made += page(variant, found[variant])
     return made
 
 
-def usual(scenes: list[AnimationResults]) -> list[Block]:
-    """Tables of the usual variant."""
-    made: list[Block] = [Text(PREFACE), about(scenes), Text("### Targets at equal CPU time"), target_table(scenes)]
-    made += [
-        HtmlOnly(Text("The same without the worst 0.1 % of the pixels:")),
-        HtmlOnly(target_table(scenes, "_trimmed")),
-    ]
-    made += [
-        Text("Modes frame by frame and peers: F over that of Gradus PT and of Cycles + denoiser at equal CPU time:")
-    ]
-    made += [frame_by_frame(scenes), *lags(scenes)]
+def page(variant: Variant, scenes: list[AnimationResults]) -> list[Block]:
+    """Everything about one variant."""
+    made: list[Block] = [Text(f"### Animations: {variant.title or USUAL_TITLE}"), about(scenes)]
+    made += [Text("Ratios at equal CPU time. A dash stands where the curves share no range of time."), ratios(scenes)]
+    made += [*frame_by_frame(scenes), *changes(scenes), *light(scenes), *static_shots(scenes)]
     for scene in scenes:
-        made += details(scene)
+        made += details(variant, scene)
     return made
 
 
@@ -162,122 +184,91 @@ def about(scenes: list[AnimationResults]) -> Table:
     return made
 
 
-def target_table(scenes: list[AnimationResults], suffix: str = "") -> Table:
+def ratios(scenes: list[AnimationResults]) -> Table:
     """Table of the targets of every temporal mode that was measured."""
     made = Table(["mode", "ratio", "target", *(scene.name for scene in scenes), "met"])
     for mode in filter(is_temporal, MODES):
         if not any(mode in scene.points for scene in scenes):
             continue
         for target in TARGETS:
-            limited = Target(target.measure + suffix, target.other, target.label, target.maximum)
-            ratios = [limited.ratio(scene, mode) for scene in scenes]
-            known = [ratio for ratio in ratios if ratio is not None]
-            met = f"{sum(ratio <= target.maximum for ratio in known)} of {len(known)}"
-            made.rows.append([MODES[mode].label, target.label, f"≤ {target.maximum:g}", *map(number, ratios), met])
+            found = [target.ratio(scene, mode) for scene in scenes]
+            if known := [ratio for ratio in found if ratio is not None]:
+                met = f"{sum(ratio <= target.maximum for ratio in known)} of {len(known)}"
+                made.rows.append([MODES[mode].label, target.label, f"≤ {target.maximum:g}", *map(number, found), met])
     return made
 
 
-def frame_by_frame(scenes: list[AnimationResults]) -> Table:
+def frame_by_frame(scenes: list[AnimationResults]) -> list[Block]:
     """Table of F of the other modes, over that of path tracing and over that of Cycles with its denoiser."""
     columns = [f"{scene.name}: / {other}" for other in ("PT", "Cycles + denoiser") for scene in scenes]
     made = Table(["mode", *columns])
     for mode in (mode for mode in MODES if not is_temporal(mode)):
-        ratios = [scene.ratio(mode, other, "flicker") for other in ("path", PEER) for scene in scenes]
-        if any(ratio is not None for ratio in ratios):
-            made.rows.append([MODES[mode].label, *map(number, ratios)])
-    return made
+        found = [scene.ratio(mode, other, "flicker") for other in ("path", PEER) for scene in scenes]
+        if any(ratio is not None for ratio in found):
+            made.rows.append([MODES[mode].label, *map(number, found)])
+    text = "Modes frame by frame and peers: F over that of Gradus PT and of Cycles + denoiser:"
+    return [Text(text), made] if made.rows else []
 
 
-def lags(scenes: list[AnimationResults]) -> list[Block]:
-    """Table of lag and lead at the highest sample count."""
-    made = Table(["animation", "mode", "samples", "frames too late", "frames too early"])
-    for scene in scenes:
-        for mode in scene.modes():
-            point = scene.points[mode][-1]
-            if (found := scene.lag_and_lead(point)) is not None:
-                made.rows.append([scene.name, MODES[mode].label, str(point.samples), *map(str, found)])
+def changes(scenes: list[AnimationResults]) -> list[Block]:
+    """Table of what is left of the old light where a light goes off or on."""
+    made = Table(["animation", "mode", "samples", "wrong in the first frame", "frames too late", "frames too early"])
+    for scene, mode, point in points_of(scenes):
+        share, frames = scene.mean_share(point), scene.lag_and_lead(point)
+        if share is not None and frames is not None:
+            cells = [str(point.samples), f"{100.0 * share:.1f} %", *map(str, frames)]
+            made.rows.append([scene.name, MODES[mode].label, *cells])
     text = (
-        "A light goes off: frames in which more than 5 % of it is wrong, afterwards and before (mean over the seeds)."
+        "A light goes off or on: the share of it that is left or missing in the first frame after the change, and the "
+        "frames in which more than 5 % of it is wrong (mean over the seeds)."
     )
     return [Text(text), made] if made.rows else []
 
 
-UNWARPED = tuple(target for target in TARGETS if "warped" not in target.measure)
+def light(scenes: list[AnimationResults]) -> list[Block]:
+    """Table of the deviation of the pictures' mean."""
+    made = Table(["mode", "samples", *(scene.name for scene in scenes)])
+    measured = {(mode, point.samples) for _, mode, point in points_of(scenes)}
+    for mode, samples in sorted(measured, key=lambda pair: (list(MODES).index(pair[0]), pair[1])):
+        found = [scene.light_off_by(mode, samples) for scene in scenes]
+        shares = ["–" if share is None else f"{100.0 * share:+.2f} %" for share in found]
+        made.rows.append([MODES[mode].label, str(samples), *shares])
+    return [Text("Deviation of the pictures' mean from that of the reference:"), made] if made.rows else []
 
 
-def varied(variant: Variant, scenes: list[AnimationResults]) -> list[Block]:
-    """Tables of another variant."""
-    made: list[Block] = [Text(f"### Animations: {variant.title}"), about(scenes), main_ratios(scenes)]
-    for scene in scenes:
-        made += [HtmlOnly(Text(f"Measures of {scene.name}:")), HtmlOnly(measures(scene))]
-    return made
+def static_shots(scenes: list[AnimationResults]) -> list[Block]:
+    """Table of how many frames' sampling time an animation takes in which nothing changes."""
+    made = Table(["samples", "frames", "frames of sampling", "target"])
+    for scene in (scene for scene in scenes if scene.name == STATIC):
+        for point in scene.points.get(DELIVERED, []):
+            cells = [str(scene.animation.length), number(scene.frames_of_sampling(point.samples))]
+            made.rows.append([str(point.samples), *cells, f"≤ {MAXIMUM_SAMPLING:g}"])
+    return [Text("A static shot: sampling time over that of one frame by itself."), made] if made.rows else []
 
 
-def main_ratios(scenes: list[AnimationResults]) -> Table:
-    made = Table(
-        [
-            "animation",
-            "mode",
-            "spp",
-            "seeds",
-            *(f"{target.label}, ≤ {target.maximum:g}" for target in UNWARPED),
-            "late",
-            "early",
-        ]
-    )
-    for scene in scenes:
-        for mode in scene.modes():
-            points = scene.points[mode]
-            counts, seeds = ", ".join(str(point.samples) for point in points), min(len(point.rows) for point in points)
-            ratios = [
-                target.ratio(scene, mode) if is_temporal(mode) or target.other is not per_frame else None
-                for target in UNWARPED
-            ]
-            lag = scene.lag_and_lead(points[-1])
-            made.rows.append(
-                [scene.name, MODES[mode].label, counts, str(seeds), *map(number, ratios)]
-                + (["–", "–"] if lag is None else [str(frames) for frames in lag])
-            )
-    return made
-
-
-def details(scene: AnimationResults) -> list[Block]:
-    made: list[Block] = [Text(f"### Animation {scene.name}")]
-    if strips := animation_strips.table(scene.name):
-        made.append(strips)
+def details(variant: Variant, scene: AnimationResults) -> list[Block]:
+    made: list[Block] = [Text(f"#### Animation {scene.name}")]
+    name = "-".join(filter(None, ("animation", scene.name, re.sub(r"\W+", "-", variant.title))))
+    made.append(Figure(figures.animation_figure(scene, MODES, f"{name}.svg"), "relMSE and F against CPU time"))
+    if (variant.size, variant.shutter) == (USUAL.size, USUAL.shutter):
+        made += animation_strips.films(scene.name)
+        made += filter(None, [animation_strips.table(scene.name)])
     return [*made, measures(scene)]
 
 
 def measures(scene: AnimationResults) -> Table:
-    columns = [
-        "CPU-s a frame",
-        "relMSE",
-        "relMSE-t",
-        "F",
-        "F-t",
-        "F/(2 relMSE)",
-        "F-t warped",
-        "where it moves",
-        "fast",
-    ]
-    made = Table(["mode", "spp", "seeds", *columns])
-    for mode in scene.modes():
-        for point in scene.points[mode]:
-            cpu = (point.median("cpu") or 0.0) / scene.animation.length
-            names = ("relmse", "relmse_trimmed", "flicker", "flicker_trimmed")
-            cells = [
-                number(cpu),
-                *(number(point.median(name), ".4f") for name in names),
-                number(scene.steadiness(point)),
-            ]
-            cells += [number(point.median(name), ".4f") for name in ("flicker_warped_trimmed", "flicker_warped_moving")]
-            made.rows.append(
-                [
-                    MODES[mode].label,
-                    str(point.samples),
-                    str(len(point.rows)),
-                    *cells,
-                    number(point.median("fast_share")),
-                ]
-            )
+    """Table of all measures. Noise and bias² are those of all pixels; ± is the standard error of bias²."""
+    columns = [f"{measure}{part}" for measure in ("relMSE", "F") for part in ("", " noise", " bias²", "-t")]
+    made = Table(["mode", "spp", "seeds", "CPU-s a frame", *columns, "HDR-FLIP"])
+    for _, mode, point in points_of([scene]):
+        cells = [number((point.median("cpu") or 0.0) / scene.animation.length)]
+        for measure in ("relmse", "flicker"):
+            found = {part: number(point.median(f"{measure}{part}"), ".5f") for part in PARTS}
+            cells += [found[""], found["_noise"], f"{found['_bias']} ± {found['_bias_error']}", found["_trimmed"]]
+        cells.append(number(point.median("flip"), ".4f"))
+        made.rows.append([MODES[mode].label, str(point.samples), str(len(point.rows)), *cells])
     return made
+
+
+def points_of(scenes: list[AnimationResults]) -> list[tuple[AnimationResults, str, Point]]:
+    return [(scene, mode, point) for scene in scenes for mode in scene.modes() for point in scene.points[mode]]

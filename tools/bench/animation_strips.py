@@ -6,28 +6,24 @@ flicker. All strips of a scene have the same exposure.
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import paths
-from animation_modes import MODES
-from animation_scenes import ANIMATIONS, Animation
+from animation_modes import DELIVERED, MODES, ONE_BY_ONE, PEER, STILL_SEED
+from animation_scenes import Animation
 from animation_variants import USUAL, Variant
-from document import Table
+from document import Figure, Table
 from metrics import displayed, white_of
 from paths import OUT
 from PIL import Image
 
-SAMPLES, SEED = 16, 0
-SHOWN = (
-    "path",
-    "path-regularized",
-    "gradient-l2",
-    "gradient-l1",
-    "temporal-l2",
-    "temporal-l1",
-    "temporal-auto",
-    "cycles-denoised",
-)
+SAMPLES, SEED = 4, 0
+SHOWN = (ONE_BY_ONE, DELIVERED, PEER, STILL_SEED, "path", "temporal-l2", "temporal-l1")
 REFERENCE = "reference"
+SIDE_BY_SIDE = ((ONE_BY_ONE, DELIVERED), (PEER, DELIVERED), (STILL_SEED, DELIVERED))  # left and right of each film
+MAXIMUM_BYTES = 300_000  # of a film
+FRAME_MILLISECONDS = 1000 // 12  # slower than real time, so that flicker is seen
 CROP = (0.3, 0.35, 0.4, 0.5)  # x, y, width and height as shares of the picture
 ROW = 0.65  # place of the row that is shown over time, from the top, as a share of the height
 TALL = 6  # pixels that a frame takes in a strip over time
@@ -36,16 +32,22 @@ QUALITY = 95
 
 def wanted(animation: Animation, variant: Variant, mode: str, samples: int, seed: int) -> bool:
     """Returns whether strips of a run are stored."""
-    return animation.scene.own and mode in SHOWN and (variant, samples, seed) == (USUAL, SAMPLES, SEED)
+    usual = (variant.size, variant.shutter) == (USUAL.size, USUAL.shutter)
+    return animation.scene.own and usual and mode in SHOWN and (samples, seed) == (SAMPLES, SEED)
 
 
-def store(animation: Animation, mode: str, images: np.ndarray, reference: np.ndarray) -> None:
-    """Stores the strips of a mode, and with the first mode those of the converged frames."""
+def store(animation: Animation, mode: str, images: np.ndarray, reference: np.ndarray, checked: slice) -> None:
+    """Stores the strips of a mode, and with the first mode those of the converged frames.
+
+    Frames that have no converged one stay black there.
+    """
     white = white_of(reference)
-    for name, frames in ((mode, images), *(((REFERENCE, reference),) if mode == SHOWN[0] else ())):
+    converged = np.zeros_like(images)
+    converged[checked] = reference
+    for name, frames in ((mode, images), *(((REFERENCE, converged),) if mode == SHOWN[0] else ())):
         shown = displayed(frames, white)
-        _save(film(shown), _film_file(animation, name))
-        _save(over_time(shown), _time_file(animation, name))
+        _save(film(shown), _film_file(animation.name, name))
+        _save(over_time(shown), _time_file(animation.name, name))
 
 
 def film(frames: np.ndarray) -> np.ndarray:
@@ -62,22 +64,51 @@ def over_time(frames: np.ndarray) -> np.ndarray:
 
 def table(name: str) -> Table | None:
     """Returns a table of the strips that are stored of a scene, or None if there are none."""
-    animation = next(animation for animation in ANIMATIONS if animation.name == name)
     made = Table(["mode", "one row of pixels over time", "all frames, a crop"])
     for mode in (REFERENCE, *SHOWN):
-        files = _time_file(animation, mode), _film_file(animation, mode)
+        files = _time_file(name, mode), _film_file(name, mode)
         if all((OUT / file).exists() for file in files):
             label = "converged" if mode == REFERENCE else MODES[mode].label
             made.rows.append([label, *(f"![{label}]({file})" for file in files)])
     return made if made.rows else None
 
 
-def _film_file(animation: Animation, mode: str) -> str:
-    return f"{paths.PICTURES}/animation-{animation.name}-{mode}-film.webp"
+def films(name: str) -> list[Figure]:
+    """Makes the films of a scene from its stored strips, and returns them."""
+    made = []
+    for pair in SIDE_BY_SIDE:
+        files = [OUT / _film_file(name, mode) for mode in pair]
+        strips = [np.asarray(Image.open(file)) for file in files if file.exists()]
+        if len({strip.shape for strip in strips}) == 1 and len(strips) == len(pair):
+            file = f"{paths.PICTURES}/animation-{name}-{pair[0]}-beside-{pair[1]}.webp"
+            sides = [np.split(strip, strip.shape[1] // round(CROP[2] * USUAL.size[0]), axis=1) for strip in strips]
+            save_film([np.concatenate(frames, axis=1) for frames in zip(*sides, strict=True)], OUT / file)
+            made.append(Figure(file, f"{MODES[pair[0]].label} beside {MODES[pair[1]].label}, {SAMPLES} samples"))
+    return made
 
 
-def _time_file(animation: Animation, mode: str) -> str:
-    return f"{paths.PICTURES}/animation-{animation.name}-{mode}-time.webp"
+def save_film(frames: list[np.ndarray], file: Path) -> None:
+    """Writes an animated picture in the best quality that takes at most MAXIMUM_BYTES.
+
+    Raises RuntimeError if none does.
+    """
+    first, *others = (Image.fromarray(frame) for frame in frames)
+    for quality in range(QUALITY, 0, -10):
+        first.save(
+            file, save_all=True, append_images=others, duration=FRAME_MILLISECONDS, loop=0, quality=quality, method=4
+        )
+        if file.stat().st_size <= MAXIMUM_BYTES:
+            return
+    file.unlink()
+    raise RuntimeError(f"{file.name} takes more than {MAXIMUM_BYTES} bytes in any quality")
+
+
+def _film_file(name: str, mode: str) -> str:
+    return f"{paths.PICTURES}/animation-{name}-{mode}-film.webp"
+
+
+def _time_file(name: str, mode: str) -> str:
+    return f"{paths.PICTURES}/animation-{name}-{mode}-time.webp"
 
 
 def _save(shown: np.ndarray, file: str) -> None:

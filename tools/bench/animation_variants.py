@@ -10,8 +10,8 @@ SHUTTER = 0.5  # in frames, if there is motion blur
 
 @dataclass(frozen=True, order=True)
 class Variant:
-    size: tuple[int, int] = (160, 90)
-    length: int = 10  # frames
+    size: tuple[int, int] = (640, 360)
+    length: int = 24  # frames
     shutter: float = 0.0  # in frames; 0 = no motion blur
 
     @property

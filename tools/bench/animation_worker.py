@@ -3,15 +3,18 @@ modes can take turns.
 
 Reads one JSON job per line from standard input and answers each with one JSON line, prefixed by RESULT:
   {"mode": "path", "samples": 16, "seed": 3, "frames": [8, 17], "shutter": 0.5, "out": "x.npy"}
-    -> {"cpu": 9.1, "wall": 4.7, "peak_memory_bytes": ...}
-Frames are stored as float32 (frames, height, width, channels), top row first. A job with "vectors" stores the pass
-Vector instead of the picture. CPU seconds are those of the whole process during the operator: export, build, sampling,
-reconstruction or denoising, and writing a small file for every frame. A job that cannot be done is answered by
-{"error": "why"}.
+    -> {"cpu": 9.1, "wall": 4.7, "peak_memory_bytes": ..., "sampling": 6.2}
+Frames are stored as float32 (frames, height, width, 3), top row first. CPU seconds are those of the whole process
+during the operator: export, build, sampling, reconstruction or denoising, and writing a small file for every frame.
+"sampling" are those that Gradus sampled for. A job that cannot be done is answered by {"error": "why"}.
 """
 
 from __future__ import annotations
 
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import animation_modes
@@ -27,14 +30,33 @@ def render(job: Job, folder: Path) -> Answer:
     scene.gradus.use_temporal = False  # modes frame by frame do not set it
     modes.apply(scene, animation_modes.MODES[job["mode"]], job["samples"], job["seed"])
     set_motion_blur(scene, layer, job["shutter"])
-    wants_vectors = job.get("vectors", False)
-    layer.use_pass_vector = wants_vectors
-    worker.choose_file(with_passes=wants_vectors)
-    answer, files = render_range(job["frames"], folder)
-    channels = [f"{layer.name}.Vector.{c}" for c in "XYZW"] if wants_vectors else list("RGB")
-    np.save(job["out"], np.stack([worker.read_exr(file, channels) for file in files]))
+    worker.choose_file(with_passes=False)
+    answer, files, seconds = render_timed(job["frames"], folder)
+    np.save(job["out"], np.stack([worker.read_exr(file, list("RGB")) for file in files]))
     remove(files)
-    return answer
+    return answer | ({"sampling": sum(frame["sample"] for frame in seconds)} if seconds else {})
+
+
+def render_timed(frames: tuple[int, int], folder: Path) -> tuple[Answer, list[Path], list[dict[str, float]]]:
+    """Renders a range of frames; returns also the CPU seconds of each frame by phases, none for other engines."""
+    stats = folder / "stats.jsonl"
+    stats.unlink(missing_ok=True)
+    with options(stats=str(stats)):
+        answer, files = render_range(frames, folder)
+    lines = stats.read_text().splitlines() if stats.exists() else []
+    return answer, files, [json.loads(line)["cpu_seconds"] for line in lines]
+
+
+@contextmanager
+def options(**values: str) -> Iterator[None]:
+    """Sets options of the add-on, as after `--` on the command line."""
+    before = list(sys.argv)
+    pairs = ((f"--gradus-{name.replace('_', '-')}", value) for name, value in values.items())
+    sys.argv += ["--", *(text for pair in pairs for text in pair)]
+    try:
+        yield
+    finally:
+        sys.argv[:] = before
 
 
 def render_range(frames: tuple[int, int], folder: Path) -> tuple[Answer, list[Path]]:

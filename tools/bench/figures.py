@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import matplotlib
 import numpy as np
-from modes import CYCLES, GRADUS, MODES
+from modes import CYCLES, GRADUS, MODES, Mode
 from paths import OUT
 from results import SceneResults
 
@@ -73,6 +73,21 @@ def ratio_figure(scenes: list[SceneResults]) -> str | None:
     _format_logarithmic(axes)
     axes.legend(loc="lower left")
     return save(figure, "error-ratios.svg")
+
+
+def animation_figure(scene: SceneResults, modes: dict[str, Mode], name: str) -> str:
+    """Draws relMSE and F against CPU seconds; noise alone is dotted."""
+    figure, panels = plt.subplots(1, 2, figsize=(8.0, 3.8), layout="constrained")
+    for axes, (measure, label) in zip(panels, {"relmse": "relMSE", "flicker": "F"}.items(), strict=True):
+        for place, mode in enumerate(modes):
+            style = {"color": matplotlib.colormaps["tab20"](place), "marker": "."}
+            if points := scene.curve(mode, measure):
+                axes.loglog(*zip(*points, strict=True), DASHES[modes[mode].engine], label=modes[mode].label, **style)
+            if points := scene.curve(mode, f"{measure}_noise"):
+                axes.loglog(*zip(*points, strict=True), ":", **style)
+        _label_times(axes, f"{scene.name}: {label} (dotted: its noise)")
+    _legend_below(figure, panels[0], 3)
+    return save(figure, name)
 
 
 def bias_figure(scene: SceneResults) -> str | None:

@@ -12,10 +12,8 @@ that cannot be done is answered by {"error": "why"}.
 
 from __future__ import annotations
 
-import json
 import sys
-from collections.abc import Collection, Iterator
-from contextlib import contextmanager
+from collections.abc import Collection
 from pathlib import Path
 
 import animation_worker
@@ -43,18 +41,6 @@ FOLLOWED = (
 )  # passes of a frame that is saved for the tool
 
 
-@contextmanager
-def options(**values: str) -> Iterator[None]:
-    """Sets options of the add-on, as after `--` on the command line."""
-    before = list(sys.argv)
-    pairs = ((f"--gradus-{name.replace('_', '-')}", value) for name, value in values.items())
-    sys.argv += ["--", *(text for pair in pairs for text in pair)]
-    try:
-        yield
-    finally:
-        sys.argv[:] = before
-
-
 def set_passes(layer: bpy.types.ViewLayer, wanted: Collection[str]) -> None:
     """Switches these passes on and all others off."""
     if unknown := set(wanted) - set(SWITCHES):
@@ -77,16 +63,13 @@ def set_up(job: Job) -> None:
 
 def render(job: Job, folder: Path) -> Answer:
     set_up(job)
-    stats = folder / "stats.jsonl"
-    stats.unlink(missing_ok=True)
-    with options(stats=str(stats)):
-        answer, files = animation_worker.render_range(job["frames"], folder)
+    answer, files, seconds = animation_worker.render_timed(job["frames"], folder)
     if job.get("passes"):
         np.savez(job["out"], **passes_of(files))
     else:
         np.save(job["out"], np.stack([worker.read_exr(file, list("RGB")) for file in files]))
     animation_worker.remove(files)
-    return answer | {"seconds": [json.loads(line)["cpu_seconds"] for line in stats.read_text().splitlines()]}
+    return answer | {"seconds": seconds}
 
 
 def passes_of(files: list[Path]) -> dict[str, np.ndarray]:
@@ -104,7 +87,7 @@ def has_two_vectors(name: str) -> bool:
 def save_scene(job: Job, folder: Path) -> Answer:
     """Renders one sample, which also saves the scene for the tool."""
     set_up({"mode": "components", "samples": 1, "seed": 0, "shutter": job["shutter"], "passes": FOLLOWED})
-    with options(save_scene=job["scene"]):
+    with animation_worker.options(save_scene=job["scene"]):
         answer, files = animation_worker.render_range((job["frame"], job["frame"]), folder)
     animation_worker.remove(files)
     return answer

@@ -1,9 +1,13 @@
 """Measures of animations, in scene-linear RGB; docs/benchmark/README.md defines them.
 
-Sequences are float arrays (frames, height, width, 3); maps are (frames, height, width). `variance` is that of the
-reference's own mean. Noise of the reference adds to the error, so its variance is subtracted wherever an error is
-squared. Frames of a reference have different seeds, so their errors are independent, and the variance of the difference
-of two frames is the sum of both.
+Sequences are float arrays (frames, height, width, 3); maps are (frames, height, width). Squared errors are divided by
+the squared level: the gray of a smooth picture of the same frame.
+
+A mean squared error is noise plus squared bias. Half of the squared difference of two seeds has the noise as its
+expectation and needs no reference. The product of the errors of two seeds against two independent halves of a reference
+has the squared bias as its expectation, whatever noise seeds and halves have.
+
+Measures of the motion benchmark are of one seed: they subtract `variance`, that of the reference's own mean.
 """
 
 from __future__ import annotations
@@ -11,36 +15,124 @@ from __future__ import annotations
 import numpy as np
 from metrics import EPSILON
 
+Halves = tuple[np.ndarray, np.ndarray]
+
 MOVES = 0.5  # pixels per frame from which a pixel counts as moving
 SAME_POINT = 1.0  # pixels by which the motion of two frames may disagree at the same point
 TRIMMED = 1e-3  # share of the worst pixels that a trimmed mean leaves out
 ANSWERED = 0.05  # share of a light below which a frame counts as having followed its change
+SHADED = 0.6  # share of a pixel's highest level below which the pixel lies in the passing shadow
+WAKE = 4  # frames for which a pixel that a shadow has left belongs to its wake
+
+
+def noise_map(first: np.ndarray, second: np.ndarray, level: np.ndarray) -> np.ndarray:
+    """Returns the relative variance of each pixel, estimated from two seeds."""
+    return 0.5 * ((first - second) ** 2).mean(axis=-1) / (EPSILON + level**2)
+
+
+def bias_map(first: np.ndarray, second: np.ndarray, halves: Halves, level: np.ndarray) -> np.ndarray:
+    """Returns the relative squared bias of each pixel, estimated from two seeds and two halves of a reference.
+
+    Single pixels may be negative.
+    """
+    one, two = halves
+    crossed = 0.5 * ((first - one) * (second - two) + (first - two) * (second - one))
+    return crossed.mean(axis=-1) / (EPSILON + level**2)
+
+
+def noise_and_bias(
+    seeds: tuple[np.ndarray, np.ndarray], halves: Halves, level: np.ndarray, checked: slice
+) -> dict[str, float]:
+    """Returns noise, bias and their sum, of all pixels and trimmed.
+
+    The noise is that of all frames. The bias is that of the frames that the halves show, which are `checked`, with its
+    standard error; if noise makes it negative, the sum is the noise alone. Trimmed means leave out the pixels where the
+    seeds differ most, and the bias also those where the halves do.
+    """
+    noise, bias = noise_map(*seeds, level), bias_map(*(seed[checked] for seed in seeds), halves, level[checked])
+    kept = _best(noise[checked]) & _best(noise_map(*halves, level[checked]))
+    found = {"noise": noise.mean(), "bias": bias.mean(), "bias_error": bias.std() / np.sqrt(bias.size)}
+    found |= {"noise_trimmed": noise[_best(noise)].mean(), "bias_trimmed": bias[kept].mean()}
+    for name, trimmed in (("", ""), ("trimmed", "_trimmed")):
+        found[name] = found[f"noise{trimmed}"] + max(found[f"bias{trimmed}"], 0.0)
+    return {name: float(value) for name, value in found.items()}
+
+
+def error_measures(
+    seeds: tuple[np.ndarray, np.ndarray], halves: Halves, level: np.ndarray, checked: slice
+) -> dict[str, float]:
+    """Returns relMSE and F with their parts by their names in stored rows. F is relMSE of the changes."""
+    errors = noise_and_bias(seeds, halves, level, checked)
+    changes = noise_and_bias(
+        (_changes(seeds[0]), _changes(seeds[1])),
+        (_changes(halves[0]), _changes(halves[1])),
+        level[1:],
+        slice(checked.start, checked.stop - 1),
+    )
+    parts = {"relmse": errors, "flicker": changes}
+    return {f"{name}_{part}".strip("_"): value for name, found in parts.items() for part, value in found.items()}
+
+
+def _changes(images: np.ndarray) -> np.ndarray:
+    return np.diff(images, axis=0)
+
+
+def _best(squares: np.ndarray) -> np.ndarray:
+    """Returns a mask without the worst 0.1 % of all pixels, since a few fireflies can dominate a mean."""
+    order = np.argsort(squares, axis=None)
+    mask = np.zeros(squares.size, bool)
+    mask[order[: squares.size - int(np.ceil(squares.size * TRIMMED))]] = True
+    return mask.reshape(squares.shape)
+
+
+def wake(level: np.ndarray) -> np.ndarray:
+    """Returns a mask of the pixels that a shadow has left in one of the last frames. The camera must be static."""
+    shaded = level < SHADED * level.max(axis=0)
+    left = np.zeros_like(shaded)
+    for back in range(1, WAKE + 1):
+        left[back:] |= shaded[:-back]
+    return left & ~shaded
+
+
+def error_in(mask: np.ndarray, seeds: tuple[np.ndarray, np.ndarray], halves: Halves, level: np.ndarray) -> float:
+    """Returns relMSE of the pixels of a mask. All arrays have the frames that the halves show."""
+    return float((noise_map(*seeds, level) + bias_map(*seeds, halves, level))[mask].mean())
+
+
+def mean_light(images: np.ndarray, halves: Halves) -> float:
+    """Returns the mean of pictures over that of the reference's frames; 1 if no light is lost or added."""
+    return float(2.0 * images.mean() / (halves[0].mean() + halves[1].mean()))
+
+
+def shares_of_old_light(images: np.ndarray, halves: Halves, change: int) -> list[float]:
+    """Returns for each frame how much of the light from before frame `change` is there but should not be.
+
+    1 at the change is the whole light that has gone off and is still there, or has gone on and is missing. Frames
+    before the change that already show the new light have negative shares.
+    """
+    one, two = (half[change - 1] - half[change] for half in halves)
+    shown = 0.5 * ((images - halves[0]) * two + (images - halves[1]) * one)
+    return [float(share) for share in shown.sum(axis=(1, 2, 3)) / (one * two).sum()]
+
+
+def lag(shares: list[float], change: int) -> int:
+    """Returns the number of frames from `change` on until less than a twentieth of the light is wrong."""
+    return next((late for late, share in enumerate(shares[change:]) if abs(share) < ANSWERED), len(shares) - change)
+
+
+def lead(shares: list[float], change: int) -> int:
+    """Returns how many frames before `change` more than a twentieth of the light is wrong for the first time."""
+    return next((change - frame for frame, share in enumerate(shares[:change]) if abs(share) >= ANSWERED), 0)
 
 
 def relative_to(reference: np.ndarray) -> np.ndarray:
-    """Returns what squared errors are divided by."""
+    """Returns what squared errors of one seed are divided by."""
     return EPSILON + reference.mean(axis=-1) ** 2
 
 
 def error_map(images: np.ndarray, reference: np.ndarray, variance: np.ndarray) -> np.ndarray:
     """Returns relMSE for each pixel."""
     return ((images - reference) ** 2 - variance).mean(axis=-1) / relative_to(reference)
-
-
-def flicker_map(images: np.ndarray, reference: np.ndarray, variance: np.ndarray) -> np.ndarray:
-    """Returns F for each pixel, from the second frame on: the squared change between two frames that the reference does
-    not have.
-    """
-    change = np.diff(images - reference, axis=0)
-    return (change**2 - variance[1:] - variance[:-1]).mean(axis=-1) / relative_to(reference[1:])
-
-
-def independent_map(images: np.ndarray, reference: np.ndarray, variance: np.ndarray) -> np.ndarray:
-    """Returns what F would be for each pixel if errors of frames were independent: twice relMSE where the reference is
-    constant.
-    """
-    squared = (images - reference) ** 2 - variance
-    return (squared[1:] + squared[:-1]).mean(axis=-1) / relative_to(reference[1:])
 
 
 def warped_flicker_map(
@@ -76,67 +168,6 @@ def _sources(vectors: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray, np.ndar
 
 
 def trimmed_mean(squares: np.ndarray) -> float:
-    """Returns the mean without the worst 0.1 %, since a few fireflies can dominate a mean."""
+    """Returns the mean without the worst 0.1 %."""
     found = np.sort(squares[np.isfinite(squares)])
     return float(found[: found.size - int(np.ceil(found.size * TRIMMED))].mean())
-
-
-def fast_share(images: np.ndarray, reference: np.ndarray, variance: np.ndarray) -> float:
-    """Returns the share of the error's energy above a quarter of the frame rate.
-
-    If errors of frames are independent, it is the share of these frequencies, 0.5 for ten frames.
-    """
-    weight = 1.0 / relative_to(reference).mean(axis=0)[..., None]
-    frequencies = np.abs(np.fft.fftfreq(len(images)))
-    energy = np.abs(np.fft.fft(images - reference, axis=0)) ** 2 - variance.sum(
-        axis=0
-    )  # the noise of the reference is white
-    by_frequency = (energy * weight).sum(axis=(1, 2, 3))
-    return float(by_frequency[frequencies > 0.25].sum() / by_frequency.sum())
-
-
-def shares_of_a_light(images: np.ndarray, reference: np.ndarray, off: int) -> list[float]:
-    """Returns for each frame the share of a light, which goes off at frame `off`, that is there but should not be.
-
-    Negative if missing.
-    """
-    light = reference[off - 1] - reference[off]
-    return [float(share) for share in ((images - reference) * light).sum(axis=(1, 2, 3)) / (light**2).sum()]
-
-
-def lag(shares: list[float], off: int) -> int:
-    """Returns the number of frames from `off` on until less than a twentieth of the light is wrong."""
-    return next((late for late, share in enumerate(shares[off:]) if abs(share) < ANSWERED), len(shares) - off)
-
-
-def lead(shares: list[float], off: int) -> int:
-    """Returns how many frames before `off` more than a twentieth of the light is wrong for the first time."""
-    return next((off - frame for frame, share in enumerate(shares[:off]) if abs(share) >= ANSWERED), 0)
-
-
-def all_measures(
-    images: np.ndarray, reference: np.ndarray, variance: np.ndarray, vectors: np.ndarray | None
-) -> dict[str, float | list[float]]:
-    """Returns all measures by their names in stored rows; those along the motion need vectors."""
-    errors, flicker = error_map(images, reference, variance), flicker_map(images, reference, variance)
-    found = {
-        "relmse": float(errors.mean()),
-        "relmse_trimmed": trimmed_mean(errors),
-        "relmse_by_frame": [float(error) for error in errors.mean(axis=(1, 2))],
-        "flicker": float(flicker.mean()),
-        "flicker_trimmed": trimmed_mean(flicker),
-        "flicker_if_independent": float(independent_map(images, reference, variance).mean()),
-        "fast_share": fast_share(images, reference, variance),
-    }
-    return found if vectors is None else found | warped_measures(images, reference, variance, vectors)
-
-
-def warped_measures(
-    images: np.ndarray, reference: np.ndarray, variance: np.ndarray, vectors: np.ndarray
-) -> dict[str, float]:
-    """Returns the measures along the motion of surfaces."""
-    warped = warped_flicker_map(images, reference, variance, vectors)
-    found = {"flicker_warped": float(np.nanmean(warped)), "flicker_warped_trimmed": trimmed_mean(warped)}
-    if np.isfinite(along := warped[moving(vectors)]).any():
-        found["flicker_warped_moving"] = trimmed_mean(along)
-    return found
