@@ -33,8 +33,21 @@ def noisy(deviation: float, seed: int) -> np.ndarray:
 
 
 def test_relative_error_of_a_constant_offset() -> None:
-    gray = REFERENCE.mean(axis=2)
-    assert metrics.rel_mse(REFERENCE + 0.1, REFERENCE) == pytest.approx((0.01 / (1e-3 + gray**2)).mean())
+    gray = np.linspace(0.1, 1.0, 32)  # the median of 3x3 pixels is that in the middle
+    reference = np.broadcast_to(gray[None, :, None], (24, 32, 3))
+    expected = 0.01 / (1e-3 + gray[1:-1] ** 2)
+    assert metrics.relative_squared_error(reference + 0.1, reference)[:, 1:-1] == pytest.approx(
+        np.broadcast_to(expected, (24, 30))
+    )
+
+
+def test_missing_light_of_rare_bright_paths_counts() -> None:
+    """Regression: errors were divided by the reference's own bright pixels, and a darker image had less error."""
+    reference = np.full((64, 64, 3), 0.95)
+    reference[::8, ::8] += 0.05 * 64  # a rare path carries a twentieth of the light
+    variance = ((reference - 1.0) ** 2).mean() * np.ones_like(reference)
+    dark, right = (metrics.rel_mse(np.full_like(reference, level), reference, variance) for level in (0.95, 1.0))
+    assert dark > right
 
 
 def test_the_variance_of_a_reference_is_subtracted() -> None:

@@ -15,7 +15,7 @@ LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
 def relative_squared_error(
     image: np.ndarray, reference: np.ndarray, reference_variance: np.ndarray | None = None
 ) -> np.ndarray:
-    """Returns the mean over channels of ((x - r)^2 - var r) / (eps + gray(r)^2) for each pixel (height, width)."""
+    """Returns the mean over channels of ((x - r)^2 - var r) / relative_to(r) for each pixel (height, width)."""
     squared = (image - reference) ** 2
     if reference_variance is not None:
         squared = squared - reference_variance
@@ -23,8 +23,14 @@ def relative_squared_error(
 
 
 def relative_to(reference: np.ndarray) -> np.ndarray:
-    """Returns what squared errors are divided by (height, width)."""
-    return EPSILON + reference.mean(axis=2) ** 2
+    """Returns eps + g^2 (height, width), what squared errors are divided by. g is the median gray of 3x3 pixels.
+
+    The gray of single pixels would be large where the reference met a rare bright path, and would hide that an image
+    lacks the light of such paths.
+    """
+    padded = np.pad(reference.mean(axis=2), 1, mode="edge")
+    around = np.lib.stride_tricks.sliding_window_view(padded, (3, 3))
+    return EPSILON + np.median(around, axis=(2, 3)) ** 2
 
 
 def rel_mse(image: np.ndarray, reference: np.ndarray, reference_variance: np.ndarray | None = None) -> float:
