@@ -55,10 +55,10 @@ def test_a_blender_that_is_no_program_is_refused() -> None:
 
 def test_make_passes_quotes_of_names_on() -> None:
     """Regression: an apostrophe in the name of a scene ended a quotation in the shell of make."""
-    command = ["make", "--no-print-directory", "-C", str(ROOT), "render", 'SCENE=/nope/it\'s "new".blend']
+    command = ["make", "--no-print-directory", "-C", str(ROOT), "render", "SCENE=/nope/it's \"new\".blend"]
     result = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert result.returncode != 0
-    assert 'SCENE=/nope/it\'s "new".blend: no such file' in result.stderr
+    assert "SCENE=/nope/it's \"new\".blend: no such file" in result.stderr
 
 
 def refused(name: str, value: str, message: str, *options: str) -> None:

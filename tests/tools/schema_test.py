@@ -117,12 +117,8 @@ def test_the_guide_s_tables_are_filled_between_their_markers(copy: Path) -> None
         ("nodes.toml", '"factor, a, b -> value"', '"factor, a, b"', "operation MIX: expected 'inputs -> outputs'"),
         ("nodes.toml", "{ floats = 4", "{ float = 4", "operation BRICK: "),
         ("nodes.toml", 'kind = "program"', 'kind = "point"', "operation BUMP has the unknown kind point"),
-        (
-            "nodes.toml",
-            '"Components of a colour.",\n    {',
-            '"Components of a colour.",\n    { reads_ray = true,',
-            "operation SEPARATE is not of the kind that can read the ray",
-        ),
+        ("nodes.toml", '"Components of a colour.",\n    {', '"Components of a colour.",\n    { reads_ray = true,',
+         "operation SEPARATE is not of the kind that can read the ray"),
         ("gradus.h.in", "@struct Camera\n", "", "gradus.h.in does not declare each struct of the schema once"),
     ],
 )

@@ -75,4 +75,4 @@ def test_m3_statements_may_have_several_lines() -> None:
     xfail = '@pytest.mark.xfail(\n    strict=True,\n    reason="{}: waits for the new solver (L1)",\n)\n'
     assert not unstated(xfail.format("2030-05-20"), today)
     assert unstated(xfail.format("2030-04-01"), today)
-    assert unstated("@pytest.mark.xfail\n# 2030-05-20: elsewhere\n", today)
+    assert unstated('@pytest.mark.xfail\n# 2030-05-20: elsewhere\n', today)
