@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from gradus import animation, handlers, output
 from gradus.failure import Failure
-from support import images, recording
+from support import images, recording, simulations
 from support.exports import Exports
 
 WIDTH, HEIGHT = 32, 18
@@ -203,6 +203,79 @@ def animate_square(scene: Scene) -> None:
         square.keyframe_insert("location", frame=frame)
         shape.value = frame / scene.frame_end
         shape.keyframe_insert("value", frame=frame)
+
+
+def blur(scene: Scene) -> None:
+    scene.render.use_motion_blur = True
+
+
+def ask_for_vectors(scene: Scene) -> None:
+    scene.view_layers[0].use_pass_vector = True
+
+
+def keep_data(scene: Scene) -> None:
+    scene.render.use_persistent_data = True
+
+
+def see_with_two_eyes(scene: Scene) -> None:
+    scene.render.use_multiview = True
+
+
+def drop_a_body(_scene: Scene) -> None:
+    simulations.rigid_body()
+
+
+def show_pixels(scene: Scene) -> None:
+    """Shows an image of which only Blender has the pixels, and one that is a lamp's pattern."""
+    image = bpy.data.images.new("Pixels", 4, 4)
+    image.pixels[:4] = (1.0, 0.0, 0.0, 1.0)
+    material = bpy.data.materials["White"]
+    material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    texture = nodes.new("ShaderNodeTexImage")
+    texture.image = image
+    links.new(texture.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
+    lamp = bpy.data.lights.new("Lamp", "POINT")
+    scene.collection.objects.link(bpy.data.objects.new("Lamp", lamp))
+
+
+@pytest.mark.parametrize("change", [blur, ask_for_vectors, keep_data, see_with_two_eyes, drop_a_body, show_pixels])
+def test_c9_nothing_but_a_change_looks_like_one(
+    square: Scene, handle: Handle, lines: Any, tmp_path: Path, change: Callable[[Scene], None]
+) -> None:
+    square.frame_end = 3
+    animate_square(square)
+    change(square)
+    handle("render_pre", lambda _frame: None)
+    images.use_exr(square, tmp_path / "f_####.exr")
+    bpy.ops.render.render(animation=True, scene=square.name)
+    assert {line["frame"] for line in lines()} == {1, 2, 3}
+    assert alone(lines()) == warnings(lines()) == []
+
+
+def paint(frame: int) -> None:
+    bpy.data.images["Pixels"].pixels[:4] = (0.0, 0.2 * frame, 0.0, 1.0)
+    bpy.data.images["Pixels"].update()
+
+
+def dim(frame: int) -> None:
+    bpy.data.lights["Lamp"].energy = 10.0 * frame
+
+
+def turn_temporal_off(frame: int) -> None:
+    bpy.context.scene.gradus.use_temporal = frame < 2
+
+
+@pytest.mark.parametrize("change", [paint, dim, turn_temporal_off])
+def test_c9_changes_of_all_kinds_are_noticed(
+    square: Scene, handle: Handle, lines: Any, tmp_path: Path, change: Callable[[int], None]
+) -> None:
+    square.frame_end = 3
+    show_pixels(square)
+    handle("render_pre", change)
+    animate(square, tmp_path)
+    assert alone(lines()) == [2, 3]
+    assert len(warnings(lines())) == 1
 
 
 def test_c9_after_the_handler_is_removed_frames_are_sampled_ahead_again(
