@@ -80,7 +80,8 @@ def animate(scene: Scene, folder: Path) -> dict[int, np.ndarray]:
 
 def shows(picture: np.ndarray) -> float:
     """Returns the place of the square in a picture, in metres: the mean column of pixels that differ from the world."""
-    differs = np.abs(picture[..., :3].mean(axis=2) - 0.3) > 0.02
+    grey = picture[..., :3].mean(axis=2)
+    differs = np.abs(grey - grey[0, 0]) > 0.1 * grey[0, 0]
     assert differs.any(), "the square is in the picture"
     return (np.nonzero(differs)[1].mean() + 0.5 - WIDTH / 2) * 4.0 / WIDTH
 
@@ -119,7 +120,10 @@ def deform(frame: int) -> None:
 
 
 def brighten(frame: int) -> None:
-    bpy.context.scene.world.color = (0.1 * frame, 0.1, 0.1)
+    world, color = bpy.context.scene.world, (0.1 * frame, 0.1, 0.1)
+    world.color = color
+    if world.node_tree is not None:  # from Blender 5.0 on, every world has nodes
+        world.node_tree.nodes["Background"].inputs["Color"].default_value = (*color, 1.0)
 
 
 def zoom(frame: int) -> None:
@@ -134,6 +138,8 @@ def take_more_samples(frame: int) -> None:
 def test_c9_what_render_pre_sets_for_a_frame_is_in_it(
     square: Scene, handle: Handle, lines: Any, render: Callable[..., images.Passes], tmp_path: Path, change: Any
 ) -> None:
+    if change is show and bpy.app.version >= (5, 2, 0):
+        pytest.skip("a still crashes in Blender 5.2 if render_pre hides an object, also without frames ahead")
     square.frame_end = 4
     handle("render_pre", change)
     pictures = animate(square, tmp_path)
