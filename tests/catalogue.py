@@ -43,6 +43,7 @@ ENTRIES = {
     "C6": "topology, simulations, objects that appear and disappear",
     "C7": "an animation resumed or rendered in parts",
     "C8": "shot changes",
+    "C9": "frames ahead show what handlers and drivers set for them",
     "D1": "watertight far from the origin",
     "D2": "no self-hits",
     "D3": "meshes of random bits",

@@ -11,6 +11,17 @@ Facts about Blender 3.4, 4.5 and 5.0 on which this module relies:
   not change it and cannot be detected: frames outside the scene's range are rendered one by one. -f is an animation of
   one frame with the scene's range, and can be detected from the command line only.
 - If Overwrite is off, Blender skips frames whose files exist.
+
+Frames ahead and Python handlers:
+
+- A frame ahead shows what drivers, keyframes and handlers of frame changes set for it. It does not show what other
+  handlers will set when Blender comes to it, nor what a handler of frame changes sets that depends on more than the
+  frame. Running the others for frames ahead would repeat their side effects, such as files and messages.
+- Therefore, if there are any handlers, each frame is exported again when Blender comes to it. If it shows something
+  else than what was sampled, its samples and those of later frames are dropped, and all further frames are rendered by
+  themselves. Handlers that change nothing, such as those of render farms, cost an export per frame and no quality.
+- The frame before was made with the dropped frames as neighbours. It is not wrong, because its own samples and its
+  motion to the neighbours are those of the scenes that were sampled.
 """
 
 from __future__ import annotations
@@ -23,11 +34,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from ctypes import byref
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import bpy
 
-from . import compat, frame_store, native, passes, simulation, store
+from . import compat, frame_store, handlers, native, passes, simulation, store
 from .export import Cancelled as ExportCancelled
 from .progress import Display, is_watched, open_result, wait
 from .store import Cancelled
@@ -102,6 +114,8 @@ class Animation:
         self._views: dict[tuple[str, int], Any] = {}
         self._independent: dict[int, str] = {}  # frames that are rendered independently, and why
         self._fault: tuple[int, Exception] | None = None  # the frame that failed and its error
+        self._states: dict[int, bytes] = {}  # what frames ahead showed when they were sampled, if there are handlers
+        self._folders: list[Path] = []  # of the frame store
         self._sequences: dict[str, int] = {}
         for view in job.views:
             self._sequences[view] = self._create(job, view, folder)
@@ -111,7 +125,8 @@ class Animation:
         settings.window_size, settings.window_overlap = job.host_value("window_size"), job.host_value("window_overlap")
         settings.with_flow = int(passes.needs_next_frame(job.requested_passes()))
         if folder:
-            settings.folder = native.text(str(frame_store.folder_of(folder, job.scene.name, job.layer.name, view)))
+            self._folders.append(frame_store.folder_of(folder, job.scene.name, job.layer.name, view))
+            settings.folder = native.text(str(self._folders[-1]))
         handle = ctypes.c_uint64()
         self.library.sequence_create(job.session.device, byref(settings), byref(handle))
         return handle.value
@@ -130,12 +145,18 @@ class Animation:
 
     # Sampling ahead
 
-    def look_ahead(self, job: Any) -> None:
+    def look_ahead(self, job: Any) -> bool:
         """Samples the frames that the job's frame needs.
 
         An error of a later frame is raised when Blender asks for that frame, so that the frames before it are not lost.
+        Returns False if handlers made the look-ahead fail. The frame is then rendered independently, as all later ones.
         """
         frame = job.scene.frame_current
+        found = handlers.that_may_change_frames()
+        job.with_digest = bool(found)
+        if not self._shows_what_was_sampled(job):
+            self._give_up(job, "Python handlers changed what was sampled ahead", found)
+            return False
         first, last = self._needs(frame)
         begins = not self._begun
         if begins:  # the store has the earlier frames
@@ -155,8 +176,59 @@ class Animation:
                     if not self._succeeds(number, lambda number=number: self._sample(job, go_to, number, display)):
                         break
                     self._next = number + self.frames.step
+        self._states.pop(frame, None)  # Blender is at this frame
         if self._fault is not None and self._fault[0] <= frame:
-            raise self._fault[1]
+            if not found:
+                raise self._fault[1]
+            # With its own state the frame may be sound. If it is not, it fails again when it is rendered by itself.
+            self._give_up(job, f"{self._fault[1]}; Python handlers may be the cause", found)
+            return False
+        return True
+
+    def _shows_what_was_sampled(self, job: Any) -> bool:
+        """Returns whether the job's frame shows what was sampled for it. It is exported only if there are handlers."""
+        frame = job.scene.frame_current
+        state = self._states.pop(frame, None)
+        is_sampled = all((view, frame) in self._views for view in self._sequences)
+        if not is_sampled or (state is None and not job.with_digest):
+            return True
+        job.with_digest = True  # a handler may have removed itself
+        job.compute_simulations()
+        job.export(job.views[0])
+        return self._state(job) == state
+
+    @staticmethod
+    def _state(job: Any) -> bytes:
+        """Returns a value that is equal for frames that show the same and are sampled in the same way."""
+        return job.digest + bytes(job.current.settings) + _why_frame_independent(job).encode()
+
+    def _give_up(self, job: Any, why: str, found: list[str]) -> None:
+        """Ends all animations of the job's scene, and warns once. found: the handlers."""
+        job.begin_view()
+        job.current.settings = job.new_settings()
+        scene, frame = job.scene.name_full, job.scene.frame_current
+        for key in [key for key in _running if key[0] == scene]:
+            animation = _running.pop(key)
+            animation._drop_stored(frame)
+            animation.free()
+        _given_up.add(scene)
+        job.frame_by_frame = _HANDLERS
+        more = f" and {len(found) - 1} more" if len(found) > 1 else ""
+        names = f" ({found[0]}{more})" if found else ""
+        text = f"From frame {frame} on, frames are rendered by themselves: {why}{names}. {_ADVICE}"
+        job.warn([text], changes_picture=False)
+
+    def _drop_stored(self, frame: int) -> None:
+        """Deletes films of the frame store that may not show what their frames show.
+
+        These are all from the first one on that `frame` needs, because a render that goes on from the store would
+        compare them with the scene as handlers leave it at a later frame.
+        """
+        first, _ = self._needs(frame)
+        for number in self.frames.up_to(self._next - self.frames.step):
+            if number >= first or number in self._states:
+                for folder in self._folders:
+                    frame_store.drop(folder, number)
 
     def _needs(self, frame: int) -> tuple[int, int]:
         first, last = ctypes.c_int32(), ctypes.c_int32()
@@ -205,6 +277,8 @@ class Animation:
                 self._independent[number] = reason
                 self._set_previous(job, view)
                 continue
+            if job.with_digest:
+                self._states.setdefault(number, self._state(job))
             handle = ctypes.c_uint64()
             arguments = (job.session.scene, byref(job.current.settings), byref(handle))
             self.library.sequence_sample(self._sequences[view], *arguments)
@@ -286,6 +360,10 @@ def _stepping(job: Any, last: int) -> Iterator[Callable[[int], None]]:
 
 _running: dict[tuple[str, str], Animation] = {}
 """Animations by scene and view layer. They are global because Blender creates an engine object for each frame."""
+_given_up: set[str] = set()
+"""Scenes whose frames are not sampled ahead any more, because handlers change them."""
+_HANDLERS = "Python handlers change frames"
+_ADVICE = "Handlers of frame changes keep Temporal on if what they do depends on the frame alone"
 
 
 def of_job(job: Any) -> Animation | None:
@@ -295,6 +373,9 @@ def of_job(job: Any) -> Animation | None:
     key = (job.scene.name_full, job.layer.name)
     if key in _running and not _running[key].can_deliver(job.scene.frame_current, job.views):
         _running.pop(key).free()
+    if job.scene.name_full in _given_up:
+        job.frame_by_frame = _HANDLERS
+        return None
     if key not in _running:
         folder = bpy.path.abspath(job.host_value("frame_store")) if job.host_value("frame_store") else ""
         frames = frames_of_job(job.depsgraph.scene, bool(folder))
@@ -326,6 +407,7 @@ def clear() -> None:
     """Releases all animations at the end of the job."""
     while _running:
         _running.popitem()[1].free()
+    _given_up.clear()
 
 
 store.job_ends.append(clear)

@@ -35,6 +35,12 @@ def frame_path(folder: str, scene: str, layer: str, view: str, frame: int) -> Pa
     return folder_of(folder, scene, layer, view) / f"f{frame:+08d}.exr"
 
 
+def drop(folder: Path, frame: int) -> None:
+    """Deletes the films of a frame of an animation."""
+    for ending in ("fresh.exr", "replayed.exr", "json"):
+        (folder / f"f{frame:+08d}.{ending}").unlink(missing_ok=True)
+
+
 def save(library: native.Library, render: int, folder: str, scene: Any, layer: Any, view: str) -> None:
     """Saves the raw frame of a render.
 

@@ -150,6 +150,8 @@ class Job:
         self.is_preview = engine.is_preview
         self.overrides = options.Overrides() if self.is_preview else options.current()
         self.is_silent = False
+        self.with_digest = False  # whether exports compute `digest`
+        self.digest = b""  # of the last exported frame
         self.cancelled = False
         self.has_result = False
         self.infos = active_passes(self.scene, self.layer, self.overrides)
@@ -190,8 +192,12 @@ class Job:
         self.warn(output.truncated_names(image_settings, self.layer.name, self.views, self.infos, compat.VERSION))
         self.animation = animation.of_job(self)
         if self.animation is None:
-            self.compute_simulations()
-            self.export(self.views[0])
+            self.export_alone()
+
+    def export_alone(self) -> None:
+        """Exports the frame as Blender has it, to render it independently."""
+        self.compute_simulations()
+        self.export(self.views[0])
 
     def begin_view(self) -> None:
         self.current = ViewRender()
@@ -223,7 +229,8 @@ class Job:
     def _export_frame(self) -> None:
         vectors = self.wants_vectors()
         arguments = (self.depsgraph, self.engine, None, self.is_preview, self.is_stop_requested, vectors, self.views)
-        report = self.session.sync(*arguments)
+        report = self.session.sync(*arguments, self.with_digest)
+        self.digest = report.digest
         self.size = report.width, report.height
         self.warn(report.warnings)
 
@@ -362,8 +369,9 @@ def render(engine: Any, depsgraph: Any) -> None:
     if job is None:
         raise Failure("render() without update()")
     try:
-        if job.animation is not None:
-            job.animation.look_ahead(job)
+        if job.animation is not None and not job.animation.look_ahead(job):
+            job.animation = None
+            job.export_alone()
         for index, view in enumerate(job.views):
             _prepare_view(job, index, view)
             _render_view(job, view)

@@ -86,6 +86,38 @@ def test_i2_a_fault_in_frame_5_ends_with_code_1_after_frame_4(
     assert [path.name for path in sorted(tmp_path.glob("f_*.png"))] == [f"f_{frame:04d}.png" for frame in range(1, 5)]
 
 
+HANDLER = """
+cube.animation_data_clear()
+def place(scene, *_):
+    cube.location.x = 0.5 * scene.frame_current - 2.0
+bpy.app.handlers.render_pre.append(place)
+"""
+
+
+def pixels(path: Path) -> bytes:
+    """Returns the compressed pixels of a PNG file, without its metadata."""
+    data, place, found = path.read_bytes(), 8, b""
+    while place < len(data):
+        size = int.from_bytes(data[place : place + 4], "big")
+        if data[place + 4 : place + 8] == b"IDAT":
+            found += data[place + 8 : place + 8 + size]
+        place += size + 12
+    return found
+
+
+def test_c9_what_render_pre_sets_is_in_each_frame(blender: Callable[..., application.Outcome], tmp_path: Path) -> None:
+    whole, single = tmp_path / "whole", tmp_path / "single"
+    outcome = blender(*arguments(whole, "-s", "1", "-e", "4", "-a", script=HANDLER))
+    assert outcome.code == 0, outcome.output
+    assert outcome.output.count("From frame 2 on, frames are rendered by themselves") == 1, outcome.output
+    assert "(render_pre: place in " in outcome.output
+    outcome = blender(*arguments(single, "-f", "2..4", script=HANDLER))
+    assert outcome.code == 0, outcome.output
+    found = [pixels(whole / f"f_{frame:04d}.png") for frame in (2, 3, 4)]
+    assert found == [pixels(single / f"f_{frame:04d}.png") for frame in (2, 3, 4)]
+    assert len(set(found)) == 3
+
+
 @pytest.mark.alone
 @pytest.mark.application
 @pytest.mark.parametrize("seconds", [0.1, 0.6, 1.5])

@@ -16,6 +16,7 @@ import bpy
 from .. import compat, native
 from . import camera, instances, light, mesh, motion, unsupported, world
 from .collect import Collected, Entry, InstanceKey, collect
+from .digest import Digest
 from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
 from .material import Materials, Resources
 from .may_move import MayMove
@@ -50,6 +51,7 @@ class Exporter:
         cancelled: Callable[[], bool] | None = None,
         vectors: bool | None = None,
         views: Sequence[str] = ("",),
+        with_digest: bool = False,
     ) -> ExportReport:
         """Sets everything that the depsgraph shows at its frame.
 
@@ -57,7 +59,7 @@ class Exporter:
 
         view: the view of a viewport, which replaces the camera. Viewports and previews have no motion. vectors: whether
         the Vector pass is computed; None: if it is enabled in the view layer. views: views of multi-view. The first one
-        is set; show_view() sets another.
+        is set; show_view() sets another. with_digest: whether the report has a digest of everything that was set.
         """
         start = time.perf_counter()
         wants_vectors = depsgraph.view_layer_eval.use_pass_vector if vectors is None else vectors
@@ -65,7 +67,8 @@ class Exporter:
         if view is None and not is_preview:
             shutter = shutter_of(depsgraph.scene_eval, depsgraph.view_layer_eval)
             wanted = motion.MotionRequest(wants_vectors, shutter)
-        run = _Sync(self, depsgraph, engine, view, wanted, views, Poll(cancelled))
+        digest = Digest() if with_digest else None
+        run = _Sync(self, depsgraph, engine, view, wanted, views, Poll(cancelled), digest)
         tables = ((KIND_MESH, self._meshes), (KIND_IMAGE, self._images), (KIND_MATERIAL, self._materials))
         for table in (self._ids, *(table for _, table in tables)):
             table.begin()
@@ -81,7 +84,8 @@ class Exporter:
                 self._target.remove(kind, key)
         self._views = run.cameras
         self.show_view(views[0])
-        return ExportReport(*run.size, run.warnings.texts, time.perf_counter() - start)
+        seconds = time.perf_counter() - start
+        return ExportReport(*run.size, run.warnings.texts, seconds, digest.value() if digest is not None else b"")
 
     def show_view(self, view: str) -> None:
         """Sets the camera of another view of the last exported frame. The views share everything else."""
@@ -105,11 +109,13 @@ class _Sync:
         wanted: motion.MotionRequest,
         views: Sequence[str],
         poll: Poll,
+        digest: Digest | None = None,
     ) -> None:
         self._depsgraph = depsgraph
         self._engine = engine
         self._view = view
         self._poll = poll
+        self._digest = digest
         self._target = exporter._target
         self._mesh_keys = exporter._meshes
         self._ids = exporter._ids
@@ -164,6 +170,11 @@ class _Sync:
         shutter = self._wanted.shutter
         keys = motion.camera_blur(view, self._cameras[view], now, shutter, moments) if shutter is not None else []
         self.cameras[view] = camera.fill_camera(now, *around, shutter, keys)
+        if self._digest is not None:
+            struct, kept = self.cameras[view]
+            self._digest.struct(struct)
+            if shutter is not None:
+                self._digest.arrays([shutter.curve, *kept[1:]])
 
     def _moments(self, collected: Collected) -> motion.Moments:
         if not self._wanted.any():
@@ -231,8 +242,9 @@ class _Sync:
         return arrays
 
     def _set_mesh(self, arrays: MeshArrays) -> int:
-        key = self._mesh_keys.key(arrays.content_hash())
-        if self._mesh_keys.changed(key, True):
+        content = arrays.content_hash()
+        key = self._mesh_keys.key(content)
+        if self._mesh_keys.changed(key, content):
             struct, _keep = mesh.fill_mesh(arrays)
             self._target.set_mesh(key, struct)
         return key
@@ -245,8 +257,12 @@ class _Sync:
             arrays.previous, arrays.following = (self._matrices_at(arrays.entries, moment) for moment in around)
         if self._wanted.shutter is not None:
             arrays.blur = motion.instance_blur(arrays.entries, arrays.matrices, self._wanted.shutter, moments)
-        struct, _keep = instances.fill_instances(arrays)
+        struct, kept = instances.fill_instances(arrays)
         self._target.set_instances(struct)
+        if self._digest is not None:
+            self._digest.columns(kept[0])
+            self._digest.contents(map(self._mesh_keys.content, arrays.mesh_keys))
+            self._digest.contents(map(self._materials.content, arrays.materials))
 
     def _matrices_at(self, entries: list[Entry], moment: motion.Moment) -> array:
         """Returns the matrices of instances at another time, NaN for those that are missing or replaced."""
@@ -263,6 +279,10 @@ class _Sync:
         lights = (self._light(entry, collected.matrices) for entry in collected.lights)
         records = native.struct_array(native.Light, lights)
         self._target.set_lights(records, len(collected.lights))
+        if self._digest is not None:
+            for record in records or ():
+                self._digest.struct(record)
+                self._digest.contents([self._materials.content(record.material)])
 
     def _light(self, entry: Entry, matrices: array) -> native.Light:
         data = entry.data
@@ -291,4 +311,8 @@ class _Sync:
         found = getattr(layer, "world_override", None) or self._scene.world
         # Without sky the view layer has no world, which then is neither visible nor emits light, as in Cycles.
         key = self._materials.key(found, "WORLD") if layer.use_sky else 0
-        self._target.set_world(world.fill_world(found, key))
+        struct = world.fill_world(found, key)
+        self._target.set_world(struct)
+        if self._digest is not None:
+            self._digest.struct(struct)
+            self._digest.contents([self._materials.content(key)])

@@ -41,6 +41,10 @@ class KeyTable:
         self._contents[key] = content
         return True
 
+    def content(self, key: int) -> Hashable:
+        """Returns the content that the native object of `key` has, or None if there is no such object."""
+        return self._contents.get(key)
+
     def invalidate(self) -> None:
         """Makes the next sync set all objects again, after a failed call."""
         self._contents = dict.fromkeys(self._contents)

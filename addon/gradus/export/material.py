@@ -39,6 +39,10 @@ class Resources:
             self._target.set_image(key, struct)
         return key
 
+    def content(self, key: int) -> Any:
+        """Returns a value that is equal for images of equal content."""
+        return self._keys.content(key)
+
     def warn(self, text: str) -> None:
         self._warnings.add(text)
 
@@ -55,6 +59,7 @@ class Materials:
         self._poll = poll
         self._warnings = warnings
         self._done: dict[tuple[str, int], int] = {}
+        self._programs: dict[int, Any] = {}  # by key
         self.attribute_names: set[str] = set()
 
     def key(self, block: Any, kind: str = "MATERIAL") -> int:
@@ -72,6 +77,11 @@ class Materials:
             key = self._done[token] = self._keys.key(token)
             self._translate(key, block, kind)
         return key
+
+    def content(self, key: int) -> tuple[Any, ...] | None:
+        """Returns a value that is equal for materials of this sync of equal content, or None for key 0."""
+        program = self._programs.get(key)
+        return program.content(self._resources.content) if program is not None else None
 
     def surface_keys(self, materials: tuple[Any, ...]) -> tuple[int, ...]:
         """Returns the keys of a surface's material slots.
@@ -98,6 +108,7 @@ class Materials:
         self._set(key, nodes.translate(block, kind, self._resources))
 
     def _set(self, key: int, program: Any) -> None:
+        self._programs[key] = program
         for text in program.warnings:
             self._warnings.add(text)
         self.attribute_names.update(program.attribute_names)

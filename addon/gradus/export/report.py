@@ -23,6 +23,7 @@ class ExportReport:
     height: int
     warnings: list[str] = field(default_factory=list)
     seconds: float = 0.0
+    digest: bytes = b""  # of all that was set, if it was asked for
 
 
 class Warnings:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import ctypes
 from array import array
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 from .ops import Op
 
 FLOAT, VECTOR, COLOR, SHADER = "float", "vector", "color", "shader"
+_IMAGE_OPS = frozenset({Op.IMAGE, Op.ENVIRONMENT})
+"""Operations whose resource is the key of an image."""
 
 
 @dataclass(frozen=True)
@@ -90,8 +93,9 @@ class Program:
         if text not in self.warnings:
             self.warnings.append(text)
 
-    def content(self) -> tuple[Any, ...]:
-        """Returns a value that is equal for equal programs."""
+    def content(self, image: Callable[[int], Any] = int) -> tuple[Any, ...]:
+        """Returns a value that is equal for equal programs. image: returns what stands for the key of an image."""
+        nodes = ((*node[:-1], image(node[-1])) if node[0] in _IMAGE_OPS else node for node in self.nodes)
         return (
             self.name,
             self.surface,
@@ -99,7 +103,7 @@ class Program:
             self.sample_as_light,
             self.transparent_shadow,
             self.uses_fallback,
-            tuple(self.nodes),
+            tuple(nodes),
             tuple(self.inputs),
             self.floats.tobytes(),
             tuple(self.names),
