@@ -116,6 +116,7 @@ class Animation:
         self._fault: tuple[int, Exception] | None = None  # the frame that failed and its error
         self._states: dict[int, bytes] = {}  # what frames ahead showed when they were sampled, if there are handlers
         self._folders: list[Path] = []  # of the frame store
+        self._written: set[int] = set()  # frames that this job has sampled
         self._sequences: dict[str, int] = {}
         for view in job.views:
             self._sequences[view] = self._create(job, view, folder)
@@ -219,13 +220,13 @@ class Animation:
         job.warn([text], changes_picture=False)
 
     def _drop_stored(self, frame: int) -> None:
-        """Deletes films of the frame store that may not show what their frames show.
+        """Deletes the films of the frame store that this job wrote and that may not show what their frames show.
 
         These are all from the first one on that `frame` needs, because a render that goes on from the store would
         compare them with the scene as handlers leave it at a later frame.
         """
         first, _ = self._needs(frame)
-        for number in self.frames.up_to(self._next - self.frames.step):
+        for number in self._written:
             if number >= first or number in self._states:
                 for folder in self._folders:
                     frame_store.drop(folder, number)
@@ -281,15 +282,21 @@ class Animation:
                 self._states.setdefault(number, self._state(job))
             handle = ctypes.c_uint64()
             arguments = (job.session.scene, byref(job.current.settings), byref(handle))
+            before = self._written_at(number)
             self.library.sequence_sample(self._sequences[view], *arguments)
             try:
                 self._wait(job, view, handle.value, display)
             finally:
                 self.library.render_release(handle.value)
+                if self._written_at(number) != before:
+                    self._written.add(number)
             if job.cancelled:
                 raise Cancelled
             job.current.clock.pause()
             self._views[view, number] = job.current
+
+    def _written_at(self, number: int) -> list[int]:
+        return [frame_store.written_at(folder, number) for folder in self._folders]
 
     @staticmethod
     def _wait(job: Any, view: str, handle: int, display: Display) -> None:

@@ -35,6 +35,14 @@ def frame_path(folder: str, scene: str, layer: str, view: str, frame: int) -> Pa
     return folder_of(folder, scene, layer, view) / f"f{frame:+08d}.exr"
 
 
+def written_at(folder: Path, frame: int) -> int:
+    """Returns when the samples of a frame of an animation were written, in nanoseconds, or 0 if there are none."""
+    try:
+        return (folder / f"f{frame:+08d}.fresh.exr").stat().st_mtime_ns
+    except OSError:
+        return 0
+
+
 def drop(folder: Path, frame: int) -> None:
     """Deletes the films of a frame of an animation."""
     for ending in ("fresh.exr", "replayed.exr", "json"):

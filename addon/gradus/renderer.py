@@ -397,7 +397,7 @@ def _deliver_last_pictures(job: Job) -> None:
     window would lose the picture that the user saw.
     """
     size = job.engine.resolution_x, job.engine.resolution_y
-    pictures = job.session.pictures if job.session is not None else {}
+    pictures = job.session.pictures if job.session is not None and job.engine.is_animation else {}
     for view in job.views:
         result = job.engine.begin_result(0, 0, *size, layer=job.layer.name, view=view)
         if result is None:

@@ -180,6 +180,8 @@ job_ends: list[Callable[[], None]] = []
 def _end_job() -> None:
     for end in job_ends:
         end()
+    for session in _sessions.values():
+        session.pictures.clear()
 
 
 @bpy.app.handlers.persistent

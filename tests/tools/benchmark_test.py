@@ -78,7 +78,7 @@ def test_bias_and_variance_are_separated(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(seeds, "CACHE", tmp_path)
     count, deviation, bias = 16, 0.2, 0.1
     none = np.zeros_like(REFERENCE)
-    weight = (1.0 / (1e-3 + REFERENCE.mean(axis=2) ** 2)).mean()
+    weight = (1.0 / metrics.relative_to(REFERENCE)).mean()
     errors = []
     for seed in range(count):
         image = noisy(deviation, seed) + bias

@@ -90,15 +90,16 @@ class Target:
 
 
 TARGETS = (
-    Target("flicker_trimmed", per_frame, "F-t / the same frame by frame", 0.4),
-    Target("flicker", per_frame, "F / the same frame by frame", 0.4),
-    Target("relmse_trimmed", per_frame, "relMSE-t / the same frame by frame", 0.8),
-    Target("relmse", per_frame, "relMSE / the same frame by frame", 0.8),
-    Target("relmse_wake", per_frame, "relMSE in the wake of a shadow / the same frame by frame", 1.0),
-    Target("flicker", lambda _: PEER, "F / Cycles + denoiser", 0.6),
-    Target("flicker", lambda _: STILL_SEED, "F / Cycles + denoiser, one seed", 0.6),
-    Target("relmse", lambda _: PEER, "relMSE / Cycles + denoiser", 1.0),
-    Target("flip", lambda _: PEER, "HDR-FLIP / Cycles + denoiser", 1.0),
+    Target("flicker_trimmed", per_frame, "F-t / the same frame by frame", 0.25),
+    Target("flicker", per_frame, "F / the same frame by frame", 0.5),
+    Target("relmse_trimmed", per_frame, "relMSE-t / the same frame by frame", 0.5),
+    Target("relmse", per_frame, "relMSE / the same frame by frame", 0.5),
+    Target("relmse_wake", per_frame, "relMSE in the wake of a shadow / the same frame by frame", 1.05),
+    Target("flicker_trimmed", lambda _: PEER, "F-t / Cycles + denoiser", 0.3),
+    Target("flicker", lambda _: PEER, "F / Cycles + denoiser", 0.5),
+    Target("flicker", lambda _: STILL_SEED, "F / Cycles + denoiser, one seed", 0.5),
+    Target("relmse", lambda _: PEER, "relMSE / Cycles + denoiser", 0.5),
+    Target("flip", lambda _: PEER, "HDR-FLIP / Cycles + denoiser", 0.8),
 )
 
 

@@ -23,14 +23,15 @@ def relative_squared_error(
 
 
 def relative_to(reference: np.ndarray) -> np.ndarray:
-    """Returns eps + g^2 (height, width), what squared errors are divided by. g is the median gray of 3x3 pixels.
+    """Returns eps + g^2 (..., height, width), what squared errors are divided by. g is the median gray of 3x3 pixels.
 
-    The gray of single pixels would be large where the reference met a rare bright path, and would hide that an image
-    lacks the light of such paths.
+    reference: (..., height, width, 3). The gray of single pixels would be large where the reference met a rare bright
+    path, and would hide that an image lacks the light of such paths.
     """
-    padded = np.pad(reference.mean(axis=2), 1, mode="edge")
-    around = np.lib.stride_tricks.sliding_window_view(padded, (3, 3))
-    return EPSILON + np.median(around, axis=(2, 3)) ** 2
+    gray = reference.mean(axis=-1)
+    padded = np.pad(gray, [(0, 0)] * (gray.ndim - 2) + [(1, 1), (1, 1)], mode="edge")
+    around = np.lib.stride_tricks.sliding_window_view(padded, (3, 3), axis=(-2, -1))
+    return EPSILON + np.median(around, axis=(-2, -1)) ** 2
 
 
 def rel_mse(image: np.ndarray, reference: np.ndarray, reference_variance: np.ndarray | None = None) -> float:

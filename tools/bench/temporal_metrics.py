@@ -13,7 +13,7 @@ Measures of the motion benchmark are of one seed: they subtract `variance`, that
 from __future__ import annotations
 
 import numpy as np
-from metrics import EPSILON
+from metrics import EPSILON, relative_to
 
 Halves = tuple[np.ndarray, np.ndarray]
 
@@ -123,11 +123,6 @@ def lag(shares: list[float], change: int) -> int:
 def lead(shares: list[float], change: int) -> int:
     """Returns how many frames before `change` more than a twentieth of the light is wrong for the first time."""
     return next((change - frame for frame, share in enumerate(shares[:change]) if abs(share) >= ANSWERED), 0)
-
-
-def relative_to(reference: np.ndarray) -> np.ndarray:
-    """Returns what squared errors of one seed are divided by."""
-    return EPSILON + reference.mean(axis=-1) ** 2
 
 
 def error_map(images: np.ndarray, reference: np.ndarray, variance: np.ndarray) -> np.ndarray:

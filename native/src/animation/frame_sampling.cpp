@@ -49,13 +49,14 @@ GradusProgress FrameSampling::progress() const {
   const std::lock_guard lock(mutex_);
   if (is_ended()) return p;
   const GradusProgress fresh = fresh_.progress();
-  p.fraction = 0.5f * fresh.fraction;
+  const float of_fresh = takes_replays(input_.settings) ? 0.5f : 1.0f;
+  p.fraction = of_fresh * fresh.fraction;
   p.samples_done = fresh.samples_done;
   p.version = fresh.version;
   p.memory_bytes = fresh.memory_bytes;
   if (!replayed_) return p;
   const GradusProgress replayed = replayed_->progress();
-  p.fraction += 0.5f * replayed.fraction;
+  p.fraction += (1.0f - of_fresh) * replayed.fraction;
   p.samples_done += replayed.samples_done;
   p.memory_bytes += replayed.memory_bytes;
   return p;
@@ -260,8 +261,10 @@ std::shared_ptr<const render::Replay> FrameSampling::follow(const film::FilmHead
   if (follows_before()) {
     const ScopedTimer timer(&record_.stats.seconds.correspondence, &record_.stats.cpu_seconds.correspondence);
     tbb::task_arena(arena_size(input_.threads)).execute([&] {
-      replay->replay_map = make_replay_map(*before, *input_.snapshot, input_.settings, record_.plan.components,
-                                           fresh.region, [this] { return is_stopped(); });
+      GradusSettings settings = now;
+      if (!takes_replays(now)) settings.component_replays = 0;
+      replay->replay_map = make_replay_map(*before, *input_.snapshot, settings, record_.plan.components, fresh.region,
+                                           [this] { return is_stopped(); });
       check_cancelled();
     });
   }

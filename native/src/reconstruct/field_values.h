@@ -80,23 +80,4 @@ Field make_field(int width, int height, const Function& function) {
   return field;
 }
 
-// Returns a channel between pixel centres, by cubic convolution (Keys 1981): linear interpolation would blur.
-inline float interpolate(const Field& image, int channel, float x, float y) {
-  const auto weights_of = [](float t, float* weights) {
-    weights[0] = ((-0.5f * t + 1.0f) * t - 0.5f) * t;
-    weights[1] = (1.5f * t - 2.5f) * t * t + 1.0f;
-    weights[2] = ((-1.5f * t + 2.0f) * t + 0.5f) * t;
-    weights[3] = (0.5f * t - 0.5f) * t * t;
-  };
-  const int i = int(std::floor(x)), j = int(std::floor(y));
-  float across[4], along[4], sum = 0.0f;
-  weights_of(x - float(i), across);
-  weights_of(y - float(j), along);
-  for (int v = 0; v < 4; ++v) {
-    const float* row = image.row(std::clamp(j - 1 + v, 0, image.height() - 1), channel);
-    for (int u = 0; u < 4; ++u) sum += along[v] * across[u] * row[std::clamp(i - 1 + u, 0, image.width() - 1)];
-  }
-  return sum;
-}
-
 }  // namespace gradus::reconstruct

@@ -127,7 +127,8 @@ TEST(B2_Regularized, ScalesWithTheImage) {
   }
 }
 
-// Alpha, which is an eighth of red in these films, uses the weights of the colours, including those of outliers.
+// Alpha, which is an eighth of red in these films, uses the weights of the colours, including those of outliers. Light
+// that is lost is restored in the colours alone.
 // Regression: with differences, alpha was that of the regression alone, so that coverage and colour of an edge were
 // smoothed differently.
 TEST(B2_Regularized, AlphaUsesTheWeightsOfTheColours) {
@@ -140,7 +141,7 @@ TEST(B2_Regularized, AlphaUsesTheWeightsOfTheColours) {
       film.components[0].primal[0][size_t(20 * kWidth + 30)] += Radiance(firefly, firefly, firefly, firefly / 8.0f);
       const std::vector<float> rgba = solve(film);
       for (size_t i = 0; i < rgba.size(); i += 4)
-        ASSERT_NEAR(8.0f * rgba[i + 3], rgba[i], 2e-3f) << i / 4 << ", " << gradients;
+        ASSERT_NEAR(8.0f * rgba[i + 3], rgba[i], 5e-3f) << i / 4 << ", " << gradients;
     }
   }
 }

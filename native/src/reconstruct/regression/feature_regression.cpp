@@ -6,6 +6,7 @@
 #include "base/fault.h"
 #include "base/types.h"
 #include "reconstruct/box_mean.h"
+#include "reconstruct/displaced.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/poisson/twicing.h"
 #include "reconstruct/regression/lost_light.h"
@@ -142,10 +143,12 @@ void multiply(const Field& factors, Field* by_channel) {
 }
 
 // Returns the share of each residual that lies within the bound on outliers (twicing.h), relative to the light around
-// it.
-Field limit_outliers(const Field& residual, const Field& weights) {
+// it; 0 in pixels without samples, which do not count for the bound.
+Field limit_outliers(const Field& residual, const Field& by_light, const Field& weights) {
   const int w = residual.width(), h = residual.height();
-  Field share = make_field(w, h, [&](int x, int y) { return weights.row(y)[x] * mean_of_squares(residual, x, y); });
+  Field share = make_field(w, h, [&](int x, int y) {
+    return weights.row(y)[x] > 0.0f ? by_light.row(y)[x] * mean_of_squares(residual, x, y) : NAN;
+  });
   for_rows((h + kBlockSide - 1) / kBlockSide,
            [&](int j) {
              for (int i = 0; i < (w + kBlockSide - 1) / kBlockSide; ++i) {
@@ -191,12 +194,6 @@ void blend_bias(const Field& share, const Field& coarse, Field* fine) {
   });
 }
 
-// Returns 1 where there are samples, whose weights are not 0, and 0 elsewhere.
-Field where_there_are(const Field& weights) {
-  return make_field(weights.width(), weights.height(),
-                    [&](int x, int y) { return weights.row(y)[x] > 0.0f ? 1.0f : 0.0f; });
-}
-
 // Returns the weights of the residual's regression: weights by light, which preserve the mean, with some influence of
 // the weights by noise, which suppress outliers.
 Field weigh_residual(const Field& by_light, const Field& by_noise) {
@@ -204,6 +201,13 @@ Field weigh_residual(const Field& by_light, const Field& by_noise) {
     const float light = std::sqrt(by_light.row(y)[x]), noise = std::sqrt(by_noise.row(y)[x]);
     return light * std::sqrt(light * noise);
   });
+}
+
+// Returns kept^¾: weights of residuals hold the quarter power of weights by noise, and with it that of the share that
+// the test of light keeps.
+Field rest_of_share(const Field& kept) {
+  return make_field(kept.width(), kept.height(),
+                    [&](int x, int y) { return std::sqrt(kept.row(y)[x] * std::sqrt(kept.row(y)[x])); });
 }
 
 }  // namespace
@@ -268,8 +272,10 @@ FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& 
     blend(share_, coarse.noise, &first.noise);
     blend_bias(share_, coarse.bias, &first.bias);
   }
-  add_residual(image, others, &first, cancel);
-  restored_ = restore_lost_light(first.mean, look_around(image).noise, kept, means, half_differences);
+  add_residual(image, features.estimated.get(), others, &first, cancel);
+  std::vector<Field> residuals;
+  for (size_t i = 0; i < means.size(); ++i) residuals.push_back(residual(i, *means[i], first.mean));
+  restored_ = restore_lost_light(first.mean, look_around(image).noise, kept, residuals, half_differences);
   multiply(restored_, &first.mean);
   multiply(restored_, &first.noise);
   own_ = restore_sampled_light(image.mean, first.mean);
@@ -281,25 +287,27 @@ FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& 
   image_ = std::move(first.mean);
 }
 
-void FeatureRegression::add_residual(const HalvedImage& image, const std::vector<MovedFrame>& others,
-                                     RegressionResult* first, const CancelCheck& cancel) {
+void FeatureRegression::add_residual(const HalvedImage& image, const Field* estimated,
+                                     const std::vector<MovedFrame>& others, RegressionResult* first,
+                                     const CancelCheck& cancel) {
   const Field by_light = weigh_by_light(first->mean, kLightRadius);
   Layers predictors;
   std::vector<Field> residuals, noises;
   for (size_t i = 0; i <= others.size(); ++i) {
     const HalvedImage& sampled = i == 0 ? image : others[i - 1].image;
     residuals.push_back(residual(i, sampled.mean, first->mean));
-    noises.push_back(difference(
-        GRADUS_FAULT(second_step_takes_image_for_noise) ? sampled.mean : sampled.half_difference, first->noise));
-    residual_share_.push_back(limit_outliers(residuals[i], by_light));
+    noises.push_back(residual(
+        i, GRADUS_FAULT(second_step_takes_image_for_noise) ? sampled.mean : sampled.half_difference, first->noise));
+    residual_share_.push_back(limit_outliers(residuals[i], by_light, layers_[i]->weights));
     Field weights = weigh_residual(by_light, layers_[i]->weights);
-    if (i > 0) scale_by(where_there_are(layers_[i]->weights), &residual_share_[i]);
+    if (i > 0) scale_by(rest_of_share(others[i - 1].kept), &weights);
     predictors.push_back(
         std::make_shared<const Predictors>(Predictors{albedo_of(layers_[i]->features), std::move(weights)}));
     scale_by(residual_share_[i], &residuals[i]);
     scale_by(residual_share_[i], &noises[i]);
   }
-  of_residual_ = LocalRegression(std::move(predictors), {}, kOfResidual);
+  of_residual_ = LocalRegression(std::move(predictors), {}, kOfResidual,
+                                 estimated ? std::make_shared<const Field>(albedo_of(*estimated)) : nullptr);
   const RegressionResult second = of_residual_.estimate(pointers_to(residuals), pointers_to(noises), cancel);
   if (!GRADUS_FAULT(second_step_dropped)) add(second.mean, &first->mean);
   if (!GRADUS_FAULT(error_omits_second_step)) add(second.noise, &first->noise);
@@ -307,12 +315,7 @@ void FeatureRegression::add_residual(const HalvedImage& image, const std::vector
 
 Field FeatureRegression::residual(size_t layer, const Field& sampled, const Field& regressed) const {
   const Field& displacement = layers_[layer]->displacement;
-  if (displacement.channels() == 0) return difference(sampled, regressed);
-  Field result = sampled;
-  for_values(&result, [&](float& value, int x, int y, int c) {
-    value -= interpolate(regressed, c, float(x) + displacement.row(y, 0)[x], float(y) + displacement.row(y, 1)[x]);
-  });
-  return result;
+  return difference(sampled, displacement.channels() == 0 ? regressed : displaced(regressed, displacement));
 }
 
 Field FeatureRegression::apply(const Images& values, const CancelCheck& cancel) const {

@@ -1,5 +1,6 @@
 // Regression of an image on its features: in small windows, and in large ones where these are as good. A second
-// regression, of the residual, then restores what the first one lost. All steps are linear in the image once their
+// regression, of the residual, then restores what the first one lost, and factors restore the light that both lost
+// (lost_light.h). All steps are linear in the image once their
 // weights are known, so other planes can go through them.
 #pragma once
 
@@ -68,9 +69,9 @@ class FeatureRegression {
   Field apply(const Field& values, const CancelCheck& cancel) const { return apply(Images{&values}, cancel); }
 
  private:
-  // Adds the regression of the residual to the mean and the noise of `first`.
-  void add_residual(const HalvedImage& image, const std::vector<MovedFrame>& others, RegressionResult* first,
-                    const CancelCheck& cancel);
+  // Adds the regression of the residual to the mean and the noise of `first`. `estimated`: ImageFeatures::estimated.
+  void add_residual(const HalvedImage& image, const Field* estimated, const std::vector<MovedFrame>& others,
+                    RegressionResult* first, const CancelCheck& cancel);
 
   // Returns what the samples of a layer have more than the regressed image where they lie.
   Field residual(size_t layer, const Field& sampled, const Field& regressed) const;

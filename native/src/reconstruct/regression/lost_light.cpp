@@ -13,18 +13,28 @@ namespace {
 // Light is summed over squares of (2 · kLossRadius + 1)² cells of kLossCell × kLossCell pixels. Smaller squares bring
 // light of bright places to the dark ones beside them.
 constexpr int kLossCell = 32, kLossRadius = 4;
-// Maximum of the noise relative to the light of a pixel. It bounds the factors of dark pixels in noisy places.
+// Radius of the light relative to which noise is, and maximum of that ratio.
+constexpr int kLossLightRadius = 7;
 constexpr float kMaxNoise = 16.0f;
-// Order of the sums: light that is lost, √(light · noise), d².
+// Bounds of the factors: where little of a square is noisy, the noisy pixels would take what all of it lacks.
+constexpr float kMinFactor = 0.5f, kMaxFactor = 2.0f;
+// Order of the sums: light that is lost, light · √(noise/light around), d².
 constexpr int kLostSum = 0, kPlaceSum = 3, kSquareSum = 6;
 
-float place_of_loss(float light, float noise) {
-  return light > 0.0f ? std::sqrt(light * std::min(std::max(noise, 0.0f), kMaxNoise * light)) : 0.0f;
+// Returns √(noise/light around) of each pixel.
+Field places_of_loss(const Field& regressed, const Field& noise) {
+  const Field light = box_mean(make_field(regressed.width(), regressed.height(),
+                                          [&](int x, int y) { return std::max(mean_of(regressed, x, y), 0.0f); }),
+                               kLossLightRadius);
+  return make_field(regressed.width(), regressed.height(), [&](int x, int y) {
+    const float around = light.row(y)[x], ratio = around > 0.0f ? noise.row(y)[x] / around : 0.0f;
+    return std::sqrt(std::clamp(ratio, 0.0f, kMaxNoise));
+  });
 }
 
 // Returns the sums over cells.
-Field sum_loss(const Field& regressed, const Field& noise, const std::vector<Field>& kept, const Images& sampled,
-               const Images& half_differences) {
+Field sum_loss(const Field& regressed, const Field& places, const std::vector<Field>& kept,
+               const std::vector<Field>& residuals, const Images& half_differences) {
   const int w = regressed.width(), h = regressed.height();
   Field sums((w + kLossCell - 1) / kLossCell, (h + kLossCell - 1) / kLossCell, kSquareSum + 1);
   const auto add_row = [&](size_t layer, int y) {
@@ -34,9 +44,8 @@ Field sum_loss(const Field& regressed, const Field& noise, const std::vector<Fie
       if (share == 0.0f) continue;
       const int i = x / kLossCell;
       for (int c = 0; c < 3; ++c) {
-        const float light = regressed.row(y, c)[x];
-        sums.row(j, kLostSum + c)[i] += share * (sampled[layer]->row(y, c)[x] - light);
-        sums.row(j, kPlaceSum + c)[i] += share * place_of_loss(light, noise.row(y)[x]);
+        sums.row(j, kLostSum + c)[i] += share * residuals[layer].row(y, c)[x];
+        sums.row(j, kPlaceSum + c)[i] += share * places.row(y)[x] * regressed.row(y, c)[x];
       }
       sums.row(j, kSquareSum)[i] += share * share * mean_of_squares(*half_differences[layer], x, y);
     }
@@ -44,7 +53,7 @@ Field sum_loss(const Field& regressed, const Field& noise, const std::vector<Fie
   for_rows(
       sums.height(),
       [&](int j) {
-        for (size_t layer = 0; layer < sampled.size(); ++layer) {
+        for (size_t layer = 0; layer < residuals.size(); ++layer) {
           for (int y = j * kLossCell; y < std::min(h, (j + 1) * kLossCell); ++y) add_row(layer, y);
         }
       },
@@ -52,7 +61,7 @@ Field sum_loss(const Field& regressed, const Field& noise, const std::vector<Fie
   return sums;
 }
 
-// Returns the light to restore over √(light · noise) for each cell.
+// Returns the light to restore over light · √(noise/light around), for each cell.
 Field restored_shares(const Field& sums) {
   const Field means = box_mean(sums, kLossRadius);
   Field shares(sums.width(), sums.height(), 3);
@@ -93,18 +102,18 @@ float interpolate_cells(const Field& cells, int channel, const BetweenCells& x, 
 }  // namespace
 
 Field restore_lost_light(const Field& regressed, const Field& noise, const std::vector<Field>& kept,
-                         const Images& sampled, const Images& half_differences) {
-  const Field shares = restored_shares(sum_loss(regressed, noise, kept, sampled, half_differences));
+                         const std::vector<Field>& residuals, const Images& half_differences) {
+  const Field places = places_of_loss(regressed, noise);
+  const Field shares = restored_shares(sum_loss(regressed, places, kept, residuals, half_differences));
   Field factors(regressed.width(), regressed.height(), 3);
   for_rows(factors.height(), [&](int y) {
     const BetweenCells of_y(y, shares.height());
     for (int x = 0; x < factors.width(); ++x) {
       const BetweenCells of_x(x, shares.width());
       for (int c = 0; c < 3; ++c) {
-        const float light = regressed.row(y, c)[x], place = place_of_loss(light, noise.row(y)[x]);
-        factors.row(y, c)[x] = 1.0f;
-        if (place > 0.0f && !GRADUS_FAULT(lost_light_not_restored))
-          factors.row(y, c)[x] += place / light * interpolate_cells(shares, c, of_x, of_y);
+        const float restored = places.row(y)[x] * interpolate_cells(shares, c, of_x, of_y);
+        factors.row(y, c)[x] =
+            GRADUS_FAULT(lost_light_not_restored) ? 1.0f : std::clamp(1.0f + restored, kMinFactor, kMaxFactor);
       }
     }
   });

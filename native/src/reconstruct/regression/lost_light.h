@@ -11,13 +11,14 @@
 namespace gradus::reconstruct {
 
 // Returns the factors on the regressed picture that restore the light it has lost, three channels. In each square, it
-// is the sum of what the samples have more than the picture, times
-//   max(0, 1 − Σd²/(Σ(I − x))²),
+// is the sum of the residuals r, what the samples have more than the picture, times
+//   max(0, 1 − Σd²/(Σr)²),
 // where d is half the difference of the half-buffers: by their own statistics, one firefly restores nothing, and n of
-// them all but 1/n of their light (James, Stein 1961). It goes to the pixels in proportion to √(light · noise): a lamp
-// that is seen directly has no noise and loses nothing. `noise`, one channel, is that around each pixel. The samples of
-// each layer count by the share `kept`; empty: in full. All images have three channels.
+// them all but 1/n of their light (James, Stein 1961). It goes to the pixels in proportion to their light times √(noise
+// over light around them): a lamp that is seen directly has little noise and loses little. `noise`, one channel, is
+// that around each pixel. The samples of each layer count by the share `kept`; empty: in full. All images have three
+// channels.
 Field restore_lost_light(const Field& regressed, const Field& noise, const std::vector<Field>& kept,
-                         const Images& sampled, const Images& half_differences);
+                         const std::vector<Field>& residuals, const Images& half_differences);
 
 }  // namespace gradus::reconstruct

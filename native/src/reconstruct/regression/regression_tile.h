@@ -471,7 +471,7 @@ class Tile {
     }
     const Lanes zero{};
     for (int c = 0; c < C; ++c) {
-      pick(!task_.own.empty() ? task_.own_estimates->row(y, c) : nullptr, dx, pixels_[0]);
+      pick(!task_.own.empty() ? task_.own_estimates->row(y, c) : nullptr, dx, pixels_[0], kReach);
       for (int x = 0; x < width_; x += kLanes) {
         const Lanes total = load(boxes_[C] + x), all = total + load(moments_[kOwn] + x);
         const Lanes of_windows = total > zero ? 1.0f / total : zero, of_all = all > zero ? 1.0f / all : zero;

@@ -7,6 +7,7 @@
 
 #include "base/fault.h"
 #include "reconstruct/box_mean.h"
+#include "reconstruct/displaced.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/regression/feature_filter.h"
 #include "reconstruct/solver_planes.h"
@@ -86,19 +87,17 @@ void move_depths(const PixelTrack& track, const Field& depths_here, float unit, 
 // Returns the change of the light between the picture and the samples of another frame: their difference, less that of
 // the picture between the places of the samples and the centres of their pixels.
 template <class Picture>
-LightChange change_of_light(const Picture& here, const PixelTrack& track, const HalvedImage& there,
-                            const Field& weights) {
-  const int w = track.width, h = track.height;
+LightChange change_of_light(const Picture& here, const Predictors& moved, const HalvedImage& there) {
+  const int w = moved.weights.width(), h = moved.weights.height();
   LightChange change{Field(w, h, 3), Field(w, h, 3), Field(w, h, 1)};
   for_values(&change.weight, [&](float& value, int x, int y, int) {
-    const float a = weights.row(y)[x], b = here.weights.row(y)[x];
+    const float a = moved.weights.row(y)[x], b = here.weights.row(y)[x];
     value = a > 0.0f ? a * b / (a + b) : 0.0f;
   });
+  const Field expected = displaced(here.alone, moved.displacement);
   for_values(&change.difference, [&](float& value, int x, int y, int c) {
-    if (weights.row(y)[x] == 0.0f) return;
-    const Vec2& d = track.displacement[size_t(y) * size_t(w) + size_t(x)];
-    value = there.mean.row(y, c)[x] - here.image.mean.row(y, c)[x] -
-            (interpolate(here.alone, c, float(x) + d.x, float(y) + d.y) - here.alone.row(y, c)[x]);
+    if (moved.weights.row(y)[x] == 0.0f) return;
+    value = there.mean.row(y, c)[x] - here.image.mean.row(y, c)[x] - (expected.row(y, c)[x] - here.alone.row(y, c)[x]);
     const float a = there.half_difference.row(y, c)[x], b = here.image.half_difference.row(y, c)[x];
     change.variance.row(y, c)[x] = a * a + b * b;
   });
@@ -171,7 +170,7 @@ Field JointRegression::move_frame(const Frame& frame, const PixelTrack& track, c
   Predictors predictors{move(track, frame.features), move(track, frame.weights.in_windows), displacement_of(track)};
   move_depths(track, picture.depths, picture.unit, &predictors.features);
   scale_values(squared, &predictors.weights);
-  moved.kept = same_light(change_of_light(picture, track, moved.image, predictors.weights));
+  moved.kept = same_light(change_of_light(picture, predictors, moved.image));
   for_values(&moved.kept, [&](float& share, int x, int y, int) {
     if (predictors.weights.row(y)[x] == 0.0f) share = 0.0f;
   });
