@@ -60,14 +60,17 @@ def distance(
     k: float,
     radius: int,
     tolerance: np.ndarray | None = None,
+    other: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> np.ndarray:
     """Returns the squared difference of p and p + offset beyond their noise, relative to their noise, for each channel.
 
-    It is the mean over small squares around both. `tolerance` replaces the variance in the denominator.
+    It is the mean over small squares around both. `tolerance` replaces the variance in the denominator. p + offset is a
+    pixel of the same image, or of the image and variance `other`.
     """
-    tolerance = variance if tolerance is None else tolerance
-    squared = (guide - shifted(guide, *offset)) ** 2 - (variance + shifted(variance, *offset))
-    return box(squared / (EPSILON + k * k * (tolerance + shifted(tolerance, *offset))), radius)
+    there, noise_there = other or (guide, variance)
+    noise = variance + shifted(noise_there, *offset)
+    both = noise if tolerance is None else tolerance + shifted(tolerance, *offset)
+    return box(((guide - shifted(there, *offset)) ** 2 - noise) / (EPSILON + k * k * both), radius)
 
 
 def weight(distances: np.ndarray) -> np.ndarray:
