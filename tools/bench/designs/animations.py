@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from . import nlm
 from .films import Film, Half, film_of, planes_of
 
 NONE = 2**31  # pixel indices from here on stand for no correspondence
@@ -37,7 +38,7 @@ class Frame:
     """One frame of an animation."""
 
     film: Film
-    depth: np.ndarray  # (height, width) mean over samples, 0 where no surface is hit
+    features: np.ndarray  # (height, width, channels) of both halves, filtered, since they are noisy behind rough mirrors
     before: Motion | None = None  # to the frame before; None in the first frame and at shot changes
 
 
@@ -51,24 +52,26 @@ def read_frames(folder: Path, numbers: Sequence[int]) -> list[Frame]:
     frames: list[Frame] = []
     median = None
     for number in numbers:
-        planes = planes_of(_file(folder, number, "fresh"))
+        planes = planes_of(file_of(folder, number, "fresh"))
         median = median or median_depth(planes)
-        before = motion_of(planes_of(_file(folder, number, "replayed"))) if frames else None
-        frames.append(Frame(film_of(planes, median), mean_depth(planes), before))
+        before = motion_of(planes_of(file_of(folder, number, "replayed"))) if frames else None
+        frames.append(frame_of(film_of(planes, median), before))
     return frames
 
 
-def _file(folder: Path, number: int, part: str) -> Path:
+def frame_of(film: Film, before: Motion | None) -> Frame:
+    return Frame(film, nlm.filtered([half.features for half in film]), before)
+
+
+def file_of(folder: Path, number: int, part: str) -> Path:
+    """Returns the file of the fresh or replayed samples of a frame."""
     return folder / f"f{number:+08d}.{part}.exr"
 
 
-def mean_depth(planes: dict[str, np.ndarray]) -> np.ndarray:
-    depth = planes["A.Denoising_Depth.V"] + planes["B.Denoising_Depth.V"]
-    return depth / np.maximum(planes["A.count.V"] + planes["B.count.V"], 1.0)
-
-
 def median_depth(planes: dict[str, np.ndarray]) -> float:
-    depth = mean_depth(planes)
+    """Returns the median depth of the pixels that show a surface, as a mean over samples."""
+    depth = planes["A.Denoising_Depth.V"] + planes["B.Denoising_Depth.V"]
+    depth = depth / np.maximum(planes["A.count.V"] + planes["B.count.V"], 1.0)
     return float(np.median(depth[depth > 0.0])) if (depth > 0.0).any() else 1.0
 
 
@@ -130,7 +133,7 @@ def _put(motion: Motion, to: np.ndarray, source: np.ndarray, displacement: np.nd
 
 def motions_around(frames: Sequence[Frame], picture: int, reach: int) -> dict[int, Motion]:
     """Returns the motions from a frame to those up to `reach` frames before and after it, up to a shot change."""
-    found = {picture: own(*frames[picture].depth.shape)}
+    found = {picture: own(*frames[picture].features.shape[:2])}
     for other in range(picture - 1, max(picture - reach, 0) - 1, -1):
         if (step := frames[other + 1].before) is None:
             break
@@ -147,9 +150,9 @@ def cropped(frame: Frame, rows: slice, columns: slice) -> Frame:
     part = rows, columns
     film = tuple(Half(*(getattr(half, field.name)[part] for field in fields(Half))) for half in frame.film)
     if frame.before is None:
-        return Frame(film, frame.depth[part])
+        return Frame(film, frame.features[part])
     source = frame.before.source[part] - (rows.start, columns.start)
     size = rows.stop - rows.start, columns.stop - columns.start
     shown = frame.before.shown[part] & ((source >= 0) & (source < size)).all(axis=2)
     source = np.where(shown[:, :, None], source, 0)
-    return Frame(film, frame.depth[part], Motion(source, frame.before.displacement[part], shown))
+    return Frame(film, frame.features[part], Motion(source, frame.before.displacement[part], shown))

@@ -46,7 +46,7 @@ def reconstruct(film: Film, more_features: tuple[np.ndarray, np.ndarray] | None 
 
 def reconstruct_animation(frames: Sequence[Frame], pictures: Sequence[int], reach: int = 2) -> Iterator[np.ndarray]:
     """Yields pictures of an animation, each from the frames up to `reach` before and after it."""
-    known = [guided(frame.film) for frame in frames]
+    known = [_guided_by(frame.film, frame.features) for frame in frames]
     for picture in pictures:
         motions = animations.motions_around(frames, picture, reach)
         others = [moved(known[i], motion, known[picture]) for i, motion in motions.items() if i != picture]
@@ -54,12 +54,17 @@ def reconstruct_animation(frames: Sequence[Frame], pictures: Sequence[int], reac
 
 
 def guided(film: Film, more_features: tuple[np.ndarray, np.ndarray] | None = None) -> Guided:
+    frame = _guided_by(film, nlm.filtered([half.features for half in film]))
+    if more_features is None:
+        return frame
+    more = np.stack([scaled(image) for image in more_features[::-1]])
+    return replace(frame, features=np.concatenate([frame.features, more], axis=3))
+
+
+def _guided_by(film: Film, features: np.ndarray) -> Guided:
     colours = [half.image for half in film]
-    own = filtered([half.features for half in film])
-    features = np.repeat(0.5 * (own[0] + own[1])[None], 2, axis=0)  # one image per half
-    if more_features is not None:
-        features = np.concatenate([features, np.stack([scaled(image) for image in more_features[::-1]])], axis=3)
-    return Guided(colours, nlm.variance_of_mean(*colours), features, np.ones((*colours[0].shape[:2], 1)))
+    shown = np.ones((*features.shape[:2], 1))
+    return Guided(colours, nlm.variance_of_mean(*colours), np.repeat(features[None], 2, axis=0), shown)
 
 
 def moved(frame: Guided, motion: Motion, picture: Guided) -> Guided:
@@ -183,19 +188,6 @@ def _windows(padded: np.ndarray) -> np.ndarray:
     side = 2 * RADIUS + 1
     views = np.lib.stride_tricks.sliding_window_view(padded, (side, side), axis=(0, 1))
     return views.transpose(0, 1, 3, 4, 2).reshape(-1, side * side, padded.shape[2])
-
-
-def filtered(halves: list[np.ndarray]) -> list[np.ndarray]:
-    """Returns each half filtered by non-local means over 11×11 pixels, with weights from the other half, channel by
-    channel.
-    """
-    variance = 2.0 * nlm.variance_of_mean(*halves)
-
-    def by(guide: np.ndarray) -> nlm.WeightAt:
-        return lambda offset: nlm.weight(nlm.distance(guide, variance, offset, 0.5, 3))
-
-    a, b = halves
-    return [nlm.average(a, 5, by(b)), nlm.average(b, 5, by(a))]
 
 
 def estimated_error(candidate: list[np.ndarray], colours: list[np.ndarray], variance: np.ndarray) -> np.ndarray:

@@ -87,3 +87,16 @@ def average(image: np.ndarray, radius: int, weight_at: WeightAt) -> np.ndarray:
         total += w * shifted(image, *offset)
         weights = weights + w
     return total / weights
+
+
+def filtered(halves: list[np.ndarray]) -> np.ndarray:
+    """Returns the mean of both halves, each filtered over 11×11 pixels with weights from the other half, channel by
+    channel.
+    """
+    variance = 2.0 * variance_of_mean(*halves)
+
+    def by(guide: np.ndarray) -> WeightAt:
+        return lambda offset: weight(distance(guide, variance, offset, 0.5, 3))
+
+    a, b = halves
+    return 0.5 * (average(a, 5, by(b)) + average(b, 5, by(a)))

@@ -13,7 +13,8 @@ How it was read, section by section of the paper:
   since films hold no derivatives.
 
 Direct and indirect light are filtered together, because films hold their sum. Depth, normal and albedo are means over
-the samples of a pixel, not those of its centre. Antialiasing over time, a pass behind the filter, is left out.
+the samples of a pixel and show what mirrors show. Behind rough mirrors they are noisy, unlike those of a raster image,
+so they are filtered as for NFOR. Antialiasing over time, a pass behind the filter, is left out.
 """
 
 from __future__ import annotations
@@ -40,6 +41,7 @@ BLACK = 0.01  # albedo below which light is divided by this one
 DEPTH_TOLERANCE = 0.05  # share of the depth by which consistent surfaces may differ, beside their slope
 NORMAL_TOLERANCE = 0.9  # cosine of the angle between consistent normals
 FLAT = 2e-3  # share of the depth that differs between neighbours for other reasons than a slope
+SHORTEST_NORMAL = 1e-3  # of a mean normal that is one
 TINY = 1e-10
 HOLE_STEPS = 2  # pixels from which holes of the motion are filled
 
@@ -67,7 +69,7 @@ def reconstruct(frames: Sequence[Frame]) -> Iterator[np.ndarray]:
     """Yields the picture of each frame."""
     history, previous = None, None
     for frame in frames:
-        surface = surface_of(frame)
+        surface = surface_of(frame.features)
         light = mean_of(frame.film).image / surface.albedo
         motion = frame.before if history is not None else None
         accumulated = accumulate(light, surface, None if motion is None else (history, previous, filled(motion)))
@@ -78,13 +80,15 @@ def reconstruct(frames: Sequence[Frame]) -> Iterator[np.ndarray]:
         yield last * surface.albedo
 
 
-def surface_of(frame: Frame) -> Surface:
-    features = mean_of(frame.film).features
+def surface_of(features: np.ndarray) -> Surface:
+    """Returns the surfaces of features (films.Half). Their depth has the median of the film as its unit."""
+    share = features[:, :, 6]
+    depth = share / np.maximum(1.0 - share, TINY)
     normal = 2.0 * features[:, :, :3] - 1.0
     length = np.linalg.norm(normal, axis=2, keepdims=True)
-    hit = (frame.depth > 0.0)[:, :, None] & (length > 1e-3)
+    hit = (share > 0.0)[:, :, None] & (length > SHORTEST_NORMAL)
     unit = np.concatenate([np.where(hit, normal / np.maximum(length, TINY), 0.0), ~hit], axis=2)
-    return Surface(frame.depth, slope_of(frame.depth), unit, np.maximum(features[:, :, 3:6], BLACK))
+    return Surface(depth, slope_of(depth), unit, np.maximum(features[:, :, 3:6], BLACK))
 
 
 def slope_of(depth: np.ndarray) -> np.ndarray:

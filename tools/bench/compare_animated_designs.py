@@ -1,0 +1,215 @@
+"""Compares Gradus' animations with published reconstructions, reimplemented in designs/, on the same stored frames.
+
+    compare_animated_designs.py NAME --stores A,B --references A,B --frames 12-14 [--crop X,Y,WIDTH,HEIGHT]
+                                [--designs none,svgf]
+
+Stores are folders of a frame store (the add-on's Frame Store) with the same frames, sampled by plain paths with
+different seeds: at least two. References are two folders of converged pictures, 0012.exr and so on, of other seeds.
+Frames of the stores before and after those that are compared serve as history and as neighbors. With a crop, all
+designs are measured in that part of the picture, and NFOR, which takes minutes for a megapixel and frame, does no more.
+
+Noise is the variance between seeds and bias the rest of the squared error. Both are free of the references' noise,
+because errors against one of them are multiplied by those against the other one. Times are not compared: the
+reimplementations are NumPy.
+
+Every result is appended to out/bench/results/animated_designs.jsonl. The table in out/bench/animated_designs.md has the
+last result of each name and design.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import subprocess
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import records
+from designs import animations, nfor, svgf
+from designs.animations import Frame
+from designs.films import mean_of, planes_of
+from paths import OUT, TOOL
+from records import Row
+from temporal_metrics import relative_to, trimmed_mean
+from version import conditions, version_of_build
+
+RESULTS = records.file_of("animated_designs")
+DOCUMENT = OUT / "animated_designs.md"
+REACH = 2  # frames before and after a picture for NFOR
+MARGIN = nfor.RADIUS + 3  # pixels around a crop on which NFOR's pixels depend most
+
+LABELS = {
+    "none": "noisy image",
+    "oidn": "Open Image Denoise, frame by frame",
+    "svgf": "SVGF (Schied et al. 2017)",
+    "nfor": "NFOR, frame by frame",
+    "nfor-frames": "NFOR over five frames (Bitterli et al. 2016)",
+    "regularized-frame": "Gradus REGULARIZED, frame by frame",
+    "regularized": "**Gradus REGULARIZED over frames**",
+}
+REACH_OF_NFOR = {"nfor": 0, "nfor-frames": REACH}
+MEASURES = ("flicker", "flicker_trimmed", "flicker_noise", "flicker_bias", "relmse", "relmse_trimmed", "noise", "bias")
+
+
+@dataclass(frozen=True)
+class Part:
+    """The part of the pictures that is measured."""
+
+    rows: slice
+    columns: slice
+
+    def of(self, images: np.ndarray) -> np.ndarray:
+        """Returns the part of images (..., height, width, 3)."""
+        return images[..., self.rows, self.columns, :]
+
+    def widened(self, margin: int, height: int, width: int) -> Part:
+        """Returns the part with a margin, inside of pictures of a size."""
+        rows = slice(max(self.rows.start - margin, 0), min(self.rows.stop + margin, height))
+        return Part(rows, slice(max(self.columns.start - margin, 0), min(self.columns.stop + margin, width)))
+
+    def inside(self, outer: Part) -> Part:
+        """Returns this part in the rows and columns of an outer one."""
+
+        def shifted(side: slice, origin: int) -> slice:
+            return slice(side.start - origin, side.stop - origin)
+
+        return Part(shifted(self.rows, outer.rows.start), shifted(self.columns, outer.columns.start))
+
+
+def pictures_of(
+    store: Path, numbers: Sequence[int], part: Part, designs: Sequence[str]
+) -> Iterator[tuple[str, np.ndarray]]:
+    """Yields each design and its pictures (frames, height, width, 3) of a part."""
+    stored = [number for number in animations.frame_numbers(store) if number <= numbers[-1] + REACH]
+    frames = animations.read_frames(store, stored)
+    chosen = [stored.index(number) for number in numbers]
+    for design in designs:
+        if design == "none":
+            yield design, part.of(np.stack([mean_of(frames[i].film).image for i in chosen]))
+        elif design == "svgf":
+            pictures = list(svgf.reconstruct(frames[: chosen[-1] + 1]))
+            yield design, part.of(np.stack([pictures[i] for i in chosen]))
+        elif design in REACH_OF_NFOR:
+            yield design, by_nfor(frames, chosen, part, REACH_OF_NFOR[design])
+        else:
+            yield design, part.of(by_product(store, numbers, design))
+
+
+def by_nfor(frames: list[Frame], chosen: Sequence[int], part: Part, reach: int) -> np.ndarray:
+    wide = part.widened(MARGIN, *frames[0].features.shape[:2])
+    cropped = [animations.cropped(frame, wide.rows, wide.columns) for frame in frames]
+    return part.inside(wide).of(np.stack(list(nfor.reconstruct_animation(cropped, chosen, reach))))
+
+
+def by_product(store: Path, numbers: Sequence[int], design: str) -> np.ndarray:
+    """Returns pictures of the tool."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        if design == "regularized":
+            _reconstruct(store, folder, "regularized", "--frames", f"{numbers[0]}-{numbers[-1]}")
+        for number in numbers if design != "regularized" else ():
+            film, target = animations.file_of(store, number, "fresh"), folder / f"{number:04d}.exr"
+            if design == "oidn":
+                _reconstruct(film, target, "none", "--denoiser", "oidn", "--denoiser-path", bundled_libraries())
+            else:
+                _reconstruct(film, target, "regularized")
+        return images_of(folder, numbers)
+
+
+def _reconstruct(source: Path, target: Path, reconstruction: str, *more: str | Path) -> None:
+    command = [TOOL, "reconstruct", source, "-o", target, "--reconstruction", reconstruction, *more]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+
+
+def bundled_libraries() -> Path:
+    """Returns the folder of the libraries that come with the Python module bpy."""
+    found = importlib.util.find_spec("bpy")
+    if found is None or found.origin is None:
+        raise RuntimeError("Open Image Denoise comes with the Python module bpy, which is not installed")
+    return Path(found.origin).parent / "lib"
+
+
+def images_of(folder: Path, numbers: Sequence[int]) -> np.ndarray:
+    def image(number: int) -> np.ndarray:
+        planes = planes_of(folder / f"{number:04d}.exr")
+        return np.stack([planes[channel] for channel in "RGB"], axis=2)
+
+    return np.stack([image(number) for number in numbers])
+
+
+def measured(pictures: np.ndarray, references: np.ndarray) -> dict[str, float]:
+    """Returns the measures of pictures (seeds, frames, height, width, 3) against two references (2, frames, ...)."""
+    scale = relative_to(references.mean(axis=0))
+    noise, error = noise_and_error(pictures, references)
+    noise, error = noise / scale, error / scale
+    change_noise, change = noise_and_error(np.diff(pictures, axis=1), np.diff(references, axis=1))
+    change_noise, change = change_noise / scale[1:], change / scale[1:]
+    return {
+        "flicker": float(change.mean()),
+        "flicker_trimmed": trimmed_mean(change),
+        "flicker_noise": float(change_noise.mean()),
+        "flicker_bias": float((change - change_noise).mean()),
+        "relmse": float(error.mean()),
+        "relmse_trimmed": trimmed_mean(error),
+        "noise": float(noise.mean()),
+        "bias": float((error - noise).mean()),
+    }
+
+
+def noise_and_error(images: np.ndarray, references: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the variance between seeds and the squared error, without the noise of references, for each pixel."""
+    errors = (images - references[0]) * (images - references[1])
+    return images.var(axis=0, ddof=1).mean(axis=-1), errors.mean(axis=0).mean(axis=-1)
+
+
+def compare(arguments: argparse.Namespace) -> None:
+    first, last = (int(number) for number in arguments.frames.split("-"))
+    numbers = range(first, last + 1)
+    references = np.stack([images_of(Path(folder), numbers) for folder in arguments.references.split(",")])
+    height, width = references.shape[2:4]
+    x, y, w, h = (int(n) for n in arguments.crop.split(",")) if arguments.crop else (0, 0, width, height)
+    part = Part(slice(y, y + h), slice(x, x + w))
+    designs = arguments.designs.split(",") if arguments.designs else list(LABELS)
+    stores = [Path(folder) for folder in arguments.stores.split(",")]
+    for results in zip(*(pictures_of(store, numbers, part, designs) for store in stores), strict=True):
+        design, pictures = results[0][0], np.stack([images for _, images in results])
+        row = {"name": arguments.name, "design": design, "seeds": len(stores), "frames": [first, last]}
+        row |= {"width": w, "height": h} | measured(pictures, part.of(references))
+        records.append(row | conditions(version_of_build()), RESULTS)
+        print(f"{arguments.name:12} {design:18} F {row['flicker']:.5f} relMSE {row['relmse']:.5f}", flush=True)
+
+
+def table(rows: list[Row]) -> str:
+    """Returns the last result of each name and design."""
+    newest = {(row["name"], row["design"]): row for row in rows}
+    heads = ["animation", "design", "F", "F trimmed", "F noise", "F bias", "relMSE", "relMSE trimmed", "noise", "bias"]
+    lines = [heads, ["---", "---", *["---:"] * len(MEASURES)]]
+    for name in dict.fromkeys(name for name, _ in newest):
+        for design, label in LABELS.items():
+            if row := newest.get((name, design)):
+                lines.append([name, label, *(f"{row[measure]:.5f}" for measure in MEASURES)])
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
+
+
+def write_document() -> None:
+    about = "Equal samples; noise and bias are parts of F and of relMSE."
+    DOCUMENT.write_text(f"# Animations against published reconstructions\n\n{about}\n\n{table(records.read(RESULTS))}")
+    print(DOCUMENT)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("name")
+    for option in ("--stores", "--references", "--frames"):
+        parser.add_argument(option, required=True)
+    for option in ("--crop", "--designs"):
+        parser.add_argument(option, default="")
+    compare(parser.parse_args())
+    write_document()
+
+
+if __name__ == "__main__":
+    main()
