@@ -29,8 +29,7 @@ from pathlib import Path
 import numpy as np
 import records
 from designs import animations, nfor, svgf
-from designs.animations import Frame
-from designs.films import mean_of, planes_of
+from designs.films import film_of, mean_of, planes_of
 from paths import OUT, TOOL
 from records import Row
 from temporal_metrics import relative_to, trimmed_mean
@@ -83,25 +82,37 @@ def pictures_of(
     store: Path, numbers: Sequence[int], part: Part, designs: Sequence[str]
 ) -> Iterator[tuple[str, np.ndarray]]:
     """Yields each design and its pictures (frames, height, width, 3) of a part."""
-    stored = [number for number in animations.frame_numbers(store) if number <= numbers[-1] + REACH]
-    frames = animations.read_frames(store, stored)
-    chosen = [stored.index(number) for number in numbers]
     for design in designs:
-        if design == "none":
-            yield design, part.of(np.stack([mean_of(frames[i].film).image for i in chosen]))
-        elif design == "svgf":
-            pictures = list(svgf.reconstruct(frames[: chosen[-1] + 1]))
-            yield design, part.of(np.stack([pictures[i] for i in chosen]))
-        elif design in REACH_OF_NFOR:
-            yield design, by_nfor(frames, chosen, part, REACH_OF_NFOR[design])
+        if design in REACH_OF_NFOR:
+            yield design, by_nfor(store, numbers, part, REACH_OF_NFOR[design])
         else:
-            yield design, part.of(by_product(store, numbers, design))
+            by = BY.get(design, by_product)
+            yield design, part.of(by(store, numbers, design))
 
 
-def by_nfor(frames: list[Frame], chosen: Sequence[int], part: Part, reach: int) -> np.ndarray:
-    wide = part.widened(MARGIN, *frames[0].features.shape[:2])
-    cropped = [animations.cropped(frame, wide.rows, wide.columns) for frame in frames]
-    return part.inside(wide).of(np.stack(list(nfor.reconstruct_animation(cropped, chosen, reach))))
+def without_reconstruction(store: Path, numbers: Sequence[int], _: str) -> np.ndarray:
+    films = (film_of(planes_of(animations.file_of(store, number, "fresh"))) for number in numbers)
+    return np.stack([mean_of(film).image for film in films])
+
+
+def by_svgf(store: Path, numbers: Sequence[int], _: str) -> np.ndarray:
+    stored = [number for number in animations.frame_numbers(store) if number <= numbers[-1]]
+    pictures = svgf.reconstruct(animations.read_frames(store, stored))
+    return np.stack([picture for number, picture in zip(stored, pictures, strict=True) if number in numbers])
+
+
+def by_nfor(store: Path, numbers: Sequence[int], part: Part, reach: int) -> np.ndarray:
+    """Returns the part alone, since NFOR takes minutes for a megapixel of one frame."""
+    around = range(numbers[0] - reach, numbers[-1] + reach + 1)
+    stored = [number for number in animations.frame_numbers(store) if number in around]
+    height, width = planes_of(animations.file_of(store, numbers[0], "fresh"))["A.R"].shape
+    wide = part.widened(MARGIN, height, width)
+    frames = animations.read_frames(store, stored, (wide.rows, wide.columns))
+    pictures = nfor.reconstruct_animation(frames, [stored.index(number) for number in numbers], reach)
+    return part.inside(wide).of(np.stack(list(pictures)))
+
+
+BY = {"none": without_reconstruction, "svgf": by_svgf}
 
 
 def by_product(store: Path, numbers: Sequence[int], design: str) -> np.ndarray:

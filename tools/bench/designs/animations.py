@@ -30,7 +30,8 @@ class Motion:
     def read(self, image: np.ndarray) -> np.ndarray:
         """Returns an image of the other frame at the pixels that show its surfaces here; 0 where there are none."""
         read = image[self.source[:, :, 0], self.source[:, :, 1]]
-        return np.where(self.shown.reshape(self.shown.shape + (1,) * (image.ndim - 2)), read, 0.0)
+        shown = self.shown.reshape(self.shown.shape + (1,) * (image.ndim - 2))
+        return np.where(shown, read, np.zeros((), image.dtype))
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,9 @@ class Frame:
     """One frame of an animation."""
 
     film: Film
-    features: np.ndarray  # (height, width, channels) of both halves, filtered, since they are noisy behind rough mirrors
+    features: (
+        np.ndarray
+    )  # (height, width, channels) of both halves, filtered, since they are noisy behind rough mirrors
     before: Motion | None = None  # to the frame before; None in the first frame and at shot changes
 
 
@@ -47,15 +50,19 @@ def frame_numbers(folder: Path) -> list[int]:
     return sorted(int(file.name.partition(".")[0].removeprefix("f")) for file in folder.glob("f*.fresh.exr"))
 
 
-def read_frames(folder: Path, numbers: Sequence[int]) -> list[Frame]:
-    """Returns successive frames of a folder of a frame store. Their depths as features have a common unit."""
+def read_frames(folder: Path, numbers: Sequence[int], part: tuple[slice, slice] | None = None) -> list[Frame]:
+    """Returns successive frames of a folder of a frame store, or some of their rows and columns.
+
+    Their depths as features have a common unit.
+    """
     frames: list[Frame] = []
     median = None
     for number in numbers:
         planes = planes_of(file_of(folder, number, "fresh"))
         median = median or median_depth(planes)
         before = motion_of(planes_of(file_of(folder, number, "replayed"))) if frames else None
-        frames.append(frame_of(film_of(planes, median), before))
+        film = film_of(planes, median)
+        frames.append(frame_of(*((film, before) if part is None else cropped(film, before, part))))
     return frames
 
 
@@ -145,14 +152,13 @@ def motions_around(frames: Sequence[Frame], picture: int, reach: int) -> dict[in
     return found
 
 
-def cropped(frame: Frame, rows: slice, columns: slice) -> Frame:
-    """Returns a part of a frame. Surfaces that come from outside of it are shown by no pixel of the frame before."""
-    part = rows, columns
-    film = tuple(Half(*(getattr(half, field.name)[part] for field in fields(Half))) for half in frame.film)
-    if frame.before is None:
-        return Frame(film, frame.features[part])
-    source = frame.before.source[part] - (rows.start, columns.start)
+def cropped(film: Film, before: Motion | None, part: tuple[slice, slice]) -> tuple[Film, Motion | None]:
+    """Returns rows and columns of a film. Surfaces that come from outside are shown by no pixel of the frame before."""
+    a, b = (Half(*(getattr(half, field.name)[part] for field in fields(Half))) for half in film)
+    if before is None:
+        return (a, b), None
+    rows, columns = part
+    source = before.source[part] - (rows.start, columns.start)
     size = rows.stop - rows.start, columns.stop - columns.start
-    shown = frame.before.shown[part] & ((source >= 0) & (source < size)).all(axis=2)
-    source = np.where(shown[:, :, None], source, 0)
-    return Frame(film, frame.features[part], Motion(source, frame.before.displacement[part], shown))
+    shown = before.shown[part] & ((source >= 0) & (source < size)).all(axis=2)
+    return (a, b), Motion(np.where(shown[:, :, None], source, 0), before.displacement[part], shown)

@@ -128,9 +128,7 @@ def accumulate(light: np.ndarray, surface: Surface, before: tuple[History, Surfa
     past = reprojected(*before, surface)
     length = past.length + 1.0
     alpha = np.maximum(ALPHA, 1.0 / length)
-    return History(
-        alpha * light + (1.0 - alpha) * past.light, alpha * moments + (1.0 - alpha) * past.moments, length
-    )
+    return History(alpha * light + (1.0 - alpha) * past.light, alpha * moments + (1.0 - alpha) * past.moments, length)
 
 
 def reprojected(history: History, previous: Surface, motion: Motion, surface: Surface) -> History:
