@@ -1,7 +1,7 @@
 """Compares Gradus' animations with published reconstructions, reimplemented in designs/, on the same stored frames.
 
-    compare_animated_designs.py NAME --stores A,B --references A,B --frames 12-14 [--crop X,Y,WIDTH,HEIGHT]
-                                [--designs none,svgf]
+    compare_animated_designs.py --name KITCHEN --stores A,B --references A,B --frames 12-14
+                                [--crop X,Y,WIDTH,HEIGHT] [--designs none,svgf]
 
 Stores are folders of a frame store (the add-on's Frame Store) with the same frames, sampled by plain paths with
 different seeds: at least two. References are two folders of converged pictures, 0012.exr and so on, of other seeds.
@@ -213,8 +213,7 @@ def write_document() -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("name")
-    for option in ("--stores", "--references", "--frames"):
+    for option in ("--name", "--stores", "--references", "--frames"):
         parser.add_argument(option, required=True)
     for option in ("--crop", "--designs"):
         parser.add_argument(option, default="")
