@@ -6,7 +6,7 @@
 Stores are folders of a frame store (the add-on's Frame Store) with the same frames, sampled by plain paths with
 different seeds: at least two. References are two folders of converged pictures, 0012.exr and so on, of other seeds.
 Frames of the stores before and after those that are compared serve as history and as neighbors. With a crop, all
-designs are measured in that part of the picture, and NFOR, which takes minutes for a megapixel and frame, does no more.
+designs are measured in that part of the picture, and SVGF and NFOR, which takes minutes for a frame, do little more.
 
 Noise is the variance between seeds and bias the rest of the squared error. Both are free of the references' noise,
 because errors against one of them are multiplied by those against the other one. Times are not compared: the
@@ -22,13 +22,15 @@ import argparse
 import importlib.util
 import subprocess
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import records
 from designs import animations, nfor, svgf
+from designs.animations import Frame
 from designs.films import film_of, mean_of, planes_of
 from paths import OUT, TOOL
 from records import Row
@@ -38,7 +40,9 @@ from version import conditions, version_of_build
 RESULTS = records.file_of("animated_designs")
 DOCUMENT = OUT / "animated_designs.md"
 REACH = 2  # frames before and after a picture for NFOR
-MARGIN = nfor.RADIUS + 3  # pixels around a crop on which NFOR's pixels depend most
+# Pixels around a part that a design reads, too.
+NFOR_MARGIN = nfor.RADIUS + 3
+SVGF_MARGIN = 2 ** (svgf.LEVELS + 1)
 
 LABELS = {
     "none": "noisy image",
@@ -49,7 +53,6 @@ LABELS = {
     "regularized-frame": "Gradus REGULARIZED, frame by frame",
     "regularized": "**Gradus REGULARIZED over frames**",
 }
-REACH_OF_NFOR = {"nfor": 0, "nfor-frames": REACH}
 MEASURES = ("flicker", "flicker_trimmed", "flicker_noise", "flicker_bias", "relmse", "relmse_trimmed", "noise", "bias")
 
 
@@ -83,51 +86,56 @@ def pictures_of(
 ) -> Iterator[tuple[str, np.ndarray]]:
     """Yields each design and its pictures (frames, height, width, 3) of a part."""
     for design in designs:
-        if design in REACH_OF_NFOR:
-            yield design, by_nfor(store, numbers, part, REACH_OF_NFOR[design])
-        else:
-            by = BY.get(design, by_product)
-            yield design, part.of(by(store, numbers, design))
+        yield design, BY[design](store, numbers, part)
 
 
-def without_reconstruction(store: Path, numbers: Sequence[int], _: str) -> np.ndarray:
+def without_reconstruction(store: Path, numbers: Sequence[int], part: Part) -> np.ndarray:
     films = (film_of(planes_of(animations.file_of(store, number, "fresh"))) for number in numbers)
-    return np.stack([mean_of(film).image for film in films])
+    return part.of(np.stack([mean_of(film).image for film in films]))
 
 
-def by_svgf(store: Path, numbers: Sequence[int], _: str) -> np.ndarray:
+def by_svgf(store: Path, numbers: Sequence[int], part: Part) -> np.ndarray:
     stored = [number for number in animations.frame_numbers(store) if number <= numbers[-1]]
-    pictures = svgf.reconstruct(animations.read_frames(store, stored))
-    return np.stack([picture for number, picture in zip(stored, pictures, strict=True) if number in numbers])
+    frames, inner = frames_around(store, stored, part, SVGF_MARGIN)
+    pictures = svgf.reconstruct(frames)
+    return inner.of(np.stack([picture for number, picture in zip(stored, pictures, strict=True) if number in numbers]))
 
 
 def by_nfor(store: Path, numbers: Sequence[int], part: Part, reach: int) -> np.ndarray:
-    """Returns the part alone, since NFOR takes minutes for a megapixel of one frame."""
     around = range(numbers[0] - reach, numbers[-1] + reach + 1)
     stored = [number for number in animations.frame_numbers(store) if number in around]
+    frames, inner = frames_around(store, stored, part, NFOR_MARGIN)
+    chosen = [stored.index(number) for number in numbers]
+    return inner.of(np.stack(list(nfor.reconstruct_animation(frames, chosen, reach))))
+
+
+def frames_around(store: Path, numbers: Sequence[int], part: Part, margin: int) -> tuple[list[Frame], Part]:
+    """Returns a part of frames with a margin, and where the part lies in it."""
     height, width = planes_of(animations.file_of(store, numbers[0], "fresh"))["A.R"].shape
-    wide = part.widened(MARGIN, height, width)
-    frames = animations.read_frames(store, stored, (wide.rows, wide.columns))
-    pictures = nfor.reconstruct_animation(frames, [stored.index(number) for number in numbers], reach)
-    return part.inside(wide).of(np.stack(list(pictures)))
+    wide = part.widened(margin, height, width)
+    return animations.read_frames(store, numbers, (wide.rows, wide.columns)), part.inside(wide)
 
 
-BY = {"none": without_reconstruction, "svgf": by_svgf}
+def by_product(store: Path, numbers: Sequence[int], part: Part) -> np.ndarray:
+    """Returns pictures of the tool over frames."""
+    with tempfile.TemporaryDirectory() as folder:
+        _reconstruct(store, Path(folder), "regularized", "--frames", f"{numbers[0]}-{numbers[-1]}")
+        return part.of(images_of(Path(folder), numbers))
 
 
-def by_product(store: Path, numbers: Sequence[int], design: str) -> np.ndarray:
-    """Returns pictures of the tool."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        if design == "regularized":
-            _reconstruct(store, folder, "regularized", "--frames", f"{numbers[0]}-{numbers[-1]}")
-        for number in numbers if design != "regularized" else ():
-            film, target = animations.file_of(store, number, "fresh"), folder / f"{number:04d}.exr"
-            if design == "oidn":
-                _reconstruct(film, target, "none", "--denoiser", "oidn", "--denoiser-path", bundled_libraries())
-            else:
-                _reconstruct(film, target, "regularized")
-        return images_of(folder, numbers)
+def frame_by_frame(
+    store: Path, numbers: Sequence[int], part: Part, reconstruction: str, *more: str | Path
+) -> np.ndarray:
+    """Returns pictures of the tool, each from its frame alone."""
+    with tempfile.TemporaryDirectory() as folder:
+        for number in numbers:
+            target = Path(folder) / f"{number:04d}.exr"
+            _reconstruct(animations.file_of(store, number, "fresh"), target, reconstruction, *more)
+        return part.of(images_of(Path(folder), numbers))
+
+
+def by_oidn(store: Path, numbers: Sequence[int], part: Part) -> np.ndarray:
+    return frame_by_frame(store, numbers, part, "none", "--denoiser", "oidn", "--denoiser-path", bundled_libraries())
 
 
 def _reconstruct(source: Path, target: Path, reconstruction: str, *more: str | Path) -> None:
@@ -149,6 +157,17 @@ def images_of(folder: Path, numbers: Sequence[int]) -> np.ndarray:
         return np.stack([planes[channel] for channel in "RGB"], axis=2)
 
     return np.stack([image(number) for number in numbers])
+
+
+BY: dict[str, Callable[[Path, Sequence[int], Part], np.ndarray]] = {
+    "none": without_reconstruction,
+    "oidn": by_oidn,
+    "svgf": by_svgf,
+    "nfor": partial(by_nfor, reach=0),
+    "nfor-frames": partial(by_nfor, reach=REACH),
+    "regularized-frame": partial(frame_by_frame, reconstruction="regularized"),
+    "regularized": by_product,
+}
 
 
 def measured(pictures: np.ndarray, references: np.ndarray) -> dict[str, float]:
