@@ -12,7 +12,7 @@ endif
 
 .DEFAULT_GOAL := help
 .PHONY: help build render render-animation test test-full test-native test-regression test-addon stress faults compilers package schema format lint clean
-BENCH := $(addprefix bench-,errors quick agreement pictures speed reconstruct animation motion host designs compare report)
+BENCH := $(addprefix bench-,errors quick agreement pictures speed reconstruct animation motion host designs animated-designs compare report)
 .PHONY: bench $(BENCH) picture picture-components
 
 help:           ## this list
@@ -54,7 +54,7 @@ compilers:      ## statistics of a build without optimisation, and of one by cla
 	@tools/compilers.sh
 
 # Results, pictures and the report go to out/bench. Variables limit a part: the head of tools/bench.sh lists them.
-bench:          ## all parts but quick, designs and compare, each for MINUTES=60 at most; a further call goes on
+bench:          ## all parts but quick, the designs and compare, each for MINUTES=60 at most; a further call goes on
 	@tools/bench.sh all
 
 bench-errors:   ## stills: error against CPU time next to Cycles and Mitsuba: SCENES=a,b MODES=path,auto WIDTH=160
@@ -67,6 +67,7 @@ bench-animation: ## animations: error and flicker against CPU time: SCENES=a,b B
 bench-motion:   ## motion of components: MEASURES=truth,prediction,flicker,cost SCENES=a,b BLUR=1 LOADED=1
 bench-host:     ## export and upload in each Blender, half a minute
 bench-designs:  ## the reconstructions next to published ones: SCENES=hero,kitchen WIDTH=160 REFERENCE=1024
+bench-animated-designs: ## SVGF and NFOR: NAME=kitchen STORES=a,b REFERENCES=a,b FRAMES=12-14 CROP=60,60,160,90
 bench-compare:  ## two commits whose stills were measured: OLD=772811d NEW=414ff4f WIDTH=160
 bench-report:   ## out/bench/report.html and report.md from the results in out/bench
 $(BENCH): bench-%:

@@ -2,12 +2,13 @@
 # Runs a part of the benchmark and writes the report. Everything goes to out/bench.
 #
 # usage: bench.sh all | errors | quick | agreement | pictures | speed | reconstruct | animation | motion | host |
-#                 designs | compare | report
+#                 designs | animated-designs | compare | report
 #
 # Variables of the environment limit a part; `make help` says which part reads which:
 #   SCENES=a,b  MODES=path,auto  REFERENCE=1024  SEEDS=5  SAMPLES=4,16,64  MINUTES=60  WIDTH=160
 #   SIZE=320x180  FRAMES=24  BLUR=1  CHECKED=8 (frames that have a reference)  QUICK=1 (two animations)
 #   MEASURES=truth,flicker  REPEATS=3  LOADED=1 (the machine has other work)
+#   NAME=kitchen  STORES=a,b  REFERENCES=a,b  CROP=60,60,160,90  DESIGNS=svgf,nfor-frames
 #   ROOMS=room-1k  SPEED_WIDTH=640  OLD=commit  NEW=commit
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -63,6 +64,9 @@ case $part in
   errors | agreement | pictures | speed | reconstruct | animation | motion) set_up; "$part"; report ;;
   quick) set_up; errors --quick; report ;;
   host) set_up blender; run host.py; report ;;
+  animated-designs)
+    OPENBLAS_NUM_THREADS=1 run compare_animated_designs.py name stores references frames crop designs
+    ;;
   designs) set_up; OPENBLAS_NUM_THREADS=1 run compare_designs.py scenes width reference ;;
   compare)
     .venv/bpy45/bin/python3 tools/bench/compare.py "${OLD:?which commit?}" "${NEW:?which commit?}" \

@@ -1,4 +1,5 @@
-"""Published reconstructions, reimplemented for reading, with which compare_designs.py compares Gradus' own.
+"""Published reconstructions, reimplemented for reading, with which compare_designs.py compares Gradus' own,
+and compare_animated_designs.py its animations (svgf.py and nfor.py say how these were read).
 
 How chapter 8 of the thesis (Manzi, Vicini, Zwicker 2016) was read; equations and figures are those of the chapter.
 

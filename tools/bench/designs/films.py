@@ -33,10 +33,13 @@ def planes_of(path: Path) -> dict[str, np.ndarray]:
         return {name: np.asarray(channel.pixels, dtype=np.float64) for name, channel in channels}
 
 
-def film_of(planes: dict[str, np.ndarray]) -> Film:
-    """Returns the two half-buffers of a stored film, from its channels by name."""
+def film_of(planes: dict[str, np.ndarray], median: float | None = None) -> Film:
+    """Returns the two half-buffers of a stored film, from its channels by name.
+
+    `median` is the depth that becomes ½ as a feature; if not given, the median of this film.
+    """
     depths = [_mean_of_samples(planes, half, f"{half}.Denoising_Depth", "V") for half in "AB"]
-    median = _median_of_positive(np.concatenate(depths))
+    median = median or _median_of_positive(np.concatenate(depths))
     a, b = (_half_of(planes, half, depth / (depth + median)) for half, depth in zip("AB", depths, strict=True))
     return a, b
 
@@ -76,7 +79,9 @@ def _half_of(planes: dict[str, np.ndarray], half: str, depth: np.ndarray) -> Hal
 
 
 def _mean_of_pairs(planes: dict[str, np.ndarray], half: str, offset: str) -> np.ndarray:
-    """Returns the mean of the samples from one end of each pair, or NaN where there are none."""
+    """Returns the mean of the samples from one end of each pair, or NaN where there are none, as in films of paths."""
+    if f"{half}.{offset}.pairs.V" not in planes:
+        return np.full((*planes[f"{half}.count.V"].shape, 3), np.nan)
     pairs = planes[f"{half}.{offset}.pairs.V"][:, :, None]
     return _vector(planes, f"{half}.{offset}", "RGB") / np.where(pairs > 0.0, pairs, np.nan)
 

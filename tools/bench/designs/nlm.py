@@ -60,14 +60,17 @@ def distance(
     k: float,
     radius: int,
     tolerance: np.ndarray | None = None,
+    other: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> np.ndarray:
     """Returns the squared difference of p and p + offset beyond their noise, relative to their noise, for each channel.
 
-    It is the mean over small squares around both. `tolerance` replaces the variance in the denominator.
+    It is the mean over small squares around both. `tolerance` replaces the variance in the denominator. p + offset is a
+    pixel of the same image, or of the image and variance `other`.
     """
-    tolerance = variance if tolerance is None else tolerance
-    squared = (guide - shifted(guide, *offset)) ** 2 - (variance + shifted(variance, *offset))
-    return box(squared / (EPSILON + k * k * (tolerance + shifted(tolerance, *offset))), radius)
+    there, noise_there = other or (guide, variance)
+    noise = variance + shifted(noise_there, *offset)
+    both = noise if tolerance is None else tolerance + shifted(tolerance, *offset)
+    return box(((guide - shifted(there, *offset)) ** 2 - noise) / (EPSILON + k * k * both), radius)
 
 
 def weight(distances: np.ndarray) -> np.ndarray:
@@ -84,3 +87,16 @@ def average(image: np.ndarray, radius: int, weight_at: WeightAt) -> np.ndarray:
         total += w * shifted(image, *offset)
         weights = weights + w
     return total / weights
+
+
+def filtered(halves: list[np.ndarray]) -> np.ndarray:
+    """Returns the mean of both halves, each filtered over 11×11 pixels with weights from the other half, channel by
+    channel.
+    """
+    variance = 2.0 * variance_of_mean(*halves)
+
+    def by(guide: np.ndarray) -> WeightAt:
+        return lambda offset: weight(distance(guide, variance, offset, 0.5, 3))
+
+    a, b = halves
+    return 0.5 * (average(a, 5, by(b)) + average(b, 5, by(a)))
