@@ -141,7 +141,7 @@ TEST(B2_Regularized, AlphaUsesTheWeightsOfTheColours) {
       film.components[0].primal[0][size_t(20 * kWidth + 30)] += Radiance(firefly, firefly, firefly, firefly / 8.0f);
       const std::vector<float> rgba = solve(film);
       for (size_t i = 0; i < rgba.size(); i += 4)
-        ASSERT_NEAR(8.0f * rgba[i + 3], rgba[i], 5e-3f) << i / 4 << ", " << gradients;
+        ASSERT_NEAR(8.0f * rgba[i + 3], rgba[i], 1e-2f) << i / 4 << ", " << gradients;
     }
   }
 }
@@ -218,8 +218,8 @@ TEST(B2_Regularized, DarkGapsBetweenBrightNoisyPixelsStayDark) {
 }
 
 // One sample in sixteen carries all the light: windows take it for an outlier, and the first step loses nearly all of
-// it. The second step restores most of it, by the albedo. Only one half-buffer has such samples, so that all of it may
-// be chance; the error reflects that.
+// it. The second step restores half of it, by the albedo, and factors the rest, also where windows reach over an edge.
+// Only one half-buffer has such samples, so that all of it may be chance; the error reflects that.
 TEST(B2_Regularized, RestoresTheLightOfRareSamples) {
   const auto albedo = [](int x) { return (x / 6) % 2 ? 0.8f : 0.2f; };
   FeatureFilm description{kWidth,
@@ -245,10 +245,10 @@ TEST(B2_Regularized, RestoresTheLightOfRareSamples) {
       if (x % 12 == 0 || x % 12 == 5) beside_edges += value / (kWidth / 6);  // dark, beside bright
     }
   }
-  EXPECT_GT(light, 0.55);
-  EXPECT_LT(light, 1.05);
-  EXPECT_NEAR(beside_edges, 1.0, 0.25);
-  EXPECT_GT(mean(error), reconstruct::kHidden * squares);
+  EXPECT_GT(light, 0.95);
+  EXPECT_LT(light, 1.25);
+  EXPECT_NEAR(beside_edges, 1.0, 0.75);
+  EXPECT_GT(mean(error), 0.9 * reconstruct::kHidden * squares);
   EXPECT_LT(mean(error), 1.25 * reconstruct::kHidden * squares);
 }
 
