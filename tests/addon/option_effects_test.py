@@ -236,6 +236,8 @@ def prepare(scene: bpy.types.Scene, option: dict[str, Any]) -> None:
         add_missing_image()
     if option.get("shown") in ("animation", "motion blur"):
         let_move(scene)
+    if option["name"] == "component_replays":  # a pane of glass passes over what is seen through it
+        key(bpy.data.objects["Pane"], "location", {1: (-1.5, 0.6, 0.8), FRAMES: (1.5, 0.6, 0.8)})
     if option.get("shown") == "motion blur":
         scene.render.use_motion_blur = True
         scene.view_layers[0].use_pass_vector = True
