@@ -66,11 +66,11 @@ def test_every_temporal_mode_is_compared_with_itself_frame_by_frame() -> None:
 
 
 def test_targets_are_ratios_at_equal_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = [rows("path", 1.0), rows("gradient-l2", 0.2), rows("temporal-l2", 0.05), rows(report.PEER, 0.1)]
+    found = [rows("path", 1.0), rows("gradient-l2", 0.2), rows("temporal-l2", 0.02), rows(report.PEER, 0.1)]
     table = report.ratios(stored(tmp_path, monkeypatch, *found)[variants.USUAL])
     assert table.columns == ["mode", "ratio", "target", "light-off", "met"]
     assert [row[3:] for row in table.rows] == [
-        [ratio, "1 of 1"] for ratio in ("0.25", "0.25", "0.25", "0.25", "0.50", "0.50", "0.50")
+        [ratio, "1 of 1"] for ratio in ("0.10", "0.10", "0.10", "0.10", "0.20", "0.20", "0.20", "0.20")
     ], "there is neither a shadow nor a peer with one seed"
 
 
