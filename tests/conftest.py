@@ -1,15 +1,18 @@
 """Fixtures and marks of all tests. They run in Blender 3.4, in the bpy modules, and in plain Python (tools/test.py).
 
-Fixtures: `host_version`, `library`, `scene`, `render`, `blender`; the add-on is registered throughout.
-Temporary folders are pytest's `tmp_path`.
+Fixtures: `host_version`, `library`, `scene`, `render`, `exports`, `lines`, `blender`; the add-on is registered
+throughout. Temporary folders are pytest's `tmp_path`.
 """
 
 from __future__ import annotations
 
 import ctypes
+import json
 import os
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from support import application
@@ -89,6 +92,22 @@ def render(tmp_path: Path) -> Callable[..., dict]:
     from support import images
 
     return lambda scene, **settings: images.render(scene, tmp_path, **settings)
+
+
+@pytest.fixture
+def exports(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Returns the exports that follow; see support/exports.py."""
+    from support.exports import Exports
+
+    return Exports(monkeypatch)
+
+
+@pytest.fixture
+def lines(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[], list[dict[str, Any]]]:
+    """Returns a function that returns the stats of all delivered frames in order."""
+    path = tmp_path / "stats.jsonl"
+    monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-stats", str(path)])
+    return lambda: [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
 
 
 @pytest.fixture

@@ -116,7 +116,7 @@ class Animation:
         self._fault: tuple[int, Exception] | None = None  # the frame that failed and its error
         self._states: dict[int, bytes] = {}  # what frames ahead showed when they were sampled, if there are handlers
         self._folders: list[Path] = []  # of the frame store
-        self._written: set[int] = set()  # frames that this job has sampled
+        self._written: set[int] = set()  # frames whose films this job has written there
         self._sequences: dict[str, int] = {}
         for view in job.views:
             self._sequences[view] = self._create(job, view, folder)

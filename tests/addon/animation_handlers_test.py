@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -53,19 +51,6 @@ def handle() -> Iterator[Handle]:
     yield add
     for kind, listed in before.items():
         getattr(bpy.app.handlers, kind)[:] = listed
-
-
-@pytest.fixture
-def exports(monkeypatch: pytest.MonkeyPatch) -> Exports:
-    return Exports(monkeypatch)
-
-
-@pytest.fixture
-def lines(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callable[[], list[dict[str, Any]]]]:
-    """Returns a function that returns the stats of all delivered frames in order."""
-    path = tmp_path / "stats.jsonl"
-    monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-stats", str(path)])
-    yield lambda: [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
 
 
 def animate(scene: Scene, folder: Path) -> dict[int, np.ndarray]:

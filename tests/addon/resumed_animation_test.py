@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -29,14 +27,6 @@ def square(scene: Scene) -> Scene:
     scene.frame_start, scene.frame_end = 1, 20
     scene.gradus.reconstruction, scene.gradus.samples = "L2", 2
     return scene
-
-
-@pytest.fixture
-def lines(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callable[[], list[dict[str, Any]]]]:
-    """Returns a function that returns the stats of all delivered frames in order."""
-    path = tmp_path / "stats.jsonl"
-    monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-stats", str(path)])
-    yield lambda: [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
 
 
 def animate(scene: Scene, folder: Path, first: int = 0, last: int = 0) -> None:

@@ -20,11 +20,6 @@ LAST = 8
 TOLERANCE = 2e-4  # caches of particles have less precision
 
 
-@pytest.fixture
-def exports(monkeypatch: pytest.MonkeyPatch) -> Exports:
-    return Exports(monkeypatch)
-
-
 def new_scene(kind: str, first: int = 1, last: int = LAST, temporal: bool = False) -> bpy.types.Scene:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene

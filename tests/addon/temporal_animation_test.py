@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import re
-import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -34,19 +32,6 @@ def moving(scene: bpy.types.Scene) -> bpy.types.Scene:
     scene.gradus.reconstruction, scene.gradus.samples = "L2", 4
     scene.view_layers[0].gradus.use_pass_gradients = True
     return scene
-
-
-@pytest.fixture
-def exports(monkeypatch: pytest.MonkeyPatch) -> Exports:
-    return Exports(monkeypatch)
-
-
-@pytest.fixture
-def lines(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callable[[], list[dict[str, Any]]]]:
-    """Returns a function that returns the stats of all delivered frames in order."""
-    path = tmp_path / "stats.jsonl"
-    monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-stats", str(path)])
-    yield lambda: [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
 
 
 def animate(scene: bpy.types.Scene, folder: Path) -> None:

@@ -119,33 +119,28 @@ def test_frames_ahead_are_shown_while_they_are_sampled(tmp_path: Path) -> None:
     assert list(tmp_path.glob("f_*.png")) == []
 
 
-def test_escape_between_frames_keeps_the_shown_picture(tmp_path: Path) -> None:
-    """Regression: the frames ahead of a later frame were cancelled, and the shown picture was empty."""
-    script = glow.SCENE.replace("SAMPLES", "64") + moves(tmp_path, 40)
+def press_escape_after(frame: int, script: str, folder: Path, limit: float) -> None:
+    """Renders 40 frames, presses Escape after one of them, and requires that the window keeps its picture."""
     with window.blender(script, window.SMALL) as blender:
         blender.wait_for("WINDOW-READY")
         blender.press("ctrl+F12")
-        wait_for_file(tmp_path / "f_0005.png")
+        wait_for_file(folder / f"f_{frame:04d}.png")
         glow.wait_for_picture(blender)
         blender.press("Escape")
-        blender.wait_for("RENDER-CANCELLED", limit=3)
+        blender.wait_for("RENDER-CANCELLED", limit=limit)
         glow.wait_for_picture(blender)
-    assert not (tmp_path / "f_0040.png").exists()
+    assert not (folder / "f_0040.png").exists()
+
+
+def test_escape_between_frames_keeps_the_shown_picture(tmp_path: Path) -> None:
+    """Regression: the frames ahead of a later frame were cancelled, and the shown picture was empty."""
+    press_escape_after(5, glow.SCENE.replace("SAMPLES", "64") + moves(tmp_path, 40), tmp_path, limit=3)
 
 
 def test_escape_while_a_frame_is_set_keeps_the_shown_picture(tmp_path: Path) -> None:
     """Regression: the window lost its picture if Escape was pressed before the first sample of a frame."""
     slow = "\nimport time\nbpy.app.handlers.frame_change_post.append(lambda *_: time.sleep(0.5))\n"
-    script = glow.SCENE.replace("SAMPLES", "1") + moves(tmp_path, 40) + slow
-    with window.blender(script, window.SMALL) as blender:
-        blender.wait_for("WINDOW-READY")
-        blender.press("ctrl+F12")
-        wait_for_file(tmp_path / "f_0003.png")
-        glow.wait_for_picture(blender)
-        blender.press("Escape")
-        blender.wait_for("RENDER-CANCELLED", limit=5)
-        glow.wait_for_picture(blender)
-    assert not (tmp_path / "f_0040.png").exists()
+    press_escape_after(3, glow.SCENE.replace("SAMPLES", "1") + moves(tmp_path, 40) + slow, tmp_path, limit=5)
 
 
 def test_escape_ends_the_frames_ahead_in_a_window(tmp_path: Path) -> None:
