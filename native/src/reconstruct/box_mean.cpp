@@ -15,8 +15,7 @@ void mean_along(const float* from, int length, int radius, float* to) {
   for (int d = 1; d <= radius; ++d) {
     for (int x = 0; x < length; ++x) to[x] += from[x - d] + from[x + d];
   }
-  for (int x = 0; x < length; ++x)
-    to[x] /= static_cast<float>(std::min(length, x + radius + 1) - std::max(0, x - radius));
+  for (int x = 0; x < length; ++x) to[x] /= static_cast<float>(count_within(x, radius, length));
 }
 
 }  // namespace

@@ -2,9 +2,16 @@
 // relative to which errors and residuals are measured.
 #pragma once
 
+#include <algorithm>
+
 #include "reconstruct/field.h"
 
 namespace gradus::reconstruct {
+
+// Returns how many of the pixels from `at` − radius to `at` + radius lie in a row of this length.
+inline int count_within(int at, int radius, int length) {
+  return std::min(at + radius, length - 1) - std::max(at - radius, 0) + 1;
+}
 
 // Returns the mean over (2·radius + 1)² pixels, for each channel. Every sum is computed anew: a sliding sum would carry
 // the rounding errors of bright pixels into the dark ones beside them. `radius` is at most 8, the rim of a field.

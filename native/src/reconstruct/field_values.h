@@ -39,6 +39,12 @@ inline void add(const Field& term, Field* sum) {
   for_values(sum, [&](float& value, int x, int y, int c) { value += term.row(y, c)[x]; });
 }
 
+// Multiplies by `factors`, which have one channel for all or as many channels as the field.
+inline void scale_by(const Field& factors, Field* field) {
+  const bool shared = factors.channels() == 1;
+  for_values(field, [&](float& value, int x, int y, int c) { value *= factors.row(y, shared ? 0 : c)[x]; });
+}
+
 // Returns the mean of the values, or of their squares, over the channels of pixel (x, y).
 inline float mean_of(const Field& field, int x, int y) {
   float sum = 0.0f;

@@ -108,6 +108,8 @@ Field weigh_pixel(const Surroundings& of) {
   });
 }
 
+PixelWeights weigh_pixels(const Surroundings& of) { return {weigh_in_windows(of), weigh_pixel(of)}; }
+
 float bounded(float value) { return is_finite(value) ? std::clamp(value, -1.0f, 1.0f) : 0.0f; }
 
 // First channel of the albedo among the features.
@@ -132,14 +134,6 @@ Field difference(const Field& a, const Field& b) {
   Field result = a;
   for_values(&result, [&](float& value, int x, int y, int c) { value -= b.row(y, c)[x]; });
   return result;
-}
-
-void scale_by(const Field& factors, Field* to) {
-  for_values(to, [&](float& value, int x, int y, int) { value *= factors.row(y)[x]; });
-}
-
-void multiply(const Field& factors, Field* by_channel) {
-  for_values(by_channel, [&](float& value, int x, int y, int c) { value *= factors.row(y, c)[x]; });
 }
 
 // Returns the share of each residual that lies within the bound on outliers (twicing.h), relative to the light around
@@ -239,15 +233,13 @@ Field regress_coarsely(const Predictors& predictors, const HalvedImage& image, c
       .mean;
 }
 
-PixelWeights weigh_pixels(const HalvedImage& image) {
-  const Surroundings surroundings = look_around(image);
-  return {weigh_in_windows(surroundings), weigh_pixel(surroundings)};
-}
+PixelWeights weigh_pixels(const HalvedImage& image) { return weigh_pixels(look_around(image)); }
 
 FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& image,
                                      const std::vector<MovedFrame>& others, const CancelCheck& cancel,
                                      Field* delivered_error) {
-  PixelWeights weights = weigh_pixels(image);
+  const Surroundings surroundings = look_around(image);
+  PixelWeights weights = weigh_pixels(surroundings);
   layers_ = {
       std::make_shared<const Predictors>(Predictors{std::move(features.sampled), std::move(weights.in_windows)})};
   std::vector<Field> own;
@@ -275,9 +267,9 @@ FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& 
   add_residual(image, features.estimated.get(), others, &first, cancel);
   std::vector<Field> residuals;
   for (size_t i = 0; i < means.size(); ++i) residuals.push_back(residual(i, *means[i], first.mean));
-  restored_ = restore_lost_light(first.mean, look_around(image).noise, kept, residuals, half_differences);
-  multiply(restored_, &first.mean);
-  multiply(restored_, &first.noise);
+  restored_ = restore_lost_light(first.mean, surroundings.noise, kept, residuals, half_differences);
+  scale_by(restored_, &first.mean);
+  scale_by(restored_, &first.noise);
   own_ = restore_sampled_light(image.mean, first.mean);
   blend_sampled(own_, image.mean, &first.mean);
   blend_sampled(own_, image.half_difference, &first.noise);
@@ -328,7 +320,7 @@ Field FeatureRegression::apply(const Images& values, const CancelCheck& cancel) 
   }
   if (!GRADUS_FAULT(second_step_of_other_channels_dropped))
     add(of_residual_.apply(pointers_to(residuals), cancel), &result);
-  if (result.channels() == 3) multiply(restored_, &result);
+  if (result.channels() == 3) scale_by(restored_, &result);
   blend_sampled(own_, *values[0], &result);
   return result;
 }

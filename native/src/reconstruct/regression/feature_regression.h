@@ -1,7 +1,6 @@
 // Regression of an image on its features: in small windows, and in large ones where these are as good. A second
 // regression, of the residual, then restores what the first one lost, and factors restore the light that both lost
-// (lost_light.h). All steps are linear in the image once their
-// weights are known, so other planes can go through them.
+// (lost_light.h). All steps are linear in the image once their weights are known, so other planes can go through them.
 #pragma once
 
 #include <algorithm>

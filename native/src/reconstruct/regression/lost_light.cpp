@@ -65,14 +65,11 @@ Field sum_loss(const Field& regressed, const Field& places, const std::vector<Fi
 Field restored_shares(const Field& sums) {
   const Field means = box_mean(sums, kLossRadius);
   Field shares(sums.width(), sums.height(), 3);
-  const auto count = [](int at, int size) {
-    return float(std::min(at + kLossRadius, size - 1) - std::max(at - kLossRadius, 0) + 1);
-  };
   for_values(&shares, [&](float& value, int x, int y, int c) {
     float squared = 0.0f;
     for (int i = 0; i < 3; ++i) squared += means.row(y, kLostSum + i)[x] * means.row(y, kLostSum + i)[x] / 3.0f;
     // These are means over n cells: the square of a sum is n² times that of the mean, a sum of squares n times theirs.
-    squared *= count(x, sums.width()) * count(y, sums.height());
+    squared *= float(count_within(x, kLossRadius, sums.width()) * count_within(y, kLossRadius, sums.height()));
     const float variance = means.row(y, kSquareSum)[x], places = means.row(y, kPlaceSum + c)[x];
     if (squared > variance && places > 0.0f)
       value = (1.0f - variance / squared) * means.row(y, kLostSum + c)[x] / places;

@@ -15,7 +15,7 @@ namespace gradus::reconstruct {
 //   max(0, 1 − Σd²/(Σr)²),
 // where d is half the difference of the half-buffers: by their own statistics, one firefly restores nothing, and n of
 // them all but 1/n of their light (James, Stein 1961). It goes to the pixels in proportion to their light times √(noise
-// over light around them): a lamp that is seen directly has little noise and loses little. `noise`, one channel, is
+// over light around them): a light that is seen directly has little noise and loses little. `noise`, one channel, is
 // that around each pixel. The samples of each layer count by the share `kept`; empty: in full. All images have three
 // channels. Factors are in [0.5, 2].
 Field restore_lost_light(const Field& regressed, const Field& noise, const std::vector<Field>& kept,

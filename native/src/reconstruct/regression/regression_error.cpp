@@ -30,12 +30,12 @@ Field lost_share(const Smoothed& smoothed) {
     value = c == 0 ? mean_of(smoothed.mean, x, y) - mean_of(smoothed.image, x, y) : c == 1 ? noise * noise : light;
   });
   terms = box_mean(terms, kLostRadius);
-  const auto covered = [](int at, int length) {
-    return std::min(length, at + kLostRadius + 1) - std::max(0, at - kLostRadius);
-  };
   return make_field(w, h, [&](int x, int y) {
     const float lost = terms.row(y, 0)[x], light = terms.row(y, 2)[x] + kDark;
-    return std::max(lost * lost - terms.row(y, 1)[x] / float(covered(x, w) * covered(y, h)), 0.0f) / (light * light);
+    return std::max(lost * lost -
+                        terms.row(y, 1)[x] / float(count_within(x, kLostRadius, w) * count_within(y, kLostRadius, h)),
+                    0.0f) /
+           (light * light);
   });
 }
 

@@ -63,7 +63,7 @@ Field weigh_displacement(const PixelTrack& track, float reach) {
 }
 
 Field times(Field field, const Field& factors) {
-  for_values(&field, [&](float& value, int x, int y, int) { value *= factors.row(y)[x]; });
+  scale_by(factors, &field);
   return field;
 }
 

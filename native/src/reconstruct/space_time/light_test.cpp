@@ -37,16 +37,11 @@ Field sum_cells(const Field& image) {
   return cells;
 }
 
-// Number of pixels from `at - radius` to `at + radius` that lie within [0, size).
-int count_inside(int at, int radius, int size) {
-  return std::min(at + radius, size - 1) - std::max(at - radius, 0) + 1;
-}
-
 // Returns the share of the weight that is kept by the test in squares of this radius.
 Field test(const Field& terms, int radius) {
   const Field means = box_mean(terms, radius);
   return make_field(terms.width(), terms.height(), [&](int x, int y) {
-    const int count = count_inside(x, radius, terms.width()) * count_inside(y, radius, terms.height());
+    const int count = count_within(x, radius, terms.width()) * count_within(y, radius, terms.height());
     float square = 0.0f;
     for (int c = 0; c < kVariance; ++c) square += means.row(y, c)[x] * means.row(y, c)[x];
     square *= float(count);
@@ -64,11 +59,8 @@ Field same_light(const LightChange& change) {
   if (GRADUS_FAULT(light_test_off)) return kept;
   const Field terms = terms_of(change), cells = sum_cells(terms);
   Field of_cells = make_field(cells.width(), cells.height(), [](int, int) { return 1.0f; });
-  const auto multiply = [](const Field& by, Field* field) {
-    for_values(field, [&](float& value, int x, int y, int) { value *= by.row(y)[x]; });
-  };
-  for (const int radius : kRadii) multiply(test(terms, radius), &kept);
-  for (const int radius : kRadiiOfCells) multiply(test(cells, radius), &of_cells);
+  for (const int radius : kRadii) scale_by(test(terms, radius), &kept);
+  for (const int radius : kRadiiOfCells) scale_by(test(cells, radius), &of_cells);
   for_values(&kept, [&](float& value, int x, int y, int) { value *= of_cells.row(y / kCell)[x / kCell]; });
   return kept;
 }

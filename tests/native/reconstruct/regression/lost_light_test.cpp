@@ -55,7 +55,7 @@ TEST(B2_LostLight, IsRestoredByTheStatisticsOfBrightSamples) {
   }
 }
 
-// A lamp that is seen directly has little noise.
+// A light that is seen directly has little noise.
 TEST(B2_LostLight, GoesToPlacesWithNoise) {
   reconstruct::Field noise = constant(1.0f, 1);
   for (int y = 0; y < kHeight; ++y) std::fill_n(noise.row(y), kWidth / 2, 0.0f);
