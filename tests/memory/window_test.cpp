@@ -116,7 +116,7 @@ TEST(J1_Window, UsesFourFieldsAndTheirGrids) {
 }
 
 // The bytes are those of all frames that contribute to a picture, per pixel and frame. They include the film of the one
-// frame that is open at a time. Every frame is opened once for its own picture, and once for those of the others.
+// frame that is open at a time. Every frame is opened once for all pictures, and once for its own sampled differences.
 TEST(J1_Window, RegressionOverTimeUsesOneFilmAndAFewFieldsOfEachFrame) {
   const reconstruct::WindowSize size = test::full_run() ? full_window() : small_window();
   test::FeatureFilm description = test::room(size.width, size.height);

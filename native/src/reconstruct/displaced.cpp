@@ -1,51 +1,39 @@
 #include "reconstruct/displaced.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/rows.h"
 
 namespace gradus::reconstruct {
-namespace {
 
-constexpr int kTaps = 4;  // pixels along each axis
+RowsAround::RowsAround(int width) : width_(width), values_(3 * (size_t(width) + 2)) {}
 
-// The pixels that contribute along one axis, and their weights.
-struct CubicTaps {
-  int at[kTaps];
-  float weights[kTaps];
-  CubicTaps(float position, int size) {
-    const float first = std::floor(position), t = position - first;
-    for (int i = 0; i < kTaps; ++i) at[i] = std::clamp(int(first) - 1 + i, 0, size - 1);
-    weights[0] = ((-0.5f * t + 1.0f) * t - 0.5f) * t;
-    weights[1] = (1.5f * t - 2.5f) * t * t + 1.0f;
-    weights[2] = ((-1.5f * t + 2.0f) * t + 0.5f) * t;
-    weights[3] = (0.5f * t - 0.5f) * t * t;
+void RowsAround::read(const Field& image, int y, int channel) {
+  for (int j = -1; j <= 1; ++j) {
+    const float* from = image.row(std::clamp(y + j, 0, image.height() - 1), channel);
+    float* to = values_.data() + size_t(j + 1) * (size_t(width_) + 2);
+    to[0] = from[0];
+    std::copy_n(from, width_, to + 1);
+    to[width_ + 1] = from[width_ - 1];
   }
-};
-
-float sum_of_taps(const Field& image, int channel, const CubicTaps& along_x, const CubicTaps& along_y) {
-  float sum = 0.0f;
-  for (int j = 0; j < kTaps; ++j) {
-    const float* row = image.row(along_y.at[j], channel);
-    float of_row = 0.0f;
-    for (int i = 0; i < kTaps; ++i) of_row += along_x.weights[i] * row[along_x.at[i]];
-    sum += along_y.weights[j] * of_row;
-  }
-  return sum;
 }
 
-}  // namespace
-
-Field displaced(const Field& image, const Field& displacement) {
-  const int width = image.width(), height = image.height();
-  Field result = image;
-  for_rows(height, [&](int y) {
-    const float *dx = displacement.row(y, 0), *dy = displacement.row(y, 1);
-    for (int x = 0; x < width; ++x) {
-      if (dx[x] == 0.0f && dy[x] == 0.0f) continue;
-      const CubicTaps along_x(float(x) + dx[x], width), along_y(float(y) + dy[x], height);
-      for (int c = 0; c < image.channels(); ++c) result.row(y, c)[x] = sum_of_taps(image, c, along_x, along_y);
+Field displaced(const Field& image, const Field& displacements) {
+  const int width = image.width();
+  Field result(width, image.height(), image.channels());
+  for_pieces(image.height(), [&](int begin, int end) {
+    RowsAround around(width);
+    for (int y = begin; y < end; ++y) {
+      const auto by = [&](int x) {
+        return Displacement{displacements.row(y, 0)[x], displacements.row(y, 1)[x], displacements.row(y, 2)[x],
+                            displacements.row(y, 3)[x], displacements.row(y, 4)[x]};
+      };
+      for (int c = 0; c < image.channels(); ++c) {
+        around.read(image, y, c);
+        const float* from = image.row(y, c);
+        float* to = result.row(y, c);
+        for (int x = 0; x < width; ++x) to[x] = from[x] + around.change(x, by(x));
+      }
     }
   });
   return result;

@@ -33,77 +33,99 @@ float typical_noise(const HalvedImage& image) {
   return float(sums[0] / (double(w) * h));
 }
 
+// Joins channels of a component with those of other frames (JoinedPicture::join).
+using Join = std::function<JoinedPlane(int component, int first, const Field& own)>;
+
 // The operator of REGULARIZED: regression, then fusion with sampled differences. Once constructed it is linear.
 class Operator {
  public:
-  // `film` must have one component.
-  Operator(const film::Film& film, Field features, const OtherFrames& others, const CancelCheck& cancel,
-           SolveReport* report, ErrorUse use)
-      : others_(others), cancel_(cancel), report_(report) {
-    HalvedImage image = read_sum(film);
-    scale_ = robust_scale(image.mean);
-    normalise(scale_, &image);
-    regression_.emplace(ImageFeatures{std::move(features), others.features}, image, others.frames, cancel,
-                        use == ErrorUse::Delivered ? &delivered_error_ : nullptr);
-    solution_ = regression_->image();
-    if (film.color_channels == 4) {
-      const Field alpha = channels_of(read_sampled(film, 0, scale_), 3, 1);
-      solution_ = join_channels(solution_, GRADUS_FAULT(alpha_stays_noisy) ? alpha : regress(kAllComponents, 3, alpha));
-    }
-    if (!film.gradients) return;
+  // `sampled` are all channels of each component as sampled; empty if there is neither alpha nor a component to apply
+  // the operator to.
+  Operator(FeatureRegression regression, Join join, const std::vector<Field>& sampled, const CancelCheck& cancel,
+           SolveReport* report)
+      : regression_(std::move(regression)), join_(std::move(join)), cancel_(cancel), report_(report) {
+    solution_ = regression_.image();
+    if (sampled.empty() || sampled[0].channels() < 4) return;
+    Field alpha = channels_of(sampled[0], 3, 1);
+    for (size_t k = 1; k < sampled.size(); ++k) add(channels_of(sampled[k], 3, 1), &alpha);
+    solution_ = join_channels(solution_, GRADUS_FAULT(alpha_stays_noisy) ? alpha : regress(kAllComponents, 3, alpha));
+  }
+
+  // Adds the fusion with the sampled differences of a film of one component. `image` is its light in units of `scale`.
+  void fuse(const film::Film& film, const HalvedImage& image, float scale) {
     film::GradientImages images = film::read_images(film, 0);
     film::read_deviations(film, 0, &images);
-    fusion_.emplace(images, scale_, typical_noise(image), solution_, regression_->error(), cancel, report);
+    fusion_.emplace(images, scale, typical_noise(image), solution_, regression_.error(), cancel_, report_);
     solution_ = fusion_->take_solution();
   }
 
-  float scale() const { return scale_; }
   const Field& solution() const { return solution_; }
-  const Field& error() const { return delivered_error_.channels() > 0 ? delivered_error_ : regression_->error(); }
 
-  // Applies the operator to a component; `sampled` are its channels from read_sampled().
-  Field apply(const film::Film& film, int component, const Field& sampled) {
+  // Applies the operator to a component; `sampled` are its channels from read_sampled(). `film` has the differences.
+  Field apply(const film::Film* film, int component, const Field& sampled) {
     Field regressed = regress(component, 0, channels_of(sampled, 0, 3));
-    if (film.color_channels == 4) {
+    if (sampled.channels() == 4) {
       const Field alpha = channels_of(sampled, 3, 1);
       regressed = join_channels(regressed, is_black(alpha) ? alpha : regress(component, 3, alpha));
     }
     if (!fusion_ || GRADUS_FAULT(components_ignore_differences)) return regressed;
-    return fusion_->apply(film::read_images(film, component), regressed, cancel_, report_);
+    return fusion_->apply(film::read_images(*film, component), regressed, cancel_, report_);
   }
 
  private:
-  static constexpr int kAllComponents = -1;
-
-  // Applies the regression to channels of a component, or of the sum of all: those of the film, and the same ones of
-  // the other frames, of which `first` is the first one.
+  // Applies the regression to channels of a component, or of the sum of all, of which `first` is the first one.
   Field regress(int component, int first, const Field& own) const {
-    std::vector<Field> of_others;
-    for (const std::vector<Field>& sampled : others_.sampled) {
-      const size_t begin = component == kAllComponents ? 0 : size_t(component),
-                   end = component == kAllComponents ? sampled.size() : begin + 1;
-      Field values = channels_of(sampled[begin], first, own.channels());
-      for (size_t k = begin + 1; k < end; ++k) add(channels_of(sampled[k], first, own.channels()), &values);
-      of_others.push_back(std::move(values));
-    }
-    Images images{&own};
-    for (const Field& values : of_others) images.push_back(&values);
-    return regression_->apply(images, cancel_);
+    return regression_.apply(join_ ? join_(component, first, own) : not_joined(own), own, cancel_);
   }
 
-  const OtherFrames& others_;
+  FeatureRegression regression_;
+  Join join_;
   const CancelCheck& cancel_;
   SolveReport* report_;
-  float scale_ = 1.0f;
-  std::optional<FeatureRegression> regression_;
   std::optional<FusedDifferences> fusion_;
-  Field solution_, delivered_error_;
+  Field solution_;
 };
 
 // Returns the field as an interleaved image in the units of the film.
 std::vector<float> to_image(Field field, float scale) {
   scale_light(scale, &field);
   return interleave(field);
+}
+
+// What a picture is reconstructed from.
+struct Regressed {
+  float scale = 1.0f;
+  HalvedImage image;
+  FeatureRegression regression;
+  Join join;
+  std::vector<Field> sampled;  // all channels of each component
+  Field error;                 // that of the result, in units of `scale` squared
+};
+
+// `film` has sampled differences, unless it is null.
+Reconstructed reconstruct(const film::Film* film, Regressed picture, bool by_components, const CancelCheck& cancel,
+                          SolveReport* report) {
+  const float scale = picture.scale;
+  Operator op(std::move(picture.regression), std::move(picture.join), picture.sampled, cancel, report);
+  if (film != nullptr) {
+    film->components.size() > 1 ? op.fuse(film::sum_components(*film), picture.image, scale)
+                                : op.fuse(*film, picture.image, scale);
+  }
+  for_values(&picture.error, [scale](float& value, int, int, int) {
+    value *= scale * (GRADUS_FAULT(error_scale_not_squared) ? 1.0f : scale);
+  });
+  Reconstructed result{to_image(op.solution(), scale), interleave(picture.error)};
+  if (!by_components) return result;
+  apply_to_terms(
+      op.solution(), [&](size_t k, const Field& term) { return op.apply(film, int(k), term); }, &picture.sampled);
+  for (Field& term : picture.sampled) result.components.push_back(to_image(std::move(term), scale));
+  return result;
+}
+
+std::vector<Field> read_components(const film::Film& film, float scale) {
+  std::vector<Field> sampled;
+  for (size_t k = 0; k < film.components.size(); ++k) sampled.push_back(read_sampled(film, int(k), scale));
+  return sampled;
 }
 
 }  // namespace
@@ -136,30 +158,32 @@ Field read_sampled(const film::Film& film, int component, float scale) {
 Reconstructed regularize(const film::Film& film, bool by_components, const CancelCheck& cancel, SolveReport* report,
                          ErrorUse use) {
   const film::Features features = filter_features(film::read_features(film));
-  return regularize(film, regression_features(features, typical_depth(features)), {}, by_components, cancel, report,
-                    use);
+  HalvedImage image = read_sum(film);
+  const float scale = robust_scale(image.mean);
+  normalise(scale, &image);
+  Field delivered;
+  FeatureRegression regression(regression_features(features, typical_depth(features)), image, cancel,
+                               use == ErrorUse::Delivered ? &delivered : nullptr);
+  Field error = use == ErrorUse::Delivered ? std::move(delivered) : regression.error();
+  return reconstruct(film.gradients ? &film : nullptr,
+                     {scale,
+                      std::move(image),
+                      std::move(regression),
+                      {},
+                      by_components || film.color_channels > 3 ? read_components(film, scale) : std::vector<Field>{},
+                      std::move(error)},
+                     by_components, cancel, report);
 }
 
-Reconstructed regularize(const film::Film& film, Field features, const OtherFrames& others, bool by_components,
-                         const CancelCheck& cancel, SolveReport* report, ErrorUse use) {
-  const size_t components = film.components.size();
-  std::optional<film::Film> sum;
-  if (components > 1) sum = film::sum_components(film);
-  Operator op(sum ? *sum : film, std::move(features), others, cancel, report, use);
-  sum.reset();
-  const float scale = op.scale();
-  Field error = op.error();
-  for_values(&error, [scale](float& value, int, int, int) {
-    value *= scale * (GRADUS_FAULT(error_scale_not_squared) ? 1.0f : scale);
-  });
-  Reconstructed result{to_image(op.solution(), scale), interleave(error)};
-  if (!by_components) return result;
-  std::vector<Field> terms;
-  for (size_t k = 0; k < components; ++k) terms.push_back(read_sampled(film, int(k), scale));
-  apply_to_terms(
-      op.solution(), [&](size_t k, const Field& term) { return op.apply(film, int(k), term); }, &terms);
-  for (Field& term : terms) result.components.push_back(to_image(std::move(term), scale));
-  return result;
+Reconstructed regularize(const film::Film* film, JoinedPicture picture, const CancelCheck& cancel,
+                         SolveReport* report) {
+  Field error;
+  FeatureRegression regression(std::move(picture.samples), picture.image, cancel, &error);
+  const bool by_components = picture.sampled.size() > 1;
+  return reconstruct(film,
+                     {picture.scale, std::move(picture.image), std::move(regression), std::move(picture.join),
+                      std::move(picture.sampled), std::move(error)},
+                     by_components, cancel, report);
 }
 
 }  // namespace gradus::reconstruct

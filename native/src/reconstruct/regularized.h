@@ -2,7 +2,7 @@
 // has gradients.
 #pragma once
 
-#include <memory>
+#include <functional>
 #include <vector>
 
 #include "base/cancel_check.h"
@@ -15,23 +15,28 @@
 
 namespace gradus::reconstruct {
 
-// Frames that contribute to the picture of another one.
-struct OtherFrames {
-  std::vector<MovedFrame> frames;
-  // What the films of these frames hold, by frame and component, moved like their samples: colours in the units of the
-  // moved images, alpha. Read if the picture has alpha or several components.
-  std::vector<std::vector<Field>> sampled;
-  std::shared_ptr<const Field> features;  // of the picture's pixels, from the samples of all frames
+// A picture whose samples are joined with those of other frames.
+struct JoinedPicture {
+  float scale = 1.0f;  // median luminance
+  HalvedImage image;   // of the picture's own frame, in units of `scale`
+  PictureSamples samples;
+  // Joins channels of a component, or of the sum of all components, with those of the other frames; `first` is the
+  // first of these channels. `own`: those of the picture's own frame, colours in units of `scale`.
+  std::function<JoinedPlane(int component, int first, const Field& own)> join;
+  // All channels of each component of the picture's own frame, from read_sampled(); empty if it has one component and
+  // no alpha.
+  std::vector<Field> sampled;
 };
+inline constexpr int kAllComponents = -1;
 
 // Reconstructs a film and estimates the error. Throws `invalid_operation` if the film has no features. `by_components`
 // requests the image of each component. All components go through one operator, that of their sum, so that they add up
 // to the image whatever their light. `use` says which error the result has.
 Reconstructed regularize(const film::Film& film, bool by_components, const CancelCheck& cancel, SolveReport* report,
                          ErrorUse use = ErrorUse::Weights);
-// Reconstructs a film by its features, from regression_features(), and other frames.
-Reconstructed regularize(const film::Film& film, Field features, const OtherFrames& others, bool by_components,
-                         const CancelCheck& cancel, SolveReport* report, ErrorUse use = ErrorUse::Weights);
+// Reconstructs a picture and its components, if there are several, by the samples of several frames, with the error for
+// delivery. `film` has the differences of its own frame; null if there are none.
+Reconstructed regularize(const film::Film* film, JoinedPicture picture, const CancelCheck& cancel, SolveReport* report);
 
 // Reads the sum of all components of a film.
 HalvedImage read_sum(const film::Film& film);

@@ -9,7 +9,6 @@
 #include "reconstruct/displaced.h"
 #include "reconstruct/field_values.h"
 #include "reconstruct/poisson/twicing.h"
-#include "reconstruct/regression/lost_light.h"
 #include "reconstruct/regression/regression_error.h"
 #include "reconstruct/regression/restore_sampled_light.h"
 #include "reconstruct/solver_planes.h"
@@ -49,6 +48,8 @@ constexpr float kDarkByChance = 0.5f;
 constexpr int kLightRadius = 3;
 // Radius within which small and large windows are compared, and radius of the light relative to which they are.
 constexpr int kShareRadius = 4, kShareLightRadius = 2;
+// Factor on the noise of their difference: where there is only noise, half of its estimates would show a bias.
+constexpr float kShareDoubt = 2.0f;
 // Side of the blocks that share a bound on outliers.
 constexpr int kBlockSide = 16;
 
@@ -57,10 +58,15 @@ struct Surroundings {
   Field own_noise, own_light, noise, light;
 };
 
+Field noise_of(const HalvedImage& image) {
+  return make_field(image.mean.width(), image.mean.height(),
+                    [&](int x, int y) { return std::sqrt(mean_of_squares(image.half_difference, x, y)); });
+}
+
 Surroundings look_around(const HalvedImage& image) {
-  const int w = image.mean.width(), h = image.mean.height();
-  Field noise = make_field(w, h, [&](int x, int y) { return std::sqrt(mean_of_squares(image.half_difference, x, y)); });
-  Field light = make_field(w, h, [&](int x, int y) { return std::fabs(mean_of(image.mean, x, y)); });
+  Field noise = noise_of(image);
+  Field light = make_field(image.mean.width(), image.mean.height(),
+                           [&](int x, int y) { return std::fabs(mean_of(image.mean, x, y)); });
   return {noise, light, box_mean(noise, kNoiseRadius), box_mean(light, kNoiseRadius)};
 }
 
@@ -130,9 +136,15 @@ Field weigh_by_light(const Field& image, int radius) {
   return light;
 }
 
-Field difference(const Field& a, const Field& b) {
-  Field result = a;
-  for_values(&result, [&](float& value, int x, int y, int c) { value -= b.row(y, c)[x]; });
+// Returns the regressed image where samples lie. `displacement`: of the samples; empty: at the centres of pixels.
+Field where_sampled(const Field& regressed, const Field& displacement) {
+  return displacement.channels() == 0 ? regressed : displaced(regressed, displacement);
+}
+
+// Returns what samples have more than the regressed image where they lie.
+Field residual(const Field& sampled, const Field& regressed, const Field& displacement) {
+  Field result = where_sampled(regressed, displacement);
+  for_values(&result, [&](float& value, int x, int y, int c) { value = sampled.row(y, c)[x] - value; });
   return result;
 }
 
@@ -156,7 +168,7 @@ Field limit_outliers(const Field& residual, const Field& by_light, const Field& 
 
 // Returns the share of small windows in their mean with large ones. The bias of the large windows is their difference
 // from the small ones, minus the part of it that noise explains. Almost all of that noise is in the small windows, so
-// the mean of minimum squared error is Wiener's.
+// the mean of minimum squared error is Wiener's, but for kShareDoubt.
 Field share_of_fine(const RegressionResult& fine, const RegressionResult& coarse) {
   const int w = fine.mean.width(), h = fine.mean.height();
   const Field by_light = weigh_by_light(fine.mean, kShareLightRadius);
@@ -169,7 +181,7 @@ Field share_of_fine(const RegressionResult& fine, const RegressionResult& coarse
   differences = box_mean(differences, kShareRadius);
   return make_field(w, h, [&](int x, int y) {
     const float of_mean = differences.row(y, 0)[x], of_noise = differences.row(y, 1)[x];
-    return of_noise > 0.0f ? std::max(1.0f - of_noise / of_mean, 0.0f) : 1.0f;
+    return of_noise > 0.0f ? std::max(1.0f - kShareDoubt * of_noise / of_mean, 0.0f) : 1.0f;
   });
 }
 
@@ -189,20 +201,33 @@ void blend_bias(const Field& share, const Field& coarse, Field* fine) {
 }
 
 // Returns the weights of the residual's regression: weights by light, which preserve the mean, with some influence of
-// the weights by noise, which suppress outliers.
+// the weights by noise, which suppress outliers. `by_noise` is the fourth root of these.
 Field weigh_residual(const Field& by_light, const Field& by_noise) {
   return make_field(by_light.width(), by_light.height(), [&](int x, int y) {
-    const float light = std::sqrt(by_light.row(y)[x]), noise = std::sqrt(by_noise.row(y)[x]);
-    return light * std::sqrt(light * noise);
+    const float light = std::sqrt(by_light.row(y)[x]);
+    return light * std::sqrt(light) * by_noise.row(y)[x];
   });
 }
 
-// Returns kept^¾: weights of residuals hold the quarter power of weights by noise, and with it that of the share that
-// the test of light keeps.
-Field rest_of_share(const Field& kept) {
-  return make_field(kept.width(), kept.height(),
-                    [&](int x, int y) { return std::sqrt(kept.row(y)[x] * std::sqrt(kept.row(y)[x])); });
+PictureSamples samples_of(Field features, const HalvedImage& image) {
+  const int w = image.mean.width(), h = image.mean.height();
+  Surroundings surroundings = look_around(image);
+  PixelWeights weights = weigh_pixels(surroundings);
+  Predictors of_residual{albedo_of(features), make_field(w, h, [&](int x, int y) {
+                           return std::sqrt(std::sqrt(weights.in_windows.row(y)[x]));
+                         })};
+  LightOfSamples light{make_field(w, h, [](int, int) { return 1.0f; }), image.mean,
+                       make_field(w, h, [&](int x, int y) { return mean_of_squares(image.half_difference, x, y); })};
+  auto in_windows = std::make_shared<const Predictors>(Predictors{std::move(features), std::move(weights.in_windows)});
+  return {{std::move(in_windows), std::make_shared<const Field>(std::move(weights.own))},
+          std::move(of_residual),
+          not_joined(image.mean),
+          not_joined(image.half_difference),
+          std::move(light),
+          std::move(surroundings.noise)};
 }
+
+Values first_step(const JoinedPlane& plane) { return {plane.in_windows.get(), plane.own.get()}; }
 
 }  // namespace
 
@@ -228,46 +253,41 @@ Field regression_features(const film::Features& features, float unit) {
 }
 
 Field regress_coarsely(const Predictors& predictors, const HalvedImage& image, const CancelCheck& cancel) {
-  return LocalRegression({std::make_shared<const Predictors>(predictors)}, {}, kCoarse)
-      .estimate({&image.mean}, {&image.half_difference}, cancel)
+  return LocalRegression({std::make_shared<const Predictors>(predictors), nullptr}, kCoarse)
+      .estimate({&image.mean, &image.mean}, {&image.half_difference, &image.half_difference}, cancel)
       .mean;
 }
 
 PixelWeights weigh_pixels(const HalvedImage& image) { return weigh_pixels(look_around(image)); }
 
-FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& image,
-                                     const std::vector<MovedFrame>& others, const CancelCheck& cancel,
+Field noise_around(const HalvedImage& image) { return box_mean(noise_of(image), kNoiseRadius); }
+
+JoinedPlane not_joined(const Field& field) {
+  const std::shared_ptr<const Field> same(std::shared_ptr<void>(), &field);
+  return {same, same, same};
+}
+
+FeatureRegression::FeatureRegression(Field features, const HalvedImage& image, const CancelCheck& cancel,
+                                     Field* delivered_error)
+    : FeatureRegression(samples_of(std::move(features), image), image, cancel, delivered_error) {}
+
+FeatureRegression::FeatureRegression(PictureSamples samples, const HalvedImage& image, const CancelCheck& cancel,
                                      Field* delivered_error) {
-  const Surroundings surroundings = look_around(image);
-  PixelWeights weights = weigh_pixels(surroundings);
-  layers_ = {
-      std::make_shared<const Predictors>(Predictors{std::move(features.sampled), std::move(weights.in_windows)})};
-  std::vector<Field> own;
-  own.push_back(std::move(weights.own));
-  std::vector<Field> kept(1);
-  Images means{&image.mean}, half_differences{&image.half_difference};
-  for (const MovedFrame& other : others) {
-    layers_.push_back(other.predictors);
-    own.push_back(other.own);
-    kept.push_back(other.kept);
-    means.push_back(&other.image.mean);
-    half_differences.push_back(GRADUS_FAULT(moved_halves_dropped) ? &image.half_difference
-                                                                  : &other.image.half_difference);
-  }
-  fine_ = LocalRegression(layers_, std::move(own), kFine, features.estimated);
-  coarse_ = LocalRegression(layers_, {}, kCoarse, features.estimated);
-  RegressionResult first = fine_.estimate(means, half_differences, cancel);
+  fine_ = LocalRegression(samples.first_step, kFine);
+  RegressionSamples of_windows = samples.first_step;
+  of_windows.own_weights = nullptr;
+  coarse_ = LocalRegression(std::move(of_windows), kCoarse);
+  const Values mean = first_step(samples.mean), half_difference = first_step(samples.half_difference);
+  RegressionResult first = fine_.estimate(mean, half_difference, cancel);
   {
-    const RegressionResult coarse = coarse_.estimate(means, half_differences, cancel);
+    const RegressionResult coarse = coarse_.estimate(mean, half_difference, cancel);
     share_ = share_of_fine(first, coarse);
     blend(share_, coarse.mean, &first.mean);
     blend(share_, coarse.noise, &first.noise);
     blend_bias(share_, coarse.bias, &first.bias);
   }
-  add_residual(image, features.estimated.get(), others, &first, cancel);
-  std::vector<Field> residuals;
-  for (size_t i = 0; i < means.size(); ++i) residuals.push_back(residual(i, *means[i], first.mean));
-  restored_ = restore_lost_light(first.mean, surroundings.noise, kept, residuals, half_differences);
+  add_residual(samples, &first, cancel);
+  restored_ = restore_lost_light(first.mean, where_sampled(first.mean, displacement_), samples.noise, samples.light);
   scale_by(restored_, &first.mean);
   scale_by(restored_, &first.noise);
   own_ = restore_sampled_light(image.mean, first.mean);
@@ -279,49 +299,37 @@ FeatureRegression::FeatureRegression(ImageFeatures features, const HalvedImage& 
   image_ = std::move(first.mean);
 }
 
-void FeatureRegression::add_residual(const HalvedImage& image, const Field* estimated,
-                                     const std::vector<MovedFrame>& others, RegressionResult* first,
+void FeatureRegression::add_residual(const PictureSamples& samples, RegressionResult* first,
                                      const CancelCheck& cancel) {
   const Field by_light = weigh_by_light(first->mean, kLightRadius);
-  Layers predictors;
-  std::vector<Field> residuals, noises;
-  for (size_t i = 0; i <= others.size(); ++i) {
-    const HalvedImage& sampled = i == 0 ? image : others[i - 1].image;
-    residuals.push_back(residual(i, sampled.mean, first->mean));
-    noises.push_back(residual(
-        i, GRADUS_FAULT(second_step_takes_image_for_noise) ? sampled.mean : sampled.half_difference, first->noise));
-    residual_share_.push_back(limit_outliers(residuals[i], by_light, layers_[i]->weights));
-    Field weights = weigh_residual(by_light, layers_[i]->weights);
-    if (i > 0) scale_by(rest_of_share(others[i - 1].kept), &weights);
-    predictors.push_back(
-        std::make_shared<const Predictors>(Predictors{albedo_of(layers_[i]->features), std::move(weights)}));
-    scale_by(residual_share_[i], &residuals[i]);
-    scale_by(residual_share_[i], &noises[i]);
-  }
-  of_residual_ = LocalRegression(std::move(predictors), {}, kOfResidual,
-                                 estimated ? std::make_shared<const Field>(albedo_of(*estimated)) : nullptr);
-  const RegressionResult second = of_residual_.estimate(pointers_to(residuals), pointers_to(noises), cancel);
+  const Predictors& given = samples.second_step;
+  displacement_ = given.displacement;
+  Field mean = residual(*samples.mean.of_residual, first->mean, displacement_);
+  Field noise =
+      residual(*(GRADUS_FAULT(second_step_takes_image_for_noise) ? samples.mean : samples.half_difference).of_residual,
+               first->noise, displacement_);
+  residual_share_ = limit_outliers(mean, by_light, given.weights);
+  scale_by(residual_share_, &mean);
+  scale_by(residual_share_, &noise);
+  const std::shared_ptr<const Field>& estimated = samples.first_step.estimated;
+  of_residual_ = LocalRegression({std::make_shared<const Predictors>(Predictors{
+                                      given.features, weigh_residual(by_light, given.weights), displacement_}),
+                                  nullptr, estimated ? std::make_shared<const Field>(albedo_of(*estimated)) : nullptr},
+                                 kOfResidual);
+  const RegressionResult second = of_residual_.estimate({&mean, &mean}, {&noise, &noise}, cancel);
   if (!GRADUS_FAULT(second_step_dropped)) add(second.mean, &first->mean);
   if (!GRADUS_FAULT(error_omits_second_step)) add(second.noise, &first->noise);
 }
 
-Field FeatureRegression::residual(size_t layer, const Field& sampled, const Field& regressed) const {
-  const Field& displacement = layers_[layer]->displacement;
-  return difference(sampled, displacement.channels() == 0 ? regressed : displaced(regressed, displacement));
-}
-
-Field FeatureRegression::apply(const Images& values, const CancelCheck& cancel) const {
-  Field result = fine_.apply(values, cancel);
-  if (!GRADUS_FAULT(alpha_lacks_large_windows)) blend(share_, coarse_.apply(values, cancel), &result);
-  std::vector<Field> residuals;
-  for (size_t i = 0; i < values.size(); ++i) {
-    residuals.push_back(residual(i, *values[i], result));
-    if (!GRADUS_FAULT(alpha_keeps_outliers)) scale_by(residual_share_[i], &residuals[i]);
-  }
+Field FeatureRegression::apply(const JoinedPlane& values, const Field& sampled, const CancelCheck& cancel) const {
+  Field result = fine_.apply(first_step(values), cancel);
+  if (!GRADUS_FAULT(alpha_lacks_large_windows)) blend(share_, coarse_.apply(first_step(values), cancel), &result);
+  Field of_residual = residual(*values.of_residual, result, displacement_);
+  if (!GRADUS_FAULT(alpha_keeps_outliers)) scale_by(residual_share_, &of_residual);
   if (!GRADUS_FAULT(second_step_of_other_channels_dropped))
-    add(of_residual_.apply(pointers_to(residuals), cancel), &result);
+    add(of_residual_.apply({&of_residual, &of_residual}, cancel), &result);
   if (result.channels() == 3) scale_by(restored_, &result);
-  blend_sampled(own_, *values[0], &result);
+  blend_sampled(own_, sampled, &result);
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include "film/features.h"
 #include "reconstruct/regression/halved_image.h"
 #include "reconstruct/regression/local_regression.h"
+#include "reconstruct/regression/lost_light.h"
 
 namespace gradus::reconstruct {
 
@@ -17,20 +18,23 @@ namespace gradus::reconstruct {
 // begins on the grid has the windows of the full frame.
 inline constexpr int kRegressionGrid = 16;
 
-// Samples of another frame, whose pixels were moved to where the image shows the same surfaces. All values are 0 in
-// pixels to which none was moved.
-struct MovedFrame {
-  std::shared_ptr<const Predictors> predictors;
-  HalvedImage image;  // in the units of the image that is regressed
-  Field own;          // weight of each pixel's own value
-  Field kept;         // share of each pixel's weight that the test of light has left
+// A plane of a picture's samples. If frames are joined, it was joined three times, with the weights of samples in
+// windows, of pixels' own samples, and of samples in the windows of the residual. Otherwise all three are the same.
+struct JoinedPlane {
+  std::shared_ptr<const Field> in_windows, own, of_residual;
 };
+// Returns the plane of a single frame. `field` must outlive it.
+JoinedPlane not_joined(const Field& field);
 
-// What an image is modelled by.
-struct ImageFeatures {
-  Field sampled;  // features of the light that was sampled in each pixel, from regression_features()
-  // Features for which pixels are estimated. Empty: those of the sampled light.
-  std::shared_ptr<const Field> estimated{};
+// What the regression of a picture reads: the samples of its frame, or those of several frames, joined.
+struct PictureSamples {
+  RegressionSamples first_step;
+  // Of the windows of the residual: albedo, displacements (displaced.h), and the sum of the fourth roots of the
+  // samples' weights.
+  Predictors second_step;
+  JoinedPlane mean, half_difference;  // in the units of the picture
+  LightOfSamples light;
+  Field noise;  // mean noise around each pixel of the picture's own frame
 };
 
 // Returns normal, albedo, and d/(d + unit) of the depth d: seven channels.
@@ -50,37 +54,40 @@ struct PixelWeights {
 };
 // `image` is in units of its median luminance.
 PixelWeights weigh_pixels(const HalvedImage& image);
+// Returns the mean standard deviation of the samples around each pixel.
+Field noise_around(const HalvedImage& image);
 
 class FeatureRegression {
  public:
-  // Regresses `image` on `features` and freezes the weights of all steps. The samples of `others` contribute to the
-  // same windows. `delivered_error`, unless it is nullptr, receives the error of the pass Error.
-  FeatureRegression(ImageFeatures features, const HalvedImage& image, const std::vector<MovedFrame>& others,
-                    const CancelCheck& cancel, Field* delivered_error = nullptr);
+  // Regresses `image` on `features` and freezes the weights of all steps. `delivered_error`, unless it is nullptr,
+  // receives the error of the pass Error.
+  FeatureRegression(Field features, const HalvedImage& image, const CancelCheck& cancel,
+                    Field* delivered_error = nullptr);
+  // Regresses the samples of several frames. `image` is that of the picture's own frame.
+  FeatureRegression(PictureSamples samples, const HalvedImage& image, const CancelCheck& cancel,
+                    Field* delivered_error = nullptr);
   FeatureRegression(const film::Features& features, const HalvedImage& image, const CancelCheck& cancel)
-      : FeatureRegression({regression_features(features, typical_depth(features))}, image, {}, cancel) {}
+      : FeatureRegression(regression_features(features, typical_depth(features)), image, cancel) {}
 
   const Field& image() const { return image_; }
   // Returns the estimated squared error of the image, mean over its channels, bias included, which weighs pixels.
   const Field& error() const { return error_; }
-  // Applies the frozen operator to one or three channels: those of the image, then those of each other frame.
-  Field apply(const Images& values, const CancelCheck& cancel) const;
-  Field apply(const Field& values, const CancelCheck& cancel) const { return apply(Images{&values}, cancel); }
+  // Applies the frozen operator to one or three channels. `sampled` are those of the picture's own frame.
+  Field apply(const JoinedPlane& values, const Field& sampled, const CancelCheck& cancel) const;
+  Field apply(const Field& values, const CancelCheck& cancel) const {
+    return apply(not_joined(values), values, cancel);
+  }
 
  private:
-  // Adds the regression of the residual to the mean and the noise of `first`. `estimated`: ImageFeatures::estimated.
-  void add_residual(const HalvedImage& image, const Field* estimated, const std::vector<MovedFrame>& others,
-                    RegressionResult* first, const CancelCheck& cancel);
+  // Adds the regression of the residual to the mean and the noise of `first`.
+  void add_residual(const PictureSamples& samples, RegressionResult* first, const CancelCheck& cancel);
 
-  // Returns what the samples of a layer have more than the regressed image where they lie.
-  Field residual(size_t layer, const Field& sampled, const Field& regressed) const;
-
-  Layers layers_;
   LocalRegression fine_, coarse_, of_residual_;
-  Field share_;  // share of the small windows in each pixel
-  // Share of each pixel's residual that is restored, for each layer: outliers are limited, and pixels that hold no
-  // samples have no residual.
-  std::vector<Field> residual_share_;
+  Field displacement_;  // of the samples of the residual's regression; empty: none
+  Field share_;         // share of the small windows in each pixel
+  // Share of each pixel's residual that is restored: outliers are limited, and pixels that hold no samples have no
+  // residual.
+  Field residual_share_;
   Field restored_;  // factors that restore lost light, three channels (lost_light.h)
   // Share of each pixel's own sampled value in the result (restore_sampled_light.h).
   Field own_;

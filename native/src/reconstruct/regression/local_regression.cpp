@@ -65,7 +65,7 @@ void run_octaves(const RegressionTask& task, const Confidence& confidence, const
 
 template <int C, bool Estimates, class Confidence>
 void run_features(const RegressionTask& task, const Confidence& confidence, const CancelCheck& cancel) {
-  const int features = task.layers->front()->features.channels();
+  const int features = task.samples->in_windows->features.channels();
   const bool coordinates = task.settings->coordinates;
   if (features == 7 && coordinates) return run_octaves<10, C, true, Estimates>(task, confidence, cancel);
   if (features == 3 && !coordinates) return run_octaves<4, C, false, Estimates>(task, confidence, cancel);
@@ -74,13 +74,9 @@ void run_features(const RegressionTask& task, const Confidence& confidence, cons
 
 }  // namespace
 
-LocalRegression::LocalRegression(Layers layers, std::vector<Field> own, RegressionSettings settings,
-                                 std::shared_ptr<const Field> estimated)
-    : layers_(std::move(layers)),
-      own_(std::move(own)),
-      estimated_(std::move(estimated)),
-      settings_(std::move(settings)) {
-  const int w = layers_.front()->weights.width(), h = layers_.front()->weights.height();
+LocalRegression::LocalRegression(RegressionSamples samples, RegressionSettings settings)
+    : samples_(std::move(samples)), settings_(std::move(settings)) {
+  const int w = samples_.in_windows->weights.width(), h = samples_.in_windows->weights.height();
   for (int shift = 0; shift < settings_.lattices; ++shift) {
     for (const Octave& octave : settings_.octaves) {
       confidence_.emplace_back(ceil_divided(w + shift, octave.side) + kReach,
@@ -89,39 +85,28 @@ LocalRegression::LocalRegression(Layers layers, std::vector<Field> own, Regressi
   }
 }
 
-RegressionResult LocalRegression::estimate(const Images& means, const Images& half_differences,
+RegressionResult LocalRegression::estimate(const Values& mean, const Values& half_difference,
                                            const CancelCheck& cancel) {
-  const int w = means[0]->width(), h = means[0]->height();
+  const int w = mean.in_windows->width(), h = mean.in_windows->height();
   RegressionResult result{Field(w, h, 3), Field(w, h, 3), Field(w, h, 1)};
-  Field totals(w, h, 1), own_estimates;
-  const bool joint = layers_.size() > 1 || estimated_;
-  if (joint) own_estimates = Field(w, h, 6);
-  const RegressionTask task{&layers_,
-                            pointers_to(own_),
-                            estimated_.get(),
-                            {means, GRADUS_FAULT(mean_regressed_as_difference) ? means : half_differences},
+  Field totals(w, h, 1);
+  const RegressionTask task{&samples_,
+                            {mean, GRADUS_FAULT(mean_regressed_as_difference) ? mean : half_difference},
                             {&result.mean, &result.noise},
                             &totals,
                             &result.bias,
-                            joint ? &own_estimates : nullptr,
                             &settings_};
   run_features<6, true>(
       task, [&](size_t i) { return &confidence_[i]; }, cancel);
   return result;
 }
 
-Field LocalRegression::apply(const Images& values, const CancelCheck& cancel) const {
-  const Field& first = *values[0];
-  Field result(first.width(), first.height(), first.channels()), totals(first.width(), first.height(), 1);
-  const bool joint = layers_.size() > 1 || estimated_;
-  Field own_estimates;
-  if (joint) own_estimates = Field(first.width(), first.height(), first.channels());
-  const RegressionTask task{&layers_,  pointers_to(own_), estimated_.get(), {values},
-                            {&result}, &totals,           nullptr,          joint ? &own_estimates : nullptr,
-                            &settings_};
+Field LocalRegression::apply(const Values& values, const CancelCheck& cancel) const {
+  const int w = values.in_windows->width(), h = values.in_windows->height(), channels = values.in_windows->channels();
+  Field result(w, h, channels), totals(w, h, 1);
+  const RegressionTask task{&samples_, {values}, {&result}, &totals, nullptr, &settings_};
   const auto confidence = [&](size_t i) { return &confidence_[i]; };
-  first.channels() == 1 ? run_features<1, false>(task, confidence, cancel)
-                        : run_features<3, false>(task, confidence, cancel);
+  channels == 1 ? run_features<1, false>(task, confidence, cancel) : run_features<3, false>(task, confidence, cancel);
   return result;
 }
 

@@ -50,43 +50,42 @@ struct RegressionResult {
   Field bias;
 };
 
-// Features that the image is modelled by, and the weight of each pixel. Several regressions can share them.
+// Features that samples are modelled by, and the weight of each pixel.
 struct Predictors {
   Field features;  // 7 channels with coordinates, or 3 without, in about [−1, 1]
   Field weights;   // one channel, 0 where a pixel does not count
-  // Where the samples of a pixel lie, relative to its centre, in pixels: x and y. Empty: at the centre.
+  // Where the samples of a pixel lie, relative to its centre, in pixels: x and y first. Empty: at the centre.
   Field displacement{};
 };
 
-// Predictors of the image to estimate, then those of further frames whose pixels were moved to where the image shows
-// the same surfaces.
-using Layers = std::vector<std::shared_ptr<const Predictors>>;
-// One image for each layer.
-using Images = std::vector<const Field*>;
-inline Images pointers_to(const std::vector<Field>& fields) {
-  Images images;
-  for (const Field& field : fields) images.push_back(&field);
-  return images;
-}
+// Samples by which an image is regressed. If the samples of several frames are joined, those in windows and pixels' own
+// ones are means with different weights.
+struct RegressionSamples {
+  std::shared_ptr<const Predictors> in_windows;
+  std::shared_ptr<const Field> own_weights{};  // 1/v; null if pixels are no windows of their own
+  std::shared_ptr<const Field> estimated{};    // features of the pixels to estimate; null: those in windows
+
+  const Field& estimated_features() const { return estimated ? *estimated : in_windows->features; }
+};
+
+// An image as it was sampled: by the samples in windows and by pixels' own ones. Both are the same for a single frame.
+struct Values {
+  const Field *in_windows, *own;
+};
 
 class LocalRegression {
  public:
   LocalRegression() = default;
-  // `own` is 1/v, one channel, for each layer. If it is empty, pixels are no windows of their own. `estimated`:
-  // features of the pixels to estimate, if they are not those of the first layer.
-  LocalRegression(Layers layers, std::vector<Field> own, RegressionSettings settings,
-                  std::shared_ptr<const Field> estimated = {});
+  LocalRegression(RegressionSamples samples, RegressionSettings settings);
 
   // Regresses three channels, estimates η from half the difference of the half-buffers, and freezes it. Deterministic
   // for any number of threads.
-  RegressionResult estimate(const Images& means, const Images& half_differences, const CancelCheck& cancel);
+  RegressionResult estimate(const Values& mean, const Values& half_difference, const CancelCheck& cancel);
   // Applies the frozen operator to one or three channels.
-  Field apply(const Images& values, const CancelCheck& cancel) const;
+  Field apply(const Values& values, const CancelCheck& cancel) const;
 
  private:
-  Layers layers_;
-  std::vector<Field> own_;
-  std::shared_ptr<const Field> estimated_;
+  RegressionSamples samples_;
   RegressionSettings settings_;
   std::vector<Field> confidence_;  // η of the windows of each octave, for one lattice after another
 };

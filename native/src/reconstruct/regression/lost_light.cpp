@@ -33,29 +33,25 @@ Field places_of_loss(const Field& regressed, const Field& noise) {
 }
 
 // Returns the sums over cells.
-Field sum_loss(const Field& regressed, const Field& places, const std::vector<Field>& kept,
-               const std::vector<Field>& residuals, const Images& half_differences) {
-  const int w = regressed.width(), h = regressed.height();
+Field sum_loss(const Field& expected, const Field& places, const LightOfSamples& samples) {
+  const int w = expected.width(), h = expected.height();
   Field sums((w + kLossCell - 1) / kLossCell, (h + kLossCell - 1) / kLossCell, kSquareSum + 1);
-  const auto add_row = [&](size_t layer, int y) {
+  const auto add_row = [&](int y) {
     const int j = y / kLossCell;
-    for (int x = 0; x < w; ++x) {
-      const float share = kept[layer].channels() > 0 ? kept[layer].row(y)[x] : 1.0f;
-      if (share == 0.0f) continue;
-      const int i = x / kLossCell;
-      for (int c = 0; c < 3; ++c) {
-        sums.row(j, kLostSum + c)[i] += share * residuals[layer].row(y, c)[x];
-        sums.row(j, kPlaceSum + c)[i] += share * places.row(y)[x] * regressed.row(y, c)[x];
+    const float *share = samples.share.row(y), *place = places.row(y), *variance = samples.variance.row(y);
+    for (int x = 0; x < w; ++x) sums.row(j, kSquareSum)[x / kLossCell] += variance[x];
+    for (int c = 0; c < 3; ++c) {
+      const float *light = samples.light.row(y, c), *there = expected.row(y, c);
+      for (int x = 0; x < w; ++x) {
+        sums.row(j, kLostSum + c)[x / kLossCell] += light[x] - share[x] * there[x];
+        sums.row(j, kPlaceSum + c)[x / kLossCell] += share[x] * place[x] * there[x];
       }
-      sums.row(j, kSquareSum)[i] += share * share * mean_of_squares(*half_differences[layer], x, y);
     }
   };
   for_rows(
       sums.height(),
       [&](int j) {
-        for (size_t layer = 0; layer < residuals.size(); ++layer) {
-          for (int y = j * kLossCell; y < std::min(h, (j + 1) * kLossCell); ++y) add_row(layer, y);
-        }
+        for (int y = j * kLossCell; y < std::min(h, (j + 1) * kLossCell); ++y) add_row(y);
       },
       1);
   return sums;
@@ -98,10 +94,10 @@ float interpolate_cells(const Field& cells, int channel, const BetweenCells& x, 
 
 }  // namespace
 
-Field restore_lost_light(const Field& regressed, const Field& noise, const std::vector<Field>& kept,
-                         const std::vector<Field>& residuals, const Images& half_differences) {
+Field restore_lost_light(const Field& regressed, const Field& expected, const Field& noise,
+                         const LightOfSamples& samples) {
   const Field places = places_of_loss(regressed, noise);
-  const Field shares = restored_shares(sum_loss(regressed, places, kept, residuals, half_differences));
+  const Field shares = restored_shares(sum_loss(expected, places, samples));
   Field factors(regressed.width(), regressed.height(), 3);
   for_rows(factors.height(), [&](int y) {
     const BetweenCells of_y(y, shares.height());

@@ -23,21 +23,14 @@ inline constexpr int kGroup = 4;
 
 // Input and output of the regression of one image.
 struct RegressionTask {
-  const Layers* layers;
-  // 1/variance of each pixel's own value, for each layer; empty if it does not count.
-  Images own;
-  // Features of the pixels to estimate; null: those of the first layer.
-  const Field* estimated;
-  std::vector<Images> values;   // the mean and half the difference if η is estimated, else one image
+  const RegressionSamples* samples;
+  std::vector<Values> values;   // the mean and half the difference if η is estimated, else one image
   std::vector<Field*> results;  // sums over windows until the last lattice is done, then the results
   Field *totals, *bias;         // sums of η and of η · bias
-  // Sums over the layers of own · the estimates of their pixels; null if there is one layer, whose own features are
-  // those of the pixels to estimate.
-  Field* own_estimates;
   const RegressionSettings* settings;
 
-  int width() const { return layers->front()->weights.width(); }
-  int height() const { return layers->front()->weights.height(); }
+  int width() const { return samples->in_windows->weights.width(); }
+  int height() const { return samples->in_windows->weights.height(); }
 };
 
 // Input and output of one octave on one of the lattices. Its blocks begin `shift` pixels before the image.
@@ -114,12 +107,10 @@ class Tile {
     const int w = task_.width(), h = task_.height();
     const auto at = [&](int square) { return square * side_ - octave_.shift; };
     const int begin = std::clamp(at(x0_ - kReach), 0, w), end = std::clamp(at(x1_ + kReach), 0, w);
-    for (size_t layer = 0; layer < task_.layers->size(); ++layer) {
-      for (int y = std::max(0, at(y0_ - kReach)); y < std::min(h, at(y1_ + kReach)); ++y) {
-        for (int c = 0; c < C; ++c) {
-          const float* row = value_row(layer, y, c);
-          if (std::any_of(row + begin, row + end, [](float value) { return value != 0.0f; })) return false;
-        }
+    for (int y = std::max(0, at(y0_ - kReach)); y < std::min(h, at(y1_ + kReach)); ++y) {
+      for (int c = 0; c < C; ++c) {
+        const float* row = value_row(y, c);
+        if (std::any_of(row + begin, row + end, [](float value) { return value != 0.0f; })) return false;
       }
     }
     return true;
@@ -159,26 +150,32 @@ class Tile {
   int groups() const { return side_ * side_ / kGroup; }
   float coordinate(int i) const { return (float(i) - 0.5f * float(side_ - 1)) / kCoordinateUnit; }
 
-  const float* value_row(size_t layer, int y, int c) const { return task_.values[size_t(c) / 3][layer]->row(y, c % 3); }
+  const float* value_row(int y, int c) const { return task_.values[size_t(c) / 3].in_windows->row(y, c % 3); }
+  const float* own_value_row(int y, int c) const { return task_.values[size_t(c) / 3].own->row(y, c % 3); }
 
-  // Reads the k-th pixel of a group of a layer for every block of row j, so that the blocks lie next to each other.
-  void read_pixels(size_t layer, int j, int g, const Field* other_features = nullptr) {
-    const Predictors& predictors = *(*task_.layers)[layer];
-    const Field& features = other_features != nullptr ? *other_features : predictors.features;
-    const bool displaced = Coordinates && predictors.displacement.channels() > 0;
+  // Reads the k-th pixel of a group for every block of row j, so that the blocks lie next to each other: features, and
+  // displacements unless they are null or empty.
+  void read_features(const Field& features, const Field* displacement, int j, int g) {
+    const bool displaced = Coordinates && displacement != nullptr && displacement->channels() > 0;
     for (int k = 0; k < kGroup; ++k) {
-      const int y = pixel_row(j, g, k), dx = pixel_x(g, k);
+      const int y = pixel_row(j, g, k), dx = pixel_x(g, k), at = k * kPixel;
       const bool inside = y >= 0 && y < task_.height();
       const int of_features = GRADUS_FAULT(window_features_shifted_by_a_row) ? std::max(y - 1, 0) : y;
-      const int at = k * kPixel;
       for (int c = 0; c + 1 < B; ++c) pick(inside ? features.row(of_features, c) : nullptr, dx, pixels_[at + c]);
-      pick(inside ? predictors.weights.row(y) : nullptr, dx, pixels_[at + kWeight]);
-      for (int c = 0; c < C; ++c) pick(inside ? value_row(layer, y, c) : nullptr, dx, pixels_[at + kValues + c]);
-      for (int c = 0; c < kPixel - kDisplacement; ++c) {
-        pick(inside && displaced ? predictors.displacement.row(y, c) : nullptr, dx, pixels_[at + kDisplacement + c]);
-      }
+      for (int c = 0; c < kPixel - kDisplacement; ++c)
+        pick(inside && displaced ? displacement->row(y, c) : nullptr, dx, pixels_[at + kDisplacement + c]);
     }
   }
+  // Reads weights and values in the same way.
+  void read_samples(int j, int g) {
+    for (int k = 0; k < kGroup; ++k) {
+      const int y = pixel_row(j, g, k), dx = pixel_x(g, k), at = k * kPixel;
+      const bool inside = y >= 0 && y < task_.height();
+      pick(inside ? in_windows().weights.row(y) : nullptr, dx, pixels_[at + kWeight]);
+      for (int c = 0; c < C; ++c) pick(inside ? value_row(y, c) : nullptr, dx, pixels_[at + kValues + c]);
+    }
+  }
+  const Predictors& in_windows() const { return *task_.samples->in_windows; }
 
   // Range of blocks whose pixel dx lies in the image.
   int first_inside(int dx) const { return std::max(0, ceil_divided(octave_.shift - dx, side_) - first_); }
@@ -202,13 +199,10 @@ class Tile {
   // Computes the moments of the blocks of row j.
   void sum_squares(int j) {
     if (j < 0 || j >= ceil_divided(task_.height() + octave_.shift, side_)) return moments_.clear();
-    for (size_t layer = 0; layer < task_.layers->size(); ++layer) {
-      for (int g = 0; g < groups(); ++g) {
-        read_pixels(layer, j, g);
-        for (int x = 0; x < moments_.width(); x += kLanes) {
-          layer == 0 && g == 0 ? add_pixels<true>(g, x) : add_pixels<false>(g, x);
-        }
-      }
+    for (int g = 0; g < groups(); ++g) {
+      read_features(in_windows().features, &in_windows().displacement, j, g);
+      read_samples(j, g);
+      for (int x = 0; x < moments_.width(); x += kLanes) g == 0 ? add_pixels<true>(g, x) : add_pixels<false>(g, x);
     }
   }
 
@@ -375,37 +369,12 @@ class Tile {
   bool first_lattice() const { return octave_.shift == 0; }
   bool last_lattice() const { return octave_.shift == task_.settings->lattices - 1; }
 
-  bool is_joint() const { return task_.own_estimates != nullptr; }
-
   void write_pixels(int m) {
     for (int g = 0; g < groups(); ++g) {
-      if (is_joint()) add_own_estimates(m, g);
-      read_pixels(0, m, g, task_.estimated);
+      read_features(task_.samples->estimated_features(), nullptr, m, g);
       for (int k = 0; k < kGroup; ++k) {
         const int y = pixel_row(m, g, k);
         if (y >= 0 && y < task_.height()) write_pixels(y, g, k);
-      }
-    }
-  }
-
-  // Adds own · the estimates of the pixels of all layers to the sums over lattices.
-  void add_own_estimates(int m, int g) {
-    if (task_.own.empty()) return;
-    for (size_t layer = 0; layer < task_.layers->size(); ++layer) {
-      read_pixels(layer, m, g);
-      for (int k = 0; k < kGroup; ++k) {
-        const int y = pixel_row(m, g, k), dx = pixel_x(g, k);
-        if (y < 0 || y >= task_.height()) continue;
-        pick(task_.own[layer]->row(y), dx, moments_[0]);
-        for (int c = 0; c < C; ++c) {
-          const bool first = first_lattice() && layer == 0;
-          pick(first ? nullptr : task_.own_estimates->row(y, c), dx, boxes_[c], kReach);
-        }
-        for (int x = 0; x < width_; x += kLanes) {
-          const Lanes own = load(moments_[0] + x);
-          for (int c = 0; c < C; ++c) store(load(boxes_[c] + x) + own * estimate_of(g, k, c, x), boxes_[c] + x);
-        }
-        for (int c = 0; c < C; ++c) put(boxes_[c], dx, task_.own_estimates->row(y, c));
       }
     }
   }
@@ -427,65 +396,32 @@ class Tile {
     for (int i = 0; i < planes; ++i) pick(first_lattice() ? nullptr : rows[size_t(i)], dx, boxes_[i], kReach);
     for (int x = 0; x < width_; x += kLanes) {
       for (int c = 0; c < C; ++c) {
-        Lanes sum = load(boxes_[c] + x);
-        for (int i = 0; i < P; ++i) sum += load(estimate_[C * i + c] + x) * feature(i, g, k, x);
-        store(sum, boxes_[c] + x);
+        store(load(boxes_[c] + x) + estimate_of(g, k, c, x), boxes_[c] + x);
       }
       for (int i = 0; i < planes - C; ++i)
         store(load(boxes_[C + i] + x) + load(estimate_[O::kConfidence + i] + x), boxes_[C + i] + x);
     }
-    if (last_lattice()) add_sampled(y, k, dx);
+    if (last_lattice()) add_own(y, dx);
     for (int i = 0; i < planes; ++i) put(boxes_[i], dx, rows[size_t(i)]);
   }
 
-  void add_sampled(int y, int k, int dx) {
-    if (is_joint()) return add_samples_of_layers(y, dx);
-    pick(!task_.own.empty() ? task_.own[0]->row(y) : nullptr, dx, moments_[0]);
-    for (int x = 0; x < width_; x += kLanes) {
-      const Lanes own = load(moments_[0] + x), total = load(boxes_[C] + x) + own, zero{},
-                  factor = total > zero ? 1.0f / total : zero;
-      for (int c = 0; c < C; ++c)
-        store(factor * (load(boxes_[c] + x) + (GRADUS_FAULT(alpha_lacks_own_values) && !Estimates ? zero : own) *
-                                                  load(pixels_[k * kPixel + kValues + c] + x)),
-              boxes_[c] + x);
-      if constexpr (Estimates) store(factor * load(boxes_[C + 1] + x), boxes_[C + 1] + x);
-    }
-  }
-
-  // x = E/T + Σ own (I − E/T)/(T + Σ own), where T is the sum of η and E of η times the estimates: the windows'
-  // estimate of the pixel, and the mean of what the samples of its track have more than the estimates of their own
-  // features.
-  void add_samples_of_layers(int y, int dx) {
-    const int kOwn = 0, kSampled = 1;
-    for (int i = 0; i <= C; ++i) std::fill_n(moments_[i], moments_.width(), 0.0f);
-    for (size_t layer = 0; layer < task_.own.size(); ++layer) {
-      pick(task_.own[layer]->row(y), dx, pixels_[0]);
-      for (int x = 0; x < width_; x += kLanes)
-        store(load(moments_[kOwn] + x) + load(pixels_[0] + x), moments_[kOwn] + x);
-      for (int c = 0; c < C; ++c) {
-        pick(value_row(layer, y, c), dx, pixels_[1]);
-        float* sum = moments_[kSampled + c];
-        for (int x = 0; x < width_; x += kLanes)
-          store(load(sum + x) + load(pixels_[0] + x) * load(pixels_[1] + x), sum + x);
+  // x = (E + own I)/(T + own), where T is the sum of η and E that of η times the estimates.
+  void add_own(int y, int dx) {
+    const bool counts = task_.samples->own_weights != nullptr;
+    float *own = moments_[0], *sampled = moments_[1];
+    pick(counts ? task_.samples->own_weights->row(y) : nullptr, dx, own);
+    const auto divide = [&](int plane, const auto& numerator) {
+      const Lanes zero{};
+      for (int x = 0; x < width_; x += kLanes) {
+        const Lanes total = load(boxes_[C] + x) + load(own + x);
+        store(total > zero ? numerator(x) / total : zero, boxes_[plane] + x);
       }
-    }
-    const Lanes zero{};
+    };
     for (int c = 0; c < C; ++c) {
-      pick(!task_.own.empty() ? task_.own_estimates->row(y, c) : nullptr, dx, pixels_[0], kReach);
-      for (int x = 0; x < width_; x += kLanes) {
-        const Lanes total = load(boxes_[C] + x), all = total + load(moments_[kOwn] + x);
-        const Lanes of_windows = total > zero ? 1.0f / total : zero, of_all = all > zero ? 1.0f / all : zero;
-        store(of_windows * load(boxes_[c] + x) +
-                  of_all * (load(moments_[kSampled + c] + x) - of_windows * load(pixels_[0] + x)),
-              boxes_[c] + x);
-      }
+      pick(counts && (Estimates || !GRADUS_FAULT(alpha_lacks_own_values)) ? own_value_row(y, c) : nullptr, dx, sampled);
+      divide(c, [&](int x) { return load(boxes_[c] + x) + load(own + x) * load(sampled + x); });
     }
-    if constexpr (Estimates) {
-      for (int x = 0; x < width_; x += kLanes) {
-        const Lanes all = load(boxes_[C] + x) + load(moments_[kOwn] + x);
-        store(all > zero ? load(boxes_[C + 1] + x) / all : zero, boxes_[C + 1] + x);
-      }
-    }
+    if constexpr (Estimates) divide(C + 1, [&](int x) { return load(boxes_[C + 1] + x); });
   }
 
   void put(const float* from, int dx, float* row) const {

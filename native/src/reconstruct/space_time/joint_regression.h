@@ -13,9 +13,8 @@
 #include "film/film.h"
 #include "film/replay_map.h"
 #include "reconstruct/reconstructed.h"
-#include "reconstruct/regularized.h"
 #include "reconstruct/solve_report.h"
-#include "reconstruct/space_time/pixel_track.h"
+#include "reconstruct/space_time/joined_samples.h"
 #include "reconstruct/space_time/window_grid.h"
 
 namespace gradus::reconstruct {
@@ -38,33 +37,16 @@ class JointRegression {
   Reconstructed reconstruct(int frame, const FrameRange& around, const CancelCheck& cancel, SolveReport* report);
 
  private:
-  // What the pictures of other frames read of a frame, in the units of its film.
   struct Frame {
-    FrameStep step;
-    Field features;  // normal, albedo, depth
-    float typical_depth = 1.0f;
-    HalvedImage image;
-    PixelWeights weights;
-    std::vector<Field> sampled;  // by component; empty if the picture has neither alpha nor several components
-  };
-  // A picture that other frames contribute to, in units of its median luminance.
-  struct Picture {
-    float scale = 1.0f, unit = 1.0f;  // median luminance, typical depth
-    HalvedImage image;
-    Field weights;  // of its pixels in windows
-    Field depths;
-    Field alone;  // the picture by its own samples, in large windows
+    int32_t stream = 0;
+    film::PixelCorrespondence to_previous, to_next;  // `to_next` leads from the frame before to this one
+    FrameSamples samples;
   };
   const Frame& frame(int number, const CancelCheck& cancel);
-  // Returns where the pixels of another frame lie in a frame.
-  PixelTrack track(int other, int frame) const;
-  static Picture make_picture(const Frame& here, const CancelCheck& cancel);
-  // Returns the features of a frame's own regression.
-  static Field features_of(const Frame& frame);
-  // Adds a frame to those that contribute to a picture. Returns the shares of the pixels' weights that are kept.
-  static Field move_frame(const Frame& frame, const PixelTrack& track, const Picture& picture, OtherFrames* others);
+  // Returns whether a frame has the samples of the one before, unless that is unknown.
+  bool is_repeated(int number) const;
   // Returns the frames `numbers`, moved to frame `number`.
-  OtherFrames join(int number, const std::vector<int>& numbers, const CancelCheck& cancel) const;
+  std::vector<JoinedFrame> move_frames(int number, const std::vector<int>& numbers, const CancelCheck& cancel) const;
 
   OpenFilm open_film_;
   OpenStep open_step_;

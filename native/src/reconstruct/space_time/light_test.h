@@ -5,16 +5,15 @@
 
 namespace gradus::reconstruct {
 
-// What may have changed between the samples of two frames.
-struct LightChange {
-  Field difference;  // of the samples, less what comes from their fractions of a pixel; three channels
-  Field variance;    // of that difference, three channels
-  Field weight;      // of the pixel in means, 0 where there is no sample
-};
+// Side in pixels of the cells over which changes are summed.
+inline constexpr int kChangeCell = 2;
+// Channels of a field of changes: sums over a cell of weight · difference of the samples, less what comes from their
+// fractions of a pixel, for three colours, then of weight² · variance of that difference, summed over the colours.
+inline constexpr int kChangeVariance = 3, kChangeChannels = 4;
 
-// Returns the share of each pixel's weight that is kept, 0 to 1. In squares of several sizes around each pixel, the
-// mean difference is compared with its standard deviation (Welch 1947, "The generalization of Student's problem when
-// several different population variances are involved").
-Field same_light(const LightChange& change);
+// Returns the share of the samples' weight that is kept in each cell, 0 to 1. In squares of several sizes around it,
+// the mean difference is compared with its standard deviation (Welch 1947, "The generalization of Student's problem
+// when several different population variances are involved").
+Field same_light(Field changes);
 
 }  // namespace gradus::reconstruct

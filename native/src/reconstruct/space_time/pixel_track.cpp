@@ -1,10 +1,16 @@
 #include "reconstruct/space_time/pixel_track.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "base/rows.h"
+
 namespace gradus::reconstruct {
 namespace {
+
+// Number of rows that one thread extends. A pixel moves by at most one row.
+constexpr int kBand = 32;
 
 PixelTrack empty_track(int width, int height) {
   const size_t pixels = size_t(width) * size_t(height);
@@ -13,13 +19,17 @@ PixelTrack empty_track(int width, int height) {
 
 float squared_length(const Vec2& v) { return v.x * v.x + v.y * v.y; }
 
-// Puts a pixel of the other frame where it lies: at `displacement` from the centre of `pixel`.
-void put(int32_t source, int32_t pixel, Vec2 displacement, PixelTrack* track) {
-  const float right = std::round(displacement.x), up = std::round(displacement.y);
-  const int x = pixel % track->width + int(right), y = pixel / track->width + int(up);
+// Returns the number of whole pixels in a displacement of at most one pixel.
+int whole_pixels(float displacement) { return displacement > 0.5f ? 1 : displacement < -0.5f ? -1 : 0; }
+
+// Puts a pixel of the other frame where it lies: at `displacement` from the centre of pixel (x, y).
+void put(int32_t source, int x, int y, Vec2 displacement, PixelTrack* track) {
+  const int right = whole_pixels(displacement.x), up = whole_pixels(displacement.y);
+  x += right;
+  y += up;
   if (x < 0 || x >= track->width || y < 0 || y >= track->height) return;
-  displacement.x -= right;
-  displacement.y -= up;
+  displacement.x -= float(right);
+  displacement.y -= float(up);
   const size_t to = size_t(y) * size_t(track->width) + size_t(x);
   if (track->source[to] != film::kNoCorrespondence &&
       squared_length(track->displacement[to]) <= squared_length(displacement))
@@ -32,6 +42,18 @@ Vec2 off_centre(const film::PixelCorrespondence& correspondence, size_t pixel) {
   return correspondence.off_centre.empty() ? Vec2{} : correspondence.off_centre[pixel];
 }
 
+void extend_row(const PixelTrack& track, const film::PixelCorrespondence& correspondence, int y, PixelTrack* result) {
+  for (int x = 0; x < track.width; ++x) {
+    const size_t pixel = size_t(y) * size_t(track.width) + size_t(x);
+    if (track.source[pixel] == film::kNoCorrespondence) continue;
+    const auto there = size_t(track.source[pixel]);
+    const int32_t source = correspondence.pixel[there];
+    if (source == film::kNoCorrespondence) continue;
+    const Vec2 off = off_centre(correspondence, there), at = track.displacement[pixel];
+    put(source, x, y, {at.x + off.x, at.y + off.y}, result);
+  }
+}
+
 }  // namespace
 
 PixelTrack own_pixels(int width, int height) {
@@ -40,25 +62,37 @@ PixelTrack own_pixels(int width, int height) {
   return track;
 }
 
-PixelTrack moved_on(const PixelTrack& track, const film::PixelCorrespondence& to_previous) {
-  PixelTrack moved = empty_track(track.width, track.height);
-  for (size_t pixel = 0; pixel < to_previous.pixel.size(); ++pixel) {
-    const int32_t before = to_previous.pixel[pixel];
-    if (before == film::kNoCorrespondence || track.source[size_t(before)] == film::kNoCorrespondence) continue;
-    const Vec2 off = off_centre(to_previous, pixel), at = track.displacement[size_t(before)];
-    put(track.source[size_t(before)], int32_t(pixel), {at.x + off.x, at.y + off.y}, &moved);
+PixelTrack extended(const PixelTrack& track, const film::PixelCorrespondence& correspondence) {
+  PixelTrack result = empty_track(track.width, track.height);
+  if (correspondence.empty()) return result;
+  const int bands = (track.height + kBand - 1) / kBand;
+  // Adjacent bands put pixels in the same rows, so that every other band runs at a time.
+  for (const int parity : {0, 1}) {
+    for_rows((bands + 1 - parity) / 2,
+             [&](int i) {
+               const int first = (2 * i + parity) * kBand;
+               for (int y = first; y < std::min(first + kBand, track.height); ++y)
+                 extend_row(track, correspondence, y, &result);
+             },
+             1);
   }
-  return moved;
+  return result;
 }
 
-PixelTrack moved_back(const PixelTrack& track, const film::PixelCorrespondence& to_previous) {
-  PixelTrack moved = empty_track(track.width, track.height);
-  for (size_t pixel = 0; pixel < to_previous.pixel.size(); ++pixel) {
-    if (to_previous.pixel[pixel] == film::kNoCorrespondence || track.source[pixel] == film::kNoCorrespondence) continue;
-    const Vec2 off = off_centre(to_previous, pixel), at = track.displacement[pixel];
-    put(track.source[pixel], to_previous.pixel[pixel], {at.x - off.x, at.y - off.y}, &moved);
+film::PixelCorrespondence inverse(const film::PixelCorrespondence& to_previous) {
+  const size_t pixels = to_previous.pixel.size();
+  film::PixelCorrespondence to_next{std::vector<int32_t>(pixels, film::kNoCorrespondence), std::vector<Vec2>(pixels)};
+  for (size_t pixel = 0; pixel < pixels; ++pixel) {
+    const int32_t before = to_previous.pixel[pixel];
+    if (before == film::kNoCorrespondence) continue;
+    const Vec2 off = off_centre(to_previous, pixel);
+    int32_t& known = to_next.pixel[size_t(before)];
+    if (known != film::kNoCorrespondence && squared_length(to_next.off_centre[size_t(before)]) <= squared_length(off))
+      continue;
+    known = int32_t(pixel);
+    to_next.off_centre[size_t(before)] = {-off.x, -off.y};
   }
-  return moved;
+  return to_next;
 }
 
 }  // namespace gradus::reconstruct

@@ -20,10 +20,10 @@ struct PixelTrack {
 
 // Returns the track of the picture's own pixels.
 PixelTrack own_pixels(int width, int height);
-// Moves the pixels of a track one frame on in time, to frame t, or one frame back, from frame t. `to_previous` is the
-// correspondence between the pixels of frame t and those of the frame before. Where two pixels arrive in one, it holds
-// the one that lies nearer to its centre.
-PixelTrack moved_on(const PixelTrack& track, const film::PixelCorrespondence& to_previous);
-PixelTrack moved_back(const PixelTrack& track, const film::PixelCorrespondence& to_previous);
+// Extends a track, of frame t, to the frame before or after it. `correspondence` leads from the pixels of frame t to
+// those of that frame. Where two pixels arrive in one, it holds the one that lies nearer to its centre.
+PixelTrack extended(const PixelTrack& track, const film::PixelCorrespondence& correspondence);
+// Returns the correspondence from the pixels of the frame before to those of frame t.
+film::PixelCorrespondence inverse(const film::PixelCorrespondence& to_previous);
 
 }  // namespace gradus::reconstruct

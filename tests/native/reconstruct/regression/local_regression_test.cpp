@@ -34,17 +34,20 @@ float feature(int x, int y, int c) {
   return std::sin(0.9f * float(x) * float(c + 1) + 0.37f * float(y * y) * float(c + 2));
 }
 reconstruct::Field features(int w, int h) { return make_field(w, h, 7, feature); }
-// Returns the predictors of a single picture.
-reconstruct::Layers predictors(reconstruct::Field features, reconstruct::Field weights) {
-  return {std::make_shared<const reconstruct::Predictors>(
-      reconstruct::Predictors{std::move(features), std::move(weights)})};
+// Returns the samples of a single picture. `own`: weights of pixels' own values; empty: they do not count.
+reconstruct::RegressionSamples samples(reconstruct::Field features, reconstruct::Field weights,
+                                       reconstruct::Field own = {}) {
+  auto in_windows =
+      std::make_shared<const reconstruct::Predictors>(reconstruct::Predictors{std::move(features), std::move(weights)});
+  if (own.width() == 0) return {std::move(in_windows)};
+  return {std::move(in_windows), std::make_shared<const reconstruct::Field>(std::move(own))};
 }
 reconstruct::RegressionResult estimate(reconstruct::LocalRegression* regression, const reconstruct::Field& mean,
                                        const reconstruct::Field& half_difference) {
-  return regression->estimate({&mean}, {&half_difference}, never);
+  return regression->estimate({&mean, &mean}, {&half_difference, &half_difference}, never);
 }
 reconstruct::Field apply(const reconstruct::LocalRegression& regression, const reconstruct::Field& values) {
-  return regression.apply({&values}, never);
+  return regression.apply({&values, &values}, never);
 }
 reconstruct::Field ones(int w, int h) {
   return make_field(w, h, 1, [](int, int, int) { return 1.0f; });
@@ -73,7 +76,7 @@ TEST(B1_Regression, KeepsImagesThatTheFeaturesExplain) {
     const reconstruct::Field image = make_field(w, h, 3, [](int x, int y, int c) {
       return 5.0f + 0.03f * float(x) - 0.02f * float(y) + 0.5f * feature(x, y, c) - 0.25f * feature(x, y, 6);
     });
-    reconstruct::LocalRegression regression(predictors(features(w, h), ones(w, h)), {}, kSettings);
+    reconstruct::LocalRegression regression(samples(features(w, h), ones(w, h)), kSettings);
     const reconstruct::RegressionResult result = estimate(&regression, image, reconstruct::Field(w, h, 3));
     // The ridge reduces each coefficient slightly, most where windows are small.
     EXPECT_LT(largest_difference(result.mean, image), 0.01) << w << "x" << h;
@@ -84,7 +87,7 @@ TEST(B1_Regression, KeepsImagesThatTheFeaturesExplain) {
 TEST(B2_Regression, IsItsOwnLinearOperator) {
   const int w = 170, h = 140;
   const reconstruct::Field image = noise(w, h, 1.0f, 1), half = noise(w, h, 0.5f, 2), other = noise(w, h, 2.0f, 3);
-  reconstruct::LocalRegression regression(predictors(features(w, h), ones(w, h)), {ones(w, h)}, kSettings);
+  reconstruct::LocalRegression regression(samples(features(w, h), ones(w, h), ones(w, h)), kSettings);
   const reconstruct::RegressionResult result = estimate(&regression, image, half);
   for (int c = 0; c < 3; ++c) {
     EXPECT_LT(largest_difference(apply(regression, reconstruct::channels_of(image, c, 1)),
@@ -107,7 +110,7 @@ TEST(B2_Regression, HasTheSameBitsForAnyNumberOfThreads) {
   const int w = 170, h = 140;
   const reconstruct::Field image = noise(w, h, 1.0f, 1), half = noise(w, h, 0.5f, 2);
   expect_same_bits_for_any_number_of_threads([&] {
-    reconstruct::LocalRegression regression(predictors(features(w, h), ones(w, h)), {}, kSettings);
+    reconstruct::LocalRegression regression(samples(features(w, h), ones(w, h)), kSettings);
     const reconstruct::Field mean = estimate(&regression, image, half).mean;
     std::vector<float> values;
     for (int y = 0; y < h; ++y) values.insert(values.end(), mean.row(y, 1), mean.row(y, 1) + w);
@@ -127,7 +130,7 @@ TEST(B2_Regression, EstimatesItsNoise) {
         w, h, 3, [&](int x, int y, int c) { return truth(x, y, c) + 0.5f * (a.row(y, c)[x] + b.row(y, c)[x]); });
     const reconstruct::Field half =
         make_field(w, h, 3, [&](int x, int y, int c) { return 0.5f * (a.row(y, c)[x] - b.row(y, c)[x]); });
-    reconstruct::LocalRegression regression(predictors(features(w, h), ones(w, h)), {}, kSettings);
+    reconstruct::LocalRegression regression(samples(features(w, h), ones(w, h)), kSettings);
     const reconstruct::RegressionResult result = estimate(&regression, image, half);
     for (int y = 0; y < h; ++y) {
       for (int c = 0; c < 3; ++c) {
@@ -156,8 +159,7 @@ reconstruct::LocalRegression regress(const KnownError& known, float own, reconst
   const reconstruct::Field half = make_field(
       w, h, 3, [&](int x, int y, int) { return known.common_noise + known.chequered_noise * chequer(x, y); });
   const reconstruct::Field own_weights = make_field(w, h, 1, [&](int, int, int) { return own; });
-  reconstruct::LocalRegression regression(predictors(reconstruct::Field(w, h, 7), ones(w, h)), {own_weights},
-                                          kSettings);
+  reconstruct::LocalRegression regression(samples(reconstruct::Field(w, h, 7), ones(w, h), own_weights), kSettings);
   *result = estimate(&regression, image, half);
   return regression;
 }
@@ -197,7 +199,7 @@ TEST(B2_Regression, AShelfStaysDarkFarFromTheTilesCentre) {
   const int w = 160, h = 120;
   const reconstruct::Field image = make_field(w, h, 3, [](int, int y, int) { return y % 20 < 5 ? 0.3f : 30.0f; });
   const reconstruct::Field none = make_field(w, h, 7, [](int, int, int c) { return c == 1 ? 1.0f : 0.0f; });
-  reconstruct::LocalRegression regression(predictors(none, ones(w, h)), {}, kSettings);
+  reconstruct::LocalRegression regression(samples(none, ones(w, h)), kSettings);
   const reconstruct::RegressionResult result = estimate(&regression, image, reconstruct::Field(w, h, 3));
   for (int x = 8; x < w - 8; ++x) {
     for (const int y : {22, 42, 62, 82, 102}) EXPECT_NEAR(result.mean.row(y)[x], 0.3f, 0.1f) << x << " " << y;
@@ -215,7 +217,7 @@ TEST(B2_Regression, LeavesOutPixelsWithoutWeight) {
       for (int c = 0; c < 3; ++c) image.row(y, c)[x] = 1e4f;
     }
   }
-  reconstruct::LocalRegression regression(predictors(features(w, h), weights), {}, kSettings);
+  reconstruct::LocalRegression regression(samples(features(w, h), weights), kSettings);
   EXPECT_LT(largest_difference(estimate(&regression, image, reconstruct::Field(w, h, 3)).mean, truth), 0.03);
 }
 
@@ -238,8 +240,8 @@ TEST(B1_Regression, SkipsBlackTiles) {
       for (int x = 0; x < w; ++x) seen.row(y, c)[x] += hardly_anything.row(y, c)[x];
     }
   }
-  const auto shared = predictors(features(w, h), ones(w, h));
-  reconstruct::LocalRegression passing(shared, {ones(w, h)}, kSettings), working(shared, {ones(w, h)}, kSettings);
+  const auto shared = samples(features(w, h), ones(w, h), ones(w, h));
+  reconstruct::LocalRegression passing(shared, kSettings), working(shared, kSettings);
   const reconstruct::RegressionResult a = estimate(&passing, mean, half), b = estimate(&working, seen, half);
   EXPECT_LT(largest_difference(a.mean, b.mean), 1e-5);
   EXPECT_LT(largest_difference(a.noise, b.noise), 1e-5);

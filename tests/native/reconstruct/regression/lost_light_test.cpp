@@ -26,31 +26,38 @@ double sum_of(const reconstruct::Field& field) {
   return sum;
 }
 
+// Returns the light of samples that hold `residual` more than a picture.
+reconstruct::LightOfSamples light_of(const reconstruct::Field& picture, const reconstruct::Field& residual,
+                                     const reconstruct::Field& half_difference) {
+  const int w = picture.width(), h = picture.height();
+  reconstruct::Field light = picture;
+  add(residual, &light);
+  return {reconstruct::make_field(w, h, [](int, int) { return 1.0f; }), std::move(light),
+          reconstruct::make_field(w, h, [&](int x, int y) { return mean_of_squares(half_difference, x, y); })};
+}
+
 // What the samples have more than a picture of light 1: `count` bright samples of one half, spread over the picture.
-struct Sampled {
-  reconstruct::Field residual = constant(0.0f), half_difference = constant(0.0f);
-  Sampled(int count, float light) {
-    for (int i = 0; i < count; ++i) {
-      const int pixel = (2 * i + 1) * kWidth * kHeight / (2 * count);
-      for (int c = 0; c < 3; ++c) {
-        residual.row(pixel / kWidth, c)[pixel % kWidth] += light;
-        half_difference.row(pixel / kWidth, c)[pixel % kWidth] += light;
-      }
-    }
+reconstruct::Field bright_samples(int count, float light) {
+  reconstruct::Field residual = constant(0.0f);
+  for (int i = 0; i < count; ++i) {
+    const int pixel = (2 * i + 1) * kWidth * kHeight / (2 * count);
+    for (int c = 0; c < 3; ++c) residual.row(pixel / kWidth, c)[pixel % kWidth] += light;
   }
-};
+  return residual;
+}
 
 // Returns a picture of light 1 after what it has lost is restored.
-reconstruct::Field restored(const Sampled& sampled, const reconstruct::Field& noise) {
-  return reconstruct::restore_lost_light(constant(1.0f), noise, {{}}, {sampled.residual}, {&sampled.half_difference});
+reconstruct::Field restored(const reconstruct::Field& residual, const reconstruct::Field& noise) {
+  const reconstruct::Field picture = constant(1.0f);
+  return reconstruct::restore_lost_light(picture, picture, noise, light_of(picture, residual, residual));
 }
 
 // One bright sample says nothing, n of them all but 1/n of their light.
 TEST(B2_LostLight, IsRestoredByTheStatisticsOfBrightSamples) {
   const reconstruct::Field noise = constant(1.0f, 1);
   for (const int count : {1, 2, 10, 100}) {
-    const Sampled sampled(count, 20.0f);
-    const double lost = sum_of(sampled.residual), back = sum_of(restored(sampled, noise)) - sum_of(constant(1.0f));
+    const reconstruct::Field residual = bright_samples(count, 20.0f);
+    const double lost = sum_of(residual), back = sum_of(restored(residual, noise)) - sum_of(constant(1.0f));
     EXPECT_NEAR(back / lost, 1.0 - 1.0 / count, 1e-3) << count;
   }
 }
@@ -59,20 +66,21 @@ TEST(B2_LostLight, IsRestoredByTheStatisticsOfBrightSamples) {
 TEST(B2_LostLight, GoesToPlacesWithNoise) {
   reconstruct::Field noise = constant(1.0f, 1);
   for (int y = 0; y < kHeight; ++y) std::fill_n(noise.row(y), kWidth / 2, 0.0f);
-  const reconstruct::Field picture = restored(Sampled(100, 10.0f), noise);
+  const reconstruct::Field picture = restored(bright_samples(100, 10.0f), noise);
   EXPECT_EQ(picture.row(5)[5], 1.0f);
   EXPECT_GT(picture.row(5)[kWidth - 5], 1.5f);
 }
 
-// Samples of other frames that show other light count by the share that the test of light keeps.
-TEST(B2_LostLight, SamplesThatAreNotKeptDoNotCount) {
-  const Sampled own(100, 50.0f), other(100, 5000.0f);
-  const reconstruct::Field noise = constant(1.0f, 1);
-  const reconstruct::Field two =
-      reconstruct::restore_lost_light(constant(1.0f), noise, {{}, constant(0.0f, 1)}, {own.residual, other.residual},
-                                      {&own.half_difference, &other.half_difference});
-  EXPECT_NEAR(sum_of(two), sum_of(restored(own, noise)), 1e-2);
-  EXPECT_GT(sum_of(two), 1.5 * sum_of(constant(1.0f)));
+// Samples of several frames add up, each by the share of them that counts.
+TEST(B2_LostLight, SamplesCountByTheirShare) {
+  const reconstruct::Field noise = constant(1.0f, 1), picture = constant(1.0f), residual = bright_samples(100, 20.0f);
+  reconstruct::LightOfSamples samples = light_of(picture, residual, residual);
+  const double once = sum_of(reconstruct::restore_lost_light(picture, picture, noise, samples));
+  for (reconstruct::Field* field : {&samples.share, &samples.light, &samples.variance})
+    add(reconstruct::Field(*field), field);
+  // Two equal frames, whose variances would be those of a sum of independent samples, lose as much light as one.
+  EXPECT_NEAR(sum_of(reconstruct::restore_lost_light(picture, picture, noise, samples)) / once, 1.0, 0.01);
+  EXPECT_GT(once, 1.5 * sum_of(picture));
 }
 
 // Where little of the picture is noisy, that part would take what all of it lacks.
@@ -81,8 +89,8 @@ TEST(B2_LostLight, FactorsAreBounded) {
     reconstruct::Field picture = constant(10.0f), noise = constant(1e-4f, 1), residual = constant(10.0f * offset);
     for (int c = 0; c < 3; ++c) std::fill_n(picture.row(9, c), kWidth, 0.01f);
     std::fill_n(noise.row(9), kWidth, 1.0f);
-    const reconstruct::Field half = constant(0.0f);
-    const reconstruct::Field factors = reconstruct::restore_lost_light(picture, noise, {{}}, {residual}, {&half});
+    const reconstruct::Field factors =
+        reconstruct::restore_lost_light(picture, picture, noise, light_of(picture, residual, constant(0.0f)));
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
         ASSERT_GE(factors.row(y)[x], 0.5f);
@@ -99,7 +107,7 @@ TEST(B2_LostLight, ChangesSmoothlyOverThePicture) {
   for_values(&residual, [](float& value, int x, int, int) { value = float(x) / kWide; });
   for_values(&picture, [](float& value, int, int, int) { value = 1.0f; });
   for_values(&noise, [](float& value, int, int, int) { value = 1.0f; });
-  picture = reconstruct::restore_lost_light(picture, noise, {{}}, {residual}, {&half});
+  picture = reconstruct::restore_lost_light(picture, picture, noise, light_of(picture, residual, half));
   EXPECT_LT(picture.row(0)[0], 1.3f);
   EXPECT_GT(picture.row(0)[kWide - 1], 1.7f);
   for (int x = 1; x < kWide; ++x) ASSERT_LT(std::fabs(picture.row(0)[x] - picture.row(0)[x - 1]), 0.003f) << x;

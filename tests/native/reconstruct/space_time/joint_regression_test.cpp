@@ -119,7 +119,7 @@ TEST(B2_JointRegression, NineFramesLeaveASmallPartOfTheVarianceOfOne) {
                  of_one = variance_of(shot, [](const Shot&s) { return alone(s, kMiddle).image; });
     std::printf("  gradients %d: %.4f of the variance of one frame\n", gradients, of_all / of_one);
     // With gradients, the differences of one frame are as exact as its samples are noisy.
-    EXPECT_LT(of_all / of_one, gradients ? 0.4 : 1.9 / kFrames);
+    EXPECT_LT(of_all / of_one, gradients ? 0.4 : 2.2 / kFrames);
     EXPECT_GT(of_all / of_one, 0.7 / kFrames);
   }
 }
@@ -220,11 +220,19 @@ TEST(B2_JointRegression, DisplacementsCountInWindows) {
   shot.ramp = 0.05f;
   shot.sigma = 0.02f;
   for (const int frame : {0, 1}) {
-    const std::vector<float> truth = shot.description(frame).truth, picture = joint(shot, frame).image;
-    const double shift = (mean(picture) - mean(truth)) / shot.ramp;
-    std::printf("  frame %d: shifted by %.4f pixels\n", frame, shift);
+    const std::vector<float> truth = shot.description(frame).truth;
+    double shift = 0.0, error = 0.0, of_one = 0.0;
+    constexpr unsigned kSeeds = 4;
+    for (shot.seed = 1; shot.seed <= kSeeds; ++shot.seed) {
+      const std::vector<float> picture = joint(shot, frame).image;
+      shift += (mean(picture) - mean(truth)) / double(shot.ramp) / kSeeds;
+      error += std::pow(rms_difference(picture, truth), 2);
+      of_one += std::pow(rms_difference(alone(shot, frame).image, truth), 2);
+    }
+    std::printf("  frame %d: shifted by %.4f pixels, %.3f of the squared error of one frame\n", frame, shift,
+                error / of_one);
     EXPECT_NEAR(shift, 0.0, 0.02) << frame;
-    EXPECT_LT(rms_difference(picture, truth), 0.9 * rms_difference(alone(shot, frame).image, truth)) << frame;
+    EXPECT_LT(error, 0.85 * of_one) << frame;
   }
 }
 
@@ -366,7 +374,7 @@ TEST(B2_JointRegression, AcceptsFramesWithoutASecondHalf) {
 }
 
 // A job that begins in the middle of a sequence has the pictures of the whole, if it has the same neighbours. Every
-// frame is opened once for its own picture, and once for those of all others.
+// frame is opened once.
 TEST(B2_JointRegression, APartHasThePicturesOfTheWhole) {
   Shot shot;
   shot.frames = 8;
@@ -384,7 +392,7 @@ TEST(B2_JointRegression, APartHasThePicturesOfTheWhole) {
       [&](int t, const CancelCheck&) { return shot.step(t); });
   std::vector<reconstruct::Reconstructed> pictures;
   for (int t = 0; t < shot.frames; ++t) pictures.push_back(whole.reconstruct(t, around(t), never, &report));
-  for (int t = 0; t < shot.frames; ++t) EXPECT_EQ(opened[t], 2) << t;
+  for (int t = 0; t < shot.frames; ++t) EXPECT_EQ(opened[t], 1) << t;
   for (const int first : {3, 6}) {
     reconstruct::JointRegression part = shot.regression();
     for (int t = first; t < shot.frames; ++t) {

@@ -16,10 +16,33 @@ using namespace test;
 
 constexpr int kWidth = 160, kHeight = 120;
 
+// What may have changed between the samples of two frames, by pixel.
+struct LightChange {
+  reconstruct::Field difference, variance, weight;
+};
+
+// Returns the shares of the pixels, those of their cells.
+reconstruct::Field same_light(const LightChange& change) {
+  constexpr int kCell = reconstruct::kChangeCell;
+  const int w = change.weight.width(), h = change.weight.height();
+  reconstruct::Field sums((w + kCell - 1) / kCell, (h + kCell - 1) / kCell, reconstruct::kChangeChannels);
+  for (int y = 0; y < h; ++y) {
+    for (int x = 0; x < w; ++x) {
+      const float weight = change.weight.row(y)[x];
+      for (int c = 0; c < 3; ++c) {
+        sums.row(y / kCell, c)[x / kCell] += weight * change.difference.row(y, c)[x];
+        sums.row(y / kCell, reconstruct::kChangeVariance)[x / kCell] += weight * weight * change.variance.row(y, c)[x];
+      }
+    }
+  }
+  const reconstruct::Field kept = reconstruct::same_light(sums);
+  return reconstruct::make_field(w, h, [&](int x, int y) { return kept.row(y / kCell)[x / kCell]; });
+}
+
 // Returns samples of the same light whose noise has the standard deviation `sigma` of a pixel, which is known.
-reconstruct::LightChange noise(float sigma, unsigned seed, int width = kWidth, int height = kHeight) {
-  reconstruct::LightChange change{reconstruct::Field(width, height, 3), reconstruct::Field(width, height, 3),
-                                  reconstruct::make_field(width, height, [](int, int) { return 1.0f; })};
+LightChange noise(float sigma, unsigned seed, int width = kWidth, int height = kHeight) {
+  LightChange change{reconstruct::Field(width, height, 3), reconstruct::Field(width, height, 3),
+                     reconstruct::make_field(width, height, [](int, int) { return 1.0f; })};
   std::mt19937 random(seed);
   std::normal_distribution<float> normal(0.0f, 1.0f);
   for (int y = 0; y < height; ++y) {
@@ -57,7 +80,7 @@ TEST(C5_LightTest, AStepInASquareIsDropped) {
     double inside = 0.0, outside = 0.0;
     constexpr int kSeeds = 8;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
-      reconstruct::LightChange change = noise(kSigma, seed);
+      LightChange change = noise(kSigma, seed);
       reconstruct::for_values(&change.difference, [&](float& value, int x, int y, int) {
         if (x >= kX && x < kX + kSide && y >= kY && y < kY + kSide) value += deviations * kSigma / kSide;
       });
@@ -67,7 +90,8 @@ TEST(C5_LightTest, AStepInASquareIsDropped) {
     }
     std::printf("  %g deviations: %.4f kept inside, %.4f far away\n", double(deviations), inside, outside);
     EXPECT_GT(outside, 0.99);
-    EXPECT_TRUE(deviations < 6.0f || inside < 0.001) << deviations;
+    EXPECT_TRUE(deviations < 6.0f || inside < 0.05) << deviations;
+    EXPECT_TRUE(deviations < 12.0f || inside < 0.001) << deviations;
     EXPECT_TRUE(deviations > 0.0f || inside > 0.99);
     EXPECT_LT(inside, deviations < 3.0f ? 1.1 : 0.85) << deviations;
   }
@@ -75,7 +99,7 @@ TEST(C5_LightTest, AStepInASquareIsDropped) {
 
 // Light without noise, such as that of a source seen directly, is compared exactly.
 TEST(C5_LightTest, ADifferenceWithoutNoiseIsDropped) {
-  reconstruct::LightChange change = noise(0.0f, 1);
+  LightChange change = noise(0.0f, 1);
   const reconstruct::Field equal = same_light(change);
   EXPECT_EQ(mean_of(equal), 1.0) << "equal values without noise are the same light";
   reconstruct::for_values(&change.difference, [](float& value, int x, int, int) { value = x < 80 ? 0.0f : 1e-6f; });
@@ -86,7 +110,7 @@ TEST(C5_LightTest, ADifferenceWithoutNoiseIsDropped) {
 
 // Pixels without samples count neither for nor against their neighbours.
 TEST(B2_LightTest, PixelsWithoutSamplesDoNotCount) {
-  reconstruct::LightChange change = noise(0.4f, 1);
+  LightChange change = noise(0.4f, 1);
   reconstruct::for_values(&change.weight, [](float& value, int x, int, int) { value = x % 3 == 0 ? 0.0f : 1.0f; });
   const reconstruct::Field before = same_light(change);
   reconstruct::for_values(&change.difference, [](float& value, int x, int, int) {
@@ -99,7 +123,7 @@ TEST(B2_LightTest, PixelsWithoutSamplesDoNotCount) {
 
 // Only the ratio of difference and noise counts.
 TEST(B2_LightTest, DoesNotDependOnUnits) {
-  reconstruct::LightChange change = noise(0.4f, 1);
+  LightChange change = noise(0.4f, 1);
   const auto step = [](reconstruct::Field* difference, float value) {
     reconstruct::for_values(difference, [&](float& to, int x, int, int) { to += x < 60 ? value : 0.0f; });
   };
@@ -127,7 +151,7 @@ TEST(B2_LightTest, TestsPicturesOfAnySize) {
 }
 
 TEST(B2_LightTest, HasTheSameBitsForAnyNumberOfThreads) {
-  const reconstruct::LightChange change = noise(0.4f, 1);
+  const LightChange change = noise(0.4f, 1);
   expect_same_bits_for_any_number_of_threads([&] {
     const reconstruct::Field kept = same_light(change);
     std::vector<float> values;

@@ -61,14 +61,14 @@ TEST(B2_PixelTrack, OwnPixelsLieAtTheirCentres) {
 TEST(B2_PixelTrack, APanIsFollowedExactlyBothWays) {
   for (const Vec2& pan : kPans) {
     const film::PixelCorrespondence step = panned(pan.x, pan.y);
-    reconstruct::PixelTrack on = reconstruct::own_pixels(kWidth, kHeight), back = on;
+    reconstruct::PixelTrack to_earlier = reconstruct::own_pixels(kWidth, kHeight), to_later = to_earlier;
     for (int frames = 1; frames <= kFrames; ++frames) {
-      on = reconstruct::moved_on(on, step);
-      back = reconstruct::moved_back(back, step);
+      to_earlier = reconstruct::extended(to_earlier, step);
+      to_later = reconstruct::extended(to_later, reconstruct::inverse(step));
       const auto moved = float(frames);
       const int border = int(std::ceil(moved * std::max(std::fabs(pan.x), std::fabs(pan.y)))) + 1;
-      expect_pan(on, moved * pan.x, moved * pan.y, border);
-      expect_pan(back, -moved * pan.x, -moved * pan.y, border);
+      expect_pan(to_earlier, moved * pan.x, moved * pan.y, border);
+      expect_pan(to_later, -moved * pan.x, -moved * pan.y, border);
     }
   }
 }
@@ -77,8 +77,8 @@ TEST(B2_PixelTrack, APanIsFollowedExactlyBothWays) {
 TEST(B2_PixelTrack, LeadsThereAndBack) {
   const film::PixelCorrespondence step = panned(0.375f, -0.25f);
   reconstruct::PixelTrack track = reconstruct::own_pixels(kWidth, kHeight);
-  for (int frames = 0; frames < kFrames; ++frames) track = reconstruct::moved_on(track, step);
-  for (int frames = 0; frames < kFrames; ++frames) track = reconstruct::moved_back(track, step);
+  for (int frames = 0; frames < kFrames; ++frames) track = reconstruct::extended(track, step);
+  for (int frames = 0; frames < kFrames; ++frames) track = reconstruct::extended(track, reconstruct::inverse(step));
   for (int y = kFrames; y < kHeight - kFrames; ++y) {
     for (int x = kFrames; x < kWidth - kFrames; ++x) {
       EXPECT_EQ(track.source[index_of(x, y)], int32_t(index_of(x, y)));
@@ -92,8 +92,9 @@ TEST(B2_PixelTrack, LeadsThereAndBack) {
 TEST(B2_PixelTrack, WithoutPlacesMotionIsByWholePixels) {
   film::PixelCorrespondence step = panned(2.0f, -1.0f);
   step.off_centre.clear();
-  expect_pan(reconstruct::moved_on(reconstruct::own_pixels(kWidth, kHeight), step), 2.0f, -1.0f, 2);
-  expect_pan(reconstruct::moved_back(reconstruct::own_pixels(kWidth, kHeight), step), -2.0f, 1.0f, 2);
+  expect_pan(reconstruct::extended(reconstruct::own_pixels(kWidth, kHeight), step), 2.0f, -1.0f, 2);
+  expect_pan(reconstruct::extended(reconstruct::own_pixels(kWidth, kHeight), reconstruct::inverse(step)), -2.0f, 1.0f,
+             2);
 }
 
 TEST(B2_PixelTrack, PixelsWithoutACorrespondenceHoldNone) {
@@ -101,13 +102,14 @@ TEST(B2_PixelTrack, PixelsWithoutACorrespondenceHoldNone) {
   const auto lost = index_of(7, 5);
   step.pixel[lost] = film::kNoCorrespondence;
   const reconstruct::PixelTrack own = reconstruct::own_pixels(kWidth, kHeight);
-  for (const reconstruct::PixelTrack& track : {reconstruct::moved_on(own, step), reconstruct::moved_back(own, step)}) {
+  for (const reconstruct::PixelTrack& track :
+       {reconstruct::extended(own, step), reconstruct::extended(own, reconstruct::inverse(step))}) {
     for (size_t i = 0; i < track.source.size(); ++i)
       EXPECT_EQ(track.source[i], i == lost ? film::kNoCorrespondence : int32_t(i));
   }
   for (const reconstruct::PixelTrack& track :
-       {reconstruct::moved_on(own, {std::vector<int32_t>(own.source.size(), film::kNoCorrespondence)}),
-        reconstruct::moved_on(own, {}), reconstruct::moved_back(own, {})}) {
+       {reconstruct::extended(own, {std::vector<int32_t>(own.source.size(), film::kNoCorrespondence)}),
+        reconstruct::extended(own, {}), reconstruct::extended(own, reconstruct::inverse({}))}) {
     for (const int32_t source : track.source) EXPECT_EQ(source, film::kNoCorrespondence);
   }
 }
@@ -122,7 +124,8 @@ TEST(B2_PixelTrack, TheNearerOfTwoPixelsStays) {
     step.pixel[first] = step.pixel[second] = target;
     step.off_centre[first] = first_is_nearer ? Vec2{0.1f, 0.0f} : Vec2{-0.3f, 0.2f};
     step.off_centre[second] = first_is_nearer ? Vec2{-0.3f, 0.2f} : Vec2{0.1f, 0.0f};
-    const reconstruct::PixelTrack track = reconstruct::moved_back(reconstruct::own_pixels(kWidth, kHeight), step);
+    const reconstruct::PixelTrack track =
+        reconstruct::extended(reconstruct::own_pixels(kWidth, kHeight), reconstruct::inverse(step));
     EXPECT_EQ(track.source[size_t(target)], int32_t(first_is_nearer ? first : second));
     EXPECT_NEAR(track.displacement[size_t(target)].x, -0.1f, 1e-6f);
   }
@@ -132,10 +135,10 @@ TEST(B2_PixelTrack, TheNearerOfTwoPixelsStays) {
 TEST(B2_PixelTrack, DisplacementsThatAddUpToAPixelMoveToTheNextOne) {
   film::PixelCorrespondence step = panned(0.0f, 0.0f);
   step.off_centre[index_of(9, 8)] = {0.4f, 0.0f};
-  reconstruct::PixelTrack track = reconstruct::moved_on(reconstruct::own_pixels(kWidth, kHeight), step);
+  reconstruct::PixelTrack track = reconstruct::extended(reconstruct::own_pixels(kWidth, kHeight), step);
   EXPECT_EQ(track.source[index_of(9, 8)], int32_t(index_of(9, 8)));
   EXPECT_NEAR(track.displacement[index_of(9, 8)].x, 0.4f, 1e-6f);
-  track = reconstruct::moved_on(track, step);
+  track = reconstruct::extended(track, step);
   EXPECT_EQ(track.source[index_of(9, 8)], film::kNoCorrespondence);
   EXPECT_EQ(track.source[index_of(10, 8)], int32_t(index_of(10, 8))) << "lies at its centre, the other one at -0.2";
 }

@@ -1,0 +1,259 @@
+#include "reconstruct/space_time/joined_samples.h"
+
+#include <array>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "base/fault.h"
+#include "reconstruct/displaced.h"
+#include "reconstruct/field_values.h"
+#include "reconstruct/regression/moments.h"
+#include "reconstruct/regularized.h"
+#include "reconstruct/space_time/light_test.h"
+
+namespace gradus::reconstruct {
+namespace {
+
+// Standard deviation, in pixels, of the Gaussian weights by the displacement of a sample from the centre of its pixel,
+// in the means of own values and of features to estimate. Samples count in windows wherever they lie.
+constexpr float kOwnReach = 0.2f;
+constexpr int kFeatureChannels = 7, kAlbedo = 3, kAlbedoChannels = 3;
+
+// Weights of one sample of a pixel.
+struct SampleWeights {
+  float in_windows = 0.0f, own = 0.0f, of_residual = 0.0f;
+};
+
+// Sums of the values of records with one kind of weight.
+class RecordSums {
+ public:
+  void add(float weight, const Lanes& low, const Lanes& high) {
+    weight_ += weight;
+    low_ += weight * low;
+    high_ += weight * high;
+  }
+  float weight() const { return weight_; }
+  // Returns the sums, or the means.
+  std::array<float, kRecordSize> sums(float factor = 1.0f) const {
+    std::array<float, kRecordSize> values;
+    store(factor * low_, values.data());
+    store(factor * high_, values.data() + kLanes);
+    return values;
+  }
+  std::array<float, kRecordSize> means() const { return sums(weight_ > 0.0f ? 1.0f / weight_ : 0.0f); }
+
+ private:
+  float weight_ = 0.0f;
+  Lanes low_{}, high_{};
+};
+
+// Places of displacements among the values of a record, where that of a frame has weights.
+constexpr int kDisplacement = kWindowWeight;
+
+// The record of a sample as the picture sees it.
+struct MovedRecord {
+  Lanes low, high;
+  float variance;
+};
+
+MovedRecord move_record(const float* record, float unit, float depth, const Vec2& displacement) {
+  const Lanes units = {unit, unit, unit, unit, unit, unit, 1.0f, 1.0f};
+  MovedRecord moved{units * load(record), load(record + kLanes), unit * unit * record[kVariance]};
+  moved.high[kDepth - kLanes] = depth;
+  moved.high[kDisplacement - kLanes] = GRADUS_FAULT(displacements_dropped) ? 0.0f : displacement.x;
+  moved.high[kDisplacement + 1 - kLanes] = GRADUS_FAULT(displacements_dropped) ? 0.0f : displacement.y;
+  return moved;
+}
+
+// Sums of all samples of a pixel, for each use.
+struct PixelSums {
+  RecordSums in_windows, own, of_residual, light, features;
+  float variance = 0.0f;
+  std::array<float, 3> products{};  // of displacements, with the weights of the residual
+
+  void add(const MovedRecord& record, const SampleWeights& weights, float kept, float near) {
+    features.add(kept * near, record.low, record.high);
+    in_windows.add(weights.in_windows, record.low, record.high);
+    own.add(weights.own, record.low, record.high);
+    of_residual.add(weights.of_residual, record.low, record.high);
+    light.add(kept, record.low, record.high);
+    variance += kept * kept * record.variance;
+    const float x = record.high[kDisplacement - kLanes], y = record.high[kDisplacement + 1 - kLanes];
+    products[0] += weights.of_residual * x * x;
+    products[1] += weights.of_residual * x * y;
+    products[2] += weights.of_residual * y * y;
+  }
+};
+
+// Returns the weight of a sample by its displacement.
+float weigh_displacement(const Vec2& d) {
+  return std::exp((d.x * d.x + d.y * d.y) * (-0.5f / (kOwnReach * kOwnReach)));
+}
+
+// Returns the weights of a sample whose record is given. `squared`: square of the frame's unit in that of the picture;
+// `near`: weight by displacement.
+SampleWeights weigh_sample(const float* record, float squared, float kept, float near) {
+  const float weight = record[kWindowWeight] / squared;
+  return {weight * kept, record[kOwnWeight] / squared * kept * near, std::sqrt(std::sqrt(weight)) * kept};
+}
+
+// The planes of a picture's samples, which are written pixel by pixel.
+struct PicturePlanes {
+  PicturePlanes(int w, int h)
+      : in_windows{Field(w, h, kFeatureChannels), Field(w, h, 1), Field(w, h, 2)},
+        of_residual{Field(w, h, kAlbedoChannels), Field(w, h, 1), Field(w, h, kDisplacementChannels)},
+        own_weights(w, h, 1),
+        estimated(w, h, kFeatureChannels),
+        mean{Field(w, h, 3), Field(w, h, 3), Field(w, h, 3)},
+        half_difference{Field(w, h, 3), Field(w, h, 3), Field(w, h, 3)},
+        light{Field(w, h, 1), Field(w, h, 3), Field(w, h, 1)} {}
+
+  void write(int x, int y, const PixelSums& sums) {
+    const Values windows = sums.in_windows.means(), own = sums.own.means(), residual = sums.of_residual.means();
+    size_t use = 0;
+    for (const Values* values : {&windows, &own, &residual}) {
+      put(*values, kMean, x, y, &mean[use]);
+      put(*values, kHalfDifference, x, y, &half_difference[use++]);
+    }
+    in_windows.weights.row(y)[x] = sums.in_windows.weight();
+    put(windows, kFeatures, x, y, &in_windows.features);
+    put(windows, kDisplacement, x, y, &in_windows.displacement);
+    own_weights.row(y)[x] = sums.own.weight();
+    put(sums.features.means(), kFeatures, x, y, &estimated);
+    of_residual.weights.row(y)[x] = sums.of_residual.weight();
+    put(residual, kFeatures + kAlbedo, x, y, &of_residual.features);
+    const float unit = sums.of_residual.weight() > 0.0f ? 1.0f / sums.of_residual.weight() : 0.0f;
+    for (int c = 0; c < kDisplacementChannels; ++c) {
+      of_residual.displacement.row(y, c)[x] =
+          c < 2 ? residual[size_t(kDisplacement + c)] : unit * sums.products[size_t(c - 2)];
+    }
+    light.share.row(y)[x] = sums.light.weight();
+    put(sums.light.sums(), kMean, x, y, &light.light);
+    light.variance.row(y)[x] = sums.variance;
+  }
+
+  PictureSamples take(Field noise) {
+    const auto shared = [](auto& value) {
+      return std::make_shared<const std::remove_reference_t<decltype(value)>>(std::move(value));
+    };
+    const auto plane = [&](std::array<Field, 3>& of) {
+      return JoinedPlane{shared(of[0]), shared(of[1]), shared(of[2])};
+    };
+    return {{shared(in_windows), shared(own_weights), shared(estimated)},
+            std::move(of_residual),
+            plane(mean),
+            plane(half_difference),
+            std::move(light),
+            std::move(noise)};
+  }
+
+ private:
+  using Values = std::array<float, kRecordSize>;
+  // Writes all channels of a field; `first` is the first one among the values.
+  static void put(const Values& from, int first, int x, int y, Field* to) {
+    for (int c = 0; c < to->channels(); ++c) to->row(y, c)[x] = from[size_t(first + c)];
+  }
+
+  Predictors in_windows, of_residual;
+  Field own_weights, estimated;
+  std::array<Field, 3> mean, half_difference;  // in windows, own, of the residual
+  LightOfSamples light;
+};
+
+// The sample of a frame that lies in a pixel of the picture.
+struct SampleOfPixel {
+  const float* record;
+  float kept;
+  Vec2 displacement;
+};
+
+// Returns the sample of a frame in pixel (x, y); its record is null if there is none or it does not count.
+SampleOfPixel sample_of(const JoinedFrame& frame, int x, int y) {
+  const PixelTrack& track = frame.moved.track;
+  const size_t pixel = size_t(y) * size_t(track.width) + size_t(x);
+  if (x + kRecordsAhead < track.width) frame.samples->prefetch(track.source[pixel + kRecordsAhead]);
+  const float kept = frame.moved.kept.row(y / kChangeCell)[x / kChangeCell];
+  if (track.source[pixel] == film::kNoCorrespondence || kept == 0.0f) return {nullptr, 0.0f, {}};
+  return {frame.samples->at(track.source[pixel]), kept, track.displacement[pixel]};
+}
+
+}  // namespace
+
+JoinedSamples::JoinedSamples(const FrameSamples& here, std::vector<JoinedFrame> others)
+    : here_(here), others_(std::move(others)) {}
+
+PictureSamples JoinedSamples::picture() const {
+  const int w = here_.width, h = here_.height;
+  PicturePlanes planes(w, h);
+  const auto add_own = [&](const float* record, PixelSums* sums) {
+    sums->add(move_record(record, 1.0f, relative_depth(record[kDepth], here_.typical_depth), {}),
+              weigh_sample(record, 1.0f, 1.0f, 1.0f), 1.0f, 1.0f);
+  };
+  const auto add_other = [&](const JoinedFrame& frame, int x, int y, PixelSums* sums) {
+    const SampleOfPixel sample = sample_of(frame, x, y);
+    if (sample.record == nullptr) return;
+    const float unit = frame.samples->scale / here_.scale;
+    const float ratio = frame.moved.depth_ratio.row(y / kChangeCell)[x / kChangeCell];
+    MovedRecord moved = move_record(
+        sample.record, unit, relative_depth(sample.record[kDepth] * ratio, here_.typical_depth), sample.displacement);
+    if (GRADUS_FAULT(moved_halves_dropped)) {
+      for (int c = 0; c < 3; ++c) moved.low[kHalfDifference + c] = here_.at(y * w + x)[kHalfDifference + c];
+    }
+    const float near = weigh_displacement(sample.displacement);
+    sums->add(moved, weigh_sample(sample.record, unit * unit, sample.kept, near), sample.kept, near);
+  };
+  for_rows(h, [&](int y) {
+    for (int x = 0; x < w; ++x) {
+      PixelSums sums;
+      add_own(here_.at(y * w + x), &sums);
+      for (const JoinedFrame& frame : others_) add_other(frame, x, y, &sums);
+      planes.write(x, y, sums);
+    }
+  });
+  return planes.take(noise_around(image_of(here_)));
+}
+
+JoinedPlane JoinedSamples::join(int component, int first, const Field& own) const {
+  const int w = here_.width, h = here_.height, channels = own.channels();
+  const auto sampled = [&](const FrameSamples& frame, int pixel, int channel) {
+    const size_t begin = component == kAllComponents ? 0 : size_t(component),
+                 end = component == kAllComponents ? frame.components.size() : begin + 1;
+    float sum = 0.0f;
+    for (size_t k = begin; k < end; ++k) sum += frame.components[k].row(pixel / w, channel)[pixel % w];
+    return sum;
+  };
+  std::array<Field, 3> joined;
+  for (Field& field : joined) field = Field(w, h, channels);
+  for_rows(h, [&](int y) {
+    for (int x = 0; x < w; ++x) {
+      std::array<std::array<float, 3>, 3> sums{};
+      std::array<float, 3> totals{};
+      const auto add = [&](const SampleWeights& weights, const auto& value_of) {
+        const std::array<float, 3> by{weights.in_windows, weights.own, weights.of_residual};
+        for (size_t k = 0; k < by.size(); ++k) totals[k] += by[k];
+        for (int c = 0; c < channels; ++c) {
+          const float value = value_of(c);
+          for (size_t k = 0; k < by.size(); ++k) sums[k][size_t(c)] += by[k] * value;
+        }
+      };
+      add(weigh_sample(here_.at(y * w + x), 1.0f, 1.0f, 1.0f), [&](int c) { return own.row(y, c)[x]; });
+      for (const JoinedFrame& frame : others_) {
+        const SampleOfPixel sample = sample_of(frame, x, y);
+        if (sample.record == nullptr) continue;
+        const float unit = frame.samples->scale / here_.scale;
+        const int32_t source = frame.moved.track.source[size_t(y) * size_t(w) + size_t(x)];
+        add(weigh_sample(sample.record, unit * unit, sample.kept, weigh_displacement(sample.displacement)),
+            [&](int c) { return (first + c < 3 ? unit : 1.0f) * sampled(*frame.samples, source, first + c); });
+      }
+      for (size_t k = 0; k < joined.size(); ++k) {
+        for (int c = 0; c < channels; ++c)
+          joined[k].row(y, c)[x] = totals[k] > 0.0f ? sums[k][size_t(c)] / totals[k] : 0.0f;
+      }
+    }
+  });
+  return {std::make_shared<const Field>(std::move(joined[0])), std::make_shared<const Field>(std::move(joined[1])),
+          std::make_shared<const Field>(std::move(joined[2]))};
+}
+
+}  // namespace gradus::reconstruct

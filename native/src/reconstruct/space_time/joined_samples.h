@@ -1,0 +1,35 @@
+// Samples of several frames, joined: each pixel of a picture holds weighted means over the frames. Light is linear in
+// the features, so that the mean light belongs to the mean features, and one regression serves all frames.
+#pragma once
+
+#include <vector>
+
+#include "base/cancel_check.h"
+#include "reconstruct/regression/feature_regression.h"
+#include "reconstruct/space_time/moved_samples.h"
+
+namespace gradus::reconstruct {
+
+// A frame that contributes to a picture.
+struct JoinedFrame {
+  const FrameSamples* samples;
+  MovedSamples moved;
+};
+
+class JoinedSamples {
+ public:
+  // `here` is the picture's own frame. It and the samples of the others must outlive the object.
+  JoinedSamples(const FrameSamples& here, std::vector<JoinedFrame> others);
+
+  // Returns what the picture's regression reads, in units of the picture.
+  PictureSamples picture() const;
+  // Joins channels [first, first + the channels of `own`) of a component, or of the sum of all, with `own`, those of
+  // the picture's own frame.
+  JoinedPlane join(int component, int first, const Field& own) const;
+
+ private:
+  const FrameSamples& here_;
+  std::vector<JoinedFrame> others_;
+};
+
+}  // namespace gradus::reconstruct
