@@ -33,9 +33,6 @@ float typical_noise(const HalvedImage& image) {
   return float(sums[0] / (double(w) * h));
 }
 
-// Joins channels of a component with those of other frames (JoinedPicture::join).
-using Join = std::function<JoinedPlane(int component, int first, const Field& own)>;
-
 // The operator of REGULARIZED: regression, then fusion with sampled differences. Once constructed it is linear.
 class Operator {
  public:
@@ -60,13 +57,14 @@ class Operator {
   }
 
   const Field& solution() const { return solution_; }
+  bool is_joined() const { return bool(join_); }
 
   // Applies the operator to a component; `sampled` are its channels from read_sampled(). `film` has the differences.
   Field apply(const film::Film* film, int component, const Field& sampled) {
     Field regressed = regress(component, 0, channels_of(sampled, 0, 3));
     if (sampled.channels() == 4) {
       const Field alpha = channels_of(sampled, 3, 1);
-      regressed = join_channels(regressed, is_black(alpha) ? alpha : regress(component, 3, alpha));
+      regressed = join_channels(regressed, !join_ && is_black(alpha) ? alpha : regress(component, 3, alpha));
     }
     if (!fusion_ || GRADUS_FAULT(components_ignore_differences)) return regressed;
     return fusion_->apply(film::read_images(*film, component), regressed, cancel_, report_);
@@ -75,7 +73,10 @@ class Operator {
  private:
   // Applies the regression to channels of a component, or of the sum of all, of which `first` is the first one.
   Field regress(int component, int first, const Field& own) const {
-    return regression_.apply(join_ ? join_(component, first, own) : not_joined(own), own, cancel_);
+    if (!join_) return regression_.apply(own, cancel_);
+    const JoinedPlane joined = join_(component, first, own);
+    const bool black = is_black(*joined.in_windows) && is_black(*joined.own) && is_black(*joined.of_residual);
+    return black ? own : regression_.apply(joined, own, cancel_);
   }
 
   FeatureRegression regression_;
@@ -116,8 +117,11 @@ Reconstructed reconstruct(const film::Film* film, Regressed picture, bool by_com
   });
   Reconstructed result{to_image(op.solution(), scale), interleave(picture.error)};
   if (!by_components) return result;
+  // A component that is black in the picture's own frame may have light in others.
+  const bool skip_black = !op.is_joined();
   apply_to_terms(
-      op.solution(), [&](size_t k, const Field& term) { return op.apply(film, int(k), term); }, &picture.sampled);
+      op.solution(), [&](size_t k, const Field& term) { return op.apply(film, int(k), term); }, &picture.sampled,
+      skip_black);
   for (Field& term : picture.sampled) result.components.push_back(to_image(std::move(term), scale));
   return result;
 }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/cancel_check.h"
-#include "film/features.h"
 #include "film/film.h"
 #include "reconstruct/reconstructed.h"
 #include "reconstruct/regression/feature_regression.h"
@@ -15,14 +14,16 @@
 
 namespace gradus::reconstruct {
 
+// Joins channels of a component, or of the sum of all components, with those of the other frames; `first` is the first
+// of these channels. `own`: those of the picture's own frame, colours in units of the picture.
+using Join = std::function<JoinedPlane(int component, int first, const Field& own)>;
+
 // A picture whose samples are joined with those of other frames.
 struct JoinedPicture {
   float scale = 1.0f;  // median luminance
   HalvedImage image;   // of the picture's own frame, in units of `scale`
   PictureSamples samples;
-  // Joins channels of a component, or of the sum of all components, with those of the other frames; `first` is the
-  // first of these channels. `own`: those of the picture's own frame, colours in units of `scale`.
-  std::function<JoinedPlane(int component, int first, const Field& own)> join;
+  Join join;
   // All channels of each component of the picture's own frame, from read_sampled(); empty if it has one component and
   // no alpha.
   std::vector<Field> sampled;

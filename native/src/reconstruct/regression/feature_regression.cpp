@@ -149,12 +149,10 @@ Field residual(const Field& sampled, const Field& regressed, const Field& displa
 }
 
 // Returns the share of each residual that lies within the bound on outliers (twicing.h), relative to the light around
-// it; 0 in pixels without samples, which do not count for the bound.
-Field limit_outliers(const Field& residual, const Field& by_light, const Field& weights) {
+// it.
+Field limit_outliers(const Field& residual, const Field& by_light) {
   const int w = residual.width(), h = residual.height();
-  Field share = make_field(w, h, [&](int x, int y) {
-    return weights.row(y)[x] > 0.0f ? by_light.row(y)[x] * mean_of_squares(residual, x, y) : NAN;
-  });
+  Field share = make_field(w, h, [&](int x, int y) { return by_light.row(y)[x] * mean_of_squares(residual, x, y); });
   for_rows((h + kBlockSide - 1) / kBlockSide,
            [&](int j) {
              for (int i = 0; i < (w + kBlockSide - 1) / kBlockSide; ++i) {
@@ -252,8 +250,8 @@ Field regression_features(const film::Features& features, float unit) {
   return basis;
 }
 
-Field regress_coarsely(const Predictors& predictors, const HalvedImage& image, const CancelCheck& cancel) {
-  return LocalRegression({std::make_shared<const Predictors>(predictors), nullptr}, kCoarse)
+Field regress_coarsely(Predictors predictors, const HalvedImage& image, const CancelCheck& cancel) {
+  return LocalRegression({std::make_shared<const Predictors>(std::move(predictors)), nullptr}, kCoarse)
       .estimate({&image.mean, &image.mean}, {&image.half_difference, &image.half_difference}, cancel)
       .mean;
 }
@@ -308,14 +306,14 @@ void FeatureRegression::add_residual(const PictureSamples& samples, RegressionRe
   Field noise =
       residual(*(GRADUS_FAULT(second_step_takes_image_for_noise) ? samples.mean : samples.half_difference).of_residual,
                first->noise, displacement_);
-  residual_share_ = limit_outliers(mean, by_light, given.weights);
+  residual_share_ = limit_outliers(mean, by_light);
   scale_by(residual_share_, &mean);
   scale_by(residual_share_, &noise);
   const std::shared_ptr<const Field>& estimated = samples.first_step.estimated;
-  of_residual_ = LocalRegression({std::make_shared<const Predictors>(Predictors{
-                                      given.features, weigh_residual(by_light, given.weights), displacement_}),
-                                  nullptr, estimated ? std::make_shared<const Field>(albedo_of(*estimated)) : nullptr},
-                                 kOfResidual);
+  of_residual_ = LocalRegression(
+      {std::make_shared<const Predictors>(Predictors{given.features, weigh_residual(by_light, given.weights)}), nullptr,
+       estimated ? std::make_shared<const Field>(albedo_of(*estimated)) : nullptr},
+      kOfResidual);
   const RegressionResult second = of_residual_.estimate({&mean, &mean}, {&noise, &noise}, cancel);
   if (!GRADUS_FAULT(second_step_dropped)) add(second.mean, &first->mean);
   if (!GRADUS_FAULT(error_omits_second_step)) add(second.noise, &first->noise);

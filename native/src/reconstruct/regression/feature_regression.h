@@ -25,6 +25,7 @@ struct JoinedPlane {
 };
 // Returns the plane of a single frame. `field` must outlive it.
 JoinedPlane not_joined(const Field& field);
+JoinedPlane not_joined(const Field&& field) = delete;
 
 // What the regression of a picture reads: the samples of its frame, or those of several frames, joined.
 struct PictureSamples {
@@ -46,7 +47,7 @@ inline float relative_depth(float depth, float unit) {
 }
 
 // Returns a regression of three channels in large windows alone, at a third of the cost.
-Field regress_coarsely(const Predictors& predictors, const HalvedImage& image, const CancelCheck& cancel);
+Field regress_coarsely(Predictors predictors, const HalvedImage& image, const CancelCheck& cancel);
 
 // Weights of the pixels of an image in windows, and of their own values.
 struct PixelWeights {
@@ -83,12 +84,10 @@ class FeatureRegression {
   void add_residual(const PictureSamples& samples, RegressionResult* first, const CancelCheck& cancel);
 
   LocalRegression fine_, coarse_, of_residual_;
-  Field displacement_;  // of the samples of the residual's regression; empty: none
-  Field share_;         // share of the small windows in each pixel
-  // Share of each pixel's residual that is restored: outliers are limited, and pixels that hold no samples have no
-  // residual.
-  Field residual_share_;
-  Field restored_;  // factors that restore lost light, three channels (lost_light.h)
+  Field displacement_;    // of the samples of the residual's regression; empty: none
+  Field share_;           // share of the small windows in each pixel
+  Field residual_share_;  // share of each pixel's residual that is restored: outliers are limited
+  Field restored_;        // factors that restore lost light, three channels (lost_light.h)
   // Share of each pixel's own sampled value in the result (restore_sampled_light.h).
   Field own_;
   Field image_, error_;

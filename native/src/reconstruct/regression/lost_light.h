@@ -18,7 +18,7 @@ struct LightOfSamples {
 // where v is the variance of the samples: by their own statistics, one firefly restores nothing, and n of them all but
 // 1/n of their light (James, Stein 1961). It goes to the pixels in proportion to their light times √(noise over light
 // around them): a light that is seen directly has little noise and loses little. `noise`, one channel, is that around
-// each pixel. `expected` is the regressed picture where the samples lie. Factors are in [0.5, 2].
+// each pixel. `expected` is the regressed picture where the samples of the second step lie. Factors are in [0.5, 2].
 Field restore_lost_light(const Field& regressed, const Field& expected, const Field& noise,
                          const LightOfSamples& samples);
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <type_traits>
 #include <utility>
 
@@ -17,13 +18,16 @@ namespace {
 
 // Standard deviation, in pixels, of the Gaussian weights by the displacement of a sample from the centre of its pixel,
 // in the means of own values and of features to estimate. Samples count in windows wherever they lie.
-constexpr float kOwnReach = 0.2f;
+constexpr float kReachOfCentre = 0.2f;
 constexpr int kFeatureChannels = 7, kAlbedo = 3, kAlbedoChannels = 3;
 
-// Weights of one sample of a pixel.
+// Weights of one sample of a pixel, for each use. `share` is what the test of light keeps of it.
 struct SampleWeights {
-  float in_windows = 0.0f, own = 0.0f, of_residual = 0.0f;
+  float in_windows, own, of_residual, features, share;
 };
+
+using RecordValues = std::array<float, kRecordSize>;
+static_assert(kRecordSize == 2 * kLanes && kRecordDepth >= kLanes);
 
 // Sums of the values of records with one kind of weight.
 class RecordSums {
@@ -34,22 +38,22 @@ class RecordSums {
     high_ += weight * high;
   }
   float weight() const { return weight_; }
-  // Returns the sums, or the means.
-  std::array<float, kRecordSize> sums(float factor = 1.0f) const {
-    std::array<float, kRecordSize> values;
+  // Returns the sums times `factor`.
+  RecordValues sums(float factor = 1.0f) const {
+    RecordValues values;
     store(factor * low_, values.data());
     store(factor * high_, values.data() + kLanes);
     return values;
   }
-  std::array<float, kRecordSize> means() const { return sums(weight_ > 0.0f ? 1.0f / weight_ : 0.0f); }
+  RecordValues means() const { return sums(weight_ > 0.0f ? 1.0f / weight_ : 0.0f); }
 
  private:
   float weight_ = 0.0f;
   Lanes low_{}, high_{};
 };
 
-// Places of displacements among the values of a record, where that of a frame has weights.
-constexpr int kDisplacement = kWindowWeight;
+// A moved record holds its displacement in place of the weights of a frame's record.
+constexpr int kDisplacement = kRecordWeight;
 
 // The record of a sample as the picture sees it.
 struct MovedRecord {
@@ -57,10 +61,11 @@ struct MovedRecord {
   float variance;
 };
 
-MovedRecord move_record(const float* record, float unit, float depth, const Vec2& displacement) {
+// Returns a record with light in units of the picture; `unit` is that of the film, `ratio` that of the frame's scale.
+MovedRecord move_record(const float* record, float unit, float ratio, float depth, const Vec2& displacement) {
   const Lanes units = {unit, unit, unit, unit, unit, unit, 1.0f, 1.0f};
-  MovedRecord moved{units * load(record), load(record + kLanes), unit * unit * record[kVariance]};
-  moved.high[kDepth - kLanes] = depth;
+  MovedRecord moved{units * load(record), load(record + kLanes), ratio * ratio * record[kRecordVariance]};
+  moved.high[kRecordDepth - kLanes] = depth;
   moved.high[kDisplacement - kLanes] = GRADUS_FAULT(displacements_dropped) ? 0.0f : displacement.x;
   moved.high[kDisplacement + 1 - kLanes] = GRADUS_FAULT(displacements_dropped) ? 0.0f : displacement.y;
   return moved;
@@ -72,13 +77,13 @@ struct PixelSums {
   float variance = 0.0f;
   std::array<float, 3> products{};  // of displacements, with the weights of the residual
 
-  void add(const MovedRecord& record, const SampleWeights& weights, float kept, float near) {
-    features.add(kept * near, record.low, record.high);
+  void add(const MovedRecord& record, const SampleWeights& weights) {
     in_windows.add(weights.in_windows, record.low, record.high);
     own.add(weights.own, record.low, record.high);
     of_residual.add(weights.of_residual, record.low, record.high);
-    light.add(kept, record.low, record.high);
-    variance += kept * kept * record.variance;
+    features.add(weights.features, record.low, record.high);
+    light.add(weights.share, record.low, record.high);
+    variance += weights.share * weights.share * record.variance;
     const float x = record.high[kDisplacement - kLanes], y = record.high[kDisplacement + 1 - kLanes];
     products[0] += weights.of_residual * x * x;
     products[1] += weights.of_residual * x * y;
@@ -86,16 +91,13 @@ struct PixelSums {
   }
 };
 
-// Returns the weight of a sample by its displacement.
-float weigh_displacement(const Vec2& d) {
-  return std::exp((d.x * d.x + d.y * d.y) * (-0.5f / (kOwnReach * kOwnReach)));
-}
-
-// Returns the weights of a sample whose record is given. `squared`: square of the frame's unit in that of the picture;
-// `near`: weight by displacement.
-SampleWeights weigh_sample(const float* record, float squared, float kept, float near) {
-  const float weight = record[kWindowWeight] / squared;
-  return {weight * kept, record[kOwnWeight] / squared * kept * near, std::sqrt(std::sqrt(weight)) * kept};
+// Returns the weights of a sample whose record is given. `ratio`: the frame's scale in that of the picture.
+SampleWeights weigh_sample(const float* record, float ratio, float share, const Vec2& displacement) {
+  const float squared = displacement.x * displacement.x + displacement.y * displacement.y;
+  const float near = std::exp(squared * (-0.5f / (kReachOfCentre * kReachOfCentre)));
+  const float of_light = 1.0f / (ratio * ratio), weight = of_light * record[kRecordWeight];
+  return {share * weight, share * of_light * record[kRecordOwnWeight] * near, share * std::sqrt(std::sqrt(weight)),
+          share * near, share};
 }
 
 // The planes of a picture's samples, which are written pixel by pixel.
@@ -110,26 +112,26 @@ struct PicturePlanes {
         light{Field(w, h, 1), Field(w, h, 3), Field(w, h, 1)} {}
 
   void write(int x, int y, const PixelSums& sums) {
-    const Values windows = sums.in_windows.means(), own = sums.own.means(), residual = sums.of_residual.means();
+    const RecordValues windows = sums.in_windows.means(), own = sums.own.means(), residual = sums.of_residual.means();
     size_t use = 0;
-    for (const Values* values : {&windows, &own, &residual}) {
-      put(*values, kMean, x, y, &mean[use]);
-      put(*values, kHalfDifference, x, y, &half_difference[use++]);
+    for (const RecordValues* values : {&windows, &own, &residual}) {
+      put(*values, kRecordMean, x, y, &mean[use]);
+      put(*values, kRecordHalfDifference, x, y, &half_difference[use++]);
     }
     in_windows.weights.row(y)[x] = sums.in_windows.weight();
-    put(windows, kFeatures, x, y, &in_windows.features);
+    put(windows, kRecordFeatures, x, y, &in_windows.features);
     put(windows, kDisplacement, x, y, &in_windows.displacement);
     own_weights.row(y)[x] = sums.own.weight();
-    put(sums.features.means(), kFeatures, x, y, &estimated);
+    put(sums.features.means(), kRecordFeatures, x, y, &estimated);
     of_residual.weights.row(y)[x] = sums.of_residual.weight();
-    put(residual, kFeatures + kAlbedo, x, y, &of_residual.features);
+    put(residual, kRecordFeatures + kAlbedo, x, y, &of_residual.features);
     const float unit = sums.of_residual.weight() > 0.0f ? 1.0f / sums.of_residual.weight() : 0.0f;
     for (int c = 0; c < kDisplacementChannels; ++c) {
       of_residual.displacement.row(y, c)[x] =
           c < 2 ? residual[size_t(kDisplacement + c)] : unit * sums.products[size_t(c - 2)];
     }
     light.share.row(y)[x] = sums.light.weight();
-    put(sums.light.sums(), kMean, x, y, &light.light);
+    put(sums.light.sums(), kRecordMean, x, y, &light.light);
     light.variance.row(y)[x] = sums.variance;
   }
 
@@ -149,9 +151,8 @@ struct PicturePlanes {
   }
 
  private:
-  using Values = std::array<float, kRecordSize>;
   // Writes all channels of a field; `first` is the first one among the values.
-  static void put(const Values& from, int first, int x, int y, Field* to) {
+  static void put(const RecordValues& from, int first, int x, int y, Field* to) {
     for (int c = 0; c < to->channels(); ++c) to->row(y, c)[x] = from[size_t(first + c)];
   }
 
@@ -164,7 +165,8 @@ struct PicturePlanes {
 // The sample of a frame that lies in a pixel of the picture.
 struct SampleOfPixel {
   const float* record;
-  float kept;
+  int pixel;    // of its frame
+  float share;  // what the test of light keeps of it
   Vec2 displacement;
 };
 
@@ -172,36 +174,67 @@ struct SampleOfPixel {
 SampleOfPixel sample_of(const JoinedFrame& frame, int x, int y) {
   const PixelTrack& track = frame.moved.track;
   const size_t pixel = size_t(y) * size_t(track.width) + size_t(x);
-  if (x + kRecordsAhead < track.width) frame.samples->prefetch(track.source[pixel + kRecordsAhead]);
+  if (x + kRecordsAhead < track.width) frame.records->prefetch(track.source[pixel + kRecordsAhead]);
   const float kept = frame.moved.kept.row(y / kChangeCell)[x / kChangeCell];
-  if (track.source[pixel] == film::kNoCorrespondence || kept == 0.0f) return {nullptr, 0.0f, {}};
-  return {frame.samples->at(track.source[pixel]), kept, track.displacement[pixel]};
+  if (track.source[pixel] == film::kNoCorrespondence || kept == 0.0f) return {nullptr, -1, 0.0f, {}};
+  return {frame.records->at(track.source[pixel]), track.source[pixel], kept, track.displacement[pixel]};
+}
+
+// Sums of up to three channels of a pixel with the weights of a JoinedPlane.
+class ValueSums {
+ public:
+  void add(const SampleWeights& weights, int channels, const std::array<float, 3>& values) {
+    const std::array<float, 3> by{weights.in_windows, weights.own, weights.of_residual};
+    for (size_t k = 0; k < by.size(); ++k) {
+      totals_[k] += by[k];
+      for (size_t c = 0; c < size_t(channels); ++c) sums_[k][c] += by[k] * values[c];
+    }
+  }
+  float mean(size_t use, size_t channel) const {
+    return totals_[use] > 0.0f ? sums_[use][channel] / totals_[use] : 0.0f;
+  }
+
+ private:
+  std::array<float, 3> totals_{};
+  std::array<std::array<float, 3>, 3> sums_{};
+};
+
+// Returns a channel of a component, or of the sum of all, in a pixel of a frame.
+float sampled_value(const FrameRecords& frame, int component, int pixel, int channel) {
+  const size_t begin = component == kAllComponents ? 0 : size_t(component),
+               end = component == kAllComponents ? frame.components.size() : begin + 1;
+  float sum = 0.0f;
+  for (size_t k = begin; k < end; ++k)
+    sum += frame.components[k].row(pixel / frame.width, channel)[pixel % frame.width];
+  return sum;
 }
 
 }  // namespace
 
-JoinedSamples::JoinedSamples(const FrameSamples& here, std::vector<JoinedFrame> others)
+JoinedSamples::JoinedSamples(const FrameRecords& here, std::vector<JoinedFrame> others)
     : here_(here), others_(std::move(others)) {}
 
 PictureSamples JoinedSamples::picture() const {
   const int w = here_.width, h = here_.height;
   PicturePlanes planes(w, h);
+  const float unit = 1.0f / here_.scale;
   const auto add_own = [&](const float* record, PixelSums* sums) {
-    sums->add(move_record(record, 1.0f, relative_depth(record[kDepth], here_.typical_depth), {}),
-              weigh_sample(record, 1.0f, 1.0f, 1.0f), 1.0f, 1.0f);
+    sums->add(move_record(record, unit, 1.0f, relative_depth(record[kRecordDepth], here_.typical_depth), {}),
+              weigh_sample(record, 1.0f, 1.0f, {}));
   };
   const auto add_other = [&](const JoinedFrame& frame, int x, int y, PixelSums* sums) {
     const SampleOfPixel sample = sample_of(frame, x, y);
     if (sample.record == nullptr) return;
-    const float unit = frame.samples->scale / here_.scale;
-    const float ratio = frame.moved.depth_ratio.row(y / kChangeCell)[x / kChangeCell];
-    MovedRecord moved = move_record(
-        sample.record, unit, relative_depth(sample.record[kDepth] * ratio, here_.typical_depth), sample.displacement);
+    const float ratio = relative_scale(*frame.records, here_);
+    const float of_depth = frame.moved.depth_ratio.row(y / kChangeCell)[x / kChangeCell];
+    MovedRecord moved =
+        move_record(sample.record, unit, ratio,
+                    relative_depth(sample.record[kRecordDepth] * of_depth, here_.typical_depth), sample.displacement);
     if (GRADUS_FAULT(moved_halves_dropped)) {
-      for (int c = 0; c < 3; ++c) moved.low[kHalfDifference + c] = here_.at(y * w + x)[kHalfDifference + c];
+      for (int c = 0; c < 3; ++c)
+        moved.low[kRecordHalfDifference + c] = unit * here_.at(y * w + x)[kRecordHalfDifference + c];
     }
-    const float near = weigh_displacement(sample.displacement);
-    sums->add(moved, weigh_sample(sample.record, unit * unit, sample.kept, near), sample.kept, near);
+    sums->add(moved, weigh_sample(sample.record, ratio, sample.share, sample.displacement));
   };
   for_rows(h, [&](int y) {
     for (int x = 0; x < w; ++x) {
@@ -216,39 +249,25 @@ PictureSamples JoinedSamples::picture() const {
 
 JoinedPlane JoinedSamples::join(int component, int first, const Field& own) const {
   const int w = here_.width, h = here_.height, channels = own.channels();
-  const auto sampled = [&](const FrameSamples& frame, int pixel, int channel) {
-    const size_t begin = component == kAllComponents ? 0 : size_t(component),
-                 end = component == kAllComponents ? frame.components.size() : begin + 1;
-    float sum = 0.0f;
-    for (size_t k = begin; k < end; ++k) sum += frame.components[k].row(pixel / w, channel)[pixel % w];
-    return sum;
-  };
-  std::array<Field, 3> joined;
-  for (Field& field : joined) field = Field(w, h, channels);
+  std::array<Field, 3> joined{Field(w, h, channels), Field(w, h, channels), Field(w, h, channels)};
   for_rows(h, [&](int y) {
     for (int x = 0; x < w; ++x) {
-      std::array<std::array<float, 3>, 3> sums{};
-      std::array<float, 3> totals{};
-      const auto add = [&](const SampleWeights& weights, const auto& value_of) {
-        const std::array<float, 3> by{weights.in_windows, weights.own, weights.of_residual};
-        for (size_t k = 0; k < by.size(); ++k) totals[k] += by[k];
-        for (int c = 0; c < channels; ++c) {
-          const float value = value_of(c);
-          for (size_t k = 0; k < by.size(); ++k) sums[k][size_t(c)] += by[k] * value;
-        }
-      };
-      add(weigh_sample(here_.at(y * w + x), 1.0f, 1.0f, 1.0f), [&](int c) { return own.row(y, c)[x]; });
+      ValueSums sums;
+      std::array<float, 3> values{};
+      for (int c = 0; c < channels; ++c) values[size_t(c)] = own.row(y, c)[x];
+      sums.add(weigh_sample(here_.at(y * w + x), 1.0f, 1.0f, {}), channels, values);
       for (const JoinedFrame& frame : others_) {
         const SampleOfPixel sample = sample_of(frame, x, y);
         if (sample.record == nullptr) continue;
-        const float unit = frame.samples->scale / here_.scale;
-        const int32_t source = frame.moved.track.source[size_t(y) * size_t(w) + size_t(x)];
-        add(weigh_sample(sample.record, unit * unit, sample.kept, weigh_displacement(sample.displacement)),
-            [&](int c) { return (first + c < 3 ? unit : 1.0f) * sampled(*frame.samples, source, first + c); });
+        for (int c = 0; c < channels; ++c) {
+          values[size_t(c)] = (first + c < kColors ? 1.0f / here_.scale : 1.0f) *
+                              sampled_value(*frame.records, component, sample.pixel, first + c);
+        }
+        sums.add(weigh_sample(sample.record, relative_scale(*frame.records, here_), sample.share, sample.displacement),
+                 channels, values);
       }
-      for (size_t k = 0; k < joined.size(); ++k) {
-        for (int c = 0; c < channels; ++c)
-          joined[k].row(y, c)[x] = totals[k] > 0.0f ? sums[k][size_t(c)] / totals[k] : 0.0f;
+      for (size_t use = 0; use < joined.size(); ++use) {
+        for (int c = 0; c < channels; ++c) joined[use].row(y, c)[x] = sums.mean(use, size_t(c));
       }
     }
   });

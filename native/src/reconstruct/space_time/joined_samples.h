@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "base/cancel_check.h"
 #include "reconstruct/regression/feature_regression.h"
 #include "reconstruct/space_time/moved_samples.h"
 
@@ -12,14 +11,14 @@ namespace gradus::reconstruct {
 
 // A frame that contributes to a picture.
 struct JoinedFrame {
-  const FrameSamples* samples;
+  const FrameRecords* records;
   MovedSamples moved;
 };
 
 class JoinedSamples {
  public:
   // `here` is the picture's own frame. It and the samples of the others must outlive the object.
-  JoinedSamples(const FrameSamples& here, std::vector<JoinedFrame> others);
+  JoinedSamples(const FrameRecords& here, std::vector<JoinedFrame> others);
 
   // Returns what the picture's regression reads, in units of the picture.
   PictureSamples picture() const;
@@ -28,7 +27,7 @@ class JoinedSamples {
   JoinedPlane join(int component, int first, const Field& own) const;
 
  private:
-  const FrameSamples& here_;
+  const FrameRecords& here_;
   std::vector<JoinedFrame> others_;
 };
 

@@ -9,14 +9,15 @@
 
 namespace gradus::reconstruct {
 
-const JointRegression::Frame& JointRegression::frame(int number, const CancelCheck& cancel) {
-  const auto known = frames_.find(number);
-  if (known != frames_.end()) return known->second;
-  const std::shared_ptr<const film::Film> film = open_film_(number, cancel);
+void JointRegression::read(int number, const CancelCheck& cancel) {
+  if (frames_.count(number) > 0) return;
   FrameStep step = open_step_(number, cancel);
   film::PixelCorrespondence to_next = inverse(step.to_previous);
-  return frames_.emplace(number, Frame{step.stream, std::move(step.to_previous), std::move(to_next), read_frame(*film)})
-      .first->second;
+  const auto before = frames_.find(number - 1);
+  const bool repeats = before != frames_.end() && before->second.stream == step.stream;
+  auto records = repeats ? before->second.records
+                         : std::make_shared<const FrameRecords>(read_records(*open_film_(number, cancel)));
+  frames_.emplace(number, Frame{step.stream, std::move(step.to_previous), std::move(to_next), std::move(records)});
 }
 
 bool JointRegression::is_repeated(int number) const {
@@ -28,12 +29,12 @@ std::vector<JoinedFrame> JointRegression::move_frames(int number, const std::vec
                                                       const CancelCheck& cancel) const {
   std::vector<JoinedFrame> moved;
   if (numbers.empty()) return moved;
-  const FrameSamples& here = frames_.at(number).samples;
-  const Field regressed = regress_coarsely({features_of(here), plane_of(here, kWindowWeight)}, image_of(here), cancel);
+  const FrameRecords& here = *frames_.at(number).records;
+  const Field regressed = regress_coarsely({features_of(here), plane_of(here, kRecordWeight)}, image_of(here), cancel);
   const auto move = [&](int other, const PixelTrack& track) {
     if (!std::binary_search(numbers.begin(), numbers.end(), other) || cancel()) return;
-    const FrameSamples& samples = frames_.at(GRADUS_FAULT(samples_of_another_frame) ? number : other).samples;
-    moved.push_back({&samples, move_samples(samples, track, here, regressed)});
+    const FrameRecords& records = *frames_.at(GRADUS_FAULT(samples_of_another_frame) ? number : other).records;
+    moved.push_back({&records, move_samples(records, track, here, regressed)});
   };
   PixelTrack track = own_pixels(here.width, here.height);
   for (int other = number - 1; other >= numbers.front(); --other) {
@@ -53,7 +54,7 @@ std::vector<JoinedFrame> JointRegression::move_frames(int number, const std::vec
 Reconstructed JointRegression::reconstruct(int number, const FrameRange& around, const CancelCheck& cancel,
                                            SolveReport* report) {
   frames_.erase(frames_.begin(), frames_.lower_bound(around.first));
-  for (int other = around.first; other <= around.last && !cancel(); ++other) frame(other, cancel);
+  for (int other = around.first; other <= around.last && !cancel(); ++other) read(other, cancel);
   if (cancel()) return {};
   // Frames that are repeated have the same samples.
   std::set<int32_t> streams{frames_.at(number).stream};
@@ -65,18 +66,18 @@ Reconstructed JointRegression::reconstruct(int number, const FrameRange& around,
   }
   // Repeated frames sum the others in one order.
   std::sort(numbers.begin(), numbers.end());
-  const FrameSamples& here = frames_.at(number).samples;
+  const FrameRecords& here = *frames_.at(number).records;
   if (numbers.empty()) {
     return regularize(*open_film_(number, cancel), here.components.size() > 1, cancel, report, ErrorUse::Delivered);
   }
   const JoinedSamples joined(here, move_frames(number, numbers, cancel));
   if (cancel()) return {};
   const std::shared_ptr<const film::Film> film = here.has_differences ? open_film_(number, cancel) : nullptr;
-  return regularize(
-      film.get(),
-      {here.scale, image_of(here), joined.picture(),
-       [&](int component, int first, const Field& own) { return joined.join(component, first, own); }, here.components},
-      cancel, report);
+  return regularize(film.get(),
+                    {here.scale, image_of(here), joined.picture(),
+                     [&](int component, int first, const Field& own) { return joined.join(component, first, own); },
+                     components_of(here)},
+                    cancel, report);
 }
 
 }  // namespace gradus::reconstruct

@@ -1,7 +1,7 @@
-// REGULARIZED over several frames. The windows of a picture's regression also hold the samples of the frames around it,
-// at the places to which motion leads, with their fractions of a pixel. Samples whose light is not that of the picture
-// do not count (light_test.h). Every picture is a linear function of the samples of its frame and of the others, so
-// that components and alpha go through the same operator.
+// REGULARIZED over several frames. The samples of the frames around a picture are joined with its own, pixel by pixel
+// (joined_samples.h), at the places to which motion leads, with their fractions of a pixel. Samples whose light is not
+// that of the picture do not count (light_test.h). Every picture is a linear function of the samples of its frame and
+// of the others, so that components and alpha go through the same operator.
 #pragma once
 
 #include <functional>
@@ -40,9 +40,10 @@ class JointRegression {
   struct Frame {
     int32_t stream = 0;
     film::PixelCorrespondence to_previous, to_next;  // `to_next` leads from the frame before to this one
-    FrameSamples samples;
+    std::shared_ptr<const FrameRecords> records;     // frames that are repeated share them
   };
-  const Frame& frame(int number, const CancelCheck& cancel);
+  // Reads a frame unless that was done.
+  void read(int number, const CancelCheck& cancel);
   // Returns whether a frame has the samples of the one before, unless that is unknown.
   bool is_repeated(int number) const;
   // Returns the frames `numbers`, moved to frame `number`.

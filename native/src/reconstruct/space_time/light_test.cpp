@@ -14,6 +14,7 @@ constexpr int kRadii[] = {1, 2}, kLargeRadii[] = {2, 4, 8};
 // The samples of a square count in full if the squared mean difference is at most kSame times its variance, and not at
 // all from kOther times on.
 constexpr float kSame = 6.0f, kOther = 12.0f;
+
 // Returns the sums over two by two cells.
 Field sum_cells(const Field& cells) {
   Field sums((cells.width() + 1) / 2, (cells.height() + 1) / 2, cells.channels());
@@ -39,8 +40,8 @@ Field test(const Field& changes, int radius) {
   });
 }
 
-// Tests squares of growing radii around each cell. What a smaller square drops does not count in the larger ones, so
-// that they keep what is the same beside it. Returns the share of each cell that all of them keep.
+// Tests squares of growing radii around each cell. What a smaller square drops in full does not count in the larger
+// ones, so that they keep what is the same beside it. Returns the share of each cell that all of them keep.
 template <size_t N>
 Field test_all(const int (&radii)[N], Field* changes) {
   Field kept = make_field(changes->width(), changes->height(), [](int, int) { return 1.0f; });

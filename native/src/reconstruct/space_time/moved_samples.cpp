@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
+#include "base/rows.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/displaced.h"
 #include "reconstruct/field_values.h"
@@ -16,11 +18,11 @@ constexpr int kDepthRadius = 1;
 
 // Adds row y to the changes between the picture and the samples of the frame (light_test.h), and to the sums of the
 // depths there and here.
-void compare_row(const FrameSamples& frame, const PixelTrack& track, const FrameSamples& here, const Field& regressed,
+void compare_row(const FrameRecords& frame, const PixelTrack& track, const FrameRecords& here, const Field& regressed,
                  int y, Field* changes, Field* depths) {
   const int w = track.width;
   const size_t first = size_t(y) * size_t(w);
-  const float unit = frame.scale / here.scale, squared = unit * unit;
+  const float ratio = relative_scale(frame, here), squared = ratio * ratio, unit = 1.0f / here.scale;
   std::array<RowsAround, 3> around{RowsAround(w), RowsAround(w), RowsAround(w)};
   for (int c = 0; c < 3; ++c) around[size_t(c)].read(regressed, y, c);
   const int j = y / kChangeCell;
@@ -32,22 +34,22 @@ void compare_row(const FrameSamples& frame, const PixelTrack& track, const Frame
     const int32_t source = track.source[first + size_t(x)];
     if (source == film::kNoCorrespondence) continue;
     const float *a = frame.at(source), *b = here.at(int(first) + x);
-    const float of_a = a[kWindowWeight], of_b = squared * b[kWindowWeight], weight = of_a * of_b / (of_a + of_b);
+    const float of_a = a[kRecordWeight], of_b = squared * b[kRecordWeight], weight = of_a * of_b / (of_a + of_b);
     const Displacement displacement = displaced_by(track.displacement[first + size_t(x)]);
     const int i = x / kChangeCell;
     for (int c = 0; c < 3; ++c) {
       const float expected = around[size_t(c)].change(x, displacement);
-      change[size_t(c)][i] += weight * (unit * a[kMean + c] - b[kMean + c] - expected);
+      change[size_t(c)][i] += weight * (unit * (a[kRecordMean + c] - b[kRecordMean + c]) - expected);
     }
-    change[kChangeVariance][i] += 3.0f * weight * weight * (squared * a[kVariance] + b[kVariance]);
-    there[i] += a[kDepth];
-    seen[i] += b[kDepth];
+    change[kChangeVariance][i] += 3.0f * weight * weight * (squared * a[kRecordVariance] + b[kRecordVariance]);
+    there[i] += a[kRecordDepth];
+    seen[i] += b[kRecordDepth];
   }
 }
 
 }  // namespace
 
-MovedSamples move_samples(const FrameSamples& frame, PixelTrack track, const FrameSamples& here,
+MovedSamples move_samples(const FrameRecords& frame, PixelTrack track, const FrameRecords& here,
                           const Field& regressed) {
   const int w = (track.width + kChangeCell - 1) / kChangeCell, h = (track.height + kChangeCell - 1) / kChangeCell;
   Field changes(w, h, kChangeChannels), depths(w, h, 2);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "reconstruct/field.h"
-#include "reconstruct/space_time/frame_samples.h"
+#include "reconstruct/space_time/frame_records.h"
 #include "reconstruct/space_time/pixel_track.h"
 
 namespace gradus::reconstruct {
@@ -14,7 +14,7 @@ struct MovedSamples {
 };
 
 // `here`: the picture's own frame; `regressed`: its picture by its own samples, in units of its scale.
-MovedSamples move_samples(const FrameSamples& frame, PixelTrack track, const FrameSamples& here,
+MovedSamples move_samples(const FrameRecords& frame, PixelTrack track, const FrameRecords& here,
                           const Field& regressed);
 
 }  // namespace gradus::reconstruct

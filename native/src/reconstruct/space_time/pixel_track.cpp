@@ -1,7 +1,6 @@
 #include "reconstruct/space_time/pixel_track.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "base/rows.h"

@@ -1,0 +1,74 @@
+// The samples of another frame in the pixels of a picture.
+#include "reconstruct/space_time/moved_samples.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "reconstruct/field_values.h"
+#include "reconstruct/space_time/light_test.h"
+
+namespace gradus::moved_samples_test {
+namespace {
+
+constexpr int kWidth = 21, kHeight = 15;  // cells at the borders are cut
+
+// Returns a frame whose light is the same in all pixels.
+reconstruct::FrameRecords frame(float light, float variance, float scale) {
+  reconstruct::FrameRecords frame;
+  frame.width = kWidth;
+  frame.height = kHeight;
+  frame.scale = scale;
+  frame.pixels.resize(size_t(kWidth) * kHeight);
+  for (reconstruct::SampleRecord& record : frame.pixels) {
+    for (int c = 0; c < 3; ++c) record.values[reconstruct::kRecordMean + c] = light;
+    record.values[reconstruct::kRecordVariance] = variance;
+    record.values[reconstruct::kRecordDepth] = 2.0f;
+    record.values[reconstruct::kRecordWeight] = record.values[reconstruct::kRecordOwnWeight] = 1.0f;
+  }
+  return frame;
+}
+
+reconstruct::MovedSamples moved(const reconstruct::FrameRecords& from, const reconstruct::FrameRecords& to) {
+  const reconstruct::Field regressed =
+      reconstruct::make_field(kWidth, kHeight, [&](int, int) { return to.at(0)[reconstruct::kRecordMean] / to.scale; });
+  return reconstruct::move_samples(
+      from, reconstruct::own_pixels(kWidth, kHeight), to,
+      reconstruct::join_channels(reconstruct::join_channels(regressed, regressed), regressed));
+}
+
+// Light without noise, such as that of a source seen directly, has no rounding errors, whatever the medians of the
+// frames are.
+TEST(B2_MovedSamples, LightWithoutNoiseIsTheSameInFramesOfAnyMedian) {
+  for (const float scale : {0.37f, 1.0f, 1.7f, 1e9f}) {
+    const reconstruct::MovedSamples samples = moved(frame(0.7f, 0.0f, scale), frame(0.7f, 0.0f, 1.3f));
+    EXPECT_FALSE(any_value(samples.kept, [](float share) { return share != 1.0f; })) << scale;
+  }
+  const reconstruct::MovedSamples other = moved(frame(0.70001f, 0.0f, 1.3f), frame(0.7f, 0.0f, 1.3f));
+  EXPECT_FALSE(any_value(other.kept, [](float share) { return share != 0.0f; }));
+}
+
+// Variances are in units of each frame.
+TEST(C5_MovedSamples, DifferencesAreComparedWithTheNoiseOfBothFrames) {
+  constexpr float kNoise = 0.1f;
+  for (const float difference : {0.0f, 1.0f}) {
+    for (const float scale : {0.5f, 1.0f, 4.0f}) {
+      const reconstruct::MovedSamples samples =
+          moved(frame(1.0f + difference, kNoise / (scale * scale), scale), frame(1.0f, kNoise / 4.0f, 2.0f));
+      EXPECT_FALSE(any_value(samples.kept, [&](float share) { return share != (difference == 0.0f ? 1.0f : 0.0f); }))
+          << difference << ", " << scale;
+    }
+  }
+}
+
+// Depths are those that the picture sees; where none is known they stay.
+TEST(B2_MovedSamples, DepthsAreThoseOfThePicture) {
+  reconstruct::FrameRecords there = frame(1.0f, 0.1f, 1.0f), here = there;
+  for (reconstruct::SampleRecord& record : here.pixels) record.values[reconstruct::kRecordDepth] = 3.0f;
+  EXPECT_FALSE(any_value(moved(there, here).depth_ratio, [](float ratio) { return std::fabs(ratio - 1.5f) > 1e-6f; }));
+  for (reconstruct::SampleRecord& record : there.pixels) record.values[reconstruct::kRecordDepth] = 0.0f;
+  EXPECT_FALSE(any_value(moved(there, here).depth_ratio, [](float ratio) { return ratio != 1.0f; }));
+}
+
+}  // namespace
+}  // namespace gradus::moved_samples_test
