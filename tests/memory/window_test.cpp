@@ -148,7 +148,7 @@ TEST(J1_Window, RegressionOverTimeUsesOneFilmAndAFewFieldsOfEachFrame) {
   const double pixels = double(size.width) * size.height, bytes = double(peak_bytes() - before) / (pixels * kFrames);
   std::printf("  %.1f bytes per pixel and contributing frame, %.2f µs per pixel and frame\n", bytes,
               1e-3 * double(process_cpu_nanoseconds() - start - opening) / (pixels * size.frames));
-  EXPECT_LE(bytes, 400.0);
+  EXPECT_LE(bytes, 200.0);
   EXPECT_EQ(opened, 2 * size.frames);
 }
 

@@ -120,11 +120,11 @@ inline render::IntegratorFactory fake_factory(Configure configure = [](FakeInteg
   };
 }
 
-inline std::shared_ptr<const scene::Snapshot> empty_snapshot() {
+inline std::shared_ptr<const scene::Snapshot> empty_snapshot(uint64_t content_key = 42) {
   auto snapshot = std::make_shared<scene::Snapshot>();
   snapshot->has_camera = true;
   snapshot->camera.clip_end = 100.0f;
-  snapshot->content_key = 42;
+  snapshot->content_key = content_key;
   return snapshot;
 }
 

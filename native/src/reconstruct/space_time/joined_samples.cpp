@@ -66,8 +66,9 @@ MovedRecord move_record(const float* record, float unit, float ratio, float dept
   const Lanes units = {unit, unit, unit, unit, unit, unit, 1.0f, 1.0f};
   MovedRecord moved{units * load(record), load(record + kLanes), ratio * ratio * record[kRecordVariance]};
   moved.high[kRecordDepth - kLanes] = depth;
-  moved.high[kDisplacement - kLanes] = GRADUS_FAULT(displacements_dropped) ? 0.0f : displacement.x;
-  moved.high[kDisplacement + 1 - kLanes] = GRADUS_FAULT(displacements_dropped) ? 0.0f : displacement.y;
+  const Vec2 place = GRADUS_FAULT(displacements_dropped) ? Vec2{} : displacement;
+  moved.high[kDisplacement - kLanes] = place.x;
+  moved.high[kDisplacement + 1 - kLanes] = place.y;
   return moved;
 }
 
