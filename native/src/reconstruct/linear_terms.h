@@ -36,15 +36,15 @@ inline size_t brightest(const std::vector<Field>& terms) {
   return size_t(std::max_element(light.begin(), light.end()) - light.begin());
 }
 
-// Replaces each term k by apply(k, term). `whole` is what the operator makes of the sum of the terms. Black terms are
-// skipped if `skip_black`. The brightest term becomes `whole` minus all others: the terms then add up in spite of
-// rounding, and the most expensive term costs nothing.
+// Replaces each term k by apply(k, term). `whole` is what the operator makes of the sum of the terms. The brightest
+// term becomes `whole` minus all others: the terms then add up in spite of rounding, and the most expensive term costs
+// nothing.
 template <class Apply>
-void apply_to_terms(const Field& whole, const Apply& apply, std::vector<Field>* terms, bool skip_black = true) {
+void apply_to_terms(const Field& whole, const Apply& apply, std::vector<Field>* terms) {
   const size_t remainder = brightest(*terms);
   Field left = whole;
   for (size_t k = 0; k < terms->size(); ++k) {
-    if (k == remainder || (skip_black && is_black((*terms)[k]))) continue;
+    if (k == remainder) continue;
     (*terms)[k] = apply(k, (*terms)[k]);
     if (!GRADUS_FAULT(remainder_not_subtracted)) subtract((*terms)[k], &left);
   }

@@ -57,14 +57,14 @@ class Operator {
   }
 
   const Field& solution() const { return solution_; }
-  bool is_joined() const { return bool(join_); }
 
   // Applies the operator to a component; `sampled` are its channels from read_sampled(). `film` has the differences.
   Field apply(const film::Film* film, int component, const Field& sampled) {
+    // A component that is black in the picture's own frame may have light in those that are joined with it.
+    if (!join_ && is_black(sampled)) return sampled;
     Field regressed = regress(component, 0, channels_of(sampled, 0, 3));
     if (sampled.channels() == 4) {
-      const Field alpha = channels_of(sampled, 3, 1);
-      regressed = join_channels(regressed, !join_ && is_black(alpha) ? alpha : regress(component, 3, alpha));
+      regressed = join_channels(regressed, regress(component, 3, channels_of(sampled, 3, 1)));
     }
     if (!fusion_ || GRADUS_FAULT(components_ignore_differences)) return regressed;
     return fusion_->apply(film::read_images(*film, component), regressed, cancel_, report_);
@@ -73,10 +73,9 @@ class Operator {
  private:
   // Applies the regression to channels of a component, or of the sum of all, of which `first` is the first one.
   Field regress(int component, int first, const Field& own) const {
-    if (!join_) return regression_.apply(own, cancel_);
-    const JoinedPlane joined = join_(component, first, own);
-    const bool black = is_black(*joined.in_windows) && is_black(*joined.own) && is_black(*joined.of_residual);
-    return black ? own : regression_.apply(joined, own, cancel_);
+    const JoinedPlane values = join_ ? join_(component, first, own) : not_joined(own);
+    const bool black = is_black(*values.in_windows) && is_black(*values.own) && is_black(*values.of_residual);
+    return black ? own : regression_.apply(values, own, cancel_);
   }
 
   FeatureRegression regression_;
@@ -117,11 +116,8 @@ Reconstructed reconstruct(const film::Film* film, Regressed picture, bool by_com
   });
   Reconstructed result{to_image(op.solution(), scale), interleave(picture.error)};
   if (!by_components) return result;
-  // A component that is black in the picture's own frame may have light in others.
-  const bool skip_black = !op.is_joined();
   apply_to_terms(
-      op.solution(), [&](size_t k, const Field& term) { return op.apply(film, int(k), term); }, &picture.sampled,
-      skip_black);
+      op.solution(), [&](size_t k, const Field& term) { return op.apply(film, int(k), term); }, &picture.sampled);
   for (Field& term : picture.sampled) result.components.push_back(to_image(std::move(term), scale));
   return result;
 }

@@ -16,7 +16,7 @@ constexpr int kWidth = 24, kHeight = 18;
 // A quadratic function, which derivatives of second order describe.
 float quadratic(float x, float y) { return 1.0f + 0.3f * x - 0.2f * y + 0.02f * x * y + 0.01f * x * x - 0.03f * y * y; }
 
-// Of several samples it is the mean.
+// If a pixel holds several samples, the result is the mean of the image where they lie.
 TEST(B2_Displaced, ReproducesQuadraticFunctions) {
   const reconstruct::Field image =
       reconstruct::make_field(kWidth, kHeight, [](int x, int y) { return quadratic(float(x), float(y)); });

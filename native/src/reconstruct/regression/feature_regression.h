@@ -30,8 +30,8 @@ JoinedPlane not_joined(const Field&& field) = delete;
 // What the regression of a picture reads: the samples of its frame, or those of several frames, joined.
 struct PictureSamples {
   RegressionSamples first_step;
-  // Of the windows of the residual: albedo, displacements (displaced.h), and the sum of the fourth roots of the
-  // samples' weights.
+  // The samples in the windows of the residual: their albedo, their displacements (displaced.h), and as weights the
+  // sums of the fourth roots of their weights in the first step.
   Predictors second_step;
   JoinedPlane mean, half_difference;  // in the units of the picture
   LightOfSamples light;

@@ -215,7 +215,7 @@ float sampled_value(const FrameRecords& frame, int component, int pixel, int cha
 JoinedSamples::JoinedSamples(const FrameRecords& here, std::vector<JoinedFrame> others)
     : here_(here), others_(std::move(others)) {}
 
-PictureSamples JoinedSamples::picture() const {
+PictureSamples JoinedSamples::picture(const HalvedImage& image) const {
   const int w = here_.width, h = here_.height;
   PicturePlanes planes(w, h);
   const float unit = 1.0f / here_.scale;
@@ -245,7 +245,7 @@ PictureSamples JoinedSamples::picture() const {
       planes.write(x, y, sums);
     }
   });
-  return planes.take(noise_around(image_of(here_)));
+  return planes.take(noise_around(image));
 }
 
 JoinedPlane JoinedSamples::join(int component, int first, const Field& own) const {

@@ -20,8 +20,8 @@ class JoinedSamples {
   // `here` is the picture's own frame. It and the samples of the others must outlive the object.
   JoinedSamples(const FrameRecords& here, std::vector<JoinedFrame> others);
 
-  // Returns what the picture's regression reads, in units of the picture.
-  PictureSamples picture() const;
+  // Returns what the picture's regression reads, in units of the picture. `image` is that of its own frame.
+  PictureSamples picture(const HalvedImage& image) const;
   // Joins channels [first, first + the channels of `own`) of a component, or of the sum of all, with `own`, those of
   // the picture's own frame.
   JoinedPlane join(int component, int first, const Field& own) const;

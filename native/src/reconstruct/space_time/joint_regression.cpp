@@ -12,11 +12,12 @@ namespace gradus::reconstruct {
 void JointRegression::read(int number, const CancelCheck& cancel) {
   if (frames_.count(number) > 0) return;
   FrameStep step = open_step_(number, cancel);
-  film::PixelCorrespondence to_next = inverse(step.to_previous);
   const auto before = frames_.find(number - 1);
   const bool repeats = before != frames_.end() && before->second.stream == step.stream;
   auto records = repeats ? before->second.records
                          : std::make_shared<const FrameRecords>(read_records(*open_film_(number, cancel)));
+  // The correspondences of frames that are repeated are not read.
+  film::PixelCorrespondence to_next = repeats ? film::PixelCorrespondence{} : inverse(step.to_previous);
   frames_.emplace(number, Frame{step.stream, std::move(step.to_previous), std::move(to_next), std::move(records)});
 }
 
@@ -25,12 +26,12 @@ bool JointRegression::is_repeated(int number) const {
   return before != frames_.end() && before->second.stream == frames_.at(number).stream;
 }
 
-std::vector<JoinedFrame> JointRegression::move_frames(int number, const std::vector<int>& numbers,
+std::vector<JoinedFrame> JointRegression::move_frames(int number, const HalvedImage& image,
+                                                      const std::vector<int>& numbers,
                                                       const CancelCheck& cancel) const {
   std::vector<JoinedFrame> moved;
-  if (numbers.empty()) return moved;
   const FrameRecords& here = *frames_.at(number).records;
-  const Field regressed = regress_coarsely({features_of(here), plane_of(here, kRecordWeight)}, image_of(here), cancel);
+  const Field regressed = regress_coarsely({features_of(here), plane_of(here, kRecordWeight)}, image, cancel);
   const auto move = [&](int other, const PixelTrack& track) {
     if (!std::binary_search(numbers.begin(), numbers.end(), other) || cancel()) return;
     const FrameRecords& records = *frames_.at(GRADUS_FAULT(samples_of_another_frame) ? number : other).records;
@@ -70,11 +71,13 @@ Reconstructed JointRegression::reconstruct(int number, const FrameRange& around,
   if (numbers.empty()) {
     return regularize(*open_film_(number, cancel), here.components.size() > 1, cancel, report, ErrorUse::Delivered);
   }
-  const JoinedSamples joined(here, move_frames(number, numbers, cancel));
+  HalvedImage image = image_of(here);
+  const JoinedSamples joined(here, move_frames(number, image, numbers, cancel));
   if (cancel()) return {};
+  PictureSamples samples = joined.picture(image);
   const std::shared_ptr<const film::Film> film = here.has_differences ? open_film_(number, cancel) : nullptr;
   return regularize(film.get(),
-                    {here.scale, image_of(here), joined.picture(),
+                    {here.scale, std::move(image), std::move(samples),
                      [&](int component, int first, const Field& own) { return joined.join(component, first, own); },
                      components_of(here)},
                     cancel, report);

@@ -46,8 +46,9 @@ class JointRegression {
   void read(int number, const CancelCheck& cancel);
   // Returns whether a frame has the samples of the one before, unless that is unknown.
   bool is_repeated(int number) const;
-  // Returns the frames `numbers`, moved to frame `number`.
-  std::vector<JoinedFrame> move_frames(int number, const std::vector<int>& numbers, const CancelCheck& cancel) const;
+  // Returns the frames `numbers`, moved to frame `number`, whose own image is `image`.
+  std::vector<JoinedFrame> move_frames(int number, const HalvedImage& image, const std::vector<int>& numbers,
+                                       const CancelCheck& cancel) const;
 
   OpenFilm open_film_;
   OpenStep open_step_;

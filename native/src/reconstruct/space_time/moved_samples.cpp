@@ -17,14 +17,12 @@ namespace {
 constexpr int kDepthRadius = 1;
 
 // Adds row y to the changes between the picture and the samples of the frame (light_test.h), and to the sums of the
-// depths there and here.
-void compare_row(const FrameRecords& frame, const PixelTrack& track, const FrameRecords& here, const Field& regressed,
-                 int y, Field* changes, Field* depths) {
+// depths there and here. `around` holds the rows of the regressed picture, by colour.
+void compare_row(const FrameRecords& frame, const PixelTrack& track, const FrameRecords& here,
+                 const std::array<RowsAround, kColors>& around, int y, Field* changes, Field* depths) {
   const int w = track.width;
   const size_t first = size_t(y) * size_t(w);
   const float ratio = relative_scale(frame, here), squared = ratio * ratio, unit = 1.0f / here.scale;
-  std::array<RowsAround, 3> around{RowsAround(w), RowsAround(w), RowsAround(w)};
-  for (int c = 0; c < 3; ++c) around[size_t(c)].read(regressed, y, c);
   const int j = y / kChangeCell;
   std::array<float*, kChangeChannels> change;
   for (int c = 0; c < kChangeChannels; ++c) change[size_t(c)] = changes->row(j, c);
@@ -53,11 +51,15 @@ MovedSamples move_samples(const FrameRecords& frame, PixelTrack track, const Fra
                           const Field& regressed) {
   const int w = (track.width + kChangeCell - 1) / kChangeCell, h = (track.height + kChangeCell - 1) / kChangeCell;
   Field changes(w, h, kChangeChannels), depths(w, h, 2);
-  for_rows(
+  for_pieces(
       h,
-      [&](int j) {
-        for (int y = j * kChangeCell; y < std::min(track.height, (j + 1) * kChangeCell); ++y)
-          compare_row(frame, track, here, regressed, y, &changes, &depths);
+      [&](int begin, int end) {
+        std::array<RowsAround, kColors> around{RowsAround(track.width), RowsAround(track.width),
+                                               RowsAround(track.width)};
+        for (int y = begin * kChangeCell; y < std::min(track.height, end * kChangeCell); ++y) {
+          for (int c = 0; c < kColors; ++c) around[size_t(c)].read(regressed, y, c);
+          compare_row(frame, track, here, around, y, &changes, &depths);
+        }
       },
       16);
   depths = box_mean(depths, kDepthRadius);
