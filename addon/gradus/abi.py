@@ -683,7 +683,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_render_film": (c_int, [Render, POINTER(Film)]),
     "gradus_sequence_applies": (c_int, [POINTER(Settings), POINTER(c_uint32), POINTER(c_char_p)]),
     "gradus_sequence_create": (c_int, [Device, POINTER(SequenceSettings), POINTER(Sequence)]),
-    "gradus_sequence_needs": (c_int, [Sequence, c_int32, POINTER(c_int32), POINTER(c_int32)]),
+    "gradus_sequence_needs": (c_int, [Sequence, POINTER(Settings), POINTER(c_int32), POINTER(c_int32)]),
     "gradus_sequence_sample": (c_int, [Sequence, Scene, POINTER(Settings), POINTER(Render)]),
     "gradus_sequence_pass_by": (c_int, [Sequence, Scene, POINTER(Settings)]),
     "gradus_sequence_end_at": (c_int, [Sequence, c_int32]),

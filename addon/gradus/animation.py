@@ -158,7 +158,7 @@ class Animation:
         if not self._shows_what_was_sampled(job):
             self._give_up(job, "Python handlers changed what was sampled ahead", found)
             return False
-        first, last = self._needs(frame)
+        first, last = self._needs(job)
         begins = not self._begun
         if begins:  # the store has the earlier frames
             self._next = max(self._next, first)
@@ -210,7 +210,7 @@ class Animation:
         scene, frame = job.scene.name_full, job.scene.frame_current
         for key in [key for key in _running if key[0] == scene]:
             animation = _running.pop(key)
-            animation._drop_stored(frame)
+            animation._drop_stored(job)
             animation.free()
         _given_up.add(scene)
         job.frame_by_frame = _HANDLERS
@@ -219,21 +219,24 @@ class Animation:
         text = f"From frame {frame} on, frames are rendered by themselves: {why}{names}. {_ADVICE}"
         job.warn([text], changes_picture=False)
 
-    def _drop_stored(self, frame: int) -> None:
+    def _drop_stored(self, job: Any) -> None:
         """Deletes the films of the frame store that this job wrote and that may not show what their frames show.
 
-        These are all from the first one on that `frame` needs, because a render that goes on from the store would
+        These are all from the first one on that the job's frame needs, because a render that goes on from the store would
         compare them with the scene as handlers leave it at a later frame.
         """
-        first, _ = self._needs(frame)
+        first, _ = self._needs(job)
         for number in self._written:
             if number >= first or number in self._states:
                 for folder in self._folders:
                     frame_store.drop(folder, number)
 
-    def _needs(self, frame: int) -> tuple[int, int]:
+    def _needs(self, job: Any) -> tuple[int, int]:
+        """Returns the first and the last frame that must be sampled before the job's frame can be delivered."""
         first, last = ctypes.c_int32(), ctypes.c_int32()
-        self.library.sequence_needs(next(iter(self._sequences.values())), frame, byref(first), byref(last))
+        settings = job.new_settings()
+        sequence = next(iter(self._sequences.values()))
+        self.library.sequence_needs(sequence, byref(settings), byref(first), byref(last))
         return first.value, last.value
 
     def _succeeds(self, number: int, action: Callable[[], None]) -> bool:

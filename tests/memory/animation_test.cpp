@@ -60,7 +60,7 @@ TEST_P(AnimationEstimate, IsNearThePeak) {
         nullptr, animation::SequenceSettings{0, kFrames - 1, 1, {}, folder}, test::fake_factory());
     int32_t sampled = 0;
     for (int32_t frame = 0; frame < kFrames; ++frame) {
-      for (; sampled <= sequence->needs(frame).last; ++sampled) {
+      for (; sampled <= sequence->needs(settings_of(GetParam(), frame)).last; ++sampled) {
         // Frames of equal content would not be sampled.
         finish(sequence->sample(test::empty_snapshot(uint64_t(sampled) + 1), settings_of(GetParam(), sampled)));
       }

@@ -771,9 +771,10 @@ typedef struct GradusSequenceSettings {
 GRADUS_API GradusError gradus_sequence_applies(const GradusSettings* settings, uint32_t* applies, const char** why_not);
 GRADUS_API GradusError gradus_sequence_create(GradusDevice device, const GradusSequenceSettings* settings,
                                               GradusSequence* sequence);
-/* Returns the frames that must have been sampled before `frame` can be delivered: *first, *first + step and so on up to
- * *last. */
-GRADUS_API GradusError gradus_sequence_needs(GradusSequence sequence, int32_t frame, int32_t* first, int32_t* last);
+/* Returns the frames that must have been sampled before frame settings->frame can be delivered with these settings:
+ * *first, *first + step and so on up to *last. */
+GRADUS_API GradusError gradus_sequence_needs(GradusSequence sequence, const GradusSettings* settings, int32_t* first,
+                                             int32_t* last);
 /* Samples frame settings->frame of the scene's current snapshot and returns at once. The render is polled, waited for,
  * cancelled and released as any other. Frames come in order, each when the render of the one before has ended. A frame
  * that the folder holds is not sampled again, or goes on from its samples if it has fewer than are asked for. A frame

@@ -56,7 +56,8 @@ void FrameDelivery::render() {
     find_flow(previous.get(), &seconds_ahead, &cpu_ahead);
   image_bytes_ = developed_->pictures.memory_bytes();
   check_cancelled();
-  sequence_->forget_before(sequence_->needs(number_).first);
+  // Settings may be animated, so that the next frame may be reconstructed in windows.
+  sequence_->forget_before(sequence_->contributing(number_, false).first);
   const std::lock_guard lock(mutex_);
   developed_->record.stats.total_seconds += seconds() - seconds_ahead;
   developed_->record.stats.process_cpu += process_cpu_seconds() - cpu_ahead;

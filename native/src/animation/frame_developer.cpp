@@ -106,6 +106,8 @@ std::shared_ptr<DevelopedFrame> FrameDeveloper::read() {
   denoiser_ = output::choose_denoiser(requested.denoiser, sequence_.device_.get(), &why_not);
   output::FilmFacts facts = sequence_.facts_of(number_);
   facts.samples = film::mean_samples(*film);
+  if (output::resolve_auto(requested, facts).reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED)
+    facts.samples *= sequence_.contributing(number_, true).count();
   facts.has_denoiser = denoiser_ != nullptr;
   pictures.options = output::resolve_auto(requested, facts);
   if (plan.denoises_if_it_pays && requested.denoiser == GRADUS_DENOISER_AUTO)
@@ -137,7 +139,8 @@ void FrameDeveloper::develop_picture(DevelopedFrame* frame) {
 reconstruct::Reconstructed FrameDeveloper::take_from_windows(const output::DevelopedFilm& developed, bool with_error,
                                                              reconstruct::SolveReport* report) {
   const film::Film& film = *developed.film;
-  const reconstruct::SequenceMethod method{developed.options.reconstruction, developed.options.alpha, with_error};
+  const reconstruct::SequenceMethod method{developed.options.reconstruction, developed.options.alpha, with_error,
+                                           developed.options.denoiser != GRADUS_DENOISER_NONE};
   reconstruct::Reconstructed picture;
   const std::vector<std::vector<std::string>> groups = reconstructed_together(film, method.reconstruction);
   try {
@@ -147,6 +150,7 @@ reconstruct::Reconstructed FrameDeveloper::take_from_windows(const output::Devel
       check_cancelled();
       if (part.components.empty() && groups.size() > 1) part.components.push_back(part.image);
       std::move(part.components.begin(), part.components.end(), std::back_inserter(picture.components));
+      picture.sampled = std::move(part.sampled);
       reconstruct::add_image(std::move(part.image), &picture.image);
       reconstruct::add_image(std::move(part.error), &picture.error);
       reconstruct::add_image(std::move(part.terms.noise), &picture.terms.noise);

@@ -11,11 +11,15 @@
 
 namespace gradus::animation {
 
+// Returns whether the samples of several frames are joined: whether REGULARIZED reconstructs.
+inline bool joins_frames(const GradusSettings& settings) {
+  return settings.reconstruction == GRADUS_RECONSTRUCTION_AUTO ||
+         settings.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
+}
+
 // Returns whether half of the samples replay those of the previous frame.
 inline bool takes_replays(const GradusSettings& settings) {
-  const uint32_t r = settings.reconstruction;
-  return (r != GRADUS_RECONSTRUCTION_AUTO && r != GRADUS_RECONSTRUCTION_REGULARIZED) ||
-         schema::has_bit(settings.passes, GRADUS_PASS_GRADIENT_T);
+  return !joins_frames(settings) || schema::has_bit(settings.passes, GRADUS_PASS_GRADIENT_T);
 }
 
 // Returns the share of the time limit that fresh samples take. Replayed samples are as many, and take at least as long.

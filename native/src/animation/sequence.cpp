@@ -42,9 +42,11 @@ bool is_frame_of(const film::FilmHeader& stored, const scene::Snapshot& snapshot
 bool sequence_applies(const GradusSettings& settings, std::string* why_not) {
   const uint32_t r = settings.reconstruction;
   const uint64_t pixels = uint64_t(settings.width) * settings.height;
-  const bool has_gradients = render::can_sample_gradients(settings.integrator);
+  // REGULARIZED joins samples of any kind. With AUTO, a user who chose plain samples expects the noisy image.
+  const bool is_sampled_for_it =
+      r == GRADUS_RECONSTRUCTION_REGULARIZED || render::can_sample_gradients(settings.integrator);
   const std::string integrator = schema::choice_name(*schema::find_option("integrator"), settings.integrator);
-  *why_not = !has_gradients                    ? "the integrator is " + integrator
+  *why_not = !is_sampled_for_it                ? "the integrator is " + integrator
              : r == GRADUS_RECONSTRUCTION_NONE ? "reconstruction is none"
              : settings.samples < 2            ? "there is one sample per pixel"
              : pixels > INT32_MAX              ? "the film has more than 2^31 - 1 pixels"
@@ -124,13 +126,20 @@ bool Sequence::shares_window_with_previous(int place, uint32_t reconstruction) {
          share_windows(before, here, reconstruction);
 }
 
-reconstruct::FrameRange Sequence::needs(int32_t frame) const {
-  const reconstruct::FrameRange own = job_places();
-  const reconstruct::WindowGrid grid(own, settings_.windows);
-  reconstruct::FrameRange places = grid.around(place_of(frame));
-  if (settings_.with_flow)
-    places.last = std::max(places.last, grid.around(std::min(place_of(frame) + 1, own.last)).last);
+reconstruct::FrameRange Sequence::contributing(int32_t frame, bool joins_frames) const {
+  const reconstruct::WindowGrid grid(job_places(), settings_.windows);
+  const int place = place_of(frame);
+  const reconstruct::FrameRange places = joins_frames ? grid.joined(place) : grid.around(place);
   return {std::max(frame_at(places.first), settings_.first), std::min(frame_at(places.last), last_)};
+}
+
+reconstruct::FrameRange Sequence::needs(const GradusSettings& settings) const {
+  reconstruct::FrameRange frames = contributing(settings.frame, joins_frames(settings));
+  if (settings_.with_flow && settings.frame < last_) {
+    const int32_t next = frame_at(place_of(settings.frame) + 1);
+    frames.last = std::max(frames.last, contributing(next, joins_frames(settings)).last);
+  }
+  return frames;
 }
 
 void Sequence::end_at(int32_t frame) {
@@ -141,7 +150,8 @@ void Sequence::end_at(int32_t frame) {
 std::unique_ptr<render::RenderTask> Sequence::sample(std::shared_ptr<const scene::Snapshot> snapshot,
                                                      const GradusSettings& settings) {
   std::string why_not;
-  if (!sequence_applies(settings, &why_not)) throw invalid_argument("no temporal gradients: " + why_not);
+  if (!sequence_applies(settings, &why_not))
+    throw invalid_argument("the frame cannot be reconstructed together with others: " + why_not);
   place_of(settings.frame);  // throws if the frame is not part of the sequence
   render::LoopInput input;
   input.device = device_;
@@ -151,6 +161,7 @@ std::unique_ptr<render::RenderTask> Sequence::sample(std::shared_ptr<const scene
   input.threads = output::threads_of(settings, device_.get());
   input.factory = factory_;
   input.samples_only = true;
+  if (joins_frames(settings)) input.joined_frames = uint32_t(contributing(settings.frame, true).count());
   return std::make_unique<FrameSampling>(shared_from_this(), std::move(input));
 }
 

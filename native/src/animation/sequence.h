@@ -34,7 +34,7 @@ struct SequenceSettings {
   std::string flow_folder{};  // folder of libgradus_flow.so; empty: that of this library
 };
 
-// Whether frames with these settings can have temporal gradients. If not, sets *why_not to the reason.
+// Whether frames with these settings can be reconstructed together with others. If not, sets *why_not to the reason.
 bool sequence_applies(const GradusSettings& settings, std::string* why_not);
 
 class Sequence : public std::enable_shared_from_this<Sequence> {
@@ -45,8 +45,8 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   Sequence(const Sequence&) = delete;
   Sequence& operator=(const Sequence&) = delete;
 
-  // Returns the range of frames that must have been sampled before `frame` can be delivered.
-  reconstruct::FrameRange needs(int32_t frame) const;
+  // Returns the range of frames that must have been sampled before settings.frame can be delivered.
+  reconstruct::FrameRange needs(const GradusSettings& settings) const;
   // Ends the sequence early: `frame` is its last one.
   void end_at(int32_t frame);
 
@@ -74,6 +74,8 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   int place_of(int32_t frame) const;
   int32_t frame_at(int place) const;
   reconstruct::FrameRange job_places() const;
+  // Returns the range of frames that contribute to the picture of a frame.
+  reconstruct::FrameRange contributing(int32_t frame, bool joins_frames) const;
   // Warns once if the machine has less memory, or the disk less room, than the animation is estimated to need.
   void warn_of_needs(const render::Plan& plan, std::vector<std::string>* warnings);
   // Returns the places of the job and of the frames next to it that the folder holds.

@@ -53,11 +53,13 @@ GradusError gradus_sequence_create(GradusDevice device, const GradusSequenceSett
   });
 }
 
-GradusError gradus_sequence_needs(GradusSequence sequence, int32_t frame, int32_t* first, int32_t* last) {
+GradusError gradus_sequence_needs(GradusSequence sequence, const GradusSettings* settings, int32_t* first,
+                                  int32_t* last) {
   return api::guard([&] {
+    const GradusSettings copy = api::read_struct(settings, "settings", schema::default_settings());
     const auto object = api::find_handle<api::SequenceObject>(sequence);
     const std::lock_guard lock(object->mutex);
-    const reconstruct::FrameRange needed = object->sequence->needs(frame);
+    const reconstruct::FrameRange needed = object->sequence->needs(copy);
     api::require(first, "first") = needed.first;
     api::require(last, "last") = needed.last;
   });

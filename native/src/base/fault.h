@@ -39,6 +39,7 @@
   X(displacements_dropped)                       \
   X(light_test_off)                              \
   X(moved_halves_dropped)                        \
+  X(network_reads_one_frame)                     \
   X(lost_light_not_restored)                     \
   X(image_variance_times_4)                      \
   X(image_variance_over_4)                       \

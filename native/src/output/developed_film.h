@@ -9,6 +9,7 @@
 
 #include "film/film.h"
 #include "output/options.h"
+#include "reconstruct/reconstructed.h"
 #include "reconstruct/solve_report.h"
 
 namespace gradus::output {
@@ -27,6 +28,8 @@ struct DevelopedFilm {
   uint32_t threads = 1;                    // threads that read passes of the film
   Options options{};                       // options with which the picture was made
   reconstruct::SolveReport solve{};        // how its reconstruction converged
+  // What other frames have sampled of the picture, too, until it is denoised; null if no frames are joined.
+  std::shared_ptr<const reconstruct::SampledPicture> sampled{};
   // Passes that are computed from the film: Combined, Error, light passes, and those that need several frames.
   std::map<uint32_t, Image> passes{};
   // Passes of components, by index in film::Film::components and GradusComponentPass: Color, unless there is one

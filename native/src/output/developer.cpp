@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "base/fpu.h"
@@ -152,6 +153,7 @@ void Developer::reconstruct(DevelopedFilm* developed, const reconstruct::Reconst
                                              &developed->solve);
     }
     throw_if_cancelled(cancel_);
+    developed->sampled = std::move(images.sampled);
     if (with_components)
       store_components(crop_components(film, how, std::move(images.components), developed->region), developed);
     if (wanted.error)
@@ -167,11 +169,11 @@ bool Developer::denoise(DevelopedFilm* developed, std::vector<std::string>* warn
   const FlushDenormals flush;
   const film::Film& film = *developed->film;
   if (!film::has_features(film)) warnings->emplace_back("the film holds no features to guide the denoiser");
-  const uint32_t reconstruction = developed->options.reconstruction;
   const Image before = developed->find(GRADUS_PASS_COMBINED);
+  const std::shared_ptr<const reconstruct::SampledPicture> sampled = std::exchange(developed->sampled, nullptr);
+  const CombinedPicture picture{film, developed->options.reconstruction, developed->region, *before, sampled.get()};
   std::string failure;
-  std::vector<float> rgba =
-      denoise_combined(*denoiser_, film, reconstruction, developed->region, threads_, cancel_, *before, &failure);
+  std::vector<float> rgba = denoise_combined(*denoiser_, picture, threads_, cancel_, &failure);
   if (rgba.empty()) {
     developed->options.denoiser = GRADUS_DENOISER_NONE;
     warnings->push_back(failure);
@@ -183,7 +185,7 @@ bool Developer::denoise(DevelopedFilm* developed, std::vector<std::string>* warn
   }
   if (const Image error = developed->find(GRADUS_PASS_ERROR)) {
     std::vector<float> scaled = *error;
-    for (float& value : scaled) value *= denoised_error(reconstruction);
+    for (float& value : scaled) value *= denoised_error(picture);
     developed->passes[GRADUS_PASS_ERROR] = make_image(std::move(scaled));
   }
   developed->passes[GRADUS_PASS_COMBINED] = make_image(std::move(rgba));

@@ -29,7 +29,7 @@ void store_options(const Options& options, GradusSettings* settings);
 struct FilmFacts {
   uint32_t sampled_for = GRADUS_RECONSTRUCTION_AUTO;  // reconstruction for which it was sampled; AUTO: not known
   bool has_features = false, has_gradients = false;
-  double samples = 0.0;       // per pixel
+  double samples = 0.0;       // per pixel, those of joined frames included
   bool has_denoiser = false;  // whether the machine has a denoiser
 };
 // Returns the facts that the content of a film shows.

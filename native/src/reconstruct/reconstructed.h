@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 namespace gradus::reconstruct {
@@ -13,11 +14,18 @@ struct ErrorTerms {
   std::vector<float> l2_difference;  // the image minus the one by L2; empty if the reconstruction is linear
 };
 
+// What several frames have sampled of the pixels of a picture, joined: light and features, 3 values per pixel each. A
+// denoiser reads it.
+struct SampledPicture {
+  std::vector<float> light, albedo, normal;
+};
+
 // Result of the reconstruction of a film or of one of its components.
 struct Reconstructed {
   std::vector<float> image;  // width·height·channels
   std::vector<float> error;  // width·height: estimated squared error, mean over RGB; empty unless requested
   std::vector<std::vector<float>> components{};  // images that add up to `image`; empty unless requested
+  std::shared_ptr<const SampledPicture> sampled{};  // null unless requested, or if no frames are joined
   ErrorTerms terms{};  // RGB; replaces `error` for images that L2 or L1 reconstructs over several frames
 };
 

@@ -36,7 +36,7 @@ void name_planes(const lpe::ComponentSet& set, film::Film* film) {
 // Returns the plan of the render. A frame of an animation keeps all components, because a component that is small in
 // one frame may not be small in the next.
 Plan planned(const LoopInput& input, const HostDenoiser& denoiser) {
-  Plan plan = make_plan(input.planned_settings(), *input.snapshot, denoiser);
+  Plan plan = make_plan(input.planned_settings(), *input.snapshot, denoiser, input.joined_frames);
   if (!plan.merges_components || !input.samples_only) return plan;
   plan.merges_components = false;
   plan.skipped.emplace_back("merging of small components",

@@ -73,11 +73,12 @@ void choose_integrator(const GradusSettings& settings, Plan* plan) {
 
 // Returns the options with which the film will be developed. A film of the integrators AUTO and GRADIENT is sampled
 // with features if its reconstruction reads them; a user who chose plain samples expects the noisy image.
-output::Options planned_options(const GradusSettings& settings, const HostDenoiser& denoiser) {
+output::Options planned_options(const GradusSettings& settings, const HostDenoiser& denoiser,
+                                uint32_t joined_frames) {
   output::FilmFacts facts;
   facts.has_features =
       settings.integrator == GRADUS_INTEGRATOR_AUTO || settings.integrator == GRADUS_INTEGRATOR_GRADIENT;
-  facts.samples = settings.samples;
+  facts.samples = double(settings.samples) * joined_frames;
   facts.has_denoiser = !denoiser.name.empty();
   return output::resolve_auto(output::options_of(settings), facts);
 }
@@ -224,10 +225,11 @@ uint32_t first_check(const GradusSettings& settings) {
 
 }  // namespace
 
-Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot, const HostDenoiser& denoiser) {
+Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot, const HostDenoiser& denoiser,
+               uint32_t joined_frames) {
   schema::check_settings(settings);
   Plan plan;
-  const output::Options options = planned_options(settings, denoiser);
+  const output::Options options = planned_options(settings, denoiser, joined_frames);
   choose_denoiser(settings, options, denoiser, &plan);
   choose_integrator(settings, &plan);
   choose_reconstruction(settings, options, &plan);

@@ -51,9 +51,9 @@ struct Plan {
 inline constexpr int kGuardRing = 35;
 
 // Returns the plan of a render. Throws `invalid_argument` or `unsupported` for settings that cannot be followed: a
-// setting is never replaced silently.
+// setting is never replaced silently. `joined_frames`: number of frames of an animation whose samples are joined.
 Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot,
-               const HostDenoiser& denoiser = {"", "denoiser is none"});
+               const HostDenoiser& denoiser = {"", "denoiser is none"}, uint32_t joined_frames = 1);
 
 // Returns whether a setting of the option `integrator` can sample differences between pixels. AUTO chooses an
 // integrator that does where they are needed.

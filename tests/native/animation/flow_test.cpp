@@ -183,7 +183,9 @@ TEST(SequenceFlow, AFrameNeedsTheNextOneIfFlowIsRequested) {
   const auto last_of = [&](bool with_flow, int32_t frame) {
     animation::SequenceSettings settings{0, 20, 1, kWindows, ""};
     settings.with_flow = with_flow;
-    return animation::Sequence(two_threads(), settings).needs(frame).last;
+    GradusSettings l2 = settings_of(frame);
+    l2.reconstruction = GRADUS_RECONSTRUCTION_L2;
+    return animation::Sequence(two_threads(), settings).needs(l2).last;
   };
   bool more = false;
   for (int32_t frame = 0; frame <= 20; ++frame) {

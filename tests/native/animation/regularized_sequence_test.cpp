@@ -37,7 +37,7 @@ std::map<int32_t, Picture> rendered(Pan* pan, animation::Sequence* sequence, int
   std::map<int32_t, Picture> frames;
   int32_t sampled = first;
   for (int32_t frame = first; frame <= last; ++frame) {
-    for (; sampled <= sequence->needs(frame).last; ++sampled)
+    for (; sampled <= sequence->needs(settings(frame)).last; ++sampled)
       run(sequence->sample(pan->at(sampled), settings(sampled)).get());
     frames[frame] = picture_of(sequence, frame, settings(frame));
   }
@@ -76,10 +76,35 @@ TEST(C3_RegularizedSequence, TakesHalfOfTheSamplesReplayedForGradientT) {
   }
 }
 
-double squared_distance(const std::vector<float>& a, const std::vector<float>& b) {
-  double sum = 0.0;
-  for (size_t i = 0; i < a.size(); ++i) sum += std::pow(double(a[i]) - b[i], 2);
-  return sum;
+// Regression: the integrator PATH was refused, though AUTO takes the same samples.
+TEST(C3_RegularizedSequence, JoinsFramesOfPlainPaths) {
+  Pan pan(1.3f);
+  const std::map<int32_t, Picture> automatic = rendered(&pan, make_sequence(1, 3).get(), 1, 3),
+                                   plain = rendered(&pan, make_sequence(1, 3).get(), 1, 3, [](int32_t frame) {
+                                     GradusSettings settings = regularized(frame);
+                                     settings.integrator = GRADUS_INTEGRATOR_PATH;
+                                     return settings;
+                                   });
+  for (const auto& [frame, picture] : plain) expect_same(picture, automatic.at(frame), frame);
+  GradusSettings settings = regularized(1);
+  settings.integrator = GRADUS_INTEGRATOR_PATH;
+  std::string why_not;
+  for (const uint32_t noisy : {GRADUS_RECONSTRUCTION_AUTO, GRADUS_RECONSTRUCTION_L2}) {
+    settings.reconstruction = noisy;
+    EXPECT_FALSE(animation::sequence_applies(settings, &why_not));
+    EXPECT_EQ(why_not, "the integrator is path");
+  }
+}
+
+// REGULARIZED reads the frames half a window away; L2 and L1 read all of the windows that hold the frame.
+TEST(C3_RegularizedSequence, NeedsTheFramesThatAreJoined) {
+  const auto sequence = make_sequence(0, 40);
+  GradusSettings settings = regularized(12);
+  EXPECT_EQ(sequence->needs(settings).first, 8);
+  EXPECT_EQ(sequence->needs(settings).last, 16);
+  settings.reconstruction = GRADUS_RECONSTRUCTION_L2;
+  EXPECT_EQ(sequence->needs(settings).first, 5);
+  EXPECT_EQ(sequence->needs(settings).last, 19);
 }
 
 // The purpose of sequences: from frame to frame, the error changes less than that of the samples, and it is smaller.

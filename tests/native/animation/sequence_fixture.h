@@ -84,6 +84,12 @@ inline std::vector<float> read(const render::RenderTask& task, uint32_t pass, si
   return pixels;
 }
 
+inline double squared_distance(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) sum += std::pow(double(a[i]) - b[i], 2);
+  return sum;
+}
+
 // Delivers a frame and returns its task.
 inline std::unique_ptr<render::RenderTask> delivered(animation::Sequence* sequence, int32_t frame) {
   auto task = sequence->deliver(frame, nullptr);
@@ -122,13 +128,15 @@ inline void sample(animation::Sequence* sequence, const std::shared_ptr<const sc
 inline std::vector<Delivered> render(Pan* pan, animation::Sequence* sequence, int32_t first, int32_t last,
                                      uint32_t samples = 8, uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
   std::vector<Delivered> frames;
+  const auto settings_at = [&](int32_t frame) {
+    GradusSettings settings = settings_of(frame, samples);
+    settings.reconstruction = reconstruction;
+    return settings;
+  };
   int32_t sampled = first;
   for (int32_t frame = first; frame <= last; ++frame) {
-    for (; sampled <= sequence->needs(frame).last; ++sampled) {
-      GradusSettings settings = settings_of(sampled, samples);
-      settings.reconstruction = reconstruction;
-      sample(sequence, pan->at(sampled), settings);
-    }
+    for (; sampled <= sequence->needs(settings_at(frame)).last; ++sampled)
+      sample(sequence, pan->at(sampled), settings_at(sampled));
     frames.push_back(deliver(sequence, frame));
   }
   return frames;

@@ -436,7 +436,7 @@ std::map<int32_t, Delivered> render_by(const SettingsOf& settings, animation::Se
   pass_by(first - 1);
   int32_t sampled = first;
   for (int32_t frame = first; frame <= last; ++frame) {
-    for (; sampled <= sequence->needs(frame).last; ++sampled) {
+    for (; sampled <= sequence->needs(settings(frame)).last; ++sampled) {
       if (sampled == alone) {
         pass_by(sampled);
       } else {
@@ -840,9 +840,9 @@ TEST(I2_Sequence, FramesBeforeAFailureAreDelivered) {
   Pan pan(1.3f);
   const auto sequence = make_sequence(1, 10);
   for (int32_t t = 1; t <= 4; ++t) sample(sequence.get(), pan.at(t), settings_of(t));
-  EXPECT_EQ(sequence->needs(1).last, 9);
+  EXPECT_EQ(sequence->needs(settings_of(1)).last, 9);
   sequence->end_at(4);
-  EXPECT_EQ(sequence->needs(1).last, 4);
+  EXPECT_EQ(sequence->needs(settings_of(1)).last, 4);
   const std::vector<Delivered> alone = render(&pan, make_sequence(1, 4).get(), 1, 4);
   for (int32_t t = 1; t <= 4; ++t) EXPECT_EQ(deliver(sequence.get(), t).combined, alone[size_t(t - 1)].combined) << t;
 }

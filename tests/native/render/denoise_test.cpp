@@ -258,9 +258,8 @@ TEST_F(DenoisedRender, MissingMemoryIsAWarningToo) {
   library.api.commit_device = [](output::OidnApi::Device*) { throw std::bad_alloc(); };
   const std::vector<float> combined(4 * size_t(kAll.area()), 0.5f);
   const auto never = [] { return false; };
-  EXPECT_TRUE(
-      output::denoise_combined(library, *film, GRADUS_RECONSTRUCTION_REGULARIZED, kAll, 1, never, combined, &failure)
-          .empty());
+  const output::CombinedPicture picture{*film, GRADUS_RECONSTRUCTION_REGULARIZED, kAll, combined};
+  EXPECT_TRUE(output::denoise_combined(library, picture, 1, never, &failure).empty());
   EXPECT_EQ(failure, "the picture was not denoised: out of memory");
 }
 

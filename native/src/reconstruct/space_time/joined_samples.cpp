@@ -19,6 +19,8 @@ namespace {
 // Standard deviation, in pixels, of the Gaussian weights by the displacement of a sample from the centre of its pixel,
 // in the means of own values and of features to estimate. Samples count in windows wherever they lie.
 constexpr float kReachOfCentre = 0.2f;
+// The same in the picture that a denoiser reads: a network sharpens better than it removes noise.
+constexpr float kReachOfSampled = 0.3f;
 constexpr int kFeatureChannels = 7, kAlbedo = 3, kAlbedoChannels = 3;
 
 // Weights of one sample of a pixel, for each use. `share` is what the test of light keeps of it.
@@ -92,10 +94,15 @@ struct PixelSums {
   }
 };
 
+// Returns the Gaussian weight of a displacement from the centre of a pixel.
+float nearness(const Vec2& displacement, float reach) {
+  const float squared = displacement.x * displacement.x + displacement.y * displacement.y;
+  return std::exp(squared * (-0.5f / (reach * reach)));
+}
+
 // Returns the weights of a sample whose record is given. `ratio`: the frame's scale in that of the picture.
 SampleWeights weigh_sample(const float* record, float ratio, float share, const Vec2& displacement) {
-  const float squared = displacement.x * displacement.x + displacement.y * displacement.y;
-  const float near = std::exp(squared * (-0.5f / (kReachOfCentre * kReachOfCentre)));
+  const float near = nearness(displacement, kReachOfCentre);
   const float of_light = 1.0f / (ratio * ratio), weight = of_light * record[kRecordWeight];
   return {share * weight, share * of_light * record[kRecordOwnWeight] * near, share * std::sqrt(std::sqrt(weight)),
           share * near, share};
@@ -246,6 +253,33 @@ PictureSamples JoinedSamples::picture(const HalvedImage& image) const {
     }
   });
   return planes.take(noise_around(image));
+}
+
+SampledPicture JoinedSamples::sampled() const {
+  const int w = here_.width, h = here_.height;
+  const size_t size = 3 * here_.pixels.size();
+  SampledPicture picture{std::vector<float>(size), std::vector<float>(size), std::vector<float>(size)};
+  for_rows(h, [&](int y) {
+    for (int x = 0; x < w; ++x) {
+      RecordSums sums;
+      const auto add = [&](const float* record, float weight) {
+        sums.add(weight, load(record), load(record + kLanes));
+      };
+      add(here_.at(y * w + x), 1.0f);
+      for (const JoinedFrame& frame : others_) {
+        const SampleOfPixel sample = sample_of(frame, x, y);
+        if (sample.record != nullptr) add(sample.record, sample.share * nearness(sample.displacement, kReachOfSampled));
+      }
+      const RecordValues means = sums.means();
+      for (size_t c = 0; c < 3; ++c) {
+        const size_t i = 3 * (size_t(y) * size_t(w) + size_t(x)) + c;
+        picture.light[i] = means[kRecordMean + c];
+        picture.normal[i] = means[kRecordFeatures + c];
+        picture.albedo[i] = means[size_t(kRecordFeatures + kAlbedo) + c];
+      }
+    }
+  });
+  return picture;
 }
 
 JoinedPlane JoinedSamples::join(int component, int first, const Field& own) const {

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "reconstruct/reconstructed.h"
 #include "reconstruct/regression/feature_regression.h"
 #include "reconstruct/space_time/moved_samples.h"
 
@@ -22,6 +23,8 @@ class JoinedSamples {
 
   // Returns what the picture's regression reads, in units of the picture. `image` is that of its own frame.
   PictureSamples picture(const HalvedImage& image) const;
+  // Returns the means of light and features near the centres of pixels. Light is in the units of the film.
+  SampledPicture sampled() const;
   // Joins channels [first, first + the channels of `own`) of a component, or of the sum of all, with `own`, those of
   // the picture's own frame.
   JoinedPlane join(int component, int first, const Field& own) const;

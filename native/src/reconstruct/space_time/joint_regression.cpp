@@ -53,7 +53,7 @@ std::vector<JoinedFrame> JointRegression::move_frames(int number, const HalvedIm
 }
 
 Reconstructed JointRegression::reconstruct(int number, const FrameRange& around, const CancelCheck& cancel,
-                                           SolveReport* report) {
+                                           SolveReport* report, bool with_sampled) {
   frames_.erase(frames_.begin(), frames_.lower_bound(around.first));
   for (int other = around.first; other <= around.last && !cancel(); ++other) read(other, cancel);
   if (cancel()) return {};
@@ -76,11 +76,14 @@ Reconstructed JointRegression::reconstruct(int number, const FrameRange& around,
   if (cancel()) return {};
   PictureSamples samples = joined.picture(image);
   const std::shared_ptr<const film::Film> film = here.has_differences ? open_film_(number, cancel) : nullptr;
-  return regularize(film.get(),
-                    {here.scale, std::move(image), std::move(samples),
-                     [&](int component, int first, const Field& own) { return joined.join(component, first, own); },
-                     components_of(here)},
-                    cancel, report);
+  Reconstructed result =
+      regularize(film.get(),
+                 {here.scale, std::move(image), std::move(samples),
+                  [&](int component, int first, const Field& own) { return joined.join(component, first, own); },
+                  components_of(here)},
+                 cancel, report);
+  if (with_sampled) result.sampled = std::make_shared<const SampledPicture>(joined.sampled());
+  return result;
 }
 
 }  // namespace gradus::reconstruct

@@ -34,7 +34,9 @@ class JointRegression {
 
   // Reconstructs a frame from itself and the others of the range `around` it. Frames must come in ascending order; what
   // two of them share is read once. When cancelled, returns an empty image or throws the error CANCELLED.
-  Reconstructed reconstruct(int frame, const FrameRange& around, const CancelCheck& cancel, SolveReport* report);
+  // `with_sampled` requests the joined samples.
+  Reconstructed reconstruct(int frame, const FrameRange& around, const CancelCheck& cancel, SolveReport* report,
+                            bool with_sampled = false);
 
  private:
   struct Frame {

@@ -1,6 +1,5 @@
 #include "reconstruct/space_time/sequence_pictures.h"
 
-#include <algorithm>
 #include <string>
 
 #include "base/error.h"
@@ -16,12 +15,7 @@ SequencePictures::SequencePictures(const FrameRange& range, const WindowShape& s
       joint_(source_.frame, source_.step),
       blend_(grid_, [this](int frame, Reconstructed picture) { ready_[frame] = std::move(picture); }) {}
 
-FrameRange SequencePictures::around(int frame) const {
-  const FrameRange shared = grid_.around(frame);
-  if (!is_joint()) return shared;
-  const int reach = (grid_.shape().frames - 1) / 2;
-  return {std::max(shared.first, frame - reach), std::min(shared.last, frame + reach)};
-}
+FrameRange SequencePictures::around(int frame) const { return is_joint() ? grid_.joined(frame) : grid_.around(frame); }
 
 bool SequencePictures::has(int frame) const {
   if (!grid_.contains(frame)) return false;
@@ -34,7 +28,7 @@ Reconstructed SequencePictures::take(int frame, const CancelCheck& cancel, Solve
   if (!has(frame)) throw invalid_operation("frame " + std::to_string(frame) + " was delivered before");
   if (is_joint()) {
     last_joint_ = frame;
-    return joint_.reconstruct(frame, around(frame), cancel, report);
+    return joint_.reconstruct(frame, around(frame), cancel, report, method_.with_sampled);
   }
   if (!next_window_) next_window_ = grid_.first_with(frame);
   while (ready_.count(frame) == 0) {

@@ -19,6 +19,7 @@ struct SequenceMethod {
   uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2;  // L2, L1 or REGULARIZED
   float alpha = 0.0f;                                  // 0 selects the default (chosen_alpha())
   bool with_error = false;                             // whether to estimate errors, or their terms
+  bool with_sampled = false;                           // whether to return the joined samples
   bool operator==(const SequenceMethod&) const = default;
 };
 

@@ -33,6 +33,12 @@ int WindowGrid::first_with(int frame) const {
 }
 int WindowGrid::last_with(int frame) const { return std::min(last_, window_that_begins_before(frame)); }
 
+FrameRange WindowGrid::joined(int frame) const {
+  const FrameRange shared = around(frame);
+  const int reach = (shape_.frames - 1) / 2;
+  return {std::max(shared.first, frame - reach), std::min(shared.last, frame + reach)};
+}
+
 float WindowGrid::share(int window, int frame) const {
   const int64_t place = frame - int64_t{window} * shape_.step();
   if (place < 0 || place >= shape_.frames) return 0.0f;

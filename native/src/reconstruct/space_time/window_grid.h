@@ -36,6 +36,9 @@ class WindowGrid {
   int last_with(int frame) const;
   // Returns all frames of the windows that contain `frame`.
   FrameRange around(int frame) const { return {frames(first_with(frame)).first, frames(last_with(frame)).last}; }
+  // Returns the frames whose samples REGULARIZED joins with those of `frame`: half a window to each side, of those
+  // `around`.
+  FrameRange joined(int frame) const;
   bool contains(int frame) const { return range_.contains(frame); }
   // Returns the share of a window in a frame's image: a Hann window over the frames that two windows share, where the
   // shares add up to 1; 1 where there is no other window.

@@ -124,6 +124,38 @@ TEST(B2_JointRegression, NineFramesLeaveASmallPartOfTheVarianceOfOne) {
   }
 }
 
+// A denoiser reads the mean of all frames near the centres of pixels: light in the units of the film, with features.
+TEST(B2_JointRegression, ReturnsTheJoinedSamples) {
+  Shot shot;
+  constexpr float kLight = 40.0f;
+  shot.light = [](int) { return kLight; };
+  const double of_one = 0.5 * std::pow(shot.sigma * kLight, 2);  // of the mean of two halves
+  const auto sampled = [](const Shot& s) {
+    reconstruct::SolveReport report;
+    reconstruct::JointRegression regression = s.regression();
+    return regression.reconstruct(kMiddle, s.all(), never, &report, true).sampled;
+  };
+  EXPECT_NEAR(variance_of(shot, [&](const Shot& s) { return sampled(s)->light; }) / of_one, 1.0 / kFrames, 0.02);
+  shot.sigma = 0.0f;
+  for (const std::optional<float> pan : {std::optional<float>(), std::optional(1.0f)}) {
+    shot.pan = pan;
+    const auto picture = sampled(shot);
+    const FeatureFilm truth = shot.description(kMiddle);
+    EXPECT_LT(rms_difference(picture->light, truth.truth), 1e-4) << pan.value_or(0.0f);
+    for (int i = 0; i < kWidth * kHeight; ++i) {
+      for (int c = 0; c < 3; ++c) {
+        const int x = i % kWidth, y = i / kWidth;
+        ASSERT_NEAR(picture->normal[size_t(3 * i + c)], truth.feature(x, y, c, 0), 0.02) << i;
+        ASSERT_NEAR(picture->albedo[size_t(3 * i + c)], truth.feature(x, y, 3 + c, 0), 0.02) << i;
+      }
+    }
+  }
+  shot.frames = 1;
+  reconstruct::SolveReport report;
+  reconstruct::JointRegression single = shot.regression();
+  EXPECT_EQ(single.reconstruct(0, shot.all(), never, &report, true).sampled, nullptr);
+}
+
 // The noise of the picture is estimated from the half-buffers of all frames.
 TEST(B2_JointRegression, EstimatesItsError) {
   double estimated = 0.0, actual = 0.0;
