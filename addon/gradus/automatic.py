@@ -43,4 +43,6 @@ def method_of(integrator: str, reconstruction: str, denoiser: str) -> Method:
     has_gradients = integrator != "PATH"
     if reconstruction == "AUTO":
         reconstruction = "REGULARIZED" if has_gradients else "NONE"
+    if denoiser == "AUTO" and reconstruction != "REGULARIZED":
+        denoiser = "NONE"
     return Method(reconstruction, has_gradients, DENOISED_FROM.get(denoiser, math.inf))

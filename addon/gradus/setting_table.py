@@ -320,12 +320,12 @@ ROWS: tuple[dict[str, Any], ...] = (
     dict(
         name="denoiser",
         kind="ENUM",
-        default="NONE",
+        default="AUTO",
         label="Denoiser",
         doc=(
             "Removes remaining noise with Open Image Denoise, guided by the albedo and normals of surfaces. It adds"
             " about 7.5 CPU-µs per pixel, 15 CPU seconds at 1920×1080. It is biased: fine detail can vanish or be "
-            "invented, and animations can flicker"
+            "invented. In animations it reads the samples of the frames around each one, too"
         ),
         choices=(
             (
@@ -337,7 +337,10 @@ ROWS: tuple[dict[str, Any], ...] = (
             (
                 "AUTO",
                 "Automatic",
-                "Open Image Denoise where this Blender has it and a pixel takes at least 8 samples, nothing otherwise",
+                (
+                    "Open Image Denoise with the reconstruction Regularized, where this Blender has it and a pixel "
+                    "takes at least 8 samples, those of the frames around included; nothing otherwise"
+                ),
                 1,
             ),
             (
@@ -415,8 +418,9 @@ ROWS: tuple[dict[str, Any], ...] = (
             "In animations, makes each frame from its own samples and those of the frames around it, along the "
             "motion of surfaces. This leaves less noise and far less flicker at the same number of samples. It "
             "takes several times as long to reconstruct and about 180 bytes of memory per pixel and frame, and "
-            "delays the first frame by up to nine. With L2 and L1 half of the samples follow those of the frame "
-            "before. It has no effect with the integrator Path or the reconstruction None"
+            "delays the first frame by four, with L2 and L1 by up to nine. With these, half of the samples follow "
+            "those of the frame before. It has no effect with the reconstruction None, which Automatic is with the "
+            "integrator Path"
         ),
         native=False,
     ),

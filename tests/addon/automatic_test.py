@@ -28,7 +28,7 @@ INTEGRATORS, RECONSTRUCTIONS, DENOISERS = (
         ("PATH", "NONE", "NONE", False),
         ("PATH", "NONE", "OIDN", True),
         ("PATH", "REGULARIZED", "NONE", True),
-        ("GRADIENT", "NONE", "AUTO", True),
+        ("PATH", "NONE", "AUTO", False),
     ],
 )
 def test_noisy_image_exists_whenever_combined_is_reconstructed(
@@ -65,5 +65,7 @@ def test_the_plan_has_the_same_reconstruction(
 
 def test_every_choice_of_the_denoiser_is_known() -> None:
     """denoise_render_test.py compares the number of samples of AUTO with renders."""
-    found = {denoiser: method_of("PATH", "NONE", denoiser).denoised_from for denoiser in DENOISERS}
+    found = {denoiser: method_of("AUTO", "REGULARIZED", denoiser).denoised_from for denoiser in DENOISERS}
     assert found == {"NONE": math.inf, "AUTO": setting_table.DENOISER_MINIMUM_SAMPLES, "OIDN": 0}
+    others = [reconstruction for reconstruction in RECONSTRUCTIONS if reconstruction not in ("AUTO", "REGULARIZED")]
+    assert {method_of("GRADIENT", reconstruction, "AUTO").denoised_from for reconstruction in others} == {math.inf}

@@ -68,7 +68,7 @@ def test_stats_name_it(
 ) -> None:
     path = tmp_path / "stats.jsonl"
     monkeypatch.setattr("sys.argv", ["blender", "--", "--gradus-stats", str(path), "--gradus-denoiser", "auto"])
-    render(corner, samples=8)
+    render(corner, samples=8, reconstruction="REGULARIZED")
     stats = json.loads(path.read_text())
     assert stats["denoiser"].startswith("Open Image Denoise 2.")
     assert stats["seconds"]["denoise"] > 0.0
@@ -84,7 +84,7 @@ def test_auto_denoises_from_the_sample_count_of_the_panel(
 ) -> None:
     path = tmp_path / "stats.jsonl"
     monkeypatch.setattr("sys.argv", ["blender", "--", "--gradus-stats", str(path)])
-    render(corner, samples=samples, denoiser="AUTO")
+    render(corner, samples=samples, reconstruction="REGULARIZED")
     assert (json.loads(path.read_text())["denoiser"] is not None) == (samples >= DENOISER_MINIMUM_SAMPLES)
 
 
@@ -104,8 +104,8 @@ def test_a_missing_denoiser_is_refused_by_name(corner: bpy.types.Scene, render: 
 
 @pytest.mark.application
 def test_auto_renders_without_a_missing_denoiser(corner: bpy.types.Scene, render: Render) -> None:
-    plain = render(corner, samples=8)["Combined"]
-    assert np.array_equal(render(corner, samples=8, denoiser="AUTO")["Combined"], plain)
+    plain = render(corner, samples=8, reconstruction="REGULARIZED", denoiser="NONE")["Combined"]
+    assert np.array_equal(render(corner, samples=8, reconstruction="REGULARIZED", denoiser="AUTO")["Combined"], plain)
 
 
 def test_previews_are_not_denoised(corner: bpy.types.Scene) -> None:

@@ -25,7 +25,7 @@ Render = Callable[..., images.Passes]
 def stage(scene: bpy.types.Scene) -> bpy.types.Scene:
     """Returns a scene with a floor in a grey world, seen from above. Broken objects are in the left half."""
     scene.render.resolution_x, scene.render.resolution_y = 160, 120
-    scene.gradus.samples = 8
+    scene.gradus.samples, scene.gradus.denoiser = 8, "NONE"  # expected values are exact
     scene.world = bpy.data.worlds.new("World")
     scene.world.color = (WORLD, WORLD, WORLD)
     if scene.world.node_tree:  # from Blender 5.0 on there always is one

@@ -121,7 +121,7 @@ def test_the_usual_variant_comes_first(tmp_path: Path, monkeypatch: pytest.Monke
     """All variants have the same tables, and a curve of their own."""
     for module in (figures, strips):
         monkeypatch.setattr(module, "OUT", tmp_path)
-    modes = {"path-regularized": 0.2, report.DELIVERED: 0.05, report.PEER: 0.1}
+    modes = {report.ONE_BY_ONE: 0.2, report.DELIVERED: 0.05, report.PEER: 0.1}
     stored(
         tmp_path,
         monkeypatch,
@@ -140,7 +140,7 @@ def test_the_usual_variant_comes_first(tmp_path: Path, monkeypatch: pytest.Monke
     assert all((tmp_path / file).stat().st_size > 0 for file in curves)
     last = [block for block in found if isinstance(block, document.Table)][-1]
     assert last.rows[0] == [
-        "Gradus PT + REGULARIZED", "4", "2", "0.02",
+        "Gradus AUTO, frames one by one", "4", "2", "0.02",
         "0.02500", "0.02500", "0.00000 ± 0.00000", "0.02500", "0.05000", "0.05000", "0.00000 ± 0.00000", "0.05000",
         "0.0200",
     ]  # fmt: skip

@@ -212,7 +212,8 @@ def main() -> None:
     arguments = parser.parse_args()
     if arguments.quick:
         arguments.scenes = arguments.scenes or ",".join(QUICK)
-        arguments.modes, arguments.samples, arguments.seeds = list(QUICK_MODES), [4, 16], 2
+        arguments.modes, arguments.seeds = list(QUICK_MODES), 2
+        arguments.samples = sorted({count for counts in QUICK_MODES.values() for count in counts})
         arguments.frames, arguments.checked, arguments.reference = 9, 3, 64
     bench_each(select(ANIMATIONS, arguments.scenes, arguments.frames), bench_animation, arguments)
 

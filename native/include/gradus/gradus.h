@@ -465,8 +465,9 @@ typedef enum GradusReconstruction {
 /* Denoiser that is applied to the reconstructed picture. It is the one of the host process. */
 typedef enum GradusDenoiser {
   GRADUS_DENOISER_NONE = 0, /* Delivers the reconstruction as it is. */
-  GRADUS_DENOISER_AUTO = 1, /* Open Image Denoise where this Blender has it and a pixel takes at least 8 samples,
-                               nothing otherwise. */
+  GRADUS_DENOISER_AUTO = 1, /* Open Image Denoise with the reconstruction Regularized, where this Blender has it and
+                               a pixel takes at least 8 samples, those of the frames around included; nothing
+                               otherwise. */
   GRADUS_DENOISER_OIDN = 2  /* Open Image Denoise of this Blender, on the CPU. A Blender without it reports an error. */
 } GradusDenoiser;
 
@@ -543,8 +544,8 @@ typedef struct GradusSettings {
                                        from it on. */
   uint32_t denoiser;                /* GradusDenoiser: Removes remaining noise with Open Image Denoise, guided by the
                                        albedo and normals of surfaces. It adds about 7.5 CPU-µs per pixel, 15 CPU
-                                       seconds at 1920×1080. It is biased: fine detail can vanish or be invented, and
-                                       animations can flicker. */
+                                       seconds at 1920×1080. It is biased: fine detail can vanish or be invented. In
+                                       animations it reads the samples of the frames around each one, too. */
   uint32_t use_decomposition;       /* Splits the picture into components by the paths of light. Each is
                                        reconstructed by itself and has its own passes; they add up to Combined.
                                        Memory and reconstruction time grow with the number of components. */

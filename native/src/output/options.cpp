@@ -23,9 +23,11 @@ uint32_t resolve_reconstruction(uint32_t reconstruction, const FilmFacts& facts)
   }
 }
 
-uint32_t resolve_denoiser(uint32_t denoiser, const FilmFacts& facts) {
-  if (denoiser != GRADUS_DENOISER_AUTO) return denoiser;
-  return facts.has_denoiser && denoiser_pays(facts.samples) ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
+uint32_t resolve_denoiser(const Options& options, const FilmFacts& facts) {
+  if (options.denoiser != GRADUS_DENOISER_AUTO) return options.denoiser;
+  const bool denoises =
+      is_denoised_by_default(options.reconstruction) && facts.has_denoiser && denoiser_pays(facts.samples);
+  return denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
 }
 
 }  // namespace
@@ -46,7 +48,7 @@ FilmFacts facts_of(const film::Film& film, bool has_denoiser) {
 
 Options resolve_auto(Options options, const FilmFacts& facts) {
   options.reconstruction = resolve_reconstruction(options.reconstruction, facts);
-  options.denoiser = resolve_denoiser(options.denoiser, facts);
+  options.denoiser = resolve_denoiser(options, facts);
   return options;
 }
 

@@ -35,6 +35,12 @@ struct FilmFacts {
 // Returns the facts that the content of a film shows.
 FilmFacts facts_of(const film::Film& film, bool has_denoiser);
 
+// Returns whether AUTO may denoise pictures by this reconstruction, which is not AUTO. A user who chose L2 or the noisy
+// image expects an unbiased one.
+inline bool is_denoised_by_default(uint32_t reconstruction) {
+  return reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
+}
+
 // Returns whether the denoiser reduces the error of a film with `samples` samples per pixel more than further samples
 // in the same time would.
 inline bool denoiser_pays(double samples) { return samples >= schema::kDenoiserMinimumSamples; }
@@ -42,8 +48,8 @@ inline bool denoiser_pays(double samples) { return samples >= schema::kDenoiserM
 // Replaces AUTO of the reconstruction and of the denoiser; nothing else does. The integrator is chosen by the plan
 // (render/plan.h), and a weight alpha of 0 stands for reconstruct::chosen_alpha(). The reconstruction becomes the one
 // for which the film was sampled. If that is not known, it becomes the best one for which the film holds the data. The
-// denoiser runs if there is one and the film has enough samples. Throws invalid_argument for a value that is no
-// reconstruction.
+// denoiser runs if there is one, the reconstruction is REGULARIZED, and the film has enough samples. Throws
+// invalid_argument for a value that is no reconstruction.
 Options resolve_auto(Options options, const FilmFacts& facts);
 
 // Returns the number of threads that sample and develop a film with these settings. `device` may be nullptr if

@@ -73,8 +73,7 @@ void choose_integrator(const GradusSettings& settings, Plan* plan) {
 
 // Returns the options with which the film will be developed. A film of the integrators AUTO and GRADIENT is sampled
 // with features if its reconstruction reads them; a user who chose plain samples expects the noisy image.
-output::Options planned_options(const GradusSettings& settings, const HostDenoiser& denoiser,
-                                uint32_t joined_frames) {
+output::Options planned_options(const GradusSettings& settings, const HostDenoiser& denoiser, uint32_t joined_frames) {
   output::FilmFacts facts;
   facts.has_features =
       settings.integrator == GRADUS_INTEGRATOR_AUTO || settings.integrator == GRADUS_INTEGRATOR_GRADIENT;
@@ -111,7 +110,11 @@ void choose_denoiser(const GradusSettings& settings, const output::Options& opti
   if (denoiser.name.empty()) {
     plan->skipped.emplace_back("denoiser", denoiser.why_not);
   } else if (automatic && options.denoiser == GRADUS_DENOISER_NONE) {
-    plan->skipped.emplace_back("denoiser", "automatic: " + too_few_to_denoise());
+    plan->skipped.emplace_back(
+        "denoiser",
+        "automatic: " + (output::is_denoised_by_default(options.reconstruction)
+                             ? too_few_to_denoise()
+                             : "the reconstruction is " + choice_of("reconstruction", options.reconstruction)));
   } else {
     plan->denoises = true;
     plan->denoiser = denoiser.name;

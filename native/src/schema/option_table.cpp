@@ -120,12 +120,13 @@ constexpr Option kOptions[] = {
            "noisier."),
     OPTION(first_sample, GRADUS_OPTION_INT, 0, 0, 16777216, {}, false,
            "Number of the first sample, for films that are merged: a film has the samples from it on."),
-    OPTION(denoiser, GRADUS_OPTION_ENUM, 0, 0, 2, kDenoiserChoices, false,
+    OPTION(denoiser, GRADUS_OPTION_ENUM, 1, 0, 2, kDenoiserChoices, false,
            "Removes remaining noise with Open Image Denoise, guided by the albedo and normals of surfaces. It adds "
            "about 7.5 CPU-µs per pixel, 15 CPU seconds at 1920×1080. It is biased: fine detail can vanish or be "
-           "invented, and animations can flicker. none: Delivers the reconstruction as it is. auto: Open Image "
-           "Denoise where this Blender has it and a pixel takes at least 8 samples, nothing otherwise. oidn: Open "
-           "Image Denoise of this Blender, on the CPU. A Blender without it reports an error."),
+           "invented. In animations it reads the samples of the frames around each one, too. none: Delivers the "
+           "reconstruction as it is. auto: Open Image Denoise with the reconstruction Regularized, where this Blender"
+           " has it and a pixel takes at least 8 samples, those of the frames around included; nothing otherwise. "
+           "oidn: Open Image Denoise of this Blender, on the CPU. A Blender without it reports an error."),
     OPTION(use_decomposition, GRADUS_OPTION_BOOL, 0, 0, 1, {}, true,
            "Splits the picture into components by the paths of light. Each is reconstructed by itself and has its own"
            " passes; they add up to Combined. Memory and reconstruction time grow with the number of components."),

@@ -87,8 +87,7 @@ TEST_F(DenoisedRender, CombinedIsDenoisedAndOtherPassesAreNot) {
 TEST_F(DenoisedRender, IsReportedInStatsPlanAndFilm) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_AUTO);
   settings.samples = 8;
-  settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
-  settings.reconstruction = GRADUS_RECONSTRUCTION_L2;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
   const auto render = finished(settings);
   const json stats = json::parse(render->stats_json());
   EXPECT_EQ(stats["denoiser"], "Open Image Denoise 2.7.5");
@@ -98,6 +97,7 @@ TEST_F(DenoisedRender, IsReportedInStatsPlanAndFilm) {
   EXPECT_GE(stats["cpu_seconds"]["denoise"], 0.0);
   EXPECT_EQ(render->film()->settings.denoiser, uint32_t{GRADUS_DENOISER_OIDN});
   settings.denoiser = GRADUS_DENOISER_NONE;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_L2;
   const json plain = json::parse(finished(settings)->stats_json());
   EXPECT_TRUE(plain["denoiser"].is_null());
   EXPECT_EQ(plain["plan"]["skipped"]["denoiser"], "denoiser is none");
@@ -105,8 +105,24 @@ TEST_F(DenoisedRender, IsReportedInStatsPlanAndFilm) {
   EXPECT_EQ(plain["seconds"]["denoise"], 0.0);
 }
 
+// A user who chose L2 or the noisy image expects it to be unbiased.
+TEST_F(DenoisedRender, TheAutomaticOneIsLeftOutWithOtherReconstructions) {
+  GradusSettings settings = settings_with(GRADUS_DENOISER_AUTO);
+  settings.samples = 16;
+  for (const uint32_t reconstruction : {GRADUS_RECONSTRUCTION_L2, GRADUS_RECONSTRUCTION_NONE}) {
+    settings.reconstruction = reconstruction;
+    const json stats = json::parse(finished(settings)->stats_json());
+    EXPECT_TRUE(stats["denoiser"].is_null());
+    EXPECT_EQ(stats["unbiased"], true);
+    EXPECT_EQ(stats["plan"]["skipped"]["denoiser"], reconstruction == GRADUS_RECONSTRUCTION_L2
+                                                        ? "automatic: the reconstruction is l2"
+                                                        : "automatic: the reconstruction is none");
+  }
+}
+
 TEST_F(DenoisedRender, TheAutomaticOneIsLeftOutWhereMoreSamplesAreWorthMore) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_AUTO);
+  settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
   settings.samples = 7;
   const json stats = json::parse(finished(settings)->stats_json());
   EXPECT_TRUE(stats["denoiser"].is_null());
@@ -119,7 +135,7 @@ TEST_F(DenoisedRender, TheAutomaticOneIsLeftOutWhereMoreSamplesAreWorthMore) {
 TEST_F(DenoisedRender, TheAutomaticOneIsLeftOutWhereTheTimeLimitLeavesFewSamples) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_AUTO);
   settings.samples = 1000;
-  settings.reconstruction = GRADUS_RECONSTRUCTION_L2;
+  settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
   settings.time_limit = 1e-3f;
   const auto slow = [](FakeIntegrator* fake) {
     fake->before = [](const integrator::WorkUnit&) { std::this_thread::sleep_for(std::chrono::milliseconds(2)); };
@@ -133,7 +149,6 @@ TEST_F(DenoisedRender, TheAutomaticOneIsLeftOutWhereTheTimeLimitLeavesFewSamples
             "automatic: 1.0 samples were taken within the time limit: below 8 samples, more samples reduce the error "
             "more than "
             "the denoiser");
-  EXPECT_EQ(stats["unbiased"], true);
   EXPECT_EQ(render.film()->settings.denoiser, uint32_t{GRADUS_DENOISER_NONE});
   settings.samples = 8;
   settings.time_limit = 1e6f;

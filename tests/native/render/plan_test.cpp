@@ -176,6 +176,7 @@ TEST(Plan, LowThresholdsRequireMoreSamplesBeforeBlocksStop) {
 TEST(Plan, DenoiserIsBiasedAndRequestsFeatures) {
   GradusSettings s = small_settings(64, 64, 4);
   s.reconstruction = GRADUS_RECONSTRUCTION_L2;
+  s.denoiser = GRADUS_DENOISER_OIDN;
   const render::Plan plain = render::make_plan(s, *empty_snapshot()),
                      denoised = render::make_plan(s, *empty_snapshot(), {"Some Denoiser 1.2.3", ""});
   EXPECT_TRUE(render::delivers_unbiased(plain, plain.reconstruction, plain.denoises));
@@ -200,6 +201,7 @@ TEST(Plan, AutomaticDenoiserDependsOnTheSamplesTaken) {
                         {500, 60.0f, 0.1f, 5.0, false}}) {
     GradusSettings s = small_settings(64, 64, c.samples);
     s.denoiser = GRADUS_DENOISER_AUTO;
+    s.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
     s.time_limit = c.time_limit;
     s.noise_threshold = c.noise_threshold;
     const render::Plan plan = render::make_plan(s, *empty_snapshot(), {"Some Denoiser 1.2.3", ""});
