@@ -261,9 +261,7 @@ std::shared_ptr<const render::Replay> FrameSampling::follow(const film::FilmHead
   if (follows_before()) {
     const ScopedTimer timer(&record_.stats.seconds.correspondence, &record_.stats.cpu_seconds.correspondence);
     tbb::task_arena(arena_size(input_.threads)).execute([&] {
-      GradusSettings settings = now;
-      if (!takes_replays(now)) settings.component_replays = 0;
-      replay->replay_map = make_replay_map(*before, *input_.snapshot, settings, record_.plan.components, fresh.region,
+      replay->replay_map = make_replay_map(*before, *input_.snapshot, now, record_.plan.components, fresh.region,
                                            [this] { return is_stopped(); });
       check_cancelled();
     });
@@ -299,7 +297,7 @@ void FrameSampling::finish(const film::FilmHeader& fresh, std::vector<uint32_t> 
       traits_of(fresh, sequence_->folder_.header(input_.settings.frame, FrameSamples::kReplayed));
   GradusSettings delivered = input_.settings;
   delivered.reconstruction = record_.plan.reconstruction;
-  delivered.denoiser = record_.plan.denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
+  delivered.denoiser = render::stored_denoiser(record_.plan);
   sequence_->folder_.save_settings(delivered, delivered.frame);
 }
 

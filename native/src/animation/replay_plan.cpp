@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
+#include "animation/fresh_replayed_shares.h"
 #include "base/fault.h"
 #include "integrator/pixel_loop.h"
 #include "motion/component_tracking.h"
@@ -44,7 +46,7 @@ Correspondences correspondences_of_components(const motion::CentreView& from, co
                                               const GradusSettings& settings, const lpe::ComponentSet& components,
                                               const film::PixelCorrespondence& correspondence,
                                               const film::PixelCorrespondence& surface, const CancelCheck& cancel) {
-  if (components.count() == 1 || settings.component_replays == 0) return {};
+  if (components.count() == 1 || settings.component_replays == 0 || !takes_replays(settings)) return {};
   Correspondences of_component(static_cast<size_t>(components.count()));
   const motion::ChainTracer tracer{*to.snapshot, to.camera, settings};
   const std::vector<motion::ChainMotion> motion =
@@ -60,6 +62,17 @@ Correspondences correspondences_of_components(const motion::CentreView& from, co
   return of_component;
 }
 
+// Returns the pixel correspondence of what gives each pixel most of its light. `surface`: that of the surfaces.
+film::PixelCorrespondence correspondence_of_dominant(const motion::CentreView& from, const motion::CentreView& to,
+                                                     const GradusSettings& settings, film::PixelCorrespondence surface,
+                                                     const CancelCheck& cancel) {
+  const bool all_are_rough = from.snapshot->features.min_alpha >= settings.roughness_threshold;
+  if (all_are_rough || GRADUS_FAULT(joined_light_follows_surfaces)) return surface;
+  const motion::ChainTracer tracer{*to.snapshot, to.camera, settings};
+  const motion::ChainMotion motion = motion::track_dominant(from, tracer, cancel);
+  return motion::is_seen_through_smooth(motion) ? motion::match_component(surface, from.region, motion) : surface;
+}
+
 }  // namespace
 
 film::ReplayMap make_replay_map(const PreviousFrame& before, const scene::Snapshot& now, const GradusSettings& settings,
@@ -71,7 +84,9 @@ film::ReplayMap make_replay_map(const PreviousFrame& before, const scene::Snapsh
   if (cancel()) return {};
   const scene::Snapshot& scene = *before.snapshot;
   const bool shares = integrator::shares_jitter(camera::Camera(scene.camera, settings.width, settings.height), scene);
-  const film::PixelCorrespondence correspondence = motion::match_pixels(from, to);
+  film::PixelCorrespondence correspondence = motion::match_pixels(from, to);
+  if (!takes_replays(settings))
+    correspondence = correspondence_of_dominant(from, to, settings, std::move(correspondence), cancel);
   film::ReplayMap replay_map{before.stream_frame, motion::inverse_correspondence(correspondence), scene.content_key,
                              before.settings.seed, shares};
   replay_map.of_component =

@@ -17,7 +17,8 @@ bool follows(const PreviousFrame* before, const scene::Snapshot& now, const Grad
 
 // Returns for each pixel of the region the pixel of the previous frame that shows the same surface point. Components
 // that are seen through smooth surfaces have maps of their own, to the pixel in which the smooth surfaces show the same
-// point. The map is empty after cancelling.
+// point. If frames are joined and nothing is replayed, all light of a pixel follows what gives most of it: where a
+// mirror or glass does, the point that is seen in it. The map is empty after cancelling.
 film::ReplayMap make_replay_map(const PreviousFrame& before, const scene::Snapshot& now, const GradusSettings& settings,
                                 const lpe::ComponentSet& components, const Region& region, const CancelCheck& cancel);
 

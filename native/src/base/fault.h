@@ -40,6 +40,7 @@
   X(light_test_off)                              \
   X(moved_halves_dropped)                        \
   X(network_reads_one_frame)                     \
+  X(joined_light_follows_surfaces)               \
   X(lost_light_not_restored)                     \
   X(image_variance_times_4)                      \
   X(image_variance_over_4)                       \

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "motion/pixel_matching.h"
 
@@ -11,6 +12,8 @@ namespace {
 
 // Number of film rows that are tracked together. The chains of all pixels would take more memory than a frame.
 constexpr int32_t kTrackingBand = 64;
+// Probability of class D above which a surface is more non-specular than specular.
+constexpr float kDominant = 0.5f;
 
 // Returns a copy of rows [y0, y1) of a view.
 CentreView rows_of(const CentreView& view, int32_t y0, int32_t y1) {
@@ -34,11 +37,8 @@ void append(const ChainMotion& rows, ChainMotion* motion) {
   motion->counts.add(rows.counts);
 }
 
-}  // namespace
-
-std::vector<ChainMotion> track_components(const CentreView& from, const ChainTracer& to,
-                                          const lpe::ComponentSet& components, uint32_t wanted,
-                                          const CancelCheck& is_cancelled) {
+std::vector<ChainMotion> track(const CentreView& from, const ChainTracer& to, const lpe::ComponentSet& components,
+                               uint32_t wanted, float mixed, const CancelCheck& is_cancelled) {
   Change change(*from.snapshot);
   change.add(to.snapshot());
   const Region& film = from.region;
@@ -47,13 +47,26 @@ std::vector<ChainMotion> track_components(const CentreView& from, const ChainTra
     const Region band{film.x0, y, film.x1, std::min(y + kTrackingBand, film.y1)};
     // The rows above and below are included, since chain_jacobian() needs the chains of neighbouring pixels.
     const CentreView rows = rows_of(from, std::max(y - 1, film.y0), std::min(band.y1 + 1, film.y1));
-    std::vector<ChainView> views = view_chains(rows, to.settings(), components, wanted, is_cancelled, &change);
+    std::vector<ChainView> views = view_chains(rows, to.settings(), components, wanted, is_cancelled, &change, mixed);
     for (size_t k = 0; k < views.size(); ++k) {
       exclude_directly_seen(&views[k]);
       append(track_chains(views[k], to, band, is_cancelled), &motion[k]);
     }
   }
   return motion;
+}
+
+}  // namespace
+
+std::vector<ChainMotion> track_components(const CentreView& from, const ChainTracer& to,
+                                          const lpe::ComponentSet& components, uint32_t wanted,
+                                          const CancelCheck& is_cancelled) {
+  return track(from, to, components, wanted, 0.0f, is_cancelled);
+}
+
+ChainMotion track_dominant(const CentreView& from, const ChainTracer& to, const CancelCheck& is_cancelled) {
+  const lpe::ComponentSet whole_picture;
+  return std::move(track(from, to, whole_picture, whole_picture.all(), kDominant, is_cancelled).front());
 }
 
 bool is_seen_through_smooth(const ChainMotion& motion) {

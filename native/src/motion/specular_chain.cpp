@@ -110,6 +110,7 @@ struct ChainTracer::Search {
   const lpe::ComponentSet& components;
   int component;
   const Change* change;
+  float mixed;
   int surfaces = 0;
 
   bool reaches(lpe::LpeState lpe_state) const { return (components.ahead(lpe_state) >> component & 1) != 0; }
@@ -121,7 +122,7 @@ struct ChainTracer::Search {
   bool ends_at(const Arrival& arrival, lpe::LpeState lpe_state) const {
     if (arrival.surely_non_specular) return reaches(components.next(lpe_state, bsdf::ScatterClass::Diffuse));
     const path::Vertex& vertex = arrival.vertex;
-    const bool non_specular = vertex.shade.closures.class_probability(bsdf::ScatterClass::Diffuse) > 0.0f;
+    const bool non_specular = vertex.shade.closures.class_probability(bsdf::ScatterClass::Diffuse) > mixed;
     return (non_specular && reaches(components.next(lpe_state, bsdf::ScatterClass::Diffuse))) ||
            (!is_black(vertex.shade.emission) && is_lit(lpe_state));
   }
@@ -182,7 +183,7 @@ bool ChainTracer::continue_chain(Search* search, const Arrival& arrival, const p
 }
 
 uint32_t ChainTracer::find(const Vec2& film, const geometry::Hit& known, const lpe::ComponentSet& components,
-                           uint32_t wanted, const Change* change,
+                           uint32_t wanted, const Change* change, float mixed,
                            std::array<SpecularChain, lpe::kMaxComponents>* chains) const {
   const path::PathRay start = camera_ray(film);
   if (is_none(start.ray)) return 0;
@@ -192,7 +193,7 @@ uint32_t ChainTracer::find(const Vec2& film, const geometry::Hit& known, const l
   uint32_t found = 0;
   for (int c = 0; c < components.count(); ++c) {
     if ((wanted >> c & 1) == 0) continue;
-    Search search{components, c, change};
+    Search search{components, c, change, mixed};
     SpecularChain& chain = (*chains)[size_t(c)];
     chain = {};
     chain.ray = start;

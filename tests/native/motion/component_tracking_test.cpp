@@ -78,6 +78,37 @@ TEST_F(ComponentTracking, OfAMirrorWhoseBumpChangesMoves) {
   EXPECT_GT(moving_, 100u);
 }
 
+// What gives a pixel most of its light is seen in a surface that mostly reflects, and directly on one that mostly does
+// not, though reflections are seen in both.
+TEST_F(ComponentTracking, OfTheDominantFollowsTheStrongerOfDiffuseAndSpecular) {
+  add_ball(mirror());
+  for (const float diffuse : {0.0f, 0.1f, 0.7f}) {
+    Surface surface = glossy(0.0f);
+    surface.glossy = Rgb(0.8f - diffuse);
+    surface.diffuse = Rgb(diffuse);
+    scene_.scene.dress(3, scene_.material(surface));
+    scene_.scene.move(3, translation(Vec3(0.0f)));
+    const auto from = seen();
+    scene_.scene.move(3, translation(Vec3(0.02f, 0.03f, 0)));
+    const auto to = seen();
+    const motion::ChainMotion found = motion::track_dominant(from->centres, to->chains.tracer(), kNever);
+    EXPECT_EQ(motion::is_seen_through_smooth(found), diffuse < 0.4f) << diffuse;
+    if (diffuse > 0.0f) continue;
+    // In a mirror alone, what is reflected is the component Reflection.
+    const motion::ChainMotion reflected = motion::track_components(from->centres, to->chains.tracer(), components_,
+                                                                   1u << components_.find("Reflection"), kNever)
+                                              .at(0);
+    size_t same = 0, all = 0;
+    for (size_t i = 0; i < found.film.size(); ++i) {
+      if (reflected.tracking[i] != motion::Tracking::Tracked) continue;
+      ++all;
+      same += found.tracking[i] == motion::Tracking::Tracked && glm::length(found.film[i] - reflected.film[i]) < 2e-3f;
+    }
+    EXPECT_GT(all, 500u);
+    EXPECT_GT(same, all * 95 / 100);
+  }
+}
+
 // An object comes into view in the mirror.
 TEST_F(ComponentTracking, IsHiddenByAnObjectThatAppears) {
   add_ball(mirror());
