@@ -222,8 +222,8 @@ class Animation:
     def _drop_stored(self, job: Any) -> None:
         """Deletes the films of the frame store that this job wrote and that may not show what their frames show.
 
-        These are all from the first one on that the job's frame needs, because a render that goes on from the store would
-        compare them with the scene as handlers leave it at a later frame.
+        These are all from the first one on that the job's frame needs, because a render that goes on from the store
+        would compare them with the scene as handlers leave it at a later frame.
         """
         first, _ = self._needs(job)
         for number in self._written:

@@ -16,7 +16,10 @@ FROM_GRADIENTS = ("L2", "L1")
 """Reconstructions that need gradients, and weigh the picture against them."""
 
 DENOISED_FROM = {"NONE": math.inf, "AUTO": DENOISER_MINIMUM_SAMPLES, "OIDN": 0}
-"""Samples per pixel from which the picture is denoised, by the identifier of the setting."""
+"""Samples per pixel from which the picture is denoised, by the identifier of the setting.
+
+In animations the samples of joined frames count, too.
+"""
 
 
 @dataclass(frozen=True)

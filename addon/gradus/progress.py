@@ -74,6 +74,8 @@ class Display:
     def _text(self, progress: native.Progress) -> str:
         if progress.phase == Phase.RECONSTRUCTING:
             return "reconstructing"
+        if progress.phase == Phase.DONE and progress.samples_done == 0:
+            return "reconstructed"  # the frame was sampled ahead
         return f"sample {progress.samples_done}/{self.job.current.settings.samples}, {100.0 * progress.fraction:.0f} %"
 
 

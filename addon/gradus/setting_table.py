@@ -432,7 +432,7 @@ ROWS: tuple[dict[str, Any], ...] = (
         doc=(
             "Frames of an animation that are reconstructed together. Regularized makes a frame from itself and up "
             "to half of the others on each side: 4 of 10, none of 2. More leave less noise and flicker, take longer"
-            " and more memory, and delay the first frame: as many are sampled before it is delivered"
+            " and more memory, and delay the first frame: those that it is made from are sampled before"
         ),
         minimum=2,
         maximum=100,

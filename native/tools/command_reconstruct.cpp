@@ -122,7 +122,8 @@ void add_reconstruct(CLI::App* app, int* exit_code) {
       ->check([](const std::string& value) { return bad_value("reconstruction_alpha", value); });
   command
       ->add_option("--denoiser", args->denoiser,
-                   "none, oidn (the machine's Open Image Denoise) or auto (that where there is one)")
+                   "none, oidn (the machine's Open Image Denoise) or auto (that with regularized, where there is one "
+                   "and a pixel has enough samples)")
       ->capture_default_str()
       ->check([](const std::string& value) { return bad_value("denoiser", value); });
   add_denoiser_path(command, &args->denoiser_path);

@@ -11,7 +11,7 @@
 namespace gradus::tool {
 
 struct ReconstructArguments {
-  std::string input, output, reconstruction = "auto", denoiser = "none", denoiser_path, passes, component_passes,
+  std::string input, output, reconstruction = "auto", denoiser = "auto", denoiser_path, passes, component_passes,
                              frames;
   std::vector<std::string> merged;
   float alpha = 0.0f;

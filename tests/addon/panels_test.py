@@ -167,7 +167,8 @@ def test_phases_of_the_last_render_come_in_their_order() -> None:
 
 
 def method(**values: Any) -> SimpleNamespace:
-    defaults = {"integrator": "AUTO", "reconstruction": "AUTO", "denoiser": "NONE", "noise_threshold": 0.0}
+    defaults = {"integrator": "AUTO", "reconstruction": "AUTO", "denoiser": "NONE"}
+    defaults |= {"noise_threshold": 0.0, "use_temporal": False}
     return SimpleNamespace(**{**defaults, "clamp_direct": 0.0, "clamp_indirect": 0.0, **values})
 
 
@@ -177,6 +178,7 @@ def method(**values: Any) -> SimpleNamespace:
         ({"denoiser": "OIDN"}, 4, "Biased by the denoiser"),
         ({"denoiser": "AUTO"}, 8, "Biased if a denoiser is found"),
         ({"denoiser": "AUTO"}, 7, "Consistent"),
+        ({"denoiser": "AUTO", "use_temporal": True}, 7, "Consistent; biased in animations if a denoiser is found"),
         ({"denoiser": "AUTO", "integrator": "PATH", "reconstruction": "NONE"}, 64, "Unbiased"),
         ({"denoiser": "AUTO", "reconstruction": "L2"}, 64, "Unbiased"),
         ({"reconstruction": "NONE", "clamp_indirect": 3.0}, 64, "Biased by clamping"),

@@ -6,11 +6,13 @@ import json
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import bpy
 import numpy as np
 import pytest
+from gradus import native, progress
 from support import images
 
 Render = Callable[..., images.Passes]
@@ -443,3 +445,13 @@ def test_i9_the_file_says_how_it_was_made(cube: bpy.types.Scene, tmp_path: Path)
     assert spec.getattribute("gradus.integrator") == "path"
     assert spec.getattribute("gradus.samples") == "2.0"
     assert str(spec.getattribute("gradus.version")).startswith("0.1.0")
+
+
+def test_the_progress_of_a_frame_that_was_sampled_ahead_names_no_samples() -> None:
+    """Regression: the text of a frame of an animation ended with "sample 0/4"."""
+    job: Any = SimpleNamespace(current=SimpleNamespace(settings=SimpleNamespace(samples=4)))
+    display = progress.Display(job)
+    texts = {phase: display._text(native.Progress(phase=phase)) for phase in native.Phase}
+    assert texts[native.Phase.DONE] == "reconstructed"
+    assert texts[native.Phase.RECONSTRUCTING] == "reconstructing"
+    assert texts[native.Phase.SAMPLING] == "sample 0/4, 0 %"

@@ -75,6 +75,7 @@ std::vector<float> render(const Picture& picture, uint32_t samples, uint32_t see
   settings.samples = samples;
   settings.seed = seed;
   settings.noise_threshold = 0.0f;
+  settings.denoiser = GRADUS_DENOISER_NONE;
   settings.max_bounces = 6;
   settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
   settings.reconstruction = GRADUS_RECONSTRUCTION_L2;

@@ -99,6 +99,7 @@ Rendered render(test::PathScene* scene, uint32_t integrator, uint32_t first_seed
   settings.height = kHeight;
   settings.samples = samples();
   settings.noise_threshold = 0.0f;
+  settings.denoiser = GRADUS_DENOISER_NONE;
   settings.max_bounces = 6;
   settings.threads = 1;
   settings.integrator = integrator;

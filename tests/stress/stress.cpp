@@ -136,6 +136,7 @@ GradusSettings small_picture() {
   s.height = full_run() ? 30 : 18;
   s.samples = full_run() ? 32 : 16;
   s.noise_threshold = 0.0f;
+  s.denoiser = GRADUS_DENOISER_NONE;
   s.max_bounces = s.diffuse_bounces = s.glossy_bounces = s.transmission_bounces = 32;
   s.integrator = GRADUS_INTEGRATOR_GRADIENT;
   s.reconstruction = GRADUS_RECONSTRUCTION_L2;

@@ -55,7 +55,7 @@ def is_temporal(name: str) -> bool:
 def per_frame(name: str) -> str:
     """Returns the mode that renders what a temporal mode renders, frame by frame.
 
-    For stills, AUTO chooses path-regularized.
+    Without its denoiser, AUTO is path-regularized for stills.
     """
     stills = {DELIVERED: ONE_BY_ONE, WITHOUT_DENOISER: "path-regularized"}
     return stills.get(name) or name.replace("temporal", "gradient")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from typing import Any
 
@@ -39,6 +40,8 @@ def bias(settings: Any, samples: int) -> tuple[str, str]:
         return "Biased by the denoiser", "INFO"
     if samples >= method.denoised_from:
         return "Biased if a denoiser is found", "INFO"
+    if settings.use_temporal and method.denoised_from < math.inf:
+        return "Consistent; biased in animations if a denoiser is found", "INFO"
     if settings.clamp_direct > 0.0 or settings.clamp_indirect > 0.0:
         return "Biased by clamping", "INFO"
     if method.reconstruction in ("L1", "REGULARIZED"):

@@ -773,7 +773,7 @@ GRADUS_API GradusError gradus_sequence_applies(const GradusSettings* settings, u
 GRADUS_API GradusError gradus_sequence_create(GradusDevice device, const GradusSequenceSettings* settings,
                                               GradusSequence* sequence);
 /* Returns the frames that must have been sampled before frame settings->frame can be delivered with these settings:
- * *first, *first + step and so on up to *last. */
+ * *first, *first + step and so on up to *last. The reconstruction AUTO stands for REGULARIZED. */
 GRADUS_API GradusError gradus_sequence_needs(GradusSequence sequence, const GradusSettings* settings, int32_t* first,
                                              int32_t* last);
 /* Samples frame settings->frame of the scene's current snapshot and returns at once. The render is polled, waited for,
@@ -791,7 +791,7 @@ GRADUS_API GradusError gradus_sequence_pass_by(GradusSequence sequence, GradusSc
 GRADUS_API GradusError gradus_sequence_end_at(GradusSequence sequence, int32_t last);
 /* Reconstructs `frame`, with what it needs of others. Passes, statistics and film of the ended render are those of
  * `frame`. Frames come in order. `settings` may change reconstruction, reconstruction_alpha, denoiser and film_exposure
- * from what the frames were sampled for (AUTO = no change) and may be NULL. */
+ * from what the frames were sampled for and may be NULL. The reconstruction AUTO is that for which they were sampled. */
 GRADUS_API GradusError gradus_sequence_deliver(GradusSequence sequence, int32_t frame, const GradusSettings* settings,
                                                GradusRender* render);
 GRADUS_API GradusError gradus_sequence_release(GradusSequence sequence);
@@ -808,7 +808,7 @@ GRADUS_API GradusError gradus_film_merge(GradusFilm film, GradusFilm other);
 /* Returns the size of the delivered region, which read_pass and reconstruct return. */
 GRADUS_API GradusError gradus_film_size(GradusFilm film, uint32_t* width, uint32_t* height);
 /* Reconstructs Combined as RGBA. `alpha` is the weight of the primal against the gradients (0 = automatic) and
- * `denoiser` a GradusDenoiser; AUTO leaves out the denoiser where more samples would reduce the error more. `error`
+ * `denoiser` a GradusDenoiser; AUTO denoises REGULARIZED alone, where more samples would not reduce the error more. `error`
  * receives pass Error as count / 4 floats and may be NULL. The handle keeps its last picture and its own Error for later
  * readers. Readers with other options wait for each other and replace the picture; a merge blocks none of them. */
 GRADUS_API GradusError gradus_film_reconstruct(GradusFilm film, uint32_t reconstruction, float alpha,

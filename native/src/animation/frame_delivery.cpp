@@ -57,7 +57,7 @@ void FrameDelivery::render() {
   image_bytes_ = developed_->pictures.memory_bytes();
   check_cancelled();
   // Settings may be animated, so that the next frame may be reconstructed in windows.
-  sequence_->forget_before(sequence_->contributing(number_, false).first);
+  sequence_->forget_before(sequence_->first_of_windows(number_));
   const std::lock_guard lock(mutex_);
   developed_->record.stats.total_seconds += seconds() - seconds_ahead;
   developed_->record.stats.process_cpu += process_cpu_seconds() - cpu_ahead;

@@ -44,6 +44,10 @@ std::vector<std::vector<std::string>> reconstructed_together(const film::Film& f
   return groups;
 }
 
+reconstruct::SequenceMethod method_of(const film::Film& film, const output::Options& options) {
+  return {options.reconstruction, options.alpha, output::wanted_images(film.settings).error};
+}
+
 }  // namespace
 
 FrameDeveloper::FrameDeveloper(Sequence* sequence, int32_t number, const std::optional<GradusSettings>& requested,
@@ -106,12 +110,16 @@ std::shared_ptr<DevelopedFrame> FrameDeveloper::read() {
   denoiser_ = output::choose_denoiser(requested.denoiser, sequence_.device_.get(), &why_not);
   output::FilmFacts facts = sequence_.facts_of(number_);
   facts.samples = film::mean_samples(*film);
-  if (output::resolve_auto(requested, facts).reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED)
-    facts.samples *= sequence_.contributing(number_, true).count();
   facts.has_denoiser = denoiser_ != nullptr;
   pictures.options = output::resolve_auto(requested, facts);
-  if (plan.denoises_if_it_pays && requested.denoiser == GRADUS_DENOISER_AUTO)
-    render::denoises_after(plan, facts.samples, &stats.chosen, &stats.skipped);
+  const bool is_automatic = denoiser_ != nullptr && requested.denoiser == GRADUS_DENOISER_AUTO &&
+                            output::is_denoised_by_default(pictures.options.reconstruction);
+  if (is_automatic) {
+    const auto groups = reconstructed_together(*film, pictures.options.reconstruction);
+    facts.samples = sequence_.joined_samples(groups.front(), method_of(*film, pictures.options), number_);
+    pictures.options = output::resolve_auto(requested, facts);
+    if (plan.denoises_if_it_pays) render::denoises_after(plan, facts.samples, &stats.chosen, &stats.skipped);
+  }
   output::store_options(pictures.options, &film->settings);
   pictures.film = film;
   return frame;
@@ -129,24 +137,25 @@ void FrameDeveloper::develop_picture(DevelopedFrame* frame) {
   reconstruct::ReconstructionOutputs wanted = output::wanted_images(settings);
   if (sequence_.settings_.with_flow && schema::needs_flow(settings)) wanted.components = true;
   const auto from_windows = [&](reconstruct::SolveReport* report) {
-    return take_from_windows(frame->pictures, wanted.error, report);
+    return take_from_windows(frame->pictures, report);
   };
   output::Developer developer(threads_, is_cancelled_, denoiser_);
   render::develop(
       &developer, wanted, from_windows, [this] { check_cancelled(); }, &frame->pictures, &frame->record.stats);
 }
 
-reconstruct::Reconstructed FrameDeveloper::take_from_windows(const output::DevelopedFilm& developed, bool with_error,
+reconstruct::Reconstructed FrameDeveloper::take_from_windows(const output::DevelopedFilm& developed,
                                                              reconstruct::SolveReport* report) {
   const film::Film& film = *developed.film;
-  const reconstruct::SequenceMethod method{developed.options.reconstruction, developed.options.alpha, with_error,
-                                           developed.options.denoiser != GRADUS_DENOISER_NONE};
+  const reconstruct::SequenceMethod method = method_of(film, developed.options);
+  const bool with_sampled = developed.options.denoiser != GRADUS_DENOISER_NONE;
   reconstruct::Reconstructed picture;
   const std::vector<std::vector<std::string>> groups = reconstructed_together(film, method.reconstruction);
   try {
     for (const std::vector<std::string>& together : groups) {
       reconstruct::SequencePictures* pictures = sequence_.pictures(together, method, number_);
-      reconstruct::Reconstructed part = pictures->take(sequence_.place_of(number_), is_cancelled_, report);
+      reconstruct::Reconstructed part =
+          pictures->take(sequence_.place_of(number_), is_cancelled_, report, with_sampled);
       check_cancelled();
       if (part.components.empty() && groups.size() > 1) part.components.push_back(part.image);
       std::move(part.components.begin(), part.components.end(), std::back_inserter(picture.components));

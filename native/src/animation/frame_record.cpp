@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "animation/fresh_replayed_shares.h"
 #include "base/fault.h"
 #include "film/features.h"
 #include "schema/options.h"
@@ -17,9 +18,17 @@ uint64_t key_without_frame(GradusSettings settings) {
 }  // namespace
 
 FrameTraits traits_of(const film::FilmHeader& fresh, const film::FilmHeader& replayed) {
-  return {fresh.region,          fresh.color_channels,  fresh.gradients,         film::has_features(fresh),
-          fresh.settings,        fresh.frame_number,    replayed.replayed_frame, fresh.scene_key,
-          replayed.replayed_key, replayed.replayed_seed};
+  return {fresh.region,
+          fresh.color_channels,
+          fresh.gradients,
+          film::has_features(fresh),
+          fresh.settings,
+          fresh.frame_number,
+          replayed.replayed_frame,
+          fresh.scene_key,
+          replayed.replayed_key,
+          replayed.replayed_seed,
+          double(samples_taken(fresh) + samples_taken(replayed))};
 }
 
 bool follows_another_frame(const FrameTraits& before, const FrameTraits& frame) {

@@ -24,9 +24,12 @@ namespace {
 // Returns the integrator for a frame of a sequence. There is no pilot render, because its findings in one frame would
 // not hold for the next. Only a reconstruction by features can do without gradients in space.
 uint32_t integrator_of(const GradusSettings& settings) {
-  const uint32_t r = settings.reconstruction;
-  const bool by_features = r == GRADUS_RECONSTRUCTION_AUTO || r == GRADUS_RECONSTRUCTION_REGULARIZED;
-  return by_features ? settings.integrator : uint32_t{GRADUS_INTEGRATOR_GRADIENT};
+  return joins_frames(settings) ? settings.integrator : uint32_t{GRADUS_INTEGRATOR_GRADIENT};
+}
+
+// Returns the places of the frames that the picture of a place is made from.
+reconstruct::FrameRange frames_of_picture(const reconstruct::WindowGrid& grid, int place, uint32_t reconstruction) {
+  return reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED ? grid.joined(place) : grid.around(place);
 }
 
 // Whether a stored film has the samples that the sequence would take of the snapshot.
@@ -126,20 +129,21 @@ bool Sequence::shares_window_with_previous(int place, uint32_t reconstruction) {
          share_windows(before, here, reconstruction);
 }
 
-reconstruct::FrameRange Sequence::contributing(int32_t frame, bool joins_frames) const {
-  const reconstruct::WindowGrid grid(job_places(), settings_.windows);
-  const int place = place_of(frame);
-  const reconstruct::FrameRange places = joins_frames ? grid.joined(place) : grid.around(place);
-  return {std::max(frame_at(places.first), settings_.first), std::min(frame_at(places.last), last_)};
+reconstruct::FrameRange Sequence::needs(const GradusSettings& settings) const {
+  const reconstruct::FrameRange own = job_places();
+  const reconstruct::WindowGrid grid(own, settings_.windows);
+  const auto of_picture = [&](int place) {
+    place = std::clamp(place, own.first, own.last);
+    return joins_frames(settings) ? grid.joined(place) : grid.around(place);
+  };
+  // The flow of a frame is found between its picture and those of its neighbours.
+  const int place = place_of(settings.frame), reach = settings_.with_flow ? 1 : 0;
+  const int first = of_picture(place - reach).first, last = of_picture(place + reach).last;
+  return {std::max(frame_at(first), settings_.first), std::min(frame_at(last), last_)};
 }
 
-reconstruct::FrameRange Sequence::needs(const GradusSettings& settings) const {
-  reconstruct::FrameRange frames = contributing(settings.frame, joins_frames(settings));
-  if (settings_.with_flow && settings.frame < last_) {
-    const int32_t next = frame_at(place_of(settings.frame) + 1);
-    frames.last = std::max(frames.last, contributing(next, joins_frames(settings)).last);
-  }
-  return frames;
+int32_t Sequence::first_of_windows(int32_t frame) const {
+  return frame_at(reconstruct::WindowGrid(job_places(), settings_.windows).around(place_of(frame)).first);
 }
 
 void Sequence::end_at(int32_t frame) {
@@ -161,7 +165,7 @@ std::unique_ptr<render::RenderTask> Sequence::sample(std::shared_ptr<const scene
   input.threads = output::threads_of(settings, device_.get());
   input.factory = factory_;
   input.samples_only = true;
-  if (joins_frames(settings)) input.joined_frames = uint32_t(contributing(settings.frame, true).count());
+  input.joins_frames = joins_frames(settings);
   return std::make_unique<FrameSampling>(shared_from_this(), std::move(input));
 }
 
@@ -238,7 +242,8 @@ reconstruct::SequencePictures* Sequence::pictures(const std::vector<std::string>
   std::unique_ptr<reconstruct::SequencePictures>& pictures = pictures_[components];
   if (!pictures || !(pictures->method() == method) || !pictures->has(place)) {
     reconstruct::FrameRange places = places_with_neighbours();
-    const int begin = reconstruct::WindowGrid(places, settings_.windows).around(place).first;
+    const reconstruct::WindowGrid grid(places, settings_.windows);
+    const int begin = frames_of_picture(grid, place, method.reconstruction).first;
     int first = place;
     while (first > begin && shares_window_with_previous(first, method.reconstruction)) --first;
     if (first > begin) places.first = first;
@@ -251,6 +256,19 @@ reconstruct::SequencePictures* Sequence::pictures(const std::vector<std::string>
   while (last < end && shares_window_with_previous(last + 1, method.reconstruction)) ++last;
   if (last < end) pictures->end_at(last);
   return pictures.get();
+}
+
+double Sequence::joined_samples(const std::vector<std::string>& components, const reconstruct::SequenceMethod& method,
+                                int32_t frame) {
+  const reconstruct::FrameRange around = pictures(components, method, frame)->around(place_of(frame));
+  std::map<int32_t, double> by_stream;  // frames that are repeated share their samples
+  for (int place = around.first; place <= around.last; ++place) {
+    const FrameTraits& traits = traits_at(place);
+    by_stream[traits.stream] = traits.samples;
+  }
+  double sum = 0.0;
+  for (const auto& [stream, samples] : by_stream) sum += samples;
+  return sum;
 }
 
 void Sequence::retain_pictures(const std::vector<std::vector<std::string>>& groups) {
@@ -278,7 +296,7 @@ motion::Tracking Sequence::flows_to(int place, uint32_t reconstruction) {
       !shares_window_with_previous(place, reconstruction))
     return motion::Tracking::NoNeighbour;
   const reconstruct::WindowGrid grid(places_with_neighbours(), settings_.windows);
-  if (!folder_.holds(frame_at(grid.around(place - 1).first)))
+  if (!folder_.holds(frame_at(frames_of_picture(grid, place - 1, reconstruction).first)))
     return motion::Tracking::NoNeighbour;  // the frame was delivered, and its files were removed
   const FrameTraits &before = traits_at(place - 1), &here = traits_at(place);
   return here.stream == before.stream || here.replayed_stream == before.stream ? motion::Tracking::Tracked

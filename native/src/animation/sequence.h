@@ -74,8 +74,9 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   int place_of(int32_t frame) const;
   int32_t frame_at(int place) const;
   reconstruct::FrameRange job_places() const;
-  // Returns the range of frames that contribute to the picture of a frame.
-  reconstruct::FrameRange contributing(int32_t frame, bool joins_frames) const;
+  // Returns the first frame of all windows that contain a frame. No picture of it or of later frames needs earlier
+  // ones.
+  int32_t first_of_windows(int32_t frame) const;
   // Warns once if the machine has less memory, or the disk less room, than the animation is estimated to need.
   void warn_of_needs(const render::Plan& plan, std::vector<std::string>* warnings);
   // Returns the places of the job and of the frames next to it that the folder holds.
@@ -93,6 +94,10 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   // It starts anew if that picture was already taken or the method has changed.
   reconstruct::SequencePictures* pictures(const std::vector<std::string>& components,
                                           const reconstruct::SequenceMethod& method, int32_t frame);
+  // Returns the number of samples per pixel that the picture of `frame` is made from, those of the frames that are
+  // joined with it included. The arguments are those of pictures().
+  double joined_samples(const std::vector<std::string>& components, const reconstruct::SequenceMethod& method,
+                        int32_t frame);
   // Removes all reconstructions except those of these groups of components, since the component set may have changed.
   void retain_pictures(const std::vector<std::vector<std::string>>& groups);
   // Returns Tracked if flow can be estimated between the frame at `place` and the previous one, otherwise the cause.

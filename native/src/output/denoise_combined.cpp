@@ -27,7 +27,7 @@ namespace {
 // Where frames are joined the noisy image is that of all of them.
 constexpr float kShareOfNetwork = 0.7f, kShareOfNetworkJoined = 0.85f, kDark = 0.1f;
 // Squared error of that mean, relative to REGULARIZED alone. Measured: 0.68 at 8 samples, 0.76 at 32; of joined frames
-// 0.26 to 0.73 in four animations.
+// 0.26 to 0.73 in four animations, more where no other frame shows a pixel.
 constexpr float kErrorOfMean = 0.7f, kErrorOfMeanJoined = 0.45f;
 
 // Returns the pixels of an RGB picture of the region `whole` that lie in `region`.
@@ -89,27 +89,25 @@ std::shared_ptr<const OidnLibrary> choose_denoiser(uint32_t denoiser, const scen
 
 namespace {
 
-// What the network reads of a region.
+// Images that the network reads, unless those of `joined` frames serve as they are.
 struct NetworkInput {
-  std::vector<float> light;  // of `stride` floats per pixel
-  size_t stride;
-  std::vector<float> albedo, normal;
+  std::vector<float> light{};
+  size_t stride = 4;  // floats per pixel of `light`
+  std::vector<float> albedo{}, normal{};
 };
 
-NetworkInput read_joined(const film::Film& film, const reconstruct::SampledPicture& joined) {
-  NetworkInput input{joined.light, 3, joined.albedo, joined.normal};
-  for (float& value : input.light) value *= film.settings.film_exposure;
+// Returns the light of the region `seen` that the network reads: as sampled, unless it denoises the picture itself.
+NetworkInput read_light(const CombinedPicture& picture, const Region& seen, bool as_sampled) {
+  if (!as_sampled) return {picture.rgba};
+  NetworkInput input{std::vector<float>(4 * size_t(seen.area()))};
+  read_film_pass(picture.film, GRADUS_PASS_NOISY_IMAGE, seen, input.light.data());
   return input;
 }
 
-// Reads what the film has sampled of the region `seen`. `picture` replaces its noisy image, unless it is nullptr.
-NetworkInput read_sampled(const film::Film& film, const Region& seen, const std::vector<float>* picture) {
-  NetworkInput input{picture != nullptr ? *picture : std::vector<float>(4 * size_t(seen.area())), 4, {}, {}};
-  if (picture == nullptr) read_film_pass(film, GRADUS_PASS_NOISY_IMAGE, seen, input.light.data());
-  if (film::has_features(film)) {
-    input.albedo = read_guide(film, GRADUS_PASS_DENOISING_ALBEDO, seen);
-    input.normal = read_guide(film, GRADUS_PASS_DENOISING_NORMAL, seen);
-  }
+// Returns the light that several frames have sampled, with the exposure of the picture.
+NetworkInput read_joined_light(const CombinedPicture& picture) {
+  NetworkInput input{picture.joined->light, 3};
+  for (float& value : input.light) value *= picture.film.settings.film_exposure;
   return input;
 }
 
@@ -120,16 +118,20 @@ std::vector<float> denoise_or_throw(const OidnLibrary& library, const CombinedPi
   const bool blends = picture.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED,
              sampled = blends || picture.reconstruction == GRADUS_RECONSTRUCTION_NONE;
   const Region& seen = sampled ? picture.film.region : picture.region;
+  const bool joins = picture.joined != nullptr && !GRADUS_FAULT(network_reads_one_frame);
   tbb::task_arena arena(arena_size(threads));
   NetworkInput input;
   arena.execute([&] {
-    input = picture.joined != nullptr && !GRADUS_FAULT(network_reads_one_frame)
-                ? read_joined(picture.film, *picture.joined)
-                : read_sampled(picture.film, seen, sampled ? nullptr : &picture.rgba);
+    input = joins ? read_joined_light(picture) : read_light(picture, seen, sampled);
+    if (joins || !film::has_features(picture.film)) return;
+    input.albedo = read_guide(picture.film, GRADUS_PASS_DENOISING_ALBEDO, seen);
+    input.normal = read_guide(picture.film, GRADUS_PASS_DENOISING_NORMAL, seen);
   });
+  const std::vector<float>&albedo = joins ? picture.joined->albedo : input.albedo,
+        &normal = joins ? picture.joined->normal : input.normal;
   NoisyPicture noisy{seen.width(), seen.height(), input.light.data(), input.stride};
-  if (!input.albedo.empty()) noisy.albedo = input.albedo.data();
-  if (!input.normal.empty()) noisy.normal = input.normal.data();
+  if (!albedo.empty()) noisy.albedo = albedo.data();
+  if (!normal.empty()) noisy.normal = normal.data();
   const std::vector<float> image = crop(denoise(library, noisy, threads, cancel), seen, picture.region);
   std::vector<float> result = picture.rgba;
   if (blends) {

@@ -29,6 +29,16 @@ Options FilmReader::own_options() const {
   return resolve_auto(own, facts_of(*film_, false));
 }
 
+Options FilmReader::picture_options() {
+  Options own = options_of(film_->settings);
+  std::string why_not;
+  if (own.denoiser == GRADUS_DENOISER_OIDN && !choose_denoiser(GRADUS_DENOISER_AUTO, device_.get(), &why_not)) {
+    own.denoiser = GRADUS_DENOISER_NONE;
+    device_->warnings().add("the picture is not denoised, as its render was: " + why_not);
+  }
+  return own;
+}
+
 DevelopedFilm FilmReader::reconstruct(const Options& options, bool with_error) {
   Options without_denoiser = options;
   without_denoiser.denoiser = GRADUS_DENOISER_NONE;
@@ -67,7 +77,7 @@ Image FilmReader::error() {
 }
 
 const DevelopedFilm& FilmReader::last_picture() {
-  if (!last_.film) last_ = make_picture(options_of(film_->settings), false);
+  if (!last_.film) last_ = make_picture(picture_options(), false);
   return last_;
 }
 
@@ -84,7 +94,7 @@ DevelopedFilm FilmReader::copy_last_picture_with_light() {
 }
 
 void FilmReader::read_pass(uint32_t pass, float* pixels) {
-  if (pass == GRADUS_PASS_COMBINED) return develop(options_of(film_->settings), false).read_pass(pass, pixels);
+  if (pass == GRADUS_PASS_COMBINED) return develop(picture_options(), false).read_pass(pass, pixels);
   DevelopedFilm developed{film_, region_, threads_};
   if (pass == GRADUS_PASS_ERROR) developed.passes[pass] = error();
   if (schema::has_bit(schema::light_passes(), pass) && has_pass(*film_, pass))

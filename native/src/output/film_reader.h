@@ -35,6 +35,8 @@ class FilmReader {
   void read_component(const std::string& name, uint32_t pass, float* pixels);
 
  private:
+  // Returns the film's own options, without a denoiser, and with a warning, where this machine lacks it.
+  Options picture_options();
   // Returns the film's own options without a denoiser. They are not AUTO.
   Options own_options() const;
 

@@ -29,14 +29,14 @@ void store_options(const Options& options, GradusSettings* settings);
 struct FilmFacts {
   uint32_t sampled_for = GRADUS_RECONSTRUCTION_AUTO;  // reconstruction for which it was sampled; AUTO: not known
   bool has_features = false, has_gradients = false;
-  double samples = 0.0;       // per pixel, those of joined frames included
+  double samples = 0.0;       // per pixel; of a frame of a sequence, those of joined frames included
   bool has_denoiser = false;  // whether the machine has a denoiser
 };
 // Returns the facts that the content of a film shows.
 FilmFacts facts_of(const film::Film& film, bool has_denoiser);
 
 // Returns whether AUTO may denoise pictures by this reconstruction, which is not AUTO. A user who chose L2 or the noisy
-// image expects an unbiased one.
+// image expects an unbiased one, and who chose L1 expects what the solver makes.
 inline bool is_denoised_by_default(uint32_t reconstruction) {
   return reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
 }

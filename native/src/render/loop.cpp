@@ -36,7 +36,7 @@ void name_planes(const lpe::ComponentSet& set, film::Film* film) {
 // Returns the plan of the render. A frame of an animation keeps all components, because a component that is small in
 // one frame may not be small in the next.
 Plan planned(const LoopInput& input, const HostDenoiser& denoiser) {
-  Plan plan = make_plan(input.planned_settings(), *input.snapshot, denoiser, input.joined_frames);
+  Plan plan = make_plan(input.planned_settings(), *input.snapshot, denoiser, input.joins_frames);
   if (!plan.merges_components || !input.samples_only) return plan;
   plan.merges_components = false;
   plan.skipped.emplace_back("merging of small components",
@@ -95,7 +95,7 @@ void RenderLoop::render() {
   if (plan_.component_motion && !input_.replay) find_motion();
   if (input_.samples_only) return;
   const bool denoises = denoises_after(plan_, film::mean_samples(*film_), &stats_.chosen, &stats_.skipped);
-  if (!denoises) film_->settings.denoiser = GRADUS_DENOISER_NONE;
+  film_->settings.denoiser = denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
   set_phase(GRADUS_PHASE_RECONSTRUCTING);
   develop_film(denoises);
 }
@@ -162,7 +162,7 @@ void RenderLoop::prepare() {
   // The film stores the choices made for AUTO, so that its later readers do not choose again.
   film->settings.integrator = integrator;
   film->settings.reconstruction = gradients_.none() ? without_gradients(plan_) : plan_.reconstruction;
-  film->settings.denoiser = plan_.denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
+  film->settings.denoiser = stored_denoiser(plan_);
   film->scene_key = input_.snapshot->content_key;
   film->frame_number = settings.frame;
   if (input_.replay) film->replayed = input_.replay->replay_map;

@@ -29,7 +29,7 @@ struct LoopInput {
   // Whether the render only takes samples of a frame of an animation. It then samples all components and is
   // reconstructed later together with other samples of the frame.
   bool samples_only = false;
-  uint32_t joined_frames = 1;  // number of frames whose samples are joined by the reconstruction
+  bool joins_frames = false;  // whether the reconstruction joins samples of other frames
   // Samples of the whole frame, fresh and replayed, for which the render is planned; 0: the number in the settings.
   uint32_t whole_samples = 0;
   std::shared_ptr<const Replay> replay;  // nullptr: the samples are the frame's own

@@ -73,11 +73,11 @@ void choose_integrator(const GradusSettings& settings, Plan* plan) {
 
 // Returns the options with which the film will be developed. A film of the integrators AUTO and GRADIENT is sampled
 // with features if its reconstruction reads them; a user who chose plain samples expects the noisy image.
-output::Options planned_options(const GradusSettings& settings, const HostDenoiser& denoiser, uint32_t joined_frames) {
+output::Options planned_options(const GradusSettings& settings, const HostDenoiser& denoiser, bool joins_frames) {
   output::FilmFacts facts;
   facts.has_features =
       settings.integrator == GRADUS_INTEGRATOR_AUTO || settings.integrator == GRADUS_INTEGRATOR_GRADIENT;
-  facts.samples = double(settings.samples) * joined_frames;
+  facts.samples = joins_frames ? HUGE_VAL : settings.samples;
   facts.has_denoiser = !denoiser.name.empty();
   return output::resolve_auto(output::options_of(settings), facts);
 }
@@ -105,7 +105,7 @@ void choose_reconstruction(const GradusSettings& settings, const output::Options
 }
 
 void choose_denoiser(const GradusSettings& settings, const output::Options& options, const HostDenoiser& denoiser,
-                     Plan* plan) {
+                     bool joins_frames, Plan* plan) {
   const bool automatic = settings.denoiser == GRADUS_DENOISER_AUTO;
   if (denoiser.name.empty()) {
     plan->skipped.emplace_back("denoiser", denoiser.why_not);
@@ -118,7 +118,7 @@ void choose_denoiser(const GradusSettings& settings, const output::Options& opti
   } else {
     plan->denoises = true;
     plan->denoiser = denoiser.name;
-    plan->denoises_if_it_pays = automatic && settings.time_limit > 0.0f;
+    plan->denoises_if_it_pays = automatic && (settings.time_limit > 0.0f || joins_frames);
     if (plan->denoises_if_it_pays) return;
     plan->chosen.emplace_back("denoiser " + denoiser.name,
                               automatic ? "automatic: a denoiser is available" : "set by the user");
@@ -229,11 +229,11 @@ uint32_t first_check(const GradusSettings& settings) {
 }  // namespace
 
 Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot, const HostDenoiser& denoiser,
-               uint32_t joined_frames) {
+               bool joins_frames) {
   schema::check_settings(settings);
   Plan plan;
-  const output::Options options = planned_options(settings, denoiser, joined_frames);
-  choose_denoiser(settings, options, denoiser, &plan);
+  const output::Options options = planned_options(settings, denoiser, joins_frames);
+  choose_denoiser(settings, options, denoiser, joins_frames, &plan);
   choose_integrator(settings, &plan);
   choose_reconstruction(settings, options, &plan);
   choose_region(settings, &plan);
@@ -280,13 +280,18 @@ uint32_t without_gradients(const Plan& plan) {
 bool denoises_after(const Plan& plan, double samples, Reasons* chosen, Reasons* skipped) {
   if (!plan.denoises_if_it_pays) return plan.denoises;
   char taken[80];
-  std::snprintf(taken, sizeof(taken), "automatic: %.1f samples were taken within the time limit", samples);
+  std::snprintf(taken, sizeof(taken), "automatic: a pixel has %.1f samples", samples);
   if (!output::denoiser_pays(samples)) {
     skipped->emplace_back("denoiser", taken + std::string(": ") + too_few_to_denoise());
     return false;
   }
   chosen->emplace_back("denoiser " + plan.denoiser, taken);
   return true;
+}
+
+uint32_t stored_denoiser(const Plan& plan) {
+  if (plan.denoises_if_it_pays) return GRADUS_DENOISER_AUTO;
+  return plan.denoises ? GRADUS_DENOISER_OIDN : GRADUS_DENOISER_NONE;
 }
 
 bool delivers_unbiased(const Plan& plan, uint32_t reconstruction, bool denoises) {

@@ -51,9 +51,10 @@ struct Plan {
 inline constexpr int kGuardRing = 35;
 
 // Returns the plan of a render. Throws `invalid_argument` or `unsupported` for settings that cannot be followed: a
-// setting is never replaced silently. `joined_frames`: number of frames of an animation whose samples are joined.
+// setting is never replaced silently. `joins_frames`: whether samples of other frames of an animation are joined, so
+// that only denoises_after() knows how many the denoiser reads.
 Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot,
-               const HostDenoiser& denoiser = {"", "denoiser is none"}, uint32_t joined_frames = 1);
+               const HostDenoiser& denoiser = {"", "denoiser is none"}, bool joins_frames = false);
 
 // Returns whether a setting of the option `integrator` can sample differences between pixels. AUTO chooses an
 // integrator that does where they are needed.
@@ -70,9 +71,12 @@ bool takes_unbiased_samples(const GradusSettings& settings);
 // benefit.
 uint32_t without_gradients(const Plan& plan);
 
-// Returns whether the denoiser runs after `samples` samples per pixel. Where the plan left that open, adds the decision
-// and its reason to `chosen` or `skipped`.
+// Returns whether the denoiser runs after `samples` samples per pixel, those of joined frames included. Where the plan
+// left that open, adds the decision and its reason to `chosen` or `skipped`.
 bool denoises_after(const Plan& plan, double samples, Reasons* chosen, Reasons* skipped);
+
+// Returns the setting `denoiser` of a film that is sampled after this plan: AUTO where it is decided later.
+uint32_t stored_denoiser(const Plan& plan);
 
 // Returns whether the delivered image is unbiased. `reconstruction` and `denoises` are what the render does in the end,
 // which may be the reconstruction without gradients.

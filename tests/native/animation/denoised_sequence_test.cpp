@@ -1,5 +1,9 @@
 // Animations with a denoiser, by a stand-in that adds the guides to what it is given: it reads the samples of all
 // frames that are joined.
+#include <array>
+#include <cmath>
+#include <functional>
+
 #include "sequence_fixture.h"
 
 namespace gradus::test::denoised_sequence_test {
@@ -21,37 +25,54 @@ struct Picture {
   nlohmann::json stats;
 };
 
-// Renders `count` frames before which the camera moves by a pixel each, and returns the middle one, which is the same
-// for all counts.
-Picture middle_of(int count, uint32_t samples, uint32_t denoiser = GRADUS_DENOISER_OIDN, uint64_t seed = 1) {
-  constexpr int32_t kMiddle = 4;
-  const int32_t first = kMiddle - count / 2, last = first + count - 1;
+using Change = std::function<void(GradusSettings*)>;
+
+std::shared_ptr<animation::Sequence> sequence_of(int32_t first, int32_t last, uint32_t step = 1,
+                                                 const std::string& folder = "") {
   GradusDeviceSettings device{};
   device.struct_size = sizeof(device);
   device.threads = 2;
   device.denoiser_path = kFake;
-  const auto sequence = std::make_shared<animation::Sequence>(std::make_shared<scene::Device>(device),
-                                                              animation::SequenceSettings{first, last, 1, {}, ""});
-  Pan pan(1.0f);
-  for (int32_t frame = first; frame <= last; ++frame) {
-    GradusSettings settings = denoised(frame, samples, denoiser);
-    settings.seed = uint32_t(seed);
-    run(sequence->sample(pan.at(frame), settings).get());
-  }
-  const GradusSettings settings = denoised(kMiddle, samples, denoiser);
-  const auto task = sequence->deliver(kMiddle, &settings);
+  return std::make_shared<animation::Sequence>(std::make_shared<scene::Device>(device),
+                                               animation::SequenceSettings{first, last, step, {}, folder});
+}
+
+Picture delivered(animation::Sequence* sequence, const GradusSettings& settings) {
+  const auto task = sequence->deliver(settings.frame, &settings);
   run(task.get());
-  return {read(*task, GRADUS_PASS_COMBINED, 4), read(*task, GRADUS_PASS_ERROR, 1),
-          nlohmann::json::parse(task->stats())};
+  const auto pixels = size_t(task->delivered().area());
+  std::vector<float> combined(4 * pixels), error(pixels);
+  task->read_pass(GRADUS_PASS_COMBINED, combined.data());
+  task->read_pass(GRADUS_PASS_ERROR, error.data());
+  return {combined, error, nlohmann::json::parse(task->stats())};
+}
+
+constexpr int32_t kMiddle = 4;
+
+// Renders `count` frames, between which the camera moves by `pixels`, and returns the middle one, which is the same for
+// all counts.
+Picture middle_of(
+    int count, uint32_t samples, uint32_t denoiser = GRADUS_DENOISER_OIDN, float pixels = 1.0f,
+    const Change& change = [](GradusSettings*) {}) {
+  const int32_t first = kMiddle - count / 2, last = first + count - 1;
+  const auto sequence = sequence_of(first, last);
+  Pan pan(pixels);
+  const auto settings_at = [&](int32_t frame) {
+    GradusSettings settings = denoised(frame, samples, denoiser);
+    change(&settings);
+    return settings;
+  };
+  for (int32_t frame = first; frame <= last; ++frame) run(sequence->sample(pan.at(frame), settings_at(frame)).get());
+  return delivered(sequence.get(), settings_at(kMiddle));
 }
 
 // The variance of what the network reads goes with the number of frames. Pixels that the pan shows in few frames, and
 // the greater weight of the network, leave more than a ninth.
 TEST(DenoisedSequence, TheNetworkReadsTheSamplesOfAllFrames) {
-  const auto variance = [](int count) {
-    return squared_distance(middle_of(count, 4, GRADUS_DENOISER_OIDN, 1).combined,
-                            middle_of(count, 4, GRADUS_DENOISER_OIDN, 2).combined);
+  const auto with_seed = [](int count, uint32_t seed) {
+    return middle_of(count, 4, GRADUS_DENOISER_OIDN, 1.0f, [&](GradusSettings* s) { s->seed = seed; }).combined;
   };
+  const auto variance = [&](int count) { return squared_distance(with_seed(count, 1), with_seed(count, 2)); };
   const double of_one = variance(1), of_nine = variance(9);
   std::printf("  variance %.3f of that of one frame\n", of_nine / of_one);
   EXPECT_GT(of_one, 0.0);
@@ -63,14 +84,78 @@ TEST(DenoisedSequence, TheErrorIsScaledByWhatJoinedFramesLeave) {
   for (size_t i = 0; i < plain.size(); ++i) ASSERT_NEAR(error[i], 0.45f * plain[i], 1e-5f * plain[i]) << i;
 }
 
+// The network reads light as it is delivered: twice the exposure is twice the light. The stand-in adds the guides to
+// it, so that their share is found with two exposures.
+TEST(DenoisedSequence, ReadsTheExposedPicture) {
+  const auto mean_with = [](float exposure) {
+    const std::vector<float> combined =
+        middle_of(3, 64, GRADUS_DENOISER_OIDN, 1.0f, [&](GradusSettings* s) { s->film_exposure = exposure; }).combined;
+    double sum = 0.0;
+    for (size_t i = 0; i < combined.size(); i += 4) sum += combined[i];
+    return sum / double(combined.size() / 4);
+  };
+  // Geometric means of p·x and p·x + g grow from x to p·x where the guides g are small against the light.
+  EXPECT_NEAR(mean_with(2e4f) / mean_with(1e4f), 2.0, 0.01);
+}
+
+// A border is reconstructed from a region that is larger than what is delivered.
+TEST(DenoisedSequence, ABorderHasThePixelsOfTheFrame) {
+  const auto picture = [](bool bordered) {
+    return middle_of(3, 16, GRADUS_DENOISER_OIDN, 1.0f,
+                     [&](GradusSettings* s) {
+                       s->width = s->height = 128;
+                       if (bordered) std::copy_n(std::array<uint32_t, 4>{48, 48, 80, 80}.begin(), 4, s->region);
+                     })
+        .combined;
+  };
+  const std::vector<float> whole = picture(false), part = picture(true);
+  ASSERT_EQ(part.size(), size_t{4 * 32 * 32});
+  double difference = 0.0, light = 0.0;
+  for (size_t y = 0; y < 32; ++y) {
+    for (size_t i = 0; i < 4 * 32; ++i) {
+      difference += std::fabs(part[4 * 32 * y + i] - whole[4 * (128 * (y + 48) + 48) + i]);
+      light += std::fabs(part[4 * 32 * y + i]);
+    }
+  }
+  EXPECT_LT(difference, 0.02 * light);  // shifted by a pixel: 0.2 and more
+}
+
+std::string why(const nlohmann::json& stats) {
+  const nlohmann::json& plan = stats["plan"];
+  const bool denoises = !stats["denoiser"].is_null();
+  return plan[denoises ? "chosen" : "skipped"][denoises ? "denoiser Open Image Denoise 2.7.5" : "denoiser"];
+}
+
 // Regression: AUTO counted the samples of one frame, and left the denoiser out below 8.
 TEST(DenoisedSequence, TheAutomaticOneCountsTheSamplesOfJoinedFrames) {
-  const nlohmann::json nine = middle_of(9, 2, GRADUS_DENOISER_AUTO).stats,
-                       one = middle_of(1, 2, GRADUS_DENOISER_AUTO).stats;
-  EXPECT_EQ(nine["denoiser"], "Open Image Denoise 2.7.5");
-  EXPECT_EQ(nine["plan"]["chosen"]["denoiser Open Image Denoise 2.7.5"], "automatic: a denoiser is available");
-  EXPECT_TRUE(one["denoiser"].is_null());
-  EXPECT_NE(one["plan"]["skipped"]["denoiser"].get<std::string>().find("below 8 samples"), std::string::npos);
+  EXPECT_EQ(why(middle_of(9, 2, GRADUS_DENOISER_AUTO).stats), "automatic: a pixel has 18.0 samples");
+  const std::string alone = why(middle_of(1, 2, GRADUS_DENOISER_AUTO).stats);
+  EXPECT_EQ(alone.find("automatic: a pixel has 2.0 samples: below 8 samples"), 0u) << alone;
+}
+
+// Regression: AUTO counted frames that share their samples, and frame numbers between two steps.
+TEST(DenoisedSequence, TheAutomaticOneCountsNoSamplesTwice) {
+  const std::string still = why(middle_of(9, 4, GRADUS_DENOISER_AUTO, 0.0f).stats);
+  EXPECT_EQ(still.find("automatic: a pixel has 4.0 samples"), 0u) << still;
+  const auto sequence = sequence_of(0, 10, 10);
+  Pan pan(0.1f);
+  for (const int32_t frame : {0, 10})
+    run(sequence->sample(pan.at(frame), denoised(frame, 3, GRADUS_DENOISER_AUTO)).get());
+  const std::string stepped = why(delivered(sequence.get(), denoised(0, 3, GRADUS_DENOISER_AUTO)).stats);
+  EXPECT_EQ(stepped.find("automatic: a pixel has 6.0 samples"), 0u) << stepped;
+}
+
+// Regression: a job of one frame counted that frame alone, although its picture joins stored ones.
+TEST(DenoisedSequence, PartsOfAJobMakeTheFramesOfTheWhole) {
+  const Folder folder;
+  Pan pan(1.0f);
+  const auto settings_at = [](int32_t frame) { return denoised(frame, 2, GRADUS_DENOISER_AUTO); };
+  const auto whole = sequence_of(0, 8, 1, folder.path());
+  for (int32_t frame = 0; frame <= 8; ++frame) run(whole->sample(pan.at(frame), settings_at(frame)).get());
+  const Picture expected = delivered(whole.get(), settings_at(kMiddle)),
+                alone = delivered(sequence_of(kMiddle, kMiddle, 1, folder.path()).get(), settings_at(kMiddle));
+  EXPECT_EQ(alone.stats["denoiser"], "Open Image Denoise 2.7.5");
+  EXPECT_EQ(alone.combined, expected.combined);
 }
 
 }  // namespace

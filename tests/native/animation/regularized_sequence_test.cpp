@@ -102,6 +102,10 @@ TEST(C3_RegularizedSequence, NeedsTheFramesThatAreJoined) {
   GradusSettings settings = regularized(12);
   EXPECT_EQ(sequence->needs(settings).first, 8);
   EXPECT_EQ(sequence->needs(settings).last, 16);
+  // Regression: a header of a frame before these was read.
+  Pan pan(1.3f);
+  for (int32_t frame = 8; frame <= 16; ++frame) run(sequence->sample(pan.at(frame), regularized(frame)).get());
+  picture_of(sequence.get(), 12, settings);
   settings.reconstruction = GRADUS_RECONSTRUCTION_L2;
   EXPECT_EQ(sequence->needs(settings).first, 5);
   EXPECT_EQ(sequence->needs(settings).last, 19);

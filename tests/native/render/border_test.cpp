@@ -28,6 +28,7 @@ GradusSettings settings_of(uint32_t seed) {
   settings.samples = 8;
   settings.seed = seed;
   settings.noise_threshold = 0.0f;
+  settings.denoiser = GRADUS_DENOISER_NONE;
   settings.max_bounces = 4;
   settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
   settings.reconstruction =

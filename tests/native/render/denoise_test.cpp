@@ -146,7 +146,7 @@ TEST_F(DenoisedRender, TheAutomaticOneIsLeftOutWhereTheTimeLimitLeavesFewSamples
   EXPECT_EQ(stats["samples"], 1.0);
   EXPECT_TRUE(stats["denoiser"].is_null());
   EXPECT_EQ(stats["plan"]["skipped"]["denoiser"],
-            "automatic: 1.0 samples were taken within the time limit: below 8 samples, more samples reduce the error "
+            "automatic: a pixel has 1.0 samples: below 8 samples, more samples reduce the error "
             "more than "
             "the denoiser");
   EXPECT_EQ(render.film()->settings.denoiser, uint32_t{GRADUS_DENOISER_NONE});
@@ -155,7 +155,7 @@ TEST_F(DenoisedRender, TheAutomaticOneIsLeftOutWhereTheTimeLimitLeavesFewSamples
   const json quick = json::parse(finished(settings)->stats_json());
   EXPECT_EQ(quick["denoiser"], "Open Image Denoise 2.7.5");
   EXPECT_EQ(quick["plan"]["chosen"]["denoiser Open Image Denoise 2.7.5"],
-            "automatic: 8.0 samples were taken within the time limit");
+            "automatic: a pixel has 8.0 samples");
   EXPECT_EQ(quick["unbiased"], false);
 }
 

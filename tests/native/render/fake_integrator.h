@@ -133,6 +133,7 @@ inline GradusSettings small_settings(uint32_t width, uint32_t height, uint32_t s
   s.width = width;
   s.height = height;
   s.samples = samples;
+  s.denoiser = GRADUS_DENOISER_NONE;
   s.threads = 2;
   s.noise_threshold = 0.0f;
   s.integrator = GRADUS_INTEGRATOR_GRADIENT;

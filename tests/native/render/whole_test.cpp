@@ -41,6 +41,7 @@ TEST(L6_Whole, APictureWithAllPassesIsFinite) {
   settings.height = kHeight;
   settings.samples = 2;
   settings.noise_threshold = 0.0f;
+  settings.denoiser = GRADUS_DENOISER_NONE;
   settings.max_bounces = 4;
   settings.threads = 1;
   settings.passes = (uint64_t{1} << GRADUS_PASS_COUNT) - 1;

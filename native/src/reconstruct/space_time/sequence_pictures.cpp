@@ -24,11 +24,11 @@ bool SequencePictures::has(int frame) const {
          (*next_window_ <= grid_.last_with(frame) && blend_.has_begun(frame));
 }
 
-Reconstructed SequencePictures::take(int frame, const CancelCheck& cancel, SolveReport* report) {
+Reconstructed SequencePictures::take(int frame, const CancelCheck& cancel, SolveReport* report, bool with_sampled) {
   if (!has(frame)) throw invalid_operation("frame " + std::to_string(frame) + " was delivered before");
   if (is_joint()) {
     last_joint_ = frame;
-    return joint_.reconstruct(frame, around(frame), cancel, report, method_.with_sampled);
+    return joint_.reconstruct(frame, around(frame), cancel, report, with_sampled);
   }
   if (!next_window_) next_window_ = grid_.first_with(frame);
   while (ready_.count(frame) == 0) {

@@ -19,7 +19,6 @@ struct SequenceMethod {
   uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2;  // L2, L1 or REGULARIZED
   float alpha = 0.0f;                                  // 0 selects the default (chosen_alpha())
   bool with_error = false;                             // whether to estimate errors, or their terms
-  bool with_sampled = false;                           // whether to return the joined samples
   bool operator==(const SequenceMethod&) const = default;
 };
 
@@ -48,7 +47,8 @@ class SequencePictures {
   // Returns the image of a frame, with interleaved channels. Each image is taken once, in ascending order; frames may
   // be skipped, and the first one is arbitrary. When cancelled, returns an empty image, or throws the error CANCELLED
   // if a frame was being read; after that no image can be taken.
-  Reconstructed take(int frame, const CancelCheck& cancel, SolveReport* report);
+  // `with_sampled` requests the joined samples of REGULARIZED.
+  Reconstructed take(int frame, const CancelCheck& cancel, SolveReport* report, bool with_sampled = false);
 
  private:
   bool is_joint() const { return method_.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED; }
