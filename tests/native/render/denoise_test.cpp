@@ -154,8 +154,7 @@ TEST_F(DenoisedRender, TheAutomaticOneIsLeftOutWhereTheTimeLimitLeavesFewSamples
   settings.time_limit = 1e6f;
   const json quick = json::parse(finished(settings)->stats_json());
   EXPECT_EQ(quick["denoiser"], "Open Image Denoise 2.7.5");
-  EXPECT_EQ(quick["plan"]["chosen"]["denoiser Open Image Denoise 2.7.5"],
-            "automatic: a pixel has 8.0 samples");
+  EXPECT_EQ(quick["plan"]["chosen"]["denoiser Open Image Denoise 2.7.5"], "automatic: a pixel has 8.0 samples");
   EXPECT_EQ(quick["unbiased"], false);
 }
 

@@ -256,7 +256,8 @@ TEST_F(Tool, NoOptionIsIgnored) {
     EXPECT_NE(outcome.err.find("is for --reconstruction l2 or l1"), std::string::npos) << outcome.err;
   }
   EXPECT_EQ(run("reconstruct f.exr -o x.exr --alpha 0.3 --reconstruction l2").code, 0);
-  for (const char* command : {"render good.gradus -o store --denoiser none", "reconstruct f.exr -o y.exr --denoiser none"}) {
+  for (const char* command :
+       {"render good.gradus -o store --denoiser none", "reconstruct f.exr -o y.exr --denoiser none"}) {
     const Outcome outcome = run(std::string(command) + " --denoiser-path " GRADUS_BINARY_DIR "/tests/libfake_oidn.so");
     EXPECT_EQ(outcome.code, 2) << command;
     EXPECT_NE(outcome.err.find("is for --denoiser oidn or auto"), std::string::npos) << outcome.err;
