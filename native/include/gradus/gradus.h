@@ -791,7 +791,8 @@ GRADUS_API GradusError gradus_sequence_pass_by(GradusSequence sequence, GradusSc
 GRADUS_API GradusError gradus_sequence_end_at(GradusSequence sequence, int32_t last);
 /* Reconstructs `frame`, with what it needs of others. Passes, statistics and film of the ended render are those of
  * `frame`. Frames come in order. `settings` may change reconstruction, reconstruction_alpha, denoiser and film_exposure
- * from what the frames were sampled for and may be NULL. The reconstruction AUTO is that for which they were sampled. */
+ * from what the frames were sampled for and may be NULL. The reconstruction AUTO is the one for which they were
+ * sampled. */
 GRADUS_API GradusError gradus_sequence_deliver(GradusSequence sequence, int32_t frame, const GradusSettings* settings,
                                                GradusRender* render);
 GRADUS_API GradusError gradus_sequence_release(GradusSequence sequence);
@@ -808,9 +809,9 @@ GRADUS_API GradusError gradus_film_merge(GradusFilm film, GradusFilm other);
 /* Returns the size of the delivered region, which read_pass and reconstruct return. */
 GRADUS_API GradusError gradus_film_size(GradusFilm film, uint32_t* width, uint32_t* height);
 /* Reconstructs Combined as RGBA. `alpha` is the weight of the primal against the gradients (0 = automatic) and
- * `denoiser` a GradusDenoiser; AUTO denoises REGULARIZED alone, where more samples would not reduce the error more. `error`
- * receives pass Error as count / 4 floats and may be NULL. The handle keeps its last picture and its own Error for later
- * readers. Readers with other options wait for each other and replace the picture; a merge blocks none of them. */
+ * `denoiser` a GradusDenoiser; AUTO denoises REGULARIZED alone, from 8 samples on. `error` receives pass Error as
+ * count / 4 floats and may be NULL. The handle keeps its last picture and its own Error for later readers. Readers with
+ * other options wait for each other and replace the picture; a merge blocks none of them. */
 GRADUS_API GradusError gradus_film_reconstruct(GradusFilm film, uint32_t reconstruction, float alpha,
                                                 uint32_t denoiser, float* rgba, size_t count, float* error);
 GRADUS_API GradusError gradus_film_read_pass(GradusFilm film, uint32_t pass, float* pixels, size_t count);

@@ -44,10 +44,6 @@ std::vector<std::vector<std::string>> reconstructed_together(const film::Film& f
   return groups;
 }
 
-reconstruct::SequenceMethod method_of(const film::Film& film, const output::Options& options) {
-  return {options.reconstruction, options.alpha, output::wanted_images(film.settings).error};
-}
-
 }  // namespace
 
 FrameDeveloper::FrameDeveloper(Sequence* sequence, int32_t number, const std::optional<GradusSettings>& requested,
@@ -109,16 +105,18 @@ std::shared_ptr<DevelopedFrame> FrameDeveloper::read() {
   std::string why_not;
   denoiser_ = output::choose_denoiser(requested.denoiser, sequence_.device_.get(), &why_not);
   output::FilmFacts facts = sequence_.facts_of(number_);
-  facts.samples = film::mean_samples(*film);
   facts.has_denoiser = denoiser_ != nullptr;
   pictures.options = output::resolve_auto(requested, facts);
   const bool is_automatic = denoiser_ != nullptr && requested.denoiser == GRADUS_DENOISER_AUTO &&
                             output::is_denoised_by_default(pictures.options.reconstruction);
   if (is_automatic) {
-    const auto groups = reconstructed_together(*film, pictures.options.reconstruction);
-    facts.samples = sequence_.joined_samples(groups.front(), method_of(*film, pictures.options), number_);
+    facts.samples = sequence_.joined_samples(number_);
     pictures.options = output::resolve_auto(requested, facts);
-    if (plan.denoises_if_it_pays) render::denoises_after(plan, facts.samples, &stats.chosen, &stats.skipped);
+    // The frame may have been planned with another denoiser, or by another process.
+    plan.denoises_if_it_pays = true;
+    plan.denoiser = denoiser_->name();
+    std::erase_if(plan.skipped, [](const auto& reason) { return reason.first == "denoiser"; });
+    render::denoises_after(plan, facts.samples, &stats.chosen, &stats.skipped);
   }
   output::store_options(pictures.options, &film->settings);
   pictures.film = film;
@@ -147,7 +145,8 @@ void FrameDeveloper::develop_picture(DevelopedFrame* frame) {
 reconstruct::Reconstructed FrameDeveloper::take_from_windows(const output::DevelopedFilm& developed,
                                                              reconstruct::SolveReport* report) {
   const film::Film& film = *developed.film;
-  const reconstruct::SequenceMethod method = method_of(film, developed.options);
+  const reconstruct::SequenceMethod method{developed.options.reconstruction, developed.options.alpha,
+                                           output::wanted_images(film.settings).error};
   const bool with_sampled = developed.options.denoiser != GRADUS_DENOISER_NONE;
   reconstruct::Reconstructed picture;
   const std::vector<std::vector<std::string>> groups = reconstructed_together(film, method.reconstruction);

@@ -28,7 +28,8 @@ FrameTraits traits_of(const film::FilmHeader& fresh, const film::FilmHeader& rep
           fresh.scene_key,
           replayed.replayed_key,
           replayed.replayed_seed,
-          double(samples_taken(fresh) + samples_taken(replayed))};
+          double(samples_taken(fresh)),
+          double(samples_taken(replayed))};
 }
 
 bool follows_another_frame(const FrameTraits& before, const FrameTraits& frame) {

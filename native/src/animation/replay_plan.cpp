@@ -7,6 +7,7 @@
 
 #include "animation/fresh_replayed_shares.h"
 #include "base/fault.h"
+#include "bsdf/ggx.h"
 #include "integrator/pixel_loop.h"
 #include "motion/component_tracking.h"
 #include "motion/pixel_matching.h"
@@ -66,7 +67,8 @@ Correspondences correspondences_of_components(const motion::CentreView& from, co
 film::PixelCorrespondence correspondence_of_dominant(const motion::CentreView& from, const motion::CentreView& to,
                                                      const GradusSettings& settings, film::PixelCorrespondence surface,
                                                      const CancelCheck& cancel) {
-  const bool all_are_rough = from.snapshot->features.min_alpha >= settings.roughness_threshold;
+  const float sharp = std::max(settings.roughness_threshold, bsdf::kSmallestAlpha);
+  const bool all_are_rough = from.snapshot->features.min_alpha >= sharp;
   if (all_are_rough || GRADUS_FAULT(joined_light_follows_surfaces)) return surface;
   const motion::ChainTracer tracer{*to.snapshot, to.camera, settings};
   const motion::ChainMotion motion = motion::track_dominant(from, tracer, cancel);

@@ -131,15 +131,17 @@ bool Sequence::shares_window_with_previous(int place, uint32_t reconstruction) {
 
 reconstruct::FrameRange Sequence::needs(const GradusSettings& settings) const {
   const reconstruct::FrameRange own = job_places();
+  const int place = place_of(settings.frame);
+  if (!own.contains(place))
+    throw invalid_argument("frame " + std::to_string(settings.frame) + " is not part of the sequence");
   const reconstruct::WindowGrid grid(own, settings_.windows);
-  const auto of_picture = [&](int place) {
-    place = std::clamp(place, own.first, own.last);
-    return joins_frames(settings) ? grid.joined(place) : grid.around(place);
+  const auto of_picture = [&](int other) {
+    other = std::clamp(other, own.first, own.last);
+    return joins_frames(settings) ? grid.joined(other) : grid.around(other);
   };
   // The flow of a frame is found between its picture and those of its neighbours.
-  const int place = place_of(settings.frame), reach = settings_.with_flow ? 1 : 0;
-  const int first = of_picture(place - reach).first, last = of_picture(place + reach).last;
-  return {std::max(frame_at(first), settings_.first), std::min(frame_at(last), last_)};
+  const int reach = settings_.with_flow && settings_.step == 1 ? 1 : 0;
+  return {frame_at(of_picture(place - reach).first), std::min(frame_at(of_picture(place + reach).last), last_)};
 }
 
 int32_t Sequence::first_of_windows(int32_t frame) const {
@@ -239,7 +241,8 @@ reconstruct::SequenceSource Sequence::source(const reconstruct::SequenceMethod& 
 reconstruct::SequencePictures* Sequence::pictures(const std::vector<std::string>& components,
                                                   const reconstruct::SequenceMethod& method, int32_t frame) {
   const int place = place_of(frame);
-  std::unique_ptr<reconstruct::SequencePictures>& pictures = pictures_[components];
+  const auto known = pictures_.find(components);
+  reconstruct::SequencePictures* pictures = known != pictures_.end() ? known->second.get() : nullptr;
   if (!pictures || !(pictures->method() == method) || !pictures->has(place)) {
     reconstruct::FrameRange places = places_with_neighbours();
     const reconstruct::WindowGrid grid(places, settings_.windows);
@@ -247,25 +250,33 @@ reconstruct::SequencePictures* Sequence::pictures(const std::vector<std::string>
     int first = place;
     while (first > begin && shares_window_with_previous(first, method.reconstruction)) --first;
     if (first > begin) places.first = first;
-    pictures =
+    auto made =
         std::make_unique<reconstruct::SequencePictures>(places, settings_.windows, source(method, components), method);
+    pictures = made.get();
+    pictures_[components] = std::move(made);
     if (last_ < settings_.last) pictures->end_at(place_of(last_));
   }
   int last = place;
   const int end = pictures->around(place).last;
   while (last < end && shares_window_with_previous(last + 1, method.reconstruction)) ++last;
   if (last < end) pictures->end_at(last);
-  return pictures.get();
+  return pictures;
 }
 
-double Sequence::joined_samples(const std::vector<std::string>& components, const reconstruct::SequenceMethod& method,
-                                int32_t frame) {
-  const reconstruct::FrameRange around = pictures(components, method, frame)->around(place_of(frame));
-  std::map<int32_t, double> by_stream;  // frames that are repeated share their samples
-  for (int place = around.first; place <= around.last; ++place) {
-    const FrameTraits& traits = traits_at(place);
-    by_stream[traits.stream] = traits.samples;
-  }
+double Sequence::joined_samples(int32_t frame) {
+  constexpr uint32_t kJoins = GRADUS_RECONSTRUCTION_REGULARIZED;
+  reconstruct::WindowGrid grid(places_with_neighbours(), settings_.windows);
+  if (last_ < settings_.last) grid.end_at(place_of(last_));
+  const int place = place_of(frame);
+  const reconstruct::FrameRange joined = grid.joined(place);
+  int first = place, last = place;
+  while (first > joined.first && shares_window_with_previous(first, kJoins)) --first;
+  while (last < joined.last && shares_window_with_previous(last + 1, kJoins)) ++last;
+  // Frames that are repeated share their samples, and replayed samples are those of another frame.
+  std::map<int32_t, double> by_stream;
+  for (int other = first; other <= last; ++other) by_stream[traits_at(other).stream] = traits_at(other).fresh_samples;
+  for (int other = first; other <= last; ++other)
+    by_stream.emplace(traits_at(other).replayed_stream, traits_at(other).replayed_samples);
   double sum = 0.0;
   for (const auto& [stream, samples] : by_stream) sum += samples;
   return sum;

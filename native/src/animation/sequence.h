@@ -94,10 +94,9 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   // It starts anew if that picture was already taken or the method has changed.
   reconstruct::SequencePictures* pictures(const std::vector<std::string>& components,
                                           const reconstruct::SequenceMethod& method, int32_t frame);
-  // Returns the number of samples per pixel that the picture of `frame` is made from, those of the frames that are
-  // joined with it included. The arguments are those of pictures().
-  double joined_samples(const std::vector<std::string>& components, const reconstruct::SequenceMethod& method,
-                        int32_t frame);
+  // Returns the number of samples per pixel that REGULARIZED makes the picture of `frame` from, those of the frames
+  // that are joined with it included.
+  double joined_samples(int32_t frame);
   // Removes all reconstructions except those of these groups of components, since the component set may have changed.
   void retain_pictures(const std::vector<std::vector<std::string>>& groups);
   // Returns Tracked if flow can be estimated between the frame at `place` and the previous one, otherwise the cause.

@@ -52,7 +52,7 @@ bool column(const ChainView& view, const Aim& aim, const SpecularChain& centre, 
 
 std::vector<ChainView> view_chains(const CentreView& centres, const GradusSettings& settings,
                                    const lpe::ComponentSet& components, uint32_t wanted,
-                                   const CancelCheck& is_cancelled, const Change* change, float mixed) {
+                                   const CancelCheck& is_cancelled, const Change* change, float non_specular_above) {
   const Region& region = centres.region;
   const auto width = size_t(region.width()), height = size_t(region.height());
   std::vector<int> numbers;
@@ -66,7 +66,8 @@ std::vector<ChainView> view_chains(const CentreView& centres, const GradusSettin
     std::array<SpecularChain, lpe::kMaxComponents> chains;
     for (size_t x = 0; x < width && !is_cancelled(); ++x) {
       const Vec2 film = path::pixel_centre(region.x0 + int32_t(x), region.y0 + int32_t(y));
-      const uint32_t found = tracer.find(film, centres.hits[y * width + x], components, wanted, change, mixed, &chains);
+      const uint32_t found =
+          tracer.find(film, centres.hits[y * width + x], components, wanted, change, non_specular_above, &chains);
       for (size_t k = 0; k < numbers.size(); ++k) {
         if ((found >> numbers[k] & 1) == 0) continue;
         views[k].places[y * width + x] = int32_t(rows[k][y].size());

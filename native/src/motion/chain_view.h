@@ -27,10 +27,11 @@ struct ChainView {
   ChainTracer tracer() const { return {*centres->snapshot, centres->camera, *settings}; }
 };
 // Returns the views of the components whose bits are set in `wanted`, in order. `centres` and `settings` must outlive
-// the views. After cancelling, chains are missing. change, mixed: see ChainTracer::find().
+// the views. After cancelling, chains are missing. change, non_specular_above: see ChainTracer::find().
 std::vector<ChainView> view_chains(
     const CentreView& centres, const GradusSettings& settings, const lpe::ComponentSet& components, uint32_t wanted,
-    const CancelCheck& is_cancelled = [] { return false; }, const Change* change = nullptr, float mixed = 0.0f);
+    const CancelCheck& is_cancelled = [] { return false; }, const Change* change = nullptr,
+    float non_specular_above = 0.0f);
 // Returns a view of the surfaces that the camera sees directly, of any material, and of the sky. Its chains have no
 // smooth vertices.
 ChainView view_surfaces(const CentreView& centres, const GradusSettings& settings, const Change* change);

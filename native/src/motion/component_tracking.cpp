@@ -38,7 +38,7 @@ void append(const ChainMotion& rows, ChainMotion* motion) {
 }
 
 std::vector<ChainMotion> track(const CentreView& from, const ChainTracer& to, const lpe::ComponentSet& components,
-                               uint32_t wanted, float mixed, const CancelCheck& is_cancelled) {
+                               uint32_t wanted, float non_specular_above, const CancelCheck& is_cancelled) {
   Change change(*from.snapshot);
   change.add(to.snapshot());
   const Region& film = from.region;
@@ -47,7 +47,8 @@ std::vector<ChainMotion> track(const CentreView& from, const ChainTracer& to, co
     const Region band{film.x0, y, film.x1, std::min(y + kTrackingBand, film.y1)};
     // The rows above and below are included, since chain_jacobian() needs the chains of neighbouring pixels.
     const CentreView rows = rows_of(from, std::max(y - 1, film.y0), std::min(band.y1 + 1, film.y1));
-    std::vector<ChainView> views = view_chains(rows, to.settings(), components, wanted, is_cancelled, &change, mixed);
+    std::vector<ChainView> views =
+        view_chains(rows, to.settings(), components, wanted, is_cancelled, &change, non_specular_above);
     for (size_t k = 0; k < views.size(); ++k) {
       exclude_directly_seen(&views[k]);
       append(track_chains(views[k], to, band, is_cancelled), &motion[k]);

@@ -110,7 +110,7 @@ struct ChainTracer::Search {
   const lpe::ComponentSet& components;
   int component;
   const Change* change;
-  float mixed;
+  float non_specular_above;
   int surfaces = 0;
 
   bool reaches(lpe::LpeState lpe_state) const { return (components.ahead(lpe_state) >> component & 1) != 0; }
@@ -119,10 +119,11 @@ struct ChainTracer::Search {
     return change != nullptr && change->is_static(ray.ray, hit, ray.state.length);
   }
   // Whether the chain ends here: on a non-specular surface or an emitter whose light belongs to the component.
-  bool ends_at(const Arrival& arrival, lpe::LpeState lpe_state) const {
+  // threshold: probability of class D above which a surface is non-specular.
+  bool ends_at(const Arrival& arrival, lpe::LpeState lpe_state, float threshold) const {
     if (arrival.surely_non_specular) return reaches(components.next(lpe_state, bsdf::ScatterClass::Diffuse));
     const path::Vertex& vertex = arrival.vertex;
-    const bool non_specular = vertex.shade.closures.class_probability(bsdf::ScatterClass::Diffuse) > mixed;
+    const bool non_specular = vertex.shade.closures.class_probability(bsdf::ScatterClass::Diffuse) > threshold;
     return (non_specular && reaches(components.next(lpe_state, bsdf::ScatterClass::Diffuse))) ||
            (!is_black(vertex.shade.emission) && is_lit(lpe_state));
   }
@@ -163,12 +164,13 @@ bool ChainTracer::extend(Search* search, path::PathRay ray, lpe::LpeState lpe_st
 bool ChainTracer::continue_chain(Search* search, const Arrival& arrival, const path::PathRay& ray,
                                  lpe::LpeState lpe_state, SpecularChain* chain) const {
   const path::Vertex& vertex = arrival.vertex;
-  if (search->ends_at(arrival, lpe_state)) {
+  const auto end_here = [&] {
     chain->end = ChainEnd::Surface;
     chain->last = arrival.hit;
     chain->shown = vertex.point.position;
     return true;
-  }
+  };
+  if (search->ends_at(arrival, lpe_state, search->non_specular_above)) return end_here();
   if (arrival.surely_non_specular || chain->signature.length == kMaxChainLength) return false;
   for (const Branch& branch : branches(*search, vertex, ray, lpe_state)) {
     if (!(branch.strength > 0.0f)) continue;
@@ -179,11 +181,12 @@ bool ChainTracer::continue_chain(Search* search, const Arrival& arrival, const p
     *chain = longer;
     return true;
   }
-  return false;
+  // Nothing is seen through the surface: what it scatters in class D is all that it shows.
+  return search->ends_at(arrival, lpe_state, 0.0f) && end_here();
 }
 
 uint32_t ChainTracer::find(const Vec2& film, const geometry::Hit& known, const lpe::ComponentSet& components,
-                           uint32_t wanted, const Change* change, float mixed,
+                           uint32_t wanted, const Change* change, float non_specular_above,
                            std::array<SpecularChain, lpe::kMaxComponents>* chains) const {
   const path::PathRay start = camera_ray(film);
   if (is_none(start.ray)) return 0;
@@ -193,7 +196,7 @@ uint32_t ChainTracer::find(const Vec2& film, const geometry::Hit& known, const l
   uint32_t found = 0;
   for (int c = 0; c < components.count(); ++c) {
     if ((wanted >> c & 1) == 0) continue;
-    Search search{components, c, change, mixed};
+    Search search{components, c, change, non_specular_above};
     SpecularChain& chain = (*chains)[size_t(c)];
     chain = {};
     chain.ray = start;

@@ -50,9 +50,10 @@ class ChainTracer {
   // have one, and stores it at the index of the component in `chains`. Where a surface both reflects and transmits, the
   // chain follows the stronger event that leads to the component. It ends on the first surface that is non-specular or
   // emits light of the component, or in the sky. known: what the camera ray hits. change: nullptr if not known; then no
-  // chain is static. mixed: probability of class D above which a surface counts as non-specular.
+  // chain is static. non_specular_above: probability of class D above which a surface counts as non-specular.
   uint32_t find(const Vec2& film, const geometry::Hit& known, const lpe::ComponentSet& components, uint32_t wanted,
-                const Change* change, float mixed, std::array<SpecularChain, lpe::kMaxComponents>* chains) const;
+                const Change* change, float non_specular_above,
+                std::array<SpecularChain, lpe::kMaxComponents>* chains) const;
   // Traces the chain with a given signature from a film position, up to its last ray, which is not traced. Returns
   // false if there is no such chain.
   bool follow(const Vec2& film, const SpecularSignature& signature, SpecularChain* chain) const;

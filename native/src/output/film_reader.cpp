@@ -1,5 +1,7 @@
 #include "output/film_reader.h"
 
+#include <utility>
+
 #include "base/fault.h"
 #include "output/denoise_combined.h"
 #include "output/light_passes.h"
@@ -34,7 +36,8 @@ Options FilmReader::picture_options() {
   std::string why_not;
   if (own.denoiser == GRADUS_DENOISER_OIDN && !choose_denoiser(GRADUS_DENOISER_AUTO, device_.get(), &why_not)) {
     own.denoiser = GRADUS_DENOISER_NONE;
-    device_->warnings().add("the picture is not denoised, as its render was: " + why_not);
+    if (!std::exchange(lacks_denoiser_, true))
+      device_->warnings().add("the picture is not denoised, as its render was: " + why_not);
   }
   return own;
 }

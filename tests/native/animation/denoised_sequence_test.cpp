@@ -84,8 +84,8 @@ TEST(DenoisedSequence, TheErrorIsScaledByWhatJoinedFramesLeave) {
   for (size_t i = 0; i < plain.size(); ++i) ASSERT_NEAR(error[i], 0.45f * plain[i], 1e-5f * plain[i]) << i;
 }
 
-// The network reads light as it is delivered: twice the exposure is twice the light. The stand-in adds the guides to
-// it, so that their share is found with two exposures.
+// The network reads light as it is delivered: twice the exposure is twice the light. The exposures are so high that
+// what the stand-in adds to the light does not count.
 TEST(DenoisedSequence, ReadsTheExposedPicture) {
   const auto mean_with = [](float exposure) {
     const std::vector<float> combined =
@@ -94,7 +94,6 @@ TEST(DenoisedSequence, ReadsTheExposedPicture) {
     for (size_t i = 0; i < combined.size(); i += 4) sum += combined[i];
     return sum / double(combined.size() / 4);
   };
-  // Geometric means of p·x and p·x + g grow from x to p·x where the guides g are small against the light.
   EXPECT_NEAR(mean_with(2e4f) / mean_with(1e4f), 2.0, 0.01);
 }
 
@@ -154,8 +153,32 @@ TEST(DenoisedSequence, PartsOfAJobMakeTheFramesOfTheWhole) {
   for (int32_t frame = 0; frame <= 8; ++frame) run(whole->sample(pan.at(frame), settings_at(frame)).get());
   const Picture expected = delivered(whole.get(), settings_at(kMiddle)),
                 alone = delivered(sequence_of(kMiddle, kMiddle, 1, folder.path()).get(), settings_at(kMiddle));
-  EXPECT_EQ(alone.stats["denoiser"], "Open Image Denoise 2.7.5");
+  EXPECT_EQ(why(alone.stats), "automatic: a pixel has 18.0 samples");
   EXPECT_EQ(alone.combined, expected.combined);
+}
+
+// Regression: replayed samples counted, though they are those of the frame before.
+TEST(DenoisedSequence, TheAutomaticOneCountsNoReplays) {
+  const Picture replayed = middle_of(9, 2, GRADUS_DENOISER_AUTO, 1.0f,
+                                     [](GradusSettings* s) { s->passes |= uint64_t{1} << GRADUS_PASS_GRADIENT_T; });
+  EXPECT_EQ(why(replayed.stats), "automatic: a pixel has 9.0 samples");
+}
+
+// Regression: after a delivery that failed, the end of the sequence was told to pictures that did not exist.
+TEST(DenoisedSequence, EndsAfterADeliveryThatFailed) {
+  const auto settings_at = [](int32_t frame) { return denoised(frame, 2, GRADUS_DENOISER_AUTO); };
+  const Folder folder;
+  Pan pan(1.0f);
+  const auto sequence = sequence_of(0, 8, 1, folder.path());
+  for (int32_t frame = 0; frame <= 2; ++frame) run(sequence->sample(pan.at(frame), settings_at(frame)).get());
+  const GradusSettings settings = settings_at(0);
+  const auto failed = sequence->deliver(0, &settings);
+  failed->run();
+  EXPECT_NE(failed->outcome(nullptr), GRADUS_OK) << "frames 3 and 4 are missing";
+  sequence->end_at(2);
+  EXPECT_EQ(why(delivered(sequence.get(), settings).stats),
+            "automatic: a pixel has 6.0 samples: below 8 samples, more "
+            "samples reduce the error more than the denoiser");
 }
 
 }  // namespace

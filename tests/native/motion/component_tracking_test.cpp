@@ -109,6 +109,29 @@ TEST_F(ComponentTracking, OfTheDominantFollowsTheStrongerOfDiffuseAndSpecular) {
   }
 }
 
+// A half-glossy wall in a mirror shows its diffuse light where it reflects nothing: the world is black.
+TEST_F(ComponentTracking, OfTheDominantEndsOnAMixedSurfaceThatReflectsNothing) {
+  add_ball(mirror());
+  const auto seen_in_ball = [&](uint64_t walls) {
+    for (const uint32_t wall : {0u, 1u, 2u}) scene_.scene.dress(wall, walls);
+    scene_.scene.move(3, translation(Vec3(0.0f)));
+    const auto from = seen();
+    scene_.scene.move(3, translation(Vec3(0.02f, 0.03f, 0)));
+    const auto to = seen();
+    const motion::ChainMotion found = motion::track_dominant(from->centres, to->chains.tracer(), kNever);
+    size_t count = 0;
+    for (size_t i = 0; i < found.film.size(); ++i)
+      count += from->centres.hits[i].instance == 3 && found.tracking[i] != motion::Tracking::NoPath;
+    return count;
+  };
+  Surface mixed = glossy(0.0f);
+  mixed.glossy = Rgb(0.5f);
+  mixed.diffuse = Rgb(0.3f);
+  const size_t of_grey = seen_in_ball(grey());
+  EXPECT_GT(of_grey, 500u);
+  EXPECT_EQ(seen_in_ball(scene_.material(mixed)), of_grey);
+}
+
 // An object comes into view in the mirror.
 TEST_F(ComponentTracking, IsHiddenByAnObjectThatAppears) {
   add_ball(mirror());

@@ -8,6 +8,7 @@
 
 #include "film/features.h"
 #include "output/denoise_combined.h"
+#include "output/film_reader.h"
 #include "output/oidn_library.h"
 #include "reconstruct/regression/feature_filter.h"
 #include "render/fake_integrator.h"
@@ -288,6 +289,25 @@ TEST_F(DenoisedRender, ACancelDuringItLeavesTheReconstruction) {
   ASSERT_TRUE(render->wait(1.0)) << "continues";
   EXPECT_EQ(render->outcome(nullptr), GRADUS_ERROR_CANCELLED);
   EXPECT_EQ(read(*render, GRADUS_PASS_COMBINED, kAll), plain);
+}
+
+// Regression: a film that was denoised could not be read where there is no denoiser.
+TEST_F(DenoisedRender, IsLeftOutWithOneWarningWhereAFilmIsReadWithoutIt) {
+  GradusSettings settings = settings_with(GRADUS_DENOISER_OIDN);
+  const auto film = finished(settings)->film();
+  setenv("FAKE_OIDN", "old", 1);
+  std::string why_not;
+  if (output::find_oidn({}, &why_not)) GTEST_SKIP() << "this machine has the library";
+  const auto plain = read(*finished(settings_with(GRADUS_DENOISER_NONE)), GRADUS_PASS_COMBINED, kAll);
+  const auto without = device_with(kFake);
+  output::FilmReader reader(film, without);
+  std::vector<float> pixels(plain.size());
+  for (int i = 0; i < 2; ++i) reader.read_pass(GRADUS_PASS_COMBINED, pixels.data());
+  EXPECT_EQ(pixels, plain);
+  std::string warning;
+  ASSERT_TRUE(without->warnings().take(&warning));
+  EXPECT_EQ(warning.find("the picture is not denoised, as its render was: "), 0u) << warning;
+  EXPECT_FALSE(without->warnings().take(&warning));
 }
 
 TEST_F(DenoisedRender, IsRefusedBeforeTheFirstSampleIfMissing) {
