@@ -107,6 +107,16 @@ class LivePicture:
         self.job.engine.update_result(self.result)
 
 
+def upload_last_picture(job: Any, view: str, result: Any) -> None:
+    """Uploads the picture of the frame before, if there is one, after the cancel of an animation.
+
+    Blender begins each frame with an empty result, and the window would lose the picture that the user saw.
+    """
+    pictures = job.session.pictures if job.session is not None and job.engine.is_animation else {}
+    if view in pictures and pictures[view].size == (result.resolution_x, result.resolution_y):
+        pictures[view].upload(result.layers[0])
+
+
 @contextmanager
 def open_result(job: Any, view: str, is_kept: bool = True) -> Iterator[Any]:
     """Opens Blender's result for the job's current view, and lays out the job's buffer for it.
@@ -130,5 +140,7 @@ def open_result(job: Any, view: str, is_kept: bool = True) -> Iterator[Any]:
     finally:
         # Also after an exception, because Blender never frees a result that stays open.
         is_kept = is_kept or job.cancelled
+        if job.cancelled:
+            upload_last_picture(job, view, result)
         engine.end_result(result, cancel=not is_kept)
         job.has_result = job.has_result or is_kept

@@ -32,7 +32,7 @@ from .export import Cancelled as ExportCancelled
 from .export.shutter import shutter_of
 from .failure import Failure
 from .native import Error, GradusError
-from .progress import Display, is_watched, open_result, wait
+from .progress import Display, is_watched, open_result, upload_last_picture, wait
 from .store import FINAL, PREVIEW, Cancelled, Key, Session
 
 _files = output.FrameFiles()
@@ -393,17 +393,14 @@ def frame_finished(engine: Any) -> None:
 def _deliver_last_pictures(job: Job) -> None:
     """Delivers the pictures of the frame before, or empty ones, after a cancel that came before the first sample.
 
-    Without any result, Blender's multilayer writer would crash. Blender begins each frame with an empty result, and the
-    window would lose the picture that the user saw.
+    Without any result, Blender's multilayer writer would crash.
     """
     size = job.engine.resolution_x, job.engine.resolution_y
-    pictures = job.session.pictures if job.session is not None and job.engine.is_animation else {}
     for view in job.views:
         result = job.engine.begin_result(0, 0, *size, layer=job.layer.name, view=view)
         if result is None:
             return
-        if view in pictures and pictures[view].size == (result.resolution_x, result.resolution_y):
-            pictures[view].upload(result.layers[0])
+        upload_last_picture(job, view, result)
         job.engine.end_result(result)
 
 

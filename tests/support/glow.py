@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import numpy as np
@@ -48,6 +49,10 @@ bpy.app.timers.register(tell("WINDOW-READY"), first_interval=1.0)
 """
 
 
+LIMIT = 20.0
+"""Seconds within which the window shows a picture."""
+
+
 def shares(path: Path) -> tuple[float, float]:
     """Returns the shares of the screen that are pure red and pure green."""
     image = oiio.ImageInput.open(str(path))
@@ -61,8 +66,10 @@ def shares(path: Path) -> tuple[float, float]:
 
 def wait_for_picture(blender: window.Window) -> tuple[float, float]:
     """Waits until the window shows the result, during the render or soon after it."""
-    for _ in range(40):
+    end = time.monotonic() + LIMIT
+    while time.monotonic() < end:
         red, green = shares(blender.screenshot())
         if red > 0.02 and green > 0.002:
             return red, green
+        time.sleep(0.1)
     raise AssertionError(f"no picture on the screen: red {red:.4f}, green {green:.4f}\n{blender.log}")
