@@ -129,15 +129,26 @@ bool Sequence::shares_window_with_previous(int place, uint32_t reconstruction) {
          share_windows(before, here, reconstruction);
 }
 
+int Sequence::first_connected(int place, int begin, uint32_t reconstruction) {
+  while (place > begin && shares_window_with_previous(place, reconstruction)) --place;
+  return place;
+}
+
+int Sequence::last_connected(int place, int end, uint32_t reconstruction) {
+  while (place < end && shares_window_with_previous(place + 1, reconstruction)) ++place;
+  return place;
+}
+
 reconstruct::FrameRange Sequence::needs(const GradusSettings& settings) const {
   const reconstruct::FrameRange own = job_places();
   const int place = place_of(settings.frame);
   if (!own.contains(place))
     throw invalid_argument("frame " + std::to_string(settings.frame) + " is not part of the sequence");
   const reconstruct::WindowGrid grid(own, settings_.windows);
+  const uint32_t reconstruction =
+      joins_frames(settings) ? uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED} : settings.reconstruction;
   const auto of_picture = [&](int other) {
-    other = std::clamp(other, own.first, own.last);
-    return joins_frames(settings) ? grid.joined(other) : grid.around(other);
+    return frames_of_picture(grid, std::clamp(other, own.first, own.last), reconstruction);
   };
   // The flow of a frame is found between its picture and those of its neighbours.
   const int reach = settings_.with_flow && settings_.step == 1 ? 1 : 0;
@@ -246,9 +257,8 @@ reconstruct::SequencePictures* Sequence::pictures(const std::vector<std::string>
   if (!pictures || !(pictures->method() == method) || !pictures->has(place)) {
     reconstruct::FrameRange places = places_with_neighbours();
     const reconstruct::WindowGrid grid(places, settings_.windows);
-    const int begin = frames_of_picture(grid, place, method.reconstruction).first;
-    int first = place;
-    while (first > begin && shares_window_with_previous(first, method.reconstruction)) --first;
+    const int begin = frames_of_picture(grid, place, method.reconstruction).first,
+              first = first_connected(place, begin, method.reconstruction);
     if (first > begin) places.first = first;
     auto made =
         std::make_unique<reconstruct::SequencePictures>(places, settings_.windows, source(method, components), method);
@@ -256,9 +266,7 @@ reconstruct::SequencePictures* Sequence::pictures(const std::vector<std::string>
     pictures_[components] = std::move(made);
     if (last_ < settings_.last) pictures->end_at(place_of(last_));
   }
-  int last = place;
-  const int end = pictures->around(place).last;
-  while (last < end && shares_window_with_previous(last + 1, method.reconstruction)) ++last;
+  const int end = pictures->around(place).last, last = last_connected(place, end, method.reconstruction);
   if (last < end) pictures->end_at(last);
   return pictures;
 }
@@ -269,9 +277,7 @@ double Sequence::joined_samples(int32_t frame) {
   if (last_ < settings_.last) grid.end_at(place_of(last_));
   const int place = place_of(frame);
   const reconstruct::FrameRange joined = grid.joined(place);
-  int first = place, last = place;
-  while (first > joined.first && shares_window_with_previous(first, kJoins)) --first;
-  while (last < joined.last && shares_window_with_previous(last + 1, kJoins)) ++last;
+  const int first = first_connected(place, joined.first, kJoins), last = last_connected(place, joined.last, kJoins);
   // Frames that are repeated share their samples, and replayed samples are those of another frame.
   std::map<int32_t, double> by_stream;
   for (int other = first; other <= last; ++other) by_stream[traits_at(other).stream] = traits_at(other).fresh_samples;

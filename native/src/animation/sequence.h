@@ -83,6 +83,10 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   reconstruct::FrameRange places_with_neighbours() const;
   // Whether the frame at `place` can share windows with the previous one. If not, windows end between the two.
   bool shares_window_with_previous(int place, uint32_t reconstruction);
+  // Return the first place from `begin` on, and the last one up to `end`, between which and `place` all frames can
+  // share windows with their neighbours.
+  int first_connected(int place, int begin, uint32_t reconstruction);
+  int last_connected(int place, int end, uint32_t reconstruction);
   const FrameTraits& traits_at(int place);
   // Returns a function that loads stored samples with these components alone, in this order.
   LoadSamples load_samples(FrameSamples kind, const std::vector<std::string>& components) const;

@@ -164,7 +164,7 @@ TEST(DenoisedSequence, TheAutomaticOneCountsNoReplays) {
   EXPECT_EQ(why(replayed.stats), "automatic: a pixel has 9.0 samples");
 }
 
-// Regression: after a delivery that failed, the end of the sequence was told to pictures that did not exist.
+// Regression: after a delivery that failed, end_at() called pictures that did not exist.
 TEST(DenoisedSequence, EndsAfterADeliveryThatFailed) {
   const auto settings_at = [](int32_t frame) { return denoised(frame, 2, GRADUS_DENOISER_AUTO); };
   const Folder folder;

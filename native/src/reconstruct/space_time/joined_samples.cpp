@@ -19,7 +19,8 @@ namespace {
 // Standard deviation, in pixels, of the Gaussian weights by the displacement of a sample from the centre of its pixel,
 // in the means of own values and of features to estimate. Samples count in windows wherever they lie.
 constexpr float kReachOfCentre = 0.2f;
-// The same in the picture that a denoiser reads: a network sharpens better than it removes noise.
+// Standard deviation of these weights in the picture that a denoiser reads. It is larger, because a network sharpens
+// better than it removes noise.
 constexpr float kReachOfSampled = 0.3f;
 constexpr int kFeatureChannels = 7, kAlbedo = 3, kAlbedoChannels = 3;
 
