@@ -33,11 +33,7 @@ struct Pictures {
 };
 
 std::shared_ptr<scene::Device> device_with_stand_in() {
-  GradusDeviceSettings settings{};
-  settings.struct_size = sizeof(settings);
-  settings.threads = 2;
-  settings.denoiser_path = GRADUS_BINARY_DIR "/tests/libfake_oidn.so";
-  return std::make_shared<scene::Device>(settings);
+  return two_threads(GRADUS_BINARY_DIR "/tests/libfake_oidn.so");
 }
 
 Pictures rendered(uint32_t reconstruction, const char* components, Scenario scenario = Scenario::Glass,

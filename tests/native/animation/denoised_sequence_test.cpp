@@ -29,11 +29,7 @@ using Change = std::function<void(GradusSettings*)>;
 
 std::shared_ptr<animation::Sequence> sequence_of(int32_t first, int32_t last, uint32_t step = 1,
                                                  const std::string& folder = "") {
-  GradusDeviceSettings device{};
-  device.struct_size = sizeof(device);
-  device.threads = 2;
-  device.denoiser_path = kFake;
-  return std::make_shared<animation::Sequence>(std::make_shared<scene::Device>(device),
+  return std::make_shared<animation::Sequence>(two_threads(kFake),
                                                animation::SequenceSettings{first, last, step, {}, folder});
 }
 

@@ -104,10 +104,12 @@ inline Delivered deliver(animation::Sequence* sequence, int32_t frame) {
           nlohmann::json::parse(task->stats())};
 }
 
-inline std::shared_ptr<scene::Device> two_threads() {
+// Returns a device of two threads. `denoiser_path`: where its denoiser is, unless it is nullptr.
+inline std::shared_ptr<scene::Device> two_threads(const char* denoiser_path = nullptr) {
   GradusDeviceSettings settings{};
   settings.struct_size = sizeof(settings);
   settings.threads = 2;
+  settings.denoiser_path = denoiser_path;
   return std::make_shared<scene::Device>(settings);
 }
 
