@@ -127,6 +127,24 @@ def test_fireflies_are_trimmed() -> None:
     assert measures.trimmed_mean(measures.error_map(bright, REFERENCE, NONE)) == 0.0
 
 
+def test_rare_light_of_the_reference_does_not_bias_the_trimmed_bias() -> None:
+    """Half of the picture gets its light from one sample in 40: pixels in which both halves lack it are no bias."""
+    shape = (4, 64, 160, 3)
+    level, lit = np.full(shape[:3], 1.0), np.zeros(shape, bool)
+    lit[:, :, :80] = True
+
+    def half(seed: int) -> np.ndarray:
+        found = np.random.default_rng(seed).random((*shape[:3], 1)) < 1.0 / 40.0
+        return np.where(lit, 40.0 * found, 1.0)
+
+    exact, halves = np.ones(shape), (half(1), half(2))
+    measured = found(exact, exact, halves, level=level, checked=slice(0, 4))
+    best = measures._best(measures.noise_map(*halves, level))
+    assert measures.bias_map(exact, exact, halves, level)[best].mean() > 0.02, "the case shows nothing"
+    assert abs(measured["relmse_bias_trimmed"]) < 4.0 * measured["relmse_bias_error"]
+    assert measured["relmse_bias_error"] < 0.3
+
+
 def test_the_wake_is_what_the_shadow_left_in_the_last_frames() -> None:
     level = np.ones((12, 4, 100))
     for frame in range(12):

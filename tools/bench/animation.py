@@ -214,7 +214,7 @@ def main() -> None:
         arguments.scenes = arguments.scenes or ",".join(QUICK)
         arguments.modes, arguments.seeds = list(QUICK_MODES), 2
         arguments.samples = sorted({count for counts in QUICK_MODES.values() for count in counts})
-        arguments.frames, arguments.checked, arguments.reference = 9, 3, 64
+        arguments.frames, arguments.checked, arguments.reference = 9, 3, 256
     bench_each(select(ANIMATIONS, arguments.scenes, arguments.frames), bench_animation, arguments)
 
 
