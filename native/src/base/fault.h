@@ -37,6 +37,7 @@
   X(filter_distances_shifted)                    \
   X(samples_of_another_frame)                    \
   X(displacements_dropped)                       \
+  X(hidden_samples_kept)                         \
   X(light_test_off)                              \
   X(moved_halves_dropped)                        \
   X(network_reads_one_frame)                     \

@@ -16,9 +16,9 @@ void JointRegression::read(int number, const CancelCheck& cancel) {
   const bool repeats = before != frames_.end() && before->second.stream == step.stream;
   auto records = repeats ? before->second.records
                          : std::make_shared<const FrameRecords>(read_records(*open_film_(number, cancel)));
-  // The correspondences of frames that are repeated are not read.
-  film::PixelCorrespondence to_next = repeats ? film::PixelCorrespondence{} : inverse(step.to_previous);
-  frames_.emplace(number, Frame{step.stream, std::move(step.to_previous), std::move(to_next), std::move(records)});
+  // The correspondence of a frame that is repeated is not read.
+  film::PixelCorrespondence to_previous = repeats ? film::PixelCorrespondence{} : std::move(step.to_previous);
+  frames_.emplace(number, Frame{step.stream, std::move(to_previous), std::move(records)});
 }
 
 bool JointRegression::is_repeated(int number) const {
@@ -39,14 +39,14 @@ std::vector<JoinedFrame> JointRegression::move_frames(int number, const HalvedIm
   };
   PixelTrack track = own_pixels(here.width, here.height);
   for (int other = number - 1; other >= numbers.front(); --other) {
-    if (!is_repeated(other + 1)) track = extended(track, frames_.at(other + 1).to_previous);
+    if (!is_repeated(other + 1)) track = extended(track, frames_.at(other + 1).to_previous, here);
     move(other, track);
   }
   // The sums are in one order, whichever of several repeated frames the picture is.
   std::reverse(moved.begin(), moved.end());
   track = own_pixels(here.width, here.height);
   for (int other = number + 1; other <= numbers.back(); ++other) {
-    if (!is_repeated(other)) track = extended(track, frames_.at(other).to_next);
+    if (!is_repeated(other)) track = extended(track, inverse(frames_.at(other).to_previous), here);
     move(other, track);
   }
   return moved;

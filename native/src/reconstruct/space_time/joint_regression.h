@@ -41,8 +41,8 @@ class JointRegression {
  private:
   struct Frame {
     int32_t stream = 0;
-    film::PixelCorrespondence to_previous, to_next;  // `to_next` leads from the frame before to this one
-    std::shared_ptr<const FrameRecords> records;     // frames that are repeated share them
+    film::PixelCorrespondence to_previous;        // empty if the frame is a repeated one
+    std::shared_ptr<const FrameRecords> records;  // frames that are repeated share them
   };
   // Reads a frame unless that was done.
   void read(int number, const CancelCheck& cancel);

@@ -1,8 +1,10 @@
 #include "reconstruct/space_time/pixel_track.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <numeric>
 
+#include "base/fault.h"
 #include "base/rows.h"
 
 namespace gradus::reconstruct {
@@ -10,6 +12,10 @@ namespace {
 
 // Number of rows that one thread extends. A pixel moves by at most one row.
 constexpr int kBand = 32;
+// A surface is nearer than another one if its distance is smaller by more than this share.
+constexpr float kNearer = 0.01f;
+// Adjacent pixels whose sources are further apart than this, in pixels, move in different ways.
+constexpr int kMovesApart = 1;
 
 PixelTrack empty_track(int width, int height) {
   const size_t pixels = size_t(width) * size_t(height);
@@ -21,27 +27,47 @@ float squared_length(const Vec2& v) { return v.x * v.x + v.y * v.y; }
 // Returns the number of whole pixels in a displacement of at most one pixel.
 int whole_pixels(float displacement) { return displacement > 0.5f ? 1 : displacement < -0.5f ? -1 : 0; }
 
-// Puts a pixel of the other frame where it lies: at `displacement` from the centre of pixel (x, y).
-void put(int32_t source, int x, int y, Vec2 displacement, PixelTrack* track) {
+bool is_nearer(float depth, float other) {
+  return depth > 0.0f && !(other > 0.0f && depth >= (1.0f - kNearer) * other);
+}
+
+// Returns whether pixel `to`, (right, up) from pixel `from`, hides what `from` shows and motion leads into it. It does
+// so if it shows a nearer surface that moves in another way, or has none to follow.
+bool hides(const PixelTrack& track, const FrameRecords& picture, size_t from, size_t to, int right, int up) {
+  if (GRADUS_FAULT(hidden_samples_kept)) return false;
+  if (!is_nearer(picture.at(int(to))[kRecordDepth], picture.at(int(from))[kRecordDepth])) return false;
+  const int32_t source = track.source[to], beside = track.source[from];
+  if (source == film::kNoCorrespondence) return true;
+  const int apart_x = source % track.width - beside % track.width - right,
+            apart_y = source / track.width - beside / track.width - up;
+  return std::max(std::abs(apart_x), std::abs(apart_y)) > kMovesApart;
+}
+
+// Puts a pixel of the other frame where it lies: at `displacement` from the centre of pixel (x, y) of a track.
+void put(const PixelTrack& track, const FrameRecords& picture, int32_t source, int x, int y, Vec2 displacement,
+         PixelTrack* result) {
+  const size_t from = size_t(y) * size_t(track.width) + size_t(x);
   const int right = whole_pixels(displacement.x), up = whole_pixels(displacement.y);
   x += right;
   y += up;
-  if (x < 0 || x >= track->width || y < 0 || y >= track->height) return;
+  if (x < 0 || x >= track.width || y < 0 || y >= track.height) return;
   displacement.x -= float(right);
   displacement.y -= float(up);
-  const size_t to = size_t(y) * size_t(track->width) + size_t(x);
-  if (track->source[to] != film::kNoCorrespondence &&
-      squared_length(track->displacement[to]) <= squared_length(displacement))
+  const size_t to = size_t(y) * size_t(track.width) + size_t(x);
+  if (to != from && hides(track, picture, from, to, right, up)) return;
+  if (result->source[to] != film::kNoCorrespondence &&
+      squared_length(result->displacement[to]) <= squared_length(displacement))
     return;
-  track->source[to] = source;
-  track->displacement[to] = displacement;
+  result->source[to] = source;
+  result->displacement[to] = displacement;
 }
 
 Vec2 off_centre(const film::PixelCorrespondence& correspondence, size_t pixel) {
   return correspondence.off_centre.empty() ? Vec2{} : correspondence.off_centre[pixel];
 }
 
-void extend_row(const PixelTrack& track, const film::PixelCorrespondence& correspondence, int y, PixelTrack* result) {
+void extend_row(const PixelTrack& track, const film::PixelCorrespondence& correspondence, const FrameRecords& picture,
+                int y, PixelTrack* result) {
   for (int x = 0; x < track.width; ++x) {
     const size_t pixel = size_t(y) * size_t(track.width) + size_t(x);
     if (track.source[pixel] == film::kNoCorrespondence) continue;
@@ -49,7 +75,7 @@ void extend_row(const PixelTrack& track, const film::PixelCorrespondence& corres
     const int32_t source = correspondence.pixel[there];
     if (source == film::kNoCorrespondence) continue;
     const Vec2 off = off_centre(correspondence, there), at = track.displacement[pixel];
-    put(source, x, y, {at.x + off.x, at.y + off.y}, result);
+    put(track, picture, source, x, y, {at.x + off.x, at.y + off.y}, result);
   }
 }
 
@@ -61,7 +87,8 @@ PixelTrack own_pixels(int width, int height) {
   return track;
 }
 
-PixelTrack extended(const PixelTrack& track, const film::PixelCorrespondence& correspondence) {
+PixelTrack extended(const PixelTrack& track, const film::PixelCorrespondence& correspondence,
+                    const FrameRecords& picture) {
   PixelTrack result = empty_track(track.width, track.height);
   if (correspondence.empty()) return result;
   const int bands = (track.height + kBand - 1) / kBand;
@@ -71,7 +98,7 @@ PixelTrack extended(const PixelTrack& track, const film::PixelCorrespondence& co
              [&](int i) {
                const int first = (2 * i + parity) * kBand;
                for (int y = first; y < std::min(first + kBand, track.height); ++y)
-                 extend_row(track, correspondence, y, &result);
+                 extend_row(track, correspondence, picture, y, &result);
              },
              1);
   }

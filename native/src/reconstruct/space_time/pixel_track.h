@@ -7,6 +7,7 @@
 
 #include "base/types.h"
 #include "film/replay_map.h"
+#include "reconstruct/space_time/frame_records.h"
 
 namespace gradus::reconstruct {
 
@@ -20,9 +21,11 @@ struct PixelTrack {
 
 // Returns the track of the picture's own pixels.
 PixelTrack own_pixels(int width, int height);
-// Extends a track, of frame t, to the frame before or after it. `correspondence` leads from the pixels of frame t to
-// those of that frame. Where two pixels arrive in one, it holds the one that lies nearer to its centre.
-PixelTrack extended(const PixelTrack& track, const film::PixelCorrespondence& correspondence);
+// Extends a track of `picture` from frame t to the frame before or after it. `correspondence` leads from the pixels of
+// frame t to those of that frame. Where two pixels arrive in one, it holds the one that lies nearer to its centre. What
+// lies behind the edge of a nearer surface that moves in another way is left out.
+PixelTrack extended(const PixelTrack& track, const film::PixelCorrespondence& correspondence,
+                    const FrameRecords& picture);
 // Returns the correspondence from the pixels of the frame before to those of frame t.
 film::PixelCorrespondence inverse(const film::PixelCorrespondence& to_previous);
 
