@@ -26,15 +26,18 @@ class PassBuffer:
     def __init__(self) -> None:
         self._values = array("f")
         self._layout: list[tuple[PassInfo | None, int, int]] = []  # pass, first float, floats
+        self._names: list[str] = []  # of Blender's passes
         self.size = (0, 0)
         """Width and height in pixels."""
 
     def prepare(self, passes: Iterable[Any], infos: dict[str, PassInfo], width: int, height: int) -> None:
         """Lays out the buffer for `passes`, whose order Blender keeps. Passes that are not in `infos` stay 0."""
         self._layout = []
+        self._names = []
         self.size = (width, height)
         total = 0
         for render_pass in passes:
+            self._names.append(render_pass.name)
             count = width * height * render_pass.channels
             info = infos.get(render_pass.name)
             if info is not None and info.channels != render_pass.channels:
@@ -55,6 +58,11 @@ class PassBuffer:
                 target = ctypes.cast(base + FLOAT_BYTES * first, ctypes.POINTER(ctypes.c_float))
                 read(info.plane, target, count)
         del memory
+
+    def fits(self, result: Any) -> bool:
+        """Returns whether the buffer has the size and the passes of a result."""
+        names = [render_pass.name for render_pass in result.layers[0].passes]
+        return self.size == (result.resolution_x, result.resolution_y) and self._names == names
 
     def upload(self, layer: Any) -> None:
         """Uploads the buffer to a layer.

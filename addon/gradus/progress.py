@@ -113,7 +113,7 @@ def upload_last_picture(job: Any, view: str, result: Any) -> None:
     Blender begins each frame with an empty result, and the window would lose the picture that the user saw.
     """
     pictures = job.session.pictures if job.session is not None and job.engine.is_animation else {}
-    if view in pictures and pictures[view].size == (result.resolution_x, result.resolution_y):
+    if view in pictures and pictures[view].fits(result):
         pictures[view].upload(result.layers[0])
 
 

@@ -383,7 +383,7 @@ ROWS: tuple[dict[str, Any], ...] = (
             "In animations with components and the reconstruction L2 or L1, compares what mirrors and glass show "
             "with the place where it was a frame before. Off: with the place where the mirror or the glass was. On "
             "leaves less flicker where the two move differently, and takes about a third more time where cameras or"
-            " mirrors move. Regularized follows surfaces alone"
+            " mirrors move. Regularized follows what gives most light"
         ),
     ),
     dict(
@@ -417,7 +417,7 @@ ROWS: tuple[dict[str, Any], ...] = (
         doc=(
             "In animations, makes each frame from its own samples and those of the frames around it, along the "
             "motion of surfaces. This leaves less noise and far less flicker at the same number of samples. It "
-            "takes several times as long to reconstruct and about 180 bytes of memory per pixel and frame, and "
+            "takes several times as long to reconstruct and about 170 bytes of memory per pixel and frame, and "
             "delays the first frame by four, with L2 and L1 by up to nine. With these, half of the samples follow "
             "those of the frame before. It has no effect with the reconstruction None, which Automatic is with the "
             "integrator Path"

@@ -80,3 +80,20 @@ def test_a_pass_of_other_channels_stays_empty() -> None:
     buffer.fill(read)
     buffer.upload(found)
     assert list(found.passes.received) == [0.0, 0.0, 0.0]
+
+
+def test_a_buffer_fits_results_of_its_size_and_passes_alone() -> None:
+    """Regression: after Escape, a frame with other passes than the one before raised, and its result stayed open."""
+
+    def result(width: int, height: int, *names_and_channels: tuple[str, int]) -> SimpleNamespace:
+        layers = [layer(*names_and_channels)]
+        return SimpleNamespace(resolution_x=width, resolution_y=height, layers=layers)
+
+    buffer = pixels.PassBuffer()
+    same = result(2, 1, ("Combined", 4), ("Depth", 1))
+    assert not buffer.fits(same)
+    buffer.prepare(same.layers[0].passes, INFOS, 2, 1)
+    assert buffer.fits(same)
+    assert not buffer.fits(result(1, 2, ("Combined", 4), ("Depth", 1)))
+    assert not buffer.fits(result(2, 1, ("Combined", 4)))
+    assert not buffer.fits(result(2, 1, ("Combined", 4), ("Mist", 1)))

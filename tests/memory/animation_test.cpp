@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "animation/sequence.h"
+#include "animation/sequence_fixture.h"
 #include "memory/allocations.h"
 #include "render/fake_integrator.h"
 #include "render/memory_estimate.h"
@@ -53,6 +54,10 @@ TEST_P(AnimationEstimate, IsNearThePeak) {
   const std::string folder = fs::temp_directory_path() / "gradus-animation-estimate";
   fs::remove_all(folder);
   const render::Plan plan = render::make_plan(settings_of(GetParam(), 0), *test::empty_snapshot());
+  // A pan: frames of equal content would not be sampled, and those of a shot change not joined.
+  test::Pan pan(1.0f);
+  std::vector<std::shared_ptr<const scene::Snapshot>> snapshots;
+  for (int32_t frame = 0; frame < kFrames; ++frame) snapshots.push_back(pan.at(frame));
   const int64_t before = live_bytes();
   forget_peak();
   {
@@ -61,8 +66,7 @@ TEST_P(AnimationEstimate, IsNearThePeak) {
     int32_t sampled = 0;
     for (int32_t frame = 0; frame < kFrames; ++frame) {
       for (; sampled <= sequence->needs(settings_of(GetParam(), frame)).last; ++sampled) {
-        // Frames of equal content would not be sampled.
-        finish(sequence->sample(test::empty_snapshot(uint64_t(sampled) + 1), settings_of(GetParam(), sampled)));
+        finish(sequence->sample(snapshots[size_t(sampled)], settings_of(GetParam(), sampled)));
       }
       const GradusSettings settings = settings_of(GetParam(), frame);
       finish(sequence->deliver(frame, &settings));

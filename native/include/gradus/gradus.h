@@ -559,7 +559,7 @@ typedef struct GradusSettings {
                                        mirrors and glass show with the place where it was a frame before. Off: with
                                        the place where the mirror or the glass was. On leaves less flicker where the
                                        two move differently, and takes about a third more time where cameras or
-                                       mirrors move. Regularized follows surfaces alone. */
+                                       mirrors move. Regularized follows what gives most light. */
 } GradusSettings;
 
 /* Passes of a picture: bit i of GradusSettings.passes asks for pass i. */

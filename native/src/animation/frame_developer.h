@@ -1,5 +1,5 @@
-// Develops a frame of a sequence: its picture comes from the space-time windows that contain the frame, its passes from
-// all of its samples, fresh and replayed.
+// Develops a frame of a sequence: its picture comes from the frames that are reconstructed with it, its passes from all
+// of its samples, fresh and replayed.
 #pragma once
 
 #include <optional>

@@ -15,6 +15,11 @@ uint64_t key_without_frame(GradusSettings settings) {
   return schema::sampling_key(settings);
 }
 
+// Whether the correspondence of a frame leads to the frame before. That of the first frame of a shot does not.
+bool leads_to(const FrameTraits& before, const FrameTraits& frame) {
+  return frame.stream == before.stream || frame.replayed_stream == before.stream;
+}
+
 }  // namespace
 
 FrameTraits traits_of(const film::FilmHeader& fresh, const film::FilmHeader& replayed) {
@@ -28,8 +33,7 @@ FrameTraits traits_of(const film::FilmHeader& fresh, const film::FilmHeader& rep
           fresh.scene_key,
           replayed.replayed_key,
           replayed.replayed_seed,
-          double(samples_taken(fresh)),
-          double(samples_taken(replayed))};
+          double(samples_taken(fresh))};
 }
 
 bool follows_another_frame(const FrameTraits& before, const FrameTraits& frame) {
@@ -40,10 +44,11 @@ bool follows_another_frame(const FrameTraits& before, const FrameTraits& frame) 
 }
 
 bool share_windows(const FrameTraits& before, const FrameTraits& frame, uint32_t reconstruction) {
-  const bool features = before.features == frame.features || reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED;
+  const bool joins = reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
+  if (joins && (before.features != frame.features || !leads_to(before, frame))) return false;
   return before.region == frame.region &&
          (GRADUS_FAULT(frames_with_and_without_alpha_share_windows) || before.channels == frame.channels) &&
-         before.gradients == frame.gradients && features && !follows_another_frame(before, frame);
+         before.gradients == frame.gradients && !follows_another_frame(before, frame);
 }
 
 std::unique_ptr<PreviousFrame> make_previous_frame(std::shared_ptr<const scene::Snapshot> snapshot,

@@ -23,7 +23,7 @@ struct FrameTraits {
   int32_t stream = 0, replayed_stream = 0;     // frames whose random numbers the fresh and the replayed samples use
   uint64_t scene_key = 0, replayed_scene = 0;  // keys of the scenes of this and of the replayed frame; 0: not known
   uint32_t replayed_seed = 0;
-  double fresh_samples = 0.0, replayed_samples = 0.0;  // per pixel
+  double fresh_samples = 0.0;  // per pixel
 };
 // Collects the traits of a frame from the headers of its fresh and its replayed samples.
 FrameTraits traits_of(const film::FilmHeader& fresh, const film::FilmHeader& replayed);

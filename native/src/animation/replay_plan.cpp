@@ -71,8 +71,11 @@ film::PixelCorrespondence correspondence_of_dominant(const motion::CentreView& f
   const bool all_are_rough = from.snapshot->features.min_alpha >= sharp;
   if (all_are_rough || GRADUS_FAULT(joined_light_follows_surfaces)) return surface;
   const motion::ChainTracer tracer{*to.snapshot, to.camera, settings};
-  const motion::ChainMotion motion = motion::track_dominant(from, tracer, cancel);
-  return motion::is_seen_through_smooth(motion) ? motion::match_component(surface, from.region, motion) : surface;
+  motion::ChainMotion motion = motion::track_dominant(from, tracer, cancel);
+  if (cancel()) return {};
+  motion::lose_strayed_chains(from, to, &motion);
+  return motion::is_seen_through_smooth(motion) ? motion::match_dominant(std::move(surface), from.region, motion)
+                                                : surface;
 }
 
 }  // namespace

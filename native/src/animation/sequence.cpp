@@ -272,20 +272,7 @@ reconstruct::SequencePictures* Sequence::pictures(const std::vector<std::string>
 }
 
 double Sequence::joined_samples(int32_t frame) {
-  constexpr uint32_t kJoins = GRADUS_RECONSTRUCTION_REGULARIZED;
-  reconstruct::WindowGrid grid(places_with_neighbours(), settings_.windows);
-  if (last_ < settings_.last) grid.end_at(place_of(last_));
-  const int place = place_of(frame);
-  const reconstruct::FrameRange joined = grid.joined(place);
-  const int first = first_connected(place, joined.first, kJoins), last = last_connected(place, joined.last, kJoins);
-  // Frames that are repeated share their samples, and replayed samples are those of another frame.
-  std::map<int32_t, double> by_stream;
-  for (int other = first; other <= last; ++other) by_stream[traits_at(other).stream] = traits_at(other).fresh_samples;
-  for (int other = first; other <= last; ++other)
-    by_stream.emplace(traits_at(other).replayed_stream, traits_at(other).replayed_samples);
-  double sum = 0.0;
-  for (const auto& [stream, samples] : by_stream) sum += samples;
-  return sum;
+  return traits_at(place_of(frame)).fresh_samples * (2 * settings_.windows.reach() + 1);
 }
 
 void Sequence::retain_pictures(const std::vector<std::vector<std::string>>& groups) {

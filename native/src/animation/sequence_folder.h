@@ -1,5 +1,6 @@
 // The files of a sequence, all in one folder: f<number>.fresh.exr and f<number>.replayed.exr with the fresh and the
-// replayed samples of a frame, and f<number>.json with the settings that were requested for the frame.
+// replayed samples of a frame, and f<number>.json with the settings that were requested for the frame. Where frames are
+// joined, the second file holds no samples, only the pixel correspondence to the frame before.
 #pragma once
 
 #include <atomic>

@@ -42,6 +42,8 @@
   X(moved_halves_dropped)                        \
   X(network_reads_one_frame)                     \
   X(joined_light_follows_surfaces)               \
+  X(crowded_chains_follow_surfaces)              \
+  X(strayed_chains_kept)                         \
   X(lost_light_not_restored)                     \
   X(image_variance_times_4)                      \
   X(image_variance_over_4)                       \

@@ -4,7 +4,9 @@
 #include <bit>
 #include <utility>
 
+#include "base/fault.h"
 #include "motion/pixel_matching.h"
+#include "motion/snapshot_motion.h"
 
 namespace gradus::motion {
 
@@ -105,6 +107,27 @@ film::PixelCorrespondence match_component(const film::PixelCorrespondence& surfa
     correspondence.off_centre[i] = surface.off_centre.empty() ? Vec2(0.0f) : surface.off_centre[i];
   }
   return correspondence;
+}
+
+void lose_strayed_chains(const CentreView& from, const CentreView& to, ChainMotion* motion) {
+  if (GRADUS_FAULT(strayed_chains_kept)) return;
+  const std::vector<uint32_t> instances = matching_instances(*from.snapshot, *to.snapshot);
+  for (size_t i = 0; i < motion->film.size(); ++i) {
+    if (motion->tracking[i] != Tracking::Tracked || !from.hits[i].valid()) continue;
+    const int32_t there = pixel_at(from.region, motion->film[i]);
+    if (there == film::kNoCorrespondence || to.hits[size_t(there)].instance == instances[from.hits[i].instance])
+      continue;
+    motion->tracking[i] = Tracking::Occluded;
+  }
+}
+
+film::PixelCorrespondence match_dominant(film::PixelCorrespondence surface, const Region& region,
+                                         const ChainMotion& motion) {
+  for (size_t i = 0; i < surface.pixel.size() && !GRADUS_FAULT(crowded_chains_follow_surfaces); ++i) {
+    const Tracking tracking = motion.tracking[i];
+    if (tracking == Tracking::Tracked || tracking == Tracking::Occluded) surface.pixel[i] = film::kNoCorrespondence;
+  }
+  return match_component(surface, region, motion);
 }
 
 }  // namespace gradus::motion

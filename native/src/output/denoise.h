@@ -2,7 +2,7 @@
 //
 // The network is guided by the albedo and the normal of the visible surfaces, which it assumes to be free of noise.
 // (The library can denoise these guides first, as Cycles does with its "accurate" prefilter. That takes two thirds of
-// the time; reconstruct/feature_filter.h needs a hundredth of that.)
+// the time; reconstruct/regression/feature_filter.h needs a hundredth of that.)
 #pragma once
 
 #include <cstdint>

@@ -36,7 +36,7 @@ Options FilmReader::picture_options() {
   std::string why_not;
   if (own.denoiser == GRADUS_DENOISER_OIDN && !choose_denoiser(GRADUS_DENOISER_AUTO, device_.get(), &why_not)) {
     own.denoiser = GRADUS_DENOISER_NONE;
-    if (!std::exchange(lacks_denoiser_, true))
+    if (!lacks_denoiser_.exchange(true))
       device_->warnings().add("the picture is not denoised, as its render was: " + why_not);
   }
   return own;

@@ -1,6 +1,7 @@
 // A film that is developed when its passes are read.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -54,7 +55,7 @@ class FilmReader {
   const std::shared_ptr<scene::Device> device_;
   const Region region_;
   const uint32_t threads_;
-  bool lacks_denoiser_ = false;  // whether a warning has said that the denoiser is missing
+  std::atomic<bool> lacks_denoiser_{false};  // whether a warning has said that the denoiser is missing
   std::mutex mutex_;
   DevelopedFilm reconstructed_;  // last reconstruction; has no film until there is one
   DevelopedFilm last_;           // last picture; has no film until there is one

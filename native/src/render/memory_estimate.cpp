@@ -16,6 +16,7 @@ constexpr uint64_t kReconstruction =
 constexpr uint64_t kDenoiser = 900;  // the network of Open Image Denoise, with its input and output
 constexpr uint64_t kReconstructedComponent = 48;  // images of a component, while those of the others are made
 constexpr uint64_t kWindowFrame = 100;            // a frame of a window, while the window is solved
+constexpr uint64_t kJoinedComponent = 16;         // a component of a frame that REGULARIZED joins with others
 
 uint64_t frame_bytes(const Plan& plan) {
   return film::film_bytes_per_pixel(
@@ -41,7 +42,12 @@ uint64_t estimated_memory(const Plan& plan) {
 }
 
 uint64_t estimated_memory(const Plan& plan, const reconstruct::WindowShape& windows) {
-  const uint64_t of_window = uint64_t(windows.frames) * uint64_t(plan.components.count()) * kWindowFrame;
+  const auto components = uint64_t(plan.components.count());
+  // REGULARIZED reads the components of a frame in one record, other methods solve the window of each by itself.
+  const uint64_t of_frame = plan.reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED ? components * kWindowFrame
+                            : components > 1 ? kWindowFrame + components * kJoinedComponent
+                                             : kWindowFrame;
+  const uint64_t of_window = uint64_t(windows.frames) * of_frame;
   return uint64_t(plan.sampled.area()) * (2 * frame_bytes(plan) + reconstruction_bytes(plan) + of_window);
 }
 

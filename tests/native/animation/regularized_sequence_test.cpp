@@ -252,6 +252,22 @@ TEST(C8_RegularizedSequence, AShotChangeSeparatesTheFramesBeforeAndAfter) {
     expect_same(picture, whole.at(frame), frame);
 }
 
+// Regression: a frame that was stored with another step follows another frame than the one before it, and what it
+// follows was taken for that one. The first frame of a shot follows itself.
+TEST(C8_RegularizedSequence, FramesAreJoinedAlongTheirOwnCorrespondencesOnly) {
+  animation::FrameTraits before, frame;
+  before.stream = 7;
+  const auto joins = [&](int32_t stream, int32_t replayed_stream) {
+    frame.stream = stream;
+    frame.replayed_stream = replayed_stream;
+    return animation::share_windows(before, frame, GRADUS_RECONSTRUCTION_REGULARIZED);
+  };
+  EXPECT_TRUE(joins(8, 7));
+  EXPECT_TRUE(joins(7, 5)) << "repeated";
+  EXPECT_FALSE(joins(8, 6)) << "another step";
+  EXPECT_FALSE(joins(8, 8)) << "another shot";
+}
+
 TEST(L1_RegularizedSequence, HasTheSameBitsForAnyNumberOfThreads) {
   const auto with_threads = [](uint32_t threads) {
     Pan pan(1.3f);

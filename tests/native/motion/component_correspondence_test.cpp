@@ -63,6 +63,17 @@ TEST_F(ComponentCorrespondence, OfTwoChainsTheNearerToTheCentreHasThePixel) {
   EXPECT_EQ(correspondence(static_), (Row{0, 1, 3, -1, 4, 5}));
 }
 
+// Regression: in animations, lines stood in mirrors that turn: pixels whose chain had no place followed the mirror.
+TEST_F(ComponentCorrespondence, OfTheDominantNeverFollowsASurfaceThatShowsTrackedChains) {
+  chain(1, 3.9f);
+  chain(2, 3.6f);
+  chain(4, 6.5f);
+  chain(5, 1.0f, motion::Tracking::Gone);
+  EXPECT_EQ(motion::match_dominant({static_}, kRow, motion_).pixel, (Row{0, -1, 3, -1, -1, 5}));
+  chain(5, 1.0f, motion::Tracking::Occluded);
+  EXPECT_EQ(motion::match_dominant({static_}, kRow, motion_).pixel, (Row{0, -1, 3, -1, -1, -1}));
+}
+
 TEST_F(ComponentCorrespondence, KeepTheEndsOfDisplacements) {
   chain(1, 2.375f);
   chain(4, 4.5f);

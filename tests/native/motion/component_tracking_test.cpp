@@ -2,6 +2,8 @@
 // nothing is searched in a static scene.
 #include "motion/component_tracking.h"
 
+#include <optional>
+
 #include <gtest/gtest.h>
 
 #include "motion/motion_scene.h"
@@ -107,6 +109,31 @@ TEST_F(ComponentTracking, OfTheDominantFollowsTheStrongerOfDiffuseAndSpecular) {
     EXPECT_GT(all, 500u);
     EXPECT_GT(same, all * 95 / 100);
   }
+}
+
+// Regression: in animations, lines stood in mirrors that turn: the pixels beside the mirror's edge stood in it.
+TEST_F(ComponentTracking, OfTheDominantEndsBesideTheEdgeOfItsMirror) {
+  add_ball(mirror());
+  const auto frame = seen();
+  const std::vector<geometry::Hit>& hits = frame->centres.hits;
+  std::optional<size_t> inside, beside;
+  for (size_t i = 0; i < hits.size() && !(inside && beside); ++i) {
+    if (!hits[i].valid()) continue;
+    if (!inside) inside = i;
+    if (hits[i].instance != hits[*inside].instance) beside = i;
+  }
+  ASSERT_TRUE(inside && beside);
+  motion::ChainMotion chains;
+  chains.film.assign(hits.size(), Vec2(-1.0f));
+  chains.tracking.assign(hits.size(), motion::Tracking::Tracked);
+  const auto arrives_in = [&](size_t pixel) {
+    chains.film[*inside] = motion::centre_of(frame->centres.region, pixel);
+    motion::ChainMotion left = chains;
+    motion::lose_strayed_chains(frame->centres, frame->centres, &left);
+    return left.tracking[*inside];
+  };
+  EXPECT_EQ(arrives_in(*inside), motion::Tracking::Tracked);
+  EXPECT_EQ(arrives_in(*beside), motion::Tracking::Occluded);
 }
 
 // A half-glossy wall in a mirror shows its diffuse light where it reflects nothing: the world is black.

@@ -8,9 +8,6 @@
 namespace gradus::reconstruct {
 namespace {
 
-// Maximum magnitude of a pixel in median luminances, so that sums of its square fit in a float.
-constexpr float kMax = 1e12f;
-
 bool is_known(const Field& field) {
   for (int y = 0; y < field.height(); ++y) {
     for (int c = 0; c < field.channels(); ++c) {
@@ -33,7 +30,9 @@ void guess_noise(HalvedImage* image) {
 
 void normalise(float scale, HalvedImage* image) {
   for (Field* field : {&image->mean, &image->half_difference}) {
-    for_values(field, [scale](float& value, int, int, int) { value = std::clamp(value / scale, -kMax, kMax); });
+    for_values(field, [scale](float& value, int, int, int) {
+      value = std::clamp(value / scale, -kMaxInMedians, kMaxInMedians);
+    });
   }
 }
 

@@ -47,7 +47,9 @@ HalvedImage read_halves(const film::Film& film, const SumsAt& sums_at) {
   return image;
 }
 
-// Divides both images by `scale` and clamps them to ±1e12.
+// Largest magnitude of a pixel in median luminances, so that sums of its square fit in a float.
+inline constexpr float kMaxInMedians = 1e12f;
+// Divides both images by `scale` and clamps them to ±kMaxInMedians.
 void normalise(float scale, HalvedImage* image);
 
 }  // namespace gradus::reconstruct

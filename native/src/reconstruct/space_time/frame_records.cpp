@@ -1,5 +1,6 @@
 #include "reconstruct/space_time/frame_records.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/rows.h"
@@ -36,14 +37,15 @@ FrameRecords read_records(const film::Film& film) {
   normalise(frame.scale, &relative);
   const Field basis = regression_features(features, 1.0f);
   const PixelWeights weights = weigh_pixels(relative);
+  const float largest = std::min(kMaxInMedians * frame.scale, kMaxFloat);
   frame.pixels.resize(size_t(frame.width) * size_t(frame.height));
   for_rows(frame.height, [&](int y) {
     for (int x = 0; x < frame.width; ++x) {
       const size_t i = size_t(y) * size_t(frame.width) + size_t(x);
       float* to = frame.pixels[i].values;
       for (int c = 0; c < 3; ++c) {
-        to[kRecordMean + c] = image.mean.row(y, c)[x];
-        to[kRecordHalfDifference + c] = image.half_difference.row(y, c)[x];
+        to[kRecordMean + c] = std::clamp(image.mean.row(y, c)[x], -largest, largest);
+        to[kRecordHalfDifference + c] = std::clamp(image.half_difference.row(y, c)[x], -largest, largest);
       }
       for (int c = 0; c < kFeatureCount; ++c) to[kRecordFeatures + c] = basis.row(y, c)[x];
       to[kRecordDepth] = is_finite(features.depth.values[i]) ? features.depth.values[i] : 0.0f;

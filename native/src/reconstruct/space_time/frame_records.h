@@ -46,11 +46,15 @@ struct FrameRecords {
   }
 };
 
-// Returns the scale of a frame over that of the picture, within a range whose squares fit in floats. Lights that differ
-// by more are not the same.
+// Largest ratio of the scales of two frames whose lights are compared. Its square fits in a float.
+inline constexpr float kMaxRatio = 1e6f;
+// Returns the scale of a frame over that of the picture, within the range of lights that are compared.
 inline float relative_scale(const FrameRecords& frame, const FrameRecords& picture) {
-  constexpr float kMax = 1e6f;
-  return std::clamp(frame.scale / picture.scale, 1.0f / kMax, kMax);
+  return std::clamp(frame.scale / picture.scale, 1.0f / kMaxRatio, kMaxRatio);
+}
+// Returns whether light of the frame, in units of the picture, is finite. Lights that differ by more are not the same.
+inline bool is_comparable(const FrameRecords& frame, const FrameRecords& picture) {
+  return frame.scale <= kMaxRatio * picture.scale;
 }
 
 // Throws `invalid_operation` if the film has no features.

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "base/error.h"
 #include "base/fault.h"
 #include "reconstruct/regularized.h"
 
@@ -18,6 +19,8 @@ void JointRegression::read(int number, const CancelCheck& cancel) {
                          : std::make_shared<const FrameRecords>(read_records(*open_film_(number, cancel)));
   // The correspondence of a frame that is repeated is not read.
   film::PixelCorrespondence to_previous = repeats ? film::PixelCorrespondence{} : std::move(step.to_previous);
+  if (!to_previous.empty() && to_previous.pixel.size() != records->pixels.size())
+    throw invalid_operation("the pixel correspondence of a frame has another size than its film");
   frames_.emplace(number, Frame{step.stream, std::move(to_previous), std::move(records)});
 }
 
@@ -35,6 +38,7 @@ std::vector<JoinedFrame> JointRegression::move_frames(int number, const HalvedIm
   const auto move = [&](int other, const PixelTrack& track) {
     if (!std::binary_search(numbers.begin(), numbers.end(), other) || cancel()) return;
     const FrameRecords& records = *frames_.at(GRADUS_FAULT(samples_of_another_frame) ? number : other).records;
+    if (!is_comparable(records, here)) return;
     moved.push_back({&records, move_samples(records, track, here, regressed)});
   };
   PixelTrack track = own_pixels(here.width, here.height);

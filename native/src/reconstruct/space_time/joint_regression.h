@@ -46,7 +46,7 @@ class JointRegression {
   };
   // Reads a frame unless that was done.
   void read(int number, const CancelCheck& cancel);
-  // Returns whether a frame has the samples of the one before, unless that is unknown.
+  // Returns whether a frame is known to have the samples of the one before.
   bool is_repeated(int number) const;
   // Returns the frames `numbers`, moved to frame `number`, whose own image is `image`.
   std::vector<JoinedFrame> move_frames(int number, const HalvedImage& image, const std::vector<int>& numbers,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/fault.h"
+#include "base/types.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
 
@@ -35,6 +36,7 @@ Field test(const Field& changes, int radius) {
     for (int c = 0; c < kChangeVariance; ++c) square += means.row(y, c)[x] * means.row(y, c)[x];
     square *= float(count);
     const float variance = means.row(y, kChangeVariance)[x];
+    if (!is_finite(square)) return 0.0f;
     if (square <= kSame * variance) return 1.0f;
     return variance > 0.0f ? std::max((kOther - square / variance) / (kOther - kSame), 0.0f) : 0.0f;
   });
@@ -48,7 +50,7 @@ Field test_all(const int (&radii)[N], Field* changes) {
   for (const int radius : radii) {
     const Field share = test(*changes, radius);
     scale_by(share, &kept);
-    for_values(changes, [&](float& value, int x, int y, int) { value *= share.row(y)[x] > 0.0f ? 1.0f : 0.0f; });
+    for_values(changes, [&](float& value, int x, int y, int) { value = share.row(y)[x] > 0.0f ? value : 0.0f; });
   }
   return kept;
 }

@@ -35,8 +35,7 @@ int WindowGrid::last_with(int frame) const { return std::min(last_, window_that_
 
 FrameRange WindowGrid::joined(int frame) const {
   const FrameRange shared = around(frame);
-  const int reach = (shape_.frames - 1) / 2;
-  return {std::max(shared.first, frame - reach), std::min(shared.last, frame + reach)};
+  return {std::max(shared.first, frame - shape_.reach()), std::min(shared.last, frame + shape_.reach())};
 }
 
 float WindowGrid::share(int window, int frame) const {

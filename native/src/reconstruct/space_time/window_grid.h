@@ -11,6 +11,8 @@ namespace gradus::reconstruct {
 struct WindowShape {
   int frames = 10, overlap = 5;
   int step() const { return frames - overlap; }
+  // Number of frames to each side of a picture whose samples REGULARIZED joins with its own.
+  int reach() const { return (frames - 1) / 2; }
   bool operator==(const WindowShape&) const = default;
 };
 
@@ -36,8 +38,7 @@ class WindowGrid {
   int last_with(int frame) const;
   // Returns all frames of the windows that contain `frame`.
   FrameRange around(int frame) const { return {frames(first_with(frame)).first, frames(last_with(frame)).last}; }
-  // Returns the frames whose samples REGULARIZED joins with those of `frame`: half a window to each side, of those
-  // `around`.
+  // Returns the frames whose samples REGULARIZED joins with those of `frame`: those within reach, of those `around`.
   FrameRange joined(int frame) const;
   bool contains(int frame) const { return range_.contains(frame); }
   // Returns the share of a window in a frame's image: a Hann window over the frames that two windows share, where the

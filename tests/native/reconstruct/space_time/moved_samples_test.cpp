@@ -61,6 +61,16 @@ TEST(C5_MovedSamples, DifferencesAreComparedWithTheNoiseOfBothFrames) {
   }
 }
 
+// Regression: light beyond the range of floats made the shares of all pixels around it not a number.
+TEST(BadInput_MovedSamples, LightWithoutBoundIsDropped) {
+  reconstruct::FrameRecords bright = frame(1.0f, 0.1f, 1e-3f);
+  const int lit = 7 * kWidth + 10;
+  bright.pixels[size_t(lit)].values[reconstruct::kRecordMean] = 1e37f;
+  const reconstruct::MovedSamples samples = moved(bright, frame(1.0f, 0.1f, 1e-3f));
+  EXPECT_FALSE(any_value(samples.kept, [](float share) { return !(share >= 0.0f && share <= 1.0f); }));
+  EXPECT_EQ(samples.kept.row(3)[5], 0.0f);
+}
+
 // Depths are those that the picture sees; where none is known they stay.
 TEST(B2_MovedSamples, DepthsAreThoseOfThePicture) {
   reconstruct::FrameRecords there = frame(1.0f, 0.1f, 1.0f), here = there;
