@@ -59,6 +59,15 @@ std::vector<ChainMotion> track(const CentreView& from, const ChainTracer& to, co
   return motion;
 }
 
+// Returns whether a pixel beside this one shows another instance at its centre: the two may share this pixel.
+bool is_at_edge(const CentreView& view, size_t pixel) {
+  const auto width = size_t(view.region.width());
+  const size_t x = pixel % width;
+  const auto differs = [&](size_t other) { return view.hits[other].instance != view.hits[pixel].instance; };
+  return (x > 0 && differs(pixel - 1)) || (x + 1 < width && differs(pixel + 1)) ||
+         (pixel >= width && differs(pixel - width)) || (pixel + width < view.hits.size() && differs(pixel + width));
+}
+
 }  // namespace
 
 std::vector<ChainMotion> track_components(const CentreView& from, const ChainTracer& to,
@@ -115,9 +124,9 @@ void lose_strayed_chains(const CentreView& from, const CentreView& to, ChainMoti
   for (size_t i = 0; i < motion->film.size(); ++i) {
     if (motion->tracking[i] != Tracking::Tracked || !from.hits[i].valid()) continue;
     const int32_t there = pixel_at(from.region, motion->film[i]);
-    if (there == film::kNoCorrespondence || to.hits[size_t(there)].instance == instances[from.hits[i].instance])
-      continue;
-    motion->tracking[i] = Tracking::Occluded;
+    if (there == film::kNoCorrespondence) continue;
+    const bool shows = to.hits[size_t(there)].instance == instances[from.hits[i].instance];
+    if (!shows || (is_at_edge(to, size_t(there)) && !is_at_edge(from, i))) motion->tracking[i] = Tracking::Occluded;
   }
 }
 

@@ -28,8 +28,9 @@ bool is_seen_through_smooth(const ChainMotion& motion);
 // over surfaces.
 film::PixelCorrespondence match_component(const film::PixelCorrespondence& surface, const Region& region,
                                           const ChainMotion& motion);
-// Gives chains the tracking Occluded that arrive in a pixel whose centre does not show the first of their smooth
-// surfaces, as beside the edge of a mirror that turns: that pixel shows other light.
+// Gives chains the tracking Occluded that arrive in a pixel which shows other light: its centre does not show the first
+// of their smooth surfaces, or that ends there and did not in the pixel from which the chain comes. Such chains are
+// those of a mirror that turns, at its edges.
 void lose_strayed_chains(const CentreView& from, const CentreView& to, ChainMotion* motion);
 // Returns the correspondence of all light of a pixel. motion: result of track_dominant(). Pixels whose chain is tracked
 // or occluded never follow the surface, which leads to other light: where several chains lead to one pixel, that would

@@ -132,8 +132,10 @@ TEST_F(ComponentTracking, OfTheDominantEndsBesideTheEdgeOfItsMirror) {
     motion::lose_strayed_chains(frame->centres, frame->centres, &left);
     return left.tracking[*inside];
   };
-  EXPECT_EQ(arrives_in(*inside), motion::Tracking::Tracked);
+  EXPECT_EQ(arrives_in(*inside), motion::Tracking::Tracked) << "the same pixel, at the edge or not";
   EXPECT_EQ(arrives_in(*beside), motion::Tracking::Occluded);
+  ASSERT_EQ(hits[*beside - 1].instance, hits[*inside].instance);
+  EXPECT_EQ(arrives_in(*beside - 1), motion::Tracking::Occluded) << "at the edge";
 }
 
 // A half-glossy wall in a mirror shows its diffuse light where it reflects nothing: the world is black.
