@@ -20,8 +20,8 @@ Halves = tuple[np.ndarray, np.ndarray]
 MOVES = 0.5  # pixels per frame from which a pixel counts as moving
 SAME_POINT = 1.0  # pixels by which the motion of two frames may disagree at the same point
 TRIMMED = 1e-3  # share of the worst pixels that a trimmed mean leaves out
-UNCLEAR = 1e-2  # share of the pixels that trimmed biases leave out because the reference is noisy around them
-CLEAR_SIDE = 16  # side in pixels of the blocks in which the noise of a reference is judged
+NOISY_BLOCKS = 1e-2  # share of the blocks of pixels that a trimmed bias leaves out, those of the noisiest reference
+BLOCK_SIDE = 16  # side in pixels of the blocks in which the noise of a reference is judged
 ANSWERED = 0.05  # share of a light below which a frame counts as having followed its change
 SHADED = 0.6  # share of a pixel's highest level below which the pixel lies in the passing shadow
 WAKE = 4  # frames for which a pixel that a shadow has left belongs to its wake
@@ -52,7 +52,7 @@ def noise_and_bias(
     seeds differ most, and the bias also the blocks in which the halves do.
     """
     noise, bias = noise_map(*seeds, level), bias_map(*(seed[checked] for seed in seeds), halves, level[checked])
-    kept = _best(noise[checked]) & _clear(noise_map(*halves, level[checked]))
+    kept = _best(noise[checked]) & _without_noisy_blocks(noise_map(*halves, level[checked]))
     found = {"noise": noise.mean(), "bias": bias.mean(), "bias_error": bias.std() / np.sqrt(bias.size)}
     found |= {"noise_trimmed": noise[_best(noise)].mean(), "bias_trimmed": bias[kept].mean()}
     for name, trimmed in (("", ""), ("trimmed", "_trimmed")):
@@ -79,16 +79,16 @@ def _changes(images: np.ndarray) -> np.ndarray:
     return np.diff(images, axis=0)
 
 
-def _clear(noise: np.ndarray) -> np.ndarray:
+def _without_noisy_blocks(noise: np.ndarray) -> np.ndarray:
     """Returns a mask without the blocks of pixels in which a reference has most noise.
 
     Blocks decide, not pixels. Where rare paths bring most of the light, the pixels in which two halves of a reference
     agree are those that both lack it, and any right picture would seem too bright there.
     """
     _, height, width = noise.shape
-    rows, columns = np.arange(0, height, CLEAR_SIDE), np.arange(0, width, CLEAR_SIDE)
-    mask = _without_largest(np.add.reduceat(np.add.reduceat(noise, rows, axis=1), columns, axis=2), UNCLEAR)
-    return mask.repeat(CLEAR_SIDE, axis=1).repeat(CLEAR_SIDE, axis=2)[:, :height, :width]
+    rows, columns = np.arange(0, height, BLOCK_SIDE), np.arange(0, width, BLOCK_SIDE)
+    mask = _without_largest(np.add.reduceat(np.add.reduceat(noise, rows, axis=1), columns, axis=2), NOISY_BLOCKS)
+    return mask.repeat(BLOCK_SIDE, axis=1).repeat(BLOCK_SIDE, axis=2)[:, :height, :width]
 
 
 def _best(squares: np.ndarray) -> np.ndarray:

@@ -1,7 +1,7 @@
 // Finds for each pixel the pixel of the next frame that shows the same surface point: the map φ of temporal gradients
-// (Manzi et al. 2016, Temporal Gradient-Domain Path Tracing, section 4.2). Temporal
-// gradients only compare the pixels, so that a wrong correspondence increases their variance, and nothing else. Samples
-// that REGULARIZED joins along a wrong one are dropped if their light differs by more than noise.
+// (Manzi et al. 2016, Temporal Gradient-Domain Path Tracing, section 4.2). Temporal gradients only compare the pixels,
+// so that a wrong correspondence increases their variance, and nothing else. Samples that REGULARIZED joins along a
+// wrong one are dropped if their light differs by more than noise.
 #pragma once
 
 #include <vector>

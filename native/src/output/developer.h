@@ -24,8 +24,8 @@ reconstruct::ReconstructionOutputs wanted_images(const GradusSettings& settings)
 
 class Developer {
  public:
-  // Returns reconstructed images of the whole film region. Those of an animation are made from
-  // several frames.
+  // Returns reconstructed images of the whole film region. Those of an animation are made from several
+  // frames.
   using Source = std::function<reconstruct::Reconstructed(reconstruct::SolveReport* report)>;
 
   // `denoiser` may be nullptr if no options name one. The steps run on `threads` threads and throw Error CANCELLED if

@@ -43,10 +43,10 @@ uint64_t estimated_memory(const Plan& plan) {
 
 uint64_t estimated_memory(const Plan& plan, const reconstruct::WindowShape& windows) {
   const auto components = uint64_t(plan.components.count());
-  // REGULARIZED reads the components of a frame in one record, other methods solve the window of each by itself.
-  const uint64_t of_frame = plan.reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED ? components * kWindowFrame
-                            : components > 1 ? kWindowFrame + components * kJoinedComponent
-                                             : kWindowFrame;
+  // REGULARIZED holds one record for all components of a frame. Other methods solve the window of each by itself.
+  const uint64_t of_components = components > 1 ? components * kJoinedComponent : 0;
+  const bool joins = plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
+  const uint64_t of_frame = joins ? kWindowFrame + of_components : components * kWindowFrame;
   const uint64_t of_window = uint64_t(windows.frames) * of_frame;
   return uint64_t(plan.sampled.area()) * (2 * frame_bytes(plan) + reconstruction_bytes(plan) + of_window);
 }

@@ -49,6 +49,7 @@ std::vector<JoinedFrame> JointRegression::move_frames(int number, const HalvedIm
   // The sums are in one order, whichever of several repeated frames the picture is.
   std::reverse(moved.begin(), moved.end());
   track = own_pixels(here.width, here.height);
+  // Inverse correspondences are computed for each picture. Holding them would take 12 bytes per pixel and frame.
   for (int other = number + 1; other <= numbers.back(); ++other) {
     if (!is_repeated(other)) track = extended(track, inverse(frames_.at(other).to_previous), here);
     move(other, track);

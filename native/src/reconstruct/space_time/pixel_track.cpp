@@ -27,9 +27,8 @@ float squared_length(const Vec2& v) { return v.x * v.x + v.y * v.y; }
 // Returns the number of whole pixels in a displacement of at most one pixel.
 int whole_pixels(float displacement) { return displacement > 0.5f ? 1 : displacement < -0.5f ? -1 : 0; }
 
-bool is_nearer(float depth, float other) {
-  return depth > 0.0f && !(other > 0.0f && depth >= (1.0f - kNearer) * other);
-}
+// Distances of 0 are those of the sky, which is behind everything.
+bool is_nearer(float depth, float other) { return depth > 0.0f && (other <= 0.0f || depth < (1.0f - kNearer) * other); }
 
 // Returns whether pixel `to`, (right, up) from pixel `from`, hides what `from` shows and motion leads into it. It does
 // so if it shows a nearer surface that moves in another way, or has none to follow.
