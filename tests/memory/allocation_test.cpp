@@ -1,4 +1,6 @@
 // Refuses each allocation of a frame in turn, to test that every failure is reported and leaks nothing.
+#include <thread>
+
 #include "api/registry.h"
 #include "memory/allocations.h"
 #include "memory/sequence.h"
@@ -33,6 +35,17 @@ Attempt attempt(uint64_t k, const Call& call) {
   return result;
 }
 
+// Makes a call while its k-th allocation is refused, and again if it keeps allocations: Embree's threads keep some when
+// they first take part in a build, which on a busy machine is late. What a call leaks, it leaks every time.
+template <class Call>
+Attempt attempt_without_new_threads(uint64_t k, const Call& call) {
+  Attempt result = attempt(k, call);
+  for (unsigned late = 0; late < std::thread::hardware_concurrency() && result.kept > 0; ++late) {
+    result = attempt(k, call);
+  }
+  return result;
+}
+
 class G5_Allocations : public ::testing::TestWithParam<uint32_t> {};
 
 // Every refusal gives OUT_OF_MEMORY and no leak, and a render after all refusals has the bits of the first one.
@@ -43,7 +56,7 @@ TEST_P(G5_Allocations, EachMayBeRefused) {
   const uint64_t step = test::full_run() ? 1 : 7;
   int refusals = 0;
   for (uint64_t k = 1;; k += step, ++refusals) {
-    const Attempt a = attempt(k, [&] { return render_once(device, GetParam(), &image); });
+    const Attempt a = attempt_without_new_threads(k, [&] { return render_once(device, GetParam(), &image); });
     EXPECT_EQ(a.code, a.hit ? GRADUS_ERROR_OUT_OF_MEMORY : GRADUS_OK) << "allocation " << k << ": " << a.text;
     EXPECT_LE(a.kept, 0) << "allocation " << k;  // may fall: see expect_no_growth()
     if (!a.hit) break;
