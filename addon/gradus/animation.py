@@ -159,8 +159,9 @@ class Animation:
             self._give_up(job, "Python handlers changed what was sampled ahead", found)
             return False
         first, last = self._needs(job)
-        begins = not self._begun
-        if begins:  # the store has the earlier frames
+        # With a store, the job begins after frames that it holds, and begins again after those that Blender skips.
+        begins = not self._begun or first > self._next
+        if begins:
             self._next = max(self._next, first)
         missing: list[int] = []
         if self._fault is None:

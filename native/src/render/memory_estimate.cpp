@@ -17,6 +17,7 @@ constexpr uint64_t kDenoiser = 900;  // the network of Open Image Denoise, with 
 constexpr uint64_t kReconstructedComponent = 48;  // images of a component, while those of the others are made
 constexpr uint64_t kWindowFrame = 100;            // a frame of a window, while the window is solved
 constexpr uint64_t kJoinedComponent = 16;         // a component of a frame that REGULARIZED joins with others
+constexpr uint64_t kJoinedAlpha = 8;              // the alpha of such a frame
 
 uint64_t frame_bytes(const Plan& plan) {
   return film::film_bytes_per_pixel(
@@ -44,7 +45,9 @@ uint64_t estimated_memory(const Plan& plan) {
 uint64_t estimated_memory(const Plan& plan, const reconstruct::WindowShape& windows) {
   const auto components = uint64_t(plan.components.count());
   // REGULARIZED holds one record for all components of a frame. Other methods solve the window of each by itself.
-  const uint64_t of_components = components > 1 ? components * kJoinedComponent : 0;
+  const bool has_alpha = plan.channels > 3;
+  const uint64_t of_components =
+      (components > 1 || has_alpha ? components * kJoinedComponent : 0) + (has_alpha ? kJoinedAlpha : 0);
   const bool joins = plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
   const uint64_t of_frame = joins ? kWindowFrame + of_components : components * kWindowFrame;
   const uint64_t of_window = uint64_t(windows.frames) * of_frame;

@@ -22,6 +22,23 @@ Field planes_of(const FrameRecords& frame, int first, int count) {
   return planes;
 }
 
+std::vector<AlphaRecord> read_alpha(const film::Film& film) {
+  const HalvedImage alpha = read_halves(film, [&](size_t i) {
+    HalfSums sums{};
+    for (const film::ComponentPlanes& component : film.components) {
+      for (size_t half = 0; half < film::kHalves; ++half) sums[half] += Rgb(component.primal[half][i][3]);
+    }
+    return sums;
+  });
+  std::vector<AlphaRecord> records(size_t(alpha.mean.width()) * size_t(alpha.mean.height()));
+  for_rows(alpha.mean.height(), [&](int y) {
+    AlphaRecord* to = records.data() + size_t(y) * size_t(alpha.mean.width());
+    for (int x = 0; x < alpha.mean.width(); ++x)
+      to[x] = {alpha.mean.row(y)[x], mean_of_squares(alpha.half_difference, x, y)};
+  });
+  return records;
+}
+
 }  // namespace
 
 FrameRecords read_records(const film::Film& film) {
@@ -54,6 +71,7 @@ FrameRecords read_records(const film::Film& film) {
       to[kRecordVariance] = mean_of_squares(relative.half_difference, x, y);
     }
   });
+  if (film.color_channels > 3) frame.alpha = read_alpha(film);
   if (film.components.size() > 1 || film.color_channels > 3) {
     for (size_t k = 0; k < film.components.size(); ++k) frame.components.push_back(read_sampled(film, int(k), 1.0f));
   }

@@ -30,12 +30,17 @@ struct alignas(64) SampleRecord {
   float values[kRecordSize];
 };
 
+struct AlphaRecord {
+  float mean, variance;
+};
+
 struct FrameRecords {
   int width = 0, height = 0;
   float scale = 1.0f;  // median luminance
   float typical_depth = 1.0f;
   bool has_differences = false;  // whether the film has sampled differences
   std::vector<SampleRecord> pixels;
+  std::vector<AlphaRecord> alpha;  // of each pixel; empty if the film is opaque
   // All channels of each component, in the units of the film; empty unless there are several components or alpha.
   std::vector<Field> components;
 

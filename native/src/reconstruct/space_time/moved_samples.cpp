@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <utility>
+#include <vector>
 
 #include "base/rows.h"
 #include "reconstruct/box_mean.h"
@@ -15,11 +16,34 @@ namespace {
 
 // Radius, in cells, of the squares in which the mean depth of a frame's samples is compared with that of the picture.
 constexpr int kDepthRadius = 1;
+// Radius, in pixels, of the squares over which the alpha of the picture is smoothed, to predict how that of samples
+// depends on where they lie in their pixels.
+constexpr int kAlphaRadius = 1;
+// Variance that alpha has without noise, so that differences below about 0.01 do not count.
+constexpr float kAlphaVariance = 1e-3f;
+
+int cells(int pixels) { return (pixels + kChangeCell - 1) / kChangeCell; }
+
+// Calls compare(y, around) for every row of an image, with the rows around it by channel. Rows of one cell are compared
+// one after the other.
+template <class Compare>
+void compare_rows(const Field& image, const Compare& compare) {
+  for_pieces(
+      cells(image.height()),
+      [&](int begin, int end) {
+        std::vector<RowsAround> around(size_t(image.channels()), RowsAround(image.width()));
+        for (int y = begin * kChangeCell; y < std::min(image.height(), end * kChangeCell); ++y) {
+          for (int c = 0; c < image.channels(); ++c) around[size_t(c)].read(image, y, c);
+          compare(y, around);
+        }
+      },
+      16);
+}
 
 // Adds row y to the changes between the picture and the samples of the frame (light_test.h), and to the sums of the
 // depths there and here. `around` holds the rows of the regressed picture, by colour.
 void compare_row(const FrameRecords& frame, const PixelTrack& track, const FrameRecords& here,
-                 const std::array<RowsAround, kColors>& around, int y, Field* changes, Field* depths) {
+                 const std::vector<RowsAround>& around, int y, Field* changes, Field* depths) {
   const int w = track.width;
   const size_t first = size_t(y) * size_t(w);
   const float ratio = relative_scale(frame, here), squared = ratio * ratio, unit = 1.0f / here.scale;
@@ -45,29 +69,43 @@ void compare_row(const FrameRecords& frame, const PixelTrack& track, const Frame
   }
 }
 
+// Tests the alpha of the samples as if it were light. Objects without light have nothing else that shows a change.
+Field same_alpha(const FrameRecords& frame, const PixelTrack& track, const FrameRecords& here) {
+  const auto own = [&](int x, int y) { return here.alpha[size_t(y) * size_t(here.width) + size_t(x)]; };
+  const Field smooth =
+      box_mean(make_field(here.width, here.height, [&](int x, int y) { return own(x, y).mean; }), kAlphaRadius);
+  Field changes(cells(track.width), cells(track.height), kChangeChannels);
+  compare_rows(smooth, [&](int y, const std::vector<RowsAround>& around) {
+    float *change = changes.row(y / kChangeCell, 0), *variance = changes.row(y / kChangeCell, kChangeVariance);
+    for (int x = 0; x < track.width; ++x) {
+      const size_t pixel = size_t(y) * size_t(track.width) + size_t(x);
+      if (track.source[pixel] == film::kNoCorrespondence) continue;
+      const AlphaRecord a = frame.alpha[size_t(track.source[pixel])], b = own(x, y);
+      const float expected = around[0].change(x, displaced_by(track.displacement[pixel]));
+      change[x / kChangeCell] += a.mean - b.mean - expected;
+      variance[x / kChangeCell] += a.variance + b.variance + kAlphaVariance;
+    }
+  });
+  return same_light(std::move(changes));
+}
+
 }  // namespace
 
 MovedSamples move_samples(const FrameRecords& frame, PixelTrack track, const FrameRecords& here,
                           const Field& regressed) {
-  const int w = (track.width + kChangeCell - 1) / kChangeCell, h = (track.height + kChangeCell - 1) / kChangeCell;
+  const int w = cells(track.width), h = cells(track.height);
   Field changes(w, h, kChangeChannels), depths(w, h, 2);
-  for_pieces(
-      h,
-      [&](int begin, int end) {
-        std::array<RowsAround, kColors> around{RowsAround(track.width), RowsAround(track.width),
-                                               RowsAround(track.width)};
-        for (int y = begin * kChangeCell; y < std::min(track.height, end * kChangeCell); ++y) {
-          for (int c = 0; c < kColors; ++c) around[size_t(c)].read(regressed, y, c);
-          compare_row(frame, track, here, around, y, &changes, &depths);
-        }
-      },
-      16);
+  compare_rows(regressed, [&](int y, const std::vector<RowsAround>& around) {
+    compare_row(frame, track, here, around, y, &changes, &depths);
+  });
+  Field kept = same_light(std::move(changes));
+  if (!frame.alpha.empty() && !here.alpha.empty()) scale_by(same_alpha(frame, track, here), &kept);
   depths = box_mean(depths, kDepthRadius);
   Field ratio = make_field(w, h, [&](int x, int y) {
     const float there = depths.row(y, 0)[x];
     return there > 0.0f ? depths.row(y, 1)[x] / there : 1.0f;
   });
-  return {std::move(track), same_light(std::move(changes)), std::move(ratio)};
+  return {std::move(track), std::move(kept), std::move(ratio)};
 }
 
 }  // namespace gradus::reconstruct

@@ -9,7 +9,7 @@ namespace gradus::reconstruct {
 
 struct MovedSamples {
   PixelTrack track;
-  Field kept;         // share of the samples' weight in each cell that the test of light has left (light_test.h)
+  Field kept;  // share of the samples' weight in each cell that the tests of light and alpha leave (light_test.h)
   Field depth_ratio;  // of the depths in each cell that the picture sees of the same surfaces to those of the frame
 };
 

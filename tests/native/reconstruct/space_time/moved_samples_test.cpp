@@ -61,6 +61,41 @@ TEST(C5_MovedSamples, DifferencesAreComparedWithTheNoiseOfBothFrames) {
   }
 }
 
+// An object without light that fades shows its change in alpha alone. Noise of alpha is not a change.
+TEST(C5_MovedSamples, AlphaIsCompared) {
+  const auto with_alpha = [](float alpha, float variance) {
+    reconstruct::FrameRecords records = frame(0.0f, 0.0f, 1.0f);
+    records.alpha.assign(size_t(kWidth) * kHeight, {alpha, variance});
+    return records;
+  };
+  const auto keeps = [&](float here, float there, float variance) {
+    const reconstruct::MovedSamples samples = moved(with_alpha(there, variance), with_alpha(here, variance));
+    const float share = samples.kept.row(0)[0];
+    EXPECT_FALSE(any_value(samples.kept, [share](float other) { return other != share; }));
+    return share;
+  };
+  EXPECT_EQ(keeps(1.0f, 1.0f, 0.0f), 1.0f);
+  EXPECT_EQ(keeps(1.0f, 0.9999f, 0.0f), 1.0f);
+  EXPECT_EQ(keeps(1.0f, 0.95f, 0.0f), 0.0f);
+  EXPECT_EQ(keeps(0.5f, 0.52f, 0.25f), 1.0f);
+  EXPECT_EQ(keeps(0.9f, 0.1f, 0.05f), 0.0f);
+}
+
+// Alpha that changes along x is predicted where samples lie beside the centres of their pixels.
+TEST(B2_MovedSamples, AlphaOfDisplacedSamplesIsTheSame) {
+  const auto ramp = [](float moved) {
+    reconstruct::FrameRecords records = frame(0.0f, 0.0f, 1.0f);
+    for (int i = 0; i < kWidth * kHeight; ++i)
+      records.alpha.push_back({0.2f + 0.03f * (float(i % kWidth) + moved), 0.0f});
+    return records;
+  };
+  reconstruct::PixelTrack track = reconstruct::own_pixels(kWidth, kHeight);
+  for (Vec2& displacement : track.displacement) displacement.x = 0.4f;
+  const reconstruct::MovedSamples samples =
+      reconstruct::move_samples(ramp(0.4f), track, ramp(0.0f), reconstruct::Field(kWidth, kHeight, 3));
+  EXPECT_EQ(samples.kept.row(kHeight / 4)[kWidth / 4], 1.0f);
+}
+
 // Regression: light beyond the range of floats made the shares of all pixels around it not a number.
 TEST(BadInput_MovedSamples, LightWithoutBoundIsDropped) {
   reconstruct::FrameRecords bright = frame(1.0f, 0.1f, 1e-3f);
