@@ -136,6 +136,8 @@ class Animation:
         """Returns whether a frame belongs to this animation and was not delivered yet."""
         if list(self._sequences) != views or frame not in self.frames.up_to(self.frames.last):
             return False
+        if self._fault is not None and frame > self._fault[0]:
+            return False  # Blender did not ask for the frame that failed
         is_sampled = all((view, frame) in self._views for view in views)
         return frame >= self._next or frame in self._independent or is_sampled
 
@@ -159,7 +161,7 @@ class Animation:
             self._give_up(job, "Python handlers changed what was sampled ahead", found)
             return False
         first, last = self._needs(job)
-        # With a store, the job begins after frames that it holds, and begins again after those that Blender skips.
+        # Frames before the first one that is needed are left out: Blender skips them, or they are independent.
         begins = not self._begun or first > self._next
         if begins:
             self._next = max(self._next, first)

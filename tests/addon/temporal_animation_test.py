@@ -361,22 +361,39 @@ def test_existing_files_split_the_animation(
     assert (tmp_path / "f_0004.exr").read_bytes() == b"mine"
 
 
+@pytest.mark.parametrize(
+    ("reconstruction", "ahead", "before"), [("REGULARIZED", 6, 18), ("L2", 9, 15)], ids=["joined", "windows"]
+)
 def test_skipped_frames_are_not_sampled_for_the_frame_store(
-    moving: bpy.types.Scene, exports: Exports, tmp_path: Path
+    moving: bpy.types.Scene, exports: Exports, tmp_path: Path, reconstruction: str, ahead: int, before: int
 ) -> None:
     """Regression: all frames between two missing ones were sampled, though neither needs them."""
-    moving.gradus.reconstruction, moving.gradus.frame_store = "REGULARIZED", str(tmp_path / "store")
+    moving.gradus.reconstruction, moving.gradus.frame_store = reconstruction, str(tmp_path / "store")
     moving.render.use_overwrite, moving.frame_end = False, 24
     for frame in range(3, 22):
         (tmp_path / f"f_{frame:04d}.exr").write_bytes(b"mine")
     animate(moving, tmp_path)
-    assert exports.frames() == [0, *range(1, 7), 17, *range(18, 25)]
+    assert exports.frames() == [0, *range(1, ahead + 1), *range(before - 1, 25)]
     again = tmp_path / "again"
     again.mkdir()
     moving.gradus.frame_store, moving.render.use_overwrite = str(tmp_path / "another store"), True
     animate(moving, again)
     for frame in (1, 2, 22, 24):
         assert np.array_equal(combined(tmp_path, frame), combined(again, frame)), frame
+
+
+def test_a_frame_that_fails_ends_no_later_part(
+    moving: bpy.types.Scene, exports: Exports, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Regression: the error of a neighbour that Blender skips was raised for a later frame that does not need it."""
+    moving.gradus.reconstruction, moving.gradus.frame_store = "REGULARIZED", str(tmp_path / "store")
+    moving.render.use_overwrite, moving.frame_end = False, 24
+    for frame in range(3, 22):
+        (tmp_path / f"f_{frame:04d}.exr").write_bytes(b"mine")
+    raise_in_export(5, exports, monkeypatch)
+    animate(moving, tmp_path)
+    assert {1, 2, 22, 23, 24} <= set(frames_in(tmp_path))
+    assert np.isfinite(combined(tmp_path, 22)).all()
 
 
 def test_files_of_several_views_split_the_animation(moving: bpy.types.Scene, exports: Exports, tmp_path: Path) -> None:

@@ -9,6 +9,7 @@
 #include "base/threads.h"
 #include "film/features.h"
 #include "output/denoise_combined.h"
+#include "output/light_passes.h"
 #include "reconstruct/error_estimate.h"
 #include "reconstruct/reconstruct_film.h"
 #include "render/develop.h"
@@ -85,11 +86,18 @@ std::shared_ptr<DevelopedFrame> FrameDeveloper::read() {
   pictures.region = film::delivered_region(*film);
   pictures.threads = threads_;
   read_differences_over_time(*film, &pictures);
-  const std::shared_ptr<const film::Film> replayed =
-      folder.load(number_, FrameSamples::kReplayed, film_io::StoredContent::kAll, is_cancelled_);
-  sequence_.merge(number_, film.get(), *replayed);
   render::Plan& plan = frame->record.plan;
   render::RenderStats& stats = frame->record.stats;
+  double replayed_samples = 0.0;
+  if (folder.header(number_, FrameSamples::kReplayed).samples.total() > 0) {
+    const std::shared_ptr<const film::Film> replayed =
+        folder.load(number_, FrameSamples::kReplayed, film_io::StoredContent::kAll, is_cancelled_);
+    sequence_.merge(number_, film.get(), *replayed);
+    replayed_samples = film::mean_samples(*replayed);
+  }
+  // The film of a repeated frame has the number of the one that it repeats.
+  film->frame_number = film->settings.frame = number_;
+  film->shared = {};
   const auto record = sequence_.records_.find(number_);
   if (record != sequence_.records_.end()) {
     frame->record = record->second;
@@ -98,7 +106,7 @@ std::shared_ptr<DevelopedFrame> FrameDeveloper::read() {
     stats.stopped = "stored";
   }
   plan.delivered = pictures.region;
-  stats.replayed_samples = film::mean_samples(*replayed);
+  stats.replayed_samples = replayed_samples;
 
   if (requested_) frame->requested = output::options_of(*requested_);
   const output::Options requested = requested_options(film->settings);
@@ -106,12 +114,11 @@ std::shared_ptr<DevelopedFrame> FrameDeveloper::read() {
   denoiser_ = output::choose_denoiser(requested.denoiser, sequence_.device_.get(), &why_not);
   output::FilmFacts facts = sequence_.facts_of(number_);
   facts.has_denoiser = denoiser_ != nullptr;
+  facts.samples = sequence_.joined_samples(number_);
   pictures.options = output::resolve_auto(requested, facts);
   const bool is_automatic = denoiser_ != nullptr && requested.denoiser == GRADUS_DENOISER_AUTO &&
                             output::is_denoised_by_default(pictures.options.reconstruction);
   if (is_automatic) {
-    facts.samples = sequence_.joined_samples(number_);
-    pictures.options = output::resolve_auto(requested, facts);
     // The frame may have been planned with another denoiser, or by another process.
     plan.denoises_if_it_pays = true;
     plan.denoiser = denoiser_->name();
@@ -135,30 +142,31 @@ void FrameDeveloper::develop_picture(DevelopedFrame* frame) {
   reconstruct::ReconstructionOutputs wanted = output::wanted_images(settings);
   if (sequence_.settings_.with_flow && schema::needs_flow(settings)) wanted.components = true;
   const auto from_windows = [&](reconstruct::SolveReport* report) {
-    return take_from_windows(frame->pictures, report);
+    return take_from_windows(frame->pictures, wanted.components, report);
   };
   output::Developer developer(threads_, is_cancelled_, denoiser_);
   render::develop(
       &developer, wanted, from_windows, [this] { check_cancelled(); }, &frame->pictures, &frame->record.stats);
 }
 
-reconstruct::Reconstructed FrameDeveloper::take_from_windows(const output::DevelopedFilm& developed,
+reconstruct::Reconstructed FrameDeveloper::take_from_windows(const output::DevelopedFilm& developed, bool by_components,
                                                              reconstruct::SolveReport* report) {
   const film::Film& film = *developed.film;
   const reconstruct::SequenceMethod method{developed.options.reconstruction, developed.options.alpha,
                                            output::wanted_images(film.settings).error};
-  const bool with_sampled = developed.options.denoiser != GRADUS_DENOISER_NONE;
+  reconstruct::JoinedOutputs wanted{by_components, developed.options.denoiser != GRADUS_DENOISER_NONE};
+  if (output::has_light_passes(film)) wanted.terms = output::read_light_terms;
   reconstruct::Reconstructed picture;
   const std::vector<std::vector<std::string>> groups = reconstructed_together(film, method.reconstruction);
   try {
     for (const std::vector<std::string>& together : groups) {
       reconstruct::SequencePictures* pictures = sequence_.pictures(together, method, number_);
-      reconstruct::Reconstructed part =
-          pictures->take(sequence_.place_of(number_), is_cancelled_, report, with_sampled);
+      reconstruct::Reconstructed part = pictures->take(sequence_.place_of(number_), is_cancelled_, report, wanted);
       check_cancelled();
       if (part.components.empty() && groups.size() > 1) part.components.push_back(part.image);
       std::move(part.components.begin(), part.components.end(), std::back_inserter(picture.components));
       picture.sampled = std::move(part.sampled);
+      picture.sampled_terms = std::move(part.sampled_terms);
       reconstruct::add_image(std::move(part.image), &picture.image);
       reconstruct::add_image(std::move(part.error), &picture.error);
       reconstruct::add_image(std::move(part.terms.noise), &picture.terms.noise);

@@ -32,9 +32,9 @@ class FrameDeveloper {
   void check_cancelled() const;
   // Returns the options for which the frame is developed, AUTO included. `own` are the settings of its film.
   output::Options requested_options(const GradusSettings& own) const;
-  // Returns the reconstruction of the frame, with its error if that is requested. Components are reconstructed by
-  // windows of their own, except by REGULARIZED.
-  reconstruct::Reconstructed take_from_windows(const output::DevelopedFilm& developed,
+  // Returns the reconstruction of the frame, with its error and its components if they are requested. Components are
+  // reconstructed by windows of their own, except by REGULARIZED.
+  reconstruct::Reconstructed take_from_windows(const output::DevelopedFilm& developed, bool by_components,
                                                reconstruct::SolveReport* report);
   // Computes the passes Gradient T and Gradient T Correspondence from the fresh samples of the frame.
   void read_differences_over_time(const film::Film& fresh, output::DevelopedFilm* developed);

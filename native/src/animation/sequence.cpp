@@ -222,10 +222,7 @@ void Sequence::merge(int32_t number, film::Film* fresh, const film::Film& replay
                            " and its replayed samples do not belong together");
   }
   if (!GRADUS_FAULT(passes_read_fresh_samples_alone)) film::add_sums(fresh, replayed);
-  fresh->frame_number = number;
-  fresh->settings.frame = number;
   fresh->settings.samples += uint32_t(replayed.samples.total());
-  fresh->shared = {};
 }
 
 reconstruct::SequenceSource Sequence::source(const reconstruct::SequenceMethod& method,
@@ -244,8 +241,12 @@ reconstruct::SequenceSource Sequence::source(const reconstruct::SequenceMethod& 
             return film;
           },
           [=, this](int place, const CancelCheck& cancel) {
-            return reconstruct::FrameStep{folder_.header(frame_at(place), FrameSamples::kFresh).frame_number,
-                                          replayed(place, cancel)->replayed.correspondence};
+            const int32_t frame = frame_at(place);
+            return reconstruct::FrameStep{folder_.header(frame, FrameSamples::kFresh).frame_number,
+                                          read_with_advice([&] {
+                                            return folder_.load(frame, FrameSamples::kReplayed,
+                                                                film_io::StoredContent::kSamples, cancel);
+                                          })->replayed.correspondence};
           }};
 }
 

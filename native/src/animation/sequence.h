@@ -99,7 +99,8 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   reconstruct::SequencePictures* pictures(const std::vector<std::string>& components,
                                           const reconstruct::SequenceMethod& method, int32_t frame);
   // Returns the number of samples per pixel that REGULARIZED makes a picture from where frames like this one surround
-  // it. Frames at the ends of a shot, and repeated ones, have fewer, but all of a shot are to look alike.
+  // it. Frames at the ends of a shot, and repeated ones, have fewer, but all of a shot are to look alike. Replayed
+  // samples do not count, since they are those of the frame before.
   double joined_samples(int32_t frame);
   // Removes all reconstructions except those of these groups of components, since the component set may have changed.
   void retain_pictures(const std::vector<std::vector<std::string>>& groups);

@@ -1,5 +1,6 @@
 #include "motion/true_motion.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gradus::motion {
@@ -30,8 +31,10 @@ glm::dvec2 brute_force(const ChainTracer& tracer, const SpecularSignature& signa
     const double before = minimum;
     for (double y = -half; y <= half + 1e-9; y += step)
       for (double x = -half; x <= half + 1e-9; x += step) {
-        const double angle = angle_to(tracer, signature, target, centre + glm::dvec2(x, y));
-        if (angle < minimum) minimum = angle, best = centre + glm::dvec2(x, y);
+        const glm::dvec2 film = centre + glm::dvec2(x, y), off = glm::abs(film - around);
+        if (std::max(off.x, off.y) > reach + 1e-9) continue;
+        const double angle = angle_to(tracer, signature, target, film);
+        if (angle < minimum) minimum = angle, best = film;
       }
     return minimum < before;
   };

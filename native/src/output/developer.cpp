@@ -154,6 +154,7 @@ void Developer::reconstruct(DevelopedFilm* developed, const reconstruct::Reconst
     }
     throw_if_cancelled(cancel_);
     developed->sampled = std::move(images.sampled);
+    developed->sampled_terms = std::move(images.sampled_terms);
     if (with_components)
       store_components(crop_components(film, how, std::move(images.components), developed->region), developed);
     if (wanted.error)
@@ -196,8 +197,11 @@ void Developer::split(DevelopedFilm* developed) {
   const film::Film& film = *developed->film;
   if (developed->is_noisy() || !has_light_passes(film) || has_split(*developed)) return;
   const Image combined = developed->find(GRADUS_PASS_COMBINED);
+  const std::shared_ptr<const std::vector<reconstruct::HalvedImage>> joined =
+      std::exchange(developed->sampled_terms, nullptr);
   run([&] {
-    for (auto& [pass, pixels] : split_light(film, developed->region, *combined, cancel_))
+    std::vector<reconstruct::HalvedImage> sampled = joined != nullptr ? *joined : read_light_terms(film);
+    for (auto& [pass, pixels] : split_light(film, developed->region, *combined, std::move(sampled), cancel_))
       developed->passes[pass] = make_image(std::move(pixels));
   });
 }

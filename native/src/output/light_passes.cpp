@@ -137,24 +137,36 @@ reconstruct::PictureTerm make_term(const film::Film& film, const Region& region,
 
 }  // namespace
 
+std::vector<reconstruct::HalvedImage> read_light_terms(const film::Film& film) {
+  const LightPassPlanes planes = light_planes(film);
+  std::vector<reconstruct::HalvedImage> terms;
+  for (const film::Channel* plane : planes) terms.push_back(read_light_pass(film, *plane));
+  const bool are_all = (film.channels.passes() & schema::light_passes()) == schema::light_passes();
+  if (!are_all) terms.push_back(read_remainder(film, planes));
+  return terms;
+}
+
 bool has_light_passes(const film::Film& film) { return (film.channels.passes() & schema::light_passes()) != 0; }
 
 std::map<uint32_t, std::vector<float>> split_light(const film::Film& film, const Region& region,
-                                                   const std::vector<float>& rgba, const CancelCheck& cancel) {
+                                                   const std::vector<float>& rgba,
+                                                   std::vector<reconstruct::HalvedImage> sampled,
+                                                   const CancelCheck& cancel) {
   const LightPassPlanes planes = light_planes(film);
   const reconstruct::Field whole = to_field(rgba, 4, region, region);
   const Guides guides(film, region, whole);
   std::vector<reconstruct::PictureTerm> terms;
   std::vector<reconstruct::Field> colors;
-  for (const film::Channel* plane : planes) {
-    terms.push_back(make_term(film, region, guides.of(film, *plane), read_light_pass(film, *plane), cancel));
+  for (size_t k = 0; k < sampled.size(); ++k) {
+    const film::Channel* const plane = k < planes.size() ? planes[k] : nullptr;
+    terms.push_back(make_term(film, region, plane != nullptr ? guides.of(film, *plane) : guides.shared(),
+                              std::move(sampled[k]), cancel));
+    if (plane == nullptr) continue;
     const film::Channel* const color = color_plane(film, *plane);
     colors.push_back(color != nullptr ? to_field(read_color(film, *color).values, 3, film.region, region)
                                       : reconstruct::Field());
     if (color != nullptr) terms.back().capacity = capacity_of(colors.back());
   }
-  const bool are_all = (film.channels.passes() & schema::light_passes()) == schema::light_passes();
-  if (!are_all) terms.push_back(make_term(film, region, guides.shared(), read_remainder(film, planes), cancel));
   throw_if_cancelled(cancel);
   reconstruct::add_up(whole, &terms);
   std::map<uint32_t, std::vector<float>> passes;

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
+
+#include "reconstruct/regression/halved_image.h"
 
 namespace gradus::reconstruct {
 
@@ -20,12 +23,24 @@ struct SampledPicture {
   std::vector<float> light, albedo, normal;
 };
 
+// Reads from a film the sampled terms of its picture, such as light passes.
+using ReadTerms = std::function<std::vector<HalvedImage>(const film::Film& film)>;
+
+// What a picture of several frames returns beside itself.
+struct JoinedOutputs {
+  bool components = false;    // Reconstructed::components
+  bool sampled = false;       // Reconstructed::sampled
+  ReadTerms terms = nullptr;  // Reconstructed::sampled_terms, unless it is empty
+};
+
 // Result of the reconstruction of a film or of one of its components.
 struct Reconstructed {
   std::vector<float> image;  // width·height·channels
   std::vector<float> error;  // width·height: estimated squared error, mean over RGB; empty unless requested
-  std::vector<std::vector<float>> components{};  // images that add up to `image`; empty unless requested
+  std::vector<std::vector<float>> components{};     // images that add up to `image`; empty unless requested
   std::shared_ptr<const SampledPicture> sampled{};  // null unless requested, or if no frames are joined
+  // Terms of `sampled`, as JoinedOutputs::terms reads them; null unless requested, or if no frames are joined.
+  std::shared_ptr<const std::vector<HalvedImage>> sampled_terms{};
   ErrorTerms terms{};  // RGB; replaces `error` for images that L2 or L1 reconstructs over several frames
 };
 

@@ -179,7 +179,7 @@ Reconstructed regularize(const film::Film* film, JoinedPicture picture, const Ca
                          SolveReport* report) {
   Field error;
   FeatureRegression regression(std::move(picture.samples), picture.image, cancel, &error);
-  const bool by_components = picture.sampled.size() > 1;
+  const bool by_components = picture.by_components;
   return reconstruct(film,
                      {picture.scale, std::move(picture.image), std::move(regression), std::move(picture.join),
                       std::move(picture.sampled), std::move(error)},

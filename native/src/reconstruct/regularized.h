@@ -27,6 +27,7 @@ struct JoinedPicture {
   // All channels of each component of the picture's own frame, from read_sampled(); empty if it has one component and
   // no alpha.
   std::vector<Field> sampled;
+  bool by_components = false;  // whether the image of each component is requested
 };
 inline constexpr int kAllComponents = -1;
 
@@ -35,8 +36,8 @@ inline constexpr int kAllComponents = -1;
 // to the image whatever their light. `use` says which error the result has.
 Reconstructed regularize(const film::Film& film, bool by_components, const CancelCheck& cancel, SolveReport* report,
                          ErrorUse use = ErrorUse::Weights);
-// Reconstructs a picture and its components, if there are several, by the samples of several frames, with the error for
-// delivery. `film` has the differences of its own frame; null if there are none.
+// Reconstructs a picture, and its components if they are requested, by the samples of several frames, with the error
+// for delivery. `film` has the differences of its own frame; null if there are none.
 Reconstructed regularize(const film::Film* film, JoinedPicture picture, const CancelCheck& cancel, SolveReport* report);
 
 // Reads the sum of all components of a film.

@@ -1,10 +1,12 @@
 #include "render/memory_estimate.h"
 
+#include <bit>
 #include <filesystem>
 #include <system_error>
 
 #include "film/planes.h"
 #include "film/replay_map.h"
+#include "schema/pass_table.h"
 
 namespace gradus::render {
 namespace {
@@ -18,6 +20,7 @@ constexpr uint64_t kReconstructedComponent = 48;  // images of a component, whil
 constexpr uint64_t kWindowFrame = 100;            // a frame of a window, while the window is solved
 constexpr uint64_t kJoinedComponent = 16;         // a component of a frame that REGULARIZED joins with others
 constexpr uint64_t kJoinedAlpha = 8;              // the alpha of such a frame
+constexpr uint64_t kJoinedLightPass = 48;         // a light pass of joined frames, and of the one that is added
 
 uint64_t frame_bytes(const Plan& plan) {
   return film::film_bytes_per_pixel(
@@ -51,7 +54,9 @@ uint64_t estimated_memory(const Plan& plan, const reconstruct::WindowShape& wind
   const bool joins = plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
   const uint64_t of_frame = joins ? kWindowFrame + of_components : components * kWindowFrame;
   const uint64_t of_window = uint64_t(windows.frames) * of_frame;
-  return uint64_t(plan.sampled.area()) * (2 * frame_bytes(plan) + reconstruction_bytes(plan) + of_window);
+  const auto light_passes = uint64_t(std::popcount(plan.passes & schema::light_passes()));
+  const uint64_t of_light = joins && light_passes > 0 ? (light_passes + 1) * kJoinedLightPass : 0;
+  return uint64_t(plan.sampled.area()) * (2 * frame_bytes(plan) + reconstruction_bytes(plan) + of_window + of_light);
 }
 
 // A frame is stored in two files, the second with its pixel correspondence to the previous frame.

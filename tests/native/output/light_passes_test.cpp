@@ -179,7 +179,9 @@ TEST(LightPasses, OfACancelledRenderAreThoseSampled) {
   const CancelCheck at_once = [] { return true; };
   const auto render = rendered(Scenario::Glass, settings_for(GRADUS_RECONSTRUCTION_REGULARIZED));
   const std::vector<float> rgba = read(*render, GRADUS_PASS_COMBINED);
-  EXPECT_THROW(output::split_light(*render->film(), {0, 0, kSide, kSide}, rgba, at_once), Error);
+  EXPECT_THROW(output::split_light(*render->film(), {0, 0, kSide, kSide}, rgba,
+                                   output::read_light_terms(*render->film()), at_once),
+               Error);
 }
 
 }  // namespace

@@ -189,6 +189,11 @@ SampleOfPixel sample_of(const JoinedFrame& frame, int x, int y) {
   return {frame.records->at(track.source[pixel]), track.source[pixel], kept, track.displacement[pixel]};
 }
 
+// Returns the weight of a sample in the means near the centre of its pixel.
+float sampled_weight(const SampleOfPixel& sample) {
+  return sample.share * nearness(sample.displacement, kReachOfSampled);
+}
+
 // Sums of up to three channels of a pixel with the weights of a JoinedPlane.
 class ValueSums {
  public:
@@ -269,7 +274,7 @@ SampledPicture JoinedSamples::sampled() const {
       add(here_.at(y * w + x), 1.0f);
       for (const JoinedFrame& frame : others_) {
         const SampleOfPixel sample = sample_of(frame, x, y);
-        if (sample.record != nullptr) add(sample.record, sample.share * nearness(sample.displacement, kReachOfSampled));
+        if (sample.record != nullptr) add(sample.record, sampled_weight(sample));
       }
       const RecordValues means = sums.means();
       for (size_t c = 0; c < 3; ++c) {
@@ -281,6 +286,41 @@ SampledPicture JoinedSamples::sampled() const {
     }
   });
   return picture;
+}
+
+std::vector<HalvedImage> JoinedSamples::sampled(std::vector<HalvedImage> own,
+                                                const std::function<std::vector<HalvedImage>(int number)>& read) const {
+  std::vector<HalvedImage> sums = std::move(own);
+  std::vector<size_t> noisy;
+  for (size_t k = 0; k < sums.size(); ++k) {
+    if (!is_black(sums[k].half_difference)) noisy.push_back(k);
+  }
+  Field weights = make_field(here_.width, here_.height, [](int, int) { return 1.0f; });
+  for (const JoinedFrame& frame : others_) {
+    const std::vector<HalvedImage> images = read(frame.number);
+    if (images.size() != sums.size()) continue;
+    for_rows(here_.height, [&](int y) {
+      for (int x = 0; x < here_.width; ++x) {
+        const SampleOfPixel sample = sample_of(frame, x, y);
+        if (sample.record == nullptr) continue;
+        const float weight = sampled_weight(sample);
+        weights.row(y)[x] += weight;
+        const int from_x = sample.pixel % here_.width, from_y = sample.pixel / here_.width;
+        for (const size_t k : noisy) {
+          for (int c = 0; c < kColors; ++c) {
+            sums[k].mean.row(y, c)[x] += weight * images[k].mean.row(from_y, c)[from_x];
+            sums[k].half_difference.row(y, c)[x] += weight * images[k].half_difference.row(from_y, c)[from_x];
+          }
+        }
+      }
+    });
+  }
+  for_values(&weights, [](float& value, int, int, int) { value = 1.0f / value; });
+  for (const size_t k : noisy) {
+    scale_by(weights, &sums[k].mean);
+    scale_by(weights, &sums[k].half_difference);
+  }
+  return sums;
 }
 
 JoinedPlane JoinedSamples::join(int component, int first, const Field& own) const {

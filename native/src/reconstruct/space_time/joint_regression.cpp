@@ -34,12 +34,13 @@ std::vector<JoinedFrame> JointRegression::move_frames(int number, const HalvedIm
                                                       const CancelCheck& cancel) const {
   std::vector<JoinedFrame> moved;
   const FrameRecords& here = *frames_.at(number).records;
-  const Field regressed = regress_coarsely({features_of(here), plane_of(here, kRecordWeight)}, image, cancel);
+  const ComparedPicture picture =
+      compared_picture(here, regress_coarsely({features_of(here), plane_of(here, kRecordWeight)}, image, cancel));
   const auto move = [&](int other, const PixelTrack& track) {
     if (!std::binary_search(numbers.begin(), numbers.end(), other) || cancel()) return;
     const FrameRecords& records = *frames_.at(GRADUS_FAULT(samples_of_another_frame) ? number : other).records;
     if (!is_comparable(records, here)) return;
-    moved.push_back({&records, move_samples(records, track, here, regressed)});
+    moved.push_back({other, &records, move_samples(records, track, picture)});
   };
   PixelTrack track = own_pixels(here.width, here.height);
   for (int other = number - 1; other >= numbers.front(); --other) {
@@ -58,7 +59,7 @@ std::vector<JoinedFrame> JointRegression::move_frames(int number, const HalvedIm
 }
 
 Reconstructed JointRegression::reconstruct(int number, const FrameRange& around, const CancelCheck& cancel,
-                                           SolveReport* report, bool with_sampled) {
+                                           SolveReport* report, const JoinedOutputs& wanted) {
   frames_.erase(frames_.begin(), frames_.lower_bound(around.first));
   for (int other = around.first; other <= around.last && !cancel(); ++other) read(other, cancel);
   if (cancel()) return {};
@@ -74,7 +75,7 @@ Reconstructed JointRegression::reconstruct(int number, const FrameRange& around,
   std::sort(numbers.begin(), numbers.end());
   const FrameRecords& here = *frames_.at(number).records;
   if (numbers.empty()) {
-    return regularize(*open_film_(number, cancel), here.components.size() > 1, cancel, report, ErrorUse::Delivered);
+    return regularize(*open_film_(number, cancel), wanted.components, cancel, report, ErrorUse::Delivered);
   }
   HalvedImage image = image_of(here);
   const JoinedSamples joined(here, move_frames(number, image, numbers, cancel));
@@ -85,9 +86,14 @@ Reconstructed JointRegression::reconstruct(int number, const FrameRange& around,
       regularize(film.get(),
                  {here.scale, std::move(image), std::move(samples),
                   [&](int component, int first, const Field& own) { return joined.join(component, first, own); },
-                  components_of(here)},
+                  components_of(here), wanted.components},
                  cancel, report);
-  if (with_sampled) result.sampled = std::make_shared<const SampledPicture>(joined.sampled());
+  if (wanted.sampled) result.sampled = std::make_shared<const SampledPicture>(joined.sampled());
+  if (wanted.terms) {
+    const auto read_terms = [&](int other) { return wanted.terms(*open_film_(other, cancel)); };
+    result.sampled_terms =
+        std::make_shared<const std::vector<HalvedImage>>(joined.sampled(read_terms(number), read_terms));
+  }
   return result;
 }
 

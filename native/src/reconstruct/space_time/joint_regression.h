@@ -34,9 +34,8 @@ class JointRegression {
 
   // Reconstructs a frame from itself and the others of the range `around` it. Frames must come in ascending order; what
   // two of them share is read once. When cancelled, returns an empty image or throws the error CANCELLED.
-  // `with_sampled` requests the joined samples.
   Reconstructed reconstruct(int frame, const FrameRange& around, const CancelCheck& cancel, SolveReport* report,
-                            bool with_sampled = false);
+                            const JoinedOutputs& wanted = {});
 
  private:
   struct Frame {

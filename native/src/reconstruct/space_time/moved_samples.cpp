@@ -19,8 +19,11 @@ constexpr int kDepthRadius = 1;
 // Radius, in pixels, of the squares over which the alpha of the picture is smoothed, to predict how that of samples
 // depends on where they lie in their pixels.
 constexpr int kAlphaRadius = 1;
-// Variance that alpha has without noise, so that differences below about 0.01 do not count.
+// Variance that alpha has without noise, so that differences of less than 0.013 in 6×6 pixels, and of 0.001 in 68×68,
+// do not count.
 constexpr float kAlphaVariance = 1e-3f;
+// Variance of the predicted alpha at edges, as a share of (distance from the centre · range of alpha)².
+constexpr float kEdgeVariance = 2.0f;
 
 int cells(int pixels) { return (pixels + kChangeCell - 1) / kChangeCell; }
 
@@ -69,21 +72,36 @@ void compare_row(const FrameRecords& frame, const PixelTrack& track, const Frame
   }
 }
 
+float alpha_at(const FrameRecords& frame, int x, int y) {
+  return frame.alpha[size_t(y) * size_t(frame.width) + size_t(x)].mean;
+}
+
+// Returns the range of the alpha of 3×3 pixels.
+float range_of_alpha(const FrameRecords& frame, int x, int y) {
+  float smallest = alpha_at(frame, x, y), largest = smallest;
+  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, frame.height - 1); ++j) {
+    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, frame.width - 1); ++i) {
+      smallest = std::min(smallest, alpha_at(frame, i, j));
+      largest = std::max(largest, alpha_at(frame, i, j));
+    }
+  }
+  return largest - smallest;
+}
+
 // Tests the alpha of the samples as if it were light. Objects without light have nothing else that shows a change.
-Field same_alpha(const FrameRecords& frame, const PixelTrack& track, const FrameRecords& here) {
-  const auto own = [&](int x, int y) { return here.alpha[size_t(y) * size_t(here.width) + size_t(x)]; };
-  const Field smooth =
-      box_mean(make_field(here.width, here.height, [&](int x, int y) { return own(x, y).mean; }), kAlphaRadius);
+Field same_alpha(const FrameRecords& frame, const PixelTrack& track, const ComparedPicture& picture) {
   Field changes(cells(track.width), cells(track.height), kChangeChannels);
-  compare_rows(smooth, [&](int y, const std::vector<RowsAround>& around) {
+  compare_rows(picture.alpha, [&](int y, const std::vector<RowsAround>& around) {
     float *change = changes.row(y / kChangeCell, 0), *variance = changes.row(y / kChangeCell, kChangeVariance);
+    const float* range = picture.range_of_alpha.row(y);
     for (int x = 0; x < track.width; ++x) {
       const size_t pixel = size_t(y) * size_t(track.width) + size_t(x);
       if (track.source[pixel] == film::kNoCorrespondence) continue;
-      const AlphaRecord a = frame.alpha[size_t(track.source[pixel])], b = own(x, y);
-      const float expected = around[0].change(x, displaced_by(track.displacement[pixel]));
-      change[x / kChangeCell] += a.mean - b.mean - expected;
-      variance[x / kChangeCell] += a.variance + b.variance + kAlphaVariance;
+      const AlphaRecord a = frame.alpha[size_t(track.source[pixel])], b = picture.here.alpha[pixel];
+      const Displacement by = displaced_by(track.displacement[pixel]);
+      change[x / kChangeCell] += a.mean - b.mean - around[0].change(x, by);
+      variance[x / kChangeCell] +=
+          a.variance + b.variance + kAlphaVariance + kEdgeVariance * (by.xx + by.yy) * range[x] * range[x];
     }
   });
   return same_light(std::move(changes));
@@ -91,15 +109,24 @@ Field same_alpha(const FrameRecords& frame, const PixelTrack& track, const Frame
 
 }  // namespace
 
-MovedSamples move_samples(const FrameRecords& frame, PixelTrack track, const FrameRecords& here,
-                          const Field& regressed) {
+ComparedPicture compared_picture(const FrameRecords& here, Field regressed) {
+  ComparedPicture picture{here, std::move(regressed)};
+  if (here.alpha.empty()) return picture;
+  picture.alpha =
+      box_mean(make_field(here.width, here.height, [&](int x, int y) { return alpha_at(here, x, y); }), kAlphaRadius);
+  picture.range_of_alpha =
+      make_field(here.width, here.height, [&](int x, int y) { return range_of_alpha(here, x, y); });
+  return picture;
+}
+
+MovedSamples move_samples(const FrameRecords& frame, PixelTrack track, const ComparedPicture& picture) {
   const int w = cells(track.width), h = cells(track.height);
   Field changes(w, h, kChangeChannels), depths(w, h, 2);
-  compare_rows(regressed, [&](int y, const std::vector<RowsAround>& around) {
-    compare_row(frame, track, here, around, y, &changes, &depths);
+  compare_rows(picture.regressed, [&](int y, const std::vector<RowsAround>& around) {
+    compare_row(frame, track, picture.here, around, y, &changes, &depths);
   });
   Field kept = same_light(std::move(changes));
-  if (!frame.alpha.empty() && !here.alpha.empty()) scale_by(same_alpha(frame, track, here), &kept);
+  if (!picture.here.alpha.empty()) scale_by(same_alpha(frame, track, picture), &kept);
   depths = box_mean(depths, kDepthRadius);
   Field ratio = make_field(w, h, [&](int x, int y) {
     const float there = depths.row(y, 0)[x];

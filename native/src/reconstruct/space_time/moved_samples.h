@@ -13,8 +13,16 @@ struct MovedSamples {
   Field depth_ratio;  // of the depths in each cell that the picture sees of the same surfaces to those of the frame
 };
 
-// `here`: the picture's own frame; `regressed`: its picture by its own samples, in units of its scale.
-MovedSamples move_samples(const FrameRecords& frame, PixelTrack track, const FrameRecords& here,
-                          const Field& regressed);
+// The picture that the samples of other frames are compared with.
+struct ComparedPicture {
+  const FrameRecords& here;  // its own frame
+  Field regressed;           // its light by its own samples, in units of its scale
+  // Its alpha, smoothed, and how much alpha differs around each pixel; empty if it is opaque.
+  Field alpha{}, range_of_alpha{};
+};
+// `here` must outlive the result.
+ComparedPicture compared_picture(const FrameRecords& here, Field regressed);
+
+MovedSamples move_samples(const FrameRecords& frame, PixelTrack track, const ComparedPicture& picture);
 
 }  // namespace gradus::reconstruct

@@ -26,7 +26,8 @@ PixelTrack own_pixels(int width, int height);
 // lies behind the edge of a nearer surface that moves in another way is left out.
 PixelTrack extended(const PixelTrack& track, const film::PixelCorrespondence& correspondence,
                     const FrameRecords& picture);
-// Returns the correspondence from the pixels of the frame before to those of frame t.
+// Returns the correspondence from the pixels of the frame before to those of frame t. Its off_centre is that of the end
+// of a displacement back from the centre of the pixel in frame t.
 film::PixelCorrespondence inverse(const film::PixelCorrespondence& to_previous);
 
 }  // namespace gradus::reconstruct

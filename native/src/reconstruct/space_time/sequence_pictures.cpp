@@ -17,18 +17,14 @@ SequencePictures::SequencePictures(const FrameRange& range, const WindowShape& s
 
 FrameRange SequencePictures::around(int frame) const { return is_joint() ? grid_.joined(frame) : grid_.around(frame); }
 
-bool SequencePictures::has(int frame) const {
-  if (!grid_.contains(frame)) return false;
-  if (is_joint()) return !last_joint_ || frame > *last_joint_;
-  return !next_window_ || ready_.count(frame) > 0 || *next_window_ <= grid_.first_with(frame) ||
-         (*next_window_ <= grid_.last_with(frame) && blend_.has_begun(frame));
-}
+bool SequencePictures::has(int frame) const { return grid_.contains(frame) && (!last_ || frame == *last_ + 1); }
 
-Reconstructed SequencePictures::take(int frame, const CancelCheck& cancel, SolveReport* report, bool with_sampled) {
-  if (!has(frame)) throw invalid_operation("frame " + std::to_string(frame) + " was delivered before");
+Reconstructed SequencePictures::take(int frame, const CancelCheck& cancel, SolveReport* report,
+                                     const JoinedOutputs& wanted) {
+  if (!has(frame)) throw invalid_operation("frame " + std::to_string(frame) + " does not follow the last one");
+  last_ = frame;
   if (is_joint()) {
-    last_joint_ = frame;
-    return joint_.reconstruct(frame, around(frame), cancel, report, with_sampled);
+    return joint_.reconstruct(frame, around(frame), cancel, report, wanted);
   }
   if (!next_window_) next_window_ = grid_.first_with(frame);
   while (ready_.count(frame) == 0) {

@@ -42,13 +42,12 @@ class SequencePictures {
   void end_at(int frame) { grid_.end_at(frame); }
   // Returns the frames that contribute to the image of `frame`.
   FrameRange around(int frame) const;
-  // Returns whether take(frame) is possible: neither this image nor a later one was taken.
+  // Returns whether take(frame) is possible: no image was taken, or that of the frame before was the last one.
   bool has(int frame) const;
-  // Returns the image of a frame, with interleaved channels. Each image is taken once, in ascending order; frames may
-  // be skipped, and the first one is arbitrary. When cancelled, returns an empty image, or throws the error CANCELLED
-  // if a frame was being read; after that no image can be taken.
-  // `with_sampled` requests the joined samples of REGULARIZED.
-  Reconstructed take(int frame, const CancelCheck& cancel, SolveReport* report, bool with_sampled = false);
+  // Returns the image of a frame, with interleaved channels. Images are taken one after another, from any frame on.
+  // When cancelled, returns an empty image, or throws the error CANCELLED if a frame was being read; after that no
+  // image can be taken. `wanted` counts for REGULARIZED alone.
+  Reconstructed take(int frame, const CancelCheck& cancel, SolveReport* report, const JoinedOutputs& wanted = {});
 
  private:
   bool is_joint() const { return method_.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED; }
@@ -58,7 +57,7 @@ class SequencePictures {
   SequenceSource source_;
   SequenceMethod method_;
   JointRegression joint_;
-  std::optional<int> last_joint_;  // last frame that REGULARIZED has reconstructed
+  std::optional<int> last_;  // last frame whose image was taken
   WindowBlend blend_;
   std::optional<int> next_window_;
   std::map<int, Reconstructed> ready_;
