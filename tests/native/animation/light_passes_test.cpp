@@ -34,5 +34,24 @@ INSTANTIATE_TEST_SUITE_P(Reconstructions, SequenceLightPasses,
                          testing::Values(uint32_t{GRADUS_RECONSTRUCTION_L2}, uint32_t{GRADUS_RECONSTRUCTION_L1},
                                          uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED}));
 
+// Light passes have the samples of all frames that the picture has.
+TEST(JoinedLightPasses, HaveTheSamplesOfAllFrames) {
+  constexpr int32_t kMiddle = 4;
+  const auto light = [](int32_t first, int32_t last, uint32_t seed) {
+    Pan pan(1.0f, Scenario::Glass);
+    const auto sequence = make_sequence(first, last);
+    for (int32_t frame = first; frame <= last; ++frame) {
+      GradusSettings settings = settings_for(frame, GRADUS_RECONSTRUCTION_REGULARIZED);
+      settings.seed = seed;
+      sample(sequence.get(), pan.at(frame), settings);
+    }
+    return read(*delivered(sequence.get(), kMiddle), GRADUS_PASS_DIFFUSE_DIRECT, 3);
+  };
+  const double of_one = squared_distance(light(kMiddle, kMiddle, 1), light(kMiddle, kMiddle, 2)),
+               of_nine = squared_distance(light(0, 8, 1), light(0, 8, 2));
+  std::printf("  variance %.3f of that of one frame\n", of_nine / of_one);
+  EXPECT_LT(of_nine, 0.6 * of_one);
+}
+
 }  // namespace
 }  // namespace gradus::light_passes_test
