@@ -63,8 +63,8 @@ GradusProgress FrameSampling::progress() const {
 }
 
 std::string FrameSampling::stats() const {
-  const std::shared_ptr<const film::Film> half = fresh_film("its stats come");
-  return render::stats_json(record_.stats, record_.plan, *half);  // the record does not change after the end
+  const std::shared_ptr<const film::Film> film = fresh_film("its stats come");
+  return render::stats_json(record_.stats, record_.plan, *film);  // the record does not change after the end
 }
 
 std::shared_ptr<const film::Film> FrameSampling::film() const { return fresh_film("its film comes"); }
@@ -78,10 +78,10 @@ std::shared_ptr<const film::Film> FrameSampling::fresh_film(const char* what) co
     is_stored = !film_ && text_.empty();
   }
   // progress() and cancel() take the lock, so no file is read under it.
-  std::shared_ptr<const film::Film> half =
+  std::shared_ptr<const film::Film> film =
       is_stored ? read(FrameSamples::kFresh, film_io::StoredContent::kAll, [] { return false; }) : nullptr;
   const std::lock_guard lock(mutex_);
-  if (half) film_ = std::move(half);
+  if (film) film_ = std::move(film);
   require_film(film_, what, "the render failed: ");
   return film_;
 }
@@ -105,10 +105,10 @@ std::optional<film::FilmHeader> FrameSampling::stored_fresh() const {
   return fresh;
 }
 
-bool FrameSampling::has_enough(const film::FilmHeader& half, FrameSamples kind) const {
+bool FrameSampling::has_enough(const film::FilmHeader& header, FrameSamples kind) const {
   // With different numbers of samples per pixel, the replayed samples repeat the counts of the fresh ones.
-  const bool follows_fresh = kind == FrameSamples::kReplayed && has_counts(half.settings);
-  return follows_fresh || has_as_many(half, kind, input_.settings);
+  const bool follows_fresh = kind == FrameSamples::kReplayed && has_counts(header.settings);
+  return follows_fresh || has_as_many(header, kind, input_.settings);
 }
 
 std::optional<film::FilmHeader> FrameSampling::stored(FrameSamples kind) const {

@@ -35,7 +35,7 @@ class FrameSampling final : public render::RenderTask {
   std::optional<film::FilmHeader> stored(FrameSamples kind) const;
   std::optional<film::FilmHeader> stored_fresh() const;
   // Whether the samples of an identical earlier frame, to which none are added, suffice for this frame.
-  bool has_enough(const film::FilmHeader& half, FrameSamples kind) const;
+  bool has_enough(const film::FilmHeader& header, FrameSamples kind) const;
   // Returns the frame that was sampled, or reads the stored one. Takes the lock, but not while it reads a file.
   std::shared_ptr<const film::Film> fresh_film(const char* what) const;
   std::shared_ptr<film::Film> read(FrameSamples kind, film_io::StoredContent content, const CancelCheck& cancel) const;

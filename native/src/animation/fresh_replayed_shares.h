@@ -39,22 +39,23 @@ inline uint32_t samples_of(FrameSamples kind, const GradusSettings& settings) {
 
 // Returns the number of samples per pixel. With adaptive sampling the ranges of sample numbers are those of the pixels
 // with the maximum number of samples, so the stored mean is used instead.
-inline uint64_t samples_taken(const film::FilmHeader& half) {
-  return half.shared.rays.empty() ? half.samples.total() : half.shared.mean;
+inline uint64_t samples_taken(const film::FilmHeader& stored) {
+  return stored.shared.rays.empty() ? stored.samples.total() : stored.shared.mean;
 }
 
 // Whether the stored samples of one kind suffice for the requested settings: they are as many as requested, or they
 // reached the noise threshold or the time limit.
-inline bool has_as_many(const film::FilmHeader& half, FrameSamples kind, const GradusSettings& requested) {
+inline bool has_as_many(const film::FilmHeader& stored, FrameSamples kind, const GradusSettings& requested) {
   const bool is_quiet =
-      half.settings.noise_threshold <= fresh_share_of_threshold(requested) * requested.noise_threshold;
-  if (half.shared.is_done()) return is_quiet;
+      stored.settings.noise_threshold <= fresh_share_of_threshold(requested) * requested.noise_threshold;
+  if (stored.shared.is_done()) return is_quiet;
   // Frames with a time limit have as many samples as the time allowed, which may be fewer than in their settings.
-  const bool is_limited = half.settings.time_limit > 0.0f;
+  const bool is_limited = stored.settings.time_limit > 0.0f;
   if (is_limited && requested.time_limit > 0.0f &&
-      requested.time_limit <= half.settings.time_limit / fresh_share_of_time(requested))
+      requested.time_limit <= stored.settings.time_limit / fresh_share_of_time(requested))
     return true;
-  const uint64_t samples = is_limited || kind == FrameSamples::kReplayed ? samples_taken(half) : half.settings.samples;
+  const uint64_t samples =
+      is_limited || kind == FrameSamples::kReplayed ? samples_taken(stored) : stored.settings.samples;
   return samples >= samples_of(kind, requested) && is_quiet;
 }
 

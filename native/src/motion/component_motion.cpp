@@ -28,9 +28,6 @@ struct OtherFrame {
 
 static_assert(float(Tracking::NoPath) == film::kNothingToTrack, "planes of motion are initialised with NoPath");
 
-// Number of film rows that are tracked together. The chains of all pixels would take more memory than a frame.
-constexpr int32_t kBand = 64;
-
 // Returns the band with a border of one pixel: chain_jacobian() needs the chains of neighbouring pixels.
 Region with_neighbours(const Region& band, const GradusSettings& settings) {
   return {std::max(band.x0 - 1, 0), std::max(band.y0 - 1, 0), std::min(band.x1 + 1, int32_t(settings.width)),
@@ -104,8 +101,8 @@ std::vector<ComponentMotion> component_motion(const scene::Snapshot& snapshot, c
       next(snapshot, Moment::Next, settings, is_cancelled);
   Change change(snapshot);
   for (const OtherFrame* other : {&previous, &next}) change.add(*other->snapshot);
-  for (int32_t y = region.y0; y < region.y1; y += kBand) {
-    const Region band{region.x0, y, region.x1, std::min(y + kBand, region.y1)};
+  for (int32_t y = region.y0; y < region.y1; y += kTrackingBand) {
+    const Region band{region.x0, y, region.x1, std::min(y + kTrackingBand, region.y1)};
     const CentreView centres =
         view_centres(snapshot, settings.width, settings.height, with_neighbours(band, settings), is_cancelled);
     std::vector<ChainView> views =

@@ -12,8 +12,6 @@ namespace gradus::motion {
 
 namespace {
 
-// Number of film rows that are tracked together. The chains of all pixels would take more memory than a frame.
-constexpr int32_t kTrackingBand = 64;
 // Probability of class D above which a surface is more non-specular than specular.
 constexpr float kDominant = 0.5f;
 

@@ -31,6 +31,8 @@ struct KnownMotion {
   const ChainView& view;
   const ChainMotion& motion;
 };
+// Number of film rows that are tracked together. The chains of all pixels would take more memory than a frame.
+inline constexpr int32_t kTrackingBand = 64;
 // Returns the motion of a part of the view `from` to the frame of `to`, which may have another time and another camera.
 // After cancelling, pixels are NotConverged. known: motion of another view, or nullptr.
 ChainMotion track_chains(

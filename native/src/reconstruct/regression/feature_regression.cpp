@@ -118,9 +118,6 @@ PixelWeights weigh_pixels(const Surroundings& of) { return {weigh_in_windows(of)
 
 float bounded(float value) { return is_finite(value) ? std::clamp(value, -1.0f, 1.0f) : 0.0f; }
 
-// First channel of the albedo among the features.
-constexpr int kAlbedo = 3;
-
 Field albedo_of(const Field& features) {
   Field albedo(features.width(), features.height(), 3);
   for_values(&albedo, [&](float& value, int x, int y, int c) {
@@ -238,13 +235,13 @@ float typical_depth(const film::Features& features) {
 }
 
 Field regression_features(const film::Features& features, float unit) {
-  Field basis(features.width, features.height, 7);
+  Field basis(features.width, features.height, kFeatureChannels);
   for_values(&basis, [&](float& value, int x, int y, int c) {
     const int column = GRADUS_FAULT(features_shifted_by_a_column) ? std::min(x + 1, features.width - 1) : x;
     const size_t i = size_t(y) * size_t(features.width) + size_t(column);
-    value = c < kAlbedo ? bounded(features.normal.values[3 * i + size_t(c)])
-            : c < 6     ? bounded(features.albedo.values[3 * i + size_t(c - kAlbedo)])
-                        : relative_depth(features.depth.values[i], unit);
+    value = c < kAlbedo  ? bounded(features.normal.values[3 * i + size_t(c)])
+            : c < kDepth ? bounded(features.albedo.values[3 * i + size_t(c - kAlbedo)])
+                         : relative_depth(features.depth.values[i], unit);
     if (!is_finite(value)) value = 0.0f;
   });
   return basis;

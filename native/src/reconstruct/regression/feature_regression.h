@@ -38,7 +38,9 @@ struct PictureSamples {
   Field noise;  // mean noise around each pixel of the picture's own frame
 };
 
-// Returns normal, albedo, and d/(d + unit) of the depth d: seven channels.
+// Channels of the features of a regression: normal, albedo and depth.
+inline constexpr int kAlbedo = 3, kDepth = 6, kFeatureChannels = 7;
+// Returns normal, albedo, and d/(d + unit) of the depth d.
 Field regression_features(const film::Features& features, float unit);
 // Returns the typical depth: the median of the finite, positive ones; 1 if there are none.
 float typical_depth(const film::Features& features);

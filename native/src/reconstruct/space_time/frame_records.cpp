@@ -14,7 +14,7 @@
 namespace gradus::reconstruct {
 namespace {
 
-constexpr int kFeatureCount = kRecordDepth - kRecordFeatures;  // without the depth
+static_assert(kRecordDepth - kRecordFeatures == kDepth);
 
 Field planes_of(const FrameRecords& frame, int first, int count) {
   Field planes(frame.width, frame.height, count);
@@ -64,7 +64,7 @@ FrameRecords read_records(const film::Film& film) {
         to[kRecordMean + c] = std::clamp(image.mean.row(y, c)[x], -largest, largest);
         to[kRecordHalfDifference + c] = std::clamp(image.half_difference.row(y, c)[x], -largest, largest);
       }
-      for (int c = 0; c < kFeatureCount; ++c) to[kRecordFeatures + c] = basis.row(y, c)[x];
+      for (int c = 0; c < kDepth; ++c) to[kRecordFeatures + c] = basis.row(y, c)[x];
       to[kRecordDepth] = is_finite(features.depth.values[i]) ? features.depth.values[i] : 0.0f;
       to[kRecordWeight] = weights.in_windows.row(y)[x];
       to[kRecordOwnWeight] = weights.own.row(y)[x];
@@ -91,9 +91,9 @@ std::vector<Field> components_of(const FrameRecords& frame) {
 }
 
 Field features_of(const FrameRecords& frame) {
-  Field features = planes_of(frame, kRecordFeatures, kFeatureCount + 1);
+  Field features = planes_of(frame, kRecordFeatures, kFeatureChannels);
   for_rows(frame.height, [&](int y) {
-    float* depths = features.row(y, kFeatureCount);
+    float* depths = features.row(y, kDepth);
     for (int x = 0; x < frame.width; ++x) depths[x] = relative_depth(depths[x], frame.typical_depth);
   });
   return features;

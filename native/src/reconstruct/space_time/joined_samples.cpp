@@ -22,7 +22,7 @@ constexpr float kReachOfCentre = 0.2f;
 // Standard deviation of these weights in the picture that a denoiser reads. It is larger, because a network sharpens
 // better than it removes noise.
 constexpr float kReachOfSampled = 0.3f;
-constexpr int kFeatureChannels = 7, kAlbedo = 3, kAlbedoChannels = 3;
+constexpr int kAlbedoChannels = kDepth - kAlbedo;
 
 // Weights of one sample of a pixel, for each use. `share` is what the test of light keeps of it.
 struct SampleWeights {
