@@ -261,7 +261,7 @@ std::shared_ptr<const render::Replay> FrameSampling::follow(const film::FilmHead
   if (follows_before()) {
     const ScopedTimer timer(&record_.stats.seconds.correspondence, &record_.stats.cpu_seconds.correspondence);
     tbb::task_arena(arena_size(input_.threads)).execute([&] {
-      replay->replay_map = make_replay_map(*before, *input_.snapshot, now, record_.plan.components, fresh.region,
+      replay->replay_map = make_replay_map(*before, *input_.snapshot, now, record_.plan.components, fresh,
                                            [this] { return is_stopped(); });
       check_cancelled();
     });

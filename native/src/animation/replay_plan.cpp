@@ -10,6 +10,7 @@
 #include "bsdf/ggx.h"
 #include "integrator/pixel_loop.h"
 #include "motion/component_tracking.h"
+#include "motion/parting_edges.h"
 #include "motion/pixel_matching.h"
 #include "render/component_replay.h"
 
@@ -81,17 +82,21 @@ film::PixelCorrespondence correspondence_of_dominant(const motion::CentreView& f
 }  // namespace
 
 film::ReplayMap make_replay_map(const PreviousFrame& before, const scene::Snapshot& now, const GradusSettings& settings,
-                                const lpe::ComponentSet& components, const Region& region, const CancelCheck& cancel) {
+                                const lpe::ComponentSet& components, const film::FilmHeader& fresh,
+                                const CancelCheck& cancel) {
   const auto view = [&](const scene::Snapshot& snapshot) {
-    return motion::view_centres(snapshot, settings.width, settings.height, region, cancel);
+    return motion::view_centres(snapshot, settings.width, settings.height, fresh.region, cancel);
   };
   const motion::CentreView from = view(*before.snapshot), to = view(now);
   if (cancel()) return {};
   const scene::Snapshot& scene = *before.snapshot;
-  const bool shares = integrator::shares_jitter(camera::Camera(scene.camera, settings.width, settings.height), scene);
+  const bool shares =
+      integrator::shares_jitter(camera::Camera(scene.camera, settings.width, settings.height), scene, fresh.gradients);
   film::PixelCorrespondence correspondence = motion::match_pixels(from, to);
-  if (!takes_replays(settings))
+  if (!takes_replays(settings)) {
     correspondence = correspondence_of_dominant(from, to, settings, std::move(correspondence), cancel);
+    if (!cancel()) motion::leave_out_parting_edges(from, to, &correspondence);
+  }
   film::ReplayMap replay_map{before.stream_frame, motion::inverse_correspondence(correspondence), scene.content_key,
                              before.settings.seed, shares};
   replay_map.of_component =

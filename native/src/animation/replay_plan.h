@@ -15,12 +15,14 @@ namespace gradus::animation {
 // change between them. before: nullptr if there is no previous frame.
 bool follows(const PreviousFrame* before, const scene::Snapshot& now, const GradusSettings& settings);
 
-// Returns for each pixel of the region the pixel of the previous frame that shows the same surface point. Components
-// that are seen through smooth surfaces have maps of their own, to the pixel in which the smooth surfaces show the same
-// point. If frames are joined and nothing is replayed, all light of a pixel follows what gives most of it: where a
-// mirror or glass does, the point that is seen in it. The map is empty after cancelling.
+// Returns for each pixel of the frame `fresh` the pixel of the previous frame that shows the same surface point.
+// Components that are seen through smooth surfaces have maps of their own, to the pixel in which the smooth surfaces
+// show the same point. If frames are joined and nothing is replayed, all light of a pixel follows what gives most of
+// it: where a mirror or glass does, the point that is seen in it; and pixels that lie at an edge in one of both frames
+// alone have none (motion/parting_edges.h). The map is empty after cancelling.
 film::ReplayMap make_replay_map(const PreviousFrame& before, const scene::Snapshot& now, const GradusSettings& settings,
-                                const lpe::ComponentSet& components, const Region& region, const CancelCheck& cancel);
+                                const lpe::ComponentSet& components, const film::FilmHeader& fresh,
+                                const CancelCheck& cancel);
 
 double mean_of(const std::vector<uint32_t>& counts);
 

@@ -19,7 +19,8 @@ struct Stream {
 };
 
 // Returns the stream of a pixel in its own frame, or in the frame that is replayed if `replayed` is given.
-Stream stream_of_pixel(const path::PathContext& context, const film::ReplayMap* replayed, int32_t x, int32_t y) {
+Stream stream_of_pixel(const path::PathContext& context, const film::ReplayMap* replayed, bool gradients, int32_t x,
+                       int32_t y) {
   if (replayed != nullptr)
     return {path::StreamKind::Pixel, x, y, replayed->stream_frame, replayed->seed, replayed->shares_jitter};
   return {path::StreamKind::Pixel,
@@ -27,23 +28,23 @@ Stream stream_of_pixel(const path::PathContext& context, const film::ReplayMap* 
           y,
           context.settings.frame,
           context.settings.seed,
-          shares_jitter(context.camera, context.scene)};
+          shares_jitter(context.camera, context.scene, gradients)};
 }
 
 // Returns the stream that a pixel of the film uses: its own, that of its correspondence in the replayed frame, or one
 // for disocclusions.
 Stream find_stream(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, int32_t x,
                    int32_t y) {
-  if (unit.replay_map == nullptr) return stream_of_pixel(context, nullptr, x, y);
+  if (unit.replay_map == nullptr) return stream_of_pixel(context, nullptr, film.gradients, x, y);
   const int32_t pixel = unit.replay_map->correspondence.pixel[film.index(x, y)];
   if (pixel == film::kNoCorrespondence && GRADUS_FAULT(disocclusion_takes_own_numbers_again))
-    return stream_of_pixel(context, nullptr, x, y);
+    return stream_of_pixel(context, nullptr, film.gradients, x, y);
   if (pixel == film::kNoCorrespondence)
     return {path::StreamKind::Disocclusion, x, y, context.settings.frame, context.settings.seed};
-  if (GRADUS_FAULT(replay_takes_same_pixel)) return stream_of_pixel(context, unit.replay_map, x, y);
+  if (GRADUS_FAULT(replay_takes_same_pixel)) return stream_of_pixel(context, unit.replay_map, film.gradients, x, y);
   const film::ReplayMap* replayed = GRADUS_FAULT(replayed_pixels_take_own_seed) ? nullptr : unit.replay_map;
   const int32_t width = film.region.width(), x0 = GRADUS_FAULT(replay_ignores_border_corner) ? 0 : film.region.x0;
-  return stream_of_pixel(context, replayed, x0 + pixel % width, film.region.y0 + pixel / width);
+  return stream_of_pixel(context, replayed, film.gradients, x0 + pixel % width, film.region.y0 + pixel / width);
 }
 
 path::Sampler make_sampler(const path::PathContext& context, const Stream& stream, path::StreamKind kind,
@@ -76,7 +77,8 @@ uint32_t max_samples(const WorkUnit& unit, const film::Film& film, const Region&
 }
 
 bool shares_rays(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, const Region& block) {
-  if (!shares_jitter(context.camera, context.scene) || (unit.replay_map != nullptr && !unit.replay_map->shares_jitter))
+  if (!shares_jitter(context.camera, context.scene, film.gradients) ||
+      (unit.replay_map != nullptr && !unit.replay_map->shares_jitter))
     return false;
   for (int32_t y = block.y0; y < block.y1 && unit.replay_map != nullptr; ++y) {
     for (int32_t x = block.x0; x < block.x1; ++x) {
@@ -89,7 +91,7 @@ bool shares_rays(const path::PathContext& context, const WorkUnit& unit, const f
 
 Vec2 block_jitter(const path::PathContext& context, const WorkUnit& unit, const Region& block, uint32_t number) {
   const film::ReplayMap* replayed = GRADUS_FAULT(replayed_blocks_take_own_seed) ? nullptr : unit.replay_map;
-  return jitter_of_block(context, stream_of_pixel(context, replayed, block.x0, block.y0), number);
+  return jitter_of_block(context, stream_of_pixel(context, replayed, true, block.x0, block.y0), number);
 }
 
 PixelSample make_pixel_sample(const path::PathContext& context, const WorkUnit& unit, const film::Film& film, int32_t x,

@@ -45,10 +45,10 @@ inline uint32_t half_count(const WorkUnit& unit, size_t pixel, int half) {
 
 // Returns the maximum number of samples that the unit takes of a pixel of the pixel block.
 uint32_t max_samples(const WorkUnit& unit, const film::Film& film, const Region& block);
-// Returns whether the pixels of a pixel block share their jitter. They do not if points on the lens or times separate
-// the rays of neighbours anyway.
-inline bool shares_jitter(const camera::Camera& camera, const scene::Snapshot& scene) {
-  return !camera.has_lens() && !scene.features.has_motion;
+// Returns whether the pixels of a pixel block share their jitter, for the sake of offset paths. They do not without
+// gradients, or if points on the lens or times separate the rays of neighbours anyway.
+inline bool shares_jitter(const camera::Camera& camera, const scene::Snapshot& scene, bool gradients) {
+  return gradients && !camera.has_lens() && !scene.features.has_motion;
 }
 // Returns whether all pixels of a pixel block use their own random numbers, or those of the same pixels of another
 // frame, and share their jitter. Then the camera rays of base paths serve the offset paths of neighbours, too.

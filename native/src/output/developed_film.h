@@ -31,7 +31,7 @@ struct DevelopedFilm {
   // What other frames have sampled of the picture, too, until it is denoised; null if no frames are joined.
   std::shared_ptr<const reconstruct::SampledPicture> sampled{};
   // The same of its light passes, until they are split; null if no frames are joined.
-  std::shared_ptr<const std::vector<reconstruct::HalvedImage>> sampled_terms{};
+  std::shared_ptr<const reconstruct::SampledTerms> sampled_terms{};
   // Passes that are computed from the film: Combined, Error, light passes, and those that need several frames.
   std::map<uint32_t, Image> passes{};
   // Passes of components, by index in film::Film::components and GradusComponentPass: Color, unless there is one

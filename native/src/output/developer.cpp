@@ -197,12 +197,12 @@ void Developer::split(DevelopedFilm* developed) {
   const film::Film& film = *developed->film;
   if (developed->is_noisy() || !has_light_passes(film) || has_split(*developed)) return;
   const Image combined = developed->find(GRADUS_PASS_COMBINED);
-  const std::shared_ptr<const std::vector<reconstruct::HalvedImage>> joined =
-      std::exchange(developed->sampled_terms, nullptr);
+  const std::shared_ptr<const reconstruct::SampledTerms> joined = std::exchange(developed->sampled_terms, nullptr);
   run([&] {
-    std::vector<reconstruct::HalvedImage> sampled = joined != nullptr ? *joined : read_light_terms(film);
-    for (auto& [pass, pixels] : split_light(film, developed->region, *combined, std::move(sampled), cancel_))
-      developed->passes[pass] = make_image(std::move(pixels));
+    const reconstruct::SampledTerms sampled = joined != nullptr ? *joined : read_light_terms(film);
+    LightPasses light = split_light(film, developed->region, *combined, sampled, cancel_);
+    if (joined != nullptr) light.merge(color_passes(film, developed->region, sampled));
+    for (auto& [pass, pixels] : light) developed->passes[pass] = make_image(std::move(pixels));
   });
 }
 

@@ -34,6 +34,25 @@ const film::Channel* color_plane(const film::Film& film, const film::Channel& pl
   return info.kind == schema::PassKind::Light ? film.channels.of_pass(info.color) : nullptr;
 }
 
+// Returns the colour planes of all light passes, each once.
+LightPassPlanes color_planes(const film::Film& film) {
+  LightPassPlanes colors;
+  for (const film::Channel* plane : light_planes(film)) {
+    const film::Channel* const color = color_plane(film, *plane);
+    if (color != nullptr && std::find(colors.begin(), colors.end(), color) == colors.end()) colors.push_back(color);
+  }
+  return colors;
+}
+
+// Returns the colour of a light pass among the sampled terms, or nullptr if it has none.
+const reconstruct::Field* color_of(const film::Film& film, const film::Channel& plane,
+                                   const reconstruct::SampledTerms& sampled) {
+  const film::Channel* const color = color_plane(film, plane);
+  if (color == nullptr) return nullptr;
+  const LightPassPlanes planes = color_planes(film);
+  return &sampled.colors[size_t(std::find(planes.begin(), planes.end(), color) - planes.begin())];
+}
+
 // Returns the first three of `channels` interleaved channels for the pixels of `whole` that lie in `region`.
 reconstruct::Field to_field(const std::vector<float>& values, size_t channels, const Region& whole,
                             const Region& region) {
@@ -84,14 +103,14 @@ class Guides {
                               : features_of(picture, film, region)) {}
 
   const film::Features& shared() const { return shared_; }
-  // Returns the features for one light pass. Diffuse light has the texture of its own colour pass. Reflections and
-  // refractions have the texture of the surfaces that the mirror or the glass shows, which the albedo of the film's
-  // features holds. The colour pass serves for them only if the film has no features.
-  film::Features of(const film::Film& film, const film::Channel& plane) const {
+  // Returns the features for one light pass, whose colour is `color`; null if it has none. Diffuse light has the
+  // texture of its own colour pass. Reflections and refractions have the texture of the surfaces that the mirror or the
+  // glass shows, which the albedo of the film's features holds. The colour pass serves for them only if the film has no
+  // features.
+  film::Features of(const film::Film& film, const film::Channel& plane, const reconstruct::Field* color) const {
     film::Features own = shared_;
-    const film::Channel* const color = color_plane(film, plane);
-    if (color != nullptr && (!has_features_ || color->pass == GRADUS_PASS_DIFFUSE_COLOR))
-      own.albedo = read_color(film, *color);
+    if (color != nullptr && (!has_features_ || color_plane(film, plane)->pass == GRADUS_PASS_DIFFUSE_COLOR))
+      own.albedo = {3, reconstruct::interleave(*color), {}};
     return own;
   }
 
@@ -137,43 +156,49 @@ reconstruct::PictureTerm make_term(const film::Film& film, const Region& region,
 
 }  // namespace
 
-std::vector<reconstruct::HalvedImage> read_light_terms(const film::Film& film) {
+reconstruct::SampledTerms read_light_terms(const film::Film& film) {
   const LightPassPlanes planes = light_planes(film);
-  std::vector<reconstruct::HalvedImage> terms;
-  for (const film::Channel* plane : planes) terms.push_back(read_light_pass(film, *plane));
+  reconstruct::SampledTerms terms;
+  for (const film::Channel* plane : planes) terms.light.push_back(read_light_pass(film, *plane));
   const bool are_all = (film.channels.passes() & schema::light_passes()) == schema::light_passes();
-  if (!are_all) terms.push_back(read_remainder(film, planes));
+  if (!are_all) terms.light.push_back(read_remainder(film, planes));
+  for (const film::Channel* color : color_planes(film))
+    terms.colors.push_back(to_field(read_color(film, *color).values, 3, film.region, film.region));
   return terms;
 }
 
 bool has_light_passes(const film::Film& film) { return (film.channels.passes() & schema::light_passes()) != 0; }
 
-std::map<uint32_t, std::vector<float>> split_light(const film::Film& film, const Region& region,
-                                                   const std::vector<float>& rgba,
-                                                   std::vector<reconstruct::HalvedImage> sampled,
-                                                   const CancelCheck& cancel) {
+LightPasses split_light(const film::Film& film, const Region& region, const std::vector<float>& rgba,
+                        const reconstruct::SampledTerms& sampled, const CancelCheck& cancel) {
   const LightPassPlanes planes = light_planes(film);
   const reconstruct::Field whole = to_field(rgba, 4, region, region);
   const Guides guides(film, region, whole);
   std::vector<reconstruct::PictureTerm> terms;
   std::vector<reconstruct::Field> colors;
-  for (size_t k = 0; k < sampled.size(); ++k) {
+  for (size_t k = 0; k < sampled.light.size(); ++k) {
     const film::Channel* const plane = k < planes.size() ? planes[k] : nullptr;
-    terms.push_back(make_term(film, region, plane != nullptr ? guides.of(film, *plane) : guides.shared(),
-                              std::move(sampled[k]), cancel));
-    if (plane == nullptr) continue;
-    const film::Channel* const color = color_plane(film, *plane);
-    colors.push_back(color != nullptr ? to_field(read_color(film, *color).values, 3, film.region, region)
-                                      : reconstruct::Field());
+    const reconstruct::Field* const color = plane != nullptr ? color_of(film, *plane, sampled) : nullptr;
+    terms.push_back(make_term(film, region, plane != nullptr ? guides.of(film, *plane, color) : guides.shared(),
+                              sampled.light[k], cancel));
+    colors.push_back(color != nullptr ? crop(*color, film, region) : reconstruct::Field());
     if (color != nullptr) terms.back().capacity = capacity_of(colors.back());
   }
   throw_if_cancelled(cancel);
   reconstruct::add_up(whole, &terms);
-  std::map<uint32_t, std::vector<float>> passes;
+  LightPasses passes;
   for (size_t k = 0; k < planes.size(); ++k) {
     if (colors[k].width() > 0) divide(colors[k], &terms[k].image);
     passes[planes[k]->pass] = reconstruct::interleave(terms[k].image);
   }
+  return passes;
+}
+
+LightPasses color_passes(const film::Film& film, const Region& region, const reconstruct::SampledTerms& sampled) {
+  LightPasses passes;
+  const LightPassPlanes planes = color_planes(film);
+  for (size_t k = 0; k < planes.size(); ++k)
+    passes[planes[k]->pass] = reconstruct::interleave(crop(sampled.colors[k], film, region));
   return passes;
 }
 

@@ -7,7 +7,7 @@
 
 #include "base/cancel_check.h"
 #include "film/film.h"
-#include "reconstruct/regression/halved_image.h"
+#include "reconstruct/reconstructed.h"
 
 namespace gradus::output {
 
@@ -15,16 +15,18 @@ namespace gradus::output {
 bool has_light_passes(const film::Film& film);
 
 // Returns the samples of all light passes that the film has, in the order of its channels, then those of the light that
-// belongs to none of them, if there may be such light.
-std::vector<reconstruct::HalvedImage> read_light_terms(const film::Film& film);
+// belongs to none of them, if there may be such light; and the colour passes by which they are divided.
+reconstruct::SampledTerms read_light_terms(const film::Film& film);
 
-// Returns all light passes that the film has, by their numbers, with 3 floats for each pixel of the region. `rgba` is
-// the reconstructed picture of `region`, to which the light passes add up. `sampled` is what read_light_terms()
-// returns, or the same of several frames. Passes that have a colour pass are divided by it, as in Cycles. Throws Error
-// CANCELLED.
-std::map<uint32_t, std::vector<float>> split_light(const film::Film& film, const Region& region,
-                                                   const std::vector<float>& rgba,
-                                                   std::vector<reconstruct::HalvedImage> sampled,
-                                                   const CancelCheck& cancel);
+// Passes by their numbers, with 3 floats for each pixel of a region.
+using LightPasses = std::map<uint32_t, std::vector<float>>;
+
+// Returns all light passes that the film has. `rgba` is the reconstructed picture of `region`, to which the light
+// passes add up. `sampled` is what read_light_terms() returns, or the same of several frames. Passes that have a colour
+// pass are divided by it, as in Cycles. Throws Error CANCELLED.
+LightPasses split_light(const film::Film& film, const Region& region, const std::vector<float>& rgba,
+                        const reconstruct::SampledTerms& sampled, const CancelCheck& cancel);
+// Returns the colour passes of `sampled`.
+LightPasses color_passes(const film::Film& film, const Region& region, const reconstruct::SampledTerms& sampled);
 
 }  // namespace gradus::output

@@ -23,8 +23,13 @@ struct SampledPicture {
   std::vector<float> light, albedo, normal;
 };
 
-// Reads from a film the sampled terms of its picture, such as light passes.
-using ReadTerms = std::function<std::vector<HalvedImage>(const film::Film& film)>;
+// Sampled terms of a picture, such as light passes, and the colours by which they are divided, three channels each.
+struct SampledTerms {
+  std::vector<HalvedImage> light;
+  std::vector<Field> colors;
+};
+// Reads the terms of a film, as many for all frames of an animation.
+using ReadTerms = std::function<SampledTerms(const film::Film& film)>;
 
 // What a picture of several frames returns beside itself.
 struct JoinedOutputs {
@@ -40,7 +45,7 @@ struct Reconstructed {
   std::vector<std::vector<float>> components{};     // images that add up to `image`; empty unless requested
   std::shared_ptr<const SampledPicture> sampled{};  // null unless requested, or if no frames are joined
   // Terms of `sampled`, as JoinedOutputs::terms reads them; null unless requested, or if no frames are joined.
-  std::shared_ptr<const std::vector<HalvedImage>> sampled_terms{};
+  std::shared_ptr<const SampledTerms> sampled_terms{};
   ErrorTerms terms{};  // RGB; replaces `error` for images that L2 or L1 reconstructs over several frames
 };
 

@@ -18,8 +18,9 @@ constexpr uint32_t kSide = 24;
 // A set by the number of bounces, so that paths change their component at every vertex.
 const char* const kByBounces = "Seen=EL;Once=E.L;Twice=E..L;Thrice=E...L";
 
+// Samples a film with room for gradients, in which plain paths have the jitter of gradient paths.
 film::Film sampled(const integrator::IntegratorContext& context, bool gradients, uint32_t samples = 6) {
-  film::Film film = test::make_test_film(context.settings, gradients, context.components.count());
+  film::Film film = test::make_test_film(context.settings, true, context.components.count());
   const auto integrator =
       gradients ? gradient::make_gradient_integrator(context) : integrator::make_path_integrator(context);
   test::sample_film(*integrator, 0, samples, &film);

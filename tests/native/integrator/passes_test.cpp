@@ -25,11 +25,12 @@ std::vector<float> read(const film::Film& film, uint32_t pass) {
   return pixels;
 }
 
+// Samples a film with room for gradients, in which plain paths have the jitter of gradient paths.
 film::Film render_passes(test::PathScene* scene, bool gradient) {
   GradusSettings settings = test::test_settings(24, 20);
   settings.passes = kAllPasses;
   const integrator::IntegratorContext context = scene->context(settings);
-  film::Film film = test::make_test_film(settings, gradient);
+  film::Film film = test::make_test_film(settings, true);
   film.settings = settings;
   film::add_pass_channels(settings.passes, &film);
   test::sample_film(

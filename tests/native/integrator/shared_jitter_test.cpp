@@ -21,13 +21,13 @@ struct Jitter {
 };
 
 // Returns the offsets from the pixel centres, in a film of more than one block.
-std::vector<Jitter> jitters(float aperture, uint32_t size, uint32_t samples) {
+std::vector<Jitter> jitters(float aperture, uint32_t size, uint32_t samples, bool gradients = true) {
   PathScene scene;
   test::build(Scenario::DiffuseArea, &scene);
   scene.camera_desc.aperture_radius = aperture;
   const integrator::IntegratorContext context = scene.context(test::test_settings(size, size));
   const path::PathContext path(*context.snapshot, context.camera, context.settings);
-  const film::Film film = test::make_test_film(context.settings, false);
+  const film::Film film = test::make_test_film(context.settings, gradients);
   const auto vertices = std::make_unique<path::CameraVertices>(path);
   std::vector<Jitter> found;
   for_each_sample(path, integrator::WorkUnit{film.region, 0, samples, nullptr}, film, vertices.get(),
@@ -54,6 +54,13 @@ TEST(SharedJitter, IsThatOfItsBlockAndSampleNumber) {
 // With a lens, the camera rays of neighbours differ in any case.
 TEST(SharedJitter, PixelsBehindALensHaveTheirOwn) {
   const std::vector<Jitter> found = jitters(0.1f, 2, 1);
+  EXPECT_GT(glm::length(found[0].offset - found[1].offset), 1e-4f);
+}
+
+// Without offset paths there is no reason to share. A row of pixels along an edge would have the same error, in long
+// dashes that move from frame to frame.
+TEST(SharedJitter, PixelsWithoutGradientsHaveTheirOwn) {
+  const std::vector<Jitter> found = jitters(0.0f, 2, 1, false);
   EXPECT_GT(glm::length(found[0].offset - found[1].offset), 1e-4f);
 }
 

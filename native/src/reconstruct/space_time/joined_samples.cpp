@@ -194,6 +194,18 @@ float sampled_weight(const SampleOfPixel& sample) {
   return sample.share * nearness(sample.displacement, kReachOfSampled);
 }
 
+// Returns pointers to the fields of noisy light and of colours of `terms`. `noisy` says which light of the picture's
+// own frame has noise.
+template <class Terms>
+auto fields_of(Terms& terms, const std::vector<bool>& noisy) {
+  std::vector<decltype(&terms.colors[0])> fields;
+  for (size_t k = 0; k < noisy.size(); ++k) {
+    if (noisy[k]) fields.insert(fields.end(), {&terms.light[k].mean, &terms.light[k].half_difference});
+  }
+  for (auto& color : terms.colors) fields.push_back(&color);
+  return fields;
+}
+
 // Sums of up to three channels of a pixel with the weights of a JoinedPlane.
 class ValueSums {
  public:
@@ -288,17 +300,16 @@ SampledPicture JoinedSamples::sampled() const {
   return picture;
 }
 
-std::vector<HalvedImage> JoinedSamples::sampled(std::vector<HalvedImage> own,
-                                                const std::function<std::vector<HalvedImage>(int number)>& read) const {
-  std::vector<HalvedImage> sums = std::move(own);
-  std::vector<size_t> noisy;
-  for (size_t k = 0; k < sums.size(); ++k) {
-    if (!is_black(sums[k].half_difference)) noisy.push_back(k);
-  }
+SampledTerms JoinedSamples::sampled(SampledTerms own, const std::function<SampledTerms(int number)>& read) const {
+  SampledTerms sums = std::move(own);
+  std::vector<bool> noisy;
+  for (const HalvedImage& image : sums.light) noisy.push_back(!is_black(image.half_difference));
+  const std::vector<Field*> fields = fields_of(sums, noisy);
   Field weights = make_field(here_.width, here_.height, [](int, int) { return 1.0f; });
   for (const JoinedFrame& frame : others_) {
-    const std::vector<HalvedImage> images = read(frame.number);
-    if (images.size() != sums.size()) continue;
+    const SampledTerms terms = read(frame.number);
+    if (terms.light.size() != sums.light.size() || terms.colors.size() != sums.colors.size()) continue;
+    const std::vector<const Field*> others = fields_of(terms, noisy);
     for_rows(here_.height, [&](int y) {
       for (int x = 0; x < here_.width; ++x) {
         const SampleOfPixel sample = sample_of(frame, x, y);
@@ -306,20 +317,14 @@ std::vector<HalvedImage> JoinedSamples::sampled(std::vector<HalvedImage> own,
         const float weight = sampled_weight(sample);
         weights.row(y)[x] += weight;
         const int from_x = sample.pixel % here_.width, from_y = sample.pixel / here_.width;
-        for (const size_t k : noisy) {
-          for (int c = 0; c < kColors; ++c) {
-            sums[k].mean.row(y, c)[x] += weight * images[k].mean.row(from_y, c)[from_x];
-            sums[k].half_difference.row(y, c)[x] += weight * images[k].half_difference.row(from_y, c)[from_x];
-          }
+        for (size_t k = 0; k < fields.size(); ++k) {
+          for (int c = 0; c < kColors; ++c) fields[k]->row(y, c)[x] += weight * others[k]->row(from_y, c)[from_x];
         }
       }
     });
   }
   for_values(&weights, [](float& value, int, int, int) { value = 1.0f / value; });
-  for (const size_t k : noisy) {
-    scale_by(weights, &sums[k].mean);
-    scale_by(weights, &sums[k].half_difference);
-  }
+  for (Field* field : fields) scale_by(weights, field);
   return sums;
 }
 

@@ -27,11 +27,10 @@ class JoinedSamples {
   PictureSamples picture(const HalvedImage& image) const;
   // Returns the means of light and features near the centres of pixels. Light is in the units of the film.
   SampledPicture sampled() const;
-  // Returns the means of images of all frames with the same weights. read(number) returns those of a frame, `own` are
-  // those of the picture's own frame, and stay as they are where these have no noise. Frames that have another number
-  // of images are left out.
-  std::vector<HalvedImage> sampled(std::vector<HalvedImage> own,
-                                   const std::function<std::vector<HalvedImage>(int number)>& read) const;
+  // Returns the means of the terms of all frames with the same weights. read(number) returns those of a frame, `own`
+  // are those of the picture's own frame. Light without noise stays as it is there. Frames that have another number of
+  // terms are left out.
+  SampledTerms sampled(SampledTerms own, const std::function<SampledTerms(int number)>& read) const;
   // Joins channels [first, first + the channels of `own`) of a component, or of the sum of all, with `own`, those of
   // the picture's own frame.
   JoinedPlane join(int component, int first, const Field& own) const;

@@ -91,8 +91,7 @@ Reconstructed JointRegression::reconstruct(int number, const FrameRange& around,
   if (wanted.sampled) result.sampled = std::make_shared<const SampledPicture>(joined.sampled());
   if (wanted.terms) {
     const auto read_terms = [&](int other) { return wanted.terms(*open_film_(other, cancel)); };
-    result.sampled_terms =
-        std::make_shared<const std::vector<HalvedImage>>(joined.sampled(read_terms(number), read_terms));
+    result.sampled_terms = std::make_shared<const SampledTerms>(joined.sampled(read_terms(number), read_terms));
   }
   return result;
 }

@@ -168,13 +168,14 @@ TEST(B2_JointRegression, JoinsTermsAsTheLight) {
   wanted.terms = [](const film::Film& film) {
     reconstruct::HalvedImage light = reconstruct::read_sum(film), constant = light;
     for_values(&constant.half_difference, [](float& value, int, int, int) { value = 0.0f; });
-    return std::vector<reconstruct::HalvedImage>{light, constant};
+    return reconstruct::SampledTerms{{light, constant}, {light.mean}};
   };
   const reconstruct::Reconstructed picture = regression.reconstruct(kMiddle, shot.all(), never, &report, wanted);
-  const reconstruct::HalvedImage own = reconstruct::read_sum(*shot.film(kMiddle)), &light = (*picture.sampled_terms)[0],
-                                 &constant = (*picture.sampled_terms)[1];
+  const reconstruct::HalvedImage own = reconstruct::read_sum(*shot.film(kMiddle)),
+                                 &light = picture.sampled_terms->light[0], &constant = picture.sampled_terms->light[1];
   EXPECT_LT(rms_difference(reconstruct::interleave(light.mean), picture.sampled->light), 1e-5);
   EXPECT_EQ(reconstruct::interleave(constant.mean), reconstruct::interleave(own.mean));
+  EXPECT_EQ(reconstruct::interleave(picture.sampled_terms->colors[0]), reconstruct::interleave(light.mean));
   const auto rms = [](const reconstruct::Field& field) {
     return rms_difference(reconstruct::interleave(field), std::vector<float>(3 * size_t(kWidth) * kHeight));
   };
