@@ -199,10 +199,10 @@ void Developer::split(DevelopedFilm* developed) {
   const Image combined = developed->find(GRADUS_PASS_COMBINED);
   const std::shared_ptr<const reconstruct::SampledTerms> joined = std::exchange(developed->sampled_terms, nullptr);
   run([&] {
-    const reconstruct::SampledTerms sampled = joined != nullptr ? *joined : read_light_terms(film);
-    LightPasses light = split_light(film, developed->region, *combined, sampled, cancel_);
-    if (joined != nullptr) light.merge(color_passes(film, developed->region, sampled));
-    for (auto& [pass, pixels] : light) developed->passes[pass] = make_image(std::move(pixels));
+    LightPasses passes = joined != nullptr ? color_passes(film, developed->region, *joined) : LightPasses();
+    passes.merge(
+        split_light(film, developed->region, *combined, joined != nullptr ? *joined : read_light_terms(film), cancel_));
+    for (auto& [pass, pixels] : passes) developed->passes[pass] = make_image(std::move(pixels));
   });
 }
 

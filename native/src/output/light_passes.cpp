@@ -170,7 +170,7 @@ reconstruct::SampledTerms read_light_terms(const film::Film& film) {
 bool has_light_passes(const film::Film& film) { return (film.channels.passes() & schema::light_passes()) != 0; }
 
 LightPasses split_light(const film::Film& film, const Region& region, const std::vector<float>& rgba,
-                        const reconstruct::SampledTerms& sampled, const CancelCheck& cancel) {
+                        reconstruct::SampledTerms sampled, const CancelCheck& cancel) {
   const LightPassPlanes planes = light_planes(film);
   const reconstruct::Field whole = to_field(rgba, 4, region, region);
   const Guides guides(film, region, whole);
@@ -180,7 +180,7 @@ LightPasses split_light(const film::Film& film, const Region& region, const std:
     const film::Channel* const plane = k < planes.size() ? planes[k] : nullptr;
     const reconstruct::Field* const color = plane != nullptr ? color_of(film, *plane, sampled) : nullptr;
     terms.push_back(make_term(film, region, plane != nullptr ? guides.of(film, *plane, color) : guides.shared(),
-                              sampled.light[k], cancel));
+                              std::move(sampled.light[k]), cancel));
     colors.push_back(color != nullptr ? crop(*color, film, region) : reconstruct::Field());
     if (color != nullptr) terms.back().capacity = capacity_of(colors.back());
   }

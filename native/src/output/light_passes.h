@@ -25,7 +25,7 @@ using LightPasses = std::map<uint32_t, std::vector<float>>;
 // passes add up. `sampled` is what read_light_terms() returns, or the same of several frames. Passes that have a colour
 // pass are divided by it, as in Cycles. Throws Error CANCELLED.
 LightPasses split_light(const film::Film& film, const Region& region, const std::vector<float>& rgba,
-                        const reconstruct::SampledTerms& sampled, const CancelCheck& cancel);
+                        reconstruct::SampledTerms sampled, const CancelCheck& cancel);
 // Returns the colour passes of `sampled`.
 LightPasses color_passes(const film::Film& film, const Region& region, const reconstruct::SampledTerms& sampled);
 
