@@ -144,7 +144,7 @@ TEST_P(Scenarios, ComponentsSampledSeparatelyHaveTheBitsOfThoseSampledTogether) 
 
 TEST_P(Scenarios, PathsThatCanReachNoWantedComponentEnd) {
   const integrator::IntegratorContext c = context("");
-  film::Film whole = sampled(c, false), seen = test::make_test_film(c.settings, false, c.components.count());
+  film::Film whole = sampled(c, false), seen = test::make_test_film(c.settings, true, c.components.count());
   const auto integrator = integrator::make_path_integrator(c);
   integrator::WorkUnit unit{seen.region, 0, 6};
   unit.components = 1u << c.components.find("Emission");
