@@ -417,7 +417,7 @@ ROWS: tuple[dict[str, Any], ...] = (
         doc=(
             "In animations, makes each frame from its own samples and those of the frames around it, along the "
             "motion of surfaces. This leaves less noise and far less flicker at the same number of samples. It "
-            "takes several times as long to reconstruct and about 170 bytes of memory per pixel and frame, and "
+            "takes several times as long to reconstruct and about 160 bytes of memory per pixel and frame, and "
             "delays the first frame by four, with L2 and L1 by up to nine. With these, half of the samples follow "
             "those of the frame before. It has no effect with the reconstruction None, which Automatic is with the "
             "integrator Path"

@@ -59,11 +59,8 @@ std::vector<ChainMotion> track(const CentreView& from, const ChainTracer& to, co
 
 // Returns whether a pixel beside this one shows another instance at its centre: the two may share this pixel.
 bool is_at_edge(const CentreView& view, size_t pixel) {
-  const auto width = size_t(view.region.width());
-  const size_t x = pixel % width;
-  const auto differs = [&](size_t other) { return view.hits[other].instance != view.hits[pixel].instance; };
-  return (x > 0 && differs(pixel - 1)) || (x + 1 < width && differs(pixel + 1)) ||
-         (pixel >= width && differs(pixel - width)) || (pixel + width < view.hits.size() && differs(pixel + width));
+  return any_beside(view.region, pixel,
+                    [&](size_t other) { return view.hits[other].instance != view.hits[pixel].instance; });
 }
 
 }  // namespace

@@ -11,7 +11,10 @@ namespace {
 
 // Adjacent pixels that move apart by more than this, in pixels per axis, move in different ways.
 constexpr float kApart = 1.0f;
+constexpr int kPixels = 4096;  // number of pixels that one task handles
 
+// Returns whether two pixels beside each other, of which the first has a partner in the other view, move in different
+// ways, or show different instances and the second has no partner.
 bool parts(const CentreView& view, const std::vector<int32_t>& partner, const std::vector<Vec2>& displacements,
            size_t pixel, size_t other) {
   if (partner[other] == film::kNoCorrespondence) return view.hits[other].instance != view.hits[pixel].instance;
@@ -23,35 +26,28 @@ bool parts(const CentreView& view, const std::vector<int32_t>& partner, const st
 // instance and has no partner.
 std::vector<uint8_t> edges_of(const CentreView& view, const std::vector<int32_t>& partner,
                               const std::vector<Vec2>& displacements) {
-  const auto width = size_t(view.region.width()), pixels = partner.size();
-  std::vector<uint8_t> edges(pixels, 0);
-  for_rows(view.region.height(), [&](int y) {
-    const size_t first = size_t(y) * width;
-    for (size_t i = first; i < first + width; ++i) {
-      if (partner[i] == film::kNoCorrespondence) continue;
-      const auto differs = [&](size_t other) { return parts(view, partner, displacements, i, other); };
-      edges[i] = (i > first && differs(i - 1)) || (i + 1 < first + width && differs(i + 1)) ||
-                 (i >= width && differs(i - width)) || (i + width < pixels && differs(i + width));
-    }
-  });
+  std::vector<uint8_t> edges(partner.size(), 0);
+  for_pieces(
+      int(partner.size()),
+      [&](int begin, int end) {
+        for (auto i = size_t(begin); i < size_t(end); ++i) {
+          const auto differs = [&](size_t other) { return parts(view, partner, displacements, i, other); };
+          edges[i] = partner[i] != film::kNoCorrespondence && any_beside(view.region, i, differs);
+        }
+      },
+      kPixels);
   return edges;
 }
 
-// Returns 1 for the pixels of which one in 3×3 pixels is an edge.
-std::vector<uint8_t> near(const std::vector<uint8_t>& edges, const Region& region) {
-  const int width = region.width(), height = region.height();
-  std::vector<uint8_t> result(edges.size(), 0);
-  for_rows(height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      uint8_t found = 0;
-      for (int j = std::max(y - 1, 0); j <= std::min(y + 1, height - 1); ++j) {
-        for (int i = std::max(x - 1, 0); i <= std::min(x + 1, width - 1); ++i)
-          found |= edges[size_t(j) * size_t(width) + size_t(i)];
-      }
-      result[size_t(y) * size_t(width) + size_t(x)] = found;
+// Returns whether one of 3×3 pixels is an edge.
+bool is_near(const std::vector<uint8_t>& edges, const Region& region, size_t pixel) {
+  const int width = region.width(), x = int(pixel) % width, y = int(pixel) / width;
+  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, region.height() - 1); ++j) {
+    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, width - 1); ++i) {
+      if (edges[size_t(j) * size_t(width) + size_t(i)] != 0) return true;
     }
-  });
-  return result;
+  }
+  return false;
 }
 
 }  // namespace
@@ -67,12 +63,12 @@ void leave_out_parting_edges(const CentreView& from, const CentreView& to, film:
     here[there] = forth[i] = centre_of(to.region, there) + off - centre_of(from.region, i);
   }
   const std::vector<uint8_t> leaving = edges_of(from, correspondence->pixel, forth),
-                             arriving = edges_of(to, back.pixel, here), near_leaving = near(leaving, from.region),
-                             near_arriving = near(arriving, to.region);
+                             arriving = edges_of(to, back.pixel, here);
   for (size_t i = 0; i < pixels; ++i) {
     if (correspondence->pixel[i] == film::kNoCorrespondence) continue;
     const auto there = size_t(correspondence->pixel[i]);
-    if ((leaving[i] != 0 && near_arriving[there] == 0) || (arriving[there] != 0 && near_leaving[i] == 0))
+    if ((leaving[i] != 0 && !is_near(arriving, to.region, there)) ||
+        (arriving[there] != 0 && !is_near(leaving, from.region, i)))
       correspondence->pixel[i] = film::kNoCorrespondence;
   }
 }

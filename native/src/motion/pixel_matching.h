@@ -34,6 +34,14 @@ Vec2 centre_of(const Region& region, size_t pixel);
 // Returns the index of the pixel that contains a film position, or kNoCorrespondence outside the region.
 int32_t pixel_at(const Region& region, const Vec2& film);
 
+// Returns whether test(other) is true for a pixel beside this one, in its row or column. pixel: index in the region.
+template <class Test>
+bool any_beside(const Region& region, size_t pixel, const Test& test) {
+  const auto width = size_t(region.width()), x = pixel % width;
+  return (x > 0 && test(pixel - 1)) || (x + 1 < width && test(pixel + 1)) || (pixel >= width && test(pixel - width)) ||
+         (pixel + width < size_t(region.area()) && test(pixel + width));
+}
+
 // Returns the offset of a film position from the centre of its pixel, within half a pixel. It is rounded to 1/256
 // pixel, so that it is exactly 0 for what does not move.
 Vec2 off_centre(const Region& region, size_t pixel, const Vec2& film);

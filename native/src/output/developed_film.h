@@ -30,7 +30,7 @@ struct DevelopedFilm {
   reconstruct::SolveReport solve{};        // how its reconstruction converged
   // What other frames have sampled of the picture, too, until it is denoised; null if no frames are joined.
   std::shared_ptr<const reconstruct::SampledPicture> sampled{};
-  // The same of its light passes, until they are split; null if no frames are joined.
+  // Light passes as all joined frames have sampled them, until they are split; null if no frames are joined.
   std::shared_ptr<const reconstruct::SampledTerms> sampled_terms{};
   // Passes that are computed from the film: Combined, Error, light passes, and those that need several frames.
   std::map<uint32_t, Image> passes{};

@@ -20,9 +20,6 @@ class WindowBlend {
   // images are: the result is an upper bound of the error of the blend.
   void add(int window, int frame, Reconstructed picture);
 
-  // Returns whether some, but not all, windows have contributed to the frame.
-  bool has_begun(int frame) const { return begun_.count(frame) > 0; }
-
  private:
   WindowGrid grid_;
   Take take_;
