@@ -113,6 +113,7 @@ class AlphaMode(IntEnum):
     PREMULTIPLIED = 1
     CHANNEL_PACKED = 2
     NONE = 3
+    ALWAYS_STRAIGHT = 4
 
 
 class ObjectKind(IntEnum):

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import bpy
 
 from . import color, compat, native, pixels, simulation
-from .export import Exporter
+from .export import Exporter, blender_pixels
 
 FINAL, PREVIEW, VIEWPORT = "FINAL", "PREVIEW", "VIEWPORT"
 POLL_SECONDS = 0.05
@@ -173,7 +173,7 @@ def clear() -> None:
 
 # ------------------------------------------------------------------------------------------------ handlers
 
-job_ends: list[Callable[[], None]] = []
+job_ends: list[Callable[[], None]] = [blender_pixels.release]
 """Functions that are called when a render ends: it is finished or cancelled, or another file is loaded."""
 
 

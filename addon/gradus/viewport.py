@@ -13,6 +13,8 @@ import time
 import weakref
 from array import array
 from ctypes import byref
+from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import bpy
@@ -44,6 +46,7 @@ class View:
         self.override: ViewOverride | None = None
         self.region: tuple[int, int, int, int] = (0, 0, 0, 0)
         self.signature: object = None
+        self.hidden: frozenset[int] = frozenset()  # see _hidden_objects()
         self.worker: threading.Thread | None = None
         self.cancel = ctypes.c_int32(0)
         self.render = 0
@@ -245,11 +248,13 @@ def update(engine: Any, context: Any, depsgraph: Any) -> None:
     if engine.view is None:
         engine.view = View(engine, depsgraph)
     view = engine.view
+    hidden = _hidden_objects(context.space_data, depsgraph)
     signature = _signature(depsgraph)
-    if view.override is not None and signature == view.signature and not _has_edits(depsgraph):
+    is_known = signature == view.signature and hidden == view.hidden
+    if view.override is not None and is_known and not _has_edits(depsgraph):
         return
-    view.signature = signature
-    view.synchronize(depsgraph, _override(context))
+    view.signature, view.hidden = signature, hidden
+    view.synchronize(depsgraph, replace(_override(context), hidden=hidden))
 
 
 def draw(engine: Any, context: Any, depsgraph: Any) -> None:
@@ -259,6 +264,8 @@ def draw(engine: Any, context: Any, depsgraph: Any) -> None:
     if view.error is not None:
         error, view.error, view.failed = view.error, None, True
         raise error
+    if view.hidden != _hidden_objects(context.space_data, depsgraph):
+        engine.tag_update()
     override = _override(context)
     region = view_border.region(context, depsgraph.scene)
     if view.override is not None and override != view.override:
@@ -300,6 +307,21 @@ def _has_edits(depsgraph: Any) -> bool:
     """
     ignored = (bpy.types.Scene, bpy.types.CompositorNodeTree)
     return any(not isinstance(update.id, ignored) for update in depsgraph.updates)
+
+
+@cache
+def _object_filters() -> tuple[str, ...]:
+    """Returns the switches of a 3D viewport that hide all objects of a type."""
+    names = bpy.types.SpaceView3D.bl_rna.properties.keys()
+    return tuple(name for name in names if name.startswith("show_object_viewport_"))
+
+
+def _hidden_objects(space: Any, depsgraph: Any) -> frozenset[int]:
+    """Returns the addresses of the objects that a viewport does not show: by Local View or by their type."""
+    if space.local_view is None and all(getattr(space, name) for name in _object_filters()):
+        return frozenset()
+    objects = (obj.original for obj in depsgraph.objects)
+    return frozenset(obj.as_pointer() for obj in objects if not obj.visible_in_viewport_get(space))
 
 
 def _signature(depsgraph: Any) -> object:

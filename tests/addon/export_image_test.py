@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import bpy
 import pytest
 from gradus.export import image as images
+from support import recording
 
 FILE, ENCODED, FLOAT = 0, 1, 2
 
@@ -23,7 +24,7 @@ def _save(path: Path, kind: str = "PNG", color: tuple[float, float, float] = (1,
 
 
 def _state(block: bpy.types.Image, user: object = None, frame: int = 1) -> images.ImageState:
-    return images.image_state(block, user, frame, bpy.path.abspath)
+    return images.image_state(block, images.number_of_frame(block, user, frame), bpy.path.abspath)
 
 
 @pytest.mark.parametrize(
@@ -148,8 +149,102 @@ def test_sequence_of_the_frame(scene: bpy.types.Scene, tmp_path: Path) -> None:
     assert Path(_state(block, user, 2).tiles[0].path).name == "s_002.png"
 
 
+_COLORS = {1: (1.0, 0.0, 0.0), 2: (0.0, 1.0, 0.0), 3: (0.0, 0.0, 1.0)}
+_USER = SimpleNamespace(frame_duration=3, frame_start=1, frame_offset=0, use_cyclic=False)
+
+
+def _color(state: images.ImageState, number: int = 0) -> tuple[float, ...]:
+    """Returns the first pixel of a tile that Blender decoded."""
+    (tile,) = (tile for tile in state.tiles if tile.number == number)
+    assert tile.source == FLOAT
+    return tuple(tile.data[:3])
+
+
+@pytest.mark.parametrize("kind, suffix", [("TARGA", "tga"), ("BMP", "bmp"), ("WEBP", "webp")])
+def test_sequences_in_formats_that_only_blender_reads(
+    scene: bpy.types.Scene, tmp_path: Path, kind: str, suffix: str
+) -> None:
+    """Regression: all frames were magenta, because Image.pixels has one frame only."""
+    for number, color in _COLORS.items():
+        _save(tmp_path / f"s_{number}.{suffix}", kind, color)
+    block = bpy.data.images.load(str(tmp_path / f"s_1.{suffix}"))
+    block.source = "SEQUENCE"
+    for frame in (2, 1, 3):
+        assert _color(_state(block, _USER, frame)) == pytest.approx(_COLORS[frame], abs=0.02)
+
+
+def _movie(scene: bpy.types.Scene, folder: Path) -> str:
+    """Renders a movie whose three frames have the colours of _COLORS. Returns its path."""
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.use_nodes = True
+    nodes = scene.world.node_tree.nodes
+    background = next(node for node in nodes if node.bl_idname == "ShaderNodeBackground")
+    recording.add_camera()
+    for frame, color in _COLORS.items():
+        background.inputs["Color"].default_value = (*color, 1.0)
+        background.inputs["Color"].keyframe_insert("default_value", frame=frame)
+    scene.view_settings.view_transform = "Standard"
+    scene.frame_start, scene.frame_end = 1, 3
+    scene.render.engine, scene.render.resolution_x, scene.render.resolution_y = "CYCLES", 64, 48
+    scene.cycles.samples, scene.cycles.use_denoising = 1, False
+    settings = scene.render.image_settings
+    if hasattr(settings, "media_type"):
+        settings.media_type = "VIDEO"
+    settings.file_format = "AVI_JPEG" if bpy.app.version < (4, 0, 0) else "FFMPEG"
+    scene.render.filepath = str(folder / "movie_")
+    bpy.ops.render.render(animation=True)
+    return str(next(folder.glob("movie_*")))
+
+
+def test_movies_play(scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: a movie showed its first frame in all frames."""
+    block = bpy.data.images.load(_movie(scene, tmp_path))
+    assert block.source == "MOVIE"
+    for frame in (2, 1, 3):
+        assert _color(_state(block, _USER, frame)) == pytest.approx(_COLORS[frame], abs=0.1)
+    signatures = {images.signature(block, number, bpy.path.abspath) for number in (1, 2, 3)}
+    assert len(signatures) == 3 and None not in signatures
+
+
+@pytest.mark.parametrize("is_packed", [False, True])
+def test_tiles_in_formats_that_only_blender_reads(scene: bpy.types.Scene, tmp_path: Path, is_packed: bool) -> None:
+    """Regression: tiles other than the first one were magenta."""
+    numbers = {1001: 1, 1002: 2, 1011: 3}
+    for number, color in numbers.items():
+        _save(tmp_path / f"t.{number}.tga", "TARGA", _COLORS[color])
+    block = bpy.data.images.load(str(tmp_path / "t.1001.tga"))
+    block.source = "TILED"
+    block.filepath = str(tmp_path / "t.<UDIM>.tga")
+    block.tiles.new(1002)
+    block.tiles.new(1011)
+    if is_packed:
+        block.pack()
+        for path in tmp_path.iterdir():
+            path.unlink()
+    before = len(bpy.data.images)
+    state = _state(block)
+    for number, color in numbers.items():
+        assert _color(state, number) == pytest.approx(_COLORS[color], abs=0.02)
+    assert len(bpy.data.images) == before
+
+
+def test_tiled_image_that_was_never_saved(scene: bpy.types.Scene) -> None:
+    block = bpy.data.images.new("Unsaved", 4, 4, tiled=True)
+    block.pixels.foreach_set([0.0, 1.0, 0.0, 1.0] * 16)
+    assert _color(_state(block), 1001) == pytest.approx((0.0, 1.0, 0.0), abs=0.02)
+
+
+_MODE_DECIDES = bpy.app.version >= (5, 2, 0)
+
+
 @pytest.mark.parametrize(
-    "mode, of_colors, of_data", [("STRAIGHT", 0, 2), ("PREMUL", 1, 2), ("CHANNEL_PACKED", 2, 2), ("NONE", 3, 3)]
+    "mode, of_colors, of_data",
+    [
+        ("STRAIGHT", 4 if _MODE_DECIDES else 0, 2),
+        ("PREMUL", 1 if _MODE_DECIDES else 0, 2),
+        ("CHANNEL_PACKED", 2, 2),
+        ("NONE", 3, 3),
+    ],
 )
 def test_alpha_and_data(scene: bpy.types.Scene, tmp_path: Path, mode: str, of_colors: int, of_data: int) -> None:
     """Regression: data were multiplied by alpha, which Cycles never does."""
@@ -166,7 +261,7 @@ def test_changed_file_is_another_content(scene: bpy.types.Scene, tmp_path: Path)
     block = bpy.data.images.load(str(path))
 
     def identities() -> tuple:
-        return images.content(_state(block)), images.signature(block, None, 1, bpy.path.abspath)
+        return images.content(_state(block)), images.signature(block, None, bpy.path.abspath)
 
     before = identities()
     assert identities() == before
@@ -177,6 +272,6 @@ def test_changed_file_is_another_content(scene: bpy.types.Scene, tmp_path: Path)
     block.colorspace_settings.name = "Non-Color"
     assert all(now != then for now, then in zip(identities(), packed, strict=True))
     block.pixels[0] = 0.5
-    assert images.signature(block, None, 1, bpy.path.abspath) is None, (
+    assert images.signature(block, None, bpy.path.abspath) is None, (
         "only the pixels of a painted image identify its content"
     )

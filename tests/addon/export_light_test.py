@@ -46,7 +46,7 @@ def test_area(scene: bpy.types.Scene, shape: str, factor: float) -> None:
     """The radiance is P/(4A) before 4.0 and P/(pi A) from then on, where A includes the scale of the object."""
     light = _export(scene, "AREA", (3.0, 0.5, 1.0), energy=100.0, shape=shape, size=0.5, size_y=1.0, spread=1.0)
     area = 0.25 * 1.5 * factor
-    assert light.strength[0] == pytest.approx(100 / ((4 if BEFORE_40 else math.pi) * area))
+    assert light.strength[0] == pytest.approx(100 / ((4 if BEFORE_40 else math.pi) * area), rel=1e-5)
     assert light.size[0] == pytest.approx(1.5)
     assert light.size[1] == pytest.approx(0.5 * (1.0 if shape in {"RECTANGLE", "ELLIPSE"} else 0.5))
     assert light.spread == pytest.approx(1.0)

@@ -7,6 +7,7 @@ import pytest
 from gradus import passes
 from gradus.export import shadow_terminator
 from support import recording
+from support.nodes import new_material, output_of
 
 COMBINED_OR_OF_BLENDER = {"use_pass_combined", "use_pass_cryptomatte_accurate", "use_pass_grease_pencil"}
 """Switches of view layers that need no pass of Gradus' table."""
@@ -51,6 +52,24 @@ def test_hair_particles_are_named(scene: bpy.types.Scene, plane: bpy.types.Objec
 def test_a_shadow_catcher_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
     plane.is_shadow_catcher = True
     assert warnings(scene) == ["Object 'Plane' is a shadow catcher and is rendered as an ordinary surface"]
+
+
+@pytest.mark.parametrize("has_volume", [False, True])
+def test_a_smoke_domain_is_no_box(scene: bpy.types.Scene, plane: bpy.types.Object, has_volume: bool) -> None:
+    """Regression: the box of the domain hid what was in it."""
+    modifier = plane.modifiers.new("Fluid", "FLUID")
+    modifier.fluid_type = "DOMAIN"
+    recorded, _ = recording.export(scene)
+    assert recorded.instances["count"] == 0
+    material = new_material("Smoke")
+    if has_volume:
+        volume = material.node_tree.nodes.new("ShaderNodeVolumePrincipled")
+        material.node_tree.links.new(volume.outputs[0], output_of(material).inputs["Volume"])
+    plane.data.materials.append(material)
+    expected = ["Object 'Plane' is left out: volumes are not supported"]
+    assert warnings(scene) == (expected if has_volume else [])
+    modifier.domain_settings.domain_type = "LIQUID"
+    assert recording.export(scene)[0].instances["count"] == 1
 
 
 def test_a_camera_of_scale_0_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:

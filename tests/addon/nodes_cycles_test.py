@@ -241,6 +241,28 @@ def test_a9_tangents_run_smoothly_over_coarse_meshes(name: str, coarse: bpy.type
     assert np.quantile(difference, 0.95) / np.abs(expected).mean() < 0.02
 
 
+def test_a9_normals_of_polygons(stage: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: before 4.0 the triangles of quads weighted smooth normals, up to 22° off."""
+    others = [item for item in stage.objects if item.type == "MESH"]
+    for item in others:
+        item.hide_render = True
+    bpy.ops.mesh.primitive_monkey_add(size=3.0)
+    bpy.ops.object.shade_smooth()
+    monkey = bpy.context.object
+    material = new_material()
+    graph = Graph(material)
+    half = graph("VectorMath", "Vector", {"Vector": graph("NewGeometry", "Normal")}, operation="MULTIPLY_ADD")
+    for item in half.node.inputs[1:3]:
+        item.default_value = (0.5, 0.5, 0.5)
+    show(material, half)
+    monkey.data.materials.append(material)
+    expected, found = (picture(stage, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    bpy.data.objects.remove(monkey)
+    for item in others:
+        item.hide_render = False
+    assert np.abs(expected - found).mean() < 0.01 * expected.mean()
+
+
 @pytest.mark.skipif("convention" not in bpy.types.ShaderNodeNormalMap.bl_rna.properties, reason="came with 5.2")
 def test_a9_normal_maps_of_directx(coarse: bpy.types.Scene, tmp_path: Path) -> None:
     """Regression: the convention was ignored."""
@@ -302,6 +324,143 @@ def test_a9_lights_have_coordinates_of_their_own(
     expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
     assert np.abs(expected).mean() > 0.05
     assert np.abs(expected.mean(axis=(0, 1)) / found.mean(axis=(0, 1)) - 1.0).max() < 0.03
+
+
+LUMINAIRE = """IESNA:LM-63-1995
+TILT=NONE
+1 1000 1 5 3 1 2 0 0 0
+1 1 50
+0 15 30 60 90
+0 90 180
+1000 900 200 10 0
+1000 700 400 50 0
+1000 500 900 20 0
+"""
+
+
+@pytest.mark.parametrize("kind", ["AREA", "POINT", "SPOT", "MESH"])
+def test_a9_ies(kind: str, scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """An IES Texture in a turned light, and in the material of a turned mesh."""
+    bpy.ops.mesh.primitive_plane_add(size=8.0)
+    profile = bpy.data.texts.new("luminaire.ies")
+    profile.write(LUMINAIRE)
+    place = {"location": (0.4, -0.3, 1.5), "rotation": (0.3, 0.2, 0.1)}
+    if kind == "MESH":
+        bpy.ops.mesh.primitive_plane_add(size=0.5, **place)
+        block = new_material()
+        bpy.context.object.data.materials.append(block)
+    else:
+        bpy.ops.object.light_add(type=kind, **place)
+        block = bpy.context.object.data
+        block.energy, block.use_nodes = 1.0, True
+        if kind == "POINT":
+            block.shadow_soft_size = 0.0
+    graph = Graph(block)
+    strength = graph("TexIES", "Fac", ies=profile)
+    if kind == "MESH":
+        show(block, graph("Emission", "Emission", {"Strength": strength}))
+    else:
+        emission = next(item for item in graph.tree.nodes if item.bl_idname == "ShaderNodeEmission")
+        graph.tree.links.new(strength, emission.inputs["Strength"])
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 8.0, (0.0, 0.0, 9.0)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    scene.world = None
+    images.prepare(scene)
+    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    assert np.abs(expected).mean() > 0.01
+    assert np.abs(expected.mean(axis=(0, 1)) / found.mean(axis=(0, 1)) - 1.0).max() < 0.03
+    assert np.abs(expected - found).mean() < 0.05 * expected.mean()
+
+
+def test_a9_narrow_area_light(scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: light that a spread limits to 5° was mostly lost at 16 samples."""
+    bpy.ops.mesh.primitive_plane_add(size=4.0)
+    bpy.ops.object.light_add(type="AREA", location=(0.0, 0.0, 3.0))
+    data = bpy.context.object.data
+    data.energy, data.spread, data.shape, data.size, data.size_y = 20.0, 0.09, "RECTANGLE", 1.5, 0.8
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 4.0, (0.0, 0.0, 9.0)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    scene.world = None
+    images.prepare(scene)
+    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    assert found.mean() == pytest.approx(expected.mean(), rel=0.02)
+    assert np.abs(expected - found).mean() < 0.05 * expected.mean()
+
+
+@pytest.mark.parametrize("scale", [(1.0, 2.0, 1.0), (0.5, 0.7, 2.0), (1.0, 1.0, 0.4)])
+def test_a9_spots_scaled_unevenly(scale: tuple[float, ...], scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: the elliptical cone of a spot was rendered as a circular one."""
+    bpy.ops.mesh.primitive_plane_add(size=6.0)
+    bpy.ops.object.light_add(type="SPOT", location=(0.3, -0.2, 2.0), rotation=(0.3, 0.2, 0.4))
+    spot = bpy.context.object
+    spot.scale = scale
+    spot.data.energy, spot.data.spot_size, spot.data.spot_blend, spot.data.shadow_soft_size = 200.0, 0.9, 0.4, 0.0
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 6.0, (0.0, 0.0, 9.0)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    scene.world = None
+    images.prepare(scene)
+    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    assert np.abs(expected).mean() > 0.01
+    assert np.abs(expected - found).mean() < 0.02 * expected.mean()
+
+
+@pytest.mark.parametrize("modifiers", [("WAVE", "SUBSURF"), ("SUBSURF", "WAVE"), ("MIRROR", "WAVE"), ("WAVE", "ARRAY")])
+def test_a9_generated_coordinates_stick_to_what_deforms(
+    modifiers: tuple[str, ...], scene: bpy.types.Scene, tmp_path: Path
+) -> None:
+    """Regression: with modifiers that add vertices, the coordinates were those of the deformed surface."""
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=20, y_subdivisions=20, size=3.0)
+    obj = bpy.context.object
+    for kind in modifiers:
+        modifier = obj.modifiers.new(kind.title(), kind)
+        if kind == "WAVE":
+            modifier.height, modifier.width, modifier.time_offset = 1.0, 1.0, -40.0
+    material = new_material()
+    show(material, Graph(material)("TexCoord", "Generated"))
+    obj.data.materials.append(material)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location, camera.rotation_euler = (0.0, -6.0, 3.0), (1.1, 0.0, 0.0)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    scene.world = None
+    images.prepare(scene)
+    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    assert np.abs(expected - found).mean() < 0.02 * expected.mean()
+
+
+@pytest.mark.parametrize("mode", ["EDIT", "SCULPT", "VERTEX_PAINT", "WEIGHT_PAINT", "TEXTURE_PAINT"])
+def test_a9_the_mode_of_an_object_does_not_matter(mode: str, scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: a mesh in Edit Mode was missing, or had lost its materials and UV map."""
+    image = checker_image()
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=3.0)
+    obj = bpy.context.object
+    for textured in (False, True):
+        material = new_material()
+        graph = Graph(material)
+        show(material, graph("TexImage", "Color", image=image) if textured else graph("RGB", "Color"))
+        obj.data.materials.append(material)
+    for polygon in obj.data.polygons:
+        polygon.material_index = polygon.index % 2
+    obj.modifiers.new("Subsurf", "SUBSURF").show_in_editmode = False
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location = (0.0, 0.0, 6.0)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    scene.world = None
+    images.prepare(scene)
+    bpy.ops.object.mode_set(mode=mode)
+    if mode == "EDIT":
+        bpy.ops.transform.translate(value=(0.7, 0.0, 0.0))
+    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert np.abs(expected).mean() > 0.05
+    assert np.abs(expected - found).mean() < 0.02 * expected.mean()
 
 
 @pytest.mark.parametrize(("node", "output"), TEXTURE_MEANS)

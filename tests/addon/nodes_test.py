@@ -27,6 +27,13 @@ def add(material: bpy.types.Material, kind: str) -> bpy.types.Node:
         pytest.skip(f"Blender {bpy.app.version_string} has no ShaderNode{kind}")
 
 
+def complete(node: bpy.types.Node) -> None:
+    """Gives a node the data without which it has no effect of its own."""
+    if node.bl_idname == "ShaderNodeTexIES":
+        node.ies = bpy.data.texts.new("profile")
+        node.ies.write("TILT=NONE\n1 1000 1 2 1 1 2 0 0 0\n1 1 50\n0 90\n0\n9 0\n")
+
+
 def native_check(library: object, program: object) -> None:
     """Checks that the library accepts a program."""
     from gradus import native
@@ -50,6 +57,7 @@ def test_e5_promised_nodes_do_not_fall_back(kind: str) -> None:
     for index in range(len(add(new_material(), kind).outputs)):
         material = new_material()
         node = add(material, kind)
+        complete(node)
         output = node.outputs[index]
         if (node.bl_idname, output.identifier) in NOT_YET:
             continue
@@ -77,6 +85,7 @@ def test_programs_of_promised_nodes_compile(library: object) -> None:
             node = material.node_tree.nodes.new(f"ShaderNode{kind}")
         except RuntimeError:
             continue
+        complete(node)
         show(material, node.outputs[0])
         native_check(library, translate(material))
 
@@ -107,7 +116,7 @@ def test_e5_unknown_texture_is_grey() -> None:
 
 @pytest.mark.parametrize(
     ("kind", "output", "expected", "words"),
-    [("Voronoi", "Distance", 0.52, "its mean"), ("IES", "Fac", 0.5, "grey")],
+    [("Voronoi", "Distance", 0.52, "its mean"), ("PointDensity", "Density", 0.5, "grey")],
 )
 def test_e5_a_texture_is_replaced_as_its_warning_says(kind: str, output: str, expected: float, words: str) -> None:
     """Regression: textures were replaced by 0.5, while the warning said "by its mean"."""
@@ -130,6 +139,32 @@ def test_e5_unknown_value_node_passes_through() -> None:
     program = translate(material)
     assert len(program.warnings) == 1
     assert program.inputs[0][2][:3] == pytest.approx((0.1, 0.2, 0.3))
+
+
+def test_a_light_without_a_readable_profile_is_as_in_cycles() -> None:
+    material = new_material()
+    node = add(material, "TexIES")
+    node.inputs["Strength"].default_value = 0.5
+    show(material, node.outputs[0])
+    program = translate(material)
+    assert op_names(program)[0] == "MATH" and len(program.warnings) == 1
+    assert "100 everywhere, as in Cycles" in program.warnings[0]
+
+
+def test_shader_to_rgb_is_not_linked() -> None:
+    """Regression: what followed it was black. In Cycles the next node has its own default."""
+    material = new_material()
+    ramp = add(material, "ValToRGB")
+    ramp.inputs["Fac"].default_value = 0.25
+    closure, node = add(material, "BsdfDiffuse"), add(material, "ShaderToRGB")
+    links = material.node_tree.links
+    links.new(closure.outputs[0], node.inputs[0])
+    links.new(node.outputs[0], ramp.inputs["Fac"])
+    show(material, ramp.outputs["Color"])
+    program = translate(material)
+    assert op_names(program) == ["RAMP", "EMISSION"]
+    assert program.inputs[0][2][0] == 0.25
+    assert len(program.warnings) == 1 and "Shader to RGB" in program.warnings[0]
 
 
 def test_e5_no_surface_is_no_program() -> None:

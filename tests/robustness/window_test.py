@@ -110,6 +110,17 @@ def test_viewport_follows_an_edit(session: tuple[Path, dict]) -> None:
     assert bright_rows[1] < bright_rows[0] - 10, "the cube did not go up"
 
 
+def test_local_view_hides_other_objects(session: tuple[Path, dict]) -> None:
+    """Regression: Rendered shading showed all objects in Local View."""
+    assert np.ptp(viewport(session[0] / "local.png").mean(axis=2)) < 0.1
+
+
+def test_edit_mode_keeps_the_mesh(session: tuple[Path, dict]) -> None:
+    """Regression: a mesh in Edit Mode was missing."""
+    moved, edited = (viewport(session[0] / f"{name}.png") for name in ("moved", "edited"))
+    assert np.abs(moved - edited).mean() < 0.02
+
+
 def test_a_render_while_two_viewports_sample(session: tuple[Path, dict]) -> None:
     folder, answers = session
     assert answers["areas"] == 2

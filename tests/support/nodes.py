@@ -18,6 +18,9 @@ class Resources:
             self.images.append(image)
         return self.images.index(image) + 1
 
+    def text(self, path: str, owner: Any) -> str | None:
+        return None
+
     def warn(self, text: str) -> None:
         raise AssertionError(text)
 

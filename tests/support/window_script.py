@@ -84,6 +84,28 @@ def steps() -> Iterator[float]:
     yield 1.0
     shoot("moved")
 
+    # Local View of the light alone hides the cube; Edit Mode does not.
+    with bpy.context.temp_override(window=window, area=area, region=area.regions[-1]):
+        for item in bpy.context.view_layer.objects:
+            item.select_set(item.type == "LIGHT")
+        bpy.ops.view3d.localview(frame_selected=False)
+    yield 0.5
+    yield from wait(lambda: views()[0].done)
+    yield 1.0
+    shoot("local")
+    with bpy.context.temp_override(window=window, area=area, region=area.regions[-1]):
+        bpy.ops.view3d.localview(frame_selected=False)
+        bpy.context.view_layer.objects.active = bpy.data.objects["Cube"]
+        bpy.ops.object.mode_set(mode="EDIT")
+    yield 0.5
+    yield from wait(lambda: views()[0].done)
+    yield 1.0
+    shoot("edited")
+    with bpy.context.temp_override(window=window, area=area, region=area.regions[-1]):
+        bpy.ops.object.mode_set(mode="OBJECT")
+    yield 0.5
+    yield from wait(lambda: views()[0].done)
+
     # Opens a second viewport, and presses F12 while both sample.
     with bpy.context.temp_override(window=window, area=area):
         bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)

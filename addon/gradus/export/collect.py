@@ -85,6 +85,8 @@ class _ObjectProperties:
     color: tuple[float, ...]
     shadow_terminator_offset: float
     blur: Blur
+    is_edited: bool  # whether the object's mesh is in Edit Mode
+    is_volume: bool  # whether the object's mesh only bounds a volume
 
 
 class _ObjectCache:
@@ -97,6 +99,7 @@ class _ObjectCache:
         self._override = view_layer.material_override
         self._properties: dict[tuple[int, int], _ObjectProperties] = {}
         self._materials: dict[tuple[int, int], tuple[Any, ...]] = {}
+        self._edited: dict[int, Any] = {}  # meshes of Edit Mode by address
         self.has_node_instances = False
 
     def properties(self, obj: Any, owner: Any, parent: Any) -> _ObjectProperties:
@@ -110,12 +113,30 @@ class _ObjectCache:
                 bits |= MAY_MOVE
             offset = shadow_terminator.geometry_offset(obj)
             blur = blur_of(owner, parent)
-            found = _ObjectProperties(key, bits, owner.name, obj.pass_index, tuple(obj.color), offset, blur)
+            is_edited = owner.type == "MESH" and owner.data.is_editmode
+            found = _ObjectProperties(
+                key,
+                bits,
+                owner.name,
+                obj.pass_index,
+                tuple(obj.color),
+                offset,
+                blur,
+                is_edited,
+                unsupported.is_gas_domain(owner),
+            )
             self._properties[evaluated] = found
             self._warnings.extend(unsupported.of_object(owner, self._view_layer))
             if parent is not None:
                 self.has_node_instances |= any(modifier.type == "NODES" for modifier in parent.modifiers)
         return found
+
+    def edited_mesh(self, owner: Any, data: Any) -> Any:
+        """Returns a mesh that shows what Edit Mode shows, as in Cycles. The evaluated mesh itself has no faces then."""
+        address = data.as_pointer()
+        if address not in self._edited:
+            self._edited[address] = owner.to_mesh()
+        return self._edited[address]
 
     def materials(self, obj: Any, data: Any, key: tuple[int, int]) -> tuple[Any, ...]:
         found = self._materials.get(key)
@@ -124,10 +145,16 @@ class _ObjectCache:
         return found
 
 
-def collect(depsgraph: Any, poll: Callable[[], None], may_move: MayMove | None = None) -> Collected:
+def collect(
+    depsgraph: Any,
+    poll: Callable[[], None],
+    may_move: MayMove | None = None,
+    hidden: frozenset[int] = frozenset(),
+) -> Collected:
     """Returns all visible surfaces and lights of the depsgraph at its frame.
 
-    may_move: predicts which surfaces move, or None. Blender 3.4 to 5.0 lists curves, text, surfaces and metaballs
+    may_move: predicts which surfaces move, or None. hidden: addresses of original objects that a viewport hides, with
+    their instances. Blender 3.4 to 5.0 lists curves, text, surfaces and metaballs
     twice: as themselves, and as an instance of the mesh that it made of them. Only the latter is exported.
     """
     instances = depsgraph.object_instances
@@ -138,7 +165,7 @@ def collect(depsgraph: Any, poll: Callable[[], None], may_move: MayMove | None =
         if index & 255 == 0:
             poll()
         obj = instance.object
-        if not instance.show_self:
+        if not instance.show_self or (hidden and _shown_by(instance).original.as_pointer() in hidden):
             continue
         kind = obj.type
         is_light = kind == "LIGHT"
@@ -172,9 +199,13 @@ def _entry(index: int, instance: Any, obj: Any, is_light: bool, cache: _ObjectCa
     owner = instance.instance_object if copies else obj
     properties = cache.properties(obj, owner, instance.parent if copies else None)
     data = obj.data
-    if properties.visibility & ALL_RAYS == 0 or data is None or (is_light and _is_portal(data)):
+    if properties.is_volume or data is None or (is_light and _is_portal(data)):
+        return None
+    if properties.visibility & ALL_RAYS == 0:
         return None
     address = data.as_pointer()
+    if properties.is_edited and data.is_editmode:
+        data = cache.edited_mesh(owner, data)
     if copies:
         key = properties.key + tuple(instance.persistent_id)
         random_id = instance.random_id & 0xFFFFFFFF
@@ -200,6 +231,11 @@ def _entry(index: int, instance: Any, obj: Any, is_light: bool, cache: _ObjectCa
     if not is_light:
         entry.materials = cache.materials(obj, data, (properties.key[0], address))
     return entry
+
+
+def _shown_by(instance: Any) -> Any:
+    """Returns the object that decides whether a viewport shows an instance."""
+    return instance.parent if instance.is_instance else instance.object
 
 
 def _is_portal(data: Any) -> bool:

@@ -14,7 +14,7 @@ from typing import Any
 import bpy
 
 from .. import compat, native
-from . import camera, instances, light, mesh, motion, unsupported, world
+from . import blender_pixels, camera, instances, light, mesh, motion, unsupported, world
 from .collect import Collected, Entry, InstanceKey, collect
 from .digest import Digest
 from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
@@ -84,6 +84,8 @@ class Exporter:
                 self._target.remove(kind, key)
         self._views = run.cameras
         self.show_view(views[0])
+        if view is not None or is_preview:
+            blender_pixels.release()  # final renders do it when their job ends
         seconds = time.perf_counter() - start
         return ExportReport(*run.size, run.warnings.texts, seconds, digest.value() if digest is not None else b"")
 
@@ -142,7 +144,8 @@ class _Sync:
     def run(self) -> None:
         now = self._view_states()
         # No prediction is needed if the times around the frame are read, because they show what moves.
-        collected = collect(self._depsgraph, self._poll, None if self._wanted.any() else MayMove())
+        hidden = self._view.hidden if self._view is not None else frozenset()
+        collected = collect(self._depsgraph, self._poll, None if self._wanted.any() else MayMove(), hidden)
         for text in (*unsupported.of_scene(self._scene, self._depsgraph.view_layer_eval), *collected.unsupported):
             self.warnings.add(text)
         for entry in collected.surfaces:
@@ -225,11 +228,9 @@ class _Sync:
 
     def _read_mesh(self, entry: Entry, wanted: frozenset[str]) -> MeshArrays | None:
         original = entry.object.original
-        undeformed = None
         has_shape_keys = getattr(original.data, "shape_keys", None) is not None
         may_deform = original.modifiers or has_shape_keys or motion.is_deformed_by_parent(original)
-        if original.type == "MESH" and may_deform:
-            undeformed = original.data
+        undeformed = original.data if original.type == "MESH" and may_deform else None
         if len(entry.data.polygons) == 0:
             return None
         arrays = mesh.read_mesh(entry.data, wanted, undeformed)
@@ -296,7 +297,7 @@ class _Sync:
             emission = (1.0, 1.0, 1.0)
         record.strength[:] = [strength * factor for strength, factor in zip(state.strength, emission, strict=True)]
         record.type, record.flags, record.visibility = state.type, state.flags, entry.visibility
-        record.matrix[:] = matrix
+        record.matrix[:] = light.light_matrix(data, matrix, scale, compat.VERSION)
         record.radius, record.angle, record.spread = state.radius, state.angle, state.spread
         record.size[:] = state.size
         record.cone, record.blend = state.cone, state.blend

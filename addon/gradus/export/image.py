@@ -1,7 +1,8 @@
 """Images for the native library.
 
-The library decodes files and packed files itself. Blender's pixels are read only if no file contains them, because
-Blender would then load the whole image into memory: an 8192 x 8192 byte image becomes 1.07 GB of floats.
+The library decodes files and packed files itself. Pixels come from Blender only if no file contains them or the library
+does not know its format, because Blender then holds the whole image in memory: an 8192 x 8192 byte image becomes
+1.07 GB of floats.
 """
 
 from __future__ import annotations
@@ -14,19 +15,21 @@ from dataclasses import dataclass
 from typing import Any
 
 from .. import compat, native
-from .arrays import zeros
+from . import blender_pixels
 
 FILE, ENCODED, FLOAT, BYTE = range(4)
-STRAIGHT, PREMULTIPLIED, CHANNEL_PACKED, ALPHA_NONE = range(4)
+STRAIGHT, PREMULTIPLIED, CHANNEL_PACKED, ALPHA_NONE, ALWAYS_STRAIGHT = range(5)
 _ALPHA = {"STRAIGHT": STRAIGHT, "PREMUL": PREMULTIPLIED, "CHANNEL_PACKED": CHANNEL_PACKED, "NONE": ALPHA_NONE}
 
-# The version from which Cycles multiplies the colours of float images whose alpha mode is STRAIGHT by their alpha.
-_STRAIGHT_FLOATS_SINCE = (5, 2, 0)
+# From this version on, Cycles multiplies colours by alpha if the mode is STRAIGHT, whatever the file says. Before, it
+# multiplied those of floats never, and of other images in both modes, unless the file says that it was done.
+_MODE_DECIDES_SINCE = (5, 2, 0)
 
 # First bytes of the formats that the library reads itself: PNG, JPEG, TIFF (both byte orders, and BigTIFF), OpenEXR,
 # Radiance.
 _READABLE = (b"\x89PNG", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*", b"II+\x00", b"MM\x00+", b"\x76\x2f\x31\x01", b"#?")
 _FLOAT_FORMATS = (b"\x76\x2f\x31\x01", b"#?")
+_FIRST_TILE = 1001
 _SEQUENCE_NUMBER = re.compile(r"(\d+)(?!.*\d)")
 
 
@@ -50,6 +53,7 @@ class ImageState:
     color_space: str
     is_float: bool
     tiles: list[TileState]
+    warning: str = ""  # what differs from Cycles
 
 
 def user_frame(user: Any, frame: int) -> int:
@@ -97,32 +101,26 @@ def _head(path: str) -> bytes:
         return b""
 
 
-def _is_float(head: bytes) -> bool:
-    """Returns whether Blender stores the image as floats, by the first bytes of its file."""
-    if head.startswith(b"\x89PNG") and len(head) > 24:
-        return head[24] == 16  # bits per channel in the IHDR chunk
-    return head.startswith(_FLOAT_FORMATS)
+def _is_deep_png(head: bytes) -> bool:
+    """Returns whether the first bytes of a file are those of a PNG of 16 bits per channel, by its IHDR chunk."""
+    return head.startswith(b"\x89PNG") and len(head) > 24 and head[24] == 16
 
 
-def _pixels(image: Any, number: int) -> TileState | None:
-    """Returns Blender's own pixels: float RGBA, bottom row first. Tiled images have pixels of the first tile only."""
-    width, height = image.size
-    if width == 0 or height == 0:
+def _comes_from_blender(image: Any, head: bytes) -> bool:
+    """Returns whether Blender's pixels differ from those of a packed file that the library could read itself.
+
+    In Cycles packed images come from Blender, which multiplies and divides them by alpha before.
+    """
+    if image.alpha_mode == "PREMUL":
+        return not head.startswith(_FLOAT_FORMATS)
+    return image.alpha_mode == "STRAIGHT" and _is_deep_png(head) and compat.VERSION >= _MODE_DECIDES_SINCE
+
+
+def _decoded(image: Any, number: int, pixels: blender_pixels.Pixels | None) -> tuple[TileState, bool] | None:
+    """Returns a tile from pixels that Blender decoded, and whether it is stored as floats."""
+    if pixels is None:
         return None
-    values = zeros("f", width * height * image.channels)
-    image.pixels.foreach_get(values)
-    if image.channels != 4:
-        values = _to_rgba(values, image.channels)
-    return TileState(FLOAT, image.name, number, width, height, values)
-
-
-def _to_rgba(values: Any, channels: int) -> Any:
-    """Returns RGBA pixels. Grey becomes red, green and blue, and a missing alpha becomes 1."""
-    count = len(values) // channels
-    rgba = type(values)("f", [1.0]) * (4 * count)
-    for channel in range(3):
-        rgba[channel::4] = values[min(channel, channels - 1) :: channels]
-    return rgba
+    return TileState(FLOAT, image.name, number, pixels.width, pixels.height, pixels.values), pixels.is_float
 
 
 def _packed_data(image: Any, number: int) -> bytes | None:
@@ -135,71 +133,116 @@ def _packed_data(image: Any, number: int) -> bytes | None:
     return None
 
 
-def _file_tile(image: Any, path: str, number: int, allow_pixels: bool) -> tuple[TileState, bool]:
+def _file_tile(image: Any, path: str, number: int, frame_number: int | None) -> tuple[TileState, bool]:
     """Returns a tile from packed data or a file, and whether it is stored as floats.
 
-    A missing file is passed on as FILE, so that the library warns of its path.
+    number: that of the tile; 0 if the image has none. frame_number: that of the frame, if the image has frames. A
+    missing file is passed on as FILE, so that the library warns of its path.
     """
     packed = _packed_data(image, number)
     head = packed[:32] if packed is not None else _head(path)
-    if head.startswith(_READABLE) or not allow_pixels or not head:
-        if packed is not None:
-            return TileState(ENCODED, path or image.name, number, data=packed), _is_float(head)
-        return TileState(FILE, path, number, stamp=_stamp(path)), _is_float(head)
-    tile = _pixels(image, number)
-    if tile is None:
-        return TileState(FILE, path, number, stamp=_stamp(path)), False
-    return tile, bool(image.is_float)
+    if not head or (head.startswith(_READABLE) and packed is None):
+        return TileState(FILE, path, number, stamp=_stamp(path)), head.startswith(_FLOAT_FORMATS)
+    if packed is not None and head.startswith(_READABLE) and not _comes_from_blender(image, head):
+        # In Blender, packed images of 16 bits per channel are floats.
+        is_float = head.startswith(_FLOAT_FORMATS) or _is_deep_png(head)
+        return TileState(ENCODED, path or image.name, number, data=packed), is_float
+    if packed is None and (number != 0 or image.alpha_mode == "PREMUL"):
+        # Blender divides premultiplied colours by alpha, but Cycles takes those of the file.
+        is_raw = image.alpha_mode == "PREMUL"
+        pixels = blender_pixels.of_file(image, path, "STRAIGHT" if is_raw else image.alpha_mode)
+    elif number == 0:
+        pixels = _own_pixels(image, frame_number)
+    else:
+        pixels = blender_pixels.of_packed(image, packed)
+    return _decoded(image, number, pixels) or (TileState(FILE, path, number, stamp=_stamp(path)), False)
 
 
-def _tiles(image: Any, user: Any, frame: int, abspath: Any) -> tuple[list[TileState], bool]:
+def _path(image: Any, frame_number: int | None, abspath: Any) -> str:
+    """Returns the file of an image, or of a frame of a sequence. The names of tiles are still placeholders."""
     path = abspath(image.filepath, library=image.library) if image.filepath else ""
+    return sequence_path(path, frame_number) if image.source == "SEQUENCE" and frame_number is not None else path
+
+
+def _tiles(image: Any, frame_number: int | None, abspath: Any) -> tuple[list[TileState], bool]:
+    path = _path(image, frame_number, abspath)
     if image.source == "TILED":
-        numbers = [tile.number for tile in image.tiles]
-        results = [_file_tile(image, tile_path(path, number), number, number == 1001) for number in numbers]
+        results = [_udim_tile(image, path, tile.number) for tile in image.tiles]
         return [tile for tile, _ in results], any(is_float for _, is_float in results)
-    if image.source == "SEQUENCE" and user is not None:
-        path = sequence_path(path, user_frame(user, frame))
-    own_pixels = image.source in {"GENERATED", "VIEWER", "MOVIE"} or image.is_dirty
-    if own_pixels:
-        tile = _pixels(image, 0)
-        if tile is not None:
-            return [tile], bool(image.is_float)
-    tile, is_float = _file_tile(image, path, 0, image.source != "SEQUENCE")
+    decoded = None
+    if image.source in {"GENERATED", "VIEWER", "MOVIE"} or image.is_dirty:
+        decoded = _decoded(image, 0, _own_pixels(image, frame_number))
+    tile, is_float = decoded or _file_tile(image, path, 0, frame_number)
     return [tile], is_float
 
 
-def signature(image: Any, user: Any, frame: int, abspath: Any) -> tuple[Any, ...] | None:
+def _own_pixels(image: Any, frame_number: int | None) -> blender_pixels.Pixels | None:
+    return blender_pixels.of_image(image) if frame_number is None else blender_pixels.of_frame(image, frame_number)
+
+
+def _udim_tile(image: Any, path: str, number: int) -> tuple[TileState, bool]:
+    """Returns a tile of a tiled image. Of tiles that were painted or never saved, only the first one can be read."""
+    file = tile_path(path, number)
+    is_saved = _packed_data(image, number) is not None or os.path.exists(file)
+    decoded = None
+    if number == _FIRST_TILE and (image.is_dirty or not is_saved):
+        decoded = _decoded(image, number, blender_pixels.of_image(image))
+    return decoded or _file_tile(image, file, number, None)
+
+
+def number_of_frame(image: Any, user: Any, frame: int) -> int | None:
+    """Returns the number of an image's frame at a scene frame, or None if the image has no frames."""
+    return user_frame(user, frame) if user is not None and image.source in {"SEQUENCE", "MOVIE"} else None
+
+
+def signature(image: Any, number: int | None, abspath: Any) -> tuple[Any, ...] | None:
     """Returns a value that identifies the content of files and packed data without reading them.
 
-    Returns None if only Blender has the pixels.
+    number: that of the image's frame. Returns None if only Blender has the pixels.
     """
-    if image.is_dirty or image.source not in {"FILE", "SEQUENCE", "TILED"}:
+    if image.is_dirty or image.source not in {"FILE", "SEQUENCE", "TILED", "MOVIE"}:
         return None
-    path = abspath(image.filepath, library=image.library) if image.filepath else ""
-    if image.source == "SEQUENCE" and user is not None:
-        path = sequence_path(path, user_frame(user, frame))
+    path = _path(image, number, abspath)
     numbers = tuple(tile.number for tile in image.tiles) if image.source == "TILED" else (0,)
-    stamps = tuple(_stamp(tile_path(path, number)) for number in numbers)
+    stamps = tuple(_stamp(tile_path(path, tile)) for tile in numbers)
     packed = tuple((item.packed_file.as_pointer(), item.packed_file.size) for item in image.packed_files)
     settings = image.colorspace_settings
-    return (image.name, path, numbers, stamps, packed, image.alpha_mode, settings.is_data, settings.name)
+    return (image.name, path, number, numbers, stamps, packed, image.alpha_mode, settings.is_data, settings.name)
 
 
-def image_state(image: Any, user: Any, frame: int, abspath: Any) -> ImageState:
-    """Returns what the library needs of an image. user: the node's ImageUser or None; abspath: bpy.path.abspath."""
-    tiles, is_float = _tiles(image, user, frame, abspath)
+def image_state(image: Any, number: int | None, abspath: Any) -> ImageState:
+    """Returns what the library needs of an image. number: that of its frame; abspath: bpy.path.abspath."""
+    tiles, is_float = _tiles(image, number, abspath)
     settings = image.colorspace_settings
     space = "" if settings.is_data else settings.name
-    alpha = _ALPHA.get(image.alpha_mode, STRAIGHT)
     if is_float and tiles[0].source == FLOAT:
-        # Blender's float buffers are scene-linear with associated alpha.
-        space = ""
-        if alpha == STRAIGHT and compat.VERSION < _STRAIGHT_FLOATS_SINCE:
-            alpha = PREMULTIPLIED
-    if settings.is_data and alpha != ALPHA_NONE:
-        alpha = CHANNEL_PACKED  # Cycles never multiplies data by alpha
-    return ImageState(image.name, alpha, space, is_float, tiles)
+        space = ""  # Blender's float buffers are scene-linear
+    return ImageState(image.name, _alpha_mode(image, tiles[0], is_float), space, is_float, tiles, _warning(image))
+
+
+def _warning(image: Any) -> str:
+    """Returns a warning about values that Cycles reads otherwise, or ""."""
+    is_logarithmic = image.file_format == "CINEON" or (image.file_format == "DPX" and compat.VERSION < (4, 0, 0))
+    if not is_logarithmic:
+        return ""
+    return f"Image '{image.name}' is shown in linear values, while Cycles shows the film densities of its file"
+
+
+def _alpha_mode(image: Any, tile: TileState, is_float: bool) -> int:
+    """Returns how the colours of an image relate to its alpha in Cycles (measured in 3.4, 4.5 and 5.2)."""
+    mode = _ALPHA.get(image.alpha_mode, STRAIGHT)
+    is_webp = image.file_format == "WEBP"
+    if is_webp and compat.VERSION < (4, 0, 0):
+        return STRAIGHT  # multiplied whatever the mode, data too
+    if image.colorspace_settings.is_data and mode != ALPHA_NONE:
+        return CHANNEL_PACKED  # data are never multiplied by alpha
+    if mode not in {STRAIGHT, PREMULTIPLIED}:
+        return mode
+    if compat.VERSION >= _MODE_DECIDES_SINCE:
+        return ALWAYS_STRAIGHT if mode == STRAIGHT else PREMULTIPLIED
+    if is_webp or (is_float and tile.source == FLOAT):
+        return PREMULTIPLIED
+    return mode if is_float else STRAIGHT
 
 
 def content(state: ImageState) -> tuple[Any, ...]:

@@ -7,7 +7,9 @@ with Cycles in 3.4, 4.5 and 5.0.
 
 from __future__ import annotations
 
+import ctypes
 import math
+from array import array
 from dataclasses import dataclass
 from typing import Any
 
@@ -78,16 +80,10 @@ def _round(light: Any, power: tuple[float, float, float], version: tuple[int, ..
     return state
 
 
-def _spot(
-    light: Any, power: tuple[float, float, float], version: tuple[int, ...], scale: tuple[float, ...]
-) -> LightState:
+def _spot(light: Any, power: tuple[float, float, float], version: tuple[int, ...]) -> LightState:
     state = _round(light, power, version)
     state.type = SPOT
     state.cone = light.spot_size
-    if version >= (4, 0, 0) and scale[2] > 0.0 and light.spot_size < math.pi:
-        # From 4.0 on, the scale changes the cone. An elliptic cone becomes a circular one with the geometric mean of
-        # its axes.
-        state.cone = 2.0 * math.atan(math.tan(0.5 * light.spot_size) * math.sqrt(scale[0] * scale[1]) / scale[2])
     state.blend = light.spot_blend
     if version < (4, 0, 0):
         state.flags |= SPOT_COSINE
@@ -114,6 +110,23 @@ def _sun(light: Any, power: tuple[float, float, float], version: tuple[int, ...]
     return LightState(SUN, power, angle=angle, sun_radiance_per_irradiance=sun_radiance(angle, version))
 
 
+def _old_spread(spread: float) -> tuple[float, float]:
+    """Returns the spread that Cycles before 4.0 allows, and the factor by which rounding errors brighten its light.
+
+    Its formula for the normalisation loses most digits of single precision: 25 % at 1 degree, 0.2 % at 5 degrees.
+    """
+
+    def rounded(value: float) -> float:
+        return ctypes.c_float(value).value
+
+    spread = max(spread, math.radians(1.0))
+    pi, half = rounded(math.pi), 0.5 * spread
+    complement = rounded(0.5 * rounded(pi - rounded(spread)))
+    product = rounded(rounded(rounded(2.0 * complement) - pi) * rounded(math.tan(complement)))
+    exact = math.tan(half) / (math.tan(half) - half)
+    return spread, rounded(2.0 / rounded(2.0 + product)) / exact
+
+
 def _area(
     light: Any, power: tuple[float, float, float], version: tuple[int, ...], scale: tuple[float, ...]
 ) -> LightState:
@@ -129,6 +142,9 @@ def _area(
     else:
         factor = 0.0
     kind, spread = ELLIPSE if round_shape else RECTANGLE, getattr(light, "spread", math.pi)
+    if version < (4, 0, 0) and spread < math.pi:
+        spread, brightening = _old_spread(spread)
+        factor *= brightening
     return LightState(kind, _scaled(power, factor), size=size, spread=spread)
 
 
@@ -143,7 +159,7 @@ def light_state(light: Any, scale: tuple[float, ...], version: tuple[int, ...]) 
     elif light.type == "SUN":
         state = _sun(light, power, version)
     elif light.type == "SPOT":
-        state = _spot(light, power, version, scale)
+        state = _spot(light, power, version)
     else:
         state = _round(light, power, version)
     state.flags |= _flags(light)
@@ -151,6 +167,17 @@ def light_state(light: Any, scale: tuple[float, ...], version: tuple[int, ...]) 
     if bounces is not None and bounces < 1024:  # 1024 is Cycles' default and stands for no limit
         state.max_bounces = max(bounces, 0)
     return state
+
+
+def light_matrix(light: Any, matrix: array, scale: tuple[float, ...], version: tuple[int, ...]) -> array:
+    """Returns the matrix of a native light. From 4.0 on, its scale makes the cone of a spot elliptical."""
+    if light.type != "SPOT" or version >= (4, 0, 0):
+        return matrix
+    unscaled = array("f", matrix)
+    for axis, length in enumerate(scale):
+        for index in range(4 * axis, 4 * axis + 3):
+            unscaled[index] /= length or 1.0
+    return unscaled
 
 
 def constant_emission(light: Any) -> tuple[float, float, float] | None:

@@ -11,9 +11,11 @@ from .keys import KeyTable
 from .report import Warnings
 from .target import Target
 
+_MAXIMUM_TEXT = 16 << 20  # bytes; what is named as a text file may be anything
+
 
 class Resources:
-    """Provides the keys of images for the translation of nodes."""
+    """Provides the keys of images and the content of files for the translation of nodes."""
 
     def __init__(
         self, target: Target, keys: KeyTable, frame: int, abspath: Callable[..., str], warnings: Warnings
@@ -28,16 +30,26 @@ class Resources:
         """Returns the key of an image at the rendered frame. Sets the native image if it is new or has changed."""
         if image is None:
             return 0
-        signature = images.signature(image, image_user, self.frame, self._abspath)
-        file = signature[1] if signature is not None and image.source == "SEQUENCE" else ""
-        key = self._keys.key((image.as_pointer(), file))
+        number = images.number_of_frame(image, image_user, self.frame)
+        key = self._keys.key((image.as_pointer(), number))
+        signature = images.signature(image, number, self._abspath)
         if signature is not None and not self._keys.changed(key, signature):
             return key
-        state = images.image_state(image, image_user, self.frame, self._abspath)
+        state = images.image_state(image, number, self._abspath)
+        if state.warning:
+            self.warn(state.warning)
         if signature is not None or self._keys.changed(key, images.content(state)):
             struct, _keep = images.fill_image(state)
             self._target.set_image(key, struct)
         return key
+
+    def text(self, path: str, owner: Any) -> str | None:
+        """Returns the content of a text file, or None if it cannot be read. owner: the data-block that names it."""
+        try:
+            with open(self._abspath(path, library=owner.library), "rb") as file:
+                return file.read(_MAXIMUM_TEXT).decode("utf-8", "replace")
+        except (OSError, ValueError):
+            return None
 
     def content(self, key: int) -> Any:
         """Returns a value that is equal for images of equal content."""

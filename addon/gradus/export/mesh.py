@@ -137,12 +137,11 @@ def _face_materials(mesh: Any) -> array | None:
     return read(stored.data, "value", "i")
 
 
-def read_mesh(mesh: Any, wanted: frozenset[str] | None, generated_from: Any = None) -> MeshArrays:
+def read_mesh(mesh: Any, wanted: frozenset[str] | None, original: Any = None) -> MeshArrays:
     """Reads an evaluated mesh.
 
     wanted: names of the attributes that materials use, None for all; the UV map that is active for renders is always
-    read. generated_from: the undeformed mesh for generated coordinates, which is used if it has the same number of
-    vertices.
+    read. original: the mesh before its modifiers, if they may have deformed it.
     """
     mesh.calc_loop_triangles()
     domain, normals = _normals(mesh)
@@ -160,11 +159,21 @@ def read_mesh(mesh: Any, wanted: frozenset[str] | None, generated_from: Any = No
         texture_space=(*mesh.texspace_location, *mesh.texspace_size),
     )
     arrays.attributes = attributes.read_attributes(mesh, wanted, arrays.default_uv)
-    if generated_from is not None and len(generated_from.vertices) == len(mesh.vertices):
-        undeformed = read_positions(generated_from)
-        if undeformed.tobytes() != arrays.positions.tobytes():
-            arrays.generated_points = undeformed
+    if original is not None:
+        arrays.generated_points = _generated_points(mesh, arrays.positions, original)
     return arrays
+
+
+def _generated_points(mesh: Any, positions: array, original: Any) -> array | None:
+    """Returns the positions that generated coordinates are made of, or None if they are those of the mesh."""
+    # For final renders, Blender carries them along through all modifiers, those that add vertices, too.
+    carried = read(mesh.vertices, "undeformed_co", "f", 3)
+    if carried.tobytes() != positions.tobytes():
+        return carried
+    if len(original.vertices) != len(mesh.vertices):
+        return None
+    undeformed = read_positions(original)
+    return undeformed if undeformed.tobytes() != positions.tobytes() else None
 
 
 def fill_mesh(arrays: MeshArrays) -> tuple[native.Mesh, list[Any]]:

@@ -34,6 +34,25 @@ _CYCLES_PASSES = (
 """Switches of view_layer.cycles for such passes. It exists while Cycles' add-on is on, and versions differ in it."""
 
 
+def is_gas_domain(obj: Any) -> bool:
+    """Returns whether an object is the domain of a smoke or fire simulation, which has a volume and no surface."""
+    return any(
+        modifier.type == "FLUID"
+        and modifier.show_render
+        and modifier.fluid_type == "DOMAIN"
+        and modifier.domain_settings is not None
+        and modifier.domain_settings.domain_type == "GAS"
+        for modifier in obj.modifiers
+    )
+
+
+def _has_volume(material: Any) -> bool:
+    """Returns whether a material's output has a volume."""
+    tree = material.node_tree if material is not None else None
+    output = tree.get_output_node("CYCLES") if tree is not None else None
+    return output is not None and output.inputs["Volume"].is_linked
+
+
 def of_kind(name: str, kind: str) -> str:
     return f"Object '{name}' is left out: {_KINDS[kind]} are not supported"
 
@@ -42,6 +61,8 @@ def of_object(obj: Any, view_layer: Any) -> Iterator[str]:
     """Yields warnings about an evaluated object."""
     if view_layer.use_strand and any(_is_hair(modifier) for modifier in obj.modifiers):
         yield f"Object '{obj.name}': hair particles are not supported"
+    if is_gas_domain(obj) and any(_has_volume(slot.material) for slot in obj.material_slots):
+        yield of_kind(obj.name, "VOLUME")
     if obj.is_shadow_catcher and obj.type != "LIGHT":  # it is the default of lights and has no effect on them
         yield f"Object '{obj.name}' is a shadow catcher and is rendered as an ordinary surface"
     if obj.type != "LIGHT" and shadow_terminator.has_shading_offset(obj):

@@ -2,8 +2,8 @@
 
 program = nodes.translate(material, "SURFACE", resources) struct, keep_alive = program.to_native(native)
 
-`resources` has image(image, image_user) -> key. program.warnings has one warning for each replaced node, with its name
-and its material.
+`resources` has image(image, image_user) -> key, and text(path, owner) -> the content of a text file or None.
+program.warnings has one warning for each replaced node, with its name and its material.
 """
 
 from __future__ import annotations

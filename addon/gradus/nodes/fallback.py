@@ -27,6 +27,9 @@ def replace(view: Any) -> Value | None:
     """Returns the value of an output of a node without a translator."""
     name = view.node.bl_idname
     kind = convert.kind_of(view.socket)
+    if name == "ShaderNodeShaderToRGB":
+        view.warn_replaced("is for EEVEE and its links are left out, as in Cycles")
+        return None
     if kind == SHADER:
         view.warn_replaced("is not supported and is replaced by its shader input or by a diffuse surface")
         return _closure(view)

@@ -46,6 +46,7 @@ class Op(IntEnum):
     MAGIC = 71
     BRICK = 72
     SKY = 73
+    IES = 74
     MAPPING = 96
     VECTOR_TRANSFORM = 97
     VECTOR_ROTATE = 98
@@ -367,6 +368,7 @@ INPUTS = {
     Op.MAGIC: 3,
     Op.BRICK: 10,
     Op.SKY: 1,
+    Op.IES: 2,
     Op.MAPPING: 4,
     Op.VECTOR_TRANSFORM: 1,
     Op.VECTOR_ROTATE: 5,
@@ -428,6 +430,7 @@ OUTPUTS = {
     Op.MAGIC: 2,
     Op.BRICK: 2,
     Op.SKY: 1,
+    Op.IES: 1,
     Op.MAPPING: 1,
     Op.VECTOR_TRANSFORM: 1,
     Op.VECTOR_ROTATE: 1,

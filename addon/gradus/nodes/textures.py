@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from . import ies_profile
 from .node import NodeView, translator
-from .ops import Gradient, Mapping, NoiseType, Op, Projection, Sky, TexCoord
-from .program import COLOR, FLOAT, Value, constant_vector
+from .ops import Geometry, Gradient, Mapping, Math, NoiseType, Op, Projection, Sky, TexCoord, TransformKind
+from .program import COLOR, FLOAT, Value, constant_float, constant_vector
 
 _INTERPOLATION = {"Linear": 0, "Closest": 1, "Cubic": 2, "Smart": 2}
 _EXTENSION = {"REPEAT": 0, "EXTEND": 1, "CLIP": 2, "MIRROR": 3}
@@ -157,3 +158,29 @@ def _sky_settings(node: Any) -> tuple[float, ...]:
 def sky_texture(view: NodeView) -> Value:
     vector = coordinates(view, TexCoord.GENERATED)
     return view.add(Op.SKY, (vector,), Sky[view.node.sky_type], _sky_settings(view.node))
+
+
+_WORLD_TO_OBJECT = TransformKind.NORMAL | 1 << 4
+_WITHOUT_PROFILE = 100.0  # what Cycles has in place of a profile that cannot be read
+
+
+@translator("ShaderNodeTexIES")
+def ies_texture(view: NodeView) -> Value:
+    """The intensity of a luminaire. Its default coordinates are the direction of emission in the light's space."""
+    strength = view.value("Strength")
+    profile = ies_profile.parse(_ies_text(view) or "")
+    if profile is None:
+        view.warn_replaced(f"has no profile that can be read and is {_WITHOUT_PROFILE:.0f} everywhere, as in Cycles")
+        return view.math(Math.MULTIPLY, strength, constant_float(_WITHOUT_PROFILE))
+    vector = view.linked("Vector")
+    if vector is None:
+        incoming = view.add_vector(Op.GEOMETRY, (), Geometry.INCOMING)
+        vector = view.add_vector(Op.VECTOR_TRANSFORM, (incoming,), _WORLD_TO_OBJECT)
+    return view.add_float(Op.IES, (_mapped(view, vector), strength), floats=profile.table())
+
+
+def _ies_text(view: NodeView) -> str | None:
+    node = view.node
+    if node.mode == "INTERNAL":
+        return node.ies.as_string() if node.ies is not None else None
+    return view.walker.resources.text(node.filepath, node.id_data)

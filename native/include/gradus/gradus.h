@@ -233,7 +233,8 @@ typedef struct GradusLight {
   uint32_t type;                     /* GradusLightType: Shape of the light. */
   uint32_t flags;                    /* GradusLightFlags: Further properties. */
   uint32_t visibility;               /* GradusVisibility: Rays that see it. */
-  float matrix[16];                  /* Light to world. Its scale is ignored; the sizes include it. */
+  float matrix[16];                  /* Light to world. Its scale only makes the cone of a spot elliptical; sizes
+                                        include it. */
   float strength[3];                 /* Point and spot: intensity in W/sr. Sun: irradiance in W/m² on a surface that
                                         faces it. Rectangle and ellipse: radiance in W/(m² sr). */
   float radius;                      /* Point and spot: radius of the sphere. [m] */
@@ -342,10 +343,11 @@ typedef enum GradusImageSource {
 
 /* How the colour channels of an image relate to its alpha. */
 typedef enum GradusAlphaMode {
-  GRADUS_ALPHA_STRAIGHT = 0,       /* Colour is not multiplied by alpha. */
+  GRADUS_ALPHA_STRAIGHT = 0,       /* Colour is not multiplied by alpha, unless the file says that it is. */
   GRADUS_ALPHA_PREMULTIPLIED = 1,  /* Colour is multiplied by alpha. */
   GRADUS_ALPHA_CHANNEL_PACKED = 2, /* Alpha is a fourth, independent channel. */
-  GRADUS_ALPHA_NONE = 3            /* Alpha is ignored. */
+  GRADUS_ALPHA_NONE = 3,           /* Alpha is ignored. */
+  GRADUS_ALPHA_ALWAYS_STRAIGHT = 4 /* Colour is not multiplied by alpha, even if the file says that it is. */
 } GradusAlphaMode;
 
 /* A tile of an image; an ordinary image has one. */

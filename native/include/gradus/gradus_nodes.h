@@ -80,6 +80,9 @@
  *   SKY               vector -> color: A sky model. Mode: GradusSkyMode. Floats: PREETHAM and HOSEK_WILKIE: sun
  *                       direction (3), turbidity, ground albedo; others: sun elevation, sun rotation, sun size
  *                       (negative = no disk), sun intensity, altitude in metres, air, dust or aerosols, ozone.
+ *   IES               vector, strength -> value: The intensity of a luminaire by direction. Floats: number of
+ *                       horizontal angles, horizontal angles, vertical angles [rad], intensities of all vertical angles
+ *                       for each horizontal one.
  *
  * Vectors, colours, numbers.
  *   MAPPING           vector, location, rotation, scale -> vector: Moves, turns and scales a vector. Mode:
@@ -155,6 +158,7 @@
   X(MAGIC, 71, 3, 2, 0) \
   X(BRICK, 72, 10, 2, 0) \
   X(SKY, 73, 1, 1, 0) \
+  X(IES, 74, 2, 1, 0) \
   X(MAPPING, 96, 4, 1, 0) \
   X(VECTOR_TRANSFORM, 97, 1, 1, 0) \
   X(VECTOR_ROTATE, 98, 5, 1, 0) \

@@ -80,7 +80,7 @@ MeshArgs::MeshArgs(const GradusMesh* from) : mesh(read_struct(from, "mesh")) {
 ImageArgs::ImageArgs(const GradusImage* from) : image(read_struct(from, "image")) {
   image.name = checked_name(image.name, "image.name");
   image.color_space = checked_name(image.color_space, "image.color_space");
-  check_enum(image.alpha_mode, 4, "image.alpha_mode");
+  check_enum(image.alpha_mode, GRADUS_ALPHA_ALWAYS_STRAIGHT + 1, "image.alpha_mode");
   tiles = read_struct_array(image.tiles, image.tile_count, "image.tiles");
   for (GradusImageTile& tile : tiles) {
     if (!tile.path) tile.path = "";  // A path need not be UTF-8.

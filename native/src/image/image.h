@@ -16,7 +16,7 @@ struct ImageTile {
   uint32_t height = 0;
   uint32_t channels = 0;  // as in DecodedImage
   PixelFormat format = PixelFormat::Byte;
-  bool srgb = false;                  // sRGB values, converted after interpolation as Cycles does for 8-bit images
+  bool srgb = false;                  // sRGB values, converted after interpolation, as Cycles does
   std::unique_ptr<uint8_t[]> pixels;  // bottom row first; colours are multiplied by alpha if the image associates it
 
   size_t size_bytes() const { return static_cast<size_t>(width) * height * channels * bytes_per_channel(format); }

@@ -1,7 +1,9 @@
 #include "image/image_convert.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include <half.h>
@@ -130,15 +132,20 @@ void clean(T* values, size_t count, uint32_t channels, Finite finite) {
   }
 }
 
-// Removes infinities and NaN from a tile of halves or floats; integers have none. A half is infinite or NaN if all bits
-// of its exponent are set.
+// Encoded values beyond it would become infinite when they are decoded.
+constexpr float kMaximumEncoded = 1e12f;
+
+// Removes infinities and NaN from a tile of halves or floats, before and after decoding; integers have none. A half is
+// infinite or NaN if all bits of its exponent are set.
 void clean_tile(ImageTile* tile) {
   const size_t count = static_cast<size_t>(tile->width) * tile->height;
   if (tile->format == PixelFormat::Half) {
     clean(reinterpret_cast<uint16_t*>(tile->pixels.get()), count, tile->channels,
           [](uint16_t h) { return (h & 0x7c00) != 0x7c00; });
   } else if (tile->format == PixelFormat::Float) {
-    clean(reinterpret_cast<float*>(tile->pixels.get()), count, tile->channels, [](float x) { return is_finite(x); });
+    const float maximum = tile->srgb ? kMaximumEncoded : std::numeric_limits<float>::max();
+    clean(reinterpret_cast<float*>(tile->pixels.get()), count, tile->channels,
+          [maximum](float x) { return std::fabs(x) <= maximum; });
   }
 }
 
@@ -174,7 +181,8 @@ Vec4 ImageTile::texel(uint32_t x, uint32_t y) const {
   return Vec4(0.0f);
 }
 
-ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const std::string& space, bool associate) {
+ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const std::string& space, bool is_float,
+                       bool associate) {
   ImageTile tile;
   tile.width = decoded.width;
   tile.height = decoded.height;
@@ -183,14 +191,14 @@ ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const st
   tile.pixels = std::move(decoded.pixels);
   const bool integer = tile.format == PixelFormat::Byte || tile.format == PixelFormat::Short;
   const ColorTransform transform = color.transform(space, integer);
-  if (transform == ColorTransform::Srgb && tile.format == PixelFormat::Byte) {
+  if (transform == ColorTransform::Srgb && (tile.format == PixelFormat::Byte || !is_float)) {
     tile.srgb = true;
   } else if (transform == ColorTransform::Srgb && tile.format != PixelFormat::Float) {
     linearise_shorts(&tile);
   } else if (transform != ColorTransform::Data) {
     tile = transform_tile(tile, color, space, integer);
   }
-  if (associate && !decoded.associated_alpha && has_alpha_channel(tile.channels)) {
+  if (associate && tile.channels == 4) {
     associate_alpha(&tile);
   }
   clean_tile(&tile);

@@ -10,9 +10,11 @@ namespace gradus::image {
 class ColorManager;
 
 // Converts a decoded image. 8-bit data without a conversion and 8-bit sRGB stay 8 bit, 16-bit data without a conversion
-// stay 16 bit, other integers become half, and floats stay floats. If `associate`, colours are multiplied by alpha
-// unless the file has done so.
-ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const std::string& space, bool associate);
+// stay 16 bit, other integers become half, and floats stay floats. If the image is not a float image, sRGB values stay
+// encoded: Cycles multiplies them by alpha, interpolates them and divides them by alpha before it decodes them. If
+// `associate`, colours are multiplied by alpha. Cycles does not do that with grey images.
+ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const std::string& space, bool is_float,
+                       bool associate);
 
 // Returns the scene-linear mean colour of at most about a million texels.
 Rgb mean_color(const ImageTile& tile);

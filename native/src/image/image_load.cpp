@@ -65,7 +65,9 @@ std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorMa
     Rgb mean = kMissingColor;
     if (decode_tile(tile, &decoded, &problem, &hash)) {
       problem = decoded.warning;
-      stored = convert_tile(std::move(decoded), color, source.color_space, source.alpha_mode == GRADUS_ALPHA_STRAIGHT);
+      const bool is_straight = source.alpha_mode == GRADUS_ALPHA_ALWAYS_STRAIGHT ||
+                               (source.alpha_mode == GRADUS_ALPHA_STRAIGHT && !decoded.associated_alpha);
+      stored = convert_tile(std::move(decoded), color, source.color_space, source.is_float, is_straight);
       mean = mean_color(stored);
       image->has_alpha = image->has_alpha || (!image->ignores_alpha && has_transparency(stored));
     }

@@ -203,7 +203,6 @@ Vec4 ImageStore::lookup(uint32_t index, const Vec2& uv, Interpolation interpolat
   if (unassociate && value.w != 0.0f && value.w != 1.0f) {
     const float alpha = value.w;
     value /= alpha;
-    value = tile->srgb ? glm::min(value, Vec4(1.0f)) : value;
     value.w = alpha;
   }
   return decode_texel(*tile, value);

@@ -52,7 +52,7 @@ ImageSource copy_image_source(const GradusImage& desc) {
   source.color_space = text_of(desc.color_space);
   source.alpha_mode = desc.alpha_mode;
   source.is_float = desc.is_float != 0;
-  if (desc.alpha_mode > GRADUS_ALPHA_NONE) {
+  if (desc.alpha_mode > GRADUS_ALPHA_ALWAYS_STRAIGHT) {
     throw invalid_argument("image " + source.name + ": unknown alpha mode");
   }
   if (desc.tile_count == 0 || desc.tile_count > 10000 || desc.tiles == nullptr) {

@@ -23,11 +23,38 @@ void set_axes(const GradusLight& d, AnalyticLight* light) {
   }
 }
 
+// Sets the space of a spot from the light's matrix, or from its axes if the matrix has no volume.
+void set_spot_space(const GradusLight& d, AnalyticLight* light) {
+  Mat3 axes(glm::make_mat4(d.matrix));
+  axes[2] = -axes[2];
+  light->spot_space = glm::inverse(axes);
+  float sum = 0.0f;
+  for (int i = 0; i < 3; ++i) sum += glm::dot(light->spot_space[i], light->spot_space[i]);
+  if (!is_finite(sum))
+    light->spot_space = glm::transpose(Mat3(light->axis_x, light->axis_y, light->emission_direction));
+}
+
+// Returns a cosine that no direction within a spot's cone has less of, to the axis of the cone.
+float cosine_around_spot(const AnalyticLight& light) {
+  const Mat3 axes = glm::inverse(light.spot_space);
+  const float x = glm::length(axes[0]), y = glm::length(axes[1]), z = glm::length(axes[2]);
+  const auto is_skewed = [](const Vec3& a, const Vec3& b, float lengths) {
+    return !(std::fabs(glm::dot(a, b)) <= 1e-4f * lengths);
+  };
+  if (is_skewed(axes[0], axes[2], x * z) || is_skewed(axes[1], axes[2], y * z) || is_skewed(axes[0], axes[1], x * y))
+    return -1.0f;
+  if (std::fabs(x - z) <= 1e-4f * z && std::fabs(y - z) <= 1e-4f * z) return light.cos_cone;
+  if (light.cos_cone <= 0.0f) return -1.0f;
+  const float tangent = std::sqrt(1.0f - light.cos_cone * light.cos_cone) / light.cos_cone * std::max(x, y) / z;
+  return 1.0f / std::sqrt(1.0f + tangent * tangent);
+}
+
 // Sets the fields of a point or spot light.
 void set_round(const GradusLight& d, AnalyticLight* light) {
   light->is_spot = d.type == GRADUS_LIGHT_SPOT;
   light->spot_cosine = (d.flags & GRADUS_LIGHT_SPOT_COSINE) != 0;
   if (light->is_spot) {
+    set_spot_space(d, light);
     light->cos_cone = std::cos(0.5f * std::clamp(d.cone, 0.0f, kPi * 2));
     const float width = (1.0f - light->cos_cone) * std::max(d.blend, 0.0f);
     light->cone_slope = width > 0.0f ? 1.0f / width : kInfinity;
@@ -50,9 +77,10 @@ void set_area(const GradusLight& d, AnalyticLight* light) {
   if (d.spread >= kPi) return;
   // The radiance falls linearly with the tangent of the angle, as behind a grid of slats. The scale keeps the flux: the
   // integral over the hemisphere of cos(x) (1 - tan(x)/tan(a)) is (tan(a) - a) / tan(a) times that of cos(x).
-  const float a = 0.5f * std::max(d.spread, kPi / 180.0f);
-  light->tan_spread = std::tan(a);
-  light->spread_scale = 1.0f / (light->tan_spread - a);
+  constexpr double kMinimumSpread = kPi / 1800.0;
+  const double a = 0.5 * std::max(double(d.spread), kMinimumSpread), tangent = std::tan(a);
+  light->tan_spread = float(tangent);
+  light->spread_scale = float(1.0 / (tangent - a));  // a difference that would be lost in single precision
 }
 
 // Sets the fields of a sun light.
@@ -105,7 +133,7 @@ LightBounds light_bounds(const AnalyticLight& light) {
   b.power = std::min(mean_component(glm::abs(light.intensity)), 1e30f) * (light.area > 0.0f ? light.area : 1.0f);
   b.cos_normals = flat ? 1.0f : -1.0f;
   if (light.is_spot) {
-    b.cos_normals = light.cos_cone;
+    b.cos_normals = cosine_around_spot(light);
     b.cos_emission = 0.9999f;  // A spot emits nothing outside its cone.
   }
   // The intensity along the axis grows as the spread narrows.

@@ -2,6 +2,8 @@
 // Strengths have the same meaning as in Cycles.
 #pragma once
 
+#include <cmath>
+
 #include "base/types.h"
 #include "gradus/gradus.h"
 #include "light/light_sampling.h"
@@ -31,8 +33,11 @@ struct AnalyticLight {
   Rgb intensity{0.0f};                // Point: W/sr; direction: irradiance in W/m²; every light with extent: radiance.
   float radius = 0.0f;
   float half_width = 0.0f, half_height = 0.0f;
-  float area = 0.0f;               // Area in m² of a rectangle, ellipse, disk, or of a sphere's cross section.
-  float cos_cone = -1.0f;          // Cosine of half a spot's cone angle.
+  float area = 0.0f;  // Area in m² of a rectangle, ellipse, disk, or of a sphere's cross section.
+  // Maps directions to the space of a spot, in which its cone is circular and around z. The scale of its object makes
+  // the cone elliptical.
+  Mat3 spot_space{1.0f};
+  float cos_cone = -1.0f;          // Cosine of half a spot's cone angle in that space.
   float cone_slope = 0.0f;         // 1 / ((1 - cos_cone)·blend) of a spot.
   float tan_spread = kInfinity;    // Tangent of half an area light's spread; infinite: no limit.
   float spread_scale = 1.0f;       // Factor that keeps the flux when the spread is limited.
@@ -42,6 +47,11 @@ struct AnalyticLight {
   bool dirac() const { return shape == Shape::Point || shape == Shape::Direction; }
   // Returns whether a BSDF sample can hit the light.
   bool found_by_rays() const { return !dirac() && multiple_importance; }
+  // Returns whether an area light has a point, given relative to its position and along its axes.
+  bool covers(const Vec2& p) const {
+    const Vec2 q(p.x / half_width, p.y / half_height);
+    return shape == Shape::Ellipse ? glm::dot(q, q) <= 1.0f : std::fabs(q.x) <= 1.0f && std::fabs(q.y) <= 1.0f;
+  }
   bool at_infinity() const { return shape == Shape::Direction || shape == Shape::Cone; }
 };
 

@@ -50,11 +50,6 @@ bool hit_facing_disk(const AnalyticLight& light, const Ray& ray, LightPoint* poi
   return glm::dot(point->barycentric, point->barycentric) <= 1.0f;
 }
 
-bool within_ellipse(const AnalyticLight& light, float x, float y) {
-  const float u = x / light.half_width, v = y / light.half_height;
-  return u * u + v * v <= 1.0f;
-}
-
 // Combines all conditions into one branch at the end, without short-circuit evaluation. The processor cannot predict on
 // which side a ray passes the light, but it can predict that the ray misses, which is nearly always true.
 bool hit_flat(const AnalyticLight& light, const Ray& ray, LightPoint* point, float* distance) {
@@ -63,7 +58,7 @@ bool hit_flat(const AnalyticLight& light, const Ray& ray, LightPoint* point, flo
   const Vec3 offset = ray.origin + ray.direction * *distance - light.position;
   const float x = glm::dot(offset, light.axis_x), y = glm::dot(offset, light.axis_y);
   const bool inside = light.shape == AnalyticLight::Shape::Ellipse
-                          ? within_ellipse(light, x, y)
+                          ? light.covers(Vec2(x, y))
                           : int(std::fabs(x) <= light.half_width) & int(std::fabs(y) <= light.half_height);
   if (!(int(cosine < 0.0f) & int(*distance > ray.t_min) & int(*distance < ray.t_max) & int(inside))) return false;
   point->normal = light.emission_direction;

@@ -6,6 +6,7 @@
 #include "base/cone.h"
 #include "base/orthonormal_basis.h"
 #include "light/analytic_light.h"
+#include "light/lit_part.h"
 #include "light/spherical_rectangle.h"
 
 namespace gradus::light {
@@ -67,20 +68,59 @@ Vec3 facing_disk_position(const AnalyticLight& light, const Vec3& from, const Ve
   return light.position + light.radius * (x * on_disk.x + y * on_disk.y);
 }
 
-SphericalRectangle seen_from(const AnalyticLight& light, const Vec3& from) {
-  return SphericalRectangle(light.position, light.axis_x, light.axis_y, light.half_width, light.half_height, from);
+// Converts between points of an area light and their coordinates along its axes.
+Vec3 on_light(const AnalyticLight& light, const Vec2& p) {
+  return light.position + light.axis_x * p.x + light.axis_y * p.y;
+}
+Vec2 along_axes(const AnalyticLight& light, const Vec3& position) {
+  const Vec3 offset = position - light.position;
+  return Vec2(glm::dot(offset, light.axis_x), glm::dot(offset, light.axis_y));
 }
 
-Vec3 sample_rectangle(const AnalyticLight& light, const Vec3& from, const Vec2& u, float* solid_angle) {
-  const SphericalRectangle seen = seen_from(light, from);
-  *solid_angle = seen.sampled_solid_angle();
-  if (seen.usable()) return seen.sample(u);
-  return light.position + light.axis_x * (light.half_width * (2.0f * u.x - 1.0f)) +
-         light.axis_y * (light.half_height * (2.0f * u.y - 1.0f));
+SphericalRectangle seen_from(const AnalyticLight& light, const LitPart& part, const Vec3& from) {
+  return SphericalRectangle(on_light(light, part.centre), light.axis_x, light.axis_y, part.half.x, part.half.y, from);
 }
 
-bool in_front(const AnalyticLight& light, const Vec3& from) {
-  return glm::dot(from - light.position, light.emission_direction) > 0.0f;
+// Samples a rectangular or elliptical light.
+bool sample_flat(const AnalyticLight& light, const Vec3& from, const Vec2& u, LightPoint* point, float* solid_angle) {
+  const LitPart part = lit_part(light, from);
+  point->normal = light.emission_direction;
+  Vec2 p = part.centre + part.half * (2.0f * u - 1.0f);
+  if (part.shape == LitPart::Shape::None) return false;
+  if (part.shape == LitPart::Shape::Circle) p = part.sample_circle(u);
+  if (part.shape == LitPart::Shape::Ellipse) p = part.half * uniform_disk(u);
+  point->position = on_light(light, p);
+  if (part.shape == LitPart::Shape::Rectangle) {
+    const SphericalRectangle seen = seen_from(light, part, from);
+    *solid_angle = seen.sampled_solid_angle();
+    if (seen.usable()) point->position = seen.sample(u);
+  }
+  if (!is_finite(part.radius)) return true;
+  // A circle may reach beyond the light, and a rectangle beyond the circle or an ellipse.
+  const Vec2 sampled = along_axes(light, point->position);
+  const bool is_part_of_light =
+      part.shape == LitPart::Shape::Ellipse ||
+      (part.shape == LitPart::Shape::Rectangle && light.shape == AnalyticLight::Shape::Rectangle) ||
+      light.covers(sampled);
+  return is_part_of_light && part.is_seen(sampled);
+}
+
+// Returns the density in 1/m² or, if the part is sampled in solid angle, in 1/sr. `to_solid_angle` converts the first
+// to the second.
+float density_of_flat(const AnalyticLight& light, const Vec3& from, const Vec3& position, float to_solid_angle) {
+  const LitPart part = lit_part(light, from);
+  switch (part.shape) {
+    case LitPart::Shape::None:
+      return 0.0f;
+    case LitPart::Shape::Circle:
+      return to_solid_angle * part.circle_density(along_axes(light, position));
+    case LitPart::Shape::Ellipse:
+      return to_solid_angle / light.area;
+    case LitPart::Shape::Rectangle:
+      break;
+  }
+  const float angle = seen_from(light, part, from).sampled_solid_angle();
+  return angle > 0.0f ? 1.0f / angle : to_solid_angle / (4.0f * part.half.x * part.half.y);
 }
 
 }  // namespace
@@ -104,18 +144,8 @@ bool sample_analytic_light(const AnalyticLight& light, const Vec3& from, const V
       point->position = facing_disk_position(light, from, point->barycentric, &point->normal);
       return true;
     case AnalyticLight::Shape::Rectangle:
-      if (!in_front(light, from)) return false;
-      point->position = sample_rectangle(light, from, u, solid_angle);
-      point->normal = light.emission_direction;
-      return true;
-    case AnalyticLight::Shape::Ellipse: {
-      if (!in_front(light, from)) return false;
-      const Vec2 d = uniform_disk(u);
-      point->position =
-          light.position + light.axis_x * (light.half_width * d.x) + light.axis_y * (light.half_height * d.y);
-      point->normal = light.emission_direction;
-      return true;
-    }
+    case AnalyticLight::Shape::Ellipse:
+      return sample_flat(light, from, u, point, solid_angle);
     case AnalyticLight::Shape::Direction:
       point->direction = -light.emission_direction;
       return true;
@@ -132,10 +162,11 @@ namespace {
 // over the blend).
 float spot_falloff(const AnalyticLight& light, const Vec3& leaving) {
   if (!light.is_spot) return 1.0f;
-  const float cosine = glm::dot(leaving, light.emission_direction);
+  const float cosine = glm::normalize(light.spot_space * leaving).z;
   if (cosine <= light.cos_cone) return 0.0f;
   const float t = std::min((cosine - light.cos_cone) * light.cone_slope, 1.0f);
-  return t * t * (3.0f - 2.0f * t) * (light.spot_cosine ? std::max(cosine, 0.0f) : 1.0f);
+  const float factor = light.spot_cosine ? std::max(glm::dot(leaving, light.emission_direction), 0.0f) : 1.0f;
+  return t * t * (3.0f - 2.0f * t) * factor;
 }
 
 // Returns the factor by which an area light's limited spread scales its radiance at a cosine from its normal.
@@ -161,17 +192,19 @@ void view_sphere(const AnalyticLight& light, const Vec3& normal, const Vec3& fro
   view->radiance = light.intensity * spot_falloff(light, -view->direction);
 }
 
-void view_flat(const AnalyticLight& light, const Vec3& normal, const Vec3& from, const float* solid_angle,
-               LightEvaluation* view) {
+void view_flat(const AnalyticLight& light, const Vec3& position, const Vec3& normal, const Vec3& from,
+               const float* solid_angle, LightEvaluation* view) {
   const float cosine = -glm::dot(normal, view->direction);
-  if (!(cosine > 0.0f) || (light.shape != AnalyticLight::Shape::FacingDisk && !in_front(light, from))) return;
+  if (!(cosine > 0.0f)) return;
   view->cosine = cosine;
-  view->pdf = view->distance * view->distance / (cosine * light.area);
-  if (light.shape == AnalyticLight::Shape::Rectangle) {
-    const float angle = solid_angle != nullptr ? *solid_angle : seen_from(light, from).sampled_solid_angle();
-    if (angle > 0.0f) view->pdf = 1.0f / angle;
-  }
-  view->radiance = light.intensity * spread_falloff(light, cosine) * spot_falloff(light, -view->direction);
+  const float falloff = spread_falloff(light, cosine), to_solid_angle = view->distance * view->distance / cosine;
+  if (!(falloff > 0.0f)) return;
+  if (light.shape == AnalyticLight::Shape::FacingDisk)
+    view->pdf = to_solid_angle / light.area;
+  else
+    view->pdf = solid_angle != nullptr && *solid_angle > 0.0f ? 1.0f / *solid_angle
+                                                              : density_of_flat(light, from, position, to_solid_angle);
+  if (view->pdf > 0.0f) view->radiance = light.intensity * falloff * spot_falloff(light, -view->direction);
 }
 
 }  // namespace
@@ -196,7 +229,7 @@ void evaluate_analytic_light(const AnalyticLight& light, const LightPoint& point
   } else if (light.shape == AnalyticLight::Shape::Sphere) {
     view_sphere(light, normal, from, view);
   } else {
-    view_flat(light, normal, from, solid_angle, view);
+    view_flat(light, position, normal, from, solid_angle, view);
   }
 }
 

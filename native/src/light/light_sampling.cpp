@@ -162,9 +162,9 @@ Vec2 light_uv(const AnalyticLight& light, const LightPoint& point, const shading
   }
   if (light.at_infinity()) return Vec2(0.0f);
   if (!light.is_spot) return spherical(at.normal * at.axes);
-  const Vec3 d = at.wo * at.axes;
+  const Vec3 d = light.spot_space * at.wo;
   const float tangent = std::sqrt(std::max(0.0f, 1.0f - light.cos_cone * light.cos_cone)) / light.cos_cone;
-  return d.z < 0.0f && tangent > 0.0f ? 0.5f + 0.5f * Vec2(d) / (-d.z * tangent) : Vec2(0.5f);
+  return d.z > 0.0f && tangent > 0.0f ? 0.5f + 0.5f * Vec2(d) / (d.z * tangent) : Vec2(0.5f);
 }
 
 // Returns the factor by which the light's material scales its radiance.

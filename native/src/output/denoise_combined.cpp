@@ -48,6 +48,41 @@ std::vector<float> read_guide(const film::Film& film, uint32_t pass, const Regio
       film.region, region);
 }
 
+bool is_negative_somewhere(const NoisyPicture& noisy) {
+  for (size_t i = 0; i < size_t(noisy.width) * size_t(noisy.height); ++i) {
+    const float* color = noisy.color + i * noisy.stride;
+    if (std::min({color[0], color[1], color[2]}) < 0.0f) return true;
+  }
+  return false;
+}
+
+// Denoises light that lights of negative strength make negative in places. The network reads no negative values, so
+// that it denoises what is above and what is below zero by itself.
+std::vector<float> denoise_signed(const OidnLibrary& library, const NoisyPicture& noisy, uint32_t threads,
+                                  const CancelCheck& cancel) {
+  const size_t count = size_t(noisy.width) * size_t(noisy.height);
+  std::vector<float> part(3 * count);
+  const auto denoise_part = [&](float sign) {
+    for (size_t i = 0; i < part.size(); ++i) part[i] = std::max(sign * noisy.color[i / 3 * noisy.stride + i % 3], 0.0f);
+    NoisyPicture picture = noisy;
+    picture.color = part.data();
+    picture.stride = 3;
+    return denoise(library, picture, threads, cancel);
+  };
+  std::vector<float> image = denoise_part(1.0f);
+  const std::vector<float> below = denoise_part(-1.0f);
+  for (size_t i = 0; i < image.size(); ++i) image[i] -= below[i];
+  return image;
+}
+
+// Replaces the colours of `combined`, RGBA, by their mean with `image`, RGB, which has the weight `share`.
+void blend_signed(const std::vector<float>& image, float share, std::vector<float>* combined) {
+  for (size_t i = 0; i < image.size(); ++i) {
+    float& value = (*combined)[i / 3 * 4 + i % 3];
+    if (is_finite(value)) value += share * (image[i] - value);
+  }
+}
+
 // Replaces the colours of `combined`, RGBA, by their geometric mean with `image`, RGB, which has the weight `share`.
 // The threads of the caller's TBB arena share the work.
 void blend(const std::vector<float>& image, float share, std::vector<float>* combined) {
@@ -132,11 +167,14 @@ std::vector<float> denoise_or_throw(const OidnLibrary& library, const CombinedPi
   NoisyPicture noisy{seen.width(), seen.height(), input.light.data(), input.stride};
   if (!albedo.empty()) noisy.albedo = albedo.data();
   if (!normal.empty()) noisy.normal = normal.data();
-  const std::vector<float> image = crop(denoise(library, noisy, threads, cancel), seen, picture.region);
+  // Without negative lights, only a reconstruction has negative values: overshoots, which are no light.
+  const bool has_negative_light = sampled && is_negative_somewhere(noisy);
+  const auto denoise_light = has_negative_light ? denoise_signed : denoise;
+  const std::vector<float> image = crop(denoise_light(library, noisy, threads, cancel), seen, picture.region);
   std::vector<float> result = picture.rgba;
   if (blends) {
     const float share = picture.joined != nullptr ? kShareOfNetworkJoined : kShareOfNetwork;
-    arena.execute([&] { blend(image, share, &result); });
+    arena.execute([&] { (has_negative_light ? blend_signed : blend)(image, share, &result); });
   } else {
     replace(image, &result);
   }

@@ -23,10 +23,9 @@ using Images = std::vector<std::vector<float>>;
 constexpr int kPixels = 4096;  // Number of pixels that one task handles.
 
 // Returns a function of (pixel, channel) that gives a value of a reconstructed image as it is delivered: multiplied by
-// the exposure, and not negative unless the reconstruction keeps negative values.
-auto value_of(const film::Film& film, uint32_t reconstruction, const std::vector<float>& image) {
-  const float exposure = film.settings.film_exposure,
-              minimum = reconstruct::keeps_negative(reconstruction) ? -INFINITY : 0.0f;
+// the exposure, and not negative unless it keeps negative values.
+auto value_of(const film::Film& film, bool keeps_negative, const std::vector<float>& image) {
+  const float exposure = film.settings.film_exposure, minimum = keeps_negative ? -INFINITY : 0.0f;
   const auto channels = size_t(film.color_channels);
   return [&image, exposure, minimum, channels](size_t i, size_t c) {
     return exposure * std::max(image[i * channels + c], minimum);
@@ -38,7 +37,7 @@ std::vector<float> crop_picture(const film::Film& film, uint32_t reconstruction,
                                 const Region& region) {
   std::vector<float> rgba(size_t(region.area()) * 4);
   const auto channels = size_t(film.color_channels);
-  const auto of_pixel = value_of(film, reconstruction, image);
+  const auto of_pixel = value_of(film, reconstruct::keeps_negative(film, reconstruction), image);
   for_pixels(film, region, [&](size_t i, size_t out) {
     for (size_t c = 0; c < 3; ++c) rgba[4 * out + c] = of_pixel(i, c);
     rgba[4 * out + 3] = channels == 4 ? std::clamp(image[4 * i + 3], 0.0f, 1.0f) : 1.0f;
@@ -49,10 +48,11 @@ std::vector<float> crop_picture(const film::Film& film, uint32_t reconstruction,
 // Returns RGB of `region` for each component, clamped as the whole picture is. `images` are the reconstructed
 // components of the whole film region.
 Images crop_components(const film::Film& film, uint32_t reconstruction, Images images, const Region& region) {
-  reconstruct::clamp_components(reconstruction, film.color_channels, &images);
+  const bool keeps_negative = reconstruct::keeps_negative(film, reconstruction);
+  if (!keeps_negative) reconstruct::clamp_components(film.color_channels, &images);
   for (std::vector<float>& image : images) {
     std::vector<float> rgb(size_t(region.area()) * 3);
-    const auto of_pixel = value_of(film, reconstruction, image);
+    const auto of_pixel = value_of(film, keeps_negative, image);
     for_pixels(film, region, [&](size_t i, size_t out) {
       for (size_t c = 0; c < 3; ++c) rgb[3 * out + c] = of_pixel(i, c);
     });

@@ -42,8 +42,7 @@ Field box_mean(const Field& image, int radius) {
 
 Field squared_light(const Field& image, int radius) {
   Field light = box_mean(
-      make_field(image.width(), image.height(), [&](int x, int y) { return std::max(mean_of(image, x, y), 0.0f); }),
-      radius);
+      make_field(image.width(), image.height(), [&](int x, int y) { return brightness_of(image, x, y); }), radius);
   for_values(&light, [](float& value, int, int, int) { value = (value + kDark) * (value + kDark); });
   return light;
 }

@@ -51,6 +51,12 @@ inline float mean_of(const Field& field, int x, int y) {
   for (int c = 0; c < field.channels(); ++c) sum += field.row(y, c)[x];
   return sum / static_cast<float>(field.channels());
 }
+// Returns the mean of the absolute values: the brightness of light that may be negative.
+inline float brightness_of(const Field& field, int x, int y) {
+  float sum = 0.0f;
+  for (int c = 0; c < field.channels(); ++c) sum += std::fabs(field.row(y, c)[x]);
+  return sum / static_cast<float>(field.channels());
+}
 inline float mean_of_squares(const Field& field, int x, int y) {
   float sum = 0.0f;
   for (int c = 0; c < field.channels(); ++c) sum += field.row(y, c)[x] * field.row(y, c)[x];

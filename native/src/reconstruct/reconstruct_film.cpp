@@ -26,6 +26,12 @@ bool is_zero(const std::vector<Radiance>& plane) {
   return std::all_of(plane.begin(), plane.end(), [](const Radiance& value) { return value == Radiance(0.0f); });
 }
 
+bool is_negative_somewhere(const std::vector<Radiance>& plane) {
+  return std::any_of(plane.begin(), plane.end(), [](const Radiance& value) {
+    return std::min({value.x, value.y, value.z}) < 0.0f;
+  });
+}
+
 // Returns whether all primal and gradient samples of a component are 0.
 bool is_black(const film::ComponentPlanes& planes) {
   for (int half = 0; half < film::kHalves; ++half) {
@@ -37,12 +43,15 @@ bool is_black(const film::ComponentPlanes& planes) {
 
 }  // namespace
 
-bool keeps_negative(uint32_t reconstruction) {
-  return reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE;
+bool keeps_negative(const film::Film& film, uint32_t reconstruction) {
+  if (reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE) return true;
+  return std::any_of(film.components.begin(), film.components.end(), [](const film::ComponentPlanes& component) {
+    return std::any_of(std::begin(component.primal), std::end(component.primal), is_negative_somewhere);
+  });
 }
 
-void clamp_components(uint32_t reconstruction, int channels, std::vector<std::vector<float>>* images) {
-  if (keeps_negative(reconstruction) || images->empty()) return;
+void clamp_components(int channels, std::vector<std::vector<float>>* images) {
+  if (images->empty()) return;
   const size_t pixels = images->front().size() / size_t(channels);
   for_rows(int(pixels), [&](int pixel) {
     for (size_t i = size_t(pixel) * size_t(channels); i < size_t(pixel) * size_t(channels) + 3; ++i) {

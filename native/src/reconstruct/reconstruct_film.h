@@ -23,13 +23,13 @@ Reconstructed reconstruct_film(const film::Film& film, uint32_t reconstruction, 
 std::vector<float> reconstruct_component(const film::Film& film, int component, uint32_t reconstruction, float alpha,
                                          const CancelCheck& cancel, SolveReport* report);
 
-// Returns whether a reconstruction may deliver negative values: linear reconstructions may, the others are clamped at
-// 0.
-bool keeps_negative(uint32_t reconstruction);
+// Returns whether a reconstruction of a film may deliver negative values: linear reconstructions may, and any if lights
+// of negative strength made some samples negative. Others are clamped at 0.
+bool keeps_negative(const film::Film& film, uint32_t reconstruction);
 
-// Changes component images so that no value is negative and that they add up to the clamped image. Does nothing if the
-// reconstruction may deliver negative values. `images` have the film's channels; alpha is unchanged.
-void clamp_components(uint32_t reconstruction, int channels, std::vector<std::vector<float>>* images);
+// Changes component images so that no value is negative and that they add up to the clamped image. `images` have the
+// film's channels; alpha is unchanged.
+void clamp_components(int channels, std::vector<std::vector<float>>* images);
 
 // Adds `term` to `sum`. An empty sum counts as 0.
 void add_image(std::vector<float> term, std::vector<float>* sum);

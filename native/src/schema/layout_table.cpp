@@ -364,6 +364,7 @@ constexpr int64_t kAlphaModeValues[] = {
     GRADUS_ALPHA_PREMULTIPLIED,
     GRADUS_ALPHA_CHANNEL_PACKED,
     GRADUS_ALPHA_NONE,
+    GRADUS_ALPHA_ALWAYS_STRAIGHT,
 };
 
 constexpr int64_t kObjectKindValues[] = {

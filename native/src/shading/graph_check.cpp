@@ -2,14 +2,15 @@
 
 #include "base/error.h"
 #include "shading/graph.h"
+#include "shading/ies_table.h"
 #include "shading/op_info.h"
 #include "shading/sky/sky.h"
 
 namespace gradus::shading {
 namespace {
 
-// Returns whether a node has as many floats as the table of its operation needs.
-bool table_fits(const GradusNode& node, const OpInfo& info) {
+// Returns whether a node has as many floats as the table of its operation needs. floats: those of the node.
+bool table_fits(const GradusNode& node, const OpInfo& info, const float* floats) {
   switch (node.op) {
     case GRADUS_OP_RAMP:
       return node.float_count >= 4 && node.float_count % 4 == 0;
@@ -17,6 +18,8 @@ bool table_fits(const GradusNode& node, const OpInfo& info) {
       const uint32_t channels = node.mode == GRADUS_CURVES_FLOAT ? 1 : 3;
       return node.float_count >= 3 + 2 * channels && (node.float_count - 3) % channels == 0;
     }
+    case GRADUS_OP_IES:
+      return ies_table(floats, node.float_count).has_value();
     case GRADUS_OP_SKY:
       return node.float_count >= kSkySettings ||
              (node.mode <= GRADUS_SKY_HOSEK_WILKIE && node.float_count >= kAnalyticSkySettings);
@@ -64,7 +67,7 @@ class Checker {
     that(n.input_count <= info->inputs, "too many inputs", i);
     that(uint64_t(n.first_input) + n.input_count <= desc_.input_count, "inputs out of range", i);
     that(uint64_t(n.first_float) + n.float_count <= desc_.float_count, "floats out of range", i);
-    that(table_fits(n, *info), "table of a wrong size", i);
+    that(table_fits(n, *info, desc_.floats + n.first_float), "table of a wrong size", i);
     const bool is_image = n.op == GRADUS_OP_IMAGE || n.op == GRADUS_OP_ENVIRONMENT;
     that(is_image || n.resource <= desc_.name_count, "name out of range", i);
     for (uint32_t k = 0; k < n.input_count; k++) input(i, k, desc_.inputs[n.first_input + k]);

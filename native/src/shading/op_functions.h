@@ -15,6 +15,7 @@ void wave_op(const OpArgs& args, Vec4* out);
 void magic_op(const OpArgs& args, Vec4* out);
 void brick_op(const OpArgs& args, Vec4* out);
 void sky_op(const OpArgs& args, Vec4* out);
+void ies_op(const OpArgs& args, Vec4* out);
 void mapping_op(const OpArgs& args, Vec4* out);
 void vector_rotate_op(const OpArgs& args, Vec4* out);
 void mix_op(const OpArgs& args, Vec4* out);

@@ -64,6 +64,7 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_MAGIC] = {"MAGIC", OpKind::Pure, 3, 2, 0, 10};
   table[GRADUS_OP_BRICK] = {"BRICK", OpKind::Pure, 10, 2, 4, 0};
   table[GRADUS_OP_SKY] = {"SKY", OpKind::Pure, 1, 1, 0, GRADUS_SKY_MULTIPLE_SCATTERING};
+  table[GRADUS_OP_IES] = {"IES", OpKind::Pure, 2, 1, 1, 0};
   table[GRADUS_OP_MAPPING] = {"MAPPING", OpKind::Pure, 4, 1, 0, GRADUS_MAPPING_NORMAL};
   table[GRADUS_OP_VECTOR_TRANSFORM] = {"VECTOR_TRANSFORM", OpKind::Context, 1, 1, 0, 42};
   table[GRADUS_OP_VECTOR_ROTATE] = {"VECTOR_ROTATE", OpKind::Pure, 5, 1, 0, 12};
@@ -119,6 +120,9 @@ bool evaluate_pure(uint32_t op, const OpArgs& args, Vec4* out) {
       return true;
     case GRADUS_OP_SKY:
       sky_op(args, out);
+      return true;
+    case GRADUS_OP_IES:
+      ies_op(args, out);
       return true;
     case GRADUS_OP_MAPPING:
       mapping_op(args, out);

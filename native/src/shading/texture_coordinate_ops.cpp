@@ -60,6 +60,7 @@ enum Space : uint32_t { kWorld = 0, kObject = 1, kCamera = 2 };
 Vec3 to_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext& c) {
   const float w = kind == GRADUS_TRANSFORM_POINT ? 1.0f : 0.0f;
   const Vec3 origin = c.scene ? c.scene->origin : Vec3(0.0f);
+  if (space == kObject && c.light_axes && kind != GRADUS_TRANSFORM_POINT) return *c.light_axes * v;
   if (space == kObject && c.instance) {
     geometry::Placement storage;
     const geometry::Placement& placement = placement_of(c, &storage);
@@ -76,6 +77,7 @@ Vec3 to_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext& 
 Vec3 from_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext& c) {
   const float w = kind == GRADUS_TRANSFORM_POINT ? 1.0f : 0.0f;
   const Vec3 origin = c.scene ? c.scene->origin : Vec3(0.0f);
+  if (space == kObject && c.light_axes && kind != GRADUS_TRANSFORM_POINT) return glm::transpose(*c.light_axes) * v;
   if (space == kObject && c.instance) {
     geometry::Placement storage;
     const geometry::Placement& placement = placement_of(c, &storage);

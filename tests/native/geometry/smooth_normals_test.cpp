@@ -57,6 +57,38 @@ TEST(SmoothNormals, WeightedByAngle) {
   EXPECT_NEAR(glm::dot(mesh->normals[0], expected), 1.0f, 1e-6f);
 }
 
+// Regression: the normals of quads and n-gons were those of their triangles, up to 22° off Blender's.
+TEST(SmoothNormals, PolygonsHaveOneNormal) {
+  // A pentagon that is not flat, followed by a triangle that shares an edge with it.
+  const std::array<float, 18> positions{0, 0, 0, 2, 0, 0.5f, 2.5f, 1.5f, 0, 1, 2, 0.8f, -0.5f, 1, 0, 1, -1, 1};
+  const std::array<int32_t, 8> corners{0, 1, 2, 3, 4, 1, 0, 5};
+  const std::array<uint32_t, 12> triangles{4, 0, 1, 1, 2, 3, 3, 4, 1, 5, 6, 7};
+  const std::array<int32_t, 4> faces{0, 0, 0, 1};
+  GradusMesh desc{};
+  desc.struct_size = sizeof(desc);
+  desc.key_count = 1;
+  desc.vertex_count = 6;
+  desc.positions = positions.data();
+  desc.corner_count = corners.size();
+  desc.corner_vertices = corners.data();
+  desc.triangle_count = 4;
+  desc.triangle_corners = triangles.data();
+  desc.triangle_faces = faces.data();
+  desc.face_count = 2;
+  desc.normal_domain = GRADUS_DOMAIN_POINT;
+  const auto mesh = geometry::make_mesh(desc);
+  const auto p = [&](int i) { return Vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]); };
+  Vec3 newell(0.0f);
+  for (int i = 0; i < 5; ++i) newell += 0.5f * glm::cross(p(i), p((i + 1) % 5));
+  const Vec3 pentagon = glm::normalize(newell), triangle = glm::normalize(glm::cross(p(0) - p(1), p(5) - p(1)));
+  for (int i = 2; i < 5; ++i) EXPECT_NEAR(glm::dot(mesh->normals[i], pentagon), 1.0f, 1e-6f) << i;
+  const auto angle = [&](int at, int a, int b) {
+    return std::acos(glm::dot(glm::normalize(p(a) - p(at)), glm::normalize(p(b) - p(at))));
+  };
+  const Vec3 expected = glm::normalize(pentagon * angle(1, 0, 2) + triangle * angle(1, 0, 5));
+  EXPECT_NEAR(glm::dot(mesh->normals[1], expected), 1.0f, 1e-6f);
+}
+
 // Regression: stretching rotates facets and normals differently. A normal that was then below its facet was negated, so
 // that the facet was lit from the wrong side, and rays left glass instead of entering it.
 TEST(SmoothNormals, NormalsBelowStretchedFacets) {

@@ -89,6 +89,20 @@ TEST(A3_LightSampling, Ellipse) {
   expect_matching_light(light);
 }
 
+// The receivers see circles within the light, across its edge and beyond it.
+TEST(A3_LightSampling, Spread) {
+  for (const GradusLightType type : {GRADUS_LIGHT_RECTANGLE, GRADUS_LIGHT_ELLIPSE}) {
+    for (const float spread : {1.1f, 1.8f, 2.4f}) {
+      SCOPED_TRACE(spread);
+      GradusLight light = make_light(type, Mat4(1.0f), Rgb(1.0f));
+      light.size[0] = 1.9f;
+      light.size[1] = 1.5f;
+      light.spread = spread;
+      expect_matching_light(light);
+    }
+  }
+}
+
 TEST(A3_LightSampling, Sphere) {
   GradusLight light = make_light(GRADUS_LIGHT_POINT, Mat4(1.0f), Rgb(1.0f));
   light.radius = 0.3f;

@@ -161,6 +161,32 @@ TEST(LightUnits, SpreadKeepsTheFlux) {
   }
 }
 
+// Regression: with a spread of 1° nearly all samples fell where the receiver gets no light, and 64 of them lost it.
+TEST(LightUnits, NarrowSpreadHasLittleNoise) {
+  for (const GradusLightType type : {GRADUS_LIGHT_RECTANGLE, GRADUS_LIGHT_ELLIPSE}) {
+    for (const float degrees : {1.0f, 10.0f, 40.0f}) {
+      SCOPED_TRACE(degrees);
+      GradusLight light = make_light(type, translation(Vec3(0, 0, 3)), Rgb(3.0f));
+      light.size[0] = 4.0f;
+      light.size[1] = 3.0f;
+      light.spread = degrees * kPi / 180.0f;
+      TestScene scene;
+      scene.lights({light});
+      const auto snapshot = scene.commit();
+      // The circle that a receiver sees lies within the light, so that its irradiance is that of a light without end.
+      const Vec3 places[3] = {Vec3(0.0f), Vec3(0.7f, -0.2f, 0.0f), Vec3(0.2f, 0.3f, 2.9f)};
+      for (const Vec3& place : places)
+        EXPECT_NEAR(irradiance(*snapshot, {place, Vec3(0, 0, 1), false}, 64) / (3.0 * kPi), 1.0, 0.02);
+      // At the edge of a rectangle half of that circle is light; beyond it nothing is.
+      if (type == GRADUS_LIGHT_RECTANGLE) {
+        EXPECT_NEAR(irradiance(*snapshot, {Vec3(2, 0, 0), Vec3(0, 0, 1), false}, 20000) / (3.0 * kPi), 0.5, 0.02);
+      }
+      EXPECT_EQ(irradiance(*snapshot, {Vec3(2.1f + 3.0f * std::tan(0.5f * light.spread), 0, 0), Vec3(0, 0, 1), false}),
+                0.0);
+    }
+  }
+}
+
 TEST(LightUnits, EmissiveQuad) {
   Soup soup;
   soup.triangle({-1, -0.5f, 2}, {1, -0.5f, 2}, {1, 0.5f, 2});

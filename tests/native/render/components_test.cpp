@@ -414,7 +414,7 @@ TEST(Components, AnEmissiveSurfaceIsCountedOnce) {
   EXPECT_NEAR(component(*render, "All", GRADUS_COMPONENT_DEPTH)[middle], 3.0f, 0.05f);
 }
 
-// Regression: without a reconstruction, negative light stays in the picture, but components were clamped at 0.
+// Regression: negative light became black, or only its components did.
 TEST(Components, AddUpBelowZero) {
   PathScene scene;
   test::add_box(&scene, test::matte(Rgb(0.6f)));
@@ -424,8 +424,7 @@ TEST(Components, AddUpBelowZero) {
     const auto render = rendered(&scene, settings_with("Direct=EDL;Indirect=EDD+L", reconstruction));
     const std::vector<float> rgba = combined(*render), direct = component(*render, "Direct"),
                              indirect = component(*render, "Indirect");
-    const bool keeps = reconstruction != GRADUS_RECONSTRUCTION_REGULARIZED;
-    EXPECT_EQ(*std::min_element(rgba.begin(), rgba.end()) < -0.01f, keeps) << reconstruction;
+    EXPECT_LT(*std::min_element(rgba.begin(), rgba.end()), -0.01f) << reconstruction;
     for (size_t i = 0; i < direct.size(); ++i) {
       const float whole = rgba[i / 3 * 4 + i % 3];
       ASSERT_NEAR(direct[i] + indirect[i], whole, 1e-5f * (1.0f + std::fabs(whole))) << reconstruction;
@@ -682,12 +681,20 @@ TEST(Components, KeepNoSurfacesUnlessPassesShowThem) {
 // The picture and its components are clamped so that the components still add up to the clamped picture.
 TEST(Components, ThatAreClampedAddUpToTheClampedPicture) {
   std::vector<std::vector<float>> images = {{2.0f, -1.0f, 1.0f, 0.5f}, {-1.0f, -1.0f, 3.0f, 0.25f}};
-  reconstruct::clamp_components(GRADUS_RECONSTRUCTION_L1, 4, &images);
+  reconstruct::clamp_components(4, &images);
   EXPECT_EQ(images[0], (std::vector<float>{1.0f, 0.0f, 1.0f, 0.5f}));
   EXPECT_EQ(images[1], (std::vector<float>{0.0f, 0.0f, 3.0f, 0.25f}));
-  std::vector<std::vector<float>> kept = {{2.0f, 0.0f, 0.0f}, {-1.0f, 0.0f, 0.0f}};
-  reconstruct::clamp_components(GRADUS_RECONSTRUCTION_L2, 3, &kept);
-  EXPECT_EQ(kept[1][0], -1.0f);
+}
+
+// Linear reconstructions keep negative values, and all do where negative light was sampled.
+TEST(Components, AreClampedUnlessNegativeLightWasSampled) {
+  const auto film = rendered(Scenario::Glass, settings_with("", GRADUS_RECONSTRUCTION_REGULARIZED))->film();
+  film::Film other = *film;
+  for (const uint32_t how : {GRADUS_RECONSTRUCTION_REGULARIZED, GRADUS_RECONSTRUCTION_L1})
+    EXPECT_FALSE(reconstruct::keeps_negative(other, how));
+  EXPECT_TRUE(reconstruct::keeps_negative(other, GRADUS_RECONSTRUCTION_L2));
+  other.components.back().primal[1].back().y = -1.0f;
+  EXPECT_TRUE(reconstruct::keeps_negative(other, GRADUS_RECONSTRUCTION_REGULARIZED));
 }
 
 }  // namespace

@@ -182,9 +182,9 @@ double luminance(const float* pixel) { return (double(pixel[0]) + double(pixel[1
 TEST_F(DenoisedRender, RegularizedIsTheMeanWithTheDenoisedNoisyImage) {
   GradusSettings settings = settings_with(GRADUS_DENOISER_NONE);
   settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
-  const auto plain = finished(settings, 1.0f);
+  const auto plain = finished(settings, 0.1f);
   settings.denoiser = GRADUS_DENOISER_OIDN;
-  const auto render = finished(settings, 1.0f);
+  const auto render = finished(settings, 0.1f);
   std::vector<float> expected = denoised(read(*plain, GRADUS_PASS_NOISY_IMAGE, kAll), *render->film());
   const auto regularized = read(*plain, GRADUS_PASS_COMBINED, kAll);
   std::vector<double> lights;
@@ -196,6 +196,21 @@ TEST_F(DenoisedRender, RegularizedIsTheMeanWithTheDenoisedNoisyImage) {
     expected[i] = float(std::pow(expected[i] + dark, share) * std::pow(regularized[i] + dark, 1.0 - share) - dark);
   }
   expect_near(read(*render, GRADUS_PASS_COMBINED, kAll), expected);
+}
+
+// Regression: negative light became black, or colours of pixels beside it. The network reads no negative values, so
+// that what is above and what is below zero are denoised by themselves. What the stand-in adds to both cancels.
+TEST_F(DenoisedRender, NegativeLightIsKept) {
+  GradusSettings settings = settings_with(GRADUS_DENOISER_NONE);
+  settings.reconstruction = GRADUS_RECONSTRUCTION_REGULARIZED;
+  const auto plain = finished(settings, 0.1f, -1.0f);
+  settings.denoiser = GRADUS_DENOISER_OIDN;
+  std::vector<float> expected = read(*plain, GRADUS_PASS_COMBINED, kAll);
+  const std::vector<float> noisy = read(*plain, GRADUS_PASS_NOISY_IMAGE, kAll);
+  for (size_t i = 0; i < expected.size(); ++i)
+    if (i % 4 != 3) expected[i] += 0.7f * (noisy[i] - expected[i]);
+  EXPECT_LT(*std::min_element(expected.begin(), expected.end()), -0.5f);
+  expect_near(read(*finished(settings, 0.1f, -1.0f), GRADUS_PASS_COMBINED, kAll), expected);
 }
 
 // The error is known as a share of that of REGULARIZED.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "shading/ies_table.h"
 #include "shading/lattice_hash.h"
 #include "shading/perlin.h"
 #include "shading/program_builder.h"
@@ -294,6 +295,46 @@ TEST(NodeClosures, EmissionUnderCoatIsTheSameAlone) {
   const Rgb whole = run(m->surface, c).emission, alone = run(m->emission, c).emission;
   expect_near(whole, alone);
   EXPECT_LT(alone.x, 3.0f * 0.8f);
+}
+
+// A luminaire whose intensity is 10·vertical + horizontal angle, with both in radians, down to the horizon.
+std::vector<float> ies_floats(int columns, int rows) {
+  std::vector<float> floats{float(columns)};
+  for (int i = 0; i < columns; ++i) floats.push_back(2.0f * kPi * float(i) / float(columns - 1));
+  for (int i = 0; i < rows; ++i) floats.push_back(0.5f * kPi * float(i) / float(rows - 1));
+  for (int i = 0; i < columns; ++i)
+    for (int k = 0; k < rows; ++k) floats.push_back(10.0f * floats[1 + columns + k] + floats[1 + i]);
+  return floats;
+}
+
+float ies_of(float vertical, float horizontal, float strength = 1.0f) {
+  const Vec3 direction(std::sin(vertical) * std::sin(horizontal - kPi), std::sin(vertical) * std::cos(horizontal - kPi),
+                       -std::cos(vertical));
+  return evaluate(GRADUS_OP_IES, {direction, strength}, 0, ies_floats(9, 7)).x;
+}
+
+TEST(NodeIes, IsLinearBetweenLinearValues) {
+  // The middle of the table: at its ends the spline is not linear.
+  for (const float vertical : {0.3f, 0.6f, 1.1f})
+    for (const float horizontal : {1.0f, 2.5f, 4.0f, 5.2f})
+      EXPECT_NEAR(ies_of(vertical, horizontal, 2.0f), 2.0f * (10.0f * vertical + horizontal), 1e-3f);
+}
+
+TEST(NodeIes, EndsWithItsTable) {
+  EXPECT_EQ(ies_of(1.6f, 2.0f), 0.0f);
+  EXPECT_EQ(ies_of(kPi, 2.0f), 0.0f);
+  EXPECT_NEAR(evaluate(GRADUS_OP_IES, {Vec3(0, 0, -1), 1.0f}, 0, ies_floats(9, 7)).x, kPi, 1e-3f);  // atan2(0, 0) = 0
+}
+
+TEST(NodeIes, RefusesTablesOfAnotherSize) {
+  const auto is_table = [](const std::vector<float>& floats) {
+    return shading::ies_table(floats.data(), floats.size()).has_value();
+  };
+  std::vector<float> floats = ies_floats(9, 7);
+  EXPECT_TRUE(is_table(floats));
+  floats.pop_back();
+  for (const std::vector<float>& other : {floats, {}, {NAN}, {1e30f, 0.0f}, {-1.0f}, {1.0f, 0, 0, 0, 0, 0}})
+    EXPECT_FALSE(is_table(other)) << other.size();
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ Field noise_of(const HalvedImage& image) {
 Surroundings look_around(const HalvedImage& image) {
   Field noise = noise_of(image);
   Field light = make_field(image.mean.width(), image.mean.height(),
-                           [&](int x, int y) { return std::fabs(mean_of(image.mean, x, y)); });
+                           [&](int x, int y) { return brightness_of(image.mean, x, y); });
   return {noise, light, box_mean(noise, kNoiseRadius), box_mean(light, kNoiseRadius)};
 }
 

@@ -23,9 +23,9 @@ constexpr int kLostSum = 0, kPlaceSum = 3, kSquareSum = 6;
 
 // Returns √(noise/light around) of each pixel.
 Field places_of_loss(const Field& regressed, const Field& noise) {
-  const Field light = box_mean(make_field(regressed.width(), regressed.height(),
-                                          [&](int x, int y) { return std::max(mean_of(regressed, x, y), 0.0f); }),
-                               kLossLightRadius);
+  const Field light = box_mean(
+      make_field(regressed.width(), regressed.height(), [&](int x, int y) { return brightness_of(regressed, x, y); }),
+      kLossLightRadius);
   return make_field(regressed.width(), regressed.height(), [&](int x, int y) {
     const float around = light.row(y)[x], ratio = around > 0.0f ? noise.row(y)[x] / around : 0.0f;
     return std::sqrt(std::clamp(ratio, 0.0f, kMaxNoise));

@@ -22,11 +22,15 @@ float median_around(const Field& image, int x, int y, int channel) {
   return values[count / 2];
 }
 
-// Returns the share of the sampled value that lifts one channel to its minimum, a quarter of the sampled light.
+// Returns the share of the sampled value that moves one channel away from 0 to its minimum, a quarter of the sampled
+// light. Light is negative where the pixels around are, too; a single negative value is noise.
 float share_of_own(const Field& sampled, const Field& regressed, int x, int y, int channel) {
-  const float own = sampled.row(y, channel)[x], value = regressed.row(y, channel)[x];
+  const float sign = sampled.row(y, channel)[x] < 0.0f ? -1.0f : 1.0f;
+  const float own = sign * sampled.row(y, channel)[x], value = sign * regressed.row(y, channel)[x];
   if (value >= kMinShare * own) return 0.0f;
-  const float minimum = kMinShare * std::min(own, median_around(sampled, x, y, channel));
+  const float around = sign * median_around(sampled, x, y, channel);
+  if (sign < 0.0f && around <= 0.0f) return 0.0f;
+  const float minimum = kMinShare * std::min(own, around);
   return minimum > value ? (minimum - value) / (own - value) : 0.0f;
 }
 

@@ -1,0 +1,91 @@
+"""Pixels that Blender decodes: of movies, painted images, and files in formats that the library does not read.
+
+`Image.pixels` holds the frame of a movie or sequence that was last looked up, and only the first tile of a tiled image.
+Evaluating an image texture looks up any frame (measured in Blender 3.4, 4.5 and 5.2). Other tiles are loaded as images
+of their own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+
+from .arrays import zeros
+
+_NAME = ".gradus image reader"
+
+
+@dataclass
+class Pixels:
+    """An image as Blender holds it in memory."""
+
+    width: int
+    height: int
+    values: Any  # float RGBA, bottom row first
+    is_float: bool  # whether Blender stores it as floats, which are scene-linear with associated alpha
+
+
+def of_image(image: Any) -> Pixels | None:
+    """Returns the current pixels of an image, or None if Blender cannot read it."""
+    width, height = image.size
+    if width == 0 or height == 0:
+        return None
+    values = zeros("f", width * height * image.channels)
+    image.pixels.foreach_get(values)
+    if image.channels != 4:
+        values = _to_rgba(values, image.channels)
+    return Pixels(width, height, values, bool(image.is_float))
+
+
+def of_frame(image: Any, number: int) -> Pixels | None:
+    """Returns a frame of a movie or image sequence."""
+    texture = bpy.data.textures.get(_NAME) or bpy.data.textures.new(_NAME, "IMAGE")
+    texture.image = image.original
+    texture.image_user.frame_current = number
+    texture.evaluate((0.0, 0.0, 0.0))
+    return of_image(image.original)
+
+
+def of_file(image: Any, path: str, alpha_mode: str) -> Pixels | None:
+    """Returns the pixels of a file with the colour space of an image, such as one of its tiles."""
+    try:
+        loaded = bpy.data.images.load(path, check_existing=False)
+    except RuntimeError:
+        return None
+    return _with_settings_of(image, loaded, alpha_mode)
+
+
+def of_packed(image: Any, data: bytes) -> Pixels | None:
+    """Returns the pixels of a packed file with the settings of an image, such as one of its tiles."""
+    packed = bpy.data.images.new(_NAME, 1, 1)
+    packed.pack(data=data, data_len=len(data))
+    packed.source = "FILE"
+    return _with_settings_of(image, packed, image.alpha_mode)
+
+
+def _with_settings_of(image: Any, other: Any, alpha_mode: str) -> Pixels | None:
+    """Returns the pixels of another image with the colour space of `image`, and removes that other image."""
+    try:
+        other.colorspace_settings.name = image.colorspace_settings.name
+        other.alpha_mode = alpha_mode
+        return of_image(other)
+    finally:
+        bpy.data.images.remove(other)
+
+
+def _to_rgba(values: Any, channels: int) -> Any:
+    """Returns RGBA pixels. Grey becomes red, green and blue, and a missing alpha becomes 1."""
+    count = len(values) // channels
+    rgba = type(values)("f", [1.0]) * (4 * count)
+    for channel in range(3):
+        rgba[channel::4] = values[min(channel, channels - 1) :: channels]
+    return rgba
+
+
+def release() -> None:
+    """Removes the texture that looks up frames. It is kept meanwhile, because its removal re-sorts all dependencies."""
+    texture = bpy.data.textures.get(_NAME)
+    if texture is not None:
+        bpy.data.textures.remove(texture)
