@@ -49,12 +49,12 @@ class Session:
         self.pictures: dict[str, pixels.PassBuffer] = {}
         """The last picture of each view, which stays in the window if the user cancels before the next one."""
 
-    def sync(self, *arguments: Any) -> Any:
+    def sync(self, *arguments: Any, **options: Any) -> Any:
         """Defines the colour spaces of all images on the device, then calls Exporter.sync()."""
         baker = _bakers.get(self.device)
         if baker is not None:
             baker.define(self.library, self.device, compat.image_color_spaces())
-        return self.exporter.sync(*arguments)
+        return self.exporter.sync(*arguments, **options)
 
     def show_view(self, view: str) -> None:
         """Sets the camera of another view; see Exporter.show_view()."""

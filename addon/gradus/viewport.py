@@ -13,7 +13,6 @@ import time
 import weakref
 from array import array
 from ctypes import byref
-from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -46,7 +45,7 @@ class View:
         self.override: ViewOverride | None = None
         self.region: tuple[int, int, int, int] = (0, 0, 0, 0)
         self.signature: object = None
-        self.hidden: frozenset[int] = frozenset()  # see _hidden_objects()
+        self.hidden: frozenset[int] = frozenset()  # addresses of the objects that this viewport does not show
         self.worker: threading.Thread | None = None
         self.cancel = ctypes.c_int32(0)
         self.render = 0
@@ -69,16 +68,20 @@ class View:
 
     # Reading Blender.
 
-    def synchronize(self, depsgraph: Any, override: ViewOverride) -> None:
-        """Exports all changes. If the native scene is still busy, requests another update instead."""
+    def synchronize(self, depsgraph: Any, override: ViewOverride, space: Any = None) -> bool:
+        """Exports all changes. If the native scene is still busy, requests another update instead and returns False.
+
+        space: the 3D viewport if it hides objects.
+        """
         if not self.interrupt():
             self.engine.tag_update()
-            return
+            return False
         self.failed = False
-        report = self.session.sync(depsgraph, self.engine, override, False, None)
+        report = self.session.sync(depsgraph, self.engine, override, False, None, space=space)
         self.session.take_new_warnings(report.warnings)
         self.override = override
         self.stale = True
+        return True
 
     def move(self, depsgraph: Any, override: ViewOverride) -> None:
         """Exports a change of the view only."""
@@ -253,8 +256,9 @@ def update(engine: Any, context: Any, depsgraph: Any) -> None:
     is_known = signature == view.signature and hidden == view.hidden
     if view.override is not None and is_known and not _has_edits(depsgraph):
         return
-    view.signature, view.hidden = signature, hidden
-    view.synchronize(depsgraph, replace(_override(context), hidden=hidden))
+    space = context.space_data if _hides_objects(context.space_data) else None
+    if view.synchronize(depsgraph, _override(context), space):
+        view.signature, view.hidden = signature, hidden
 
 
 def draw(engine: Any, context: Any, depsgraph: Any) -> None:
@@ -316,9 +320,14 @@ def _object_filters() -> tuple[str, ...]:
     return tuple(name for name in names if name.startswith("show_object_viewport_"))
 
 
+def _hides_objects(space: Any) -> bool:
+    is_filtered = not all(getattr(space, name) for name in _object_filters())
+    return space.local_view is not None or space.use_local_collections or is_filtered
+
+
 def _hidden_objects(space: Any, depsgraph: Any) -> frozenset[int]:
-    """Returns the addresses of the objects that a viewport does not show: by Local View or by their type."""
-    if space.local_view is None and all(getattr(space, name) for name in _object_filters()):
+    """Returns the addresses of the objects that a viewport hides: by Local View, Local Collections or their type."""
+    if not _hides_objects(space):
         return frozenset()
     objects = (obj.original for obj in depsgraph.objects)
     return frozenset(obj.as_pointer() for obj in objects if not obj.visible_in_viewport_get(space))

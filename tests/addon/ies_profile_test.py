@@ -89,6 +89,8 @@ GOOD = text(1, [0, 90], [0], [[7, 0]])
         GOOD.replace("7 0", "7 nan"),
         GOOD.replace("7 0", "7 x"),
         GOOD.replace("7 0", "7 1e999"),
+        GOOD.replace("7 0", "7 1e41"),
+        GOOD.replace("0 90", "90 0"),
         GOOD.replace(" 2 1 1 2 ", " 2 1 4 2 "),  # an unknown type
         GOOD.replace(" 2 1 1 2 ", " -2 1 1 2 "),
         GOOD.replace(" 2 1 1 2 ", " 1e300 1 1 2 "),

@@ -7,6 +7,7 @@ of their own.
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +16,8 @@ import bpy
 from .arrays import zeros
 
 _NAME = ".gradus image reader"
+_lock = threading.Lock()
+"""Held from the look-up of a frame until it is read: a viewport and a final render export on different threads."""
 
 
 @dataclass
@@ -41,11 +44,12 @@ def of_image(image: Any) -> Pixels | None:
 
 def of_frame(image: Any, number: int) -> Pixels | None:
     """Returns a frame of a movie or image sequence."""
-    texture = bpy.data.textures.get(_NAME) or bpy.data.textures.new(_NAME, "IMAGE")
-    texture.image = image.original
-    texture.image_user.frame_current = number
-    texture.evaluate((0.0, 0.0, 0.0))
-    return of_image(image.original)
+    with _lock:
+        texture = bpy.data.textures.get(_NAME) or bpy.data.textures.new(_NAME, "IMAGE")
+        texture.image = image.original
+        texture.image_user.frame_current = number
+        texture.evaluate((0.0, 0.0, 0.0))
+        return of_image(image.original)
 
 
 def of_file(image: Any, path: str, alpha_mode: str) -> Pixels | None:
@@ -76,7 +80,7 @@ def _with_settings_of(image: Any, other: Any, alpha_mode: str) -> Pixels | None:
 
 
 def _to_rgba(values: Any, channels: int) -> Any:
-    """Returns RGBA pixels. Grey becomes red, green and blue, and a missing alpha becomes 1."""
+    """Returns the RGBA of pixels with 1 or 3 channels: grey fills all colours, and alpha is 1."""
     count = len(values) // channels
     rgba = type(values)("f", [1.0]) * (4 * count)
     for channel in range(3):
@@ -85,7 +89,8 @@ def _to_rgba(values: Any, channels: int) -> Any:
 
 
 def release() -> None:
-    """Removes the texture that looks up frames. It is kept meanwhile, because its removal re-sorts all dependencies."""
-    texture = bpy.data.textures.get(_NAME)
-    if texture is not None:
-        bpy.data.textures.remove(texture)
+    """Removes the texture that looks up frames. It is kept until then, because a removal re-sorts all dependencies."""
+    with _lock:
+        texture = bpy.data.textures.get(_NAME)
+        if texture is not None:
+            bpy.data.textures.remove(texture)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from array import array
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from .. import native
@@ -36,7 +36,6 @@ class ViewOverride:
     width: int
     height: int
     projection: panorama.Projection | None = None
-    hidden: frozenset[int] = field(default=frozenset(), compare=False)  # addresses of objects that it does not show
 
     @classmethod
     def from_view(

@@ -149,12 +149,13 @@ def collect(
     depsgraph: Any,
     poll: Callable[[], None],
     may_move: MayMove | None = None,
-    hidden: frozenset[int] = frozenset(),
+    space: Any = None,
 ) -> Collected:
     """Returns all visible surfaces and lights of the depsgraph at its frame.
 
-    may_move: predicts which surfaces move, or None. hidden: addresses of original objects that a viewport hides, with
-    their instances. Blender 3.4 to 5.0 lists curves, text, surfaces and metaballs
+    may_move: predicts which surfaces move, or None. space: a 3D viewport that hides objects, or None.
+
+    Blender 3.4 to 5.0 lists curves, text, surfaces and metaballs
     twice: as themselves, and as an instance of the mesh that it made of them. Only the latter is exported.
     """
     instances = depsgraph.object_instances
@@ -165,7 +166,7 @@ def collect(
         if index & 255 == 0:
             poll()
         obj = instance.object
-        if not instance.show_self or (hidden and _shown_by(instance).original.as_pointer() in hidden):
+        if not instance.show_self or (space is not None and not obj.visible_in_viewport_get(space)):
             continue
         kind = obj.type
         is_light = kind == "LIGHT"
@@ -204,7 +205,7 @@ def _entry(index: int, instance: Any, obj: Any, is_light: bool, cache: _ObjectCa
     if properties.visibility & ALL_RAYS == 0:
         return None
     address = data.as_pointer()
-    if properties.is_edited and data.is_editmode:
+    if properties.is_edited and owner.data.as_pointer() == address:
         data = cache.edited_mesh(owner, data)
     if copies:
         key = properties.key + tuple(instance.persistent_id)
@@ -231,11 +232,6 @@ def _entry(index: int, instance: Any, obj: Any, is_light: bool, cache: _ObjectCa
     if not is_light:
         entry.materials = cache.materials(obj, data, (properties.key[0], address))
     return entry
-
-
-def _shown_by(instance: Any) -> Any:
-    """Returns the object that decides whether a viewport shows an instance."""
-    return instance.parent if instance.is_instance else instance.object
 
 
 def _is_portal(data: Any) -> bool:

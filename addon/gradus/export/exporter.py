@@ -52,6 +52,7 @@ class Exporter:
         vectors: bool | None = None,
         views: Sequence[str] = ("",),
         with_digest: bool = False,
+        space: Any = None,
     ) -> ExportReport:
         """Sets everything that the depsgraph shows at its frame.
 
@@ -59,7 +60,8 @@ class Exporter:
 
         view: the view of a viewport, which replaces the camera. Viewports and previews have no motion. vectors: whether
         the Vector pass is computed; None: if it is enabled in the view layer. views: views of multi-view. The first one
-        is set; show_view() sets another. with_digest: whether the report has a digest of everything that was set.
+        is set; show_view() sets another. with_digest: whether the report has a digest of everything that was set. space:
+        a 3D viewport that hides objects, by Local View for example, or None.
         """
         start = time.perf_counter()
         wants_vectors = depsgraph.view_layer_eval.use_pass_vector if vectors is None else vectors
@@ -68,7 +70,7 @@ class Exporter:
             shutter = shutter_of(depsgraph.scene_eval, depsgraph.view_layer_eval)
             wanted = motion.MotionRequest(wants_vectors, shutter)
         digest = Digest() if with_digest else None
-        run = _Sync(self, depsgraph, engine, view, wanted, views, Poll(cancelled), digest)
+        run = _Sync(self, depsgraph, engine, view, wanted, views, Poll(cancelled), digest, space)
         tables = ((KIND_MESH, self._meshes), (KIND_IMAGE, self._images), (KIND_MATERIAL, self._materials))
         for table in (self._ids, *(table for _, table in tables)):
             table.begin()
@@ -78,14 +80,15 @@ class Exporter:
             for _, table in tables:
                 table.invalidate()
             raise
+        finally:
+            if view is not None or is_preview:
+                blender_pixels.release()  # final renders do it when their job ends
         self._ids.sweep()
         for kind, table in tables:
             for key in table.sweep():
                 self._target.remove(kind, key)
         self._views = run.cameras
         self.show_view(views[0])
-        if view is not None or is_preview:
-            blender_pixels.release()  # final renders do it when their job ends
         seconds = time.perf_counter() - start
         return ExportReport(*run.size, run.warnings.texts, seconds, digest.value() if digest is not None else b"")
 
@@ -112,12 +115,14 @@ class _Sync:
         views: Sequence[str],
         poll: Poll,
         digest: Digest | None = None,
+        space: Any = None,
     ) -> None:
         self._depsgraph = depsgraph
         self._engine = engine
         self._view = view
         self._poll = poll
         self._digest = digest
+        self._space = space
         self._target = exporter._target
         self._mesh_keys = exporter._meshes
         self._ids = exporter._ids
@@ -144,8 +149,7 @@ class _Sync:
     def run(self) -> None:
         now = self._view_states()
         # No prediction is needed if the times around the frame are read, because they show what moves.
-        hidden = self._view.hidden if self._view is not None else frozenset()
-        collected = collect(self._depsgraph, self._poll, None if self._wanted.any() else MayMove(), hidden)
+        collected = collect(self._depsgraph, self._poll, None if self._wanted.any() else MayMove(), self._space)
         for text in (*unsupported.of_scene(self._scene, self._depsgraph.view_layer_eval), *collected.unsupported):
             self.warnings.add(text)
         for entry in collected.surfaces:

@@ -29,7 +29,6 @@ _MODE_DECIDES_SINCE = (5, 2, 0)
 # Radiance.
 _READABLE = (b"\x89PNG", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*", b"II+\x00", b"MM\x00+", b"\x76\x2f\x31\x01", b"#?")
 _FLOAT_FORMATS = (b"\x76\x2f\x31\x01", b"#?")
-_FIRST_TILE = 1001
 _SEQUENCE_NUMBER = re.compile(r"(\d+)(?!.*\d)")
 
 
@@ -53,7 +52,6 @@ class ImageState:
     color_space: str
     is_float: bool
     tiles: list[TileState]
-    warning: str = ""  # what differs from Cycles
 
 
 def user_frame(user: Any, frame: int) -> int:
@@ -185,7 +183,7 @@ def _udim_tile(image: Any, path: str, number: int) -> tuple[TileState, bool]:
     file = tile_path(path, number)
     is_saved = _packed_data(image, number) is not None or os.path.exists(file)
     decoded = None
-    if number == _FIRST_TILE and (image.is_dirty or not is_saved):
+    if number == image.tiles[0].number and (image.is_dirty or not is_saved):
         decoded = _decoded(image, number, blender_pixels.of_image(image))
     return decoded or _file_tile(image, file, number, None)
 
@@ -217,11 +215,13 @@ def image_state(image: Any, number: int | None, abspath: Any) -> ImageState:
     space = "" if settings.is_data else settings.name
     if is_float and tiles[0].source == FLOAT:
         space = ""  # Blender's float buffers are scene-linear
-    return ImageState(image.name, _alpha_mode(image, tiles[0], is_float), space, is_float, tiles, _warning(image))
+    return ImageState(image.name, _alpha_mode(image, tiles[0], is_float), space, is_float, tiles)
 
 
-def _warning(image: Any) -> str:
-    """Returns a warning about values that Cycles reads otherwise, or ""."""
+def warning(image: Any) -> str:
+    """Returns a warning about what is shown of an image, or ""."""
+    if image.source == "TILED" and image.is_dirty and len(image.tiles) > 1:
+        return f"Image '{image.name}' has changes that are not saved: tiles other than the first are shown as saved"
     is_logarithmic = image.file_format == "CINEON" or (image.file_format == "DPX" and compat.VERSION < (4, 0, 0))
     if not is_logarithmic:
         return ""

@@ -30,14 +30,14 @@ class Resources:
         """Returns the key of an image at the rendered frame. Sets the native image if it is new or has changed."""
         if image is None:
             return 0
+        if warning := images.warning(image):
+            self.warn(warning)
         number = images.number_of_frame(image, image_user, self.frame)
         key = self._keys.key((image.as_pointer(), number))
         signature = images.signature(image, number, self._abspath)
         if signature is not None and not self._keys.changed(key, signature):
             return key
         state = images.image_state(image, number, self._abspath)
-        if state.warning:
-            self.warn(state.warning)
         if signature is not None or self._keys.changed(key, images.content(state)):
             struct, _keep = images.fill_image(state)
             self._target.set_image(key, struct)

@@ -170,7 +170,7 @@ def _generated_points(mesh: Any, positions: array, original: Any) -> array | Non
     carried = read(mesh.vertices, "undeformed_co", "f", 3)
     if carried.tobytes() != positions.tobytes():
         return carried
-    if len(original.vertices) != len(mesh.vertices):
+    if original.is_editmode or len(original.vertices) != len(mesh.vertices):
         return None
     undeformed = read_positions(original)
     return undeformed if undeformed.tobytes() != positions.tobytes() else None

@@ -38,7 +38,6 @@ def is_gas_domain(obj: Any) -> bool:
     """Returns whether an object is the domain of a smoke or fire simulation, which has a volume and no surface."""
     return any(
         modifier.type == "FLUID"
-        and modifier.show_render
         and modifier.fluid_type == "DOMAIN"
         and modifier.domain_settings is not None
         and modifier.domain_settings.domain_type == "GAS"

@@ -1,4 +1,7 @@
-"""Replacements of nodes without a translator. They are never black, raise no exceptions, and add one warning."""
+"""Replacements of nodes without a translator. They are not black, raise no exceptions, and add one warning.
+
+Shader to RGB has no replacement: as in Cycles, its links count as missing.
+"""
 
 from __future__ import annotations
 

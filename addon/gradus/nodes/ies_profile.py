@@ -11,6 +11,7 @@ _TYPE_C, _TYPE_B, _TYPE_A = 1, 2, 3
 _WATTS_PER_CANDELA = 4.0 * math.pi / 177.83
 """Converts an intensity to the power of a point light, with the luminous efficacy of D65 in lm/W, as Cycles does."""
 _MAXIMUM_ANGLES = 100_000  # of one kind; real profiles have a few hundred
+_MAXIMUM = 1e30  # of intensities, so that a spline through them stays finite in single precision
 _TOLERANCE = 1e-4  # degrees
 
 
@@ -45,8 +46,9 @@ def parse(text: str) -> Profile | None:
         return None
     if profile is None or len(profile.vertical) < 2 or len(profile.horizontal) < 2:
         return None
-    values = [*profile.horizontal, *profile.vertical, *(value for row in profile.rows for value in row)]
-    return profile if all(map(math.isfinite, values)) else None
+    is_ordered = all(list(angles) == sorted(angles) for angles in (profile.horizontal, profile.vertical))
+    values = (*profile.horizontal, *profile.vertical, *(value for row in profile.rows for value in row))
+    return profile if is_ordered and all(abs(value) < _MAXIMUM for value in values) else None
 
 
 def _take(numbers: Iterator[float], count: int) -> list[float]:

@@ -187,6 +187,7 @@ ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const st
   tile.width = decoded.width;
   tile.height = decoded.height;
   tile.channels = decoded.channels;
+  const bool has_colors_and_alpha = decoded.channels == 4;  // a conversion makes four channels of grey and alpha
   tile.format = decoded.format;
   tile.pixels = std::move(decoded.pixels);
   const bool integer = tile.format == PixelFormat::Byte || tile.format == PixelFormat::Short;
@@ -198,7 +199,7 @@ ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const st
   } else if (transform != ColorTransform::Data) {
     tile = transform_tile(tile, color, space, integer);
   }
-  if (associate && tile.channels == 4) {
+  if (associate && has_colors_and_alpha) {
     associate_alpha(&tile);
   }
   clean_tile(&tile);

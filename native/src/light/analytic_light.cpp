@@ -30,11 +30,11 @@ void set_spot_space(const GradusLight& d, AnalyticLight* light) {
   light->spot_space = glm::inverse(axes);
   float sum = 0.0f;
   for (int i = 0; i < 3; ++i) sum += glm::dot(light->spot_space[i], light->spot_space[i]);
-  if (!is_finite(sum))
+  if (!(sum > 0.0f) || !is_finite(sum))
     light->spot_space = glm::transpose(Mat3(light->axis_x, light->axis_y, light->emission_direction));
 }
 
-// Returns a cosine that no direction within a spot's cone has less of, to the axis of the cone.
+// Returns a lower bound of the cosine between the axis of a spot's cone and any direction in the cone.
 float cosine_around_spot(const AnalyticLight& light) {
   const Mat3 axes = glm::inverse(light.spot_space);
   const float x = glm::length(axes[0]), y = glm::length(axes[1]), z = glm::length(axes[2]);

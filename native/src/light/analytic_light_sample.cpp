@@ -78,17 +78,18 @@ Vec2 along_axes(const AnalyticLight& light, const Vec3& position) {
 }
 
 SphericalRectangle seen_from(const AnalyticLight& light, const LitPart& part, const Vec3& from) {
-  return SphericalRectangle(on_light(light, part.centre), light.axis_x, light.axis_y, part.half.x, part.half.y, from);
+  return SphericalRectangle(on_light(light, part.centre), light.axis_x, light.axis_y, part.half_extent.x,
+                            part.half_extent.y, from);
 }
 
 // Samples a rectangular or elliptical light.
 bool sample_flat(const AnalyticLight& light, const Vec3& from, const Vec2& u, LightPoint* point, float* solid_angle) {
   const LitPart part = lit_part(light, from);
   point->normal = light.emission_direction;
-  Vec2 p = part.centre + part.half * (2.0f * u - 1.0f);
+  Vec2 p = part.centre + part.half_extent * (2.0f * u - 1.0f);
   if (part.shape == LitPart::Shape::None) return false;
   if (part.shape == LitPart::Shape::Circle) p = part.sample_circle(u);
-  if (part.shape == LitPart::Shape::Ellipse) p = part.half * uniform_disk(u);
+  if (part.shape == LitPart::Shape::Ellipse) p = part.half_extent * uniform_disk(u);
   point->position = on_light(light, p);
   if (part.shape == LitPart::Shape::Rectangle) {
     const SphericalRectangle seen = seen_from(light, part, from);
@@ -120,7 +121,7 @@ float density_of_flat(const AnalyticLight& light, const Vec3& from, const Vec3& 
       break;
   }
   const float angle = seen_from(light, part, from).sampled_solid_angle();
-  return angle > 0.0f ? 1.0f / angle : to_solid_angle / (4.0f * part.half.x * part.half.y);
+  return angle > 0.0f ? 1.0f / angle : to_solid_angle / (4.0f * part.half_extent.x * part.half_extent.y);
 }
 
 }  // namespace
@@ -163,16 +164,17 @@ namespace {
 float spot_falloff(const AnalyticLight& light, const Vec3& leaving) {
   if (!light.is_spot) return 1.0f;
   const float cosine = glm::normalize(light.spot_space * leaving).z;
-  if (cosine <= light.cos_cone) return 0.0f;
+  if (!(cosine > light.cos_cone)) return 0.0f;
   const float t = std::min((cosine - light.cos_cone) * light.cone_slope, 1.0f);
   const float factor = light.spot_cosine ? std::max(glm::dot(leaving, light.emission_direction), 0.0f) : 1.0f;
   return t * t * (3.0f - 2.0f * t) * factor;
 }
 
-// Returns the factor by which an area light's limited spread scales its radiance at a cosine from its normal.
-float spread_falloff(const AnalyticLight& light, float cosine) {
+// Returns the factor by which an area light's limited spread scales its radiance in a direction to the light. The
+// tangent comes from a cross product, because 1 - cos² has no digits left for the narrowest spreads.
+float spread_falloff(const AnalyticLight& light, const Vec3& normal, const Vec3& direction, float cosine) {
   if (!is_finite(light.tan_spread)) return 1.0f;
-  const float tangent = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
+  const float tangent = glm::length(glm::cross(normal, direction)) / cosine;
   return std::max((light.tan_spread - tangent) * light.spread_scale, 0.0f);
 }
 
@@ -197,7 +199,8 @@ void view_flat(const AnalyticLight& light, const Vec3& position, const Vec3& nor
   const float cosine = -glm::dot(normal, view->direction);
   if (!(cosine > 0.0f)) return;
   view->cosine = cosine;
-  const float falloff = spread_falloff(light, cosine), to_solid_angle = view->distance * view->distance / cosine;
+  const float falloff = spread_falloff(light, normal, view->direction, cosine),
+              to_solid_angle = view->distance * view->distance / cosine;
   if (!(falloff > 0.0f)) return;
   if (light.shape == AnalyticLight::Shape::FacingDisk)
     view->pdf = to_solid_angle / light.area;

@@ -18,7 +18,7 @@ LitPart lit_part(const AnalyticLight& light, const Vec3& from) {
   const Vec2 extent(light.half_width, light.half_height);
   LitPart part;
   part.shape = round ? LitPart::Shape::Ellipse : LitPart::Shape::Rectangle;
-  part.half = extent;
+  part.half_extent = extent;
   const Vec3 to_receiver = from - light.position;
   const float distance = glm::dot(to_receiver, light.emission_direction);
   if (!(distance > 0.0f)) return {};
@@ -36,7 +36,7 @@ LitPart lit_part(const AnalyticLight& light, const Vec3& from) {
   } else if (!round || area < light.area) {
     part.shape = LitPart::Shape::Rectangle;
     part.centre = 0.5f * (lower + upper);
-    part.half = 0.5f * size;
+    part.half_extent = 0.5f * size;
   }
   return part;
 }

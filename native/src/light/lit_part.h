@@ -16,11 +16,12 @@ struct LitPart {
   };
 
   Shape shape = Shape::None;
-  // Points are relative to the light's position and along its axes.
-  Vec2 centre{0.0f};         // Of the rectangle.
-  Vec2 half{0.0f};           // Half the width and height of the rectangle.
-  Vec2 foot{0.0f};           // Of the circle: the point of the light's plane that is nearest to the receiver.
-  float radius = kInfinity;  // Of the circle.
+  // Points are relative to the light's position and along its axes. The rectangle lies around `centre`, the circle
+  // around `foot`, the point of the light's plane that is nearest to the receiver.
+  Vec2 centre{0.0f};
+  Vec2 half_extent{0.0f};
+  Vec2 foot{0.0f};
+  float radius = kInfinity;
 
   // Returns whether a point is in the circle.
   bool is_seen(const Vec2& point) const { return !is_finite(radius) || glm::length(point - foot) < radius; }

@@ -14,6 +14,7 @@
 #include "film/features.h"
 #include "output/denoise.h"
 #include "output/pass_read.h"
+#include "reconstruct/reconstruct_film.h"
 #include "reconstruct/regression/feature_filter.h"
 #include "reconstruct/solver_planes.h"
 #include "scene/device.h"
@@ -46,14 +47,6 @@ std::vector<float> read_guide(const film::Film& film, uint32_t pass, const Regio
   return crop(
       reconstruct::filter_feature(film::read_feature(film, pass), film.region.width(), film.region.height()).values,
       film.region, region);
-}
-
-bool is_negative_somewhere(const NoisyPicture& noisy) {
-  for (size_t i = 0; i < size_t(noisy.width) * size_t(noisy.height); ++i) {
-    const float* color = noisy.color + i * noisy.stride;
-    if (std::min({color[0], color[1], color[2]}) < 0.0f) return true;
-  }
-  return false;
 }
 
 // Denoises light that lights of negative strength make negative in places. The network reads no negative values, so
@@ -167,8 +160,7 @@ std::vector<float> denoise_or_throw(const OidnLibrary& library, const CombinedPi
   NoisyPicture noisy{seen.width(), seen.height(), input.light.data(), input.stride};
   if (!albedo.empty()) noisy.albedo = albedo.data();
   if (!normal.empty()) noisy.normal = normal.data();
-  // Without negative lights, only a reconstruction has negative values: overshoots, which are no light.
-  const bool has_negative_light = sampled && is_negative_somewhere(noisy);
+  const bool has_negative_light = sampled && reconstruct::has_negative_light(picture.film);
   const auto denoise_light = has_negative_light ? denoise_signed : denoise;
   const std::vector<float> image = crop(denoise_light(library, noisy, threads, cancel), seen, picture.region);
   std::vector<float> result = picture.rgba;

@@ -1,6 +1,7 @@
 #include "reconstruct/reconstruct_film.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "base/rows.h"
@@ -26,11 +27,8 @@ bool is_zero(const std::vector<Radiance>& plane) {
   return std::all_of(plane.begin(), plane.end(), [](const Radiance& value) { return value == Radiance(0.0f); });
 }
 
-bool is_negative_somewhere(const std::vector<Radiance>& plane) {
-  return std::any_of(plane.begin(), plane.end(), [](const Radiance& value) {
-    return std::min({value.x, value.y, value.z}) < 0.0f;
-  });
-}
+// Share of the light that must be negative. Images of the world have a few values slightly below 0, which are no light.
+constexpr double kMinimumNegativeShare = 1e-3;
 
 // Returns whether all primal and gradient samples of a component are 0.
 bool is_black(const film::ComponentPlanes& planes) {
@@ -43,11 +41,24 @@ bool is_black(const film::ComponentPlanes& planes) {
 
 }  // namespace
 
+bool has_negative_light(const film::Film& film) {
+  double below = 0.0, all = 0.0;
+  for (const film::ComponentPlanes& component : film.components) {
+    for (const std::vector<Radiance>& half : component.primal) {
+      for (const Radiance& value : half) {
+        for (int c = 0; c < 3; ++c) {
+          below += std::max(-value[c], 0.0f);
+          all += std::fabs(value[c]);
+        }
+      }
+    }
+  }
+  return below > kMinimumNegativeShare * all;
+}
+
 bool keeps_negative(const film::Film& film, uint32_t reconstruction) {
-  if (reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE) return true;
-  return std::any_of(film.components.begin(), film.components.end(), [](const film::ComponentPlanes& component) {
-    return std::any_of(std::begin(component.primal), std::end(component.primal), is_negative_somewhere);
-  });
+  return reconstruction == GRADUS_RECONSTRUCTION_L2 || reconstruction == GRADUS_RECONSTRUCTION_NONE ||
+         has_negative_light(film);
 }
 
 void clamp_components(int channels, std::vector<std::vector<float>>* images) {

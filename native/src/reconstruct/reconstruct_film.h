@@ -23,8 +23,11 @@ Reconstructed reconstruct_film(const film::Film& film, uint32_t reconstruction, 
 std::vector<float> reconstruct_component(const film::Film& film, int component, uint32_t reconstruction, float alpha,
                                          const CancelCheck& cancel, SolveReport* report);
 
-// Returns whether a reconstruction of a film may deliver negative values: linear reconstructions may, and any if lights
-// of negative strength made some samples negative. Others are clamped at 0.
+// Returns whether a notable share of the samples is negative, because there are lights of negative strength.
+bool has_negative_light(const film::Film& film);
+
+// Returns whether a reconstruction of a film may deliver negative values: linear reconstructions may, and any if the
+// film has negative light. Others are clamped at 0.
 bool keeps_negative(const film::Film& film, uint32_t reconstruction);
 
 // Changes component images so that no value is negative and that they add up to the clamped image. `images` have the

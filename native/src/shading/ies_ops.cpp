@@ -53,7 +53,7 @@ float intensity(const IesTable& table, float horizontal, float vertical) {
   };
   // The first and the last column of a full turn are the same.
   const float found = interpolate(column, h_count, h_place, is_full_turn ? h_count - 2 : -1, is_full_turn ? 1 : -1);
-  return std::max(found, 0.0f);
+  return found > 0.0f && is_finite(found) ? found : 0.0f;
 }
 
 }  // namespace

@@ -164,7 +164,7 @@ TEST(LightUnits, SpreadKeepsTheFlux) {
 // Regression: with a spread of 1° nearly all samples fell where the receiver gets no light, and 64 of them lost it.
 TEST(LightUnits, NarrowSpreadHasLittleNoise) {
   for (const GradusLightType type : {GRADUS_LIGHT_RECTANGLE, GRADUS_LIGHT_ELLIPSE}) {
-    for (const float degrees : {1.0f, 10.0f, 40.0f}) {
+    for (const float degrees : {0.1f, 0.3f, 1.0f, 10.0f, 40.0f}) {
       SCOPED_TRACE(degrees);
       GradusLight light = make_light(type, translation(Vec3(0, 0, 3)), Rgb(3.0f));
       light.size[0] = 4.0f;

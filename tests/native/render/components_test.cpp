@@ -693,7 +693,10 @@ TEST(Components, AreClampedUnlessNegativeLightWasSampled) {
   for (const uint32_t how : {GRADUS_RECONSTRUCTION_REGULARIZED, GRADUS_RECONSTRUCTION_L1})
     EXPECT_FALSE(reconstruct::keeps_negative(other, how));
   EXPECT_TRUE(reconstruct::keeps_negative(other, GRADUS_RECONSTRUCTION_L2));
-  other.components.back().primal[1].back().y = -1.0f;
+  Radiance& value = other.components.back().primal[1].back();
+  value.y = -1e-4f;  // less than a thousandth of the light
+  EXPECT_FALSE(reconstruct::keeps_negative(other, GRADUS_RECONSTRUCTION_REGULARIZED));
+  value.y = -1e6f;
   EXPECT_TRUE(reconstruct::keeps_negative(other, GRADUS_RECONSTRUCTION_REGULARIZED));
 }
 
