@@ -10,7 +10,7 @@ import pytest
 from gradus.export import image as images
 from support import recording
 
-FILE, ENCODED, FLOAT = 0, 1, 2
+FILE, ENCODED, FLOAT, BYTE = range(4)
 
 
 def _save(path: Path, kind: str = "PNG", color: tuple[float, float, float] = (1, 0, 0)) -> Path:
@@ -55,12 +55,12 @@ def test_generated_and_painted_images_go_as_pixels(scene: bpy.types.Scene, tmp_p
     generated.pixels.foreach_set([0.5, 0.25, 1.0, 1.0] * 8)
     state = _state(generated)
     (tile,) = state.tiles
-    assert (tile.source, tile.width, tile.height) == (FLOAT, 4, 2)
-    assert tile.data[2] == pytest.approx(1.0) and tile.data[0] == pytest.approx(0.5, abs=3e-3)
+    assert (tile.source, tile.width, tile.height) == (BYTE, 4, 2)
+    assert tuple(tile.data[:4]) == (128, 64, 255, 255)
     assert state.color_space == "sRGB" and not state.is_float
     painted = bpy.data.images.load(str(_save(tmp_path / "picture.png")))
     painted.pixels[0] = 0.0
-    assert _state(painted).tiles[0].source == FLOAT
+    assert _state(painted).tiles[0].source == BYTE
 
 
 def test_float_pixels_are_linear_already(scene: bpy.types.Scene) -> None:
@@ -156,8 +156,8 @@ _USER = SimpleNamespace(frame_duration=3, frame_start=1, frame_offset=0, use_cyc
 def _color(state: images.ImageState, number: int = 0) -> tuple[float, ...]:
     """Returns the first pixel of a tile that Blender decoded."""
     (tile,) = (tile for tile in state.tiles if tile.number == number)
-    assert tile.source == FLOAT
-    return tuple(tile.data[:3])
+    assert tile.source == BYTE
+    return tuple(value / 255.0 for value in tile.data[:3])
 
 
 @pytest.mark.parametrize("kind, suffix", [("TARGA", "tga"), ("BMP", "bmp"), ("WEBP", "webp")])

@@ -8,6 +8,7 @@ of their own.
 from __future__ import annotations
 
 import threading
+from array import array
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,7 +27,7 @@ class Pixels:
 
     width: int
     height: int
-    values: Any  # float RGBA, bottom row first
+    values: array  # RGBA, bottom row first: bytes, or floats from 0 to 1 if there is no NumPy to convert them
     is_float: bool  # whether Blender stores it as floats, which are scene-linear with associated alpha
 
 
@@ -39,7 +40,8 @@ def of_image(image: Any) -> Pixels | None:
     image.pixels.foreach_get(values)
     if image.channels != 4:
         values = _to_rgba(values, image.channels)
-    return Pixels(width, height, values, bool(image.is_float))
+    is_float = bool(image.is_float)
+    return Pixels(width, height, values if is_float else _to_bytes(values), is_float)
 
 
 def of_frame(image: Any, number: int) -> Pixels | None:
@@ -77,6 +79,15 @@ def _with_settings_of(image: Any, other: Any, alpha_mode: str) -> Pixels | None:
         return of_image(other)
     finally:
         bpy.data.images.remove(other)
+
+
+def _to_bytes(values: array) -> array:
+    """Returns the bytes that Blender stores, which it hands out as floats of four times their size."""
+    try:
+        import numpy as np  # imported late, because few images come from Blender and the import is slow
+    except ImportError:  # Blender 3.4 of Debian has no NumPy of its own
+        return values
+    return array("B", np.rint(np.frombuffer(values, np.float32) * 255.0).astype(np.uint8).tobytes())
 
 
 def _to_rgba(values: Any, channels: int) -> Any:

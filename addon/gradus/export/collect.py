@@ -85,8 +85,8 @@ class _ObjectProperties:
     color: tuple[float, ...]
     shadow_terminator_offset: float
     blur: Blur
-    is_edited: bool  # whether the object's mesh is in Edit Mode
-    is_volume: bool  # whether the object's mesh only bounds a volume
+    is_edited: bool = False  # whether the object's mesh is in Edit Mode
+    is_volume: bool = False  # whether the object's mesh only bounds a volume
 
 
 class _ObjectCache:
@@ -113,18 +113,9 @@ class _ObjectCache:
                 bits |= MAY_MOVE
             offset = shadow_terminator.geometry_offset(obj)
             blur = blur_of(owner, parent)
-            is_edited = owner.type == "MESH" and owner.data.is_editmode
-            found = _ObjectProperties(
-                key,
-                bits,
-                owner.name,
-                obj.pass_index,
-                tuple(obj.color),
-                offset,
-                blur,
-                is_edited,
-                unsupported.is_gas_domain(owner),
-            )
+            found = _ObjectProperties(key, bits, owner.name, obj.pass_index, tuple(obj.color), offset, blur)
+            found.is_edited = owner.type == "MESH" and owner.data.is_editmode
+            found.is_volume = unsupported.is_gas_domain(owner)
             self._properties[evaluated] = found
             self._warnings.extend(unsupported.of_object(owner, self._view_layer))
             if parent is not None:
@@ -145,18 +136,13 @@ class _ObjectCache:
         return found
 
 
-def collect(
-    depsgraph: Any,
-    poll: Callable[[], None],
-    may_move: MayMove | None = None,
-    space: Any = None,
-) -> Collected:
+def collect(depsgraph: Any, poll: Callable[[], None], may_move: MayMove | None = None, space: Any = None) -> Collected:
     """Returns all visible surfaces and lights of the depsgraph at its frame.
 
     may_move: predicts which surfaces move, or None. space: a 3D viewport that hides objects, or None.
 
-    Blender 3.4 to 5.0 lists curves, text, surfaces and metaballs
-    twice: as themselves, and as an instance of the mesh that it made of them. Only the latter is exported.
+    Blender 3.4 to 5.0 lists curves, text, surfaces and metaballs twice: as themselves, and as an instance of the mesh
+    that it made of them. Only the latter is exported.
     """
     instances = depsgraph.object_instances
     collected = Collected(array("f"))

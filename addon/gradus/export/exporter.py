@@ -60,8 +60,8 @@ class Exporter:
 
         view: the view of a viewport, which replaces the camera. Viewports and previews have no motion. vectors: whether
         the Vector pass is computed; None: if it is enabled in the view layer. views: views of multi-view. The first one
-        is set; show_view() sets another. with_digest: whether the report has a digest of everything that was set. space:
-        a 3D viewport that hides objects, by Local View for example, or None.
+        is set; show_view() sets another. with_digest: whether the report has a digest of everything that was set.
+        space: a 3D viewport that hides objects, by Local View for example, or None.
         """
         start = time.perf_counter()
         wants_vectors = depsgraph.view_layer_eval.use_pass_vector if vectors is None else vectors

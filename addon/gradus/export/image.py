@@ -1,8 +1,7 @@
 """Images for the native library.
 
 The library decodes files and packed files itself. Pixels come from Blender only if no file contains them or the library
-does not know its format, because Blender then holds the whole image in memory: an 8192 x 8192 byte image becomes
-1.07 GB of floats.
+does not know its format, because Blender hands out floats: an 8192 x 8192 byte image takes 1.07 GB on its way.
 """
 
 from __future__ import annotations
@@ -28,7 +27,8 @@ _MODE_DECIDES_SINCE = (5, 2, 0)
 # First bytes of the formats that the library reads itself: PNG, JPEG, TIFF (both byte orders, and BigTIFF), OpenEXR,
 # Radiance.
 _READABLE = (b"\x89PNG", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*", b"II+\x00", b"MM\x00+", b"\x76\x2f\x31\x01", b"#?")
-_FLOAT_FORMATS = (b"\x76\x2f\x31\x01", b"#?")
+_OPEN_EXR = b"\x76\x2f\x31\x01"
+_FLOAT_FORMATS = (_OPEN_EXR, b"#?")
 _SEQUENCE_NUMBER = re.compile(r"(\d+)(?!.*\d)")
 
 
@@ -111,14 +111,16 @@ def _comes_from_blender(image: Any, head: bytes) -> bool:
     """
     if image.alpha_mode == "PREMUL":
         return not head.startswith(_FLOAT_FORMATS)
-    return image.alpha_mode == "STRAIGHT" and _is_deep_png(head) and compat.VERSION >= _MODE_DECIDES_SINCE
+    is_deep_and_new = _is_deep_png(head) and compat.VERSION >= _MODE_DECIDES_SINCE
+    return image.alpha_mode == "STRAIGHT" and (is_deep_and_new or head.startswith(_OPEN_EXR))
 
 
 def _decoded(image: Any, number: int, pixels: blender_pixels.Pixels | None) -> tuple[TileState, bool] | None:
     """Returns a tile from pixels that Blender decoded, and whether it is stored as floats."""
     if pixels is None:
         return None
-    return TileState(FLOAT, image.name, number, pixels.width, pixels.height, pixels.values), pixels.is_float
+    source = BYTE if pixels.values.typecode == "B" else FLOAT
+    return TileState(source, image.name, number, pixels.width, pixels.height, pixels.values), pixels.is_float
 
 
 def _packed_data(image: Any, number: int) -> bytes | None:

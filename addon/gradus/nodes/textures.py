@@ -166,14 +166,16 @@ _WITHOUT_PROFILE = 100.0  # what Cycles has in place of a profile that cannot be
 
 @translator("ShaderNodeTexIES")
 def ies_texture(view: NodeView) -> Value:
-    """The intensity of a luminaire. Its default coordinates are the direction of emission in the light's space."""
+    """The intensity of a luminaire, by default in the direction of emission, and before 4.0 in that of the normal."""
     strength = view.value("Strength")
     profile = ies_profile.parse(_ies_text(view) or "")
     if profile is None:
         view.warn_replaced(f"has no profile that can be read and is {_WITHOUT_PROFILE:.0f} everywhere, as in Cycles")
         return view.math(Math.MULTIPLY, strength, constant_float(_WITHOUT_PROFILE))
     vector = view.linked("Vector")
-    if vector is None:
+    if vector is None and view.version < (4, 0, 0):
+        vector = view.add_vector(Op.TEX_COORD, (), TexCoord.NORMAL)
+    elif vector is None:
         incoming = view.add_vector(Op.GEOMETRY, (), Geometry.INCOMING)
         vector = view.add_vector(Op.VECTOR_TRANSFORM, (incoming,), _WORLD_TO_OBJECT)
     return view.add_float(Op.IES, (_mapped(view, vector), strength), floats=profile.table())

@@ -173,7 +173,9 @@ Rgb light_emission(const LitScene& scene, const AnalyticLight& light, const Ligh
   if (light.material == UINT32_MAX || is_black(view.radiance)) return Rgb(1.0f);
   shading::LightShadingPoint at;
   at.position = point.position;
-  at.normal = point.normal == Vec3(0.0f) ? -view.direction : point.normal;
+  // In Cycles every point of a disk that faces its receiver has a normal of its own, towards the receiver.
+  const bool faces_receiver = point.normal == Vec3(0.0f) || light.shape == AnalyticLight::Shape::FacingDisk;
+  at.normal = faces_receiver ? -view.direction : point.normal;
   at.wo = -view.direction;
   at.axes = Mat3(light.axis_x, light.axis_y, -light.emission_direction);
   at.uv = light_uv(light, point, at);

@@ -181,6 +181,10 @@ TEST(LightUnits, NarrowSpreadHasLittleNoise) {
       if (type == GRADUS_LIGHT_RECTANGLE) {
         EXPECT_NEAR(irradiance(*snapshot, {Vec3(2, 0, 0), Vec3(0, 0, 1), false}, 20000) / (3.0 * kPi), 0.5, 0.02);
       }
+      // At a corner, with a quarter of the circle on the light, the rectangle that both have in common is sampled.
+      if (type == GRADUS_LIGHT_RECTANGLE) {
+        EXPECT_NEAR(irradiance(*snapshot, {Vec3(2, 1.5f, 0), Vec3(0, 0, 1), false}, 20000) / (3.0 * kPi), 0.25, 0.01);
+      }
       EXPECT_EQ(irradiance(*snapshot, {Vec3(2.1f + 3.0f * std::tan(0.5f * light.spread), 0, 0), Vec3(0, 0, 1), false}),
                 0.0);
     }
