@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from typing import Any
 
@@ -45,8 +46,11 @@ class Resources:
 
     def text(self, path: str, owner: Any) -> str | None:
         """Returns the content of a text file, or None if it cannot be read. owner: the data-block that names it."""
+        found = self._abspath(path, library=owner.library)
         try:
-            with open(self._abspath(path, library=owner.library), "rb") as file:
+            if not os.path.isfile(found):
+                return None  # opening a pipe would wait for its other end
+            with open(found, "rb") as file:
                 return file.read(_MAXIMUM_TEXT).decode("utf-8", "replace")
         except (OSError, ValueError):
             return None

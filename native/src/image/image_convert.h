@@ -9,9 +9,10 @@ namespace gradus::image {
 
 class ColorManager;
 
-// Converts a decoded image. Data without a conversion and sRGB keep their number of bits, other integers become half, and
-// floats stay floats. If the image is not a float image, sRGB values stay encoded: Cycles multiplies them by alpha, interpolates them and divides them by alpha before it decodes them. If
-// `associate`, colours are multiplied by alpha. Cycles does not do that with grey images.
+// Converts a decoded image. Data without a conversion and sRGB keep their number of bits, other integers become half,
+// and floats stay floats. If the image is not a float image, sRGB values stay encoded: Cycles multiplies them by alpha,
+// interpolates them and divides them by alpha before it decodes them. If `associate`, colours are multiplied by alpha,
+// but for grey images, which Cycles leaves as they are.
 ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const std::string& space, bool is_float,
                        bool associate);
 
