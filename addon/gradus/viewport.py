@@ -321,6 +321,7 @@ def _object_filters() -> tuple[str, ...]:
 
 
 def _hides_objects(space: Any) -> bool:
+    """Returns whether a 3D viewport may show fewer objects than its view layer has."""
     is_filtered = not all(getattr(space, name) for name in _object_filters())
     return space.local_view is not None or space.use_local_collections or is_filtered
 

@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 import pytest
 from gradus.nodes.fallback import TEXTURE_MEANS
-from support import images
+from support import images, recording
 from support.nodes import new_material, show, socket
 
 VERSION = tuple(bpy.app.version)
@@ -184,6 +184,11 @@ def picture(scene: bpy.types.Scene, folder: Path, engine: str) -> np.ndarray:
     return image.reshape(9, 4, 16, 4, 3).mean(axis=(1, 3))
 
 
+def pictures(scene: bpy.types.Scene, folder: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the picture of Cycles and that of Gradus."""
+    return picture(scene, folder, "CYCLES"), picture(scene, folder, "GRADUS")
+
+
 @pytest.mark.parametrize("name", CASES)
 def test_a9_node(name: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
     material = new_material()
@@ -192,7 +197,7 @@ def test_a9_node(name: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
         if item.type == "MESH":
             item.data.materials.clear()
             item.data.materials.append(material)
-    expected, found = (picture(stage, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    expected, found = pictures(stage, tmp_path)
     difference = np.abs(expected - found)
     scale = np.abs(expected).mean() + 1e-2
     # Edges are sampled at other positions, so that a few blocks may differ, but not the mean.
@@ -209,25 +214,30 @@ def test_a9_surfaces_without_a_material(stage: bpy.types.Scene, tmp_path: Path) 
     for item in stage.objects:
         if item.type == "MESH":
             item.data.materials.clear()
-    expected, found = (picture(stage, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    expected, found = pictures(stage, tmp_path)
     difference = np.abs(expected - found)
     assert difference.mean() / expected.mean() < 0.01
     assert np.quantile(difference, 0.95) / expected.mean() < 0.05
 
 
 @pytest.fixture
-def coarse(stage: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
-    """Returns the stage with a smooth, coarse sphere instead of the other objects."""
+def bare(stage: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
+    """Returns the stage with its objects hidden. The active object, which a test adds, is removed afterwards."""
     others = [item for item in stage.objects if item.type == "MESH"]
     for item in others:
         item.hide_render = True
-    bpy.ops.mesh.primitive_uv_sphere_add(segments=8, ring_count=6, radius=1.5)
-    bpy.ops.object.shade_smooth()
-    sphere = bpy.context.object
     yield stage
-    bpy.data.objects.remove(sphere)
+    bpy.data.objects.remove(bpy.context.object)
     for item in others:
         item.hide_render = False
+
+
+@pytest.fixture
+def coarse(bare: bpy.types.Scene) -> bpy.types.Scene:
+    """Returns the stage with a smooth, coarse sphere instead of the other objects."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=8, ring_count=6, radius=1.5)
+    bpy.ops.object.shade_smooth()
+    return bare
 
 
 @pytest.mark.parametrize("name", ["normal map", "tangent uv"])
@@ -235,31 +245,24 @@ def test_a9_tangents_run_smoothly_over_coarse_meshes(name: str, coarse: bpy.type
     material = new_material()
     show(material, CASES[name](Graph(material)))
     bpy.context.object.data.materials.append(material)
-    expected, found = (picture(coarse, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    expected, found = pictures(coarse, tmp_path)
     difference = np.abs(expected - found)
     assert np.abs(expected).mean() > 0.05
     assert np.quantile(difference, 0.95) / np.abs(expected).mean() < 0.02
 
 
-def test_a9_normals_of_polygons(stage: bpy.types.Scene, tmp_path: Path) -> None:
+def test_a9_normals_of_polygons(bare: bpy.types.Scene, tmp_path: Path) -> None:
     """Regression: before 4.0 the triangles of quads weighted smooth normals, up to 22° off."""
-    others = [item for item in stage.objects if item.type == "MESH"]
-    for item in others:
-        item.hide_render = True
     bpy.ops.mesh.primitive_monkey_add(size=3.0)
     bpy.ops.object.shade_smooth()
-    monkey = bpy.context.object
     material = new_material()
     graph = Graph(material)
     half = graph("VectorMath", "Vector", {"Vector": graph("NewGeometry", "Normal")}, operation="MULTIPLY_ADD")
     for item in half.node.inputs[1:3]:
         item.default_value = (0.5, 0.5, 0.5)
     show(material, half)
-    monkey.data.materials.append(material)
-    expected, found = (picture(stage, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
-    bpy.data.objects.remove(monkey)
-    for item in others:
-        item.hide_render = False
+    bpy.context.object.data.materials.append(material)
+    expected, found = pictures(bare, tmp_path)
     assert np.abs(expected - found).mean() < 0.01 * expected.mean()
 
 
@@ -270,7 +273,7 @@ def test_a9_normal_maps_of_directx(coarse: bpy.types.Scene, tmp_path: Path) -> N
     graph = Graph(material)
     show(material, graph("NormalMap", "Normal", {"Color": normal_colors(graph)}, convention="DIRECTX"))
     bpy.context.object.data.materials.append(material)
-    expected, found = (picture(coarse, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    expected, found = pictures(coarse, tmp_path)
     assert np.quantile(np.abs(expected - found), 0.95) / np.abs(expected).mean() < 0.02
 
 
@@ -286,11 +289,8 @@ def test_a9_alpha_of_images(kind: str, alpha: str, scene: bpy.types.Scene, tmp_p
     show(material, Graph(material)("TexImage", "Color", image=image))
     bpy.ops.mesh.primitive_plane_add(size=10.0)
     bpy.context.object.data.materials.append(material)
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    camera.location = (0.0, 0.0, 3.0)
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    recording.add_camera().location = (0.0, 0.0, 3.0)
+    expected, found = pictures(scene, tmp_path)
     np.testing.assert_allclose(found, expected, atol=0.01)
 
 
@@ -348,12 +348,8 @@ def test_a9_alpha_of_files(kind: str, is_packed: bool, scene: bpy.types.Scene, t
                 graph.tree.links.new(scale, emission.inputs["Strength"])
             bpy.ops.mesh.primitive_plane_add(size=1.0, location=(column - 1.5, row - 0.5, 0.0))
             bpy.context.object.data.materials.append(material)
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 4.0, (0.0, 0.0, 3.0)
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-    images.prepare(scene)
-    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    recording.add_camera(type="ORTHO", ortho_scale=4.0)
+    expected, found = pictures(scene, tmp_path)
     inside = np.s_[2:7, 1:15]  # without the blocks at edges
     np.testing.assert_allclose(found[inside], expected[inside], rtol=0.02, atol=0.01)
 
@@ -380,12 +376,8 @@ def test_a9_lights_have_coordinates_of_their_own(
     light = bpy.data.objects.new("Light", data)
     light.location, light.rotation_euler = (0.4, -0.3, 1.5), (0.3, 0.2, 0.1)
     scene.collection.objects.link(light)
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 4.0, (0.0, 0.0, 9.0)
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-    images.prepare(scene)
-    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    recording.add_camera(type="ORTHO", ortho_scale=4.0)
+    expected, found = pictures(scene, tmp_path)
     assert np.abs(expected).mean() > 0.05
     assert np.abs(expected.mean(axis=(0, 1)) / found.mean(axis=(0, 1)) - 1.0).max() < 0.03
 
@@ -429,13 +421,8 @@ def test_a9_ies(kind: str, is_file: bool, scene: bpy.types.Scene, tmp_path: Path
     else:
         emission = next(item for item in graph.tree.nodes if item.bl_idname == "ShaderNodeEmission")
         graph.tree.links.new(strength, emission.inputs["Strength"])
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 8.0, (0.0, 0.0, 9.0)
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-    scene.world = None
-    images.prepare(scene)
-    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    recording.add_camera(type="ORTHO", ortho_scale=8.0)
+    expected, found = pictures(scene, tmp_path)
     assert np.abs(expected).mean() > 0.01
     assert np.abs(expected.mean(axis=(0, 1)) / found.mean(axis=(0, 1)) - 1.0).max() < 0.03
     assert np.abs(expected - found).mean() < 0.05 * expected.mean()
@@ -447,13 +434,8 @@ def test_a9_narrow_area_light(scene: bpy.types.Scene, tmp_path: Path) -> None:
     bpy.ops.object.light_add(type="AREA", location=(0.0, 0.0, 3.0))
     data = bpy.context.object.data
     data.energy, data.spread, data.shape, data.size, data.size_y = 20.0, 0.09, "RECTANGLE", 1.5, 0.8
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 4.0, (0.0, 0.0, 9.0)
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-    scene.world = None
-    images.prepare(scene)
-    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    recording.add_camera(type="ORTHO", ortho_scale=4.0)
+    expected, found = pictures(scene, tmp_path)
     assert found.mean() == pytest.approx(expected.mean(), rel=0.02)
     assert np.abs(expected - found).mean() < 0.05 * expected.mean()
 
@@ -466,13 +448,8 @@ def test_a9_spots_scaled_unevenly(scale: tuple[float, ...], scene: bpy.types.Sce
     spot = bpy.context.object
     spot.scale = scale
     spot.data.energy, spot.data.spot_size, spot.data.spot_blend, spot.data.shadow_soft_size = 200.0, 0.9, 0.4, 0.0
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 6.0, (0.0, 0.0, 9.0)
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-    scene.world = None
-    images.prepare(scene)
-    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    recording.add_camera(type="ORTHO", ortho_scale=6.0)
+    expected, found = pictures(scene, tmp_path)
     assert np.abs(expected).mean() > 0.005
     assert np.abs(expected - found).mean() < 0.02 * expected.mean()
 
@@ -491,13 +468,9 @@ def test_a9_generated_coordinates_stick_to_what_deforms(
     material = new_material()
     show(material, Graph(material)("TexCoord", "Generated"))
     obj.data.materials.append(material)
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera = recording.add_camera()
     camera.location, camera.rotation_euler = (0.0, -6.0, 3.0), (1.1, 0.0, 0.0)
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-    scene.world = None
-    images.prepare(scene)
-    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    expected, found = pictures(scene, tmp_path)
     assert np.abs(expected - found).mean() < 0.02 * expected.mean()
 
 
@@ -515,16 +488,11 @@ def test_a9_the_mode_of_an_object_does_not_matter(mode: str, scene: bpy.types.Sc
     for polygon in obj.data.polygons:
         polygon.material_index = polygon.index % 2
     obj.modifiers.new("Subsurf", "SUBSURF").show_in_editmode = False
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    camera.location = (0.0, 0.0, 6.0)
-    scene.collection.objects.link(camera)
-    scene.camera = camera
-    scene.world = None
-    images.prepare(scene)
+    recording.add_camera().location = (0.0, 0.0, 6.0)
     bpy.ops.object.mode_set(mode=mode)
     if mode == "EDIT":
         bpy.ops.transform.translate(value=(0.7, 0.0, 0.0))
-    expected, found = (picture(scene, tmp_path, engine) for engine in ("CYCLES", "GRADUS"))
+    expected, found = pictures(scene, tmp_path)
     bpy.ops.object.mode_set(mode="OBJECT")
     assert np.abs(expected).mean() > 0.05
     assert np.abs(expected - found).mean() < 0.02 * expected.mean()
@@ -543,10 +511,7 @@ def test_the_mean_that_replaces_a_texture_is_that_of_cycles(
     show(material, graph(node.removeprefix("ShaderNode"), output, {"Vector": place}))
     bpy.ops.mesh.primitive_plane_add(size=200.0)
     bpy.context.object.data.materials.append(material)
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 100.0, (0.0, 0.0, 5.0)
-    scene.collection.objects.link(camera)
-    scene.camera = camera
+    recording.add_camera(type="ORTHO", ortho_scale=100.0)
     assert picture(scene, tmp_path, "CYCLES").mean(axis=(0, 1)) == pytest.approx(
         [TEXTURE_MEANS[node, output]] * 3, abs=0.01
     )

@@ -51,6 +51,14 @@ def views() -> list[Any]:
     return [item for item in gc.get_objects() if type(item) is View and item.session.scene]
 
 
+def shoot_when_done(name: str) -> Iterator[float]:
+    """Takes a screenshot when the first viewport has finished the picture of a change."""
+    yield 0.5
+    yield from wait(lambda: views()[0].done)
+    yield 1.0
+    shoot(name)
+
+
 def prepare() -> None:
     preferences = bpy.context.preferences
     preferences.view.show_splash = False
@@ -79,28 +87,19 @@ def steps() -> Iterator[float]:
     yield 1.0
     shoot("rendered")
     bpy.data.objects["Cube"].location.z = 1.5
-    yield 0.5
-    yield from wait(lambda: views()[0].done)
-    yield 1.0
-    shoot("moved")
+    yield from shoot_when_done("moved")
 
     # Local View of the light alone hides the cube; Edit Mode does not.
     with bpy.context.temp_override(window=window, area=area, region=area.regions[-1]):
         for item in bpy.context.view_layer.objects:
             item.select_set(item.type == "LIGHT")
         bpy.ops.view3d.localview(frame_selected=False)
-    yield 0.5
-    yield from wait(lambda: views()[0].done)
-    yield 1.0
-    shoot("local")
+    yield from shoot_when_done("local")
     with bpy.context.temp_override(window=window, area=area, region=area.regions[-1]):
         bpy.ops.view3d.localview(frame_selected=False)
         bpy.context.view_layer.objects.active = bpy.data.objects["Cube"]
         bpy.ops.object.mode_set(mode="EDIT")
-    yield 0.5
-    yield from wait(lambda: views()[0].done)
-    yield 1.0
-    shoot("edited")
+    yield from shoot_when_done("edited")
     with bpy.context.temp_override(window=window, area=area, region=area.regions[-1]):
         bpy.ops.object.mode_set(mode="OBJECT")
     yield 0.5

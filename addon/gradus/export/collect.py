@@ -86,7 +86,6 @@ class _ObjectProperties:
     shadow_terminator_offset: float
     blur: Blur
     is_edited: bool = False  # whether the object's mesh is in Edit Mode
-    is_volume: bool = False  # whether the object's mesh only bounds a volume
 
 
 class _ObjectCache:
@@ -108,14 +107,14 @@ class _ObjectCache:
         if found is None:
             # The key has addresses of original objects, because those of evaluated objects differ between depsgraphs.
             key = (owner.original.as_pointer(), parent.original.as_pointer() if parent is not None else 0)
-            bits = visibility(obj, parent, self._view_layer)
+            # The mesh of a gas domain only bounds a volume.
+            bits = 0 if unsupported.is_gas_domain(owner) else visibility(obj, parent, self._view_layer)
             if self._may_move is not None and obj.type == "MESH" and self._may_move(owner, parent):
                 bits |= MAY_MOVE
             offset = shadow_terminator.geometry_offset(obj)
             blur = blur_of(owner, parent)
             found = _ObjectProperties(key, bits, owner.name, obj.pass_index, tuple(obj.color), offset, blur)
             found.is_edited = owner.type == "MESH" and owner.data.is_editmode
-            found.is_volume = unsupported.is_gas_domain(owner)
             self._properties[evaluated] = found
             self._warnings.extend(unsupported.of_object(owner, self._view_layer))
             if parent is not None:
@@ -186,9 +185,7 @@ def _entry(index: int, instance: Any, obj: Any, is_light: bool, cache: _ObjectCa
     owner = instance.instance_object if copies else obj
     properties = cache.properties(obj, owner, instance.parent if copies else None)
     data = obj.data
-    if properties.is_volume or data is None or (is_light and _is_portal(data)):
-        return None
-    if properties.visibility & ALL_RAYS == 0:
+    if properties.visibility & ALL_RAYS == 0 or data is None or (is_light and _is_portal(data)):
         return None
     address = data.as_pointer()
     if properties.is_edited and owner.data.as_pointer() == address:

@@ -147,12 +147,13 @@ def _file_tile(image: Any, path: str, number: int, frame_number: int | None) -> 
         # In Blender, packed images of 16 bits per channel are floats.
         is_float = head.startswith(_FLOAT_FORMATS) or _is_deep_png(head)
         return TileState(ENCODED, path or image.name, number, data=packed), is_float
-    if packed is None and (number != 0 or image.alpha_mode == "PREMUL"):
+    if packed is None and image.alpha_mode == "PREMUL":
         # Blender divides premultiplied colours by alpha, but Cycles takes those of the file.
-        is_raw = image.alpha_mode == "PREMUL"
-        pixels = blender_pixels.of_file(image, path, "STRAIGHT" if is_raw else image.alpha_mode)
+        pixels = blender_pixels.of_file(image, path, "STRAIGHT")
     elif number == 0:
         pixels = _own_pixels(image, frame_number)
+    elif packed is None:
+        pixels = blender_pixels.of_file(image, path, image.alpha_mode)
     else:
         pixels = blender_pixels.of_packed(image, packed)
     return _decoded(image, number, pixels) or (TileState(FILE, path, number, stamp=_stamp(path)), False)

@@ -99,16 +99,17 @@ bool sample_flat(const AnalyticLight& light, const Vec3& from, const Vec2& u, Li
   if (!is_finite(part.radius)) return true;
   // A circle may reach beyond the light, and a rectangle beyond the circle or an ellipse.
   const Vec2 sampled = along_axes(light, point->position);
-  const bool is_part_of_light =
-      part.shape == LitPart::Shape::Ellipse ||
-      (part.shape == LitPart::Shape::Rectangle && light.shape == AnalyticLight::Shape::Rectangle) ||
-      light.covers(sampled);
-  return is_part_of_light && part.is_seen(sampled);
+  const bool is_rectangle = light.shape == AnalyticLight::Shape::Rectangle;
+  const bool may_miss =
+      part.shape == LitPart::Shape::Circle || (part.shape == LitPart::Shape::Rectangle && !is_rectangle);
+  return part.is_seen(sampled) && (!may_miss || light.covers(sampled));
 }
 
-// Returns the density in 1/m² or, if the part is sampled in solid angle, in 1/sr. `to_solid_angle` converts the first
-// to the second.
-float density_of_flat(const AnalyticLight& light, const Vec3& from, const Vec3& position, float to_solid_angle) {
+// Returns the density of a point in solid angle. `to_solid_angle` converts a density in 1/m² to it. `solid_angle`: as
+// for evaluate_analytic_light().
+float density_of_flat(const AnalyticLight& light, const Vec3& from, const Vec3& position, float to_solid_angle,
+                      const float* solid_angle) {
+  if (solid_angle != nullptr && *solid_angle > 0.0f) return 1.0f / *solid_angle;
   const LitPart part = lit_part(light, from);
   switch (part.shape) {
     case LitPart::Shape::None:
@@ -120,7 +121,7 @@ float density_of_flat(const AnalyticLight& light, const Vec3& from, const Vec3& 
     case LitPart::Shape::Rectangle:
       break;
   }
-  const float angle = seen_from(light, part, from).sampled_solid_angle();
+  const float angle = solid_angle != nullptr ? 0.0f : seen_from(light, part, from).sampled_solid_angle();
   return angle > 0.0f ? 1.0f / angle : to_solid_angle / (4.0f * part.half_extent.x * part.half_extent.y);
 }
 
@@ -205,8 +206,7 @@ void view_flat(const AnalyticLight& light, const Vec3& position, const Vec3& nor
   if (light.shape == AnalyticLight::Shape::FacingDisk)
     view->pdf = to_solid_angle / light.area;
   else
-    view->pdf = solid_angle != nullptr && *solid_angle > 0.0f ? 1.0f / *solid_angle
-                                                              : density_of_flat(light, from, position, to_solid_angle);
+    view->pdf = density_of_flat(light, from, position, to_solid_angle, solid_angle);
   if (view->pdf > 0.0f) view->radiance = light.intensity * falloff * spot_falloff(light, -view->direction);
 }
 

@@ -33,11 +33,11 @@ auto value_of(const film::Film& film, bool keeps_negative, const std::vector<flo
 }
 
 // Returns RGBA of `region`. `image` is the reconstructed picture of the whole film region.
-std::vector<float> crop_picture(const film::Film& film, uint32_t reconstruction, const std::vector<float>& image,
+std::vector<float> crop_picture(const film::Film& film, bool keeps_negative, const std::vector<float>& image,
                                 const Region& region) {
   std::vector<float> rgba(size_t(region.area()) * 4);
   const auto channels = size_t(film.color_channels);
-  const auto of_pixel = value_of(film, reconstruct::keeps_negative(film, reconstruction), image);
+  const auto of_pixel = value_of(film, keeps_negative, image);
   for_pixels(film, region, [&](size_t i, size_t out) {
     for (size_t c = 0; c < 3; ++c) rgba[4 * out + c] = of_pixel(i, c);
     rgba[4 * out + 3] = channels == 4 ? std::clamp(image[4 * i + 3], 0.0f, 1.0f) : 1.0f;
@@ -47,8 +47,7 @@ std::vector<float> crop_picture(const film::Film& film, uint32_t reconstruction,
 
 // Returns RGB of `region` for each component, clamped as the whole picture is. `images` are the reconstructed
 // components of the whole film region.
-Images crop_components(const film::Film& film, uint32_t reconstruction, Images images, const Region& region) {
-  const bool keeps_negative = reconstruct::keeps_negative(film, reconstruction);
+Images crop_components(const film::Film& film, bool keeps_negative, Images images, const Region& region) {
   if (!keeps_negative) reconstruct::clamp_components(film.color_channels, &images);
   for (std::vector<float>& image : images) {
     std::vector<float> rgb(size_t(region.area()) * 3);
@@ -155,12 +154,15 @@ void Developer::reconstruct(DevelopedFilm* developed, const reconstruct::Reconst
     throw_if_cancelled(cancel_);
     developed->sampled = std::move(images.sampled);
     developed->sampled_terms = std::move(images.sampled_terms);
+    const bool keeps_negative = reconstruct::keeps_negative(film, how);
     if (with_components)
-      store_components(crop_components(film, how, std::move(images.components), developed->region), developed);
+      store_components(crop_components(film, keeps_negative, std::move(images.components), developed->region),
+                       developed);
     if (wanted.error)
       developed->passes[GRADUS_PASS_ERROR] = make_image(crop_error(film, images.error, developed->region));
-    developed->passes[GRADUS_PASS_COMBINED] = make_image(
-        is_noisy ? noisy_picture(film, developed->region) : crop_picture(film, how, images.image, developed->region));
+    developed->passes[GRADUS_PASS_COMBINED] =
+        make_image(is_noisy ? noisy_picture(film, developed->region)
+                            : crop_picture(film, keeps_negative, images.image, developed->region));
   });
 }
 

@@ -12,22 +12,29 @@
 namespace gradus::smooth_normals_test {
 namespace {
 
+// Describes a smooth mesh whose caller gives no normals. The arrays must outlive it.
+template <class Positions, class Corners, class Triangles>
+GradusMesh smooth_mesh(const Positions& positions, const Corners& corners, const Triangles& triangles) {
+  GradusMesh desc{};
+  desc.struct_size = sizeof(desc);
+  desc.key_count = 1;
+  desc.vertex_count = positions.size() / 3;
+  desc.positions = positions.data();
+  desc.corner_count = corners.size();
+  desc.corner_vertices = corners.data();
+  desc.triangle_count = triangles.size() / 3;
+  desc.triangle_corners = triangles.data();
+  desc.normal_domain = GRADUS_DOMAIN_POINT;
+  return desc;
+}
+
 // An octahedron with shared vertices, stretched along z: by symmetry, every normal is the direction of its vertex.
 TEST(SmoothNormals, SymmetricVertices) {
   const std::array<float, 18> positions{1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 2, 0, 0, -2};
   const std::array<int32_t, 24> corners{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
   std::array<uint32_t, 24> triangles{};
   for (uint32_t i = 0; i < triangles.size(); ++i) triangles[i] = i;
-  GradusMesh desc{};
-  desc.struct_size = sizeof(desc);
-  desc.key_count = 1;
-  desc.vertex_count = 6;
-  desc.positions = positions.data();
-  desc.corner_count = corners.size();
-  desc.corner_vertices = corners.data();
-  desc.triangle_count = 8;
-  desc.triangle_corners = triangles.data();
-  desc.normal_domain = GRADUS_DOMAIN_POINT;
+  const GradusMesh desc = smooth_mesh(positions, corners, triangles);
   const auto mesh = geometry::make_mesh(desc);
   ASSERT_EQ(mesh->normals.size(), 6u);
   for (uint32_t i = 0; i < 6; ++i) {
@@ -42,16 +49,7 @@ TEST(SmoothNormals, WeightedByAngle) {
   const std::array<float, 12> positions{0, 0, 0, 5, 0, 0, 0, 1, 0, 0, 1, 1};
   const std::array<int32_t, 6> corners{0, 1, 2, 0, 2, 3};
   const std::array<uint32_t, 6> triangles{0, 1, 2, 3, 4, 5};
-  GradusMesh desc{};
-  desc.struct_size = sizeof(desc);
-  desc.key_count = 1;
-  desc.vertex_count = 4;
-  desc.positions = positions.data();
-  desc.corner_count = 6;
-  desc.corner_vertices = corners.data();
-  desc.triangle_count = 2;
-  desc.triangle_corners = triangles.data();
-  desc.normal_domain = GRADUS_DOMAIN_POINT;
+  const GradusMesh desc = smooth_mesh(positions, corners, triangles);
   const auto mesh = geometry::make_mesh(desc);
   const Vec3 expected = glm::normalize(2.0f * Vec3(0, 0, 1) + Vec3(1, 0, 0));
   EXPECT_NEAR(glm::dot(mesh->normals[0], expected), 1.0f, 1e-6f);
@@ -64,18 +62,9 @@ TEST(SmoothNormals, PolygonsHaveOneNormal) {
   const std::array<int32_t, 8> corners{0, 1, 2, 3, 4, 1, 0, 5};
   const std::array<uint32_t, 12> triangles{4, 0, 1, 1, 2, 3, 3, 4, 1, 5, 6, 7};
   const std::array<int32_t, 4> faces{0, 0, 0, 1};
-  GradusMesh desc{};
-  desc.struct_size = sizeof(desc);
-  desc.key_count = 1;
-  desc.vertex_count = 6;
-  desc.positions = positions.data();
-  desc.corner_count = corners.size();
-  desc.corner_vertices = corners.data();
-  desc.triangle_count = 4;
-  desc.triangle_corners = triangles.data();
+  GradusMesh desc = smooth_mesh(positions, corners, triangles);
   desc.triangle_faces = faces.data();
   desc.face_count = 2;
-  desc.normal_domain = GRADUS_DOMAIN_POINT;
   const auto mesh = geometry::make_mesh(desc);
   const auto p = [&](int i) { return Vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]); };
   Vec3 newell(0.0f);
