@@ -97,6 +97,17 @@ class MistFalloff(IntEnum):
     INVERSE_QUADRATIC = 2
 
 
+class ChannelKind(IntEnum):
+    """What a channel of the film shows that is no pass."""
+
+    AOV_COLOR = 0
+    AOV_VALUE = 1
+    LIGHT_GROUP = 2
+    CRYPTOMATTE_OBJECT = 3
+    CRYPTOMATTE_MATERIAL = 4
+    CRYPTOMATTE_ASSET = 5
+
+
 class ImageSource(IntEnum):
     """Where the pixels of an image tile come from."""
 
@@ -345,6 +356,8 @@ class Instances(Struct):
         ("shutter_count", POINTER(c_uint32)),
         ("shutter_size", c_size_t),
         ("shutter_matrices", POINTER(c_float)),
+        ("light_groups", POINTER(c_uint32)),
+        ("asset_name_index", POINTER(c_uint32)),
     ]
 
 
@@ -369,6 +382,8 @@ class Light(Struct):
         ("max_bounces", c_uint32),
         ("pass_index", c_int32),
         ("name", c_char_p),
+        ("light_group", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -425,6 +440,20 @@ class World(Struct):
         ("mist_depth", c_float),
         ("mist_falloff", c_uint32),
         ("ao_distance", c_float),
+        ("light_group", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
+class Channel(Struct):
+    """A channel of the film beside its passes: an AOV, a light group or a Cryptomatte."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("kind", c_uint32),
+        ("name", c_char_p),
+        ("levels", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -501,6 +530,8 @@ class Material(Struct):
         ("transparent_shadow", c_uint32),
         ("uses_fallback", c_uint32),
         ("name", c_char_p),
+        ("aovs", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -603,6 +634,7 @@ STRUCTS: tuple[type[Struct], ...] = (
     Light,
     Camera,
     World,
+    Channel,
     ImageTile,
     Image,
     Input,
@@ -623,6 +655,7 @@ ENUMS: tuple[type[IntEnum] | type[IntFlag], ...] = (
     CameraType,
     Panorama,
     MistFalloff,
+    ChannelKind,
     ImageSource,
     AlphaMode,
     ObjectKind,
@@ -657,9 +690,12 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_scene_set_lights": (c_int, [Scene, POINTER(Light), c_size_t]),
     "gradus_scene_set_camera": (c_int, [Scene, POINTER(Camera)]),
     "gradus_scene_set_world": (c_int, [Scene, POINTER(World)]),
+    "gradus_scene_set_channels": (c_int, [Scene, POINTER(Channel), c_size_t]),
     "gradus_scene_remove": (c_int, [Scene, c_uint32, c_uint64]),
     "gradus_scene_commit": (c_int, [Scene, POINTER(c_int32), POINTER(c_float)]),
     "gradus_scene_warning": (c_int, [Scene, POINTER(c_char_p)]),
+    "gradus_cryptomatte_hash": (c_int, [c_char_p, POINTER(c_uint32)]),
+    "gradus_scene_manifest": (c_int, [Scene, c_uint32, POINTER(c_char_p)]),
     "gradus_scene_record": (c_int, [Scene, c_uint32]),
     "gradus_option_count": (c_uint32, []),
     "gradus_option": (c_int, [c_uint32, POINTER(OptionInfo)]),
@@ -680,6 +716,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_render_release": (c_int, [Render]),
     "gradus_render_read_pass": (c_int, [Render, c_uint32, POINTER(c_float), c_size_t]),
     "gradus_render_read_component": (c_int, [Render, c_char_p, c_uint32, POINTER(c_float), c_size_t]),
+    "gradus_render_read_channel": (c_int, [Render, c_uint32, c_char_p, c_uint32, POINTER(c_float), c_size_t]),
     "gradus_render_stats": (c_int, [Render, POINTER(c_char_p)]),
     "gradus_render_film": (c_int, [Render, POINTER(Film)]),
     "gradus_sequence_applies": (c_int, [POINTER(Settings), POINTER(c_uint32), POINTER(c_char_p)]),
@@ -700,6 +737,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     ),
     "gradus_film_read_pass": (c_int, [Film, c_uint32, POINTER(c_float), c_size_t]),
     "gradus_film_read_component": (c_int, [Film, c_char_p, c_uint32, POINTER(c_float), c_size_t]),
+    "gradus_film_read_channel": (c_int, [Film, c_uint32, c_char_p, c_uint32, POINTER(c_float), c_size_t]),
     "gradus_film_release": (c_int, [Film]),
 }
 """(restype, argtypes) of every function of the header."""

@@ -23,6 +23,8 @@ from .abi import (  # noqa: F401
     Attribute,
     Camera,
     CameraType,
+    Channel,
+    ChannelKind,
     ColorSpace,
     Denoiser,
     DeviceSettings,

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import pass_table
-from .abi import ComponentPass, Pass
+from .abi import ChannelKind, ComponentPass, Pass
+from .layer_channels import Channel, channels_of
 
 LONG_NAMES_SINCE = (5, 0, 0)
 COMPONENT_MOTION = (
@@ -31,13 +32,25 @@ class ComponentPlane:
 
 
 @dataclass(frozen=True)
+class ChannelPlane:
+    """A layer of a channel that the view layer asks for."""
+
+    channel: Channel
+    layer: int = 0
+
+
+Plane = Pass | ComponentPlane | ChannelPlane
+
+
+@dataclass(frozen=True)
 class PassInfo:
     """A pass of Blender.
 
-    `switch` is a property of the view layer, or of view_layer.gradus if it starts with "gradus.".
+    `switch` is a property of the view layer, or of view_layer.gradus if it starts with "gradus.". A pass without a
+    plane is 0.
     """
 
-    plane: Pass | ComponentPlane
+    plane: Plane | None
     name: str
     long_name: str  # from Blender 5.0 on
     ids: str  # one letter per channel
@@ -59,11 +72,33 @@ class PassInfo:
         return self.long_name if version >= LONG_NAMES_SINCE else self.name
 
 
-def _same(plane: Pass | ComponentPlane, name: str, ids: str, kind: str, switch: str) -> PassInfo:
+def _same(plane: Plane, name: str, ids: str, kind: str, switch: str) -> PassInfo:
     return PassInfo(plane, name, name, ids, kind, switch)
 
 
 TABLE = tuple(PassInfo(*row) for row in pass_table.PASSES)
+
+OF_VOLUMES = (
+    PassInfo(None, "VolumeDir", "Volume Direct", "RGB", "COLOR", "use_pass_volume_direct"),
+    PassInfo(None, "VolumeInd", "Volume Indirect", "RGB", "COLOR", "use_pass_volume_indirect"),
+    PassInfo(None, "Volume Scatter", "Volume Scatter", "RGB", "COLOR", "use_pass_volume_scatter"),
+    PassInfo(None, "Volume Transmit", "Volume Transmit", "RGB", "COLOR", "use_pass_volume_transmit"),
+    PassInfo(None, "Volume Majorant", "Volume Majorant", "Z", "VALUE", "use_pass_volume_majorant"),
+)
+"""Passes by switches of view_layer.cycles. They are 0, because volumes are not rendered."""
+
+_CYCLES_SWITCHES = {
+    "gradus.use_pass_denoising": "denoising_store_passes",
+    "gradus.use_pass_sample_count": "pass_debug_sample_count",
+}
+"""Switches of view_layer.cycles that also ask for passes with switches of Gradus."""
+
+_CHANNEL_IDS = {
+    ChannelKind.AOV_COLOR: ("RGBA", "COLOR"),
+    ChannelKind.AOV_VALUE: ("X", "VALUE"),
+    ChannelKind.LIGHT_GROUP: ("RGB", "COLOR"),
+}
+"""Letters and kind of passes of channels other than Cryptomattes."""
 
 
 @dataclass(frozen=True)
@@ -115,6 +150,10 @@ def list_passes(
     for info in TABLE:
         if info.plane in extra.planes or _is_on(info.switch, view_layer, reconstructed):
             yield info
+    cycles = getattr(view_layer, "cycles", None)
+    yield from (info for info in OF_VOLUMES if getattr(cycles, info.switch, False))
+    for channel in channels_of(view_layer):
+        yield from (_of_channel(channel, layer) for layer in range(channel.layers))
     infos = [
         info
         for info in COMPONENT_TABLE
@@ -124,19 +163,30 @@ def list_passes(
         yield from (info.of(component) for info in infos)
 
 
+def _of_channel(channel: Channel, layer: int) -> PassInfo:
+    """Returns a pass with the channels and the kind that it has in Cycles.
+
+    Identifiers have lower-case letters, which lossy compression does not touch.
+    """
+    ids, kind = _CHANNEL_IDS.get(channel.kind, ("rgba", "COLOR"))
+    return _same(ChannelPlane(channel, layer), channel.pass_name(layer), ids, kind, "")
+
+
 def _is_on(switch: str, view_layer: Any, reconstructed: bool) -> bool:
     if not switch:
         return True
     if switch == "reconstructed":
         return reconstructed
     if switch.startswith("gradus."):
-        return bool(getattr(view_layer.gradus, switch.removeprefix("gradus.")))
+        cycles = getattr(view_layer, "cycles", None)
+        is_on_in_cycles = bool(getattr(cycles, _CYCLES_SWITCHES.get(switch, ""), False))
+        return is_on_in_cycles or bool(getattr(view_layer.gradus, switch.removeprefix("gradus.")))
     return bool(getattr(view_layer, switch, False))
 
 
 def mask(infos: Iterable[PassInfo]) -> int:
     """Returns GradusSettings.passes: one bit for each plane."""
-    return _bits(info.plane for info in infos if not isinstance(info.plane, ComponentPlane))
+    return _bits(info.plane for info in infos if isinstance(info.plane, Pass))
 
 
 def component_mask(infos: Iterable[PassInfo]) -> int:

@@ -12,11 +12,11 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from .abi import Pass
-from .passes import ComponentPlane, PassInfo
+from .passes import PassInfo, Plane
 
 FLOAT_BYTES = 4
 
-Read = Callable[[Pass | ComponentPlane, Any, int], Any]
+Read = Callable[[Plane, Any, int], Any]
 """Writes a plane to a pointer to floats. The last argument is their number."""
 
 

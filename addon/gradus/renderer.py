@@ -15,6 +15,7 @@ from . import (
     automatic,
     compat,
     components,
+    cryptomatte,
     cycles_settings,
     frame_store,
     native,
@@ -31,6 +32,7 @@ from .animation import Animation
 from .export import Cancelled as ExportCancelled
 from .export.shutter import shutter_of
 from .failure import Failure
+from .layer_channels import channels_of
 from .native import Error, GradusError
 from .progress import Display, is_watched, open_result, upload_last_picture, wait
 from .store import FINAL, PREVIEW, Cancelled, Key, Session
@@ -230,6 +232,9 @@ class Job:
         vectors = self.wants_vectors()
         arguments = (self.depsgraph, self.engine, None, self.is_preview, self.is_stop_requested, vectors, self.views)
         report = self.session.sync(*arguments, self.with_digest)
+        if not self.is_preview:
+            session = self.session
+            cryptomatte.add_names(session.library, session.scene, channels_of(self.layer), session.manifests)
         self.digest = report.digest
         self.size = report.width, report.height
         self.warn(report.warnings)
@@ -247,9 +252,12 @@ class Job:
         """Reads passes of a render into the buffer."""
         library = self.session.library
 
-        def read_plane(plane: passes.Pass | passes.ComponentPlane, target: Any, count: int) -> None:
+        def read_plane(plane: passes.Plane, target: Any, count: int) -> None:
             if isinstance(plane, passes.ComponentPlane):
                 library.render_read_component(handle, native.text(plane.component), plane.plane, target, count)
+            elif isinstance(plane, passes.ChannelPlane):
+                name = native.name(plane.channel.name)
+                library.render_read_channel(handle, plane.channel.kind, name, plane.layer, target, count)
             else:
                 library.render_read_pass(handle, plane, target, count)
 
@@ -290,15 +298,18 @@ class Job:
     def is_left_empty(self, info: passes.PassInfo) -> bool:
         """Returns whether a pass stays 0.
 
-        As in Cycles, Vector is 0 in images with motion blur unless a setting asks for it, because a Vector Blur node
-        would blur twice. Motion of components, which Cycles does not have, is always computed.
+        This holds for passes without a plane. As in Cycles, Vector is 0 in images with motion blur unless a setting
+        asks for it, because a Vector Blur node would blur twice. Motion of components, which Cycles does not have, is
+        always computed.
         """
+        if info.plane is None:
+            return True
         if info.plane != passes.Pass.VECTOR or self.host_value("vector_with_motion_blur"):
             return False
         return shutter_of(self.scene, self.layer) is not None
 
     def wants_vectors(self) -> bool:
-        if any(self.is_left_empty(info) for info in self.infos):
+        if any(info.plane is not None and self.is_left_empty(info) for info in self.infos):
             text = "Pass Vector is 0, because the image has motion blur (Motion Blur > Vector Pass computes it)"
             self.warn([text], changes_picture=False)
         return any(info.is_motion for info in self.requested_passes())
@@ -459,6 +470,7 @@ def _deliver(job: Job, view: str, handle: int, result: Any) -> None:
     if job.engine.is_animation and is_watched():
         job.session.pictures[view], job.buffer = job.buffer, pixels.PassBuffer()
     library = job.session.library
+    cryptomatte.stamp(library, job.engine.get_result(), job.layer.name, channels_of(job.layer), job.session.manifests)
     job.warn([])
     folder = job.host_value("frame_store")
     if folder and job.animation is None:

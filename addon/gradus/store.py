@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import bpy
 
-from . import color, compat, native, pixels, simulation
+from . import color, compat, cryptomatte, native, pixels, simulation
 from .export import Exporter, blender_pixels
 
 FINAL, PREVIEW, VIEWPORT = "FINAL", "PREVIEW", "VIEWPORT"
@@ -48,6 +48,7 @@ class Session:
         self.reported: set[str] = set()
         self.pictures: dict[str, pixels.PassBuffer] = {}
         """The last picture of each view, which stays in the window if the user cancels before the next one."""
+        self.manifests: cryptomatte.Manifests = {}
 
     def sync(self, *arguments: Any, **options: Any) -> Any:
         """Defines the colour spaces of all images on the device, then calls Exporter.sync()."""

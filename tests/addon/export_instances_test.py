@@ -114,7 +114,7 @@ def test_slots_linked_to_object_or_data(scene: bpy.types.Scene) -> None:
         name: [recorded.materials.get(key, "") for key in keys]
         for name, keys in zip(recorded.instances["names"], recorded.instances["materials"], strict=True)
     }
-    empty = "" if bpy.app.version < (5, 0, 0) else "Default Surface"
+    empty = "" if bpy.app.version < (5, 0, 0) else "default_surface"
     assert names == {plain.name: ["Of data", empty], own.name: ["Of object", empty]}
 
 

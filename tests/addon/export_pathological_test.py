@@ -128,7 +128,7 @@ def test_e5_materials(scene: bpy.types.Scene) -> None:
         assert materials["None"] == [] and materials["Empty slot"] == [0]
     else:
         assert [recorded.materials[key] for key in materials["None"] + materials["Empty slot"]] == [
-            "Default Surface"
+            "default_surface"
         ] * 2
     assert len(materials["Many"]) == 101
 

@@ -66,7 +66,9 @@ def layer(**on: bool) -> SimpleNamespace:
     defaults = dict.fromkeys(
         (info.switch.removeprefix("gradus.") for info in infos if info.switch.startswith("gradus.")), False
     )
-    return SimpleNamespace(gradus=SimpleNamespace(**(defaults | ours)), **on)
+    channels = {f"use_pass_cryptomatte_{kind}": False for kind in ("object", "material", "asset")}
+    channels |= {"pass_cryptomatte_depth": 6, "aovs": (), "lightgroups": ()}
+    return SimpleNamespace(gradus=SimpleNamespace(**(defaults | ours)), **(channels | on))
 
 
 def listed(view_layer: SimpleNamespace, reconstructed: bool = False, extra: tuple = ()) -> list[Pass]:

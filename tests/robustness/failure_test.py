@@ -152,7 +152,7 @@ voronoi = tree.nodes.new("ShaderNodeTexVoronoi")
 tree.links.new(voronoi.outputs["Distance"], surface.inputs["Roughness"])
 """,
     "object": "scene.collection.objects.link(bpy.data.objects.new('Fog', bpy.data.volumes.new('Fog')))",
-    "pass": "scene.view_layers[0].aovs.add().name = 'Rust'",
+    "pass": "scene.view_layers[0].use_pass_shadow = True",
 }
 MATERIAL = """
 tree = scene.objects["Cube"].active_material.node_tree
@@ -160,7 +160,7 @@ surface = tree.nodes["Principled BSDF"]
 """
 
 
-NAMED = {"missing image": "lost.png", "node": "Voronoi", "object": "Fog", "pass": "Rust"}
+NAMED = {"missing image": "lost.png", "node": "Voronoi", "object": "Fog", "pass": "Shadow"}
 """What warnings and errors call them."""
 
 

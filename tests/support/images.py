@@ -68,7 +68,7 @@ def read(path: Path) -> Passes:
         pixels = np.asarray(file.read_image("float"), np.float32).reshape(spec.height, spec.width, spec.nchannels)
         for index, name in enumerate(spec.channelnames):
             pass_name, _, letter = name.rpartition(".")
-            channels.setdefault(pass_name, []).append((_PLACE.get(letter, 5), np.flipud(pixels[:, :, index])))
+            channels.setdefault(pass_name, []).append((_PLACE.get(letter.upper(), 5), np.flipud(pixels[:, :, index])))
         part += 1
     file.close()
     passes: Passes = {}

@@ -12,6 +12,7 @@ class Resources:
 
     def __init__(self) -> None:
         self.images: list[Any] = []
+        self.aovs: dict[str, int] = {}
 
     def image(self, image: Any, image_user: Any) -> int:
         if image not in self.images:

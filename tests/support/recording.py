@@ -54,6 +54,7 @@ class Recording:
     camera: Any = None
     shutter: dict[str, Any] = field(default_factory=dict)
     world: Any = None
+    channels: list[tuple[int, str, int]] = field(default_factory=list)  # kind, name, levels
 
     def scene_set_mesh(self, _scene: int, key: int, reference: Any) -> None:
         mesh = reference._obj
@@ -131,6 +132,7 @@ class Recording:
             "shadow_terminator_offset": values(record.shadow_terminator_offsets, count),
             "materials": [list(materials[first[i] : first[i] + counts[i]]) if counts[i] else [] for i in range(count)],
             "shutter": _shutter_matrices(record, count),
+            "light_groups": values(record.light_groups, count),
             "names": [record.names[record.name_index[i]].decode() for i in range(count)],
         }
 
@@ -153,6 +155,10 @@ class Recording:
     def scene_set_world(self, _scene: int, reference: Any) -> None:
         self.calls.append("world")
         self.world = type(reference._obj).from_buffer_copy(reference._obj)
+
+    def scene_set_channels(self, _scene: int, records: Any, count: int) -> None:
+        self.calls.append("channels")
+        self.channels = [(records[i].kind, records[i].name.decode(), records[i].levels) for i in range(count)]
 
     def scene_remove(self, _scene: int, kind: int, key: int) -> None:
         self.calls.append("remove")

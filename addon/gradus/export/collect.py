@@ -38,6 +38,8 @@ class Entry:
     color: tuple[float, ...]
     shadow_terminator_offset: float
     blur: Blur = NO_BLUR
+    light_group: str = ""
+    asset_name: str = ""  # of the topmost parent
     generated: tuple[float, ...] = (0.0, 0.0, 0.0)
     uv: tuple[float, ...] = (0.0, 0.0)
     materials: tuple[Any, ...] = ()
@@ -85,6 +87,8 @@ class _ObjectProperties:
     color: tuple[float, ...]
     shadow_terminator_offset: float
     blur: Blur
+    light_group: str
+    asset_name: str
     is_edited: bool = False  # whether the object's mesh is in Edit Mode
 
 
@@ -113,7 +117,9 @@ class _ObjectCache:
                 bits |= MAY_MOVE
             offset = shadow_terminator.geometry_offset(obj)
             blur = blur_of(owner, parent)
-            found = _ObjectProperties(key, bits, owner.name, obj.pass_index, tuple(obj.color), offset, blur)
+            color, asset = tuple(obj.color), _topmost(owner).name
+            group = getattr(owner, "lightgroup", "")
+            found = _ObjectProperties(key, bits, owner.name, obj.pass_index, color, offset, blur, group, asset)
             found.is_edited = owner.type == "MESH" and owner.data.is_editmode
             self._properties[evaluated] = found
             self._warnings.extend(unsupported.of_object(owner, self._view_layer))
@@ -208,6 +214,8 @@ def _entry(index: int, instance: Any, obj: Any, is_light: bool, cache: _ObjectCa
         properties.color,
         properties.shadow_terminator_offset,
         properties.blur,
+        properties.light_group,
+        properties.asset_name,
     )
     if copies:
         entry.generated = tuple(instance.orco)
@@ -215,6 +223,13 @@ def _entry(index: int, instance: Any, obj: Any, is_light: bool, cache: _ObjectCa
     if not is_light:
         entry.materials = cache.materials(obj, data, (properties.key[0], address))
     return entry
+
+
+def _topmost(obj: Any) -> Any:
+    """Returns the topmost parent of an object, or the object."""
+    while obj.parent is not None:
+        obj = obj.parent
+    return obj
 
 
 def _is_portal(data: Any) -> bool:

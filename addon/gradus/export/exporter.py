@@ -14,7 +14,9 @@ from typing import Any
 import bpy
 
 from .. import compat, native
-from . import blender_pixels, camera, instances, light, mesh, motion, unsupported, world
+from ..abi import ChannelKind
+from ..layer_channels import Channel, channels_of
+from . import blender_pixels, camera, channels, instances, light, mesh, motion, unsupported, world
 from .collect import Collected, Entry, InstanceKey, collect
 from .digest import Digest
 from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
@@ -70,7 +72,7 @@ class Exporter:
             shutter = shutter_of(depsgraph.scene_eval, depsgraph.view_layer_eval)
             wanted = motion.MotionRequest(wants_vectors, shutter)
         digest = Digest() if with_digest else None
-        run = _Sync(self, depsgraph, engine, view, wanted, views, Poll(cancelled), digest, space)
+        run = _Sync(self, depsgraph, engine, view, wanted, views, Poll(cancelled), digest, space, is_preview)
         tables = ((KIND_MESH, self._meshes), (KIND_IMAGE, self._images), (KIND_MATERIAL, self._materials))
         for table in (self._ids, *(table for _, table in tables)):
             table.begin()
@@ -116,6 +118,7 @@ class _Sync:
         poll: Poll,
         digest: Digest | None = None,
         space: Any = None,
+        is_preview: bool = False,
     ) -> None:
         self._depsgraph = depsgraph
         self._engine = engine
@@ -131,7 +134,12 @@ class _Sync:
         self.size = self._resolution()
         self._wanted = wanted
         frame = self._scene.frame_current
+        self._channels: tuple[Channel, ...] = ()
+        if view is None and not is_preview:
+            self._channels = channels_of(depsgraph.view_layer_eval)
+        self._groups = channels.numbers(self._channels, ChannelKind.LIGHT_GROUP)
         resources = Resources(self._target, exporter._images, frame, bpy.path.abspath, self.warnings)
+        resources.aovs = channels.aovs(self._channels)
         self._materials = Materials(self._target, exporter._materials, resources, poll, self.warnings)
         self._cameras = cameras_of(views, engine, self._scene) if view is None else {}
         self.cameras: dict[str, tuple[native.Camera, Any]] = {}  # by view
@@ -154,6 +162,7 @@ class _Sync:
             self.warnings.add(text)
         for entry in collected.surfaces:
             entry.material_keys = self._materials.surface_keys(entry.materials)
+        self._set_channels()
         self._set_world()
         self._set_lights(collected)
         mesh_of = self._read_meshes(collected)
@@ -262,7 +271,7 @@ class _Sync:
             arrays.previous, arrays.following = (self._matrices_at(arrays.entries, moment) for moment in around)
         if self._wanted.shutter is not None:
             arrays.blur = motion.instance_blur(arrays.entries, arrays.matrices, self._wanted.shutter, moments)
-        struct, kept = instances.fill_instances(arrays)
+        struct, kept = instances.fill_instances(arrays, self._groups)
         self._target.set_instances(struct)
         if self._digest is not None:
             self._digest.columns(kept[0])
@@ -309,14 +318,21 @@ class _Sync:
         record.max_bounces = state.max_bounces
         record.pass_index = entry.pass_index
         record.name = native.name(entry.name)
+        record.light_group = self._groups.get(entry.light_group, 0)
         return record
+
+    def _set_channels(self) -> None:
+        records = channels.fill_channels(self._channels)
+        self._target.set_channels(records, len(self._channels))
+        if self._digest is not None:
+            self._digest.contents(self._channels)
 
     def _set_world(self) -> None:
         layer = self._depsgraph.view_layer_eval
         found = getattr(layer, "world_override", None) or self._scene.world
         # Without sky the view layer has no world, which then is neither visible nor emits light, as in Cycles.
         key = self._materials.key(found, "WORLD") if layer.use_sky else 0
-        struct = world.fill_world(found, key)
+        struct = world.fill_world(found, key, self._groups)
         self._target.set_world(struct)
         if self._digest is not None:
             self._digest.struct(struct)

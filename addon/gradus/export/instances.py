@@ -64,8 +64,11 @@ def instance_arrays(
     return arrays
 
 
-def fill_instances(arrays: InstanceArrays) -> tuple[native.Instances, list[Any]]:
-    """Returns a native Instances, and the objects that must stay alive until the library has copied it."""
+def fill_instances(arrays: InstanceArrays, groups: dict[str, int]) -> tuple[native.Instances, list[Any]]:
+    """Returns a native Instances, and the objects that must stay alive until the library has copied it.
+
+    groups: the numbers of light groups by name.
+    """
     entries = arrays.entries
     struct = native.Instances()
     struct.count = len(entries)
@@ -79,6 +82,7 @@ def fill_instances(arrays: InstanceArrays) -> tuple[native.Instances, list[Any]]
         "uvs": _flat(entries, "uv", 2),
         "shadow_terminator_offsets": array("f", [entry.shadow_terminator_offset for entry in entries]),
         "name_index": array("I", [names.setdefault(entry.name, len(names)) for entry in entries]),
+        "asset_name_index": array("I", [names.setdefault(entry.asset_name, len(names)) for entry in entries]),
         "meshes": arrays.mesh_keys,
         "ids": arrays.ids,
         "matrices": arrays.matrices,
@@ -88,6 +92,8 @@ def fill_instances(arrays: InstanceArrays) -> tuple[native.Instances, list[Any]]
         "material_count": arrays.material_count,
         "materials": arrays.materials,
     }
+    if groups:
+        columns["light_groups"] = array("I", [groups.get(entry.light_group, 0) for entry in entries])
     if arrays.blur is not None:
         columns["shutter_first"], columns["shutter_count"] = arrays.blur.first, arrays.blur.count
         columns["shutter_matrices"] = arrays.blur.matrices

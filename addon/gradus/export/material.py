@@ -26,6 +26,8 @@ class Resources:
         self._abspath = abspath
         self._warnings = warnings
         self.frame = frame
+        self.aovs: dict[str, int] = {}
+        """The index + 1 of the channels of AOVs, by name."""
 
     def image(self, image: Any, image_user: Any = None) -> int:
         """Returns the key of an image at the rendered frame. Sets the native image if it is new or has changed."""

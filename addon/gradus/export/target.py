@@ -34,5 +34,8 @@ class Target:
     def set_world(self, struct: Any) -> None:
         self._library.scene_set_world(self._scene, ctypes.byref(struct))
 
+    def set_channels(self, records: Any, count: int) -> None:
+        self._library.scene_set_channels(self._scene, records, count)
+
     def remove(self, kind: int, key: int) -> None:
         self._library.scene_remove(self._scene, kind, key)

@@ -11,26 +11,10 @@ _KINDS = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volu
 KINDS = frozenset(_KINDS)
 """Types of objects that are not rendered."""
 
-_PASSES = (
-    "use_pass_shadow",
-    "use_pass_subsurface_direct",
-    "use_pass_subsurface_indirect",
-    "use_pass_subsurface_color",
-    "use_pass_cryptomatte_object",
-    "use_pass_cryptomatte_material",
-    "use_pass_cryptomatte_asset",
-)
-"""Switches of view layers for passes that Gradus does not make."""
+_PASSES = ("use_pass_shadow",)
+"""Switches of view layers for passes that Cycles makes and Gradus does not."""
 
-_CYCLES_PASSES = (
-    "pass_render_time",
-    "use_pass_volume_direct",
-    "use_pass_volume_indirect",
-    "use_pass_volume_scatter",
-    "use_pass_volume_transmit",
-    "use_pass_volume_majorant",
-    "use_pass_shadow_catcher",
-)
+_CYCLES_PASSES = ("pass_render_time", "use_pass_shadow_catcher")
 """Switches of view_layer.cycles for such passes. It exists while Cycles' add-on is on, and versions differ in it."""
 
 
@@ -95,6 +79,3 @@ def _unsupported_passes(view_layer: Any) -> Iterator[str]:
         for switch in switches:
             if getattr(owner, switch, False):
                 yield owner.bl_rna.properties[switch].name
-    for kind, items in (("AOV", view_layer.aovs), ("light group", view_layer.lightgroups)):
-        for item in items:
-            yield f"{kind} '{item.name}'"

@@ -29,8 +29,11 @@ def world_visibility(world: Any) -> int:
     return bits
 
 
-def fill_world(world: Any, material: int) -> native.World:
-    """Returns a native World. `world` may be None: the world is then black and has no mist."""
+def fill_world(world: Any, material: int, groups: dict[str, int]) -> native.World:
+    """Returns a native World. `world` may be None: the world is then black and has no mist.
+
+    groups: the numbers of light groups by name.
+    """
     struct = native.World()
     struct.visibility = ALL_RAYS
     struct.importance = 1
@@ -39,6 +42,7 @@ def fill_world(world: Any, material: int) -> native.World:
         return struct
     struct.visibility = world_visibility(world)
     struct.material = material
+    struct.light_group = groups.get(getattr(world, "lightgroup", ""), 0)
     cycles = getattr(world, "cycles", None)
     struct.importance = _IMPORTANCE.get(getattr(cycles, "sampling_method", "AUTOMATIC"), 1)
     struct.map_size = getattr(cycles, "sample_map_resolution", 1024)

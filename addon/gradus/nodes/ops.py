@@ -25,6 +25,7 @@ class Op(IntEnum):
     PRINCIPLED = 11
     PRINCIPLED_3 = 12
     METALLIC = 13
+    AOV = 14
     GEOMETRY = 32
     TEX_COORD = 33
     TANGENT = 34
@@ -347,6 +348,7 @@ INPUTS = {
     Op.PRINCIPLED: 21,
     Op.PRINCIPLED_3: 18,
     Op.METALLIC: 7,
+    Op.AOV: 2,
     Op.GEOMETRY: 0,
     Op.TEX_COORD: 0,
     Op.TANGENT: 0,
@@ -409,6 +411,7 @@ OUTPUTS = {
     Op.PRINCIPLED: 1,
     Op.PRINCIPLED_3: 1,
     Op.METALLIC: 1,
+    Op.AOV: 1,
     Op.GEOMETRY: 1,
     Op.TEX_COORD: 1,
     Op.TANGENT: 1,

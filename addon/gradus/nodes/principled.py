@@ -138,6 +138,6 @@ def default_surface() -> Program:
 
     Before 5.0, such surfaces are grey and diffuse, which is the library's own default material (key 0).
     """
-    program = Program(name="Default Surface")
+    program = Program(name="default_surface")
     program.surface = program.add(Op.PRINCIPLED, _DEFAULT_INPUTS, MULTIPLE_SCATTERING)
     return program

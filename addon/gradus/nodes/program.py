@@ -55,6 +55,8 @@ class Program:
 
     name: str = ""
     surface: int = -1
+    aovs: int = 0
+    """Index + 1 of the node of the outputs to AOVs."""
     pass_index: int = 0
     sample_as_light: bool = True
     transparent_shadow: bool = True
@@ -99,6 +101,7 @@ class Program:
         return (
             self.name,
             self.surface,
+            self.aovs,
             self.pass_index,
             self.sample_as_light,
             self.transparent_shadow,
@@ -132,6 +135,7 @@ class Program:
         material.names = names
         material.name_count = len(self.names)
         material.surface = self.surface
+        material.aovs = self.aovs
         material.pass_index = self.pass_index
         material.sample_as_light = self.sample_as_light
         material.transparent_shadow = self.transparent_shadow

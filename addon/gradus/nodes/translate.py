@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from typing import Any
 
+from .aovs import aov_outputs
 from .ops import Op
 from .program import SHADER, Program, constant_color, constant_float
 from .tree import find_socket
@@ -98,6 +99,7 @@ def _walk(program: Program, tree: Any, resources: Any, version: tuple[int, ...],
     value = walker.input(surface, ())
     if value.kind == SHADER and not value.is_constant:
         program.surface = value.node
+    program.aovs = aov_outputs(walker, resources.aovs) if resources.aovs else 0
     if _is_fed(walker, output, "Volume"):
         _warn_left_out(program, "volume")
         if kind == "SURFACE" and program.surface < 0:

@@ -26,6 +26,11 @@ class EnginePanel:
         return layout
 
 
+def draw_light_group(layout: Any, owner: Any, view_layer: Any) -> None:
+    """Draws the light group of an object or a world, which need not be one of the view layer."""
+    layout.prop_search(owner, "lightgroup", view_layer, "lightgroups", text="Light Group", results_are_suggestions=True)
+
+
 class RenderPanel(EnginePanel):
     bl_context = "render"
 

@@ -8,7 +8,7 @@ import bpy
 
 from ..export import shadow_terminator
 from ..export.visibility import RAY_SWITCHES
-from .base import EnginePanel
+from .base import EnginePanel, draw_light_group
 
 SURFACES = frozenset({"MESH", "CURVE", "SURFACE", "META", "FONT"})
 SHOWN = SURFACES | {"LIGHT", "EMPTY"}  # empties may instance collections
@@ -49,4 +49,18 @@ class GRADUS_OBJECT_PT_shadow_terminator(EnginePanel, bpy.types.Panel):
         self.columns().prop(owner, shadow_terminator.GEOMETRY_OFFSET, text="Geometry Offset")
 
 
-CLASSES = (GRADUS_OBJECT_PT_ray_visibility, GRADUS_OBJECT_PT_shadow_terminator)
+class GRADUS_OBJECT_PT_light_group(EnginePanel, bpy.types.Panel):
+    bl_label = "Light Group"
+    bl_context = "object"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        obj = context.object
+        return super().poll(context) and obj is not None and (obj.type in SURFACES or obj.type == "LIGHT")
+
+    def draw(self, context: Any) -> None:
+        draw_light_group(self.columns(), context.object, context.view_layer)
+
+
+CLASSES = (GRADUS_OBJECT_PT_ray_visibility, GRADUS_OBJECT_PT_shadow_terminator, GRADUS_OBJECT_PT_light_group)

@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from .base import LightPanel, MaterialPanel, WorldPanel
+from .base import LightPanel, MaterialPanel, WorldPanel, draw_light_group
 
 
 def draw_output(layout: Any, tree: Any, name: str) -> None:
@@ -83,6 +83,7 @@ class GRADUS_WORLD_PT_settings(WorldPanel, bpy.types.Panel):
             column = layout.column(heading="Ray Visibility")
             for name in ("camera", "diffuse", "glossy", "transmission"):
                 column.prop(visibility, name)
+        draw_light_group(layout, world, context.view_layer)
 
 
 class GRADUS_DATA_PT_light(LightPanel, bpy.types.Panel):

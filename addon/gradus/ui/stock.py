@@ -14,7 +14,6 @@ MEMBER_OF = "BLENDER_RENDER"
 """The engine in COMPAT_ENGINES of all panels that are not specific to an engine."""
 
 EXCLUDED = {
-    "VIEWLAYER_PT_layer_passes": "empty; replaced by a panel with the passes of Gradus",
     "VIEWLAYER_PT_eevee_next_layer_passes_data": "passes of EEVEE",
     "VIEWLAYER_PT_filter": "has switches of hair and volumes, which are not supported; replaced",
     "VIEWLAYER_PT_override": "replaced by a panel that also has the samples",
@@ -37,6 +36,10 @@ EXCLUDED = {
 """Panels that are not shown, and why."""
 
 INCLUDED = {
+    "VIEWLAYER_PT_layer_passes": "contains the panels with passes",
+    "VIEWLAYER_PT_layer_passes_cryptomatte": "Cryptomatte",
+    "VIEWLAYER_PT_layer_passes_aov": "AOVs",
+    "VIEWLAYER_PT_layer_passes_lightgroups": "light groups",
     "MATERIAL_PT_preview": "material previews are rendered by Gradus",
     "WORLD_PT_context_world": "the world's datablock",
     "EEVEE_MATERIAL_PT_context_material": "list of material slots (the stock panel of all engines but Cycles)",

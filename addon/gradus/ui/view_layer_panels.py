@@ -25,16 +25,15 @@ class ViewLayerPanel(EnginePanel):
     bl_context = "view_layer"
 
 
-class GRADUS_VIEWLAYER_PT_passes(ViewLayerPanel, bpy.types.Panel):
-    bl_label = "Passes"
+class PassPanel(ViewLayerPanel):
+    """Mixin for panels above Blender's own panels of Cryptomatte, AOVs and light groups."""
 
-    def draw(self, _context: Any) -> None:
-        pass
+    bl_parent_id = "VIEWLAYER_PT_layer_passes"
+    bl_order = -1
 
 
-class GRADUS_VIEWLAYER_PT_passes_data(ViewLayerPanel, bpy.types.Panel):
+class GRADUS_VIEWLAYER_PT_passes_data(PassPanel, bpy.types.Panel):
     bl_label = "Data"
-    bl_parent_id = "GRADUS_VIEWLAYER_PT_passes"
 
     def draw(self, context: Any) -> None:
         layout, layer = self.columns(), context.view_layer
@@ -47,9 +46,8 @@ class GRADUS_VIEWLAYER_PT_passes_data(ViewLayerPanel, bpy.types.Panel):
         layout.prop(layer, "pass_alpha_threshold")
 
 
-class GRADUS_VIEWLAYER_PT_passes_light(ViewLayerPanel, bpy.types.Panel):
+class GRADUS_VIEWLAYER_PT_passes_light(PassPanel, bpy.types.Panel):
     bl_label = "Light"
-    bl_parent_id = "GRADUS_VIEWLAYER_PT_passes"
 
     def draw(self, context: Any) -> None:
         layout, layer = self.columns(), context.view_layer
@@ -62,9 +60,8 @@ class GRADUS_VIEWLAYER_PT_passes_light(ViewLayerPanel, bpy.types.Panel):
             column.prop(layer, name)
 
 
-class GRADUS_VIEWLAYER_PT_passes_gradus(ViewLayerPanel, bpy.types.Panel):
+class GRADUS_VIEWLAYER_PT_passes_gradus(PassPanel, bpy.types.Panel):
     bl_label = "Sampling"
-    bl_parent_id = "GRADUS_VIEWLAYER_PT_passes"
 
     def draw(self, context: Any) -> None:
         column = self.columns().column(heading="Include", align=True)
@@ -72,9 +69,8 @@ class GRADUS_VIEWLAYER_PT_passes_gradus(ViewLayerPanel, bpy.types.Panel):
             column.prop(context.view_layer.gradus, name)
 
 
-class GRADUS_VIEWLAYER_PT_passes_components(ViewLayerPanel, bpy.types.Panel):
+class GRADUS_VIEWLAYER_PT_passes_components(PassPanel, bpy.types.Panel):
     bl_label = "Components"
-    bl_parent_id = "GRADUS_VIEWLAYER_PT_passes"
 
     def draw(self, context: Any) -> None:
         layout = self.columns()
@@ -110,7 +106,6 @@ class GRADUS_VIEWLAYER_PT_override(ViewLayerPanel, bpy.types.Panel):
 
 
 CLASSES = (
-    GRADUS_VIEWLAYER_PT_passes,
     GRADUS_VIEWLAYER_PT_passes_data,
     GRADUS_VIEWLAYER_PT_passes_light,
     GRADUS_VIEWLAYER_PT_passes_components,

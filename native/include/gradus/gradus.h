@@ -200,12 +200,16 @@ typedef struct GradusInstances {
   const uint64_t* materials;              /* Keys of materials by slot; 0 = the default grey. */
   const uint32_t* name_index;             /* Index into `names`; may be NULL. */
   size_t name_count;                      /* Number of names. */
-  const char* const* names;               /* Names that warnings use. */
+  const char* const* names;               /* Names that warnings and Cryptomatte use. */
   const uint32_t* shutter_first;          /* First matrix of the instance in shutter_matrices; NULL = all are static. */
   const uint32_t* shutter_count;          /* Matrices of the instance, 2 to 129, spaced evenly from the opening of
                                              the shutter to its closing; 0 = static. */
   size_t shutter_size;                    /* Number of matrices in shutter_matrices. */
   const float* shutter_matrices;          /* 16 values a matrix. */
+  const uint32_t* light_groups;           /* Light group of the instance's emission: index + 1 of a channel; NULL =
+                                             none. */
+  const uint32_t* asset_name_index;       /* Index into `names` of the topmost parent, for Cryptomatte; NULL =
+                                             name_index. */
 } GradusInstances;
 
 /* Shape of an analytic light. */
@@ -250,6 +254,8 @@ typedef struct GradusLight {
                                         limit. */
   int32_t pass_index;                /* Value that light nodes read as the object's index. */
   const char* name;                  /* Name that warnings use. */
+  uint32_t light_group;              /* Light group: index + 1 of a channel; 0 = none. */
+  uint32_t reserved;                 /* 0. */
 } GradusLight;
 
 /* Projection of a camera. */
@@ -331,7 +337,31 @@ typedef struct GradusWorld {
   float mist_depth;      /* Distance over which mist grows to 1. [m] */
   uint32_t mist_falloff; /* GradusMistFalloff: How mist grows. */
   float ao_distance;     /* Distance beyond which surfaces do not occlude; 0 = unlimited. [m] */
+  uint32_t light_group;  /* Light group: index + 1 of a channel; 0 = none. */
+  uint32_t reserved;     /* 0. */
 } GradusWorld;
+
+/* What a channel of the film shows that is no pass. */
+typedef enum GradusChannelKind {
+  GRADUS_CHANNEL_AOV_COLOR = 0,            /* The colour that AOV outputs of its name have at the first surface that
+                                              the camera sees, or in the world, and 1 as alpha. RGBA. */
+  GRADUS_CHANNEL_AOV_VALUE = 1,            /* The value of such outputs. One number. */
+  GRADUS_CHANNEL_LIGHT_GROUP = 2,          /* The part of Combined that lights, surfaces and the world of its name
+                                              emit. RGB. */
+  GRADUS_CHANNEL_CRYPTOMATTE_OBJECT = 3,   /* Names of the visible objects as hashes, with the share of the pixel
+                                              that each covers, in falling order. RGBA for two names each. */
+  GRADUS_CHANNEL_CRYPTOMATTE_MATERIAL = 4, /* The same of materials. */
+  GRADUS_CHANNEL_CRYPTOMATTE_ASSET = 5     /* The same of the topmost parents of objects. */
+} GradusChannelKind;
+
+/* A channel of the film beside its passes: an AOV, a light group or a Cryptomatte. */
+typedef struct GradusChannel {
+  uint32_t struct_size; /* sizeof this struct. */
+  uint32_t kind;        /* GradusChannelKind: What the channel shows. */
+  const char* name;     /* Name of the AOV or of the light group; empty for a Cryptomatte. */
+  uint32_t levels;      /* Cryptomatte: number of names that a pixel keeps, 1 to 16. */
+  uint32_t reserved;    /* 0. */
+} GradusChannel;
 
 /* Where the pixels of an image tile come from. */
 typedef enum GradusImageSource {
@@ -408,7 +438,9 @@ typedef struct GradusMaterial {
   uint32_t sample_as_light;    /* 1: emissive geometry of this material is sampled as a light. */
   uint32_t transparent_shadow; /* 0: transparent surfaces cast opaque shadows. */
   uint32_t uses_fallback;      /* 1: a node was replaced; pass Fallback marks the pixels. */
-  const char* name;            /* Name that warnings use. */
+  const char* name;            /* Name that warnings and Cryptomatte use. */
+  uint32_t aovs;               /* Index + 1 of the node whose closures are the outputs to AOVs; 0 = none. */
+  uint32_t reserved;           /* 0. */
 } GradusMaterial;
 
 /* Kinds of objects that gradus_scene_remove removes. */
@@ -427,6 +459,9 @@ GRADUS_API GradusError gradus_scene_set_instances(GradusScene scene, const Gradu
 GRADUS_API GradusError gradus_scene_set_lights(GradusScene scene, const GradusLight* lights, size_t count);
 GRADUS_API GradusError gradus_scene_set_camera(GradusScene scene, const GradusCamera* camera);
 GRADUS_API GradusError gradus_scene_set_world(GradusScene scene, const GradusWorld* world);
+/* Sets the channels that films of the scene have beside their passes. Lights, instances, the world and AOV outputs of
+ * materials refer to them by their index. */
+GRADUS_API GradusError gradus_scene_set_channels(GradusScene scene, const GradusChannel* channels, size_t count);
 /* Removes the object `key` of GradusObjectKind `kind`. */
 GRADUS_API GradusError gradus_scene_remove(GradusScene scene, uint32_t kind, uint64_t key);
 /* Makes what was set the current immutable snapshot, which shares what did not change, and builds acceleration
@@ -435,6 +470,12 @@ GRADUS_API GradusError gradus_scene_remove(GradusScene scene, uint32_t kind, uin
 GRADUS_API GradusError gradus_scene_commit(GradusScene scene, const volatile int32_t* cancel, float* progress);
 /* Takes the oldest warning about what commits of this scene left out or replaced, as gradus_device_warning does. */
 GRADUS_API GradusError gradus_scene_warning(GradusScene scene, const char** text);
+/* Returns the hash of a name in Cryptomattes. */
+GRADUS_API GradusError gradus_cryptomatte_hash(const char* name, uint32_t* hash);
+/* Returns the manifest of a Cryptomatte of GradusChannelKind `kind`: a JSON object that maps the names of all objects,
+ * materials or assets that were set to their hashes, as 8 hexadecimal digits. The text stays valid until the thread's
+ * next call. */
+GRADUS_API GradusError gradus_scene_manifest(GradusScene scene, uint32_t kind, const char** json);
 /* Keeps what is set from now on, so that the scene can be saved; 0 forgets it. It is off by default, since it doubles
  * the memory of the arrays. */
 GRADUS_API GradusError gradus_scene_record(GradusScene scene, uint32_t enabled);
@@ -741,6 +782,11 @@ GRADUS_API GradusError gradus_render_read_pass(GradusRender render, uint32_t pas
  * of the scene belongs to. INVALID_ARGUMENT if the settings have no component of that name. */
 GRADUS_API GradusError gradus_render_read_component(GradusRender render, const char* component, uint32_t pass,
                                                     float* pixels, size_t count);
+/* Copies a channel of GradusChannelKind `kind` and of this name. `layer` counts the layers of a Cryptomatte, which have
+ * two names each; it is 0 for others. During sampling the pixels are 0. INVALID_ARGUMENT if the scene has no such
+ * channel. */
+GRADUS_API GradusError gradus_render_read_channel(GradusRender render, uint32_t kind, const char* name, uint32_t layer,
+                                                  float* pixels, size_t count);
 /* Returns the statistics of a finished render as a JSON object, without the fields that only the host knows. The text
  * stays valid until the render is released. */
 GRADUS_API GradusError gradus_render_stats(GradusRender render, const char** json);
@@ -820,6 +866,9 @@ GRADUS_API GradusError gradus_film_read_pass(GradusFilm film, uint32_t pass, flo
 /* Copies a component's pass. Color and Irradiance are reconstructed as Combined is, without the denoiser. */
 GRADUS_API GradusError gradus_film_read_component(GradusFilm film, const char* component, uint32_t pass,
                                                    float* pixels, size_t count);
+/* Copies a channel as gradus_render_read_channel does. Light groups belong to the last picture, as light passes do. */
+GRADUS_API GradusError gradus_film_read_channel(GradusFilm film, uint32_t kind, const char* name, uint32_t layer,
+                                                float* pixels, size_t count);
 GRADUS_API GradusError gradus_film_release(GradusFilm film);
 
 /* clang-format on */

@@ -45,6 +45,8 @@
  *                       colour. Mode: GradusDistribution.
  *   METALLIC          base color, edge tint, roughness, anisotropy, rotation, normal, tangent -> closure: Metal with
  *                       the F82 tint model. Mode: GradusDistribution.
+ *   AOV               color, value -> closure: Output to an AOV, which GradusMaterial.aovs refers to; it scatters
+ *                       nothing. Mode: index of the channel.
  *
  * What is known at the point.
  *   GEOMETRY          - -> value: A quantity of the surface point. Mode: GradusGeometryMode.
@@ -137,6 +139,7 @@
   X(PRINCIPLED, 11, 21, 1, 1) \
   X(PRINCIPLED_3, 12, 18, 1, 1) \
   X(METALLIC, 13, 7, 1, 1) \
+  X(AOV, 14, 2, 1, 1) \
   X(GEOMETRY, 32, 0, 1, 0) \
   X(TEX_COORD, 33, 0, 1, 0) \
   X(TANGENT, 34, 0, 1, 0) \

@@ -166,6 +166,10 @@ void FrameDelivery::read_component(const std::string& name, uint32_t pass, float
   developed("its passes come")->pictures.read_component(name, pass, pixels);
 }
 
+void FrameDelivery::read_channel(uint32_t kind, const std::string& name, uint32_t layer, float* pixels) const {
+  developed("its channels come")->pictures.read_channel(kind, name, layer, pixels);
+}
+
 std::string FrameDelivery::stats() const {
   const std::shared_ptr<const DevelopedFrame> own = developed("its stats come");
   return render::stats_json(own->record.stats, own->record.plan, *own->pictures.film);

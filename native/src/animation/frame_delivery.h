@@ -20,6 +20,7 @@ class FrameDelivery final : public render::RenderTask {
   const Region& delivered() const override;
   void read_pass(uint32_t pass, float* pixels) const override;
   void read_component(const std::string& name, uint32_t pass, float* pixels) const override;
+  void read_channel(uint32_t kind, const std::string& name, uint32_t layer, float* pixels) const override;
   std::string stats() const override;
   std::shared_ptr<const film::Film> film() const override;
 

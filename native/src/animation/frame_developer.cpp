@@ -8,6 +8,7 @@
 #include "base/fault.h"
 #include "base/threads.h"
 #include "film/features.h"
+#include "film/scene_channels.h"
 #include "output/denoise_combined.h"
 #include "output/light_passes.h"
 #include "reconstruct/error_estimate.h"
@@ -30,6 +31,7 @@ render::Plan plan_of(const film::Film& film) {
   plan.unbiased = render::takes_unbiased_samples(film.settings);
   plan.channels = film.color_channels;
   plan.passes = film.settings.passes;
+  plan.scene_channels = film::other_channels(film);
   plan.sampled = film.region;
   return plan;
 }

@@ -20,6 +20,9 @@ class FrameSampling final : public render::RenderTask {
   const Region& delivered() const override { return fresh_.delivered(); }
   // Passes, while the frame is sampled, are those of the fresh samples.
   void read_pass(uint32_t pass, float* pixels) const override { fresh_.read_pass(pass, pixels); }
+  void read_channel(uint32_t kind, const std::string& name, uint32_t layer, float* pixels) const override {
+    fresh_.read_channel(kind, name, layer, pixels);
+  }
   void read_component(const std::string& name, uint32_t pass, float* pixels) const override {
     fresh_.read_component(name, pass, pixels);
   }

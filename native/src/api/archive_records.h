@@ -77,6 +77,8 @@ void visit(Archive& a, GradusInstances& s) {
   a.array(s.shutter_first, s.count);
   a.array(s.shutter_count, s.count);
   a.array(s.shutter_matrices, uint64_t{16} * s.shutter_size);
+  a.array(s.light_groups, s.count);
+  a.array(s.asset_name_index, s.count);
 }
 
 template <class Archive>
@@ -97,6 +99,7 @@ void visit(Archive& a, GradusLight& s) {
   a.value(s.material);
   a.value(s.max_bounces);
   a.value(s.pass_index);
+  a.value(s.light_group);
   a.text(s.name);
 }
 
@@ -144,6 +147,15 @@ void visit(Archive& a, GradusWorld& s) {
   a.value(s.mist_depth);
   a.value(s.mist_falloff);
   a.value(s.ao_distance);
+  a.value(s.light_group);
+}
+
+template <class Archive>
+void visit(Archive& a, GradusChannel& s) {
+  s.struct_size = sizeof(s);
+  a.value(s.kind);
+  a.value(s.levels);
+  a.text(s.name);
 }
 
 template <class Archive>
@@ -201,6 +213,7 @@ void visit(Archive& a, GradusMaterial& s) {
   a.value(s.sample_as_light);
   a.value(s.transparent_shadow);
   a.value(s.uses_fallback);
+  a.value(s.aovs);
   a.text(s.name);
   a.structs(s.nodes, s.node_count);
   a.structs(s.inputs, s.input_count);

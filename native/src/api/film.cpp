@@ -4,6 +4,7 @@
 #include "api/guard.h"
 #include "api/objects.h"
 #include "api/structs.h"
+#include "film/scene_channels.h"
 #include "film_io/store.h"
 #include "render/resume.h"
 #include "schema/options.h"
@@ -101,6 +102,16 @@ GradusError gradus_film_read_component(GradusFilm film, const char* component, u
     api::check_count(count, reader->region(), schema::component_pass_info(pass).channels);
     api::check_array(pixels, count, "pixels");
     reader->read_component(name, pass, pixels);
+  });
+}
+
+GradusError gradus_film_read_channel(GradusFilm film, uint32_t kind, const char* name, uint32_t layer, float* pixels,
+                                     size_t count) {
+  return api::guard([&] {
+    const auto reader = api::find_handle<api::FilmObject>(film)->reader();
+    api::check_count(count, reader->region(), film::values_of_layer(kind));
+    api::check_array(pixels, count, "pixels");
+    reader->read_channel(kind, &api::require(name, "name"), layer, pixels);
   });
 }
 

@@ -48,6 +48,10 @@ void SceneRecorder::set_lights(const std::vector<GradusLight>& lights) {
 void SceneRecorder::set_camera(const GradusCamera& camera) { store(RecordKind::Camera, 0, camera); }
 void SceneRecorder::set_world(const GradusWorld& world) { store(RecordKind::World, 0, world); }
 
+void SceneRecorder::set_channels(const std::vector<GradusChannel>& channels) {
+  store(RecordKind::Channels, 0, ChannelList{channels.data(), channels.size()});
+}
+
 void SceneRecorder::set_image(uint64_t key, const GradusImage& image) {
   std::vector<GradusImageTile> tiles(image.tiles, image.tiles + image.tile_count);
   std::vector<std::vector<char>> packed(tiles.size());

@@ -15,7 +15,7 @@ class Scene;
 
 namespace gradus::api {
 
-// Kinds of records, in the order of a file. A reader sets them in this order, too.
+// Kinds of records, in the order of a file but for the last one, End. A reader sets them in this order, too.
 enum class RecordKind : uint32_t {
   Settings = 1,
   Image = 2,
@@ -25,7 +25,8 @@ enum class RecordKind : uint32_t {
   Lights = 6,
   Camera = 7,
   World = 8,
-  End = 9
+  End = 9,
+  Channels = 10
 };
 
 class SceneRecorder {
@@ -39,6 +40,7 @@ class SceneRecorder {
   void set_lights(const std::vector<GradusLight>& lights);
   void set_camera(const GradusCamera& camera);
   void set_world(const GradusWorld& world);
+  void set_channels(const std::vector<GradusChannel>& channels);
   void remove(GradusObjectKind kind, uint64_t key);
   // Writes the scene file. Throws Error with path and reason.
   void save(const std::string& path, const GradusSettings& settings) const;

@@ -85,6 +85,15 @@ GradusError gradus_render_read_component(GradusRender render, const char* compon
   });
 }
 
+GradusError gradus_render_read_channel(GradusRender render, uint32_t kind, const char* name, uint32_t layer,
+                                       float* pixels, size_t count) {
+  return api::guard([&] {
+    const auto object = api::find_handle<api::RenderObject>(render);
+    api::check_array(pixels, count, "pixels");
+    object->render.read_channel(kind, &api::require(name, "name"), layer, pixels, count);
+  });
+}
+
 GradusError gradus_render_stats(GradusRender render, const char** json) {
   return api::guard([&] {
     api::require(json, "json") = nullptr;

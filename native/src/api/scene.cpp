@@ -6,6 +6,7 @@
 #include "api/recorder.h"
 #include "api/scene_args.h"
 #include "api/structs.h"
+#include "base/cryptomatte_id.h"
 #include "schema/options.h"
 
 using namespace gradus;
@@ -117,6 +118,27 @@ GradusError gradus_scene_set_world(GradusScene scene, const GradusWorld* world) 
     const GradusWorld args = api::read_world(world);
     s.scene.set_world(args);
     if (s.recorder) s.recorder->set_world(args);
+  });
+}
+
+GradusError gradus_scene_set_channels(GradusScene scene, const GradusChannel* channels, size_t count) {
+  return with_scene(scene, [&](api::SceneObject& s) {
+    const std::vector<GradusChannel> copies = api::read_channels(channels, count);
+    s.scene.set_channels(copies.data(), copies.size());
+    if (s.recorder) s.recorder->set_channels(copies);
+  });
+}
+
+GradusError gradus_cryptomatte_hash(const char* name, uint32_t* hash) {
+  return api::guard([&] { api::require(hash, "hash") = cryptomatte_hash(&api::require(name, "name")); });
+}
+
+GradusError gradus_scene_manifest(GradusScene scene, uint32_t kind, const char** json) {
+  return api::guard([&] {
+    api::require(json, "json") = nullptr;
+    thread_local std::string text;
+    text = api::find_handle<api::SceneObject>(scene)->scene.manifest(kind);
+    *json = text.c_str();
   });
 }
 

@@ -130,6 +130,8 @@ GradusInstances read_instances(const GradusInstances* from) {
   optional(in.shadow_terminator_offsets, "instances.shadow_terminator_offsets");
   optional(in.material_first, "instances.material_first");
   optional(in.name_index, "instances.name_index");
+  optional(in.asset_name_index, "instances.asset_name_index");
+  optional(in.light_groups, "instances.light_groups");
   check_array(in.materials, in.materials_size, "instances.materials");
   check_names(in.names, in.name_count, "instances.names");
   if (in.material_first) check_array(in.material_count, in.count, "instances.material_count");
@@ -138,6 +140,7 @@ GradusInstances read_instances(const GradusInstances* from) {
       check_range(in.material_first[i], in.material_count[i], in.materials_size,
                   "instances.material_first, material_count");
     if (in.name_index) check_range(in.name_index[i], 1, in.name_count, "instances.name_index");
+    if (in.asset_name_index) check_range(in.asset_name_index[i], 1, in.name_count, "instances.asset_name_index");
   }
   return in;
 }
@@ -163,6 +166,15 @@ GradusWorld read_world(const GradusWorld* from) {
   check_enum(world.importance, 3, "world.importance");
   check_enum(world.mist_falloff, 3, "world.mist_falloff");
   return world;
+}
+
+std::vector<GradusChannel> read_channels(const GradusChannel* from, size_t count) {
+  std::vector<GradusChannel> channels = read_struct_array(from, count, "channels");
+  for (GradusChannel& channel : channels) {
+    channel.name = checked_name(channel.name, "channel.name");
+    check_enum(channel.kind, GRADUS_CHANNEL_CRYPTOMATTE_ASSET + 1, "channel.kind");
+  }
+  return channels;
 }
 
 }  // namespace gradus::api

@@ -25,5 +25,6 @@ GradusInstances read_instances(const GradusInstances* from);
 std::vector<GradusLight> read_lights(const GradusLight* from, size_t count);
 GradusCamera read_camera(const GradusCamera* from);
 GradusWorld read_world(const GradusWorld* from);
+std::vector<GradusChannel> read_channels(const GradusChannel* from, size_t count);
 
 }  // namespace gradus::api

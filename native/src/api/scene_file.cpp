@@ -76,6 +76,11 @@ void set_record(RecordKind kind, uint64_t key, const char* data, size_t size, sc
       const GradusWorld world = read_record<GradusWorld>(&reader);
       return scene->set_world(read_world(&world));
     }
+    case RecordKind::Channels: {
+      const ChannelList list = read_record<ChannelList>(&reader);
+      const std::vector<GradusChannel> channels = read_channels(list.channels, list.count);
+      return scene->set_channels(channels.data(), channels.size());
+    }
     default:
       throw invalid_argument("it holds a record of an unknown kind");
   }

@@ -1,5 +1,5 @@
 // The format of a .gradus file: a header, then records of padded length, the last of kind End. The contents of the
-// records are the public structs, whose generated descriptions are in api/archive_records.h, and the list of lights.
+// records are the public structs, whose generated descriptions are in api/archive_records.h, and lists of them.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace gradus::api {
 
-inline constexpr uint32_t kSceneFormat = 4;
+inline constexpr uint32_t kSceneFormat = 5;
 
 struct FileHeader {
   char magic[8] = {'G', 'R', 'A', 'D', 'U', 'S', 'S', '\n'};
@@ -48,6 +48,18 @@ template <class Archive>
 void visit(Archive& a, LightList& list) {
   a.value(list.count);
   a.structs(list.lights, list.count);
+}
+
+// The channels that one call sets.
+struct ChannelList {
+  const GradusChannel* channels = nullptr;
+  size_t count = 0;
+};
+
+template <class Archive>
+void visit(Archive& a, ChannelList& list) {
+  a.value(list.count);
+  a.structs(list.channels, list.count);
 }
 
 }  // namespace gradus::api

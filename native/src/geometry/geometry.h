@@ -41,6 +41,9 @@ struct InstanceData : Placement {
   float shadow_terminator_offset = 0.0f;  // cosine, see shadow_terminator.h
   Vec3 generated{0.0f};
   Vec2 uv{0.0f};
+  uint32_t light_group = 0;  // index + 1 in Snapshot::channels of what the instance emits; 0: none
+  // Identifiers of its name and of its topmost parent's; 0 unless the scene has a Cryptomatte.
+  float cryptomatte_object = 0.0f, cryptomatte_asset = 0.0f;
   std::vector<uint32_t> materials;                            // index in Snapshot::materials of each slot
   std::vector<std::shared_ptr<const TangentField>> tangents;  // of the UV maps that a material uses
 

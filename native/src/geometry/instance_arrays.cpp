@@ -68,7 +68,9 @@ InstanceArrays copy_instances(const GradusInstances& d) {
   a.shutter_first = copy<uint32_t>(d.shutter_first, d.count);
   if (d.shutter_first) a.shutter_count = copy<uint32_t>(d.shutter_count, d.count);
   a.shutter_matrices = copy<Mat4>(d.shutter_matrices, d.shutter_size);
+  a.light_groups = copy<uint32_t>(d.light_groups, d.count);
   a.name_index = copy<uint32_t>(d.name_index, d.count);
+  a.asset_name_index = copy<uint32_t>(d.asset_name_index, d.count);
   for (size_t i = 0; d.names && i < d.name_count; ++i) a.names.emplace_back(d.names[i] ? d.names[i] : "");
   return a;
 }
@@ -76,6 +78,14 @@ InstanceArrays copy_instances(const GradusInstances& d) {
 std::string InstanceArrays::name(size_t i) const {
   if (i < name_index.size() && name_index[i] < names.size()) return names[name_index[i]];
   return std::string("number ").append(std::to_string(i));
+}
+
+void InstanceArrays::hash_for_channels(bool with_names, ContentHash* hash) const {
+  hash->array(light_groups);
+  if (!with_names) return;
+  hash->array(name_index);
+  hash->array(asset_name_index);
+  for (const std::string& name : names) hash->value(name);
 }
 
 void InstanceArrays::hash(ContentHash* hash) const {

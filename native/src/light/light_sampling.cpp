@@ -293,6 +293,20 @@ float light_point_pdf(const LitScene& scene, const LightPoint& point, const Rece
   return view.pdf;
 }
 
+uint32_t light_group_of(const LitScene& scene, const LightPoint& point) {
+  switch (point.kind) {
+    case LightKind::AnalyticLight:
+      return scene.light_table->analytic_lights[point.index].light_group;
+    case LightKind::Triangle:
+      return scene.instances[point.instance].light_group;
+    case LightKind::World:
+      return scene.world.light_group;
+    case LightKind::None:
+      break;
+  }
+  return 0;
+}
+
 LightPoint light_point_of_surface(const LitScene& scene, const geometry::SurfacePoint& surface) {
   const uint32_t index = scene.light_table->find_triangle(surface.hit.instance, surface.hit.primitive);
   LightPoint point;

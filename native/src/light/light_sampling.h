@@ -105,6 +105,9 @@ LightPoint light_point_of_surface(const LitScene& scene, const geometry::Surface
 // Returns the light sample for a ray that left the scene; its kind is None if the world is black.
 LightPoint light_point_of_world(const LitScene& scene, const Vec3& direction);
 
+// Returns the light group of an emitter as the index + 1 of a channel of the scene, or 0 if it is in none.
+uint32_t light_group_of(const LitScene& scene, const LightPoint& point);
+
 // An intersection of a ray with an analytic light.
 struct LightHit {
   LightPoint point;

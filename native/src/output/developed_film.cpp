@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/threads.h"
 #include "film/region_pixels.h"
+#include "film/scene_channels.h"
 #include "lpe/components.h"
 #include "motion/tracking.h"
 #include "output/developer.h"
@@ -129,7 +130,9 @@ Image DevelopedFilm::find(uint32_t pass) const {
   return found != passes.end() ? found->second : nullptr;
 }
 
-size_t DevelopedFilm::memory_bytes() const { return bytes_of(passes) + bytes_of(component_passes); }
+size_t DevelopedFilm::memory_bytes() const {
+  return bytes_of(passes) + bytes_of(light_groups) + bytes_of(component_passes);
+}
 
 void DevelopedFilm::read_pass(uint32_t pass, float* pixels) const {
   if (const Image image = find(pass)) return copy(*image, pixels);
@@ -142,6 +145,16 @@ void DevelopedFilm::read_pass(uint32_t pass, float* pixels) const {
   } else {
     tbb::task_arena(arena_size(threads)).execute([&] { read_film_pass(*film, pass, region, pixels); });
   }
+}
+
+void DevelopedFilm::read_channel(uint32_t kind, const std::string& name, uint32_t layer, float* pixels) const {
+  const std::string channel_name = film::channel_name(kind, name);
+  if (const auto found = light_groups.find(channel_name); found != light_groups.end())
+    return copy(*found->second, pixels);
+  if (!film) return static_cast<void>(std::fill_n(pixels, size_t(region.area()) * film::values_of_layer(kind), 0.0f));
+  const film::Channel* const channel = film->channels.find(channel_name);
+  if (channel == nullptr) throw invalid_argument("the film has no channel " + channel_name);
+  tbb::task_arena(arena_size(threads)).execute([&] { read_film_channel(*film, *channel, layer, region, pixels); });
 }
 
 void DevelopedFilm::read_component(const std::string& name, uint32_t pass, float* pixels) const {

@@ -34,6 +34,8 @@ struct DevelopedFilm {
   std::shared_ptr<const reconstruct::SampledTerms> sampled_terms{};
   // Passes that are computed from the film: Combined, Error, light passes, and those that need several frames.
   std::map<uint32_t, Image> passes{};
+  // Light groups, by the names of their channels.
+  std::map<std::string, Image> light_groups{};
   // Passes of components, by index in film::Film::components and GradusComponentPass: Color, unless there is one
   // component only, which Combined shows; and motion by optical flow.
   std::map<std::pair<int, uint32_t>, Image> component_passes{};
@@ -50,6 +52,9 @@ struct DevelopedFilm {
   // film; the noisy image and its error then serve as Combined and Error. Without a film the pixels are 0. Throws
   // invalid_operation if the film was sampled without the pass.
   void read_pass(uint32_t pass, float* pixels) const;
+  // Writes a layer of a channel of GradusChannelKind `kind` in the same way. Throws invalid_argument if the film has no
+  // such channel.
+  void read_channel(uint32_t kind, const std::string& name, uint32_t layer, float* pixels) const;
   // Writes a pass of a component in the same way. A component without any path has a background value. Throws
   // invalid_argument for a component that the film's settings do not have, invalid_operation if the film was sampled
   // without the data of the pass. A film of one frame holds the motion of the visible surfaces where optical flow would

@@ -117,6 +117,7 @@ Images copy_components(const DevelopedFilm& developed) {
 }
 
 bool has_split(const DevelopedFilm& developed) {
+  if (!developed.light_groups.empty()) return true;
   return std::any_of(developed.passes.begin(), developed.passes.end(),
                      [](const auto& entry) { return schema::has_bit(schema::light_passes(), entry.first); });
 }
@@ -202,9 +203,11 @@ void Developer::split(DevelopedFilm* developed) {
   const std::shared_ptr<const reconstruct::SampledTerms> joined = std::exchange(developed->sampled_terms, nullptr);
   run([&] {
     LightPasses passes = joined != nullptr ? color_passes(film, developed->region, *joined) : LightPasses();
-    passes.merge(
-        split_light(film, developed->region, *combined, joined != nullptr ? *joined : read_light_terms(film), cancel_));
+    SplitLight light =
+        split_light(film, developed->region, *combined, joined != nullptr ? *joined : read_light_terms(film), cancel_);
+    passes.merge(light.passes);
     for (auto& [pass, pixels] : passes) developed->passes[pass] = make_image(std::move(pixels));
+    for (auto& [name, pixels] : light.groups) developed->light_groups[name] = make_image(std::move(pixels));
   });
 }
 

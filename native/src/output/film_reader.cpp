@@ -105,6 +105,12 @@ void FilmReader::read_pass(uint32_t pass, float* pixels) {
   developed.read_pass(pass, pixels);
 }
 
+void FilmReader::read_channel(uint32_t kind, const std::string& name, uint32_t layer, float* pixels) {
+  const DevelopedFilm developed =
+      kind == GRADUS_CHANNEL_LIGHT_GROUP ? copy_last_picture_with_light() : DevelopedFilm{film_, region_, threads_};
+  developed.read_channel(kind, name, layer, pixels);
+}
+
 void FilmReader::read_component(const std::string& name, uint32_t pass, float* pixels) {
   const bool is_of_picture = schema::is_of_picture(pass) && film::find_component(*film_, name) >= 0;
   if (is_of_picture) check_component(film_->settings, name);

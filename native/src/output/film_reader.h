@@ -30,10 +30,11 @@ class FilmReader {
   DevelopedFilm develop(const Options& options, bool with_error);
   // Returns the error that the picture with the film's own options has before the denoiser.
   Image error();
-  // Write the pixels of the region, as DevelopedFilm does. Combined is developed with the film's own options, and Error
-  // is error().
+  // Write the pixels of the region, as DevelopedFilm does. Light groups belong to the last picture. Combined is
+  // developed with the film's own options, and Error is error().
   void read_pass(uint32_t pass, float* pixels);
   void read_component(const std::string& name, uint32_t pass, float* pixels);
+  void read_channel(uint32_t kind, const std::string& name, uint32_t layer, float* pixels);
 
  private:
   // Returns the film's own options, without a denoiser, and with a warning, where this machine lacks it.

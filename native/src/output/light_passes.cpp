@@ -6,6 +6,7 @@
 #include "base/cancel_check.h"
 #include "base/fault.h"
 #include "film/film.h"
+#include "film/scene_channels.h"
 #include "output/light_pass_samples.h"
 #include "reconstruct/box_mean.h"
 #include "reconstruct/field_values.h"
@@ -20,6 +21,12 @@ namespace {
 // Smallest colour by which light is divided. Below it, quotient times colour does not give back the light.
 constexpr float kMinColor = 1e-6f;
 
+// Channels that add up to the picture, together with the light that is in none of them if `has_remainder`.
+struct Split {
+  LightPassPlanes planes;
+  bool has_remainder = false;
+};
+
 LightPassPlanes light_planes(const film::Film& film) {
   LightPassPlanes planes;
   for (const film::Channel& plane : film.channels) {
@@ -28,8 +35,25 @@ LightPassPlanes light_planes(const film::Film& film) {
   return planes;
 }
 
+LightPassPlanes group_planes(const film::Film& film) {
+  LightPassPlanes planes;
+  for (const film::Channel& plane : film.channels) {
+    if (film::is_light_group(plane)) planes.push_back(&plane);
+  }
+  return planes;
+}
+
+// Returns the ways in which the channels of a film split its light.
+std::vector<Split> splits_of(const film::Film& film) {
+  const bool are_all = (film.channels.passes() & schema::light_passes()) == schema::light_passes();
+  std::vector<Split> splits{{light_planes(film), !are_all}, {group_planes(film), true}};
+  std::erase_if(splits, [](const Split& split) { return split.planes.empty(); });
+  return splits;
+}
+
 // Returns the colour plane by which the pass is divided, or nullptr if there is none.
 const film::Channel* color_plane(const film::Film& film, const film::Channel& plane) {
+  if (plane.pass == GRADUS_PASS_COUNT) return nullptr;
   const schema::PassInfo& info = schema::pass_info(plane.pass);
   return info.kind == schema::PassKind::Light ? film.channels.of_pass(info.color) : nullptr;
 }
@@ -157,41 +181,47 @@ reconstruct::PictureTerm make_term(const film::Film& film, const Region& region,
 }  // namespace
 
 reconstruct::SampledTerms read_light_terms(const film::Film& film) {
-  const LightPassPlanes planes = light_planes(film);
   reconstruct::SampledTerms terms;
-  for (const film::Channel* plane : planes) terms.light.push_back(read_light_pass(film, *plane));
-  const bool are_all = (film.channels.passes() & schema::light_passes()) == schema::light_passes();
-  if (!are_all) terms.light.push_back(read_remainder(film, planes));
+  for (const Split& split : splits_of(film)) {
+    for (const film::Channel* plane : split.planes) terms.light.push_back(read_light_pass(film, *plane));
+    if (split.has_remainder) terms.light.push_back(read_remainder(film, split.planes));
+  }
   for (const film::Channel* color : color_planes(film))
     terms.colors.push_back(to_field(read_color(film, *color).values, 3, film.region, film.region));
   return terms;
 }
 
-bool has_light_passes(const film::Film& film) { return (film.channels.passes() & schema::light_passes()) != 0; }
+bool has_light_passes(const film::Film& film) { return !splits_of(film).empty(); }
 
-LightPasses split_light(const film::Film& film, const Region& region, const std::vector<float>& rgba,
-                        reconstruct::SampledTerms sampled, const CancelCheck& cancel) {
-  const LightPassPlanes planes = light_planes(film);
+SplitLight split_light(const film::Film& film, const Region& region, const std::vector<float>& rgba,
+                       reconstruct::SampledTerms sampled, const CancelCheck& cancel) {
   const reconstruct::Field whole = to_field(rgba, 4, region, region);
   const Guides guides(film, region, whole);
-  std::vector<reconstruct::PictureTerm> terms;
-  std::vector<reconstruct::Field> colors;
-  for (size_t k = 0; k < sampled.light.size(); ++k) {
-    const film::Channel* const plane = k < planes.size() ? planes[k] : nullptr;
-    const reconstruct::Field* const color = plane != nullptr ? color_of(film, *plane, sampled) : nullptr;
-    terms.push_back(make_term(film, region, plane != nullptr ? guides.of(film, *plane, color) : guides.shared(),
-                              std::move(sampled.light[k]), cancel));
-    colors.push_back(color != nullptr ? crop(*color, film, region) : reconstruct::Field());
-    if (color != nullptr) terms.back().capacity = capacity_of(colors.back());
+  SplitLight result;
+  size_t first = 0;  // term of the split's first channel
+  for (const Split& split : splits_of(film)) {
+    const size_t count = split.planes.size() + (split.has_remainder ? 1 : 0);
+    std::vector<reconstruct::PictureTerm> terms;
+    std::vector<reconstruct::Field> colors;
+    for (size_t k = 0; k < count; ++k) {
+      const film::Channel* const plane = k < split.planes.size() ? split.planes[k] : nullptr;
+      const reconstruct::Field* const color = plane != nullptr ? color_of(film, *plane, sampled) : nullptr;
+      terms.push_back(make_term(film, region, plane != nullptr ? guides.of(film, *plane, color) : guides.shared(),
+                                std::move(sampled.light[first + k]), cancel));
+      colors.push_back(color != nullptr ? crop(*color, film, region) : reconstruct::Field());
+      if (color != nullptr) terms.back().capacity = capacity_of(colors.back());
+    }
+    throw_if_cancelled(cancel);
+    reconstruct::add_up(whole, &terms);
+    for (size_t k = 0; k < split.planes.size(); ++k) {
+      if (colors[k].width() > 0) divide(colors[k], &terms[k].image);
+      const film::Channel& plane = *split.planes[k];
+      (film::is_light_group(plane) ? result.groups[plane.info.name] : result.passes[plane.pass]) =
+          reconstruct::interleave(terms[k].image);
+    }
+    first += count;
   }
-  throw_if_cancelled(cancel);
-  reconstruct::add_up(whole, &terms);
-  LightPasses passes;
-  for (size_t k = 0; k < planes.size(); ++k) {
-    if (colors[k].width() > 0) divide(colors[k], &terms[k].image);
-    passes[planes[k]->pass] = reconstruct::interleave(terms[k].image);
-  }
-  return passes;
+  return result;
 }
 
 LightPasses color_passes(const film::Film& film, const Region& region, const reconstruct::SampledTerms& sampled) {

@@ -3,6 +3,7 @@
 #include <immintrin.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -172,7 +173,34 @@ void read_stored(const film::Film& film, const film::Channel& channel, const Reg
   });
 }
 
+// Pairs of identifier and weight are read two at a time.
+constexpr uint32_t kLayerValues = 4;
+
+void read_pairs(const film::Film& film, const film::Channel& channel, uint32_t layer, const Region& region,
+                float* pixels) {
+  struct Pair {
+    float id, weight;
+  };
+  const uint32_t count = channel.info.values_per_pixel / 2;
+  for_pixels(film, region, [&](size_t i, size_t out) {
+    std::array<Pair, film::kMaxPairValues / 2> pairs;
+    film::read_channel(film, channel, {}, i, 1, 1.0f, &pairs[0].id);
+    std::stable_sort(pairs.begin(), pairs.begin() + count,
+                     [](const Pair& a, const Pair& b) { return a.weight > b.weight; });
+    std::copy_n(&pairs[size_t(layer) * kLayerValues / 2].id, kLayerValues, pixels + kLayerValues * out);
+  });
+}
+
 }  // namespace
+
+void read_film_channel(const film::Film& film, const film::Channel& channel, uint32_t layer, const Region& region,
+                       float* pixels) {
+  const bool has_pairs = channel.info.type == film::ValueType::kIdAndWeight;
+  if (layer >= (has_pairs ? channel.info.values_per_pixel / kLayerValues : 1))
+    throw invalid_argument("channel " + channel.info.name + " has no layer " + std::to_string(layer));
+  if (has_pairs) return read_pairs(film, channel, layer, region, pixels);
+  read_stored(film, channel, region, pixels);
+}
 
 bool has_pass(const film::Film& film, uint32_t pass) {
   const schema::PassInfo& info = schema::pass_info(pass);

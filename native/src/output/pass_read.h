@@ -12,6 +12,12 @@ namespace gradus::output {
 // if the film has no plane for it. The threads of the caller's TBB arena read the rows in parallel.
 void read_film_pass(const film::Film& film, uint32_t pass, const Region& region, float* pixels);
 
+// Writes a layer of a channel that belongs to no pass in the same way. A layer of identifiers and weights holds two
+// pairs; the pairs of a pixel are sorted by falling weight. Others have the layer 0 alone. Throws invalid_argument if
+// there is no such layer.
+void read_film_channel(const film::Film& film, const film::Channel& channel, uint32_t layer, const Region& region,
+                       float* pixels);
+
 // Returns whether read_film_pass() can read the pass from this film.
 bool has_pass(const film::Film& film, uint32_t pass);
 

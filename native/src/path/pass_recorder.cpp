@@ -58,7 +58,7 @@ Vec3 shown_normal(const Vertex& vertex) {
 }  // namespace
 
 PassRecorder::PassRecorder(const PathContext& context, film::Film* film, film::Counters* counters)
-    : context_(context), counters_(counters) {
+    : context_(context), counters_(counters), channels_(context, film, counters), active_(channels_.active()) {
   for (film::Channel& plane : film->channels) {
     // Integrators fill other channels, and pixel loops count the samples with replaced nodes.
     if (plane.pass == GRADUS_PASS_COUNT || plane.pass == GRADUS_PASS_FALLBACK) continue;
@@ -88,6 +88,7 @@ void PassRecorder::begin_sample(size_t pixel, int half, uint32_t number, bool ad
   detail_components_ = vertex_components_ = 0;
   path_length_ = 0.0f;
   albedo_ = Rgb(0.0f);
+  channels_.begin_sample(pixel, half);
 }
 
 void PassRecorder::add(uint32_t pass, const Vec4& value) {
@@ -110,8 +111,24 @@ void PassRecorder::add_light(int scatterings, const Rgb& value, const PassShare&
   }
 }
 
+void PassRecorder::emission(int scatterings, const light::LightPoint& point, const Rgb& value) {
+  channels_.light(light::light_group_of(context_.scene, point), value);
+  add_light(scatterings, value, share_, GRADUS_PASS_EMISSION);
+}
+
+void PassRecorder::emission(int scatterings, const Vertex& vertex, const Rgb& value) {
+  channels_.light(context_.scene.instances[vertex.point.hit.instance].light_group, value);
+  add_light(scatterings, value, share_, GRADUS_PASS_EMISSION);
+}
+
+void PassRecorder::environment(int scatterings, const Rgb& value) {
+  channels_.light(context_.scene.world.light_group, value);
+  add_light(scatterings, value, share_, GRADUS_PASS_ENVIRONMENT);
+}
+
 void PassRecorder::light(const PathState& state, const Vertex& vertex, bsdf::ScatterClass c, const LightSample& light,
                          const Rgb& value) {
+  channels_.light(light::light_group_of(context_.scene, light.point), value);
   if (!has_light_passes_) {
     return;
   }
@@ -160,6 +177,7 @@ void PassRecorder::escaped(const PathState& state) {
   if (state.depth > 0 || adds_components_) {
     return;
   }
+  channels_.escaped(state.ray);
   add(GRADUS_PASS_MIST, 1.0f);
   if (plane(GRADUS_PASS_VECTOR) != nullptr) {
     background_motion(state.ray.ray.direction);

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "path/channel_recorder.h"
 #include "path/light.h"
 
 namespace gradus::path {
@@ -28,6 +29,8 @@ class PassRecorder {
   void surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment);
   // Records a ray that leaves the scene.
   void escaped(const PathState& state);
+  // Returns what must see the surfaces on a camera segment, or null if nothing must.
+  SurfaceVisitor* surface_visitor() { return channels_.visits_surfaces() && !adds_components_ ? &channels_ : nullptr; }
   // Records a film position without a camera ray, where mist is 1, as in Cycles.
   void no_ray() {
     if (!adds_components_) add(GRADUS_PASS_MIST, 1.0f);
@@ -43,11 +46,11 @@ class PassRecorder {
   // Records radiance that a ray has found, before any weight, as a feature of its component. It stands for the albedo
   // of what a mirror or glass shows. `further` is its distance from the end of the path so far.
   void record_emission(int component, const Rgb& light, float further = 0.0f);
-  // Record the contribution of an emitter or the world after a number of scattering events, 0 if the camera sees it.
-  void emission(int scatterings, const Rgb& value) { add_light(scatterings, value, share_, GRADUS_PASS_EMISSION); }
-  void environment(int scatterings, const Rgb& value) {
-    add_light(scatterings, value, share_, GRADUS_PASS_ENVIRONMENT);
-  }
+  // Record the contribution of an analytic light, a surface or the world after a number of scattering events, 0 if the
+  // camera sees it.
+  void emission(int scatterings, const light::LightPoint& point, const Rgb& value);
+  void emission(int scatterings, const Vertex& vertex, const Rgb& value);
+  void environment(int scatterings, const Rgb& value);
   // Records the contribution of next-event estimation in one class. `state` is that on arrival at the vertex.
   void light(const PathState& state, const Vertex& vertex, bsdf::ScatterClass c, const LightSample& light,
              const Rgb& value);
@@ -79,6 +82,7 @@ class PassRecorder {
 
   const PathContext& context_;
   film::Counters* counters_;
+  ChannelRecorder channels_;
   std::array<film::Channel*, GRADUS_PASS_COUNT> planes_{};
   bool active_ = false;
   bool has_light_passes_ = false;

@@ -97,7 +97,7 @@ bool trace_to_lights(const PathContext& context, const PathRay& ray, Segment* se
 }
 
 void trace_segment(const PathContext& context, const Sampler& sampler, int depth, const geometry::Hit* first,
-                   PathRay* ray, Vertex* vertex, Segment* segment, Shading shading) {
+                   PathRay* ray, Vertex* vertex, Segment* segment, Shading shading, SurfaceVisitor* visitor) {
   clear(segment);
   Ray part = ray->ray;
   float passed = 0.0f;
@@ -122,6 +122,7 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int depth
     context.scene.place(hit, &vertex->point);
     const auto shade = shading == Shading::Now ? shading::shade_surface : shading::shade_without_closures;
     shade(context.scene, vertex->point, vertex->wo, ray->state, context.settings.roughness_threshold, &vertex->shade);
+    if (visitor != nullptr) visitor->visit(*vertex, ray->state, segment->weight);
     if (stops(sampler, depth, *vertex, segment)) {
       segment->end = SegmentEnd::Surface;
       return;

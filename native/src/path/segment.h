@@ -44,13 +44,25 @@ struct PathRay {
   shading::RayState state;
 };
 
+// Sees the surfaces on a segment.
+class SurfaceVisitor {
+ public:
+  // `weight` is that of the segment up to the surface; the closures of the vertex may be missing.
+  virtual void visit(const Vertex& vertex, const shading::RayState& ray, const Rgb& weight) = 0;
+
+ protected:
+  ~SurfaceVisitor() = default;
+};
+
 // When closures are evaluated: with the segment, or by shade_vertex() once the path is known to go on.
 enum class Shading : uint8_t { Now, Later };
 
 // Traces the ray of a path that has scattered `depth` times. `first` is its nearest hit, or null if it is not known.
-// Sets `vertex` if the segment ends on a surface, and counts transparent surfaces in ray->state.
+// Sets `vertex` if the segment ends on a surface, and counts transparent surfaces in ray->state. `visitor` sees all
+// surfaces on the segment, and may be null.
 void trace_segment(const PathContext& context, const Sampler& sampler, int depth, const geometry::Hit* first,
-                   PathRay* ray, Vertex* vertex, Segment* segment, Shading shading = Shading::Now);
+                   PathRay* ray, Vertex* vertex, Segment* segment, Shading shading = Shading::Now,
+                   SurfaceVisitor* visitor = nullptr);
 // Traces the last ray of a path in a scene with SceneFeatures::only_lights_emit. It finds the same lights and the same
 // world as trace_segment(), usually without a search for surfaces. The end is Escaped or Exhausted. Returns whether a
 // ray was traced.

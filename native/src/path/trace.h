@@ -134,6 +134,8 @@ class PathTracer {
       segment_ = &known->segment;
       state_.ray = known->ray;
       if (records_closures()) shade_vertex(context_, state_.ray.state, vertex);
+      if (visitor() != nullptr && segment_->end == SegmentEnd::Surface)
+        visitor()->visit(*vertex, state_.ray.state, segment_->weight);
     } else {
       state_.ray.ray = context_.camera.ray(sample);
       trace_to_vertex(sampler, known != nullptr ? &known->hit : nullptr, vertex);
@@ -155,7 +157,7 @@ class PathTracer {
 
   void trace_to_vertex(const Sampler& sampler, const geometry::Hit* first, Vertex* vertex) {
     trace_segment(context_, sampler, state_.depth, first, &state_.ray, vertex, &scratch_.segment,
-                  records_closures() ? Shading::Now : Shading::Later);
+                  records_closures() ? Shading::Now : Shading::Later, visitor());
   }
 
   Vertex* unused_vertex(const Vertex& current) const {
@@ -166,6 +168,10 @@ class PathTracer {
 
   // Returns whether the next segment is the last one and only lights and the world can be seen on it.
   bool needs_lights_only() const { return !records_closures() && shows_only_lights(context_, state_); }
+  // Returns what sees the surfaces on a camera segment, or null.
+  SurfaceVisitor* visitor() const {
+    return recorder_ != nullptr && state_.depth == 0 ? recorder_->surface_visitor() : nullptr;
+  }
   // Returns whether the recorder needs the closures of the next vertex.
   bool records_closures() const { return recorder_ != nullptr && recorder_->needs_closures(state_.depth); }
 
@@ -195,7 +201,7 @@ class PathTracer {
         recorder_->record_light(state_.throughput * crossing.weight, c.component, c.light, crossing.distance);
       if (!is_black(c.clamped)) {
         add(c);
-        if (records(c)) recorder_->emission(state_.depth, c.clamped);
+        if (records(c)) recorder_->emission(state_.depth, crossing.point, c.clamped);
         observer_.on_light_crossing(source, c, crossing);
       }
     }
@@ -228,7 +234,7 @@ class PathTracer {
     if (recorder_ != nullptr) recorder_->record_emission(c.component, c.light);
     if (!is_black(c.clamped)) {
       add(c);
-      if (records(c)) recorder_->emission(state_.depth, c.clamped);
+      if (records(c)) recorder_->emission(state_.depth, vertex, c.clamped);
       observer_.on_emission(source, c, vertex);
     }
     return true;

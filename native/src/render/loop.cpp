@@ -154,6 +154,7 @@ void RenderLoop::prepare() {
     film::allocate_component_content(
         {plan_.non_specular_vertices, plan_.non_specular_details, motion, motion && input_.samples_only}, film.get());
     film::add_pass_channels(plan_.passes, film.get());
+    for (const film::ChannelInfo& info : plan_.scene_channels) film->channels.add(info, size_t(film->region.area()));
   }
   if (film->settings.noise_threshold != settings.noise_threshold)
     film->shared.stopped.assign(film->shared.stopped.size(), 0);
@@ -347,6 +348,14 @@ void RenderLoop::read_pass(uint32_t pass, float* pixels) const {
     }
   }
   picture_.read(pass, pixels);
+}
+
+void RenderLoop::read_channel(uint32_t kind, const std::string& name, uint32_t layer, float* pixels) const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_sampling()) throw invalid_operation("channel " + name + " comes when sampling has ended");
+  }
+  picture_.shown().read_channel(kind, name, layer, pixels);
 }
 
 void RenderLoop::read_component(const std::string& name, uint32_t pass, float* pixels) const {

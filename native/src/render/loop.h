@@ -37,6 +37,7 @@ class RenderLoop final : public RenderTask {
   const Region& delivered() const override { return plan_.delivered; }
   void read_pass(uint32_t pass, float* pixels) const override;
   void read_component(const std::string& name, uint32_t pass, float* pixels) const override;
+  void read_channel(uint32_t kind, const std::string& name, uint32_t layer, float* pixels) const override;
   std::string stats() const override;
   std::shared_ptr<const film::Film> film() const override;
 

@@ -1,5 +1,6 @@
 #include "render/memory_estimate.h"
 
+#include <algorithm>
 #include <bit>
 #include <filesystem>
 #include <system_error>
@@ -23,8 +24,10 @@ constexpr uint64_t kJoinedAlpha = 8;              // the alpha of such a frame
 constexpr uint64_t kJoinedLightPass = 48;         // a light pass of joined frames, and of the one that is added
 
 uint64_t frame_bytes(const Plan& plan) {
+  std::vector<film::ChannelInfo> channels = film::channels_of_passes(plan.passes);
+  channels.insert(channels.end(), plan.scene_channels.begin(), plan.scene_channels.end());
   return film::film_bytes_per_pixel(
-      plan.components.count(), plan.gradients, film::channels_of_passes(plan.passes),
+      plan.components.count(), plan.gradients, channels,
       {plan.non_specular_vertices, plan.non_specular_details, plan.component_motion, plan.component_motion});
 }
 
@@ -54,7 +57,9 @@ uint64_t estimated_memory(const Plan& plan, const reconstruct::WindowShape& wind
   const bool joins = plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED;
   const uint64_t of_frame = joins ? kWindowFrame + of_components : components * kWindowFrame;
   const uint64_t of_window = uint64_t(windows.frames) * of_frame;
-  const auto light_passes = uint64_t(std::popcount(plan.passes & schema::light_passes()));
+  const auto light_passes =
+      uint64_t(std::popcount(plan.passes & schema::light_passes()) +
+               std::ranges::count(plan.scene_channels, film::ValueType::kRadiance, &film::ChannelInfo::type));
   const uint64_t of_light = joins && light_passes > 0 ? (light_passes + 1) * kJoinedLightPass : 0;
   return uint64_t(plan.sampled.area()) * (2 * frame_bytes(plan) + reconstruction_bytes(plan) + of_window + of_light);
 }

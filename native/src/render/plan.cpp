@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/text_list.h"
 #include "bsdf/ggx.h"
+#include "film/scene_channels.h"
 #include "output/options.h"
 #include "reconstruct/regression/feature_regression.h"
 #include "schema/automatic.h"
@@ -252,6 +253,7 @@ Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot, 
   list_scene(settings, snapshot, &plan);
   choose_components(settings, snapshot.features, &plan);
   choose_passes(settings, &plan);
+  plan.scene_channels = film::describe(snapshot.channels);
   list_passes(&plan);
   return plan;
 }

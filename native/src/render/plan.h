@@ -36,11 +36,12 @@ struct Plan {
   lpe::ComponentSet components;  // the components that are sampled
   // whether components that a pilot finds small everywhere are merged into the remainder
   bool merges_components = false;
-  bool component_motion = false;       // whether motion passes of components are requested
-  bool non_specular_vertices = false;  // whether passes of first non-specular vertices are requested
-  bool non_specular_details = false;   // whether details of these vertices are requested
-  uint64_t passes = 0;                 // bits of the passes in the film: requested, or read by the reconstruction
-  uint32_t first_check = 0;            // samples before a block may stop
+  bool component_motion = false;                  // whether motion passes of components are requested
+  bool non_specular_vertices = false;             // whether passes of first non-specular vertices are requested
+  bool non_specular_details = false;              // whether details of these vertices are requested
+  std::vector<film::ChannelInfo> scene_channels;  // channels that the scene asks for beside passes
+  uint64_t passes = 0;       // bits of the passes in the film: requested, or read by the reconstruction
+  uint32_t first_check = 0;  // samples before a block may stop
   Region delivered;
   Region sampled;  // `delivered` with the guard ring
   Reasons chosen, skipped;

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "film/scene_channels.h"
 #include "gradient/gradient_integrator.h"
 #include "output/options.h"
 #include "render/loop.h"
@@ -111,6 +112,15 @@ void Render::read_component(const std::string& name, uint32_t pass, float* pixel
                            std::to_string(expected) + " floats, " + std::to_string(count) + " were given");
   }
   state_->task->read_component(name, pass, pixels);
+}
+
+void Render::read_channel(uint32_t kind, const std::string& name, uint32_t layer, float* pixels, size_t count) const {
+  const size_t expected = size_t(state_->task->delivered().area()) * film::values_of_layer(kind);
+  if (count != expected) {
+    throw invalid_argument("channel '" + name + "' has " + std::to_string(expected) + " floats, " +
+                           std::to_string(count) + " were given");
+  }
+  state_->task->read_channel(kind, name, layer, pixels);
 }
 
 std::string Render::stats_json() const { return state_->task->stats(); }

@@ -52,6 +52,8 @@ class Render {
   void read_pass(uint32_t pass, float* pixels, size_t count) const;
   // Copies a pass of a component. Throws `invalid_operation` until sampling has ended.
   void read_component(const std::string& name, uint32_t pass, float* pixels, size_t count) const;
+  // Copies a layer of a channel of GradusChannelKind `kind`; see gradus_render_read_channel().
+  void read_channel(uint32_t kind, const std::string& name, uint32_t layer, float* pixels, size_t count) const;
   // Return the statistics and the film. Throw `invalid_operation` while running.
   std::string stats_json() const;
   std::shared_ptr<const film::Film> film() const;

@@ -33,11 +33,13 @@ class RenderTask {
   // Returns OK, CANCELLED or the error. outcome(), stats() and film() throw `invalid_operation` while running.
   GradusError outcome(std::string* text) const;
 
-  // Returns the region that read_pass() and read_component() copy.
+  // Returns the region that read_pass(), read_component() and read_channel() copy.
   virtual const Region& delivered() const = 0;
   virtual void read_pass(uint32_t pass, float* pixels) const = 0;
   // Copies a pass of a component; see Render::read_component().
   virtual void read_component(const std::string& name, uint32_t pass, float* pixels) const = 0;
+  // Copies a layer of a channel; see Render::read_channel().
+  virtual void read_channel(uint32_t kind, const std::string& name, uint32_t layer, float* pixels) const = 0;
   virtual std::string stats() const = 0;
   virtual std::shared_ptr<const film::Film> film() const = 0;
 

@@ -8,6 +8,7 @@
 #include "film/film.h"
 #include "film/pixel_blocks.h"
 #include "film/planes.h"
+#include "film/scene_channels.h"
 #include "schema/options.h"
 #include "schema/pass_table.h"
 #include "schema/sampling_differences.h"
@@ -81,10 +82,8 @@ void check_resumable(const film::Film& film, const GradusSettings& settings, con
   const film::ComponentContent held = film::component_content(film);
   if ((plan.non_specular_vertices && !held.non_specular) || (plan.non_specular_details && !held.details))
     throw invalid_argument("the film was sampled without the passes of components");
-  for (const film::Channel& channel : film.channels) {
-    if (channel.pass == GRADUS_PASS_COUNT)
-      throw invalid_argument("the film holds the channel " + channel.info.name + ", which the render does not sample");
-  }
+  if (film::other_channels(film) != plan.scene_channels)
+    throw invalid_argument("the film holds other channels than the render samples");
   const uint64_t kept = film.channels.passes();
   for (const schema::PassInfo& info : schema::stored_passes(plan.passes)) {
     if (!schema::has_bit(kept, info.pass))

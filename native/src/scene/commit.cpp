@@ -191,6 +191,7 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
   };
   // Isolation keeps this thread from executing tiles of a render in the same arena while it waits for its own tasks.
   device_->arena().execute([&] { tbb::this_task_arena::isolate(build); });
+  snapshot->channels = state_->channels;
   snapshot->content_key = content_key(*state_);
   monitor.report(1.0f);
   state_->current = std::move(snapshot);

@@ -66,6 +66,20 @@ void hash_world(const GradusWorld& w, const Contents& contents, ContentHash* has
   for (const float v : {w.mist_start, w.mist_depth, w.ao_distance}) hash->value(v);
 }
 
+// Adds the channels, and the names and light groups that only channels show.
+void hash_for_channels(const Scene::State& state, ContentHash* hash) {
+  const bool with_names = has_cryptomatte(state.channels);
+  hash_channels(state.channels, hash);
+  state.instances.hash_for_channels(with_names, hash);
+  for (const LightSource& light : state.lights) hash->value(light.desc.light_group);
+  hash->value(state.world.light_group);
+  if (!with_names) return;
+  for (const uint64_t key : state.instances.materials) {
+    const auto found = state.materials.find(key);
+    if (found != state.materials.end()) hash->value(found->second->name());
+  }
+}
+
 }  // namespace
 
 uint64_t content_key(const Scene::State& state) {
@@ -77,6 +91,7 @@ uint64_t content_key(const Scene::State& state) {
   for (const LightSource& light : state.lights) hash_light(light, contents, &hash);
   if (state.has_camera) hash_camera(state.camera, state.camera_keys, &hash);
   if (state.has_world) hash_world(state.world, contents, &hash);
+  if (!state.channels.empty()) hash_for_channels(state, &hash);
   return hash.result();
 }
 

@@ -2,6 +2,7 @@
 // far from the origin is moved to its centre, for float precision.
 #include <cmath>
 
+#include "base/cryptomatte_id.h"
 #include "base/hash.h"
 #include "scene/scene_state.h"
 
@@ -118,7 +119,20 @@ void set_values(const geometry::InstanceArrays& a, size_t i, geometry::InstanceD
   if (!a.colors.empty()) out->color = a.colors[i];
   if (!a.generated.empty()) out->generated = a.generated[i];
   if (!a.uvs.empty()) out->uv = a.uvs[i];
+  if (!a.light_groups.empty()) out->light_group = a.light_groups[i];
   if (!a.shadow_terminator_offsets.empty()) out->shadow_terminator_offset = a.shadow_terminator_offsets[i];
+}
+
+// Sets the identifiers of the instances' names for Cryptomattes. `usable`: the number in `a` of each instance.
+void set_identifiers(const geometry::InstanceArrays& a, const std::vector<size_t>& usable, Snapshot* snapshot) {
+  std::vector<float> ids;
+  for (const std::string& name : a.names) ids.push_back(cryptomatte_id(name));
+  ids.push_back(0.0f);  // of instances without a name
+  for (size_t k = 0; k < usable.size(); ++k) {
+    const size_t i = usable[k];
+    snapshot->instances[k].cryptomatte_object = ids[a.object_name(i)];
+    snapshot->instances[k].cryptomatte_asset = ids[a.asset_name(i)];
+  }
 }
 
 }  // namespace
@@ -147,6 +161,7 @@ std::vector<size_t> place_instances(const Scene::State& state, Snapshot* snapsho
     set_keys(a, usable[k], snapshot->origin, &out);
     set_values(a, usable[k], &out);
   }
+  if (has_cryptomatte(state.channels)) set_identifiers(a, usable, snapshot);
   return usable;
 }
 

@@ -1,8 +1,15 @@
 #include "scene/scene.h"
 
+#include <array>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "base/cryptomatte_id.h"
 #include "base/error.h"
 #include "scene/scene_state.h"
 #include "shading/graph_check.h"
+#include "shading/material.h"
 
 namespace gradus::scene {
 
@@ -11,6 +18,33 @@ namespace {
 using Lock = std::lock_guard<std::mutex>;
 
 constexpr size_t kMaxLights = size_t(1) << 24;
+
+std::string hexadecimal(uint32_t hash) {
+  std::array<char, 9> text{};
+  std::snprintf(text.data(), text.size(), "%08x", hash);
+  return text.data();
+}
+
+// Returns the names that a Cryptomatte of this kind may show.
+std::set<std::string> names_of(const Scene::State& state, uint32_t kind) {
+  const geometry::InstanceArrays& instances = state.instances;
+  std::set<std::string> names;
+  if (kind == GRADUS_CHANNEL_CRYPTOMATTE_MATERIAL) {
+    names.insert(shading::kDefaultMaterialName);
+    for (const uint64_t key : instances.materials) {
+      if (const auto found = state.materials.find(key); found != state.materials.end())
+        names.insert(found->second->name());
+    }
+    return names;
+  }
+  std::set<size_t> indices;
+  for (size_t i = 0; i < instances.count; ++i)
+    indices.insert(kind == GRADUS_CHANNEL_CRYPTOMATTE_ASSET ? instances.asset_name(i) : instances.object_name(i));
+  for (const size_t index : indices) {
+    if (index < instances.names.size()) names.insert(instances.names[index]);
+  }
+  return names;
+}
 
 }  // namespace
 
@@ -79,6 +113,20 @@ void Scene::set_world(const GradusWorld& world) {
   const Lock lock(state_->mutex);
   state_->world = world;
   state_->has_world = true;
+}
+
+void Scene::set_channels(const GradusChannel* channels, size_t count) {
+  SceneChannels copies = copy_channels(channels, count);
+  const Lock lock(state_->mutex);
+  state_->channels = std::move(copies);
+}
+
+std::string Scene::manifest(uint32_t kind) const {
+  if (!is_cryptomatte(kind)) throw invalid_argument("only a Cryptomatte has a manifest");
+  const Lock lock(state_->mutex);
+  nlohmann::json names = nlohmann::json::object();
+  for (const std::string& name : names_of(*state_, kind)) names[name] = hexadecimal(cryptomatte_hash(name));
+  return names.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 void Scene::remove(GradusObjectKind kind, uint64_t key) {

@@ -28,10 +28,14 @@ class Scene {
   void set_lights(const GradusLight* lights, size_t count);
   void set_camera(const GradusCamera& camera);
   void set_world(const GradusWorld& world);
+  void set_channels(const GradusChannel* channels, size_t count);
   void remove(GradusObjectKind kind, uint64_t key);
   // Makes a new snapshot. *progress rises from 0 to 1. Throws Error CANCELLED if *cancel becomes non-zero; the previous
   // snapshot then remains.
   void commit(const volatile int32_t* cancel, float* progress);
+  // Returns the names of all objects, materials or assets and their hashes as a JSON object, for the Cryptomatte
+  // `kind`.
+  std::string manifest(uint32_t kind) const;
   // Returns the snapshot of the last commit, or nullptr if there was none.
   std::shared_ptr<const Snapshot> snapshot() const;
   const std::shared_ptr<Device>& device() const { return device_; }

@@ -60,6 +60,7 @@ struct Scene::State {
   bool has_camera = false;
   GradusWorld world{};
   bool has_world = false;
+  SceneChannels channels;
 
   // Results of the last commit that the next commit may reuse.
   std::shared_ptr<const Snapshot> current;

@@ -11,6 +11,7 @@
 #include "camera/shutter.h"
 #include "gradus/gradus.h"
 #include "light/lit_scene.h"
+#include "scene/scene_channels.h"
 
 namespace gradus::scene {
 
@@ -41,6 +42,7 @@ class Snapshot : public light::LitScene {
   bool is_other_shot = false;                                  // made by moved_snapshot() across a shot change
   camera::Shutter shutter;
   SceneFeatures features;
+  SceneChannels channels;  // what films of the scene have beside passes
   uint64_t content_key = 0;
   // Warnings of commit: what it left out or replaced, which the setting `strict` refuses, and what renders completely
   // but with more noise.

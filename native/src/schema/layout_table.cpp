@@ -89,6 +89,8 @@ constexpr FieldLayout kInstancesFields[] = {
     FIELD(GradusInstances, shutter_count),
     FIELD(GradusInstances, shutter_size),
     FIELD(GradusInstances, shutter_matrices),
+    FIELD(GradusInstances, light_groups),
+    FIELD(GradusInstances, asset_name_index),
 };
 
 constexpr FieldLayout kLightFields[] = {
@@ -109,6 +111,8 @@ constexpr FieldLayout kLightFields[] = {
     FIELD(GradusLight, max_bounces),
     FIELD(GradusLight, pass_index),
     FIELD(GradusLight, name),
+    FIELD(GradusLight, light_group),
+    FIELD(GradusLight, reserved),
 };
 
 constexpr FieldLayout kCameraFields[] = {
@@ -154,6 +158,16 @@ constexpr FieldLayout kWorldFields[] = {
     FIELD(GradusWorld, mist_depth),
     FIELD(GradusWorld, mist_falloff),
     FIELD(GradusWorld, ao_distance),
+    FIELD(GradusWorld, light_group),
+    FIELD(GradusWorld, reserved),
+};
+
+constexpr FieldLayout kChannelFields[] = {
+    FIELD(GradusChannel, struct_size),
+    FIELD(GradusChannel, kind),
+    FIELD(GradusChannel, name),
+    FIELD(GradusChannel, levels),
+    FIELD(GradusChannel, reserved),
 };
 
 constexpr FieldLayout kImageTileFields[] = {
@@ -210,6 +224,8 @@ constexpr FieldLayout kMaterialFields[] = {
     FIELD(GradusMaterial, transparent_shadow),
     FIELD(GradusMaterial, uses_fallback),
     FIELD(GradusMaterial, name),
+    FIELD(GradusMaterial, aovs),
+    FIELD(GradusMaterial, reserved),
 };
 
 constexpr FieldLayout kSettingsFields[] = {
@@ -352,6 +368,15 @@ constexpr int64_t kMistFalloffValues[] = {
     GRADUS_MIST_INVERSE_QUADRATIC,
 };
 
+constexpr int64_t kChannelKindValues[] = {
+    GRADUS_CHANNEL_AOV_COLOR,
+    GRADUS_CHANNEL_AOV_VALUE,
+    GRADUS_CHANNEL_LIGHT_GROUP,
+    GRADUS_CHANNEL_CRYPTOMATTE_OBJECT,
+    GRADUS_CHANNEL_CRYPTOMATTE_MATERIAL,
+    GRADUS_CHANNEL_CRYPTOMATTE_ASSET,
+};
+
 constexpr int64_t kImageSourceValues[] = {
     GRADUS_IMAGE_FILE,
     GRADUS_IMAGE_ENCODED,
@@ -479,6 +504,7 @@ constexpr StructLayout kStructs[] = {
     {"Light", sizeof(GradusLight), kLightFields},
     {"Camera", sizeof(GradusCamera), kCameraFields},
     {"World", sizeof(GradusWorld), kWorldFields},
+    {"Channel", sizeof(GradusChannel), kChannelFields},
     {"ImageTile", sizeof(GradusImageTile), kImageTileFields},
     {"Image", sizeof(GradusImage), kImageFields},
     {"Input", sizeof(GradusInput), kInputFields},
@@ -499,6 +525,7 @@ constexpr EnumLayout kEnums[] = {
     {"CameraType", kCameraTypeValues},
     {"Panorama", kPanoramaValues},
     {"MistFalloff", kMistFalloffValues},
+    {"ChannelKind", kChannelKindValues},
     {"ImageSource", kImageSourceValues},
     {"AlphaMode", kAlphaModeValues},
     {"ObjectKind", kObjectKindValues},

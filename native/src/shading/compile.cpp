@@ -1,6 +1,7 @@
 // Compiles a GradusMaterial to node programs and derives properties of the material from them.
 #include <algorithm>
 
+#include "base/cryptomatte_id.h"
 #include "bsdf/lobe.h"
 #include "image/image_store.h"
 #include "shading/interpreter.h"
@@ -14,7 +15,8 @@ namespace gradus::shading {
 namespace {
 
 bool is_lobe_op(uint32_t op) {
-  return is_closure_op(op) && op != GRADUS_OP_TRANSPARENT && op != GRADUS_OP_HOLDOUT && op != GRADUS_OP_EMISSION;
+  return is_closure_op(op) && op != GRADUS_OP_TRANSPARENT && op != GRADUS_OP_HOLDOUT && op != GRADUS_OP_EMISSION &&
+         op != GRADUS_OP_AOV;
 }
 
 // Returns the value of a constant operand, or `unknown` if the operand is computed.
@@ -207,10 +209,12 @@ void describe_surface(MaterialData* m) {
 std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc, const image::ImageStore& images) {
   auto m = std::make_shared<MaterialData>();
   m->name = desc.name ? desc.name : "";
+  m->cryptomatte = cryptomatte_id(m->name);
   const Graph graph = build_graph(desc, images);
   m->surface = emit_program(graph, ProgramScope::All, m->name);
   m->emission = emit_program(graph, ProgramScope::Emission, m->name);
   m->transparency = emit_program(graph, ProgramScope::Transparency, m->name);
+  m->aovs = emit_program(graph, ProgramScope::Aovs, m->name);
   m->sample_as_light = desc.sample_as_light != 0;
   m->transparent_shadow = desc.transparent_shadow != 0;
   m->uses_fallback = desc.uses_fallback != 0;
@@ -231,6 +235,7 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
 std::shared_ptr<const MaterialData> fallback_material(const GradusMaterial& desc) {
   auto m = std::make_shared<MaterialData>(*default_material());
   m->name = desc.name ? desc.name : "";
+  m->cryptomatte = cryptomatte_id(m->name);
   m->pass_index = desc.pass_index;
   m->uses_fallback = true;
   return m;
@@ -249,7 +254,7 @@ std::shared_ptr<const MaterialData> default_material() {
   desc.input_count = 1;
   desc.surface = 0;
   desc.transparent_shadow = 1;
-  desc.name = "default";
+  desc.name = kDefaultMaterialName;
   return compile_material(desc, image::ImageStore());
 }
 

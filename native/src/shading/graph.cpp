@@ -31,6 +31,7 @@ class Builder {
     graph_.nodes.resize(desc_.node_count);
     for (uint32_t i = 0; i < desc_.node_count; i++) node(i);
     graph_.surface = desc_.surface;
+    graph_.aovs = static_cast<int32_t>(desc_.aovs) - 1;
     return std::move(graph_);
   }
 

@@ -40,6 +40,7 @@ struct Graph {
   std::vector<float> floats;
   std::vector<std::string> names;
   int32_t surface = -1;
+  int32_t aovs = -1;  // node of the outputs to AOVs
 };
 
 inline constexpr uint32_t kMaxNodes = 1u << 16;

@@ -50,6 +50,8 @@ class Checker {
     that(desc_.surface >= -1 && (desc_.surface < 0 || static_cast<uint32_t>(desc_.surface) < desc_.node_count),
          "the surface is no node");
     if (desc_.surface >= 0) that(is_closure_op(desc_.nodes[desc_.surface].op), "the surface is no closure");
+    that(desc_.aovs <= desc_.node_count, "the output to AOVs is no node");
+    if (desc_.aovs > 0) that(is_closure_op(desc_.nodes[desc_.aovs - 1].op), "the output to AOVs is no closure");
   }
 
  private:

@@ -17,12 +17,17 @@ class ImageStore;
 
 namespace gradus::shading {
 
+// Name of surfaces without a material in Cryptomattes, as in Cycles.
+inline constexpr const char* kDefaultMaterialName = "default_surface";
+
 // An immutable compiled material. The flags are conservative: false is certain, true means "possibly".
 struct MaterialData {
   std::string name;
-  Program surface;       // program of all closures
-  Program emission;      // program of the emission alone, for light sampling and the world
-  Program transparency;  // program of the transparent closures alone, for shadow rays
+  float cryptomatte = 0.0f;  // identifier of the name
+  Program surface;           // program of all closures
+  Program emission;          // program of the emission alone, for light sampling and the world
+  Program transparency;      // program of the transparent closures alone, for shadow rays
+  Program aovs;              // program of the outputs to AOVs alone
 
   bool emits = false;
   bool may_be_transparent = false;  // some light passes straight through

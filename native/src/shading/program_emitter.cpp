@@ -33,10 +33,11 @@ class Emitter {
   }
 
   Program emit() {
-    if (graph_.surface < 0 || !present_[static_cast<size_t>(graph_.surface)]) return {};
+    const int32_t root = scope_ == ProgramScope::Aovs ? graph_.aovs : graph_.surface;
+    if (root < 0 || !present_[static_cast<size_t>(root)]) return {};
     program_.blocks.push_back({});
     begin_block();
-    emit_closure(graph_.surface, constant(Vec4(1.0f)), 0);
+    emit_closure(root, constant(Vec4(1.0f)), 0);
     program_.blocks[0].end = static_cast<uint32_t>(program_.code.size());
     // Emitting a block may append further blocks.
     for (size_t b = 1; b < program_.blocks.size(); b++) emit_height(b);

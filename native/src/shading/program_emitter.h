@@ -9,7 +9,7 @@
 namespace gradus::shading {
 
 // The closures that a program evaluates. Values that only other closures depend on are omitted.
-enum class ProgramScope { All, Emission, Transparency };
+enum class ProgramScope { All, Emission, Transparency, Aovs };
 
 // Emits the program of a graph. Throws Error INVALID_ARGUMENT, with the material's `name`, if it has too many closures
 // or Bump nodes, or if too many values are live at once.

@@ -15,6 +15,7 @@ const MaterialData& material_of(const ShadedScene& scene, uint32_t index) {
 void clear(ShadeResult* result) {
   result->closures.clear();
   result->emission = result->transparency = result->holdout = Rgb(0.0f);
+  result->aovs.clear();
   result->fallback = result->complete = result->ignores_wo = false;
   if (result->tape) result->tape->clear();
 }
@@ -111,6 +112,21 @@ Rgb shade_transparency(const ShadedScene& scene, const geometry::SurfacePoint& p
   ShadeResult* result = scratch();
   run_program(material.transparency, surface_context(scene, point, wo, ray), result);
   return result->transparency;
+}
+
+const std::vector<AovOutput>& shade_aovs(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
+                                         const RayState& ray) {
+  const MaterialData& material = material_of(scene, point.material);
+  ShadeResult* result = scratch();
+  if (!material.aovs.empty()) run_program(material.aovs, surface_context(scene, point, wo, ray), result);
+  return result->aovs;
+}
+
+const std::vector<AovOutput>& shade_world_aovs(const ShadedScene& scene, const Vec3& direction, const RayState& ray) {
+  ShadeResult* result = scratch();
+  if (scene.world_material < scene.materials.size())
+    run_program(scene.materials[scene.world_material]->aovs, background_context(scene, direction, ray), result);
+  return result->aovs;
 }
 
 Rgb shade_world(const ShadedScene& scene, const Vec3& direction, const RayState& ray) {

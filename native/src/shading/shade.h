@@ -1,6 +1,8 @@
 // Shading: runs the node program of a material at a surface point, on the background or on a light.
 #pragma once
 
+#include <vector>
+
 #include "base/types.h"
 #include "bsdf/closures.h"
 #include "geometry/surface.h"
@@ -32,14 +34,22 @@ struct RayState {
   uint16_t transparent_depth = 0;
 };
 
+// A colour and a value that a material gives to an AOV.
+struct AovOutput {
+  uint32_t channel = 0;  // index in the channels of the scene
+  Rgb color = Rgb(0.0f);
+  float value = 0.0f;
+};
+
 struct ShadeResult {
   bsdf::Closures closures;       // finished closures
   Rgb emission = Rgb(0.0f);      // radiance towards wo
   Rgb transparency = Rgb(0.0f);  // weight of the ray that continues straight through the surface
   Rgb holdout = Rgb(0.0f);
-  bool fallback = false;    // the material has a replaced node
-  bool complete = false;    // the closures have been evaluated
-  bool ignores_wo = false;  // a complete result is equal for all directions on this side
+  std::vector<AovOutput> aovs;  // of shade_aovs() and shade_world_aovs() alone
+  bool fallback = false;        // the material has a replaced node
+  bool complete = false;        // the closures have been evaluated
+  bool ignores_wo = false;      // a complete result is equal for all directions on this side
   ClosureTape* tape = nullptr;  // records the closures for shade_from_tape(); not owned, may be null
 };
 
@@ -60,6 +70,11 @@ Rgb shade_emission(const ShadedScene& scene, const geometry::SurfacePoint& point
 // Returns the transparency alone, for shadow rays.
 Rgb shade_transparency(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
                        const RayState& ray);
+// Returns the outputs to AOVs, until the thread's next call of a function of this file.
+const std::vector<AovOutput>& shade_aovs(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
+                                         const RayState& ray);
+// Returns those of the background in a direction in the same way.
+const std::vector<AovOutput>& shade_world_aovs(const ShadedScene& scene, const Vec3& direction, const RayState& ray);
 // Returns the radiance of the background in a direction that points away from the scene.
 Rgb shade_world(const ShadedScene& scene, const Vec3& direction, const RayState& ray);
 
@@ -68,8 +83,8 @@ struct LightShadingPoint {
   Vec3 position = Vec3(0.0f);
   Vec3 normal = Vec3(0, 0, 1);
   Vec3 wo = Vec3(0, 0, 1);  // towards the receiver
-  Vec2 uv = Vec2(0.0f);  // coordinates on the light's surface
-  Mat3 axes{1.0f};       // axes of the light, without scale
+  Vec2 uv = Vec2(0.0f);     // coordinates on the light's surface
+  Mat3 axes{1.0f};          // axes of the light, without scale
 };
 // Returns the factor by which the node program multiplies the light's strength. `material` is an index in the scene.
 Rgb shade_light(const ShadedScene& scene, uint32_t material, const LightShadingPoint& point, const RayState& ray);

@@ -1,0 +1,28 @@
+// The channels of a film that its scene asks for beside passes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "film/film.h"
+#include "scene/scene_channels.h"
+
+namespace gradus::film {
+
+// Returns the name of the film's channel for a GradusChannelKind and the name of an AOV or a light group. Names of
+// different channels differ, also as stored names, and no pass has one.
+std::string channel_name(uint32_t kind, const std::string& name);
+// Returns the descriptions of the film's channels.
+std::vector<ChannelInfo> describe(const scene::SceneChannels& channels);
+// Returns the descriptions of those channels of a film that belong to no pass.
+std::vector<ChannelInfo> other_channels(const Film& film);
+
+// Returns whether a channel is a light group.
+inline bool is_light_group(const Channel& channel) {
+  return channel.pass == GRADUS_PASS_COUNT && channel.info.type == ValueType::kRadiance;
+}
+
+// Numbers of each pixel that are read at once: those of one layer.
+uint32_t values_of_layer(uint32_t kind);
+
+}  // namespace gradus::film

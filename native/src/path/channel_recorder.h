@@ -1,0 +1,46 @@
+// Records the channels that a scene asks for beside passes while a path is traced: AOVs, Cryptomattes and light groups.
+#pragma once
+
+#include <vector>
+
+#include "film/film.h"
+#include "path/segment.h"
+
+namespace gradus::path {
+
+class ChannelRecorder final : public SurfaceVisitor {
+ public:
+  // Finds the channels in the film, which must outlive the recorder.
+  ChannelRecorder(const PathContext& context, film::Film* film, film::Counters* counters);
+  // Returns whether the film has any of these channels.
+  bool active() const { return !channels_.empty(); }
+  // Returns whether surfaces on camera segments must be shown to visit().
+  bool visits_surfaces() const { return visits_surfaces_; }
+
+  void begin_sample(size_t pixel, int half);
+  // Records light of a group; see light::light_group_of().
+  void light(uint32_t group, const Rgb& value) {
+    if (group != 0 && group <= channels_.size()) add(group - 1, Vec4(value, 0.0f));
+  }
+  // Records a surface on a camera segment, whether the path stops there or passes it. As in Cycles, AOVs are those of
+  // the first surface that is opaque enough, and of all before it.
+  void visit(const Vertex& vertex, const shading::RayState& ray, const Rgb& weight) override;
+  // Records a camera ray that leaves the scene.
+  void escaped(const PathRay& ray);
+
+ private:
+  void add(uint32_t channel, const Vec4& value);
+  void add(const std::vector<shading::AovOutput>& outputs);
+  void add_identifiers(const Vertex& vertex, float weight);
+
+  const PathContext& context_;
+  film::Counters* counters_;
+  std::vector<film::Channel*> channels_;  // in the order of Snapshot::channels; empty if the film has none
+  bool visits_surfaces_ = false;
+  bool has_identifiers_ = false;
+  bool aovs_done_ = false;
+  size_t pixel_ = 0;
+  int half_ = 0;
+};
+
+}  // namespace gradus::path
