@@ -12,35 +12,11 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from gradus.nodes.fallback import TEXTURE_MEANS
 from support import images, recording
+from support.graphs import Graph
 from support.nodes import new_material, show, socket
 
 VERSION = tuple(bpy.app.version)
-
-
-class Graph:
-    """A shorthand for building node trees."""
-
-    def __init__(self, material: bpy.types.Material) -> None:
-        self.tree = material.node_tree
-
-    def __call__(
-        self, kind: str, output: str, inputs: dict[str, Any] | None = None, **properties: Any
-    ) -> bpy.types.NodeSocket:
-        node = self.tree.nodes.new(f"ShaderNode{kind}")
-        for name, value in properties.items():
-            setattr(node, name, value)
-        for name, value in (inputs or {}).items():
-            target = socket(node.inputs, name)
-            if isinstance(value, bpy.types.NodeSocket):
-                self.tree.links.new(value, target)
-            else:
-                target.default_value = value
-        return socket(node.outputs, output)
-
-    def place(self) -> bpy.types.NodeSocket:
-        return self("TexCoord", "Object")
 
 
 def checker_image() -> bpy.types.Image:
@@ -496,22 +472,3 @@ def test_a9_the_mode_of_an_object_does_not_matter(mode: str, scene: bpy.types.Sc
     bpy.ops.object.mode_set(mode="OBJECT")
     assert np.abs(expected).mean() > 0.05
     assert np.abs(expected - found).mean() < 0.02 * expected.mean()
-
-
-@pytest.mark.parametrize(("node", "output"), TEXTURE_MEANS)
-def test_the_mean_that_replaces_a_texture_is_that_of_cycles(
-    node: str, output: str, scene: bpy.types.Scene, tmp_path: Path
-) -> None:
-    """The mean of Cycles is measured over a large, slanted plane."""
-    if not hasattr(bpy.types, node):
-        pytest.skip(f"Blender {bpy.app.version_string} has no {node}")
-    material = new_material()
-    graph = Graph(material)
-    place = graph("Mapping", "Vector", {"Vector": graph.place(), "Rotation": (0.5, 0.6, 0.7)})
-    show(material, graph(node.removeprefix("ShaderNode"), output, {"Vector": place}))
-    bpy.ops.mesh.primitive_plane_add(size=200.0)
-    bpy.context.object.data.materials.append(material)
-    recording.add_camera(type="ORTHO", ortho_scale=100.0)
-    assert picture(scene, tmp_path, "CYCLES").mean(axis=(0, 1)) == pytest.approx(
-        [TEXTURE_MEANS[node, output]] * 3, abs=0.01
-    )

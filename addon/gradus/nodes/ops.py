@@ -47,6 +47,9 @@ class Op(IntEnum):
     BRICK = 72
     SKY = 73
     IES = 74
+    VORONOI = 75
+    MUSGRAVE = 76
+    GABOR = 77
     MAPPING = 96
     VECTOR_TRANSFORM = 97
     VECTOR_ROTATE = 98
@@ -69,6 +72,7 @@ class Op(IntEnum):
     BLACKBODY = 115
     LIGHT_FALLOFF = 116
     NORMAL_DOT = 117
+    WAVELENGTH = 118
 
 
 class Distribution(IntEnum):
@@ -159,6 +163,33 @@ class NoiseType(IntEnum):
     HYBRID_MULTIFRACTAL = 2
     RIDGED_MULTIFRACTAL = 3
     HETERO_TERRAIN = 4
+
+
+class VoronoiFeature(IntEnum):
+    """What a Voronoi Texture finds at a point."""
+
+    F1 = 0
+    F2 = 1
+    SMOOTH_F1 = 2
+    DISTANCE_TO_EDGE = 3
+    N_SPHERE_RADIUS = 4
+
+
+class VoronoiMetric(IntEnum):
+    """How a Voronoi Texture measures distances."""
+
+    EUCLIDEAN = 0
+    MANHATTAN = 1
+    CHEBYCHEV = 2
+    MINKOWSKI = 3
+
+
+class VoronoiForm(IntEnum):
+    """The version of a Voronoi Texture, whose patterns differ."""
+
+    INTEGERS = 0
+    FLOATS = 1
+    LIMITED = 2
 
 
 class Gradient(IntEnum):
@@ -369,6 +400,9 @@ INPUTS = {
     Op.BRICK: 10,
     Op.SKY: 1,
     Op.IES: 2,
+    Op.VORONOI: 9,
+    Op.MUSGRAVE: 8,
+    Op.GABOR: 6,
     Op.MAPPING: 4,
     Op.VECTOR_TRANSFORM: 1,
     Op.VECTOR_ROTATE: 5,
@@ -391,6 +425,7 @@ INPUTS = {
     Op.BLACKBODY: 1,
     Op.LIGHT_FALLOFF: 2,
     Op.NORMAL_DOT: 1,
+    Op.WAVELENGTH: 1,
 }
 """Number of inputs."""
 
@@ -431,6 +466,9 @@ OUTPUTS = {
     Op.BRICK: 2,
     Op.SKY: 1,
     Op.IES: 1,
+    Op.VORONOI: 5,
+    Op.MUSGRAVE: 1,
+    Op.GABOR: 3,
     Op.MAPPING: 1,
     Op.VECTOR_TRANSFORM: 1,
     Op.VECTOR_ROTATE: 1,
@@ -453,5 +491,6 @@ OUTPUTS = {
     Op.BLACKBODY: 1,
     Op.LIGHT_FALLOFF: 1,
     Op.NORMAL_DOT: 2,
+    Op.WAVELENGTH: 1,
 }
 """Number of outputs."""
