@@ -73,6 +73,7 @@ class Op(IntEnum):
     LIGHT_FALLOFF = 116
     NORMAL_DOT = 117
     WAVELENGTH = 118
+    RADIAL_TILING = 119
 
 
 class Distribution(IntEnum):
@@ -426,6 +427,7 @@ INPUTS = {
     Op.LIGHT_FALLOFF: 2,
     Op.NORMAL_DOT: 1,
     Op.WAVELENGTH: 1,
+    Op.RADIAL_TILING: 3,
 }
 """Number of inputs."""
 
@@ -492,5 +494,6 @@ OUTPUTS = {
     Op.LIGHT_FALLOFF: 1,
     Op.NORMAL_DOT: 2,
     Op.WAVELENGTH: 1,
+    Op.RADIAL_TILING: 4,
 }
 """Number of outputs."""

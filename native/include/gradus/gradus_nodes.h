@@ -122,6 +122,8 @@
  *   NORMAL_DOT        vector -> vector, dot: The direction of a Normal node, and its dot product with the input.
  *                       Floats: 3, the direction.
  *   WAVELENGTH        wavelength -> color: Colour of light of a wavelength in nanometres.
+ *   RADIAL_TILING     vector, sides, roundness -> coordinates, id, width, rotation: Coordinates along the sides of a
+ *                       polygon. Mode: 1: coordinates from 0 to 1 along each side.
  */
 #ifndef GRADUS_NODES_H
 #define GRADUS_NODES_H
@@ -191,7 +193,8 @@
   X(BLACKBODY, 115, 1, 1, 0) \
   X(LIGHT_FALLOFF, 116, 2, 1, 0) \
   X(NORMAL_DOT, 117, 1, 2, 0) \
-  X(WAVELENGTH, 118, 1, 1, 0)
+  X(WAVELENGTH, 118, 1, 1, 0) \
+  X(RADIAL_TILING, 119, 3, 4, 0)
 
 #define GRADUS_OP_ENUM(name, value, inputs, outputs, closure) \
   GRADUS_OP_##name = value, /* NOLINT(bugprone-macro-parentheses) */

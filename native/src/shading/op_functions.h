@@ -40,6 +40,7 @@ void average_op(const OpArgs& args, Vec4* out);
 void blackbody_op(const OpArgs& args, Vec4* out);
 void normal_dot_op(const OpArgs& args, Vec4* out);
 void wavelength_op(const OpArgs& args, Vec4* out);
+void radial_tiling_op(const OpArgs& args, Vec4* out);
 
 // Operations that depend on the point, the ray, the object or an image.
 void geometry_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);

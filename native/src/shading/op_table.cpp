@@ -92,6 +92,7 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_LIGHT_FALLOFF].ray_modes = kAllModes;
   table[GRADUS_OP_NORMAL_DOT] = {"NORMAL_DOT", OpKind::Pure, 1, 2, 3, 0};
   table[GRADUS_OP_WAVELENGTH] = {"WAVELENGTH", OpKind::Pure, 1, 1, 0, 0};
+  table[GRADUS_OP_RADIAL_TILING] = {"RADIAL_TILING", OpKind::Pure, 3, 4, 0, 1};
   return table;
 }
 
@@ -199,6 +200,9 @@ bool evaluate_pure(uint32_t op, const OpArgs& args, Vec4* out) {
       return true;
     case GRADUS_OP_WAVELENGTH:
       wavelength_op(args, out);
+      return true;
+    case GRADUS_OP_RADIAL_TILING:
+      radial_tiling_op(args, out);
       return true;
     default:
       return false;

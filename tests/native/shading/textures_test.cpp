@@ -369,7 +369,37 @@ TEST(NodeGabor, IsASumOfKernels) {
       }
 }
 
-// ------------------------------------------------------------------------------------------------ wavelengths
+// ------------------------------------------------------------------------------------------------ others
+
+// The sides of a square of radius 1 are at the distance 1 from the origin, and a full rounding makes it a circle.
+TEST(NodeRadialTiling, SquaresAndCircles) {
+  const auto of = [](const Vec3& p, float sides, float roundness, uint32_t mode, uint32_t output) {
+    return evaluate(GRADUS_OP_RADIAL_TILING, {p, sides, roundness}, mode, {}, output);
+  };
+  const Vec3 first = Vec3(3.0f, 1.0f, 0.0f) / std::sqrt(2.0f);  // in the first quadrant, whose side is diagonal
+  expect_near(of(first, 4.0f, 0.0f, 0, 0), Rgb(-1.0f, 1.0f, 0.0f), 1e-5f, 0);
+  expect_near(of(first, 4.0f, 0.0f, 1, 0), Rgb(0.25f, 2.0f, 0.0f), 1e-5f, 1);
+  expect_near(of(first, 4.0f, 0.0f, 0, 2), Rgb(1.0f), 1e-5f, 2);
+  expect_near(of(first, 4.0f, 0.0f, 0, 3), Rgb(0.25f * kPi), 1e-5f, 3);
+  const Vec3 third = -first;
+  EXPECT_EQ(of(third, 4.0f, 0.0f, 0, 1).x, 2.0f);
+  const float angle = std::atan(1.0f / 3.0f) - 0.25f * kPi;
+  expect_near(of(third, 4.0f, 1.0f, 0, 0), Rgb(angle, std::sqrt(5.0f) - 1.0f, 0.0f), 1e-5f, 4);
+  EXPECT_EQ(of(Vec3(0.0f), 4.5f, 0.5f, 0, 0).x, 0.0f);
+}
+
+// Coordinates across the sides are continuous over the corners, those of a shorter side included.
+TEST(NodeRadialTiling, SidesMeetAtCorners) {
+  for (const float sides : {3.0f, 4.3f, 5.8f})
+    for (const float roundness : {0.0f, 0.3f, 0.8f})
+      for (int corner = 0; corner <= static_cast<int>(sides); corner++) {
+        const float turn = 2.0f * kPi * static_cast<float>(corner) / sides;
+        const auto across = [&](float angle) {
+          return evaluate(GRADUS_OP_RADIAL_TILING, {Vec3(std::cos(angle), std::sin(angle), 0.0f), sides, roundness}).y;
+        };
+        EXPECT_NEAR(across(turn - 1e-4f), across(turn + 1e-4f), 1e-3f) << sides << " " << roundness << " " << corner;
+      }
+}
 
 TEST(NodeWavelength, ColoursOfTheSpectrum) {
   const auto of = [](float nanometres) { return evaluate(GRADUS_OP_WAVELENGTH, {nanometres}); };
