@@ -1,6 +1,6 @@
 """Replacements of nodes without a translator. They are not black, raise no exceptions, and add one warning.
 
-Shader to RGB has no replacement: as in Cycles, its links count as missing.
+Nodes that Cycles does not have have no replacement: as in Cycles, their links count as missing.
 """
 
 from __future__ import annotations
@@ -13,14 +13,17 @@ from .program import COLOR, FLOAT, NO_NORMAL, SHADER, Value, constant_color, con
 from .tree import find_socket
 
 _GREY = (0.8, 0.8, 0.8)
+_NOT_IN_CYCLES = frozenset(
+    ("ShaderNodeEeveeSpecular", "ShaderNodeShaderToRGB", "ShaderNodeSqueeze", "ShaderNodeUVAlongStroke")
+)
 
 
 def replace(view: Any) -> Value | None:
     """Returns the value of an output of a node without a translator."""
     name = view.node.bl_idname
     kind = convert.kind_of(view.socket)
-    if name == "ShaderNodeShaderToRGB":
-        view.warn_replaced("is for EEVEE and its links are left out, as in Cycles")
+    if name in _NOT_IN_CYCLES:
+        view.warn_replaced("is not for Cycles and its links are left out, as in Cycles")
         return None
     if kind == SHADER:
         view.warn_replaced("is not supported and is replaced by its shader input or by a diffuse surface")
