@@ -148,8 +148,10 @@ image.image.source, image.image.filepath = "FILE", "/nonexistent/lost.png"
 tree.links.new(image.outputs["Color"], surface.inputs["Base Color"])
 """,
     "node": """
-voronoi = tree.nodes.new("ShaderNodeTexVoronoi")
-tree.links.new(voronoi.outputs["Distance"], surface.inputs["Roughness"])
+both, specular = tree.nodes.new("ShaderNodeAddShader"), tree.nodes.new("ShaderNodeEeveeSpecular")
+tree.links.new(surface.outputs[0], both.inputs[0])
+tree.links.new(specular.outputs[0], both.inputs[1])
+tree.links.new(both.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
 """,
     "object": "scene.collection.objects.link(bpy.data.objects.new('Fog', bpy.data.volumes.new('Fog')))",
     "pass": "scene.view_layers[0].use_pass_shadow = True",
@@ -160,7 +162,7 @@ surface = tree.nodes["Principled BSDF"]
 """
 
 
-NAMED = {"missing image": "lost.png", "node": "Voronoi", "object": "Fog", "pass": "Shadow"}
+NAMED = {"missing image": "lost.png", "node": "Specular BSDF", "object": "Fog", "pass": "Shadow"}
 """What warnings and errors call them."""
 
 

@@ -50,6 +50,11 @@ def blackbody(view: NodeView) -> Value:
     return view.add(Op.BLACKBODY, (view.value("Temperature"),))
 
 
+@translator("ShaderNodeWavelength")
+def wavelength(view: NodeView) -> Value:
+    return view.add(Op.WAVELENGTH, (view.value("Wavelength"),))
+
+
 def _separate(view: NodeView, source: Value, mode: int, outputs: tuple[str, ...]) -> Value:
     return view.add_float(Op.SEPARATE, (source,), mode, output=outputs.index(view.output))
 

@@ -43,7 +43,7 @@ def default_value(socket: Any) -> Value:
     value = getattr(socket, "default_value", 0.0)
     if kind == FLOAT:
         return constant_float(value) if isinstance(value, (int, float)) else constant_float(0.0)
-    return constant_color(value) if kind == COLOR else constant_vector(value)
+    return constant_color(value) if kind == COLOR else constant_vector((*value, 0.0)[:3])  # some have two components
 
 
 def _to_float(program: Program, value: Value) -> Value:

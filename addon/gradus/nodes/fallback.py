@@ -1,6 +1,6 @@
 """Replacements of nodes without a translator. They are not black, raise no exceptions, and add one warning.
 
-Shader to RGB has no replacement: as in Cycles, its links count as missing.
+Nodes that Cycles does not have have no replacement: as in Cycles, their links count as missing.
 """
 
 from __future__ import annotations
@@ -13,35 +13,24 @@ from .program import COLOR, FLOAT, NO_NORMAL, SHADER, Value, constant_color, con
 from .tree import find_socket
 
 _GREY = (0.8, 0.8, 0.8)
-TEXTURE_MEANS = {
-    ("ShaderNodeTexVoronoi", "Color"): 0.5,
-    ("ShaderNodeTexVoronoi", "Distance"): 0.52,
-    ("ShaderNodeTexGabor", "Value"): 0.5,
-    ("ShaderNodeTexGabor", "Phase"): 0.5,
-    ("ShaderNodeTexGabor", "Intensity"): 0.27,
-}
-"""Mean values by node and output at default settings, measured in Cycles.
-
-Musgrave has a mean of 0 and becomes grey instead.
-"""
+_NOT_IN_CYCLES = frozenset(
+    ("ShaderNodeEeveeSpecular", "ShaderNodeShaderToRGB", "ShaderNodeSqueeze", "ShaderNodeUVAlongStroke")
+)
 
 
 def replace(view: Any) -> Value | None:
     """Returns the value of an output of a node without a translator."""
     name = view.node.bl_idname
     kind = convert.kind_of(view.socket)
-    if name == "ShaderNodeShaderToRGB":
-        view.warn_replaced("is for EEVEE and its links are left out, as in Cycles")
+    if name in _NOT_IN_CYCLES:
+        view.warn_replaced("is not for Cycles and its links are left out, as in Cycles")
         return None
     if kind == SHADER:
         view.warn_replaced("is not supported and is replaced by its shader input or by a diffuse surface")
         return _closure(view)
     if name.startswith("ShaderNodeTex"):
-        mean = TEXTURE_MEANS.get((name, view.socket.identifier))
-        substitute = "grey" if mean is None else "its mean at default settings"
-        view.warn_replaced(f"is not supported and is replaced by {substitute}")
-        value = 0.5 if mean is None else mean
-        return constant_float(value) if kind == FLOAT else Value(kind, (value, value, value, 1.0))
+        view.warn_replaced("is not supported and is replaced by grey")
+        return constant_float(0.5) if kind == FLOAT else Value(kind, (0.5, 0.5, 0.5, 1.0))
     view.warn_replaced("is not supported and its input is passed through")
     return _pass_through(view)
 

@@ -48,6 +48,9 @@ class Op(IntEnum):
     BRICK = 72
     SKY = 73
     IES = 74
+    VORONOI = 75
+    MUSGRAVE = 76
+    GABOR = 77
     MAPPING = 96
     VECTOR_TRANSFORM = 97
     VECTOR_ROTATE = 98
@@ -70,6 +73,8 @@ class Op(IntEnum):
     BLACKBODY = 115
     LIGHT_FALLOFF = 116
     NORMAL_DOT = 117
+    WAVELENGTH = 118
+    RADIAL_TILING = 119
 
 
 class Distribution(IntEnum):
@@ -160,6 +165,33 @@ class NoiseType(IntEnum):
     HYBRID_MULTIFRACTAL = 2
     RIDGED_MULTIFRACTAL = 3
     HETERO_TERRAIN = 4
+
+
+class VoronoiFeature(IntEnum):
+    """What a Voronoi Texture finds at a point."""
+
+    F1 = 0
+    F2 = 1
+    SMOOTH_F1 = 2
+    DISTANCE_TO_EDGE = 3
+    N_SPHERE_RADIUS = 4
+
+
+class VoronoiMetric(IntEnum):
+    """How a Voronoi Texture measures distances."""
+
+    EUCLIDEAN = 0
+    MANHATTAN = 1
+    CHEBYCHEV = 2
+    MINKOWSKI = 3
+
+
+class VoronoiForm(IntEnum):
+    """The version of a Voronoi Texture, whose patterns differ."""
+
+    INTEGERS = 0
+    FLOATS = 1
+    LIMITED = 2
 
 
 class Gradient(IntEnum):
@@ -371,6 +403,9 @@ INPUTS = {
     Op.BRICK: 10,
     Op.SKY: 1,
     Op.IES: 2,
+    Op.VORONOI: 9,
+    Op.MUSGRAVE: 8,
+    Op.GABOR: 6,
     Op.MAPPING: 4,
     Op.VECTOR_TRANSFORM: 1,
     Op.VECTOR_ROTATE: 5,
@@ -393,6 +428,8 @@ INPUTS = {
     Op.BLACKBODY: 1,
     Op.LIGHT_FALLOFF: 2,
     Op.NORMAL_DOT: 1,
+    Op.WAVELENGTH: 1,
+    Op.RADIAL_TILING: 3,
 }
 """Number of inputs."""
 
@@ -434,6 +471,9 @@ OUTPUTS = {
     Op.BRICK: 2,
     Op.SKY: 1,
     Op.IES: 1,
+    Op.VORONOI: 5,
+    Op.MUSGRAVE: 1,
+    Op.GABOR: 3,
     Op.MAPPING: 1,
     Op.VECTOR_TRANSFORM: 1,
     Op.VECTOR_ROTATE: 1,
@@ -456,5 +496,7 @@ OUTPUTS = {
     Op.BLACKBODY: 1,
     Op.LIGHT_FALLOFF: 1,
     Op.NORMAL_DOT: 2,
+    Op.WAVELENGTH: 1,
+    Op.RADIAL_TILING: 4,
 }
 """Number of outputs."""

@@ -6,8 +6,22 @@ from typing import Any
 
 from . import ies_profile
 from .node import NodeView, translator
-from .ops import Geometry, Gradient, Mapping, Math, NoiseType, Op, Projection, Sky, TexCoord, TransformKind
-from .program import COLOR, FLOAT, Value, constant_float, constant_vector
+from .ops import (
+    Geometry,
+    Gradient,
+    Mapping,
+    Math,
+    NoiseType,
+    Op,
+    Projection,
+    Sky,
+    TexCoord,
+    TransformKind,
+    VoronoiFeature,
+    VoronoiForm,
+    VoronoiMetric,
+)
+from .program import COLOR, FLOAT, VECTOR, Value, constant_float, constant_vector
 
 _INTERPOLATION = {"Linear": 0, "Closest": 1, "Cubic": 2, "Smart": 2}
 _EXTENSION = {"REPEAT": 0, "EXTEND": 1, "CLIP": 2, "MIRROR": 3}
@@ -96,6 +110,14 @@ def noise(view: NodeView) -> Value:
     return view.add(Op.NOISE, inputs, mode, kind=FLOAT if factor else COLOR, output=0 if factor else 1)
 
 
+@translator("ShaderNodeTexMusgrave")
+def musgrave(view: NodeView) -> Value:
+    node = view.node
+    names = ("W", "Scale", "Detail", "Dimension", "Lacunarity", "Offset", "Gain")
+    inputs = (_generated(view), *(view.value(name) for name in names))
+    return view.add_float(Op.MUSGRAVE, inputs, int(node.musgrave_dimensions[0]) | NoiseType[node.musgrave_type] << 3)
+
+
 @translator("ShaderNodeTexChecker")
 def checker(view: NodeView) -> Value:
     inputs = (_generated(view), view.value("Color1"), view.value("Color2"), view.value("Scale"))
@@ -142,6 +164,36 @@ def brick(view: NodeView) -> Value:
     inputs = (_generated(view), *(view.value(name) for name in names))
     floats = (float(node.offset), float(node.offset_frequency), float(node.squash), float(node.squash_frequency))
     return _color_or_factor(view, Op.BRICK, inputs, 0, floats)
+
+
+def _voronoi_form(view: NodeView) -> VoronoiForm:
+    if view.version < (4, 0, 0):
+        return VoronoiForm.LIMITED
+    return VoronoiForm.FLOATS if view.version < (5, 0, 0) else VoronoiForm.INTEGERS
+
+
+_VORONOI_OUTPUTS = {"Distance": (0, FLOAT), "Color": (1, COLOR), "Position": (2, VECTOR), "W": (3, FLOAT)}
+_VORONOI_RADIUS = (4, FLOAT)
+
+
+@translator("ShaderNodeTexVoronoi")
+def voronoi(view: NodeView) -> Value:
+    """Without octaves before 4.0, whose nodes have no input for them."""
+    node = view.node
+    mode = int(node.voronoi_dimensions[0]) | VoronoiFeature[node.feature] << 3 | VoronoiMetric[node.distance] << 6
+    mode |= bool(getattr(node, "normalize", False)) << 8 | _voronoi_form(view) << 9
+    names = ("W", "Scale", "Detail", "Roughness", "Lacunarity", "Smoothness", "Exponent", "Randomness")
+    inputs = (_generated(view), *(view.value(name) for name in names))
+    output, kind = _VORONOI_OUTPUTS.get(view.output, _VORONOI_RADIUS)
+    return view.add(Op.VORONOI, inputs, mode, kind=kind, output=output)
+
+
+@translator("ShaderNodeTexGabor")
+def gabor(view: NodeView) -> Value:
+    names = ("Scale", "Frequency", "Anisotropy", "Orientation 2D", "Orientation 3D")
+    inputs = (_generated(view), *(view.value(name) for name in names))
+    output = ("Value", "Phase", "Intensity").index(view.output)
+    return view.add_float(Op.GABOR, inputs, int(view.node.gabor_type[0]), output=output)
 
 
 def _sky_settings(node: Any) -> tuple[float, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from typing import Any
 
+from . import inlining
 from .aovs import aov_outputs
 from .ops import Op
 from .program import SHADER, Program, constant_color, constant_float
@@ -39,7 +40,9 @@ def translate(block: Any, kind: str, resources: Any, version: tuple[int, ...] | 
     limit = sys.getrecursionlimit()
     sys.setrecursionlimit(max(limit, _RECURSION_LIMIT))
     try:
-        _walk(program, tree, resources, version, kind)
+        inlined = block.inline_shader_nodes() if inlining.is_needed(block, tree) else None
+        # The tree of `inlined` exists as long as `inlined` itself.
+        _walk(program, inlined.node_tree if inlined is not None else tree, resources, version, kind)
     except Exception as error:  # noqa: BLE001  (an unexpected graph must not prevent the frame)
         _replace_all(program, kind, f"{type(error).__name__}: {error}")
     finally:

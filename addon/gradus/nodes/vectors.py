@@ -46,3 +46,18 @@ def separate_xyz(view: NodeView) -> Value:
 @translator("ShaderNodeCombineXYZ")
 def combine_xyz(view: NodeView) -> Value:
     return view.add_vector(Op.COMBINE, (view.value("X"), view.value("Y"), view.value("Z")))
+
+
+_TILING = {
+    "Segment Coordinates": (0, VECTOR),
+    "Segment ID": (1, FLOAT),
+    "Segment Width": (2, FLOAT),
+    "Segment Rotation": (3, FLOAT),
+}
+
+
+@translator("ShaderNodeRadialTiling")
+def radial_tiling(view: NodeView) -> Value:
+    inputs = tuple(view.value(name) for name in ("Vector", "Sides", "Roundness"))
+    output, kind = _TILING[view.output]
+    return view.add(Op.RADIAL_TILING, inputs, 1 if view.node.normalize else 0, kind=kind, output=output)

@@ -85,6 +85,12 @@
  *   IES               vector, strength -> value: The intensity of a luminaire by direction. Floats: number of
  *                       horizontal angles, horizontal angles, vertical angles [rad], intensities of all vertical angles
  *                       for each horizontal one.
+ *   VORONOI           vector, w, scale, detail, roughness, lacunarity, smoothness, exponent, randomness -> distance,
+ *                       color, position, w, radius: Cells around random points. Mode: GRADUS_VORONOI_MODE().
+ *   MUSGRAVE          vector, w, scale, detail, dimension, lacunarity, offset, gain -> value: Perlin noise in octaves,
+ *                       as before Blender 4.1. Mode: GRADUS_NOISE_MODE() without its flags.
+ *   GABOR             vector, scale, frequency, anisotropy, orientation 2D, orientation 3D -> value, phase, intensity:
+ *                       Waves in random patches; the orientation in 2D is an angle. Mode: dimensions, 2 or 3.
  *
  * Vectors, colours, numbers.
  *   MAPPING           vector, location, rotation, scale -> vector: Moves, turns and scales a vector. Mode:
@@ -117,6 +123,9 @@
  *   LIGHT_FALLOFF     strength, smooth -> value: Falloff of a light. Mode: 0: quadratic; 1: linear; 2: constant.
  *   NORMAL_DOT        vector -> vector, dot: The direction of a Normal node, and its dot product with the input.
  *                       Floats: 3, the direction.
+ *   WAVELENGTH        wavelength -> color: Colour of light of a wavelength in nanometres.
+ *   RADIAL_TILING     vector, sides, roundness -> coordinates, id, width, rotation: Coordinates along the sides of a
+ *                       polygon. Mode: 1: coordinates from 0 to 1 along each side.
  */
 #ifndef GRADUS_NODES_H
 #define GRADUS_NODES_H
@@ -162,6 +171,9 @@
   X(BRICK, 72, 10, 2, 0) \
   X(SKY, 73, 1, 1, 0) \
   X(IES, 74, 2, 1, 0) \
+  X(VORONOI, 75, 9, 5, 0) \
+  X(MUSGRAVE, 76, 8, 1, 0) \
+  X(GABOR, 77, 6, 3, 0) \
   X(MAPPING, 96, 4, 1, 0) \
   X(VECTOR_TRANSFORM, 97, 1, 1, 0) \
   X(VECTOR_ROTATE, 98, 5, 1, 0) \
@@ -183,7 +195,9 @@
   X(AVERAGE, 114, 1, 1, 0) \
   X(BLACKBODY, 115, 1, 1, 0) \
   X(LIGHT_FALLOFF, 116, 2, 1, 0) \
-  X(NORMAL_DOT, 117, 1, 2, 0)
+  X(NORMAL_DOT, 117, 1, 2, 0) \
+  X(WAVELENGTH, 118, 1, 1, 0) \
+  X(RADIAL_TILING, 119, 3, 4, 0)
 
 #define GRADUS_OP_ENUM(name, value, inputs, outputs, closure) \
   GRADUS_OP_##name = value, /* NOLINT(bugprone-macro-parentheses) */
@@ -282,6 +296,34 @@ typedef enum GradusNoiseType {
 /* dimensions: 1…4; normalize: 0…1; legacy: 1 takes octaves and distortion as before Blender 4.1. */
 #define GRADUS_NOISE_MODE(dimensions, type, normalize, legacy) \
   ((dimensions) | (type) << 3 | (normalize) << 6 | (legacy) << 7)
+
+/* What a Voronoi Texture finds at a point. */
+typedef enum GradusVoronoiFeature {
+  GRADUS_VORONOI_F1 = 0,               /* The closest random point. */
+  GRADUS_VORONOI_F2 = 1,               /* The second closest one. */
+  GRADUS_VORONOI_SMOOTH_F1 = 2,        /* The closest one, with smooth transitions. */
+  GRADUS_VORONOI_DISTANCE_TO_EDGE = 3, /* The border between the cells. */
+  GRADUS_VORONOI_N_SPHERE_RADIUS = 4   /* The sphere around the closest point that touches its neighbour. */
+} GradusVoronoiFeature;
+
+/* How a Voronoi Texture measures distances. */
+typedef enum GradusVoronoiMetric {
+  GRADUS_VORONOI_EUCLIDEAN = 0, /* The square root of the sum of squares. */
+  GRADUS_VORONOI_MANHATTAN = 1, /* The sum of the components. */
+  GRADUS_VORONOI_CHEBYCHEV = 2, /* The largest component. */
+  GRADUS_VORONOI_MINKOWSKI = 3  /* The root of the sum of powers, with an exponent of the node. */
+} GradusVoronoiMetric;
+
+/* The version of a Voronoi Texture, whose patterns differ. */
+typedef enum GradusVoronoiForm {
+  GRADUS_VORONOI_FORM_INTEGERS = 0, /* Cells are hashed as whole numbers, as in Blender 5.0 and later. */
+  GRADUS_VORONOI_FORM_FLOATS = 1,   /* Cells are hashed as floats, as before Blender 5.0. */
+  GRADUS_VORONOI_FORM_LIMITED = 2   /* Distances also end at 8, as before Blender 4.0. */
+} GradusVoronoiForm;
+
+/* dimensions: 1…4; normalize: 0…1. */
+#define GRADUS_VORONOI_MODE(dimensions, feature, metric, normalize, form) \
+  ((dimensions) | (feature) << 3 | (metric) << 6 | (normalize) << 8 | (form) << 9)
 
 /* Shape of a gradient. */
 typedef enum GradusGradientMode {

@@ -12,13 +12,14 @@ namespace gradus::shading {
 
 // Parameters of the Noise Texture.
 struct Octaves {
-  float detail = 0.0f;  // number of octaves beyond the first; its fraction blends in one more octave
+  // Number of octaves beyond the first; its fraction blends in one more octave. At -1 there is none.
+  float detail = 0.0f;
   float roughness = 0.0f;
   float lacunarity = 2.0f;
   float offset = 0.0f;
   float gain = 0.0f;
   bool normalize = true;
-  int count() const { return static_cast<int>(detail); }
+  int count() const { return static_cast<int>(std::floor(detail)); }
   float octave_fraction() const { return detail - std::floor(detail); }
 };
 

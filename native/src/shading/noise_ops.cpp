@@ -1,4 +1,4 @@
-// The Noise Texture and White Noise Texture nodes.
+// The Noise Texture, Musgrave Texture and White Noise Texture nodes.
 #include "shading/fractal.h"
 #include "shading/lattice_hash.h"
 #include "shading/op_functions.h"
@@ -76,21 +76,46 @@ void noise_op(const OpArgs& args, Vec4* out) {
   }
 }
 
+// The fractal increment of the Musgrave Texture stands for the roughness, and its detail counts the first octave.
+void musgrave_op(const OpArgs& args, Vec4* out) {
+  Octaves octaves;
+  octaves.detail = (args.f(3) > 0.0f ? std::min(args.f(3), 15.0f) : 0.0f) - 1.0f;
+  octaves.lacunarity = std::max(args.f(5), 1e-5f);
+  octaves.roughness = std::pow(octaves.lacunarity, -std::max(args.f(4), 1e-5f));
+  octaves.offset = args.f(6);
+  octaves.gain = args.f(7);
+  octaves.normalize = false;
+  const uint32_t type = (args.mode >> 3) & 7;
+  const Vec3 p = args.v(0) * args.f(2);
+  const float w = args.f(1) * args.f(2);
+  const auto noise = [&](const auto& q) { out[0] = splat(fractal_noise(type, q, octaves)); };
+  switch (args.mode & 7) {
+    case 1:
+      return noise(w);
+    case 2:
+      return noise(Vec2(p));
+    case 4:
+      return noise(Vec4(p, w));
+    default:
+      return noise(p);
+  }
+}
+
 void white_noise_op(const OpArgs& args, Vec4* out) {
   const Vec3 v = args.v(0);
   const float w = args.f(1);
   switch (args.mode) {
     case 1:
-      out[1] = Vec4(float_hash(w), float_hash(w, 1.0f), float_hash(w, 2.0f), 1.0f);
+      out[1] = value(color_hash(w));
       break;
     case 2:
-      out[1] = Vec4(float_hash(v.x, v.y), float_hash(v.x, v.y, 1.0f), float_hash(v.x, v.y, 2.0f), 1.0f);
+      out[1] = value(color_hash(v.x, v.y));
       break;
     case 4:
-      out[1] = Vec4(float_hash(v.x, v.y, v.z, w), float_hash(v.z, v.x, w, v.y), float_hash(w, v.z, v.y, v.x), 1.0f);
+      out[1] = value(color_hash(v.x, v.y, v.z, w));
       break;
     default:
-      out[1] = Vec4(float_hash(v.x, v.y, v.z), float_hash(v.x, v.y, v.z, 1.0f), float_hash(v.x, v.y, v.z, 2.0f), 1.0f);
+      out[1] = value(color_hash(v.x, v.y, v.z));
   }
   out[0] = splat(out[1].x);
 }

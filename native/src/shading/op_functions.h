@@ -16,6 +16,9 @@ void magic_op(const OpArgs& args, Vec4* out);
 void brick_op(const OpArgs& args, Vec4* out);
 void sky_op(const OpArgs& args, Vec4* out);
 void ies_op(const OpArgs& args, Vec4* out);
+void voronoi_op(const OpArgs& args, Vec4* out);
+void musgrave_op(const OpArgs& args, Vec4* out);
+void gabor_op(const OpArgs& args, Vec4* out);
 void mapping_op(const OpArgs& args, Vec4* out);
 void vector_rotate_op(const OpArgs& args, Vec4* out);
 void mix_op(const OpArgs& args, Vec4* out);
@@ -36,6 +39,8 @@ void rgb_to_bw_op(const OpArgs& args, Vec4* out);
 void average_op(const OpArgs& args, Vec4* out);
 void blackbody_op(const OpArgs& args, Vec4* out);
 void normal_dot_op(const OpArgs& args, Vec4* out);
+void wavelength_op(const OpArgs& args, Vec4* out);
+void radial_tiling_op(const OpArgs& args, Vec4* out);
 
 // Operations that depend on the point, the ray, the object or an image.
 void geometry_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);

@@ -66,6 +66,9 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_BRICK] = {"BRICK", OpKind::Pure, 10, 2, 4, 0};
   table[GRADUS_OP_SKY] = {"SKY", OpKind::Pure, 1, 1, 0, GRADUS_SKY_MULTIPLE_SCATTERING};
   table[GRADUS_OP_IES] = {"IES", OpKind::Pure, 2, 1, 1, 0};
+  table[GRADUS_OP_VORONOI] = {"VORONOI", OpKind::Pure, 9, 5, 0, 2047};
+  table[GRADUS_OP_MUSGRAVE] = {"MUSGRAVE", OpKind::Pure, 8, 1, 0, 63};
+  table[GRADUS_OP_GABOR] = {"GABOR", OpKind::Pure, 6, 3, 0, 3};
   table[GRADUS_OP_MAPPING] = {"MAPPING", OpKind::Pure, 4, 1, 0, GRADUS_MAPPING_NORMAL};
   table[GRADUS_OP_VECTOR_TRANSFORM] = {"VECTOR_TRANSFORM", OpKind::Context, 1, 1, 0, 42};
   table[GRADUS_OP_VECTOR_ROTATE] = {"VECTOR_ROTATE", OpKind::Pure, 5, 1, 0, 12};
@@ -89,6 +92,8 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_LIGHT_FALLOFF] = {"LIGHT_FALLOFF", OpKind::Context, 2, 1, 0, 2};
   table[GRADUS_OP_LIGHT_FALLOFF].ray_modes = kAllModes;
   table[GRADUS_OP_NORMAL_DOT] = {"NORMAL_DOT", OpKind::Pure, 1, 2, 3, 0};
+  table[GRADUS_OP_WAVELENGTH] = {"WAVELENGTH", OpKind::Pure, 1, 1, 0, 0};
+  table[GRADUS_OP_RADIAL_TILING] = {"RADIAL_TILING", OpKind::Pure, 3, 4, 0, 1};
   return table;
 }
 
@@ -124,6 +129,15 @@ bool evaluate_pure(uint32_t op, const OpArgs& args, Vec4* out) {
       return true;
     case GRADUS_OP_IES:
       ies_op(args, out);
+      return true;
+    case GRADUS_OP_VORONOI:
+      voronoi_op(args, out);
+      return true;
+    case GRADUS_OP_MUSGRAVE:
+      musgrave_op(args, out);
+      return true;
+    case GRADUS_OP_GABOR:
+      gabor_op(args, out);
       return true;
     case GRADUS_OP_MAPPING:
       mapping_op(args, out);
@@ -184,6 +198,12 @@ bool evaluate_pure(uint32_t op, const OpArgs& args, Vec4* out) {
       return true;
     case GRADUS_OP_NORMAL_DOT:
       normal_dot_op(args, out);
+      return true;
+    case GRADUS_OP_WAVELENGTH:
+      wavelength_op(args, out);
+      return true;
+    case GRADUS_OP_RADIAL_TILING:
+      radial_tiling_op(args, out);
       return true;
     default:
       return false;

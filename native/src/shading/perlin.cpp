@@ -43,35 +43,16 @@ float wrapped(float x) {
   return std::fabs(x) < 1e5f ? x : std::fmod(x, 1e5f) + (std::fabs(x) >= 1e6f ? 0.5f : 0.0f);
 }
 
-// Eight SIMD lanes, one for each corner of a cell. Bit 0 of the lane number is the step along x, bit 1 along y, and bit
-// 2 along z.
-using Lanes = uint32_t __attribute__((vector_size(32)));
-using FloatLanes = float __attribute__((vector_size(32)));
-
+// The corners of a cell in eight lanes. Bit 0 of the lane number is the step along x, bit 1 along y, and bit 2 along z.
 constexpr Lanes kStepX = {0, 1, 0, 1, 0, 1, 0, 1}, kStepY = {0, 0, 1, 1, 0, 0, 1, 1}, kStepZ = {0, 0, 0, 0, 1, 1, 1, 1};
 constexpr FloatLanes kOffsetX = {0, 1, 0, 1, 0, 1, 0, 1}, kOffsetY = {0, 0, 1, 1, 0, 0, 1, 1},
                      kOffsetZ = {0, 0, 0, 0, 1, 1, 1, 1};
-
-Lanes rotate(Lanes v, int k) { return (v << k) | (v >> (32 - k)); }
-
-// Computes lattice_hash(x, y, z) in every lane.
-Lanes hash_lanes(Lanes x, Lanes y, Lanes z) {
-  const uint32_t start = detail::jenkins_start(3);
-  Lanes a = x + start, b = y + start, c = z + start;
-  c = (c ^ b) - rotate(b, 14);
-  a = (a ^ c) - rotate(c, 11);
-  b = (b ^ a) - rotate(a, 25);
-  c = (c ^ b) - rotate(b, 16);
-  a = (a ^ c) - rotate(c, 4);
-  b = (b ^ a) - rotate(a, 14);
-  return (c ^ b) - rotate(b, 24);
-}
 
 // Changes the sign where bit 0 of `condition` is set.
 FloatLanes flip_lanes(FloatLanes v, Lanes condition) { return (FloatLanes)((Lanes)v ^ (condition << 31)); }
 
 float perlin3(const Cell& x, const Cell& y, const Cell& z) {
-  const Lanes h = hash_lanes(kStepX + x.index, kStepY + y.index, kStepZ + z.index) & 15u;
+  const Lanes h = lattice_hash(kStepX + x.index, kStepY + y.index, kStepZ + z.index) & 15u;
   const FloatLanes dx = x.offset - kOffsetX, dy = y.offset - kOffsetY, dz = z.offset - kOffsetZ;
   const FloatLanes u = h < 8u ? dx : dy;
   const FloatLanes t = (h == 12u) | (h == 14u) ? dx : dz;
