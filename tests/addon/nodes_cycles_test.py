@@ -14,33 +14,10 @@ import numpy as np
 import pytest
 from gradus.nodes.fallback import TEXTURE_MEANS
 from support import images, recording
-from support.nodes import new_material, show, socket
+from support.cycles import picture, pictures
+from support.nodes import Graph, new_material, show, socket
 
 VERSION = tuple(bpy.app.version)
-
-
-class Graph:
-    """A shorthand for building node trees."""
-
-    def __init__(self, material: bpy.types.Material) -> None:
-        self.tree = material.node_tree
-
-    def __call__(
-        self, kind: str, output: str, inputs: dict[str, Any] | None = None, **properties: Any
-    ) -> bpy.types.NodeSocket:
-        node = self.tree.nodes.new(f"ShaderNode{kind}")
-        for name, value in properties.items():
-            setattr(node, name, value)
-        for name, value in (inputs or {}).items():
-            target = socket(node.inputs, name)
-            if isinstance(value, bpy.types.NodeSocket):
-                self.tree.links.new(value, target)
-            else:
-                target.default_value = value
-        return socket(node.outputs, output)
-
-    def place(self) -> bpy.types.NodeSocket:
-        return self("TexCoord", "Object")
 
 
 def checker_image() -> bpy.types.Image:
@@ -164,29 +141,6 @@ def stage() -> bpy.types.Scene:
     scene.camera = camera
     scene.world = bpy.data.worlds.new("World")
     return scene
-
-
-def picture(scene: bpy.types.Scene, folder: Path, engine: str) -> np.ndarray:
-    """Renders an image and returns means of blocks of 4×4 pixels."""
-    scene.render.engine = engine
-    cycles = scene.cycles
-    cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = 16, False, False
-    cycles.pixel_filter_type = "BOX"
-    cycles.filter_width = 1.0
-    settings = {
-        "samples": 16,
-        "integrator": "PATH",
-        "reconstruction": "NONE",
-        "pixel_filter": "BOX",
-        "filter_width": 1.0,
-    }
-    image = images.render(scene, folder, **settings)["Combined"][..., :3]
-    return image.reshape(9, 4, 16, 4, 3).mean(axis=(1, 3))
-
-
-def pictures(scene: bpy.types.Scene, folder: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the picture of Cycles and that of Gradus."""
-    return picture(scene, folder, "CYCLES"), picture(scene, folder, "GRADUS")
 
 
 @pytest.mark.parametrize("name", CASES)
