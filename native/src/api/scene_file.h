@@ -11,7 +11,7 @@
 
 namespace gradus::api {
 
-inline constexpr uint32_t kSceneFormat = 4;
+inline constexpr uint32_t kSceneFormat = 5;
 
 struct FileHeader {
   char magic[8] = {'G', 'R', 'A', 'D', 'U', 'S', 'S', '\n'};

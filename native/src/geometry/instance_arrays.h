@@ -26,10 +26,12 @@ struct InstanceArrays {
   std::vector<float> shadow_terminator_offsets;
   std::vector<uint32_t> material_first, material_count;  // empty: no materials
   std::vector<uint64_t> materials;                       // keys of the slots of all instances
-  std::vector<uint32_t> shutter_first, shutter_count;  // empty: nothing moves while the shutter is open
-  std::vector<Mat4> shutter_matrices;                  // keys of all instances
-  std::vector<uint32_t> name_index;  // index in `names` of each instance
-  std::vector<std::string> names;    // names of objects
+  std::vector<uint32_t> shutter_first, shutter_count;    // empty: nothing moves while the shutter is open
+  std::vector<Mat4> shutter_matrices;                    // keys of all instances
+  std::vector<uint32_t> name_index;                      // index in `names` of each instance
+  std::vector<std::string> names;                        // names of objects
+  std::vector<std::string> attribute_names;
+  std::vector<Vec4> attributes;  // a value of each instance for the first name, then for the next
 
   // Returns the name of instance i for messages, or its number if it has none.
   std::string name(size_t i) const;

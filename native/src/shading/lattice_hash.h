@@ -67,10 +67,16 @@ inline uint32_t lattice_hash(uint32_t x, uint32_t y, uint32_t z, uint32_t w) {
   return c;
 }
 
+// Returns a number in 0…1 that is the hash of 1 to 4 integers.
+template <class... Integers>
+float unit_hash(Integers... x) {
+  return static_cast<float>(lattice_hash(x...)) * (1.0f / static_cast<float>(0xFFFFFFFFu));
+}
+
 // Returns a number in 0…1 that is the hash of the bits of 1 to 4 floats.
 template <class... Floats>
 float float_hash(Floats... x) {
-  return static_cast<float>(lattice_hash(std::bit_cast<uint32_t>(x)...)) * (1.0f / static_cast<float>(0xFFFFFFFFu));
+  return unit_hash(std::bit_cast<uint32_t>(x)...);
 }
 
 }  // namespace gradus::shading
