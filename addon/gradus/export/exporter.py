@@ -17,6 +17,7 @@ from .. import compat, native
 from . import blender_pixels, camera, instances, light, mesh, motion, unsupported, world
 from .collect import Collected, Entry, InstanceKey, collect
 from .digest import Digest
+from .instance_attributes import read_instance_attributes
 from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
 from .material import Materials, Resources
 from .may_move import MayMove
@@ -130,8 +131,7 @@ class _Sync:
         self._scene = depsgraph.scene_eval
         self.size = self._resolution()
         self._wanted = wanted
-        frame = self._scene.frame_current
-        resources = Resources(self._target, exporter._images, frame, bpy.path.abspath, self.warnings)
+        resources = Resources(self._target, exporter._images, depsgraph, self.size, bpy.path.abspath, self.warnings)
         self._materials = Materials(self._target, exporter._materials, resources, poll, self.warnings)
         self._cameras = cameras_of(views, engine, self._scene) if view is None else {}
         self.cameras: dict[str, tuple[native.Camera, Any]] = {}  # by view
@@ -154,6 +154,9 @@ class _Sync:
             self.warnings.add(text)
         for entry in collected.surfaces:
             entry.material_keys = self._materials.surface_keys(entry.materials)
+        if self._materials.instance_attribute_names:
+            of_keys = self._materials.instance_attributes_of
+            read_instance_attributes(self._depsgraph, collected.surfaces, of_keys, self._poll, self.warnings.add)
         self._set_world()
         self._set_lights(collected)
         mesh_of = self._read_meshes(collected)
@@ -237,7 +240,7 @@ class _Sync:
         undeformed = original.data if original.type == "MESH" and may_deform else None
         if len(entry.data.polygons) == 0:
             return None
-        arrays = mesh.read_mesh(entry.data, wanted, undeformed)
+        arrays = mesh.read_mesh(entry.data, wanted, undeformed, self._materials.reads_edges)
         frames_per_second = self._scene.render.fps / self._scene.render.fps_base
         if self._wanted.vectors:
             arrays.motion = motion.velocity_motion(entry.data, arrays, frames_per_second)
@@ -262,6 +265,7 @@ class _Sync:
             arrays.previous, arrays.following = (self._matrices_at(arrays.entries, moment) for moment in around)
         if self._wanted.shutter is not None:
             arrays.blur = motion.instance_blur(arrays.entries, arrays.matrices, self._wanted.shutter, moments)
+        arrays.attribute_names = sorted(self._materials.instance_attribute_names)
         struct, kept = instances.fill_instances(arrays)
         self._target.set_instances(struct)
         if self._digest is not None:
