@@ -323,6 +323,8 @@ class Mesh(Struct):
         ("shutter_positions", POINTER(c_float)),
         ("shutter_key_count", c_uint32),
         ("reserved", c_uint32),
+        ("edge_count", c_size_t),
+        ("edge_vertices", POINTER(c_int32)),
     ]
 
 
@@ -331,7 +333,7 @@ class Instances(Struct):
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("reserved", c_uint32),
+        ("attribute_count", c_uint32),
         ("count", c_size_t),
         ("meshes", POINTER(c_uint64)),
         ("ids", POINTER(c_uint64)),
@@ -358,6 +360,8 @@ class Instances(Struct):
         ("shutter_matrices", POINTER(c_float)),
         ("light_groups", POINTER(c_uint32)),
         ("asset_name_index", POINTER(c_uint32)),
+        ("attribute_names", POINTER(c_char_p)),
+        ("attributes", POINTER(c_float)),
     ]
 
 

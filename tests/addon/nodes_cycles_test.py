@@ -13,8 +13,8 @@ import bpy
 import numpy as np
 import pytest
 from support import images, recording
-from support.graphs import Graph
-from support.nodes import new_material, show, socket
+from support.cycles import picture, pictures
+from support.nodes import Graph, new_material, show, socket
 
 VERSION = tuple(bpy.app.version)
 
@@ -156,29 +156,6 @@ def stage() -> bpy.types.Scene:
     scene.camera = camera
     scene.world = bpy.data.worlds.new("World")
     return scene
-
-
-def picture(scene: bpy.types.Scene, folder: Path, engine: str) -> np.ndarray:
-    """Renders an image and returns means of blocks of 4×4 pixels."""
-    scene.render.engine = engine
-    cycles = scene.cycles
-    cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = 16, False, False
-    cycles.pixel_filter_type = "BOX"
-    cycles.filter_width = 1.0
-    settings = {
-        "samples": 16,
-        "integrator": "PATH",
-        "reconstruction": "NONE",
-        "pixel_filter": "BOX",
-        "filter_width": 1.0,
-    }
-    image = images.render(scene, folder, **settings)["Combined"][..., :3]
-    return image.reshape(9, 4, 16, 4, 3).mean(axis=(1, 3))
-
-
-def pictures(scene: bpy.types.Scene, folder: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the picture of Cycles and that of Gradus."""
-    return picture(scene, folder, "CYCLES"), picture(scene, folder, "GRADUS")
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -14,8 +14,7 @@ import bpy
 import numpy as np
 import pytest
 from support import images, recording
-from support.graphs import Graph
-from support.nodes import new_material, show
+from support.nodes import Graph, new_material, show
 
 WIDTH, HEIGHT, COLUMNS = 64, 36, 4
 TOLERANCE = 2e-5

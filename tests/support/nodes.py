@@ -10,6 +10,8 @@ import bpy
 class Resources:
     """Records the keys of images in the order of requests."""
 
+    pixel = (1.0 / 64.0, 1.0 / 36.0)
+
     def __init__(self) -> None:
         self.images: list[Any] = []
         self.aovs: dict[str, int] = {}
@@ -21,6 +23,9 @@ class Resources:
 
     def text(self, path: str, owner: Any) -> str | None:
         return None
+
+    def view_layer_color(self, name: str) -> tuple[float, ...]:
+        return (0.0, 0.0, 0.0, 0.0)
 
     def warn(self, text: str) -> None:
         raise AssertionError(text)
@@ -53,6 +58,30 @@ def show(material: bpy.types.Material, source: bpy.types.NodeSocket) -> None:
         tree.links.new(source, emission.inputs["Color"])
         source = emission.outputs[0]
     tree.links.new(source, output_of(material).inputs["Surface"])
+
+
+class Graph:
+    """A shorthand for building node trees."""
+
+    def __init__(self, material: bpy.types.Material) -> None:
+        self.tree = material.node_tree
+
+    def __call__(
+        self, kind: str, output: str, inputs: dict[str, Any] | None = None, **properties: Any
+    ) -> bpy.types.NodeSocket:
+        node = self.tree.nodes.new(f"ShaderNode{kind}")
+        for name, value in properties.items():
+            setattr(node, name, value)
+        for name, value in (inputs or {}).items():
+            target = socket(node.inputs, name)
+            if isinstance(value, bpy.types.NodeSocket):
+                self.tree.links.new(value, target)
+            else:
+                target.default_value = value
+        return socket(node.outputs, output)
+
+    def place(self) -> bpy.types.NodeSocket:
+        return self("TexCoord", "Object")
 
 
 def translate(block: Any, kind: str = "SURFACE", resources: Resources | None = None) -> Any:

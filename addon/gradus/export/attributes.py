@@ -8,6 +8,7 @@ from typing import Any
 
 from .. import native
 from .arrays import read
+from .edges import on_vertices
 
 _DOMAINS = {"POINT": 0, "FACE": 1, "CORNER": 2}
 # data type: property, type code in which Blender stores it, channels
@@ -62,15 +63,26 @@ def _read_uv(layer: Any) -> array:
     return read(layer.data, "uv", "f", 2)
 
 
-def _read_generic(attribute: Any, name: str) -> AttributeArrays | None:
-    if attribute.domain not in _DOMAINS or attribute.data_type not in _TYPES:
+def read_values(attribute: Any) -> tuple[int, array] | None:
+    """Returns the number of channels and the values of an attribute as floats, or None if it holds no numbers."""
+    if attribute.data_type not in _TYPES:
         return None
     prop, typecode, channels = _TYPES[attribute.data_type]
     data = read(attribute.data, prop, typecode, channels)
-    if typecode != "f":
-        data = array("f", data)
-    is_uv = attribute.data_type == "FLOAT2" and attribute.domain == "CORNER"
-    return AttributeArrays(name, _DOMAINS[attribute.domain], channels, data, is_uv)
+    return channels, data if typecode == "f" else array("f", data)
+
+
+def _read_generic(mesh: Any, attribute: Any, name: str) -> AttributeArrays | None:
+    """Returns an attribute of any domain. Values of edges become values of vertices, as in Cycles."""
+    values = read_values(attribute)
+    if values is None:
+        return None
+    channels, data = values
+    domain = attribute.domain
+    if domain == "EDGE":
+        domain, data = "POINT", on_vertices(mesh, data, channels, attribute.data_type)
+    is_uv = attribute.data_type == "FLOAT2" and domain == "CORNER"
+    return AttributeArrays(name, _DOMAINS[domain], channels, data, is_uv)
 
 
 def read_attributes(mesh: Any, wanted: frozenset[str] | None, uv_name: str) -> list[AttributeArrays]:
@@ -90,12 +102,12 @@ def read_attributes(mesh: Any, wanted: frozenset[str] | None, uv_name: str) -> l
         if name in uv_layers or (name.startswith(".") and (wanted is None or name not in wanted)):
             continue
         if name == uv_name or wanted is None or name in wanted:
-            arrays = _read_generic(attribute, name)
+            arrays = _read_generic(mesh, attribute, name)
             if arrays is not None and len(arrays.data):
                 found.append(arrays)
     if wanted is not None and "" in wanted:
         color = mesh.color_attributes.get(default_color(mesh))
-        arrays = _read_generic(color, "") if color is not None else None
+        arrays = _read_generic(mesh, color, "") if color is not None else None
         if arrays is not None:
             found.append(arrays)
     return found

@@ -8,7 +8,7 @@ they are needed after that.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,6 +16,7 @@ from . import shadow_terminator, unsupported
 from .arrays import read
 from .may_move import MayMove
 from .object_random import name_hash
+from .properties import Color
 from .shutter import NO_BLUR, Blur, blur_of
 from .visibility import ALL_RAYS, MAY_MOVE, visibility
 
@@ -44,6 +45,7 @@ class Entry:
     uv: tuple[float, ...] = (0.0, 0.0)
     materials: tuple[Any, ...] = ()
     material_keys: tuple[int, ...] = ()
+    attributes: Mapping[str, Color] | None = None  # those that the materials read
 
 
 @dataclass
@@ -117,8 +119,9 @@ class _ObjectCache:
                 bits |= MAY_MOVE
             offset = shadow_terminator.geometry_offset(obj)
             blur = blur_of(owner, parent)
-            color, asset = tuple(obj.color), _topmost(owner).name
-            group = getattr(owner, "lightgroup", "")
+            # Instances have the colour of their instancer.
+            color = tuple((obj if parent is None else parent).color)
+            group, asset = getattr(owner, "lightgroup", ""), _topmost(owner).name
             found = _ObjectProperties(key, bits, owner.name, obj.pass_index, color, offset, blur, group, asset)
             found.is_edited = owner.type == "MESH" and owner.data.is_editmode
             self._properties[evaluated] = found

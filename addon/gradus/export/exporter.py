@@ -19,6 +19,7 @@ from ..layer_channels import Channel, channels_of
 from . import blender_pixels, camera, channels, instances, light, mesh, motion, unsupported, world
 from .collect import Collected, Entry, InstanceKey, collect
 from .digest import Digest
+from .instance_attributes import read_instance_attributes
 from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
 from .material import Materials, Resources
 from .may_move import MayMove
@@ -133,12 +134,11 @@ class _Sync:
         self._scene = depsgraph.scene_eval
         self.size = self._resolution()
         self._wanted = wanted
-        frame = self._scene.frame_current
         self._channels: tuple[Channel, ...] = ()
         if view is None and not is_preview:
             self._channels = channels_of(depsgraph.view_layer_eval)
         self._groups = channels.numbers(self._channels, ChannelKind.LIGHT_GROUP)
-        resources = Resources(self._target, exporter._images, frame, bpy.path.abspath, self.warnings)
+        resources = Resources(self._target, exporter._images, depsgraph, self.size, bpy.path.abspath, self.warnings)
         resources.aovs = channels.aovs(self._channels)
         self._materials = Materials(self._target, exporter._materials, resources, poll, self.warnings)
         self._cameras = cameras_of(views, engine, self._scene) if view is None else {}
@@ -162,6 +162,9 @@ class _Sync:
             self.warnings.add(text)
         for entry in collected.surfaces:
             entry.material_keys = self._materials.surface_keys(entry.materials)
+        if self._materials.instance_attribute_names:
+            of_keys = self._materials.instance_attributes_of
+            read_instance_attributes(self._depsgraph, collected.surfaces, of_keys, self._poll, self.warnings.add)
         self._set_channels()
         self._set_world()
         self._set_lights(collected)
@@ -246,7 +249,7 @@ class _Sync:
         undeformed = original.data if original.type == "MESH" and may_deform else None
         if len(entry.data.polygons) == 0:
             return None
-        arrays = mesh.read_mesh(entry.data, wanted, undeformed)
+        arrays = mesh.read_mesh(entry.data, wanted, undeformed, self._materials.reads_edges)
         frames_per_second = self._scene.render.fps / self._scene.render.fps_base
         if self._wanted.vectors:
             arrays.motion = motion.velocity_motion(entry.data, arrays, frames_per_second)
@@ -271,6 +274,7 @@ class _Sync:
             arrays.previous, arrays.following = (self._matrices_at(arrays.entries, moment) for moment in around)
         if self._wanted.shutter is not None:
             arrays.blur = motion.instance_blur(arrays.entries, arrays.matrices, self._wanted.shutter, moments)
+        arrays.attribute_names = sorted(self._materials.instance_attribute_names)
         struct, kept = instances.fill_instances(arrays, self._groups)
         self._target.set_instances(struct)
         if self._digest is not None:

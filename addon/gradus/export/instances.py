@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from .. import native
 from .collect import Collected, Entry, InstanceKey
 from .motion import InstanceBlur
+from .properties import MISSING
 
 
 def _pick(values: array, entries: list[Entry]) -> array:
@@ -36,6 +37,7 @@ class InstanceArrays:
     previous: array | None = None
     following: array | None = None
     blur: InstanceBlur | None = None
+    attribute_names: list[str] = field(default_factory=list)
 
 
 def instance_arrays(
@@ -91,6 +93,7 @@ def fill_instances(arrays: InstanceArrays, groups: dict[str, int]) -> tuple[nati
         "material_first": arrays.material_first,
         "material_count": arrays.material_count,
         "materials": arrays.materials,
+        "attributes": _attributes(arrays),
     }
     if groups:
         columns["light_groups"] = array("I", [groups.get(entry.light_group, 0) for entry in entries])
@@ -104,7 +107,19 @@ def fill_instances(arrays: InstanceArrays, groups: dict[str, int]) -> tuple[nati
     texts = native.name_array(list(names))
     struct.names = texts
     struct.name_count = len(names)
-    return struct, [columns, texts, arrays]
+    attribute_names = native.name_array(arrays.attribute_names)
+    struct.attribute_names = attribute_names
+    struct.attribute_count = len(arrays.attribute_names)
+    return struct, [columns, texts, attribute_names, arrays]
+
+
+def _attributes(arrays: InstanceArrays) -> array:
+    """Returns 4 values an instance for each attribute. Instances whose materials do not read it have zeros."""
+    values = array("f")
+    for name in arrays.attribute_names:
+        for entry in arrays.entries:
+            values.extend((entry.attributes or {}).get(name, MISSING))
+    return values
 
 
 def _flat(entries: list[Entry], attribute: str, width: int) -> array:

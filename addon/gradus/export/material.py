@@ -9,6 +9,7 @@ from typing import Any
 from .. import compat, native
 from . import image as images
 from .keys import KeyTable
+from .properties import MISSING, Color, find_color
 from .report import Warnings
 from .target import Target
 
@@ -19,13 +20,22 @@ class Resources:
     """Provides the keys of images and the content of files for the translation of nodes."""
 
     def __init__(
-        self, target: Target, keys: KeyTable, frame: int, abspath: Callable[..., str], warnings: Warnings
+        self,
+        target: Target,
+        keys: KeyTable,
+        depsgraph: Any,
+        size: tuple[int, int],
+        abspath: Callable[..., str],
+        warnings: Warnings,
     ) -> None:
         self._target = target
+        self._depsgraph = depsgraph
         self._keys = keys
         self._abspath = abspath
         self._warnings = warnings
-        self.frame = frame
+        self.frame = depsgraph.scene_eval.frame_current
+        self.pixel = (1.0 / size[0], 1.0 / size[1])
+        """Width and height of a pixel as a share of the frame."""
         self.aovs: dict[str, int] = {}
         """The index + 1 of the channels of AOVs, by name."""
 
@@ -57,6 +67,11 @@ class Resources:
         except (OSError, ValueError):
             return None
 
+    def view_layer_color(self, name: str) -> Color:
+        """Returns a property of the view layer, the scene or the world."""
+        scene = self._depsgraph.scene_eval
+        return find_color((self._depsgraph.view_layer_eval, scene, scene.world), name) or MISSING
+
     def content(self, key: int) -> Any:
         """Returns a value that is equal for images of equal content."""
         return self._keys.content(key)
@@ -79,6 +94,9 @@ class Materials:
         self._done: dict[tuple[str, int], int] = {}
         self._programs: dict[int, Any] = {}  # by key
         self.attribute_names: set[str] = set()
+        self.instance_attribute_names: set[str] = set()
+        self.reads_edges = False
+        self._names_of: dict[tuple[int, ...], list[str]] = {}
 
     def key(self, block: Any, kind: str = "MATERIAL") -> int:
         """Returns the key of a material (kind MATERIAL), world (WORLD) or light (LIGHT).
@@ -110,6 +128,13 @@ class Materials:
             return tuple(self.key(material) or self._default_surface() for material in materials or (None,))
         return tuple(self.key(material) for material in materials)
 
+    def instance_attributes_of(self, keys: tuple[int, ...]) -> list[str]:
+        """Returns the names of the attributes that materials read from their instances."""
+        if keys not in self._names_of:
+            programs = (self._programs[key] for key in keys if key in self._programs)
+            self._names_of[keys] = sorted(set().union(*(program.instance_attribute_names for program in programs)))
+        return self._names_of[keys]
+
     def _default_surface(self) -> int:
         token = ("DEFAULT", 0)
         key = self._done.get(token)
@@ -130,6 +155,8 @@ class Materials:
         for text in program.warnings:
             self._warnings.add(text)
         self.attribute_names.update(program.attribute_names)
+        self.instance_attribute_names.update(program.instance_attribute_names)
+        self.reads_edges |= program.reads_edges
         if self._keys.changed(key, program.content()):
             struct, _keep = program.to_native(native)
             self._target.set_material(key, struct)

@@ -14,6 +14,7 @@ from typing import Any
 from .. import native
 from . import attributes
 from .arrays import read
+from .edges import edge_vertices
 
 POINT, FACE, CORNER = 0, 1, 2
 
@@ -35,6 +36,7 @@ class MeshArrays:
     default_uv: str = ""
     texture_space: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0, 1.0, 1.0)
     generated_points: array | None = None
+    edge_vertices: array | None = None  # 2 vertices per edge
     motion: tuple[array, array] | None = None  # positions one frame before and after
     blur: array | None = None  # positions while the shutter is open, key after key
 
@@ -52,6 +54,7 @@ class MeshArrays:
             ("n", self.normals),
             ("g", self.generated_points),
             ("b", self.blur),
+            ("e", self.edge_vertices),
             *zip("pf", self.motion or (), strict=False),
         )
         for mark, values in optional:
@@ -137,11 +140,12 @@ def _face_materials(mesh: Any) -> array | None:
     return read(stored.data, "value", "i")
 
 
-def read_mesh(mesh: Any, wanted: frozenset[str] | None, original: Any = None) -> MeshArrays:
+def read_mesh(mesh: Any, wanted: frozenset[str] | None, original: Any = None, with_edges: bool = False) -> MeshArrays:
     """Reads an evaluated mesh.
 
     wanted: names of the attributes that materials use, None for all; the UV map that is active for renders is always
-    read. original: the mesh before its modifiers, if they may have deformed it.
+    read. original: the mesh before its modifiers, if they may have deformed it. with_edges: whether the library needs
+    edges.
     """
     mesh.calc_loop_triangles()
     domain, normals = _normals(mesh)
@@ -159,6 +163,8 @@ def read_mesh(mesh: Any, wanted: frozenset[str] | None, original: Any = None) ->
         texture_space=(*mesh.texspace_location, *mesh.texspace_size),
     )
     arrays.attributes = attributes.read_attributes(mesh, wanted, arrays.default_uv)
+    if with_edges:
+        arrays.edge_vertices = edge_vertices(mesh)
     if original is not None:
         arrays.generated_points = _generated_points(mesh, arrays.positions, original)
     return arrays
@@ -206,5 +212,7 @@ def fill_mesh(arrays: MeshArrays) -> tuple[native.Mesh, list[Any]]:
     struct.generated_points = native.pointer(arrays.generated_points)
     struct.shutter_positions = native.pointer(arrays.blur)
     struct.shutter_key_count = len(arrays.blur) // len(arrays.positions) if arrays.blur else 0
+    struct.edge_vertices = native.pointer(arrays.edge_vertices)
+    struct.edge_count = len(arrays.edge_vertices) // 2 if arrays.edge_vertices else 0
     struct.name = native.name(arrays.name)
     return struct, [positions, times, records, arrays]

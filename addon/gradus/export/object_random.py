@@ -1,10 +1,12 @@
-"""The value of Object Info > Random for objects that are not instances: a hash of the name, as in Cycles."""
+"""Random numbers of objects and particles, which are hashes as in Cycles."""
 
 from __future__ import annotations
 
 
 def name_hash(name: str) -> int:
-    """Returns 32 bits: a multiplicative hash of the bytes of the name, followed by a mixing step.
+    """Returns Object Info > Random of an object that is no instance, in 32 bits.
+
+    It is a multiplicative hash of the bytes of the name, followed by a mixing step.
 
     The mixing step is final() of lookup3 by Bob Jenkins (public domain), with a second word of 0.
     """
@@ -12,6 +14,11 @@ def name_hash(name: str) -> int:
     for byte in name.encode("utf-8", "surrogateescape"):
         value = (value * 37 + byte) & 0xFFFFFFFF
     return _mix(value)
+
+
+def unit_hash(value: int) -> float:
+    """Returns Particle Info > Random of a particle's index, in 0…1."""
+    return _mix(value) / 0xFFFFFFFF
 
 
 def _rotate(value: int, bits: int) -> int:

@@ -38,6 +38,7 @@ def fill_world(world: Any, material: int, groups: dict[str, int]) -> native.Worl
     struct.visibility = ALL_RAYS
     struct.importance = 1
     struct.mist_depth = 1.0
+    struct.ao_distance = 10.0  # as in Cycles
     if world is None:
         return struct
     struct.visibility = world_visibility(world)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from ..attribute_names import INSTANCER, OBJECT, PARTICLE
 from .node import NodeView, translator
 from .ops import Geometry, LightPath, Op, Tangent, TexCoord
-from .program import FLOAT, VECTOR, Value, constant_color, constant_float
+from .program import COLOR, FLOAT, VECTOR, Value, constant_color, constant_float, constant_vector
 
 _GEOMETRY = {
     "Position": Geometry.POSITION,
@@ -13,6 +14,10 @@ _GEOMETRY = {
     "True Normal": Geometry.TRUE_NORMAL,
     "Incoming": Geometry.INCOMING,
     "Parametric": Geometry.PARAMETRIC,
+}
+_GEOMETRY_BY_EDGES = {
+    "Pointiness": Geometry.POINTINESS,
+    "Random Per Island": Geometry.RANDOM_PER_ISLAND,
 }
 _LIGHT_PATH = {
     "Is Camera Ray": LightPath.CAMERA,
@@ -43,13 +48,13 @@ _OBJECT_INFO = {"Location": 0, "Color": 1, "Object Index": 2, "Random": 3, "Alph
 
 
 @translator("ShaderNodeNewGeometry")
-def geometry(view: NodeView) -> Value | None:
+def geometry(view: NodeView) -> Value:
     if view.output == "Backfacing":
         return view.add_float(Op.GEOMETRY, (), Geometry.BACKFACING)
-    if view.output in _GEOMETRY:
-        return view.add_vector(Op.GEOMETRY, (), _GEOMETRY[view.output])
-    view.warn_replaced(f"has an output that is not supported: {view.output}")
-    return constant_float(0.5)
+    if view.output in _GEOMETRY_BY_EDGES:
+        view.program.reads_edges = True
+        return view.add_float(Op.GEOMETRY, (), _GEOMETRY_BY_EDGES[view.output])
+    return view.add_vector(Op.GEOMETRY, (), _GEOMETRY[view.output])
 
 
 @translator("ShaderNodeLightPath")
@@ -89,8 +94,6 @@ def tangent(view: NodeView) -> Value:
 
 
 _ATTRIBUTE_OUTPUTS = {"Color": (0, "color"), "Vector": (1, VECTOR), "Fac": (2, FLOAT), "Alpha": (3, FLOAT)}
-# Properties of objects that are also outputs of Object Info.
-_OBJECT_PROPERTIES = {"color": 1, "pass_index": 2, "location": 0}
 
 
 @translator("ShaderNodeAttribute")
@@ -99,12 +102,18 @@ def attribute(view: NodeView) -> Value:
     name = view.node.attribute_name
     if view.node.attribute_type == "GEOMETRY":
         return view.add(Op.ATTRIBUTE, resource=view.name_resource(name), kind=kind, output=output)
-    if view.node.attribute_type in {"OBJECT", "INSTANCER"} and name in _OBJECT_PROPERTIES:
-        if view.output == "Alpha":
-            return view.add(Op.OBJECT_INFO, kind=kind, output=4) if name == "color" else constant_float(1.0)
-        return view.add(Op.OBJECT_INFO, kind=kind, output=_OBJECT_PROPERTIES[name])
-    view.warn_replaced(f"uses the property '{name}', which is not supported")
-    return constant_float(0.0)
+    if view.node.attribute_type == "VIEW_LAYER":
+        return _constant_attribute(view.walker.resources.view_layer_color(name), view.output)
+    prefix = {"OBJECT": OBJECT, "INSTANCER": INSTANCER}[view.node.attribute_type]
+    return view.instance_attribute(prefix + name, kind=kind, output=output)
+
+
+def _constant_attribute(color: tuple[float, ...], output: str) -> Value:
+    if output == "Alpha":
+        return constant_float(color[3])
+    if output == "Fac":
+        return constant_float(sum(color[:3]) / 3.0)
+    return constant_color(color) if output == "Color" else constant_vector(color)
 
 
 @translator("ShaderNodeVertexColor")
@@ -119,6 +128,44 @@ def object_info(view: NodeView) -> Value:
         return constant_float(view.program.pass_index)
     kind = {"Location": VECTOR, "Color": "color"}.get(view.output, FLOAT)
     return view.add(Op.OBJECT_INFO, kind=kind, output=_OBJECT_INFO[view.output])
+
+
+@translator("ShaderNodeParticleInfo")
+def particle_info(view: NodeView) -> Value:
+    is_vector = view.output in {"Location", "Velocity", "Angular Velocity"}
+    kind, output = (VECTOR, 1) if is_vector else (FLOAT, 2)
+    return view.instance_attribute(PARTICLE + view.output, kind=kind, output=output)
+
+
+@translator("ShaderNodeHairInfo", "ShaderNodePointInfo")
+def hair_or_point_info(view: NodeView) -> Value:
+    """Returns the value of surfaces, which are neither hair nor points."""
+    is_vector = view.output in {"Tangent Normal", "Position"}
+    return constant_vector((0.0, 0.0, 0.0)) if is_vector else constant_float(0.0)
+
+
+@translator("ShaderNodeWireframe")
+def wireframe(view: NodeView) -> Value:
+    mode = 1 if view.node.use_pixel_size else 0
+    return view.add_float(Op.WIREFRAME, (view.value("Size"),), mode, floats=view.walker.resources.pixel)
+
+
+@translator("ShaderNodeAmbientOcclusion")
+def ambient_occlusion(view: NodeView) -> Value:
+    distance = view.value("Distance")
+    # A constant distance of 0 stands for that of the world.
+    of_world = distance.is_constant and distance.is_zero()
+    mode = view.node.inside + 2 * view.node.only_local + 4 * of_world
+    inputs = (view.value("Color"), distance, view.direction("Normal"))
+    kind, output = (FLOAT, 1) if view.output == "AO" else (COLOR, 0)
+    floats = (float(view.node.samples),)
+    return view.add(Op.AMBIENT_OCCLUSION, inputs, mode, floats, kind=kind, output=output)
+
+
+@translator("ShaderNodeBevel")
+def bevel(view: NodeView) -> Value:
+    inputs = (view.value("Radius"), view.direction("Normal"))
+    return view.add_vector(Op.BEVEL, inputs, floats=(float(view.node.samples),))
 
 
 @translator("ShaderNodeCameraData")

@@ -99,6 +99,11 @@ class NodeView:
     def name_resource(self, name: str) -> int:
         return self.program.name_index(name)
 
+    def instance_attribute(self, name: str, *, kind: str, output: int) -> Value:
+        """Adds a read of an attribute of the instance. `name` has a prefix of attribute_names.py."""
+        resource = self.program.instance_name_index(name)
+        return self.add(Op.INSTANCE_ATTRIBUTE, resource=resource, kind=kind, output=output)
+
     def warn_replaced(self, text: str) -> None:
         """Adds a warning with the names of material and node. Pass Fallback marks the pixels of the material."""
         self.program.uses_fallback = True

@@ -37,6 +37,10 @@ class Op(IntEnum):
     CAMERA_DATA = 40
     NORMAL_MAP = 41
     BUMP = 42
+    INSTANCE_ATTRIBUTE = 56
+    WIREFRAME = 57
+    AMBIENT_OCCLUSION = 58
+    BEVEL = 59
     IMAGE = 64
     ENVIRONMENT = 65
     NOISE = 66
@@ -94,6 +98,8 @@ class Geometry(IntEnum):
     INCOMING = 4
     PARAMETRIC = 5
     BACKFACING = 6
+    POINTINESS = 7
+    RANDOM_PER_ISLAND = 8
 
 
 class TexCoord(IntEnum):
@@ -392,6 +398,10 @@ INPUTS = {
     Op.CAMERA_DATA: 0,
     Op.NORMAL_MAP: 2,
     Op.BUMP: 5,
+    Op.INSTANCE_ATTRIBUTE: 0,
+    Op.WIREFRAME: 1,
+    Op.AMBIENT_OCCLUSION: 3,
+    Op.BEVEL: 2,
     Op.IMAGE: 1,
     Op.ENVIRONMENT: 1,
     Op.NOISE: 9,
@@ -460,6 +470,10 @@ OUTPUTS = {
     Op.CAMERA_DATA: 3,
     Op.NORMAL_MAP: 1,
     Op.BUMP: 1,
+    Op.INSTANCE_ATTRIBUTE: 4,
+    Op.WIREFRAME: 1,
+    Op.AMBIENT_OCCLUSION: 2,
+    Op.BEVEL: 1,
     Op.IMAGE: 2,
     Op.ENVIRONMENT: 1,
     Op.NOISE: 2,

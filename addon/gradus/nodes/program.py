@@ -64,6 +64,10 @@ class Program:
     warnings: list[str] = field(default_factory=list)
     attribute_names: set[str] = field(default_factory=set)
     """Attributes and UV maps that meshes must have; "" is the colour attribute that is active for renders."""
+    instance_attribute_names: set[str] = field(default_factory=set)
+    """Attributes that instances must have, with the prefixes of attribute_names.py."""
+    reads_edges: bool = False
+    """Whether meshes must have edges, for pointiness and islands."""
     nodes: list[tuple[int, int, int, int, int, int, int]] = field(default_factory=list)
     inputs: list[tuple[int, int, tuple[float, float, float, float]]] = field(default_factory=list)
     floats: array = field(default_factory=lambda: array("f"))
@@ -87,6 +91,14 @@ class Program:
     def name_index(self, name: str) -> int:
         """Returns the resource number of an attribute or UV map, and requests it from meshes."""
         self.attribute_names.add(name)
+        return self._name_index(name)
+
+    def instance_name_index(self, name: str) -> int:
+        """Returns the resource number of an attribute of instances, and requests it."""
+        self.instance_attribute_names.add(name)
+        return self._name_index(name)
+
+    def _name_index(self, name: str) -> int:
         if name not in self.names:
             self.names.append(name)
         return self.names.index(name) + 1

@@ -157,6 +157,8 @@ typedef struct GradusMesh {
                                         shutter to its closing. [m] */
   uint32_t shutter_key_count;        /* Moments in shutter_positions, 2 to 129; 0 = static while the shutter is open. */
   uint32_t reserved;                 /* 0. */
+  size_t edge_count;                 /* Number of edges; 0 = Geometry > Pointiness and Random Per Island are 0. */
+  const int32_t* edge_vertices;      /* 2 vertices an edge. */
 } GradusMesh;
 
 /* Kinds of rays that see an object, a light or the world, and further properties of an object. */
@@ -177,7 +179,7 @@ typedef enum GradusVisibility {
 /* All instances of a scene, as arrays of `count` elements. Arrays may be NULL where that is said. */
 typedef struct GradusInstances {
   uint32_t struct_size;                   /* sizeof this struct. */
-  uint32_t reserved;                      /* 0. */
+  uint32_t attribute_count;               /* Number of named attributes that every instance has. */
   size_t count;                           /* Number of instances. */
   const uint64_t* meshes;                 /* Keys of meshes. */
   const uint64_t* ids;                    /* Identity that stays the same from frame to frame; NULL = the index. */
@@ -210,6 +212,8 @@ typedef struct GradusInstances {
                                              none. */
   const uint32_t* asset_name_index;       /* Index into `names` of the topmost parent, for Cryptomatte; NULL =
                                              name_index. */
+  const char* const* attribute_names;     /* Names of the attributes, which INSTANCE_ATTRIBUTE finds. */
+  const float* attributes;                /* 4 values an instance, attribute after attribute. */
 } GradusInstances;
 
 /* Shape of an analytic light. */

@@ -63,6 +63,14 @@
  *   NORMAL_MAP        strength, color -> vector: A normal from a colour. Mode: GradusNormalSpace. Resource: UV map.
  *   BUMP              strength, distance, height, normal, filter width -> vector: A normal from a height, which is
  *                       evaluated at three points. Mode: 1: inverted.
+ *   INSTANCE_ATTRIBUTE- -> color, vector, factor, alpha: A named attribute of the instance. Resource: name.
+ *   WIREFRAME         size -> factor: 1 on lines along the edges of triangles. Mode: 0: the size is in metres; 1: it is
+ *                       in pixels. Floats: width and height of a pixel as a share of the frame.
+ *   AMBIENT_OCCLUSION color, distance, normal -> color, factor: How open the surroundings of the point are, by rays in
+ *                       the cosine distribution around the normal. Mode: + 1: inside of the surface; + 2: only the same
+ *                       instance occludes; + 4: the distance is that of the world. Floats: number of rays.
+ *   BEVEL             radius, normal -> normal: The mean normal of the same instance within a radius. Floats: number of
+ *                       rays.
  *
  * Textures.
  *   IMAGE             vector -> color, alpha: An image. Mode: GRADUS_IMAGE_MODE(). Floats: blend of BOX. Resource: key
@@ -160,6 +168,10 @@
   X(CAMERA_DATA, 40, 0, 3, 0) \
   X(NORMAL_MAP, 41, 2, 1, 0) \
   X(BUMP, 42, 5, 1, 0) \
+  X(INSTANCE_ATTRIBUTE, 56, 0, 4, 0) \
+  X(WIREFRAME, 57, 1, 1, 0) \
+  X(AMBIENT_OCCLUSION, 58, 3, 2, 0) \
+  X(BEVEL, 59, 2, 1, 0) \
   X(IMAGE, 64, 1, 2, 0) \
   X(ENVIRONMENT, 65, 1, 1, 0) \
   X(NOISE, 66, 9, 2, 0) \
@@ -212,13 +224,16 @@ typedef enum GradusDistribution {
 
 /* Quantity of a surface point. */
 typedef enum GradusGeometryMode {
-  GRADUS_GEOMETRY_POSITION = 0,    /* Position in the world. */
-  GRADUS_GEOMETRY_NORMAL = 1,      /* Shading normal. */
-  GRADUS_GEOMETRY_TANGENT = 2,     /* Tangent. */
-  GRADUS_GEOMETRY_TRUE_NORMAL = 3, /* Geometric normal. */
-  GRADUS_GEOMETRY_INCOMING = 4,    /* Direction to the viewer. */
-  GRADUS_GEOMETRY_PARAMETRIC = 5,  /* Barycentric coordinates. */
-  GRADUS_GEOMETRY_BACKFACING = 6   /* 1 on the back of a face. */
+  GRADUS_GEOMETRY_POSITION = 0,         /* Position in the world. */
+  GRADUS_GEOMETRY_NORMAL = 1,           /* Shading normal. */
+  GRADUS_GEOMETRY_TANGENT = 2,          /* Tangent. */
+  GRADUS_GEOMETRY_TRUE_NORMAL = 3,      /* Geometric normal. */
+  GRADUS_GEOMETRY_INCOMING = 4,         /* Direction to the viewer. */
+  GRADUS_GEOMETRY_PARAMETRIC = 5,       /* Barycentric coordinates. */
+  GRADUS_GEOMETRY_BACKFACING = 6,       /* 1 on the back of a face. */
+  GRADUS_GEOMETRY_POINTINESS = 7,       /* Curvature by the edges around: above 1/2 on convex and below 1/2 on
+                                           concave parts. */
+  GRADUS_GEOMETRY_RANDOM_PER_ISLAND = 8 /* A random number for each connected part of the mesh. */
 } GradusGeometryMode;
 
 /* Texture coordinates. */

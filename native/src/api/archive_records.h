@@ -30,6 +30,7 @@ void visit(Archive& a, GradusMesh& s) {
   a.values(s.generated_location);
   a.values(s.generated_size);
   a.value(s.shutter_key_count);
+  a.value(s.edge_count);
   uint32_t has_default_uv = s.default_uv != nullptr;
   a.value(has_default_uv);
   if (has_default_uv != 0) a.text(s.default_uv);
@@ -48,11 +49,13 @@ void visit(Archive& a, GradusMesh& s) {
   }
   a.array(s.generated_points, uint64_t{3} * s.vertex_count);
   a.array(s.shutter_positions, uint64_t{3} * s.vertex_count * s.shutter_key_count);
+  a.array(s.edge_vertices, uint64_t{2} * s.edge_count);
 }
 
 template <class Archive>
 void visit(Archive& a, GradusInstances& s) {
   s.struct_size = sizeof(s);
+  a.value(s.attribute_count);
   a.value(s.count);
   a.value(s.materials_size);
   a.value(s.name_count);
@@ -79,6 +82,8 @@ void visit(Archive& a, GradusInstances& s) {
   a.array(s.shutter_matrices, uint64_t{16} * s.shutter_size);
   a.array(s.light_groups, s.count);
   a.array(s.asset_name_index, s.count);
+  a.texts(s.attribute_names, s.attribute_count);
+  a.array(s.attributes, uint64_t{4} * s.count * s.attribute_count);
 }
 
 template <class Archive>

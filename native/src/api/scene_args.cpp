@@ -67,6 +67,7 @@ MeshArgs::MeshArgs(const GradusMesh* from) : mesh(read_struct(from, "mesh")) {
   check_array(mesh.normals, geometry::domain_size(mesh, mesh.normal_domain), "mesh.normals", 3,
               optional ? Presence::Optional : Presence::Required);
   check_array(mesh.generated_points, mesh.vertex_count, "mesh.generated_points", 3, Presence::Optional);
+  check_array(mesh.edge_vertices, mesh.edge_count, "mesh.edge_vertices", 2);
   attributes = read_struct_array(mesh.attributes, mesh.attribute_count, "mesh.attributes");
   for (GradusAttribute& attribute : attributes) {
     attribute.name = checked_name(attribute.name, "attribute.name");
@@ -134,6 +135,9 @@ GradusInstances read_instances(const GradusInstances* from) {
   optional(in.light_groups, "instances.light_groups");
   check_array(in.materials, in.materials_size, "instances.materials");
   check_names(in.names, in.name_count, "instances.names");
+  check_names(in.attribute_names, in.attribute_count, "instances.attribute_names");
+  if (in.attribute_count > 0)
+    check_array(in.attributes, in.count, "instances.attributes", size_t{4} * in.attribute_count);
   if (in.material_first) check_array(in.material_count, in.count, "instances.material_count");
   for (size_t i = 0; i < in.count; ++i) {
     if (in.material_first)

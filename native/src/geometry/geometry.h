@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "base/types.h"
@@ -44,6 +45,7 @@ struct InstanceData : Placement {
   uint32_t light_group = 0;  // index + 1 in Snapshot::channels of what the instance emits; 0: none
   // Identifiers of its name and of its topmost parent's; 0 unless the scene has a Cryptomatte.
   float cryptomatte_object = 0.0f, cryptomatte_asset = 0.0f;
+  std::vector<Vec4> attributes;                               // in the order of Geometry::instance_attribute_names
   std::vector<uint32_t> materials;                            // index in Snapshot::materials of each slot
   std::vector<std::shared_ptr<const TangentField>> tangents;  // of the UV maps that a material uses
 
@@ -68,6 +70,8 @@ class Geometry {
   bool occluded(const Ray& ray) const;
   // Returns whether a surface that is visible to one of the ray types in `visibility` lies on the segment.
   bool meets(const Ray& ray, uint32_t visibility) const;
+  // Finds the nearest surface of one instance, whatever rays see it. Surfaces of other instances are passed.
+  bool intersect_instance(Ray ray, uint32_t instance, Hit* hit) const;
   // Computes occluded() for four rays at once. Lanes that are not wanted give false.
   void occluded4(const Rays4& rays, const bool wanted[4], bool blocked[4]) const;
   // Computes the surface point of a hit. place() writes it in place: copying a point that has just been written stalls
@@ -94,6 +98,7 @@ class Geometry {
   uint32_t material_of(const Hit& hit) const { return material_of(hit.instance, hit.primitive); }
 
   std::vector<InstanceData> instances;
+  std::vector<std::string> instance_attribute_names;
   std::shared_ptr<const Accelerator> accelerator;
   Vec3 origin{0.0f};    // world = internal + origin; near the scene's centre, for float precision
   float radius = 1.0f;  // radius of the scene's bounding sphere

@@ -39,6 +39,8 @@ void check(const GradusInstances& d) {
     check_shutter_key_count("instance " + std::to_string(i), d.shutter_count[i]);
     require(uint64_t(d.shutter_first[i]) + d.shutter_count[i] <= d.shutter_size, "shutter_first is out of range");
   }
+  require(d.attribute_count == 0 || d.attribute_names, "attribute_names missing");
+  require(d.attribute_count == 0 || d.count == 0 || d.attributes, "attributes missing");
   require(!d.name_index || d.name_count == 0 || d.names, "names missing");
   for (size_t i = 0; d.material_first && i < d.count; ++i)
     require(uint64_t(d.material_first[i]) + d.material_count[i] <= d.materials_size, "material_first is out of range");
@@ -72,6 +74,9 @@ InstanceArrays copy_instances(const GradusInstances& d) {
   a.name_index = copy<uint32_t>(d.name_index, d.count);
   a.asset_name_index = copy<uint32_t>(d.asset_name_index, d.count);
   for (size_t i = 0; d.names && i < d.name_count; ++i) a.names.emplace_back(d.names[i] ? d.names[i] : "");
+  for (uint32_t i = 0; i < d.attribute_count; ++i)
+    a.attribute_names.emplace_back(d.attribute_names[i] ? d.attribute_names[i] : "");
+  a.attributes = copy<Vec4>(d.attributes, d.count * d.attribute_count);
   return a;
 }
 
@@ -104,6 +109,8 @@ void InstanceArrays::hash(ContentHash* hash) const {
   hash->array(shutter_first);
   hash->array(shutter_count);
   hash->array(shutter_matrices);
+  for (const std::string& name : attribute_names) hash->value(name);
+  hash->array(attributes);
 }
 
 }  // namespace gradus::geometry

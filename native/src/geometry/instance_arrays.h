@@ -32,6 +32,8 @@ struct InstanceArrays {
   std::vector<uint32_t> light_groups;
   std::vector<uint32_t> name_index, asset_name_index;  // index in `names` of each instance
   std::vector<std::string> names;                      // names of objects
+  std::vector<std::string> attribute_names;
+  std::vector<Vec4> attributes;  // a value of each instance for the first name, then for the next
 
   // Returns the name of instance i for messages, or its number if it has none.
   std::string name(size_t i) const;

@@ -29,18 +29,20 @@ struct MeshData {
   std::string name;
   uint32_t vertex_count = 0;
   uint32_t triangle_count = 0;
-  std::vector<float> key_times;         // one per key, ascending
-  uint32_t frame_key = 0;               // index of the key nearest to time 0, which is rendered
-  std::vector<Vec3> positions;          // all vertices of each key; one more as padding (Embree reads 16 bytes)
-  uint32_t shutter_keys = 0;            // number of keys, evenly over the shutter time; 0: does not deform
-  std::vector<Vec3> shutter_positions;  // all vertices of each shutter key; one more as padding
-  std::vector<Vec3> shutter_normals;    // smooth vertex normals of the rendered frame, then of each shutter key
+  std::vector<float> key_times;             // one per key, ascending
+  uint32_t frame_key = 0;                   // index of the key nearest to time 0, which is rendered
+  std::vector<Vec3> positions;              // all vertices of each key; one more as padding (Embree reads 16 bytes)
+  uint32_t shutter_keys = 0;                // number of keys, evenly over the shutter time; 0: does not deform
+  std::vector<Vec3> shutter_positions;      // all vertices of each shutter key; one more as padding
+  std::vector<Vec3> shutter_normals;        // smooth vertex normals of the rendered frame, then of each shutter key
   std::vector<uint32_t> triangle_vertices;  // 3 per triangle; kDroppedVertex three times: dropped
   std::vector<uint32_t> triangle_corners;   // 3 per triangle
   std::vector<uint32_t> triangle_faces;     // empty: one face per triangle
   std::vector<uint32_t> face_materials;     // material slots; empty: all 0
   GradusDomain normal_domain = GRADUS_DOMAIN_FACE;
-  std::vector<Vec3> normals;  // empty: flat shading
+  std::vector<Vec3> normals;      // empty: flat shading
+  std::vector<float> pointiness;  // of each vertex; empty: the caller gave no edges
+  std::vector<uint32_t> islands;  // vertex that stands for the connected part of each vertex; empty as pointiness
   std::vector<MeshAttribute> attributes;
   int32_t default_uv = -1;  // index in attributes; -1: there is no UV map
   Vec3 generated_location{0.0f};

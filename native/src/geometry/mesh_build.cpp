@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "geometry/edge_values.h"
 #include "geometry/matrix_keys.h"
 #include "geometry/mesh.h"
 #include "geometry/smooth_normals.h"
@@ -56,6 +57,8 @@ void check_counts(const GradusMesh& m, const Check& check) {
   check.that(m.key_count == 1 || m.key_times, "key_times missing");
   check.that(m.normal_domain <= GRADUS_DOMAIN_CORNER, "unknown domain of normals");
   check.that(m.attribute_count == 0 || m.attributes, "attributes missing");
+  check.that(m.edge_count < kMaxElements, "too many edges");
+  check.that(m.edge_count == 0 || m.edge_vertices, "edge_vertices missing");
 }
 
 void copy_keys(const GradusMesh& m, const Check& check, MeshData* out) {
@@ -199,6 +202,18 @@ void copy_generated(const GradusMesh& m, MeshData* out) {
   std::memcpy(out->generated_points.data(), values.data(), m.vertex_count * sizeof(Vec3));
 }
 
+void add_edge_values(const GradusMesh& m, const Check& check, MeshData* out) {
+  if (m.edge_count == 0) return;
+  std::vector<Edge> edges(m.edge_count);
+  for (size_t i = 0; i < 2 * m.edge_count; ++i) {
+    const int32_t vertex = m.edge_vertices[i];
+    check.that(vertex >= 0 && size_t(vertex) < m.vertex_count, "an edge's vertex is out of range");
+    edges[i / 2][i % 2] = uint32_t(vertex);
+  }
+  out->islands = connected_parts(m.vertex_count, edges);
+  out->pointiness = pointiness(*out, std::move(edges));
+}
+
 uint64_t hash_mesh(const MeshData& mesh) {
   ContentHash hash;
   hash.array(mesh.key_times);
@@ -218,6 +233,8 @@ uint64_t hash_mesh(const MeshData& mesh) {
   hash.value(mesh.default_uv);
   for (int i = 0; i < 3; ++i) hash.value(mesh.generated_location[i]), hash.value(mesh.generated_size[i]);
   hash.array(mesh.generated_points);
+  hash.array(mesh.pointiness);
+  hash.array(mesh.islands);
   return hash.result();
 }
 
@@ -246,6 +263,7 @@ std::shared_ptr<const MeshData> make_mesh(const GradusMesh& desc) {
   add_shutter_normals(mesh.get());
   copy_attributes(desc, check, mesh.get());
   copy_generated(desc, mesh.get());
+  add_edge_values(desc, check, mesh.get());
   mesh->content_hash = hash_mesh(*mesh);
   mesh->topology_hash = hash_topology(*mesh);
   return mesh;

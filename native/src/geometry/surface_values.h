@@ -21,6 +21,22 @@ inline Vec3 generated_at(const InstanceData& instance, const Hit& hit) {
 // Returns what Blender's Parametric output shows: the weights of the first two corners of a triangle.
 inline Vec3 parametric_at(const Hit& hit) { return Vec3(1.0f - hit.uv.x - hit.uv.y, hit.uv.x, 0.0f); }
 
+// Returns the pointiness, interpolated at the hit; 0 if the shape has none.
+inline float pointiness_at(const InstanceData& instance, const Hit& hit) {
+  const MeshData& mesh = *instance.mesh;
+  if (mesh.pointiness.empty()) return 0.0f;
+  const uint32_t* v = mesh.triangle_vertices.data() + size_t(hit.primitive) * 3;
+  return interpolate(std::array<float, 3>{mesh.pointiness[v[0]], mesh.pointiness[v[1]], mesh.pointiness[v[2]]}, hit.uv);
+}
+
+// Finds the number of the connected part that is hit. Returns false if the shape knows none.
+inline bool island_at(const InstanceData& instance, const Hit& hit, uint32_t* island) {
+  const MeshData& mesh = *instance.mesh;
+  if (mesh.islands.empty()) return false;
+  *island = mesh.islands[mesh.triangle_vertices[size_t(hit.primitive) * 3]];
+  return true;
+}
+
 // Finds the interpolated shading normal at the shutter time of the hit, not normalised. Returns false if the shape is
 // shaded flat.
 inline bool smooth_normal_at(const InstanceData& instance, const Hit& hit, Vec3* normal) {

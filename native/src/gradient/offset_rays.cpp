@@ -53,6 +53,7 @@ void trace_camera_rays(const BasePath& base, const integrator::PixelSample& samp
     }
     o.state.ray = path::PathRay{};
     o.state.ray.visibility = visibility;
+    o.state.ray.state.random = base.state.ray.state.random;
     camera::CameraSample moved = base.camera_sample.moved(Vec2(film::kOffsetX[k], film::kOffsetY[k]));
     if (GRADUS_FAULT(offset_rays_lose_time)) moved.time = 0.0f;
     if (GRADUS_FAULT(offset_rays_lose_lens)) moved.lens = Vec2(0.0f);

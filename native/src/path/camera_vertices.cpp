@@ -29,9 +29,12 @@ void CameraVertices::trace(int32_t x, int32_t y, Packet* packet) const {
   packet->is_traced.fill(false);
 }
 
-// Returns whether a ray may pass its nearest hit, which is a random decision of each path.
-bool CameraVertices::may_pass(const geometry::Hit& hit) const {
-  return hit.valid() && context_.scene.materials[context_.scene.material_of(hit)]->may_be_transparent;
+// Returns whether all paths see the same at a hit. Whether a ray passes a transparent surface is a random decision of
+// each path, and some materials draw random numbers.
+bool CameraVertices::is_shareable(const geometry::Hit& hit) const {
+  if (!hit.valid()) return true;
+  const shading::MaterialData& material = *context_.scene.materials[context_.scene.material_of(hit)];
+  return !material.may_be_transparent && !material.draws_random;
 }
 
 CameraVertex* CameraVertices::at(int32_t x, int32_t y) {
@@ -45,7 +48,7 @@ CameraVertex* CameraVertices::at(int32_t x, int32_t y) {
   if (!packet.is_traced[i]) {
     packet.is_traced[i] = true;
     v.has_emission = false;
-    v.is_shared = !may_pass(v.hit);
+    v.is_shared = is_shareable(v.hit);
     if (v.is_shared) {
       // The segment has no random decision, so any sampler will do.
       trace_segment(context_, Sampler(), 0, &v.hit, &v.ray, &v.vertex, &v.segment, Shading::Later);

@@ -17,8 +17,8 @@ namespace gradus::path {
 // The nearest hit of a camera ray and, if it is shared, the segment up to the first vertex.
 struct CameraVertex {
   geometry::Hit hit;
-  // The segment has no random decision, so it is the same for every path with this camera ray. The members below are
-  // set only if this is true.
+  // Neither the segment nor its end has a random decision, so they are the same for every path with this camera ray.
+  // The members below are set only if this is true.
   bool is_shared = false;
   PathRay ray;  // ray on arrival at the vertex
   Segment segment;
@@ -50,7 +50,7 @@ class CameraVertices {
     std::array<CameraVertex, kPacketSize> vertices;
   };
   void trace(int32_t x, int32_t y, Packet* packet) const;
-  bool may_pass(const geometry::Hit& hit) const;
+  bool is_shareable(const geometry::Hit& hit) const;
 
   const PathContext& context_;
   uint64_t block_sample_ = 0;

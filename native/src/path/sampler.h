@@ -64,6 +64,8 @@ class Sampler {
   // Returns the point of a block in [0, 1)². It does not depend on earlier calls.
   Vec2 get2(uint32_t block) const;
   float get1(uint32_t block) const { return get2(block).x; }
+  // Returns a hash of the sample key, for random numbers that need no Sobol net.
+  uint32_t key() const { return combine(stream_hash_, index_); }
   // Returns the blocks of the vertex with `depth` scattering events before it, with the values of get2(). They are
   // computed in eight SIMD lanes at about the cost of one block.
   VertexSample vertex(int depth) const;

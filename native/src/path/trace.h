@@ -133,11 +133,13 @@ class PathTracer {
       vertex = &known->vertex;
       segment_ = &known->segment;
       state_.ray = known->ray;
+      state_.ray.state.random = sampler.key();
       if (records_closures()) shade_vertex(context_, state_.ray.state, vertex);
       if (visitor() != nullptr && segment_->end == SegmentEnd::Surface)
         visitor()->visit(*vertex, state_.ray.state, segment_->weight);
     } else {
       state_.ray.ray = context_.camera.ray(sample);
+      state_.ray.state.random = sampler.key();
       trace_to_vertex(sampler, known != nullptr ? &known->hit : nullptr, vertex);
     }
     if (recorder_ != nullptr && is_none(state_.ray.ray)) recorder_->no_ray();

@@ -121,6 +121,7 @@ void set_values(const geometry::InstanceArrays& a, size_t i, geometry::InstanceD
   if (!a.uvs.empty()) out->uv = a.uvs[i];
   if (!a.light_groups.empty()) out->light_group = a.light_groups[i];
   if (!a.shadow_terminator_offsets.empty()) out->shadow_terminator_offset = a.shadow_terminator_offsets[i];
+  for (size_t k = 0; k < a.attribute_names.size(); ++k) out->attributes.push_back(a.attributes[k * a.count + i]);
 }
 
 // Sets the identifiers of the instances' names for Cryptomattes. `usable`: the number in `a` of each instance.
@@ -154,6 +155,7 @@ std::vector<size_t> place_instances(const Scene::State& state, Snapshot* snapsho
   snapshot->origin = choose_origin(bounds);
   snapshot->radius = bounds.empty() ? 1.0f : float(std::max(bounds.radius(), 1e-6));
   snapshot->instances.resize(usable.size());
+  snapshot->instance_attribute_names = a.attribute_names;
   for (size_t k = 0; k < usable.size(); ++k) {
     geometry::InstanceData& out = snapshot->instances[k];
     out.mesh = state.meshes.at(a.meshes[usable[k]]);

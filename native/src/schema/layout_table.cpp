@@ -60,11 +60,13 @@ constexpr FieldLayout kMeshFields[] = {
     FIELD(GradusMesh, shutter_positions),
     FIELD(GradusMesh, shutter_key_count),
     FIELD(GradusMesh, reserved),
+    FIELD(GradusMesh, edge_count),
+    FIELD(GradusMesh, edge_vertices),
 };
 
 constexpr FieldLayout kInstancesFields[] = {
     FIELD(GradusInstances, struct_size),
-    FIELD(GradusInstances, reserved),
+    FIELD(GradusInstances, attribute_count),
     FIELD(GradusInstances, count),
     FIELD(GradusInstances, meshes),
     FIELD(GradusInstances, ids),
@@ -91,6 +93,8 @@ constexpr FieldLayout kInstancesFields[] = {
     FIELD(GradusInstances, shutter_matrices),
     FIELD(GradusInstances, light_groups),
     FIELD(GradusInstances, asset_name_index),
+    FIELD(GradusInstances, attribute_names),
+    FIELD(GradusInstances, attributes),
 };
 
 constexpr FieldLayout kLightFields[] = {

@@ -1,4 +1,6 @@
 // Attribute, Color Attribute and Object Info nodes.
+#include <algorithm>
+
 #include "geometry/surface_values.h"
 #include "shading/context_ops.h"
 
@@ -13,6 +15,26 @@ Vec4 attribute_value(const ShadeContext& c, const std::string* name, bool uv, ui
   if (!found) return Vec4(0.0f);
   if (channels) *channels = found->channels;
   return geometry::attribute_at(*c.instance, *found, c.hit);
+}
+
+namespace {
+
+// Returns an attribute of the instance, or null if it has none of that name.
+const Vec4* instance_attribute(const ShadeContext& c, const std::string* name) {
+  if (!c.instance || !c.scene || !name) return nullptr;
+  const std::vector<std::string>& names = c.scene->instance_attribute_names;
+  const auto found = std::find(names.begin(), names.end(), *name);
+  return found == names.end() ? nullptr : &c.instance->attributes[size_t(found - names.begin())];
+}
+
+}  // namespace
+
+void instance_attribute_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
+  const Vec4* found = instance_attribute(c, args.name);
+  const Vec4 v = found ? *found : Vec4(0.0f, 0.0f, 0.0f, 1.0f);
+  out[0] = out[1] = Vec4(Vec3(v), 1.0f);
+  out[2] = splat(mean_component(Vec3(v)));
+  out[3] = splat(v.w);
 }
 
 void attribute_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {

@@ -127,6 +127,10 @@ bool values_depend_on_ray(const Program& p) {
   return std::ranges::any_of(p.code, [](const Instruction& i) { return reads_ray(i.op, i.mode); });
 }
 
+bool program_draws_random(const Program& p) {
+  return std::ranges::any_of(p.code, [](const Instruction& i) { return draws_random(i.op); });
+}
+
 // Returns whether a value of the program can differ between light sampling and BSDF sampling.
 bool depends_on_kind(const Program& p) {
   return std::ranges::any_of(p.code, [](const Instruction& i) { return reads_history(i.op, i.mode); });
@@ -228,6 +232,7 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
   describe_transparency(m.get());
   describe_surface(m.get());
   m->values_depend_on_ray = values_depend_on_ray(m->surface);
+  m->draws_random = program_draws_random(m->surface);
   m->depends_on_kind = depends_on_kind(m->emission) || depends_on_kind(m->transparency);
   return m;
 }

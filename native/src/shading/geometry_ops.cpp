@@ -1,6 +1,7 @@
 // The Geometry node.
 #include "geometry/surface_values.h"
 #include "shading/context_ops.h"
+#include "shading/lattice_hash.h"
 #include "shading/scalar.h"
 
 namespace gradus::shading {
@@ -19,6 +20,11 @@ Vec3 default_tangent(const ShadeContext& c) {
 
 namespace {
 
+float random_per_island(const ShadeContext& c) {
+  uint32_t island = 0;
+  return c.instance && geometry::island_at(*c.instance, c.hit, &island) ? unit_hash(island) : 0.0f;
+}
+
 Vec3 quantity(uint32_t mode, const ShadeContext& c) {
   switch (mode) {
     case GRADUS_GEOMETRY_NORMAL:
@@ -33,6 +39,10 @@ Vec3 quantity(uint32_t mode, const ShadeContext& c) {
       return c.light_axes ? Vec3(c.uv, 0.0f) : geometry::parametric_at(c.hit);
     case GRADUS_GEOMETRY_BACKFACING:
       return Vec3(c.backfacing ? 1.0f : 0.0f);
+    case GRADUS_GEOMETRY_POINTINESS:
+      return Vec3(c.instance ? geometry::pointiness_at(*c.instance, c.hit) : 0.0f);
+    case GRADUS_GEOMETRY_RANDOM_PER_ISLAND:
+      return Vec3(random_per_island(c));
     default:
       return world_position(c);
   }

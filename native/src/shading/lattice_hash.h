@@ -101,6 +101,12 @@ Real as(Other x) {
 }
 }  // namespace detail
 
+// Returns a number in 0…1 that is the hash of 1 to 4 integers.
+template <class... Integers>
+float unit_hash(Integers... x) {
+  return detail::real(lattice_hash(x...)) * (1.0f / static_cast<float>(0xFFFFFFFFu));
+}
+
 // Returns numbers in 0…1 that are the hashes of the bits of 1 to 4 reals.
 template <class Real, class... More>
 Real float_hash(Real x, More... more) {

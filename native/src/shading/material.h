@@ -38,6 +38,7 @@ struct MaterialData {
   bool sample_as_light = true;
   bool uses_fallback = false;         // some node was replaced, or the material did not compile
   bool values_depend_on_ray = false;  // some value of `surface` depends on the ray; closures themselves do not count
+  bool draws_random = false;          // some value of `surface` depends on random numbers of the path
   bool depends_on_kind =
       false;               // emission or transparency read the ray's depth, or its kind other than camera or shadow
   float min_alpha = 1.0f;  // smallest alpha of all lobes; 0 if a texture decides

@@ -53,6 +53,10 @@ void layer_weight_op(const ResourceArgs& args, const ShadeContext& context, Vec4
 void fresnel_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void camera_data_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void normal_map_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
+void instance_attribute_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
+void wireframe_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
+void ambient_occlusion_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
+void bevel_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void image_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void environment_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void vector_transform_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);

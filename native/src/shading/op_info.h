@@ -46,6 +46,9 @@ inline bool is_pure(uint32_t op) {
   return info && info->kind == OpKind::Pure;
 }
 
+// Returns whether the operation draws random numbers, so that its value differs from path to path.
+inline bool draws_random(uint32_t op) { return op == GRADUS_OP_AMBIENT_OCCLUSION || op == GRADUS_OP_BEVEL; }
+
 // Returns whether a value of the operation depends on the ray that arrives, and not on the point alone. That normals
 // face the ray does not count.
 inline bool reads_ray(uint32_t op, uint32_t mode) {

@@ -35,7 +35,7 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_PRINCIPLED_3] = {"PRINCIPLED_3", OpKind::Closure, 18, 1, 0, GRADUS_DISTRIBUTION_MULTIPLE};
   table[GRADUS_OP_METALLIC] = {"METALLIC", OpKind::Closure, 7, 1, 0, GRADUS_DISTRIBUTION_MULTIPLE};
   table[GRADUS_OP_AOV] = {"AOV", OpKind::Closure, 2, 1, 0, 255};
-  table[GRADUS_OP_GEOMETRY] = {"GEOMETRY", OpKind::Context, 0, 1, 0, GRADUS_GEOMETRY_BACKFACING};
+  table[GRADUS_OP_GEOMETRY] = {"GEOMETRY", OpKind::Context, 0, 1, 0, GRADUS_GEOMETRY_RANDOM_PER_ISLAND};
   table[GRADUS_OP_GEOMETRY].ray_modes = modes({GRADUS_GEOMETRY_INCOMING, GRADUS_GEOMETRY_BACKFACING});
   table[GRADUS_OP_TEX_COORD] = {"TEX_COORD", OpKind::Context, 0, 1, 0, GRADUS_TEX_COORD_INSTANCER_UV};
   table[GRADUS_OP_TEX_COORD].ray_modes = modes({GRADUS_TEX_COORD_REFLECTION});
@@ -55,6 +55,10 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_CAMERA_DATA] = {"CAMERA_DATA", OpKind::Context, 0, 3, 0, 0};
   table[GRADUS_OP_NORMAL_MAP] = {"NORMAL_MAP", OpKind::Context, 2, 1, 0, GRADUS_NORMAL_UNIT_TANGENT};
   table[GRADUS_OP_BUMP] = {"BUMP", OpKind::Program, 5, 1, 0, 1};
+  table[GRADUS_OP_INSTANCE_ATTRIBUTE] = {"INSTANCE_ATTRIBUTE", OpKind::Context, 0, 4, 0, 0};
+  table[GRADUS_OP_WIREFRAME] = {"WIREFRAME", OpKind::Context, 1, 1, 2, 1};
+  table[GRADUS_OP_AMBIENT_OCCLUSION] = {"AMBIENT_OCCLUSION", OpKind::Context, 3, 2, 1, 7};
+  table[GRADUS_OP_BEVEL] = {"BEVEL", OpKind::Context, 2, 1, 1, 0};
   table[GRADUS_OP_IMAGE] = {"IMAGE", OpKind::Context, 1, 2, 0, 127};
   table[GRADUS_OP_ENVIRONMENT] = {"ENVIRONMENT", OpKind::Context, 1, 1, 0, 127};
   table[GRADUS_OP_NOISE] = {"NOISE", OpKind::Pure, 9, 2, 0, 255};
@@ -241,6 +245,18 @@ bool evaluate_context(uint32_t op, const ResourceArgs& args, const ShadeContext&
       return true;
     case GRADUS_OP_NORMAL_MAP:
       normal_map_op(args, context, out);
+      return true;
+    case GRADUS_OP_INSTANCE_ATTRIBUTE:
+      instance_attribute_op(args, context, out);
+      return true;
+    case GRADUS_OP_WIREFRAME:
+      wireframe_op(args, context, out);
+      return true;
+    case GRADUS_OP_AMBIENT_OCCLUSION:
+      ambient_occlusion_op(args, context, out);
+      return true;
+    case GRADUS_OP_BEVEL:
+      bevel_op(args, context, out);
       return true;
     case GRADUS_OP_IMAGE:
       image_op(args, context, out);

@@ -32,6 +32,7 @@ struct RayState {
   uint16_t glossy_depth = 0;
   uint16_t transmission_depth = 0;
   uint16_t transparent_depth = 0;
+  uint32_t random = 0;  // key of the path's sample, for nodes that draw random numbers; 0: there is no path
 };
 
 // A colour and a value that a material gives to an AOV.
