@@ -42,6 +42,8 @@ std::shared_ptr<const Accelerator> build_accelerator(const EmbreeDevice& device,
 // Finds the nearest hit of a ray among the instances that share a bit with `mask`. Returns false, and an invalid hit,
 // if there is none. Rays that are not finite miss.
 bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask, Hit* hit);
+// Finds the nearest hit of a ray with one instance. Returns false, and an invalid hit, if there is none.
+bool trace_instance(const Accelerator& accelerator, const Ray& ray, uint32_t instance, Hit* hit);
 // Returns whether a ray hits any instance that shares a bit with `mask`. Rays that are not finite miss.
 bool trace_any(const Accelerator& accelerator, const Ray& ray, uint32_t mask);
 

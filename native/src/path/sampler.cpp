@@ -67,10 +67,30 @@ Vec2 Sampler::get2(uint32_t block) const {
   return Vec2(to_unit(bits.x), to_unit(bits.y));
 }
 
+namespace {
+
+uint32_t first_of_walk(int depth) {
+  return dimension::kFirstWalk + static_cast<uint32_t>(depth) * dimension::kPerWalk;
+}
+
+}  // namespace
+
 VertexSample Sampler::vertex(int depth) const {
+  return vertex_at(dimension::kFirstVertex + static_cast<uint32_t>(depth) * dimension::kPerVertex);
+}
+
+VertexSample Sampler::walk_end(int depth) const {
+  return vertex_at(first_of_walk(depth) + dimension::kPerStep * (dimension::kMaxSteps + 1));
+}
+
+StepSample Sampler::walk_step(int depth, uint32_t step) const {
+  const uint32_t first = first_of_walk(depth) + dimension::kPerStep * step;
+  return {get2(first), get2(first + 1), get2(first + 2)};
+}
+
+VertexSample Sampler::vertex_at(uint32_t first) const {
   constexpr uint32_t lanes = 8;
   static_assert(dimension::kRoulette < lanes);
-  const uint32_t first = dimension::kFirstVertex + static_cast<uint32_t>(depth) * dimension::kPerVertex;
   float x[lanes], y[lanes];
   if (independent_) {
     for (uint32_t i = 0; i <= dimension::kRoulette; ++i) {
