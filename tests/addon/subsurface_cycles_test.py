@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -130,10 +129,11 @@ def passes_of(scene: bpy.types.Scene, folder: Path, engine: str, samples: int, *
     scene.render.engine = engine
     cycles = scene.cycles
     cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = samples, False, False
-    cycles.sample_clamp_indirect = 0.0
+    cycles.sample_clamp_indirect, cycles.max_bounces, cycles.diffuse_bounces = 0.0, 4, 4
     cycles.pixel_filter_type, cycles.filter_width = "BOX", 1.0
     settings = {"integrator": "PATH", "reconstruction": "NONE"} | settings
     settings |= {"samples": samples, "pixel_filter": "BOX", "filter_width": 1.0}
+    settings |= {"max_bounces": 4, "diffuse_bounces": 4}
     return images.render(scene, folder, **settings)
 
 
@@ -142,7 +142,12 @@ def blocks(image: np.ndarray) -> np.ndarray:
     return image.reshape(9, 4, 16, 4, 3).mean(axis=(1, 3))
 
 
-def compare(expected: np.ndarray, found: np.ndarray) -> None:
+def pass_of(passes: images.Passes, *names: str) -> np.ndarray:
+    """Returns a pass, whose name changed in 5.0."""
+    return next(passes[name] for name in names if name in passes)[..., :3]
+
+
+def compare(expected: np.ndarray, found: np.ndarray, tolerance: float = 0.01) -> None:
     """Compares two noisy pictures, as a whole and by blocks."""
     expected, found = expected[..., :3], found[..., :3]
     scale = expected.mean(axis=(0, 1))
@@ -150,8 +155,8 @@ def compare(expected: np.ndarray, found: np.ndarray) -> None:
     error = np.abs(found.mean(axis=(0, 1)) / scale - 1.0)
     difference = np.abs(blocks(expected) - blocks(found)) / scale
     print(f"  mean off by {error}, blocks by {difference.mean():.4f}, at most {difference.max():.3f}")
-    assert error.max() < 0.01
-    assert difference.mean() < 0.02
+    assert error.max() < tolerance
+    assert difference.mean() < 0.03
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -160,4 +165,40 @@ def test_a9_subsurface(name: str, stage: bpy.types.Scene, tmp_path: Path) -> Non
     show(graph.material, CASES[name](graph))
     use_material(stage, graph.material)
     expected, found = (passes_of(stage, tmp_path, engine, 256)["Combined"] for engine in ("CYCLES", "GRADUS"))
-    compare(expected, found)
+    # Before 4.0 Cycles darkens diffuse bumps by another formula.
+    compare(expected, found, 0.02 if name == "bump" and not SINCE_4 else 0.01)
+
+
+@pytest.mark.parametrize("amount", [1.0, 0.5])
+def test_h5_light_passes_of_subsurface(amount: float, stage: bpy.types.Scene, tmp_path: Path) -> None:
+    """Light that leaves an object is diffuse: direct at the first exit, indirect behind it."""
+    graph = Graph()
+    show(graph.material, principled(graph, amount=amount))
+    use_material(stage, graph.material)
+    layer = stage.view_layers[0]
+    switches = ("use_pass_diffuse_direct", "use_pass_diffuse_indirect", "use_pass_diffuse_color")
+    for name in switches:
+        setattr(layer, name, True)
+    expected, found = (passes_of(stage, tmp_path, engine, 256) for engine in ("CYCLES", "GRADUS"))
+    for name in switches:
+        setattr(layer, name, False)
+    for names in (("DiffDir", "Diffuse Direct"), ("DiffInd", "Diffuse Indirect"), ("DiffCol", "Diffuse Color")):
+        mean, value = pass_of(expected, *names).mean(axis=(0, 1)), pass_of(found, *names).mean(axis=(0, 1))
+        print(f"  {names[1]}: {mean}, off by {value / mean - 1.0}")
+        assert np.abs(value / mean - 1.0).max() < 0.02
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_b7_gradients_of_subsurface(method: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
+    """Gradient-domain path tracing has the mean of Cycles, with less noise than path tracing."""
+    graph = Graph()
+    show(graph.material, scattering(graph, method))
+    use_material(stage, graph.material)
+    expected = passes_of(stage, tmp_path, "CYCLES", 256)["Combined"][..., :3]
+    plain = passes_of(stage, tmp_path, "GRADUS", 64)["Combined"][..., :3]
+    found = passes_of(stage, tmp_path, "GRADUS", 64, integrator="GRADIENT", reconstruction="L2")["Combined"][..., :3]
+    mean = expected.mean(axis=(0, 1))
+    assert np.abs(found.mean(axis=(0, 1)) / mean - 1.0).max() < 0.015
+    error, noise = (np.square(image - expected).mean() for image in (found, plain))
+    print(f"  squared error {error:.3g} instead of {noise:.3g}")
+    assert error < noise

@@ -190,7 +190,8 @@ void Closures::add_entries(int index, const Vec3& wo, float roughness_threshold)
   reflected = sides & kReflects ? std::max(reflected, minimum) : 0.0f;
   transmitted = sides & kTransmits ? std::max(transmitted, minimum) : 0.0f;
   if (lobe.disney == DisneyPart::RetroReflection) {
-    reflected *= std::max(kSmallestShare, lobe.alpha_x * pow5(std::clamp(1.0f - glm::dot(lobe.normal, wo), 0.0f, 1.0f)));
+    reflected *=
+        std::max(kSmallestShare, lobe.alpha_x * pow5(std::clamp(1.0f - glm::dot(lobe.normal, wo), 0.0f, 1.0f)));
   }
   lobe.sample_weight = reflected + transmitted;
   if (lobe.type == LobeType::Subsurface) {

@@ -12,8 +12,8 @@
 
 namespace gradus::bsdf {
 
-// Classes of scattering: rough (D), specular reflection (R) and specular transmission (T), which are the events of light
-// path expressions, and light that enters the object. That light leaves it elsewhere by an event D, so that class
+// Classes of scattering: rough (D), specular reflection (R) and specular transmission (T), which are the events of
+// light path expressions, and light that enters the object. That light leaves it elsewhere by an event D, so that class
 // Subsurface is no event of its own (path/subsurface.h).
 enum class ScatterClass : uint8_t { Diffuse = 0, Reflection = 1, Transmission = 2, Subsurface = 3 };
 inline constexpr int kScatterClasses = 4;
@@ -87,7 +87,7 @@ struct Lobe {
   LobeType type = LobeType::Diffuse;
   FresnelType fresnel = FresnelType::None;
   LightPass pass = LightPass::Diffuse;
-  bool multiscatter = false;     // adds the energy that single scattering loses
+  bool multiscatter = false;  // adds the energy that single scattering loses
   SubsurfaceMethod subsurface = SubsurfaceMethod::Disk;
   DisneyPart disney = DisneyPart::All;
   Rgb weight = Rgb(0.0f);        // throughput of the node graph times colour

@@ -26,8 +26,8 @@ Medium medium_below(const Lobe& lobe, Rgb* weight);
 // the scale of Burley's profile.
 Rgb free_paths(const Lobe& lobe);
 
-// Samples the direction in which light enters, seen from a viewer in direction wo. The interface loses no light, so that
-// the density of the direction is also its value. Returns false if the viewer is below the surface.
+// Samples the direction in which light enters, seen from a viewer in direction wo. The interface loses no light, so
+// that the density of the direction is also its value. Returns false if the viewer is below the surface.
 bool sample_entry(const Lobe& lobe, const Vec3& wo, const Vec2& u, Vec3* wi);
 
 // Adds the lobe by which light leaves a surface with this normal, where `entry` is the lobe by which it has entered.

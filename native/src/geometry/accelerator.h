@@ -29,7 +29,7 @@ struct Accelerator {
 struct AcceleratorInput {
   const std::vector<InstanceData>* instances;
   const std::vector<uint32_t>* masks;  // Embree mask of each instance
-  ExactMatrices to_internal;              // matrix of each instance to internal space
+  ExactMatrices to_internal;           // matrix of each instance to internal space
 };
 
 // Builds the acceleration structure of the given instances. `before` is the accelerator of the previous snapshot or

@@ -151,7 +151,8 @@ bool nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask, Cont
 bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask, Hit* hit) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  return nearest(accelerator, ray, mask, [&](const Accelerator::Part&) { return &context; }, hit);
+  return nearest(
+      accelerator, ray, mask, [&](const Accelerator::Part&) { return &context; }, hit);
 }
 
 bool trace_instance(const Accelerator& accelerator, const Ray& ray, uint32_t instance, Hit* hit) {

@@ -1,9 +1,9 @@
 // The shift of an event of class Subsurface: random replay.
 //
-// The offset enters at its own vertex and walks with the random numbers of the base. These numbers are the coordinates of
-// the path, also where the two walks take different numbers of steps, because the numbers that only one of them uses are
-// free. So the map is the identity, and J·pdf'/pdf = P'/P with the probabilities of the class. The walks of neighbours
-// stay close together on smooth surfaces. Where one of the two walks is lost, the other one is unpaired.
+// The offset enters at its own vertex and walks with the random numbers of the base. These numbers are the coordinates
+// of the path, also where the two walks take different numbers of steps, because the numbers that only one of them uses
+// are free. So the map is the identity, and J·pdf'/pdf = P'/P with the probabilities of the class. The walks of
+// neighbours stay close together on smooth surfaces. Where one of the two walks is lost, the other one is unpaired.
 #pragma once
 
 #include "gradient/base_path.h"

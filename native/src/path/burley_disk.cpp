@@ -17,7 +17,7 @@ constexpr int kMaxHits = 16;
 
 // The axis of a disk, with its probability, and the axes of the other two disks with theirs.
 struct DiskFrame {
-  Vec3 axis[3];         // the first is that of the chosen disk
+  Vec3 axis[3];  // the first is that of the chosen disk
   float probability[3];
 };
 
@@ -50,7 +50,9 @@ float choose_scale(const Rgb& d, float* u) {
   return chosen;
 }
 
-Rgb profiles(const Rgb& d, float r) { return Rgb(burley_profile(d.x, r), burley_profile(d.y, r), burley_profile(d.z, r)); }
+Rgb profiles(const Rgb& d, float r) {
+  return Rgb(burley_profile(d.x, r), burley_profile(d.y, r), burley_profile(d.z, r));
+}
 
 }  // namespace
 

@@ -8,8 +8,8 @@
 
 namespace gradus::path {
 
-// Returns the profile over distances in two dimensions, 2πr times Burley's, at distance r for the scale d. It is cut off
-// at kDiskReach·d and integrates to 1.
+// Returns the profile over distances in two dimensions, 2πr times Burley's, at distance r for the scale d. It is cut
+// off at kDiskReach·d and integrates to 1.
 float burley_profile(float d, float r);
 // Samples a distance in units of the scale by the profile.
 float sample_burley(float u);

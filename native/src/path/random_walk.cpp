@@ -53,8 +53,7 @@ class Guide {
  public:
   // `albedo` is that of single scattering. d'Eon and Křivánek 2020, eq. 67, give the diffusion length v.
   explicit Guide(float albedo) {
-    length_ =
-        1.0f / std::sqrt(1.0f - std::pow(albedo, 2.44294f - 0.0215813f * albedo + 0.578637f / albedo));
+    length_ = 1.0f / std::sqrt(1.0f - std::pow(albedo, 2.44294f - 0.0215813f * albedo + 0.578637f / albedo));
     log_ = std::log((length_ + 1.0f) / (length_ - 1.0f));
   }
   bool exists() const { return length_ > 1.0f && is_finite(log_); }
@@ -100,8 +99,8 @@ class Walk {
       const Rgb channels = channel_probabilities(*weight);
       const float extinction = medium.extinction[choose(channels, u.distance.x)];
       const bool leaves = i == 0 ? first_step(extinction, u, &end->hit) : step(medium, extinction, u, &end->hit);
-      const float pdf = glm::dot(channels, i == 0 ? step_density(medium.extinction, length_, leaves)
-                                                  : density(medium, leaves));
+      const float pdf =
+          glm::dot(channels, i == 0 ? step_density(medium.extinction, length_, leaves) : density(medium, leaves));
       const Rgb transmittance = exp_of(medium.extinction * -length_);
       *weight *= (leaves ? transmittance : medium.scattering * transmittance) / pdf;
       if (leaves) {
@@ -135,7 +134,7 @@ class Walk {
     length_ = sampled;
     if (!meets(std::max(sampled, kSearchedPaths / least), hit)) return false;
     has_opposite_ = true;
-    opposite_ = hit->t * -glm::dot(direction_, start_.normal);
+    opposite_ = std::max(0.0f, hit->t * -glm::dot(direction_, start_.normal));
     length_ = std::min(sampled, hit->t);
     return hit->t < sampled;
   }

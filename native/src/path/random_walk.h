@@ -3,11 +3,11 @@
 //
 // Each step has one of up to nine techniques, combined by the balance heuristic: distances by the extinction of one
 // colour channel; directions by the phase function, or guided out of the medium, towards the surface at which the walk
-// has started or an opposite one. Guided steps follow the zero-variance walk of a half-space (Dwivedi 1982; Křivánek and
-// d'Eon 2014, "A Zero-Variance-Based Sampling Scheme for Monte Carlo Subsurface Scattering"; Meng, Hanika and
-// Dachsbacher 2016, "Improving the Dwivedi Sampling Scheme"; d'Eon and Křivánek 2020, "Zero-Variance Theory for Efficient
-// Subsurface Scattering"). As in Cycles, a walk ends after 256 steps, and steps behind the tenth are isotropic, with the
-// extinction of a similar medium.
+// has started or an opposite one. Guided steps follow the zero-variance walk of a half-space (Dwivedi 1982; Křivánek
+// and d'Eon 2014, "A Zero-Variance-Based Sampling Scheme for Monte Carlo Subsurface Scattering"; Meng, Hanika and
+// Dachsbacher 2016, "Improving the Dwivedi Sampling Scheme"; d'Eon and Křivánek 2020, "Zero-Variance Theory for
+// Efficient Subsurface Scattering"). As in Cycles, a walk ends after 256 steps, and steps behind the tenth are
+// isotropic, with the extinction of a similar medium.
 #pragma once
 
 #include "bsdf/subsurface.h"

@@ -63,9 +63,9 @@ struct VertexSample {
 
 // Blocks of one step of a walk below a surface.
 struct StepSample {
-  Vec2 distance;   // x: colour channel, y: length of the step
+  Vec2 distance;  // x: colour channel, y: length of the step
   Vec2 direction;
-  Vec2 guide;      // x: whether the direction is guided, y: to which side
+  Vec2 guide;  // x: whether the direction is guided, y: to which side
 };
 
 class Sampler {
@@ -86,7 +86,12 @@ class Sampler {
   VertexSample walk_end(int depth) const;
 
  private:
+  // Returns the blocks of a vertex that begin with `first`.
   VertexSample vertex_at(uint32_t first) const;
+  // Computes consecutive blocks in SIMD lanes.
+  template <uint32_t kLanes>
+  void points(uint32_t first, float x[kLanes], float y[kLanes]) const;
+
   uint32_t stream_hash_ = 0;
   uint32_t index_ = 0;
   uint32_t reversed_index_ = 0;

@@ -22,8 +22,9 @@ inline bool enters_surface(const Vertex& vertex, const VertexSample& u) {
 }
 
 // Lets light that enters at a vertex travel below the surface to another point of the same instance. The path has
-// scattered `depth` times, and the ray that arrives has the state `ray`. Sets the vertex at which the light leaves, with
-// its closures, or returns false if it is lost. Equal arguments give equal results, so that a shift can replay the event.
+// scattered `depth` times, and the ray that arrives has the state `ray`. Sets the vertex at which the light leaves,
+// with its closures, or returns false if it is lost. Equal arguments give equal results, so that a shift can replay the
+// event.
 bool scatter_below(const PathContext& context, const Sampler& sampler, int depth, const shading::RayState& ray,
                    const Vertex& entry, SubsurfaceEvent* event, Vertex* exit);
 

@@ -105,8 +105,7 @@ class PathTracer {
       if (step == Step::Emission && !add_emission(sampler, source, *vertex)) return;
 
       // End the path by Russian roulette, or evaluate the closures of its vertex.
-      const VertexSample u =
-          step == Step::Exit ? sampler.walk_end(state_.depth) : sampler.vertex(state_.depth);
+      const VertexSample u = step == Step::Exit ? sampler.walk_end(state_.depth) : sampler.vertex(state_.depth);
       if (step < Step::Scattering && !survives(u, vertex)) return;
 
       // Sample the BSDF, and add light by next-event estimation. The next ray is intersected first, so that its hit is
@@ -276,6 +275,8 @@ class PathTracer {
 
   // Lets the path travel below the surface that it has met at a vertex. Returns the vertex at which it leaves, or null.
   Vertex* travel_below(const Sampler& sampler, const Vertex& entry) {
+    const lpe::LpeState behind = context_.components.next(state_.lpe_state, bsdf::ScatterClass::Diffuse);
+    if ((context_.components.ahead(behind) & wanted_) == 0 && !records_closures()) return nullptr;
     Vertex* exit = unused_vertex(entry);
     SubsurfaceEvent event;
     if (!scatter_below(context_, sampler, state_.depth, state_.ray.state, entry, &event, exit)) return nullptr;

@@ -118,8 +118,7 @@ void add_subsurface(const Subsurface& s, ShadeResult* result, const ShadeContext
     if (s.radius[i] >= kSmallestRadius && !is_diffuse_below(s.mode, c.ray)) diffuse[i] = 0.0f;
   }
   const bsdf::FresnelType fresnel = s.disney ? bsdf::FresnelType::Schlick : bsdf::FresnelType::None;
-  if (bsdf::Lobe* lobe =
-          add_lobe(result, bsdf::LobeType::Diffuse, bsdf::LightPass::Diffuse, diffuse, s.normal)) {
+  if (bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::Diffuse, bsdf::LightPass::Diffuse, diffuse, s.normal)) {
     lobe->fresnel = fresnel;
   }
   bsdf::Lobe* lobe =

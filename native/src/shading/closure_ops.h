@@ -25,19 +25,19 @@ inline bsdf::SubsurfaceMethod subsurface_method(uint32_t mode) {
 
 // Light that enters the object below a surface.
 struct Subsurface {
-  uint32_t mode = 0;         // GradusSubsurface, and other modes of the operation
-  Rgb weight = Rgb(0.0f);    // with the factor `color`
+  uint32_t mode = 0;       // GradusSubsurface, and other modes of the operation
+  Rgb weight = Rgb(0.0f);  // with the factor `color`
   Rgb color = Rgb(0.0f);
   Rgb radius = Rgb(0.0f);
   float ior = 1.4f;
-  float alpha = 1.0f;        // of the interface
+  float alpha = 1.0f;  // of the interface
   float anisotropy = 0.0f;
   Vec3 normal = Vec3(0.0f);  // on the side of wo
   bool disney = false;       // the diffuse lobes are Disney's
 };
 
-// Adds the lobes of subsurface scattering. Channels whose radius is too small are diffuse, and so are all channels where
-// is_diffuse_below() holds.
+// Adds the lobes of subsurface scattering. Channels whose radius is too small are diffuse, and so are all channels
+// where is_diffuse_below() holds.
 void add_subsurface(const Subsurface& inputs, ShadeResult* result, const ShadeContext& context);
 // Returns whether the ray that arrives sees a diffuse surface instead of subsurface scattering with this mode.
 bool is_diffuse_below(uint32_t mode, const RayState& ray);

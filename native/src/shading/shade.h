@@ -38,9 +38,9 @@ struct ShadeResult {
   Rgb emission = Rgb(0.0f);      // radiance towards wo
   Rgb transparency = Rgb(0.0f);  // weight of the ray that continues straight through the surface
   Rgb holdout = Rgb(0.0f);
-  bool fallback = false;    // the material has a replaced node
-  bool complete = false;    // the closures have been evaluated
-  bool ignores_wo = false;  // a complete result is equal for all directions on this side
+  bool fallback = false;        // the material has a replaced node
+  bool complete = false;        // the closures have been evaluated
+  bool ignores_wo = false;      // a complete result is equal for all directions on this side
   ClosureTape* tape = nullptr;  // records the closures for shade_from_tape(); not owned, may be null
 };
 
@@ -69,8 +69,8 @@ struct LightShadingPoint {
   Vec3 position = Vec3(0.0f);
   Vec3 normal = Vec3(0, 0, 1);
   Vec3 wo = Vec3(0, 0, 1);  // towards the receiver
-  Vec2 uv = Vec2(0.0f);  // coordinates on the light's surface
-  Mat3 axes{1.0f};       // axes of the light, without scale
+  Vec2 uv = Vec2(0.0f);     // coordinates on the light's surface
+  Mat3 axes{1.0f};          // axes of the light, without scale
 };
 // Returns the factor by which the node program multiplies the light's strength. `material` is an index in the scene.
 Rgb shade_light(const ShadedScene& scene, uint32_t material, const LightShadingPoint& point, const RayState& ray);

@@ -16,8 +16,8 @@ namespace {
 
 using test::PathScene;
 
-// Returns Chandrasekhar's H function of isotropic scattering at `cosine` (Radiative Transfer, 1960, ch. V), by iteration
-// of its integral equation.
+// Returns Chandrasekhar's H function of isotropic scattering at `cosine` (Radiative Transfer, 1960, ch. V), by
+// iteration of its integral equation.
 double h_function(double albedo, double cosine) {
   constexpr int n = 200;
   std::vector<double> h(n, 1.0);
@@ -136,7 +136,8 @@ TEST(RandomWalk, ChannelsOfUnequalMediaDoNotDisturbEachOther) {
 // The albedo of a half-space under diffuse light is that for which its medium was chosen, as precisely as the fits.
 TEST(RandomWalk, TheMediumBelowASurfaceHasTheColorOfTheSurface) {
   const Space space;
-  for (const bsdf::SubsurfaceMethod method : {bsdf::SubsurfaceMethod::WalkDiffuse, bsdf::SubsurfaceMethod::WalkDeHulst}) {
+  for (const bsdf::SubsurfaceMethod method :
+       {bsdf::SubsurfaceMethod::WalkDiffuse, bsdf::SubsurfaceMethod::WalkDeHulst}) {
     bsdf::Lobe lobe;
     lobe.type = bsdf::LobeType::Subsurface;
     lobe.subsurface = method;
@@ -149,8 +150,9 @@ TEST(RandomWalk, TheMediumBelowASurfaceHasTheColorOfTheSurface) {
     constexpr int kAngles = 8;
     for (int i = 0; i < kAngles; ++i) {  // equal parts of the cosine-weighted hemisphere
       const float cosine = std::sqrt((float(i) + 0.5f) / kAngles);
-      sum += weight * reflectance(space, medium, Vec3(std::sqrt(1.0f - cosine * cosine), 0.0f, -cosine),
-                                  kWalks / kAngles, true).value;
+      sum += weight *
+             reflectance(space, medium, Vec3(std::sqrt(1.0f - cosine * cosine), 0.0f, -cosine), kWalks / kAngles, true)
+                 .value;
     }
     sum /= float(kAngles);
     std::printf("  method %d: %.4f %.4f %.4f\n", int(method), sum.x, sum.y, sum.z);

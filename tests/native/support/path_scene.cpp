@@ -313,7 +313,7 @@ void add_lights_with_extent(PathScene* scene, uint32_t flags, float roughness) {
 const char* name_of(Scenario scenario) {
   static const char* const names[] = {"DiffuseArea", "PointAndSun", "World",      "GlossyFloor", "RoughMetal",
                                       "Mirror",      "Glass",       "RoughGlass", "Transparent", "LampsSeen",
-                                      "LampsUnseen", "Facets",      "Fisheye",    "Moving", "Subsurface"};
+                                      "LampsUnseen", "Facets",      "Fisheye",    "Moving",      "Subsurface"};
   return names[static_cast<int>(scenario)];
 }
 
