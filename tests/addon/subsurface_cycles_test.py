@@ -130,6 +130,7 @@ def passes_of(scene: bpy.types.Scene, folder: Path, engine: str, samples: int, *
     cycles = scene.cycles
     cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = samples, False, False
     cycles.sample_clamp_indirect, cycles.max_bounces, cycles.diffuse_bounces = 0.0, 4, 4
+    cycles.blur_glossy = 0.0
     cycles.pixel_filter_type, cycles.filter_width = "BOX", 1.0
     settings = {"integrator": "PATH", "reconstruction": "NONE"} | settings
     settings |= {"samples": samples, "pixel_filter": "BOX", "filter_width": 1.0}
@@ -170,7 +171,7 @@ def test_a9_subsurface(name: str, stage: bpy.types.Scene, tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("amount", [1.0, 0.5])
-def test_h5_light_passes_of_subsurface(amount: float, stage: bpy.types.Scene, tmp_path: Path) -> None:
+def test_a9_light_passes_of_subsurface(amount: float, stage: bpy.types.Scene, tmp_path: Path) -> None:
     """Light that leaves an object is diffuse: direct at the first exit, indirect behind it."""
     graph = Graph()
     show(graph.material, principled(graph, amount=amount))

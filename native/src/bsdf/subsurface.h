@@ -18,8 +18,8 @@ struct Medium {
   float anisotropy = 0.0f;     // mean cosine of Henyey and Greenstein's phase function
 };
 
-// Returns the medium below a surface with the given lobe of type Subsurface. A walk in the medium has the lobe's albedo
-// without its weight; the function divides `weight`, the lobe's weight, by it. Albedos near 0 are raised, since guided
+// Returns the medium below a surface with the given lobe of type Subsurface. Sets `weight` to that of a walk in it: the
+// lobe's weight divided by its colour, because the medium has that colour. Albedos near 0 are raised, since guided
 // walks need some scattering; `weight` makes up for that.
 Medium medium_below(const Lobe& lobe, Rgb* weight);
 // Returns the mean free path of each channel, by the lobe's radius, before anisotropy lengthens it; for the disk method

@@ -80,7 +80,7 @@ bool probe_disk(const PathContext& context, const Sampler& sampler, const Vertex
   const float scale = choose_scale(d, &v.x);
   const float radius = sample_burley(v.x) * scale;
   const float reach = kDiskReach * scale, height = std::sqrt(std::max(0.0f, reach * reach - radius * radius));
-  const float density = (profiles(d, radius).x + profiles(d, radius).y + profiles(d, radius).z) / count_channels(d);
+  const float density = 3.0f * mean_component(profiles(d, radius)) / count_channels(d);
   if (!(density > 0.0f)) return false;
   const SineCosine phi = sine_cosine(2.0f * kPi * v.y);
   const Vec3 offset = radius * (phi.cosine * frame.axis[1] + phi.sine * frame.axis[2]);
