@@ -116,6 +116,18 @@ def test_e5_unknown_texture_is_grey(output: str) -> None:
     assert len(program.warnings) == 1 and "is replaced by grey" in program.warnings[0]
 
 
+@pytest.mark.skipif(bpy.app.version < (5, 2, 0), reason="thin walls came with 5.2")
+def test_e5_subsurface_in_thin_walls_is_named_in_a_warning() -> None:
+    material = new_material()
+    node = material.node_tree.nodes.new("ShaderNodeBsdfPrincipled")
+    node.inputs["Subsurface Weight"].default_value = 0.5
+    show(material, node.outputs[0])
+    assert not translate(material).warnings
+    node.inputs["Thin Wall"].default_value = True
+    program = translate(material)
+    assert len(program.warnings) == 1 and "thin wall" in program.warnings[0]
+
+
 def test_e5_unknown_value_node_passes_through() -> None:
     material = new_material()
     nodes, links = material.node_tree.nodes, material.node_tree.links

@@ -25,7 +25,8 @@ class Op(IntEnum):
     PRINCIPLED = 11
     PRINCIPLED_3 = 12
     METALLIC = 13
-    AOV = 14
+    SUBSURFACE = 14
+    AOV = 15
     GEOMETRY = 32
     TEX_COORD = 33
     TANGENT = 34
@@ -86,6 +87,18 @@ class Distribution(IntEnum):
 
     SINGLE = 0
     MULTIPLE = 1
+
+
+class Subsurface(IntEnum):
+    """Method of subsurface scattering. It is added to the distribution of a closure."""
+
+    BURLEY = 0
+    WALK = 2
+    SKIN = 4
+    DE_HULST = 6
+    DIFFUSE = 8
+    DIFFUSE_SKIN = 10
+    ONCE = 16
 
 
 class Geometry(IntEnum):
@@ -383,9 +396,10 @@ INPUTS = {
     Op.EMISSION: 2,
     Op.MIX_SHADER: 3,
     Op.ADD_SHADER: 2,
-    Op.PRINCIPLED: 21,
-    Op.PRINCIPLED_3: 18,
+    Op.PRINCIPLED: 26,
+    Op.PRINCIPLED_3: 22,
     Op.METALLIC: 7,
+    Op.SUBSURFACE: 7,
     Op.AOV: 2,
     Op.GEOMETRY: 0,
     Op.TEX_COORD: 0,
@@ -458,6 +472,7 @@ OUTPUTS = {
     Op.PRINCIPLED: 1,
     Op.PRINCIPLED_3: 1,
     Op.METALLIC: 1,
+    Op.SUBSURFACE: 1,
     Op.AOV: 1,
     Op.GEOMETRY: 1,
     Op.TEX_COORD: 1,

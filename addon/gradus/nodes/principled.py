@@ -9,7 +9,7 @@ from __future__ import annotations
 from .node import NodeView, translator
 from .ops import Op, VectorMath
 from .program import NO_NORMAL, Program, Value, constant_color, constant_float
-from .shaders import MULTIPLE_SCATTERING, distribution_mode
+from .shaders import MULTIPLE_SCATTERING, distribution_mode, subsurface_anisotropy, subsurface_mode
 
 _WHITE = constant_color((1.0, 1.0, 1.0))
 
@@ -29,17 +29,18 @@ def _with_alpha(view: NodeView, surface: Value) -> Value:
     return view.add_closure(Op.MIX_SHADER, (alpha, clear, surface))
 
 
-def _warn_of_subsurface(view: NodeView, weight: Value) -> None:
-    if not weight.is_zero():
-        view.warn_replaced("has subsurface scattering, which is rendered as diffuse")
-
-
 def _before_4(view: NodeView) -> Value:
     base, subsurface = view.value("Base Color"), view.value("Subsurface")
-    _warn_of_subsurface(view, subsurface)
-    diffuse = base
+    diffuse, mode, below = base, distribution_mode(view), ()
     if not subsurface.is_zero():
         diffuse = view.add(Op.MIX, (view.clamped(subsurface), base, view.value("Subsurface Color")))
+        mode |= subsurface_mode(view, view.node.subsurface_method)
+        below = (
+            subsurface,
+            view.value("Subsurface Radius"),
+            view.value("Subsurface IOR"),
+            subsurface_anisotropy(view, "Subsurface Anisotropy"),
+        )
     inputs = (
         base,
         diffuse,
@@ -60,7 +61,7 @@ def _before_4(view: NodeView) -> Value:
         view.direction("Clearcoat Normal"),
         view.direction("Tangent"),
     )
-    surface = view.add_closure(Op.PRINCIPLED_3, inputs, distribution_mode(view))
+    surface = view.add_closure(Op.PRINCIPLED_3, inputs + below, mode)
     color, strength = view.value("Emission"), view.value("Emission Strength", default=1.0)
     if color.is_zero() or strength.is_zero():
         return surface
@@ -77,7 +78,18 @@ def _emission(view: NodeView) -> Value:
 
 
 def _since_4(view: NodeView) -> Value:
-    _warn_of_subsurface(view, view.value("Subsurface Weight"))
+    subsurface, mode, below = view.value("Subsurface Weight"), distribution_mode(view), ()
+    if not subsurface.is_zero():
+        mode |= subsurface_mode(view, view.node.subsurface_method)
+        below = (
+            subsurface,
+            view.value("Subsurface Radius"),
+            view.value("Subsurface Scale"),
+            view.value("Subsurface IOR"),
+            subsurface_anisotropy(view, "Subsurface Anisotropy"),
+        )
+        if not view.value("Thin Wall").is_zero():
+            view.warn_replaced("has a thin wall with subsurface scattering, which is rendered as that of a solid")
     thickness = view.value("Thin Film Thickness")
     if not thickness.is_zero():
         view.warn_replaced("has a thin film, which is ignored")
@@ -104,7 +116,7 @@ def _since_4(view: NodeView) -> Value:
         view.direction("Coat Normal"),
         view.direction("Tangent"),
     )
-    return view.add_closure(Op.PRINCIPLED, inputs, distribution_mode(view))
+    return view.add_closure(Op.PRINCIPLED, inputs + below, mode)
 
 
 _NONE = constant_float(0.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .node import NodeView, translator
-from .ops import Op
+from .ops import Op, Subsurface
 from .program import BLACK_CLOSURE, Value, constant_float
 
 _RENDERED = frozenset({"GGX", "MULTI_GGX", "SHARP"})
@@ -32,6 +32,52 @@ def roughness(view: NodeView) -> Value:
     if getattr(view.node, "distribution", "") == "SHARP":
         return constant_float(0.0)
     return view.value("Roughness")
+
+
+def subsurface_mode(view: NodeView, method: str) -> int:
+    """Returns the mode of subsurface scattering for a method of the node in its version of Blender."""
+    if view.version < (4, 0, 0):
+        walk = Subsurface.DIFFUSE_SKIN
+    elif method_names(view) >= {"RANDOM_WALK_LEGACY"}:
+        walk = Subsurface.DE_HULST
+    else:
+        walk = Subsurface.WALK
+    methods = {
+        "BURLEY": Subsurface.BURLEY,
+        "RANDOM_WALK": walk,
+        "RANDOM_WALK_SKIN": Subsurface.SKIN,
+        "RANDOM_WALK_LEGACY": Subsurface.WALK,
+        "RANDOM_WALK_FIXED_RADIUS": Subsurface.DIFFUSE,
+    }
+    return methods[method] + (Subsurface.ONCE if view.version < (5, 0, 0) else 0)
+
+
+def method_names(view: NodeView) -> set[str]:
+    """Returns the methods of subsurface scattering that the node has."""
+    for name in ("subsurface_method", "falloff"):
+        if (found := view.node.bl_rna.properties.get(name)) is not None:
+            return {item.identifier for item in found.enum_items}
+    return set()
+
+
+def subsurface_anisotropy(view: NodeView, name: str) -> Value:
+    """Returns the anisotropy below a surface. Light scatters backward from Blender 5.2 on."""
+    anisotropy = view.value(name)
+    return anisotropy if view.version >= (5, 2, 0) else view.clamped(anisotropy)
+
+
+@translator("ShaderNodeSubsurfaceScattering")
+def subsurface_scattering(view: NodeView) -> Value:
+    inputs = (
+        view.value("Color"),
+        view.value("Scale"),
+        view.value("Radius"),
+        view.value("IOR"),
+        view.value("Roughness", default=1.0),
+        subsurface_anisotropy(view, "Anisotropy"),
+        view.direction("Normal"),
+    )
+    return view.add_closure(Op.SUBSURFACE, inputs, subsurface_mode(view, view.node.falloff))
 
 
 @translator("ShaderNodeBsdfDiffuse")

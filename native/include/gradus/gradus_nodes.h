@@ -35,16 +35,21 @@
  *   ADD_SHADER        closure, closure -> closure: Adds two closures.
  *   PRINCIPLED        base color, metallic, roughness, ior, diffuse roughness, specular level, specular tint,
  *                       anisotropic, anisotropic rotation, transmission, coat weight, coat roughness, coat ior, coat
- *                       tint, sheen weight, sheen roughness, sheen tint, emission, normal, coat normal, tangent ->
- *                       closure: Principled BSDF of Blender 4.0 and later without alpha, for which it is mixed with
- *                       TRANSPARENT. The emission is colour times strength. Mode: GradusDistribution.
+ *                       tint, sheen weight, sheen roughness, sheen tint, emission, normal, coat normal, tangent,
+ *                       subsurface weight, subsurface radius, subsurface scale, subsurface ior, subsurface anisotropy
+ *                       -> closure: Principled BSDF of Blender 4.0 and later without alpha, for which it is mixed with
+ *                       TRANSPARENT. The emission is colour times strength. Mode: GradusDistribution +
+ *                       GradusSubsurface.
  *   PRINCIPLED_3      base color, diffuse color, metallic, specular, specular tint, roughness, anisotropic, anisotropic
  *                       rotation, sheen, sheen tint, clearcoat, clearcoat roughness, ior, transmission, transmission
- *                       roughness, normal, clearcoat normal, tangent -> closure: Principled BSDF before Blender 4.0
- *                       without alpha and emission. The diffuse colour is the base colour mixed with the subsurface
- *                       colour. Mode: GradusDistribution.
+ *                       roughness, normal, clearcoat normal, tangent, subsurface, subsurface radius, subsurface ior,
+ *                       subsurface anisotropy -> closure: Principled BSDF before Blender 4.0 without alpha and
+ *                       emission. The diffuse colour is the base colour mixed with the subsurface colour. Mode:
+ *                       GradusDistribution + GradusSubsurface.
  *   METALLIC          base color, edge tint, roughness, anisotropy, rotation, normal, tangent -> closure: Metal with
  *                       the F82 tint model. Mode: GradusDistribution.
+ *   SUBSURFACE        color, scale, radius, ior, roughness, anisotropy, normal -> closure: Light that enters the object
+ *                       and leaves it elsewhere. Mode: GradusSubsurface.
  *   AOV               color, value -> closure: Output to an AOV, which GradusMaterial.aovs refers to; it scatters
  *                       nothing. Mode: index of the channel.
  *
@@ -153,10 +158,11 @@
   X(EMISSION, 8, 2, 1, 1) \
   X(MIX_SHADER, 9, 3, 1, 1) \
   X(ADD_SHADER, 10, 2, 1, 1) \
-  X(PRINCIPLED, 11, 21, 1, 1) \
-  X(PRINCIPLED_3, 12, 18, 1, 1) \
+  X(PRINCIPLED, 11, 26, 1, 1) \
+  X(PRINCIPLED_3, 12, 22, 1, 1) \
   X(METALLIC, 13, 7, 1, 1) \
-  X(AOV, 14, 2, 1, 1) \
+  X(SUBSURFACE, 14, 7, 1, 1) \
+  X(AOV, 15, 2, 1, 1) \
   X(GEOMETRY, 32, 0, 1, 0) \
   X(TEX_COORD, 33, 0, 1, 0) \
   X(TANGENT, 34, 0, 1, 0) \
@@ -221,6 +227,21 @@ typedef enum GradusDistribution {
   GRADUS_DISTRIBUTION_SINGLE = 0,  /* GGX with single scattering; it also stands for Beckmann and Ashikhmin-Shirley. */
   GRADUS_DISTRIBUTION_MULTIPLE = 1 /* GGX with the energy of multiple scattering. */
 } GradusDistribution;
+
+/* Method of subsurface scattering. It is added to the distribution of a closure. */
+typedef enum GradusSubsurface {
+  GRADUS_SUBSURFACE_BURLEY = 0,        /* Profile of Christensen and Burley. */
+  GRADUS_SUBSURFACE_WALK = 2,          /* Random Walk of Blender 4.0 to 5.1, and Random Walk (Legacy): light enters
+                                          through a rough interface. */
+  GRADUS_SUBSURFACE_SKIN = 4,          /* Random Walk (Skin) of Blender 4.0 and later: half of the light enters
+                                          diffusely. */
+  GRADUS_SUBSURFACE_DE_HULST = 6,      /* Random Walk of Blender 5.2: the radius is the mean free path. */
+  GRADUS_SUBSURFACE_DIFFUSE = 8,       /* Random Walk (Fixed Radius) before Blender 4.0: light enters diffusely. */
+  GRADUS_SUBSURFACE_DIFFUSE_SKIN = 10, /* Random Walk before Blender 4.0: light enters diffusely; the medium is that
+                                          of skin. */
+  GRADUS_SUBSURFACE_ONCE = 16          /* Added to a method: behind a diffuse bounce the surface is diffuse, as
+                                          before Blender 5.0. */
+} GradusSubsurface;
 
 /* Quantity of a surface point. */
 typedef enum GradusGeometryMode {

@@ -118,6 +118,7 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {
   const Rgb scale = lobe.weight * lobe.energy;
   switch (lobe.type) {
     case LobeType::Diffuse:
+    case LobeType::Subsurface:
       return {lobe.weight, Rgb(0.0f)};
     case LobeType::Translucent:
       return {Rgb(0.0f), lobe.weight};

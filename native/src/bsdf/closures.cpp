@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
 #include "bsdf/lobe.h"
 #include "bsdf/shading_frame.h"
@@ -151,6 +152,8 @@ void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo) {
   if (is_microfacet(lobe->type)) {
     limit_microfacets(lobe);
     lobe->ior = inside ? 1.0f / lobe->ior : lobe->ior;
+  }
+  if (is_microfacet(lobe->type) || lobe->type == LobeType::Subsurface) {
     normal = keep_reflection_above(normal, geometric_normal, wo);
   }
   lobe->normal = normal;
@@ -173,7 +176,7 @@ void Closures::add_entry(int lobe, uint8_t sides, ScatterClass c, float weight) 
   }
   const size_t k = static_cast<size_t>(c);
   const bool dirac = is_dirac(lobes_[static_cast<size_t>(lobe)].type);
-  has_smooth_[k] = has_smooth_[k] || !dirac;
+  has_smooth_[k] = has_smooth_[k] || (!dirac && c != ScatterClass::Subsurface);
   entries_[k][static_cast<size_t>(entry_count_[k]++)] = {static_cast<uint8_t>(lobe), sides, dirac, weight};
 }
 
@@ -186,7 +189,16 @@ void Closures::add_entries(int index, const Vec3& wo, float roughness_threshold)
   const float minimum = is_dirac(lobe.type) ? 0.0f : kSmallestShare * mean_component(lobe.weight);
   reflected = sides & kReflects ? std::max(reflected, minimum) : 0.0f;
   transmitted = sides & kTransmits ? std::max(transmitted, minimum) : 0.0f;
+  if (lobe.disney == DisneyPart::RetroReflection) {
+    reflected *=
+        std::max(kSmallestShare, lobe.alpha_x * pow5(std::clamp(1.0f - glm::dot(lobe.normal, wo), 0.0f, 1.0f)));
+  }
   lobe.sample_weight = reflected + transmitted;
+  if (lobe.type == LobeType::Subsurface) {
+    lobe.scatter_class = ScatterClass::Subsurface;
+    add_entry(index, kReflects, ScatterClass::Subsurface, lobe.sample_weight);
+    return;
+  }
   if (is_dirac(lobe.type)) {
     dirac_count_[static_cast<size_t>(ScatterClass::Reflection)] += (sides & kReflects) != 0;
     dirac_count_[static_cast<size_t>(ScatterClass::Transmission)] += (sides & kTransmits) != 0;

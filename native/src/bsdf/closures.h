@@ -12,9 +12,12 @@
 
 namespace gradus::bsdf {
 
-// Scattering events of light path expressions: D (rough), R (specular reflection) and T (specular transmission).
-enum class ScatterClass : uint8_t { Diffuse = 0, Reflection = 1, Transmission = 2 };
-inline constexpr int kScatterClasses = 3;
+// Classes of scattering: rough (D), specular reflection (R) and specular transmission (T), which are the events of
+// light path expressions, and light that enters the object. That light leaves it elsewhere by an event D, so that class
+// Subsurface is no event of its own (path/subsurface.h).
+enum class ScatterClass : uint8_t { Diffuse = 0, Reflection = 1, Transmission = 2, Subsurface = 3 };
+inline constexpr int kScatterClasses = 4;
+inline constexpr int kPathEvents = 3;  // the classes below this are events of light path expressions
 
 // The light pass of Blender that a lobe contributes to. It does not depend on the class.
 enum class LightPass : uint8_t { Diffuse = 0, Glossy = 1, Transmission = 2 };
@@ -23,6 +26,7 @@ enum class LobeType : uint8_t {
   Diffuse,  // Lambert, or Oren-Nayar with roughness > 0
   Translucent,
   Sheen,
+  Subsurface,
   GgxReflection,
   GgxRefraction,
   GgxGlass,         // reflection and refraction of one dielectric interface, chosen by Fresnel
@@ -33,6 +37,21 @@ enum class LobeType : uint8_t {
 };
 
 enum class FresnelType : uint8_t { None, Dielectric, Schlick, PrincipledMetal };
+
+// How light travels below the surface (subsurface.h): the methods of Cycles, in the order of GradusSubsurface. They
+// differ in how light enters, and in the medium that stands for an albedo and a radius.
+enum class SubsurfaceMethod : uint8_t {
+  Disk,             // Burley's profile instead of a walk
+  Walk,             // enters through a rough interface
+  WalkSkin,         // enters through a fully rough interface and diffusely, half each; the medium is that of skin
+  WalkDeHulst,      // enters through a rough interface; the mean free path is the radius
+  WalkDiffuse,      // enters diffusely
+  WalkDiffuseSkin,  // enters diffusely; the medium is that of skin
+};
+
+// The parts of Disney's diffuse lobe. With subsurface scattering, the parts other than retro-reflection are split
+// between the points at which light enters and leaves.
+enum class DisneyPart : uint8_t { All, RetroReflection, Exit };
 
 // A cached single-scattering albedo of the reflection side of a lobe, without the lobe's weight.
 struct KnownAlbedo {
@@ -47,6 +66,10 @@ struct KnownAlbedo {
 // - Diffuse: alpha_x is the Oren-Nayar roughness; 0 means Lambert. With multiscatter the lobe conserves energy, and f0
 //   is the surface's colour, which is also a factor of the weight. With fresnel Schlick it is Disney's diffuse lobe,
 //   and alpha_x its roughness.
+//   disney selects a part of it.
+// - Subsurface: f0 is the albedo, which is also a factor of the weight, and f90 the radius of each channel. alpha_x is
+//   the alpha of the interface, ior its IOR, and alpha_y the anisotropy of the phase function. With fresnel Schlick
+//   light leaves by the exit part of Disney's diffuse lobe.
 // - Sheen: alpha_x is the sheen roughness, not squared. With fresnel Schlick it is the grazing term of Blender before
 //   4.0.
 // - Ggx and Dirac types: alpha_x, alpha_y, ior and fresnel. finish() turns a Ggx lobe into a Dirac lobe if its alpha is
@@ -64,7 +87,9 @@ struct Lobe {
   LobeType type = LobeType::Diffuse;
   FresnelType fresnel = FresnelType::None;
   LightPass pass = LightPass::Diffuse;
-  bool multiscatter = false;     // adds the energy that single scattering loses
+  bool multiscatter = false;  // adds the energy that single scattering loses
+  SubsurfaceMethod subsurface = SubsurfaceMethod::Disk;
+  DisneyPart disney = DisneyPart::All;
   Rgb weight = Rgb(0.0f);        // throughput of the node graph times colour
   Vec3 normal = Vec3(0, 0, 1);   // outward normal; finish() flips it to the side of wo and then inverts ior
   Vec3 tangent = Vec3(1, 0, 0);  // finish() makes it orthonormal; unused if isotropic
@@ -142,6 +167,13 @@ class Closures {
 
   // Returns whether any class has lobes that are not Dirac.
   bool has_smooth() const { return has_smooth_[0] || has_smooth_[1] || has_smooth_[2]; }
+
+  // Returns the probability of the classes that are not specular.
+  float non_specular_probability() const {
+    return class_probability(ScatterClass::Diffuse) + class_probability(ScatterClass::Subsurface);
+  }
+  // Chooses a lobe of class Subsurface by u in [0, 1). Returns its index, and its probability within the class.
+  int choose_subsurface(float u, float* probability) const;
 
   // Returns the sum of all smooth lobes of one class.
   BsdfEval evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const;

@@ -43,13 +43,18 @@ Rgb multiple_scattering(const Lobe& lobe, float cos_o, float cos_i) {
   return color * color * (mean * std::max(0.0f, shape)) / (Rgb(1.0f) - color * (1.0f - mean));
 }
 
-// Returns Disney's diffuse lobe times π. At grazing angles it is darker than Lambert if smooth, and brighter towards
-// the light if rough.
-float disney(float roughness, const Vec3& wo, const Vec3& wi) {
+// Returns a part of Disney's diffuse lobe times π. At grazing angles it is darker than Lambert if smooth, and brighter
+// towards the light if rough. The exit part lacks the factor of the point at which light enters.
+float disney(DisneyPart part, float roughness, const Vec3& wo, const Vec3& wi) {
   const float fl = pow5(std::clamp(1.0f - wi.z, 0.0f, 1.0f));
   const float fv = pow5(std::clamp(1.0f - wo.z, 0.0f, 1.0f));
+  if (part == DisneyPart::Exit) {
+    return 1.0f - 0.5f * fl;
+  }
   const float retro = roughness * (glm::dot(wo, wi) + 1.0f);
-  return (1.0f - 0.5f * fl) * (1.0f - 0.5f * fv) + retro * (fl + fv + fl * fv * (retro - 1.0f));
+  const float reflected_back = retro * (fl + fv + fl * fv * (retro - 1.0f));
+  return part == DisneyPart::RetroReflection ? reflected_back
+                                             : (1.0f - 0.5f * fl) * (1.0f - 0.5f * fv) + reflected_back;
 }
 
 }  // namespace
@@ -63,7 +68,7 @@ BsdfEval evaluate_diffuse(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint
   }
   const float pdf = wi.z * kInvPi;
   if (lobe.fresnel == FresnelType::Schlick) {
-    return {lobe.weight * (std::max(0.0f, disney(lobe.alpha_x, wo, wi)) * pdf), pdf};
+    return {lobe.weight * (std::max(0.0f, disney(lobe.disney, lobe.alpha_x, wo, wi)) * pdf), pdf};
   }
   const float cos_o = std::max(0.0f, wo.z);
   float t = glm::dot(wo, wi) - wi.z * cos_o;

@@ -10,10 +10,11 @@ float square(float x) { return x * x; }
 // Returns a squared distance of two lobes' shapes. It is infinite for lobes of different type or pass.
 float squared_distance(const Lobe& a, const Lobe& b) {
   if (a.type != b.type || a.pass != b.pass) return kInfinity;
-  // Lobes with different Fresnel types are merged last, so their distance exceeds that of any parameters.
+  // Lobes of different kinds are merged last, so their distance exceeds that of any parameters.
   constexpr float kOtherCurve = 1e6f;
   const bool anisotropic = a.alpha_x != a.alpha_y || b.alpha_x != b.alpha_y;
-  return (a.fresnel == b.fresnel ? 0.0f : kOtherCurve) + (a.multiscatter == b.multiscatter ? 0.0f : 1.0f) +
+  const bool same_kind = a.fresnel == b.fresnel && a.subsurface == b.subsurface && a.disney == b.disney;
+  return (same_kind ? 0.0f : kOtherCurve) + (a.multiscatter == b.multiscatter ? 0.0f : 1.0f) +
          square(a.alpha_x - b.alpha_x) + square(a.alpha_y - b.alpha_y) + square(a.ior - b.ior) +
          squared_length(a.normal - b.normal) + (anisotropic ? squared_length(a.tangent - b.tangent) : 0.0f) +
          squared_length(a.f0 - b.f0) + squared_length(a.f90 - b.f90) +

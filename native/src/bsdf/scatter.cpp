@@ -15,11 +15,12 @@ struct LobeFunctions {
   EvaluateLobe evaluate;
   SampleLobe sample;
 };
-// The functions of each LobeType, in its order. Dirac lobes have none.
+// The functions of each LobeType, in its order. Dirac lobes and subsurface scattering have none.
 constexpr std::array<LobeFunctions, static_cast<size_t>(LobeType::Count)> kFunctions = {{
     {evaluate_diffuse, sample_diffuse},
     {evaluate_translucent, sample_translucent},
     {evaluate_sheen, sample_sheen},
+    {nullptr, nullptr},
     {evaluate_ggx_reflection, sample_ggx_reflection},
     {evaluate_ggx_refraction, sample_ggx_refraction},
     {evaluate_ggx_glass, sample_ggx_glass},
@@ -140,9 +141,20 @@ bool Closures::evaluate_dirac(int index, const Vec3& wo, bool transmitted, BsdfS
   return false;
 }
 
+int Closures::choose_subsurface(float u, float* probability) const {
+  constexpr auto k = static_cast<size_t>(ScatterClass::Subsurface);
+  int chosen = 0;
+  while (chosen < entry_count_[k] - 1 && u >= entries_[k][static_cast<size_t>(chosen)].probability) {
+    u -= entries_[k][static_cast<size_t>(chosen++)].probability;
+  }
+  const Entry& entry = entries_[k][static_cast<size_t>(chosen)];
+  *probability = entry.probability;
+  return entry.lobe;
+}
+
 bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& u, BsdfSample* out) const {
   const size_t k = static_cast<size_t>(c);
-  if (entry_count_[k] == 0) {
+  if (entry_count_[k] == 0 || c == ScatterClass::Subsurface) {
     return false;
   }
   // u_lobe chooses the entry; its remainder, scaled to [0, 1), chooses the side.

@@ -29,7 +29,7 @@ struct Accelerator {
 struct AcceleratorInput {
   const std::vector<InstanceData>* instances;
   const std::vector<uint32_t>* masks;  // Embree mask of each instance
-  ExactMatrices to_internal;              // matrix of each instance to internal space
+  ExactMatrices to_internal;           // matrix of each instance to internal space
 };
 
 // Builds the acceleration structure of the given instances. `before` is the accelerator of the previous snapshot or
@@ -42,6 +42,8 @@ std::shared_ptr<const Accelerator> build_accelerator(const EmbreeDevice& device,
 // Finds the nearest hit of a ray among the instances that share a bit with `mask`. Returns false, and an invalid hit,
 // if there is none. Rays that are not finite miss.
 bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask, Hit* hit);
+// Finds the nearest hit of a ray with one instance. Returns false, and an invalid hit, if there is none.
+bool trace_instance(const Accelerator& accelerator, const Ray& ray, uint32_t instance, Hit* hit);
 // Returns whether a ray hits any instance that shares a bit with `mask`. Rays that are not finite miss.
 bool trace_any(const Accelerator& accelerator, const Ray& ray, uint32_t mask);
 

@@ -63,6 +63,8 @@ class Geometry {
   // Finds the nearest surface that is visible to one of the ray types in `visibility` (GradusVisibility bits). Returns
   // false if the ray leaves the scene.
   bool intersect(const Ray& ray, uint32_t visibility, Hit* hit) const;
+  // Finds the nearest surface of one instance, whatever it is visible to. Returns false if there is none on the ray.
+  bool intersect_instance(const Ray& ray, uint32_t instance, Hit* hit) const;
   // Traces four rays at once. The results equal those of four calls of intersect(). Rays with t_max < t_min are
   // inactive.
   void intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) const;

@@ -98,26 +98,43 @@ bool mask_lanes_that_meet_moving(const Accelerator& accelerator, const RTCRay4& 
   return any;
 }
 
+// Context of a query for one instance of a group. Embree passes the first member to its filter function.
+struct InstanceContext {
+  RTCIntersectContext context;
+  const Accelerator::Part* part;
+  uint32_t instance;
+};
+
+// Embree's filter function of queries for one instance: rejects the hits of others.
+void reject_others(const RTCFilterFunctionNArguments* args) {
+  const auto& wanted = *reinterpret_cast<const InstanceContext*>(args->context);
+  const unsigned instance_id = RTCHitN_instID(args->hit, args->N, 0, 0);
+  if (instance_of(*wanted.part, instance_id, RTCHitN_geomID(args->hit, args->N, 0)) != wanted.instance)
+    args->valid[0] = 0;
+}
+
 // Finds a hit in one group that is nearer than the query's current hit. Returns false if there is none; the query's
 // distance is unchanged then.
-bool intersect(const Accelerator::Part& part, RTCRayHit* query) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+bool intersect(const Accelerator::Part& part, RTCIntersectContext* context, RTCRayHit* query) {
   query->hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query->hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(part.group->scene, &context, query);
+  rtcIntersect1(part.group->scene, context, query);
   return query->hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
 }  // namespace
 
-bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask, Hit* hit) {
+namespace {
+
+// Finds the nearest hit in both groups. `context_of` returns the context for a group.
+template <class ContextOf>
+bool nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask, ContextOf&& context_of, Hit* hit) {
   *hit = Hit();
   if (!traceable(ray)) return false;
   RTCRayHit query;
   set_ray(ray, mask, &query.ray);
   const auto take = [&](const Accelerator::Part& part) {
-    if (!intersect(part, &query)) return;
+    if (!intersect(part, context_of(part), &query)) return;
     hit->t = query.ray.tfar;
     hit->instance = instance_of(part, query.hit.instID[0], query.hit.geomID);
     hit->primitive = query.hit.primID;
@@ -129,12 +146,37 @@ bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask
   return hit->valid();
 }
 
+}  // namespace
+
+bool trace_nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask, Hit* hit) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  return nearest(
+      accelerator, ray, mask, [&](const Accelerator::Part&) { return &context; }, hit);
+}
+
+bool trace_instance(const Accelerator& accelerator, const Ray& ray, uint32_t instance, Hit* hit) {
+  InstanceContext wanted;
+  rtcInitIntersectContext(&wanted.context);
+  wanted.context.filter = reject_others;
+  wanted.instance = instance;
+  const auto context_of = [&](const Accelerator::Part& part) {
+    wanted.part = &part;
+    return &wanted.context;
+  };
+  return nearest(accelerator, ray, UINT32_MAX, context_of, hit);
+}
+
 bool trace_any(const Accelerator& accelerator, const Ray& ray, uint32_t mask) {
   return blocked_by(accelerator, ray, mask);
 }
 
 bool Geometry::intersect(const Ray& ray, uint32_t visibility, Hit* hit) const {
   return trace_nearest(*accelerator, ray, visibility & kMaskVisibility, hit);
+}
+
+bool Geometry::intersect_instance(const Ray& ray, uint32_t instance, Hit* hit) const {
+  return trace_instance(*accelerator, ray, instance, hit);
 }
 
 bool Geometry::occluded(const Ray& ray) const { return blocked_by(*accelerator, ray, GRADUS_VISIBLE_SHADOW); }

@@ -10,6 +10,7 @@
 #include "gradient/offset_rays.h"
 #include "gradient/random_replay.h"
 #include "gradient/reconnection.h"
+#include "gradient/subsurface_shift.h"
 
 namespace gradus::gradient {
 
@@ -283,6 +284,36 @@ void GradientObserver::on_light_sample(const path::Vertex& vertex, const path::L
       accumulator_.add(k, c, copy_light_sample(base_, vertex, sample, scatter_class, c, o));
     } else if (o.stage == OffsetStage::Deeper) {
       accumulator_.add(k, c, share_light_sample(base_, vertex, sample, c, o));
+    }
+  }
+}
+
+// Pending offsets share the vertex at which the base enters the surface.
+void GradientObserver::on_subsurface_entry(const path::Vertex& entry, const path::VertexSample& u) {
+  if (open_ == 0) {
+    return;
+  }
+  decouple_by_class(entry, u);
+  connect_pending(base_, entry, &offsets_, &counters_);
+  for (OffsetPath& o : offsets_) {
+    if (o.stage == OffsetStage::Pending && arrives(&o, entry)) {
+      ++counters_.shifts_reconnected;
+      share_vertex(base_, entry, &o);
+      fail_if(o.include_kind() ? ShiftFailure::None : ShiftFailure::Class, &o);
+    }
+  }
+}
+
+void GradientObserver::on_subsurface_exit(const path::Vertex& entry, const path::SubsurfaceEvent& event) {
+  accumulator_.scale_suffix(event.factor);
+  if (open_ == 0) {
+    return;
+  }
+  for (OffsetPath& o : offsets_) {
+    if (o.stage == OffsetStage::Coupled) {
+      fail_if(replay_below(base_, entry, &o, &counters_), &o);
+    } else if (o.stage == OffsetStage::Deeper) {
+      o.state.throughput *= event.factor;
     }
   }
 }

@@ -9,6 +9,8 @@
 //   - Class D before class R or T: the offset shares the next vertex, and also the direction behind it where the lobe
 //   is
 //     wide (footprint.h). Where the vertex is not shared, the offset copies the direction (direction_copy.h).
+//   - Class Subsurface: the offset replays the walk below the surface (subsurface_shift.h). Before it, an offset shares
+//     the vertex at which light enters.
 //   - Class R or T: the offset copies the event, its half-vector or its Dirac lobe, and traces a ray of its own
 //     (half_vector.h).
 // For a light sample at a vertex of its own, the offset copies the point on the light (light_shift.h). Where the
@@ -50,6 +52,8 @@ class GradientObserver {
   void on_survival(float probability, const path::Vertex& vertex);
   void on_light_sample(const path::Vertex& vertex, const path::LightSample& sample, bsdf::ScatterClass scatter_class,
                        const path::Contribution& c);
+  void on_subsurface_entry(const path::Vertex& entry, const path::VertexSample& u);
+  void on_subsurface_exit(const path::Vertex& entry, const path::SubsurfaceEvent& event);
   void on_scattering(const path::Vertex& vertex, const path::VertexSample& u, const path::ScatterEvent& event);
   void on_absorption(const path::Vertex& vertex, const path::VertexSample& u) { decouple_by_class(vertex, u); }
   // Returns the vertex to which reconnection is deferred, or null.

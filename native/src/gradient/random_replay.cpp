@@ -42,13 +42,14 @@ ShiftedEvent replay_event(const path::Vertex& x, const path::ScatterEvent& event
 }
 
 bool replays(const Vec3& x, const Vec3& y, const path::Vertex& z) {
-  const bool non_specular = z.shade.closures.class_probability(bsdf::ScatterClass::Diffuse) > 0.0f;
+  const bool non_specular = z.shade.closures.non_specular_probability() > 0.0f;
   return non_specular && is_short_edge(x, y, z.point.position);
 }
 
 ShiftFailure replay(const BasePath& base, const path::Vertex& z, OffsetPath* offset, film::Counters* counters) {
-  const ShiftedEvent event =
-      replay_event(*base.from, base.event, base.sampler->vertex(base.state.depth - 1), *offset->vertex);
+  const int depth = base.state.depth - 1;
+  const path::VertexSample u = base.event.is_exit ? base.sampler->walk_end(depth) : base.sampler->vertex(depth);
+  const ShiftedEvent event = replay_event(*base.from, base.event, u, *offset->vertex);
   const ShiftFailure failure = trace_to_own_vertex(base, event, offset, counters);
   if (failure != ShiftFailure::None) {
     return failure;

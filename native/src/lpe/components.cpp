@@ -132,7 +132,7 @@ ComponentSet ComponentSet::parse(std::string_view text) {
     matched |= bits;
     State state;
     state.component = uint8_t(bits != 0 ? size_t(__builtin_ctz(bits)) : residual);
-    for (int k = 0; k < bsdf::kScatterClasses; ++k) {
+    for (int k = 0; k < bsdf::kPathEvents; ++k) {
       Sets next = step(expressions, sets[s], static_cast<LpeEvent>(k));
       const auto [found, is_new] = known.emplace(next, LpeState(sets.size()));
       state.next[size_t(k)] = found->second;
@@ -196,7 +196,7 @@ uint32_t ComponentSet::reached(uint32_t events) const {
   known[0] = true;
   uint32_t bits = 0;
   for (size_t i = 0; i < states.size(); ++i) {
-    for (int k = 0; k < bsdf::kScatterClasses; ++k) {
+    for (int k = 0; k < bsdf::kPathEvents; ++k) {
       if ((events >> k & 1) == 0) continue;
       const LpeState to = next(states[i], static_cast<bsdf::ScatterClass>(k));
       bits |= 1u << component(to);
@@ -237,7 +237,7 @@ std::vector<std::string> ComponentSet::examples(int component, size_t maximum) c
     std::vector<std::pair<LpeState, std::string>> longer;
     for (const auto& [at, path] : paths) {
       if (this->component(at) == component && found.size() < maximum) found.push_back(path + "L");
-      for (int k = 0; k < bsdf::kScatterClasses; ++k) {
+      for (int k = 0; k < bsdf::kPathEvents; ++k) {
         const LpeState to = next(at, static_cast<bsdf::ScatterClass>(k));
         if ((ahead(to) >> component & 1) != 0 && longer.size() < 4096) longer.emplace_back(to, path + kEventNames[k]);
       }

@@ -74,7 +74,7 @@ class ComponentSet {
 
  private:
   struct State {
-    std::array<LpeState, bsdf::kScatterClasses> next{};
+    std::array<LpeState, bsdf::kPathEvents> next{};
     uint8_t component = 0;
     uint32_t ahead = 1;
   };

@@ -28,7 +28,8 @@ SmoothScattering smooth_scattering(const bsdf::Closures& closures, bsdf::Scatter
   SmoothScattering best;
   for (int i = 0; i < closures.count(); ++i) {
     const bsdf::Lobe& lobe = closures.lobe(i);
-    if (lobe.scatter_class == bsdf::ScatterClass::Diffuse) continue;
+    if (lobe.scatter_class == bsdf::ScatterClass::Diffuse || lobe.scatter_class == bsdf::ScatterClass::Subsurface)
+      continue;
     const bsdf::Frame3 frame = bsdf::make_frame(lobe.normal, lobe.tangent);
     Vec3 local;
     Rgb coefficient;
@@ -119,11 +120,11 @@ struct ChainTracer::Search {
     return change != nullptr && change->is_static(ray.ray, hit, ray.state.length);
   }
   // Whether the chain ends here: on a non-specular surface or an emitter whose light belongs to the component.
-  // threshold: probability of class D above which a surface is non-specular.
+  // threshold: probability of the classes D and Subsurface above which a surface is non-specular.
   bool ends_at(const Arrival& arrival, lpe::LpeState lpe_state, float threshold) const {
     if (arrival.surely_non_specular) return reaches(components.next(lpe_state, bsdf::ScatterClass::Diffuse));
     const path::Vertex& vertex = arrival.vertex;
-    const bool non_specular = vertex.shade.closures.class_probability(bsdf::ScatterClass::Diffuse) > threshold;
+    const bool non_specular = vertex.shade.closures.non_specular_probability() > threshold;
     return (non_specular && reaches(components.next(lpe_state, bsdf::ScatterClass::Diffuse))) ||
            (!is_black(vertex.shade.emission) && is_lit(lpe_state));
   }

@@ -59,9 +59,9 @@ Contribution emission_contribution(const PathContext& context, const RaySource& 
 }
 
 bool light_classes(const PathContext& context, const Vertex& vertex, const LightSample& light,
-                   const shading::RayState& ray, LitClass lit[bsdf::kScatterClasses]) {
+                   const shading::RayState& ray, LitClass lit[bsdf::kPathEvents]) {
   bool any = false;
-  for (int k = 0; k < bsdf::kScatterClasses; ++k) {
+  for (int k = 0; k < bsdf::kPathEvents; ++k) {
     lit[k] = light_class(context, vertex, static_cast<bsdf::ScatterClass>(k), light, ray);
     any |= !is_black(lit[k].value);
   }

@@ -32,7 +32,7 @@ Contribution emission_contribution(const PathContext& context, const RaySource& 
 
 // Evaluates a light sample in all classes, shadows excluded. Returns whether at least one class scatters its light.
 bool light_classes(const PathContext& context, const Vertex& vertex, const LightSample& light,
-                   const shading::RayState& ray, LitClass lit[bsdf::kScatterClasses]);
+                   const shading::RayState& ray, LitClass lit[bsdf::kPathEvents]);
 // Returns the contribution of a light sample in one class. `state` is that on arrival at the vertex.
 Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light,
                                 bsdf::ScatterClass scatter_class, const LitClass& lit, const Rgb& transmittance);

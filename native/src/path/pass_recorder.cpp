@@ -274,7 +274,7 @@ void PassRecorder::background_motion(const Vec3& direction) {
 void PassRecorder::features(const PathState& state, const Vertex& vertex) {
   const bsdf::Closures& closures = vertex.shade.closures;
   add_albedo(state.throughput * vertex.shade.emission);
-  const bool mirror = !closures.empty() && closures.class_probability(bsdf::ScatterClass::Diffuse) < 0.25f;
+  const bool mirror = !closures.empty() && closures.non_specular_probability() < 0.25f;
   if (mirror && !state.emission_only) {
     return;
   }
@@ -289,7 +289,7 @@ void PassRecorder::features(const PathState& state, const Vertex& vertex) {
 // Returns the components, as bits, of paths whose first non-specular vertex this is: those that scatter here in class
 // D.
 uint32_t PassRecorder::components_of_non_specular(const PathState& state, const Vertex& vertex) const {
-  if (!(vertex.shade.closures.class_probability(bsdf::ScatterClass::Diffuse) > 0.0f)) {
+  if (!(vertex.shade.closures.non_specular_probability() > 0.0f)) {
     return 0;
   }
   return context_.components.ahead(context_.components.next(state.lpe_state, bsdf::ScatterClass::Diffuse));

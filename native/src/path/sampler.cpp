@@ -67,27 +67,48 @@ Vec2 Sampler::get2(uint32_t block) const {
   return Vec2(to_unit(bits.x), to_unit(bits.y));
 }
 
-VertexSample Sampler::vertex(int depth) const {
+namespace {
+
+uint32_t first_of_walk(int depth) { return dimension::kFirstWalk + static_cast<uint32_t>(depth) * dimension::kPerWalk; }
+
+}  // namespace
+
+template <uint32_t kLanes>
+[[gnu::always_inline]] inline void Sampler::points(uint32_t first, float x[kLanes], float y[kLanes]) const {
+  for (uint32_t i = 0; i < kLanes; ++i) {
+    const Bits bits = net_point(stream_hash_, first + i, reversed_index_);
+    x[i] = to_unit(bits.x);
+    y[i] = to_unit(bits.y);
+  }
+  for (uint32_t i = 0; independent_ && i < kLanes; ++i) {
+    const Vec2 u = get2(first + i);
+    x[i] = u.x;
+    y[i] = u.y;
+  }
+}
+
+VertexSample Sampler::vertex_at(uint32_t first) const {
   constexpr uint32_t lanes = 8;
   static_assert(dimension::kRoulette < lanes);
-  const uint32_t first = dimension::kFirstVertex + static_cast<uint32_t>(depth) * dimension::kPerVertex;
   float x[lanes], y[lanes];
-  if (independent_) {
-    for (uint32_t i = 0; i <= dimension::kRoulette; ++i) {
-      const Vec2 u = get2(first + i);
-      x[i] = u.x;
-      y[i] = u.y;
-    }
-  } else {
-    for (uint32_t i = 0; i < lanes; ++i) {
-      const Bits bits = net_point(stream_hash_, first + i, reversed_index_);
-      x[i] = to_unit(bits.x);
-      y[i] = to_unit(bits.y);
-    }
-  }
+  points<lanes>(first, x, y);
   const auto at = [&](uint32_t block) { return Vec2(x[block], y[block]); };
   return {at(dimension::kBsdf), at(dimension::kLobe), at(dimension::kLight), at(dimension::kLightChoice),
           at(dimension::kRoulette)};
+}
+
+VertexSample Sampler::vertex(int depth) const {
+  return vertex_at(dimension::kFirstVertex + static_cast<uint32_t>(depth) * dimension::kPerVertex);
+}
+
+VertexSample Sampler::walk_end(int depth) const {
+  return vertex_at(first_of_walk(depth) + dimension::kPerStep * (dimension::kMaxSteps + 1));
+}
+
+StepSample Sampler::walk_step(int depth, uint32_t step) const {
+  float x[dimension::kPerStep], y[dimension::kPerStep];
+  points<dimension::kPerStep>(first_of_walk(depth) + dimension::kPerStep * step, x, y);
+  return {Vec2(x[0], y[0]), Vec2(x[1], y[1]), Vec2(x[2], y[2])};
 }
 
 }  // namespace gradus::path

@@ -40,6 +40,12 @@ inline constexpr uint32_t kFilm = 0;  // 2D
 inline constexpr uint32_t kLens = 1;  // 2D
 inline constexpr uint32_t kTime = 2;  // 1D
 inline constexpr uint32_t kFirstVertex = 4;
+// Blocks of the walks below surfaces, far above those of vertices and of transparent surfaces: for each vertex those of
+// the steps of its walk, then those of the vertex at which the walk ends.
+inline constexpr uint32_t kFirstWalk = 1u << 24;
+inline constexpr uint32_t kPerStep = 4;
+inline constexpr uint32_t kMaxSteps = 256;
+inline constexpr uint32_t kPerWalk = kPerStep * (kMaxSteps + 1) + 8;
 // Blocks of one path vertex, added to kFirstVertex + vertex·kPerVertex.
 inline constexpr uint32_t kBsdf = 0;         // 2D direction
 inline constexpr uint32_t kLobe = 1;         // x: class, y: lobe in the class
@@ -53,6 +59,13 @@ inline constexpr uint32_t kPerVertex = 6;
 // Blocks of one path vertex, without that of ambient occlusion.
 struct VertexSample {
   Vec2 bsdf, lobe, light, light_choice, roulette;
+};
+
+// Blocks of one step of a walk below a surface.
+struct StepSample {
+  Vec2 distance;  // x: colour channel, y: length of the step
+  Vec2 direction;
+  Vec2 guide;  // x: whether the direction is guided, y: to which side
 };
 
 class Sampler {
@@ -69,8 +82,18 @@ class Sampler {
   // Returns the blocks of the vertex with `depth` scattering events before it, with the values of get2(). They are
   // computed in eight SIMD lanes at about the cost of one block.
   VertexSample vertex(int depth) const;
+  // Returns the blocks of a step of the walk that starts at the vertex with `depth` scattering events before it, and
+  // those of the vertex at which that walk ends.
+  StepSample walk_step(int depth, uint32_t step) const;
+  VertexSample walk_end(int depth) const;
 
  private:
+  // Returns the blocks of a vertex that begin with `first`.
+  VertexSample vertex_at(uint32_t first) const;
+  // Computes consecutive blocks in SIMD lanes.
+  template <uint32_t kLanes>
+  void points(uint32_t first, float x[kLanes], float y[kLanes]) const;
+
   uint32_t stream_hash_ = 0;
   uint32_t index_ = 0;
   uint32_t reversed_index_ = 0;

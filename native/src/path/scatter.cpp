@@ -17,8 +17,10 @@ bool reaches_limit(const GradusSettings& settings, const PathState& state) {
 
 // Counts a bounce.
 void advance(bool diffuse, bool transmitted, bool dirac, shading::RayState* state) {
-  state->flags = (transmitted ? shading::kRayTransmission : shading::kRayReflection) |
-                 (diffuse ? shading::kRayDiffuse : shading::kRayGlossy) | (dirac ? shading::kRaySingular : 0u);
+  state->flags = (state->flags & shading::kRayDiffuseAncestor) |
+                 (transmitted ? shading::kRayTransmission : shading::kRayReflection) |
+                 (diffuse ? shading::kRayDiffuse | shading::kRayDiffuseAncestor : shading::kRayGlossy) |
+                 (dirac ? shading::kRaySingular : 0u);
   state->length = 0.0f;
   ++state->depth;
   ++(transmitted ? state->transmission_depth : diffuse ? state->diffuse_depth : state->glossy_depth);

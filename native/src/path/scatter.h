@@ -24,6 +24,7 @@ struct ScatterEvent {
   bsdf::ScatterClass scatter_class = bsdf::ScatterClass::Diffuse;
   bsdf::BsdfSample sample;
   float pdf = 0.0f;        // P(class)·p(direction | class); for Dirac events the probability of the lobe
+  bool is_exit = false;    // light leaves the object here that has entered it elsewhere (subsurface.h)
   bool by_kind = false;    // the kind of the bounce is sampled, too, and `factor` is that of its lobes alone
   int dirac_rank = 0;      // index of the sampled Dirac lobe among those of its class
   Rgb factor = Rgb(0.0f);  // value / pdf, by which the throughput was multiplied

@@ -1,9 +1,9 @@
 // The path tracer: traces one base path and notifies an observer, which may shift the path to neighbouring pixels.
 //
 // PathTracer::li() is the algorithm from top to bottom. The steps are in functions that are compiled once, apart from
-// the observer (segment.h, contribution.h, scatter.h), so that the picture has the same bits with every observer. A new
-// kind of scattering event, as below a surface or in a medium, is a case of sample_bsdf() and of SegmentEnd; what the
-// path carries between two vertices, as media around it, belongs to PathRay.
+// the observer (segment.h, contribution.h, scatter.h, subsurface.h), so that the picture has the same bits with every
+// observer. A new kind of scattering event, as in a medium, is a case of sample_bsdf() and of SegmentEnd; what the path
+// carries between two vertices, as media around it, belongs to PathRay.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include "path/camera_vertices.h"
 #include "path/contribution.h"
 #include "path/pass_recorder.h"
+#include "path/subsurface.h"
 
 namespace gradus::path {
 
@@ -47,6 +48,10 @@ struct NoObserver {
   void on_survival(float, const Vertex&) {}
   // Next-event estimation has found light that one class scatters.
   void on_light_sample(const Vertex&, const LightSample&, bsdf::ScatterClass, const Contribution&) {}
+  // The path enters the surface at the vertex, and leaves it at another vertex unless it is lost. No roulette is played
+  // at the exit.
+  void on_subsurface_entry(const Vertex&, const VertexSample&) {}
+  void on_subsurface_exit(const Vertex&, const SubsurfaceEvent&) {}
   // The path scatters, or ends, at the vertex.
   void on_scattering(const Vertex&, const VertexSample&, const ScatterEvent&) {}
   void on_absorption(const Vertex&, const VertexSample&) {}
@@ -89,26 +94,37 @@ class PathTracer {
   }
 
  private:
-  // Step at which a path is taken up at its first vertex.
-  enum class Step : uint8_t { Emission, Light, Scattering };
+  // Step at which a path is taken up at a vertex. At an exit from below a surface it is lit and scatters.
+  enum class Step : uint8_t { Emission, Light, Scattering, Exit };
 
   // Extends the path from `vertex`, the end of its last segment, until it ends.
   void extend_path(const Sampler& sampler, Vertex* vertex, Step step) {
     RaySource source;  // vertex and event at which the last segment starts; the camera at first
-    for (;; step = Step::Emission) {
+    for (;;) {
       // Add the emission on the segment and at its end, weighted against light sampling.
       if (step == Step::Emission && !add_emission(sampler, source, *vertex)) return;
 
       // End the path by Russian roulette, or evaluate the closures of its vertex.
-      const VertexSample u = sampler.vertex(state_.depth);
-      if (step != Step::Scattering && !survives(u, vertex)) return;
+      const VertexSample u = step == Step::Exit ? sampler.walk_end(state_.depth) : sampler.vertex(state_.depth);
+      if (step < Step::Scattering && !survives(u, vertex)) return;
 
       // Sample the BSDF, and add light by next-event estimation. The next ray is intersected first, so that its hit is
       // fetched from memory while the vertex is lit.
       const PathState arrival = state_;
-      const bool scatters = sample_bsdf(u, *vertex);
+      const bool enters = enters_surface(*vertex, u);
+      const bool scatters = !enters && sample_bsdf(u, *vertex);
       if (step != Step::Scattering && is_light_wanted(arrival)) add_light(arrival, u, *vertex);
+
+      // Let light that enters the surface leave it elsewhere.
+      if (enters) {
+        observer_.on_subsurface_entry(*vertex, u);
+        vertex = travel_below(sampler, *vertex);
+        if (vertex == nullptr) return;
+        step = Step::Exit;
+        continue;
+      }
       if (!scatters) return observer_.on_absorption(*vertex, u);
+      scratch_.event.is_exit = step == Step::Exit;
       if (recorder_ != nullptr) recorder_->scattered(arrival.depth, *vertex, scratch_.event);
       observer_.on_scattering(*vertex, u, scratch_.event);
 
@@ -116,6 +132,7 @@ class PathTracer {
       source = RaySource{vertex, &scratch_.event};
       vertex = unused_vertex(*vertex);
       trace_next_segment(sampler, vertex);
+      step = Step::Emission;
     }
   }
 
@@ -264,10 +281,22 @@ class PathTracer {
     return true;
   }
 
+  // Lets the path travel below the surface that it has met at a vertex. Returns the vertex at which it leaves, or null.
+  Vertex* travel_below(const Sampler& sampler, const Vertex& entry) {
+    const lpe::LpeState behind = context_.components.next(state_.lpe_state, bsdf::ScatterClass::Diffuse);
+    if ((context_.components.ahead(behind) & wanted_) == 0 && !records_closures()) return nullptr;
+    Vertex* exit = unused_vertex(entry);
+    SubsurfaceEvent event;
+    if (!scatter_below(context_, sampler, state_.depth, state_.ray.state, entry, &event, exit)) return nullptr;
+    state_.throughput *= event.factor;
+    observer_.on_subsurface_exit(entry, event);
+    return exit;
+  }
+
   // Adds light by next-event estimation. `arrival` is the state with which the path arrived at the vertex.
   void add_light(const PathState& arrival, const VertexSample& u, const Vertex& vertex) {
     LightSample& light = scratch_.light;
-    LitClass lit[bsdf::kScatterClasses];
+    LitClass lit[bsdf::kPathEvents];
     if (!sample_light(context_, u, vertex, arrival.depth, &light) ||
         !light_classes(context_, vertex, light, arrival.ray.state, lit)) {
       return;
@@ -275,7 +304,7 @@ class PathTracer {
     ++counters_.rays_shadow;
     const Rgb transmittance =
         light_transmittance(context_, vertex.point, light.point, light.view, arrival.ray.state.transparent_depth);
-    for (int k = 0; k < bsdf::kScatterClasses && !is_black(transmittance); ++k) {
+    for (int k = 0; k < bsdf::kPathEvents && !is_black(transmittance); ++k) {
       const auto scatter_class = static_cast<bsdf::ScatterClass>(k);
       const Contribution c = light_contribution(context_, arrival, light, scatter_class, lit[k], transmittance);
       if (!is_black(c.clamped)) {
@@ -295,7 +324,7 @@ class PathTracer {
   bool is_light_wanted(const PathState& arrival) const {
     if (wanted_ == lpe::kEveryComponent) return true;
     const lpe::ComponentSet& set = context_.components;
-    for (int k = 0; k < bsdf::kScatterClasses; ++k) {
+    for (int k = 0; k < bsdf::kPathEvents; ++k) {
       if ((wanted_ >> set.component(set.next(arrival.lpe_state, static_cast<bsdf::ScatterClass>(k))) & 1) != 0)
         return true;
     }

@@ -7,6 +7,9 @@
 namespace gradus::shading {
 namespace {
 
+// Radii below this are too small for a walk: light leaves where it enters.
+constexpr float kSmallestRadius = 1e-8f;
+
 Rgb non_negative(const Vec3& c) { return glm::max(c, Vec3(0.0f)); }
 
 void add_diffuse(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
@@ -82,6 +85,19 @@ void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* resu
   lobe->multiscatter = args.mode & GRADUS_DISTRIBUTION_MULTIPLE;
 }
 
+void add_subsurface_node(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  Subsurface s;
+  s.mode = args.mode;
+  s.color = non_negative(args.v(0));
+  s.weight = args.weight * s.color;
+  s.radius = args.v(2) * args.f(1);
+  s.ior = args.f(3);
+  s.alpha = saturate(args.f(4));
+  s.anisotropy = args.f(5);
+  s.normal = facing_normal(c, args.v(6));
+  add_subsurface(s, result, c);
+}
+
 void add_sheen(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::Sheen, bsdf::LightPass::Diffuse,
                               args.weight * non_negative(args.v(0)), facing_normal(c, args.v(2)));
@@ -89,6 +105,33 @@ void add_sheen(const ClosureArgs& args, const ShadeContext& c, ShadeResult* resu
 }
 
 }  // namespace
+
+bool is_diffuse_below(uint32_t mode, const RayState& ray) {
+  const bool is_disk = subsurface_method(mode) == bsdf::SubsurfaceMethod::Disk;
+  return (is_disk || (mode & GRADUS_SUBSURFACE_ONCE)) && (ray.flags & kRayDiffuseAncestor);
+}
+
+void add_subsurface(const Subsurface& s, ShadeResult* result, const ShadeContext& c) {
+  const bsdf::SubsurfaceMethod method = subsurface_method(s.mode);
+  Rgb diffuse = s.weight;
+  for (int i = 0; i < 3; i++) {
+    if (s.radius[i] >= kSmallestRadius && !is_diffuse_below(s.mode, c.ray)) diffuse[i] = 0.0f;
+  }
+  const bsdf::FresnelType fresnel = s.disney ? bsdf::FresnelType::Schlick : bsdf::FresnelType::None;
+  if (bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::Diffuse, bsdf::LightPass::Diffuse, diffuse, s.normal)) {
+    lobe->fresnel = fresnel;
+  }
+  bsdf::Lobe* lobe =
+      add_lobe(result, bsdf::LobeType::Subsurface, bsdf::LightPass::Diffuse, s.weight - diffuse, s.normal);
+  if (!lobe) return;
+  lobe->fresnel = fresnel;
+  lobe->subsurface = method;
+  lobe->f0 = s.color;
+  lobe->f90 = s.radius;
+  lobe->ior = std::clamp(s.ior, 1.01f, 3.8f);
+  lobe->alpha_x = s.alpha;
+  lobe->alpha_y = std::clamp(s.anisotropy, -0.99f, method == bsdf::SubsurfaceMethod::WalkDeHulst ? 0.99f : 0.9f);
+}
 
 Vec3 facing_normal(const ShadeContext& c, const Vec3& normal) {
   const Vec3 n = safe_normalize(normal);
@@ -158,6 +201,8 @@ void add_closure(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
       return add_sheen(args, c, result);
     case GRADUS_OP_METALLIC:
       return add_metallic(args, c, result);
+    case GRADUS_OP_SUBSURFACE:
+      return add_subsurface_node(args, c, result);
     case GRADUS_OP_PRINCIPLED:
       return add_principled(args, c, result);
     case GRADUS_OP_PRINCIPLED_3:

@@ -18,6 +18,30 @@ struct ClosureArgs : OpArgs {
 // Runs the closure operation args.op.
 void add_closure(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result);
 
+// Returns the method of GradusSubsurface in the mode of an operation.
+inline bsdf::SubsurfaceMethod subsurface_method(uint32_t mode) {
+  return static_cast<bsdf::SubsurfaceMethod>((mode & (GRADUS_SUBSURFACE_ONCE - 1)) / GRADUS_SUBSURFACE_WALK);
+}
+
+// Light that enters the object below a surface.
+struct Subsurface {
+  uint32_t mode = 0;       // GradusSubsurface, and other modes of the operation
+  Rgb weight = Rgb(0.0f);  // with the factor `color`
+  Rgb color = Rgb(0.0f);
+  Rgb radius = Rgb(0.0f);
+  float ior = 1.4f;
+  float alpha = 1.0f;  // of the interface
+  float anisotropy = 0.0f;
+  Vec3 normal = Vec3(0.0f);  // on the side of wo
+  bool disney = false;       // the diffuse lobes are Disney's
+};
+
+// Adds the lobes of subsurface scattering. Channels whose radius is too small are diffuse, and so are all channels
+// where is_diffuse_below() holds.
+void add_subsurface(const Subsurface& inputs, ShadeResult* result, const ShadeContext& context);
+// Returns whether the ray that arrives sees a diffuse surface instead of subsurface scattering with this mode.
+bool is_diffuse_below(uint32_t mode, const RayState& ray);
+
 // Defined in principled.cpp and principled_3.cpp.
 void add_principled(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result);
 void add_principled_3(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result);

@@ -88,10 +88,26 @@ class Analysis {
     return std::min(lobe.alpha_x, lobe.alpha_y);
   }
 
+  // Returns whether the closure has subsurface scattering with a normal from nodes.
+  bool bumps_subsurface(const Instruction& i) const {
+    const auto has_normal = [&](int k) { return Vec3(input(i, k, 1.0f)) != Vec3(0.0f); };
+    switch (i.op) {
+      case GRADUS_OP_SUBSURFACE:
+        return has_normal(6);
+      case GRADUS_OP_PRINCIPLED:
+        return input(i, 21, 1.0f).x > 0.0f && has_normal(18);
+      case GRADUS_OP_PRINCIPLED_3:
+        return input(i, 18, 1.0f).x > 0.0f && has_normal(15);
+      default:
+        return false;
+    }
+  }
+
   void closure(const Instruction& i) {
     m_.has_holdout = m_.has_holdout || i.op == GRADUS_OP_HOLDOUT;
     if (!is_lobe_op(i.op)) return;
     m_.has_bsdf = true;
+    m_.bumps_subsurface = m_.bumps_subsurface || bumps_subsurface(i);
     const int rough = roughness_input(i.op);
     if (rough >= 0) sharpen(narrowest_alpha(i, rough));
     const bool glass = i.op == GRADUS_OP_GLASS || i.op == GRADUS_OP_REFRACTION || i.op == GRADUS_OP_TRANSLUCENT;

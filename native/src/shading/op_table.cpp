@@ -10,7 +10,7 @@ namespace gradus::shading {
 namespace {
 
 static_assert(kFirstValueOp == 32 && GRADUS_OP_LIMIT == 128);
-static_assert(kMaxInputs >= 21 && kMaxOutputs >= 5);
+static_assert(kMaxInputs >= 26 && kMaxOutputs >= 5);
 
 constexpr ModeSet modes(std::initializer_list<uint32_t> list) {
   ModeSet set = 0;
@@ -31,9 +31,10 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_EMISSION] = {"EMISSION", OpKind::Closure, 2, 1, 0, 0};
   table[GRADUS_OP_MIX_SHADER] = {"MIX_SHADER", OpKind::Closure, 3, 1, 0, 0};
   table[GRADUS_OP_ADD_SHADER] = {"ADD_SHADER", OpKind::Closure, 2, 1, 0, 0};
-  table[GRADUS_OP_PRINCIPLED] = {"PRINCIPLED", OpKind::Closure, 21, 1, 0, GRADUS_DISTRIBUTION_MULTIPLE};
-  table[GRADUS_OP_PRINCIPLED_3] = {"PRINCIPLED_3", OpKind::Closure, 18, 1, 0, GRADUS_DISTRIBUTION_MULTIPLE};
+  table[GRADUS_OP_PRINCIPLED] = {"PRINCIPLED", OpKind::Closure, 26, 1, 0, GRADUS_SUBSURFACE_ONCE + 15};
+  table[GRADUS_OP_PRINCIPLED_3] = {"PRINCIPLED_3", OpKind::Closure, 22, 1, 0, GRADUS_SUBSURFACE_ONCE + 15};
   table[GRADUS_OP_METALLIC] = {"METALLIC", OpKind::Closure, 7, 1, 0, GRADUS_DISTRIBUTION_MULTIPLE};
+  table[GRADUS_OP_SUBSURFACE] = {"SUBSURFACE", OpKind::Closure, 7, 1, 0, GRADUS_SUBSURFACE_ONCE + 15};
   table[GRADUS_OP_AOV] = {"AOV", OpKind::Closure, 2, 1, 0, 255};
   table[GRADUS_OP_GEOMETRY] = {"GEOMETRY", OpKind::Context, 0, 1, 0, GRADUS_GEOMETRY_RANDOM_PER_ISLAND};
   table[GRADUS_OP_GEOMETRY].ray_modes = modes({GRADUS_GEOMETRY_INCOMING, GRADUS_GEOMETRY_BACKFACING});

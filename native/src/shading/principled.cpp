@@ -44,6 +44,11 @@ class Layers {
     kNormal,
     kCoatNormal,
     kTangent,
+    kSubsurfaceWeight,
+    kSubsurfaceRadius,
+    kSubsurfaceScale,
+    kSubsurfaceIor,
+    kSubsurfaceAnisotropy,
   };
 
  public:
@@ -62,6 +67,7 @@ class Layers {
     metal();
     glass();
     specular();
+    subsurface();
     diffuse();
   }
 
@@ -146,14 +152,20 @@ class Layers {
     weight_ *= 1.0f - transmission;
   }
 
-  void specular() {
-    float ior = std::max(args_.f(kIor), 1e-5f), f0 = f0_of_ior(ior);
+  // The interface to the layers below, whose IOR the specular level adjusts.
+  struct Interface {
+    float ior, f0;
+  };
+  Interface adjusted_interface() const {
+    const float ior = std::max(args_.f(kIor), 1e-5f), f0 = f0_of_ior(ior);
     const float level = std::max(args_.f(kSpecularLevel), 0.0f);
-    if (level != 0.5f) {
-      f0 *= 2.0f * level;
-      const float adjusted = ior_of_f0(f0);
-      ior = ior < 1.0f ? 1.0f / adjusted : adjusted;
-    }
+    if (level == 0.5f) return {ior, f0};
+    const float adjusted = ior_of_f0(f0 * 2.0f * level);
+    return {ior < 1.0f ? 1.0f / adjusted : adjusted, f0 * 2.0f * level};
+  }
+
+  void specular() {
+    const auto [ior, f0] = adjusted_interface();
     if (ior == 1.0f || !(max_component(weight_) > kWeightCutoff)) return;
     bsdf::Lobe* lobe = new_layer(bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight_, normal_);
     lobe->fresnel = bsdf::FresnelType::Schlick;
@@ -161,6 +173,24 @@ class Layers {
     lobe->f0 = f0 * glm::max(args_.v(kSpecularTint), Vec3(0.0f));
     set_shape(lobe);
     put_layer(lobe);
+  }
+
+  void subsurface() {
+    const float amount = saturate(args_.f(kSubsurfaceWeight));
+    if (!(amount > kWeightCutoff)) return;
+    Subsurface s;
+    s.mode = args_.mode;
+    s.color = clamped_base();
+    s.weight = weight_ * s.color * amount;
+    s.radius = args_.v(kSubsurfaceRadius) * args_.f(kSubsurfaceScale);
+    const bool has_own_ior = subsurface_method(args_.mode) == bsdf::SubsurfaceMethod::WalkSkin;
+    s.ior = has_own_ior ? args_.f(kSubsurfaceIor) : adjusted_interface().ior;
+    const float roughness = saturate(args_.f(kRoughness));
+    s.alpha = roughness * roughness;
+    s.anisotropy = args_.f(kSubsurfaceAnisotropy);
+    s.normal = normal_;
+    add_subsurface(s, result_, c_);
+    weight_ *= 1.0f - amount;
   }
 
   void diffuse() {

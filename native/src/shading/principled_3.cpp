@@ -1,4 +1,4 @@
-// The Principled BSDF of Blender before 4.0 (after Burley 2012 and 2015). The diffuse colour includes subsurface
+// The Principled BSDF of Blender before 4.0 (after Burley 2012 and 2015). The diffuse colour is also that of subsurface
 // scattering.
 #include "shading/closure_ops.h"
 #include "shading/scalar.h"
@@ -28,12 +28,21 @@ class Lobes {
     kNormal,
     kClearcoatNormal,
     kTangent,
+    kSubsurface,
+    kSubsurfaceRadius,
+    kSubsurfaceIor,
+    kSubsurfaceAnisotropy,
   };
 
  public:
   Lobes(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result)
       : args_(args), c_(context), result_(result), normal_(facing_normal(context, args.v(kNormal))) {
     base_ = glm::max(args.v(kBaseColor), Vec3(0.0f));
+    subsurface_ = args.f(kSubsurface);
+    if (subsurface_ > kWeightCutoff && is_diffuse_below(args.mode, context.ray)) {
+      base_ = glm::max(args.v(kDiffuseColor), Vec3(0.0f));
+      subsurface_ = 0.0f;
+    }
     const float grey = luminance(base_);
     hue_ = grey > 0.0f ? base_ / grey : Rgb(1.0f);
     metallic_ = saturate(args.f(kMetallic));
@@ -54,11 +63,27 @@ class Lobes {
 
   void diffuse() {
     const Rgb color = glm::max(args_.v(kDiffuseColor), Vec3(0.0f));
-    bsdf::Lobe* lobe =
-        add_lobe(result_, bsdf::LobeType::Diffuse, bsdf::LightPass::Diffuse, args_.weight * color * diffuse_, normal_);
+    const Rgb weight = args_.weight * color * diffuse_;
+    bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::Diffuse, bsdf::LightPass::Diffuse, weight, normal_);
     if (!lobe) return;
     lobe->fresnel = bsdf::FresnelType::Schlick;  // Disney's diffuse
     lobe->alpha_x = saturate(args_.f(kRoughness));
+    if (!(subsurface_ > kWeightCutoff)) return;
+    lobe->disney = bsdf::DisneyPart::RetroReflection;
+    subsurface(weight, color);
+  }
+
+  void subsurface(const Rgb& weight, const Rgb& color) {
+    Subsurface s;
+    s.mode = args_.mode;
+    s.weight = weight;
+    s.color = color;
+    s.radius = args_.v(kSubsurfaceRadius) * subsurface_;
+    s.ior = args_.f(kSubsurfaceIor);
+    s.anisotropy = args_.f(kSubsurfaceAnisotropy);
+    s.normal = normal_;
+    s.disney = true;
+    add_subsurface(s, result_, c_);
   }
 
   void sheen() {
@@ -152,6 +177,7 @@ class Lobes {
   Vec3 normal_;
   Rgb base_;
   Rgb hue_;
+  float subsurface_;  // 0 where it is seen as a diffuse surface
   float metallic_;
   float transmission_;
   float diffuse_;

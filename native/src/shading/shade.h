@@ -21,6 +21,7 @@ enum RayFlag : uint32_t {
   kRayReflection = 16,
   kRayTransmission = 32,
   kRayShadow = 64,
+  kRayDiffuseAncestor = 128,  // some event since the camera was diffuse
 };
 
 // The history of the ray that arrives, for the Light Path node.

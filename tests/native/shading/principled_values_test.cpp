@@ -26,7 +26,7 @@ enum Socket {
   kSheenWeight = 14,
   kSheenRoughness = 15,
   kSheenTint = 16,
-  kSockets = 21,
+  kSockets = 26,
 };
 using Sockets = std::array<Vec4, kSockets>;
 

@@ -19,7 +19,7 @@ Rgb lights_between(const scene::Snapshot& scene, const Ray& ray) {
 bool scatter(const bsdf::Closures& closures, const Vec3& wo, test::Random* random, Vec3* wi, Rgb* factor,
              std::string* path) {
   float u = random->get();
-  for (int k = 0; k < bsdf::kScatterClasses; ++k) {
+  for (int k = 0; k < bsdf::kPathEvents; ++k) {
     const auto c = static_cast<bsdf::ScatterClass>(k);
     const float probability = closures.class_probability(c);
     if (u < probability) {

@@ -64,6 +64,12 @@ int32_t build_surface(const Surface& s, Program* p) {
   if (s.glass > 0.0f) {
     surface = p->add(surface, p->closure(GRADUS_OP_GLASS, {Vec4(s.glass), Vec4(s.glass_roughness), Vec4(s.ior)}));
   }
+  if (!is_black(s.subsurface)) {
+    surface = p->add(surface, p->closure(GRADUS_OP_SUBSURFACE,
+                                         {rgb(s.subsurface), Vec4(1.0f), rgb(s.subsurface_radius), Vec4(s.ior),
+                                          Vec4(s.subsurface_roughness), Vec4(0.0f)},
+                                         s.subsurface_mode));
+  }
   if (!is_black(s.emission)) {
     surface = p->add(surface, s.emission_kind >= 0 ? p->emission(rgb(s.emission), s.emission_kind)
                                                    : p->closure(GRADUS_OP_EMISSION, {rgb(s.emission), Vec4(1.0f)}));
@@ -84,6 +90,7 @@ std::string text_of(const Surface& s) {
   if (!is_black(s.diffuse)) color("diffuse", s.diffuse);
   if (!is_black(s.glossy)) color("glossy", s.glossy) << ' ' << s.glossy_roughness * s.glossy_roughness;
   if (s.glass > 0.0f) text << " glass " << s.glass_roughness * s.glass_roughness << ' ' << s.ior;
+  if (!is_black(s.subsurface)) color("subsurface", s.subsurface) << ' ' << s.subsurface_mode;
   if (!is_black(s.emission)) color("emit", s.emission);
   if (s.transparent > 0.0f) text << " transparent " << s.transparent;
   return text.str();
@@ -306,7 +313,7 @@ void add_lights_with_extent(PathScene* scene, uint32_t flags, float roughness) {
 const char* name_of(Scenario scenario) {
   static const char* const names[] = {"DiffuseArea", "PointAndSun", "World",      "GlossyFloor", "RoughMetal",
                                       "Mirror",      "Glass",       "RoughGlass", "Transparent", "LampsSeen",
-                                      "LampsUnseen", "Facets",      "Fisheye",    "Moving"};
+                                      "LampsUnseen", "Facets",      "Fisheye",    "Moving",      "Subsurface"};
   return names[static_cast<int>(scenario)];
 }
 
@@ -403,6 +410,20 @@ void build(Scenario scenario, PathScene* scene) {
       scene->swelling = 1.4f;
       scene->ball(Vec3(0.55f, -0.6f, 0.0f), 0.3f, scene->material(matte(Rgb(0.5f))), 6, true);
       scene->open_shutter({0.0f, 1.0f, 1.0f}, {Mat4(1.0f), translation(Vec3(0.05f, 0.02f, 0))});
+      break;
+    }
+    case Scenario::Subsurface: {  // seen by the camera and by diffuse walls, beside a surface that is diffuse
+      add_ceiling_light(scene, 8.0f, 0.6f);
+      Surface wax;
+      wax.subsurface = Rgb(0.8f, 0.6f, 0.4f);
+      wax.subsurface_radius = Rgb(3.0f, 2.0f, 1.0f);
+      scene->ball(Vec3(-0.4f, -0.5f, 0.1f), 0.4f, scene->material(wax), 8, true);
+      wax.glossy = Rgb(0.2f);
+      wax.glossy_roughness = 0.2f;
+      wax.subsurface_roughness = 0.3f;
+      wax.subsurface_mode = GRADUS_SUBSURFACE_DE_HULST;
+      wax.subsurface_radius = Rgb(0.2f, 0.1f, 0.05f);
+      scene->ball(Vec3(0.4f, -0.6f, 0.2f), 0.35f, scene->material(wax), 8, true);
       break;
     }
     case Scenario::Count:

@@ -17,6 +17,10 @@ struct Surface {
   float glass = 0.0f;             // weight
   float glass_roughness = 0.0f;
   float ior = 1.5f;
+  Rgb subsurface = Rgb(0.0f);
+  Rgb subsurface_radius = Rgb(0.0f);
+  float subsurface_roughness = 1.0f;
+  uint32_t subsurface_mode = 2;  // GradusSubsurface
   Rgb emission = Rgb(0.0f);
   int emission_kind = -1;  // GradusLightPathMode: the emission is multiplied by it
   float transparent = 0.0f;
@@ -95,6 +99,7 @@ enum class Scenario {
   Facets,
   Fisheye,
   Moving,
+  Subsurface,
   Count
 };
 const char* name_of(Scenario scenario);
