@@ -131,11 +131,11 @@ def test_e5_subsurface_in_thin_walls_is_named_in_a_warning() -> None:
 def test_e5_unknown_value_node_passes_through() -> None:
     material = new_material()
     nodes, links = material.node_tree.nodes, material.node_tree.links
-    node = nodes.new("ShaderNodeAmbientOcclusion")
+    node = nodes.new("ShaderNodeDisplacement")
     color = nodes.new("ShaderNodeRGB")
     color.outputs[0].default_value = (0.1, 0.2, 0.3, 1.0)
-    links.new(color.outputs[0], node.inputs["Color"])
-    show(material, node.outputs["Color"])
+    links.new(color.outputs[0], node.inputs["Normal"])
+    show(material, node.outputs["Displacement"])
     program = translate(material)
     assert len(program.warnings) == 1
     assert program.inputs[0][2][:3] == pytest.approx((0.1, 0.2, 0.3))

@@ -72,8 +72,6 @@ class Geometry {
   bool occluded(const Ray& ray) const;
   // Returns whether a surface that is visible to one of the ray types in `visibility` lies on the segment.
   bool meets(const Ray& ray, uint32_t visibility) const;
-  // Finds the nearest surface of one instance, whatever rays see it. Surfaces of other instances are passed.
-  bool intersect_instance(Ray ray, uint32_t instance, Hit* hit) const;
   // Computes occluded() for four rays at once. Lanes that are not wanted give false.
   void occluded4(const Rays4& rays, const bool wanted[4], bool blocked[4]) const;
   // Computes the surface point of a hit. place() writes it in place: copying a point that has just been written stalls

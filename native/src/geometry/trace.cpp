@@ -185,16 +185,6 @@ bool Geometry::meets(const Ray& ray, uint32_t visibility) const {
   return blocked_by(*accelerator, ray, visibility & kMaskVisibility);
 }
 
-bool Geometry::intersect_instance(Ray ray, uint32_t instance, Hit* hit) const {
-  // A ray along a surface might meet it without end.
-  constexpr int kMaxPassed = 1024;
-  for (int passed = 0; passed < kMaxPassed && intersect(ray, GRADUS_VISIBLE_ALL, hit); ++passed) {
-    if (hit->instance == instance) return true;
-    pass_surface(surface_point(*hit), &ray);
-  }
-  return false;
-}
-
 void Geometry::intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) const {
   alignas(16) int valid[4];
   RTCRayHit4 query;
