@@ -48,15 +48,33 @@ def untouched(scene: Any) -> dict[str, Any]:
 
 
 def warnings(scene: Any, given: set[str]) -> list[str]:
-    """Returns a warning about settings that differ from Cycles. given: settings that the command line sets."""
+    """Returns warnings about settings that differ from Cycles. given: settings that the command line sets."""
     listed = ", ".join(
         f"{settings.BY_NAME[name].label} ({name}) {_text(getattr(scene.gradus, name))} instead of {_text(value)}"
         for name, value in untouched(scene).items()
         if name not in given
     )
-    if not listed:
+    ignored = ", ".join(_ignored(scene))
+    texts = {
+        "Settings differ from those that the scene has for Cycles (use Light Paths > Copy from Cycles)": listed,
+        "Cycles would follow settings that Gradus does not have": ignored,
+    }
+    return [f"{start}: {items}" for start, items in texts.items() if items]
+
+
+def _ignored(scene: Any) -> list[str]:
+    """Returns the settings of Cycles that were chosen, change its picture and have no counterpart."""
+    cycles = getattr(scene, "cycles", None)
+    if cycles is None:
         return []
-    return [f"Settings differ from those that the scene has for Cycles (use Light Paths > Copy from Cycles): {listed}"]
+    switches = {
+        "Reflective Caustics off": not cycles.caustics_reflective,
+        "Refractive Caustics off": not cycles.caustics_refractive,
+        "Filter Glossy": cycles.is_property_set("blur_glossy") and cycles.blur_glossy > 0.0,
+        "Fast GI Approximation": cycles.use_fast_gi,
+        "Rolling Shutter": scene.render.use_motion_blur and cycles.rolling_shutter_type != "NONE",
+    }
+    return [name for name, is_on in switches.items() if is_on]
 
 
 def _text(value: Any) -> str:

@@ -15,6 +15,7 @@ from . import (
     automatic,
     compat,
     components,
+    compositor,
     cryptomatte,
     cycles_settings,
     frame_store,
@@ -31,6 +32,7 @@ from . import (
 from .animation import Animation
 from .export import Cancelled as ExportCancelled
 from .export.shutter import shutter_of
+from .export.unsupported import missing_passes
 from .failure import Failure
 from .layer_channels import channels_of
 from .native import Error, GradusError
@@ -187,6 +189,8 @@ class Job:
             stats.check(self.overrides.stats)
         self.session = store.acquire(self.key, self.overrides.threads, bool(self.overrides.save_scene))
         self.current.settings = self.new_settings()
+        if not self.is_preview:
+            self.refuse_missing_passes()
         given = {name for name, _ in self.overrides.native}
         self.warn(cycles_settings.warnings(self.scene, given), changes_picture=False)
         self.warn_of_simulations()
@@ -195,6 +199,15 @@ class Job:
         self.animation = animation.of_job(self)
         if self.animation is None:
             self.export_alone()
+
+    def refuse_missing_passes(self) -> None:
+        """Raises Failure if the compositor reads a pass that Gradus does not make."""
+        lost = compositor.linked_passes(self.scene, self.layer.name, missing_passes(self.layer))
+        if lost:
+            text = (
+                f"the compositor reads pass '{lost[0]}' of view layer '{self.layer.name}', which Gradus does not make"
+            )
+            raise Failure(f"{text}: unlink its socket")
 
     def export_alone(self) -> None:
         """Exports the frame as Blender has it, to render it independently."""

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from support import images, recording
+from support import compositing, images, recording
 from support.nodes import socket
 
 SIDE = 64
@@ -280,3 +280,20 @@ def test_channels_of_animations(scene: bpy.types.Scene, layer: bpy.types.ViewLay
         np.testing.assert_allclose(total, combined, atol=2e-3 * combined.max())
         names = json.loads(metadata(path)["ViewLayer.CryptoObject"]["manifest"])
         assert names.keys() >= {"Floor", "Half"} | ({"Veil ü"} if frame == 1 else set())
+
+
+def test_a_pass_that_the_compositor_reads_and_gradus_does_not_make_is_an_error(
+    scene: bpy.types.Scene, layer: bpy.types.ViewLayer, tmp_path: Path
+) -> None:
+    """A socket without its pass is 1: the picture would be wrong without a word."""
+    if not hasattr(layer, "cycles"):
+        pytest.skip("Cycles' add-on is off")
+    layer.cycles.use_pass_shadow_catcher = True
+    scene.render.engine = "CYCLES"
+    layer.update_render_passes()
+    tree, render_layers, output = compositing.new_tree(scene)
+    tree.links.new(render_layers.outputs["Shadow Catcher"], output)
+    render(scene, tmp_path, "GRADUS", 1)  # without the compositor
+    scene.render.use_compositing = True
+    with pytest.raises(RuntimeError, match=r"reads pass 'Shadow Catcher' of view layer 'ViewLayer'"):
+        render(scene, tmp_path, "GRADUS", 1)

@@ -33,6 +33,12 @@ def test_settings_that_the_user_has_set_are_not_reported(cycles: bpy.types.Scene
     assert cycles_settings.warnings(cycles, set()) == []
 
 
+def test_settings_without_a_counterpart_are_named(cycles: bpy.types.Scene) -> None:
+    cycles.cycles.caustics_reflective, cycles.cycles.use_fast_gi = False, True
+    [text] = cycles_settings.warnings(cycles, set())
+    assert text.endswith("does not have: Reflective Caustics off, Fast GI Approximation")
+
+
 def test_copy_from_cycles(cycles: bpy.types.Scene) -> None:
     cycles.cycles.max_bounces, cycles.cycles.transparent_max_bounces = 5, 64
     cycles.cycles.pixel_filter_type, cycles.cycles.filter_width = "GAUSSIAN", 2.0

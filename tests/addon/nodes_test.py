@@ -257,6 +257,16 @@ def test_muted_node_passes_its_input_through() -> None:
     assert program.inputs[0][2][:3] == pytest.approx((0.3, 0.6, 0.9))
 
 
+def test_a_muted_node_without_a_link_is_0() -> None:
+    """As in Cycles. Regression: it passed the value of its socket on."""
+    material = new_material()
+    gamma = add(material, "Gamma")
+    gamma.inputs["Color"].default_value = (0.4, 0.5, 0.6, 1.0)
+    gamma.mute = True
+    show(material, gamma.outputs[0])
+    assert translate(material).inputs[0][2][:3] == (0.0, 0.0, 0.0)
+
+
 def test_muted_links_are_ignored() -> None:
     material = new_material()
     node = material.node_tree.nodes.new("ShaderNodeEmission")

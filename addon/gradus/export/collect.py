@@ -237,4 +237,4 @@ def _topmost(obj: Any) -> Any:
 
 def _is_portal(data: Any) -> bool:
     """Returns whether a light is a portal of Cycles, which guides sampling and emits nothing."""
-    return bool(getattr(getattr(data, "cycles", None), "is_portal", False))
+    return data.type == "AREA" and bool(getattr(getattr(data, "cycles", None), "is_portal", False))

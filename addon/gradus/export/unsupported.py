@@ -68,12 +68,12 @@ def of_scene(scene: Any, view_layer: Any) -> Iterator[str]:
     camera = scene.camera
     if camera is not None and any(column.to_3d().length_squared == 0.0 for column in camera.matrix_world.col[:3]):
         yield f"Camera '{camera.name}' has scale 0, so that its direction is undefined"
-    passes = list(_unsupported_passes(view_layer))
+    passes = list(missing_passes(view_layer))
     if passes:
         yield f"View layer '{view_layer.name}': not supported are the passes {', '.join(passes)}"
 
 
-def _unsupported_passes(view_layer: Any) -> Iterator[str]:
+def missing_passes(view_layer: Any) -> Iterator[str]:
     """Yields the names of the passes that a view layer asks for and Gradus does not make."""
     for owner, switches in ((view_layer, _PASSES), (getattr(view_layer, "cycles", None), _CYCLES_PASSES)):
         for switch in switches:

@@ -37,7 +37,7 @@ def fill_world(world: Any, material: int, groups: dict[str, int]) -> native.Worl
     struct = native.World()
     struct.visibility = ALL_RAYS
     struct.importance = 1
-    struct.mist_depth = 1.0
+    struct.mist_depth, struct.mist_falloff = 100.0, _MIST["LINEAR"]  # without a world, as in Cycles
     struct.ao_distance = 10.0  # as in Cycles
     if world is None:
         return struct

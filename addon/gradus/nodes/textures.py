@@ -34,11 +34,21 @@ def _mapped(view: NodeView, vector: Value) -> Value:
     mapping = getattr(view.node, "texture_mapping", None)
     if mapping is None:
         return vector
+    vector = _with_axes(view, vector, (mapping.mapping_x, mapping.mapping_y, mapping.mapping_z))
     location, rotation, scale = tuple(mapping.translation), tuple(mapping.rotation), tuple(mapping.scale)
     if not any(location) and not any(rotation) and scale == (1.0, 1.0, 1.0):
         return vector
     inputs = (vector, constant_vector(location), constant_vector(rotation), constant_vector(scale))
     return view.add_vector(Op.MAPPING, inputs, Mapping[mapping.vector_type])
+
+
+def _with_axes(view: NodeView, vector: Value, axes: tuple[str, str, str]) -> Value:
+    """Returns a vector of the named components of another one: X, Y, Z, or NONE for 0."""
+    if axes == ("X", "Y", "Z"):
+        return vector
+    parts = view.program.add(Op.SEPARATE, (vector,))
+    by_name = {axis: Value(FLOAT, node=parts, output=index) for index, axis in enumerate("XYZ")}
+    return view.add_vector(Op.COMBINE, tuple(by_name.get(axis, constant_float(0.0)) for axis in axes))
 
 
 def coordinates(view: NodeView, default: TexCoord) -> Value:

@@ -78,10 +78,19 @@ class Walker:
         return translate(view) if translate else fallback.replace(view)
 
     def _pass_through(self, node: Any, socket: Any, path: Path) -> Value | None:
-        """Returns the value that a muted node passes through, by its internal links."""
+        """Returns the value that a muted node passes through, by its internal links.
+
+        As in Cycles, it is 0 where the input has no link.
+        """
+        kind = convert.kind_of(socket)
         for link in node.internal_links:
             if link.to_socket.identifier == socket.identifier:
-                return self.linked_or_default(link.from_socket, socket, path)
+                value = self.linked(link.from_socket, path)
+                if value is not None:
+                    value = convert.convert(self.program, value, convert.kind_of(link.from_socket))
+                if value is not None:
+                    return convert.convert(self.program, value, kind)
+                return None if kind == SHADER else Value(kind)
         return None
 
     def linked_or_default(self, socket: Any, output: Any, path: Path) -> Value | None:

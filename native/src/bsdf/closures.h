@@ -181,6 +181,8 @@ class Closures {
   KindEval evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi, bool diffuse) const;
   // Returns the sum of all smooth lobes where the caller, not the geometric normal, decides the side of wi.
   BsdfEval evaluate_side(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted) const;
+  // Returns the light pass of one side of a lobe. As in Cycles, the reflection side of glass is glossy.
+  LightPass light_pass(int lobe, bool transmitted) const;
   // Returns the value of evaluate_side(), split by Blender's light passes.
   std::array<Rgb, 3> evaluate_by_pass(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted) const;
   // Samples a direction of the class. `u_lobe` chooses the lobe and `u` the direction; both are uniform in [0, 1).

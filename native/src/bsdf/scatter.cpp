@@ -194,6 +194,10 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
   return all.pdf > 0.0f && is_finite(all.pdf) && is_finite(all.value);
 }
 
+LightPass Closures::light_pass(int lobe, bool transmitted) const {
+  return static_cast<LightPass>(pass_of(this->lobe(lobe), transmitted));
+}
+
 Rgb Closures::albedo(LightPass pass, const Vec3& wo) const {
   Rgb sum(0.0f);
   for (int i = 0; i < count_; i++) {

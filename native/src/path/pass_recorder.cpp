@@ -146,7 +146,7 @@ void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent
   }
   const bsdf::Closures& closures = vertex.shade.closures;
   if (event.sample.dirac) {
-    share_ = full_share(closures.lobe(event.sample.lobe).pass);
+    share_ = full_share(closures.light_pass(event.sample.lobe, event.sample.transmitted));
     return;
   }
   std::array<Rgb, 3> passes =
