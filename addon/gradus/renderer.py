@@ -247,6 +247,8 @@ class Job:
         report = self.session.sync(*arguments, self.with_digest)
         if not self.is_preview:
             session = self.session
+            if not self.engine.is_animation:
+                session.manifests.clear()
             cryptomatte.add_names(session.library, session.scene, channels_of(self.layer), session.manifests)
         self.digest = report.digest
         self.size = report.width, report.height

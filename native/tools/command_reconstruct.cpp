@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "api/objects.h"
+#include "channel_layers.h"
 #include "component_layers.h"
 #include "film_io/image_exr.h"
 #include "output/pass_read.h"
@@ -65,6 +66,7 @@ int run(const ReconstructArguments& args) {
     const schema::PassInfo& info = schema::pass_info(pass);
     layers.push_back({info.name, info.letters, pass == GRADUS_PASS_ERROR ? error : film.read_pass(pass)});
   }
+  if (!args.passes.empty() && parse_passes(args.passes) == kAllPasses) add_channel_layers(film, &layers);
   const uint32_t of_components = parse_component_passes(args.component_passes);
   if (of_components != 0) {
     const auto content = api::find_handle<api::FilmObject>(film.id())->get();

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "channel_layers.h"
 #include "common.h"
 #include "component_layers.h"
 #include "film_io/image_exr.h"
@@ -62,6 +63,7 @@ void write_image(const client::Film& film, const GradusSettings& settings, const
     const schema::PassInfo& info = schema::pass_info(pass);
     layers.push_back({pass == GRADUS_PASS_COMBINED ? "" : info.name, info.letters, film.read_pass(pass)});
   }
+  add_channel_layers(film, &layers);
   if (settings.use_decomposition != 0) {
     add_component_layers(settings, settings.component_passes, size_t(width) * height, reader_of(film), &layers);
   }

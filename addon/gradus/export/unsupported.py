@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from .. import compat
 from . import shadow_terminator
 
 _KINDS = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volumes"}
 KINDS = frozenset(_KINDS)
 """Types of objects that are not rendered."""
 
-_PASSES = ("use_pass_shadow",)
+_PASSES = ("use_pass_shadow",) if compat.VERSION < (4, 0, 0) else ()
 """Switches of view layers for passes that Cycles makes and Gradus does not."""
 
 _CYCLES_PASSES = ("pass_render_time", "use_pass_shadow_catcher")

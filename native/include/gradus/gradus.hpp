@@ -161,6 +161,12 @@ class Film : public Handle<GradusFilm, gradus_film_release> {
     check(gradus_film_read_pass(id_, pass, values.data(), values.size()));
     return values;
   }
+  // Reads a layer of a channel of GradusChannelKind `kind`, which has so many values for each pixel.
+  std::vector<float> read_channel(uint32_t kind, const std::string& name, uint32_t layer, uint32_t values) const {
+    std::vector<float> pixels_of(pixels() * values);
+    check(gradus_film_read_channel(id_, kind, name.c_str(), layer, pixels_of.data(), pixels_of.size()));
+    return pixels_of;
+  }
 
  private:
   size_t pixels() const {

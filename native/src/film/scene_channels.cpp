@@ -1,6 +1,7 @@
 #include "film/scene_channels.h"
 
 #include <array>
+#include <cstdlib>
 
 #include "base/error.h"
 
@@ -41,6 +42,19 @@ std::string escaped(const std::string& name) {
   return text;
 }
 
+std::string unescaped(const std::string& text) {
+  std::string name;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%' && i + 2 < text.size()) {
+      name += static_cast<char>(std::strtol(text.substr(i + 1, 2).c_str(), nullptr, 16));
+      i += 2;
+    } else {
+      name += text[i];
+    }
+  }
+  return name;
+}
+
 // A Cryptomatte's layers have two names each, so that an odd number of levels keeps one more.
 ChannelInfo describe(const scene::SceneChannel& channel) {
   ChannelInfo info{channel_name(channel.kind, channel.name), kind_of(channel.kind).layer_values};
@@ -65,6 +79,21 @@ std::vector<ChannelInfo> describe(const scene::SceneChannels& channels) {
   std::vector<ChannelInfo> infos;
   for (const scene::SceneChannel& channel : channels) infos.push_back(describe(channel));
   return infos;
+}
+
+scene::SceneChannels scene_channels_of(const Film& film) {
+  scene::SceneChannels channels;
+  for (const ChannelInfo& info : other_channels(film)) {
+    for (uint32_t kind = 0; kind < kKinds.size(); ++kind) {
+      const std::string prefix = kKinds[kind].name;
+      if (scene::is_cryptomatte(kind) && info.name == prefix) {
+        channels.push_back({kind, "", info.values_per_pixel / 2});
+      } else if (info.name.starts_with(prefix + " ")) {
+        channels.push_back({kind, unescaped(info.name.substr(prefix.size() + 1)), 0});
+      }
+    }
+  }
+  return channels;
 }
 
 std::vector<ChannelInfo> other_channels(const Film& film) {

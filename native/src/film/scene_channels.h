@@ -14,6 +14,8 @@ namespace gradus::film {
 std::string channel_name(uint32_t kind, const std::string& name);
 // Returns the descriptions of the film's channels.
 std::vector<ChannelInfo> describe(const scene::SceneChannels& channels);
+// Returns what the scene of a film has asked for: the kinds and names from which channel_name() made those of the film.
+scene::SceneChannels scene_channels_of(const Film& film);
 // Returns the descriptions of those channels of a film that belong to no pass.
 std::vector<ChannelInfo> other_channels(const Film& film);
 

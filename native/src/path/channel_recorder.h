@@ -20,7 +20,7 @@ class ChannelRecorder final : public SurfaceVisitor {
   void begin_sample(size_t pixel, int half);
   // Records light of a group; see light::light_group_of().
   void light(uint32_t group, const Rgb& value) {
-    if (group != 0 && group <= channels_.size()) add(group - 1, Vec4(value, 0.0f));
+    if (is_of_kind(group - 1, GRADUS_CHANNEL_LIGHT_GROUP)) add(group - 1, Vec4(value, 0.0f));
   }
   // Records a surface on a camera segment, whether the path stops there or passes it. As in Cycles, AOVs are those of
   // the first surface that is opaque enough, and of all before it.
@@ -29,6 +29,10 @@ class ChannelRecorder final : public SurfaceVisitor {
   void escaped(const PathRay& ray);
 
  private:
+  // Returns whether there is a channel with this index, which the caller of the library has chosen, of this kind.
+  bool is_of_kind(uint32_t channel, uint32_t kind) const {
+    return channel < channels_.size() && context_.scene.channels[channel].kind == kind;
+  }
   void add(uint32_t channel, const Vec4& value);
   void add(const std::vector<shading::AovOutput>& outputs);
   void add_identifiers(const Vertex& vertex, float weight);

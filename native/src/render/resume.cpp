@@ -27,6 +27,16 @@ bool may_contain(const Plan& plan, uint32_t integrator) {
   return integrator == plan.integrator || (plan.pilot && integrator == GRADUS_INTEGRATOR_PATH);
 }
 
+void check_channels(const std::vector<film::ChannelInfo>& held, const std::vector<film::ChannelInfo>& sampled) {
+  for (const film::ChannelInfo& info : held) {
+    if (std::ranges::find(sampled, info) == sampled.end())
+      throw invalid_argument("the film holds the channel " + info.name + ", which the render does not sample");
+  }
+  for (const film::ChannelInfo& info : sampled) {
+    if (std::ranges::find(held, info) == held.end()) throw invalid_argument("the film lacks the channel " + info.name);
+  }
+}
+
 }  // namespace
 
 void check_gradients(const film::Film& film, bool wanted) {
@@ -82,8 +92,7 @@ void check_resumable(const film::Film& film, const GradusSettings& settings, con
   const film::ComponentContent held = film::component_content(film);
   if ((plan.non_specular_vertices && !held.non_specular) || (plan.non_specular_details && !held.details))
     throw invalid_argument("the film was sampled without the passes of components");
-  if (film::other_channels(film) != plan.scene_channels)
-    throw invalid_argument("the film holds other channels than the render samples");
+  check_channels(film::other_channels(film), plan.scene_channels);
   const uint64_t kept = film.channels.passes();
   for (const schema::PassInfo& info : schema::stored_passes(plan.passes)) {
     if (!schema::has_bit(kept, info.pass))

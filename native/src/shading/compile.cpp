@@ -157,15 +157,13 @@ bool asks_for_tangents(const Instruction& i) {
          (i.op == GRADUS_OP_TANGENT && i.mode == GRADUS_TANGENT_UV);
 }
 
-// Returns the UV maps, each once, whose tangents the program reads. "" is the default UV map.
-std::vector<std::string> tangent_maps(const Program& p) {
-  std::vector<std::string> names;
+// Adds the UV maps, each once, whose tangents the program reads. "" is the default UV map.
+void add_tangent_maps(const Program& p, std::vector<std::string>* names) {
   for (const Instruction& i : p.code) {
     if (!asks_for_tangents(i)) continue;
     const std::string name = i.resource > 0 ? p.names[i.resource - 1] : "";
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    if (std::ranges::find(*names, name) == names->end()) names->push_back(name);
   }
-  return names;
 }
 
 // Returns the mean luminance of an emission program over a few places, with textures at their mean colour.
@@ -239,7 +237,7 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
   m->transparent_shadow = desc.transparent_shadow != 0;
   m->uses_fallback = desc.uses_fallback != 0;
   m->pass_index = desc.pass_index;
-  m->tangent_maps = tangent_maps(m->surface);
+  for (const Program* program : {&m->surface, &m->aovs}) add_tangent_maps(*program, &m->tangent_maps);
   const Suns suns = find_suns(graph);
   m->suns = suns.discs;
   m->smallest_hidden_sun = suns.smallest_hidden;

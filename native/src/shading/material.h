@@ -54,7 +54,7 @@ struct MaterialData {
   int32_t pass_index = 0;
   std::vector<SunDisc> suns;              // sun discs of the material's Sky Textures
   float smallest_hidden_sun = 0.0f;       // half angle of the smallest sun at an unknown position; 0 if there is none
-  std::vector<std::string> tangent_maps;  // UV maps whose tangents the surface reads; "" is the default map
+  std::vector<std::string> tangent_maps;  // UV maps whose tangents the surface or an AOV reads; "" is the default map
 };
 
 // Compiles a node program: evaluates constant nodes, omits nodes without effect, and allocates registers. Throws Error
