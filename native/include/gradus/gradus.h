@@ -787,8 +787,8 @@ GRADUS_API GradusError gradus_render_read_pass(GradusRender render, uint32_t pas
 GRADUS_API GradusError gradus_render_read_component(GradusRender render, const char* component, uint32_t pass,
                                                     float* pixels, size_t count);
 /* Copies a channel of GradusChannelKind `kind` and of this name. `layer` counts the layers of a Cryptomatte, which have
- * two names each; it is 0 for others. During sampling the pixels are 0. INVALID_ARGUMENT if the scene has no such
- * channel. */
+ * two names each; it is 0 for others. It can be read once sampling has ended. INVALID_ARGUMENT if the scene has no
+ * such channel. */
 GRADUS_API GradusError gradus_render_read_channel(GradusRender render, uint32_t kind, const char* name, uint32_t layer,
                                                   float* pixels, size_t count);
 /* Returns the statistics of a finished render as a JSON object, without the fields that only the host knows. The text

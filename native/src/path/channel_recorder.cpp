@@ -30,8 +30,7 @@ void ChannelRecorder::add(uint32_t channel, const Vec4& value) {
 void ChannelRecorder::add(const std::vector<shading::AovOutput>& outputs) {
   for (const shading::AovOutput& output : outputs) {
     if (is_of_kind(output.channel, GRADUS_CHANNEL_AOV_COLOR)) add(output.channel, Vec4(output.color, 1.0f));
-    if (is_of_kind(output.channel, GRADUS_CHANNEL_AOV_VALUE))
-      add(output.channel, Vec4(output.value, 0.0f, 0.0f, 0.0f));
+    if (is_of_kind(output.channel, GRADUS_CHANNEL_AOV_VALUE)) add(output.channel, Vec4(output.value, 0.0f, 0.0f, 0.0f));
   }
 }
 

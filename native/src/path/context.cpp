@@ -21,7 +21,7 @@ bool distinguishes_kinds(uint32_t visibility) {
 bool finds_kinds_matter(const scene::Snapshot& scene) {
   const auto any = [](const auto& list, auto&& test) { return std::any_of(list.begin(), list.end(), test); };
   return distinguishes_kinds(scene.world.visibility) ||
-         any(scene.materials, [](const auto& m) { return m->depends_on_kind; }) ||
+         any(scene.materials, [](const auto& m) { return m->depends_on_kind || m->is_diffuse_behind_diffuse; }) ||
          any(scene.instances, [](const geometry::InstanceData& i) { return distinguishes_kinds(i.visibility); }) ||
          (scene.light_table && any(scene.light_table->analytic_lights, [](const light::AnalyticLight& light) {
             return light.found_by_rays() && distinguishes_kinds(light.visibility);

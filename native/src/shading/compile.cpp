@@ -4,6 +4,7 @@
 #include "base/cryptomatte_id.h"
 #include "bsdf/lobe.h"
 #include "image/image_store.h"
+#include "shading/closure_ops.h"
 #include "shading/interpreter.h"
 #include "shading/material.h"
 #include "shading/op_info.h"
@@ -88,19 +89,31 @@ class Analysis {
     return std::min(lobe.alpha_x, lobe.alpha_y);
   }
 
-  // Returns whether the closure has subsurface scattering with a normal from nodes.
-  bool bumps_subsurface(const Instruction& i) const {
-    const auto has_normal = [&](int k) { return Vec3(input(i, k, 1.0f)) != Vec3(0.0f); };
+  // Returns whether the closure's subsurface scattering is diffuse behind a diffuse bounce.
+  bool is_diffuse_behind_diffuse(const Instruction& i) const {
+    RayState behind_diffuse;
+    behind_diffuse.flags |= kRayDiffuseAncestor;
+    return scatters_below(i) && is_diffuse_below(i.mode, behind_diffuse);
+  }
+
+  // Returns whether the closure may have subsurface scattering.
+  bool scatters_below(const Instruction& i) const {
     switch (i.op) {
       case GRADUS_OP_SUBSURFACE:
-        return has_normal(6);
+        return true;
       case GRADUS_OP_PRINCIPLED:
-        return input(i, 21, 1.0f).x > 0.0f && has_normal(18);
+        return input(i, 21, 1.0f).x > 0.0f;
       case GRADUS_OP_PRINCIPLED_3:
-        return input(i, 18, 1.0f).x > 0.0f && has_normal(15);
+        return input(i, 18, 1.0f).x > 0.0f;
       default:
         return false;
     }
+  }
+
+  // Returns whether the closure has subsurface scattering with a normal from nodes.
+  bool bumps_subsurface(const Instruction& i) const {
+    const int normal = i.op == GRADUS_OP_SUBSURFACE ? 6 : i.op == GRADUS_OP_PRINCIPLED ? 18 : 15;
+    return scatters_below(i) && Vec3(input(i, normal, 1.0f)) != Vec3(0.0f);
   }
 
   void closure(const Instruction& i) {
@@ -108,6 +121,7 @@ class Analysis {
     if (!is_lobe_op(i.op)) return;
     m_.has_bsdf = true;
     m_.bumps_subsurface = m_.bumps_subsurface || bumps_subsurface(i);
+    m_.is_diffuse_behind_diffuse = m_.is_diffuse_behind_diffuse || is_diffuse_behind_diffuse(i);
     const int rough = roughness_input(i.op);
     if (rough >= 0) sharpen(narrowest_alpha(i, rough));
     const bool glass = i.op == GRADUS_OP_GLASS || i.op == GRADUS_OP_REFRACTION || i.op == GRADUS_OP_TRANSLUCENT;

@@ -36,8 +36,9 @@ struct MaterialData {
   bool may_transmit = false;       // some lobe scatters light to the other side
   bool transparent_shadow = true;  // false if shadow rays treat the material as opaque
   bool sample_as_light = true;
-  bool uses_fallback = false;         // some node was replaced, or the material did not compile
-  bool bumps_subsurface = false;      // light that leaves the material from below has a normal from its nodes
+  bool uses_fallback = false;              // some node was replaced, or the material did not compile
+  bool is_diffuse_behind_diffuse = false;  // its subsurface scattering is diffuse behind a diffuse bounce
+  bool bumps_subsurface = false;           // light that leaves the material from below has a normal from its nodes
   bool values_depend_on_ray = false;  // some value of `surface` depends on the ray; closures themselves do not count
   bool draws_random = false;          // some value of `surface` depends on random numbers of the path
   bool depends_on_kind =
