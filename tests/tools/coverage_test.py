@@ -75,7 +75,7 @@ def test_a_difference_of_two_percent_is_found() -> None:
     assert difference.compare(picture, picture * 1.009).agrees
     assert not difference.compare(picture, picture * 1.011).agrees
     spot = picture.copy()
-    spot[:16, :32] *= (1.03, 0.97, 1.0, 1.0)  # 8 of 48 blocks, whose mean does not change
+    spot[:16, :32] *= (1.03, 0.97, 1.0, 1.0)  # 16 of 48 blocks, without a change of the mean
     spot[16:32, :32] *= (0.97, 1.03, 1.0, 1.0)
     found = difference.compare(picture, spot)
     assert found.mean < 1e-6
@@ -101,10 +101,10 @@ def test_the_document_is_read_as_it_was_written(tmp_path: Path) -> None:
         for blender in ("3.4", "bpy52"):
             table.put(blender, {"family": family, "name": name, "verdict": verdict, "note": note})
     table.put("bpy45", {"family": "Lights", "name": "B", "verdict": "not shown", "note": ""})
-    document.write(table, tmp_path / "a.md")
-    again = document.read(tmp_path / "a.md")
-    document.write(again, tmp_path / "b.md")
-    assert (tmp_path / "a.md").read_text() == (tmp_path / "b.md").read_text()
+    document.write(table, tmp_path / "first")
+    again = document.read(tmp_path / "first")
+    document.write(again, tmp_path / "second")
+    assert (tmp_path / "first").read_text() == (tmp_path / "second").read_text()
     assert again.verdicts("bpy52") == {"A.x=1": AGREES, "A.y": FALLS_BACK, "B": DIFFERS}
     assert again.verdicts("bpy45") == {"B": "not shown"}
     again.forget("bpy52")

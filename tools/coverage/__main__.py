@@ -19,7 +19,7 @@ from typing import Any
 
 from runner.hosts import is_missing
 
-from . import document, host
+from . import document, host, reasons
 
 ROOT = document.ROOT
 OUT = ROOT / "out" / "coverage"
@@ -59,7 +59,7 @@ def run(name: str, rows: str, again: bool) -> None:
     if rows == "*":
         table.forget(name)
     for outcome in found:
-        table.put(name, outcome)
+        table.put(name, reasons.explained(outcome))
     document.write(table)
     listed = ", ".join(f"{count} {verdict}" for verdict, count in counts.most_common())
     print(f"{name}: {listed}; {time.monotonic() - start:.0f} s", flush=True)

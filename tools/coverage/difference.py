@@ -8,8 +8,10 @@ import numpy as np
 
 BLOCK = 8
 BLOCK_TOLERANCE, SHARE_OF_BLOCKS, MEAN_TOLERANCE = 0.02, 0.95, 0.01
-FLOOR = 0.05
-"""Part of the picture's mean below which a difference is relative to that mean, not to the block or the channel."""
+DARK, FAINT = 0.5, 0.1
+"""Parts of the picture's mean below which a difference is relative to that mean: for dark blocks, which have more noise
+than light, and for channels that hardly show.
+"""
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ def compare(expected: np.ndarray, found: np.ndarray) -> Difference:
         return Difference(1.0, float(wrong.any(axis=2).mean()))
     a, b = (block_means(np.nan_to_num(image, posinf=0.0, neginf=0.0)) for image in (expected, found))
     level = np.abs(a).mean(axis=(0, 1)) + 1e-4
-    level = np.maximum(level, FLOOR * level[:3].max())  # without alpha
-    off = np.abs(a - b) > BLOCK_TOLERANCE * np.maximum(np.abs(a), FLOOR * level)
+    level = np.maximum(level, FAINT * level[:3].max())  # without alpha
+    off = np.abs(a - b) > BLOCK_TOLERANCE * np.maximum(np.abs(a), DARK * level)
     mean = np.abs(a.mean(axis=(0, 1)) - b.mean(axis=(0, 1))) / level
     return Difference(float(mean.max()), float(off.any(axis=2).mean()))

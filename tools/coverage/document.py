@@ -17,17 +17,17 @@ HOSTS = {"3.4": "3.4", "bpy45": "4.5", "bpy50": "5.0", "bpy52": "5.2"}
 VERDICTS = {
     "agrees": "the pictures agree",
     "no effect": "they agree, and Cycles renders the same without the feature: it ignores it, or the scene does",
-    "falls back": "Gradus renders something else and says so",
+    "falls back": "Gradus renders something else, or nothing, and says so",
     "differs": "the pictures differ without a warning",
     "missing": "Cycles has a pass that Gradus does not have",
-    "fails": "Gradus stops with an error or a crash",
+    "fails": "Gradus crashes, hangs or stops with an error of no clear meaning",
     "not shown": "the scene cannot be made, or Cycles cannot render it",
 }
 
 HEAD = """# What Gradus renders as Cycles does
 
 Each line is a feature that Blender's own description of its types (RNA) lists: a value of a property, an input that
-varies over a surface, an output, a kind of object. `make coverage` renders a scene of 64×48 pixels for each with Gradus
+varies over a surface, an output, a kind of object. `make coverage` renders a scene of 48×32 pixels for each with Gradus
 and with Cycles of the same Blender, and writes this page; `make coverage HOSTS=bpy45 ROWS='ShaderNodeMath*'` renders
 some of them again. Pictures agree if 95 % of the blocks of 8×8 pixels are within 2 % and the mean is within 1 %. A part
 of the lines is rendered in every test run and must keep its verdict.

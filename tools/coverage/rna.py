@@ -14,7 +14,7 @@ import bpy
 
 Change = Callable[[Any], None]
 
-WIDE = 100.0
+WIDE = 10.0
 """A range of values that is wider than this is treated as unlimited."""
 
 _GENERAL = frozenset(bpy.types.ID.bl_rna.properties.keys()) | {"rna_type", "name", "use_nodes", "cycles"}

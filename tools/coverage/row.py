@@ -10,7 +10,7 @@ from typing import Any
 Build = Callable[[], None]
 """Makes a scene in an empty file."""
 
-EXACT, NOISY = 1, 64
+EXACT, NOISY = 1, 32
 """Samples of scenes that have no noise, and of scenes that are lit."""
 
 

@@ -9,9 +9,11 @@ import bpy
 NORMALS = ("normal", "tangent")
 """Parts of the names of inputs that take directions of the surface, and no colours or places."""
 
+PLAIN = ("Value", "A", "B", "X", "Y", "Z", "W")
+"""Names of inputs that take any number."""
+
 _COLORS = ((0.8, 0.3, 0.2, 1.0), (0.2, 0.5, 0.7, 1.0), (0.4, 0.7, 0.3, 1.0), (0.6, 0.4, 0.8, 1.0))
 _VECTORS = ((0.3, 0.5, 0.7), (0.6, -0.2, 0.4), (-0.4, 0.3, 0.5), (0.2, 0.7, -0.3))
-_FAR = 1e9
 
 
 def is_direction(socket: bpy.types.NodeSocket) -> bool:
@@ -23,25 +25,18 @@ def is_implicit(socket: bpy.types.NodeSocket) -> bool:
     return socket.hide_value and socket.type == "VECTOR"
 
 
-def limits(socket: bpy.types.NodeSocket) -> tuple[float, float]:
-    """Returns the limits of a number. Blender tells them only by clamping what is assigned."""
-    present = socket.default_value
-    found = []
-    for extreme in (-_FAR, _FAR):
-        socket.default_value = int(extreme) if socket.type == "INT" else extreme
-        found.append(float(socket.default_value))
-    socket.default_value = present
-    return found[0], found[1]
-
-
 def span(socket: bpy.types.NodeSocket) -> tuple[float, float]:
-    """Returns a range of moderate values around the default of a number."""
-    low, high = limits(socket)
-    if high - low <= 10.0:
-        return low + 0.1 * (high - low), high - 0.1 * (high - low)
+    """Returns a range of moderate values around the default of a number.
+
+    Blender does not tell scripts the limits of inputs. Factors and what is positive by default stay positive, but plain
+    numbers do not.
+    """
+    if socket.bl_idname == "NodeSocketFloatFactor":
+        return 0.1, 0.9
     default = float(socket.default_value)
-    reach = 0.4 * abs(default) + 0.3
-    return max(low, default - reach), min(high, default + reach)
+    if socket.name in PLAIN:
+        return default - 1.2, default + 1.2
+    return 0.6 * default, 1.4 * default + (0.5 if default == 0.0 else 0.0)
 
 
 def set_constant(socket: bpy.types.NodeSocket, index: int) -> None:
@@ -64,7 +59,13 @@ class Patterns:
         self._tree = tree
 
     def drive(self, socket: bpy.types.NodeSocket, turned: bool = False) -> None:
-        """Links an input to a pattern of its kind. `turned` chooses one that runs in another direction."""
+        """Links an input to a pattern of its kind. `turned` chooses one that runs in another direction.
+
+        An input that takes no links gets another value.
+        """
+        if socket.type == "STRING":
+            socket.default_value = "Col"
+            return
         source = self._source(socket, turned)
         if source is None:
             raise ValueError(f"no pattern for sockets of type {socket.type}")
@@ -77,7 +78,11 @@ class Patterns:
         if socket.type == "RGBA":
             return self.vector((0.35, 0.35, 0.35), (0.5, 0.45, 0.55), turned)
         if socket.type in {"VECTOR", "ROTATION"}:
-            return self.direction() if is_direction(socket) else self.vector((1.0, 1.0, 1.0), (0.0, 0.0, 0.0), turned)
+            return (
+                self.direction()
+                if is_direction(socket)
+                else self.vector((0.97, 0.93, 0.89), (0.01, 0.02, 0.03), turned)
+            )
         if socket.type == "SHADER":
             if socket.name == "Volume":
                 return self.shader("VolumeAbsorption")
@@ -108,12 +113,12 @@ class Patterns:
         return node.outputs["Vector"]
 
     def number(self, low: float, high: float, turned: bool) -> Any:
-        """Returns a number that runs from `low` to `high` over the middle of the object."""
-        apart, node = self._node("SeparateXYZ"), self._node("Math", operation="MULTIPLY_ADD")
-        node.use_clamp = False
-        self._tree.links.new(self.place(turned), apart.inputs[0])
-        self._tree.links.new(apart.outputs[0], node.inputs[0])
-        node.inputs[1].default_value, node.inputs[2].default_value = 0.45 * (high - low), 0.5 * (high + low)
+        """Returns a number that runs from `low` to `high` over the object and is constant on none of its faces."""
+        product, node = self._node("VectorMath", operation="DOT_PRODUCT"), self._node("Math", operation="MULTIPLY_ADD")
+        self._tree.links.new(self.place(turned), product.inputs[0])
+        product.inputs[1].default_value = (0.6, 0.25, 0.15)
+        self._tree.links.new(product.outputs["Value"], node.inputs[0])
+        node.inputs[1].default_value, node.inputs[2].default_value = 0.5 * (high - low), 0.5 * (high + low)
         return node.outputs[0]
 
     def direction(self) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 from mathutils import Vector
 from support import images
 
-WIDTH, HEIGHT = 64, 48
+WIDTH, HEIGHT = 48, 32
 
 
 def prepare(samples: int, seed: int) -> None:
@@ -23,7 +23,7 @@ def prepare(samples: int, seed: int) -> None:
     cycles.samples, cycles.seed = samples, seed
     cycles.use_adaptive_sampling = cycles.use_denoising = False
     cycles.pixel_filter_type, cycles.filter_width = "GAUSSIAN", 0.01
-    cycles.sample_clamp_indirect = 0.0
+    cycles.sample_clamp_indirect = cycles.blur_glossy = 0.0
     scene.view_layers[0].gradus.use_pass_components = False
 
 
@@ -151,11 +151,16 @@ def light(kind: str, energy: float, **place: Any) -> bpy.types.Object:
 
 
 def pattern_image(is_float: bool = False, **settings: Any) -> bpy.types.Image:
-    """Returns an image of 16×16 pixels, smooth in red and green, with blue checks and stripes of alpha."""
+    """Returns an image of 16×16 pixels, smooth in red and green, with blue checks and stripes of alpha.
+
+    It has no dark colours, which 8 bits round by more than the tolerance.
+    """
     image = bpy.data.images.new("pattern", 16, 16, alpha=True, float_buffer=is_float, **settings)
     y, x = np.mgrid[0:16, 0:16].astype(np.float32)
-    alpha = np.where((x // 4) % 2 == 0, 1.0, 0.5)
-    pixels = np.stack([x / 15, y / 15, (x // 4 + y // 4) % 2, alpha], axis=2).astype(np.float32)
+    alpha = np.where((x // 4) % 2 == 0, 1.0, 0.9)
+    pixels = np.stack([0.4 + x / 25, 0.4 + y / 25, 0.6 + 0.3 * ((x // 4 + y // 4) % 2), alpha], axis=2).astype(
+        np.float32
+    )
     image.pixels.foreach_set(pixels.ravel())
     image.update()
     image.pack()
@@ -163,8 +168,9 @@ def pattern_image(is_float: bool = False, **settings: Any) -> bpy.types.Image:
 
 
 def surface_of_values(block: bpy.types.Material) -> None:
-    """Shows a material that emits values on a tilted plane, a smooth sphere and a cube, seen in perspective."""
-    mesh("PLANE", block, scale=(4.0, 3.0, 1.0), rotation_euler=(0.15, 0.1, 0.07), location=(0.03, 0.02, -0.6))
+    """Shows a material that emits values on a tilted slab, a smooth sphere and a cube, seen in perspective."""
+    slab = {"scale": (4.0, 3.0, 0.3), "rotation_euler": (0.15, 0.1, 0.07), "location": (0.03, 0.02, -0.9)}
+    mesh("CUBE", block, "Slab", **slab)
     mesh("SPHERE", block, "Sphere", location=(-0.9, 0.1, 0.3), rotation_euler=(0.3, 0.5, 0.2))
     cube = {"location": (1.1, -0.2, 0.4), "rotation_euler": (0.5, 0.4, 0.3), "scale": (0.7, 0.55, 0.6)}
     mesh("CUBE", block, "Cube", **cube)
@@ -176,7 +182,7 @@ def lit_sphere(block: bpy.types.Material) -> bpy.types.Object:
     """Shows a material on a smooth sphere under a sun and a world that changes with the direction."""
     sphere = mesh("SPHERE", block, "Sphere", rotation_euler=(0.4, 0.2, 0.3))
     gradient_world()
-    light("SUN", 1.5, rotation_euler=(0.6, 0.5, 0.0)).data.angle = 0.0
+    light("SUN", 1.5, rotation_euler=(0.6, 0.5, 0.0)).data.angle = 0.4
     camera((0.0, -3.6, 1.4), lens=50.0)
     return sphere
 
@@ -185,10 +191,10 @@ def room() -> bpy.types.Object:
     """Shows diffuse, glossy and transparent balls on a floor under a sun and a world. Returns the first ball."""
     mesh("PLANE", checks(1.3, is_emission=False), "Floor", scale=(4.0, 4.0, 1.0))
     ball = mesh("SPHERE", material("BsdfDiffuse", (0.7, 0.4, 0.2)), "Ball", scale=(0.6,) * 3, location=(-1.3, 0.2, 0.6))
-    glossy = material("BsdfGlossy", (0.8, 0.7, 0.5), Roughness=0.2)
+    glossy = material("BsdfGlossy", (0.8, 0.7, 0.5), Roughness=0.5)
     mesh("SPHERE", glossy, "Glossy", scale=(0.6,) * 3, location=(0.1, 0.4, 0.6))
     mesh("SPHERE", material("BsdfGlass", (0.9, 1.0, 0.9)), "Glass", scale=(0.5,) * 3, location=(1.3, -0.2, 0.55))
-    mesh("PLANE", material("Emission", (0.9, 0.4, 0.3)), "Emitter", scale=(0.3,) * 3, location=(0.5, -1.2, 0.3))
+    mesh("PLANE", material("Emission", (0.5, 0.25, 0.2)), "Emitter", scale=(0.3,) * 3, location=(0.5, -1.2, 0.3))
     gradient_world(0.6)
     light("SUN", 1.5, rotation_euler=(0.5, 0.4, 0.0)).data.angle = 0.0
     camera((0.0, -4.6, 3.2), (0.0, 0.0, 0.4), lens=42.0)

@@ -18,7 +18,7 @@ AGREES, NO_EFFECT, DIFFERS, FALLS_BACK = "agrees", "no effect", "differs", "fall
 MISSING, FAILS, NOT_SHOWN = "missing", "fails", "not shown"
 
 SEED = 7
-LADDERS = {EXACT: (1, 64, 512), NOISY: (64, 256, 1024)}
+LADDERS = {EXACT: (1, 32, 256), NOISY: (32, 128, 512)}
 """Samples by those of a row. One that differs is rendered again with more, in case that noise made it differ."""
 
 
@@ -60,7 +60,8 @@ class Judge:
         try:
             found = self._render("GRADUS", samples)
         except (RuntimeError, AssertionError) as error:
-            return Outcome(row.family, row.name, FAILS, _text(error))
+            text = _text(error)
+            return Outcome(row.family, row.name, FALLS_BACK if "Gradus: " in text else FAILS, text)
         warnings = [text for summary in store.summaries.values() for text in summary.get("warnings", ())]
         if warnings:
             return Outcome(row.family, row.name, FALLS_BACK, "; ".join(sorted(set(warnings))))

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import bpy
+from support import images
 
 from .. import rna, stages
 from ..row import EXACT, NOISY, Family, Row
@@ -97,5 +99,7 @@ def rows_of_render() -> Iterator[Row]:
 def stage_of_render() -> Any:
     stage("PERSP", "")
     render = bpy.context.scene.render
+    images.use_exr(bpy.context.scene, Path("all views of a frame in one file"))
+    render.image_settings.views_format = "MULTIVIEW"
     render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.2, 0.8, 0.3, 0.9
     return render

@@ -36,7 +36,7 @@ def rows_of(kind: str) -> Iterator[Row]:
 
 def stage(kind: str) -> Any:
     stages.mesh("PLANE", stages.material(), "Floor", scale=(4.0, 4.0, 1.0))
-    glossy = stages.material("BsdfGlossy", (0.7, 0.6, 0.5), Roughness=0.3)
+    glossy = stages.material("BsdfGlossy", (0.7, 0.6, 0.5), Roughness=0.5)
     stages.mesh("SPHERE", glossy, "Ball", scale=(0.5,) * 3, location=(-0.4, 0.3, 0.6))
     stages.black_world()
     stages.camera((0.0, -4.5, 3.5), (0.0, 0.0, 0.4), lens=45.0)

@@ -74,8 +74,8 @@ def rows_of_node(kind: str) -> Iterator[Row]:
         yield from _rows_of_input(kind, socket, settings)
     outputs = list(sockets_of(node, "outputs"))
     for socket, settings in outputs[1:]:
-        base = Variation(settings=settings)
-        yield _row(kind, f".outputs[{socket.identifier}]", replace(base, output=socket.identifier), base)
+        shown = Variation(settings=settings, output=socket.identifier)
+        yield _row(kind, f".outputs[{socket.identifier}]", shown, Variation(settings=settings, is_muted=True))
     if outputs:
         yield _row(kind, ".mute", Variation(is_muted=True), Variation())
 
@@ -219,12 +219,15 @@ def is_noisy_surface(tree: Any, kind: str) -> bool:
 def _feed(node: Any, variation: Variation) -> None:
     """Gives the inputs values. Of a node that is no shader the first input varies."""
     patterns = sockets.Patterns(node.id_data)
+    is_in_light = node.bl_idname in node_contexts.LIGHT_NODES
     is_value = bool(node.outputs) and not is_shader(node)
     first = True
     for index, socket in enumerate(node.inputs):
         if not socket.enabled or socket.type == "CUSTOM":
             continue
-        if socket.identifier == variation.driven:
+        if is_in_light and socket.type == "VALUE":  # a light has one place, over which nothing varies
+            sockets.set_constant(socket, index + (socket.identifier == variation.driven))
+        elif socket.identifier == variation.driven:
             patterns.drive(socket, turned=True)
         elif socket.identifier == variation.unlinked:
             pass

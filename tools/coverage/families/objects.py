@@ -98,9 +98,9 @@ def rows_of_instances() -> Iterator[Row]:
         if value != "NONE":
             yield instances.row(f".instance_type={value}", partial(instance, value))
     particles = Family("Objects", "Particles", stage_of_instances)
-    for value in ("EMITTER", "HAIR"):
-        for shown in ("OBJECT", "COLLECTION", "PATH", "HALO"):
-            yield particles.row(f" {value} {shown}", partial(add_particles, value, shown))
+    for kind in ("EMITTER", "HAIR"):
+        for shown in ("OBJECT", "COLLECTION", "PATH" if kind == "HAIR" else "HALO"):
+            yield particles.row(f" {kind} {shown}", partial(add_particles, kind, shown))
 
 
 def stage_of_instances() -> Any:
@@ -196,7 +196,8 @@ def _hair() -> Any:
 
 def _points() -> Any:
     data = bpy.data.pointclouds.new("Points")
-    data.resize(5)
+    if hasattr(data, "resize"):  # from 5.0 on; before, scripts can make empty ones only
+        data.resize(5)
     for index, point in enumerate(data.points):
         point.co, point.radius = (0.6 * index - 1.2, 0.2 * index, 0.1), 0.3
     return data

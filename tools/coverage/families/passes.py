@@ -11,7 +11,8 @@ import bpy
 from .. import rna, stages
 from ..row import NOISY, Family, Row
 
-SKIPPED = ("active_*", "freestyle*", "use_freestyle", "depsgraph", "eevee", "gradus", "pass_cryptomatte_depth")
+SKIPPED = ("use", "active_*", "freestyle*", "use_freestyle", "depsgraph", "eevee", "gradus", "pass_cryptomatte_depth")
+"""Properties of Freestyle and other engines. Blender itself crashes where the only view layer is not in use."""
 
 
 def rows() -> Iterator[Row]:
