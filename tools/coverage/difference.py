@@ -33,7 +33,7 @@ class Difference:
     @property
     def size(self) -> float:
         """Orders differences: a picture that differs everywhere comes before one that differs at edges."""
-        return self.mean + self.blocks
+        return min(self.mean, 1.0) + self.blocks
 
 
 def block_means(image: np.ndarray) -> np.ndarray:

@@ -18,6 +18,9 @@ from ..row import EXACT, NOISY, Row
 
 TITLE = "Shader nodes"
 
+SHOWN = {"SHADER", "RGBA", "VECTOR", "VALUE", "INT", "BOOLEAN", "ROTATION"}
+"""Types of outputs that a surface can show."""
+
 
 @dataclass(frozen=True)
 class Variation:
@@ -254,7 +257,7 @@ def patterns_for_shader(tree: Any, socket: Any, index: int) -> None:
 
 def _show(node: Any, identifier: str) -> None:
     """Links an output, the first one by default, to the output of the tree; a value by way of emission."""
-    usable = [socket for socket in node.outputs if socket.enabled and socket.type != "CUSTOM"]
+    usable = [socket for socket in node.outputs if socket.enabled and socket.type in SHOWN]
     if not usable:
         return
     source = next((socket for socket in usable if socket.identifier == identifier), usable[0])
