@@ -11,7 +11,7 @@ export SCENE FRAMES OUT ARGS COMPONENTS BLENDER
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help build render render-animation test test-full test-native test-regression test-addon stress faults compilers package schema format lint clean
+.PHONY: help build render render-animation test test-full test-native test-regression test-addon stress faults coverage compilers package schema format lint clean
 BENCH := $(addprefix bench-,errors quick agreement pictures speed reconstruct animation motion host designs animated-designs compare report)
 .PHONY: bench $(BENCH) picture picture-components
 
@@ -49,6 +49,9 @@ stress:         ## numerical stability: hard scenes, their dropped samples and f
 faults:         ## faults switched on in a test build, one at a time: do the tests catch them? docs/faults.md; ten minutes, after a build
 	@tools/setup/setup test
 	@/usr/bin/python3 tests/faults/faults.py
+
+coverage:       ## features next to Cycles, into docs/coverage.md: HOSTS=bpy45 ROWS='ShaderNodeMath*' AGAIN=1; ten minutes a host
+	@tools/coverage.sh
 
 compilers:      ## statistics of a build without optimisation, and of one by clang; half an hour
 	@tools/compilers.sh

@@ -15,7 +15,7 @@ import sys
 
 from runner import plan
 from runner.checks import CHECKS
-from runner.hosts import is_missing
+from runner.hosts import environment_of_hosts, is_missing
 from runner.pool import Pool
 from runner.results import Report, Result
 
@@ -23,17 +23,7 @@ ROOT = plan.ROOT
 
 
 def environment_of_tests(full: bool) -> dict[str, str]:
-    foreign = ("BLENDER_", "PYTEST_", "MAKE", "MFLAGS")
-    environment = {key: value for key, value in os.environ.items() if not key.startswith(foreign)}
-    # Blender's Python takes its modules from the folder of the first python3.11 in PATH, which must be the system's.
-    environment["PATH"] = "/usr/bin:/bin:" + environment.get("PATH", "")
-    environment["GRADUS_TEST_FULL"] = "1" if full else "0"
-    # Without compiled modules, a start of Blender takes twice as long. The folders of the sources stay as they are.
-    environment.pop("PYTHONDONTWRITEBYTECODE", None)
-    environment["PYTHONPYCACHEPREFIX"] = str(ROOT / "build" / "python")
-    # NumPy's threads wait in busy loops that take longer than small matrices.
-    environment["OPENBLAS_NUM_THREADS"] = "1"
-    return environment
+    return environment_of_hosts(dict(os.environ)) | {"GRADUS_TEST_FULL": "1" if full else "0"}
 
 
 def main() -> int:

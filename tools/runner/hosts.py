@@ -21,28 +21,36 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 RUNNER = ROOT / "tests" / "run_in_host.py"
 
 
-def module(name: str) -> list[str]:
-    return [str(ROOT / ".venv" / name / "bin" / "python3"), str(RUNNER), "--"]
+APPLICATION = "3.4"
+
+
+def command_of(host: str, script: Path) -> list[str]:
+    """Returns the command that runs a script in a Blender: in the application, or in a Python that has the module."""
+    if host == APPLICATION:
+        options = ["-b", "--factory-startup", "-noaudio", "--python-exit-code", "3"]
+        return ["blender", *options, "--python", str(script)]
+    return [str(ROOT / ".venv" / host / "bin" / "python3"), str(script)]
 
 
 # "plain" has the packages of bpy45's environment, but cannot import bpy.
 HOSTS = {
-    "plain": [*module("bpy45"), "--plain"],
-    "3.4": [
-        "blender",
-        "-b",
-        "--factory-startup",
-        "-noaudio",
-        "--python-exit-code",
-        "3",
-        "--python",
-        str(RUNNER),
-        "--",
-    ],  # fmt: skip
-    "bpy45": module("bpy45"),
-    "bpy50": module("bpy50"),
-    "bpy52": module("bpy52"),
+    "plain": [*command_of("bpy45", RUNNER), "--", "--plain"],
+    **{host: [*command_of(host, RUNNER), "--"] for host in (APPLICATION, "bpy45", "bpy50", "bpy52")},
 }
+
+
+def environment_of_hosts(environment: dict[str, str]) -> dict[str, str]:
+    """Returns an environment without variables that would change what a Blender does."""
+    foreign = ("BLENDER_", "PYTEST_", "MAKE", "MFLAGS")
+    result = {key: value for key, value in environment.items() if not key.startswith(foreign)}
+    # Blender's Python takes its modules from the folder of the first python3.11 in PATH, which must be the system's.
+    result["PATH"] = "/usr/bin:/bin:" + result.get("PATH", "")
+    # Without compiled modules, a start of Blender takes twice as long. The folders of the sources stay as they are.
+    result.pop("PYTHONDONTWRITEBYTECODE", None)
+    result["PYTHONPYCACHEPREFIX"] = str(ROOT / "build" / "python")
+    # NumPy's threads wait in busy loops that take longer than small matrices.
+    result["OPENBLAS_NUM_THREADS"] = "1"
+    return result
 
 
 def is_missing(host: str) -> bool:

@@ -1,0 +1,120 @@
+"""Features that agree with Cycles go on agreeing: a part of the rows of docs/coverage.md is rendered again.
+
+A fixed tenth of the rows is the same in every run, so that what breaks is found at once. Another tenth is drawn by a
+seed that GRADUS_COVERAGE_SEED repeats. The first tests are about the measures and the document themselves.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import sys
+import zlib
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
+from coverage import difference, document, rna  # noqa: E402
+from coverage.families import all_rows  # noqa: E402
+from coverage.row import Row  # noqa: E402
+from coverage.trial import AGREES, DIFFERS, FALLS_BACK, NO_EFFECT, Judge  # noqa: E402
+
+PART = 10
+KEPT = {AGREES: {AGREES}, NO_EFFECT: {AGREES}, FALLS_BACK: {AGREES, FALLS_BACK}}
+"""What a row with a stored verdict may be now. A row that falls back without a warning would be a silent difference."""
+
+
+def host() -> str:
+    """Returns the name of the running Blender in the document."""
+    version = ".".join(str(part) for part in bpy.app.version[:2])
+    return next(name for name, title in document.HOSTS.items() if title == version)
+
+
+@pytest.fixture(scope="module")
+def rows() -> list[Row]:
+    return list(all_rows())
+
+
+def is_fixed(name: str) -> bool:
+    return zlib.crc32(name.encode()) % PART == 0
+
+
+def test_rows_keep_their_verdicts(rows: list[Row], tmp_path: Path) -> None:
+    seed = os.environ.get("GRADUS_COVERAGE_SEED") or str(random.SystemRandom().randrange(10**6))
+    print(f"GRADUS_COVERAGE_SEED={seed}")
+    draw = random.Random(seed)
+    stored = document.read().verdicts(host())
+    chosen = [row for row in rows if is_fixed(row.name) or draw.randrange(PART) == 0]
+    assert len(chosen) > len(stored) // PART
+    judge = Judge(tmp_path, tells_effects=False)
+    changed = []
+    for row in chosen:
+        allowed = KEPT.get(stored.get(row.name, ""))
+        outcome = judge.run(row) if allowed else None
+        if outcome and outcome.verdict not in allowed:
+            changed.append(f"{row.name}: {outcome.verdict} instead of {stored[row.name]}: {outcome.note}")
+    assert not changed, f"with GRADUS_COVERAGE_SEED={seed}:\n" + "\n".join(changed)
+
+
+@pytest.mark.skipif(bpy.app.version[:2] != (4, 5), reason="columns of other versions may be older than the rows")
+def test_the_document_has_every_row(rows: list[Row]) -> None:
+    """A new row, such as that of a node that got another input, is rendered once by `make coverage`."""
+    stored = document.read().verdicts(host())
+    assert {row.name for row in rows} == set(stored)
+
+
+def test_names_are_different(rows: list[Row]) -> None:
+    names = [row.name for row in rows]
+    assert len(names) == len(set(names))
+
+
+def test_a_difference_of_two_percent_is_found() -> None:
+    picture = np.full((48, 64, 4), 0.5, np.float32)
+    assert difference.compare(picture, picture * 1.009).agrees
+    assert not difference.compare(picture, picture * 1.011).agrees
+    spot = picture.copy()
+    spot[:16, :32] *= (1.03, 0.97, 1.0, 1.0)  # 16 of 48 blocks, without a change of the mean
+    spot[16:32, :32] *= (0.97, 1.03, 1.0, 1.0)
+    found = difference.compare(picture, spot)
+    assert found.mean < 1e-6
+    assert not found.agrees
+
+
+def test_pictures_that_are_not_finite_differ() -> None:
+    picture = np.full((48, 64, 3), 0.5, np.float32)
+    broken = picture.copy()
+    broken[3, 4] = np.nan
+    assert not difference.compare(picture, broken).agrees
+    assert difference.compare(broken, broken).agrees
+
+
+def test_the_document_is_read_as_it_was_written(tmp_path: Path) -> None:
+    table = document.Document()
+    rows = [
+        ("Nodes", "A.x=1", AGREES, ""),
+        ("Nodes", "A.y", FALLS_BACK, "it is | grey"),
+        ("Lights", "B", DIFFERS, "2 %"),
+    ]
+    for family, name, verdict, note in rows:
+        for blender in ("3.4", "bpy52"):
+            table.put(blender, {"family": family, "name": name, "verdict": verdict, "note": note})
+    table.put("bpy45", {"family": "Lights", "name": "B", "verdict": "not shown", "note": ""})
+    document.write(table, tmp_path / "first")
+    again = document.read(tmp_path / "first")
+    document.write(again, tmp_path / "second")
+    assert (tmp_path / "first").read_text() == (tmp_path / "second").read_text()
+    assert again.verdicts("bpy52") == {"A.x=1": AGREES, "A.y": FALLS_BACK, "B": DIFFERS}
+    assert again.verdicts("bpy45") == {"B": "not shown"}
+    again.forget("bpy52")
+    assert again.verdicts("bpy52") == {}
+
+
+def test_each_other_value_is_a_row() -> None:
+    material = bpy.data.materials.new("Probe")
+    changes = dict(rna.changes(material))
+    assert ".pass_index" in changes
+    changes[".pass_index"](material)
+    assert material.pass_index == 1

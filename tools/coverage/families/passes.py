@@ -1,0 +1,78 @@
+"""Rows of the passes of view layers, and of the other settings of a view layer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+import bpy
+
+from .. import rna, stages
+from ..row import NOISY, Family, Row
+
+SKIPPED = ("use", "active_*", "freestyle*", "use_freestyle", "depsgraph", "eevee", "gradus", "pass_cryptomatte_depth")
+"""Properties of Freestyle and other engines. Blender itself crashes where the only view layer is not in use."""
+
+
+def rows() -> Iterator[Row]:
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    layer = bpy.context.scene.view_layers[0]
+    family = Family("Passes and view layers", "View layer", stage, NOISY)
+    yield from family.rows(rna.changes(layer, SKIPPED))
+    yield from family.rows(rna.of_part("cycles", rna.changes(layer.cycles, ("name",))))
+    yield family.row(".material_override", override_material)
+    yield family.row(" second layer", add_layer)
+    for kind in rna.enum_values(layer.aovs.add(), "type"):
+        yield family.row(f" AOV {kind}", partial(add_aov, kind))
+    if hasattr(layer, "lightgroups"):
+        yield family.row(" light group", add_light_group)
+    if hasattr(layer, "world_override"):
+        yield family.row(".world_override", override_world)
+
+
+def stage() -> Any:
+    stages.room()
+    bpy.context.scene.world.mist_settings.start = 3.0
+    bpy.context.scene.world.mist_settings.depth = 5.0
+    for index, obj in enumerate(bpy.context.scene.objects):
+        obj.pass_index = index + 1
+        if obj.type == "MESH":
+            obj.data.materials[0].pass_index = 2 * index + 1
+    return bpy.context.scene.view_layers[0]
+
+
+def override_material(layer: Any) -> None:
+    layer.material_override = stages.material("BsdfDiffuse", (0.3, 0.6, 0.4))
+
+
+def override_world(layer: Any) -> None:
+    world = bpy.data.worlds.new("Other")
+    tree, output = stages.empty_tree(world, "ShaderNodeOutputWorld")
+    shader = tree.nodes.new("ShaderNodeBackground")
+    shader.inputs[0].default_value = (0.7, 0.3, 0.2, 1.0)
+    tree.links.new(shader.outputs[0], output.inputs[0])
+    layer.world_override = world
+
+
+def add_layer(_layer: Any) -> None:
+    bpy.context.scene.view_layers.new("Second").use_pass_normal = True
+
+
+def add_aov(kind: str, layer: Any) -> None:
+    aov = layer.aovs.add()
+    aov.name, aov.type = "Extra", kind
+    for obj in ("Ball", "Floor"):
+        tree = bpy.data.objects[obj].data.materials[0].node_tree
+        output = tree.nodes.new("ShaderNodeOutputAOV")
+        if hasattr(output, "aov_name"):
+            output.aov_name = "Extra"
+        else:
+            output.name = "Extra"
+        output.inputs[0].default_value = (0.3, 0.7, 0.4, 1.0)
+        output.inputs[1].default_value = 0.6
+
+
+def add_light_group(layer: Any) -> None:
+    group = layer.lightgroups.add(name="Sun")
+    bpy.data.objects["Light"].lightgroup = group.name
