@@ -1,4 +1,4 @@
-"""Trees with zones, closures, bundles, switches or other nodes that Blender evaluates before a renderer sees the tree."""
+"""Trees with zones, closures, bundles, switches or other nodes that Blender evaluates before a renderer sees them."""
 
 from __future__ import annotations
 
