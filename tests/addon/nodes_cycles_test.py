@@ -160,6 +160,8 @@ def stage() -> bpy.types.Scene:
 
 @pytest.mark.parametrize("name", CASES)
 def test_a9_node(name: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
+    if name in {"bump of smooth cells", "bump of edges"} and VERSION < (4, 5, 0):
+        pytest.skip("before 4.5 Cycles compares heights of neighbouring pixels, which are far apart here")
     material = new_material()
     show(material, CASES[name](Graph(material)))
     for item in stage.objects:

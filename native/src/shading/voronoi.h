@@ -172,7 +172,7 @@ float distance_to_edge(const Cellular& c, const Vec4& p) {
     FloatLanes along = (to_nearest[0] + to_point[0]) / 2.0f * between[0];
     for (int axis = 1; axis < D; axis++) along += (to_nearest[axis] + to_point[axis]) / 2.0f * between[axis];
     const FloatLanes distance = along / square_root(gap);
-    least = Cells::is_cell(block) & (gap > 0.0001f) & (distance < least) ? distance : least;
+    least = (Cells::is_cell(block) & (gap > 0.0001f) & (distance < least)) ? distance : least;
   }
   float result = least[0];
   for (int lane = 1; lane < kLanes; lane++) result = std::min(result, least[lane]);
