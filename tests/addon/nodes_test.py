@@ -131,14 +131,14 @@ def test_e5_a_texture_is_replaced_as_its_warning_says(kind: str, output: str, ex
 def test_e5_unknown_value_node_passes_through() -> None:
     material = new_material()
     nodes, links = material.node_tree.nodes, material.node_tree.links
-    node = nodes.new("ShaderNodeAmbientOcclusion")
-    color = nodes.new("ShaderNodeRGB")
-    color.outputs[0].default_value = (0.1, 0.2, 0.3, 1.0)
-    links.new(color.outputs[0], node.inputs["Color"])
-    show(material, node.outputs["Color"])
+    node = nodes.new("ShaderNodeSqueeze")
+    value = nodes.new("ShaderNodeValue")
+    value.outputs[0].default_value = 0.3
+    links.new(value.outputs[0], node.inputs["Value"])
+    show(material, node.outputs["Value"])
     program = translate(material)
     assert len(program.warnings) == 1
-    assert program.inputs[0][2][:3] == pytest.approx((0.1, 0.2, 0.3))
+    assert program.inputs[0][2][:3] == pytest.approx((0.3, 0.3, 0.3))
 
 
 def test_a_light_without_a_readable_profile_is_as_in_cycles() -> None:
