@@ -253,6 +253,8 @@ def test_a9_attributes_of_instances_in_collections_are_named(by_nodes: bool, sta
 @pytest.mark.parametrize("kind", ["FLOAT_VECTOR", "FLOAT2"])
 @pytest.mark.parametrize("domain", ["CORNER", "POINT"])
 def test_a9_uv_maps_that_nodes_store(domain: str, kind: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
+    if kind == "FLOAT2" and VERSION < (3, 5, 0):
+        pytest.skip("nodes store no 2D vectors")
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3, size=3.0)
     obj = bpy.context.object
     material = new_material()
@@ -413,7 +415,7 @@ def test_a9_particle_info(output: str, stage: bpy.types.Scene, tmp_path: Path) -
     add_particles(material)
     for frame in range(1, 11):
         stage.frame_set(frame)
-    expect_cycles(stage, tmp_path, 0.04)  # spheres have many edges
+    expect_cycles(stage, tmp_path, 0.06)  # spheres have many edges
 
 
 def test_a9_properties_of_particle_settings(stage: bpy.types.Scene, tmp_path: Path) -> None:
@@ -422,7 +424,7 @@ def test_a9_properties_of_particle_settings(stage: bpy.types.Scene, tmp_path: Pa
     bpy.data.particles[0]["tint"] = [0.2, 0.5, 0.7]
     for frame in range(1, 11):
         stage.frame_set(frame)
-    expect_cycles(stage, tmp_path, 0.05)  # spheres have many edges
+    expect_cycles(stage, tmp_path, 0.06)  # spheres have many edges
 
 
 # ------------------------------------------------------------------------------------------------- nodes

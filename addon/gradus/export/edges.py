@@ -5,6 +5,7 @@ from __future__ import annotations
 from array import array
 from typing import Any
 
+from .. import compat
 from .arrays import read
 
 
@@ -14,9 +15,9 @@ def edge_vertices(mesh: Any) -> array:
 
 
 def on_vertices(mesh: Any, values: array, channels: int, data_type: str) -> array:
-    """Returns the mean of the values of the edges at each vertex, as Blender interpolates them.
+    """Returns the mean of the values of the edges at each vertex, as Cycles reads them.
 
-    Truth values are true where one of the edges is, and integers are rounded.
+    From 4.1 on Blender interpolates them: truth values are true where one of the edges is, and integers are rounded.
     """
     import numpy as np  # imported late, because few meshes have attributes of edges
 
@@ -25,8 +26,9 @@ def on_vertices(mesh: Any, values: array, channels: int, data_type: str) -> arra
     columns = np.repeat(np.frombuffer(values, dtype=np.float32).reshape(-1, channels), 2, axis=0).T
     sums = np.stack([np.bincount(vertices, weights=column, minlength=count) for column in columns], axis=1)
     means = sums / np.maximum(np.bincount(vertices, minlength=count), 1)[:, None]
-    if data_type == "BOOLEAN":
+    keeps_type = compat.VERSION >= (4, 1, 0)
+    if keeps_type and data_type == "BOOLEAN":
         means = sums > 0.0
-    elif data_type.startswith("INT"):
+    elif keeps_type and data_type.startswith("INT"):
         means = np.copysign(np.floor(np.abs(means) + 0.5), means)
     return array("f", means.astype(np.float32).tobytes())
