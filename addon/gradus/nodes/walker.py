@@ -87,8 +87,6 @@ class Walker:
             if link.to_socket.identifier == socket.identifier:
                 value = self.linked(link.from_socket, path)
                 if value is not None:
-                    value = convert.convert(self.program, value, convert.kind_of(link.from_socket))
-                if value is not None:
                     return convert.convert(self.program, value, kind)
                 return None if kind == SHADER else Value(kind)
         return None
