@@ -23,7 +23,7 @@ from coverage.row import Row  # noqa: E402
 from coverage.trial import AGREES, DIFFERS, FALLS_BACK, NO_EFFECT, Judge  # noqa: E402
 
 PART = 10
-KEPT = {AGREES: {AGREES, NO_EFFECT}, NO_EFFECT: {AGREES, NO_EFFECT}, FALLS_BACK: {AGREES, NO_EFFECT, FALLS_BACK}}
+KEPT = {AGREES: {AGREES}, NO_EFFECT: {AGREES}, FALLS_BACK: {AGREES, FALLS_BACK}}
 """What a row with a stored verdict may be now. A row that falls back without a warning would be a silent difference."""
 
 
@@ -49,7 +49,7 @@ def test_rows_keep_their_verdicts(rows: list[Row], tmp_path: Path) -> None:
     stored = document.read().verdicts(host())
     chosen = [row for row in rows if is_fixed(row.name) or draw.randrange(PART) == 0]
     assert len(chosen) > len(stored) // PART
-    judge = Judge(tmp_path)
+    judge = Judge(tmp_path, tells_effects=False)
     changed = []
     for row in chosen:
         allowed = KEPT.get(stored.get(row.name, ""))
@@ -59,6 +59,7 @@ def test_rows_keep_their_verdicts(rows: list[Row], tmp_path: Path) -> None:
     assert not changed, f"with GRADUS_COVERAGE_SEED={seed}:\n" + "\n".join(changed)
 
 
+@pytest.mark.skipif(bpy.app.version[:2] != (4, 5), reason="columns of other versions may be older than the rows")
 def test_the_document_has_every_row(rows: list[Row]) -> None:
     """A new row, such as that of a node that got another input, is rendered once by `make coverage`."""
     stored = document.read().verdicts(host())

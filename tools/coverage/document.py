@@ -30,7 +30,8 @@ Each line is a feature that Blender's own description of its types (RNA) lists: 
 varies over a surface, an output, a kind of object. `make coverage` renders a scene of 48×32 pixels for each with Gradus
 and with Cycles of the same Blender, and writes this page; `make coverage HOSTS=bpy45 ROWS='ShaderNodeMath*'` renders
 some of them again. Pictures agree if 95 % of the blocks of 8×8 pixels are within 2 % and the mean is within 1 %. A part
-of the lines is rendered in every test run and must keep its verdict.
+of the lines is rendered in every test run and must keep its verdict. A cell is empty where a version does not have the
+feature, or was not rendered since the line is there. Numbers lead to the notes at the end.
 """
 
 

@@ -36,10 +36,14 @@ class Outcome:
 
 
 class Judge:
-    """Judges rows one after another. Keeps the pictures that rows share."""
+    """Judges rows one after another. Keeps the pictures that rows share.
 
-    def __init__(self, folder: Path) -> None:
+    tells_effects: whether rows without an effect are told from others, which takes a further picture of many.
+    """
+
+    def __init__(self, folder: Path, tells_effects: bool = True) -> None:
         self._folder = folder
+        self._tells_effects = tells_effects
         self._bases: dict[tuple[str, int], images.Passes | None] = {}
 
     def run(self, row: Row) -> Outcome:
@@ -72,7 +76,8 @@ class Judge:
         if not worst.agrees:
             note = _describe(worst, where, expected, found)
             return Outcome(row.family, row.name, DIFFERS, note, worst.size, worst.is_clear)
-        return Outcome(row.family, row.name, NO_EFFECT if self._is_idle(row, expected) else AGREES)
+        is_idle = self._tells_effects and self._is_idle(row, expected)
+        return Outcome(row.family, row.name, NO_EFFECT if is_idle else AGREES)
 
     def _render(self, engine: str, samples: int) -> images.Passes:
         """Returns the passes of all view layers by their full names."""
