@@ -11,7 +11,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from support import compositing, images, recording
-from support.nodes import socket
+from support.nodes import new_material, output_of, socket
 
 SIDE = 64
 
@@ -35,12 +35,9 @@ def output_to(tree: bpy.types.NodeTree, name: str, **inputs: Any) -> bpy.types.N
 
 def material(name: str, color: tuple[float, float, float], alpha: float = 1.0) -> bpy.types.Material:
     """Returns a diffuse material, mixed with Transparent by 1 - alpha."""
-    made = bpy.data.materials.new(name)
-    if bpy.app.version < (5, 0, 0):
-        made.use_nodes = True
+    made = new_material(name)
     tree = made.node_tree
-    tree.nodes.clear()
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
+    output = output_of(made)
     diffuse = tree.nodes.new("ShaderNodeBsdfDiffuse")
     diffuse.inputs["Color"].default_value = (*color, 1.0)
     mix = tree.nodes.new("ShaderNodeMixShader")

@@ -349,13 +349,13 @@ typedef struct GradusWorld {
 typedef enum GradusChannelKind {
   GRADUS_CHANNEL_AOV_COLOR = 0,            /* The colour that AOV outputs of its name have at the first surface that
                                               the camera sees, or in the world, and 1 as alpha. RGBA. */
-  GRADUS_CHANNEL_AOV_VALUE = 1,            /* The value of such outputs. One number. */
+  GRADUS_CHANNEL_AOV_VALUE = 1,            /* The value that such outputs have. One number. */
   GRADUS_CHANNEL_LIGHT_GROUP = 2,          /* The part of Combined that lights, surfaces and the world of its name
                                               emit. RGB. */
   GRADUS_CHANNEL_CRYPTOMATTE_OBJECT = 3,   /* Names of the visible objects as hashes, with the share of the pixel
                                               that each covers, in falling order. RGBA for two names each. */
-  GRADUS_CHANNEL_CRYPTOMATTE_MATERIAL = 4, /* The same of materials. */
-  GRADUS_CHANNEL_CRYPTOMATTE_ASSET = 5     /* The same of the topmost parents of objects. */
+  GRADUS_CHANNEL_CRYPTOMATTE_MATERIAL = 4, /* It shows names of materials in the same way. */
+  GRADUS_CHANNEL_CRYPTOMATTE_ASSET = 5     /* It shows names of the topmost parents of objects in the same way. */
 } GradusChannelKind;
 
 /* A channel of the film beside its passes: an AOV, a light group or a Cryptomatte. */

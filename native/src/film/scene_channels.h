@@ -24,7 +24,7 @@ inline bool is_light_group(const Channel& channel) {
   return channel.pass == GRADUS_PASS_COUNT && channel.info.type == ValueType::kRadiance;
 }
 
-// Numbers of each pixel that are read at once: those of one layer.
+// Returns how many numbers of a pixel a layer of such a channel has.
 uint32_t values_of_layer(uint32_t kind);
 
 }  // namespace gradus::film

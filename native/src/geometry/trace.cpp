@@ -122,10 +122,6 @@ bool intersect(const Accelerator::Part& part, RTCIntersectContext* context, RTCR
   return query->hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
-}  // namespace
-
-namespace {
-
 // Finds the nearest hit in both groups. `context_of` returns the context for a group.
 template <class ContextOf>
 bool nearest(const Accelerator& accelerator, const Ray& ray, uint32_t mask, ContextOf&& context_of, Hit* hit) {
