@@ -154,7 +154,7 @@ tree.links.new(specular.outputs[0], both.inputs[1])
 tree.links.new(both.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
 """,
     "object": "scene.collection.objects.link(bpy.data.objects.new('Fog', bpy.data.volumes.new('Fog')))",
-    "pass": "scene.view_layers[0].use_pass_shadow = True",
+    "pass": "scene.view_layers[0].cycles.use_pass_shadow_catcher = True",
 }
 MATERIAL = """
 tree = scene.objects["Cube"].active_material.node_tree
@@ -162,7 +162,7 @@ surface = tree.nodes["Principled BSDF"]
 """
 
 
-NAMED = {"missing image": "lost.png", "node": "Specular BSDF", "object": "Fog", "pass": "Shadow"}
+NAMED = {"missing image": "lost.png", "node": "Specular BSDF", "object": "Fog", "pass": "Shadow Catcher"}
 """What warnings and errors call them."""
 
 
