@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 import pytest
 from support import images, recording
-from support.cycles import picture, pictures
+from support.cycles import pictures
 from support.nodes import Graph, new_material, show, socket
 
 VERSION = tuple(bpy.app.version)

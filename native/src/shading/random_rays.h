@@ -21,9 +21,10 @@ inline uint32_t ray_count(const OpArgs& args) {
 class RandomPoints {
  public:
   RandomPoints(const ShadeContext& c, uint32_t count) : count_(count) {
-    const uint32_t key = c.ray.random != 0 ? lattice_hash(c.ray.random, c.ray.depth | uint32_t{c.ray.transparent_depth} << 16)
-                                           : lattice_hash(std::bit_cast<uint32_t>(c.hit.uv.x),
-                                                          std::bit_cast<uint32_t>(c.hit.uv.y), c.hit.primitive);
+    const uint32_t key =
+        c.ray.random != 0
+            ? lattice_hash(c.ray.random, c.ray.depth | uint32_t{c.ray.transparent_depth} << 16)
+            : lattice_hash(std::bit_cast<uint32_t>(c.hit.uv.x), std::bit_cast<uint32_t>(c.hit.uv.y), c.hit.primitive);
     offset_ = Vec2(to_unit(lattice_hash(key, 0u)), to_unit(lattice_hash(key, 1u)));
   }
 
