@@ -9,7 +9,8 @@ from typing import Any
 def linked_passes(scene: Any, layer: str, names: Iterable[str]) -> list[str]:
     """Returns those passes of a view layer that the compositor reads. A socket whose pass is missing would be 1."""
     wanted = set(names)
-    return sorted({socket.name for node in _render_layers(scene, layer) for socket in _linked(node)} & wanted)
+    sockets = (socket for node in _render_layers(scene, layer) for socket in node.outputs)
+    return sorted({socket.name for socket in sockets if socket.is_linked} & wanted)
 
 
 def _render_layers(scene: Any, layer: str) -> Iterator[Any]:
@@ -22,7 +23,3 @@ def _render_layers(scene: Any, layer: str) -> Iterator[Any]:
         is_of_scene = node.type == "R_LAYERS" and node.scene is not None and node.scene.name == scene.name
         if is_of_scene and node.layer == layer and not node.mute:
             yield node
-
-
-def _linked(node: Any) -> Iterator[Any]:
-    return (socket for socket in node.outputs if socket.is_linked)

@@ -36,6 +36,7 @@ def stamp(library: Any, result: Any, layer: str, channels: Iterable[Channel], ma
         name = f"{layer}.{channel.typename}"
         number = ctypes.c_uint32()
         library.cryptomatte_hash(native.name(name), byref(number))
+        key = f"cryptomatte/{f'{number.value:08x}'[:7]}"
         fields = {
             "name": name,
             "hash": "MurmurHash3_32",
@@ -43,4 +44,4 @@ def stamp(library: Any, result: Any, layer: str, channels: Iterable[Channel], ma
             "manifest": json.dumps(manifests.get(channel.kind, {}), ensure_ascii=False, separators=(",", ":")),
         }
         for field, value in fields.items():
-            result.stamp_data_add_field(f"cryptomatte/{number.value:08x}"[:19] + f"/{field}", value)
+            result.stamp_data_add_field(f"{key}/{field}", value)

@@ -116,8 +116,8 @@ def test_aovs_are_those_of_cycles(scene: bpy.types.Scene, layer: bpy.types.ViewL
 def add_light(name: str, color: tuple[float, float, float], x: float, group: str) -> None:
     data = bpy.data.lights.new(name, "POINT")
     data.energy, data.color, data.shadow_soft_size = 60.0, color, 0.3
-    lamp = recording.add(data, name, (x, 0, 1.5))
-    lamp.lightgroup = group
+    light = recording.add(data, name, (x, 0, 1.5))
+    light.lightgroup = group
 
 
 def add_groups(scene: bpy.types.Scene, layer: bpy.types.ViewLayer) -> None:
@@ -133,8 +133,8 @@ def add_groups(scene: bpy.types.Scene, layer: bpy.types.ViewLayer) -> None:
     emission.inputs["Color"].default_value = (0.1, 1.0, 0.1, 1.0)
     emission.inputs["Strength"].default_value = 5.0
     tree.links.new(emission.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
-    lamp = add_plane("Lamp", 0.5, (0.0, -0.8, 0.4), shining)
-    lamp.lightgroup = "Fill"
+    panel = add_plane("Panel", 0.5, (0.0, -0.8, 0.4), shining)
+    panel.lightgroup = "Fill"
     scene.world = bpy.data.worlds.new("World")
     scene.world.lightgroup = "Sky"
     scene.world.color = (0.2, 0.2, 0.2)

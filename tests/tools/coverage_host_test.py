@@ -1,4 +1,4 @@
-"""A crash or a hang of Blender costs one row of the coverage table, and a run goes on where another one stopped."""
+"""A crash or a hang of Blender costs one row of the coverage table, and a run resumes where another one stopped."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
     PYTHONPATH=tools python3 -m coverage [--hosts bpy45,3.4] [--rows 'ShaderNodeMath*'] [--again]
 
-Results go to out/coverage/HOST.jsonl as they come. A run that was interrupted goes on where it stopped; --again starts
+Results go to out/coverage/HOST.jsonl as they come. A run that was interrupted resumes where it stopped; --again starts
 over, as a change of the rows themselves requires.
 """
 

@@ -38,7 +38,7 @@ class Outcome:
 class Judge:
     """Judges rows one after another. Keeps the pictures that rows share.
 
-    tells_effects: whether rows without an effect are told from others, which takes a further picture of many.
+    tells_effects: whether rows without an effect are distinguished from others, which takes a further picture of many.
     """
 
     def __init__(self, folder: Path, tells_effects: bool = True) -> None:

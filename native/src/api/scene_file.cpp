@@ -65,7 +65,7 @@ void set_record(RecordKind kind, uint64_t key, const char* data, size_t size, sc
     }
     case RecordKind::Lights: {
       const LightList list = read_record<LightList>(&reader);
-      const std::vector<GradusLight> lights = read_lights(list.lights, list.count);
+      const std::vector<GradusLight> lights = read_lights(list.items, list.count);
       return scene->set_lights(lights.data(), lights.size());
     }
     case RecordKind::Camera: {
@@ -78,7 +78,7 @@ void set_record(RecordKind kind, uint64_t key, const char* data, size_t size, sc
     }
     case RecordKind::Channels: {
       const ChannelList list = read_record<ChannelList>(&reader);
-      const std::vector<GradusChannel> channels = read_channels(list.channels, list.count);
+      const std::vector<GradusChannel> channels = read_channels(list.items, list.count);
       return scene->set_channels(channels.data(), channels.size());
     }
     default:

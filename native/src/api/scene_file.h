@@ -38,28 +38,19 @@ inline uint64_t checksum(const char* data, size_t size) {
   return hash.result();
 }
 
-// The lights that one call sets.
-struct LightList {
-  const GradusLight* lights = nullptr;
+// The structs that one call sets, such as lights.
+template <class Struct>
+struct StructList {
+  const Struct* items = nullptr;
   size_t count = 0;
 };
+using LightList = StructList<GradusLight>;
+using ChannelList = StructList<GradusChannel>;
 
-template <class Archive>
-void visit(Archive& a, LightList& list) {
+template <class Archive, class Struct>
+void visit(Archive& a, StructList<Struct>& list) {
   a.value(list.count);
-  a.structs(list.lights, list.count);
-}
-
-// The channels that one call sets.
-struct ChannelList {
-  const GradusChannel* channels = nullptr;
-  size_t count = 0;
-};
-
-template <class Archive>
-void visit(Archive& a, ChannelList& list) {
-  a.value(list.count);
-  a.structs(list.channels, list.count);
+  a.structs(list.items, list.count);
 }
 
 }  // namespace gradus::api

@@ -14,6 +14,7 @@ ChannelRecorder::ChannelRecorder(const PathContext& context, film::Film* film, f
     channels_.push_back(found);
     visits_surfaces_ |= scene::is_of_surfaces(channel.kind);
     has_identifiers_ |= scene::is_cryptomatte(channel.kind);
+    has_groups_ |= channel.kind == GRADUS_CHANNEL_LIGHT_GROUP;
   }
 }
 

@@ -18,6 +18,8 @@ class ChannelRecorder final : public SurfaceVisitor {
   bool visits_surfaces() const { return visits_surfaces_; }
 
   void begin_sample(size_t pixel, int half);
+  // Returns whether light() must be called.
+  bool has_groups() const { return has_groups_; }
   // Records light of a group; see light::light_group_of().
   void light(uint32_t group, const Rgb& value) {
     if (is_of_kind(group - 1, GRADUS_CHANNEL_LIGHT_GROUP)) add(group - 1, Vec4(value, 0.0f));
@@ -42,6 +44,7 @@ class ChannelRecorder final : public SurfaceVisitor {
   std::vector<film::Channel*> channels_;  // in the order of Snapshot::channels; empty if the film has none
   bool visits_surfaces_ = false;
   bool has_identifiers_ = false;
+  bool has_groups_ = false;
   bool aovs_done_ = false;
   size_t pixel_ = 0;
   int half_ = 0;

@@ -112,23 +112,23 @@ void PassRecorder::add_light(int scatterings, const Rgb& value, const PassShare&
 }
 
 void PassRecorder::emission(int scatterings, const light::LightPoint& point, const Rgb& value) {
-  channels_.light(light::light_group_of(context_.scene, point), value);
+  if (channels_.has_groups()) channels_.light(light::light_group_of(context_.scene, point), value);
   add_light(scatterings, value, share_, GRADUS_PASS_EMISSION);
 }
 
 void PassRecorder::emission(int scatterings, const Vertex& vertex, const Rgb& value) {
-  channels_.light(context_.scene.instances[vertex.point.hit.instance].light_group, value);
+  if (channels_.has_groups()) channels_.light(context_.scene.instances[vertex.point.hit.instance].light_group, value);
   add_light(scatterings, value, share_, GRADUS_PASS_EMISSION);
 }
 
 void PassRecorder::environment(int scatterings, const Rgb& value) {
-  channels_.light(context_.scene.world.light_group, value);
+  if (channels_.has_groups()) channels_.light(context_.scene.world.light_group, value);
   add_light(scatterings, value, share_, GRADUS_PASS_ENVIRONMENT);
 }
 
 void PassRecorder::light(const PathState& state, const Vertex& vertex, bsdf::ScatterClass c, const LightSample& light,
                          const Rgb& value) {
-  channels_.light(light::light_group_of(context_.scene, light.point), value);
+  if (channels_.has_groups()) channels_.light(light::light_group_of(context_.scene, light.point), value);
   if (!has_light_passes_) {
     return;
   }

@@ -1,16 +1,10 @@
 #include "path/sampler.h"
 
+#include "base/random_bits.h"
+
 namespace gradus::path {
 
 namespace {
-
-uint32_t reverse_bits(uint32_t x) {
-  x = (x << 16) | (x >> 16);
-  x = ((x & 0x00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ffu);
-  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
-  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
-  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
-}
 
 // Applies Owen scrambling to a bit-reversed value, by a hash in which bit i depends only on bits below it (Laine and
 // Karras 2011; Burley 2020, "Practical Hash-based Owen Scrambling", with Vegdahl's constants).
@@ -32,9 +26,6 @@ uint32_t multiply_pascal(uint32_t x) {
   x ^= (x >> 8) & 0x00ff00ffu;
   return x ^ ((x >> 16) & 0x0000ffffu);
 }
-
-// Converts the 24 high bits, so that the result stays below 1. Vector units convert signed integers only.
-float to_unit(uint32_t bits) { return static_cast<float>(static_cast<int32_t>(bits >> 8)) * 0x1p-24f; }
 
 // Point of a block in 32-bit fractions. All blocks are the same 2D net with its points in different orders (padding).
 struct Bits {

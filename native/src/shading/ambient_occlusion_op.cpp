@@ -1,5 +1,6 @@
 // The Ambient Occlusion node.
 #include "base/orthonormal_basis.h"
+#include "bsdf/warp.h"
 #include "shading/context_ops.h"
 #include "shading/random_rays.h"
 #include "shading/scalar.h"
@@ -8,12 +9,6 @@ namespace gradus::shading {
 namespace {
 
 enum Flags : uint32_t { kInside = 1, kOnlyLocal = 2, kWorldDistance = 4 };
-
-// Maps the unit square to directions around z in the cosine distribution, by a uniform disk below the hemisphere.
-Vec3 cosine_direction(const Vec2& u) {
-  const float radius = std::sqrt(u.x), phi = 2.0f * kPi * u.y;
-  return Vec3(radius * std::cos(phi), radius * std::sin(phi), std::sqrt(1.0f - u.x));
-}
 
 bool is_occluded(const ShadeContext& c, const Ray& ray, bool only_local) {
   geometry::Hit hit;
@@ -35,7 +30,7 @@ float openness(const ResourceArgs& args, const ShadeContext& c) {
   const RandomPoints points(c, count);
   uint32_t open = 0;
   for (uint32_t i = 0; i < count; ++i) {
-    const Vec3 local = cosine_direction(points[i]);
+    const Vec3 local = bsdf::sample_cosine_hemisphere(points[i]);
     const Vec3 direction = x * local.x + y * local.y + z * local.z;
     const Ray ray{geometry::offset_origin(point, direction), 0.0f, direction, distance, c.hit.time};
     if (!is_occluded(c, ray, (args.mode & kOnlyLocal) != 0)) ++open;

@@ -214,7 +214,7 @@ void add_closure(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
       result->holdout += args.weight;
       return;
     case GRADUS_OP_AOV:
-      result->aovs.push_back({args.mode, args.v(0), args.f(1)});
+      if (result->aovs != nullptr) result->aovs->push_back({args.mode, args.v(0), args.f(1)});
       return;
     case GRADUS_OP_EMISSION:
       add_finite(args.weight * args.v(0) * args.f(1), &result->emission);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/random_bits.h"
 #include "shading/context.h"
 #include "shading/lattice_hash.h"
 #include "shading/ops.h"
@@ -29,21 +30,11 @@ class RandomPoints {
   }
 
   Vec2 operator[](uint32_t i) const {
-    const float y = to_unit(reversed(i)) + offset_.y;
+    const float y = to_unit(reverse_bits(i)) + offset_.y;
     return Vec2((static_cast<float>(i) + offset_.x) / static_cast<float>(count_), y < 1.0f ? y : y - 1.0f);
   }
 
  private:
-  // Converts the 24 high bits, so that the result stays below 1.
-  static float to_unit(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
-  static uint32_t reversed(uint32_t x) {
-    x = std::rotl(x, 16);
-    x = (x & 0x00ff00ffu) << 8 | (x >> 8 & 0x00ff00ffu);
-    x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
-    x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
-    return (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
-  }
-
   uint32_t count_;
   Vec2 offset_;
 };

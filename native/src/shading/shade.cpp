@@ -15,7 +15,6 @@ const MaterialData& material_of(const ShadedScene& scene, uint32_t index) {
 void clear(ShadeResult* result) {
   result->closures.clear();
   result->emission = result->transparency = result->holdout = Rgb(0.0f);
-  result->aovs.clear();
   result->fallback = result->complete = result->ignores_wo = false;
   if (result->tape) result->tape->clear();
 }
@@ -52,6 +51,19 @@ Rgb emission_of(const MaterialData& material, const ShadeContext& context) {
   ShadeResult* result = scratch();
   run_program(material.emission, context, result);
   return result->emission;
+}
+
+// Returns the outputs to AOVs of a material, whose context is made only if there are any.
+template <class MakeContext>
+const std::vector<AovOutput>& aovs_of(const MaterialData& material, const MakeContext& make_context) {
+  thread_local std::vector<AovOutput> outputs;
+  outputs.clear();
+  if (material.aovs.empty()) return outputs;
+  ShadeResult* result = scratch();
+  result->aovs = &outputs;
+  run_program(material.aovs, make_context(), result);
+  result->aovs = nullptr;
+  return outputs;
 }
 
 }  // namespace
@@ -116,17 +128,13 @@ Rgb shade_transparency(const ShadedScene& scene, const geometry::SurfacePoint& p
 
 const std::vector<AovOutput>& shade_aovs(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
                                          const RayState& ray) {
-  const MaterialData& material = material_of(scene, point.material);
-  ShadeResult* result = scratch();
-  if (!material.aovs.empty()) run_program(material.aovs, surface_context(scene, point, wo, ray), result);
-  return result->aovs;
+  return aovs_of(material_of(scene, point.material), [&] { return surface_context(scene, point, wo, ray); });
 }
 
 const std::vector<AovOutput>& shade_world_aovs(const ShadedScene& scene, const Vec3& direction, const RayState& ray) {
-  ShadeResult* result = scratch();
-  if (scene.world_material < scene.materials.size())
-    run_program(scene.materials[scene.world_material]->aovs, background_context(scene, direction, ray), result);
-  return result->aovs;
+  static const std::vector<AovOutput> none;
+  if (scene.world_material >= scene.materials.size()) return none;
+  return aovs_of(*scene.materials[scene.world_material], [&] { return background_context(scene, direction, ray); });
 }
 
 Rgb shade_world(const ShadedScene& scene, const Vec3& direction, const RayState& ray) {

@@ -48,11 +48,11 @@ struct ShadeResult {
   Rgb emission = Rgb(0.0f);      // radiance towards wo
   Rgb transparency = Rgb(0.0f);  // weight of the ray that continues straight through the surface
   Rgb holdout = Rgb(0.0f);
-  std::vector<AovOutput> aovs;  // of shade_aovs() and shade_world_aovs() alone
-  bool fallback = false;        // the material has a replaced node
-  bool complete = false;        // the closures have been evaluated
-  bool ignores_wo = false;      // a complete result is equal for all directions on this side
-  ClosureTape* tape = nullptr;  // records the closures for shade_from_tape(); not owned, may be null
+  bool fallback = false;                   // the material has a replaced node
+  bool complete = false;                   // the closures have been evaluated
+  bool ignores_wo = false;                 // a complete result is equal for all directions on this side
+  ClosureTape* tape = nullptr;             // records the closures for shade_from_tape(); not owned, may be null
+  std::vector<AovOutput>* aovs = nullptr;  // receives outputs to AOVs; not owned, may be null
 };
 
 // Shades a surface point completely. `wo` points towards the previous vertex. `roughness_threshold` is the alpha that

@@ -116,7 +116,7 @@ class Channels : public WithScene<::testing::Test> {
     made.reconstruction = integrator == GRADUS_INTEGRATOR_PATH ? GRADUS_RECONSTRUCTION_NONE : GRADUS_RECONSTRUCTION_L1;
     return made;
   }
-  // Returns the film of a render, which goes on from `resumed` unless that is 0.
+  // Returns the film of a render, which resumes from `resumed` unless that is 0.
   GradusFilm render(const GradusSettings& with, GradusFilm resumed = 0) {
     GradusRender render = 0;
     EXPECT_OK(resumed == 0 ? gradus_render_start(scene, &with, &render)
