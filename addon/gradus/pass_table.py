@@ -116,7 +116,7 @@ SWITCHES: tuple[tuple[str, str, str, bool], ...] = (
     (
         "use_pass_sample_count",
         "Sample Count",
-        "Adds the number of samples of each pixel",
+        "Adds the samples of each pixel as a share of the samples of the settings",
         False,
     ),
     (

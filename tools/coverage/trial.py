@@ -17,8 +17,11 @@ from .row import EXACT, NOISY, Build, Row
 AGREES, NO_EFFECT, DIFFERS, FALLS_BACK = "agrees", "no effect", "differs", "falls back"
 MISSING, FAILS, NOT_SHOWN = "missing", "fails", "not shown"
 
+AS_IN_CYCLES = "as in Cycles"
+"""How warnings end that tell of no difference, but of something that artists of Cycles may not expect either."""
+
 SEED = 7
-LADDERS = {EXACT: (1, 32, 256), NOISY: (32, 128, 512)}
+LADDERS = {EXACT: (1, 32, 256), NOISY: (32, 128, 512, 2048)}
 """Samples by those of a row. One that differs is rendered again with more, in case that noise made it differ."""
 
 
@@ -67,6 +70,7 @@ class Judge:
             text = _text(error)
             return Outcome(row.family, row.name, FALLS_BACK if "Gradus: " in text else FAILS, text)
         warnings = [text for summary in store.summaries.values() for text in summary.get("warnings", ())]
+        warnings = [text for text in warnings if not text.endswith(AS_IN_CYCLES)]
         if warnings:
             return Outcome(row.family, row.name, FALLS_BACK, "; ".join(sorted(set(warnings))))
         missing = sorted(set(expected) - set(found))

@@ -1,7 +1,8 @@
 """Images for the native library.
 
-The library decodes files and packed files itself. Pixels come from Blender only if no file contains them or the library
-does not know its format, because Blender hands out floats: an 8192 x 8192 byte image takes 1.07 GB on its way.
+The library decodes files and packed files itself, and OpenImageIO those whose format it does not know. Pixels come from
+Blender only if no file contains them, because Blender hands out floats: an 8192 x 8192 byte image takes 1.07 GB on its
+way.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .. import compat, native
-from . import blender_pixels
+from . import blender_pixels, file_pixels
 
 FILE, ENCODED, FLOAT, BYTE = range(4)
 STRAIGHT, PREMULTIPLIED, CHANNEL_PACKED, ALPHA_NONE, ALWAYS_STRAIGHT = range(5)
@@ -43,6 +44,8 @@ class TileState:
     height: int = 0
     data: Any = None  # bytes or array
     stamp: tuple[int, int] = (0, 0)  # modification time and size of the file: changed files are read again
+    is_linear: bool = False  # scene-linear whatever the colour space of the image
+    has_straight_alpha: bool | None = None  # whether colours are not yet multiplied by alpha; None if not known
 
 
 @dataclass
@@ -120,7 +123,9 @@ def _decoded(image: Any, number: int, pixels: blender_pixels.Pixels | None) -> t
     if pixels is None:
         return None
     source = BYTE if pixels.values.typecode == "B" else FLOAT
-    return TileState(source, image.name, number, pixels.width, pixels.height, pixels.values), pixels.is_float
+    tile = TileState(source, image.name, number, pixels.width, pixels.height, pixels.values)
+    tile.is_linear = pixels.is_float
+    return tile, pixels.is_float
 
 
 def _packed_data(image: Any, number: int) -> bytes | None:
@@ -147,6 +152,12 @@ def _file_tile(image: Any, path: str, number: int, frame_number: int | None) -> 
         # In Blender, packed images of 16 bits per channel are floats.
         is_float = head.startswith(_FLOAT_FORMATS) or _is_deep_png(head)
         return TileState(ENCODED, path or image.name, number, data=packed), is_float
+    read = file_pixels.of_file(path) if packed is None else None
+    if read is not None:
+        source = BYTE if read.values.typecode == "B" else FLOAT
+        tile = TileState(source, path, number, read.width, read.height, read.values, _stamp(path))
+        tile.has_straight_alpha = read.has_straight_alpha
+        return tile, read.is_float
     if packed is None and image.alpha_mode == "PREMUL":
         # Blender divides premultiplied colours by alpha, but Cycles takes those of the file.
         pixels = blender_pixels.of_file(image, path, "STRAIGHT")
@@ -216,8 +227,8 @@ def image_state(image: Any, number: int | None, abspath: Any) -> ImageState:
     tiles, is_float = _tiles(image, number, abspath)
     settings = image.colorspace_settings
     space = "" if settings.is_data else settings.name
-    if is_float and tiles[0].source == FLOAT:
-        space = ""  # Blender's float buffers are scene-linear
+    if tiles[0].is_linear:
+        space = ""
     return ImageState(image.name, _alpha_mode(image, tiles[0], is_float), space, is_float, tiles)
 
 
@@ -225,8 +236,7 @@ def warning(image: Any) -> str:
     """Returns a warning about what is shown of an image, or ""."""
     if image.source == "TILED" and image.is_dirty and len(image.tiles) > 1:
         return f"Image '{image.name}' has changes that are not saved: tiles other than the first are shown as saved"
-    is_logarithmic = image.file_format == "CINEON" or (image.file_format == "DPX" and compat.VERSION < (4, 0, 0))
-    if not is_logarithmic:
+    if file_pixels.is_available() or image.file_format not in {"CINEON", "DPX"}:
         return ""
     return f"Image '{image.name}' is shown in linear values, while Cycles shows the film densities of its file"
 
@@ -243,7 +253,9 @@ def _alpha_mode(image: Any, tile: TileState, is_float: bool) -> int:
         return mode
     if compat.VERSION >= _MODE_DECIDES_SINCE:
         return ALWAYS_STRAIGHT if mode == STRAIGHT else PREMULTIPLIED
-    if is_webp or (is_float and tile.source == FLOAT):
+    if tile.has_straight_alpha is not None:
+        return ALWAYS_STRAIGHT if tile.has_straight_alpha else PREMULTIPLIED
+    if is_webp or tile.is_linear:
         return PREMULTIPLIED
     return mode if is_float else STRAIGHT
 

@@ -19,6 +19,10 @@ _CYCLES_PASSES = ("pass_render_time", "use_pass_shadow_catcher")
 """Switches of view_layer.cycles for such passes. It exists while Cycles' add-on is on, and versions differ in it."""
 
 
+_DENOISING_PASSES = ("Denoising Roughness", "Denoising Specular Albedo") if compat.VERSION >= (5, 2, 0) else ()
+"""Passes that Cycles' denoising data have beside those that Gradus makes."""
+
+
 def is_gas_domain(obj: Any) -> bool:
     """Returns whether an object is the domain of a smoke or fire simulation, which has a volume and no surface."""
     return any(
@@ -80,3 +84,5 @@ def missing_passes(view_layer: Any) -> Iterator[str]:
         for switch in switches:
             if getattr(owner, switch, False):
                 yield owner.bl_rna.properties[switch].name
+    if getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False):
+        yield from _DENOISING_PASSES

@@ -1,4 +1,4 @@
-"""Trees with zones, closures, bundles, switches or other nodes that Blender evaluates for renderers."""
+"""Trees with zones, closures, bundles, switches, muted nodes or other nodes that Blender evaluates for renderers."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ _WALKED = frozenset(("NodeFrame", "NodeGroupInput", "NodeGroupOutput", "NodeRero
 
 def is_needed(block: Any, tree: Any) -> bool:
     """Returns whether Blender must inline the tree of a material, world or light. It can do so from 5.0 on."""
-    return hasattr(block, "inline_shader_nodes") and _has_other_nodes(tree, set())
+    return hasattr(block, "inline_shader_nodes") and _has_such_nodes(tree, set())
 
 
-def _has_other_nodes(tree: Any, seen: set[int]) -> bool:
+def _has_such_nodes(tree: Any, seen: set[int]) -> bool:
     if tree is None or tree.as_pointer() in seen:
         return False
     seen.add(tree.as_pointer())
     return any(
-        _has_other_nodes(node.node_tree, seen)
+        node.mute or _has_such_nodes(node.node_tree, seen)
         if node.type == "GROUP"
-        else node.bl_idname not in _WALKED and not node.bl_idname.startswith("ShaderNode")
+        else node.mute or node.bl_idname not in _WALKED and not node.bl_idname.startswith("ShaderNode")
         for node in tree.nodes
     )

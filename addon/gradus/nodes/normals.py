@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .node import NodeView, translator
-from .ops import NormalSpace, Op, VectorMath
+from .ops import Geometry, NormalSpace, Op, VectorMath
 from .program import FLOAT, VECTOR, Value, constant_float, constant_vector
 
 _SPACES = {
@@ -37,7 +37,7 @@ def normal_map(view: NodeView) -> Value:
 def bump(view: NodeView) -> Value | None:
     normal = view.direction("Normal")
     if not view.is_linked("Height"):
-        return normal
+        return normal if view.is_linked("Normal") else view.add_vector(Op.GEOMETRY, (), Geometry.NORMAL)
     # The step of the finite differences: a pixel before 4.2, an input from then on.
     width = view.value("Filter Width") if view.has("Filter Width") else constant_float(1.0)
     inputs = (view.value("Strength"), view.value("Distance"), view.value("Height"), normal, width)

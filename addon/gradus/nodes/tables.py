@@ -8,7 +8,7 @@ from .node import NodeView, translator
 from .ops import Curves, Op
 from .program import COLOR, FLOAT, VECTOR, Value
 
-_SAMPLES = 256
+_SAMPLES = 257
 
 
 @translator("ShaderNodeValToRGB")
@@ -29,8 +29,12 @@ def _range(curves: list[Any]) -> tuple[float, float]:
 
 
 def _header(mapping: Any, curves: list[Any]) -> tuple[list[float], list[float]]:
-    """Returns range and extrapolation, and the positions to sample."""
+    """Returns range and extrapolation, and the positions to sample. It updates the mapping, which clips its points.
+
+    As in Cycles, the range is that of the points before.
+    """
     low, high = _range(curves)
+    mapping.update()
     positions = [low + (high - low) * i / (_SAMPLES - 1) for i in range(_SAMPLES)]
     return [low, high, 1.0 if mapping.extend == "EXTRAPOLATED" else 0.0], positions
 
@@ -38,7 +42,6 @@ def _header(mapping: Any, curves: list[Any]) -> tuple[list[float], list[float]]:
 @translator("ShaderNodeRGBCurve")
 def rgb_curves(view: NodeView) -> Value:
     mapping = view.node.mapping
-    mapping.initialize()
     red, green, blue, combined = mapping.curves
     floats, positions = _header(mapping, [red, green, blue, combined])
     for position in positions:
@@ -50,7 +53,6 @@ def rgb_curves(view: NodeView) -> Value:
 @translator("ShaderNodeVectorCurve")
 def vector_curves(view: NodeView) -> Value:
     mapping = view.node.mapping
-    mapping.initialize()
     curves = list(mapping.curves)[:3]
     floats, positions = _header(mapping, curves)
     for position in positions:
@@ -61,7 +63,6 @@ def vector_curves(view: NodeView) -> Value:
 @translator("ShaderNodeFloatCurve")
 def float_curve(view: NodeView) -> Value:
     mapping = view.node.mapping
-    mapping.initialize()
     curve = mapping.curves[0]
     floats, positions = _header(mapping, [curve])
     floats.extend(mapping.evaluate(curve, position) for position in positions)

@@ -639,12 +639,13 @@ typedef enum GradusPass {
   GRADUS_PASS_TRANSMISSION_COLOR = 20,        /* Colour of transmission. */
   GRADUS_PASS_AMBIENT_OCCLUSION = 21,         /* Share of the hemisphere over the surface that nothing within the
                                                  world's distance occludes. */
-  GRADUS_PASS_DENOISING_NORMAL = 22,          /* Normal at the first non-specular vertex, for the compositor's
-                                                 Denoise node. */
+  GRADUS_PASS_DENOISING_NORMAL = 22,          /* Normal at the first non-specular vertex along the camera's right, up
+                                                 and view axis, for the compositor's Denoise node. */
   GRADUS_PASS_DENOISING_ALBEDO = 23,          /* Albedo at the first non-specular vertex, for the compositor's
                                                  Denoise node. */
   GRADUS_PASS_DENOISING_DEPTH = 24,           /* Length of the path to the first non-specular vertex. */
-  GRADUS_PASS_SAMPLE_COUNT = 25,              /* Samples of each pixel. */
+  GRADUS_PASS_SAMPLE_COUNT = 25,              /* Samples of each pixel, as a share of the samples of the settings.
+                                                 Adaptive sampling gives some pixels more than 1. */
   GRADUS_PASS_GRADIENT_X = 26,                /* Sampled difference to the pixel on the right. */
   GRADUS_PASS_GRADIENT_Y = 27,                /* Sampled difference to the pixel above. */
   GRADUS_PASS_VARIANCE = 28,                  /* Estimated variance of Noisy Image. */

@@ -219,6 +219,11 @@ bool Camera::project_direction(const Vec3& direction, Moment when, Vec2* film) c
   return to_film(p, p.inverse * direction, true, film);
 }
 
+Mat3 Camera::view_rotation() const {
+  const Mat3& axes = pose(Moment::Now).axes;
+  return glm::transpose(Mat3(glm::normalize(axes[0]), glm::normalize(axes[1]), -glm::normalize(axes[2])));
+}
+
 float Camera::depth(const Vec3& world, float time) const {
   Pose storage;
   const Pose& now = pose_at(time, &storage);

@@ -38,6 +38,8 @@ class Camera {
   Vec2 film_displacement(const Vec2& from, const Vec2& to) const;
   // Returns the depth along the view axis; for a panorama, the distance from the camera.
   float depth(const Vec3& world, float time) const;
+  // Returns the rotation from directions of the world to the camera's right, up and view axis, as Cycles has them.
+  Mat3 view_rotation() const;
   bool has_lens() const { return desc_.aperture_radius > 0.0f; }
   // Returns this camera as a pinhole camera.
   Camera without_lens() const;

@@ -140,6 +140,7 @@ class Film {
   GradusSettings settings{};
   uint64_t scene_key = 0;
   int32_t frame_number = 0;
+  Mat3 view_rotation{1.0f};  // from directions of the world to the camera's right, up and view axis
 };
 
 // Adds zeroed channels for the passes, one bit each.

@@ -15,6 +15,7 @@ struct FilmHeader {
   SampleRanges samples;
   uint64_t scene_key = 0;
   int32_t frame_number = 0;
+  Mat3 view_rotation{1.0f};
   int32_t replayed_frame = 0;  // number of the frame whose samples are replayed
   uint64_t replayed_key = 0;   // scene key of that frame; 0 if unknown
   uint32_t replayed_seed = 0;
@@ -33,6 +34,7 @@ inline FilmHeader header_of(const Film& film) {
           film.samples,
           film.scene_key,
           film.frame_number,
+          film.view_rotation,
           replayed.stream_frame,
           replayed.scene_key,
           replayed.seed,

@@ -63,6 +63,21 @@ json ranges_to_json(const film::SampleRanges& ranges) {
   return list;
 }
 
+json rotation_to_json(const Mat3& m) {
+  json list = json::array();
+  for (int i = 0; i < 9; ++i) list.push_back(m[i / 3][i % 3]);
+  return list;
+}
+
+// Returns a rotation from the numbers of its columns, or the identity for films of older versions, which have none.
+Mat3 rotation_from_json(const json& description, const char* name) {
+  Mat3 m(1.0f);
+  if (!description.contains(name)) return m;
+  const json& list = description.at(name);
+  for (int i = 0; i < 9; ++i) m[i / 3][i % 3] = list.at(size_t(i)).get<float>();
+  return m;
+}
+
 film::SampleRanges ranges_from_json(const json& j) {
   std::vector<film::SampleRange> list;
   for (const json& r : j) list.push_back({r.at(0).get<uint32_t>(), r.at(1).get<uint32_t>()});
@@ -160,6 +175,7 @@ json describe_samples(const film::Film& film) {
           {"gradients", film.gradients},
           {"sampling_key", hex(schema::sampling_key(film.settings))},
           {"scene_key", hex(film.scene_key)},
+          {"view_rotation", rotation_to_json(film.view_rotation)},
           {"settings", schema::settings_to_json(film.settings)},
           {"planes", film.channels.passes()},
           {"samples", ranges_to_json(film.samples)},
@@ -252,6 +268,7 @@ film::FilmHeader read_header(const Imf::Header& header, const json& description)
   if (description.contains("shared")) film.shared = adaptive_state_from_json(description.at("shared"), film.region);
   film.scene_key = key_from_json(description.at("scene_key"));
   film.frame_number = description.at("frame");
+  film.view_rotation = rotation_from_json(description, "view_rotation");
   return film;
 }
 
@@ -309,6 +326,7 @@ film::Film make_film(const Imf::Header& header, StoredContent content, const std
   name_components(names, &film);
   film.settings = known.settings;
   film.frame_number = known.frame_number;
+  film.view_rotation = known.view_rotation;
   film.scene_key = known.scene_key;
   film.counters = counters_from_json(description.at("counters"));
   film.samples = known.samples;

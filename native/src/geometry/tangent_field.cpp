@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <compare>
 #include <numeric>
+#include <span>
 #include <tuple>
 
 #include <tbb/parallel_for.h>
@@ -32,14 +33,8 @@ struct Corner {
   float handedness;  // ±1; 0: the triangle has no area in the UV map
   Vec4 tangent;      // weighted by the angle at the corner; w unused
 
-  auto place() const { return std::tuple(normal.x, normal.y, normal.z, uv.x, uv.y); }
-  // Order of the corners at a vertex. Corners without handedness come last, after the neighbours whose tangent they
-  // take.
-  auto key() const { return std::tuple_cat(place(), std::tuple(handedness == 0.0f ? 2.0f : -handedness)); }
-  // Returns whether this corner shares the tangent of an earlier corner `o`.
-  bool joins(const Corner& o) const {
-    return vertex == o.vertex && place() == o.place() && (handedness == o.handedness || handedness == 0.0f);
-  }
+  // Corners at the same place are one corner of the surface.
+  auto place() const { return std::tuple(vertex, normal.x, normal.y, normal.z, uv.x, uv.y); }
 };
 
 // Returns the direction of increasing u in the triangle, not normalised, with the handedness in w. It is 0 if the
@@ -81,9 +76,9 @@ std::vector<Corner> corners_of(const MeshData& mesh, const MeshAttribute& uv) {
   return corners;
 }
 
-// Returns the indices of the corners in an order in which corners that share a tangent are consecutive. Equal corners
-// are ordered by index, so that sums are bitwise equal on every machine.
-std::vector<uint32_t> grouped(const std::vector<Corner>& corners, uint32_t vertex_count) {
+// Returns the indices of the corners in an order in which corners at the same place are consecutive. Equal corners are
+// ordered by index, so that sums are bitwise equal on every machine.
+std::vector<uint32_t> by_place(const std::vector<Corner>& corners, uint32_t vertex_count) {
   std::vector<uint32_t> first(size_t(vertex_count) + 1, 0);
   for (const Corner& c : corners)
     if (c.vertex != kDroppedVertex) ++first[c.vertex + 1];
@@ -93,11 +88,75 @@ std::vector<uint32_t> grouped(const std::vector<Corner>& corners, uint32_t verte
     if (corners[i].vertex != kDroppedVertex) order[next[corners[i].vertex]++] = i;
   tbb::parallel_for(uint32_t(0), vertex_count, [&](uint32_t v) {
     std::sort(order.begin() + first[v], order.begin() + first[v + 1], [&](uint32_t a, uint32_t b) {
-      return std::tuple(corners[a].key(), a) < std::tuple(corners[b].key(), b);
+      return std::tuple(corners[a].place(), a) < std::tuple(corners[b].place(), b);
     });
   });
   return order;
 }
+
+// Divides the corners at one place into those that share a tangent: corners of triangles of the same handedness that
+// meet at an edge there. A triangle without handedness joins one that it meets.
+class CornerGroups {
+ public:
+  // places: the number of each corner's place.
+  CornerGroups(const std::vector<Corner>& corners, const std::vector<uint32_t>& places)
+      : corners_(corners), places_(places) {}
+
+  // Returns for each of the corners, which are at one place, the position of the first one of its group.
+  const std::vector<uint32_t>& find(std::span<const uint32_t> at_place) {
+    first_.resize(at_place.size());
+    std::iota(first_.begin(), first_.end(), 0u);
+    ends_.clear();
+    for (uint32_t k = 0; k < at_place.size(); ++k) {
+      const uint32_t triangle = at_place[k] / 3, corner = at_place[k] % 3;
+      for (const uint32_t other : {(corner + 1) % 3, (corner + 2) % 3})
+        ends_.push_back({places_[triangle * 3 + other], handedness(at_place[k]), k});
+    }
+    std::sort(ends_.begin(), ends_.end());
+    for (size_t i = 1; i < ends_.size(); ++i) {
+      const End &a = ends_[i - 1], &b = ends_[i];
+      if (a.place == b.place && a.handedness == b.handedness) join(a.corner, b.corner);
+    }
+    join_flat(at_place);
+    for (uint32_t k = 0; k < at_place.size(); ++k) first_[k] = root(k);
+    return first_;
+  }
+
+ private:
+  // The far end of an edge of a triangle.
+  struct End {
+    uint32_t place;
+    float handedness;
+    uint32_t corner;
+    auto operator<=>(const End&) const = default;
+  };
+
+  float handedness(uint32_t corner) const { return corners_[corner].handedness; }
+
+  // Joins the corners without handedness to one that they meet, or to those joined before.
+  void join_flat(std::span<const uint32_t> at_place) {
+    for (size_t i = 1; i < ends_.size(); ++i) {
+      const uint32_t a = ends_[i - 1].corner, b = ends_[i].corner;
+      if (ends_[i - 1].place != ends_[i].place) continue;
+      const bool is_flat = handedness(at_place[a]) == 0.0f, other_is_flat = handedness(at_place[b]) == 0.0f;
+      if (is_flat != other_is_flat && root(is_flat ? a : b) == (is_flat ? a : b)) join(a, b);
+    }
+  }
+
+  uint32_t root(uint32_t k) const {
+    while (first_[k] != k) k = first_[k];
+    return k;
+  }
+  void join(uint32_t a, uint32_t b) {
+    const auto [first, last] = std::minmax({root(a), root(b)});
+    first_[last] = first;
+  }
+
+  const std::vector<Corner>& corners_;
+  const std::vector<uint32_t>& places_;
+  std::vector<uint32_t> first_;
+  std::vector<End> ends_;
+};
 
 }  // namespace
 
@@ -109,18 +168,32 @@ std::array<Vec4, 3> TangentField::corners(uint32_t triangle) const {
 std::shared_ptr<const TangentField> make_tangents(const std::shared_ptr<const MeshData>& mesh,
                                                   const MeshAttribute& uv) {
   const std::vector<Corner> corners = corners_of(*mesh, uv);
+  const std::vector<uint32_t> order = by_place(corners, mesh->vertex_count);
+  std::vector<uint32_t> places(corners.size(), 0), starts;
+  for (uint32_t i = 0; i < order.size(); ++i) {
+    if (i == 0 || corners[order[i]].place() != corners[order[i - 1]].place()) starts.push_back(i);
+    places[order[i]] = uint32_t(starts.size()) - 1;
+  }
+  starts.push_back(uint32_t(order.size()));
   auto field = std::make_shared<TangentField>();
   field->mesh = mesh;
   field->uv = &uv;
   field->corner_tangents.resize(corners.size());
-  const Corner* last = nullptr;
-  for (const uint32_t i : grouped(corners, mesh->vertex_count)) {
-    const Corner& corner = corners[i];
-    const bool shared = last && corner.joins(*last);
-    if (!shared) field->tangents.emplace_back(Vec3(0.0f), corner.handedness);
-    field->corner_tangents[i] = uint32_t(field->tangents.size()) - 1;
-    field->tangents.back() += corner.tangent;
-    if (!shared) last = &corner;
+  CornerGroups groups(corners, places);
+  for (size_t place = 0; place + 1 < starts.size(); ++place) {
+    const std::span<const uint32_t> at_place(order.data() + starts[place], starts[place + 1] - starts[place]);
+    const std::vector<uint32_t>& first = groups.find(at_place);
+    for (uint32_t k = 0; k < at_place.size(); ++k) {
+      const Corner& corner = corners[at_place[k]];
+      if (first[k] == k) {
+        field->corner_tangents[at_place[k]] = uint32_t(field->tangents.size());
+        field->tangents.emplace_back(Vec3(0.0f), corner.handedness);
+      }
+      const uint32_t tangent = field->corner_tangents[at_place[first[k]]];
+      field->corner_tangents[at_place[k]] = tangent;
+      field->tangents[tangent] += corner.tangent;
+      if (field->tangents[tangent].w == 0.0f) field->tangents[tangent].w = corner.handedness;
+    }
   }
   for (Vec4& t : field->tangents) t = Vec4(unit_or_zero(Vec3(t)), t.w);
   field->tangents.shrink_to_fit();

@@ -98,19 +98,17 @@ void associate(T* values, size_t count, uint32_t channels, Multiply multiply) {
   }
 }
 
-// Multiplies the colours of a tile by alpha. Bytes and shorts are rounded to the nearest integer.
+// Multiplies the colours of a tile by alpha. Bytes and shorts are rounded down, as in Cycles.
 void associate_alpha(ImageTile* tile) {
   const size_t count = static_cast<size_t>(tile->width) * tile->height;
   uint8_t* pixels = tile->pixels.get();
   switch (tile->format) {
     case PixelFormat::Byte:
-      associate(pixels, count, tile->channels,
-                [](uint8_t c, uint8_t a) { return static_cast<uint8_t>((c * a + 127) / 255); });
+      associate(pixels, count, tile->channels, [](uint8_t c, uint8_t a) { return static_cast<uint8_t>(c * a / 255); });
       break;
     case PixelFormat::Short:
-      associate(reinterpret_cast<uint16_t*>(pixels), count, tile->channels, [](uint16_t c, uint16_t a) {
-        return static_cast<uint16_t>((static_cast<uint32_t>(c) * a + 32767u) / 65535u);
-      });
+      associate(reinterpret_cast<uint16_t*>(pixels), count, tile->channels,
+                [](uint16_t c, uint16_t a) { return static_cast<uint16_t>(static_cast<uint32_t>(c) * a / 65535u); });
       break;
     case PixelFormat::Half:
       associate(reinterpret_cast<uint16_t*>(pixels), count, tile->channels,

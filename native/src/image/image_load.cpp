@@ -70,6 +70,8 @@ std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorMa
       stored = convert_tile(std::move(decoded), color, source.color_space, source.is_float, is_straight);
       mean = mean_color(stored);
       image->has_alpha = image->has_alpha || (!image->ignores_alpha && has_transparency(stored));
+    } else {
+      problem += ", which shows as pink, as in Cycles";
     }
     if (!problem.empty()) {
       image->warnings.push_back(describe(source, tile, problem));

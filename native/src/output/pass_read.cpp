@@ -140,9 +140,12 @@ void read_derived(const film::Film& film, uint32_t pass, const Region& region, f
       return read_gradient(film, region, true, pixels);
     case GRADUS_PASS_VARIANCE:
       return read_variance_pass(film, region, pixels);
-    case GRADUS_PASS_SAMPLE_COUNT:
-      return for_pixels(film, region,
-                        [&](size_t i, size_t out) { pixels[out] = static_cast<float>(film::samples_at(film, i)); });
+    case GRADUS_PASS_SAMPLE_COUNT: {
+      const float scale = 1.0f / static_cast<float>(std::max(film.settings.samples, 1u));
+      return for_pixels(film, region, [&](size_t i, size_t out) {
+        pixels[out] = scale * static_cast<float>(film::samples_at(film, i));
+      });
+    }
     default:
       return;
   }
@@ -162,6 +165,14 @@ void read_light(const film::Film& film, const film::Channel& light, const film::
   });
 }
 
+// Rotates `count` directions.
+void rotate(const Mat3& rotation, float* directions, size_t count) {
+  for (size_t i = 0; i < count; ++i, directions += 3) {
+    const Vec3 turned = rotation * Vec3(directions[0], directions[1], directions[2]);
+    for (int c = 0; c < 3; ++c) directions[c] = turned[c];
+  }
+}
+
 void read_stored(const film::Film& film, const film::Channel& channel, const Region& region, float* pixels) {
   const bool is_light = channel.info.type == film::ValueType::kRadiance;
   const float scale = is_light ? film.settings.film_exposure : 1.0f;
@@ -169,6 +180,7 @@ void read_stored(const film::Film& film, const film::Channel& channel, const Reg
   for_rows(film, region, [&](size_t first, size_t out) {
     float* row = pixels + channel.info.values_per_pixel * out;
     film::read_channel(film, channel, {}, first, width, scale, row);
+    if (channel.pass == GRADUS_PASS_DENOISING_NORMAL) rotate(film.view_rotation, row, width);
     if (channel.pass == GRADUS_PASS_DEPTH) std::replace(row, row + width, 0.0f, schema::kFarDepth);
   });
 }

@@ -47,6 +47,11 @@ Vec3 uv_of(const geometry::InstanceData& instance, const geometry::Hit& hit) {
 // Returns 1 / depth, bounded for a depth of 0.
 float inverse_depth(float depth) { return 1.0f / std::max(depth, 1e-10f); }
 
+// Passes that show one surface of a pixel, whatever the weight of its light.
+constexpr std::array<uint32_t, 7> kSurfaceData = {
+    GRADUS_PASS_DEPTH,  GRADUS_PASS_POSITION, GRADUS_PASS_OBJECT_INDEX, GRADUS_PASS_MATERIAL_INDEX,
+    GRADUS_PASS_NORMAL, GRADUS_PASS_UV,       GRADUS_PASS_VECTOR};
+
 Vec3 shown_normal(const Vertex& vertex) {
   if (!vertex.shade.closures.empty()) {
     return vertex.shade.closures.average_normal();
@@ -68,7 +73,9 @@ PassRecorder::PassRecorder(const PathContext& context, film::Film* film, film::C
     const bool is_feature = schema::pass_info(plane.pass).kind == schema::PassKind::Feature;
     has_features_ |= is_feature;
     has_data_ |= !is_feature;
+    has_surface_data_ |= std::ranges::find(kSurfaceData, plane.pass) != kSurfaceData.end();
   }
+  visits_surfaces_ = has_surface_data_ || channels_.visits_surfaces();
   records_non_specular_ = !film->components[0].non_specular[0].empty();
   records_details_ = !film->components[0].details.empty();
   if (records_non_specular_ || records_details_) {
@@ -83,6 +90,7 @@ void PassRecorder::begin_sample(size_t pixel, int half, uint32_t number, bool ad
   number_ = number;
   first_sample_ = number == context_.settings.first_sample;
   adds_components_ = adds_components;
+  surface_data_done_ = false;
   features_done_ = !has_features_ || adds_components;
   seeks_non_specular_ = components_ != nullptr && !adds_components;
   detail_components_ = vertex_components_ = 0;
@@ -165,6 +173,8 @@ void PassRecorder::surface(const Sampler& sampler, const PathState& state, const
     camera_surface(sampler, state.throughput, vertex);
   }
   if (!features_done_) {
+    const float start = path_length_ == segment.length ? state.ray.ray.t_min : 0.0f;
+    add(GRADUS_PASS_DENOISING_DEPTH, mean_component(state.throughput) * (segment.length - start));
     features(state, vertex);
   }
   if (seeks_non_specular_) {
@@ -190,9 +200,18 @@ void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, con
     ambient_occlusion(sampler, weight, vertex);
   }
   mist(weight, vertex.point.position, vertex.point.hit.time);
-  if (1.0f - mean_component(vertex.shade.transparency) < context_.settings.alpha_threshold) {
-    return;  // too transparent for data passes
+}
+
+void PassRecorder::visit(const Vertex& vertex, const shading::RayState& ray, const Rgb& weight) {
+  const float alpha = 1.0f - mean_component(vertex.shade.transparency);
+  if (has_surface_data_ && !surface_data_done_ && alpha >= context_.settings.alpha_threshold) {
+    surface_data(vertex);
+    surface_data_done_ = true;
   }
+  channels_.visit(vertex, ray, weight);
+}
+
+void PassRecorder::surface_data(const Vertex& vertex) {
   const geometry::InstanceData& instance = context_.scene.instances[vertex.point.hit.instance];
   add(GRADUS_PASS_DEPTH, context_.camera.depth(vertex.point.position, vertex.point.hit.time));
   add(GRADUS_PASS_POSITION, vertex.point.position + context_.scene.origin);
@@ -282,8 +301,7 @@ void PassRecorder::features(const PathState& state, const Vertex& vertex) {
   if (plane(GRADUS_PASS_DENOISING_ALBEDO) != nullptr) {
     add_albedo(state.throughput * closures.albedo(vertex.wo));
   }
-  add(GRADUS_PASS_DENOISING_NORMAL, shown_normal(vertex));
-  add(GRADUS_PASS_DENOISING_DEPTH, path_length_);
+  if (!closures.empty()) add(GRADUS_PASS_DENOISING_NORMAL, shown_normal(vertex));
 }
 
 // Returns the components, as bits, of paths whose first non-specular vertex this is: those that scatter here in class

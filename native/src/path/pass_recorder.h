@@ -12,7 +12,7 @@ namespace gradus::path {
 // Share of each light pass (diffuse, glossy, transmission) in a contribution. The shares of a channel add up to 1.
 using PassShare = std::array<Rgb, 3>;
 
-class PassRecorder {
+class PassRecorder final : public SurfaceVisitor {
  public:
   // Finds the planes of the film, which must outlive the recorder.
   PassRecorder(const PathContext& context, film::Film* film, film::Counters* counters);
@@ -30,7 +30,10 @@ class PassRecorder {
   // Records a ray that leaves the scene.
   void escaped(const PathState& state);
   // Returns what must see the surfaces on a camera segment, or null if nothing must.
-  SurfaceVisitor* surface_visitor() { return channels_.visits_surfaces() && !adds_components_ ? &channels_ : nullptr; }
+  SurfaceVisitor* surface_visitor() { return visits_surfaces_ && !adds_components_ ? this : nullptr; }
+  // Records a surface on a camera segment, whether the path stops there or passes it. As in Cycles, data passes show
+  // the first surface that is opaque enough.
+  void visit(const Vertex& vertex, const shading::RayState& ray, const Rgb& weight) override;
   // Records a film position without a camera ray, where mist is 1, as in Cycles.
   void no_ray() {
     if (!adds_components_) add(GRADUS_PASS_MIST, 1.0f);
@@ -64,6 +67,7 @@ class PassRecorder {
   void add(uint32_t pass, float value) { add(pass, Vec4(value, 0.0f, 0.0f, 0.0f)); }
   void add_light(int scatterings, const Rgb& value, const PassShare& share, uint32_t direct_pass);
   void camera_surface(const Sampler& sampler, const Rgb& weight, const Vertex& vertex);
+  void surface_data(const Vertex& vertex);
   void colors(const Rgb& weight, const Vertex& vertex);
   void ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex);
   void mist(const Rgb& weight, const Vec3& position, float time);
@@ -87,7 +91,9 @@ class PassRecorder {
   bool active_ = false;
   bool has_light_passes_ = false;
   bool has_features_ = false;
-  bool has_data_ = false;  // the film has planes that are not features
+  bool has_data_ = false;          // the film has planes that are not features
+  bool has_surface_data_ = false;  // the film has planes of surface_data()
+  bool visits_surfaces_ = false;
   // Components that record the first non-specular vertex, or details of it; null if there are none.
   std::vector<film::ComponentPlanes>* components_ = nullptr;
   bool records_non_specular_ = false;
@@ -101,6 +107,7 @@ class PassRecorder {
   uint32_t number_ = 0;  // sample number
   bool first_sample_ = false;
   bool adds_components_ = false;
+  bool surface_data_done_ = false;
   bool features_done_ = false;
   float path_length_ = 0.0f;
   Rgb albedo_ = Rgb(0.0f);  // denoising albedo of this sample so far

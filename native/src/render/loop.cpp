@@ -166,6 +166,7 @@ void RenderLoop::prepare() {
   film->settings.denoiser = stored_denoiser(plan_);
   film->scene_key = input_.snapshot->content_key;
   film->frame_number = settings.frame;
+  film->view_rotation = camera::Camera(input_.snapshot->camera, film->full_width, film->full_height).view_rotation();
   if (input_.replay) film->replayed = input_.replay->replay_map;
   stats_.warnings = input_.snapshot->warnings;
   for (const std::string& text : input_.snapshot->noise_warnings) stats_.warnings.push_back(text);

@@ -27,32 +27,30 @@ float spline(float a, float b, float c, float d, float x) {
   return 0.5f * (((d + 3.0f * (b - c) - a) * x + (2.0f * a - 5.0f * b + 4.0f * c - d)) * x + (c - a)) * x + b;
 }
 
-// Interpolates values at the indices around a place. Beyond an end they continue at the index that `before_first` and
-// `after_last` give; a negative one repeats the end.
+// Interpolates values at the indices around a place. Beyond the ends they are `before_first` and 0.
 template <typename Value>
-float interpolate(const Value& value, int count, const Place& place, int before_first, int after_last) {
+float interpolate(const Value& value, int count, const Place& place, float before_first) {
   const int i = place.index;
-  const float b = value(i), c = value(i + 1);
-  const int before = i > 0 ? i - 1 : before_first, after = i + 2 < count ? i + 2 : after_last;
-  return spline(before < 0 ? b : value(before), b, c, after < 0 ? c : value(after), place.fraction);
+  const float before = i > 0 ? value(i - 1) : before_first, after = i + 2 < count ? value(i + 2) : 0.0f;
+  return spline(before, value(i), value(i + 1), after, place.fraction);
 }
 
+// Returns the intensity as Cycles interpolates it. Beyond the pole below the luminaire the table continues at the same
+// horizontal angle, as if the luminaire were symmetric. It does not continue beyond the other pole nor from a full turn
+// to its start, although Cycles means to: the tolerance of its tests is too small for floats.
 float intensity(const IesTable& table, float horizontal, float vertical) {
   const int h_count = table.horizontal_count, v_count = table.vertical_count;
   const float *h = table.horizontal, *v = table.vertical;
-  if (!(vertical >= v[0] && vertical <= v[v_count - 1])) return 0.0f;
-  if (!(horizontal >= h[0] && horizontal <= h[h_count - 1])) return 0.0f;
-  constexpr float kTolerance = 1e-6f;
-  const bool is_full_turn = h[0] < kTolerance && h[h_count - 1] > 2.0f * kPi - kTolerance;
+  if (!(vertical >= v[0] && vertical < v[v_count - 1])) return 0.0f;
+  if (!(horizontal >= h[0] && horizontal < h[h_count - 1])) return 0.0f;
+  constexpr float kTolerance = 1e-7f;
+  const bool starts_at_pole = v[0] < kTolerance;
   const Place h_place = place_of(h, h_count, horizontal), v_place = place_of(v, v_count, vertical);
-  // Beyond a pole the table continues at the same horizontal angle, as if the luminaire were symmetric.
-  const int above = v[0] < kTolerance ? 1 : -1, below = v[v_count - 1] > kPi - kTolerance ? v_count - 2 : -1;
   const auto column = [&](int i) {
     const float* values = table.values + i * v_count;
-    return interpolate([values](int k) { return values[k]; }, v_count, v_place, above, below);
+    return interpolate([values](int k) { return values[k]; }, v_count, v_place, starts_at_pole ? values[1] : 0.0f);
   };
-  // The first and the last column of a full turn are the same.
-  const float found = interpolate(column, h_count, h_place, is_full_turn ? h_count - 2 : -1, is_full_turn ? 1 : -1);
+  const float found = interpolate(column, h_count, h_place, 0.0f);
   return found > 0.0f && is_finite(found) ? found : 0.0f;
 }
 

@@ -11,7 +11,7 @@ import bpy
 from .. import rna, stages
 from ..row import NOISY, Family, Row
 
-SKIPPED = ("use", "active_*", "freestyle*", "use_freestyle", "depsgraph", "eevee", "gradus", "pass_cryptomatte_depth")
+SKIPPED = ("use", "samples", "active_*", "freestyle*", "use_freestyle", "depsgraph", "eevee", "gradus", "pass_cryptomatte_depth")
 """Properties of Freestyle and other engines. Blender itself crashes where the only view layer is not in use."""
 
 
@@ -21,6 +21,7 @@ def rows() -> Iterator[Row]:
     family = Family("Passes and view layers", "View layer", stage, NOISY)
     yield from family.rows(rna.changes(layer, SKIPPED))
     yield from family.rows(rna.of_part("cycles", rna.changes(layer.cycles, ("name",))))
+    yield family.row(".samples", take_samples)
     yield family.row(".material_override", override_material)
     yield family.row(" second layer", add_layer)
     for kind in rna.enum_values(layer.aovs.add(), "type"):
@@ -40,6 +41,11 @@ def stage() -> Any:
         if obj.type == "MESH":
             obj.data.materials[0].pass_index = 2 * index + 1
     return bpy.context.scene.view_layers[0]
+
+
+def take_samples(layer: Any) -> None:
+    """Takes more samples than the scene asks for, so that the picture shows whether the layer's number counts."""
+    layer.samples = 1024
 
 
 def override_material(layer: Any) -> None:
