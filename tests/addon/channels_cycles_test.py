@@ -233,6 +233,26 @@ def test_ranks_fall_and_levels_are_kept(scene: bpy.types.Scene, layer: bpy.types
     assert weights.sum(axis=2).mean() < 1.01
 
 
+def test_data_passes_show_the_first_surface_that_is_opaque_enough(
+    scene: bpy.types.Scene, layer: bpy.types.ViewLayer, tmp_path: Path
+) -> None:
+    """Regression: they showed whatever surface the path scattered at."""
+    layer.use_pass_z = layer.use_pass_object_index = layer.use_pass_normal = layer.use_pass_position = True
+    bpy.data.objects.remove(bpy.data.objects["Veil ü"])  # it shows where the path happens to stop at it
+    for number, obj in enumerate(scene.objects):
+        obj.pass_index = number + 1
+        obj.rotation_euler = (0.1 * number, 0.0, 0.0)
+    scene.cycles.pixel_filter_type = scene.gradus.pixel_filter = "GAUSSIAN"
+    scene.cycles.filter_width = scene.gradus.filter_width = 0.01  # the same positions at edges
+    expected, found = both(scene, tmp_path, 16)
+    names = [name for name in expected if "." in name and not name.endswith("Combined")]
+    assert len(names) == 4
+    for name in names:
+        seen = np.abs(expected[name]).max(axis=2) < 1e4
+        difference = np.abs(expected[name] - found[name]).max(axis=2)[seen]
+        assert np.quantile(difference, 0.99) < 0.01, name
+
+
 def test_passes_of_volumes_are_0(scene: bpy.types.Scene, layer: bpy.types.ViewLayer, tmp_path: Path) -> None:
     """Regression: the passes were missing, and sockets of the compositor without a pass are 1."""
     if not hasattr(layer, "cycles"):

@@ -203,11 +203,7 @@ void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, con
 }
 
 void PassRecorder::visit(const Vertex& vertex, const shading::RayState& ray, const Rgb& weight) {
-  const float alpha = 1.0f - mean_component(vertex.shade.transparency);
-  if (has_surface_data_ && !surface_data_done_ && alpha >= context_.settings.alpha_threshold) {
-    surface_data(vertex);
-    surface_data_done_ = true;
-  }
+  if (has_surface_data_ && !surface_data_done_) surface_data(vertex);
   channels_.visit(vertex, ray, weight);
 }
 
@@ -217,6 +213,10 @@ void PassRecorder::surface_data(const Vertex& vertex) {
   add(GRADUS_PASS_POSITION, vertex.point.position + context_.scene.origin);
   add(GRADUS_PASS_OBJECT_INDEX, static_cast<float>(instance.pass_index));
   add(GRADUS_PASS_MATERIAL_INDEX, static_cast<float>(context_.scene.materials[vertex.point.material]->pass_index));
+  surface_data_done_ = 1.0f - mean_component(vertex.shade.transparency) >= context_.settings.alpha_threshold;
+  if (!surface_data_done_) {
+    return;
+  }
   add(GRADUS_PASS_NORMAL, shown_normal(vertex));
   if (plane(GRADUS_PASS_UV) != nullptr) {
     add(GRADUS_PASS_UV, uv_of(instance, vertex.point.hit));

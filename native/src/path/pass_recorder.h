@@ -32,7 +32,8 @@ class PassRecorder final : public SurfaceVisitor {
   // Returns what must see the surfaces on a camera segment, or null if nothing must.
   SurfaceVisitor* surface_visitor() { return visits_surfaces_ && !adds_components_ ? this : nullptr; }
   // Records a surface on a camera segment, whether the path stops there or passes it. As in Cycles, data passes show
-  // the first surface that is opaque enough.
+  // the first surface that is opaque enough. Those of one sample are replaced by each surface up to that one, so that
+  // they show a clearer surface where the path stops there.
   void visit(const Vertex& vertex, const shading::RayState& ray, const Rgb& weight) override;
   // Records a film position without a camera ray, where mist is 1, as in Cycles.
   void no_ray() {
