@@ -27,6 +27,7 @@ class Op(IntEnum):
     METALLIC = 13
     SUBSURFACE = 14
     AOV = 15
+    TOON = 16
     GEOMETRY = 32
     TEX_COORD = 33
     TANGENT = 34
@@ -87,6 +88,8 @@ class Distribution(IntEnum):
 
     SINGLE = 0
     MULTIPLE = 1
+    BECKMANN = 2
+    ASHIKHMIN_SHIRLEY = 3
 
 
 class Subsurface(IntEnum):
@@ -401,6 +404,7 @@ INPUTS = {
     Op.METALLIC: 7,
     Op.SUBSURFACE: 7,
     Op.AOV: 2,
+    Op.TOON: 4,
     Op.GEOMETRY: 0,
     Op.TEX_COORD: 0,
     Op.TANGENT: 0,
@@ -474,6 +478,7 @@ OUTPUTS = {
     Op.METALLIC: 1,
     Op.SUBSURFACE: 1,
     Op.AOV: 1,
+    Op.TOON: 1,
     Op.GEOMETRY: 1,
     Op.TEX_COORD: 1,
     Op.TANGENT: 1,

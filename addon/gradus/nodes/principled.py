@@ -7,9 +7,9 @@ added.
 from __future__ import annotations
 
 from .node import NodeView, translator
-from .ops import Op, VectorMath
+from .ops import Distribution, Op, VectorMath
 from .program import NO_NORMAL, Program, Value, constant_color, constant_float
-from .shaders import MULTIPLE_SCATTERING, distribution_mode, subsurface_anisotropy, subsurface_mode
+from .shaders import distribution_mode, subsurface_anisotropy, subsurface_mode
 
 _WHITE = constant_color((1.0, 1.0, 1.0))
 
@@ -151,5 +151,5 @@ def default_surface() -> Program:
     Before 5.0, such surfaces are grey and diffuse, which is the library's own default material (key 0).
     """
     program = Program(name="default_surface")
-    program.surface = program.add(Op.PRINCIPLED, _DEFAULT_INPUTS, MULTIPLE_SCATTERING)
+    program.surface = program.add(Op.PRINCIPLED, _DEFAULT_INPUTS, Distribution.MULTIPLE)
     return program

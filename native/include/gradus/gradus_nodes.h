@@ -22,11 +22,11 @@
  *   TRANSLUCENT       color, normal -> closure: Lambertian transmission.
  *   GLOSSY            color, roughness, anisotropy, rotation, normal, tangent -> closure: Microfacet reflection; the
  *                       rotation is in turns. Mode: GradusDistribution.
- *   REFRACTION        color, roughness, ior, normal -> closure: Microfacet refraction.
+ *   REFRACTION        color, roughness, ior, normal -> closure: Microfacet refraction. Mode: GradusDistribution.
  *   GLASS             color, roughness, ior, normal -> closure: Microfacet reflection and refraction by Fresnel. Mode:
- *                       GradusDistribution; + 2: as in Blender before 4.0.
- *   SHEEN             color, roughness, normal -> closure: Microfiber sheen; roughness 0 stands for the grazing term of
- *                       Velvet and of Principled before 4.0.
+ *                       GradusDistribution; + 4: as in Blender before 4.0.
+ *   SHEEN             color, roughness, normal -> closure: Sheen of fibres. Mode: 0: microfibers; 1: velvet of
+ *                       Ashikhmin; the roughness is its sigma.
  *   TRANSPARENT       color -> closure: Passes rays straight through.
  *   HOLDOUT           - -> closure: Cuts a hole into the alpha of the film.
  *   EMISSION          color, strength -> closure: Emission of a surface, and the background of the world.
@@ -47,11 +47,14 @@
  *                       emission. The diffuse colour is the base colour mixed with the subsurface colour. Mode:
  *                       GradusDistribution + GradusSubsurface.
  *   METALLIC          base color, edge tint, roughness, anisotropy, rotation, normal, tangent -> closure: Metal with
- *                       the F82 tint model. Mode: GradusDistribution.
+ *                       the F82 tint model, or a conductor. Mode: GradusDistribution; + 4: a conductor, whose
+ *                       refractive index and extinction take the place of the two colours.
  *   SUBSURFACE        color, scale, radius, ior, roughness, anisotropy, normal -> closure: Light that enters the object
  *                       and leaves it elsewhere. Mode: GradusSubsurface.
  *   AOV               color, value -> closure: Output to an AOV, which GradusMaterial.aovs refers to; it scatters
  *                       nothing. Mode: index of the channel.
+ *   TOON              color, size, smooth, normal -> closure: A cone of light with a hard or linear edge. Mode: 0:
+ *                       around the normal; 1: around the mirror direction.
  *
  * What is known at the point.
  *   GEOMETRY          - -> value: A quantity of the surface point. Mode: GradusGeometryMode.
@@ -163,6 +166,7 @@
   X(METALLIC, 13, 7, 1, 1) \
   X(SUBSURFACE, 14, 7, 1, 1) \
   X(AOV, 15, 2, 1, 1) \
+  X(TOON, 16, 4, 1, 1) \
   X(GEOMETRY, 32, 0, 1, 0) \
   X(TEX_COORD, 33, 0, 1, 0) \
   X(TANGENT, 34, 0, 1, 0) \
@@ -224,8 +228,10 @@ typedef enum GradusOp { GRADUS_OPS(GRADUS_OP_ENUM) GRADUS_OP_LIMIT = 128 } Gradu
 
 /* Microfacet distribution of a closure. */
 typedef enum GradusDistribution {
-  GRADUS_DISTRIBUTION_SINGLE = 0,  /* GGX with single scattering; it also stands for Beckmann and Ashikhmin-Shirley. */
-  GRADUS_DISTRIBUTION_MULTIPLE = 1 /* GGX with the energy of multiple scattering. */
+  GRADUS_DISTRIBUTION_SINGLE = 0,           /* GGX with single scattering. */
+  GRADUS_DISTRIBUTION_MULTIPLE = 1,         /* GGX with the energy of multiple scattering. */
+  GRADUS_DISTRIBUTION_BECKMANN = 2,         /* Beckmann. */
+  GRADUS_DISTRIBUTION_ASHIKHMIN_SHIRLEY = 3 /* The anisotropic Phong model of Ashikhmin and Shirley, for reflection. */
 } GradusDistribution;
 
 /* Method of subsurface scattering. It is added to the distribution of a closure. */
