@@ -60,6 +60,12 @@ def subsurface_anisotropy(view: NodeView, name: str) -> Value:
     return anisotropy if view.version >= (5, 2, 0) else view.clamped(anisotropy)
 
 
+def thin_film(view: NodeView) -> tuple[Value, ...]:
+    """Returns thickness and IOR of the thin film, or nothing if the node has none."""
+    thickness = view.value("Thin Film Thickness")
+    return () if thickness.is_zero() else (thickness, view.value("Thin Film IOR"))
+
+
 @translator("ShaderNodeSubsurfaceScattering")
 def subsurface_scattering(view: NodeView) -> Value:
     inputs = (
@@ -103,7 +109,7 @@ def glossy(view: NodeView) -> Value:
 def glass(view: NodeView) -> Value:
     mode = distribution_mode(view) | (_LEGACY_GLASS if view.version < (4, 0, 0) else 0)
     inputs = (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal"))
-    return view.add_closure(Op.GLASS, inputs, mode)
+    return view.add_closure(Op.GLASS, inputs + thin_film(view), mode)
 
 
 @translator("ShaderNodeBsdfRefraction")
@@ -124,7 +130,7 @@ def metallic(view: NodeView) -> Value:
         view.direction("Normal"),
         view.direction("Tangent"),
     )
-    return view.add_closure(Op.METALLIC, inputs, distribution_mode(view) | (_CONDUCTOR if conductor else 0))
+    return view.add_closure(Op.METALLIC, inputs + thin_film(view), distribution_mode(view) | (_CONDUCTOR if conductor else 0))
 
 
 @translator("ShaderNodeBsdfSheen", "ShaderNodeBsdfVelvet")

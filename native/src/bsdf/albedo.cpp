@@ -39,14 +39,18 @@ Rgb mean_fresnel(const Lobe& lobe) {
       return lobe.f0;
     case FresnelType::Dielectric:
       return Rgb(mean_dielectric(lobe.ior));
+    // A film changes the mean little.
+    case FresnelType::FilmDielectric:
     case FresnelType::Schlick: {
       const float f0 = fresnel_f0(lobe.ior);
       const float s =
           f0 < 1e-6f ? 1.0f / 21.0f : std::clamp((mean_dielectric(lobe.ior) - f0) / (1.0f - f0), 0.0f, 1.0f);
       return glm::mix(lobe.f0, lobe.f90, s);
     }
+    case FresnelType::FilmMetal:
     case FresnelType::PrincipledMetal:
       return mean_f82(lobe.f0, lobe.f90);
+    case FresnelType::FilmConductor:
     case FresnelType::Conductor: {
       const F82Fit fit = fit_conductor(lobe.f0, lobe.f90);
       return mean_f82(fit.f0, fit.tint);
@@ -78,6 +82,10 @@ Rgb single_reflection(const Lobe& lobe, float alpha, float cosine) {
       const F82Fit fit = fit_conductor(lobe.f0, lobe.f90);
       return f82_albedo(m, fit.f0, fit.tint);
     }
+    case FresnelType::FilmDielectric:
+    case FresnelType::FilmMetal:
+    case FresnelType::FilmConductor:
+      return m.one * fresnel_film(lobe, cosine);
     default:
       return Rgb(m.one);
   }
@@ -96,7 +104,8 @@ Rgb single_transmission(const Lobe& lobe, float alpha, float cosine) {
   if (sides_of(lobe.type) == kTransmits && lobe.fresnel == FresnelType::None) {
     return Rgb(glass.crossing) * lobe.transmission_tint;
   }
-  if (lobe.fresnel == FresnelType::Schlick && glass.transmitted > 0.0f) {
+  const bool coloured = lobe.fresnel == FresnelType::Schlick || lobe.fresnel == FresnelType::FilmDielectric;
+  if (coloured && glass.transmitted > 0.0f) {
     const Rgb reflected = single_reflection(lobe, alpha, cosine);
     const Rgb share = (Rgb(glass.reflected + glass.transmitted) - reflected) / glass.transmitted;
     return glm::clamp(share, 0.0f, 1.0f / std::max(glass.transmitted, 1e-3f)) * glass.transmitted *

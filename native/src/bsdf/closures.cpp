@@ -102,7 +102,7 @@ void Closures::drop_black_lobes() {
 void Closures::keep_originals() {
   for (; prepared_ < count_; prepared_++) {
     const Lobe& lobe = lobes_[static_cast<size_t>(prepared_)];
-    original_[static_cast<size_t>(prepared_)] = {lobe.type, lobe.normal, lobe.ior};
+    original_[static_cast<size_t>(prepared_)] = {lobe.type, lobe.normal, lobe.ior, lobe.film.ior};
   }
 }
 
@@ -134,7 +134,10 @@ void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo) {
   }
   if (is_microfacet(lobe->type)) {
     limit_microfacets(lobe);
-    lobe->ior = inside ? 1.0f / lobe->ior : lobe->ior;
+    if (inside) {
+      lobe->ior = 1.0f / lobe->ior;
+      lobe->film.ior *= lobe->ior;
+    }
   }
   if (is_microfacet(lobe->type) || lobe->type == LobeType::Subsurface) {
     normal = keep_reflection_above(normal, geometric_normal, wo);
@@ -150,6 +153,7 @@ void Closures::prepare(int index, const Vec3& wo) {
   lobe.type = original.type;
   lobe.normal = original.normal;
   lobe.ior = original.ior;
+  lobe.film.ior = original.film_ior;
   prepare_lobe(&lobe, geometric_normal_, wo);
 }
 

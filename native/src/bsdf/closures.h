@@ -65,7 +65,16 @@ constexpr bool is_microfacet(LobeType type) { return type >= LobeType::GgxReflec
 // Returns whether a lobe's bumps darken gradually where they face away from the surface.
 constexpr bool has_soft_bumps(LobeType type) { return type <= LobeType::DiffuseToon; }
 
-enum class FresnelType : uint8_t { None, Dielectric, Schlick, PrincipledMetal, Conductor };
+enum class FresnelType : uint8_t {
+  None,
+  Dielectric,
+  Schlick,
+  PrincipledMetal,
+  Conductor,
+  FilmDielectric,
+  FilmMetal,
+  FilmConductor
+};
 
 // How light travels below the surface (subsurface.h): the methods of Cycles, in the order of GradusSubsurface. They
 // differ in how light enters, and in the medium that stands for an albedo and a radius.
@@ -87,6 +96,13 @@ struct KnownAlbedo {
   float cosine = -1.0f;  // cosine of the normal and wo; -1 if nothing is cached
   float ior = 1.0f;
   Rgb reflected = Rgb(0.0f);
+};
+
+// A thin film on microfacets.
+struct ThinFilm {
+  float thickness = 0.0f;  // nm
+  float ior = 1.0f;        // IOR over that outside; after finish() over that of the side of wo
+  bool fitted = false;     // whether the observer is a fit, as in Blender before 5.0
 };
 
 // One lobe. Its frame is the normal and, where it is anisotropic, the tangent.
@@ -114,6 +130,7 @@ struct KnownAlbedo {
 //   is Schlick's fifth power.
 // - PrincipledMetal: f0, and f90 as the tint at 82 degrees. A tint of 1 gives the plain Schlick term.
 // - Conductor: f0 is the refractive index of each channel, and f90 its extinction.
+// - FilmDielectric, FilmMetal, FilmConductor: Schlick with an f90 of 1, PrincipledMetal and Conductor below `film`.
 //
 // With multiscatter the Fresnel term colours the light that bounces between microfacets. A lobe without a Fresnel term
 // takes f0 as that colour, which is also a factor of its weight (Cycles' MULTI_GGX).
@@ -132,6 +149,7 @@ struct Lobe {
   float ior = 1.0f;    // IOR inside over outside; after finish() that of the far side over the side of wo
   Rgb f0 = Rgb(1.0f);  // reflectance at normal incidence
   Rgb f90 = Rgb(1.0f);
+  ThinFilm film;
   Rgb transmission_tint = Rgb(1.0f);  // factor of the transmission side of glass
   float sample_weight = 0.0f;         // weight for sampling, set by finish()
   Rgb energy = Rgb(1.0f);             // factor of multiple scattering, set by finish()
@@ -245,6 +263,7 @@ class Closures {
     LobeType type;
     Vec3 normal;
     float ior;
+    float film_ior;
   };
   void make_room();
   void drop_black_lobes();

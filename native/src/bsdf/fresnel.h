@@ -82,6 +82,9 @@ inline F82Fit fit_conductor(const Rgb& n, const Rgb& k) {
   return {f0, fresnel_conductor(1.0f / 7.0f, n, k) / schlick};
 }
 
+// Returns the Fresnel term of a finished lobe with a thin film.
+Rgb fresnel_film(const Lobe& lobe, float cosine);
+
 // Returns the Fresnel term of a finished lobe, where `cosine` is that of the ray and the microfacet normal.
 inline Rgb lobe_fresnel(const Lobe& lobe, float cosine) {
   switch (lobe.fresnel) {
@@ -95,6 +98,10 @@ inline Rgb lobe_fresnel(const Lobe& lobe, float cosine) {
       return fresnel_f82(cosine, lobe.f0, lobe.f90);
     case FresnelType::Conductor:
       return fresnel_conductor(cosine, lobe.f0, lobe.f90);
+    case FresnelType::FilmDielectric:
+    case FresnelType::FilmMetal:
+    case FresnelType::FilmConductor:
+      return fresnel_film(lobe, cosine);
   }
   return Rgb(1.0f);
 }

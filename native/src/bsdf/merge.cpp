@@ -18,6 +18,7 @@ float squared_distance(const Lobe& a, const Lobe& b) {
   const bool same_kind = a.fresnel == b.fresnel && a.subsurface == b.subsurface && a.disney == b.disney;
   return (same_kind ? 0.0f : kOtherCurve) + (a.multiscatter == b.multiscatter ? 0.0f : 1.0f) +
          square(a.alpha_x - b.alpha_x) + square(a.alpha_y - b.alpha_y) + square(a.ior - b.ior) +
+         square(1e-2f * (a.film.thickness - b.film.thickness)) + square(a.film.ior - b.film.ior) +
          squared_length(a.normal - b.normal) + (anisotropic ? squared_length(a.tangent - b.tangent) : 0.0f) +
          squared_length(a.f0 - b.f0) + squared_length(a.f90 - b.f90) +
          squared_length(a.transmission_tint - b.transmission_tint);
@@ -39,6 +40,8 @@ void set_mean_shape(const Lobe& a, const Lobe& b, Lobe* lobe) {
   lobe->alpha_x = glm::mix(a.alpha_x, b.alpha_x, share);
   lobe->alpha_y = glm::mix(a.alpha_y, b.alpha_y, share);
   lobe->ior = glm::mix(a.ior, b.ior, share);
+  lobe->film.thickness = glm::mix(a.film.thickness, b.film.thickness, share);
+  lobe->film.ior = glm::mix(a.film.ior, b.film.ior, share);
   lobe->f0 = glm::mix(a.f0, b.f0, shares);
   lobe->f90 = glm::mix(a.f90, b.f90, shares);
   lobe->transmission_tint = glm::mix(a.transmission_tint, b.transmission_tint, shares);

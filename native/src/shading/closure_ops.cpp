@@ -1,5 +1,6 @@
 #include "shading/closure_ops.h"
 
+#include "bsdf/fresnel.h"
 #include "shading/context_ops.h"
 #include "shading/rotation.h"
 #include "shading/scalar.h"
@@ -78,6 +79,7 @@ void add_metallic(const ClosureArgs& args, const ShadeContext& c, ShadeResult* r
     lobe->f0 = glm::clamp(args.v(0), 0.0f, 1.0f);
     lobe->f90 = glm::clamp(args.v(1), 0.0f, 1.0f);
   }
+  add_film(lobe, args.f(7), args.f(8), false);
 }
 
 void add_refraction(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
@@ -117,6 +119,7 @@ void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* resu
   lobe->ior = std::max(args.f(2), 1e-5f);
   lobe->fresnel = bsdf::FresnelType::Dielectric;
   lobe->multiscatter = is_multiscatter(args);
+  add_film(lobe, args.f(4), args.f(5), false);
 }
 
 void add_subsurface_node(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
@@ -198,6 +201,24 @@ Vec3 turned_tangent(const ShadeContext& c, const Vec3& tangent, const Vec3& norm
   Vec3 t = safe_normalize(tangent);
   if (t == Vec3(0.0f)) t = default_tangent(c);
   return turns != 0.0f ? rotate_around(t, normal, turns * 2.0f * kPi) : t;
+}
+
+void add_film(bsdf::Lobe* lobe, float thickness, float ior, bool fitted) {
+  if (!has_film(thickness)) return;
+  lobe->film = {thickness, std::max(ior, 1e-5f), fitted};
+  switch (lobe->fresnel) {
+    case bsdf::FresnelType::PrincipledMetal:
+      lobe->fresnel = bsdf::FresnelType::FilmMetal;
+      return;
+    case bsdf::FresnelType::Conductor:
+      lobe->fresnel = bsdf::FresnelType::FilmConductor;
+      return;
+    case bsdf::FresnelType::Dielectric:
+      lobe->f0 = Rgb(bsdf::fresnel_f0(lobe->ior));
+      [[fallthrough]];
+    default:
+      lobe->fresnel = bsdf::FresnelType::FilmDielectric;
+  }
 }
 
 void set_principled_roughness(bsdf::Lobe* lobe, float roughness, float anisotropic) {

@@ -83,6 +83,9 @@ inline std::vector<LobeCase> microfacet_cases(float roughness) {
        true, false},
       {"AshikhminShirley", make_lobe(bsdf::LobeType::AshikhminShirley, alpha), false, true, false},
       {"Conductor", make_lobe(bsdf::LobeType::GgxReflection, alpha, bsdf::FresnelType::Conductor), false},
+      {"GlassFilm", make_lobe(bsdf::LobeType::GgxGlass, alpha, bsdf::FresnelType::FilmDielectric, 1.5f), false, true,
+       false},
+      {"MetalFilm", make_lobe(bsdf::LobeType::GgxReflection, alpha, bsdf::FresnelType::FilmMetal), false, true, false},
   };
   for (const size_t i : {size_t{12}, size_t{13}, size_t{14}}) {
     cases[i].lobe.alpha_x = alpha * 2.0f;
@@ -97,6 +100,10 @@ inline std::vector<LobeCase> microfacet_cases(float roughness) {
   cases[4].lobe.multiscatter = true;
   cases[9].lobe.multiscatter = true;
   cases[10].lobe.multiscatter = true;
+  cases[20].lobe.f0 = Rgb(0.04f);
+  cases[20].lobe.film = {400.0f, 1.33f, false};
+  cases[21].lobe.f0 = Rgb(0.9f, 0.6f, 0.3f);
+  cases[21].lobe.film = {400.0f, 1.33f, false};
   return cases;
 }
 
