@@ -27,6 +27,7 @@ class Op(IntEnum):
     METALLIC = 13
     SUBSURFACE = 14
     AOV = 15
+    TOON = 16
     GEOMETRY = 32
     TEX_COORD = 33
     TANGENT = 34
@@ -87,6 +88,8 @@ class Distribution(IntEnum):
 
     SINGLE = 0
     MULTIPLE = 1
+    BECKMANN = 2
+    ASHIKHMIN_SHIRLEY = 3
 
 
 class Subsurface(IntEnum):
@@ -389,18 +392,19 @@ INPUTS = {
     Op.TRANSLUCENT: 2,
     Op.GLOSSY: 6,
     Op.REFRACTION: 4,
-    Op.GLASS: 4,
+    Op.GLASS: 6,
     Op.SHEEN: 3,
     Op.TRANSPARENT: 1,
     Op.HOLDOUT: 0,
     Op.EMISSION: 2,
     Op.MIX_SHADER: 3,
     Op.ADD_SHADER: 2,
-    Op.PRINCIPLED: 26,
+    Op.PRINCIPLED: 28,
     Op.PRINCIPLED_3: 22,
-    Op.METALLIC: 7,
+    Op.METALLIC: 9,
     Op.SUBSURFACE: 7,
     Op.AOV: 2,
+    Op.TOON: 4,
     Op.GEOMETRY: 0,
     Op.TEX_COORD: 0,
     Op.TANGENT: 0,
@@ -474,6 +478,7 @@ OUTPUTS = {
     Op.METALLIC: 1,
     Op.SUBSURFACE: 1,
     Op.AOV: 1,
+    Op.TOON: 1,
     Op.GEOMETRY: 1,
     Op.TEX_COORD: 1,
     Op.TANGENT: 1,

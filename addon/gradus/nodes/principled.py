@@ -7,11 +7,13 @@ added.
 from __future__ import annotations
 
 from .node import NodeView, translator
-from .ops import Op, VectorMath
+from .ops import Distribution, Op, VectorMath
 from .program import NO_NORMAL, Program, Value, constant_color, constant_float
-from .shaders import MULTIPLE_SCATTERING, distribution_mode, subsurface_anisotropy, subsurface_mode
+from .shaders import distribution_mode, subsurface_anisotropy, subsurface_mode, thin_film
 
 _WHITE = constant_color((1.0, 1.0, 1.0))
+_NONE = constant_float(0.0)
+_LEGACY_FILM = 32
 
 
 @translator("ShaderNodeBsdfPrincipled")
@@ -90,9 +92,9 @@ def _since_4(view: NodeView) -> Value:
         )
         if not view.value("Thin Wall").is_zero():
             view.warn_replaced("has a thin wall with subsurface scattering, which is rendered as that of a solid")
-    thickness = view.value("Thin Film Thickness")
-    if not thickness.is_zero():
-        view.warn_replaced("has a thin film, which is ignored")
+    if film := thin_film(view):
+        mode |= 0 if view.version >= (5, 0, 0) else _LEGACY_FILM
+        below = (below or (_NONE,) * 5) + film
     inputs = (
         view.value("Base Color"),
         view.value("Metallic"),
@@ -119,7 +121,6 @@ def _since_4(view: NodeView) -> Value:
     return view.add_closure(Op.PRINCIPLED, inputs + below, mode)
 
 
-_NONE = constant_float(0.0)
 _DEFAULT_INPUTS = (
     constant_color((0.8, 0.8, 0.8)),  # base colour
     _NONE,  # metallic
@@ -151,5 +152,5 @@ def default_surface() -> Program:
     Before 5.0, such surfaces are grey and diffuse, which is the library's own default material (key 0).
     """
     program = Program(name="default_surface")
-    program.surface = program.add(Op.PRINCIPLED, _DEFAULT_INPUTS, MULTIPLE_SCATTERING)
+    program.surface = program.add(Op.PRINCIPLED, _DEFAULT_INPUTS, Distribution.MULTIPLE)
     return program

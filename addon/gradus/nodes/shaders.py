@@ -3,28 +3,22 @@
 from __future__ import annotations
 
 from .node import NodeView, translator
-from .ops import Op, Subsurface
+from .ops import Distribution, Op, Subsurface
 from .program import BLACK_CLOSURE, Value, constant_float
 
-_RENDERED = frozenset({"GGX", "MULTI_GGX", "SHARP"})
-
-
-MULTIPLE_SCATTERING = 1
-"""The mode GRADUS_DISTRIBUTION_MULTIPLE of closures."""
+_DISTRIBUTIONS = {
+    "GGX": Distribution.SINGLE,
+    "MULTI_GGX": Distribution.MULTIPLE,
+    "BECKMANN": Distribution.BECKMANN,
+    "ASHIKHMIN_SHIRLEY": Distribution.ASHIKHMIN_SHIRLEY,
+    "SHARP": Distribution.SINGLE,
+}
+_LEGACY_GLASS = 4
+_CONDUCTOR = 4
 
 
 def distribution_mode(view: NodeView) -> int:
-    """Returns MULTIPLE_SCATTERING or 0.
-
-    Other distributions (Beckmann, Ashikhmin-Shirley) are rendered as GGX with a warning.
-
-    A smooth surface gets no warning, because its distribution has no effect: Blender 3.4 creates glass with Beckmann
-    and a roughness of 0.
-    """
-    distribution = getattr(view.node, "distribution", "GGX")
-    if distribution not in _RENDERED and not roughness(view).is_zero():
-        view.warn_replaced("is rendered with the distribution GGX")
-    return MULTIPLE_SCATTERING if distribution == "MULTI_GGX" else 0
+    return _DISTRIBUTIONS[getattr(view.node, "distribution", "GGX")]
 
 
 def roughness(view: NodeView) -> Value:
@@ -64,6 +58,12 @@ def subsurface_anisotropy(view: NodeView, name: str) -> Value:
     """Returns the anisotropy below a surface. Light scatters backward from Blender 5.2 on."""
     anisotropy = view.value(name)
     return anisotropy if view.version >= (5, 2, 0) else view.clamped(anisotropy)
+
+
+def thin_film(view: NodeView) -> tuple[Value, ...]:
+    """Returns thickness and IOR of the thin film, or nothing if the node has none."""
+    thickness = view.value("Thin Film Thickness")
+    return () if thickness.is_zero() else (thickness, view.value("Thin Film IOR"))
 
 
 @translator("ShaderNodeSubsurfaceScattering")
@@ -107,42 +107,43 @@ def glossy(view: NodeView) -> Value:
 
 @translator("ShaderNodeBsdfGlass")
 def glass(view: NodeView) -> Value:
+    mode = distribution_mode(view) | (_LEGACY_GLASS if view.version < (4, 0, 0) else 0)
     inputs = (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal"))
-    return view.add_closure(Op.GLASS, inputs, distribution_mode(view) | (2 if view.version < (4, 0, 0) else 0))
+    return view.add_closure(Op.GLASS, inputs + thin_film(view), mode)
 
 
 @translator("ShaderNodeBsdfRefraction")
 def refraction(view: NodeView) -> Value:
-    distribution_mode(view)
     inputs = (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal"))
-    return view.add_closure(Op.REFRACTION, inputs)
+    return view.add_closure(Op.REFRACTION, inputs, distribution_mode(view))
 
 
 @translator("ShaderNodeBsdfMetallic")
 def metallic(view: NodeView) -> Value:
-    if getattr(view.node, "fresnel_type", "F82") != "F82":
-        view.warn_replaced("is rendered with base and edge colour instead of the refractive indices of a conductor")
+    conductor = getattr(view.node, "fresnel_type", "F82") == "PHYSICAL_CONDUCTOR"
     inputs = (
-        view.value("Base Color"),
-        view.value("Edge Tint"),
+        view.value("IOR" if conductor else "Base Color"),
+        view.value("Extinction" if conductor else "Edge Tint"),
         view.value("Roughness"),
         view.value("Anisotropy"),
         view.value("Rotation"),
         view.direction("Normal"),
         view.direction("Tangent"),
     )
-    return view.add_closure(Op.METALLIC, inputs, distribution_mode(view))
+    return view.add_closure(Op.METALLIC, inputs + thin_film(view), distribution_mode(view) | (_CONDUCTOR if conductor else 0))
 
 
 @translator("ShaderNodeBsdfSheen", "ShaderNodeBsdfVelvet")
 def sheen(view: NodeView) -> Value:
-    """Translates to the microfiber sheen of Blender 4.0.
+    is_velvet = getattr(view.node, "distribution", "ASHIKHMIN") == "ASHIKHMIN"
+    inputs = (view.value("Color"), view.value("Roughness", "Sigma"), view.direction("Normal"))
+    return view.add_closure(Op.SHEEN, inputs, int(is_velvet))
 
-    The Ashikhmin distribution of Velvet and Sheen nodes is replaced by it.
-    """
-    if getattr(view.node, "distribution", "ASHIKHMIN") == "ASHIKHMIN":
-        view.warn_replaced("is rendered with the distribution Microfiber")
-    return view.add_closure(Op.SHEEN, (view.value("Color"), view.value("Roughness", "Sigma"), view.direction("Normal")))
+
+@translator("ShaderNodeBsdfToon")
+def toon(view: NodeView) -> Value:
+    inputs = (view.value("Color"), view.value("Size"), view.value("Smooth"), view.direction("Normal"))
+    return view.add_closure(Op.TOON, inputs, int(view.node.component == "GLOSSY"))
 
 
 @translator("ShaderNodeBsdfTransparent")

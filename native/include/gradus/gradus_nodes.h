@@ -22,11 +22,11 @@
  *   TRANSLUCENT       color, normal -> closure: Lambertian transmission.
  *   GLOSSY            color, roughness, anisotropy, rotation, normal, tangent -> closure: Microfacet reflection; the
  *                       rotation is in turns. Mode: GradusDistribution.
- *   REFRACTION        color, roughness, ior, normal -> closure: Microfacet refraction.
- *   GLASS             color, roughness, ior, normal -> closure: Microfacet reflection and refraction by Fresnel. Mode:
- *                       GradusDistribution; + 2: as in Blender before 4.0.
- *   SHEEN             color, roughness, normal -> closure: Microfiber sheen; roughness 0 stands for the grazing term of
- *                       Velvet and of Principled before 4.0.
+ *   REFRACTION        color, roughness, ior, normal -> closure: Microfacet refraction. Mode: GradusDistribution.
+ *   GLASS             color, roughness, ior, normal, film thickness, film ior -> closure: Microfacet reflection and
+ *                       refraction by Fresnel. Mode: GradusDistribution; + 4: as in Blender before 4.0.
+ *   SHEEN             color, roughness, normal -> closure: Sheen of fibres. Mode: 0: microfibers; 1: velvet of
+ *                       Ashikhmin; the roughness is its sigma.
  *   TRANSPARENT       color -> closure: Passes rays straight through.
  *   HOLDOUT           - -> closure: Cuts a hole into the alpha of the film.
  *   EMISSION          color, strength -> closure: Emission of a surface, and the background of the world.
@@ -36,22 +36,25 @@
  *   PRINCIPLED        base color, metallic, roughness, ior, diffuse roughness, specular level, specular tint,
  *                       anisotropic, anisotropic rotation, transmission, coat weight, coat roughness, coat ior, coat
  *                       tint, sheen weight, sheen roughness, sheen tint, emission, normal, coat normal, tangent,
- *                       subsurface weight, subsurface radius, subsurface scale, subsurface ior, subsurface anisotropy
- *                       -> closure: Principled BSDF of Blender 4.0 and later without alpha, for which it is mixed with
- *                       TRANSPARENT. The emission is colour times strength. Mode: GradusDistribution +
- *                       GradusSubsurface.
+ *                       subsurface weight, subsurface radius, subsurface scale, subsurface ior, subsurface anisotropy,
+ *                       film thickness, film ior -> closure: Principled BSDF of Blender 4.0 and later without alpha,
+ *                       for which it is mixed with TRANSPARENT. The emission is colour times strength. Mode:
+ *                       GradusDistribution + GradusSubsurface; + 32: the thin film is that of Blender before 5.0.
  *   PRINCIPLED_3      base color, diffuse color, metallic, specular, specular tint, roughness, anisotropic, anisotropic
  *                       rotation, sheen, sheen tint, clearcoat, clearcoat roughness, ior, transmission, transmission
  *                       roughness, normal, clearcoat normal, tangent, subsurface, subsurface radius, subsurface ior,
  *                       subsurface anisotropy -> closure: Principled BSDF before Blender 4.0 without alpha and
  *                       emission. The diffuse colour is the base colour mixed with the subsurface colour. Mode:
  *                       GradusDistribution + GradusSubsurface.
- *   METALLIC          base color, edge tint, roughness, anisotropy, rotation, normal, tangent -> closure: Metal with
- *                       the F82 tint model. Mode: GradusDistribution.
+ *   METALLIC          base color, edge tint, roughness, anisotropy, rotation, normal, tangent, film thickness, film ior
+ *                       -> closure: Metal with the F82 tint model, or a conductor. Mode: GradusDistribution; + 4: a
+ *                       conductor, whose refractive index and extinction take the place of the two colours.
  *   SUBSURFACE        color, scale, radius, ior, roughness, anisotropy, normal -> closure: Light that enters the object
  *                       and leaves it elsewhere. Mode: GradusSubsurface.
  *   AOV               color, value -> closure: Output to an AOV, which GradusMaterial.aovs refers to; it scatters
  *                       nothing. Mode: index of the channel.
+ *   TOON              color, size, smooth, normal -> closure: A cone of light with a hard or linear edge. Mode: 0:
+ *                       around the normal; 1: around the mirror direction.
  *
  * What is known at the point.
  *   GEOMETRY          - -> value: A quantity of the surface point. Mode: GradusGeometryMode.
@@ -151,18 +154,19 @@
   X(TRANSLUCENT, 1, 2, 1, 1) \
   X(GLOSSY, 2, 6, 1, 1) \
   X(REFRACTION, 3, 4, 1, 1) \
-  X(GLASS, 4, 4, 1, 1) \
+  X(GLASS, 4, 6, 1, 1) \
   X(SHEEN, 5, 3, 1, 1) \
   X(TRANSPARENT, 6, 1, 1, 1) \
   X(HOLDOUT, 7, 0, 1, 1) \
   X(EMISSION, 8, 2, 1, 1) \
   X(MIX_SHADER, 9, 3, 1, 1) \
   X(ADD_SHADER, 10, 2, 1, 1) \
-  X(PRINCIPLED, 11, 26, 1, 1) \
+  X(PRINCIPLED, 11, 28, 1, 1) \
   X(PRINCIPLED_3, 12, 22, 1, 1) \
-  X(METALLIC, 13, 7, 1, 1) \
+  X(METALLIC, 13, 9, 1, 1) \
   X(SUBSURFACE, 14, 7, 1, 1) \
   X(AOV, 15, 2, 1, 1) \
+  X(TOON, 16, 4, 1, 1) \
   X(GEOMETRY, 32, 0, 1, 0) \
   X(TEX_COORD, 33, 0, 1, 0) \
   X(TANGENT, 34, 0, 1, 0) \
@@ -224,8 +228,10 @@ typedef enum GradusOp { GRADUS_OPS(GRADUS_OP_ENUM) GRADUS_OP_LIMIT = 128 } Gradu
 
 /* Microfacet distribution of a closure. */
 typedef enum GradusDistribution {
-  GRADUS_DISTRIBUTION_SINGLE = 0,  /* GGX with single scattering; it also stands for Beckmann and Ashikhmin-Shirley. */
-  GRADUS_DISTRIBUTION_MULTIPLE = 1 /* GGX with the energy of multiple scattering. */
+  GRADUS_DISTRIBUTION_SINGLE = 0,           /* GGX with single scattering. */
+  GRADUS_DISTRIBUTION_MULTIPLE = 1,         /* GGX with the energy of multiple scattering. */
+  GRADUS_DISTRIBUTION_BECKMANN = 2,         /* Beckmann. */
+  GRADUS_DISTRIBUTION_ASHIKHMIN_SHIRLEY = 3 /* The anisotropic Phong model of Ashikhmin and Shirley, for reflection. */
 } GradusDistribution;
 
 /* Method of subsurface scattering. It is added to the distribution of a closure. */

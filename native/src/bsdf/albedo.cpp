@@ -20,6 +20,17 @@ float mean_dielectric(float eta) {
   return (eta - 1.0f) / (4.08567f + 1.00071f * eta);
 }
 
+// Returns the F82 term averaged over the cosine-weighted hemisphere, by 2∫(1−c)^5 c dc = 1/21 and 2∫c(1−c)^6 c dc =
+// 1/126.
+Rgb mean_f82(const Rgb& f0, const Rgb& tint) {
+  return f0 + (Rgb(1.0f) - f0) * (1.0f / 21.0f) - f82_factor(f0, tint) * (1.0f / 126.0f);
+}
+
+// Returns the albedo of a reflection lobe with the F82 term.
+Rgb f82_albedo(const GgxMoments& m, const Rgb& f0, const Rgb& tint) {
+  return glm::max(f0 * (m.one - m.schlick) + Rgb(m.schlick) - f82_factor(f0, tint) * m.f82, 0.0f);
+}
+
 // Returns the Fresnel term of a lobe averaged over the cosine-weighted hemisphere. It colours the light that bounces
 // between microfacets.
 Rgb mean_fresnel(const Lobe& lobe) {
@@ -28,22 +39,29 @@ Rgb mean_fresnel(const Lobe& lobe) {
       return lobe.f0;
     case FresnelType::Dielectric:
       return Rgb(mean_dielectric(lobe.ior));
+    // A film changes the mean little.
+    case FresnelType::FilmDielectric:
     case FresnelType::Schlick: {
       const float f0 = fresnel_f0(lobe.ior);
       const float s =
           f0 < 1e-6f ? 1.0f / 21.0f : std::clamp((mean_dielectric(lobe.ior) - f0) / (1.0f - f0), 0.0f, 1.0f);
       return glm::mix(lobe.f0, lobe.f90, s);
     }
-    // The averages are 2∫(1−c)^5 c dc = 1/21 and 2∫c(1−c)^6 c dc = 1/126.
+    case FresnelType::FilmMetal:
     case FresnelType::PrincipledMetal:
-      return lobe.f0 + (Rgb(1.0f) - lobe.f0) * (1.0f / 21.0f) - f82_factor(lobe.f0, lobe.f90) * (1.0f / 126.0f);
+      return mean_f82(lobe.f0, lobe.f90);
+    case FresnelType::FilmConductor:
+    case FresnelType::Conductor: {
+      const F82Fit fit = fit_conductor(lobe.f0, lobe.f90);
+      return mean_f82(fit.f0, fit.tint);
+    }
   }
   return Rgb(1.0f);
 }
 
 // Returns the single-scattering albedo of the reflection side, without the lobe's weight.
 Rgb single_reflection(const Lobe& lobe, float alpha, float cosine) {
-  const bool two_sided = lobe.type == LobeType::GgxGlass;
+  const bool two_sided = sides_of(lobe.type) == kBothSides;
   if (lobe.fresnel == FresnelType::Dielectric || (two_sided && lobe.fresnel == FresnelType::None)) {
     return Rgb(glass_albedo(alpha, cosine, lobe.ior).reflected);
   }
@@ -59,7 +77,15 @@ Rgb single_reflection(const Lobe& lobe, float alpha, float cosine) {
       return lobe.f0 * (m.one - position) + lobe.f90 * position;
     }
     case FresnelType::PrincipledMetal:
-      return glm::max(lobe.f0 * (m.one - m.schlick) + Rgb(m.schlick) - f82_factor(lobe.f0, lobe.f90) * m.f82, 0.0f);
+      return f82_albedo(m, lobe.f0, lobe.f90);
+    case FresnelType::Conductor: {
+      const F82Fit fit = fit_conductor(lobe.f0, lobe.f90);
+      return f82_albedo(m, fit.f0, fit.tint);
+    }
+    case FresnelType::FilmDielectric:
+    case FresnelType::FilmMetal:
+    case FresnelType::FilmConductor:
+      return m.one * fresnel_film(lobe, cosine);
     default:
       return Rgb(m.one);
   }
@@ -75,10 +101,11 @@ Rgb reflected_once(const Lobe& lobe, float cosine) {
 // term it is the dielectric albedo, scaled to the energy that the Schlick term does not reflect.
 Rgb single_transmission(const Lobe& lobe, float alpha, float cosine) {
   const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
-  if (lobe.type == LobeType::GgxRefraction && lobe.fresnel == FresnelType::None) {
+  if (sides_of(lobe.type) == kTransmits && lobe.fresnel == FresnelType::None) {
     return Rgb(glass.crossing) * lobe.transmission_tint;
   }
-  if (lobe.fresnel == FresnelType::Schlick && glass.transmitted > 0.0f) {
+  const bool coloured = lobe.fresnel == FresnelType::Schlick || lobe.fresnel == FresnelType::FilmDielectric;
+  if (coloured && glass.transmitted > 0.0f) {
     const Rgb reflected = single_reflection(lobe, alpha, cosine);
     const Rgb share = (Rgb(glass.reflected + glass.transmitted) - reflected) / glass.transmitted;
     return glm::clamp(share, 0.0f, 1.0f / std::max(glass.transmitted, 1e-3f)) * glass.transmitted *
@@ -99,9 +126,9 @@ Rgb multiscatter_energy(const Lobe& lobe, float cosine) {
     return Rgb(1.0f);
   }
   const float alpha = mean_alpha(lobe);
-  if (lobe.type != LobeType::GgxReflection) {
+  if (sides_of(lobe.type) & kTransmits) {
     const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
-    const bool alone = lobe.type == LobeType::GgxRefraction;
+    const bool alone = sides_of(lobe.type) == kTransmits;
     return Rgb(1.0f / std::clamp(alone ? glass.crossing : glass.reflected + glass.transmitted, 0.3f, 1.0f));
   }
   // Multiple scattering scales single scattering (Turquin 2019, "Practical multiple scattering compensation for
@@ -118,17 +145,25 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {
   const Rgb scale = lobe.weight * lobe.energy;
   switch (lobe.type) {
     case LobeType::Diffuse:
+    case LobeType::DiffuseToon:
+    case LobeType::GlossyToon:
+    case LobeType::Velvet:
     case LobeType::Subsurface:
       return {lobe.weight, Rgb(0.0f)};
     case LobeType::Translucent:
       return {Rgb(0.0f), lobe.weight};
     case LobeType::Sheen:
       return {lobe.weight * sheen_albedo(lobe, cosine), Rgb(0.0f)};
+    // The tables of GGX stand for the other distributions, too.
     case LobeType::GgxReflection:
+    case LobeType::BeckmannReflection:
+    case LobeType::AshikhminShirley:
       return {scale * reflected_once(lobe, cosine), Rgb(0.0f)};
     case LobeType::GgxRefraction:
+    case LobeType::BeckmannRefraction:
       return {Rgb(0.0f), scale * single_transmission(lobe, mean_alpha(lobe), cosine)};
     case LobeType::GgxGlass:
+    case LobeType::BeckmannGlass:
       return {scale * single_reflection(lobe, mean_alpha(lobe), cosine),
               scale * single_transmission(lobe, mean_alpha(lobe), cosine)};
     default:
@@ -143,7 +178,7 @@ Rgb lobe_albedo(Lobe* lobe, const Vec3& wo) {
   prepare_lobe(&prepared, glm::dot(lobe->normal, wo) < 0.0f ? -lobe->normal : lobe->normal, wo);
   const float cosine = glm::dot(prepared.normal, wo);
   float kept = 1.0f;
-  if (prepared.type == LobeType::GgxReflection) {
+  if (is_microfacet(prepared.type) && !is_dirac(prepared.type) && sides_of(prepared.type) == kReflects) {
     prepared.ior =
         prepared.fresnel == FresnelType::Schlick ? std::max(prepared.ior, 1.0f / prepared.ior) : prepared.ior;
     kept = prepared.multiscatter ? 1.0f : ggx_moments(mean_alpha(prepared), cosine).one;

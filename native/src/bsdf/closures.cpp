@@ -19,29 +19,13 @@ constexpr float kSmallestShare = 0.01f;
 
 // Returns the perfectly smooth counterpart of a microfacet type.
 LobeType dirac_of(LobeType type) {
-  switch (type) {
-    case LobeType::GgxReflection:
+  switch (sides_of(type)) {
+    case kReflects:
       return LobeType::DiracReflection;
-    case LobeType::GgxRefraction:
+    case kTransmits:
       return LobeType::DiracRefraction;
-    case LobeType::GgxGlass:
+    default:
       return LobeType::DiracGlass;
-    default:
-      return type;
-  }
-}
-
-uint8_t sides_of(LobeType type) {
-  switch (type) {
-    case LobeType::Translucent:
-    case LobeType::GgxRefraction:
-    case LobeType::DiracRefraction:
-      return kTransmits;
-    case LobeType::GgxGlass:
-    case LobeType::DiracGlass:
-      return kBothSides;
-    default:
-      return kReflects;
   }
 }
 
@@ -49,8 +33,8 @@ uint8_t sides_of(LobeType type) {
 // or if it transmits without a step in the IOR.
 void limit_microfacets(Lobe* lobe) {
   lobe->ior = std::clamp(is_finite(lobe->ior) ? lobe->ior : 1.0f, 1e-2f, 1e2f);
-  lobe->alpha_x = std::clamp(is_finite(lobe->alpha_x) ? lobe->alpha_x : 1.0f, 0.0f, 4.0f);
-  lobe->alpha_y = std::clamp(is_finite(lobe->alpha_y) ? lobe->alpha_y : 1.0f, 0.0f, 4.0f);
+  lobe->alpha_x = std::clamp(is_finite(lobe->alpha_x) ? lobe->alpha_x : 1.0f, 0.0f, 1.0f);
+  lobe->alpha_y = std::clamp(is_finite(lobe->alpha_y) ? lobe->alpha_y : 1.0f, 0.0f, 1.0f);
   const bool stepless = std::abs(lobe->ior - 1.0f) < kSmallestIorStep;
   if (stepless && sides_of(lobe->type) & kTransmits) {
     lobe->ior = 1.0f;
@@ -84,7 +68,6 @@ void Closures::make_room() {
   if (count_ < kMaxLobes) {
     return;
   }
-  // There are fewer combinations of type and pass than places, so at least two lobes can be merged.
   size_t first = 0, second = 1;
   float minimum = kInfinity;
   for (size_t i = 0; i < lobes_.size(); i++) {
@@ -119,7 +102,7 @@ void Closures::drop_black_lobes() {
 void Closures::keep_originals() {
   for (; prepared_ < count_; prepared_++) {
     const Lobe& lobe = lobes_[static_cast<size_t>(prepared_)];
-    original_[static_cast<size_t>(prepared_)] = {lobe.type, lobe.normal, lobe.ior};
+    original_[static_cast<size_t>(prepared_)] = {lobe.type, lobe.normal, lobe.ior, lobe.film.ior};
   }
 }
 
@@ -151,7 +134,10 @@ void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo) {
   }
   if (is_microfacet(lobe->type)) {
     limit_microfacets(lobe);
-    lobe->ior = inside ? 1.0f / lobe->ior : lobe->ior;
+    if (inside) {
+      lobe->ior = 1.0f / lobe->ior;
+      lobe->film.ior *= lobe->ior;
+    }
   }
   if (is_microfacet(lobe->type) || lobe->type == LobeType::Subsurface) {
     normal = keep_reflection_above(normal, geometric_normal, wo);
@@ -167,6 +153,7 @@ void Closures::prepare(int index, const Vec3& wo) {
   lobe.type = original.type;
   lobe.normal = original.normal;
   lobe.ior = original.ior;
+  lobe.film.ior = original.film_ior;
   prepare_lobe(&lobe, geometric_normal_, wo);
 }
 

@@ -24,19 +24,57 @@ enum class LightPass : uint8_t { Diffuse = 0, Glossy = 1, Transmission = 2 };
 
 enum class LobeType : uint8_t {
   Diffuse,  // Lambert, or Oren-Nayar with roughness > 0
-  Translucent,
   Sheen,
+  DiffuseToon,
+  Translucent,
+  GlossyToon,
+  Velvet,
   Subsurface,
   GgxReflection,
   GgxRefraction,
-  GgxGlass,         // reflection and refraction of one dielectric interface, chosen by Fresnel
+  GgxGlass,  // reflection and refraction of one dielectric interface, chosen by Fresnel
+  BeckmannReflection,
+  BeckmannRefraction,
+  BeckmannGlass,
+  AshikhminShirley,
   DiracReflection,  // roughness 0
   DiracRefraction,
   DiracGlass,
   Count
 };
 
-enum class FresnelType : uint8_t { None, Dielectric, Schlick, PrincipledMetal };
+// Bit mask of the sides of the surface to which a lobe scatters.
+enum : uint8_t { kReflects = 1, kTransmits = 2, kBothSides = 3 };
+constexpr uint8_t sides_of(LobeType type) {
+  switch (type) {
+    case LobeType::Translucent:
+    case LobeType::GgxRefraction:
+    case LobeType::BeckmannRefraction:
+    case LobeType::DiracRefraction:
+      return kTransmits;
+    case LobeType::GgxGlass:
+    case LobeType::BeckmannGlass:
+    case LobeType::DiracGlass:
+      return kBothSides;
+    default:
+      return kReflects;
+  }
+}
+constexpr bool is_dirac(LobeType type) { return type >= LobeType::DiracReflection; }
+constexpr bool is_microfacet(LobeType type) { return type >= LobeType::GgxReflection; }
+// Returns whether a lobe's bumps darken gradually where they face away from the surface.
+constexpr bool has_soft_bumps(LobeType type) { return type <= LobeType::DiffuseToon; }
+
+enum class FresnelType : uint8_t {
+  None,
+  Dielectric,
+  Schlick,
+  PrincipledMetal,
+  Conductor,
+  FilmDielectric,
+  FilmMetal,
+  FilmConductor
+};
 
 // How light travels below the surface (subsurface.h): the methods of Cycles, in the order of GradusSubsurface. They
 // differ in how light enters, and in the medium that stands for an albedo and a radius.
@@ -60,6 +98,13 @@ struct KnownAlbedo {
   Rgb reflected = Rgb(0.0f);
 };
 
+// A thin film on microfacets.
+struct ThinFilm {
+  float thickness = 0.0f;  // nm
+  float ior = 1.0f;        // IOR over that outside; after finish() over that of the side of wo
+  bool fitted = false;     // whether the observer is a fit, as in Blender before 5.0
+};
+
 // One lobe. Its frame is the normal and, where it is anisotropic, the tangent.
 //
 // The types use these fields:
@@ -72,14 +117,20 @@ struct KnownAlbedo {
 //   light leaves by the exit part of Disney's diffuse lobe.
 // - Sheen: alpha_x is the sheen roughness, not squared. With fresnel Schlick it is the grazing term of Blender before
 //   4.0.
-// - Ggx and Dirac types: alpha_x, alpha_y, ior and fresnel. finish() turns a Ggx lobe into a Dirac lobe if its alpha is
-//   too small for floats. Glass reflects with weight·F and transmits with weight·transmission_tint·(1 − F).
+// - DiffuseToon, GlossyToon: alpha_x is the angle of the cone of full brightness in radians, and alpha_y that in which
+//   it fades.
+// - Velvet: alpha_x is the standard deviation of the slopes' cotangent.
+// - Ggx, Beckmann and Dirac types: alpha_x, alpha_y, ior and fresnel. finish() turns a lobe into a Dirac lobe if its
+//   alpha is too small for floats. Glass reflects with weight·F and transmits with weight·transmission_tint·(1 − F).
+// - AshikhminShirley: alpha_x and alpha_y, from which its exponents follow.
 //
 // The Fresnel types are:
 // - Dielectric: the dielectric term of ior.
 // - Schlick: mix(f0, f90, s), where s is the dielectric curve of ior scaled to 0…1, as in Blender 4. For an ior of 1, s
 //   is Schlick's fifth power.
 // - PrincipledMetal: f0, and f90 as the tint at 82 degrees. A tint of 1 gives the plain Schlick term.
+// - Conductor: f0 is the refractive index of each channel, and f90 its extinction.
+// - FilmDielectric, FilmMetal, FilmConductor: Schlick with an f90 of 1, PrincipledMetal and Conductor below `film`.
 //
 // With multiscatter the Fresnel term colours the light that bounces between microfacets. A lobe without a Fresnel term
 // takes f0 as that colour, which is also a factor of its weight (Cycles' MULTI_GGX).
@@ -98,6 +149,7 @@ struct Lobe {
   float ior = 1.0f;    // IOR inside over outside; after finish() that of the far side over the side of wo
   Rgb f0 = Rgb(1.0f);  // reflectance at normal incidence
   Rgb f90 = Rgb(1.0f);
+  ThinFilm film;
   Rgb transmission_tint = Rgb(1.0f);  // factor of the transmission side of glass
   float sample_weight = 0.0f;         // weight for sampling, set by finish()
   Rgb energy = Rgb(1.0f);             // factor of multiple scattering, set by finish()
@@ -211,6 +263,7 @@ class Closures {
     LobeType type;
     Vec3 normal;
     float ior;
+    float film_ior;
   };
   void make_room();
   void drop_black_lobes();

@@ -28,8 +28,7 @@ bool dirac_direction(const Lobe& lobe, const Vec3& wo, bool transmitted, Vec3* w
 }
 
 bool scatters_within(const Lobe& lobe, ScatterClass c) {
-  const bool glass = lobe.type == LobeType::GgxGlass || lobe.type == LobeType::DiracGlass;
-  if (c == ScatterClass::Transmission && glass) {
+  if (c == ScatterClass::Transmission && sides_of(lobe.type) == kBothSides) {
     return lobe.scatter_class != ScatterClass::Diffuse;
   }
   return lobe.scatter_class == c;

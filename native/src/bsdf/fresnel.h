@@ -60,6 +60,31 @@ inline Rgb fresnel_f82(float cosine, const Rgb& f0, const Rgb& tint) {
   return glm::clamp(schlick - f82_factor(f0, tint) * (cosine * s5 * s), 0.0f, 1.0f);
 }
 
+// Returns the reflectance of a conductor with the refractive index n + ik of each channel, for unpolarised light from
+// the vacuum (Born and Wolf §14.4.1, in real numbers).
+inline Rgb fresnel_conductor(float cosine, const Rgb& n, const Rgb& k) {
+  const float cos2 = cosine * cosine, sin2 = 1.0f - cos2;
+  const Rgb difference = n * n - k * k - sin2;
+  const Rgb length = glm::sqrt(difference * difference + 4.0f * n * n * k * k);
+  const Rgb twice = glm::sqrt(2.0f * glm::max(length + difference, 0.0f)) * cosine;
+  const Rgb perpendicular = (length + cos2 - twice) / (length + cos2 + twice);
+  const Rgb along = length * cos2 + sin2 * sin2, across = twice * sin2;
+  return 0.5f * perpendicular * (1.0f + (along - across) / (along + across));
+}
+
+// The F82 model that agrees with a conductor at 0° and 82°. Its albedo and its mean have closed forms.
+struct F82Fit {
+  Rgb f0, tint;
+};
+inline F82Fit fit_conductor(const Rgb& n, const Rgb& k) {
+  const Rgb f0 = fresnel_conductor(1.0f, n, k);
+  const Rgb schlick = f0 + (Rgb(1.0f) - f0) * pow5(6.0f / 7.0f);
+  return {f0, fresnel_conductor(1.0f / 7.0f, n, k) / schlick};
+}
+
+// Returns the Fresnel term of a finished lobe with a thin film.
+Rgb fresnel_film(const Lobe& lobe, float cosine);
+
 // Returns the Fresnel term of a finished lobe, where `cosine` is that of the ray and the microfacet normal.
 inline Rgb lobe_fresnel(const Lobe& lobe, float cosine) {
   switch (lobe.fresnel) {
@@ -71,6 +96,12 @@ inline Rgb lobe_fresnel(const Lobe& lobe, float cosine) {
       return glm::mix(lobe.f0, lobe.f90, schlick_position(cosine, lobe.ior));
     case FresnelType::PrincipledMetal:
       return fresnel_f82(cosine, lobe.f0, lobe.f90);
+    case FresnelType::Conductor:
+      return fresnel_conductor(cosine, lobe.f0, lobe.f90);
+    case FresnelType::FilmDielectric:
+    case FresnelType::FilmMetal:
+    case FresnelType::FilmConductor:
+      return fresnel_film(lobe, cosine);
   }
   return Rgb(1.0f);
 }
@@ -84,13 +115,13 @@ struct FresnelSplit {
   Rgb transmitted;
 };
 inline FresnelSplit lobe_fresnel_split(const Lobe& lobe, float cosine) {
-  const bool two_sided = lobe.type == LobeType::GgxGlass || lobe.type == LobeType::DiracGlass;
+  const uint8_t sides = sides_of(lobe.type);
   const bool crosses = refracts(cosine, lobe.ior);
-  if (!two_sided && (lobe.type == LobeType::GgxRefraction || lobe.type == LobeType::DiracRefraction)) {
+  if (sides == kTransmits) {
     const Rgb passed = lobe.fresnel == FresnelType::None ? Rgb(1.0f) : Rgb(1.0f) - lobe_fresnel(lobe, cosine);
     return {Rgb(0.0f), crosses ? passed * lobe.transmission_tint : Rgb(0.0f)};
   }
-  if (!two_sided) {
+  if (sides == kReflects) {
     return {lobe_fresnel(lobe, cosine), Rgb(0.0f)};
   }
   // A glass lobe without a Fresnel type is dielectric.

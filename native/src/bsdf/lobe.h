@@ -7,9 +7,6 @@
 
 namespace gradus::bsdf {
 
-// Bit mask of the sides of the surface to which a lobe scatters.
-enum : uint8_t { kReflects = 1, kTransmits = 2, kBothSides = 3 };
-
 // Evaluates f·|cos| of the given sides of a smooth lobe, including its weight, and the density of the sampling function
 // with the same sides.
 using EvaluateLobe = BsdfEval (*)(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides);
@@ -39,30 +36,28 @@ bool sample_sheen(const Lobe& lobe, const Vec3& wo, float u_side, const Vec2& u,
 // Returns the directional albedo of a sheen lobe without its weight, for the cosine of wo.
 float sheen_albedo(const Lobe& lobe, float cosine);
 
-BsdfEval evaluate_ggx_reflection(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides);
-bool sample_ggx_reflection(const Lobe& lobe, const Vec3& wo, float u_side, const Vec2& u, uint8_t sides, Vec3* wi);
+BsdfEval evaluate_toon(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides);
+bool sample_toon(const Lobe& lobe, const Vec3& wo, float u_side, const Vec2& u, uint8_t sides, Vec3* wi);
 
-BsdfEval evaluate_ggx_refraction(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides);
-bool sample_ggx_refraction(const Lobe& lobe, const Vec3& wo, float u_side, const Vec2& u, uint8_t sides, Vec3* wi);
+BsdfEval evaluate_velvet(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides);
+bool sample_velvet(const Lobe& lobe, const Vec3& wo, float u_side, const Vec2& u, uint8_t sides, Vec3* wi);
 
-BsdfEval evaluate_ggx_glass(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides);
-bool sample_ggx_glass(const Lobe& lobe, const Vec3& wo, float u_side, const Vec2& u, uint8_t sides, Vec3* wi);
+BsdfEval evaluate_ashikhmin_shirley(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t sides);
+bool sample_ashikhmin_shirley(const Lobe& lobe, const Vec3& wo, float u_side, const Vec2& u, uint8_t sides, Vec3* wi);
 
 // Computes the direction and the coefficient, including the weight, of one side of a Dirac lobe. Returns false if the
 // lobe does not scatter wo to that side.
 bool dirac_direction(const Lobe& lobe, const Vec3& wo, bool transmitted, Vec3* wi, Rgb* coefficient);
-
-inline bool is_dirac(LobeType type) { return type >= LobeType::DiracReflection; }
-inline bool is_microfacet(LobeType type) { return type >= LobeType::GgxReflection; }
 
 // Completes one lobe: flips its normal to the side of `geometric_normal` and wo, clamps its inputs to their ranges,
 // makes it Dirac where floats cannot represent it, and sets `energy`.
 void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo);
 
 // Returns the cost of merging two lobes (Ward, "Hierarchical Grouping to Optimize an Objective Function", 1963). It is
-// 0 for equal shapes, small if one of the lobes is weak, and infinite for lobes of different type or pass.
+// 0 for equal shapes, small if one of the lobes is weak, and large for lobes of different type or pass.
 float merge_cost(const Lobe& a, const Lobe& b);
 // Merges two lobes that are not finished into one with their mean shape and, at normal incidence, their total albedo.
+// Lobes of different type or pass take the shape of the heavier one.
 Lobe merged(const Lobe& a, const Lobe& b);
 
 // Directional albedos of both sides of a lobe.

@@ -3,8 +3,11 @@
 #include <array>
 #include <cmath>
 
+#include "bsdf/beckmann.h"
 #include "bsdf/closures.h"
+#include "bsdf/ggx.h"
 #include "bsdf/lobe.h"
+#include "bsdf/microfacets.h"
 #include "bsdf/shading_frame.h"
 #include "bsdf/shading_normal.h"
 
@@ -18,12 +21,19 @@ struct LobeFunctions {
 // The functions of each LobeType, in its order. Dirac lobes and subsurface scattering have none.
 constexpr std::array<LobeFunctions, static_cast<size_t>(LobeType::Count)> kFunctions = {{
     {evaluate_diffuse, sample_diffuse},
-    {evaluate_translucent, sample_translucent},
     {evaluate_sheen, sample_sheen},
+    {evaluate_toon, sample_toon},
+    {evaluate_translucent, sample_translucent},
+    {evaluate_toon, sample_toon},
+    {evaluate_velvet, sample_velvet},
     {nullptr, nullptr},
-    {evaluate_ggx_reflection, sample_ggx_reflection},
-    {evaluate_ggx_refraction, sample_ggx_refraction},
-    {evaluate_ggx_glass, sample_ggx_glass},
+    {evaluate_reflection<Ggx>, sample_reflection<Ggx>},
+    {evaluate_refraction<Ggx>, sample_refraction<Ggx>},
+    {evaluate_glass<Ggx>, sample_glass<Ggx>},
+    {evaluate_reflection<Beckmann>, sample_reflection<Beckmann>},
+    {evaluate_refraction<Beckmann>, sample_refraction<Beckmann>},
+    {evaluate_glass<Beckmann>, sample_glass<Beckmann>},
+    {evaluate_ashikhmin_shirley, sample_ashikhmin_shirley},
     {nullptr, nullptr},
     {nullptr, nullptr},
     {nullptr, nullptr},
@@ -32,11 +42,12 @@ const LobeFunctions& functions_of(const Lobe& lobe) { return kFunctions[static_c
 
 // Returns the light pass of one side of a lobe. As in Cycles, the reflection side of glass is glossy.
 size_t pass_of(const Lobe& lobe, bool transmitted) {
-  const bool reflecting_glass = !transmitted && (lobe.type == LobeType::GgxGlass || lobe.type == LobeType::DiracGlass);
+  const bool reflecting_glass = !transmitted && sides_of(lobe.type) == kBothSides;
   return static_cast<size_t>(reflecting_glass && lobe.pass == LightPass::Transmission ? LightPass::Glossy : lobe.pass);
 }
 
-bool is_diffuse(const Lobe& lobe) { return lobe.pass == LightPass::Diffuse; }
+// Returns whether a bounce is diffuse. As in Cycles, that of velvet is, although its light is in the glossy passes.
+bool is_diffuse(const Lobe& lobe) { return lobe.pass == LightPass::Diffuse || lobe.type == LobeType::Velvet; }
 
 // Evaluates a lobe in its frame. It must not be inlined: sample() and evaluate() have to agree, and the density of a
 // sharp lobe depends on where the compiler contracts multiplications and additions.
@@ -64,7 +75,7 @@ inline bool Closures::crosses(const Vec3& wi) const { return glm::dot(geometric_
   }
   BsdfEval eval = is_lambert(source) ? evaluate_lambert(source, cos_i) : evaluate_in_frame(source, wo, wi, entry.sides);
   eval.pdf *= entry.probability;
-  if (source.type == LobeType::Diffuse && smooth_normal_ != Vec3(0.0f) && smooth_normal_ != source.normal) {
+  if (has_soft_bumps(source.type) && smooth_normal_ != Vec3(0.0f) && smooth_normal_ != source.normal) {
     eval.value *= bump_shadowing(smooth_normal_, source.normal, wi);
   }
   return eval;

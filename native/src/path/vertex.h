@@ -32,8 +32,7 @@ inline light::Receiver receiver_of(const Vertex& vertex) {
   const bsdf::Closures& closures = vertex.shade.closures;
   for (int i = 0; i < closures.count(); ++i) {
     const bsdf::LobeType type = closures.lobe(i).type;
-    receiver.transmits |= type == bsdf::LobeType::Translucent || type == bsdf::LobeType::GgxRefraction ||
-                          type == bsdf::LobeType::GgxGlass;
+    receiver.transmits |= !bsdf::is_dirac(type) && (bsdf::sides_of(type) & bsdf::kTransmits) != 0;
   }
   return receiver;
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "image/observer.h"
 #include "shading/op_functions.h"
 #include "shading/sky/spectrum.h"
 
@@ -19,7 +20,7 @@ Rgb blackbody(float kelvin) {
     const double spectrum = 1.0 / (std::pow(nm * 1e-2, 5.0) * std::expm1(0.01438777 / (nm * 1e-9 * t)));
     xyz += glm::dvec3(kObserver[i][0], kObserver[i][1], kObserver[i][2]) * spectrum;
   }
-  return glm::max(xyz_to_rgb(Vec3(xyz / xyz.y)), Rgb(0.0f));
+  return glm::max(image::xyz_to_rgb(Vec3(xyz / xyz.y)), Rgb(0.0f));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "shading/closure_ops.h"
 
+#include "bsdf/fresnel.h"
 #include "shading/context_ops.h"
 #include "shading/rotation.h"
 #include "shading/scalar.h"
@@ -9,6 +10,35 @@ namespace {
 
 // Radii below this are too small for a walk: light leaves where it enters.
 constexpr float kSmallestRadius = 1e-8f;
+
+// Mode of GLASS: as in Blender before 4.0. Mode of METALLIC: a conductor.
+constexpr uint32_t kLegacyGlass = 4, kConductor = 4;
+
+// Returns the GradusDistribution in the mode of an operation.
+uint32_t distribution_of(const ClosureArgs& args) { return args.mode & 3; }
+
+bsdf::LobeType reflection_type(const ClosureArgs& args) {
+  switch (distribution_of(args)) {
+    case GRADUS_DISTRIBUTION_BECKMANN:
+      return bsdf::LobeType::BeckmannReflection;
+    case GRADUS_DISTRIBUTION_ASHIKHMIN_SHIRLEY:
+      return bsdf::LobeType::AshikhminShirley;
+    default:
+      return bsdf::LobeType::GgxReflection;
+  }
+}
+
+bsdf::LobeType refraction_type(const ClosureArgs& args) {
+  const bool beckmann = distribution_of(args) == GRADUS_DISTRIBUTION_BECKMANN;
+  return beckmann ? bsdf::LobeType::BeckmannRefraction : bsdf::LobeType::GgxRefraction;
+}
+
+bsdf::LobeType glass_type(const ClosureArgs& args) {
+  const bool beckmann = distribution_of(args) == GRADUS_DISTRIBUTION_BECKMANN;
+  return beckmann ? bsdf::LobeType::BeckmannGlass : bsdf::LobeType::GgxGlass;
+}
+
+bool is_multiscatter(const ClosureArgs& args) { return distribution_of(args) == GRADUS_DISTRIBUTION_MULTIPLE; }
 
 Rgb non_negative(const Vec3& c) { return glm::max(c, Vec3(0.0f)); }
 
@@ -24,29 +54,36 @@ void add_diffuse(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
 
 void add_glossy(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   const Vec3 normal = facing_normal(c, args.v(4));
-  bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy,
-                              args.weight * non_negative(args.v(0)), normal);
+  bsdf::Lobe* lobe =
+      add_lobe(result, reflection_type(args), bsdf::LightPass::Glossy, args.weight * non_negative(args.v(0)), normal);
   if (!lobe) return;
   set_glossy_roughness(lobe, args.f(1), args.f(2));
   if (args.f(2) != 0.0f) lobe->tangent = turned_tangent(c, args.v(5), normal, args.f(3));
-  lobe->multiscatter = args.mode & GRADUS_DISTRIBUTION_MULTIPLE;
+  lobe->multiscatter = is_multiscatter(args);
   lobe->f0 = non_negative(args.v(0));
 }
 
 void add_metallic(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   const Vec3 normal = facing_normal(c, args.v(5));
-  bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, args.weight, normal);
+  bsdf::Lobe* lobe = add_lobe(result, reflection_type(args), bsdf::LightPass::Glossy, args.weight, normal);
   if (!lobe) return;
   set_principled_roughness(lobe, args.f(2), args.f(3));
   if (args.f(3) > 0.0f) lobe->tangent = turned_tangent(c, args.v(6), normal, args.f(4));
-  lobe->multiscatter = args.mode & GRADUS_DISTRIBUTION_MULTIPLE;
-  lobe->fresnel = bsdf::FresnelType::PrincipledMetal;
-  lobe->f0 = glm::clamp(args.v(0), 0.0f, 1.0f);
-  lobe->f90 = glm::clamp(args.v(1), 0.0f, 1.0f);
+  lobe->multiscatter = is_multiscatter(args);
+  if (args.mode & kConductor) {
+    lobe->fresnel = bsdf::FresnelType::Conductor;
+    lobe->f0 = non_negative(args.v(0));
+    lobe->f90 = non_negative(args.v(1));
+  } else {
+    lobe->fresnel = bsdf::FresnelType::PrincipledMetal;
+    lobe->f0 = glm::clamp(args.v(0), 0.0f, 1.0f);
+    lobe->f90 = glm::clamp(args.v(1), 0.0f, 1.0f);
+  }
+  add_film(lobe, args.f(7), args.f(8), false);
 }
 
 void add_refraction(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
-  bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxRefraction, bsdf::LightPass::Transmission,
+  bsdf::Lobe* lobe = add_lobe(result, refraction_type(args), bsdf::LightPass::Transmission,
                               args.weight * non_negative(args.v(0)), outward_normal(c, args.v(3)));
   if (!lobe) return;
   const float roughness = saturate(args.f(1));
@@ -61,11 +98,10 @@ void add_legacy_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResul
   const Rgb weight = args.weight * non_negative(args.v(0));
   const float ior = std::max(args.f(2), 1e-5f), roughness = saturate(args.f(1));
   const float reflected = dielectric_reflectance(glm::dot(c.wo, normal), c.backfacing ? 1.0f / ior : ior);
-  if (bsdf::Lobe* lobe =
-          add_lobe(result, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight * reflected, normal)) {
+  if (bsdf::Lobe* lobe = add_lobe(result, reflection_type(args), bsdf::LightPass::Glossy, weight * reflected, normal)) {
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
   }
-  if (bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxRefraction, bsdf::LightPass::Transmission,
+  if (bsdf::Lobe* lobe = add_lobe(result, refraction_type(args), bsdf::LightPass::Transmission,
                                   weight * (1.0f - reflected), c.backfacing ? -normal : normal)) {
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
     lobe->ior = ior;
@@ -73,16 +109,17 @@ void add_legacy_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResul
 }
 
 void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
-  if ((args.mode & 2) && !(args.mode & GRADUS_DISTRIBUTION_MULTIPLE) && args.f(1) > 0.0f)
+  if ((args.mode & kLegacyGlass) && !is_multiscatter(args) && args.f(1) > 0.0f)
     return add_legacy_glass(args, c, result);
-  bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxGlass, bsdf::LightPass::Transmission,
+  bsdf::Lobe* lobe = add_lobe(result, glass_type(args), bsdf::LightPass::Transmission,
                               args.weight * non_negative(args.v(0)), outward_normal(c, args.v(3)));
   if (!lobe) return;
   const float roughness = saturate(args.f(1));
   lobe->alpha_x = lobe->alpha_y = roughness * roughness;
   lobe->ior = std::max(args.f(2), 1e-5f);
   lobe->fresnel = bsdf::FresnelType::Dielectric;
-  lobe->multiscatter = args.mode & GRADUS_DISTRIBUTION_MULTIPLE;
+  lobe->multiscatter = is_multiscatter(args);
+  add_film(lobe, args.f(4), args.f(5), false);
 }
 
 void add_subsurface_node(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
@@ -98,10 +135,27 @@ void add_subsurface_node(const ClosureArgs& args, const ShadeContext& c, ShadeRe
   add_subsurface(s, result, c);
 }
 
+void add_velvet(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::Velvet, bsdf::LightPass::Glossy,
+                              args.weight * non_negative(args.v(0)), facing_normal(c, args.v(2)));
+  if (lobe) lobe->alpha_x = std::clamp(args.f(1), 0.01f, 1.0f);
+}
+
 void add_sheen(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  if (args.mode == 1) return add_velvet(args, c, result);
   bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::Sheen, bsdf::LightPass::Diffuse,
                               args.weight * non_negative(args.v(0)), facing_normal(c, args.v(2)));
   if (lobe) lobe->alpha_x = saturate(args.f(1));
+}
+
+void add_toon(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  const bool glossy = args.mode == 1;
+  bsdf::Lobe* lobe = add_lobe(result, glossy ? bsdf::LobeType::GlossyToon : bsdf::LobeType::DiffuseToon,
+                              glossy ? bsdf::LightPass::Glossy : bsdf::LightPass::Diffuse,
+                              args.weight * non_negative(args.v(0)), facing_normal(c, args.v(3)));
+  if (!lobe) return;
+  lobe->alpha_x = std::clamp(args.f(1), 1e-5f, 1.0f) * (0.5f * kPi);
+  lobe->alpha_y = saturate(args.f(2)) * (0.5f * kPi);
 }
 
 }  // namespace
@@ -147,6 +201,24 @@ Vec3 turned_tangent(const ShadeContext& c, const Vec3& tangent, const Vec3& norm
   Vec3 t = safe_normalize(tangent);
   if (t == Vec3(0.0f)) t = default_tangent(c);
   return turns != 0.0f ? rotate_around(t, normal, turns * 2.0f * kPi) : t;
+}
+
+void add_film(bsdf::Lobe* lobe, float thickness, float ior, bool fitted) {
+  if (!has_film(thickness)) return;
+  lobe->film = {thickness, std::max(ior, 1e-5f), fitted};
+  switch (lobe->fresnel) {
+    case bsdf::FresnelType::PrincipledMetal:
+      lobe->fresnel = bsdf::FresnelType::FilmMetal;
+      return;
+    case bsdf::FresnelType::Conductor:
+      lobe->fresnel = bsdf::FresnelType::FilmConductor;
+      return;
+    case bsdf::FresnelType::Dielectric:
+      lobe->f0 = Rgb(bsdf::fresnel_f0(lobe->ior));
+      [[fallthrough]];
+    default:
+      lobe->fresnel = bsdf::FresnelType::FilmDielectric;
+  }
 }
 
 void set_principled_roughness(bsdf::Lobe* lobe, float roughness, float anisotropic) {
@@ -199,6 +271,8 @@ void add_closure(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
       return add_glass(args, c, result);
     case GRADUS_OP_SHEEN:
       return add_sheen(args, c, result);
+    case GRADUS_OP_TOON:
+      return add_toon(args, c, result);
     case GRADUS_OP_METALLIC:
       return add_metallic(args, c, result);
     case GRADUS_OP_SUBSURFACE:

@@ -54,6 +54,11 @@ inline constexpr float kWeightCutoff = 1e-5f;
 Vec3 facing_normal(const ShadeContext& context, const Vec3& normal);
 // Returns facing_normal() pointing out of the object, as lobes with two sides need it.
 Vec3 outward_normal(const ShadeContext& context, const Vec3& normal);
+// Puts a thin film with a thickness in nanometres on a microfacet lobe. Its Fresnel term, which is complete, becomes
+// that of the film on it. Films that are too thin to be seen are left out.
+void add_film(bsdf::Lobe* lobe, float thickness, float ior, bool fitted);
+// Returns whether a film is thick enough to be seen.
+inline bool has_film(float thickness) { return thickness > 0.1f; }
 // Sets the alphas of a reflection lobe from a roughness and the anisotropy of the Principled BSDF, both in 0…1.
 void set_principled_roughness(bsdf::Lobe* lobe, float roughness, float anisotropic);
 // Sets the alphas of a reflection lobe from a roughness and the anisotropy of the Glossy BSDF, in -1…1.

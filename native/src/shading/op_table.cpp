@@ -10,7 +10,7 @@ namespace gradus::shading {
 namespace {
 
 static_assert(kFirstValueOp == 32 && GRADUS_OP_LIMIT == 128);
-static_assert(kMaxInputs >= 26 && kMaxOutputs >= 5);
+static_assert(kMaxInputs >= 28 && kMaxOutputs >= 5);
 
 constexpr ModeSet modes(std::initializer_list<uint32_t> list) {
   ModeSet set = 0;
@@ -22,20 +22,21 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   std::array<OpInfo, GRADUS_OP_LIMIT> table{};
   table[GRADUS_OP_DIFFUSE] = {"DIFFUSE", OpKind::Closure, 3, 1, 0, 1};
   table[GRADUS_OP_TRANSLUCENT] = {"TRANSLUCENT", OpKind::Closure, 2, 1, 0, 0};
-  table[GRADUS_OP_GLOSSY] = {"GLOSSY", OpKind::Closure, 6, 1, 0, GRADUS_DISTRIBUTION_MULTIPLE};
-  table[GRADUS_OP_REFRACTION] = {"REFRACTION", OpKind::Closure, 4, 1, 0, 0};
-  table[GRADUS_OP_GLASS] = {"GLASS", OpKind::Closure, 4, 1, 0, GRADUS_DISTRIBUTION_MULTIPLE + 2};
-  table[GRADUS_OP_SHEEN] = {"SHEEN", OpKind::Closure, 3, 1, 0, 0};
+  table[GRADUS_OP_GLOSSY] = {"GLOSSY", OpKind::Closure, 6, 1, 0, GRADUS_DISTRIBUTION_ASHIKHMIN_SHIRLEY};
+  table[GRADUS_OP_REFRACTION] = {"REFRACTION", OpKind::Closure, 4, 1, 0, GRADUS_DISTRIBUTION_BECKMANN};
+  table[GRADUS_OP_GLASS] = {"GLASS", OpKind::Closure, 6, 1, 0, GRADUS_DISTRIBUTION_BECKMANN + 4};
+  table[GRADUS_OP_SHEEN] = {"SHEEN", OpKind::Closure, 3, 1, 0, 1};
   table[GRADUS_OP_TRANSPARENT] = {"TRANSPARENT", OpKind::Closure, 1, 1, 0, 0};
   table[GRADUS_OP_HOLDOUT] = {"HOLDOUT", OpKind::Closure, 0, 1, 0, 0};
   table[GRADUS_OP_EMISSION] = {"EMISSION", OpKind::Closure, 2, 1, 0, 0};
   table[GRADUS_OP_MIX_SHADER] = {"MIX_SHADER", OpKind::Closure, 3, 1, 0, 0};
   table[GRADUS_OP_ADD_SHADER] = {"ADD_SHADER", OpKind::Closure, 2, 1, 0, 0};
-  table[GRADUS_OP_PRINCIPLED] = {"PRINCIPLED", OpKind::Closure, 26, 1, 0, GRADUS_SUBSURFACE_ONCE + 15};
+  table[GRADUS_OP_PRINCIPLED] = {"PRINCIPLED", OpKind::Closure, 28, 1, 0, GRADUS_SUBSURFACE_ONCE + 47};
   table[GRADUS_OP_PRINCIPLED_3] = {"PRINCIPLED_3", OpKind::Closure, 22, 1, 0, GRADUS_SUBSURFACE_ONCE + 15};
-  table[GRADUS_OP_METALLIC] = {"METALLIC", OpKind::Closure, 7, 1, 0, GRADUS_DISTRIBUTION_MULTIPLE};
+  table[GRADUS_OP_METALLIC] = {"METALLIC", OpKind::Closure, 9, 1, 0, GRADUS_DISTRIBUTION_BECKMANN + 4};
   table[GRADUS_OP_SUBSURFACE] = {"SUBSURFACE", OpKind::Closure, 7, 1, 0, GRADUS_SUBSURFACE_ONCE + 15};
   table[GRADUS_OP_AOV] = {"AOV", OpKind::Closure, 2, 1, 0, 255};
+  table[GRADUS_OP_TOON] = {"TOON", OpKind::Closure, 4, 1, 0, 1};
   table[GRADUS_OP_GEOMETRY] = {"GEOMETRY", OpKind::Context, 0, 1, 0, GRADUS_GEOMETRY_RANDOM_PER_ISLAND};
   table[GRADUS_OP_GEOMETRY].ray_modes = modes({GRADUS_GEOMETRY_INCOMING, GRADUS_GEOMETRY_BACKFACING});
   table[GRADUS_OP_TEX_COORD] = {"TEX_COORD", OpKind::Context, 0, 1, 0, GRADUS_TEX_COORD_INSTANCER_UV};

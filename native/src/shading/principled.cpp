@@ -19,6 +19,9 @@ float ior_of_f0(float f0) {
   return (1.0f + root) / (1.0f - root);
 }
 
+// Mode: the thin film is that of Blender before 5.0, which metals do not have.
+constexpr uint32_t kLegacyFilm = 32;
+
 // Adds the layers from top to bottom. weight_ is the weight of the layers that are still to come.
 class Layers {
   // Inputs of the node in their order.
@@ -49,6 +52,8 @@ class Layers {
     kSubsurfaceScale,
     kSubsurfaceIor,
     kSubsurfaceAnisotropy,
+    kFilmThickness,
+    kFilmIor,
   };
 
  public:
@@ -132,6 +137,7 @@ class Layers {
       lobe->f0 = clamped_base();
       lobe->f90 = glm::clamp(args_.v(kSpecularTint), 0.0f, 1.0f);
       set_shape(lobe);
+      if (!(args_.mode & kLegacyFilm)) put_film(lobe);
     }
     weight_ *= 1.0f - metallic;
   }
@@ -148,6 +154,7 @@ class Layers {
       const float roughness = saturate(args_.f(kRoughness));
       lobe->alpha_x = lobe->alpha_y = roughness * roughness;
       lobe->multiscatter = multiscatter();
+      put_film(lobe);
     }
     weight_ *= 1.0f - transmission;
   }
@@ -166,12 +173,13 @@ class Layers {
 
   void specular() {
     const auto [ior, f0] = adjusted_interface();
-    if (ior == 1.0f || !(max_component(weight_) > kWeightCutoff)) return;
+    if ((ior == 1.0f && !has_film(args_.f(kFilmThickness))) || !(max_component(weight_) > kWeightCutoff)) return;
     bsdf::Lobe* lobe = new_layer(bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight_, normal_);
     lobe->fresnel = bsdf::FresnelType::Schlick;
     lobe->ior = ior;
     lobe->f0 = f0 * glm::max(args_.v(kSpecularTint), Vec3(0.0f));
     set_shape(lobe);
+    put_film(lobe);
     put_layer(lobe);
   }
 
@@ -201,6 +209,10 @@ class Layers {
       lobe->multiscatter = true;
       lobe->f0 = color;
     }
+  }
+
+  void put_film(bsdf::Lobe* lobe) {
+    add_film(lobe, args_.f(kFilmThickness), args_.f(kFilmIor), (args_.mode & kLegacyFilm) != 0);
   }
 
   void set_shape(bsdf::Lobe* lobe) {

@@ -11,7 +11,7 @@
 namespace gradus::shading {
 
 inline constexpr int kMaxRegisters = 256;
-inline constexpr int kMaxInputs = 26;
+inline constexpr int kMaxInputs = 28;
 inline constexpr int kMaxOutputs = 5;
 
 // Instructions that exist only in compiled programs, in addition to the operations of GradusOp.

@@ -118,8 +118,8 @@ TEST(A4_Densities, SampleAgreesWithEvaluate) {
   EXPECT_GE(compared, 100000);
 }
 
-// f(wo, wi) = f(wi, wo) for reflection. Energy compensation and the fitted sheen are exempt: they depend on the view
-// alone.
+// f(wo, wi) = f(wi, wo) for reflection. Energy compensation, the fitted sheen and toons are exempt: they depend on the
+// view alone, or have no factor of the cosine.
 TEST(A4_Densities, Reciprocity) {
   Random random(9);
   std::vector<LobeCase> cases = diffuse_cases();
@@ -131,8 +131,8 @@ TEST(A4_Densities, Reciprocity) {
   for (const LobeCase& test : cases) {
     const bool compensated = test.lobe.multiscatter && test.lobe.type != bsdf::LobeType::Diffuse;
     const bool fitted = test.lobe.type == bsdf::LobeType::Sheen && test.lobe.fresnel == bsdf::FresnelType::None;
-    if (compensated || fitted || test.lobe.type == bsdf::LobeType::Translucent ||
-        test.lobe.type == bsdf::LobeType::GgxRefraction) {
+    const bool toon = test.lobe.type == bsdf::LobeType::DiffuseToon || test.lobe.type == bsdf::LobeType::GlossyToon;
+    if (compensated || fitted || toon || bsdf::sides_of(test.lobe.type) == bsdf::kTransmits) {
       continue;
     }
     for (int i = 0; i < 1000; i++) {

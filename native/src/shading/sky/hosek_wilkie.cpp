@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "image/observer.h"
 #include "shading/sky/analytic.h"
 #include "shading/sky/hosek_wilkie_data.h"
 #include "shading/sky/spectrum.h"
@@ -73,7 +74,7 @@ Rgb hosek_wilkie(const AnalyticSky& sky, const Vec3& direction) {
   const SkyAngles at = sky_angles(sky, direction);
   Vec3 xyz;
   for (int c = 0; c < 3; ++c) xyz[c] = sky.scale[c] * radiance(sky.shape[c], at);
-  return glm::max(xyz_to_rgb(xyz), Rgb(0.0f));
+  return glm::max(image::xyz_to_rgb(xyz), Rgb(0.0f));
 }
 
 }  // namespace gradus::shading

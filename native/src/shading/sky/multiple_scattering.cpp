@@ -10,6 +10,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "image/observer.h"
 #include "shading/sky/atmosphere.h"
 #include "shading/sky/dome.h"
 #include "shading/sky/spectrum.h"
@@ -39,7 +40,7 @@ constexpr float kToXyz[4][3] = {{53.386918f, 22.981338f, 0.0f},
 Rgb to_rgb(const Vec4& spectrum) {
   Vec3 xyz(0.0f);
   for (int k = 0; k < 4; ++k) xyz += Vec3(kToXyz[k][0], kToXyz[k][1], kToXyz[k][2]) * spectrum[k];
-  return xyz_to_rgb(xyz);
+  return image::xyz_to_rgb(xyz);
 }
 
 // Densities relative to the standard atmosphere.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "image/observer.h"
 #include "shading/scalar.h"
 #include "shading/sky/analytic.h"
 #include "shading/sky/spectrum.h"
@@ -76,7 +77,7 @@ Rgb preetham(const AnalyticSky& sky, const Vec3& direction) {
   float v[3];
   for (int c = 0; c < 3; ++c) v[c] = sky.scale[c] * perez(sky.shape[c], at.zenith, at.sun);
   const Vec3 xyz(safe_divide(v[0], v[1]) * v[2], v[2], safe_divide(1.0f - v[0] - v[1], v[1]) * v[2]);
-  return glm::max(xyz_to_rgb(xyz), Rgb(0.0f));
+  return glm::max(image::xyz_to_rgb(xyz), Rgb(0.0f));
 }
 
 }  // namespace gradus::shading

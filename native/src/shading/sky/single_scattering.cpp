@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "image/observer.h"
 #include "shading/sky/atmosphere.h"
 #include "shading/sky/dome.h"
 #include "shading/sky/spectrum.h"
@@ -69,7 +70,7 @@ Rgb to_rgb(const Spectrum& spectrum) {
   Vec3 xyz(0.0f);
   for (int k = 0; k < kWavelengths; ++k)
     xyz += Vec3(kObserver[k][0], kObserver[k][1], kObserver[k][2]) * spectrum[size_t(k)];
-  return xyz_to_rgb(xyz * kWavelengthStep);
+  return image::xyz_to_rgb(xyz * kWavelengthStep);
 }
 
 // The rays of one row of the table, which have the same elevation. They share the points along the ray, with their

@@ -1,5 +1,5 @@
 // Spectra of sun, air and ozone, and the CIE 1931 observer, from 380 to 780 nm in steps of 20 nm. The values are those
-// of Cycles' sky model (intern/sky, Blender Authors); the observer is that of the CIE. xyz_to_rgb()
+// of Cycles' sky model (intern/sky, Blender Authors); the observer is that of the CIE. image::xyz_to_rgb()
 // converts its colours to those of the renderer.
 #pragma once
 
@@ -49,12 +49,5 @@ inline constexpr float kObserver[kWavelengths][3] = {
     {0.0001661505f, 6e-5f, 0.0f},
     {4.150994e-5f, 1.499e-5f, 0.0f}};
 // clang-format on
-
-// Converts CIE XYZ to linear Rec. 709 with the white point D65. Colours outside the gamut have negative components.
-inline Rgb xyz_to_rgb(const Vec3& c) {
-  return Rgb(3.2404542f * c.x - 1.5371385f * c.y - 0.4985314f * c.z,
-             -0.9692660f * c.x + 1.8760108f * c.y + 0.0415560f * c.z,
-             0.0556434f * c.x - 0.2040259f * c.y + 1.0572252f * c.z);
-}
 
 }  // namespace gradus::shading
