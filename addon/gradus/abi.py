@@ -47,6 +47,7 @@ class Visibility(IntFlag):
     VISIBLE_SHADOW = 32
     VISIBLE_ALL = 63
     HOLDOUT = 64
+    SHADOW_CATCHER = 128
     MAY_MOVE = 256
 
 
@@ -347,6 +348,7 @@ class Instances(Struct):
         ("generated", POINTER(c_float)),
         ("uvs", POINTER(c_float)),
         ("shadow_terminator_offsets", POINTER(c_float)),
+        ("shadow_terminator_shading_offsets", POINTER(c_float)),
         ("material_first", POINTER(c_uint32)),
         ("material_count", POINTER(c_uint32)),
         ("materials_size", c_size_t),
@@ -362,6 +364,10 @@ class Instances(Struct):
         ("asset_name_index", POINTER(c_uint32)),
         ("attribute_names", POINTER(c_char_p)),
         ("attributes", POINTER(c_float)),
+        ("receiver_sets", POINTER(c_uint32)),
+        ("receiver_masks", POINTER(c_uint64)),
+        ("blocker_sets", POINTER(c_uint32)),
+        ("blocker_masks", POINTER(c_uint64)),
     ]
 
 
@@ -388,6 +394,8 @@ class Light(Struct):
         ("name", c_char_p),
         ("light_group", c_uint32),
         ("reserved", c_uint32),
+        ("receiver_mask", c_uint64),
+        ("blocker_mask", c_uint64),
     ]
 
 

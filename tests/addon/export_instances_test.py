@@ -152,6 +152,14 @@ def test_shadow_terminator_offsets(scene: bpy.types.Scene) -> None:
     assert found == pytest.approx({"Default": 0.1, "Off": 0.0, "Wide": 0.5})
 
 
+def test_shading_offset(scene: bpy.types.Scene) -> None:
+    recording.add_camera()
+    owner = shadow_terminator.owner(recording.add(recording.grid(1)))
+    setattr(owner, shadow_terminator.shading_offset_name(owner), 0.25)
+    recorded, _ = recording.export(scene)
+    assert list(recorded.instances["shadow_terminator_shading_offset"]) == pytest.approx([0.25])
+
+
 def test_coordinates_of_the_instancer(scene: bpy.types.Scene) -> None:
     """Instances on faces have a UV and a generated coordinate of the instancer."""
     recording.add_camera()

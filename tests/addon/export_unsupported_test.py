@@ -5,7 +5,6 @@ from __future__ import annotations
 import bpy
 import pytest
 from gradus import passes
-from gradus.export import shadow_terminator
 from support import recording
 from support.nodes import new_material, output_of
 
@@ -33,13 +32,6 @@ def test_nothing_is_left_out_of_an_ordinary_scene(scene: bpy.types.Scene, plane:
     assert warnings(scene) == []
 
 
-def test_a_shading_offset_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
-    owner = shadow_terminator.owner(plane)
-    name = next(name for name in shadow_terminator.SHADING_OFFSETS if hasattr(owner, name))
-    setattr(owner, name, 0.25)
-    assert warnings(scene) == ["Object 'Plane': the shading offset of its shadow terminator is ignored"]
-
-
 def test_hair_particles_are_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
     modifier = plane.modifiers.new("Fur", "PARTICLE_SYSTEM")
     settings = modifier.particle_system.settings
@@ -50,11 +42,6 @@ def test_hair_particles_are_named(scene: bpy.types.Scene, plane: bpy.types.Objec
     scene.view_layers[0].use_strand = True
     settings.render_type = "OBJECT"
     assert warnings(scene) == []
-
-
-def test_a_shadow_catcher_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
-    plane.is_shadow_catcher = True
-    assert warnings(scene) == ["Object 'Plane' is a shadow catcher and is rendered as an ordinary surface"]
 
 
 @pytest.mark.parametrize("has_volume", [False, True])
@@ -104,14 +91,6 @@ def test_passes_that_are_not_made_are_named(scene: bpy.types.Scene, plane: bpy.t
     start = f"View layer '{layer.name}': not supported are the passes "
     assert warning.startswith(start)
     assert sorted(warning.removeprefix(start).split(", ")) == sorted(missing)
-
-
-def test_light_linking_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
-    light = recording.add(bpy.data.lights.new("Light", "POINT"), "Light")
-    if not hasattr(light, "light_linking"):
-        pytest.skip("light linking came with 4.0")
-    light.light_linking.receiver_collection = bpy.data.collections.new("Lit")
-    assert warnings(scene) == ["Object 'Light': light linking is ignored"]
 
 
 def test_kinds_that_are_not_rendered_are_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:

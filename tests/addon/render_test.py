@@ -228,9 +228,7 @@ def test_stats_line(cube: bpy.types.Scene, render: Render, tmp_path: Path, argum
     )
     keys += " denoiser rays shifts nonfinite_dropped peak_memory_bytes process_cpu warnings"
     assert set(keys.split()) <= lines[0].keys()
-    assert {"export", "build", "sample", "reconstruct", "denoise", "upload", "total"} <= lines[0][
-        "seconds"
-    ].keys()
+    assert {"export", "build", "sample", "reconstruct", "denoise", "upload", "total"} <= lines[0]["seconds"].keys()
     assert lines[0]["seconds"]["preview"] == lines[0]["cpu_seconds"]["preview"] == 0.0  # there is no window
     assert lines[0]["samples"] == 3
     assert lines[0]["resolution"] == [40, 24]

@@ -31,7 +31,8 @@ void from_the_side(PathScene* scene) {
 void nothing(GradusSettings*) {}
 
 void add_scenarios(std::vector<Picture>* list) {
-  for (int i = 0; i < int(Scenario::Count); ++i) {
+  // Pictures of the scenarios before Linked are stored.
+  for (int i = 0; i < int(Scenario::Linked); ++i) {
     const auto scenario = static_cast<Scenario>(i);
     const auto build = [scenario](PathScene* scene) { test::build(scenario, scene); };
     const std::string name = test::name_of(scenario);

@@ -14,6 +14,7 @@ from typing import Any
 
 from . import shadow_terminator, unsupported
 from .arrays import read
+from .light_linking import LightLinking, Links
 from .may_move import MayMove
 from .object_random import name_hash
 from .properties import Color
@@ -37,7 +38,8 @@ class Entry:
     random_id: int
     pass_index: int
     color: tuple[float, ...]
-    shadow_terminator_offset: float
+    shadow_terminator: tuple[float, float]  # offsets of geometry and shading
+    links: Links
     blur: Blur = NO_BLUR
     light_group: str = ""
     asset_name: str = ""  # of the topmost parent
@@ -87,7 +89,8 @@ class _ObjectProperties:
     name: str
     pass_index: int
     color: tuple[float, ...]
-    shadow_terminator_offset: float
+    shadow_terminator: tuple[float, float]
+    links: Links
     blur: Blur
     light_group: str
     asset_name: str
@@ -104,6 +107,7 @@ class _ObjectCache:
         self._override = view_layer.material_override
         self._properties: dict[tuple[int, int], _ObjectProperties] = {}
         self._materials: dict[tuple[int, int], tuple[Any, ...]] = {}
+        self.linking = LightLinking()
         self._edited: dict[int, Any] = {}  # meshes of Edit Mode by address
         self.has_node_instances = False
 
@@ -117,12 +121,13 @@ class _ObjectCache:
             bits = 0 if unsupported.is_gas_domain(owner) else visibility(obj, parent, self._view_layer)
             if self._may_move is not None and obj.type == "MESH" and self._may_move(owner, parent):
                 bits |= MAY_MOVE
-            offset = shadow_terminator.geometry_offset(obj)
+            offsets = shadow_terminator.geometry_offset(obj), shadow_terminator.shading_offset(obj)
             blur = blur_of(owner, parent)
             # Instances have the colour of their instancer.
             color = tuple((obj if parent is None else parent).color)
             group, asset = getattr(owner, "lightgroup", ""), _topmost(owner).name
-            found = _ObjectProperties(key, bits, owner.name, obj.pass_index, color, offset, blur, group, asset)
+            links = self.linking.links_of(owner, parent)
+            found = _ObjectProperties(key, bits, owner.name, obj.pass_index, color, offsets, links, blur, group, asset)
             found.is_edited = owner.type == "MESH" and owner.data.is_editmode
             self._properties[evaluated] = found
             self._warnings.extend(unsupported.of_object(owner, self._view_layer))
@@ -170,6 +175,7 @@ def collect(depsgraph: Any, poll: Callable[[], None], may_move: MayMove | None =
                 (collected.lights if is_light else collected.surfaces).append(entry)
         elif kind in unsupported.KINDS:
             collected.unsupported.append(unsupported.of_kind(obj.name, kind))
+    cache.linking.resolve(collected.unsupported.append)
     collected.matrices = _matrices(instances, cache.has_node_instances)
     return collected
 
@@ -215,7 +221,8 @@ def _entry(index: int, instance: Any, obj: Any, is_light: bool, cache: _ObjectCa
         random_id,
         properties.pass_index,
         properties.color,
-        properties.shadow_terminator_offset,
+        properties.shadow_terminator,
+        properties.links,
         properties.blur,
         properties.light_group,
         properties.asset_name,

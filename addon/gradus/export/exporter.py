@@ -322,6 +322,7 @@ class _Sync:
         record.max_bounces = state.max_bounces
         record.pass_index = entry.pass_index
         record.name = native.name(entry.name)
+        record.receiver_mask, record.blocker_mask = entry.links.receiver_mask, entry.links.blocker_mask
         record.light_group = self._groups.get(entry.light_group, 0)
         return record
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from .. import native
 from .collect import Collected, Entry, InstanceKey
+from .light_linking import NO_LINKS
 from .motion import InstanceBlur
 from .properties import MISSING
 
@@ -82,7 +83,8 @@ def fill_instances(arrays: InstanceArrays, groups: dict[str, int]) -> tuple[nati
         "colors": _flat(entries, "color", 4),
         "generated": _flat(entries, "generated", 3),
         "uvs": _flat(entries, "uv", 2),
-        "shadow_terminator_offsets": array("f", [entry.shadow_terminator_offset for entry in entries]),
+        "shadow_terminator_offsets": array("f", [entry.shadow_terminator[0] for entry in entries]),
+        "shadow_terminator_shading_offsets": array("f", [entry.shadow_terminator[1] for entry in entries]),
         "name_index": array("I", [names.setdefault(entry.name, len(names)) for entry in entries]),
         "asset_name_index": array("I", [names.setdefault(entry.asset_name, len(names)) for entry in entries]),
         "meshes": arrays.mesh_keys,
@@ -95,6 +97,9 @@ def fill_instances(arrays: InstanceArrays, groups: dict[str, int]) -> tuple[nati
         "materials": arrays.materials,
         "attributes": _attributes(arrays),
     }
+    if any(entry.links != NO_LINKS for entry in entries):
+        for name, code in (("receiver_set", "I"), ("receiver_mask", "Q"), ("blocker_set", "I"), ("blocker_mask", "Q")):
+            columns[f"{name}s"] = array(code, [getattr(entry.links, name) for entry in entries])
     if groups:
         columns["light_groups"] = array("I", [groups.get(entry.light_group, 0) for entry in entries])
     if arrays.blur is not None:

@@ -23,6 +23,12 @@ def geometry_offset(obj: Any) -> float:
     return getattr(owner(obj), GEOMETRY_OFFSET, DEFAULT)
 
 
-def has_shading_offset(obj: Any) -> bool:
-    """Returns whether an object has a shading offset, which Gradus does not support."""
-    return any(getattr(owner(obj), name, 0.0) != 0.0 for name in SHADING_OFFSETS)
+def shading_offset_name(found: Any) -> str:
+    """Returns the name of the shading offset in an owner of the settings."""
+    return next(name for name in reversed(SHADING_OFFSETS) if hasattr(found, name))
+
+
+def shading_offset(obj: Any) -> float:
+    """Returns the share of the angle to a light by which reflection ends early."""
+    found = owner(obj)
+    return getattr(found, shading_offset_name(found)) if found is not None else 0.0

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import Any
 
 from .. import compat
-from . import shadow_terminator
 
 _KINDS = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volumes"}
 KINDS = frozenset(_KINDS)
@@ -51,13 +50,6 @@ def of_object(obj: Any, view_layer: Any) -> Iterator[str]:
         yield f"Object '{obj.name}': hair particles are not supported"
     if is_gas_domain(obj) and any(_has_volume(slot.material) for slot in obj.material_slots):
         yield of_kind(obj.name, "VOLUME")
-    if obj.is_shadow_catcher and obj.type != "LIGHT":  # it is the default of lights and has no effect on them
-        yield f"Object '{obj.name}' is a shadow catcher and is rendered as an ordinary surface"
-    if obj.type != "LIGHT" and shadow_terminator.has_shading_offset(obj):
-        yield f"Object '{obj.name}': the shading offset of its shadow terminator is ignored"
-    linking = getattr(obj, "light_linking", None)  # from 4.0 on
-    if linking is not None and (linking.receiver_collection is not None or linking.blocker_collection is not None):
-        yield f"Object '{obj.name}': light linking is ignored"
 
 
 def _is_hair(modifier: Any) -> bool:

@@ -14,6 +14,7 @@ VOLUME = int(Visibility.VISIBLE_VOLUME)
 SHADOW = int(Visibility.VISIBLE_SHADOW)
 ALL_RAYS = int(Visibility.VISIBLE_ALL)
 HOLDOUT = int(Visibility.HOLDOUT)
+SHADOW_CATCHER = int(Visibility.SHADOW_CATCHER)
 MAY_MOVE = int(Visibility.MAY_MOVE)
 
 RAY_SWITCHES = (
@@ -53,4 +54,6 @@ def visibility(obj: Any, parent: Any, view_layer: Any) -> int:
         bits &= ~CAMERA
     if obj.is_holdout or owner.holdout_get(view_layer=view_layer):
         bits |= HOLDOUT
+    if owner.is_shadow_catcher or obj.is_shadow_catcher:
+        bits |= SHADOW_CATCHER
     return bits

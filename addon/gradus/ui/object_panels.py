@@ -29,6 +29,8 @@ class GRADUS_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
         for name, _ in RAY_SWITCHES:
             if name != "visible_volume_scatter":
                 column.prop(obj, name, text=name.removeprefix("visible_").capitalize())
+        if obj.type in SURFACES or obj.type == "LIGHT":
+            layout.prop(obj, "is_shadow_catcher")
         if obj.type in SURFACES:
             layout.prop(obj, "is_holdout")
 
@@ -46,7 +48,9 @@ class GRADUS_OBJECT_PT_shadow_terminator(EnginePanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         owner = shadow_terminator.owner(context.object)
-        self.columns().prop(owner, shadow_terminator.GEOMETRY_OFFSET, text="Geometry Offset")
+        column = self.columns().column()
+        column.prop(owner, shadow_terminator.GEOMETRY_OFFSET, text="Geometry Offset")
+        column.prop(owner, shadow_terminator.shading_offset_name(owner), text="Shading Offset")
 
 
 class GRADUS_OBJECT_PT_light_group(EnginePanel, bpy.types.Panel):

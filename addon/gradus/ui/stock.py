@@ -31,7 +31,7 @@ EXCLUDED = {
     "DATA_PT_volume_render": "volumes are not supported",
     "DATA_PT_lightprobe": "light probes belong to EEVEE",
     "RENDER_PT_eevee_performance": "belongs to EEVEE",
-    "OBJECT_PT_shadow_terminator": "has a shading offset, which is not supported; replaced",
+    "OBJECT_PT_shadow_terminator": "replaced by a panel that Blender 3.4 has, too",
 }
 """Panels that are not shown, and why."""
 

@@ -172,48 +172,63 @@ typedef enum GradusVisibility {
   GRADUS_VISIBLE_SHADOW = 32,      /* It casts shadows. */
   GRADUS_VISIBLE_ALL = 63,         /* All rays see it. */
   GRADUS_HOLDOUT = 64,             /* It cuts a transparent hole into the picture where the camera sees it. */
+  GRADUS_SHADOW_CATCHER = 128,     /* Where the camera sees it, the picture shows what is behind it, darkened by the
+                                      shadows that other objects cast on it. A light with it lights such objects. */
   GRADUS_MAY_MOVE = 256            /* A hint that other frames may show the object elsewhere or in another shape; an
                                       object without it is kept from frame to frame. */
 } GradusVisibility;
 
 /* All instances of a scene, as arrays of `count` elements. Arrays may be NULL where that is said. */
 typedef struct GradusInstances {
-  uint32_t struct_size;                   /* sizeof this struct. */
-  uint32_t attribute_count;               /* Number of named attributes that every instance has. */
-  size_t count;                           /* Number of instances. */
-  const uint64_t* meshes;                 /* Keys of meshes. */
-  const uint64_t* ids;                    /* Identity that stays the same from frame to frame; NULL = the index. */
-  const float* matrices;                  /* 16 values an instance: object to world. */
-  const float* matrices_previous;         /* Matrices one frame before; NULL = static. A matrix that is not finite
-                                             says that the instance does not exist then, or has another mesh. */
-  const float* matrices_next;             /* Matrices one frame after, as matrices_previous. */
-  const uint32_t* visibility;             /* GradusVisibility: Rays that see the instance; NULL = all. */
-  const uint32_t* random_ids;             /* Object Info > Random is random_id / 2^32; may be NULL. */
-  const int32_t* pass_indices;            /* Values of pass Object Index; may be NULL. */
-  const float* colors;                    /* 4 values an instance: Object Info > Color; may be NULL. */
-  const float* generated;                 /* 3 values an instance: generated coordinates on the instancer; may be
-                                             NULL. */
-  const float* uvs;                       /* 2 values an instance: UV on the instancer; may be NULL. */
-  const float* shadow_terminator_offsets; /* Cosine below which shadow rays leave faces with smooth normals from
-                                             above; NULL = 0. */
-  const uint32_t* material_first;         /* First entry of the instance in `materials`; NULL = no materials. */
-  const uint32_t* material_count;         /* Entries of the instance in `materials`. */
-  size_t materials_size;                  /* Number of entries in `materials`. */
-  const uint64_t* materials;              /* Keys of materials by slot; 0 = the default grey. */
-  const uint32_t* name_index;             /* Index into `names`; may be NULL. */
-  size_t name_count;                      /* Number of names. */
-  const char* const* names;               /* Names that warnings and Cryptomatte use. */
-  const uint32_t* shutter_first;          /* First matrix of the instance in shutter_matrices; NULL = all are static. */
-  const uint32_t* shutter_count;          /* Matrices of the instance, 2 to 129, spaced evenly from the opening of
-                                             the shutter to its closing; 0 = static. */
-  size_t shutter_size;                    /* Number of matrices in shutter_matrices. */
-  const float* shutter_matrices;          /* 16 values a matrix. */
-  const uint32_t* light_groups;           /* Light group of the instance's emission: index + 1 of a channel; NULL =
-                                             none. */
-  const uint32_t* asset_name_index;       /* Index into `names` of the topmost parent, for Cryptomatte; NULL =
-                                             name_index. */
-  const char* const* attribute_names;     /* Names of the attributes, which INSTANCE_ATTRIBUTE finds. */
-  const float* attributes;                /* 4 values an instance, attribute after attribute. */
+  uint32_t struct_size;                           /* sizeof this struct. */
+  uint32_t attribute_count;                       /* Number of named attributes that every instance has. */
+  size_t count;                                   /* Number of instances. */
+  const uint64_t* meshes;                         /* Keys of meshes. */
+  const uint64_t* ids;                            /* Identity that stays the same from frame to frame; NULL = the
+                                                     index. */
+  const float* matrices;                          /* 16 values an instance: object to world. */
+  const float* matrices_previous;                 /* Matrices one frame before; NULL = static. A matrix that is not
+                                                     finite says that the instance does not exist then, or has
+                                                     another mesh. */
+  const float* matrices_next;                     /* Matrices one frame after, as matrices_previous. */
+  const uint32_t* visibility;                     /* GradusVisibility: Rays that see the instance; NULL = all. */
+  const uint32_t* random_ids;                     /* Object Info > Random is random_id / 2^32; may be NULL. */
+  const int32_t* pass_indices;                    /* Values of pass Object Index; may be NULL. */
+  const float* colors;                            /* 4 values an instance: Object Info > Color; may be NULL. */
+  const float* generated;                         /* 3 values an instance: generated coordinates on the instancer;
+                                                     may be NULL. */
+  const float* uvs;                               /* 2 values an instance: UV on the instancer; may be NULL. */
+  const float* shadow_terminator_offsets;         /* Cosine below which shadow rays leave faces with smooth normals
+                                                     from above; NULL = 0. */
+  const float* shadow_terminator_shading_offsets; /* Share of the angle to the light by which diffuse and glossy
+                                                     reflection end early, 0 to 1; NULL = 0. */
+  const uint32_t* material_first;                 /* First entry of the instance in `materials`; NULL = no materials. */
+  const uint32_t* material_count;                 /* Entries of the instance in `materials`. */
+  size_t materials_size;                          /* Number of entries in `materials`. */
+  const uint64_t* materials;                      /* Keys of materials by slot; 0 = the default grey. */
+  const uint32_t* name_index;                     /* Index into `names`; may be NULL. */
+  size_t name_count;                              /* Number of names. */
+  const char* const* names;                       /* Names that warnings and Cryptomatte use. */
+  const uint32_t* shutter_first;                  /* First matrix of the instance in shutter_matrices; NULL = all are
+                                                     static. */
+  const uint32_t* shutter_count;                  /* Matrices of the instance, 2 to 129, spaced evenly from the
+                                                     opening of the shutter to its closing; 0 = static. */
+  size_t shutter_size;                            /* Number of matrices in shutter_matrices. */
+  const float* shutter_matrices;                  /* 16 values a matrix. */
+  const uint32_t* light_groups;                   /* Light group of the instance's emission: index + 1 of a channel;
+                                                     NULL = none. */
+  const uint32_t* asset_name_index;               /* Index into `names` of the topmost parent, for Cryptomatte; NULL
+                                                     = name_index. */
+  const char* const* attribute_names;             /* Names of the attributes, which INSTANCE_ATTRIBUTE finds. */
+  const float* attributes;                        /* 4 values an instance, attribute after attribute. */
+  const uint32_t* receiver_sets;                  /* Light set to which the instance belongs as a receiver, 0 to 63;
+                                                     NULL = 0. */
+  const uint64_t* receiver_masks;                 /* Bits of the light sets that the instance's emission lights; 0 or
+                                                     NULL = all. */
+  const uint32_t* blocker_sets;                   /* Shadow set to which the instance belongs as a blocker, 0 to 63;
+                                                     NULL = 0. */
+  const uint64_t* blocker_masks;                  /* Bits of the shadow sets that block the instance's emission; 0 or
+                                                     NULL = all. */
 } GradusInstances;
 
 /* Shape of an analytic light. */
@@ -260,6 +275,8 @@ typedef struct GradusLight {
   const char* name;                  /* Name that warnings use. */
   uint32_t light_group;              /* Light group: index + 1 of a channel; 0 = none. */
   uint32_t reserved;                 /* 0. */
+  uint64_t receiver_mask;            /* Bits of the light sets that the light lights; 0 = all. */
+  uint64_t blocker_mask;             /* Bits of the shadow sets that block the light; 0 = all. */
 } GradusLight;
 
 /* Projection of a camera. */

@@ -72,6 +72,7 @@ void visit(Archive& a, GradusInstances& s) {
   a.array(s.generated, uint64_t{3} * s.count);
   a.array(s.uvs, uint64_t{2} * s.count);
   a.array(s.shadow_terminator_offsets, s.count);
+  a.array(s.shadow_terminator_shading_offsets, s.count);
   a.array(s.material_first, s.count);
   a.array(s.material_count, s.count);
   a.array(s.materials, s.materials_size);
@@ -84,6 +85,10 @@ void visit(Archive& a, GradusInstances& s) {
   a.array(s.asset_name_index, s.count);
   a.texts(s.attribute_names, s.attribute_count);
   a.array(s.attributes, uint64_t{4} * s.count * s.attribute_count);
+  a.array(s.receiver_sets, s.count);
+  a.array(s.receiver_masks, s.count);
+  a.array(s.blocker_sets, s.count);
+  a.array(s.blocker_masks, s.count);
 }
 
 template <class Archive>
@@ -105,6 +110,8 @@ void visit(Archive& a, GradusLight& s) {
   a.value(s.max_bounces);
   a.value(s.pass_index);
   a.value(s.light_group);
+  a.value(s.receiver_mask);
+  a.value(s.blocker_mask);
   a.text(s.name);
 }
 

@@ -129,6 +129,11 @@ GradusInstances read_instances(const GradusInstances* from) {
   optional(in.generated, "instances.generated", 3);
   optional(in.uvs, "instances.uvs", 2);
   optional(in.shadow_terminator_offsets, "instances.shadow_terminator_offsets");
+  optional(in.receiver_sets, "instances.receiver_sets");
+  optional(in.receiver_masks, "instances.receiver_masks");
+  optional(in.blocker_sets, "instances.blocker_sets");
+  optional(in.blocker_masks, "instances.blocker_masks");
+  optional(in.shadow_terminator_shading_offsets, "instances.shadow_terminator_shading_offsets");
   optional(in.material_first, "instances.material_first");
   optional(in.name_index, "instances.name_index");
   optional(in.asset_name_index, "instances.asset_name_index");

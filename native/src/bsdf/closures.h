@@ -202,6 +202,9 @@ class Closures {
   void finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold,
               const Vec3& smooth_normal = Vec3(0.0f));
 
+  // Sets the factor of angles in the cosine of reflection, at least 1 (shading_normal.h). finish() does not change it.
+  void set_terminator_frequency(float frequency) { terminator_frequency_ = frequency; }
+
   int count() const { return count_; }
   const Lobe& lobe(int i) const { return lobes_[i]; }
   bool empty() const { return count_ == 0; }
@@ -293,6 +296,7 @@ class Closures {
   bool ignores_wo_ = false;
   Vec3 geometric_normal_ = Vec3(0, 0, 1);
   Vec3 smooth_normal_ = Vec3(0.0f);
+  float terminator_frequency_ = 1.0f;
 };
 
 // Returns whether a lobe scatters within a class. Glass belongs to reflection and transmission.

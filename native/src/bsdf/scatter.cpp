@@ -78,6 +78,9 @@ inline bool Closures::crosses(const Vec3& wi) const { return glm::dot(geometric_
   if (has_soft_bumps(source.type) && smooth_normal_ != Vec3(0.0f) && smooth_normal_ != source.normal) {
     eval.value *= bump_shadowing(smooth_normal_, source.normal, wi);
   }
+  if (terminator_frequency_ > 1.0f && !transmitted) {
+    eval.value *= terminator_shift(cos_i, terminator_frequency_);
+  }
   return eval;
 }
 
@@ -141,6 +144,9 @@ bool Closures::evaluate_dirac(int index, const Vec3& wo, bool transmitted, BsdfS
       continue;
     }
     out->wi = glm::normalize(frame.to_world(local));
+    if (terminator_frequency_ > 1.0f && !transmitted) {
+      out->value *= terminator_shift(glm::dot(out->wi, source.normal), terminator_frequency_);
+    }
     out->pdf = entry.probability;
     out->dirac = true;
     out->transmitted = transmitted;

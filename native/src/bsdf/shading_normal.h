@@ -43,4 +43,14 @@ inline float bump_shadowing(const Vec3& smooth_normal, const Vec3& normal, const
   return 2.0f / (1.0f + std::sqrt(1.0f + alpha2 * tan2_i));
 }
 
+// Returns the factor by which an object's setting Shadow Terminator > Shading Offset changes reflection towards a
+// direction with cosine `cos_i` to the normal: the cosine of its angle becomes that of the angle times `frequency`. The
+// terminator moves to smaller angles, where the facets of coarse meshes hide less of the smooth surface. This is the
+// formula of Cycles, from Appleseed.
+inline float terminator_shift(float cos_i, float frequency) {
+  if (!(cos_i > 0.0f)) return 0.0f;
+  const float angle = std::acos(std::min(cos_i, 1.0f));
+  return std::max(std::cos(frequency * angle), 0.0f) / cos_i;
+}
+
 }  // namespace gradus::bsdf

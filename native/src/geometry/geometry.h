@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "geometry/light_links.h"
 #include "geometry/matrix_keys.h"
 #include "geometry/placement.h"
 #include "geometry/surface.h"
@@ -40,6 +41,10 @@ struct InstanceData : Placement {
   int32_t pass_index = 0;
   Vec4 color{1.0f};
   float shadow_terminator_offset = 0.0f;  // cosine, see shadow_terminator.h
+  float terminator_frequency = 1.0f;      // see SurfacePoint
+  uint64_t light_set = 1;                 // bit of its light set as a receiver
+  uint64_t shadow_set = 1;                // bit of its shadow set as a blocker
+  EmitterLinks links;                     // of its emission
   Vec3 generated{0.0f};
   Vec2 uv{0.0f};
   uint32_t light_group = 0;  // index + 1 in Snapshot::channels of what the instance emits; 0: none
@@ -70,6 +75,9 @@ class Geometry {
   void intersect4(const Ray rays[4], uint32_t visibility, Hit hits[4]) const;
   // Returns whether a surface that is visible to shadow rays lies on the segment. Transparency is ignored.
   bool occluded(const Ray& ray) const;
+  // Finds the nearest surface whose instance shares a bit with `mask`, an Embree mask, and belongs to one of the shadow
+  // sets `blockers`. Returns false if there is none.
+  bool intersect_blocker(const Ray& ray, uint32_t mask, uint64_t blockers, Hit* hit) const;
   // Returns whether a surface that is visible to one of the ray types in `visibility` lies on the segment.
   bool meets(const Ray& ray, uint32_t visibility) const;
   // Computes occluded() for four rays at once. Lanes that are not wanted give false.

@@ -1,5 +1,6 @@
 #include "geometry/instance_arrays.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/error.h"
@@ -39,6 +40,8 @@ void check(const GradusInstances& d) {
     check_shutter_key_count("instance " + std::to_string(i), d.shutter_count[i]);
     require(uint64_t(d.shutter_first[i]) + d.shutter_count[i] <= d.shutter_size, "shutter_first is out of range");
   }
+  for (const uint32_t* sets : {d.receiver_sets, d.blocker_sets})
+    require(!sets || std::all_of(sets, sets + d.count, [](uint32_t set) { return set < 64; }), "set is above 63");
   require(d.attribute_count == 0 || d.attribute_names, "attribute_names missing");
   require(d.attribute_count == 0 || d.count == 0 || d.attributes, "attributes missing");
   require(!d.name_index || d.name_count == 0 || d.names, "names missing");
@@ -64,6 +67,7 @@ InstanceArrays copy_instances(const GradusInstances& d) {
   a.generated = copy<Vec3>(d.generated, d.count);
   a.uvs = copy<Vec2>(d.uvs, d.count);
   a.shadow_terminator_offsets = copy<float>(d.shadow_terminator_offsets, d.count);
+  a.shadow_terminator_shading_offsets = copy<float>(d.shadow_terminator_shading_offsets, d.count);
   a.material_first = copy<uint32_t>(d.material_first, d.count);
   if (d.material_first) a.material_count = copy<uint32_t>(d.material_count, d.count);
   a.materials = copy<uint64_t>(d.materials, d.materials_size);
@@ -71,6 +75,10 @@ InstanceArrays copy_instances(const GradusInstances& d) {
   if (d.shutter_first) a.shutter_count = copy<uint32_t>(d.shutter_count, d.count);
   a.shutter_matrices = copy<Mat4>(d.shutter_matrices, d.shutter_size);
   a.light_groups = copy<uint32_t>(d.light_groups, d.count);
+  a.receiver_sets = copy<uint32_t>(d.receiver_sets, d.count);
+  a.receiver_masks = copy<uint64_t>(d.receiver_masks, d.count);
+  a.blocker_sets = copy<uint32_t>(d.blocker_sets, d.count);
+  a.blocker_masks = copy<uint64_t>(d.blocker_masks, d.count);
   a.name_index = copy<uint32_t>(d.name_index, d.count);
   a.asset_name_index = copy<uint32_t>(d.asset_name_index, d.count);
   for (size_t i = 0; d.names && i < d.name_count; ++i) a.names.emplace_back(d.names[i] ? d.names[i] : "");
@@ -104,6 +112,9 @@ void InstanceArrays::hash(ContentHash* hash) const {
   hash->array(generated);
   hash->array(uvs);
   hash->array(shadow_terminator_offsets);
+  hash->array(shadow_terminator_shading_offsets);
+  for (const auto* sets : {&receiver_sets, &blocker_sets}) hash->array(*sets);
+  for (const auto* masks : {&receiver_masks, &blocker_masks}) hash->array(*masks);
   hash->array(material_first);
   hash->array(material_count);
   hash->array(shutter_first);

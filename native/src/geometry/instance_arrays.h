@@ -24,12 +24,14 @@ struct InstanceArrays {
   std::vector<Vec4> colors;
   std::vector<Vec3> generated;
   std::vector<Vec2> uvs;
-  std::vector<float> shadow_terminator_offsets;
+  std::vector<float> shadow_terminator_offsets, shadow_terminator_shading_offsets;
   std::vector<uint32_t> material_first, material_count;  // empty: no materials
   std::vector<uint64_t> materials;                       // keys of the slots of all instances
   std::vector<uint32_t> shutter_first, shutter_count;    // empty: nothing moves while the shutter is open
   std::vector<Mat4> shutter_matrices;                    // keys of all instances
   std::vector<uint32_t> light_groups;
+  std::vector<uint32_t> receiver_sets, blocker_sets;
+  std::vector<uint64_t> receiver_masks, blocker_masks;
   std::vector<uint32_t> name_index, asset_name_index;  // index in `names` of each instance
   std::vector<std::string> names;                      // names of objects
   std::vector<std::string> attribute_names;

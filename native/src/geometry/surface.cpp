@@ -75,6 +75,8 @@ void place_at(const InstanceData& instance, const Placement& placement, const Hi
   else
     place_instanced(instance, placement, hit, point);
   set_shading_normal(instance, placement, hit, point);
+  point->terminator_frequency = instance.terminator_frequency;
+  point->light_set = instance.light_set;
 }
 
 // Returns the float next to v in the direction of the sign of `up`, as std::nextafter does for finite v; v if `up` is

@@ -27,8 +27,11 @@ struct SurfacePoint {
   Vec3 shading_normal = Vec3(0, 0, 1);    // unit; interpolated; not flipped towards the viewer
   float error = 0.0f;                     // bound on the position's error along the geometric normal
   float shadow_terminator_offset = 0.0f;  // cosine (shadow_terminator.h); 0 if the face is flat
+  // Factor of the angle between the normal and a light in the cosine of reflection (bsdf/shading_normal.h).
+  float terminator_frequency = 1.0f;
   Hit hit;
-  uint32_t material = 0;  // index in Snapshot::materials
+  uint32_t material = 0;   // index in Snapshot::materials
+  uint64_t light_set = 1;  // bit of the instance's light set as a receiver
 };
 
 // How the position on a primitive depends on its parameters, near a hit.

@@ -113,6 +113,22 @@ void reject_others(const RTCFilterFunctionNArguments* args) {
     args->valid[0] = 0;
 }
 
+// Context of a query for the blockers of a light.
+struct BlockerContext {
+  RTCIntersectContext context;
+  const Accelerator::Part* part;
+  const std::vector<InstanceData>* instances;
+  uint64_t blockers;
+};
+
+// Embree's filter function of queries for blockers: rejects the hits of other instances.
+void reject_others_than_blockers(const RTCFilterFunctionNArguments* args) {
+  const auto& wanted = *reinterpret_cast<const BlockerContext*>(args->context);
+  const unsigned instance_id = RTCHitN_instID(args->hit, args->N, 0, 0);
+  const uint32_t instance = instance_of(*wanted.part, instance_id, RTCHitN_geomID(args->hit, args->N, 0));
+  if (((*wanted.instances)[instance].shadow_set & wanted.blockers) == 0) args->valid[0] = 0;
+}
+
 // Finds a hit in one group that is nearer than the query's current hit. Returns false if there is none; the query's
 // distance is unchanged then.
 bool intersect(const Accelerator::Part& part, RTCIntersectContext* context, RTCRayHit* query) {
@@ -173,6 +189,19 @@ bool Geometry::intersect(const Ray& ray, uint32_t visibility, Hit* hit) const {
 
 bool Geometry::intersect_instance(const Ray& ray, uint32_t instance, Hit* hit) const {
   return trace_instance(*accelerator, ray, instance, hit);
+}
+
+bool Geometry::intersect_blocker(const Ray& ray, uint32_t mask, uint64_t blockers, Hit* hit) const {
+  BlockerContext wanted;
+  rtcInitIntersectContext(&wanted.context);
+  wanted.context.filter = reject_others_than_blockers;
+  wanted.instances = &instances;
+  wanted.blockers = blockers;
+  const auto context_of = [&](const Accelerator::Part& part) {
+    wanted.part = &part;
+    return &wanted.context;
+  };
+  return nearest(*accelerator, ray, mask, context_of, hit);
 }
 
 bool Geometry::occluded(const Ray& ray) const { return blocked_by(*accelerator, ray, GRADUS_VISIBLE_SHADOW); }

@@ -20,7 +20,7 @@ struct BasePath {
   // The last segment, and the state with which the base has entered it.
   const path::Segment* segment = nullptr;
   path::PathState state;
-  bool ends_in_holdout = false;  // the camera ray has met a surface with holdout
+  bool ends_in_hole = false;  // the camera ray has met a surface that cuts a hole into the film
   // The vertex x_i at which the last segment starts, its position and the event there; not set if the segment starts at
   // the camera. The vertex itself may be overwritten while offsets are deferred.
   const path::Vertex* from = nullptr;
@@ -32,8 +32,8 @@ struct BasePath {
                    const path::Vertex& vertex) {
     segment = &segment_;
     state = state_;
-    ends_in_holdout =
-        source.vertex == nullptr && segment_.end == path::SegmentEnd::Surface && path::is_holdout(context, vertex);
+    ends_in_hole =
+        source.vertex == nullptr && segment_.end == path::SegmentEnd::Surface && path::cuts_hole(context, vertex);
     if (source.vertex != nullptr) {
       event = *source.event;
       from = source.vertex;

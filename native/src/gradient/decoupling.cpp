@@ -27,12 +27,12 @@ bool choose_same_class(const bsdf::Closures& x, const bsdf::Closures& y, float u
 }
 
 bool continues(const BasePath& base) {
-  return base.segment->end == path::SegmentEnd::Surface && !base.state.emission_only && !base.ends_in_holdout;
+  return base.segment->end == path::SegmentEnd::Surface && !base.state.emission_only && !base.ends_in_hole;
 }
 
 bool continues(const BasePath& base, const OffsetPath& offset) {
   return offset.segment->end == path::SegmentEnd::Surface && !base.state.emission_only &&
-         !(offset.is_from_camera && path::is_holdout(base.context, *offset.vertex));
+         !(offset.is_from_camera && path::cuts_hole(base.context, *offset.vertex));
 }
 
 const path::PathResult& DecoupledTracer::trace(const BasePath& base, OffsetPath* offset, bool is_lit,

@@ -29,7 +29,7 @@ Radiance evaluate_own_emission(const BasePath& base, OffsetPath* offset) {
         Radiance(path::world_contribution(context, o.source(), o.state).clamped, shows_through ? -opaque : 0.0f);
   } else if (o.segment->end == path::SegmentEnd::Surface) {
     const shading::ShadeResult& shade = o.vertex->shade;
-    if (o.is_from_camera && path::is_holdout(context, *o.vertex)) {
+    if (o.is_from_camera && path::cuts_hole(context, *o.vertex)) {
       return emission - Radiance(0.0f, 0.0f, 0.0f, opaque);
     }
     const float held_out = o.is_from_camera ? path::holdout_alpha(o.state.throughput, shade.holdout) : 0.0f;
@@ -84,7 +84,9 @@ ShiftedContribution copy_light_point(const BasePath& base, const path::RaySource
   uint16_t transparent_depth = offset.state.ray.state.transparent_depth;
   const geometry::SurfacePoint& from = offset.vertex->point;
   const Ray ray = light::ray_to_light(geometry::offset_origin(from, view.direction), from, point, view);
-  const Rgb transmittance = path::segment_transmittance(base.context, ray, base.state.ray, &transparent_depth);
+  const Rgb transmittance = view.blockers != geometry::kAllSets
+                                ? path::linked_transmittance(base.context, ray, view.blockers)
+                                : path::segment_transmittance(base.context, ray, base.state.ray, &transparent_depth);
   if (is_black(transmittance)) {
     return unpaired(ShiftFailure::Occluded);
   }
@@ -99,7 +101,9 @@ ShiftedContribution connect_to_emission(const BasePath& base, const path::RaySou
                                         const path::Contribution& c, const light::LightPoint& point,
                                         const path::Vertex& z, const OffsetPath& offset) {
   const OffsetConnection& connection = offset.connection;
-  const Rgb emission = connection.is_open ? shared_emission(base, offset, z) : Rgb(0.0f);
+  const bool is_lit = connection.is_open && (!base.context.scene.light_table->has_links ||
+                                             path::lights_source(base.context, z.point, *offset.vertex));
+  const Rgb emission = is_lit ? shared_emission(base, offset, z) : Rgb(0.0f);
   if (is_black(emission)) {
     return unpaired();  // connect_pending() has counted the cause
   }

@@ -133,10 +133,11 @@ void GradientObserver::on_light_crossing(const path::RaySource& source, const pa
   if (!add_base_emission(c, crossing.weight)) {
     return;
   }
+  const shading::RayState& state = base_.state.ray.state;
   const bool is_needed = has_offset_at(OffsetStage::Pending) || has_offset_at(OffsetStage::Reconnected);
   const light::LightEvaluation base_view =
       source.vertex != nullptr && is_needed
-          ? light::evaluate_light(context_.scene, crossing.point, path::receiver_of(*source.vertex))
+          ? path::evaluate_crossing(context_, crossing.point, path::receiver_of(*source.vertex), state)
           : light::LightEvaluation{};
   for (int k = 0; k < film::kOffsets; ++k) {
     const OffsetPath& o = offsets_[k];
@@ -150,7 +151,7 @@ void GradientObserver::on_light_crossing(const path::RaySource& source, const pa
                        share_emission(base_, source, c, crossing.weight, weights_jointly(base_, base_view, o), o));
     } else if (o.stage == OffsetStage::Pending) {
       const light::LightEvaluation view =
-          light::evaluate_light(context_.scene, crossing.point, path::receiver_of(*o.vertex));
+          path::evaluate_crossing(context_, crossing.point, path::receiver_of(*o.vertex), state);
       accumulator_.add(
           k, c,
           copy_light_point(base_, source, c, crossing.point, base_view, view, crossing.probability, o, &counters_));

@@ -83,7 +83,8 @@ void light_coupled(const BasePath& base, const path::LightSample& sample, bsdf::
       any = true;
     }
   }
-  const bool traces_packet = !context.scene.features.has_transparent_shadows && sample.view.casts_shadow;
+  const bool traces_packet = !context.scene.features.has_transparent_shadows && sample.view.casts_shadow &&
+                             sample.view.blockers == geometry::kAllSets;
   if (any && traces_packet) {
     trace_shadow_packet(base, sample, *offsets, wanted, blocked);
   }

@@ -112,6 +112,7 @@ bool make_analytic_light(const GradusLight& d, const Vec3& origin, AnalyticLight
   light->max_bounces = d.max_bounces;
   light->pass_index = d.pass_index;
   light->light_group = d.light_group;
+  light->links = geometry::emitter_links(d.receiver_mask, d.blocker_mask);
   for (int i = 0; i < 3; ++i) light->position[i] = float(double(d.matrix[12 + i]) - double(origin[i]));
   light->intensity = Rgb(d.strength[0], d.strength[1], d.strength[2]);
   set_axes(d, light);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/types.h"
+#include "geometry/light_links.h"
 #include "gradus/gradus.h"
 #include "light/light_sampling.h"
 #include "light/light_tree.h"
@@ -25,6 +26,7 @@ struct AnalyticLight {
   uint32_t max_bounces = UINT32_MAX;
   int32_t pass_index = 0;
   uint32_t light_group = 0;  // index + 1 in Snapshot::channels; 0: none
+  geometry::EmitterLinks links;
   // Index of the snapshot's material whose emission multiplies `intensity`; UINT32_MAX: the factor is 1.
   uint32_t material = UINT32_MAX;
   Vec3 position{0.0f};

@@ -57,6 +57,7 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
   u.upper = glm::max(a.upper, b.upper);
   u.power = a.power + b.power;
   u.two_sided = a.two_sided || b.two_sided;
+  u.receivers = a.receivers | b.receivers;
   u.cos_emission = std::min(a.cos_emission, b.cos_emission);
   unite_cones(a, b, &u);
   // Flipping the axis of a one-sided emitter would be wrong. unite_cones() flips only the axis of two-sided bounds, and

@@ -216,6 +216,15 @@ void view_world(const LitScene& scene, const LightPoint& point, const Receiver& 
   view->pdf = scene.light_table->world.density(point.direction, point.barycentric, receiver);
 }
 
+// Applies the links of the emitter. From a receiver that it does not light, the point is not sampled and is black.
+void apply_links(const LitScene& scene, const LightPoint& point, const Receiver& receiver, LightEvaluation* view) {
+  const geometry::EmitterLinks links = links_of(scene, point);
+  view->blockers = links.blockers;
+  if ((links.receivers & receiver.light_sets) != 0) return;
+  view->pdf = 0.0f;
+  view->is_unlinked = true;
+}
+
 // Evaluates a light sample except for the radiance of triangles and the world and for a light's material. The pdf
 // excludes the probability of the emitter. `solid_angle` is the one in which the point was sampled for this receiver,
 // if it is known, else null.
@@ -227,6 +236,7 @@ void view_geometry(const LitScene& scene, const LightPoint& point, const Receive
                             view);
   if (point.kind == LightKind::Triangle) view_triangle(scene, point, receiver, solid_angle, view);
   if (point.kind == LightKind::World) view_world(scene, point, receiver, view);
+  if (scene.light_table->has_links) apply_links(scene, point, receiver, view);
 }
 
 void multiply_choice(double probability, LightEvaluation* view) {
@@ -247,7 +257,9 @@ bool comes_from_behind(const Receiver& receiver, const Vec3& direction) {
 
 // Evaluates the materials for the radiance of a light sample.
 void shade_view(const LitScene& scene, const LightPoint& point, LightEvaluation* view) {
-  if (point.kind == LightKind::AnalyticLight) {
+  if (view->is_unlinked) {
+    view->radiance = Rgb(0.0f);
+  } else if (point.kind == LightKind::AnalyticLight) {
     view->radiance *= light_emission(scene, scene.light_table->analytic_lights[point.index], point, *view);
   } else if (point.kind != LightKind::None && view->cosine > 0.0f) {
     view->by_kind = depends_on_kind(scene, point);
@@ -291,6 +303,12 @@ float light_point_pdf(const LitScene& scene, const LightPoint& point, const Rece
   view_geometry(scene, point, receiver, nullptr, &view);
   if (view.pdf > 0.0f) multiply_choice(choice_probability(*scene.light_table, point, receiver), &view);
   return view.pdf;
+}
+
+geometry::EmitterLinks links_of(const LitScene& scene, const LightPoint& point) {
+  if (point.kind == LightKind::AnalyticLight) return scene.light_table->analytic_lights[point.index].links;
+  if (point.kind == LightKind::Triangle) return scene.instances[point.instance].links;
+  return {};
 }
 
 uint32_t light_group_of(const LitScene& scene, const LightPoint& point) {

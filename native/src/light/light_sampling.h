@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "geometry/light_links.h"
 
 namespace gradus::geometry {
 struct SurfacePoint;
@@ -64,6 +65,8 @@ struct LightEvaluation {
   uint32_t max_bounces = UINT32_MAX;
   // True: the radiance depends on the kind of ray. Then `radiance` is 1, and evaluated_radiance() returns the radiance.
   bool by_kind = false;
+  uint64_t blockers = geometry::kAllSets;  // Shadow sets that block the emitter.
+  bool is_unlinked = false;                // The emitter does not light the receiver's light set: it is black.
 };
 
 // A point that receives light. The normal is 0 for points without an orientation.
@@ -72,11 +75,14 @@ struct Receiver {
   Vec3 normal = Vec3(0.0f);
   bool transmits = false;  // The point also receives light from behind.
   float time = 0.0f;       // Shutter time.
+  // Bit of the receiver's light set; all bits: every emitter lights it.
+  uint64_t light_sets = geometry::kAllSets;
   // Cache of the choice among emitters, for further calls with the same receiver; null: nothing is cached.
   LightChoice* memo = nullptr;
   // Compares the fields on which the choice among emitters depends.
   bool operator==(const Receiver& other) const {
-    return position == other.position && normal == other.normal && transmits == other.transmits;
+    return position == other.position && normal == other.normal && transmits == other.transmits &&
+           light_sets == other.light_sets;
   }
 };
 
@@ -105,6 +111,8 @@ LightPoint light_point_of_surface(const LitScene& scene, const geometry::Surface
 // Returns the light sample for a ray that left the scene; its kind is None if the world is black.
 LightPoint light_point_of_world(const LitScene& scene, const Vec3& direction);
 
+// Returns the links of an emitter.
+geometry::EmitterLinks links_of(const LitScene& scene, const LightPoint& point);
 // Returns the light group of an emitter as the index + 1 of a channel of the scene, or 0 if it is in none.
 uint32_t light_group_of(const LitScene& scene, const LightPoint& point);
 

@@ -13,12 +13,6 @@ namespace {
 // ignore occlusion.
 constexpr double kDefensive = 0.2;
 
-// Returns an upper bound of a sun's irradiance at the receiver, without occlusion.
-float sun_importance(float irradiance, const AnalyticLight& sun, const Receiver& receiver) {
-  return irradiance *
-         Cone{-sun.emission_direction, sun.one_minus_cos_sun}.highest_cosine(receiver.normal, receiver.transmits);
-}
-
 // Returns the probability of a group with this weight, where `groups` groups have a weight above 0.
 double defended(double weight, double sum, int groups) {
   return weight > 0.0 ? (1.0 - kDefensive) * weight / sum + kDefensive / groups : 0.0;
@@ -49,22 +43,29 @@ GroupChoice LightTable::choose_group(const Receiver& receiver, const LightTree::
   return {defended(in_tree, sum, groups), defended(in_suns, sum, groups), defended(in_world, sum, groups)};
 }
 
+float LightTable::sun_importance(size_t sun, const Receiver& receiver) const {
+  const AnalyticLight& light = analytic_lights[suns[sun]];
+  if ((light.links.receivers & receiver.light_sets) == 0) return 0.0f;
+  return sun_irradiance[sun] *
+         Cone{-light.emission_direction, light.one_minus_cos_sun}.highest_cosine(receiver.normal, receiver.transmits);
+}
+
 double LightTable::irradiance_of_suns(const Receiver& receiver) const {
   double sum = 0.0;
-  for (size_t i = 0; i < suns.size(); ++i) sum += sun_importance(sun_irradiance[i], analytic_lights[suns[i]], receiver);
+  for (size_t i = 0; i < suns.size(); ++i) sum += sun_importance(i, receiver);
   return sum;
 }
 
 double LightTable::sun_probability(size_t sun, const Receiver& receiver) const {
   const double sum = irradiance_of_suns(receiver);
-  return sum > 0.0 ? sun_importance(sun_irradiance[sun], analytic_lights[suns[sun]], receiver) / sum : 0.0;
+  return sum > 0.0 ? sun_importance(sun, receiver) / sum : 0.0;
 }
 
 uint32_t LightTable::sample_sun(const Receiver& receiver, double u, double* probability) const {
   const double sum = irradiance_of_suns(receiver);
   double below = 0.0;
   for (size_t i = 0;; ++i) {
-    *probability = sum > 0.0 ? sun_importance(sun_irradiance[i], analytic_lights[suns[i]], receiver) / sum : 0.0;
+    *probability = sum > 0.0 ? sun_importance(i, receiver) / sum : 0.0;
     below += *probability;
     if (u < below || i + 1 == suns.size()) return suns[i];
   }

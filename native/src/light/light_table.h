@@ -47,6 +47,8 @@ struct LightTable {
   std::vector<float> sun_irradiance;  // Irradiance of each sun on a plane facing it.
   Environment world;
   std::shared_ptr<const LightScene> lights_with_extent;
+  bool has_links = false;  // An emitter lights some light sets only, or is blocked by some shadow sets only.
+  std::vector<uint32_t> linked_instances;  // Emissive instances in `triangles` that only some shadow sets block.
 
   // Returns whether there is exactly one emitter, so that no choice is needed.
   bool is_single_light() const { return tree.size() == 1 && suns.empty() && world.black(); }
@@ -64,6 +66,8 @@ struct LightTable {
  private:
   // Returns the probabilities of the groups. `cut` is the cut through the tree for the same receiver.
   GroupChoice choose_group(const Receiver& receiver, const LightTree::Cut& cut) const;
+  // Returns an upper bound of the irradiance of the sun at index `sun` of `suns`, without occlusion.
+  float sun_importance(size_t sun, const Receiver& receiver) const;
   double irradiance_of_suns(const Receiver& receiver) const;
 };
 

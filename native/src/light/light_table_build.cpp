@@ -104,6 +104,7 @@ LightBounds triangle_bounds(const LitScene& scene, const EmissiveTriangle& trian
   LightBounds b = bounds_of_corners(scene.corners(triangle.instance, triangle.triangle, 0.0f));
   for (int i = 1; i < kMoments && moves; ++i)
     b = unite(b, bounds_of_corners(scene.corners(triangle.instance, triangle.triangle, float(i) / (kMoments - 1))));
+  b.receivers = scene.instances[triangle.instance].links.receivers;
   b.power = std::min(radiance_estimate(scene, triangle, measure) * triangle.area, 1e30f);
   return b;
 }
@@ -111,7 +112,10 @@ LightBounds triangle_bounds(const LitScene& scene, const EmissiveTriangle& trian
 // Returns the bounds of all lights of the tree: finite analytic lights, then triangles.
 std::vector<LightBounds> all_bounds(const LitScene& scene, const LightTable& table, const CommitMonitor& monitor) {
   std::vector<LightBounds> bounds;
-  for (const uint32_t light : table.tree_lights) bounds.push_back(light_bounds(table.analytic_lights[light]));
+  for (const uint32_t light : table.tree_lights) {
+    bounds.push_back(light_bounds(table.analytic_lights[light]));
+    bounds.back().receivers = table.analytic_lights[light].links.receivers;
+  }
   const size_t analytic_lights = bounds.size();
   bounds.resize(analytic_lights + table.triangles.size());
   const bool measure = table.triangles.size() <= kMaxMeasured;
@@ -123,6 +127,21 @@ std::vector<LightBounds> all_bounds(const LitScene& scene, const LightTable& tab
                     });
   monitor.check();
   return bounds;
+}
+
+// Finds the emitters with links.
+void find_links(const LitScene& scene, LightTable* table) {
+  const auto has_links = [](const geometry::EmitterLinks& links) {
+    return links.has_receivers() || links.has_blockers();
+  };
+  for (const AnalyticLight& light : table->analytic_lights) table->has_links |= has_links(light.links);
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const geometry::EmitterLinks& links = scene.instances[i].links;
+    // Light linking holds for all emissive surfaces, also if light sampling does not find them.
+    table->has_links |= has_links(links);
+    if (links.has_blockers() && table->first_triangle[i] < table->first_triangle[i + 1])
+      table->linked_instances.push_back(i);
+  }
 }
 
 // Divides the analytic lights into finite lights and suns.
@@ -147,6 +166,7 @@ std::shared_ptr<LightTable> build_light_table(const LitScene& scene, std::vector
   table->analytic_lights = std::move(analytic_lights);
   sort_lights(table.get());
   find_triangles(scene, monitor, table.get());
+  find_links(scene, table.get());
   table->tree.build(all_bounds(scene, *table, monitor), [&] { return !monitor.is_running(); });
   monitor.check();
   table->world = build_world(scene, world, monitor);

@@ -58,6 +58,8 @@ float LightTree::importance(const Node& node, const Receiver& receiver) {
 // If neither child has a positive bound, the probability is in proportion to power. The sample is then black, but the
 // probabilities still sum to one.
 double LightTree::first_probability(const Node& node, const Receiver& receiver) const {
+  if (is_unlinked(node.child, receiver)) return 0.0;
+  if (is_unlinked(node.child + 1, receiver)) return 1.0;
   const Node& a = nodes_[node.child];
   const Node& b = nodes_[node.child + 1];
   double x = importance(a, receiver), y = importance(b, receiver);
@@ -100,7 +102,7 @@ bool LightTree::weigh(const Receiver& receiver, Cut* cut) const {
   double sum = 0.0;
   for (int i = 0; i < cut->count_; ++i) {
     Cut::CutNode cut_node = cut->cut_nodes_[size_t(i)];
-    cut_node.weight = importance(nodes_[cut_node.node], receiver);
+    cut_node.weight = is_unlinked(cut_node.node, receiver) ? 0.0f : importance(nodes_[cut_node.node], receiver);
     if (!(cut_node.weight > 0.0f)) continue;
     sum += double(cut_node.weight);
     cut->cut_nodes_[size_t(count++)] = cut_node;

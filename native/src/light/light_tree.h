@@ -14,6 +14,7 @@
 
 #include "base/cancel_check.h"
 #include "base/types.h"
+#include "geometry/light_links.h"
 #include "light/light_sampling.h"
 
 namespace gradus::light {
@@ -22,11 +23,12 @@ namespace gradus::light {
 struct LightBounds {
   Vec3 lower{kInfinity};
   Vec3 upper{-kInfinity};
-  Vec3 axis{0, 0, 1};      // Unit axis of the cone of normals.
-  float cos_normals = 1;   // Cosine of the half angle of the cone of normals.
-  float cos_emission = 0;  // Cosine of the maximum angle between a normal and an emission direction.
-  float power = 0;         // Maximum radiant intensity in W/sr (mean of the channels).
-  bool two_sided = false;  // Emits on both sides of its surface.
+  Vec3 axis{0, 0, 1};                       // Unit axis of the cone of normals.
+  float cos_normals = 1;                    // Cosine of the half angle of the cone of normals.
+  float cos_emission = 0;                   // Cosine of the maximum angle between a normal and an emission direction.
+  float power = 0;                          // Maximum radiant intensity in W/sr (mean of the channels).
+  bool two_sided = false;                   // Emits on both sides of its surface.
+  uint64_t receivers = geometry::kAllSets;  // Light sets that one of the emitters lights.
 };
 
 class LightTree {
@@ -104,11 +106,16 @@ class LightTree {
   bool weigh(const Receiver& receiver, Cut* cut) const;
   // Returns an approximate upper bound of the irradiance at the receiver from all emitters of a node.
   static float importance(const Node& node, const Receiver& receiver);
+  // Returns whether no emitter of a node lights the receiver's light set.
+  bool is_unlinked(uint32_t node, const Receiver& receiver) const {
+    return !receivers_.empty() && (receivers_[node] & receiver.light_sets) == 0;
+  }
   // Returns the probability of the first child of an inner node.
   double first_probability(const Node& node, const Receiver& receiver) const;
 
   std::vector<Node> nodes_;
-  std::vector<uint64_t> trails_;  // Path to each light: bit i is set if it takes the second child at depth i.
+  std::vector<uint64_t> receivers_;  // Light sets that a node's emitters light; empty: all of them light all sets.
+  std::vector<uint64_t> trails_;     // Path to each light: bit i is set if it takes the second child at depth i.
 };
 
 }  // namespace gradus::light

@@ -129,6 +129,7 @@ struct LightTree::Builder {
     node.power = b.power;
     node.two_sided = b.two_sided ? 1 : 0;
     node.child = child;
+    if (!tree->receivers_.empty()) tree->receivers_[index] = b.receivers;
     return b;
   }
 };
@@ -138,6 +139,9 @@ void LightTree::build(const std::vector<LightBounds>& lights, const CancelCheck&
   trails_.assign(lights.size(), 0);
   if (lights.empty()) return;
   nodes_.resize(2 * lights.size());
+  const bool links =
+      std::any_of(lights.begin(), lights.end(), [](const LightBounds& b) { return b.receivers != geometry::kAllSets; });
+  receivers_.assign(links ? nodes_.size() : 0, geometry::kAllSets);
   Builder builder{this, lights, cancel, std::vector<uint32_t>(lights.size())};
   std::iota(builder.order.begin(), builder.order.end(), 0u);
   builder.build(0, 0, uint32_t(lights.size()), 0, 0);

@@ -8,11 +8,13 @@
 #include "base/fpu.h"
 #include "base/rows.h"
 #include "base/threads.h"
+#include "film/catcher_channels.h"
 #include "film/features.h"
 #include "film/region_pixels.h"
 #include "output/denoise_combined.h"
 #include "output/light_passes.h"
 #include "output/pass_read.h"
+#include "output/shadow_catcher.h"
 #include "schema/pass_table.h"
 
 namespace gradus::output {
@@ -42,6 +44,7 @@ std::vector<float> crop_picture(const film::Film& film, bool keeps_negative, con
     for (size_t c = 0; c < 3; ++c) rgba[4 * out + c] = of_pixel(i, c);
     rgba[4 * out + 3] = channels == 4 ? std::clamp(image[4 * i + 3], 0.0f, 1.0f) : 1.0f;
   });
+  show_shadow_catchers(film, region, rgba.data());
   return rgba;
 }
 
@@ -198,7 +201,9 @@ bool Developer::denoise(DevelopedFilm* developed, std::vector<std::string>* warn
 
 void Developer::split(DevelopedFilm* developed) {
   const film::Film& film = *developed->film;
-  if (developed->is_noisy() || !has_light_passes(film) || has_split(*developed)) return;
+  // Light passes leave out what shadow catchers show, so that the picture cannot be split into them.
+  const bool is_sum = film.channels.find(film::kCatcherShaded) == nullptr;
+  if (developed->is_noisy() || !is_sum || !has_light_passes(film) || has_split(*developed)) return;
   const Image combined = developed->find(GRADUS_PASS_COMBINED);
   const std::shared_ptr<const reconstruct::SampledTerms> joined = std::exchange(developed->sampled_terms, nullptr);
   run([&] {

@@ -14,6 +14,7 @@
 #include "base/fault.h"
 #include "base/fpu.h"
 #include "film/film.h"
+#include "output/shadow_catcher.h"
 #include "schema/pass_table.h"
 
 namespace gradus::output {
@@ -104,6 +105,7 @@ void read_noisy(const film::Film& film, const Region& region, float* pixels) {
     for (int c = 0; c < 3; ++c) p[c] = exposure * mean[c];
     p[3] = film.color_channels == 4 ? std::clamp(mean.w, 0.0f, 1.0f) : (film::samples_at(film, i) > 0 ? 1.0f : 0.0f);
   });
+  show_shadow_catchers(film, region, pixels);
 }
 
 // Writes an estimate of the forward differences of the picture, the sum over all components.

@@ -19,6 +19,15 @@ Contribution found_contribution(const PathContext& context, const RaySource& sou
   return c;
 }
 
+// Returns whether a ray shows the emission of the surface at its end. The ray of a bounce does not where the surface
+// does not light the source, and where the segment has found it already as a light crossing, because it has blockers.
+bool shows_emission(const PathContext& context, const RaySource& source, const geometry::SurfacePoint& surface) {
+  if (!context.scene.light_table->has_links || source.vertex == nullptr) {
+    return true;
+  }
+  return lights_source(context, surface, *source.vertex) && !is_crossed_emitter(context, surface);
+}
+
 }  // namespace
 
 void apply_segment(const Segment& segment, PathState* state) { state->throughput *= segment.weight; }
@@ -27,7 +36,7 @@ Contribution light_hit_contribution(const PathContext& context, const RaySource&
                                     const LightCrossing& crossing) {
   const light::Receiver eye{state.ray.ray.origin, Vec3(0.0f), true};
   const light::Receiver receiver = source.vertex != nullptr ? receiver_of(*source.vertex) : eye;
-  const light::LightEvaluation view = light::evaluate_light(context.scene, crossing.point, receiver);
+  const light::LightEvaluation view = evaluate_crossing(context, crossing.point, receiver, state.ray.state);
   const Rgb radiance = light_hit_radiance(view, state.ray, state.depth);
   if (is_black(radiance)) {
     return {};
@@ -49,7 +58,7 @@ Contribution world_contribution(const PathContext& context, const RaySource& sou
 
 Contribution emission_contribution(const PathContext& context, const RaySource& source, const PathState& state,
                                    const Vertex& vertex) {
-  if (is_black(vertex.shade.emission)) {
+  if (is_black(vertex.shade.emission) || !shows_emission(context, source, vertex.point)) {
     return {};
   }
   const light::LightPoint point =
@@ -84,8 +93,9 @@ Contribution light_contribution(const PathContext& context, const PathState& sta
   return c;
 }
 
-bool is_holdout(const PathContext& context, const Vertex& vertex) {
-  return (context.scene.instances[vertex.point.hit.instance].visibility & GRADUS_HOLDOUT) != 0;
+bool cuts_hole(const PathContext& context, const Vertex& vertex) {
+  constexpr uint32_t kHoles = GRADUS_HOLDOUT | GRADUS_SHADOW_CATCHER;
+  return (context.scene.instances[vertex.point.hit.instance].visibility & kHoles) != 0;
 }
 
 float holdout_alpha(const Rgb& throughput, const Rgb& holdout) {

@@ -37,8 +37,9 @@ bool light_classes(const PathContext& context, const Vertex& vertex, const Light
 Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light,
                                 bsdf::ScatterClass scatter_class, const LitClass& lit, const Rgb& transmittance);
 
-// Returns whether the surface is a holdout object, which the film shows as transparent.
-bool is_holdout(const PathContext& context, const Vertex& vertex);
+// Returns whether the surface is a holdout object or a shadow catcher, which the film shows as transparent and at which
+// a camera path ends.
+bool cuts_hole(const PathContext& context, const Vertex& vertex);
 // Returns the part of the film that a surface with the given holdout closure leaves transparent.
 float holdout_alpha(const Rgb& throughput, const Rgb& holdout);
 

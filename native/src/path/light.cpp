@@ -76,6 +76,9 @@ Rgb light_transmittance(const PathContext& context, const geometry::SurfacePoint
     return Rgb(1.0f);
   }
   const Ray ray = light::ray_to_light(geometry::shadow_origin(context.scene, from, view.direction), from, point, view);
+  if (view.blockers != geometry::kAllSets) {
+    return linked_transmittance(context, ray, view.blockers);
+  }
   if (!context.scene.features.has_transparent_shadows) {
     return Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f);
   }
@@ -88,6 +91,21 @@ float light_pdf(const PathContext& context, const RaySource& source, const light
     return 0.0f;
   }
   return light::light_point_pdf(context.scene, point, receiver_of(*source.vertex));
+}
+
+light::LightEvaluation evaluate_crossing(const PathContext& context, const light::LightPoint& point,
+                                         const light::Receiver& receiver, const shading::RayState& ray) {
+  light::LightEvaluation view = light::evaluate_light(context.scene, point, receiver);
+  if (view.by_kind) {
+    shading::RayState state = ray;
+    state.length = view.distance;
+    view.radiance = light::evaluated_radiance(context.scene, point, view, state);
+  }
+  return view;
+}
+
+bool lights_source(const PathContext& context, const geometry::SurfacePoint& surface, const Vertex& source) {
+  return (context.scene.instances[surface.hit.instance].links.receivers & source.point.light_set) != 0;
 }
 
 Rgb light_hit_radiance(const light::LightEvaluation& view, const PathRay& ray, int depth) {

@@ -54,6 +54,11 @@ inline float bsdf_weight(float pdf_light, float pdf_bsdf) {
   return pdf_light > 0.0f ? pdf_bsdf / (pdf_light + pdf_bsdf) : 1.0f;
 }
 
+// Evaluates an emitter that a ray of the given state crosses, as seen from its source.
+light::LightEvaluation evaluate_crossing(const PathContext& context, const light::LightPoint& point,
+                                         const light::Receiver& receiver, const shading::RayState& ray);
+// Returns whether a surface lights the vertex at which a ray starts, by its own emission.
+bool lights_source(const PathContext& context, const geometry::SurfacePoint& surface, const Vertex& source);
 // Return the radiance of an analytic light that a ray crosses, and of the world, towards this kind of ray. It is black
 // if it is hidden from that kind.
 Rgb light_hit_radiance(const light::LightEvaluation& view, const PathRay& ray, int depth);

@@ -63,7 +63,11 @@ Vec3 shown_normal(const Vertex& vertex) {
 }  // namespace
 
 PassRecorder::PassRecorder(const PathContext& context, film::Film* film, film::Counters* counters)
-    : context_(context), counters_(counters), channels_(context, film, counters), active_(channels_.active()) {
+    : context_(context),
+      counters_(counters),
+      channels_(context, film, counters),
+      catchers_(context, film, counters),
+      active_(channels_.active() || catchers_.active()) {
   for (film::Channel& plane : film->channels) {
     // Integrators fill other channels, and pixel loops count the samples with replaced nodes.
     if (plane.pass == GRADUS_PASS_COUNT || plane.pass == GRADUS_PASS_FALLBACK) continue;
@@ -97,6 +101,13 @@ void PassRecorder::begin_sample(size_t pixel, int half, uint32_t number, bool ad
   path_length_ = 0.0f;
   albedo_ = Rgb(0.0f);
   channels_.begin_sample(pixel, half);
+  catchers_.begin_sample(pixel, half, adds_components);
+}
+
+void PassRecorder::hole(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment) {
+  if (!catchers_.catches(vertex)) return;
+  surface(sampler, state, vertex, segment);
+  catchers_.catcher(sampler, state, vertex);
 }
 
 void PassRecorder::add(uint32_t pass, const Vec4& value) {
@@ -131,6 +142,7 @@ void PassRecorder::emission(int scatterings, const Vertex& vertex, const Rgb& va
 
 void PassRecorder::environment(int scatterings, const Rgb& value) {
   if (channels_.has_groups()) channels_.light(context_.scene.world.light_group, value);
+  if (scatterings == 0) catchers_.background(value);
   add_light(scatterings, value, share_, GRADUS_PASS_ENVIRONMENT);
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "path/catcher_recorder.h"
 #include "path/channel_recorder.h"
 #include "path/light.h"
 
@@ -27,6 +28,8 @@ class PassRecorder final : public SurfaceVisitor {
   }
   // Records a vertex at which the path stops, before it scatters. The state's throughput has the weight of the segment.
   void surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment);
+  // Records a surface that cuts a hole into the film. The state's throughput has the weight of the segment.
+  void hole(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment);
   // Records a ray that leaves the scene.
   void escaped(const PathState& state);
   // Returns what must see the surfaces on a camera segment, or null if nothing must.
@@ -88,6 +91,7 @@ class PassRecorder final : public SurfaceVisitor {
   const PathContext& context_;
   film::Counters* counters_;
   ChannelRecorder channels_;
+  CatcherRecorder catchers_;
   std::array<film::Channel*, GRADUS_PASS_COUNT> planes_{};
   bool active_ = false;
   bool has_light_passes_ = false;

@@ -11,6 +11,8 @@ namespace {
 // Dimensions of the decisions at transparent surfaces. They lie above those of path vertices.
 constexpr uint32_t kFirstDecision = 1u << 20;
 constexpr uint32_t kDecisionsPerSegment = 1024;
+// Maximum number of surfaces of one emissive instance with blockers that a ray finds, as in Cycles.
+constexpr int kMaxLinkedHits = 1024;
 
 // Returns the probability that the path passes the surface, by its transparency against what it scatters and emits.
 // Emission and scattering that are added to a transparent surface keep a minimum probability.
@@ -36,18 +38,98 @@ void clear(Segment* segment) {
   segment->light_crossings.clear();
 }
 
-// Adds the analytic lights on a part of the segment. `whole` is the ray of the whole segment, because a light that
-// faces its receiver faces the segment's start, as in light sampling, and not the surface that the ray has just passed.
-void add_light_crossings(const PathContext& context, const Ray& whole, float begin, float end, Segment* segment) {
+// Returns whether only some shadow sets block the light of an emitter.
+bool has_blockers(const PathContext& context, const light::LightPoint& point) {
+  return context.scene.features.has_shadow_links && light::links_of(context.scene, point).has_blockers();
+}
+
+// Adds the analytic lights on a part of the segment. `ray` is that of the whole segment, because a light that faces its
+// receiver faces the segment's start, as in light sampling, and not the surface that the ray has just passed.
+void add_light_crossings(const PathContext& context, const PathRay& ray, float begin, float end, Segment* segment) {
   if (!context.scene.features.has_lights_with_extent) {
     return;
   }
-  const Ray part{whole.origin, std::max(whole.t_min, begin), whole.direction, end};
+  const Ray part{ray.ray.origin, std::max(ray.ray.t_min, begin), ray.ray.direction, end};
   light::intersect_lights(context.scene, part, &segment->hits);
   for (const light::LightHit& hit : segment->hits) {
+    if (ray.visibility != GRADUS_VISIBLE_CAMERA && has_blockers(context, hit.point)) {
+      continue;  // add_linked_crossings() has found it
+    }
     segment->light_crossings.push_back(
         {hit.point, hit.distance, segment->weight, segment->probability, segment->crossed});
   }
+}
+
+// Adds an emitter with blockers at the end of `ray`, a part of the ray of a bounce, if these let it pass.
+void add_linked_crossing(const PathContext& context, const PathRay& bounce, const light::LightPoint& point,
+                         const Ray& ray, float distance, Segment* segment) {
+  const bool is_in_mirror = (bounce.state.flags & shading::kRaySingular) != 0;
+  const Rgb transmittance =
+      linked_transmittance(context, ray, light::links_of(context.scene, point).blockers, is_in_mirror);
+  if (!is_black(transmittance)) {
+    segment->light_crossings.push_back({point, distance, transmittance, 1.0f, 0});
+  }
+}
+
+// Adds the emissive triangles of an instance with blockers.
+void add_linked_instance(const PathContext& context, const PathRay& bounce, uint32_t instance, Segment* segment) {
+  const Ray& ray = bounce.ray;
+  Ray part = ray;
+  float passed = 0.0f;
+  geometry::Hit hit;
+  for (int i = 0; i < kMaxLinkedHits && context.scene.intersect_instance(part, instance, &hit); ++i) {
+    const geometry::SurfacePoint surface = context.scene.surface_point(hit);
+    const light::LightPoint point = light::light_point_of_surface(context.scene, surface);
+    if (point.kind != light::LightKind::None) {
+      const Vec3 end = geometry::offset_origin(surface, -ray.direction);
+      add_linked_crossing(context, bounce, point, geometry::ray_between(ray.origin, end, ray.direction, ray.time),
+                          passed + hit.t, segment);
+    }
+    passed += geometry::pass_surface(surface, &part);
+  }
+}
+
+// Adds the emitters with blockers on the whole ray of a bounce. Surfaces that do not block them may stop the path, so
+// that they are found by shadow rays of their own, as in Cycles.
+void add_linked_crossings(const PathContext& context, const PathRay& ray, Segment* segment) {
+  if (!context.scene.features.has_shadow_links || ray.visibility == GRADUS_VISIBLE_CAMERA) {
+    return;
+  }
+  if (context.scene.features.has_lights_with_extent) {
+    light::intersect_lights(context.scene, ray.ray, &segment->hits);
+    for (const light::LightHit& hit : segment->hits) {
+      if (has_blockers(context, hit.point)) {
+        Ray part = ray.ray;
+        part.t_max = hit.distance;
+        add_linked_crossing(context, ray, hit.point, part, hit.distance, segment);
+      }
+    }
+  }
+  for (const uint32_t instance : context.scene.light_table->linked_instances) {
+    if ((context.scene.instances[instance].visibility & ray.visibility) != 0) {
+      add_linked_instance(context, ray, instance, segment);
+    }
+  }
+}
+
+// Finds the lights without blockers and the world for trace_to_lights().
+bool trace_to_unlinked_lights(const PathContext& context, const PathRay& ray, Segment* segment) {
+  add_light_crossings(context, ray, ray.ray.t_min, ray.ray.t_max, segment);
+  if (!segment->light_crossings.empty()) {
+    geometry::Hit hit;
+    segment->end = context.scene.intersect(ray.ray, ray.visibility, &hit) ? SegmentEnd::Exhausted : SegmentEnd::Escaped;
+    std::erase_if(segment->light_crossings, [&](const LightCrossing& light_crossing) {
+      return hit.valid() && !(light_crossing.distance < hit.t);
+    });
+    return true;
+  }
+  if (!context.scene.features.world_emits) {
+    return false;
+  }
+  if (!context.scene.meets(ray.ray, ray.visibility)) {
+    segment->end = SegmentEnd::Escaped;
+  }
+  return true;
 }
 
 // Decides at random whether the path stops at a surface, and weights the segment by the decision.
@@ -72,28 +154,26 @@ void shade_vertex(const PathContext& context, const shading::RayState& ray, Vert
   }
 }
 
+Rgb linked_transmittance(const PathContext& context, const Ray& ray, uint64_t blockers, bool is_in_mirror) {
+  constexpr uint64_t kUnlinked = 1;
+  const uint64_t opaque_blockers = is_in_mirror ? blockers | kUnlinked : blockers;
+  return context.scene.transmittance(ray, context.settings.transparent_max_bounces, blockers, opaque_blockers);
+}
+
+bool is_crossed_emitter(const PathContext& context, const geometry::SurfacePoint& surface) {
+  return context.scene.instances[surface.hit.instance].links.has_blockers() &&
+         light::light_point_of_surface(context.scene, surface).kind != light::LightKind::None;
+}
+
 bool trace_to_lights(const PathContext& context, const PathRay& ray, Segment* segment) {
   clear(segment);
   segment->end = SegmentEnd::Exhausted;
   if (is_none(ray.ray)) {
     return false;
   }
-  add_light_crossings(context, ray.ray, ray.ray.t_min, ray.ray.t_max, segment);
-  if (!segment->light_crossings.empty()) {
-    geometry::Hit hit;
-    segment->end = context.scene.intersect(ray.ray, ray.visibility, &hit) ? SegmentEnd::Exhausted : SegmentEnd::Escaped;
-    std::erase_if(segment->light_crossings, [&](const LightCrossing& light_crossing) {
-      return hit.valid() && !(light_crossing.distance < hit.t);
-    });
-    return true;
-  }
-  if (!context.scene.features.world_emits) {
-    return false;
-  }
-  if (!context.scene.meets(ray.ray, ray.visibility)) {
-    segment->end = SegmentEnd::Escaped;
-  }
-  return true;
+  const bool is_traced = trace_to_unlinked_lights(context, ray, segment);
+  add_linked_crossings(context, ray, segment);
+  return is_traced;
 }
 
 void trace_segment(const PathContext& context, const Sampler& sampler, int depth, const geometry::Hit* first,
@@ -106,6 +186,7 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int depth
     segment->end = SegmentEnd::Exhausted;
     return;
   }
+  add_linked_crossings(context, *ray, segment);
   for (;;) {
     geometry::Hit hit;
     if (first != nullptr) {
@@ -114,7 +195,7 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int depth
     } else {
       context.scene.intersect(part, ray->visibility, &hit);
     }
-    add_light_crossings(context, ray->ray, passed, hit.valid() ? passed + hit.t : ray->ray.t_max, segment);
+    add_light_crossings(context, *ray, passed, hit.valid() ? passed + hit.t : ray->ray.t_max, segment);
     if (!hit.valid()) {
       return;
     }

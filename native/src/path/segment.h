@@ -11,7 +11,8 @@
 
 namespace gradus::path {
 
-// An analytic light that a ray crosses. Such lights do not stop rays.
+// An emitter that a ray crosses and that does not stop it: an analytic light, or an emissive triangle with blockers of
+// its own.
 struct LightCrossing {
   light::LightPoint point;
   float distance = 0.0f;
@@ -63,6 +64,13 @@ enum class Shading : uint8_t { Now, Later };
 void trace_segment(const PathContext& context, const Sampler& sampler, int depth, const geometry::Hit* first,
                    PathRay* ray, Vertex* vertex, Segment* segment, Shading shading = Shading::Now,
                    SurfaceVisitor* visitor = nullptr);
+// Returns the transmittance of a segment to an emitter that the shadow sets `blockers` block. It does not depend on the
+// number of transparent surfaces that the path has passed, so that all paths that share the segment agree. In sharp
+// mirrors, opaque surfaces without a shadow set of their own also hide the emitter, as in Cycles.
+Rgb linked_transmittance(const PathContext& context, const Ray& ray, uint64_t blockers, bool is_in_mirror = false);
+// Returns whether segments of bounces find the emission of a surface as a light crossing, because only some shadow sets
+// block it.
+bool is_crossed_emitter(const PathContext& context, const geometry::SurfacePoint& surface);
 // Traces the last ray of a path in a scene with SceneFeatures::only_lights_emit. It finds the same lights and the same
 // world as trace_segment(), usually without a search for surfaces. The end is Escaped or Exhausted. Returns whether a
 // ray was traced.

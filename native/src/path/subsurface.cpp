@@ -44,6 +44,7 @@ void shade_exit(const PathContext& context, const shading::RayState& ray, const 
   shade.closures.clear();
   shade.emission = shade.transparency = shade.holdout = Rgb(0.0f);
   bsdf::add_exit(entry, normal, &shade.closures);
+  shade.closures.set_terminator_frequency(exit->point.terminator_frequency);
   shade.closures.finish(exit->wo, exit->facing_normal(), context.settings.roughness_threshold,
                         is_behind ? -exit->point.shading_normal : exit->point.shading_normal);
   shade.complete = true;

@@ -239,11 +239,13 @@ class PathTracer {
     }
   }
 
-  // Returns whether the path can scatter at the surface. It cannot at a holdout, which cuts a hole into the film.
+  // Returns whether the path can scatter at the surface. It cannot where the surface cuts a hole into the film. What a
+  // shadow catcher shows is recorded apart from the picture (catcher_recorder.h).
   bool add_surface(const Sampler& sampler, const RaySource& source, const Vertex& vertex) {
     if (state_.depth == 0) {
-      if (is_holdout(context_, vertex)) {
+      if (cuts_hole(context_, vertex)) {
         add_transparency(mean_component(state_.throughput));
+        if (recorder_ != nullptr) recorder_->hole(sampler, state_, vertex, *segment_);
         return false;
       }
       add_transparency(holdout_alpha(state_.throughput, vertex.shade.holdout));

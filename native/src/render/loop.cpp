@@ -219,7 +219,8 @@ void RenderLoop::sample() {
   sampling_.start();
   const auto cancel = [this] { return is_stopped(); };
   // Uses the setting and not the plan: a render with too few samples to be adaptive may be resumed as one with enough.
-  const bool adaptively = input_.settings.noise_threshold > 0.0f && !input_.replay;
+  const bool adaptively =
+      input_.settings.noise_threshold > 0.0f && !input_.replay && input_.snapshot->catchers == nullptr;
   uint32_t begin = input_.resumed ? resumed_samples(*input_.resumed, adaptively) : 0;
   const uint32_t first = input_.settings.first_sample;
   if (adaptively)

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/text_list.h"
 #include "bsdf/ggx.h"
+#include "film/catcher_channels.h"
 #include "film/scene_channels.h"
 #include "output/options.h"
 #include "reconstruct/regression/feature_regression.h"
@@ -240,20 +241,23 @@ Plan make_plan(const GradusSettings& settings, const scene::Snapshot& snapshot, 
   choose_region(settings, &plan);
   plan.channels = settings.film_transparent || snapshot.features.has_holdouts ? 4 : 3;
   plan.first_check = first_check(settings);
-  plan.adaptive = is_adaptive(settings);
+  plan.adaptive = is_adaptive(settings) && snapshot.catchers == nullptr;
   if (plan.adaptive) {
     plan.chosen.emplace_back(
         "adaptive sampling",
         "Noise Threshold is set: pixel blocks below it stop, the others share samples by their noise");
   } else {
     plan.skipped.emplace_back("adaptive sampling",
-                              settings.noise_threshold > 0.0f ? "16 samples or fewer" : "Noise Threshold is 0");
+                              !is_adaptive(settings) && settings.noise_threshold > 0.0f ? "16 samples or fewer"
+                              : settings.noise_threshold > 0.0f ? "the noise of shadows on shadow catchers is unknown"
+                                                                : "Noise Threshold is 0");
   }
   plan.unbiased = takes_unbiased_samples(settings);
   list_scene(settings, snapshot, &plan);
   choose_components(settings, snapshot.features, &plan);
   choose_passes(settings, &plan);
   plan.scene_channels = film::describe(snapshot.channels);
+  if (snapshot.catchers != nullptr) film::add_catcher_channels(&plan.scene_channels);
   list_passes(&plan);
   return plan;
 }

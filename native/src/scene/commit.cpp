@@ -116,6 +116,9 @@ void build_lights(const geometry::EmbreeDevice& device, std::vector<light::Analy
                   [](const light::AnalyticLight& analytic_light) { return analytic_light.found_by_rays(); });
   auto table = light::build_light_table(*snapshot, std::move(analytic_lights), &state->world_map, monitor);
   table->lights_with_extent = features.has_lights_with_extent ? light_scene : nullptr;
+  features.has_shadow_links = !table->linked_instances.empty() ||
+                              std::any_of(table->analytic_lights.begin(), table->analytic_lights.end(),
+                                          [](const light::AnalyticLight& light) { return light.links.has_blockers(); });
   features.has_lights = !table->analytic_lights.empty() || !table->triangles.empty() || !table->world.black();
   snapshot->light_table = std::move(table);
   warn_beyond_limit(state->instances, chosen, snapshot);
@@ -132,12 +135,13 @@ void find_sharpest(Snapshot* snapshot) {
     std::for_each(instance.materials.begin(), instance.materials.end(), add_features_of);
 }
 
-// Sets has_holdouts, which says whether an object or a shader makes holdouts, which have alpha 0 in the film.
+// Sets has_holdouts, which says whether an object or a shader makes holes, which have alpha 0 in the film.
 void find_holdouts(Snapshot* snapshot) {
   const auto holds_out = [&](uint32_t m) { return snapshot->materials[m]->has_holdout; };
   snapshot->features.has_holdouts =
       std::any_of(snapshot->instances.begin(), snapshot->instances.end(), [&](const geometry::InstanceData& i) {
-        return (i.visibility & GRADUS_HOLDOUT) != 0 || std::any_of(i.materials.begin(), i.materials.end(), holds_out);
+        return (i.visibility & (GRADUS_HOLDOUT | GRADUS_SHADOW_CATCHER)) != 0 ||
+               std::any_of(i.materials.begin(), i.materials.end(), holds_out);
       });
 }
 
@@ -155,6 +159,39 @@ void find_emission(Snapshot* snapshot) {
       world < snapshot->materials.size() ? snapshot->materials[world].get() : nullptr;
   snapshot->features.world_emits = material != nullptr && material->emits &&
                                    !(material->emission_is_constant && is_black(material->constant_emission));
+}
+
+// Makes the snapshot of the shadow catchers alone. `exact` returns the matrix of an instance of the whole snapshot.
+void add_catchers(const geometry::EmbreeDevice& device, const geometry::ExactMatrices& exact,
+                  std::vector<light::AnalyticLight> analytic_lights, const std::vector<size_t>& chosen,
+                  const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot) {
+  const auto is_catcher = [](const geometry::InstanceData& i) { return (i.visibility & GRADUS_SHADOW_CATCHER) != 0; };
+  if (std::none_of(snapshot->instances.begin(), snapshot->instances.end(), is_catcher)) return;
+  auto catchers = std::make_shared<Snapshot>(*snapshot);
+  catchers->instances.clear();
+  catchers->features = SceneFeatures{};
+  catchers->features.has_motion = snapshot->features.has_motion;
+  std::vector<uint32_t> index;
+  std::vector<size_t> origins, chosen_catchers;
+  for (size_t i = 0; i < snapshot->instances.size(); ++i) {
+    const bool catches =
+        is_catcher(snapshot->instances[i]) && (snapshot->instances[i].visibility & GRADUS_HOLDOUT) == 0;
+    index.push_back(catches ? uint32_t(origins.size()) : UINT32_MAX);
+    if (!catches) continue;
+    catchers->instances.push_back(snapshot->instances[i]);
+    origins.push_back(i);
+    chosen_catchers.push_back(chosen[i]);
+  }
+  std::erase_if(analytic_lights, [](const light::AnalyticLight& analytic_light) {
+    return (analytic_light.visibility & GRADUS_SHADOW_CATCHER) == 0;
+  });
+  const auto exact_of_catcher = [&](size_t k) { return exact(origins[k]); };
+  build_geometry(device, exact_of_catcher, monitor.step(0.8f, 0.85f), nullptr, catchers.get());
+  build_lights(device, std::move(analytic_lights), chosen_catchers, monitor, state, catchers.get());
+  find_sharpest(catchers.get());
+  find_emission(catchers.get());
+  snapshot->catchers = std::move(catchers);
+  snapshot->catcher_index = std::move(index);
 }
 
 }  // namespace
@@ -183,8 +220,9 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     place_camera(*state_, snapshot.get());
     find_motion(snapshot.get());
     place_world(*state_, materials, snapshot.get());
-    build_lights(device_->embree(), place_lights(*state_, materials, snapshot.get()), chosen, monitor, state_.get(),
-                 snapshot.get());
+    const std::vector<light::AnalyticLight> lights = place_lights(*state_, materials, snapshot.get());
+    add_catchers(device_->embree(), exact, lights, chosen, monitor, state_.get(), snapshot.get());
+    build_lights(device_->embree(), lights, chosen, monitor, state_.get(), snapshot.get());
     find_sharpest(snapshot.get());
     find_holdouts(snapshot.get());
     find_emission(snapshot.get());

@@ -39,6 +39,7 @@ void hash_light(const LightSource& light, const Contents& contents, ContentHash*
   for (const float v : {d.strength[0], d.strength[1], d.strength[2], d.radius, d.angle, d.size[0], d.size[1], d.spread,
                         d.cone, d.blend, d.sun_radiance_per_irradiance})
     hash->value(v);
+  for (const uint64_t mask : {d.receiver_mask, d.blocker_mask}) hash->value(mask);
   hash->value(contents.material(d.material));
 }
 

@@ -1,5 +1,6 @@
 // Makes the instances of a snapshot from those that the caller has set. Broken instances are left out. A scene that is
 // far from the origin is moved to its centre, for float precision.
+#include <algorithm>
 #include <cmath>
 
 #include "base/cryptomatte_id.h"
@@ -121,6 +122,12 @@ void set_values(const geometry::InstanceArrays& a, size_t i, geometry::InstanceD
   if (!a.uvs.empty()) out->uv = a.uvs[i];
   if (!a.light_groups.empty()) out->light_group = a.light_groups[i];
   if (!a.shadow_terminator_offsets.empty()) out->shadow_terminator_offset = a.shadow_terminator_offsets[i];
+  if (!a.shadow_terminator_shading_offsets.empty())
+    out->terminator_frequency = 1.0f / (1.0f - 0.5f * std::clamp(a.shadow_terminator_shading_offsets[i], 0.0f, 1.0f));
+  if (!a.receiver_sets.empty()) out->light_set = uint64_t{1} << a.receiver_sets[i];
+  if (!a.blocker_sets.empty()) out->shadow_set = uint64_t{1} << a.blocker_sets[i];
+  out->links = geometry::emitter_links(a.receiver_masks.empty() ? 0 : a.receiver_masks[i],
+                                       a.blocker_masks.empty() ? 0 : a.blocker_masks[i]);
   for (size_t k = 0; k < a.attribute_names.size(); ++k) out->attributes.push_back(a.attributes[k * a.count + i]);
 }
 

@@ -25,8 +25,9 @@ struct SceneFeatures {
   bool only_lights_emit =
       false;  // no surface adds any radiance to a ray that ends a path; only the lights and the world do that
   bool world_emits = true;
-  bool has_motion = false;    // something moves while the shutter is open
-  bool has_holdouts = false;  // objects or shaders that make alpha 0 in the film
+  bool has_motion = false;        // something moves while the shutter is open
+  bool has_shadow_links = false;  // only some surfaces block the light of an emitter
+  bool has_holdouts = false;      // objects or shaders that make alpha 0 in the film
 };
 
 // All positions are in internal space, where world = internal + origin. The camera and the lights are in the same
@@ -36,12 +37,19 @@ class Snapshot : public light::LitScene {
  public:
   // Returns the transmittance of a segment through at most max_transparent transparent surfaces, or 0 if it is blocked.
   Rgb transmittance(const Ray& ray, uint32_t max_transparent) const;
+  // Returns the same where only surfaces in the shadow sets `blockers` are on the segment, and only opaque surfaces in
+  // `opaque_blockers`.
+  Rgb transmittance(const Ray& ray, uint32_t max_transparent, uint64_t blockers, uint64_t opaque_blockers) const;
 
   std::shared_ptr<const camera::CameraKeys> camera_keys;
   bool shot_change_before = false, shot_change_after = false;  // the adjacent frame belongs to another shot
   bool is_other_shot = false;                                  // made by moved_snapshot() across a shot change
   camera::Shutter shutter;
   SceneFeatures features;
+  // The shadow catchers alone, in the lights that light them, and the index there of each instance, or UINT32_MAX; null
+  // without shadow catchers.
+  std::shared_ptr<const Snapshot> catchers;
+  std::vector<uint32_t> catcher_index;
   SceneChannels channels;  // what films of the scene have beside passes
   uint64_t content_key = 0;
   // Warnings of commit: what it left out or replaced, which the setting `strict` refuses, and what renders completely

@@ -80,6 +80,7 @@ constexpr FieldLayout kInstancesFields[] = {
     FIELD(GradusInstances, generated),
     FIELD(GradusInstances, uvs),
     FIELD(GradusInstances, shadow_terminator_offsets),
+    FIELD(GradusInstances, shadow_terminator_shading_offsets),
     FIELD(GradusInstances, material_first),
     FIELD(GradusInstances, material_count),
     FIELD(GradusInstances, materials_size),
@@ -95,6 +96,10 @@ constexpr FieldLayout kInstancesFields[] = {
     FIELD(GradusInstances, asset_name_index),
     FIELD(GradusInstances, attribute_names),
     FIELD(GradusInstances, attributes),
+    FIELD(GradusInstances, receiver_sets),
+    FIELD(GradusInstances, receiver_masks),
+    FIELD(GradusInstances, blocker_sets),
+    FIELD(GradusInstances, blocker_masks),
 };
 
 constexpr FieldLayout kLightFields[] = {
@@ -117,6 +122,8 @@ constexpr FieldLayout kLightFields[] = {
     FIELD(GradusLight, name),
     FIELD(GradusLight, light_group),
     FIELD(GradusLight, reserved),
+    FIELD(GradusLight, receiver_mask),
+    FIELD(GradusLight, blocker_mask),
 };
 
 constexpr FieldLayout kCameraFields[] = {
@@ -332,6 +339,7 @@ constexpr int64_t kVisibilityValues[] = {
     GRADUS_VISIBLE_SHADOW,
     GRADUS_VISIBLE_ALL,
     GRADUS_HOLDOUT,
+    GRADUS_SHADOW_CATCHER,
     GRADUS_MAY_MOVE,
 };
 

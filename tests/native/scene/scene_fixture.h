@@ -163,6 +163,11 @@ class TestScene {
     count_.push_back(1);
     materials_.push_back(material);
     terminators_.push_back(shadow_terminator_offset);
+    shading_offsets_.push_back(shading_offset);
+    receiver_sets_.push_back(links.receiver_set);
+    receiver_masks_.push_back(links.receiver_mask);
+    blocker_sets_.push_back(links.blocker_set);
+    blocker_masks_.push_back(links.blocker_mask);
     pass_indices_.push_back(pass_index);
     shutter_first_.push_back(uint32_t(shutter_matrices_.size()));
     shutter_count_.push_back(uint32_t(shutter_poses.size()));
@@ -178,6 +183,9 @@ class TestScene {
     for (auto* values : {&visibility_, &first_, &count_, &shutter_first_, &shutter_count_}) values->pop_back();
     matrices_.pop_back();
     terminators_.pop_back();
+    shading_offsets_.pop_back();
+    for (auto* sets : {&receiver_sets_, &blocker_sets_}) sets->pop_back();
+    for (auto* masks : {&receiver_masks_, &blocker_masks_}) masks->pop_back();
     pass_indices_.pop_back();
   }
   std::shared_ptr<const scene::Snapshot> commit() {
@@ -195,6 +203,11 @@ class TestScene {
     instances.materials = materials_.data();
     instances.materials_size = materials_.size();
     instances.shadow_terminator_offsets = terminators_.data();
+    instances.shadow_terminator_shading_offsets = shading_offsets_.data();
+    instances.receiver_sets = receiver_sets_.data();
+    instances.receiver_masks = receiver_masks_.data();
+    instances.blocker_sets = blocker_sets_.data();
+    instances.blocker_masks = blocker_masks_.data();
     instances.shutter_first = shutter_first_.data();
     instances.shutter_count = shutter_count_.data();
     instances.shutter_size = shutter_matrices_.size();
@@ -208,12 +221,22 @@ class TestScene {
   std::vector<Mat4> matrices_before;      // of all instances one frame earlier; if the number differs: static
   std::vector<Mat4> matrices_after;       // of all instances one frame later; if the number differs: static
   float shadow_terminator_offset = 0.0f;  // of instances added later
+  float shading_offset = 0.0f;            // of the shadow terminator of instances added later
   int32_t pass_index = 0;                 // of instances added later
+  // Light and shadow links of instances that are added later.
+  struct Links {
+    uint32_t receiver_set = 0;
+    uint64_t receiver_mask = 0;
+    uint32_t blocker_set = 0;
+    uint64_t blocker_mask = 0;
+  } links;
   // Poses, while the shutter is open, of instances that are added later, multiplied by their matrix; empty: static.
   std::vector<Mat4> shutter_poses;
 
  private:
-  std::vector<float> terminators_;
+  std::vector<float> terminators_, shading_offsets_;
+  std::vector<uint32_t> receiver_sets_, blocker_sets_;
+  std::vector<uint64_t> receiver_masks_, blocker_masks_;
   std::vector<int32_t> pass_indices_;
   std::vector<uint32_t> shutter_first_, shutter_count_;
   std::vector<Mat4> shutter_matrices_;

@@ -311,9 +311,9 @@ void add_lights_with_extent(PathScene* scene, uint32_t flags, float roughness) {
 }  // namespace
 
 const char* name_of(Scenario scenario) {
-  static const char* const names[] = {"DiffuseArea", "PointAndSun", "World",      "GlossyFloor", "RoughMetal",
-                                      "Mirror",      "Glass",       "RoughGlass", "Transparent", "LampsSeen",
-                                      "LampsUnseen", "Facets",      "Fisheye",    "Moving",      "Subsurface"};
+  static const char* const names[] = {
+      "DiffuseArea", "PointAndSun", "World",       "GlossyFloor", "RoughMetal", "Mirror", "Glass",      "RoughGlass",
+      "Transparent", "LampsSeen",   "LampsUnseen", "Facets",      "Fisheye",    "Moving", "Subsurface", "Linked"};
   return names[static_cast<int>(scenario)];
 }
 
@@ -424,6 +424,34 @@ void build(Scenario scenario, PathScene* scene) {
       wax.subsurface_mode = GRADUS_SUBSURFACE_DE_HULST;
       wax.subsurface_radius = Rgb(0.2f, 0.1f, 0.05f);
       scene->ball(Vec3(0.4f, -0.6f, 0.2f), 0.35f, scene->material(wax), 8, true);
+      break;
+    }
+    case Scenario::Linked: {  // lights that light or are blocked by some objects only, and a shifted terminator
+      constexpr uint64_t kUnlinked = 1, kFirst = 2, kSecond = 4;
+      GradusLight ball = point_light(Vec3(0.3f, 0.2f, 0.2f), 0.15f, 0.5f);
+      ball.receiver_mask = kUnlinked | kFirst;
+      ball.blocker_mask = kSecond;
+      scene->light(ball);
+      GradusLight point = point_light(Vec3(-0.4f, 0.5f, 0.3f), 0.0f, 0.3f);
+      point.receiver_mask = kSecond;
+      scene->light(point);
+      GradusLight sun = make_light(GRADUS_LIGHT_SUN, Mat4(1.0f), Rgb(1.0f));
+      sun.angle = 0.4f;
+      sun.receiver_mask = kUnlinked | kSecond;
+      sun.blocker_mask = kFirst;
+      scene->light(sun);
+      scene->scene.links = {0, kUnlinked | kSecond, 0, kFirst};
+      add_ceiling_light(scene, 6.0f, 0.6f);
+      scene->scene.links = {1, 0, 1, 0};
+      scene->ball(Vec3(-0.4f, -0.5f, 0.1f), 0.4f, scene->material(glossy(0.2f)), 8, true);
+      scene->scene.links = {2, 0, 2, 0};
+      scene->scene.shading_offset = 0.5f;
+      scene->ball(Vec3(0.5f, -0.6f, 0.3f), 0.35f, scene->material(matte(Rgb(0.6f))), 6, true);
+      Surface veil = matte(Rgb(0.5f, 0.4f, 0.3f));
+      veil.transparent = 0.5f;
+      scene->quad(Vec3(-0.7f, 0.1f, -0.3f), Vec3(1.2f, 0, 0.3f), Vec3(0, 0.1f, 0.8f), scene->material(veil));
+      scene->scene.shading_offset = 0.0f;
+      scene->scene.links = {};
       break;
     }
     case Scenario::Count:

@@ -100,6 +100,7 @@ enum class Scenario {
   Fisheye,
   Moving,
   Subsurface,
+  Linked,
   Count
 };
 const char* name_of(Scenario scenario);
