@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -129,3 +129,80 @@ def compare(scene: bpy.types.Scene, folder: Path) -> None:
 def test_displacement_is_that_of_cycles(name: str, method: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
     give(stage, displaced(method, CASES[name]))
     compare(stage, tmp_path)
+
+
+def add_ball(scene: bpy.types.Scene, material: bpy.types.Material, x: float) -> bpy.types.Object:
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, location=(x, 0.0, 0.0))
+    bpy.ops.object.shade_smooth()
+    bpy.context.object.data.materials.append(material)
+    return bpy.context.object
+
+
+@pytest.fixture
+def balls(stage: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
+    """Returns the scene without its meshes. Those that the test adds are removed afterwards."""
+    meshes = [item for item in stage.objects if item.type == "MESH"]
+    for item in meshes:
+        stage.collection.objects.unlink(item)
+    yield stage
+    for item in [item for item in stage.objects if item.type == "MESH"]:
+        bpy.data.objects.remove(item)
+    for item in meshes:
+        stage.collection.objects.link(item)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("method", METHODS)
+def test_instances_share_what_is_displaced(
+    method: str, mirrored: bool, balls: bpy.types.Scene, tmp_path: Path
+) -> None:
+    ball = add_ball(balls, displaced(method, CASES["object"]), 1.5)
+    other = ball.copy()
+    balls.collection.objects.link(other)
+    other.location, other.rotation_euler = (-1.5, 0.0, 0.0), (0.5, 0.5, 0.5)
+    other.scale = (-0.5 if mirrored else 0.5, 1.0, 1.3)
+    compare(balls, tmp_path)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_materials_displace_their_own_faces(method: str, balls: bpy.types.Scene, tmp_path: Path) -> None:
+    for x, is_smooth in ((-1.5, True), (1.5, False)):
+        mesh = add_ball(balls, displaced(method, CASES["object"]), x).data
+        mesh.materials.append(displaced("BUMP", CASES["constant"]))
+        for face in mesh.polygons:
+            face.material_index = int(face.center.z > 0.1)
+            face.use_smooth = is_smooth
+    compare(balls, tmp_path)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_displaced_meshes_deform(method: str, balls: bpy.types.Scene, tmp_path: Path) -> None:
+    """A ball that grows while the shutter is open keeps its displacement."""
+    ball = add_ball(balls, displaced(method, CASES["object"]), 0.0)
+    ball.shape_key_add(name="Basis")
+    key = ball.shape_key_add(name="Large")
+    for point in key.data:
+        point.co *= 1.8
+    for frame, value in ((0, 0.0), (2, 1.0)):
+        key.value = value
+        key.keyframe_insert("value", frame=frame)
+    balls.frame_set(1)
+    balls.render.use_motion_blur = True
+    try:
+        compare(balls, tmp_path)
+    finally:
+        balls.render.use_motion_blur = False
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_gradients_see_the_same_surface(method: str, balls: bpy.types.Scene, tmp_path: Path) -> None:
+    """Shifted paths evaluate bumps as base paths do, so that L2 has the mean of plain paths."""
+    for x in (-1.5, 1.5):
+        add_ball(balls, displaced(method, CASES["object"]), x)
+    balls.render.engine = "GRADUS"
+    options = {"samples": 64, "pixel_filter": "BOX", "filter_width": 1.0, "noise_threshold": 0.0}
+    plain = images.render(balls, tmp_path, integrator="PATH", reconstruction="NONE", **options)["Combined"][..., :3]
+    shifted = images.render(balls, tmp_path, integrator="GRADIENT", reconstruction="L2", **options)
+    difference = (shifted["Combined"][..., :3] - plain).reshape(9, 4, 16, 4, 3).mean(axis=(1, 3))
+    assert np.abs(difference).mean() < 0.02 * plain.mean()
+    assert abs(difference.mean()) < 0.005 * plain.mean()
