@@ -24,7 +24,9 @@ def waves(graph: Graph, scale: float = FREQUENCY) -> bpy.types.NodeSocket:
 
 
 def height(graph: Graph, **properties: Any) -> bpy.types.NodeSocket:
-    return graph("Displacement", "Displacement", {"Height": waves(graph), "Midlevel": 0.4, "Scale": SCALE}, **properties)
+    return graph(
+        "Displacement", "Displacement", {"Height": waves(graph), "Midlevel": 0.4, "Scale": SCALE}, **properties
+    )
 
 
 def vector(graph: Graph, space: str) -> bpy.types.NodeSocket:
@@ -153,9 +155,7 @@ def balls(stage: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
 
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("method", METHODS)
-def test_instances_share_what_is_displaced(
-    method: str, mirrored: bool, balls: bpy.types.Scene, tmp_path: Path
-) -> None:
+def test_instances_share_what_is_displaced(method: str, mirrored: bool, balls: bpy.types.Scene, tmp_path: Path) -> None:
     ball = add_ball(balls, displaced(method, CASES["object"]), 1.5)
     other = ball.copy()
     balls.collection.objects.link(other)

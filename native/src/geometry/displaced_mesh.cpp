@@ -1,8 +1,5 @@
 #include "geometry/displaced_mesh.h"
 
-#include <map>
-#include <utility>
-
 #include "base/hash.h"
 #include "geometry/plane.h"
 
@@ -21,40 +18,44 @@ Vec3 triangle_normal(const MeshData& mesh, uint32_t triangle) {
   return safe_unit(glm::cross(p[1] - p[0], p[2] - p[0]), Vec3(0.0f));
 }
 
-// Returns for each element of the normals (a vertex or a corner) the element whose sum of normals it shares. Corners
-// share it if they have the same vertex and the same normal.
-std::vector<uint32_t> shared_elements(const MeshData& mesh) {
-  std::vector<uint32_t> shared(mesh.normals.size());
-  for (uint32_t i = 0; i < shared.size(); ++i) shared[i] = i;
-  if (mesh.normal_domain == GRADUS_DOMAIN_POINT) return shared;
-  std::map<std::pair<uint32_t, std::array<float, 3>>, uint32_t> first;
-  for (size_t i = 0; i < mesh.triangle_corners.size(); ++i) {
-    const uint32_t vertex = mesh.triangle_vertices[i], corner = mesh.triangle_corners[i];
-    if (vertex == kDroppedVertex) continue;
-    const Vec3& n = mesh.normals[corner];
-    shared[corner] = first.try_emplace({vertex, {n.x, n.y, n.z}}, corner).first->second;
+// Returns the mean unit normal of the chosen triangles at each vertex; 0 at others.
+std::vector<Vec3> mean_normals(const MeshData& mesh, const std::vector<bool>& chosen) {
+  std::vector<Vec3> normals(mesh.vertex_count, Vec3(0.0f));
+  for (uint32_t t = 0; t < mesh.triangle_count; ++t) {
+    if (!chosen[t] || mesh.is_dropped(t)) continue;
+    const Vec3 normal = triangle_normal(mesh, t);
+    for (size_t k = 0; k < 3; ++k) normals[mesh.triangle_vertices[size_t(t) * 3 + k]] += normal;
   }
-  return shared;
+  for (Vec3& n : normals) n = safe_unit(n, Vec3(0.0f));
+  return normals;
 }
 
-void recompute_normals(const std::vector<bool>& chosen, MeshData* mesh) {
+// Calls visit(vertex, element of the normals) for each corner of the chosen triangles.
+template <class Visit>
+void for_each_corner(const MeshData& mesh, const std::vector<bool>& chosen, const Visit& visit) {
+  const bool by_vertex = mesh.normal_domain == GRADUS_DOMAIN_POINT;
+  for (uint32_t t = 0; t < mesh.triangle_count; ++t) {
+    if (!chosen[t] || mesh.is_dropped(t)) continue;
+    for (size_t i = size_t(t) * 3; i < size_t(t) * 3 + 3; ++i)
+      visit(mesh.triangle_vertices[i], by_vertex ? mesh.triangle_vertices[i] : mesh.triangle_corners[i]);
+  }
+}
+
+// Recomputes the normals of the chosen triangles. Those of corners change as the normal of their vertex does, which
+// keeps sharp edges sharp.
+void recompute_normals(const MeshData& before, const std::vector<bool>& chosen, MeshData* mesh) {
   if (mesh->normals.empty() || mesh->normal_domain == GRADUS_DOMAIN_FACE) return;
-  const bool by_vertex = mesh->normal_domain == GRADUS_DOMAIN_POINT;
-  const std::vector<uint32_t> shared = shared_elements(*mesh);
-  const std::vector<uint32_t>& elements = by_vertex ? mesh->triangle_vertices : mesh->triangle_corners;
-  std::vector<Vec3> sums(mesh->normals.size(), Vec3(0.0f));
-  for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
-    if (!chosen[t] || mesh->is_dropped(t)) continue;
-    const Vec3 normal = triangle_normal(*mesh, t);
-    for (size_t k = 0; k < 3; ++k) sums[shared[elements[size_t(t) * 3 + k]]] += normal;
+  if (mesh->normal_domain == GRADUS_DOMAIN_POINT) {
+    const std::vector<Vec3> normals = mean_normals(*mesh, chosen);
+    for_each_corner(*mesh, chosen,
+                    [&](uint32_t vertex, uint32_t element) { mesh->normals[element] = normals[vertex]; });
+    return;
   }
-  for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
-    if (!chosen[t] || mesh->is_dropped(t)) continue;
-    for (size_t k = 0; k < 3; ++k) {
-      const uint32_t element = elements[size_t(t) * 3 + k];
-      mesh->normals[element] = safe_unit(sums[shared[element]], Vec3(0.0f));
-    }
-  }
+  const std::vector<bool> all(mesh->triangle_count, true);
+  const std::vector<Vec3> old = mean_normals(before, all), now = mean_normals(*mesh, all);
+  for_each_corner(*mesh, chosen, [&](uint32_t vertex, uint32_t element) {
+    mesh->normals[element] = safe_unit(before.normals[element] + now[vertex] - old[vertex], Vec3(0.0f));
+  });
 }
 
 uint64_t displaced_hash(const MeshData& mesh, const std::vector<Vec3>& offsets) {
@@ -75,7 +76,7 @@ std::shared_ptr<const MeshData> displaced_mesh(const MeshData& mesh, const std::
   move_positions(offsets, mesh.key_times.size(), &moved->positions);
   move_positions(offsets, mesh.shutter_keys, &moved->shutter_positions);
   set_bounds(moved.get());
-  recompute_normals(moves, moved.get());
+  recompute_normals(mesh, moves, moved.get());
   set_shutter_normals(moved.get());
   moved->content_hash = displaced_hash(*moved, offsets);
   return moved;

@@ -103,9 +103,10 @@ class Evaluation {
     std::array<Vec3, 3> p = geometry::triangle_positions(mesh_, corner.triangle);
     for (Vec3& v : p) v = Vec3(instance_.to_world * Vec4(v, 1.0f));
     c.position = p[corner.k];
-    c.normal = safe_normalize(instance_.normal_to_world * normal_at(corner));
     const Vec3 across = safe_normalize(glm::cross(p[1] - p[0], p[2] - p[0]));
-    c.geometric_normal = across == Vec3(0.0f) ? c.normal : instance_.mirrored ? -across : across;
+    c.geometric_normal = instance_.mirrored ? -across : across;
+    c.normal = safe_normalize(instance_.normal_to_world * normal_at(corner));
+    if (c.normal == Vec3(0.0f)) c.normal = c.geometric_normal;
     c.wo = c.normal;
     c.ray.flags = 0;
     return c;
