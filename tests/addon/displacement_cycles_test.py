@@ -176,6 +176,13 @@ def test_materials_displace_their_own_faces(method: str, balls: bpy.types.Scene,
 
 
 @pytest.mark.parametrize("method", METHODS)
+def test_tangent_space_without_a_uv_map(method: str, balls: bpy.types.Scene, tmp_path: Path) -> None:
+    mesh = add_ball(balls, displaced(method, CASES["vector tangent"]), 0.0).data
+    mesh.uv_layers.remove(mesh.uv_layers[0])
+    compare(balls, tmp_path)
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_displaced_meshes_deform(method: str, balls: bpy.types.Scene, tmp_path: Path) -> None:
     """A ball that grows while the shutter is open keeps its displacement."""
     ball = add_ball(balls, displaced(method, CASES["object"]), 0.0)

@@ -10,15 +10,21 @@ Vec3 direction_to_world(const ShadeContext& c, const Vec3& v) {
   return c.instance ? Mat3(placement_of(c, &storage).to_world) * v : v;
 }
 
-// Returns a vector of tangent space in the object's space. As in Cycles, the second axis is the normal, and the tangent
-// of a mesh without a UV map is the first edge of the triangle.
+// Returns the direction around the z axis of the generated coordinates in the plane of `normal`, which Cycles takes as
+// the tangent of a mesh without a UV map.
+Vec3 tangent_around_z(const ShadeContext& c, const Vec3& normal) {
+  const Vec3 g = generated(c) - 0.5f, around(-g.y, g.x, 0.0f);
+  return safe_normalize(around - normal * glm::dot(around, normal));
+}
+
+// Returns a vector of tangent space in the object's space. As in Cycles, the second axis is the normal.
 Vec3 from_tangent_space(const ShadeContext& c, const Vec3& v) {
   const Vec3 normal = normal_to_local(c, c.normal);
   const Vec4 of_map = uv_tangent(c, nullptr);
   Vec3 tangent(of_map);
   float handedness = of_map.w;
   if (tangent == Vec3(0.0f)) {
-    if (c.instance) tangent = safe_normalize(geometry::derivatives(*c.instance, c.hit).dpdu);
+    tangent = tangent_around_z(c, normal);
     handedness = 1.0f;
   }
   const Vec3 bitangent = safe_normalize(glm::cross(normal, tangent)) * handedness;
