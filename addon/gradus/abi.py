@@ -128,6 +128,15 @@ class AlphaMode(IntEnum):
     ALWAYS_STRAIGHT = 4
 
 
+class Displacement(IntEnum):
+    """What the displacement of a material changes."""
+
+    BUMP = 0
+    VERTICES = 1
+    BOTH = 2
+    BOTH_OF_FACES = 3
+
+
 class ObjectKind(IntEnum):
     """Kinds of objects that gradus_scene_remove removes."""
 
@@ -543,6 +552,10 @@ class Material(Struct):
         ("uses_fallback", c_uint32),
         ("name", c_char_p),
         ("aovs", c_uint32),
+        ("displacement", c_uint32),
+        ("displacement_output", c_uint32),
+        ("displacement_method", c_uint32),
+        ("bump_filter_width", c_float),
         ("reserved", c_uint32),
     ]
 
@@ -670,6 +683,7 @@ ENUMS: tuple[type[IntEnum] | type[IntFlag], ...] = (
     ChannelKind,
     ImageSource,
     AlphaMode,
+    Displacement,
     ObjectKind,
     Integrator,
     Reconstruction,

@@ -44,6 +44,21 @@ def test_hair_particles_are_named(scene: bpy.types.Scene, plane: bpy.types.Objec
     assert warnings(scene) == []
 
 
+def test_adaptive_subdivision_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
+    modifier = plane.modifiers.new("Subdivision", "SUBSURF")
+    assert warnings(scene) == []
+    if hasattr(modifier, "use_adaptive_subdivision"):
+        modifier.use_adaptive_subdivision = True
+    else:
+        plane.cycles.use_adaptive_subdivision = True
+        assert warnings(scene) == []
+        scene.cycles.feature_set = "EXPERIMENTAL"
+    expected = "Object 'Plane': its modifier subdivides it, since adaptive subdivision is not supported"
+    assert warnings(scene) == [expected]
+    modifier.show_render = False
+    assert warnings(scene) == []
+
+
 @pytest.mark.parametrize("has_volume", [False, True])
 def test_a_smoke_domain_is_no_box(scene: bpy.types.Scene, plane: bpy.types.Object, has_volume: bool) -> None:
     """Regression: the box of the domain hid what was in it."""

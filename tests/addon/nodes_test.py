@@ -127,7 +127,10 @@ def test_e5_subsurface_in_thin_walls_is_named_in_a_warning() -> None:
     assert len(program.warnings) == 1 and "thin wall" in program.warnings[0]
 
 
-def test_e5_unknown_value_node_passes_through() -> None:
+def test_e5_unknown_value_node_passes_through(monkeypatch: pytest.MonkeyPatch) -> None:
+    from gradus.nodes import node as registry
+
+    monkeypatch.delitem(registry._translators, "ShaderNodeDisplacement")  # stands for a node of a later Blender
     material = new_material()
     nodes, links = material.node_tree.nodes, material.node_tree.links
     node = nodes.new("ShaderNodeDisplacement")
@@ -384,11 +387,32 @@ def test_without_nodes_the_viewport_color_is_used() -> None:
     assert program.inputs[0][2][:3] == pytest.approx((0.2, 0.4, 0.6))
 
 
-def test_displacement_is_named() -> None:
+def test_displacement_is_translated_with_its_method() -> None:
     material = new_material()
     nodes, links = material.node_tree.nodes, material.node_tree.links
-    links.new(nodes.new("ShaderNodeDisplacement").outputs[0], output_of(material).inputs["Displacement"])
-    assert len(translate(material).warnings) == 1
+    target = output_of(material).inputs["Displacement"]
+    links.new(nodes.new("ShaderNodeDisplacement").outputs[0], target)
+    program = translate(material)
+    assert not program.warnings and not program.uses_fallback
+    assert op_names(program)[program.displacement.node] == "DISPLACEMENT"
+    before = program.content()
+    owner = material if hasattr(material, "displacement_method") else material.cycles
+    owner.displacement_method = "DISPLACEMENT" if owner.displacement_method != "DISPLACEMENT" else "BUMP"
+    assert translate(material).content() != before
+    links.new(nodes.new("ShaderNodeNewGeometry").outputs["Normal"], target)
+    program = translate(material)
+    assert op_names(program)[program.displacement.node] == "GEOMETRY"
+
+
+def test_a_constant_displacement_is_a_node() -> None:
+    material = new_material()
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    color = nodes.new("ShaderNodeRGB")
+    links.new(color.outputs[0], output_of(material).inputs["Displacement"])
+    program = translate(material)
+    assert op_names(program)[program.displacement.node] == "VECTOR_MATH"
+    color.outputs[0].default_value = (0.0, 0.0, 0.0, 1.0)
+    assert translate(material).displacement is None
 
 
 def test_a_surface_around_a_volume_is_clear_and_not_black() -> None:

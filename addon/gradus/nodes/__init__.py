@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from . import (  # noqa: F401  (importing them registers their translators)
     colors,
+    displacement,
     inputs,
     normals,
     numbers,

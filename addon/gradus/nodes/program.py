@@ -57,6 +57,11 @@ class Program:
     surface: int = -1
     aovs: int = 0
     """Index + 1 of the node of the outputs to AOVs."""
+    displacement: Value | None = None
+    """The displacement in world space, which is no constant."""
+    displacement_method: int = 0
+    bump_filter_width: float = 1.0
+    """Step of the finite differences of a bump by displacement, in pixels."""
     pass_index: int = 0
     sample_as_light: bool = True
     transparent_shadow: bool = True
@@ -114,6 +119,9 @@ class Program:
             self.name,
             self.surface,
             self.aovs,
+            self.displacement,
+            self.displacement_method,
+            self.bump_filter_width,
             self.pass_index,
             self.sample_as_light,
             self.transparent_shadow,
@@ -148,6 +156,11 @@ class Program:
         material.name_count = len(self.names)
         material.surface = self.surface
         material.aovs = self.aovs
+        if self.displacement is not None:
+            material.displacement = self.displacement.node + 1
+            material.displacement_output = self.displacement.output
+            material.displacement_method = self.displacement_method
+            material.bump_filter_width = self.bump_filter_width
         material.pass_index = self.pass_index
         material.sample_as_light = self.sample_as_light
         material.transparent_shadow = self.transparent_shadow

@@ -7,6 +7,7 @@ from typing import Any
 
 from . import inlining
 from .aovs import aov_outputs
+from .displacement import set_displacement
 from .ops import Op
 from .program import SHADER, Program, constant_color, constant_float
 from .tree import find_socket
@@ -42,7 +43,7 @@ def translate(block: Any, kind: str, resources: Any, version: tuple[int, ...] | 
     try:
         inlined = block.inline_shader_nodes() if inlining.is_needed(block, tree) else None
         # The tree of `inlined` exists as long as `inlined` itself.
-        _walk(program, inlined.node_tree if inlined is not None else tree, resources, version, kind)
+        _walk(program, block, inlined.node_tree if inlined is not None else tree, resources, version, kind)
     except Exception as error:  # noqa: BLE001  (an unexpected graph must not prevent the frame)
         _replace_all(program, kind, f"{type(error).__name__}: {error}")
     finally:
@@ -93,7 +94,7 @@ def _output_node(tree: Any) -> Any:
     return tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
 
 
-def _walk(program: Program, tree: Any, resources: Any, version: tuple[int, ...], kind: str) -> None:
+def _walk(program: Program, block: Any, tree: Any, resources: Any, version: tuple[int, ...], kind: str) -> None:
     output = _output_node(tree)
     if output is None:
         return
@@ -108,8 +109,8 @@ def _walk(program: Program, tree: Any, resources: Any, version: tuple[int, ...],
         if kind == "SURFACE" and program.surface < 0:
             # A surface that only bounds a volume is invisible. Without this, a box of fog would be black.
             program.surface = program.add(Op.TRANSPARENT, (constant_color((1.0, 1.0, 1.0)),))
-    if kind == "SURFACE" and _is_fed(walker, output, "Displacement"):
-        _warn_left_out(program, "displacement")
+    if kind == "SURFACE":
+        set_displacement(program, block, walker, find_socket(output.inputs, "Displacement"))
 
 
 def _is_fed(walker: Walker, output: Any, name: str) -> bool:

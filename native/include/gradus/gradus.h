@@ -443,25 +443,39 @@ typedef struct GradusNode {
   uint64_t resource;    /* Key of an image, or index + 1 of an attribute's name in `names` of the material; 0 = none. */
 } GradusNode;
 
+/* What the displacement of a material changes. */
+typedef enum GradusDisplacement {
+  GRADUS_DISPLACEMENT_BUMP = 0,         /* The shading normal. */
+  GRADUS_DISPLACEMENT_VERTICES = 1,     /* The vertices of the mesh, and their normals. */
+  GRADUS_DISPLACEMENT_BOTH = 2,         /* The vertices of the mesh, and the shading normal as a bump of the mesh
+                                           before. */
+  GRADUS_DISPLACEMENT_BOTH_OF_FACES = 3 /* BOTH, where the bump of a flat face starts from the moved face, as before
+                                           Blender 5.0. */
+} GradusDisplacement;
+
 /* A material, a background or the emission of a light as a program of nodes. */
 typedef struct GradusMaterial {
-  uint32_t struct_size;        /* sizeof this struct. */
-  uint32_t node_count;         /* Number of nodes. */
-  const GradusNode* nodes;     /* Nodes in topological order: an input refers to an earlier node only. */
-  const GradusInput* inputs;   /* Inputs of all nodes. */
-  size_t input_count;          /* Number of inputs. */
-  const float* floats;         /* Parameters of all nodes. */
-  size_t float_count;          /* Number of parameters. */
-  const char* const* names;    /* Names of attributes and UV maps. */
-  uint32_t name_count;         /* Number of names. */
-  int32_t surface;             /* Node whose closure is the surface, the background or the emission; -1 = none. */
-  int32_t pass_index;          /* Value of pass Material Index. */
-  uint32_t sample_as_light;    /* 1: emissive geometry of this material is sampled as a light. */
-  uint32_t transparent_shadow; /* 0: transparent surfaces cast opaque shadows. */
-  uint32_t uses_fallback;      /* 1: a node was replaced; pass Fallback marks the pixels. */
-  const char* name;            /* Name that warnings and Cryptomatte use. */
-  uint32_t aovs;               /* Index + 1 of the node whose closures are the outputs to AOVs; 0 = none. */
-  uint32_t reserved;           /* 0. */
+  uint32_t struct_size;         /* sizeof this struct. */
+  uint32_t node_count;          /* Number of nodes. */
+  const GradusNode* nodes;      /* Nodes in topological order: an input refers to an earlier node only. */
+  const GradusInput* inputs;    /* Inputs of all nodes. */
+  size_t input_count;           /* Number of inputs. */
+  const float* floats;          /* Parameters of all nodes. */
+  size_t float_count;           /* Number of parameters. */
+  const char* const* names;     /* Names of attributes and UV maps. */
+  uint32_t name_count;          /* Number of names. */
+  int32_t surface;              /* Node whose closure is the surface, the background or the emission; -1 = none. */
+  int32_t pass_index;           /* Value of pass Material Index. */
+  uint32_t sample_as_light;     /* 1: emissive geometry of this material is sampled as a light. */
+  uint32_t transparent_shadow;  /* 0: transparent surfaces cast opaque shadows. */
+  uint32_t uses_fallback;       /* 1: a node was replaced; pass Fallback marks the pixels. */
+  const char* name;             /* Name that warnings and Cryptomatte use. */
+  uint32_t aovs;                /* Index + 1 of the node whose closures are the outputs to AOVs; 0 = none. */
+  uint32_t displacement;        /* Index + 1 of the node that displaces the surface; 0 = none. */
+  uint32_t displacement_output; /* The output of that node which is the displacement in world space. */
+  uint32_t displacement_method; /* GradusDisplacement: What the displacement changes. */
+  float bump_filter_width;      /* Step of the finite differences of a bump by displacement, in pixels. */
+  uint32_t reserved;            /* 0. */
 } GradusMaterial;
 
 /* Kinds of objects that gradus_scene_remove removes. */

@@ -79,6 +79,11 @@
  *                       instance occludes; + 4: the distance is that of the world. Floats: number of rays.
  *   BEVEL             radius, normal -> normal: The mean normal of the same instance within a radius. Floats: number of
  *                       rays.
+ *   DISPLACEMENT      height, midlevel, scale, normal -> displacement: A displacement along the normal, in world space.
+ *                       Mode: GRADUS_NORMAL_OBJECT or GRADUS_NORMAL_WORLD, the space of the height.
+ *   VECTOR_DISPLACEMENTvector, midlevel, scale -> displacement: A displacement from a vector, in world space. Mode:
+ *                       GRADUS_NORMAL_TANGENT, with the normal as the second axis, GRADUS_NORMAL_OBJECT or
+ *                       GRADUS_NORMAL_WORLD.
  *
  * Textures.
  *   IMAGE             vector -> color, alpha: An image. Mode: GRADUS_IMAGE_MODE(). Floats: blend of BOX. Resource: key
@@ -182,6 +187,8 @@
   X(WIREFRAME, 57, 1, 1, 0) \
   X(AMBIENT_OCCLUSION, 58, 3, 2, 0) \
   X(BEVEL, 59, 2, 1, 0) \
+  X(DISPLACEMENT, 60, 4, 1, 0) \
+  X(VECTOR_DISPLACEMENT, 61, 3, 1, 0) \
   X(IMAGE, 64, 1, 2, 0) \
   X(ENVIRONMENT, 65, 1, 1, 0) \
   X(NOISE, 66, 9, 2, 0) \

@@ -226,6 +226,10 @@ void visit(Archive& a, GradusMaterial& s) {
   a.value(s.transparent_shadow);
   a.value(s.uses_fallback);
   a.value(s.aovs);
+  a.value(s.displacement);
+  a.value(s.displacement_output);
+  a.value(s.displacement_method);
+  a.value(s.bump_filter_width);
   a.text(s.name);
   a.structs(s.nodes, s.node_count);
   a.structs(s.inputs, s.input_count);

@@ -53,6 +53,8 @@ struct InstanceData : Placement {
   std::vector<Vec4> attributes;                               // in the order of Geometry::instance_attribute_names
   std::vector<uint32_t> materials;                            // index in Snapshot::materials of each slot
   std::vector<std::shared_ptr<const TangentField>> tangents;  // of the UV maps that a material uses
+  // The instance before its vertices were displaced, if a material bends normals as a bump of that surface.
+  std::shared_ptr<const InstanceData> undisplaced;
 
   // Whether the instance moves or deforms while the shutter is open.
   bool moves() const { return keys != nullptr || deforms; }
@@ -60,6 +62,13 @@ struct InstanceData : Placement {
   // changes.
   const Placement& placement(float time, Placement* storage) const;
 };
+
+// Computes the surface point of a hit on an instance.
+void place(const InstanceData& instance, const Hit& hit, SurfacePoint* point);
+// Returns the corners of a triangle of an instance, in internal space, at a shutter time from 0 to 1.
+std::array<Vec3, 3> corners(const InstanceData& instance, uint32_t triangle, float time);
+// Returns the derivatives of the position on an instance by the parameters on the primitive.
+SurfaceDerivatives derivatives(const InstanceData& instance, const Hit& hit);
 
 // Placed meshes with their acceleration structure. Answers ray queries, and computes surface points from hits.
 // Positions are in internal space: world = internal + origin.

@@ -69,6 +69,10 @@ inline size_t domain_size(const GradusMesh& m, uint32_t domain) {
   return m.triangle_faces ? m.face_count : m.triangle_count;
 }
 
+// Sets the bounds from the positions in the rendered frame, without dropped triangles.
+void set_bounds(MeshData* mesh);
+// Sets the smooth normals of all shutter keys, if the mesh deforms and is not shaded flat.
+void set_shutter_normals(MeshData* mesh);
 // Copies and checks the caller's arrays. Throws Error INVALID_ARGUMENT with the name of the mesh if an array is
 // missing, or if counts and indices contradict each other.
 std::shared_ptr<const MeshData> make_mesh(const GradusMesh& desc);

@@ -36,17 +36,6 @@ void turn_normals(const MeshData& from, MeshData* mesh) {
   }
 }
 
-// Sets the bounds of a mesh from its positions, without dropped triangles.
-void find_bounds(MeshData* mesh) {
-  mesh->lower = Vec3(kInfinity);
-  mesh->upper = Vec3(-kInfinity);
-  for (const uint32_t v : mesh->triangle_vertices) {
-    if (v == kDroppedVertex) continue;
-    mesh->lower = glm::min(mesh->lower, mesh->positions[v]);
-    mesh->upper = glm::max(mesh->upper, mesh->positions[v]);
-  }
-}
-
 }  // namespace
 
 std::shared_ptr<const MeshData> mesh_at(const MeshData& mesh, float frames) {
@@ -60,7 +49,7 @@ std::shared_ptr<const MeshData> mesh_at(const MeshData& mesh, float frames) {
   if (moved->generated_points.empty())
     moved->generated_points.assign(mesh.frame_positions(), mesh.frame_positions() + mesh.vertex_count);
   turn_normals(mesh, moved.get());
-  find_bounds(moved.get());
+  set_bounds(moved.get());
   ContentHash hash;
   hash.value(mesh.content_hash);
   hash.value(frames);

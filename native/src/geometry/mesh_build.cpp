@@ -79,17 +79,6 @@ void copy_shutter_keys(const GradusMesh& m, MeshData* out) {
   std::memcpy(out->shutter_positions.data(), m.shutter_positions, m.vertex_count * m.shutter_key_count * sizeof(Vec3));
 }
 
-// Computes the smooth normals of all shutter keys. Call it after copy_triangles(), because they depend on the
-// triangles.
-void add_shutter_normals(MeshData* mesh) {
-  if (mesh->shutter_keys == 0 || mesh->normals.empty()) return;
-  mesh->shutter_normals = smooth_normals(*mesh, mesh->frame_positions());
-  for (size_t k = 0; k < mesh->shutter_keys; ++k) {
-    const std::vector<Vec3> normals = smooth_normals(*mesh, mesh->shutter_positions.data() + k * mesh->vertex_count);
-    mesh->shutter_normals.insert(mesh->shutter_normals.end(), normals.begin(), normals.end());
-  }
-}
-
 bool usable_in_all_keys(const MeshData& mesh, uint32_t vertex) {
   for (size_t k = 0; k < mesh.key_times.size(); ++k)
     if (!usable(mesh.positions[k * mesh.vertex_count + vertex])) return false;
@@ -121,21 +110,14 @@ void copy_triangles(const GradusMesh& m, const Check& check, MeshData* out) {
 void drop_unusable(MeshData* mesh) {
   std::vector<bool> good(mesh->vertex_count);
   for (uint32_t i = 0; i < mesh->vertex_count; ++i) good[i] = usable_in_all_keys(*mesh, i);
-  mesh->lower = Vec3(kInfinity);
-  mesh->upper = Vec3(-kInfinity);
-  const Vec3* p = mesh->frame_positions();
   for (size_t t = 0; t < mesh->triangle_count; ++t) {
     uint32_t* v = mesh->triangle_vertices.data() + t * 3;
     if (!good[v[0]] || !good[v[1]] || !good[v[2]]) {
       v[0] = v[1] = v[2] = kDroppedVertex;
       ++mesh->dropped_triangles;
-      continue;
-    }
-    for (int k = 0; k < 3; ++k) {
-      mesh->lower = glm::min(mesh->lower, p[v[k]]);
-      mesh->upper = glm::max(mesh->upper, p[v[k]]);
     }
   }
+  set_bounds(mesh);
 }
 
 void copy_face_materials(const GradusMesh& m, MeshData* out) {
@@ -247,6 +229,26 @@ uint64_t hash_topology(const MeshData& mesh) {
 
 }  // namespace
 
+void set_bounds(MeshData* mesh) {
+  mesh->lower = Vec3(kInfinity);
+  mesh->upper = Vec3(-kInfinity);
+  const Vec3* p = mesh->frame_positions();
+  for (const uint32_t v : mesh->triangle_vertices) {
+    if (v == kDroppedVertex) continue;
+    mesh->lower = glm::min(mesh->lower, p[v]);
+    mesh->upper = glm::max(mesh->upper, p[v]);
+  }
+}
+
+void set_shutter_normals(MeshData* mesh) {
+  if (mesh->shutter_keys == 0 || mesh->normals.empty()) return;
+  mesh->shutter_normals = smooth_normals(*mesh, mesh->frame_positions());
+  for (size_t k = 0; k < mesh->shutter_keys; ++k) {
+    const std::vector<Vec3> normals = smooth_normals(*mesh, mesh->shutter_positions.data() + k * mesh->vertex_count);
+    mesh->shutter_normals.insert(mesh->shutter_normals.end(), normals.begin(), normals.end());
+  }
+}
+
 std::shared_ptr<const MeshData> make_mesh(const GradusMesh& desc) {
   auto mesh = std::make_shared<MeshData>();
   mesh->name = desc.name ? desc.name : "";
@@ -260,7 +262,7 @@ std::shared_ptr<const MeshData> make_mesh(const GradusMesh& desc) {
   drop_unusable(mesh.get());
   copy_face_materials(desc, mesh.get());
   copy_normals(desc, mesh.get());
-  add_shutter_normals(mesh.get());
+  set_shutter_normals(mesh.get());
   copy_attributes(desc, check, mesh.get());
   copy_generated(desc, mesh.get());
   add_edge_values(desc, check, mesh.get());

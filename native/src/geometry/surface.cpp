@@ -104,12 +104,15 @@ uint32_t Geometry::material_of(uint32_t index, uint32_t primitive) const {
                           flat ? instance.flat_triangles[primitive].slot : instance.mesh->material_slot(primitive));
 }
 
-void Geometry::place(const Hit& hit, SurfacePoint* point) const {
-  const InstanceData& instance = instances[hit.instance];
+void place(const InstanceData& instance, const Hit& hit, SurfacePoint* point) {
   point->hit = hit;
   if (!instance.keys) return place_at(instance, instance, hit, point);
   Placement storage;
   place_at(instance, instance.placement(hit.time, &storage), hit, point);
+}
+
+void Geometry::place(const Hit& hit, SurfacePoint* point) const {
+  geometry::place(instances[hit.instance], hit, point);
 }
 
 void Geometry::prefetch(const Hit& hit) const {
@@ -123,8 +126,7 @@ SurfacePoint Geometry::surface_point(const Hit& hit) const {
   return point;
 }
 
-std::array<Vec3, 3> Geometry::corners(uint32_t index, uint32_t triangle, float time) const {
-  const InstanceData& instance = instances[index];
+std::array<Vec3, 3> corners(const InstanceData& instance, uint32_t triangle, float time) {
   if (instance.flat_triangles) return instance.flat_triangles[triangle].corners;
   std::array<Vec3, 3> p = triangle_positions_in_shutter(*instance.mesh, triangle, time);
   const Mat4 to_world = instance.keys ? instance.keys->at(time) : instance.to_world;
@@ -132,13 +134,21 @@ std::array<Vec3, 3> Geometry::corners(uint32_t index, uint32_t triangle, float t
   return p;
 }
 
+std::array<Vec3, 3> Geometry::corners(uint32_t index, uint32_t triangle, float time) const {
+  return geometry::corners(instances[index], triangle, time);
+}
+
 Vec3 Geometry::position(const Hit& hit) const {
   return interpolate(corners(hit.instance, hit.primitive, hit.time), hit.uv);
 }
 
-SurfaceDerivatives Geometry::derivatives(const Hit& hit) const {
-  const std::array<Vec3, 3> p = corners(hit.instance, hit.primitive, hit.time);
+SurfaceDerivatives derivatives(const InstanceData& instance, const Hit& hit) {
+  const std::array<Vec3, 3> p = corners(instance, hit.primitive, hit.time);
   return {p[1] - p[0], p[2] - p[0]};
+}
+
+SurfaceDerivatives Geometry::derivatives(const Hit& hit) const {
+  return geometry::derivatives(instances[hit.instance], hit);
 }
 
 float Geometry::curvature(const Hit& hit) const {

@@ -124,6 +124,17 @@ void build_lights(const geometry::EmbreeDevice& device, std::vector<light::Analy
   warn_beyond_limit(state->instances, chosen, snapshot);
 }
 
+// Moves the vertices of meshes by the displacement of their materials.
+void displace_meshes(const CommitMonitor& monitor, const std::vector<size_t>& chosen, Scene::State* state,
+                     Snapshot* snapshot) {
+  AffectedObjects broken;
+  for (const size_t k : displace_instances(monitor, &state->displaced, snapshot))
+    broken.add(state->instances.name(chosen[k]));
+  broken.warn("keeps vertices in their place", "keep vertices in their place",
+              "their displacement is not finite or too large", &snapshot->warnings);
+  if (!state->displaced.empty()) set_radius(snapshot);
+}
+
 void find_sharpest(Snapshot* snapshot) {
   const auto add_features_of = [&](uint32_t m) {
     SceneFeatures& features = snapshot->features;
@@ -210,6 +221,9 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     const std::vector<size_t> chosen = place_instances(*state_, snapshot.get());
     monitor.check();
     assign_materials(state_->instances, chosen, materials, snapshot.get());
+    place_camera(*state_, snapshot.get());
+    place_world(*state_, materials, snapshot.get());
+    displace_meshes(monitor, chosen, state_.get(), snapshot.get());
     add_tangents(state_->current.get(), snapshot.get());
     monitor.check();
     const auto exact = [&](size_t k) {
@@ -217,9 +231,7 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     };
     build_geometry(device_->embree(), exact, monitor.step(0.25f, 0.8f), state_->accelerator, snapshot.get());
     state_->accelerator = snapshot->accelerator;
-    place_camera(*state_, snapshot.get());
     find_motion(snapshot.get());
-    place_world(*state_, materials, snapshot.get());
     const std::vector<light::AnalyticLight> lights = place_lights(*state_, materials, snapshot.get());
     add_catchers(device_->embree(), exact, lights, chosen, monitor, state_.get(), snapshot.get());
     build_lights(device_->embree(), lights, chosen, monitor, state_.get(), snapshot.get());

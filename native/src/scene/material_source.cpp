@@ -32,6 +32,7 @@ void check_arrays(const GradusMaterial& d, const Check& check) {
   check.that(d.name_count == 0 || d.names, "names missing");
   check.that(d.surface >= -1 && d.surface < int64_t(d.node_count), "the surface node is out of range");
   check.that(d.aovs <= d.node_count, "the node of outputs to AOVs is out of range");
+  check.that(d.displacement <= d.node_count, "the node of the displacement is out of range");
 }
 
 void check_node(const GradusMaterial& d, uint32_t i, const Check& check) {
@@ -82,6 +83,10 @@ uint64_t MaterialSource::hash_with(const std::function<uint64_t(uint64_t key)>& 
        {uint32_t(d.surface), uint32_t(d.pass_index), d.sample_as_light, d.transparent_shadow, d.uses_fallback})
     hash.value(v);
   if (d.aovs != 0) hash.value(d.aovs);
+  if (d.displacement != 0) {
+    for (const uint32_t v : {d.displacement, d.displacement_output, d.displacement_method}) hash.value(v);
+    hash.value(d.bump_filter_width);
+  }
   return hash.result();
 }
 

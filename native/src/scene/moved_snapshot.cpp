@@ -58,10 +58,23 @@ bool move_instance(const Step& step, Meshes* meshes, geometry::InstanceData* ins
   return true;
 }
 
+// Moves the surface of an instance before its displacement, from which bumps start.
+void move_undisplaced(const Step& step, const Snapshot& snapshot, Meshes* meshes, geometry::InstanceData* instance) {
+  if (!instance->undisplaced) return;
+  auto undisplaced = std::make_shared<geometry::InstanceData>(*instance->undisplaced);
+  move_instance(step, meshes, undisplaced.get());
+  if (undisplaced->tangents.empty()) add_tangents(snapshot, undisplaced.get());
+  instance->undisplaced = std::move(undisplaced);
+}
+
 bool move_instances(const Step& step, Snapshot* snapshot) {
   Meshes meshes;
   bool moved = false;
-  for (geometry::InstanceData& instance : snapshot->instances) moved |= move_instance(step, &meshes, &instance);
+  for (geometry::InstanceData& instance : snapshot->instances) {
+    if (!move_instance(step, &meshes, &instance)) continue;
+    move_undisplaced(step, *snapshot, &meshes, &instance);
+    moved = true;
+  }
   return moved;
 }
 

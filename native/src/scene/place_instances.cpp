@@ -153,6 +153,13 @@ glm::dmat4 internal_matrix(const Mat4& matrix, const Vec3& origin) {
   return m;
 }
 
+void set_radius(Snapshot* snapshot) {
+  Bounds bounds;
+  for (const geometry::InstanceData& instance : snapshot->instances)
+    add_box(*instance.mesh, glm::dmat4(instance.to_world), &bounds);
+  snapshot->radius = bounds.empty() ? 1.0f : float(std::max(bounds.radius(), 1e-6));
+}
+
 std::vector<size_t> place_instances(const Scene::State& state, Snapshot* snapshot) {
   const geometry::InstanceArrays& a = state.instances;
   std::vector<size_t> usable = choose_usable(state, snapshot);

@@ -16,6 +16,7 @@
 #include "geometry/mesh.h"
 #include "image/image_store.h"
 #include "light/world_map.h"
+#include "scene/displace_instances.h"
 #include "scene/material_source.h"
 #include "scene/scene.h"
 
@@ -67,6 +68,7 @@ struct Scene::State {
   std::shared_ptr<const image::ImageStore> image_store;
   StoredImages stored_images;  // those in `image_store`
   std::map<uint64_t, CompiledMaterial> compiled;
+  std::vector<DisplacedMesh> displaced;
   std::shared_ptr<const geometry::Accelerator> accelerator;
   light::WorldMap world_map;
 };
@@ -96,6 +98,8 @@ glm::dmat4 internal_matrix(const Mat4& matrix, const Vec3& origin);
 // Sets the instances, without materials, the origin, the radius and warnings of a snapshot. Returns the index in
 // InstanceArrays of each instance.
 std::vector<size_t> place_instances(const Scene::State& state, Snapshot* snapshot);
+// Sets the radius of a snapshot from the bounds of its instances.
+void set_radius(Snapshot* snapshot);
 
 // Loads new images and sets the images and warnings of a snapshot.
 void load_images(Device& device, const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot);

@@ -55,6 +55,18 @@ void for_each_tangent_map(const Snapshot& snapshot, const geometry::InstanceData
   for (const uint32_t material : instance.materials) of_material(material);
 }
 
+using TangentFields = std::map<const geometry::MeshAttribute*, std::shared_ptr<const geometry::TangentField>>;
+
+// Adds the tangents of an instance. Those in `fields` are shared, and it receives the others.
+void add_tangents_of(const Snapshot& snapshot, TangentFields* fields, geometry::InstanceData* instance) {
+  for_each_tangent_map(snapshot, *instance, [&](const geometry::MeshAttribute& uv) {
+    auto& field = (*fields)[&uv];
+    if (!field) field = geometry::make_tangents(instance->mesh, uv);
+    if (std::find(instance->tangents.begin(), instance->tangents.end(), field) == instance->tangents.end())
+      instance->tangents.push_back(field);
+  });
+}
+
 }  // namespace
 
 void build_geometry(const geometry::EmbreeDevice& device, const geometry::ExactMatrices& to_internal,
@@ -73,19 +85,17 @@ void build_geometry(const geometry::EmbreeDevice& device, const geometry::ExactM
 }
 
 void add_tangents(const Snapshot* before, Snapshot* snapshot) {
-  std::map<const geometry::MeshAttribute*, std::shared_ptr<const geometry::TangentField>> fields;
+  TangentFields fields;
   if (before) {
     for (const geometry::InstanceData& instance : before->instances)
       for (const auto& field : instance.tangents) fields[field->uv] = field;
   }
-  for (geometry::InstanceData& instance : snapshot->instances) {
-    for_each_tangent_map(*snapshot, instance, [&](const geometry::MeshAttribute& uv) {
-      auto& field = fields[&uv];
-      if (!field) field = geometry::make_tangents(instance.mesh, uv);
-      if (std::find(instance.tangents.begin(), instance.tangents.end(), field) == instance.tangents.end())
-        instance.tangents.push_back(field);
-    });
-  }
+  for (geometry::InstanceData& instance : snapshot->instances) add_tangents_of(*snapshot, &fields, &instance);
+}
+
+void add_tangents(const Snapshot& snapshot, geometry::InstanceData* instance) {
+  TangentFields fields;
+  add_tangents_of(snapshot, &fields, instance);
 }
 
 }  // namespace gradus::scene

@@ -18,5 +18,7 @@ void build_geometry(const geometry::EmbreeDevice& device, const geometry::ExactM
 
 // Computes the tangents that the materials of the instances read. Those that `before` already has are shared.
 void add_tangents(const Snapshot* before, Snapshot* snapshot);
+// Computes those of a single instance.
+void add_tangents(const Snapshot& snapshot, geometry::InstanceData* instance);
 
 }  // namespace gradus::scene

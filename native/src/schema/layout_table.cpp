@@ -236,6 +236,10 @@ constexpr FieldLayout kMaterialFields[] = {
     FIELD(GradusMaterial, uses_fallback),
     FIELD(GradusMaterial, name),
     FIELD(GradusMaterial, aovs),
+    FIELD(GradusMaterial, displacement),
+    FIELD(GradusMaterial, displacement_output),
+    FIELD(GradusMaterial, displacement_method),
+    FIELD(GradusMaterial, bump_filter_width),
     FIELD(GradusMaterial, reserved),
 };
 
@@ -404,6 +408,13 @@ constexpr int64_t kAlphaModeValues[] = {
     GRADUS_ALPHA_ALWAYS_STRAIGHT,
 };
 
+constexpr int64_t kDisplacementValues[] = {
+    GRADUS_DISPLACEMENT_BUMP,
+    GRADUS_DISPLACEMENT_VERTICES,
+    GRADUS_DISPLACEMENT_BOTH,
+    GRADUS_DISPLACEMENT_BOTH_OF_FACES,
+};
+
 constexpr int64_t kObjectKindValues[] = {
     GRADUS_KIND_MESH,
     GRADUS_KIND_IMAGE,
@@ -540,6 +551,7 @@ constexpr EnumLayout kEnums[] = {
     {"ChannelKind", kChannelKindValues},
     {"ImageSource", kImageSourceValues},
     {"AlphaMode", kAlphaModeValues},
+    {"Displacement", kDisplacementValues},
     {"ObjectKind", kObjectKindValues},
     {"Integrator", kIntegratorValues},
     {"Reconstruction", kReconstructionValues},

@@ -41,7 +41,8 @@ float openness(const ResourceArgs& args, const ShadeContext& c) {
 }  // namespace
 
 void ambient_occlusion_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
-  const float factor = c.scene && c.instance ? openness(args, c) : 1.0f;
+  // There is nothing to trace while vertices are displaced.
+  const float factor = c.scene && c.scene->accelerator && c.instance ? openness(args, c) : 1.0f;
   out[0] = value(args.v(0) * factor);
   out[1] = splat(factor);
 }

@@ -82,7 +82,8 @@ Vec3 sum_of_normals(const ShadeContext& c, float radius, Vec2 u) {
 Vec3 mean_normal(const ResourceArgs& args, const ShadeContext& c) {
   const float radius = args.f(0);
   const uint32_t count = ray_count(args);
-  if (!c.scene || !c.instance || !(radius > 0.0f) || count == 0) return c.normal;
+  // There is nothing to trace while vertices are displaced.
+  if (!c.scene || !c.scene->accelerator || !c.instance || !(radius > 0.0f) || count == 0) return c.normal;
   const RandomPoints points(c, count);
   Vec3 sum(0.0f);
   for (uint32_t i = 0; i < count; ++i) sum += sum_of_normals(c, radius, points[i]);

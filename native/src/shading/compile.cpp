@@ -168,7 +168,8 @@ bool depends_on_kind(const Program& p) {
 
 bool asks_for_tangents(const Instruction& i) {
   return (i.op == GRADUS_OP_NORMAL_MAP && (i.mode == GRADUS_NORMAL_TANGENT || i.mode == GRADUS_NORMAL_UNIT_TANGENT)) ||
-         (i.op == GRADUS_OP_TANGENT && i.mode == GRADUS_TANGENT_UV);
+         (i.op == GRADUS_OP_TANGENT && i.mode == GRADUS_TANGENT_UV) ||
+         (i.op == GRADUS_OP_VECTOR_DISPLACEMENT && i.mode == GRADUS_NORMAL_TANGENT);
 }
 
 // Adds the UV maps, each once, whose tangents the program reads. "" is the default UV map.
@@ -227,12 +228,33 @@ bool has_own_normal(const Program& p, const Instruction& diffuse) {
   return Vec3(operand_or(p, p.operands[diffuse.first_operand + 2], Vec4(1.0f))) == Vec3(0.0f);
 }
 
+// Emits the displacement. A constant one has no effect as a bump.
+void describe_displacement(const GradusMaterial& desc, const Graph& graph, MaterialData* m) {
+  if (desc.displacement_method != GRADUS_DISPLACEMENT_BUMP)
+    m->displacement = emit_program(graph, ProgramScope::Displacement, m->name);
+  if (desc.displacement_method != GRADUS_DISPLACEMENT_VERTICES && !graph.displacement.is_constant())
+    m->bump = emit_program(graph, ProgramScope::Bump, m->name);
+  m->displaces = !m->displacement.blocks.empty();
+  m->bumps = !m->bump.blocks.empty();
+  m->bumps_moved_faces = desc.displacement_method == GRADUS_DISPLACEMENT_BOTH_OF_FACES;
+  m->bump_filter_width = desc.bump_filter_width;
+}
+
+// Adds what values depend on that are computed from a bent normal.
+void add_dependence_of_bump(MaterialData* m) {
+  if (!m->bumps) return;
+  m->bumps_subsurface = true;
+  m->values_depend_on_ray = m->values_depend_on_ray || values_depend_on_ray(m->bump);
+  m->draws_random = m->draws_random || program_draws_random(m->bump);
+  m->depends_on_kind = m->depends_on_kind || depends_on_kind(m->bump);
+}
+
 void describe_surface(MaterialData* m) {
   const Program& p = m->surface;
   if (p.code.size() != 1 || !is_constant(p, GRADUS_OP_DIFFUSE) || !has_own_normal(p, p.code[0])) return;
   ShadeResult r;
   run_program(p, ShadeContext(), &r);
-  m->is_lambert = r.closures.count() == 1 && bsdf::is_lambert(r.closures.lobe(0));
+  m->is_lambert = !m->bumps && r.closures.count() == 1 && bsdf::is_lambert(r.closures.lobe(0));
   if (m->is_lambert) m->lambert = r.closures.lobe(0);
 }
 
@@ -247,21 +269,24 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
   m->emission = emit_program(graph, ProgramScope::Emission, m->name);
   m->transparency = emit_program(graph, ProgramScope::Transparency, m->name);
   m->aovs = emit_program(graph, ProgramScope::Aovs, m->name);
+  describe_displacement(desc, graph, m.get());
   m->sample_as_light = desc.sample_as_light != 0;
   m->transparent_shadow = desc.transparent_shadow != 0;
   m->uses_fallback = desc.uses_fallback != 0;
   m->pass_index = desc.pass_index;
-  for (const Program* program : {&m->surface, &m->aovs}) add_tangent_maps(*program, &m->tangent_maps);
+  for (const Program* program : {&m->surface, &m->aovs, &m->displacement, &m->bump})
+    add_tangent_maps(*program, &m->tangent_maps);
   const Suns suns = find_suns(graph);
   m->suns = suns.discs;
   m->smallest_hidden_sun = suns.smallest_hidden;
   Analysis(m->surface, m.get()).run();
   describe_emission(m.get(), images);
   describe_transparency(m.get());
-  describe_surface(m.get());
   m->values_depend_on_ray = values_depend_on_ray(m->surface);
   m->draws_random = program_draws_random(m->surface);
   m->depends_on_kind = depends_on_kind(m->emission) || depends_on_kind(m->transparency);
+  add_dependence_of_bump(m.get());
+  describe_surface(m.get());
   return m;
 }
 

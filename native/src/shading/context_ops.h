@@ -10,6 +10,9 @@ namespace gradus::shading {
 Vec3 default_tangent(const ShadeContext& context);
 // Returns the generated coordinates, or the position in world space without an object.
 Vec3 generated(const ShadeContext& context);
+// Returns the interpolated tangent of a UV map, in the object's space, with its handedness in w. It is 0 if the mesh
+// has no usable UV map. `name` may be null, for the default map.
+Vec4 uv_tangent(const ShadeContext& context, const std::string* name);
 // Returns an attribute of the mesh, interpolated at the hit. If `name` is null and `uv` is true it is the mesh's
 // default UV map. `channels` may be null; *channels receives the number of channels, or 0 if there is no such
 // attribute.

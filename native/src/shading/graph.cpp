@@ -32,6 +32,8 @@ class Builder {
     for (uint32_t i = 0; i < desc_.node_count; i++) node(i);
     graph_.surface = desc_.surface;
     graph_.aovs = static_cast<int32_t>(desc_.aovs) - 1;
+    if (desc_.displacement > 0)
+      graph_.displacement = graph_.nodes[desc_.displacement - 1].outputs[desc_.displacement_output];
     return std::move(graph_);
   }
 

@@ -40,7 +40,8 @@ struct Graph {
   std::vector<float> floats;
   std::vector<std::string> names;
   int32_t surface = -1;
-  int32_t aovs = -1;  // node of the outputs to AOVs
+  int32_t aovs = -1;        // node of the outputs to AOVs
+  GraphValue displacement;  // in world space; a constant 0 if there is none
 };
 
 inline constexpr uint32_t kMaxNodes = 1u << 16;

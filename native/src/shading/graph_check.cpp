@@ -52,6 +52,7 @@ class Checker {
     if (desc_.surface >= 0) that(is_closure_op(desc_.nodes[desc_.surface].op), "the surface is no closure");
     that(desc_.aovs <= desc_.node_count, "the output to AOVs is no node");
     if (desc_.aovs > 0) that(is_closure_op(desc_.nodes[desc_.aovs - 1].op), "the output to AOVs is no closure");
+    displacement();
   }
 
  private:
@@ -59,6 +60,15 @@ class Checker {
     if (good) return;
     const std::string place = node >= 0 ? ", node " + std::to_string(node) : "";
     throw invalid_argument("material '" + std::string(desc_.name ? desc_.name : "") + "'" + place + ": " + text);
+  }
+
+  void displacement() const {
+    that(desc_.displacement <= desc_.node_count, "the displacement is no node");
+    that(desc_.displacement_method <= GRADUS_DISPLACEMENT_BOTH_OF_FACES, "unknown method of displacement");
+    if (desc_.displacement == 0) return;
+    const uint32_t op = desc_.nodes[desc_.displacement - 1].op;
+    that(!is_closure_op(op), "the displacement is a closure");
+    that(desc_.displacement_output < op_info(op)->outputs, "the displacement is an output that does not exist");
   }
 
   void node(uint32_t i) const {

@@ -28,6 +28,8 @@ struct MaterialData {
   Program emission;          // program of the emission alone, for light sampling and the world
   Program transparency;      // program of the transparent closures alone, for shadow rays
   Program aovs;              // program of the outputs to AOVs alone
+  Program displacement;      // program of the displacement of vertices in world space; without blocks: there is none
+  Program bump;              // program of the displacement that bends the shading normal in the same way
 
   bool emits = false;
   bool may_be_transparent = false;  // some light passes straight through
@@ -39,6 +41,10 @@ struct MaterialData {
   bool uses_fallback = false;              // some node was replaced, or the material did not compile
   bool is_diffuse_behind_diffuse = false;  // its subsurface scattering is diffuse behind a diffuse bounce
   bool bumps_subsurface = false;           // light that leaves the material from below has a normal from its nodes
+  bool displaces = false;                  // `displacement` moves vertices
+  bool bumps = false;                      // `bump` bends the shading normal
+  bool bumps_moved_faces = false;          // the bump of a flat face starts from its displaced normal
+  float bump_filter_width = 1.0f;          // step of the finite differences of that bump, in pixels
   bool values_depend_on_ray = false;  // some value of `surface` depends on the ray; closures themselves do not count
   bool draws_random = false;          // some value of `surface` depends on random numbers of the path
   bool depends_on_kind =

@@ -57,6 +57,8 @@ void instance_attribute_op(const ResourceArgs& args, const ShadeContext& context
 void wireframe_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void ambient_occlusion_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void bevel_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
+void displacement_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
+void vector_displacement_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void image_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void environment_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void vector_transform_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);

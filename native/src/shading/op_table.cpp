@@ -61,6 +61,8 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_WIREFRAME] = {"WIREFRAME", OpKind::Context, 1, 1, 2, 1};
   table[GRADUS_OP_AMBIENT_OCCLUSION] = {"AMBIENT_OCCLUSION", OpKind::Context, 3, 2, 1, 7};
   table[GRADUS_OP_BEVEL] = {"BEVEL", OpKind::Context, 2, 1, 1, 0};
+  table[GRADUS_OP_DISPLACEMENT] = {"DISPLACEMENT", OpKind::Context, 4, 1, 0, GRADUS_NORMAL_WORLD};
+  table[GRADUS_OP_VECTOR_DISPLACEMENT] = {"VECTOR_DISPLACEMENT", OpKind::Context, 3, 1, 0, GRADUS_NORMAL_WORLD};
   table[GRADUS_OP_IMAGE] = {"IMAGE", OpKind::Context, 1, 2, 0, 127};
   table[GRADUS_OP_ENVIRONMENT] = {"ENVIRONMENT", OpKind::Context, 1, 1, 0, 127};
   table[GRADUS_OP_NOISE] = {"NOISE", OpKind::Pure, 9, 2, 0, 255};
@@ -259,6 +261,12 @@ bool evaluate_context(uint32_t op, const ResourceArgs& args, const ShadeContext&
       return true;
     case GRADUS_OP_BEVEL:
       bevel_op(args, context, out);
+      return true;
+    case GRADUS_OP_DISPLACEMENT:
+      displacement_op(args, context, out);
+      return true;
+    case GRADUS_OP_VECTOR_DISPLACEMENT:
+      vector_displacement_op(args, context, out);
       return true;
     case GRADUS_OP_IMAGE:
       image_op(args, context, out);

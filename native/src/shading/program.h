@@ -44,7 +44,7 @@ struct Instruction {
 struct Block {
   uint32_t begin = 0;
   uint32_t end = 0;
-  Operand result = -1;  // the height
+  Operand result = -1;  // the height or the displacement
 };
 
 // An input of a closure that is not constant.
@@ -54,7 +54,7 @@ struct ComputedInput {
 };
 
 struct Program {
-  std::vector<Block> blocks;  // the first is the entry; empty if there are no closures
+  std::vector<Block> blocks;  // the first is the entry; empty if there are no closures and no displacement
   std::vector<Instruction> code;
   std::vector<Operand> operands;
   std::vector<Vec4> constants;  // the first is 1

@@ -33,21 +33,36 @@ class Emitter {
   }
 
   Program emit() {
+    if (scope_ == ProgramScope::Displacement || scope_ == ProgramScope::Bump) return emit_displacement();
     const int32_t root = scope_ == ProgramScope::Aovs ? graph_.aovs : graph_.surface;
     if (root < 0 || !present_[static_cast<size_t>(root)]) return {};
     program_.blocks.push_back({});
     begin_block();
     emit_closure(root, constant(Vec4(1.0f)), 0);
     program_.blocks[0].end = static_cast<uint32_t>(program_.code.size());
-    // Emitting a block may append further blocks.
-    for (size_t b = 1; b < program_.blocks.size(); b++) emit_height(b);
-    allocate_registers(&program_, outputs_, name_);
+    emit_heights();
     for (Instruction& i : program_.code)
       if (is_closure_op(i.op)) lay_out_inputs(&i);
     return std::move(program_);
   }
 
  private:
+  Program emit_displacement() {
+    if (graph_.displacement.is_zero()) return {};
+    program_.blocks.push_back({});
+    heights_[0] = graph_.displacement;
+    emit_height(0);
+    emit_heights();
+    return std::move(program_);
+  }
+
+  // Emits the heights of Bump nodes and allocates the registers of all blocks.
+  void emit_heights() {
+    // Emitting a block may append further blocks.
+    for (size_t b = 1; b < program_.blocks.size(); b++) emit_height(b);
+    allocate_registers(&program_, outputs_, name_);
+  }
+
   using NodeSet = std::vector<uint8_t>;
 
   [[noreturn]] void refuse(const char* text) const { throw invalid_argument("material '" + name_ + "': " + text); }
@@ -106,6 +121,8 @@ class Emitter {
 
   bool wants_input(const GraphNode& n, size_t k) const {
     if (n.op == GRADUS_OP_BUMP && k == kHeight) return false;
+    // Cycles loses a constant normal of the Displacement node when it makes a bump.
+    if (n.op == GRADUS_OP_DISPLACEMENT && k == 3 && scope_ == ProgramScope::Bump) return !n.inputs[k].is_constant();
     return n.op != GRADUS_OP_PRINCIPLED || scope_ != ProgramScope::Emission || matters_for_emission(n, k);
   }
 

@@ -8,8 +8,9 @@
 
 namespace gradus::shading {
 
-// The closures that a program evaluates. Values that only other closures depend on are omitted.
-enum class ProgramScope { All, Emission, Transparency, Aovs };
+// What a program evaluates: the closures of a kind, or the displacement of vertices or as a bump, which is the result
+// of its first block. Values that nothing of it depends on are omitted.
+enum class ProgramScope { All, Emission, Transparency, Aovs, Displacement, Bump };
 
 // Emits the program of a graph. Throws Error INVALID_ARGUMENT, with the material's `name`, if it has too many closures
 // or Bump nodes, or if too many values are live at once.

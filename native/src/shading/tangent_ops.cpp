@@ -14,17 +14,6 @@ Vec4 turned_with_surface(const ShadeContext& c, const Vec4& tangent) {
   return Vec4(turned(Vec3(tangent), safe_normalize(frame_normal), safe_normalize(hit_normal)), tangent.w);
 }
 
-// Returns the interpolated tangent of a UV map, in the object's space, with its handedness in w. It is 0 if the
-// mesh has no usable UV map.
-Vec4 uv_tangent(const ShadeContext& c, const std::string* name) {
-  if (!c.instance) return Vec4(0.0f);
-  const geometry::MeshData& mesh = *c.instance->mesh;
-  const geometry::MeshAttribute* uv = name ? geometry::find_attribute(mesh, *name) : geometry::default_uv_map(mesh);
-  for (const auto& field : c.instance->tangents)
-    if (field->uv == uv) return turned_with_surface(c, geometry::tangent_at(*field, c.hit));
-  return Vec4(0.0f);
-}
-
 Vec3 unflipped(const ShadeContext& c) { return c.backfacing ? -c.normal : c.normal; }
 
 // Returns the interpolated normal in the object's space. A smooth normal is not normalised, because normal map bakers,
@@ -81,6 +70,15 @@ Vec3 mapped_normal(const ResourceArgs& args, const ShadeContext& c) {
 }
 
 }  // namespace
+
+Vec4 uv_tangent(const ShadeContext& c, const std::string* name) {
+  if (!c.instance) return Vec4(0.0f);
+  const geometry::MeshData& mesh = *c.instance->mesh;
+  const geometry::MeshAttribute* uv = name ? geometry::find_attribute(mesh, *name) : geometry::default_uv_map(mesh);
+  for (const auto& field : c.instance->tangents)
+    if (field->uv == uv) return turned_with_surface(c, geometry::tangent_at(*field, c.hit));
+  return Vec4(0.0f);
+}
 
 void tangent_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) { out[0] = value(own_tangent(args, c)); }
 
