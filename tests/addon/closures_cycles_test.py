@@ -71,6 +71,8 @@ CASES: dict[str, tuple[Any, ...]] = {
     **{f"beckmann glass {r}": rough("BsdfGlass", "BECKMANN", r, IOR=1.45) for r in (0.3, 0.6, 1.0)},
     **{f"velvet {s}": velvet(s) for s in (0.2, 0.5, 1.0)},
 }
+if VERSION >= (4, 0, 0):
+    CASES |= {f"sheen {r}": rough("BsdfSheen", "MICROFIBER", r) for r in (0.3, 0.5, 0.75, 1.0)}
 if hasattr(bpy.types, "ShaderNodeBsdfMetallic"):
     CASES |= {
         "beckmann metal": rough("BsdfMetallic", "BECKMANN", 0.5),

@@ -153,7 +153,7 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {
     case LobeType::Translucent:
       return {Rgb(0.0f), lobe.weight};
     case LobeType::Sheen:
-      return {lobe.weight * sheen_albedo(lobe, cosine), Rgb(0.0f)};
+      return {lobe.weight * sheen_albedo(lobe, std::max(signed_cosine, 0.0f)), Rgb(0.0f)};
     // The tables of GGX stand for the other distributions, too.
     case LobeType::GgxReflection:
     case LobeType::BeckmannReflection:
