@@ -119,6 +119,7 @@ void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* resu
   lobe->ior = std::max(args.f(2), 1e-5f);
   lobe->fresnel = bsdf::FresnelType::Dielectric;
   lobe->multiscatter = is_multiscatter(args);
+  lobe->f90 = non_negative(args.v(0));
   add_film(lobe, args.f(4), args.f(5), false);
 }
 
