@@ -174,6 +174,8 @@ def material_of(case: tuple[Any, ...]) -> bpy.types.Material:
 def test_a9_closure(name: str, sun: str, dome: bpy.types.Scene, tmp_path: Path) -> None:
     if (sun == "back" and not transmits(name)) or (sun != "back" and "refraction" in name):
         pytest.skip("no light comes from there")
+    # Before 4.0 Cycles chooses one side of glass for each sample.
+    dome.cycles.samples = 256 if VERSION < (4, 0, 0) and "glass" in name else 4
     mesh = next(item for item in dome.objects if item.type == "MESH")
     mesh.data.materials.clear()
     mesh.data.materials.append(material_of(CASES[name]))
@@ -183,10 +185,8 @@ def test_a9_closure(name: str, sun: str, dome: bpy.types.Scene, tmp_path: Path) 
     mean = (found - expected).mean(axis=(0, 1)) / scale
     print(f"{name}, {sun}: mean {mean[np.abs(mean).argmax()]:+.4f}, differences {difference.mean() / scale:.4f}")
     assert expected.mean() > 5e-4
-    # Before 4.0 Cycles has no height-correlated masking, which is up to 2 % darker.
-    limit = 0.015 if VERSION >= (4, 0, 0) else 0.025
-    assert difference.mean() / scale < limit
-    assert np.abs(mean).max() < limit
+    assert difference.mean() / scale < 0.02
+    assert np.abs(mean).max() < 0.015
 
 
 @pytest.fixture

@@ -139,7 +139,8 @@ struct Lobe {
   LobeType type = LobeType::Diffuse;
   FresnelType fresnel = FresnelType::None;
   LightPass pass = LightPass::Diffuse;
-  bool multiscatter = false;  // adds the energy that single scattering loses
+  bool separable_masking = false;  // masks both directions of a microfacet independently, as Blender before 4.0
+  bool multiscatter = false;       // adds the energy that single scattering loses
   SubsurfaceMethod subsurface = SubsurfaceMethod::Disk;
   DisneyPart disney = DisneyPart::All;
   Rgb weight = Rgb(0.0f);        // throughput of the node graph times colour
