@@ -7,6 +7,7 @@ without noise.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -71,6 +72,8 @@ CASES: dict[str, tuple[Any, ...]] = {
     **{f"beckmann glass {r}": rough("BsdfGlass", "BECKMANN", r, IOR=1.45) for r in (0.3, 0.6, 1.0)},
     **{f"velvet {s}": velvet(s) for s in (0.2, 0.5, 1.0)},
 }
+if VERSION >= (4, 0, 0):
+    CASES |= {f"sheen {r}": rough("BsdfSheen", "MICROFIBER", r) for r in (0.3, 0.5, 0.75, 1.0)}
 if hasattr(bpy.types, "ShaderNodeBsdfMetallic"):
     CASES |= {
         "beckmann metal": rough("BsdfMetallic", "BECKMANN", 0.5),
@@ -171,6 +174,8 @@ def material_of(case: tuple[Any, ...]) -> bpy.types.Material:
 def test_a9_closure(name: str, sun: str, dome: bpy.types.Scene, tmp_path: Path) -> None:
     if (sun == "back" and not transmits(name)) or (sun != "back" and "refraction" in name):
         pytest.skip("no light comes from there")
+    # Before 4.0 Cycles chooses one side of glass for each sample.
+    dome.cycles.samples = 256 if VERSION < (4, 0, 0) and "glass" in name else 4
     mesh = next(item for item in dome.objects if item.type == "MESH")
     mesh.data.materials.clear()
     mesh.data.materials.append(material_of(CASES[name]))
@@ -180,7 +185,58 @@ def test_a9_closure(name: str, sun: str, dome: bpy.types.Scene, tmp_path: Path) 
     mean = (found - expected).mean(axis=(0, 1)) / scale
     print(f"{name}, {sun}: mean {mean[np.abs(mean).argmax()]:+.4f}, differences {difference.mean() / scale:.4f}")
     assert expected.mean() > 5e-4
-    # Before 4.0 Cycles has no height-correlated masking, which is up to 2 % darker.
-    limit = 0.015 if VERSION >= (4, 0, 0) else 0.025
-    assert difference.mean() / scale < limit
-    assert np.abs(mean).max() < limit
+    assert difference.mean() / scale < 0.02
+    assert np.abs(mean).max() < 0.015
+
+
+@pytest.fixture
+def sheet(dome: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
+    """Returns the scene with a tilted sheet that fills the picture, in a white world."""
+    shown = [item for item in dome.objects if item.type != "CAMERA"]
+    for item in shown:
+        item.hide_render = True
+    mesh = bpy.data.meshes.new("Sheet")
+    mesh.from_pydata([(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], [], [(0, 1, 2, 3)])
+    item = bpy.data.objects.new("Sheet", mesh)
+    dome.collection.objects.link(item)
+    dome.world = bpy.data.worlds.new("World")
+    if VERSION < (5, 0, 0):
+        dome.world.use_nodes = True
+    background = next(node for node in dome.world.node_tree.nodes if node.bl_idname == "ShaderNodeBackground")
+    background.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+    dome.cycles.max_bounces = dome.gradus.max_bounces = 1
+    dome.cycles.samples = dome.gradus.samples = 64
+    yield dome
+    dome.cycles.max_bounces = dome.gradus.max_bounces = 0
+    dome.cycles.samples = dome.gradus.samples = 4
+    dome.world = None
+    bpy.data.objects.remove(item)
+    for item in shown:
+        item.hide_render = False
+
+
+@pytest.mark.skipif(VERSION < (4, 0, 0), reason="before 4.0 multiple scattering is a walk between microfacets")
+@pytest.mark.parametrize("tilt", [0.2, 1.0, math.pi - 0.2])
+@pytest.mark.parametrize("roughness", [0.5, 0.8])
+def test_a9_coloured_rough_glass(roughness: float, tilt: float, sheet: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: light between microfacets kept its colour, which was up to 20 % too bright."""
+    item = sheet.objects["Sheet"]
+    item.rotation_euler = (0.0, tilt, 0.0)
+    case = rough("BsdfGlass", "MULTI_GGX", roughness, Color=(0.8, 0.3, 1.0, 1.0))
+    item.data.materials.append(material_of(case))
+    expected, found = (picture.mean(axis=(0, 1)) for picture in pictures(sheet, tmp_path, "front"))
+    print(f"glass {roughness}, {tilt:.1f}: {found / expected - 1}")
+    assert found == pytest.approx(expected, rel=0.012)
+
+
+@pytest.mark.parametrize("name", ["toon, smooth", "glossy toon", "beckmann 0.5", "ashikhmin-shirley 0.5", "velvet 0.5"])
+def test_a9_sampled_closure(name: str, sheet: bpy.types.Scene, tmp_path: Path) -> None:
+    """Light of the world, which is sampled by the closure, is that of Cycles."""
+    if VERSION < (4, 2, 0) and name == "toon, smooth":
+        pytest.skip("before 4.2 Cycles samples the edge with another brightness than it evaluates")
+    item = sheet.objects["Sheet"]
+    item.rotation_euler = (0.0, 0.8, 0.0)
+    item.data.materials.append(material_of(CASES[name]))
+    expected, found = (picture.mean(axis=(0, 1)) for picture in pictures(sheet, tmp_path, "front"))
+    print(f"sampled {name}: {found / expected - 1}")
+    assert found == pytest.approx(expected, rel=0.01)

@@ -13,12 +13,17 @@ _DISTRIBUTIONS = {
     "ASHIKHMIN_SHIRLEY": Distribution.ASHIKHMIN_SHIRLEY,
     "SHARP": Distribution.SINGLE,
 }
-_LEGACY_GLASS = 4
+_LEGACY = 4
 _CONDUCTOR = 4
 
 
 def distribution_mode(view: NodeView) -> int:
     return _DISTRIBUTIONS[getattr(view.node, "distribution", "GGX")]
+
+
+def _versioned_distribution_mode(view: NodeView) -> int:
+    """Returns the distribution, and whether microfacets are those of Blender before 4.0."""
+    return distribution_mode(view) | (_LEGACY if view.version < (4, 0, 0) else 0)
 
 
 def roughness(view: NodeView) -> Value:
@@ -102,20 +107,19 @@ def glossy(view: NodeView) -> Value:
         view.direction("Normal"),
         view.direction("Tangent"),
     )
-    return view.add_closure(Op.GLOSSY, inputs, distribution_mode(view))
+    return view.add_closure(Op.GLOSSY, inputs, _versioned_distribution_mode(view))
 
 
 @translator("ShaderNodeBsdfGlass")
 def glass(view: NodeView) -> Value:
-    mode = distribution_mode(view) | (_LEGACY_GLASS if view.version < (4, 0, 0) else 0)
     inputs = (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal"))
-    return view.add_closure(Op.GLASS, inputs + thin_film(view), mode)
+    return view.add_closure(Op.GLASS, inputs + thin_film(view), _versioned_distribution_mode(view))
 
 
 @translator("ShaderNodeBsdfRefraction")
 def refraction(view: NodeView) -> Value:
     inputs = (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal"))
-    return view.add_closure(Op.REFRACTION, inputs, distribution_mode(view))
+    return view.add_closure(Op.REFRACTION, inputs, _versioned_distribution_mode(view))
 
 
 @translator("ShaderNodeBsdfMetallic")
@@ -130,7 +134,9 @@ def metallic(view: NodeView) -> Value:
         view.direction("Normal"),
         view.direction("Tangent"),
     )
-    return view.add_closure(Op.METALLIC, inputs + thin_film(view), distribution_mode(view) | (_CONDUCTOR if conductor else 0))
+    return view.add_closure(
+        Op.METALLIC, inputs + thin_film(view), distribution_mode(view) | (_CONDUCTOR if conductor else 0)
+    )
 
 
 @translator("ShaderNodeBsdfSheen", "ShaderNodeBsdfVelvet")

@@ -21,8 +21,9 @@
  *   DIFFUSE           color, roughness, normal -> closure: Oren-Nayar reflection. Mode: 1: energy-conserving.
  *   TRANSLUCENT       color, normal -> closure: Lambertian transmission.
  *   GLOSSY            color, roughness, anisotropy, rotation, normal, tangent -> closure: Microfacet reflection; the
- *                       rotation is in turns. Mode: GradusDistribution.
- *   REFRACTION        color, roughness, ior, normal -> closure: Microfacet refraction. Mode: GradusDistribution.
+ *                       rotation is in turns. Mode: GradusDistribution; + 4: as in Blender before 4.0.
+ *   REFRACTION        color, roughness, ior, normal -> closure: Microfacet refraction. Mode: GradusDistribution; + 4:
+ *                       as in Blender before 4.0.
  *   GLASS             color, roughness, ior, normal, film thickness, film ior -> closure: Microfacet reflection and
  *                       refraction by Fresnel. Mode: GradusDistribution; + 4: as in Blender before 4.0.
  *   SHEEN             color, roughness, normal -> closure: Sheen of fibres. Mode: 0: microfibers; 1: velvet of

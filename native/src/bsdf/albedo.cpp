@@ -114,6 +114,14 @@ Rgb single_transmission(const Lobe& lobe, float alpha, float cosine) {
   return Rgb(glass.transmitted) * lobe.transmission_tint;
 }
 
+// Returns the factor of single scattering that adds the light of repeated bounces between microfacets. `single` and
+// `mean` are the albedo without a Fresnel term and its mean, and `color` is the mean colour of a bounce (Turquin 2019,
+// "Practical multiple scattering compensation for microfacet models", with the colour of Kulla and Conty 2017).
+Rgb repeated_bounces(float single, float mean, const Rgb& color) {
+  const float missing = (1.0f - single) / single;
+  return Rgb(1.0f) + color * mean / (Rgb(1.0f) - color * (1.0f - mean)) * missing;
+}
+
 LobeAlbedo dirac_albedo(const Lobe& lobe, float cosine) {
   const FresnelSplit split = lobe_fresnel_split(lobe, cosine);
   return {lobe.weight * split.reflected, lobe.weight * split.transmitted};
@@ -129,15 +137,15 @@ Rgb multiscatter_energy(const Lobe& lobe, float cosine) {
   if (sides_of(lobe.type) & kTransmits) {
     const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
     const bool alone = sides_of(lobe.type) == kTransmits;
-    return Rgb(1.0f / std::clamp(alone ? glass.crossing : glass.reflected + glass.transmitted, 0.3f, 1.0f));
+    const float single = std::clamp(alone ? glass.crossing : glass.reflected + glass.transmitted, 0.3f, 1.0f);
+    const Rgb color = glm::clamp(lobe.f90 * lobe.transmission_tint, 0.0f, 1.0f);
+    if (alone || color == Rgb(1.0f)) {
+      return Rgb(1.0f / single);
+    }
+    return repeated_bounces(single, glass_mean_albedo(alpha, lobe.ior), color);
   }
-  // Multiple scattering scales single scattering (Turquin 2019, "Practical multiple scattering compensation for
-  // microfacet models"); its colour is that of Kulla and Conty 2017.
   const float single = std::clamp(ggx_moments(alpha, cosine).one, 0.05f, 1.0f);
-  const float missing = (1.0f - single) / single;
-  const float mean = ggx_mean_albedo(alpha);
-  const Rgb fresnel = glm::clamp(mean_fresnel(lobe), 0.0f, 1.0f);
-  return Rgb(1.0f) + fresnel * mean / (Rgb(1.0f) - fresnel * (1.0f - mean)) * missing;
+  return repeated_bounces(single, ggx_mean_albedo(alpha), glm::clamp(mean_fresnel(lobe), 0.0f, 1.0f));
 }
 
 LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {
@@ -153,7 +161,7 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {
     case LobeType::Translucent:
       return {Rgb(0.0f), lobe.weight};
     case LobeType::Sheen:
-      return {lobe.weight * sheen_albedo(lobe, cosine), Rgb(0.0f)};
+      return {lobe.weight * sheen_albedo(lobe, std::max(signed_cosine, 0.0f)), Rgb(0.0f)};
     // The tables of GGX stand for the other distributions, too.
     case LobeType::GgxReflection:
     case LobeType::BeckmannReflection:

@@ -109,9 +109,31 @@ Values interpolate(const Plane& plane, const Cell& a, const Cell& c) {
 Cell alpha_cell(float alpha) { return locate(std::sqrt(std::max(0.0f, alpha)), kAlphas); }
 Cell cosine_cell(float cosine) { return locate(std::sqrt(std::max(0.0f, cosine)), kCosines); }
 
+using Means = std::array<float, kAlphas>;
+
+// Returns the mean 2∫value(v(c))·c dc of row `a` of a plane, with c = x², by the midpoint rule.
+template <class Value>
+float mean_of_row(const Plane& plane, int a, const Value& value) {
+  constexpr int kSteps = 256;
+  float sum = 0.0f;
+  for (int i = 0; i < kSteps; i++) {
+    const float x = (static_cast<float>(i) + 0.5f) / kSteps;
+    const Cell cell = locate(x, kCosines);
+    const size_t k = size_t(a) * kCosines + size_t(cell.index);
+    sum += value(mix(plane[k], plane[k + 1], cell.fraction)) * 4.0f * x * x * x;
+  }
+  return sum / kSteps;
+}
+
+float mean_at(const Means& means, float alpha) {
+  const Cell a = alpha_cell(alpha);
+  const size_t i = static_cast<size_t>(a.index);
+  return means[i] + (means[i + 1] - means[i]) * a.fraction;
+}
+
 struct MomentTable {
   Plane values;  // the members of GgxMoments, in order
-  std::array<float, kAlphas> mean;
+  Means mean;
 
   MomentTable() {
     for (int a = 0; a < kAlphas; a++) {
@@ -119,20 +141,8 @@ struct MomentTable {
         const GgxMoments m = compute_moments(axis_value(a, kAlphas), axis_value(c, kCosines));
         values[size_t(a) * kCosines + size_t(c)] = Values{m.one, m.schlick, m.f82, 0.0f};
       }
-      mean[static_cast<size_t>(a)] = mean_of_row(a);
+      mean[static_cast<size_t>(a)] = mean_of_row(values, a, [](const Values& v) { return v[0]; });
     }
-  }
-  // Returns the mean albedo 2∫E(c)·c dc of row `a`, with c = x², by the midpoint rule on the interpolated table.
-  float mean_of_row(int a) const {
-    constexpr int kSteps = 256;
-    float sum = 0.0f;
-    for (int i = 0; i < kSteps; i++) {
-      const float x = (static_cast<float>(i) + 0.5f) / kSteps;
-      const Cell cell = locate(x, kCosines);
-      const size_t k = size_t(a) * kCosines + size_t(cell.index);
-      sum += mix(values[k], values[k + 1], cell.fraction)[0] * 4.0f * x * x * x;
-    }
-    return sum / kSteps;
   }
 };
 const MomentTable& moment_table() {
@@ -146,14 +156,19 @@ float eta_at(int i) {
   return (1.0f + root) / (1.0f - root);
 }
 
-// Computes the table of one η; its values are the members of GlassAlbedo, in order.
-Plane make_glass_plane(float eta) {
-  Plane plane;
+// The table of one η; its values are the members of GlassAlbedo, in order.
+struct GlassPlane {
+  Plane values;
+  Means mean;
+};
+GlassPlane make_glass_plane(float eta) {
+  GlassPlane plane;
   for (int a = 0; a < kAlphas; a++) {
     for (int c = 0; c < kCosines; c++) {
       const GlassAlbedo g = compute_glass(axis_value(a, kAlphas), axis_value(c, kCosines), eta);
-      plane[size_t(a) * kCosines + size_t(c)] = Values{g.reflected, g.transmitted, g.crossing, 0.0f};
+      plane.values[size_t(a) * kCosines + size_t(c)] = Values{g.reflected, g.transmitted, g.crossing, 0.0f};
     }
+    plane.mean[static_cast<size_t>(a)] = mean_of_row(plane.values, a, [](const Values& v) { return v[0] + v[1]; });
   }
   return plane;
 }
@@ -163,7 +178,7 @@ Plane make_glass_plane(float eta) {
 // all tables together take half a second. get() is thread-safe.
 class LazyGlassPlane {
  public:
-  const Plane& get(int i, bool inverse) {
+  const GlassPlane& get(int i, bool inverse) {
     if (!made_.load(std::memory_order_acquire)) {
       std::call_once(once_, [&] {
         plane_ = make_glass_plane(inverse ? 1.0f / eta_at(i) : eta_at(i));
@@ -176,8 +191,15 @@ class LazyGlassPlane {
  private:
   std::atomic<bool> made_{false};
   std::once_flag once_;
-  Plane plane_{};
+  GlassPlane plane_{};
 };
+
+const GlassPlane& glass_plane(int i, bool inverse) {
+  static constinit std::array<std::array<LazyGlassPlane, kIors>, 2> planes;
+  return planes[inverse][size_t(i)].get(i, inverse);
+}
+
+Cell ior_cell(float eta) { return locate(std::sqrt(std::abs((eta - 1.0f) / (eta + 1.0f))), kIors); }
 
 }  // namespace
 
@@ -186,21 +208,20 @@ GgxMoments ggx_moments(float alpha, float cosine) {
   return {m[0], m[1], m[2]};
 }
 
-float ggx_mean_albedo(float alpha) {
-  const Cell a = alpha_cell(alpha);
-  const auto& mean = moment_table().mean;
-  const size_t i = static_cast<size_t>(a.index);
-  return mean[i] + (mean[i + 1] - mean[i]) * a.fraction;
-}
+float ggx_mean_albedo(float alpha) { return mean_at(moment_table().mean, alpha); }
 
 GlassAlbedo glass_albedo(float alpha, float cosine, float eta) {
-  static constinit std::array<std::array<LazyGlassPlane, kIors>, 2> planes;
-  const bool inverse = eta < 1.0f;
-  const Cell i = locate(std::sqrt(std::abs((eta - 1.0f) / (eta + 1.0f))), kIors);
+  const Cell i = ior_cell(eta);
   const Cell a = alpha_cell(alpha), c = cosine_cell(cosine);
-  const auto at = [&](int k) { return interpolate(planes[inverse][size_t(k)].get(k, inverse), a, c); };
+  const auto at = [&](int k) { return interpolate(glass_plane(k, eta < 1.0f).values, a, c); };
   const Values g = mix(at(i.index), at(i.index + 1), i.fraction);
   return {g[0], g[1], g[2]};
+}
+
+float glass_mean_albedo(float alpha, float eta) {
+  const Cell i = ior_cell(eta);
+  const auto at = [&](int k) { return mean_at(glass_plane(k, eta < 1.0f).mean, alpha); };
+  return at(i.index) + (at(i.index + 1) - at(i.index)) * i.fraction;
 }
 
 }  // namespace gradus::bsdf

@@ -25,5 +25,7 @@ struct GlassAlbedo {
 // Returns the albedos for `alpha` and the cosine of wo in [0, 1]. `eta` is the positive IOR of the far side divided by
 // that of the near side.
 GlassAlbedo glass_albedo(float alpha, float cosine, float eta);
+// Returns the mean of GlassAlbedo::reflected + transmitted over the cosine-weighted hemisphere.
+float glass_mean_albedo(float alpha, float eta);
 
 }  // namespace gradus::bsdf

@@ -133,12 +133,14 @@ struct ThinFilm {
 // - FilmDielectric, FilmMetal, FilmConductor: Schlick with an f90 of 1, PrincipledMetal and Conductor below `film`.
 //
 // With multiscatter the Fresnel term colours the light that bounces between microfacets. A lobe without a Fresnel term
-// takes f0 as that colour, which is also a factor of its weight (Cycles' MULTI_GGX).
+// takes f0 as that colour, which is also a factor of its weight (Cycles' MULTI_GGX). For glass the colour is
+// f90·transmission_tint, where f90 is 1 or the colour that is also a factor of the weight.
 struct Lobe {
   LobeType type = LobeType::Diffuse;
   FresnelType fresnel = FresnelType::None;
   LightPass pass = LightPass::Diffuse;
-  bool multiscatter = false;  // adds the energy that single scattering loses
+  bool separable_masking = false;  // masks both directions of a microfacet independently, as Blender before 4.0
+  bool multiscatter = false;       // adds the energy that single scattering loses
   SubsurfaceMethod subsurface = SubsurfaceMethod::Disk;
   DisneyPart disney = DisneyPart::All;
   Rgb weight = Rgb(0.0f);        // throughput of the node graph times colour

@@ -11,6 +11,13 @@
 
 namespace gradus::bsdf {
 
+// Returns G2(wo, wi)/(|wo.z|·|wi.z|).
+template <class Distribution>
+float masking_of(const Lobe& lobe, const Distribution& normals, const Vec3& wo, const Vec3& wi) {
+  return lobe.separable_masking ? normals.masking_over_cosine(wo) * normals.masking_over_cosine(wi)
+                                : normals.masking_over_cosines(wo, wi);
+}
+
 template <class Distribution>
 BsdfEval evaluate_reflection(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t) {
   if (!(wo.z > 0.0f && wi.z > 0.0f)) {
@@ -19,7 +26,7 @@ BsdfEval evaluate_reflection(const Lobe& lobe, const Vec3& wo, const Vec3& wi, u
   const Distribution normals{lobe.alpha_x, lobe.alpha_y};
   const Vec3 h = glm::normalize(wo + wi);
   const float density = 0.25f * normals.density(h);
-  const float shape = density * normals.masking_over_cosines(wo, wi) * wi.z;
+  const float shape = density * masking_of(lobe, normals, wo, wi) * wi.z;
   const Rgb fresnel = lobe_fresnel_split(lobe, std::min(1.0f, glm::dot(wo, h))).reflected;
   return {lobe.weight * lobe.energy * fresnel * shape, density * normals.masking_over_cosine(wo)};
 }
@@ -54,7 +61,7 @@ BsdfEval evaluate_refraction(const Lobe& lobe, const Vec3& wo, const Vec3& wi, u
   const Distribution normals{lobe.alpha_x, lobe.alpha_y};
   // D times the Jacobian of the half-vector, without the cosines at the macrosurface.
   const float density = normals.density(h) * cos_o * -cos_i * eta * eta / length2;
-  const float shape = density * normals.masking_over_cosines(wo, wi) * -wi.z;
+  const float shape = density * masking_of(lobe, normals, wo, wi) * -wi.z;
   const Rgb fresnel = lobe_fresnel_split(lobe, std::min(1.0f, cos_o)).transmitted;
   return {lobe.weight * lobe.energy * fresnel * shape, density * normals.masking_over_cosine(wo)};
 }

@@ -105,10 +105,12 @@ float sheen_albedo(const Lobe& lobe, float cosine) {
 }
 
 BsdfEval evaluate_sheen(const Lobe& lobe, const Vec3& wo, const Vec3& wi, uint8_t) {
-  if (!(wo.z > 0.0f && wi.z > 0.0f)) {
+  // Where a bump faces away from wo, fibres look as at grazing angles, as in Cycles.
+  const bool grazing = lobe.fresnel == FresnelType::Schlick;
+  if (!(wi.z > 0.0f) || (grazing && !(wo.z > 0.0f))) {
     return {};
   }
-  if (lobe.fresnel == FresnelType::Schlick) {
+  if (grazing) {
     return {lobe.weight * grazing_term(wo, wi), wi.z * kInvPi};
   }
   const Fibres fibres = fibres_at(lobe.alpha_x, wo.z);

@@ -11,8 +11,8 @@ namespace {
 // Radii below this are too small for a walk: light leaves where it enters.
 constexpr float kSmallestRadius = 1e-8f;
 
-// Mode of GLASS: as in Blender before 4.0. Mode of METALLIC: a conductor.
-constexpr uint32_t kLegacyGlass = 4, kConductor = 4;
+// Mode of GLOSSY, REFRACTION and GLASS: as in Blender before 4.0. Mode of METALLIC: a conductor.
+constexpr uint32_t kLegacy = 4, kConductor = 4;
 
 // Returns the GradusDistribution in the mode of an operation.
 uint32_t distribution_of(const ClosureArgs& args) { return args.mode & 3; }
@@ -40,6 +40,8 @@ bsdf::LobeType glass_type(const ClosureArgs& args) {
 
 bool is_multiscatter(const ClosureArgs& args) { return distribution_of(args) == GRADUS_DISTRIBUTION_MULTIPLE; }
 
+bool has_separable_masking(const ClosureArgs& args) { return (args.mode & kLegacy) && !is_multiscatter(args); }
+
 Rgb non_negative(const Vec3& c) { return glm::max(c, Vec3(0.0f)); }
 
 void add_diffuse(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
@@ -60,6 +62,7 @@ void add_glossy(const ClosureArgs& args, const ShadeContext& c, ShadeResult* res
   set_glossy_roughness(lobe, args.f(1), args.f(2));
   if (args.f(2) != 0.0f) lobe->tangent = turned_tangent(c, args.v(5), normal, args.f(3));
   lobe->multiscatter = is_multiscatter(args);
+  lobe->separable_masking = has_separable_masking(args);
   lobe->f0 = non_negative(args.v(0));
 }
 
@@ -88,6 +91,7 @@ void add_refraction(const ClosureArgs& args, const ShadeContext& c, ShadeResult*
   if (!lobe) return;
   const float roughness = saturate(args.f(1));
   lobe->alpha_x = lobe->alpha_y = roughness * roughness;
+  lobe->separable_masking = has_separable_masking(args);
   lobe->ior = std::max(args.f(2), 1e-5f);
 }
 
@@ -100,17 +104,18 @@ void add_legacy_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResul
   const float reflected = dielectric_reflectance(glm::dot(c.wo, normal), c.backfacing ? 1.0f / ior : ior);
   if (bsdf::Lobe* lobe = add_lobe(result, reflection_type(args), bsdf::LightPass::Glossy, weight * reflected, normal)) {
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
+    lobe->separable_masking = true;
   }
   if (bsdf::Lobe* lobe = add_lobe(result, refraction_type(args), bsdf::LightPass::Transmission,
                                   weight * (1.0f - reflected), c.backfacing ? -normal : normal)) {
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
+    lobe->separable_masking = true;
     lobe->ior = ior;
   }
 }
 
 void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
-  if ((args.mode & kLegacyGlass) && !is_multiscatter(args) && args.f(1) > 0.0f)
-    return add_legacy_glass(args, c, result);
+  if ((args.mode & kLegacy) && !is_multiscatter(args) && args.f(1) > 0.0f) return add_legacy_glass(args, c, result);
   bsdf::Lobe* lobe = add_lobe(result, glass_type(args), bsdf::LightPass::Transmission,
                               args.weight * non_negative(args.v(0)), outward_normal(c, args.v(3)));
   if (!lobe) return;
@@ -119,6 +124,7 @@ void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* resu
   lobe->ior = std::max(args.f(2), 1e-5f);
   lobe->fresnel = bsdf::FresnelType::Dielectric;
   lobe->multiscatter = is_multiscatter(args);
+  lobe->f90 = non_negative(args.v(0));
   add_film(lobe, args.f(4), args.f(5), false);
 }
 

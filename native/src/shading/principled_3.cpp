@@ -105,6 +105,7 @@ class Lobes {
     if (args_.f(kAnisotropic) > 0.0f)
       lobe->tangent = turned_tangent(c_, args_.v(kTangent), normal_, args_.f(kAnisotropicRotation));
     lobe->multiscatter = args_.mode & GRADUS_DISTRIBUTION_MULTIPLE;
+    lobe->separable_masking = !lobe->multiscatter;
     lobe->ior = 2.0f / (1.0f - std::sqrt(std::min(0.08f * amount, 0.99f))) - 1.0f;
     lobe->fresnel = bsdf::FresnelType::Schlick;
     lobe->f0 = f0;
@@ -132,6 +133,7 @@ class Lobes {
     if (bsdf::Lobe* lobe =
             add_lobe(result_, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight * reflected, normal_)) {
       lobe->alpha_x = lobe->alpha_y = roughness * roughness;
+      lobe->separable_masking = true;
       lobe->fresnel = bsdf::FresnelType::Schlick;
       lobe->ior = ior;
       lobe->f0 = tinted(base_, saturate(args_.f(kSpecularTint)));
@@ -143,6 +145,7 @@ class Lobes {
       if (!(args_.mode & GRADUS_DISTRIBUTION_MULTIPLE))
         refracted = 1.0f - (1.0f - roughness) * (1.0f - saturate(args_.f(kTransmissionRoughness)));
       lobe->alpha_x = lobe->alpha_y = refracted * refracted;
+      lobe->separable_masking = true;
       lobe->ior = ior;
     }
   }
@@ -166,6 +169,7 @@ class Lobes {
     if (!lobe) return;
     const float roughness = saturate(args_.f(kClearcoatRoughness));
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
+    lobe->separable_masking = true;
     lobe->fresnel = bsdf::FresnelType::Schlick;
     lobe->ior = 1.5f;
     lobe->f0 = Rgb(0.04f);
