@@ -51,22 +51,9 @@ def of_object(obj: Any, view_layer: Any) -> Iterator[str]:
         yield f"Object '{obj.name}' is a shadow catcher and is rendered as an ordinary surface"
     if obj.type != "LIGHT" and shadow_terminator.has_shading_offset(obj):
         yield f"Object '{obj.name}': the shading offset of its shadow terminator is ignored"
-    if _is_diced(obj.original, view_layer.id_data.original):
-        yield f"Object '{obj.name}': its modifier subdivides it, since adaptive subdivision is not supported"
     linking = getattr(obj, "light_linking", None)  # from 4.0 on
     if linking is not None and (linking.receiver_collection is not None or linking.blocker_collection is not None):
         yield f"Object '{obj.name}': light linking is ignored"
-
-
-def _is_diced(obj: Any, scene: Any) -> bool:
-    """Returns whether Cycles dices an object instead of its last modifier."""
-    modifier = obj.modifiers[-1] if obj.modifiers else None
-    if modifier is None or modifier.type != "SUBSURF" or not modifier.show_render:
-        return False
-    if hasattr(modifier, "use_adaptive_subdivision"):  # from 5.0 on
-        return bool(modifier.use_adaptive_subdivision)
-    is_experimental = getattr(getattr(scene, "cycles", None), "feature_set", "") == "EXPERIMENTAL"
-    return is_experimental and bool(getattr(getattr(obj, "cycles", None), "use_adaptive_subdivision", False))
 
 
 def _is_hair(modifier: Any) -> bool:
