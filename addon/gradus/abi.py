@@ -332,9 +332,13 @@ class Mesh(Struct):
         ("name", c_char_p),
         ("shutter_positions", POINTER(c_float)),
         ("shutter_key_count", c_uint32),
-        ("reserved", c_uint32),
+        ("dicing_levels", c_uint32),
         ("edge_count", c_size_t),
         ("edge_vertices", POINTER(c_int32)),
+        ("dicing_rate", c_float),
+        ("dicing_length", c_float),
+        ("offscreen_dicing_scale", c_float),
+        ("reserved", c_uint32),
     ]
 
 

@@ -44,19 +44,6 @@ def test_hair_particles_are_named(scene: bpy.types.Scene, plane: bpy.types.Objec
     assert warnings(scene) == []
 
 
-def test_adaptive_subdivision_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
-    modifier = plane.modifiers.new("Subdivision", "SUBSURF")
-    assert warnings(scene) == []
-    if hasattr(modifier, "use_adaptive_subdivision"):
-        modifier.use_adaptive_subdivision = True
-    else:
-        plane.cycles.use_adaptive_subdivision = True
-        assert warnings(scene) == []
-        scene.cycles.feature_set = "EXPERIMENTAL"
-    expected = "Object 'Plane': its modifier subdivides it, since adaptive subdivision is not supported"
-    assert warnings(scene) == [expected]
-    modifier.show_render = False
-    assert warnings(scene) == []
 
 
 @pytest.mark.parametrize("has_volume", [False, True])

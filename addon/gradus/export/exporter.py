@@ -18,6 +18,7 @@ from ..abi import ChannelKind
 from ..layer_channels import Channel, channels_of
 from . import blender_pixels, camera, channels, instances, light, mesh, motion, unsupported, world
 from .collect import Collected, Entry, InstanceKey, collect
+from .dicing import dicing_of, has_other_camera
 from .digest import Digest
 from .instance_attributes import read_instance_attributes
 from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
@@ -127,6 +128,7 @@ class _Sync:
         self._poll = poll
         self._digest = digest
         self._space = space
+        self._is_preview = is_preview or view is not None
         self._target = exporter._target
         self._mesh_keys = exporter._meshes
         self._ids = exporter._ids
@@ -250,6 +252,9 @@ class _Sync:
         if len(entry.data.polygons) == 0:
             return None
         arrays = mesh.read_mesh(entry.data, wanted, undeformed, self._materials.reads_edges)
+        arrays.dicing = dicing_of(original, self._scene.original, self.size[0], self._is_preview)
+        if arrays.dicing.rate > 0.0 and has_other_camera(self._scene.original):
+            self.warnings.add("The dicing camera is ignored: meshes are diced for the camera that renders")
         frames_per_second = self._scene.render.fps / self._scene.render.fps_base
         if self._wanted.vectors:
             arrays.motion = motion.velocity_motion(entry.data, arrays, frames_per_second)

@@ -14,6 +14,7 @@ from typing import Any
 from .. import native
 from . import attributes
 from .arrays import read
+from .dicing import NO_DICING, Dicing
 from .edges import edge_vertices
 
 POINT, FACE, CORNER = 0, 1, 2
@@ -37,6 +38,7 @@ class MeshArrays:
     texture_space: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0, 1.0, 1.0)
     generated_points: array | None = None
     edge_vertices: array | None = None  # 2 vertices per edge
+    dicing: Dicing = NO_DICING
     motion: tuple[array, array] | None = None  # positions one frame before and after
     blur: array | None = None  # positions while the shutter is open, key after key
 
@@ -48,7 +50,8 @@ class MeshArrays:
         digest = hashlib.sha1(usedforsecurity=False)
         for values in (self.positions, self.corner_vertices, self.triangle_corners, self.triangle_faces):
             digest.update(values)
-        digest.update(repr((self.face_count, self.normal_domain, self.default_uv, self.texture_space)).encode())
+        rest = (self.face_count, self.normal_domain, self.default_uv, self.texture_space, self.dicing)
+        digest.update(repr(rest).encode())
         optional = (
             ("m", self.face_materials),
             ("n", self.normals),
@@ -214,5 +217,9 @@ def fill_mesh(arrays: MeshArrays) -> tuple[native.Mesh, list[Any]]:
     struct.shutter_key_count = len(arrays.blur) // len(arrays.positions) if arrays.blur else 0
     struct.edge_vertices = native.pointer(arrays.edge_vertices)
     struct.edge_count = len(arrays.edge_vertices) // 2 if arrays.edge_vertices else 0
+    struct.dicing_levels = arrays.dicing.levels
+    struct.dicing_rate = arrays.dicing.rate
+    struct.dicing_length = arrays.dicing.length
+    struct.offscreen_dicing_scale = arrays.dicing.offscreen_scale
     struct.name = native.name(arrays.name)
     return struct, [positions, times, records, arrays]

@@ -50,19 +50,6 @@ def of_object(obj: Any, view_layer: Any) -> Iterator[str]:
         yield f"Object '{obj.name}': hair particles are not supported"
     if is_gas_domain(obj) and any(_has_volume(slot.material) for slot in obj.material_slots):
         yield of_kind(obj.name, "VOLUME")
-    if _is_diced(obj.original, view_layer.id_data.original):
-        yield f"Object '{obj.name}': its modifier subdivides it, since adaptive subdivision is not supported"
-
-
-def _is_diced(obj: Any, scene: Any) -> bool:
-    """Returns whether Cycles dices an object instead of its last modifier."""
-    modifier = obj.modifiers[-1] if obj.modifiers else None
-    if modifier is None or modifier.type != "SUBSURF" or not modifier.show_render:
-        return False
-    if hasattr(modifier, "use_adaptive_subdivision"):  # from 5.0 on
-        return bool(modifier.use_adaptive_subdivision)
-    is_experimental = getattr(getattr(scene, "cycles", None), "feature_set", "") == "EXPERIMENTAL"
-    return is_experimental and bool(getattr(getattr(obj, "cycles", None), "use_adaptive_subdivision", False))
 
 
 def _is_hair(modifier: Any) -> bool:

@@ -156,9 +156,14 @@ typedef struct GradusMesh {
   const float* shutter_positions;    /* 3 values a vertex, moment after moment, spaced evenly from the opening of the
                                         shutter to its closing. [m] */
   uint32_t shutter_key_count;        /* Moments in shutter_positions, 2 to 129; 0 = static while the shutter is open. */
-  uint32_t reserved;                 /* 0. */
+  uint32_t dicing_levels;            /* How often triangles may be divided in four; 0 = the mesh is not diced. */
   size_t edge_count;                 /* Number of edges; 0 = Geometry > Pointiness and Random Per Island are 0. */
   const int32_t* edge_vertices;      /* 2 vertices an edge. */
+  float dicing_rate;                 /* Longest edge of the diced mesh at its first instance, as a share of the
+                                        picture's width; 0 = dicing_length decides. */
+  float dicing_length;               /* Longest edge of the diced mesh in its own space. [m] */
+  float offscreen_dicing_scale;      /* Factor of dicing_rate for edges beyond the borders of the picture. */
+  uint32_t reserved;                 /* 0. */
 } GradusMesh;
 
 /* Kinds of rays that see an object, a light or the world, and further properties of an object. */

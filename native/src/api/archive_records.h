@@ -30,7 +30,11 @@ void visit(Archive& a, GradusMesh& s) {
   a.values(s.generated_location);
   a.values(s.generated_size);
   a.value(s.shutter_key_count);
+  a.value(s.dicing_levels);
   a.value(s.edge_count);
+  a.value(s.dicing_rate);
+  a.value(s.dicing_length);
+  a.value(s.offscreen_dicing_scale);
   uint32_t has_default_uv = s.default_uv != nullptr;
   a.value(has_default_uv);
   if (has_default_uv != 0) a.text(s.default_uv);

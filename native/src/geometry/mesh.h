@@ -44,7 +44,11 @@ struct MeshData {
   std::vector<float> pointiness;  // of each vertex; empty: the caller gave no edges
   std::vector<uint32_t> islands;  // vertex that stands for the connected part of each vertex; empty as pointiness
   std::vector<MeshAttribute> attributes;
-  int32_t default_uv = -1;  // index in attributes; -1: there is no UV map
+  int32_t default_uv = -1;              // index in attributes; -1: there is no UV map
+  uint32_t dicing_levels = 0;           // how often triangles may be divided in four
+  float dicing_rate = 0.0f;             // longest edge after that, as a share of the picture's width; 0: by length
+  float dicing_length = 0.0f;           // longest edge after that, in the mesh's space
+  float offscreen_dicing_scale = 1.0f;  // factor of dicing_rate beyond the borders of the picture
   Vec3 generated_location{0.0f};
   Vec3 generated_size{1.0f};
   std::vector<Vec3> generated_points;  // empty: positions in the rendered frame

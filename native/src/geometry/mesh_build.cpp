@@ -184,6 +184,15 @@ void copy_generated(const GradusMesh& m, MeshData* out) {
   std::memcpy(out->generated_points.data(), values.data(), m.vertex_count * sizeof(Vec3));
 }
 
+void copy_dicing(const GradusMesh& m, MeshData* out) {
+  constexpr uint32_t kMaxLevels = 16;
+  out->dicing_levels = std::min(m.dicing_levels, kMaxLevels);
+  out->dicing_rate = is_finite(m.dicing_rate) ? std::max(m.dicing_rate, 0.0f) : 0.0f;
+  out->dicing_length = is_finite(m.dicing_length) ? std::max(m.dicing_length, 0.0f) : 0.0f;
+  const bool scales = is_finite(m.offscreen_dicing_scale) && m.offscreen_dicing_scale >= 1.0f;
+  out->offscreen_dicing_scale = scales ? m.offscreen_dicing_scale : 1.0f;
+}
+
 void add_edge_values(const GradusMesh& m, const Check& check, MeshData* out) {
   if (m.edge_count == 0) return;
   std::vector<Edge> edges(m.edge_count);
@@ -215,6 +224,10 @@ uint64_t hash_mesh(const MeshData& mesh) {
   hash.value(mesh.default_uv);
   for (int i = 0; i < 3; ++i) hash.value(mesh.generated_location[i]), hash.value(mesh.generated_size[i]);
   hash.array(mesh.generated_points);
+  if (mesh.dicing_levels > 0) {
+    hash.value(mesh.dicing_levels);
+    for (const float v : {mesh.dicing_rate, mesh.dicing_length, mesh.offscreen_dicing_scale}) hash.value(v);
+  }
   hash.array(mesh.pointiness);
   hash.array(mesh.islands);
   return hash.result();
@@ -265,6 +278,7 @@ std::shared_ptr<const MeshData> make_mesh(const GradusMesh& desc) {
   set_shutter_normals(mesh.get());
   copy_attributes(desc, check, mesh.get());
   copy_generated(desc, mesh.get());
+  copy_dicing(desc, mesh.get());
   add_edge_values(desc, check, mesh.get());
   mesh->content_hash = hash_mesh(*mesh);
   mesh->topology_hash = hash_topology(*mesh);

@@ -124,6 +124,15 @@ void build_lights(const geometry::EmbreeDevice& device, std::vector<light::Analy
   warn_beyond_limit(state->instances, chosen, snapshot);
 }
 
+// Divides the triangles of meshes that are to be diced.
+void dice_meshes(const CommitMonitor& monitor, const std::vector<size_t>& chosen, Scene::State* state,
+                 Snapshot* snapshot) {
+  AffectedObjects coarse;
+  for (const size_t k : dice_instances(monitor, &state->diced, snapshot)) coarse.add(state->instances.name(chosen[k]));
+  coarse.warn("is coarser than its dicing rate", "are coarser than their dicing rate",
+              "the mesh would have more than two million triangles", &snapshot->warnings);
+}
+
 // Moves the vertices of meshes by the displacement of their materials.
 void displace_meshes(const CommitMonitor& monitor, const std::vector<size_t>& chosen, Scene::State* state,
                      Snapshot* snapshot) {
@@ -223,6 +232,7 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     assign_materials(state_->instances, chosen, materials, snapshot.get());
     place_camera(*state_, snapshot.get());
     place_world(*state_, materials, snapshot.get());
+    if (snapshot->has_camera) dice_meshes(monitor, chosen, state_.get(), snapshot.get());
     displace_meshes(monitor, chosen, state_.get(), snapshot.get());
     add_tangents(state_->current.get(), snapshot.get());
     monitor.check();

@@ -16,6 +16,7 @@
 #include "geometry/mesh.h"
 #include "image/image_store.h"
 #include "light/world_map.h"
+#include "scene/dice_instances.h"
 #include "scene/displace_instances.h"
 #include "scene/material_source.h"
 #include "scene/scene.h"
@@ -68,6 +69,7 @@ struct Scene::State {
   std::shared_ptr<const image::ImageStore> image_store;
   StoredImages stored_images;  // those in `image_store`
   std::map<uint64_t, CompiledMaterial> compiled;
+  std::vector<DicedMesh> diced;
   std::vector<DisplacedMesh> displaced;
   std::shared_ptr<const geometry::Accelerator> accelerator;
   light::WorldMap world_map;

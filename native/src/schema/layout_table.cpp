@@ -59,9 +59,13 @@ constexpr FieldLayout kMeshFields[] = {
     FIELD(GradusMesh, name),
     FIELD(GradusMesh, shutter_positions),
     FIELD(GradusMesh, shutter_key_count),
-    FIELD(GradusMesh, reserved),
+    FIELD(GradusMesh, dicing_levels),
     FIELD(GradusMesh, edge_count),
     FIELD(GradusMesh, edge_vertices),
+    FIELD(GradusMesh, dicing_rate),
+    FIELD(GradusMesh, dicing_length),
+    FIELD(GradusMesh, offscreen_dicing_scale),
+    FIELD(GradusMesh, reserved),
 };
 
 constexpr FieldLayout kInstancesFields[] = {
