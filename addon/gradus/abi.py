@@ -215,7 +215,8 @@ class Pass(IntEnum):
     ERROR = 30
     GRADIENT_T = 31
     GRADIENT_T_CORRESPONDENCE = 32
-    COUNT = 33
+    SHADOW_CATCHER = 33
+    COUNT = 34
 
 
 class ComponentPass(IntEnum):

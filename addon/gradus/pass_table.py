@@ -36,6 +36,7 @@ PASSES: tuple[tuple[Any, ...], ...] = (
     (Pass.DENOISING_ALBEDO, "Denoising Albedo", "Denoising Albedo", "RGB", "COLOR", "gradus.use_pass_denoising"),
     (Pass.DENOISING_DEPTH, "Denoising Depth", "Denoising Depth", "Z", "VALUE", "gradus.use_pass_denoising"),
     (Pass.SAMPLE_COUNT, "Debug Sample Count", "Debug Sample Count", "X", "VALUE", "gradus.use_pass_sample_count"),
+    (Pass.SHADOW_CATCHER, "Shadow Catcher", "Shadow Catcher", "RGB", "COLOR", "gradus.use_pass_shadow_catcher"),
     (Pass.GRADIENT_X, "Gradient X", "Gradient X", "RGB", "COLOR", "gradus.use_pass_gradients"),
     (Pass.GRADIENT_Y, "Gradient Y", "Gradient Y", "RGB", "COLOR", "gradus.use_pass_gradients"),
     (Pass.GRADIENT_T, "Gradient T", "Gradient T", "RGB", "COLOR", "gradus.use_pass_gradients"),
@@ -117,6 +118,15 @@ SWITCHES: tuple[tuple[str, str, str, bool], ...] = (
         "use_pass_sample_count",
         "Sample Count",
         "Adds the samples of each pixel as a share of the samples of the settings",
+        False,
+    ),
+    (
+        "use_pass_shadow_catcher",
+        "Shadow Catcher",
+        (
+            "Adds the shadows on shadow catchers, by which a compositor multiplies its own background. Combined "
+            "then has holes in their place"
+        ),
         False,
     ),
     (

@@ -90,6 +90,7 @@ OF_VOLUMES = (
 _CYCLES_SWITCHES = {
     "gradus.use_pass_denoising": "denoising_store_passes",
     "gradus.use_pass_sample_count": "pass_debug_sample_count",
+    "gradus.use_pass_shadow_catcher": "use_pass_shadow_catcher",
 }
 """Switches of view_layer.cycles that also ask for passes with switches of Gradus."""
 

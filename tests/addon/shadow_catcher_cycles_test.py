@@ -100,8 +100,8 @@ CASES: dict[str, Callable[[bpy.types.Scene], None]] = {
 }
 
 
-def picture(scene: bpy.types.Scene, folder: Path, engine: str, **settings: Any) -> np.ndarray:
-    """Renders RGBA and returns means of blocks of 4×4 pixels."""
+def picture(scene: bpy.types.Scene, folder: Path, engine: str, name: str = "Combined", **settings: Any) -> np.ndarray:
+    """Renders a pass and returns means of blocks of 4×4 pixels."""
     samples = 256
     scene.render.engine = engine
     cycles = scene.cycles
@@ -110,8 +110,8 @@ def picture(scene: bpy.types.Scene, folder: Path, engine: str, **settings: Any) 
     cycles.pixel_filter_type, cycles.filter_width = "BOX", 1.0
     settings = {"integrator": "PATH", "reconstruction": "NONE"} | settings
     settings |= {"samples": samples, "pixel_filter": "BOX", "filter_width": 1.0, "max_bounces": 3}
-    image = images.render(scene, folder, **settings)["Combined"]
-    return image.reshape(9, 4, 16, 4, 4).mean(axis=(1, 3))
+    image = images.render(scene, folder, **settings)[name]
+    return image.reshape(9, 4, 16, 4, image.shape[2]).mean(axis=(1, 3))
 
 
 def compare(expected: np.ndarray, found: np.ndarray) -> None:
@@ -129,6 +129,18 @@ def test_shadow_catcher(name: str, transparent: bool, stage: bpy.types.Scene, tm
     stage.render.film_transparent = transparent
     CASES[name](stage)
     compare(*(picture(stage, tmp_path, engine) for engine in ("CYCLES", "GRADUS")))
+
+
+@pytest.mark.parametrize("transparent", [True, False], ids=["transparent", "background"])
+@pytest.mark.parametrize("name", ["Shadow Catcher", "Combined"])
+def test_pass(name: str, transparent: bool, stage: bpy.types.Scene, tmp_path: Path) -> None:
+    """With the pass, Combined leaves shadows out."""
+    layer = stage.view_layers[0]
+    if not hasattr(layer, "cycles"):
+        pytest.skip("Cycles' add-on is off")
+    layer.cycles.use_pass_shadow_catcher = True
+    stage.render.film_transparent = transparent
+    compare(*(picture(stage, tmp_path, engine, name) for engine in ("CYCLES", "GRADUS")))
 
 
 @pytest.mark.parametrize("transparent", [True, False], ids=["transparent", "background"])

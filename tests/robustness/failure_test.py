@@ -154,7 +154,6 @@ tree.links.new(specular.outputs[0], both.inputs[1])
 tree.links.new(both.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
 """,
     "object": "scene.collection.objects.link(bpy.data.objects.new('Fog', bpy.data.volumes.new('Fog')))",
-    "pass": "scene.view_layers[0].cycles.use_pass_shadow_catcher = True",
 }
 MATERIAL = """
 tree = scene.objects["Cube"].active_material.node_tree
@@ -162,7 +161,7 @@ surface = tree.nodes["Principled BSDF"]
 """
 
 
-NAMED = {"missing image": "lost.png", "node": "Specular BSDF", "object": "Fog", "pass": "Shadow Catcher"}
+NAMED = {"missing image": "lost.png", "node": "Specular BSDF", "object": "Fog"}
 """What warnings and errors call them."""
 
 
@@ -178,7 +177,7 @@ def test_what_gradus_replaces_is_named_in_warnings(
     assert files(tmp_path) == ["f_0001.png", "f_0002.png"]
 
 
-@pytest.mark.parametrize(("name", "ahead"), [("missing image", False), ("pass", True)])
+@pytest.mark.parametrize(("name", "ahead"), [("missing image", False), ("object", True)])
 def test_a_strict_render_of_what_gradus_would_replace_ends_with_code_1(
     blender: Callable[..., Outcome], tmp_path: Path, name: str, ahead: bool
 ) -> None:

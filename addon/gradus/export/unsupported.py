@@ -14,7 +14,7 @@ KINDS = frozenset(_KINDS)
 _PASSES = ("use_pass_shadow",) if compat.VERSION < (4, 0, 0) else ()
 """Switches of view layers for passes that Cycles makes and Gradus does not."""
 
-_CYCLES_PASSES = ("pass_render_time", "use_pass_shadow_catcher")
+_CYCLES_PASSES = ("pass_render_time",)
 """Switches of view_layer.cycles for such passes. It exists while Cycles' add-on is on, and versions differ in it."""
 
 

@@ -692,7 +692,9 @@ typedef enum GradusPass {
   GRADUS_PASS_GRADIENT_T_CORRESPONDENCE = 32, /* Pixel correspondence that Gradient T follows: pixels to the right
                                                  and up to where the next frame shows the same surface, and 1 where
                                                  it does. */
-  GRADUS_PASS_COUNT = 33                      /* Number of passes. */
+  GRADUS_PASS_SHADOW_CATCHER = 33,            /* Light on shadow catchers divided by what they get without other
+                                                 objects; 1 elsewhere. Combined then leaves them out. */
+  GRADUS_PASS_COUNT = 34                      /* Number of passes. */
 } GradusPass;
 
 /* Passes of a component: bit i of GradusSettings.component_passes asks for pass i of every component. */

@@ -11,6 +11,7 @@
 #include "base/fault.h"
 #include "base/threads.h"
 #include "base/types.h"
+#include "film/catcher_channels.h"
 #include "film/features.h"
 #include "output/denoise.h"
 #include "output/pass_read.h"
@@ -146,7 +147,9 @@ std::vector<float> denoise_or_throw(const OidnLibrary& library, const CombinedPi
   const bool blends = picture.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED,
              sampled = blends || picture.reconstruction == GRADUS_RECONSTRUCTION_NONE;
   const Region& seen = sampled ? picture.film.region : picture.region;
-  const bool joins = picture.joined != nullptr && !GRADUS_FAULT(network_reads_one_frame);
+  // Joined light has holes in place of shadow catchers, so that the network reads the frame alone there.
+  const bool has_catchers = picture.film.channels.find(film::kCatcherShaded) != nullptr;
+  const bool joins = picture.joined != nullptr && !has_catchers && !GRADUS_FAULT(network_reads_one_frame);
   tbb::task_arena arena(arena_size(threads));
   NetworkInput input;
   arena.execute([&] {

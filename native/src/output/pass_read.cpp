@@ -142,6 +142,8 @@ void read_derived(const film::Film& film, uint32_t pass, const Region& region, f
       return read_gradient(film, region, true, pixels);
     case GRADUS_PASS_VARIANCE:
       return read_variance_pass(film, region, pixels);
+    case GRADUS_PASS_SHADOW_CATCHER:
+      return read_shadow_catchers(film, region, pixels);
     case GRADUS_PASS_SAMPLE_COUNT: {
       const float scale = 1.0f / static_cast<float>(std::max(film.settings.samples, 1u));
       return for_pixels(film, region, [&](size_t i, size_t out) {

@@ -41,6 +41,7 @@ constexpr PassInfo kPasses[] = {
     {GRADUS_PASS_ERROR, "Error", "X", PassKind::Solved, GRADUS_PASS_COUNT},
     {GRADUS_PASS_GRADIENT_T, "Gradient T", "RGB", PassKind::Sequence, GRADUS_PASS_COUNT},
     {GRADUS_PASS_GRADIENT_T_CORRESPONDENCE, "Gradient T Correspondence", "XYZ", PassKind::Sequence, GRADUS_PASS_COUNT},
+    {GRADUS_PASS_SHADOW_CATCHER, "Shadow Catcher", "RGB", PassKind::Derived, GRADUS_PASS_COUNT},
 };
 
 constexpr ComponentPassInfo kComponentPasses[] = {
