@@ -10,15 +10,15 @@ import numpy as np
 from . import images
 
 
-def picture(scene: bpy.types.Scene, folder: Path, engine: str) -> np.ndarray:
+def picture(scene: bpy.types.Scene, folder: Path, engine: str, samples: int = 16) -> np.ndarray:
     """Renders an image and returns means of blocks of 4×4 pixels."""
     scene.render.engine = engine
     cycles = scene.cycles
-    cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = 16, False, False
+    cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = samples, False, False
     cycles.pixel_filter_type = "BOX"
     cycles.filter_width = 1.0
     settings = {
-        "samples": 16,
+        "samples": samples,
         "integrator": "PATH",
         "reconstruction": "NONE",
         "pixel_filter": "BOX",
@@ -28,6 +28,6 @@ def picture(scene: bpy.types.Scene, folder: Path, engine: str) -> np.ndarray:
     return image.reshape(9, 4, 16, 4, 3).mean(axis=(1, 3))
 
 
-def pictures(scene: bpy.types.Scene, folder: Path) -> tuple[np.ndarray, np.ndarray]:
+def pictures(scene: bpy.types.Scene, folder: Path, samples: int = 16) -> tuple[np.ndarray, np.ndarray]:
     """Returns the picture of Cycles and that of Gradus."""
-    return picture(scene, folder, "CYCLES"), picture(scene, folder, "GRADUS")
+    return picture(scene, folder, "CYCLES", samples), picture(scene, folder, "GRADUS", samples)

@@ -101,7 +101,7 @@ Rgb multiscatter_energy(const Lobe& lobe, float cosine) {
   const float alpha = mean_alpha(lobe);
   if (lobe.type != LobeType::GgxReflection) {
     const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
-    const bool alone = lobe.type == LobeType::GgxRefraction;
+    const bool alone = lobe.type == LobeType::GgxRefraction && lobe.fresnel == FresnelType::None;
     return Rgb(1.0f / std::clamp(alone ? glass.crossing : glass.reflected + glass.transmitted, 0.3f, 1.0f));
   }
   // Multiple scattering scales single scattering (Turquin 2019, "Practical multiple scattering compensation for

@@ -65,6 +65,32 @@ void limit_microfacets(Lobe* lobe) {
   }
 }
 
+// Returns the rough counterpart of a perfectly smooth type.
+LobeType rough_of(LobeType type) {
+  switch (type) {
+    case LobeType::DiracReflection:
+      return LobeType::GgxReflection;
+    case LobeType::DiracRefraction:
+      return LobeType::GgxRefraction;
+    case LobeType::DiracGlass:
+      return LobeType::GgxGlass;
+    default:
+      return type;
+  }
+}
+
+// Raises the alphas of a prepared microfacet lobe to `blur`. Without a step in the IOR nothing bends light, so that a
+// lobe that transmits stays as it is.
+void blur_lobe(float blur, Lobe* lobe) {
+  const bool stepless = lobe->ior == 1.0f && sides_of(lobe->type) & kTransmits;
+  if (!is_microfacet(lobe->type) || lobe->keeps_alpha || stepless) {
+    return;
+  }
+  lobe->type = rough_of(lobe->type);
+  lobe->alpha_x = std::max(lobe->alpha_x, blur);
+  lobe->alpha_y = std::max(lobe->alpha_y, blur);
+}
+
 // Returns the smaller alpha of a lobe, which is compared with the roughness threshold.
 float sharpness(const Lobe& lobe) { return is_microfacet(lobe.type) ? std::min(lobe.alpha_x, lobe.alpha_y) : 1.0f; }
 
@@ -119,7 +145,7 @@ void Closures::drop_black_lobes() {
 void Closures::keep_originals() {
   for (; prepared_ < count_; prepared_++) {
     const Lobe& lobe = lobes_[static_cast<size_t>(prepared_)];
-    original_[static_cast<size_t>(prepared_)] = {lobe.type, lobe.normal, lobe.ior};
+    original_[static_cast<size_t>(prepared_)] = {lobe.type, lobe.normal, lobe.ior, lobe.alpha_x, lobe.alpha_y};
   }
 }
 
@@ -167,7 +193,12 @@ void Closures::prepare(int index, const Vec3& wo) {
   lobe.type = original.type;
   lobe.normal = original.normal;
   lobe.ior = original.ior;
+  lobe.alpha_x = original.alpha_x;
+  lobe.alpha_y = original.alpha_y;
   prepare_lobe(&lobe, geometric_normal_, wo);
+  if (blur_ > 0.0f) {
+    blur_lobe(blur_, &lobe);
+  }
 }
 
 void Closures::add_entry(int lobe, uint8_t sides, ScatterClass c, float weight) {
@@ -253,9 +284,10 @@ void Closures::finish_lambert() {
 }
 
 void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold,
-                      const Vec3& smooth_normal) {
+                      const Vec3& smooth_normal, float blur) {
   geometric_normal_ = geometric_normal;
   smooth_normal_ = smooth_normal;
+  blur_ = blur;
   entry_count_.fill(0);
   dirac_count_.fill(0);
   has_smooth_.fill(false);

@@ -516,6 +516,8 @@ void GradientObserver::reconnect(OffsetPath* offset, const path::Vertex& vertex,
 void GradientObserver::share_rest(OffsetPath* offset) {
   if (!(offset->ratio > 0.0f) || !is_finite(offset->ratio)) {
     fail(ShiftFailure::Jacobian, offset);
+  } else if (!offset->blurs_alike) {
+    fail(ShiftFailure::Class, offset);
   } else if (offset->state.ray.state.transparent_depth > base_.state.ray.state.transparent_depth) {
     offset->stage = OffsetStage::Deeper;
   } else {

@@ -23,6 +23,7 @@ void add_diffuse(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
 }
 
 void add_glossy(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  if (!reflects(c)) return;
   const Vec3 normal = facing_normal(c, args.v(4));
   bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy,
                               args.weight * non_negative(args.v(0)), normal);
@@ -34,6 +35,7 @@ void add_glossy(const ClosureArgs& args, const ShadeContext& c, ShadeResult* res
 }
 
 void add_metallic(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  if (!reflects(c)) return;
   const Vec3 normal = facing_normal(c, args.v(5));
   bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, args.weight, normal);
   if (!lobe) return;
@@ -46,6 +48,7 @@ void add_metallic(const ClosureArgs& args, const ShadeContext& c, ShadeResult* r
 }
 
 void add_refraction(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  if (!refracts(c)) return;
   bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxRefraction, bsdf::LightPass::Transmission,
                               args.weight * non_negative(args.v(0)), outward_normal(c, args.v(3)));
   if (!lobe) return;
@@ -61,12 +64,13 @@ void add_legacy_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResul
   const Rgb weight = args.weight * non_negative(args.v(0));
   const float ior = std::max(args.f(2), 1e-5f), roughness = saturate(args.f(1));
   const float reflected = dielectric_reflectance(glm::dot(c.wo, normal), c.backfacing ? 1.0f / ior : ior);
-  if (bsdf::Lobe* lobe =
-          add_lobe(result, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight * reflected, normal)) {
+  const Rgb reflection = reflects(c) ? weight * reflected : Rgb(0.0f);
+  const Rgb refraction = refracts(c) ? weight * (1.0f - reflected) : Rgb(0.0f);
+  if (bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, reflection, normal)) {
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
   }
-  if (bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxRefraction, bsdf::LightPass::Transmission,
-                                  weight * (1.0f - reflected), c.backfacing ? -normal : normal)) {
+  if (bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxRefraction, bsdf::LightPass::Transmission, refraction,
+                                  c.backfacing ? -normal : normal)) {
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
     lobe->ior = ior;
   }
@@ -75,6 +79,7 @@ void add_legacy_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResul
 void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   if ((args.mode & 2) && !(args.mode & GRADUS_DISTRIBUTION_MULTIPLE) && args.f(1) > 0.0f)
     return add_legacy_glass(args, c, result);
+  if (!reflects(c) && !refracts(c)) return;
   bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::GgxGlass, bsdf::LightPass::Transmission,
                               args.weight * non_negative(args.v(0)), outward_normal(c, args.v(3)));
   if (!lobe) return;
@@ -83,6 +88,7 @@ void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* resu
   lobe->ior = std::max(args.f(2), 1e-5f);
   lobe->fresnel = bsdf::FresnelType::Dielectric;
   lobe->multiscatter = args.mode & GRADUS_DISTRIBUTION_MULTIPLE;
+  leave_caustics_out(c, lobe);
 }
 
 void add_subsurface_node(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
@@ -131,6 +137,11 @@ void add_subsurface(const Subsurface& s, ShadeResult* result, const ShadeContext
   lobe->ior = std::clamp(s.ior, 1.01f, 3.8f);
   lobe->alpha_x = s.alpha;
   lobe->alpha_y = std::clamp(s.anisotropy, -0.99f, method == bsdf::SubsurfaceMethod::WalkDeHulst ? 0.99f : 0.9f);
+}
+
+void leave_caustics_out(const ShadeContext& c, bsdf::Lobe* glass) {
+  if (!reflects(c)) glass->type = bsdf::LobeType::GgxRefraction;
+  if (!refracts(c)) glass->transmission_tint = Rgb(0.0f);
 }
 
 Vec3 facing_normal(const ShadeContext& c, const Vec3& normal) {

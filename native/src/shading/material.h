@@ -33,6 +33,7 @@ struct MaterialData {
   bool may_be_transparent = false;  // some light passes straight through
   bool has_holdout = false;
   bool has_bsdf = false;
+  bool has_glossy = false;         // some lobe is that of a glossy, metallic or refracting surface, rough or not
   bool may_transmit = false;       // some lobe scatters light to the other side
   bool transparent_shadow = true;  // false if shadow rays treat the material as opaque
   bool sample_as_light = true;

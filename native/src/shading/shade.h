@@ -22,6 +22,9 @@ enum RayFlag : uint32_t {
   kRayTransmission = 32,
   kRayShadow = 64,
   kRayDiffuseAncestor = 128,  // some event since the camera was diffuse
+  // Surfaces do not reflect, or refract, light in glossy lobes towards the ray: it is diffuse, and caustics are off.
+  kRayWithoutReflections = 256,
+  kRayWithoutRefractions = 512,
 };
 
 // The history of the ray that arrives, for the Light Path node.
@@ -33,6 +36,7 @@ struct RayState {
   uint16_t glossy_depth = 0;
   uint16_t transmission_depth = 0;
   uint16_t transparent_depth = 0;
+  float blur = 0.0f;    // minimum alpha of the lobes that the ray meets, by Filter Glossy (path/filter_glossy.h)
   uint32_t random = 0;  // key of the path's sample, for nodes that draw random numbers; 0: there is no path
 };
 
