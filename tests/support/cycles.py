@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import bpy
 import numpy as np
@@ -10,8 +11,8 @@ import numpy as np
 from . import images
 
 
-def picture(scene: bpy.types.Scene, folder: Path, engine: str, samples: int = 16) -> np.ndarray:
-    """Renders an image and returns means of blocks of 4×4 pixels."""
+def picture(scene: bpy.types.Scene, folder: Path, engine: str, samples: int = 16, **changed: Any) -> np.ndarray:
+    """Renders an image and returns means of blocks of 4×4 pixels. `changed` are settings of Gradus."""
     scene.render.engine = engine
     cycles = scene.cycles
     cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = samples, False, False
@@ -24,7 +25,7 @@ def picture(scene: bpy.types.Scene, folder: Path, engine: str, samples: int = 16
         "pixel_filter": "BOX",
         "filter_width": 1.0,
     }
-    image = images.render(scene, folder, **settings)["Combined"][..., :3]
+    image = images.render(scene, folder, **(settings | changed))["Combined"][..., :3]
     return image.reshape(9, 4, 16, 4, 3).mean(axis=(1, 3))
 
 

@@ -27,6 +27,7 @@ class Op(IntEnum):
     METALLIC = 13
     SUBSURFACE = 14
     AOV = 15
+    RAY_PORTAL = 24
     GEOMETRY = 32
     TEX_COORD = 33
     TANGENT = 34
@@ -154,6 +155,7 @@ class LightPath(IntEnum):
     GLOSSY_DEPTH = 10
     TRANSPARENT_DEPTH = 11
     TRANSMISSION_DEPTH = 12
+    PORTAL_DEPTH = 13
 
 
 class NormalSpace(IntEnum):
@@ -401,6 +403,7 @@ INPUTS = {
     Op.METALLIC: 7,
     Op.SUBSURFACE: 7,
     Op.AOV: 2,
+    Op.RAY_PORTAL: 3,
     Op.GEOMETRY: 0,
     Op.TEX_COORD: 0,
     Op.TANGENT: 0,
@@ -474,6 +477,7 @@ OUTPUTS = {
     Op.METALLIC: 1,
     Op.SUBSURFACE: 1,
     Op.AOV: 1,
+    Op.RAY_PORTAL: 1,
     Op.GEOMETRY: 1,
     Op.TEX_COORD: 1,
     Op.TANGENT: 1,

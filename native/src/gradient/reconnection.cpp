@@ -40,6 +40,7 @@ void open_connection(const BasePath& base, const ShiftedEvent& event, const Rgb&
 shading::RayState shared_ray_state(const BasePath& base, const OffsetPath& offset, const path::Vertex& z) {
   shading::RayState ray = base.state.ray.state;
   ray.transparent_depth = offset.connection.transparent_depth;
+  ray.portal_depth = offset.state.ray.state.portal_depth;
   ray.blur = offset.connection.blur;
   ray.length = glm::length(z.point.position - offset.vertex->point.position);
   return ray;

@@ -190,7 +190,7 @@ void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, con
     ambient_occlusion(sampler, weight, vertex);
   }
   mist(weight, vertex.point.position, vertex.point.hit.time);
-  if (1.0f - mean_component(vertex.shade.transparency) < context_.settings.alpha_threshold) {
+  if (1.0f - vertex.shade.passed() < context_.settings.alpha_threshold) {
     return;  // too transparent for data passes
   }
   const geometry::InstanceData& instance = context_.scene.instances[vertex.point.hit.instance];

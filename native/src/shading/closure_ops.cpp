@@ -104,6 +104,18 @@ void add_subsurface_node(const ClosureArgs& args, const ShadeContext& c, ShadeRe
   add_subsurface(s, result, c);
 }
 
+// Adds a portal. A surface has one; of several the last one remains.
+void add_portal(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  const Rgb weight = args.weight * non_negative(args.v(0));
+  if (!(max_component(weight) > kWeightCutoff) || !is_finite(weight)) return;
+  const Vec3 direction = safe_normalize(args.v(2));
+  result->portal.weight = weight;
+  result->portal.direction = direction == Vec3(0.0f) ? -c.wo : direction;
+  result->portal.origin = args.mode == 0 || !c.scene ? c.position : args.v(1) - c.scene->origin;
+  const Vec3 moved = result->portal.origin - c.position;
+  result->portal.is_elsewhere = glm::dot(moved, moved) > 1e-9f;
+}
+
 void add_sheen(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::Sheen, bsdf::LightPass::Diffuse,
                               args.weight * non_negative(args.v(0)), facing_normal(c, args.v(2)));
@@ -221,6 +233,8 @@ void add_closure(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
     case GRADUS_OP_TRANSPARENT:
       add_finite(args.weight * non_negative(args.v(0)), &result->transparency);
       return;
+    case GRADUS_OP_RAY_PORTAL:
+      return add_portal(args, c, result);
     case GRADUS_OP_HOLDOUT:
       result->holdout += args.weight;
       return;

@@ -17,7 +17,7 @@ namespace {
 
 bool is_lobe_op(uint32_t op) {
   return is_closure_op(op) && op != GRADUS_OP_TRANSPARENT && op != GRADUS_OP_HOLDOUT && op != GRADUS_OP_EMISSION &&
-         op != GRADUS_OP_AOV;
+         op != GRADUS_OP_AOV && op != GRADUS_OP_RAY_PORTAL;
 }
 
 // Returns the value of a constant operand, or `unknown` if the operand is computed.
@@ -118,6 +118,7 @@ class Analysis {
 
   void closure(const Instruction& i) {
     m_.has_holdout = m_.has_holdout || i.op == GRADUS_OP_HOLDOUT;
+    m_.has_portal = m_.has_portal || i.op == GRADUS_OP_RAY_PORTAL;
     if (!is_lobe_op(i.op)) return;
     m_.has_bsdf = true;
     m_.bumps_subsurface = m_.bumps_subsurface || bumps_subsurface(i);
@@ -215,8 +216,8 @@ void describe_emission(MaterialData* m, const image::ImageStore& images) {
 }
 
 void describe_transparency(MaterialData* m) {
-  m->may_be_transparent = !m->transparency.empty();
-  if (!m->may_be_transparent || !is_constant(m->transparency, GRADUS_OP_TRANSPARENT)) return;
+  m->may_be_transparent = !m->transparency.empty() || m->has_portal;
+  if (m->transparency.empty() || !is_constant(m->transparency, GRADUS_OP_TRANSPARENT)) return;
   ShadeResult r;
   run_program(m->transparency, ShadeContext(), &r);
   m->transparency_is_constant = true;

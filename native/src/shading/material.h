@@ -30,7 +30,8 @@ struct MaterialData {
   Program aovs;              // program of the outputs to AOVs alone
 
   bool emits = false;
-  bool may_be_transparent = false;  // some light passes straight through
+  bool may_be_transparent = false;  // some light passes straight through, or through a portal
+  bool has_portal = false;
   bool has_holdout = false;
   bool has_bsdf = false;
   bool has_glossy = false;         // some lobe is that of a glossy, metallic or refracting surface, rough or not

@@ -14,7 +14,7 @@ const MaterialData& material_of(const ShadedScene& scene, uint32_t index) {
 
 void clear(ShadeResult* result) {
   result->closures.clear();
-  result->emission = result->transparency = result->holdout = Rgb(0.0f);
+  result->emission = result->transparency = result->holdout = result->portal.weight = Rgb(0.0f);
   result->fallback = result->complete = result->ignores_wo = false;
   if (result->tape) result->tape->clear();
 }
