@@ -1,7 +1,7 @@
-"""Settings of Cycles that have a counterpart here: limits of bounces, exposure and the pixel filter.
+"""Settings of Cycles that have a counterpart here: bounces, caustics, Filter Glossy, exposure and the pixel filter.
 
-A scene that was made for Cycles keeps them, while those of Gradus start at their defaults, which equal Cycles'
-defaults. Clamping is not copied, because it adds bias, and Cycles clamps by default.
+A scene that was made for Cycles keeps them: unless Follow Cycles is off, they stand for those that were never set for
+Gradus. Clamping is neither followed nor copied, because it adds bias, and Cycles clamps by default.
 """
 
 from __future__ import annotations
@@ -16,19 +16,21 @@ SAME_NAME = (
     "glossy_bounces",
     "transmission_bounces",
     "transparent_max_bounces",
+    "blur_glossy",
+    "caustics_reflective",
+    "caustics_refractive",
     "film_exposure",
     "filter_width",
 )
+
+_NAMES = {name: name for name in SAME_NAME} | {"pixel_filter": "pixel_filter_type"}
+"""The name that Cycles has for each setting. The identifiers of pixel filters are the same."""
 
 
 def values(scene: Any) -> dict[str, Any]:
     """Returns values for settings of Gradus from the scene's Cycles settings, or {} if Cycles is disabled."""
     cycles = getattr(scene, "cycles", None)
-    if cycles is None:
-        return {}
-    found = {name: getattr(cycles, name) for name in SAME_NAME}
-    found["pixel_filter"] = cycles.pixel_filter_type  # the same identifiers
-    return found
+    return {} if cycles is None else {ours: getattr(cycles, theirs) for ours, theirs in _NAMES.items()}
 
 
 def copy(scene: Any) -> None:
@@ -47,11 +49,20 @@ def untouched(scene: Any) -> dict[str, Any]:
     }
 
 
-def warnings(scene: Any, given: set[str]) -> list[str]:
+def owner(scene: Any, name: str, is_followed: bool) -> tuple[Any, str]:
+    """Returns what has the value of a setting that renders use: the settings of Gradus or of Cycles, and its name."""
+    cycles = getattr(scene, "cycles", None) if is_followed and name in _NAMES else None
+    if cycles is None or scene.gradus.is_property_set(name):
+        return scene.gradus, name
+    return cycles, _NAMES[name]
+
+
+def warnings(scene: Any, given: set[str], is_followed: bool) -> list[str]:
     """Returns warnings about settings that differ from Cycles. given: settings that the command line sets."""
+    differing = {} if is_followed else untouched(scene)
     listed = ", ".join(
         f"{settings.BY_NAME[name].label} ({name}) {_text(getattr(scene.gradus, name))} instead of {_text(value)}"
-        for name, value in untouched(scene).items()
+        for name, value in differing.items()
         if name not in given
     )
     ignored = ", ".join(_ignored(scene))
@@ -68,9 +79,6 @@ def _ignored(scene: Any) -> list[str]:
     if cycles is None:
         return []
     switches = {
-        "Reflective Caustics off": not cycles.caustics_reflective,
-        "Refractive Caustics off": not cycles.caustics_refractive,
-        "Filter Glossy": cycles.is_property_set("blur_glossy") and cycles.blur_glossy > 0.0,
         "Fast GI Approximation": cycles.use_fast_gi,
         "Rolling Shutter": scene.render.use_motion_blur and cycles.rolling_shutter_type != "NONE",
     }

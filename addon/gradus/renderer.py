@@ -99,7 +99,12 @@ def native_settings(
     """
     result = native.Settings()
     library.settings_default(byref(result))
-    settings.fill(result, scene.gradus, () if is_final else settings.COMPONENT_SETTINGS)
+    is_followed = host_value("use_cycles_settings", scene, overrides)
+    settings.fill(
+        result,
+        lambda name: cycles_settings.owner(scene, name, is_followed),
+        () if is_final else settings.COMPONENT_SETTINGS,
+    )
     if view_layer.samples > 0:
         result.samples = view_layer.samples
     result.frame = scene.frame_current
@@ -192,7 +197,8 @@ class Job:
         if not self.is_preview:
             self.refuse_missing_passes()
         given = {name for name, _ in self.overrides.native}
-        self.warn(cycles_settings.warnings(self.scene, given), changes_picture=False)
+        is_followed = self.host_value("use_cycles_settings")
+        self.warn(cycles_settings.warnings(self.scene, given, is_followed), changes_picture=False)
         self.warn_of_simulations()
         image_settings = self.scene.render.image_settings
         self.warn(output.truncated_names(image_settings, self.layer.name, self.views, self.infos, compat.VERSION))

@@ -168,6 +168,17 @@ ROWS: tuple[dict[str, Any], ...] = (
         soft_maximum=1.0,
     ),
     dict(
+        name="use_cycles_settings",
+        kind="BOOL",
+        default=True,
+        label="Follow Cycles",
+        doc=(
+            "Settings that were never changed here follow those that the scene has for Cycles: bounces, caustics, "
+            "Filter Glossy, exposure and the pixel filter. Off: the defaults of Gradus, without Filter Glossy"
+        ),
+        native=False,
+    ),
+    dict(
         name="max_bounces",
         kind="INT",
         default=12,
@@ -219,6 +230,37 @@ ROWS: tuple[dict[str, Any], ...] = (
         minimum=0,
         maximum=1024,
         soft_maximum=128,
+    ),
+    dict(
+        name="blur_glossy",
+        kind="FLOAT",
+        default=0.0,
+        label="Filter Glossy",
+        doc=(
+            "Blurs reflections and refractions behind bounces that scatter light widely, as Cycles does. It removes"
+            " noise of caustics and softens them. The camera's own view of mirrors and glass stays sharp. Higher "
+            "values blur more; 0 = off"
+        ),
+        minimum=0,
+        maximum=10.0,
+        soft_maximum=10.0,
+    ),
+    dict(
+        name="caustics_reflective",
+        kind="BOOL",
+        default=True,
+        label="Reflective",
+        doc=(
+            "Light that a glossy surface reflects onto a diffuse one. Off: less noise, and caustics of mirrors are "
+            "missing"
+        ),
+    ),
+    dict(
+        name="caustics_refractive",
+        kind="BOOL",
+        default=True,
+        label="Refractive",
+        doc="Light that glass refracts onto a diffuse surface. Off: less noise, and glass casts the shadow of a solid",
     ),
     dict(
         name="clamp_direct",

@@ -5,7 +5,7 @@ The rows are generated in setting_table.py. This module does not use Blender.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -57,11 +57,14 @@ COMPONENT_SETTINGS = frozenset(("use_decomposition", "components", "component_re
 """Settings of final renders only. Previews and the viewport do not decompose the image."""
 
 
-def fill(settings: Any, properties: Any, left_out: Collection[str] = ()) -> None:
-    """Copies the scene's values (attributes of `properties`) into a native.Settings, except those in `left_out`."""
+def fill(settings: Any, owner: Callable[[str], tuple[Any, str]], left_out: Collection[str] = ()) -> None:
+    """Copies the scene's values into a native.Settings, except those in `left_out`.
+
+    owner(name) returns the properties that have the value of a setting, and its name there.
+    """
     for setting in native_settings():
         if setting.name not in left_out:
-            setattr(settings, setting.name, native_value(setting, getattr(properties, setting.name)))
+            setattr(settings, setting.name, native_value(setting, getattr(*owner(setting.name))))
 
 
 def native_value(setting: Setting, value: Any) -> Any:

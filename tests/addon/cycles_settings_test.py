@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 import pytest
-from gradus import cycles_settings
+from gradus import cycles_settings, native, options, renderer, settings
 
 
 @pytest.fixture
@@ -14,34 +14,58 @@ def cycles(scene: bpy.types.Scene) -> bpy.types.Scene:
     return scene
 
 
+def native_settings(scene: bpy.types.Scene) -> native.Settings:
+    return renderer.native_settings(native.load(), scene, scene.view_layers[0], options.current())
+
+
 def test_the_defaults_are_those_of_cycles(cycles: bpy.types.Scene) -> None:
-    assert cycles_settings.warnings(cycles, set()) == []
+    """Filter Glossy differs, because it adds bias."""
+    assert cycles_settings.untouched(cycles) == {"blur_glossy": 1.0}
+
+
+def test_settings_that_were_never_set_follow_cycles(cycles: bpy.types.Scene) -> None:
+    cycles.cycles.diffuse_bounces, cycles.cycles.glossy_bounces, cycles.cycles.caustics_reflective = 1, 7, False
+    cycles.cycles.pixel_filter_type = "GAUSSIAN"
+    cycles.gradus.glossy_bounces = 3
+    found = native_settings(cycles)
+    assert (found.diffuse_bounces, found.glossy_bounces, found.caustics_reflective) == (1, 3, 0)
+    assert found.pixel_filter == settings.BY_NAME["pixel_filter"].value_of("GAUSSIAN")
+    assert found.blur_glossy == 1.0
+    assert cycles_settings.warnings(cycles, set(), is_followed=True) == []
+
+
+def test_settings_do_not_follow_cycles_where_that_is_off(cycles: bpy.types.Scene) -> None:
+    cycles.cycles.diffuse_bounces = 1
+    cycles.gradus.use_cycles_settings = False
+    found = native_settings(cycles)
+    assert (found.diffuse_bounces, found.blur_glossy) == (4, 0.0)
 
 
 def test_differences_from_cycles_are_reported(cycles: bpy.types.Scene) -> None:
     cycles.cycles.diffuse_bounces, cycles.cycles.film_exposure = 1, 2.5
-    [text] = cycles_settings.warnings(cycles, set())
+    [text] = cycles_settings.warnings(cycles, set(), is_followed=False)
     assert "Diffuse (diffuse_bounces) 4 instead of 1" in text and "Exposure (film_exposure) 1 instead of 2.5" in text
     assert (
-        "diffuse_bounces" not in cycles_settings.warnings(cycles, {"diffuse_bounces"})[0]
+        "diffuse_bounces" not in cycles_settings.warnings(cycles, {"diffuse_bounces"}, is_followed=False)[0]
     )  # because the command line sets it
 
 
 def test_settings_that_the_user_has_set_are_not_reported(cycles: bpy.types.Scene) -> None:
     cycles.cycles.glossy_bounces = 7
-    cycles.gradus.glossy_bounces = 3
-    assert cycles_settings.warnings(cycles, set()) == []
+    cycles.gradus.glossy_bounces, cycles.gradus.blur_glossy = 3, 0.0
+    assert cycles_settings.warnings(cycles, set(), is_followed=False) == []
 
 
 def test_settings_without_a_counterpart_are_named(cycles: bpy.types.Scene) -> None:
-    cycles.cycles.caustics_reflective, cycles.cycles.use_fast_gi = False, True
-    [text] = cycles_settings.warnings(cycles, set())
-    assert text.endswith("does not have: Reflective Caustics off, Fast GI Approximation")
+    cycles.cycles.use_fast_gi = True
+    [text] = cycles_settings.warnings(cycles, set(), is_followed=True)
+    assert text.endswith("does not have: Fast GI Approximation")
 
 
 def test_copy_from_cycles(cycles: bpy.types.Scene) -> None:
     cycles.cycles.max_bounces, cycles.cycles.transparent_max_bounces = 5, 64
     cycles.cycles.pixel_filter_type, cycles.cycles.filter_width = "GAUSSIAN", 2.0
+    cycles.cycles.caustics_refractive = False
     with bpy.context.temp_override(scene=cycles):
         bpy.ops.gradus.copy_from_cycles()
     ours = cycles.gradus
@@ -51,4 +75,5 @@ def test_copy_from_cycles(cycles: bpy.types.Scene) -> None:
         "GAUSSIAN",
         2.0,
     )
-    assert cycles_settings.warnings(cycles, set()) == []
+    assert (ours.blur_glossy, ours.caustics_refractive) == (1.0, False)
+    assert cycles_settings.warnings(cycles, set(), is_followed=False) == []

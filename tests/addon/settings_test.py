@@ -67,7 +67,8 @@ def test_defaults_of_the_library_are_ours() -> None:
     library = native.load()
     library.settings_default(byref(theirs))
     library.settings_default(byref(ours))
-    settings.fill(ours, bpy.data.scenes.new("fresh").gradus)
+    fresh = bpy.data.scenes.new("fresh").gradus
+    settings.fill(ours, lambda name: (fresh, name))
     for name, _ in native.Settings._fields_:
         first, second = getattr(ours, name), getattr(theirs, name)
         if isinstance(first, ctypes.Array):

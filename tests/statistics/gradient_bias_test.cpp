@@ -92,5 +92,42 @@ TEST(B7_LimitOfTransparentSurfaces, AppliesToLightsThatSharedRaysMeet) {
   check_difference(&scene, one_veil_only(), 512);
 }
 
+// Adds a glossy floor, whose left half is also matte, below two metal walls and a lamp. Behind the floor, walls are
+// blurred, and the blurs of the paths of two pixels often differ.
+void add_metal_walls(PathScene* scene) {
+  Surface left = test::matte(Rgb(0.3f)), right, metal, light;
+  left.glossy = right.glossy = Rgb(0.6f);
+  left.glossy_roughness = right.glossy_roughness = 0.35f;
+  metal.glossy = Rgb(0.9f);
+  metal.glossy_roughness = 0.25f;
+  light.emission = Rgb(10.0f);
+  const uint64_t walls = scene->material(metal);
+  scene->quad(Vec3(-1, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -2), scene->material(left));
+  scene->quad(Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -2), scene->material(right));
+  scene->quad(Vec3(-1, -1, -0.7f), Vec3(2, 0, 0), Vec3(0, 3, 0), walls);
+  scene->quad(Vec3(-1, -1, 0.7f), Vec3(2, 0, 0), Vec3(0, 3, 0), walls);
+  scene->quad(Vec3(-0.5f, 1.8f, -0.5f), Vec3(1, 0, 0), Vec3(0, 0, 1), scene->material(light));
+  scene->camera(Vec3(0, 0.6f, 0.6f), Vec3(0), 0.8f);
+}
+
+// Each path is shaded with blurs of its own, and a shift ends where they differ behind the joint.
+TEST(B7_FilterGlossy, IsThatOfEachPath) {
+  PathScene scene;
+  add_metal_walls(&scene);
+  GradusSettings settings = test::test_settings(2, 1);
+  settings.max_bounces = 3;
+  settings.blur_glossy = 1.0f;
+  check_difference(&scene, settings, 4096);
+}
+
+TEST(B7_Caustics, AreLeftOutOfBothPaths) {
+  PathScene scene;
+  add_metal_walls(&scene);
+  GradusSettings settings = test::test_settings(2, 1);
+  settings.max_bounces = 3;
+  settings.caustics_reflective = 0;
+  check_difference(&scene, settings, 512);
+}
+
 }  // namespace
 }  // namespace gradus::gradient_bias_test

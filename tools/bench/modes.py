@@ -19,7 +19,8 @@ class Mode:
 
 
 def _gradus(integrator: str, reconstruction: str, denoiser: str = "NONE") -> dict[str, Any]:
-    return {"integrator": integrator, "reconstruction": reconstruction, "denoiser": denoiser}
+    chosen = {"integrator": integrator, "reconstruction": reconstruction, "denoiser": denoiser}
+    return chosen | {"blur_glossy": 0.0}
 
 
 # Cycles samples as Gradus does: with its light tree, but without guiding, clamps, filter glossy and adaptive sampling.

@@ -33,6 +33,7 @@ _LIGHT_PATH = {
     "Glossy Depth": LightPath.GLOSSY_DEPTH,
     "Transparent Depth": LightPath.TRANSPARENT_DEPTH,
     "Transmission Depth": LightPath.TRANSMISSION_DEPTH,
+    "Portal Depth": LightPath.PORTAL_DEPTH,
 }
 _TEX_COORD = {
     "Generated": TexCoord.GENERATED,

@@ -28,6 +28,7 @@ class Op(IntEnum):
     SUBSURFACE = 14
     AOV = 15
     TOON = 16
+    RAY_PORTAL = 24
     GEOMETRY = 32
     TEX_COORD = 33
     TANGENT = 34
@@ -159,6 +160,7 @@ class LightPath(IntEnum):
     GLOSSY_DEPTH = 10
     TRANSPARENT_DEPTH = 11
     TRANSMISSION_DEPTH = 12
+    PORTAL_DEPTH = 13
 
 
 class NormalSpace(IntEnum):
@@ -407,6 +409,7 @@ INPUTS = {
     Op.SUBSURFACE: 7,
     Op.AOV: 2,
     Op.TOON: 4,
+    Op.RAY_PORTAL: 3,
     Op.GEOMETRY: 0,
     Op.TEX_COORD: 0,
     Op.TANGENT: 0,
@@ -483,6 +486,7 @@ OUTPUTS = {
     Op.SUBSURFACE: 1,
     Op.AOV: 1,
     Op.TOON: 1,
+    Op.RAY_PORTAL: 1,
     Op.GEOMETRY: 1,
     Op.TEX_COORD: 1,
     Op.TANGENT: 1,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .node import NodeView, translator
 from .ops import Distribution, Op, Subsurface
-from .program import BLACK_CLOSURE, Value, constant_float
+from .program import BLACK_CLOSURE, NO_NORMAL, Value, constant_float
 
 _DISTRIBUTIONS = {
     "GGX": Distribution.SINGLE,
@@ -155,6 +155,13 @@ def toon(view: NodeView) -> Value:
 @translator("ShaderNodeBsdfTransparent")
 def transparent(view: NodeView) -> Value:
     return view.add_closure(Op.TRANSPARENT, (view.value("Color"),))
+
+
+@translator("ShaderNodeBsdfRayPortal")
+def ray_portal(view: NodeView) -> Value:
+    position = view.linked("Position")
+    inputs = (view.value("Color"), position or NO_NORMAL, view.value("Direction"))
+    return view.add_closure(Op.RAY_PORTAL, inputs, 0 if position is None else 1)
 
 
 @translator("ShaderNodeHoldout")

@@ -9,6 +9,7 @@ from typing import Any
 import bpy
 
 from .. import automatic, cycles_settings, store
+from .. import settings as setting_rows
 from .base import RenderPanel
 from .presets import GRADUS_PT_presets
 
@@ -110,6 +111,12 @@ BOUNCE_LIMITS = (
 )
 
 
+def shared_prop(layout: Any, scene: Any, name: str) -> None:
+    """Shows a setting that may be that of Cycles, with the label that Gradus has for it."""
+    owner, key = cycles_settings.owner(scene, name, scene.gradus.use_cycles_settings)
+    layout.prop(owner, key, text=setting_rows.BY_NAME[name].label)
+
+
 class GRADUS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
     bl_label = "Light Paths"
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
@@ -118,16 +125,21 @@ class GRADUS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
         layout, settings = self.columns(), context.scene.gradus
         column = layout.column(align=True, heading="Max Bounces")
         for name in BOUNCE_LIMITS:
-            column.prop(settings, name)
+            shared_prop(column, context.scene, name)
         column = layout.column(align=True, heading="Clamping")
         column.prop(settings, "clamp_direct")
         column.prop(settings, "clamp_indirect")
+        shared_prop(layout, context.scene, "blur_glossy")
+        column = layout.column(align=True, heading="Caustics")
+        for name in ("caustics_reflective", "caustics_refractive"):
+            shared_prop(column, context.scene, name)
         if cycles_settings.values(context.scene):
+            layout.prop(settings, "use_cycles_settings")
             layout.operator("gradus.copy_from_cycles")
 
 
 class GRADUS_OT_copy_from_cycles(bpy.types.Operator):
-    """Copy the limits of bounces, the exposure and the pixel filter from the Cycles settings of this scene"""
+    """Copy bounces, caustics, Filter Glossy, exposure and the pixel filter from the Cycles settings of this scene"""
 
     bl_idname = "gradus.copy_from_cycles"
     bl_label = "Copy from Cycles"
@@ -143,12 +155,12 @@ class GRADUS_RENDER_PT_film(RenderPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
 
     def draw(self, context: Any) -> None:
-        layout, settings = self.columns(), context.scene.gradus
-        layout.prop(settings, "film_exposure")
+        layout = self.columns()
+        shared_prop(layout, context.scene, "film_exposure")
         layout.prop(context.scene.render, "film_transparent", text="Transparent")
         column = layout.column(align=True)
-        column.prop(settings, "pixel_filter")
-        column.prop(settings, "filter_width")
+        shared_prop(column, context.scene, "pixel_filter")
+        shared_prop(column, context.scene, "filter_width")
 
 
 class GRADUS_RENDER_PT_performance(RenderPanel, bpy.types.Panel):

@@ -600,6 +600,13 @@ typedef struct GradusSettings {
                                        glass turns dark. */
   uint32_t transparent_max_bounces; /* Maximum transparent surfaces that a ray passes. Fewer render faster; layers of
                                        transparent leaves turn dark. */
+  float blur_glossy;                /* Blurs reflections and refractions behind bounces that scatter light widely, as
+                                       Cycles does. It removes noise of caustics and softens them. The camera's own
+                                       view of mirrors and glass stays sharp. Higher values blur more; 0 = off. */
+  uint32_t caustics_reflective;     /* Light that a glossy surface reflects onto a diffuse one. Off: less noise, and
+                                       caustics of mirrors are missing. */
+  uint32_t caustics_refractive;     /* Light that glass refracts onto a diffuse surface. Off: less noise, and glass
+                                       casts the shadow of a solid. */
   float clamp_direct;               /* Maximum radiance that a sample adds by direct light. It removes fireflies and
                                        darkens the picture, since clamping is biased. 0 = off. */
   float clamp_indirect;             /* Maximum radiance that a sample adds by indirect light. It removes fireflies

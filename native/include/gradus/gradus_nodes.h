@@ -56,6 +56,8 @@
  *                       nothing. Mode: index of the channel.
  *   TOON              color, size, smooth, normal -> closure: A cone of light with a hard or linear edge. Mode: 0:
  *                       around the normal; 1: around the mirror direction.
+ *   RAY_PORTAL        color, position, direction -> closure: Continues rays at another place; a direction of 0 is that
+ *                       of the ray. Mode: 1: at the position of the input instead of the surface's own.
  *
  * What is known at the point.
  *   GEOMETRY          - -> value: A quantity of the surface point. Mode: GradusGeometryMode.
@@ -173,6 +175,7 @@
   X(SUBSURFACE, 14, 7, 1, 1) \
   X(AOV, 15, 2, 1, 1) \
   X(TOON, 16, 4, 1, 1) \
+  X(RAY_PORTAL, 24, 3, 1, 1) \
   X(GEOMETRY, 32, 0, 1, 0) \
   X(TEX_COORD, 33, 0, 1, 0) \
   X(TANGENT, 34, 0, 1, 0) \
@@ -294,19 +297,20 @@ typedef enum GradusTangentMode {
 
 /* Property of a ray. */
 typedef enum GradusLightPathMode {
-  GRADUS_LIGHT_PATH_CAMERA = 0,             /* 1 for a camera ray. */
-  GRADUS_LIGHT_PATH_SHADOW = 1,             /* 1 for a shadow ray. */
-  GRADUS_LIGHT_PATH_DIFFUSE = 2,            /* 1 for a diffusely scattered ray. */
-  GRADUS_LIGHT_PATH_GLOSSY = 3,             /* 1 for a glossily reflected ray. */
-  GRADUS_LIGHT_PATH_SINGULAR = 4,           /* 1 for a ray after perfectly specular scattering. */
-  GRADUS_LIGHT_PATH_REFLECTION = 5,         /* 1 for a reflected ray. */
-  GRADUS_LIGHT_PATH_TRANSMISSION = 6,       /* 1 for a transmitted ray. */
-  GRADUS_LIGHT_PATH_LENGTH = 7,             /* Length of the ray in metres. */
-  GRADUS_LIGHT_PATH_DEPTH = 8,              /* Number of bounces. */
-  GRADUS_LIGHT_PATH_DIFFUSE_DEPTH = 9,      /* Number of diffuse bounces. */
-  GRADUS_LIGHT_PATH_GLOSSY_DEPTH = 10,      /* Number of glossy bounces. */
-  GRADUS_LIGHT_PATH_TRANSPARENT_DEPTH = 11, /* Number of transparent surfaces passed. */
-  GRADUS_LIGHT_PATH_TRANSMISSION_DEPTH = 12 /* Number of transmission bounces. */
+  GRADUS_LIGHT_PATH_CAMERA = 0,              /* 1 for a camera ray. */
+  GRADUS_LIGHT_PATH_SHADOW = 1,              /* 1 for a shadow ray. */
+  GRADUS_LIGHT_PATH_DIFFUSE = 2,             /* 1 for a diffusely scattered ray. */
+  GRADUS_LIGHT_PATH_GLOSSY = 3,              /* 1 for a glossily reflected ray. */
+  GRADUS_LIGHT_PATH_SINGULAR = 4,            /* 1 for a ray after perfectly specular scattering. */
+  GRADUS_LIGHT_PATH_REFLECTION = 5,          /* 1 for a reflected ray. */
+  GRADUS_LIGHT_PATH_TRANSMISSION = 6,        /* 1 for a transmitted ray. */
+  GRADUS_LIGHT_PATH_LENGTH = 7,              /* Length of the ray in metres. */
+  GRADUS_LIGHT_PATH_DEPTH = 8,               /* Number of bounces. */
+  GRADUS_LIGHT_PATH_DIFFUSE_DEPTH = 9,       /* Number of diffuse bounces. */
+  GRADUS_LIGHT_PATH_GLOSSY_DEPTH = 10,       /* Number of glossy bounces. */
+  GRADUS_LIGHT_PATH_TRANSPARENT_DEPTH = 11,  /* Number of transparent surfaces passed. */
+  GRADUS_LIGHT_PATH_TRANSMISSION_DEPTH = 12, /* Number of transmission bounces. */
+  GRADUS_LIGHT_PATH_PORTAL_DEPTH = 13        /* Number of ray portals passed. */
 } GradusLightPathMode;
 
 /* Space of a normal map. */

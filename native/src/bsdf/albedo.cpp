@@ -136,7 +136,7 @@ Rgb multiscatter_energy(const Lobe& lobe, float cosine) {
   const float alpha = mean_alpha(lobe);
   if (sides_of(lobe.type) & kTransmits) {
     const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
-    const bool alone = sides_of(lobe.type) == kTransmits;
+    const bool alone = sides_of(lobe.type) == kTransmits && lobe.fresnel == FresnelType::None;
     const float single = std::clamp(alone ? glass.crossing : glass.reflected + glass.transmitted, 0.3f, 1.0f);
     const Rgb color = glm::clamp(lobe.f90 * lobe.transmission_tint, 0.0f, 1.0f);
     if (alone || color == Rgb(1.0f)) {

@@ -49,6 +49,18 @@ void limit_microfacets(Lobe* lobe) {
   }
 }
 
+// Raises the alphas of a prepared microfacet lobe to `blur`; `rough` is its type before it was prepared. Without a step
+// in the IOR nothing bends light, so that a lobe that transmits stays as it is.
+void blur_lobe(float blur, LobeType rough, Lobe* lobe) {
+  const bool stepless = lobe->ior == 1.0f && sides_of(lobe->type) & kTransmits;
+  if (!is_microfacet(lobe->type) || lobe->keeps_alpha || stepless) {
+    return;
+  }
+  lobe->type = rough;
+  lobe->alpha_x = std::max(lobe->alpha_x, blur);
+  lobe->alpha_y = std::max(lobe->alpha_y, blur);
+}
+
 // Returns the smaller alpha of a lobe, which is compared with the roughness threshold.
 float sharpness(const Lobe& lobe) { return is_microfacet(lobe.type) ? std::min(lobe.alpha_x, lobe.alpha_y) : 1.0f; }
 
@@ -102,7 +114,8 @@ void Closures::drop_black_lobes() {
 void Closures::keep_originals() {
   for (; prepared_ < count_; prepared_++) {
     const Lobe& lobe = lobes_[static_cast<size_t>(prepared_)];
-    original_[static_cast<size_t>(prepared_)] = {lobe.type, lobe.normal, lobe.ior, lobe.film.ior};
+    original_[static_cast<size_t>(prepared_)] = {lobe.type,     lobe.normal,  lobe.ior,
+                                                 lobe.film.ior, lobe.alpha_x, lobe.alpha_y};
   }
 }
 
@@ -154,7 +167,12 @@ void Closures::prepare(int index, const Vec3& wo) {
   lobe.normal = original.normal;
   lobe.ior = original.ior;
   lobe.film.ior = original.film_ior;
+  lobe.alpha_x = original.alpha_x;
+  lobe.alpha_y = original.alpha_y;
   prepare_lobe(&lobe, geometric_normal_, wo);
+  if (blur_ > 0.0f) {
+    blur_lobe(blur_, original.type, &lobe);
+  }
 }
 
 void Closures::add_entry(int lobe, uint8_t sides, ScatterClass c, float weight) {
@@ -240,9 +258,10 @@ void Closures::finish_lambert() {
 }
 
 void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold,
-                      const Vec3& smooth_normal) {
+                      const Vec3& smooth_normal, float blur) {
   geometric_normal_ = geometric_normal;
   smooth_normal_ = smooth_normal;
+  blur_ = blur;
   entry_count_.fill(0);
   dirac_count_.fill(0);
   has_smooth_.fill(false);

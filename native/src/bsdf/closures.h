@@ -141,6 +141,7 @@ struct Lobe {
   LightPass pass = LightPass::Diffuse;
   bool separable_masking = false;  // masks both directions of a microfacet independently, as Blender before 4.0
   bool multiscatter = false;       // adds the energy that single scattering loses
+  bool keeps_alpha = false;        // finish() does not blur the lobe
   SubsurfaceMethod subsurface = SubsurfaceMethod::Disk;
   DisneyPart disney = DisneyPart::All;
   Rgb weight = Rgb(0.0f);        // throughput of the node graph times colour
@@ -200,9 +201,10 @@ class Closures {
   // weights. `wo` and `geometric_normal` are in world space, the normal on the side of wo. All functions below require
   // the wo of the last finish(); call it again for another wo, as shifted paths do. `smooth_normal` is the interpolated
   // normal without bumps, on the side of wo, or 0 for none. Diffuse lobes with another normal darken gradually where
-  // the surface faces away.
+  // the surface faces away. `blur` is the minimum alpha of microfacet lobes; as in Cycles, they keep the energy that
+  // they have without it.
   void finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold,
-              const Vec3& smooth_normal = Vec3(0.0f));
+              const Vec3& smooth_normal = Vec3(0.0f), float blur = 0.0f);
 
   // Sets the factor of angles in the cosine of reflection, at least 1 (shading_normal.h). finish() does not change it.
   void set_terminator_frequency(float frequency) { terminator_frequency_ = frequency; }
@@ -232,6 +234,8 @@ class Closures {
   // Chooses a lobe of class Subsurface by u in [0, 1). Returns its index, and its probability within the class.
   int choose_subsurface(float u, float* probability) const;
 
+  // Returns the density of a direction among all smooth lobes, whatever their class.
+  float direction_pdf(const Vec3& wo, const Vec3& wi) const;
   // Returns the sum of all smooth lobes of one class.
   BsdfEval evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const;
   // Returns that sum, and separately the sum of the lobes whose bounces are diffuse, or not, as `diffuse` says.
@@ -269,6 +273,7 @@ class Closures {
     Vec3 normal;
     float ior;
     float film_ior;
+    float alpha_x, alpha_y;
   };
   void make_room();
   void drop_black_lobes();
@@ -299,6 +304,7 @@ class Closures {
   Vec3 geometric_normal_ = Vec3(0, 0, 1);
   Vec3 smooth_normal_ = Vec3(0.0f);
   float terminator_frequency_ = 1.0f;
+  float blur_ = 0.0f;
 };
 
 // Returns whether a lobe scatters within a class. Glass belongs to reflection and transmission.

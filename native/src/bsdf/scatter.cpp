@@ -106,6 +106,17 @@ BsdfEval Closures::evaluate_side(ScatterClass c, const Vec3& wo, const Vec3& wi,
   return sum;
 }
 
+float Closures::direction_pdf(const Vec3& wo, const Vec3& wi) const {
+  float pdf = 0.0f;
+  for (int c = 0; c < kPathEvents; c++) {
+    const auto k = static_cast<ScatterClass>(c);
+    if (has_smooth(k)) {
+      pdf += class_probability(k) * evaluate(k, wo, wi).pdf;
+    }
+  }
+  return pdf;
+}
+
 BsdfEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const {
   return evaluate_side(c, wo, wi, crosses(wi));
 }

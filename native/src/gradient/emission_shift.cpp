@@ -23,10 +23,10 @@ Radiance evaluate_own_emission(const BasePath& base, OffsetPath* offset) {
   }
   offset->state.throughput *= o.segment->weight;
   const float opaque = mean_component(o.state.throughput);
+  const path::RaySource seen_from = o.segment->passes_portal ? path::RaySource{} : o.source();
   if (o.segment->end == path::SegmentEnd::Escaped) {
     const bool shows_through = o.is_from_camera && context.settings.film_transparent != 0;
-    emission +=
-        Radiance(path::world_contribution(context, o.source(), o.state).clamped, shows_through ? -opaque : 0.0f);
+    emission += Radiance(path::world_contribution(context, seen_from, o.state).clamped, shows_through ? -opaque : 0.0f);
   } else if (o.segment->end == path::SegmentEnd::Surface) {
     const shading::ShadeResult& shade = o.vertex->shade;
     if (o.is_from_camera && path::cuts_hole(context, *o.vertex)) {
@@ -36,7 +36,7 @@ Radiance evaluate_own_emission(const BasePath& base, OffsetPath* offset) {
     if (is_black(shade.emission)) {
       return emission - Radiance(0.0f, 0.0f, 0.0f, held_out);
     }
-    emission += Radiance(path::emission_contribution(context, o.source(), o.state, *o.vertex).clamped, -held_out);
+    emission += Radiance(path::emission_contribution(context, seen_from, o.state, *o.vertex).clamped, -held_out);
   }
   return emission;
 }

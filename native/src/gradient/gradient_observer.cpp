@@ -97,6 +97,9 @@ void GradientObserver::copy_specular_events(const path::RaySource& source) {
   }
 }
 
+// Pending offsets cannot connect to what the base has found behind a portal. The inverse shift never needs to, because
+// a connection is straight.
+//
 // An offset that has passed more transparent surfaces than its base may reach their limit on the shared segments. So
 // may the base in the inverse shift.
 void GradientObserver::on_segment_passed(const path::Segment& segment) {
@@ -105,6 +108,9 @@ void GradientObserver::on_segment_passed(const path::Segment& segment) {
     return;
   }
   for (OffsetPath& o : offsets_) {
+    if (segment.passes_portal && o.stage == OffsetStage::Pending) {
+      fail(ShiftFailure::Class, &o);
+    }
     if (!shares_segments(o.stage)) {
       continue;
     }
@@ -149,6 +155,8 @@ void GradientObserver::on_light_crossing(const path::RaySource& source, const pa
     } else if (shares_segments(o.stage)) {
       accumulator_.add(k, c,
                        share_emission(base_, source, c, crossing.weight, weights_jointly(base_, base_view, o), o));
+    } else if (o.stage == OffsetStage::Pending && crossing.is_behind_portal) {
+      accumulator_.add(k, c, unpaired());
     } else if (o.stage == OffsetStage::Pending) {
       const light::LightEvaluation view =
           path::evaluate_crossing(context_, crossing.point, path::receiver_of(*o.vertex), state);
@@ -517,6 +525,8 @@ void GradientObserver::reconnect(OffsetPath* offset, const path::Vertex& vertex,
 void GradientObserver::share_rest(OffsetPath* offset) {
   if (!(offset->ratio > 0.0f) || !is_finite(offset->ratio)) {
     fail(ShiftFailure::Jacobian, offset);
+  } else if (!offset->blurs_alike) {
+    fail(ShiftFailure::Class, offset);
   } else if (offset->state.ray.state.transparent_depth > base_.state.ray.state.transparent_depth) {
     offset->stage = OffsetStage::Deeper;
   } else {

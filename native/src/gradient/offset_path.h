@@ -65,6 +65,7 @@ struct OffsetConnection {
   float ratio = 0.0f;              // ratio on arrival at x_{i+1}
   float kind_ratio = 0.0f;         // factor of the ratio for all but the emission of x_{i+1} (ShiftedEvent::kind_ratio)
   uint16_t transparent_depth = 0;  // number of transparent surfaces that the offset has passed on arrival
+  float blur = 0.0f;               // blur of the lobes at x_{i+1} (path/filter_glossy.h)
   float pdf = 0.0f;                // density of the direction to x_{i+1} at y_i
 };
 
@@ -94,6 +95,7 @@ struct OffsetPath {
   // instead of the class (decoupling.h).
   bool copies_class_choice = false;
   float shared_pdf = 0.0f;
+  bool blurs_alike = true;  // behind x_{i+1} both paths have the same blur
   OffsetConnection connection;
   OffsetLightSample light;
   // The offset's latest vertex, the one before, and x_{i+1} as seen from y_i. Usually these are elements of `storage`.

@@ -1,5 +1,7 @@
 #include "gradient/offset_rays.h"
 
+#include <algorithm>
+
 #include "base/fault.h"
 
 namespace gradus::gradient {
@@ -75,12 +77,16 @@ void trace_camera_rays(const BasePath& base, const integrator::PixelSample& samp
   }
 }
 
-// The new ray has the ray state of the base's, except for the count of transparent surfaces.
+// The new ray has the ray state of the base's, except for the counts of transparent surfaces and portals and the blur.
 void leave_by_event(const BasePath& base, const ShiftedEvent& event, bool is_dirac, OffsetPath* offset) {
   path::PathState& state = offset->state;
-  const uint16_t transparent_depth = state.ray.state.transparent_depth;
+  const shading::RayState before = state.ray.state;
+  const path::Vertex& y = *offset->vertex;
+  const float blur = is_dirac ? 0.0f : base.context.filter_glossy.blur_behind(y.shade.closures, y.wo, event.wi);
   state.ray = base.state.ray;
-  state.ray.state.transparent_depth = transparent_depth;
+  state.ray.state.transparent_depth = before.transparent_depth;
+  state.ray.state.portal_depth = before.portal_depth;
+  state.ray.state.blur = std::max(before.blur, blur);
   state.ray.ray = path::spawn_ray(offset->vertex->point, event.wi);
   state.depth = base.state.depth;
   state.lpe_state = base.state.lpe_state;
@@ -117,6 +123,9 @@ ShiftFailure trace_to_own_vertex(const BasePath& base, const ShiftedEvent& event
                       &offset->own_segment);
   if (offset->segment->end != path::SegmentEnd::Surface) {
     return ShiftFailure::Missed;
+  }
+  if (offset->segment->passes_portal) {
+    return ShiftFailure::Class;  // pending offsets of a base that passes a portal fail, too
   }
   offset->state.throughput *= offset->segment->weight;
   return ShiftFailure::None;

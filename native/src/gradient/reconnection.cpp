@@ -1,5 +1,6 @@
 #include "gradient/reconnection.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -29,6 +30,9 @@ void open_connection(const BasePath& base, const ShiftedEvent& event, const Rgb&
   connection.ratio = offset->ratio * event.ratio;
   connection.kind_ratio = event.kind_ratio;
   connection.pdf = event.pdf;
+  const path::Vertex& y = *offset->vertex;
+  connection.blur =
+      std::max(offset->state.ray.state.blur, base.context.filter_glossy.blur_behind(y.shade.closures, y.wo, event.wi));
   offset->shared_vertex->wo = -event.wi;
 }
 
@@ -36,6 +40,8 @@ void open_connection(const BasePath& base, const ShiftedEvent& event, const Rgb&
 shading::RayState shared_ray_state(const BasePath& base, const OffsetPath& offset, const path::Vertex& z) {
   shading::RayState ray = base.state.ray.state;
   ray.transparent_depth = offset.connection.transparent_depth;
+  ray.portal_depth = offset.state.ray.state.portal_depth;
+  ray.blur = offset.connection.blur;
   ray.length = glm::length(z.point.position - offset.vertex->point.position);
   return ray;
 }
@@ -58,6 +64,13 @@ ShiftedEvent shared_event(const BasePath& base, const path::Vertex& z, const pat
   same.pdf = event.pdf;
   same.ratio = 1.0f;
   return same;
+}
+
+// Returns the blur of the base's event at the shared vertex, as seen from the offset.
+float shared_blur(const BasePath& base, const path::ScatterEvent& event, const OffsetPath& offset, const Vec3& wi) {
+  if (offset.connection.scatters_alike || event.sample.dirac) return event.blur;
+  const path::Vertex& z = *offset.shared_vertex;
+  return base.context.filter_glossy.blur_behind(z.shade.closures, z.wo, wi);
 }
 
 }  // namespace
@@ -165,6 +178,8 @@ ShiftFailure reconnect_at(const BasePath& base, const path::Vertex& z, const pat
   offset->ratio = connection.ratio * connection.kind_ratio * shifted.ratio;
   offset->kind_ratio = shifted.kind_ratio;
   offset->shared_pdf = shifted.pdf;
+  offset->blurs_alike = std::max(connection.blur, shared_blur(base, event, *offset, shifted.wi)) ==
+                        std::max(base.state.ray.state.blur, event.blur);
   return ShiftFailure::None;
 }
 
@@ -173,6 +188,7 @@ void share_vertex(const BasePath& base, const path::Vertex& z, OffsetPath* offse
   offset->advance_to_shared_vertex();
   offset->state.throughput = offset->connection.throughput;
   offset->state.ray.state.transparent_depth = offset->connection.transparent_depth;
+  offset->state.ray.state.blur = offset->connection.blur;
   offset->ratio = offset->connection.ratio;
   offset->kind_ratio = offset->connection.kind_ratio;
   offset->copies_class_choice = false;

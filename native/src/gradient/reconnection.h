@@ -1,7 +1,9 @@
 // Reconnection: the offset path joins its base path at the base's next vertex (Manzi 2016, section 5.4.2, step 3).
 //
 // It is the shift of events of class D at x_i and y_i whose successor x_{i+1} scatters in class D, emits light, or has
-// a specular lobe that looks the same from both vertices. From x_{i+1} on both paths share all vertices.
+// a specular lobe that looks the same from both vertices. From x_{i+1} on both paths share all vertices. Where the
+// blurs of Filter Glossy behind x_{i+1} differ, they share that vertex, its light samples and the emission on the next
+// segment, and the shift ends there.
 #pragma once
 
 #include "gradient/base_path.h"

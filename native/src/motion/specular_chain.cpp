@@ -102,7 +102,7 @@ float ChainTracer::scatter(const path::Vertex& vertex, bsdf::ScatterClass event,
   if (!(scattering.strength > 0.0f) || crosses != transmitted) return 0.0f;
   ray->ray = path::spawn_ray(vertex.point, scattering.wi);
   ray->visibility = path::bounce_visibility(scattering.pass, transmitted);
-  ray->state = path::next_ray_state(ray->state, false, transmitted, true);
+  ray->state = path::next_ray_state(ray->state, false, transmitted, true, 0u);
   return scattering.strength;
 }
 

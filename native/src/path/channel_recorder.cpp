@@ -39,10 +39,9 @@ void ChannelRecorder::visit(const Vertex& vertex, const shading::RayState& ray, 
   if (!visits_surfaces_) return;
   if (!aovs_done_) {
     add(shading::shade_aovs(context_.scene, vertex.point, vertex.wo, ray));
-    aovs_done_ = 1.0f - mean_component(vertex.shade.transparency) >= context_.settings.alpha_threshold;
+    aovs_done_ = 1.0f - vertex.shade.passed() >= context_.settings.alpha_threshold;
   }
-  if (has_identifiers_)
-    add_identifiers(vertex, mean_component(weight) * (1.0f - mean_component(vertex.shade.transparency)));
+  if (has_identifiers_) add_identifiers(vertex, mean_component(weight) * (1.0f - vertex.shade.passed()));
 }
 
 void ChannelRecorder::add_identifiers(const Vertex& vertex, float weight) {

@@ -28,6 +28,15 @@ bool finds_kinds_matter(const scene::Snapshot& scene) {
           }));
 }
 
+// Returns the flags of rays behind a diffuse bounce. Caustics that no lobe makes need no flag.
+uint32_t flags_of_diffuse_rays(const scene::Snapshot& scene, const GradusSettings& settings) {
+  uint32_t flags = shading::kRayDiffuse | shading::kRayDiffuseAncestor;
+  if (!scene.features.has_glossy) return flags;
+  flags |= settings.caustics_reflective != 0 ? 0u : shading::kRayWithoutReflections;
+  flags |= settings.caustics_refractive != 0 ? 0u : shading::kRayWithoutRefractions;
+  return flags;
+}
+
 bool has_uniform_visibility(const scene::Snapshot& scene) {
   constexpr uint32_t bounces = kAllBounces | GRADUS_VISIBLE_SHADOW;
   for (const geometry::InstanceData& instance : scene.instances) {
@@ -57,7 +66,11 @@ PathContext::PathContext(const scene::Snapshot& snapshot, const camera::Camera& 
       clamp_indirect(sum_limit(settings_.clamp_indirect)),
       has_transparency(finds_transparency(snapshot)),
       uniform_visibility(has_uniform_visibility(snapshot)),
-      kinds_matter(finds_kinds_matter(snapshot)) {}
+      kinds_matter(finds_kinds_matter(snapshot)),
+      diffuse_flags(flags_of_diffuse_rays(snapshot, settings_)),
+      filter_glossy(snapshot.features.min_alpha < FilterGlossy::kMaxBlur ? settings_.blur_glossy : 0.0f) {
+  kinds_matter |= (diffuse_flags & (shading::kRayWithoutReflections | shading::kRayWithoutRefractions)) != 0;
+}
 
 camera::CameraSample camera_sample(const PathContext& context, const Sampler& sampler, const Vec2& film) {
   camera::CameraSample sample{film};

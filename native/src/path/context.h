@@ -6,6 +6,7 @@
 #include "film/film.h"
 #include "gradus/gradus.h"
 #include "lpe/components.h"
+#include "path/filter_glossy.h"
 #include "path/sampler.h"
 #include "scene/snapshot.h"
 
@@ -32,8 +33,11 @@ struct PathContext {
   // stand for a path segment.
   bool uniform_visibility = true;
   // What a ray finds depends on the kind of the bounce that it comes from, because of visibility flags, or of a Light
-  // Path node in front of an emission or a transparency.
+  // Path node in front of an emission or a transparency, or because caustics are off.
   bool kinds_matter = false;
+  // RayFlag bits of a ray behind a diffuse bounce. They leave caustics out where those are switched off.
+  uint32_t diffuse_flags = 0;
+  FilterGlossy filter_glossy;
 };
 
 // Returns the camera sample of a film position. Takes a lens point and a time only if the scene needs them.

@@ -34,15 +34,16 @@ void apply_segment(const Segment& segment, PathState* state) { state->throughput
 
 Contribution light_hit_contribution(const PathContext& context, const RaySource& source, const PathState& state,
                                     const LightCrossing& crossing) {
-  const light::Receiver eye{state.ray.ray.origin, Vec3(0.0f), true};
-  const light::Receiver receiver = source.vertex != nullptr ? receiver_of(*source.vertex) : eye;
+  const RaySource seen_from = crossing.is_behind_portal ? RaySource{} : source;
+  const light::Receiver eye{crossing.eye, Vec3(0.0f), true};
+  const light::Receiver receiver = seen_from.vertex != nullptr ? receiver_of(*seen_from.vertex) : eye;
   const light::LightEvaluation view = evaluate_crossing(context, crossing.point, receiver, state.ray.state);
   const Rgb radiance = light_hit_radiance(view, state.ray, state.depth);
   if (is_black(radiance)) {
     return {};
   }
-  return found_contribution(context, source, state, state.throughput * crossing.weight, radiance,
-                            source.sampled_light() ? view.pdf : 0.0f);
+  return found_contribution(context, seen_from, state, state.throughput * crossing.weight, radiance,
+                            seen_from.sampled_light() ? view.pdf : 0.0f);
 }
 
 Contribution world_contribution(const PathContext& context, const RaySource& source, const PathState& state) {

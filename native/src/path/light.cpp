@@ -40,7 +40,8 @@ std::array<Rgb, 3> light_by_pass(const PathContext& context, const Vertex& verte
     } else if (!view.by_kind) {
       passes[i] *= view.radiance;
     } else {
-      shading::RayState next = next_ray_state(ray, pass == bsdf::LightPass::Diffuse, transmitted, false);
+      shading::RayState next =
+          next_ray_state(ray, pass == bsdf::LightPass::Diffuse, transmitted, false, context.diffuse_flags);
       next.length = view.distance;
       passes[i] *= light::evaluated_radiance(context.scene, light.point, view, next);
     }

@@ -225,7 +225,7 @@ void PassRecorder::surface_data(const Vertex& vertex) {
   add(GRADUS_PASS_POSITION, vertex.point.position + context_.scene.origin);
   add(GRADUS_PASS_OBJECT_INDEX, static_cast<float>(instance.pass_index));
   add(GRADUS_PASS_MATERIAL_INDEX, static_cast<float>(context_.scene.materials[vertex.point.material]->pass_index));
-  surface_data_done_ = 1.0f - mean_component(vertex.shade.transparency) >= context_.settings.alpha_threshold;
+  surface_data_done_ = 1.0f - vertex.shade.passed() >= context_.settings.alpha_threshold;
   if (!surface_data_done_) {
     return;
   }

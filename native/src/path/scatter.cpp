@@ -16,11 +16,10 @@ bool reaches_limit(const GradusSettings& settings, const PathState& state) {
 }
 
 // Counts a bounce.
-void advance(bool diffuse, bool transmitted, bool dirac, shading::RayState* state) {
+void advance(bool diffuse, bool transmitted, bool dirac, uint32_t diffuse_flags, shading::RayState* state) {
   state->flags = (state->flags & shading::kRayDiffuseAncestor) |
                  (transmitted ? shading::kRayTransmission : shading::kRayReflection) |
-                 (diffuse ? shading::kRayDiffuse | shading::kRayDiffuseAncestor : shading::kRayGlossy) |
-                 (dirac ? shading::kRaySingular : 0u);
+                 (diffuse ? diffuse_flags : shading::kRayGlossy) | (dirac ? shading::kRaySingular : 0u);
   state->length = 0.0f;
   ++state->depth;
   ++(transmitted ? state->transmission_depth : diffuse ? state->diffuse_depth : state->glossy_depth);
@@ -28,13 +27,13 @@ void advance(bool diffuse, bool transmitted, bool dirac, shading::RayState* stat
 
 // Sets the ray of the new segment.
 void leave_surface(const geometry::SurfacePoint& from, const Vec3& direction, bsdf::LightPass pass, bool transmitted,
-                   bool dirac, PathRay* ray) {
+                   bool dirac, uint32_t diffuse_flags, PathRay* ray) {
   ray->ray.origin = geometry::offset_origin(from, direction);
   ray->ray.t_min = 0.0f;
   ray->ray.direction = direction;
   ray->ray.t_max = kInfinity;
   ray->visibility = bounce_visibility(pass, transmitted);
-  advance(pass == bsdf::LightPass::Diffuse, transmitted, dirac, &ray->state);
+  advance(pass == bsdf::LightPass::Diffuse, transmitted, dirac, diffuse_flags, &ray->state);
 }
 
 }  // namespace
@@ -63,9 +62,10 @@ bool choose_class(const bsdf::Closures& closures, float u, bsdf::ScatterClass* c
   return found;
 }
 
-shading::RayState next_ray_state(const shading::RayState& before, bool diffuse, bool transmitted, bool dirac) {
+shading::RayState next_ray_state(const shading::RayState& before, bool diffuse, bool transmitted, bool dirac,
+                                 uint32_t diffuse_flags) {
   shading::RayState state = before;
-  advance(diffuse, transmitted, dirac, &state);
+  advance(diffuse, transmitted, dirac, diffuse_flags, &state);
   return state;
 }
 
@@ -103,7 +103,9 @@ bool scatter(const PathContext& context, const VertexSample& u, const Vertex& ve
   ++state->depth;
   state->lpe_state = context.components.next(state->lpe_state, event->scatter_class);
   leave_surface(vertex.point, sample.wi, closures.lobe(sample.lobe).pass, sample.transmitted, sample.dirac,
-                &state->ray);
+                context.diffuse_flags, &state->ray);
+  event->blur = sample.dirac ? 0.0f : context.filter_glossy.blur_behind(closures, vertex.wo, sample.wi);
+  state->ray.state.blur = std::max(state->ray.state.blur, event->blur);
   state->emission_only = reaches_limit(context.settings, *state);
   return true;
 }

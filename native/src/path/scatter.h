@@ -28,6 +28,7 @@ struct ScatterEvent {
   bool by_kind = false;    // the kind of the bounce is sampled, too, and `factor` is that of its lobes alone
   int dirac_rank = 0;      // index of the sampled Dirac lobe among those of its class
   Rgb factor = Rgb(0.0f);  // value / pdf, by which the throughput was multiplied
+  float blur = 0.0f;       // by which Filter Glossy blurs what the next ray meets, for this event alone
   // Returns P(kind | direction) within the class.
   float kind_share() const { return sample.kind.pdf / sample.pdf; }
 };
@@ -48,7 +49,9 @@ bool choose_class(const bsdf::Closures& closures, float u, bsdf::ScatterClass* c
 bool scatter(const PathContext& context, const VertexSample& u, const Vertex& vertex, PathState* state,
              ScatterEvent* event);
 
-// Returns the state of the ray that leaves a vertex by the given kind of bounce.
-shading::RayState next_ray_state(const shading::RayState& state, bool diffuse, bool transmitted, bool dirac);
+// Returns the state of the ray that leaves a vertex by the given kind of bounce. `diffuse_flags` are the flags of a
+// diffuse ray (PathContext::diffuse_flags).
+shading::RayState next_ray_state(const shading::RayState& state, bool diffuse, bool transmitted, bool dirac,
+                                 uint32_t diffuse_flags);
 
 }  // namespace gradus::path

@@ -14,10 +14,13 @@ constexpr uint32_t kDecisionsPerSegment = 1024;
 // Maximum number of surfaces of one emissive instance with blockers that a ray finds, as in Cycles.
 constexpr int kMaxLinkedHits = 1024;
 
-// Returns the probability that the path passes the surface, by its transparency against what it scatters and emits.
-// Emission and scattering that are added to a transparent surface keep a minimum probability.
+// What a path does at a surface.
+enum class Passage : uint8_t { Stops, Straight, Portal };
+
+// Returns the probability that the path passes the surface, by its transparency and its portal against what it scatters
+// and emits. Emission and scattering that are added to a transparent surface keep a minimum probability.
 float pass_probability(const shading::ShadeResult& shade) {
-  const float through = mean_component(shade.transparency);
+  const float through = shade.passed();
   if (!(through > 0.0f)) {
     return 0.0f;
   }
@@ -35,6 +38,7 @@ void clear(Segment* segment) {
   segment->probability = 1.0f;
   segment->crossed = 0;
   segment->length = 0.0f;
+  segment->passes_portal = false;
   segment->light_crossings.clear();
 }
 
@@ -55,8 +59,8 @@ void add_light_crossings(const PathContext& context, const PathRay& ray, float b
     if (ray.visibility != GRADUS_VISIBLE_CAMERA && has_blockers(context, hit.point)) {
       continue;  // add_linked_crossings() has found it
     }
-    segment->light_crossings.push_back(
-        {hit.point, hit.distance, segment->weight, segment->probability, segment->crossed});
+    segment->light_crossings.push_back({hit.point, hit.distance, segment->weight, segment->probability,
+                                        segment->crossed, ray.ray.origin, segment->passes_portal});
   }
 }
 
@@ -67,7 +71,7 @@ void add_linked_crossing(const PathContext& context, const PathRay& bounce, cons
   const Rgb transmittance =
       linked_transmittance(context, ray, light::links_of(context.scene, point).blockers, is_in_mirror);
   if (!is_black(transmittance)) {
-    segment->light_crossings.push_back({point, distance, transmittance, 1.0f, 0});
+    segment->light_crossings.push_back({point, distance, transmittance, 1.0f, 0, bounce.ray.origin, false});
   }
 }
 
@@ -132,17 +136,31 @@ bool trace_to_unlinked_lights(const PathContext& context, const PathRay& ray, Se
   return true;
 }
 
-// Decides at random whether the path stops at a surface, and weights the segment by the decision.
-bool stops(const Sampler& sampler, int depth, const Vertex& vertex, Segment* segment) {
-  const float pass = pass_probability(vertex.shade);
+// Decides at random what the path does at a surface, and weights the segment by the decision.
+Passage decide(const Sampler& sampler, int depth, const Vertex& vertex, Segment* segment) {
+  const shading::ShadeResult& shade = vertex.shade;
+  const float pass = pass_probability(shade), portal = mean_component(shade.portal.weight);
   const uint32_t block =
       kFirstDecision + static_cast<uint32_t>(depth) * kDecisionsPerSegment + static_cast<uint32_t>(segment->crossed);
-  const bool continues = pass >= 1.0f || (pass > 0.0f && sampler.get1(block) < pass);
-  const float probability = continues ? pass : 1.0f - pass;
-  segment->weight =
-      continues ? segment->weight * vertex.shade.transparency / probability : segment->weight / probability;
+  const float by_portal = portal > 0.0f ? pass * portal / shade.passed() : 0.0f;
+  const float u = pass >= 1.0f && by_portal == 0.0f ? 0.0f : pass > 0.0f ? sampler.get1(block) : 1.0f;
+  const Passage passage = u < by_portal ? Passage::Portal : u < pass ? Passage::Straight : Passage::Stops;
+  const float probability = passage == Passage::Portal     ? by_portal
+                            : passage == Passage::Straight ? pass - by_portal
+                                                           : 1.0f - pass;
+  if (passage == Passage::Portal) segment->weight *= shade.portal.weight;
+  if (passage == Passage::Straight) segment->weight *= shade.transparency;
+  segment->weight /= probability;
   segment->probability *= probability;
-  return !continues;
+  segment->passes_portal |= passage == Passage::Portal;
+  return passage;
+}
+
+// Returns the ray that leaves the portal of a surface.
+Ray leave_portal(const Vertex& vertex, float time) {
+  const shading::RayPortal& portal = vertex.shade.portal;
+  const Vec3 origin = portal.is_elsewhere ? portal.origin : geometry::offset_origin(vertex.point, portal.direction);
+  return Ray{origin, 0.0f, portal.direction, kInfinity, time};
 }
 
 }  // namespace
@@ -204,7 +222,8 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int depth
     const auto shade = shading == Shading::Now ? shading::shade_surface : shading::shade_without_closures;
     shade(context.scene, vertex->point, vertex->wo, ray->state, context.settings.roughness_threshold, &vertex->shade);
     if (visitor != nullptr) visitor->visit(*vertex, ray->state, segment->weight);
-    if (stops(sampler, depth, *vertex, segment)) {
+    const Passage passage = decide(sampler, depth, *vertex, segment);
+    if (passage == Passage::Stops) {
       segment->end = SegmentEnd::Surface;
       return;
     }
@@ -214,7 +233,14 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int depth
     }
     ++ray->state.transparent_depth;
     ++segment->crossed;
-    passed += geometry::pass_surface(vertex->point, &part);
+    ray->state.portal_depth += mean_component(vertex->shade.portal.weight) > 0.0f ? 1 : 0;
+    if (passage == Passage::Portal) {
+      ray->ray = part = leave_portal(*vertex, part.time);
+      vertex->wo = -part.direction;
+      passed = 0.0f;
+    } else {
+      passed += geometry::pass_surface(vertex->point, &part);
+    }
   }
 }
 

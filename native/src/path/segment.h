@@ -20,6 +20,8 @@ struct LightCrossing {
   Rgb weight = Rgb(1.0f);
   float probability = 1.0f;
   int crossed = 0;
+  Vec3 eye = Vec3(0.0f);  // where the ray that crosses the light starts: at the segment's start, or behind a portal
+  bool is_behind_portal = false;
 };
 
 enum class SegmentEnd : uint8_t {
@@ -34,6 +36,9 @@ struct Segment {
   float probability = 1.0f;  // probability of the decisions at transparent surfaces
   int crossed = 0;           // number of transparent surfaces that the path has passed
   float length = 0.0f;
+  // The path has passed a portal. Its end is not seen from its start, so that no light sample finds it, and shifts
+  // cannot connect it.
+  bool passes_portal = false;
   std::vector<LightCrossing> light_crossings;  // keeps its memory, since segments are reused
   std::vector<light::LightHit> hits;           // memory for lights on a part of the segment
 };
@@ -60,7 +65,7 @@ enum class Shading : uint8_t { Now, Later };
 
 // Traces the ray of a path that has scattered `depth` times. `first` is its nearest hit, or null if it is not known.
 // Sets `vertex` if the segment ends on a surface, and counts transparent surfaces in ray->state. `visitor` sees all
-// surfaces on the segment, and may be null.
+// surfaces on the segment, and may be null. Behind a portal, ray->ray is the ray that leaves it.
 void trace_segment(const PathContext& context, const Sampler& sampler, int depth, const geometry::Hit* first,
                    PathRay* ray, Vertex* vertex, Segment* segment, Shading shading = Shading::Now,
                    SurfaceVisitor* visitor = nullptr);

@@ -203,11 +203,12 @@ class PathTracer {
     apply_segment(*segment_, &state_);
     observer_.on_segment_passed(*segment_);
     bool is_surface = false;
+    const RaySource seen_from = segment_->passes_portal ? RaySource{} : source;
     if (segment_->end == SegmentEnd::Escaped) {
-      add_world(source);
+      add_world(seen_from);
     } else if (segment_->end == SegmentEnd::Surface) {
       result_.fallback |= vertex.shade.fallback;
-      is_surface = add_surface(sampler, source, vertex);
+      is_surface = add_surface(sampler, seen_from, vertex);
     }
     observer_.on_emission_complete();
     return is_surface && !state_.emission_only && can_reach_wanted();

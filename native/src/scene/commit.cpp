@@ -147,6 +147,7 @@ void displace_meshes(const CommitMonitor& monitor, const std::vector<size_t>& ch
 void find_sharpest(Snapshot* snapshot) {
   const auto add_features_of = [&](uint32_t m) {
     SceneFeatures& features = snapshot->features;
+    features.has_glossy |= snapshot->materials[m]->has_glossy;
     features.min_alpha = std::min(features.min_alpha, snapshot->materials[m]->min_alpha);
     features.min_refracting_alpha =
         std::min(features.min_refracting_alpha, snapshot->materials[m]->min_refracting_alpha);

@@ -87,6 +87,15 @@ constexpr Option kOptions[] = {
     OPTION(transparent_max_bounces, GRADUS_OPTION_INT, 8, 0, 1024, {}, true,
            "Maximum transparent surfaces that a ray passes. Fewer render faster; layers of transparent leaves turn "
            "dark."),
+    OPTION(blur_glossy, GRADUS_OPTION_FLOAT, 0, 0, 10, {}, true,
+           "Blurs reflections and refractions behind bounces that scatter light widely, as Cycles does. It removes "
+           "noise of caustics and softens them. The camera's own view of mirrors and glass stays sharp. Higher values"
+           " blur more; 0 = off."),
+    OPTION(caustics_reflective, GRADUS_OPTION_BOOL, 1, 0, 1, {}, true,
+           "Light that a glossy surface reflects onto a diffuse one. Off: less noise, and caustics of mirrors are "
+           "missing."),
+    OPTION(caustics_refractive, GRADUS_OPTION_BOOL, 1, 0, 1, {}, true,
+           "Light that glass refracts onto a diffuse surface. Off: less noise, and glass casts the shadow of a solid."),
     OPTION(clamp_direct, GRADUS_OPTION_FLOAT, 0, 0, 3.4e+38, {}, true,
            "Maximum radiance that a sample adds by direct light. It removes fireflies and darkens the picture, since "
            "clamping is biased. 0 = off."),

@@ -55,6 +55,7 @@ void add_diffuse(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
 }
 
 void add_glossy(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  if (!reflects(c)) return;
   const Vec3 normal = facing_normal(c, args.v(4));
   bsdf::Lobe* lobe =
       add_lobe(result, reflection_type(args), bsdf::LightPass::Glossy, args.weight * non_negative(args.v(0)), normal);
@@ -67,6 +68,7 @@ void add_glossy(const ClosureArgs& args, const ShadeContext& c, ShadeResult* res
 }
 
 void add_metallic(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  if (!reflects(c)) return;
   const Vec3 normal = facing_normal(c, args.v(5));
   bsdf::Lobe* lobe = add_lobe(result, reflection_type(args), bsdf::LightPass::Glossy, args.weight, normal);
   if (!lobe) return;
@@ -86,6 +88,7 @@ void add_metallic(const ClosureArgs& args, const ShadeContext& c, ShadeResult* r
 }
 
 void add_refraction(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  if (!refracts(c)) return;
   bsdf::Lobe* lobe = add_lobe(result, refraction_type(args), bsdf::LightPass::Transmission,
                               args.weight * non_negative(args.v(0)), outward_normal(c, args.v(3)));
   if (!lobe) return;
@@ -102,12 +105,14 @@ void add_legacy_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResul
   const Rgb weight = args.weight * non_negative(args.v(0));
   const float ior = std::max(args.f(2), 1e-5f), roughness = saturate(args.f(1));
   const float reflected = dielectric_reflectance(glm::dot(c.wo, normal), c.backfacing ? 1.0f / ior : ior);
-  if (bsdf::Lobe* lobe = add_lobe(result, reflection_type(args), bsdf::LightPass::Glossy, weight * reflected, normal)) {
+  const Rgb reflection = reflects(c) ? weight * reflected : Rgb(0.0f);
+  const Rgb refraction = refracts(c) ? weight * (1.0f - reflected) : Rgb(0.0f);
+  if (bsdf::Lobe* lobe = add_lobe(result, reflection_type(args), bsdf::LightPass::Glossy, reflection, normal)) {
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
     lobe->separable_masking = true;
   }
-  if (bsdf::Lobe* lobe = add_lobe(result, refraction_type(args), bsdf::LightPass::Transmission,
-                                  weight * (1.0f - reflected), c.backfacing ? -normal : normal)) {
+  if (bsdf::Lobe* lobe = add_lobe(result, refraction_type(args), bsdf::LightPass::Transmission, refraction,
+                                  c.backfacing ? -normal : normal)) {
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
     lobe->separable_masking = true;
     lobe->ior = ior;
@@ -116,6 +121,7 @@ void add_legacy_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResul
 
 void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   if ((args.mode & kLegacy) && !is_multiscatter(args) && args.f(1) > 0.0f) return add_legacy_glass(args, c, result);
+  if (!reflects(c) && !refracts(c)) return;
   bsdf::Lobe* lobe = add_lobe(result, glass_type(args), bsdf::LightPass::Transmission,
                               args.weight * non_negative(args.v(0)), outward_normal(c, args.v(3)));
   if (!lobe) return;
@@ -126,6 +132,7 @@ void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* resu
   lobe->multiscatter = is_multiscatter(args);
   lobe->f90 = non_negative(args.v(0));
   add_film(lobe, args.f(4), args.f(5), false);
+  leave_caustics_out(c, lobe);
 }
 
 void add_subsurface_node(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
@@ -145,6 +152,18 @@ void add_velvet(const ClosureArgs& args, const ShadeContext& c, ShadeResult* res
   bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::Velvet, bsdf::LightPass::Glossy,
                               args.weight * non_negative(args.v(0)), facing_normal(c, args.v(2)));
   if (lobe) lobe->alpha_x = std::clamp(args.f(1), 0.01f, 1.0f);
+}
+
+// Adds a portal. A surface has one; of several the last one remains.
+void add_portal(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
+  const Rgb weight = args.weight * non_negative(args.v(0));
+  if (!(max_component(weight) > kWeightCutoff) || !is_finite(weight)) return;
+  const Vec3 direction = safe_normalize(args.v(2));
+  result->portal.weight = weight;
+  result->portal.direction = direction == Vec3(0.0f) ? -c.wo : direction;
+  result->portal.origin = args.mode == 0 || !c.scene ? c.position : args.v(1) - c.scene->origin;
+  const Vec3 moved = result->portal.origin - c.position;
+  result->portal.is_elsewhere = glm::dot(moved, moved) > 1e-9f;
 }
 
 void add_sheen(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
@@ -191,6 +210,13 @@ void add_subsurface(const Subsurface& s, ShadeResult* result, const ShadeContext
   lobe->ior = std::clamp(s.ior, 1.01f, 3.8f);
   lobe->alpha_x = s.alpha;
   lobe->alpha_y = std::clamp(s.anisotropy, -0.99f, method == bsdf::SubsurfaceMethod::WalkDeHulst ? 0.99f : 0.9f);
+}
+
+void leave_caustics_out(const ShadeContext& c, bsdf::Lobe* glass) {
+  if (!reflects(c))
+    glass->type = glass->type == bsdf::LobeType::BeckmannGlass ? bsdf::LobeType::BeckmannRefraction
+                                                               : bsdf::LobeType::GgxRefraction;
+  if (!refracts(c)) glass->transmission_tint = Rgb(0.0f);
 }
 
 Vec3 facing_normal(const ShadeContext& c, const Vec3& normal) {
@@ -290,6 +316,8 @@ void add_closure(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
     case GRADUS_OP_TRANSPARENT:
       add_finite(args.weight * non_negative(args.v(0)), &result->transparency);
       return;
+    case GRADUS_OP_RAY_PORTAL:
+      return add_portal(args, c, result);
     case GRADUS_OP_HOLDOUT:
       result->holdout += args.weight;
       return;

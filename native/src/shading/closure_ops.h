@@ -66,6 +66,12 @@ void set_glossy_roughness(bsdf::Lobe* lobe, float roughness, float anisotropy);
 // Returns the tangent of an input, rotated by `turns` full turns around the normal. A zero input stands for the default
 // tangent.
 Vec3 turned_tangent(const ShadeContext& context, const Vec3& tangent, const Vec3& normal, float turns);
+// Return whether glossy lobes reflect, or refract, light towards the ray. They do not behind a diffuse bounce if
+// caustics are off.
+inline bool reflects(const ShadeContext& c) { return (c.ray.flags & kRayWithoutReflections) == 0; }
+inline bool refracts(const ShadeContext& c) { return (c.ray.flags & kRayWithoutRefractions) == 0; }
+// Removes the side of a glass lobe that makes caustics where those are off. Not both of them are.
+void leave_caustics_out(const ShadeContext& context, bsdf::Lobe* glass);
 // Adds a lobe and returns it, or returns null if its weight is below kWeightCutoff.
 bsdf::Lobe* add_lobe(ShadeResult* result, bsdf::LobeType type, bsdf::LightPass pass, const Rgb& weight,
                      const Vec3& normal);

@@ -17,7 +17,7 @@ namespace {
 
 bool is_lobe_op(uint32_t op) {
   return is_closure_op(op) && op != GRADUS_OP_TRANSPARENT && op != GRADUS_OP_HOLDOUT && op != GRADUS_OP_EMISSION &&
-         op != GRADUS_OP_AOV;
+         op != GRADUS_OP_AOV && op != GRADUS_OP_RAY_PORTAL;
 }
 
 // Returns the value of a constant operand, or `unknown` if the operand is computed.
@@ -118,12 +118,14 @@ class Analysis {
 
   void closure(const Instruction& i) {
     m_.has_holdout = m_.has_holdout || i.op == GRADUS_OP_HOLDOUT;
+    m_.has_portal = m_.has_portal || i.op == GRADUS_OP_RAY_PORTAL;
     if (!is_lobe_op(i.op)) return;
     m_.has_bsdf = true;
     m_.bumps_subsurface = m_.bumps_subsurface || bumps_subsurface(i);
     m_.is_diffuse_behind_diffuse = m_.is_diffuse_behind_diffuse || is_diffuse_behind_diffuse(i);
     const int rough = roughness_input(i.op);
     if (rough >= 0) sharpen(narrowest_alpha(i, rough));
+    m_.has_glossy = m_.has_glossy || rough >= 0;
     const bool glass = i.op == GRADUS_OP_GLASS || i.op == GRADUS_OP_REFRACTION || i.op == GRADUS_OP_TRANSLUCENT;
     bool transmits = glass;
     if (i.op == GRADUS_OP_PRINCIPLED) {
@@ -215,8 +217,8 @@ void describe_emission(MaterialData* m, const image::ImageStore& images) {
 }
 
 void describe_transparency(MaterialData* m) {
-  m->may_be_transparent = !m->transparency.empty();
-  if (!m->may_be_transparent || !is_constant(m->transparency, GRADUS_OP_TRANSPARENT)) return;
+  m->may_be_transparent = !m->transparency.empty() || m->has_portal;
+  if (m->transparency.empty() || !is_constant(m->transparency, GRADUS_OP_TRANSPARENT)) return;
   ShadeResult r;
   run_program(m->transparency, ShadeContext(), &r);
   m->transparency_is_constant = true;

@@ -32,9 +32,11 @@ struct MaterialData {
   Program bump;              // program of the displacement that bends the shading normal in the same way
 
   bool emits = false;
-  bool may_be_transparent = false;  // some light passes straight through
+  bool may_be_transparent = false;  // some light passes straight through, or through a portal
+  bool has_portal = false;
   bool has_holdout = false;
   bool has_bsdf = false;
+  bool has_glossy = false;         // some lobe is that of a glossy, metallic or refracting surface, rough or not
   bool may_transmit = false;       // some lobe scatters light to the other side
   bool transparent_shadow = true;  // false if shadow rays treat the material as opaque
   bool sample_as_light = true;

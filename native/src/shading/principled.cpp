@@ -108,31 +108,34 @@ class Layers {
   void coat() {
     const float amount = std::max(args_.f(kCoatWeight), 0.0f);
     if (!(amount * max_component(weight_) > kWeightCutoff)) return;
-    bsdf::Lobe* lobe = new_layer(bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight_ * amount,
-                                 facing_normal(c_, args_.v(kCoatNormal)));
-    lobe->fresnel = bsdf::FresnelType::Dielectric;
-    lobe->ior = std::max(args_.f(kCoatIor), 1.0f);
-    const float roughness = saturate(args_.f(kCoatRoughness));
-    lobe->alpha_x = lobe->alpha_y = roughness * roughness;
-    put_layer(lobe);
-    tint_below_coat(*lobe, saturate(amount));
+    const Vec3 normal = facing_normal(c_, args_.v(kCoatNormal));
+    const float ior = std::max(args_.f(kCoatIor), 1.0f);
+    if (reflects(c_)) {
+      bsdf::Lobe* lobe = new_layer(bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight_ * amount, normal);
+      lobe->fresnel = bsdf::FresnelType::Dielectric;
+      lobe->ior = ior;
+      const float roughness = saturate(args_.f(kCoatRoughness));
+      lobe->alpha_x = lobe->alpha_y = roughness * roughness;
+      put_layer(lobe);
+    }
+    tint_below_coat(normal, ior, saturate(amount));
   }
 
   // Applies the coat's tint by Beer's law. The tint is the transmittance of a perpendicular path; the actual path
   // inside the coat is longer by 1/cos.
-  void tint_below_coat(const bsdf::Lobe& coat, float amount) {
+  void tint_below_coat(const Vec3& normal, float ior, float amount) {
     const Vec3 tint = glm::max(args_.v(kCoatTint), Vec3(0.0f));
     if (tint == Vec3(1.0f)) return;
-    const float cosine = glm::dot(c_.wo, coat.normal);
-    const float inside = std::sqrt(std::max(1.0f - (1.0f - cosine * cosine) / (coat.ior * coat.ior), 1e-6f));
+    const float cosine = glm::dot(c_.wo, normal);
+    const float inside = std::sqrt(std::max(1.0f - (1.0f - cosine * cosine) / (ior * ior), 1e-6f));
     const Vec3 kept = glm::pow(tint, Vec3(1.0f / inside));
     weight_ *= glm::mix(Vec3(1.0f), kept, amount);
   }
 
   void metal() {
     const float metallic = saturate(args_.f(kMetallic));
-    if (bsdf::Lobe* lobe =
-            add_lobe(result_, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight_ * metallic, normal_)) {
+    const Rgb weight = reflects(c_) ? weight_ * metallic : Rgb(0.0f);
+    if (bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight, normal_)) {
       lobe->fresnel = bsdf::FresnelType::PrincipledMetal;
       lobe->f0 = clamped_base();
       lobe->f90 = glm::clamp(args_.v(kSpecularTint), 0.0f, 1.0f);
@@ -145,8 +148,9 @@ class Layers {
   void glass() {
     const float transmission = saturate(args_.f(kTransmission));
     const Vec3 outward = c_.backfacing ? -normal_ : normal_;
-    if (bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::GgxGlass, bsdf::LightPass::Transmission,
-                                    weight_ * transmission, outward)) {
+    const Rgb weight = reflects(c_) || refracts(c_) ? weight_ * transmission : Rgb(0.0f);
+    if (bsdf::Lobe* lobe =
+            add_lobe(result_, bsdf::LobeType::GgxGlass, bsdf::LightPass::Transmission, weight, outward)) {
       lobe->fresnel = bsdf::FresnelType::Schlick;
       lobe->ior = std::max(args_.f(kIor), 1e-5f);
       lobe->f0 = f0_of_ior(lobe->ior) * glm::max(args_.v(kSpecularTint), Vec3(0.0f));
@@ -155,6 +159,7 @@ class Layers {
       lobe->alpha_x = lobe->alpha_y = roughness * roughness;
       lobe->multiscatter = multiscatter();
       put_film(lobe);
+      leave_caustics_out(c_, lobe);
     }
     weight_ *= 1.0f - transmission;
   }
@@ -173,7 +178,9 @@ class Layers {
 
   void specular() {
     const auto [ior, f0] = adjusted_interface();
-    if ((ior == 1.0f && !has_film(args_.f(kFilmThickness))) || !(max_component(weight_) > kWeightCutoff)) return;
+    if ((ior == 1.0f && !has_film(args_.f(kFilmThickness))) || !(max_component(weight_) > kWeightCutoff) ||
+        !reflects(c_))
+      return;
     bsdf::Lobe* lobe = new_layer(bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight_, normal_);
     lobe->fresnel = bsdf::FresnelType::Schlick;
     lobe->ior = ior;

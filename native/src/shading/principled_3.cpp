@@ -95,7 +95,7 @@ class Lobes {
 
   void specular() {
     const float amount = std::max(args_.f(kSpecular), 0.0f);
-    if (amount <= kWeightCutoff && metallic_ <= kWeightCutoff) return;
+    if (!reflects(c_) || (amount <= kWeightCutoff && metallic_ <= kWeightCutoff)) return;
     const Rgb f0 =
         tinted(hue_, saturate(args_.f(kSpecularTint))) * (0.08f * amount * (1.0f - metallic_)) + base_ * metallic_;
     bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy,
@@ -117,7 +117,7 @@ class Lobes {
   }
 
   void glass() {
-    if (!(transmission_ > kWeightCutoff)) return;
+    if (!(transmission_ > kWeightCutoff) || !(reflects(c_) || refracts(c_))) return;
     const float roughness = saturate(args_.f(kRoughness));
     if (roughness <= 0.05f || !(args_.mode & GRADUS_DISTRIBUTION_MULTIPLE))
       single_scattering_glass(roughness);
@@ -130,8 +130,10 @@ class Lobes {
     const float ior = std::max(args_.f(kIor), 1e-5f);
     const float reflected = dielectric_reflectance(glm::dot(c_.wo, normal_), c_.backfacing ? 1.0f / ior : ior);
     const Rgb weight = args_.weight * transmission_;
+    const Rgb reflection = reflects(c_) ? weight * reflected : Rgb(0.0f);
+    const Rgb refraction = refracts(c_) ? weight * base_ * (1.0f - reflected) : Rgb(0.0f);
     if (bsdf::Lobe* lobe =
-            add_lobe(result_, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight * reflected, normal_)) {
+            add_lobe(result_, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, reflection, normal_)) {
       lobe->alpha_x = lobe->alpha_y = roughness * roughness;
       lobe->separable_masking = true;
       lobe->fresnel = bsdf::FresnelType::Schlick;
@@ -139,8 +141,8 @@ class Lobes {
       lobe->f0 = tinted(base_, saturate(args_.f(kSpecularTint)));
     }
     const Vec3 outward = c_.backfacing ? -normal_ : normal_;
-    if (bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::GgxRefraction, bsdf::LightPass::Transmission,
-                                    weight * base_ * (1.0f - reflected), outward)) {
+    if (bsdf::Lobe* lobe =
+            add_lobe(result_, bsdf::LobeType::GgxRefraction, bsdf::LightPass::Transmission, refraction, outward)) {
       float refracted = roughness;
       if (!(args_.mode & GRADUS_DISTRIBUTION_MULTIPLE))
         refracted = 1.0f - (1.0f - roughness) * (1.0f - saturate(args_.f(kTransmissionRoughness)));
@@ -160,9 +162,11 @@ class Lobes {
     lobe->fresnel = bsdf::FresnelType::Dielectric;
     lobe->transmission_tint = base_;
     lobe->multiscatter = true;
+    lobe->keeps_alpha = true;
   }
 
   void clearcoat() {
+    if (!reflects(c_)) return;
     const float amount = saturate(args_.f(kClearcoat));
     bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy,
                                 args_.weight * (0.25f * amount), facing_normal(c_, args_.v(kClearcoatNormal)));

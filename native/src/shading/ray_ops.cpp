@@ -35,6 +35,8 @@ float property(uint32_t mode, const ShadeContext& c) {
       return c.ray.diffuse_depth;
     case GRADUS_LIGHT_PATH_GLOSSY_DEPTH:
       return c.ray.glossy_depth;
+    case GRADUS_LIGHT_PATH_PORTAL_DEPTH:
+      return c.ray.portal_depth;
     case GRADUS_LIGHT_PATH_TRANSPARENT_DEPTH:
       return c.ray.transparent_depth;
     default:

@@ -23,16 +23,16 @@ ShadeContext context_of(const MaterialData& material, const ShadedScene& scene, 
 
 void clear(ShadeResult* result) {
   result->closures.clear();
-  result->emission = result->transparency = result->holdout = Rgb(0.0f);
+  result->emission = result->transparency = result->holdout = result->portal.weight = Rgb(0.0f);
   result->fallback = result->complete = result->ignores_wo = false;
   if (result->tape) result->tape->clear();
 }
 
 // Finishes the closures of a result after all have been added.
 void complete(const MaterialData& material, const geometry::SurfacePoint& point, const Vec3& geometric_normal,
-              const Vec3& normal, const Vec3& wo, float roughness_threshold, ShadeResult* result) {
+              const Vec3& normal, const Vec3& wo, float roughness_threshold, float blur, ShadeResult* result) {
   result->closures.set_terminator_frequency(point.terminator_frequency);
-  result->closures.finish(wo, geometric_normal, roughness_threshold, normal);
+  result->closures.finish(wo, geometric_normal, roughness_threshold, normal, blur);
   result->ignores_wo = !material.values_depend_on_ray && result->closures.ignores_wo();
   result->complete = true;
 }
@@ -45,7 +45,7 @@ void shade_lambert(const MaterialData& material, const geometry::SurfacePoint& p
   lobe->normal = point.shading_normal;
   const bool backfacing = glm::dot(point.geometric_normal, wo) < 0.0f;
   complete(material, point, backfacing ? -point.geometric_normal : point.geometric_normal,
-           backfacing ? -point.shading_normal : point.shading_normal, wo, roughness_threshold, result);
+           backfacing ? -point.shading_normal : point.shading_normal, wo, roughness_threshold, 0.0f, result);
 }
 
 // Returns a cleared temporary result for programs whose closures are not needed. It is large, so each thread keeps one.
@@ -89,7 +89,7 @@ void shade_surface(const ShadedScene& scene, const geometry::SurfacePoint& point
   const ShadeContext context = context_of(material, scene, point, wo, ray);
   run_program(material.surface, context, result);
   if (result->tape) result->tape->finish();
-  complete(material, point, context.geometric_normal, context.normal, wo, roughness_threshold, result);
+  complete(material, point, context.geometric_normal, context.normal, wo, roughness_threshold, ray.blur, result);
 }
 
 void shade_from_tape(const ShadedScene& scene, const geometry::SurfacePoint& point, const ClosureTape& tape,
@@ -104,7 +104,7 @@ void shade_from_tape(const ShadedScene& scene, const geometry::SurfacePoint& poi
     return;
   }
   result->fallback = material.uses_fallback;
-  complete(material, point, context.geometric_normal, context.normal, wo, roughness_threshold, result);
+  complete(material, point, context.geometric_normal, context.normal, wo, roughness_threshold, ray.blur, result);
 }
 
 void shade_without_closures(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,

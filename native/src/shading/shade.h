@@ -22,6 +22,9 @@ enum RayFlag : uint32_t {
   kRayTransmission = 32,
   kRayShadow = 64,
   kRayDiffuseAncestor = 128,  // some event since the camera was diffuse
+  // Surfaces do not reflect, or refract, light in glossy lobes towards the ray: it is diffuse, and caustics are off.
+  kRayWithoutReflections = 256,
+  kRayWithoutRefractions = 512,
 };
 
 // The history of the ray that arrives, for the Light Path node.
@@ -33,6 +36,8 @@ struct RayState {
   uint16_t glossy_depth = 0;
   uint16_t transmission_depth = 0;
   uint16_t transparent_depth = 0;
+  uint16_t portal_depth = 0;
+  float blur = 0.0f;    // minimum alpha of the lobes that the ray meets, by Filter Glossy (path/filter_glossy.h)
   uint32_t random = 0;  // key of the path's sample, for nodes that draw random numbers; 0: there is no path
 };
 
@@ -43,16 +48,28 @@ struct AovOutput {
   float value = 0.0f;
 };
 
+// A portal of a surface: rays that meet the surface continue at another place.
+struct RayPortal {
+  Rgb weight = Rgb(0.0f);    // black without a portal
+  Vec3 origin = Vec3(0.0f);  // in internal space
+  Vec3 direction = Vec3(0, 0, 1);
+  bool is_elsewhere = false;  // the origin is not that of the surface
+};
+
 struct ShadeResult {
   bsdf::Closures closures;       // finished closures
   Rgb emission = Rgb(0.0f);      // radiance towards wo
   Rgb transparency = Rgb(0.0f);  // weight of the ray that continues straight through the surface
   Rgb holdout = Rgb(0.0f);
+  RayPortal portal;
   bool fallback = false;                   // the material has a replaced node
   bool complete = false;                   // the closures have been evaluated
   bool ignores_wo = false;                 // a complete result is equal for all directions on this side
   ClosureTape* tape = nullptr;             // records the closures for shade_from_tape(); not owned, may be null
   std::vector<AovOutput>* aovs = nullptr;  // receives outputs to AOVs; not owned, may be null
+
+  // Returns the share of a ray that continues, straight or through a portal.
+  float passed() const { return mean_component(transparency + portal.weight); }
 };
 
 // Shades a surface point completely. `wo` points towards the previous vertex. `roughness_threshold` is the alpha that
@@ -69,7 +86,7 @@ void shade_from_tape(const ShadedScene& scene, const geometry::SurfacePoint& poi
                      ShadeResult* result);
 // Returns the emission alone, for points that light sampling has chosen.
 Rgb shade_emission(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo, const RayState& ray);
-// Returns the transparency alone, for shadow rays.
+// Returns the transparency alone, for shadow rays. Portals are opaque to them, as in Cycles.
 Rgb shade_transparency(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
                        const RayState& ray);
 // Returns the outputs to AOVs, until the thread's next call of a function of this file.

@@ -221,6 +221,7 @@ GradusSettings test_settings(uint32_t width, uint32_t height) {
   s.film_exposure = 1.0f;
   s.roughness_threshold = 0.1f;
   s.use_sky = 1;
+  s.caustics_reflective = s.caustics_refractive = 1;
   s.independent_sampler = 1;
   return s;
 }
