@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from mathutils import Matrix
 from support import images
-from support.nodes import Graph, new_material, show
+from support.nodes import Graph, new_material, show, socket
 
 SUNS = {"front": (0.6, 0.4, 0.0), "side": (-0.3, -1.3, 0.0), "back": (math.pi - 0.3, 0.2, 0.0)}
 SETTINGS = {
@@ -240,3 +240,35 @@ def test_a9_sampled_closure(name: str, sheet: bpy.types.Scene, tmp_path: Path) -
     expected, found = (picture.mean(axis=(0, 1)) for picture in pictures(sheet, tmp_path, "front"))
     print(f"sampled {name}: {found / expected - 1}")
     assert found == pytest.approx(expected, rel=0.01)
+
+
+SHIFTED = ("glossy toon, smooth", "beckmann 0.2", "beckmann glass 0.3", "ashikhmin-shirley 0.2", "velvet 0.5")
+
+
+@pytest.mark.parametrize("name", [*SHIFTED, *(("film on principled glass",) if VERSION >= (4, 2, 0) else ())])
+def test_a6_gradients_of_closures_are_unbiased(name: str, sheet: bpy.types.Scene, tmp_path: Path) -> None:
+    """Offset paths evaluate the closure as base paths do: gradients rebuild the picture of plain paths."""
+    item = sheet.objects["Sheet"]
+    item.rotation_euler = (0.0, 0.6, 0.0)
+    material = material_of(CASES[name])
+    graph = Graph(material)
+    surface = next(node for node in graph.tree.nodes if node.bl_idname.startswith("ShaderNodeBsdf"))
+    bump = graph("Bump", "Normal", {"Distance": 3.0, "Height": graph("TexNoise", "Fac", {"Scale": 3.0})})
+    graph.tree.links.new(bump, socket(surface.inputs, "Normal"))
+    item.data.materials.append(material)
+    background = next(node for node in sheet.world.node_tree.nodes if node.bl_idname == "ShaderNodeBackground")
+    graph = Graph(sheet.world)
+    graph.tree.links.new(
+        graph("TexGradient", "Color", {"Vector": graph("TexCoord", "Generated")}), background.inputs[0]
+    )
+    sheet.render.engine = "GRADUS"
+    plain, gradients = (
+        images.render(sheet, tmp_path, samples=64, integrator=integrator, reconstruction=reconstruction)["Combined"]
+        for integrator, reconstruction in (("PATH", "NONE"), ("GRADIENT", "L2"))
+    )
+    for name, value in SETTINGS.items():
+        setattr(sheet.gradus, name, value)
+    expected, found = (picture[..., 0].reshape(9, 4, 16, 4).mean(axis=(1, 3)) for picture in (plain, gradients))
+    print(f"gradients: {np.abs(found - expected).mean() / expected.std():.4f}, {expected.std() / expected.mean():.3f}")
+    assert expected.std() > 0.05 * expected.mean()
+    assert np.abs(found - expected).mean() < 0.2 * expected.std()

@@ -148,6 +148,8 @@ def sheen(view: NodeView) -> Value:
 
 @translator("ShaderNodeBsdfToon")
 def toon(view: NodeView) -> Value:
+    if view.version < (4, 2, 0) and not view.value("Smooth").is_zero():
+        view.warn_replaced("has the smooth edge of Blender 4.2, whose brightness in the light of the world differs")
     inputs = (view.value("Color"), view.value("Size"), view.value("Smooth"), view.direction("Normal"))
     return view.add_closure(Op.TOON, inputs, int(view.node.component == "GLOSSY"))
 
