@@ -146,6 +146,14 @@ def on(kind: str, link: Callable[..., None], *names: str, **links: Any) -> Calla
     return build
 
 
+def rough_glass(scene: bpy.types.Scene) -> None:
+    """The ball does not block the light, but hides it from rays that BSDF sampling sends through it."""
+    bpy.data.objects["Ball"].active_material = material("BsdfGlass", Roughness=0.3)
+    light = lamp(scene, "AREA", size=1.0)
+    lights(light, "Floor", "Ball")
+    is_blocked_by(light, "Cube")
+
+
 CASES: dict[str, Callable[[bpy.types.Scene], None]] = {
     "receivers of an area light": on("AREA", lights, "Ball", "Wall"),
     "receivers of a sun": on("SUN", lights, "Cube", "Floor"),
@@ -163,6 +171,7 @@ CASES: dict[str, Callable[[bpy.types.Scene], None]] = {
     "instancer": instanced,
     "several": several,
     "both": both,
+    "rough glass": rough_glass,
 }
 
 

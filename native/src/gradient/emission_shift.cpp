@@ -84,14 +84,16 @@ ShiftedContribution copy_light_point(const BasePath& base, const path::RaySource
   uint16_t transparent_depth = offset.state.ray.state.transparent_depth;
   const geometry::SurfacePoint& from = offset.vertex->point;
   const Ray ray = light::ray_to_light(geometry::offset_origin(from, view.direction), from, point, view);
-  const Rgb transmittance = view.blockers != geometry::kAllSets
-                                ? path::linked_transmittance(base.context, ray, view.blockers)
-                                : path::segment_transmittance(base.context, ray, base.state.ray, &transparent_depth);
-  if (is_black(transmittance)) {
+  const path::LightVisibility visibility =
+      view.blockers != geometry::kAllSets
+          ? path::linked_visibility(base.context, ray, view.blockers)
+          : path::LightVisibility{path::segment_transmittance(base.context, ray, base.state.ray, &transparent_depth)};
+  if (is_black(visibility.transmittance)) {
     return unpaired(ShiftFailure::Occluded);
   }
-  const Rgb value = offset.state.throughput * event.factor * view.radiance * transmittance *
-                    (path::bsdf_weight(view.pdf, event.pdf) / probability);
+  Rgb value = offset.state.throughput * event.factor * view.radiance * visibility.transmittance *
+              (path::bsdf_weight(view.pdf, event.pdf) / probability);
+  if (visibility.is_hidden) value *= path::hidden_share(view.pdf, event.pdf);
   const bool is_joint = weights_jointly(base, base_view, offset) &&
                         both_leave_facets(*source.vertex, base_view.direction, offset, view.direction);
   return paired(value, offset.ratio * event.ratio * (is_joint ? joint_factor(c, view.pdf, event.pdf) : 1.0f));
@@ -122,7 +124,8 @@ ShiftedContribution share_emission(const BasePath& base, const path::RaySource& 
   if (offset.stage == OffsetStage::Deeper || !(c.pdf_light > 0.0f)) {
     return paired(offset.state.throughput * weight * c.tail, offset.ratio);
   }
-  const Rgb value = offset.state.throughput * weight * c.light * path::bsdf_weight(c.pdf_light, offset.shared_pdf);
+  Rgb value = offset.state.throughput * weight * c.light * path::bsdf_weight(c.pdf_light, offset.shared_pdf);
+  if (c.is_hidden) value *= path::hidden_share(c.pdf_light, offset.shared_pdf);
   // Light samples of specular classes are shifted without sharing a direction, so they cannot be weighted jointly.
   const bool all = is_joint && reconnects(base.event.scatter_class) &&
                    geometry::leaves_facet(source.vertex->point, base.state.ray.ray.direction);

@@ -51,7 +51,8 @@ bool is_lit(const BasePath& base, const path::Vertex& vertex, const path::LightS
       transparent_depth <= base.state.ray.state.transparent_depth) {
     return true;
   }
-  return !is_black(path::light_transmittance(base.context, vertex.point, sample.point, sample.view, transparent_depth));
+  return !is_black(
+      path::light_visibility(base.context, vertex.point, sample.point, sample.view, transparent_depth).transmittance);
 }
 
 }  // namespace
@@ -91,10 +92,9 @@ void light_coupled(const BasePath& base, const path::LightSample& sample, bsdf::
   for (int k = 0; k < film::kOffsets; ++k) {
     if (wanted[k]) {
       OffsetPath& o = (*offsets)[k];
-      o.light.transmittance = traces_packet
-                                  ? Rgb(blocked[k] ? 0.0f : 1.0f)
-                                  : path::light_transmittance(context, o.vertex->point, sample.point, o.light.view,
-                                                              o.state.ray.state.transparent_depth);
+      o.light.visibility = traces_packet ? path::LightVisibility{Rgb(blocked[k] ? 0.0f : 1.0f)}
+                                         : path::light_visibility(context, o.vertex->point, sample.point, o.light.view,
+                                                                  o.state.ray.state.transparent_depth);
     }
   }
 }
@@ -109,12 +109,14 @@ ShiftedContribution copy_light_sample(const BasePath& base, const path::Vertex& 
                         both_leave_facets(x, sample.view.direction, offset, view.direction);
   const float pdf = is_joint ? view.pdf + lit.pdf_bsdf : view.pdf;
   const float base_pdf = is_joint ? c.pdf_light + c.pdf_bsdf : c.pdf_light;
-  if (is_black(lit.value) || is_black(offset.light.transmittance) || !(pdf > 0.0f)) {
-    return unpaired(is_black(lit.value)                    ? ShiftFailure::Class
-                    : is_black(offset.light.transmittance) ? ShiftFailure::Occluded
-                                                           : ShiftFailure::Density);
+  const path::LightVisibility& visibility = offset.light.visibility;
+  if (is_black(lit.value) || is_black(visibility.transmittance) || !(pdf > 0.0f)) {
+    return unpaired(is_black(lit.value)                  ? ShiftFailure::Class
+                    : is_black(visibility.transmittance) ? ShiftFailure::Occluded
+                                                         : ShiftFailure::Density);
   }
-  const Rgb value = offset.state.throughput * lit.value * offset.light.transmittance / (view.pdf + lit.pdf_bsdf);
+  Rgb value = offset.state.throughput * lit.value * visibility.transmittance / (view.pdf + lit.pdf_bsdf);
+  if (visibility.is_hidden) value *= path::hidden_share(view.pdf, lit.pdf_bsdf);
   return paired(value, offset.ratio * copy_jacobian(sample.point, sample.view, view) * pdf / base_pdf);
 }
 
@@ -142,7 +144,8 @@ ShiftedContribution connect_to_lit_vertex(const BasePath& base, const path::Vert
   const bool is_joint = weights_jointly(base, sample.view, *offset) && reconnects(scatter_class) &&
                         sample.point.found_by_rays && geometry::leaves_facet(z.point, sample.view.direction);
   const float density_ratio = is_joint ? (c.pdf_light + lit.pdf_bsdf) / (c.pdf_light + c.pdf_bsdf) : 1.0f;
-  const Rgb value = connection.throughput * lit.value * c.light / (c.pdf_light + lit.pdf_bsdf);
+  Rgb value = connection.throughput * lit.value * c.light / (c.pdf_light + lit.pdf_bsdf);
+  if (c.is_hidden) value *= path::hidden_share(c.pdf_light, lit.pdf_bsdf);
   return paired(value, ratio * density_ratio);
 }
 

@@ -74,7 +74,7 @@ struct OffsetLightSample {
   bool is_known = false;
   light::LightEvaluation view;
   bool is_traced = false;  // the shadow ray was traced, for the first class that scatters the light
-  Rgb transmittance = Rgb(0.0f);
+  path::LightVisibility visibility;
   path::LitClass lit;  // scattered light of the class that is being evaluated
 };
 

@@ -7,14 +7,16 @@ namespace {
 // Returns the contribution of an emitter that the path's ray has found. As in Cycles, it is indirect after at least two
 // scattering events.
 Contribution found_contribution(const PathContext& context, const RaySource& source, const PathState& state,
-                                const Rgb& throughput, const Rgb& radiance, float pdf_light) {
+                                const Rgb& throughput, const Rgb& radiance, float pdf_light, bool is_hidden = false) {
   Contribution c;
   c.pdf_light = pdf_light;
   c.pdf_bsdf = source.sampled_light() ? source.event->pdf : 0.0f;
   c.indirect = state.depth > 1;
   c.component = context.components.component(state.lpe_state);
   c.light = radiance;
+  c.is_hidden = is_hidden;
   c.tail = radiance * bsdf_weight(c.pdf_light, c.pdf_bsdf);
+  if (is_hidden) c.tail *= hidden_share(c.pdf_light, c.pdf_bsdf);
   c.clamped = clamp_contribution(context, throughput * c.tail, c.indirect);
   return c;
 }
@@ -43,7 +45,7 @@ Contribution light_hit_contribution(const PathContext& context, const RaySource&
     return {};
   }
   return found_contribution(context, seen_from, state, state.throughput * crossing.weight, radiance,
-                            seen_from.sampled_light() ? view.pdf : 0.0f);
+                            seen_from.sampled_light() ? view.pdf : 0.0f, crossing.is_hidden);
 }
 
 Contribution world_contribution(const PathContext& context, const RaySource& source, const PathState& state) {
@@ -79,7 +81,8 @@ bool light_classes(const PathContext& context, const Vertex& vertex, const Light
 }
 
 Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light,
-                                bsdf::ScatterClass scatter_class, const LitClass& lit, const Rgb& transmittance) {
+                                bsdf::ScatterClass scatter_class, const LitClass& lit,
+                                const LightVisibility& visibility) {
   Contribution c;
   if (is_black(lit.value)) {
     return c;
@@ -88,8 +91,10 @@ Contribution light_contribution(const PathContext& context, const PathState& sta
   c.pdf_bsdf = lit.pdf_bsdf;
   c.indirect = state.depth > 0;
   c.component = context.components.component(context.components.next(state.lpe_state, scatter_class));
-  c.light = transmittance;
+  c.light = visibility.transmittance;
+  c.is_hidden = visibility.is_hidden;
   c.tail = lit.value * c.light / (c.pdf_light + c.pdf_bsdf);
+  if (c.is_hidden) c.tail *= hidden_share(c.pdf_light, c.pdf_bsdf);
   c.clamped = clamp_contribution(context, state.throughput * c.tail, c.indirect);
   return c;
 }

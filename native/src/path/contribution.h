@@ -15,6 +15,7 @@ struct Contribution {
   // Densities of the two techniques that could have found the emitter, in solid angle.
   float pdf_light = 0.0f;
   float pdf_bsdf = 0.0f;
+  bool is_hidden = false;  // see LightVisibility
   bool indirect = false;
   int component = 0;
 };
@@ -35,7 +36,8 @@ bool light_classes(const PathContext& context, const Vertex& vertex, const Light
                    const shading::RayState& ray, LitClass lit[bsdf::kPathEvents]);
 // Returns the contribution of a light sample in one class. `state` is that on arrival at the vertex.
 Contribution light_contribution(const PathContext& context, const PathState& state, const LightSample& light,
-                                bsdf::ScatterClass scatter_class, const LitClass& lit, const Rgb& transmittance);
+                                bsdf::ScatterClass scatter_class, const LitClass& lit,
+                                const LightVisibility& visibility);
 
 // Returns whether the surface is a holdout object or a shadow catcher, which the film shows as transparent and at which
 // a camera path ends.

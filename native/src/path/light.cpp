@@ -71,20 +71,20 @@ LitClass light_class(const PathContext& context, const Vertex& vertex, bsdf::Sca
   return lit;
 }
 
-Rgb light_transmittance(const PathContext& context, const geometry::SurfacePoint& from, const light::LightPoint& point,
-                        const light::LightEvaluation& view, uint32_t crossed) {
+LightVisibility light_visibility(const PathContext& context, const geometry::SurfacePoint& from,
+                                 const light::LightPoint& point, const light::LightEvaluation& view, uint32_t crossed) {
   if (!view.casts_shadow) {
-    return Rgb(1.0f);
+    return {Rgb(1.0f)};
   }
   const Ray ray = light::ray_to_light(geometry::shadow_origin(context.scene, from, view.direction), from, point, view);
   if (view.blockers != geometry::kAllSets) {
-    return linked_transmittance(context, ray, view.blockers);
+    return linked_visibility(context, ray, view.blockers);
   }
   if (!context.scene.features.has_transparent_shadows) {
-    return Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f);
+    return {Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f)};
   }
   const uint32_t allowed = context.settings.transparent_max_bounces;
-  return context.scene.transmittance(ray, crossed < allowed ? allowed - crossed : 0);
+  return {context.scene.transmittance(ray, crossed < allowed ? allowed - crossed : 0)};
 }
 
 float light_pdf(const PathContext& context, const RaySource& source, const light::LightPoint& point) {

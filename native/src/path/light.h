@@ -42,10 +42,10 @@ LitClass light_class(const PathContext& context, const Vertex& vertex, bsdf::Sca
 // Returns light_class() split by the light passes of Blender.
 std::array<Rgb, 3> light_by_pass(const PathContext& context, const Vertex& vertex, bsdf::ScatterClass c,
                                  const LightSample& light, const shading::RayState& ray);
-// Returns the transmittance of the shadow ray to a light. `crossed` is the number of transparent surfaces that the path
+// Returns the visibility of a light by its shadow ray. `crossed` is the number of transparent surfaces that the path
 // has passed.
-Rgb light_transmittance(const PathContext& context, const geometry::SurfacePoint& from, const light::LightPoint& point,
-                        const light::LightEvaluation& view, uint32_t crossed);
+LightVisibility light_visibility(const PathContext& context, const geometry::SurfacePoint& from,
+                                 const light::LightPoint& point, const light::LightEvaluation& view, uint32_t crossed);
 
 // Returns the density with which light sampling at the ray's source chooses a point; 0 if it cannot.
 float light_pdf(const PathContext& context, const RaySource& source, const light::LightPoint& point);
@@ -59,6 +59,12 @@ light::LightEvaluation evaluate_crossing(const PathContext& context, const light
                                          const light::Receiver& receiver, const shading::RayState& ray);
 // Returns whether a surface lights the vertex at which a ray starts, by its own emission.
 bool lights_source(const PathContext& context, const geometry::SurfacePoint& surface, const Vertex& source);
+// Returns the share of the light of a hidden emitter that a path gets: that which Cycles gets, where only light
+// sampling finds it, with the weight of the power heuristic.
+inline float hidden_share(float pdf_light, float pdf_bsdf) {
+  const float ratio = pdf_bsdf / pdf_light;
+  return pdf_light > 0.0f ? 1.0f / (1.0f + ratio * ratio) : 0.0f;
+}
 // Return the radiance of an analytic light that a ray crosses, and of the world, towards this kind of ray. It is black
 // if it is hidden from that kind.
 Rgb light_hit_radiance(const light::LightEvaluation& view, const PathRay& ray, int depth);

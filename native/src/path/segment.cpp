@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/fault.h"
+#include "geometry/accelerator.h"
 
 namespace gradus::path {
 
@@ -60,24 +61,22 @@ void add_light_crossings(const PathContext& context, const PathRay& ray, float b
       continue;  // add_linked_crossings() has found it
     }
     segment->light_crossings.push_back({hit.point, hit.distance, segment->weight, segment->probability,
-                                        segment->crossed, ray.ray.origin, segment->passes_portal});
+                                        segment->crossed, false, ray.ray.origin, segment->passes_portal});
   }
 }
 
 // Adds an emitter with blockers at the end of `ray`, a part of the ray of a bounce, if these let it pass.
-void add_linked_crossing(const PathContext& context, const PathRay& bounce, const light::LightPoint& point,
-                         const Ray& ray, float distance, Segment* segment) {
-  const bool is_in_mirror = (bounce.state.flags & shading::kRaySingular) != 0;
-  const Rgb transmittance =
-      linked_transmittance(context, ray, light::links_of(context.scene, point).blockers, is_in_mirror);
-  if (!is_black(transmittance)) {
-    segment->light_crossings.push_back({point, distance, transmittance, 1.0f, 0, bounce.ray.origin, false});
+void add_linked_crossing(const PathContext& context, const light::LightPoint& point, const Ray& ray, float distance,
+                         Segment* segment) {
+  const LightVisibility visibility = linked_visibility(context, ray, light::links_of(context.scene, point).blockers);
+  if (!is_black(visibility.transmittance)) {
+    segment->light_crossings.push_back(
+        {point, distance, visibility.transmittance, 1.0f, 0, visibility.is_hidden, ray.origin, false});
   }
 }
 
 // Adds the emissive triangles of an instance with blockers.
-void add_linked_instance(const PathContext& context, const PathRay& bounce, uint32_t instance, Segment* segment) {
-  const Ray& ray = bounce.ray;
+void add_linked_instance(const PathContext& context, const Ray& ray, uint32_t instance, Segment* segment) {
   Ray part = ray;
   float passed = 0.0f;
   geometry::Hit hit;
@@ -86,7 +85,7 @@ void add_linked_instance(const PathContext& context, const PathRay& bounce, uint
     const light::LightPoint point = light::light_point_of_surface(context.scene, surface);
     if (point.kind != light::LightKind::None) {
       const Vec3 end = geometry::offset_origin(surface, -ray.direction);
-      add_linked_crossing(context, bounce, point, geometry::ray_between(ray.origin, end, ray.direction, ray.time),
+      add_linked_crossing(context, point, geometry::ray_between(ray.origin, end, ray.direction, ray.time),
                           passed + hit.t, segment);
     }
     passed += geometry::pass_surface(surface, &part);
@@ -105,13 +104,13 @@ void add_linked_crossings(const PathContext& context, const PathRay& ray, Segmen
       if (has_blockers(context, hit.point)) {
         Ray part = ray.ray;
         part.t_max = hit.distance;
-        add_linked_crossing(context, ray, hit.point, part, hit.distance, segment);
+        add_linked_crossing(context, hit.point, part, hit.distance, segment);
       }
     }
   }
   for (const uint32_t instance : context.scene.light_table->linked_instances) {
     if ((context.scene.instances[instance].visibility & ray.visibility) != 0) {
-      add_linked_instance(context, ray, instance, segment);
+      add_linked_instance(context, ray.ray, instance, segment);
     }
   }
 }
@@ -172,10 +171,13 @@ void shade_vertex(const PathContext& context, const shading::RayState& ray, Vert
   }
 }
 
-Rgb linked_transmittance(const PathContext& context, const Ray& ray, uint64_t blockers, bool is_in_mirror) {
+LightVisibility linked_visibility(const PathContext& context, const Ray& ray, uint64_t blockers) {
   constexpr uint64_t kUnlinked = 1;
-  const uint64_t opaque_blockers = is_in_mirror ? blockers | kUnlinked : blockers;
-  return context.scene.transmittance(ray, context.settings.transparent_max_bounces, blockers, opaque_blockers);
+  LightVisibility visibility{context.scene.transmittance(ray, context.settings.transparent_max_bounces, blockers)};
+  geometry::Hit hit;
+  visibility.is_hidden = !is_black(visibility.transmittance) &&
+                         context.scene.intersect_blocker(ray, geometry::kMaskOpaqueShadow, kUnlinked, &hit);
+  return visibility;
 }
 
 bool is_crossed_emitter(const PathContext& context, const geometry::SurfacePoint& surface) {

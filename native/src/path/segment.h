@@ -20,8 +20,17 @@ struct LightCrossing {
   Rgb weight = Rgb(1.0f);
   float probability = 1.0f;
   int crossed = 0;
-  Vec3 eye = Vec3(0.0f);  // where the ray that crosses the light starts: at the segment's start, or behind a portal
+  bool is_hidden = false;  // see LightVisibility
+  Vec3 eye = Vec3(0.0f);   // where the ray that crosses the light starts: at the segment's start, or behind a portal
   bool is_behind_portal = false;
+};
+
+// How much of an emitter is visible.
+struct LightVisibility {
+  Rgb transmittance = Rgb(0.0f);
+  // An opaque surface without a shadow set of its own is in front of an emitter with blockers. It does not block light
+  // sampling, but Cycles does not find the emitter behind it by bounces; see hidden_share().
+  bool is_hidden = false;
 };
 
 enum class SegmentEnd : uint8_t {
@@ -69,10 +78,9 @@ enum class Shading : uint8_t { Now, Later };
 void trace_segment(const PathContext& context, const Sampler& sampler, int depth, const geometry::Hit* first,
                    PathRay* ray, Vertex* vertex, Segment* segment, Shading shading = Shading::Now,
                    SurfaceVisitor* visitor = nullptr);
-// Returns the transmittance of a segment to an emitter that the shadow sets `blockers` block. It does not depend on the
-// number of transparent surfaces that the path has passed, so that all paths that share the segment agree. In sharp
-// mirrors, opaque surfaces without a shadow set of their own also hide the emitter, as in Cycles.
-Rgb linked_transmittance(const PathContext& context, const Ray& ray, uint64_t blockers, bool is_in_mirror = false);
+// Returns the visibility, along a segment, of an emitter that the shadow sets `blockers` block. It does not depend on
+// the number of transparent surfaces that the path has passed, so that all paths that share the segment agree.
+LightVisibility linked_visibility(const PathContext& context, const Ray& ray, uint64_t blockers);
 // Returns whether segments of bounces find the emission of a surface as a light crossing, because only some shadow sets
 // block it.
 bool is_crossed_emitter(const PathContext& context, const geometry::SurfacePoint& surface);

@@ -305,11 +305,11 @@ class PathTracer {
       return;
     }
     ++counters_.rays_shadow;
-    const Rgb transmittance =
-        light_transmittance(context_, vertex.point, light.point, light.view, arrival.ray.state.transparent_depth);
-    for (int k = 0; k < bsdf::kPathEvents && !is_black(transmittance); ++k) {
+    const LightVisibility visibility =
+        light_visibility(context_, vertex.point, light.point, light.view, arrival.ray.state.transparent_depth);
+    for (int k = 0; k < bsdf::kPathEvents && !is_black(visibility.transmittance); ++k) {
       const auto scatter_class = static_cast<bsdf::ScatterClass>(k);
-      const Contribution c = light_contribution(context_, arrival, light, scatter_class, lit[k], transmittance);
+      const Contribution c = light_contribution(context_, arrival, light, scatter_class, lit[k], visibility);
       if (!is_black(c.clamped)) {
         add(c);
         if (records(c)) recorder_->light(arrival, vertex, scatter_class, light, c.clamped);

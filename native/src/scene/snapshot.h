@@ -38,9 +38,8 @@ class Snapshot : public light::LitScene {
  public:
   // Returns the transmittance of a segment through at most max_transparent transparent surfaces, or 0 if it is blocked.
   Rgb transmittance(const Ray& ray, uint32_t max_transparent) const;
-  // Returns the same where only surfaces in the shadow sets `blockers` are on the segment, and only opaque surfaces in
-  // `opaque_blockers`.
-  Rgb transmittance(const Ray& ray, uint32_t max_transparent, uint64_t blockers, uint64_t opaque_blockers) const;
+  // Returns the same where only surfaces in the shadow sets `blockers` are on the segment.
+  Rgb transmittance(const Ray& ray, uint32_t max_transparent, uint64_t blockers) const;
 
   std::shared_ptr<const camera::CameraKeys> camera_keys;
   bool shot_change_before = false, shot_change_after = false;  // the adjacent frame belongs to another shot

@@ -39,10 +39,9 @@ Rgb Snapshot::transmittance(const Ray& ray, uint32_t max_transparent) const {
   });
 }
 
-Rgb Snapshot::transmittance(const Ray& ray, uint32_t max_transparent, uint64_t blockers,
-                            uint64_t opaque_blockers) const {
+Rgb Snapshot::transmittance(const Ray& ray, uint32_t max_transparent, uint64_t blockers) const {
   geometry::Hit opaque;
-  if (intersect_blocker(ray, geometry::kMaskOpaqueShadow, opaque_blockers, &opaque)) return Rgb(0.0f);
+  if (intersect_blocker(ray, geometry::kMaskOpaqueShadow, blockers, &opaque)) return Rgb(0.0f);
   if (!features.has_transparent_shadows) return Rgb(1.0f);
   return through_transparent(*this, ray, max_transparent, [&](const Ray& part, geometry::Hit* hit) {
     return intersect_blocker(part, geometry::kMaskTransparentShadow, blockers, hit);

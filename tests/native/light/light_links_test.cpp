@@ -116,8 +116,8 @@ TEST(LightLinks, OnlyBlockersBlock) {
   ASSERT_TRUE(snapshot->intersect_blocker(ray, GRADUS_VISIBLE_ALL, 2 | 4, &hit));
   EXPECT_NEAR(hit.t, 8.0f, 1e-4f);
   EXPECT_FALSE(snapshot->intersect_blocker(ray, GRADUS_VISIBLE_ALL, 8, &hit));
-  EXPECT_EQ(snapshot->transmittance(ray, 8, 8, 8), Rgb(1.0f));
-  EXPECT_EQ(snapshot->transmittance(ray, 8, 1, 1), Rgb(0.0f));
+  EXPECT_EQ(snapshot->transmittance(ray, 8, 8), Rgb(1.0f));
+  EXPECT_EQ(snapshot->transmittance(ray, 8, 1), Rgb(0.0f));
 }
 
 }  // namespace
