@@ -88,6 +88,7 @@ class Distribution(IntEnum):
 
     SINGLE = 0
     MULTIPLE = 1
+    CONSERVED = 64
 
 
 class Subsurface(IntEnum):

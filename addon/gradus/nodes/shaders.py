@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .node import NodeView, translator
-from .ops import Op, Subsurface
+from .ops import Distribution, Op, Subsurface
 from .program import BLACK_CLOSURE, NO_NORMAL, Value, constant_float
 
 _RENDERED = frozenset({"GGX", "MULTI_GGX", "SHARP"})
@@ -25,6 +25,12 @@ def distribution_mode(view: NodeView) -> int:
     if distribution not in _RENDERED and not roughness(view).is_zero():
         view.warn_replaced("is rendered with the distribution GGX")
     return MULTIPLE_SCATTERING if distribution == "MULTI_GGX" else 0
+
+
+def filtered_mode(view: NodeView) -> int:
+    """Returns distribution_mode(), and whether multiple scattering conserves energy under Filter Glossy."""
+    mode = distribution_mode(view)
+    return mode + Distribution.CONSERVED if mode == MULTIPLE_SCATTERING and view.version < (4, 0, 0) else mode
 
 
 def roughness(view: NodeView) -> Value:
@@ -102,13 +108,13 @@ def glossy(view: NodeView) -> Value:
         view.direction("Normal"),
         view.direction("Tangent"),
     )
-    return view.add_closure(Op.GLOSSY, inputs, distribution_mode(view))
+    return view.add_closure(Op.GLOSSY, inputs, filtered_mode(view))
 
 
 @translator("ShaderNodeBsdfGlass")
 def glass(view: NodeView) -> Value:
     inputs = (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal"))
-    return view.add_closure(Op.GLASS, inputs, distribution_mode(view) | (2 if view.version < (4, 0, 0) else 0))
+    return view.add_closure(Op.GLASS, inputs, filtered_mode(view) | (2 if view.version < (4, 0, 0) else 0))
 
 
 @translator("ShaderNodeBsdfRefraction")

@@ -227,8 +227,11 @@ typedef enum GradusOp { GRADUS_OPS(GRADUS_OP_ENUM) GRADUS_OP_LIMIT = 128 } Gradu
 
 /* Microfacet distribution of a closure. */
 typedef enum GradusDistribution {
-  GRADUS_DISTRIBUTION_SINGLE = 0,  /* GGX with single scattering; it also stands for Beckmann and Ashikhmin-Shirley. */
-  GRADUS_DISTRIBUTION_MULTIPLE = 1 /* GGX with the energy of multiple scattering. */
+  GRADUS_DISTRIBUTION_SINGLE = 0,    /* GGX with single scattering; it also stands for Beckmann and
+                                        Ashikhmin-Shirley. */
+  GRADUS_DISTRIBUTION_MULTIPLE = 1,  /* GGX with the energy of multiple scattering. */
+  GRADUS_DISTRIBUTION_CONSERVED = 64 /* A bit: multiple scattering conserves energy under Filter Glossy, too, as
+                                        before Blender 4.0. */
 } GradusDistribution;
 
 /* Method of subsurface scattering. It is added to the distribution of a closure. */

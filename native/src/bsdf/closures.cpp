@@ -81,14 +81,17 @@ LobeType rough_of(LobeType type) {
 
 // Raises the alphas of a prepared microfacet lobe to `blur`. Without a step in the IOR nothing bends light, so that a
 // lobe that transmits stays as it is.
-void blur_lobe(float blur, Lobe* lobe) {
+void blur_lobe(float blur, const Vec3& wo, Lobe* lobe) {
   const bool stepless = lobe->ior == 1.0f && sides_of(lobe->type) & kTransmits;
-  if (!is_microfacet(lobe->type) || lobe->keeps_alpha || stepless) {
+  if (!is_microfacet(lobe->type) || stepless) {
     return;
   }
   lobe->type = rough_of(lobe->type);
   lobe->alpha_x = std::max(lobe->alpha_x, blur);
   lobe->alpha_y = std::max(lobe->alpha_y, blur);
+  if (lobe->blur_conserves) {
+    lobe->energy = multiscatter_energy(*lobe, glm::dot(lobe->normal, wo));
+  }
 }
 
 // Returns the smaller alpha of a lobe, which is compared with the roughness threshold.
@@ -197,7 +200,7 @@ void Closures::prepare(int index, const Vec3& wo) {
   lobe.alpha_y = original.alpha_y;
   prepare_lobe(&lobe, geometric_normal_, wo);
   if (blur_ > 0.0f) {
-    blur_lobe(blur_, &lobe);
+    blur_lobe(blur_, wo, &lobe);
   }
 }
 

@@ -31,6 +31,7 @@ void add_glossy(const ClosureArgs& args, const ShadeContext& c, ShadeResult* res
   set_glossy_roughness(lobe, args.f(1), args.f(2));
   if (args.f(2) != 0.0f) lobe->tangent = turned_tangent(c, args.v(5), normal, args.f(3));
   lobe->multiscatter = args.mode & GRADUS_DISTRIBUTION_MULTIPLE;
+  lobe->blur_conserves = args.mode & GRADUS_DISTRIBUTION_CONSERVED;
   lobe->f0 = non_negative(args.v(0));
 }
 
@@ -88,7 +89,9 @@ void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* resu
   lobe->ior = std::max(args.f(2), 1e-5f);
   lobe->fresnel = bsdf::FresnelType::Dielectric;
   lobe->multiscatter = args.mode & GRADUS_DISTRIBUTION_MULTIPLE;
-  leave_caustics_out(c, lobe);
+  lobe->blur_conserves = args.mode & GRADUS_DISTRIBUTION_CONSERVED;
+  // Before 4.0, glass with multiple scattering was left out as a whole or not at all.
+  if (!(args.mode & 2) || !lobe->multiscatter) leave_caustics_out(c, lobe);
 }
 
 void add_subsurface_node(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
