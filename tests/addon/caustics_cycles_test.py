@@ -40,6 +40,7 @@ def material(kind: str, inputs: dict[str, Any], **properties: Any) -> bpy.types.
 CASES: dict[str, Callable[[], bpy.types.Material]] = {
     "glossy": lambda: material("BsdfGlossy", {"Roughness": 0.1}, distribution="GGX"),
     "multiple scattering": lambda: material("BsdfGlossy", {"Roughness": 0.3}, distribution="MULTI_GGX"),
+    "multiple scattering glass": lambda: material("BsdfGlass", {"Roughness": 0.3}, distribution="MULTI_GGX"),
     "glass": lambda: material("BsdfGlass", {"Roughness": 0.1}, distribution="GGX"),
     "refraction": lambda: material("BsdfRefraction", {"Roughness": 0.1}, distribution="GGX"),
     "clear pane": lambda: material("BsdfRefraction", {"Roughness": 0.0, "IOR": 1.2}, distribution="GGX"),
@@ -95,9 +96,11 @@ def test_filter_glossy_blurs_what_diffuse_surfaces_see(
     scene: bpy.types.Scene, tmp_path: Path, case: str, blur: str
 ) -> None:
     build(scene, CASES[case]())
-    # Rough refraction is darker than in Cycles, with and without the filter.
+    # Rough refraction is darker than in Cycles, with and without the filter. Before 4.0, Cycles followed light between
+    # microfacets; that is approximated.
     is_rough_refraction = blur != "sharp" and case in ("refraction", "clear pane")
-    compare(scene, tmp_path, BLURS[blur], 0.06 if is_rough_refraction else 0.015)
+    is_approximate = not SINCE_4 and case.startswith("multiple")
+    compare(scene, tmp_path, BLURS[blur], 0.06 if is_rough_refraction else 0.035 if is_approximate else 0.015)
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -51,14 +51,17 @@ void limit_microfacets(Lobe* lobe) {
 
 // Raises the alphas of a prepared microfacet lobe to `blur`; `rough` is its type before it was prepared. Without a step
 // in the IOR nothing bends light, so that a lobe that transmits stays as it is.
-void blur_lobe(float blur, LobeType rough, Lobe* lobe) {
+void blur_lobe(float blur, LobeType rough, const Vec3& wo, Lobe* lobe) {
   const bool stepless = lobe->ior == 1.0f && sides_of(lobe->type) & kTransmits;
-  if (!is_microfacet(lobe->type) || lobe->keeps_alpha || stepless) {
+  if (!is_microfacet(lobe->type) || stepless) {
     return;
   }
   lobe->type = rough;
   lobe->alpha_x = std::max(lobe->alpha_x, blur);
   lobe->alpha_y = std::max(lobe->alpha_y, blur);
+  if (lobe->blur_conserves) {
+    lobe->energy = multiscatter_energy(*lobe, glm::dot(lobe->normal, wo));
+  }
 }
 
 // Returns the smaller alpha of a lobe, which is compared with the roughness threshold.
@@ -171,7 +174,7 @@ void Closures::prepare(int index, const Vec3& wo) {
   lobe.alpha_y = original.alpha_y;
   prepare_lobe(&lobe, geometric_normal_, wo);
   if (blur_ > 0.0f) {
-    blur_lobe(blur_, original.type, &lobe);
+    blur_lobe(blur_, original.type, wo, &lobe);
   }
 }
 

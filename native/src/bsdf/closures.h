@@ -141,7 +141,7 @@ struct Lobe {
   LightPass pass = LightPass::Diffuse;
   bool separable_masking = false;  // masks both directions of a microfacet independently, as Blender before 4.0
   bool multiscatter = false;       // adds the energy that single scattering loses
-  bool keeps_alpha = false;        // finish() does not blur the lobe
+  bool blur_conserves = false;     // multiple scattering conserves energy under a blur, too
   SubsurfaceMethod subsurface = SubsurfaceMethod::Disk;
   DisneyPart disney = DisneyPart::All;
   Rgb weight = Rgb(0.0f);        // throughput of the node graph times colour
@@ -201,8 +201,8 @@ class Closures {
   // weights. `wo` and `geometric_normal` are in world space, the normal on the side of wo. All functions below require
   // the wo of the last finish(); call it again for another wo, as shifted paths do. `smooth_normal` is the interpolated
   // normal without bumps, on the side of wo, or 0 for none. Diffuse lobes with another normal darken gradually where
-  // the surface faces away. `blur` is the minimum alpha of microfacet lobes; as in Cycles, they keep the energy that
-  // they have without it.
+  // the surface faces away. `blur` is the minimum alpha of microfacet lobes; as in Cycles, the energy of
+  // multiple scattering is that without it, except where blur_conserves.
   void finish(const Vec3& wo, const Vec3& geometric_normal, float roughness_threshold,
               const Vec3& smooth_normal = Vec3(0.0f), float blur = 0.0f);
 

@@ -40,6 +40,8 @@ bsdf::LobeType glass_type(const ClosureArgs& args) {
 
 bool is_multiscatter(const ClosureArgs& args) { return distribution_of(args) == GRADUS_DISTRIBUTION_MULTIPLE; }
 
+// Returns whether multiple scattering conserves energy under Filter Glossy, too, as before Blender 4.0.
+bool has_legacy_blur(const ClosureArgs& args) { return (args.mode & kLegacy) && is_multiscatter(args); }
 bool has_separable_masking(const ClosureArgs& args) { return (args.mode & kLegacy) && !is_multiscatter(args); }
 
 Rgb non_negative(const Vec3& c) { return glm::max(c, Vec3(0.0f)); }
@@ -64,6 +66,7 @@ void add_glossy(const ClosureArgs& args, const ShadeContext& c, ShadeResult* res
   if (args.f(2) != 0.0f) lobe->tangent = turned_tangent(c, args.v(5), normal, args.f(3));
   lobe->multiscatter = is_multiscatter(args);
   lobe->separable_masking = has_separable_masking(args);
+  lobe->blur_conserves = has_legacy_blur(args);
   lobe->f0 = non_negative(args.v(0));
 }
 
@@ -132,7 +135,9 @@ void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* resu
   lobe->multiscatter = is_multiscatter(args);
   lobe->f90 = non_negative(args.v(0));
   add_film(lobe, args.f(4), args.f(5), false);
-  leave_caustics_out(c, lobe);
+  lobe->blur_conserves = has_legacy_blur(args);
+  // Before 4.0, glass with multiple scattering was left out as a whole or not at all.
+  if (!has_legacy_blur(args)) leave_caustics_out(c, lobe);
 }
 
 void add_subsurface_node(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {

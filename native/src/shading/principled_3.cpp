@@ -106,6 +106,7 @@ class Lobes {
       lobe->tangent = turned_tangent(c_, args_.v(kTangent), normal_, args_.f(kAnisotropicRotation));
     lobe->multiscatter = args_.mode & GRADUS_DISTRIBUTION_MULTIPLE;
     lobe->separable_masking = !lobe->multiscatter;
+    lobe->blur_conserves = lobe->multiscatter;
     lobe->ior = 2.0f / (1.0f - std::sqrt(std::min(0.08f * amount, 0.99f))) - 1.0f;
     lobe->fresnel = bsdf::FresnelType::Schlick;
     lobe->f0 = f0;
@@ -162,7 +163,7 @@ class Lobes {
     lobe->fresnel = bsdf::FresnelType::Dielectric;
     lobe->transmission_tint = base_;
     lobe->multiscatter = true;
-    lobe->keeps_alpha = true;
+    lobe->blur_conserves = true;
   }
 
   void clearcoat() {
