@@ -181,9 +181,9 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {
 
 // As in Cycles, the albedo for layering ignores the energy that single scattering loses. Cycles' tables start at an IOR
 // of 1, so a smaller IOR takes the albedo of its inverse.
-Rgb lobe_albedo(Lobe* lobe, const Vec3& wo) {
+Rgb lobe_albedo(Lobe* lobe, const Vec3& wo, const Vec3& geometric_normal) {
   Lobe prepared = *lobe;
-  prepare_lobe(&prepared, glm::dot(lobe->normal, wo) < 0.0f ? -lobe->normal : lobe->normal, wo);
+  prepare_lobe(&prepared, geometric_normal, wo);
   const float cosine = glm::dot(prepared.normal, wo);
   float kept = 1.0f;
   if (is_microfacet(prepared.type) && !is_dirac(prepared.type) && sides_of(prepared.type) == kReflects) {

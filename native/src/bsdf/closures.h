@@ -185,9 +185,10 @@ struct BsdfSample {
 };
 
 // Returns the directional albedo of one lobe before finish(), including its weight, for the layers below it. It ignores
-// the energy that single scattering loses. wo is inside the object if normal·wo < 0. All inputs of the lobe must be
-// set; the function fills `lobe->known`.
-Rgb lobe_albedo(Lobe* lobe, const Vec3& wo);
+// the energy that single scattering loses. `geometric_normal` is on the side of wo, as for finish(); wo is inside the
+// object if the lobe's normal is on the other side. All inputs of the lobe must be set; the function fills
+// `lobe->known`.
+Rgb lobe_albedo(Lobe* lobe, const Vec3& wo, const Vec3& geometric_normal);
 
 inline constexpr int kMaxLobes = 12;
 

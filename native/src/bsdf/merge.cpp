@@ -27,7 +27,7 @@ float squared_distance(const Lobe& a, const Lobe& b) {
 // Returns the albedo at normal incidence.
 Rgb head_on_albedo(Lobe lobe) {
   lobe.normal = Vec3(0, 0, 1);
-  return lobe_albedo(&lobe, lobe.normal);
+  return lobe_albedo(&lobe, lobe.normal, lobe.normal);
 }
 
 // Sets *lobe to the mean shape of two lobes of one type, whose weights it has.

@@ -91,7 +91,7 @@ class Layers {
   }
 
   // Reduces the weight of the layers below by the albedo of this lobe.
-  void put_layer(bsdf::Lobe* lobe) { weight_ = layered(weight_, bsdf::lobe_albedo(lobe, c_.wo)); }
+  void put_layer(bsdf::Lobe* lobe) { weight_ = layered(weight_, bsdf::lobe_albedo(lobe, c_.wo, c_.geometric_normal)); }
 
   void sheen() {
     const float amount = std::max(args_.f(kSheenWeight), 0.0f);

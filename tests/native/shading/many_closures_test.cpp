@@ -125,7 +125,7 @@ TEST(ManyClosures, CurvesOfFresnelThatDoNotMixKeepTheirAlbedo) {
   metal.fresnel = bsdf::FresnelType::PrincipledMetal;
   metal.f0 = Rgb(0.5f);
   bsdf::Lobe both = bsdf::merged(coat, metal);
-  const Rgb after = bsdf::lobe_albedo(&both, Vec3(0, 0, 1));
+  const Rgb after = bsdf::lobe_albedo(&both, Vec3(0, 0, 1), Vec3(0, 0, 1));
   EXPECT_NEAR(after.x, before.x, 0.01f);
 }
 
