@@ -44,8 +44,6 @@ def test_hair_particles_are_named(scene: bpy.types.Scene, plane: bpy.types.Objec
     assert warnings(scene) == []
 
 
-
-
 @pytest.mark.parametrize("has_volume", [False, True])
 def test_a_smoke_domain_is_no_box(scene: bpy.types.Scene, plane: bpy.types.Object, has_volume: bool) -> None:
     """Regression: the box of the domain hid what was in it."""

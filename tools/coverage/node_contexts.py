@@ -63,6 +63,7 @@ INPUTS: dict[tuple[str, str], dict[str, Any]] = {
     ("ShaderNodeBsdfPrincipled", "Diffuse Roughness"): {"Specular IOR Level": 0.0},
     ("ShaderNodeBsdfMetallic", "Thin Film*"): {"Thin Film Thickness": 400.0},
     ("ShaderNodeBsdfGlass", "Thin Film*"): {"Thin Film Thickness": 400.0},
+    ("ShaderNodeWireframe", "use_pixel_size"): {"Size": 5.0},
     ("ShaderNodeBsdfMetallic", "Rotation"): {"Anisotropy": 0.7},
     ("ShaderNodeBsdfMetallic", "Tangent"): {"Anisotropy": 0.7},
     ("ShaderNodeBsdfGlossy", "Rotation"): {"Anisotropy": 0.7, "Roughness": 0.3},
@@ -70,7 +71,7 @@ INPUTS: dict[tuple[str, str], dict[str, Any]] = {
     ("ShaderNodeBsdfAnisotropic", "Rotation"): {"Anisotropy": 0.7, "Roughness": 0.3},
     ("ShaderNodeBsdfAnisotropic", "Tangent"): {"Anisotropy": 0.7, "Roughness": 0.3},
 }
-"""Values of other inputs, those that exist, with which an input has an effect, by node and name of the input."""
+"""Values of inputs, those that exist, with which another input or a property has an effect, by node and name of it."""
 
 STRINGS = {"uv_map": "Second", "attribute_name": "Second", "layer_name": "Col"}
 """Other values of texts."""

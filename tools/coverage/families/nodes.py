@@ -71,8 +71,9 @@ def rows_of_node(kind: str) -> Iterator[Row]:
     node = probe(kind)
     yield _row(kind, "", Variation(), base=Variation(is_muted=True))
     for suffix, change in property_changes(node):
-        context = node_contexts.settings_for(kind, suffix[1:].partition("=")[0])
-        yield _row(kind, suffix, Variation(settings=context, change=change), Variation(settings=context))
+        name = suffix[1:].partition("=")[0]
+        base = Variation(settings=node_contexts.settings_for(kind, name), given=node_contexts.inputs_for(kind, name))
+        yield _row(kind, suffix, replace(base, change=change), base)
     for socket, settings in sockets_of(node, "inputs"):
         yield from _rows_of_input(kind, socket, settings)
     outputs = list(sockets_of(node, "outputs"))
@@ -236,10 +237,10 @@ def _feed(node: Any, variation: Variation) -> None:
             pass
         elif socket.type == "SHADER":
             patterns_for_shader(node.id_data, socket, index)
-        elif is_value and first and socket.type in {"VALUE", "VECTOR", "RGBA"} and not sockets.is_direction(socket):
-            patterns.drive(socket)
         elif socket.name in variation.given:
             socket.default_value = variation.given[socket.name]
+        elif is_value and first and socket.type in {"VALUE", "VECTOR", "RGBA"} and not sockets.is_direction(socket):
+            patterns.drive(socket)
         elif is_value or socket.type == "RGBA":
             sockets.set_constant(socket, index)
         first = False
