@@ -22,9 +22,9 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   std::array<OpInfo, GRADUS_OP_LIMIT> table{};
   table[GRADUS_OP_DIFFUSE] = {"DIFFUSE", OpKind::Closure, 3, 1, 0, 1};
   table[GRADUS_OP_TRANSLUCENT] = {"TRANSLUCENT", OpKind::Closure, 2, 1, 0, 0};
-  table[GRADUS_OP_GLOSSY] = {"GLOSSY", OpKind::Closure, 6, 1, 0, GRADUS_DISTRIBUTION_MULTIPLE + GRADUS_DISTRIBUTION_CONSERVED};
+  table[GRADUS_OP_GLOSSY] = {"GLOSSY", OpKind::Closure, 6, 1, 0, 65};
   table[GRADUS_OP_REFRACTION] = {"REFRACTION", OpKind::Closure, 4, 1, 0, 0};
-  table[GRADUS_OP_GLASS] = {"GLASS", OpKind::Closure, 4, 1, 0, GRADUS_DISTRIBUTION_MULTIPLE + GRADUS_DISTRIBUTION_CONSERVED + 2};
+  table[GRADUS_OP_GLASS] = {"GLASS", OpKind::Closure, 4, 1, 0, 67};
   table[GRADUS_OP_SHEEN] = {"SHEEN", OpKind::Closure, 3, 1, 0, 0};
   table[GRADUS_OP_TRANSPARENT] = {"TRANSPARENT", OpKind::Closure, 1, 1, 0, 0};
   table[GRADUS_OP_HOLDOUT] = {"HOLDOUT", OpKind::Closure, 0, 1, 0, 0};
