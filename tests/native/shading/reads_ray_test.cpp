@@ -105,9 +105,9 @@ std::vector<Arrival> rays_of_other_history() {
     rays.push_back(kFirst);
     rays.back().ray.flags |= flag;
   }
-  for (uint16_t shading::RayState::*depth :
-       {&shading::RayState::depth, &shading::RayState::diffuse_depth, &shading::RayState::glossy_depth,
-        &shading::RayState::transmission_depth, &shading::RayState::transparent_depth}) {
+  for (uint16_t shading::RayState::*depth : {&shading::RayState::depth, &shading::RayState::diffuse_depth,
+                                             &shading::RayState::glossy_depth, &shading::RayState::transmission_depth,
+                                             &shading::RayState::transparent_depth, &shading::RayState::portal_depth}) {
     rays.push_back(kFirst);
     rays.back().ray.*depth = 2;
   }
