@@ -11,8 +11,9 @@ namespace gradus::geometry {
 
 // Tangents at the corners of a mesh. The tangent at a vertex is the mean of the adjacent triangles' directions of
 // increasing u, weighted by their angles at the vertex. Corners that differ in normal, UV coordinates or handedness, or
-// whose triangles meet at no edge that is connected in the UV map, have separate tangents. Source: M. Mikkelsen, Simulation of Wrinkled Surfaces Revisited (2008), 3.3. Blender, Cycles
-// and bakers use the same convention (MikkTSpace).
+// whose triangles meet at no edge that is connected in the UV map, have separate tangents. Source: M. Mikkelsen,
+// Simulation of Wrinkled Surfaces Revisited (2008), 3.3. Blender, Cycles and bakers use the same convention
+// (MikkTSpace).
 struct TangentField {
   const MeshAttribute* uv = nullptr;      // UV map, owned by `mesh`
   std::shared_ptr<const MeshData> mesh;   // the mesh, which stays alive with the field

@@ -185,8 +185,6 @@ void PassRecorder::surface(const Sampler& sampler, const PathState& state, const
     camera_surface(sampler, state.throughput, vertex);
   }
   if (!features_done_) {
-    const float start = path_length_ == segment.length ? state.ray.ray.t_min : 0.0f;
-    add(GRADUS_PASS_DENOISING_DEPTH, mean_component(state.throughput) * (segment.length - start));
     features(state, vertex);
   }
   if (seeks_non_specular_) {
@@ -313,7 +311,8 @@ void PassRecorder::features(const PathState& state, const Vertex& vertex) {
   if (plane(GRADUS_PASS_DENOISING_ALBEDO) != nullptr) {
     add_albedo(state.throughput * closures.albedo(vertex.wo));
   }
-  if (!closures.empty()) add(GRADUS_PASS_DENOISING_NORMAL, shown_normal(vertex));
+  add(GRADUS_PASS_DENOISING_NORMAL, shown_normal(vertex));
+  add(GRADUS_PASS_DENOISING_DEPTH, path_length_);
 }
 
 // Returns the components, as bits, of paths whose first non-specular vertex this is: those that scatter here in class
