@@ -32,6 +32,15 @@ def test_nothing_is_left_out_of_an_ordinary_scene(scene: bpy.types.Scene, plane:
     assert warnings(scene) == []
 
 
+def test_a_world_without_shadows_is_named(scene: bpy.types.Scene) -> None:
+    scene.world = bpy.data.worlds.new("World")
+    if not hasattr(getattr(scene.world, "cycles", None), "use_shadows"):
+        pytest.skip("came with Blender 5.2")
+    assert warnings(scene) == []
+    scene.world.cycles.use_shadows = False
+    assert warnings(scene) == ["World 'World': its light is shadowed, although its setting Shadows is off"]
+
+
 def test_hair_particles_are_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
     modifier = plane.modifiers.new("Fur", "PARTICLE_SYSTEM")
     settings = modifier.particle_system.settings

@@ -242,8 +242,16 @@ def bundle(graph: Graph) -> bpy.types.NodeSocket:
     return separated.outputs["Place"]
 
 
+def scene_time(graph: Graph) -> bpy.types.NodeSocket:
+    bpy.context.scene.frame_set(17)
+    return graph.tree.nodes.new("GeometryNodeInputSceneTime").outputs["Seconds"]
+
+
+MAKERS = [menu_switch, repeat_zone, bundle] + ([scene_time] if VERSION >= (5, 2, 0) else [])
+
+
 @pytest.mark.skipif(VERSION < (5, 0, 0), reason="came with Blender 5.0")
-@pytest.mark.parametrize("make", [menu_switch, repeat_zone, bundle])
+@pytest.mark.parametrize("make", MAKERS)
 def test_a9_nodes_that_blender_evaluates(
     make: Callable[[Graph], bpy.types.NodeSocket], stage: bpy.types.Scene, tmp_path: Path
 ) -> None:

@@ -27,6 +27,9 @@ class Resources:
     def view_layer_color(self, name: str) -> tuple[float, ...]:
         return (0.0, 0.0, 0.0, 0.0)
 
+    def scene_time(self) -> tuple[float, float]:
+        return (0.5, 12.0)
+
     def warn(self, text: str) -> None:
         raise AssertionError(text)
 

@@ -72,6 +72,12 @@ class Resources:
         scene = self._depsgraph.scene_eval
         return find_color((self._depsgraph.view_layer_eval, scene, scene.world), name) or MISSING
 
+    def scene_time(self) -> tuple[float, float]:
+        """Returns the time of the scene in seconds and in frames."""
+        scene = self._depsgraph.scene_eval
+        frame = scene.frame_current_final
+        return frame * scene.render.fps_base / scene.render.fps, frame
+
     def content(self, key: int) -> Any:
         """Returns a value that is equal for images of equal content."""
         return self._keys.content(key)

@@ -192,6 +192,12 @@ def light_falloff(view: NodeView) -> Value:
     return view.add_float(Op.LIGHT_FALLOFF, (view.value("Strength"), view.value("Smooth")), mode)
 
 
+@translator("GeometryNodeInputSceneTime")
+def scene_time(view: NodeView) -> Value:
+    seconds, frame = view.walker.resources.scene_time()
+    return constant_float(frame if view.output == "Frame" else seconds)
+
+
 @translator("ShaderNodeValue")
 def value(view: NodeView) -> Value:
     return constant_float(view.node.outputs[0].default_value)
