@@ -32,7 +32,7 @@ def test_nothing_is_left_out_of_an_ordinary_scene(scene: bpy.types.Scene, plane:
     assert warnings(scene) == []
 
 
-def test_a_world_without_shadows_is_named(scene: bpy.types.Scene) -> None:
+def test_a_world_without_shadows_is_named(scene: bpy.types.Scene, plane: bpy.types.Object) -> None:
     scene.world = bpy.data.worlds.new("World")
     if not hasattr(getattr(scene.world, "cycles", None), "use_shadows"):
         pytest.skip("came with Blender 5.2")
