@@ -66,7 +66,8 @@ def of_scene(scene: Any, view_layer: Any) -> Iterator[str]:
     if camera is not None and any(column.to_3d().length_squared == 0.0 for column in camera.matrix_world.col[:3]):
         yield f"Camera '{camera.name}' has scale 0, so that its direction is undefined"
     world = scene.world
-    if world is not None and not getattr(getattr(world, "cycles", None), "use_shadows", True):  # from 5.2 on
+    of_cycles = getattr(world.original, "cycles", None) if world is not None else None
+    if not getattr(of_cycles, "use_shadows", True):  # from 5.2 on
         yield f"World '{world.name}': its light is shadowed, although its setting Shadows is off"
     passes = list(missing_passes(view_layer))
     if passes:
