@@ -33,7 +33,10 @@ def rows() -> Iterator[Row]:
 
 
 def stage() -> Any:
+    """Shows a room without caustics, whose noise passes of indirect light would show."""
     stages.room()
+    cycles = bpy.context.scene.cycles
+    cycles.caustics_reflective = cycles.caustics_refractive = False
     bpy.context.scene.world.mist_settings.start = 3.0
     bpy.context.scene.world.mist_settings.depth = 5.0
     for index, obj in enumerate(bpy.context.scene.objects):
