@@ -20,8 +20,9 @@ import bpy
 import gpu
 from gpu_extras.presets import draw_texture_2d
 
-from . import automatic, native, options, renderer, settings, store, view_border
+from . import automatic, cycles_settings, native, options, renderer, settings, store, view_border
 from .export import ViewOverride, panorama
+from .export.dicing import DICING_SETTINGS
 from .native import Denoiser, Error, GradusError, Integrator, Pass, Phase, Reconstruction
 from .store import VIEWPORT, Key, Session
 
@@ -343,12 +344,15 @@ def _signature(depsgraph: Any) -> object:
     over them, and instances are not read at all.
     """
     scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
-    values = tuple(getattr(scene.gradus, name) for name in settings.BY_NAME if name not in settings.COMPONENT_SETTINGS)
+    is_followed = scene.gradus.use_cycles_settings
+    owners = (cycles_settings.owner(scene, name, is_followed) for name in settings.BY_NAME)
+    values = tuple(getattr(*owner) for owner in owners if owner[1] not in settings.COMPONENT_SETTINGS)
+    dicing = tuple(getattr(getattr(scene, "cycles", None), name, None) for name in DICING_SETTINGS)
     replaced = (scene.world, layer.material_override, getattr(layer, "world_override", None))
     blocks = tuple(block.original.as_pointer() if block else 0 for block in replaced)
     flags = (scene.render.film_transparent, layer.use_sky, layer.use_solid)
     objects = hash(tuple(depsgraph.objects.values()))
-    return values, scene.frame_current, layer.name, flags, blocks, objects, _collection_flags(layer)
+    return values, dicing, scene.frame_current, layer.name, flags, blocks, objects, _collection_flags(layer)
 
 
 def _collection_flags(layer: Any) -> tuple[tuple[bool, ...], ...]:

@@ -18,6 +18,9 @@ class Dicing:
 
 NO_DICING = Dicing()
 
+DICING_SETTINGS = ("dicing_rate", "preview_dicing_rate", "max_subdivisions", "offscreen_dicing_scale", "feature_set")
+"""Settings of scene.cycles that dicing_of() reads."""
+
 
 def dicing_of(obj: Any, scene: Any, width: int, is_preview: bool) -> Dicing:
     """Returns how an object is diced. width: that of the picture, in pixels.

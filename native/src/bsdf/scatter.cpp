@@ -46,8 +46,7 @@ size_t pass_of(const Lobe& lobe, bool transmitted) {
   return static_cast<size_t>(reflecting_glass && lobe.pass == LightPass::Transmission ? LightPass::Glossy : lobe.pass);
 }
 
-// Returns whether a bounce is diffuse. As in Cycles, that of velvet is, although its light is in the glossy passes.
-bool is_diffuse(const Lobe& lobe) { return lobe.pass == LightPass::Diffuse || lobe.type == LobeType::Velvet; }
+bool is_diffuse(const Lobe& lobe) { return lobe.pass == LightPass::Diffuse; }
 
 // Evaluates a lobe in its frame. It must not be inlined: sample() and evaluate() have to agree, and the density of a
 // sharp lobe depends on where the compiler contracts multiplications and additions.

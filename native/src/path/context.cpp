@@ -5,6 +5,7 @@
 
 #include "light/light_table.h"
 #include "shading/material.h"
+#include "shading/shade.h"
 
 namespace gradus::path {
 

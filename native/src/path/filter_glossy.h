@@ -29,8 +29,6 @@ class FilterGlossy {
   // A strength of 0 switches the filter off.
   explicit FilterGlossy(float strength);
 
-  // Returns whether any event blurs what lies behind.
-  bool is_active() const { return widest_ > 0.0f; }
   // Returns the blur of an event with this density.
   float blur_of(float pdf) const;
   // Returns the blur of an event in direction wi that is not Dirac.

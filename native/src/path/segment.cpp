@@ -57,8 +57,8 @@ void add_light_crossings(const PathContext& context, const PathRay& ray, float b
   const Ray part{ray.ray.origin, std::max(ray.ray.t_min, begin), ray.ray.direction, end};
   light::intersect_lights(context.scene, part, &segment->hits);
   for (const light::LightHit& hit : segment->hits) {
-    if (ray.visibility != GRADUS_VISIBLE_CAMERA && has_blockers(context, hit.point)) {
-      continue;  // add_linked_crossings() has found it
+    if (ray.visibility != GRADUS_VISIBLE_CAMERA && !segment->passes_portal && has_blockers(context, hit.point)) {
+      continue;  // add_linked_crossings() has found it, before any portal
     }
     segment->light_crossings.push_back({hit.point, hit.distance, segment->weight, segment->probability,
                                         segment->crossed, false, ray.ray.origin, segment->passes_portal});

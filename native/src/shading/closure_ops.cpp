@@ -180,6 +180,7 @@ void add_sheen(const ClosureArgs& args, const ShadeContext& c, ShadeResult* resu
 
 void add_toon(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   const bool glossy = args.mode == 1;
+  if (glossy && !reflects(c)) return;
   bsdf::Lobe* lobe = add_lobe(result, glossy ? bsdf::LobeType::GlossyToon : bsdf::LobeType::DiffuseToon,
                               glossy ? bsdf::LightPass::Glossy : bsdf::LightPass::Diffuse,
                               args.weight * non_negative(args.v(0)), facing_normal(c, args.v(3)));

@@ -125,7 +125,7 @@ class Analysis {
     m_.is_diffuse_behind_diffuse = m_.is_diffuse_behind_diffuse || is_diffuse_behind_diffuse(i);
     const int rough = roughness_input(i.op);
     if (rough >= 0) sharpen(narrowest_alpha(i, rough));
-    m_.has_glossy = m_.has_glossy || rough >= 0;
+    m_.has_glossy = m_.has_glossy || rough >= 0 || (i.op == GRADUS_OP_TOON && i.mode == 1);
     const bool glass = i.op == GRADUS_OP_GLASS || i.op == GRADUS_OP_REFRACTION || i.op == GRADUS_OP_TRANSLUCENT;
     bool transmits = glass;
     if (i.op == GRADUS_OP_PRINCIPLED) {
