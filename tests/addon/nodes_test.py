@@ -16,15 +16,22 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 # The nodes that the guide lists. Those that do not exist in a version of Blender are skipped there.
 FAMILIES = tomllib.loads((ROOT / "schema" / "nodes.toml").read_text(encoding="utf-8"))["family"]
 PROMISED = [kind for family in FAMILIES for _, kind in family["nodes"]]
+
+
+def type_of(kind: str) -> str:
+    """Returns the type of a node, of which the list leaves out "ShaderNode"."""
+    return kind if "Node" in kind else f"ShaderNode{kind}"
+
+
 # Outputs without translation of nodes that are translated.
 NOT_YET = {("ShaderNodeNewGeometry", "Pointiness"), ("ShaderNodeNewGeometry", "Random Per Island")}
 
 
 def add(material: bpy.types.Material, kind: str) -> bpy.types.Node:
     try:
-        return material.node_tree.nodes.new(f"ShaderNode{kind}")
+        return material.node_tree.nodes.new(type_of(kind))
     except RuntimeError:
-        pytest.skip(f"Blender {bpy.app.version_string} has no ShaderNode{kind}")
+        pytest.skip(f"Blender {bpy.app.version_string} has no {type_of(kind)}")
 
 
 def complete(node: bpy.types.Node) -> None:
@@ -71,17 +78,17 @@ def test_e5_promised_nodes_do_not_fall_back(kind: str) -> None:
 def test_every_translated_node_is_in_the_list_of_the_guide() -> None:
     from gradus.nodes import node
 
-    assert set(node._translators) == {f"ShaderNode{kind}" for kind in PROMISED}
+    assert set(node._translators) == {type_of(kind) for kind in PROMISED}
 
 
 def test_programs_of_promised_nodes_compile(library: object) -> None:
     """The library accepts the program of each node."""
     for kind in PROMISED:
-        if not hasattr(bpy.types, f"ShaderNode{kind}"):
+        if not hasattr(bpy.types, type_of(kind)):
             continue
         material = new_material(kind)
         try:
-            node = material.node_tree.nodes.new(f"ShaderNode{kind}")
+            node = material.node_tree.nodes.new(type_of(kind))
         except RuntimeError:
             continue
         complete(node)
@@ -457,7 +464,7 @@ def test_programs_have_as_many_inputs_as_operations_take() -> None:
     for kind in PROMISED:
         material = new_material(kind)
         try:
-            node = material.node_tree.nodes.new(f"ShaderNode{kind}")
+            node = material.node_tree.nodes.new(type_of(kind))
         except RuntimeError:
             continue
         show(material, node.outputs[0])
