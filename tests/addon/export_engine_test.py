@@ -76,7 +76,9 @@ def _open(name: str) -> bpy.types.Scene:
 def test_sample_scenes(exported: Callable[[], SimpleNamespace], name: str) -> None:
     scene = _open(name)
     found = exported()
-    assert found.report.warnings == []
+    missing = "not supported are the passes Denoising Roughness, Denoising Specular Albedo"
+    of_version = name == "compositor" and bpy.app.version >= (5, 2, 0)  # it asks for denoising data
+    assert found.report.warnings == ([f"View layer 'ViewLayer': {missing}"] if of_version else [])
     assert (found.report.width, found.report.height) == (scene.render.resolution_x, scene.render.resolution_y)
     assert found.recorded.instances["count"] > 4
     assert len(found.recorded.lights) == {"cornell": 0, "textures_world": 0, "many_lights": 200}.get(name, 1)
