@@ -240,7 +240,8 @@ def ies_texture(view: NodeView) -> Value:
     elif vector is None:
         incoming = view.add_vector(Op.GEOMETRY, (), Geometry.INCOMING)
         vector = view.add_vector(Op.VECTOR_TRANSFORM, (incoming,), _WORLD_TO_OBJECT)
-    return view.add_float(Op.IES, (_mapped(view, vector), strength), floats=profile.table())
+    is_open = (4, 0, 0) <= view.version < (5, 0, 0)
+    return view.add_float(Op.IES, (_mapped(view, vector), strength), 1 if is_open else 0, floats=profile.table())
 
 
 def _ies_text(view: NodeView) -> str | None:

@@ -106,9 +106,9 @@
  *   SKY               vector -> color: A sky model. Mode: GradusSkyMode. Floats: PREETHAM and HOSEK_WILKIE: sun
  *                       direction (3), turbidity, ground albedo; others: sun elevation, sun rotation, sun size
  *                       (negative = no disk), sun intensity, altitude in metres, air, dust or aerosols, ozone.
- *   IES               vector, strength -> value: The intensity of a luminaire by direction. Floats: number of
- *                       horizontal angles, horizontal angles, vertical angles [rad], intensities of all vertical angles
- *                       for each horizontal one.
+ *   IES               vector, strength -> value: The intensity of a luminaire by direction. Mode: 1: the table does not
+ *                       continue over a full turn, as in Blender 4. Floats: number of horizontal angles, horizontal
+ *                       angles, vertical angles [rad], intensities of all vertical angles for each horizontal one.
  *   VORONOI           vector, w, scale, detail, roughness, lacunarity, smoothness, exponent, randomness -> distance,
  *                       color, position, w, radius: Cells around random points. Mode: GRADUS_VORONOI_MODE().
  *   MUSGRAVE          vector, w, scale, detail, dimension, lacunarity, offset, gain -> value: Perlin noise in octaves,

@@ -75,7 +75,7 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_MAGIC] = {"MAGIC", OpKind::Pure, 3, 2, 0, 10};
   table[GRADUS_OP_BRICK] = {"BRICK", OpKind::Pure, 10, 2, 4, 0};
   table[GRADUS_OP_SKY] = {"SKY", OpKind::Pure, 1, 1, 0, GRADUS_SKY_MULTIPLE_SCATTERING};
-  table[GRADUS_OP_IES] = {"IES", OpKind::Pure, 2, 1, 1, 0};
+  table[GRADUS_OP_IES] = {"IES", OpKind::Pure, 2, 1, 1, 1};
   table[GRADUS_OP_VORONOI] = {"VORONOI", OpKind::Pure, 9, 5, 0, 2047};
   table[GRADUS_OP_MUSGRAVE] = {"MUSGRAVE", OpKind::Pure, 8, 1, 0, 63};
   table[GRADUS_OP_GABOR] = {"GABOR", OpKind::Pure, 6, 3, 0, 3};
