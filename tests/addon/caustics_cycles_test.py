@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from support import cycles, images
+from support import cycles, images, recording
 from support.nodes import new_material, show, socket
 
 SINCE_4 = tuple(bpy.app.version) >= (4, 0, 0)
@@ -57,7 +57,7 @@ def add_plane(shown: bpy.types.Material, size: float, location: tuple[float, ...
 
 
 def build(scene: bpy.types.Scene, shown: bpy.types.Material) -> None:
-    """Makes a diffuse floor below a lamp, with walls of the material around it, or a pane above it if it is clear.
+    """Makes a diffuse floor below a light, with walls of the material around it, or a pane above it if it is clear.
 
     The camera sees the floor alone.
     """
@@ -70,15 +70,11 @@ def build(scene: bpy.types.Scene, shown: bpy.types.Material) -> None:
             add_plane(shown, 4.0, (0.0, y, 2.0), np.pi / 2)
     scene.world = bpy.data.worlds.new("World")
     scene.world.color = (0.1, 0.1, 0.1)
-    lamp = bpy.data.lights.new("Lamp", "AREA")
-    lamp.energy, lamp.size = 100.0, 2.0
-    above = bpy.data.objects.new("Lamp", lamp)
-    above.location = (0.0, 0.0, 3.5)
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    light = bpy.data.lights.new("Light", "AREA")
+    light.energy, light.size = 100.0, 2.0
+    recording.add(light, "Light", (0.0, 0.0, 3.5))
+    camera = recording.add_camera()
     camera.location, camera.rotation_euler = (0.0, -1.0, 1.2), (0.86, 0.0, 0.0)
-    for obj in (above, camera):
-        scene.collection.objects.link(obj)
-    scene.camera = camera
     scene.cycles.sample_clamp_indirect = 0.0
 
 

@@ -10,17 +10,14 @@ import bpy
 import numpy as np
 import pytest
 from support import images
-from support.nodes import Graph, new_material, show, socket
+from support.nodes import Graph, shader_material, show, socket
 
 if bpy.app.version < (4, 0, 0):
     pytest.skip("light linking came with 4.0", allow_module_level=True)
 
 
 def material(kind: str, **inputs: Any) -> bpy.types.Material:
-    found = new_material(kind)
-    values = {"Color": (0.8, 0.8, 0.8, 1.0)} | inputs
-    show(found, Graph(found)(kind, "Emission" if kind == "Emission" else "BSDF", values))
-    return found
+    return shader_material(kind, {"Color": (0.8, 0.8, 0.8, 1.0)} | inputs)
 
 
 def half_transparent() -> bpy.types.Material:

@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from support import cycles, images
+from support import cycles, images, recording
 from support.nodes import Graph, new_material, show
 
 pytestmark = pytest.mark.skipif(not hasattr(bpy.types, "ShaderNodeBsdfRayPortal"), reason="portals came with 4.2")
@@ -48,7 +48,7 @@ def add_plane(shown: bpy.types.Material, size: float, location: tuple[float, ...
 
 
 def build(scene: bpy.types.Scene, make: Callable[[Graph], Socket]) -> None:
-    """Makes a floor of checks with a wall, both lit by a lamp and a grey world, and a portal before the wall."""
+    """Makes a floor of checks with a wall, both lit by a light and a grey world, and a portal before the wall."""
     images.prepare(scene)
     floor = new_material("Floor")
     checks = Graph(floor)
@@ -61,15 +61,11 @@ def build(scene: bpy.types.Scene, make: Callable[[Graph], Socket]) -> None:
     add_plane(door, 2.0, (0.0, 0.5, 0.8), np.pi / 2)
     scene.world = bpy.data.worlds.new("World")
     scene.world.color = (0.3, 0.3, 0.3)
-    lamp = bpy.data.lights.new("Lamp", "AREA")
-    lamp.energy, lamp.size = 150.0, 1.5
-    above = bpy.data.objects.new("Lamp", lamp)
-    above.location = (1.0, -0.5, 3.0)
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    light = bpy.data.lights.new("Light", "AREA")
+    light.energy, light.size = 150.0, 1.5
+    recording.add(light, "Light", (1.0, -0.5, 3.0))
+    camera = recording.add_camera()
     camera.location, camera.rotation_euler = (0.0, -4.0, 1.6), (1.35, 0.0, 0.0)
-    for obj in (above, camera):
-        scene.collection.objects.link(obj)
-    scene.camera = camera
     scene.cycles.sample_clamp_indirect = 0.0
 
 

@@ -10,14 +10,11 @@ import bpy
 import numpy as np
 import pytest
 from support import images
-from support.nodes import Graph, new_material, show
+from support.nodes import shader_material
 
 
 def material(kind: str, **inputs: Any) -> bpy.types.Material:
-    found = new_material(kind)
-    values = {"Color": (0.6, 0.6, 0.6, 1.0)} | inputs
-    show(found, Graph(found)(kind, "Emission" if kind == "Emission" else "BSDF", values))
-    return found
+    return shader_material(kind, {"Color": (0.6, 0.6, 0.6, 1.0)} | inputs)
 
 
 @pytest.fixture

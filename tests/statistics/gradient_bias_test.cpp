@@ -92,7 +92,7 @@ TEST(B7_LimitOfTransparentSurfaces, AppliesToLightsThatSharedRaysMeet) {
   check_difference(&scene, one_veil_only(), 512);
 }
 
-// Adds a glossy floor, whose left half is also matte, below two metal walls and a lamp. Behind the floor, walls are
+// Adds a glossy floor, whose left half is also matte, below two metal walls and a light. Behind the floor, walls are
 // blurred, and the blurs of the paths of two pixels often differ.
 void add_metal_walls(PathScene* scene) {
   Surface left = test::matte(Rgb(0.3f)), right, metal, light;

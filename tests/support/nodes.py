@@ -98,3 +98,10 @@ def op_names(program: Any) -> list[str]:
     from gradus.nodes.ops import Op
 
     return [Op(node[0]).name for node in program.nodes]
+
+
+def shader_material(kind: str, inputs: dict[str, Any]) -> bpy.types.Material:
+    """Returns a material of one shader node, whose inputs are linked to sockets or have values."""
+    material = new_material(kind)
+    show(material, Graph(material)(kind, "Emission" if kind == "Emission" else "BSDF", inputs))
+    return material
