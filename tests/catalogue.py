@@ -44,6 +44,7 @@ ENTRIES = {
     "C7": "an animation resumed or rendered in parts",
     "C8": "shot changes",
     "C9": "frames ahead show what handlers and drivers set for them",
+    "C10": "a shot that is edited and rendered again into its frame store",
     "D1": "watertight far from the origin",
     "D2": "no self-hits",
     "D3": "meshes of random bits",

@@ -137,6 +137,14 @@ class Displacement(IntEnum):
     BOTH_OF_FACES = 3
 
 
+class ShadingNormals(IntEnum):
+    """How shading normals that disagree with the geometric normal are corrected, by versions of Blender."""
+
+    SINCE_4_5 = 0
+    SINCE_3_6 = 1
+    BEFORE_3_6 = 2
+
+
 class ObjectKind(IntEnum):
     """Kinds of objects that gradus_scene_remove removes."""
 
@@ -339,6 +347,7 @@ class Mesh(Struct):
         ("dicing_rate", c_float),
         ("dicing_length", c_float),
         ("offscreen_dicing_scale", c_float),
+        ("dicing_tolerance", c_float),
         ("reserved", c_uint32),
     ]
 
@@ -561,7 +570,7 @@ class Material(Struct):
         ("displacement_output", c_uint32),
         ("displacement_method", c_uint32),
         ("bump_filter_width", c_float),
-        ("reserved", c_uint32),
+        ("shading_normals", c_uint32),
     ]
 
 
@@ -692,6 +701,7 @@ ENUMS: tuple[type[IntEnum] | type[IntFlag], ...] = (
     ImageSource,
     AlphaMode,
     Displacement,
+    ShadingNormals,
     ObjectKind,
     Integrator,
     Reconstruction,
@@ -759,6 +769,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_sequence_sample": (c_int, [Sequence, Scene, POINTER(Settings), POINTER(Render)]),
     "gradus_sequence_pass_by": (c_int, [Sequence, Scene, POINTER(Settings)]),
     "gradus_sequence_end_at": (c_int, [Sequence, c_int32]),
+    "gradus_sequence_warning": (c_int, [Sequence, POINTER(c_char_p)]),
     "gradus_sequence_deliver": (c_int, [Sequence, c_int32, POINTER(Settings), POINTER(Render)]),
     "gradus_sequence_release": (c_int, [Sequence]),
     "gradus_film_save": (c_int, [Film, c_char_p]),

@@ -12,6 +12,13 @@ Facts about Blender 3.4, 4.5 and 5.0 on which this module relies:
   one frame with the scene's range, and can be detected from the command line only.
 - If Overwrite is off, Blender skips frames whose files exist.
 
+Frames of a store:
+
+- Stored samples of a frame are used if the frame still shows what they show, which its content key tells. Others are
+  sampled again. Keys are compared when a frame is sampled ahead, so before any picture that contains the frame.
+- Stored frames beside those of the job are compared in the same way. They join the pictures of the job if they fit.
+  They get no samples of their own, but replay the frame before again where the job has changed it.
+
 Frames ahead and Python handlers:
 
 - A frame ahead shows what drivers, keyframes and handlers of frame changes set for it. It does not show what other
@@ -58,10 +65,13 @@ class FrameRange:
 
 
 def frames_of_job(scene: Any, has_store: bool) -> FrameRange | None:
-    """Returns the frames of the animation that Blender renders, or None if frames are rendered independently."""
-    if _asks_for_single_frames(sys.argv):
-        return None
+    """Returns the frames of the animation that Blender renders, or None if frames are rendered independently.
+
+    With a store, a single frame is an animation, which the stored frames beside it join.
+    """
     frame, first, step = scene.frame_current, scene.frame_start, max(scene.frame_step, 1)
+    if _asks_for_single_frames(sys.argv):
+        return FrameRange(frame, frame, step) if has_store else None
     if not first <= frame <= scene.frame_end or (frame - first) % step:
         return None
     last = scene.frame_end - (scene.frame_end - first) % step
@@ -70,7 +80,7 @@ def frames_of_job(scene: Any, has_store: bool) -> FrameRange | None:
     if not has_store:
         # Without a store, frames that Blender skips would be sampled only for their neighbours.
         first, last = frame, _last_before_existing_file(scene.render, frame, last, step)
-    return FrameRange(first, last, step) if first < last else None
+    return FrameRange(first, last, step) if first < last or has_store else None
 
 
 def last_of_job(scene: Any) -> int:
@@ -164,10 +174,8 @@ class Animation:
         # Frames before the first one that is needed are left out: Blender skips them, or they are independent.
         begins = not self._begun or first > self._next
         if begins:
-            self._next = max(self._next, first)
-        missing: list[int] = []
-        if self._fault is None:
-            missing = [number for number in self.frames.up_to(last) if number >= self._next]
+            self._next = first
+        missing = range(self._next, last + 1, self.frames.step) if self._fault is None else range(0)
         if missing:
             with _stepping(job, missing[-1]) as go_to:
                 display = Display(job)
@@ -177,10 +185,15 @@ class Animation:
                 for place, number in enumerate(missing):
                     share = 1.0 / len(missing)
                     display.begin(f"frame {number} of {first}–{last} ahead, ", place * share, share)
-                    if not self._succeeds(number, lambda number=number: self._sample(job, go_to, number, display)):
+                    if number not in self.frames.up_to(self.frames.last):
+                        self._join_stored(job, go_to, number, display)
+                    elif not self._succeeds(number, lambda number=number: self._sample(job, go_to, number, display)):
                         break
                     self._next = number + self.frames.step
         self._states.pop(frame, None)  # Blender is at this frame
+        if self._next > self._needs(job, self.frames.last)[1]:
+            job.current = self._views.get((job.views[0], frame), job.current)  # its stats name the warnings
+            job.warn(self._take_warnings(), changes_picture=False)
         if self._fault is not None and self._fault[0] <= frame:
             if not found:
                 raise self._fault[1]
@@ -225,8 +238,7 @@ class Animation:
     def _drop_stored(self, job: Any) -> None:
         """Deletes the films of the frame store that this job wrote and that may not show what their frames show.
 
-        These are all from the first one on that the job's frame needs, because a render that goes on from the store
-        would compare them with the scene as handlers leave it at a later frame.
+        These are all from the first one on that the job's frame needs. The command-line tool would show them.
         """
         first, _ = self._needs(job)
         for number in self._written:
@@ -234,10 +246,14 @@ class Animation:
                 for folder in self._folders:
                     frame_store.drop(folder, number)
 
-    def _needs(self, job: Any) -> tuple[int, int]:
-        """Returns the first and the last frame that must be sampled before the job's frame can be delivered."""
+    def _needs(self, job: Any, frame: int | None = None) -> tuple[int, int]:
+        """Returns the first and the last frame that must be sampled before a frame can be delivered.
+
+        frame: the frame; None stands for that of the job.
+        """
         first, last = ctypes.c_int32(), ctypes.c_int32()
         settings = job.new_settings()
+        settings.frame = settings.frame if frame is None else frame
         sequence = next(iter(self._sequences.values()))
         self.library.sequence_needs(sequence, byref(settings), byref(first), byref(last))
         return first.value, last.value
@@ -263,14 +279,32 @@ class Animation:
         in a frame store. That frame does not belong to this job, so its errors are ignored: without it the first frame
         has no correspondences.
         """
-        job.is_silent = True
-        try:
+        with self._without_errors(job):
             for view in self._export(job, go_to, self._next - self.frames.step):
                 self._set_previous(job, view)
+
+    def _join_stored(self, job: Any, go_to: Callable[[int], None], number: int, display: Display) -> None:
+        """Lets a stored frame beside those of the job join their pictures, if it still shows what its samples show.
+
+        That frame does not belong to this job, so its errors are ignored: without it pictures lack its samples.
+        """
+        with self._without_errors(job):
+            for view in self._export(job, go_to, number):
+                if _why_frame_independent(job):
+                    self._set_previous(job, view)
+                else:
+                    self._run_sampling(job, view, lambda handle: wait(job, handle, display))
+
+    @contextmanager
+    def _without_errors(self, job: Any) -> Iterator[None]:
+        """Ignores errors and warnings about a frame that does not belong to the job."""
+        job.is_silent = True
+        try:
+            yield
         except (Cancelled, ExportCancelled):
             raise
         except Exception:
-            logging.getLogger(__name__).info("The frame before the first one cannot be exported", exc_info=True)
+            logging.getLogger(__name__).info("A frame beside those of the job cannot be used", exc_info=True)
         finally:
             job.is_silent = False
             self.library.take_scene_warnings(job.session.scene)
@@ -286,20 +320,27 @@ class Animation:
                 continue
             if job.with_digest:
                 self._states.setdefault(number, self._state(job))
-            handle = ctypes.c_uint64()
-            arguments = (job.session.scene, byref(job.current.settings), byref(handle))
             before = self._written_at(number)
-            self.library.sequence_sample(self._sequences[view], *arguments)
             try:
-                self._wait(job, view, handle.value, display)
+                self._run_sampling(job, view, lambda handle, view=view: self._wait(job, view, handle, display))
             finally:
-                self.library.render_release(handle.value)
                 if self._written_at(number) != before:
                     self._written.add(number)
-            if job.cancelled:
-                raise Cancelled
             job.current.clock.pause()
             self._views[view, number] = job.current
+
+    def _run_sampling(self, job: Any, view: str, wait_for: Callable[[int], None]) -> None:
+        """Samples the frame that the native scene shows, and waits for it. Raises Cancelled."""
+        handle = ctypes.c_uint64()
+        self.library.sequence_sample(
+            self._sequences[view], job.session.scene, byref(job.current.settings), byref(handle)
+        )
+        try:
+            wait_for(handle.value)
+        finally:
+            self.library.render_release(handle.value)
+        if job.cancelled:
+            raise Cancelled
 
     def _written_at(self, number: int) -> list[int]:
         return [frame_store.written_at(folder, number) for folder in self._folders]
@@ -336,7 +377,14 @@ class Animation:
         self.library.sequence_deliver(self._sequences[view], frame, byref(settings), byref(handle))
         return handle.value
 
+    def _take_warnings(self) -> list[str]:
+        """Returns the warnings about stored frames. Each view has the same ones, unless files are damaged."""
+        found = (self.library.take_sequence_warnings(sequence) for sequence in self._sequences.values())
+        return list(dict.fromkeys(text for texts in found for text in texts))
+
     def free(self) -> None:
+        for text in self._take_warnings():  # of a job that did not come to its last frame
+            logging.getLogger(__name__).warning("Gradus: %s", text)
         while self._sequences:
             self.library.sequence_release(self._sequences.popitem()[1])
 

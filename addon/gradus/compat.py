@@ -53,6 +53,14 @@ def image_color_spaces() -> set[str]:
     return {image.colorspace_settings.name for image in bpy.data.images if image.source != "VIEWER"}
 
 
+def is_data(settings: Any) -> bool:
+    """Returns whether Cycles takes an image of these colour space settings as data.
+
+    Cycles asks the OpenColorIO configuration. Blender 3.4 says so of its Non-Color only.
+    """
+    return settings.is_data or settings.name in {"Raw", "Utility - Raw"}
+
+
 def default_surface_is_principled() -> bool:
     """Returns whether faces without a material are an unchanged Principled BSDF.
 

@@ -171,6 +171,10 @@ class Library:
         """Returns all warnings of a scene's commits that have not been taken yet, oldest first."""
         return self._take_warnings(self.scene_warning, scene)
 
+    def take_sequence_warnings(self, sequence: int) -> list[str]:
+        """Returns all warnings about stored frames of a sequence that have not been taken yet, oldest first."""
+        return self._take_warnings(self.sequence_warning, sequence)
+
     def _take_warnings(self, function: Callable[..., int], handle: int) -> list[str]:
         warnings: list[str] = []
         message = ctypes.c_char_p()

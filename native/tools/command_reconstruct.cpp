@@ -101,7 +101,9 @@ void add_reconstruct(CLI::App* app, int* exit_code) {
       ->add_option("-o,--output", args->output,
                    "Image to write, FILE.exr; of an animation the folder for 0001.exr and so on")
       ->required();
-  command->add_option("--frames", args->frames, "Of an animation: FIRST-LAST; all if not given");
+  command->add_option(
+      "--frames", args->frames,
+      "Of an animation: FIRST-LAST; all if not given. Stored frames beside them contribute as in the whole");
   command
       ->add_option("--window-size", args->window_size,
                    "Of an animation: frames that are reconstructed together (10 if not given)")

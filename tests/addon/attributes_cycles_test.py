@@ -482,31 +482,136 @@ def shapes() -> bpy.types.Scene:
     return scene
 
 
-@pytest.mark.parametrize("name", NODES)
-def test_a9_node(name: str, shapes: bpy.types.Scene, tmp_path: Path) -> None:
+def show_on_all(scene: bpy.types.Scene, make: Callable[[Graph], bpy.types.NodeSocket]) -> None:
+    """Lets all meshes emit a value."""
     material = new_material()
     material.pass_index = 2
     graph = Graph(material)
-    shown = graph("VectorMath", "Vector", {"Vector": NODES[name](graph)}, operation="MULTIPLY_ADD")
+    shown = graph("VectorMath", "Vector", {"Vector": make(graph)}, operation="MULTIPLY_ADD")
     shown.node.inputs[1].default_value, shown.node.inputs[2].default_value = (0.4,) * 3, (0.5,) * 3
     show(material, shown)
-    for item in shapes.objects:
+    for item in scene.objects:
         if item.type == "MESH":
             item.data.materials.clear()
             item.data.materials.append(material)
+
+
+@pytest.mark.parametrize("name", NODES)
+def test_a9_node(name: str, shapes: bpy.types.Scene, tmp_path: Path) -> None:
+    show_on_all(shapes, NODES[name])
     # Lines are thinner than blocks, and 16 samples of a block of pixels leave noise in the share of rays.
     expect_cycles(shapes, tmp_path, 0.02)
 
 
-def test_a9_occlusion_with_gradients_has_the_same_mean(shapes: bpy.types.Scene, tmp_path: Path) -> None:
-    """A shifted path draws the random numbers of its base path."""
-    material = new_material()
+def expect_same_mean_with_gradients(scene: bpy.types.Scene, folder: Path, name: str, make: Any) -> None:
+    """Compares plain paths with gradients, for a diffuse surface in the colour of a node."""
+    material = new_material(name)
     graph = Graph(material)
-    show(material, graph("BsdfDiffuse", "BSDF", {"Color": NODES["occlusion"](graph)}))
-    for item in shapes.objects:
+    show(material, graph("BsdfDiffuse", "BSDF", {"Color": make(graph)}))
+    for item in scene.objects:
         if item.type == "MESH":
             item.data.materials.clear()
             item.data.materials.append(material)
-    plain = images.render(shapes, tmp_path, samples=64, integrator="PATH", reconstruction="NONE")["Combined"]
-    gradients = images.render(shapes, tmp_path, samples=64, integrator="GRADIENT", reconstruction="L2")["Combined"]
+    plain = images.render(scene, folder, samples=64, integrator="PATH", reconstruction="NONE")["Combined"]
+    gradients = images.render(scene, folder, samples=64, integrator="GRADIENT", reconstruction="L2")["Combined"]
+    assert plain[..., :3].mean() > 0.001
     assert gradients[..., :3].mean() == pytest.approx(plain[..., :3].mean(), rel=0.01)
+
+
+def test_a9_occlusion_with_gradients_has_the_same_mean(shapes: bpy.types.Scene, tmp_path: Path) -> None:
+    """A shifted path draws the random numbers of its base path."""
+    expect_same_mean_with_gradients(shapes, tmp_path, "Occlusion", NODES["occlusion"])
+
+
+# ------------------------------------------------------------------------------------------------- raycast
+
+
+def raycast(graph: Graph, output: str, inputs: dict[str, Any] | None = None, only_local: bool = False) -> Any:
+    return graph("Raycast", output, {"Length": 3.0} | (inputs or {}), only_local=only_local)
+
+
+def raycast_attribute(graph: Graph, kind: str, name: str, output: int) -> bpy.types.NodeSocket:
+    """Returns one of the outputs that an attribute adds to a node, counted from the first one."""
+    node = graph("Raycast", "Is Hit", {"Length": 9.0, "Direction": graph("RGB", "Color")}).node
+    node.sample_attribute_items.new(kind, "Item")
+    node.inputs["Item"].default_value = name
+    return node.outputs[5 + output]
+
+
+RAYCASTS: dict[str, Callable[[Graph], bpy.types.NodeSocket]] = {
+    "hit": lambda g: raycast(g, "Is Hit"),
+    "hit of a short ray": lambda g: raycast(g, "Is Hit", {"Length": 0.4}),
+    "hit of a ray of no length": lambda g: raycast(g, "Is Hit", {"Length": 0.0}),
+    "self hit": lambda g: raycast(g, "Self Hit"),
+    "distance": lambda g: raycast(g, "Hit Distance"),
+    "distance by a long direction": lambda g: raycast(g, "Hit Distance", {"Direction": g("RGB", "Color")}),
+    "position": lambda g: raycast(g, "Hit Position"),
+    "normal": lambda g: raycast(g, "Hit Normal", {"Direction": g("NewGeometry", "Incoming")}),
+    "normal of the back": lambda g: raycast(
+        g,
+        "Hit Normal",
+        {
+            "Direction": g(
+                "VectorMath", "Vector", {"Vector": g("NewGeometry", "Normal"), "Scale": -1}, operation="SCALE"
+            )
+        },
+    ),
+    "other instances left out": lambda g: raycast(g, "Hit Distance", only_local=True),
+    "from another point": lambda g: raycast(
+        g,
+        "Hit Distance",
+        {
+            "Position": g("VectorMath", "Vector", {"Vector": g("NewGeometry", "Position")}, operation="SNAP"),
+            "Length": 9,
+        },
+    ),
+    "from the point itself": lambda g: raycast(g, "Is Hit", {"Position": g("NewGeometry", "Position")}),
+    "colour": lambda g: raycast_attribute(g, "RGBA", "Col", 0),
+    "alpha of a colour": lambda g: raycast_attribute(g, "RGBA", "Col", 1),
+    "vector": lambda g: raycast_attribute(g, "VECTOR", "UVMap", 0),
+    "number": lambda g: raycast_attribute(g, "FLOAT", "Col", 0),
+    "missing attribute": lambda g: raycast_attribute(g, "RGBA", "nothing", 1),
+}
+
+
+HIDDEN = ("camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow")
+"""Kinds of rays to which objects can be hidden."""
+
+
+@pytest.fixture(scope="module")
+def crowd(shapes: bpy.types.Scene) -> bpy.types.Scene:
+    """Returns shapes with a colour attribute. Of those that the camera does not see, Cycles shows the node one.
+
+    It sees what any other ray can see, and ignores the switch that objects have for it.
+    """
+    for item in [item for item in shapes.objects if item.type == "MESH"]:
+        colors = item.data.color_attributes.new("Col", "FLOAT_COLOR", "CORNER")
+        place = np.array([item.data.vertices[loop.vertex_index].co for loop in item.data.loops], np.float32)
+        values = np.concatenate([0.4 + 0.3 * place, np.full((len(place), 1), 0.6, np.float32)], axis=1)
+        colors.data.foreach_set("color", values.astype(np.float32).ravel())
+    bpy.ops.mesh.primitive_plane_add(size=1.5, location=(0.4, -0.6, 1.0))
+    bpy.context.object.visible_raycast = False
+    for place, hidden in (((-1.0, 0.0, 1.6), HIDDEN[:-1]), ((0.0, 1.0, 1.8), HIDDEN)):
+        bpy.ops.mesh.primitive_plane_add(size=2.0, location=place)
+        for name in hidden:
+            setattr(bpy.context.object, f"visible_{name}", False)
+    return shapes
+
+
+@pytest.mark.skipif(VERSION < (5, 2, 0), reason="came with Blender 5.2")
+@pytest.mark.parametrize("name", RAYCASTS)
+def test_a9_raycast(name: str, crowd: bpy.types.Scene, tmp_path: Path) -> None:
+    show_on_all(crowd, RAYCASTS[name])
+    expect_cycles(crowd, tmp_path, 0.02)
+
+
+@pytest.mark.skipif(VERSION < (5, 2, 0), reason="came with Blender 5.2")
+def test_a9_raycast_bends_normals(crowd: bpy.types.Scene, tmp_path: Path) -> None:
+    """The points to the sides, of which a bump map is made, cast rays as well."""
+    show_on_all(crowd, lambda g: g("Bump", "Normal", {"Height": raycast(g, "Hit Distance", {"Length": 2.0})}))
+    expect_cycles(crowd, tmp_path, 0.04)
+
+
+@pytest.mark.skipif(VERSION < (5, 2, 0), reason="came with Blender 5.2")
+def test_a9_raycast_with_gradients_has_the_same_mean(crowd: bpy.types.Scene, tmp_path: Path) -> None:
+    expect_same_mean_with_gradients(crowd, tmp_path, "Raycast", RAYCASTS["distance"])

@@ -222,6 +222,64 @@ def test_cryptomattes_are_those_of_cycles(scene: bpy.types.Scene, layer: bpy.typ
     assert json.loads(found["ViewLayer.CryptoAsset"]["manifest"]).keys() >= {"Root", "Floor"}
 
 
+# Names of every plane of Unicode: control characters, quotes, right to left, combining marks, emoji, private use.
+STRANGE_NAMES = (
+    "\x01\x07\x1b",
+    "tab\tand\nnewline",
+    '"quotes" \\ and {braces}: [0, 1]',
+    "שלום مرحبا",
+    "e\u0301\u0302\u200d\u202e",
+    "👩‍👩‍👧‍👦 🇫🇷",
+    "𝔊𝔯𝔞𝔡𝔲𝔰 𓀀",
+    "\ue000\uffff\U0010ffff",
+    "ｗｉｄｅ　漢字",
+    "x" * 63,
+    "é" * 31,
+)
+
+
+def test_cryptomattes_of_strange_names(scene: bpy.types.Scene, layer: bpy.types.ViewLayer, tmp_path: Path) -> None:
+    layer.use_pass_cryptomatte_object = layer.use_pass_cryptomatte_material = True
+    names = set()  # as Blender keeps them
+    for index, name in enumerate(STRANGE_NAMES):
+        place = (-1.2 + 0.6 * (index % 5), -1.2 + 0.6 * (index // 5), 1.0)
+        surface = material(name, (0.5, 0.5, 0.5))
+        names |= {add_plane(name, 0.4, place, surface).name, surface.name}
+    manifests = {}
+    for engine in ("CYCLES", "GRADUS"):
+        render(scene, tmp_path, engine, 4)
+        images.use_exr(scene, tmp_path / f"{engine}.exr")
+        bpy.ops.render.render(write_still=True, scene=scene.name)
+        found = metadata(tmp_path / f"{engine}.exr")
+        manifests[engine] = {name: fields["manifest"] for name, fields in found.items()}
+    for key, text in manifests["GRADUS"].items():
+        hashes = json.loads(text)
+        assert names <= set(hashes), key
+        # Cycles does not escape the names, so that its text need not be JSON.
+        assert all(f'"{hashes[name]}"' in manifests["CYCLES"][key] for name in names), key
+
+
+@pytest.mark.parametrize(
+    "name", ["Combined", "Depth", "Noisy Image", "Error", "Path Diffuse", "CryptoObject00", "Mask"]
+)
+def test_aovs_with_the_name_of_a_pass(
+    name: str, scene: bpy.types.Scene, layer: bpy.types.ViewLayer, tmp_path: Path
+) -> None:
+    """Such an AOV has its own values, or none if Blender or Gradus has a pass of this name; the others keep theirs."""
+    add_aov(layer, name, "COLOR")
+    add_aov(layer, "Other", "COLOR")
+    layer.use_pass_z = layer.use_pass_cryptomatte_object = True
+    tree = bpy.data.materials["Ground"].node_tree
+    output_to(tree, name, Color=(0.25, 0.5, 2.0, 1.0))
+    output_to(tree, "Other", Color=(4.0, 3.0, 2.0, 1.0))
+    passes = {key.removeprefix("ViewLayer."): value for key, value in render(scene, tmp_path, "GRADUS", 1).items()}
+    np.testing.assert_allclose(passes["Other"][10, 32, :3], (4.0, 3.0, 2.0), atol=1e-5)
+    assert np.isfinite(passes["Combined"]).all()
+    assert passes["Combined"].max() < 1.5
+    if name == "Mask":
+        np.testing.assert_allclose(passes["Mask"][10, 32, :3], (0.25, 0.5, 2.0), atol=1e-5)
+
+
 def test_ranks_fall_and_levels_are_kept(scene: bpy.types.Scene, layer: bpy.types.ViewLayer, tmp_path: Path) -> None:
     layer.use_pass_cryptomatte_object = True
     layer.pass_cryptomatte_depth = 3  # two layers, as in Cycles

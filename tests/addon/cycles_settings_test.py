@@ -62,6 +62,14 @@ def test_settings_without_a_counterpart_are_named(cycles: bpy.types.Scene) -> No
     assert text.endswith("does not have: Fast GI Approximation")
 
 
+def test_use_pixel_jitter_is_named(cycles: bpy.types.Scene) -> None:
+    if not hasattr(cycles.cycles, "use_pixel_jitter"):
+        pytest.skip("it exists since Blender 5.2")
+    cycles.cycles.use_pixel_jitter = True
+    [text] = cycles_settings.warnings(cycles, set(), is_followed=True)
+    assert text.endswith("does not have: Use Pixel Jitter")
+
+
 def test_copy_from_cycles(cycles: bpy.types.Scene) -> None:
     cycles.cycles.max_bounces, cycles.cycles.transparent_max_bounces = 5, 64
     cycles.cycles.pixel_filter_type, cycles.cycles.filter_width = "GAUSSIAN", 2.0

@@ -27,6 +27,14 @@ def _state(block: bpy.types.Image, user: object = None, frame: int = 1) -> image
     return images.image_state(block, images.number_of_frame(block, user, frame), bpy.path.abspath)
 
 
+def test_blender_does_not_load_what_the_library_reads(scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: the question for the file's format made Blender decode every image as well, with its memory."""
+    block = bpy.data.images.load(str(_save(tmp_path / "picture.png")))
+    _state(block)
+    assert images.warning(block, None, bpy.path.abspath) == ""
+    assert not block.has_data
+
+
 @pytest.mark.parametrize(
     "kind, suffix, is_float",
     [("PNG", "png", False), ("JPEG", "jpg", False), ("TIFF", "tif", False), ("OPEN_EXR", "exr", True)],

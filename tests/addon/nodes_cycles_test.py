@@ -45,6 +45,12 @@ def normal_colors(graph: Graph) -> bpy.types.NodeSocket:
     return graph("MixRGB", "Color", {"Fac": 0.25, "Color1": (0.5, 0.5, 1.0, 1.0), "Color2": image})
 
 
+def normal_from(graph: Graph, space: str, other: str) -> bpy.types.NodeSocket:
+    """Returns a long normal in another space."""
+    inputs = {"Vector": (0.5, 1.2, 0.8)}
+    return graph("VectorTransform", "Vector", inputs, vector_type="NORMAL", convert_from=space, convert_to=other)
+
+
 def coarse_image() -> bpy.types.Image:
     image = bpy.data.images.new("coarse", 3, 3, alpha=True, float_buffer=True)
     image.pixels.foreach_set(np.linspace(0.3, 1.0, 36, dtype=np.float32))
@@ -116,6 +122,11 @@ CASES: dict[str, Callable[[Graph], bpy.types.NodeSocket]] = {
     "facing": lambda g: g("LayerWeight", "Facing", {"Blend": 0.3}),
     "fresnel": lambda g: g("Fresnel", "Fac", {"IOR": 1.7}),
     "normal map": lambda g: g("NormalMap", "Normal", {"Color": normal_colors(g)}),
+    "half a normal map": lambda g: g("NormalMap", "Normal", {"Strength": 0.5, "Color": normal_colors(g)}),
+    "normal in object space": lambda g: normal_from(g, "WORLD", "OBJECT"),
+    "normal in world space": lambda g: normal_from(g, "OBJECT", "WORLD"),
+    "normal in camera space": lambda g: normal_from(g, "OBJECT", "CAMERA"),
+    "steep bump": lambda g: g("Bump", "Normal", {"Distance": 3.0, "Height": g("TexCoord", "Generated")}),
     "bump": lambda g: g(
         "Bump", "Normal", {"Distance": 0.2, "Height": g("TexNoise", "Fac", {"Vector": g.place(), "Scale": 2.0})}
     ),
@@ -242,12 +253,31 @@ def bundle(graph: Graph) -> bpy.types.NodeSocket:
     return separated.outputs["Place"]
 
 
+def closure(graph: Graph) -> bpy.types.NodeSocket:
+    """Returns a function of a zone, evaluated at UV coordinates."""
+    first, last, evaluation = (
+        graph.tree.nodes.new(f"Node{kind}") for kind in ("ClosureInput", "ClosureOutput", "EvaluateClosure")
+    )
+    first.pair_with_output(last)
+    for node in (last, evaluation):
+        node.input_items.new("VECTOR", "Place")
+        node.output_items.new("VECTOR", "Moved")
+    moved = graph("VectorMath", "Vector", {"Vector": first.outputs["Place"]}, operation="SINE")
+    for source, target in (
+        (moved, last.inputs["Moved"]),
+        (last.outputs["Closure"], evaluation.inputs["Closure"]),
+        (graph("TexCoord", "UV"), evaluation.inputs["Place"]),
+    ):
+        graph.tree.links.new(source, target)
+    return evaluation.outputs["Moved"]
+
+
 def scene_time(graph: Graph) -> bpy.types.NodeSocket:
     bpy.context.scene.frame_set(17)
     return graph.tree.nodes.new("GeometryNodeInputSceneTime").outputs["Seconds"]
 
 
-MAKERS = [menu_switch, repeat_zone, bundle] + ([scene_time] if VERSION >= (5, 2, 0) else [])
+MAKERS = [menu_switch, repeat_zone, bundle, closure] + ([scene_time] if VERSION >= (5, 2, 0) else [])
 
 
 @pytest.mark.skipif(VERSION < (5, 0, 0), reason="came with Blender 5.0")
@@ -338,12 +368,19 @@ def test_a9_normal_maps_of_directx(coarse: bpy.types.Scene, tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("alpha", ["STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"])
-@pytest.mark.parametrize("kind", ["float", "data"])
+@pytest.mark.parametrize("kind", ["float", "data", "raw"])
 def test_a9_alpha_of_images(kind: str, alpha: str, scene: bpy.types.Scene, tmp_path: Path) -> None:
-    """Since 5.2 Cycles multiplies float images by their alpha. Regression: data were multiplied by it, too."""
+    """Since 5.2 Cycles multiplies float images by their alpha.
+
+    Regression: data were multiplied by it, too, and the colour space Raw of Blender 3.4 did not count as data.
+    """
     image = bpy.data.images.new("pattern", 4, 4, alpha=True, float_buffer=kind == "float", is_data=kind == "data")
     image.pixels.foreach_set(np.tile(np.array([0.8, 0.4, 0.2, 0.5], np.float32), 16))
     image.update()
+    if kind == "raw":
+        if VERSION >= (4, 0, 0):
+            pytest.skip("from 4.0 on, Raw is another name of Non-Color")
+        image.colorspace_settings.name = "Raw"
     image.alpha_mode = alpha
     material = new_material()
     show(material, Graph(material)("TexImage", "Color", image=image))
@@ -394,8 +431,6 @@ def test_a9_alpha_of_files(kind: str, is_packed: bool, scene: bpy.types.Scene, t
         pytest.skip("Cycles reads packed files of this format in other ways from version to version")
     path = save_half_transparent(scene, kind, tmp_path)
     modes = ["STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"]
-    if kind == "WEBP" and VERSION < (4, 0, 0):
-        modes.remove("NONE")  # Cycles 3.4 multiplies even then
     for column, mode in enumerate(modes):
         for row, is_used in enumerate((False, True)):
             image = bpy.data.images.load(path, check_existing=False)
@@ -491,6 +526,24 @@ def test_a9_ies(kind: str, is_file: bool, scene: bpy.types.Scene, tmp_path: Path
     assert np.abs(expected).mean() > 0.01
     assert np.abs(expected.mean(axis=(0, 1)) / found.mean(axis=(0, 1)) - 1.0).max() < 0.03
     assert np.abs(expected - found).mean() < 0.05 * expected.mean()
+
+
+@pytest.mark.parametrize("output", ["Is Camera Ray", "Is Shadow Ray", "Is Singular Ray", "Ray Depth", "Is Diffuse Ray"])
+def test_a9_light_path_of_sampled_emission(output: str, scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """A surface lights a floor. What Cycles does not know of the rays that sample it is named, and all else agrees."""
+    bpy.ops.mesh.primitive_plane_add(size=6.0)
+    bpy.ops.mesh.primitive_plane_add(size=2.0, location=(0.3, 0.0, 1.0))
+    material = new_material()
+    bpy.context.object.data.materials.append(material)
+    graph = Graph(material)
+    strength = graph("Math", "Value", operation="MULTIPLY_ADD")
+    graph.tree.links.new(graph("LightPath", output), strength.node.inputs[0])
+    strength.node.inputs[1].default_value, strength.node.inputs[2].default_value = 2.0, 0.4
+    show(material, graph("Emission", "Emission", {"Strength": strength}))
+    recording.add_camera(type="ORTHO", ortho_scale=3.0)
+    expected, found = pictures(scene, tmp_path, 64)
+    agrees = found.mean() == pytest.approx(expected.mean(), rel=0.01)
+    assert agrees != (output == "Is Diffuse Ray")
 
 
 def test_a9_narrow_area_light(scene: bpy.types.Scene, tmp_path: Path) -> None:

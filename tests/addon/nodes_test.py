@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import bpy
 import pytest
@@ -71,7 +72,7 @@ def test_e5_promised_nodes_do_not_fall_back(kind: str) -> None:
         show(material, output)
         program = translate(material)
         assert not program.uses_fallback, program.warnings
-        assert not program.warnings
+        assert not program.warnings or kind == "LightPath"  # of which emission is named
         assert program.surface >= 0 or kind in {"MixShader", "AddShader"}
 
 
@@ -132,6 +133,72 @@ def test_e5_subsurface_in_thin_walls_is_named_in_a_warning() -> None:
     node.inputs["Thin Wall"].default_value = True
     program = translate(material)
     assert len(program.warnings) == 1 and "thin wall" in program.warnings[0]
+
+
+def light_path(tree: Any, output: str) -> bpy.types.NodeSocket:
+    return tree.nodes.new("ShaderNodeLightPath").outputs[output]
+
+
+DIFFERENT = ("Is Diffuse Ray", "Is Glossy Ray", "Is Reflection Ray", "Ray Length", "Diffuse Depth", "Glossy Depth")
+SAME = ("Is Camera Ray", "Is Shadow Ray", "Is Singular Ray", "Ray Depth", "Transparent Depth")
+
+
+@pytest.mark.parametrize("output", DIFFERENT + SAME)
+def test_e5_light_paths_of_sampled_emission_are_named(output: str) -> None:
+    material = new_material("Glow")
+    show(material, light_path(material.node_tree, output))
+    program = translate(material)
+    assert not program.uses_fallback
+    assert program.warnings == (
+        [f"Glow: its emission depends on {output}, which Cycles evaluates differently"] if output in DIFFERENT else []
+    )
+    if hasattr(material.cycles, "emission_sampling"):
+        material.cycles.emission_sampling = "NONE"
+    else:
+        material.cycles.sample_as_light = False
+    assert not translate(material).warnings
+
+
+def mixed(tree: Any, first: str, second: str) -> bpy.types.Node:
+    """Returns a mix of two shaders whose factor is a Light Path."""
+    node = tree.nodes.new("ShaderNodeMixShader")
+    tree.links.new(light_path(tree, "Is Glossy Ray"), node.inputs[0])
+    for kind, target in ((first, node.inputs[1]), (second, node.inputs[2])):
+        tree.links.new(tree.nodes.new(f"ShaderNode{kind}").outputs[0], target)
+    return node
+
+
+def test_e5_light_paths_are_named_only_where_they_change_emission() -> None:
+    material = new_material()
+    tree = material.node_tree
+    show(material, mixed(tree, "BsdfDiffuse", "Emission").outputs[0])
+    assert len(translate(material).warnings) == 1
+    show(material, mixed(tree, "BsdfDiffuse", "BsdfGlossy").outputs[0])
+    assert not translate(material).warnings
+    added = tree.nodes.new("ShaderNodeAddShader")
+    tree.links.new(mixed(tree, "BsdfDiffuse", "BsdfGlossy").outputs[0], added.inputs[0])
+    tree.links.new(tree.nodes.new("ShaderNodeEmission").outputs[0], added.inputs[1])
+    show(material, added.outputs[0])
+    assert not translate(material).warnings
+    principled = tree.nodes.new("ShaderNodeBsdfPrincipled")
+    principled.inputs["Emission Strength"].default_value = 1.0
+    socket(principled.inputs, "Base Color").default_value = (0.5, 0.5, 0.5, 1.0)
+    tree.links.new(light_path(tree, "Is Diffuse Ray"), principled.inputs["Base Color"])
+    show(material, principled.outputs[0])
+    assert not translate(material).warnings
+    name = "Emission Color" if "Emission Color" in principled.inputs else "Emission"
+    tree.links.new(light_path(tree, "Is Diffuse Ray"), principled.inputs[name])
+    assert len(translate(material).warnings) == 1
+
+
+@pytest.mark.parametrize("output, named", [("Ray Depth", True), ("Is Diffuse Ray", False)])
+def test_e5_light_paths_of_lights_are_named_by_their_depths(output: str, named: bool) -> None:
+    light = bpy.data.lights.new("Light", "AREA")
+    light.use_nodes = True
+    tree = light.node_tree
+    emission = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeEmission")
+    tree.links.new(light_path(tree, output), emission.inputs["Strength"])
+    assert len(translate(light, "LIGHT").warnings) == named
 
 
 def test_e5_unknown_value_node_passes_through(monkeypatch: pytest.MonkeyPatch) -> None:

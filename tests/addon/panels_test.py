@@ -153,7 +153,6 @@ def test_phases_of_the_last_render_come_in_their_order() -> None:
     """Regression: phases were listed alphabetically, with those of the add-on at the end."""
     seconds = {
         "denoise": 1.0,
-        "store": 0.0,
         "correspondence": 8.0,
         "preview": 2.0,
         "reconstruct": 3.0,

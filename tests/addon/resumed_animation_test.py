@@ -226,15 +226,3 @@ def test_c7_an_unchanged_range_of_an_older_scene_is_not_mixed_in(square: Scene, 
     square.gradus.frame_store = str(tmp_path / "another store")
     animate(square, expected, 1, 3)
     require_equal(pictures(found), pictures(expected), range(1, 4))
-
-
-def test_c7_a_store_without_the_features_of_the_reconstruction_is_refused_by_name(
-    square: Scene, tmp_path: Path
-) -> None:
-    """Regression: the store was accepted, and the delivery of its frames failed with an unclear error."""
-    square.gradus.frame_store = str(tmp_path / "store")
-    animate(square, tmp_path / "sampled", 1, 2)
-    square.gradus.reconstruction = "REGULARIZED"
-    square.gradus.integrator = "GRADIENT"
-    with pytest.raises(RuntimeError, match=r"f\+0000001\.fresh\.exr lacks the features .* choose another frame store"):
-        animate(square, tmp_path / "again", 1, 2)

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
-from coverage import difference, document, rna  # noqa: E402
+from coverage import difference, document, rna, trial  # noqa: E402
 from coverage.families import all_rows  # noqa: E402
 from coverage.row import Row  # noqa: E402
 from coverage.trial import AGREES, DIFFERS, FALLS_BACK, NO_EFFECT, Judge  # noqa: E402
@@ -89,6 +89,26 @@ def test_pictures_that_are_not_finite_differ() -> None:
     broken[3, 4] = np.nan
     assert not difference.compare(picture, broken).agrees
     assert difference.compare(broken, broken).agrees
+
+
+def cryptomatte_of(*ranks: tuple[int, float]) -> dict[str, np.ndarray]:
+    """Returns a Cryptomatte of one rank on the left and another one on the right, each an identifier and a coverage."""
+    image = np.zeros((32, 32, 4), np.float32)
+    for half, (identifier, share) in zip((np.s_[:, :16], np.s_[:, 16:]), ranks, strict=True):
+        image[half][..., 0] = np.array(identifier, np.uint32).view(np.float32)
+        image[half][..., 1] = share
+    return {"Layer.CryptoObject00": image}
+
+
+def test_cryptomattes_are_compared_by_coverage() -> None:
+    """Identifiers are hashes, whose floats are huge or tiny. Regression: one pixel of an edge counted as all of it."""
+    expected = cryptomatte_of((0x7E123456, 1.0), (0x00800001, 1.0))
+    edge = cryptomatte_of((0x7E123456, 1.0), (0x00800001, 1.0))
+    edge["Layer.CryptoObject00"][3, 4, :2] = 0.0
+    other = cryptomatte_of((0x7E123456, 1.0), (0x00900001, 1.0))
+    less = cryptomatte_of((0x7E123456, 1.0), (0x00800001, 0.9))
+    assert [trial.worst_difference(expected, found)[0].agrees for found in (expected, other, less)] == [True, False, False]
+    assert trial.worst_difference(expected, edge)[0].mean < 0.01
 
 
 def test_the_document_is_read_as_it_was_written(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from . import stages
+from . import sockets, stages
 
 NOT_MADE = {
     "ShaderNodeOutputLineStyle": "is for Freestyle",
@@ -182,6 +182,19 @@ def _normal(node: Any) -> None:
     node.outputs[0].default_value = (0.3, 0.4, 0.866)
 
 
+def _rays(node: Any) -> None:
+    # The mean normal of few rays is made to length 1, so that it depends on how the engine distributes them.
+    node.samples = 16
+
+
+def _bundle(node: Any) -> None:
+    node.bundle_items.new("RGBA", sockets.ITEM)
+
+
+def _evaluation(node: Any) -> None:
+    node.output_items.new("RGBA", sockets.ITEM)
+
+
 PREPARE: dict[str, Callable[[Any], None]] = {
     "ShaderNodeTexImage": _image,
     "ShaderNodeTexEnvironment": _image,
@@ -196,5 +209,9 @@ PREPARE: dict[str, Callable[[Any], None]] = {
     "ShaderNodeValue": _number,
     "ShaderNodeRGB": _color,
     "ShaderNodeNormal": _normal,
+    "ShaderNodeBevel": _rays,
+    "NodeCombineBundle": _bundle,
+    "NodeSeparateBundle": _bundle,
+    "NodeEvaluateClosure": _evaluation,
 }
 """Functions that give a new node what it shows."""

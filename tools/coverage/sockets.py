@@ -12,6 +12,9 @@ NORMALS = ("normal", "tangent")
 PLAIN = ("Value", "A", "B", "X", "Y", "Z", "W")
 """Names of inputs that take any number."""
 
+ITEM = "Tint"
+"""Name of the colour in bundles, and of the one that closures return."""
+
 _COLORS = ((0.8, 0.3, 0.2, 1.0), (0.2, 0.5, 0.7, 1.0), (0.4, 0.7, 0.3, 1.0), (0.6, 0.4, 0.8, 1.0))
 _VECTORS = ((0.3, 0.5, 0.7), (0.6, -0.2, 0.4), (-0.4, 0.3, 0.5), (0.2, 0.7, -0.3))
 
@@ -61,10 +64,13 @@ class Patterns:
     def drive(self, socket: bpy.types.NodeSocket, turned: bool = False) -> None:
         """Links an input to a pattern of its kind. `turned` chooses one that runs in another direction.
 
-        An input that takes no links gets another value.
+        An input that nothing can vary gets another value.
         """
         if socket.type == "STRING":
             socket.default_value = "Col"
+            return
+        if socket.type == "MENU":
+            socket.default_value = socket.node.enum_items[-1].name
             return
         source = self._source(socket, turned)
         if source is None:
@@ -87,7 +93,26 @@ class Patterns:
             if socket.name == "Volume":
                 return self.shader("VolumeAbsorption")
             return self.shader("BsdfTransparent" if turned else "Emission")
+        if socket.type == "BUNDLE":
+            return self.bundle(turned)
+        if socket.type == "CLOSURE":
+            return self.closure(turned)
         return None
+
+    def bundle(self, turned: bool) -> Any:
+        """Returns a bundle of one colour, which varies over the surface."""
+        node = self._tree.nodes.new("NodeCombineBundle")
+        node.bundle_items.new("RGBA", ITEM)
+        self.drive(node.inputs[ITEM], turned)
+        return node.outputs["Bundle"]
+
+    def closure(self, turned: bool) -> Any:
+        """Returns a function that returns a colour, which varies over the surface."""
+        first, last = (self._tree.nodes.new(f"NodeClosure{end}") for end in ("Input", "Output"))
+        first.pair_with_output(last)
+        last.output_items.new("RGBA", ITEM)
+        self.drive(last.inputs[ITEM], turned)
+        return last.outputs["Closure"]
 
     def _node(self, kind: str, **settings: Any) -> Any:
         node = self._tree.nodes.new(f"ShaderNode{kind}")

@@ -11,7 +11,7 @@ import numpy as np
 from gradus import cycles_settings, store
 from support import images
 
-from . import difference, stages
+from . import cryptomatte, difference, stages
 from .row import EXACT, NOISY, Build, Row
 
 AGREES, NO_EFFECT, DIFFERS, FALLS_BACK = "agrees", "no effect", "differs", "falls back"
@@ -76,7 +76,7 @@ class Judge:
         missing = sorted(set(expected) - set(found))
         if missing:
             return Outcome(row.family, row.name, MISSING, ", ".join(missing))
-        worst, where = _worst(expected, found)
+        worst, where = worst_difference(expected, found)
         if not worst.agrees:
             note = _describe(worst, where, expected, found)
             return Outcome(row.family, row.name, DIFFERS, note, worst.size, worst.is_clear)
@@ -117,10 +117,19 @@ class Judge:
             return None
 
 
-def _worst(expected: images.Passes, found: images.Passes) -> tuple[difference.Difference, str]:
+def worst_difference(expected: images.Passes, found: images.Passes) -> tuple[difference.Difference, str]:
     """Returns the largest difference, of those that are too large if there are any, and the name of its pass."""
-    measured = [(difference.compare(image, found[name]), name) for name, image in expected.items()]
+    measured = [(_difference(expected, found, name), name) for name in expected]
     return max(measured, key=lambda item: (not item[0].agrees, item[0].size))
+
+
+def _difference(expected: images.Passes, found: images.Passes, name: str) -> difference.Difference:
+    group = cryptomatte.group(name)
+    if group is None:
+        return difference.compare(expected[name], found[name])
+    planes = [cryptomatte.coverage(passes, group) for passes in (expected, found)]
+    identifiers = sorted(planes[0].keys() | planes[1].keys())
+    return difference.compare(*(cryptomatte.stacked(each, identifiers, expected[name]) for each in planes))
 
 
 def _describe(worst: difference.Difference, where: str, expected: images.Passes, found: images.Passes) -> str:

@@ -8,15 +8,22 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Dicing:
-    """The dicing fields of a GradusMesh. A length is in the mesh's space, a rate a share of the picture's width."""
+    """The dicing fields of a GradusMesh. A length is in the mesh's space, a rate a share of the picture's width.
+
+    A viewport keeps its triangles until a camera makes edges longer or shorter by the tolerance.
+    """
 
     levels: int = 0
     rate: float = 0.0
     length: float = 0.0
     offscreen_scale: float = 1.0
+    tolerance: float = 1.0
 
 
 NO_DICING = Dicing()
+
+PREVIEW_TOLERANCE = 2.0
+"""Factor by which edges may be too long or too short in a viewport. Cycles never dices again for another camera."""
 
 DICING_SETTINGS = ("dicing_rate", "preview_dicing_rate", "max_subdivisions", "offscreen_dicing_scale", "feature_set")
 """Settings of scene.cycles that dicing_of() reads."""
@@ -39,7 +46,8 @@ def dicing_of(obj: Any, scene: Any, width: int, is_preview: bool) -> Dicing:
         return NO_DICING
     rate, length = found
     pixels = settings.preview_dicing_rate if is_preview else settings.dicing_rate
-    return Dicing(settings.max_subdivisions, rate * pixels / width, length, settings.offscreen_dicing_scale)
+    tolerance = PREVIEW_TOLERANCE if is_preview else 1.0
+    return Dicing(settings.max_subdivisions, rate * pixels / width, length, settings.offscreen_dicing_scale, tolerance)
 
 
 def has_other_camera(scene: Any) -> bool:

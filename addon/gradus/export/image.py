@@ -29,6 +29,7 @@ _MODE_DECIDES_SINCE = (5, 2, 0)
 # Radiance.
 _READABLE = (b"\x89PNG", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*", b"II+\x00", b"MM\x00+", b"\x76\x2f\x31\x01", b"#?")
 _OPEN_EXR = b"\x76\x2f\x31\x01"
+_FILM_SCANS = (b"SDPX", b"XPDS", b"\x80\x2a\x5f\xd7", b"\xd7\x5f\x2a\x80")  # DPX and Cineon, both byte orders
 _FLOAT_FORMATS = (_OPEN_EXR, b"#?")
 _SEQUENCE_NUMBER = re.compile(r"(\d+)(?!.*\d)")
 
@@ -46,6 +47,7 @@ class TileState:
     stamp: tuple[int, int] = (0, 0)  # modification time and size of the file: changed files are read again
     is_linear: bool = False  # scene-linear whatever the colour space of the image
     has_straight_alpha: bool | None = None  # whether colours are not yet multiplied by alpha; None if not known
+    is_webp: bool = False
 
 
 @dataclass
@@ -107,6 +109,10 @@ def _is_deep_png(head: bytes) -> bool:
     return head.startswith(b"\x89PNG") and len(head) > 24 and head[24] == 16
 
 
+def _is_webp(head: bytes) -> bool:
+    return head.startswith(b"RIFF") and head[8:12] == b"WEBP"
+
+
 def _comes_from_blender(image: Any, head: bytes) -> bool:
     """Returns whether Blender's pixels differ from those of a packed file that the library could read itself.
 
@@ -125,6 +131,7 @@ def _decoded(image: Any, number: int, pixels: blender_pixels.Pixels | None) -> t
     source = BYTE if pixels.values.typecode == "B" else FLOAT
     tile = TileState(source, image.name, number, pixels.width, pixels.height, pixels.values)
     tile.is_linear = pixels.is_float
+    tile.is_webp = image.has_data and image.file_format == "WEBP"  # would load an image that has no data yet
     return tile, pixels.is_float
 
 
@@ -146,6 +153,15 @@ def _file_tile(image: Any, path: str, number: int, frame_number: int | None) -> 
     """
     packed = _packed_data(image, number)
     head = packed[:32] if packed is not None else _head(path)
+    tile, is_float = _tile_of_format(image, path, number, frame_number, packed, head)
+    tile.is_webp = _is_webp(head)
+    return tile, is_float
+
+
+def _tile_of_format(
+    image: Any, path: str, number: int, frame_number: int | None, packed: bytes | None, head: bytes
+) -> tuple[TileState, bool]:
+    """Returns what _file_tile() returns, read as the format needs it. head: the first bytes of the file."""
     if not head or (head.startswith(_READABLE) and packed is None):
         return TileState(FILE, path, number, stamp=_stamp(path)), head.startswith(_FLOAT_FORMATS)
     if packed is not None and head.startswith(_READABLE) and not _comes_from_blender(image, head):
@@ -226,17 +242,17 @@ def image_state(image: Any, number: int | None, abspath: Any) -> ImageState:
     """Returns what the library needs of an image. number: that of its frame; abspath: bpy.path.abspath."""
     tiles, is_float = _tiles(image, number, abspath)
     settings = image.colorspace_settings
-    space = "" if settings.is_data else settings.name
+    space = "" if compat.is_data(settings) else settings.name
     if tiles[0].is_linear:
         space = ""
     return ImageState(image.name, _alpha_mode(image, tiles[0], is_float), space, is_float, tiles)
 
 
-def warning(image: Any) -> str:
-    """Returns a warning about what is shown of an image, or ""."""
+def warning(image: Any, number: int | None, abspath: Any) -> str:
+    """Returns a warning about what is shown of an image, or "". The arguments are those of image_state()."""
     if image.source == "TILED" and image.is_dirty and len(image.tiles) > 1:
         return f"Image '{image.name}' has changes that are not saved: tiles other than the first are shown as saved"
-    if file_pixels.is_available() or image.file_format not in {"CINEON", "DPX"}:
+    if file_pixels.is_available() or not _head(_path(image, number, abspath)).startswith(_FILM_SCANS):
         return ""
     return f"Image '{image.name}' is shown in linear values, while Cycles shows the film densities of its file"
 
@@ -244,10 +260,9 @@ def warning(image: Any) -> str:
 def _alpha_mode(image: Any, tile: TileState, is_float: bool) -> int:
     """Returns how the colours of an image relate to its alpha in Cycles (measured in 3.4, 4.5 and 5.2)."""
     mode = _ALPHA.get(image.alpha_mode, STRAIGHT)
-    is_webp = image.file_format == "WEBP"
-    if is_webp and compat.VERSION < (4, 0, 0):
-        return STRAIGHT  # multiplied whatever the mode, data too
-    if image.colorspace_settings.is_data and mode != ALPHA_NONE:
+    if tile.is_webp and compat.VERSION < (4, 0, 0) and tile.has_straight_alpha is None:
+        return STRAIGHT  # the OpenImageIO of 3.4 multiplies whatever the mode, data too, and Blender's pixels are not
+    if compat.is_data(image.colorspace_settings) and mode != ALPHA_NONE:
         return CHANNEL_PACKED  # data are never multiplied by alpha
     if mode not in {STRAIGHT, PREMULTIPLIED}:
         return mode
@@ -255,7 +270,7 @@ def _alpha_mode(image: Any, tile: TileState, is_float: bool) -> int:
         return ALWAYS_STRAIGHT if mode == STRAIGHT else PREMULTIPLIED
     if tile.has_straight_alpha is not None:
         return ALWAYS_STRAIGHT if tile.has_straight_alpha else PREMULTIPLIED
-    if is_webp or tile.is_linear:
+    if tile.is_webp or tile.is_linear:
         return PREMULTIPLIED
     return mode if is_float else STRAIGHT
 

@@ -43,9 +43,9 @@ class Resources:
         """Returns the key of an image at the rendered frame. Sets the native image if it is new or has changed."""
         if image is None:
             return 0
-        if warning := images.warning(image):
-            self.warn(warning)
         number = images.number_of_frame(image, image_user, self.frame)
+        if warning := images.warning(image, number, self._abspath):
+            self.warn(warning)
         key = self._keys.key((image.as_pointer(), number))
         signature = images.signature(image, number, self._abspath)
         if signature is not None and not self._keys.changed(key, signature):

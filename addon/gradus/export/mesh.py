@@ -221,5 +221,6 @@ def fill_mesh(arrays: MeshArrays) -> tuple[native.Mesh, list[Any]]:
     struct.dicing_rate = arrays.dicing.rate
     struct.dicing_length = arrays.dicing.length
     struct.offscreen_dicing_scale = arrays.dicing.offscreen_scale
+    struct.dicing_tolerance = arrays.dicing.tolerance
     struct.name = native.name(arrays.name)
     return struct, [positions, times, records, arrays]

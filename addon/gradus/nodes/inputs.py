@@ -169,6 +169,40 @@ def bevel(view: NodeView) -> Value:
     return view.add_vector(Op.BEVEL, inputs, floats=(float(view.node.samples),))
 
 
+_RAYCAST_OUTPUTS = {
+    "Is Hit": (0, FLOAT),
+    "Self Hit": (1, FLOAT),
+    "Hit Distance": (2, FLOAT),
+    "Hit Position": (3, VECTOR),
+    "Hit Normal": (4, VECTOR),
+}
+
+
+@translator("ShaderNodeRaycast")
+def raycast(view: NodeView) -> Value | None:
+    position = view.linked("Position") or view.add_vector(Op.GEOMETRY, (), Geometry.POSITION)
+    direction = view.linked("Direction") or view.add_vector(Op.GEOMETRY, (), Geometry.NORMAL)
+    inputs = (position, direction, view.value("Length"))
+    mode = int(view.node.only_local)
+    if view.output in _RAYCAST_OUTPUTS:
+        output, kind = _RAYCAST_OUTPUTS[view.output]
+        return view.add(Op.RAYCAST, inputs, mode, kind=kind, output=output)
+    return _raycast_attribute(view, inputs, mode)
+
+
+def _raycast_attribute(view: NodeView, inputs: tuple[Value, ...], mode: int) -> Value | None:
+    """Returns an output that reads an attribute where the ray ends. An input of text holds its name."""
+    _, index, *rest = view.output.split("_")
+    text = view.find(f"Value_{index}")
+    if text is None:
+        return None
+    types = {"VALUE": "Fac", "VECTOR": "Vector", "RGBA": "Color"}
+    output, kind = _ATTRIBUTE_OUTPUTS["Alpha" if rest else types[view.socket.type]]
+    return view.add(
+        Op.RAYCAST_ATTRIBUTE, inputs, mode, resource=view.name_resource(text.default_value), kind=kind, output=output
+    )
+
+
 @translator("ShaderNodeCameraData")
 def camera_data(view: NodeView) -> Value:
     output = {"View Vector": 0, "View Z Depth": 1, "View Distance": 2}[view.output]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .node import NodeView, translator
-from .ops import Geometry, NormalSpace, Op, VectorMath
+from .ops import BumpMode, Geometry, NormalSpace, Op, VectorMath
 from .program import FLOAT, VECTOR, Value, constant_float, constant_vector
 
 _SPACES = {
@@ -14,6 +14,10 @@ _SPACES = {
     "BLENDER_WORLD": NormalSpace.BLENDER_WORLD,
 }
 
+# The version from which the strength of a normal map scales the colour. Before, it blended the normals.
+_SCALED_MAPS_SINCE = (4, 0, 0)
+# The version from which closures, and not bumps, keep mirror directions above the surface.
+_UNTILTED_BUMPS_SINCE = (3, 6, 0)
 # The version from which Cycles scales the interpolated normal to length 1 before it builds the tangent space.
 _UNIT_NORMALS_SINCE = (5, 2, 0)
 
@@ -26,6 +30,8 @@ def normal_map(view: NodeView) -> Value:
     space = _SPACES[view.node.space]
     if in_tangent_space and view.version >= _UNIT_NORMALS_SINCE:
         space = NormalSpace.UNIT_TANGENT
+    elif in_tangent_space and view.version < _SCALED_MAPS_SINCE:
+        space = NormalSpace.BLENDED_TANGENT
     color = view.value("Color")
     if getattr(view.node, "convention", "OPENGL") == "DIRECTX":  # since Blender 5.2
         terms = (color, constant_vector((1.0, -1.0, 1.0)), constant_vector((0.0, 1.0, 0.0)), constant_float(1.0))
@@ -41,7 +47,10 @@ def bump(view: NodeView) -> Value | None:
     # The step of the finite differences: a pixel before 4.2, an input from then on.
     width = view.value("Filter Width") if view.has("Filter Width") else constant_float(1.0)
     inputs = (view.value("Strength"), view.value("Distance"), view.value("Height"), normal, width)
-    return view.add_vector(Op.BUMP, inputs, 1 if view.node.invert else 0)
+    mode = BumpMode.INVERTED if view.node.invert else BumpMode.UPWARD
+    if view.version < _UNTILTED_BUMPS_SINCE:
+        mode |= BumpMode.TILTED
+    return view.add_vector(Op.BUMP, inputs, mode)
 
 
 @translator("ShaderNodeNormal")

@@ -46,6 +46,8 @@ class Op(IntEnum):
     BEVEL = 59
     DISPLACEMENT = 60
     VECTOR_DISPLACEMENT = 61
+    RAYCAST = 62
+    RAYCAST_ATTRIBUTE = 63
     IMAGE = 64
     ENVIRONMENT = 65
     NOISE = 66
@@ -163,6 +165,15 @@ class LightPath(IntEnum):
     PORTAL_DEPTH = 13
 
 
+class BumpMode(IntEnum):
+    """Sign of a bump, and whether its normal keeps the mirror direction above the surface, as before Blender 3.6."""
+
+    UPWARD = 0
+    INVERTED = 1
+    TILTED = 2
+    TILTED_INVERTED = 3
+
+
 class NormalSpace(IntEnum):
     """Space of a normal map."""
 
@@ -172,6 +183,7 @@ class NormalSpace(IntEnum):
     BLENDER_OBJECT = 3
     BLENDER_WORLD = 4
     UNIT_TANGENT = 5
+    BLENDED_TANGENT = 6
 
 
 class Projection(IntEnum):
@@ -427,6 +439,8 @@ INPUTS = {
     Op.BEVEL: 2,
     Op.DISPLACEMENT: 4,
     Op.VECTOR_DISPLACEMENT: 3,
+    Op.RAYCAST: 3,
+    Op.RAYCAST_ATTRIBUTE: 3,
     Op.IMAGE: 1,
     Op.ENVIRONMENT: 1,
     Op.NOISE: 9,
@@ -504,6 +518,8 @@ OUTPUTS = {
     Op.BEVEL: 1,
     Op.DISPLACEMENT: 1,
     Op.VECTOR_DISPLACEMENT: 1,
+    Op.RAYCAST: 5,
+    Op.RAYCAST_ATTRIBUTE: 4,
     Op.IMAGE: 2,
     Op.ENVIRONMENT: 1,
     Op.NOISE: 2,

@@ -63,6 +63,8 @@ def _before_4(view: NodeView) -> Value:
         view.direction("Clearcoat Normal"),
         view.direction("Tangent"),
     )
+    if not view.value("Clearcoat").is_zero():
+        view.warn_replaced("has a clearcoat with the highlight of GGX, whose tail is shorter than that of Cycles")
     surface = view.add_closure(Op.PRINCIPLED_3, inputs + below, mode)
     color, strength = view.value("Emission"), view.value("Emission Strength", default=1.0)
     if color.is_zero() or strength.is_zero():

@@ -62,6 +62,8 @@ class Program:
     displacement_method: int = 0
     bump_filter_width: float = 1.0
     """Step of the finite differences of a bump by displacement, in pixels."""
+    shading_normals: int = 0
+    """How shading normals that disagree with the surface are corrected."""
     pass_index: int = 0
     sample_as_light: bool = True
     transparent_shadow: bool = True
@@ -122,6 +124,7 @@ class Program:
             self.displacement,
             self.displacement_method,
             self.bump_filter_width,
+            self.shading_normals,
             self.pass_index,
             self.sample_as_light,
             self.transparent_shadow,
@@ -161,6 +164,7 @@ class Program:
             material.displacement_output = self.displacement.output
             material.displacement_method = self.displacement_method
             material.bump_filter_width = self.bump_filter_width
+        material.shading_normals = self.shading_normals
         material.pass_index = self.pass_index
         material.sample_as_light = self.sample_as_light
         material.transparent_shadow = self.transparent_shadow

@@ -15,6 +15,7 @@ _DISTRIBUTIONS = {
 }
 _LEGACY = 4
 _CONDUCTOR = 4
+_APPROXIMATE = 8
 
 
 def distribution_mode(view: NodeView) -> int:
@@ -134,9 +135,10 @@ def metallic(view: NodeView) -> Value:
         view.direction("Normal"),
         view.direction("Tangent"),
     )
-    return view.add_closure(
-        Op.METALLIC, inputs + thin_film(view), distribution_mode(view) | (_CONDUCTOR if conductor else 0)
-    )
+    mode = distribution_mode(view)
+    if conductor:
+        mode |= _CONDUCTOR | (_APPROXIMATE if view.version < (5, 0, 0) else 0)
+    return view.add_closure(Op.METALLIC, inputs + thin_film(view), mode)
 
 
 @translator("ShaderNodeBsdfSheen", "ShaderNodeBsdfVelvet")

@@ -9,12 +9,15 @@ from .ops import Curves, Op
 from .program import COLOR, FLOAT, VECTOR, Value
 
 _SAMPLES = 257
+# The number of samples of a colour ramp before Blender 4.0. It shows in the places where constant ramps step.
+_OLD_RAMP_SAMPLES = 256
 
 
 @translator("ShaderNodeValToRGB")
 def color_ramp(view: NodeView) -> Value:
     ramp = view.node.color_ramp
-    floats = tuple(float(c) for i in range(_SAMPLES) for c in ramp.evaluate(i / (_SAMPLES - 1)))
+    samples = _SAMPLES if view.version >= (4, 0, 0) else _OLD_RAMP_SAMPLES
+    floats = tuple(float(c) for i in range(samples) for c in ramp.evaluate(i / (samples - 1)))
     mode = 1 if ramp.interpolation == "CONSTANT" else 0
     kind, output = (FLOAT, 1) if view.output == "Alpha" else (COLOR, 0)
     return view.add(Op.RAMP, (view.value("Fac"),), mode, floats, kind=kind, output=output)

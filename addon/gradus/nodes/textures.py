@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from .. import compat
 from . import ies_profile
 from .node import NodeView, translator
 from .ops import (
@@ -63,7 +64,7 @@ def _generated(view: NodeView) -> Value:
 
 def _divides_by_alpha(view: NodeView, image: object) -> bool:
     """Returns whether colours are divided by alpha: if the Alpha output is used, as in Cycles."""
-    if image is None or image.alpha_mode in {"CHANNEL_PACKED", "NONE"} or image.colorspace_settings.is_data:
+    if image is None or image.alpha_mode in {"CHANNEL_PACKED", "NONE"} or compat.is_data(image.colorspace_settings):
         return False
     return view.node.outputs["Alpha"].is_linked
 
@@ -240,8 +241,8 @@ def ies_texture(view: NodeView) -> Value:
     elif vector is None:
         incoming = view.add_vector(Op.GEOMETRY, (), Geometry.INCOMING)
         vector = view.add_vector(Op.VECTOR_TRANSFORM, (incoming,), _WORLD_TO_OBJECT)
-    is_open = (4, 0, 0) <= view.version < (5, 0, 0)
-    return view.add_float(Op.IES, (_mapped(view, vector), strength), 1 if is_open else 0, floats=profile.table())
+    continuation = 0 if view.version < (4, 0, 0) else 1 if view.version < (5, 0, 0) else 2
+    return view.add_float(Op.IES, (_mapped(view, vector), strength), continuation, floats=profile.table())
 
 
 def _ies_text(view: NodeView) -> str | None:

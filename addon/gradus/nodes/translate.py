@@ -5,9 +5,11 @@ from __future__ import annotations
 import sys
 from typing import Any
 
+from ..abi import ShadingNormals
 from . import inlining
 from .aovs import aov_outputs
 from .displacement import set_displacement
+from .light_paths import warn_of_emission
 from .ops import Op
 from .program import SHADER, Program, constant_color, constant_float
 from .tree import find_socket
@@ -33,7 +35,7 @@ def translate(block: Any, kind: str, resources: Any, version: tuple[int, ...] | 
     kind = _KINDS[kind]
     version = version or host_version()
     program = Program(name=block.name)
-    _settings(program, block, kind)
+    _settings(program, block, kind, version)
     tree = _node_tree(block, version)
     if tree is None:
         program.surface = _without_nodes(program, block, kind)
@@ -58,9 +60,10 @@ def _replace_all(program: Program, kind: str, reason: str) -> None:
     program.surface = program.add(op, (constant_color((0.8, 0.8, 0.8)), constant_float(strength_or_roughness)))
 
 
-def _settings(program: Program, block: Any, kind: str) -> None:
+def _settings(program: Program, block: Any, kind: str, version: tuple[int, ...]) -> None:
     if kind != "SURFACE":
         return
+    program.shading_normals = _shading_normals(version)
     program.pass_index = getattr(block, "pass_index", 0)
     cycles = getattr(block, "cycles", None)
     # Cycles has a Boolean in 3.4 and an enumeration later.
@@ -70,6 +73,12 @@ def _settings(program: Program, block: Any, kind: str) -> None:
     if shadow is None:
         shadow = getattr(cycles, "use_transparent_shadow", True)
     program.transparent_shadow = bool(shadow)
+
+
+def _shading_normals(version: tuple[int, ...]) -> ShadingNormals:
+    if version >= (4, 5, 0):
+        return ShadingNormals.SINCE_4_5
+    return ShadingNormals.SINCE_3_6 if version >= (3, 6, 0) else ShadingNormals.BEFORE_3_6
 
 
 def _node_tree(block: Any, version: tuple[int, ...]) -> Any:
@@ -103,6 +112,7 @@ def _walk(program: Program, block: Any, tree: Any, resources: Any, version: tupl
     value = walker.input(surface, ())
     if value.kind == SHADER and not value.is_constant:
         program.surface = value.node
+        warn_of_emission(program, block, kind)
     program.aovs = aov_outputs(walker, resources.aovs) if resources.aovs else 0
     if _is_fed(walker, output, "Volume"):
         _warn_left_out(program, "volume")

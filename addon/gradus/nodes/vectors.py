@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .node import NodeView, translator
 from .ops import Mapping, Op, VectorMath
-from .program import FLOAT, VECTOR, Value
+from .program import FLOAT, VECTOR, Value, constant_float, constant_vector
 
 
 @translator("ShaderNodeMapping")
@@ -12,6 +12,10 @@ def mapping(view: NodeView) -> Value:
     location = view.value("Location")
     inputs = (view.value("Vector"), location, view.value("Rotation"), view.value("Scale"))
     return view.add_vector(Op.MAPPING, inputs, Mapping[view.node.vector_type])
+
+
+# The version from which normals are transformed by the transposed inverse. Before, they were directions of length 1.
+_NORMALS_BY_INVERSE_SINCE = (4, 0, 0)
 
 
 @translator("ShaderNodeVectorMath")
@@ -34,8 +38,14 @@ def vector_rotate(view: NodeView) -> Value:
 def vector_transform(view: NodeView) -> Value:
     kinds, spaces = {"VECTOR": 0, "POINT": 1, "NORMAL": 2}, {"WORLD": 0, "OBJECT": 1, "CAMERA": 2}
     node = view.node
-    mode = kinds[node.vector_type] | spaces[node.convert_from] << 2 | spaces[node.convert_to] << 4
-    return view.add_vector(Op.VECTOR_TRANSFORM, (view.value("Vector"),), mode)
+    is_scaled_direction = node.vector_type == "NORMAL" and view.version < _NORMALS_BY_INVERSE_SINCE
+    kind = kinds["VECTOR" if is_scaled_direction else node.vector_type]
+    mode = kind | spaces[node.convert_from] << 2 | spaces[node.convert_to] << 4
+    transformed = view.add_vector(Op.VECTOR_TRANSFORM, (view.value("Vector"),), mode)
+    if not is_scaled_direction:
+        return transformed
+    unused = (constant_vector((0.0, 0.0, 0.0)), constant_vector((0.0, 0.0, 0.0)), constant_float(1.0))
+    return view.add_vector(Op.VECTOR_MATH, (transformed, *unused), VectorMath.NORMALIZE)
 
 
 @translator("ShaderNodeSeparateXYZ")

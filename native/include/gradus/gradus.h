@@ -159,10 +159,15 @@ typedef struct GradusMesh {
   uint32_t dicing_levels;            /* How often triangles may be divided in four; 0 = the mesh is not diced. */
   size_t edge_count;                 /* Number of edges; 0 = Geometry > Pointiness and Random Per Island are 0. */
   const int32_t* edge_vertices;      /* 2 vertices an edge. */
-  float dicing_rate;                 /* Longest edge of the diced mesh at its first instance, as a share of the
-                                        picture's width; 0 = dicing_length decides. */
-  float dicing_length;               /* Longest edge of the diced mesh in its own space. [m] */
-  float offscreen_dicing_scale;      /* Factor of dicing_rate for edges beyond the borders of the picture. */
+  float dicing_rate;                 /* Sides of the squares of two triangles into which the mesh is divided, as a
+                                        share of the picture's width, where the instance decides that needs the
+                                        smallest; 0 = dicing_length decides. */
+  float dicing_length;               /* Sides of these squares in the mesh's space. [m] */
+  float offscreen_dicing_scale;      /* How much faster the squares grow with the distance beyond the borders of the
+                                        picture than with that from the camera. */
+  float dicing_tolerance;            /* Factor by which the longest edge may become longer or shorter in the picture
+                                        before the mesh is diced anew, so that a viewport does not do so for every
+                                        camera; 1 or less: always. */
   uint32_t reserved;                 /* 0. */
 } GradusMesh;
 
@@ -458,6 +463,15 @@ typedef enum GradusDisplacement {
                                            Blender 5.0. */
 } GradusDisplacement;
 
+/* How shading normals that disagree with the geometric normal are corrected, by versions of Blender. */
+typedef enum GradusShadingNormals {
+  GRADUS_SHADING_NORMALS_SINCE_4_5 = 0, /* Diffuse bumps darken as microfacets of their tilt. Mirror directions stay
+                                           above the surface. */
+  GRADUS_SHADING_NORMALS_SINCE_3_6 = 1, /* Diffuse bumps darken by a ratio of cosines. */
+  GRADUS_SHADING_NORMALS_BEFORE_3_6 = 2 /* SINCE_3_6, where diffuse closures and bumps keep mirror directions above
+                                           the surface, too. */
+} GradusShadingNormals;
+
 /* A material, a background or the emission of a light as a program of nodes. */
 typedef struct GradusMaterial {
   uint32_t struct_size;         /* sizeof this struct. */
@@ -480,7 +494,8 @@ typedef struct GradusMaterial {
   uint32_t displacement_output; /* The output of that node which is the displacement in world space. */
   uint32_t displacement_method; /* GradusDisplacement: What the displacement changes. */
   float bump_filter_width;      /* Step of the finite differences of a bump by displacement, in pixels. */
-  uint32_t reserved;            /* 0. */
+  uint32_t shading_normals;     /* GradusShadingNormals: How shading normals that disagree with the surface are
+                                   corrected. */
 } GradusMaterial;
 
 /* Kinds of objects that gradus_scene_remove removes. */
@@ -871,13 +886,16 @@ GRADUS_API GradusError gradus_sequence_applies(const GradusSettings* settings, u
 GRADUS_API GradusError gradus_sequence_create(GradusDevice device, const GradusSequenceSettings* settings,
                                               GradusSequence* sequence);
 /* Returns the frames that must have been sampled before frame settings->frame can be delivered with these settings:
- * *first, *first + step and so on up to *last. The reconstruction AUTO stands for REGULARIZED. */
+ * *first, *first + step and so on up to *last. Frames beyond the sequence are among them if the folder holds them. The
+ * reconstruction AUTO stands for REGULARIZED. */
 GRADUS_API GradusError gradus_sequence_needs(GradusSequence sequence, const GradusSettings* settings, int32_t* first,
                                              int32_t* last);
 /* Samples frame settings->frame of the scene's current snapshot and returns at once. The render is polled, waited for,
  * cancelled and released as any other. Frames come in order, each when the render of the one before has ended. A frame
- * that the folder holds is not sampled again, or goes on from its samples if it has fewer than are asked for. A frame
- * that equals the one before is not sampled either. */
+ * that the folder holds is not sampled again, or goes on from its samples if it has fewer than are asked for. Stored
+ * samples of another scene or other settings, and damaged files, are replaced. A frame that equals the one before is
+ * not sampled either. A frame beyond `first` and `last` gets no samples of its own; it joins the others if its stored
+ * samples fit, and replays the frame before again where that one has changed. */
 GRADUS_API GradusError gradus_sequence_sample(GradusSequence sequence, GradusScene scene,
                                               const GradusSettings* settings, GradusRender* render);
 /* Tells the sequence that the scene shows settings->frame, which is not sampled here; the next frame follows its
@@ -887,6 +905,9 @@ GRADUS_API GradusError gradus_sequence_pass_by(GradusSequence sequence, GradusSc
                                                const GradusSettings* settings);
 /* Tells the sequence that no frame beyond `last` will come; earlier frames are delivered without them. */
 GRADUS_API GradusError gradus_sequence_end_at(GradusSequence sequence, int32_t last);
+/* Takes the oldest warning about stored frames that did not fit and were sampled again, or that are beyond the sequence
+ * and are not used, as gradus_device_warning does. Each frame is named once. */
+GRADUS_API GradusError gradus_sequence_warning(GradusSequence sequence, const char** text);
 /* Reconstructs `frame`, with what it needs of others. Passes, statistics and film of the ended render are those of
  * `frame`. Frames come in order. `settings` may change reconstruction, reconstruction_alpha, denoiser and film_exposure
  * from what the frames were sampled for and may be NULL. The reconstruction AUTO is the one for which they were

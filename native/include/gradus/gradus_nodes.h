@@ -49,7 +49,8 @@
  *                       GradusDistribution + GradusSubsurface.
  *   METALLIC          base color, edge tint, roughness, anisotropy, rotation, normal, tangent, film thickness, film ior
  *                       -> closure: Metal with the F82 tint model, or a conductor. Mode: GradusDistribution; + 4: a
- *                       conductor, whose refractive index and extinction take the place of the two colours.
+ *                       conductor, whose refractive index and extinction take the place of the two colours; + 8: with
+ *                       the Fresnel term of Blender before 5.0.
  *   SUBSURFACE        color, scale, radius, ior, roughness, anisotropy, normal -> closure: Light that enters the object
  *                       and leaves it elsewhere. Mode: GradusSubsurface.
  *   AOV               color, value -> closure: Output to an AOV, which GradusMaterial.aovs refers to; it scatters
@@ -73,7 +74,7 @@
  *   CAMERA_DATA       - -> view vector, z depth, distance: Position relative to the camera.
  *   NORMAL_MAP        strength, color -> vector: A normal from a colour. Mode: GradusNormalSpace. Resource: UV map.
  *   BUMP              strength, distance, height, normal, filter width -> vector: A normal from a height, which is
- *                       evaluated at three points. Mode: 1: inverted.
+ *                       evaluated at three points. Mode: GradusBumpMode.
  *   INSTANCE_ATTRIBUTE- -> color, vector, factor, alpha: A named attribute of the instance. Resource: name.
  *   WIREFRAME         size -> factor: 1 on lines along the edges of triangles. Mode: 0: the size is in metres; 1: it is
  *                       in pixels. Floats: width and height of a pixel as a share of the frame.
@@ -87,6 +88,10 @@
  *   VECTOR_DISPLACEMENTvector, midlevel, scale -> displacement: A displacement from a vector, in world space. Mode:
  *                       GRADUS_NORMAL_TANGENT, with the normal as the second axis, GRADUS_NORMAL_OBJECT or
  *                       GRADUS_NORMAL_WORLD.
+ *   RAYCAST           position, direction, length -> hit, self hit, distance, position, normal: The nearest surface on
+ *                       a ray, and whether it is of the same instance. Mode: 1: only surfaces of the same instance.
+ *   RAYCAST_ATTRIBUTE position, direction, length -> color, vector, factor, alpha: A named attribute of the surface
+ *                       that RAYCAST finds, and 0 if there is none. Mode: that of RAYCAST. Resource: name.
  *
  * Textures.
  *   IMAGE             vector -> color, alpha: An image. Mode: GRADUS_IMAGE_MODE(). Floats: blend of BOX. Resource: key
@@ -106,9 +111,10 @@
  *   SKY               vector -> color: A sky model. Mode: GradusSkyMode. Floats: PREETHAM and HOSEK_WILKIE: sun
  *                       direction (3), turbidity, ground albedo; others: sun elevation, sun rotation, sun size
  *                       (negative = no disk), sun intensity, altitude in metres, air, dust or aerosols, ozone.
- *   IES               vector, strength -> value: The intensity of a luminaire by direction. Mode: 1: the table does not
- *                       continue over a full turn, as in Blender 4. Floats: number of horizontal angles, horizontal
- *                       angles, vertical angles [rad], intensities of all vertical angles for each horizontal one.
+ *   IES               vector, strength -> value: The intensity of a luminaire by direction. Mode: how the table
+ *                       continues at its ends: 0: as in Blender 3, 1: 4, 2: 5. Floats: number of horizontal angles,
+ *                       horizontal angles, vertical angles [rad], intensities of all vertical angles for each
+ *                       horizontal one.
  *   VORONOI           vector, w, scale, detail, roughness, lacunarity, smoothness, exponent, randomness -> distance,
  *                       color, position, w, radius: Cells around random points. Mode: GRADUS_VORONOI_MODE().
  *   MUSGRAVE          vector, w, scale, detail, dimension, lacunarity, offset, gain -> value: Perlin noise in octaves,
@@ -193,6 +199,8 @@
   X(BEVEL, 59, 2, 1, 0) \
   X(DISPLACEMENT, 60, 4, 1, 0) \
   X(VECTOR_DISPLACEMENT, 61, 3, 1, 0) \
+  X(RAYCAST, 62, 3, 5, 0) \
+  X(RAYCAST_ATTRIBUTE, 63, 3, 4, 0) \
   X(IMAGE, 64, 1, 2, 0) \
   X(ENVIRONMENT, 65, 1, 1, 0) \
   X(NOISE, 66, 9, 2, 0) \
@@ -313,6 +321,15 @@ typedef enum GradusLightPathMode {
   GRADUS_LIGHT_PATH_PORTAL_DEPTH = 13        /* Number of ray portals passed. */
 } GradusLightPathMode;
 
+/* Sign of a bump, and whether its normal keeps the mirror direction above the surface, as before Blender 3.6. */
+typedef enum GradusBumpMode {
+  GRADUS_BUMP_UPWARD = 0,         /* Heights raise the surface. */
+  GRADUS_BUMP_INVERTED = 1,       /* Heights lower the surface. */
+  GRADUS_BUMP_TILTED = 2,         /* UPWARD, with a normal that is tilted until the mirror direction is above the
+                                     surface. */
+  GRADUS_BUMP_TILTED_INVERTED = 3 /* INVERTED, with such a normal. */
+} GradusBumpMode;
+
 /* Space of a normal map. */
 typedef enum GradusNormalSpace {
   GRADUS_NORMAL_TANGENT = 0,        /* Tangent space of the interpolated normal as it is, as in Cycles before Blender
@@ -321,8 +338,10 @@ typedef enum GradusNormalSpace {
   GRADUS_NORMAL_WORLD = 2,          /* World space. */
   GRADUS_NORMAL_BLENDER_OBJECT = 3, /* Object space with y and z inverted. */
   GRADUS_NORMAL_BLENDER_WORLD = 4,  /* World space with y and z inverted. */
-  GRADUS_NORMAL_UNIT_TANGENT = 5    /* Tangent space of the interpolated normal scaled to length 1, as in Cycles
+  GRADUS_NORMAL_UNIT_TANGENT = 5,   /* Tangent space of the interpolated normal scaled to length 1, as in Cycles
                                        since Blender 5.2. */
+  GRADUS_NORMAL_BLENDED_TANGENT = 6 /* TANGENT, where the strength blends with the normal of the surface, as before
+                                       Blender 4.0. */
 } GradusNormalSpace;
 
 /* Projection of an image. */

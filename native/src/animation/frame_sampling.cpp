@@ -15,11 +15,8 @@
 namespace gradus::animation {
 
 FrameSampling::FrameSampling(std::shared_ptr<Sequence> sequence, render::LoopInput input)
-    : sequence_(std::move(sequence)), input_(std::move(input)), stored_fresh_(stored_fresh()), fresh_(fresh_input()) {
+    : sequence_(std::move(sequence)), input_(std::move(input)), fresh_(fresh_input()) {
   record_.plan = fresh_.plan();
-  if (stored_fresh_ && record_.plan.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED) {
-    require_features(*stored_fresh_, sequence_->folder_.path(input_.settings.frame, FrameSamples::kFresh));
-  }
   sequence_->warn_of_needs(record_.plan, &record_.stats.warnings);
   const bool replays = takes_replays(input_.settings);
   record_.plan.chosen.emplace_back(
@@ -91,18 +88,24 @@ void FrameSampling::render() {
     const std::lock_guard lock(mutex_);
     phase_ = GRADUS_PHASE_SAMPLING;
   }
-  const bool repeats = repeats_before();
+  find_stored();
+  if (!is_in_job() && !stored_fresh_) {
+    sequence_->before_ = make_previous_frame(input_.snapshot, input_.settings, nullptr);
+    return;
+  }
+  const bool repeats = is_in_job() && repeats_before();
   const bool is_repeated = stored_fresh_ && repeats && stored_fresh_->frame_number == sequence_->before_->stream_frame;
   if (repeats && !is_repeated) return repeat_before();
   sample_fresh_and_replayed();
 }
 
-std::optional<film::FilmHeader> FrameSampling::stored_fresh() const {
-  std::optional<film::FilmHeader> fresh = stored(FrameSamples::kFresh);
-  const bool is_of_earlier = fresh && fresh->frame_number != input_.settings.frame;
-  if (is_of_earlier && !stored(FrameSamples::kReplayed))
-    return std::nullopt;  // fresh and replayed samples are both taken from an earlier frame, or neither
-  return fresh;
+void FrameSampling::find_stored() {
+  if (!sequence_->folder_.holds(input_.settings.frame)) return;
+  stored_fresh_ = find_stored(FrameSamples::kFresh);
+  if (stored_fresh_) stored_replayed_ = find_stored(FrameSamples::kReplayed);
+  // Fresh and replayed samples are both taken from an earlier frame, or neither.
+  const bool is_of_earlier = stored_fresh_ && stored_fresh_->frame_number != input_.settings.frame;
+  if (is_of_earlier && !stored_replayed_) stored_fresh_.reset();
 }
 
 bool FrameSampling::has_enough(const film::FilmHeader& header, FrameSamples kind) const {
@@ -111,27 +114,43 @@ bool FrameSampling::has_enough(const film::FilmHeader& header, FrameSamples kind
   return follows_fresh || has_as_many(header, kind, input_.settings);
 }
 
-std::optional<film::FilmHeader> FrameSampling::stored(FrameSamples kind) const {
-  const SequenceFolder& folder = sequence_->folder_;
+std::optional<film::FilmHeader> FrameSampling::find_stored(FrameSamples kind) {
   const int32_t number = input_.settings.frame;
-  if (!folder.holds(number)) return std::nullopt;
-  std::optional<film::FilmHeader> frame = read_with_advice([&] { return folder.header(number, kind); });
-  // The file may be that of an earlier frame that was identical. If the frames differ now, or the file has too few
-  // samples, the frame is sampled anew or repeats the earlier frame again.
-  if (frame->frame_number != number && (!has_enough(*frame, kind) || differs_from_before())) return std::nullopt;
+  try {
+    const film::FilmHeader header = sequence_->folder_.header(number, kind);
+    // The file may be that of an earlier frame that was identical. If the file has too few samples, the frame is
+    // sampled by itself or repeats the earlier frame again.
+    if (header.frame_number != number && is_in_job() && !has_enough(header, kind)) return std::nullopt;
+    const std::string why = difference_of(header, kind);
+    if (!why.empty()) {
+      sequence_->add_stale(number, why);
+      return std::nullopt;
+    }
+    load(kind);  // so that a damaged file is found while the frame can still be sampled
+    return header;
+  } catch (const Error& e) {
+    if (e.code() == GRADUS_ERROR_CANCELLED) throw;
+    sequence_->add_stale(number, e.what());
+    return std::nullopt;
+  }
+}
+
+std::string FrameSampling::difference_of(const film::FilmHeader& header, FrameSamples kind) const {
+  const int32_t number = header.frame_number;  // that of the first one of a series of identical frames
+  if (number != input_.settings.frame && differs_from_before())
+    return "samples of frame " + std::to_string(number) + ", which shows something else";
   GradusSettings settings = input_.settings;
-  settings.frame = frame->frame_number;  // number of the first one of a series of identical frames
+  settings.frame = number;
   if (settings.integrator == GRADUS_INTEGRATOR_AUTO)
-    settings.integrator = frame->settings.integrator;  // the stored film holds what AUTO was resolved to
-  require_same(*frame, kind, folder.path(number, kind), settings, input_.snapshot->content_key);
-  return frame;
+    settings.integrator = header.settings.integrator;  // the stored film holds what AUTO was resolved to
+  return difference(header, kind, settings, input_.snapshot->content_key);
 }
 
 std::shared_ptr<film::Film> FrameSampling::read(FrameSamples kind, film_io::StoredContent content,
                                                 const CancelCheck& cancel) const {
   std::shared_ptr<film::Film> film;
   tbb::task_arena(arena_size(input_.threads)).execute([&] {
-    film = read_with_advice([&] { return sequence_->folder_.load(input_.settings.frame, kind, content, cancel); });
+    film = sequence_->folder_.load(input_.settings.frame, kind, content, cancel);
   });
   return film;
 }
@@ -187,7 +206,7 @@ void FrameSampling::resume_samples() {
 }
 
 void FrameSampling::sample_fresh_and_replayed() {
-  const bool continues = stored_fresh_ && !GRADUS_FAULT(stored_frame_with_few_samples_accepted) &&
+  const bool continues = stored_fresh_ && is_in_job() && !GRADUS_FAULT(stored_frame_with_few_samples_accepted) &&
                          !has_as_many(*stored_fresh_, FrameSamples::kFresh, input_.settings),
              samples_fresh = !stored_fresh_ || continues;
   if (continues) resume_samples();
@@ -211,7 +230,7 @@ void FrameSampling::sample_replayed(const film::FilmHeader& fresh, const std::ve
   render::LoopInput input = input_;
   input.whole_samples = input.settings.samples;
   if (takes_replays(input_.settings)) input.settings.samples = samples_of(FrameSamples::kReplayed, input_.settings);
-  std::optional<film::FilmHeader> found = stored(FrameSamples::kReplayed);
+  std::optional<film::FilmHeader> found = stored_replayed_;
   if (found && found->frame_number != fresh.frame_number) found.reset();
   if (found && fresh.frame_number != input_.settings.frame) return;  // both files are those of the earlier frame
   if (found && !replays_before(*found)) found.reset();
@@ -289,12 +308,14 @@ std::shared_ptr<const render::Replay> FrameSampling::follow(const film::FilmHead
 void FrameSampling::finish(const film::FilmHeader& fresh, std::vector<uint32_t> counts) {
   auto before = make_previous_frame(input_.snapshot, input_.settings, &fresh);
   before->counts = std::move(counts);
+  if (!has_enough(fresh, FrameSamples::kFresh)) before->sampled.reset();  // no other frame may share its samples
   sequence_->before_ = std::move(before);
   record_.stats.total_seconds = seconds();
   record_.stats.process_cpu = process_cpu_seconds();
   sequence_->records_[input_.settings.frame] = record_;
   sequence_->traits_[input_.settings.frame] =
       traits_of(fresh, sequence_->folder_.header(input_.settings.frame, FrameSamples::kReplayed));
+  if (!is_in_job()) return;  // the settings for delivery are those of the job that rendered the frame
   GradusSettings delivered = input_.settings;
   delivered.reconstruction = record_.plan.reconstruction;
   delivered.denoiser = render::stored_denoiser(record_.plan);

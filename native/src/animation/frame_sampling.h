@@ -33,10 +33,14 @@ class FrameSampling final : public render::RenderTask {
   void render() override;
   uint64_t memory_bytes() const override { return 0; }
 
-  // Returns the header of stored samples of the frame if they can be used. Throws invalid_argument if the folder holds
-  // samples of the same frame that were taken with other settings.
-  std::optional<film::FilmHeader> stored(FrameSamples kind) const;
-  std::optional<film::FilmHeader> stored_fresh() const;
+  bool is_in_job() const { return sequence_->is_in_job(input_.settings.frame); }
+  // Finds the stored samples of the frame that can be used.
+  void find_stored();
+  // Returns the header of stored samples of one kind if they can be used. If not, and there are any, tells the sequence
+  // why.
+  std::optional<film::FilmHeader> find_stored(FrameSamples kind);
+  // Returns how stored samples differ from those of this frame, or "".
+  std::string difference_of(const film::FilmHeader& header, FrameSamples kind) const;
   // Whether the samples of an identical earlier frame, to which none are added, suffice for this frame.
   bool has_enough(const film::FilmHeader& header, FrameSamples kind) const;
   // Returns the frame that was sampled, or reads the stored one. Takes the lock, but not while it reads a file.
@@ -66,7 +70,7 @@ class FrameSampling final : public render::RenderTask {
 
   const std::shared_ptr<Sequence> sequence_;
   const render::LoopInput input_;
-  const std::optional<film::FilmHeader> stored_fresh_;
+  std::optional<film::FilmHeader> stored_fresh_, stored_replayed_;  // without a value: there are none that can be used
   render::RenderLoop fresh_;
   std::unique_ptr<render::RenderLoop> replayed_;
   double resumed_mean_ = 0.0;                       // stored fresh samples per pixel, to which new ones are added

@@ -1,6 +1,7 @@
 #include "animation/sequence.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "animation/frame_delivery.h"
 #include "animation/frame_sampling.h"
@@ -118,8 +119,12 @@ const FrameTraits& Sequence::traits_at(int place) {
          });
 }
 
+bool Sequence::is_usable(int32_t frame) const {
+  return !samples_ || records_.count(frame) > 0 || GRADUS_FAULT(windows_extend_over_skipped_frame);
+}
+
 bool Sequence::shares_window_with_previous(int place, uint32_t reconstruction) {
-  if (passed_by_.count(frame_at(place)) > 0 || passed_by_.count(frame_at(place - 1)) > 0) return false;
+  if (!is_usable(frame_at(place)) || !is_usable(frame_at(place - 1))) return false;
   const FrameTraits &here = traits_at(place), &before = traits_at(place - 1);
   const reconstruct::FrameRange own = job_places();
   // Settings may be animated within a job.
@@ -144,15 +149,17 @@ reconstruct::FrameRange Sequence::needs(const GradusSettings& settings) const {
   const int place = place_of(settings.frame);
   if (!own.contains(place))
     throw invalid_argument("frame " + std::to_string(settings.frame) + " is not part of the sequence");
-  const reconstruct::WindowGrid grid(own, settings_.windows);
+  const reconstruct::FrameRange places = places_with_neighbours();
+  const reconstruct::WindowGrid grid(places, settings_.windows);
   const uint32_t reconstruction =
       joins_frames(settings) ? uint32_t{GRADUS_RECONSTRUCTION_REGULARIZED} : settings.reconstruction;
   const auto of_picture = [&](int other) {
-    return frames_of_picture(grid, std::clamp(other, own.first, own.last), reconstruction);
+    return frames_of_picture(grid, std::clamp(other, places.first, places.last), reconstruction);
   };
   // The flow of a frame is found between its picture and those of its neighbours.
   const int reach = settings_.with_flow && settings_.step == 1 ? 1 : 0;
-  return {frame_at(of_picture(place - reach).first), std::min(frame_at(of_picture(place + reach).last), last_)};
+  const int32_t last = frame_at(of_picture(place + reach).last);
+  return {frame_at(of_picture(place - reach).first), last_ < settings_.last ? std::min(last, last_) : last};
 }
 
 int32_t Sequence::first_of_windows(int32_t frame) const {
@@ -170,6 +177,8 @@ std::unique_ptr<render::RenderTask> Sequence::sample(std::shared_ptr<const scene
   if (!sequence_applies(settings, &why_not))
     throw invalid_argument("the frame cannot be reconstructed together with others: " + why_not);
   place_of(settings.frame);  // throws if the frame is not part of the sequence
+  samples_ = true;
+  if (before_ && int64_t{before_->settings.frame} + settings_.step != settings.frame) before_.reset();
   render::LoopInput input;
   input.device = device_;
   input.snapshot = std::move(snapshot);
@@ -185,18 +194,39 @@ std::unique_ptr<render::RenderTask> Sequence::sample(std::shared_ptr<const scene
 void Sequence::pass_by(std::shared_ptr<const scene::Snapshot> snapshot, const GradusSettings& settings) {
   GradusSettings resolved = settings;
   resolved.integrator = integrator_of(settings);
-  if (settings.frame >= settings_.first && settings.frame <= settings_.last &&
-      !GRADUS_FAULT(windows_extend_over_skipped_frame))
-    passed_by_.insert(settings.frame);
-  std::optional<film::FilmHeader> fresh;  // another process of the same job may have sampled the frame
-  if (folder_.holds(settings.frame)) fresh = folder_.header(settings.frame, FrameSamples::kFresh);
-  if (fresh && !is_frame_of(*fresh, *snapshot, resolved)) fresh.reset();
-  auto before = make_previous_frame(std::move(snapshot), resolved, fresh ? &*fresh : nullptr);
-  if (fresh && has_counts(settings)) {
-    before->counts =
-        film::samples_of_pixels(*folder_.load(settings.frame, FrameSamples::kFresh, film_io::StoredContent::kSamples));
-  }
+  samples_ = true;
+  const StoredFrame found = stored_frame_of(*snapshot, resolved);
+  auto before = make_previous_frame(std::move(snapshot), resolved, found.fresh ? &*found.fresh : nullptr);
+  before->counts = found.counts;
   before_ = std::move(before);
+}
+
+Sequence::StoredFrame Sequence::stored_frame_of(const scene::Snapshot& snapshot, const GradusSettings& settings) const {
+  StoredFrame found;
+  if (!folder_.holds(settings.frame)) return found;
+  try {
+    const film::FilmHeader fresh = folder_.header(settings.frame, FrameSamples::kFresh);
+    if (!is_frame_of(fresh, snapshot, settings)) return found;
+    if (has_counts(settings)) {
+      found.counts = film::samples_of_pixels(
+          *folder_.load(settings.frame, FrameSamples::kFresh, film_io::StoredContent::kSamples));
+    }
+    found.fresh = fresh;
+  } catch (const Error&) {
+    return {};  // a damaged file
+  }
+  return found;
+}
+
+void Sequence::add_stale(int32_t frame, const std::string& why) {
+  (is_in_job(frame) ? sampled_again_ : unused_neighbours_).add(frame, why);
+}
+
+void Sequence::warn_of_stale_frames(Warnings* warnings) {
+  const auto step = int32_t(settings_.step);
+  const StaleFrames again = std::exchange(sampled_again_, {}), unused = std::exchange(unused_neighbours_, {});
+  if (!again.empty()) warnings->add(again.text("sampled again", step));
+  if (!unused.empty()) warnings->add(unused.text("beside the rendered ones not used", step));
 }
 
 std::unique_ptr<render::RenderTask> Sequence::deliver(int32_t frame, const GradusSettings* settings) {
@@ -324,7 +354,6 @@ void Sequence::forget_before(int32_t frame) {
     records_.erase(records_.begin());
   }
   traits_.erase(traits_.begin(), traits_.lower_bound(frame));
-  passed_by_.erase(passed_by_.begin(), passed_by_.lower_bound(frame));
 }
 
 }  // namespace gradus::animation

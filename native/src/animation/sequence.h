@@ -10,14 +10,15 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "animation/component_flows.h"
 #include "animation/frame_record.h"
 #include "animation/sequence_folder.h"
+#include "animation/stale_frames.h"
 #include "animation/temporal_frame.h"
+#include "base/warnings.h"
 #include "reconstruct/space_time/sequence_pictures.h"
 #include "render/loop_input.h"
 #include "render/render_task.h"
@@ -45,7 +46,8 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   Sequence(const Sequence&) = delete;
   Sequence& operator=(const Sequence&) = delete;
 
-  // Returns the range of frames that must have been sampled before settings.frame can be delivered.
+  // Returns the range of frames that must have been sampled before settings.frame can be delivered. Frames beyond the
+  // job are among them if the folder holds them.
   reconstruct::FrameRange needs(const GradusSettings& settings) const;
   // Ends the sequence early: `frame` is its last one.
   void end_at(int32_t frame);
@@ -53,15 +55,20 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   // sample() and deliver() return tasks to be run one at a time: a task may only be requested when the previous one has
   // ended.
   //
-  // Samples settings.frame, unless the folder holds its samples or nothing has changed since the previous frame.
+  // Samples settings.frame, unless the folder holds its samples or nothing has changed since the previous frame. Stored
+  // samples that do not fit are replaced. A frame beyond the job gets no samples of its own: it joins the frames of
+  // the job if its stored samples fit.
   std::unique_ptr<render::RenderTask> sample(std::shared_ptr<const scene::Snapshot> snapshot,
                                              const GradusSettings& settings);
   // Passes by settings.frame, which is not sampled here. The snapshot shows that frame, so that the next one can replay
-  // it. Windows end before it and begin after it.
+  // it. Windows end before it and begin after it, as for all frames that are not sampled.
   void pass_by(std::shared_ptr<const scene::Snapshot> snapshot, const GradusSettings& settings);
   // Reconstructs and delivers a frame. Frames must be delivered in order. settings: options that replace those with
   // which the frame was sampled (reconstruction, alpha, denoiser, exposure, threads), or nullptr.
   std::unique_ptr<render::RenderTask> deliver(int32_t frame, const GradusSettings* settings);
+  // Adds a warning about the stored frames that were sampled again, and one about those beyond the job that are not
+  // used. Each frame is named once.
+  void warn_of_stale_frames(Warnings* warnings);
   const SequenceFolder& folder() const { return folder_; }
 
  private:
@@ -74,12 +81,26 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   int place_of(int32_t frame) const;
   int32_t frame_at(int place) const;
   reconstruct::FrameRange job_places() const;
+  bool is_in_job(int32_t frame) const { return frame >= settings_.first && frame <= settings_.last; }
+  // The samples of a stored frame, which another process of the same job may have taken. No header: there are none that
+  // can be used.
+  struct StoredFrame {
+    std::optional<film::FilmHeader> fresh;
+    std::vector<uint32_t> counts;  // of samples per pixel, if pixels may have different ones
+  };
+  StoredFrame stored_frame_of(const scene::Snapshot& snapshot, const GradusSettings& settings) const;
+  // Records that stored samples of a frame do not fit.
+  void add_stale(int32_t frame, const std::string& why);
+  // Whether windows may contain the stored frame: one that this job sampled or found to fit, or any frame if the job
+  // only delivers what is stored.
+  bool is_usable(int32_t frame) const;
   // Returns the first frame of all windows that contain a frame. No picture of it or of later frames needs earlier
   // ones.
   int32_t first_of_windows(int32_t frame) const;
   // Warns once if the machine has less memory, or the disk less room, than the animation is estimated to need.
   void warn_of_needs(const render::Plan& plan, std::vector<std::string>* warnings);
-  // Returns the places of the job and of the frames next to it that the folder holds.
+  // Returns the places of the job and of the frames next to it that the folder holds. Whether these fit is known when
+  // they are sampled.
   reconstruct::FrameRange places_with_neighbours() const;
   // Whether the frame at `place` can share windows with the previous one. If not, windows end between the two.
   bool shares_window_with_previous(int place, uint32_t reconstruction);
@@ -121,10 +142,11 @@ class Sequence : public std::enable_shared_from_this<Sequence> {
   const SequenceFolder folder_;
   int32_t last_;
   bool needs_are_checked_ = false;
+  bool samples_ = false;  // whether frames are sampled, rather than only delivered
+  StaleFrames sampled_again_, unused_neighbours_;
   std::unique_ptr<const PreviousFrame> before_;
   std::map<int32_t, FrameRecord> records_;
   std::map<int32_t, FrameTraits> traits_;  // of frames that were sampled, or whose headers were read
-  std::set<int32_t> passed_by_;
   std::map<std::vector<std::string>, std::unique_ptr<reconstruct::SequencePictures>> pictures_;
   std::shared_ptr<DevelopedFrame> ahead_;  // next frame to deliver, if flow from the previous one needed it
   FrameFlows back_;                        // flows from `ahead_` to its previous frame

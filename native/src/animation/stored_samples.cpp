@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "animation/frame_record.h"
+#include "animation/fresh_replayed_shares.h"
 #include "base/fault.h"
 #include "base/text_list.h"
 #include "film/features.h"
@@ -36,39 +37,27 @@ bool lacks_surfaces(const film::ComponentContent& held, const GradusSettings& se
          (!held.details && schema::any_wanted(settings.component_passes, schema::is_of_non_specular_details));
 }
 
-// Returns how a stored film differs from the requested one, or "" if it fits. The text follows "stored film <path> ".
+}  // namespace
+
 std::string difference(const film::FilmHeader& stored, FrameSamples kind, const GradusSettings& settings,
                        uint64_t scene_key) {
   const GradusSettings& other = stored.settings;
   if (schema::sampling_key(other) != schema::sampling_key(settings) &&
       !GRADUS_FAULT(stored_frame_of_other_settings_accepted))
-    return "was sampled with other settings: " + schema::sampling_differences(other, settings);
+    return "other settings: " + schema::sampling_differences(other, settings);
   const std::string lacking = names_of_missing(settings.passes, other.passes),
                     beyond = names_of_missing(other.passes, settings.passes);
-  if (!lacking.empty()) return "was sampled with other passes: without " + lacking;
-  if (lacks_surfaces(stored.of_components, settings)) return "was sampled without the surfaces of components";
+  if (!lacking.empty()) return "other passes: without " + lacking;
+  if (lacks_surfaces(stored.of_components, settings)) return "without the surfaces of components";
   if (kind == FrameSamples::kFresh && schema::needs_flow(settings) && !stored.of_components.shown)
-    return "was sampled without the motion of components";
-  if (!beyond.empty()) return "was sampled with other passes: with " + beyond;
-  if (!show_same_region(other, settings))
-    return "shows " + region_text(other.region) + ", not " + region_text(settings.region);
-  if (stored.scene_key != scene_key && !GRADUS_FAULT(stored_frame_of_other_scene_accepted))
-    return "shows another scene";
+    return "without the motion of components";
+  if (!beyond.empty()) return "other passes: with " + beyond;
+  if (!show_same_region(other, settings)) return region_text(other.region) + ", not " + region_text(settings.region);
+  if (stored.scene_key != scene_key && !GRADUS_FAULT(stored_frame_of_other_scene_accepted)) return "another scene";
   const bool adaptive = other.noise_threshold > 0.0f;
-  return adaptive && !(settings.noise_threshold > 0.0f) ? "was sampled with a noise threshold, which is 0 now" : "";
-}
-
-}  // namespace
-
-void require_same(const film::FilmHeader& stored, FrameSamples kind, const std::string& path,
-                  const GradusSettings& settings, uint64_t scene_key) {
-  const std::string why = difference(stored, kind, settings, scene_key);
-  if (!why.empty()) throw invalid_argument("stored film " + path + " " + why + kAdvice);
-}
-
-void require_features(const film::FilmHeader& stored, const std::string& path) {
-  if (film::has_features(stored)) return;
-  throw invalid_argument("stored film " + path + " lacks the features that reconstruction regularized reads" + kAdvice);
+  if (adaptive && !(settings.noise_threshold > 0.0f)) return "a noise threshold, which is 0 now";
+  const bool lacks_features = kind == FrameSamples::kFresh && joins_frames(settings) && !film::has_features(stored);
+  return lacks_features ? "without the features that reconstruction regularized reads" : "";
 }
 
 }  // namespace gradus::animation

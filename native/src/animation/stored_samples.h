@@ -1,4 +1,4 @@
-// Checks whether stored samples fit a job. All errors name the file and how to resolve the conflict.
+// Tells whether stored samples fit a job.
 #pragma once
 
 #include <string>
@@ -11,12 +11,10 @@ namespace gradus::animation {
 
 inline constexpr const char* kAdvice = ": remove it, or choose another frame store";
 
-// Throws invalid_argument, with the difference, if samples were taken with other settings, passes, region or scene than
-// these. Their number may differ.
-void require_same(const film::FilmHeader& stored, FrameSamples kind, const std::string& path,
-                  const GradusSettings& settings, uint64_t scene_key);
-// Throws invalid_argument if the frame lacks the features that the reconstruction REGULARIZED reads.
-void require_features(const film::FilmHeader& stored, const std::string& path);
+// Returns how stored samples differ from those of a job in settings, passes, region or scene, such as "another scene",
+// or "" if they fit. Their number may differ.
+std::string difference(const film::FilmHeader& stored, FrameSamples kind, const GradusSettings& settings,
+                       uint64_t scene_key);
 
 // Returns read(). Appends kAdvice to the text of any Error that it throws, except CANCELLED.
 template <class Read>

@@ -35,6 +35,7 @@ void visit(Archive& a, GradusMesh& s) {
   a.value(s.dicing_rate);
   a.value(s.dicing_length);
   a.value(s.offscreen_dicing_scale);
+  a.value(s.dicing_tolerance);
   uint32_t has_default_uv = s.default_uv != nullptr;
   a.value(has_default_uv);
   if (has_default_uv != 0) a.text(s.default_uv);
@@ -234,6 +235,7 @@ void visit(Archive& a, GradusMaterial& s) {
   a.value(s.displacement_output);
   a.value(s.displacement_method);
   a.value(s.bump_filter_width);
+  a.value(s.shading_normals);
   a.text(s.name);
   a.structs(s.nodes, s.node_count);
   a.structs(s.inputs, s.input_count);

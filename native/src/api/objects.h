@@ -53,6 +53,7 @@ struct SequenceObject {
   std::mutex mutex;  // calls of one sequence wait for each other
   std::shared_ptr<scene::Device> device;
   std::shared_ptr<animation::Sequence> sequence;
+  Warnings warnings;                    // Warnings about stored frames that the caller has not yet read.
   std::weak_ptr<RenderObject> running;  // The render that was started last.
 };
 

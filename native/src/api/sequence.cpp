@@ -97,6 +97,17 @@ GradusError gradus_sequence_end_at(GradusSequence sequence, int32_t last) {
   });
 }
 
+GradusError gradus_sequence_warning(GradusSequence sequence, const char** text) {
+  return api::guard([&] {
+    api::require(text, "text") = nullptr;
+    const auto object = api::find_handle<api::SequenceObject>(sequence);
+    const std::lock_guard lock(object->mutex);
+    api::require_idle(*object);
+    object->sequence->warn_of_stale_frames(&object->warnings);
+    api::take_warning(&object->warnings, text);
+  });
+}
+
 GradusError gradus_sequence_deliver(GradusSequence sequence, int32_t frame, const GradusSettings* settings,
                                     GradusRender* render) {
   return api::guard([&] {

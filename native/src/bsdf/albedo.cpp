@@ -51,8 +51,9 @@ Rgb mean_fresnel(const Lobe& lobe) {
     case FresnelType::PrincipledMetal:
       return mean_f82(lobe.f0, lobe.f90);
     case FresnelType::FilmConductor:
+    case FresnelType::ApproximateConductor:
     case FresnelType::Conductor: {
-      const F82Fit fit = fit_conductor(lobe.f0, lobe.f90);
+      const F82Fit fit = fit_conductor(lobe);
       return mean_f82(fit.f0, fit.tint);
     }
   }
@@ -78,8 +79,9 @@ Rgb single_reflection(const Lobe& lobe, float alpha, float cosine) {
     }
     case FresnelType::PrincipledMetal:
       return f82_albedo(m, lobe.f0, lobe.f90);
+    case FresnelType::ApproximateConductor:
     case FresnelType::Conductor: {
-      const F82Fit fit = fit_conductor(lobe.f0, lobe.f90);
+      const F82Fit fit = fit_conductor(lobe);
       return f82_albedo(m, fit.f0, fit.tint);
     }
     case FresnelType::FilmDielectric:

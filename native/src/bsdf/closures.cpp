@@ -142,7 +142,7 @@ Vec3 outward_unit_normal(const Vec3& normal, const Vec3& geometric_normal) {
 
 }  // namespace
 
-void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo) {
+void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo, bool tilts_diffuse) {
   Vec3 normal = unit_normal(lobe->normal, geometric_normal);
   const bool inside = glm::dot(normal, geometric_normal) < 0.0f;
   if (inside) {
@@ -155,7 +155,7 @@ void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo) {
       lobe->film.ior *= lobe->ior;
     }
   }
-  if (is_microfacet(lobe->type) || lobe->type == LobeType::Subsurface) {
+  if (tilts_diffuse || is_microfacet(lobe->type) || lobe->type == LobeType::Subsurface) {
     normal = keep_reflection_above(normal, geometric_normal, wo);
   }
   lobe->normal = normal;
@@ -172,7 +172,7 @@ void Closures::prepare(int index, const Vec3& wo) {
   lobe.film.ior = original.film_ior;
   lobe.alpha_x = original.alpha_x;
   lobe.alpha_y = original.alpha_y;
-  prepare_lobe(&lobe, geometric_normal_, wo);
+  prepare_lobe(&lobe, geometric_normal_, wo, tilts_diffuse());
   if (blur_ > 0.0f) {
     blur_lobe(blur_, original.type, wo, &lobe);
   }
@@ -241,6 +241,13 @@ void Closures::normalise() {
   }
 }
 
+bool Closures::tilts_diffuse() const { return shading_normals_ == GRADUS_SHADING_NORMALS_BEFORE_3_6; }
+
+bool Closures::is_tilted(int lobe) const {
+  const Vec3& normal = original_[static_cast<size_t>(lobe)].normal;
+  return tilts_diffuse() && normal != geometric_normal_ && normal != -geometric_normal_;
+}
+
 bool Closures::is_one_lambert() const { return count_ == 1 && is_lambert(lobes_[0]); }
 
 // A fast path for a single Lambert lobe, the most common surface. The results are those of the general code.
@@ -271,14 +278,14 @@ void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughn
   drop_black_lobes();
   keep_originals();
   ignores_wo_ = true;
-  if (is_one_lambert()) {
+  if (is_one_lambert() && !tilts_diffuse()) {
     finish_lambert();
     return;
   }
   for (int i = 0; i < count_; i++) {
     prepare(i, wo);
     add_entries(i, wo, roughness_threshold);
-    ignores_wo_ = ignores_wo_ && is_lambert(lobes_[static_cast<size_t>(i)]);
+    ignores_wo_ = ignores_wo_ && is_lambert(lobes_[static_cast<size_t>(i)]) && !is_tilted(i);
   }
   normalise();
 }

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "base/types.h"
+#include "gradus/gradus.h"
 
 namespace gradus::bsdf {
 
@@ -71,6 +72,7 @@ enum class FresnelType : uint8_t {
   Schlick,
   PrincipledMetal,
   Conductor,
+  ApproximateConductor,
   FilmDielectric,
   FilmMetal,
   FilmConductor
@@ -209,6 +211,9 @@ class Closures {
 
   // Sets the factor of angles in the cosine of reflection, at least 1 (shading_normal.h). finish() does not change it.
   void set_terminator_frequency(float frequency) { terminator_frequency_ = frequency; }
+  // Sets how normals are corrected that disagree with the geometric normal: a GradusShadingNormals. finish() does not
+  // change it.
+  void set_shading_normals(uint32_t version) { shading_normals_ = version; }
 
   int count() const { return count_; }
   const Lobe& lobe(int i) const { return lobes_[i]; }
@@ -283,6 +288,10 @@ class Closures {
   void add_entries(int lobe, const Vec3& wo, float roughness_threshold);
   void add_entry(int lobe, uint8_t sides, ScatterClass c, float weight);
   void normalise();
+  // Returns whether the mirror directions of diffuse lobes, too, are kept above the geometric surface.
+  bool tilts_diffuse() const;
+  // Returns whether the normal of a diffuse lobe may depend on wo.
+  bool is_tilted(int lobe) const;
   bool is_one_lambert() const;
   void finish_lambert();
   // Returns value and density of one smooth entry, the density times the entry's probability. The result is 0 if the
@@ -305,6 +314,7 @@ class Closures {
   Vec3 geometric_normal_ = Vec3(0, 0, 1);
   Vec3 smooth_normal_ = Vec3(0.0f);
   float terminator_frequency_ = 1.0f;
+  uint32_t shading_normals_ = GRADUS_SHADING_NORMALS_SINCE_4_5;
   float blur_ = 0.0f;
 };
 

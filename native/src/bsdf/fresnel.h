@@ -72,14 +72,26 @@ inline Rgb fresnel_conductor(float cosine, const Rgb& n, const Rgb& k) {
   return 0.5f * perpendicular * (1.0f + (along - across) / (along + across));
 }
 
+// Returns an approximation of fresnel_conductor() for refractive indices much larger than 1 in absolute value, which
+// Cycles has before Blender 5.0 (Born and Wolf §14.4.1).
+inline Rgb fresnel_conductor_approximately(float cosine, const Rgb& n, const Rgb& k) {
+  const Rgb square = n * n + k * k, twice = 2.0f * cosine * n;
+  const float cos2 = cosine * cosine;
+  const Rgb parallel = (square * cos2 - twice + 1.0f) / (square * cos2 + twice + 1.0f);
+  const Rgb perpendicular = (square - twice + cos2) / glm::max(square + twice + cos2, Rgb(1e-30f));
+  return 0.5f * (parallel + perpendicular);
+}
+
 // The F82 model that agrees with a conductor at 0° and 82°. Its albedo and its mean have closed forms.
 struct F82Fit {
   Rgb f0, tint;
 };
-inline F82Fit fit_conductor(const Rgb& n, const Rgb& k) {
-  const Rgb f0 = fresnel_conductor(1.0f, n, k);
+inline F82Fit fit_conductor(const Lobe& lobe) {
+  const auto fresnel =
+      lobe.fresnel == FresnelType::ApproximateConductor ? fresnel_conductor_approximately : fresnel_conductor;
+  const Rgb f0 = fresnel(1.0f, lobe.f0, lobe.f90);
   const Rgb schlick = f0 + (Rgb(1.0f) - f0) * pow5(6.0f / 7.0f);
-  return {f0, fresnel_conductor(1.0f / 7.0f, n, k) / schlick};
+  return {f0, fresnel(1.0f / 7.0f, lobe.f0, lobe.f90) / schlick};
 }
 
 // Returns the Fresnel term of a finished lobe with a thin film.
@@ -98,6 +110,8 @@ inline Rgb lobe_fresnel(const Lobe& lobe, float cosine) {
       return fresnel_f82(cosine, lobe.f0, lobe.f90);
     case FresnelType::Conductor:
       return fresnel_conductor(cosine, lobe.f0, lobe.f90);
+    case FresnelType::ApproximateConductor:
+      return fresnel_conductor_approximately(cosine, lobe.f0, lobe.f90);
     case FresnelType::FilmDielectric:
     case FresnelType::FilmMetal:
     case FresnelType::FilmConductor:

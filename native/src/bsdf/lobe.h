@@ -50,8 +50,9 @@ bool sample_ashikhmin_shirley(const Lobe& lobe, const Vec3& wo, float u_side, co
 bool dirac_direction(const Lobe& lobe, const Vec3& wo, bool transmitted, Vec3* wi, Rgb* coefficient);
 
 // Completes one lobe: flips its normal to the side of `geometric_normal` and wo, clamps its inputs to their ranges,
-// makes it Dirac where floats cannot represent it, and sets `energy`.
-void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo);
+// makes it Dirac where floats cannot represent it, and sets `energy`. The normals of glossy and subsurface lobes, and
+// with `tilts_diffuse` those of diffuse ones, are tilted until the mirror direction of wo is above the surface.
+void prepare_lobe(Lobe* lobe, const Vec3& geometric_normal, const Vec3& wo, bool tilts_diffuse = false);
 
 // Returns the cost of merging two lobes (Ward, "Hierarchical Grouping to Optimize an Objective Function", 1963). It is
 // 0 for equal shapes, small if one of the lobes is weak, and large for lobes of different type or pass.

@@ -75,7 +75,9 @@ inline bool Closures::crosses(const Vec3& wi) const { return glm::dot(geometric_
   BsdfEval eval = is_lambert(source) ? evaluate_lambert(source, cos_i) : evaluate_in_frame(source, wo, wi, entry.sides);
   eval.pdf *= entry.probability;
   if (has_soft_bumps(source.type) && smooth_normal_ != Vec3(0.0f) && smooth_normal_ != source.normal) {
-    eval.value *= bump_shadowing(smooth_normal_, source.normal, wi);
+    eval.value *= shading_normals_ == GRADUS_SHADING_NORMALS_SINCE_4_5
+                      ? bump_shadowing(smooth_normal_, source.normal, wi)
+                      : cosine_bump_shadowing(smooth_normal_, source.normal, wi);
   }
   if (terminator_frequency_ > 1.0f && !transmitted) {
     eval.value *= terminator_shift(cos_i, terminator_frequency_);
@@ -225,18 +227,37 @@ LightPass Closures::light_pass(int lobe, bool transmitted) const {
   return static_cast<LightPass>(pass_of(this->lobe(lobe), transmitted));
 }
 
-Rgb Closures::albedo(LightPass pass, const Vec3& wo) const {
+namespace {
+
+// Returns the albedos that Cycles shows of a lobe. Those of microfacets without a Fresnel term keep what single
+// scattering loses.
+LobeAlbedo shown_albedo(const Lobe& lobe, float cosine) {
+  const bool loses = is_microfacet(lobe.type) && !lobe.multiscatter && sides_of(lobe.type) != kBothSides;
+  if (!loses || lobe.fresnel != FresnelType::None) {
+    return two_sided_albedo(lobe, cosine);
+  }
+  return sides_of(lobe.type) == kTransmits ? LobeAlbedo{Rgb(0.0f), lobe.weight} : LobeAlbedo{lobe.weight, Rgb(0.0f)};
+}
+
+// Returns the sum over the lobes of a pass of their albedos, which a function returns.
+Rgb sum_of_pass(const Closures& closures, LightPass pass, const Vec3& wo, LobeAlbedo (*albedo_of)(const Lobe&, float)) {
   Rgb sum(0.0f);
-  for (int i = 0; i < count_; i++) {
-    const LobeAlbedo albedo = two_sided_albedo(lobe(i), glm::dot(lobe(i).normal, wo));
-    sum += pass_of(lobe(i), false) == static_cast<size_t>(pass) ? albedo.reflected : Rgb(0.0f);
-    sum += pass_of(lobe(i), true) == static_cast<size_t>(pass) ? albedo.transmitted : Rgb(0.0f);
+  for (int i = 0; i < closures.count(); i++) {
+    const Lobe& lobe = closures.lobe(i);
+    const LobeAlbedo albedo = albedo_of(lobe, glm::dot(lobe.normal, wo));
+    sum += pass_of(lobe, false) == static_cast<size_t>(pass) ? albedo.reflected : Rgb(0.0f);
+    sum += pass_of(lobe, true) == static_cast<size_t>(pass) ? albedo.transmitted : Rgb(0.0f);
   }
   return sum;
 }
 
+}  // namespace
+
+Rgb Closures::albedo(LightPass pass, const Vec3& wo) const { return sum_of_pass(*this, pass, wo, shown_albedo); }
+
 Rgb Closures::albedo(const Vec3& wo) const {
-  return albedo(LightPass::Diffuse, wo) + albedo(LightPass::Glossy, wo) + albedo(LightPass::Transmission, wo);
+  const auto of_pass = [&](LightPass pass) { return sum_of_pass(*this, pass, wo, two_sided_albedo); };
+  return of_pass(LightPass::Diffuse) + of_pass(LightPass::Glossy) + of_pass(LightPass::Transmission);
 }
 
 }  // namespace gradus::bsdf

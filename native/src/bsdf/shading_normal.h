@@ -43,6 +43,15 @@ inline float bump_shadowing(const Vec3& smooth_normal, const Vec3& normal, const
   return 2.0f / (1.0f + std::sqrt(1.0f + alpha2 * tan2_i));
 }
 
+// Returns the factor of bump_shadowing() before Blender 4.5: it falls smoothly from 1 to 0 with the cosine of wi to the
+// smooth normal over that to the bump's normal (Chiang, Li, Burley 2019, "Taming the Shadow Terminator").
+inline float cosine_bump_shadowing(const Vec3& smooth_normal, const Vec3& normal, const Vec3& wi) {
+  const float product = glm::dot(normal, wi) * glm::dot(smooth_normal, normal);
+  const float ratio = product != 0.0f ? glm::dot(smooth_normal, wi) / product : 0.0f;
+  const float g = std::clamp(ratio, 0.0f, 1.0f);
+  return g + g * g - g * g * g;
+}
+
 // Returns the factor by which an object's setting Shadow Terminator > Shading Offset changes reflection towards a
 // direction with cosine `cos_i` to the normal: the cosine of its angle becomes that of the angle times `frequency`. The
 // terminator moves to smaller angles, where the facets of coarse meshes hide less of the smooth surface. This is the

@@ -1,212 +1,192 @@
 #include "geometry/diced_mesh.h"
 
-#include <unordered_map>
-
 #include "base/hash.h"
-#include "geometry/plane.h"
+#include "base/parallel_each.h"
 
 namespace gradus::geometry {
 
 namespace {
 
-// An edge of the mesh, and the elements of the normals at its ends as its first triangle has them.
-struct DividedEdge {
-  uint32_t a = 0, b = 0;
-  uint32_t normal_a = 0, normal_b = 0;
-  bool is_smooth = true;  // all its triangles have the same normals there
-};
-
-// The corners of the four triangles by the corners of the divided one: 0, 1 and 2 are its corners, 3, 4 and 5 the
-// middles of its edges from these.
-constexpr uint32_t kQuarters[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
-
-// Divides all triangles of a mesh once.
-class Division {
+// Makes the arrays of the diced mesh from those of the mesh before.
+class Assembly {
  public:
-  explicit Division(const MeshData& mesh) : mesh_(mesh), out_(std::make_shared<MeshData>(mesh)) { find_edges(); }
+  explicit Assembly(const Dicing& dicing)
+      : dicing_(dicing), mesh_(*dicing.mesh()), out_(std::make_shared<MeshData>(header_of(mesh_))) {}
 
-  std::shared_ptr<const MeshData> run() {
-    bend_edges();
-    divide_positions(mesh_.key_times.size(), mesh_.positions, &out_->positions);
-    divide_positions(mesh_.shutter_keys, mesh_.shutter_positions, &out_->shutter_positions);
-    out_->vertex_count = vertex_count();
-    divide_triangles();
-    divide_values();
-    divide_normals();
+  std::shared_ptr<const MeshData> run(const CommitMonitor& monitor) {
+    out_->vertex_count = mesh_.vertex_count + uint32_t(dicing_.places().size());
+    set_triangles();
+    set_positions();
+    monitor.check();
+    if (dicing_.is_curved()) set_normals();
+    monitor.check();
+    for (const MeshAttribute& attribute : mesh_.attributes) {
+      out_->attributes.push_back(divide(attribute));
+      monitor.check();
+    }
+    out_->generated_points = at_vertices(mesh_.generated_points);
+    out_->pointiness = at_vertices(mesh_.pointiness);
+    set_islands();
     set_bounds(out_.get());
     set_shutter_normals(out_.get());
-    out_->content_hash = next_hash(mesh_.content_hash);
-    out_->topology_hash = next_hash(mesh_.topology_hash);
+    set_tree();
     return out_;
   }
 
  private:
-  static uint64_t next_hash(uint64_t hash) {
-    ContentHash next;
-    next.value(hash);
-    next.value(uint32_t{4});
-    return next.result();
+  // Returns a copy without the arrays that change.
+  static MeshData header_of(const MeshData& mesh) {
+    MeshData header;
+    header.name = mesh.name;
+    header.key_times = mesh.key_times;
+    header.frame_key = mesh.frame_key;
+    header.shutter_keys = mesh.shutter_keys;
+    header.face_materials = mesh.face_materials;
+    header.normal_domain = mesh.normal_domain;
+    header.default_uv = mesh.default_uv;
+    header.generated_location = mesh.generated_location;
+    header.generated_size = mesh.generated_size;
+    return header;
   }
 
-  uint32_t vertex_count() const { return mesh_.vertex_count + uint32_t(edges_.size()); }
-  uint32_t vertex(uint32_t triangle, uint32_t k) const { return mesh_.triangle_vertices[size_t{triangle} * 3 + k]; }
-  uint32_t corner(uint32_t triangle, uint32_t k) const { return mesh_.triangle_corners[size_t{triangle} * 3 + k]; }
-  bool has_normals() const { return !mesh_.normals.empty() && mesh_.normal_domain != GRADUS_DOMAIN_FACE; }
-  bool by_vertex() const { return mesh_.normal_domain == GRADUS_DOMAIN_POINT; }
-  uint32_t normal_element(uint32_t triangle, uint32_t k) const {
-    return by_vertex() ? vertex(triangle, k) : corner(triangle, k);
+  std::array<uint32_t, 3> vertices_of(uint32_t base) const {
+    const uint32_t* v = &mesh_.triangle_vertices[size_t{base} * 3];
+    return {v[0], v[1], v[2]};
   }
 
-  void find_edges() {
-    std::unordered_map<uint64_t, uint32_t> known;
-    known.reserve(size_t{mesh_.triangle_count} * 3 / 2);
-    middles_.assign(size_t{mesh_.triangle_count} * 3, kDroppedVertex);
-    for (uint32_t t = 0; t < mesh_.triangle_count; ++t) {
-      for (uint32_t k = 0; k < 3 && !mesh_.is_dropped(t); ++k) {
-        DividedEdge edge{vertex(t, k), vertex(t, (k + 1) % 3), normal_element(t, k), normal_element(t, (k + 1) % 3)};
-        if (edge.a > edge.b) std::swap(edge.a, edge.b), std::swap(edge.normal_a, edge.normal_b);
-        const auto [found, is_new] = known.try_emplace(uint64_t{edge.a} << 32 | edge.b, uint32_t(edges_.size()));
-        middles_[size_t{t} * 3 + k] = found->second;
-        if (is_new)
-          edges_.push_back(edge);
-        else if (has_normals() && !has_same_normals(edges_[found->second], edge))
-          edges_[found->second].is_smooth = false;
+  void set_triangles() {
+    const std::vector<Dicing::Triangle>& triangles = dicing_.triangles();
+    out_->triangle_count = uint32_t(triangles.size());
+    out_->triangle_vertices.resize(triangles.size() * 3);
+    out_->triangle_corners.resize(triangles.size() * 3);
+    out_->triangle_faces.resize(triangles.size());
+    parallel_each(triangles.size(), [&](size_t t) {
+      for (size_t k = 0; k < 3; ++k) {
+        out_->triangle_vertices[3 * t + k] = triangles[t].vertices[k];
+        out_->triangle_corners[3 * t + k] = uint32_t(3 * t + k);
       }
-    }
-  }
-
-  bool has_same_normals(const DividedEdge& x, const DividedEdge& y) const {
-    return mesh_.normals[x.normal_a] == mesh_.normals[y.normal_a] &&
-           mesh_.normals[x.normal_b] == mesh_.normals[y.normal_b];
-  }
-
-  // Computes how far the middle of each edge lies from the straight line.
-  void bend_edges() {
-    bends_.assign(edges_.size(), Vec3(0.0f));
-    if (!has_normals()) return;
-    for (size_t i = 0; i < edges_.size(); ++i) {
-      const DividedEdge& e = edges_[i];
-      if (!e.is_smooth) continue;
-      const Vec3 along = mesh_.frame_positions()[e.b] - mesh_.frame_positions()[e.a];
-      const Vec3 na = safe_unit(mesh_.normals[e.normal_a], Vec3(0.0f));
-      const Vec3 nb = safe_unit(mesh_.normals[e.normal_b], Vec3(0.0f));
-      bends_[i] = (nb * glm::dot(along, nb) - na * glm::dot(along, na)) * 0.125f;
-    }
-  }
-
-  void divide_positions(size_t keys, const std::vector<Vec3>& from, std::vector<Vec3>* to) const {
-    if (keys == 0) return;
-    to->clear();
-    to->reserve(keys * vertex_count() + 1);
-    for (size_t key = 0; key < keys; ++key) {
-      const Vec3* p = from.data() + key * mesh_.vertex_count;
-      to->insert(to->end(), p, p + mesh_.vertex_count);
-      for (size_t i = 0; i < edges_.size(); ++i) to->push_back((p[edges_[i].a] + p[edges_[i].b]) * 0.5f + bends_[i]);
-    }
-    to->emplace_back(0.0f);
-  }
-
-  // Makes the triangles. Each has corners of its own.
-  void divide_triangles() {
-    out_->triangle_vertices.clear();
-    out_->triangle_corners.clear();
-    out_->triangle_faces.clear();
-    out_->dropped_triangles = 0;
-    for (uint32_t t = 0; t < mesh_.triangle_count; ++t) {
-      if (mesh_.is_dropped(t)) continue;
-      for (const auto& quarter : kQuarters) {
-        for (const uint32_t k : quarter) {
-          out_->triangle_vertices.push_back(k < 3 ? vertex(t, k)
-                                                  : mesh_.vertex_count + middles_[size_t{t} * 3 + k - 3]);
-          out_->triangle_corners.push_back(uint32_t(out_->triangle_corners.size()));
-        }
-        out_->triangle_faces.push_back(mesh_.face(t));
-      }
-    }
-    out_->triangle_count = uint32_t(out_->triangle_faces.size());
-  }
-
-  // Appends the means of the ends of edges to values of vertices.
-  template <class T>
-  void divide_vertex_values(std::vector<T>* values) const {
-    if (values->empty()) return;
-    for (const DividedEdge& e : edges_) values->push_back(((*values)[e.a] + (*values)[e.b]) * 0.5f);
-  }
-
-  void divide_values() {
-    divide_vertex_values(&out_->generated_points);
-    divide_vertex_values(&out_->pointiness);
-    for (const DividedEdge& e : edges_)
-      if (!out_->islands.empty()) out_->islands.push_back(out_->islands[e.a]);
-    for (MeshAttribute& attribute : out_->attributes) divide_attribute(&attribute);
-  }
-
-  void divide_attribute(MeshAttribute* attribute) const {
-    const uint32_t channels = attribute->channels;
-    std::vector<float>& data = attribute->data;
-    if (attribute->domain == GRADUS_DOMAIN_POINT) {
-      for (const DividedEdge& e : edges_)
-        for (uint32_t c = 0; c < channels; ++c)
-          data.push_back((data[size_t{e.a} * channels + c] + data[size_t{e.b} * channels + c]) * 0.5f);
-    }
-    if (attribute->domain != GRADUS_DOMAIN_CORNER) return;
-    std::vector<float> divided;
-    divided.reserve(out_->triangle_corners.size() * channels);
-    for_each_corner([&](uint32_t t, uint32_t k) {
-      const float *a = data.data() + size_t{corner(t, k % 3)} * channels, *b = a;
-      if (k >= 3) b = data.data() + size_t{corner(t, (k + 1) % 3)} * channels;
-      for (uint32_t c = 0; c < channels; ++c) divided.push_back((a[c] + b[c]) * 0.5f);
+      out_->triangle_faces[t] = mesh_.face(triangles[t].base);
     });
-    data = std::move(divided);
   }
 
-  // Returns the normal in the middle of an edge from p to q with the normals a and b at its ends.
-  static Vec3 middle_normal(const Vec3& along, const Vec3& a, const Vec3& b) {
-    const float square = glm::dot(along, along);
-    const Vec3 sum = a + b;
-    const Vec3 mirrored = square > 0.0f ? sum - along * (2.0f * glm::dot(along, sum) / square) : sum;
-    return safe_unit(sum * 0.25f + safe_unit(mirrored, sum * 0.5f) * 0.5f, a);
+  void set_positions() {
+    const std::vector<Dicing::Place>& places = dicing_.places();
+    std::vector<Vec3> bends(dicing_.is_curved() ? places.size() : 0);
+    parallel_each(bends.size(), [&](size_t i) { bends[i] = dicing_.patch(places[i].base).bend(places[i].uv); });
+    out_->positions = divide_keys(mesh_.positions, mesh_.key_times.size(), bends);
+    out_->shutter_positions = divide_keys(mesh_.shutter_positions, mesh_.shutter_keys, bends);
   }
 
-  void divide_normals() {
-    if (!has_normals()) return;
-    const Vec3* p = mesh_.frame_positions();
-    if (by_vertex()) {
-      for (const DividedEdge& e : edges_)
-        out_->normals.push_back(middle_normal(p[e.b] - p[e.a], mesh_.normals[e.a], mesh_.normals[e.b]));
+  // Returns the positions of all vertices at all keys, and a padding.
+  std::vector<Vec3> divide_keys(const std::vector<Vec3>& positions, size_t keys, const std::vector<Vec3>& bends) const {
+    if (keys == 0) return positions;
+    std::vector<Vec3> divided(keys * out_->vertex_count + 1, Vec3(0.0f));
+    for (size_t key = 0; key < keys; ++key) {
+      const Vec3* from = positions.data() + key * mesh_.vertex_count;
+      Vec3* to = divided.data() + key * out_->vertex_count;
+      set_vertices(from, to);
+      parallel_each(bends.size(), [&](size_t i) { to[mesh_.vertex_count + i] += bends[i]; });
+    }
+    return divided;
+  }
+
+  // Copies values of vertices and interpolates those of new ones.
+  template <class T>
+  void set_vertices(const T* from, T* to) const {
+    std::copy_n(from, mesh_.vertex_count, to);
+    const std::vector<Dicing::Place>& places = dicing_.places();
+    parallel_each(places.size(), [&](size_t i) {
+      const auto [a, b, c] = vertices_of(places[i].base);
+      to[mesh_.vertex_count + i] = interpolate(std::array<T, 3>{from[a], from[b], from[c]}, places[i].uv);
+    });
+  }
+
+  template <class T>
+  std::vector<T> at_vertices(const std::vector<T>& values) const {
+    std::vector<T> divided(values.empty() ? 0 : out_->vertex_count);
+    if (!values.empty()) set_vertices(values.data(), divided.data());
+    return divided;
+  }
+
+  void set_islands() {
+    out_->islands = mesh_.islands;
+    if (mesh_.islands.empty()) return;
+    for (const Dicing::Place& place : dicing_.places())
+      out_->islands.push_back(mesh_.islands[vertices_of(place.base)[0]]);
+  }
+
+  void set_normals() {
+    if (mesh_.normal_domain == GRADUS_DOMAIN_POINT) {
+      const std::vector<Dicing::Place>& places = dicing_.places();
+      out_->normals = mesh_.normals;
+      out_->normals.resize(out_->vertex_count);
+      parallel_each(places.size(), [&](size_t i) {
+        out_->normals[mesh_.vertex_count + i] = dicing_.patch(places[i].base).normal(places[i].uv);
+      });
       return;
     }
-    out_->normals.clear();
-    for_each_corner([&](uint32_t t, uint32_t k) {
-      const Vec3& a = mesh_.normals[corner(t, k % 3)];
-      const uint32_t next = (k + 1) % 3;
-      out_->normals.push_back(
-          k < 3 ? a : middle_normal(p[vertex(t, next)] - p[vertex(t, k % 3)], a, mesh_.normals[corner(t, next)]));
+    out_->normals.resize(size_t{out_->triangle_count} * 3);
+    parallel_each(out_->triangle_count, [&](size_t t) {
+      const Dicing::Triangle& triangle = dicing_.triangles()[t];
+      const CurvedPatch patch = dicing_.patch(triangle.base);
+      for (size_t k = 0; k < 3; ++k) out_->normals[3 * t + k] = patch.normal(triangle.uvs[k]);
     });
   }
 
-  // Calls visit(triangle, k) for the corners of the new triangles in order, where k is as in kQuarters.
-  template <class Visit>
-  void for_each_corner(const Visit& visit) const {
-    for (uint32_t t = 0; t < mesh_.triangle_count; ++t)
-      for (const auto& quarter : kQuarters)
-        for (const uint32_t k : quarter)
-          if (!mesh_.is_dropped(t)) visit(t, k);
+  MeshAttribute divide(const MeshAttribute& attribute) const {
+    MeshAttribute divided = attribute;
+    const std::vector<float>& data = attribute.data;
+    const uint32_t channels = attribute.channels;
+    // Interpolates the elements that belong to the corners of a triangle.
+    const auto set = [&](const std::array<uint32_t, 3>& elements, const Vec2& uv, float* to) {
+      for (uint32_t c = 0; c < channels; ++c) {
+        std::array<float, 3> values;
+        for (size_t k = 0; k < 3; ++k) values[k] = data[size_t{elements[k]} * channels + c];
+        to[c] = interpolate(values, uv);
+      }
+    };
+    if (attribute.domain == GRADUS_DOMAIN_POINT) {
+      const std::vector<Dicing::Place>& places = dicing_.places();
+      divided.data.resize(size_t{out_->vertex_count} * channels);
+      parallel_each(places.size(), [&](size_t i) {
+        set(vertices_of(places[i].base), places[i].uv, &divided.data[(mesh_.vertex_count + i) * channels]);
+      });
+    }
+    if (attribute.domain == GRADUS_DOMAIN_CORNER) {
+      divided.data.resize(size_t{out_->triangle_count} * 3 * channels);
+      parallel_each(out_->triangle_count, [&](size_t t) {
+        const Dicing::Triangle& triangle = dicing_.triangles()[t];
+        const uint32_t* corners = &mesh_.triangle_corners[size_t{triangle.base} * 3];
+        for (size_t k = 0; k < 3; ++k)
+          set({corners[0], corners[1], corners[2]}, triangle.uvs[k], &divided.data[(3 * t + k) * channels]);
+      });
+    }
+    return divided;
   }
 
+  void set_tree() {
+    const auto tree = std::make_shared<DicingTree>(dicing_.tree());
+    std::vector<uint8_t> patterns;
+    patterns.reserve(tree->nodes.size());
+    for (const DicingTree::Node& node : tree->nodes) patterns.push_back(node.pattern);
+    ContentHash hash;
+    hash.value(mesh_.topology_hash);
+    hash.array(patterns);
+    out_->topology_hash = hash.result();
+    hash.value(mesh_.content_hash);
+    out_->content_hash = hash.result();
+    out_->dicing = tree;
+  }
+
+  const Dicing& dicing_;
   const MeshData& mesh_;
   std::shared_ptr<MeshData> out_;
-  std::vector<DividedEdge> edges_;
-  std::vector<uint32_t> middles_;  // 3 per triangle: the edge from each corner
-  std::vector<Vec3> bends_;        // by edge
 };
 
 }  // namespace
 
-std::shared_ptr<const MeshData> diced_mesh(const std::shared_ptr<const MeshData>& mesh, uint32_t levels) {
-  std::shared_ptr<const MeshData> diced = mesh;
-  for (uint32_t i = 0; i < levels; ++i) diced = Division(*diced).run();
-  return diced;
+std::shared_ptr<const MeshData> diced_mesh(const Dicing& dicing, const CommitMonitor& monitor) {
+  return Assembly(dicing).run(monitor);
 }
 
 }  // namespace gradus::geometry

@@ -88,7 +88,7 @@ bool triangle_normals_in_shutter(const MeshData& mesh, uint32_t triangle, float 
   return true;
 }
 
-const MeshAttribute* find_attribute(const MeshData& mesh, const std::string& name) {
+const MeshAttribute* find_attribute(const MeshData& mesh, std::string_view name) {
   for (const MeshAttribute& a : mesh.attributes)
     if (a.name == name) return &a;
   return nullptr;
@@ -96,6 +96,10 @@ const MeshAttribute* find_attribute(const MeshData& mesh, const std::string& nam
 
 const MeshAttribute* default_uv_map(const MeshData& mesh) {
   return mesh.default_uv < 0 ? nullptr : &mesh.attributes[size_t(mesh.default_uv)];
+}
+
+const MeshAttribute* uv_map(const MeshData& mesh, std::string_view name) {
+  return name.empty() ? default_uv_map(mesh) : find_attribute(mesh, name);
 }
 
 std::array<Vec4, 3> corner_values(const MeshData& mesh, const MeshAttribute& attribute, uint32_t triangle) {

@@ -4,12 +4,15 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/types.h"
 #include "gradus/gradus.h"
 
 namespace gradus::geometry {
+
+struct DicingTree;  // geometry/dicing_tree.h
 
 // Values of one to four channels on the vertices, corners or faces of a mesh.
 struct MeshAttribute {
@@ -46,14 +49,17 @@ struct MeshData {
   std::vector<MeshAttribute> attributes;
   int32_t default_uv = -1;              // index in attributes; -1: there is no UV map
   uint32_t dicing_levels = 0;           // how often triangles may be divided in four
-  float dicing_rate = 0.0f;             // longest edge after that, as a share of the picture's width; 0: by length
-  float dicing_length = 0.0f;           // longest edge after that, in the mesh's space
+  float dicing_rate = 0.0f;             // side of a square of two triangles after that, as a share of the picture's
+                                        // width; 0: by length
+  float dicing_length = 0.0f;           // side of such a square in the mesh's space
   float offscreen_dicing_scale = 1.0f;  // factor of dicing_rate beyond the borders of the picture
+  float dicing_tolerance = 1.0f;        // factor by which edges may change before the mesh is diced anew
   Vec3 generated_location{0.0f};
   Vec3 generated_size{1.0f};
   std::vector<Vec3> generated_points;  // empty: positions in the rendered frame
   Vec3 lower{0.0f}, upper{0.0f};       // bounds in the rendered frame, without dropped triangles; lower > upper: empty
   uint32_t dropped_triangles = 0;
+  std::shared_ptr<const DicingTree> dicing;  // of a diced mesh
   uint64_t content_hash = 0;
   // Hash of the vertex count and the triangles. Triangles of two frames correspond if it is equal.
   uint64_t topology_hash = 0;
@@ -108,9 +114,11 @@ bool triangle_normals(const MeshData& mesh, uint32_t triangle, std::array<Vec3, 
 bool triangle_normals_in_shutter(const MeshData& mesh, uint32_t triangle, float time, std::array<Vec3, 3>* normals);
 
 // Returns the attribute of that name, or nullptr if there is none.
-const MeshAttribute* find_attribute(const MeshData& mesh, const std::string& name);
+const MeshAttribute* find_attribute(const MeshData& mesh, std::string_view name);
 // Returns the UV map that is used where no name is given, or nullptr if the mesh has no UV map.
 const MeshAttribute* default_uv_map(const MeshData& mesh);
+// Returns the UV map of that name, or the default one if the name is empty, or nullptr if there is none.
+const MeshAttribute* uv_map(const MeshData& mesh, std::string_view name);
 // Returns the values of an attribute at the corners of a triangle. Missing channels are 0, a missing fourth channel is
 // 1. The corners of a face attribute have the same value.
 std::array<Vec4, 3> corner_values(const MeshData& mesh, const MeshAttribute& attribute, uint32_t triangle);

@@ -191,6 +191,7 @@ void copy_dicing(const GradusMesh& m, MeshData* out) {
   out->dicing_length = is_finite(m.dicing_length) ? std::max(m.dicing_length, 0.0f) : 0.0f;
   const bool scales = is_finite(m.offscreen_dicing_scale) && m.offscreen_dicing_scale >= 1.0f;
   out->offscreen_dicing_scale = scales ? m.offscreen_dicing_scale : 1.0f;
+  out->dicing_tolerance = is_finite(m.dicing_tolerance) ? std::max(m.dicing_tolerance, 1.0f) : 1.0f;
 }
 
 void add_edge_values(const GradusMesh& m, const Check& check, MeshData* out) {
@@ -226,7 +227,8 @@ uint64_t hash_mesh(const MeshData& mesh) {
   hash.array(mesh.generated_points);
   if (mesh.dicing_levels > 0) {
     hash.value(mesh.dicing_levels);
-    for (const float v : {mesh.dicing_rate, mesh.dicing_length, mesh.offscreen_dicing_scale}) hash.value(v);
+    for (const float v : {mesh.dicing_rate, mesh.dicing_length, mesh.offscreen_dicing_scale, mesh.dicing_tolerance})
+      hash.value(v);
   }
   hash.array(mesh.pointiness);
   hash.array(mesh.islands);

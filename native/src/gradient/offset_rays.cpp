@@ -53,13 +53,12 @@ void trace_camera_rays(const BasePath& base, const integrator::PixelSample& samp
       use_camera_vertex(known, &o);
       continue;
     }
-    o.state.ray = path::PathRay{};
-    o.state.ray.visibility = visibility;
-    o.state.ray.state.random = base.state.ray.state.random;
     camera::CameraSample moved = base.camera_sample.moved(Vec2(film::kOffsetX[k], film::kOffsetY[k]));
     if (GRADUS_FAULT(offset_rays_lose_time)) moved.time = 0.0f;
     if (GRADUS_FAULT(offset_rays_lose_lens)) moved.lens = Vec2(0.0f);
-    o.state.ray.ray = base.context.camera.ray(moved);
+    o.state.ray = path::camera_path_ray(base.context, base.context.camera.ray(moved));
+    o.state.ray.visibility = visibility;
+    o.state.ray.state.random = base.state.ray.state.random;
     if (sample.first != nullptr) {
       trace_own_segment(base, known != nullptr ? &known->hit : nullptr, &o, counters);
     } else {

@@ -18,6 +18,7 @@ struct ImageTile {
   PixelFormat format = PixelFormat::Byte;
   bool srgb = false;                  // sRGB values, converted after interpolation, as Cycles does
   std::unique_ptr<uint8_t[]> pixels;  // bottom row first; colours are multiplied by alpha if the image associates it
+  std::unique_ptr<const ImageTile> coarser;  // the tile at a quarter of the resolution; null if it would be tiny
 
   size_t size_bytes() const { return static_cast<size_t>(width) * height * channels * bytes_per_channel(format); }
   // Returns the stored value of a texel, with alpha 1 if there is no alpha channel. x < width and y < height.

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "base/hash.h"
+#include "image/coarser_tile.h"
 #include "image/color.h"
 #include "image/image.h"
 #include "image/image_convert.h"
@@ -70,6 +71,7 @@ std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorMa
       stored = convert_tile(std::move(decoded), color, source.color_space, source.is_float, is_straight);
       mean = mean_color(stored);
       image->has_alpha = image->has_alpha || (!image->ignores_alpha && has_transparency(stored));
+      add_coarser_tiles(&stored, source.alpha_mode != GRADUS_ALPHA_CHANNEL_PACKED && !image->ignores_alpha);
     } else {
       problem += ", which shows as pink, as in Cycles";
     }

@@ -142,6 +142,15 @@ Vec4 gather(const ImageTile& tile, const Taps<N>& x, const Taps<N>& y) {
   return sum;
 }
 
+// Returns the coarsest resolution of a tile whose texels are not longer than `extent`, in units of the tile.
+const ImageTile& resolution_for(const ImageTile& full, float extent) {
+  const ImageTile* tile = &full;
+  while (tile->coarser && extent * static_cast<float>(std::min(tile->coarser->width, tile->coarser->height)) >= 1.0f) {
+    tile = tile->coarser.get();
+  }
+  return *tile;
+}
+
 // Returns the stored value at `uv`, before conversion to scene-linear.
 Vec4 interpolate(const ImageTile& tile, const Vec2& uv, Interpolation interpolation, Extension extension) {
   const float u = reduce(uv.x, extension);
@@ -186,7 +195,7 @@ Vec4 decode_texel(const ImageTile& tile, const Vec4& stored) {
 }
 
 Vec4 ImageStore::lookup(uint32_t index, const Vec2& uv, Interpolation interpolation, Extension extension,
-                        bool unassociate) const {
+                        bool unassociate, float extent) const {
   if (index >= size()) {
     return kMissing;
   }
@@ -195,6 +204,9 @@ Vec4 ImageStore::lookup(uint32_t index, const Vec2& uv, Interpolation interpolat
   const ImageTile* tile = find_tile(image, &local);
   if (tile == nullptr || tile->width == 0) {
     return kMissing;
+  }
+  if (extent > 0.0f && interpolation != Interpolation::Closest) {
+    tile = &resolution_for(*tile, extent);
   }
   Vec4 value = interpolate(*tile, local, interpolation, extension);
   if (image.ignores_alpha) {

@@ -1,5 +1,7 @@
 #include "image/image_store.h"
 
+#include <algorithm>
+
 #include "image/image.h"
 
 namespace gradus::image {
@@ -23,6 +25,10 @@ Rgb ImageStore::mean(uint32_t index) const { return index < size() ? images_[ind
 
 bool ImageStore::has_alpha(uint32_t index) const { return index < size() && images_[index]->has_alpha; }
 
+bool ImageStore::has_coarser_tiles(uint32_t index) const {
+  return index < size() && std::ranges::any_of(images_[index]->tiles, [](const ImageTile& t) { return !!t.coarser; });
+}
+
 uint32_t ImageStore::width(uint32_t index) const {
   return index < size() && !images_[index]->tiles.empty() ? images_[index]->tiles[0].width : 0;
 }
@@ -43,7 +49,9 @@ size_t ImageStore::memory_bytes() const {
   size_t sum = 0;
   for (const auto& image : images_) {
     for (const ImageTile& tile : image->tiles) {
-      sum += tile.size_bytes();
+      for (const ImageTile* t = &tile; t != nullptr; t = t->coarser.get()) {
+        sum += t->size_bytes();
+      }
     }
   }
   return sum;

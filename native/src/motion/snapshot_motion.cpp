@@ -3,6 +3,7 @@
 #include <unordered_map>
 
 #include "base/fault.h"
+#include "geometry/dicing_tree.h"
 #include "geometry/mesh.h"
 
 namespace gradus::motion {
@@ -21,13 +22,25 @@ std::vector<uint32_t> matching_instances(const scene::Snapshot& from, const scen
   return matches;
 }
 
+namespace {
+
+// Returns whether two meshes are dicings of meshes with the same triangles.
+bool are_dicings_of_one(const geometry::MeshData& a, const geometry::MeshData& b) {
+  return a.dicing && b.dicing && a.dicing->topology_hash == b.dicing->topology_hash;
+}
+
+}  // namespace
+
 SnapshotMotion::SnapshotMotion(const scene::Snapshot& from, const scene::Snapshot& to)
-    : to_(to), instance_(matching_instances(from, to)) {
+    : from_(from), to_(to), instance_(matching_instances(from, to)) {
+  is_diced_anew_.assign(instance_.size(), false);
   for (size_t i = 0; i < instance_.size(); ++i) {
     if (instance_[i] == kNoInstance) continue;
-    if (from.instances[i].mesh->topology_hash != to.instances[instance_[i]].mesh->topology_hash &&
-        !GRADUS_FAULT(changed_mesh_taken_for_same))
-      instance_[i] = kNoInstance;
+    const geometry::MeshData& before = *from.instances[i].mesh;
+    const geometry::MeshData& after = *to.instances[instance_[i]].mesh;
+    if (before.topology_hash == after.topology_hash || GRADUS_FAULT(changed_mesh_taken_for_same)) continue;
+    is_diced_anew_[i] = are_dicings_of_one(before, after);
+    if (!is_diced_anew_[i]) instance_[i] = kNoInstance;
   }
 }
 
@@ -35,7 +48,15 @@ bool SnapshotMotion::hit(const geometry::Hit& hit, geometry::Hit* there) const {
   *there = hit;
   there->instance = instance_[hit.instance];
   there->time = to_.shutter.time_of_frame();
-  return there->valid();
+  if (!there->valid()) return false;
+  if (is_diced_anew_[hit.instance]) {
+    const geometry::DicingTree& before = *from_.instances[hit.instance].mesh->dicing;
+    const geometry::DicingTree& after = *to_.instances[there->instance].mesh->dicing;
+    const geometry::TrianglePoint point = after.from_base(before.to_base({hit.primitive, hit.uv}));
+    there->primitive = point.triangle;
+    there->uv = point.uv;
+  }
+  return true;
 }
 
 bool SnapshotMotion::position(const geometry::Hit& hit, Vec3* position) const {

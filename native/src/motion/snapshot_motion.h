@@ -1,4 +1,5 @@
-// Motion of surface points between two frames: a point stays on the same triangle of the same instance.
+// Motion of surface points between two frames: a point stays on the same triangle of the same instance. Where a mesh is
+// diced for a camera that moves, that is a triangle of the mesh before it was diced.
 #pragma once
 
 #include <vector>
@@ -23,8 +24,10 @@ class SnapshotMotion {
   bool hit(const geometry::Hit& hit, geometry::Hit* there) const;
 
  private:
+  const scene::Snapshot& from_;
   const scene::Snapshot& to_;
-  std::vector<uint32_t> instance_;  // for each instance of `from` that of `to`; kNoInstance: none, or other topology
+  std::vector<uint32_t> instance_;   // for each instance of `from` that of `to`; kNoInstance: none, or other topology
+  std::vector<bool> is_diced_anew_;  // for each instance of `from`: its mesh has other triangles in `to`
 };
 
 }  // namespace gradus::motion

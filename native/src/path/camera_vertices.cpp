@@ -21,8 +21,7 @@ void CameraVertices::trace(int32_t x, int32_t y, Packet* packet) const {
   for (size_t i = 0; i < kPacketSize; ++i) {
     context_.scene.prefetch(hits[i]);
     packet->vertices[i].hit = hits[i];
-    packet->vertices[i].ray = PathRay{};
-    packet->vertices[i].ray.ray = rays[i];
+    packet->vertices[i].ray = camera_path_ray(context_, rays[i]);
   }
   packet->block_sample = block_sample_;
   packet->y = y;

@@ -38,6 +38,16 @@ uint32_t flags_of_diffuse_rays(const scene::Snapshot& scene, const GradusSetting
   return flags;
 }
 
+// Returns PathContext::pixel_angle. The window of a lens polynomial is measured on the sensor, so that it gives no
+// angle.
+float pixel_angle_of(const GradusCamera& camera, const GradusSettings& settings) {
+  if (camera.type == GRADUS_CAMERA_PANORAMA && camera.panorama == GRADUS_PANORAMA_FISHEYE_POLYNOMIAL) return 0.0f;
+  const float* w = camera.window;
+  const float side = std::min((w[1] - w[0]) / static_cast<float>(std::max(settings.width, 1u)),
+                              (w[3] - w[2]) / static_cast<float>(std::max(settings.height, 1u)));
+  return camera.type == GRADUS_CAMERA_ORTHOGRAPHIC ? side / (w[1] - w[0]) : side;
+}
+
 bool has_uniform_visibility(const scene::Snapshot& scene) {
   constexpr uint32_t bounces = kAllBounces | GRADUS_VISIBLE_SHADOW;
   for (const geometry::InstanceData& instance : scene.instances) {
@@ -69,7 +79,8 @@ PathContext::PathContext(const scene::Snapshot& snapshot, const camera::Camera& 
       uniform_visibility(has_uniform_visibility(snapshot)),
       kinds_matter(finds_kinds_matter(snapshot)),
       diffuse_flags(flags_of_diffuse_rays(snapshot, settings_)),
-      filter_glossy(snapshot.features.min_alpha < FilterGlossy::kMaxBlur ? settings_.blur_glossy : 0.0f) {
+      filter_glossy(snapshot.features.min_alpha < FilterGlossy::kMaxBlur ? settings_.blur_glossy : 0.0f),
+      pixel_angle(pixel_angle_of(snapshot.camera, settings_)) {
   kinds_matter |= (diffuse_flags & (shading::kRayWithoutReflections | shading::kRayWithoutRefractions)) != 0;
 }
 

@@ -38,6 +38,8 @@ struct PathContext {
   // RayFlag bits of a ray behind a diffuse bounce. They leave caustics out where those are switched off.
   uint32_t diffuse_flags = 0;
   FilterGlossy filter_glossy;
+  // Angle of a pixel's shorter side, or its share of the width of an orthographic picture.
+  float pixel_angle = 0.0f;
 };
 
 // Returns the camera sample of a film position. Takes a lens point and a time only if the scene needs them.

@@ -59,6 +59,14 @@ struct PathRay {
   shading::RayState state;
 };
 
+// Returns the first ray of a path.
+inline PathRay camera_path_ray(const PathContext& context, const Ray& ray) {
+  PathRay first;
+  first.ray = ray;
+  first.state.pixel_angle = context.pixel_angle;
+  return first;
+}
+
 // Sees the surfaces on a segment.
 class SurfaceVisitor {
  public:

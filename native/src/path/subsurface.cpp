@@ -36,6 +36,12 @@ Vec3 exit_normal(const PathContext& context, const shading::RayState& ray, Verte
   return sum == Vec3(0.0f) ? smooth : glm::normalize(sum);
 }
 
+// Returns the GradusShadingNormals of light that leaves, whose normal is not tilted towards the geometric normal.
+uint32_t exit_shading_normals(const PathContext& context, const Vertex& exit) {
+  const uint32_t version = context.scene.materials[exit.point.material]->shading_normals;
+  return version == GRADUS_SHADING_NORMALS_BEFORE_3_6 ? uint32_t{GRADUS_SHADING_NORMALS_SINCE_3_6} : version;
+}
+
 // Sets the closures of the exit: a diffuse lobe.
 void shade_exit(const PathContext& context, const shading::RayState& ray, const bsdf::Lobe& entry, Vertex* exit) {
   const Vec3 normal = exit_normal(context, ray, exit);
@@ -45,6 +51,7 @@ void shade_exit(const PathContext& context, const shading::RayState& ray, const 
   shade.emission = shade.transparency = shade.holdout = Rgb(0.0f);
   bsdf::add_exit(entry, normal, &shade.closures);
   shade.closures.set_terminator_frequency(exit->point.terminator_frequency);
+  shade.closures.set_shading_normals(exit_shading_normals(context, *exit));
   shade.closures.finish(exit->wo, exit->facing_normal(), context.settings.roughness_threshold,
                         is_behind ? -exit->point.shading_normal : exit->point.shading_normal);
   shade.complete = true;

@@ -155,7 +155,7 @@ class PathTracer {
       if (visitor() != nullptr && segment_->end == SegmentEnd::Surface)
         visitor()->visit(*vertex, state_.ray.state, segment_->weight);
     } else {
-      state_.ray.ray = context_.camera.ray(sample);
+      state_.ray = camera_path_ray(context_, context_.camera.ray(sample));
       state_.ray.state.random = sampler.key();
       trace_to_vertex(sampler, known != nullptr ? &known->hit : nullptr, vertex);
     }

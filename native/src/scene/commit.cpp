@@ -1,6 +1,8 @@
 // Scene::commit(), which makes an immutable snapshot of the scene that the caller has set.
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cstdio>
 
 #include "base/error.h"
 #include "base/fpu.h"
@@ -124,13 +126,27 @@ void build_lights(const geometry::EmbreeDevice& device, std::vector<light::Analy
   warn_beyond_limit(state->instances, chosen, snapshot);
 }
 
+// Returns a number with one decimal place.
+std::string tenths(float value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f", double(value));
+  return text.data();
+}
+
 // Divides the triangles of meshes that are to be diced.
 void dice_meshes(const CommitMonitor& monitor, const std::vector<size_t>& chosen, Scene::State* state,
                  Snapshot* snapshot) {
   AffectedObjects coarse;
-  for (const size_t k : dice_instances(monitor, &state->diced, snapshot)) coarse.add(state->instances.name(chosen[k]));
+  float coarseness = 1.0f;
+  for (const CoarseInstance& found : dice_instances(monitor, DicingLimits{}, &state->diced, snapshot)) {
+    coarse.add(state->instances.name(chosen[found.index]));
+    coarseness = std::max(coarseness, found.coarseness);
+  }
   coarse.warn("is coarser than its dicing rate", "are coarser than their dicing rate",
-              "the mesh would have more than two million triangles", &snapshot->warnings);
+              "more than " + std::to_string(DicingLimits{}.mesh >> 20) +
+                  " million triangles would be needed. The longest edges are " + tenths(coarseness) +
+                  " times as long as asked for",
+              &snapshot->warnings);
 }
 
 // Moves the vertices of meshes by the displacement of their materials.

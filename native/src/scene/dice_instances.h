@@ -11,13 +11,28 @@ namespace gradus::scene {
 
 struct DicedMesh {
   std::shared_ptr<const geometry::MeshData> from, mesh;
-  uint32_t levels = 0;
+  uint64_t view = 0;        // hash of the camera and the placements that it was diced for
+  float longest = 0.0f;     // excess of its longest edge in that view, if it tolerates other views
+  float coarseness = 1.0f;  // by how many times its edges are longer than asked for, since triangles are limited
 };
 
-// Replaces the meshes that are to be diced. All triangles of a mesh are divided equally often, so that it has no cracks
-// and keeps its topology while a camera moves a little; the first instance of a mesh decides how often. `known` holds
-// the results of the last commit, and receives those of this one. Returns the indices of the instances that a limit on
-// the number of triangles keeps coarse. The snapshot must have a camera.
-std::vector<size_t> dice_instances(const CommitMonitor& monitor, std::vector<DicedMesh>* known, Snapshot* snapshot);
+// Maximum numbers of triangles of diced meshes. A triangle takes about 300 bytes, with the acceleration structure.
+struct DicingLimits {
+  uint64_t mesh = uint64_t(1) << 22;
+  uint64_t scene = uint64_t(1) << 23;
+};
+
+// An instance whose mesh is coarser than asked for.
+struct CoarseInstance {
+  size_t index = 0;
+  float coarseness = 1.0f;
+};
+
+// Replaces the meshes that are to be diced. The longest edges of all meshes are divided first, until none is too long
+// or a limit is reached, so that what a limit costs is spread evenly. The instance of a mesh that needs the shortest
+// edges at a place decides there. `known` holds the results of the last commit, and receives those of this one. Returns
+// the instances that a limit keeps coarse. The snapshot must have a camera.
+std::vector<CoarseInstance> dice_instances(const CommitMonitor& monitor, const DicingLimits& limits,
+                                           std::vector<DicedMesh>* known, Snapshot* snapshot);
 
 }  // namespace gradus::scene

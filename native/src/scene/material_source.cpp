@@ -83,6 +83,7 @@ uint64_t MaterialSource::hash_with(const std::function<uint64_t(uint64_t key)>& 
        {uint32_t(d.surface), uint32_t(d.pass_index), d.sample_as_light, d.transparent_shadow, d.uses_fallback})
     hash.value(v);
   if (d.aovs != 0) hash.value(d.aovs);
+  if (d.shading_normals != 0) hash.value(d.shading_normals);
   if (d.displacement != 0) {
     for (const uint32_t v : {d.displacement, d.displacement_output, d.displacement_method}) hash.value(v);
     hash.value(d.bump_filter_width);

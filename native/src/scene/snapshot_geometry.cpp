@@ -46,9 +46,7 @@ template <class Visit>
 void for_each_tangent_map(const Snapshot& snapshot, const geometry::InstanceData& instance, const Visit& visit) {
   const auto of_material = [&](uint32_t material) {
     for (const std::string& name : snapshot.materials[material]->tangent_maps) {
-      const geometry::MeshAttribute* uv =
-          name.empty() ? geometry::default_uv_map(*instance.mesh) : geometry::find_attribute(*instance.mesh, name);
-      if (uv) visit(*uv);
+      if (const geometry::MeshAttribute* uv = geometry::uv_map(*instance.mesh, name)) visit(*uv);
     }
   };
   if (instance.materials.empty()) of_material(0);

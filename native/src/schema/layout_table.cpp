@@ -65,6 +65,7 @@ constexpr FieldLayout kMeshFields[] = {
     FIELD(GradusMesh, dicing_rate),
     FIELD(GradusMesh, dicing_length),
     FIELD(GradusMesh, offscreen_dicing_scale),
+    FIELD(GradusMesh, dicing_tolerance),
     FIELD(GradusMesh, reserved),
 };
 
@@ -244,7 +245,7 @@ constexpr FieldLayout kMaterialFields[] = {
     FIELD(GradusMaterial, displacement_output),
     FIELD(GradusMaterial, displacement_method),
     FIELD(GradusMaterial, bump_filter_width),
-    FIELD(GradusMaterial, reserved),
+    FIELD(GradusMaterial, shading_normals),
 };
 
 constexpr FieldLayout kSettingsFields[] = {
@@ -422,6 +423,12 @@ constexpr int64_t kDisplacementValues[] = {
     GRADUS_DISPLACEMENT_BOTH_OF_FACES,
 };
 
+constexpr int64_t kShadingNormalsValues[] = {
+    GRADUS_SHADING_NORMALS_SINCE_4_5,
+    GRADUS_SHADING_NORMALS_SINCE_3_6,
+    GRADUS_SHADING_NORMALS_BEFORE_3_6,
+};
+
 constexpr int64_t kObjectKindValues[] = {
     GRADUS_KIND_MESH,
     GRADUS_KIND_IMAGE,
@@ -560,6 +567,7 @@ constexpr EnumLayout kEnums[] = {
     {"ImageSource", kImageSourceValues},
     {"AlphaMode", kAlphaModeValues},
     {"Displacement", kDisplacementValues},
+    {"ShadingNormals", kShadingNormalsValues},
     {"ObjectKind", kObjectKindValues},
     {"Integrator", kIntegratorValues},
     {"Reconstruction", kReconstructionValues},

@@ -1,4 +1,5 @@
 // The Bump node, and the bump of a material's displacement.
+#include "bsdf/shading_normal.h"
 #include "geometry/surface_values.h"
 #include "shading/displacement.h"
 #include "shading/interpreter.h"
@@ -16,15 +17,8 @@ constexpr float kSmallestStep = 2e-5f;
 
 // Returns the step of the finite differences, in scene units.
 float step_length(const ShadeContext& c, float filter_width) {
-  const Vec3 p = glm::abs(c.position);
-  float distance = c.scene->radius;
-  if (c.scene->has_camera) {
-    const float* m = c.scene->camera.matrix;
-    distance = glm::distance(c.position, Vec3(m[12], m[13], m[14]));
-    if (c.scene->camera.type == GRADUS_CAMERA_ORTHOGRAPHIC)
-      distance = c.scene->camera.window[1] - c.scene->camera.window[0];
-  }
-  return std::max(std::max(distance * kPixelAngle * filter_width, kSmallestStep * max_component(p)), 1e-7f);
+  const float pixels = camera_distance(c) * kPixelAngle * filter_width;
+  return std::max(std::max(pixels, kSmallestStep * max_component(glm::abs(c.position))), 1e-7f);
 }
 
 // The three heights of a bump, and the steps between their points.
@@ -88,13 +82,16 @@ Vec3 bump(const Program& program, uint32_t block, const OpArgs& args, const Shad
   if (!c.instance || !c.scene || strength == 0.0f || block == 0) return normal;
   const HeightField field =
       sample_heights(c, args.f(4), [&](const ShadeContext& moved) { return run_block(program, block, moved).x; });
-  const Vec3 bent = bend(field, normal, args.mode == 1 ? -args.f(1) : args.f(1));
-  if (bent == Vec3(0.0f)) return normal;
-  const Vec3 mixed = safe_normalize(bent * strength + normal * (1.0f - strength));
-  return mixed == Vec3(0.0f) ? normal : mixed;
+  const Vec3 bent = bend(field, normal, args.mode & GRADUS_BUMP_INVERTED ? -args.f(1) : args.f(1));
+  const Vec3 mixed = bent == Vec3(0.0f) ? Vec3(0.0f) : safe_normalize(bent * strength + normal * (1.0f - strength));
+  const Vec3 bumped = mixed == Vec3(0.0f) ? normal : mixed;
+  return args.mode & GRADUS_BUMP_TILTED ? bsdf::keep_reflection_above(bumped, c.geometric_normal, c.wo) : bumped;
 }
 
-Vec3 displacement_bump(const MaterialData& material, const ShadeContext& context) {
+namespace {
+
+// Returns the normal of a bump by displacement, whatever the version of Blender.
+Vec3 bent_normal(const MaterialData& material, const ShadeContext& context) {
   const bool moved = material.displaces && context.instance->undisplaced;
   const ShadeContext c = moved ? undisplaced_context(context, material.bumps_moved_faces) : context;
   HeightField field = sample_heights(c, material.bump_filter_width, [&](const ShadeContext& at) {
@@ -109,6 +106,14 @@ Vec3 displacement_bump(const MaterialData& material, const ShadeContext& context
   field.dy = direction_to_local(c, field.dy);
   const Vec3 bent = bend(field, normal_to_local(c, c.normal), 1.0f);
   return bent == Vec3(0.0f) ? c.normal : normal_to_world(c, bent);
+}
+
+}  // namespace
+
+Vec3 displacement_bump(const MaterialData& material, const ShadeContext& c) {
+  const Vec3 normal = bent_normal(material, c);
+  const bool tilts = material.shading_normals == GRADUS_SHADING_NORMALS_BEFORE_3_6;
+  return tilts ? bsdf::keep_reflection_above(normal, c.geometric_normal, c.wo) : normal;
 }
 
 }  // namespace gradus::shading

@@ -11,8 +11,9 @@ namespace {
 // Radii below this are too small for a walk: light leaves where it enters.
 constexpr float kSmallestRadius = 1e-8f;
 
-// Mode of GLOSSY, REFRACTION and GLASS: as in Blender before 4.0. Mode of METALLIC: a conductor.
-constexpr uint32_t kLegacy = 4, kConductor = 4;
+// Mode of GLOSSY, REFRACTION and GLASS: as in Blender before 4.0. Mode of METALLIC: a conductor,
+// and its Fresnel term before 5.0.
+constexpr uint32_t kLegacy = 4, kConductor = 4, kApproximate = 8;
 
 // Returns the GradusDistribution in the mode of an operation.
 uint32_t distribution_of(const ClosureArgs& args) { return args.mode & 3; }
@@ -79,7 +80,8 @@ void add_metallic(const ClosureArgs& args, const ShadeContext& c, ShadeResult* r
   if (args.f(3) > 0.0f) lobe->tangent = turned_tangent(c, args.v(6), normal, args.f(4));
   lobe->multiscatter = is_multiscatter(args);
   if (args.mode & kConductor) {
-    lobe->fresnel = bsdf::FresnelType::Conductor;
+    const bool exact = (args.mode & kApproximate) == 0;
+    lobe->fresnel = exact ? bsdf::FresnelType::Conductor : bsdf::FresnelType::ApproximateConductor;
     lobe->f0 = non_negative(args.v(0));
     lobe->f90 = non_negative(args.v(1));
   } else {

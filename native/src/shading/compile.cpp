@@ -168,8 +168,12 @@ bool depends_on_kind(const Program& p) {
   return std::ranges::any_of(p.code, [](const Instruction& i) { return reads_history(i.op, i.mode); });
 }
 
+bool program_reads_normal(const Program& p) {
+  return std::ranges::any_of(p.code, [](const Instruction& i) { return reads_normal(i.op, i.mode); });
+}
+
 bool asks_for_tangents(const Instruction& i) {
-  return (i.op == GRADUS_OP_NORMAL_MAP && (i.mode == GRADUS_NORMAL_TANGENT || i.mode == GRADUS_NORMAL_UNIT_TANGENT)) ||
+  return (i.op == GRADUS_OP_NORMAL_MAP && is_tangent_space(i.mode)) ||
          (i.op == GRADUS_OP_TANGENT && i.mode == GRADUS_TANGENT_UV) ||
          (i.op == GRADUS_OP_VECTOR_DISPLACEMENT && i.mode == GRADUS_NORMAL_TANGENT);
 }
@@ -225,6 +229,11 @@ void describe_transparency(MaterialData* m) {
   m->constant_transparency = r.transparency;
 }
 
+// Makes a program look up images at full resolution.
+void show_images_in_full(Program* p) {
+  for (Instruction& i : p->code) i.texture_map = 0;
+}
+
 // Returns whether a Diffuse operation has no normal input.
 bool has_own_normal(const Program& p, const Instruction& diffuse) {
   return Vec3(operand_or(p, p.operands[diffuse.first_operand + 2], Vec4(1.0f))) == Vec3(0.0f);
@@ -238,17 +247,22 @@ void describe_displacement(const GradusMaterial& desc, const Graph& graph, Mater
     m->bump = emit_program(graph, ProgramScope::Bump, m->name);
   m->displaces = !m->displacement.blocks.empty();
   m->bumps = !m->bump.blocks.empty();
+  m->bumps_emission = m->bumps && program_reads_normal(m->emission);
+  m->bumps_transparency = m->bumps && program_reads_normal(m->transparency);
+  m->bumps_aovs = m->bumps && program_reads_normal(m->aovs);
   m->bumps_moved_faces = desc.displacement_method == GRADUS_DISPLACEMENT_BOTH_OF_FACES;
   m->bump_filter_width = desc.bump_filter_width;
+  m->shading_normals = desc.shading_normals;
 }
 
 // Adds what values depend on that are computed from a bent normal.
 void add_dependence_of_bump(MaterialData* m) {
   if (!m->bumps) return;
   m->bumps_subsurface = true;
-  m->values_depend_on_ray = m->values_depend_on_ray || values_depend_on_ray(m->bump);
+  const bool tilts_by_ray = m->shading_normals == GRADUS_SHADING_NORMALS_BEFORE_3_6;
+  m->values_depend_on_ray = m->values_depend_on_ray || tilts_by_ray || values_depend_on_ray(m->bump);
   m->draws_random = m->draws_random || program_draws_random(m->bump);
-  m->depends_on_kind = m->depends_on_kind || depends_on_kind(m->bump);
+  if (m->bumps_emission || m->bumps_transparency) m->depends_on_kind = m->depends_on_kind || depends_on_kind(m->bump);
 }
 
 void describe_surface(MaterialData* m) {
@@ -283,6 +297,9 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
   m->smallest_hidden_sun = suns.smallest_hidden;
   Analysis(m->surface, m.get()).run();
   describe_emission(m.get(), images);
+  // Light sampling finds the emission in full, so that bounces must find the same.
+  if (m->emits)
+    for (Program* program : {&m->surface, &m->transparency}) show_images_in_full(program);
   describe_transparency(m.get());
   m->values_depend_on_ray = values_depend_on_ray(m->surface);
   m->draws_random = program_draws_random(m->surface);

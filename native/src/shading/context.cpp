@@ -51,6 +51,14 @@ const geometry::Placement& placement_of(const ShadeContext& c, geometry::Placeme
   return c.instance->placement(c.hit.time, storage);
 }
 
+float camera_distance(const ShadeContext& c) {
+  if (!c.scene->has_camera) return c.scene->radius;
+  const GradusCamera& camera = c.scene->camera;
+  if (camera.type == GRADUS_CAMERA_ORTHOGRAPHIC) return camera.window[1] - camera.window[0];
+  const float* m = camera.matrix;
+  return glm::distance(c.position, Vec3(m[12], m[13], m[14]));
+}
+
 Vec3 world_position(const ShadeContext& c) {
   return c.is_background || !c.scene ? c.position : c.position + c.scene->origin;
 }

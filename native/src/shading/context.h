@@ -38,6 +38,9 @@ ShadeContext light_context(const ShadedScene& scene, const LightShadingPoint& po
 
 // Returns the placement of the instance at the time of the hit. `storage` holds it if it has to be interpolated.
 const geometry::Placement& placement_of(const ShadeContext& context, geometry::Placement* storage);
+// Returns the length at the point of what the camera sees at an angle of 1 radian: the distance of the point. For an
+// orthographic camera it is the width of the picture, and without a camera the radius of the scene.
+float camera_distance(const ShadeContext& context);
 // Returns the position in world space, or the direction for the background.
 Vec3 world_position(const ShadeContext& context);
 // Returns the context moved by `step` along the primitive of its hit, of which the derivatives are given. Interpolated

@@ -6,6 +6,11 @@
 
 namespace gradus::shading {
 
+// Returns whether a GradusNormalSpace is one of tangents.
+inline bool is_tangent_space(uint32_t space) {
+  return space == GRADUS_NORMAL_TANGENT || space == GRADUS_NORMAL_UNIT_TANGENT ||
+         space == GRADUS_NORMAL_BLENDED_TANGENT;
+}
 // Returns the tangent around the z axis of the object's generated coordinates, perpendicular to the normal.
 Vec3 default_tangent(const ShadeContext& context);
 // Returns the generated coordinates, or the position in world space without an object.

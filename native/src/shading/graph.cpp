@@ -51,6 +51,7 @@ class Builder {
     for (uint32_t k = 0; k < source.input_count; k++) input(&n, k, desc_.inputs[source.first_input + k]);
     for (uint32_t k = 0; k < info.outputs; k++) n.outputs.push_back({static_cast<int32_t>(i), k, Vec4(0.0f)});
     if (n.op == GRADUS_OP_SKY) prepare(&n);
+    if (n.op == GRADUS_OP_IMAGE) map_texture(&n);
     simplify(&n);
   }
 
@@ -98,6 +99,19 @@ class Builder {
   void simplify_image(GraphNode* n) const {
     const bool clips = (n->mode >> 4 & 3) == static_cast<uint32_t>(image::Extension::Clip);
     if (!clips && n->resource < images_.size() && !images_.has_alpha(n->resource)) n->outputs[1] = constant(Vec4(1.0f));
+  }
+
+  // Finds out how much of an image a look-up may average.
+  void map_texture(GraphNode* n) {
+    const uint32_t projection = n->mode & 3;
+    if (projection != GRADUS_PROJECTION_FLAT && projection != GRADUS_PROJECTION_BOX) return;
+    if (n->resource >= images_.size() || !images_.has_coarser_tiles(n->resource)) return;
+    const TextureMap map = texture_map(graph_, n->inputs[0]);
+    // A flat projection of coordinates in space has no lower bound on steep surfaces.
+    const bool is_planar = map.source == TextureMap::Source::UvMap;
+    if (map.source == TextureMap::Source::Unknown || (projection == GRADUS_PROJECTION_FLAT && !is_planar)) return;
+    graph_.texture_maps.push_back(map);
+    n->texture_map = static_cast<uint32_t>(graph_.texture_maps.size());
   }
 
   // Evaluates a node whose inputs are all constant.

@@ -8,6 +8,7 @@
 #include "base/types.h"
 #include "gradus/gradus.h"
 #include "gradus/gradus_nodes.h"
+#include "shading/texture_extent.h"
 
 namespace gradus::image {
 class ImageStore;
@@ -30,6 +31,7 @@ struct GraphNode {
   uint32_t first_float = 0;
   uint32_t float_count = 0;
   uint32_t resource = 0;            // index of an image in the store, or index of a name + 1
+  uint32_t texture_map = 0;         // index in Graph::texture_maps + 1 of an image that may be averaged; 0 for others
   std::vector<GraphValue> inputs;   // one for each input of the operation; those of closures are unused
   int32_t closures[2] = {-1, -1};   // nodes that MIX_SHADER and ADD_SHADER combine; -1 is black
   std::vector<GraphValue> outputs;  // the values of the outputs: of this node, a constant or of another node
@@ -39,6 +41,7 @@ struct Graph {
   std::vector<GraphNode> nodes;
   std::vector<float> floats;
   std::vector<std::string> names;
+  std::vector<TextureMap> texture_maps;
   int32_t surface = -1;
   int32_t aovs = -1;        // node of the outputs to AOVs
   GraphValue displacement;  // in world space; a constant 0 if there is none

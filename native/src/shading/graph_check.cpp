@@ -64,6 +64,7 @@ class Checker {
 
   void displacement() const {
     that(desc_.displacement <= desc_.node_count, "the displacement is no node");
+    that(desc_.shading_normals <= GRADUS_SHADING_NORMALS_BEFORE_3_6, "unknown correction of shading normals");
     that(desc_.displacement_method <= GRADUS_DISPLACEMENT_BOTH_OF_FACES, "unknown method of displacement");
     if (desc_.displacement == 0) return;
     const uint32_t op = desc_.nodes[desc_.displacement - 1].op;

@@ -9,6 +9,9 @@
 namespace gradus::shading {
 namespace {
 
+// Modes: the version of Blender whose way to continue a table at its ends is taken, or any later one.
+constexpr uint32_t kBlender3 = 0, kBlender4 = 1;
+
 // A place between two neighbouring angles: at `index` + `fraction`.
 struct Place {
   int index;
@@ -31,37 +34,50 @@ float spline(float a, float b, float c, float d, float x) {
 constexpr int kRepeated = -1;  // the end is repeated
 constexpr int kNothing = -2;   // there is 0
 
-// Interpolates values at the indices around a place. Beyond an end they continue as `before_first` and `after_last`
-// tell: at an index, or in one of the ways above.
+// How a table continues at its ends: an index, or one of the ways above.
+struct Ends {
+  int before_first, after_last;
+};
+
+// Interpolates values at the indices around a place.
 template <typename Value>
-float interpolate(const Value& value, int count, const Place& place, int before_first, int after_last) {
+float interpolate(const Value& value, int count, const Place& place, const Ends& ends) {
   const int i = place.index;
   const float b = value(i), c = value(i + 1);
-  const int before = i > 0 ? i - 1 : before_first, after = i + 2 < count ? i + 2 : after_last;
+  const int before = i > 0 ? i - 1 : ends.before_first, after = i + 2 < count ? i + 2 : ends.after_last;
   const auto beyond = [&](int index, float end) { return index >= 0 ? value(index) : index == kRepeated ? end : 0.0f; };
   return spline(beyond(before, b), b, c, beyond(after, c), place.fraction);
 }
 
-// Returns the intensity in a direction. is_open: as Cycles of Blender 4, whose tests for a full turn and for the upper
-// pole never hold in floats, so that the table does not continue there.
-float intensity(const IesTable& table, float horizontal, float vertical, bool is_open) {
+// Returns how the columns of a table continue. Blender 3 continues over a full turn. The tests for a full turn and for
+// the upper pole of later versions never hold in floats. Blender 4 takes 0 beyond the ends, and Blender 5 repeats the
+// first column, and the one before the last.
+Ends ends_of_columns(uint32_t mode, int count) {
+  if (mode == kBlender3) return {count - 2, 1};
+  return mode == kBlender4 ? Ends{kNothing, kNothing} : Ends{kRepeated, count - 2};
+}
+
+// Returns how a column continues. Beyond the lower pole are the values at the same horizontal angle, as if the
+// luminaire were symmetric.
+Ends ends_of_rows(uint32_t mode, float first_angle) {
+  constexpr float kTolerance = 1e-7f;
+  const int end = mode == kBlender4 ? kNothing : kRepeated;
+  return {mode == kBlender3 || first_angle < kTolerance ? 1 : end, end};
+}
+
+// Returns the intensity in a direction.
+float intensity(const IesTable& table, float horizontal, float vertical, uint32_t mode) {
   const int h_count = table.horizontal_count, v_count = table.vertical_count;
   const float *h = table.horizontal, *v = table.vertical;
   if (!(vertical >= v[0] && vertical <= v[v_count - 1])) return 0.0f;
   if (!(horizontal >= h[0] && horizontal <= h[h_count - 1])) return 0.0f;
-  constexpr float kTolerance = 1e-6f;
-  const bool is_full_turn = !is_open && h[0] < kTolerance && h[h_count - 1] > 2.0f * kPi - kTolerance;
   const Place h_place = place_of(h, h_count, horizontal), v_place = place_of(v, v_count, vertical);
-  // Beyond a pole the table continues at the same horizontal angle, as if the luminaire were symmetric.
-  const int end = is_open ? kNothing : kRepeated;
-  const int above = v[0] < kTolerance ? 1 : end;
-  const int below = !is_open && v[v_count - 1] > kPi - kTolerance ? v_count - 2 : end;
+  const Ends columns = ends_of_columns(mode, h_count), rows = ends_of_rows(mode, v[0]);
   const auto column = [&](int i) {
     const float* values = table.values + i * v_count;
-    return interpolate([values](int k) { return values[k]; }, v_count, v_place, above, below);
+    return interpolate([values](int k) { return values[k]; }, v_count, v_place, rows);
   };
-  // The first and the last column of a full turn are the same.
-  const float found = interpolate(column, h_count, h_place, is_full_turn ? h_count - 2 : end, is_full_turn ? 1 : end);
+  const float found = interpolate(column, h_count, h_place, columns);
   return found > 0.0f && is_finite(found) ? found : 0.0f;
 }
 
@@ -87,7 +103,7 @@ void ies_op(const OpArgs& args, Vec4* out) {
   const Vec3 direction = safe_normalize(args.v(0));
   const float vertical = std::acos(std::clamp(-direction.z, -1.0f, 1.0f));
   const float horizontal = std::atan2(direction.x, direction.y) + kPi;
-  out[0] = splat(table ? args.f(1) * intensity(*table, horizontal, vertical, args.mode == 1) : 0.0f);
+  out[0] = splat(table ? args.f(1) * intensity(*table, horizontal, vertical, args.mode) : 0.0f);
 }
 
 }  // namespace gradus::shading

@@ -2,6 +2,7 @@
 #include "image/image_store.h"
 #include "shading/context_ops.h"
 #include "shading/scalar.h"
+#include "shading/texture_extent.h"
 
 namespace gradus::shading {
 namespace {
@@ -14,13 +15,18 @@ struct Sampler {
   image::Interpolation interpolation;
   image::Extension extension;
   bool unassociate;
-  Vec4 at(const Vec2& uv) const { return images->lookup(index, uv, interpolation, extension, unassociate); }
+  float extent;
+  Vec4 at(const Vec2& uv) const { return images->lookup(index, uv, interpolation, extension, unassociate, extent); }
 };
 
 Sampler sampler_of(const ResourceArgs& args, const ShadeContext& c) {
   const uint32_t interpolation = std::min(args.mode >> 2 & 3, 2u);
-  return {c.images, args.resource, static_cast<image::Interpolation>(interpolation),
-          static_cast<image::Extension>(args.mode >> 4 & 3), (args.mode >> 6 & 1) != 0};
+  return {c.images,
+          args.resource,
+          static_cast<image::Interpolation>(interpolation),
+          static_cast<image::Extension>(args.mode >> 4 & 3),
+          (args.mode >> 6 & 1) != 0,
+          args.texture_map ? texture_extent(*args.texture_map, c) : 0.0f};
 }
 
 // Spherical projection of a point to UV coordinates.

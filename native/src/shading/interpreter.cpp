@@ -78,6 +78,7 @@ class Machine {
     }
     if (evaluate_pure(i.op, args, out)) return;
     args.resource = i.resource;
+    if (i.texture_map > 0) args.texture_map = &program_.texture_maps[i.texture_map - 1];
     if (i.op != GRADUS_OP_IMAGE && i.op != GRADUS_OP_ENVIRONMENT && i.resource > 0)
       args.name = &program_.names[i.resource - 1];
     evaluate_context(i.op, args, context_, out);

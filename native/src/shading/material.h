@@ -45,8 +45,12 @@ struct MaterialData {
   bool bumps_subsurface = false;           // light that leaves the material from below has a normal from its nodes
   bool displaces = false;                  // `displacement` moves vertices
   bool bumps = false;                      // `bump` bends the shading normal
+  bool bumps_emission = false;             // `emission` reads the normal that `bump` bends
+  bool bumps_transparency = false;         // `transparency` reads it
+  bool bumps_aovs = false;                 // `aovs` reads it
   bool bumps_moved_faces = false;          // the bump of a flat face starts from its displaced normal
   float bump_filter_width = 1.0f;          // step of the finite differences of that bump, in pixels
+  uint32_t shading_normals = GRADUS_SHADING_NORMALS_SINCE_4_5;
   bool values_depend_on_ray = false;  // some value of `surface` depends on the ray; closures themselves do not count
   bool draws_random = false;          // some value of `surface` depends on random numbers of the path
   bool depends_on_kind =

@@ -59,6 +59,8 @@ void ambient_occlusion_op(const ResourceArgs& args, const ShadeContext& context,
 void bevel_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void displacement_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void vector_displacement_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
+void raycast_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
+void raycast_attribute_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void image_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void environment_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);
 void vector_transform_op(const ResourceArgs& args, const ShadeContext& context, Vec4* out);

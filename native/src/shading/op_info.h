@@ -49,6 +49,36 @@ inline bool is_pure(uint32_t op) {
 // Returns whether the operation draws random numbers, so that its value differs from path to path.
 inline bool draws_random(uint32_t op) { return op == GRADUS_OP_AMBIENT_OCCLUSION || op == GRADUS_OP_BEVEL; }
 
+// Returns whether a result of the operation depends on the shading normal, beside its inputs.
+inline bool reads_normal(uint32_t op, uint32_t mode) {
+  switch (op) {
+    case GRADUS_OP_EMISSION:
+    case GRADUS_OP_TRANSPARENT:
+    case GRADUS_OP_HOLDOUT:
+    case GRADUS_OP_AOV:
+      return false;
+    case GRADUS_OP_GEOMETRY:
+      return mode == GRADUS_GEOMETRY_NORMAL || mode == GRADUS_GEOMETRY_TANGENT;
+    case GRADUS_OP_TEX_COORD:
+      return mode == GRADUS_TEX_COORD_NORMAL || mode == GRADUS_TEX_COORD_REFLECTION;
+    case GRADUS_OP_IMAGE:
+      return (mode & 3) == GRADUS_PROJECTION_BOX;
+    case GRADUS_OP_VECTOR_DISPLACEMENT:
+      return mode == GRADUS_NORMAL_TANGENT;
+    case GRADUS_OP_TANGENT:
+    case GRADUS_OP_LAYER_WEIGHT:
+    case GRADUS_OP_FRESNEL:
+    case GRADUS_OP_NORMAL_MAP:
+    case GRADUS_OP_BUMP:
+    case GRADUS_OP_AMBIENT_OCCLUSION:
+    case GRADUS_OP_BEVEL:
+    case GRADUS_OP_DISPLACEMENT:
+      return true;
+    default:
+      return is_closure_op(op);
+  }
+}
+
 // Returns whether a value of the operation depends on the ray that arrives, and not on the point alone. That normals
 // face the ray does not count.
 inline bool reads_ray(uint32_t op, uint32_t mode) {

@@ -33,7 +33,7 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_ADD_SHADER] = {"ADD_SHADER", OpKind::Closure, 2, 1, 0, 0};
   table[GRADUS_OP_PRINCIPLED] = {"PRINCIPLED", OpKind::Closure, 28, 1, 0, GRADUS_SUBSURFACE_ONCE + 47};
   table[GRADUS_OP_PRINCIPLED_3] = {"PRINCIPLED_3", OpKind::Closure, 22, 1, 0, GRADUS_SUBSURFACE_ONCE + 15};
-  table[GRADUS_OP_METALLIC] = {"METALLIC", OpKind::Closure, 9, 1, 0, GRADUS_DISTRIBUTION_BECKMANN + 4};
+  table[GRADUS_OP_METALLIC] = {"METALLIC", OpKind::Closure, 9, 1, 0, GRADUS_DISTRIBUTION_BECKMANN + 12};
   table[GRADUS_OP_SUBSURFACE] = {"SUBSURFACE", OpKind::Closure, 7, 1, 0, GRADUS_SUBSURFACE_ONCE + 15};
   table[GRADUS_OP_AOV] = {"AOV", OpKind::Closure, 2, 1, 0, 255};
   table[GRADUS_OP_TOON] = {"TOON", OpKind::Closure, 4, 1, 0, 1};
@@ -57,14 +57,17 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_FRESNEL] = {"FRESNEL", OpKind::Context, 2, 1, 0, 0};
   table[GRADUS_OP_FRESNEL].ray_modes = kAllModes;
   table[GRADUS_OP_CAMERA_DATA] = {"CAMERA_DATA", OpKind::Context, 0, 3, 0, 0};
-  table[GRADUS_OP_NORMAL_MAP] = {"NORMAL_MAP", OpKind::Context, 2, 1, 0, GRADUS_NORMAL_UNIT_TANGENT};
-  table[GRADUS_OP_BUMP] = {"BUMP", OpKind::Program, 5, 1, 0, 1};
+  table[GRADUS_OP_NORMAL_MAP] = {"NORMAL_MAP", OpKind::Context, 2, 1, 0, GRADUS_NORMAL_BLENDED_TANGENT};
+  table[GRADUS_OP_BUMP] = {"BUMP", OpKind::Program, 5, 1, 0, GRADUS_BUMP_TILTED_INVERTED};
+  table[GRADUS_OP_BUMP].ray_modes = modes({GRADUS_BUMP_TILTED, GRADUS_BUMP_TILTED_INVERTED});
   table[GRADUS_OP_INSTANCE_ATTRIBUTE] = {"INSTANCE_ATTRIBUTE", OpKind::Context, 0, 4, 0, 0};
   table[GRADUS_OP_WIREFRAME] = {"WIREFRAME", OpKind::Context, 1, 1, 2, 1};
   table[GRADUS_OP_AMBIENT_OCCLUSION] = {"AMBIENT_OCCLUSION", OpKind::Context, 3, 2, 1, 7};
   table[GRADUS_OP_BEVEL] = {"BEVEL", OpKind::Context, 2, 1, 1, 0};
   table[GRADUS_OP_DISPLACEMENT] = {"DISPLACEMENT", OpKind::Context, 4, 1, 0, GRADUS_NORMAL_WORLD};
   table[GRADUS_OP_VECTOR_DISPLACEMENT] = {"VECTOR_DISPLACEMENT", OpKind::Context, 3, 1, 0, GRADUS_NORMAL_WORLD};
+  table[GRADUS_OP_RAYCAST] = {"RAYCAST", OpKind::Context, 3, 5, 0, 1};
+  table[GRADUS_OP_RAYCAST_ATTRIBUTE] = {"RAYCAST_ATTRIBUTE", OpKind::Context, 3, 4, 0, 1};
   table[GRADUS_OP_IMAGE] = {"IMAGE", OpKind::Context, 1, 2, 0, 127};
   table[GRADUS_OP_ENVIRONMENT] = {"ENVIRONMENT", OpKind::Context, 1, 1, 0, 127};
   table[GRADUS_OP_NOISE] = {"NOISE", OpKind::Pure, 9, 2, 0, 255};
@@ -75,7 +78,7 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_MAGIC] = {"MAGIC", OpKind::Pure, 3, 2, 0, 10};
   table[GRADUS_OP_BRICK] = {"BRICK", OpKind::Pure, 10, 2, 4, 0};
   table[GRADUS_OP_SKY] = {"SKY", OpKind::Pure, 1, 1, 0, GRADUS_SKY_MULTIPLE_SCATTERING};
-  table[GRADUS_OP_IES] = {"IES", OpKind::Pure, 2, 1, 1, 1};
+  table[GRADUS_OP_IES] = {"IES", OpKind::Pure, 2, 1, 1, 2};
   table[GRADUS_OP_VORONOI] = {"VORONOI", OpKind::Pure, 9, 5, 0, 2047};
   table[GRADUS_OP_MUSGRAVE] = {"MUSGRAVE", OpKind::Pure, 8, 1, 0, 63};
   table[GRADUS_OP_GABOR] = {"GABOR", OpKind::Pure, 6, 3, 0, 3};
@@ -269,6 +272,12 @@ bool evaluate_context(uint32_t op, const ResourceArgs& args, const ShadeContext&
       return true;
     case GRADUS_OP_VECTOR_DISPLACEMENT:
       vector_displacement_op(args, context, out);
+      return true;
+    case GRADUS_OP_RAYCAST:
+      raycast_op(args, context, out);
+      return true;
+    case GRADUS_OP_RAYCAST_ATTRIBUTE:
+      raycast_attribute_op(args, context, out);
       return true;
     case GRADUS_OP_IMAGE:
       image_op(args, context, out);

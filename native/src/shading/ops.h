@@ -11,6 +11,7 @@
 namespace gradus::shading {
 
 struct ShadeContext;  // shading/context.h
+struct TextureMap;    // shading/texture_extent.h
 
 // Arguments of a pure operation, whose result depends on its inputs alone. Scalar inputs are the first component of a
 // Vec4.
@@ -25,8 +26,9 @@ struct OpArgs {
 
 // Arguments of an operation that depends on the point, the ray, the object or an image.
 struct ResourceArgs : OpArgs {
-  uint32_t resource = 0;              // index of the image
-  const std::string* name = nullptr;  // name of an attribute; null if none is given
+  uint32_t resource = 0;                    // index of the image
+  const std::string* name = nullptr;        // name of an attribute; null if none is given
+  const TextureMap* texture_map = nullptr;  // of an image that may be averaged; null for others
 };
 
 // Evaluate `op` and write all its outputs to `out`. Each returns false if `op` is not of its kind (op_info.h).

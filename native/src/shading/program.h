@@ -7,6 +7,7 @@
 
 #include "base/types.h"
 #include "gradus/gradus_nodes.h"
+#include "shading/texture_extent.h"
 
 namespace gradus::shading {
 
@@ -31,8 +32,9 @@ struct Instruction {
   uint32_t first_operand = 0;  // index in Program::operands
   uint32_t first_float = 0;    // index in Program::floats; the target of kOpJumpIfZero
   uint32_t float_count = 0;
-  uint32_t resource = 0;  // index in ImageStore, index + 1 in Program::names, or the block of a BUMP's height
-  Operand weight = -1;    // weight of a closure
+  uint32_t resource = 0;     // index in ImageStore, index + 1 in Program::names, or the block of a BUMP's height
+  uint32_t texture_map = 0;  // index in Program::texture_maps + 1
+  Operand weight = -1;       // weight of a closure
   // A closure's inputs are consecutive in Program::inputs. Those that are not constant are in Program::computed.
   uint32_t first_input = 0;
   uint32_t first_computed = 0;
@@ -62,6 +64,7 @@ struct Program {
   std::vector<ComputedInput> computed;
   std::vector<float> floats;
   std::vector<std::string> names;
+  std::vector<TextureMap> texture_maps;
   int register_count = 0;
   bool empty() const { return code.empty(); }
 };

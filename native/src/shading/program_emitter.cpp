@@ -29,6 +29,7 @@ class Emitter {
   Emitter(const Graph& graph, ProgramScope scope, const std::string& name) : graph_(graph), scope_(scope), name_(name) {
     program_.floats = graph.floats;
     program_.names = graph.names;
+    program_.texture_maps = graph.texture_maps;
     find_present();
   }
 
@@ -175,6 +176,12 @@ class Emitter {
     emit_values(set);
   }
 
+  // Returns whether images have their full resolution: for emission, which light sampling must find as bounces do, and
+  // for heights, whose differences would show where the resolution changes.
+  bool looks_up_in_full() const {
+    return scope_ == ProgramScope::Emission || scope_ == ProgramScope::Bump || block_ > 0;
+  }
+
   Instruction instruction_of(const GraphNode& n) {
     Instruction i;
     i.op = static_cast<uint16_t>(n.op);
@@ -183,6 +190,7 @@ class Emitter {
     i.first_float = n.first_float;
     i.float_count = n.float_count;
     i.resource = n.resource;
+    i.texture_map = looks_up_in_full() ? 0 : n.texture_map;
     std::vector<Operand> operands;
     for (size_t k = 0; k < n.inputs.size(); k++)
       operands.push_back(wants_input(n, k) ? operand(n.inputs[k]) : constant(Vec4(0.0f)));

@@ -13,11 +13,12 @@ const MaterialData& material_of(const ShadedScene& scene, uint32_t index) {
   return *scene.materials[index < scene.materials.size() ? index : 0];
 }
 
-// Returns the context of a surface point, with the normal that its material displaces.
-ShadeContext context_of(const MaterialData& material, const ShadedScene& scene, const geometry::SurfacePoint& point,
-                        const Vec3& wo, const RayState& ray) {
+// Returns the context of a surface point. If `bumps`, it has the normal that the material displaces, which takes three
+// evaluations of the displacement: programs that do not read the normal go without.
+ShadeContext context_of(const MaterialData& material, bool bumps, const ShadedScene& scene,
+                        const geometry::SurfacePoint& point, const Vec3& wo, const RayState& ray) {
   ShadeContext c = surface_context(scene, point, wo, ray);
-  if (material.bumps) c.normal = displacement_bump(material, c);
+  if (bumps) c.normal = displacement_bump(material, c);
   return c;
 }
 
@@ -32,6 +33,7 @@ void clear(ShadeResult* result) {
 void complete(const MaterialData& material, const geometry::SurfacePoint& point, const Vec3& geometric_normal,
               const Vec3& normal, const Vec3& wo, float roughness_threshold, float blur, ShadeResult* result) {
   result->closures.set_terminator_frequency(point.terminator_frequency);
+  result->closures.set_shading_normals(material.shading_normals);
   result->closures.finish(wo, geometric_normal, roughness_threshold, normal, blur);
   result->ignores_wo = !material.values_depend_on_ray && result->closures.ignores_wo();
   result->complete = true;
@@ -86,7 +88,7 @@ void shade_surface(const ShadedScene& scene, const geometry::SurfacePoint& point
   // A Lambert surface is not recorded on the tape. It does not depend on the direction on this side, and shading it
   // again for the other side is as fast as a replay.
   if (material.is_lambert) return shade_lambert(material, point, wo, roughness_threshold, result);
-  const ShadeContext context = context_of(material, scene, point, wo, ray);
+  const ShadeContext context = context_of(material, material.bumps, scene, point, wo, ray);
   run_program(material.surface, context, result);
   if (result->tape) result->tape->finish();
   complete(material, point, context.geometric_normal, context.normal, wo, roughness_threshold, ray.blur, result);
@@ -96,7 +98,7 @@ void shade_from_tape(const ShadedScene& scene, const geometry::SurfacePoint& poi
                      const Vec3& known_wo, const Vec3& wo, const RayState& ray, float roughness_threshold,
                      ShadeResult* result) {
   const MaterialData& material = material_of(scene, point.material);
-  const ShadeContext context = context_of(material, scene, point, wo, ray);
+  const ShadeContext context = context_of(material, material.bumps, scene, point, wo, ray);
   const bool same_side = context.backfacing == (glm::dot(point.geometric_normal, known_wo) < 0.0f);
   clear(result);
   if (material.values_depend_on_ray || !same_side || !tape.replay(context, result)) {
@@ -123,7 +125,7 @@ Rgb shade_emission(const ShadedScene& scene, const geometry::SurfacePoint& point
   const MaterialData& material = material_of(scene, point.material);
   if (!material.emits) return Rgb(0.0f);
   if (material.emission_is_constant) return material.constant_emission;
-  return emission_of(material, context_of(material, scene, point, wo, ray));
+  return emission_of(material, context_of(material, material.bumps_emission, scene, point, wo, ray));
 }
 
 Rgb shade_transparency(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
@@ -132,14 +134,14 @@ Rgb shade_transparency(const ShadedScene& scene, const geometry::SurfacePoint& p
   if (!material.may_be_transparent || ((ray.flags & kRayShadow) && !material.transparent_shadow)) return Rgb(0.0f);
   if (material.transparency_is_constant) return material.constant_transparency;
   ShadeResult* result = scratch();
-  run_program(material.transparency, context_of(material, scene, point, wo, ray), result);
+  run_program(material.transparency, context_of(material, material.bumps_transparency, scene, point, wo, ray), result);
   return result->transparency;
 }
 
 const std::vector<AovOutput>& shade_aovs(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
                                          const RayState& ray) {
   const MaterialData& material = material_of(scene, point.material);
-  return aovs_of(material, [&] { return context_of(material, scene, point, wo, ray); });
+  return aovs_of(material, [&] { return context_of(material, material.bumps_aovs, scene, point, wo, ray); });
 }
 
 const std::vector<AovOutput>& shade_world_aovs(const ShadedScene& scene, const Vec3& direction, const RayState& ray) {

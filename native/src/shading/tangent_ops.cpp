@@ -23,6 +23,11 @@ Vec3 local_normal(const ShadeContext& c) {
   return geometry::smooth_normal_at(*c.instance, c.hit, &normal) ? normal : normal_to_local(c, unflipped(c));
 }
 
+// Returns a normal that lies between that of the surface and `n`, or beyond it.
+Vec3 blended(const ShadeContext& c, const Vec3& n, float strength) {
+  return strength == 1.0f ? n : safe_normalize(c.normal + (n - c.normal) * std::max(strength, 0.0f));
+}
+
 Vec3 tangent_space_normal(const ResourceArgs& args, const ShadeContext& c, Vec3 color, float strength) {
   const Vec4 frame = uv_tangent(c, args.name);
   const Vec3 tangent(frame);
@@ -54,8 +59,10 @@ Vec3 own_tangent(const ResourceArgs& args, const ShadeContext& c) {
 Vec3 mapped_normal(const ResourceArgs& args, const ShadeContext& c) {
   const float strength = args.f(0);
   Vec3 color = (args.v(1) - 0.5f) * 2.0f;
-  if (args.mode == GRADUS_NORMAL_TANGENT || args.mode == GRADUS_NORMAL_UNIT_TANGENT) {
-    const Vec3 n = tangent_space_normal(args, c, color, std::max(strength, 0.0f));
+  if (is_tangent_space(args.mode)) {
+    const bool is_blended = args.mode == GRADUS_NORMAL_BLENDED_TANGENT;
+    Vec3 n = tangent_space_normal(args, c, color, is_blended ? 1.0f : std::max(strength, 0.0f));
+    if (is_blended) n = blended(c, n, strength);
     return n == Vec3(0.0f) ? c.normal : n;
   }
   if (args.mode == GRADUS_NORMAL_BLENDER_OBJECT || args.mode == GRADUS_NORMAL_BLENDER_WORLD) {
@@ -65,7 +72,7 @@ Vec3 mapped_normal(const ResourceArgs& args, const ShadeContext& c) {
   const bool local = args.mode == GRADUS_NORMAL_OBJECT || args.mode == GRADUS_NORMAL_BLENDER_OBJECT;
   Vec3 n = local ? normal_to_world(c, color) : safe_normalize(color);
   if (c.backfacing) n = -n;
-  if (strength != 1.0f) n = safe_normalize(c.normal + (n - c.normal) * std::max(strength, 0.0f));
+  n = blended(c, n, strength);
   return n == Vec3(0.0f) ? c.normal : n;
 }
 
@@ -74,7 +81,7 @@ Vec3 mapped_normal(const ResourceArgs& args, const ShadeContext& c) {
 Vec4 uv_tangent(const ShadeContext& c, const std::string* name) {
   if (!c.instance) return Vec4(0.0f);
   const geometry::MeshData& mesh = *c.instance->mesh;
-  const geometry::MeshAttribute* uv = name ? geometry::find_attribute(mesh, *name) : geometry::default_uv_map(mesh);
+  const geometry::MeshAttribute* uv = geometry::uv_map(mesh, name ? std::string_view(*name) : std::string_view());
   for (const auto& field : c.instance->tangents)
     if (field->uv == uv) return turned_with_surface(c, geometry::tangent_at(*field, c.hit));
   return Vec4(0.0f);

@@ -167,9 +167,12 @@ TEST(DenoisedSequence, EndsAfterADeliveryThatFailed) {
   const auto sequence = sequence_of(0, 8, 1, folder.path());
   for (int32_t frame = 0; frame <= 2; ++frame) run(sequence->sample(pan.at(frame), settings_at(frame)).get());
   const GradusSettings settings = settings_at(0);
+  const std::string lost = sequence->folder().path(2, animation::FrameSamples::kFresh);
+  fs::rename(lost, lost + ".away");
   const auto failed = sequence->deliver(0, &settings);
   failed->run();
-  EXPECT_NE(failed->outcome(nullptr), GRADUS_OK) << "frames 3 and 4 are missing";
+  EXPECT_NE(failed->outcome(nullptr), GRADUS_OK) << "frame 2 is missing";
+  fs::rename(lost + ".away", lost);
   sequence->end_at(2);
   EXPECT_EQ(why(delivered(sequence.get(), settings).stats), "automatic: a pixel has 18.0 samples");
 }

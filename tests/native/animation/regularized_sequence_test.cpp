@@ -35,7 +35,7 @@ Picture picture_of(animation::Sequence* sequence, int32_t frame, const GradusSet
 std::map<int32_t, Picture> rendered(Pan* pan, animation::Sequence* sequence, int32_t first, int32_t last,
                                     const SettingsOf& settings = by_default) {
   std::map<int32_t, Picture> frames;
-  int32_t sampled = first;
+  int32_t sampled = sequence->needs(settings(first)).first;
   for (int32_t frame = first; frame <= last; ++frame) {
     for (; sampled <= sequence->needs(settings(frame)).last; ++sampled)
       run(sequence->sample(pan->at(sampled), settings(sampled)).get());

@@ -127,6 +127,19 @@ inline void sample(animation::Sequence* sequence, const std::shared_ptr<const sc
   run(sequence->sample(snapshot, with_passes(settings)).get());
 }
 
+inline void sample_frames(animation::Sequence* sequence, Pan* pan, int32_t first, int32_t last) {
+  for (int32_t t = first; t <= last; ++t) sample(sequence, pan->at(t), settings_of(t));
+}
+
+// Returns the warnings about stored frames, one a line.
+inline std::string stale_frames(animation::Sequence* sequence) {
+  Warnings warnings;
+  sequence->warn_of_stale_frames(&warnings);
+  std::string lines;
+  for (std::string text; warnings.take(&text);) lines += text + "\n";
+  return lines;
+}
+
 inline std::vector<Delivered> render(Pan* pan, animation::Sequence* sequence, int32_t first, int32_t last,
                                      uint32_t samples = 8, uint32_t reconstruction = GRADUS_RECONSTRUCTION_L2) {
   std::vector<Delivered> frames;
@@ -135,7 +148,7 @@ inline std::vector<Delivered> render(Pan* pan, animation::Sequence* sequence, in
     settings.reconstruction = reconstruction;
     return settings;
   };
-  int32_t sampled = first;
+  int32_t sampled = sequence->needs(settings_at(first)).first;
   for (int32_t frame = first; frame <= last; ++frame) {
     for (; sampled <= sequence->needs(settings_at(frame)).last; ++sampled)
       sample(sequence, pan->at(sampled), settings_at(sampled));

@@ -17,7 +17,6 @@
 #include "base/threads.h"
 #include "sequence_fixture.h"
 #include "support/file_calls.h"
-#include "support/refusal.h"
 
 namespace gradus::test::sequence_test {
 namespace {
@@ -311,30 +310,62 @@ TEST(C7_Sequence, NeighboursOfAnotherJobAreIgnored) {
   const auto a = make_sequence(5, 8, shared.path()), b = make_sequence(5, 8, alone.path());
   of_seed(a.get(), 5, 8, 0);
   of_seed(b.get(), 5, 8, 0);
-  for (int32_t t = 5; t <= 8; ++t) EXPECT_EQ(deliver(a.get(), t).combined, deliver(b.get(), t).combined) << t;
+  const auto only_delivers = make_sequence(5, 8, shared.path());
+  for (int32_t t = 5; t <= 8; ++t) {
+    const std::vector<float> expected = deliver(b.get(), t).combined;
+    EXPECT_EQ(deliver(a.get(), t).combined, expected) << t;
+    EXPECT_EQ(deliver(only_delivers.get(), t).combined, expected) << t;
+  }
 }
 
-TEST(C7_Sequence, FramesOfOtherSettingsOrScenesAreRefusedByName) {
+// Regression: such frames ended the job with an error.
+TEST(C10_Sequence, FramesOfOtherSettingsOrScenesAreSampledAgain) {
   Pan pan(1.3f);
-  const Folder folder;
-  render(&pan, make_sequence(1, 2, folder.path()).get(), 1, 2);
   const auto text_of = [&](const std::shared_ptr<const scene::Snapshot>& snapshot, const GradusSettings& settings) {
-    return refusal_of([&] { make_sequence(1, 2, folder.path())->sample(snapshot, settings); });
+    const Folder folder, fresh;
+    sample(make_sequence(1, 1, folder.path()).get(), pan.at(1), settings_of(1));
+    const auto again = make_sequence(1, 1, folder.path()), expected = make_sequence(1, 1, fresh.path());
+    for (animation::Sequence* sequence : {again.get(), expected.get()}) run(sequence->sample(snapshot, settings).get());
+    EXPECT_EQ(deliver(again.get(), 1).combined, deliver(expected.get(), 1).combined);
+    EXPECT_EQ(stale_frames(expected.get()), "");
+    return stale_frames(again.get());
   };
+  const std::string again = "1 stored frame sampled again: 1 ";
   GradusSettings settings = with_passes(settings_of(1));
   EXPECT_EQ(text_of(pan.at(1), settings), "");
-  EXPECT_NE(text_of(pan.at(2), settings).find("shows another scene"), std::string::npos);
+  EXPECT_EQ(text_of(pan.at(2), settings), again + "(another scene)\n");
   settings.max_bounces = 1;
-  EXPECT_NE(text_of(pan.at(1), settings)
-                .find("f+0000001.fresh.exr was sampled with other settings: max_bounces is 64, not 1:"),
-            std::string::npos)
-      << text_of(pan.at(1), settings);
+  EXPECT_EQ(text_of(pan.at(1), settings), again + "(other settings: max_bounces is 64, not 1)\n");
   settings = with_passes(settings_of(1));
   settings.passes |= uint64_t{1} << GRADUS_PASS_MIST;
-  EXPECT_NE(text_of(pan.at(1), settings).find("was sampled with other passes: without Mist"), std::string::npos);
+  EXPECT_EQ(text_of(pan.at(1), settings), again + "(other passes: without Mist)\n");
   settings = with_passes(settings_of(1));
   settings.region[2] = settings.region[3] = 16;
-  EXPECT_NE(text_of(pan.at(1), settings).find("shows the whole frame, not region 0,0,16,16"), std::string::npos);
+  EXPECT_EQ(text_of(pan.at(1), settings), again + "(the whole frame, not region 0,0,16,16)\n");
+}
+
+TEST(C10_Sequence, StaleFramesAreNamedOnceInRuns) {
+  animation::StaleFrames frames;
+  EXPECT_TRUE(frames.empty());
+  for (const int32_t frame : {1, 3, 5, 9}) frames.add(frame, "a");
+  for (const int32_t frame : {5, 7}) frames.add(frame, "b");
+  EXPECT_EQ(frames.text("left", 2), "5 stored frames left: 1 to 5, 9 (a), 5 to 7 (b)");
+}
+
+// A frame beyond the job joins its pictures only while it shows what its samples show.
+TEST(C10_Sequence, StaleFramesBeyondTheJobAreNotUsed) {
+  Pan pan(1.3f), edited(1.3f, Scenario::GlossyFloor);
+  const Folder both, fresh;
+  sample_frames(make_sequence(1, 4, both.path()).get(), &pan, 1, 4);
+  const auto beside = make_sequence(1, 2, both.path()), alone = make_sequence(1, 2, fresh.path());
+  EXPECT_EQ(beside->needs(settings_of(1)).last, 4);
+  EXPECT_EQ(alone->needs(settings_of(1)).last, 2);
+  sample_frames(beside.get(), &pan, 1, 2);
+  sample_frames(beside.get(), &edited, 3, 4);
+  sample_frames(alone.get(), &pan, 1, 2);
+  for (int32_t t = 1; t <= 2; ++t) EXPECT_EQ(deliver(beside.get(), t).combined, deliver(alone.get(), t).combined) << t;
+  EXPECT_EQ(stale_frames(beside.get()), "2 stored frames beside the rendered ones not used: 3 to 4 (another scene)\n");
+  EXPECT_EQ(stale_frames(beside.get()), "") << "each frame is named once";
 }
 
 // Regression: the stats left out the time of correspondences, reading and writing, which is most of the time of a frame
@@ -372,12 +403,14 @@ TEST(C7_Sequence, FramesAreUnpackedForTheirWindowsAndForTheirDelivery) {
         const auto sequence = std::make_shared<animation::Sequence>(
             two_threads(), animation::SequenceSettings{0, 11, 1, {6, overlap}, folder.path()});
         render(&pan, sequence.get(), 0, 11, 4, reconstruction);
-        // Gradient T reads a part of the next frame if it is available. Of windows without overlap, the last frame
+        // Gradient T reads a part of the next frame if that is sampled. Of windows without overlap, the last frame
         // comes first.
-        const uint64_t frames = 12, differences = overlap == 0 && !is_stored ? 10 : 11;
+        const uint64_t frames = 12, differences = overlap == 0 ? 10 : 11;
         // REGULARIZED reads a frame for all pictures, and its correspondence.
         const uint64_t loads = reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED ? 2 + 1 : 2;
-        EXPECT_EQ(sequence->folder().loads(), (loads + 2) * frames + differences)
+        // Both files of a stored frame are unpacked to find damage while the frame can still be sampled.
+        const uint64_t checks = is_stored ? 2 * frames : 0;
+        EXPECT_EQ(sequence->folder().loads(), (loads + 2) * frames + differences + checks)
             << reconstruction << ", " << overlap << ", " << is_stored;
       }
     }
@@ -393,7 +426,7 @@ TEST(C7_Sequence, StartingTheRenderOfAStoredFrameReadsNoPixels) {
   const auto task = again->sample(pan.at(1), with_passes(settings_of(1, 12)));
   EXPECT_EQ(again->folder().loads(), 0u);
   run(task.get());
-  EXPECT_EQ(again->folder().loads(), 2u);
+  EXPECT_EQ(again->folder().loads(), 2u + 2u) << "to find damage, and to go on";
 }
 
 // Regression: correspondences are pixel numbers, which exceeded 31 bits.
@@ -427,14 +460,14 @@ TEST(C8_Sequence, AShotChangeSeparatesTheFramesBeforeAndAfter) {
 
 using SettingsOf = std::function<GradusSettings(int32_t frame)>;
 
-// Delivers all frames but one that is skipped; the frame before the first one is sampled first.
+// Delivers all frames but one that is skipped. The frame before the first one that is needed is passed by.
 std::map<int32_t, Delivered> render_by(const SettingsOf& settings, animation::Sequence* sequence, int32_t first,
                                        int32_t last, int32_t alone = -1) {
   Pan pan(1.3f);
   std::map<int32_t, Delivered> frames;
   const auto pass_by = [&](int32_t frame) { sequence->pass_by(pan.at(frame), with_passes(settings(frame))); };
-  pass_by(first - 1);
-  int32_t sampled = first;
+  int32_t sampled = sequence->needs(settings(first)).first;
+  pass_by(sampled - 1);
   for (int32_t frame = first; frame <= last; ++frame) {
     for (; sampled <= sequence->needs(settings(frame)).last; ++sampled) {
       if (sampled == alone) {

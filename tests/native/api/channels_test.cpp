@@ -239,6 +239,40 @@ TEST_F(Channels, DecideWhetherLightGroupsChangeAFrame) {
   EXPECT_TRUE(resumes(without));
 }
 
+// Each of a million names has its hash.
+TEST_F(Channels, ManifestsOfAMillionObjects) {
+  constexpr uint32_t kCount = 1 << 20;
+  std::vector<std::string> names(kCount);
+  std::vector<const char*> texts(kCount);
+  std::vector<float> matrices(size_t{16} * kCount);
+  std::vector<uint64_t> meshes(kCount, 1);
+  std::vector<uint32_t> zeros(kCount, 0), numbers(kCount);
+  for (uint32_t i = 0; i < kCount; ++i) {
+    names[i] = "object " + std::to_string(i);
+    texts[i] = names[i].c_str();
+    set_identity(&matrices[size_t{16} * i]);
+    numbers[i] = i;
+  }
+  GradusInstances instances = sized<GradusInstances>();
+  instances.count = kCount;
+  instances.meshes = meshes.data();
+  instances.matrices = matrices.data();
+  instances.material_first = zeros.data();
+  instances.material_count = zeros.data();
+  instances.names = texts.data();
+  instances.name_count = kCount;
+  instances.name_index = numbers.data();
+  instances.asset_name_index = numbers.data();
+  ASSERT_OK(gradus_scene_set_instances(scene, &instances));
+  const char* text = nullptr;
+  ASSERT_OK(gradus_scene_manifest(scene, GRADUS_CHANNEL_CRYPTOMATTE_OBJECT, &text));
+  const auto manifest = nlohmann::json::parse(text);
+  EXPECT_EQ(manifest.size(), size_t{kCount});
+  char digits[9];
+  std::snprintf(digits, sizeof(digits), "%08x", cryptomatte_hash("object 1048575"));
+  EXPECT_EQ(manifest.at("object 1048575"), digits);
+}
+
 TEST_F(Channels, ManifestsHaveAllNames) {
   const auto manifest = [&](uint32_t kind) {
     const char* text = nullptr;

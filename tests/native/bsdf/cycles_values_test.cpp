@@ -224,5 +224,43 @@ TEST(A9_CyclesClosures, BumpsDarkenSoftly) {
   }
 }
 
+// As in Blender before 4.5, the factor is g + g² − g³ of the ratio g of cosines, where the bump faces away from the
+// surface more than the light does.
+TEST(A9_CyclesClosures, OldBumpsDarkenByARatioOfCosines) {
+  const Vec3 smooth(0, 0, 1), wo = glm::normalize(Vec3(0.3f, 0.0f, 1.0f));
+  const Vec3 bumped = glm::normalize(Vec3(0.5f, 0.0f, 1.0f));
+  for (const float x : {-0.6f, 0.4f, 3.0f}) {
+    const Vec3 wi = glm::normalize(Vec3(x, 0.2f, 1.0f));
+    bsdf::Closures closures;
+    bsdf::Lobe lobe = make_lobe(bsdf::LobeType::Diffuse);
+    lobe.normal = bumped;
+    *closures.add() = lobe;
+    closures.set_shading_normals(GRADUS_SHADING_NORMALS_SINCE_3_6);
+    closures.finish(wo, smooth, 0.1f, smooth);
+    const float cosine = glm::dot(wi, bumped);
+    const float g = std::min(wi.z / (cosine * bumped.z), 1.0f);
+    const float expected = cosine * kInvPi * (g + g * g - g * g * g);
+    EXPECT_NEAR(closures.evaluate(bsdf::ScatterClass::Diffuse, wo, wi).value.x, expected, 1e-6f) << x;
+  }
+}
+
+// Before Blender 3.6, the normal of a diffuse closure follows wo where its mirror direction would be below the surface.
+TEST(A9_CyclesClosures, OldDiffuseNormalsKeepMirrorDirectionsAbove) {
+  const Vec3 smooth(0, 0, 1), bumped = glm::normalize(Vec3(-1.0f, 0.0f, 1.0f));
+  const Vec3 wo = glm::normalize(Vec3(1.0f, 0.0f, 0.3f));
+  bsdf::Closures closures;
+  bsdf::Lobe lobe = make_lobe(bsdf::LobeType::Diffuse);
+  lobe.normal = bumped;
+  *closures.add() = lobe;
+  closures.finish(wo, smooth, 0.1f, smooth);
+  EXPECT_TRUE(closures.ignores_wo());
+  EXPECT_EQ(closures.lobe(0).normal, bumped);
+  closures.set_shading_normals(GRADUS_SHADING_NORMALS_BEFORE_3_6);
+  closures.finish(wo, smooth, 0.1f, smooth);
+  EXPECT_FALSE(closures.ignores_wo());
+  const Vec3 normal = closures.lobe(0).normal;
+  EXPECT_NEAR(2.0f * glm::dot(normal, wo) * normal.z - wo.z, std::min(0.9f * wo.z, 0.01f), 1e-4f);
+}
+
 }  // namespace
 }  // namespace gradus::test::cycles_values_test

@@ -86,13 +86,15 @@ inline std::vector<LobeCase> microfacet_cases(float roughness) {
       {"GlassFilm", make_lobe(bsdf::LobeType::GgxGlass, alpha, bsdf::FresnelType::FilmDielectric, 1.5f), false, true,
        false},
       {"MetalFilm", make_lobe(bsdf::LobeType::GgxReflection, alpha, bsdf::FresnelType::FilmMetal), false, true, false},
+      {"ApproximateConductor", make_lobe(bsdf::LobeType::GgxReflection, alpha, bsdf::FresnelType::ApproximateConductor),
+       false},
   };
   for (const size_t i : {size_t{12}, size_t{13}, size_t{14}}) {
     cases[i].lobe.alpha_x = alpha * 2.0f;
     cases[i].lobe.alpha_y = alpha * 0.5f;
   }
-  cases[19].lobe.f0 = Rgb(0.2f, 1.1f, 2.8f);
-  cases[19].lobe.f90 = Rgb(3.9f, 2.5f, 3.0f);
+  cases[19].lobe.f0 = cases.back().lobe.f0 = Rgb(0.2f, 1.1f, 2.8f);
+  cases[19].lobe.f90 = cases.back().lobe.f90 = Rgb(3.9f, 2.5f, 3.0f);
   cases[1].lobe.multiscatter = true;
   cases[3].lobe.f0 = Rgb(0.04f, 0.1f, 0.2f);
   cases[4].lobe.f0 = Rgb(0.9f, 0.6f, 0.3f);

@@ -77,5 +77,17 @@ TEST(Conductor, ReflectsAsFresnelsEquationsSay) {
   }
 }
 
+// It is exact at normal incidence, and the error falls with the square of the index.
+TEST(Conductor, ApproximationIsThatOfLargeIndices) {
+  const auto error = [](float cosine, float scale) {
+    const Rgb n = scale * Rgb(0.2f, 1.1f, 2.8f), k = scale * Rgb(3.9f, 2.5f, 0.5f);
+    const Rgb off = bsdf::fresnel_conductor_approximately(cosine, n, k) - bsdf::fresnel_conductor(cosine, n, k);
+    return glm::length(off);
+  };
+  EXPECT_LT(error(1.0f, 1.0f), 1e-6f);
+  EXPECT_GT(error(0.3f, 1.0f), 1e-3f);
+  EXPECT_LT(error(0.3f, 30.0f), 1e-3f * error(0.3f, 1.0f) + 1e-5f);
+}
+
 }  // namespace
 }  // namespace gradus::test::thin_film_test

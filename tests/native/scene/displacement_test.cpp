@@ -7,6 +7,7 @@
 #include "geometry/mesh.h"
 #include "scene/moved_snapshot.h"
 #include "scene_fixture.h"
+#include "shading/material.h"
 #include "shading/program_builder.h"
 #include "shading/shade.h"
 
@@ -118,6 +119,32 @@ TEST(Displacement, SlopeOfAFloor) {
     const Vec3 plane = snapshot->surface_point(hit).geometric_normal;
     EXPECT_NEAR(glm::dot(plane, moves ? tilted : Vec3(0, 0, 1)), 1.0f, 1e-5f) << method;
     EXPECT_NEAR(glm::dot(lobe_normal(*snapshot), tilted), 1.0f, 1e-3f) << method;
+  }
+}
+
+// Programs that read the normal see the bump, and the others do not compute it.
+TEST(Displacement, BumpsProgramsThatReadTheNormal) {
+  for (const uint32_t mode : {GRADUS_GEOMETRY_NORMAL, GRADUS_GEOMETRY_POSITION}) {
+    TestScene scene;
+    scene.mesh(kMesh, floor_soup());
+    Displaced d;
+    const int place = d.add(GRADUS_OP_TEX_COORD, {}, GRADUS_TEX_COORD_OBJECT);
+    const int slope = d.add(GRADUS_OP_VECTOR_MATH, {In::from(place), In(Vec3(0.5f, 0, 0)), In(0.0f), In(1.0f)},
+                            GRADUS_VECTOR_DOT_PRODUCT);
+    const int height =
+        d.add(GRADUS_OP_DISPLACEMENT, {In::from(slope, 1), In(0.0f), In(1.0f), In(Vec3(0.0f))}, GRADUS_NORMAL_WORLD);
+    const int value = d.add(GRADUS_OP_GEOMETRY, {}, mode);
+    const int emission = d.add(GRADUS_OP_EMISSION, {In::from(value), In(1.0f)});
+    GradusMaterial desc = d.desc(height, GRADUS_DISPLACEMENT_BUMP);
+    desc.surface = emission;
+    scene.scene.set_material(kMaterial, desc);
+    scene.instance(kMesh, Mat4(1.0f), GRADUS_VISIBLE_ALL, kMaterial);
+    const auto snapshot = scene.commit();
+    const geometry::Hit hit = hit_from(*snapshot, Vec3(0.1f, 0.2f, 10.0f), Vec3(0, 0, -1));
+    const Rgb found = shading::shade_emission(*snapshot, snapshot->surface_point(hit), Vec3(0, 0, 1), {});
+    const bool reads = mode == GRADUS_GEOMETRY_NORMAL;
+    EXPECT_EQ(snapshot->materials[snapshot->material_of(hit)]->bumps_emission, reads);
+    EXPECT_LT(glm::distance(found, reads ? glm::normalize(Vec3(-0.5f, 0, 1)) : Vec3(0.1f, 0.2f, 0.0f)), 1e-3f);
   }
 }
 

@@ -307,10 +307,10 @@ std::vector<float> ies_floats(int columns, int rows) {
   return floats;
 }
 
-float ies_of(float vertical, float horizontal, float strength = 1.0f) {
+float ies_of(float vertical, float horizontal, float strength = 1.0f, uint32_t mode = 0) {
   const Vec3 direction(std::sin(vertical) * std::sin(horizontal - kPi), std::sin(vertical) * std::cos(horizontal - kPi),
                        -std::cos(vertical));
-  return evaluate(GRADUS_OP_IES, {direction, strength}, 0, ies_floats(9, 7)).x;
+  return evaluate(GRADUS_OP_IES, {direction, strength}, mode, ies_floats(9, 7)).x;
 }
 
 TEST(NodeIes, IsLinearBetweenLinearValues) {
@@ -324,6 +324,22 @@ TEST(NodeIes, EndsWithItsTable) {
   EXPECT_EQ(ies_of(1.6f, 2.0f), 0.0f);
   EXPECT_EQ(ies_of(kPi, 2.0f), 0.0f);
   EXPECT_NEAR(evaluate(GRADUS_OP_IES, {Vec3(0, 0, -1), 1.0f}, 0, ies_floats(9, 7)).x, kPi, 1e-3f);  // atan2(0, 0) = 0
+}
+
+// In the middle of two angles a spline through a, b, c, d is (9 (b + c) - a - d) / 16.
+TEST(NodeIes, ContinuesAsEachVersionOfBlenderDoes) {
+  constexpr float kStep = kPi / 4.0f;  // between columns, which is also the step of the intensity
+  const float base = 10.0f * 0.6f, first = base, second = base + kStep;
+  const float last = base + 8.0f * kStep, before_last = base + 7.0f * kStep;
+  const float before[] = {before_last, 0.0f, first}, after[] = {second, 0.0f, before_last};
+  for (uint32_t mode = 0; mode < 3; ++mode) {
+    EXPECT_NEAR(ies_of(0.6f, 0.5f * kStep, 1.0f, mode),
+                (9.0f * (first + second) - before[mode] - second - kStep) / 16.0f, 1e-3f)
+        << mode;
+    EXPECT_NEAR(ies_of(0.6f, 7.5f * kStep, 1.0f, mode),
+                (9.0f * (before_last + last) - before_last + kStep - after[mode]) / 16.0f, 1e-3f)
+        << mode;
+  }
 }
 
 TEST(NodeIes, RefusesTablesOfAnotherSize) {

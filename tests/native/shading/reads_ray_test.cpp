@@ -129,13 +129,15 @@ class OpsAtAPoint : public testing::Test {
     return shading::surface_context(*scene_, point_, arrival.wo, arrival.ray);
   }
 
-  // Returns all outputs of an operation for some inputs, one after another.
-  std::vector<float> evaluate(uint32_t op, uint32_t mode, float inputs, const Arrival& arrival) const {
+  // Returns all outputs of an operation for some inputs, one after another. The input `zero` is 0, as a normal input to
+  // which nothing is linked.
+  std::vector<float> evaluate(uint32_t op, uint32_t mode, float inputs, const Arrival& arrival, int zero = -1) const {
     const std::string name = op == GRADUS_OP_ATTRIBUTE ? "heat" : "map";
     const std::vector<float> floats(16, 0.3f);
     std::vector<Vec4> in;
     for (int k = 0; k < shading::kMaxInputs; ++k)
-      in.emplace_back(inputs * 0.7f, inputs * 0.4f, inputs * (0.5f + 0.02f * float(k)), 1.0f);
+      in.push_back(k == zero ? Vec4(0.0f)
+                             : Vec4(inputs * 0.7f, inputs * 0.4f, inputs * (0.5f + 0.02f * float(k)), 1.0f));
     shading::ResourceArgs args;
     args.mode = mode;
     args.in = in.data();
@@ -193,6 +195,29 @@ TEST_F(OpsAtAPoint, ThatReadTheHistoryOfTheRaySaySo) {
   for_each_op(shading::OpKind::Context, [&](uint32_t op, uint32_t mode) {
     EXPECT_EQ(changes(op, mode, rays_of_other_history()), shading::reads_history(op, mode)) << text_of(op, mode);
   });
+}
+
+// The bump of a displacement is left out where a program says that it does not read the normal.
+TEST_F(OpsAtAPoint, ThatReadTheNormalSaySo) {
+  for_each_op(shading::OpKind::Context, [&](uint32_t op, uint32_t mode) {
+    bool changes = false;
+    const Vec3 normal = point_.shading_normal, other = glm::normalize(normal + Vec3(2.0f, -0.8f, 0.1f));
+    for (const int zero : {-1, 1, 3}) {
+      const std::vector<float> first = evaluate(op, mode, 0.9f, kFirst, zero);
+      point_.shading_normal = other;
+      changes |= evaluate(op, mode, 0.9f, kFirst, zero) != first;
+      point_.shading_normal = normal;
+    }
+    // These do so by other rays and inputs than those of this test.
+    if (op == GRADUS_OP_AMBIENT_OCCLUSION || op == GRADUS_OP_BEVEL || op == GRADUS_OP_NORMAL_MAP ||
+        op == GRADUS_OP_DISPLACEMENT) {
+      EXPECT_TRUE(shading::reads_normal(op, mode)) << text_of(op, mode);
+    } else {
+      EXPECT_EQ(changes, shading::reads_normal(op, mode)) << text_of(op, mode);
+    }
+  });
+  for_each_op(shading::OpKind::Pure,
+              [&](uint32_t op, uint32_t mode) { EXPECT_FALSE(shading::reads_normal(op, mode)) << text_of(op, mode); });
 }
 
 // The functions of pure operations get nothing of the ray. For closures their lobes say it.

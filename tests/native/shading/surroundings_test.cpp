@@ -110,6 +110,34 @@ TEST(Bevel, MeetsInTheMiddleOfAnEdge) {
 
 TEST(Bevel, IgnoresOtherInstances) { EXPECT_NEAR(bevel_at(*corner(false), -1e-4f).z, 1.0f, 1e-5f); }
 
+// Returns an output of a ray from the floor, in a direction that is longer than 1, towards the wall.
+Rgb raycast(const scene::Snapshot& scene, uint32_t output, float length, uint32_t mode = 0) {
+  const shading::ShadeContext context = context_below(scene, Vec3(-0.75f, 0.3f, 0.5f), 0);
+  const std::vector<In> inputs{In(shading::world_position(context)), In(Vec3(2.0f, 0.0f, 1.0f)), In(length)};
+  return evaluate(GRADUS_OP_RAYCAST, inputs, mode, {}, output, context);
+}
+
+TEST(Raycast, MeetsTheWall) {
+  for (const bool one_instance : {true, false}) {
+    const auto scene = corner(one_instance);
+    EXPECT_EQ(raycast(*scene, 0, 1.0f).x, 1.0f);
+    EXPECT_EQ(raycast(*scene, 1, 1.0f).x, one_instance ? 1.0f : 0.0f);
+    EXPECT_NEAR(raycast(*scene, 2, 1.0f).x, 0.375f, 1e-5f);
+    EXPECT_NEAR(glm::distance(raycast(*scene, 3, 1.0f), Rgb(0.0f, 0.3f, 0.375f)), 0.0f, 1e-5f);
+    EXPECT_NEAR(glm::distance(raycast(*scene, 4, 1.0f), Rgb(-1.0f, 0.0f, 0.0f)), 0.0f, 1e-5f);
+  }
+}
+
+TEST(Raycast, EndsAtItsLengthAndAtItsInstance) {
+  for (const float length : {0.37f, 0.0f}) {
+    EXPECT_EQ(raycast(*corner(true), 0, length).x, 0.0f);
+    EXPECT_EQ(raycast(*corner(true), 2, length).x, length);
+    EXPECT_EQ(raycast(*corner(true), 3, length), Rgb(0.0f));
+  }
+  EXPECT_EQ(raycast(*corner(false), 0, 1.0f, 1).x, 0.0f);
+  EXPECT_EQ(raycast(*corner(true), 0, 1.0f, 1).x, 1.0f);
+}
+
 // The edges of the floor's triangles that are near are x = 0 and a diagonal.
 TEST(Wireframe, LinesAreAsWideAsTheirSize) {
   const auto scene = corner(true);

@@ -18,7 +18,7 @@ from ..row import EXACT, NOISY, Row
 
 TITLE = "Shader nodes"
 
-SHOWN = {"SHADER", "RGBA", "VECTOR", "VALUE", "INT", "BOOLEAN", "ROTATION"}
+SHOWN = {"SHADER", "RGBA", "VECTOR", "VALUE", "INT", "BOOLEAN", "ROTATION", "BUNDLE"}
 """Types of outputs that a surface can show."""
 
 
@@ -267,6 +267,11 @@ def _show(node: Any, identifier: str) -> None:
     if source.name == "Displacement":
         tree.links.new(source, end.inputs["Displacement"])
         source = tree.nodes.new("ShaderNodeNewGeometry").outputs["Normal"]
+    if source.type == "BUNDLE":
+        parts = tree.nodes.new("NodeSeparateBundle")
+        node_contexts.PREPARE[parts.bl_idname](parts)
+        tree.links.new(source, parts.inputs["Bundle"])
+        source = parts.outputs[sockets.ITEM]
     if source.type != "SHADER":
         is_world = end.bl_idname == "ShaderNodeOutputWorld"
         is_strength = end.bl_idname == "ShaderNodeOutputLight"

@@ -11,7 +11,17 @@ import bpy
 from .. import rna, stages
 from ..row import NOISY, Family, Row
 
-SKIPPED = ("use", "samples", "active_*", "freestyle*", "use_freestyle", "depsgraph", "eevee", "gradus", "pass_cryptomatte_depth")
+SKIPPED = (
+    "use",
+    "samples",
+    "active_*",
+    "freestyle*",
+    "use_freestyle",
+    "depsgraph",
+    "eevee",
+    "gradus",
+    "pass_cryptomatte_depth",
+)
 """Properties of Freestyle and other engines. Blender itself crashes where the only view layer is not in use."""
 
 

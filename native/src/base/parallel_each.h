@@ -1,0 +1,19 @@
+// A loop whose iterations run in parallel.
+#pragma once
+
+#include <cstddef>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+namespace gradus {
+
+// Calls visit(i) for each i below `count`, a thousand by a task. Meant for iterations that take well below 1 µs.
+template <class Visit>
+void parallel_each(size_t count, const Visit& visit) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 1024), [&](const auto& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) visit(i);
+  });
+}
+
+}  // namespace gradus
