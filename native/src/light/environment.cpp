@@ -6,6 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "bsdf/warp.h"
 #include "light/light_sampling.h"
 
 namespace gradus::light {
@@ -130,6 +131,15 @@ float measure_sun(const Environment::Radiance& radiance, const Cone& sun) {
   return sum / float(kSide * kSide) * sun.solid_angle();
 }
 
+// Returns whether the receiver receives light in proportion to the cosine at its normal.
+bool has_cosine(const Receiver& receiver) { return !receiver.transmits && receiver.normal != Vec3(0.0f); }
+
+// Returns a direction that is uniform on the sphere.
+Vec3 sample_sphere(const Vec2& u) {
+  const float z = 1.0f - 2.0f * u.x, r = std::sqrt(std::max(0.0f, 1.0f - z * z));
+  return {r * std::cos(2.0f * kPi * u.y), r * std::sin(2.0f * kPi * u.y), z};
+}
+
 bool is_constant(const std::vector<float>& values) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   return *high - *low <= 1e-4f * *high;
@@ -184,7 +194,7 @@ Vec3 Environment::sample(const Receiver& receiver, const Vec2& u, Vec2* place) c
   double sum;
   const double part = share_of_suns(receiver, &sum);
   double x = u.x;
-  if (x >= part) return sample_map(Vec2(stretched(x - part, 1.0 - part), u.y), place);
+  if (x >= part) return sample_background(receiver, Vec2(stretched(x - part, 1.0 - part), u.y), place);
   // The interval [0, part) is rescaled to the sum of the suns' weights.
   x *= sum / part;
   size_t sun = 0;
@@ -201,21 +211,22 @@ float Environment::density(const Vec3& direction, const Vec2& place, const Recei
   double in_suns = 0.0;
   for (const Sun& sun : suns_)
     if (sun.cone.contains(direction)) in_suns += sun_weight(sun, receiver) / sun.cone.solid_angle();
-  return float((1.0 - part) * map_density(direction, place) + (part > 0.0 ? part / sum * in_suns : 0.0));
+  return float((1.0 - part) * background_density(direction, place, receiver) +
+               (part > 0.0 ? part / sum * in_suns : 0.0));
 }
 
-Vec3 Environment::sample_map(const Vec2& u, Vec2* place) const {
+Vec3 Environment::sample_background(const Receiver& receiver, const Vec2& u, Vec2* place) const {
   *place = u;
   if (map_) return to_direction(*place = map_->sample(u));
-  const float z = 1.0f - 2.0f * u.x, r = std::sqrt(std::max(0.0f, 1.0f - z * z));
-  return {r * std::cos(2.0f * kPi * u.y), r * std::sin(2.0f * kPi * u.y), z};
+  return has_cosine(receiver) ? bsdf::sample_cosine_around(receiver.normal, u) : sample_sphere(u);
 }
 
 Vec2 Environment::place_of(const Vec3& direction) const { return map_ ? to_map(direction) : Vec2(0.0f); }
 
-float Environment::map_density(const Vec3& direction, const Vec2& place) const {
+float Environment::background_density(const Vec3& direction, const Vec2& place, const Receiver& receiver) const {
   if (black()) return 0.0f;
-  if (!map_) return 0.25f * kInvPi;
+  if (!map_)
+    return has_cosine(receiver) ? std::max(0.0f, glm::dot(direction, receiver.normal)) * kInvPi : 0.25f * kInvPi;
   const float sine = std::sqrt(std::max(0.0f, 1.0f - direction.z * direction.z));
   if (sine <= 0.0f) return 0.0f;
   return map_->density(place) / (2.0f * kPi * kPi * sine);

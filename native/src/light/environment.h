@@ -27,7 +27,9 @@ class Environment {
     uint32_t points = 2;   // Each cell evaluates the radiance at points² positions.
   };
 
-  // Returns a world with the same radiance in every direction; `mean` is the mean of the radiance's channels.
+  // Returns a world with the same radiance in every direction; `mean` is the mean of the radiance's channels. Its
+  // directions are sampled in proportion to the cosine at the receiver, or uniformly if that also receives light from
+  // behind.
   static Environment uniform(float mean);
   // Measures the radiance and builds the map. `suns` are cones that closely enclose one sun each. A cone that is no
   // brighter than its surroundings is left to the map. No map is built if the radiance is constant. `cancel` is polled;
@@ -38,8 +40,10 @@ class Environment {
   bool black() const { return mean_ <= 0.0f && suns_.empty(); }
   // Returns the mean of the radiance's channels over the sphere, without the suns.
   float mean() const { return mean_; }
-  // Returns the map, which copies share; null if directions are sampled uniformly.
+  // Returns the map, which copies share; null if the radiance is the same in every direction.
   const Distribution2D* map() const { return map_.get(); }
+  // Returns whether the radiance is the same in every direction.
+  bool is_uniform() const { return !black() && map_ == nullptr && suns_.empty(); }
 
   // Returns an estimate of the irradiance at the receiver, which weighs the world against other emitters.
   float irradiance(const Receiver& receiver) const;
@@ -61,8 +65,9 @@ class Environment {
   float sun_weight(const Sun& sun, const Receiver& receiver) const;
   // Returns the fraction of the samples that go to suns, and writes the sum of the suns' weights to `sum`.
   double share_of_suns(const Receiver& receiver, double* sum) const;
-  Vec3 sample_map(const Vec2& u, Vec2* place) const;
-  float map_density(const Vec3& direction, const Vec2& place) const;
+  // These functions sample the background without the suns.
+  Vec3 sample_background(const Receiver& receiver, const Vec2& u, Vec2* place) const;
+  float background_density(const Vec3& direction, const Vec2& place, const Receiver& receiver) const;
 
   std::shared_ptr<const Distribution2D> map_;  // Axes: x is the longitude, y the colatitude from +Z.
   float mean_ = 0.0f;                          // See mean().

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/cone.h"
 
@@ -9,38 +10,41 @@ namespace gradus::light {
 
 namespace {
 
-// Fraction of the samples that is divided equally among all groups whose estimate is not zero, because the estimates
-// ignore occlusion.
-constexpr double kDefensive = 0.2;
-
-// Returns the probability of a group with this weight, where `groups` groups have a weight above 0.
-double defended(double weight, double sum, int groups) {
-  return weight > 0.0 ? (1.0 - kDefensive) * weight / sum + kDefensive / groups : 0.0;
-}
+// Number of parts into which the samples of a receiver are divided among the groups.
+constexpr double kParts = 8.0;
 
 }  // namespace
+
+GroupChoice choose_group(const GroupIrradiance& irradiance, const GroupFactors& factors) {
+  GroupChoice choice{irradiance.tree * factors.tree, irradiance.suns * factors.suns, irradiance.world * factors.world};
+  const double sum = choice.tree + choice.suns + choice.world;
+  if (!(sum > 0.0) || !std::isfinite(sum)) return {};
+  double* const groups[] = {&choice.tree, &choice.suns, &choice.world};
+  double* const largest =
+      *std::max_element(std::begin(groups), std::end(groups), [](const double* a, const double* b) { return *a < *b; });
+  double rest = 1.0;
+  for (double* group : groups) {
+    if (group == largest) continue;
+    if (*group > 0.0) *group = std::max(1.0, std::round(kParts * *group / sum)) / kParts;
+    rest -= *group;
+  }
+  *largest = rest;
+  return choice;
+}
 
 const LightChoice& LightTable::choose(const Receiver& receiver, LightChoice* storage) const {
   LightChoice* choice = receiver.memo != nullptr ? receiver.memo : storage;
   if (!choice->known || !(choice->receiver == receiver)) {
     tree.cut(receiver, &choice->cut);
-    choice->group = choose_group(receiver, choice->cut);
+    choice->group = choose_group(irradiance(receiver, choice->cut), factors);
     choice->receiver = receiver;
     choice->known = true;
   }
   return *choice;
 }
 
-GroupChoice LightTable::choose_group(const Receiver& receiver, const LightTree::Cut& cut) const {
-  if (suns.empty() && world.black()) return {tree.empty() ? 0.0 : 1.0, 0.0, 0.0};
-  if (suns.empty() && tree.empty()) return {0.0, 0.0, 1.0};
-  const double in_tree = cut.irradiance();
-  const double in_suns = irradiance_of_suns(receiver);
-  const double in_world = world.irradiance(receiver);
-  const double sum = in_tree + in_suns + in_world;
-  const int groups = (in_tree > 0.0) + (in_suns > 0.0) + (in_world > 0.0);
-  if (groups == 0 || !std::isfinite(sum)) return {};
-  return {defended(in_tree, sum, groups), defended(in_suns, sum, groups), defended(in_world, sum, groups)};
+GroupIrradiance LightTable::irradiance(const Receiver& receiver, const LightTree::Cut& cut) const {
+  return {cut.irradiance(), irradiance_of_suns(receiver), world.irradiance(receiver)};
 }
 
 float LightTable::sun_importance(size_t sun, const Receiver& receiver) const {

@@ -26,6 +26,17 @@ struct GroupChoice {
   double tree = 0.0, suns = 0.0, world = 0.0;
 };
 
+// Irradiance of the three groups at one receiver, as the mean of the channels.
+struct GroupIrradiance {
+  double tree = 0.0, suns = 0.0, world = 0.0;
+};
+
+// Factors on the irradiance of the groups, by which the choice among them is made. A uniform world with the factor 0 is
+// left to BSDF sampling.
+struct GroupFactors {
+  double tree = 1.0, suns = 1.0, world = 1.0;
+};
+
 // The distribution over all emitters for one receiver.
 struct LightChoice {
   bool known = false;  // True once the other fields are computed.
@@ -33,6 +44,11 @@ struct LightChoice {
   LightTree::Cut cut;
   GroupChoice group;
 };
+
+// Returns the probabilities of the groups by their irradiance times their factors, in eighths: a digital net divides
+// into eighths with exactly proportional numbers of points. A group with irradiance has at least one, because the
+// estimates ignore occlusion.
+GroupChoice choose_group(const GroupIrradiance& irradiance, const GroupFactors& factors);
 
 struct LightTable {
   std::vector<AnalyticLight> analytic_lights;
@@ -46,12 +62,16 @@ struct LightTable {
   std::vector<uint32_t> slot;         // Position of each analytic light in `tree_lights` or `suns`.
   std::vector<float> sun_irradiance;  // Irradiance of each sun on a plane facing it.
   Environment world;
+  GroupFactors factors;
   std::shared_ptr<const LightScene> lights_with_extent;
   bool has_links = false;  // An emitter lights some light sets only, or is blocked by some shadow sets only.
   std::vector<uint32_t> linked_instances;  // Emissive instances in `triangles` that only some shadow sets block.
 
   // Returns whether there is exactly one emitter, so that no choice is needed.
   bool is_single_light() const { return tree.size() == 1 && suns.empty() && world.black(); }
+  // Returns estimates of the irradiance of the groups at a receiver, without occlusion. `cut` is the cut through the
+  // tree for that receiver.
+  GroupIrradiance irradiance(const Receiver& receiver, const LightTree::Cut& cut) const;
   // Returns the choice for a receiver. The receiver's memo caches it; without a memo it is computed in `storage`. A
   // path vertex needs the choice several times: for its light sample, for the weight of the emitter that its BSDF
   // sample hits, and for the offset paths of neighbouring pixels.
@@ -64,8 +84,6 @@ struct LightTable {
   uint32_t find_triangle(uint32_t instance, uint32_t triangle) const;
 
  private:
-  // Returns the probabilities of the groups. `cut` is the cut through the tree for the same receiver.
-  GroupChoice choose_group(const Receiver& receiver, const LightTree::Cut& cut) const;
   // Returns an upper bound of the irradiance of the sun at index `sun` of `suns`, without occlusion.
   float sun_importance(size_t sun, const Receiver& receiver) const;
   double irradiance_of_suns(const Receiver& receiver) const;

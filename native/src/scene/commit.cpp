@@ -9,6 +9,7 @@
 #include "light/light_scene.h"
 #include "light/light_table.h"
 #include "scene/device.h"
+#include "scene/group_factors.h"
 #include "scene/scene_state.h"
 #include "scene/snapshot_geometry.h"
 #include "shading/material.h"
@@ -122,7 +123,8 @@ void build_lights(const geometry::EmbreeDevice& device, std::vector<light::Analy
                               std::any_of(table->analytic_lights.begin(), table->analytic_lights.end(),
                                           [](const light::AnalyticLight& light) { return light.links.has_blockers(); });
   features.has_lights = !table->analytic_lights.empty() || !table->triangles.empty() || !table->world.black();
-  snapshot->light_table = std::move(table);
+  snapshot->light_table = table;
+  table->factors = measure_group_factors(*snapshot, monitor);
   warn_beyond_limit(state->instances, chosen, snapshot);
 }
 
