@@ -244,6 +244,7 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     load_images(*device_, monitor, state_.get(), snapshot.get());
     monitor.report(0.2f);
     const MaterialIndex materials = compile_materials(monitor, state_.get(), snapshot.get());
+    add_coarser_images(monitor, state_.get(), snapshot.get());
     const std::vector<size_t> chosen = place_instances(*state_, snapshot.get());
     monitor.check();
     assign_materials(state_->instances, chosen, materials, snapshot.get());
