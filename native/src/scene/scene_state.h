@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -63,6 +64,7 @@ struct Scene::State {
   GradusCamera camera{};  // its arrays belong to `camera_keys`
   camera::CameraKeys camera_keys;
   bool has_camera = false;
+  std::optional<GradusCamera> dicing_camera;  // its arrays are not used
   GradusWorld world{};
   bool has_world = false;
   SceneChannels channels;
