@@ -218,6 +218,11 @@ void find_emission(Snapshot* snapshot) {
                                    !(material->emission_is_constant && is_black(material->constant_emission));
 }
 
+// Returns the acceleration structure of the shadow catchers in the last commit, or nullptr.
+std::shared_ptr<const geometry::Accelerator> accelerator_of_catchers(const Scene::State& state) {
+  return state.current && state.current->catchers ? state.current->catchers->accelerator : nullptr;
+}
+
 // Makes the snapshot of the shadow catchers alone. `exact` returns the matrix of an instance of the whole snapshot.
 void add_catchers(const geometry::EmbreeDevice& device, const geometry::ExactMatrices& exact,
                   std::vector<light::AnalyticLight> analytic_lights, const std::vector<size_t>& chosen,
@@ -243,7 +248,7 @@ void add_catchers(const geometry::EmbreeDevice& device, const geometry::ExactMat
     return (analytic_light.visibility & GRADUS_SHADOW_CATCHER) == 0;
   });
   const auto exact_of_catcher = [&](size_t k) { return exact(origins[k]); };
-  build_geometry(device, exact_of_catcher, monitor.step(0.8f, 0.85f), nullptr, catchers.get());
+  build_geometry(device, exact_of_catcher, monitor.step(0.8f, 0.85f), accelerator_of_catchers(*state), catchers.get());
   build_lights(device, std::move(analytic_lights), chosen_catchers, monitor, state, catchers.get());
   find_sharpest(catchers.get());
   find_emission(catchers.get());
