@@ -733,6 +733,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_scene_set_instances": (c_int, [Scene, POINTER(Instances)]),
     "gradus_scene_set_lights": (c_int, [Scene, POINTER(Light), c_size_t]),
     "gradus_scene_set_camera": (c_int, [Scene, POINTER(Camera)]),
+    "gradus_scene_set_dicing_camera": (c_int, [Scene, POINTER(Camera)]),
     "gradus_scene_set_world": (c_int, [Scene, POINTER(World)]),
     "gradus_scene_set_channels": (c_int, [Scene, POINTER(Channel), c_size_t]),
     "gradus_scene_remove": (c_int, [Scene, c_uint32, c_uint64]),

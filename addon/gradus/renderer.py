@@ -252,10 +252,8 @@ class Job:
         arguments = (self.depsgraph, self.engine, None, self.is_preview, self.is_stop_requested, vectors, self.views)
         report = self.session.sync(*arguments, self.with_digest)
         if not self.is_preview:
-            session = self.session
-            if not self.engine.is_animation:
-                session.manifests.clear()
-            cryptomatte.add_names(session.library, session.scene, channels_of(self.layer), session.manifests)
+            session, is_still = self.session, not self.engine.is_animation
+            cryptomatte.add_names(session.library, session.scene, channels_of(self.layer), session.manifests, is_still)
         self.digest = report.digest
         self.size = report.width, report.height
         self.warn(report.warnings)

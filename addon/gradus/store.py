@@ -48,7 +48,7 @@ class Session:
         self.reported: set[str] = set()
         self.pictures: dict[str, pixels.PassBuffer] = {}
         """The last picture of each view, which stays in the window if the user cancels before the next one."""
-        self.manifests: cryptomatte.Manifests = {}
+        self.manifests = cryptomatte.Manifests()
 
     def sync(self, *arguments: Any, **options: Any) -> Any:
         """Defines the colour spaces of all images on the device, then calls Exporter.sync()."""

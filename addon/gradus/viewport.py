@@ -22,7 +22,7 @@ from gpu_extras.presets import draw_texture_2d
 
 from . import automatic, cycles_settings, native, options, renderer, settings, store, view_border
 from .export import ViewOverride, panorama
-from .export.dicing import DICING_SETTINGS
+from .export.dicing import DICING_SETTINGS, dicing_camera
 from .native import Denoiser, Error, GradusError, Integrator, Pass, Phase, Reconstruction
 from .store import VIEWPORT, Key, Session
 
@@ -348,7 +348,8 @@ def _signature(depsgraph: Any) -> object:
     owners = (cycles_settings.owner(scene, name, is_followed) for name in settings.BY_NAME)
     values = tuple(getattr(*owner) for owner in owners if owner[1] not in settings.COMPONENT_SETTINGS)
     dicing = tuple(getattr(getattr(scene, "cycles", None), name, None) for name in DICING_SETTINGS)
-    replaced = (scene.world, layer.material_override, getattr(layer, "world_override", None))
+    camera = dicing_camera(scene)
+    replaced = (scene.world, layer.material_override, getattr(layer, "world_override", None), camera)
     blocks = tuple(block.original.as_pointer() if block else 0 for block in replaced)
     flags = (scene.render.film_transparent, layer.use_sky, layer.use_solid)
     objects = hash(tuple(depsgraph.objects.values()))

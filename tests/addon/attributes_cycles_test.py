@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from support import images, recording
 from support.cycles import pictures
-from support.nodes import Graph, new_material, show
+from support.nodes import Graph, new_material, op_names, show, translate
 
 VERSION = tuple(bpy.app.version)
 
@@ -603,6 +603,22 @@ def crowd(shapes: bpy.types.Scene) -> bpy.types.Scene:
 def test_a9_raycast(name: str, crowd: bpy.types.Scene, tmp_path: Path) -> None:
     show_on_all(crowd, RAYCASTS[name])
     expect_cycles(crowd, tmp_path, 0.02)
+
+
+@pytest.mark.skipif(VERSION < (5, 2, 0), reason="came with Blender 5.2")
+def test_a9_raycast_traces_one_ray_for_all_its_outputs() -> None:
+    """Regression: each attribute traced a ray of its own."""
+    material = new_material()
+    graph = Graph(material)
+    node = raycast_attribute(graph, "RGBA", "Col", 0).node
+    outputs = [output for output in node.outputs if output.type != "CUSTOM"]  # without the socket for new items
+    total = outputs[0]
+    for output in outputs[1:]:
+        total = graph("VectorMath", "Vector", {"Vector": total, "Vector_001": output})
+    show(material, total)
+    names = op_names(translate(material))
+    assert len(outputs) == 7
+    assert names.count("RAYCAST") == names.count("RAYCAST_ATTRIBUTE") == 1
 
 
 @pytest.mark.skipif(VERSION < (5, 2, 0), reason="came with Blender 5.2")

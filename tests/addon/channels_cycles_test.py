@@ -372,3 +372,25 @@ def test_a_pass_that_the_compositor_reads_and_gradus_does_not_make_is_an_error(
     scene.render.use_compositing = True
     with pytest.raises(RuntimeError, match=r"reads pass 'Render Time' of view layer 'ViewLayer'"):
         render(scene, tmp_path, "GRADUS", 1)
+
+
+def test_manifests_are_read_again_only_if_names_change(monkeypatch: pytest.MonkeyPatch) -> None:
+    from gradus import cryptomatte
+    from gradus.abi import ChannelKind
+
+    read: list[bytes] = []
+    loads = cryptomatte.json.loads
+    monkeypatch.setattr(cryptomatte.json, "loads", lambda text: read.append(text) or loads(text))
+    kind = ChannelKind.CRYPTOMATTE_OBJECT
+    manifests = cryptomatte.Manifests()
+    assert manifests.text(kind) == "{}"
+    one, two = b'{"A":"01"}', b'{"B":"02"}'
+    for _frame in range(3):
+        manifests.add(kind, one, replaces=False)
+    assert manifests.text(kind) == '{"A":"01"}' and read == [one]
+    manifests.add(kind, two, replaces=False)  # the frames of an animation share their names
+    manifests.add(kind, two, replaces=False)
+    assert manifests.text(kind) == '{"A":"01","B":"02"}' and read == [one, two]
+    manifests.add(kind, two, replaces=True)  # a still has only its own
+    manifests.add(kind, two, replaces=True)
+    assert manifests.text(kind) == '{"B":"02"}' and len(read) == 3

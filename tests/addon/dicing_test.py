@@ -132,9 +132,19 @@ def test_the_rate_and_its_limits_are_exported(scene: bpy.types.Scene, ball: bpy.
     assert dicing_of(ball, scene, 64, False) == NO_DICING
 
 
-def test_another_dicing_camera_is_named(scene: bpy.types.Scene, ball: bpy.types.Object) -> None:
-    dice(ball, scene, 8.0)
-    assert recording.export(scene)[1].warnings == []
-    scene.cycles.dicing_camera = recording.add(bpy.data.cameras.new("Other"), "Other")
-    warnings = recording.export(scene)[1].warnings
-    assert len(warnings) == 1 and "dicing camera is ignored" in warnings[0]
+def test_meshes_are_diced_for_the_dicing_camera(
+    scene: bpy.types.Scene, terrain: bpy.types.Object, tmp_path: Path
+) -> None:
+    """A camera far above the plain sees all its triangles as small; those at the feet of the other one stay large."""
+    dice(terrain, scene, 6.0)
+    near, _ = pictures(scene, tmp_path)
+    above = recording.add(bpy.data.cameras.new("Above"), "Above", (0.0, 0.0, 150.0))
+    scene.cycles.dicing_camera = above
+    expected, found = pictures(scene, tmp_path)
+    difference = np.abs(expected - near).mean()
+    assert difference > 0.05 * expected.mean()
+    assert np.abs(found - expected).mean() < 0.5 * difference
+    recorded = recording.export(scene)[0].dicing_camera
+    assert tuple(recorded.matrix[12:15]) == (0.0, 0.0, 150.0)
+    scene.cycles.dicing_camera = None
+    assert recording.export(scene)[0].dicing_camera is None

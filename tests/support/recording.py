@@ -52,6 +52,7 @@ class Recording:
     instances: dict[str, Any] = field(default_factory=dict)
     lights: list[Any] = field(default_factory=list)
     camera: Any = None
+    dicing_camera: Any = None
     shutter: dict[str, Any] = field(default_factory=dict)
     world: Any = None
     channels: list[tuple[int, str, int]] = field(default_factory=list)  # kind, name, levels
@@ -156,6 +157,9 @@ class Recording:
             "matrices": values(camera.shutter_matrices, camera.shutter_key_count, 4, 4),
             "windows": values(camera.shutter_windows, camera.shutter_key_count, 4),
         }
+
+    def scene_set_dicing_camera(self, _scene: int, reference: Any) -> None:
+        self.dicing_camera = None if reference is None else type(reference._obj).from_buffer_copy(reference._obj)
 
     def scene_set_world(self, _scene: int, reference: Any) -> None:
         self.calls.append("world")

@@ -50,9 +50,10 @@ def dicing_of(obj: Any, scene: Any, width: int, is_preview: bool) -> Dicing:
     return Dicing(settings.max_subdivisions, rate * pixels / width, length, settings.offscreen_dicing_scale, tolerance)
 
 
-def has_other_camera(scene: Any) -> bool:
-    """Returns whether a camera is chosen for dicing that does not render."""
-    return scene.cycles.dicing_camera not in (None, scene.camera)
+def dicing_camera(scene: Any) -> Any | None:
+    """Returns the camera that is chosen for dicing, or None for the one that renders."""
+    settings = getattr(scene, "cycles", None)
+    return getattr(settings, "dicing_camera", None)
 
 
 def _rate_and_length(obj: Any, modifier: Any, settings: Any) -> tuple[float, float] | None:

@@ -18,7 +18,7 @@ from ..abi import ChannelKind
 from ..layer_channels import Channel, channels_of
 from . import blender_pixels, camera, channels, instances, light, mesh, motion, unsupported, world
 from .collect import Collected, Entry, InstanceKey, collect
-from .dicing import dicing_of, has_other_camera
+from .dicing import dicing_camera, dicing_of
 from .digest import Digest
 from .instance_attributes import read_instance_attributes
 from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
@@ -178,6 +178,7 @@ class _Sync:
         self._set_instances(collected, mesh_of, moments)
         for view, state in now.items():
             self._fill_camera(view, state, moments)
+        self._set_dicing_camera()
 
     def _view_states(self) -> States:
         if self._view is not None:
@@ -196,6 +197,17 @@ class _Sync:
             self._digest.struct(struct)
             if shutter is not None:
                 self._digest.arrays([shutter.curve, *kept[1:]])
+
+    def _set_dicing_camera(self) -> None:
+        chosen = dicing_camera(self._scene.original)
+        if chosen is None:
+            self._target.set_dicing_camera(None)
+            return
+        state = camera.camera_state(chosen.evaluated_get(self._depsgraph), self._scene, *self.size)
+        struct, _kept = camera.fill_camera(state)
+        self._target.set_dicing_camera(struct)
+        if self._digest is not None:
+            self._digest.struct(struct)
 
     def _moments(self, collected: Collected) -> motion.Moments:
         if not self._wanted.any():
@@ -253,8 +265,6 @@ class _Sync:
             return None
         arrays = mesh.read_mesh(entry.data, wanted, undeformed, self._materials.reads_edges)
         arrays.dicing = dicing_of(original, self._scene.original, self.size[0], self._is_preview)
-        if arrays.dicing.rate > 0.0 and has_other_camera(self._scene.original):
-            self.warnings.add("The dicing camera is ignored: meshes are diced for the camera that renders")
         frames_per_second = self._scene.render.fps / self._scene.render.fps_base
         if self._wanted.vectors:
             arrays.motion = motion.velocity_motion(entry.data, arrays, frames_per_second)

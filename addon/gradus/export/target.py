@@ -31,6 +31,9 @@ class Target:
     def set_camera(self, struct: Any) -> None:
         self._library.scene_set_camera(self._scene, ctypes.byref(struct))
 
+    def set_dicing_camera(self, struct: Any | None) -> None:
+        self._library.scene_set_dicing_camera(self._scene, None if struct is None else ctypes.byref(struct))
+
     def set_world(self, struct: Any) -> None:
         self._library.scene_set_world(self._scene, ctypes.byref(struct))
 

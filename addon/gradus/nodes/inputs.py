@@ -178,6 +178,10 @@ _RAYCAST_OUTPUTS = {
 }
 
 
+_RAYCAST_SURFACE = 5
+"""Output with the place where the ray ends, which RAYCAST_ATTRIBUTE reads."""
+
+
 @translator("ShaderNodeRaycast")
 def raycast(view: NodeView) -> Value | None:
     position = view.linked("Position") or view.add_vector(Op.GEOMETRY, (), Geometry.POSITION)
@@ -187,10 +191,11 @@ def raycast(view: NodeView) -> Value | None:
     if view.output in _RAYCAST_OUTPUTS:
         output, kind = _RAYCAST_OUTPUTS[view.output]
         return view.add(Op.RAYCAST, inputs, mode, kind=kind, output=output)
-    return _raycast_attribute(view, inputs, mode)
+    surface = view.add(Op.RAYCAST, inputs, mode, kind=VECTOR, output=_RAYCAST_SURFACE)
+    return _raycast_attribute(view, surface)
 
 
-def _raycast_attribute(view: NodeView, inputs: tuple[Value, ...], mode: int) -> Value | None:
+def _raycast_attribute(view: NodeView, surface: Value) -> Value | None:
     """Returns an output that reads an attribute where the ray ends. An input of text holds its name."""
     _, index, *rest = view.output.split("_")
     text = view.find(f"Value_{index}")
@@ -199,7 +204,7 @@ def _raycast_attribute(view: NodeView, inputs: tuple[Value, ...], mode: int) -> 
     types = {"VALUE": "Fac", "VECTOR": "Vector", "RGBA": "Color"}
     output, kind = _ATTRIBUTE_OUTPUTS["Alpha" if rest else types[view.socket.type]]
     return view.add(
-        Op.RAYCAST_ATTRIBUTE, inputs, mode, resource=view.name_resource(text.default_value), kind=kind, output=output
+        Op.RAYCAST_ATTRIBUTE, (surface,), resource=view.name_resource(text.default_value), kind=kind, output=output
     )
 
 

@@ -513,6 +513,9 @@ GRADUS_API GradusError gradus_scene_set_material(GradusScene scene, uint64_t key
 GRADUS_API GradusError gradus_scene_set_instances(GradusScene scene, const GradusInstances* instances);
 GRADUS_API GradusError gradus_scene_set_lights(GradusScene scene, const GradusLight* lights, size_t count);
 GRADUS_API GradusError gradus_scene_set_camera(GradusScene scene, const GradusCamera* camera);
+/* Sets the camera in whose picture meshes with a `dicing_rate` are diced: its projection, matrix, window and clip_start.
+ * NULL = the camera that renders. */
+GRADUS_API GradusError gradus_scene_set_dicing_camera(GradusScene scene, const GradusCamera* camera);
 GRADUS_API GradusError gradus_scene_set_world(GradusScene scene, const GradusWorld* world);
 /* Sets the channels that films of the scene have beside their passes. Lights, instances, the world and AOV outputs of
  * materials refer to them by their index. */

@@ -102,6 +102,7 @@ class Scene : public Handle<GradusScene, gradus_scene_release> {
     check(gradus_scene_set_lights(id_, lights.data(), lights.size()));
   }
   void set_camera(const GradusCamera& camera) { check(gradus_scene_set_camera(id_, &camera)); }
+  void set_dicing_camera(const GradusCamera* camera) { check(gradus_scene_set_dicing_camera(id_, camera)); }
   void set_world(const GradusWorld& world) { check(gradus_scene_set_world(id_, &world)); }
   void remove(GradusObjectKind kind, uint64_t key) { check(gradus_scene_remove(id_, kind, key)); }
   void commit() { check(gradus_scene_commit(id_, nullptr, nullptr)); }

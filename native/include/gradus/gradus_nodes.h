@@ -88,10 +88,11 @@
  *   VECTOR_DISPLACEMENTvector, midlevel, scale -> displacement: A displacement from a vector, in world space. Mode:
  *                       GRADUS_NORMAL_TANGENT, with the normal as the second axis, GRADUS_NORMAL_OBJECT or
  *                       GRADUS_NORMAL_WORLD.
- *   RAYCAST           position, direction, length -> hit, self hit, distance, position, normal: The nearest surface on
- *                       a ray, and whether it is of the same instance. Mode: 1: only surfaces of the same instance.
- *   RAYCAST_ATTRIBUTE position, direction, length -> color, vector, factor, alpha: A named attribute of the surface
- *                       that RAYCAST finds, and 0 if there is none. Mode: that of RAYCAST. Resource: name.
+ *   RAYCAST           position, direction, length -> hit, self hit, distance, position, normal, surface: The nearest
+ *                       surface on a ray, and whether it is of the same instance. Output surface is for
+ *                       RAYCAST_ATTRIBUTE. Mode: 1: only surfaces of the same instance.
+ *   RAYCAST_ATTRIBUTE surface -> color, vector, factor, alpha: A named attribute of the surface that RAYCAST finds, and
+ *                       0 if there is none. Resource: name.
  *
  * Textures.
  *   IMAGE             vector -> color, alpha: An image. Mode: GRADUS_IMAGE_MODE(). Floats: blend of BOX. Resource: key
@@ -199,8 +200,8 @@
   X(BEVEL, 59, 2, 1, 0) \
   X(DISPLACEMENT, 60, 4, 1, 0) \
   X(VECTOR_DISPLACEMENT, 61, 3, 1, 0) \
-  X(RAYCAST, 62, 3, 5, 0) \
-  X(RAYCAST_ATTRIBUTE, 63, 3, 4, 0) \
+  X(RAYCAST, 62, 3, 6, 0) \
+  X(RAYCAST_ATTRIBUTE, 63, 1, 4, 0) \
   X(IMAGE, 64, 1, 2, 0) \
   X(ENVIRONMENT, 65, 1, 1, 0) \
   X(NOISE, 66, 9, 2, 0) \

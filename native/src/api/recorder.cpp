@@ -46,6 +46,8 @@ void SceneRecorder::set_lights(const std::vector<GradusLight>& lights) {
   store(RecordKind::Lights, 0, LightList{lights.data(), lights.size()});
 }
 void SceneRecorder::set_camera(const GradusCamera& camera) { store(RecordKind::Camera, 0, camera); }
+void SceneRecorder::set_dicing_camera(const GradusCamera& camera) { store(RecordKind::DicingCamera, 0, camera); }
+void SceneRecorder::remove_dicing_camera() { records_.erase({RecordKind::DicingCamera, 0}); }
 void SceneRecorder::set_world(const GradusWorld& world) { store(RecordKind::World, 0, world); }
 
 void SceneRecorder::set_channels(const std::vector<GradusChannel>& channels) {

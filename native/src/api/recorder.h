@@ -26,7 +26,8 @@ enum class RecordKind : uint32_t {
   Camera = 7,
   World = 8,
   End = 9,
-  Channels = 10
+  Channels = 10,
+  DicingCamera = 11
 };
 
 class SceneRecorder {
@@ -39,6 +40,8 @@ class SceneRecorder {
   void set_instances(const GradusInstances& instances);
   void set_lights(const std::vector<GradusLight>& lights);
   void set_camera(const GradusCamera& camera);
+  void set_dicing_camera(const GradusCamera& camera);
+  void remove_dicing_camera();
   void set_world(const GradusWorld& world);
   void set_channels(const std::vector<GradusChannel>& channels);
   void remove(GradusObjectKind kind, uint64_t key);

@@ -113,6 +113,19 @@ GradusError gradus_scene_set_camera(GradusScene scene, const GradusCamera* camer
   });
 }
 
+GradusError gradus_scene_set_dicing_camera(GradusScene scene, const GradusCamera* camera) {
+  return with_scene(scene, [&](api::SceneObject& s) {
+    if (!camera) {
+      s.scene.set_dicing_camera(nullptr);
+      if (s.recorder) s.recorder->remove_dicing_camera();
+      return;
+    }
+    const GradusCamera args = api::read_camera(camera);
+    s.scene.set_dicing_camera(&args);
+    if (s.recorder) s.recorder->set_dicing_camera(args);
+  });
+}
+
 GradusError gradus_scene_set_world(GradusScene scene, const GradusWorld* world) {
   return with_scene(scene, [&](api::SceneObject& s) {
     const GradusWorld args = api::read_world(world);

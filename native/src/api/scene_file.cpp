@@ -72,6 +72,11 @@ void set_record(RecordKind kind, uint64_t key, const char* data, size_t size, sc
       const GradusCamera camera = read_record<GradusCamera>(&reader);
       return scene->set_camera(read_camera(&camera));
     }
+    case RecordKind::DicingCamera: {
+      const GradusCamera record = read_record<GradusCamera>(&reader);
+      const GradusCamera camera = read_camera(&record);
+      return scene->set_dicing_camera(&camera);
+    }
     case RecordKind::World: {
       const GradusWorld world = read_record<GradusWorld>(&reader);
       return scene->set_world(read_world(&world));

@@ -1,6 +1,7 @@
 // Progress and cancellation of Scene::commit().
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 
@@ -17,6 +18,10 @@ class CommitMonitor {
   bool is_running() const { return !cancel_ || *cancel_ == 0; }
   // Throws Error CANCELLED if the caller has set the cancel flag.
   void check() const;
+  // Calls check() at each 65,536th index of a loop.
+  void check_at(size_t index) const {
+    if (index % 65536 == 0) check();
+  }
   // Returns the callback of a step that covers the fractions from `first` to `last` of the whole commit.
   BuildProgress step(float first, float last) const;
   // Raises the progress of the whole commit to `fraction`, in [0, 1]; a smaller value than before has no effect.

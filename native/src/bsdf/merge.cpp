@@ -9,14 +9,18 @@ float square(float x) { return x * x; }
 
 bool have_one_type(const Lobe& a, const Lobe& b) { return a.type == b.type && a.pass == b.pass; }
 
+// Returns whether the parameters of both lobes' curves, such as f0 and f90, mean the same.
+bool have_one_curve(const Lobe& a, const Lobe& b) {
+  return a.fresnel == b.fresnel && a.subsurface == b.subsurface && a.disney == b.disney;
+}
+
 // Returns a squared distance of two lobes' shapes.
 float squared_distance(const Lobe& a, const Lobe& b) {
   // Lobes of different kinds are merged last, so their distance exceeds that of any parameters.
   constexpr float kOtherCurve = 1e6f, kOtherType = 1e12f;
   if (!have_one_type(a, b)) return kOtherType;
   const bool anisotropic = a.alpha_x != a.alpha_y || b.alpha_x != b.alpha_y;
-  const bool same_kind = a.fresnel == b.fresnel && a.subsurface == b.subsurface && a.disney == b.disney;
-  return (same_kind ? 0.0f : kOtherCurve) + (a.multiscatter == b.multiscatter ? 0.0f : 1.0f) +
+  return (have_one_curve(a, b) ? 0.0f : kOtherCurve) + (a.multiscatter == b.multiscatter ? 0.0f : 1.0f) +
          square(a.alpha_x - b.alpha_x) + square(a.alpha_y - b.alpha_y) + square(a.ior - b.ior) +
          square(1e-2f * (a.film.thickness - b.film.thickness)) + square(a.film.ior - b.film.ior) +
          squared_length(a.normal - b.normal) + (anisotropic ? squared_length(a.tangent - b.tangent) : 0.0f) +
@@ -30,7 +34,8 @@ Rgb head_on_albedo(Lobe lobe) {
   return lobe_albedo(&lobe, lobe.normal, lobe.normal);
 }
 
-// Sets *lobe to the mean shape of two lobes of one type, whose weights it has.
+// Sets *lobe, which is a copy of the heavier one, to the mean shape of two lobes of one type, whose weights it has. It
+// keeps its curve if that of the other one is of another kind.
 void set_mean_shape(const Lobe& a, const Lobe& b, Lobe* lobe) {
   const float wa = mean_component(a.weight), wb = mean_component(b.weight);
   const float share = wb / (wa + wb);
@@ -39,6 +44,7 @@ void set_mean_shape(const Lobe& a, const Lobe& b, Lobe* lobe) {
   lobe->tangent = glm::mix(a.tangent, b.tangent, share);
   lobe->alpha_x = glm::mix(a.alpha_x, b.alpha_x, share);
   lobe->alpha_y = glm::mix(a.alpha_y, b.alpha_y, share);
+  if (!have_one_curve(a, b)) return;
   lobe->ior = glm::mix(a.ior, b.ior, share);
   lobe->film.thickness = glm::mix(a.film.thickness, b.film.thickness, share);
   lobe->film.ior = glm::mix(a.film.ior, b.film.ior, share);

@@ -10,25 +10,21 @@ namespace {
 // Makes the arrays of the diced mesh from those of the mesh before.
 class Assembly {
  public:
-  explicit Assembly(const Dicing& dicing)
-      : dicing_(dicing), mesh_(*dicing.mesh()), out_(std::make_shared<MeshData>(header_of(mesh_))) {}
+  Assembly(const Dicing& dicing, const CommitMonitor& monitor)
+      : dicing_(dicing), monitor_(monitor), mesh_(*dicing.mesh()), out_(std::make_shared<MeshData>(header_of(mesh_))) {}
 
-  std::shared_ptr<const MeshData> run(const CommitMonitor& monitor) {
+  std::shared_ptr<const MeshData> run() {
     out_->vertex_count = mesh_.vertex_count + uint32_t(dicing_.places().size());
     set_triangles();
     set_positions();
-    monitor.check();
     if (dicing_.is_curved()) set_normals();
-    monitor.check();
-    for (const MeshAttribute& attribute : mesh_.attributes) {
-      out_->attributes.push_back(divide(attribute));
-      monitor.check();
-    }
+    for (const MeshAttribute& attribute : mesh_.attributes) out_->attributes.push_back(divide(attribute));
     out_->generated_points = at_vertices(mesh_.generated_points);
     out_->pointiness = at_vertices(mesh_.pointiness);
     set_islands();
+    monitor_.check();
     set_bounds(out_.get());
-    set_shutter_normals(out_.get());
+    set_shutter_normals(out_.get(), monitor_);
     set_tree();
     return out_;
   }
@@ -60,7 +56,7 @@ class Assembly {
     out_->triangle_vertices.resize(triangles.size() * 3);
     out_->triangle_corners.resize(triangles.size() * 3);
     out_->triangle_faces.resize(triangles.size());
-    parallel_each(triangles.size(), [&](size_t t) {
+    parallel_each(triangles.size(), monitor_, [&](size_t t) {
       for (size_t k = 0; k < 3; ++k) {
         out_->triangle_vertices[3 * t + k] = triangles[t].vertices[k];
         out_->triangle_corners[3 * t + k] = uint32_t(3 * t + k);
@@ -72,7 +68,8 @@ class Assembly {
   void set_positions() {
     const std::vector<Dicing::Place>& places = dicing_.places();
     std::vector<Vec3> bends(dicing_.is_curved() ? places.size() : 0);
-    parallel_each(bends.size(), [&](size_t i) { bends[i] = dicing_.patch(places[i].base).bend(places[i].uv); });
+    parallel_each(bends.size(), monitor_,
+                  [&](size_t i) { bends[i] = dicing_.patch(places[i].base).bend(places[i].uv); });
     out_->positions = divide_keys(mesh_.positions, mesh_.key_times.size(), bends);
     out_->shutter_positions = divide_keys(mesh_.shutter_positions, mesh_.shutter_keys, bends);
   }
@@ -85,7 +82,7 @@ class Assembly {
       const Vec3* from = positions.data() + key * mesh_.vertex_count;
       Vec3* to = divided.data() + key * out_->vertex_count;
       set_vertices(from, to);
-      parallel_each(bends.size(), [&](size_t i) { to[mesh_.vertex_count + i] += bends[i]; });
+      parallel_each(bends.size(), monitor_, [&](size_t i) { to[mesh_.vertex_count + i] += bends[i]; });
     }
     return divided;
   }
@@ -95,7 +92,7 @@ class Assembly {
   void set_vertices(const T* from, T* to) const {
     std::copy_n(from, mesh_.vertex_count, to);
     const std::vector<Dicing::Place>& places = dicing_.places();
-    parallel_each(places.size(), [&](size_t i) {
+    parallel_each(places.size(), monitor_, [&](size_t i) {
       const auto [a, b, c] = vertices_of(places[i].base);
       to[mesh_.vertex_count + i] = interpolate(std::array<T, 3>{from[a], from[b], from[c]}, places[i].uv);
     });
@@ -120,13 +117,13 @@ class Assembly {
       const std::vector<Dicing::Place>& places = dicing_.places();
       out_->normals = mesh_.normals;
       out_->normals.resize(out_->vertex_count);
-      parallel_each(places.size(), [&](size_t i) {
+      parallel_each(places.size(), monitor_, [&](size_t i) {
         out_->normals[mesh_.vertex_count + i] = dicing_.patch(places[i].base).normal(places[i].uv);
       });
       return;
     }
     out_->normals.resize(size_t{out_->triangle_count} * 3);
-    parallel_each(out_->triangle_count, [&](size_t t) {
+    parallel_each(out_->triangle_count, monitor_, [&](size_t t) {
       const Dicing::Triangle& triangle = dicing_.triangles()[t];
       const CurvedPatch patch = dicing_.patch(triangle.base);
       for (size_t k = 0; k < 3; ++k) out_->normals[3 * t + k] = patch.normal(triangle.uvs[k]);
@@ -148,13 +145,13 @@ class Assembly {
     if (attribute.domain == GRADUS_DOMAIN_POINT) {
       const std::vector<Dicing::Place>& places = dicing_.places();
       divided.data.resize(size_t{out_->vertex_count} * channels);
-      parallel_each(places.size(), [&](size_t i) {
+      parallel_each(places.size(), monitor_, [&](size_t i) {
         set(vertices_of(places[i].base), places[i].uv, &divided.data[(mesh_.vertex_count + i) * channels]);
       });
     }
     if (attribute.domain == GRADUS_DOMAIN_CORNER) {
       divided.data.resize(size_t{out_->triangle_count} * 3 * channels);
-      parallel_each(out_->triangle_count, [&](size_t t) {
+      parallel_each(out_->triangle_count, monitor_, [&](size_t t) {
         const Dicing::Triangle& triangle = dicing_.triangles()[t];
         const uint32_t* corners = &mesh_.triangle_corners[size_t{triangle.base} * 3];
         for (size_t k = 0; k < 3; ++k)
@@ -165,7 +162,7 @@ class Assembly {
   }
 
   void set_tree() {
-    const auto tree = std::make_shared<DicingTree>(dicing_.tree());
+    const auto tree = std::make_shared<DicingTree>(dicing_.tree(monitor_));
     std::vector<uint8_t> patterns;
     patterns.reserve(tree->nodes.size());
     for (const DicingTree::Node& node : tree->nodes) patterns.push_back(node.pattern);
@@ -179,6 +176,7 @@ class Assembly {
   }
 
   const Dicing& dicing_;
+  const CommitMonitor& monitor_;
   const MeshData& mesh_;
   std::shared_ptr<MeshData> out_;
 };
@@ -186,7 +184,7 @@ class Assembly {
 }  // namespace
 
 std::shared_ptr<const MeshData> diced_mesh(const Dicing& dicing, const CommitMonitor& monitor) {
-  return Assembly(dicing).run(monitor);
+  return Assembly(dicing, monitor).run();
 }
 
 }  // namespace gradus::geometry

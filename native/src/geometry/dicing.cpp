@@ -53,19 +53,20 @@ constexpr uint32_t interior_edges(const DivisionPattern& pattern) { return patte
 
 }  // namespace
 
-Dicing::Dicing(std::shared_ptr<const MeshData> mesh, EdgeExcess excess)
+Dicing::Dicing(std::shared_ptr<const MeshData> mesh, EdgeExcess excess, const CommitMonitor& monitor)
     : mesh_(std::move(mesh)), excess_(std::move(excess)) {
   positions_.assign(mesh_->frame_positions(), mesh_->frame_positions() + mesh_->vertex_count);
   nodes_.resize(mesh_->triangle_count);
-  find_edges();
-  find_sharp_edges();
-  parallel_each(edges_.size(), [&](size_t e) { edges_[e].excess = measure(edges_[e]); });
+  find_edges(monitor);
+  find_sharp_edges(monitor);
+  parallel_each(edges_.size(), monitor, [&](size_t e) { edges_[e].excess = measure(edges_[e]); });
 }
 
-void Dicing::find_edges() {
+void Dicing::find_edges(const CommitMonitor& monitor) {
   std::unordered_map<uint64_t, uint32_t> known;
   known.reserve(size_t{mesh_->triangle_count} * 3 / 2);
   for (uint32_t t = 0; t < mesh_->triangle_count; ++t) {
+    monitor.check_at(t);
     if (mesh_->is_dropped(t)) continue;
     Triangle triangle;
     triangle.base = triangle.node = t;
@@ -81,7 +82,7 @@ void Dicing::find_edges() {
   }
 }
 
-void Dicing::find_sharp_edges() {
+void Dicing::find_sharp_edges(const CommitMonitor& monitor) {
   if (mesh_->normals.empty() || mesh_->normal_domain == GRADUS_DOMAIN_FACE) return;
   sharp_edges_.assign(mesh_->triangle_count, 0);
   std::vector<uint8_t> is_sharp(edges_.size(), 0);
@@ -90,11 +91,13 @@ void Dicing::find_sharp_edges() {
     if (edges_[triangle.edges[k]].a != triangle.vertices[k]) std::swap(a, b);
     return std::pair(a, b);
   };
-  for (const Triangle& triangle : triangles_)
+  for (const Triangle& triangle : triangles_) {
+    monitor.check_at(triangle.base);
     for (uint32_t k = 0; k < 3; ++k) {
       const uint32_t owner = edges_[triangle.edges[k]].owner;
       if (normals_of(triangle, k) != normals_of(triangles_[owner / 3], owner % 3)) is_sharp[triangle.edges[k]] = 1;
     }
+  }
   for (const Triangle& triangle : triangles_)
     for (uint32_t k = 0; k < 3; ++k) sharp_edges_[triangle.base] |= uint8_t(is_sharp[triangle.edges[k]] << k);
 }
@@ -170,14 +173,14 @@ uint32_t Dicing::pattern_of(const Triangle& triangle, const std::vector<uint32_t
 }
 
 // Adds the vertices in the middles of the edges above the limit. Returns the vertex of each edge, or kNoMiddle.
-std::vector<uint32_t> Dicing::add_middles(float limit) {
+std::vector<uint32_t> Dicing::add_middles(float limit, const CommitMonitor& monitor) {
   std::vector<uint32_t> middles(edges_.size(), kNoMiddle);
   auto vertex = uint32_t(positions_.size());
   for (size_t e = 0; e < edges_.size(); ++e)
     if (edges_[e].excess > limit) middles[e] = vertex++;
   positions_.resize(vertex);
   places_.resize(vertex - mesh_->vertex_count);
-  parallel_each(edges_.size(), [&](size_t e) {
+  parallel_each(edges_.size(), monitor, [&](size_t e) {
     if (middles[e] == kNoMiddle) return;
     const Triangle& owner = triangles_[edges_[e].owner / 3];
     const uint32_t k = edges_[e].owner % 3;
@@ -189,9 +192,10 @@ std::vector<uint32_t> Dicing::add_middles(float limit) {
 }
 
 // Finds what the division makes of each triangle, and where it is stored.
-std::vector<Dicing::Part> Dicing::plan(const std::vector<uint32_t>& middles, uint32_t first_interior, Part* end) const {
+std::vector<Dicing::Part> Dicing::plan(const std::vector<uint32_t>& middles, uint32_t first_interior,
+                                       const CommitMonitor& monitor, Part* end) const {
   std::vector<Part> parts(triangles_.size());
-  parallel_each(parts.size(), [&](size_t t) {
+  parallel_each(parts.size(), monitor, [&](size_t t) {
     parts[t].pattern = uint8_t(pattern_of(triangles_[t], middles));
     for (uint32_t k = 0; k < 3; ++k)
       parts[t].owned |= uint8_t(uint32_t{edges_[triangles_[t].edges[k]].owner == 3 * t + k} << k);
@@ -262,25 +266,23 @@ void Dicing::divide_triangle(const Triangle& whole, const Part& plan, const std:
 
 void Dicing::divide(float limit, const CommitMonitor& monitor) {
   const auto first_middle = uint32_t(positions_.size()), first_half = uint32_t(edges_.size());
-  const std::vector<uint32_t> middles = add_middles(limit);
-  monitor.check();
+  const std::vector<uint32_t> middles = add_middles(limit, monitor);
   Part end;
-  const std::vector<Part> plans = plan(middles, first_half + uint32_t(positions_.size()) - first_middle, &end);
+  const std::vector<Part> plans = plan(middles, first_half + uint32_t(positions_.size()) - first_middle, monitor, &end);
   monitor.check();
   edges_.resize(end.edge);
   nodes_.resize(end.node);
-  parallel_each(middles.size(), [&](size_t e) {
+  parallel_each(middles.size(), monitor, [&](size_t e) {
     if (middles[e] == kNoMiddle) return;
     edges_[first_half + middles[e] - first_middle] = {middles[e], edges_[e].b, 0, 0.0f};
     edges_[e].b = middles[e];
   });
   std::vector<Triangle> divided(end.triangle);
-  parallel_each(triangles_.size(), [&](size_t t) {
+  parallel_each(triangles_.size(), monitor, [&](size_t t) {
     divide_triangle(triangles_[t], plans[t], middles, first_half, first_middle, &divided[plans[t].triangle]);
   });
   triangles_ = std::move(divided);
-  monitor.check();
-  parallel_each(edges_.size(), [&](size_t e) {
+  parallel_each(edges_.size(), monitor, [&](size_t e) {
     if (e >= first_half || middles[e] != kNoMiddle)
       edges_[e].excess = measure(edges_[e]);
     else if (is_finest(edges_[e]))
@@ -288,12 +290,12 @@ void Dicing::divide(float limit, const CommitMonitor& monitor) {
   });
 }
 
-DicingTree Dicing::tree() const {
+DicingTree Dicing::tree(const CommitMonitor& monitor) const {
   DicingTree tree;
   tree.nodes = nodes_;
   tree.topology_hash = mesh_->topology_hash;
   tree.leaves.resize(triangles_.size());
-  parallel_each(triangles_.size(), [&](size_t t) {
+  parallel_each(triangles_.size(), monitor, [&](size_t t) {
     tree.leaves[t] = triangles_[t].node;
     tree.nodes[triangles_[t].node].first = uint32_t(t);
   });

@@ -33,7 +33,8 @@ class Dicing {
     Vec2 uv{0.0f};
   };
 
-  Dicing(std::shared_ptr<const MeshData> mesh, EdgeExcess excess);
+  // All functions that take a monitor throw Error CANCELLED if the commit is cancelled.
+  Dicing(std::shared_ptr<const MeshData> mesh, EdgeExcess excess, const CommitMonitor& monitor);
 
   // Returns the excess of the longest edge that may still be divided.
   float largest_excess() const;
@@ -50,7 +51,7 @@ class Dicing {
   CurvedPatch patch(uint32_t base) const;
   bool is_curved() const { return !sharp_edges_.empty(); }
   // Returns how the triangles descend from those of the mesh.
-  DicingTree tree() const;
+  DicingTree tree(const CommitMonitor& monitor) const;
 
  private:
   struct Edge {
@@ -66,16 +67,17 @@ class Dicing {
     uint8_t owned = 0;  // bit k: it is the owner of the edge from corner k
   };
 
-  void find_edges();
-  void find_sharp_edges();
+  void find_edges(const CommitMonitor& monitor);
+  void find_sharp_edges(const CommitMonitor& monitor);
   Vec3 position_at(const Place& place) const;
   bool is_finest(const Edge& edge) const;
   float measure(const Edge& edge) const;
   uint32_t divided_edges(const Triangle& triangle, float limit) const;
   uint32_t vertex_of(const Triangle& triangle, uint32_t point, const std::vector<uint32_t>& middles) const;
   uint32_t pattern_of(const Triangle& triangle, const std::vector<uint32_t>& middles) const;
-  std::vector<uint32_t> add_middles(float limit);
-  std::vector<Part> plan(const std::vector<uint32_t>& middles, uint32_t first_interior, Part* end) const;
+  std::vector<uint32_t> add_middles(float limit, const CommitMonitor& monitor);
+  std::vector<Part> plan(const std::vector<uint32_t>& middles, uint32_t first_interior, const CommitMonitor& monitor,
+                         Part* end) const;
   void divide_triangle(const Triangle& whole, const Part& plan, const std::vector<uint32_t>& middles,
                        uint32_t first_half, uint32_t first_middle, Triangle* parts);
 

@@ -19,9 +19,10 @@ Vec3 triangle_normal(const MeshData& mesh, uint32_t triangle) {
 }
 
 // Returns the mean unit normal of the chosen triangles at each vertex; 0 at others.
-std::vector<Vec3> mean_normals(const MeshData& mesh, const std::vector<bool>& chosen) {
+std::vector<Vec3> mean_normals(const MeshData& mesh, const std::vector<bool>& chosen, const CommitMonitor& monitor) {
   std::vector<Vec3> normals(mesh.vertex_count, Vec3(0.0f));
   for (uint32_t t = 0; t < mesh.triangle_count; ++t) {
+    monitor.check_at(t);
     if (!chosen[t] || mesh.is_dropped(t)) continue;
     const Vec3 normal = triangle_normal(mesh, t);
     for (size_t k = 0; k < 3; ++k) normals[mesh.triangle_vertices[size_t(t) * 3 + k]] += normal;
@@ -32,9 +33,11 @@ std::vector<Vec3> mean_normals(const MeshData& mesh, const std::vector<bool>& ch
 
 // Calls visit(vertex, element of the normals) for each corner of the chosen triangles.
 template <class Visit>
-void for_each_corner(const MeshData& mesh, const std::vector<bool>& chosen, const Visit& visit) {
+void for_each_corner(const MeshData& mesh, const std::vector<bool>& chosen, const CommitMonitor& monitor,
+                     const Visit& visit) {
   const bool by_vertex = mesh.normal_domain == GRADUS_DOMAIN_POINT;
   for (uint32_t t = 0; t < mesh.triangle_count; ++t) {
+    monitor.check_at(t);
     if (!chosen[t] || mesh.is_dropped(t)) continue;
     for (size_t i = size_t(t) * 3; i < size_t(t) * 3 + 3; ++i)
       visit(mesh.triangle_vertices[i], by_vertex ? mesh.triangle_vertices[i] : mesh.triangle_corners[i]);
@@ -43,17 +46,18 @@ void for_each_corner(const MeshData& mesh, const std::vector<bool>& chosen, cons
 
 // Recomputes the normals of the chosen triangles. Those of corners change as the normal of their vertex does, which
 // keeps sharp edges sharp.
-void recompute_normals(const MeshData& before, const std::vector<bool>& chosen, MeshData* mesh) {
+void recompute_normals(const MeshData& before, const std::vector<bool>& chosen, const CommitMonitor& monitor,
+                       MeshData* mesh) {
   if (mesh->normals.empty() || mesh->normal_domain == GRADUS_DOMAIN_FACE) return;
   if (mesh->normal_domain == GRADUS_DOMAIN_POINT) {
-    const std::vector<Vec3> normals = mean_normals(*mesh, chosen);
-    for_each_corner(*mesh, chosen,
+    const std::vector<Vec3> normals = mean_normals(*mesh, chosen, monitor);
+    for_each_corner(*mesh, chosen, monitor,
                     [&](uint32_t vertex, uint32_t element) { mesh->normals[element] = normals[vertex]; });
     return;
   }
   const std::vector<bool> all(mesh->triangle_count, true);
-  const std::vector<Vec3> old = mean_normals(before, all), now = mean_normals(*mesh, all);
-  for_each_corner(*mesh, chosen, [&](uint32_t vertex, uint32_t element) {
+  const std::vector<Vec3> old = mean_normals(before, all, monitor), now = mean_normals(*mesh, all, monitor);
+  for_each_corner(*mesh, chosen, monitor, [&](uint32_t vertex, uint32_t element) {
     mesh->normals[element] = safe_unit(before.normals[element] + now[vertex] - old[vertex], Vec3(0.0f));
   });
 }
@@ -69,15 +73,16 @@ uint64_t displaced_hash(const MeshData& mesh, const std::vector<Vec3>& offsets) 
 }  // namespace
 
 std::shared_ptr<const MeshData> displaced_mesh(const MeshData& mesh, const std::vector<Vec3>& offsets,
-                                               const std::vector<bool>& moves) {
+                                               const std::vector<bool>& moves, const CommitMonitor& monitor) {
   auto moved = std::make_shared<MeshData>(mesh);
   if (moved->generated_points.empty())
     moved->generated_points.assign(mesh.frame_positions(), mesh.frame_positions() + mesh.vertex_count);
   move_positions(offsets, mesh.key_times.size(), &moved->positions);
   move_positions(offsets, mesh.shutter_keys, &moved->shutter_positions);
   set_bounds(moved.get());
-  recompute_normals(mesh, moves, moved.get());
-  set_shutter_normals(moved.get());
+  monitor.check();
+  recompute_normals(mesh, moves, monitor, moved.get());
+  set_shutter_normals(moved.get(), monitor);
   moved->content_hash = displaced_hash(*moved, offsets);
   return moved;
 }

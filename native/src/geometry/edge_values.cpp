@@ -1,12 +1,12 @@
 #include "geometry/edge_values.h"
 
 #include <algorithm>
-#include <cfloat>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "geometry/smooth_normals.h"
+#include "geometry/weld.h"
 
 namespace gradus::geometry {
 
@@ -37,36 +37,6 @@ class Forest {
  private:
   std::vector<uint32_t> parents_, ranks_;
 };
-
-// Returns the sum of the coordinates, or 0 for positions that are not finite, so that all positions can be sorted.
-float coordinate_sum(const Vec3& p) {
-  const float sum = p.x + p.y + p.z;
-  return is_finite(sum) ? sum : 0.0f;
-}
-
-// Returns, for each vertex, the vertex that stands for all vertices at its place. Candidates are neighbours in the
-// order of the sum of coordinates, as in Cycles, whose tolerance of this sum is much smaller than that of distances.
-std::vector<uint32_t> weld(const Vec3* p, size_t count) {
-  std::vector<uint32_t> order(count), welded(count);
-  std::iota(order.begin(), order.end(), 0u);
-  std::iota(welded.begin(), welded.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-    const float sum_a = coordinate_sum(p[a]), sum_b = coordinate_sum(p[b]);
-    return sum_a != sum_b ? sum_a < sum_b : a > b;
-  });
-  for (size_t i = 0; i < count; ++i) {
-    const Vec3& here = p[order[i]];
-    for (size_t k = i + 1; k < count && coordinate_sum(p[order[k]]) - coordinate_sum(here) <= 3.0f * FLT_EPSILON; ++k) {
-      const Vec3 step = p[order[k]] - here;
-      if (!(glm::dot(step, step) < FLT_EPSILON)) continue;
-      welded[order[i]] = order[k];
-      break;
-    }
-  }
-  // The last vertex in the order has no other one after it, so that the references can be followed from the end.
-  for (size_t i = count; i-- > 0;) welded[order[i]] = welded[welded[order[i]]];
-  return welded;
-}
 
 // Returns the sum of the unit normals of the vertices at each place, with length 1, at the vertex that stands for it.
 std::vector<Vec3> welded_normals(const MeshData& mesh, const std::vector<uint32_t>& welded) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/commit_monitor.h"
 #include "base/types.h"
 #include "gradus/gradus.h"
 
@@ -81,8 +82,9 @@ inline size_t domain_size(const GradusMesh& m, uint32_t domain) {
 
 // Sets the bounds from the positions in the rendered frame, without dropped triangles.
 void set_bounds(MeshData* mesh);
-// Sets the smooth normals of all shutter keys, if the mesh deforms and is not shaded flat.
-void set_shutter_normals(MeshData* mesh);
+// Sets the smooth normals of all shutter keys, if the mesh deforms and is not shaded flat. Throws Error CANCELLED if
+// the monitor says so.
+void set_shutter_normals(MeshData* mesh, const CommitMonitor& monitor = {nullptr, nullptr});
 // Copies and checks the caller's arrays. Throws Error INVALID_ARGUMENT with the name of the mesh if an array is
 // missing, or if counts and indices contradict each other.
 std::shared_ptr<const MeshData> make_mesh(const GradusMesh& desc);

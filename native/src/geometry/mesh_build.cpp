@@ -255,11 +255,12 @@ void set_bounds(MeshData* mesh) {
   }
 }
 
-void set_shutter_normals(MeshData* mesh) {
+void set_shutter_normals(MeshData* mesh, const CommitMonitor& monitor) {
   if (mesh->shutter_keys == 0 || mesh->normals.empty()) return;
-  mesh->shutter_normals = smooth_normals(*mesh, mesh->frame_positions());
+  mesh->shutter_normals = smooth_normals(*mesh, mesh->frame_positions(), monitor);
   for (size_t k = 0; k < mesh->shutter_keys; ++k) {
-    const std::vector<Vec3> normals = smooth_normals(*mesh, mesh->shutter_positions.data() + k * mesh->vertex_count);
+    const std::vector<Vec3> normals =
+        smooth_normals(*mesh, mesh->shutter_positions.data() + k * mesh->vertex_count, monitor);
     mesh->shutter_normals.insert(mesh->shutter_normals.end(), normals.begin(), normals.end());
   }
 }

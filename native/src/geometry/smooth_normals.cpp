@@ -35,10 +35,12 @@ void add_polygon(const std::vector<uint32_t>& v, const Vec3* p, std::vector<Vec3
 
 }  // namespace
 
-std::vector<Vec3> smooth_normals(const MeshData& mesh, const Vec3* positions) {
+std::vector<Vec3> smooth_normals(const MeshData& mesh, const Vec3* positions, const CommitMonitor& monitor) {
   std::vector<Vec3> normals(mesh.vertex_count, Vec3(0.0f));
   std::vector<uint32_t> polygon;
+  uint32_t faces = 0;
   for (uint32_t begin = 0, end = 0; begin < mesh.triangle_count; begin = end) {
+    monitor.check_at(faces++);
     for (end = begin + 1; end < mesh.triangle_count && mesh.face(end) == mesh.face(begin);) ++end;
     if (find_polygon(mesh, begin, end, &polygon)) {
       add_polygon(polygon, positions, &normals);

@@ -12,6 +12,8 @@ namespace gradus::geometry {
 // normal 0. Source: Thürmer and Wüthrich, Computing Vertex Normals from Polygonal Facets (1998). The normals are summed
 // in the order of the polygons, so that equal meshes have bitwise equal normals. Blender before 4.0 sums in an
 // arbitrary order, and its normals differ in the last bit between two evaluations.
-std::vector<Vec3> smooth_normals(const MeshData& mesh, const Vec3* positions);
+// Throws Error CANCELLED if the monitor says so.
+std::vector<Vec3> smooth_normals(const MeshData& mesh, const Vec3* positions,
+                                 const CommitMonitor& monitor = {nullptr, nullptr});
 
 }  // namespace gradus::geometry

@@ -8,9 +8,8 @@
 #include <span>
 #include <tuple>
 
-#include <tbb/parallel_for.h>
-
 #include "base/fpu.h"
+#include "base/parallel_each.h"
 
 namespace gradus::geometry {
 
@@ -66,11 +65,12 @@ void add_corners(const MeshData& mesh, const MeshAttribute& uv, uint32_t triangl
   }
 }
 
-std::vector<Corner> corners_of(const MeshData& mesh, const MeshAttribute& uv) {
+std::vector<Corner> corners_of(const MeshData& mesh, const MeshAttribute& uv, const CommitMonitor& monitor) {
   std::vector<Corner> corners(size_t(mesh.triangle_count) * 3,
                               Corner{kDroppedVertex, Vec3(0.0f), Vec2(0.0f), 0.0f, Vec4(0.0f)});
-  tbb::parallel_for(uint32_t(0), mesh.triangle_count, [&](uint32_t triangle) {
+  parallel_each(mesh.triangle_count, monitor, [&](size_t index) {
     const FlushDenormals flush;
+    const auto triangle = uint32_t(index);
     if (!mesh.is_dropped(triangle)) add_corners(mesh, uv, triangle, &corners[size_t(triangle) * 3]);
   });
   return corners;
@@ -78,7 +78,8 @@ std::vector<Corner> corners_of(const MeshData& mesh, const MeshAttribute& uv) {
 
 // Returns the indices of the corners in an order in which corners at the same place are consecutive. Equal corners are
 // ordered by index, so that sums are bitwise equal on every machine.
-std::vector<uint32_t> by_place(const std::vector<Corner>& corners, uint32_t vertex_count) {
+std::vector<uint32_t> by_place(const std::vector<Corner>& corners, uint32_t vertex_count,
+                               const CommitMonitor& monitor) {
   std::vector<uint32_t> first(size_t(vertex_count) + 1, 0);
   for (const Corner& c : corners)
     if (c.vertex != kDroppedVertex) ++first[c.vertex + 1];
@@ -86,7 +87,8 @@ std::vector<uint32_t> by_place(const std::vector<Corner>& corners, uint32_t vert
   std::vector<uint32_t> order(first.back()), next(first.begin(), first.end() - 1);
   for (uint32_t i = 0; i < corners.size(); ++i)
     if (corners[i].vertex != kDroppedVertex) order[next[corners[i].vertex]++] = i;
-  tbb::parallel_for(uint32_t(0), vertex_count, [&](uint32_t v) {
+  monitor.check();
+  parallel_each(vertex_count, monitor, [&](size_t v) {
     std::sort(order.begin() + first[v], order.begin() + first[v + 1], [&](uint32_t a, uint32_t b) {
       return std::tuple(corners[a].place(), a) < std::tuple(corners[b].place(), b);
     });
@@ -165,12 +167,13 @@ std::array<Vec4, 3> TangentField::corners(uint32_t triangle) const {
   return {tangents[i[0]], tangents[i[1]], tangents[i[2]]};
 }
 
-std::shared_ptr<const TangentField> make_tangents(const std::shared_ptr<const MeshData>& mesh,
-                                                  const MeshAttribute& uv) {
-  const std::vector<Corner> corners = corners_of(*mesh, uv);
-  const std::vector<uint32_t> order = by_place(corners, mesh->vertex_count);
+std::shared_ptr<const TangentField> make_tangents(const std::shared_ptr<const MeshData>& mesh, const MeshAttribute& uv,
+                                                  const CommitMonitor& monitor) {
+  const std::vector<Corner> corners = corners_of(*mesh, uv, monitor);
+  const std::vector<uint32_t> order = by_place(corners, mesh->vertex_count, monitor);
   std::vector<uint32_t> places(corners.size(), 0), starts;
   for (uint32_t i = 0; i < order.size(); ++i) {
+    monitor.check_at(i);
     if (i == 0 || corners[order[i]].place() != corners[order[i - 1]].place()) starts.push_back(i);
     places[order[i]] = uint32_t(starts.size()) - 1;
   }
@@ -181,6 +184,7 @@ std::shared_ptr<const TangentField> make_tangents(const std::shared_ptr<const Me
   field->corner_tangents.resize(corners.size());
   CornerGroups groups(corners, places);
   for (size_t place = 0; place + 1 < starts.size(); ++place) {
+    monitor.check_at(place);
     const std::span<const uint32_t> at_place(order.data() + starts[place], starts[place + 1] - starts[place]);
     const std::vector<uint32_t>& first = groups.find(at_place);
     for (uint32_t k = 0; k < at_place.size(); ++k) {

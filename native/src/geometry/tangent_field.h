@@ -24,7 +24,8 @@ struct TangentField {
   std::array<Vec4, 3> corners(uint32_t triangle) const;
 };
 
-// Computes the tangents of a UV map `uv` of the mesh.
-std::shared_ptr<const TangentField> make_tangents(const std::shared_ptr<const MeshData>& mesh, const MeshAttribute& uv);
+// Computes the tangents of a UV map `uv` of the mesh. Throws Error CANCELLED if the monitor says so.
+std::shared_ptr<const TangentField> make_tangents(const std::shared_ptr<const MeshData>& mesh, const MeshAttribute& uv,
+                                                  const CommitMonitor& monitor = {nullptr, nullptr});
 
 }  // namespace gradus::geometry

@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "base/hash.h"
-#include "image/coarser_tile.h"
 #include "image/color.h"
 #include "image/image.h"
 #include "image/image_convert.h"
@@ -55,6 +54,7 @@ std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorMa
   auto image = std::make_shared<Image>();
   image->name = source.name;
   image->ignores_alpha = source.alpha_mode == GRADUS_ALPHA_NONE;
+  image->associates_alpha = source.alpha_mode != GRADUS_ALPHA_CHANNEL_PACKED && !image->ignores_alpha;
   ContentHash hash;
   hash.value(source.color_space);
   for (const uint32_t v : {source.alpha_mode, uint32_t(source.is_float)}) hash.value(v);
@@ -71,7 +71,6 @@ std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorMa
       stored = convert_tile(std::move(decoded), color, source.color_space, source.is_float, is_straight);
       mean = mean_color(stored);
       image->has_alpha = image->has_alpha || (!image->ignores_alpha && has_transparency(stored));
-      add_coarser_tiles(&stored, source.alpha_mode != GRADUS_ALPHA_CHANNEL_PACKED && !image->ignores_alpha);
     } else {
       problem += ", which shows as pink, as in Cycles";
     }

@@ -143,12 +143,15 @@ Vec4 gather(const ImageTile& tile, const Taps<N>& x, const Taps<N>& y) {
 }
 
 // Returns the coarsest resolution of a tile whose texels are not longer than `extent`, in units of the tile.
-const ImageTile& resolution_for(const ImageTile& full, float extent) {
+const ImageTile& resolution_for(const ImageTile& full, float extent, bool is_straight) {
   const ImageTile* tile = &full;
-  while (tile->coarser && extent * static_cast<float>(std::min(tile->coarser->width, tile->coarser->height)) >= 1.0f) {
-    tile = tile->coarser.get();
+  for (;;) {
+    const ImageTile* coarser = (is_straight ? tile->coarser_straight : tile->coarser).get();
+    if (!coarser || extent * static_cast<float>(std::min(coarser->width, coarser->height)) < 1.0f) {
+      return *tile;
+    }
+    tile = coarser;
   }
-  return *tile;
 }
 
 // Returns the stored value at `uv`, before conversion to scene-linear.
@@ -205,8 +208,8 @@ Vec4 ImageStore::lookup(uint32_t index, const Vec2& uv, Interpolation interpolat
   if (tile == nullptr || tile->width == 0) {
     return kMissing;
   }
-  if (extent > 0.0f && interpolation != Interpolation::Closest) {
-    tile = &resolution_for(*tile, extent);
+  if (extent > 0.0f && interpolation == Interpolation::Linear) {
+    tile = &resolution_for(*tile, extent, unassociate);
   }
   Vec4 value = interpolate(*tile, local, interpolation, extension);
   if (image.ignores_alpha) {

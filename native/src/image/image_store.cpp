@@ -1,10 +1,17 @@
 #include "image/image_store.h"
 
-#include <algorithm>
-
+#include "image/coarser_tile.h"
 #include "image/image.h"
 
 namespace gradus::image {
+namespace {
+
+// Returns the memory of a tile and of all coarser ones.
+size_t chain_bytes(const ImageTile* tile) {
+  return tile == nullptr ? 0 : tile->size_bytes() + chain_bytes(tile->coarser.get());
+}
+
+}  // namespace
 
 uint32_t ImageStore::add(uint64_t key, std::shared_ptr<const Image> image) {
   const auto [entry, is_new] = index_.try_emplace(key, size());
@@ -25,8 +32,8 @@ Rgb ImageStore::mean(uint32_t index) const { return index < size() ? images_[ind
 
 bool ImageStore::has_alpha(uint32_t index) const { return index < size() && images_[index]->has_alpha; }
 
-bool ImageStore::has_coarser_tiles(uint32_t index) const {
-  return index < size() && std::ranges::any_of(images_[index]->tiles, [](const ImageTile& t) { return !!t.coarser; });
+bool ImageStore::can_be_coarser(uint32_t index) const {
+  return index < size() && image::can_be_coarser(*images_[index]);
 }
 
 uint32_t ImageStore::width(uint32_t index) const {
@@ -49,8 +56,9 @@ size_t ImageStore::memory_bytes() const {
   size_t sum = 0;
   for (const auto& image : images_) {
     for (const ImageTile& tile : image->tiles) {
-      for (const ImageTile* t = &tile; t != nullptr; t = t->coarser.get()) {
-        sum += t->size_bytes();
+      sum += tile.size_bytes() + chain_bytes(tile.coarser.get());
+      if (tile.coarser_straight != tile.coarser) {
+        sum += chain_bytes(tile.coarser_straight.get());
       }
     }
   }

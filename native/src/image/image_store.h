@@ -61,16 +61,19 @@ class ImageStore {
   // Returns scene-linear RGBA as Cycles' image node does. Colours are multiplied by alpha, except for the alpha modes
   // CHANNEL_PACKED and NONE; `unassociate` divides by it, which Cycles does if the node's Alpha output is used. The
   // result is 0 outside a clipped image, and magenta for absent UDIM tiles and for kNone. Any uv is allowed; one that
-  // is not finite counts as 0. `extent` is the length in uv that the result may be a mean of; 0 is full resolution, as
-  // is Closest, which shows the texels themselves.
+  // is not finite counts as 0. `extent` is the length in uv that the result may be a mean of, if the image has lower
+  // resolutions (image/coarser_tile.h); 0 is full resolution, as are Closest, which shows the texels themselves, and
+  // Cubic, whose mean is another one if values are encoded.
   Vec4 lookup(uint32_t index, const Vec2& uv, Interpolation interpolation, Extension extension,
               bool unassociate = false, float extent = 0.0f) const;
   // Returns the scene-linear mean colour of the image.
   Rgb mean(uint32_t index) const;
   // Returns whether some texel has an alpha below 1.
   bool has_alpha(uint32_t index) const;
-  // Returns whether a look-up can have a lower resolution.
-  bool has_coarser_tiles(uint32_t index) const;
+  // Returns whether the image is large enough for look-ups at a lower resolution.
+  bool can_be_coarser(uint32_t index) const;
+  // Replaces an image.
+  void set(uint32_t index, std::shared_ptr<const Image> image) { images_[index] = std::move(image); }
   // Return the size of the image's first tile, or 0 if it could not be read.
   uint32_t width(uint32_t index) const;
   uint32_t height(uint32_t index) const;

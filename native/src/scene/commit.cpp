@@ -135,20 +135,40 @@ std::string tenths(float value) {
   return text.data();
 }
 
+// The objects that are coarser than asked for because of one limit.
+struct CoarseObjects {
+  AffectedObjects objects;
+  float coarseness = 1.0f;
+
+  void warn(const std::string& why, Snapshot* snapshot) const {
+    objects.warn("is coarser than its dicing rate", "are coarser than their dicing rate",
+                 why + ". The longest edges are " + tenths(coarseness) + " times as long as asked for",
+                 &snapshot->warnings);
+  }
+};
+
+// Returns the camera in whose picture edges are measured, in internal space.
+GradusCamera dicing_camera(const Scene::State& state, const Snapshot& snapshot) {
+  if (!state.dicing_camera) return snapshot.camera;
+  GradusCamera camera = *state.dicing_camera;
+  move_matrix(camera.matrix, snapshot.origin);
+  return camera;
+}
+
 // Divides the triangles of meshes that are to be diced.
 void dice_meshes(const CommitMonitor& monitor, const std::vector<size_t>& chosen, Scene::State* state,
                  Snapshot* snapshot) {
-  AffectedObjects coarse;
-  float coarseness = 1.0f;
-  for (const CoarseInstance& found : dice_instances(monitor, DicingLimits{}, &state->diced, snapshot)) {
-    coarse.add(state->instances.name(chosen[found.index]));
-    coarseness = std::max(coarseness, found.coarseness);
+  constexpr DicingLimits kLimits;
+  const auto million = [](uint64_t triangles) { return std::to_string(triangles >> 20) + " million triangles"; };
+  CoarseObjects by_mesh, by_scene;
+  for (const CoarseInstance& found :
+       dice_instances(monitor, kLimits, dicing_camera(*state, *snapshot), &state->diced, snapshot)) {
+    CoarseObjects& coarse = found.by_scene ? by_scene : by_mesh;
+    coarse.objects.add(state->instances.name(chosen[found.index]));
+    coarse.coarseness = std::max(coarse.coarseness, found.coarseness);
   }
-  coarse.warn("is coarser than its dicing rate", "are coarser than their dicing rate",
-              "more than " + std::to_string(DicingLimits{}.mesh >> 20) +
-                  " million triangles would be needed. The longest edges are " + tenths(coarseness) +
-                  " times as long as asked for",
-              &snapshot->warnings);
+  by_mesh.warn("more than " + million(kLimits.mesh) + " would be needed", snapshot);
+  by_scene.warn("the scene would need more than " + million(kLimits.scene) + " in all", snapshot);
 }
 
 // Moves the vertices of meshes by the displacement of their materials.
@@ -200,6 +220,11 @@ void find_emission(Snapshot* snapshot) {
                                    !(material->emission_is_constant && is_black(material->constant_emission));
 }
 
+// Returns the acceleration structure of the shadow catchers in the last commit, or nullptr.
+std::shared_ptr<const geometry::Accelerator> accelerator_of_catchers(const Scene::State& state) {
+  return state.current && state.current->catchers ? state.current->catchers->accelerator : nullptr;
+}
+
 // Makes the snapshot of the shadow catchers alone. `exact` returns the matrix of an instance of the whole snapshot.
 void add_catchers(const geometry::EmbreeDevice& device, const geometry::ExactMatrices& exact,
                   std::vector<light::AnalyticLight> analytic_lights, const std::vector<size_t>& chosen,
@@ -225,7 +250,7 @@ void add_catchers(const geometry::EmbreeDevice& device, const geometry::ExactMat
     return (analytic_light.visibility & GRADUS_SHADOW_CATCHER) == 0;
   });
   const auto exact_of_catcher = [&](size_t k) { return exact(origins[k]); };
-  build_geometry(device, exact_of_catcher, monitor.step(0.8f, 0.85f), nullptr, catchers.get());
+  build_geometry(device, exact_of_catcher, monitor.step(0.8f, 0.85f), accelerator_of_catchers(*state), catchers.get());
   build_lights(device, std::move(analytic_lights), chosen_catchers, monitor, state, catchers.get());
   find_sharpest(catchers.get());
   find_emission(catchers.get());
@@ -246,6 +271,7 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     load_images(*device_, monitor, state_.get(), snapshot.get());
     monitor.report(0.2f);
     const MaterialIndex materials = compile_materials(monitor, state_.get(), snapshot.get());
+    add_coarser_images(monitor, state_.get(), snapshot.get());
     const std::vector<size_t> chosen = place_instances(*state_, snapshot.get());
     monitor.check();
     assign_materials(state_->instances, chosen, materials, snapshot.get());
@@ -253,7 +279,7 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     place_world(*state_, materials, snapshot.get());
     if (snapshot->has_camera) dice_meshes(monitor, chosen, state_.get(), snapshot.get());
     displace_meshes(monitor, chosen, state_.get(), snapshot.get());
-    add_tangents(state_->current.get(), snapshot.get());
+    add_tangents(state_->current.get(), monitor, snapshot.get());
     monitor.check();
     const auto exact = [&](size_t k) {
       return internal_matrix(state_->instances.matrices[chosen[k]], snapshot->origin);

@@ -61,6 +61,13 @@ void hash_camera(const GradusCamera& c, const camera::CameraKeys& keys, ContentH
   hash->array(keys.windows);
 }
 
+void hash_dicing_camera(const GradusCamera& c, ContentHash* hash) {
+  hash->value(c.type);
+  hash->value(c.clip_start);
+  hash_matrix(c.matrix, hash);
+  hash->bytes(c.window, sizeof(c.window));
+}
+
 void hash_world(const GradusWorld& w, const Contents& contents, ContentHash* hash) {
   for (const uint32_t v : {w.visibility, w.importance, w.map_size, w.mist_falloff}) hash->value(v);
   hash->value(contents.material(w.material));
@@ -91,6 +98,7 @@ uint64_t content_key(const Scene::State& state) {
   for (const uint64_t key : state.instances.materials) hash.value(contents.material(key));
   for (const LightSource& light : state.lights) hash_light(light, contents, &hash);
   if (state.has_camera) hash_camera(state.camera, state.camera_keys, &hash);
+  if (state.dicing_camera) hash_dicing_camera(*state.dicing_camera, &hash);
   if (state.has_world) hash_world(state.world, contents, &hash);
   if (!state.channels.empty()) hash_for_channels(state, &hash);
   return hash.result();

@@ -28,9 +28,10 @@ struct Job {
   float longest = 0.0f;                      // excess of the longest edge; 0: a limit is reached
   uint64_t next_count = 0;                   // number of triangles after the next division
 
-  void finish() {
+  void finish(bool by_scene) {
     if (!(longest > 0.0f)) return;
     result.coarseness = std::max(1.0f, longest);
+    result.by_scene = by_scene;
     longest = 0.0f;
   }
 };
@@ -90,13 +91,13 @@ void divide_longest_edges(const CommitMonitor& monitor, const DicingLimits& limi
     for_each_job(jobs, [&](Job* job) {
       job->next_count = job->longest > limit ? job->dicing->count_after(limit) : job->dicing->triangles().size();
       if (job->longest <= limit || job->next_count <= limits.mesh) return;
-      job->finish();
+      job->finish(false);
       job->next_count = job->dicing->triangles().size();
     });
     uint64_t total = 0;
     for (const Job& job : *jobs) total += job.next_count;
     if (total > limits.scene) {
-      for (Job& job : *jobs) job.finish();
+      for (Job& job : *jobs) job.finish(true);
       return;
     }
     for_each_job(jobs, [&](Job* job) {
@@ -112,7 +113,7 @@ void dice(const CommitMonitor& monitor, const DicingLimits& limits, const Pictur
     Job& job = (*jobs)[i];
     job.measure = std::make_unique<EdgeMeasure>(scale, *job.result.from, job.instances);
     job.dicing = std::make_unique<geometry::Dicing>(
-        job.result.from, [&](const Vec3& a, const Vec3& b) { return job.measure->excess(a, b); });
+        job.result.from, [&](const Vec3& a, const Vec3& b) { return job.measure->excess(a, b); }, monitor);
     job.longest = job.dicing->largest_excess();
   });
   divide_longest_edges(monitor, limits, jobs);
@@ -146,10 +147,11 @@ bool reuse(const std::vector<DicedMesh>& known, const PictureScale& scale, std::
 }  // namespace
 
 std::vector<CoarseInstance> dice_instances(const CommitMonitor& monitor, const DicingLimits& limits,
-                                           std::vector<DicedMesh>* known, Snapshot* snapshot) {
+                                           const GradusCamera& camera, std::vector<DicedMesh>* known,
+                                           Snapshot* snapshot) {
   std::vector<Job> jobs = collect_jobs(*snapshot);
-  for (Job& job : jobs) job.result.view = view_of(snapshot->camera, job);
-  const PictureScale scale(snapshot->camera);
+  for (Job& job : jobs) job.result.view = view_of(camera, job);
+  const PictureScale scale(camera);
   if (!reuse(*known, scale, &jobs)) dice(monitor, limits, scale, &jobs);
   std::map<const geometry::MeshData*, const DicedMesh*> results;
   for (const Job& job : jobs) results[job.result.from.get()] = &job.result;
@@ -159,7 +161,7 @@ std::vector<CoarseInstance> dice_instances(const CommitMonitor& monitor, const D
     if (instance.mesh->dicing_levels == 0) continue;
     const DicedMesh& result = *results.at(instance.mesh.get());
     instance.mesh = result.mesh;
-    if (result.coarseness > 1.0f) coarse.push_back({k, result.coarseness});
+    if (result.coarseness > 1.0f) coarse.push_back({k, result.coarseness, result.by_scene});
   }
   known->clear();
   for (Job& job : jobs) known->push_back(std::move(job.result));

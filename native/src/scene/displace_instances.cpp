@@ -37,14 +37,13 @@ DisplacedMesh displace(const CommitMonitor& monitor, const Snapshot& snapshot, s
   result.from = snapshot.instances[index];
   result.from.keys = nullptr;
   result.materials = std::move(materials);
-  add_tangents(snapshot, &result.from);
-  const shading::VertexOffsets found =
-      shading::evaluate_offsets(snapshot, uint32_t(index), result.from, [&] { return monitor.is_running(); });
-  monitor.check();
+  add_tangents(snapshot, monitor, &result.from);
+  const shading::VertexOffsets found = shading::evaluate_offsets(snapshot, uint32_t(index), result.from, monitor);
   result.not_finite = found.not_finite;
   const bool moves =
       std::any_of(found.offsets.begin(), found.offsets.end(), [](const Vec3& offset) { return offset != Vec3(0.0f); });
-  result.mesh = moves ? geometry::displaced_mesh(*result.from.mesh, found.offsets, found.moves) : result.from.mesh;
+  result.mesh =
+      moves ? geometry::displaced_mesh(*result.from.mesh, found.offsets, found.moves, monitor) : result.from.mesh;
   return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include <glm/gtc/type_ptr.hpp>
 
+#include "base/commit_monitor.h"
 #include "geometry/matrix_keys.h"
 #include "geometry/mesh_at.h"
 #include "scene/snapshot_geometry.h"
@@ -63,7 +64,7 @@ void move_undisplaced(const Step& step, const Snapshot& snapshot, Meshes* meshes
   if (!instance->undisplaced) return;
   auto undisplaced = std::make_shared<geometry::InstanceData>(*instance->undisplaced);
   move_instance(step, meshes, undisplaced.get());
-  if (undisplaced->tangents.empty()) add_tangents(snapshot, undisplaced.get());
+  if (undisplaced->tangents.empty()) add_tangents(snapshot, CommitMonitor(nullptr, nullptr), undisplaced.get());
   instance->undisplaced = std::move(undisplaced);
 }
 
@@ -100,7 +101,7 @@ std::shared_ptr<const Snapshot> moved_snapshot(const Snapshot& snapshot, Moment 
   moved->is_other_shot = step.is_next() ? snapshot.shot_change_after : snapshot.shot_change_before;
   move_camera(step, &moved->camera);
   if (!move_instances(step, moved.get())) return moved;
-  add_tangents(&snapshot, moved.get());
+  add_tangents(&snapshot, CommitMonitor(nullptr, nullptr), moved.get());
   const auto exact = [&](size_t i) { return glm::dmat4(moved->instances[i].to_world); };
   const geometry::EmbreeDevice& device = snapshot.accelerator->static_part.group->device;
   build_geometry(

@@ -107,6 +107,11 @@ void Scene::set_camera(const GradusCamera& camera) {
   state_->has_camera = true;
 }
 
+void Scene::set_dicing_camera(const GradusCamera* camera) {
+  const Lock lock(state_->mutex);
+  state_->dicing_camera = camera ? std::optional(*camera) : std::nullopt;
+}
+
 void Scene::set_world(const GradusWorld& world) {
   if (world.mist_falloff > GRADUS_MIST_INVERSE_QUADRATIC || world.importance > 2)
     throw invalid_argument("world: unknown falloff or importance");

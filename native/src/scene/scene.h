@@ -27,6 +27,8 @@ class Scene {
   void set_instances(const GradusInstances& instances);
   void set_lights(const GradusLight* lights, size_t count);
   void set_camera(const GradusCamera& camera);
+  // Sets the camera in whose picture meshes are diced; nullptr: the one that renders.
+  void set_dicing_camera(const GradusCamera* camera);
   void set_world(const GradusWorld& world);
   void set_channels(const GradusChannel* channels, size_t count);
   void remove(GradusObjectKind kind, uint64_t key);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -41,6 +42,9 @@ struct LoadedImage {
 // Maps the keys of images to their pixels.
 using StoredImages = std::map<uint64_t, std::shared_ptr<const image::Image>>;
 
+// Maps images to copies that have lower resolutions, too.
+using CoarserImages = std::map<std::shared_ptr<const image::Image>, std::shared_ptr<const image::Image>>;
+
 struct CompiledMaterial {
   std::shared_ptr<const MaterialSource> source;
   std::shared_ptr<const shading::MaterialData> data;
@@ -60,6 +64,7 @@ struct Scene::State {
   GradusCamera camera{};  // its arrays belong to `camera_keys`
   camera::CameraKeys camera_keys;
   bool has_camera = false;
+  std::optional<GradusCamera> dicing_camera;  // its arrays are not used
   GradusWorld world{};
   bool has_world = false;
   SceneChannels channels;
@@ -68,6 +73,7 @@ struct Scene::State {
   std::shared_ptr<const Snapshot> current;
   std::shared_ptr<const image::ImageStore> image_store;
   StoredImages stored_images;  // those in `image_store`
+  CoarserImages coarser_images;
   std::map<uint64_t, CompiledMaterial> compiled;
   std::vector<DicedMesh> diced;
   std::vector<DisplacedMesh> displaced;
@@ -107,6 +113,8 @@ void set_radius(Snapshot* snapshot);
 void load_images(Device& device, const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot);
 // Sets the materials of a snapshot, the default material first, and warnings. load_images() must have been called.
 MaterialIndex compile_materials(const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot);
+// Gives lower resolutions to the images of a snapshot of which its materials average texels.
+void add_coarser_images(const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot);
 // Returns a hash of everything that the caller set.
 uint64_t content_key(const Scene::State& state);
 

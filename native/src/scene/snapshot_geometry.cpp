@@ -56,10 +56,11 @@ void for_each_tangent_map(const Snapshot& snapshot, const geometry::InstanceData
 using TangentFields = std::map<const geometry::MeshAttribute*, std::shared_ptr<const geometry::TangentField>>;
 
 // Adds the tangents of an instance. Those in `fields` are shared, and it receives the others.
-void add_tangents_of(const Snapshot& snapshot, TangentFields* fields, geometry::InstanceData* instance) {
+void add_tangents_of(const Snapshot& snapshot, const CommitMonitor& monitor, TangentFields* fields,
+                     geometry::InstanceData* instance) {
   for_each_tangent_map(snapshot, *instance, [&](const geometry::MeshAttribute& uv) {
     auto& field = (*fields)[&uv];
-    if (!field) field = geometry::make_tangents(instance->mesh, uv);
+    if (!field) field = geometry::make_tangents(instance->mesh, uv, monitor);
     if (std::find(instance->tangents.begin(), instance->tangents.end(), field) == instance->tangents.end())
       instance->tangents.push_back(field);
   });
@@ -82,18 +83,18 @@ void build_geometry(const geometry::EmbreeDevice& device, const geometry::ExactM
   refer_to_triangles(snapshot->accelerator->moving, snapshot);
 }
 
-void add_tangents(const Snapshot* before, Snapshot* snapshot) {
+void add_tangents(const Snapshot* before, const CommitMonitor& monitor, Snapshot* snapshot) {
   TangentFields fields;
   if (before) {
     for (const geometry::InstanceData& instance : before->instances)
       for (const auto& field : instance.tangents) fields[field->uv] = field;
   }
-  for (geometry::InstanceData& instance : snapshot->instances) add_tangents_of(*snapshot, &fields, &instance);
+  for (geometry::InstanceData& instance : snapshot->instances) add_tangents_of(*snapshot, monitor, &fields, &instance);
 }
 
-void add_tangents(const Snapshot& snapshot, geometry::InstanceData* instance) {
+void add_tangents(const Snapshot& snapshot, const CommitMonitor& monitor, geometry::InstanceData* instance) {
   TangentFields fields;
-  add_tangents_of(snapshot, &fields, instance);
+  add_tangents_of(snapshot, monitor, &fields, instance);
 }
 
 }  // namespace gradus::scene

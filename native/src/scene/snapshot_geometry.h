@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "base/commit_monitor.h"
 #include "geometry/accelerator.h"
 #include "scene/snapshot.h"
 
@@ -16,9 +17,10 @@ void build_geometry(const geometry::EmbreeDevice& device, const geometry::ExactM
                     const BuildProgress& progress, const std::shared_ptr<const geometry::Accelerator>& before,
                     Snapshot* snapshot);
 
-// Computes the tangents that the materials of the instances read. Those that `before` already has are shared.
-void add_tangents(const Snapshot* before, Snapshot* snapshot);
+// Computes the tangents that the materials of the instances read. Those that `before` already has are shared. Throws
+// Error CANCELLED.
+void add_tangents(const Snapshot* before, const CommitMonitor& monitor, Snapshot* snapshot);
 // Computes those of a single instance.
-void add_tangents(const Snapshot& snapshot, geometry::InstanceData* instance);
+void add_tangents(const Snapshot& snapshot, const CommitMonitor& monitor, geometry::InstanceData* instance);
 
 }  // namespace gradus::scene

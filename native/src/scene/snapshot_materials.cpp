@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include "base/error.h"
+#include "image/coarser_tile.h"
 #include "scene/device.h"
 #include "scene/scene_state.h"
 #include "shading/material.h"
@@ -78,6 +79,30 @@ MaterialIndex compile_materials(const CommitMonitor& monitor, Scene::State* stat
   }
   state->compiled = std::move(kept);
   return index;
+}
+
+void add_coarser_images(const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot) {
+  std::set<uint32_t> averaged;
+  for (const auto& material : snapshot->materials)
+    averaged.insert(material->averaged_images.begin(), material->averaged_images.end());
+  CoarserImages coarser;
+  for (const uint32_t index : averaged) {
+    const std::shared_ptr<const image::Image>& image = state->image_store->image(index);
+    const auto known = state->coarser_images.find(image);
+    coarser[image] = known == state->coarser_images.end() ? nullptr : known->second;
+  }
+  std::vector<CoarserImages::value_type*> pending;
+  for (auto& entry : coarser)
+    if (!entry.second) pending.push_back(&entry);
+  tbb::parallel_for(size_t(0), pending.size(), [&](size_t i) {
+    if (monitor.is_running()) pending[i]->second = image::with_coarser_tiles(*pending[i]->first);
+  });
+  monitor.check();
+  state->coarser_images = std::move(coarser);
+  if (averaged.empty()) return;
+  auto store = std::make_shared<image::ImageStore>(*state->image_store);
+  for (const uint32_t index : averaged) store->set(index, state->coarser_images.at(state->image_store->image(index)));
+  snapshot->images = std::move(store);
 }
 
 }  // namespace gradus::scene

@@ -229,6 +229,12 @@ void describe_transparency(MaterialData* m) {
   m->constant_transparency = r.transparency;
 }
 
+// Adds the images of which the program may average texels.
+void add_averaged_images(const Program& p, std::vector<uint32_t>* images) {
+  for (const Instruction& i : p.code)
+    if (i.texture_map > 0) images->push_back(i.resource);
+}
+
 // Makes a program look up images at full resolution.
 void show_images_in_full(Program* p) {
   for (Instruction& i : p->code) i.texture_map = 0;
@@ -300,6 +306,8 @@ std::shared_ptr<const MaterialData> compile_material(const GradusMaterial& desc,
   // Light sampling finds the emission in full, so that bounces must find the same.
   if (m->emits)
     for (Program* program : {&m->surface, &m->transparency}) show_images_in_full(program);
+  for (const Program* program : {&m->surface, &m->transparency, &m->aovs})
+    add_averaged_images(*program, &m->averaged_images);
   describe_transparency(m.get());
   m->values_depend_on_ray = values_depend_on_ray(m->surface);
   m->draws_random = program_draws_random(m->surface);

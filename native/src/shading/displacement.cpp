@@ -2,9 +2,7 @@
 
 #include <atomic>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
+#include "base/parallel_each.h"
 #include "geometry/mesh.h"
 #include "geometry/smooth_normals.h"
 #include "shading/interpreter.h"
@@ -30,27 +28,25 @@ bool is_usable(const Vec3& v) {
 
 class Evaluation {
  public:
-  Evaluation(const ShadedScene& scene, uint32_t index, const geometry::InstanceData& instance)
-      : scene_(scene), index_(index), instance_(instance), mesh_(*instance.mesh) {
+  Evaluation(const ShadedScene& scene, uint32_t index, const geometry::InstanceData& instance,
+             const CommitMonitor& monitor)
+      : scene_(scene), index_(index), instance_(instance), mesh_(*instance.mesh), monitor_(monitor) {
     if (mesh_.normals.empty() || mesh_.normal_domain == GRADUS_DOMAIN_FACE)
-      vertex_normals_ = geometry::smooth_normals(mesh_, mesh_.frame_positions());
+      vertex_normals_ = geometry::smooth_normals(mesh_, mesh_.frame_positions(), monitor);
   }
 
-  VertexOffsets run(const std::function<bool()>& is_running) const {
+  VertexOffsets run() const {
     VertexOffsets result;
     result.offsets.assign(mesh_.vertex_count, Vec3(0.0f));
     result.moves.assign(mesh_.triangle_count, false);
     const std::vector<Corner> corners = choose_corners(&result);
     std::atomic<size_t> not_finite{0};
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, corners.size(), 1024), [&](const auto& range) {
-      if (!is_running()) return;
-      for (size_t i = range.begin(); i < range.end(); ++i) {
-        const Vec3 offset = offset_at(corners[i]);
-        if (is_usable(offset))
-          result.offsets[vertex(corners[i])] = offset;
-        else
-          ++not_finite;
-      }
+    parallel_each(corners.size(), monitor_, [&](size_t i) {
+      const Vec3 offset = offset_at(corners[i]);
+      if (is_usable(offset))
+        result.offsets[vertex(corners[i])] = offset;
+      else
+        ++not_finite;
     });
     result.not_finite = not_finite;
     return result;
@@ -72,6 +68,7 @@ class Evaluation {
     std::vector<Corner> chosen;
     std::vector<bool> done(mesh_.vertex_count);
     for (uint32_t t = 0; t < mesh_.triangle_count; ++t) {
+      monitor_.check_at(t);
       if (mesh_.is_dropped(t) || !material_of(t).displaces) continue;
       result->moves[t] = true;
       for (uint32_t k = 0; k < 3; ++k) {
@@ -121,14 +118,15 @@ class Evaluation {
   uint32_t index_;
   const geometry::InstanceData& instance_;
   const geometry::MeshData& mesh_;
+  const CommitMonitor& monitor_;
   std::vector<Vec3> vertex_normals_;  // only where the mesh has no smooth ones
 };
 
 }  // namespace
 
 VertexOffsets evaluate_offsets(const ShadedScene& scene, uint32_t index, const geometry::InstanceData& instance,
-                               const std::function<bool()>& is_running) {
-  return Evaluation(scene, index, instance).run(is_running);
+                               const CommitMonitor& monitor) {
+  return Evaluation(scene, index, instance, monitor).run();
 }
 
 }  // namespace gradus::shading

@@ -2,9 +2,9 @@
 // mesh.
 #pragma once
 
-#include <functional>
 #include <vector>
 
+#include "base/commit_monitor.h"
 #include "shading/context.h"
 
 namespace gradus::shading {
@@ -24,8 +24,8 @@ struct VertexOffsets {
 // Evaluates the materials of an instance at the vertices of its mesh, in the rendered frame. Like in Cycles, a vertex
 // moves by the material of its first triangle that displaces. Offsets that are not finite, or longer than Embree can
 // trace, are 0. `index` is that of the instance in the scene; `instance` is a copy with the tangents that its materials
-// read. Stops early, with an incomplete result, if `is_running` returns false.
+// read. Throws Error CANCELLED if the monitor says so.
 VertexOffsets evaluate_offsets(const ShadedScene& scene, uint32_t index, const geometry::InstanceData& instance,
-                               const std::function<bool()>& is_running);
+                               const CommitMonitor& monitor);
 
 }  // namespace gradus::shading

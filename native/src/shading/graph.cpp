@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "image/image_store.h"
 #include "shading/graph_check.h"
+#include "shading/image_mode.h"
 #include "shading/op_info.h"
 #include "shading/ops.h"
 #include "shading/program.h"
@@ -97,7 +98,7 @@ class Builder {
   // Replaces the alpha of an opaque image by 1, so that its material can be opaque. The extension CLIP adds transparent
   // surroundings and prevents this.
   void simplify_image(GraphNode* n) const {
-    const bool clips = (n->mode >> 4 & 3) == static_cast<uint32_t>(image::Extension::Clip);
+    const bool clips = extension_of(n->mode) == image::Extension::Clip;
     if (!clips && n->resource < images_.size() && !images_.has_alpha(n->resource)) n->outputs[1] = constant(Vec4(1.0f));
   }
 
@@ -105,7 +106,7 @@ class Builder {
   void map_texture(GraphNode* n) {
     const uint32_t projection = n->mode & 3;
     if (projection != GRADUS_PROJECTION_FLAT && projection != GRADUS_PROJECTION_BOX) return;
-    if (n->resource >= images_.size() || !images_.has_coarser_tiles(n->resource)) return;
+    if (interpolation_of(n->mode) != image::Interpolation::Linear || !images_.can_be_coarser(n->resource)) return;
     const TextureMap map = texture_map(graph_, n->inputs[0]);
     // A flat projection of coordinates in space has no lower bound on steep surfaces.
     const bool is_planar = map.source == TextureMap::Source::UvMap;

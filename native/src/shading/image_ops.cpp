@@ -1,6 +1,7 @@
 // The Image Texture and Environment Texture nodes.
 #include "image/image_store.h"
 #include "shading/context_ops.h"
+#include "shading/image_mode.h"
 #include "shading/scalar.h"
 #include "shading/texture_extent.h"
 
@@ -20,11 +21,10 @@ struct Sampler {
 };
 
 Sampler sampler_of(const ResourceArgs& args, const ShadeContext& c) {
-  const uint32_t interpolation = std::min(args.mode >> 2 & 3, 2u);
   return {c.images,
           args.resource,
-          static_cast<image::Interpolation>(interpolation),
-          static_cast<image::Extension>(args.mode >> 4 & 3),
+          interpolation_of(args.mode),
+          extension_of(args.mode),
           (args.mode >> 6 & 1) != 0,
           args.texture_map ? texture_extent(*args.texture_map, c) : 0.0f};
 }

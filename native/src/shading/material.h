@@ -68,6 +68,7 @@ struct MaterialData {
   std::vector<SunDisc> suns;              // sun discs of the material's Sky Textures
   float smallest_hidden_sun = 0.0f;       // half angle of the smallest sun at an unknown position; 0 if there is none
   std::vector<std::string> tangent_maps;  // UV maps whose tangents the surface or an AOV reads; "" is the default map
+  std::vector<uint32_t> averaged_images;  // in the store: those of which a look-up may average texels
 };
 
 // Compiles a node program: evaluates constant nodes, omits nodes without effect, and allocates registers. Throws Error

@@ -10,7 +10,7 @@ namespace gradus::shading {
 namespace {
 
 static_assert(kFirstValueOp == 32 && GRADUS_OP_LIMIT == 128);
-static_assert(kMaxInputs >= 28 && kMaxOutputs >= 5);
+static_assert(kMaxInputs >= 28 && kMaxOutputs >= 6);
 
 constexpr ModeSet modes(std::initializer_list<uint32_t> list) {
   ModeSet set = 0;
@@ -66,8 +66,8 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_BEVEL] = {"BEVEL", OpKind::Context, 2, 1, 1, 0};
   table[GRADUS_OP_DISPLACEMENT] = {"DISPLACEMENT", OpKind::Context, 4, 1, 0, GRADUS_NORMAL_WORLD};
   table[GRADUS_OP_VECTOR_DISPLACEMENT] = {"VECTOR_DISPLACEMENT", OpKind::Context, 3, 1, 0, GRADUS_NORMAL_WORLD};
-  table[GRADUS_OP_RAYCAST] = {"RAYCAST", OpKind::Context, 3, 5, 0, 1};
-  table[GRADUS_OP_RAYCAST_ATTRIBUTE] = {"RAYCAST_ATTRIBUTE", OpKind::Context, 3, 4, 0, 1};
+  table[GRADUS_OP_RAYCAST] = {"RAYCAST", OpKind::Context, 3, 6, 0, 1};
+  table[GRADUS_OP_RAYCAST_ATTRIBUTE] = {"RAYCAST_ATTRIBUTE", OpKind::Context, 1, 4, 0, 0};
   table[GRADUS_OP_IMAGE] = {"IMAGE", OpKind::Context, 1, 2, 0, 127};
   table[GRADUS_OP_ENVIRONMENT] = {"ENVIRONMENT", OpKind::Context, 1, 1, 0, 127};
   table[GRADUS_OP_NOISE] = {"NOISE", OpKind::Pure, 9, 2, 0, 255};

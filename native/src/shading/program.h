@@ -13,7 +13,7 @@ namespace gradus::shading {
 
 inline constexpr int kMaxRegisters = 256;
 inline constexpr int kMaxInputs = 28;
-inline constexpr int kMaxOutputs = 5;
+inline constexpr int kMaxOutputs = 6;
 
 // Instructions that exist only in compiled programs, in addition to the operations of GradusOp.
 enum InternalOp : uint16_t {
@@ -39,7 +39,7 @@ struct Instruction {
   uint32_t first_input = 0;
   uint32_t first_computed = 0;
   uint32_t computed_count = 0;
-  int16_t outputs[kMaxOutputs] = {kNoRegister, kNoRegister, kNoRegister, kNoRegister, kNoRegister};
+  int16_t outputs[kMaxOutputs] = {kNoRegister, kNoRegister, kNoRegister, kNoRegister, kNoRegister, kNoRegister};
 };
 
 // A range of instructions. The first block is the program; the others compute heights of Bump nodes.

@@ -176,10 +176,11 @@ class Emitter {
     emit_values(set);
   }
 
-  // Returns whether images have their full resolution: for emission, which light sampling must find as bounces do, and
-  // for heights, whose differences would show where the resolution changes.
+  // Returns whether images have their full resolution: for emission, which light sampling must find as bounces do, for
+  // heights, whose differences would show where the resolution changes, and for vertices, which have no extent.
   bool looks_up_in_full() const {
-    return scope_ == ProgramScope::Emission || scope_ == ProgramScope::Bump || block_ > 0;
+    return scope_ == ProgramScope::Emission || scope_ == ProgramScope::Bump || scope_ == ProgramScope::Displacement ||
+           block_ > 0;
   }
 
   Instruction instruction_of(const GraphNode& n) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gradus/gradus_nodes.h"
+#include "image/coarser_tile.h"
 #include "image/color.h"
 #include "image/image_store.h"
 #include "support/image_files.h"
@@ -51,6 +52,12 @@ inline StoredImage store_source(const image::ImageSource& source) {
   StoredImage result;
   result.index = result.store.add(7, image::load_image(source, color));
   return result;
+}
+
+// Adds the lower resolutions of the image, as a commit does for images that a material averages.
+inline StoredImage with_coarser(StoredImage image) {
+  image.store.set(image.index, image::with_coarser_tiles(*image.store.image(image.index)));
+  return image;
 }
 
 inline image::ImageSource encoded_source(const FileBytes& bytes, const std::string& space = "sRGB") {

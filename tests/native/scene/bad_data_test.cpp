@@ -253,6 +253,21 @@ TEST(Commit, UnchangedGeometryIsShared) {
   EXPECT_TRUE(second->intersect({Vec3(0, 0, 5), 0.0f, Vec3(0, 0, -1), kInfinity}, GRADUS_VISIBLE_CAMERA, &hit));
 }
 
+// Regression: each commit built the acceleration structure of the shadow catchers anew.
+TEST(Commit, UnchangedShadowCatchersAreShared) {
+  TestScene scene;
+  scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 20, 40));
+  scene.instance(1, Mat4(1.0f), GRADUS_VISIBLE_ALL | GRADUS_SHADOW_CATCHER);
+  const auto first = scene.commit();
+  scene.instance(1, translation(Vec3(0, 5, 0)));
+  const auto second = scene.commit();
+  ASSERT_TRUE(first->catchers && second->catchers);
+  EXPECT_NE(second->accelerator, first->accelerator);
+  EXPECT_EQ(second->catchers->accelerator, first->catchers->accelerator);
+  scene.instance(1, translation(Vec3(0, 9, 0)), GRADUS_VISIBLE_ALL | GRADUS_SHADOW_CATCHER);
+  EXPECT_NE(scene.commit()->catchers->accelerator, first->catchers->accelerator);
+}
+
 TEST(Cancel, StopsABuildAndKeepsTheLastSnapshot) {
   TestScene scene;
   scene.mesh(1, sphere(Vec3(0.0f), 1.0f, 4, 8));

@@ -188,7 +188,8 @@ class TestScene {
     for (auto* masks : {&receiver_masks_, &blocker_masks_}) masks->pop_back();
     pass_indices_.pop_back();
   }
-  std::shared_ptr<const scene::Snapshot> commit() {
+  // Commits the scene. Throws Error CANCELLED if *cancel becomes non-zero.
+  std::shared_ptr<const scene::Snapshot> commit(const volatile int32_t* cancel = nullptr) {
     GradusInstances instances{};
     instances.struct_size = sizeof(instances);
     instances.count = meshes_.size();
@@ -213,7 +214,7 @@ class TestScene {
     instances.shutter_size = shutter_matrices_.size();
     instances.shutter_matrices = shutter_matrices_.empty() ? nullptr : &shutter_matrices_[0][0][0];
     scene.set_instances(instances);
-    scene.commit(nullptr, nullptr);
+    scene.commit(cancel, nullptr);
     return scene.snapshot();
   }
 

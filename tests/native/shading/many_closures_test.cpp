@@ -129,5 +129,27 @@ TEST(ManyClosures, CurvesOfFresnelThatDoNotMixKeepTheirAlbedo) {
   EXPECT_NEAR(after.x, before.x, 0.01f);
 }
 
+// Regression: f0 and f90 were mixed where they are reflectances in one lobe, and refractive index and extinction in the
+// other, so that the merged lobe had a curve of neither: 1.3 times as bright at grazing angles as any of them.
+TEST(ManyClosures, LobesOfOtherKindsDoNotChangeTheCurve) {
+  bsdf::Lobe conductor, metal;
+  conductor.type = metal.type = bsdf::LobeType::GgxReflection;
+  conductor.alpha_x = conductor.alpha_y = metal.alpha_x = metal.alpha_y = 0.05f;
+  conductor.weight = Rgb(1.0f);
+  conductor.fresnel = bsdf::FresnelType::Conductor;
+  conductor.f0 = Rgb(2.5f);
+  conductor.f90 = Rgb(0.0f);
+  metal.weight = Rgb(0.9f);
+  metal.fresnel = bsdf::FresnelType::PrincipledMetal;
+  metal.f0 = metal.f90 = Rgb(1.0f);
+  // Returns by how much brighter the lobe is at an angle of 78 degrees.
+  const auto rise = [](bsdf::Lobe lobe) {
+    const Vec3 normal(0, 0, 1);
+    const float head_on = bsdf::lobe_albedo(&lobe, normal, normal).x;
+    return bsdf::lobe_albedo(&lobe, glm::normalize(Vec3(0.98f, 0.0f, 0.2f)), normal).x / head_on;
+  };
+  EXPECT_NEAR(rise(bsdf::merged(conductor, metal)), rise(conductor), 1e-3f * rise(conductor));
+}
+
 }  // namespace
 }  // namespace gradus::test::many_closures_test

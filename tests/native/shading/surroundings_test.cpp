@@ -1,10 +1,13 @@
 // Nodes that look at the surroundings of the point, and values of the instance, against closed forms.
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "image/image_store.h"
 #include "scene/scene_fixture.h"
 #include "shading/context.h"
+#include "shading/material.h"
 #include "shading/program_builder.h"
 
 namespace gradus::test::surroundings_test {
@@ -136,6 +139,65 @@ TEST(Raycast, EndsAtItsLengthAndAtItsInstance) {
   }
   EXPECT_EQ(raycast(*corner(false), 0, 1.0f, 1).x, 0.0f);
   EXPECT_EQ(raycast(*corner(true), 0, 1.0f, 1).x, 1.0f);
+}
+
+// Rays that are no rays meet nothing, as in Cycles; one of infinite length is a ray.
+TEST(Raycast, OfInputsThatAreNotFinite) {
+  const auto scene = corner(true);
+  const shading::ShadeContext context = context_below(*scene, Vec3(-0.75f, 0.3f, 0.5f), 0);
+  const Vec3 position = shading::world_position(context), direction(2.0f, 0.0f, 1.0f);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto hit = [&](const Vec3& from, const Vec3& to, float length) {
+    return evaluate(GRADUS_OP_RAYCAST, {In(from), In(to), In(length)}, 0, {}, 0, context).x;
+  };
+  EXPECT_EQ(hit(position, direction, kInfinity), 1.0f);
+  for (const float bad : {nan, kInfinity, -kInfinity})
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3 from = position, to = direction;
+      from[axis] = to[axis] = bad;
+      EXPECT_EQ(hit(from, direction, 1.0f), 0.0f);
+      EXPECT_EQ(hit(position, to, 1.0f), 0.0f);
+    }
+  for (const float length : {nan, -kInfinity, -1.0f}) EXPECT_EQ(hit(position, direction, length), 0.0f);
+  for (const float tiny : {0.0f, 1e-30f}) EXPECT_EQ(hit(position, direction * tiny, kInfinity), 0.0f);
+}
+
+// Returns an attribute of a sphere, with the value (x, y, z) at its vertices, where a ray of a material ends.
+Rgb raycast_attribute(const char* name, const Vec3& direction, uint32_t output) {
+  TestScene scene;
+  MeshDesc desc(sphere(Vec3(0.0f), 1.0f, 64, 128));
+  GradusAttribute place{sizeof(GradusAttribute), GRADUS_DOMAIN_POINT, 3, 0, "place", desc.desc.positions};
+  desc.desc.attributes = &place;
+  desc.desc.attribute_count = 1;
+  scene.scene.set_mesh(kFloor, desc.desc);
+  scene.instance(kFloor);
+  const auto snapshot = scene.commit();
+  ProgramBuilder b;
+  const int ray = b.add(GRADUS_OP_RAYCAST, {In(Vec3(0.0f)), In(direction), In(5.0f)});
+  const int node = b.add(GRADUS_OP_RAYCAST_ATTRIBUTE, {In::from(ray, 5)}, 0, {}, 1);
+  GradusMaterial material = b.desc(b.add(GRADUS_OP_EMISSION, {In::from(node, output), In(1.0f)}));
+  material.names = &name;
+  material.name_count = 1;
+  const auto compiled = shading::compile_material(material, image::ImageStore());
+  return run(compiled->surface, context_below(*snapshot, Vec3(0.1f, 0.2f, 3.0f), 0)).emission;
+}
+
+// The attribute is that of the place where the ray ends, and the material traces one ray for all its attributes.
+TEST(Raycast, ReadsAttributesWhereItEnds) {
+  const Vec3 direction = glm::normalize(Vec3(0.3f, 0.5f, 0.7f));
+  EXPECT_NEAR(glm::distance(raycast_attribute("place", direction, 0), Rgb(direction)), 0.0f, 0.01f);
+  EXPECT_NEAR(raycast_attribute("place", direction, 3).x, 1.0f, 1e-5f);
+  EXPECT_EQ(raycast_attribute("nothing", direction, 0), Rgb(0.0f));
+  EXPECT_EQ(raycast_attribute("nothing", direction, 3), Rgb(1.0f));
+  EXPECT_EQ(raycast_attribute("place", Vec3(0.0f), 3), Rgb(0.0f));
+}
+
+// A program may name any surface; one that does not exist has no attributes.
+TEST(Raycast, RefusesSurfacesThatDoNotExist) {
+  const auto scene = corner(true);
+  const shading::ShadeContext context = context_below(*scene, Vec3(-0.75f, 0.3f, 0.5f), 0);
+  for (const float bits : {1e-40f, 1.0f, -1.0f})
+    EXPECT_EQ(evaluate(GRADUS_OP_RAYCAST_ATTRIBUTE, {In(Vec3(bits))}, 0, {}, 3, context), Rgb(0.0f));
 }
 
 // The edges of the floor's triangles that are near are x = 0 and a diagonal.

@@ -140,7 +140,7 @@ StoredImage stripes() {
     const uint8_t v = i % 2 ? 255 : 0;
     source.tiles[0].data.insert(source.tiles[0].data.end(), {v, v, v, 255});
   }
-  return store_source(source);
+  return with_coarser(store_source(source));
 }
 
 // A material shows the mean of the columns in its reflection, and one that emits shows the columns.
