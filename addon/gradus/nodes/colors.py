@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from . import working_space
 from .node import NodeView, translator
 from .ops import Blend, ColorModel, Op
 from .program import Value
@@ -42,17 +43,17 @@ def bright_contrast(view: NodeView) -> Value:
 
 @translator("ShaderNodeRGBToBW")
 def rgb_to_bw(view: NodeView) -> Value:
-    return view.add_float(Op.RGB_TO_BW, (view.value("Color"),))
+    return working_space.luminance(view.program, view.value("Color"))
 
 
 @translator("ShaderNodeBlackbody")
 def blackbody(view: NodeView) -> Value:
-    return view.add(Op.BLACKBODY, (view.value("Temperature"),))
+    return working_space.from_rec709(view.program, view.add(Op.BLACKBODY, (view.value("Temperature"),)))
 
 
 @translator("ShaderNodeWavelength")
 def wavelength(view: NodeView) -> Value:
-    return view.add(Op.WAVELENGTH, (view.value("Wavelength"),))
+    return working_space.from_rec709(view.program, view.add(Op.WAVELENGTH, (view.value("Wavelength"),)))
 
 
 def _separate(view: NodeView, source: Value, mode: int, outputs: tuple[str, ...]) -> Value:

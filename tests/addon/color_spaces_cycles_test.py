@@ -1,0 +1,249 @@
+"""Images in all colour spaces of Blender's configuration look as in Cycles of the same Blender, pixel by pixel.
+
+A sheet shows an image of 4×4 pixels in each colour space, every pixel of the image on a pixel of the picture.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import itertools
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from gradus import native
+from support import images, recording
+from support.nodes import Graph, new_material, show
+
+SIDE, COLUMNS = 4, 16
+HAS_WORKING_SPACES = hasattr(bpy.data, "colorspace")
+SPACES = [
+    item.identifier for item in bpy.types.ColorManagedInputColorspaceSettings.bl_rna.properties["name"].enum_items
+]
+
+
+@pytest.fixture
+def sheet(scene: bpy.types.Scene) -> bpy.types.Scene:
+    """Returns a scene whose camera sees a unit of length for each pixel, and a black world."""
+    recording.add_camera(type="ORTHO", ortho_scale=64.0)
+    return scene
+
+
+def place(index: int, material: bpy.types.Material) -> None:
+    """Adds a square of 4×4 pixels, the index counting from the lower left corner of the picture."""
+    row, column = divmod(index, COLUMNS)
+    location = ((column - 7.5) * SIDE, (row - 4.0) * SIDE, 0.0)
+    bpy.ops.mesh.primitive_plane_add(size=float(SIDE), location=location)
+    bpy.context.object.data.materials.append(material)
+
+
+def add_image(index: int, image: Any) -> None:
+    material = new_material()
+    show(material, Graph(material)("TexImage", "Color", image=image, interpolation="Closest"))
+    place(index, material)
+
+
+def compare(scene: bpy.types.Scene, folder: Path, names: list[str], difference: float = 2e-3) -> None:
+    """Asserts that the pixels of each square are those of Cycles and that Gradus has nothing to say.
+
+    difference: the largest one, relative to the pixel where it is brighter than 1.
+    """
+    scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.use_adaptive_sampling = 4, False, False
+    scene.cycles.pixel_filter_type = "BOX"
+    scene.cycles.filter_width = 1.0
+    settings = {"samples": 4, "integrator": "PATH", "reconstruction": "NONE", "pixel_filter": "BOX"}
+    pictures = []
+    for engine in ("CYCLES", "GRADUS"):
+        scene.render.engine = engine
+        pictures.append(images.render(scene, folder, **settings, filter_width=1.0)["Combined"][..., :3])
+    expected, got = pictures
+    assert expected.max() > 0.1
+    wrong = np.abs(got - expected) > difference * np.maximum(np.abs(expected), 1.0)
+    found = {}
+    for index, name in enumerate(names):
+        row, column = divmod(index, COLUMNS)
+        rows, columns = slice(SIDE * row, SIDE * (row + 1)), slice(SIDE * column, SIDE * (column + 1))
+        if wrong[rows, columns].any():
+            at = np.unravel_index(np.abs(got - expected)[rows, columns].argmax(), (SIDE, SIDE, 3))[:2]
+            found[name] = (got[rows, columns][at], expected[rows, columns][at])
+    assert not found
+
+
+def values(alpha: bool, is_float: bool) -> np.ndarray:
+    """Returns 16 colours: greys, saturated ones and dark ones; floats also beyond 0 and 1."""
+    levels = np.array((0.0, 0.04, 0.25, 0.5, 0.8, 1.0), np.float32)
+    colors = np.array(list(itertools.product(levels, repeat=3)), np.float32)[:: 216 // 16 - 1][:16]
+    if is_float:
+        colors = colors * 1.5 - 0.02
+    alphas = np.tile((0.0, 0.25, 0.75, 1.0), 4) if alpha else np.ones(16)
+    return np.concatenate([colors, alphas[:, None]], axis=1).astype(np.float32)
+
+
+def save(folder: Path, kind: str, alpha: bool) -> str:
+    is_float = kind == "OPEN_EXR"
+    image = bpy.data.images.new("saved", SIDE, SIDE, alpha=alpha, float_buffer=is_float)
+    image.pixels.foreach_set(values(alpha, is_float).ravel())
+    image.filepath_raw, image.file_format = str(folder / f"image-{alpha}.{kind.lower()}"), kind
+    image.save()
+    bpy.data.images.remove(image)
+    return str(folder / f"image-{alpha}.{kind.lower()}")
+
+
+def file(kind: str, alpha: bool = False, mode: str = "STRAIGHT") -> Callable[[Path], Any]:
+    def load(folder: Path) -> Any:
+        image = bpy.data.images.load(save(folder, kind, alpha), check_existing=False)
+        image.alpha_mode = mode
+        return image
+
+    return load
+
+
+def packed(folder: Path) -> Any:
+    image = file("PNG")(folder)
+    image.pack()
+    return image
+
+
+def generated(_folder: Path) -> Any:
+    image = bpy.data.images.new("generated", SIDE, SIDE, alpha=True)
+    image.pixels.foreach_set(values(True, False).ravel())
+    return image
+
+
+KINDS = {
+    "bytes": file("PNG"),
+    "bytes and alpha": file("PNG", alpha=True),
+    "channel-packed bytes": file("PNG", alpha=True, mode="CHANNEL_PACKED"),
+    "floats": file("OPEN_EXR"),
+    "premultiplied floats": file("OPEN_EXR", alpha=True, mode="PREMUL"),
+    "packed file": packed,
+    "generated": generated,
+}
+
+
+def show_all_spaces(scene: bpy.types.Scene, folder: Path, make: Callable[[Path], Any]) -> None:
+    for index, space in enumerate(SPACES):
+        image = make(folder)
+        image.colorspace_settings.name = space
+        add_image(index, image)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_all_colour_spaces(sheet: bpy.types.Scene, tmp_path: Path, kind: str) -> None:
+    show_all_spaces(sheet, tmp_path, KINDS[kind])
+    compare(sheet, tmp_path, SPACES)
+
+
+@pytest.fixture(params=["Linear Rec.2020", "ACEScg"])
+def working_space(request: pytest.FixtureRequest, sheet: bpy.types.Scene) -> str:
+    if not HAS_WORKING_SPACES:
+        pytest.skip("this Blender has no working spaces")
+    bpy.ops.wm.set_working_color_space(working_space=request.param, convert_colors=True)
+    return request.param
+
+
+@pytest.mark.parametrize("kind", ["bytes and alpha", "floats"])
+def test_all_colour_spaces_in_a_working_space(
+    sheet: bpy.types.Scene, tmp_path: Path, working_space: str, kind: str
+) -> None:
+    show_all_spaces(sheet, tmp_path, KINDS[kind])
+    compare(sheet, tmp_path, SPACES)
+
+
+def make_colors(graph: Graph) -> dict[str, bpy.types.NodeSocket]:
+    """Returns colours that nodes make themselves."""
+    made = {f"{kelvin} K": graph("Blackbody", "Color", {"Temperature": kelvin}) for kelvin in (900.0, 2500.0, 6500.0)}
+    made |= {f"{length} nm": graph("Wavelength", "Color", {"Wavelength": length}) for length in (455.0, 525.0, 600.0)}
+    mixed = graph("RGB", "Color")
+    mixed.default_value = (0.9, 0.3, 0.1, 1.0)
+    made["grey"] = graph("RGBToBW", "Val", {"Color": graph("HueSaturation", "Color", {"Color": mixed})})
+    made["constant grey"] = graph("RGBToBW", "Val", {"Color": mixed})
+    made["converted to a number"] = graph("Math", "Value", {"Value": mixed}, operation="ADD")
+    return made
+
+
+def test_colours_that_nodes_make_in_a_working_space(sheet: bpy.types.Scene, tmp_path: Path, working_space: str) -> None:
+    names = list(make_colors(Graph(new_material())))
+    for index, name in enumerate(names):
+        material = new_material()
+        show(material, make_colors(Graph(material))[name])
+        place(index, material)
+    compare(sheet, tmp_path, names, 1e-2)
+
+
+def test_skies_in_a_working_space(sheet: bpy.types.Scene, tmp_path: Path, working_space: str) -> None:
+    names = [item.identifier for item in bpy.types.ShaderNodeTexSky.bl_rna.properties["sky_type"].enum_items]
+    for index, name in enumerate(names):
+        material = new_material()
+        graph = Graph(material)
+        direction = graph("CombineXYZ", "Vector", {"X": 0.3, "Y": 0.2, "Z": 0.9})
+        sky = graph("TexSky", "Color", {"Vector": direction}, sky_type=name)
+        show(material, sky)
+        place(index, material)
+    compare(sheet, tmp_path, names, 1e-2)
+
+
+def test_byte_colours_of_meshes_in_a_working_space(sheet: bpy.types.Scene, tmp_path: Path, working_space: str) -> None:
+    kinds = ["BYTE_COLOR", "FLOAT_COLOR"]
+    for index, kind in enumerate(kinds):
+        material = new_material()
+        show(material, Graph(material)("Attribute", "Color", attribute_name="Painted"))
+        place(index, material)
+        colors = bpy.context.object.data.color_attributes.new("Painted", kind, "POINT")
+        for point in colors.data:
+            point.color = (0.9, 0.3, 0.1, 1.0)
+    compare(sheet, tmp_path, kinds, 1e-2)
+
+
+def test_light_of_a_temperature_in_a_working_space(sheet: bpy.types.Scene, tmp_path: Path, working_space: str) -> None:
+    material = new_material()
+    place(0, material)
+    show(material, Graph(material)("BsdfDiffuse", "BSDF"))
+    light = bpy.data.lights.new("Sun", "SUN")
+    light.use_temperature, light.temperature = True, 3000.0
+    recording.add(light, "Sun", (0.0, 0.0, 3.0))
+    compare(sheet, tmp_path, ["light"], 1e-2)
+
+
+def test_a_space_that_the_configuration_does_not_know(sheet: bpy.types.Scene, tmp_path: Path) -> None:
+    """The file was saved with another configuration. Blender takes its default for the space."""
+    for index, kind in enumerate(("bytes", "packed file")):
+        image = KINDS[kind](tmp_path)
+        image.colorspace_settings.name = "Filmic Log"
+        add_image(index, image)
+    path = tmp_path / "other.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=False)
+    contents = path.read_bytes()
+    assert b"Filmic Log\0" in contents
+    path.write_bytes(contents.replace(b"Filmic Log\0", b"Studio Log\0"))
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    compare(bpy.context.scene, tmp_path, ["bytes", "packed file"])
+
+
+def test_a_scene_file_needs_no_configuration(
+    sheet: bpy.types.Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The tool renders scene files without Blender."""
+    path = tmp_path / "saved.gradus"
+    show_all_spaces(sheet, tmp_path, KINDS["bytes and alpha"])
+    monkeypatch.setattr(sys, "argv", ["blender", "--", "--gradus-save-scene", str(path)])
+    expected = images.render(sheet, tmp_path, samples=4, integrator="PATH", reconstruction="NONE")["Combined"]
+    library = native.load()
+    device, scene, render = ctypes.c_uint64(), ctypes.c_uint64(), ctypes.c_uint64()
+    settings = native.Settings()
+    library.device_create(ctypes.byref(native.DeviceSettings()), ctypes.byref(device))
+    library.scene_load(device.value, native.text(str(path)), ctypes.byref(scene), ctypes.byref(settings))
+    library.render_start(scene.value, ctypes.byref(settings), ctypes.byref(render))
+    library.render_wait(render.value, -1.0)
+    pixels = np.zeros(expected.shape, np.float32)
+    address = pixels.ctypes.data_as(ctypes.POINTER(ctypes.c_float))
+    library.render_read_pass(render.value, native.Pass.COMBINED, address, pixels.size)
+    assert library.take_device_warnings(device.value) == []
+    library.render_release(render.value)
+    library.scene_release(scene.value)
+    library.device_release(device.value)
+    assert np.array_equal(pixels, expected)
