@@ -104,6 +104,6 @@ def host_colors(packages: str) -> HostColors | None:
         import PyOpenColorIO as ocio
 
         config = ocio.GetCurrentConfig()
+        return HostColors(ocio, config) if config.hasRole("scene_linear") else None
     except Exception:  # the library then reads the configuration, or falls back to sRGB and warns
         return None
-    return HostColors(ocio, config) if config.hasRole("scene_linear") else None

@@ -59,6 +59,11 @@ def working_space() -> str:
     return settings.working_space if settings is not None else ""
 
 
+def has_other_working_space() -> bool:
+    """Returns whether the file renders in another space than linear Rec. 709, which Blender can do since 5.0."""
+    return working_space() not in {"", "Linear Rec.709"}
+
+
 def is_data(settings: Any) -> bool:
     """Returns whether Cycles takes an image of these colour space settings as data.
 

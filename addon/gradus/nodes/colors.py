@@ -46,13 +46,27 @@ def rgb_to_bw(view: NodeView) -> Value:
     return working_space.luminance(view.program, view.value("Color"))
 
 
+def _warn_of_gamut(view: NodeView) -> None:
+    """Warns that colours outside of Rec. 709 are cut off, where Cycles can show them."""
+    if working_space.current() is not None:
+        view.warn_replaced("has only colours of Rec. 709, while the working space has more")
+
+
+_REDDEST_OF_REC709 = 2000.0
+"""Temperature in kelvin below which the colour of a black body lies outside of Rec. 709."""
+
+
 @translator("ShaderNodeBlackbody")
 def blackbody(view: NodeView) -> Value:
-    return working_space.from_rec709(view.program, view.add(Op.BLACKBODY, (view.value("Temperature"),)))
+    temperature = view.value("Temperature")
+    if not (temperature.is_constant and temperature.constant[0] >= _REDDEST_OF_REC709):
+        _warn_of_gamut(view)
+    return working_space.from_rec709(view.program, view.add(Op.BLACKBODY, (temperature,)))
 
 
 @translator("ShaderNodeWavelength")
 def wavelength(view: NodeView) -> Value:
+    _warn_of_gamut(view)
     return working_space.from_rec709(view.program, view.add(Op.WAVELENGTH, (view.value("Wavelength"),)))
 
 

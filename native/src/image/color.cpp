@@ -203,6 +203,9 @@ void ColorManager::to_scene_linear(const std::string& space, bool is_byte, float
 }
 
 float srgb_to_linear(float encoded) {
+  if (encoded < 0.0f) {
+    return 0.0f;
+  }
   if (encoded <= 0.04045f) {
     return encoded * (1.0f / 12.92f);
   }

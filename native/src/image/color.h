@@ -50,7 +50,8 @@ class ColorManager {
   std::unique_ptr<State> state_;
 };
 
-// The piecewise sRGB curve (IEC 61966-2-1) and its inverse, for any finite argument.
+// The piecewise sRGB curve (IEC 61966-2-1) and its inverse, for any finite argument. Negative encoded values are black,
+// as in Cycles.
 float srgb_to_linear(float encoded);
 float linear_to_srgb(float linear);
 
