@@ -32,15 +32,25 @@ void scale_colors(Vec4* v, float factor) { *v = Vec4(v->x * factor, v->y * facto
 
 bool is_translucent(float alpha) { return alpha > 0.0f && alpha != 1.0f; }
 
-// Converts a row to scene-linear as Cycles does: colours are converted without alpha, and multiplied by it before and
-// after. Where alpha is 0, straight colours become black before the conversion, which need not map black to black.
-void transform_row(const ColorManager& color, const std::string& space, bool is_byte, AlphaRelation relation,
-                   std::vector<Vec4>* row, std::vector<float>* alphas) {
+// Rounds a texel to half precision.
+void round_to_half(Vec4* v) {
+  for (int c = 0; c < 4; c++) (*v)[c] = half_to_float(float_to_half((*v)[c]));
+}
+
+// Converts a row to scene-linear as Cycles does: colours are multiplied by alpha, converted without it, and multiplied
+// again. Where alpha is 0, straight colours are black before the conversion, which need not map black to black. If
+// `is_half`, what Cycles stores in between is rounded, which logarithmic spaces magnify.
+void transform_row(const ColorManager& color, const std::string& space, bool is_byte, bool is_half,
+                   AlphaRelation relation, std::vector<Vec4>* row, std::vector<float>* alphas) {
   for (size_t x = 0; x < row->size(); x++) {
     Vec4& v = (*row)[x];
+    if (is_half) round_to_half(&v);
+    if (relation == AlphaRelation::Straight) {
+      scale_colors(&v, v.w);
+      if (is_half) round_to_half(&v);
+    }
     (*alphas)[x] = v.w;
-    if (relation == AlphaRelation::Associated && is_translucent(v.w)) scale_colors(&v, 1.0f / v.w);
-    if (relation == AlphaRelation::Straight && v.w <= 0.0f) scale_colors(&v, v.w);
+    if (relation != AlphaRelation::None && is_translucent(v.w)) scale_colors(&v, 1.0f / v.w);
   }
   color.to_scene_linear(space, is_byte, &row->front().x, row->size());
   for (size_t x = 0; x < row->size(); x++) {
@@ -76,7 +86,7 @@ ImageTile transform_tile(const ImageTile& source, const ColorManager& color, con
   size_t stored = 0;
   for (uint32_t y = 0; y < tile.height; y++) {
     unpack_row(source, y, &row);
-    transform_row(color, space, is_byte, relation, &row, &alphas);
+    transform_row(color, space, is_byte, tile.format == PixelFormat::Half, relation, &row, &alphas);
     for (const Vec4& v : row) {
       for (int c = 0; c < static_cast<int>(tile.channels); c++) {
         store_value(tile.pixels.get(), tile.format, stored++, v[c]);
