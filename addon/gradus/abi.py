@@ -14,6 +14,9 @@ from typing import Any
 
 VERSION = (0, 1, 0)
 
+ConvertColors = ctypes.CFUNCTYPE(None, c_void_p, c_void_p, c_size_t)
+"""A function that converts colours: its context, the address of the pixels and their number."""
+
 
 class Error(IntEnum):
     """What a function answers."""
@@ -286,18 +289,6 @@ class DeviceSettings(Struct):
         ("threads", c_uint32),
         ("color_config", c_char_p),
         ("denoiser_path", c_char_p),
-    ]
-
-
-class ColorSpace(Struct):
-    """A colour space whose values the caller knows."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("curve_count", c_uint32),
-        ("name", c_char_p),
-        ("curve", POINTER(c_float)),
-        ("matrix", c_float * 9),
     ]
 
 
@@ -669,7 +660,6 @@ class SequenceSettings(Struct):
 
 STRUCTS: tuple[type[Struct], ...] = (
     DeviceSettings,
-    ColorSpace,
     Attribute,
     Mesh,
     Instances,
@@ -724,7 +714,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "gradus_device_create": (c_int, [POINTER(DeviceSettings), POINTER(Device)]),
     "gradus_device_release": (c_int, [Device]),
     "gradus_device_warning": (c_int, [Device, POINTER(c_char_p)]),
-    "gradus_device_set_color_space": (c_int, [Device, POINTER(ColorSpace)]),
+    "gradus_device_set_color_space": (c_int, [Device, c_char_p, ConvertColors, c_void_p]),
     "gradus_scene_create": (c_int, [Device, POINTER(Scene)]),
     "gradus_scene_release": (c_int, [Scene]),
     "gradus_scene_set_mesh": (c_int, [Scene, c_uint64, POINTER(Mesh)]),

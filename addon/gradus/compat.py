@@ -53,6 +53,17 @@ def image_color_spaces() -> set[str]:
     return {image.colorspace_settings.name for image in bpy.data.images if image.source != "VIEWER"}
 
 
+def working_space() -> str:
+    """Returns the colour space that the file renders in, or "" if it is always that of the configuration."""
+    settings = getattr(bpy.data, "colorspace", None)
+    return settings.working_space if settings is not None else ""
+
+
+def has_other_working_space() -> bool:
+    """Returns whether the file renders in another space than linear Rec. 709, which Blender can do since 5.0."""
+    return working_space() not in {"", "Linear Rec.709"}
+
+
 def is_data(settings: Any) -> bool:
     """Returns whether Cycles takes an image of these colour space settings as data.
 

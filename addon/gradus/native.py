@@ -25,7 +25,7 @@ from .abi import (  # noqa: F401
     CameraType,
     Channel,
     ChannelKind,
-    ColorSpace,
+    ConvertColors,
     Denoiser,
     DeviceSettings,
     Domain,

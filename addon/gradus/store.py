@@ -39,6 +39,7 @@ class Session:
     def __init__(self, library: native.Library, device: int, record: bool = False) -> None:
         self.library = library
         self.device = device
+        self.working_space = compat.working_space()  # which the device converts colours to
         handle = ctypes.c_uint64()
         library.scene_create(device, byref(handle))
         self.scene = handle.value
@@ -52,9 +53,9 @@ class Session:
 
     def sync(self, *arguments: Any, **options: Any) -> Any:
         """Defines the colour spaces of all images on the device, then calls Exporter.sync()."""
-        baker = _bakers.get(self.device)
-        if baker is not None:
-            baker.define(self.library, self.device, compat.image_color_spaces())
+        colors = _host_colors.get(self.device)
+        if colors is not None:
+            colors.define(self.library, self.device, compat.image_color_spaces())
         return self.exporter.sync(*arguments, **options)
 
     def show_view(self, view: str) -> None:
@@ -106,8 +107,8 @@ class Session:
 
 _lock = threading.RLock()
 _sessions: dict[Key, Session] = {}
-_devices: dict[tuple[str, int], int] = {}
-_bakers: dict[int, color.Baker] = {}
+_devices: dict[tuple[str, str, int], int] = {}
+_host_colors: dict[int, color.HostColors] = {}
 _device_warnings: dict[int, list[str]] = {}
 """All warnings of each device. Every session reports them, whichever takes them from the library."""
 summaries: dict[tuple[str, str], dict[str, Any]] = {}
@@ -115,19 +116,21 @@ summaries: dict[tuple[str, str], dict[str, Any]] = {}
 
 
 def device(library: native.Library, threads: int = 0) -> int:
-    """Returns the device for Blender's current colour configuration and a number of threads."""
+    """Returns the device for Blender's current colour configuration, its working space, and a number of threads."""
     path = compat.color_config_path()
     with _lock:
-        key = (path, threads)
+        key = (path, compat.working_space(), threads)
         if key not in _devices:
-            baker = color.baker_for(path, compat.bundled_python_packages())
-            # The library cannot read a configuration that has a baker, and would warn of it.
-            settings = native.DeviceSettings(threads=threads, color_config=None if baker else native.text(path) or None)
+            colors = color.host_colors(compat.bundled_python_packages())
+            # The library need not read a configuration that Blender's OpenColorIO has read, and may not be able to.
+            settings = native.DeviceSettings(threads=threads, color_config=native.text(path) or None)
+            if colors is not None:
+                settings.color_config = None
             settings.denoiser_path = native.text(compat.bundled_libraries()) or None
             handle = ctypes.c_uint64()
             library.device_create(byref(settings), byref(handle))
-            if baker is not None:
-                _bakers[handle.value] = baker
+            if colors is not None:
+                _host_colors[handle.value] = colors
             _devices[key] = handle.value
         return _devices[key]
 
@@ -136,6 +139,8 @@ def acquire(key: Key, threads: int = 0, record: bool = False) -> Session:
     """Returns the session of `key`, and creates it if there is none."""
     library = native.load()
     with _lock:
+        if key in _sessions and _sessions[key].working_space != compat.working_space():
+            release(key)
         if key not in _sessions:
             _sessions[key] = Session(library, device(library, threads), record)
         return _sessions[key]
@@ -165,10 +170,10 @@ def clear() -> None:
     with _lock:
         handles = list(_devices.values())
         _devices.clear()
-        _bakers.clear()
         _device_warnings.clear()
     for handle in handles:
         native.load().device_release(handle)
+    _host_colors.clear()
     summaries.clear()
 
 

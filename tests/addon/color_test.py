@@ -1,85 +1,95 @@
-"""Baking of colour spaces into a curve and a matrix."""
+"""Blender's OpenColorIO as the library calls it, and what happens without it."""
 
 from __future__ import annotations
 
-from array import array
-from pathlib import Path
+import ctypes
+import sys
+from types import SimpleNamespace
+from typing import Any
 
 import bpy
 import pytest
 from gradus import color, compat, native, store
 
-MATRIX = (0.6, 0.3, 0.1, 0.2, 0.7, 0.1, 0.05, 0.15, 0.8)
+HAS_HOST_COLORS = bpy.app.version >= (4, 5, 0)
 
 
-def linear(encoded: float) -> float:
-    return encoded / 12.92 if encoded <= 0.04045 else ((encoded + 0.055) / 1.055) ** 2.4
+@pytest.fixture
+def colors() -> color.HostColors:
+    found = color.host_colors(compat.bundled_python_packages())
+    if found is None:
+        pytest.skip("this Blender brings no PyOpenColorIO along")
+    return found
 
 
-def convert(rgb: array) -> None:
-    for first in range(0, len(rgb), 3):
-        values = [linear(value) for value in rgb[first : first + 3]]
-        for row in range(3):
-            rgb[first + row] = sum(MATRIX[3 * row + i] * values[i] for i in range(3))
+class Library:
+    """Takes the conversions that are set."""
+
+    def __init__(self) -> None:
+        self.conversions: dict[str, Any] = {}
+
+    def device_set_color_space(self, _device: int, name: bytes, convert: Any, _context: None) -> None:
+        self.conversions[name.decode()] = convert
+
+    def convert(self, name: str, *rgba: float) -> list[float]:
+        pixels = (ctypes.c_float * len(rgba))(*rgba)
+        self.conversions[name](None, ctypes.addressof(pixels), len(rgba) // 4)
+        return list(pixels)
 
 
-def mix_channels(rgb: array) -> None:
-    for first in range(0, len(rgb), 3):
-        rgb[first] *= rgb[first + 1]
+def test_hosts_with_python_colours() -> None:
+    assert (color.host_colors(compat.bundled_python_packages()) is not None) == HAS_HOST_COLORS
 
 
-def lift(rgb: array) -> None:
-    for index in range(len(rgb)):
-        rgb[index] += 0.1
+def test_spaces_are_converted_by_blender_s_configuration(colors: color.HostColors) -> None:
+    library = Library()
+    colors.define(library, 1, ["sRGB", "ACEScg", "no such space"])
+    assert sorted(library.conversions) == ["ACEScg", "sRGB"]
+    grey = ((0.5 + 0.055) / 1.055) ** 2.4
+    assert library.convert("sRGB", 0.5, 0.0, 1.0, 0.25) == pytest.approx([grey, 0.0, 1.0, 0.25], abs=1e-4)
+    # The red primary of ACEScg in linear Rec. 709, twice, and beyond 1.
+    assert library.convert("ACEScg", *(4.0, 0.0, 0.0, 1.0) * 2)[4] == pytest.approx(4.0 * 1.7050, abs=1e-2)
 
 
-def blacken(rgb: array) -> None:
-    for index in range(len(rgb)):
-        rgb[index] = 0.0
+def test_spaces_are_defined_once(colors: color.HostColors) -> None:
+    library = Library()
+    colors.define(library, 1, ["sRGB"])
+    first = library.conversions.pop("sRGB")
+    colors.define(library, 1, ["sRGB"])
+    assert first is not None and library.conversions == {}
 
 
-def test_profile() -> None:
-    assert color.profile_of("ocio_profile_version: 2.4\n\nenvironment: {}") == (2, 4)
-    assert color.profile_of("# x\nocio_profile_version: 2\n") == (2, 0)
-    assert color.profile_of("nonsense") == (1, 0)
+def test_the_working_space_is_rec709_by_default(colors: color.HostColors) -> None:
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    assert colors.working_space() is None
 
 
-def test_curve_and_matrix_are_found() -> None:
-    curve, matrix = color.curve_and_matrix(convert)
-    assert matrix == pytest.approx(MATRIX)
-    assert curve[512] == pytest.approx(linear(512 / (color.CURVE_SAMPLES - 1)), abs=1e-6)
+def test_the_luminance_of_a_working_space(colors: color.HostColors) -> None:
+    if not hasattr(bpy.data, "colorspace"):
+        pytest.skip("this Blender has no working spaces")
+    bpy.ops.wm.set_working_color_space(working_space="Linear Rec.2020", convert_colors=False)
+    space = colors.working_space()
+    assert space is not None
+    assert space.luminance == pytest.approx((0.2627, 0.6780, 0.0593), abs=1e-4)  # ITU-R BT.2020
+    assert [sum(row) for row in space.from_rec709] == pytest.approx([1.0, 1.0, 1.0], abs=1e-4)
 
 
-@pytest.mark.parametrize("other", [mix_channels, lift, blacken])
-def test_spaces_of_another_form_are_refused(other: color.Convert) -> None:
-    assert color.curve_and_matrix(other) is None
+def test_a_session_follows_the_working_space(scene: bpy.types.Scene) -> None:
+    if not hasattr(bpy.data, "colorspace"):
+        pytest.skip("this Blender has no working spaces")
+    key = store.Key(store.FINAL, scene.name, "ViewLayer", 0)
+    first = store.acquire(key)
+    assert store.acquire(key) is first
+    bpy.ops.wm.set_working_color_space(working_space="ACEScg", convert_colors=False)
+    assert store.acquire(key).device != first.device
+    store.clear()
 
 
-def test_a_linear_space_has_no_curve() -> None:
-    curve, matrix = color.curve_and_matrix(lambda rgb: None)
-    assert len(curve) == 0
-    assert matrix == pytest.approx([1, 0, 0, 0, 1, 0, 0, 0, 1])
-
-
-def test_this_blender_s_configuration() -> None:
-    path = compat.color_config_path()
-    assert Path(path).is_file()
-    baker = color.baker_for(path, compat.bundled_python_packages())
-    assert (baker is not None) == (bpy.app.version >= (5, 0, 0))
-    if baker is None:
-        return
-    curve, matrix = baker.bake("sRGB")
-    assert curve[512] == pytest.approx(linear(512 / (color.CURVE_SAMPLES - 1)), abs=1e-4)
-    assert matrix == pytest.approx([1, 0, 0, 0, 1, 0, 0, 0, 1], abs=1e-3)
-    assert len(baker.bake("Linear Rec.709")[0]) == 0
-    assert baker.bake("ACEScg")[1][0] == pytest.approx(1.7050, abs=1e-3)  # AP1 to Rec.709
-    assert baker.bake("AgX Base sRGB") is None
-    assert baker.bake("no such space") is None
-
-
-def test_f5_missing_configuration(tmp_path: Path) -> None:
-    assert not color.needs_baking(str(tmp_path / "none.ocio"))
-    assert color.baker_for(str(tmp_path / "none.ocio"), compat.bundled_python_packages()) is None
+@pytest.mark.parametrize("config", [SimpleNamespace(hasRole=lambda _: False), None])
+def test_without_a_configuration_the_library_reads_it(monkeypatch: pytest.MonkeyPatch, config: Any) -> None:
+    """A process of its own OpenColorIO would have an empty configuration."""
+    monkeypatch.setitem(sys.modules, "PyOpenColorIO", SimpleNamespace(GetCurrentConfig=lambda: config))
+    assert color.host_colors("") is None
 
 
 def test_the_device_has_no_warnings_about_blender_s_configuration() -> None:

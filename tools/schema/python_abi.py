@@ -27,6 +27,7 @@ ARGUMENTS = {
     "float": "c_float",
     "double": "c_double",
     "GradusError": "c_int",
+    "GradusConvertColors": "ConvertColors",
 }
 HANDLES = ("Device", "Scene", "Render", "Sequence", "Film")
 
@@ -45,6 +46,9 @@ from enum import IntEnum, IntFlag
 from typing import Any
 
 VERSION = {version}
+
+ConvertColors = ctypes.CFUNCTYPE(None, c_void_p, c_void_p, c_size_t)
+"""A function that converts colours: its context, the address of the pixels and their number."""
 '''
 
 STRUCT = '''
@@ -124,8 +128,8 @@ def argument_type(schema: Schema, text: str) -> str:
     if not match:
         raise SchemaError(f"gradus.h.in: no type is known for '{text}'")
     name, stars = match[1], match[2].count("*")
-    if name == "char":
-        kind, stars = "c_char_p", stars - 1
+    if name in {"char", "void"}:
+        kind, stars = f"c_{name}_p", stars - 1
     elif name in ARGUMENTS:
         kind = ARGUMENTS[name]
     elif name.removeprefix("Gradus") in HANDLES or schema.has_struct(name.removeprefix("Gradus")):

@@ -6,7 +6,7 @@ from array import array
 from dataclasses import dataclass
 from typing import Any
 
-from .. import native
+from .. import compat, native
 from .arrays import read
 from .edges import on_vertices
 
@@ -72,6 +72,16 @@ def read_values(attribute: Any) -> tuple[int, array] | None:
     return channels, data if typecode == "f" else array("f", data)
 
 
+def _decoded_bytes(attribute: Any) -> array:
+    """Returns colours of bytes in linear Rec. 709. Cycles shows them as if they were of the working space."""
+    import numpy as np  # imported late, because few files have another working space
+
+    data = read(attribute.data, "color_srgb", "f", 4)
+    colors = np.frombuffer(data, np.float32).reshape(-1, 4)[:, :3]  # a view of `data`
+    colors[:] = np.where(colors <= 0.04045, colors / 12.92, ((colors + 0.055) / 1.055) ** 2.4)
+    return data
+
+
 def _read_generic(mesh: Any, attribute: Any, name: str) -> AttributeArrays | None:
     """Returns an attribute of any domain. Values of edges become values of vertices, as in Cycles."""
     values = read_values(attribute)
@@ -79,6 +89,8 @@ def _read_generic(mesh: Any, attribute: Any, name: str) -> AttributeArrays | Non
         return None
     channels, data = values
     domain = attribute.domain
+    if attribute.data_type == "BYTE_COLOR" and domain != "CORNER" and compat.has_other_working_space():
+        data = _decoded_bytes(attribute)
     if domain == "EDGE":
         domain, data = "POINT", on_vertices(mesh, data, channels, attribute.data_type)
     is_uv = attribute.data_type == "FLOAT2" and domain == "CORNER"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from . import working_space
 from .node import NodeView, translator
 from .ops import Blend, ColorModel, Op
 from .program import Value
@@ -42,17 +43,31 @@ def bright_contrast(view: NodeView) -> Value:
 
 @translator("ShaderNodeRGBToBW")
 def rgb_to_bw(view: NodeView) -> Value:
-    return view.add_float(Op.RGB_TO_BW, (view.value("Color"),))
+    return working_space.luminance(view.program, view.value("Color"))
+
+
+def _warn_of_gamut(view: NodeView) -> None:
+    """Warns that colours outside of Rec. 709 are cut off, where Cycles can show them."""
+    if working_space.current() is not None:
+        view.warn_replaced("has only colours of Rec. 709, while the working space has more")
+
+
+_REDDEST_OF_REC709 = 2000.0
+"""Temperature in kelvin below which the colour of a black body lies outside of Rec. 709."""
 
 
 @translator("ShaderNodeBlackbody")
 def blackbody(view: NodeView) -> Value:
-    return view.add(Op.BLACKBODY, (view.value("Temperature"),))
+    temperature = view.value("Temperature")
+    if not (temperature.is_constant and temperature.constant[0] >= _REDDEST_OF_REC709):
+        _warn_of_gamut(view)
+    return working_space.from_rec709(view.program, view.add(Op.BLACKBODY, (temperature,)))
 
 
 @translator("ShaderNodeWavelength")
 def wavelength(view: NodeView) -> Value:
-    return view.add(Op.WAVELENGTH, (view.value("Wavelength"),))
+    _warn_of_gamut(view)
+    return working_space.from_rec709(view.program, view.add(Op.WAVELENGTH, (view.value("Wavelength"),)))
 
 
 def _separate(view: NodeView, source: Value, mode: int, outputs: tuple[str, ...]) -> Value:

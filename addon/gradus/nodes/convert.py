@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from . import working_space
 from .ops import Op
 from .program import (
     BLACK_CLOSURE,
@@ -28,8 +29,6 @@ _KINDS = {
     "SHADER": SHADER,
 }
 
-LUMINANCE = (0.2126, 0.7152, 0.0722)
-
 
 def kind_of(socket: Any) -> str:
     return _KINDS.get(socket.type, FLOAT)
@@ -49,9 +48,7 @@ def default_value(socket: Any) -> Value:
 def _to_float(program: Program, value: Value) -> Value:
     c = value.constant
     if value.kind == COLOR:
-        if value.is_constant:
-            return constant_float(sum(weight * channel for weight, channel in zip(LUMINANCE, c, strict=False)))
-        return Value(FLOAT, node=program.add(Op.RGB_TO_BW, (value,)))
+        return working_space.luminance(program, value)
     if value.is_constant:
         return constant_float((c[0] + c[1] + c[2]) / 3.0)
     return Value(FLOAT, node=program.add(Op.AVERAGE, (value,)))

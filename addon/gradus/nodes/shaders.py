@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from . import working_space
 from .node import NodeView, translator
 from .ops import Distribution, Op, Subsurface
 from .program import BLACK_CLOSURE, NO_NORMAL, Value, constant_float
@@ -69,7 +70,11 @@ def subsurface_anisotropy(view: NodeView, name: str) -> Value:
 def thin_film(view: NodeView) -> tuple[Value, ...]:
     """Returns thickness and IOR of the thin film, or nothing if the node has none."""
     thickness = view.value("Thin Film Thickness")
-    return () if thickness.is_zero() else (thickness, view.value("Thin Film IOR"))
+    if thickness.is_zero():
+        return ()
+    if working_space.current() is not None:
+        view.warn_replaced("has a thin film of the colours of Rec. 709, while the working space is another")
+    return thickness, view.value("Thin Film IOR")
 
 
 @translator("ShaderNodeSubsurfaceScattering")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from .. import compat
-from . import ies_profile
+from . import ies_profile, working_space
 from .node import NodeView, translator
 from .ops import (
     Geometry,
@@ -220,7 +220,8 @@ def _sky_settings(node: Any) -> tuple[float, ...]:
 @translator("ShaderNodeTexSky")
 def sky_texture(view: NodeView) -> Value:
     vector = coordinates(view, TexCoord.GENERATED)
-    return view.add(Op.SKY, (vector,), Sky[view.node.sky_type], _sky_settings(view.node))
+    sky = view.add(Op.SKY, (vector,), Sky[view.node.sky_type], _sky_settings(view.node))
+    return working_space.from_rec709(view.program, sky)
 
 
 _WORLD_TO_OBJECT = TransformKind.NORMAL | 1 << 4

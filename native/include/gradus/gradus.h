@@ -95,17 +95,14 @@ GRADUS_API GradusError gradus_device_release(GradusDevice device);
  * valid until the thread's next call. */
 GRADUS_API GradusError gradus_device_warning(GradusDevice device, const char** text);
 
-/* A colour space whose values the caller knows. */
-typedef struct GradusColorSpace {
-  uint32_t struct_size; /* sizeof this struct. */
-  uint32_t curve_count; /* Samples of the curve over [0, 1]; 0 = identity. */
-  const char* name;     /* Name of the colour space in the configuration. */
-  const float* curve;   /* Decoding curve, the same for R, G and B. */
-  float matrix[9];      /* Row-major matrix into scene-linear RGB, applied after the curve. */
-} GradusColorSpace;
+/* A function of the caller that converts pixels of red, green, blue and alpha to scene-linear in place. Several threads
+ * may call it at once, while it is set, images are set or scenes are committed. It must not call the library. */
+typedef void (*GradusConvertColors)(void* context, float* rgba, size_t pixel_count);
 
-/* Replaces a colour space by values of the caller, for a configuration that this OpenColorIO cannot read. */
-GRADUS_API GradusError gradus_device_set_color_space(GradusDevice device, const GradusColorSpace* space);
+/* Converts a colour space by a function of the caller, such as one of the host's OpenColorIO, instead of by the
+ * device's configuration. The function and its context must stay valid as long as the device. */
+GRADUS_API GradusError gradus_device_set_color_space(GradusDevice device, const char* name,
+                                                     GradusConvertColors convert, void* context);
 
 /* ----------------------------------------------------------------------------------------------------------- scene */
 

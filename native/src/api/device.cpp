@@ -27,12 +27,12 @@ GradusError gradus_device_warning(GradusDevice device, const char** text) {
   });
 }
 
-GradusError gradus_device_set_color_space(GradusDevice device, const GradusColorSpace* space) {
+GradusError gradus_device_set_color_space(GradusDevice device, const char* name, GradusConvertColors convert,
+                                          void* context) {
   return api::guard([&] {
     const auto object = api::find_handle<scene::Device>(device);
-    const GradusColorSpace copy = api::read_struct(space, "space");
-    api::checked_name(&api::require(copy.name, "space.name"), "space.name");
-    api::check_array(copy.curve, copy.curve_count, "space.curve");
-    object->color().set_override(copy);
+    const char* space = api::checked_name(&api::require(name, "name"), "name");
+    api::require(convert, "convert");
+    object->color().set_conversion(space, [=](float* rgba, size_t count) { convert(context, rgba, count); });
   });
 }

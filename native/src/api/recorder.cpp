@@ -8,6 +8,7 @@
 #include "api/archive.h"
 #include "api/scene_file.h"
 #include "film_io/file_writer.h"
+#include "image/image_store.h"
 #include "schema/options.h"
 
 namespace gradus::api {
@@ -54,11 +55,18 @@ void SceneRecorder::set_channels(const std::vector<GradusChannel>& channels) {
   store(RecordKind::Channels, 0, ChannelList{channels.data(), channels.size()});
 }
 
-void SceneRecorder::set_image(uint64_t key, const GradusImage& image) {
+void SceneRecorder::set_image(uint64_t key, const GradusImage& image, const image::ColorManager& color) {
+  const image::ImageSource source = image::scene_linear_source(image::copy_image_source(image), color);
   std::vector<GradusImageTile> tiles(image.tiles, image.tiles + image.tile_count);
   std::vector<std::vector<char>> packed(tiles.size());
   for (size_t i = 0; i < tiles.size(); ++i) {
-    if (tiles[i].source != GRADUS_IMAGE_FILE) continue;
+    const image::ImageSource::Tile& tile = source.tiles[i];
+    tiles[i].source = tile.source;
+    tiles[i].width = tile.width;
+    tiles[i].height = tile.height;
+    tiles[i].data = tile.data.data();
+    tiles[i].data_size = tile.data.size();
+    if (tile.source != GRADUS_IMAGE_FILE) continue;
     packed[i] = read_bytes(tiles[i].path);
     if (packed[i].empty()) continue;
     tiles[i].source = GRADUS_IMAGE_ENCODED;
@@ -67,6 +75,9 @@ void SceneRecorder::set_image(uint64_t key, const GradusImage& image) {
   }
   GradusImage copy = image;
   copy.tiles = tiles.data();
+  copy.color_space = source.color_space.c_str();
+  copy.alpha_mode = source.alpha_mode;
+  copy.is_float = source.is_float;
   store(RecordKind::Image, key, copy);
 }
 

@@ -9,6 +9,10 @@
 
 #include "gradus/gradus.h"
 
+namespace gradus::image {
+class ColorManager;
+}  // namespace gradus::image
+
 namespace gradus::scene {
 class Scene;
 }  // namespace gradus::scene
@@ -33,9 +37,9 @@ enum class RecordKind : uint32_t {
 class SceneRecorder {
  public:
   // Record a call. Structs must be complete and checked, as the functions of scene_args.h return them. The record of an
-  // image holds the bytes of its files.
+  // image holds the bytes of its files, or scene-linear pixels if only `color` can convert its colour space.
   void set_mesh(uint64_t key, const GradusMesh& mesh);
-  void set_image(uint64_t key, const GradusImage& image);
+  void set_image(uint64_t key, const GradusImage& image, const image::ColorManager& color);
   void set_material(uint64_t key, const GradusMaterial& material);
   void set_instances(const GradusInstances& instances);
   void set_lights(const std::vector<GradusLight>& lights);

@@ -76,7 +76,7 @@ GradusError gradus_scene_set_image(GradusScene scene, uint64_t key, const Gradus
     api::check_key(key);
     const api::ImageArgs args(image);
     s.scene.set_image(key, args.image);
-    if (s.recorder) s.recorder->set_image(key, args.image);
+    if (s.recorder) s.recorder->set_image(key, args.image, s.scene.device()->color());
   });
 }
 

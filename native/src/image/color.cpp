@@ -13,8 +13,7 @@
 #include <OpenColorIO/OpenColorIO.h>
 
 #include "base/error.h"
-#include "base/types.h"
-#include "image/baked_space.h"
+#include "base/hash.h"
 
 namespace OCIO = OCIO_NAMESPACE;
 
@@ -43,61 +42,62 @@ std::optional<ColorTransform> builtin_transform(const std::string& space) {
 
 }  // namespace
 
-// A colour space whose name has been looked up. `kind` selects its conversion; if it is Other, either `baked` or
-// `processor` converts the values. It is not local to this file, because ColorManager::State, which the header
-// declares, has it as a member.
+// A colour space whose name has been looked up. `kind` selects its conversion; `convert` applies it if it is Other. It
+// is not local to this file, because ColorManager::State, which the header declares, has it as a member.
 struct Space {
   ColorTransform kind = ColorTransform::Data;
-  OCIO::ConstCPUProcessorRcPtr processor;
-  std::shared_ptr<const BakedSpace> baked;
+  ConvertColors convert;
+  uint64_t fingerprint = 0;
 
-  // Converts `count` interleaved pixels to scene-linear in place, by the conversion that `kind` selects.
-  void apply(float* pixels, size_t count, int channels) const {
+  // Converts pixels of four channels to scene-linear in place, by the conversion that `kind` selects.
+  void apply(float* rgba, size_t count) const {
     if (kind == ColorTransform::Srgb) {
-      for (size_t i = 0; i < count; i++, pixels += channels) {
-        std::transform(pixels, pixels + 3, pixels, srgb_to_linear);
+      for (size_t i = 0; i < count; i++, rgba += 4) {
+        std::transform(rgba, rgba + 3, rgba, srgb_to_linear);
       }
     } else if (kind == ColorTransform::Other) {
-      apply_other(pixels, count, channels);
-    }
-  }
-  // Converts with the baked values if there are any, else with OpenColorIO, whatever `kind` says.
-  void apply_other(float* pixels, size_t count, int channels) const {
-    if (baked) {
-      for (size_t i = 0; i < count; i++, pixels += channels) {
-        const Rgb c = baked->apply(Rgb(pixels[0], pixels[1], pixels[2]));
-        pixels[0] = c.x, pixels[1] = c.y, pixels[2] = c.z;
-      }
-      return;
-    }
-    // The pixels are passed in rows, because OpenColorIO counts pixels by long but indexes a row by int.
-    constexpr size_t kRow = 1 << 16;
-    for (size_t first = 0; first < count; first += kRow) {
-      const size_t n = std::min(kRow, count - first);
-      OCIO::PackedImageDesc desc(pixels + first * static_cast<size_t>(channels), static_cast<long>(n), 1, channels);
-      processor->apply(desc);
+      convert(rgba, count);
     }
   }
 };
 
 namespace {
 
-// Values by which recognise() compares a transform with the identity and with the sRGB curve. They are four RGB pixels
-// between 0 and 1.
-constexpr std::array<float, 12> kProbe = {0.0f, 0.02f, 0.03f, 0.04f, 0.05f, 0.18f, 0.3f, 0.5f, 0.75f, 0.9f, 1.0f, 0.6f};
+// Colours with alpha 1. recognise() compares a conversion of those up to 1 with the identity and with the sRGB curve,
+// and forms the fingerprint of all.
+constexpr std::array<float, 20> kProbe = {0.0f,  0.02f, 0.03f, 1.0f, 0.04f, 0.05f, 0.18f, 1.0f, 0.3f, 0.5f,
+                                          0.75f, 1.0f,  0.9f,  1.0f, 0.6f,  1.0f,  2.5f,  4.0f, 8.0f, 1.0f};
 
-// Returns Data or Srgb if the space maps the probe values as the identity or the sRGB curve does, else Other. The
-// tolerance for sRGB is 1e-4, because the tables in OpenColorIO configurations differ from the formula by a few 1e-5.
-ColorTransform recognise(const Space& space) {
+// Makes a space of its conversion. The kind is Data or Srgb if the conversion maps the probe values up to 1 as the
+// identity or the sRGB curve does. The tolerance for sRGB is 1e-4, because the tables in OpenColorIO configurations
+// differ from the formula by a few 1e-5.
+Space recognise(ConvertColors convert) {
   std::array<float, kProbe.size()> mapped = kProbe;
-  space.apply_other(mapped.data(), mapped.size() / 3, 3);
+  convert(mapped.data(), mapped.size() / 4);
   bool same = true;
   bool srgb = true;
   for (size_t i = 0; i < kProbe.size(); i++) {
+    if (i % 4 == 3 || kProbe[i] > 1.0f) continue;
     same = same && std::abs(mapped[i] - kProbe[i]) < 1e-5f;
     srgb = srgb && std::abs(mapped[i] - srgb_to_linear(kProbe[i])) < 1e-4f;
   }
-  return same ? ColorTransform::Data : srgb ? ColorTransform::Srgb : ColorTransform::Other;
+  if (same) return {};
+  if (srgb) return {ColorTransform::Srgb, nullptr, 0};
+  ContentHash hash;
+  for (const float value : mapped) hash.value(value);
+  return {ColorTransform::Other, std::move(convert), hash.result()};
+}
+
+// Returns the conversion by a processor of OpenColorIO.
+ConvertColors by_processor(OCIO::ConstCPUProcessorRcPtr processor) {
+  return [processor = std::move(processor)](float* rgba, size_t count) {
+    // The pixels are passed in rows, because OpenColorIO counts pixels by long but indexes a row by int.
+    constexpr size_t kRow = 1 << 16;
+    for (size_t first = 0; first < count; first += kRow) {
+      OCIO::PackedImageDesc row(rgba + first * 4, static_cast<long>(std::min(kRow, count - first)), 1, 4);
+      processor->apply(row);
+    }
+  };
 }
 
 }  // namespace
@@ -140,20 +140,19 @@ struct ColorManager::State {
       if (!source) {
         return std::nullopt;
       }
-      Space space;
-      if (!source->isData()) {
-        space.processor = config->getProcessor(name.c_str(), OCIO::ROLE_SCENE_LINEAR)->getDefaultCPUProcessor();
-        space.kind = recognise(space);
+      if (source->isData()) {
+        return Space();
       }
-      return space;
+      return recognise(
+          by_processor(config->getProcessor(name.c_str(), OCIO::ROLE_SCENE_LINEAR)->getDefaultCPUProcessor()));
     } catch (const std::exception& e) {
       warn("colour: the configuration cannot convert " + name + ": " + first_line(e.what()));
       return std::nullopt;
     }
   }
 
-  // Returns a space by name: first an override, then the configuration's, then a built-in one, then the default for
-  // unknown names. The lock is held while a space is made, so that each warning is given once.
+  // Returns a space by name: first one whose conversion was set, then the configuration's, then a built-in one, then
+  // the default for unknown names. The lock is held while a space is made, so that each warning is given once.
   Space find(const std::string& name, bool is_byte) const {
     const std::lock_guard lock(mutex);
     if (const auto found = spaces.find(name); found != spaces.end()) {
@@ -162,7 +161,7 @@ struct ColorManager::State {
     std::optional<Space> space = from_config(name);
     if (!space) {
       if (const auto kind = builtin_transform(name)) {
-        space = Space{*kind, nullptr, nullptr};
+        space = Space{*kind, nullptr, 0};
       }
     }
     if (space) {
@@ -171,7 +170,7 @@ struct ColorManager::State {
     if (unknown.insert(name).second) {
       warn("colour: the space " + name + " is not known; byte images are taken as sRGB, float images as linear");
     }
-    return Space{is_byte ? ColorTransform::Srgb : ColorTransform::Data, nullptr, nullptr};
+    return Space{is_byte ? ColorTransform::Srgb : ColorTransform::Data, nullptr, 0};
   }
 };
 
@@ -182,27 +181,31 @@ ColorManager::ColorManager(const std::string& config_path, Warn warn) : state_(s
 
 ColorManager::~ColorManager() = default;
 
-void ColorManager::set_override(const GradusColorSpace& space) {
-  if (space.name == nullptr || *space.name == '\0') {
+void ColorManager::set_conversion(const std::string& space, ConvertColors convert) {
+  if (space.empty()) {
     throw invalid_argument("colour space: no name");
   }
-  Space baked;
-  baked.baked = std::make_shared<const BakedSpace>(space);
-  baked.kind = recognise(baked);
+  Space known = recognise(std::move(convert));
   const std::lock_guard lock(state_->mutex);
-  state_->spaces[space.name] = baked;
+  state_->spaces[space] = std::move(known);
 }
 
 ColorTransform ColorManager::transform(const std::string& space, bool is_byte) const {
   return state_->find(space, is_byte).kind;
 }
 
-void ColorManager::to_scene_linear(const std::string& space, bool is_byte, float* pixels, size_t pixel_count,
-                                   int channels) const {
-  state_->find(space, is_byte).apply(pixels, pixel_count, channels);
+uint64_t ColorManager::fingerprint(const std::string& space, bool is_byte) const {
+  return state_->find(space, is_byte).fingerprint;
+}
+
+void ColorManager::to_scene_linear(const std::string& space, bool is_byte, float* rgba, size_t pixel_count) const {
+  state_->find(space, is_byte).apply(rgba, pixel_count);
 }
 
 float srgb_to_linear(float encoded) {
+  if (encoded < 0.0f) {
+    return 0.0f;
+  }
   if (encoded <= 0.04045f) {
     return encoded * (1.0f / 12.92f);
   }

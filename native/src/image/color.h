@@ -1,14 +1,17 @@
-// Conversion of colour spaces to scene-linear by OpenColorIO, with the host's configuration.
+// Conversion of colour spaces to scene-linear by OpenColorIO: the host's own, or the one of this library with the
+// host's configuration.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
 
-#include "gradus/gradus.h"
-
 namespace gradus::image {
+
+// Converts pixels of red, green, blue and alpha to scene-linear in place. It may be called by several threads at once.
+using ConvertColors = std::function<void(float* rgba, size_t pixel_count)>;
 
 // The conversion from a colour space to scene-linear.
 enum class ColorTransform {
@@ -29,23 +32,26 @@ class ColorManager {
   ColorManager(const ColorManager&) = delete;
   ColorManager& operator=(const ColorManager&) = delete;
 
-  // Sets a space by baked values, which take precedence over the configuration. Throws Error(INVALID_ARGUMENT) if the
-  // name is empty or a value is not finite.
-  void set_override(const GradusColorSpace& space);
+  // Sets the conversion of a space, which takes precedence over the configuration. Throws Error(INVALID_ARGUMENT) if
+  // the name is empty.
+  void set_conversion(const std::string& space, ConvertColors convert);
 
   // Returns the transform of `space`. An unknown name causes one warning; its transform is Srgb if `is_byte`, else
   // Data.
   ColorTransform transform(const std::string& space, bool is_byte) const;
-  // Converts pixels of 3 or 4 `channels` in place. The first three become scene-linear. Alpha does not change, and the
-  // colours must not be multiplied by it.
-  void to_scene_linear(const std::string& space, bool is_byte, float* pixels, size_t pixel_count, int channels) const;
+  // Returns a number that depends on how the space is converted, or 0 for data and sRGB.
+  uint64_t fingerprint(const std::string& space, bool is_byte) const;
+  // Converts pixels of four channels in place. The first three become scene-linear. They must not be multiplied by
+  // alpha, which OpenColorIO may change by a rounding error.
+  void to_scene_linear(const std::string& space, bool is_byte, float* rgba, size_t pixel_count) const;
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
 
-// The piecewise sRGB curve (IEC 61966-2-1) and its inverse, for any finite argument.
+// The piecewise sRGB curve (IEC 61966-2-1) and its inverse, for any finite argument. Negative encoded values are black,
+// as in Cycles.
 float srgb_to_linear(float encoded);
 float linear_to_srgb(float linear);
 

@@ -23,14 +23,40 @@ uint16_t float_to_half(float x) { return Imath::half(std::clamp(x, -65504.0f, 65
 
 bool has_alpha_channel(uint32_t channels) { return channels == 2 || channels == 4; }
 
-// Converts a row of any format to floats with `out_channels` channels, which is 3 or 4.
-void unpack_row(const ImageTile& tile, uint32_t y, float* out, uint32_t out_channels) {
-  for (uint32_t x = 0; x < tile.width; x++, out += out_channels) {
-    const Vec4 v = tile.texel(x, y);
-    out[0] = v.x, out[1] = v.y, out[2] = v.z;
-    if (out_channels == 4) {
-      out[3] = v.w;
+// Converts a row of any format to floats of red, green, blue and alpha.
+void unpack_row(const ImageTile& tile, uint32_t y, std::vector<Vec4>* row) {
+  for (uint32_t x = 0; x < tile.width; x++) (*row)[x] = tile.texel(x, y);
+}
+
+void scale_colors(Vec4* v, float factor) { *v = Vec4(v->x * factor, v->y * factor, v->z * factor, v->w); }
+
+bool is_translucent(float alpha) { return alpha > 0.0f && alpha != 1.0f; }
+
+// Rounds a texel to half precision.
+void round_to_half(Vec4* v) {
+  for (int c = 0; c < 4; c++) (*v)[c] = half_to_float(float_to_half((*v)[c]));
+}
+
+// Converts a row to scene-linear as Cycles does: colours are multiplied by alpha, converted without it, and multiplied
+// again. Where alpha is 0, straight colours are black before the conversion, which need not map black to black. If
+// `is_half`, what Cycles stores in between is rounded, which logarithmic spaces magnify.
+void transform_row(const ColorManager& color, const std::string& space, bool is_byte, bool is_half,
+                   AlphaRelation relation, std::vector<Vec4>* row, std::vector<float>* alphas) {
+  for (size_t x = 0; x < row->size(); x++) {
+    Vec4& v = (*row)[x];
+    if (is_half) round_to_half(&v);
+    if (relation == AlphaRelation::Straight) {
+      scale_colors(&v, v.w);
+      if (is_half) round_to_half(&v);
     }
+    (*alphas)[x] = v.w;
+    if (relation != AlphaRelation::None && is_translucent(v.w)) scale_colors(&v, 1.0f / v.w);
+  }
+  color.to_scene_linear(space, is_byte, &row->front().x, row->size());
+  for (size_t x = 0; x < row->size(); x++) {
+    Vec4& v = (*row)[x];
+    v.w = (*alphas)[x];
+    if (relation != AlphaRelation::None && is_translucent(v.w)) scale_colors(&v, v.w);
   }
 }
 
@@ -44,9 +70,10 @@ void store_value(uint8_t* pixels, PixelFormat format, size_t index, float value)
   }
 }
 
-// Returns a copy of the tile, converted to scene-linear row by row. It has 3 or 4 channels, and stores floats if the
-// source does, else halves.
-ImageTile transform_tile(const ImageTile& source, const ColorManager& color, const std::string& space, bool is_byte) {
+// Returns a copy of the tile, converted to scene-linear row by row, with associated alpha unless there is no relation.
+// It has 3 or 4 channels, and stores floats if the source does, else halves.
+ImageTile transform_tile(const ImageTile& source, const ColorManager& color, const std::string& space, bool is_byte,
+                         AlphaRelation relation) {
   ImageTile tile;
   tile.number = source.number;
   tile.width = source.width;
@@ -54,13 +81,16 @@ ImageTile transform_tile(const ImageTile& source, const ColorManager& color, con
   tile.channels = has_alpha_channel(source.channels) ? 4 : 3;
   tile.format = source.format == PixelFormat::Float ? PixelFormat::Float : PixelFormat::Half;
   tile.pixels = std::make_unique_for_overwrite<uint8_t[]>(tile.size_bytes());
-  std::vector<float> row(static_cast<size_t>(tile.width) * tile.channels);
+  std::vector<Vec4> row(tile.width);
+  std::vector<float> alphas(tile.width);
+  size_t stored = 0;
   for (uint32_t y = 0; y < tile.height; y++) {
-    unpack_row(source, y, row.data(), tile.channels);
-    color.to_scene_linear(space, is_byte, row.data(), tile.width, static_cast<int>(tile.channels));
-    const size_t first = row.size() * y;
-    for (size_t i = 0; i < row.size(); i++) {
-      store_value(tile.pixels.get(), tile.format, first + i, row[i]);
+    unpack_row(source, y, &row);
+    transform_row(color, space, is_byte, tile.format == PixelFormat::Half, relation, &row, &alphas);
+    for (const Vec4& v : row) {
+      for (int c = 0; c < static_cast<int>(tile.channels); c++) {
+        store_value(tile.pixels.get(), tile.format, stored++, v[c]);
+      }
     }
   }
   return tile;
@@ -180,12 +210,13 @@ Vec4 ImageTile::texel(uint32_t x, uint32_t y) const {
 }
 
 ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const std::string& space, bool is_float,
-                       bool associate) {
+                       AlphaRelation relation) {
   ImageTile tile;
   tile.width = decoded.width;
   tile.height = decoded.height;
   tile.channels = decoded.channels;
-  const bool has_colors_and_alpha = decoded.channels == 4;  // a conversion makes four channels of grey and alpha
+  // Cycles does not multiply grey, yet divides and multiplies it where it converts colours.
+  if (relation == AlphaRelation::Straight && decoded.channels != 4) relation = AlphaRelation::Associated;
   tile.format = decoded.format;
   tile.pixels = std::move(decoded.pixels);
   const bool integer = tile.format == PixelFormat::Byte || tile.format == PixelFormat::Short;
@@ -194,10 +225,12 @@ ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const st
     tile.srgb = true;
   } else if (transform == ColorTransform::Srgb && tile.format != PixelFormat::Float) {
     linearise_shorts(&tile);
-  } else if (transform != ColorTransform::Data) {
-    tile = transform_tile(tile, color, space, integer);
+  } else if (transform == ColorTransform::Srgb) {
+    tile = transform_tile(tile, color, space, integer, AlphaRelation::None);
+  } else if (transform == ColorTransform::Other) {
+    tile = transform_tile(tile, color, space, integer, relation);
   }
-  if (associate && has_colors_and_alpha) {
+  if (relation == AlphaRelation::Straight && transform != ColorTransform::Other) {
     associate_alpha(&tile);
   }
   clean_tile(&tile);

@@ -1,5 +1,7 @@
 // Decodes all tiles of an image and converts them for look-ups.
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/hash.h"
 #include "image/color.h"
@@ -42,6 +44,41 @@ bool decode_tile(const ImageSource::Tile& tile, DecodedImage* image, std::string
   return is_read && read_image(bytes, image, problem);
 }
 
+// Returns how the colours of a decoded tile relate to its alpha, by the alpha mode of the image and the file itself.
+AlphaRelation alpha_relation(const ImageSource& source, const DecodedImage& decoded) {
+  switch (source.alpha_mode) {
+    case GRADUS_ALPHA_CHANNEL_PACKED:
+    case GRADUS_ALPHA_NONE:
+      return AlphaRelation::None;
+    case GRADUS_ALPHA_ALWAYS_STRAIGHT:
+      return AlphaRelation::Straight;
+    case GRADUS_ALPHA_STRAIGHT:
+      return decoded.associated_alpha ? AlphaRelation::Associated : AlphaRelation::Straight;
+    default:
+      return AlphaRelation::Associated;
+  }
+}
+
+// Converts a decoded tile for look-ups.
+ImageTile convert(const ImageSource& source, DecodedImage decoded, const ColorManager& color) {
+  const AlphaRelation relation = alpha_relation(source, decoded);
+  return convert_tile(std::move(decoded), color, source.color_space, source.is_float, relation);
+}
+
+// Returns the values of a tile as floats of red, green, blue and alpha.
+std::vector<uint8_t> float_pixels(const ImageTile& tile) {
+  std::vector<uint8_t> bytes;
+  bytes.reserve(size_t{tile.width} * tile.height * sizeof(Vec4));
+  for (uint32_t y = 0; y < tile.height; y++) {
+    for (uint32_t x = 0; x < tile.width; x++) {
+      const Vec4 v = tile.texel(x, y);
+      const uint8_t* first = reinterpret_cast<const uint8_t*>(&v);
+      bytes.insert(bytes.end(), first, first + sizeof(v));
+    }
+  }
+  return bytes;
+}
+
 // Returns the text of a warning, which names the image and the file.
 std::string describe(const ImageSource& source, const ImageSource::Tile& tile, const std::string& problem) {
   const std::string where = tile.path.empty() ? "(packed)" : tile.path;
@@ -58,6 +95,7 @@ std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorMa
   ContentHash hash;
   hash.value(source.color_space);
   for (const uint32_t v : {source.alpha_mode, uint32_t(source.is_float)}) hash.value(v);
+  if (const uint64_t conversion = color.fingerprint(source.color_space, !source.is_float)) hash.value(conversion);
   Rgb sum(0.0f);
   for (const ImageSource::Tile& tile : source.tiles) {
     DecodedImage decoded;
@@ -66,9 +104,7 @@ std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorMa
     Rgb mean = kMissingColor;
     if (decode_tile(tile, &decoded, &problem, &hash)) {
       problem = decoded.warning;
-      const bool is_straight = source.alpha_mode == GRADUS_ALPHA_ALWAYS_STRAIGHT ||
-                               (source.alpha_mode == GRADUS_ALPHA_STRAIGHT && !decoded.associated_alpha);
-      stored = convert_tile(std::move(decoded), color, source.color_space, source.is_float, is_straight);
+      stored = convert(source, std::move(decoded), color);
       mean = mean_color(stored);
       image->has_alpha = image->has_alpha || (!image->ignores_alpha && has_transparency(stored));
     } else {
@@ -84,6 +120,27 @@ std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorMa
   image->mean = image->tiles.empty() ? kMissingColor : sum / static_cast<float>(image->tiles.size());
   image->content_hash = hash.result();
   return image;
+}
+
+ImageSource scene_linear_source(const ImageSource& source, const ColorManager& color) {
+  ImageSource linear = source;
+  if (color.transform(source.color_space, !source.is_float) != ColorTransform::Other) return linear;
+  for (ImageSource::Tile& tile : linear.tiles) {
+    DecodedImage decoded;
+    std::string problem;
+    ContentHash unused;
+    if (!decode_tile(tile, &decoded, &problem, &unused)) continue;
+    const ImageTile converted = convert(source, std::move(decoded), color);
+    tile.source = GRADUS_IMAGE_FLOAT;
+    tile.width = converted.width;
+    tile.height = converted.height;
+    tile.data = float_pixels(converted);
+  }
+  linear.color_space.clear();
+  linear.is_float = true;
+  const bool uses_alpha = source.alpha_mode != GRADUS_ALPHA_CHANNEL_PACKED && source.alpha_mode != GRADUS_ALPHA_NONE;
+  if (uses_alpha) linear.alpha_mode = GRADUS_ALPHA_PREMULTIPLIED;
+  return linear;
 }
 
 }  // namespace gradus::image

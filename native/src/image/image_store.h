@@ -47,6 +47,10 @@ ImageSource copy_image_source(const GradusImage& desc);
 // std::bad_alloc.
 std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorManager& color);
 
+// Returns a copy of an image whose tiles are scene-linear floats if its colour space is one that only `color` can
+// convert, neither data nor sRGB. A tile that cannot be read stays as it is.
+ImageSource scene_linear_source(const ImageSource& source, const ColorManager& color);
+
 class ImageStore {
  public:
   static constexpr uint32_t kNone = UINT32_MAX;

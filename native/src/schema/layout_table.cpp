@@ -18,14 +18,6 @@ constexpr FieldLayout kDeviceSettingsFields[] = {
     FIELD(GradusDeviceSettings, denoiser_path),
 };
 
-constexpr FieldLayout kColorSpaceFields[] = {
-    FIELD(GradusColorSpace, struct_size),
-    FIELD(GradusColorSpace, curve_count),
-    FIELD(GradusColorSpace, name),
-    FIELD(GradusColorSpace, curve),
-    FIELD(GradusColorSpace, matrix),
-};
-
 constexpr FieldLayout kAttributeFields[] = {
     FIELD(GradusAttribute, struct_size),
     FIELD(GradusAttribute, domain),
@@ -535,7 +527,6 @@ constexpr int64_t kPhaseValues[] = {
 
 constexpr StructLayout kStructs[] = {
     {"DeviceSettings", sizeof(GradusDeviceSettings), kDeviceSettingsFields},
-    {"ColorSpace", sizeof(GradusColorSpace), kColorSpaceFields},
     {"Attribute", sizeof(GradusAttribute), kAttributeFields},
     {"Mesh", sizeof(GradusMesh), kMeshFields},
     {"Instances", sizeof(GradusInstances), kInstancesFields},

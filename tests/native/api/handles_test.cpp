@@ -44,9 +44,8 @@ std::vector<std::function<GradusError(uint64_t)>> handle_functions(uint32_t kind
                 return gradus_film_load(h, "/nonexistent", &f);
               },
               [](uint64_t h) {
-                GradusColorSpace s = sized<GradusColorSpace>();
-                s.name = "x";
-                return gradus_device_set_color_space(h, &s);
+                return gradus_device_set_color_space(
+                    h, "x", [](void*, float*, size_t) {}, nullptr);
               }};
     case 1:
       return {[](uint64_t h) { return gradus_scene_release(h); },
@@ -215,7 +214,10 @@ TEST(G1_Handles, NullPointersAreRefusedEverywhere) {
   ASSERT_OK(gradus_render_start(scene, &settings, &render));
   EXPECT_EQ(gradus_device_create(nullptr, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(gradus_device_warning(device, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
-  EXPECT_EQ(gradus_device_set_color_space(device, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_device_set_color_space(device, "x", nullptr, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(gradus_device_set_color_space(
+                device, nullptr, [](void*, float*, size_t) {}, nullptr),
+            GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(gradus_scene_warning(scene, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(gradus_scene_create(device, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(gradus_scene_set_mesh(scene, 1, nullptr), GRADUS_ERROR_INVALID_ARGUMENT);

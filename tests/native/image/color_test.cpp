@@ -1,16 +1,20 @@
 // F5: colour management with valid, invalid and missing configurations.
 #include "image/color.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "base/types.h"
 
 namespace gradus::test::color_test {
 namespace {
@@ -49,7 +53,7 @@ void expect_builtin(const image::ColorManager& color) {
   EXPECT_EQ(color.transform("Non-Color", true), image::ColorTransform::Data);
   EXPECT_EQ(color.transform("", true), image::ColorTransform::Data);
   float pixel[4] = {0.5f, 0.0f, 1.0f, 0.25f};
-  color.to_scene_linear("sRGB", true, pixel, 1, 4);
+  color.to_scene_linear("sRGB", true, pixel, 1);
   EXPECT_NEAR(pixel[0], 0.21404114f, 1e-6f);
   EXPECT_EQ(pixel[1], 0.0f);
   EXPECT_NEAR(pixel[2], 1.0f, 1e-6f);
@@ -99,10 +103,11 @@ TEST_F(F5_ColorConfig, ConvertsBySpacesOfTheConfiguration) {
   EXPECT_EQ(color->transform("lin", false), image::ColorTransform::Data);
   EXPECT_EQ(color->transform("raw", true), image::ColorTransform::Data);
   EXPECT_EQ(color->transform("halved", true), image::ColorTransform::Other);
-  std::vector<float> pixels(3 * 100000, 0.8f);
-  color->to_scene_linear("halved", true, pixels.data(), pixels.size() / 3, 3);
+  std::vector<float> pixels(4 * 100000, 0.8f);
+  color->to_scene_linear("halved", true, pixels.data(), pixels.size() / 4);
   EXPECT_NEAR(pixels.front(), 0.4f, 1e-6f);
-  EXPECT_NEAR(pixels.back(), 0.4f, 1e-6f);
+  EXPECT_NEAR(pixels[pixels.size() - 2], 0.4f, 1e-6f);
+  EXPECT_EQ(pixels.back(), 0.8f);
 }
 
 TEST_F(F5_ColorConfig, UnknownSpaceWarnsOnce) {
@@ -113,31 +118,78 @@ TEST_F(F5_ColorConfig, UnknownSpaceWarnsOnce) {
   EXPECT_NE(warnings_[0].find("Odd"), std::string::npos);
 }
 
-TEST_F(F5_ColorConfig, OverrideWins) {
-  const auto color = make("");
-  const float curve[3] = {0.0f, 0.25f, 1.0f};
-  GradusColorSpace space{sizeof(GradusColorSpace), 3, "sRGB", curve, {0, 1, 0, 1, 0, 0, 0, 0, 2}};
-  color->set_override(space);
-  EXPECT_EQ(color->transform("sRGB", true), image::ColorTransform::Other);
-  float pixel[3] = {0.5f, 1.0f, 0.75f};
-  color->to_scene_linear("sRGB", true, pixel, 1, 3);
-  EXPECT_NEAR(pixel[0], 1.0f, 1e-6f);
-  EXPECT_NEAR(pixel[1], 0.25f, 1e-6f);
-  EXPECT_NEAR(pixel[2], 1.25f, 1e-6f);
-  space.matrix[4] = NAN;
-  EXPECT_THROW(color->set_override(space), Error);
+// Exponents, CDLs and tables are no curve and matrix. The values follow from their definitions.
+TEST_F(F5_ColorConfig, ConvertsWhatIsNoCurveAndMatrix) {
+  std::string table = "LUT_3D_SIZE 2\n";
+  for (int i = 0; i < 8; i++) {  // red becomes the product of red and green at the corners of the cube
+    table += (i == 3 || i == 7 ? "1 " : "0 ") + std::string(i & 2 ? "1 " : "0 ") + (i & 4 ? "1\n" : "0\n");
+  }
+  const std::string cube = fs::path(write(table)).filename().string();
+  const auto color = make(write(config("scene_linear") +
+                                "  - !<ColorSpace>\n    name: gamma\n    isdata: false\n    to_scene_reference: "
+                                "!<ExponentTransform> {value: [2.2, 1.8, 2, 1]}\n"
+                                "  - !<ColorSpace>\n    name: graded\n    isdata: false\n    to_scene_reference: "
+                                "!<CDLTransform> {slope: [2, 1, 1], offset: [0.1, 0, 0], power: [2, 1, 1], sat: 1}\n"
+                                "  - !<ColorSpace>\n    name: table\n    isdata: false\n    to_scene_reference: "
+                                "!<FileTransform> {src: " +
+                                cube + ", interpolation: linear}\n"));
+  const auto convert = [&](const char* space) {
+    Vec4 pixel(0.25f, 0.5f, 0.75f, 1.0f);
+    EXPECT_EQ(color->transform(space, true), image::ColorTransform::Other) << space;
+    color->to_scene_linear(space, true, &pixel.x, 1);
+    return pixel;
+  };
+  EXPECT_NEAR(convert("gamma").x, std::pow(0.25f, 2.2f), 1e-4f);
+  EXPECT_NEAR(convert("gamma").y, std::pow(0.5f, 1.8f), 1e-4f);
+  EXPECT_NEAR(convert("graded").x, 0.36f, 1e-4f);
+  EXPECT_NEAR(convert("graded").z, 0.75f, 1e-4f);
+  EXPECT_NEAR(convert("table").x, 0.25f * 0.5f, 1e-4f);
+  EXPECT_NEAR(convert("table").z, 0.75f, 1e-4f);
+  EXPECT_TRUE(warnings_.empty()) << warnings_[0];
 }
 
-// Float images exceed the range of the curve's samples, and contain NaN.
-TEST_F(F5_ColorConfig, BeyondItsSamplesACurveContinuesWithItsLastSlope) {
+// Swaps red and blue, and squares green.
+void swap_red_and_blue(float* rgba, size_t count) {
+  for (; count > 0; count--, rgba += 4) {
+    std::swap(rgba[0], rgba[2]);
+    rgba[1] *= rgba[1];
+  }
+}
+
+TEST_F(F5_ColorConfig, ASetConversionWins) {
+  const auto color = make(write(config("scene_linear")));
+  color->set_conversion("halved", swap_red_and_blue);
+  EXPECT_EQ(color->transform("halved", true), image::ColorTransform::Other);
+  float pixel[4] = {0.5f, 3.0f, 0.75f, 0.25f};
+  color->to_scene_linear("halved", true, pixel, 1);
+  EXPECT_EQ(pixel[0], 0.75f);
+  EXPECT_EQ(pixel[1], 9.0f);
+  EXPECT_EQ(pixel[2], 0.5f);
+  EXPECT_EQ(pixel[3], 0.25f);
+  EXPECT_THROW(color->set_conversion("", swap_red_and_blue), Error);
+}
+
+TEST_F(F5_ColorConfig, KnownConversionsAreRecognised) {
   const auto color = make("");
-  const float curve[3] = {0.0f, 0.25f, 1.0f};
-  color->set_override({sizeof(GradusColorSpace), 3, "sRGB", curve, {1, 0, 0, 0, 1, 0, 0, 0, 1}});
-  float pixel[6] = {2.0f, -1.0f, 0.5f, NAN, NAN, NAN};
-  color->to_scene_linear("sRGB", false, pixel, 2, 3);
-  EXPECT_NEAR(pixel[0], 2.5f, 1e-6f);
-  EXPECT_NEAR(pixel[1], -0.5f, 1e-6f);
-  EXPECT_TRUE(std::isnan(pixel[3]));
+  color->set_conversion("same", [](float*, size_t) {});
+  EXPECT_EQ(color->transform("same", true), image::ColorTransform::Data);
+  color->set_conversion("curve", [](float* rgba, size_t count) {
+    for (size_t i = 0; i < 4 * count; i++) rgba[i] = i % 4 < 3 ? image::srgb_to_linear(rgba[i]) : rgba[i];
+  });
+  EXPECT_EQ(color->transform("curve", true), image::ColorTransform::Srgb);
+  EXPECT_EQ(color->fingerprint("curve", true), 0u);
+}
+
+TEST_F(F5_ColorConfig, TheFingerprintTellsConversionsApart) {
+  const auto color = make("");
+  color->set_conversion("space", swap_red_and_blue);
+  const uint64_t first = color->fingerprint("space", true);
+  color->set_conversion("space", [](float* rgba, size_t count) {
+    swap_red_and_blue(rgba, count);
+    for (size_t i = 0; i < 4 * count; i++) rgba[i] = std::min(rgba[i], 4.0f);  // differs in bright colours only
+  });
+  EXPECT_NE(color->fingerprint("space", true), first);
+  EXPECT_NE(first, 0u);
 }
 
 // Blender's own configuration, if it is installed.
@@ -151,8 +203,8 @@ TEST_F(F5_ColorConfig, BlendersConfiguration) {
   expect_builtin(*color);
   EXPECT_EQ(color->transform("Filmic sRGB", true), image::ColorTransform::Other);
   // ACEScg has another red primary: pure ACEScg red lies outside of Rec. 709.
-  float pixel[3] = {1.0f, 0.0f, 0.0f};
-  color->to_scene_linear("Linear ACEScg", false, pixel, 1, 3);
+  float pixel[4] = {1.0f, 0.0f, 0.0f, 1.0f};
+  color->to_scene_linear("Linear ACEScg", false, pixel, 1);
   EXPECT_NEAR(pixel[0], 1.705f, 0.01f);
   EXPECT_NEAR(pixel[1], -0.130f, 0.01f);
 }
