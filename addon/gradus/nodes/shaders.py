@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from . import faults
 from .node import NodeView, translator
 from .ops import Distribution, Op, Subsurface
 from .program import BLACK_CLOSURE, NO_NORMAL, Value, constant_float
@@ -108,6 +109,7 @@ def glossy(view: NodeView) -> Value:
         view.direction("Normal"),
         view.direction("Tangent"),
     )
+    faults.warn_of_glossy(view, *inputs[1:3])
     return view.add_closure(Op.GLOSSY, inputs, _versioned_distribution_mode(view))
 
 
@@ -145,6 +147,8 @@ def metallic(view: NodeView) -> Value:
 def sheen(view: NodeView) -> Value:
     is_velvet = getattr(view.node, "distribution", "ASHIKHMIN") == "ASHIKHMIN"
     inputs = (view.value("Color"), view.value("Roughness", "Sigma"), view.direction("Normal"))
+    if is_velvet:
+        faults.warn_of_velvet(view)
     return view.add_closure(Op.SHEEN, inputs, int(is_velvet))
 
 
@@ -165,6 +169,7 @@ def transparent(view: NodeView) -> Value:
 def ray_portal(view: NodeView) -> Value:
     position = view.linked("Position")
     inputs = (view.value("Color"), position or NO_NORMAL, view.value("Direction"))
+    faults.warn_of_portal(view, inputs[2])
     return view.add_closure(Op.RAY_PORTAL, inputs, 0 if position is None else 1)
 
 

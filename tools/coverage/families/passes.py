@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import partial
 from typing import Any
@@ -29,7 +30,7 @@ def rows() -> Iterator[Row]:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     layer = bpy.context.scene.view_layers[0]
     family = Family("Passes and view layers", "View layer", stage, NOISY)
-    yield from family.rows(rna.changes(layer, SKIPPED))
+    yield from family.rows(with_colors(rna.changes(layer, SKIPPED)))
     yield from family.rows(rna.of_part("cycles", rna.changes(layer.cycles, ("name",))))
     yield family.row(".samples", take_samples)
     yield family.row(".material_override", override_material)
@@ -54,6 +55,19 @@ def stage() -> Any:
         if obj.type == "MESH":
             obj.data.materials[0].pass_index = 2 * index + 1
     return bpy.context.scene.view_layers[0]
+
+
+def with_colors(changes: Iterator[tuple[str, rna.Change]]) -> Iterator[tuple[str, rna.Change]]:
+    """Yields changes of a view layer. Those that switch a light pass on add the pass of its colour."""
+    for suffix, change in changes:
+        kind = re.fullmatch(r"\.(use_pass_\w+_)(?:in)?direct=on", suffix)
+        yield suffix, partial(_change_with_color, change, f"{kind[1]}color") if kind else change
+
+
+def _change_with_color(change: rna.Change, color: str, layer: Any) -> None:
+    change(layer)
+    if hasattr(layer, color):
+        setattr(layer, color, True)
 
 
 def take_samples(layer: Any) -> None:

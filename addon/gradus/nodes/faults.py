@@ -1,0 +1,63 @@
+"""Warnings about shaders that Cycles renders by formulas with faults, which Gradus does not repeat."""
+
+from __future__ import annotations
+
+from .node import NodeView
+from .ops import Geometry, Op, VectorMath
+from .program import Value
+
+_ROUGH = 0.35
+"""The alpha from which Ashikhmin and Shirley's reflection in Cycles is clearly too bright at grazing views."""
+
+_UNIT_DIRECTIONS = {(int(Op.GEOMETRY), int(kind)) for kind in (Geometry.NORMAL, Geometry.TRUE_NORMAL, Geometry.INCOMING)}
+_UNIT_DIRECTIONS.add((int(Op.VECTOR_MATH), int(VectorMath.NORMALIZE)))
+_UNIT_OPS = {int(op) for op in (Op.NORMAL_MAP, Op.BUMP, Op.TANGENT)}
+
+
+def warn_of_glossy(view: NodeView, roughness: Value, anisotropy: Value) -> None:
+    """Warns of distributions of microfacets whose light Cycles samples by another density than that it divides by."""
+    distribution = view.node.distribution
+    if distribution == "BECKMANN" and view.version < (3, 5, 0) and not anisotropy.is_zero():
+        view.warn_replaced(
+            "is anisotropic with the distribution Beckmann, whose brightness is wrong in Cycles before Blender 3.5"
+        )
+    if distribution == "ASHIKHMIN_SHIRLEY" and _largest_alpha(roughness, anisotropy) > _ROUGH:
+        view.warn_replaced(
+            "is rough with the distribution Ashikhmin-Shirley, which is too bright in Cycles where the surface is seen "
+            "at a flat angle"
+        )
+
+
+def _largest_alpha(roughness: Value, anisotropy: Value) -> float:
+    """Returns the larger alpha of a glossy shader. Inputs that vary count as 1."""
+    if not (roughness.is_constant and anisotropy.is_constant):
+        return 1.0
+    stretch = min(abs(anisotropy.constant[0]), 0.99)
+    return min(max(roughness.constant[0], 0.0), 1.0) ** 2 / (1.0 - stretch)
+
+
+def warn_of_velvet(view: NodeView) -> None:
+    """Warns of bumps, which Cycles before Blender 4.0 darkens for one of its two ways to sample light."""
+    if view.is_linked("Normal") and view.version < (4, 0, 0):
+        view.warn_replaced(
+            "has bumps, which Cycles before Blender 4.0 darkens in the light of the world and of large lights, but not "
+            "in that of small ones"
+        )
+
+
+def warn_of_portal(view: NodeView, direction: Value) -> None:
+    """Warns of directions of another length than 1, with which Cycles before Blender 5.2 goes on wrongly."""
+    if view.version < (5, 2, 0) and not _is_unit(view, direction):
+        view.warn_replaced(
+            "may have a direction whose length is not 1, with which Cycles before Blender 5.2 renders what is behind "
+            "the portal wrongly; normalize it by a Vector Math node"
+        )
+
+
+def _is_unit(view: NodeView, direction: Value) -> bool:
+    """Returns whether a direction is known to have the length 1, or 0, which stands for straight on."""
+    if direction.is_constant:
+        length = sum(x * x for x in direction.constant[:3]) ** 0.5
+        return length == 0.0 or abs(length - 1.0) < 1e-3
+    op, mode = view.program.nodes[direction.node][:2]
+    return op in _UNIT_OPS or (op, mode) in _UNIT_DIRECTIONS
