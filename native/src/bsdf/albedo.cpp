@@ -153,7 +153,10 @@ Rgb multiscatter_energy(const Lobe& lobe, float cosine) {
     return repeated_bounces(single, glass_mean_albedo(alpha, lobe.ior), color);
   }
   const float single = std::clamp(ggx_moments(alpha, cosine).one, 0.05f, 1.0f);
-  return repeated_bounces(single, ggx_mean_albedo(alpha), glm::clamp(mean_fresnel(lobe), 0.0f, 1.0f));
+  Rgb color = glm::clamp(mean_fresnel(lobe), 0.0f, 1.0f);
+  // Cycles before 4.0 multiplies by the colour of each repeated bounce twice where it evaluates its walk.
+  if (spreads_bounces(lobe)) color *= color;
+  return repeated_bounces(single, ggx_mean_albedo(alpha), color);
 }
 
 Rgb spread_bounces(const Lobe& lobe, float cos_o, float cos_i) {
