@@ -116,12 +116,14 @@ def glossy(view: NodeView) -> Value:
 @translator("ShaderNodeBsdfGlass")
 def glass(view: NodeView) -> Value:
     inputs = (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal"))
+    faults.warn_of_refraction(view, inputs[1])
     return view.add_closure(Op.GLASS, inputs + thin_film(view), _versioned_distribution_mode(view))
 
 
 @translator("ShaderNodeBsdfRefraction")
 def refraction(view: NodeView) -> Value:
     inputs = (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal"))
+    faults.warn_of_refraction(view, inputs[1])
     return view.add_closure(Op.REFRACTION, inputs, _versioned_distribution_mode(view))
 
 
