@@ -49,7 +49,7 @@ def warn_of_refraction(view: NodeView, *roughnesses: Value) -> None:
     """
     if any(not value.is_constant or value.constant[0] > _ROUGH_GLASS for value in roughnesses):
         view.warn_replaced(
-            "refracts roughly, which is up to 4 % brighter in Cycles: there lights count in directions, too, into which "
+            "refracts roughly: lights behind it are up to 7 % brighter in Cycles, which counts directions, too, into which "
             "no light is refracted"
         )
 
