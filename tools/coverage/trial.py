@@ -12,7 +12,7 @@ from gradus import cycles_settings, store
 from support import images
 
 from . import cryptomatte, difference, light_passes, stages
-from .row import EXACT, NOISY, Build, Row
+from .row import EXACT, FAINT, NOISY, Build, Row
 
 AGREES, NO_EFFECT, DIFFERS, FALLS_BACK = "agrees", "no effect", "differs", "falls back"
 MISSING, FAILS, NOT_SHOWN = "missing", "fails", "not shown"
@@ -21,7 +21,7 @@ AS_IN_CYCLES = "as in Cycles"
 """How warnings end that tell of no difference, but of something that artists of Cycles may not expect either."""
 
 SEED = 7
-LADDERS = {EXACT: (1, 32, 256), NOISY: (32, 128, 512, 2048)}
+LADDERS = {EXACT: (1, 32, 256), NOISY: (32, 128, 512, 2048), FAINT: (512, 2048)}
 """Samples by those of a row. One that differs is rendered again with more, in case that noise made it differ."""
 
 

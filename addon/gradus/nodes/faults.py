@@ -49,8 +49,8 @@ def warn_of_refraction(view: NodeView, *roughnesses: Value) -> None:
     """
     if any(not value.is_constant or value.constant[0] > _ROUGH_GLASS for value in roughnesses):
         view.warn_replaced(
-            "refracts roughly: lights behind it are up to 7 % brighter in Cycles, which counts directions, too, into which "
-            "no light is refracted"
+            "refracts roughly: lights behind it are up to 7 % brighter in Cycles, which counts directions, too, "
+            "into which no light is refracted"
         )
 
 

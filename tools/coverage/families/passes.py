@@ -10,7 +10,7 @@ from typing import Any
 import bpy
 
 from .. import rna, stages
-from ..row import NOISY, Family, Row
+from ..row import FAINT, NOISY, Family, Row
 
 SKIPPED = (
     "use",
@@ -26,11 +26,20 @@ SKIPPED = (
 """Properties of Freestyle and other engines. Blender itself crashes where the only view layer is not in use."""
 
 
+LIGHT = re.compile(r"\.(use_pass_\w+_)(?:in)?direct=on")
+"""Rows of passes with light that is divided by a colour."""
+
+
 def rows() -> Iterator[Row]:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     layer = bpy.context.scene.view_layers[0]
     family = Family("Passes and view layers", "View layer", stage, NOISY)
-    yield from family.rows(with_colors(rna.changes(layer, SKIPPED)))
+    parts = Family(family.title, family.name, stage, FAINT)
+    for suffix, change in rna.changes(layer, SKIPPED):
+        if light := LIGHT.fullmatch(suffix):
+            yield parts.row(suffix, partial(change_with_color, change, f"{light[1]}color"))
+        else:
+            yield family.row(suffix, change)
     yield from family.rows(rna.of_part("cycles", rna.changes(layer.cycles, ("name",))))
     yield family.row(".samples", take_samples)
     yield family.row(".material_override", override_material)
@@ -57,14 +66,8 @@ def stage() -> Any:
     return bpy.context.scene.view_layers[0]
 
 
-def with_colors(changes: Iterator[tuple[str, rna.Change]]) -> Iterator[tuple[str, rna.Change]]:
-    """Yields changes of a view layer. Those that switch a light pass on add the pass of its colour."""
-    for suffix, change in changes:
-        kind = re.fullmatch(r"\.(use_pass_\w+_)(?:in)?direct=on", suffix)
-        yield suffix, partial(_change_with_color, change, f"{kind[1]}color") if kind else change
-
-
-def _change_with_color(change: rna.Change, color: str, layer: Any) -> None:
+def change_with_color(change: rna.Change, color: str, layer: Any) -> None:
+    """Switches a light pass on, and the pass of its colour if there is one."""
     change(layer)
     if hasattr(layer, color):
         setattr(layer, color, True)
