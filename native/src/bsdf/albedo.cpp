@@ -154,8 +154,9 @@ Rgb multiscatter_energy(const Lobe& lobe, float cosine) {
   }
   const float single = std::clamp(ggx_moments(alpha, cosine).one, 0.05f, 1.0f);
   Rgb color = glm::clamp(mean_fresnel(lobe), 0.0f, 1.0f);
-  // Cycles before 4.0 multiplies by the colour of each repeated bounce twice where it evaluates its walk.
-  if (spreads_bounces(lobe)) color *= color;
+  // Cycles before 4.0 multiplies by the colour of each repeated bounce once where it samples its walk, and twice where
+  // it evaluates it for lights. The power between them is close to either.
+  if (spreads_bounces(lobe)) color *= glm::sqrt(color);
   return repeated_bounces(single, ggx_mean_albedo(alpha), color);
 }
 
