@@ -39,9 +39,10 @@ def test_anisotropic_beckmann_is_named_before_3_5(anisotropy: float) -> None:
 
 
 @pytest.mark.skipif(VERSION >= (4, 0, 0), reason="from 4.0 on Cycles, too, scales the light of single bounces")
-def test_anisotropic_walks_are_named_before_4() -> None:
-    assert glossy("MULTI_GGX", 0.5, 0.0) == ""
-    assert "several bounces" in glossy("MULTI_GGX", 0.5, 0.4)
+def test_rough_and_anisotropic_walks_are_named_before_4() -> None:
+    assert glossy("MULTI_GGX", 0.3, 0.0) == ""
+    for roughness, anisotropy in ((0.3, 0.4), (0.5, 0.0), (noise, 0.0)):
+        assert "several bounces" in glossy("MULTI_GGX", roughness, anisotropy)
 
 
 def test_rough_ashikhmin_shirley_is_named() -> None:

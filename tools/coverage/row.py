@@ -10,7 +10,7 @@ from typing import Any
 Build = Callable[[], None]
 """Makes a scene in an empty file."""
 
-EXACT, NOISY, FAINT = 1, 32, 512
+EXACT, NOISY, FAINT = 1, 32, 128
 """Samples of scenes that have no noise, of scenes that are lit, and of passes with a small part of the light."""
 
 

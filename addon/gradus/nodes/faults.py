@@ -9,6 +9,9 @@ from .program import Value
 _ROUGH_REFLECTION = 0.35
 """The alpha from which Ashikhmin and Shirley's reflection in Cycles is clearly too bright at grazing views."""
 
+_ROUGH_WALK = 0.4
+"""The roughness from which light of several bounces between microfacets shows."""
+
 _ROUGH_GLASS = 0.4
 """The roughness from which refraction in Cycles is clearly too bright: by 2 % at 0.5, and by 4 % at 0.8."""
 
@@ -30,6 +33,19 @@ def warn_of_glossy(view: NodeView, roughness: Value, anisotropy: Value) -> None:
         view.warn_replaced(
             "is rough with the distribution Ashikhmin-Shirley, which is too bright in Cycles where the surface is seen "
             "at a flat angle"
+        )
+
+
+def warn_of_walk(view: NodeView, roughness: Value, anisotropy: Value) -> None:
+    """Warns of rough multiple scattering before Blender 4.0, whose colour Cycles applies once to rays and twice to lights.
+
+    Gradus spreads that light evenly, in a colour between the two, whatever the anisotropy.
+    """
+    is_rough = not roughness.is_constant or roughness.constant[0] > _ROUGH_WALK
+    if is_rough or not anisotropy.is_zero():
+        view.warn_replaced(
+            "has light of several bounces between its microfacets, which Cycles colours in one way for lights and in "
+            "another for rays; Gradus spreads it evenly, in a colour between these"
         )
 
 

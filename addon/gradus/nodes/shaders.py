@@ -110,10 +110,8 @@ def glossy(view: NodeView) -> Value:
         view.direction("Tangent"),
     )
     faults.warn_of_glossy(view, *inputs[1:3])
-    if view.node.distribution == "MULTI_GGX" and view.version < (4, 0, 0) and not inputs[2].is_zero():
-        view.warn_replaced(
-            "spreads the light of several bounces between its microfacets evenly, and without the anisotropy of Cycles"
-        )
+    if view.node.distribution == "MULTI_GGX" and view.version < (4, 0, 0):
+        faults.warn_of_walk(view, *inputs[1:3])
     return view.add_closure(Op.GLOSSY, inputs, _versioned_distribution_mode(view))
 
 

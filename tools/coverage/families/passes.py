@@ -34,7 +34,7 @@ def rows() -> Iterator[Row]:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     layer = bpy.context.scene.view_layers[0]
     family = Family("Passes and view layers", "View layer", stage, NOISY)
-    parts = Family(family.title, family.name, stage, FAINT)
+    parts = Family(family.title, family.name, stage_with_wall, FAINT)
     for suffix, change in rna.changes(layer, SKIPPED):
         if light := LIGHT.fullmatch(suffix):
             yield parts.row(suffix, partial(change_with_color, change, f"{light[1]}color"))
@@ -64,6 +64,14 @@ def stage() -> Any:
         if obj.type == "MESH":
             obj.data.materials[0].pass_index = 2 * index + 1
     return bpy.context.scene.view_layers[0]
+
+
+def stage_with_wall() -> Any:
+    """Shows the room with a white wall in the sun behind it, because passes of little indirect light are noise."""
+    layer = stage()
+    place = {"scale": (4.0, 2.0, 1.0), "location": (0.0, 1.8, 1.6), "rotation_euler": (1.5708, 0.0, 0.0)}
+    stages.mesh("PLANE", stages.material("BsdfDiffuse", (0.9, 0.9, 0.9)), "Wall", **place)
+    return layer
 
 
 def change_with_color(change: rna.Change, color: str, layer: Any) -> None:
