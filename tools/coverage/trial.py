@@ -21,7 +21,7 @@ AS_IN_CYCLES = "as in Cycles"
 """How warnings end that tell of no difference, but of something that artists of Cycles may not expect either."""
 
 SEED = 7
-LADDERS = {EXACT: (1, 32, 256), NOISY: (32, 128, 512, 2048), FAINT: (128, 512, 2048)}
+LADDERS = {EXACT: (1, 32, 256), NOISY: (32, 128, 512, 2048), FAINT: (128, 512, 2048, 8192)}
 """Samples by those of a row. One that differs is rendered again with more, in case that noise made it differ."""
 
 

@@ -39,7 +39,7 @@ def warn_of_glossy(view: NodeView, roughness: Value, anisotropy: Value) -> None:
 def warn_of_walk(view: NodeView, roughness: Value, anisotropy: Value) -> None:
     """Warns of rough multiple scattering, whose colour Cycles applies once to rays and twice to lights.
 
-    This is the walk of Blender before 4.0. Gradus spreads that light evenly, in a colour between the two, whatever the anisotropy.
+    This is the walk of Blender before 4.0. Gradus spreads that light evenly, in a colour between the two.
     """
     is_rough = not roughness.is_constant or roughness.constant[0] > _ROUGH_WALK
     if is_rough or not anisotropy.is_zero():
