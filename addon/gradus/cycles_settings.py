@@ -73,6 +73,21 @@ def warnings(scene: Any, given: set[str], is_followed: bool) -> list[str]:
     return [f"{start}: {items}" for start, items in texts.items() if items]
 
 
+def clamp_warnings(scene: Any, clamp_direct: float) -> list[str]:
+    """Returns a warning if direct light is clamped and Cycles chooses among several lights without its light tree.
+
+    A light that is chosen rarely adds more at once, so that a clamp cuts more of it. Cycles has a light tree since 3.5.
+    """
+    has_tree = getattr(getattr(scene, "cycles", None), "use_light_tree", False)
+    lights = sum(obj.type == "LIGHT" for obj in scene.objects) + (scene.world is not None)
+    if clamp_direct <= 0.0 or has_tree or lights < 2:
+        return []
+    return [
+        f"Clamp Direct is {clamp_direct:g}: without a light tree, Cycles chooses among the {lights} lights in another way "
+        "than Gradus, so that it clamps other parts of their light"
+    ]
+
+
 def _ignored(scene: Any) -> list[str]:
     """Returns the settings of Cycles that were chosen, change its picture and have no counterpart."""
     cycles = getattr(scene, "cycles", None)

@@ -286,6 +286,21 @@ def test_a9_sampled_closure(name: str, sheet: bpy.types.Scene, tmp_path: Path) -
     assert found == pytest.approx(expected, rel=0.01)
 
 
+@pytest.mark.skipif(VERSION >= (4, 0, 0), reason="from 4.0 on Cycles, too, scales the light of single bounces")
+@pytest.mark.parametrize(("anisotropy", "tolerance"), [(0.0, 0.045), (0.5, 0.07)])
+@pytest.mark.parametrize("tilt", [0.2, 1.0])
+def test_a9_walks_between_microfacets(
+    tilt: float, anisotropy: float, tolerance: float, sheet: bpy.types.Scene, tmp_path: Path
+) -> None:
+    """Regression: anisotropic surfaces were too dark. Cycles takes different colours for lights and for rays."""
+    item = sheet.objects["Sheet"]
+    item.rotation_euler = (0.0, tilt, 0.0)
+    item.data.materials.append(material_of(glossy("MULTI_GGX", 0.6, anisotropy)))
+    expected, found = (picture.mean(axis=(0, 1)) for picture in pictures(sheet, tmp_path, "front"))
+    print(f"walk {anisotropy}, {tilt:.1f}: {found / expected - 1}")
+    assert found == pytest.approx(expected, rel=tolerance)
+
+
 @pytest.mark.parametrize("name", ["ggx 0.5", "beckmann 0.8", "ashikhmin-shirley 0.5", "velvet 0.5"])
 def test_a9_colour_of_a_closure(name: str, sheet: bpy.types.Scene, tmp_path: Path) -> None:
     """Regression: the colour passes of rough surfaces lacked what single scattering loses."""

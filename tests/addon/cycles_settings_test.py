@@ -70,6 +70,21 @@ def test_use_pixel_jitter_is_named(cycles: bpy.types.Scene) -> None:
     assert text.endswith("does not have: Use Pixel Jitter")
 
 
+def test_clamps_without_a_light_tree_are_named(cycles: bpy.types.Scene) -> None:
+    """With one light there is nothing to choose."""
+    if hasattr(cycles.cycles, "use_light_tree"):
+        assert cycles_settings.clamp_warnings(cycles, 1.0) == []
+        cycles.cycles.use_light_tree = False
+    cycles.world = None
+    for _ in range(2):
+        light = bpy.data.objects.new("Light", bpy.data.lights.new("Light", "POINT"))
+        assert cycles_settings.clamp_warnings(cycles, 1.0) == []
+        cycles.collection.objects.link(light)
+    assert cycles_settings.clamp_warnings(cycles, 0.0) == []
+    [text] = cycles_settings.clamp_warnings(cycles, 1.0)
+    assert "among the 2 lights" in text
+
+
 def test_copy_from_cycles(cycles: bpy.types.Scene) -> None:
     cycles.cycles.max_bounces, cycles.cycles.transparent_max_bounces = 5, 64
     cycles.cycles.pixel_filter_type, cycles.cycles.filter_width = "GAUSSIAN", 2.0

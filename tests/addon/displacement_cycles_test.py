@@ -182,6 +182,21 @@ def test_tangent_space_without_a_uv_map(method: str, balls: bpy.types.Scene, tmp
     compare(balls, tmp_path)
 
 
+def test_a_bump_of_one_height_changes_nothing(balls: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: tangents turned from point to point of a bump, so that constant vectors bent the normals."""
+
+    def one_height(graph: Graph) -> bpy.types.NodeSocket:
+        inputs = {"Vector": graph("CombineXYZ", "Vector", {"X": 0.6, "Z": 0.3}), "Scale": 1.0}
+        return graph("VectorDisplacement", "Displacement", inputs, space="TANGENT")
+
+    ball = add_ball(balls, displaced("BUMP", one_height), 0.0)
+    found = picture(balls, tmp_path, "GRADUS")
+    ball.data.materials[0] = displaced("BUMP", CASES["constant"])
+    plain = picture(balls, tmp_path, "GRADUS")
+    assert plain.mean() > 0.01
+    assert np.abs(found - plain).mean() < 0.01 * plain.mean()
+
+
 @pytest.mark.parametrize("method", METHODS)
 def test_displaced_meshes_deform(method: str, balls: bpy.types.Scene, tmp_path: Path) -> None:
     """A ball that grows while the shutter is open keeps its displacement."""

@@ -82,6 +82,8 @@ CASES: dict[str, Callable[[Graph], bpy.types.NodeSocket]] = {
     "textured": lambda g: scattering(g, Color=noise(g, "Color"), Radius=noise(g, "Color")),
     "two channels": lambda g: scattering(g, Radius=(1.0, 0.5, 0.0)),
     "bump": lambda g: scattering(g, Normal=bumped(g)),
+    # Regression: walks began so far below the surface that steps of this length could not leave again.
+    "short steps": lambda g: scattering(g, Radius=(1.0, 0.2, 0.1), Scale=scale_of("RANDOM_WALK") / 400.0),
     "mixed": mixed,
 }
 if SINCE_4:

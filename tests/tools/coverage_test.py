@@ -107,8 +107,24 @@ def test_cryptomattes_are_compared_by_coverage() -> None:
     edge["Layer.CryptoObject00"][3, 4, :2] = 0.0
     other = cryptomatte_of((0x7E123456, 1.0), (0x00900001, 1.0))
     less = cryptomatte_of((0x7E123456, 1.0), (0x00800001, 0.9))
-    assert [trial.worst_difference(expected, found)[0].agrees for found in (expected, other, less)] == [True, False, False]
+    assert [trial.worst_difference(expected, found)[0].agrees for found in (expected, other, less)] == [
+        True,
+        False,
+        False,
+    ]
     assert trial.worst_difference(expected, edge)[0].mean < 0.01
+
+
+def test_light_passes_are_compared_with_their_colours() -> None:
+    """Regression: a pixel of which one sample of thousands met a surface counted like one that it fills."""
+    color = np.full((32, 32, 3), 0.5, np.float32)
+    light = np.full((32, 32, 3), 0.7, np.float32)
+    color[:2], edge = 1e-5, light.copy()
+    edge[:2] = 0.0
+    passes = {"Layer.DiffCol": color, "Layer.DiffInd": light}
+    assert trial.worst_difference(passes, passes | {"Layer.DiffInd": edge})[0].agrees
+    assert not trial.worst_difference(passes, passes | {"Layer.DiffInd": 1.1 * light})[0].agrees
+    assert not trial.worst_difference({"Layer.DiffInd": light}, {"Layer.DiffInd": edge})[0].agrees
 
 
 def test_the_document_is_read_as_it_was_written(tmp_path: Path) -> None:

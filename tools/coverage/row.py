@@ -10,8 +10,8 @@ from typing import Any
 Build = Callable[[], None]
 """Makes a scene in an empty file."""
 
-EXACT, NOISY = 1, 32
-"""Samples of scenes that have no noise, and of scenes that are lit."""
+EXACT, NOISY, FAINT = 1, 32, 128
+"""Samples of scenes that have no noise, of scenes that are lit, and of passes with a small part of the light."""
 
 
 @dataclass(frozen=True)

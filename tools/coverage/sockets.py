@@ -55,6 +55,12 @@ def set_constant(socket: bpy.types.NodeSocket, index: int) -> None:
         socket.default_value = (*_VECTORS[index % 4], 0.5)[:count]
 
 
+def set_value(socket: bpy.types.NodeSocket, value: Any) -> None:
+    """Sets a value. Of one with more channels than the input has in this Blender, the first ones count."""
+    is_one = isinstance(value, (int, float, str))
+    socket.default_value = value if is_one else value[: len(socket.default_value)]
+
+
 class Patterns:
     """Makes nodes in a tree whose outputs vary smoothly over the surface."""
 

@@ -11,8 +11,8 @@ import numpy as np
 from gradus import cycles_settings, store
 from support import images
 
-from . import cryptomatte, difference, stages
-from .row import EXACT, NOISY, Build, Row
+from . import cryptomatte, difference, light_passes, stages
+from .row import EXACT, FAINT, NOISY, Build, Row
 
 AGREES, NO_EFFECT, DIFFERS, FALLS_BACK = "agrees", "no effect", "differs", "falls back"
 MISSING, FAILS, NOT_SHOWN = "missing", "fails", "not shown"
@@ -21,7 +21,7 @@ AS_IN_CYCLES = "as in Cycles"
 """How warnings end that tell of no difference, but of something that artists of Cycles may not expect either."""
 
 SEED = 7
-LADDERS = {EXACT: (1, 32, 256), NOISY: (32, 128, 512, 2048)}
+LADDERS = {EXACT: (1, 32, 256), NOISY: (32, 128, 512, 2048), FAINT: (128, 512, 2048, 8192)}
 """Samples by those of a row. One that differs is rendered again with more, in case that noise made it differ."""
 
 
@@ -126,14 +126,14 @@ def worst_difference(expected: images.Passes, found: images.Passes) -> tuple[dif
 def _difference(expected: images.Passes, found: images.Passes, name: str) -> difference.Difference:
     group = cryptomatte.group(name)
     if group is None:
-        return difference.compare(expected[name], found[name])
+        return difference.compare(*(light_passes.multiplied(passes, name) for passes in (expected, found)))
     planes = [cryptomatte.coverage(passes, group) for passes in (expected, found)]
     identifiers = sorted(planes[0].keys() | planes[1].keys())
     return difference.compare(*(cryptomatte.stacked(each, identifiers, expected[name]) for each in planes))
 
 
 def _describe(worst: difference.Difference, where: str, expected: images.Passes, found: images.Passes) -> str:
-    colors = [_means(image) for image in (expected[where], found[where])]
+    colors = [_means(light_passes.multiplied(passes, where)) for passes in (expected, found)]
     name = where.rpartition(".")[2]
     place = "" if name == "Combined" else f"{name}: "
     return f"{place}{worst.blocks:.0%} of the blocks, mean {colors[1]} instead of {colors[0]}"

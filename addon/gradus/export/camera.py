@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from .. import native
+from .. import compat, native
 from . import panorama
 from .arrays import matrix_values
 from .report import ExportError
@@ -23,6 +23,9 @@ _MIN_FSTOP = 1e-5
 _DEFAULT_LENS = 35.0  # mm, for objects that are not cameras, as in Blender
 _DEFAULT_SENSOR = 36.0  # mm
 _FAR = 1e30
+
+# The version from which Cycles measures the focus of orthographic cameras from the camera, not from its near plane.
+_FOCUS_FROM_CAMERA_SINCE = (4, 2, 0)
 
 
 @dataclass(frozen=True)
@@ -144,7 +147,8 @@ def _set_depth_of_field(state: CameraState, data: Any, matrix: Any) -> None:
     fstop = max(dof.aperture_fstop, _MIN_FSTOP)
     focal_length = 1.0 if data.type == "ORTHO" else data.lens * 1e-3  # m
     state.aperture_radius = focal_length / (2.0 * fstop)
-    state.focus_distance = max(_focus_distance(dof, matrix), 1e-5)
+    near = data.clip_start if data.type == "ORTHO" and compat.VERSION < _FOCUS_FROM_CAMERA_SINCE else 0.0
+    state.focus_distance = max(_focus_distance(dof, matrix), 1e-5) + near
     state.blades = dof.aperture_blades
     state.blade_rotation = dof.aperture_rotation
     state.aperture_ratio = dof.aperture_ratio

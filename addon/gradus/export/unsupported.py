@@ -69,6 +69,11 @@ def of_scene(scene: Any, view_layer: Any) -> Iterator[str]:
     of_cycles = getattr(world.original, "cycles", None) if world is not None else None
     if not getattr(of_cycles, "use_shadows", True):  # from 5.2 on
         yield f"World '{world.name}': its light is shadowed, although its setting Shadows is off"
+    if getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False):
+        yield (
+            f"View layer '{view_layer.name}': Denoising Normal, Albedo and Depth serve the reconstruction, too, so that "
+            "they differ from those of Cycles where lights and mirrors show"
+        )
     passes = list(missing_passes(view_layer))
     if passes:
         yield f"View layer '{view_layer.name}': not supported are the passes {', '.join(passes)}"

@@ -6,6 +6,7 @@ added.
 
 from __future__ import annotations
 
+from . import faults
 from .node import NodeView, translator
 from .ops import Distribution, Op, VectorMath
 from .program import NO_NORMAL, Program, Value, constant_color, constant_float
@@ -63,6 +64,8 @@ def _before_4(view: NodeView) -> Value:
         view.direction("Clearcoat Normal"),
         view.direction("Tangent"),
     )
+    if not view.value("Transmission").is_zero():
+        faults.warn_of_refraction(view, view.value("Roughness"), view.value("Transmission Roughness"))
     if not view.value("Clearcoat").is_zero():
         view.warn_replaced("has a clearcoat with the highlight of GGX, whose tail is shorter than that of Cycles")
     surface = view.add_closure(Op.PRINCIPLED_3, inputs + below, mode)
@@ -94,6 +97,8 @@ def _since_4(view: NodeView) -> Value:
         )
         if not view.value("Thin Wall").is_zero():
             view.warn_replaced("has a thin wall with subsurface scattering, which is rendered as that of a solid")
+    if not view.value("Transmission Weight").is_zero():
+        faults.warn_of_refraction(view, view.value("Roughness"))
     if film := thin_film(view):
         mode |= 0 if view.version >= (5, 0, 0) else _LEGACY_FILM
         below = (below or (_NONE,) * 5) + film

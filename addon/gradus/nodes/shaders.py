@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import working_space
+from . import faults, working_space
 from .node import NodeView, translator
 from .ops import Distribution, Op, Subsurface
 from .program import BLACK_CLOSURE, NO_NORMAL, Value, constant_float
@@ -113,18 +113,23 @@ def glossy(view: NodeView) -> Value:
         view.direction("Normal"),
         view.direction("Tangent"),
     )
+    faults.warn_of_glossy(view, *inputs[1:3])
+    if view.node.distribution == "MULTI_GGX" and view.version < (4, 0, 0):
+        faults.warn_of_walk(view, *inputs[1:3])
     return view.add_closure(Op.GLOSSY, inputs, _versioned_distribution_mode(view))
 
 
 @translator("ShaderNodeBsdfGlass")
 def glass(view: NodeView) -> Value:
     inputs = (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal"))
+    faults.warn_of_refraction(view, inputs[1])
     return view.add_closure(Op.GLASS, inputs + thin_film(view), _versioned_distribution_mode(view))
 
 
 @translator("ShaderNodeBsdfRefraction")
 def refraction(view: NodeView) -> Value:
     inputs = (view.value("Color"), roughness(view), view.value("IOR"), view.direction("Normal"))
+    faults.warn_of_refraction(view, inputs[1])
     return view.add_closure(Op.REFRACTION, inputs, _versioned_distribution_mode(view))
 
 
@@ -150,6 +155,8 @@ def metallic(view: NodeView) -> Value:
 def sheen(view: NodeView) -> Value:
     is_velvet = getattr(view.node, "distribution", "ASHIKHMIN") == "ASHIKHMIN"
     inputs = (view.value("Color"), view.value("Roughness", "Sigma"), view.direction("Normal"))
+    if is_velvet:
+        faults.warn_of_velvet(view)
     return view.add_closure(Op.SHEEN, inputs, int(is_velvet))
 
 
@@ -170,6 +177,7 @@ def transparent(view: NodeView) -> Value:
 def ray_portal(view: NodeView) -> Value:
     position = view.linked("Position")
     inputs = (view.value("Color"), position or NO_NORMAL, view.value("Direction"))
+    faults.warn_of_portal(view, inputs[2])
     return view.add_closure(Op.RAY_PORTAL, inputs, 0 if position is None else 1)
 
 

@@ -8,8 +8,14 @@
 namespace gradus::bsdf {
 namespace {
 
-// Returns the geometric mean of both alphas, clamped at 1, because the albedo tables are isotropic.
-float mean_alpha(const Lobe& lobe) { return std::min(1.0f, std::sqrt(lobe.alpha_x * lobe.alpha_y)); }
+// Returns the mean of both alphas, clamped at 1, because the albedo tables are isotropic. Cycles since Blender 4.0
+// takes the geometric mean. Before, a random walk conserved all energy; an anisotropic lobe loses as much at one bounce
+// as the isotropic lobe of the root mean square does.
+float mean_alpha(const Lobe& lobe) {
+  const float square = lobe.blur_conserves ? 0.5f * (lobe.alpha_x * lobe.alpha_x + lobe.alpha_y * lobe.alpha_y)
+                                           : lobe.alpha_x * lobe.alpha_y;
+  return std::min(1.0f, std::sqrt(square));
+}
 
 // Returns the dielectric Fresnel term averaged over the cosine-weighted hemisphere (fit of Kulla and Conty, "Revisiting
 // Physically Based Shading at Imageworks", 2017).
@@ -147,7 +153,18 @@ Rgb multiscatter_energy(const Lobe& lobe, float cosine) {
     return repeated_bounces(single, glass_mean_albedo(alpha, lobe.ior), color);
   }
   const float single = std::clamp(ggx_moments(alpha, cosine).one, 0.05f, 1.0f);
-  return repeated_bounces(single, ggx_mean_albedo(alpha), glm::clamp(mean_fresnel(lobe), 0.0f, 1.0f));
+  Rgb color = glm::clamp(mean_fresnel(lobe), 0.0f, 1.0f);
+  // Cycles before 4.0 multiplies by the colour of each repeated bounce once where it samples its walk, and twice where
+  // it evaluates it for lights. The power between them is close to either.
+  if (spreads_bounces(lobe)) color *= glm::sqrt(color);
+  return repeated_bounces(single, ggx_mean_albedo(alpha), color);
+}
+
+Rgb spread_bounces(const Lobe& lobe, float cos_o, float cos_i) {
+  const float alpha = mean_alpha(lobe);
+  const float lost = 1.0f - ggx_moments(alpha, cos_i).one, mean_lost = 1.0f - ggx_mean_albedo(alpha);
+  const Rgb energy = (lobe.energy - 1.0f) * ggx_moments(alpha, cos_o).one;
+  return lobe.weight * energy * (lost * cos_i * kInvPi / std::max(mean_lost, 1e-4f));
 }
 
 LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {

@@ -71,5 +71,11 @@ struct LobeAlbedo {
 LobeAlbedo two_sided_albedo(const Lobe& lobe, float cosine);
 // Returns the factor by which multiple scattering raises a microfacet lobe, for the cosine of wo and the normal.
 Rgb multiscatter_energy(const Lobe& lobe, float cosine);
+// Returns whether the light of repeated bounces between microfacets leaves diffusely, as in Blender before 4.0, and
+// does not scale the light of single bounces.
+inline bool spreads_bounces(const Lobe& lobe) { return lobe.blur_conserves && lobe.fresnel == FresnelType::None; }
+// Returns the value of repeated bounces for the cosines of wo and wi to the normal, with the factor of that of wi
+// (Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks"). The lobe must be finished.
+Rgb spread_bounces(const Lobe& lobe, float cos_o, float cos_i);
 
 }  // namespace gradus::bsdf

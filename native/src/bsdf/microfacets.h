@@ -28,7 +28,9 @@ BsdfEval evaluate_reflection(const Lobe& lobe, const Vec3& wo, const Vec3& wi, u
   const float density = 0.25f * normals.density(h);
   const float shape = density * masking_of(lobe, normals, wo, wi) * wi.z;
   const Rgb fresnel = lobe_fresnel_split(lobe, std::min(1.0f, glm::dot(wo, h))).reflected;
-  return {lobe.weight * lobe.energy * fresnel * shape, density * normals.masking_over_cosine(wo)};
+  const Rgb once = lobe.weight * fresnel * shape;
+  return {spreads_bounces(lobe) ? once + spread_bounces(lobe, wo.z, wi.z) : once * lobe.energy,
+          density * normals.masking_over_cosine(wo)};
 }
 
 template <class Distribution>

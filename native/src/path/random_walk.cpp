@@ -132,7 +132,7 @@ class Walk {
     const float sampled = sample_length(extinction, u.distance.y);
     const float least = std::min(std::min(medium_.extinction.x, medium_.extinction.y), medium_.extinction.z);
     length_ = sampled;
-    if (!meets(std::max(sampled, kSearchedPaths / least), hit)) return false;
+    if (!meets(start_.nearest, std::max(sampled, kSearchedPaths / least), hit)) return false;
     has_opposite_ = true;
     opposite_ = std::max(0.0f, hit->t * -glm::dot(direction_, start_.normal));
     length_ = std::min(sampled, hit->t);
@@ -155,13 +155,13 @@ class Walk {
     phase_ = phase(medium.anisotropy, glm::dot(last, direction_));
     if (guided) extinction *= guide_.stretch(backward ? -cosine_ : cosine_);
     length_ = sample_length(extinction, u.distance.y);
-    if (!meets(length_, hit)) return false;
+    if (!meets(0.0f, length_, hit)) return false;
     length_ = hit->t;
     return true;
   }
 
-  bool meets(float distance, geometry::Hit* hit) const {
-    const Ray ray{position_, 0.0f, direction_, distance, start_.time};
+  bool meets(float nearest, float distance, geometry::Hit* hit) const {
+    const Ray ray{position_, nearest, direction_, distance, start_.time};
     return context_.scene.intersect_instance(ray, start_.instance, hit);
   }
 

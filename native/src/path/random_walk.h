@@ -16,7 +16,8 @@
 namespace gradus::path {
 
 struct WalkStart {
-  Vec3 position = Vec3(0.0f);  // offset from the surface
+  Vec3 position = Vec3(0.0f);  // on the surface
+  float nearest = 0.0f;        // distance along the first step within which rounding finds the surface itself
   Vec3 direction = Vec3(0.0f);
   Vec3 normal = Vec3(0, 0, 1);  // out of the object
   uint32_t instance = 0;

@@ -1,5 +1,7 @@
 #include "path/subsurface.h"
 
+#include <algorithm>
+
 #include "path/burley_disk.h"
 #include "path/random_walk.h"
 #include "shading/material.h"
@@ -7,6 +9,10 @@
 namespace gradus::path {
 
 namespace {
+
+// The first step of a walk ignores the surface that it starts at, up to a distance that grows with the angle of the
+// entry. Flatter entries are treated as having this cosine.
+constexpr float kSmallestEntryCosine = 1e-3f;
 
 // Walks below the surface. Sets hit and direction of the exit, and its weight.
 bool walk_below(const PathContext& context, const Sampler& sampler, const VertexSample& u, int depth,
@@ -16,8 +22,13 @@ bool walk_below(const PathContext& context, const Sampler& sampler, const Vertex
   if (!bsdf::sample_entry(lobe, entry.wo, u.bsdf, &direction) || !(glm::dot(direction, out) < 0.0f)) return false;
   const bsdf::Medium medium = bsdf::medium_below(lobe, weight);
   const Vec3 normal = geometry::keep_above(entry.point.shading_normal, entry.point.geometric_normal);
-  const WalkStart start{geometry::offset_origin(entry.point, direction), direction,
-                        glm::dot(normal, out) < 0.0f ? -normal : normal, entry.point.hit.instance,
+  // The walk starts at the surface itself: its steps may be as short as an offset against rounding would be.
+  const float nearest = entry.point.error / std::max(-glm::dot(direction, out), kSmallestEntryCosine);
+  const WalkStart start{entry.point.position,
+                        nearest,
+                        direction,
+                        glm::dot(normal, out) < 0.0f ? -normal : normal,
+                        entry.point.hit.instance,
                         entry.point.hit.time};
   return walk(context, sampler, depth, medium, start, weight, end);
 }

@@ -66,10 +66,13 @@ Vec3 world_position(const ShadeContext& c) {
 ShadeContext moved_context(const ShadeContext& context, const geometry::SurfaceDerivatives& derivatives,
                            const Vec3& step) {
   ShadeContext c = context;
+  c.center = &context;
   c.position += step;
   c.hit.uv += derivatives.duv(step);
   return c;
 }
+
+const ShadeContext& center_of(const ShadeContext& c) { return c.center ? center_of(*c.center) : c; }
 
 Vec3 normal_to_local(const ShadeContext& c, const Vec3& normal) {
   if (c.light_axes) return glm::transpose(*c.light_axes) * normal;

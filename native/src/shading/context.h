@@ -23,6 +23,8 @@ struct ShadeContext {
   Vec3 wo = Vec3(0, 0, 1);
   Vec2 uv = Vec2(0.0f);              // coordinates on the surface of a light
   const Mat3* light_axes = nullptr;  // axes of a light; null for other points
+  // The shaded point, if this one is a neighbour whose height a bump compares with that of the shaded point.
+  const ShadeContext* center = nullptr;
   RayState ray;
   bool backfacing = false;
   bool is_background = false;
@@ -44,9 +46,12 @@ float camera_distance(const ShadeContext& context);
 // Returns the position in world space, or the direction for the background.
 Vec3 world_position(const ShadeContext& context);
 // Returns the context moved by `step` along the primitive of its hit, of which the derivatives are given. Interpolated
-// values are those of the new point.
+// values are those of the new point, but tangents stay those of `context`, as in Cycles. `context` must outlive the
+// result.
 ShadeContext moved_context(const ShadeContext& context, const geometry::SurfaceDerivatives& derivatives,
                            const Vec3& step);
+// Returns the point to which a bump compares this neighbour of it, or the context itself.
+const ShadeContext& center_of(const ShadeContext& context);
 // Transform normals between internal space and the object's space. Without an object they return the normal unchanged.
 Vec3 normal_to_local(const ShadeContext& context, const Vec3& normal);
 Vec3 normal_to_world(const ShadeContext& context, const Vec3& normal);

@@ -45,7 +45,7 @@ void vector_displacement_op(const ResourceArgs& args, const ShadeContext& c, Vec
   if (args.mode == GRADUS_NORMAL_WORLD)
     out[0] = value(v);
   else
-    out[0] = value(direction_to_world(c, args.mode == GRADUS_NORMAL_TANGENT ? from_tangent_space(c, v) : v));
+    out[0] = value(direction_to_world(c, args.mode == GRADUS_NORMAL_TANGENT ? from_tangent_space(center_of(c), v) : v));
 }
 
 }  // namespace gradus::shading

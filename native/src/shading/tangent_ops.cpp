@@ -87,10 +87,12 @@ Vec4 uv_tangent(const ShadeContext& c, const std::string* name) {
   return Vec4(0.0f);
 }
 
-void tangent_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) { out[0] = value(own_tangent(args, c)); }
+void tangent_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
+  out[0] = value(own_tangent(args, center_of(c)));
+}
 
 void normal_map_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
-  out[0] = value(mapped_normal(args, c));
+  out[0] = value(mapped_normal(args, center_of(c)));
 }
 
 }  // namespace gradus::shading

@@ -238,7 +238,7 @@ def _feed(node: Any, variation: Variation) -> None:
         elif socket.type == "SHADER":
             patterns_for_shader(node.id_data, socket, index)
         elif socket.name in variation.given:
-            socket.default_value = variation.given[socket.name]
+            sockets.set_value(socket, variation.given[socket.name])
         elif is_value and first and socket.type in {"VALUE", "VECTOR", "RGBA"} and not sockets.is_direction(socket):
             patterns.drive(socket)
         elif is_value or socket.type == "RGBA":

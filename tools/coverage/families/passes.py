@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import partial
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import bpy
 
 from .. import rna, stages
-from ..row import NOISY, Family, Row
+from ..row import FAINT, NOISY, Family, Row
 
 SKIPPED = (
     "use",
@@ -25,11 +26,20 @@ SKIPPED = (
 """Properties of Freestyle and other engines. Blender itself crashes where the only view layer is not in use."""
 
 
+LIGHT = re.compile(r"\.(use_pass_\w+_)(?:in)?direct=on")
+"""Rows of passes with light that is divided by a colour."""
+
+
 def rows() -> Iterator[Row]:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     layer = bpy.context.scene.view_layers[0]
     family = Family("Passes and view layers", "View layer", stage, NOISY)
-    yield from family.rows(rna.changes(layer, SKIPPED))
+    parts = Family(family.title, family.name, stage_with_wall, FAINT)
+    for suffix, change in rna.changes(layer, SKIPPED):
+        if light := LIGHT.fullmatch(suffix):
+            yield parts.row(suffix, partial(change_with_color, change, f"{light[1]}color"))
+        else:
+            yield family.row(suffix, change)
     yield from family.rows(rna.of_part("cycles", rna.changes(layer.cycles, ("name",))))
     yield family.row(".samples", take_samples)
     yield family.row(".material_override", override_material)
@@ -54,6 +64,21 @@ def stage() -> Any:
         if obj.type == "MESH":
             obj.data.materials[0].pass_index = 2 * index + 1
     return bpy.context.scene.view_layers[0]
+
+
+def stage_with_wall() -> Any:
+    """Shows the room with a white wall in the sun behind it, because passes of little indirect light are noise."""
+    layer = stage()
+    place = {"scale": (4.0, 2.0, 1.0), "location": (0.0, 1.8, 1.6), "rotation_euler": (1.5708, 0.0, 0.0)}
+    stages.mesh("PLANE", stages.material("BsdfDiffuse", (0.9, 0.9, 0.9)), "Wall", **place)
+    return layer
+
+
+def change_with_color(change: rna.Change, color: str, layer: Any) -> None:
+    """Switches a light pass on, and the pass of its colour if there is one."""
+    change(layer)
+    if hasattr(layer, color):
+        setattr(layer, color, True)
 
 
 def take_samples(layer: Any) -> None:
