@@ -44,7 +44,7 @@ using StoredImages = std::map<uint64_t, std::shared_ptr<const image::Image>>;
 struct CompiledMaterial {
   std::shared_ptr<const MaterialSource> source;
   std::shared_ptr<const shading::MaterialData> data;
-  std::string warning;  // reason for a fallback in `data`; else empty
+  std::string warning;  // reason for a fallback in `data`, or how its emission was limited; else empty
 };
 
 // Maps the keys of materials to indices in Snapshot::materials.
