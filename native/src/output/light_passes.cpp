@@ -172,9 +172,9 @@ reconstruct::PictureTerm make_term(const film::Film& film, const Region& region,
                                    reconstruct::HalvedImage sampled, const CancelCheck& cancel) {
   throw_if_cancelled(cancel);
   reconstruct::PictureTerm term = reconstruct::regress_term(guides, std::move(sampled), cancel);
-  term.image =
-      crop(term.image, film, region, GRADUS_FAULT(light_passes_lack_exposure) ? 1.0f : film.settings.film_exposure);
-  term.error = crop(term.error, film, region);  // Only ratios of errors matter, so the exposure is left out.
+  const float exposure = GRADUS_FAULT(light_passes_lack_exposure) ? 1.0f : film.settings.film_exposure;
+  term.image = crop(term.image, film, region, exposure);
+  term.error = crop(term.error, film, region, exposure * exposure);
   return term;
 }
 

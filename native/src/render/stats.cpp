@@ -84,6 +84,9 @@ std::string stats_json(const RenderStats& stats, const Plan& plan, const film::F
   j["film_memory_bytes"] = film.memory_bytes();
   j["peak_memory_bytes"] = peak_memory_bytes();
   j["warnings"] = stats.warnings;
+  if (film.counters.nonfinite_radiance > 0)
+    j["warnings"].push_back(
+        "light that is not finite or too strong was left out: the strength of a world, a light or an emission");
   if (stats.solve.hit_cap) j["warnings"].push_back("the reconstruction stopped at its limit of steps");
   // Replaces invalid UTF-8 in names, which come from files, so that it does not cause an error.
   return j.dump(-1, ' ', false, json::error_handler_t::replace);

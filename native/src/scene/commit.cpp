@@ -88,12 +88,13 @@ std::vector<light::AnalyticLight> place_lights(const Scene::State& state, const 
   std::vector<std::string> broken;
   for (const LightSource& light : state.lights) {
     light::AnalyticLight analytic_light;
-    if (!light::make_analytic_light(light.desc, snapshot->origin, &analytic_light)) {
-      if (!light::is_finite_light(light.desc)) broken.push_back(light.name);
-      continue;
+    const bool is_made = light::make_analytic_light(light.desc, snapshot->origin, &analytic_light);
+    if (is_made) set_light_material(*snapshot, index_of(indices, light.desc.material, UINT32_MAX), &analytic_light);
+    if (!light::is_finite_light(light.desc) || !is_finite(analytic_light.intensity)) {
+      broken.push_back(light.name);
+    } else if (is_made && !is_black(analytic_light.intensity)) {
+      analytic_lights.push_back(analytic_light);
     }
-    set_light_material(*snapshot, index_of(indices, light.desc.material, UINT32_MAX), &analytic_light);
-    if (!is_black(analytic_light.intensity)) analytic_lights.push_back(analytic_light);
   }
   if (!broken.empty())
     snapshot->warnings.push_back(std::to_string(broken.size()) + " lights were left out, the first is '" + broken[0] +

@@ -48,7 +48,7 @@ using CoarserImages = std::map<std::shared_ptr<const image::Image>, std::shared_
 struct CompiledMaterial {
   std::shared_ptr<const MaterialSource> source;
   std::shared_ptr<const shading::MaterialData> data;
-  std::string warning;  // reason for a fallback in `data`; else empty
+  std::string warning;  // reason for a fallback in `data`, or how its emission was limited; else empty
 };
 
 // Maps the keys of materials to indices in Snapshot::materials.

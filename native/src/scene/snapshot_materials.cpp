@@ -24,11 +24,30 @@ void load_new_images(Device& device, Scene::State* state, const CommitMonitor& m
   monitor.check();
 }
 
-// Compiles a material. If that fails, a fallback replaces it, with a warning.
+// Largest light of a constant emission, so that sums over samples stay below those that the film accepts.
+constexpr float kStrongestEmission = 1e30f;
+
+// Makes a constant emission black if it is not finite, as Cycles does, and limits it if it is too strong. Returns a
+// warning, or "" if the emission stays as it is.
+std::string limit_emission(std::shared_ptr<const shading::MaterialData>* data) {
+  const Rgb emission = (*data)->constant_emission;
+  const Rgb limited = is_finite(emission) ? glm::clamp(emission, -kStrongestEmission, kStrongestEmission) : Rgb(0.0f);
+  if (!(*data)->emission_is_constant || limited == emission) return "";
+  auto changed = std::make_shared<shading::MaterialData>(**data);
+  changed->constant_emission = limited;
+  changed->emission_estimate = luminance(limited);
+  *data = std::move(changed);
+  return "the emission of '" + (*data)->name + "' " +
+         (is_finite(emission) ? "is too strong and was limited" : "was left out: it is not finite");
+}
+
+// Compiles a material. If that fails, a fallback replaces it. `warning` says so, or how its emission was changed.
 CompiledMaterial compile(const std::shared_ptr<const MaterialSource>& source, const image::ImageStore& images) {
   const GradusMaterial desc = source->view();
   try {
-    return {source, shading::compile_material(desc, images), ""};
+    CompiledMaterial material{source, shading::compile_material(desc, images), ""};
+    material.warning = limit_emission(&material.data);
+    return material;
   } catch (const Error& error) {
     if (error.code() != GRADUS_ERROR_INVALID_ARGUMENT) throw;
     return {source, shading::fallback_material(desc), std::string(error.what()) + "; it is rendered grey"};

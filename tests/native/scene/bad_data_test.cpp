@@ -186,6 +186,17 @@ TEST(BadMesh, TrianglesThatAreNotFiniteAreReportedOnce) {
   EXPECT_EQ(snapshot->warnings[1], "2 objects lost triangles, the first is 'number 0': some vertices are not finite");
 }
 
+// Regression: a sun whose radiance exceeds all numbers was left out without a warning, although its strength is finite.
+TEST(BadLight, ASunOfInfiniteRadianceIsNamed) {
+  TestScene scene;
+  GradusLight sun = make_light(GRADUS_LIGHT_SUN, Mat4(1.0f), Rgb(3e38f));
+  sun.angle = 0.01f;
+  scene.lights({sun});
+  const auto snapshot = scene.commit();
+  ASSERT_EQ(snapshot->warnings.size(), 1u);
+  EXPECT_NE(snapshot->warnings[0].find("their values are not finite"), std::string::npos);
+}
+
 // Regression: emissive triangles beyond the maximum of light sampling are found by chance only, and there was no
 // warning.
 TEST(ManyLights, AnObjectWithTooManyTrianglesIsReported) {

@@ -34,13 +34,14 @@ struct Share {
 };
 
 // Distributes `lack` over the shares in proportion to their weights. A share that reaches its minimum takes no more,
-// and the others take its remainder. Returns what could not be distributed.
-double spread(double lack, std::vector<Share>& shares, double (*weight_of)(const Share&)) {
+// and the others take its remainder. `kept` is the weight of what is not distributed. Returns that part of `lack`.
+double spread(double lack, double kept, std::vector<Share>& shares, double (*weight_of)(const Share&)) {
+  double rest = 0.0;
   for (size_t round = 0; round < shares.size() && lack != 0.0; ++round) {
     const auto is_open = [lack](const Share& share) { return lack > 0.0 || share.value > share.minimum; };
-    double total = 0.0;
+    double total = kept;
     for (const Share& share : shares) total += is_open(share) ? weight_of(share) : 0.0;
-    if (!(total > 0.0)) return lack;
+    if (!(total > 0.0)) break;
     double left = 0.0;
     for (Share& share : shares) {
       if (!is_open(share)) continue;
@@ -48,19 +49,31 @@ double spread(double lack, std::vector<Share>& shares, double (*weight_of)(const
       share.value = lack > 0.0 || GRADUS_FAULT(light_passes_below_zero) ? wanted : std::max(wanted, share.minimum);
       left += wanted - share.value;
     }
+    rest += lack * (kept / total);
     lack = left;
   }
-  return lack;
+  return rest + lack;
 }
 
+// Number of standard errors by which the shares may be wrong. Errors are estimates that are too small in places.
+constexpr double kDoubt = 2.0;
+
+// Makes the shares add up to `whole`. The difference consists of the errors of the shares, whose variances are their
+// weights, and of that of `whole`. The variance of the latter is what the squared difference has beyond kDoubt² times
+// the former. A share hence moves by no more than kDoubt standard errors. The error of `whole` is in all shares alike,
+// so it is distributed by their light.
 void distribute(double whole, std::vector<Share>& shares) {
-  double lack = whole;
-  for (const Share& share : shares) lack -= share.value;
-  lack = spread(lack, shares, [](const Share& share) {
+  double lack = whole, variance = 0.0;
+  for (const Share& share : shares) {
+    lack -= share.value;
+    variance += share.weight;
+  }
+  const double of_whole = std::max(lack * lack / (kDoubt * kDoubt) - variance, 0.0);
+  lack = spread(lack, of_whole, shares, [](const Share& share) {
     if (GRADUS_FAULT(light_pass_difference_distributed_equally)) return share.weight > 0.0 ? 1.0 : 0.0;
     return share.weight;
   });
-  lack = spread(lack, shares, [](const Share& share) { return std::fabs(share.value); });
+  lack = spread(lack, 0.0, shares, [](const Share& share) { return std::fabs(share.value); });
   if (!shares.empty()) shares.back().value += lack;
 }
 

@@ -2,7 +2,7 @@
 //
 // A term has no sampled gradients, so each goes through a regression of its own, with weights by its own noise: a
 // linear operator once the weights are known. The difference between the picture and the sum of its terms is then
-// distributed over the terms by their estimated errors.
+// distributed over the terms by their estimated errors, and beyond these by their light.
 #pragma once
 
 #include <vector>
@@ -28,9 +28,10 @@ struct PictureTerm {
 PictureTerm regress_term(const film::Features& guides, HalvedImage sampled, const CancelCheck& cancel);
 
 // Changes the terms so that they add up to `whole`, an image of three channels and the same size. The missing light of
-// each pixel and channel goes to the terms whose `capacity` is not 0, in proportion to capacity² · error; where these
-// are 0, in proportion to the terms' absolute values; where these are 0 too, to the last such term. Terms that may not
-// be negative stay at or above 0 unless the sum cannot be reached otherwise.
+// each pixel and channel goes to the terms whose `capacity` is not 0, in proportion to capacity² · error, as far as
+// two standard errors of the terms explain it. What is beyond them is an error of `whole` and goes to the terms in
+// proportion to their absolute values; where these are 0, too, to the last such term. Terms that may not be negative
+// stay at or above 0 unless the sum cannot be reached otherwise.
 void add_up(const Field& whole, std::vector<PictureTerm>* terms);
 
 }  // namespace gradus::reconstruct

@@ -125,10 +125,39 @@ TEST(Partition, WithoutNoiseEstimatesItGoesByLight) {
 // Regression: an uncertain term alone had to give more light than it had, and became negative.
 TEST(Partition, NoTermGoesBelowZeroWhileAnotherHasLight) {
   std::vector<reconstruct::PictureTerm> terms{term_of(4.0f, 0.001f), term_of(1.0f, 5.0f), term_of(2.0f, 0.0f)};
-  reconstruct::add_up(flat(2.5f), &terms);
-  expect_flat(terms[0].image, 0.5f);
+  reconstruct::add_up(flat(2.55f), &terms);
+  expect_flat(terms[0].image, 0.55f);
   expect_flat(terms[1].image, 0.0f);
   expect_flat(terms[2].image, 2.0f);
+}
+
+// Regression: where the picture was much darker than its terms, the least certain term became black, although its
+// estimate was many times its error. The deviation is the picture's own, and all terms share it.
+TEST(Partition, ADifferenceBeyondTheErrorsGoesByLight) {
+  std::vector<reconstruct::PictureTerm> terms{term_of(1.0f, 0.01f), term_of(4.0f, 0.0f), term_of(0.0f, 0.0f)};
+  reconstruct::add_up(flat(4.0f), &terms);
+  // Two standard errors of the first term, 0.1, explain 0.04 of the difference of −1; the rest scales all terms.
+  const float scale = 4.0f / 4.96f;
+  expect_flat(terms[0].image, 0.96f * scale);
+  expect_flat(terms[1].image, 4.0f * scale);
+  expect_flat(terms[2].image, 0.0f);
+}
+
+// Regression: light of one pass was moved to another by many times its error.
+TEST(Partition, NoTermChangesItsShareByMoreThanTwoErrors) {
+  for (const float whole : {0.5f, 3.0f, 5.4f, 5.9f, 6.6f, 9.0f, 40.0f}) {
+    std::vector<reconstruct::PictureTerm> terms{term_of(1.0f, 0.04f), term_of(2.0f, 0.01f), term_of(3.0f, 0.0025f)};
+    const std::vector<reconstruct::PictureTerm> before = terms;
+    reconstruct::add_up(flat(whole), &terms);
+    const float sum = sum_at(terms, 3, 4, 1);
+    EXPECT_NEAR(sum, whole, 1e-5f * whole);
+    for (size_t k = 0; k < terms.size(); ++k) {
+      // Its own two errors, and those of all terms by which the sum changes.
+      const float deviation = std::sqrt(before[k].error.row(4)[3]), of_sum = 0.2f + 0.1f + 0.05f;
+      const float share = terms[k].image.row(4, 1)[3] / sum, estimated = before[k].image.row(4, 1)[3] / 6.0f;
+      EXPECT_NEAR(share, estimated, 2.2f * (deviation + estimated * of_sum) / 6.0f) << whole << " " << k;
+    }
+  }
 }
 
 TEST(Partition, LightGoesToTermsThatCanHaveIt) {
