@@ -23,7 +23,7 @@ from gradus import native
 from support import images, recording
 from support.nodes import Graph, new_material, show, translate
 
-DIFFERENCE = 5e-3 if bpy.app.version >= (5, 2, 0) else 4e-2
+DIFFERENCE = 5e-3 if bpy.app.version >= (5, 2, 0) else 0.1
 """Before 5.2, Cycles cuts bits off where it makes halves of bytes. Logarithmic spaces and tables magnify that."""
 SKIES = [item.identifier for item in bpy.types.ShaderNodeTexSky.bl_rna.properties["sky_type"].enum_items]
 Make = Callable[[Path, str], Any]
