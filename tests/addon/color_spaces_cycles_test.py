@@ -78,7 +78,7 @@ def compare(scene: bpy.types.Scene, folder: Path, names: list[str], difference: 
         row, column = divmod(index, COLUMNS)
         rows, columns = slice(SIDE * row, SIDE * (row + 1)), slice(SIDE * column, SIDE * (column + 1))
         if name == "AgX Log" and bpy.app.version < (5, 2, 0):
-            continue  # where alpha is 0, Cycles shows 0.18 instead of black, for a reason that is not known (2026-11-28)
+            continue  # where alpha is 0, Cycles shows 0.18 instead of black, for an unknown reason (2026-11-28)
         if relative[rows, columns].max() > difference:
             at = np.unravel_index(relative[rows, columns].argmax(), (SIDE, SIDE, 3))[:2]
             found[name] = (got[rows, columns][at], expected[rows, columns][at])
