@@ -16,6 +16,7 @@ HAS_HOST_COLORS = bpy.app.version >= (4, 5, 0)
 
 @pytest.fixture
 def colors() -> color.HostColors:
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     found = color.host_colors(compat.bundled_python_packages())
     if found is None:
         pytest.skip("this Blender brings no PyOpenColorIO along")
@@ -60,7 +61,6 @@ def test_spaces_are_defined_once(colors: color.HostColors) -> None:
 
 
 def test_the_working_space_is_rec709_by_default(colors: color.HostColors) -> None:
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     assert colors.working_space() is None
 
 
