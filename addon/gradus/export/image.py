@@ -19,6 +19,8 @@ from . import blender_pixels, file_pixels
 
 FILE, ENCODED, FLOAT, BYTE = range(4)
 STRAIGHT, PREMULTIPLIED, CHANNEL_PACKED, ALPHA_NONE, ALWAYS_STRAIGHT = range(5)
+_UNCONVERTED_SPACES = {"sRGB", "Linear", "Linear Rec.709"}
+"""Colour spaces in which Cycles reads images without OpenColorIO."""
 _ALPHA = {"STRAIGHT": STRAIGHT, "PREMUL": PREMULTIPLIED, "CHANNEL_PACKED": CHANNEL_PACKED, "NONE": ALPHA_NONE}
 
 # From this version on, Cycles multiplies colours by alpha if the mode is STRAIGHT, whatever the file says. Before, it
@@ -252,9 +254,21 @@ def warning(image: Any, number: int | None, abspath: Any) -> str:
     """Returns a warning about what is shown of an image, or "". The arguments are those of image_state()."""
     if image.source == "TILED" and image.is_dirty and len(image.tiles) > 1:
         return f"Image '{image.name}' has changes that are not saved: tiles other than the first are shown as saved"
+    if _is_divided_by_cycles(image):
+        return (
+            f"Image '{image.name}' is channel-packed, and Cycles before Blender 5.0 divides colours of its colour space "
+            "by the fourth channel"
+        )
     if file_pixels.is_available() or not _head(_path(image, number, abspath)).startswith(_FILM_SCANS):
         return ""
     return f"Image '{image.name}' is shown in linear values, while Cycles shows the film densities of its file"
+
+
+def _is_divided_by_cycles(image: Any) -> bool:
+    """Returns whether Cycles divides the channels of an image by the fourth one, although that is no alpha."""
+    settings = image.colorspace_settings
+    is_converted = not compat.is_data(settings) and settings.name not in _UNCONVERTED_SPACES
+    return image.alpha_mode == "CHANNEL_PACKED" and compat.VERSION < (5, 0, 0) and is_converted
 
 
 def _alpha_mode(image: Any, tile: TileState, is_float: bool) -> int:

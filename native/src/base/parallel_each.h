@@ -19,9 +19,9 @@ void parallel_each(size_t count, const Visit& visit) {
 }
 
 // As above. Throws Error CANCELLED if the caller of the commit cancels it.
-template <class Visit>
+template <size_t kGrain = 1024, class Visit>
 void parallel_each(size_t count, const CommitMonitor& monitor, const Visit& visit) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 1024), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, kGrain), [&](const auto& range) {
     if (!monitor.is_running()) return;
     for (size_t i = range.begin(); i < range.end(); ++i) visit(i);
   });

@@ -38,7 +38,7 @@ void trace_shadow_packet(const BasePath& base, const path::LightSample& sample, 
     const geometry::SurfacePoint& point = offsets[k].vertex->point;
     const Vec3& to_light = offsets[k].light.view.direction;
     if (wanted[k] && !geometry::leaves_facet(point, to_light))
-      geometry::set_lane(k, geometry::shadow_origin(base.context.scene, point, to_light), &start);
+      geometry::set_lane(k, light::shadow_ray_origin(base.context.scene, point, sample.point, to_light), &start);
   }
   base.context.scene.occluded4(light::rays_to_light(start, points, direction, distance, sample.point), wanted, blocked);
 }

@@ -42,7 +42,7 @@ class Environment {
   float mean() const { return mean_; }
   // Returns the map, which copies share; null if the radiance is the same in every direction.
   const Distribution2D* map() const { return map_.get(); }
-  // Returns whether the radiance is the same in every direction.
+  // Returns whether the radiance is the same in every direction, or so nearly that no map was built.
   bool is_uniform() const { return !black() && map_ == nullptr && suns_.empty(); }
 
   // Returns an estimate of the irradiance at the receiver, which weighs the world against other emitters.

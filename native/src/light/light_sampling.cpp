@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "base/fault.h"
+#include "geometry/shadow_terminator.h"
 #include "light/light_table.h"
 #include "light/lit_scene.h"
 #include "light/spherical_triangle.h"
@@ -339,6 +340,16 @@ LightPoint light_point_of_world(const LitScene& scene, const Vec3& direction) {
   point.direction = direction;
   point.barycentric = scene.light_table->world.place_of(direction);
   return point;
+}
+
+bool is_of_uniform_world(const LitScene& scene, const LightPoint& point) {
+  return point.kind == LightKind::World && scene.light_table->world.is_uniform();
+}
+
+Vec3 shadow_ray_origin(const LitScene& scene, const geometry::SurfacePoint& from, const LightPoint& to,
+                       const Vec3& direction) {
+  return is_of_uniform_world(scene, to) ? geometry::offset_origin(from, direction)
+                                        : geometry::shadow_origin(scene, from, direction);
 }
 
 Ray ray_to_light(const Vec3& start, const geometry::SurfacePoint& from, const LightPoint& to,

@@ -101,6 +101,12 @@ Rgb evaluated_radiance(const LitScene& scene, const LightPoint& point, const Lig
                        const shading::RayState& ray);
 // Returns only the pdf of evaluate_light(), for weights where the radiance is known or not needed.
 float light_point_pdf(const LitScene& scene, const LightPoint& point, const Receiver& receiver);
+// Returns whether a light sample is a direction of a world that is the same in every direction. Such a world is sampled
+// or left to BSDF sampling as it pays (LightTable::factors), so that both techniques must see the same light.
+bool is_of_uniform_world(const LitScene& scene, const LightPoint& point);
+// Returns the origin of the shadow ray from the surface point `from` to a light sample in a direction.
+Vec3 shadow_ray_origin(const LitScene& scene, const geometry::SurfacePoint& from, const LightPoint& to,
+                       const Vec3& direction);
 // Returns the segment from the surface point `from` to a light sample. Both ends are offset from their surfaces;
 // `start` is the offset origin of the ray.
 Ray ray_to_light(const Vec3& start, const geometry::SurfacePoint& from, const LightPoint& to,

@@ -21,7 +21,8 @@ struct EmissiveTriangle {
   float area = 0.0f;  // Area in m² at the middle of the shutter interval.
 };
 
-// Probabilities of the three groups of emitters for one receiver. They sum to one, or are all 0 if no light reaches it.
+// Probabilities of the three groups of emitters for one receiver. They sum to one, or are all 0 if no group whose factor
+// is above 0 reaches it, or their irradiance is not finite.
 struct GroupChoice {
   double tree = 0.0, suns = 0.0, world = 0.0;
 };

@@ -48,17 +48,6 @@ float pixel_angle_of(const GradusCamera& camera, const GradusSettings& settings)
   return camera.type == GRADUS_CAMERA_ORTHOGRAPHIC ? side / (w[1] - w[0]) : side;
 }
 
-bool has_uniform_visibility(const scene::Snapshot& scene) {
-  constexpr uint32_t bounces = kAllBounces | GRADUS_VISIBLE_SHADOW;
-  for (const geometry::InstanceData& instance : scene.instances) {
-    const uint32_t bits = instance.visibility & bounces;
-    if (bits != 0 && bits != bounces) {
-      return false;
-    }
-  }
-  return true;
-}
-
 bool finds_transparency(const scene::Snapshot& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(),
                      [](const auto& material) { return material->may_be_transparent; });
@@ -76,7 +65,7 @@ PathContext::PathContext(const scene::Snapshot& snapshot, const camera::Camera& 
       clamp_direct(sum_limit(settings_.clamp_direct)),
       clamp_indirect(sum_limit(settings_.clamp_indirect)),
       has_transparency(finds_transparency(snapshot)),
-      uniform_visibility(has_uniform_visibility(snapshot)),
+      uniform_visibility(snapshot.features.has_uniform_visibility),
       kinds_matter(finds_kinds_matter(snapshot)),
       diffuse_flags(flags_of_diffuse_rays(snapshot, settings_)),
       filter_glossy(snapshot.features.min_alpha < FilterGlossy::kMaxBlur ? settings_.blur_glossy : 0.0f),

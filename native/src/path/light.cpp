@@ -1,6 +1,6 @@
 #include "path/light.h"
 
-#include "geometry/shadow_terminator.h"
+#include "light/light_table.h"
 
 namespace gradus::path {
 
@@ -9,6 +9,11 @@ namespace {
 // Returns whether a light with these visibility bits is visible to bounces of a light pass.
 bool is_visible_to(uint32_t visibility, bsdf::LightPass pass, bool transmitted) {
   return (visibility & bounce_visibility(pass, transmitted)) != 0;
+}
+
+// Returns whether the point is of a world that is left to BSDF sampling.
+bool is_left_out(const PathContext& context, const light::LightPoint& point) {
+  return point.kind == light::LightKind::World && context.scene.light_table->factors.world == 0.0;
 }
 
 }  // namespace
@@ -60,8 +65,9 @@ LitClass light_class(const PathContext& context, const Vertex& vertex, bsdf::Sca
   const light::LightEvaluation& view = light.view;
   const bool transmitted = glm::dot(vertex.light_normal(), view.direction) < 0.0f;
   const bsdf::BsdfEval eval = closures.evaluate_side(c, vertex.wo, view.direction, transmitted);
-  const bool found_by_rays =
-      light.point.found_by_rays && transmitted == (glm::dot(vertex.facing_normal(), view.direction) < 0.0f);
+  const bool is_side_of_facet = transmitted == (glm::dot(vertex.facing_normal(), view.direction) < 0.0f);
+  if (!is_side_of_facet && light::is_of_uniform_world(context.scene, light.point)) return lit;
+  const bool found_by_rays = light.point.found_by_rays && is_side_of_facet;
   lit.value = eval.value * view.radiance;
   lit.pdf_bsdf = found_by_rays ? probability * eval.pdf : 0.0f;
   if (view.by_kind || (view.visibility & kAllBounces) != kAllBounces) {
@@ -76,7 +82,8 @@ LightVisibility light_visibility(const PathContext& context, const geometry::Sur
   if (!view.casts_shadow) {
     return {Rgb(1.0f)};
   }
-  const Ray ray = light::ray_to_light(geometry::shadow_origin(context.scene, from, view.direction), from, point, view);
+  const Ray ray =
+      light::ray_to_light(light::shadow_ray_origin(context.scene, from, point, view.direction), from, point, view);
   if (view.blockers != geometry::kAllSets) {
     return linked_visibility(context, ray, view.blockers);
   }
@@ -88,7 +95,7 @@ LightVisibility light_visibility(const PathContext& context, const geometry::Sur
 }
 
 float light_pdf(const PathContext& context, const RaySource& source, const light::LightPoint& point) {
-  if (!source.sampled_light() || point.kind == light::LightKind::None) {
+  if (!source.sampled_light() || point.kind == light::LightKind::None || is_left_out(context, point)) {
     return 0.0f;
   }
   return light::light_point_pdf(context.scene, point, receiver_of(*source.vertex));

@@ -110,9 +110,19 @@ void warn_beyond_limit(const geometry::InstanceArrays& arrays, const std::vector
                &snapshot->noise_warnings);
 }
 
+// Returns whether every surface is visible to all kinds of bounces and to shadow rays, or to none of them.
+bool has_uniform_visibility(const Snapshot& snapshot) {
+  constexpr uint32_t kKinds =
+      GRADUS_VISIBLE_DIFFUSE | GRADUS_VISIBLE_GLOSSY | GRADUS_VISIBLE_TRANSMISSION | GRADUS_VISIBLE_SHADOW;
+  return std::all_of(snapshot.instances.begin(), snapshot.instances.end(), [](const geometry::InstanceData& i) {
+    return (i.visibility & kKinds) == 0 || (i.visibility & kKinds) == kKinds;
+  });
+}
+
+// Builds the light table. Its factors are measured unless `known_factors` are those of another part of the scene.
 void build_lights(const geometry::EmbreeDevice& device, std::vector<light::AnalyticLight> analytic_lights,
-                  const std::vector<size_t>& chosen, const CommitMonitor& monitor, Scene::State* state,
-                  Snapshot* snapshot) {
+                  const std::vector<size_t>& chosen, const light::GroupFactors* known_factors,
+                  const CommitMonitor& monitor, Scene::State* state, Snapshot* snapshot) {
   const auto light_scene = std::make_shared<const light::LightScene>(device, analytic_lights);
   SceneFeatures& features = snapshot->features;
   features.has_lights_with_extent =
@@ -123,9 +133,11 @@ void build_lights(const geometry::EmbreeDevice& device, std::vector<light::Analy
   features.has_shadow_links = !table->linked_instances.empty() ||
                               std::any_of(table->analytic_lights.begin(), table->analytic_lights.end(),
                                           [](const light::AnalyticLight& light) { return light.links.has_blockers(); });
-  features.has_lights = !table->analytic_lights.empty() || !table->triangles.empty() || !table->world.black();
+  features.has_uniform_visibility = has_uniform_visibility(*snapshot);
   snapshot->light_table = table;
-  table->factors = measure_group_factors(*snapshot, monitor);
+  table->factors = known_factors != nullptr ? *known_factors : measure_group_factors(*snapshot, monitor);
+  features.has_lights = !table->analytic_lights.empty() || !table->triangles.empty() ||
+                        (!table->world.black() && table->factors.world > 0.0);
   warn_beyond_limit(state->instances, chosen, snapshot);
 }
 
@@ -252,7 +264,9 @@ void add_catchers(const geometry::EmbreeDevice& device, const geometry::ExactMat
   });
   const auto exact_of_catcher = [&](size_t k) { return exact(origins[k]); };
   build_geometry(device, exact_of_catcher, monitor.step(0.8f, 0.85f), accelerator_of_catchers(*state), catchers.get());
-  build_lights(device, std::move(analytic_lights), chosen_catchers, monitor, state, catchers.get());
+  // With the same factors, the same random numbers choose the same lights with and without what casts shadows.
+  build_lights(device, std::move(analytic_lights), chosen_catchers, &snapshot->light_table->factors, monitor, state,
+               catchers.get());
   find_sharpest(catchers.get());
   find_emission(catchers.get());
   snapshot->catchers = std::move(catchers);
@@ -289,8 +303,8 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     state_->accelerator = snapshot->accelerator;
     find_motion(snapshot.get());
     const std::vector<light::AnalyticLight> lights = place_lights(*state_, materials, snapshot.get());
+    build_lights(device_->embree(), lights, chosen, nullptr, monitor, state_.get(), snapshot.get());
     add_catchers(device_->embree(), exact, lights, chosen, monitor, state_.get(), snapshot.get());
-    build_lights(device_->embree(), lights, chosen, monitor, state_.get(), snapshot.get());
     find_sharpest(snapshot.get());
     find_holdouts(snapshot.get());
     find_emission(snapshot.get());

@@ -98,7 +98,10 @@ uint64_t content_key(const Scene::State& state) {
   for (const uint64_t key : state.instances.materials) hash.value(contents.material(key));
   for (const LightSource& light : state.lights) hash_light(light, contents, &hash);
   if (state.has_camera) hash_camera(state.camera, state.camera_keys, &hash);
-  if (state.dicing_camera) hash_dicing_camera(*state.dicing_camera, &hash);
+  const bool dices = std::any_of(state.meshes.begin(), state.meshes.end(), [](const auto& mesh) {
+    return mesh.second != nullptr && mesh.second->dicing_levels > 0;
+  });
+  if (state.dicing_camera && dices) hash_dicing_camera(*state.dicing_camera, &hash);
   if (state.has_world) hash_world(state.world, contents, &hash);
   if (!state.channels.empty()) hash_for_channels(state, &hash);
   return hash.result();

@@ -5,13 +5,15 @@
 #include <cmath>
 #include <vector>
 
+#include "base/hash.h"
 #include "base/parallel_each.h"
+#include "base/random_bits.h"
 #include "bsdf/warp.h"
 #include "camera/camera.h"
-#include "geometry/shadow_terminator.h"
 #include "geometry/surface.h"
 #include "light/light_sampling.h"
 #include "scene/snapshot.h"
+#include "shading/shade.h"
 
 namespace gradus::scene {
 
@@ -34,13 +36,16 @@ constexpr double kTimeOfSamples = 0.5;
 // Factor on the cost without light samples of a uniform world: points are better distributed over directions that one
 // technique covers. Suzanne under a grey world has 0.72 of the variance in 0.64 of the time.
 constexpr double kLeftOut = 0.8;
+// Relative variance of what is not measured: edges in a pixel and further bounces.
+constexpr double kOtherVariance = 1e-3;
+// Factors are 1 unless others have less than this share of the cost: where factors change from frame to frame, samples
+// that replay another frame choose other lights.
+constexpr double kWorthwhile = 0.95;
 
-// Returns an evenly distributed sequence of points in [0, 1)² (Roberts 2018, "The Unreasonable Effectiveness of
-// Quasirandom Sequences", R2).
-Vec2 point_of_sequence(uint64_t index) {
-  const double i = double(index) + 0.5;
-  const double x = 0.7548776662466927 * i, y = 0.5698402909980532 * i;
-  return {std::min(float(x - std::floor(x)), 0x1.fffffep-1f), std::min(float(y - std::floor(y)), 0x1.fffffep-1f)};
+// Returns independent random numbers in [0, 1) for each index.
+std::array<float, 3> random_numbers(uint64_t index) {
+  const uint64_t low = mix_bits(3 * index + 1), high = mix_bits(low + index);
+  return {to_unit(uint32_t(low)), to_unit(uint32_t(low >> 32)), to_unit(uint32_t(high))};
 }
 
 // A light sample of a group: the light that a white diffuse surface reflects, its density among the samples of its
@@ -50,7 +55,7 @@ struct Sample {
 };
 
 // A point of a surface and its light samples.
-struct Place {
+struct MeasuredPoint {
   geometry::SurfacePoint point;
   light::Receiver receiver;
   light::GroupIrradiance irradiance;
@@ -63,81 +68,106 @@ struct Place {
 
 std::array<double, 3> as_array(const light::GroupChoice& choice) { return {choice.tree, choice.suns, choice.world}; }
 
-// Sets the place to where the ray meets a surface. Returns false if it meets none.
-bool meet(const Snapshot& scene, const Ray& ray, uint32_t visibility, size_t pixel, double weight, Place* place) {
+// Lets the ray pass surfaces that are more transparent than not. Returns whether it then hits another one.
+bool find_hit(const Snapshot& scene, Ray ray, uint32_t visibility, geometry::Hit* hit) {
+  shading::RayState state;
+  for (uint32_t passed = 0; scene.intersect(ray, visibility, hit); ++passed) {
+    const geometry::SurfacePoint point = scene.surface_point(*hit);
+    const Rgb through = shading::shade_transparency(scene, point, -ray.direction, state);
+    if (passed == kMaxTransparent || !(mean_component(through) > 0.5f)) return true;
+    geometry::pass_surface(point, &ray);
+  }
+  return false;
+}
+
+// Sets the point to where the ray meets a surface. Returns false if it meets none.
+bool find_surface(const Snapshot& scene, const Ray& ray, uint32_t visibility, size_t pixel, double weight,
+                  MeasuredPoint* found) {
   geometry::Hit hit;
-  if (is_none(ray) || !scene.intersect(ray, visibility, &hit)) return false;
-  scene.place(hit, &place->point);
-  const Vec3 normal = place->point.shading_normal;
-  place->receiver.position = place->point.position;
-  place->receiver.normal = glm::dot(normal, ray.direction) > 0.0f ? -normal : normal;
-  place->receiver.time = ray.time;
-  place->receiver.light_sets = place->point.light_set;
-  place->pixel = pixel;
-  place->weight = weight;
+  if (is_none(ray) || !find_hit(scene, ray, visibility, &hit)) return false;
+  scene.place(hit, &found->point);
+  const Vec3 normal = found->point.shading_normal;
+  found->receiver.position = found->point.position;
+  found->receiver.normal = glm::dot(normal, ray.direction) > 0.0f ? -normal : normal;
+  found->receiver.time = ray.time;
+  found->receiver.light_sets = found->point.light_set;
+  found->pixel = pixel;
+  found->weight = weight;
   return true;
 }
 
-// Returns the share of the light of a sample that reaches the place.
-double visibility_of(const Snapshot& scene, const Place& place, const light::LightPoint& point,
+// Returns the share of the light of a sample that reaches the point.
+double visibility_of(const Snapshot& scene, const MeasuredPoint& from, const light::LightPoint& point,
                      const light::LightEvaluation& view) {
   if (!view.casts_shadow) return 1.0;
-  const Vec3 start = geometry::shadow_origin(scene, place.point, view.direction);
-  const Ray ray = light::ray_to_light(start, place.point, point, view);
+  const Vec3 start = light::shadow_ray_origin(scene, from.point, point, view.direction);
+  const Ray ray = light::ray_to_light(start, from.point, point, view);
   return double(mean_component(view.blockers == geometry::kAllSets
                                    ? scene.transmittance(ray, kMaxTransparent)
                                    : scene.transmittance(ray, kMaxTransparent, view.blockers)));
 }
 
+// Returns the radiance of a light sample towards diffuse bounces, as the mean of the channels.
+double diffuse_radiance(const Snapshot& scene, const light::LightPoint& point, const light::LightEvaluation& view) {
+  if ((view.visibility & GRADUS_VISIBLE_DIFFUSE) == 0) return 0.0;
+  shading::RayState ray;
+  ray.flags = shading::kRayDiffuse | shading::kRayReflection;
+  ray.length = view.distance;
+  const Rgb radiance = view.by_kind ? light::evaluated_radiance(scene, point, view, ray) : view.radiance;
+  const double mean = double(mean_component(glm::abs(radiance)));
+  return std::isfinite(mean) ? mean : 0.0;
+}
+
 // Takes a light sample among those of a group, which light sampling chooses by numbers in [begin, begin + share).
-Sample sample_group(const Snapshot& scene, const Place& place, double begin, double share, uint64_t index) {
+Sample sample_group(const Snapshot& scene, const MeasuredPoint& from, double begin, double share, uint64_t index) {
   light::LightPoint point;
   light::LightEvaluation view;
-  const auto choice = float(begin + share * double(point_of_sequence(index / 3 + 7).y));
-  light::sample_light_point(scene, place.receiver, std::min(choice, 0x1.fffffep-1f), point_of_sequence(index), &point,
-                            &view);
-  const double cosine = std::max(0.0f, glm::dot(view.direction, place.receiver.normal));
+  const auto [u, v, w] = random_numbers(index);
+  const auto choice = float(begin + share * double(w));
+  light::sample_light_point(scene, from.receiver, std::min(choice, 0x1.fffffep-1f), Vec2(u, v), &point, &view);
+  const double cosine = std::max(0.0f, glm::dot(view.direction, from.receiver.normal));
   Sample sample;
   if (point.kind == light::LightKind::None || !(view.pdf > 0.0f) || !(cosine > 0.0)) return sample;
   sample.density = double(view.pdf) / share;
   sample.by_bsdf = point.found_by_rays ? cosine / double(kPi) : 0.0;
-  const double light = double(mean_component(glm::abs(view.radiance))) * cosine / double(kPi);
-  if (light > 0.0 && std::isfinite(light)) sample.light = light * visibility_of(scene, place, point, view);
+  sample.light = diffuse_radiance(scene, point, view) * cosine / double(kPi);
+  if (sample.light > 0.0) sample.light *= visibility_of(scene, from, point, view);
   return sample;
 }
 
-void take_samples(const Snapshot& scene, uint64_t first_index, Place* place) {
+void take_samples(const Snapshot& scene, uint64_t first_index, MeasuredPoint* at) {
   const light::LightTable& table = *scene.light_table;
   light::LightChoice choice;
-  table.choose(place->receiver, &choice);
-  place->irradiance = table.irradiance(place->receiver, choice.cut);
+  table.choose(at->receiver, &choice);
+  at->irradiance = table.irradiance(at->receiver, choice.cut);
   const std::array<double, 3> shares = as_array(choice.group);
   double begin = 0.0;
   for (size_t group = 0; group < shares.size(); ++group) {
     for (uint64_t i = 0; i < kSamples && shares[group] > 0.0; ++i)
-      place->samples[group][i] = sample_group(scene, *place, begin, shares[group], first_index + group * kSamples + i);
+      at->samples[group][i] = sample_group(scene, *at, begin, shares[group], first_index + group * kSamples + i);
     begin += shares[group];
   }
 }
 
-// Returns the direct light that the place reflects, by its samples.
-double direct_light(const Place& place) {
+// Returns the direct light that the point reflects, by its samples.
+double direct_light(const MeasuredPoint& point) {
   double sum = 0.0;
-  for (const auto& group : place.samples)
+  for (const auto& group : point.samples)
     for (const Sample& s : group) sum += s.light > 0.0 ? s.light / s.density / kSamples : 0.0;
   return sum;
 }
 
-// Returns the variance of one light sample and one BSDF sample at the place, combined by the balance heuristic, where
-// the groups are chosen with these probabilities. With f the light and p and b the densities of both techniques, second
-// moments are the integral of f²/(p + b). A BSDF sample that finds no light finds what other surfaces reflect, which
-// makes up for part of it. The squares of the two means are products of independent estimates.
-double variance(const Place& place, const std::array<double, 3>& shares) {
+// Returns the variance of one light sample and one BSDF sample at the point, combined by the balance heuristic, where
+// the groups are chosen with these probabilities. With f the light and p and b the densities of both techniques, the
+// second moments are the integral of f²/(p + b). A BSDF sample that finds no light finds what other surfaces reflect,
+// which makes up for part of it. The squares of the two means are products of independent estimates, so that the result
+// can be negative.
+double variance(const MeasuredPoint& point, const std::array<double, 3>& shares) {
   double moment = 0.0;
   std::array<double, 2> by_light{}, by_bsdf{};  // means of the two techniques by each half of the samples
   for (size_t group = 0; group < shares.size(); ++group) {
     for (size_t i = 0; i < kSamples; ++i) {
-      const Sample& s = place.samples[group][i];
+      const Sample& s = point.samples[group][i];
       if (!(s.light > 0.0)) continue;
       const double both = shares[group] * s.density + s.by_bsdf;
       if (!(both > 0.0)) return INFINITY;
@@ -147,18 +177,18 @@ double variance(const Place& place, const std::array<double, 3>& shares) {
       by_bsdf[i % 2] += s.by_bsdf * value / (kSamples / 2);
     }
   }
-  const std::array<double, kBounces>& c = place.reflected;
+  const std::array<double, kBounces>& c = point.reflected;
   moment += 0.5 * (c[0] * c[0] + c[1] * c[1]);
   return moment - by_light[0] * by_light[1] - (by_bsdf[0] + c[0]) * (by_bsdf[1] + c[1]);
 }
 
-// Returns the brightness of each pixel by the direct light of the places that the camera sees.
-std::vector<double> brightness_of(const std::vector<Place>& places) {
+// Returns the brightness of each pixel by the direct light of the points that the camera sees.
+std::vector<double> brightness_of(const std::vector<MeasuredPoint>& points) {
   std::vector<double> pixels(kPixels, 0.0);
   double sum = 0.0;
-  for (const Place& place : places) {
-    if (place.weight < 1.0) continue;
-    sum += pixels[place.pixel] = direct_light(place);
+  for (const MeasuredPoint& point : points) {
+    if (point.weight < 1.0) continue;
+    sum += pixels[point.pixel] = direct_light(point);
   }
   // The mean over 3×3 pixels removes most of the noise.
   std::vector<double> smooth(kPixels, kAmbient * sum / double(kPixels) + 1e-12);
@@ -173,44 +203,46 @@ std::vector<double> brightness_of(const std::vector<Place>& places) {
 }
 
 // Returns the relative variance of the picture times its time, in no particular unit.
-double cost(const std::vector<Place>& places, const std::vector<double>& brightness,
+double cost(const std::vector<MeasuredPoint>& points, const std::vector<double>& brightness,
             const light::GroupFactors& factors) {
-  double sum = 0.0, sampled = 0.0;
-  for (const Place& place : places) {
-    const std::array<double, 3> shares = as_array(light::choose_group(place.irradiance, factors));
+  double sum = 0.0, weight = 0.0, sampled = 0.0;
+  for (const MeasuredPoint& point : points) {
+    const std::array<double, 3> shares = as_array(light::choose_group(point.irradiance, factors));
     sampled += shares[0] + shares[1] + shares[2];
-    sum += place.weight * variance(place, shares) / (brightness[place.pixel] * brightness[place.pixel]);
+    weight += point.weight;
+    sum += point.weight * variance(point, shares) / (brightness[point.pixel] * brightness[point.pixel]);
   }
-  return sum * (1.0 + kTimeOfSamples * sampled / double(places.size()));
+  const double time = 1.0 + kTimeOfSamples * sampled / double(points.size());
+  return (std::max(sum / weight, 0.0) + kOtherVariance) * time * (factors.world > 0.0 ? 1.0 : kLeftOut);
 }
 
-// Finds what the camera sees in a pixel, and in `places`[1] and so on what that sees.
-void find_places_of_pixel(const Snapshot& scene, const camera::Camera& camera, size_t pixel, Place* places) {
-  const Vec2 corner(float(pixel % kColumns), float(pixel / kColumns));
-  const Ray ray = camera.ray({corner + point_of_sequence(pixel), Vec2(0.5f), 0.5f});
-  const uint64_t first_index = pixel * (1 + kBounces) * 3 * kSamples;
-  if (!meet(scene, ray, GRADUS_VISIBLE_CAMERA, pixel, 1.0, places)) return;
-  take_samples(scene, first_index, places);
+// Finds what the camera sees in a pixel, and in the elements behind `first` what that sees.
+void find_points_of_pixel(const Snapshot& scene, const camera::Camera& camera, size_t pixel, MeasuredPoint* first) {
+  const auto [x, y, w] = random_numbers(pixel);
+  const Vec2 film = Vec2(float(pixel % kColumns), float(pixel / kColumns)) + Vec2(x, y);
+  const Ray ray = camera.ray({film, Vec2(0.5f), 0.5f});
+  const uint64_t first_index = (1 + pixel) * (1 + kBounces) * 4 * kSamples;
+  if (!find_surface(scene, ray, GRADUS_VISIBLE_CAMERA, pixel, 1.0, first)) return;
+  take_samples(scene, first_index, first);
   for (size_t k = 0; k < kBounces; ++k) {
-    Place& next = places[1 + k];
-    const Vec3 direction =
-        bsdf::sample_cosine_around(places->receiver.normal, point_of_sequence(kBounces * (2 * pixel + 1) + k));
-    const Ray bounce{geometry::offset_origin(places->point, direction), 0.0f, direction, kInfinity, ray.time};
-    if (!meet(scene, bounce, GRADUS_VISIBLE_DIFFUSE, pixel, kAlbedo * kAlbedo, &next)) continue;
-    take_samples(scene, first_index + (1 + k) * 3 * kSamples, &next);
-    places->reflected[k] = kAlbedo * direct_light(next);
+    const uint64_t index = first_index + (1 + k) * 4 * kSamples;
+    const auto [u, v, unused] = random_numbers(index + 3 * kSamples);
+    const Vec3 direction = bsdf::sample_cosine_around(first->receiver.normal, Vec2(u, v));
+    const Ray bounce{geometry::offset_origin(first->point, direction), 0.0f, direction, kInfinity, ray.time};
+    MeasuredPoint& next = first[1 + k];
+    if (!find_surface(scene, bounce, GRADUS_VISIBLE_DIFFUSE, pixel, kAlbedo * kAlbedo, &next)) continue;
+    take_samples(scene, index, &next);
+    first->reflected[k] = kAlbedo * direct_light(next);
   }
 }
 
-// Returns the places that the camera sees and those that these see, in a fixed order.
-std::vector<Place> find_places(const Snapshot& scene, const CommitMonitor& monitor) {
+// Returns the points that the camera sees and those that these see, in a fixed order.
+std::vector<MeasuredPoint> find_points(const Snapshot& scene, const CommitMonitor& monitor) {
   const camera::Camera camera(scene.camera, kColumns, kRows);
-  std::vector<Place> found((1 + kBounces) * kPixels);
-  parallel_each<16>(kPixels, [&](size_t pixel) {
-    if (monitor.is_running()) find_places_of_pixel(scene, camera, pixel, &found[(1 + kBounces) * pixel]);
-  });
-  monitor.check();
-  std::erase_if(found, [](const Place& place) { return !(place.weight > 0.0); });
+  std::vector<MeasuredPoint> found((1 + kBounces) * kPixels);
+  parallel_each<16>(kPixels, monitor,
+                    [&](size_t pixel) { find_points_of_pixel(scene, camera, pixel, &found[(1 + kBounces) * pixel]); });
+  std::erase_if(found, [](const MeasuredPoint& point) { return !(point.weight > 0.0); });
   return found;
 }
 
@@ -223,27 +255,32 @@ std::vector<double> trials(bool exists, bool is_reference, bool may_be_left_out)
   return factors;
 }
 
+// Returns whether shadow rays meet the same surfaces as rays of all kinds of bounces.
+bool shadows_are_those_of_bounces(const Snapshot& snapshot) {
+  return !snapshot.features.has_transparent_shadows && snapshot.features.has_uniform_visibility;
+}
+
 }  // namespace
 
 light::GroupFactors measure_group_factors(const Snapshot& snapshot, const CommitMonitor& monitor) {
   const light::LightTable& table = *snapshot.light_table;
   const bool has_tree = !table.tree.empty(), has_suns = !table.suns.empty(), has_world = !table.world.black();
   const bool is_uniform = has_world && table.world.is_uniform();
-  if (!snapshot.has_camera || int(has_tree) + int(has_suns) + int(has_world) + int(is_uniform) < 2) return {};
-  const std::vector<Place> places = find_places(snapshot, monitor);
-  if (places.empty()) return {};
-  const std::vector<double> brightness = brightness_of(places);
-  light::GroupFactors best;
-  double least = INFINITY;
+  const bool is_left_out = is_uniform && !shadows_are_those_of_bounces(snapshot);
+  const light::GroupFactors neutral{1.0, 1.0, is_left_out ? 0.0 : 1.0};
+  const bool has_choice = int(has_tree) + int(has_suns) + int(has_world) > 1 || (is_uniform && !is_left_out);
+  if (!snapshot.has_camera || !has_choice) return neutral;
+  const std::vector<MeasuredPoint> points = find_points(snapshot, monitor);
+  if (points.empty()) return neutral;
+  const std::vector<double> brightness = brightness_of(points);
+  std::vector<light::GroupFactors> candidates{neutral};
   for (const double suns : trials(has_suns, !has_tree, false))
-    for (const double world : trials(has_world, !has_tree && !has_suns, is_uniform)) {
-      const light::GroupFactors factors{1.0, suns, world};
-      const double its_cost = cost(places, brightness, factors) * (world > 0.0 ? 1.0 : kLeftOut);
-      if (!(its_cost < least)) continue;
-      least = its_cost;
-      best = factors;
-    }
-  return best;
+    for (const double world : trials(has_world && !is_left_out, !has_tree && !has_suns, is_uniform))
+      candidates.push_back({1.0, suns, is_left_out ? 0.0 : world});
+  std::vector<double> costs(candidates.size());
+  parallel_each<1>(candidates.size(), monitor, [&](size_t i) { costs[i] = cost(points, brightness, candidates[i]); });
+  const auto minimum = std::min_element(costs.begin(), costs.end());
+  return *minimum < kWorthwhile * costs[0] ? candidates[size_t(minimum - costs.begin())] : neutral;
 }
 
 }  // namespace gradus::scene

@@ -18,6 +18,8 @@ namespace gradus::scene {
 // Properties of a scene. They let a render skip the computations that the scene does not need.
 struct SceneFeatures {
   bool has_transparent_shadows = false;
+  // Every surface is visible to all kinds of bounces and to shadow rays, or to none of them.
+  bool has_uniform_visibility = true;
   bool has_glossy = false;  // some surface may have a glossy lobe
   bool has_lights_with_extent = false;
   float min_alpha = 1.0f;                  // lower bound on the roughness of all lobes

@@ -36,17 +36,15 @@ bool cast(const ResourceArgs& args, const ShadeContext& c, geometry::Hit* hit) {
                                 : c.scene->intersect(ray, GRADUS_VISIBLE_ALL, hit);
 }
 
-// Packs the place of a hit into a register: the bits of its instance and primitive, and its barycentric coordinates.
+// Packs the place of a hit into a register: the bits of its instance plus one and of its primitive, and its barycentric
+// coordinates. Zeros stand for a ray that meets nothing.
 Vec4 packed(const geometry::Hit& hit) {
-  return Vec4(std::bit_cast<float>(hit.instance), std::bit_cast<float>(hit.primitive), hit.uv.x, hit.uv.y);
+  return Vec4(std::bit_cast<float>(hit.instance + 1), std::bit_cast<float>(hit.primitive), hit.uv.x, hit.uv.y);
 }
-
-// The register of a ray that meets nothing.
-Vec4 nothing() { return packed(geometry::Hit{}); }
 
 // Finds the place that packed() has stored. Returns false if there is none.
 bool unpack(const Vec4& stored, const ShadeContext& c, geometry::Hit* hit) {
-  hit->instance = std::bit_cast<uint32_t>(stored.x);
+  hit->instance = std::bit_cast<uint32_t>(stored.x) - 1;
   hit->primitive = std::bit_cast<uint32_t>(stored.y);
   hit->uv = Vec2(stored.z, stored.w);
   hit->time = c.hit.time;
@@ -65,7 +63,7 @@ void raycast_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
   out[3] = value(is_hit ? args.v(0) + args.v(1) * hit.t : Vec3(0.0f));
   out[4] =
       value(is_hit ? surface_context(*c.scene, c.scene->surface_point(hit), -args.v(1), c.ray).normal : Vec3(0.0f));
-  out[5] = is_hit ? packed(hit) : nothing();
+  out[5] = is_hit ? packed(hit) : Vec4(0.0f);
 }
 
 void raycast_attribute_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "light/light_table.h"
 #include "scene/scene_fixture.h"
@@ -35,12 +35,11 @@ class Outdoors {
   void add_camera() {
     GradusCamera camera{};
     camera.struct_size = sizeof(camera);
-    camera.key_count = 1;
     const float window[4] = {-0.5f, 0.5f, -0.3f, 0.3f};
     set_static(&camera, window, translation(Vec3(0, 0, 3.0f)));
     scene.scene.set_camera(camera);
   }
-  // Adds a roof that leaves a gap of a metre above the walls, of which there are none.
+  // Adds a roof without walls, 5 m above the floor.
   void add_roof(float size) {
     scene.mesh(kRoof, square(size, 5.0f));
     scene.instance(kRoof, Mat4(1.0f), GRADUS_VISIBLE_ALL, kGrey);
@@ -71,7 +70,7 @@ TEST(GroupFactors, WithoutACameraNothingIsMeasured) {
   EXPECT_EQ(scene.factors().suns, 1.0);
 }
 
-TEST(GroupFactors, AWorldThatShinesThroughAGapIsSampledMoreThanAHiddenSun) {
+TEST(GroupFactors, AWorldBesideARoofIsSampledMoreThanAHiddenSun) {
   Outdoors scene;
   scene.add_camera();
   scene.add_sun();
