@@ -11,6 +11,16 @@ bool is_visible_to(uint32_t visibility, bsdf::LightPass pass, bool transmitted) 
   return (visibility & bounce_visibility(pass, transmitted)) != 0;
 }
 
+// Returns the transmittance of a segment for a diffuse bounce. `crossed` is the number of transparent surfaces that the
+// path has passed.
+Rgb diffuse_transmittance(const PathContext& context, const Ray& ray, uint32_t crossed) {
+  PathRay bounce;
+  bounce.visibility = GRADUS_VISIBLE_DIFFUSE;
+  bounce.state.flags = shading::kRayDiffuse | shading::kRayReflection;
+  auto transparent_depth = static_cast<uint16_t>(crossed);
+  return segment_transmittance(context, ray, bounce, &transparent_depth);
+}
+
 // Returns whether the point is of a world that is left to BSDF sampling.
 bool is_left_out(const PathContext& context, const light::LightPoint& point) {
   return point.kind == light::LightKind::World && context.scene.light_table->factors.world == 0.0;
@@ -86,6 +96,9 @@ LightVisibility light_visibility(const PathContext& context, const geometry::Sur
       light::ray_to_light(light::shadow_ray_origin(context.scene, from, point, view.direction), from, point, view);
   if (view.blockers != geometry::kAllSets) {
     return linked_visibility(context, ray, view.blockers);
+  }
+  if (light::is_of_uniform_world(context.scene, point)) {
+    return {diffuse_transmittance(context, ray, crossed)};
   }
   if (!context.scene.features.has_transparent_shadows) {
     return {Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f)};

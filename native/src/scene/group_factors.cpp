@@ -31,11 +31,8 @@ constexpr size_t kBounces = 2;
 constexpr double kAlbedo = 0.7;
 // Share of the mean brightness of the picture that is added to the brightness of each pixel.
 constexpr double kAmbient = 0.2;
-// CPU time of light samples over that of the rest of a path.
+// CPU time of light samples over that of the rest of a path, measured on a figure under a grey sky.
 constexpr double kTimeOfSamples = 0.5;
-// Factor on the cost without light samples of a uniform world: points are better distributed over directions that one
-// technique covers. Suzanne under a grey world has 0.72 of the variance in 0.64 of the time.
-constexpr double kLeftOut = 0.8;
 // Relative variance of what is not measured: edges in a pixel and further bounces.
 constexpr double kOtherVariance = 1e-3;
 // Factors are 1 unless others have less than this share of the cost: where factors change from frame to frame, samples
@@ -62,6 +59,7 @@ struct MeasuredPoint {
   std::array<std::array<Sample, kSamples>, 3> samples;  // of the tree, the suns and the world
   // Light that BSDF samples find reflected on other surfaces; 0 where the place is one of these.
   std::array<double, kBounces> reflected{};
+  double diffuse_share = 1.0;  // probability with which BSDF sampling scatters diffusely
   size_t pixel = 0;
   double weight = 0.0;
 };
@@ -80,7 +78,15 @@ bool find_hit(const Snapshot& scene, Ray ray, uint32_t visibility, geometry::Hit
   return false;
 }
 
-// Sets the point to where the ray meets a surface. Returns false if it meets none.
+// Returns the probability with which BSDF sampling scatters a ray diffusely at the point.
+double diffuse_share_of(const Snapshot& scene, const geometry::SurfacePoint& point, const Ray& ray) {
+  constexpr float kRoughnessThreshold = 0.1f;  // the default of GradusSettings
+  shading::ShadeResult shade;
+  shading::shade_surface(scene, point, -ray.direction, shading::RayState{}, kRoughnessThreshold, &shade);
+  return double(shade.closures.class_probability(bsdf::ScatterClass::Diffuse));
+}
+
+// Sets the point to where the ray meets a surface that scatters diffusely. Returns false if it meets none.
 bool find_surface(const Snapshot& scene, const Ray& ray, uint32_t visibility, size_t pixel, double weight,
                   MeasuredPoint* found) {
   geometry::Hit hit;
@@ -91,6 +97,8 @@ bool find_surface(const Snapshot& scene, const Ray& ray, uint32_t visibility, si
   found->receiver.normal = glm::dot(normal, ray.direction) > 0.0f ? -normal : normal;
   found->receiver.time = ray.time;
   found->receiver.light_sets = found->point.light_set;
+  found->diffuse_share = diffuse_share_of(scene, found->point, ray);
+  if (!(found->diffuse_share > 0.0)) return false;
   found->pixel = pixel;
   found->weight = weight;
   return true;
@@ -129,7 +137,7 @@ Sample sample_group(const Snapshot& scene, const MeasuredPoint& from, double beg
   Sample sample;
   if (point.kind == light::LightKind::None || !(view.pdf > 0.0f) || !(cosine > 0.0)) return sample;
   sample.density = double(view.pdf) / share;
-  sample.by_bsdf = point.found_by_rays ? cosine / double(kPi) : 0.0;
+  sample.by_bsdf = point.found_by_rays ? from.diffuse_share * cosine / double(kPi) : 0.0;
   sample.light = diffuse_radiance(scene, point, view) * cosine / double(kPi);
   if (sample.light > 0.0) sample.light *= visibility_of(scene, from, point, view);
   return sample;
@@ -178,7 +186,7 @@ double variance(const MeasuredPoint& point, const std::array<double, 3>& shares)
     }
   }
   const std::array<double, kBounces>& c = point.reflected;
-  moment += 0.5 * (c[0] * c[0] + c[1] * c[1]);
+  moment += 0.5 * (c[0] * c[0] + c[1] * c[1]) / point.diffuse_share;
   return moment - by_light[0] * by_light[1] - (by_bsdf[0] + c[0]) * (by_bsdf[1] + c[1]);
 }
 
@@ -213,7 +221,7 @@ double cost(const std::vector<MeasuredPoint>& points, const std::vector<double>&
     sum += point.weight * variance(point, shares) / (brightness[point.pixel] * brightness[point.pixel]);
   }
   const double time = 1.0 + kTimeOfSamples * sampled / double(points.size());
-  return (std::max(sum / weight, 0.0) + kOtherVariance) * time * (factors.world > 0.0 ? 1.0 : kLeftOut);
+  return (std::max(sum / weight, 0.0) + kOtherVariance) * time;
 }
 
 // Finds what the camera sees in a pixel, and in the elements behind `first` what that sees.
@@ -255,9 +263,13 @@ std::vector<double> trials(bool exists, bool is_reference, bool may_be_left_out)
   return factors;
 }
 
-// Returns whether shadow rays meet the same surfaces as rays of all kinds of bounces.
-bool shadows_are_those_of_bounces(const Snapshot& snapshot) {
-  return !snapshot.features.has_transparent_shadows && snapshot.features.has_uniform_visibility;
+// Returns whether all kinds of bounces and shadow rays meet the same surfaces, so that light samples of a uniform world
+// show what BSDF samples of it do. Transparency may differ for shadow rays, which then count as diffuse bounces.
+bool kinds_are_alike(const Snapshot& snapshot) {
+  return snapshot.features.has_uniform_visibility &&
+         std::none_of(snapshot.materials.begin(), snapshot.materials.end(), [](const auto& material) {
+           return material->may_be_transparent && (material->depends_on_kind || !material->transparent_shadow);
+         });
 }
 
 }  // namespace
@@ -266,7 +278,7 @@ light::GroupFactors measure_group_factors(const Snapshot& snapshot, const Commit
   const light::LightTable& table = *snapshot.light_table;
   const bool has_tree = !table.tree.empty(), has_suns = !table.suns.empty(), has_world = !table.world.black();
   const bool is_uniform = has_world && table.world.is_uniform();
-  const bool is_left_out = is_uniform && !shadows_are_those_of_bounces(snapshot);
+  const bool is_left_out = is_uniform && !kinds_are_alike(snapshot);
   const light::GroupFactors neutral{1.0, 1.0, is_left_out ? 0.0 : 1.0};
   const bool has_choice = int(has_tree) + int(has_suns) + int(has_world) > 1 || (is_uniform && !is_left_out);
   if (!snapshot.has_camera || !has_choice) return neutral;

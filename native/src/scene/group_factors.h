@@ -11,7 +11,7 @@ class Snapshot;
 // Returns the factors with which light samples and BSDF samples together have the minimum variance times time, measured
 // at some points that the camera sees and at some that these see. It reads geometry, materials, camera and light table.
 // All factors are 1 without a camera, or if there is nothing to choose: one group of emitters that is not a uniform
-// world. A uniform world is left out in any case if shadow rays may see other surfaces than bounces, since light samples
+// world. A uniform world is left out in any case if kinds of bounces may meet different surfaces, since light samples
 // of it and BSDF samples of it would show different light. Throws Error CANCELLED.
 light::GroupFactors measure_group_factors(const Snapshot& snapshot, const CommitMonitor& monitor);
 
