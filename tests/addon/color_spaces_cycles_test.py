@@ -299,7 +299,7 @@ def test_a_configuration_of_a_studio(tmp_path: Path) -> None:
     assert "scene_linear: Linear Rec.709" in text
     config.write_text(text.replace("scene_linear: Linear Rec.709", "scene_linear: ACEScg"), encoding="utf-8")
     command = [sys.executable, "-m", "pytest", "-q", f"{__file__}::test_all_colour_spaces[bytes]"]
-    result = subprocess.run(
-        command, env=os.environ | {"OCIO": str(config)}, capture_output=True, text=True, timeout=300
-    )
+    root = Path(__file__).parents[2]
+    environment = os.environ | {"OCIO": str(config), "PYTHONPATH": f"{root / 'tests'}{os.pathsep}{root / 'addon'}"}
+    result = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
     assert result.returncode == 0 and "1 passed" in result.stdout, result.stdout[-3000:]
