@@ -13,6 +13,7 @@
 #include "geometry/surface.h"
 #include "light/light_sampling.h"
 #include "scene/snapshot.h"
+#include "shading/material.h"
 #include "shading/shade.h"
 
 namespace gradus::scene {
