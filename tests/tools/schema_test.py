@@ -107,7 +107,7 @@ def test_the_guide_s_tables_are_filled_between_their_markers(copy: Path) -> None
 @pytest.mark.parametrize(
     ("file", "old", "new", "complaint"),
     [
-        ("structs.toml", '"float[9]"', '"floot[9]"', "field matrix has the unknown type floot"),
+        ("structs.toml", '"float[16]"', '"floot[16]"', "field matrix has the unknown type floot"),
         ("options.toml", 'name = "seed"', 'name = "samples"', "samples is defined twice"),
         ("options.toml", 'label = "Seed"', 'lable = "Seed"', "seed: "),
         ("enums.toml", '["PATH", 1', '["AUTO", 1', "AUTO is defined twice"),
