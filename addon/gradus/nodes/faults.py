@@ -80,7 +80,7 @@ def warn_of_velvet(view: NodeView) -> None:
 
 
 def warn_of_portal(view: NodeView, direction: Value) -> None:
-    """Warns of directions of another length than 1, with which Cycles before Blender 5.2 goes on wrongly."""
+    """Warns of directions of another length than 1, with which Cycles before Blender 5.2 renders wrongly."""
     if view.version < (5, 2, 0) and not _is_unit(view, direction):
         view.warn_replaced(
             "may have a direction whose length is not 1, with which Cycles before Blender 5.2 renders what is behind "

@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include "bsdf/warp.h"
+#include "light/eighths.h"
 #include "light/light_sampling.h"
 
 namespace gradus::light {
@@ -18,9 +19,6 @@ constexpr uint32_t kMinWidth = 16, kMaxWidth = 4096;
 // most of their noise comes from surfaces in the sun. Measured for a block on a floor, sun at 35°: the variance in the
 // shadow is 1.34 at a fraction of 1/2, 0.88 at 3/4, 0.73 at 7/8, 0.70 at 15/16.
 constexpr double kMaxSunShare = 0.875;
-// The fraction of the samples that go to suns is rounded to eighths, because a digital net divides into eighths with
-// exactly proportional numbers of points.
-constexpr double kParts = 8.0;
 // A sun whose irradiance is below this fraction of the map's (pi times the mean radiance) is left to the map.
 constexpr float kFaintSun = 1e-4f;
 
@@ -181,7 +179,7 @@ double Environment::share_of_suns(const Receiver& receiver, double* sum) const {
   for (const Sun& sun : suns_) *sum += sun_weight(sun, receiver);
   if (!(*sum > 0.0)) return 0.0;
   const double part = std::min(*sum / (*sum + mean_ * kPi), kMaxSunShare);
-  return part > 0.5 / kParts ? std::round(part * kParts) / kParts : part;
+  return part > 0.5 * kEighth ? in_eighths(part) : part;
 }
 
 float Environment::irradiance(const Receiver& receiver) const {

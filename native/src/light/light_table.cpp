@@ -5,15 +5,9 @@
 #include <iterator>
 
 #include "base/cone.h"
+#include "light/eighths.h"
 
 namespace gradus::light {
-
-namespace {
-
-// Number of parts into which the samples of a receiver are divided among the groups.
-constexpr double kParts = 8.0;
-
-}  // namespace
 
 GroupChoice choose_group(const GroupIrradiance& irradiance, const GroupFactors& factors) {
   GroupChoice choice{irradiance.tree * factors.tree, irradiance.suns * factors.suns, irradiance.world * factors.world};
@@ -25,7 +19,7 @@ GroupChoice choose_group(const GroupIrradiance& irradiance, const GroupFactors& 
   double rest = 1.0;
   for (double* group : groups) {
     if (group == largest) continue;
-    if (*group > 0.0) *group = std::max(1.0, std::round(kParts * *group / sum)) / kParts;
+    if (*group > 0.0) *group = std::max(kEighth, in_eighths(*group / sum));
     rest -= *group;
   }
   *largest = rest;

@@ -58,7 +58,7 @@ struct MeasuredPoint {
   light::Receiver receiver;
   light::GroupIrradiance irradiance;
   std::array<std::array<Sample, kSamples>, 3> samples;  // of the tree, the suns and the world
-  // Light that BSDF samples find reflected on other surfaces; 0 where the place is one of these.
+  // Light that BSDF samples find reflected on other surfaces; 0 where the point is on one of these.
   std::array<double, kBounces> reflected{};
   double diffuse_share = 1.0;  // probability with which BSDF sampling scatters diffusely
   size_t pixel = 0;
@@ -286,7 +286,7 @@ light::GroupFactors measure_group_factors(const Snapshot& snapshot, const Commit
   const std::vector<MeasuredPoint> points = find_points(snapshot, monitor);
   if (points.empty()) return neutral;
   const std::vector<double> brightness = brightness_of(points);
-  std::vector<light::GroupFactors> candidates{neutral};
+  std::vector<light::GroupFactors> candidates;  // the first is neutral
   for (const double suns : trials(has_suns, !has_tree, false))
     for (const double world : trials(has_world && !is_left_out, !has_tree && !has_suns, is_uniform))
       candidates.push_back({1.0, suns, is_left_out ? 0.0 : world});
