@@ -194,9 +194,11 @@ class TestScene {
     instances.struct_size = sizeof(instances);
     instances.count = meshes_.size();
     instances.meshes = meshes_.data();
-    instances.matrices = matrices_.empty() ? nullptr : &matrices_[0][0][0];
-    if (matrices_before.size() == matrices_.size()) instances.matrices_previous = &matrices_before[0][0][0];
-    if (matrices_after.size() == matrices_.size()) instances.matrices_next = &matrices_after[0][0][0];
+    if (!matrices_.empty()) {
+      instances.matrices = &matrices_[0][0][0];
+      if (matrices_before.size() == matrices_.size()) instances.matrices_previous = &matrices_before[0][0][0];
+      if (matrices_after.size() == matrices_.size()) instances.matrices_next = &matrices_after[0][0][0];
+    }
     instances.visibility = visibility_.data();
     instances.pass_indices = pass_indices_.data();
     instances.material_first = first_.data();
