@@ -206,10 +206,12 @@ void PassRecorder::escaped(const PathState& state) {
 
 void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, const Vertex& vertex) {
   colors(weight, vertex);
+  // The weight is divided by the probability that the path does not pass the surface, as closures require.
+  const Rgb opaque = weight * vertex.shade.opacity();
   if (plane(GRADUS_PASS_AMBIENT_OCCLUSION) != nullptr) {
-    ambient_occlusion(sampler, weight, vertex);
+    ambient_occlusion(sampler, opaque, vertex);
   }
-  mist(weight, vertex.point.position, vertex.point.hit.time);
+  mist(opaque, vertex.point.position, vertex.point.hit.time);
 }
 
 void PassRecorder::visit(const Vertex& vertex, const shading::RayState& ray, const Rgb& weight) {

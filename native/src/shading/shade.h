@@ -71,6 +71,8 @@ struct ShadeResult {
 
   // Returns the share of a ray that continues, straight or through a portal.
   float passed() const { return mean_component(transparency + portal.weight); }
+  // Returns the share of a ray that does not continue, in [0, 1].
+  Rgb opacity() const { return glm::clamp(Rgb(1.0f) - transparency - portal.weight, 0.0f, 1.0f); }
 };
 
 // Shades a surface point completely. `wo` points towards the previous vertex. `roughness_threshold` is the alpha that
