@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/fault.h"
 #include "base/threads.h"
+#include "scene/group_factors.h"
 #include "schema/options.h"
 
 namespace gradus::animation {
@@ -246,6 +247,7 @@ void FrameSampling::sample_replayed(const film::FilmHeader& fresh, const std::ve
   const bool may_resume = found && !counted && !has_counts(found->settings);
   const std::shared_ptr<const film::Film> stored_replayed = may_resume ? load(FrameSamples::kReplayed) : nullptr;
   if (stored_replayed && film::replays_same(stored_replayed->replayed, input.replay->replay_map))
+  if (follows_before()) input.snapshot = scene::with_factors_of(*sequence_->before_->snapshot, input.snapshot);
     input.resumed = stored_replayed;
   if (counted) input.settings.samples = *std::max_element(counts.begin(), counts.end());
   auto replayed = std::make_unique<render::RenderLoop>(std::move(input));
