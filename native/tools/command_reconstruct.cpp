@@ -4,7 +4,9 @@
 #include "api/objects.h"
 #include "channel_layers.h"
 #include "component_layers.h"
+#include "denoiser_place.h"
 #include "film_io/image_exr.h"
+#include "output/options.h"
 #include "output/pass_read.h"
 #include "reconstruct.h"
 #include "schema/pass_table.h"
@@ -44,12 +46,21 @@ bool holds(const film::Film& film, uint32_t pass) {
   return pass == GRADUS_PASS_ERROR || output::has_pass(film, pass);  // the error is estimated by the reconstruction
 }
 
+// Says on stderr why the picture is not denoised, if a denoiser that is missing would have denoised it.
+void note_missing_denoiser(const film::Film& film, const output::Options& options, const std::string& place) {
+  if (options.denoiser != GRADUS_DENOISER_AUTO ||
+      output::resolve_auto(options, output::facts_of(film, true)).denoiser == GRADUS_DENOISER_NONE)
+    return;
+  if (const std::string why = missing_denoiser(place); !why.empty()) print_not_denoised(why);
+}
+
 int run(const ReconstructArguments& args) {
   const uint32_t reconstruction = parse_choice("reconstruction", args.reconstruction),
                  denoiser = parse_choice("denoiser", args.denoiser);
   check_usage(args, reconstruction, denoiser);
   if (is_sequence(args)) return reconstruct_sequence(args);
-  const client::Device device(0, nullptr, args.denoiser_path.c_str());
+  const std::string place = denoiser_place(args.denoiser_path);
+  const client::Device device(0, nullptr, place.c_str());
   client::Film film = client::Film::load(device, args.input);
   for (const std::string& path : args.merged) film.merge(client::Film::load(device, path));
   const auto [width, height] = film.size();
@@ -74,6 +85,8 @@ int run(const ReconstructArguments& args) {
     add_component_layers(content->settings, held, size_t(width) * height, reader_of(film), &layers);
   }
   film_io::save_image(args.output, int(width), int(height), layers);
+  note_missing_denoiser(*api::find_handle<api::FilmObject>(film.id())->get(), {reconstruction, args.alpha, denoiser},
+                        place);
   print_warnings(device);
   return 0;
 }

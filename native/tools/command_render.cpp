@@ -8,6 +8,7 @@
 #include "channel_layers.h"
 #include "common.h"
 #include "component_layers.h"
+#include "denoiser_place.h"
 #include "film_io/image_exr.h"
 #include "film_io/store.h"
 #include "progress_line.h"
@@ -72,7 +73,7 @@ void write_image(const client::Film& film, const GradusSettings& settings, const
 
 int run(const RenderArguments& args) {
   GradusSettings settings = client::default_settings();
-  const client::Device device(0, nullptr, args.denoiser_path.c_str());
+  const client::Device device(0, nullptr, denoiser_place(args.denoiser_path).c_str());
   const client::Scene scene = client::Scene::load(device, args.scene, &settings);
   args.options.apply(&settings);
   check_denoiser_path(args.denoiser_path, settings.denoiser);

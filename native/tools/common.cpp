@@ -130,11 +130,6 @@ void check_apart(const std::string& option, const std::string& written, const st
     throw CLI::ValidationError(option, written + " is " + kept + ", which it would replace");
 }
 
-void check_denoiser_path(const std::string& path, uint32_t denoiser) {
-  if (path.empty() || denoiser != GRADUS_DENOISER_NONE) return;
-  throw CLI::ValidationError("--denoiser-path", "is for --denoiser oidn or auto");
-}
-
 uint32_t parse_choice(const std::string& option, const std::string& value) {
   GradusSettings settings = client::default_settings();
   client::check(gradus_settings_parse(&settings, option.c_str(), value.c_str()));
@@ -150,11 +145,6 @@ void print_warnings(const client::Device& device, const client::Scene& scene) {
   print_warnings(device);
   for (std::string text = scene.warning(); !text.empty(); text = scene.warning())
     std::fprintf(stderr, "warning: %s\n", text.c_str());
-}
-
-void add_denoiser_path(CLI::App* command, std::string* path) {
-  command->add_option("--denoiser-path", *path,
-                      "libOpenImageDenoise.so.2 or the folder that holds it, where the system does not find it");
 }
 
 }  // namespace gradus::tool

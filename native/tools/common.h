@@ -66,13 +66,9 @@ std::string bad_passes(const std::string& text);
 // Returns the enum value of `reconstruction` or `denoiser`. Throws the library's error if the value is invalid.
 uint32_t parse_choice(const std::string& option, const std::string& value);
 
-// Both throw CLI::ValidationError, which counts as wrong usage: check_apart() if `written` and `kept` are the same
-// file, also through links; check_denoiser_path() if a path is given although no denoiser is used.
+// Throws CLI::ValidationError, which counts as wrong usage, if `written` and `kept` are the same file, also through
+// links.
 void check_apart(const std::string& option, const std::string& written, const std::string& kept);
-void check_denoiser_path(const std::string& path, uint32_t denoiser);
-
-// Adds the option --denoiser-path, whose value client::Device takes.
-void add_denoiser_path(CLI::App* command, std::string* path);
 
 void print_warnings(const client::Device& device);
 void print_warnings(const client::Device& device, const client::Scene& scene);

@@ -10,6 +10,7 @@
 
 #include "animation/sequence_folder.h"
 #include "component_layers.h"
+#include "denoiser_place.h"
 #include "film_io/image_exr.h"
 #include "film_io/store.h"
 #include "reconstruct.h"
@@ -146,10 +147,17 @@ struct Job {
   const client::Device& device;
   const std::map<int32_t, GradusSettings>& of_files;
   PassesToWrite wanted;
+  std::string missing_denoiser;  // denoiser_place.h
+};
+
+// What is said after the last picture, each text once.
+struct Remarks {
+  std::set<std::string> warnings;
+  std::string not_denoised;  // why the denoiser AUTO did not denoise a picture that it would; empty: it did
 };
 
 // Writes the pictures of one chain of frames.
-void write_chain(const Job& job, const std::vector<int32_t>& frames, std::set<std::string>* warnings) {
+void write_chain(const Job& job, const std::vector<int32_t>& frames, Remarks* remarks) {
   const client::Sequence sequence = open(job.device, job.args, job.stored, {frames.front(), frames.back()},
                                          need_two_frames(job.wanted.of_components));
   const animation::SequenceFolder folder(job.args.input);
@@ -159,8 +167,10 @@ void write_chain(const Job& job, const std::vector<int32_t>& frames, std::set<st
     settings.component_passes = job.wanted.of_components;
     const client::Render render = sequence.deliver(frame, settings);
     render.wait();
-    for (const auto& text : nlohmann::json::parse(render.stats()).at("warnings"))
-      warnings->insert(text.get<std::string>());
+    const nlohmann::json stats = nlohmann::json::parse(render.stats());
+    for (const auto& text : stats.at("warnings")) remarks->warnings.insert(text.get<std::string>());
+    const std::string skipped = stats.at("plan").at("skipped").value("denoiser", "");
+    if (!skipped.empty() && skipped == job.missing_denoiser) remarks->not_denoised = skipped;
     const std::string path = picture_path(job.args.output, frame);
     write_picture(render, job.wanted, settings, path);
     std::printf("%s\n", path.c_str());
@@ -188,15 +198,17 @@ int reconstruct_sequence(const ReconstructArguments& args) {
   const uint32_t of_components =
       available_component_passes(film_io::load_header(first), parse_component_passes(args.component_passes));
   const PassesToWrite wanted{passes_of(args, first), of_components};
-  const client::Device device(0, nullptr, args.denoiser_path.c_str());
+  const std::string place = denoiser_place(args.denoiser_path);
+  const client::Device device(0, nullptr, place.c_str());
   fs::create_directories(args.output);
-  std::set<std::string> warnings;
+  Remarks remarks;
   if (!unrelated.empty())
-    warnings.insert("frames " + unrelated +
-                    " replay others than those before them: there is no pixel correspondence between them");
+    remarks.warnings.insert("frames " + unrelated +
+                            " replay others than those before them: there is no pixel correspondence between them");
   for (const std::vector<int32_t>& chain : chains)
-    write_chain({args, stored, device, of_files, wanted}, chain, &warnings);
-  for (const std::string& text : warnings) std::fprintf(stderr, "warning: %s\n", text.c_str());
+    write_chain({args, stored, device, of_files, wanted, missing_denoiser(place)}, chain, &remarks);
+  for (const std::string& text : remarks.warnings) std::fprintf(stderr, "warning: %s\n", text.c_str());
+  if (!remarks.not_denoised.empty()) print_not_denoised(remarks.not_denoised);
   print_warnings(device);
   return 0;
 }

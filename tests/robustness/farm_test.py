@@ -49,19 +49,25 @@ def require_equal(found: Path, expected: Path, frames: int) -> None:
         assert np.array_equal(a[name], b[name]), name
 
 
-def finish(process: subprocess.Popen) -> None:
+def finish(process: subprocess.Popen) -> str:
+    """Waits for the end of a worker and returns its output."""
     try:
         output, _ = process.communicate(timeout=120)
     finally:
         process.kill()
     assert process.returncode == 0, output
+    return str(output)
 
 
-def at_once(tmp_path: Path, *jobs: list[str]) -> None:
-    """Runs several workers at the same time."""
+def at_once(tmp_path: Path, *jobs: list[str]) -> list[str]:
+    """Runs several workers at the same time and returns their outputs."""
     processes = [application.start(*job, folder=tmp_path / f"home {index}") for index, job in enumerate(jobs)]
-    for process in processes:
-        finish(process)
+    return [finish(process) for process in processes]
+
+
+def films(store: Path) -> dict[str, tuple[int, int]]:
+    """Returns which file each film of a frame store is, and when it was written."""
+    return {file.name: (file.stat().st_ino, file.stat().st_mtime_ns) for file in sorted(store.rglob("f*.exr"))}
 
 
 def test_i4_frames_are_equal_however_a_job_is_split(blender: Callable[..., Outcome], tmp_path: Path) -> None:
@@ -84,13 +90,22 @@ def test_i4_workers_that_share_a_frame_store_make_the_bits_of_one(
         return ["--", "--gradus-frame-store", str(tmp_path / name)]
 
     assert blender(*arguments(whole, True, "-s", "1", "-e", "6", "-a"), *store("one")).code == 0
-    at_once(
+    outputs = at_once(
         tmp_path,
         *([*arguments(parts, True, "-s", first, "-e", last, "-a"), *store("shared")] for first, last in ("13", "46")),
     )
     assert len(pictures(parts)) == 6
+    assert all(np.isfinite(picture).all() for picture in pictures(parts).values())
+    # A film that is being written has another name until it is whole, so neither worker meets a torn one.
+    for output in outputs:
+        assert "cannot read" not in output and "sampled again" not in output, output
+    assert not list((tmp_path / "shared").rglob("*.part"))
+    sampled = films(tmp_path / "shared")
+    assert set(sampled) == set(films(tmp_path / "one"))
     assert blender(*arguments(again, True, "-s", "1", "-e", "6", "-a"), *store("shared")).code == 0
     require_equal(again, whole, 6)
+    # The last worker samples nothing: the frame at the seam replays its predecessor in whichever job it was sampled.
+    assert films(tmp_path / "shared") == sampled
 
 
 @pytest.mark.parametrize("temporal", [False, True], ids=["frame by frame", "ahead"])

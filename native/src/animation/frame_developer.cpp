@@ -118,6 +118,11 @@ std::shared_ptr<DevelopedFrame> FrameDeveloper::read() {
   facts.has_denoiser = denoiser_ != nullptr;
   facts.samples = sequence_.joined_samples(number_);
   pictures.options = output::resolve_auto(requested, facts);
+  if (!denoiser_ && record == sequence_.records_.end()) {
+    facts.has_denoiser = true;
+    const bool would_denoise = output::resolve_auto(requested, facts).denoiser != GRADUS_DENOISER_NONE;
+    if (would_denoise) plan.skipped.emplace_back("denoiser", why_not);
+  }
   const bool is_automatic = denoiser_ != nullptr && requested.denoiser == GRADUS_DENOISER_AUTO &&
                             output::is_denoised_by_default(pictures.options.reconstruction);
   if (is_automatic) {

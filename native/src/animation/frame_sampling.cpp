@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/fault.h"
 #include "base/threads.h"
+#include "scene/group_factors.h"
 #include "schema/options.h"
 
 namespace gradus::animation {
@@ -126,7 +127,7 @@ std::optional<film::FilmHeader> FrameSampling::find_stored(FrameSamples kind) {
       sequence_->add_stale(number, why);
       return std::nullopt;
     }
-    load(kind);  // so that a damaged file is found while the frame can still be sampled
+    check(kind);  // so that a damaged file is found while the frame can still be sampled
     return header;
   } catch (const Error& e) {
     if (e.code() == GRADUS_ERROR_CANCELLED) throw;
@@ -153,6 +154,13 @@ std::shared_ptr<film::Film> FrameSampling::read(FrameSamples kind, film_io::Stor
     film = sequence_->folder_.load(input_.settings.frame, kind, content, cancel);
   });
   return film;
+}
+
+void FrameSampling::check(FrameSamples kind) {
+  const ScopedTimer timer(&record_.stats.seconds.store, &record_.stats.cpu_seconds.store);
+  tbb::task_arena(arena_size(input_.threads)).execute([&] {
+    sequence_->folder_.check(input_.settings.frame, kind, [this] { return is_stopped(); });
+  });
 }
 
 std::shared_ptr<film::Film> FrameSampling::load(FrameSamples kind, film_io::StoredContent content) {
@@ -239,6 +247,7 @@ void FrameSampling::sample_replayed(const film::FilmHeader& fresh, const std::ve
   // With a time limit, the stored replay has as many samples as the time of the fresh samples allowed.
   if (found && !samples_fresh && input.settings.time_limit > 0.0f) return;
   input.replay = follow(fresh, fresh_counts);
+  if (follows_before()) input.snapshot = scene::with_factors_of(*sequence_->before_->snapshot, input.snapshot);
   const std::vector<uint32_t>& counts = input.replay->counts;
   if (found && counted &&
       film::samples_of_pixels(*load(FrameSamples::kReplayed, film_io::StoredContent::kSamples)) == counts)

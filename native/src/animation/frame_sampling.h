@@ -46,6 +46,8 @@ class FrameSampling final : public render::RenderTask {
   // Returns the frame that was sampled, or reads the stored one. Takes the lock, but not while it reads a file.
   std::shared_ptr<const film::Film> fresh_film(const char* what) const;
   std::shared_ptr<film::Film> read(FrameSamples kind, film_io::StoredContent content, const CancelCheck& cancel) const;
+  // Finds damage in the stored samples.
+  void check(FrameSamples kind);
   std::shared_ptr<film::Film> load(FrameSamples kind, film_io::StoredContent content = film_io::StoredContent::kAll);
   // Whether the frame is identical to the previous one, so that it can use its files.
   bool repeats_before() const;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -73,8 +74,21 @@ film::FilmHeader SequenceFolder::header(int32_t frame, FrameSamples kind) const 
 
 std::shared_ptr<film::Film> SequenceFolder::load(int32_t frame, FrameSamples kind, film_io::StoredContent content,
                                                  const CancelCheck& cancel) const {
+  if (std::shared_ptr<film::Film> checked = take_checked(frame, kind)) return checked;
   ++loads_;
   return film_io::load_film(path(frame, kind), content, cancel);
+}
+
+void SequenceFolder::check(int32_t frame, FrameSamples kind, const CancelCheck& cancel) const {
+  std::shared_ptr<film::Film> film = load(frame, kind, film_io::StoredContent::kAll, cancel);
+  const std::lock_guard lock(checking_);
+  checked_[kind] = {frame, std::move(film)};
+}
+
+std::shared_ptr<film::Film> SequenceFolder::take_checked(int32_t frame, FrameSamples kind) const {
+  const std::lock_guard lock(checking_);
+  const auto found = checked_.find(kind);
+  return found != checked_.end() && found->second.frame == frame ? std::exchange(found->second.film, nullptr) : nullptr;
 }
 
 std::shared_ptr<film::Film> SequenceFolder::load_component(int32_t frame, FrameSamples kind,
@@ -86,6 +100,7 @@ std::shared_ptr<film::Film> SequenceFolder::load_component(int32_t frame, FrameS
 
 void SequenceFolder::save(const film::Film& content, int32_t frame, FrameSamples kind,
                           const CancelCheck& cancel) const {
+  take_checked(frame, kind);
   film_io::save_film(content, new_path(frame, kind), {durable(), cancel});
   remove_older(path_, frame, kind);
 }
@@ -111,6 +126,7 @@ void SequenceFolder::save_settings(const GradusSettings& settings, int32_t frame
 void SequenceFolder::repeat(int32_t from, int32_t to) const {
   for (const FrameSamples kind : {FrameSamples::kReplayed, FrameSamples::kFresh}) {
     const std::string source = path(from, kind), target = new_path(to, kind);
+    take_checked(to, kind);
     if (!film_io::hard_link_file(source, target)) film_io::copy_file(source, target, durable());
     remove_older(path_, to, kind);
   }

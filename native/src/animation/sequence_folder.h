@@ -4,7 +4,9 @@
 #pragma once
 
 #include <atomic>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -43,6 +45,9 @@ class SequenceFolder {
   std::shared_ptr<film::Film> load(
       int32_t frame, FrameSamples kind, film_io::StoredContent content = film_io::StoredContent::kAll,
       const CancelCheck& cancel = [] { return false; }) const;
+  // Loads all samples to find damage in the file. What was read is kept for the next load() of the same samples, until
+  // others of that kind are checked.
+  void check(int32_t frame, FrameSamples kind, const CancelCheck& cancel) const;
   // Loads the planes of one component alone (film_io/store.h).
   std::shared_ptr<film::Film> load_component(int32_t frame, FrameSamples kind, const std::string& component,
                                              const CancelCheck& cancel) const;
@@ -65,11 +70,20 @@ class SequenceFolder {
   // Returns the path of the file that is written for these samples.
   std::string new_path(int32_t frame, FrameSamples kind) const;
 
+  // Returns the samples that check() has read, once, or nullptr.
+  std::shared_ptr<film::Film> take_checked(int32_t frame, FrameSamples kind) const;
+
   film_io::Durable durable() const { return is_temporary() ? film_io::Durable::kNo : film_io::Durable::kYes; }
 
   std::unique_ptr<const TemporaryFolder> temporary_;
   std::string path_;
   mutable std::atomic<uint64_t> loads_{0};
+  struct Checked {
+    int32_t frame = 0;
+    std::shared_ptr<film::Film> film;
+  };
+  mutable std::mutex checking_;
+  mutable std::map<FrameSamples, Checked> checked_;
 };
 
 }  // namespace gradus::animation

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "reconstruct/field_memory.h"
+
 namespace gradus::reconstruct {
 
 // Number of colours of a picture, which may have alpha as a further channel.
@@ -19,7 +21,7 @@ class Field {
         height_(height),
         channels_(channels),
         stride_((size_t(width) + 2 * kPad - 1) / kPad * kPad + kPad),
-        values_(stride_ * (size_t(height) + 2) * size_t(channels) + kPad, 0.0f) {}
+        values_(stride_ * (size_t(height) + 2) * size_t(channels) + kPad) {}
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -34,7 +36,7 @@ class Field {
   static constexpr size_t kPad = 8;
   int width_ = 0, height_ = 0, channels_ = 0;
   size_t stride_ = 0;
-  std::vector<float> values_;
+  std::vector<float, FieldAllocator<float>> values_;
 };
 
 }  // namespace gradus::reconstruct

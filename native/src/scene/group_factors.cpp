@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/hash.h"
@@ -294,6 +296,24 @@ light::GroupFactors measure_group_factors(const Snapshot& snapshot, const Commit
   parallel_each<1>(candidates.size(), monitor, [&](size_t i) { costs[i] = cost(points, brightness, candidates[i]); });
   const auto minimum = std::min_element(costs.begin(), costs.end());
   return *minimum < kWorthwhile * costs[0] ? candidates[size_t(minimum - costs.begin())] : neutral;
+}
+
+std::shared_ptr<const Snapshot> with_factors_of(const Snapshot& other, std::shared_ptr<const Snapshot> scene) {
+  const light::GroupFactors &theirs = other.light_table->factors, &own = scene->light_table->factors;
+  // The tree is the reference of the factors: its own is always 1.
+  const bool leave_out_the_same = (theirs.world > 0.0) == (own.world > 0.0);
+  const bool has_catchers = scene->catchers != nullptr && other.catchers != nullptr;
+  const auto catchers = has_catchers ? with_factors_of(*other.catchers, scene->catchers) : scene->catchers;
+  const bool takes_theirs = leave_out_the_same && (theirs.suns != own.suns || theirs.world != own.world);
+  if (!takes_theirs && catchers == scene->catchers) return scene;
+  auto result = std::make_shared<Snapshot>(*scene);
+  result->catchers = catchers;
+  if (takes_theirs) {
+    auto table = std::make_shared<light::LightTable>(*scene->light_table);
+    table->factors = theirs;
+    result->light_table = std::move(table);
+  }
+  return result;
 }
 
 }  // namespace gradus::scene

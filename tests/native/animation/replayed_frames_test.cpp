@@ -1,6 +1,10 @@
 // Random numbers and sub-pixel jitter that a frame replays from the one before, whatever changes between them.
+#include <memory>
+#include <utility>
+
 #include <gtest/gtest.h>
 
+#include "light/light_table.h"
 #include "sequence_fixture.h"
 
 namespace gradus::test::replayed_frames_test {
@@ -40,6 +44,41 @@ TEST(C4_ReplayedFrames, ReplaysUseTheSeedOfTheFrameBeforeWhereItIsAnimated) {
     EXPECT_EQ(own->frame_number, t);
     EXPECT_EQ(replay->frame_number, t);
   }
+}
+
+// Returns the scene with another factor of suns, as if it had been measured.
+std::shared_ptr<const scene::Snapshot> with_factor_of_suns(const scene::Snapshot& scene, double factor) {
+  auto table = std::make_shared<light::LightTable>(*scene.light_table);
+  table->factors.suns = factor;
+  auto result = std::make_shared<scene::Snapshot>(scene);
+  result->light_table = std::move(table);
+  result->content_key += uint64_t(8.0 * factor);  // so that the frame is sampled
+  return result;
+}
+
+// Regression: factors of light samples are measured for each frame. Where they jumped, replays chose other lights than
+// the samples that they replay, and differences over time were noise.
+TEST(C4_ReplayedFrames, ReplaysChooseLightsByTheFactorsOfTheFrameBefore) {
+  Pan still(0.0f, Scenario::PointAndSun);
+  const Folder folder;
+  const auto scene = still.at(1);
+  const auto sequence = make_sequence(1, 3, folder.path());
+  const double factors[] = {1.0, 4.0, 0.25};
+  for (int32_t t = 1; t <= 3; ++t) sample(sequence.get(), with_factor_of_suns(*scene, factors[t - 1]), settings_of(t));
+  const animation::SequenceFolder files(folder.path());
+  for (int32_t t = 2; t <= 3; ++t) {
+    const auto before = files.load(t - 1, animation::FrameSamples::kFresh),
+               replay = files.load(t, animation::FrameSamples::kReplayed);
+    EXPECT_TRUE(plane_of(*replay) == plane_of(*before)) << t;
+  }
+  // A frame that is rendered alone, after its predecessor was passed by, has the same replays.
+  const Folder alone;
+  const auto other = make_sequence(3, 3, alone.path());
+  other->pass_by(with_factor_of_suns(*scene, factors[1]), with_passes(settings_of(2)));
+  sample(other.get(), with_factor_of_suns(*scene, factors[2]), settings_of(3));
+  const auto in_row = files.load(3, animation::FrameSamples::kReplayed),
+             by_itself = animation::SequenceFolder(alone.path()).load(3, animation::FrameSamples::kReplayed);
+  EXPECT_TRUE(plane_of(*by_itself) == plane_of(*in_row));
 }
 
 TEST(C7_ReplayedFrames, SamplesOfAnAnimatedSeedAreAddedUp) {

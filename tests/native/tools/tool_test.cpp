@@ -660,6 +660,34 @@ TEST_F(ToolSequence, AnAutomaticDenoiserRunsWhereItPays) {
   EXPECT_NE(picture_with(denoiser), picture_with(""));
 }
 
+// Regression: the tool found no denoiser beside Blender, and said nothing.
+TEST_F(ToolSequence, TheDenoiserOfBlenderIsFoundAndAMissingOneIsNamed) {
+  render(GRADUS_RECONSTRUCTION_REGULARIZED, 32);
+  const fs::path blender = folder / "blender-4.5";
+  fs::create_directories(blender / "lib");
+  fs::create_directories(folder / "bin");
+  std::ofstream(blender / "blender") << "#!/bin/sh\n";
+  fs::permissions(blender / "blender", fs::perms::owner_all);
+  fs::create_symlink(blender / "blender", folder / "bin/blender");
+  const auto reconstruct = [&](const std::string& environment, const std::string& options = "") {
+    const Outcome made = run("reconstruct store/anim/layer -o other --frames 2" + options, environment);
+    EXPECT_EQ(made.code, 0) << made.err;
+    return made.err;
+  };
+  const auto picture = [&] { return film_io::load_rgb((folder / "other/0002.exr").string(), "").rgb; };
+  const std::string on_path = "BLENDER= PATH='" + (folder / "bin").string() + "' ",
+                    named = "BLENDER='" + (blender / "blender").string() + "' PATH=/nowhere ",
+                    note = "note: not denoised: no Open Image Denoise";
+  EXPECT_NE(reconstruct(on_path).find(note), std::string::npos);
+  EXPECT_EQ(reconstruct(on_path, " --denoiser none").find(note), std::string::npos);
+  const auto noisy = picture();
+  fs::copy_file(GRADUS_BINARY_DIR "/tests/libfake_oidn.so", blender / "lib/libOpenImageDenoise.so.2");
+  for (const std::string& environment : {on_path, named}) {
+    EXPECT_EQ(reconstruct(environment).find(note), std::string::npos);
+    EXPECT_NE(picture(), noisy) << environment;
+  }
+}
+
 // Regression: unchanged frames share their files, and had the exposure of the first.
 TEST_F(ToolSequence, UnchangedFramesKeepTheirExposure) {
   render(GRADUS_RECONSTRUCTION_L2, 4, true);

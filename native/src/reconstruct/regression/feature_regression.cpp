@@ -288,9 +288,9 @@ FeatureRegression::FeatureRegression(PictureSamples samples, const HalvedImage& 
   own_ = restore_sampled_light(image.mean, first.mean);
   blend_sampled(own_, image.mean, &first.mean);
   blend_sampled(own_, image.half_difference, &first.noise);
-  const Smoothed smoothed{image.mean, image.half_difference, first.mean, first.noise};
-  error_ = regression_error(smoothed, first.bias, ErrorUse::Weights);
-  if (delivered_error != nullptr) *delivered_error = regression_error(smoothed, first.bias, ErrorUse::Delivered);
+  const RegressionError error({image.mean, image.half_difference, first.mean, first.noise}, first.bias);
+  error_ = error.of(ErrorUse::Weights);
+  if (delivered_error != nullptr) *delivered_error = error.of(ErrorUse::Delivered);
   image_ = std::move(first.mean);
 }
 

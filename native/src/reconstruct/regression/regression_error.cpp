@@ -39,25 +39,38 @@ Field lost_share(const Smoothed& smoothed) {
   });
 }
 
+// Returns the mean squared noise around each pixel, relative to the light: the noise of a light source says nothing
+// about the wall beside it.
+Field relative_noise(const Field& noise, const Field& light) {
+  return box_mean(make_field(light.width(), light.height(),
+                             [&](int x, int y) {
+                               const float by =
+                                   GRADUS_FAULT(error_noise_not_relative_to_light) ? 1.0f : light.row(y)[x];
+                               return mean_of_squares(noise, x, y) / by;
+                             }),
+                  kErrorNoiseRadius);
+}
+
 }  // namespace
 
-Field regression_error(const Smoothed& smoothed, const Field& bias, ErrorUse use) {
+RegressionError::RegressionError(const Smoothed& smoothed, const Field& bias)
+    : image_(smoothed.image),
+      bias_(bias),
+      light_(squared_light(smoothed.image, kErrorLightRadius)),
+      lost_(lost_share(smoothed)),
+      noise_(relative_noise(smoothed.noise, light_)) {}
+
+Field RegressionError::of(ErrorUse use) const {
   const bool is_delivered = use == ErrorUse::Delivered;
-  const Field light = squared_light(smoothed.image, kErrorLightRadius), lost = lost_share(smoothed);
-  // Noise is averaged relative to the light: the noise of a light source says nothing about the wall beside it.
-  const auto relative_noise = [&](int x, int y) {
-    const float by = GRADUS_FAULT(error_noise_not_relative_to_light) ? 1.0f : light.row(y)[x];
-    return mean_of_squares(smoothed.noise, x, y) / by;
-  };
-  Field error = box_mean(make_field(light.width(), light.height(), relative_noise), kErrorNoiseRadius);
+  Field error = noise_;
   for_values(&error, [&](float& value, int x, int y, int) {
-    const float own = std::max(mean_of(smoothed.image, x, y), 0.0f) + kDark,
+    const float own = std::max(mean_of(image_, x, y), 0.0f) + kDark,
                 of_lost = GRADUS_FAULT(error_omits_lost_light) ? 0.0f
-                          : is_delivered                       ? kLostDelivered * own * own / light.row(y)[x]
+                          : is_delivered                       ? kLostDelivered * own * own / light_.row(y)[x]
                                                                : kLost,
                 minimum = GRADUS_FAULT(error_includes_negative_bias) ? -kInfinity : 0.0f,
-                of_bias = GRADUS_FAULT(error_omits_bias) ? 0.0f : std::max(bias.row(y)[x], minimum);
-    value = light.row(y)[x] * (kHidden * value + of_lost * lost.row(y)[x]) + of_bias;
+                of_bias = GRADUS_FAULT(error_omits_bias) ? 0.0f : std::max(bias_.row(y)[x], minimum);
+    value = light_.row(y)[x] * (kHidden * value + of_lost * lost_.row(y)[x]) + of_bias;
   });
   return error;
 }

@@ -23,11 +23,21 @@ struct Smoothed {
   const Field &image, &noise;           // the regression of `mean` and of `half_difference`
 };
 
-// Which error regression_error() returns.
+// What the error is for.
 enum class ErrorUse { Weights, Delivered };
 
-// Returns the squared error, mean over the channels, as one channel. `bias` is the squared bias of the windows as
-// estimated from their residuals; single values may be negative.
-Field regression_error(const Smoothed& smoothed, const Field& bias, ErrorUse use = ErrorUse::Weights);
+// The squared error, mean over the channels, as one channel.
+class RegressionError {
+ public:
+  // Computes the terms that all uses share. `bias` is the squared bias of the windows as estimated from their
+  // residuals; single values may be negative. The image and `bias` must outlive the object.
+  RegressionError(const Smoothed& smoothed, const Field& bias);
+
+  Field of(ErrorUse use = ErrorUse::Weights) const;
+
+ private:
+  const Field &image_, &bias_;
+  Field light_, lost_, noise_;
+};
 
 }  // namespace gradus::reconstruct

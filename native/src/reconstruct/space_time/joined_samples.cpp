@@ -55,6 +55,27 @@ class RecordSums {
   Lanes low_{}, high_{};
 };
 
+// Sums of the light of records, which is the lower half of their values.
+static_assert(kRecordFeatures <= kLanes);
+class LightSums {
+ public:
+  void add(float weight, const Lanes& low) {
+    weight_ += weight;
+    sums_ += weight * low;
+  }
+  float weight() const { return weight_; }
+  std::array<float, kLanes> sums(float factor = 1.0f) const {
+    std::array<float, kLanes> values;
+    store(factor * sums_, values.data());
+    return values;
+  }
+  std::array<float, kLanes> means() const { return sums(weight_ > 0.0f ? 1.0f / weight_ : 0.0f); }
+
+ private:
+  float weight_ = 0.0f;
+  Lanes sums_{};
+};
+
 // A moved record holds its displacement in place of the weights of a frame's record.
 constexpr int kDisplacement = kRecordWeight;
 
@@ -77,16 +98,17 @@ MovedRecord move_record(const float* record, float unit, float ratio, float dept
 
 // Sums of all samples of a pixel, for each use.
 struct PixelSums {
-  RecordSums in_windows, own, of_residual, light, features;
+  RecordSums in_windows, of_residual, features;
+  LightSums own, light;
   float variance = 0.0f;
   std::array<float, 3> products{};  // of displacements, with the weights of the residual
 
   void add(const MovedRecord& record, const SampleWeights& weights) {
     in_windows.add(weights.in_windows, record.low, record.high);
-    own.add(weights.own, record.low, record.high);
+    own.add(weights.own, record.low);
     of_residual.add(weights.of_residual, record.low, record.high);
     features.add(weights.features, record.low, record.high);
-    light.add(weights.share, record.low, record.high);
+    light.add(weights.share, record.low);
     variance += weights.share * weights.share * record.variance;
     const float x = record.high[kDisplacement - kLanes], y = record.high[kDisplacement + 1 - kLanes];
     products[0] += weights.of_residual * x * x;
@@ -121,26 +143,27 @@ struct PicturePlanes {
         light{Field(w, h, 1), Field(w, h, 3), Field(w, h, 1)} {}
 
   void write(int x, int y, const PixelSums& sums) {
-    const RecordValues windows = sums.in_windows.means(), own = sums.own.means(), residual = sums.of_residual.means();
+    const RecordValues windows = sums.in_windows.means(), residual = sums.of_residual.means();
+    const std::array<float, kLanes> own = sums.own.means();
     size_t use = 0;
-    for (const RecordValues* values : {&windows, &own, &residual}) {
-      put(*values, kRecordMean, x, y, &mean[use]);
-      put(*values, kRecordHalfDifference, x, y, &half_difference[use++]);
+    for (const float* values : {windows.data(), own.data(), residual.data()}) {
+      put<kColors>(values + kRecordMean, x, y, &mean[use]);
+      put<kColors>(values + kRecordHalfDifference, x, y, &half_difference[use++]);
     }
     in_windows.weights.row(y)[x] = sums.in_windows.weight();
-    put(windows, kRecordFeatures, x, y, &in_windows.features);
-    put(windows, kDisplacement, x, y, &in_windows.displacement);
+    put<kFeatureChannels>(windows.data() + kRecordFeatures, x, y, &in_windows.features);
+    put<2>(windows.data() + kDisplacement, x, y, &in_windows.displacement);
     own_weights.row(y)[x] = sums.own.weight();
-    put(sums.features.means(), kRecordFeatures, x, y, &estimated);
+    put<kFeatureChannels>(sums.features.means().data() + kRecordFeatures, x, y, &estimated);
     of_residual.weights.row(y)[x] = sums.of_residual.weight();
-    put(residual, kRecordFeatures + kAlbedo, x, y, &of_residual.features);
+    put<kAlbedoChannels>(residual.data() + kRecordFeatures + kAlbedo, x, y, &of_residual.features);
     const float unit = sums.of_residual.weight() > 0.0f ? 1.0f / sums.of_residual.weight() : 0.0f;
     for (int c = 0; c < kDisplacementChannels; ++c) {
       of_residual.displacement.row(y, c)[x] =
           c < 2 ? residual[size_t(kDisplacement + c)] : unit * sums.products[size_t(c - 2)];
     }
     light.share.row(y)[x] = sums.light.weight();
-    put(sums.light.sums(), kRecordMean, x, y, &light.light);
+    put<kColors>(sums.light.sums().data() + kRecordMean, x, y, &light.light);
     light.variance.row(y)[x] = sums.variance;
   }
 
@@ -160,9 +183,10 @@ struct PicturePlanes {
   }
 
  private:
-  // Writes all channels of a field; `first` is the first one among the values.
-  static void put(const RecordValues& from, int first, int x, int y, Field* to) {
-    for (int c = 0; c < to->channels(); ++c) to->row(y, c)[x] = from[size_t(first + c)];
+  // Writes all channels of a field. The compiler knows their number, as this is done for 50 values of each pixel.
+  template <int Channels>
+  static void put(const float* from, int x, int y, Field* to) {
+    for (int c = 0; c < Channels; ++c) to->row(y, c)[x] = from[c];
   }
 
   Predictors in_windows, of_residual;
@@ -179,14 +203,43 @@ struct SampleOfPixel {
   Vec2 displacement;
 };
 
-// Returns the sample of a frame in pixel (x, y); its record is null if there is none or it does not count.
-SampleOfPixel sample_of(const JoinedFrame& frame, int x, int y) {
-  const PixelTrack& track = frame.moved.track;
-  const size_t pixel = size_t(y) * size_t(track.width) + size_t(x);
-  if (x + kRecordsAhead < track.width) frame.records->prefetch(track.source[pixel + kRecordsAhead]);
-  const float kept = frame.moved.kept.row(y / kChangeCell)[x / kChangeCell];
-  if (track.source[pixel] == film::kNoCorrespondence || kept == 0.0f) return {nullptr, -1, 0.0f, {}};
-  return {frame.records->at(track.source[pixel]), track.source[pixel], kept, track.displacement[pixel]};
+// A row of the samples of a frame, as they lie in the picture.
+class MovedRow {
+ public:
+  MovedRow(const JoinedFrame& frame, const FrameRecords& picture, int y)
+      : records(*frame.records),
+        ratio(relative_scale(*frame.records, picture)),
+        width_(frame.moved.track.width),
+        source_(frame.moved.track.source.data() + size_t(y) * size_t(width_)),
+        displacement_(frame.moved.track.displacement.data() + size_t(y) * size_t(width_)),
+        kept_(frame.moved.kept.row(y / kChangeCell)),
+        depth_ratio_(frame.moved.depth_ratio.row(y / kChangeCell)) {}
+
+  // Returns the sample in pixel x; its record is null if there is none or it does not count.
+  SampleOfPixel sample(int x) const {
+    if (x + kRecordsAhead < width_) records.prefetch(source_[x + kRecordsAhead]);
+    const float kept = kept_[x / kChangeCell];
+    if (source_[x] == film::kNoCorrespondence || kept == 0.0f) return {nullptr, -1, 0.0f, {}};
+    return {records.at(source_[x]), source_[x], kept, displacement_[x]};
+  }
+  // Returns the depth that the picture sees in pixel x over that of the frame.
+  float depth_ratio(int x) const { return depth_ratio_[x / kChangeCell]; }
+
+  const FrameRecords& records;
+  const float ratio;  // the frame's scale in that of the picture
+
+ private:
+  int width_;
+  const int32_t* source_;
+  const Vec2* displacement_;
+  const float *kept_, *depth_ratio_;
+};
+
+std::vector<MovedRow> rows_of(const std::vector<JoinedFrame>& frames, const FrameRecords& picture, int y) {
+  std::vector<MovedRow> rows;
+  rows.reserve(frames.size());
+  for (const JoinedFrame& frame : frames) rows.emplace_back(frame, picture, y);
+  return rows;
 }
 
 // Returns the weight of a sample in the means near the centre of its pixel.
@@ -248,25 +301,23 @@ PictureSamples JoinedSamples::picture(const HalvedImage& image) const {
     sums->add(move_record(record, unit, 1.0f, relative_depth(record[kRecordDepth], here_.typical_depth), {}),
               weigh_sample(record, 1.0f, 1.0f, {}));
   };
-  const auto add_other = [&](const JoinedFrame& frame, int x, int y, PixelSums* sums) {
-    const SampleOfPixel sample = sample_of(frame, x, y);
+  const auto add_other = [&](const MovedRow& row, int x, int y, PixelSums* sums) {
+    const SampleOfPixel sample = row.sample(x);
     if (sample.record == nullptr) return;
-    const float ratio = relative_scale(*frame.records, here_);
-    const float of_depth = frame.moved.depth_ratio.row(y / kChangeCell)[x / kChangeCell];
-    MovedRecord moved =
-        move_record(sample.record, unit, ratio,
-                    relative_depth(sample.record[kRecordDepth] * of_depth, here_.typical_depth), sample.displacement);
+    const float depth = relative_depth(sample.record[kRecordDepth] * row.depth_ratio(x), here_.typical_depth);
+    MovedRecord moved = move_record(sample.record, unit, row.ratio, depth, sample.displacement);
     if (GRADUS_FAULT(moved_halves_dropped)) {
       for (int c = 0; c < 3; ++c)
         moved.low[kRecordHalfDifference + c] = unit * here_.at(y * w + x)[kRecordHalfDifference + c];
     }
-    sums->add(moved, weigh_sample(sample.record, ratio, sample.share, sample.displacement));
+    sums->add(moved, weigh_sample(sample.record, row.ratio, sample.share, sample.displacement));
   };
   for_rows(h, [&](int y) {
+    const std::vector<MovedRow> rows = rows_of(others_, here_, y);
     for (int x = 0; x < w; ++x) {
       PixelSums sums;
       add_own(here_.at(y * w + x), &sums);
-      for (const JoinedFrame& frame : others_) add_other(frame, x, y, &sums);
+      for (const MovedRow& row : rows) add_other(row, x, y, &sums);
       planes.write(x, y, sums);
     }
   });
@@ -278,14 +329,15 @@ SampledPicture JoinedSamples::sampled() const {
   const size_t size = 3 * here_.pixels.size();
   SampledPicture picture{std::vector<float>(size), std::vector<float>(size), std::vector<float>(size)};
   for_rows(h, [&](int y) {
+    const std::vector<MovedRow> rows = rows_of(others_, here_, y);
     for (int x = 0; x < w; ++x) {
       RecordSums sums;
       const auto add = [&](const float* record, float weight) {
         sums.add(weight, load(record), load(record + kLanes));
       };
       add(here_.at(y * w + x), 1.0f);
-      for (const JoinedFrame& frame : others_) {
-        const SampleOfPixel sample = sample_of(frame, x, y);
+      for (const MovedRow& row : rows) {
+        const SampleOfPixel sample = row.sample(x);
         if (sample.record != nullptr) add(sample.record, sampled_weight(sample));
       }
       const RecordValues means = sums.means();
@@ -311,8 +363,9 @@ SampledTerms JoinedSamples::sampled(SampledTerms own, const std::function<Sample
     if (terms.light.size() != sums.light.size() || terms.colors.size() != sums.colors.size()) continue;
     const std::vector<const Field*> others = fields_of(terms, noisy);
     for_rows(here_.height, [&](int y) {
+      const MovedRow row(frame, here_, y);
       for (int x = 0; x < here_.width; ++x) {
-        const SampleOfPixel sample = sample_of(frame, x, y);
+        const SampleOfPixel sample = row.sample(x);
         if (sample.record == nullptr) continue;
         const float weight = sampled_weight(sample);
         weights.row(y)[x] += weight;
@@ -332,20 +385,20 @@ JoinedPlane JoinedSamples::join(int component, int first, const Field& own) cons
   const int w = here_.width, h = here_.height, channels = own.channels();
   std::array<Field, 3> joined{Field(w, h, channels), Field(w, h, channels), Field(w, h, channels)};
   for_rows(h, [&](int y) {
+    const std::vector<MovedRow> rows = rows_of(others_, here_, y);
     for (int x = 0; x < w; ++x) {
       ValueSums sums;
       std::array<float, 3> values{};
       for (int c = 0; c < channels; ++c) values[size_t(c)] = own.row(y, c)[x];
       sums.add(weigh_sample(here_.at(y * w + x), 1.0f, 1.0f, {}), channels, values);
-      for (const JoinedFrame& frame : others_) {
-        const SampleOfPixel sample = sample_of(frame, x, y);
+      for (const MovedRow& row : rows) {
+        const SampleOfPixel sample = row.sample(x);
         if (sample.record == nullptr) continue;
         for (int c = 0; c < channels; ++c) {
           values[size_t(c)] = (first + c < kColors ? 1.0f / here_.scale : 1.0f) *
-                              sampled_value(*frame.records, component, sample.pixel, first + c);
+                              sampled_value(row.records, component, sample.pixel, first + c);
         }
-        sums.add(weigh_sample(sample.record, relative_scale(*frame.records, here_), sample.share, sample.displacement),
-                 channels, values);
+        sums.add(weigh_sample(sample.record, row.ratio, sample.share, sample.displacement), channels, values);
       }
       for (size_t use = 0; use < joined.size(); ++use) {
         for (int c = 0; c < channels; ++c) joined[use].row(y, c)[x] = sums.mean(use, size_t(c));

@@ -60,6 +60,7 @@ std::vector<JoinedFrame> JointRegression::move_frames(int number, const HalvedIm
 
 Reconstructed JointRegression::reconstruct(int number, const FrameRange& around, const CancelCheck& cancel,
                                            SolveReport* report, const JoinedOutputs& wanted) {
+  if (!memory_) memory_.emplace();
   frames_.erase(frames_.begin(), frames_.lower_bound(around.first));
   for (int other = around.first; other <= around.last && !cancel(); ++other) read(other, cancel);
   if (cancel()) return {};

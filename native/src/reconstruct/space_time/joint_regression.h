@@ -7,11 +7,13 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/cancel_check.h"
 #include "film/film.h"
 #include "film/replay_map.h"
+#include "reconstruct/field_memory.h"
 #include "reconstruct/reconstructed.h"
 #include "reconstruct/solve_report.h"
 #include "reconstruct/space_time/joined_samples.h"
@@ -51,6 +53,7 @@ class JointRegression {
   std::vector<JoinedFrame> move_frames(int number, const HalvedImage& image, const std::vector<int>& numbers,
                                        const CancelCheck& cancel) const;
 
+  std::optional<KeptFieldMemory> memory_;  // from the first picture on, for the next ones
   OpenFilm open_film_;
   OpenStep open_step_;
   std::map<int, Frame> frames_;

@@ -25,7 +25,7 @@ const reconstruct::Field kNone = constant(0.0f), kOne = constant(1.0f), kUnbiase
 // Statistical tests (A8_Error) check the factors; this test checks what they multiply.
 TEST(A8_RegressionError, NoiseIsScaledByMoreThanTheWeightsShow) {
   const reconstruct::Field noise = constant(0.1f),
-                           error = reconstruct::regression_error({kOne, kNone, kOne, noise}, kUnbiased);
+                           error = reconstruct::RegressionError({kOne, kNone, kOne, noise}, kUnbiased).of();
   EXPECT_GT(error.row(20)[30], 0.01);
   EXPECT_NEAR(error.row(20)[30], reconstruct::kHidden * 0.01, 1e-6);
 }
@@ -34,21 +34,21 @@ TEST(A8_RegressionError, NoiseIsScaledByMoreThanTheWeightsShow) {
 TEST(A8_RegressionError, NoiseOfALightDoesNotAddToTheWallBesideIt) {
   const reconstruct::Field light = filled(3, [](int x) { return x < 30 ? 100.0f : 1.0f; });
   const reconstruct::Field noise = filled(3, [](int x) { return x < 30 ? 10.0f : 0.1f; });
-  const reconstruct::Field error = reconstruct::regression_error({light, kNone, light, noise}, kUnbiased);
+  const reconstruct::Field error = reconstruct::RegressionError({light, kNone, light, noise}, kUnbiased).of();
   EXPECT_NEAR(error.row(20)[31], reconstruct::kHidden * 0.01, 0.1 * reconstruct::kHidden * 0.01);
   EXPECT_NEAR(error.row(20)[28], reconstruct::kHidden * 100.0, 0.1 * reconstruct::kHidden * 100.0);
 }
 
 TEST(A8_RegressionError, BiasIsAddedAndNeverSubtracted) {
-  EXPECT_NEAR(reconstruct::regression_error({kOne, kNone, kOne, kNone}, constant(0.5f, 1)).row(20)[30], 0.5, 1e-6);
-  EXPECT_EQ(reconstruct::regression_error({kOne, kNone, kOne, kNone}, constant(-0.5f, 1)).row(20)[30], 0.0f);
+  EXPECT_NEAR(reconstruct::RegressionError({kOne, kNone, kOne, kNone}, constant(0.5f, 1)).of().row(20)[30], 0.5, 1e-6);
+  EXPECT_EQ(reconstruct::RegressionError({kOne, kNone, kOne, kNone}, constant(-0.5f, 1)).of().row(20)[30], 0.0f);
 }
 
 TEST(A8_RegressionError, LostLightIsEstimatedUnlessNoiseHidesIt) {
   const reconstruct::Field before = constant(1.2f);
-  EXPECT_NEAR(reconstruct::regression_error({before, kNone, kOne, kNone}, kUnbiased).row(20)[30],
+  EXPECT_NEAR(reconstruct::RegressionError({before, kNone, kOne, kNone}, kUnbiased).of().row(20)[30],
               reconstruct::kLost * 0.04, 1e-4);
-  EXPECT_EQ(reconstruct::regression_error({before, constant(4.0f), kOne, kNone}, kUnbiased).row(20)[30], 0.0f);
+  EXPECT_EQ(reconstruct::RegressionError({before, constant(4.0f), kOne, kNone}, kUnbiased).of().row(20)[30], 0.0f);
 }
 
 // Regression: relative to the mean of 3×3 pixels, the pixel beside the highlight had a thousand times this error, and
@@ -57,7 +57,7 @@ TEST(A8_RegressionError, LostLightOfAHighlightDoesNotAddToTheDeliveredErrorOfThe
   const auto light = [](float by) { return filled(3, [=](int x) { return x == 30 ? 100.0f * by : 1.0f; }); };
   const reconstruct::Field before = light(1.2f), after = light(1.0f);
   const auto error_at = [&](int x, reconstruct::ErrorUse use) {
-    return reconstruct::regression_error({before, kNone, after, kNone}, kUnbiased, use).row(20)[x];
+    return reconstruct::RegressionError({before, kNone, after, kNone}, kUnbiased).of(use).row(20)[x];
   };
   const float own = 1.0f + reconstruct::kDark, lost = 20.0f / (17.0f * (116.0f / 17.0f + reconstruct::kDark));
   EXPECT_NEAR(error_at(31, reconstruct::ErrorUse::Delivered), reconstruct::kLostDelivered * own * own * lost * lost,
