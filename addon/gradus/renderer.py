@@ -200,7 +200,7 @@ class Job:
         is_followed = self.host_value("use_cycles_settings")
         self.warn(cycles_settings.warnings(self.scene, given, is_followed), changes_picture=False)
         clamp = self.current.settings.clamp_direct
-        self.warn(cycles_settings.clamp_warnings(self.scene, clamp), changes_picture=False)
+        self.warn(cycles_settings.clamp_warnings(self.depsgraph, clamp), changes_picture=False)
         self.warn_of_simulations()
         image_settings = self.scene.render.image_settings
         self.warn(output.truncated_names(image_settings, self.layer.name, self.views, self.infos, compat.VERSION))
