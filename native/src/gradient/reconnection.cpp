@@ -26,6 +26,7 @@ ShiftedEvent reconnection_event(const BasePath& base, const OffsetPath& offset, 
 void open_connection(const BasePath& base, const ShiftedEvent& event, const Rgb& transmittance, OffsetPath* offset) {
   OffsetConnection& connection = offset->connection;
   connection.is_open = true;
+  connection.may_scatter = connection.transparent_depth < base.context.max_transparent;
   connection.throughput = offset->state.throughput * event.factor * transmittance / base.segment->probability;
   connection.ratio = offset->ratio * event.ratio;
   connection.kind_ratio = event.kind_ratio;

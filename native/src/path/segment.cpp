@@ -229,7 +229,7 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int depth
       segment->end = SegmentEnd::Surface;
       return;
     }
-    if (ray->state.transparent_depth >= context.settings.transparent_max_bounces) {
+    if (is_at_transparent_limit(context, ray->state)) {
       segment->end = SegmentEnd::Exhausted;
       return;
     }
@@ -271,7 +271,7 @@ Rgb segment_transmittance(const PathContext& context, const Ray& ray, const Path
     if (!context.scene.intersect(part, kind.visibility, &hit)) {
       return transmittance;
     }
-    if (*transparent_depth >= context.settings.transparent_max_bounces) {
+    if (*transparent_depth >= context.max_transparent) {
       return Rgb(0.0f);
     }
     state.transparent_depth = (*transparent_depth)++;
