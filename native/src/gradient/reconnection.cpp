@@ -116,7 +116,7 @@ void connect_pending(const BasePath& base, const path::Vertex& z, OffsetPaths* o
       any |= wanted[k];
     }
   }
-  const bool traces_packet = !context.has_transparency && context.uniform_visibility;
+  const bool traces_packet = !context.has_transparency && context.scene.features.has_uniform_visibility;
   bool blocked[film::kOffsets] = {};
   if (any && traces_packet) {
     const geometry::Lanes3 direction = geometry::lanes(events[0].wi, events[1].wi, events[2].wi, events[3].wi);

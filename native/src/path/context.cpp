@@ -66,7 +66,6 @@ PathContext::PathContext(const scene::Snapshot& snapshot, const camera::Camera& 
       clamp_indirect(sum_limit(settings_.clamp_indirect)),
       has_transparency(finds_transparency(snapshot)),
       max_transparent(path::max_transparent(settings_)),
-      uniform_visibility(snapshot.features.has_uniform_visibility),
       kinds_matter(finds_kinds_matter(snapshot)),
       diffuse_flags(flags_of_diffuse_rays(snapshot, settings_)),
       filter_glossy(snapshot.features.min_alpha < FilterGlossy::kMaxBlur ? settings_.blur_glossy : 0.0f),

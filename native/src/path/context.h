@@ -34,9 +34,6 @@ struct PathContext {
   bool has_transparency = true;
   // Number of transparent surfaces that a path may pass, at least 1.
   uint32_t max_transparent = 1;
-  // Every surface is visible to all kinds of bounces and to shadow rays, or to none of them. Then a shadow ray can
-  // stand for a path segment.
-  bool uniform_visibility = true;
   // What a ray finds depends on the kind of the bounce that it comes from, because of visibility flags, or of a Light
   // Path node in front of an emission or a transparency, or because caustics are off.
   bool kinds_matter = false;

@@ -259,7 +259,7 @@ Ray spawn_ray_to(const geometry::SurfacePoint& from, const geometry::SurfacePoin
 
 Rgb segment_transmittance(const PathContext& context, const Ray& ray, const PathRay& kind,
                           uint16_t* transparent_depth) {
-  if (!context.has_transparency && context.uniform_visibility) {
+  if (!context.has_transparency && context.scene.features.has_uniform_visibility) {
     return Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f);
   }
   Rgb transmittance(1.0f);
