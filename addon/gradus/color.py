@@ -93,9 +93,9 @@ class HostColors:
     def _conversion(self, name: str) -> Any:
         """Returns a function that converts a colour space to scene-linear, or None if there is no such conversion.
 
-        The library cannot receive its exceptions. The pixels of a call that fails keep their values: one row of an
-        image, or all images of the space if it is the call by which the library finds out what the space is.
-        take_warnings() names the space.
+        The library cannot receive its exceptions. The pixels of a call that fails keep their values: a row or some
+        65,536 pixels of an image, or all images of the space if it is the call by which the library finds out what the
+        space is. take_warnings() names the space.
         """
         processor = self._processor(name, "scene_linear") if self._config.getColorSpace(name) is not None else None
         if processor is None:
