@@ -45,6 +45,8 @@ class HostColors:
         self._config = config
         self._conversions: dict[str, Any] = {}
         """Functions that the library calls, by colour space. They must live as long as the device."""
+        self._failures: dict[str, str] = {}
+        """What conversions failed with and was not taken yet, by colour space."""
 
     def define(self, library: Any, device: int, names: Iterable[str]) -> None:
         """Defines colour spaces on the device that are not defined yet: some take a tenth of a second.
@@ -55,6 +57,14 @@ class HostColors:
             self._conversions[name] = self._conversion(name)
             if self._conversions[name] is not None:
                 library.device_set_color_space(device, native.text(name), self._conversions[name], None)
+
+    def take_warnings(self) -> list[str]:
+        """Returns a warning for each colour space of which a conversion failed since the last call."""
+        failures, self._failures = self._failures, {}
+        return [
+            f"colour: Blender cannot convert {name} to scene-linear, so that images keep values of that space: {reason}"
+            for name, reason in failures.items()
+        ]
 
     def working_space(self) -> WorkingSpace | None:
         """Returns the working space, or None if it is linear Rec. 709, or the configuration does not tell."""
@@ -81,14 +91,22 @@ class HostColors:
             return None
 
     def _conversion(self, name: str) -> Any:
-        """Returns a function that converts a colour space to scene-linear, or None if there is no such conversion."""
+        """Returns a function that converts a colour space to scene-linear, or None if there is no such conversion.
+
+        The library cannot receive its exceptions. The pixels of a call that fails keep their values: a row or some
+        65,536 pixels of an image, or all images of the space if it is the call by which the library finds out what the
+        space is. take_warnings() names the space.
+        """
         processor = self._processor(name, "scene_linear") if self._config.getColorSpace(name) is not None else None
         if processor is None:
             return None
 
         def convert(_context: int, address: int, count: int) -> None:
-            pixels = (ctypes.c_float * (4 * count)).from_address(address)
-            processor.apply(self._ocio.PackedImageDesc(pixels, count, 1, 4))
+            try:
+                pixels = (ctypes.c_float * (4 * count)).from_address(address)
+                processor.apply(self._ocio.PackedImageDesc(pixels, count, 1, 4))
+            except BaseException as error:  # ctypes would print it and go on
+                self._failures[name] = str(error) or type(error).__name__
 
         return native.ConvertColors(convert)
 

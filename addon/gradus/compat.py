@@ -80,6 +80,11 @@ def default_surface_is_principled() -> bool:
     return VERSION >= (5, 0, 0)
 
 
+def has_one_more_transparent() -> bool:
+    """Returns whether paths of Cycles pass one transparent surface more than its setting says, as before 5.0."""
+    return VERSION < (5, 0, 0)
+
+
 def fixed_threads(render: Any) -> int:
     """Returns the number of threads that the scene sets, or 0 for all."""
     return render.threads if render.threads_mode == "FIXED" else 0

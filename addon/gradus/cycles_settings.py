@@ -73,19 +73,48 @@ def warnings(scene: Any, given: set[str], is_followed: bool) -> list[str]:
     return [f"{start}: {items}" for start, items in texts.items() if items]
 
 
-def clamp_warnings(scene: Any, clamp_direct: float) -> list[str]:
+def clamp_warnings(depsgraph: Any, clamp_direct: float) -> list[str]:
     """Returns a warning if direct light is clamped and Cycles chooses among several lights without its light tree.
 
     A light that is chosen rarely adds more at once, so that a clamp cuts more of it. Cycles has a light tree since 3.5.
+    The world and surfaces that emit are lights, too; what is hidden from the render of the depsgraph is none.
     """
+    scene = depsgraph.scene
     has_tree = getattr(getattr(scene, "cycles", None), "use_light_tree", False)
-    lights = sum(obj.type == "LIGHT" for obj in scene.objects) + (scene.world is not None)
-    if clamp_direct <= 0.0 or has_tree or lights < 2:
+    if clamp_direct <= 0.0 or has_tree:
+        return []
+    emitters = sum(obj.type == "LIGHT" or _emits(obj) for obj in depsgraph.objects) + (scene.world is not None)
+    if emitters < 2:
         return []
     return [
-        f"Clamp Direct is {clamp_direct:g}: without a light tree, Cycles chooses among the {lights} lights in another way "
-        "than Gradus, so that it clamps other parts of their light"
+        f"Clamp Direct is {clamp_direct:g}: without a light tree, Cycles chooses among lights in another way than "
+        "Gradus, so that it clamps other parts of their light"
     ]
+
+
+def _emits(obj: Any) -> bool:
+    """Returns whether a material of the object has a node that emits light."""
+    materials = (slot.material for slot in obj.material_slots)
+    return any(material is not None and _has_emission(material.node_tree) for material in materials)
+
+
+def _has_emission(tree: Any) -> bool:
+    """Returns whether a node tree has a node that emits light, also within groups."""
+    return tree is not None and any(
+        _has_emission(node.node_tree) if node.type == "GROUP" else _is_emission(node) for node in tree.nodes
+    )
+
+
+def _is_emission(node: Any) -> bool:
+    if node.type not in {"EMISSION", "BSDF_PRINCIPLED"}:
+        return False
+    strength = node.inputs["Strength" if node.type == "EMISSION" else "Emission Strength"]
+    color = next(node.inputs[name] for name in ("Color", "Emission Color", "Emission") if name in node.inputs)
+    return _may_be_positive(strength, [strength.default_value]) and _may_be_positive(color, color.default_value[:3])
+
+
+def _may_be_positive(socket: Any, values: list[float]) -> bool:
+    return socket.is_linked or any(value > 0.0 for value in values)
 
 
 def _ignored(scene: Any) -> list[str]:

@@ -111,6 +111,7 @@ def native_settings(
     result.film_transparent = scene.render.film_transparent
     result.use_sky = view_layer.use_sky
     result.alpha_threshold = view_layer.pass_alpha_threshold
+    result.one_more_transparent = compat.has_one_more_transparent()
     result.threads = overrides.threads or compat.fixed_threads(scene.render)
     for name, text in overrides.native:
         library.settings_parse(byref(result), native.text(name), native.text(text))
@@ -200,7 +201,7 @@ class Job:
         is_followed = self.host_value("use_cycles_settings")
         self.warn(cycles_settings.warnings(self.scene, given, is_followed), changes_picture=False)
         clamp = self.current.settings.clamp_direct
-        self.warn(cycles_settings.clamp_warnings(self.scene, clamp), changes_picture=False)
+        self.warn(cycles_settings.clamp_warnings(self.depsgraph, clamp), changes_picture=False)
         self.warn_of_simulations()
         image_settings = self.scene.render.image_settings
         self.warn(output.truncated_names(image_settings, self.layer.name, self.views, self.infos, compat.VERSION))

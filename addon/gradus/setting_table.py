@@ -224,8 +224,8 @@ ROWS: tuple[dict[str, Any], ...] = (
         default=8,
         label="Transparent",
         doc=(
-            "Maximum transparent surfaces that a ray passes. Fewer render faster; layers of transparent leaves turn"
-            " dark"
+            "Maximum transparent surfaces that a ray passes; it then shows the emission of the next surface alone. "
+            "Fewer render faster; layers of transparent leaves turn dark"
         ),
         minimum=0,
         maximum=1024,
@@ -511,6 +511,7 @@ ROWS: tuple[dict[str, Any], ...] = (
 )
 
 TEST_SWITCHES = (
+    "one_more_transparent",
     "independent_sampler",
     "first_sample",
 )

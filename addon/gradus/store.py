@@ -88,6 +88,8 @@ class Session:
         """Returns those of `texts` and of the warnings of scene and device that are new in this session."""
         about_device = _device_warnings.setdefault(self.device, [])
         about_device += self.library.take_device_warnings(self.device)
+        if (colors := _host_colors.get(self.device)) is not None:
+            about_device += colors.take_warnings()
         fresh = []
         for text in [*texts, *self.library.take_scene_warnings(self.scene), *about_device]:
             if text not in self.reported:

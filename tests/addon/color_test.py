@@ -60,6 +60,38 @@ def test_spaces_are_defined_once(colors: color.HostColors) -> None:
     assert first is not None and library.conversions == {}
 
 
+class BrokenConfig:
+    """A configuration whose conversions fail when they see pixels."""
+
+    def getColorSpace(self, name: str) -> str:  # noqa: N802
+        return name
+
+    def getProcessor(self, _source: str, _target: str) -> BrokenConfig:  # noqa: N802
+        return self
+
+    def getDefaultCPUProcessor(self) -> BrokenConfig:  # noqa: N802
+        return self
+
+    def apply(self, _image: object) -> None:
+        raise MemoryError("no room for a table")
+
+
+def test_a_conversion_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The exception ended in the function that the library calls, and images stayed unconverted without a word."""
+    ocio = SimpleNamespace(Exception=RuntimeError, PackedImageDesc=lambda *_: None)
+    broken = color.HostColors(ocio, BrokenConfig())
+    library = native.load()
+    store.clear()
+    monkeypatch.setattr(color, "host_colors", lambda _: broken)
+    session = store.acquire(store.Key(store.FINAL, "Scene", "ViewLayer", 0))
+    broken.define(library, session.device, ["Broken"])
+    (text,) = session.take_new_warnings([])
+    assert "Broken" in text and "no room for a table" in text
+    assert session.device_warnings() == [text]  # so that a strict render refuses it
+    assert session.take_new_warnings([]) == []
+    store.clear()
+
+
 def test_the_working_space_is_rec709_by_default(colors: color.HostColors) -> None:
     assert colors.working_space() is None
 

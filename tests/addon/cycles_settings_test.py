@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 import pytest
 from gradus import cycles_settings, native, options, renderer, settings
+from support.nodes import shader_material
 
 
 @pytest.fixture
@@ -71,18 +72,38 @@ def test_use_pixel_jitter_is_named(cycles: bpy.types.Scene) -> None:
 
 
 def test_clamps_without_a_light_tree_are_named(cycles: bpy.types.Scene) -> None:
-    """With one light there is nothing to choose."""
-    if hasattr(cycles.cycles, "use_light_tree"):
-        assert cycles_settings.clamp_warnings(cycles, 1.0) == []
-        cycles.cycles.use_light_tree = False
-    cycles.world = None
-    for _ in range(2):
-        light = bpy.data.objects.new("Light", bpy.data.lights.new("Light", "POINT"))
-        assert cycles_settings.clamp_warnings(cycles, 1.0) == []
+    """With one light there is nothing to choose. Lights that are hidden were counted."""
+    lights = [bpy.data.objects.new("Light", bpy.data.lights.new("Light", "POINT")) for _ in range(2)]
+    for light in lights:
         cycles.collection.objects.link(light)
-    assert cycles_settings.clamp_warnings(cycles, 0.0) == []
-    [text] = cycles_settings.clamp_warnings(cycles, 1.0)
-    assert "among the 2 lights" in text
+    assert bool(clamp_warnings(cycles)) != hasattr(cycles.cycles, "use_light_tree")
+    use_no_light_tree(cycles)
+    assert clamp_warnings(cycles, 0.0) == []
+    [text] = clamp_warnings(cycles)
+    assert text.startswith("Clamp Direct is 1")
+    lights[0].hide_viewport = lights[0].hide_render = True
+    assert clamp_warnings(cycles) == []
+
+
+def use_no_light_tree(scene: bpy.types.Scene) -> None:
+    if hasattr(scene.cycles, "use_light_tree"):
+        scene.cycles.use_light_tree = False
+
+
+def clamp_warnings(scene: bpy.types.Scene, clamp: float = 1.0) -> list[str]:
+    """Returns the warnings about the scene without a world."""
+    scene.world = None
+    return cycles_settings.clamp_warnings(bpy.context.evaluated_depsgraph_get(), clamp)
+
+
+@pytest.mark.parametrize(("strength", "count"), [(0.0, 0), (2.0, 1)])
+def test_surfaces_that_emit_are_lights_that_clamps_cut(cycles: bpy.types.Scene, strength: float, count: int) -> None:
+    """They were not counted."""
+    use_no_light_tree(cycles)
+    cycles.collection.objects.link(bpy.data.objects.new("Light", bpy.data.lights.new("Light", "POINT")))
+    bpy.ops.mesh.primitive_plane_add()
+    bpy.context.object.data.materials.append(shader_material("Emission", {"Strength": strength}))
+    assert len(clamp_warnings(cycles)) == count
 
 
 def test_copy_from_cycles(cycles: bpy.types.Scene) -> None:

@@ -65,11 +65,16 @@ void add_veiled_floor(PathScene* scene) {
   scene->camera(Vec3(0, 0.4f, 1.2f), Vec3(0), 0.3f);
 }
 
-GradusSettings one_veil_only() {
-  GradusSettings settings = test::test_settings(2, 1);
-  settings.max_bounces = 2;
-  settings.transparent_max_bounces = 1;
-  return settings;
+// Checks a scene in which shadow rays pass one veil, and paths one or two.
+void check_limits(PathScene* scene) {
+  for (const uint32_t more : {0u, 1u}) {
+    SCOPED_TRACE(more);
+    GradusSettings settings = test::test_settings(2, 1);
+    settings.max_bounces = 2;
+    settings.transparent_max_bounces = 1;
+    settings.one_more_transparent = more;
+    check_difference(scene, settings, 512);
+  }
 }
 
 // Regression: a path that has passed the first veil gets no light through the second. Its gradient sample used the
@@ -80,7 +85,7 @@ TEST(B7_LimitOfTransparentSurfaces, AppliesToTheLightOfSharedVertices) {
   Surface light;
   light.emission = Rgb(10.0f);
   scene.quad(Vec3(-1, 1.5f, -0.5f), Vec3(2, 0, 0), Vec3(0, 0, 1), scene.material(light));
-  check_difference(&scene, one_veil_only(), 512);
+  check_limits(&scene);
 }
 
 TEST(B7_LimitOfTransparentSurfaces, AppliesToLightsThatSharedRaysMeet) {
@@ -89,7 +94,7 @@ TEST(B7_LimitOfTransparentSurfaces, AppliesToLightsThatSharedRaysMeet) {
   GradusLight ball = test::make_light(GRADUS_LIGHT_POINT, test::translation(Vec3(0, 1.8f, 0)), Rgb(1.0f));
   ball.radius = 0.4f;
   scene.light(ball);
-  check_difference(&scene, one_veil_only(), 512);
+  check_limits(&scene);
 }
 
 // Adds a glossy floor, whose left half is also matte, below two metal walls and a light. Behind the floor, walls are

@@ -613,8 +613,9 @@ typedef struct GradusSettings {
                                        in mirrors turn dark. */
   uint32_t transmission_bounces;    /* Maximum transmission bounces of a path. Fewer render faster; glass behind
                                        glass turns dark. */
-  uint32_t transparent_max_bounces; /* Maximum transparent surfaces that a ray passes. Fewer render faster; layers of
-                                       transparent leaves turn dark. */
+  uint32_t transparent_max_bounces; /* Maximum transparent surfaces that a ray passes; it then shows the emission of
+                                       the next surface alone. Fewer render faster; layers of transparent leaves turn
+                                       dark. */
   float blur_glossy;                /* Blurs reflections and refractions behind bounces that scatter light widely, as
                                        Cycles does. It removes noise of caustics and softens them. The camera's own
                                        view of mirrors and glass stays sharp. Higher values blur more; 0 = off. */
@@ -642,6 +643,9 @@ typedef struct GradusSettings {
                                        it. */
   float alpha_threshold;            /* Data passes ignore surfaces with less alpha and show what is behind them. */
   uint32_t use_sky;                 /* The camera sees the world. */
+  uint32_t one_more_transparent;    /* Paths, but not shadow rays, pass one transparent surface more than
+                                       `transparent_max_bounces`, as in Cycles before Blender 5.0. Blender's version
+                                       gives the default. */
   uint32_t independent_sampler;     /* Takes independent random numbers in place of Owen-scrambled Sobol points, for
                                        statistical tests. It is noisier. */
   uint64_t passes;                  /* Bit i asks for pass i of GradusPass. Combined is always made. */

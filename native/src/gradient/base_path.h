@@ -9,7 +9,8 @@ namespace gradus::gradient {
 struct BasePath {
   explicit BasePath(const path::PathContext& context_)
       : context(context_),
-        has_same_integrand(!context_.has_transparency && context_.uniform_visibility && !context_.kinds_matter) {}
+        has_same_integrand(!context_.has_transparency && context_.scene.features.has_uniform_visibility &&
+                           !context_.kinds_matter) {}
 
   const path::PathContext& context;
   // Light sampling and BSDF sampling see the same integrand in the whole scene, as weighting them jointly requires

@@ -27,11 +27,13 @@ bool choose_same_class(const bsdf::Closures& x, const bsdf::Closures& y, float u
 }
 
 bool continues(const BasePath& base) {
-  return base.segment->end == path::SegmentEnd::Surface && !base.state.emission_only && !base.ends_in_hole;
+  return base.segment->end == path::SegmentEnd::Surface && !base.state.emission_only &&
+         !path::is_at_transparent_limit(base.context, base.state.ray.state) && !base.ends_in_hole;
 }
 
 bool continues(const BasePath& base, const OffsetPath& offset) {
   return offset.segment->end == path::SegmentEnd::Surface && !base.state.emission_only &&
+         !path::is_at_transparent_limit(base.context, offset.state.ray.state) &&
          !(offset.is_from_camera && path::cuts_hole(base.context, *offset.vertex));
 }
 

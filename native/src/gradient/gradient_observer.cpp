@@ -114,7 +114,7 @@ void GradientObserver::on_segment_passed(const path::Segment& segment) {
     if (!shares_segments(o.stage)) {
       continue;
     }
-    if (!o.can_cross(segment.crossed, context_.settings.transparent_max_bounces)) {
+    if (!o.can_cross(segment.crossed, context_.max_transparent)) {
       fail(ShiftFailure::Occluded, &o);
       continue;
     }
@@ -150,7 +150,7 @@ void GradientObserver::on_light_crossing(const path::RaySource& source, const pa
     if (o.has_own_segment) {
       continue;  // on_emission_complete() compares the two segments
     }
-    if (shares_segments(o.stage) && !o.can_cross(crossing.crossed, context_.settings.transparent_max_bounces)) {
+    if (shares_segments(o.stage) && !o.can_cross(crossing.crossed, context_.max_transparent)) {
       accumulator_.add(k, c, unpaired());
     } else if (shares_segments(o.stage)) {
       accumulator_.add(k, c,
@@ -245,6 +245,9 @@ void GradientObserver::on_emission_complete() {
     }
     if (o.stage == OffsetStage::Reconnected) {
       share_rest(&o);
+    }
+    if (o.stage == OffsetStage::Deeper && path::is_at_transparent_limit(context_, o.state.ray.state)) {
+      fail(ShiftFailure::Occluded, &o);  // its path ends with the emission, whether or not that of the base does
     }
   }
 }
@@ -502,6 +505,8 @@ bool GradientObserver::has_offset_at(OffsetStage stage) const {
 bool GradientObserver::arrives(OffsetPath* offset, const path::Vertex& vertex) {
   if (!offset->connection.is_open) {
     settle(OffsetStage::Failed, offset);  // connect_pending() has counted the cause
+  } else if (!offset->connection.may_scatter) {
+    fail(ShiftFailure::Occluded, offset);
   } else if (!sees_same_side(*offset, vertex)) {
     fail(ShiftFailure::Side, offset);
   }

@@ -124,7 +124,8 @@ ShiftedContribution connect_to_lit_vertex(const BasePath& base, const path::Vert
                                           bsdf::ScatterClass scatter_class, const path::Contribution& c,
                                           OffsetPath* offset) {
   const OffsetConnection& connection = offset->connection;
-  if (!connection.is_open || !sees_same_side(*offset, z) || !is_lit(base, z, sample, connection.transparent_depth)) {
+  if (!connection.is_open || !connection.may_scatter || !sees_same_side(*offset, z) ||
+      !is_lit(base, z, sample, connection.transparent_depth)) {
     return unpaired();
   }
   const float ratio = connection.ratio * connection.kind_ratio;

@@ -65,6 +65,7 @@ struct OffsetConnection {
   float ratio = 0.0f;              // ratio on arrival at x_{i+1}
   float kind_ratio = 0.0f;         // factor of the ratio for all but the emission of x_{i+1} (ShiftedEvent::kind_ratio)
   uint16_t transparent_depth = 0;  // number of transparent surfaces that the offset has passed on arrival
+  bool may_scatter = false;        // the offset may pass more of them, so that its path does not end at x_{i+1}
   float blur = 0.0f;               // blur of the lobes at x_{i+1} (path/filter_glossy.h)
   float pdf = 0.0f;                // density of the direction to x_{i+1} at y_i
 };

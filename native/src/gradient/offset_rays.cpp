@@ -126,6 +126,9 @@ ShiftFailure trace_to_own_vertex(const BasePath& base, const ShiftedEvent& event
   if (offset->segment->passes_portal) {
     return ShiftFailure::Class;  // pending offsets of a base that passes a portal fail, too
   }
+  if (path::is_at_transparent_limit(base.context, offset->state.ray.state)) {
+    return ShiftFailure::Occluded;
+  }
   offset->state.throughput *= offset->segment->weight;
   return ShiftFailure::None;
 }

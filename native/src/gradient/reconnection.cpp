@@ -26,6 +26,7 @@ ShiftedEvent reconnection_event(const BasePath& base, const OffsetPath& offset, 
 void open_connection(const BasePath& base, const ShiftedEvent& event, const Rgb& transmittance, OffsetPath* offset) {
   OffsetConnection& connection = offset->connection;
   connection.is_open = true;
+  connection.may_scatter = connection.transparent_depth < base.context.max_transparent;
   connection.throughput = offset->state.throughput * event.factor * transmittance / base.segment->probability;
   connection.ratio = offset->ratio * event.ratio;
   connection.kind_ratio = event.kind_ratio;
@@ -115,7 +116,7 @@ void connect_pending(const BasePath& base, const path::Vertex& z, OffsetPaths* o
       any |= wanted[k];
     }
   }
-  const bool traces_packet = !context.has_transparency && context.uniform_visibility;
+  const bool traces_packet = !context.has_transparency && context.scene.features.has_uniform_visibility;
   bool blocked[film::kOffsets] = {};
   if (any && traces_packet) {
     const geometry::Lanes3 direction = geometry::lanes(events[0].wi, events[1].wi, events[2].wi, events[3].wi);

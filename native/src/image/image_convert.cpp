@@ -23,9 +23,14 @@ uint16_t float_to_half(float x) { return Imath::half(std::clamp(x, -65504.0f, 65
 
 bool has_alpha_channel(uint32_t channels) { return channels == 2 || channels == 4; }
 
-// Converts a row of any format to floats of red, green, blue and alpha.
-void unpack_row(const ImageTile& tile, uint32_t y, std::vector<Vec4>* row) {
-  for (uint32_t x = 0; x < tile.width; x++) (*row)[x] = tile.texel(x, y);
+// Pixels that are converted by one call. A call of the host's OpenColorIO costs as much as a thousand pixels.
+constexpr uint32_t kPixelsPerCall = 1 << 16;
+
+// Converts rows of any format, from row `first` on, to floats of red, green, blue and alpha.
+void unpack_rows(const ImageTile& tile, uint32_t first, uint32_t count, std::vector<Vec4>* pixels) {
+  pixels->clear();
+  for (uint32_t y = first; y < first + count; y++)
+    for (uint32_t x = 0; x < tile.width; x++) pixels->push_back(tile.texel(x, y));
 }
 
 void scale_colors(Vec4* v, float factor) { *v = Vec4(v->x * factor, v->y * factor, v->z * factor, v->w); }
@@ -37,25 +42,26 @@ void round_to_half(Vec4* v) {
   for (int c = 0; c < 4; c++) (*v)[c] = half_to_float(float_to_half((*v)[c]));
 }
 
-// Converts a row to scene-linear as Cycles does: colours are multiplied by alpha, converted without it, and multiplied
+// Converts pixels to scene-linear as Cycles does: colours are multiplied by alpha, converted without it, and multiplied
 // again. Where alpha is 0, straight colours are black before the conversion, which need not map black to black. If
 // `is_half`, what Cycles stores in between is rounded, which logarithmic spaces magnify.
-void transform_row(const ColorManager& color, const std::string& space, bool is_byte, bool is_half,
-                   AlphaRelation relation, std::vector<Vec4>* row, std::vector<float>* alphas) {
-  for (size_t x = 0; x < row->size(); x++) {
-    Vec4& v = (*row)[x];
+void transform_pixels(const ColorManager& color, const std::string& space, bool is_byte, bool is_half,
+                      AlphaRelation relation, std::vector<Vec4>* pixels, std::vector<float>* alphas) {
+  alphas->resize(pixels->size());
+  for (size_t i = 0; i < pixels->size(); i++) {
+    Vec4& v = (*pixels)[i];
     if (is_half) round_to_half(&v);
     if (relation == AlphaRelation::Straight) {
       scale_colors(&v, v.w);
       if (is_half) round_to_half(&v);
     }
-    (*alphas)[x] = v.w;
+    (*alphas)[i] = v.w;
     if (relation != AlphaRelation::None && is_translucent(v.w)) scale_colors(&v, 1.0f / v.w);
   }
-  color.to_scene_linear(space, is_byte, &row->front().x, row->size());
-  for (size_t x = 0; x < row->size(); x++) {
-    Vec4& v = (*row)[x];
-    v.w = (*alphas)[x];
+  color.to_scene_linear(space, is_byte, &pixels->front().x, pixels->size());
+  for (size_t i = 0; i < pixels->size(); i++) {
+    Vec4& v = (*pixels)[i];
+    v.w = (*alphas)[i];
     if (relation != AlphaRelation::None && is_translucent(v.w)) scale_colors(&v, v.w);
   }
 }
@@ -70,8 +76,8 @@ void store_value(uint8_t* pixels, PixelFormat format, size_t index, float value)
   }
 }
 
-// Returns a copy of the tile, converted to scene-linear row by row, with associated alpha unless there is no relation.
-// It has 3 or 4 channels, and stores floats if the source does, else halves.
+// Returns a copy of the tile, converted to scene-linear a few rows at a time, with associated alpha unless there is no
+// relation. It has 3 or 4 channels, and stores floats if the source does, else halves.
 ImageTile transform_tile(const ImageTile& source, const ColorManager& color, const std::string& space, bool is_byte,
                          AlphaRelation relation) {
   ImageTile tile;
@@ -81,13 +87,14 @@ ImageTile transform_tile(const ImageTile& source, const ColorManager& color, con
   tile.channels = has_alpha_channel(source.channels) ? 4 : 3;
   tile.format = source.format == PixelFormat::Float ? PixelFormat::Float : PixelFormat::Half;
   tile.pixels = std::make_unique_for_overwrite<uint8_t[]>(tile.size_bytes());
-  std::vector<Vec4> row(tile.width);
-  std::vector<float> alphas(tile.width);
+  const uint32_t rows = std::max(kPixelsPerCall / tile.width, 1u);
+  std::vector<Vec4> pixels;
+  std::vector<float> alphas;
   size_t stored = 0;
-  for (uint32_t y = 0; y < tile.height; y++) {
-    unpack_row(source, y, &row);
-    transform_row(color, space, is_byte, tile.format == PixelFormat::Half, relation, &row, &alphas);
-    for (const Vec4& v : row) {
+  for (uint32_t y = 0; y < tile.height; y += rows) {
+    unpack_rows(source, y, std::min(rows, tile.height - y), &pixels);
+    transform_pixels(color, space, is_byte, tile.format == PixelFormat::Half, relation, &pixels, &alphas);
+    for (const Vec4& v : pixels) {
       for (int c = 0; c < static_cast<int>(tile.channels); c++) {
         store_value(tile.pixels.get(), tile.format, stored++, v[c]);
       }

@@ -87,7 +87,7 @@ bool ChainTracer::advance(Shades shades, const geometry::Hit* known, path::PathR
     shading::shade_surface(snapshot_, vertex->point, vertex->wo, ray->state, settings_.roughness_threshold,
                            &vertex->shade);
     const bool passes = mean_component(vertex->shade.transparency) > 0.5f;
-    if (!passes || ray->state.transparent_depth >= settings_.transparent_max_bounces) return true;
+    if (!passes || ray->state.transparent_depth >= path::max_transparent(settings_)) return true;
     ++ray->state.transparent_depth;
     geometry::pass_surface(vertex->point, &part);
   }

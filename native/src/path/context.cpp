@@ -65,7 +65,7 @@ PathContext::PathContext(const scene::Snapshot& snapshot, const camera::Camera& 
       clamp_direct(sum_limit(settings_.clamp_direct)),
       clamp_indirect(sum_limit(settings_.clamp_indirect)),
       has_transparency(finds_transparency(snapshot)),
-      uniform_visibility(snapshot.features.has_uniform_visibility),
+      max_transparent(path::max_transparent(settings_)),
       kinds_matter(finds_kinds_matter(snapshot)),
       diffuse_flags(flags_of_diffuse_rays(snapshot, settings_)),
       filter_glossy(snapshot.features.min_alpha < FilterGlossy::kMaxBlur ? settings_.blur_glossy : 0.0f),

@@ -1,6 +1,8 @@
 // The scene and the settings in the form that paths need, shared by all samples of a render.
 #pragma once
 
+#include <algorithm>
+
 #include "camera/camera.h"
 #include "camera/film_filter.h"
 #include "film/film.h"
@@ -9,6 +11,7 @@
 #include "path/filter_glossy.h"
 #include "path/sampler.h"
 #include "scene/snapshot.h"
+#include "shading/shade.h"
 
 namespace gradus::path {
 
@@ -29,9 +32,8 @@ struct PathContext {
   float clamp_indirect = kInfinity;
   // At least one material may let rays pass.
   bool has_transparency = true;
-  // Every surface is visible to all kinds of bounces and to shadow rays, or to none of them. Then a shadow ray can
-  // stand for a path segment.
-  bool uniform_visibility = true;
+  // Number of transparent surfaces that a path may pass, at least 1.
+  uint32_t max_transparent = 1;
   // What a ray finds depends on the kind of the bounce that it comes from, because of visibility flags, or of a Light
   // Path node in front of an emission or a transparency, or because caustics are off.
   bool kinds_matter = false;
@@ -41,6 +43,18 @@ struct PathContext {
   // Angle of a pixel's shorter side, or its share of the width of an orthographic picture.
   float pixel_angle = 0.0f;
 };
+
+// Returns the number of transparent surfaces that a path may pass. Cycles checks the limit after it has passed one, and
+// before Blender 5.0 its limit was one higher.
+inline uint32_t max_transparent(const GradusSettings& settings) {
+  return std::max(settings.transparent_max_bounces + settings.one_more_transparent, 1u);
+}
+
+// Returns whether the ray of a path has passed all the transparent surfaces that it may pass. The path then ends with
+// the emission of the next surface, as in Cycles.
+inline bool is_at_transparent_limit(const PathContext& context, const shading::RayState& ray) {
+  return ray.transparent_depth >= context.max_transparent;
+}
 
 // Returns the camera sample of a film position. Takes a lens point and a time only if the scene needs them.
 camera::CameraSample camera_sample(const PathContext& context, const Sampler& sampler, const Vec2& film);

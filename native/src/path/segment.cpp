@@ -229,7 +229,7 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int depth
       segment->end = SegmentEnd::Surface;
       return;
     }
-    if (ray->state.transparent_depth >= context.settings.transparent_max_bounces) {
+    if (is_at_transparent_limit(context, ray->state)) {
       segment->end = SegmentEnd::Exhausted;
       return;
     }
@@ -259,7 +259,7 @@ Ray spawn_ray_to(const geometry::SurfacePoint& from, const geometry::SurfacePoin
 
 Rgb segment_transmittance(const PathContext& context, const Ray& ray, const PathRay& kind,
                           uint16_t* transparent_depth) {
-  if (!context.has_transparency && context.uniform_visibility) {
+  if (!context.has_transparency && context.scene.features.has_uniform_visibility) {
     return Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f);
   }
   Rgb transmittance(1.0f);
@@ -271,7 +271,7 @@ Rgb segment_transmittance(const PathContext& context, const Ray& ray, const Path
     if (!context.scene.intersect(part, kind.visibility, &hit)) {
       return transmittance;
     }
-    if (*transparent_depth >= context.settings.transparent_max_bounces) {
+    if (*transparent_depth >= context.max_transparent) {
       return Rgb(0.0f);
     }
     state.transparent_depth = (*transparent_depth)++;

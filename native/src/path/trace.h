@@ -211,7 +211,8 @@ class PathTracer {
       is_surface = add_surface(sampler, seen_from, vertex);
     }
     observer_.on_emission_complete();
-    return is_surface && !state_.emission_only && can_reach_wanted();
+    return is_surface && !state_.emission_only && !is_at_transparent_limit(context_, state_.ray.state) &&
+           can_reach_wanted();
   }
 
   void add_analytic_lights(const RaySource& source) {

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/hash.h"
 #include "base/parallel_each.h"
 #include "base/random_bits.h"
 #include "bsdf/warp.h"
@@ -15,6 +14,7 @@
 #include "geometry/surface.h"
 #include "light/light_sampling.h"
 #include "scene/snapshot.h"
+#include "shading/lattice_hash.h"
 #include "shading/material.h"
 #include "shading/shade.h"
 
@@ -24,12 +24,12 @@ namespace {
 
 // The camera sees a point in each cell of a grid over the picture.
 constexpr int kColumns = 24, kRows = 14;
-constexpr size_t kPixels = size_t(kColumns) * kRows;
+constexpr uint32_t kPixels = uint32_t(kColumns * kRows);
 // Light samples of each group at a point. Those of the first half and of the second are independent.
-constexpr int kSamples = 4;
+constexpr uint32_t kSamples = 4;
 constexpr uint32_t kMaxTransparent = 8;
 // BSDF samples at a point that the camera sees.
-constexpr size_t kBounces = 2;
+constexpr uint32_t kBounces = 2;
 // Share of the light that a surface reflects, that of further bounces included.
 constexpr double kAlbedo = 0.7;
 // Share of the mean brightness of the picture that is added to the brightness of each pixel.
@@ -43,9 +43,9 @@ constexpr double kOtherVariance = 1e-3;
 constexpr double kWorthwhile = 0.95;
 
 // Returns independent random numbers in [0, 1) for each index.
-std::array<float, 3> random_numbers(uint64_t index) {
-  const uint64_t low = mix_bits(3 * index + 1), high = mix_bits(low + index);
-  return {to_unit(uint32_t(low)), to_unit(uint32_t(low >> 32)), to_unit(uint32_t(high))};
+std::array<float, 3> random_numbers(uint32_t index) {
+  const auto number = [index](uint32_t i) { return to_unit(shading::lattice_hash(index, i)); };
+  return {number(0), number(1), number(2)};
 }
 
 // A light sample of a group: the light that a white diffuse surface reflects, its density among the samples of its
@@ -130,7 +130,7 @@ double diffuse_radiance(const Snapshot& scene, const light::LightPoint& point, c
 }
 
 // Takes a light sample among those of a group, which light sampling chooses by numbers in [begin, begin + share).
-Sample sample_group(const Snapshot& scene, const MeasuredPoint& from, double begin, double share, uint64_t index) {
+Sample sample_group(const Snapshot& scene, const MeasuredPoint& from, double begin, double share, uint32_t index) {
   light::LightPoint point;
   light::LightEvaluation view;
   const auto [u, v, w] = random_numbers(index);
@@ -146,15 +146,15 @@ Sample sample_group(const Snapshot& scene, const MeasuredPoint& from, double beg
   return sample;
 }
 
-void take_samples(const Snapshot& scene, uint64_t first_index, MeasuredPoint* at) {
+void take_samples(const Snapshot& scene, uint32_t first_index, MeasuredPoint* at) {
   const light::LightTable& table = *scene.light_table;
   light::LightChoice choice;
   table.choose(at->receiver, &choice);
   at->irradiance = table.irradiance(at->receiver, choice.cut);
   const std::array<double, 3> shares = as_array(choice.group);
   double begin = 0.0;
-  for (size_t group = 0; group < shares.size(); ++group) {
-    for (uint64_t i = 0; i < kSamples && shares[group] > 0.0; ++i)
+  for (uint32_t group = 0; group < shares.size(); ++group) {
+    for (uint32_t i = 0; i < kSamples && shares[group] > 0.0; ++i)
       at->samples[group][i] = sample_group(scene, *at, begin, shares[group], first_index + group * kSamples + i);
     begin += shares[group];
   }
@@ -228,15 +228,15 @@ double cost(const std::vector<MeasuredPoint>& points, const std::vector<double>&
 }
 
 // Finds what the camera sees in a pixel, and in the elements behind `first` what that sees.
-void find_points_of_pixel(const Snapshot& scene, const camera::Camera& camera, size_t pixel, MeasuredPoint* first) {
+void find_points_of_pixel(const Snapshot& scene, const camera::Camera& camera, uint32_t pixel, MeasuredPoint* first) {
   const auto [x, y, w] = random_numbers(pixel);
   const Vec2 film = Vec2(float(pixel % kColumns), float(pixel / kColumns)) + Vec2(x, y);
   const Ray ray = camera.ray({film, Vec2(0.5f), 0.5f});
-  const uint64_t first_index = (1 + pixel) * (1 + kBounces) * 4 * kSamples;
+  const uint32_t first_index = (1 + pixel) * (1 + kBounces) * 4 * kSamples;
   if (!find_surface(scene, ray, GRADUS_VISIBLE_CAMERA, pixel, 1.0, first)) return;
   take_samples(scene, first_index, first);
-  for (size_t k = 0; k < kBounces; ++k) {
-    const uint64_t index = first_index + (1 + k) * 4 * kSamples;
+  for (uint32_t k = 0; k < kBounces; ++k) {
+    const uint32_t index = first_index + (1 + k) * 4 * kSamples;
     const auto [u, v, unused] = random_numbers(index + 3 * kSamples);
     const Vec3 direction = bsdf::sample_cosine_around(first->receiver.normal, Vec2(u, v));
     const Ray bounce{geometry::offset_origin(first->point, direction), 0.0f, direction, kInfinity, ray.time};
@@ -251,8 +251,10 @@ void find_points_of_pixel(const Snapshot& scene, const camera::Camera& camera, s
 std::vector<MeasuredPoint> find_points(const Snapshot& scene, const CommitMonitor& monitor) {
   const camera::Camera camera(scene.camera, kColumns, kRows);
   std::vector<MeasuredPoint> found((1 + kBounces) * kPixels);
-  parallel_each<16>(kPixels, monitor,
-                    [&](size_t pixel) { find_points_of_pixel(scene, camera, pixel, &found[(1 + kBounces) * pixel]); });
+  parallel_each<16>(kPixels, monitor, [&](size_t i) {
+    const auto pixel = uint32_t(i);
+    find_points_of_pixel(scene, camera, pixel, &found[(1 + kBounces) * pixel]);
+  });
   std::erase_if(found, [](const MeasuredPoint& point) { return !(point.weight > 0.0); });
   return found;
 }

@@ -85,8 +85,8 @@ constexpr Option kOptions[] = {
     OPTION(transmission_bounces, GRADUS_OPTION_INT, 12, 0, 1024, {}, true,
            "Maximum transmission bounces of a path. Fewer render faster; glass behind glass turns dark."),
     OPTION(transparent_max_bounces, GRADUS_OPTION_INT, 8, 0, 1024, {}, true,
-           "Maximum transparent surfaces that a ray passes. Fewer render faster; layers of transparent leaves turn "
-           "dark."),
+           "Maximum transparent surfaces that a ray passes; it then shows the emission of the next surface alone. "
+           "Fewer render faster; layers of transparent leaves turn dark."),
     OPTION(blur_glossy, GRADUS_OPTION_FLOAT, 0, 0, 10, {}, true,
            "Blurs reflections and refractions behind bounces that scatter light widely, as Cycles does. It removes "
            "noise of caustics and softens them. The camera's own view of mirrors and glass stays sharp. Higher values"
@@ -124,6 +124,9 @@ constexpr Option kOptions[] = {
            "Data passes ignore surfaces with less alpha and show what is behind them."),
     OPTION(use_sky, GRADUS_OPTION_BOOL, 1, 0, 1, {}, true,
            "The camera sees the world."),
+    OPTION(one_more_transparent, GRADUS_OPTION_BOOL, 0, 0, 1, {}, true,
+           "Paths, but not shadow rays, pass one transparent surface more than `transparent_max_bounces`, as in "
+           "Cycles before Blender 5.0. Blender's version gives the default."),
     OPTION(independent_sampler, GRADUS_OPTION_BOOL, 0, 0, 1, {}, true,
            "Takes independent random numbers in place of Owen-scrambled Sobol points, for statistical tests. It is "
            "noisier."),

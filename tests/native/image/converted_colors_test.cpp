@@ -75,6 +75,28 @@ TEST_F(ConvertedColors, FloatsBeyondOneAreConverted) {
   EXPECT_NEAR(first_texel({1.5f, -0.5f, 0.0f, 1.0f}, GRADUS_ALPHA_NONE).y, decode(-0.5f), 1e-6f);
 }
 
+// A call of the host takes as long as a thousand pixels, and narrow images took one for each row.
+TEST_F(ConvertedColors, RowsOfAnImageShareCalls) {
+  constexpr uint32_t kWidth = 3, kHeight = 50000;
+  size_t calls = 0;
+  color.set_conversion("log", [&calls](float* rgba, size_t count) {
+    ++calls;
+    for (size_t i = 0; i < 4 * count; i++) rgba[i] = decode(rgba[i]);
+  });
+  std::vector<float> rgba(size_t{4} * kWidth * kHeight);
+  for (size_t i = 0; i < rgba.size(); i++)
+    rgba[i] = i % 4 == 3 ? 1.0f : static_cast<float>(i) / static_cast<float>(rgba.size());
+  image::ImageSource tall = source(rgba, GRADUS_ALPHA_NONE);
+  tall.tiles[0].width = kWidth;
+  tall.tiles[0].height = kHeight;
+  const auto loaded = image::load_image(tall, color);
+  for (const uint32_t y : {0u, 21844u, 21845u, 43690u, kHeight - 1}) {
+    const Vec4 texel = loaded->tiles[0].texel(2, y);
+    EXPECT_NEAR(texel.y, decode(rgba[size_t{4} * (kWidth * y + 2) + 1]), 1e-5f) << y;
+  }
+  EXPECT_LE(calls, 4u);  // one of them finds out what the space is
+}
+
 TEST_F(ConvertedColors, AnotherConversionIsAnotherContent) {
   const image::ImageSource image = source({0.5f, 0.75f, 1.0f, 1.0f}, GRADUS_ALPHA_NONE);
   image::ColorManager other("", nullptr);

@@ -75,6 +75,22 @@ void expect_matching_light(const GradusLight& light) {
   }
 }
 
+// Directions to a world of one colour are sampled by the cosine, or uniformly if the receiver transmits light.
+TEST(A3_LightSampling, UniformWorld) {
+  TestScene scene;
+  scene.material(1, MaterialDesc(GRADUS_OP_EMISSION, Rgb(0.5f)));
+  scene.world(1);
+  const auto snapshot = scene.commit();
+  ASSERT_TRUE(snapshot->light_table->world.is_uniform());
+  for (uint32_t i = 0; i < 5; ++i) {
+    SCOPED_TRACE(i);
+    expect_matching(*snapshot, kReceivers[i], kReceivers[i].normal, i + 1);
+    const light::LightPoint up = light::light_point_of_world(*snapshot, kReceivers[i].normal);
+    EXPECT_NEAR(light::light_point_pdf(*snapshot, up, kReceivers[i]), (kReceivers[i].transmits ? 0.25f : 1.0f) / kPi,
+                1e-4f);
+  }
+}
+
 TEST(A3_LightSampling, Rectangle) {
   GradusLight light = make_light(GRADUS_LIGHT_RECTANGLE, Mat4(1.0f), Rgb(1.0f));
   light.size[0] = 1.5f;

@@ -2,8 +2,11 @@
 #include "scene/group_factors.h"
 
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "light/light_table.h"
@@ -25,7 +28,7 @@ Soup square(float size, float height) {
 // A grey floor that a camera looks down on, under a grey sky.
 class Outdoors {
  public:
-  Outdoors() {
+  explicit Outdoors(std::shared_ptr<scene::Device> device = test_device()) : scene(std::move(device)) {
     scene.mesh(kFloor, square(20.0f, 0.0f));
     scene.material(kGrey, MaterialDesc(GRADUS_OP_DIFFUSE, Rgb(0.5f)));
     scene.material(kSky, MaterialDesc(GRADUS_OP_EMISSION, Rgb(0.5f)));
@@ -88,6 +91,25 @@ TEST(GroupFactors, TheSameSceneHasTheSameFactors) {
     const light::GroupFactors again = scene.factors();
     EXPECT_EQ(again.suns, first.suns);
     EXPECT_EQ(again.world, first.world);
+  }
+}
+
+TEST(GroupFactors, TheyDoNotDependOnTheNumberOfThreads) {
+  const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
+  light::GroupFactors first;
+  for (const uint32_t threads : {1u, 2u, 5u}) {
+    GradusDeviceSettings settings{};
+    settings.struct_size = sizeof(settings);
+    settings.threads = threads;
+    Outdoors scene(std::make_shared<scene::Device>(settings));
+    scene.add_camera();
+    scene.add_sun();
+    scene.add_roof(15.0f);
+    const light::GroupFactors factors = scene.factors();
+    if (threads == 1) first = factors;
+    EXPECT_NE(factors.world, 1.0);
+    EXPECT_EQ(factors.suns, first.suns) << threads;
+    EXPECT_EQ(factors.world, first.world) << threads;
   }
 }
 

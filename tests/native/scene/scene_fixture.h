@@ -140,7 +140,7 @@ inline GradusLight make_light(GradusLightType type, const Mat4& matrix, const Rg
 
 class TestScene {
  public:
-  TestScene() : scene(test_device()) {}
+  explicit TestScene(std::shared_ptr<scene::Device> device = test_device()) : scene(std::move(device)) {}
 
   void mesh(uint64_t key, const Soup& soup) { scene.set_mesh(key, MeshDesc(soup).desc); }
   void material(uint64_t key, const MaterialDesc& material) { scene.set_material(key, material.desc()); }
