@@ -502,6 +502,7 @@ def _deliver(job: Job, view: str, handle: int, result: Any) -> None:
     host = {"frame": job.scene.frame_current, "layer": job.layer.name, "scene": job.scene.name, "view": view}
     native_stats = (text.value or b"").decode("utf-8", "replace")
     summary = stats.complete(native_stats, host, job.current.clock, job.current.warnings)
+    job.warn(summary["warnings"], changes_picture=False)  # also those that sampling has found
     if job.frame_by_frame:
         summary.setdefault("plan", {})["frame_by_frame"] = job.frame_by_frame
     store.summaries[(job.scene.name, job.layer.name)] = summary

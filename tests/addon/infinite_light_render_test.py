@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from gradus import store
 from support import recording
+from support.nodes import Graph, new_material, show
 
 
 def set_world(scene: bpy.types.Scene, strength: float) -> bpy.types.NodeTree:
@@ -48,7 +49,56 @@ def huge_sun(scene: bpy.types.Scene) -> str:
     return "1 lights were left out, the first is 'Sun': their values are not finite"
 
 
-@pytest.mark.parametrize("make", [infinite_world, huge_world, world_of_nodes, huge_sun])
+def infinite(tree: bpy.types.NodeTree, coordinates: str) -> bpy.types.NodeSocket:
+    """Returns a vector of nodes whose values are infinite at most points."""
+    found = tree.nodes.new("ShaderNodeTexCoord").outputs[coordinates]
+    for _ in range(2):
+        product = tree.nodes.new("ShaderNodeVectorMath")
+        product.operation, product.inputs[1].default_value = "MULTIPLY", (3e38, 3e38, 3e38)
+        tree.links.new(found, product.inputs[0])
+        found = product.outputs[0]
+    return found
+
+
+def add_surface(scene: bpy.types.Scene, kind: str) -> Graph:
+    """Adds a square whose material has no surface yet, under a grey sky."""
+    set_world(scene, 1.0)
+    material = new_material(kind)
+    recording.add(recording.grid(2), "Square").data.materials.append(material)
+    return Graph(material)
+
+
+def surface_of_nodes(scene: bpy.types.Scene) -> str:
+    graph = add_surface(scene, "Glowing")
+    show(bpy.data.materials["Glowing"], graph("Emission", "Emission", {"Color": infinite(graph.tree, "Object")}))
+    return "light, closures or bumps of 'Glowing' were left out where they are not finite"
+
+
+def bump_of_nodes(scene: bpy.types.Scene) -> str:
+    graph = add_surface(scene, "Bumpy")
+    normal = graph("Bump", "Normal", {"Height": infinite(graph.tree, "Object")})
+    show(bpy.data.materials["Bumpy"], graph("BsdfDiffuse", "BSDF", {"Normal": normal}))
+    return "light, closures or bumps of 'Bumpy' were left out where they are not finite"
+
+
+def sky_of_nodes(scene: bpy.types.Scene) -> str:
+    tree = set_world(scene, 1.0)
+    tree.links.new(infinite(tree, "Generated"), tree.nodes["Background"].inputs["Color"])
+    return "light, closures or bumps of 'Sky' were left out where they are not finite"
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        infinite_world,
+        huge_world,
+        world_of_nodes,
+        huge_sun,
+        surface_of_nodes,
+        bump_of_nodes,
+        sky_of_nodes,
+    ],
+)
 def test_light_beyond_all_numbers_is_named(
     scene: bpy.types.Scene,
     render: Callable[..., dict[str, np.ndarray]],

@@ -18,6 +18,8 @@
 #include "render/tiles.h"
 #include "scene/device.h"
 #include "schema/pass_table.h"
+#include "shading/faulty_materials.h"
+#include "shading/material.h"
 
 namespace gradus::render {
 namespace {
@@ -51,6 +53,17 @@ void refuse_warnings(const LoopInput& input) {
   const size_t others = warnings.size() - 1;
   throw unsupported("strict: " + warnings[0] +
                     (others > 0 ? " (and " + std::to_string(others) + " other warnings)" : ""));
+}
+
+// Returns a warning about the materials of which rays have met values that are not finite, or "" without any.
+std::string fault_warning(const scene::Snapshot& snapshot) {
+  if (!snapshot.faulty_materials) return "";
+  std::vector<std::string> names;
+  for (uint32_t i = 0; i < snapshot.faulty_materials->size(); ++i)
+    if (snapshot.faulty_materials->contains(i)) names.push_back(snapshot.materials[i]->name);
+  if (names.empty()) return "";
+  const std::string others = names.size() > 1 ? " (and " + std::to_string(names.size() - 1) + " other materials)" : "";
+  return "light, closures or bumps of '" + names[0] + "'" + others + " were left out where they are not finite";
 }
 
 // Number of samples from which every pixel has samples in both half-buffers, which the reconstruction needs.
@@ -252,6 +265,7 @@ void RenderLoop::sample() {
   stats_.seconds.sample = sampling_.seconds();
   stats_.cpu_seconds.preview = live_view_.cpu_seconds();
   stats_.seconds.preview = live_view_.seconds();
+  if (const std::string text = fault_warning(*input_.snapshot); !text.empty()) stats_.warnings.push_back(text);
 }
 
 void RenderLoop::run_batch(uint32_t begin, uint32_t end) {

@@ -12,6 +12,7 @@
 #include "scene/group_factors.h"
 #include "scene/scene_state.h"
 #include "scene/snapshot_geometry.h"
+#include "shading/faulty_materials.h"
 #include "shading/material.h"
 
 namespace gradus::scene {
@@ -304,6 +305,7 @@ void Scene::commit(const volatile int32_t* cancel, float* progress) {
     find_motion(snapshot.get());
     const std::vector<light::AnalyticLight> lights = place_lights(*state_, materials, snapshot.get());
     build_lights(device_->embree(), lights, chosen, nullptr, monitor, state_.get(), snapshot.get());
+    snapshot->faulty_materials = std::make_shared<shading::FaultyMaterials>(snapshot->materials.size());
     add_catchers(device_->embree(), exact, lights, chosen, monitor, state_.get(), snapshot.get());
     find_sharpest(snapshot.get());
     find_holdouts(snapshot.get());

@@ -44,6 +44,8 @@ HeightField sample_heights(const ShadeContext& c, float filter_width, const Heig
   return field;
 }
 
+bool has_finite_heights(const HeightField& field) { return is_finite(field.center + field.x + field.y); }
+
 // Returns the normal of the surface that lies `distance` times the heights above a surface with the normal `normal`, or
 // 0 if it has no direction. The method is that of Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU" (2010).
 Vec3 bend(const HeightField& field, const Vec3& normal, float distance) {
@@ -83,6 +85,7 @@ Vec3 bump(const Program& program, uint32_t block, const OpArgs& args, const Shad
   const HeightField field =
       sample_heights(c, args.f(4), [&](const ShadeContext& moved) { return run_block(program, block, moved).x; });
   const Vec3 bent = bend(field, normal, args.mode & GRADUS_BUMP_INVERTED ? -args.f(1) : args.f(1));
+  if (!has_finite_heights(field)) note_fault(c);
   const Vec3 mixed = bent == Vec3(0.0f) ? Vec3(0.0f) : safe_normalize(bent * strength + normal * (1.0f - strength));
   const Vec3 bumped = mixed == Vec3(0.0f) ? normal : mixed;
   return args.mode & GRADUS_BUMP_TILTED ? bsdf::keep_reflection_above(bumped, c.geometric_normal, c.wo) : bumped;
@@ -97,6 +100,7 @@ Vec3 bent_normal(const MaterialData& material, const ShadeContext& context) {
   HeightField field = sample_heights(c, material.bump_filter_width, [&](const ShadeContext& at) {
     return glm::dot(Vec3(run_block(material.bump, 0, at)), c.normal);
   });
+  if (!has_finite_heights(field)) note_fault(c);
   if (!material.displaces) {
     const Vec3 bent = bend(field, c.normal, 1.0f);
     return bent == Vec3(0.0f) ? c.normal : bent;

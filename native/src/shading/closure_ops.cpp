@@ -274,13 +274,20 @@ void set_glossy_roughness(bsdf::Lobe* lobe, float roughness, float anisotropy) {
   lobe->alpha_y = a < 0.0f ? alpha * (1.0f + a) : alpha / (1.0f - a);
 }
 
-void add_finite(const Rgb& value, Rgb* sum) {
-  if (is_finite(value)) *sum += value;
+void add_finite(const Rgb& value, Rgb* sum, ShadeResult* result) {
+  if (is_finite(value)) {
+    *sum += value;
+  } else {
+    result->is_faulty = true;
+  }
 }
 
 bsdf::Lobe* add_lobe(ShadeResult* result, bsdf::LobeType type, bsdf::LightPass pass, const Rgb& weight,
                      const Vec3& normal) {
-  if (!(max_component(weight) > kWeightCutoff)) return nullptr;
+  if (!(max_component(weight) > kWeightCutoff)) {
+    result->is_faulty = result->is_faulty || !is_finite(weight);
+    return nullptr;
+  }
   bsdf::Lobe* lobe = result->closures.add();
   lobe->type = type;
   lobe->pass = pass;
@@ -322,7 +329,7 @@ void add_closure(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
     case GRADUS_OP_PRINCIPLED_3:
       return add_principled_3(args, c, result);
     case GRADUS_OP_TRANSPARENT:
-      add_finite(args.weight * non_negative(args.v(0)), &result->transparency);
+      add_finite(args.weight * non_negative(args.v(0)), &result->transparency, result);
       return;
     case GRADUS_OP_RAY_PORTAL:
       return add_portal(args, c, result);
@@ -333,7 +340,7 @@ void add_closure(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
       if (result->aovs != nullptr) result->aovs->push_back({args.mode, args.v(0), args.f(1)});
       return;
     case GRADUS_OP_EMISSION:
-      add_finite(args.weight * args.v(0) * args.f(1), &result->emission);
+      add_finite(args.weight * args.v(0) * args.f(1), &result->emission, result);
       return;
     default:
       return;

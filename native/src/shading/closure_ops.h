@@ -75,9 +75,9 @@ void leave_caustics_out(const ShadeContext& context, bsdf::Lobe* glass);
 // Adds a lobe and returns it, or returns null if its weight is below kWeightCutoff.
 bsdf::Lobe* add_lobe(ShadeResult* result, bsdf::LobeType type, bsdf::LightPass pass, const Rgb& weight,
                      const Vec3& normal);
-// Adds `value` to *sum if it is finite. Otherwise one invalid emission would invalidate samples that also carry the
-// light of other materials.
-void add_finite(const Rgb& value, Rgb* sum);
+// Adds `value` to *sum, a member of the result, if it is finite. Otherwise one invalid emission would invalidate
+// samples that also carry the light of other materials.
+void add_finite(const Rgb& value, Rgb* sum, ShadeResult* result);
 // Returns the weight of the layers below a layer with the given albedo.
 Rgb layered(const Rgb& weight, const Rgb& albedo);
 

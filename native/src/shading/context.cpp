@@ -3,6 +3,7 @@
 #include <cfloat>
 
 #include "geometry/mesh.h"
+#include "shading/faulty_materials.h"
 #include "shading/scalar.h"
 
 namespace gradus::shading {
@@ -13,6 +14,7 @@ ShadeContext surface_context(const ShadedScene& scene, const geometry::SurfacePo
   c.scene = &scene;
   c.images = scene.images.get();
   c.instance = &scene.instances[point.hit.instance];
+  c.material = point.material;
   c.hit = point.hit;
   c.position = point.position;
   c.backfacing = glm::dot(point.geometric_normal, wo) < 0.0f;
@@ -27,6 +29,7 @@ ShadeContext background_context(const ShadedScene& scene, const Vec3& direction,
   ShadeContext c;
   c.scene = &scene;
   c.images = scene.images.get();
+  c.material = scene.world_material;
   c.position = direction;
   c.normal = c.geometric_normal = c.wo = -direction;
   c.ray = ray;
@@ -45,6 +48,10 @@ ShadeContext light_context(const ShadedScene& scene, const LightShadingPoint& po
   c.light_axes = &point.axes;
   c.ray = ray;
   return c;
+}
+
+void note_fault(const ShadeContext& c) {
+  if (c.scene != nullptr && c.scene->faulty_materials) c.scene->faulty_materials->add(c.material);
 }
 
 const geometry::Placement& placement_of(const ShadeContext& c, geometry::Placement* storage) {

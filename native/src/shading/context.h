@@ -16,6 +16,7 @@ struct ShadeContext {
   const ShadedScene* scene = nullptr;  // null for estimates without a scene
   const image::ImageStore* images = nullptr;
   const geometry::InstanceData* instance = nullptr;  // null for the world and for lights
+  uint32_t material = UINT32_MAX;                    // index in the scene
   geometry::Hit hit;
   Vec3 position = Vec3(0.0f);             // in internal space; the direction for the world
   Vec3 normal = Vec3(0, 0, 1);            // shading normal, flipped together with the geometric normal
@@ -37,6 +38,9 @@ ShadeContext surface_context(const ShadedScene& scene, const geometry::SurfacePo
                              const RayState& ray);
 ShadeContext background_context(const ShadedScene& scene, const Vec3& direction, const RayState& ray);
 ShadeContext light_context(const ShadedScene& scene, const LightShadingPoint& point, const RayState& ray);
+
+// Notes in the scene that a value of the material was left out, because it is not finite.
+void note_fault(const ShadeContext& context);
 
 // Returns the placement of the instance at the time of the hit. `storage` holds it if it has to be interpolated.
 const geometry::Placement& placement_of(const ShadeContext& context, geometry::Placement* storage);

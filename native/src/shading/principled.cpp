@@ -67,7 +67,7 @@ class Layers {
   void add() {
     sheen();
     coat();
-    add_finite(weight_ * args_.v(kEmission), &result_->emission);
+    add_finite(weight_ * args_.v(kEmission), &result_->emission, result_);
     if (args_.mode & kEmissionOnly) return;
     metal();
     glass();

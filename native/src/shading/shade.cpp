@@ -25,8 +25,14 @@ ShadeContext context_of(const MaterialData& material, bool bumps, const ShadedSc
 void clear(ShadeResult* result) {
   result->closures.clear();
   result->emission = result->transparency = result->holdout = result->portal.weight = Rgb(0.0f);
-  result->fallback = result->complete = result->ignores_wo = false;
+  result->fallback = result->is_faulty = result->complete = result->ignores_wo = false;
   if (result->tape) result->tape->clear();
+}
+
+// Runs a program of the context's material.
+void run_noting_faults(const Program& program, const ShadeContext& context, ShadeResult* result) {
+  run_program(program, context, result);
+  if (result->is_faulty) note_fault(context);
 }
 
 // Finishes the closures of a result after all have been added.
@@ -61,7 +67,7 @@ Rgb emission_of(const MaterialData& material, const ShadeContext& context) {
   if (!material.emits) return Rgb(0.0f);
   if (material.emission_is_constant) return material.constant_emission;
   ShadeResult* result = scratch();
-  run_program(material.emission, context, result);
+  run_noting_faults(material.emission, context, result);
   return result->emission;
 }
 
@@ -73,7 +79,7 @@ const std::vector<AovOutput>& aovs_of(const MaterialData& material, const MakeCo
   if (material.aovs.empty()) return outputs;
   ShadeResult* result = scratch();
   result->aovs = &outputs;
-  run_program(material.aovs, make_context(), result);
+  run_noting_faults(material.aovs, make_context(), result);
   result->aovs = nullptr;
   return outputs;
 }
@@ -89,7 +95,7 @@ void shade_surface(const ShadedScene& scene, const geometry::SurfacePoint& point
   // again for the other side is as fast as a replay.
   if (material.is_lambert) return shade_lambert(material, point, wo, roughness_threshold, result);
   const ShadeContext context = context_of(material, material.bumps, scene, point, wo, ray);
-  run_program(material.surface, context, result);
+  run_noting_faults(material.surface, context, result);
   if (result->tape) result->tape->finish();
   complete(material, point, context.geometric_normal, context.normal, wo, roughness_threshold, ray.blur, result);
 }
@@ -105,6 +111,7 @@ void shade_from_tape(const ShadedScene& scene, const geometry::SurfacePoint& poi
     shade_surface(scene, point, wo, ray, roughness_threshold, result);
     return;
   }
+  if (result->is_faulty) note_fault(context);
   result->fallback = material.uses_fallback;
   complete(material, point, context.geometric_normal, context.normal, wo, roughness_threshold, ray.blur, result);
 }
@@ -134,7 +141,8 @@ Rgb shade_transparency(const ShadedScene& scene, const geometry::SurfacePoint& p
   if (!material.may_be_transparent || ((ray.flags & kRayShadow) && !material.transparent_shadow)) return Rgb(0.0f);
   if (material.transparency_is_constant) return material.constant_transparency;
   ShadeResult* result = scratch();
-  run_program(material.transparency, context_of(material, material.bumps_transparency, scene, point, wo, ray), result);
+  run_noting_faults(material.transparency, context_of(material, material.bumps_transparency, scene, point, wo, ray),
+                    result);
   return result->transparency;
 }
 
@@ -158,7 +166,9 @@ Rgb shade_world(const ShadedScene& scene, const Vec3& direction, const RayState&
 
 Rgb shade_light(const ShadedScene& scene, uint32_t material, const LightShadingPoint& point, const RayState& ray) {
   if (material >= scene.materials.size()) return Rgb(1.0f);
-  return emission_of(*scene.materials[material], light_context(scene, point, ray));
+  ShadeContext context = light_context(scene, point, ray);
+  context.material = material;
+  return emission_of(*scene.materials[material], context);
 }
 
 }  // namespace gradus::shading

@@ -64,6 +64,7 @@ struct ShadeResult {
   Rgb holdout = Rgb(0.0f);
   RayPortal portal;
   bool fallback = false;                   // the material has a replaced node
+  bool is_faulty = false;                  // a value was left out, because it is not finite
   bool complete = false;                   // the closures have been evaluated
   bool ignores_wo = false;                 // a complete result is equal for all directions on this side
   ClosureTape* tape = nullptr;             // records the closures for shade_from_tape(); not owned, may be null
