@@ -100,11 +100,13 @@ LightVisibility light_visibility(const PathContext& context, const geometry::Sur
   if (light::is_of_uniform_world(context.scene, point)) {
     return {diffuse_transmittance(context, ray, crossed)};
   }
-  if (!context.scene.features.has_transparent_shadows) {
-    return {Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f)};
-  }
+  return {shadow_transmittance(context, ray, crossed)};
+}
+
+Rgb shadow_transmittance(const PathContext& context, const Ray& ray, uint32_t crossed) {
+  if (!context.scene.features.has_transparent_shadows) return Rgb(context.scene.occluded(ray) ? 0.0f : 1.0f);
   const uint32_t allowed = context.settings.transparent_max_bounces;
-  return {context.scene.transmittance(ray, crossed < allowed ? allowed - crossed : 0)};
+  return context.scene.transmittance(ray, crossed < allowed ? allowed - crossed : 0);
 }
 
 float light_pdf(const PathContext& context, const RaySource& source, const light::LightPoint& point) {

@@ -46,6 +46,9 @@ std::array<Rgb, 3> light_by_pass(const PathContext& context, const Vertex& verte
 // has passed.
 LightVisibility light_visibility(const PathContext& context, const geometry::SurfacePoint& from,
                                  const light::LightPoint& point, const light::LightEvaluation& view, uint32_t crossed);
+// Returns the share of light that reaches the start of a shadow ray through transparent surfaces. A path passes at most
+// as many of them as the settings allow, of which it has passed `crossed` before.
+Rgb shadow_transmittance(const PathContext& context, const Ray& ray, uint32_t crossed);
 
 // Returns the density with which light sampling at the ray's source chooses a point; 0 if it cannot.
 float light_pdf(const PathContext& context, const RaySource& source, const light::LightPoint& point);

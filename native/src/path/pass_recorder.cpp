@@ -5,6 +5,7 @@
 
 #include "film/finite_check.h"
 #include "geometry/surface_values.h"
+#include "path/light.h"
 #include "schema/pass_table.h"
 #include "shading/material.h"
 
@@ -182,7 +183,7 @@ void PassRecorder::surface(const Sampler& sampler, const PathState& state, const
                            const Segment& segment) {
   path_length_ += segment.length;
   if (state.depth == 0 && has_data_ && !adds_components_) {
-    camera_surface(sampler, state.throughput, vertex);
+    camera_surface(sampler, state, vertex);
   }
   if (!features_done_) {
     features(state, vertex);
@@ -204,12 +205,13 @@ void PassRecorder::escaped(const PathState& state) {
   }
 }
 
-void PassRecorder::camera_surface(const Sampler& sampler, const Rgb& weight, const Vertex& vertex) {
+void PassRecorder::camera_surface(const Sampler& sampler, const PathState& state, const Vertex& vertex) {
+  const Rgb& weight = state.throughput;
   colors(weight, vertex);
   // The weight is divided by the probability that the path does not pass the surface, as closures require.
   const Rgb opaque = weight * vertex.shade.opacity();
   if (plane(GRADUS_PASS_AMBIENT_OCCLUSION) != nullptr) {
-    ambient_occlusion(sampler, opaque, vertex);
+    ambient_occlusion(sampler, opaque, vertex, state.ray.state.transparent_depth);
   }
   mist(opaque, vertex.point.position, vertex.point.hit.time);
 }
@@ -246,7 +248,8 @@ void PassRecorder::colors(const Rgb& weight, const Vertex& vertex) {
   }
 }
 
-void PassRecorder::ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex) {
+void PassRecorder::ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex,
+                                     uint32_t crossed) {
   const Vec2 u = sampler.get2(dimension::kFirstVertex + dimension::kOcclusion);
   const Vec3 n = shown_normal(vertex);
   const Vec3 t = glm::normalize(std::fabs(n.x) > 0.5f ? glm::cross(n, Vec3(0, 1, 0)) : glm::cross(n, Vec3(1, 0, 0)));
@@ -258,9 +261,9 @@ void PassRecorder::ambient_occlusion(const Sampler& sampler, const Rgb& weight, 
     return;
   }
   const float limit = context_.scene.world.ao_distance;
-  const bool blocked = context_.scene.occluded(spawn_ray(vertex.point, direction, limit > 0.0f ? limit : kInfinity));
+  const Ray ray = spawn_ray(vertex.point, direction, limit > 0.0f ? limit : kInfinity);
   ++counters_->rays_shadow;
-  add(GRADUS_PASS_AMBIENT_OCCLUSION, blocked ? Rgb(0.0f) : weight);
+  add(GRADUS_PASS_AMBIENT_OCCLUSION, weight * shadow_transmittance(context_, ray, crossed));
 }
 
 void PassRecorder::mist(const Rgb& weight, const Vec3& position, float time) {

@@ -70,10 +70,10 @@ class PassRecorder final : public SurfaceVisitor {
   void add(uint32_t pass, const Vec3& value) { add(pass, Vec4(value, 0.0f)); }
   void add(uint32_t pass, float value) { add(pass, Vec4(value, 0.0f, 0.0f, 0.0f)); }
   void add_light(int scatterings, const Rgb& value, const PassShare& share, uint32_t direct_pass);
-  void camera_surface(const Sampler& sampler, const Rgb& weight, const Vertex& vertex);
+  void camera_surface(const Sampler& sampler, const PathState& state, const Vertex& vertex);
   void surface_data(const Vertex& vertex);
   void colors(const Rgb& weight, const Vertex& vertex);
-  void ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex);
+  void ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex, uint32_t crossed);
   void mist(const Rgb& weight, const Vec3& position, float time);
   // Adds the motion vector of a point. project(moment, film) returns its film position, or false if it has none.
   template <class Project>
