@@ -1,7 +1,7 @@
-"""Settings of Cycles that have a counterpart here: bounces, caustics, Filter Glossy, exposure and the pixel filter.
+"""Settings of Cycles that have a counterpart here: bounces, caustics, clamps, Filter Glossy, exposure, pixel filter.
 
 A scene that was made for Cycles keeps them: unless Follow Cycles is off, they stand for those that were never set for
-Gradus. Clamping is neither followed nor copied, because it adds bias, and Cycles clamps by default.
+Gradus.
 """
 
 from __future__ import annotations
@@ -23,7 +23,11 @@ SAME_NAME = (
     "filter_width",
 )
 
-_NAMES = {name: name for name in SAME_NAME} | {"pixel_filter": "pixel_filter_type"}
+_NAMES = {name: name for name in SAME_NAME} | {
+    "clamp_direct": "sample_clamp_direct",
+    "clamp_indirect": "sample_clamp_indirect",
+    "pixel_filter": "pixel_filter_type",
+}
 """The name that Cycles has for each setting. The identifiers of pixel filters are the same."""
 
 

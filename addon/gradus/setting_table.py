@@ -174,7 +174,8 @@ ROWS: tuple[dict[str, Any], ...] = (
         label="Follow Cycles",
         doc=(
             "Settings that were never changed here follow those that the scene has for Cycles: bounces, caustics, "
-            "Filter Glossy, exposure and the pixel filter. Off: the defaults of Gradus, without Filter Glossy"
+            "clamps, Filter Glossy, exposure and the pixel filter. Off: the defaults of Gradus, without clamps and "
+            "Filter Glossy"
         ),
         native=False,
     ),

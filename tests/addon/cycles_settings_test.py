@@ -20,18 +20,18 @@ def native_settings(scene: bpy.types.Scene) -> native.Settings:
 
 
 def test_the_defaults_are_those_of_cycles(cycles: bpy.types.Scene) -> None:
-    """Filter Glossy differs, because it adds bias."""
-    assert cycles_settings.untouched(cycles) == {"blur_glossy": 1.0}
+    """Filter Glossy and clamps differ, because they add bias."""
+    assert cycles_settings.untouched(cycles) == {"blur_glossy": 1.0, "clamp_indirect": 10.0}
 
 
 def test_settings_that_were_never_set_follow_cycles(cycles: bpy.types.Scene) -> None:
     cycles.cycles.diffuse_bounces, cycles.cycles.glossy_bounces, cycles.cycles.caustics_reflective = 1, 7, False
-    cycles.cycles.pixel_filter_type = "GAUSSIAN"
+    cycles.cycles.pixel_filter_type, cycles.cycles.sample_clamp_direct = "GAUSSIAN", 2.0
     cycles.gradus.glossy_bounces = 3
     found = native_settings(cycles)
     assert (found.diffuse_bounces, found.glossy_bounces, found.caustics_reflective) == (1, 3, 0)
     assert found.pixel_filter == settings.BY_NAME["pixel_filter"].value_of("GAUSSIAN")
-    assert found.blur_glossy == 1.0
+    assert (found.blur_glossy, found.clamp_direct, found.clamp_indirect) == (1.0, 2.0, 10.0)
     assert cycles_settings.warnings(cycles, set(), is_followed=True) == []
 
 
@@ -39,7 +39,7 @@ def test_settings_do_not_follow_cycles_where_that_is_off(cycles: bpy.types.Scene
     cycles.cycles.diffuse_bounces = 1
     cycles.gradus.use_cycles_settings = False
     found = native_settings(cycles)
-    assert (found.diffuse_bounces, found.blur_glossy) == (4, 0.0)
+    assert (found.diffuse_bounces, found.blur_glossy, found.clamp_indirect) == (4, 0.0, 0.0)
 
 
 def test_differences_from_cycles_are_reported(cycles: bpy.types.Scene) -> None:
@@ -53,7 +53,7 @@ def test_differences_from_cycles_are_reported(cycles: bpy.types.Scene) -> None:
 
 def test_settings_that_the_user_has_set_are_not_reported(cycles: bpy.types.Scene) -> None:
     cycles.cycles.glossy_bounces = 7
-    cycles.gradus.glossy_bounces, cycles.gradus.blur_glossy = 3, 0.0
+    cycles.gradus.glossy_bounces, cycles.gradus.blur_glossy, cycles.gradus.clamp_indirect = 3, 0.0, 0.0
     assert cycles_settings.warnings(cycles, set(), is_followed=False) == []
 
 

@@ -168,7 +168,7 @@ def test_phases_of_the_last_render_come_in_their_order() -> None:
 def method(**values: Any) -> SimpleNamespace:
     defaults = {"integrator": "AUTO", "reconstruction": "AUTO", "denoiser": "NONE"}
     defaults |= {"noise_threshold": 0.0, "use_temporal": False}
-    return SimpleNamespace(**{**defaults, "clamp_direct": 0.0, "clamp_indirect": 0.0, **values})
+    return SimpleNamespace(**{**defaults, **values})
 
 
 @pytest.mark.parametrize(
@@ -180,7 +180,6 @@ def method(**values: Any) -> SimpleNamespace:
         ({"denoiser": "AUTO", "use_temporal": True}, 7, "Consistent; biased in animations if a denoiser is found"),
         ({"denoiser": "AUTO", "integrator": "PATH", "reconstruction": "NONE"}, 64, "Unbiased"),
         ({"denoiser": "AUTO", "reconstruction": "L2"}, 64, "Unbiased"),
-        ({"reconstruction": "NONE", "clamp_indirect": 3.0}, 64, "Biased by clamping"),
         ({"reconstruction": "L2", "noise_threshold": 0.01}, 64, "Unbiased if the noise threshold is 0"),
         ({"reconstruction": "L2"}, 64, "Unbiased"),
         ({"reconstruction": "L2", "integrator": "PATH"}, 64, "Path tracing has no gradients for this reconstruction"),
@@ -188,7 +187,19 @@ def method(**values: Any) -> SimpleNamespace:
 )
 def test_the_bias_of_settings(values: dict[str, Any], samples: int, text: str) -> None:
     """With AUTO, the panel must not claim that the image is denoised: there may be no denoiser or too few samples."""
-    assert render_panels.bias(method(**values), samples)[0] == text
+    assert render_panels.bias(method(**values), samples, is_clamped=False)[0] == text
+
+
+def test_the_bias_of_clamps(scene: bpy.types.Scene) -> None:
+    """The clamps of Cycles count where they are followed."""
+    settings = method(reconstruction="NONE")
+    assert render_panels.bias(settings, 64, is_clamped=True)[0] == "Biased by clamping"
+    if hasattr(scene, "cycles"):
+        assert render_panels.is_clamped(scene)
+        scene.cycles.sample_clamp_indirect = 0.0
+    assert not render_panels.is_clamped(scene)
+    scene.gradus.clamp_direct = 2.0
+    assert render_panels.is_clamped(scene)
 
 
 def test_presets_set_their_values_and_reset_others(scene: bpy.types.Scene) -> None:

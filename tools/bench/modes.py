@@ -20,7 +20,7 @@ class Mode:
 
 def _gradus(integrator: str, reconstruction: str, denoiser: str = "NONE") -> dict[str, Any]:
     chosen = {"integrator": integrator, "reconstruction": reconstruction, "denoiser": denoiser}
-    return chosen | {"blur_glossy": 0.0}
+    return chosen | {"blur_glossy": 0.0, "clamp_direct": 0.0, "clamp_indirect": 0.0}
 
 
 # Cycles samples as Gradus does: with its light tree, but without guiding, clamps, filter glossy and adaptive sampling.

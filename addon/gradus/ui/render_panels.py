@@ -13,6 +13,15 @@ from .. import settings as setting_rows
 from .base import RenderPanel
 from .presets import GRADUS_PT_presets
 
+BOUNCE_LIMITS = (
+    "max_bounces",
+    "diffuse_bounces",
+    "glossy_bounces",
+    "transmission_bounces",
+    "transparent_max_bounces",
+)
+CLAMPS = ("clamp_direct", "clamp_indirect")
+
 
 class GRADUS_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
@@ -29,7 +38,13 @@ class GRADUS_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         layout.prop(settings, "preview_samples")
 
 
-def bias(settings: Any, samples: int) -> tuple[str, str]:
+def is_clamped(scene: Any) -> bool:
+    """Returns whether light is clamped, by settings of Gradus or those of Cycles that it follows."""
+    owners = (cycles_settings.owner(scene, name, scene.gradus.use_cycles_settings) for name in CLAMPS)
+    return any(getattr(owner, key) > 0.0 for owner, key in owners)
+
+
+def bias(settings: Any, samples: int, is_clamped: bool) -> tuple[str, str]:
     """Returns a text about the bias of the settings, and its icon.
 
     Only the render finds out whether there is a denoiser.
@@ -43,7 +58,7 @@ def bias(settings: Any, samples: int) -> tuple[str, str]:
         return "Biased if a denoiser is found", "INFO"
     if settings.use_temporal and method.denoised_from < math.inf:
         return "Consistent; biased in animations if a denoiser is found", "INFO"
-    if settings.clamp_direct > 0.0 or settings.clamp_indirect > 0.0:
+    if is_clamped:
         return "Biased by clamping", "INFO"
     if method.reconstruction in ("L1", "REGULARIZED"):
         return "Consistent", "INFO"
@@ -63,7 +78,7 @@ class GRADUS_RENDER_PT_method(RenderPanel, bpy.types.Panel):
         column.prop(settings, "reconstruction")
         if settings.reconstruction in automatic.FROM_GRADIENTS:
             column.prop(settings, "reconstruction_alpha")
-        text, icon = bias(settings, context.view_layer.samples or settings.samples)
+        text, icon = bias(settings, context.view_layer.samples or settings.samples, is_clamped(context.scene))
         layout.label(text=text, icon=icon)
 
 
@@ -102,15 +117,6 @@ class GRADUS_RENDER_PT_advanced(RenderPanel, bpy.types.Panel):
             layout.prop(settings, name)
 
 
-BOUNCE_LIMITS = (
-    "max_bounces",
-    "diffuse_bounces",
-    "glossy_bounces",
-    "transmission_bounces",
-    "transparent_max_bounces",
-)
-
-
 def shared_prop(layout: Any, scene: Any, name: str) -> None:
     """Shows a setting that may be that of Cycles, with the label that Gradus has for it."""
     owner, key = cycles_settings.owner(scene, name, scene.gradus.use_cycles_settings)
@@ -127,8 +133,8 @@ class GRADUS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
         for name in BOUNCE_LIMITS:
             shared_prop(column, context.scene, name)
         column = layout.column(align=True, heading="Clamping")
-        column.prop(settings, "clamp_direct")
-        column.prop(settings, "clamp_indirect")
+        for name in CLAMPS:
+            shared_prop(column, context.scene, name)
         shared_prop(layout, context.scene, "blur_glossy")
         column = layout.column(align=True, heading="Caustics")
         for name in ("caustics_reflective", "caustics_refractive"):
