@@ -91,8 +91,7 @@ class Judge:
             passes = images.render(scene, self._folder)
         else:
             cycles_settings.copy(scene)
-            clamps = {f"clamp_{name}": getattr(scene.cycles, f"sample_clamp_{name}") for name in ("direct", "indirect")}
-            settings = {"samples": samples, "seed": SEED, "integrator": "PATH", "reconstruction": "NONE", **clamps}
+            settings = {"samples": samples, "seed": SEED, "integrator": "PATH", "reconstruction": "NONE"}
             passes = images.render(scene, self._folder, **settings)
         return {name: image for name, image in passes.items() if "." in name} or passes
 
