@@ -1,4 +1,4 @@
-"""Settings of Cycles that have a counterpart here: bounces, caustics, Filter Glossy, exposure and the pixel filter.
+"""Settings of Cycles that have a counterpart here: bounces, caustics, Filter Glossy, film.
 
 A scene that was made for Cycles keeps them: unless Follow Cycles is off, they stand for those that were never set for
 Gradus. Clamping is neither followed nor copied, because it adds bias, and Cycles clamps by default.
@@ -20,6 +20,8 @@ SAME_NAME = (
     "caustics_reflective",
     "caustics_refractive",
     "film_exposure",
+    "film_transparent_glass",
+    "film_transparent_roughness",
     "filter_width",
 )
 
@@ -86,6 +88,27 @@ def clamp_warnings(scene: Any, clamp_direct: float) -> list[str]:
         f"Clamp Direct is {clamp_direct:g}: without a light tree, Cycles chooses among the {lights} lights in another way "
         "than Gradus, so that it clamps other parts of their light"
     ]
+
+
+_KINDS = ("diffuse", "glossy", "transmission")
+_PASSES_BEHIND_GLASS = (
+    ("Mist", ("use_pass_mist",)),
+    ("light passes", tuple(f"use_pass_{kind}_{part}" for kind in _KINDS for part in ("direct", "indirect", "color"))),
+    ("Cryptomatte", tuple(f"use_pass_cryptomatte_{kind}" for kind in ("object", "material", "asset"))),
+)
+"""Passes that show, in Cycles, also what is behind transparent glass, with the switches of a view layer."""
+
+
+def glass_warnings(view_layer: Any, is_transparent: bool) -> list[str]:
+    """Returns a warning about passes of a view layer if glass is transparent."""
+    listed = ", ".join(
+        name
+        for name, switches in _PASSES_BEHIND_GLASS
+        if any(getattr(view_layer, switch, False) for switch in switches)
+    )
+    if not is_transparent or not listed:
+        return []
+    return [f"With Transparent Glass, passes show glass, and in Cycles also what is behind it: {listed}"]
 
 
 def _ignored(scene: Any) -> list[str]:
